@@ -402,7 +402,7 @@ static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int t
         hf_batch_run(&batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
         double each_s = (hf_clock_s() - begin_s) / ga->n_individual;
         hf_print_duration(each_s, one, sizeof one);
-        double all_s = each_s * o->population * o->generations / threads;
+        double all_s = hf_check_together_s(each_s, o->population, &threads) * o->generations;
         hf_print_duration(all_s, all, sizeof all);
         *most_s += all_s;
         fprintf(f, "                optimisation: %s for a design of the first generation by %s; at most about %s\n",
@@ -476,19 +476,24 @@ static void print_tolerance_time(const hf_problem *p, int threads, FILE *f)
     if (hf_tolerance_stage_try(p, &p->workspace, TRIAL_S, &trial) != HF_OK) return;
     hf_print_duration(trial.begin_s, begin, sizeof begin);
     hf_print_duration(trial.sample_s, one, sizeof one);
-    hf_print_duration(trial.begin_s + trial.sample_s * n / threads, all, sizeof all);
-    if (trial.is_tried)
-        fprintf(f,
-                "                as built: %s for a net of the first ones%s; with first order about %s for %d nets\n",
-                one, p->settings.has_surface ? ", best fits of the surface included" : "", all, n);
+    int used = threads;
+    hf_print_duration(trial.begin_s + hf_check_together_s(trial.sample_s, n, &used), all, sizeof all);
+    if (trial.n_tried)
+        fprintf(
+            f,
+            "                as built: %s a net (the first %d tried%s); with first order about %s for %d nets on %d "
+            "thread%s\n",
+            one, trial.n_tried, p->settings.has_surface ? ", best fits of the surface included" : "", all, n, used,
+            used == 1 ? "" : "s");
     else
         fprintf(f, "                as built: first order some %s of processor time, counted; samples not tried\n",
                 begin);
     if (!trial.scale_yields) return;
     fprintf(f, "                tolerance.yield: up to %d yields of %d nets more, most of them ended early",
             trial.scale_yields, trial.scale_samples);
-    hf_print_duration(trial.sample_s * trial.scale_yields * trial.scale_samples / threads, all, sizeof all);
-    if (trial.is_tried) fprintf(f, ": some %s", all);
+    double yield_s = hf_check_together_s(trial.sample_s, trial.scale_samples, &threads);
+    hf_print_duration(yield_s * trial.scale_yields, all, sizeof all);
+    if (trial.n_tried) fprintf(f, ": some %s", all);
     fputc('\n', f);
 }
 

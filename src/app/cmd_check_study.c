@@ -45,22 +45,20 @@ static void print_points(const hf_study *s, FILE *f)
     }
 }
 
-/* What is in the folder of the results. */
-static hf_status print_done(const hf_study *s, int *n_left, FILE *f, hf_messages *messages)
+/* What is in the folder of the results: the number of points in each state. */
+static hf_status print_done(const hf_study *s, int count[HF_N_POINT_STATE], FILE *f, hf_messages *messages)
 {
     char folder[HF_PATH_SIZE];
     hf_points points = {0};
     HF_TRY(hf_study_files_name(NULL, s->path, ".d", folder, messages));
     hf_status status = hf_ledger_read(folder, s, &points, messages);
     if (status == HF_OK) {
-        const int *count = points.count;
-        *n_left = count[HF_POINT_MISSING];
+        memcpy(count, points.count, sizeof points.count);
         hf_print_line(f, "  %-13s in %s, %s: %d done, %d failed, %d running, %d to run", "results", folder,
                       hf_study_has_files(s) ? "a file for each point" : "a row for each point and no files",
-                      count[HF_POINT_DONE], count[HF_POINT_FAILED], count[HF_POINT_RUNNING], *n_left);
+                      count[HF_POINT_DONE], count[HF_POINT_FAILED], count[HF_POINT_RUNNING], count[HF_POINT_MISSING]);
         if (count[HF_POINT_OUTDATED])
-            hf_print_line(f, "  %-13s %d more are of another version of %s: --retry outdated,missing runs them anew",
-                          "", count[HF_POINT_OUTDATED], s->base);
+            hf_print_line(f, "  %-13s %d outdated: of another version of %s", "", count[HF_POINT_OUTDATED], s->base);
     }
     hf_points_free(&points);
     return status;
@@ -88,17 +86,47 @@ static hf_status make_points(const hf_study *s, int *n_made, hf_messages *messag
     return n_fault ? HF_BAD_CASE : HF_OK;
 }
 
-static void print_time(int n_left, double each_s, int threads, bool has_tolerance, FILE *f)
+double hf_check_together_s(double each_s, int n, int *threads)
+{
+    if (*threads > n) *threads = n;
+    return each_s * ((n + *threads - 1) / *threads);
+}
+
+static void print_time(int n, const char *what, double each_s, int threads, bool has_tolerance, FILE *f)
 {
     char one[32], all[32];
-    const char *more = has_tolerance ? ", and the time of the nets as built" : "";
     hf_print_duration(each_s, one, sizeof one);
-    hf_print_duration(each_s * n_left / threads, all, sizeof all);
-    if (n_left)
-        fprintf(f, "%d points to run, each like this one at most some %s, on %d threads: at most about %s%s\n", n_left,
-                one, threads, all, more);
-    else
+    hf_print_duration(hf_check_together_s(each_s, n, &threads), all, sizeof all);
+    fprintf(f, "%d point%s to run%s, each like this one at most some %s, on %d thread%s: at most about %s%s\n", n,
+            n == 1 ? "" : "s", what, one, threads, threads == 1 ? "" : "s", all,
+            has_tolerance ? ", and the time of the nets as built" : "");
+}
+
+/* What a sweep runs by itself, and what it runs anew where it is told to. */
+static void print_left(const hf_study *s, const int count[HF_N_POINT_STATE], double each_s, int threads, FILE *f)
+{
+    static const hf_point_state other[] = {HF_POINT_FAILED, HF_POINT_OUTDATED, HF_POINT_RUNNING};
+    int n_missing = count[HF_POINT_MISSING], n_anew = count[HF_POINT_FAILED] + count[HF_POINT_OUTDATED];
+    char told[128] = "", retry[64] = "";
+    size_t n_told = 0, n_retry = 0;
+    if (n_missing) print_time(n_missing, "", each_s, threads, s->has_tolerance, f);
+    if (n_missing && n_anew) n_retry += (size_t)snprintf(retry, sizeof retry, "%s", hf_point_state_word[0]);
+    for (size_t k = 0; k < sizeof other / sizeof *other; k++) {
+        const char *word = hf_point_state_word[other[k]];
+        if (!count[other[k]]) continue;
+        n_told +=
+            (size_t)snprintf(told + n_told, sizeof told - n_told, "%s%d %s", n_told ? ", " : "", count[other[k]], word);
+        if (other[k] != HF_POINT_RUNNING)
+            n_retry += (size_t)snprintf(retry + n_retry, sizeof retry - n_retry, "%s%s", n_retry ? "," : "", word);
+    }
+    if (n_anew)
+        hf_print_line(f, "%s%s: `hifdm sweep %s --retry %s`%s", n_missing ? "" : "nothing is missing; ", told, s->path,
+                      retry, n_missing ? " runs these, too" : "");
+    else if (!n_missing && *told)
+        hf_print_line(f, "nothing is missing; %s", told);
+    else if (!n_missing)
         fprintf(f, "all points have been run\n");
+    if (!n_missing && n_anew) print_time(n_anew, " anew", each_s, threads, s->has_tolerance, f);
 }
 
 static hf_status check_study(const hf_check_request *request, const hf_study *s, FILE *f, hf_messages *messages)
@@ -106,7 +134,7 @@ static hf_status check_study(const hf_check_request *request, const hf_study *s,
     char text[512];
     hf_study_overrides o;
     double most_s;
-    int n_left = 0, n_made = 0;
+    int count[HF_N_POINT_STATE] = {0}, n_made = 0;
     HF_TRY(make_points(s, &n_made, messages));
     hf_print_line(f, "%s: valid", request->name);
     if (*s->title) hf_print_line(f, "  %-13s %s", "study", s->title);
@@ -114,12 +142,12 @@ static hf_status check_study(const hf_check_request *request, const hf_study *s,
     print_axes(s, f);
     print_points(s, f);
     if (n_made < s->n_point) fprintf(f, "  %-13s the nets of %d were made, the others are only read\n", "", n_made);
-    HF_TRY(print_done(s, &n_left, f, messages));
+    HF_TRY(print_done(s, count, f, messages));
     hf_study_point_overrides(s, 0, &o);
     snprintf(text, sizeof text, "the first point, %s", s->id[0]);
     const hf_check_request first = {.path = s->base, .name = text, .set = o.set, .n_set = o.n_set, .threads = 1};
     hf_status status = hf_check_case(&first, &most_s, f, messages);
-    print_time(n_left, most_s, request->threads, s->has_tolerance, f);
+    print_left(s, count, most_s, request->threads, f);
     return status;
 }
 

@@ -404,8 +404,10 @@ static void aim_beam(job *j, hf_messages *messages)
 
 /* ---- a trial ---- */
 
-#define TRIED 16       /* samples at first: two rounds of the lanes of a thread */
-#define TRIED_MORE 128 /* samples where the first ones took less than TRIED_S, which a cold start is much of */
+/* Samples from the first one, twice as many each time, while that takes no longer than a trial may: those with slack
+ * cables take far longer than others. TRIED are enough where they took TRIED_S, of less a cold start is much. */
+#define TRIED 16 /* two rounds of the lanes of a thread */
+#define TRIED_MOST 128
 #define TRIED_S 0.1
 #define OPERATIONS_PER_S 8e9 /* of one core, in solves of several right-hand sides */
 
@@ -416,20 +418,24 @@ static double first_order_s(const hf_model *m)
     return 3.0 * m->n_inner_node * 4 * rows * (3.0 * m->half_bandwidth + 2) / OPERATIONS_PER_S;
 }
 
-static hf_status try_samples(job *j, hf_tolerance_trial *trial, hf_messages *messages)
+static hf_status try_samples(job *j, double most_s, hf_tolerance_trial *trial, hf_messages *messages)
 {
     const hf_problem *p = j->stage->problem;
     HF_TRY(hf_built_make("", &p->scene, &p->model, &p->settings.form, j->stage->shape, &j->built, messages));
     HF_TRY(open_montecarlo(j, messages));
     aim_beam(j, messages);
     trial->begin_s = hf_clock_thread_cpu_s() - j->begin_s;
-    for (int tried = TRIED; tried; tried = tried == TRIED && trial->sample_s * TRIED < TRIED_S ? TRIED_MORE : 0) {
-        int n = tried < j->montecarlo.n_chunk ? tried : j->montecarlo.n_chunk;
-        double begin_s = hf_clock_thread_cpu_s();
+    double first_s = hf_clock_thread_cpu_s(), now_s = first_s, took_s = 0;
+    for (int n = 1; n <= TRIED_MOST && n <= j->montecarlo.n_chunk; n *= 2) {
+        double begin_s = now_s;
+        if (begin_s - first_s + 2 * took_s > most_s) break;
+        if (n > TRIED && took_s >= TRIED_S) break;
         HF_TRY(hf_montecarlo_run(&j->montecarlo, 1, 0, n));
-        trial->sample_s = (hf_clock_thread_cpu_s() - begin_s) / n;
+        now_s = hf_clock_thread_cpu_s();
+        took_s = now_s - begin_s;
+        trial->sample_s = took_s / n;
+        trial->n_tried = n;
     }
-    trial->is_tried = true;
     return HF_OK;
 }
 
@@ -445,7 +451,7 @@ hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape,
         trial->scale_yields = HF_SCALE_YIELDS;
         trial->scale_samples = scale_samples(&p->settings.tolerance);
     }
-    hf_status status = trial->begin_s > most_s ? HF_OK : try_samples(&j, trial, &messages);
+    hf_status status = trial->begin_s > most_s ? HF_OK : try_samples(&j, most_s, trial, &messages);
     job_free(&j);
     return status;
 }

@@ -39,10 +39,11 @@ START_TEST(check_tells_how_long_samples_take)
                        "  EA_inner_N: 5000\n  EA_boundary_N: 5000\nform: {prestress: exact}\n"
                        "tolerance:\n  sigma_cut_m: 1e-5\n  samples: 5000\n%s";
     HIFDM(0, "check", file_with("case.yaml", formatted(text, 3, "surface: {}\n")));
-    OUT(" for a net of the first ones, best fits of the surface included; with first order about ");
-    OUT(" for 5000 nets\n");
+    OUT(" a net (the first ");
+    OUT(" tried, best fits of the surface included); with first order about ");
+    OUT(" for 5000 nets on ");
     HIFDM(0, "check", file_with("case.yaml", formatted(text, 3, "")));
-    OUT(" for a net of the first ones; with first order about ");
+    OUT(" tried); with first order about ");
     ck_assert_ptr_null(strstr(said.out, "tolerance.yield"));
     HIFDM(0, "check",
           file_with("case.yaml", formatted(text, 3,

@@ -183,6 +183,63 @@ START_TEST(check_says_what_a_sweep_would_do)
 }
 END_TEST
 
+/* No more threads than points: two of them side by side take as long as one. */
+START_TEST(check_counts_threads_that_have_a_point)
+{
+    const char *path = file_with("s.yaml", NET "sweep:\n  form.pretension_N: [5, 6]\n");
+    char one[32] = "", all[32] = "";
+    HIFDM(0, "check", path, "--threads", "64");
+    const char *line = strstr(said.out, "2 points to run, each");
+    ck_assert_msg(line && sscanf(line,
+                                 "2 points to run, each like this one at most some %31[^,], on 2 threads: at most "
+                                 "about %31[^\n]",
+                                 one, all) == 2,
+                  "%s", said.out);
+    ck_assert_str_eq(one, all);
+    /* three points on two threads: two rounds; durations are printed as "1.2 ms" */
+    HIFDM(0, "check", file_with("s.yaml", NET "sweep:\n  form.pretension_N: [5, 6, 7]\n"), "--threads", "2");
+    double one_is, all_is;
+    char one_unit[8], all_unit[8];
+    line = strstr(said.out, "3 points to run, each");
+    ck_assert_msg(line && sscanf(line,
+                                 "3 points to run, each like this one at most some %lf %7[^,], on 2 threads: at most "
+                                 "about %lf %7s",
+                                 &one_is, one_unit, &all_is, all_unit) == 4,
+                  "%s", said.out);
+    double rounding = strcmp(one_unit, "us") ? 0.151 : 1.51; /* of both numbers */
+    if (!strcmp(one_unit, all_unit)) ck_assert_msg(fabs(all_is - 2 * one_is) <= rounding, "%s", said.out);
+}
+END_TEST
+
+/* Points that are not missing, and yet not done: with the command that runs them. */
+START_TEST(check_tells_what_is_not_done)
+{
+    const char *base = SMALL_SCENE "form: {method: hifdm, stop: residual}\n";
+    const char *study = "base: base.yaml\nsweep:\n  form.max_iterations: [100000, 2]\n  form.pretension_N: [8, 9]\n";
+    file_with("base.yaml", base);
+    file_with("s.yaml", study);
+    SHELL(3, "cd \"$1\" && \"$0\" sweep s.yaml --quiet", temp(""));
+    SHELL(0, "cd \"$1\" && \"$0\" check s.yaml --threads 2", temp(""));
+    OUT("2 done, 2 failed, 0 running, 0 to run");
+    OUT("nothing is missing; 2 failed: `hifdm sweep s.yaml --retry failed`\n2 points to run anew, each like this one ");
+    ck_assert_ptr_null(strstr(said.out, "all points have been run"));
+    file_with("s.yaml",
+              "base: base.yaml\nsweep:\n  form.max_iterations: [100000, 2]\n  form.pretension_N: [8, 9, 10]\n");
+    SHELL(0, "cd \"$1\" && \"$0\" check s.yaml --threads 2", temp(""));
+    OUT("2 points to run, each like this one ");
+    OUT("\n2 failed: `hifdm sweep s.yaml --retry missing,failed` runs these, too\n");
+    /* another base case: what was run before is of the old one */
+    file_with("s.yaml", study);
+    file_with("base.yaml", formatted("title: other\n%s", base));
+    SHELL(0, "cd \"$1\" && \"$0\" check s.yaml --threads 2", temp(""));
+    OUT("4 outdated: of another version of base.yaml\n");
+    OUT("nothing is missing; 4 outdated: `hifdm sweep s.yaml --retry outdated`\n4 points to run anew, each like ");
+    SHELL(3, "cd \"$1\" && \"$0\" sweep s.yaml --retry outdated --quiet", temp("")); /* that command does it */
+    SHELL(0, "cd \"$1\" && \"$0\" check s.yaml", temp(""));
+    OUT("nothing is missing; 2 failed: ");
+}
+END_TEST
+
 /* All of them with their lines: of the study, of its base, and what only the nets of the points show. */
 START_TEST(check_tells_the_faults_of_a_study)
 {
@@ -232,6 +289,8 @@ Suite *suite_cli_study(void)
     tcase_add_test(tcase, odd_names_are_shown_escaped);
     tcase_add_test(tcase, a_large_study_shows_its_best);
     tcase_add_test(tcase, check_says_what_a_sweep_would_do);
+    tcase_add_test(tcase, check_counts_threads_that_have_a_point);
+    tcase_add_test(tcase, check_tells_what_is_not_done);
     tcase_add_test(tcase, check_tells_the_faults_of_a_study);
     tcase_add_test(tcase, show_of_what_is_no_result_says_what_to_do);
     suite_add_tcase(suite, tcase);
