@@ -188,7 +188,6 @@ static hf_status enter(hf_polish_problem *p, int max_iterations, hf_polish_resul
             p->way = 1;
         }
         r->iterations++;
-        p->settled_steps++;
         hf_watch_aim(&p->watch, p->way);
         hf_status status = solve_step(p, p->damping, &gain);
         if (status == HF_OK) status = take_step(p);
@@ -283,6 +282,7 @@ static hf_status minimise(hf_polish_problem *p, int max_iterations, hf_polish_re
     while (status == HF_OK && !p->is_outside && r->stop == HF_POLISH_MAX_ITERATIONS && r->iterations < max_iterations) {
         double before = r->merit * r->merit / 2;
         r->iterations++;
+        p->settled_steps++;
         status = try_step(p, p->damping, &gain);
         if (status == HF_OK && !p->trade) status = bend_step(p, before, gain);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;

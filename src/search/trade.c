@@ -7,6 +7,7 @@
 #include "base/arena.h"
 #include "search/parallel.h"
 #include "search/polish.h"
+#include "search/trade_meet.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,6 +28,7 @@ typedef struct {
     int least;                      /* the objective that is to be least */
     double most[HF_OBJECTIVES_MAX]; /* of the others; INFINITY: any */
     const double *from[2];          /* [n_gene] to begin from: the second where the first leads nowhere; or NULL */
+    int met;                        /* the objective that is met at from[0], which hf_trade_meet follows; or -1 */
     double *design;                 /* [n_gene] the answer */
     hf_front_point found;
     const void *closed; /* the next point on the way, with none to be found between */
@@ -108,6 +110,7 @@ static hf_status find(const search *s, job *j, hf_workspace *w)
     size_t size = s->n_gene * sizeof(double);
     hf_front_point again;
     memcpy(j->design, j->from[0], size);
+    if (j->met >= 0) HF_TRY(hf_trade_meet(s->t, j->met, j->least, s->range, j->design, w));
     HF_TRY(polish(s, j, j->design, w, &j->found));
     if (!j->from[1] || !is_doubtful(s, j)) return HF_OK;
     double *design = j->design + s->n_gene; /* the second half of its room */
@@ -160,6 +163,7 @@ static job *add(search *s, int role, double third_most, const double *first, con
 {
     job *j = &s->job[s->n++];
     j->least = s->role[role];
+    j->met = -1;
     for (int k = 0; k < s->n_objective; k++)
         j->most[k] = INFINITY;
     if (s->n_objective > 2) j->most[s->role[THIRD]] = third_most;
@@ -226,8 +230,12 @@ static hf_status finish_lines(search *s, int first)
         for (int e = 0; e < 2; e++) {
             line *l = s->line[i];
             if (!l->is_new[e] || l->end[e]->found.status != HF_OK) continue;
-            l->beside[e] = add(s, 1 - e, l->most, l->end[e]->design, NULL);
-            l->beside[e]->most[s->role[e]] = value_of(s, l->end[e], e) + END_GIVES * s->range[s->role[e]];
+            double value = value_of(s, l->end[e], e), gives = END_GIVES * s->range[s->role[e]];
+            job *beside = l->beside[e] = add(s, 1 - e, l->most, l->end[e]->design, NULL);
+            beside->most[s->role[e]] = value + gives;
+            if (s->n_objective > 2 || value > gives) continue;
+            beside->met = s->role[e];
+            beside->from[1] = beside->from[0];
         }
     HF_TRY(run(s));
     for (int i = first; i < s->n_line; i++)

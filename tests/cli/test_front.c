@@ -46,6 +46,25 @@ START_TEST(a_slope_says_of_what_it_is)
 }
 END_TEST
 
+/* psi can be met, where its size has no slope: the evenness beside it is the least that two goals find together. */
+START_TEST(the_least_beside_an_objective_that_is_met)
+{
+#define MET                                                                                                            \
+    "scene:\n  paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 3, rear_distance_m: 1.8}\n"                       \
+    "form: {pretension_N: 10}\noptimize:\n  method: lm\n"                                                              \
+    "  variables: [{set: all, vary: force_density, range: 50 %}]\n"
+    const char *front = temp("f.h5"), *both = temp("b.h5");
+    HIFDM(0, "run",
+          file_with("f.yaml", MET "  objectives: [{goal: psi}, {goal: evenness, set: all}]\n  front_points: 5\n"), "-o",
+          front, "--quiet");
+    HIFDM(0, "run", file_with("b.yaml", MET "  goals: [{goal: psi}, {goal: evenness, set: all, weight: 1e-4}]\n"), "-o",
+          both, "--quiet");
+    EXPECT(front, both, "--", "a['front/objective'][0, 0] < 2e-6 * a['front/objective'][-1, 0]",
+           "near(a['front/objective'][0, 1], b['goals/polish'][1], 1e-3)",
+           "a['front/objective'][0, 1] < 0.95 * b['goals/form'][1]");
+}
+END_TEST
+
 /* More points than are listed: the ends and the knee are those of all. */
 START_TEST(a_front_of_many_points_is_thinned)
 {
@@ -267,6 +286,7 @@ Suite *suite_cli_front(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, a_front_is_printed_stored_and_told);
     tcase_add_test(tests, a_slope_says_of_what_it_is);
+    tcase_add_test(tests, the_least_beside_an_objective_that_is_met);
     tcase_add_test(tests, a_front_of_many_points_is_thinned);
     tcase_add_test(tests, a_report_has_the_front);
     tcase_add_test(tests, a_table_of_the_front_is_one_of_designs);
