@@ -175,9 +175,9 @@ export const pages = [
   {
     name: "sweep-surface", // one axis; goals, of which one is psi, the surface, the net as built; wide tables on paper
     look: true,
-    study: 5,
+    study: 3,
     text:
-      "title: How hard may the net pull?\nbase: base.yaml\nsweep:\n  form.pretension_N: [18, 19, 20, 21, 22]\n" +
+      "title: How hard may the net pull?\nbase: base.yaml\nsweep:\n  form.pretension_N: [19, 20, 21]\n" +
       "  scene.EA_boundary_N: [2e5]\n",
     files: {
       "base.yaml":
