@@ -165,6 +165,8 @@ async function test(browser, page) {
     await checkPoints(tab, page, made);
   } else {
     await checkSummary(tab, made);
+    const isOptimised = ["optimize", "polish", "front"].some((key) => key in made.summary);
+    assert.equal(/ variables,/.test(await tab.locator("#subtitle").textContent()), isOptimised);
     if (page.name === "chen2022") await checkWords(tab, made);
     const endless = await checkCharts(tab, 4, "#form-finding", /iteration \d+\s+ψ\s+[\d.]+.* mm/);
     await checkNet(tab, page, made);
