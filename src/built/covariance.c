@@ -79,6 +79,10 @@ static void sum_up(const strips *s, hf_covariance *c)
         c->deviation_m[k] = sqrt(s->square[3 * k] + s->square[3 * k + 1] + s->square[3 * k + 2]);
 }
 
+/* A psi so small beside what errors add, root of the mean square, is no figure that a cut raises or lowers: it has a
+ * corner there, and the direction of what is left is that of rounding. */
+#define NO_PSI 1e-3
+
 /* One solve for all cables: psi has the slope d/(n psi) by the places of the inner nodes, d their distances. */
 static void find_psi_by_cut(const hf_built_linear *l, double *room, hf_covariance *c)
 {
@@ -92,7 +96,7 @@ static void find_psi_by_cut(const hf_built_linear *l, double *room, hf_covarianc
         }
     hf_built_linear_transpose(l, 1, slope, strain, scratch);
     for (int e = 0; e < m->n_cable; e++)
-        c->psi_by_cut[e] = c->nominal_psi_m > 0 ? strain[e] * l->cut_N_per_m[e] : (double)NAN;
+        c->psi_by_cut[e] = c->nominal_psi_m > NO_PSI * sqrt(c->spread_m2) ? strain[e] * l->cut_N_per_m[e] : (double)NAN;
 }
 
 static void lay_out_covariance(hf_arena *arena, const hf_built_errors *e, hf_covariance *c)

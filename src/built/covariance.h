@@ -12,8 +12,8 @@ typedef struct {
     double *share_m2; /* [n] of each error in that; the sum is spread_m2 */
     double *cable_m2; /* [n_cable] of a cable's own errors */
     double kind_m2[HF_ERROR_N_KIND];
-    double
-        *psi_by_cut; /* [n_cable] d psi / d l0 of the nominal net: what letting a cable out does; NaN where psi is 0 */
+    double *psi_by_cut;  /* [n_cable] d psi / d l0 of the nominal net: what letting a cable out does; NaN where psi is
+                           below 1e-3 of the root of spread_m2 */
     double *deviation_m; /* [n_inner_node] of each inner node, in the order of the model */
     void *block;
 } hf_covariance;

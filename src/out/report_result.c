@@ -129,7 +129,8 @@ static void write_net(const page *p, FILE *f)
     write_integers("end", s->end, 2 * s->n_cable, f);
     write_codes("group", s->group, s->n_cable, f);
     write_sets(s, f);
-    if (p->psi_by_cut.n == s->n_cable) hf_json_pack_values("psi_by_cut", "f32", p->psi_by_cut.value, s->n_cable, f);
+    if (p->psi_by_cut.n == s->n_cable && !isnan(p->psi_by_cut.value[0]))
+        hf_json_pack_values("psi_by_cut", "f32", p->psi_by_cut.value, s->n_cable, f);
     if (p->cable_share.n == s->n_cable) hf_json_pack_values("cable_share", "f32", p->cable_share.value, s->n_cable, f);
     if (p->facets.n_facet) write_integers("facets", p->facets.corner, 4 * p->facets.n_facet, f);
     fputc('}', f);

@@ -115,6 +115,14 @@ START_TEST(samples_tell_each_loss_of_gain)
         "* (299792458 / (4 * np.pi * 2e8))**2 * np.log(10) / 10 - 1).max() < 1e-12 for p in ['', 'fit_', 'facet_', "
         "'facet_fit_'])",
         "len({a['tolerance/sample'][p + 'gain_loss_dB'][0] for p in ['', 'fit_', 'facet_', 'facet_fit_']}) == 4");
+    EXPECT(path, "--", "np.isfinite(a['tolerance/psi_by_cut'][:]).all()");
+    HIFDM(0, "tolerance",
+          file_with("e.yaml", "scene:\n  EA_inner_N: 5e3\n  EA_boundary_N: 1e4\n  paraboloid: {aperture_m: 4, "
+                              "focal_length_m: 3, rings: 2, rear_distance_m: 1.8}\nform: {prestress: exact}\n"
+                              "tolerance: {sigma_cut_m: 1e-4, samples: 10}\n"),
+          "-o", temp("exact.h5"), "--quiet");
+    EXPECT(temp("exact.h5"), "--", "a['tolerance'].attrs['nominal_psi_m'] < 1e-9",
+           "np.isnan(a['tolerance/psi_by_cut'][:]).all()");
     /* a file of before has one loss, that of its facets after the best fit */
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
           "import h5py, sys\n"
