@@ -53,6 +53,7 @@ export async function checkSurfaceOfStudy(tab, study) {
   const titles = await tab.locator("#sweep .chart h3").allTextContents(),
     heads = (await tab.locator("#points thead th").allTextContents()).join("; "),
     text = await tab.locator("body").innerText();
+  assert.ok(titles.includes("Surface error ψ, found"), titles.join("; ")); // the optimum's is met, and left out
   assert.ok(titles.includes("Goal tension tie") && !titles.includes("Goal psi"), titles.join("; "));
   assert.match(text, /The goal psi is left out: it is ψ\./);
   const ticks = await tab.locator("#sweep .chart svg[tabindex] text[text-anchor=middle]:not(.label)").allTextContents();

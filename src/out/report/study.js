@@ -190,8 +190,10 @@ function curveChart(study, figure, axis, others, groups, stage) {
       dots: x.length < 2,
     })),
   );
+  const isAlone = isOne && isStaged && stages.length === 1 && figure.stages.length > 1; // without a legend, then
   return chart({
     ...figure,
+    title: isAlone ? `${figure.title}, ${stageName[stages[0]]}` : figure.title,
     xLabel: axis.text,
     x,
     series,
