@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "linalg/band.h"
+#include "linalg/dot.h"
 #include "search/parallel.h"
 #include <hifdm/metrics.h>
 
@@ -257,14 +258,6 @@ static void multiply_rows(void *context, int room, int i_block)
     hf_band_gram(first, end, (int)a->n_row, a->column, (int)a->n_row, a->product, n_all);
 }
 
-static double dot(size_t n, const double *a, const double *b)
-{
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
-
 /* Products of the effects of cables, the samples and the residuals without turns. */
 static void find_products(adjustment *a)
 {
@@ -310,8 +303,8 @@ static hf_status look_again(adjustment *a)
     HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[0].point, a->residual));
     take_turns_off(a);
     for (size_t i = 0; i < a->n; i++)
-        a->slope[i] = dot(a->n_row, a->column + i * a->n_row, a->at_zero);
-    a->problem.square = dot(a->n_row, a->at_zero, a->at_zero);
+        a->slope[i] = hf_dot(a->n_row, a->column + i * a->n_row, a->at_zero);
+    a->problem.square = hf_dot(a->n_row, a->at_zero, a->at_zero);
     return HF_OK;
 }
 
@@ -406,7 +399,7 @@ static bool promises(const adjustment *a, double figure_m)
 {
     double square = a->problem.square;
     for (size_t i = 0; i < a->n; i++)
-        square += a->move_m[i] * (2 * a->slope[i] + dot(a->n, a->gram + i * a->n, a->move_m));
+        square += a->move_m[i] * (2 * a->slope[i] + hf_dot(a->n, a->gram + i * a->n, a->move_m));
     return !(square >= figure_m * figure_m * (1 - LITTLE) * (1 - LITTLE));
 }
 
@@ -440,7 +433,7 @@ static hf_status spread_figure(adjustment *a, double *doubt_m, double *spread_m)
         push_move(a, &a->room[0], a->doubt_m + s * a->n_dof, a->at_zero); /* which nobody reads any more */
         for (size_t r = 0; r < a->n_row; r++)
             a->at_zero[r] += a->residual[r];
-        double sum = dot(a->n_row, a->at_zero, a->at_zero);
+        double sum = hf_dot(a->n_row, a->at_zero, a->at_zero);
         mean += sqrt(sum) / HF_ESTIMATE_SAMPLES;
         square += sum / HF_ESTIMATE_SAMPLES;
     }

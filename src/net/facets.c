@@ -61,9 +61,8 @@ static void follow_cables(graph *g)
         for (int k = 0; k < 2; k++) {
             int i = s->end[2 * e + k], from = s->end[2 * e + 1 - k];
             if (s->role[i] == HF_ROLE_INNER || s->role[from] != HF_ROLE_INNER) continue;
-            const double *p = s->position_m + 3 * (size_t)i, *q = s->position_m + 3 * (size_t)from;
-            double length_m = hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
-            if (fabs(g->above_m[i] - g->above_m[from]) <= NEAR_SLOPE * length_m) g->is_on[i] = 1;
+            double most_m = NEAR_SLOPE * hf_scene_theoretical_length(s, e);
+            if (fabs(g->above_m[i] - g->above_m[from]) <= most_m) g->is_on[i] = 1;
         }
 }
 

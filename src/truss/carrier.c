@@ -1,6 +1,7 @@
 #include <hifdm/carrier.h>
 
 #include "base/arena.h"
+#include "base/elementary.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -117,8 +118,8 @@ double hf_carrier_second_order_m(const hf_carrier *c, const hf_carrier_state *st
     for (int k = 0; k < c->n_attachment && state->displacement; k++) {
         const double *u = state->displacement + HF_TRUSS_DOF * c->truss_node[k];
         const double *at = t->position_m + 3 * c->truss_node[k], *first = t->position_m + 3 * c->truss_node[0];
-        *move_m = fmax(*move_m, hypot(hypot(u[0], u[1]), u[2]));
-        *span_m = fmax(*span_m, hypot(hypot(at[0] - first[0], at[1] - first[1]), at[2] - first[2]));
+        *move_m = fmax(*move_m, hf_norm(u[0], u[1], u[2]));
+        *span_m = fmax(*span_m, hf_distance(at, first));
     }
     return turn * *move_m / 2;
 }
