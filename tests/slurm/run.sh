@@ -84,7 +84,7 @@ equals_local() {
 "$source/tests/slurm/cluster.sh" "$work/cluster" up
 submit() { sbatch --parsable --array=0-3 --cpus-per-task=1 --time=10 "$source/tools/slurm/sweep.sbatch" \
     study.yaml --dir array.d; }
-is_working() { [ -s pid.0 ] && [ "$(count array.d running)" -gt 0 ]; }
+is_working() { [ -s pid.0 ] && [ -d array.d ] && [ "$(count array.d running)" -gt 0 ]; }
 
 job=$(submit)
 echo "array $job of 4 tasks"
