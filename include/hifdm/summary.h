@@ -114,6 +114,7 @@ typedef struct {
     int n;                                            /* 0: psi is the goal */
     char name[HF_DESIGN_ROWS_MAX][HF_GOAL_NAME_SIZE]; /* goal_1_tension_edge: number, goal, set */
     double weight[HF_DESIGN_ROWS_MAX];
+    int after_fit[HF_DESIGN_ROWS_MAX]; /* of the surface: 1 after its best fit, 0 as it stands; -1: of other things */
     bool are_objectives;
 } hf_goal_list;
 

@@ -23,8 +23,27 @@ static bool has_merit(const hf_summary *s)
     return s->goals.n > 0 && !s->goals.are_objectives;
 }
 
+/* Is the surface wanted after its best fit alone, by what nets must keep and by what designs are led by? */
+static bool wants_fit(const hf_summary *s)
+{
+    int n_raw = 0, n_fit = 0;
+    for (int k = 0; k < s->tolerance.n_require; k++) {
+        hf_tolerance_measure measure = s->tolerance.require[k].measure;
+        if (measure <= HF_TOLERANCE_PSI || measure >= HF_TOLERANCE_PATTERN_LOSS) continue;
+        bool is_fit = strstr(hf_tolerance_measure_word[measure], "fit_") != NULL;
+        n_fit += is_fit;
+        n_raw += !is_fit;
+    }
+    for (int k = 0; k < s->goals.n; k++) {
+        n_fit += s->goals.after_fit[k] == 1;
+        n_raw += s->goals.after_fit[k] == 0;
+    }
+    return n_fit > 0 && n_raw == 0;
+}
+
 /* Up to which frequency the surface loses no more gain: by its facets where they are measured, else by its nodes; psi,
- * which is no less than the half-path RMS of the nodes to first order (METHOD section 9), where no surface is. */
+ * which is no less than the half-path RMS of the nodes to first order (METHOD section 9), where no surface is. As it
+ * stands, or first after the best fit where that is what the case wants. */
 static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, FILE *f)
 {
     const hf_surface_measures *m = &s->measures[stage];
@@ -34,11 +53,16 @@ static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, F
     double raw_Hz = hf_surface_frequency_of_loss_Hz(e.half_path_rms_m, HF_SURFACE_GOOD_TO_DB);
     double fit_Hz = hf_surface_frequency_of_loss_Hz(e.fit_half_path_rms_m, HF_SURFACE_GOOD_TO_DB);
     if (!(raw_Hz < FREQUENCY_MOST_HZ)) return;
-    fprintf(f, "; good to %.3g GHz at %g dB (%s", raw_Hz / 1e9, HF_SURFACE_GOOD_TO_DB,
+    bool has_fit = fit_Hz < FREQUENCY_MOST_HZ, fit_first = has_fit && wants_fit(s);
+    fprintf(f, "; good to %.3g GHz at %g dB%s (%s", (fit_first ? fit_Hz : raw_Hz) / 1e9, HF_SURFACE_GOOD_TO_DB,
+            fit_first ? " after the best fit" : "",
             has_facets       ? "its facets"
             : m->is_measured ? "its nodes"
                              : "its nodes, by psi");
-    if (fit_Hz < FREQUENCY_MOST_HZ) fprintf(f, "; %.3g GHz after the best fit", fit_Hz / 1e9);
+    if (fit_first)
+        fprintf(f, "; %.3g GHz as it stands", raw_Hz / 1e9);
+    else if (has_fit)
+        fprintf(f, "; %.3g GHz after the best fit", fit_Hz / 1e9);
     fputc(')', f);
 }
 

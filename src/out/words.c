@@ -75,7 +75,9 @@ static const hf_word told[] = {
     {"good to", "term", "",
      "The frequency at which the errors cost 1 dB of gain by Ruze's formula: of the facets where a section surface "
      "measures them, else of the nodes, else of psi, which is no less than the nodes' error. The second number is "
-     "after the best fit: the feed follows.",
+     "after the best fit: the feed follows. That one stands first where all rows of tolerance.require and all goals "
+     "that "
+     "are about the surface are after the best fit.",
      NULL},
     {"half path", "term", "",
      "Half of how much longer or shorter the way from a plane wave to the focus is: the error along the normal times "

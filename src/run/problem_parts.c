@@ -218,8 +218,11 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->goals.n = p->goals.n_goal;
     s->goals.are_objectives = settings->optimize.n_objective > 0;
     for (int k = 0; k < s->goals.n; k++) {
+        const hf_goal_settings *wanted = &p->goals.goal[k].wanted;
         hf_goals_name(&p->goals, k, s->goals.name[k]);
-        s->goals.weight[k] = p->goals.goal[k].wanted.weight;
+        s->goals.weight[k] = wanted->weight;
+        bool of_surface = wanted->goal == HF_GOAL_SURFACE || wanted->goal == HF_GOAL_FACETS;
+        s->goals.after_fit[k] = !of_surface ? -1 : wanted->fit == HF_FIT_BEST;
     }
     s->has_truss = settings->has_truss;
     s->truss.mass_kg = p->carrier.mass_kg;

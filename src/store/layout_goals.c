@@ -34,14 +34,22 @@ static hf_hdf5_array values(const char *name, int n, const char *description)
     return (hf_hdf5_array){name, HF_KIND_REAL, 1, {(hsize_t)n}, "", description};
 }
 
+static hf_hdf5_array after_fit(int n)
+{
+    static const char help[] = "1: of the surface after its best fit, 0: as it stands, -1: not of the surface";
+    return (hf_hdf5_array){"after_fit", HF_KIND_INT, 1, {(hsize_t)n}, "", help};
+}
+
 void hf_layout_put_goals(hf_hdf5 *io, const hf_summary *summary)
 {
     hf_summary s = *summary;
     if (s.goals.n == 0) return;
-    hf_hdf5_array name = names(s.goals.n), weight = values("weight", s.goals.n, "of the value in the merit");
+    hf_hdf5_array name = names(s.goals.n), weight = values("weight", s.goals.n, "of the value in the merit"),
+                  fit = after_fit(s.goals.n);
     hf_layout_renew(io, "/goals");
     hid_t group = hf_hdf5_make_group(io, "/goals");
     hf_hdf5_write_array(io, group, &name, s.goals.name);
+    hf_hdf5_write_array(io, group, &fit, s.goals.after_fit);
     if (!s.goals.are_objectives) hf_hdf5_write_array(io, group, &weight, s.goals.weight);
     for (int stage = 0; stage < N_STAGE; stage++) {
         hf_hdf5_array value = values(stage_name[stage], s.goals.n, "value of each goal, in its own unit");
@@ -67,8 +75,11 @@ void hf_layout_get_goals(hf_hdf5 *io, hf_summary *s)
     hid_t group = hf_hdf5_open_group(io, "/goals");
     s->goals.are_objectives = !hf_hdf5_has(io, group, "weight");
     s->goals.n = hf_hdf5_length(io, group, s->goals.are_objectives ? "name" : "weight", HF_DESIGN_ROWS_MAX);
-    hf_hdf5_array name = names(s->goals.n), weight = values("weight", s->goals.n, "");
+    hf_hdf5_array name = names(s->goals.n), weight = values("weight", s->goals.n, ""), fit = after_fit(s->goals.n);
     hf_hdf5_read_array(io, group, &name, s->goals.name);
+    for (int k = 0; k < s->goals.n; k++)
+        s->goals.after_fit[k] = -1; /* of a file of before */
+    if (hf_hdf5_has(io, group, "after_fit")) hf_hdf5_read_array(io, group, &fit, s->goals.after_fit);
     if (!s->goals.are_objectives) hf_hdf5_read_array(io, group, &weight, s->goals.weight);
     for (int stage = 0; stage < N_STAGE; stage++) {
         hf_hdf5_array value = values(stage_name[stage], s->goals.n, "");

@@ -70,6 +70,13 @@ START_TEST(a_goal_that_costs_the_best_fit_is_told)
            "({n: b['surface/' + n].attrs['facet_fit_half_path_rms_m'] for n in ('form', 'polish')})");
     HIFDM(0, "run", path, "-o", out, "--force", "--set", "optimize.goals=[{goal: facets, fit: best}]");
     ck_assert_int_eq(count_of(said.out, better), 0);
+    /* what the goal wants stands first, by Ruze's formula, and so in the file */
+    HIFDM(0, "show", out);
+    EXPECT(
+        file_with("said.txt", said.out), out, "--",
+        "('; good to %.3g GHz at 1 dB after the best fit (its facets; %.3g GHz as it stands)' % tuple(np.sqrt(np.log("
+        "10) / 10) * 299792458 / (4e9 * np.pi * b['surface/polish'].attrs[n + 'half_path_rms_m']) for n in "
+        "('facet_fit_', 'facet_'))).encode() in a.splitlines()[0]");
     HIFDM(0, "run", path, "-o", out, "--force", "--set",
           "optimize.goals=[{goal: facets, fit: best}, {goal: psi, weight: 0.1}]");
     ck_assert_str_eq(said.err, ""); /* as its comment has them: nothing moves far */
