@@ -1,4 +1,4 @@
-/* Contents: reading - what varies - the best point */
+/* Contents: reading - what varies - the best point - the yield that is wanted */
 #include "out/merged.h"
 
 #include "base/path.h"
@@ -13,6 +13,7 @@
 #define REACHED_RATIO 1e-9 /* of what a goal is of the shape found */
 
 const char *const hf_merged_stage_word[HF_MERGED_N_STAGE] = {"form", "optimize", "polish", "tolerance"};
+const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER] = {"", "no", "open", "yes"};
 
 /* ---- reading ---- */
 
@@ -25,7 +26,7 @@ static const struct {
                                {"/points/tolerance", "", NULL}};
 static const char *const key_of_stage[] = {"psi_m", "inner_tension_ratio", "boundary_tension_ratio", "residual_N",
                                            "n_slack"};
-static const char *const key_as_built[] = {"psi_95_m", "yield"};
+static const char *const key_as_built[] = {"psi_95_m", "yield", "yield_low", "yield_high", "wanted_yield"};
 enum { N_KEY = sizeof key_of_stage / sizeof *key_of_stage, N_BUILT = sizeof key_as_built / sizeof *key_as_built };
 
 bool hf_merged_is(const char *path)
@@ -251,6 +252,33 @@ static void choose_best(hf_merged *m)
             m->best = i;
     bool is_rounding = m->best >= 0 && m->figure[m->lead].value.value[m->best] <= rounding;
     if (is_rounding && by.n > 1) m->lead = by.figure[1];
+}
+
+/* ---- the yield that is wanted ---- */
+
+static double built_value(const hf_merged *m, const char *key, int i)
+{
+    const hf_merged_figure *f = hf_merged_find(m, HF_MERGED_BUILT, key);
+    return f && hf_merged_is_done(m, i) ? f->value.value[i] : (double)NAN;
+}
+
+hf_merged_answer hf_merged_meets_yield(const hf_merged *m, int i)
+{
+    double wanted = built_value(m, "wanted_yield", i);
+    double low = built_value(m, "yield_low", i), high = built_value(m, "yield_high", i);
+    if (!(wanted > 0) || isnan(low) || isnan(high)) return HF_MERGED_NOT_ASKED;
+    return low >= wanted ? HF_MERGED_YES : high >= wanted ? HF_MERGED_OPEN : HF_MERGED_NO;
+}
+
+double hf_merged_wanted_yield(const hf_merged *m)
+{
+    double same = (double)NAN;
+    for (int i = 0; i < m->n; i++) {
+        double wanted = built_value(m, "wanted_yield", i);
+        if (!isnan(wanted) && !isnan(same) && wanted != same) return (double)NAN;
+        if (!isnan(wanted)) same = wanted;
+    }
+    return same;
 }
 
 const char *hf_merged_heading(const hf_merged *m)

@@ -16,6 +16,10 @@ typedef enum {
 } hf_merged_stage;
 extern const char *const hf_merged_stage_word[HF_MERGED_N_STAGE];
 
+/* Does a point meet the yield that its case wants? Open: the wanted one is within the 95 % interval of its samples. */
+typedef enum { HF_MERGED_NOT_ASKED, HF_MERGED_NO, HF_MERGED_OPEN, HF_MERGED_YES, HF_MERGED_N_ANSWER } hf_merged_answer;
+extern const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER]; /* "", "no", "open", "yes" */
+
 typedef struct {
     hf_merged_stage stage;
     char key[HF_GOAL_NAME_SIZE]; /* psi_m, goal_1_tension_edge, facet_half_path_rms_m, ... */
@@ -53,6 +57,9 @@ bool hf_merged_axis_varies(const hf_merged *merged, int axis);
 
 /* The figure of this stage; NULL without it. */
 const hf_merged_figure *hf_merged_find(const hf_merged *merged, hf_merged_stage stage, const char *key);
+
+hf_merged_answer hf_merged_meets_yield(const hf_merged *merged, int point);
+double hf_merged_wanted_yield(const hf_merged *merged); /* of all points; NaN: of none, or not one and the same */
 
 /* The title of the study or, without one, the name of the merged file. */
 const char *hf_merged_heading(const hf_merged *merged);

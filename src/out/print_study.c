@@ -21,7 +21,7 @@
 
 /* ---- columns ---- */
 
-typedef enum { OF_AXIS, OF_STATUS, OF_FIGURE } column_kind;
+typedef enum { OF_AXIS, OF_STATUS, OF_FIGURE, OF_YIELD } column_kind;
 
 /* A column of the table. Two lines of head: what it is, and its unit. */
 typedef struct {
@@ -34,7 +34,7 @@ typedef struct {
 
 typedef struct {
     const hf_merged *m;
-    column column[HF_STUDY_AXIS_MAX + HF_MERGED_FIGURE_MAX + 1];
+    column column[HF_STUDY_AXIS_MAX + HF_MERGED_FIGURE_MAX + 2];
     int n_column, n_axis; /* the axes come first */
     bool is_all;          /* all points are rows, or these: */
     int n_row, best[POINTS_BEST];
@@ -139,7 +139,8 @@ static column figure_column(const hf_merged *m, int k)
 static bool is_told(const hf_merged *m, const hf_merged_figure *f)
 {
     if (f->is_psi || !strcmp(f->key, "residual_N")) return false;
-    return f->stage == m->main || f->stage == HF_MERGED_BUILT || !strcmp(f->key, "psi_m");
+    if (f->stage == HF_MERGED_BUILT) return !strcmp(f->key, "psi_95_m") || !strcmp(f->key, "yield");
+    return f->stage == m->main || !strcmp(f->key, "psi_m");
 }
 
 /* What says which point is best comes first, then psi, the net as built, the surface, goals, and the rest. */
@@ -203,10 +204,21 @@ static void print_cell(const hf_merged *m, const column *c, int i, char text[CEL
         print_axis_value(m, c, i, text);
     else if (c->kind == OF_FIGURE)
         print_figure(m, c, i, text);
+    else if (c->kind == OF_YIELD)
+        snprintf(text, CELL_SIZE, "%s", hf_merged_answer_word[hf_merged_meets_yield(m, i)]);
     else if (m->status.value[i] == HF_NOT_EVALUATED)
         strcpy(text, "missing");
     else
         snprintf(text, CELL_SIZE, "%s", hf_status_word((hf_status)m->status.value[i]));
+}
+
+/* How many points meet the yield that is wanted, by answer; 0: it is asked of none. */
+static int count_answers(const hf_merged *m, int count[HF_MERGED_N_ANSWER])
+{
+    memset(count, 0, HF_MERGED_N_ANSWER * sizeof *count);
+    for (int i = 0; i < m->n; i++)
+        count[hf_merged_meets_yield(m, i)]++;
+    return m->n - count[HF_MERGED_NOT_ASKED];
 }
 
 /* ---- the table ---- */
@@ -238,6 +250,8 @@ static void add_columns(table *t)
     for (int i = 0; i < m->n; i++)
         all_done &= hf_merged_is_done(m, i);
     if (!all_done) add_column(t, (column){.kind = OF_STATUS, .head = "status"});
+    int count[HF_MERGED_N_ANSWER], n_asked = count_answers(m, count);
+    if (n_asked > 0) add_column(t, (column){.kind = OF_YIELD, .head = "meets", .unit = "yield"});
     for (int rank = 0; rank < N_RANK; rank++)
         for (int k = 0; k < m->n_figure; k++)
             if (is_told(m, &m->figure[k]) && !m->figure[k].is_same && rank_of(m, k) == rank)
@@ -353,6 +367,19 @@ static void print_best(const table *t, FILE *f)
     end_items(&line);
 }
 
+static void print_yield(const hf_merged *m, FILE *f)
+{
+    int count[HF_MERGED_N_ANSWER], n_asked = count_answers(m, count);
+    double wanted = hf_merged_wanted_yield(m);
+    char part[32] = "as each wants";
+    if (n_asked == 0) return;
+    if (!isnan(wanted)) snprintf(part, sizeof part, "of %.6g %%", 100 * wanted);
+    fprintf(f, "  %-13s %s: met by %d of %d points", "yield", part, count[HF_MERGED_YES], n_asked);
+    if (count[HF_MERGED_OPEN])
+        fprintf(f, "; of %d so few samples leave it open (tolerance.samples)", count[HF_MERGED_OPEN]);
+    fputc('\n', f);
+}
+
 /* How many points failed in which way, each with the reason of its first one. */
 static void print_failures(const hf_merged *m, FILE *f)
 {
@@ -423,6 +450,7 @@ void hf_print_study(const hf_merged *m, hf_print_style style, FILE *f)
     if (style.has_colour) fputs(HF_PRINT_PLAIN, f);
     print_head(m, f);
     print_best(&t, f);
+    print_yield(m, f);
     print_same(m, f);
     print_failures(m, f);
     if (t.n_column > t.n_axis) {

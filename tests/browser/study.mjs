@@ -60,12 +60,15 @@ export async function checkSurfaceOfStudy(tab, study) {
   assert.ok(ticks.every((t) => /^\d+$/.test(t)), `whole values, but ticks ${ticks.join("; ")}`);
   assert.match(text, /All with EA boundary 200000 N/);
   assert.ok(!/Fig\.|Chen/.test(text), "a study of one's own speaks of the paper");
-  const wanted = ["Goal tension tie (N)", "RMS of facets (mm)", "RMS of facets, fitted (mm)", "Good to (GHz)", "Yield"];
+  const errors = ["RMS of facets (mm)", "RMS of facets, fitted (mm)", "Good to (GHz)"],
+    wanted = ["Goal tension tie (N)", ...errors, "Yield", "Meets the yield"];
   for (const head of wanted) assert.ok(heads.includes(head), `${head} is not in ${heads}`);
   const values = study.output.find(({ stage }) => stage === "tolerance").psi_95_m,
     best = tab.locator("#points tr.chosen");
   assert.equal(study.best, values.indexOf(Math.min(...values)));
   same(number(await best.locator('[data-label^="ψ of 95"]').textContent()), 1e3 * Math.min(...values), 5);
+  assert.equal(await best.locator('[data-label="Meets the yield"]').textContent(), study.meets_yield[study.best]);
+  assert.match(await tab.locator("dl.figures").first().innerText(), /points with a yield of 90\u00a0?\s?%/i);
   const rms = study.output.find(({ stage }) => stage === "polish").facet_half_path_rms_m[study.best];
   same(number(await best.locator('[data-label="RMS of facets (mm)"]').textContent()), 1e3 * rms, 5);
   assert.match(await tab.locator("#sweep .chart .legend").first().innerText(), /best point/);

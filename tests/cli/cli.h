@@ -151,4 +151,19 @@ static inline const char *out_as(const char *name)
         free_command(&expect_);                                                                                        \
     } while (0)
 
+/* The JSON block of a page as a file for EXPECT. */
+static inline const char *data_of(const char *page, const char *name)
+{
+    static const char open_tag[] = "<script type=\"application/json\" id=\"data\">";
+    char *text = read_file(page, NULL), *start = strstr(text, open_tag);
+    ck_assert_ptr_nonnull(start);
+    start += strlen(open_tag);
+    char *end = strstr(start, "</script>");
+    ck_assert_ptr_nonnull(end);
+    *end = '\0';
+    const char *path = file_with(name, start);
+    free(text);
+    return path;
+}
+
 #endif

@@ -4,21 +4,6 @@
 
 #define HOSTILE "</script><img src=x onerror=alert(1)><!-- & \\\" ]]>"
 
-/* The JSON block of a page as a file for EXPECT. */
-static const char *data_of(const char *page, const char *name)
-{
-    static const char open_tag[] = "<script type=\"application/json\" id=\"data\">";
-    char *text = read_file(page, NULL), *start = strstr(text, open_tag);
-    ck_assert_ptr_nonnull(start);
-    start += strlen(open_tag);
-    char *end = strstr(start, "</script>");
-    ck_assert_ptr_nonnull(end);
-    *end = '\0';
-    const char *path = file_with(name, start);
-    free(text);
-    return path;
-}
-
 /* The tags that a browser's parser finds; <script> and <style> must open and close as often as they should. */
 static const char well_formed[] = "import sys\n"
                                   "from html.parser import HTMLParser\n"

@@ -82,6 +82,29 @@ START_TEST(a_merged_study_is_shown_as_a_table)
 }
 END_TEST
 
+/* Which points have the yield that is wanted, by the 95 % intervals of Clopper and Pearson of their samples. */
+START_TEST(points_say_whether_they_have_the_yield)
+{
+    const char *path = file_with("s.yaml", NET "tolerance: {sigma_cut_m: 5e-5, samples: 60, yield: 0.6, require: "
+                                               "[{measure: psi_m, at_most: 2.6e-4}]}\nsweep:\n  tolerance.sigma_cut_m: "
+                                               "[1e-5, 3e-5, 3.3e-5, 3.6e-5, 4e-5, 9e-5]\n");
+    const char *merged = temp("s.h5"), *page = temp("s.html");
+    sweep_and_merge(path, temp("s.d"), merged);
+    HIFDM(0, "show", merged);
+    OUT("yield         of 60 %: met by ");
+    const char *shown = out_as("s.txt");
+    HIFDM(0, "report", merged, "-o", page);
+#define ANSWERS                                                                                                        \
+    "(lambda beta, n, y: ['yes' if (beta.ppf(0.025, k, n - k + 1) if k else 0) >= 0.6 else 'open' if "                 \
+    "(beta.ppf(0.975, "                                                                                                \
+    "k + 1, n - k) if k < n else 1) >= 0.6 else 'no' for k in np.rint(n * y)])(__import__('scipy.stats').stats.beta, " \
+    "60, a['points/tolerance/yield'][:])"
+    EXPECT(merged, shown, data_of(page, "s.json"), "--", "set(" ANSWERS ") == {'yes', 'open', 'no'}",
+           "c['study']['meets_yield'] == " ANSWERS, "c['study']['wanted_yield'] == 0.6",
+           "[w for w in b.decode().split() if w in ('yes', 'open', 'no')] == ['open'] + " ANSWERS);
+}
+END_TEST
+
 /* Goals that no point reaches: their merit says which is best, however small psi's part in it is. */
 START_TEST(goals_say_which_point_is_best)
 {
@@ -284,6 +307,7 @@ Suite *suite_cli_study(void)
     TCase *tcase = tcase_create("study");
     tcase_add_test(tcase, errors_of_the_surface_are_columns_of_a_merge);
     tcase_add_test(tcase, a_merged_study_is_shown_as_a_table);
+    tcase_add_test(tcase, points_say_whether_they_have_the_yield);
     tcase_add_test(tcase, goals_say_which_point_is_best);
     tcase_add_test(tcase, failed_points_are_told_and_never_the_best);
     tcase_add_test(tcase, odd_names_are_shown_escaped);

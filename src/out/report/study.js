@@ -433,6 +433,9 @@ function writePoints(study, axes, figures, best) {
   const columns = [
     ...varying.map((a) => ({ name: a.text, number: a.isNumber, of: a.value, show: (i) => a.label(i) })),
     { name: "Status", of: (i) => statusText(study.status[i]), show: statusCell },
+    ...(study.meets_yield.some((a) => a)
+      ? [{ name: "Meets the yield", of: (i) => study.meets_yield[i], show: (i) => study.meets_yield[i] || "–" }]
+      : []),
     ...figures.flatMap((f) =>
       f.drawn.filter((s) => f.key === "psi_m" || s === f.main).map((s) => figureColumn(study, f, s)),
     ),
@@ -441,6 +444,8 @@ function writePoints(study, axes, figures, best) {
   ];
   const said = [];
   if (fixed.length) said.push(`All with ${fixed.map((a) => headOf(a, a.label(0))).join(", ")}.`);
+  if (study.meets_yield.includes("open"))
+    said.push("Open: the wanted yield is within the 95 % interval of its samples; more of them would tell.");
   if (best >= 0) said.push("The marked row is the best one. A click on a heading sorts.");
   if (study.page.some((p) => p)) said.push("The last column leads to the report of a point, or else to its result.");
   else if (study.file.some((p) => p)) said.push("The last column leads to the result file of a point.");
@@ -473,7 +478,7 @@ function writeStudy(study) {
     varying = axes.filter((a) => a.varies);
   const mainStage = study.main,
     figures = readFigures(study, mainStage),
-    { best } = study;
+    { best, wanted_yield: wanted } = study;
   const leads = study.figure.find((f) => f.lead) || {};
   for (const f of figures) f.isLead = f.key === leads.key;
   const lead = figures.find((f) => f.isLead),
@@ -509,6 +514,12 @@ function writeStudy(study) {
       { class: "figures" },
       best < 0 ? null : figure(`least ${lowered(lead.title)}`, value(lead.of(best), 4), lead.unit),
       best < 0 ? null : varying.filter(matters).map((a) => figure(`best ${a.name}`, a.label(best), a.unit)),
+      study.meets_yield.some((a) => a)
+        ? figure(
+            `points with ${wanted ? `a yield of ${fmt(100 * wanted)}\u00a0%` : "the yield they want"}`,
+            `${fmtCount(study.meets_yield.filter((a) => a === "yes").length)} of ${fmtCount(study.n)}`,
+          )
+        : null,
       figure("points done", `${fmtCount(count((s) => s === "ok"))} of ${fmtCount(study.n)}`),
       failed ? figure("failed", fmtCount(failed)) : null,
       missing ? figure("missing", fmtCount(missing)) : null,
