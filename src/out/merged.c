@@ -1,4 +1,4 @@
-/* Contents: reading - what varies - the best point - the yield that is wanted */
+/* Contents: reading - what varies - the best point - beyond an axis - the yield that is wanted */
 #include "out/merged.h"
 
 #include "base/path.h"
@@ -129,15 +129,19 @@ bool hf_merged_is_done(const hf_merged *m, int i)
     return m->status.value[i] == HF_OK;
 }
 
-bool hf_merged_axis_varies(const hf_merged *m, int a)
+static bool agree(const hf_merged *m, int a, int i, int j)
 {
     const hf_series *s = &m->input[a];
     const hf_texts *t = &m->input_text[a];
-    size_t row = (size_t)s->columns * sizeof(double);
-    for (int i = 1; i < m->n; i++) {
-        if (s->n && memcmp(s->value, s->value + (size_t)i * (size_t)s->columns, row) != 0) return true;
-        if (t->n && strcmp(hf_texts_at(t, 0), hf_texts_at(t, i)) != 0) return true;
-    }
+    size_t n = (size_t)s->columns;
+    if (s->n && memcmp(s->value + (size_t)i * n, s->value + (size_t)j * n, n * sizeof(double)) != 0) return false;
+    return !t->n || !strcmp(hf_texts_at(t, i), hf_texts_at(t, j));
+}
+
+bool hf_merged_axis_varies(const hf_merged *m, int a)
+{
+    for (int i = 1; i < m->n; i++)
+        if (!agree(m, a, 0, i)) return true;
     return false;
 }
 
@@ -252,6 +256,47 @@ static void choose_best(hf_merged *m)
             m->best = i;
     bool is_rounding = m->best >= 0 && m->figure[m->lead].value.value[m->best] <= rounding;
     if (is_rounding && by.n > 1) m->lead = by.figure[1];
+}
+
+/* ---- beyond the end of an axis ---- */
+
+static bool is_on_curve(const hf_merged *m, int axis, int i)
+{
+    for (int a = 0; a < m->n_axis; a++)
+        if (a != axis && !agree(m, a, i, m->best)) return false;
+    return i != m->best;
+}
+
+/* Is the value of point j lower than that of i, by more than rounding? */
+static bool falls(const hf_merged *m, int i, int j)
+{
+    const hf_merged_figure *f = &m->figure[m->lead];
+    double from = f->value.value[i], to = f->value.value[j], least = rounding_of(m, f->key);
+    if (!strcmp(hf_ledger_unit(f->key), "m")) least = fmax(least, HF_MERGED_RESOLVED_M);
+    return hf_merged_is_done(m, i) && from - to > fmax(least, SAME_RATIO * fmax(fabs(from), fabs(to)));
+}
+
+int hf_merged_falls_on(const hf_merged *m, int axis)
+{
+    const hf_series *s = &m->input[axis];
+    int near = -1, next = -1, side = 0; /* the two points nearest to the best one, which are all on one side of it */
+    bool is_error = !strncmp(hf_texts_at(&m->input_name, axis), "tolerance.sigma_", 16);
+    if (m->best < 0 || !s->n || s->columns != 1 || is_error) return 0;
+    double at = s->value[m->best];
+    for (int i = 0; i < m->n; i++) {
+        double away = s->value[i] - at;
+        if (away == 0 || !is_on_curve(m, axis, i)) continue;
+        if (side && (away > 0) != (side > 0)) return 0;
+        side = away > 0 ? 1 : -1;
+        if (near < 0 || fabs(away) < fabs(s->value[near] - at)) {
+            next = near;
+            near = i;
+        } else if (next < 0 || fabs(away) < fabs(s->value[next] - at)) {
+            next = i;
+        }
+    }
+    if (next < 0 || !falls(m, next, near) || !falls(m, near, m->best)) return 0;
+    return -side;
 }
 
 /* ---- the yield that is wanted ---- */

@@ -58,6 +58,11 @@ bool hf_merged_axis_varies(const hf_merged *merged, int axis);
 /* The figure of this stage; NULL without it. */
 const hf_merged_figure *hf_merged_find(const hf_merged *merged, hf_merged_stage stage, const char *key);
 
+/* Where the best point lies at an end of this axis and the figure that says which is best still falls towards it, over
+ * the last two steps and beyond rounding, between points that agree in all other axes: 1 at the largest value, -1 at
+ * the smallest. Else 0; of an axis of errors, too, of which less is better anyway. */
+int hf_merged_falls_on(const hf_merged *merged, int axis);
+
 hf_merged_answer hf_merged_meets_yield(const hf_merged *merged, int point);
 double hf_merged_wanted_yield(const hf_merged *merged); /* of all points; NaN: of none, or not one and the same */
 

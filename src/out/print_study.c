@@ -365,6 +365,14 @@ static void print_best(const table *t, FILE *f)
     for (int k = 0; k < t->n_axis; k++)
         print_item(m, &t->column[k], m->best, &line);
     end_items(&line);
+    for (int k = 0; k < t->n_axis; k++) {
+        const column *c = &t->column[k];
+        int side = hf_merged_falls_on(m, c->index);
+        if (side == 0) continue;
+        print_cell(m, c, m->best, cell);
+        hf_print_line(f, "  %-13s %s still falls at %s %s%s%s, the end of its axis: go on %s", "", lead.head, c->head,
+                      cell, *c->unit ? " " : "", c->unit, side > 0 ? "above" : "below");
+    }
 }
 
 static void print_yield(const hf_merged *m, FILE *f)

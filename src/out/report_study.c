@@ -79,6 +79,8 @@ static void write_inputs(const hf_merged *m, FILE *f)
         } else {
             write_texts("texts", &m->input_text[a], f);
         }
+        int side = hf_merged_falls_on(m, a);
+        if (side) fprintf(f, ",\"go_on\":\"%s\"", side > 0 ? "above" : "below");
         fputc('}', f);
         comma = ",";
     }

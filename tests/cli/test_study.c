@@ -122,6 +122,41 @@ START_TEST(goals_say_which_point_is_best)
 }
 END_TEST
 
+/* Only where the figure that says which is best falls towards the end, and of what is no error. */
+START_TEST(a_best_point_at_the_end_of_an_axis_is_told)
+{
+    static const char end[] = "the end of its axis: go on ";
+    const char *merged = temp("s.h5");
+    sweep_and_merge(file_with("s.yaml", NET "sweep:\n  form.pretension_N: [20, 5, 10]\n  scene.EA_boundary_N: [2e5, "
+                                            "2.0001e5]\n"),
+                    temp("s.d"), merged);
+    HIFDM(0, "show", merged); /* a truss gives way less to less; the other axis means nothing to it */
+    OUT("\n                psi still falls at pretension 5 N, the end of its axis: go on below\n");
+    ck_assert_int_eq(count_of(said.out, end), 1);
+    EXPECT(merged, "--",
+           "(lambda psi, n: np.ptp([p for p, k in zip(psi, n) if k == 5]) < 1e-9 and max(psi[n == 5]) < "
+           "min(psi[n == 10]) and max(psi[n == 10]) < min(psi[n == 20]))(a['points/form/psi_m'][:], "
+           "a['points/input/form.pretension_N'][:])");
+    HIFDM(0, "report", merged, "-o", temp("s.html"));
+    EXPECT(data_of(temp("s.html"), "s.json"), "--",
+           "{i['name']: i.get('go_on') for i in a['study']['input']} == {'form.pretension_N': 'below', "
+           "'scene.EA_boundary_N': None}");
+    /* fewer errors are always better; a best point within */
+    sweep_and_merge(file_with("t.yaml", NET "tolerance: {sigma_cut_m: 1e-5, samples: 40}\nsweep:\n  "
+                                            "tolerance.sigma_cut_m: [1e-5, 3e-5, 9e-5]\n"),
+                    temp("t.d"), temp("t.h5"));
+    HIFDM(0, "show", temp("t.h5"));
+    OUT("best (*)      least psi of 95 %: ");
+    EXPECT(temp("t.h5"), "--", "(np.diff(a['points/tolerance/psi_95_m'][:]) > 0).all()");
+    ck_assert_int_eq(count_of(said.out, end), 0);
+    sweep_and_merge(file_with("u.yaml", NET TOLERANCE "sweep:\n  form.pretension_N: [1, 3, 5, 8, 12, 20, 30]\n"),
+                    temp("u.d"), temp("u.h5"));
+    HIFDM(0, "show", temp("u.h5"));
+    ck_assert_int_eq(count_of(said.out, end), 0);
+    EXPECT(temp("u.h5"), "--", "0 < np.argmin(a['points/tolerance/psi_95_m'][:]) < 6");
+}
+END_TEST
+
 START_TEST(failed_points_are_told_and_never_the_best)
 {
     const char *path =
@@ -309,6 +344,7 @@ Suite *suite_cli_study(void)
     tcase_add_test(tcase, a_merged_study_is_shown_as_a_table);
     tcase_add_test(tcase, points_say_whether_they_have_the_yield);
     tcase_add_test(tcase, goals_say_which_point_is_best);
+    tcase_add_test(tcase, a_best_point_at_the_end_of_an_axis_is_told);
     tcase_add_test(tcase, failed_points_are_told_and_never_the_best);
     tcase_add_test(tcase, odd_names_are_shown_escaped);
     tcase_add_test(tcase, a_large_study_shows_its_best);

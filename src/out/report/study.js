@@ -32,6 +32,7 @@ function readAxes(study) {
       done = all.filter((i) => study.status[i] === "ok");
     return {
       key: input.name,
+      goOn: input.go_on, // above or below its end, where the best point is
       ...named,
       label,
       isNumber,
@@ -347,6 +348,12 @@ function writeCurves(study, axes, figures, mainStage) {
   const psi = study.figure.filter((f) => f.psi && f.stage === mainStage),
     fixed = axes.filter((a) => a.varies && !a.isDrawn && a.only);
   const notes = [
+    ...along
+      .filter((a) => a.goOn)
+      .map((a) => {
+        const end = headOf(a, a.label(study.best));
+        return `${lead.title} still falls at ${end}, the end of its axis: go on ${a.goOn}.`;
+      }),
     same.length ? `At all points: ${same.join("; ")}.` : "",
     ...psi.map(({ key }) => `The goal ${key.replace(/^goal_\d+_/, "").replace(/_/g, " ")} is left out: it is ψ.`),
     ...fixed.map((a) => `All points that are done have ${headOf(a, a.only)}.`),
