@@ -2,6 +2,7 @@
 #include "out/print_summary.h"
 
 #include "net/symmetry.h"
+#include "store/ledger.h"
 #include <hifdm/config.h>
 
 #include <math.h>
@@ -44,6 +45,12 @@ void hf_print_held(const hf_held_limits *h, FILE *f)
     }
 }
 
+void hf_print_goal(const char *before, const char *name, double value, FILE *f)
+{
+    const char *unit = hf_ledger_goal_unit(name);
+    fprintf(f, "%s%s %.6g%s%s", before, name, value, *unit ? " " : "", unit);
+}
+
 void hf_print_goals(const hf_summary *s, const hf_form_result *r, FILE *f)
 {
     if (s->goals.n == 0 || !isfinite(r->merit)) return; /* a run that ended before its base design has none as yet */
@@ -52,7 +59,7 @@ void hf_print_goals(const hf_summary *s, const hf_form_result *r, FILE *f)
     else
         fprintf(f, "                merit %.6g of", r->merit);
     for (int k = 0; k < s->goals.n; k++) {
-        fprintf(f, "%s %s %.6g", k ? "," : "", s->goals.name[k], r->goal[k]);
+        hf_print_goal(k ? ", " : " ", s->goals.name[k], r->goal[k], f);
         if (!s->goals.are_objectives) fprintf(f, " (weight %g)", s->goals.weight[k]);
     }
     fputc('\n', f);

@@ -12,6 +12,7 @@
 #define GOALS_TOLD 4           /* in the first line */
 #define FREQUENCY_MOST_HZ 1e12 /* beyond there the errors that are left have no meaning */
 #define BETTER_FIT 1.01        /* less is not worth a line */
+#define TOLD_MM 5e-5           /* less is told as 0.0000, of which there is no part */
 
 static const hf_form_result *result_of(const hf_summary *s, hf_stage stage)
 {
@@ -69,7 +70,7 @@ static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, F
 void hf_print_below(const hf_summary *s, double psi_m, double base_psi_m, FILE *f)
 {
     char base[32], form[32];
-    if (!(base_psi_m > 0) || !isfinite(base_psi_m)) return;
+    if (!(base_psi_m * 1e3 >= TOLD_MM) || !isfinite(base_psi_m)) return;
     bool is_same = !strcmp(hf_print_decimals(base_psi_m * 1e3, base), hf_print_decimals(s->form.psi_m * 1e3, form));
     fprintf(f, ", %.2f %% below the %s mm of %s", 100 * (1 - psi_m / base_psi_m), base,
             is_same ? "the form-finding's tensions" : "the base design");
@@ -95,6 +96,11 @@ static void print_goal_value(double value, const char *unit, FILE *f)
         fputs(hf_print_decimals(value * 1e3, text), f);
     else
         fprintf(f, "%.4g", value);
+}
+
+static void print_goal_unit(const char *unit, FILE *f)
+{
+    if (*unit) fprintf(f, " %s", !strcmp(unit, "m") ? "mm" : unit);
 }
 
 /* "tension_edge" of goal_1_tension_edge. */
@@ -126,7 +132,7 @@ static void print_goals_gained(const hf_summary *s, const hf_form_result *r, FIL
         print_goal_value(s->form.goal[k], unit, f);
         fputs(" -> ", f);
         print_goal_value(r->goal[k], unit, f);
-        if (*unit) fprintf(f, " %s", !strcmp(unit, "m") ? "mm" : unit);
+        print_goal_unit(unit, f);
     }
     if (s->goals.n > GOALS_TOLD) fprintf(f, " and %d more", s->goals.n - GOALS_TOLD);
     if (wants_psi(s)) return;
@@ -135,6 +141,21 @@ static void print_goals_gained(const hf_summary *s, const hf_form_result *r, FIL
     fputs(" -> ", f);
     print_goal_value(r->psi_m, "m", f);
     fputs(" mm, which counts drift within the surface, too", f);
+}
+
+/* "front of 21 points: least psi 4.2834 mm, least ratio_boundary 4.56". */
+static void print_front_answer(const hf_summary *s, FILE *f)
+{
+    const char *before = "";
+    fprintf(f, "front of %d points:", s->front.n_point);
+    for (int k = 0; k < s->front.n_objective; k++) {
+        const char *unit = hf_ledger_goal_unit(s->goals.name[k]);
+        if (s->front.end[k] < 0) continue;
+        fprintf(f, "%s least %s ", before, goal_of(s->goals.name[k]));
+        print_goal_value(s->front.row[s->front.end[k]].objective[k], unit, f);
+        print_goal_unit(unit, f);
+        before = ",";
+    }
 }
 
 void hf_print_answer(const hf_summary *s, FILE *f)
@@ -149,15 +170,14 @@ void hf_print_answer(const hf_summary *s, FILE *f)
         return;
     }
     if (s->has_front) {
-        fprintf(f, "front of %d points:", s->front.n_point);
-        for (int k = 0; k < s->front.n_objective; k++)
-            if (s->front.end[k] >= 0)
-                fprintf(f, "%s least %s %.6g", k ? "," : "", s->goals.name[k],
-                        s->front.row[s->front.end[k]].objective[k]);
+        print_front_answer(s, f);
         return;
     }
     if (has_merit(s) && stage != HF_STAGE_FORM && !is_psi_all(s)) {
         print_goals_gained(s, r, f);
+    } else if (r->status == HF_OK && !isfinite(r->psi_m)) { /* what is at a place that was given has no error */
+        fputs("no psi: no taut cable holds an inner node", f);
+        return;
     } else {
         fprintf(f, "psi %s mm", hf_print_decimals(r->psi_m * 1e3, psi));
         print_gained(s, stage, f);
@@ -322,7 +342,7 @@ static void print_front_point(const hf_summary *s, const char *name, const doubl
     const hf_front_table *t = &s->front;
     fprintf(f, "                %-6s", name);
     for (int k = 0; k < t->n_objective; k++)
-        fprintf(f, "%s %s %.6g", k ? "," : "", s->goals.name[k], objective[k]);
+        hf_print_goal(k ? ", " : " ", s->goals.name[k], objective[k], f);
     for (int k = 0; k < t->n_objective && multiplier && t->minimised >= 0; k++)
         if (k != t->minimised && isfinite(multiplier[k]))
             fprintf(f, "; slope %.4g", multiplier[k] > 0 ? -multiplier[k] : 0.0);

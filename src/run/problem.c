@@ -60,8 +60,7 @@ hf_status hf_problem_has_slopes(const hf_problem *p, hf_messages *messages)
             return hf_error(messages, HF_BAD_CASE, "%s: there are no derivatives of quantiles: use take: mean or worst",
                             hf_messages_place(messages, place, "optimize.%s.%d.quantile",
                                               s->n_objective > 0 ? "objectives" : "goals", k));
-    return hf_error(messages, HF_BAD_CASE,
-                    "there are no derivatives of nets with struts, nor under optimize.rule seeded");
+    return hf_error(messages, HF_BAD_CASE, "%s", hf_problem_no_slopes(p));
 }
 
 hf_status hf_problem_slopes(hf_problem *p, int n, const double *design_N, const hf_form_result *result, double *slope,

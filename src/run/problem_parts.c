@@ -298,12 +298,30 @@ static hf_status check_gene(const hf_problem *p, int k, hf_messages *messages)
     return HF_OK;
 }
 
+const char *hf_problem_no_slopes(const hf_problem *p)
+{
+    if (p->model.has_strut) return "there are no derivatives of nets with struts";
+    if (p->settings.optimize.rule == HF_RULE_SEEDED) return "there are no derivatives under optimize.rule seeded";
+    if (p->model.has_newton) return "there are no derivatives of quantiles";
+    return "there are no derivatives by the default variables where every cable keeps its force density, as with "
+           "form.prestress exact; give optimize.variables, as [{set: boundary, vary: force_density, range: 10 %}]";
+}
+
+void hf_problem_warn_of_polish(const hf_problem *p, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    hf_optimiser_plan plan = hf_optimiser_plan_of(o);
+    if (!plan.kind || o->n_objective > 0 || hf_polish_applies(&p->evaluator)) return;
+    if (plan.ends_with_polish || o->compare_lm == HF_COMPARE_TRUE)
+        hf_warning(messages, HF_PROBLEM_POLISH_NEEDS, hf_problem_no_slopes(p));
+}
+
 static hf_status check_base(const hf_problem *p, hf_messages *messages)
 {
     for (int k = 0; k < p->model.n_gene; k++)
         HF_TRY(check_gene(p, k, messages));
     if (!hf_optimiser_plan_of(&p->settings.optimize).kind && !hf_polish_applies(&p->evaluator))
-        return hf_error(messages, HF_BAD_CASE, "%s", HF_PROBLEM_POLISH_NEEDS);
+        return hf_error(messages, HF_BAD_CASE, HF_PROBLEM_POLISH_NEEDS, hf_problem_no_slopes(p));
     return HF_OK;
 }
 

@@ -34,8 +34,15 @@ hf_status hf_problem_allocate(hf_problem *problem, hf_messages *messages);
  * allow. */
 hf_status hf_problem_base(hf_problem *problem, hf_messages *messages);
 
-/* Message for a net that the methods lm and ga+lm cannot treat. */
-#define HF_PROBLEM_POLISH_NEEDS "optimize: Levenberg-Marquardt needs a net without struts and a rule other than seeded"
+/* Why hf_polish_applies says no of the problem's designs, and where it is the variables, which ones it applies to. */
+const char *hf_problem_no_slopes(const hf_problem *problem);
+
+/* Message with that reason. */
+#define HF_PROBLEM_POLISH_NEEDS "optimize: Levenberg-Marquardt needs derivatives; %s"
+
+/* A warning with that where an optimisation by generations is to end with Levenberg-Marquardt, or to be compared with
+ * it, and cannot be. */
+void hf_problem_warn_of_polish(const hf_problem *problem, hf_messages *messages);
 
 /* The evaluator; hf_problem_base sets problem->evaluator to it. It borrows the problem. */
 hf_evaluator hf_problem_evaluator(const hf_problem *problem);

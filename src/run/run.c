@@ -395,8 +395,7 @@ static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
     if (r->plan.kind) HF_TRY(evolve(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
     if (hf_polish_applies(&r->problem.evaluator)) return wants_polish(r, s) ? polish(r, s, messages) : HF_OK;
-    if (r->plan.ends_with_polish || r->problem.settings.optimize.compare_lm == HF_COMPARE_TRUE)
-        hf_warning(messages, "%s", HF_PROBLEM_POLISH_NEEDS);
+    hf_problem_warn_of_polish(&r->problem, messages);
     return HF_OK;
 }
 

@@ -100,7 +100,11 @@ hf_status hf_run_front(hf_problem *p, const hf_population *bounds, const volatil
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the front");
     memcpy((status == HF_OK ? &found : front)->base, s->form.goal, sizeof front->base);
     if (status != HF_OK) {
-        const char *why = applies ? explain(p, status, end, text, sizeof text) : HF_PROBLEM_POLISH_NEEDS;
+        const char *why = text;
+        if (applies)
+            why = explain(p, status, end, text, sizeof text);
+        else
+            snprintf(text, sizeof text, HF_PROBLEM_POLISH_NEEDS, hf_problem_no_slopes(p));
         if (!has_earlier) return hf_error(messages, applies ? HF_NO_FEASIBLE : HF_BAD_CASE, "%s", why);
         hf_warning(messages, "%s; the front is that of the last generation", why);
         hf_run_front_tell(front, s->optimize_wall_s, s, messages);

@@ -152,7 +152,9 @@ async function test(browser, page) {
   await tab.goto(url);
   await checkText(tab, page);
   let said = "";
-  if (page.fluid) {
+  if (page.says) {
+    for (const [place, text] of Object.entries(page.says)) assert.equal(await tab.locator(place).textContent(), text);
+  } else if (page.fluid) {
     said = `; ${await checkFluid(tab, url)}`;
   } else if (page.study && !page.leads) {
     await checkSurfaceOfStudy(tab, made.study);

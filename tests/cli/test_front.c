@@ -9,13 +9,14 @@ START_TEST(a_front_is_printed_stored_and_told)
 {
     const char *file = temp("f.h5"), *printed, *json;
     HIFDM(0, "run", FRONT, "-o", file);
+    ck_assert_int_eq(strncmp(said.out, "front of 7 points: least psi 4.2834 mm, least ratio_boundary 4.56\n", 66), 0);
     OUT("  front         7 points, 0 of them dominated, 0 failed, 1 not converged; ");
     OUT("; slope of goal_0_psi per unit of goal_1_ratio_boundary\n");
-    OUT("                objectives goal_0_psi 0.00660003, goal_1_ratio_boundary 4.84161\n");
+    OUT("                objectives goal_0_psi 0.00660003 m, goal_1_ratio_boundary 4.84161\n");
     ck_assert(!strstr(said.out, "merit") && !strstr(said.out, "weight") && !strstr(said.out, " shown "));
-    OUT("                base   goal_0_psi 0.00660003, goal_1_ratio_boundary 4.84161\n");
-    OUT("                end    goal_0_psi 0.00428338, goal_1_ratio_boundary 5.23668; slope 0\n");
-    OUT("                end    goal_0_psi 0.0116996, goal_1_ratio_boundary 4.55962\n");
+    OUT("                base   goal_0_psi 0.00660003 m, goal_1_ratio_boundary 4.84161\n");
+    OUT("                end    goal_0_psi 0.00428338 m, goal_1_ratio_boundary 5.23668; slope 0\n");
+    OUT("                end    goal_0_psi 0.0116996 m, goal_1_ratio_boundary 4.55962\n");
     OUT("                knee   goal_0_psi ");
     printed = keep(said.out);
     HIFDM(0, "show", file);

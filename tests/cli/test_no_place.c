@@ -32,6 +32,7 @@ START_TEST(node_on_a_slack_cable)
     const char *result = temp("r.h5");
     HIFDM(0, "run", net, "-o", result, "--verbose", "--set", by(_i));
     ERR("no taut cable holds these nodes of the form-finding shape, 1: b (cables ab)");
+    ck_assert_int_eq(strncmp(said.out, "no psi: no taut cable holds an inner node\n", 42), 0);
     OUT("form-finding  psi - mm");
     EXPECT(result, "--", "a['form'].attrs['n_loose'] == 1", "np.allclose(a['form/position_m'][1], [0, 1, 0.1])");
 }

@@ -158,6 +158,26 @@ START_TEST(rings_under_quad_nets)
 }
 END_TEST
 
+/* Tensions that hold all nodes leave a psi of rounding, of which nothing is a part; and force densities alone have no
+ * derivatives by the default variables, but by rows. */
+START_TEST(nothing_is_below_rounding)
+{
+    const char *path = file_with("c.yaml", QUAD_DISH "form: {prestress: exact}\n"
+                                                     "optimize: {population: 10, generations: 3}\n");
+    HIFDM(0, "run", path, "-o", temp("r.h5"));
+    ck_assert_int_eq(strncmp(said.out, "psi 0.0000 mm\n", 14), 0);
+    HIFDM(0, "show", "--verbose", temp("r.h5"));
+    OUT("  optimisation  psi 0.0000 mm; found in generation ");
+    HIFDM(0, "check", path, "--set", "optimize.method=ga+lm");
+    ERR("warning: optimize: Levenberg-Marquardt needs derivatives; there are no derivatives by the default variables");
+    HIFDM(2, "run", path, "--restart", "-o", temp("r.h5"), "--set", "optimize.method=lm");
+    ERR("error: optimize: Levenberg-Marquardt needs derivatives; ");
+    HIFDM(0, "run", path, "--restart", "-o", temp("r.h5"), "--set", "optimize.method=lm", "--set",
+          "optimize.variables=[{set: boundary, vary: force_density, range: 10 %}]");
+    OUT("  LM               0.0000 ");
+}
+END_TEST
+
 Suite *suite_cli_reflectors(void)
 {
     Suite *suite = suite_create("cli/reflectors");
@@ -169,6 +189,7 @@ Suite *suite_cli_reflectors(void)
     tcase_add_loop_test(tcase, a_double_layer_is_designed, 0, 2);
     tcase_add_test(tcase, nodes_that_no_goal_counts_are_told);
     tcase_add_test(tcase, rings_under_quad_nets);
+    tcase_add_test(tcase, nothing_is_below_rounding);
     suite_add_tcase(suite, tcase);
     return suite;
 }

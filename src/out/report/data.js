@@ -78,10 +78,12 @@ const fmtCount = (value) => (typeof value === "number" ? String(value).replace(/
 function fmtDuration(s) {
   if (typeof s !== "number") return "–";
   if (s < 1) return `${fmt(s * 1e3, 3)}\u00a0ms`;
-  if (s < 60) return `${fmt(s, 3)}\u00a0s`;
-  return s < 3600
-    ? `${Math.floor(s / 60)} min ${Math.round(s % 60)} s`
-    : `${Math.floor(s / 3600)} h ${Math.round((s % 3600) / 60)} min`;
+  if (s < 59.95) return `${fmt(s, 3)}\u00a0s`;
+  const whole = Math.round(s),
+    minutes = Math.round(s / 60); // rounded first, so that no rest is a whole 60
+  return whole < 3600
+    ? `${Math.floor(whole / 60)} min ${whole % 60} s`
+    : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
 
 // Words of the file in plain ones; what they mean is told by `hifdm explain`, whose words the page has, too.

@@ -63,7 +63,7 @@ const resultStage = resultShape && resultShape.stage;
 const resultNumbers = { form: summary.form, optimize: summary.optimize, polish: summary.polish }[resultStage];
 
 const figure = (name, value, unit) =>
-  el("div", {}, el("dt", {}, name), el("dd", {}, value, unit ? el("small", {}, unit) : null));
+  el("div", {}, el("dt", {}, name), el("dd", {}, value, unit && value !== "–" ? el("small", {}, unit) : null));
 
 // The answer in the words of the program's summary.
 function writeAnswer() {
@@ -82,7 +82,7 @@ function writeFigures() {
     list.push(figure("ψ after form-finding", roundedMm(summary.form.psi_m), "mm"));
     // The genetic algorithm's base design can have another shape than the one found.
     const isFound = Math.abs(base - summary.form.psi_m) < 1e-6 * base;
-    if (base > 0)
+    if (1e3 * base >= RESOLVED_MM)
       list.push(
         figure(
           `ψ below that of the ${isFound ? "form-finding" : "base design"}`,

@@ -60,12 +60,12 @@ function levelOf(value, [low, high]) {
 
 // Millimetres, and dB, which are as small where it is noise.
 const rounded = (v, digits) => (Math.abs(v) < RESOLVED_MM ? `< ${power(-6)}` : digitsOf(v, digits));
-const roundedMm = (m) => rounded(1e3 * m, 5);
+const roundedMm = (m) => (typeof m === "number" ? rounded(1e3 * m, 5) : "–");
 const roundingNote = () =>
   el(
     "span",
     {},
-    "The nodes that ψ counts are within 1 nm of theory, less than what is resolved here: they have one neutral colour.",
+    "The inner nodes are within 1 nm of theory, less than what is resolved here: they have one neutral colour.",
   );
 
 // The colour bar of a picture. Values outside its range, down to lowest and up to highest, take the colours of its

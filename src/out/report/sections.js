@@ -203,7 +203,12 @@ function tensionChart(group) {
       "div",
       {},
       el("h3", {}, name),
-      el("p", {}, `All ${fmtCount(of.length)} have ${digitsOf(high, 5)} N${shapes[1] ? " in every shape" : ""}.`),
+      el(
+        "p",
+        {},
+        `${of.length > 1 ? `All ${fmtCount(of.length)} have` : `${shown(net.cable_id[of[0]])} has`} ` +
+          `${digitsOf(high, 5)} N${shapes[1] ? " in every shape" : ""}.`,
+      ),
     );
   return chart({
     title: name,
