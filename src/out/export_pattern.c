@@ -22,12 +22,14 @@ static void write_pattern(const void *context, FILE *f)
 static hf_status refuse(const char *file, const hf_summary *s, hf_stage stage, hf_messages *messages)
 {
     double pull_ratio = stage == HF_STAGE_NONE ? 0 : s->measures[stage].mesh_pull_ratio;
+    char words[64];
     if (pull_ratio > HF_FACET_PULL_MOST)
-        return hf_error(messages, HF_BAD_USAGE,
-                        "%s: there is no far field of this shape: the mesh pulls on a cable with N l = %.3g of its "
-                        "tension, and the formula of the pillow ends at %g. Raise the tension of the cables, or lower "
-                        "surface.mesh_tension_N_per_m",
-                        file, pull_ratio, HF_FACET_PULL_MOST);
+        return hf_error(
+            messages, HF_BAD_USAGE,
+            "%s: there is no far field of this shape: the mesh pulls on %s, and the formula of the pillow ends at "
+            "N l = %g of the tension. Raise the tension of the cables, or lower "
+            "surface.mesh_tension_N_per_m",
+            file, hf_facet_mesh_pull_words(pull_ratio, words), HF_FACET_PULL_MOST);
     return hf_error(messages, HF_BAD_USAGE, "%s: there is no far field of this shape: its case has no surface.pattern",
                     file);
 }

@@ -43,6 +43,7 @@ static hf_status find_sags(view *v, const char *file, hf_arena *arena, hf_messag
 {
     const hf_export_stored *s = v->stored;
     const hf_facet_shape shape = {s->shape.position_m, s->scene.n_cable, s->scene.end, s->shape.tension_N};
+    char words[64];
     double pull_ratio, mesh_N_per_m = s->summary.surface.mesh_tension_N_per_m, *sag_m;
     if (!(mesh_N_per_m > 0)) return HF_OK;
     hf_status status = hf_facet_mesh_make_sags(mesh_N_per_m, &v->facets, &shape, arena, &sag_m, &pull_ratio);
@@ -50,10 +51,9 @@ static hf_status find_sags(view *v, const char *file, hf_arena *arena, hf_messag
     v->sag_m = sag_m;
     if (pull_ratio <= HF_FACET_PULL_MOST) return HF_OK;
     return hf_error(messages, HF_BAD_USAGE,
-                    "%s: the pillows of the %s shape are not known: the mesh pulls on a cable with N l = %.3g of its "
-                    "tension, and the formula ends at %g. Raise the tension of the cables, or lower "
-                    "surface.mesh_tension_N_per_m",
-                    file, s->word, pull_ratio, HF_FACET_PULL_MOST);
+                    "%s: the pillows of the %s shape are not known: the mesh pulls on %s, and the formula ends at "
+                    "N l = %g of the tension. Raise the tension of the cables, or lower surface.mesh_tension_N_per_m",
+                    file, s->word, hf_facet_mesh_pull_words(pull_ratio, words), HF_FACET_PULL_MOST);
 }
 
 /* Extent of the facets, and points along their sides. */

@@ -63,6 +63,12 @@ void hf_print_bytes(double bytes, char *text, size_t size)
     snprintf(text, size, i ? "%.1f %s" : "%.0f %s", bytes, unit[i]);
 }
 
+#define LEAST_DB 1e-9 /* of an RMS of 1e-6 of the wavelength; that of exact places is some 1e-27 */
+double hf_print_loss_dB(double loss_dB)
+{
+    return loss_dB < LEAST_DB ? 0 : loss_dB;
+}
+
 const char *hf_print_decimals(double value, char text[32])
 {
     if (isfinite(value))

@@ -32,6 +32,9 @@ void hf_print_duration(double seconds, char *text, size_t size);
 /* "4.2315", "inf", or "-" when it has no value. */
 const char *hf_print_decimals(double value, char text[32]);
 
+/* A loss of gain, dB, as it is told: what is rounding is 0. */
+double hf_print_loss_dB(double loss_dB);
+
 /* "640 B", "1.2 MB" */
 void hf_print_bytes(double bytes, char *text, size_t size);
 

@@ -95,7 +95,7 @@ static void print_gain(double loss_dB, double limit_Hz, FILE *f)
     if (isnan(loss_dB))
         fprintf(f, "beyond Ruze's formula, which ends at %g dB (%.3g GHz)", HF_RUZE_MOST_DB, limit_Hz / 1e9);
     else
-        fprintf(f, "%.3g dB", loss_dB);
+        fprintf(f, "%.3g dB", hf_print_loss_dB(loss_dB));
 }
 
 /* Prints the measures of the surface of one stage, when the case asks for them. */

@@ -275,7 +275,7 @@ static void print_losses(const hf_summary *s, double rms_m, const double *loss_d
         else if (isnan(loss_dB[k]))
             fprintf(f, "above %g", HF_RUZE_MOST_DB);
         else
-            fprintf(f, "%.3g", loss_dB[k]);
+            fprintf(f, "%.3g", hf_print_loss_dB(loss_dB[k]));
     }
 }
 

@@ -73,8 +73,8 @@ static void print_yield(const hf_tolerance_summary *t, FILE *f)
             100 * t->yield_high);
     for (int k = 0; k < t->n_require; k++) {
         fprintf(f, "%s %s", k ? "," : ":", hf_tolerance_measure_word[t->require[k].measure]);
-        if (!isnan(t->require[k].at_most)) fprintf(f, " at most %g", t->require[k].at_most);
-        if (!isnan(t->require[k].at_least)) fprintf(f, " at least %g", t->require[k].at_least);
+        if (!isnan(t->require[k].at_most)) fprintf(f, " at most %.10g", t->require[k].at_most);
+        if (!isnan(t->require[k].at_least)) fprintf(f, " at least %.10g", t->require[k].at_least);
         fprintf(f, " %.2f %%", 100 * t->require_yield[k]);
     }
     fputc('\n', f);
@@ -83,7 +83,7 @@ static void print_yield(const hf_tolerance_summary *t, FILE *f)
     if (t->sigma_scale == 0)
         fputs("is out of reach: the net without errors does not meet it\n", f);
     else
-        fprintf(f, "takes errors of %s%.4g of these (by %d samples)\n",
+        fprintf(f, "%s%s%.4g times these errors (by %d samples)\n", t->sigma_scale < 1 ? "takes " : "is kept up to ",
                 t->scale_bound > 0   ? "at least "
                 : t->scale_bound < 0 ? "less than "
                                      : "",
@@ -95,8 +95,9 @@ static void print_shares(const hf_tolerance_summary *t, FILE *f)
     char line[1200] = "";
     for (int k = 0; k < t->n_ranked && k < CABLES_TOLD; k++) {
         size_t used = strlen(line);
-        snprintf(line + used, sizeof line - used, "%s%s %.2g %%", k ? ", " : "", t->ranked_id[k],
-                 100 * t->ranked_share[k]);
+        double percent = 100 * t->ranked_share[k];
+        snprintf(line + used, sizeof line - used, percent < 99.5 ? "%s%s %.2g %%" : "%s%s %.0f %%", k ? ", " : "",
+                 t->ranked_id[k], percent);
     }
     if (*line) hf_print_line(f, "                cables with the largest shares in the variance of psi: %s", line);
 }

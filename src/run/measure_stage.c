@@ -47,6 +47,7 @@ void hf_measure_limits(const hf_problem *p, hf_stage stage, const hf_workspace *
 hf_status hf_measure_stage(const hf_problem *p, hf_stage stage, const hf_workspace *w, int n_thread,
                            const volatile sig_atomic_t *stop, hf_store *store, hf_summary *s, hf_messages *messages)
 {
+    char words[64];
     measure_sets(p, stage, w, s);
     if (!p->settings.has_surface) return HF_OK;
     if (hf_surface_measure(&p->surface, &p->facets, &p->model, w, &s->measures[stage]) != HF_OK)
@@ -54,10 +55,10 @@ hf_status hf_measure_stage(const hf_problem *p, hf_stage stage, const hf_workspa
     const hf_surface_fit *fit = &s->measures[stage].fit;
     if (s->measures[stage].mesh_pull_ratio > MESH_PULL_DOUBT)
         hf_warning(messages,
-                   "surface: in the shape of stage %s the mesh pulls on a cable with N l = %.3g of its tension; the "
-                   "pillow is of first order in that%s. Raise the tension of the cables, or lower "
+                   "surface: in the shape of stage %s the mesh pulls on %s; the pillow is of first order in "
+                   "N l over the tension%s. Raise the tension of the cables, or lower "
                    "surface.mesh_tension_N_per_m",
-                   hf_stage_word[stage], s->measures[stage].mesh_pull_ratio,
+                   hf_stage_word[stage], hf_facet_mesh_pull_words(s->measures[stage].mesh_pull_ratio, words),
                    s->measures[stage].mesh_pull_ratio <= HF_FACET_PULL_MOST ? ""
                    : p->surface.has_pattern ? ", and facets have neither errors nor a far field here"
                                             : ", and facets have no errors here");

@@ -6,6 +6,7 @@
 #include "linalg/dense.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -269,4 +270,16 @@ void hf_facet_mesh_lifted(const hf_facet_mesh *m, double u, double v, double p[3
         du[d] += slope[0] * m->normal[d];
         dv[d] += slope[1] * m->normal[d];
     }
+}
+
+/* Of a slack cable rounding may leave something of the tension. */
+#define SLACK_PULL 1e6
+
+const char *hf_facet_mesh_pull_words(double pull_ratio, char text[64])
+{
+    if (pull_ratio < SLACK_PULL)
+        snprintf(text, 64, "a cable with N l = %.3g of its tension", pull_ratio);
+    else
+        strcpy(text, "a slack cable");
+    return text;
 }

@@ -48,6 +48,9 @@ void hf_facet_mesh_lifted(const hf_facet_mesh *mesh, double u, double v, double 
 /* The pillow is of first order in N l / T. Above this the mesh outweighs the cable, and the formula says nothing. */
 #define HF_FACET_PULL_MOST 1.0
 
+/* What the mesh pulls on, in words: "a cable with N l = 0.4 of its tension", or "a slack cable". Returns text. */
+const char *hf_facet_mesh_pull_words(double pull_ratio, char text[64]);
+
 /* Gauss-Legendre on [0, 1], exact to the ninth power. */
 enum { HF_FACET_N_GAUSS = 5 };
 extern const double hf_facet_gauss_at[HF_FACET_N_GAUSS], hf_facet_gauss_weight[HF_FACET_N_GAUSS];

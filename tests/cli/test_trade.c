@@ -90,8 +90,10 @@ START_TEST(mesh_makes_pillows)
     const char *out = temp("m.h5"),
                *path = file_with("m.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, "
                                            "rear_distance_m: 1.8}}\nform: {prestress: exact}\nsurface: {}\n");
-    HIFDM(0, "run", path, "-o", out, "-v", "--set", grid[_i], "--set", "surface.mesh_tension_N_per_m=1");
+    HIFDM(0, "run", path, "-o", out, "-v", "--set", grid[_i], "--set", "surface.mesh_tension_N_per_m=1", "--set",
+          "surface.frequencies_Hz=[2e9]");
     OUT("; pillow 0.");
+    OUT("loss of gain at 2 GHz: 0 dB; best fit: 0 dB; facets: "); /* and not the 1e-27 of rounding */
     HIFDM(0, "export", out, "--vtk", temp("vtk"));
     const char *const argv[] = {python_program(), keep(source_path("tests/verify/mesh_oracle.py")), out,
                                 temp("vtk/form_facets.hdf"), NULL};

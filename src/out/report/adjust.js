@@ -13,7 +13,7 @@ const ADJUST_END = {
   none: "No further move gains anything.",
 };
 
-const inMm = (v, digits = 4) => `${fmt(1e3 * v, digits)} mm`,
+const inMm = (v, digits = 4) => `${Math.abs(1e3 * v) < RESOLVED_MM ? rounded(0, digits) : fmt(1e3 * v, digits)} mm`,
   signed = (v, digits = 5) => (v > 0 ? "+" : "") + fmt(v, digits);
 
 function adjustText(name) {

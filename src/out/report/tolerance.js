@@ -38,7 +38,8 @@ function toleranceChart(t) {
   if (typeof low !== "number" || typeof high !== "number") return null; // no sample has a shape
   const n = t.histogram.length,
     width = (1e3 * (high - low)) / n,
-    edge = (i) => fmt(1e3 * low + i * width, 5),
+    digits = Math.max(5, Math.ceil(Math.log10((1e3 * high) / width)) + 1), // edges differ in the last of them
+    edge = (i) => fmt(1e3 * low + i * width, high > low ? digits : 5),
     marks = toleranceMarks(t, [low, high]);
   const far = marks.filter(({ isFar }) => isFar).map(({ name }) => name);
   return chart({
@@ -60,7 +61,12 @@ function scaleText(t) {
   if (typeof t.sigma_scale !== "number") return "";
   if (!(t.sigma_scale > 0))
     return ` A yield of ${percent(t.wanted_yield)} is out of reach: the net without errors does not meet it.`;
-  return ` All errors times ${fmt(t.sigma_scale, 3)} give a yield of ${percent(t.wanted_yield)}.`;
+  const times = digitsOf(t.sigma_scale, 4),
+    wanted = percent(t.wanted_yield);
+  if (t.scale_bound > 0)
+    return ` All errors times ${times} still keep a yield of ${wanted}; larger ones were not tried.`;
+  if (t.scale_bound < 0) return ` A yield of ${wanted} takes errors of less than ${times} times these.`;
+  return ` All errors times ${times} give a yield of ${wanted}.`;
 }
 
 function toleranceText(t) {

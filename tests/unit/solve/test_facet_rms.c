@@ -1,6 +1,7 @@
 /* RMS over facets: integrals by hand, the published formula under refinement, the order of convergence. */
 #include "nets.h"
 
+#include "solve/facet_mesh.h"
 #include "solve/facet_rms.h"
 
 /* ---- a triangular net over a hexagon ---- */
@@ -273,6 +274,16 @@ START_TEST(integrals_are_exact)
 }
 END_TEST
 
+/* N l over no tension, or over what rounding leaves of one. */
+START_TEST(a_pull_on_nothing_is_no_number)
+{
+    char text[64];
+    ck_assert_str_eq(hf_facet_mesh_pull_words(0.4, text), "a cable with N l = 0.4 of its tension");
+    ck_assert_str_eq(hf_facet_mesh_pull_words(INFINITY, text), "a slack cable");
+    ck_assert_str_eq(hf_facet_mesh_pull_words(1e14, text), "a slack cable");
+}
+END_TEST
+
 Suite *suite_unit_facet_rms(void)
 {
     Suite *suite = suite_create("unit/facet_rms");
@@ -282,6 +293,7 @@ Suite *suite_unit_facet_rms(void)
     tcase_add_test(tests, errors_fall_with_the_square_of_the_side);
     tcase_add_test(tests, errors_of_each_facet_make_that_of_all);
     tcase_add_test(tests, mesh_makes_the_error_grow);
+    tcase_add_test(tests, a_pull_on_nothing_is_no_number);
     tcase_add_loop_test(tests, facets_near_those_of_the_design, 0, 2);
     tcase_add_loop_test(tests, integrals_are_exact, 0, 2);
     return suite;
