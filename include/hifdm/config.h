@@ -41,6 +41,7 @@ typedef struct {
     char facets_path[HF_PATH_SIZE];                           /* the same; "": facets are found */
     hf_form_settings form;
     hf_optimize_settings optimize;
+    hf_front_origin taken;       /* in place of what optimize would find; no key: it comes with the run */
     hf_surface_settings surface; /* a generated net supplies what is not given */
     bool has_adjust;
     hf_adjust_settings adjust;

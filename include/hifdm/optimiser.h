@@ -75,9 +75,16 @@ void hf_optimiser_free(hf_optimiser *optimiser);
 
 /* How Levenberg-Marquardt ended. CONVERGED: no step within the limits promises a lower psi. STALLED: one does, but even
  * a short one does not keep the promise. MAX_ITERATIONS: neither yet. SETTLED: the last ten steps lowered the merit by
- * less than 1e-6 of it, and changed no goal (weight x value) by 1e-5 of the merit. */
-typedef enum { HF_POLISH_CONVERGED, HF_POLISH_STALLED, HF_POLISH_MAX_ITERATIONS, HF_POLISH_SETTLED } hf_polish_stop;
-extern const char *const hf_polish_stop_word[4]; /* "converged", "stalled", "max_iterations", "settled" */
+ * less than 1e-6 of it, and changed no goal (weight x value) by 1e-5 of the merit. TAKEN: it did not run, the design is
+ * a point of a front. */
+typedef enum {
+    HF_POLISH_CONVERGED,
+    HF_POLISH_STALLED,
+    HF_POLISH_MAX_ITERATIONS,
+    HF_POLISH_SETTLED,
+    HF_POLISH_TAKEN
+} hf_polish_stop;
+extern const char *const hf_polish_stop_word[5]; /* "converged", "stalled", "max_iterations", "settled", "taken" */
 
 /* One row for each hf_optimize_method: X(method, optimiser of its generations or `none`, ends_with_polish). */
 #define HF_OPTIMISER_LIST(X) X(GA, ga, false) X(LM, none, true) X(GA_LM, ga, true)

@@ -51,6 +51,7 @@ typedef struct {
     const char *const *set;          /* [n_set] overrides "key=value" */
     int n_set;
     const char *output; /* NULL: the name of the case with .h5, in the current folder */
+    const char *point;  /* "FILE:N": point N of the front in this result is the design, without a search; NULL: none */
     bool no_file;       /* write no file: only the summary is wanted */
     bool of_sweep;      /* true: run one point of the case's sweep; false: refuse a case with a sweep section */
     bool of_tolerance;  /* refuse a case without a section tolerance */

@@ -104,6 +104,14 @@ extern const char *const hf_figure_word[4]; /* the first goals, those that are f
 
 /* Room for the path of a case, a study or a table of a net or truss; a longer one is refused. */
 #define HF_PATH_SIZE 1024
+
+/* The point of a front that a run takes for its result, in place of a search. */
+typedef struct {
+    int point;               /* its number, from 1; 0: none is taken */
+    char path[HF_PATH_SIZE]; /* of the result with the front, as it was given */
+    char sha256[65];         /* of its design */
+} hf_front_origin;
+
 extern const char *const hf_distribution_word[3];
 extern const char *const hf_sampling_word[3];
 extern const char *const hf_tolerance_measure_word[]; /* by hf_tolerance_measure, ended by NULL */

@@ -14,7 +14,8 @@
  *                finished (FALSE: the run can go on), published_utc, identity (of the run, see hf_store_identify);
  *                after a resumption sessions, resumed_utc, resumed_host, resumed_version (of the last); under Slurm
  *                slurm_job_id, slurm_array_job_id, slurm_array_task_id, slurm_restart_count
- *   /case        text, overrides; attributes sha256, case_path
+ *   /case        text, overrides; attributes sha256, case_path; front_point, front_file, front_design_sha256 if the
+ *                result is a point of the front in that file
  *   /scene/node  id [n], position_m [n][3], role [n]; load_N [n][3] if there are loads
  *   /scene/cable id, group, law, target, length_m (theoretical) [m], end [m][2]; EA_N [m] if any is given
  *   /scene/set   if there are named sets of cables, of the s sets with c cables in all: name [s], start [s + 1],

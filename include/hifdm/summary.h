@@ -147,6 +147,7 @@ typedef struct {
     hf_held_limits held[3];          /* of the same */
 
     hf_goal_list goals;
+    hf_front_origin taken; /* the result is this point of another run's front: the shape of `polish` */
 
     int n_state; /* of the net as built */
     hf_state_summary state[HF_STATES_MAX];
@@ -155,7 +156,7 @@ typedef struct {
     hf_form_result form;
     bool has_coupling; /* the net is attached to an elastic truss; else member `coupling` of the results is all zero */
 
-    bool has_polish; /* Levenberg-Marquardt ran */
+    bool has_polish; /* Levenberg-Marquardt ran, or `taken` */
     hf_form_result polish;
     HF_SUMMARY_POLISH_LIST(HF_SUMMARY_MEMBER)
 

@@ -29,6 +29,7 @@ hf_status hf_cmd_run_case(const hf_options *o, FILE *file, hf_messages *messages
                               .set = o->set,
                               .n_set = o->n_set,
                               .output = o->output,
+                              .point = o->point,
                               .of_tolerance = of_tolerance,
                               .task = o->task,
                               .tasks = of_tolerance ? o->tasks : 0,
@@ -58,9 +59,12 @@ const hf_command hf_cmd_run = {
     .about = "What the case file contains decides what runs: form-finding always, the genetic algorithm and "
              "Levenberg-Marquardt with a section optimize, samples of the net as built with a section tolerance. Every "
              "generation is stored. A run that was killed or told "
-             "to stop goes on when the same command is given again; a finished one is kept unless --restart is given.",
+             "to stop goes on when the same command is given again; a finished one is kept unless --restart is given.\n"
+             "Of a front (optimize.objectives) the same run with --point makes one point the result, without a search: "
+             "for its shape, its cut list, and the net as built.",
     .examples = "hifdm run configs/chen2022.yaml\n"
-                "hifdm run case.yaml --set form.pretension_N=12 --seed 7 -o twelve.h5",
+                "hifdm run case.yaml --set form.pretension_N=12 --seed 7 -o twelve.h5\n"
+                "hifdm run case.yaml --point front.h5:7 -o point7.h5",
     .uses_threads = true,
     .run = hf_cmd_run_case,
 };

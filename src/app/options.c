@@ -168,6 +168,9 @@ static hf_status read_new(const hf_option *option, const char *value, hf_options
 static const hf_option option_table[] = {
     {"--output", "-o", "FILE", "result file (default: the case's name with .h5, in this folder)", "run tolerance",
      read_text, AT(output), NULL},
+    {"--point", NULL, "FILE:N",
+     "take point N of the front in the result FILE for the design; the case and --set are those of its run",
+     "run tolerance", read_text, AT(point), NULL},
     {"--designs", NULL, "FILE",
      "CSV: a column for each variable (without optimize.variables: adjustable cable, N), optionally id", "evaluate",
      read_text, AT(designs), NULL},

@@ -19,6 +19,7 @@ struct hf_options {
     const char *file;                     /* the CASE or FILE, NULL for commands without one */
     const char *second;                   /* the other FILE of diff and report */
     const char *output;                   /* -o */
+    const char *point;                    /* --point */
     const char *export_to[HF_N_EXPORTER]; /* file or folder by exporter; NULL: not asked for */
     const char *designs, *template_path;  /* --designs, --template */
     const char *jacobian;                 /* --jacobian */

@@ -183,16 +183,21 @@ static void print_optimize(const hf_summary *s, FILE *f)
 
 static void print_polish(const hf_summary *s, FILE *f)
 {
-    static const char *const end[4] = {"", " (stalled: shorter steps gain nothing)", " (not converged)",
-                                       " (settled: ten steps gain less than 1e-6)"};
+    static const char *const end[] = {"", " (stalled: shorter steps gain nothing)", " (not converged)",
+                                      " (settled: ten steps gain less than 1e-6)"};
     char wall[32], boundary[32];
     char limits[40] = "";
     hf_print_duration(s->polish_wall_s, wall, sizeof wall);
-    fprintf(f, "  LM optimum    psi %.4f mm from %s, %s; boundary ratio %s; %d iteration%s%s, %s\n",
-            s->polish.psi_m * 1e3, s->has_optimize ? "there" : "the form-finding's tensions",
-            s->polish_is_result ? "the result" : "for comparison",
-            hf_print_decimals(s->polish.boundary_tension_ratio, boundary), s->polish_iterations,
-            s->polish_iterations == 1 ? "" : "s", end[s->polish_stop], wall);
+    if (s->taken.point)
+        hf_print_line(f, "  point         psi %.4f mm, boundary ratio %s: point %d of the front in %s",
+                      s->polish.psi_m * 1e3, hf_print_decimals(s->polish.boundary_tension_ratio, boundary),
+                      s->taken.point, s->taken.path);
+    else
+        fprintf(f, "  LM optimum    psi %.4f mm from %s, %s; boundary ratio %s; %d iteration%s%s, %s\n",
+                s->polish.psi_m * 1e3, s->has_optimize ? "there" : "the form-finding's tensions",
+                s->polish_is_result ? "the result" : "for comparison",
+                hf_print_decimals(s->polish.boundary_tension_ratio, boundary), s->polish_iterations,
+                s->polish_iterations == 1 ? "" : "s", end[s->polish_stop], wall);
     if (s->polish_n_at_limit) snprintf(limits, sizeof limits, " and %d limits", s->polish_n_at_limit);
     fprintf(f, "                held by %d lower and %d upper bounds%s%s\n", s->polish_n_at_lower, s->polish_n_at_upper,
             limits, s->polish_is_at_cap ? " and the cap on the boundary ratio" : "");

@@ -173,7 +173,7 @@ void hf_print_answer(const hf_summary *s, FILE *f)
         print_front_answer(s, f);
         return;
     }
-    if (has_merit(s) && stage != HF_STAGE_FORM && !is_psi_all(s)) {
+    if ((has_merit(s) || s->taken.point) && stage != HF_STAGE_FORM && !is_psi_all(s)) {
         print_goals_gained(s, r, f);
     } else if (r->status == HF_OK && !isfinite(r->psi_m)) { /* what is at a place that was given has no error */
         fputs("no psi: no taut cable holds an inner node", f);
@@ -239,9 +239,14 @@ static void print_ga(const hf_summary *s, bool is_result, FILE *f)
 
 static void print_lm(const hf_summary *s, bool is_result, FILE *f)
 {
-    static const char *const end[4] = {"", ", stalled: shorter steps gain nothing", ", not converged",
-                                       ", settled: ten steps gain less than 1e-6"};
+    static const char *const end[] = {"", ", stalled: shorter steps gain nothing", ", not converged",
+                                      ", settled: ten steps gain less than 1e-6"};
     char wall[32];
+    if (s->taken.point) {
+        print_figures(s, "point", &s->polish, s->polish_n_at_lower + s->polish_n_at_upper, f);
+        hf_print_line(f, "  the result: point %d of the front in %s", s->taken.point, s->taken.path);
+        return;
+    }
     hf_print_duration(s->polish_wall_s, wall, sizeof wall);
     print_figures(s, "LM", &s->polish, s->polish_n_at_lower + s->polish_n_at_upper, f);
     fprintf(f, "  %s: %d iteration%s%s, %s\n", is_result ? "the result" : "for comparison", s->polish_iterations,
@@ -335,12 +340,14 @@ static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
 /* ---- front, states, truss ---- */
 
 /* One line of the front: the values of a point and, where it is known, what the minimised objective changes
- * by per unit of the others. */
-static void print_front_point(const hf_summary *s, const char *name, const double *objective, const double *multiplier,
-                              FILE *f)
+ * by per unit of the others. number: of the point, from 1; 0: of the base, which is none. */
+static void print_front_values(const hf_summary *s, const char *name, int number, const double *objective,
+                               const double *multiplier, FILE *f)
 {
     const hf_front_table *t = &s->front;
-    fprintf(f, "                %-6s", name);
+    char what[32];
+    snprintf(what, sizeof what, number ? "%s, point %d" : "%s", name, number);
+    fprintf(f, "                %-15s", what);
     for (int k = 0; k < t->n_objective; k++)
         hf_print_goal(k ? ", " : " ", s->goals.name[k], objective[k], f);
     for (int k = 0; k < t->n_objective && multiplier && t->minimised >= 0; k++)
@@ -349,7 +356,13 @@ static void print_front_point(const hf_summary *s, const char *name, const doubl
     fputc('\n', f);
 }
 
-static void print_front(const hf_summary *s, FILE *f)
+static void print_front_point(const hf_summary *s, const char *name, int row, FILE *f)
+{
+    const hf_front_point *p = &s->front.row[row];
+    print_front_values(s, name, s->front.place[row] + 1, p->objective, p->multiplier, f);
+}
+
+static void print_front(const hf_summary *s, const char *path, FILE *f)
 {
     const hf_front_table *t = &s->front;
     char wall[32], rough[40] = "";
@@ -364,10 +377,14 @@ static void print_front(const hf_summary *s, FILE *f)
     if (t->n_row < t->n_point)
         fprintf(f, "                %d of %d shown by --json and the report; hifdm export --front has all\n", t->n_row,
                 t->n_point);
-    if (isfinite(t->base[0])) print_front_point(s, "base", t->base, NULL, f);
+    if (isfinite(t->base[0])) print_front_values(s, "base", 0, t->base, NULL, f);
     for (int k = 0; k < t->n_objective; k++)
-        if (t->end[k] >= 0) print_front_point(s, "end", t->row[t->end[k]].objective, t->row[t->end[k]].multiplier, f);
-    if (t->knee >= 0) print_front_point(s, "knee", t->row[t->knee].objective, t->row[t->knee].multiplier, f);
+        if (t->end[k] >= 0) print_front_point(s, "end", t->end[k], f);
+    if (t->knee >= 0) print_front_point(s, "knee", t->knee, f);
+    int row = t->knee >= 0 ? t->knee : t->end[0];
+    if (path && s->finished && row >= 0)
+        hf_print_line(f, "                a point becomes a result by the same run with --point %s:%d -o point%d.h5",
+                      path, t->place[row] + 1, t->place[row] + 1);
 }
 
 /* The states of the net as built, a line each. */
@@ -466,7 +483,7 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
     if (s->has_coupling) print_coupling(s, result, f);
     print_errors(s, result, f);
     if (style.verbose) hf_print_details(s, f);
-    if (s->has_front) print_front(s, f);
+    if (s->has_front) print_front(s, path, f);
     if (result != HF_STAGE_NONE) print_pattern(&s->pattern[result], f);
     print_states(s, f);
     if (s->has_tolerance) hf_print_tolerance(&s->tolerance, style.verbose, f);

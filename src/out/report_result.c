@@ -301,10 +301,15 @@ static void write_patterns(const page *p, FILE *f)
 
 /* ---- the page, and another ---- */
 
+static void write_overrides(const page *p, FILE *f)
+{
+    hf_json_strings("overrides", &(const char *){p->overrides.n ? hf_texts_at(&p->overrides, 0) : ""}, 1, f);
+}
+
 static void write_case(const page *p, FILE *f)
 {
     hf_json_strings("case_text", &(const char *){p->case_text.n ? hf_texts_at(&p->case_text, 0) : ""}, 1, f);
-    hf_json_strings("overrides", &(const char *){p->overrides.n ? hf_texts_at(&p->overrides, 0) : ""}, 1, f);
+    write_overrides(p, f);
 }
 
 static void write_other(const page *p, const page *other, FILE *f)
@@ -349,6 +354,7 @@ static void write_data(const void *context, FILE *f)
     write_series(p, f);
     write_patterns(p, f);
     if (p->other) write_other(p, p->other, f);
+    if (!p->other && s->has_front) write_overrides(p, f);
     if (p->part) {
         hf_json_line(&j, "");
         hf_json_open(&j, p->part->key, '{');

@@ -125,6 +125,10 @@ const hf_word hf_words_warning[] = {
     {"seed_unused", "warning", "", "Without a section optimize nothing is random.", "--seed has no effect"},
     {"design_alone", "warning", "", "`hifdm tolerance` with this case adds the samples.",
      "the result has the design alone"},
+    {"point_dominated", "warning", "",
+     "The point that was taken is none that one would choose: another is better in an objective and as good in all. "
+     "`hifdm export --front` has the marks.",
+     "is dominated: another point of its front"},
     {"front_failed", "warning", "",
      "Points of the front have no design within their limits. Fewer points, wider ranges or other objectives; the "
      "other points hold.",

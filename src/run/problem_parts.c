@@ -224,6 +224,7 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
         bool of_surface = wanted->goal == HF_GOAL_SURFACE || wanted->goal == HF_GOAL_FACETS;
         s->goals.after_fit[k] = !of_surface ? -1 : wanted->fit == HF_FIT_BEST;
     }
+    s->taken = settings->taken;
     s->has_truss = settings->has_truss;
     s->truss.mass_kg = p->carrier.mass_kg;
     s->truss.n_node = p->carrier.truss.n_node;

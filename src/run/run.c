@@ -13,6 +13,7 @@
 #include "run/reach.h"
 #include "run/result_doubt.h"
 #include "run/run_front.h"
+#include "run/take_point.h"
 #include "run/tolerance_stage.h"
 #include "search/pareto.h"
 #include "solve/certificate.h"
@@ -40,6 +41,7 @@ typedef struct {
     hf_store *store;
     hf_optimiser optimiser;
     hf_front front;         /* of optimize.objectives */
+    hf_taken_point taken;   /* in place of that front */
     hf_optimiser_plan plan; /* what optimize.method consists of */
     int first_generation;   /* of this session */
     long first_evaluation;
@@ -53,6 +55,7 @@ static void run_free(run *r)
     hf_store_end(r->store); /* NULL once it is finished */
     hf_optimiser_free(&r->optimiser);
     hf_front_free(&r->front);
+    free(r->taken.design);
     free(r->history.psi_m);
     hf_carrier_state_free(&r->truss);
     hf_places_free(&r->places);
@@ -306,6 +309,39 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
     return hf_no_design_evolved(&r->problem, p, messages);
 }
 
+/* The shape of s->polish is in the workspace, of this design. */
+static hf_status keep_polish(run *r, hf_workspace *w, const double *design, hf_summary *s, hf_messages *messages)
+{
+    hf_certify(&r->problem.model, w, &s->polish);
+    s->has_polish = true;
+    hf_measure_limits(&r->problem, HF_STAGE_POLISH, w, s);
+    HF_TRY(measure_shape(r, HF_STAGE_POLISH, w, s, messages));
+    if (s->polish_is_result) HF_TRY(take_result(r, w, messages));
+    return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);
+}
+
+/* A point of a front that was found before. */
+static hf_status take_point(run *r, hf_summary *s, hf_messages *messages)
+{
+    hf_workspace *w = &r->problem.workspace;
+    const hf_population *p = &r->optimiser.population;
+    const double *design = r->taken.design;
+    double start_s = hf_clock_s();
+    hf_evaluate(&r->problem.evaluator, design, w, &s->polish);
+    if (must_stop(r)) return stop_here(r, s, messages);
+    HF_TRY(hf_take_point_check(&r->problem, &r->taken, &s->polish, messages));
+    hf_problem_warn(&r->problem, "taken", w, &s->polish, messages);
+    s->polish_wall_s = hf_clock_s() - start_s;
+    s->polish_is_result = true;
+    s->polish_evaluations = 1;
+    s->polish_stop = HF_POLISH_TAKEN;
+    for (int k = 0; k < p->n_gene; k++) {
+        s->polish_n_at_lower += design[k] <= p->lower_N[k];
+        s->polish_n_at_upper += design[k] >= p->upper_N[k];
+    }
+    return keep_polish(r, w, design, s, messages);
+}
+
 /* Levenberg-Marquardt from the best individual, or from the base design when there was no genetic algorithm. */
 static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
 {
@@ -331,8 +367,6 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     }
     hf_evaluate(&r->problem.evaluator, design, w, &s->polish);
     if (must_stop(r)) return stop_here(r, s, messages); /* the evaluation may have been cut short */
-    hf_certify(&r->problem.model, w, &s->polish);
-    s->has_polish = true;
     s->polish_is_result = r->plan.ends_with_polish;
     s->polish_iterations = outcome.iterations;
     s->polish_evaluations = outcome.evaluations;
@@ -341,10 +375,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     s->polish_n_at_upper = outcome.n_at_upper;
     s->polish_n_at_limit = outcome.n_at_limit;
     s->polish_is_at_cap = outcome.is_at_cap;
-    hf_measure_limits(&r->problem, HF_STAGE_POLISH, w, s);
-    HF_TRY(measure_shape(r, HF_STAGE_POLISH, w, s, messages));
-    if (s->polish_is_result) HF_TRY(take_result(r, w, messages));
-    return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);
+    return keep_polish(r, w, design, s, messages);
 }
 
 /* As the result, or as the comparison that was asked for; unasked only where it is cheap. */
@@ -391,6 +422,7 @@ static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
     r->plan = hf_optimiser_plan_of(&r->problem.settings.optimize);
     HF_TRY(prepare_optimize(r, s, messages));
     s->threads = r->problem.batch.n_thread;
+    if (r->taken.design) return take_point(r, s, messages);
     if (r->problem.settings.optimize.n_objective > 0) return find_front(r, s, messages);
     if (r->plan.kind) HF_TRY(evolve(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
@@ -451,7 +483,7 @@ static hf_status open_store(run *r, char *output, hf_store_state *state, hf_mess
     const hf_scene *scene = &r->problem.scene;
     const hf_truss *truss = settings->has_truss ? &r->problem.carrier.truss : NULL;
     HF_TRY(choose_output(q, output, messages));
-    HF_TRY(hf_problem_spare_inputs(&r->problem, NULL, output, messages));
+    HF_TRY(hf_problem_spare_inputs(&r->problem, settings->taken.point ? settings->taken.path : NULL, output, messages));
     if (!q->restart) HF_TRY(hf_store_look(output, settings, scene, truss, state, messages));
     if (*state == HF_STORE_FINISHED) return HF_OK;
     HF_TRY(hf_tolerance_stage_look(q, &r->problem, output, messages));
@@ -472,6 +504,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     if (q->has_seed) settings->optimize.seed = q->seed;
     if (q->has_seed && !settings->has_optimize)
         hf_warning(messages, "--seed has no effect: the case has no optimize section");
+    if (q->point) HF_TRY(hf_take_point_read(q->point, &r->problem, &r->taken, messages));
     hf_problem_describe(&r->problem, s);
     hf_store_state state = HF_STORE_NOTHING;
     if (!q->no_file) HF_TRY(open_store(r, output, &state, messages));

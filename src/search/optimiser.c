@@ -4,7 +4,7 @@
 #include <assert.h>
 #include <stddef.h>
 
-const char *const hf_polish_stop_word[4] = {"converged", "stalled", "max_iterations", "settled"};
+const char *const hf_polish_stop_word[5] = {"converged", "stalled", "max_iterations", "settled", "taken"};
 
 /* ---- ask and tell ---- */
 

@@ -160,6 +160,11 @@ void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *m
 void hf_layout_get_front(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_read_front(hf_hdf5 *io, bool has_rows, hf_front *front, char **gene, size_t *gene_size);
 
+/* The point of a front that is the result of this run: attributes of /case. Reading changes nothing where there is
+ * none. */
+void hf_layout_put_taken(hf_hdf5 *io, const hf_front_origin *taken);
+void hf_layout_get_taken(hf_hdf5 *io, hf_front_origin *taken);
+
 /* layout_tolerance: /tolerance, the figures of samples of the net as built; nothing without such samples. */
 void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary);

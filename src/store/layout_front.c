@@ -1,4 +1,4 @@
-/* The group /front. */
+/* The group /front, and the point of another one that a run has taken. */
 #include "store/layout.h"
 
 #include <math.h>
@@ -235,4 +235,23 @@ void hf_layout_read_front(hf_hdf5 *io, bool has_rows, hf_front *front, char **ge
     if (io->status == HF_OK) hf_hdf5_read_array(io, group, &design, front->design);
     if (io->status == HF_OK) *gene = read_genes(io, group, n_gene, gene_size);
     hf_hdf5_close(io, group);
+}
+
+/* ---- a point that was taken ---- */
+
+void hf_layout_put_taken(hf_hdf5 *io, const hf_front_origin *taken)
+{
+    hf_hdf5_put(io, io->file, "/case", "front_point", HF_KIND_INT, 0, &taken->point);
+    hf_hdf5_put_chars(io, io->file, "/case", "front_file", taken->path);
+    hf_hdf5_put_chars(io, io->file, "/case", "front_design_sha256", taken->sha256);
+}
+
+void hf_layout_get_taken(hf_hdf5 *io, hf_front_origin *taken)
+{
+    if (io->status != HF_OK || !hf_hdf5_has_chars(io, io->file, "/case", "front_file")) return;
+    hf_hdf5_get(io, io->file, "/case", "front_point", HF_KIND_INT, &taken->point, sizeof taken->point);
+    hf_hdf5_get(io, io->file, "/case", "front_file", HF_KIND_CHARS, taken->path, sizeof taken->path);
+    hf_hdf5_get(io, io->file, "/case", "front_design_sha256", HF_KIND_CHARS, taken->sha256, sizeof taken->sha256);
+    if (io->status == HF_OK && taken->point < 1)
+        hf_hdf5_damaged(io, io->file, "/case", "has taken a point that no front has");
 }

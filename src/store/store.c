@@ -92,6 +92,7 @@ static void write_case(hf_store *s, const hf_case *settings)
     hf_hdf5_write_array(&s->f.io, group, &text, settings->text);
     hf_hdf5_write_array(&s->f.io, group, &set, overrides);
     hf_hdf5_put_chars(&s->f.io, group, ".", "sha256", settings->sha256);
+    if (settings->taken.point) hf_layout_put_taken(&s->f.io, &settings->taken);
     hf_hdf5_close(&s->f.io, group);
 }
 

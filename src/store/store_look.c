@@ -87,6 +87,7 @@ hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, cons
         HF_TRY(extend_ids(identity, scene->n_set, scene->set_name));
     }
     HF_TRY(extend_tables(identity, settings));
+    if (settings->taken.point) extend(identity, settings->taken.sha256, 64);
     if (!truss) return HF_OK;
     extend_columns(identity, &hf_layout_truss, truss->n_node, truss->n_member, truss);
     extend(identity, truss->fixed, (size_t)truss->n_node);
@@ -96,13 +97,28 @@ hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, cons
 
 /* ---- look ---- */
 
-/* Which keys differ between the stored case and this one, in words. */
+/* "--point night.h5:7", cut at the end of its room; returns text. */
+static const char *name_point(const hf_front_origin *taken, char *text, size_t size)
+{
+    snprintf(text, size, taken->point ? "--point %s:%d" : "no --point", taken->path, taken->point);
+    return text;
+}
+
+/* Which keys differ between the stored case and this one, or the points that they took, in words. */
 static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t size)
 {
     hf_case then = {0};
+    char one[300], other[300];
+    hf_front_origin taken = {0};
+    hf_layout_get_taken(io, &taken);
     if (!hf_store_parse_case(io, now->path, &then))
         snprintf(words, size, "%s", "keys that this version does not know");
-    else if (hf_config_differences(&then, now, words, size) == 0)
+    else if (hf_config_differences(&then, now, words, size) > 0)
+        ;
+    else if (strcmp(taken.sha256, now->taken.sha256) != 0)
+        snprintf(words, size, "it has %s, and this run %s", name_point(&taken, one, sizeof one),
+                 name_point(&now->taken, other, sizeof other));
+    else
         snprintf(words, size, "%s",
                  "no key, but comments and layout of the case, or its tables of the net or of the truss");
     hf_case_free(&then);

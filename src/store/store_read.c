@@ -84,6 +84,7 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     if (summary->has_polish) hf_layout_get_summary(&io, HF_LAYOUT_POLISH, summary);
     if (summary->has_optimize) hf_layout_get_summary(&io, HF_LAYOUT_GA, summary);
     get_status(&io, summary);
+    hf_layout_get_taken(&io, &summary->taken);
     hf_layout_get_surface(&io, summary);
     hf_layout_get_pattern(&io, summary);
     hf_layout_get_sets(&io, summary);

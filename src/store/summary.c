@@ -243,6 +243,10 @@ static void write_polish(const hf_summary *s, hf_json *j)
     open_stage("polish", j);
     write_result(&s->polish, j);
     write_fields(ALL(polish_field), 1, LAST_PLACE, s, j);
+    if (s->taken.point) {
+        hf_json_text(j, "front_file", s->taken.path);
+        hf_json_integer(j, "front_point", s->taken.point);
+    }
     write_surface(s, &s->measures[2], j);
     write_pattern(&s->pattern[2], j);
     write_sets(&s->sets[2], j);

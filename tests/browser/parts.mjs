@@ -164,6 +164,7 @@ export async function checkFront(tab, made) {
   const [, said] = (await tab.locator("#front .tip strong").textContent()).match(/: ψ ([\d.]+) mm/);
   same(number(said), 1e3 * points.at(-1).objective[psi], 6);
   await tab.keyboard.press("Escape");
+  assert.match(await tab.locator("#front code").textContent(), /^hifdm run .* --point .*\.h5:\d -o point\d\.h5$/);
   const row = tab.locator("#summary tr", { hasText: psi });
   same(number(await row.locator(".number").first().textContent()), 1e3 * base[psi], 5);
 }

@@ -14,10 +14,10 @@ START_TEST(a_front_is_printed_stored_and_told)
     OUT("; slope of goal_0_psi per unit of goal_1_ratio_boundary\n");
     OUT("                objectives goal_0_psi 0.00660003 m, goal_1_ratio_boundary 4.84161\n");
     ck_assert(!strstr(said.out, "merit") && !strstr(said.out, "weight") && !strstr(said.out, " shown "));
-    OUT("                base   goal_0_psi 0.00660003 m, goal_1_ratio_boundary 4.84161\n");
-    OUT("                end    goal_0_psi 0.00428338 m, goal_1_ratio_boundary 5.23668; slope 0\n");
-    OUT("                end    goal_0_psi 0.0116996 m, goal_1_ratio_boundary 4.55962\n");
-    OUT("                knee   goal_0_psi ");
+    OUT("                base            goal_0_psi 0.00660003 m, goal_1_ratio_boundary 4.84161\n");
+    OUT("                end, point 1    goal_0_psi 0.00428338 m, goal_1_ratio_boundary 5.23668; slope 0\n");
+    OUT("                end, point 7    goal_0_psi 0.0116996 m, goal_1_ratio_boundary 4.55962\n");
+    OUT("                knee, point 4   goal_0_psi ");
     printed = keep(said.out);
     HIFDM(0, "show", file);
     ck_assert_str_eq(said.out, printed);
@@ -100,6 +100,7 @@ START_TEST(a_report_has_the_front)
     SHELL(0, "sed -n '/<script type=\"application.json\"/,/<\\/script>/p' \"$1\" | sed '1d;$d' >\"$2\"", page,
           temp("data.json"));
     EXPECT(temp("data.json"), "--", "len(a['summary']['front']['points']) == 7", "a['summary']['front']['knee'] > 0",
+           "a['overrides'][0].split('\\n')[0] == 'optimize.method=lm'",
            "set(a['summary']['front']['base']) == {'goal_0_psi', 'goal_1_ratio_boundary'}");
 }
 END_TEST

@@ -393,6 +393,41 @@ START_TEST(a_second_process_is_refused)
 }
 END_TEST
 
+/* Samples of a point that was taken from a front are told of once a second. */
+static bool says_samples(const char *err)
+{
+    char *text = read_file(err, NULL);
+    bool has_some = false;
+    for (const char *at = text; !has_some && (at = strstr(at, "\"sample\": ")) != NULL;)
+        has_some = atol(at += strlen("\"sample\": ")) > 0;
+    free(text);
+    return has_some;
+}
+
+START_TEST(a_stopped_point_goes_on_to_the_same_bits)
+{
+#define OF_POINT                                                                                                       \
+    SMALL_SCENE "  EA_inner_N: 47000\n  EA_boundary_N: 47000\noptimize:\n  method: lm\n  front_points: 3\n"            \
+                "  objectives: [{goal: psi}, {goal: ratio, set: boundary}]\n"
+    const char *c = file_with("c.yaml", OF_POINT "tolerance: {sigma_cut_m: 1e-4, samples: 150000}\n"),
+               *front = temp("f.h5"), *path = temp("run.h5"), *whole = temp("whole.h5");
+    HIFDM(0, "run", file_with("f.yaml", OF_POINT), "-o", front, "--quiet");
+    const char *point = keep(formatted("%s:2", front));
+    const char *const argv[] = {hifdm_program(), "run", c, "--point", point, "-o", path, "--progress", "jsonl", NULL};
+    session s = start_program(argv);
+    ck_assert(wait_until(&s, says_samples, temp("err")));
+    ck_assert_int_eq(end_by(&s, SIGTERM), 75);
+    s = start_program(argv);
+    ck_assert(wait_until(&s, says_samples, temp("err")));
+    ck_assert_int_eq(end_by(&s, SIGKILL), 128 + SIGKILL);
+    HIFDM(5, "run", c, "--point", keep(formatted("%s:3", front)), "-o", path);
+    ERR(" has samples of another case; ");
+    HIFDM(0, "run", c, "--point", point, "-o", path, "--quiet", "--threads", "1");
+    HIFDM(0, "run", c, "--point", point, "-o", whole, "--quiet", "--threads", "2");
+    HIFDM(0, "diff", path, whole);
+}
+END_TEST
+
 /* ---- trouble with the folder ---- */
 
 START_TEST(a_vanished_folder_is_told)
@@ -438,6 +473,7 @@ Suite *suite_cli_resume(void)
     tcase_add_test(tcase, seed_and_symmetry_are_recovered);
     tcase_add_loop_test(tcase, stopped_runs_publish_and_go_on, 0, sizeof stops / sizeof *stops);
     tcase_add_test(tcase, a_stopped_polish_goes_on_to_the_same_bits);
+    tcase_add_test(tcase, a_stopped_point_goes_on_to_the_same_bits);
     tcase_add_test(tcase, stops_are_heard_between_generations_too);
     tcase_add_test(tcase, another_case_is_told_key_by_key);
     tcase_add_test(tcase, a_second_process_is_refused);

@@ -112,7 +112,13 @@ const stopText = (word) => STOP[word] || plainWord(word);
 // ---- what is derived ----
 
 const net = data.net;
-const stageName = { form: "found", optimize: "GA best", polish: "LM optimum" };
+// Of a result whose design is a point of a front.
+const pointIn = (figures) => (figures.polish && figures.polish.front_point) || 0;
+const stageName = {
+  form: "found",
+  optimize: "GA best",
+  polish: pointIn(data.summary || {}) ? `point ${pointIn(data.summary)} of the front` : "LM optimum",
+};
 const digit = (text, i) => text.charCodeAt(i) - 48;
 const innerCode = net && net.role_word.indexOf("inner"),
   isInner = (i) => digit(net.role, i) === innerCode;

@@ -75,6 +75,16 @@ function frontChart(front, a, b) {
   });
 }
 
+// The command that makes a point the result: that of the front with --point.
+function pointCommand(front) {
+  const quoted = (text) => (/^[\w@%+=:,.\/-]+$/.test(text) ? text : `'${text.replace(/'/g, "'\\''")}'`),
+    sets = (data.overrides[0] || "").split("\n").filter((line) => line),
+    shown = front.points[front.knee] || front.points[0];
+  return ["hifdm run", quoted(summary.case), ...sets.map((set) => `--set ${quoted(set)}`)]
+    .concat(`--point ${quoted(`${summary.file}:${shown.id}`)}`, `-o point${shown.id}.h5`)
+    .join(" ");
+}
+
 function writeFront() {
   const front = summary.front;
   if (!front) return;
@@ -98,5 +108,12 @@ function writeFront() {
         `the straight ${names.length > 2 ? "plane through" : "line between"} the ends.`,
     ),
     el("div", { class: "charts" }, charts),
+    el(
+      "p",
+      {},
+      "A point becomes a result with a shape, a cut list, and the net as built by the command of this run with " +
+        "--point: ",
+      el("code", {}, pointCommand(front)),
+    ),
   );
 }

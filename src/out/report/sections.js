@@ -356,6 +356,8 @@ function figureRows(first) {
     ["generations", "", "generations", fmtCount],
     ["evaluations", "", "evaluations", fmtCount],
     ["status", "", "status", plainWord],
+    ["point of the front", "", "front_point", fmtCount],
+    ["result with this front", "", "front_file", String],
     ["stopped by", "", "stop_reason", stopText],
     ["wall time", "", "wall_s", fmtDuration],
   ];
@@ -404,7 +406,7 @@ function writeSummary() {
   const stages = [
     ["form", "Form-finding"],
     ["optimize", "GA best"],
-    ["polish", "LM optimum"],
+    ["polish", pointIn(summary) ? `Point ${pointIn(summary)}` : "LM optimum"],
   ].filter(([key]) => summary[key]);
   if (!stages.length) return;
   const values = Object.fromEntries(stages.map(([stage]) => [stage, stageValues(summary[stage])]));

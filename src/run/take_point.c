@@ -1,0 +1,138 @@
+#include "run/take_point.h"
+
+#include "base/sha256.h"
+#include "base/text.h"
+#include <hifdm/goals.h>
+#include <hifdm/store.h>
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of the largest size of an objective. Those of Levenberg-Marquardt come again to the bit, those of generations, which
+ * other solvers find, within 3.5e-8 (configs/chen2022-truss.yaml, 20 generations); machines differ by less. */
+#define SAME 1e-6
+
+#define MADE_OF "give the case and the --set that it was made of"
+
+/* A front as it is in its file. */
+typedef struct {
+    hf_summary summary;
+    hf_front front;
+    char *gene;
+    size_t gene_size;
+} stored_front;
+
+/* ---- which point ---- */
+
+static hf_status read_words(const char *point, hf_front_origin *taken, hf_messages *messages)
+{
+    uint64_t number = 0;
+    const char *colon = strrchr(point, ':');
+    size_t length = colon ? (size_t)(colon - point) : 0;
+    if (length == 0 || !hf_text_uint64(colon + 1, &number) || number < 1 || number > INT_MAX)
+        return hf_error(messages, HF_BAD_USAGE,
+                        "--point must be FILE:N, a result with a front and the number of a point, as night.h5:7, not "
+                        "'%s'",
+                        point);
+    if (length >= sizeof taken->path) return hf_error(messages, HF_BAD_USAGE, "--point: the path is too long");
+    snprintf(taken->path, sizeof taken->path, "%.*s", (int)length, point);
+    taken->point = (int)number;
+    return HF_OK;
+}
+
+/* ---- is it of this case? ---- */
+
+static bool has_objectives(const hf_problem *p, const hf_summary *s)
+{
+    char name[HF_GOAL_NAME_SIZE];
+    bool is_same = p->goals.n_goal == s->goals.n;
+    for (int k = 0; k < s->goals.n && is_same; k++)
+        is_same = !strcmp(hf_goals_name(&p->goals, k, name), s->goals.name[k]);
+    return is_same;
+}
+
+static bool has_variables(const hf_problem *p, const stored_front *f)
+{
+    char name[HF_GENE_NAME_SIZE];
+    bool is_same = p->model.n_gene == f->front.n_gene;
+    for (int k = 0; k < f->front.n_gene && is_same; k++) {
+        hf_model_gene_name(&p->model, &p->scene, k, name, sizeof name);
+        is_same = !strcmp(name, f->gene + (size_t)k * f->gene_size);
+    }
+    return is_same;
+}
+
+static hf_status check_point(const hf_problem *p, const stored_front *f, const hf_front_origin *taken,
+                             hf_messages *messages)
+{
+    if (taken->point > f->front.n_point)
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: its front has points 1 to %d, and no %d; `hifdm export %s --front FILE` lists them",
+                        taken->path, f->front.n_point, taken->point, taken->path);
+    const hf_front_point *point = &f->front.point[taken->point - 1];
+    if (point->status != HF_OK)
+        return hf_error(messages, HF_BAD_USAGE, "%s: point %d of its front failed and has no design: %s", taken->path,
+                        taken->point, hf_status_text(point->status));
+    if (!has_objectives(p, &f->summary) || !has_variables(p, f))
+        return hf_error(messages, HF_BAD_CASE, "%s: its front has other %s than %s: " MADE_OF, taken->path,
+                        has_objectives(p, &f->summary) ? "variables" : "objectives", p->settings.path);
+    if (point->mark == HF_FRONT_DOMINATED)
+        hf_warning(messages, "%s: point %d is dominated: another point of its front is as good in all objectives",
+                   taken->path, taken->point);
+    return HF_OK;
+}
+
+static hf_status take(const hf_front *front, hf_front_origin *origin, hf_taken_point *taken, hf_messages *messages)
+{
+    size_t i = (size_t)origin->point - 1, n = (size_t)front->n_gene, bytes = n * sizeof(double);
+    taken->design = malloc(bytes);
+    if (!taken->design) return hf_error(messages, HF_NO_MEMORY, "out of memory for a design of %zu variables", n);
+    memcpy(taken->design, front->design + i * n, bytes);
+    hf_sha256(taken->design, bytes, origin->sha256);
+    for (int k = 0; k < front->n_objective; k++) {
+        taken->objective[k] = front->point[i].objective[k];
+        taken->largest[k] = fmax(0, fabs(front->base[k]));
+        for (int j = 0; j < front->n_point; j++)
+            taken->largest[k] = fmax(taken->largest[k], fabs(front->point[j].objective[k]));
+    }
+    return HF_OK;
+}
+
+hf_status hf_take_point_read(const char *point, hf_problem *p, hf_taken_point *taken, hf_messages *messages)
+{
+    hf_front_origin *origin = &p->settings.taken;
+    stored_front f = {0};
+    HF_TRY(read_words(point, origin, messages));
+    HF_TRY(hf_store_read_summary(origin->path, &f.summary, messages));
+    if (!f.summary.has_front)
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: has no front, so no points: a run of a case with optimize.objectives makes one",
+                        origin->path);
+    hf_status status = hf_store_read_front(origin->path, &f.front, &f.gene, &f.gene_size, messages);
+    if (status == HF_OK) status = check_point(p, &f, origin, messages);
+    if (status == HF_OK) status = take(&f.front, origin, taken, messages);
+    hf_front_free(&f.front);
+    free(f.gene);
+    return status;
+}
+
+/* ---- its evaluation ---- */
+
+hf_status hf_take_point_check(const hf_problem *p, const hf_taken_point *taken, const hf_form_result *found,
+                              hf_messages *messages)
+{
+    const hf_front_origin *origin = &p->settings.taken;
+    char name[HF_GOAL_NAME_SIZE];
+    if (found->status == HF_NO_MEMORY) return hf_error(messages, HF_NO_MEMORY, "out of memory for a design");
+    if (found->status != HF_OK)
+        return hf_error(messages, HF_BAD_CASE, "%s: point %d of its front is no design of %s, %s: " MADE_OF,
+                        origin->path, origin->point, p->settings.path, hf_status_text(found->status));
+    for (int k = 0; k < p->goals.n_goal; k++)
+        if (!(fabs(found->goal[k] - taken->objective[k]) <= SAME * taken->largest[k]))
+            return hf_error(messages, HF_BAD_CASE, "%s: point %d of its front has %s %.6g, and in %s %.6g: " MADE_OF,
+                            origin->path, origin->point, hf_goals_name(&p->goals, k, name), taken->objective[k],
+                            p->settings.path, found->goal[k]);
+    return HF_OK;
+}

@@ -1,0 +1,23 @@
+/* take_point - a point of a front becomes the result of a run, in place of a search. */
+#ifndef HIFDM_TAKE_POINT_H
+#define HIFDM_TAKE_POINT_H
+
+#include <hifdm/problem.h>
+#include <hifdm/result.h>
+
+typedef struct {
+    double *design;                      /* [n_gene]; NULL: no point is taken. The caller frees it. */
+    double objective[HF_OBJECTIVES_MAX]; /* in the front */
+    double largest[HF_OBJECTIVES_MAX];   /* size of each objective over the points of the front and its base */
+} hf_taken_point;
+
+/* Read "FILE:N": point N of the front in the result FILE, which must have the objectives and variables of the problem.
+ * The settings of the problem get its origin. HF_OK; HF_BAD_USAGE, HF_BAD_CASE, HF_IO, HF_NO_MEMORY, with a message. */
+hf_status hf_take_point_read(const char *point, hf_problem *problem, hf_taken_point *taken, hf_messages *messages);
+
+/* Is this its evaluation? HF_BAD_CASE, with a message, where the objectives are others than in the front: then it is of
+ * another case. HF_NO_MEMORY. */
+hf_status hf_take_point_check(const hf_problem *problem, const hf_taken_point *taken, const hf_form_result *found,
+                              hf_messages *messages);
+
+#endif

@@ -1,0 +1,174 @@
+/* run --point: a point of a front becomes a result like every other one. What it is made of is computed here again from
+ * its shape. */
+#include "cli.h"
+
+#define NET SMALL_SCENE "  EA_inner_N: 47000\n  EA_boundary_N: 52000\n"
+#define OPTIMIZE "optimize:\n  method: lm\n  front_points: 7\n"
+#define PSI_AND_RATIO "  objectives: [{goal: psi}, {goal: ratio, set: boundary}]\n"
+#define AS_BUILT                                                                                                       \
+    "cables:\n  - {expansion_per_K: -2e-6}\ncases:\n  - {name: same, temperature_K: 0}\n"                              \
+    "tolerance: {sigma_cut_m: 1e-4, samples: 200}\n"
+
+static const char *front_of(const char *c, const char *name)
+{
+    const char *front = temp(name);
+    HIFDM(0, "run", c, "-o", front, "--quiet");
+    return front;
+}
+
+static const char *point(const char *front, int n)
+{
+    return keep(formatted("%s:%d", front, n));
+}
+
+START_TEST(a_point_becomes_a_result)
+{
+    const char *c = file_with("c.yaml", NET OPTIMIZE PSI_AND_RATIO), *front = front_of(c, "f.h5"), *path = temp("p.h5"),
+               *cut = temp("cut.csv"), *table = temp("nodes"), *page = temp("p.html"), *printed;
+    HIFDM(0, "show", front);
+    OUT("                knee, point ");
+    OUT(formatted("                a point becomes a result by the same run with --point %s:", front));
+    HIFDM(0, "run", c, "--point", point(front, 3), "-o", path);
+    OUT("psi ");
+    OUT(formatted("  the result: point 3 of the front in %s\n", front));
+    ck_assert(!strstr(said.out, "LM") && !strstr(said.out, "  front  "));
+    printed = keep(said.out);
+    HIFDM(0, "show", path);
+    ck_assert_str_eq(said.out, printed);
+    HIFDM(0, "show", path, "--verbose");
+    OUT(formatted(": point 3 of the front in %s\n", front));
+    HIFDM(0, "show", path, "--json");
+    EXPECT(front, path, out_as("p.json"), "--", "a['front/objective'].shape == (7, 2)",
+           "near(psi_m(b, b['polish/position_m'][:]), a['front/objective'][2, 0], 1e-9)",
+           "near(ratio(b, b['polish/tension_N'][:], 1), a['front/objective'][2, 1], 1e-9)",
+           "near(psi_m(b, b['form/position_m'][:]), a['front/base'][0], 1e-9)",
+           "np.array_equal(b['goals/polish'][:], a['front/objective'][2])",
+           "np.array_equal(b['polish/design_N'][:], a['front/design_N'][2]) and 'front' not in b and 'ga' not in b",
+           "b['case'].attrs['front_point'] == 3 and attribute(b['case'], 'front_file') == a.filename",
+           "attribute(b['case'], 'front_design_sha256') == sha256(a['front/design_N'][2].tobytes())",
+           "c['polish']['front_point'] == 3 and c['polish']['front_file'] == a.filename",
+           "c['polish']['stop_reason'] == 'taken' and c['polish']['is_result'] and c['polish']['lm_iterations'] == 0",
+           "[g['value'] for g in c['polish']['goals'].values()] == a['front/objective'][2].tolist()");
+    HIFDM(0, "export", path, "--cutlist", cut, "--csv", table);
+    EXPECT(path, cut, "--",
+           "np.allclose([float(x['l0_m']) for x in b], a['polish/length_m'][:] / (1 + a['polish/tension_N'][:] / "
+           "np.where(a['scene/cable/group'][:] == 1, 52000, 47000)), rtol=1e-12, atol=0)");
+    HIFDM(0, "report", path, "-o", page);
+    SHELL(0, "sed -n '/<script type=\"application.json\"/,/<\\/script>/p' \"$1\" | sed '1d;$d' >\"$2\"", page,
+          temp("data.json"));
+    EXPECT(temp("data.json"), "--", "a['summary']['polish']['front_point'] == 3",
+           "[s['stage'] for s in a['shapes']] == ['form', 'polish']");
+}
+END_TEST
+
+/* The net as built is cut for the point, not for the form-finding as beside a front: by the run, by tasks, and for
+ * what was measured. */
+START_TEST(what_is_built_is_built_for_the_point)
+{
+    const char *front = front_of(file_with("c.yaml", NET OPTIMIZE PSI_AND_RATIO), "f.h5"), *path = temp("p.h5"),
+               *by_tasks = temp("t.h5"), *moves = temp("m.csv"),
+               *c = file_with("d.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT);
+    HIFDM(0, "run", c, "--point", point(front, 7), "-o", path);
+    OUT("  as built      ");
+    EXPECT(front, path, "--", "np.abs(b['cases/same/position_m'][:] - b['polish/position_m'][:]).max() < 1e-8",
+           "np.abs(b['cases/same/position_m'][:] - b['form/position_m'][:]).max() > 1e-4",
+           "near(b['cases/same'].attrs['psi_m'], a['front/objective'][6, 0], 1e-6)",
+           "near(np.median(b['tolerance/sample/psi_m'][:]), a['front/objective'][6, 0], 0.1)");
+    HIFDM(0, "tolerance", c, "--point", point(front, 7), "-o", by_tasks, "--task", "0", "--tasks", "2", "--quiet");
+    HIFDM(0, "tolerance", c, "--point", point(front, 7), "-o", by_tasks, "--tasks", "2", "--quiet");
+    HIFDM(0, "diff", path, by_tasks);
+    HIFDM(0, "export", path, "--csv", temp("shape"));
+    SHELL(0, "cut -d, -f1-4 \"$1\"/nodes.csv >\"$2\"", temp("shape"), temp("measured.csv"));
+    HIFDM(0, "adjust",
+          file_with("e.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT
+                    "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, sigma_m: 1e-4}\n"),
+          "--measured", temp("measured.csv"), "--result", path, "-o", moves);
+    EXPECT(moves, "--", "all(abs(float(x['move_m'])) < 1e-7 for x in a)");
+}
+END_TEST
+
+/* Fronts of generations, whose objectives were found by another solver, and of a net on its truss. */
+START_TEST(points_of_generations_are_taken)
+{
+    const char *c = keep(source_path("configs/chen2022-truss.yaml")), *front = temp("f.h5"), *path = temp("p.h5");
+#define GENERATIONS                                                                                                    \
+    c, "--set", "optimize.generations=5", "--set", "optimize.objectives=[{goal: psi}, {goal: displacement}]"
+    HIFDM(0, "run", GENERATIONS, "-o", front);
+    HIFDM(0, "run", GENERATIONS, "--point", point(front, 2), "-o", path);
+    EXPECT(front, path, "--", "near(b['goals/polish'][0], a['front/objective'][1, 0], 1e-6)",
+           "near(b['goals/polish'][1], a['front/objective'][1, 1], 1e-6)",
+           "near(psi_m(b, b['polish/position_m'][:]), a['front/objective'][1, 0], 1e-6)",
+           "near(np.linalg.norm(b['polish/position_m'][:][b['coupling/node'][:]] - "
+           "b['scene/node/position_m'][:][b['coupling/node'][:]], axis=1).max(), a['front/objective'][1, 1], 1e-6)");
+    HIFDM(0, "show", path);
+    OUT(", in the result by ");
+}
+END_TEST
+
+/* A finished one is known again, and nothing is taken for what it is not. */
+START_TEST(a_wrong_point_is_refused)
+{
+    const char *c = file_with("c.yaml", NET OPTIMIZE PSI_AND_RATIO), *front = front_of(c, "f.h5"), *path = temp("p.h5"),
+               *other = temp("q.h5");
+    HIFDM(0, "run", c, "--point", point(front, 3), "-o", path, "--quiet");
+    HIFDM(0, "run", c, "--point", point(front, 3), "-o", path, "--quiet");
+    ERR(": is the finished result of this case; ");
+    HIFDM(5, "run", c, "--point", point(front, 4), "-o", path);
+    ERRS("what differs: it has --point %s:3, and this run --point %s:4. ", front, front);
+    HIFDM(5, "run", c, "-o", path);
+    ERRS("what differs: it has --point %s:3, and this run no --point. ", front);
+    HIFDM(2, "run", c, "--point", point(front, 8), "-o", other);
+    ERRS("error: %s: its front has points 1 to 7, and no 8; `hifdm export %s --front FILE` lists them\n", front, front);
+    const char *const none[] = {front, "f.h5:", "f.h5:0", "f.h5:-1", "f.h5:1.5", ":3", "3"};
+    for (int i = 0; i < 7; i++) {
+        HIFDM(2, "run", c, "--point", none[i], "-o", other);
+        ERRS("error: --point must be FILE:N, a result with a front and the number of a point, as night.h5:7, not "
+             "'%s'\n",
+             none[i]);
+    }
+    HIFDM(2, "run", c, "--point", point(path, 1), "-o", other);
+    ERRS("error: %s: has no front, so no points: a run of a case with optimize.objectives makes one\n", path);
+    HIFDM(5, "run", c, "--point", point(temp("none.h5"), 1), "-o", other);
+    HIFDM(5, "run", c, "--point", point(c, 1), "-o", other);
+    ERRS("error: %s: is not an HDF5 file", c);
+    HIFDM(5, "run", c, "--point", point(front, 3), "-o", front, "--restart");
+    ERRS("error: %s: is an input of this run; choose another name\n", front);
+    ck_assert(!is_there(other));
+}
+END_TEST
+
+/* The front of another case would give another net than its row says. */
+START_TEST(a_front_of_another_case_is_refused)
+{
+    const char *c = file_with("c.yaml", NET OPTIMIZE PSI_AND_RATIO), *front = front_of(c, "f.h5"),
+               *other = temp("q.h5");
+    HIFDM(2, "run", file_with("g.yaml", NET OPTIMIZE), "--point", point(front, 3), "-o", other);
+    ERRS("error: %s: its front has other objectives than %s: give the case and the --set that it was made of\n", front,
+         temp("g.yaml"));
+    HIFDM(2, "run", c, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}]", "--point", point(front, 3), "-o",
+          other);
+    ERR(": its front has other objectives than ");
+    HIFDM(2, "run", c, "--set", "optimize.variables=[{set: all, vary: force_density, range: 10 %}]", "--point",
+          point(front, 3), "-o", other);
+    ERR(": its front has other variables than ");
+    HIFDM(2, "run", c, "--set", "form.pretension_N=11", "--point", point(front, 3), "-o", other);
+    ERRS("error: %s: point 3 of its front has goal_1_ratio_boundary ", front);
+    HIFDM(2, "run", c, "--set", "optimize.limits=[{limit: tension, set: boundary, bounds: [900, 901]}]", "--point",
+          point(front, 3), "-o", other);
+    ERRS("error: %s: point 3 of its front is no design of %s, ", front, c);
+    ck_assert(!is_there(other));
+}
+END_TEST
+
+Suite *suite_cli_point(void)
+{
+    Suite *suite = suite_create("cli/point");
+    TCase *tests = tcase_create("point");
+    suite_add_tcase(suite, tests);
+    tcase_add_test(tests, a_point_becomes_a_result);
+    tcase_add_test(tests, what_is_built_is_built_for_the_point);
+    tcase_add_test(tests, points_of_generations_are_taken);
+    tcase_add_test(tests, a_wrong_point_is_refused);
+    tcase_add_test(tests, a_front_of_another_case_is_refused);
+    return suite;
+}
