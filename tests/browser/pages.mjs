@@ -2,7 +2,7 @@
 //   source: path of a case in the repository, or text: a case, with the files beside it
 //   sections: those it must have, in order, apart from those that are there maybe
 //   title: what must stand on it, to the letter
-//   says: texts of places, and nothing else is looked at
+//   says: texts of places, or what is in them, and nothing else is looked at
 //   warnings, slack: how many it must tell of
 //   rounding: the deviations of its result are nothing else
 //   measured: from the nodes of the result to a table of measured places, by which the net is adjusted
@@ -79,6 +79,30 @@ export const pages = [
     files: { "loose-nodes.csv": LOOSE_NODES, "loose-cables.csv": LOOSE_CABLES },
     sections: FORM,
     says: { ".figures dd >> nth=0": "–", "#tensions p >> nth=1": "k1 has 12.748 N." },
+  },
+  {
+    name: "exact", // what is rounding of a net that is held in all its places is told by no figure
+    text:
+      "scene: {paraboloid: {aperture_m: 3, focal_length_m: 1.5, rings: 3, rear_distance_m: 1}, EA_inner_N: 1e4, " +
+      "EA_boundary_N: 1e4}\nform: {prestress: exact}\ntolerance: {sigma_cut_m: 2e-4, samples: 50}\n" +
+      "optimize: {population: 4, generations: 2}\n",
+    sections: ["net", "cables", "map", "tensions", "tolerance", "summary", "form-finding", "ga", "provenance"],
+    says: {
+      ".figures dt >> nth=2": "tension ratio, inner cables",
+      "#cables thead tr": "CableFamilytension, found (N)tension, GA best (N)length (m)cut to (m)share of the error (%)",
+      "#tolerance": /without errors < 10⁻⁶ mm/,
+    },
+  },
+  {
+    name: "goals", // of which psi is none: it rises
+    text:
+      "scene: {paraboloid: {aperture_m: 3, focal_length_m: 1.5, rings: 3, rear_distance_m: 1}}\n" +
+      "form: {prestress: exact, pretension_N: 10}\nsurface: {}\n" +
+      "truss: {ring: {longeron: {diameter_m: 0.02, wall_m: 0.001}}}\n" +
+      "optimize: {population: 10, generations: 10, variables: [{set: tie, vary: force_density, range: 40 %}], " +
+      "goals: [{goal: facets}]}\n",
+    sections: [...GA.slice(0, -1), "coupling", "provenance"],
+    says: { ".figures dt >> nth=1": "ψ after form-finding", ".figures dt >> nth=2": "tension ratio, inner cables" },
   },
   {
     name: "large", // 41x49 nodes

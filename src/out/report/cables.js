@@ -7,18 +7,21 @@ function allFamilies() {
   return all;
 }
 
-// A column of numbers, to so many digits of the largest; nothing when no row has one.
+// A column of numbers, to so many digits of the largest; nothing when no row has one, or all are rounding.
 //   unit: what it is multiplied by to be shown; isChange: it is sorted by its size, and has a sign
-function numberColumn(name, values, digits, { unit = 1, isChange = false } = {}) {
+//   rounding: a largest one below this says nothing
+function numberColumn(name, values, digits, { unit = 1, isChange = false, rounding = 0 } = {}) {
   const [low, high] = range(values) || [0, 0],
-    most = unit * Math.max(Math.abs(low), Math.abs(high));
-  if (!range(values)) return null;
+    size = Math.max(Math.abs(low), Math.abs(high)),
+    most = unit * size;
+  if (!range(values) || size < rounding) return null;
   const decimals = most > 0 ? Math.min(12, Math.max(0, digits - 1 - Math.floor(Math.log10(most)))) : 0;
   const show = (v) =>
     Number.isFinite(v) ? (isChange && v > 0 ? "+" : "") + minus((unit * v).toFixed(decimals)) : "–";
   return { name, number: true, of: (e) => values[e], show: (e) => show(values[e]), size: isChange };
 }
 // With a value of each cable.
+const RESOLVED_RATIO = 1e-9; // of tensions
 const cableColumn = (name, of, digits, options) =>
   numberColumn(name, Array.from({ length: net.n_cable }, (_, e) => of(e)), digits, options);
 
@@ -34,14 +37,15 @@ function cableColumns(before, after, families, choose) {
   const two = before !== after,
     turn = turned(before, after);
   const family = families.map((names, e) => names.join(", ") || groupOf(e));
-  const change = (e) => after.tension_N[e] - before.tension_N[e];
+  const change = (e) => after.tension_N[e] - before.tension_N[e],
+    rounding = RESOLVED_RATIO * Math.max(...(range(before.tension_N) || [0]).map(Math.abs));
   return [
     { name: "Cable", of: (e) => net.cable_id[e], show: (e) => cableLink(e, choose) },
     { name: "Family", beside: true, of: (e) => family[e], show: (e) => family[e] },
     two ? cableColumn(`tension, ${before.name} (N)`, (e) => before.tension_N[e], 5) : null,
     cableColumn(`tension, ${after.name} (N)`, (e) => after.tension_N[e], 5),
-    two ? cableColumn("change (N)", change, 4, { isChange: true }) : null,
-    turn ? cableColumn(turn[0], turn[1], 4, { unit: 1e3, isChange: true }) : null,
+    two ? cableColumn("change (N)", change, 4, { isChange: true, rounding }) : null,
+    turn ? cableColumn(turn[0], turn[1], 4, { unit: 1e3, isChange: true, rounding: RESOLVED_MM / 1e3 }) : null,
     cableColumn("length (m)", (e) => after.length_m[e], 6),
     after.l0_m ? cableColumn("cut to (m)", (e) => after.l0_m[e], 6) : null,
     adjust ? cableColumn("seems too long by (mm)", (e) => adjust.error_m[e], 3, { unit: 1e3, isChange: true }) : null,
@@ -73,19 +77,19 @@ function writeCables(view) {
   const after = otherShape || resultShape,
     before = otherShape ? resultShape : shapeOf("form") || after;
   if (!after) return;
+  const families = allFamilies(),
+    columns = cableColumns(before, after, families, chooserOf(view)),
+    change = columns.findIndex(({ size }) => size);
   const words = [
     otherShape
       ? "Tensions of this result, and of the other."
       : before === after
         ? null
         : `Tensions of the found net, and of the ${after.name}, which is the result.`,
-    after.l0_m ? "A turn above 0 lets the cable out." : null,
+    columns.some(({ name }) => name.startsWith("turn,")) ? "A turn above 0 lets the cable out." : null,
     net.psi_by_cut ? "ψ by a turn: what letting the cable out by 1 mm adds to ψ, while no cable goes slack." : null,
     net.cable_share ? "The share is that of what all errors add to ψ², to first order: cut those cables well." : null,
   ].filter((text) => text);
-  const families = allFamilies(),
-    columns = cableColumns(before, after, families, chooserOf(view)),
-    change = columns.findIndex(({ size }) => size);
   const all = sortableTable({
     caption: "Cables",
     columns,

@@ -75,7 +75,7 @@ function writeAnswer() {
 
 function writeFigures() {
   if (!resultNumbers) return;
-  const base = summary.optimize && summary.optimize.base_psi_m,
+  const base = summary.optimize && !summary.form.goals && summary.optimize.base_psi_m, // goals may want another shape
     list = [];
   list.push(figure(`surface error ψ, ${resultShape.name}`, roundedMm(resultNumbers.psi_m), "mm"));
   if (resultStage !== "form") {

@@ -28,7 +28,7 @@ function toleranceMarks(t, [low, high]) {
   ].filter(({ at }) => typeof at === "number" && Number.isFinite(at));
   return all.map((mark) => {
     const isFar = mark.at < low - reach || mark.at > high + reach;
-    const name = `${mark.name} ${fmt(1e3 * mark.at, 5)} mm${isFar ? ", outside of the picture" : ""}`;
+    const name = `${mark.name} ${rounded(1e3 * mark.at, 5)} mm${isFar ? ", outside of the picture" : ""}`;
     return { ...mark, name, at: 1e3 * mark.at, isFar };
   });
 }
