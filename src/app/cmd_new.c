@@ -118,6 +118,7 @@ static const char import[] =
 
 static const char nodes[] = "# id: any text. Where the node is in theory (a support: where it is). role: support, "
                             "edge, or inner (psi counts these)\n"
+                            "# Places in millimetres: columns x_mm,y_mm,z_mm.\n"
                             "# Loads, if there are some: columns Fx_N,Fy_N,Fz_N.\n"
                             "id,x_m,y_m,z_m,role\n"
                             "s1,-1.5,-1,0.225,support\nn1,-1.5,1,0.225,support\n"

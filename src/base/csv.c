@@ -260,6 +260,35 @@ char *hf_csv_cell(const hf_csv *t, int row, int column)
 
 /* ---- columns and cells ---- */
 
+/* Units of lengths, x_mm for x_m: the metre is moved by decimals of the text, or multiplied. */
+static const struct {
+    const char *suffix;
+    int decimals;
+    double factor;
+} unit[] = {{"_m", 0, 1}, {"_mm", -3, 1}, {"_cm", -2, 1}, {"_in", 0, 0.0254}, {"_ft", 0, 0.3048}};
+enum { N_UNIT = sizeof unit / sizeof *unit, METRE = 0 };
+
+/* In which unit a column with this head holds what is called `name`; -1: it is another. */
+static int unit_of(const char *head, const char *name)
+{
+    size_t n = strlen(name), stem = n - strlen(unit[METRE].suffix);
+    if (!strcmp(head, name)) return METRE;
+    if (n <= strlen(unit[METRE].suffix) || strcmp(name + stem, unit[METRE].suffix) != 0) return -1;
+    if (strncmp(head, name, stem) != 0) return -1;
+    for (int u = 0; u < N_UNIT; u++)
+        if (!strcmp(head + stem, unit[u].suffix)) return u;
+    return -1;
+}
+
+static int find_name(const char *head, const char *const *names, int n_name)
+{
+    for (int k = 0; k < n_name; k++)
+        if (!strcmp(names[k], head)) return k;
+    for (int k = 0; k < n_name; k++)
+        if (unit_of(head, names[k]) >= 0) return k;
+    return -1;
+}
+
 int hf_csv_column(const hf_csv *t, const char *name)
 {
     for (int c = 0; c < t->n_column; c++)
@@ -270,8 +299,8 @@ int hf_csv_column(const hf_csv *t, const char *name)
 /* A first line without any of the names is no header. */
 static bool has_header(const hf_csv *t, const char *const *names, int n_name)
 {
-    for (int k = 0; k < n_name; k++)
-        if (hf_csv_column(t, names[k]) >= 0) return true;
+    for (int c = 0; c < t->n_column; c++)
+        if (find_name(t->header[c], names, n_name) >= 0) return true;
     return false;
 }
 
@@ -303,6 +332,23 @@ static hf_status demand_columns(hf_csv *t, const char *const *names, int n_requi
     return hf_csv_close_faults(t);
 }
 
+/* Coordinates in two units are hardly meant. */
+static void demand_one_unit(hf_csv *t, const char *const *names, int n_required, const int *where)
+{
+    const char *first = NULL, *own;
+    for (int k = 0; k < n_required; k++) {
+        size_t n = strlen(names[k]);
+        if (where[k] < 0 || n < 2 || strcmp(names[k] + n - 2, unit[METRE].suffix) != 0) continue;
+        own = t->header[where[k]] + n - 2;
+        if (!first) first = own;
+        if (strcmp(own, first) == 0) continue;
+        char what[LIST_SIZE];
+        snprintf(what, sizeof what, "lengths are in one unit, %s or %s: ", first + 1, own + 1);
+        hf_csv_fault(t, t->header_line, NULL, what, t->header[where[k]]);
+        return;
+    }
+}
+
 static bool is_ours(const hf_csv *t, const char *name)
 {
     for (const char *const *ours = t->ours; ours && *ours; ours++)
@@ -316,19 +362,18 @@ hf_status hf_csv_find_columns(hf_csv *t, const char *const *names, int n_name, i
         where[k] = -1;
     if (n_required && !has_header(t, names, n_name)) return demand_columns(t, names, n_required, where);
     for (int c = 0; c < t->n_column; c++) {
-        int k = 0;
-        while (k < n_name && strcmp(names[k], t->header[c]))
-            k++;
-        if (k == n_name && !is_ours(t, t->header[c])) {
+        int k = find_name(t->header[c], names, n_name);
+        if (k < 0 && !is_ours(t, t->header[c])) {
             char hint[HF_TEXT_HINT_SIZE];
             hf_text_hint(t->header[c], names, n_name, hint);
             hf_warning(t->messages, "%s:%d: column '%s' is not used%s", t->path, t->header_line, t->header[c], hint);
-        } else if (k < n_name && where[k] >= 0) {
+        } else if (k >= 0 && where[k] >= 0) {
             hf_csv_fault(t, t->header_line, NULL, "this column stands twice: ", names[k]);
-        } else if (k < n_name) {
+        } else if (k >= 0) {
             where[k] = c;
         }
     }
+    demand_one_unit(t, names, n_required, where);
     return demand_columns(t, names, n_required, where);
 }
 
@@ -337,8 +382,11 @@ double hf_csv_number(hf_csv *t, int row, int column, const char *id, const char 
     double value = NAN;
     const char *text = hf_csv_cell(t, row, column);
     char what[512]; /* ids may be long */
+    int u = unit_of(t->header[column], name);
+    if (u > METRE) name = t->header[column];
     snprintf(what, sizeof what, "%s must be a finite number, not ", name);
-    if (hf_text_double(text, &value)) return value;
+    if (hf_text_decimal(text, u > METRE ? unit[u].decimals : 0, &value))
+        return u > METRE ? value * unit[u].factor : value;
     if (!hf_text_has_decimal_comma(text)) {
         hf_csv_fault(t, t->line[row], id, what, *text ? text : "empty");
         return NAN;

@@ -50,10 +50,11 @@ hf_status hf_csv_close_faults(hf_csv *table);
 int hf_csv_column(const hf_csv *table, const char *name);
 
 /* Where each known column stands (-1 = absent); the first n_required must be there. Unknown ones are warned about, but
- * for table->ours. */
+ * for table->ours. A column x_m may be x_mm, x_cm, x_in or x_ft instead; all that are required are in one unit. */
 hf_status hf_csv_find_columns(hf_csv *table, const char *const *names, int n_name, int n_required, int *where);
 
-/* The cell as a finite number; NaN after a fault, which calls the column `name`. */
+/* The cell as a finite number, in metres where its column is in another unit than its `name`: of x_mm and x_cm the
+ * double nearest to the decimal number. NaN after a fault, which calls the column by its name. */
 double hf_csv_number(hf_csv *table, int row, int column, const char *id, const char *name);
 
 /* The cell as one of some words, in letters of any case; 0 after a fault. */

@@ -67,9 +67,30 @@ static const char *skip_digits(const char *p)
     return p;
 }
 
+/* As strtod, whatever locale the program that uses the library may have set, which may have a decimal comma. */
+static double number_of(const char *text)
+{
+    locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0), old = (locale_t)0;
+    if (c_locale) old = uselocale(c_locale);
+    double value = strtod(text, NULL);
+    if (c_locale) {
+        uselocale(old);
+        freelocale(c_locale);
+    }
+    return value;
+}
+
 bool hf_text_double(const char *text, double *value)
 {
+    return hf_text_decimal(text, 0, value);
+}
+
+#define DIGITS_MOST 400 /* of a number whose point is moved in its text */
+
+bool hf_text_decimal(const char *text, int decimals, double *value)
+{
     const char *p = text, *whole, *fraction;
+    char moved[DIGITS_MOST + 32];
     if (*p == '+' || *p == '-') p++;
     whole = p;
     p = skip_digits(p);
@@ -80,6 +101,7 @@ bool hf_text_double(const char *text, double *value)
         n_digit += (size_t)(p - fraction);
     }
     if (n_digit == 0) return false;
+    int n = (int)(p - text);
     if (*p == 'e' || *p == 'E') {
         p++;
         if (*p == '+' || *p == '-') p++;
@@ -87,14 +109,13 @@ bool hf_text_double(const char *text, double *value)
         p = skip_digits(p);
     }
     if (*p) return false;
-    /* the program that uses the library may have set a locale with a decimal comma */
-    locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0), old = (locale_t)0;
-    if (c_locale) old = uselocale(c_locale);
-    *value = strtod(text, NULL);
-    if (c_locale) {
-        uselocale(old);
-        freelocale(c_locale);
+    if (decimals != 0) {
+        long exponent = text[n] ? strtol(text + n + 1, NULL, 10) : 0;
+        if (n > DIGITS_MOST || labs(exponent) > INT_MAX) return false;
+        snprintf(moved, sizeof moved, "%.*se%ld", n, text, exponent + decimals);
+        text = moved;
     }
+    *value = number_of(text);
     return isfinite(*value);
 }
 

@@ -22,6 +22,9 @@ hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_
 /* True when the whole string is one decimal number, without sign for hf_text_uint64. nan, inf, hexadecimal numbers and
  * numbers that overflow are refused. */
 bool hf_text_double(const char *text, double *value);
+
+/* The same times 10^decimals, as the double nearest to that decimal number: 1234.5 and -3 is 1.2345. */
+bool hf_text_decimal(const char *text, int decimals, double *value);
 bool hf_text_uint64(const char *text, uint64_t *value);
 
 /* Is the text well-formed UTF-8 without control characters other than tab? Results keep ids and titles as UTF-8. */

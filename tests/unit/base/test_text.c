@@ -29,6 +29,26 @@ START_TEST(decimal_numbers_are_taken)
 }
 END_TEST
 
+/* The double nearest to the decimal number, which a division of the nearest double by 1000 is not always. */
+START_TEST(a_point_is_moved_in_the_text)
+{
+    static const char *const bad[] = {"", "1,5", "1e", "1e999", "1e99999999999999999999", "nan"};
+    char text[64], moved[64];
+    double value, expected;
+    int n_other = 0;
+    for (int k = 1; k < 20000; k++) {
+        snprintf(text, sizeof text, "%d.%d%s", 37 * k, k % 10, k % 3 ? "" : "e1");
+        snprintf(moved, sizeof moved, "%d.%de%s", 37 * k, k % 10, k % 3 ? "-3" : "-2");
+        ck_assert(hf_text_decimal(text, -3, &value) && hf_text_double(moved, &expected));
+        ck_assert_double_eq(value, expected);
+        n_other += hf_text_double(text, &expected) && expected * 1e-3 != value;
+    }
+    ck_assert_int_gt(n_other, 0);
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
+        ck_assert_msg(!hf_text_decimal(bad[k], -3, &value), "%s", bad[k]);
+}
+END_TEST
+
 static const char *const bad_double[] = {
     "",     " ",   "1 ",   " 1",    "1,5",   "1e",     "1e+",   "e5", ".",     "+",        "--1",   "nan",       "inf",
     "-inf", "NaN", "0x10", "0x1p3", "1e400", "-1e400", "1_000", "1f", "1.2.3", "infinity", "1e5.5", "\302\2401", "one",
@@ -222,6 +242,7 @@ Suite *suite_unit_text(void)
     tcase_add_test(tests, whatever_is_escaped_can_be_shown);
     tcase_add_test(tests, a_cut_letter_is_taken_away_whole);
     suite_add_tcase(suite, tests);
+    tcase_add_test(tests, a_point_is_moved_in_the_text);
     tcase_add_loop_test(tests, decimal_numbers_are_taken, 0, sizeof good_double / sizeof *good_double);
     tcase_add_loop_test(tests, everything_else_is_refused, 0, sizeof bad_double / sizeof *bad_double);
     tcase_add_test(tests, a_decimal_comma_changes_nothing);

@@ -103,6 +103,32 @@ START_TEST(loads_of_zero_are_no_loads)
 }
 END_TEST
 
+/* To the bits of the same table in metres; 10 inches and 10 feet by definition. */
+START_TEST(lengths_may_be_in_millimetres)
+{
+    static const struct {
+        const char *nodes;
+        double x_m, y_m, z_m;
+    } table[] = {
+        {"id,x_mm,y_mm,z_mm,role\na,0,0,0,support\nb,1234.5,-0.7,+12e2,inner\nc,4e3,0,0,support\n", 1.2345, -0.0007,
+         1.2},
+        {"id,x_cm,y_cm,z_cm,role\na,0,0,0,support\nb,123.45,.1,7.E-1,inner\nc,4e2,0,0,support\n", 1.2345, 0.001, 0.007},
+        {"id,x_in,y_in,z_in,role\na,0,0,0,support\nb,10,-1,1000,inner\nc,99,0,0,support\n", 0.254, -0.0254, 25.4},
+        {"id,x_ft,y_ft,z_ft,role\na,0,0,0,support\nb,10,-1,0,inner\nc,99,0,0,support\n", 3.048, -0.3048, 0},
+    };
+    char said[512];
+    hf_scene s;
+    for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
+        ck_assert_int_eq(import(table[k].nodes, GOOD_CABLES, &s, said, sizeof said), HF_OK);
+        ck_assert_msg(!strstr(said, "column"), "%s", said);
+        ck_assert_double_eq(s.position_m[3], table[k].x_m);
+        ck_assert_double_eq(s.position_m[4], table[k].y_m);
+        ck_assert_double_eq(s.position_m[5], table[k].z_m);
+        hf_scene_free(&s);
+    }
+}
+END_TEST
+
 START_TEST(unused_columns_are_warned_about)
 {
     char said[512];
@@ -127,6 +153,11 @@ static const struct {
     {"id,x_m,y_m,role\na,0,0,support\n", NULL, "error: nodes.csv:1: a column is missing: z_m\n"},
     {NULL, "id,i,j,group,value\nab,a,b,inner,1\n", "error: cables.csv:1: a column is missing: law\n"},
     {"id,x_m,x_m,y_m,z_m,role\na,0,0,0,0,support\n", NULL, "error: nodes.csv:1: this column stands twice: x_m\n"},
+    {"id,x_m,x_mm,y_m,z_m,role\na,0,0,0,0,support\n", NULL, "error: nodes.csv:1: this column stands twice: x_m\n"},
+    {"id,x_mm,y_mm,z_m,role\na,0,0,0,support\n", NULL, "error: nodes.csv:1: lengths are in one unit, mm or m: z_m\n"},
+    {"id,x_mm,y_mm,role\na,0,0,support\n", NULL, "error: nodes.csv:1: a column is missing: z_m\n"},
+    {"id,x_mm,y_mm,z_mm,role\na,0,0,0,support\nb,1,,0,inner\nc,4,0,0,support\n", NULL,
+     "error: nodes.csv:3: 'b': y_mm must be a finite number, not empty\n"},
     {NODES "a,0,0,0,support\nb,1,0,inner\nc,4,0,0,support\n", NULL,
      "error: nodes.csv:3: 4 fields where the header has 5\n"},
     {NODES "a,0,0,0,support\nb,1,0,0,inner,9\nc,4,0,0,support\n", NULL,
@@ -282,6 +313,7 @@ Suite *suite_unit_scene_import(void)
     tcase_add_loop_test(tests, every_spelling_gives_the_same_scene, 0, N_SPELLING);
     tcase_add_test(tests, optional_columns);
     tcase_add_test(tests, loads_of_zero_are_no_loads);
+    tcase_add_test(tests, lengths_may_be_in_millimetres);
     tcase_add_test(tests, unused_columns_are_warned_about);
     tcase_add_loop_test(tests, faults_are_named_by_file_line_and_id, 0, N_FAULTY);
     tcase_add_test(tests, binary_and_missing_files_are_refused);
