@@ -81,6 +81,11 @@ static hf_status find_prior(job *j, const char *path, hf_messages *messages)
 {
     double largest = 0;
     HF_TRY(make_prior(j, messages));
+    if (j->problem.settings.tolerance.n_truss)
+        hf_warning(messages,
+                   "%s: tolerance.truss is not estimated: adjust takes the truss to be as it was made. Measure when it "
+                   "has the temperature of the workshop, or give tolerance.sigma_support_m what its temperatures move",
+                   path);
     for (int e = 0; e < j->built.model.n_cable; e++)
         largest = fmax(largest, j->prior.sigma_m[e]);
     if (largest > 0) return check_sigmas(j, path, largest, messages);

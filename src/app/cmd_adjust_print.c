@@ -181,19 +181,33 @@ static void print_numbers(const hf_adjust_job *j, FILE *f)
         hf_print_line(f, "and %d more numbers that cables share beyond %g sigma", n_off - NAMED_MAX, SEEMS_OFF);
 }
 
+static bool is_doubtful(const hf_adjust_move *move)
+{
+    return move->gain_m < move->gain_sigma_m;
+}
+
 static void print_moves(const hf_adjust_job *j, FILE *f)
 {
     const hf_adjustment *a = &j->adjustment;
+    int n_doubtful = 0;
     if (a->n_move)
         hf_print_line(f, "%5s  %-20s %9s  %10s %10s  %10s", "order", "cable", "move mm", "N before", "N after",
                       "RMS mm");
     for (int k = 0; k < a->n_move; k++) {
         const hf_adjust_move *move = &a->move[k];
-        char slack[32] = "";
+        char slack[32] = "", gain[64] = "";
         if (move->n_slack) snprintf(slack, sizeof slack, "  %d slack", move->n_slack);
-        hf_print_line(f, "%5d  %-20s %+9.6g  %10.4g %10.4g  %10.4f%s", k + 1, j->built.scene.cable_id[move->cable],
-                      move->move_m * 1e3, move->before_N, move->after_N, move->figure_m * 1e3, slack);
+        if (is_doubtful(move))
+            snprintf(gain, sizeof gain, "  gains %.4f +- %.4f", move->gain_m * 1e3, move->gain_sigma_m * 1e3);
+        n_doubtful += is_doubtful(move);
+        hf_print_line(f, "%5d  %-20s %+9.6g  %10.4g %10.4g  %10.4f%s%s", k + 1, j->built.scene.cable_id[move->cable],
+                      move->move_m * 1e3, move->before_N, move->after_N, move->figure_m * 1e3, slack, gain);
     }
+    if (n_doubtful)
+        hf_print_line(f,
+                      "%d of these moves gain%s less at %s place in the order than the measurement can tell (hifdm "
+                      "explain gain_sigma_m)",
+                      n_doubtful, n_doubtful == 1 ? "s" : "", n_doubtful == 1 ? "its" : "their");
 }
 
 void hf_adjust_print_summary(const hf_adjust_job *j, const hf_options *o, FILE *f)
@@ -220,6 +234,12 @@ void hf_adjust_print_summary(const hf_adjust_job *j, const hf_options *o, FILE *
                   "without least tensions: %.4f mm",
                   figure, a->n_move, a->n_move == 1 ? "" : "s", a->adjusted_m * 1e3, a->doubt_m[1] * 1e3,
                   a->spread_m[1] * 1e3, j->task.n_cable, a->best_m * 1e3);
+    if (a->n_maybe_slack)
+        hf_print_line(
+            f,
+            "%d of %d cables may be slack, as far as the measurement tells: how slack, places do not show, and "
+            "the figures after moves are less sure than +- says (hifdm explain maybe_slack)",
+            a->n_maybe_slack, j->built.model.n_cable);
     print_end(j, f);
     print_instead(j, f);
     if (o->output) hf_print_line(f, "moves in %s; above 0: let the cable out", o->output);
@@ -243,6 +263,8 @@ static void print_json_moves(const hf_adjust_job *from, hf_json *j)
         hf_json_number(j, "tension_before_N", move->before_N);
         hf_json_number(j, "tension_after_N", move->after_N);
         hf_json_number(j, "predicted_m", move->figure_m);
+        hf_json_number(j, "gain_m", move->gain_m);
+        hf_json_number(j, "gain_sigma_m", move->gain_sigma_m);
         hf_json_integer(j, "slack", move->n_slack);
         hf_json_close(j, '}');
     }
@@ -314,6 +336,7 @@ static void print_json_figures(const hf_adjust_job *from, hf_json *j)
     hf_json_line(j, " ");
     hf_json_text(j, "end", end_word[a->end]);
     hf_json_bool(j, "held_taut", a->is_held_taut);
+    hf_json_integer(j, "maybe_slack", a->n_maybe_slack);
     hf_json_bool(j, "supports_estimated", from->problem.settings.tolerance.sigma_support_m > 0);
     hf_json_number(j, "design_psi_m", from->design_psi_m);
     hf_json_number(j, "error_psi_m", from->error_psi_m);

@@ -6,7 +6,6 @@
 #include "linalg/band.h"
 #include "linalg/dot.h"
 #include "search/parallel.h"
-#include <hifdm/metrics.h>
 
 #include <math.h>
 #include <string.h>
@@ -40,6 +39,7 @@ typedef struct {
     hf_form_result form;
     double *turn_m;                         /* [n_cable of the model] of the last shape */
     double *doubt_m;                        /* [samples][n_dof] */
+    double *doubt_N;                        /* [n_cable of the model] deviation of estimated tensions */
     double *residual;                       /* [n_row] of the last shape */
     double *column;                         /* [n][n_row] change of residuals per metre of each cable, and behind it */
     double *left_open, *at_zero;            /* [samples][n_row]; [n_row] residuals without turns, by the linear model */
@@ -79,6 +79,7 @@ static void lay_out_adjustment(hf_arena *arena, adjustment *a)
     size_t n_cable = (size_t)a->estimate->built->model.n_cable, samples = HF_ESTIMATE_SAMPLES, n_all = rows_of(a);
     a->turn_m = hf_arena_take(arena, n_cable, sizeof(double));
     a->doubt_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
+    a->doubt_N = hf_arena_take(arena, n_cable, sizeof(double));
     a->residual = hf_arena_take(arena, a->n_row, sizeof(double));
     a->column = hf_arena_take(arena, n_all * a->n_row, sizeof(double));
     a->product = hf_arena_take(arena, n_all * n_all, sizeof(double));
@@ -184,15 +185,6 @@ static hf_status solve_nominal(adjustment *a, double *figure_m)
 {
     HF_TRY(hf_built_solve(a->estimate->built, &(hf_built_net){0}, &a->work, &a->form));
     return measure_work(a, figure_m);
-}
-
-static int count_slack(const adjustment *a)
-{
-    const hf_model *m = &a->estimate->built->model;
-    int n = 0;
-    for (int e = 0; e < m->n_cable; e++)
-        n += hf_metrics_is_slack(m, &a->work, e);
-    return n;
 }
 
 /* From the shape without turns. */
@@ -424,21 +416,16 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
 
 /* ---- what is left open ---- */
 
-/* RMS and standard deviation of the figure, by the samples, at the shape in `work`. */
-static hf_status spread_figure(adjustment *a, double *doubt_m, double *spread_m)
+/* The figure of each sample at the shape in `work`. */
+static hf_status sample_figures(adjustment *a, double figure_m[HF_ESTIMATE_SAMPLES])
 {
-    double mean = 0, square = 0;
     HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[0].point, a->residual));
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
         push_move(a, &a->room[0], a->doubt_m + s * a->n_dof, a->at_zero); /* which nobody reads any more */
         for (size_t r = 0; r < a->n_row; r++)
             a->at_zero[r] += a->residual[r];
-        double sum = hf_dot(a->n_row, a->at_zero, a->at_zero);
-        mean += sqrt(sum) / HF_ESTIMATE_SAMPLES;
-        square += sum / HF_ESTIMATE_SAMPLES;
+        figure_m[s] = sqrt(hf_dot(a->n_row, a->at_zero, a->at_zero));
     }
-    *doubt_m = sqrt(square);
-    *spread_m = sqrt(fmax(square - mean * mean, 0));
     return HF_OK;
 }
 
@@ -511,9 +498,22 @@ static size_t next_move(adjustment *a, move_order *o)
     return next;
 }
 
-/* a->trial: no moves; the shape is that without any. */
-static hf_status make_moves(adjustment *a, move_order *o, hf_adjustment *found)
+/* What the move gains by the samples, whose figures before it are taken over by those after it. */
+static hf_status judge_move(adjustment *a, double before_m[HF_ESTIMATE_SAMPLES], hf_adjust_move *move)
 {
+    double gain_m[HF_ESTIMATE_SAMPLES], rms_m;
+    memcpy(gain_m, before_m, sizeof gain_m);
+    HF_TRY(sample_figures(a, before_m));
+    for (int s = 0; s < HF_ESTIMATE_SAMPLES; s++)
+        gain_m[s] -= before_m[s];
+    hf_estimate_spread(gain_m, &rms_m, &move->gain_sigma_m);
+    return HF_OK;
+}
+
+/* a->trial: no moves; the shape is that without any. sample_m: figures of samples there, then after all moves. */
+static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_ESTIMATE_SAMPLES], hf_adjustment *found)
+{
+    double figure_m = found->estimated_m;
     for (int k = 0; k < found->n_move; k++) {
         size_t i = next_move(a, o);
         int e = a->task->cable[i];
@@ -523,7 +523,10 @@ static hf_status make_moves(adjustment *a, move_order *o, hf_adjustment *found)
         hf_status status = solve_steps(a, a->trial, &move->figure_m);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         move->after_N = status == HF_OK ? a->work.tension_N[e] : (double)NAN;
-        move->n_slack = count_slack(a);
+        move->n_slack = a->form.n_slack;
+        move->gain_m = figure_m - move->figure_m;
+        figure_m = move->figure_m;
+        HF_TRY(judge_move(a, sample_m, move));
     }
     return HF_OK;
 }
@@ -531,7 +534,7 @@ static hf_status make_moves(adjustment *a, move_order *o, hf_adjustment *found)
 static hf_status list_moves(adjustment *a, hf_adjustment *found)
 {
     hf_arena arena = {0};
-    double figure_m;
+    double figure_m, sample_m[HF_ESTIMATE_SAMPLES];
     for (size_t i = 0; i < a->n; i++)
         found->n_move += a->steps[i] != 0;
     HF_TRY(HF_ARENA_MAKE(&arena, found->move = hf_arena_take(&arena, (size_t)found->n_move, sizeof *found->move)));
@@ -542,14 +545,18 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
     a->is_current = status == HF_OK;
     memset(a->trial, 0, a->n * sizeof *a->trial);
     HF_TRY(solve_steps(a, a->trial, &figure_m));
-    HF_TRY(spread_figure(a, &found->doubt_m[0], &found->spread_m[0]));
+    HF_TRY(sample_figures(a, sample_m));
+    hf_estimate_spread(sample_m, &found->doubt_m[0], &found->spread_m[0]);
+    for (int e = 0; e < a->problem.n_tension; e++)
+        found->n_maybe_slack += a->work.tension_N[e] < a->doubt_N[e];
     move_order order = {0};
     status = make_order(a, found->n_move, &order);
-    if (status == HF_OK) status = make_moves(a, &order, found);
+    if (status == HF_OK) status = make_moves(a, &order, sample_m, found);
     arena.block = order.block;
     hf_arena_free(&arena);
     HF_TRY(status);
-    return spread_figure(a, &found->doubt_m[1], &found->spread_m[1]); /* of the last one, with all moves */
+    hf_estimate_spread(sample_m, &found->doubt_m[1], &found->spread_m[1]); /* of the last one, with all moves */
+    return HF_OK;
 }
 
 /* ---- together ---- */
@@ -563,7 +570,7 @@ int hf_adjust_steps(const hf_adjust_settings *s)
 static hf_status find_all(adjustment *a, hf_adjustment *found)
 {
     HF_TRY(solve_nominal(a, &found->nominal_m));
-    HF_TRY(hf_estimate_doubt(a->estimate, a->doubt_m));
+    HF_TRY(hf_estimate_doubt(a->estimate, a->doubt_m, a->doubt_N));
     HF_TRY(choose(a, found));
     HF_TRY(list_moves(a, found));
     return find_best(a, found);

@@ -24,6 +24,8 @@ typedef struct {
     double move_m;
     double before_N, after_N; /* tension of the cable, right before and after its move */
     double figure_m;          /* of the shape after this move, solved */
+    double gain_m;            /* how far this move lowers the figure; below 0: it makes room for others */
+    double gain_sigma_m;      /* its standard deviation over what errors and measurement leave open */
     int n_slack;              /* cables in this shape */
 } hf_adjust_move;
 
@@ -34,6 +36,7 @@ typedef struct {
     double best_m;      /* after any number of moves of any size within the range, whatever tensions they leave */
     double doubt_m[2];  /* RMS over what errors and measurement leave open, of the estimated and the adjusted shape */
     double spread_m[2]; /* standard deviation of these figures */
+    int n_maybe_slack;  /* cables whose estimated tension is less than its standard deviation */
     int n_low;          /* cables that have less than is asked for without moves: they may not lose more */
     double low_N;       /* the most that is asked for of one of them */
     int n_round;        /* linear models */

@@ -353,12 +353,27 @@ hf_status hf_estimate_belief(hf_estimate *p, int n, const int *cable, double *pa
     return HF_OK;
 }
 
-hf_status hf_estimate_doubt(hf_estimate *p, double *move_m)
+/* Of samples whose strains are in s->strain_N, less what the estimate makes of them. */
+static void add_tensions(const hf_estimate *p, const estimate_scratch *s, int n, const double *move_m, double *square_N)
+{
+    size_t n_cable = (size_t)p->built->model.n_cable;
+    for (int k = 0; k < n; k++) {
+        double *strain_N = s->strain_N + (size_t)k * n_cable, *change_N = s->cut_m + (size_t)k * n_cable;
+        for (size_t e = 0; e < n_cable; e++)
+            strain_N[e] -= p->linear.cut_N_per_m[e] * change_N[e];
+        hf_built_linear_tension(&p->linear, strain_N, move_m + (size_t)k * p->linear.n_dof, change_N);
+        for (size_t e = 0; e < n_cable; e++)
+            square_N[e] += change_N[e] * change_N[e];
+    }
+}
+
+hf_status hf_estimate_doubt(hf_estimate *p, double *move_m, double *sigma_N)
 {
     size_t n_dof = p->linear.n_dof, n_cable = (size_t)p->built->model.n_cable;
     estimate_scratch s;
     hf_random random[PANEL];
     share_scratch(p, &s);
+    memset(sigma_N, 0, n_cable * sizeof *sigma_N);
     HF_TRY(hf_built_linear_take(&p->linear, &p->work));
     HF_TRY(hf_saddle_factor(&p->saddle, 0));
     for (int first = 0; first < HF_ESTIMATE_SAMPLES; first += PANEL) {
@@ -371,6 +386,20 @@ hf_status hf_estimate_doubt(hf_estimate *p, double *move_m)
         HF_TRY(ask_saddle(p, &s, n));
         for (size_t i = 0; i < (size_t)n * n_dof; i++)
             move[i] -= s.move_m[i];
+        add_tensions(p, &s, n, move, sigma_N);
     }
+    for (size_t e = 0; e < n_cable; e++)
+        sigma_N[e] = sqrt(sigma_N[e] / HF_ESTIMATE_SAMPLES);
     return HF_OK;
+}
+
+void hf_estimate_spread(const double value[HF_ESTIMATE_SAMPLES], double *rms, double *deviation)
+{
+    double mean = 0, square = 0;
+    for (int s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
+        mean += value[s] / HF_ESTIMATE_SAMPLES;
+        square += value[s] * value[s] / HF_ESTIMATE_SAMPLES;
+    }
+    *rms = sqrt(square);
+    *deviation = sqrt(fmax(square - mean * mean, 0));
 }

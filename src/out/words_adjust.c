@@ -54,6 +54,15 @@ const hf_word hf_words_adjust[] = {
      NULL},
     {"held_taut", "figure of adjust", "",
      "Whether other moves were better but for cables that would fall below their least tension.", NULL},
+    {"maybe_slack", "figure of adjust", "",
+     "Cables whose estimated tension is less than its standard deviation over the nets that fit the measurement as "
+     "well. How much too long a slack cable is shows in no place, so what becomes taut after moves is not known: the "
+     "figures after moves miss by a few of their standard deviations where there are many.",
+     NULL},
+    {"maybe_slack", "what to do", "",
+     "Make a few moves and measure again. Nets whose errors leave no cable slack are designed with larger tensions or "
+     "softer cables.",
+     NULL},
     {"supports_estimated", "figure of adjust", "", "Whether supports may be off: tolerance.sigma_support_m.", NULL},
     {"estimate_steps", "figure of adjust", "", "Steps of the estimate of the errors.", NULL},
     {"rounds", "figure of adjust", "", "Linear models of the choice of moves.", NULL},
@@ -62,6 +71,15 @@ const hf_word hf_words_adjust[] = {
     {"steps", "figure of adjust", "", "A move in steps of adjust.step_m.", NULL},
     {"move_m", "figure of adjust", "m", "How far the turnbuckle is turned; above 0 lets the cable out.", NULL},
     {"predicted_m", "figure of adjust", "m", "The figure after this move and those before it, by the solved shape.",
+     NULL},
+    {"gain_m", "figure of adjust", "m",
+     "By how much this move lowers the figure, after those before it; below 0: it raises it, and makes room for moves "
+     "behind it.",
+     NULL},
+    {"gain_sigma_m", "figure of adjust", "m",
+     "Standard deviation of this gain over the nets that fit the measurement as well. A move that gains less at its "
+     "place may still be one that moves behind it need: all of them were chosen together. Leave the last ones out, or "
+     "measure again before them.",
      NULL},
     {"slack", "figure of adjust", "", "Cables that are slack right after this move.", NULL},
     {"stand_out", "figure of adjust", "",

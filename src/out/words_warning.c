@@ -191,6 +191,11 @@ const hf_word hf_words_warning[] = {
     {"estimate_not_settled", "warning", "",
      "The estimate of the errors still moved: measure more nodes, or allow for fewer errors.",
      "the estimate did not settle"},
+    {"truss_not_estimated", "warning", "",
+     "The case has temperatures of the truss among its errors, and adjust knows none: places that a warm truss has "
+     "moved "
+     "are taken for errors of cables and supports.",
+     "tolerance.truss is not estimated"},
     {"places_tell_little", "warning", "",
      "The places are measured less well than the net is known from its tolerances: they change next to nothing.",
      "these places tell next to nothing"},

@@ -474,6 +474,59 @@ START_TEST(doubtful_tables_are_told)
 }
 END_TEST
 
+/* The truss of another temperature is not in the estimate, which says so. */
+START_TEST(a_warm_truss_is_not_estimated)
+{
+    const char *result = temp("d.h5"), *path = file_with("case.yaml", ON_TRUSS SECTIONS);
+    HIFDM(0, "run", file_with("design.yaml", ON_TRUSS), "-o", result, "--quiet", "--force");
+    const char *measured = measured_of(result, "m.csv", HEADER, wave, "");
+    HIFDM(0, "adjust", path, "--measured", measured);
+    ck_assert_ptr_null(strstr(said.err, "is not estimated"));
+    path = file_with("case.yaml",
+                     ON_TRUSS "tolerance: {sigma_cut_m: 0.0001, truss: [{part: truss, sigma_temperature_K: 5}]}\n"
+                              "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 3, sigma_m: 0.0001}\n");
+    HIFDM(0, "adjust", path, "--measured", measured, "--set", "truss.expansion_per_K=1e-6");
+    ERR("tolerance.truss is not estimated: adjust takes the truss to be as it was made");
+}
+END_TEST
+
+/* Errors far beyond what tensions stretch: which cables are slack, places do not tell, and how far moves are sure
+ * neither. What a move gains is told with its sigma where that is more. */
+START_TEST(what_is_not_sure_is_told)
+{
+    const char *result = temp("d.h5"),
+               *path = file_with("case.yaml", "scene:\n"
+                                              "  paraboloid: {aperture_m: 4, focal_length_m: 2.4, rings: 3, "
+                                              "rear_distance_m: 1.2}\n"
+                                              "  EA_inner_N: 5e4\n"
+                                              "  EA_boundary_N: 5e4\n"
+                                              "form: {pretension_N: 5, prestress: exact}\n"
+                                              "tolerance: {sigma_cut_m: 0.0003, samples: 10}\n"
+                                              "adjust: {set: all, range_m: 0.002, step_m: 0.00001, moves: 30, sigma_m: "
+                                              "0.0001}\n");
+    HIFDM(0, "run", path, "-o", result, "--quiet");
+    const char *measured = measured_of(result, "m.csv", HEADER, wave, "");
+    HIFDM(0, "adjust", path, "--measured", measured);
+    OUT(" of 163 cables may be slack, as far as the measurement tells");
+    HIFDM(0, "adjust", path, "--measured", measured, "--set", "scene.EA_inner_N=500", "--set",
+          "scene.EA_boundary_N=500");
+    ck_assert_ptr_null(strstr(said.out, "may be slack"));
+    measured = measured_with("m.csv", HEADER, wave, "");
+    path = file_with("case.yaml", EA_SCENE "tolerance: {sigma_cut_m: 0.0003}\n"
+                                           "adjust: {set: inner, range_m: 0.003, step_m: 0.0001, moves: 12, sigma_m: "
+                                           "0.0001}\n");
+    HIFDM(0, "adjust", path, "--measured", measured);
+    OUT("  gains 0.0");
+    OUT("\n1 of these moves gains less at its place in the order than the measurement can tell (hifdm explain "
+        "gain_sigma_m)\n");
+    HIFDM(0, "adjust", path, "--measured", measured, "--json");
+    EXPECT(out_as("a.json"), "--", "a['maybe_slack'] == 0",
+           "sum(m['gain_m'] < m['gain_sigma_m'] for m in a['moves']) == 1",
+           "all(abs(p - m['gain_m'] - m['predicted_m']) < 1e-15 for p, m in zip([a['estimated_m'], "
+           "*(m['predicted_m'] for m in a['moves'])], a['moves']))");
+}
+END_TEST
+
 START_TEST(bad_cases_are_named)
 {
     const char *measured = measured_with("m.csv", HEADER, NULL, "");
@@ -520,6 +573,8 @@ Suite *suite_cli_adjust(void)
     tcase_add_loop_test(tcase, a_twin_on_a_truss_comes_back, 1, 4);
     tcase_add_test(tcase, bad_tables_are_named);
     tcase_add_test(tcase, doubtful_tables_are_told);
+    tcase_add_test(tcase, a_warm_truss_is_not_estimated);
+    tcase_add_test(tcase, what_is_not_sure_is_told);
     tcase_add_test(tcase, bad_cases_are_named);
     suite_add_tcase(suite, tcase);
     return suite;

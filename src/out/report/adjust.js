@@ -31,6 +31,10 @@ function adjustText(name) {
         ? `ψ is measured from the shape of the design, which is ${inMm(adjust.design_psi_m)} from theory.`
         : "ψ is measured from the theoretical places.",
     ADJUST_END[adjust.end] || "",
+    adjust.maybe_slack
+      ? `${fmtCount(adjust.maybe_slack)} cables may be slack, as far as the measurement tells; how slack, places do ` +
+        "not show, and the figures after moves are less sure than ± says."
+      : "",
     adjust.held_taut ? "Moves leave each cable its least tension, and no further one slack." : "",
     adjust.supports_estimated ? "" : "Supports are taken to be where the case has them.",
     adjust.settled ? "" : "The estimate has not settled.",
@@ -91,6 +95,8 @@ function movesTable(name, choose) {
       real("tension before (N)", "tension_before_N", 4),
       real("tension after (N)", "tension_after_N", 4),
       real(`${name} after it (mm)`, "predicted_m", 4, { unit: 1e3 }),
+      real(`it gains (mm)`, "gain_m", 3, { unit: 1e3 }),
+      real("± (mm)", "gain_sigma_m", 2, { unit: 1e3 }),
       ...(moves.some(({ slack }) => slack) ? [column("slack cables", (k) => moves[k].slack, fmtCount)] : []),
     ],
     n: moves.length,

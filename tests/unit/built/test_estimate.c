@@ -143,7 +143,7 @@ END_TEST
 START_TEST(the_same_shape_is_factored_once)
 {
     static twin t;
-    static double move[HF_ESTIMATE_SAMPLES * TWIN_DOFS];
+    static double move[HF_ESTIMATE_SAMPLES * TWIN_DOFS], sigma_N[TWIN_CABLES];
     hf_estimate p;
     open_random_twin(&t, 0, false);
     measure_twin(&t, 1e-3, 0, 1e-3, 3);
@@ -151,11 +151,11 @@ START_TEST(the_same_shape_is_factored_once)
     ck_assert_int_eq(hf_estimate_find(&p), HF_OK);
     ck_assert(p.is_settled);
     int n = p.linear.n_factor;
-    ck_assert_int_eq(hf_estimate_doubt(&p, move), HF_OK);
+    ck_assert_int_eq(hf_estimate_doubt(&p, move, sigma_N), HF_OK);
     ck_assert_int_eq(p.linear.n_factor, n);
     p.work.position_m[0] += 1e-4;
     double before = p.saddle.dual.band[0];
-    ck_assert_int_eq(hf_estimate_doubt(&p, move), HF_OK);
+    ck_assert_int_eq(hf_estimate_doubt(&p, move, sigma_N), HF_OK);
     ck_assert_int_eq(p.linear.n_factor, n + 1);
     ck_assert_double_ne(p.saddle.dual.band[0], before);
     before = p.saddle.dual.band[0];
@@ -325,8 +325,8 @@ END_TEST
 START_TEST(the_estimate_is_the_most_probable)
 {
     static twin t;
-    static double cut[TWIN_CABLES];
-    double missed = 0, open = 0;
+    static double cut[TWIN_CABLES], sigma_N[TWIN_CABLES];
+    double missed = 0, open = 0, missed_N = 0;
     for (int trial = 0; trial < 16; trial++) {
         hf_estimate p;
         open_random_twin(&t, 60 + trial, trial % 2);
@@ -337,7 +337,7 @@ START_TEST(the_estimate_is_the_most_probable)
         ck_assert_ptr_nonnull(move);
         estimate_twin(&t, &p);
         best = p.misfit;
-        ck_assert_int_eq(hf_estimate_doubt(&p, move), HF_OK);
+        ck_assert_int_eq(hf_estimate_doubt(&p, move, sigma_N), HF_OK);
         double here = 0, left = 0;
         for (size_t i = 0; i < n_moving; i++) {
             double d = t.work.position_m[i % 3 * (size_t)m->n_node + i / 3] -
@@ -348,6 +348,10 @@ START_TEST(the_estimate_is_the_most_probable)
         }
         missed += here / left;
         open += 1;
+        for (int e = 0; e < m->n_cable; e++) {
+            double d = (t.work.tension_N[e] - p.work.tension_N[e]) / sigma_N[e];
+            missed_N += d * d / m->n_cable;
+        }
         memcpy(cut, p.cut_m, sizeof(double) * (size_t)m->n_cable);
         for (int k = 0; k < 5; k++) {
             for (int e = 0; e < m->n_cable; e++)
@@ -370,6 +374,7 @@ START_TEST(the_estimate_is_the_most_probable)
         close_twin(&t);
     }
     ck_assert_double_eq_tol(missed / open, 1, 1. / 3);
+    ck_assert_double_eq_tol(sqrt(missed_N / open), 1, 0.5); /* tensions have few freedoms of their own */
 }
 END_TEST
 
