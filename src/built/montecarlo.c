@@ -266,8 +266,7 @@ static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reac
     return HF_OK;
 }
 
-/* Is a requirement about the surface? To measure it takes longer than to find a sample. */
-static bool requires_surface(const hf_tolerance_settings *s)
+bool hf_montecarlo_requires_surface(const hf_tolerance_settings *s)
 {
     for (int k = 0; k < s->n_require; k++)
         if (s->require[k].measure != HF_TOLERANCE_PSI && s->require[k].measure < HF_TOLERANCE_LEAST_TENSION)
@@ -314,7 +313,7 @@ static hf_status find_scale(hf_montecarlo *t, int n, double *scale, int *bound)
 
 hf_status hf_montecarlo_find_scale(hf_montecarlo *t, int n, double *scale, int *bound)
 {
-    t->skips_surface = !requires_surface(t->settings);
+    t->skips_surface = !hf_montecarlo_requires_surface(t->settings);
     hf_status status = find_scale(t, n, scale, bound);
     t->skips_surface = false;
     return status;

@@ -61,6 +61,10 @@ bool hf_montecarlo_meets_all(const hf_tolerance_settings *settings, const double
 /* The search of a scale: doublings, then halvings, with a yield for each, and one for where it begins. */
 enum { HF_SCALE_DOUBLINGS = 10, HF_SCALE_HALVINGS = 7, HF_SCALE_YIELDS = 1 + HF_SCALE_DOUBLINGS + HF_SCALE_HALVINGS };
 
+/* Is a requirement about the surface? To measure it takes longer than to find a sample, so a search measures it only
+ * then. */
+bool hf_montecarlo_requires_surface(const hf_tolerance_settings *settings);
+
 /* The factor of all errors with which a part settings->yield of the first n samples meets what is required, by
  * bisection with the same numbers for each, to 1 %. bound 0: found, and `scale` 0: not even the nominal net does; 1: at
  * least `scale`, the largest that is tried (hf_built_errors_largest_scale); -1: below `scale`, the smallest. */

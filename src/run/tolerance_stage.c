@@ -433,9 +433,13 @@ static hf_status try_samples(job *j, double most_s, hf_tolerance_trial *trial, h
         HF_TRY(hf_montecarlo_run(&j->montecarlo, 1, 0, n));
         now_s = hf_clock_thread_cpu_s();
         took_s = now_s - begin_s;
-        trial->sample_s = took_s / n;
+        trial->sample_s = trial->scale_sample_s = took_s / n;
         trial->n_tried = n;
     }
+    if (!trial->n_tried || !trial->scale_yields || hf_montecarlo_requires_surface(&p->settings.tolerance)) return HF_OK;
+    j->montecarlo.skips_surface = true;
+    HF_TRY(hf_montecarlo_run(&j->montecarlo, 1, 0, trial->n_tried));
+    trial->scale_sample_s = (hf_clock_thread_cpu_s() - now_s) / trial->n_tried;
     return HF_OK;
 }
 
