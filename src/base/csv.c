@@ -33,7 +33,10 @@ void hf_csv_fault(hf_csv *t, int line, const char *id, const char *what, const c
 
 void hf_csv_fault_unknown(hf_csv *t, int line, const char *id, const char *what, const char *name, const hf_csv *of)
 {
-    if (!of->has_doubles) hf_csv_fault(t, line, id, what, *name ? name : "(empty)");
+    for (int k = 0; of->has_doubles && k < t->n_unknown; k++)
+        if (!strcmp(t->unknown[k], name)) return;
+    if (of->has_doubles && t->n_unknown < HF_CSV_UNKNOWN_MAX) t->unknown[t->n_unknown++] = name;
+    hf_csv_fault(t, line, id, what, *name ? name : "(empty)");
 }
 
 hf_status hf_csv_close_faults(hf_csv *t)

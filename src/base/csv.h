@@ -12,6 +12,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#define HF_CSV_UNKNOWN_MAX 16
+
 /* Header and cells point into the text, which reading cuts up in place. */
 typedef struct {
     const char *path;      /* borrowed */
@@ -24,6 +26,8 @@ typedef struct {
     int n_comma;             /* numbers with decimal commas: the first is a fault of its own, the others are counted */
     const char *const *ours; /* columns that our exports write and this reader does not need, up to NULL; or NULL */
     bool has_doubles;        /* ids stand twice: what names others may be a consequence */
+    int n_unknown;           /* names that are nothing in a table with doubles, each told once */
+    const char *unknown[HF_CSV_UNKNOWN_MAX];
     char *text;
     int row_capacity;
 } hf_csv;
@@ -38,8 +42,8 @@ char *hf_csv_cell(const hf_csv *table, int row, int column);
 /* Report one fault at a line, about an id unless that is NULL. Beyond HF_FAULT_MAX of a file they are counted. */
 void hf_csv_fault(hf_csv *table, int line, const char *id, const char *what, const char *detail);
 
-/* That `id` names something of `of` which is not there; not when ids of that table stand twice, since one of those may
- * be the misspelt one. */
+/* That `id` names something of `of` which is not there. When ids of that table stand twice one of those may be the
+ * misspelt one: then each name is told once, whatever names it. */
 void hf_csv_fault_unknown(hf_csv *table, int line, const char *id, const char *what, const char *name,
                           const hf_csv *of);
 

@@ -82,11 +82,13 @@ static const struct {
     {NODES "e,\"1,5\",\"2,5\",\"0,1\",inner\n", CABLES,
      "error: @nodes.csv:6: 'e': x_m has a decimal comma, and numbers have points: 1,5\n"
      "error: @nodes.csv: and 2 more numbers with decimal commas\n"},
-    /* the cables that name the node `e` are a consequence */
-    {NODES "d,5,5,5,inner\n", CABLES "ce,c,e,inner,tension,10\nde,d,e,inner,tensoin,10\n",
+    /* that cables name the node `e` may be a consequence, and is told once; the node `f` is another matter */
+    {NODES "d,5,5,5,inner\n", CABLES "ce,c,e,inner,tension,10\nde,d,e,inner,tensoin,10\ncf,c,f,inner,tension,10\n",
      "error: @nodes.csv:6: 'd': this id was used before, on line 5\n"
+     "error: @cables.csv:5: 'ce': there is no node with the id e\n"
      "error: @cables.csv:6: 'de': law must be one of tension length force_density elastic, not tensoin; did you mean "
-     "'tension'?\n"},
+     "'tension'?\n"
+     "error: @cables.csv:7: 'cf': there is no node with the id f\n"},
     {"a,0,0,0,support\nb,1,0,0,support\n", CABLES,
      "error: @nodes.csv:1: the first line has to name the columns: id,x_m,y_m,z_m,role\n"},
     /* texts in a result file are UTF-8, and so is JSON; this is Latin-1 */
