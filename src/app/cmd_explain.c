@@ -56,17 +56,15 @@ static bool is_told(const char *other, const char *word)
     return false;
 }
 
-/* Prints the entries of a word, those that are only like it when none is just that; 0: there are none. */
-static int print_entries(const char *word, FILE *f)
+/* Prints the entries of a word, or of those that are like it; 0: there are none. */
+static int print_entries(const char *word, bool is_like, FILE *f)
 {
     int n = 0;
-    for (int is_loose = 0; is_loose < 2 && n == 0; is_loose++) {
-        for (int i = 0; i < hf_word_count(); i++) {
-            if (!(is_loose ? hf_word_is_like(i, word) : hf_word_is(i, word))) continue;
-            const hf_word entry = hf_word_at(i);
-            print_entry(&entry, entry.word, f);
-            n++;
-        }
+    for (int i = 0; i < hf_word_count(); i++) {
+        if (!(is_like ? hf_word_is_like(i, word) : hf_word_is(i, word))) continue;
+        const hf_word entry = hf_word_at(i);
+        print_entry(&entry, entry.word, f);
+        n++;
     }
     return n;
 }
@@ -82,7 +80,7 @@ static void follow(const char *word, FILE *f)
             char other[64];
             if (!hf_word_is_like(i, word) || strncmp(entry.text, pointer[k], strlen(pointer[k])) != 0) continue;
             snprintf(other, sizeof other, "%.*s", (int)strcspn(to, ".,;"), to);
-            if (!is_told(other, word)) print_entries(other, f);
+            if (!is_told(other, word) && !print_entries(other, false, f)) print_entries(other, true, f);
         }
     }
 }
@@ -144,21 +142,39 @@ static const char *join_words(const hf_options *o, char *joined, size_t size)
 static bool explain_word(const char *word, FILE *f)
 {
     if (print_exit_status(word, f)) return true;
-    if (!print_entries(word, f)) return print_keys(word, f);
+    if (!print_entries(word, false, f)) {
+        if (print_keys(word, f)) return true;
+        if (!print_entries(word, true, f)) return false;
+    }
     follow(word, f);
     return true;
 }
 
-/* Words that are nothing together: each by itself. */
+/* Explains the longest beginning, of whole words, that is a term; its length, 0: there is none. */
+static size_t explain_first(const char *words, FILE *f)
+{
+    char some[1024];
+    for (size_t n = strlen(words); n > 0; n--) {
+        if (words[n] && words[n] != ' ') continue;
+        snprintf(some, sizeof some, "%.*s", (int)n, words);
+        if (explain_word(some, f)) return n;
+    }
+    return 0;
+}
+
+/* Words that are nothing all together: one term after the other. */
 static hf_status explain_each(const char *all, FILE *f, hf_messages *messages)
 {
-    char each[1024], *rest = each, unknown[sizeof each] = "";
+    char unknown[1024] = "";
     bool is_any = false;
-    snprintf(each, sizeof each, "%s", all);
-    for (char *word; (word = strtok_r(rest, " ", &rest));) {
-        bool is_known = explain_word(word, f);
-        is_any |= is_known;
-        if (!is_known && !*unknown) snprintf(unknown, sizeof unknown, "%s", word);
+    for (const char *rest = all + strspn(all, " "); *rest; rest += strspn(rest, " ")) {
+        size_t n = explain_first(rest, f);
+        is_any |= n > 0;
+        if (n == 0) {
+            n = strcspn(rest, " ");
+            if (!*unknown) snprintf(unknown, sizeof unknown, "%.*s", (int)n, rest);
+        }
+        rest += n;
     }
     if (!*unknown) return HF_OK;
     return hf_error(messages, HF_BAD_USAGE, "nothing is called '%.64s'; 'hifdm explain' lists all words",

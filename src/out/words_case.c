@@ -42,6 +42,17 @@ const hf_word hf_words_case[] = {
      "A file for `hifdm sweep`: a base case and axes over its keys; a point for each combination of their values. "
      "`hifdm check` says what it would do, `hifdm merge` makes one file of it, `hifdm show` and `report` show that.",
      NULL},
+    {"sweep", "term", "",
+     "`hifdm sweep study.yaml` runs the points of a study, on any number of machines, and each of them once. See also "
+     "study. In a study: its axes, a key and its values each.",
+     NULL},
+    {"point", "term", "", "Of a study: one value of each axis, so one run. Of a front: one design.", NULL},
+    {"merge", "term", "", "See study.", NULL},
+    {"psi_by_cut", "data set of /tolerance", "m/m",
+     "What letting a cable out by a unit of length adds to psi of the net without errors, while no cable goes slack. "
+     "On pages: psi by a turn, in mm per mm. `hifdm adjust` makes moves of it.",
+     NULL},
+    {"by a turn", "term", "", "See psi_by_cut.", NULL},
     {"axis", "term", "",
      "Of a study: a key of the case and the values that it takes, such as form.pretension_N: [5, 10, 20].", NULL},
     {"best_by", "key of --json, of a merged study", "",

@@ -30,7 +30,7 @@ const hf_word hf_words_warning[] = {
     {"mesh_pull", "warning", "",
      "The mesh pulls so much on cables that figures of first order mean less: raise the tension of the cables, lower "
      "surface.mesh_tension_N_per_m, or make facets smaller.",
-     "the mesh pulls on a cable"},
+     "the mesh pulls on"},
     {"coarse_facets", "warning", "",
      "The far field is that of the facets, whatever the shape: their errors make lobes at the angles of their period. "
      "Use "

@@ -281,6 +281,12 @@ START_TEST(explain_helps_with_slips)
     HIFDM(0, "explain", "drift", "facets"); /* nothing together */
     OUT("drift (term)\n");
     OUT("facets (term, m)\n");
+    HIFDM(0, "explain", "turnbuckle", "cut list"); /* a term of two words stays one, quoted or not */
+    OUT("turnbuckle (term)\n");
+    OUT("cut list (term)\n");
+    const char *quoted = file_with("quoted.txt", said.out);
+    HIFDM(0, "explain", "turnbuckle", "cut", "list");
+    EXPECT(quoted, file_with("plain.txt", said.out), "--", "a == b");
     HIFDM(2, "explain", "drift gobbledygook");
     OUT("drift (term)\n");
     ERR("nothing is called 'gobbledygook'; ");
@@ -292,8 +298,9 @@ START_TEST(explain_helps_with_slips)
     OUT("boundary_tension_ratio (figure of form");
     HIFDM(0, "explain", "adjustment_m");
     OUT("l0_minus_theory_m (column of cut lists, m)\n");
-    static const char *const asked[] = {"goal",    "facets",   "evenness",   "limits", "range", "rings",
-                                        "cutlist", "cut list", "turnbuckle", "gain",   "RMS"};
+    static const char *const asked[] = {"goal",    "facets",   "evenness",   "limits",   "range", "rings",
+                                        "cutlist", "cut list", "turnbuckle", "gain",     "RMS",   "sweep",
+                                        "point",   "merge",    "psi_by_cut", "by a turn"};
     for (size_t i = 0; i < sizeof asked / sizeof *asked; i++)
         HIFDM(0, "explain", asked[i]);
     HIFDM(0, "explain", "front_points");
