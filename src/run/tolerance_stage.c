@@ -8,6 +8,7 @@
 #include "run/cases.h"
 #include "store/samples.h"
 #include "store/store_tolerance.h"
+#include <hifdm/metrics.h>
 
 #include <math.h>
 #include <string.h>
@@ -346,15 +347,33 @@ static int find_touchiest(const job *j, double *by_error_N, double *sigma_m)
     return touchiest;
 }
 
+/* Cables of the design that are slack, and the first of them. */
+static int count_slack(const job *j, int *first)
+{
+    const hf_model *m = &j->stage->problem->model;
+    int n = 0;
+    for (int e = m->n_cable - 1; e >= 0; e--) {
+        if (!hf_metrics_is_slack(m, j->stage->shape, e)) continue;
+        *first = e;
+        n++;
+    }
+    return n;
+}
+
 /* A net some of whose cables hang loose is not the one that was designed. */
 static void warn_of_slack(const job *j, const hf_tolerance_summary *t, hf_messages *messages)
 {
     const hf_scene *scene = &j->stage->problem->scene;
     double error_N = 0, sigma_m = 0;
     char why[320] = "";
+    int e = 0;
     if (t->n_with_slack <= SLACK_DOUBT * t->samples) return;
-    int e = find_touchiest(j, &error_N, &sigma_m);
-    if (error_N > 0)
+    int n_slack = count_slack(j, &e);
+    if (n_slack == 0) e = find_touchiest(j, &error_N, &sigma_m);
+    if (n_slack)
+        snprintf(why, sizeof why, ": %d %s slack in the design already, first '%.80s'", n_slack,
+                 n_slack == 1 ? "is" : "are", scene->cable_id[e]);
+    else if (error_N > 0)
         snprintf(
             why, sizeof why,
             ": %.3g mm on the %.3g m of cable '%.80s' are up to %.3g N at its EA of %.3g N, and its tension is %.3g N",
