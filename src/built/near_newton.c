@@ -155,8 +155,8 @@ static void rotate(int j, double *h, double rotation[][2], double *rest)
         h[i + 1] = rotation[i][0] * below - rotation[i][1] * above;
     }
     double length = sqrt(h[j] * h[j] + h[j + 1] * h[j + 1]);
-    rotation[j][0] = length > 0 ? h[j] / length : 1;
-    rotation[j][1] = length > 0 ? h[j + 1] / length : 0;
+    rotation[j][0] = h[j] / length;
+    rotation[j][1] = h[j + 1] / length;
     h[j] = length;
     rest[j + 1] = -rotation[j][1] * rest[j];
     rest[j] *= rotation[j][0];
@@ -180,7 +180,10 @@ static void extend(const hf_near *near, const double *factor, int j, hf_workspac
 
 /* The move of the attachments that closes the gap, in its place: (1 + F S)^-1 gap by GMRES (Saad, Schultz, SIAM J. Sci.
  * Stat. Comput. 7, 1986), with the answer of the nominal net in front. Slack cables take stiffness away in a few
- * directions: that answer alone closes a fifth of the gap at a step. */
+ * directions: that answer alone closes a fifth of the gap at a step. Nothing is divided by 0: F and S are not negative,
+ * so 1 + F S is regular as its nominal counterpart is, its images of the vectors are independent, and a space that ends
+ * early (h[j + 1] = 0) has the answer. What rounding made of it otherwise would be no number, and Newton's method ends
+ * on it. */
 static void close_gap(const hf_near *near, const double *factor, double *gap_m, hf_workspace *w)
 {
     enum { MOST = KRYLOV };
@@ -195,7 +198,6 @@ static void close_gap(const hf_near *near, const double *factor, double *gap_m, 
     while (whole > 0 && j < most && fabs(rest[j]) > GAP_LEFT * whole) {
         extend(near, factor, j, w, h[j]);
         rotate(j, h[j], rotation, rest);
-        if (h[j][j] == 0) break; /* the last direction adds nothing */
         j++;
     }
     memset(gap_m, 0, n * sizeof *gap_m);
