@@ -491,9 +491,9 @@ static void print_tolerance_time(const hf_problem *p, int threads, FILE *f)
     if (!trial.scale_yields) return;
     fprintf(f, "                tolerance.yield: up to %d yields of %d nets more, most of them ended early",
             trial.scale_yields, trial.scale_samples);
-    double yield_s = hf_check_together_s(trial.scale_sample_s, trial.scale_samples, &threads);
-    hf_print_duration(yield_s * trial.scale_yields, all, sizeof all);
-    if (trial.n_tried) fprintf(f, ": at most about %s, mostly far less", all);
+    double each_s = trial.scale_s > 0 ? trial.scale_s / trial.scale_samples : trial.scale_sample_s * trial.scale_yields;
+    hf_print_duration(hf_check_together_s(each_s, trial.scale_samples, &threads), all, sizeof all);
+    if (trial.n_tried) fprintf(f, ": %s %s", trial.scale_s > 0 ? "some" : "with errors as they are at most about", all);
     fputc('\n', f);
 }
 

@@ -43,7 +43,7 @@ void hf_print_lines(const char *lines, FILE *f)
 void hf_print_duration(double seconds, char *text, size_t size)
 {
     if (seconds < 1e-3)
-        snprintf(text, size, "%.0f us", seconds * 1e6);
+        snprintf(text, size, seconds < 1e-6 ? "%.1g us" : "%.0f us", seconds * 1e6);
     else if (seconds < 1)
         snprintf(text, size, "%.1f ms", seconds * 1e3);
     else if (seconds < 60)

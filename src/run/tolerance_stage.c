@@ -462,6 +462,18 @@ static hf_status try_samples(job *j, double most_s, hf_tolerance_trial *trial, h
     return HF_OK;
 }
 
+/* Nets with larger errors take longer, and yields that fail end early: so the search itself is tried, with TRIED nets.
+ */
+static hf_status try_scale(job *j, double most_s, hf_tolerance_trial *trial)
+{
+    double first_s = hf_clock_thread_cpu_s(), scale;
+    int n = trial->scale_samples < TRIED ? trial->scale_samples : TRIED, bound;
+    if (!trial->n_tried || trial->scale_yields * n * trial->scale_sample_s > most_s / 2) return HF_OK;
+    HF_TRY(hf_montecarlo_find_scale(&j->montecarlo, n, &scale, &bound));
+    trial->scale_s = (hf_clock_thread_cpu_s() - first_s) * trial->scale_samples / n;
+    return HF_OK;
+}
+
 hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape, double most_s,
                                  hf_tolerance_trial *trial)
 {
@@ -475,6 +487,7 @@ hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape,
         trial->scale_samples = scale_samples(&p->settings.tolerance);
     }
     hf_status status = trial->begin_s > most_s ? HF_OK : try_samples(&j, most_s, trial, &messages);
+    if (status == HF_OK && trial->scale_yields) status = try_scale(&j, most_s, trial);
     job_free(&j);
     return status;
 }

@@ -37,10 +37,11 @@ hf_status hf_tolerance_stage_look(const hf_run_request *request, const hf_proble
 /* What the samples of a run would take, by the first n_tried of them at this shape in one thread: processor time until
  * the first one, mostly for first order, and for one. No more are begun than those before foretell to end within
  * most_s. n_tried is 0 where counted operations foretell more than that until the first one, which is then in begin_s.
- * tolerance.yield takes up to scale_yields yields of scale_samples nets more, of scale_sample_s each, most of them
- * ended early. HF_OK, or why there are no samples, without a message. */
+ * tolerance.yield takes up to scale_yields yields of scale_samples nets more, of scale_sample_s each at these errors,
+ * most of them ended early: scale_s in all, by a search with a few nets where that fits into half of most_s; else 0.
+ * HF_OK, or why there are no samples, without a message. */
 typedef struct {
-    double begin_s, sample_s, scale_sample_s;
+    double begin_s, sample_s, scale_sample_s, scale_s;
     int scale_yields, scale_samples, n_tried;
 } hf_tolerance_trial;
 hf_status hf_tolerance_stage_try(const hf_problem *problem, const hf_workspace *shape, double most_s,
