@@ -39,6 +39,7 @@ extern "C" {
     X(int, n_gene, INT, 0, "", "variables: pretensions of boundary cables, or what optimize.variables says")           \
     X(int, half_bandwidth, INT, 0, "", "of the force density matrix")                                                  \
     X(double, pretension_N, REAL, 0, "", "of the case, N")                                                             \
+    X(bool, has_own_tensions, TRUTH, 0, "", "1: no cable takes pretension_N, by the laws of all")                      \
     X(double, form_wall_s, REAL, 1, "wall_s", "of the form-finding")
 
 /* The genetic algorithm. */

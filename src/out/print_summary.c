@@ -475,7 +475,10 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
     hf_print_line(f, "  case          %s", *s->title ? s->title : s->case_path);
     fprintf(f, "  net           %d nodes (%d free), %d cables", s->n_node, s->n_free, s->n_cable);
     if (s->has_optimize || s->has_polish || s->has_front) fprintf(f, ", %d variables", s->n_gene);
-    fprintf(f, "; pretension %g N\n", s->pretension_N);
+    if (s->has_own_tensions)
+        fputs("; tensions by their own laws\n", f);
+    else
+        fprintf(f, "; pretension %g N\n", s->pretension_N);
     if (s->has_truss)
         fprintf(f, "  truss         %d nodes, %d members; %.2f kg\n", s->truss.n_node, s->truss.n_member,
                 s->truss.mass_kg);

@@ -344,7 +344,7 @@ static void write_data(const void *context, FILE *f)
     fprintf(f, ",\"seed\":\"%llu\"", (unsigned long long)s->seed); /* as a number it would lose its last digits */
     bool has_variables = s->has_optimize || s->has_polish || s->has_front;
     fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, has_variables ? s->n_gene : 0);
-    hf_json_value(s->pretension_N, 17, f);
+    hf_json_value(s->has_own_tensions ? (double)NAN : s->pretension_N, 17, f);
     write_figures(f);
     write_goal_units(s, f);
     write_words(f);

@@ -197,6 +197,15 @@ hf_status hf_problem_allocate(hf_problem *p, hf_messages *messages)
     return HF_OK;
 }
 
+/* Has no cable a use for form.pretension_N? */
+static bool has_own_tensions(const hf_problem *p)
+{
+    if (p->settings.form.prestress == HF_PRESTRESS_EXACT) return false;
+    for (int e = 0; e < p->scene.n_cable; e++)
+        if (p->scene.law[e] == HF_LAW_TENSION && isnan(p->scene.target[e])) return false;
+    return true;
+}
+
 void hf_problem_describe(const hf_problem *p, hf_summary *s)
 {
     const hf_case *settings = &p->settings;
@@ -214,6 +223,7 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->planes = p->planes;
     s->has_coupling = model->n_attachment > 0;
     s->pretension_N = model->pretension_N;
+    s->has_own_tensions = has_own_tensions(p);
     s->surface = p->surface;
     s->goals.n = p->goals.n_goal;
     s->goals.are_objectives = settings->optimize.n_objective > 0;

@@ -243,6 +243,24 @@ START_TEST(numbers_that_run_away_are_told)
 }
 END_TEST
 
+/* form.pretension_N is told where a cable takes it: one whose law is tension and whose value is empty. */
+START_TEST(a_pretension_that_no_cable_takes_is_not_told)
+{
+    static const char cables[] = "id,i,j,group,law,value\nac,a,c,inner,tension,10\nbc,b,c,inner,tension,\n"
+                                 "cd,c,d,boundary,force_density,12\n";
+    HIFDM(0, "run", net_with(NODES, CABLES), "-o", temp("own.h5"));
+    OUT("4 nodes (1 free), 3 cables; tensions by their own laws\n");
+    HIFDM(0, "show", temp("own.h5"));
+    OUT("; tensions by their own laws\n");
+    HIFDM(0, "report", temp("own.h5"), "-o", temp("own.html"));
+    HIFDM(0, "run", net_with(NODES, cables), "-o", temp("one.h5"));
+    OUT("; pretension 10 N\n");
+    HIFDM(0, "report", temp("one.h5"), "-o", temp("one.html"));
+    EXPECT(data_of(temp("own.html"), "own.json"), data_of(temp("one.html"), "one.json"), "--",
+           "a['pretension_N'] is None and b['pretension_N'] == 10");
+}
+END_TEST
+
 Suite *suite_cli_bad_net(void)
 {
     Suite *suite = suite_create("cli/bad_net");
@@ -255,6 +273,7 @@ Suite *suite_cli_bad_net(void)
     tcase_add_test(tcase, an_open_range_is_for_derivatives_alone);
     tcase_add_test(tcase, a_shape_with_a_slack_boundary_cable_is_kept);
     tcase_add_test(tcase, numbers_that_run_away_are_told);
+    tcase_add_test(tcase, a_pretension_that_no_cable_takes_is_not_told);
     tcase_add_test(tcase, other_ways_to_write_a_table_are_read);
     suite_add_tcase(suite, tcase);
     return suite;

@@ -18,7 +18,8 @@ function writeHead() {
   document.getElementById("title").textContent = shown(data.title);
   const found =
     `${fmtCount(net.n_node)} nodes (${fmtCount(data.n_free)} free), ${fmtCount(net.n_cable)} cables, ` +
-    `${data.n_gene ? `${fmtCount(data.n_gene)} variables, ` : ""}pretension ${fmt(data.pretension_N)} N`;
+    (data.n_gene ? `${fmtCount(data.n_gene)} variables, ` : "") +
+    (data.pretension_N === null ? "tensions by their own laws" : `pretension ${fmt(data.pretension_N)} N`);
   const truss = summary.truss
     ? `; truss of ${fmtCount(summary.truss.nodes)} nodes, ${fmtCount(summary.truss.members)} members, ` +
       `${fmt(summary.truss.mass_kg)} kg`
