@@ -50,12 +50,14 @@ static const char *aim_word(hf_goal_kind figure, hf_aim aim)
     return hf_aim_word[figure == HF_GOAL_PSI ? aim : HF_AIM_THEORY];
 }
 
-/* What psi is measured from. */
+/* What psi is measured from, or other figures are. */
 static void print_aim(const hf_adjust_job *j, FILE *f)
 {
     const hf_adjust_settings *s = j->task.settings;
-    if (s->figure != HF_GOAL_PSI) return;
-    if (s->aim == HF_AIM_DESIGN)
+    if (s->figure != HF_GOAL_PSI)
+        hf_print_line(f, "%s: RMS along the normal of the wanted surface (the loss of gain is by the half path)",
+                      hf_figure_word[s->figure]);
+    else if (s->aim == HF_AIM_DESIGN)
         hf_print_line(f, "psi is measured from the shape of the design (adjust.aim), which is %.4f mm from theory",
                       j->design_psi_m * 1e3);
     else

@@ -148,7 +148,7 @@ const hf_field hf_field_table[] = {
      "no further move is made once the figure is below it"},
     {"adjust.figure", HF_FIELD_WORD, AT(adjust.figure), 0, 0, "psi", "", hf_figure_word,
      "what the moves make small, RMS: psi: distance of the inner nodes to where they should be, see adjust.aim; "
-     "surface: of the inner nodes to the wanted surface; facets: of the facets to it"},
+     "surface: of the inner nodes to the wanted surface, along its normal; facets: of the facets to it"},
     {"adjust.aim", HF_FIELD_WORD, AT(adjust.aim), 0, 0, "design", "", hf_aim_word,
      "of the figure psi: design: back to the shape of the design, which has its tensions, too; theory: to the "
      "theoretical places, also where the design is not there on purpose"},

@@ -11,7 +11,10 @@ const hf_word hf_words_adjust[] = {
     {"tension_after_N", "figure of adjust", "N", "Tension of the cable right after its move.", NULL},
     {"predicted_rms_mm", "column of adjust", "mm",
      "The figure (adjust.figure) of the whole net after this move and those before it, by its solved shape.", NULL},
-    {"figure", "figure of adjust", "", "What the moves make small: adjust.figure.", NULL},
+    {"figure", "figure of adjust", "",
+     "What the moves make small: adjust.figure. surface and facets are RMS along the normal, which `hifdm show "
+     "--verbose` tells beside the half path.",
+     NULL},
     {"aim", "figure of adjust", "",
      "What psi is measured from: adjust.aim. Other figures are measured from the wanted surface.", NULL},
     {"design_psi_m", "figure of adjust", "m",

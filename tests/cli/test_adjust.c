@@ -203,6 +203,12 @@ START_TEST(what_else_could_be_aimed_at_is_told)
     OUT("adjust: {figure: psi, aim: design} brings psi from ");
     OUT("adjust: {figure: psi, aim: theory} brings psi from ");
     ck_assert_ptr_null(strstr(said.out, "{figure: facets}"));
+    OUT("facets: RMS along the normal of the wanted surface (the loss of gain is by the half path)\n");
+    HIFDM(0, "adjust", path, "--measured", measured, "--json", "--set", aim[2]);
+    const char *told = out_as("a.json"), *result = temp("r.h5");
+    HIFDM(0, "run", path, "-o", result, "--quiet", "--set", "tolerance.samples=10");
+    EXPECT(told, result, "--", "near(a['nominal_m'], b['surface/form'].attrs['facet_normal_rms_m'], 1e-6)",
+           "not near(a['nominal_m'], b['surface/form'].attrs['facet_half_path_rms_m'], 1e-5)");
     HIFDM(0, "adjust", path, "--measured", measured, "--set", aim[1], "--set", "adjust.range_m=0.1");
     OUT("errors make ");
 }

@@ -5,7 +5,7 @@ const cableAt = adjust && new Map(net.cable_id.map((id, e) => [id, e]));
 // The move of each cable that has one.
 const moveOf = new Map(adjust ? adjust.moves.map((move) => [cableAt.get(move.cable), move]) : []);
 
-const FIGURE = { psi: "ψ", surface: "half-path RMS", facets: "half-path RMS of the facets" };
+const FIGURE = { psi: "ψ", surface: "RMS along the normal", facets: "RMS of the facets along the normal" };
 const ADJUST_END = {
   target: "The target is met.",
   moves: "All moves that the case allows are made.",
