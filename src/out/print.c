@@ -69,6 +69,12 @@ double hf_print_loss_dB(double loss_dB)
     return loss_dB < LEAST_DB ? 0 : loss_dB;
 }
 
+double hf_print_scale(const char *unit, const char **told)
+{
+    *told = !strcmp(unit, "m") ? "mm" : !strcmp(unit, "Hz") ? "GHz" : unit;
+    return !strcmp(unit, "m") ? 1e3 : !strcmp(unit, "Hz") ? 1e-9 : 1;
+}
+
 const char *hf_print_decimals(double value, char text[32])
 {
     if (isfinite(value))

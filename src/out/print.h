@@ -32,6 +32,9 @@ void hf_print_duration(double seconds, char *text, size_t size);
 /* "4.2315", "inf", or "-" when it has no value. */
 const char *hf_print_decimals(double value, char text[32]);
 
+/* By what a value in this unit of files is multiplied where people are told it in another: m in mm, Hz in GHz. */
+double hf_print_scale(const char *unit, const char **told);
+
 /* A loss of gain, dB, as it is told: what is rounding is 0. */
 double hf_print_loss_dB(double loss_dB);
 

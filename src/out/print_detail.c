@@ -45,7 +45,15 @@ void hf_print_held(const hf_held_limits *h, FILE *f)
     }
 }
 
-void hf_print_goal(const char *before, const char *name, double value, FILE *f)
+void hf_print_objective(const char *before, const char *name, double value, FILE *f)
+{
+    const char *unit;
+    double scale = hf_print_scale(hf_ledger_goal_unit(name), &unit);
+    fprintf(f, "%s%s %.6g%s%s", before, name, scale * value, *unit ? " " : "", unit);
+}
+
+/* In SI, as merit and weights are. */
+static void print_goal(const char *before, const char *name, double value, FILE *f)
 {
     const char *unit = hf_ledger_goal_unit(name);
     fprintf(f, "%s%s %.6g%s%s", before, name, value, *unit ? " " : "", unit);
@@ -59,7 +67,7 @@ void hf_print_goals(const hf_summary *s, const hf_form_result *r, FILE *f)
     else
         fprintf(f, "                merit %.6g of", r->merit);
     for (int k = 0; k < s->goals.n; k++) {
-        hf_print_goal(k ? ", " : " ", s->goals.name[k], r->goal[k], f);
+        (s->goals.are_objectives ? hf_print_objective : print_goal)(k ? ", " : " ", s->goals.name[k], r->goal[k], f);
         if (!s->goals.are_objectives) fprintf(f, " (weight %g)", s->goals.weight[k]);
     }
     fputc('\n', f);

@@ -69,13 +69,6 @@ const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE])
     return unit;
 }
 
-/* The unit that people are told values in, and by what they are multiplied. */
-static double told_in(const char *unit, const char **told)
-{
-    *told = !strcmp(unit, "m") ? "mm" : !strcmp(unit, "Hz") ? "GHz" : unit;
-    return !strcmp(unit, "m") ? 1e3 : !strcmp(unit, "Hz") ? 1e-9 : 1;
-}
-
 static column axis_column(const hf_merged *m, int a)
 {
     const hf_series *s = &m->input[a];
@@ -84,7 +77,7 @@ static column axis_column(const hf_merged *m, int a)
     double most = 0;
     for (int i = 0; i < s->n * s->columns; i++)
         most = fmax(most, fabs(s->value[i]));
-    if (strcmp(unit, "m") != 0 || (s->n && most < SMALL_M)) c.scale = told_in(unit, &unit);
+    if (strcmp(unit, "m") != 0 || (s->n && most < SMALL_M)) c.scale = hf_print_scale(unit, &unit);
     snprintf(c.unit, sizeof c.unit, "%s", unit);
     return c;
 }
@@ -125,7 +118,7 @@ static column figure_column(const hf_merged *m, int k)
     const hf_merged_figure *f = &m->figure[k];
     column c = {.kind = OF_FIGURE, .index = k};
     const char *unit;
-    c.scale = told_in(hf_ledger_unit(f->key), &unit);
+    c.scale = hf_print_scale(hf_ledger_unit(f->key), &unit);
     if (!strcmp(f->key, "yield")) {
         unit = "%";
         c.scale = 100;

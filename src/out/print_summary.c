@@ -339,6 +339,30 @@ static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
 
 /* ---- front, states, truss ---- */
 
+/* The unit of objective k where it is told, "unit" of one without. */
+static double front_unit(const hf_summary *s, int k, const char **unit)
+{
+    double scale = hf_print_scale(hf_ledger_goal_unit(s->goals.name[k]), unit);
+    if (!**unit) *unit = "unit";
+    return scale;
+}
+
+/* A slope in the units of the minimised objective and of objective k. */
+static double slope_scale(const hf_summary *s, int k)
+{
+    const char *unit;
+    return front_unit(s, s->front.minimised, &unit) / front_unit(s, k, &unit);
+}
+
+static void print_slope_head(const hf_summary *s, int k, FILE *f)
+{
+    const char *of, *per;
+    bool is_plain = front_unit(s, s->front.minimised, &of) == 1;
+    front_unit(s, k, &per);
+    fprintf(f, "; slope of %s%s%s per %s of %s", s->goals.name[s->front.minimised], is_plain ? "" : " in ",
+            is_plain ? "" : of, per, s->goals.name[k]);
+}
+
 /* One line of the front: the values of a point and, where it is known, what the minimised objective changes
  * by per unit of the others. number: of the point, from 1; 0: of the base, which is none. */
 static void print_front_values(const hf_summary *s, const char *name, int number, const double *objective,
@@ -349,10 +373,10 @@ static void print_front_values(const hf_summary *s, const char *name, int number
     snprintf(what, sizeof what, number ? "%s, point %d" : "%s", name, number);
     fprintf(f, "                %-15s", what);
     for (int k = 0; k < t->n_objective; k++)
-        hf_print_goal(k ? ", " : " ", s->goals.name[k], objective[k], f);
+        hf_print_objective(k ? ", " : " ", s->goals.name[k], objective[k], f);
     for (int k = 0; k < t->n_objective && multiplier && t->minimised >= 0; k++)
         if (k != t->minimised && isfinite(multiplier[k]))
-            fprintf(f, "; slope %.4g", multiplier[k] > 0 ? -multiplier[k] : 0.0);
+            fprintf(f, "; slope %.4g", multiplier[k] > 0 ? -multiplier[k] * slope_scale(s, k) : 0.0);
     fputc('\n', f);
 }
 
@@ -371,8 +395,7 @@ static void print_front(const hf_summary *s, const char *path, FILE *f)
     fprintf(f, "  front         %d points, %d of them dominated, %d failed%s; %s", t->n_point, t->n_dominated,
             t->n_failed, rough, wall);
     for (int k = 0; k < t->n_objective && t->minimised >= 0; k++)
-        if (k != t->minimised)
-            fprintf(f, "; slope of %s per unit of %s", s->goals.name[t->minimised], s->goals.name[k]);
+        if (k != t->minimised) print_slope_head(s, k, f);
     fputc('\n', f);
     if (t->n_row < t->n_point)
         fprintf(f, "                %d of %d shown by --json and the report; hifdm export --front has all\n", t->n_row,

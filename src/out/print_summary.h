@@ -17,8 +17,8 @@ void hf_print_details(const hf_summary *summary, FILE *file);
 /* A line for each limit that the design of a stage is at. */
 void hf_print_held(const hf_held_limits *held, FILE *file);
 
-/* A goal by its name in the file, and its value and unit there. */
-void hf_print_goal(const char *before, const char *name, double value, FILE *file);
+/* An objective by its name in the file, with its value, of lengths in mm. */
+void hf_print_objective(const char *before, const char *name, double value, FILE *file);
 
 /* A line: the merit of a result, and the values of the goals behind it, or those of objectives. */
 void hf_print_goals(const hf_summary *summary, const hf_form_result *result, FILE *file);

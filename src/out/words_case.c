@@ -136,7 +136,9 @@ const hf_word hf_words_case[] = {
      NULL},
     {"dBi", "term", "", "Gain in dB over an antenna that radiates the same in all directions.", NULL},
     {"dominated", "term", "", "Of a point of a front: another one is better, or as good, in all objectives.", NULL},
-    {"slope", "term", "", "Of a front: by how much the minimised objective changes for one unit more of the other one.",
+    {"slope", "term", "",
+     "Of a front: by how much the minimised objective changes for one unit more of the other one. Where people read it "
+     "lengths are in mm, in files and --json in m.",
      NULL},
     {"objective", "term", "",
      "One of two or three goals that are weighed against each other: optimize.objectives asks for their "

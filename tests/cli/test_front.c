@@ -11,16 +11,20 @@ START_TEST(a_front_is_printed_stored_and_told)
     HIFDM(0, "run", FRONT, "-o", file);
     ck_assert_int_eq(strncmp(said.out, "front of 7 points: least psi 4.2834 mm, least ratio_boundary 4.56\n", 66), 0);
     OUT("  front         7 points, 0 of them dominated, 0 failed, 1 not converged; ");
-    OUT("; slope of goal_0_psi per unit of goal_1_ratio_boundary\n");
-    OUT("                objectives goal_0_psi 0.00660003 m, goal_1_ratio_boundary 4.84161\n");
+    OUT("; slope of goal_0_psi in mm per unit of goal_1_ratio_boundary\n");
+    OUT("                objectives goal_0_psi 6.60003 mm, goal_1_ratio_boundary 4.84161\n");
     ck_assert(!strstr(said.out, "merit") && !strstr(said.out, "weight") && !strstr(said.out, " shown "));
-    OUT("                base            goal_0_psi 0.00660003 m, goal_1_ratio_boundary 4.84161\n");
-    OUT("                end, point 1    goal_0_psi 0.00428338 m, goal_1_ratio_boundary 5.23668; slope 0\n");
-    OUT("                end, point 7    goal_0_psi 0.0116996 m, goal_1_ratio_boundary 4.55962\n");
+    OUT("                base            goal_0_psi 6.60003 mm, goal_1_ratio_boundary 4.84161\n");
+    OUT("                end, point 1    goal_0_psi 4.28338 mm, goal_1_ratio_boundary 5.23668; slope 0\n");
+    OUT("                end, point 7    goal_0_psi 11.6996 mm, goal_1_ratio_boundary 4.55962\n");
     OUT("                knee, point 4   goal_0_psi ");
     printed = keep(said.out);
     HIFDM(0, "show", file);
     ck_assert_str_eq(said.out, printed);
+    EXPECT(
+        file_with("s.txt", printed), file, "--",
+        "('knee, point 4   goal_0_psi %.6g mm, goal_1_ratio_boundary %.6g; slope %.4g\\n' % (1e3 * "
+        "b['front/objective'][3, 0], b['front/objective'][3, 1], -1e3 * b['front/multiplier'][3, 1])) in a.decode()");
     HIFDM(0, "show", file, "--json");
     json = out_as("s.json");
     EXPECT(
@@ -43,7 +47,7 @@ START_TEST(a_slope_says_of_what_it_is)
 {
     HIFDM(0, "run", FRONT, "--set", "optimize.objectives=[{goal: ratio, set: boundary}, {goal: psi}]", "-o",
           temp("f.h5"));
-    OUT("; slope of goal_1_psi per unit of goal_0_ratio_boundary\n");
+    OUT("; slope of goal_1_psi in mm per unit of goal_0_ratio_boundary\n");
 }
 END_TEST
 
@@ -194,7 +198,7 @@ START_TEST(three_objectives_have_a_front_with_slopes)
     const char *file = temp("f.h5"), *other = temp("g.h5"), *table = temp("f.csv"), *again = temp("r.csv"), *json;
     HIFDM(0, "run", FRONT, "--set", objectives, "--set", "optimize.front_points=12", "-o", file, "--threads", "1");
     OUT("  front         12 points, 0 of them dominated, 0 failed");
-    OUT("; slope of goal_0_psi per unit of goal_1_ratio_boundary; slope of goal_0_psi per unit of "
+    OUT("; slope of goal_0_psi in mm per unit of goal_1_ratio_boundary; slope of goal_0_psi in mm per unit of "
         "goal_2_evenness_boundary\n");
     HIFDM(0, "run", FRONT, "--set", objectives, "--set", "optimize.front_points=12", "-o", other, "--threads", "2",
           "--quiet");
