@@ -3,8 +3,8 @@
  *
  * in : nodes.csv id,x_m,y_m,z_m[,sigma_m]; the sections tolerance (how large errors are) and adjust (what may be
  *      turned) of the case.
- * out: order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm. One row per move, in the order in
- *      which they are made; a move above 0 lets cable out.
+ * out: order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm. One row per move, in
+ *      the order in which they are made; a move above 0 lets cable out.
  *
  * Contents: the prior - the work - figures of what was measured - together */
 #include "app/cmd.h"

@@ -32,13 +32,13 @@ void hf_adjust_print_table(const void *context, FILE *f)
 {
     const hf_adjust_job *j = context;
     const hf_adjustment *a = &j->adjustment;
-    fputs("order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm\n", f);
+    fputs("order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm\n", f);
     for (int k = 0; k < a->n_move; k++) {
         const hf_adjust_move *move = &a->move[k];
         fprintf(f, "%d,", k + 1);
         hf_csv_write_id(j->built.scene.cable_id[move->cable], f);
-        fprintf(f, ",%s,%.10g,%.6g,%.6g,%.6g\n", j->task.settings->set, move->move_m * 1e3, move->before_N,
-                move->after_N, move->figure_m * 1e3);
+        fprintf(f, ",%s,%.10g,%.6g,%.6g,%.6g,%.6g\n", j->task.settings->set, move->move_m * 1e3, move->before_N,
+                move->after_N, move->figure_m * 1e3, move->expected_m * 1e3);
     }
 }
 
@@ -193,8 +193,8 @@ static void print_moves(const hf_adjust_job *j, FILE *f)
     const hf_adjustment *a = &j->adjustment;
     int n_doubtful = 0;
     if (a->n_move)
-        hf_print_line(f, "%5s  %-20s %9s  %10s %10s  %10s", "order", "cable", "move mm", "N before", "N after",
-                      "RMS mm");
+        hf_print_line(f, "%5s  %-20s %9s  %10s %10s  %10s %10s", "order", "cable", "move mm", "N before", "N after",
+                      "RMS mm", "to expect");
     for (int k = 0; k < a->n_move; k++) {
         const hf_adjust_move *move = &a->move[k];
         char slack[32] = "", gain[64] = "";
@@ -202,8 +202,9 @@ static void print_moves(const hf_adjust_job *j, FILE *f)
         if (is_doubtful(move))
             snprintf(gain, sizeof gain, "  gains %.4f +- %.4f", move->gain_m * 1e3, move->gain_sigma_m * 1e3);
         n_doubtful += is_doubtful(move);
-        hf_print_line(f, "%5d  %-20s %+9.6g  %10.4g %10.4g  %10.4f%s%s", k + 1, j->built.scene.cable_id[move->cable],
-                      move->move_m * 1e3, move->before_N, move->after_N, move->figure_m * 1e3, slack, gain);
+        hf_print_line(f, "%5d  %-20s %+9.6g  %10.4g %10.4g  %10.4f %10.4f%s%s", k + 1,
+                      j->built.scene.cable_id[move->cable], move->move_m * 1e3, move->before_N, move->after_N,
+                      move->figure_m * 1e3, move->expected_m * 1e3, slack, gain);
     }
     if (n_doubtful)
         hf_print_line(f,
@@ -265,6 +266,7 @@ static void print_json_moves(const hf_adjust_job *from, hf_json *j)
         hf_json_number(j, "tension_before_N", move->before_N);
         hf_json_number(j, "tension_after_N", move->after_N);
         hf_json_number(j, "predicted_m", move->figure_m);
+        hf_json_number(j, "expected_m", move->expected_m);
         hf_json_number(j, "gain_m", move->gain_m);
         hf_json_number(j, "gain_sigma_m", move->gain_sigma_m);
         hf_json_integer(j, "slack", move->n_slack);

@@ -501,19 +501,21 @@ static size_t next_move(adjustment *a, move_order *o)
 /* What the move gains by the samples, whose figures before it are taken over by those after it. */
 static hf_status judge_move(adjustment *a, double before_m[HF_ESTIMATE_SAMPLES], hf_adjust_move *move)
 {
-    double gain_m[HF_ESTIMATE_SAMPLES], rms_m;
+    double gain_m[HF_ESTIMATE_SAMPLES], unwanted;
     memcpy(gain_m, before_m, sizeof gain_m);
     HF_TRY(sample_figures(a, before_m));
-    for (int s = 0; s < HF_ESTIMATE_SAMPLES; s++)
+    hf_estimate_spread(before_m, &move->expected_m, &unwanted);
+    for (int s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
         gain_m[s] -= before_m[s];
-    hf_estimate_spread(gain_m, &rms_m, &move->gain_sigma_m);
+        move->gain_m += gain_m[s] / HF_ESTIMATE_SAMPLES;
+    }
+    hf_estimate_spread(gain_m, &unwanted, &move->gain_sigma_m);
     return HF_OK;
 }
 
 /* a->trial: no moves; the shape is that without any. sample_m: figures of samples there, then after all moves. */
 static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_ESTIMATE_SAMPLES], hf_adjustment *found)
 {
-    double figure_m = found->estimated_m;
     for (int k = 0; k < found->n_move; k++) {
         size_t i = next_move(a, o);
         int e = a->task->cable[i];
@@ -524,8 +526,6 @@ static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_EST
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         move->after_N = status == HF_OK ? a->work.tension_N[e] : (double)NAN;
         move->n_slack = a->form.n_slack;
-        move->gain_m = figure_m - move->figure_m;
-        figure_m = move->figure_m;
         HF_TRY(judge_move(a, sample_m, move));
     }
     return HF_OK;

@@ -24,9 +24,10 @@ typedef struct {
     double move_m;
     double before_N, after_N; /* tension of the cable, right before and after its move */
     double figure_m;          /* of the shape after this move, solved */
-    double gain_m;            /* how far this move lowers the figure; below 0: it makes room for others */
-    double gain_sigma_m;      /* its standard deviation over what errors and measurement leave open */
-    int n_slack;              /* cables in this shape */
+    double expected_m;        /* RMS of it over what errors and measurement leave open */
+    double gain_m;       /* how far this move lowers the figure, mean over that; below 0: it makes room for others */
+    double gain_sigma_m; /* the standard deviation */
+    int n_slack;         /* cables in this shape */
 } hf_adjust_move;
 
 typedef struct {

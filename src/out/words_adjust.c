@@ -11,6 +11,11 @@ const hf_word hf_words_adjust[] = {
     {"tension_after_N", "figure of adjust", "N", "Tension of the cable right after its move.", NULL},
     {"predicted_rms_mm", "column of adjust", "mm",
      "The figure (adjust.figure) of the whole net after this move and those before it, by its solved shape.", NULL},
+    {"expected_rms_mm", "column of adjust", "mm",
+     "RMS of the figure after this move over all nets that fit the measurement as well: what to expect. Where few "
+     "nodes "
+     "were measured it is far above predicted_rms_mm, which is of the most probable net alone.",
+     NULL},
     {"figure", "figure of adjust", "",
      "What the moves make small: adjust.figure. surface and facets are RMS along the normal, which `hifdm show "
      "--verbose` tells beside the half path.",
@@ -75,9 +80,11 @@ const hf_word hf_words_adjust[] = {
     {"move_m", "figure of adjust", "m", "How far the turnbuckle is turned; above 0 lets the cable out.", NULL},
     {"predicted_m", "figure of adjust", "m", "The figure after this move and those before it, by the solved shape.",
      NULL},
+    {"expected_m", "figure of adjust", "m",
+     "RMS of the figure after this move over all nets that fit the measurement as well: what to expect.", NULL},
     {"gain_m", "figure of adjust", "m",
-     "By how much this move lowers the figure, after those before it; below 0: it raises it, and makes room for moves "
-     "behind it.",
+     "By how much this move lowers the figure, after those before it, mean over the nets that fit the measurement as "
+     "well; below 0: it raises it, and makes room for moves behind it.",
      NULL},
     {"gain_sigma_m", "figure of adjust", "m",
      "Standard deviation of this gain over the nets that fit the measurement as well. A move that gains less at its "

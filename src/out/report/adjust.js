@@ -49,7 +49,8 @@ function adjustText(name) {
 
 function adjustChart(name) {
   const values = [adjust.estimated_m, ...adjust.moves.map((move) => move.predicted_m)],
-    [low, high] = range(values),
+    expected = [adjust.estimated_expected_m, ...adjust.moves.map((move) => move.expected_m)],
+    [low, high] = range([...values, ...expected]),
     isFar = (at) => at < low - REACH * (high - low) || at > high + REACH * (high - low), // then it is only named
     level = (text, at, colour, dash) =>
       typeof at === "number" && 1e3 * at > RESOLVED_MM
@@ -74,6 +75,7 @@ function adjustChart(name) {
     head: (k) => (k ? `move ${k}: cable ${adjust.moves[k - 1].cable}` : "before the first move"),
     series: [
       { name: "predicted", stored: "predicted_m", values: scaled(values, 1e3), colour: "--one" },
+      { name: "to expect", stored: "expected_m", values: scaled(expected, 1e3), colour: "--five", dash: "3 3" },
       ...level("target", adjust.target_m, "--four", "7 3"),
       ...level("any moves of these cables, without least tensions", adjust.best_m, "--three", "2 3"),
       ...level("as designed", adjust.nominal_m, "--two", "9 3 2 3"),
@@ -95,6 +97,7 @@ function movesTable(name, choose) {
       real("tension before (N)", "tension_before_N", 4),
       real("tension after (N)", "tension_after_N", 4),
       real(`${name} after it (mm)`, "predicted_m", 4, { unit: 1e3 }),
+      real("to expect (mm)", "expected_m", 4, { unit: 1e3 }),
       real(`it gains (mm)`, "gain_m", 3, { unit: 1e3 }),
       real("± (mm)", "gain_sigma_m", 2, { unit: 1e3 }),
       ...(moves.some(({ slack }) => slack) ? [column("slack cables", (k) => moves[k].slack, fmtCount)] : []),
@@ -180,8 +183,8 @@ function writeAdjust(view) {
     choose = chooserOf(view);
   const figures = [
     typeof adjust.measured_m === "number" ? figure(`${name}, measured`, roundedMm(adjust.measured_m), "mm") : null,
-    figure(`${name}, estimated`, roundedMm(adjust.estimated_m), "mm"),
-    figure(`${name} after the moves`, roundedMm(adjust.adjusted_m), "mm"),
+    figure(`${name}, to expect now`, roundedMm(adjust.estimated_expected_m), "mm"),
+    figure(`${name}, to expect after the moves`, roundedMm(adjust.adjusted_expected_m), "mm"),
     figure(`${name} as designed`, roundedMm(adjust.nominal_m), "mm"),
     figure("moves", fmtCount(adjust.moves.length)),
     figure("χ² per coordinate", fmt(adjust.chi_square, 3)),
