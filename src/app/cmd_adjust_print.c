@@ -94,7 +94,11 @@ static void print_end(const hf_adjust_job *j, FILE *f)
     const hf_adjust_settings *s = j->task.settings;
     switch (j->adjustment.end) {
     case HF_MOVES_TARGET:
-        hf_print_line(f, "no further move: target_m is met");
+        if (j->adjustment.doubt_m[1] > s->target_m)
+            hf_print_line(f, "no further move: the most probable net meets target_m, but %.4f mm are to be expected",
+                          j->adjustment.doubt_m[1] * 1e3);
+        else
+            hf_print_line(f, "no further move: target_m is met");
         break;
     case HF_MOVES_ALL:
         hf_print_line(f, "no further move: all %d are made (adjust.moves)", s->moves);

@@ -57,7 +57,8 @@ const hf_word hf_words_adjust[] = {
      "tensions.",
      NULL},
     {"end", "figure of adjust", "",
-     "Why there is no further move: target (target_m is met), moves (all are made), doubt (the next one gains less "
+     "Why there is no further move: target (the most probable net meets target_m), moves (all are made), doubt (the "
+     "next one gains less "
      "than the measurement can tell), none (none gains anything).",
      NULL},
     {"held_taut", "figure of adjust", "",

@@ -124,7 +124,13 @@ START_TEST(moves_are_a_table)
     OUT("\"moves\": [");
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.target_m=1");
     OUT("psi after 0 moves");
-    OUT("target_m is met");
+    OUT("no further move: target_m is met");
+    HIFDM(0, "adjust", path, "--measured", measured, "--json");
+    double probable_m = number_after("\"adjusted_m\": "), expected_m = number_after("\"adjusted_expected_m\": ");
+    ck_assert_double_lt(probable_m, expected_m);
+    HIFDM(0, "adjust", path, "--measured", measured, "--set",
+          formatted("adjust.target_m=%.17g", (probable_m + expected_m) / 2));
+    OUT("no further move: the most probable net meets target_m, but ");
     static const char *const column[] = {
         "order",          "cable", "set", "move_mm", "tension_before_N", "tension_after_N", "predicted_rms_mm",
         "expected_rms_mm"};

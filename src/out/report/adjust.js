@@ -30,7 +30,9 @@ function adjustText(name) {
       : adjust.aim === "design"
         ? `ψ is measured from the shape of the design, which is ${inMm(adjust.design_psi_m)} from theory.`
         : "ψ is measured from the theoretical places.",
-    ADJUST_END[adjust.end] || "",
+    adjust.end === "target" && adjust.adjusted_expected_m > adjust.target_m
+      ? "The most probable net meets the target, but more is to be expected."
+      : ADJUST_END[adjust.end] || "",
     adjust.maybe_slack
       ? `${fmtCount(adjust.maybe_slack)} cables may be slack, as far as the measurement tells; how slack, places do ` +
         "not show, and the figures after moves are less sure than ± says."
