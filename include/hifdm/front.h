@@ -69,6 +69,9 @@ void hf_front_settle(hf_front *front);
 /* All of the table but the time; of a front that is settled. */
 void hf_front_tabulate(const hf_front *front, hf_front_table *table);
 
+/* Do the objectives not conflict: is one design best in all of them, as far as was found? */
+bool hf_front_agrees(const hf_front_table *table);
+
 /* Is a as good as b in all objectives, and better in one? */
 bool hf_front_dominates(int n_objective, const double *a, const double *b);
 

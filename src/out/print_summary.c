@@ -147,11 +147,15 @@ static void print_goals_gained(const hf_summary *s, const hf_form_result *r, FIL
 static void print_front_answer(const hf_summary *s, FILE *f)
 {
     const char *before = "";
-    fprintf(f, "front of %d points:", s->front.n_point);
+    bool is_one = hf_front_agrees(&s->front);
+    if (is_one)
+        fputs("one design is best in all objectives:", f);
+    else
+        fprintf(f, "front of %d points:", s->front.n_point);
     for (int k = 0; k < s->front.n_objective; k++) {
         const char *unit = hf_ledger_goal_unit(s->goals.name[k]);
         if (s->front.end[k] < 0) continue;
-        fprintf(f, "%s least %s ", before, goal_of(s->goals.name[k]));
+        fprintf(f, "%s%s %s ", before, is_one ? "" : " least", goal_of(s->goals.name[k]));
         print_goal_value(s->front.row[s->front.end[k]].objective[k], unit, f);
         print_goal_unit(unit, f);
         before = ",";
@@ -386,7 +390,8 @@ static void print_front_point(const hf_summary *s, const char *name, int row, FI
     print_front_values(s, name, s->front.place[row] + 1, p->objective, p->multiplier, f);
 }
 
-static void print_front(const hf_summary *s, const char *path, FILE *f)
+/* Its points in numbers, and what slopes are. */
+static void print_front_counts(const hf_summary *s, FILE *f)
 {
     const hf_front_table *t = &s->front;
     char wall[32], rough[40] = "";
@@ -400,11 +405,22 @@ static void print_front(const hf_summary *s, const char *path, FILE *f)
     if (t->n_row < t->n_point)
         fprintf(f, "                %d of %d shown by --json and the report; hifdm export --front has all\n", t->n_row,
                 t->n_point);
+}
+
+static void print_front(const hf_summary *s, const char *path, FILE *f)
+{
+    const hf_front_table *t = &s->front;
+    bool is_one = hf_front_agrees(t);
+    int row = t->knee >= 0 ? t->knee : t->end[0];
+    if (is_one)
+        fputs("  front         the objectives do not conflict: one design is best in all of them\n", f);
+    else
+        print_front_counts(s, f);
     if (isfinite(t->base[0])) print_front_values(s, "base", 0, t->base, NULL, f);
-    for (int k = 0; k < t->n_objective; k++)
+    if (is_one) print_front_values(s, "best", t->place[t->end[0]] + 1, t->row[t->end[0]].objective, NULL, f);
+    for (int k = 0; k < t->n_objective && !is_one; k++)
         if (t->end[k] >= 0) print_front_point(s, "end", t->end[k], f);
     if (t->knee >= 0) print_front_point(s, "knee", t->knee, f);
-    int row = t->knee >= 0 ? t->knee : t->end[0];
     if (path && s->finished && row >= 0)
         hf_print_line(f, "                a point becomes a result by the same run with --point %s:%d -o point%d.h5",
                       path, t->place[row] + 1, t->place[row] + 1);

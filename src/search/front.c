@@ -175,6 +175,11 @@ static void choose_rows(const hf_front *f, const int end[HF_OBJECTIVES_MAX], hf_
     }
 }
 
+bool hf_front_agrees(const hf_front_table *t)
+{
+    return t->n_on == 1 && t->n_failed == 0;
+}
+
 static int row_of(const hf_front_table *t, int place)
 {
     int row = place < 0 ? -1 : t->n_row - 1;

@@ -7,7 +7,7 @@
 #include "base/arena.h"
 #include "search/parallel.h"
 #include "search/polish.h"
-#include "search/trade_meet.h"
+#include "search/trade_point.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,6 +15,8 @@
 /* In brackets: the range over which no test fails, as far as it was tried. */
 #define END_GIVES 1e-6 /* part of its range by which the objective of an end may rise where that lowers the other ... */
 #define END_GAINS 0.05 /* ... by more than this part of the other's range */
+#define AGREE 1e-5     /* parts of their ranges: a design so near to the least of every objective is best in all */
+#define ENDS_MAX 12    /* designs that are found before the first between the ends */
 #define NO_RANGE 1e-9  /* part of an objective: what differs by less does not differ */
 #define LONG_GAP 0.5 /* gaps longer than this part of the longest are halved at once, whatever the number of threads */
 #define NO_GAP 1e-9  /* part of the range of the limited objective: no limit fits between */
@@ -28,7 +30,7 @@ typedef struct {
     int least;                      /* the objective that is to be least */
     double most[HF_OBJECTIVES_MAX]; /* of the others; INFINITY: any */
     const double *from[2];          /* [n_gene] to begin from: the second where the first leads nowhere; or NULL */
-    int met;                        /* the objective that is met at from[0], which hf_trade_meet follows; or -1 */
+    int met;                        /* is nothing at from[0]; `least`: all objectives may be; -1: none is */
     double *design;                 /* [n_gene] the answer */
     hf_front_point found;
     const void *closed; /* the next point on the way, with none to be found between */
@@ -52,6 +54,7 @@ typedef struct {
     size_t n_gene;
     int n_objective, role[HF_OBJECTIVES_MAX]; /* the objective that is MAIN, OTHER, THIRD */
     double range[HF_OBJECTIVES_MAX];          /* of the objectives between the ends */
+    double largest[HF_OBJECTIVES_MAX];        /* at the designs that the search begins from */
     int failed_end;                           /* the objective whose end has no design; else -1 */
     int n, n_run, n_job;                      /* jobs, those of them that have run, and room for them */
     job *job;
@@ -59,10 +62,8 @@ typedef struct {
     job **point;             /* [n_job] of the front, without those that only led to others */
     int n_line, n_room;      /* lines, and those that were begun */
     line *line_room, **line; /* [n_point + 2]; in the order of their limits */
-    hf_status failure;       /* HF_NO_MEMORY or HF_INTERRUPTED of a thread */
     hf_parallel_queue queue;
     hf_status *of_room; /* [n_thread] */
-    void *block;
 } search;
 
 bool hf_trade_applies(const hf_evaluator *v)
@@ -72,25 +73,13 @@ bool hf_trade_applies(const hf_evaluator *v)
 
 /* ---- one point ---- */
 
-/* Levenberg-Marquardt from the design, which is replaced. Returns what ends the whole search, else HF_OK. */
+/* Slopes are those of MAIN. Returns what ends the whole search, else HF_OK. */
 static hf_status polish(const search *s, const job *j, double *design, hf_workspace *w, hf_front_point *point)
 {
-    const hf_trade *t = s->t;
-    const hf_watch_trade trade = {j->least, j->most};
-    hf_polish_result r;
-    hf_form_result result;
-    *point = (hf_front_point){.objective = {NAN, NAN, NAN}, .multiplier = {NAN, NAN, NAN}};
-    hf_status status = hf_polish_trade(t->evaluator, t->lower, t->upper, t->max_iterations, &trade, design, w, &r);
-    if (status == HF_OK) status = hf_evaluate(t->evaluator, design, w, &result);
-    if (t->stop && *t->stop) return HF_INTERRUPTED;
-    if (status == HF_NO_MEMORY) return status;
-    point->status = status;
-    point->iterations = r.iterations;
-    point->is_converged = status == HF_OK && r.stop == HF_POLISH_CONVERGED;
-    for (int k = 0; k < s->n_objective && status == HF_OK; k++) {
-        point->objective[k] = result.goal[k];
-        if (j->least == s->role[MAIN] && point->is_converged) point->multiplier[k] = r.multiplier[k];
-    }
+    const hf_watch_trade limits = {j->least, j->most};
+    HF_TRY(hf_trade_point(s->t, &limits, design, w, point));
+    for (int k = 0; k < s->n_objective && j->least != s->role[MAIN]; k++)
+        point->multiplier[k] = NAN;
     return HF_OK;
 }
 
@@ -172,6 +161,30 @@ static job *add(search *s, int role, double third_most, const double *first, con
     return j;
 }
 
+static double value_of(const search *s, const job *j, int role)
+{
+    return j->found.objective[s->role[role]];
+}
+
+/* Is the least of what has this role nothing? */
+static bool is_met(const search *s, const job *least, int role)
+{
+    double range = s->range[s->role[role]];
+    return range > 0 && value_of(s, least, role) <= END_GIVES * range;
+}
+
+/* The least of what has this role beside the least of `of`, which gives little way. Where that one is met, and no limit
+ * but its own holds, the search begins with squares; where these lead nowhere, without. */
+static job *begin_beside(search *s, int role, double third_most, const job *end, int of)
+{
+    job *j = add(s, role, third_most, end->design, NULL);
+    j->most[s->role[of]] = value_of(s, end, of) + END_GIVES * s->range[s->role[of]];
+    if ((of != THIRD && isfinite(third_most)) || !is_met(s, end, of)) return j;
+    j->met = s->role[of];
+    j->from[1] = j->from[0];
+    return j;
+}
+
 /* In parts of the ranges. */
 static double distance(const search *s, const job *a, const job *b)
 {
@@ -181,11 +194,6 @@ static double distance(const search *s, const job *a, const job *b)
         square += part * part;
     }
     return sqrt(square);
-}
-
-static double value_of(const search *s, const job *j, int role)
-{
-    return j->found.objective[s->role[role]];
 }
 
 /* ---- lines ---- */
@@ -229,13 +237,8 @@ static hf_status finish_lines(search *s, int first)
     for (int i = first; i < s->n_line; i++)
         for (int e = 0; e < 2; e++) {
             line *l = s->line[i];
-            if (!l->is_new[e] || l->end[e]->found.status != HF_OK) continue;
-            double value = value_of(s, l->end[e], e), gives = END_GIVES * s->range[s->role[e]];
-            job *beside = l->beside[e] = add(s, 1 - e, l->most, l->end[e]->design, NULL);
-            beside->most[s->role[e]] = value + gives;
-            if (s->n_objective > 2 || value > gives) continue;
-            beside->met = s->role[e];
-            beside->from[1] = beside->from[0];
+            if (l->is_new[e] && l->end[e]->found.status == HF_OK)
+                l->beside[e] = begin_beside(s, 1 - e, l->most, l->end[e], e);
         }
     HF_TRY(run(s));
     for (int i = first; i < s->n_line; i++)
@@ -262,27 +265,6 @@ static void close_line(search *s, line *l)
 }
 
 /* ---- the ends ---- */
-
-/* The start with the least objective k of those that are feasible, or of those that have a shape, or any. */
-static hf_status choose_start(const search *s, int k, hf_workspace *w, const double **start)
-{
-    int best_rank = -1;
-    double least = INFINITY;
-    *start = s->t->start;
-    for (int i = 0; i < s->t->n_start; i++) {
-        const double *design = s->t->start + (size_t)i * s->n_gene;
-        hf_form_result r;
-        hf_status status = hf_evaluate(s->t->evaluator, design, w, &r);
-        if (status == HF_NO_MEMORY) return status;
-        int rank = status == HF_OK ? 2 : hf_status_has_shape(status);
-        double value = status == HF_OK ? r.goal[k] : i;
-        if (rank < best_rank || (rank == best_rank && !(value < least))) continue;
-        best_rank = rank;
-        least = value;
-        *start = design;
-    }
-    return HF_OK;
-}
 
 /* How far each objective rises above its own end at the ends of the others. */
 static void measure_ranges(search *s, job *const end[])
@@ -321,7 +303,7 @@ static hf_status find_alone(search *s, job *alone[])
     hf_status status = hf_workspace_create(s->t->evaluator->model, &w);
     if (status == HF_OK) status = hf_evaluate_attend(s->t->evaluator, &w);
     for (int r = 0; r < n && status == HF_OK; r++)
-        status = choose_start(s, s->role[r], &w, &start[r]);
+        status = hf_trade_start(s->t, s->role[r], &w, s->largest, &start[r]);
     hf_workspace_free(&w);
     HF_TRY(status);
     for (int r = 0; r < n; r++)
@@ -336,6 +318,34 @@ static hf_status find_alone(search *s, job *alone[])
     return HF_OK;
 }
 
+/* Where the least of every objective is nothing, one design may meet them all. */
+static hf_status meet_all(search *s, job *const alone[])
+{
+    for (int r = 0; r < s->n_objective; r++)
+        if (!is_met(s, alone[r], r)) return HF_OK;
+    job *j = add(s, MAIN, INFINITY, alone[MAIN]->design, NULL);
+    j->met = j->least;
+    for (int r = OTHER; r < s->n_objective; r++)
+        j->most[s->role[r]] = value_of(s, alone[r], r) + END_GIVES * s->range[s->role[r]];
+    return run(s);
+}
+
+/* Is one of the designs at the ends best in all objectives? It alone is the front then. */
+static bool take_common(search *s)
+{
+    const hf_front_point *found[ENDS_MAX];
+    for (int i = 0; i < s->n; i++)
+        found[i] = &s->job[i].found;
+    int common = hf_trade_common(s->n_objective, s->n, found, s->largest, AGREE);
+    if (common < 0) return false;
+    s->point[0] = &s->job[common];
+    s->n_point = 1;
+    s->n_line = 0;
+    for (int k = 0; k < s->n_objective; k++)
+        s->point[0]->found.multiplier[k] = NAN;
+    return true;
+}
+
 /* The line without a limit on the third objective, and that of its least. */
 static hf_status find_ends(search *s)
 {
@@ -343,9 +353,11 @@ static hf_status find_ends(search *s)
     HF_TRY(find_alone(s, end));
     measure_ranges(s, end);
     choose_main(s, end);
+    HF_TRY(meet_all(s, end));
+    if (take_common(s)) return HF_OK;
     double main = s->range[s->role[MAIN]], other = s->range[s->role[OTHER]];
     double third = s->n_objective > 2 ? s->range[s->role[THIRD]] : 0;
-    if (!(main > 0 && (other > 0 || third > 0))) { /* one design is best in all, or as good as any in MAIN */
+    if (!(main > 0 && (other > 0 || third > 0))) { /* one design is as good as any in MAIN */
         for (int r = 0; r < s->n_objective; r++)
             s->point[s->n_point++] = end[r];
         return HF_OK;
@@ -354,7 +366,7 @@ static hf_status find_ends(search *s)
     if (third > 0) {
         bottom = add_line(s, value_of(s, end[THIRD], THIRD) + END_GIVES * third);
         for (int e = 0; e < 2; e++)
-            bottom->end[e] = add(s, e, bottom->most, end[THIRD]->design, NULL);
+            bottom->end[e] = begin_beside(s, e, bottom->most, end[THIRD], THIRD);
         bottom->is_new[MAIN] = bottom->is_new[OTHER] = true;
     }
     line *top = add_line(s, INFINITY);
@@ -363,6 +375,7 @@ static hf_status find_ends(search *s)
         top->is_new[e] = true;
     }
     HF_TRY(finish_lines(s, 0));
+    if (take_common(s)) return HF_OK;
     for (int e = 0; e < 2; e++) {
         end[e] = top->end[e];
         if (!bottom || bottom->end[e]->found.status == HF_OK) continue;
@@ -562,18 +575,6 @@ static hf_status hand_over(const search *s, hf_front *front)
     return HF_OK;
 }
 
-/* The first objective without corners is MAIN, if there is one; the others follow in their order. */
-static void give_roles(search *s, const hf_goals *goals)
-{
-    int main = 0;
-    while (main < s->n_objective && hf_goals_is_largest(goals->goal[main].wanted.goal))
-        main++;
-    if (main == s->n_objective) main = 0;
-    s->role[MAIN] = main;
-    for (int k = 0, role = OTHER; k < s->n_objective; k++)
-        if (k != main) s->role[role++] = k;
-}
-
 hf_status hf_trade_find(const hf_trade *trade, hf_front *front, int *failed_end)
 {
     hf_trade t = *trade;
@@ -587,7 +588,7 @@ hf_status hf_trade_find(const hf_trade *trade, hf_front *front, int *failed_end)
     *failed_end = -1;
     s.n_objective = t.evaluator->goals->n_goal;
     s.n_job = s.n_objective > 2 ? 2 * t.n_point + 8 : t.n_point + 4;
-    give_roles(&s, t.evaluator->goals);
+    hf_trade_roles(t.evaluator->goals, s.role);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &s)));
     hf_status status = find_ends(&s);
     if (status == HF_OK) status = fill(&s);

@@ -66,7 +66,58 @@ START_TEST(the_least_beside_an_objective_that_is_met)
           both, "--quiet");
     EXPECT(front, both, "--", "a['front/objective'][0, 0] < 2e-6 * a['front/objective'][-1, 0]",
            "near(a['front/objective'][0, 1], b['goals/polish'][1], 1e-3)",
-           "a['front/objective'][0, 1] < 0.95 * b['goals/form'][1]");
+           "a['front/objective'][0, 1] < 0.95 * b['goals/form'][1]",
+           "np.isnan(a['front/multiplier'][0]).all()"); /* its limit is none of the front */
+}
+END_TEST
+
+/* psi and the distance from the surface are nothing at one design, and so are the lengths of the ties: what differs
+ * between such designs is rounding, and no front. With evenness beside them there is one. */
+START_TEST(objectives_that_do_not_conflict_are_told)
+{
+#define TWO MET "surface: {focal_length_m: 3}\n"
+    static const char *const objectives[] = {
+        "optimize.objectives=[{goal: psi}, {goal: surface}]",
+        "optimize.objectives=[{goal: psi}, {goal: length, set: tie}]",
+        "optimize.objectives=[{goal: psi}, {goal: length, set: tie}, {goal: evenness, set: front}]"};
+    const char *c = file_with("c.yaml", TWO), *front = temp("f.h5"), *page = temp("f.html");
+    for (int i = 0; i < 3; i++) {
+        HIFDM(0, "run", c, "--set", objectives[i], "-o", front, "--restart");
+        ck_assert_int_eq(strncmp(said.out, "one design is best in all objectives: psi 0.0000 mm, ", 53), 0);
+        OUT("  front         the objectives do not conflict: one design is best in all of them\n");
+        OUT("                best, point 1   goal_0_psi ");
+        ck_assert(!strstr(said.out, "slope") && !strstr(said.out, " end, "));
+        EXPECT(front, "--", "a['front/status'].shape == (1,)",
+               "np.all(a['front/objective'][0, :2] < [1e-5 * a['front/base'][0], 1e-8])",
+               "np.isnan(a['front/multiplier'][:]).all() and a['front'].attrs['knee'] == -1");
+    }
+    HIFDM(0, "report", front, "-o", page);
+    HIFDM(0, "run", c, "--set", "optimize.objectives=[{goal: psi}, {goal: evenness, set: all}]", "--set",
+          "optimize.front_points=3", "-o", front, "--restart");
+    ck_assert(!strstr(said.out, "conflict"));
+    OUT(" end, point 3    ");
+}
+END_TEST
+
+/* Of three objectives an end that is met has the least of the others beside it, as two goals find it. */
+START_TEST(the_least_beside_a_third_objective_that_is_met)
+{
+    const char *front = temp("f.h5"), *both = temp("b.h5");
+    HIFDM(0, "run",
+          file_with("f.yaml", MET "  objectives: [{goal: evenness, set: all}, {goal: tension, set: tie, target: 10}, "
+                                  "{goal: psi}]\n  front_points: 6\n"),
+          "-o", front, "--quiet");
+    for (int i = 0; i < 2; i++) {
+        HIFDM(0, "run",
+              file_with("b.yaml", i ? MET
+                                      "  goals: [{goal: psi}, {goal: tension, set: tie, target: 10, weight: 1e-6}]\n"
+                                    : MET "  goals: [{goal: psi}, {goal: evenness, set: all, weight: 1e-4}]\n"),
+              "-o", both, "--quiet", "--restart");
+        EXPECT(front, both, "--",
+               keep(formatted("near(min(p[%d] for p in a['front/objective'][:] if p[2] < 1e-6), b['goals/polish'][1], "
+                              "1e-3)",
+                              i)));
+    }
 }
 END_TEST
 
@@ -293,6 +344,8 @@ Suite *suite_cli_front(void)
     tcase_add_test(tests, a_front_is_printed_stored_and_told);
     tcase_add_test(tests, a_slope_says_of_what_it_is);
     tcase_add_test(tests, the_least_beside_an_objective_that_is_met);
+    tcase_add_test(tests, objectives_that_do_not_conflict_are_told);
+    tcase_add_test(tests, the_least_beside_a_third_objective_that_is_met);
     tcase_add_test(tests, a_front_of_many_points_is_thinned);
     tcase_add_test(tests, a_report_has_the_front);
     tcase_add_test(tests, a_table_of_the_front_is_one_of_designs);

@@ -85,11 +85,43 @@ function pointCommand(front) {
     .join(" ");
 }
 
+const takeText = (front) =>
+  el(
+    "p",
+    {},
+    "A point becomes a result with a shape, a cut list, and the net as built by the command of this run with " +
+      "--point: ",
+    el("code", {}, pointCommand(front)),
+  );
+
+// Objectives that do not conflict.
+function writeOneDesign(front, names, point) {
+  const valueOf = (name, value) =>
+    goalUnit(name) === "m" ? `${roundedMm(value)} mm` : objectiveText(name, value);
+  const told = names.map((name) => `${objectiveName(name)} ${valueOf(name, point.objective[name])}`);
+  section(
+    "front",
+    "One design for all objectives",
+    el(
+      "p",
+      {},
+      `The objectives do not conflict: one design, point ${point.id}, is best in all of them: ${told.join(", ")}. ` +
+        `Found in ${fmtDuration(front.wall_s)}.`,
+    ),
+    takeText(front),
+  );
+}
+
 function writeFront() {
   const front = summary.front;
   if (!front) return;
   const names = Object.keys(front.base),
+    on = front.points.filter((point) => point.mark === "on"),
     charts = [];
+  if (on.length === 1 && !front.n_failed) {
+    writeOneDesign(front, names, on[0]);
+    return;
+  }
   for (let a = 0; a < names.length; a++)
     for (let b = a + 1; b < names.length; b++) charts.push(frontChart(front, names[a], names[b]));
   const left = [
@@ -108,12 +140,6 @@ function writeFront() {
         `the straight ${names.length > 2 ? "plane through" : "line between"} the ends.`,
     ),
     el("div", { class: "charts" }, charts),
-    el(
-      "p",
-      {},
-      "A point becomes a result with a shape, a cut list, and the net as built by the command of this run with " +
-        "--point: ",
-      el("code", {}, pointCommand(front)),
-    ),
+    takeText(front),
   );
 }

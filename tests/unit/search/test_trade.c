@@ -123,6 +123,30 @@ START_TEST(a_node_on_a_line_has_a_front_in_closed_form)
 }
 END_TEST
 
+/* The same node, whose cables want to be 1.5 and 0.5 m long where it wants to be: there both objectives are nothing. */
+START_TEST(objectives_that_agree_are_one_design)
+{
+    static const struct hand_node node[] = {
+        {{-1, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0.5, 0, 0}, HF_ROLE_INNER, {0}}, {{1, 0, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 10},
+                                              {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 12}};
+    struct traded t = {0};
+    hf_front_table table;
+    const hf_goal_settings wanted[2] = {objective(HF_GOAL_PSI, "", NAN), objective(HF_GOAL_LENGTH, "", NAN)};
+    OPEN_HAND(&t.net, node, cable, HF_METHOD_FDM);
+    follow(&t, 2, wanted, "boundary", 1, 100, 11);
+    ck_assert_int_eq(t.front.n_point, 1);
+    for (int k = 0; k < 2; k++) {
+        ck_assert_double_lt(t.front.point[0].objective[k], 1e-9);
+        ck_assert(isnan(t.front.point[0].multiplier[k]));
+    }
+    assert_relative(t.front.design[1] / t.front.design[0], 3, 1e-8); /* q0 1.5 = q1 0.5 */
+    hf_front_tabulate(&t.front, &table);
+    ck_assert(hf_front_agrees(&table));
+    close_traded(&t);
+}
+END_TEST
+
 /* A node between supports at -1 and 1 m along x, whose cables vary up to Q = 40 N/m, and two at -1 and 1 m along y,
  * with 5 N/m each: it stays on y = 0, and T0 = T1 - 2 x 5 x. So the ratio of T1 = q1 (1 - x) to T0 is least with
  * q1 = Q: 1/r = 1 - 10 x/(Q (1 - x)). The node wants to be at 0.4 m: with u = (1 - 1/r) Q the front is
@@ -556,6 +580,7 @@ Suite *suite_unit_trade(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, a_node_on_a_line_has_a_front_in_closed_form, 0, 2);
     tcase_add_loop_test(tests, points_are_even_and_slopes_those_of_differences, 0, N_TRADED);
+    tcase_add_test(tests, objectives_that_agree_are_one_design);
     tcase_add_test(tests, a_node_in_a_plane_has_a_front_of_three_in_closed_form);
     tcase_add_test(tests, a_front_of_three_has_no_holes);
     tcase_add_test(tests, a_search_that_does_not_end_is_tried_from_another_start);

@@ -1,0 +1,107 @@
+#include "search/trade_point.h"
+
+#include "search/polish.h"
+
+#include <math.h>
+
+/* Of `least` beside an objective that is met, both in parts of their ranges: that one rises by the square. From where
+ * it is nothing the last weight alone may find no bent way. */
+static const double weight[] = {1e-2, 1e-4};
+enum { N_WEIGHT = sizeof weight / sizeof *weight };
+
+#define SAME 1e-9 /* part of an objective: what differs by less does not differ */
+
+void hf_trade_roles(const hf_goals *goals, int *role)
+{
+    int main = 0, n = 0;
+    while (main < goals->n_goal && hf_goals_is_largest(goals->goal[main].wanted.goal))
+        main++;
+    if (main == goals->n_goal) main = 0;
+    role[n++] = main;
+    for (int k = 0; k < goals->n_goal; k++)
+        if (k != main) role[n++] = k;
+}
+
+hf_status hf_trade_start(const hf_trade *t, int k, hf_workspace *w, double *largest, const double **start)
+{
+    int best_rank = -1;
+    double least = INFINITY;
+    *start = t->start;
+    for (int i = 0; i < t->n_start; i++) {
+        const double *design = t->start + (size_t)i * (size_t)t->evaluator->model->n_gene;
+        hf_form_result r;
+        hf_status status = hf_evaluate(t->evaluator, design, w, &r);
+        if (status == HF_NO_MEMORY) return status;
+        for (int g = 0; g < t->evaluator->goals->n_goal && status == HF_OK; g++)
+            largest[g] = fmax(largest[g], r.goal[g]);
+        int rank = status == HF_OK ? 2 : hf_status_has_shape(status);
+        double value = status == HF_OK ? r.goal[k] : i;
+        if (rank < best_rank || (rank == best_rank && !(value < least))) continue;
+        best_rank = rank;
+        least = value;
+        *start = design;
+    }
+    return HF_OK;
+}
+
+hf_status hf_trade_point(const hf_trade *t, const hf_watch_trade *limits, double *design, hf_workspace *w,
+                         hf_front_point *point)
+{
+    hf_polish_result r;
+    hf_form_result result;
+    *point = (hf_front_point){.objective = {NAN, NAN, NAN}, .multiplier = {NAN, NAN, NAN}};
+    hf_status status = hf_polish_trade(t->evaluator, t->lower, t->upper, t->max_iterations, limits, design, w, &r);
+    if (status == HF_OK) status = hf_evaluate(t->evaluator, design, w, &result);
+    if (t->stop && *t->stop) return HF_INTERRUPTED;
+    if (status == HF_NO_MEMORY) return status;
+    point->status = status;
+    point->iterations = r.iterations;
+    point->is_converged = status == HF_OK && r.stop == HF_POLISH_CONVERGED;
+    for (int k = 0; k < t->evaluator->goals->n_goal && status == HF_OK; k++) {
+        point->objective[k] = result.goal[k];
+        if (point->is_converged) point->multiplier[k] = r.multiplier[k];
+    }
+    return HF_OK;
+}
+
+hf_status hf_trade_meet(const hf_trade *t, int met, int least, const double *range, double *design, hf_workspace *w)
+{
+    hf_evaluator evaluator = *t->evaluator;
+    hf_goals goals = *evaluator.goals;
+    hf_polish_result result;
+    evaluator.goals = &goals;
+    for (int i = met == least ? N_WEIGHT - 1 : 0; i < N_WEIGHT; i++) {
+        for (int k = 0; k < goals.n_goal; k++) {
+            double part = k == met || met == least ? 1 : k == least ? weight[i] : 0;
+            goals.goal[k].wanted.weight = range[k] > 0 ? part / range[k] : 0;
+        }
+        hf_status status = hf_polish_run(&evaluator, t->lower, t->upper, t->max_iterations, NULL, design, w, &result);
+        if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+    }
+    return HF_OK;
+}
+
+int hf_trade_common(int n_objective, int n, const hf_front_point *const *point, const double *largest, double part)
+{
+    int common = -1;
+    double least[HF_OBJECTIVES_MAX], most[HF_OBJECTIVES_MAX];
+    for (int k = 0; k < n_objective; k++) {
+        least[k] = INFINITY;
+        most[k] = largest[k];
+        for (int i = 0; i < n; i++) {
+            if (point[i]->status != HF_OK) continue;
+            least[k] = fmin(least[k], point[i]->objective[k]);
+            most[k] = fmax(most[k], point[i]->objective[k]);
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        double above = point[i]->status == HF_OK ? 0 : INFINITY;
+        for (int k = 0; k < n_objective && point[i]->status == HF_OK; k++)
+            if (most[k] - least[k] > SAME * most[k])
+                above = fmax(above, (point[i]->objective[k] - least[k]) / (most[k] - least[k]));
+        if (!(above <= part) || (common >= 0 && !(above < part))) continue;
+        common = i;
+        part = above;
+    }
+    return common;
+}
