@@ -1,4 +1,4 @@
-/* Writes what a workshop needs to make the net of a stored shape. --cutlist NAME.csv gives three CSV files:
+/* Writes what a workshop needs to make the net of a stored shape. --cutlist NAME.csv gives four CSV files:
  *
  * NAME.csv       : id,i,j,group,tension_N,length_m,l0_m,elongation_m,EA_N,l0_minus_theory_m,law,value[,set]
  *                  l0_m          unstressed length, length_m / (1 + T/EA); a slack cable of law length or elastic has
@@ -11,10 +11,12 @@
  *                  law, value    "elastic" and l0_m again, so that NAME.csv can be imported as cables.csv of the net
  *                                as built
  *                  set           names of sets, when the net has some; blanks between them
+ * NAME_mm.csv    : id,i,j,group,l0_mm,length_mm,elongation_mm,tension_N,l0_minus_theory_mm[,set]    the same for
+ *                  people: to 0.001 mm, tensions to 0.01 N
  * NAME_nodes.csv : id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]    where the jig holds each node; can be imported as nodes.csv
  * NAME_totals.csv: group,cables,l0_m,length_m,least_tension_N,largest_tension_N,least_l0_minus_theory_m,
  *                  largest_l0_minus_theory_m    a row for each group, all cables, and each set
- * Numbers have 17 significant digits, so the net imported from these files has the stored shape. */
+ * Numbers have 17 significant digits, but in NAME_mm.csv, so the net imported from these files has the stored shape. */
 #include "out/export.h"
 
 #include "base/csv.h"
@@ -51,6 +53,31 @@ static void write_cables(const void *context, FILE *f)
         fprintf(f, ",%s,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%s,%.17g", hf_group_word[s->group[e]], c.tension_N,
                 c.length_m, c.l0_m, c.length_m - c.l0_m, s->EA_N[e], c.l0_minus_theory_m, hf_law_word[HF_LAW_ELASTIC],
                 c.l0_m);
+        hf_export_sets_of(s, e, f);
+        fputc('\n', f);
+    }
+}
+
+/* In thousandths of a millimetre, without -0. */
+static double bench_mm(double length_m)
+{
+    return round(1e6 * length_m) / 1e3 + 0.0;
+}
+
+static void write_bench(const void *context, FILE *f)
+{
+    const view *v = context;
+    const hf_scene *s = v->scene;
+    fprintf(f, "id,i,j,group,l0_mm,length_mm,elongation_mm,tension_N,l0_minus_theory_mm%s\n", s->n_set ? ",set" : "");
+    for (int e = 0; e < s->n_cable; e++) {
+        hf_cut c = hf_cut_of(s, v->shape, v->reference_N, e);
+        hf_csv_write_id(s->cable_id[e], f);
+        for (int k = 0; k < 2; k++) {
+            fputc(',', f);
+            hf_csv_write_id(s->node_id[s->end[2 * e + k]], f);
+        }
+        fprintf(f, ",%s,%.3f,%.3f,%.3f,%.2f,%.3f", hf_group_word[s->group[e]], bench_mm(c.l0_m), bench_mm(c.length_m),
+                bench_mm(c.length_m - c.l0_m), c.tension_N, bench_mm(c.l0_minus_theory_m));
         hf_export_sets_of(s, e, f);
         fputc('\n', f);
     }
@@ -106,11 +133,12 @@ static void write_totals(const void *context, FILE *f)
         write_total(v, v->scene->set_name[k], OF_SET, k, f);
 }
 
-/* Makes the three names: NAME.csv, NAME_nodes.csv, NAME_totals.csv. */
-static hf_status name_files(const hf_export_request *o, char path[3][PATH_MAX], hf_messages *messages)
+/* Makes the names: NAME.csv, NAME_mm.csv, NAME_nodes.csv, NAME_totals.csv. */
+enum { N_FILE = 4 };
+static hf_status name_files(const hf_export_request *o, char path[N_FILE][PATH_MAX], hf_messages *messages)
 {
-    static const char *const part[3] = {"", "_nodes", "_totals"};
-    for (int i = 0; i < 3; i++) {
+    static const char *const part[N_FILE] = {"", "_mm", "_nodes", "_totals"};
+    for (int i = 0; i < N_FILE; i++) {
         if (!hf_path_insert(o->output, part[i], path[i], PATH_MAX))
             return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
         HF_TRY(hf_export_claim(o, path[i], messages));
@@ -122,15 +150,18 @@ static hf_status write_cutlist(const hf_export_request *o, const hf_export_store
                                hf_messages *messages)
 {
     const hf_scene *scene = &stored->scene;
-    char path[3][PATH_MAX];
+    char path[N_FILE][PATH_MAX];
     HF_TRY(hf_cable_demand_EA(scene, o->file, "cut lengths need", ", and run again", messages));
     HF_TRY(name_files(o, path, messages)); /* all names are checked before any file is written */
     const view v = {scene, &stored->shape, hf_model_reference_N(scene, stored->summary.pretension_N)};
     HF_TRY(hf_file_out_set_write(o->files, path[0], write_cables, &v, messages));
-    HF_TRY(hf_file_out_set_write(o->files, path[1], write_nodes, &v, messages));
-    HF_TRY(hf_file_out_set_write(o->files, path[2], write_totals, &v, messages));
-    snprintf(said, size, "%s: cut lengths of %d cables of the %s shape in %s, the jig in %s, totals in %s", o->file,
-             scene->n_cable, stored->word, path[0], path[1], path[2]);
+    HF_TRY(hf_file_out_set_write(o->files, path[1], write_bench, &v, messages));
+    HF_TRY(hf_file_out_set_write(o->files, path[2], write_nodes, &v, messages));
+    HF_TRY(hf_file_out_set_write(o->files, path[3], write_totals, &v, messages));
+    snprintf(said, size,
+             "%s: cut lengths of %d cables of the %s shape in %s, for the bench in %s, the jig in %s, totals "
+             "in %s",
+             o->file, scene->n_cable, stored->word, path[0], path[1], path[2], path[3]);
     return HF_OK;
 }
 
@@ -142,7 +173,7 @@ static hf_status export_cutlist(const hf_export_request *request, char *said, si
 const hf_exporter hf_exporter_cutlist = {
     .option = "--cutlist",
     .argument = "FILE",
-    .help = "write unstressed lengths to FILE, the jig and totals beside it",
+    .help = "write unstressed lengths to FILE; beside it them in mm for the bench, the jig, totals",
     .takes_stage = true,
     .write = export_cutlist,
 };

@@ -34,7 +34,8 @@ const hf_word hf_words_case[] = {
      "surface, and more cables to cut.",
      NULL},
     {"cutlist", "term", "",
-     "`hifdm export FILE --cutlist cut.csv`: to which length each cable is cut (l0_m, without tension), where a jig "
+     "`hifdm export FILE --cutlist cut.csv`: to which length each cable is cut (l0_m, without tension; cut_mm.csv: for "
+     "the bench), where a jig "
      "holds the nodes, and how much cable each group and set needs. It can be imported as a net.",
      NULL},
     {"cut list", "term", "", "See cutlist.", NULL},

@@ -132,7 +132,7 @@ START_TEST(paths_are_as_long_as_the_system_has_them)
           "\"$0\" export \"$2\" --csv \"$p\"/csv --vtk \"$p\"/vtk --cutlist \"$p\"/c.csv && cd \"$p\" && ls . csv vtk",
           c, out, deep);
     OUT("/c_totals.csv\n"); /* the line that says so is not cut either */
-    OUT("\nc.csv\nc_nodes.csv\nc_totals.csv\ncsv\nr.html\nt.csv\nvtk\n");
+    OUT("\nc.csv\nc_mm.csv\nc_nodes.csv\nc_totals.csv\ncsv\nr.html\nt.csv\nvtk\n");
     OUT("csv:\ncables.csv\nnodes.csv\n");
     OUT("vtk:\nform.hdf\ntheoretical.hdf\n");
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {

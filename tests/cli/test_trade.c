@@ -174,6 +174,14 @@ START_TEST(cut_list_holds_what_it_says)
 {
     const char *out = run_chen(), *cut = temp("cut.csv");
     HIFDM(0, "export", out, "--cutlist", cut, "--stage", "form");
+    EXPECT(
+        cut, temp("cut_mm.csv"), "--",
+        "[r['id'] for r in a] == [r['id'] for r in b] and list(b[0])[:5] == ['id', 'i', "
+        "'j', 'group', 'l0_mm'] and [r['set'] for r in a] == [r['set'] for r in b]",
+        "all(abs(1e3 * float(r[k + '_m']) - float(s[k + '_mm'])) < 0.00050001 and len(s[k + '_mm'].split('.')[1]) == 3 "
+        "for r, s in zip(a, b) for k in ('l0', 'length', 'elongation', 'l0_minus_theory'))",
+        "all(abs(float(r['tension_N']) - float(s['tension_N'])) < 0.0050001 for r, s in zip(a, b))",
+        "not any(v in ('-0.000', '-0.00') for s in b for v in s.values())");
     EXPECT(cut, temp("cut_nodes.csv"), temp("cut_totals.csv"), out, "--", "len(a) == 220", "len(b) == 121",
            "list(a[0]) == ['id', 'i', 'j', 'group', 'tension_N', 'length_m', 'l0_m', 'elongation_m', 'EA_N', "
            "'l0_minus_theory_m', 'law', 'value', 'set']",
