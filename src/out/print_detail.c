@@ -192,7 +192,7 @@ static void print_optimize(const hf_summary *s, FILE *f)
 static void print_polish(const hf_summary *s, FILE *f)
 {
     static const char *const end[] = {"", " (stalled: shorter steps gain nothing)", " (not converged)",
-                                      " (settled: ten steps gain less than 1e-6)"};
+                                      " (settled: ten steps gain less than 1e-6)", ""};
     char wall[32], boundary[32];
     char limits[40] = "";
     hf_print_duration(s->polish_wall_s, wall, sizeof wall);

@@ -244,7 +244,7 @@ static void print_ga(const hf_summary *s, bool is_result, FILE *f)
 static void print_lm(const hf_summary *s, bool is_result, FILE *f)
 {
     static const char *const end[] = {"", ", stalled: shorter steps gain nothing", ", not converged",
-                                      ", settled: ten steps gain less than 1e-6"};
+                                      ", settled: ten steps gain less than 1e-6", ""};
     char wall[32];
     if (s->taken.point) {
         print_figures(s, "point", &s->polish, s->polish_n_at_lower + s->polish_n_at_upper, f);

@@ -160,6 +160,32 @@ START_TEST(a_front_of_another_case_is_refused)
 }
 END_TEST
 
+/* What is damaged in the file is told, and a design that has no shape is none. */
+START_TEST(a_damaged_front_is_told)
+{
+    static const struct {
+        const char *damage, *told;
+        int code;
+    } list[] = {{"f['front/design_N'][2] = np.nan", "is no design of ", 2},
+                {"f['front/design_N'][2] = 0", "is no design of ", 2},
+                {"f['front/objective'][2, 0] = np.nan", " has goal_0_psi nan", 2},
+                {"f['front/status'][2] = 3", "failed and has no design", 2},
+                {"del f['front/gene']", "/front/gene is not there", 5},
+                {"f['front/mark'][2] = 1", "warning: ", 0}};
+    const char *c = file_with("c.yaml", NET OPTIMIZE PSI_AND_RATIO), *front = front_of(c, "f.h5"), *path = temp("p.h5"),
+               *copy = temp("g.h5");
+    for (int i = 0; i < (int)(sizeof list / sizeof *list); i++) {
+        SHELL(0, "cp \"$1\" \"$2\" && \"$4\" -c \"import h5py, numpy as np; f = h5py.File('$2', 'r+'); $3\"", front,
+              copy, list[i].damage, python_program());
+        HIFDM(list[i].code, "run", c, "--point", point(copy, 3), "-o", path, "--restart");
+        ERR(list[i].told);
+    }
+    SHELL(0, "\"$2\" -c \"import h5py; del h5py.File('$1', 'r+')['case'].attrs['front_file']\"", path,
+          python_program());
+    HIFDM(0, "show", path, "--verbose"); /* taken from nowhere */
+}
+END_TEST
+
 Suite *suite_cli_point(void)
 {
     Suite *suite = suite_create("cli/point");
@@ -170,5 +196,6 @@ Suite *suite_cli_point(void)
     tcase_add_test(tests, points_of_generations_are_taken);
     tcase_add_test(tests, a_wrong_point_is_refused);
     tcase_add_test(tests, a_front_of_another_case_is_refused);
+    tcase_add_test(tests, a_damaged_front_is_told);
     return suite;
 }
