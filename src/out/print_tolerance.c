@@ -25,9 +25,12 @@ static void print_numbers(FILE *file, int n, const double *value, double times)
     }
 }
 
+/* Of small nets, or of small errors, with three digits; below a nanometre it is rounding. */
 static void print_mm(FILE *file, double value_m)
 {
-    if (isfinite(value_m))
+    if (value_m >= 1e-9 && value_m < 1e-5)
+        fprintf(file, "%.3g mm", value_m * 1e3);
+    else if (isfinite(value_m))
         fprintf(file, "%.4f mm", value_m * 1e3);
     else
         fputc('-', file);
@@ -75,7 +78,7 @@ static void print_yield(const hf_tolerance_summary *t, FILE *f)
         fprintf(f, "%s %s", k ? "," : ":", hf_tolerance_measure_word[t->require[k].measure]);
         if (!isnan(t->require[k].at_most)) fprintf(f, " at most %.10g", t->require[k].at_most);
         if (!isnan(t->require[k].at_least)) fprintf(f, " at least %.10g", t->require[k].at_least);
-        fprintf(f, " %.2f %%", 100 * t->require_yield[k]);
+        fprintf(f, " in %.2f %%", 100 * t->require_yield[k]);
     }
     fputc('\n', f);
     if (isnan(t->wanted_yield)) return;

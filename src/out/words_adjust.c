@@ -34,8 +34,8 @@ const hf_word hf_words_adjust[] = {
      "What moves would do that aim at something else (adjust.figure, adjust.aim), where the design is farther from "
      "theory than errors make it, or most moves are at range_m.",
      NULL},
-    {"before_m", "figure of adjust", "m", "The figure of another aim before any move.", NULL},
-    {"after_m", "figure of adjust", "m", "The figure of another aim after its moves.", NULL},
+    {"before_m", "figure of adjust", "m", "The figure of another aim before any move, of the most probable net.", NULL},
+    {"after_m", "figure of adjust", "m", "The figure of another aim after its moves, of the most probable net.", NULL},
     {"move_count", "figure of adjust", "", "How many moves another aim takes.", NULL},
     {"measured_nodes", "figure of adjust", "", "Nodes that the table of measured places has.", NULL},
     {"fits", "figure of adjust", "",
