@@ -252,7 +252,11 @@ static const hf_word told[] = {
     {"surface", "object of --json", "", "Errors of a shape as a reflector.", NULL},
     {"sets", "object of --json", "", "Tensions of each named set of cables.", NULL},
     {"goals", "object of --json", "", "Value and weight of each row of optimize.goals or optimize.objectives.", NULL},
-    {"front", "object of --json", "", "Designs of which none is better than another in all objectives.", NULL},
+    {"front", "object of --json", "",
+     "Designs of which none is better than another in all objectives; a single one where they do not conflict. `hifdm "
+     "run "
+     "CASE --point FILE:N` makes point N a result.",
+     NULL},
     {"cases", "object of --json", "", "States of the net as built: cold, in the sun, on the ground.", NULL},
     {"tolerance", "object of --json", "", "Samples of nets as built with errors of cut, stiffness and supports.", NULL},
     {"require", "object of --json", "", "Rows of tolerance.require, each with the part of samples that meets it.",
