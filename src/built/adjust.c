@@ -40,6 +40,7 @@ typedef struct {
     double *turn_m;                         /* [n_cable of the model] of the last shape */
     double *doubt_m;                        /* [samples][n_dof] */
     double *doubt_N;                        /* [n_cable of the model] deviation of estimated tensions */
+    hf_estimate_cause cause;                /* of doubt_m */
     double *residual;                       /* [n_row] of the last shape */
     double *column;                         /* [n][n_row] change of residuals per metre of each cable, and behind it */
     double *left_open, *at_zero;            /* [samples][n_row]; [n_row] residuals without turns, by the linear model */
@@ -80,6 +81,8 @@ static void lay_out_adjustment(hf_arena *arena, adjustment *a)
     a->turn_m = hf_arena_take(arena, n_cable, sizeof(double));
     a->doubt_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
     a->doubt_N = hf_arena_take(arena, n_cable, sizeof(double));
+    a->cause.strain_N = hf_arena_take(arena, samples * n_cable, sizeof(double));
+    a->cause.rest_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
     a->residual = hf_arena_take(arena, a->n_row, sizeof(double));
     a->column = hf_arena_take(arena, n_all * a->n_row, sizeof(double));
     a->product = hf_arena_take(arena, n_all * n_all, sizeof(double));
@@ -416,17 +419,35 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
 
 /* ---- what is left open ---- */
 
+/* The figure of the shape in `work`, moved. */
+static double figure_moved(adjustment *a, const double *move_m)
+{
+    push_move(a, &a->room[0], move_m, a->at_zero); /* which nobody reads any more */
+    for (size_t r = 0; r < a->n_row; r++)
+        a->at_zero[r] += a->residual[r];
+    return sqrt(hf_dot(a->n_row, a->at_zero, a->at_zero));
+}
+
 /* The figure of each sample at the shape in `work`. */
 static hf_status sample_figures(adjustment *a, double figure_m[HF_ESTIMATE_SAMPLES])
 {
     HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[0].point, a->residual));
-    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
-        push_move(a, &a->room[0], a->doubt_m + s * a->n_dof, a->at_zero); /* which nobody reads any more */
-        for (size_t r = 0; r < a->n_row; r++)
-            a->at_zero[r] += a->residual[r];
-        figure_m[s] = sqrt(hf_dot(a->n_row, a->at_zero, a->at_zero));
-    }
+    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++)
+        figure_m[s] = figure_moved(a, a->doubt_m + s * a->n_dof);
     return HF_OK;
+}
+
+/* The same of the linear model's shape, whose stiffness makes other moves of the errors that are left. */
+static void sample_turned(adjustment *a, double figure_m[HF_ESTIMATE_SAMPLES])
+{
+    const hf_built_linear *l = &a->estimate->linear;
+    adjust_room *r = &a->room[0];
+    size_t n_cable = (size_t)l->built->model.n_cable;
+    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
+        memcpy(r->answer_m, a->cause.rest_m + s * a->n_dof, a->n_dof * sizeof *r->answer_m);
+        hf_built_linear_apply(l, 1, a->cause.strain_N + s * n_cable, r->answer_m, r->scratch);
+        figure_m[s] = figure_moved(a, r->answer_m);
+    }
 }
 
 /* ---- one move after the other ---- */
@@ -461,43 +482,6 @@ static hf_status make_order(adjustment *a, int n_move, move_order *o)
     return HF_OK;
 }
 
-/* Do all cables keep their least tension after a further move? */
-static bool keeps_taut(const adjustment *a, const move_order *o, const double *change_N)
-{
-    for (int e = 0; e < a->problem.n_tension; e++)
-        if (change_N[e] < 0 && o->fall_N[e] - change_N[e] > hf_moves_room(&a->problem, e)) return false;
-    return true;
-}
-
-/* Of the chosen moves that are not in a->trial yet, the one after which the linear model has the least figure, of those
- * that keep cables taut if there are some. It is put into a->trial. */
-static size_t next_move(adjustment *a, move_order *o)
-{
-    double least = (double)INFINITY;
-    size_t next = a->n, n_cable = (size_t)a->problem.n_tension;
-    bool is_taut = false;
-    const double *change_N = o->change_N, *next_N = change_N;
-    for (size_t i = 0; i < a->n; i++) {
-        if (!a->steps[i]) continue;
-        const double *this_N = change_N;
-        change_N += n_cable;
-        if (a->steps[i] == a->trial[i]) continue;
-        bool keeps = keeps_taut(a, o, this_N);
-        a->trial[i] = a->steps[i];
-        double square = hf_moves_square(&a->problem, a->trial);
-        a->trial[i] = 0;
-        if (next < a->n && (keeps == is_taut ? !(square < least) : is_taut)) continue;
-        least = square;
-        next = i;
-        is_taut = keeps;
-        next_N = this_N;
-    }
-    for (size_t e = 0; e < n_cable; e++)
-        o->fall_N[e] -= next_N[e];
-    a->trial[next] = a->steps[next];
-    return next;
-}
-
 /* What the move gains by the samples, whose figures before it are taken over by those after it. */
 static hf_status judge_move(adjustment *a, double before_m[HF_ESTIMATE_SAMPLES], hf_adjust_move *move)
 {
@@ -517,7 +501,7 @@ static hf_status judge_move(adjustment *a, double before_m[HF_ESTIMATE_SAMPLES],
 static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_ESTIMATE_SAMPLES], hf_adjustment *found)
 {
     for (int k = 0; k < found->n_move; k++) {
-        size_t i = next_move(a, o);
+        int i = hf_moves_next(&a->problem, a->steps, o->change_N, a->trial, o->fall_N);
         int e = a->task->cable[i];
         hf_adjust_move *move = &found->move[k];
         *move = (hf_adjust_move){.cable = e, .steps = a->steps[i], .move_m = a->steps[i] * a->problem.step_m};
@@ -534,7 +518,7 @@ static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_EST
 static hf_status list_moves(adjustment *a, hf_adjustment *found)
 {
     hf_arena arena = {0};
-    double figure_m, sample_m[HF_ESTIMATE_SAMPLES];
+    double figure_m, sample_m[HF_ESTIMATE_SAMPLES], turned_m[HF_ESTIMATE_SAMPLES];
     for (size_t i = 0; i < a->n; i++)
         found->n_move += a->steps[i] != 0;
     HF_TRY(HF_ARENA_MAKE(&arena, found->move = hf_arena_take(&arena, (size_t)found->n_move, sizeof *found->move)));
@@ -543,6 +527,7 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
     hf_status status = a->is_current ? HF_OK : linearise(a);
     if (status != HF_OK && status != HF_SINGULAR) return status; /* then in the order of the last linear model */
     a->is_current = status == HF_OK;
+    if (a->is_current) sample_turned(a, turned_m);
     memset(a->trial, 0, a->n * sizeof *a->trial);
     HF_TRY(solve_steps(a, a->trial, &figure_m));
     HF_TRY(sample_figures(a, sample_m));
@@ -555,7 +540,7 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
     arena.block = order.block;
     hf_arena_free(&arena);
     HF_TRY(status);
-    hf_estimate_spread(sample_m, &found->doubt_m[1], &found->spread_m[1]); /* of the last one, with all moves */
+    hf_estimate_spread(a->is_current ? turned_m : sample_m, &found->doubt_m[1], &found->spread_m[1]);
     return HF_OK;
 }
 
@@ -570,7 +555,7 @@ int hf_adjust_steps(const hf_adjust_settings *s)
 static hf_status find_all(adjustment *a, hf_adjustment *found)
 {
     HF_TRY(solve_nominal(a, &found->nominal_m));
-    HF_TRY(hf_estimate_doubt(a->estimate, a->doubt_m, a->doubt_N));
+    HF_TRY(hf_estimate_doubt(a->estimate, a->doubt_m, a->doubt_N, &a->cause));
     HF_TRY(choose(a, found));
     HF_TRY(list_moves(a, found));
     return find_best(a, found);

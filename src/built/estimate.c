@@ -288,9 +288,10 @@ static void draw_errors(const hf_estimate *p, hf_random *random, const estimate_
         move_m[i] = random_sign(random) * p->prior.support_sigma_m;
 }
 
-/* The moves [n][n_dof] of random errors from sample `first` on, by streams of random numbers. Returns n. */
+/* The moves [n][n_dof] of random errors from sample `first` on, by streams of random numbers, and what of them are
+ * errors of supports (NULL: not wanted). Returns n. */
 static int draw_moves(const hf_estimate *p, int stream, int first, const estimate_scratch *s, hf_random random[PANEL],
-                      double *move_m)
+                      double *move_m, double *rest_m)
 {
     int n = HF_ESTIMATE_SAMPLES - first < PANEL ? HF_ESTIMATE_SAMPLES - first : PANEL;
     for (int k = 0; k < n; k++) {
@@ -298,6 +299,7 @@ static int draw_moves(const hf_estimate *p, int stream, int first, const estimat
         draw_errors(p, &random[k], s, s->strain_N + (ptrdiff_t)k * p->built->model.n_cable,
                     move_m + (size_t)k * p->linear.n_dof);
     }
+    if (rest_m) memcpy(rest_m, move_m, (size_t)n * p->linear.n_dof * sizeof *rest_m);
     hf_built_linear_apply(&p->linear, n, s->strain_N, move_m, s->linear);
     return n;
 }
@@ -310,7 +312,7 @@ hf_status hf_estimate_expect(hf_estimate *p, double *expected_m)
     share_scratch(p, &s);
     memset(expected_m, 0, (size_t)m->n_node * sizeof *expected_m);
     for (int first = 0; first < HF_ESTIMATE_SAMPLES; first += PANEL) {
-        int n = draw_moves(p, 0, first, &s, random, s.move_m);
+        int n = draw_moves(p, 0, first, &s, random, s.move_m, NULL);
         for (int i = 0; i < n * 3 * m->n_node; i++)
             expected_m[i / 3 % m->n_node] += s.move_m[i] * s.move_m[i] / HF_ESTIMATE_SAMPLES;
     }
@@ -367,7 +369,7 @@ static void add_tensions(const hf_estimate *p, const estimate_scratch *s, int n,
     }
 }
 
-hf_status hf_estimate_doubt(hf_estimate *p, double *move_m, double *sigma_N)
+hf_status hf_estimate_doubt(hf_estimate *p, double *move_m, double *sigma_N, const hf_estimate_cause *cause)
 {
     size_t n_dof = p->linear.n_dof, n_cable = (size_t)p->built->model.n_cable;
     estimate_scratch s;
@@ -378,7 +380,8 @@ hf_status hf_estimate_doubt(hf_estimate *p, double *move_m, double *sigma_N)
     HF_TRY(hf_saddle_factor(&p->saddle, 0));
     for (int first = 0; first < HF_ESTIMATE_SAMPLES; first += PANEL) {
         double *move = move_m + (size_t)first * n_dof;
-        int n = draw_moves(p, 1, first, &s, random, move);
+        double *rest_m = cause ? cause->rest_m + (size_t)first * n_dof : NULL;
+        int n = draw_moves(p, 1, first, &s, random, move, rest_m);
         for (int k = 0; k < n; k++)
             draw_gap(p, &random[k], move + (size_t)k * n_dof, s.gap_m + (size_t)k * n_dof);
         memset(s.cut_m, 0, (size_t)n * n_cable * sizeof *s.cut_m);
@@ -387,6 +390,10 @@ hf_status hf_estimate_doubt(hf_estimate *p, double *move_m, double *sigma_N)
         for (size_t i = 0; i < (size_t)n * n_dof; i++)
             move[i] -= s.move_m[i];
         add_tensions(p, &s, n, move, sigma_N);
+        for (size_t i = 0; cause && i < (size_t)n * n_dof; i++)
+            rest_m[i] -= s.rest_m[i];
+        if (cause)
+            memcpy(cause->strain_N + (size_t)first * n_cable, s.strain_N, (size_t)n * n_cable * sizeof *s.strain_N);
     }
     for (size_t e = 0; e < n_cable; e++)
         sigma_N[e] = sqrt(sigma_N[e] / HF_ESTIMATE_SAMPLES);

@@ -1,4 +1,5 @@
-/* Contents: sums of squares - tensions - without steps - in whole steps - which cables - together */
+/* Contents: sums of squares - tensions - without steps - in whole steps - which cables - together - one after
+ * the other */
 #include "built/moves.h"
 
 #include "base/arena.h"
@@ -93,7 +94,7 @@ static void fall_by_steps(const tensions *t, const int *steps, double *move_m)
     fall_by(t, move_m);
 }
 
-double hf_moves_room(const hf_moves_problem *p, int k)
+static double room_to_fall(const hf_moves_problem *p, int k)
 {
     return p->room_N[k] + BOUND_ROUNDING * (p->room_N[k] + p->reference_N);
 }
@@ -104,7 +105,7 @@ static int worst_tension(const tensions *t)
     double worst = 0;
     int at = -1;
     for (int i = 0; i < t->p->n_tension; i++) {
-        double beyond = t->fall_N[i] - hf_moves_room(t->p, i);
+        double beyond = t->fall_N[i] - room_to_fall(t->p, i);
         if (beyond <= worst) continue;
         worst = beyond;
         at = i;
@@ -118,7 +119,7 @@ static bool take_steps(const tensions *t, int i, int j, int a, int b)
     const double *u = rates_of(t, t->row[i]), *v = rates_of(t, t->row[j]), step = t->p->step_m;
     for (int k = 0; k < t->p->n_tension; k++) {
         double by = -step * (a * u[k] + b * v[k]);
-        if (by > 0 && t->fall_N[k] + by > hf_moves_room(t->p, k)) return false;
+        if (by > 0 && t->fall_N[k] + by > room_to_fall(t->p, k)) return false;
     }
     for (int k = 0; k < t->p->n_tension; k++)
         t->fall_N[k] -= step * (a * u[k] + b * v[k]);
@@ -457,4 +458,41 @@ hf_status hf_moves_best(const hf_moves_problem *p, double *move_m)
     hf_status status = fit_list(p, p->n, list, NULL, move_m);
     hf_arena_free(&arena);
     return status;
+}
+
+/* ---- one after the other ---- */
+
+/* Do all cables keep their least tension after a further move? */
+static bool keeps_taut(const hf_moves_problem *p, const double *fall_N, const double *change_N)
+{
+    for (int k = 0; k < p->n_tension; k++)
+        if (change_N[k] < 0 && fall_N[k] - change_N[k] > room_to_fall(p, k)) return false;
+    return true;
+}
+
+int hf_moves_next(const hf_moves_problem *p, const int *steps, const double *change_N, int *done, double *fall_N)
+{
+    double least = (double)INFINITY;
+    int next = p->n;
+    const double *next_N = change_N;
+    bool is_taut = false;
+    for (int i = 0; i < p->n; i++) {
+        if (!steps[i]) continue;
+        const double *this_N = change_N;
+        change_N += p->n_tension;
+        if (steps[i] == done[i]) continue;
+        bool keeps = keeps_taut(p, fall_N, this_N);
+        done[i] = steps[i];
+        double square = hf_moves_square(p, done);
+        done[i] = 0;
+        if (next < p->n && (keeps == is_taut ? !(square < least) : is_taut)) continue;
+        least = square;
+        next = i;
+        is_taut = keeps;
+        next_N = this_N;
+    }
+    for (int k = 0; k < p->n_tension; k++)
+        fall_N[k] -= next_N[k];
+    done[next] = steps[next];
+    return next;
 }

@@ -43,11 +43,13 @@ typedef enum {
  * HF_NO_MEMORY. */
 hf_status hf_moves_choose(const hf_moves_problem *problem, int *steps, hf_moves_end *end, bool *is_held);
 
-/* How far tension k may fall, with rounding. */
-double hf_moves_room(const hf_moves_problem *problem, int k);
-
 /* The sum of squares after these steps. */
 double hf_moves_square(const hf_moves_problem *problem, const int *steps);
+
+/* Of the steps that are not done yet, the one after which the sum of squares is least, of those that keep tensions up
+ * if there are some: its cable. change_N [steps other than 0][n_tension]: what each adds to tensions, in their order.
+ * done [n] and fall_N [n_tension], how far tensions fell, are brought up to date. */
+int hf_moves_next(const hf_moves_problem *problem, const int *steps, const double *change_N, int *done, double *fall_N);
 
 /* The best moves of all n cables without steps, within steps_max * step_m, whatever tensions do: move_m [n]. HF_OK or
  * HF_NO_MEMORY. */

@@ -41,6 +41,8 @@ static inline const char *temp(const char *name)
     "scene:\n"                                                                                                         \
     "  parabolic_cylinder: {aperture_m: 2, length_m: 3, focal_length_m: 2, modules: [2, 3], cells_per_module: [2, "    \
     "2], scallop: 0.1}\n"
+#define ON_TRUSS EA_SCENE "form: {pretension_N: 20}\ntruss: {E_Pa: 2e9}\n"
+#define EA_SCENE SMALL_SCENE "  EA_inner_N: 47000\n  EA_boundary_N: 47000\n"
 #define SMALL_GA "optimize: {population: 6, generations: 3, seed: 7}\n"
 
 /* Write `text` to `name` in the test's directory and return its path. */
@@ -164,6 +166,14 @@ static inline const char *data_of(const char *page, const char *name)
     const char *path = file_with(name, start);
     free(text);
     return path;
+}
+
+/* The number behind these words of the output. */
+static inline double number_after(const char *what)
+{
+    const char *at = strstr(said.out, what);
+    ck_assert_msg(at, "%s is not in %s", what, said.out);
+    return strtod(at + strlen(what), NULL);
 }
 
 #endif

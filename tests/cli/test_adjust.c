@@ -4,7 +4,6 @@
 #define SECTIONS                                                                                                       \
     "tolerance: {sigma_cut_m: 0.0001}\n"                                                                               \
     "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 3, sigma_m: 0.0001}\n"
-#define EA_SCENE SMALL_SCENE "  EA_inner_N: 47000\n  EA_boundary_N: 47000\n"
 
 /* The places of the design, changed: what a measurement of the nominal net would say. `change` may alter a line's
  * numbers; it returns false to leave the node out. */
@@ -87,13 +86,6 @@ static bool two_nodes(int i, double x[3])
 {
     (void)x;
     return i == 17 || i == 18 || i == 0;
-}
-
-static double number_after(const char *what)
-{
-    const char *at = strstr(said.out, what);
-    ck_assert_msg(at, "%s is not in %s", what, said.out);
-    return strtod(at + strlen(what), NULL);
 }
 
 #define HEADER "id,x_m,y_m,z_m"
@@ -360,78 +352,6 @@ START_TEST(the_design_is_that_of_a_result)
 }
 END_TEST
 
-/* ---- a twin on a truss that gives way ---- */
-
-#define ON_TRUSS EA_SCENE "form: {pretension_N: 20}\ntruss: {E_Pa: 2e9}\n"
-
-static void use_twin(const char *const *words)
-{
-    const char *argument[10] = {python_program(), keep(source_path("tests/cli/twin.py"))};
-    for (int k = 0; words[k]; k++)
-        argument[k + 2] = words[k];
-    demand_exit(run_command(HANG_S, argument), 0, words[0], __LINE__);
-}
-#define TWIN(...) use_twin((const char *const[]){__VA_ARGS__, NULL})
-
-/* The shape of the net of a table of elastic cables on the truss of the design, as a folder of tables. */
-static const char *shape_of(const char *name)
-{
-    const char *result = temp(formatted("%s.h5", name)), *folder = temp(name);
-    HIFDM(0, "run",
-          file_with("twin.yaml", formatted("scene: {import: {nodes: nodes.csv, cables: %s.csv}}\nform: {method: "
-                                           "newton}\ntruss: {import: {nodes: d/truss_nodes.csv, members: "
-                                           "d/members.csv}}\n",
-                                           name)),
-          "-o", result, "--quiet", "--force");
-    HIFDM(0, "export", result, "--csv", folder, "--force");
-    return folder;
-}
-
-static double distance_m(const char *shape, const char *design)
-{
-    TWIN("distance", shape, design);
-    return strtod(said.out, NULL);
-}
-
-/* The distance to the design after the moves of a table, by a run of the net itself. */
-static double turned_m(const char *moves, const char *design)
-{
-    TWIN("turned", temp("true.csv"), moves, temp("after.csv"));
-    return distance_m(shape_of("after"), design);
-}
-
-/* A net cut to 0.1 mm on a truss that gives way by 0.8 mm, measured to 0.2 mm: moves that are found from the table
- * alone bring it back to the shape of the design, as far as the moves that are found from its exact places but for a
- * half, and the net itself, run with its moves, is where they were said to lead. */
-START_TEST(a_twin_on_a_truss_comes_back)
-{
-    const char *seed = formatted("%d", _i), *result = temp("d.h5"), *design = temp("d"), *cut = temp("cut.csv");
-    const char *measured = temp("m.csv"), *exact = temp("exact.csv"), *moves = temp("moves.csv"), *best = temp("b.csv");
-    const char *path = file_with("case.yaml", ON_TRUSS "tolerance: {sigma_cut_m: 0.0001}\n"
-                                                       "adjust: {set: all, aim: design, range_m: 0.002, step_m: "
-                                                       "0.00002, moves: 8, sigma_m: 0.0002}\n");
-    seed = keep(seed);
-    HIFDM(0, "run", file_with("design.yaml", ON_TRUSS), "-o", result, "--quiet", "--force");
-    HIFDM(0, "export", result, "--csv", design, "--cutlist", cut, "--force");
-    TWIN("built", cut, design, temp("true.csv"), temp("nodes.csv"), "1e-4", seed);
-    const char *as_built = shape_of("true");
-    TWIN("measured", as_built, measured, "2e-4", seed);
-    TWIN("measured", as_built, exact, "0", seed);
-    double before = distance_m(as_built, design);
-    HIFDM(0, "adjust", path, "--measured", measured, "-o", moves, "--json", "--force");
-    double told = number_after("\"adjusted_expected_m\": "), sigma = number_after("\"adjusted_sigma_m\": ");
-    HIFDM(0, "adjust", path, "--measured", exact, "-o", best, "--json", "--force", "--set", "adjust.sigma_m=1e-6");
-    double predicted = number_after("\"adjusted_m\": ");
-    double after = turned_m(moves, design), after_best = turned_m(best, design);
-    printf("twin %d on a truss: psi %.4f -> %.4f mm, told %.4f +- %.4f; best %.4f, predicted %.4f\n", _i, before * 1e3,
-           after * 1e3, told * 1e3, sigma * 1e3, after_best * 1e3, predicted * 1e3);
-    ck_assert_double_lt(after, before / 2);
-    ck_assert_double_lt(after, 1.5 * after_best);
-    ck_assert_double_lt(fabs(after - told), 3 * sigma);
-    ck_assert_double_lt(fabs(after_best - predicted), 2e-6); /* exact places are taken to be good to 1e-6 */
-}
-END_TEST
-
 START_TEST(bad_tables_are_named)
 {
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS), *bad;
@@ -584,7 +504,6 @@ Suite *suite_cli_adjust(void)
     tcase_add_test(tcase, places_that_do_not_tell_say_nothing);
     tcase_add_test(tcase, spools_stand_out);
     tcase_add_test(tcase, the_design_is_that_of_a_result);
-    tcase_add_loop_test(tcase, a_twin_on_a_truss_comes_back, 1, 4);
     tcase_add_test(tcase, bad_tables_are_named);
     tcase_add_test(tcase, doubtful_tables_are_told);
     tcase_add_test(tcase, a_warm_truss_is_not_estimated);

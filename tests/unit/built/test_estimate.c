@@ -151,11 +151,11 @@ START_TEST(the_same_shape_is_factored_once)
     ck_assert_int_eq(hf_estimate_find(&p), HF_OK);
     ck_assert(p.is_settled);
     int n = p.linear.n_factor;
-    ck_assert_int_eq(hf_estimate_doubt(&p, move, sigma_N), HF_OK);
+    ck_assert_int_eq(hf_estimate_doubt(&p, move, sigma_N, NULL), HF_OK);
     ck_assert_int_eq(p.linear.n_factor, n);
     p.work.position_m[0] += 1e-4;
     double before = p.saddle.dual.band[0];
-    ck_assert_int_eq(hf_estimate_doubt(&p, move, sigma_N), HF_OK);
+    ck_assert_int_eq(hf_estimate_doubt(&p, move, sigma_N, NULL), HF_OK);
     ck_assert_int_eq(p.linear.n_factor, n + 1);
     ck_assert_double_ne(p.saddle.dual.band[0], before);
     before = p.saddle.dual.band[0];
@@ -337,7 +337,7 @@ START_TEST(the_estimate_is_the_most_probable)
         ck_assert_ptr_nonnull(move);
         estimate_twin(&t, &p);
         best = p.misfit;
-        ck_assert_int_eq(hf_estimate_doubt(&p, move, sigma_N), HF_OK);
+        ck_assert_int_eq(hf_estimate_doubt(&p, move, sigma_N, NULL), HF_OK);
         double here = 0, left = 0;
         for (size_t i = 0; i < n_moving; i++) {
             double d = t.work.position_m[i % 3 * (size_t)m->n_node + i / 3] -
