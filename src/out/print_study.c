@@ -82,6 +82,13 @@ static column axis_column(const hf_merged *m, int a)
     return c;
 }
 
+const char *hf_print_goal_words(const char *key, char words[HF_AXIS_NAME_SIZE])
+{
+    snprintf(words, HF_AXIS_NAME_SIZE, "%s", hf_ledger_goal(key));
+    show_name(words);
+    return words;
+}
+
 /* What a figure is called: of goal_1_tension_edge "goal tension edge", of facet_fit_gain_loss_at_10_GHz_dB "fitted loss
  * 10 GHz". */
 static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name[HF_AXIS_NAME_SIZE])
@@ -100,7 +107,8 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
         static const char *const stage[] = {"found", "GA", "LM", ""};
         snprintf(name, HF_AXIS_NAME_SIZE, m->main == HF_MERGED_FORM ? "psi" : "psi %s", stage[f->stage]);
     } else if (!strncmp(f->key, "goal_", 5)) {
-        snprintf(name, HF_AXIS_NAME_SIZE, "goal %s", f->key + 5 + strspn(f->key + 5, "0123456789_"));
+        char words[HF_AXIS_NAME_SIZE];
+        snprintf(name, HF_AXIS_NAME_SIZE, "goal %.*s", HF_AXIS_NAME_SIZE - 6, hf_print_goal_words(f->key, words));
     } else if (!strcmp(rest, "half_path_rms_m")) {
         snprintf(name, HF_AXIS_NAME_SIZE, "%s%s", fitted, of_facets ? "facets" : "half path");
     } else if (!strcmp(rest, "good_to_Hz")) {

@@ -15,4 +15,7 @@ void hf_print_study_json(const hf_merged *merged, FILE *file);
 #define HF_AXIS_NAME_SIZE 64
 const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE]);
 
+/* What a goal is called: "tension edge" of goal_1_tension_edge. Returns words. */
+const char *hf_print_goal_words(const char *key, char words[HF_AXIS_NAME_SIZE]);
+
 #endif

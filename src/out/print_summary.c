@@ -103,18 +103,11 @@ static void print_goal_unit(const char *unit, FILE *f)
     if (*unit) fprintf(f, " %s", !strcmp(unit, "m") ? "mm" : unit);
 }
 
-/* "tension_edge" of goal_1_tension_edge. */
-static const char *goal_of(const char *name)
-{
-    name += strcspn(name, "0123456789");
-    return name + strspn(name, "0123456789_");
-}
-
 /* Is psi, of the design itself, one of the goals? */
 static bool wants_psi(const hf_summary *s)
 {
     for (int k = 0; k < s->goals.n; k++)
-        if (!strcmp(goal_of(s->goals.name[k]), hf_goal_word[HF_GOAL_PSI])) return true;
+        if (!strcmp(hf_ledger_goal(s->goals.name[k]), hf_goal_word[HF_GOAL_PSI])) return true;
     return false;
 }
 
@@ -128,7 +121,7 @@ static void print_goals_gained(const hf_summary *s, const hf_form_result *r, FIL
 {
     for (int k = 0; k < s->goals.n && k < GOALS_TOLD; k++) {
         const char *unit = hf_ledger_goal_unit(s->goals.name[k]);
-        fprintf(f, "%s%s ", k ? ", " : "", goal_of(s->goals.name[k]));
+        fprintf(f, "%s%s ", k ? ", " : "", hf_ledger_goal(s->goals.name[k]));
         print_goal_value(s->form.goal[k], unit, f);
         fputs(" -> ", f);
         print_goal_value(r->goal[k], unit, f);
@@ -155,7 +148,7 @@ static void print_front_answer(const hf_summary *s, FILE *f)
     for (int k = 0; k < s->front.n_objective; k++) {
         const char *unit = hf_ledger_goal_unit(s->goals.name[k]);
         if (s->front.end[k] < 0) continue;
-        fprintf(f, "%s%s %s ", before, is_one ? "" : " least", goal_of(s->goals.name[k]));
+        fprintf(f, "%s%s %s ", before, is_one ? "" : " least", hf_ledger_goal(s->goals.name[k]));
         print_goal_value(s->front.row[s->front.end[k]].objective[k], unit, f);
         print_goal_unit(unit, f);
         before = ",";

@@ -5,6 +5,7 @@
 #include "base/json.h"
 #include "base/path.h"
 #include "out/merged.h"
+#include "out/print_study.h"
 #include "out/report_page.h"
 #include "store/ledger.h"
 
@@ -115,6 +116,8 @@ static void write_figures(const hf_merged *m, FILE *f)
         hf_json_text(&j, "stage", hf_merged_stage_word[figure->stage]);
         hf_json_text(&j, "key", figure->key);
         hf_json_text(&j, "unit", hf_ledger_unit(figure->key));
+        char words[HF_AXIS_NAME_SIZE];
+        if (!strncmp(figure->key, "goal_", 5)) hf_json_text(&j, "goal", hf_print_goal_words(figure->key, words));
         if (figure->is_same) hf_json_bool(&j, "same", true);
         if (figure->is_psi) hf_json_bool(&j, "psi", true);
         if (k == m->lead) hf_json_bool(&j, "lead", true);

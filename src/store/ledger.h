@@ -42,6 +42,7 @@ int hf_ledger_print_field(int i, const hf_summary *summary, char *text, size_t s
 
 /* Take the next value from the text of a list, which moves behind it; false at the end, or where it is damaged. */
 bool hf_ledger_next_value(int list, const char **text, char name[HF_GOAL_NAME_SIZE], double *value);
+const char *hf_ledger_goal(const char *name);      /* "tension_edge" of goal_1_tension_edge */
 const char *hf_ledger_goal_unit(const char *name); /* of goal_1_tension_edge: N */
 const char *hf_ledger_unit(const char *name);      /* the same, and of names that end in their unit */
 

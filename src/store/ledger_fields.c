@@ -152,10 +152,15 @@ const char *hf_ledger_unit(const char *name)
     return "";
 }
 
+const char *hf_ledger_goal(const char *name)
+{
+    name += strcspn(name, "0123456789");
+    return name + strspn(name, "0123456789_");
+}
+
 const char *hf_ledger_goal_unit(const char *name)
 {
-    const char *word = name + strcspn(name, "0123456789");
-    word += strspn(word, "0123456789_");
+    const char *word = hf_ledger_goal(name);
     for (int kind = 0; hf_goal_word[kind]; kind++) {
         size_t n = strlen(hf_goal_word[kind]);
         if (!strncmp(word, hf_goal_word[kind], n) && (!word[n] || word[n] == '_')) return hf_goal_unit[kind];

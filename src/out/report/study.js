@@ -52,14 +52,13 @@ const TOLD_IN = { m: ["mm", 1e3], Hz: ["GHz", 1e-9] };
 
 // What a figure is called: its title, the name of its values on an axis, where it stands among the others, the head of
 // its column in the table.
-function figureWords(key) {
+function figureWords({ key, goal: goalWords }) {
   const [, facets, fit, rest] = key.match(/^(facet_)?(fit_)?(.*)$/),
     after = fit ? ", after best fit" : "",
     fitted = fit ? ", fitted" : "",
     of = facets ? "facets" : "nodes";
   const loss = rest.match(/^gain_loss_at_(.*)_GHz_dB$/),
-    goal = key.match(/^goal_\d+_(.*)$/),
-    goalName = goal && clip(goal[1].replace(/_/g, " "), NAME_MAX);
+    goal = goalWords && clip(goalWords, NAME_MAX);
   if (key === "psi_m") return ["Surface error ψ", "ψ", 1, "ψ"];
   if (key === "psi_95_m") return ["ψ that 95 % of the nets as built keep", "ψ", 0, "ψ of 95 %"];
   if (key === "merit") return ["Merit: what all goals come to by their weights", "merit", 2, "Merit"];
@@ -69,7 +68,7 @@ function figureWords(key) {
   if (rest === "good_to_Hz")
     return [`Good to, at 1 dB of loss by the ${of}${after}`, "frequency", fit ? 6 : 5, `Good to${fitted}`];
   if (loss) return [`Loss of gain at ${loss[1]} GHz${after}`, "loss", fit ? 8 : 7, `Loss at ${loss[1]} GHz${fitted}`];
-  if (goal) return [`Goal ${goalName}`, goalName, 9, `Goal ${goalName}`];
+  if (goal) return [`Goal ${goal}`, goal, 9, `Goal ${goal}`];
   if (key === "inner_tension_ratio")
     return ["Tension ratio, inner cables", "T max / T min", 10, "Tension ratio, inner"];
   if (key === "boundary_tension_ratio")
@@ -81,11 +80,11 @@ const lowered = (title) => title.replace(/^[A-Z]/, (c) => c.toLowerCase());
 // The figures of a study, each with its stages: of: (i, stage) -> its value at a finished point, or null; drawn: the
 // stages in which it varies, by more than rounding.
 function readFigures(study, mainStage) {
-  const rows = study.figure.filter(({ key, psi }) => figureWords(key) && !psi);
+  const rows = study.figure.filter((row) => figureWords(row) && !row.psi);
   return [...new Set(rows.map(({ key }) => key))]
     .map((key) => {
-      const [title, name, rank, column] = figureWords(key),
-        own = rows.filter((row) => row.key === key),
+      const own = rows.filter((row) => row.key === key),
+        [title, name, rank, column] = figureWords(own[0]),
         [unit, scale] = key === "yield" ? ["%", 100] : TOLD_IN[own[0].unit] || [own[0].unit, 1],
         main = own.some(({ stage }) => stage === BUILT) ? BUILT : mainStage;
       const values = Object.fromEntries(study.output.filter((o) => o[key]).map((o) => [o.stage, o[key]]));
@@ -355,7 +354,7 @@ function writeCurves(study, axes, figures, mainStage) {
         return `${lead.title} still falls at ${end}, the end of its axis: go on ${a.goOn}.`;
       }),
     same.length ? `At all points: ${same.join("; ")}.` : "",
-    ...psi.map(({ key }) => `The goal ${key.replace(/^goal_\d+_/, "").replace(/_/g, " ")} is left out: it is ψ.`),
+    ...psi.map(({ goal }) => `The goal ${goal} is left out: it is ψ.`),
     ...fixed.map((a) => `All points that are done have ${headOf(a, a.only)}.`),
   ];
   const shares = lead
