@@ -91,10 +91,11 @@ void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, co
     const hf_model *m = &p->model;
     name_list chains = {0}, slack = {0};
     if (r->stop_reason == HF_STOPPED_RMS_CHANGE && r->residual_N > p->settings.form.residual_tolerance * m->reference_N)
-        hf_warning(messages,
-                   "stop: rms_change ended before equilibrium: nodal residual %.2e N, cable lengths off by up to %.2e; "
-                   "stop: residual iterates until they vanish",
-                   r->residual_N, r->length_error);
+        hf_warning(
+            messages,
+            "stop: rms_change ended before equilibrium of the %s shape: nodal residual %.2e N, cable lengths off "
+            "by up to %.2e; stop: residual iterates until they vanish",
+            stage, r->residual_N, r->length_error);
     if (r->stop_reason == HF_STOPPED_RESIDUAL && is_off_by_law(p, r))
         hf_warning(messages,
                    "by the laws of the elastic cables forces of up to %.2e N are out of balance, though those of the "

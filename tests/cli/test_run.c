@@ -34,7 +34,7 @@ START_TEST(json_has_the_keys_of_each_stage)
            "0 < a['optimize']['cpu_s'] <= 1.05 * a['optimize']['wall_s'] * a['threads']");
     /* standard output is the object alone; the warnings are for people, too */
     ck_assert_int_eq(said.out[0], '{');
-    ERR("warning: stop: rms_change ended before equilibrium");
+    ERR("warning: stop: rms_change ended before equilibrium of the form-finding shape: ");
     ERR("straight chains of length-controlled cables carry lateral load");
     ck_assert(is_there(out));
 }
@@ -144,7 +144,7 @@ START_TEST(show_gives_the_numbers_of_the_run)
     said.out = NULL;
     HIFDM(0, "show", out);
     ck_assert_msg(strncmp(said.out, summary, strlen(summary)) == 0, "%s\n%s", said.out, summary);
-    OUT("warning: stop: rms_change ended before equilibrium");
+    OUT("warning: stop: rms_change ended before equilibrium of the form-finding shape: ");
     free(summary);
 }
 END_TEST
