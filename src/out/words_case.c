@@ -54,6 +54,12 @@ const hf_word hf_words_case[] = {
      "On pages: psi by a turn, in mm per mm. `hifdm adjust` makes moves of it.",
      NULL},
     {"by a turn", "term", "", "See psi_by_cut.", NULL},
+    {"meets yield", "column of a study", "",
+     "Has the point the yield that its tolerance.yield wants? yes: the whole 95 % interval of its samples is above it; "
+     "no: "
+     "below; open: only more of them (tolerance.samples) can tell.",
+     NULL},
+    {"meets the yield", "column of a study", "", "See meets yield.", NULL},
     {"axis", "term", "",
      "Of a study: a key of the case and the values that it takes, such as form.pretension_N: [5, 10, 20].", NULL},
     {"best_by", "key of --json, of a merged study", "",
