@@ -122,6 +122,7 @@ static hf_status read_table(job *j, const char *path, hf_messages *messages)
     hf_status status = hf_csv_read(path, most + COLUMN_SPARE, t, messages);
     /* a fault in one line does not end the reading: one run reports the faults of all lines */
     if (status == HF_NO_MEMORY || t->n_row == 0 || t->n_fault > HF_FAULT_MAX) return status;
+    t->names_are_ids = true;
     status = hf_csv_find_columns(t, j->name, n_gene + 1, n_gene, j->where);
     if (t->n_fault > HF_FAULT_MAX) return status;
     size_t n = (size_t)t->n_row;

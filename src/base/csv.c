@@ -272,23 +272,23 @@ static const struct {
 enum { N_UNIT = sizeof unit / sizeof *unit, METRE = 0 };
 
 /* In which unit a column with this head holds what is called `name`; -1: it is another. */
-static int unit_of(const char *head, const char *name)
+static int unit_of(const hf_csv *t, const char *head, const char *name)
 {
     size_t n = strlen(name), stem = n - strlen(unit[METRE].suffix);
     if (!strcmp(head, name)) return METRE;
-    if (n <= strlen(unit[METRE].suffix) || strcmp(name + stem, unit[METRE].suffix) != 0) return -1;
+    if (t->names_are_ids || n <= strlen(unit[METRE].suffix) || strcmp(name + stem, unit[METRE].suffix) != 0) return -1;
     if (strncmp(head, name, stem) != 0) return -1;
     for (int u = 0; u < N_UNIT; u++)
         if (!strcmp(head + stem, unit[u].suffix)) return u;
     return -1;
 }
 
-static int find_name(const char *head, const char *const *names, int n_name)
+static int find_name(const hf_csv *t, const char *head, const char *const *names, int n_name)
 {
     for (int k = 0; k < n_name; k++)
         if (!strcmp(names[k], head)) return k;
     for (int k = 0; k < n_name; k++)
-        if (unit_of(head, names[k]) >= 0) return k;
+        if (unit_of(t, head, names[k]) >= 0) return k;
     return -1;
 }
 
@@ -303,7 +303,7 @@ int hf_csv_column(const hf_csv *t, const char *name)
 static bool has_header(const hf_csv *t, const char *const *names, int n_name)
 {
     for (int c = 0; c < t->n_column; c++)
-        if (find_name(t->header[c], names, n_name) >= 0) return true;
+        if (find_name(t, t->header[c], names, n_name) >= 0) return true;
     return false;
 }
 
@@ -365,7 +365,7 @@ hf_status hf_csv_find_columns(hf_csv *t, const char *const *names, int n_name, i
         where[k] = -1;
     if (n_required && !has_header(t, names, n_name)) return demand_columns(t, names, n_required, where);
     for (int c = 0; c < t->n_column; c++) {
-        int k = find_name(t->header[c], names, n_name);
+        int k = find_name(t, t->header[c], names, n_name);
         if (k < 0 && !is_ours(t, t->header[c])) {
             char hint[HF_TEXT_HINT_SIZE];
             hf_text_hint(t->header[c], names, n_name, hint);
@@ -385,7 +385,7 @@ double hf_csv_number(hf_csv *t, int row, int column, const char *id, const char 
     double value = NAN;
     const char *text = hf_csv_cell(t, row, column);
     char what[512]; /* ids may be long */
-    int u = unit_of(t->header[column], name);
+    int u = unit_of(t, t->header[column], name);
     if (u > METRE) name = t->header[column];
     snprintf(what, sizeof what, "%s must be a finite number, not ", name);
     if (hf_text_decimal(text, u > METRE ? unit[u].decimals : 0, &value))

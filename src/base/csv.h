@@ -25,6 +25,7 @@ typedef struct {
     int n_fault;
     int n_comma;             /* numbers with decimal commas: the first is a fault of its own, the others are counted */
     const char *const *ours; /* columns that our exports write and this reader does not need, up to NULL; or NULL */
+    bool names_are_ids;      /* of cables, say: column x_mm is no length x_m in another unit */
     bool has_doubles;        /* ids stand twice: what names others may be a consequence */
     int n_unknown;           /* names that are nothing in a table with doubles, each told once */
     const char *unknown[HF_CSV_UNKNOWN_MAX];

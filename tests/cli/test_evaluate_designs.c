@@ -95,6 +95,20 @@ START_TEST(tables_may_be_written_in_many_ways)
 }
 END_TEST
 
+/* Ids of cables that end like units of length are none. */
+START_TEST(ids_have_no_units)
+{
+    const char *net = net_with(nodes, "id,i,j,group,law,value\nrib_m,a,m,boundary,tension,10\n"
+                                      "rib_in,b,m,boundary,tension,10\nc3,c,m,boundary,tension,9\n");
+    const char *table = file_with("a.csv", "rib_m,rib_in,c3\n8,9,10\n");
+    HIFDM(0, "evaluate", net, "--designs", table);
+    ck_assert_str_eq(said.err, "");
+    const char *mistyped = file_with("b.csv", "rib_mm,rib_in,c3\n8,9,10\n");
+    HIFDM(2, "evaluate", net, "--designs", mistyped);
+    ERRS("error: %s:1: a column is missing: rib_m\n", mistyped);
+}
+END_TEST
+
 /* With the section its cap holds: a row that breaks it is no error. */
 START_TEST(infeasible_rows_are_results)
 {
@@ -190,6 +204,7 @@ Suite *suite_cli_evaluate_designs(void)
     tcase_add_test(tcase, symmetric_runs_store_who_follows_whom);
     tcase_add_test(tcase, a_net_without_the_symmetry_is_refused);
     tcase_add_test(tcase, tables_may_be_written_in_many_ways);
+    tcase_add_test(tcase, ids_have_no_units);
     tcase_add_test(tcase, infeasible_rows_are_results);
     tcase_add_test(tcase, a_template_is_a_table_of_the_base_design);
     tcase_add_test(tcase, faults_are_told_together);
