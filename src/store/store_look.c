@@ -97,10 +97,10 @@ hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, cons
 
 /* ---- look ---- */
 
-/* "--point night.h5:7", cut at the end of its room; returns text. */
+/* "--point night.h5:7", of as much of the path as there is room for; returns text. */
 static const char *name_point(const hf_front_origin *taken, char *text, size_t size)
 {
-    snprintf(text, size, taken->point ? "--point %s:%d" : "no --point", taken->path, taken->point);
+    snprintf(text, size, taken->point ? "--point %.250s:%d" : "no --point", taken->path, taken->point);
     return text;
 }
 
@@ -115,6 +115,9 @@ static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t
         snprintf(words, size, "%s", "keys that this version does not know");
     else if (hf_config_differences(&then, now, words, size) > 0)
         ;
+    else if (taken.point && taken.point == now->taken.point && strcmp(taken.sha256, now->taken.sha256) != 0)
+        snprintf(words, size, "it has %s, whose design is another one in the front that is there now",
+                 name_point(&now->taken, one, sizeof one));
     else if (strcmp(taken.sha256, now->taken.sha256) != 0)
         snprintf(words, size, "it has %s, and this run %s", name_point(&taken, one, sizeof one),
                  name_point(&now->taken, other, sizeof other));
