@@ -329,7 +329,7 @@ static hf_status take_point(run *r, hf_summary *s, hf_messages *messages)
     double start_s = hf_clock_s();
     hf_evaluate(&r->problem.evaluator, design, w, &s->polish);
     if (must_stop(r)) return stop_here(r, s, messages);
-    HF_TRY(hf_take_point_check(&r->problem, &r->taken, &s->polish, messages));
+    HF_TRY(hf_take_point_check(&r->problem, &r->taken, p, &s->polish, messages));
     hf_problem_warn(&r->problem, "taken", w, &s->polish, messages);
     s->polish_wall_s = hf_clock_s() - start_s;
     s->polish_is_result = true;

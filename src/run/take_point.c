@@ -120,8 +120,25 @@ hf_status hf_take_point_read(const char *point, hf_problem *p, hf_taken_point *t
 
 /* ---- its evaluation ---- */
 
-hf_status hf_take_point_check(const hf_problem *p, const hf_taken_point *taken, const hf_form_result *found,
+static hf_status check_bounds(const hf_problem *p, const hf_taken_point *taken, const hf_population *bounds,
                               hf_messages *messages)
+{
+    const hf_front_origin *origin = &p->settings.taken;
+    char name[HF_GENE_NAME_SIZE];
+    for (int k = 0; k < bounds->n_gene; k++) {
+        double value = taken->design[k], low = bounds->lower_N[k], high = bounds->upper_N[k],
+               room = SAME * (high - low);
+        if (!(value < low - room) && !(value > high + room)) continue;
+        hf_model_gene_name(&p->model, &p->scene, k, name, sizeof name);
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: point %d of its front has %.6g for '%s', which %s keeps from %.6g to %.6g: " MADE_OF,
+                        origin->path, origin->point, value, name, p->settings.path, low, high);
+    }
+    return HF_OK;
+}
+
+hf_status hf_take_point_check(const hf_problem *p, const hf_taken_point *taken, const hf_population *bounds,
+                              const hf_form_result *found, hf_messages *messages)
 {
     const hf_front_origin *origin = &p->settings.taken;
     char name[HF_GOAL_NAME_SIZE];
@@ -134,5 +151,5 @@ hf_status hf_take_point_check(const hf_problem *p, const hf_taken_point *taken, 
             return hf_error(messages, HF_BAD_CASE, "%s: point %d of its front has %s %.6g, and in %s %.6g: " MADE_OF,
                             origin->path, origin->point, hf_goals_name(&p->goals, k, name), taken->objective[k],
                             p->settings.path, found->goal[k]);
-    return HF_OK;
+    return check_bounds(p, taken, bounds, messages);
 }

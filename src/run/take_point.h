@@ -2,6 +2,7 @@
 #ifndef HIFDM_TAKE_POINT_H
 #define HIFDM_TAKE_POINT_H
 
+#include <hifdm/population.h>
 #include <hifdm/problem.h>
 #include <hifdm/result.h>
 
@@ -15,9 +16,9 @@ typedef struct {
  * The settings of the problem get its origin. HF_OK; HF_BAD_USAGE, HF_BAD_CASE, HF_IO, HF_NO_MEMORY, with a message. */
 hf_status hf_take_point_read(const char *point, hf_problem *problem, hf_taken_point *taken, hf_messages *messages);
 
-/* Is this its evaluation? HF_BAD_CASE, with a message, where the objectives are others than in the front: then it is of
- * another case. HF_NO_MEMORY. */
-hf_status hf_take_point_check(const hf_problem *problem, const hf_taken_point *taken, const hf_form_result *found,
-                              hf_messages *messages);
+/* Is this its evaluation, and is it within the bounds? HF_BAD_CASE, with a message, where an objective is another than
+ * in the front, or where it is not: then it is of another case. HF_NO_MEMORY. */
+hf_status hf_take_point_check(const hf_problem *problem, const hf_taken_point *taken, const hf_population *bounds,
+                              const hf_form_result *found, hf_messages *messages);
 
 #endif

@@ -117,6 +117,10 @@ START_TEST(a_wrong_point_is_refused)
     ERRS("what differs: it has --point %s:3, and this run --point %s:4. ", front, front);
     HIFDM(5, "run", c, "-o", path);
     ERRS("what differs: it has --point %s:3, and this run no --point. ", front);
+    HIFDM(0, "run", c, "-o", front, "--set", "optimize.front_points=9", "--restart", "--quiet");
+    HIFDM(5, "run", c, "--point", point(front, 3), "-o", path);
+    ERRS("what differs: it has --point %s:3, whose design is another one in the front that is there now. ", front);
+    HIFDM(0, "run", c, "-o", front, "--restart", "--quiet");
     HIFDM(2, "run", c, "--point", point(front, 8), "-o", other);
     ERRS("error: %s: its front has points 1 to 7, and no 8; `hifdm export %s --front FILE` lists them\n", front, front);
     const char *const none[] = {front, "f.h5:", "f.h5:0", "f.h5:-1", "f.h5:1.5", ":3", "3"};
@@ -156,6 +160,9 @@ START_TEST(a_front_of_another_case_is_refused)
     HIFDM(2, "run", c, "--set", "optimize.limits=[{limit: tension, set: boundary, bounds: [900, 901]}]", "--point",
           point(front, 3), "-o", other);
     ERRS("error: %s: point 3 of its front is no design of %s, ", front, c);
+    HIFDM(2, "run", c, "--set", "optimize.range_N=0.1", "--point", point(front, 3), "-o", other);
+    ERRS("error: %s: point 3 of its front has ", front);
+    ERRS(", which %s keeps from ", c);
     ck_assert(!is_there(other));
 }
 END_TEST
