@@ -196,7 +196,7 @@ START_TEST(least_tensions_are_kept)
         hf_adjust_free(&found);
         hf_estimate_free(&p);
     }
-    ck_assert_double_gt(lacks[0], 0.2);
+    ck_assert_double_gt(lacks[0], 0.1); /* else there would be nothing to keep */
     ck_assert_double_lt(lacks[1], 0.05);
     hf_goals_free(&j.goals);
     close_twin(&t);
