@@ -8,6 +8,7 @@
 #include "search/parallel.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define ROUNDS_MAX 12  /* linear models of a choice, or of the best there is */
@@ -40,7 +41,7 @@ typedef struct {
     double *turn_m;                         /* [n_cable of the model] of the last shape */
     double *doubt_m;                        /* [samples][n_dof] */
     double *doubt_N;                        /* [n_cable of the model] deviation of estimated tensions */
-    hf_estimate_cause cause;                /* of doubt_m */
+    hf_estimate_cause cause;                /* of doubt_m; rest_m then what they move after all turns */
     double *residual;                       /* [n_row] of the last shape */
     double *column;                         /* [n][n_row] change of residuals per metre of each cable, and behind it */
     double *left_open, *at_zero;            /* [samples][n_row]; [n_row] residuals without turns, by the linear model */
@@ -428,26 +429,28 @@ static double figure_moved(adjustment *a, const double *move_m)
     return sqrt(hf_dot(a->n_row, a->at_zero, a->at_zero));
 }
 
-/* The figure of each sample at the shape in `work`. */
-static hf_status sample_figures(adjustment *a, double figure_m[HF_ESTIMATE_SAMPLES])
-{
-    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[0].point, a->residual));
-    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++)
-        figure_m[s] = figure_moved(a, a->doubt_m + s * a->n_dof);
-    return HF_OK;
-}
-
-/* The same of the linear model's shape, whose stiffness makes other moves of the errors that are left. */
-static void sample_turned(adjustment *a, double figure_m[HF_ESTIMATE_SAMPLES])
+/* What the errors that are left move where the linear model was taken: with all turns its stiffness is another. */
+static void turn_doubt(adjustment *a)
 {
     const hf_built_linear *l = &a->estimate->linear;
-    adjust_room *r = &a->room[0];
     size_t n_cable = (size_t)l->built->model.n_cable;
+    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++)
+        hf_built_linear_apply(l, 1, a->cause.strain_N + s * n_cable, a->cause.rest_m + s * a->n_dof,
+                              a->room[0].scratch);
+}
+
+/* The figure of each sample at the shape in `work`, after this part of the turns. */
+static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_ESTIMATE_SAMPLES])
+{
+    double *move_m = a->room[0].answer_m;
+    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[0].point, a->residual));
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
-        memcpy(r->answer_m, a->cause.rest_m + s * a->n_dof, a->n_dof * sizeof *r->answer_m);
-        hf_built_linear_apply(l, 1, a->cause.strain_N + s * n_cable, r->answer_m, r->scratch);
-        figure_m[s] = figure_moved(a, r->answer_m);
+        const double *none_m = a->doubt_m + s * a->n_dof, *all_m = a->cause.rest_m + s * a->n_dof;
+        for (size_t i = 0; i < a->n_dof; i++)
+            move_m[i] = none_m[i] + part * (all_m[i] - none_m[i]);
+        figure_m[s] = figure_moved(a, move_m);
     }
+    return HF_OK;
 }
 
 /* ---- one move after the other ---- */
@@ -483,11 +486,11 @@ static hf_status make_order(adjustment *a, int n_move, move_order *o)
 }
 
 /* What the move gains by the samples, whose figures before it are taken over by those after it. */
-static hf_status judge_move(adjustment *a, double before_m[HF_ESTIMATE_SAMPLES], hf_adjust_move *move)
+static hf_status judge_move(adjustment *a, double part, double before_m[HF_ESTIMATE_SAMPLES], hf_adjust_move *move)
 {
     double gain_m[HF_ESTIMATE_SAMPLES], unwanted;
     memcpy(gain_m, before_m, sizeof gain_m);
-    HF_TRY(sample_figures(a, before_m));
+    HF_TRY(sample_figures(a, part, before_m));
     hf_estimate_spread(before_m, &move->expected_m, &unwanted);
     for (int s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
         gain_m[s] -= before_m[s];
@@ -500,6 +503,9 @@ static hf_status judge_move(adjustment *a, double before_m[HF_ESTIMATE_SAMPLES],
 /* a->trial: no moves; the shape is that without any. sample_m: figures of samples there, then after all moves. */
 static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_ESTIMATE_SAMPLES], hf_adjustment *found)
 {
+    double made = 0, all = 0;
+    for (size_t i = 0; i < a->n; i++)
+        all += abs(a->steps[i]);
     for (int k = 0; k < found->n_move; k++) {
         int i = hf_moves_next(&a->problem, a->steps, o->change_N, a->trial, o->fall_N);
         int e = a->task->cable[i];
@@ -510,7 +516,8 @@ static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_EST
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         move->after_N = status == HF_OK ? a->work.tension_N[e] : (double)NAN;
         move->n_slack = a->form.n_slack;
-        HF_TRY(judge_move(a, sample_m, move));
+        made += abs(move->steps);
+        HF_TRY(judge_move(a, a->is_current ? made / all : 0, sample_m, move));
     }
     return HF_OK;
 }
@@ -518,7 +525,7 @@ static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_EST
 static hf_status list_moves(adjustment *a, hf_adjustment *found)
 {
     hf_arena arena = {0};
-    double figure_m, sample_m[HF_ESTIMATE_SAMPLES], turned_m[HF_ESTIMATE_SAMPLES];
+    double figure_m, sample_m[HF_ESTIMATE_SAMPLES];
     for (size_t i = 0; i < a->n; i++)
         found->n_move += a->steps[i] != 0;
     HF_TRY(HF_ARENA_MAKE(&arena, found->move = hf_arena_take(&arena, (size_t)found->n_move, sizeof *found->move)));
@@ -527,10 +534,10 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
     hf_status status = a->is_current ? HF_OK : linearise(a);
     if (status != HF_OK && status != HF_SINGULAR) return status; /* then in the order of the last linear model */
     a->is_current = status == HF_OK;
-    if (a->is_current) sample_turned(a, turned_m);
+    if (a->is_current) turn_doubt(a);
     memset(a->trial, 0, a->n * sizeof *a->trial);
     HF_TRY(solve_steps(a, a->trial, &figure_m));
-    HF_TRY(sample_figures(a, sample_m));
+    HF_TRY(sample_figures(a, 0, sample_m));
     hf_estimate_spread(sample_m, &found->doubt_m[0], &found->spread_m[0]);
     for (int e = 0; e < a->problem.n_tension; e++)
         found->n_maybe_slack += a->work.tension_N[e] < a->doubt_N[e];
@@ -540,7 +547,7 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
     arena.block = order.block;
     hf_arena_free(&arena);
     HF_TRY(status);
-    hf_estimate_spread(a->is_current ? turned_m : sample_m, &found->doubt_m[1], &found->spread_m[1]);
+    hf_estimate_spread(sample_m, &found->doubt_m[1], &found->spread_m[1]);
     return HF_OK;
 }
 
