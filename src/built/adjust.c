@@ -8,7 +8,6 @@
 #include "search/parallel.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define ROUNDS_MAX 12  /* linear models of a choice, or of the best there is */
@@ -41,7 +40,7 @@ typedef struct {
     double *turn_m;                         /* [n_cable of the model] of the last shape */
     double *doubt_m;                        /* [samples][n_dof] */
     double *doubt_N;                        /* [n_cable of the model] deviation of estimated tensions */
-    hf_estimate_cause cause;                /* of doubt_m; rest_m then what they move after all turns */
+    hf_estimate_cause cause;                /* of doubt_m */
     double *residual;                       /* [n_row] of the last shape */
     double *column;                         /* [n][n_row] change of residuals per metre of each cable, and behind it */
     double *left_open, *at_zero;            /* [samples][n_row]; [n_row] residuals without turns, by the linear model */
@@ -420,35 +419,24 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
 
 /* ---- what is left open ---- */
 
-/* The figure of the shape in `work`, moved. */
-static double figure_moved(adjustment *a, const double *move_m)
+/* The figure of each sample at the shape in `work`, whose stiffness answers the errors that are left. Where it has none
+ * the moves are those of the estimated shape. */
+static hf_status sample_figures(adjustment *a, double figure_m[HF_ESTIMATE_SAMPLES])
 {
-    push_move(a, &a->room[0], move_m, a->at_zero); /* which nobody reads any more */
-    for (size_t r = 0; r < a->n_row; r++)
-        a->at_zero[r] += a->residual[r];
-    return sqrt(hf_dot(a->n_row, a->at_zero, a->at_zero));
-}
-
-/* What the errors that are left move where the linear model was taken: with all turns its stiffness is another. */
-static void turn_doubt(adjustment *a)
-{
-    const hf_built_linear *l = &a->estimate->linear;
+    hf_built_linear *l = &a->estimate->linear;
+    adjust_room *r = &a->room[0];
     size_t n_cable = (size_t)l->built->model.n_cable;
-    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++)
-        hf_built_linear_apply(l, 1, a->cause.strain_N + s * n_cable, a->cause.rest_m + s * a->n_dof,
-                              a->room[0].scratch);
-}
-
-/* The figure of each sample at the shape in `work`, after this part of the turns. */
-static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_ESTIMATE_SAMPLES])
-{
-    double *move_m = a->room[0].answer_m;
-    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[0].point, a->residual));
+    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &r->point, a->residual));
+    hf_status status = hf_built_linear_take(l, &a->work);
+    if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
-        const double *none_m = a->doubt_m + s * a->n_dof, *all_m = a->cause.rest_m + s * a->n_dof;
-        for (size_t i = 0; i < a->n_dof; i++)
-            move_m[i] = none_m[i] + part * (all_m[i] - none_m[i]);
-        figure_m[s] = figure_moved(a, move_m);
+        memcpy(r->answer_m, (status == HF_OK ? a->cause.rest_m : a->doubt_m) + s * a->n_dof,
+               a->n_dof * sizeof *r->answer_m);
+        if (status == HF_OK) hf_built_linear_apply(l, 1, a->cause.strain_N + s * n_cable, r->answer_m, r->scratch);
+        push_move(a, r, r->answer_m, a->at_zero); /* which nobody reads any more */
+        for (size_t i = 0; i < a->n_row; i++)
+            a->at_zero[i] += a->residual[i];
+        figure_m[s] = sqrt(hf_dot(a->n_row, a->at_zero, a->at_zero));
     }
     return HF_OK;
 }
@@ -486,11 +474,11 @@ static hf_status make_order(adjustment *a, int n_move, move_order *o)
 }
 
 /* What the move gains by the samples, whose figures before it are taken over by those after it. */
-static hf_status judge_move(adjustment *a, double part, double before_m[HF_ESTIMATE_SAMPLES], hf_adjust_move *move)
+static hf_status judge_move(adjustment *a, double before_m[HF_ESTIMATE_SAMPLES], hf_adjust_move *move)
 {
     double gain_m[HF_ESTIMATE_SAMPLES], unwanted;
     memcpy(gain_m, before_m, sizeof gain_m);
-    HF_TRY(sample_figures(a, part, before_m));
+    HF_TRY(sample_figures(a, before_m));
     hf_estimate_spread(before_m, &move->expected_m, &unwanted);
     for (int s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
         gain_m[s] -= before_m[s];
@@ -503,9 +491,6 @@ static hf_status judge_move(adjustment *a, double part, double before_m[HF_ESTIM
 /* a->trial: no moves; the shape is that without any. sample_m: figures of samples there, then after all moves. */
 static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_ESTIMATE_SAMPLES], hf_adjustment *found)
 {
-    double made = 0, all = 0;
-    for (size_t i = 0; i < a->n; i++)
-        all += abs(a->steps[i]);
     for (int k = 0; k < found->n_move; k++) {
         int i = hf_moves_next(&a->problem, a->steps, o->change_N, a->trial, o->fall_N);
         int e = a->task->cable[i];
@@ -516,8 +501,7 @@ static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_EST
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         move->after_N = status == HF_OK ? a->work.tension_N[e] : (double)NAN;
         move->n_slack = a->form.n_slack;
-        made += abs(move->steps);
-        HF_TRY(judge_move(a, a->is_current ? made / all : 0, sample_m, move));
+        HF_TRY(judge_move(a, sample_m, move));
     }
     return HF_OK;
 }
@@ -526,6 +510,7 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
 {
     hf_arena arena = {0};
     double figure_m, sample_m[HF_ESTIMATE_SAMPLES];
+    move_order order = {0};
     for (size_t i = 0; i < a->n; i++)
         found->n_move += a->steps[i] != 0;
     HF_TRY(HF_ARENA_MAKE(&arena, found->move = hf_arena_take(&arena, (size_t)found->n_move, sizeof *found->move)));
@@ -534,20 +519,20 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
     hf_status status = a->is_current ? HF_OK : linearise(a);
     if (status != HF_OK && status != HF_SINGULAR) return status; /* then in the order of the last linear model */
     a->is_current = status == HF_OK;
-    if (a->is_current) turn_doubt(a);
+    HF_TRY(make_order(a, found->n_move, &order)); /* by the linear model, which samples take elsewhere */
     memset(a->trial, 0, a->n * sizeof *a->trial);
-    HF_TRY(solve_steps(a, a->trial, &figure_m));
-    HF_TRY(sample_figures(a, 0, sample_m));
-    hf_estimate_spread(sample_m, &found->doubt_m[0], &found->spread_m[0]);
-    for (int e = 0; e < a->problem.n_tension; e++)
-        found->n_maybe_slack += a->work.tension_N[e] < a->doubt_N[e];
-    move_order order = {0};
-    status = make_order(a, found->n_move, &order);
-    if (status == HF_OK) status = make_moves(a, &order, sample_m, found);
+    status = solve_steps(a, a->trial, &figure_m);
+    if (status == HF_OK) status = sample_figures(a, sample_m);
+    if (status == HF_OK) {
+        hf_estimate_spread(sample_m, &found->doubt_m[0], &found->spread_m[0]);
+        for (int e = 0; e < a->problem.n_tension; e++)
+            found->n_maybe_slack += a->work.tension_N[e] < a->doubt_N[e];
+        status = make_moves(a, &order, sample_m, found);
+    }
     arena.block = order.block;
     hf_arena_free(&arena);
     HF_TRY(status);
-    hf_estimate_spread(sample_m, &found->doubt_m[1], &found->spread_m[1]);
+    hf_estimate_spread(sample_m, &found->doubt_m[1], &found->spread_m[1]); /* of the last one, with all moves */
     return HF_OK;
 }
 

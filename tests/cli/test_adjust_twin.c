@@ -90,6 +90,7 @@ START_TEST(what_turns_leave_open)
     TWIN("measured", shape_of("true", ""), measured, "1e-5", seed);
     HIFDM(0, "adjust", path, "--measured", measured, "-o", temp("moves.csv"), "--json");
     double told = number_after("\"adjusted_expected_m\": "), sigma = number_after("\"adjusted_sigma_m\": ");
+    EXPECT(out_as("a.json"), "--", "a['moves'][-1]['expected_m'] == a['adjusted_expected_m']");
     ck_assert_double_lt(fabs(turned_m(temp("moves.csv"), design, "") - told), 10 * sigma);
 }
 END_TEST
