@@ -72,6 +72,9 @@ void hf_front_tabulate(const hf_front *front, hf_front_table *table);
 /* Do the objectives not conflict: is one design best in all of them, as far as was found? */
 bool hf_front_agrees(const hf_front_table *table);
 
+/* The number, from 1, of a point to look at first: the knee, else an end; 0 where the front has none. */
+int hf_front_suggested(const hf_front_table *table);
+
 /* Is a as good as b in all objectives, and better in one? */
 bool hf_front_dominates(int n_objective, const double *a, const double *b);
 

@@ -532,6 +532,7 @@ static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, d
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_reach_check(p, messages));
     hf_problem_warn_of_polish(p, messages);
+    hf_problem_warn_of_front(p, messages);
     if (print_optimize_time(p, v, threads, most_s, f) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory");
     return HF_OK;

@@ -46,6 +46,20 @@ static hf_status check_request(const hf_options *o, hf_messages *messages)
     return HF_OK;
 }
 
+/* Once, whatever formats are asked for: one that writes every shape names them. */
+static void warn_of_front(const hf_options *o, hf_messages *messages)
+{
+    hf_summary summary;
+    hf_messages unwanted = {0};
+    bool has_one_shape = false;
+    for (int i = 0; i < HF_N_EXPORTER; i++)
+        has_one_shape |= o->export_to[i] && hf_exporter_table[i]->takes_stage;
+    if (!has_one_shape || o->stage) return;
+    if (hf_store_read_summary(o->file, &summary, &unwanted) == HF_OK)
+        hf_export_warn_of_front(o->file, &summary, o->state, messages);
+    hf_messages_free(&unwanted);
+}
+
 static hf_status command_export(const hf_options *o, FILE *file, hf_messages *messages)
 {
     static char said[HF_N_EXPORTER][HF_EXPORT_SAID_SIZE];
@@ -63,6 +77,7 @@ static hf_status command_export(const hf_options *o, FILE *file, hf_messages *me
     for (int i = 0; i < HF_N_EXPORTER && status != HF_OK; i++)
         if (is_new[i]) rmdir(o->export_to[i]); /* a folder that was made for files which it did not get */
     HF_TRY(status);
+    warn_of_front(o, messages);
     for (int i = 0; i < HF_N_EXPORTER; i++)
         if (o->export_to[i]) hf_print_line(file, "%s", said[i]);
     return HF_OK;

@@ -71,6 +71,18 @@ hf_status hf_export_read(const hf_export_request *o, hf_export_stored *stored, h
     return hf_store_read_shape(o->file, stage, &stored->shape, messages);
 }
 
+void hf_export_warn_of_front(const char *file, const hf_summary *s, bool is_state, hf_messages *messages)
+{
+    int point = s->has_front ? hf_front_suggested(&s->front) : 0;
+    bool is_end = !is_state && hf_store_result_stage(s) != HF_STAGE_FORM;
+    if (!point) return;
+    hf_warning(messages,
+               "%s: no point of its front is taken: the shape is %s%s; `hifdm run %s --point %s:%d -o point%d.h5`, "
+               "with the --set of the front, makes point %d a result",
+               file, is_end ? "the end of the front with the least " : "the form-finding's, before any optimisation",
+               is_end ? s->goals.name[0] : "", s->case_path, file, point, point, point);
+}
+
 void hf_export_free(hf_export_stored *stored)
 {
     hf_shape_free(&stored->shape);

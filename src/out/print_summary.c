@@ -404,7 +404,7 @@ static void print_front(const hf_summary *s, const char *path, FILE *f)
 {
     const hf_front_table *t = &s->front;
     bool is_one = hf_front_agrees(t);
-    int row = t->knee >= 0 ? t->knee : t->end[0];
+    int point = hf_front_suggested(t);
     if (is_one)
         fputs("  front         the objectives do not conflict: one design is best in all of them\n", f);
     else
@@ -414,9 +414,30 @@ static void print_front(const hf_summary *s, const char *path, FILE *f)
     for (int k = 0; k < t->n_objective && !is_one; k++)
         if (t->end[k] >= 0) print_front_point(s, "end", t->end[k], f);
     if (t->knee >= 0) print_front_point(s, "knee", t->knee, f);
-    if (path && s->finished && row >= 0)
+    if (path && s->finished && point)
         hf_print_line(f, "                a point becomes a result by the same run with --point %s:%d -o point%d.h5",
-                      path, t->place[row] + 1, t->place[row] + 1);
+                      path, point, point);
+}
+
+/* What a front has beside its points is of no design among them. */
+static void print_form_parts(const hf_summary *s, hf_stage result, FILE *f)
+{
+    bool is_form = result == HF_STAGE_FORM;
+    const struct {
+        bool is_there;
+        const char *name;
+    } part[] = {{is_form && s->measures[HF_STAGE_FORM].is_measured, "surface"},
+                {is_form && s->pattern[HF_STAGE_FORM].n_frequency > 0, "pattern"},
+                {s->n_state > 0, "cases"},
+                {s->has_tolerance, "as built"}};
+    const char *before = "                ";
+    for (int i = 0; i < (int)(sizeof part / sizeof *part); i++) {
+        if (!part[i].is_there) continue;
+        fprintf(f, "%s%s", before, part[i].name);
+        before = ", ";
+    }
+    if (*before == ',')
+        fputs(": of the form-finding's shape, no point of the front; --point gives those of a point\n", f);
 }
 
 /* The states of the net as built, a line each. */
@@ -519,6 +540,7 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
     print_errors(s, result, f);
     if (style.verbose) hf_print_details(s, f);
     if (s->has_front) print_front(s, path, f);
+    if (s->has_front) print_form_parts(s, result, f);
     if (result != HF_STAGE_NONE) print_pattern(&s->pattern[result], f);
     print_states(s, f);
     if (s->has_tolerance) hf_print_tolerance(&s->tolerance, style.verbose, f);

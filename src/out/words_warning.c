@@ -129,6 +129,14 @@ const hf_word hf_words_warning[] = {
      "The point that was taken is none that one would choose: another is better in an objective and as good in all. "
      "`hifdm export --front` has the marks.",
      "is dominated: another point of its front"},
+    {"front_is_no_design", "warning", "",
+     "A front has many designs. The nets as built of `cases` and `tolerance` are cut for one, and without a point that "
+     "is the form-finding's. `hifdm run CASE --point FRONT.h5:N` takes point N of a front that was found before.",
+     "a front is no single design"},
+    {"no_point_taken", "warning", "",
+     "The file has a front, and what was read of it is no point that one would choose: mostly the net as form-finding "
+     "has it, before any optimisation. Make a result of a point and use that one; with --stage the shape is meant.",
+     "no point of its front is taken"},
     {"front_failed", "warning", "",
      "Points of the front have no design within their limits. Fewer points, wider ranges or other objectives; the "
      "other points hold.",

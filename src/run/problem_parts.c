@@ -327,6 +327,17 @@ void hf_problem_warn_of_polish(const hf_problem *p, hf_messages *messages)
         hf_warning(messages, HF_PROBLEM_POLISH_NEEDS, hf_problem_no_slopes(p));
 }
 
+void hf_problem_warn_of_front(const hf_problem *p, hf_messages *messages)
+{
+    const hf_case *c = &p->settings;
+    if (c->optimize.n_objective == 0 || (p->states.n == 0 && !c->has_tolerance)) return;
+    hf_warning(messages,
+               "optimize.objectives: a front is no single design, so %s%s%s are of the form-finding's net, before "
+               "any optimisation; `hifdm run %s --point FRONT.h5:N -o point.h5` has point N of the front there",
+               p->states.n ? "cases" : "", p->states.n && c->has_tolerance ? " and " : "",
+               c->has_tolerance ? "tolerance" : "", c->path);
+}
+
 static hf_status check_base(const hf_problem *p, hf_messages *messages)
 {
     for (int k = 0; k < p->model.n_gene; k++)

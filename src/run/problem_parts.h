@@ -44,6 +44,9 @@ const char *hf_problem_no_slopes(const hf_problem *problem);
  * it, and cannot be. */
 void hf_problem_warn_of_polish(const hf_problem *problem, hf_messages *messages);
 
+/* Of a front, when no point of it is taken: cases and tolerance are not of its designs. */
+void hf_problem_warn_of_front(const hf_problem *problem, hf_messages *messages);
+
 /* The evaluator; hf_problem_base sets problem->evaluator to it. It borrows the problem. */
 hf_evaluator hf_problem_evaluator(const hf_problem *problem);
 

@@ -406,6 +406,7 @@ static hf_status follow_front(run *r, hf_summary *s, hf_messages *messages)
  * with it; or by that alone. */
 static hf_status find_front(run *r, hf_summary *s, hf_messages *messages)
 {
+    hf_problem_warn_of_front(&r->problem, messages);
     if (!r->plan.kind) return follow_front(r, s, messages);
     HF_TRY(evolve(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);

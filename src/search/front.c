@@ -180,6 +180,12 @@ bool hf_front_agrees(const hf_front_table *t)
     return t->n_on == 1 && t->n_failed == 0;
 }
 
+int hf_front_suggested(const hf_front_table *t)
+{
+    int row = t->knee >= 0 ? t->knee : t->end[0];
+    return row < 0 ? 0 : t->place[row] + 1;
+}
+
 static int row_of(const hf_front_table *t, int place)
 {
     int row = place < 0 ? -1 : t->n_row - 1;

@@ -87,6 +87,44 @@ START_TEST(what_is_built_is_built_for_the_point)
 }
 END_TEST
 
+/* What a front has beside its points is of none of them: run, check, summary and exports say so, once each. */
+START_TEST(what_is_of_no_point_is_told)
+{
+    static const char beside[] = "a front is no single design, so cases and tolerance are of the form-finding's net",
+                      untaken[] = ": no point of its front is taken: the shape is the form-finding's, ";
+    const char *c = file_with("d.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT), *front = temp("f.h5"),
+               *path = temp("p.h5"), *cut = temp("cut.csv"), *said_at;
+    HIFDM(0, "check", c);
+    ERR(beside);
+    HIFDM(0, "run", c, "-o", front);
+    OUT("                cases, as built: of the form-finding's shape, no point of the front; --point gives those of a "
+        "point\n  cases  ");
+    said_at = strstr(said.err, beside);
+    ck_assert(said_at && !strstr(said_at + 1, beside));
+    ERRS("`hifdm run %s --point FRONT.h5:N -o point.h5`", c);
+    HIFDM(0, "export", front, "--cutlist", cut, "--csv", temp("csv"));
+    said_at = strstr(said.err, untaken);
+    ck_assert(said_at && !strstr(said_at + 1, untaken));
+    ERRS("; `hifdm run %s --point %s:", c, front);
+    HIFDM(0, "export", front, "--csv", temp("same"), "--case", "same");
+    ERR(untaken);
+    HIFDM(0, "export", front, "--cutlist", cut, "--stage", "form", "--force");
+    ck_assert_str_eq(said.err, "");
+    HIFDM(0, "export", front, "--vtk", temp("vtk"), "--front", temp("front.csv"));
+    ck_assert_str_eq(said.err, "");
+    SHELL(0, "cut -d, -f1-4 \"$1\"/nodes.csv >\"$2\"", temp("csv"), temp("measured.csv"));
+    HIFDM(0, "adjust",
+          file_with("e.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT
+                    "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, sigma_m: 1e-4}\n"),
+          "--measured", temp("measured.csv"), "--result", front, "-o", temp("m.csv"));
+    ERR(untaken);
+    HIFDM(0, "run", c, "--point", point(front, 3), "-o", path);
+    ck_assert(!strstr(said.err, beside) && !strstr(said.out, "no point of the front"));
+    HIFDM(0, "export", path, "--cutlist", cut, "--force");
+    ck_assert_str_eq(said.err, "");
+}
+END_TEST
+
 /* Fronts of generations, whose objectives were found by another solver, and of a net on its truss. */
 START_TEST(points_of_generations_are_taken)
 {
@@ -94,6 +132,8 @@ START_TEST(points_of_generations_are_taken)
 #define GENERATIONS                                                                                                    \
     c, "--set", "optimize.generations=5", "--set", "optimize.objectives=[{goal: psi}, {goal: displacement}]"
     HIFDM(0, "run", GENERATIONS, "-o", front);
+    HIFDM(0, "export", front, "--csv", temp("end"));
+    ERR(": no point of its front is taken: the shape is the end of the front with the least goal_0_psi; ");
     HIFDM(0, "run", GENERATIONS, "--point", point(front, 2), "-o", path);
     EXPECT(front, path, "--", "near(b['goals/polish'][0], a['front/objective'][1, 0], 1e-6)",
            "near(b['goals/polish'][1], a['front/objective'][1, 1], 1e-6)",
@@ -200,6 +240,7 @@ Suite *suite_cli_point(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, a_point_becomes_a_result);
     tcase_add_test(tests, what_is_built_is_built_for_the_point);
+    tcase_add_test(tests, what_is_of_no_point_is_told);
     tcase_add_test(tests, points_of_generations_are_taken);
     tcase_add_test(tests, a_wrong_point_is_refused);
     tcase_add_test(tests, a_front_of_another_case_is_refused);
