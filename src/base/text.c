@@ -85,7 +85,8 @@ bool hf_text_double(const char *text, double *value)
     return hf_text_decimal(text, 0, value);
 }
 
-#define DIGITS_MOST 400 /* of a number whose point is moved in its text */
+#define DIGITS_MOST 400    /* of a number whose point is moved in its text */
+#define EXPONENT_MOST 9999 /* beyond it so many digits are 0 or too large in any case */
 
 bool hf_text_decimal(const char *text, int decimals, double *value)
 {
@@ -111,7 +112,8 @@ bool hf_text_decimal(const char *text, int decimals, double *value)
     if (*p) return false;
     if (decimals != 0) {
         long exponent = text[n] ? strtol(text + n + 1, NULL, 10) : 0;
-        if (n > DIGITS_MOST || labs(exponent) > INT_MAX) return false;
+        if (n > DIGITS_MOST) return false;
+        exponent = exponent > EXPONENT_MOST ? EXPONENT_MOST : exponent < -EXPONENT_MOST ? -EXPONENT_MOST : exponent;
         snprintf(moved, sizeof moved, "%.*se%ld", n, text, exponent + decimals);
         text = moved;
     }

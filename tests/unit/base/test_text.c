@@ -46,6 +46,8 @@ START_TEST(a_point_is_moved_in_the_text)
     ck_assert_int_gt(n_other, 0);
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
         ck_assert_msg(!hf_text_decimal(bad[k], -3, &value), "%s", bad[k]);
+    ck_assert(hf_text_decimal("1e-99999999999999999999", -3, &value) && value == 0);
+    ck_assert(hf_text_decimal("0e99999999999999999999", -3, &value) && value == 0);
 }
 END_TEST
 
