@@ -96,7 +96,7 @@ int hf_flat_shape(hf_flat *flat, const double *design);
 int hf_flat_slopes(hf_flat *flat, int n, const double *design, double *slope);
 
 /* Called during a run; another result than 0 stops it. phase: of hf_flat_word; done, all: generations, samples,
- * or steps of Levenberg-Marquardt. */
+ * steps of Levenberg-Marquardt, or points of a front. */
 typedef int hf_flat_observer(void *context, int phase, long done, long all, long evaluations, double best_psi_m,
                              double elapsed_s);
 

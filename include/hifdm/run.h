@@ -37,6 +37,9 @@ typedef struct {
      * is of that design. */
     int iteration, iterations, first_iteration;
     double merit;
+    /* Of polish, of a front (else 0): its points that are done, and are asked for; steps of the searches for them. */
+    int points, points_all;
+    long steps;
 } hf_run_progress;
 
 /* Called at the start of each phase, after each generation when it has been stored, and after each step of

@@ -78,6 +78,16 @@ static void show_step(hf_progress *p, const hf_run_progress *now)
     p->is_shown = is_line;
 }
 
+static void show_front(hf_progress *p, const hf_run_progress *now)
+{
+    char since[32];
+    bool is_line = p->mode == HF_PROGRESS_LINE;
+    hf_print_duration(now->elapsed_s, since, sizeof since);
+    fprintf(p->file, "%sfront: point %d/%d  %ld steps of Levenberg-Marquardt  %s so far%s", is_line ? "\r\033[K" : "",
+            now->points, now->points_all, now->steps, since, is_line ? "" : "\n");
+    p->is_shown = is_line;
+}
+
 static void show_json(const hf_progress *p, const hf_run_progress *now)
 {
     hf_json j = {.file = p->file};
@@ -90,6 +100,12 @@ static void show_json(const hf_progress *p, const hf_run_progress *now)
             hf_json_number(&j, "sigma_scale", now->sigma_scale);
         else
             hf_json_number(&j, "samples_per_s", rate_per_s(now));
+        hf_json_number(&j, "elapsed_s", now->elapsed_s);
+    }
+    if (now->points_all > 0) {
+        hf_json_integer(&j, "point", now->points);
+        hf_json_integer(&j, "points", now->points_all);
+        hf_json_integer(&j, "steps", now->steps);
         hf_json_number(&j, "elapsed_s", now->elapsed_s);
     }
     if (now->phase == HF_RUN_POLISH && now->iterations > 0) {
@@ -118,13 +134,14 @@ static void show_json(const hf_progress *p, const hf_run_progress *now)
 void hf_progress_show(void *progress, const hf_run_progress *now)
 {
     hf_progress *p = progress;
-    bool samples = now->phase == HF_RUN_TOLERANCE, steps = now->phase == HF_RUN_POLISH;
+    bool samples = now->phase == HF_RUN_TOLERANCE, steps = now->phase == HF_RUN_POLISH, front = now->points_all > 0;
     bool is_first = samples ? now->evaluations == 0
+                    : front ? now->steps == 0
                     : steps ? now->iteration <= now->first_iteration
                             : now->generation <= now->first_generation + 1;
     bool is_last = (samples || steps || now->generation > 0) && now->is_last;
     bool has_line = samples ? now->evaluations > 0 || p->mode == HF_PROGRESS_LINE
-                    : steps ? now->iterations > 0
+                    : steps ? now->iterations > 0 || front
                             : now->phase == HF_RUN_EVOLVE;
     if (is_first) p->last_s = p->mode == HF_PROGRESS_LOG ? 0 : -interval_s[p->mode];
     if (p->mode == HF_PROGRESS_NONE || (!has_line && p->mode != HF_PROGRESS_JSONL)) return;
@@ -135,6 +152,8 @@ void hf_progress_show(void *progress, const hf_run_progress *now)
         show_json(p, now);
     else if (samples)
         show_samples(p, now);
+    else if (front)
+        show_front(p, now);
     else if (steps)
         show_step(p, now);
     else

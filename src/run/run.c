@@ -390,9 +390,7 @@ static bool wants_polish(const run *r, const hf_summary *s)
 static hf_status follow_front(run *r, hf_summary *s, hf_messages *messages)
 {
     double begin_s = hf_clock_s();
-    observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});
-    hf_status status =
-        hf_run_front(&r->problem, &r->optimiser.population, r->request->stop_requested, &r->front, s, messages);
+    hf_status status = hf_run_front(r->request, &r->problem, &r->optimiser.population, &r->front, s, messages);
     if (must_stop(r)) {
         snprintf(r->stopped_at, sizeof r->stopped_at, " in the front by Levenberg-Marquardt, whose %.0f s begin anew",
                  hf_clock_s() - begin_s);

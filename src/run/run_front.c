@@ -5,6 +5,7 @@
 #include "run/problem_parts.h"
 #include "search/trade.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,27 +74,57 @@ static double *make_starts(const hf_problem *p, const hf_population *bounds, con
     return start;
 }
 
-hf_status hf_run_front(hf_problem *p, const hf_population *bounds, const volatile sig_atomic_t *stop, hf_front *front,
+/* How far the front is, for the observer of the run. */
+typedef struct {
+    const hf_run_request *request;
+    double start_s;
+    int n_point; /* asked for */
+} progress;
+
+static void tell(const progress *p, int n_point, long n_step, bool is_last)
+{
+    const hf_run_request *q = p->request;
+    const hf_run_progress now = {.phase = HF_RUN_POLISH,
+                                 .is_last = is_last,
+                                 .best_psi_m = (double)NAN,
+                                 .elapsed_s = hf_clock_s() - p->start_s,
+                                 .merit = (double)NAN,
+                                 .points = n_point,
+                                 .points_all = p->n_point,
+                                 .steps = n_step};
+    if (q->observer) q->observer(q->observer_context, &now);
+}
+
+static void tell_step(void *context, int n_point, long n_step)
+{
+    tell(context, n_point, n_step, false);
+}
+
+hf_status hf_run_front(const hf_run_request *q, hf_problem *p, const hf_population *bounds, hf_front *front,
                        hf_summary *s, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
+    progress told = {q, hf_clock_s(), o->front_points};
+    hf_trade_watcher watcher = {.tell = tell_step, .context = &told, .is_telling = ATOMIC_FLAG_INIT};
     hf_trade trade = {.evaluator = &p->evaluator,
                       .lower = bounds->lower_N,
                       .upper = bounds->upper_N,
                       .n_point = o->front_points,
                       .max_iterations = o->polish_iterations,
                       .n_thread = p->batch.n_thread,
-                      .stop = stop};
+                      .stop = q->stop_requested,
+                      .watcher = q->observer ? &watcher : NULL};
     char text[HF_NO_DESIGN_SIZE];
     int end = -1, has_earlier = front->n_point > 0;
-    double start_s = hf_clock_s(), *start = make_starts(p, bounds, front, &trade.n_start);
+    double *start = make_starts(p, bounds, front, &trade.n_start);
     hf_front found = {0};
     trade.start = start;
+    tell(&told, 0, 0, false);
     bool applies = hf_trade_applies(&p->evaluator);
     hf_status status = !start ? HF_NO_MEMORY : applies ? hf_trade_find(&trade, &found, &end) : HF_BAD_CASE;
     free(start);
     if (status != HF_OK) hf_front_free(&found);
-    if (status == HF_INTERRUPTED || (stop && *stop)) {
+    if (status == HF_INTERRUPTED || (q->stop_requested && *q->stop_requested)) {
         hf_front_free(&found);
         return HF_INTERRUPTED;
     }
@@ -112,7 +143,8 @@ hf_status hf_run_front(hf_problem *p, const hf_population *bounds, const volatil
     }
     hf_front_free(front);
     *front = found;
-    hf_run_front_tell(front, hf_clock_s() - start_s, s, messages);
+    tell(&told, front->n_point, watcher.n_step, true);
+    hf_run_front_tell(front, hf_clock_s() - told.start_s, s, messages);
     warn_of_steps(front, o->polish_iterations, messages);
     return HF_OK;
 }

@@ -163,15 +163,15 @@ static hf_status tell_watcher(hf_polish_problem *p, const hf_polish_result *r, i
 {
     const hf_polish_watcher *watcher = p->watcher;
     if (!watcher || !watcher->after) return HF_OK;
-    hf_polish_pack(p, r);
+    if (!p->trade) hf_polish_pack(p, r);
     const hf_polish_progress now = {.iterations = r->iterations,
                                     .max_iterations = max_iterations,
                                     .evaluations = p->evaluations,
                                     .is_last = r->stop != HF_POLISH_MAX_ITERATIONS || r->iterations == max_iterations,
                                     .merit = r->merit,
                                     .psi_m = p->best_psi_m,
-                                    .n_state = p->n_state,
-                                    .state = p->state};
+                                    .n_state = p->trade ? 0 : p->n_state,
+                                    .state = p->trade ? NULL : p->state};
     return p->told = watcher->after(watcher->context, &now);
 }
 
@@ -385,10 +385,16 @@ static hf_status run_problem(hf_polish_problem p, int max_iterations, double *de
 }
 
 hf_status hf_polish_trade(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                          const hf_watch_trade *trade, double *design, hf_workspace *w, hf_polish_result *result)
+                          const hf_watch_trade *trade, const hf_polish_watcher *watcher, double *design,
+                          hf_workspace *w, hf_polish_result *result)
 {
-    const hf_polish_problem p = {
-        .v = *evaluator, .caller = evaluator, .lower = lower, .upper = upper, .w = w, .trade = trade};
+    const hf_polish_problem p = {.v = *evaluator,
+                                 .caller = evaluator,
+                                 .lower = lower,
+                                 .upper = upper,
+                                 .w = w,
+                                 .trade = trade,
+                                 .watcher = watcher};
     return run_problem(p, max_iterations, design, result);
 }
 

@@ -28,7 +28,7 @@ typedef struct {
     bool is_last;
     double merit, psi_m; /* of the best design so far; while none is within the limits, of the nearest */
     size_t n_state;
-    const double *state; /* [n_state] with it the same run goes on with the same bits */
+    const double *state; /* [n_state] with it the same run goes on with the same bits; of a trade none */
 } hf_polish_progress;
 
 typedef struct {
@@ -62,7 +62,7 @@ hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower, cons
  * of a ratio the logarithm. A goal with corners is least where no linear model of its sizes promises less.
  * HF_OUT_OF_LIMITS where no way into the limits was found. */
 hf_status hf_polish_trade(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                          const hf_watch_trade *trade, double *design, hf_workspace *workspace,
-                          hf_polish_result *result);
+                          const hf_watch_trade *trade, const hf_polish_watcher *watcher, double *design,
+                          hf_workspace *workspace, hf_polish_result *result);
 
 #endif

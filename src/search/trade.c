@@ -33,6 +33,7 @@ typedef struct {
     int met;                        /* is nothing at from[0]; `least`: all objectives may be; -1: none is */
     double *design;                 /* [n_gene] the answer */
     hf_front_point found;
+    bool is_point;      /* of the front, whatever is found */
     const void *closed; /* the next point on the way, with none to be found between */
 } job;
 
@@ -129,6 +130,7 @@ static void work(void *context, int room)
         int i = hf_parallel_take(&s->queue);
         if (i < 0) break;
         status = find(s, &s->job[s->n_run + i], &w);
+        if (s->job[s->n_run + i].is_point) hf_trade_count(s->t);
     }
     hf_workspace_free(&w);
     s->of_room[room] = status;
@@ -188,12 +190,7 @@ static job *begin_beside(search *s, int role, double third_most, const job *end,
 /* In parts of the ranges. */
 static double distance(const search *s, const job *a, const job *b)
 {
-    double square = 0;
-    for (int k = 0; k < s->n_objective; k++) {
-        double part = s->range[k] > 0 ? (b->found.objective[k] - a->found.objective[k]) / s->range[k] : 0;
-        square += part * part;
-    }
-    return sqrt(square);
+    return hf_trade_distance(s->n_objective, s->range, &a->found, &b->found);
 }
 
 /* ---- lines ---- */
@@ -259,7 +256,10 @@ static hf_status finish_lines(search *s, int first)
 static void close_line(search *s, line *l)
 {
     for (int e = 0; e < 2; e++) {
-        if (l->is_new[e]) s->point[s->n_point++] = l->end[e];
+        if (l->is_new[e]) {
+            s->point[s->n_point++] = l->end[e];
+            hf_trade_count(s->t);
+        }
         join(s, l, l->end[e]);
     }
 }
@@ -437,8 +437,9 @@ static hf_status halve_gaps(search *s, int n_more, double longest)
         l->length[at] = 0;
         job *low = l->way[at], *high = l->way[at + 1];
         of[s->n - first] = l;
-        add(s, MAIN, l->most, low->design, high->design)->most[s->role[OTHER]] =
-            (value_of(s, low, OTHER) + value_of(s, high, OTHER)) / 2;
+        job *j = add(s, MAIN, l->most, low->design, high->design);
+        j->most[s->role[OTHER]] = (value_of(s, low, OTHER) + value_of(s, high, OTHER)) / 2;
+        j->is_point = true;
         low->closed = high; /* until a point comes between them */
     }
     HF_TRY(run(s));

@@ -8,6 +8,17 @@
 #include <hifdm/evaluate.h>
 #include <hifdm/front.h>
 #include <signal.h>
+#include <stdatomic.h>
+
+/* Tells how far a search is: after each step of each point, by one thread at a time, not always the same one. A thread
+ * that would have to wait for another tells nothing. */
+typedef struct {
+    void (*tell)(void *context, int n_point, long n_step); /* points that are done; steps of all searches */
+    void *context;
+    atomic_int n_point; /* counted here, 0 on entry, as the next two */
+    atomic_long n_step;
+    atomic_flag is_telling; /* ATOMIC_FLAG_INIT on entry */
+} hf_trade_watcher;
 
 typedef struct {
     const hf_evaluator *evaluator; /* its goals are the objectives */
@@ -17,6 +28,7 @@ typedef struct {
     int n_start;
     const double *start; /* [n_start][n_gene] designs to begin from */
     const volatile sig_atomic_t *stop;
+    hf_trade_watcher *watcher; /* NULL: none */
 } hf_trade;
 
 /* Can hf_trade_find follow the front of these objectives? Designs must be such that hf_polish_applies to. */

@@ -3,6 +3,7 @@
 #include "search/polish.h"
 
 #include <math.h>
+#include <stddef.h>
 
 /* Of `least` beside an objective that is met, both in parts of their ranges: that one rises by the square. From where
  * it is nothing the last weight alone may find no bent way. */
@@ -44,13 +45,41 @@ hf_status hf_trade_start(const hf_trade *t, int k, hf_workspace *w, double *larg
     return HF_OK;
 }
 
+void hf_trade_count(const hf_trade *t)
+{
+    if (t->watcher) atomic_fetch_add(&t->watcher->n_point, 1);
+}
+
+double hf_trade_distance(int n_objective, const double *range, const hf_front_point *a, const hf_front_point *b)
+{
+    double square = 0;
+    for (int k = 0; k < n_objective; k++) {
+        double part = range[k] > 0 ? (b->objective[k] - a->objective[k]) / range[k] : 0;
+        square += part * part;
+    }
+    return sqrt(square);
+}
+
+static hf_status tell_step(void *context, const hf_polish_progress *now)
+{
+    hf_trade_watcher *w = context;
+    if (now->iterations == 0) return HF_OK;
+    atomic_fetch_add(&w->n_step, 1);
+    if (atomic_flag_test_and_set(&w->is_telling)) return HF_OK;
+    w->tell(w->context, atomic_load(&w->n_point), atomic_load(&w->n_step));
+    atomic_flag_clear(&w->is_telling);
+    return HF_OK;
+}
+
 hf_status hf_trade_point(const hf_trade *t, const hf_watch_trade *limits, double *design, hf_workspace *w,
                          hf_front_point *point)
 {
     hf_polish_result r;
     hf_form_result result;
+    const hf_polish_watcher watcher = {.after = tell_step, .context = t->watcher};
     *point = (hf_front_point){.objective = {NAN, NAN, NAN}, .multiplier = {NAN, NAN, NAN}};
-    hf_status status = hf_polish_trade(t->evaluator, t->lower, t->upper, t->max_iterations, limits, design, w, &r);
+    hf_status status = hf_polish_trade(t->evaluator, t->lower, t->upper, t->max_iterations, limits,
+                                       t->watcher ? &watcher : NULL, design, w, &r);
     if (status == HF_OK) status = hf_evaluate(t->evaluator, design, w, &result);
     if (t->stop && *t->stop) return HF_INTERRUPTED;
     if (status == HF_NO_MEMORY) return status;
@@ -69,13 +98,15 @@ hf_status hf_trade_meet(const hf_trade *t, int met, int least, const double *ran
     hf_evaluator evaluator = *t->evaluator;
     hf_goals goals = *evaluator.goals;
     hf_polish_result result;
+    const hf_polish_watcher watcher = {.after = tell_step, .context = t->watcher};
     evaluator.goals = &goals;
     for (int i = met == least ? N_WEIGHT - 1 : 0; i < N_WEIGHT; i++) {
         for (int k = 0; k < goals.n_goal; k++) {
             double part = k == met || met == least ? 1 : k == least ? weight[i] : 0;
             goals.goal[k].wanted.weight = range[k] > 0 ? part / range[k] : 0;
         }
-        hf_status status = hf_polish_run(&evaluator, t->lower, t->upper, t->max_iterations, NULL, design, w, &result);
+        hf_status status = hf_polish_run(&evaluator, t->lower, t->upper, t->max_iterations,
+                                         t->watcher ? &watcher : NULL, design, w, &result);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
     }
     return HF_OK;

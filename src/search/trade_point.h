@@ -15,6 +15,12 @@ void hf_trade_roles(const hf_goals *goals, int *role);
  * largest [n_objective] rises to what the feasible ones have. HF_OK or HF_NO_MEMORY. */
 hf_status hf_trade_start(const hf_trade *trade, int k, hf_workspace *w, double *largest, const double **start);
 
+/* One more point is done. */
+void hf_trade_count(const hf_trade *trade);
+
+/* How far two points are from each other, in parts of the ranges [n_objective] of the objectives. */
+double hf_trade_distance(int n_objective, const double *range, const hf_front_point *a, const hf_front_point *b);
+
 /* Levenberg-Marquardt from the design [n_gene], which is replaced. The status of the design is in the point; HF_OK,
  * HF_NO_MEMORY or HF_INTERRUPTED. */
 hf_status hf_trade_point(const hf_trade *trade, const hf_watch_trade *limits, double *design, hf_workspace *w,

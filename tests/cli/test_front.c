@@ -42,6 +42,25 @@ START_TEST(a_front_is_printed_stored_and_told)
 }
 END_TEST
 
+/* Points that are done grow from none to all; each has the steps that the file tells, and others lead to them. */
+START_TEST(a_front_says_how_far_it_is)
+{
+    const char *file = temp("f.h5");
+    HIFDM(0, "run", FRONT, "-o", file, "--progress", "jsonl");
+    ERR("{\"phase\": \"form\"}\n{\"phase\": \"polish\", \"point\": 0, \"points\": 7, \"steps\": 0, \"elapsed_s\": ");
+    EXPECT(
+        file_with("said.txt", said.err), file, "--",
+        "(lambda said: said[-1]['point'] == said[-1]['points'] == 7 and said[-1]['steps'] >= "
+        "sum(b['front/iterations'][:]) and all(p['point'] <= q['point'] and p['steps'] <= q['steps'] and "
+        "p['elapsed_s'] <= q['elapsed_s'] for p, q in zip(said, said[1:])))([__import__('json').loads(line) for line "
+        "in a.decode().splitlines() if 'points' in line and line[0] == '{'])");
+    HIFDM(0, "run", FRONT, "-o", file, "--restart", "--progress", "line");
+    ERR("\r\033[Kfront: point 0/7  0 steps of Levenberg-Marquardt  ");
+    HIFDM(0, "run", FRONT, "-o", file, "--restart", "--progress", "log");
+    ck_assert(!strstr(said.err, "front: point")); /* shorter than 30 s */
+}
+END_TEST
+
 /* Where the second objective is the least one the slope is its change, by the first. */
 START_TEST(a_slope_says_of_what_it_is)
 {
@@ -342,6 +361,7 @@ Suite *suite_cli_front(void)
     TCase *tests = tcase_create("front");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, a_front_is_printed_stored_and_told);
+    tcase_add_test(tests, a_front_says_how_far_it_is);
     tcase_add_test(tests, a_slope_says_of_what_it_is);
     tcase_add_test(tests, the_least_beside_an_objective_that_is_met);
     tcase_add_test(tests, objectives_that_do_not_conflict_are_told);

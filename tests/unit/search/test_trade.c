@@ -276,7 +276,7 @@ static double after_a_step(struct traded *t, const double *start, int k)
     hf_polish_result polished;
     hf_form_result r;
     hf_workspace *w = &t->net.work;
-    hf_status status = hf_polish_trade(&t->evaluator, t->lower, t->upper, 1, &alone, design, w, &polished);
+    hf_status status = hf_polish_trade(&t->evaluator, t->lower, t->upper, 1, &alone, NULL, design, w, &polished);
     ck_assert_int_eq(status, HF_OK);
     ck_assert_int_ne(polished.stop, HF_POLISH_CONVERGED);
     ck_assert_int_eq(hf_evaluate(&t->evaluator, design, w, &r), HF_OK);
@@ -394,14 +394,27 @@ static void open_chen(hf_problem *p, const char *objectives)
     ck_assert_msg(hf_problem_open("configs/chen2022.yaml", set, 3, 1, p, &messages) == HF_OK, "%s", messages.text);
 }
 
-static void follow_problem(hf_problem *p, int n_point, int n_thread, hf_front *front)
+static void bound(const hf_problem *p, double *lower, double *upper)
 {
-    int n = p->model.n_gene;
-    double *lower = malloc(2 * (size_t)n * sizeof *lower), *upper = lower + n;
-    for (int k = 0; k < n; k++) {
+    for (int k = 0; k < p->model.n_gene; k++) {
         lower[k] = fmax(p->base_N[k] - 1, 0.1);
         upper[k] = p->base_N[k] + 1;
     }
+}
+
+static void note_points(void *told, int n_point, long n_step)
+{
+    ck_assert(n_point >= *(int *)told && n_step > 0);
+    *(int *)told = n_point;
+}
+
+/* All points are counted for who watches. */
+static void follow_problem(hf_problem *p, int n_point, int n_thread, hf_front *front)
+{
+    int told = 0;
+    hf_trade_watcher watcher = {.tell = note_points, .context = &told, .is_telling = ATOMIC_FLAG_INIT};
+    double lower[MAX_GENE_OF_CASE], upper[MAX_GENE_OF_CASE];
+    bound(p, lower, upper);
     const hf_trade trade = {.evaluator = &p->evaluator,
                             .lower = lower,
                             .upper = upper,
@@ -409,20 +422,21 @@ static void follow_problem(hf_problem *p, int n_point, int n_thread, hf_front *f
                             .max_iterations = 200,
                             .n_thread = n_thread,
                             .n_start = 1,
-                            .start = p->base_N};
+                            .start = p->base_N,
+                            .watcher = &watcher};
     ck_assert_int_eq(hf_trade_find(&trade, front, &failed_end), HF_OK);
-    free(lower);
+    ck_assert(watcher.n_point == front->n_point && told > front->n_point / 2);
 }
 
 /* The least of objective 0 where the others are at most this, from that design. */
-static double least_beside(hf_problem *p, const double most[HF_OBJECTIVES_MAX], const double *from, const double *lower,
-                           const double *upper)
+static double least_beside(hf_problem *p, const double most[HF_OBJECTIVES_MAX], const double *from)
 {
-    double design[MAX_GENE_OF_CASE];
+    double design[MAX_GENE_OF_CASE], lower[MAX_GENE_OF_CASE], upper[MAX_GENE_OF_CASE];
+    bound(p, lower, upper);
     const hf_watch_trade trade = {0, most};
     hf_polish_result r;
     memcpy(design, from, (size_t)p->model.n_gene * sizeof *design);
-    ck_assert_int_eq(hf_polish_trade(&p->evaluator, lower, upper, 200, &trade, design, &p->workspace, &r), HF_OK);
+    ck_assert_int_eq(hf_polish_trade(&p->evaluator, lower, upper, 200, &trade, NULL, design, &p->workspace, &r), HF_OK);
     return r.merit;
 }
 
@@ -439,13 +453,9 @@ START_TEST(points_are_even_and_slopes_those_of_differences)
 {
     hf_problem p;
     hf_front front;
-    double lower[MAX_GENE_OF_CASE], upper[MAX_GENE_OF_CASE], longest = 0, shortest = INFINITY;
+    double longest = 0, shortest = INFINITY;
     open_chen(&p, traded[_i]);
     ck_assert_int_le(p.model.n_gene, MAX_GENE_OF_CASE);
-    for (int k = 0; k < p.model.n_gene; k++) {
-        lower[k] = fmax(p.base_N[k] - 1, 0.1);
-        upper[k] = p.base_N[k] + 1;
-    }
     follow_problem(&p, N_POINT, 1, &front);
     ck_assert_int_eq(front.n_point, N_POINT);
     const hf_front_point *a = front.point, *z = a + N_POINT - 1;
@@ -462,8 +472,8 @@ START_TEST(points_are_even_and_slopes_those_of_differences)
         double step = 1e-5 * (a->objective[1] - z->objective[1]), at = a[i].objective[1];
         const double *design = front.design + (size_t)i * (size_t)front.n_gene;
         const double *last = front.design + (size_t)(N_POINT - 1) * (size_t)front.n_gene;
-        double more = least_beside(&p, (const double[]){INFINITY, at + step, INFINITY}, design, lower, upper);
-        double less = least_beside(&p, (const double[]){INFINITY, at - step, INFINITY}, last, lower, upper);
+        double more = least_beside(&p, (const double[]){INFINITY, at + step, INFINITY}, design);
+        double less = least_beside(&p, (const double[]){INFINITY, at - step, INFINITY}, last);
         double slope = (less - more) / (2 * step);
         ck_assert_msg(fabs(a[i].multiplier[1] - slope) < 1e-3 * slope, "point %d: %g, by differences %g", i,
                       a[i].multiplier[1], slope);
@@ -495,13 +505,8 @@ START_TEST(slopes_of_three_are_those_of_differences)
 {
     hf_problem p;
     hf_front front;
-    double lower[MAX_GENE_OF_CASE], upper[MAX_GENE_OF_CASE];
     int n_held = 0;
     open_chen(&p, three[_i]);
-    for (int k = 0; k < p.model.n_gene; k++) {
-        lower[k] = fmax(p.base_N[k] - 1, 0.1);
-        upper[k] = p.base_N[k] + 1;
-    }
     follow_problem(&p, 16, 2, &front);
     ck_assert_int_ge(front.n_point, 15);
     for (int i = 0; i < front.n_point; i++) {
@@ -517,7 +522,7 @@ START_TEST(slopes_of_three_are_those_of_differences)
             for (int side = 0; side < 2; side++) {
                 double most[] = {INFINITY, a->objective[1], a->objective[2]};
                 most[k] += side ? step : -step;
-                least[side] = least_beside(&p, most, front.design + (size_t)i * (size_t)front.n_gene, lower, upper);
+                least[side] = least_beside(&p, most, front.design + (size_t)i * (size_t)front.n_gene);
             }
             double slope = (least[0] - least[1]) / (2 * step);
             ck_assert_msg(fabs(a->multiplier[k] - slope) < 1e-2 * slope, "point %d: %g, by differences %g", i,
