@@ -228,6 +228,10 @@ void hf_shape_free(hf_shape *shape);
  * the front by hf_front_free and *gene by free in any case. */
 hf_status hf_store_read_front(const char *path, hf_front *front, char **gene, size_t *gene_size, hf_messages *messages);
 
+/* Write the keys in which the case of a result differs from this one into text[size], as hf_config_differences. Returns
+ * their number; 0 also where that cannot be told. */
+int hf_store_case_differences(const char *path, const hf_case *settings, char *text, size_t size);
+
 /* Write the group /truss: the truss as described, its attachments to the net and, when `state` is not NULL, its
  * displacements and forces under the pull of the net. Call it once, before hf_store_finish of a summary that
  * has_truss. */

@@ -14,7 +14,9 @@
  * other solvers find, within 3.5e-8 (configs/chen2022-truss.yaml, 20 generations); machines differ by less. */
 #define SAME 1e-6
 
-#define MADE_OF "give the case and the --set that it was made of"
+#define MADE_OF "give the case and the --set that it was made of%s"
+#define KEYS_TOLD 8
+enum { DIFFERENCES_SIZE = 640 };
 
 /* A front as it is in its file. */
 typedef struct {
@@ -44,6 +46,35 @@ static hf_status read_words(const char *point, hf_front_origin *taken, hf_messag
 
 /* ---- is it of this case? ---- */
 
+/* Does a point of the front have nothing to do with this key? */
+static bool is_beside(const hf_problem *p, const char *key)
+{
+    static const char *const section[] = {"cases", "tolerance", "adjust", "sweep"};
+    for (size_t i = 0; i < sizeof section / sizeof *section && !p->goals.nets; i++)
+        if (!strncmp(key, section[i], strlen(section[i]))) return true;
+    return false;
+}
+
+/* "; what differs: form.pretension_N", or nothing where that cannot be told; returns words. */
+static const char *tell_keys(const hf_problem *p, char words[DIFFERENCES_SIZE])
+{
+    char keys[4096], *next = keys;
+    size_t used = 0;
+    int n = 0;
+    *words = '\0';
+    if (hf_store_case_differences(p->settings.taken.path, &p->settings, keys, sizeof keys) == 0) return words;
+    while (next) {
+        char *key = next, *end = strstr(key, ", ");
+        next = end ? end + 2 : NULL;
+        if (end) *end = '\0';
+        if (is_beside(p, key) || n++ >= KEYS_TOLD) continue;
+        used +=
+            (size_t)snprintf(words + used, DIFFERENCES_SIZE - used, "%s%.64s", n == 1 ? "; what differs: " : ", ", key);
+    }
+    if (n > KEYS_TOLD) snprintf(words + used, DIFFERENCES_SIZE - used, " and %d more", n - KEYS_TOLD);
+    return words;
+}
+
 static bool has_objectives(const hf_problem *p, const hf_summary *s)
 {
     char name[HF_GOAL_NAME_SIZE];
@@ -67,6 +98,7 @@ static bool has_variables(const hf_problem *p, const stored_front *f)
 static hf_status check_point(const hf_problem *p, const stored_front *f, const hf_front_origin *taken,
                              hf_messages *messages)
 {
+    char words[DIFFERENCES_SIZE];
     if (taken->point > f->front.n_point)
         return hf_error(messages, HF_BAD_USAGE,
                         "%s: its front has points 1 to %d, and no %d; `hifdm export %s --front FILE` lists them",
@@ -77,7 +109,8 @@ static hf_status check_point(const hf_problem *p, const stored_front *f, const h
                         taken->point, hf_status_text(point->status));
     if (!has_objectives(p, &f->summary) || !has_variables(p, f))
         return hf_error(messages, HF_BAD_CASE, "%s: its front has other %s than %s: " MADE_OF, taken->path,
-                        has_objectives(p, &f->summary) ? "variables" : "objectives", p->settings.path);
+                        has_objectives(p, &f->summary) ? "variables" : "objectives", p->settings.path,
+                        tell_keys(p, words));
     if (point->mark == HF_FRONT_DOMINATED)
         hf_warning(messages, "%s: point %d is dominated: another point of its front is as good in all objectives",
                    taken->path, taken->point);
@@ -124,7 +157,7 @@ static hf_status check_bounds(const hf_problem *p, const hf_taken_point *taken, 
                               hf_messages *messages)
 {
     const hf_front_origin *origin = &p->settings.taken;
-    char name[HF_GENE_NAME_SIZE];
+    char name[HF_GENE_NAME_SIZE], words[DIFFERENCES_SIZE];
     for (int k = 0; k < bounds->n_gene; k++) {
         double value = taken->design[k], low = bounds->lower_N[k], high = bounds->upper_N[k],
                room = SAME * (high - low);
@@ -132,7 +165,7 @@ static hf_status check_bounds(const hf_problem *p, const hf_taken_point *taken, 
         hf_model_gene_name(&p->model, &p->scene, k, name, sizeof name);
         return hf_error(messages, HF_BAD_CASE,
                         "%s: point %d of its front has %.6g for '%s', which %s keeps from %.6g to %.6g: " MADE_OF,
-                        origin->path, origin->point, value, name, p->settings.path, low, high);
+                        origin->path, origin->point, value, name, p->settings.path, low, high, tell_keys(p, words));
     }
     return HF_OK;
 }
@@ -141,15 +174,16 @@ hf_status hf_take_point_check(const hf_problem *p, const hf_taken_point *taken, 
                               const hf_form_result *found, hf_messages *messages)
 {
     const hf_front_origin *origin = &p->settings.taken;
-    char name[HF_GOAL_NAME_SIZE];
+    char name[HF_GOAL_NAME_SIZE], words[DIFFERENCES_SIZE];
     if (found->status == HF_NO_MEMORY) return hf_error(messages, HF_NO_MEMORY, "out of memory for a design");
     if (found->status != HF_OK)
         return hf_error(messages, HF_BAD_CASE, "%s: point %d of its front is no design of %s, %s: " MADE_OF,
-                        origin->path, origin->point, p->settings.path, hf_status_text(found->status));
+                        origin->path, origin->point, p->settings.path, hf_status_text(found->status),
+                        tell_keys(p, words));
     for (int k = 0; k < p->goals.n_goal; k++)
         if (!(fabs(found->goal[k] - taken->objective[k]) <= SAME * taken->largest[k]))
             return hf_error(messages, HF_BAD_CASE, "%s: point %d of its front has %s %.6g, and in %s %.6g: " MADE_OF,
                             origin->path, origin->point, hf_goals_name(&p->goals, k, name), taken->objective[k],
-                            p->settings.path, found->goal[k]);
+                            p->settings.path, found->goal[k], tell_keys(p, words));
     return check_bounds(p, taken, bounds, messages);
 }

@@ -388,6 +388,22 @@ void hf_store_read_case(hf_hdf5 *io, hf_case *settings)
         hf_hdf5_damaged(io, io->file, "/case", "has keys that this version does not know");
 }
 
+int hf_store_case_differences(const char *path, const hf_case *settings, char *text, size_t size)
+{
+    hf_case then = {0};
+    hf_messages unwanted = {0};
+    hf_hdf5_lock();
+    hf_hdf5 io = hf_store_open_result(path, &unwanted);
+    bool is_known = io.status == HF_OK && hf_store_parse_case(&io, settings->path, &then);
+    hf_hdf5_close_file(&io);
+    is_known = hf_hdf5_unlock(io.status) == HF_OK && is_known;
+    *text = '\0';
+    int n = is_known ? hf_config_differences(&then, settings, text, size) : 0;
+    hf_case_free(&then);
+    hf_messages_free(&unwanted);
+    return n;
+}
+
 /* ---- provenance ---- */
 
 hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf_messages *messages)

@@ -187,8 +187,10 @@ START_TEST(a_front_of_another_case_is_refused)
     const char *c = file_with("c.yaml", NET OPTIMIZE PSI_AND_RATIO), *front = front_of(c, "f.h5"),
                *other = temp("q.h5");
     HIFDM(2, "run", file_with("g.yaml", NET OPTIMIZE), "--point", point(front, 3), "-o", other);
-    ERRS("error: %s: its front has other objectives than %s: give the case and the --set that it was made of\n", front,
-         temp("g.yaml"));
+    ERRS("error: %s: its front has other objectives than %s: give the case and the --set that it was made of; what "
+         "differs: "
+         "optimize.objectives\n",
+         front, temp("g.yaml"));
     HIFDM(2, "run", c, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}]", "--point", point(front, 3), "-o",
           other);
     ERR(": its front has other objectives than ");
@@ -197,6 +199,10 @@ START_TEST(a_front_of_another_case_is_refused)
     ERR(": its front has other variables than ");
     HIFDM(2, "run", c, "--set", "form.pretension_N=11", "--point", point(front, 3), "-o", other);
     ERRS("error: %s: point 3 of its front has goal_1_ratio_boundary ", front);
+    ERR(": give the case and the --set that it was made of; what differs: form.pretension_N\n");
+    HIFDM(2, "run", file_with("b.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT), "--set", "form.pretension_N=11",
+          "--point", point(front, 3), "-o", other);
+    ERR("; what differs: form.pretension_N, cables\n");
     HIFDM(2, "run", c, "--set", "optimize.limits=[{limit: tension, set: boundary, bounds: [900, 901]}]", "--point",
           point(front, 3), "-o", other);
     ERRS("error: %s: point 3 of its front is no design of %s, ", front, c);
