@@ -12,7 +12,7 @@
 #define SAME_RATIO 1e-6    /* values so near to each other are told as one */
 #define REACHED_RATIO 1e-9 /* of what a goal is of the shape found */
 
-const char *const hf_merged_stage_word[HF_MERGED_N_STAGE] = {"form", "optimize", "polish", "tolerance"};
+const char *const hf_merged_stage_word[HF_MERGED_N_STAGE] = {"form", "optimize", "polish", "tolerance", "cases"};
 const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER] = {"", "no", "open", "yes"};
 
 /* ---- reading ---- */
@@ -20,10 +20,10 @@ const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER] = {"", "no", "open",
 /* Where a merge has the figures of each stage: the group, and what the names of its data sets begin with. */
 static const struct {
     const char *group, *prefix, *surface;
-} source[HF_MERGED_N_STAGE] = {{"/points/form", "", "/points/surface/form"},
-                               {"/points/ga", "best_", "/points/surface/optimize"},
-                               {"/points/polish", "", "/points/surface/polish"},
-                               {"/points/tolerance", "", NULL}};
+} source[HF_MERGED_CASES] = {{"/points/form", "", "/points/surface/form"},
+                             {"/points/ga", "best_", "/points/surface/optimize"},
+                             {"/points/polish", "", "/points/surface/polish"},
+                             {"/points/tolerance", "", NULL}};
 static const char *const key_of_stage[] = {"psi_m", "inner_tension_ratio", "boundary_tension_ratio", "residual_N",
                                            "n_slack"};
 static const char *const key_as_built[] = {"psi_95_m", "yield", "yield_low", "yield_high", "wanted_yield"};
@@ -44,7 +44,7 @@ bool hf_merged_is(const char *path)
 static hf_status read_figure(hf_merged *m, hf_merged_stage stage, const char *group, const char *prefix,
                              const char *key, hf_messages *messages)
 {
-    char path[64 + HF_GOAL_NAME_SIZE];
+    char path[64 + HF_SET_NAME_SIZE + HF_GOAL_NAME_SIZE];
     if (m->n_figure == HF_MERGED_FIGURE_MAX || strlen(key) >= HF_GOAL_NAME_SIZE) return HF_OK;
     hf_merged_figure *f = &m->figure[m->n_figure];
     *f = (hf_merged_figure){.stage = stage};
@@ -74,6 +74,30 @@ static hf_status read_group(hf_merged *m, hf_merged_stage stage, const char *gro
     return status;
 }
 
+/* Those of each state, from a group of its name; names that no state can have are left out. */
+static hf_status read_states(hf_merged *m, hf_messages *messages)
+{
+    static const char *const key[] = {"psi_m", "n_slack", "n_loose", "largest_tension_N"};
+    static const char *const error[] = {"half_path", "good_to", "gain_loss", "fit_", "facet_"};
+    char group[HF_SET_NAME_SIZE + 32];
+    hf_texts names = {0};
+    hf_status status = hf_store_read_names(m->path, "/points/cases", &names, messages);
+    for (int i = 0; i < names.n && status == HF_OK; i++) {
+        const char *name = hf_texts_at(&names, i);
+        int from = m->n_figure;
+        if (strlen(name) >= HF_SET_NAME_SIZE) continue;
+        snprintf(group, sizeof group, "/points/cases/%s", name);
+        for (size_t k = 0; k < sizeof key / sizeof *key && status == HF_OK; k++)
+            status = read_figure(m, HF_MERGED_CASES, group, "", key[k], messages);
+        for (size_t k = 0; k < sizeof error / sizeof *error && status == HF_OK; k++)
+            status = read_group(m, HF_MERGED_CASES, group, "", error[k], messages);
+        for (int k = from; k < m->n_figure; k++)
+            strcpy(m->figure[k].state, name);
+    }
+    hf_texts_free(&names);
+    return status;
+}
+
 static hf_status read_figures(hf_merged *m, hf_messages *messages)
 {
     for (hf_merged_stage stage = HF_MERGED_FORM; stage < HF_MERGED_BUILT; stage++) {
@@ -87,7 +111,7 @@ static hf_status read_figures(hf_merged *m, hf_messages *messages)
     }
     for (int k = 0; k < N_BUILT; k++)
         HF_TRY(read_figure(m, HF_MERGED_BUILT, source[HF_MERGED_BUILT].group, "", key_as_built[k], messages));
-    return HF_OK;
+    return read_states(m, messages);
 }
 
 static hf_status read_axes(hf_merged *m, hf_messages *messages)
@@ -150,6 +174,18 @@ const hf_merged_figure *hf_merged_find(const hf_merged *m, hf_merged_stage stage
     for (int k = 0; k < m->n_figure; k++)
         if (m->figure[k].stage == stage && !strcmp(m->figure[k].key, key)) return &m->figure[k];
     return NULL;
+}
+
+bool hf_merged_is_beyond(const hf_merged *m, const hf_merged_figure *loss, int i)
+{
+    size_t kind = (size_t)(strstr(loss->key, "gain_loss_at_") - loss->key);
+    for (int k = 0; k < m->n_figure; k++) {
+        const hf_merged_figure *f = &m->figure[k];
+        if (f->stage == loss->stage && !strcmp(f->state, loss->state) && !strncmp(f->key, loss->key, kind) &&
+            !strcmp(f->key + kind, "half_path_rms_m"))
+            return !isnan(f->value.value[i]);
+    }
+    return false;
 }
 
 static bool is_same(const hf_merged *m, const hf_merged_figure *f)

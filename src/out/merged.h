@@ -6,12 +6,13 @@
 #include "case/study.h"
 #include "store/store_series.h"
 
-/* Stages of a run, and the net as built (`tolerance`). */
+/* Stages of a run, the net as built (`tolerance`), and its states (`cases`). */
 typedef enum {
     HF_MERGED_FORM,
     HF_MERGED_OPTIMIZE,
     HF_MERGED_POLISH,
     HF_MERGED_BUILT,
+    HF_MERGED_CASES,
     HF_MERGED_N_STAGE
 } hf_merged_stage;
 extern const char *const hf_merged_stage_word[HF_MERGED_N_STAGE];
@@ -22,13 +23,14 @@ extern const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER]; /* "", "no",
 
 typedef struct {
     hf_merged_stage stage;
-    char key[HF_GOAL_NAME_SIZE]; /* psi_m, goal_1_tension_edge, facet_half_path_rms_m, ... */
-    hf_series value;             /* [n]; NaN where a point has none */
-    bool is_same;                /* at all points that are done, but for rounding; also: no value at all of them */
-    bool is_psi;                 /* a goal that is psi of this stage at all points */
+    char state[HF_SET_NAME_SIZE]; /* of `cases`; "" of other stages */
+    char key[HF_GOAL_NAME_SIZE];  /* psi_m, goal_1_tension_edge, facet_half_path_rms_m, ... */
+    hf_series value;              /* [n]; NaN where a point has none */
+    bool is_same;                 /* at all points that are done, but for rounding; also: no value at all of them */
+    bool is_psi;                  /* a goal that is psi of this stage at all points */
 } hf_merged_figure;
 
-#define HF_MERGED_FIGURE_MAX 384
+#define HF_MERGED_FIGURE_MAX 1536
 #define HF_MERGED_RESOLVED_M 1e-9 /* lengths below it are what rounding leaves */
 
 typedef struct {
@@ -55,8 +57,11 @@ void hf_merged_free(hf_merged *merged);
 bool hf_merged_is_done(const hf_merged *merged, int point);
 bool hf_merged_axis_varies(const hf_merged *merged, int axis);
 
-/* The figure of this stage; NULL without it. */
+/* The figure of this stage, of the first state that has it; NULL without it. */
 const hf_merged_figure *hf_merged_find(const hf_merged *merged, hf_merged_stage stage, const char *key);
+
+/* A loss of gain without a value: is there a surface, whose loss is more than Ruze's formula holds for? */
+bool hf_merged_is_beyond(const hf_merged *merged, const hf_merged_figure *loss, int point);
 
 /* Where the best point lies at an end of this axis and the figure that says which is best still falls towards it, over
  * the last two steps and beyond rounding, between points that agree in all other axes: 1 at the largest value, -1 at

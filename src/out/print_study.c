@@ -89,6 +89,16 @@ const char *hf_print_goal_words(const char *key, char words[HF_AXIS_NAME_SIZE])
     return words;
 }
 
+/* Of which state a figure is; beside states the slack cables of the design are told as those. */
+static void name_state(const hf_merged *m, const hf_merged_figure *f, char name[HF_AXIS_NAME_SIZE])
+{
+    char plain[HF_AXIS_NAME_SIZE];
+    bool is_design = hf_merged_find(m, HF_MERGED_CASES, f->key) && !strcmp(f->key, "n_slack") && !*f->state;
+    if (!*f->state && !is_design) return;
+    strcpy(plain, name);
+    snprintf(name, HF_AXIS_NAME_SIZE, "%.31s %.31s", is_design ? "design" : f->state, plain);
+}
+
 /* What a figure is called: of goal_1_tension_edge "goal tension edge", of facet_fit_gain_loss_at_10_GHz_dB "fitted loss
  * 10 GHz". */
 static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name[HF_AXIS_NAME_SIZE])
@@ -98,14 +108,16 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
                                           {"yield", "yield"},
                                           {"inner_tension_ratio", "T ratio in"},
                                           {"boundary_tension_ratio", "T ratio edge"},
-                                          {"n_slack", "slack"}};
+                                          {"n_slack", "slack"},
+                                          {"n_loose", "loose"},
+                                          {"largest_tension_N", "largest T"}};
     bool of_facets = !strncmp(f->key, "facet_", 6);
     const char *rest = of_facets ? f->key + 6 : f->key, *fitted = strncmp(rest, "fit_", 4) ? "" : "fitted ";
     if (*fitted) rest += 4;
     snprintf(name, HF_AXIS_NAME_SIZE, "%s", f->key);
     if (!strcmp(f->key, "psi_m")) {
-        static const char *const stage[] = {"found", "GA", "LM", ""};
-        snprintf(name, HF_AXIS_NAME_SIZE, m->main == HF_MERGED_FORM ? "psi" : "psi %s", stage[f->stage]);
+        static const char *const stage[] = {"found", "GA", "LM", "", ""};
+        snprintf(name, HF_AXIS_NAME_SIZE, m->main == HF_MERGED_FORM || *f->state ? "psi" : "psi %s", stage[f->stage]);
     } else if (!strncmp(f->key, "goal_", 5)) {
         char words[HF_AXIS_NAME_SIZE];
         snprintf(name, HF_AXIS_NAME_SIZE, "goal %.*s", HF_AXIS_NAME_SIZE - 6, hf_print_goal_words(f->key, words));
@@ -118,6 +130,7 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
     }
     for (size_t k = 0; k < sizeof word / sizeof *word; k++)
         if (!strcmp(f->key, word[k][0])) strcpy(name, word[k][1]);
+    name_state(m, f, name);
     show_name(name);
 }
 
@@ -136,27 +149,39 @@ static column figure_column(const hf_merged *m, int k)
     return c;
 }
 
+/* Of the surface the losses of gain or, where no frequencies are asked for, the errors. */
+static bool is_told_of_state(const hf_merged *m, const hf_merged_figure *f)
+{
+    if (strstr(f->key, "good_to_Hz")) return false;
+    if (!strstr(f->key, "half_path_rms_m")) return true;
+    for (int k = 0; k < m->n_figure; k++)
+        if (!strcmp(m->figure[k].state, f->state) && strstr(m->figure[k].key, "gain_loss_at_")) return false;
+    return true;
+}
+
 /* Is it a figure that the table is for? psi of every stage; all but the residual of the one that is the result. */
 static bool is_told(const hf_merged *m, const hf_merged_figure *f)
 {
     if (f->is_psi || !strcmp(f->key, "residual_N")) return false;
+    if (f->stage == HF_MERGED_CASES) return is_told_of_state(m, f);
     if (f->stage == HF_MERGED_BUILT) return !strcmp(f->key, "psi_95_m") || !strcmp(f->key, "yield");
     return f->stage == m->main || !strcmp(f->key, "psi_m");
 }
 
-/* What says which point is best comes first, then psi, the net as built, the surface, goals, and the rest. */
-enum { N_RANK = 11 };
+/* First what says which point is best, then psi, the net as built, the surface, goals, the rest, and the states. */
+enum { RANK_REST = 10, RANK_STATES, N_RANK };
 static int rank_of(const hf_merged *m, int k)
 {
     const hf_merged_figure *f = &m->figure[k];
     bool is_fit = !strncmp(f->key, "facet_fit_", 10) || !strncmp(f->key, "fit_", 4);
     if (k == m->lead) return 0;
+    if (*f->state) return RANK_STATES;
     if (!strcmp(f->key, "psi_m")) return 1;
     if (f->stage == HF_MERGED_BUILT) return 2;
     if (strstr(f->key, "half_path_rms_m")) return is_fit ? 4 : 3;
     if (strstr(f->key, "good_to_Hz")) return is_fit ? 6 : 5;
     if (strstr(f->key, "gain_loss_at_")) return is_fit ? 8 : 7;
-    return strncmp(f->key, "goal_", 5) ? N_RANK - 1 : N_RANK - 2;
+    return strncmp(f->key, "goal_", 5) ? RANK_REST : RANK_REST - 1;
 }
 
 /* ---- cells ---- */
@@ -188,7 +213,7 @@ static void print_figure(const hf_merged *m, const column *c, int i, char text[C
     if (!hf_merged_is_done(m, i))
         strcpy(text, "-");
     else if (isnan(value))
-        snprintf(text, CELL_SIZE, is_loss ? "above %g" : "-", HF_RUZE_MOST_DB);
+        snprintf(text, CELL_SIZE, is_loss && hf_merged_is_beyond(m, f, i) ? "above %g" : "-", HF_RUZE_MOST_DB);
     else if (isinf(value))
         strcpy(text, "inf");
     else if (!strcmp(c->unit, "mm") || strstr(f->key, "tension_ratio"))
@@ -196,7 +221,7 @@ static void print_figure(const hf_merged *m, const column *c, int i, char text[C
     else if (!strcmp(c->unit, "%"))
         snprintf(text, CELL_SIZE, "%.1f", value);
     else
-        snprintf(text, CELL_SIZE, !strcmp(f->key, "n_slack") ? "%g" : "%#.4g", value);
+        snprintf(text, CELL_SIZE, !strncmp(f->key, "n_", 2) ? "%g" : "%#.4g", value);
 }
 
 static void print_cell(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])
@@ -333,7 +358,7 @@ static void print_item(const hf_merged *m, const column *c, int i, items *t)
     add_item(t, text);
 }
 
-/* What is the same at all points: axes and figures. */
+/* What is the same at all points: axes and figures; of states psi and slack cables are enough. */
 static void print_same(const hf_merged *m, FILE *f)
 {
     items t = {.file = f, .title = "at all points"};
@@ -347,6 +372,7 @@ static void print_same(const hf_merged *m, FILE *f)
     for (int k = 0; k < m->n_figure && hf_merged_is_done(m, i); k++) {
         column c = figure_column(m, k);
         const hf_merged_figure *figure = &m->figure[k];
+        if (*figure->state && strcmp(figure->key, "psi_m") != 0 && strcmp(figure->key, "n_slack") != 0) continue;
         if (figure->is_same && is_told(m, figure) && !(isnan(figure->value.value[i]) && !strcmp(c.unit, "%")))
             print_item(m, &c, i, &t);
     }
@@ -492,9 +518,12 @@ static void write_stages(const hf_merged *m, int i, hf_json *j)
 {
     for (int k = 0; k < m->n_figure; k++) {
         const hf_merged_figure *f = &m->figure[k];
+        bool is_last = k + 1 == m->n_figure;
         if (k == 0 || f[-1].stage != f->stage) hf_json_open(j, hf_merged_stage_word[f->stage], '{');
+        if (*f->state && strcmp(f[-1].state, f->state) != 0) hf_json_open(j, f->state, '{');
         hf_json_number(j, f->key, hf_merged_is_done(m, i) ? f->value.value[i] : (double)NAN);
-        if (k + 1 == m->n_figure || f[1].stage != f->stage) hf_json_close(j, '}');
+        if (*f->state && (is_last || strcmp(f[1].state, f->state) != 0)) hf_json_close(j, '}');
+        if (is_last || f[1].stage != f->stage) hf_json_close(j, '}');
     }
 }
 

@@ -88,18 +88,36 @@ static void write_inputs(const hf_merged *m, FILE *f)
     fputc(']', f);
 }
 
-/* The figures of each stage that has psi, and of the net as built. */
+/* The page takes each state for a stage of its own. */
+static const char *stage_word(const hf_merged_figure *figure, char word[HF_SET_NAME_SIZE + 8])
+{
+    if (!*figure->state) return hf_merged_stage_word[figure->stage];
+    snprintf(word, HF_SET_NAME_SIZE + 8, "case %s", figure->state);
+    return word;
+}
+
+static bool is_of_one_stage(const hf_merged_figure *a, const hf_merged_figure *b)
+{
+    return a->stage == b->stage && !strcmp(a->state, b->state);
+}
+
+/* The figures of each stage that has psi, of the net as built, and of its states. */
 static void write_outputs(const hf_merged *m, FILE *f)
 {
     const char *comma = "";
+    char word[HF_SET_NAME_SIZE + 8];
     fputs(",\n\"output\":[", f);
-    for (hf_merged_stage stage = HF_MERGED_FORM; stage < HF_MERGED_N_STAGE; stage++) {
-        if (!hf_merged_find(m, stage, stage == HF_MERGED_BUILT ? "psi_95_m" : "psi_m")) continue;
-        fprintf(f, "%s\n{\"stage\":\"%s\"", comma, hf_merged_stage_word[stage]);
-        for (int k = 0; k < m->n_figure; k++)
-            if (m->figure[k].stage == stage) hf_json_values(m->figure[k].key, m->figure[k].value.value, m->n, 1, 9, f);
-        fputc('}', f);
-        comma = ",";
+    for (int k = 0, next; k < m->n_figure; k = next) {
+        const hf_merged_figure *first = &m->figure[k];
+        bool has_psi = hf_merged_find(m, first->stage, first->stage == HF_MERGED_BUILT ? "psi_95_m" : "psi_m");
+        if (has_psi) {
+            fprintf(f, "%s\n{", comma);
+            hf_json_text(&(hf_json){.file = f}, "stage", stage_word(first, word));
+            comma = ",";
+        }
+        for (next = k; next < m->n_figure && is_of_one_stage(first, &m->figure[next]); next++)
+            if (has_psi) hf_json_values(m->figure[next].key, m->figure[next].value.value, m->n, 1, 9, f);
+        if (has_psi) fputc('}', f);
     }
     fputc(']', f);
 }
@@ -108,12 +126,13 @@ static void write_outputs(const hf_merged *m, FILE *f)
 static void write_figures(const hf_merged *m, FILE *f)
 {
     hf_json j = {.file = f, .is_due = true};
+    char word[HF_SET_NAME_SIZE + 8];
     hf_json_line(&j, "");
     hf_json_open(&j, "figure", '[');
     for (int k = 0; k < m->n_figure; k++) {
         const hf_merged_figure *figure = &m->figure[k];
         hf_json_open(&j, NULL, '{');
-        hf_json_text(&j, "stage", hf_merged_stage_word[figure->stage]);
+        hf_json_text(&j, "stage", stage_word(figure, word));
         hf_json_text(&j, "key", figure->key);
         hf_json_text(&j, "unit", hf_ledger_unit(figure->key));
         char words[HF_AXIS_NAME_SIZE];

@@ -20,8 +20,9 @@
 
 #define HEADER "#hifdm-points-1"
 #define SYNC_S 5.0 /* finished points of the last 5 s may be lost by a power cut */
-#define LINE_SIZE                                                                                                      \
-    32768 /* of one row: the reason, 25 bytes for each number, lists with names (a goal: 138, an error: 70) */
+/* Of one row: the reason, 25 bytes for each number, lists with names (a goal: 138, an error: 70; of each of 16 states
+ * four figures and 68 errors of up to 135). */
+#define LINE_SIZE 200000
 #define ROWS_MAX                                                                                                       \
     (HF_STUDY_POINT_MAX * (off_t)4096) /* bytes of a file that is read: all points have a row, few so much */
 #define N_FIXED 4                      /* fields before the numbers: id, fingerprint, status, reason */

@@ -3,7 +3,7 @@
  *
  *   points-HOST-PID.tsv   a line per finished point, by the process that finished it: id, fingerprint of the base
  *                         case, status, reason, every number of hf_summary, the goals and the errors of the surface
- *                         of each stage. One write(2) each; an incomplete line is ignored.
+ *                         of each stage, the states. One write(2) each; an incomplete line is ignored.
  *   claims                no content: the process that runs a point holds a record lock on the byte at the offset that
  *                         the point's id gives as a number; the system releases it when the process ends.
  *   ID-FINGERPRINT.h5     result files of points that have one; of the fingerprint the first digits: runs of different
@@ -28,9 +28,12 @@ bool hf_ledger_is_circumstance(const hf_hdf5_member *column);
 
 /* ---- The fields of a row: these numbers, then lists "name=value name=value" as texts (ledger_fields.c) ---- */
 
-/* The goals of each stage, then the errors of its surface, of facets where there are some, else of nodes. */
-enum { HF_LEDGER_N_LIST = 2 * HF_LAYOUT_N_GOALS_STAGE };
+/* The goals of each stage, then the errors of its surface, of facets where there are some, else of nodes, then the
+ * figures of the states of the net as built, whose names are STATE.NAME here and STATE/NAME in a merge. */
+enum { HF_LEDGER_LIST_CASES = 2 * HF_LAYOUT_N_GOALS_STAGE, HF_LEDGER_N_LIST };
+#define HF_LEDGER_CASES "/cases"
 typedef struct {
+    const char *field;          /* what a row calls it, behind group and prefix */
     const char *group, *prefix; /* where a merge has its values, below /points: the group, what data sets begin with */
     const char *begin;          /* what the names of its values begin with */
 } hf_ledger_list;

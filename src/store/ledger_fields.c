@@ -1,9 +1,10 @@
-/* What a row of a ledger holds of a point's summary: its numbers, and for each stage two lists as texts, the goals and
- * the errors of the surface, since what is in them may differ from point to point. Contents: numbers - lists - fields -
- * reading lists */
+/* What a row of a ledger holds of a point's summary: its numbers, for each stage two lists as texts, the goals and the
+ * errors of the surface, and one of the states of the net as built, since what is in them may differ from point to
+ * point. Contents: numbers - lists - fields - reading lists */
 #include "store/ledger.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,9 +64,10 @@ static int print_number(const hf_hdf5_member *column, const hf_summary *s, char 
 
 /* ---- lists ---- */
 
-const hf_ledger_list hf_ledger_list_of[HF_LEDGER_N_LIST] = {{"/form", "", "goal_"},        {"/ga", "best_", "goal_"},
-                                                            {"/polish", "", "goal_"},      {"/surface/form", "", ""},
-                                                            {"/surface/optimize", "", ""}, {"/surface/polish", "", ""}};
+const hf_ledger_list hf_ledger_list_of[HF_LEDGER_N_LIST] = {
+    {"goals", "/form", "", "goal_"},     {"goals", "/ga", "best_", "goal_"},      {"goals", "/polish", "", "goal_"},
+    {"errors", "/surface/form", "", ""}, {"errors", "/surface/optimize", "", ""}, {"errors", "/surface/polish", "", ""},
+    {"figures", HF_LEDGER_CASES, "", ""}};
 
 /* "goal_0_psi=0.001 goal_1_tension_edge=3" */
 static int print_goals(const hf_summary *s, int stage, char *text, size_t size)
@@ -77,25 +79,47 @@ static int print_goals(const hf_summary *s, int stage, char *text, size_t size)
     return (int)used;
 }
 
-/* "facet_half_path_rms_m=0.001 facet_good_to_Hz=3e9 facet_gain_loss_at_2.5_GHz_dB=0.1 facet_fit_half_path_rms_m=..." */
-static int print_errors(const hf_summary *s, int stage, char *text, size_t size)
+/* "facet_half_path_rms_m=0.001 facet_good_to_Hz=3e9 facet_gain_loss_at_2.5_GHz_dB=0.1 facet_fit_half_path_rms_m=...",
+ * each name behind these words: of a state its name and a dot. */
+static int print_errors(const hf_double_list *at, const hf_surface_measures *m, const char *before, char *text,
+                        size_t size)
 {
-    const hf_surface_measures *m = &s->measures[stage];
-    const hf_double_list *at = &s->surface.frequencies_Hz;
     size_t used = 0;
     if (!m->is_measured) return 0;
     hf_surface_errors e = hf_surface_errors_of(m, m->n_facet > 0);
     for (int is_fit = 0; is_fit < 2 && used < size; is_fit++) {
         double rms_m = is_fit ? e.fit_half_path_rms_m : e.half_path_rms_m;
         const double *loss_dB = is_fit ? e.fit_gain_loss_dB : e.gain_loss_dB;
-        char kind[16];
-        snprintf(kind, sizeof kind, "%s%s", m->n_facet > 0 ? "facet_" : "", is_fit ? "fit_" : "");
+        char kind[HF_SET_NAME_SIZE + 16];
+        snprintf(kind, sizeof kind, "%s%s%s", before, m->n_facet > 0 ? "facet_" : "", is_fit ? "fit_" : "");
         used += (size_t)snprintf(text + used, size - used, "%s%shalf_path_rms_m=%.17g %sgood_to_Hz=%.17g",
                                  is_fit ? " " : "", kind, rms_m, kind,
                                  hf_surface_frequency_of_loss_Hz(rms_m, HF_SURFACE_GOOD_TO_DB));
         for (int k = 0; k < at->n && used < size; k++)
             used += (size_t)snprintf(text + used, size - used, " %sgain_loss_at_%.9g_GHz_dB=%.17g", kind,
                                      at->value[k] / 1e9, loss_dB[k]);
+    }
+    return (int)used;
+}
+
+/* "cold.psi_m=0.001 cold.n_slack=3 ... sun.psi_m=..."; without a shape the figures are NaN. */
+static int print_states(const hf_summary *s, char *text, size_t size)
+{
+    size_t used = 0;
+    for (int k = 0; k < s->n_state && used < size; k++) {
+        const hf_state_summary *state = &s->state[k];
+        const hf_form_result *r = &state->result;
+        const double none = (double)NAN;
+        bool has = r->status == HF_OK;
+        char before[HF_SET_NAME_SIZE + 1];
+        snprintf(before, sizeof before, "%s.", state->name);
+        used += (size_t)snprintf(text + used, size - used,
+                                 "%s%spsi_m=%.17g %sn_slack=%g %sn_loose=%g %slargest_tension_N=%.17g", k ? " " : "",
+                                 before, has ? r->psi_m : none, before, has ? r->n_slack : none, before,
+                                 has ? r->n_loose : none, before, state->largest_tension_N);
+        if (!state->measures.is_measured || used + 1 >= size) continue;
+        text[used++] = ' ';
+        used += (size_t)print_errors(&s->surface.frequencies_Hz, &state->measures, before, text + used, size - used);
     }
     return (int)used;
 }
@@ -112,7 +136,7 @@ int hf_ledger_field_name(int i, char *text, size_t size)
     const hf_hdf5_member *column = hf_ledger_column(i);
     if (column) return snprintf(text, size, "%s/%s", column->object, column->name);
     const hf_ledger_list *list = &hf_ledger_list_of[i - hf_ledger_n_column()];
-    return snprintf(text, size, "%s/%s%s", list->group, list->prefix, *list->begin ? "goals" : "errors");
+    return snprintf(text, size, "%s/%s%s", list->group, list->prefix, list->field);
 }
 
 int hf_ledger_print_field(int i, const hf_summary *s, char *text, size_t size)
@@ -121,7 +145,9 @@ int hf_ledger_print_field(int i, const hf_summary *s, char *text, size_t size)
     if (column) return applies(column, s) ? print_number(column, s, text, size) : 0;
     int list = i - hf_ledger_n_column(), stage = list % HF_LAYOUT_N_GOALS_STAGE;
     if (s->form.status == HF_NOT_EVALUATED) return 0;
-    return list == stage ? print_goals(s, stage, text, size) : print_errors(s, stage, text, size);
+    if (list == HF_LEDGER_LIST_CASES) return print_states(s, text, size);
+    if (list == stage) return print_goals(s, stage, text, size);
+    return print_errors(&s->surface.frequencies_Hz, &s->measures[stage], "", text, size);
 }
 
 /* ---- reading lists ---- */

@@ -163,12 +163,21 @@ static double value_in(const hf_point *p, int list, const char *wanted)
 
 static void write_value(merger *m, hid_t group, int list, const char *value)
 {
-    char name[HF_GOAL_NAME_SIZE + 8];
+    char name[HF_GOAL_NAME_SIZE + 8], path[HF_GOAL_NAME_SIZE + 16];
+    const char *key = value, *dot = list == HF_LEDGER_LIST_CASES ? strchr(value, '.') : NULL;
     snprintf(name, sizeof name, "%s%s", hf_ledger_list_of[list].prefix, value);
+    if (dot) {
+        key = dot + 1;
+        name[dot - value] = '/';
+        snprintf(path, sizeof path, "/points" HF_LEDGER_CASES "/%.*s", (int)(dot - value), value);
+        hf_hdf5_close(&m->io, hf_hdf5_make_group(&m->io, path));
+    }
     for (int i = 0; i < m->points->n_point; i++)
         ((double *)m->room)[i] = value_in(&m->points->point[i], list, value);
-    write_column(m, group, name, HF_KIND_REAL, 1, hf_ledger_unit(value),
-                 *hf_ledger_list_of[list].begin ? "value of the goal" : "of the surface");
+    write_column(m, group, name, HF_KIND_REAL, 1, hf_ledger_unit(key),
+                 dot                              ? "of the state of the net as built"
+                 : *hf_ledger_list_of[list].begin ? "value of the goal"
+                                                  : "of the surface");
 }
 
 /* The group, and the one that it is in. */

@@ -48,6 +48,47 @@ START_TEST(errors_of_the_surface_are_columns_of_a_merge)
 }
 END_TEST
 
+/* What becomes of a design in each state, as single runs have it, and nothing is said of all states that is of one. */
+START_TEST(states_are_columns_of_a_merge)
+{
+    const char *cases = keep(source_path("configs/paraboloid-cases.yaml")), *merged = temp("s.h5"),
+               *page = temp("s.html");
+    const char *of_heat =
+        file_with("s.yaml", keep(formatted("base: %s\nsweep: {cases.0.temperature_K: [-120, -30]}\n", cases)));
+    sweep_and_merge(of_heat, temp("s.d"), merged);
+    HIFDM(0, "run", cases, "-o", temp("one.h5"), "--quiet");
+    HIFDM(0, "run", cases, "-o", temp("two.h5"), "--quiet", "--set", "cases.0.temperature_K=-30");
+#define STATES "for i, r in enumerate((b, c)) for s in ('cold', 'sun', 'cup_up', 'cup_down', 'spun') "
+    EXPECT(merged, temp("one.h5"), temp("two.h5"), "--",
+           "a['points/input/cases.0.temperature_K'][:].tolist() == [-120, -30]",
+           "all(a['points/cases'][s][n][i] == r['cases'][s].attrs[n] " STATES
+           "for n in ('psi_m', 'n_slack', 'n_loose', 'largest_tension_N'))",
+           "all(a['points/cases'][s][n][i] == r['cases'][s]['surface'].attrs[n] " STATES
+           "for n in ('facet_half_path_rms_m', 'facet_fit_half_path_rms_m'))",
+           "all(np.array_equal(a['points/cases'][s]['facet_' + f + 'gain_loss_at_%d_GHz_dB' % (2, 10)[q]][i], "
+           "r['cases'][s]['surface']['facet_' + f + 'gain_loss_dB'][q], equal_nan=True) " STATES
+           "for f in ('', 'fit_') for q in (0, 1))",
+           "[attribute(a['points/cases/cold/' + n], 'units') for n in ('psi_m', 'largest_tension_N', 'n_slack')] == "
+           "['m', 'N', '']",
+           "a['points/cases/cold/n_slack'][0] > a['points/cases/cold/n_slack'][1]");
+    HIFDM(0, "show", merged);
+    OUT("design slack 0");
+    OUT("cold slack  cold loose");
+    ck_assert_ptr_null(strstr(said.out, ", slack 0"));
+    HIFDM(0, "show", merged, "--json");
+    const char *json = out_as("s.json");
+    HIFDM(0, "report", merged, "-o", page);
+    EXPECT(
+        merged, json, data_of(page, "p.json"), "--",
+        "all([p['cases'][s][n] for p in b['points']] == a['points/cases'][s][n][:].tolist() for s in a['points/cases'] "
+        "for n in ('psi_m', 'n_slack', 'facet_half_path_rms_m'))",
+        "[o['n_slack'] for o in c['study']['output'] if o['stage'] == 'case cold'] == "
+        "[a['points/cases/cold/n_slack'][:].tolist()]",
+        "[f.get('same') for f in c['study']['figure'] if f['stage'] in ('case cold', 'case sun') and f['key'] == "
+        "'psi_m'] == [None, True]");
+}
+END_TEST
+
 /* Every number of the table is that of the file, the best row is the least psi of 95 %, and lines fit. */
 START_TEST(a_merged_study_is_shown_as_a_table)
 {
@@ -341,6 +382,7 @@ Suite *suite_cli_study(void)
     Suite *suite = suite_create("cli/study");
     TCase *tcase = tcase_create("study");
     tcase_add_test(tcase, errors_of_the_surface_are_columns_of_a_merge);
+    tcase_add_test(tcase, states_are_columns_of_a_merge);
     tcase_add_test(tcase, a_merged_study_is_shown_as_a_table);
     tcase_add_test(tcase, points_say_whether_they_have_the_yield);
     tcase_add_test(tcase, goals_say_which_point_is_best);

@@ -48,6 +48,8 @@ function readAxes(study) {
 
 const STAGE_STYLE = { form: ["--one", null], optimize: ["--two", "7 3"], polish: ["--three", "2 3"] };
 const BUILT = "tolerance"; // the stage of the net as built
+const isState = (stage) => stage.startsWith("case "); // of `cases`
+const stageWords = (stage) => stageName[stage] || stage;
 const TOLD_IN = { m: ["mm", 1e3], Hz: ["GHz", 1e-9] };
 
 // What a figure is called: its title, the name of its values on an axis, where it stands among the others, the head of
@@ -73,6 +75,9 @@ function figureWords({ key, goal: goalWords }) {
     return ["Tension ratio, inner cables", "T max / T min", 10, "Tension ratio, inner"];
   if (key === "boundary_tension_ratio")
     return ["Tension ratio, boundary cables", "T max / T min", 11, "Tension ratio, boundary"];
+  if (key === "n_slack") return ["Slack cables", "slack cables", 12, "Slack cables"];
+  if (key === "n_loose") return ["Loose nodes", "loose nodes", 13, "Loose nodes"];
+  if (key === "largest_tension_N") return ["Largest tension", "T max", 14, "Largest tension"];
   return null;
 }
 const lowered = (title) => title.replace(/^[A-Z]/, (c) => c.toLowerCase());
@@ -97,6 +102,14 @@ function readFigures(study, mainStage) {
         main,
         yLabel: unit ? `${name} (${unit})` : name,
         isLoss: /gain_loss_at_/.test(key),
+        isError: /half_path_rms_m|good_to_Hz/.test(key),
+        log: /^n_/.test(key) ? false : "auto", // a count of 0 is drawn
+        // a loss without a value is above what the formula holds for, where there is a surface
+        isBeyond: (i, stage = main) => {
+          const errors = study.output.find((o) => o.stage === stage) || {},
+            rms = errors[key.replace(/gain_loss_at_.*/, "half_path_rms_m")] || [];
+          return study.status[i] === "ok" && typeof rms[i] === "number";
+        },
         stages: own.map(({ stage }) => stage),
         drawn: own.filter(({ same }) => !same).map(({ stage }) => stage),
         of: (i, stage = main) => {
@@ -111,9 +124,11 @@ function readFigures(study, mainStage) {
 // What a figure is where it is the same everywhere; of other stages than the result psi alone is told.
 function sameText(study, f, stage) {
   const i = study.status.findIndex((word, k) => word === "ok" && f.of(k, stage) !== null),
-    of = f.key === "psi_m" && f.stages.length > 1 ? ` ${stageName[stage]}` : "";
+    of = f.key === "psi_m" && f.stages.length > 1 ? ` ${stageWords(stage)}` : "";
   if (stage !== f.main && f.key !== "psi_m") return "";
-  if (i < 0) return f.isLoss && study.status.includes("ok") ? `${lowered(f.title)} above 3\u00a0dB` : "";
+  if (f.key === "n_slack" && i >= 0) return `slack cables of the design ${fmtCount(f.of(i, stage))}`;
+  const isBeyond = f.isLoss && study.status.some((_, k) => f.isBeyond(k, stage));
+  if (i < 0) return isBeyond ? `${lowered(f.title)} above 3\u00a0dB` : "";
   const value = (f.unit === "mm" ? rounded : fmt)(f.of(i, stage), 5);
   return `${lowered(f.title)}${of} ${value}${f.unit ? `\u00a0${f.unit}` : ""}`;
 }
@@ -179,21 +194,23 @@ function curveChart(study, figure, axis, others, groups, stage) {
   const x = valuesOf(study, axis),
     isOne = groups.length === 1;
   const isStaged = figure.main !== BUILT,
-    stages = isOne ? figure.drawn : [isStaged ? stage : BUILT];
+    stages = isOne ? figure.drawn : [isStaged ? stage : BUILT],
+    states = figure.stages.filter(isState),
+    styleOf = (of) => STAGE_STYLE[of] || [SERIES[(states.indexOf(of) + 3) % SERIES.length], "1 2"];
   const series = groups.flatMap((group, k) =>
     stages.map((of) => ({
-      name: group.name || (isStaged ? stageName[of] : "as built"),
+      name: group.name || (isStaged ? stageWords(of) : "as built"),
       stored: figure.key,
       values: x.map((v) => (group.at.has(v) ? figure.of(group.at.get(v), of) : null)),
-      colour: isOne && isStaged ? STAGE_STYLE[of][0] : SERIES[k],
-      dash: isOne && isStaged ? STAGE_STYLE[of][1] : null,
+      colour: isOne && isStaged ? styleOf(of)[0] : SERIES[k],
+      dash: isOne && isStaged ? styleOf(of)[1] : null,
       dots: x.length < 2,
     })),
   );
   const isAlone = isOne && isStaged && stages.length === 1 && figure.stages.length > 1; // without a legend, then
   return chart({
     ...figure,
-    title: isAlone ? `${figure.title}, ${stageName[stages[0]]}` : figure.title,
+    title: isAlone ? `${figure.title}, ${stageWords(stages[0])}` : figure.title,
     xLabel: axis.text,
     x,
     series,
@@ -385,7 +402,7 @@ function writeCurves(study, axes, figures, mainStage) {
       choice(
         "stage",
         "Shape",
-        stages.map((o) => [o.stage, stageName[o.stage]]),
+        stages.map((o) => [o.stage, stageWords(o.stage)]),
         state.stage,
         (stage) => redraw({ stage }),
       ),
@@ -418,13 +435,15 @@ function pointLink(study, i) {
 
 const aligned = (v, digits) => (v === 0 ? "0" : Math.abs(v) < RESOLVED_MM ? rounded(v) : digitsOf(v, digits));
 
-// A figure of a stage as a column; a loss that has no value is above what the formula holds for.
+// A figure of a stage as a column.
 function figureColumn(study, f, stage) {
   const of = (i) => f.of(i, stage),
-    name = f.key === "psi_m" ? `ψ ${stageName[stage]}` : f.column,
-    format = /ratio$/.test(f.key) ? fmtRatio : f.unit === "%" ? (v) => v.toFixed(1) : aligned;
+    name = f.key === "psi_m" ? `ψ ${stageWords(stage)}` : isState(stage) ? `${f.column}, ${stage}` : f.column,
+    percents = (v) => v.toFixed(1),
+    isCount = /^n_/.test(f.key),
+    format = /ratio$/.test(f.key) ? fmtRatio : isCount ? fmtCount : f.unit === "%" ? percents : aligned;
   const show = (i) =>
-    of(i) === null ? (f.isLoss && study.status[i] === "ok" ? "> 3" : "–") : format(of(i), f.unit === "mm" ? 5 : 4);
+    of(i) === null ? (f.isLoss && f.isBeyond(i, stage) ? "> 3" : "–") : format(of(i), f.unit === "mm" ? 5 : 4);
   return { name: f.unit ? `${name} (${f.unit})` : name, number: true, of, show };
 }
 
@@ -434,8 +453,6 @@ function writePoints(study, axes, figures, best) {
     rows = Array.from({ length: study.n }, (_, i) => i);
   const statusCell = (i) =>
     el("span", { class: "status", title: study.reason[i] || undefined }, statusText(study.status[i]));
-  const slackOf = (study.output.find((o) => o.stage === study.main) || {}).n_slack || [],
-    slack = (i) => (study.status[i] === "ok" ? slackOf[i] : null);
   const columns = [
     ...varying.map((a) => ({ name: a.text, number: a.isNumber, of: a.value, show: (i) => a.label(i) })),
     { name: "Status", of: (i) => statusText(study.status[i]), show: statusCell },
@@ -443,9 +460,10 @@ function writePoints(study, axes, figures, best) {
       ? [{ name: "Meets the yield", of: (i) => study.meets_yield[i], show: (i) => study.meets_yield[i] || "–" }]
       : []),
     ...figures.flatMap((f) =>
-      f.drawn.filter((s) => f.key === "psi_m" || s === f.main).map((s) => figureColumn(study, f, s)),
+      f.drawn
+        .filter((s) => f.key === "psi_m" || s === f.main || (isState(s) && !f.isError))
+        .map((s) => figureColumn(study, f, s)),
     ),
-    ...(rows.some(slack) ? [{ name: "Slack cables", number: true, of: slack, show: (i) => fmtCount(slack(i)) }] : []),
     { name: "Point", of: (i) => study.id[i], show: (i) => pointLink(study, i) },
   ];
   const said = [];

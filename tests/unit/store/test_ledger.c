@@ -82,6 +82,48 @@ START_TEST(numbers_come_back_bit_by_bit)
 }
 END_TEST
 
+/* The longest row that there is: states with the longest names and all their errors, read to the last one. */
+START_TEST(all_states_come_back)
+{
+    hf_study s;
+    hf_summary *summary = calloc(1, sizeof *summary);
+    summary->n_state = HF_STATES_MAX;
+    summary->surface.frequencies_Hz.n = HF_LIST_MAX;
+    for (int k = 0; k < HF_LIST_MAX; k++)
+        summary->surface.frequencies_Hz.value[k] = 1.23456789e-8 * (k + 1);
+    for (int k = 0; k < HF_STATES_MAX; k++) {
+        hf_state_summary *state = &summary->state[k];
+        memset(state->name, 'a' + k, sizeof state->name - 1);
+        state->result.psi_m = -1.2345678901234567e-300;
+        state->measures.is_measured = true;
+        state->measures.n_facet = 1;
+        for (int i = 0; i < HF_LIST_MAX; i++)
+            state->measures.facet_gain_loss_dB[i] = state->measures.facet_fit_gain_loss_dB[i] = -0.1 / 3 * 1e-300;
+    }
+    summary->state[3].result.status = HF_COLLAPSED;
+    open_study(&s);
+    write_point(&s, 1, HF_OK, "", summary);
+    hf_points points = read_points(&s);
+    ck_assert_int_eq(points.point[1].state, HF_POINT_DONE);
+    const char *text = points.point[1].field[hf_ledger_n_column() + HF_LEDGER_LIST_CASES];
+    char name[HF_GOAL_NAME_SIZE];
+    double value;
+    int n = 0, n_psi = 0, n_none = 0;
+    while (hf_ledger_next_value(HF_LEDGER_LIST_CASES, &text, name, &value)) {
+        n++;
+        bool is_psi = strstr(name, ".psi_m") != NULL;
+        n_none += is_psi && isnan(value);
+        n_psi += is_psi && value == -1.2345678901234567e-300;
+    }
+    ck_assert_int_eq(n_psi, HF_STATES_MAX - 1);
+    ck_assert_int_eq(n_none, 1); /* without a shape */
+    ck_assert_int_eq(n, HF_STATES_MAX * (4 + 2 * (2 + HF_LIST_MAX)));
+    hf_points_free(&points);
+    hf_study_free(&s);
+    free(summary);
+}
+END_TEST
+
 /* The goals of each stage that the run reached, by name, to the last bit. */
 START_TEST(goals_come_back)
 {
@@ -403,6 +445,7 @@ Suite *suite_unit_ledger(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, numbers_come_back_bit_by_bit);
     tcase_add_test(tests, goals_come_back);
+    tcase_add_test(tests, all_states_come_back);
     tcase_add_test(tests, damaged_goals_are_none);
     tcase_add_test(tests, a_success_counts_more_than_a_failure);
     tcase_add_loop_test(tests, the_same_row_counts_in_any_order_of_files, 0, 2);
