@@ -132,7 +132,7 @@ static int split(char *line, char **field, int column_max)
     }
 }
 
-/* Next line of the text, without its end (LF or CRLF); NULL after the last. */
+/* Next line of the text, without its end (LF, CRLF, or CRCRLF of what was converted twice); NULL after the last. */
 static char *next_line(char **rest)
 {
     char *line = *rest;
@@ -141,7 +141,8 @@ static char *next_line(char **rest)
     *rest = end ? end + 1 : line + strlen(line);
     if (end) *end = '\0';
     size_t n = strlen(line);
-    if (n && line[n - 1] == '\r') line[n - 1] = '\0';
+    while (n && line[n - 1] == '\r')
+        line[--n] = '\0';
     return line;
 }
 
@@ -199,8 +200,12 @@ static void note_uneven(hf_csv *t, int n_field, int line, uneven_lines *u)
 /* Take one line that is not a comment. False without memory. */
 static bool take_line(hf_csv *t, char *line, int n_line, char **field, int column_max, uneven_lines *uneven)
 {
+    if (strchr(line, '\r')) {
+        hf_csv_fault(t, n_line, NULL, "a carriage return within the line; lines end with LF or CRLF", "");
+        return true;
+    }
     if (!hf_text_is_utf8(line)) {
-        hf_csv_fault(t, n_line, NULL, "not UTF-8 text; save the file as UTF-8", "");
+        hf_csv_fault(t, n_line, NULL, "not UTF-8 text, or a control character; save the file as UTF-8", "");
         return true;
     }
     int n = split(line, field, column_max);

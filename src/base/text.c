@@ -235,12 +235,19 @@ static int edit_distance(const char *a, const char *b)
     return row[n_b];
 }
 
+/* Is the name this word with a unit behind it, as EA_N of EA? */
+static bool is_with_unit(const char *name, const char *word)
+{
+    size_t n = strlen(word);
+    return n && !strncmp(name, word, n) && name[n] == '_';
+}
+
 const char *hf_text_nearest(const char *word, const char *const *candidates, int n_candidate)
 {
     const char *nearest = NULL;
     int limit = 1 + (int)strlen(word) / 3, best = limit + 1;
     for (int i = 0; i < n_candidate; i++) {
-        int distance = edit_distance(word, candidates[i]);
+        int distance = is_with_unit(candidates[i], word) ? 1 : edit_distance(word, candidates[i]);
         if (distance < best) {
             best = distance;
             nearest = candidates[i];

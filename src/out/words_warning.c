@@ -82,6 +82,10 @@ const hf_word hf_words_warning[] = {
      "displacement / 2: here more than 1e-5 of the span and a twentieth of psi. Stiffen the truss, or lower "
      "form.pretension_N.",
      "truss: its attachments give way so far"},
+    {"stretched_far", "warning", "",
+     "T/EA of this cable is more than 5 %. Where EA was given in kN it is a thousandth of what was meant; else the "
+     "tension is more than such a cable carries. Cut lengths, states and samples of the net as built follow EA.",
+     "is stretched by"},
     {"uncounted_nodes", "warning", "",
      "Goals count some nodes only: psi the inner ones, facets those of the front. The optimiser moves all others as "
      "far "
@@ -89,7 +93,7 @@ const hf_word hf_words_warning[] = {
      "layer "
      "the ties alone), or count the others, too: a goal length of their set (of the rear net) with a small weight "
      "keeps "
-     "their cables near their theoretical lengths and costs next to nothing.",
+     "their cables near their theoretical lengths. Where the goals gain by these moves themselves, that gain is lost.",
      "moved far from where form-finding has it"},
     {"drifting_within_surface", "warning", "",
      "Goals of the surface (facets, surface, gain) count how far nodes are from it, not where on it they are. {goal: "

@@ -1,4 +1,4 @@
-/* Contents: the truss - nodes that no goal counts */
+/* Contents: the truss - strains - nodes that no goal counts */
 #include "run/result_doubt.h"
 
 #include "base/arena.h"
@@ -28,6 +28,33 @@ void hf_result_doubt_truss(const hf_problem *p, const hf_carrier_state *truss, c
                    "computed by, may be off by some %.2g mm: stiffen it (tubes of larger diameter, more bays) or lower "
                    "form.pretension_N",
                    move_m * 1e3, off_m * 1e3);
+}
+
+/* ---- strains ---- */
+
+/* Fibres and steel break at a few per cent: beyond that EA or the tension is not what was meant. */
+#define STRAIN_DOUBT 0.05
+
+void hf_result_doubt_strain(const hf_problem *p, const hf_workspace *shape, hf_messages *messages)
+{
+    const double *EA_N = p->scene.EA_N;
+    double most = STRAIN_DOUBT;
+    int worst = -1, n = 0;
+    char more[32] = "";
+    for (int e = 0; EA_N && shape && e < p->scene.n_cable; e++) {
+        double strain = EA_N[e] > 0 ? shape->tension_N[e] / EA_N[e] : 0;
+        n += strain > STRAIN_DOUBT;
+        if (!(strain > most)) continue;
+        most = strain;
+        worst = e;
+    }
+    if (worst < 0) return;
+    if (n > 1) snprintf(more, sizeof more, ", and %d more", n - 1);
+    hf_warning(
+        messages,
+        "cable '%s'%s is stretched by %.3g %%, by %.4g N with an EA of %.4g N: cables break at a few per cent; is "
+        "EA in N?",
+        p->scene.cable_id[worst], more, most * 100, shape->tension_N[worst], EA_N[worst]);
 }
 
 /* ---- nodes that no goal counts ---- */

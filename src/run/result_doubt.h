@@ -1,5 +1,6 @@
-/* result_doubt - what about a found result its author should know before it is built: a truss beyond linear theory, and
- * nodes that an optimisation has moved far because no goal counts where they are. */
+/* result_doubt - what about a found result its author should know before it is built: a truss beyond linear theory,
+ * cables stretched more than cables can be, and nodes that an optimisation has moved far because no goal counts where
+ * they are. */
 #ifndef HIFDM_RESULT_DOUBT_H
 #define HIFDM_RESULT_DOUBT_H
 
@@ -9,6 +10,9 @@
 /* `shape` holds the result, NULL where there is none; `truss` what the truss does under it. */
 void hf_result_doubt_truss(const hf_problem *problem, const hf_carrier_state *truss, const hf_workspace *shape,
                            hf_messages *messages);
+
+/* Warn of the cable of the result that is stretched most, T/EA, where that is more than a twentieth. */
+void hf_result_doubt_strain(const hf_problem *problem, const hf_workspace *shape, hf_messages *messages);
 
 /* How far the goals of a case count where a node is: not, its distance from the surface alone, or wholly. */
 typedef enum { HF_COUNTED_NOT, HF_COUNTED_ACROSS, HF_COUNTED } hf_counted;

@@ -523,6 +523,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
         hf_error(messages, status, "%s: told to stop%s; the same command goes on from there", output, r->stopped_at);
     if ((!leaves_result(status) && !keeps_design) || hf_tolerance_stage_is_task(q)) return status;
     hf_result_doubt_truss(&r->problem, &r->truss, r->shape, messages);
+    hf_result_doubt_strain(&r->problem, r->shape, messages);
     hf_result_doubt_uncounted(&r->problem, &r->places, r->shape, messages);
     if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, &r->truss, messages));
     snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");

@@ -68,6 +68,10 @@ static const struct {
      "warning: @cables.csv:1: column 'Name' is not used\n"
      "error: @cables.csv:1: the first line has to name the columns: id,i,j,group,law,value; missing are id,i,j\n"},
     {"\xff\xfei", CABLES, "error: @nodes.csv: UTF-16 text; save the file as CSV UTF-8\n"},
+    {"id,x_m,y_m,z_m,role\na,0,0,0,support\rb,1,0,0,support\n", CABLES,
+     "error: @nodes.csv:2: a carriage return within the line; lines end with LF or CRLF\n"},
+    {NODES "\x01,1,2,0,inner\n", CABLES,
+     "error: @nodes.csv:6: not UTF-8 text, or a control character; save the file as UTF-8\n"},
     /* as a spreadsheet in half of Europe saves it */
     {"id;x_m;y_m;z_m;role\na;0;0;0;support\n", CABLES,
      "error: @nodes.csv:1: columns are separated by commas, not by ';', and numbers have points\n"},

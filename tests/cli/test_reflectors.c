@@ -144,6 +144,22 @@ START_TEST(nodes_that_no_goal_counts_are_told)
 }
 END_TEST
 
+/* EA in kN where N is meant; 5 % is the largest strain that is not told. */
+START_TEST(cables_stretched_too_far_are_told)
+{
+    const char *net = "scene: {paraboloid: {aperture_m: 4, focal_length_m: 2.4, rings: 3, rear_distance_m: 1.2}, "
+                      "EA_inner_N: 8, EA_boundary_N: 8000}\nform: {pretension_N: 5, prestress: exact}\n",
+               *path = file_with("c.yaml", net), *out = temp("r.h5");
+    HIFDM(0, "run", path, "-o", out, "--json");
+    EXPECT(out_as("r.json"), out, "--",
+           "(lambda strain, ids: any(f\"cable '{ids[strain.argmax()]}', and {(strain > 0.05).sum() - 1} more is "
+           "stretched by {100 * strain.max():.3g} %\" in w for w in a['warnings']))"
+           "(b['form/tension_N'][:] / b['scene/cable/EA_N'][:], b['scene/cable/id'].asstr()[:])");
+    HIFDM(0, "run", path, "-o", out, "--force", "--set", "scene.EA_inner_N=8000");
+    ck_assert_ptr_null(strstr(said.err, "stretched"));
+}
+END_TEST
+
 /* The cells of a quad net at its rim, 28 here, are counted when they are made. */
 START_TEST(rings_under_quad_nets)
 {
@@ -188,6 +204,7 @@ Suite *suite_cli_reflectors(void)
     tcase_add_test(tcase, designs_move_net_and_ring_in_lanes);
     tcase_add_loop_test(tcase, a_double_layer_is_designed, 0, 2);
     tcase_add_test(tcase, nodes_that_no_goal_counts_are_told);
+    tcase_add_test(tcase, cables_stretched_too_far_are_told);
     tcase_add_test(tcase, rings_under_quad_nets);
     tcase_add_test(tcase, nothing_is_below_rounding);
     suite_add_tcase(suite, tcase);

@@ -112,6 +112,9 @@ START_TEST(nearest_word_is_a_likely_typing_error)
     ck_assert_str_eq(hf_text_nearest("metod", words, 5), "method");
     ck_assert_str_eq(hf_text_nearest("sop", words, 5), "stop");
     ck_assert_str_eq(hf_text_nearest("stopp", words, 5), "stop");
+    ck_assert_str_eq(hf_text_nearest("pretension", words, 5), "pretension_N"); /* without its unit */
+    ck_assert_str_eq(hf_text_nearest("length", words, 5), "length_tolerance");
+    ck_assert_ptr_null(hf_text_nearest("_N", words, 5));
     ck_assert_ptr_null(hf_text_nearest("colour", words, 5));
     ck_assert_ptr_null(hf_text_nearest("", words, 5));
     ck_assert_ptr_null(hf_text_nearest("stop", words, 0));

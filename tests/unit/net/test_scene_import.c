@@ -32,6 +32,8 @@ static const struct {
      CABLES "\"ab\" , \"a\" ,b,inner,tension,\"12.5\"\nbc,b,c,boundary,length,\"\"\n"},
     {"CRLF", "id,x_m,y_m,z_m,role\r\na,0,0,0,support\r\nb,1.5,-2.25,3e-1,inner\r\nc,4,0,0,support\r\n",
      "id,i,j,group,law,value\r\nab,a,b,inner,tension,12.5\r\nbc,b,c,boundary,length,\r\n"},
+    {"CRCRLF", "id,x_m,y_m,z_m,role\r\r\na,0,0,0,support\r\r\nb,1.5,-2.25,3e-1,inner\r\r\nc,4,0,0,support\r\r\n",
+     "id,i,j,group,law,value\r\r\nab,a,b,inner,tension,12.5\r\r\nbc,b,c,boundary,length,\r\r\n"},
     {"byte order mark", "\xEF\xBB\xBF" GOOD_NODES, "\xEF\xBB\xBF" GOOD_CABLES},
     {"comments and empty lines",
      "# net\n\n" NODES "# a\na,0,0,0,support\n \t\nb,1.5,-2.25,3e-1,inner\n#\nc,4,0,0,support",
