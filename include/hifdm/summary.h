@@ -139,7 +139,7 @@ typedef struct {
     hf_status status;                /* of the whole run; HF_NOT_EVALUATED unless finished */
     int threads;                     /* number used */
     uint64_t seed;                   /* of the genetic algorithm */
-    char warnings[HF_WARNINGS_SIZE]; /* lines "warning: ..." and "error: ..." */
+    char warnings[HF_WARNINGS_SIZE]; /* lines "error: ...", then lines "warning: ..." */
 
     hf_surface_settings surface;     /* focal_length_m is 0 when the case has no such section */
     hf_pattern_summary pattern[3];   /* of the same; none without surface.pattern */
@@ -180,6 +180,10 @@ typedef struct {
  * stream (ferror). */
 void hf_summary_write_json(const hf_summary *summary, hf_status status, const char *messages, const char *path,
                            FILE *file);
+
+/* The status that hf_summary_write_json takes of a file: of the whole run, or while that has not ended of its
+ * form-finding. */
+hf_status hf_summary_status(const hf_summary *summary);
 
 /* True when the file holds the shape of the best individual, which is stored when the genetic algorithm has ended. */
 bool hf_summary_has_best_shape(const hf_summary *summary);

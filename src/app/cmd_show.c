@@ -42,8 +42,7 @@ static hf_status command_show(const hf_options *o, FILE *file, hf_messages *mess
     if (hf_merged_is(o->file)) return show_study(o, file, messages);
     HF_TRY(hf_store_read_summary(o->file, &summary, messages));
     if (o->json) {
-        hf_summary_write_json(&summary, summary.finished ? summary.status : summary.form.status, summary.warnings,
-                              o->file, file);
+        hf_summary_write_json(&summary, hf_summary_status(&summary), summary.warnings, o->file, file);
     } else {
         hf_print_summary(&summary, o->file, (hf_print_style){o->verbose, hf_output_has_colour(STDOUT_FILENO)}, file);
         hf_print_lines(summary.warnings, file);

@@ -1,6 +1,7 @@
 /* Contents: the answer - the table of stages - surface - front, states, truss - together */
 #include "out/print_summary.h"
 #include "out/print_tolerance.h"
+#include "base/text.h"
 #include "store/ledger.h"
 #include <hifdm/store.h>
 
@@ -155,12 +156,32 @@ static void print_front_answer(const hf_summary *s, FILE *f)
     }
 }
 
+/* Why a run failed whose form-finding did not, and what its figures are of. Without an error in the file, as one whose
+ * text was cut, the sentence of the status. */
+static void print_failure(const hf_summary *s, hf_stage stage, FILE *f)
+{
+    static const char begin[] = "error: ";
+    char why[HF_WARNINGS_SIZE], shown[HF_WARNINGS_SIZE];
+    const char *line = s->warnings;
+    if (!s->finished || s->status == HF_OK || s->form.status != HF_OK) return;
+    while (*line && strncmp(line, begin, strlen(begin)) != 0) {
+        line += strcspn(line, "\n");
+        line += *line == '\n';
+    }
+    if (*line) line += strlen(begin);
+    snprintf(why, sizeof why, "%.*s", (int)strcspn(line, "\n"), line);
+    hf_text_escape(*why ? why : hf_status_text(s->status), shown, sizeof shown);
+    fprintf(f, "failed: %s; ", shown);
+    if (!s->has_front) fputs(stage == HF_STAGE_FORM ? "of the form-finding: " : "of the design: ", f);
+}
+
 void hf_print_answer(const hf_summary *s, FILE *f)
 {
     hf_stage stage = hf_store_result_stage(s);
     const hf_form_result *r = result_of(s, stage);
     char psi[32];
     if (!s->finished) fputs("unfinished: ", f);
+    print_failure(s, stage, f);
     if (r->status == HF_NOT_CONVERGED) fputs("not converged: ", f);
     if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) {
         fprintf(f, "no shape: %s", hf_status_text(r->status));
@@ -180,7 +201,6 @@ void hf_print_answer(const hf_summary *s, FILE *f)
         print_gained(s, stage, f);
     }
     if (r->status == HF_OK) print_frequency(s, stage, r->psi_m, f);
-    if (s->has_optimize && s->finished && s->best.status != HF_OK) fputs("; no feasible design was found", f);
 }
 
 /* ---- the table of stages ---- */

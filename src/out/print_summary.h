@@ -4,7 +4,8 @@
 
 #include "out/print.h"
 
-/* What the result is good for, in one line without its end: psi or goals, gained over what, good to how many GHz. */
+/* What the result is good for, in one line without its end: psi or goals, gained over what, good to how many GHz.
+ * Before it, of a run that failed after its form-finding, why, and that this is not of what was asked for. */
 void hf_print_answer(const hf_summary *summary, FILE *file);
 
 /* "loss of gain at 2/6 GHz: 0.1/0.9 dB, after best fit ...": of the facets where there are some, without an end of the

@@ -21,7 +21,7 @@
 #include <string.h>
 
 #define POINTS_MAX 1000       /* points of a series that the page keeps: about what a screen can show */
-#define ANSWER_SIZE 4096      /* 100 bytes are usual, and 20 more for each frequency; a longer one is cut */
+#define ANSWER_SIZE 8192      /* 100 bytes are usual, 20 more for each frequency, the error of a run; longer is cut */
 #define PROVENANCE_SIZE 16384 /* 500 bytes are usual; lines that have no room are left out */
 
 /* The series of a page: path in the file, group and key on the page. The first row of a group sets its length. */
@@ -321,7 +321,7 @@ static void write_other(const page *p, const page *other, FILE *f)
     write_case(other, f);
     write_goal_units(&other->summary, f);
     fputs(",\"summary\":", f);
-    hf_summary_write_json(&other->summary, other->summary.form.status, other->summary.warnings, other->path, f);
+    hf_summary_write_json(&other->summary, hf_summary_status(&other->summary), other->summary.warnings, other->path, f);
     if (!hf_scene_difference(&p->scene, &other->scene)) write_shapes(other, HF_STAGE_NONE, f);
     write_patterns(other, f);
     fputc('}', f);
@@ -340,7 +340,7 @@ static void write_data(const void *context, FILE *f)
     hf_json_line(&j, "");
     hf_json_lines(&j, "provenance", "", p->provenance);
     fputs(",\n\"summary\":", f);
-    hf_summary_write_json(s, s->form.status, s->warnings, p->path, f);
+    hf_summary_write_json(s, hf_summary_status(s), s->warnings, p->path, f);
     fprintf(f, ",\"seed\":\"%llu\"", (unsigned long long)s->seed); /* as a number it would lose its last digits */
     bool has_variables = s->has_optimize || s->has_polish || s->has_front;
     fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, has_variables ? s->n_gene : 0);

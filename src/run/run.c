@@ -474,6 +474,20 @@ static hf_status repeat_finished(const char *output, hf_summary *s, hf_messages 
     return s->status;
 }
 
+/* Errors first: where there is no room for all lines, warnings are lost, not why the run failed. */
+static void keep_messages(const hf_messages *messages, char text[HF_WARNINGS_SIZE])
+{
+    size_t n = 0, length;
+    *text = '\0';
+    for (int of_errors = 1; of_errors >= 0; of_errors--)
+        for (const char *line = messages->text; line && *line && n < HF_WARNINGS_SIZE; line += length) {
+            length = strcspn(line, "\n") + 1; /* each line has an end */
+            bool is_error = strncmp(line, "error: ", 7) == 0;
+            if (is_error == of_errors) n += (size_t)snprintf(text + n, HF_WARNINGS_SIZE - n, "%.*s", (int)length, line);
+        }
+    hf_text_trim_utf8(text);
+}
+
 /* Set *state, and open the store unless the state is HF_STORE_FINISHED, or for one task of several, which has none. */
 static hf_status open_store(run *r, char *output, hf_store_state *state, hf_messages *messages)
 {
@@ -526,8 +540,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     hf_result_doubt_strain(&r->problem, r->shape, messages);
     hf_result_doubt_uncounted(&r->problem, &r->places, r->shape, messages);
     if (s->has_truss) HF_TRY(hf_store_truss(r->store, &r->problem.carrier, &r->truss, messages));
-    snprintf(s->warnings, sizeof s->warnings, "%s", messages->text ? messages->text : "");
-    hf_text_trim_utf8(s->warnings);
+    keep_messages(messages, s->warnings);
     s->finished = true;
     s->status = status;
     hf_status finish = hf_store_complete(r->store, s, messages);

@@ -377,6 +377,11 @@ static void write_tolerance(const hf_tolerance_summary *t, hf_json *j)
     hf_json_close(j, '}');
 }
 
+hf_status hf_summary_status(const hf_summary *s)
+{
+    return s->finished ? s->status : s->form.status;
+}
+
 void hf_summary_write_json(const hf_summary *s, hf_status status, const char *messages, const char *path, FILE *f)
 {
     hf_json writer = {.file = f}, *j = &writer;

@@ -9,6 +9,7 @@
 //   pattern: how many charts of its far field, of how many neighbouring angles each
 //   facets: how many, all triangles; off: families of cables whose switches are tried
 //   other: how the case of a second result differs, with which it is compared; unlike: in its figures, too
+//   fails: a run of it ends without a feasible design
 //   bytes_max: how large it may be, if more than usual; fluid: it is only looked at how fast it is
 //   look: its looks are checked, and its sizes are in sizes.json
 //   study: how many points; leads: the axis that matters most, of two; along the other one nothing changes
@@ -161,6 +162,31 @@ export const pages = [
       .concat("--set", "surface.frequencies_Hz=[5e7]"),
     unlike: true,
     sections: ["compare", ...FORM],
+  },
+  {
+    name: "failed", // no design is within the cap
+    text: cylinder([4, 5], "optimize: {method: lm, range_N: 1e-6, boundary_ratio_cap: 1.0001}\n"),
+    fails: true,
+    sections: FORM,
+    warnings: 1,
+    says: {
+      "#warnings h2": "This run failed: its figures are those of the form-finding",
+      "#warnings li": /^optimize: Levenberg-Marquardt has no feasible start: /,
+      "#answer": /^Failed: optimize: Levenberg-Marquardt .*; of the form-finding: psi /,
+    },
+  },
+  {
+    name: "compare-failed", // the warnings of both, and the error of the other
+    source: "configs/straight-edges.yaml",
+    other: ["method=lm", "range_N=1e-6", "boundary_ratio_cap=1.0001"].flatMap((key) => ["--set", `optimize.${key}`]),
+    fails: true,
+    sections: ["compare", ...GA],
+    says: {
+      "#warnings h2": "The run of other.h5 failed",
+      "#warnings li >> nth=0": /^other\.h5: optimize: Levenberg-Marquardt has no feasible start: /,
+      "#warnings li >> nth=1": /^result\.h5: /,
+      "#warnings li >> nth=-1": /^other\.h5: /,
+    },
   },
   {
     name: "truss",

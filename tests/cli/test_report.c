@@ -80,6 +80,39 @@ START_TEST(page_begins_with_the_answer)
 }
 END_TEST
 
+/* After a failed optimisation the form-finding's figures are no answer: the error leads, on the page, too. */
+START_TEST(a_failed_optimisation_says_so_first)
+{
+    const char *out = temp("f.h5"), *page = temp("f.html"), *text = temp("f.txt"), *told = temp("f.run");
+    const char *const method[] = {"lm", "ga"};
+    const char *path = file_with("f.yaml", SMALL_SCENE "optimize: {range_N: 1e-6, population: 4, generations: 2, "
+                                                       "boundary_ratio_cap: 1.0001}\n");
+    for (int i = 0; i < 2; i++) {
+        HIFDM(3, "run", path, "-o", out, "--force", "--set", keep(formatted("optimize.method=%s", method[i])));
+        write_file(told, said.out);
+        HIFDM(0, "report", out, "-o", page, "--force");
+        demand_well_formed(page);
+        SHELL(0, "\"$0\" show \"$1\" >\"$2\"", out, text);
+        EXPECT(data_of(page, "f.json"), text, told, "--", "a['summary']['status'] == 'no_feasible'",
+               "len(a['summary']['errors']) == 1",
+               "a['answer'].startswith(f\"failed: {a['summary']['errors'][0]}; of the form-finding: psi \")",
+               "[t.decode().split('\\n')[0] for t in (b, c)] == [a['answer']] * 2");
+    }
+    const char *const argv[] = {
+        python_program(), "-c",
+        "import h5py, sys, numpy as np; f = h5py.File(sys.argv[1], 'a')\n"
+        "f.attrs['warnings'] = np.array(b'warning: error: a\\n', h5py.string_dtype('utf-8', 64))",
+        out, NULL};
+    demand_exit(run_command(20.0, argv), 0, "h5py", __LINE__);
+    HIFDM(0, "show", out);
+    ck_assert_int_eq(strncmp(said.out, "failed: no design met the constraints; of the form-finding: psi ", 64), 0);
+    HIFDM(3, "run", CHEN, "-o", out, "--force", "--quiet", "--set", "optimize.method=lm", "--set",
+          "optimize.boundary_ratio_cap=1.0001", "--set", "optimize.range_N=1e-6");
+    EXPECT(out, "--", "attribute(a, 'warnings').startswith('error: optimize: ')", /* what has no room is at the end */
+           "'\\nwarning: ' in attribute(a, 'warnings')");
+}
+END_TEST
+
 /* Of a long history a thousand values at most, the first and the last among them. */
 START_TEST(long_histories_are_thinned)
 {
@@ -313,6 +346,7 @@ Suite *suite_cli_report(void)
     TCase *tcase = tcase_create("report");
     tcase_add_test(tcase, page_holds_the_stored_numbers);
     tcase_add_test(tcase, page_begins_with_the_answer);
+    tcase_add_test(tcase, a_failed_optimisation_says_so_first);
     tcase_add_test(tcase, long_histories_are_thinned);
     tcase_add_test(tcase, nothing_in_a_case_becomes_markup);
     tcase_add_test(tcase, missing_stages_are_absent);

@@ -46,6 +46,24 @@ function writeWarnings(title, lines) {
   );
 }
 
+// Errors and warnings: of two results those of both, each with the name of its file.
+function writeMessages() {
+  const { other } = data,
+    file = clip(summary.file.split("/").pop(), 40),
+    name = other && file === other.name ? "this result" : file,
+    linesOf = (key) => [
+      ...(summary[key] || []).map((line) => (other ? `${name}: ${line}` : line)),
+      ...((other && other.summary[key]) || []).map((line) => `${other.name}: ${line}`),
+    ];
+  const lines = [...linesOf("errors"), ...linesOf("warnings")],
+    isOfForm = resultStage === "form" && summary.status !== "not_converged"; // which failed itself
+  let title = lines.length === 1 ? "One warning" : `${lines.length} warnings`;
+  if (other && other.summary.errors) title = `The run of ${other.name} failed`;
+  if (summary.errors) title = `This run failed${isOfForm ? ": its figures are those of the form-finding" : ""}`;
+  if (other && summary.errors && other.summary.errors) title = "Both runs failed";
+  writeWarnings(title, lines);
+}
+
 // For paper, which has no controls: what is chosen in them.
 function chosenLine(tools) {
   const line = el("div", { class: "paper muted" });
@@ -328,12 +346,7 @@ if (data.study) {
   writeStudy(data.study);
 } else {
   writeHead();
-  const errors = summary.errors || [],
-    lines = [...errors, ...(summary.warnings || [])];
-  writeWarnings(
-    errors.length ? "This run failed" : lines.length === 1 ? "One warning" : `${lines.length} warnings`,
-    lines,
-  );
+  writeMessages();
   writeAnswer();
   writeFigures();
   writeOther();
