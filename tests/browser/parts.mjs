@@ -165,6 +165,9 @@ export async function checkFront(tab, made) {
   same(number(said), 1e3 * points.at(-1).objective[psi], 6);
   await tab.keyboard.press("Escape");
   assert.match(await tab.locator("#front code").textContent(), /^hifdm run .* --point .*\.h5:\d -o point\d\.h5$/);
+  const whose = tab.locator("#answer + #whose:has(+ .figures)"); // before the first figure that is of no point
+  assert.match(await whose.textContent(), /all else on this page but the front are of the form-finding’s shape, /);
+  assert.equal(await whose.locator("code").textContent(), await tab.locator("#front code").textContent());
   const row = tab.locator("#summary tr", { hasText: psi });
   same(number(await row.locator(".number").first().textContent()), 1e3 * base[psi], 5);
 }

@@ -94,6 +94,29 @@ const takeText = (front) =>
     el("code", {}, pointCommand(front)),
   );
 
+// A front has no shape of its own: whose those of the page are, and what is told of them.
+function writeWhose(told) {
+  const { front } = summary;
+  if (!front) return;
+  const isFound = resultStage === "form",
+    asBuilt = summary.cases || summary.tolerance;
+  main.append(
+    el(
+      "p",
+      { class: "whose", id: "whose" },
+      isFound
+        ? "Figures, net, cables and all else on this page but the front are of the form-finding’s shape, which is no " +
+            "point of the front."
+        : "Figures, net and cables on this page are of the end of the front with the least " +
+            `${objectiveName(Object.keys(front.base)[0])}` +
+            `${asBuilt ? ", nets as built of the form-finding’s shape, which is no point of the front" : ""}.`,
+      told.map((text) => ` Of this shape: ${text[0].toLowerCase()}${text.slice(1)}`),
+      " A point has its own in a result, of which hifdm report makes such a page: ",
+      el("code", {}, pointCommand(front)),
+    ),
+  );
+}
+
 // Objectives that do not conflict.
 function writeOneDesign(front, names, point) {
   const valueOf = (name, value) =>

@@ -89,7 +89,9 @@ function writeAnswer() {
   const said = [data.answer, data.gain_loss].filter((text) => text);
   if (!said.length) return;
   const [answer, ...more] = said.map((text) => `${text[0].toUpperCase()}${text.slice(1)}.`);
-  main.append(el("p", { class: "answer", id: "answer" }, answer, more.length ? el("small", {}, more) : null));
+  const beside = more.length && !summary.front ? el("small", {}, more) : null;
+  main.append(el("p", { class: "answer", id: "answer" }, answer, beside));
+  writeWhose(more);
 }
 
 function writeFigures() {

@@ -464,10 +464,11 @@ function writeCases() {
     number("loose nodes", "loose_nodes", 1),
     number("largest truss member (N)", "largest_member_N", 4),
   ].filter((column) => column);
+  const design = summary.front ? "form-finding has the net" : "the design says";
   section(
     "cases",
     "Cases of the net as built",
-    el("p", {}, "Cut as the design says, under the temperatures, loads and moves of each case."),
+    el("p", {}, `Cut as ${design}, under the temperatures, loads and moves of each case.`),
     sortableTable({ caption: "Cases of the net as built", columns, n: cases.length, by: -1 }).node,
   );
 }

@@ -76,7 +76,8 @@ function toleranceText(t) {
       ? ` Of them ${percent(t.yield)} meet all requirements (95 % interval: ${fmt(100 * t.yield_low, 3)} to ` +
         `${percent(t.yield_high)}).`
       : "";
-  return `${fmtCount(t.samples)} nets with the errors of the case were solved${failed}.${yielded}${scaleText(t)}`;
+  const cut = summary.front ? ", cut as form-finding has the net," : "";
+  return `${fmtCount(t.samples)} nets with the errors of the case${cut} were solved${failed}.${yielded}${scaleText(t)}`;
 }
 
 function shareTable(t) {
