@@ -75,14 +75,14 @@ extern "C" {
 
 #define HF_SURFACE_MEMBER(type, member, kind, json, description) type member;
 
-/* The surface of the wanted kind with the least half-path RMS from a set of nodes: the wanted one with another focal
- * length, turned about the centre of the nodes by Rx(a) Ry(b) Rz(c), then shifted. What changes nothing is left out: of
- * a cylinder the shift along y, of a paraboloid the turn Rz. In a shallow reflector a shift across and a turn are
- * nearly the same motion: each of the two numbers is uncertain, but the fitted surface is not.
+/* The surface of the wanted kind with the least half-path RMS from a set of nodes (METHOD section 9): the wanted one
+ * with another focal length, turned about the centre of the nodes by Rx(a) Ry(b) Rz(c), then shifted. What changes
+ * nothing is left out: of a cylinder the shift along y, of a paraboloid the turn Rz. In a shallow reflector a shift
+ * across and a turn are nearly the same motion: each of the two numbers is uncertain, but the fitted surface is not.
  * shift_x_m and shift_y_m are 0 where the nodes do not determine them, which means that the least RMS needs a shift of
- * more than a tenth of the net's half-width or is not found. focal_length_m is the wanted one where the nodes do not
- * determine it: where no least RMS is found, or one with a focal length more than twice or less than half as long, for
- * example of two lines along y. */
+ * more than a tenth of the net's half-width or is not found; of a paraboloid both are 0 then. focal_length_m is the
+ * wanted one where the nodes do not determine it: where no least RMS is found, or one with a focal length more than
+ * twice or less than half as long, for example of two lines along y. */
 typedef struct {
     HF_SURFACE_FIT_LIST(HF_SURFACE_MEMBER)
 } hf_surface_fit;

@@ -9,12 +9,10 @@
 #include "base/arena.h"
 #include "solve/surface_fit.h"
 
-/* The best fit to the points: its pose, and how it follows them. With G the derivatives of the sum of squares of the
- * half-path errors by the parameters, which are zero, the parameters change by -H^-1 dG, H = dG/dp. */
+/* The best fit to the points: its parameters, and how they follow them. With G the derivatives of the sum of squares of
+ * the half-path errors by the parameters, which are zero, the parameters change by -H^-1 dG, H = dG/dp. */
 typedef struct {
     hf_fit_parameters found;
-    double curvature, shift_m[3];
-    double turn[3][3];
     double factor[HF_FIT_N_PARAMETER * HF_FIT_N_PARAMETER]; /* of H, as hf_dense_factor leaves it */
     int pivot[HF_FIT_N_PARAMETER];
     double *slope;                             /* [parameter][n] of the residual's error by a parameter */

@@ -3,6 +3,7 @@
 
 #include "base/elementary.h"
 #include "net/wanted.h"
+#include "solve/fit_descend.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit_nlinear.h>
@@ -255,6 +256,27 @@ static hf_status fit_some(fit_problem *p, size_t n_parameter, double parameter[N
     return HF_OK;
 }
 
+/* fit_some that ends in a minimum, or has not converged. Its steps creep along valleys, and those of a net that is its
+ * own mirror image stay on a ridge (METHOD section 9). */
+static hf_status fit_least(fit_problem *p, int n_parameter, double parameter[N_PARAMETER], hf_surface_fit *fit)
+{
+    HF_TRY(fit_some(p, (size_t)n_parameter, parameter, fit));
+    if (!isfinite(fit->half_path_rms_m)) return HF_OK;
+    hf_fit_parameters at = {.n = n_parameter, .size_m = p->size};
+    memcpy(at.center_m, p->center, sizeof at.center_m);
+    memcpy(at.quantity, p->parameter, sizeof at.quantity);
+    for (int k = 0; k < n_parameter; k++)
+        at.value[p->parameter[k]] = parameter[k];
+    hf_fit_frame f = hf_fit_frame_of(p->kind, 1 / (4 * p->curvature), p->n, p->x, p->root_weight, &at);
+    if (fit->converged && hf_fit_is_least(&f)) return HF_OK;
+    fit->converged = hf_fit_descend(&f, &at, 2 * SHIFT_MOST, &fit->iterations);
+    for (int k = 0; k < n_parameter; k++)
+        parameter[k] = at.value[p->parameter[k]];
+    gsl_vector_view v = gsl_vector_view_array(parameter, (size_t)n_parameter);
+    report(p, &v.vector, fit);
+    return HF_OK;
+}
+
 static void set_unknown(hf_surface_fit *fit)
 {
     fit->half_path_rms_m = fit->normal_rms_m = fit->focal_length_m = (double)NAN;
@@ -285,7 +307,7 @@ hf_status hf_surface_fit_find(hf_surface_kind kind, double focal_length_m, int n
     for (int k = 0; k < 3; k++) {
         hf_surface_fit next = *fit;
         int n_parameter = (is_round ? paraboloid_fit : cylinder_fit)[k];
-        HF_TRY(fit_some(&p, (size_t)n_parameter, parameter, &next));
+        HF_TRY(fit_least(&p, n_parameter, parameter, &next));
         double longer = next.focal_length_m / focal_length_m, across = fmax(fabs(next.shift_x_m), fabs(next.shift_y_m));
         bool is_determined =
             next.converged && across <= SHIFT_MOST * p.size && longer <= FOCAL_MOST && longer >= 1 / FOCAL_MOST;
