@@ -244,8 +244,8 @@ void hf_adjust_print_summary(const hf_adjust_job *j, const hf_options *o, FILE *
     if (a->n_maybe_slack)
         hf_print_line(
             f,
-            "%d of %d cables may be slack, as far as the measurement tells: how slack, places do not show, and "
-            "the figures after moves are less sure than +- says (hifdm explain maybe_slack)",
+            "%d of %d cables may be slack, as far as the measurement tells: how slack, places do not show (hifdm "
+            "explain maybe_slack)",
             a->n_maybe_slack, j->built.model.n_cable);
     print_end(j, f);
     print_instead(j, f);

@@ -3,11 +3,13 @@
 #include "built/adjust.h"
 
 #include "base/arena.h"
+#include "built/turned.h"
 #include "linalg/band.h"
 #include "linalg/dot.h"
 #include "search/parallel.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define ROUNDS_MAX 12  /* linear models of a choice, or of the best there is */
@@ -41,6 +43,7 @@ typedef struct {
     double *doubt_m;                        /* [samples][n_dof] */
     double *doubt_N;                        /* [n_cable of the model] deviation of estimated tensions */
     hf_estimate_cause cause;                /* of doubt_m */
+    double *answer_m, *beyond_m;            /* [samples][n_dof] by stiffness; what that misses after all turns */
     double *residual;                       /* [n_row] of the last shape */
     double *column;                         /* [n][n_row] change of residuals per metre of each cable, and behind it */
     double *left_open, *at_zero;            /* [samples][n_row]; [n_row] residuals without turns, by the linear model */
@@ -81,8 +84,10 @@ static void lay_out_adjustment(hf_arena *arena, adjustment *a)
     a->turn_m = hf_arena_take(arena, n_cable, sizeof(double));
     a->doubt_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
     a->doubt_N = hf_arena_take(arena, n_cable, sizeof(double));
-    a->cause.strain_N = hf_arena_take(arena, samples * n_cable, sizeof(double));
+    a->cause.cut_m = hf_arena_take(arena, samples * n_cable, sizeof(double));
     a->cause.rest_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
+    a->answer_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
+    a->beyond_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
     a->residual = hf_arena_take(arena, a->n_row, sizeof(double));
     a->column = hf_arena_take(arena, n_all * a->n_row, sizeof(double));
     a->product = hf_arena_take(arena, n_all * n_all, sizeof(double));
@@ -419,21 +424,32 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
 
 /* ---- what is left open ---- */
 
-/* The figure of each sample at the shape in `work`, whose stiffness answers the errors that are left. Where it has none
- * the moves are those of the estimated shape. */
-static hf_status sample_figures(adjustment *a, double figure_m[HF_ESTIMATE_SAMPLES])
+static hf_turned turned_of(const adjustment *a)
 {
-    hf_built_linear *l = &a->estimate->linear;
+    return (hf_turned){a->estimate, a->doubt_m, &a->cause, a->room[0].strain_N, a->room[0].scratch};
+}
+
+/* What first order misses of the samples after all turns. */
+static hf_status find_beyond(adjustment *a)
+{
+    double figure_m;
+    const hf_turned t = turned_of(a);
+    HF_TRY(solve_steps(a, a->steps, &figure_m));
+    return hf_turned_beyond(&t, a->turn_m, &a->work, a->task->n_thread, a->answer_m, a->beyond_m);
+}
+
+/* The figure of each sample at the shape in `work`, after this part of the turns. */
+static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_ESTIMATE_SAMPLES])
+{
     adjust_room *r = &a->room[0];
-    size_t n_cable = (size_t)l->built->model.n_cable;
+    const hf_turned t = turned_of(a);
     HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &r->point, a->residual));
-    hf_status status = hf_built_linear_take(l, &a->work);
-    if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+    HF_TRY(hf_turned_answer(&t, &a->work, a->answer_m));
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
-        memcpy(r->answer_m, (status == HF_OK ? a->cause.rest_m : a->doubt_m) + s * a->n_dof,
-               a->n_dof * sizeof *r->answer_m);
-        if (status == HF_OK) hf_built_linear_apply(l, 1, a->cause.strain_N + s * n_cable, r->answer_m, r->scratch);
-        push_move(a, r, r->answer_m, a->at_zero); /* which nobody reads any more */
+        double *move_m = a->answer_m + s * a->n_dof;
+        for (size_t i = 0; i < a->n_dof && part > 0; i++)
+            move_m[i] += part * a->beyond_m[s * a->n_dof + i];
+        push_move(a, r, move_m, a->at_zero); /* which nobody reads any more */
         for (size_t i = 0; i < a->n_row; i++)
             a->at_zero[i] += a->residual[i];
         figure_m[s] = sqrt(hf_dot(a->n_row, a->at_zero, a->at_zero));
@@ -474,11 +490,11 @@ static hf_status make_order(adjustment *a, int n_move, move_order *o)
 }
 
 /* What the move gains by the samples, whose figures before it are taken over by those after it. */
-static hf_status judge_move(adjustment *a, double before_m[HF_ESTIMATE_SAMPLES], hf_adjust_move *move)
+static hf_status judge_move(adjustment *a, double part, double before_m[HF_ESTIMATE_SAMPLES], hf_adjust_move *move)
 {
     double gain_m[HF_ESTIMATE_SAMPLES], unwanted;
     memcpy(gain_m, before_m, sizeof gain_m);
-    HF_TRY(sample_figures(a, before_m));
+    HF_TRY(sample_figures(a, part, before_m));
     hf_estimate_spread(before_m, &move->expected_m, &unwanted);
     for (int s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
         gain_m[s] -= before_m[s];
@@ -491,6 +507,9 @@ static hf_status judge_move(adjustment *a, double before_m[HF_ESTIMATE_SAMPLES],
 /* a->trial: no moves; the shape is that without any. sample_m: figures of samples there, then after all moves. */
 static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_ESTIMATE_SAMPLES], hf_adjustment *found)
 {
+    double made = 0, all = 0;
+    for (size_t i = 0; i < a->n; i++)
+        all += abs(a->steps[i]);
     for (int k = 0; k < found->n_move; k++) {
         int i = hf_moves_next(&a->problem, a->steps, o->change_N, a->trial, o->fall_N);
         int e = a->task->cable[i];
@@ -501,7 +520,8 @@ static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_EST
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         move->after_N = status == HF_OK ? a->work.tension_N[e] : (double)NAN;
         move->n_slack = a->form.n_slack;
-        HF_TRY(judge_move(a, sample_m, move));
+        made += abs(move->steps);
+        HF_TRY(judge_move(a, made / all, sample_m, move));
     }
     return HF_OK;
 }
@@ -520,13 +540,14 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
     if (status != HF_OK && status != HF_SINGULAR) return status; /* then in the order of the last linear model */
     a->is_current = status == HF_OK;
     HF_TRY(make_order(a, found->n_move, &order)); /* by the linear model, which samples take elsewhere */
+    status = found->n_move ? find_beyond(a) : HF_OK;
     memset(a->trial, 0, a->n * sizeof *a->trial);
-    status = solve_steps(a, a->trial, &figure_m);
-    if (status == HF_OK) status = sample_figures(a, sample_m);
+    if (status == HF_OK) status = solve_steps(a, a->trial, &figure_m);
+    if (status == HF_OK) status = sample_figures(a, 0, sample_m);
     if (status == HF_OK) {
         hf_estimate_spread(sample_m, &found->doubt_m[0], &found->spread_m[0]);
         for (int e = 0; e < a->problem.n_tension; e++)
-            found->n_maybe_slack += a->work.tension_N[e] < a->doubt_N[e];
+            found->n_maybe_slack += !(a->work.tension_N[e] > a->doubt_N[e]); /* one that is slack has neither */
         status = make_moves(a, &order, sample_m, found);
     }
     arena.block = order.block;

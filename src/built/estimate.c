@@ -273,9 +273,10 @@ static double random_sign(hf_random *random)
     return hf_random_next(random) >> 63 ? 1 : -1;
 }
 
-/* Random errors of the sizes of the prior, of one sample: strains [n_cable] and moves of supports. */
-static void draw_errors(const hf_estimate *p, hf_random *random, const estimate_scratch *s, double *strain_N,
-                        double *move_m)
+/* Random errors of the sizes of the prior, of one sample: of lengths (NULL: not wanted), the strains [n_cable] that
+ * these are, and moves of supports. */
+static void draw_errors(const hf_estimate *p, hf_random *random, const estimate_scratch *s, double *own_m,
+                        double *strain_N, double *move_m)
 {
     const hf_model *m = &p->built->model;
     for (int k = 0; k < p->prior.n_shared; k++)
@@ -283,23 +284,26 @@ static void draw_errors(const hf_estimate *p, hf_random *random, const estimate_
     for (int e = 0; e < m->n_cable; e++) {
         double cut_m = random_sign(random) * p->prior.sigma_m[e] + shared_error_m(p, s->shared, e);
         strain_N[e] = p->linear.cut_N_per_m[e] * cut_m;
+        if (own_m) own_m[e] = cut_m;
     }
     for (size_t i = 3 * (size_t)m->n_free; i < p->linear.n_dof; i++)
         move_m[i] = random_sign(random) * p->prior.support_sigma_m;
 }
 
-/* The moves [n][n_dof] of random errors from sample `first` on, by streams of random numbers, and what of them are
- * errors of supports (NULL: not wanted). Returns n. */
+/* The moves [n][n_dof] of random errors from sample `first` on, by streams of random numbers, and these errors (NULL:
+ * not wanted). Returns n. */
 static int draw_moves(const hf_estimate *p, int stream, int first, const estimate_scratch *s, hf_random random[PANEL],
-                      double *move_m, double *rest_m)
+                      double *move_m, const hf_estimate_cause *cause)
 {
     int n = HF_ESTIMATE_SAMPLES - first < PANEL ? HF_ESTIMATE_SAMPLES - first : PANEL;
     for (int k = 0; k < n; k++) {
         random[k] = hf_random_stream(SEED, stream, first + k);
-        draw_errors(p, &random[k], s, s->strain_N + (ptrdiff_t)k * p->built->model.n_cable,
+        double *cut_m = cause ? cause->cut_m + (ptrdiff_t)(first + k) * p->built->model.n_cable : NULL;
+        draw_errors(p, &random[k], s, cut_m, s->strain_N + (ptrdiff_t)k * p->built->model.n_cable,
                     move_m + (size_t)k * p->linear.n_dof);
     }
-    if (rest_m) memcpy(rest_m, move_m, (size_t)n * p->linear.n_dof * sizeof *rest_m);
+    if (cause)
+        memcpy(cause->rest_m + (size_t)first * p->linear.n_dof, move_m, (size_t)n * p->linear.n_dof * sizeof *move_m);
     hf_built_linear_apply(&p->linear, n, s->strain_N, move_m, s->linear);
     return n;
 }
@@ -355,6 +359,18 @@ hf_status hf_estimate_belief(hf_estimate *p, int n, const int *cable, double *pa
     return HF_OK;
 }
 
+/* The errors of samples from `first` on, less what the estimate makes of them. */
+static void take_estimates_off(const hf_estimate *p, const estimate_scratch *s, int first, int n,
+                               const hf_estimate_cause *cause)
+{
+    size_t n_cable = (size_t)p->built->model.n_cable, n_dof = p->linear.n_dof;
+    double *cut_m = cause->cut_m + (size_t)first * n_cable, *rest_m = cause->rest_m + (size_t)first * n_dof;
+    for (size_t i = 0; i < (size_t)n * n_cable; i++)
+        cut_m[i] -= s->cut_m[i];
+    for (size_t i = 0; i < (size_t)n * n_dof; i++)
+        rest_m[i] -= s->rest_m[i];
+}
+
 /* Of samples whose strains are in s->strain_N, less what the estimate makes of them. */
 static void add_tensions(const hf_estimate *p, const estimate_scratch *s, int n, const double *move_m, double *square_N)
 {
@@ -380,8 +396,7 @@ hf_status hf_estimate_doubt(hf_estimate *p, double *move_m, double *sigma_N, con
     HF_TRY(hf_saddle_factor(&p->saddle, 0));
     for (int first = 0; first < HF_ESTIMATE_SAMPLES; first += PANEL) {
         double *move = move_m + (size_t)first * n_dof;
-        double *rest_m = cause ? cause->rest_m + (size_t)first * n_dof : NULL;
-        int n = draw_moves(p, 1, first, &s, random, move, rest_m);
+        int n = draw_moves(p, 1, first, &s, random, move, cause);
         for (int k = 0; k < n; k++)
             draw_gap(p, &random[k], move + (size_t)k * n_dof, s.gap_m + (size_t)k * n_dof);
         memset(s.cut_m, 0, (size_t)n * n_cable * sizeof *s.cut_m);
@@ -389,11 +404,8 @@ hf_status hf_estimate_doubt(hf_estimate *p, double *move_m, double *sigma_N, con
         HF_TRY(ask_saddle(p, &s, n));
         for (size_t i = 0; i < (size_t)n * n_dof; i++)
             move[i] -= s.move_m[i];
+        if (cause) take_estimates_off(p, &s, first, n, cause);
         add_tensions(p, &s, n, move, sigma_N);
-        for (size_t i = 0; cause && i < (size_t)n * n_dof; i++)
-            rest_m[i] -= s.rest_m[i];
-        if (cause)
-            memcpy(cause->strain_N + (size_t)first * n_cable, s.strain_N, (size_t)n * n_cable * sizeof *s.strain_N);
     }
     for (size_t e = 0; e < n_cable; e++)
         sigma_N[e] = sqrt(sigma_N[e] / HF_ESTIMATE_SAMPLES);

@@ -57,10 +57,10 @@ double hf_estimate_own_m(const hf_estimate *estimate, int cable);
 /* What is left unknown: HF_ESTIMATE_SAMPLES moves [n_dof] of the estimated shape, with the covariance of what errors
  * and measurement leave open (to first order). Each is the answer to errors and measurements of random signs, less what
  * the estimate would make of them. sigma_N [n_cable]: RMS of what they do to tensions. cause (NULL: not wanted): the
- * errors behind them, as hf_built_linear_apply takes them: where tensions are open the places are known, and after
- * turns no more. HF_OK, HF_SINGULAR, HF_NO_MEMORY. */
+ * errors behind them: where tensions are open the places are known, and after turns no more. HF_OK, HF_SINGULAR,
+ * HF_NO_MEMORY. */
 typedef struct {
-    double *strain_N, *rest_m; /* [samples][n_cable]; [samples][n_dof] of supports */
+    double *cut_m, *rest_m; /* [samples][n_cable]; [samples][n_dof] of supports */
 } hf_estimate_cause;
 hf_status hf_estimate_doubt(hf_estimate *estimate, double *move_m, double *sigma_N, const hf_estimate_cause *cause);
 

@@ -74,24 +74,43 @@ START_TEST(a_twin_on_a_truss_comes_back)
 }
 END_TEST
 
-/* Places tell tensions only as well as cables were cut, and how far a turn goes follows from the tensions: what is told
- * after the moves knows that, to first order. Eight nets miss it by 2.9 sigma (RMS), the worst by 7.7; by that of
- * before the moves by 6.3 and 14.6. */
-START_TEST(what_turns_leave_open)
+/* By how many sigmas a net on rigid ground misses what is told after its moves. */
+static double sigmas_missed(const char *scene, const char *set, const char *cut_m, const char *measured_m, int net)
 {
-    const char *seed = keep(formatted("%d", _i)), *design = temp("d"), *cut = temp("cut.csv"),
+    const char *seed = keep(formatted("%d", net)), *design = temp("d"), *cut = temp("cut.csv"),
                *measured = temp("m.csv");
-    const char *path =
-        file_with("case.yaml", SLENDER "tolerance: {sigma_cut_m: 4e-4}\nadjust: {set: boundary, range_m: "
-                                       "5e-3, step_m: 1e-5, moves: 6, sigma_m: 1e-5}\n");
-    HIFDM(0, "run", file_with("design.yaml", SLENDER), "-o", temp("d.h5"), "--quiet");
+    const char *path = file_with(
+        "case.yaml", formatted("%stolerance: {sigma_cut_m: %s}\nadjust: {set: %s, range_m: 5e-3, step_m: 1e-5, moves: "
+                               "6, sigma_m: %s}\n",
+                               scene, cut_m, set, measured_m));
+    HIFDM(0, "run", file_with("design.yaml", scene), "-o", temp("d.h5"), "--quiet");
     HIFDM(0, "export", temp("d.h5"), "--csv", design, "--cutlist", cut);
-    TWIN("built", cut, design, temp("true.csv"), temp("nodes.csv"), "4e-4", seed);
-    TWIN("measured", shape_of("true", ""), measured, "1e-5", seed);
+    TWIN("built", cut, design, temp("true.csv"), temp("nodes.csv"), cut_m, seed);
+    TWIN("measured", shape_of("true", ""), measured, measured_m, seed);
     HIFDM(0, "adjust", path, "--measured", measured, "-o", temp("moves.csv"), "--json");
     double told = number_after("\"adjusted_expected_m\": "), sigma = number_after("\"adjusted_sigma_m\": ");
     EXPECT(out_as("a.json"), "--", "a['moves'][-1]['expected_m'] == a['adjusted_expected_m']");
-    ck_assert_double_lt(fabs(turned_m(temp("moves.csv"), design, "") - told), 10 * sigma);
+    return fabs(turned_m(temp("moves.csv"), design, "") - told) / sigma;
+}
+
+/* Places tell tensions only as well as cables were cut, and how far a turn goes follows from the tensions: what is told
+ * after the moves knows that. 96 nets miss it by 1.3 sigma (RMS), the eight here by 3.0, and by 6.3 what the
+ * errors left open before the moves. The figure goes with the square of what tensions are off by: all those of net 2
+ * are 3.8 sigmas off, and it misses by 8. */
+START_TEST(what_turns_leave_open)
+{
+    ck_assert_double_lt(sigmas_missed(SLENDER, "boundary", "4e-4", "1e-5", _i), 10);
+}
+END_TEST
+
+/* A third of the cables of these stiff nets are slack or nearly so: which of them the turns make taut is no matter of
+ * first order, by which 32 nets miss what is told by 4.4 sigma (RMS); by samples that are solved, by 0.7. */
+START_TEST(what_slack_cables_leave_open)
+{
+    static const char *scene =
+        "scene: {paraboloid: {aperture_m: 4, focal_length_m: 2, rings: 5, rear_distance_m: "
+        "1.2}, EA_inner_N: 6e4, EA_boundary_N: 6e4}\nform: {pretension_N: 10, prestress: exact}\n";
+    ck_assert_double_lt(sigmas_missed(scene, "all", "1.5e-4", "2e-5", _i), 3);
 }
 END_TEST
 
@@ -102,6 +121,7 @@ Suite *suite_cli_adjust_twin(void)
     tcase_set_timeout(tcase, HANG_S);
     tcase_add_loop_test(tcase, a_twin_on_a_truss_comes_back, 1, 4);
     tcase_add_loop_test(tcase, what_turns_leave_open, 1, 9);
+    tcase_add_loop_test(tcase, what_slack_cables_leave_open, 1, 7);
     suite_add_tcase(suite, tcase);
     return suite;
 }
