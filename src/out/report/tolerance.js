@@ -22,13 +22,13 @@ function toleranceMarks(t, [low, high]) {
     ...t.require
       .filter(({ measure }) => measure === "psi_m")
       .flatMap((row) => [
-        { name: "required: at most", at: row.at_most, colour: "--four", dash: "7 3" },
-        { name: "required: at least", at: row.at_least, colour: "--four", dash: "7 3" },
+        { name: "required: at most", at: row.at_most, say: fmt, colour: "--four", dash: "7 3" },
+        { name: "required: at least", at: row.at_least, say: fmt, colour: "--four", dash: "7 3" },
       ]),
   ].filter(({ at }) => typeof at === "number" && Number.isFinite(at));
   return all.map((mark) => {
     const isFar = mark.at < low - reach || mark.at > high + reach;
-    const name = `${mark.name} ${rounded(1e3 * mark.at, 5)} mm${isFar ? ", outside of the picture" : ""}`;
+    const name = `${mark.name} ${(mark.say || rounded)(1e3 * mark.at, 5)} mm${isFar ? ", outside of the picture" : ""}`;
     return { ...mark, name, at: 1e3 * mark.at, isFar };
   });
 }
