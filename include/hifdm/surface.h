@@ -111,6 +111,9 @@ typedef struct {
 hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_facets *facets, const hf_model *model,
                              const hf_workspace *workspace, hf_surface_measures *measures);
 
+/* All figures but numbers of facets are NaN: of a net whose inner nodes are all loose, where they hang says nothing. */
+void hf_surface_blank(hf_surface_measures *measures);
+
 /* The errors that a shape is judged by, of its facets or of its nodes: raw and after the best fit to them; the losses
  * of gain that they cost [frequencies_Hz.n] point into the measures. */
 typedef struct {

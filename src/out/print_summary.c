@@ -460,33 +460,6 @@ static void print_form_parts(const hf_summary *s, hf_stage result, FILE *f)
         fputs(": of the form-finding's shape, no point of the front; --point gives those of a point\n", f);
 }
 
-/* The states of the net as built, a line each. */
-static void print_states(const hf_summary *s, FILE *f)
-{
-    bool has_surface = s->surface.focal_length_m > 0, has_truss = s->has_truss;
-    if (s->n_state == 0) return;
-    fprintf(f, "  cases         %-16s %10s %10s%s %9s %9s %5s %5s%s\n", "the net as built", "psi mm", "moved mm",
-            has_surface ? " half-path    best fit" : "", "least N", "largest N", "slack", "loose",
-            has_truss ? "  member N" : "");
-    for (int k = 0; k < s->n_state; k++) {
-        const hf_state_summary *state = &s->state[k];
-        const hf_form_result *r = &state->result;
-        if (r->status != HF_OK) {
-            fprintf(f, "                %-16s no shape: %s\n", state->name, hf_status_text(r->status));
-            continue;
-        }
-        fprintf(f, "                %-16s %10.4f %10.4f", state->name, r->psi_m * 1e3, state->move_rms_m * 1e3);
-        if (has_surface) fprintf(f, " %9.4f", state->measures.half_path_rms_m * 1e3);
-        if (has_surface && state->measures.fit.converged)
-            fprintf(f, " %11.4f", state->measures.fit.half_path_rms_m * 1e3);
-        else if (has_surface)
-            fprintf(f, " %11s", "-");
-        fprintf(f, " %9.4f %9.4f %5d %5d", state->least_tension_N, state->largest_tension_N, r->n_slack, r->n_loose);
-        if (has_truss) fprintf(f, " %9.4g", state->largest_member_N);
-        fputc('\n', f);
-    }
-}
-
 /* A dash, this wide, in place of NaN. */
 static void print_if_finite(const char *format, double value, int width, FILE *f)
 {
@@ -494,6 +467,64 @@ static void print_if_finite(const char *format, double value, int width, FILE *f
         fprintf(f, format, value);
     else
         fprintf(f, "%*s", width, "-");
+}
+
+/* The errors of the surface or, with frequencies, what they cost at the highest one, as it stands and fitted. */
+static void print_state_surface(const hf_summary *s, const hf_surface_measures *m, FILE *f)
+{
+    const hf_double_list *at = &s->surface.frequencies_Hz;
+    double highest_Hz = hf_surface_highest_Hz(&s->surface);
+    hf_surface_errors e = hf_surface_errors_of(m, m->n_facet > 0);
+    for (int is_fit = 0; is_fit < 2; is_fit++) {
+        double rms_m = is_fit ? e.fit_half_path_rms_m : e.half_path_rms_m;
+        const double *loss_dB = is_fit ? e.fit_gain_loss_dB : e.gain_loss_dB;
+        if (at->n == 0) {
+            rms_m = is_fit ? (m->fit.converged ? m->fit.half_path_rms_m : (double)NAN) : m->half_path_rms_m;
+            print_if_finite(" %9.4f", rms_m * 1e3, 10, f);
+        }
+        for (int k = 0; k < at->n; k++) {
+            if (at->value[k] != highest_Hz) continue;
+            if (isfinite(rms_m) && isnan(loss_dB[k]))
+                fprintf(f, "   above %g", HF_RUZE_MOST_DB);
+            else
+                print_if_finite(" %9.4g", hf_print_loss_dB(loss_dB[k]), 10, f);
+            break;
+        }
+    }
+}
+
+/* The states of the net as built, a line each. */
+static void print_states(const hf_summary *s, FILE *f)
+{
+    bool has_surface = s->surface.focal_length_m > 0, has_truss = s->has_truss, has_loose = false;
+    bool has_loss = has_surface && s->surface.frequencies_Hz.n > 0;
+    if (s->n_state == 0) return;
+    fprintf(f, "  cases         %-16s %9s %9s%s %8s %9s %5s %5s%s\n", "the net as built", "psi mm", "moved mm",
+            has_loss      ? "   loss dB    fitted"
+            : has_surface ? " half-path  best fit"
+                          : "",
+            "least N", "largest N", "slack", "loose", has_truss ? " member N" : "");
+    for (int k = 0; k < s->n_state; k++) {
+        const hf_state_summary *state = &s->state[k];
+        const hf_form_result *r = &state->result;
+        if (r->status != HF_OK) {
+            fprintf(f, "                %-16s no shape: %s\n", state->name, hf_status_text(r->status));
+            continue;
+        }
+        has_loose |= r->n_loose > 0;
+        fprintf(f, "                %-16s", state->name);
+        print_if_finite(" %9.4f", r->psi_m * 1e3, 10, f);
+        fprintf(f, " %9.4f", state->move_rms_m * 1e3);
+        if (has_surface) print_state_surface(s, &state->measures, f);
+        fprintf(f, " %8.4f %9.4f %5d %5d", state->least_tension_N, state->largest_tension_N, r->n_slack, r->n_loose);
+        if (has_truss) fprintf(f, " %8.4g", state->largest_member_N);
+        fputc('\n', f);
+    }
+    if (has_loss)
+        fprintf(f, "                loss of gain at %g GHz, as it stands and after the best fit\n",
+                hf_surface_highest_Hz(&s->surface) / 1e9);
+    if (has_loose)
+        fputs("                psi leaves the loose nodes out; moved and the surface have them where they hang\n", f);
 }
 
 /* The far field of the result, a line for each frequency and cut. */

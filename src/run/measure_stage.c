@@ -52,6 +52,7 @@ hf_status hf_measure_stage(const hf_problem *p, hf_stage stage, const hf_workspa
     if (!p->settings.has_surface) return HF_OK;
     if (hf_surface_measure(&p->surface, &p->facets, &p->model, w, &s->measures[stage]) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
+    if (isnan(hf_metrics_psi_m(&p->model, w))) hf_surface_blank(&s->measures[stage]);
     const hf_surface_fit *fit = &s->measures[stage].fit;
     if (s->measures[stage].mesh_pull_ratio > MESH_PULL_DOUBT)
         hf_warning(messages,

@@ -111,6 +111,22 @@ static hf_status measure_facets(const hf_surface_settings *s, const hf_facets *f
     return status;
 }
 
+void hf_surface_blank(hf_surface_measures *of)
+{
+    const double none = (double)NAN;
+#define BLANK_REAL(member) of->member = none;
+#define BLANK_INT(member)
+#define BLANK_TRUTH(member)
+#define BLANK(type, member, kind, ...) BLANK_##kind(member)
+#define BLANK_FIT(type, member, kind, ...) BLANK_##kind(fit.member)
+#define BLANK_LOSS(member, description) of->member[k] = none;
+    HF_SURFACE_LIST(BLANK)
+    HF_SURFACE_FIT_LIST(BLANK_FIT)
+    for (int k = 0; k < HF_LIST_MAX; k++) {
+        HF_SURFACE_LOSS_LIST(BLANK_LOSS)
+    }
+}
+
 hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
                              const hf_workspace *w, hf_surface_measures *measures)
 {

@@ -14,8 +14,13 @@ static const char *run_example(void)
 START_TEST(states_are_printed_stored_and_shown)
 {
     const char *out = run_example(), *again = temp("again.h5");
-    OUT("  cases         the net as built     psi mm   moved mm half-path    best fit   least N largest N slack loose  "
+    OUT("  cases         the net as built    psi mm  moved mm   loss dB    fitted  least N largest N slack loose "
         "member N\n");
+    OUT("loss of gain at 10 GHz, as it stands and after the best fit\n");
+    OUT("psi leaves the loose nodes out; moved and the surface have them where they hang\n");
+    EXPECT(out, out_as("s.txt"), "--",
+           "all([r.split() for r in b.decode().splitlines() if r.split()[:1] == [n]][0][3:6] == ['above', '3', "
+           "'%.4g' % a['cases'][n]['surface']['facet_fit_gain_loss_dB'][1]] for n in texts(a['cases/name']))");
     OUT("\n                cold      ");
     ERR("warning: cases: in state 'cold' ");
     HIFDM(0, "show", out, "--json");
@@ -156,6 +161,20 @@ START_TEST(a_state_without_a_shape_does_not_stop_the_others)
 }
 END_TEST
 
+/* So cold that every cable hangs slack: where its nodes are says nothing of a surface. */
+START_TEST(a_net_that_hangs_loose_has_no_surface)
+{
+    const char *out = temp("loose.h5");
+    HIFDM(0, "run", EXAMPLE, "-o", out, "--set", "cases.0.temperature_K=-600", "--set", "cases.1.temperature_K=-600");
+    EXPECT(out, out_as("s.txt"), "--", "a['cases/cold'].attrs['n_loose'] == a['form'].attrs['n_free']",
+           "all(np.isnan(a['cases/cold/surface'].attrs[n]) for n in ('half_path_rms_m', 'fit_half_path_rms_m', "
+           "'facet_half_path_rms_m', 'facet_fit_half_path_rms_m'))",
+           "np.isnan(a['cases/cold/surface/fit_gain_loss_dB'][:]).all()",
+           "[[r.split()[k] for k in (1, 3, 4)] for r in b.decode().splitlines() if r.split()[:1] == ['cold']] == "
+           "[['-'] * 3]");
+}
+END_TEST
+
 START_TEST(without_cases_there_is_nothing)
 {
     const char *c = file_with("c.yaml", SMALL_SCENE);
@@ -178,6 +197,7 @@ Suite *suite_cli_cases(void)
     tcase_add_test(tcase, the_optimised_design_is_built);
     tcase_add_test(tcase, a_truss_may_bend_by_its_weight);
     tcase_add_test(tcase, a_state_without_a_shape_does_not_stop_the_others);
+    tcase_add_test(tcase, a_net_that_hangs_loose_has_no_surface);
     tcase_add_test(tcase, without_cases_there_is_nothing);
     suite_add_tcase(suite, tcase);
     return suite;
