@@ -154,6 +154,8 @@ static void check_require(const hf_case *c, hf_config_faults *f)
             hf_config_fault_in_row(f, list, i, "at_least", "asks for a loss of gain; give at_most");
         if (row->measure == HF_TOLERANCE_LEAST_TENSION && !isnan(row->at_most))
             hf_config_fault_in_row(f, list, i, "at_most", "asks for slack cables; give at_least");
+        else if (row->at_most < 0 && row->measure != HF_TOLERANCE_PATTERN_LOSS)
+            hf_config_fault_in_row(f, list, i, "at_most", "is below 0, which no net can reach");
         if (is_of_surface(row->measure) && !c->has_surface)
             hf_config_fault_in_row(f, list, i, "measure", "is not measured: add a section surface");
         else if (is_ruze && c->surface.frequencies_Hz.n == 0)

@@ -520,7 +520,7 @@ static void write_stages(const hf_merged *m, int i, hf_json *j)
         const hf_merged_figure *f = &m->figure[k];
         bool is_last = k + 1 == m->n_figure;
         if (k == 0 || f[-1].stage != f->stage) hf_json_open(j, hf_merged_stage_word[f->stage], '{');
-        if (*f->state && strcmp(f[-1].state, f->state) != 0) hf_json_open(j, f->state, '{');
+        if (*f->state && (k == 0 || strcmp(f[-1].state, f->state) != 0)) hf_json_open(j, f->state, '{');
         hf_json_number(j, f->key, hf_merged_is_done(m, i) ? f->value.value[i] : (double)NAN);
         if (*f->state && (is_last || strcmp(f[1].state, f->state) != 0)) hf_json_close(j, '}');
         if (is_last || f[1].stage != f->stage) hf_json_close(j, '}');

@@ -288,6 +288,10 @@ START_TEST(faults_are_named)
          "pattern: {theta_deg: [-1, 1]}}\n",
          "7:23: tolerance.require.0.measure: pattern_loss_dB is not measured: its facets are too coarse"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: least_tension_N, at_most: 1}]\n", "asks for slack cables"},
+        {"  sigma_cut_m: 1e-4\n  require: [{measure: psi_m, at_most: -1e-3}]\n", "is below 0, which no net can reach"},
+        {"  sigma_cut_m: 1e-4\n  require: [{measure: fit_gain_loss_dB, at_most: -1}]\nsurface: {frequencies_Hz: "
+         "[1e9]}\n",
+         "is below 0, which no net can reach"},
         {"  sigma_cut_m: 0.1\n", "6:16: tolerance.sigma_cut_m: cable '"},
         {"  sigma_temperature_K: 700\ncables: [{expansion_per_K: 1e-3}]\n",
          "6:24: tolerance.sigma_temperature_K: cable '"},
