@@ -1,6 +1,7 @@
 /* The table of exporters, and the functions that they share. */
 #include "out/export.h"
 
+#include "base/csv.h"
 #include "base/file_out.h"
 
 #include <string.h>
@@ -97,6 +98,16 @@ hf_status hf_export_shape(const hf_export_request *o, hf_export_write_shape *wri
     if (status == HF_OK) status = write(o, &stored, said, size, messages);
     hf_export_free(&stored);
     return status;
+}
+
+void hf_export_ends_of(const hf_scene *s, int e, FILE *f)
+{
+    hf_csv_write_id(s->cable_id[e], f);
+    for (int k = 0; k < 2; k++) {
+        fputc(',', f);
+        hf_csv_write_id(s->node_id[s->end[2 * e + k]], f);
+    }
+    fprintf(f, ",%s", hf_group_word[s->group[e]]);
 }
 
 void hf_export_sets_of(const hf_scene *s, int e, FILE *f)

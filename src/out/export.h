@@ -83,6 +83,9 @@ hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messag
 hf_status hf_export_claim_in_folder(const hf_export_request *request, const char *name, char path[PATH_MAX],
                                     hf_messages *messages);
 
+/* The first cells of cable i_cable: id,i,j,group. */
+void hf_export_ends_of(const hf_scene *scene, int i_cable, FILE *file);
+
 /* The cell of cable i_cable in the column `set`, with the comma in front; nothing when the scene has no sets. */
 void hf_export_sets_of(const hf_scene *scene, int i_cable, FILE *file);
 

@@ -39,13 +39,9 @@ static void write_cables(const void *context, FILE *f)
     const hf_shape *shape = ((const view *)context)->shape;
     fprintf(f, "id,i,j,group,law,length_m,tension_N,q_N_per_m%s\n", s->n_set ? ",set" : "");
     for (int e = 0; e < s->n_cable; e++) {
-        hf_csv_write_id(s->cable_id[e], f);
-        fputc(',', f);
-        hf_csv_write_id(s->node_id[s->end[2 * e]], f);
-        fputc(',', f);
-        hf_csv_write_id(s->node_id[s->end[2 * e + 1]], f);
-        fprintf(f, ",%s,%s,%.17g,%.17g,%.17g", hf_group_word[s->group[e]], hf_law_word[shape->law[e]],
-                shape->length_m[e], shape->tension_N[e], shape->q_N_per_m[e]);
+        hf_export_ends_of(s, e, f);
+        fprintf(f, ",%s,%.17g,%.17g,%.17g", hf_law_word[shape->law[e]], shape->length_m[e], shape->tension_N[e],
+                shape->q_N_per_m[e]);
         hf_export_sets_of(s, e, f);
         fputc('\n', f);
     }

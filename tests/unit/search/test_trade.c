@@ -88,20 +88,22 @@ static void assert_relative(double is, double wanted, double tolerance)
     ck_assert_msg(fabs(is - wanted) <= tolerance * fabs(wanted), "%.17g, not %.17g", is, wanted);
 }
 
+/* A node between two supports at -1 and 1 m, which wants to be at 0.5 m. */
+static const struct hand_node on_line[] = {
+    {{-1, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0.5, 0, 0}, HF_ROLE_INNER, {0}}, {{1, 0, 0}, HF_ROLE_SUPPORT, {0}}};
+static const struct hand_cable along_line[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 10},
+                                               {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 12}};
+
 /* A node on the line between two supports at -1 and 1 m is at x = (q1 - q0)/(q0 + q1) and wants to be at 0.5 m, where
  * its cables are 1.5 and 0.5 m long and want to be 0.8 m. So psi = 0.5 - x, and the length objective is
  * L = sqrt(((1 + x - 0.8)^2 + (1 - x - 0.8)^2)/2) = sqrt(0.04 + x^2). The front is 0 <= x <= 0.5:
  * psi = 0.5 - sqrt(L^2 - 0.04), and -d psi/dL = L/sqrt(L^2 - 0.04) = L/(0.5 - psi). */
 START_TEST(a_node_on_a_line_has_a_front_in_closed_form)
 {
-    static const struct hand_node node[] = {
-        {{-1, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0.5, 0, 0}, HF_ROLE_INNER, {0}}, {{1, 0, 0}, HF_ROLE_SUPPORT, {0}}};
-    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 10},
-                                              {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 12}};
     struct traded t = {0};
     hf_goal_settings wanted[2] = {objective(HF_GOAL_PSI, "", NAN), objective(HF_GOAL_LENGTH, "", 0.8)};
     bool is_turned = _i % 2; /* the order of the objectives says which one is least under limits on the other */
-    OPEN_HAND(&t.net, node, cable, HF_METHOD_FDM);
+    OPEN_HAND(&t.net, on_line, along_line, HF_METHOD_FDM);
     const hf_goal_settings turned[2] = {wanted[is_turned], wanted[!is_turned]};
     follow(&t, 2, turned, "boundary", 1, 100, 11);
     ck_assert_int_eq(t.front.n_point, 11);
@@ -126,14 +128,10 @@ END_TEST
 /* The same node, whose cables want to be 1.5 and 0.5 m long where it wants to be: there both objectives are nothing. */
 START_TEST(objectives_that_agree_are_one_design)
 {
-    static const struct hand_node node[] = {
-        {{-1, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0.5, 0, 0}, HF_ROLE_INNER, {0}}, {{1, 0, 0}, HF_ROLE_SUPPORT, {0}}};
-    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 10},
-                                              {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 12}};
     struct traded t = {0};
     hf_front_table table;
     const hf_goal_settings wanted[2] = {objective(HF_GOAL_PSI, "", NAN), objective(HF_GOAL_LENGTH, "", NAN)};
-    OPEN_HAND(&t.net, node, cable, HF_METHOD_FDM);
+    OPEN_HAND(&t.net, on_line, along_line, HF_METHOD_FDM);
     follow(&t, 2, wanted, "boundary", 1, 100, 11);
     ck_assert_int_eq(t.front.n_point, 1);
     for (int k = 0; k < 2; k++) {
@@ -326,12 +324,8 @@ END_TEST
 
 static void open_line(struct traded *t, int n_point)
 {
-    static const struct hand_node node[] = {
-        {{-1, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0.5, 0, 0}, HF_ROLE_INNER, {0}}, {{1, 0, 0}, HF_ROLE_SUPPORT, {0}}};
-    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 10},
-                                              {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 12}};
     const hf_goal_settings wanted[2] = {objective(HF_GOAL_PSI, "", NAN), objective(HF_GOAL_LENGTH, "", 0.8)};
-    OPEN_HAND(&t->net, node, cable, HF_METHOD_FDM);
+    OPEN_HAND(&t->net, on_line, along_line, HF_METHOD_FDM);
     follow(t, 2, wanted, "boundary", 1, 100, n_point);
 }
 
