@@ -1,9 +1,11 @@
-/* bounds - random nets of all laws, each solved and stopped at sixteen places between its first iteration and its
- * answer, for the oracle tests/verify/bound_oracle.py, which finds the equilibrium with fifty digits and holds it
- * against the bounds. Header only: a short run is in `make test` (property/solve), a long one in `make stress`. */
+/* bounds - random nets of all laws, on rigid supports and on trusses, each solved and stopped at sixteen places between
+ * its first iteration and its answer, for the oracle tests/verify/bound_oracle.py, which finds the equilibrium with
+ * fifty digits and compares it with the bounds. Header only: a short run is in `make test` (property/solve), a long one
+ * in `make stress`. */
 #ifndef HIFDM_TESTS_BOUNDS_H
 #define HIFDM_TESTS_BOUNDS_H
 
+#include "flexible.h"
 #include "stress/stress.h"
 
 #include <inttypes.h>
@@ -102,7 +104,8 @@ static inline void open_kind(struct rng *rng, int kind, struct net *net)
 
 /* ---- stops ---- */
 
-/* The first eight end early, by the paper's iteration, the others at tolerances from 1e-2 to 1e-14. */
+/* The first eight end early, by the paper's iteration, the others at tolerances from 1e-2 to 1e-14. On a truss the
+ * schemes of the coupling take turns, and its tolerance is that of the lengths, in metres. */
 static inline void set_stop(int i, hf_form_settings *form)
 {
     static const int last[] = {1, 3, 10, 30, 100, 300, 1000, 3000};
@@ -110,6 +113,7 @@ static inline void set_stop(int i, hf_form_settings *form)
     form->method = early ? HF_METHOD_HIFDM : HF_METHOD_AUTO;
     form->max_iterations = early ? last[i] : 3000;
     form->residual_tolerance = form->length_tolerance = early ? 1e-13 : pow(10, -2 - 1.7 * (i - 8));
+    form->coupling = (hf_coupling_settings){fmax(form->length_tolerance, 1e-13), (hf_coupling_scheme)(i % 3), 50};
 }
 
 static inline void put(FILE *f, const double *value, size_t n)
@@ -120,7 +124,11 @@ static inline void put(FILE *f, const double *value, size_t n)
 static inline void put_scene(FILE *f, int kind, const hf_model *m)
 {
     size_t n = 3 * (size_t)m->n_node;
-    put(f, (double[]){kind, m->n_node, m->n_free, m->n_cable, m->reference_N, m->n_inner_node}, 6);
+    size_t n_truss = 3 * (size_t)m->n_attachment;
+    put(f, (double[]){kind, m->n_node, m->n_free, m->n_cable, m->reference_N, m->n_inner_node, m->n_attachment}, 7);
+    for (int i = 0; i < m->n_attachment; i++)
+        ck_assert_int_eq(m->attachment_row[i], m->n_free + i);
+    put(f, m->flexibility_m_per_N, n_truss * n_truss);
     put(f, m->position_m, n);
     for (size_t i = 0; i < n; i++)
         put(f, &(double){m->load_N ? m->load_N[i] : 0}, 1);
@@ -144,8 +152,8 @@ static inline void put_stop(FILE *f, const struct net *net, const hf_form_result
     put(f, net->work.tension_N, (size_t)net->model.n_cable);
 }
 
-/* Writes n_scene nets with their stops, and holds them against the oracle. */
-static inline void hold_bounds(uint64_t stream, int n_scene, double least_proven, double most_ratio)
+/* Writes n_scene nets with their stops, and compares them with the oracle. */
+static inline void hold_bounds(uint64_t stream, int n_scene, bool on_truss, double least_proven, double most_ratio)
 {
     const char *path = temp_path("bounds.bin");
     FILE *f = fopen(path, "wb");
@@ -154,6 +162,7 @@ static inline void hold_bounds(uint64_t stream, int n_scene, double least_proven
         struct rng rng = rng_start(stream + (uint64_t)k);
         struct net net;
         open_kind(&rng, k % BOUND_KINDS, &net);
+        if (on_truss) attach_some_way(&net, &rng, k);
         put_scene(f, k % BOUND_KINDS, &net.model);
         for (int i = 0; i < BOUND_STOPS; i++) {
             set_stop(i, &net.form);
@@ -166,7 +175,8 @@ static inline void hold_bounds(uint64_t stream, int n_scene, double least_proven
     char proven[32], ratio[32];
     snprintf(proven, sizeof proven, "%g", least_proven);
     snprintf(ratio, sizeof ratio, "%g", most_ratio);
-    printf("bounds of %d nets at %d stops each, seed %" PRIu64 ":\n", n_scene, BOUND_STOPS, test_seed());
+    printf("bounds of %d nets %s at %d stops each, seed %" PRIu64 ":\n", n_scene,
+           on_truss ? "on trusses" : "on rigid supports", BOUND_STOPS, test_seed());
     struct command run =
         run_command(1500, (const char *const[]){python_program(), source_path("tests/verify/bound_oracle.py"), path,
                                                 proven, ratio, NULL});

@@ -24,9 +24,12 @@ static inline int list_supports(const struct net *net, int node[MAX_ATTACHMENT])
     return n;
 }
 
-/* A random flexibility: springs of stiffness about 1/scale at each attachment, and a few random modes in which all
- * attachments move together, as in a bending truss, also by about `scale` per newton. [3n][3n], the caller frees it. */
-static inline double *random_flexibility(struct rng *rng, int n_attachment, double scale_m_per_N)
+/* What a random flexibility has: springs of stiffness about 1/scale at each attachment, and a few modes in which all
+ * attachments move together, as in a bending truss, also by about `scale` per newton. */
+enum { FLEX_FULL, FLEX_MODES_ALONE, FLEX_RIGID_IN_SOME, N_FLEX };
+
+/* [3n][3n], the caller frees it. FLEX_RIGID_IN_SOME: every third component or so does not move at all. */
+static inline double *random_flexibility_of(struct rng *rng, int kind, int n_attachment, double scale_m_per_N)
 {
     enum { N_MODE = 6 };
     int n = 3 * n_attachment;
@@ -38,24 +41,44 @@ static inline double *random_flexibility(struct rng *rng, int n_attachment, doub
         for (int j = 0; j < n; j++)
             for (int k = 0; k < N_MODE; k++)
                 f[i * n + j] += scale_m_per_N / N_MODE * mode[k * n + i] * mode[k * n + j];
-        f[i * n + i] += scale_m_per_N * rng_uniform(rng, 0.5, 1);
+        if (kind != FLEX_MODES_ALONE) f[i * n + i] += scale_m_per_N * rng_uniform(rng, 0.5, 1);
     }
+    for (int i = 0; i < n && kind == FLEX_RIGID_IN_SOME; i++)
+        if (rng_int(rng, 0, 2) == 0)
+            for (int j = 0; j < n; j++)
+                f[i * n + j] = f[j * n + i] = 0;
     free(mode);
     return f;
 }
 
+static inline double *random_flexibility(struct rng *rng, int n_attachment, double scale_m_per_N)
+{
+    return random_flexibility_of(rng, FLEX_FULL, n_attachment, scale_m_per_N);
+}
+
 /* Puts all supports of an open net on a random foundation. The workspace is made again, because it becomes larger. */
-static inline void attach_all(struct net *net, struct rng *rng, double scale_m_per_N)
+static inline void attach_all_to(struct net *net, struct rng *rng, int kind, double scale_m_per_N)
 {
     int node[MAX_ATTACHMENT], n = list_supports(net, node);
     hf_messages messages = {0};
-    double *f = random_flexibility(rng, n, scale_m_per_N);
+    double *f = random_flexibility_of(rng, kind, n, scale_m_per_N);
     ck_assert_msg(hf_model_attach(&net->model, n, node, f, &messages) == HF_OK, "%s", messages.text);
     ck_assert(hf_model_is_valid(&net->model));
     free(f);
     hf_workspace_free(&net->work);
     ck_assert_int_eq(hf_workspace_create(&net->model, &net->work), HF_OK);
     hf_workspace_poison(&net->model, &net->work);
+}
+
+static inline void attach_all(struct net *net, struct rng *rng, double scale_m_per_N)
+{
+    attach_all_to(net, rng, FLEX_FULL, scale_m_per_N);
+}
+
+/* On a foundation from stiff to so soft that supports move by centimetres. */
+static inline void attach_some_way(struct net *net, struct rng *rng, int kind)
+{
+    attach_all_to(net, rng, kind % N_FLEX, exp(rng_uniform(rng, log(1e-7), log(3e-3))));
 }
 
 /* The coupled shape of the net. */

@@ -7,15 +7,16 @@
 
 struct verified {
     double residual_N;      /* largest nodal force out of balance; INFINITY when something is not finite */
-    double length_gap;      /* largest |l/L*-1| of law length, weighted by the pull of what is too short */
-    double least_tension_N; /* of law length: a multiplier must not be negative */
+    double length_gap;      /* largest |l/L-1| of laws length and elastic, weighted by the pull of what is too short */
+    double least_tension_N; /* of these laws: a multiplier must not be negative */
+    double truss_m; /* largest distance of an attachment from where the truss has it under the pull of the net */
 };
 
 /* The shape in `w` under law[] and target[] of the model's cables (NaN: the case's pretension). */
 static inline struct verified verify_shape(const hf_model *m, const hf_workspace *w, const unsigned char *law,
                                            const double *target)
 {
-    struct verified v = {0, 0, INFINITY};
+    struct verified v = {0, 0, INFINITY, 0};
     long double *force = calloc(3 * (size_t)m->n_node, sizeof *force);
     ck_assert_ptr_nonnull(force);
     for (int k = 0; k < 3 * m->n_node && m->load_N; k++)
@@ -28,8 +29,9 @@ static inline struct verified verify_shape(const hf_model *m, const hf_workspace
             square += d[c] * d[c];
         }
         long double length = sqrtl(square), wanted = isnan(target[e]) ? m->pretension_N : target[e];
-        if (law[e] == HF_LAW_LENGTH) {
+        if (law[e] == HF_LAW_LENGTH || law[e] == HF_LAW_ELASTIC) {
             pull = w->q_N_per_m[e];
+            if (law[e] == HF_LAW_ELASTIC) wanted *= 1 + pull * length / m->EA_N[e];
             double tension = (double)(pull * length), gap = (double)(length / wanted - 1);
             v.least_tension_N = fmin(v.least_tension_N, tension);
             v.length_gap = fmax(v.length_gap, gap > 0 ? gap : -gap * fmin(1, tension / m->reference_N));
@@ -45,6 +47,18 @@ static inline struct verified verify_shape(const hf_model *m, const hf_workspace
         const long double *x = force + i, *y = x + m->n_node, *z = y + m->n_node;
         double size = (double)sqrtl(*x * *x + *y * *y + *z * *z);
         v.residual_N = isfinite(size) ? fmax(v.residual_N, size) : INFINITY;
+    }
+    for (int i = 0; i < m->n_attachment; i++) {
+        long double square = 0;
+        for (int c = 0; c < 3; c++) {
+            int row = m->attachment_row[i], n = 3 * m->n_attachment;
+            long double gap = (long double)m->position_m[c * m->n_node + row] - w->position_m[c * m->n_node + row];
+            for (int k = 0; k < n; k++)
+                gap +=
+                    m->flexibility_m_per_N[(3 * i + c) * n + k] * force[k % 3 * m->n_node + m->attachment_row[k / 3]];
+            square += gap * gap;
+        }
+        v.truss_m = fmax(v.truss_m, (double)sqrtl(square));
     }
     free(force);
     return v;

@@ -55,12 +55,13 @@ const char *hf_coupling_stop_word(int stop); /* "unknown" for a foreign value */
     X(NONE, 0, "none", "no proof was tried")                                                                           \
     X(PROVEN, 1, "proven", "no equilibrium is farther away")                                                           \
     X(STRUTS, 2, "struts", "the net has struts: its energy is not convex")                                             \
-    X(TRUSS, 3, "truss", "the net moves its truss")                                                                    \
+    X(TRUSS, 3, "truss", "the flexibility of the truss has an eigenvalue below zero")                                  \
     X(NO_MATRIX, 4, "no_matrix", "the method has no Newton matrix for these laws")                                     \
     X(NOT_DEFINITE, 5, "not_definite", "the net is too soft in some direction to tell its stiffness from rounding")    \
     X(NOT_CONTRACTING, 6, "not_contracting", "the shape is too far from an equilibrium")                               \
     X(SLACK_OR_TAUT, 7, "slack_or_taut", "some cable is at the brink of going slack")                                  \
-    X(DEPENDENT_LENGTHS, 8, "dependent_lengths", "prescribed lengths depend on each other")
+    X(DEPENDENT_LENGTHS, 8, "dependent_lengths", "prescribed lengths depend on each other")                            \
+    X(LOOSE, 9, "loose", "no taut cable holds some node: its position is not unique")
 
 typedef enum {
 #define HF_BOUND_REASON_ENUM(name, value, word, meaning) HF_BOUND_##name = value,

@@ -32,10 +32,15 @@ extern "C" {
 #define HF_INTERIOR_BLOCK 416
 #define HF_INTERIOR_ITEMS(m) (HF_INTERIOR_BLOCK * (((size_t)(m)->n_cable + 7) / 8))
 
-/* Doubles of the proof of a bound (src/solve/refine.h): per cable, and in all. */
+/* Doubles of the proof of a bound (src/solve/refine.h): per cable, of the truss (src/solve/flexibility.h), in all. */
 #define HF_BOUND_CABLE_ITEMS 14
+#define HF_BOUND_CHUNK 128
+#define HF_BOUND_WINDOW(m) (3 * (size_t)(m)->n_attachment * (3 * (size_t)(m)->half_bandwidth + 2 + HF_BOUND_CHUNK))
+#define HF_BOUND_TRUSS_ITEMS(m)                                                                                        \
+    (HF_BOUND_WINDOW(m) + (size_t)(m)->n_attachment * (((m)->has_newton ? 18 : 20) * (size_t)(m)->n_attachment + 27))
 #define HF_BOUND_ITEMS(m)                                                                                              \
-    (HF_BOUND_CABLE_ITEMS * (size_t)(m)->n_cable + 6 * (size_t)(m)->n_node + 16 * (size_t)(m)->n_free)
+    (HF_BOUND_CABLE_ITEMS * (size_t)(m)->n_cable + 6 * (size_t)(m)->n_node +                                           \
+     16 * (size_t)((m)->n_free + (m)->n_attachment) + HF_BOUND_TRUSS_ITEMS(m))
 
 /* X(type, name, number of items for a model m, unit, meaning). The solver of a net with struts needs a general band
  * matrix and pivots; other nets have none. */

@@ -16,6 +16,7 @@
 #define SHARE_OF_LAST 1e-3  /* part of a shift that has failed that is tried next */
 #define SMALL 1e-3          /* a radius by the first matrix that is a larger part of the bound is found anew */
 #define INSIDE_LENGTH 0.005 /* the ball is smaller than this part of every length */
+#define TRUSS_LEFT 0.5      /* part of the truss's energy that is not needed to keep the free nodes stiff */
 
 /* ---- sums at nodes ---- */
 
@@ -94,6 +95,12 @@ static double assemble_proof(hf_refined *p, double **band, int *n, int *k)
     return largest;
 }
 
+/* Of the matrix of the proof. */
+static double stiffness_sum_of_matrix(const hf_refined *p, int e)
+{
+    return p->cable[e].along + p->cable[e].across;
+}
+
 /* What rounding can do to an eigenvalue: of the factorisation, by Rump (BIT 46, 2006), whose entries of row i and
  * column j err by (k + 2) u times the root of their diagonal entries, doubled for other orders of the operations; and
  * of entries assembled from cables, of which `degree` are at one node. */
@@ -101,6 +108,37 @@ static double rounding_of(int n, int k, double degree, double largest)
 {
     double row = fmin(n, 2.0 * k + 1);
     return U * largest * (2.02 * (k + 4) * row + 400 + 20 * degree);
+}
+
+/* Returns a lower bound of the least eigenvalue for the free nodes of the Hessian of net and truss, from which a part
+ * TRUSS_LEFT of the truss's own energy is left out, N/m; 0 when the Hessian less `shift` and rounding has no factor.
+ * The bound is so small that |L s| is at most the norm of the ball, in which |s|^2 counts TRUSS_LEFT / bound times. */
+static double least_on_truss(hf_refined *p, double shift, const hf_flexibility_rounding *rounding)
+{
+    hf_refined_truss *t = &p->truss;
+    double *band;
+    int n, k;
+    assemble_proof(p, &band, &n, &k);
+    for (int i = 0; i < n; i++)
+        band[(size_t)i * (size_t)(k + 1)] -= shift + rounding->free * band[(size_t)i * (size_t)(k + 1)];
+    if (hf_band_factor(n, k, band) != 0 ||
+        !hf_flexibility_factor_net(p->m, p->w, hf_refine_block, rounding, 1 - TRUSS_LEFT, &t->flexibility))
+        return 0;
+    double least = shift - rounding->free_N_per_m;
+    return t->flexibility.trace > 0 ? fmin(least, TRUSS_LEFT / t->flexibility.trace) : least;
+}
+
+/* A lower bound of the least eigenvalue of the Hessian of net and truss at the refined shape, N/m; 0 when there is no
+ * proof. `guess` is tried first. */
+static double least_eigenvalue_on_truss(hf_refined *p, double guess)
+{
+    hf_flexibility_rounding rounding = hf_flexibility_rounding_of(
+        p->m, &p->truss.flexibility, hf_refine_largest_sum(p, stiffness_sum_of_matrix), hf_refine_largest_sum(p, one));
+    double smallest = 2 * rounding.free_N_per_m;
+    for (;; guess *= SHARE_OF_LAST) {
+        double least = least_on_truss(p, fmax(guess, smallest), &rounding);
+        if (least > 0 || !(guess > smallest)) return least;
+    }
 }
 
 /* A lower bound of the least eigenvalue of the Hessian at the refined shape, N/m; 0 when there is no proof. `guess` is
@@ -271,6 +309,23 @@ static hf_bound_reason stays_apart(const hf_refined *p, double radius)
     return HF_BOUND_PROVEN;
 }
 
+/* What rounding at twice the precision adds to the gradient: of the gap, whose part in it is at most the error of the
+ * pull, and of the places of the attachments. */
+static double rounding_of_truss(const hf_refined *p)
+{
+    const hf_model *m = p->m;
+    double pull = 0, move_m = 0;
+    if (!m->n_attachment) return 0;
+    for (int i = 3 * m->n_free; i < 3 * p->n_moving; i++) {
+        pull += fabs(p->force[i].hi);
+        move_m += fabs(p->x[i % 3 * m->n_node + i / 3].hi);
+    }
+    for (int k = 0; k < p->truss.flexibility.rank; k++)
+        move_m += fabs(p->truss.s[k].hi) * sqrt(p->truss.flexibility.trace);
+    double stiffness = 6 * hf_refine_largest_sum(p, stiffness_sum);
+    return HF_TWOFOLD_UNIT * (16 + 48.0 * m->n_attachment) * (pull + stiffness * move_m);
+}
+
 /* Sets *radius of the ball around the refined shape that holds every equilibrium, m, from a lower bound of the least
  * eigenvalue there. */
 static hf_bound_reason find_radius(hf_refined *p, double least, double *radius)
@@ -282,10 +337,13 @@ static hf_bound_reason find_radius(hf_refined *p, double least, double *radius)
     if (lengths < 0) return HF_BOUND_DEPENDENT_LENGTHS;
     for (int i = 0; i < 3 * m->n_free; i++)
         square += p->force[i].hi * p->force[i].hi;
+    for (int k = 0; k < p->truss.flexibility.rank; k++)
+        square += least / TRUSS_LEFT * p->truss.gap[k].hi * p->truss.gap[k].hi;
     double rounding =
         HF_TWOFOLD_UNIT * (128 + 4 * hf_refine_largest_sum(p, one)) * hf_refine_largest_sum(p, rounded_force);
-    double force = 1.0001 * sqrt(square) + rounding * sqrt(3.0 * m->n_free);
-    double norm = 3 * hf_refine_largest_sum(p, own_stiffness_sum),
+    double parts = m->n_attachment ? 2 : 1; /* of the gradient: by the free nodes, and by s */
+    double force = 1.0001 * sqrt(square) + rounding * sqrt(3 * parts * p->n_moving) + rounding_of_truss(p);
+    double norm = 3 * parts * hf_refine_largest_sum(p, own_stiffness_sum),
            change = 8 * hf_refine_largest_sum(p, stiffness_change);
     *radius = lengths + 4.1 * (force + norm * lengths) / least;
     if (!(change * *radius <= least / 2)) return HF_BOUND_NOT_DEFINITE;
@@ -303,17 +361,18 @@ static hf_bound_reason prove_radius(hf_refined *p, double least_N_per_m, double 
     }
     double guess = hf_refine_guess(p);
     set_proof_stiffness(p);
-    return find_radius(p, least_eigenvalue(p, guess), radius);
+    double least = p->m->n_attachment ? least_eigenvalue_on_truss(p, guess) : least_eigenvalue(p, guess);
+    return find_radius(p, least, radius);
 }
 
 /* ---- the proof ---- */
 
-/* Largest distance of a free node to its refined place. */
+/* Largest distance of a node to its refined place. */
 static double largest_move(const hf_refined *p)
 {
     const hf_model *m = p->m;
     double largest = 0;
-    for (int i = 0; i < m->n_free; i++) {
+    for (int i = 0; i < p->n_moving; i++) {
         double square = 0;
         for (int c = 0; c < 3; c++) {
             hf_twofold x = p->x[c * m->n_node + i];
@@ -341,17 +400,19 @@ static hf_twofold refined_psi(const hf_refined *p)
 void hf_bound_prove(const hf_model *m, bool has_factor, double least_N_per_m, hf_workspace *w, hf_form_result *r)
 {
     hf_refined p;
-    double radius = 0, moved_m;
+    double radius = 0, moved_m = 0;
     r->position_bound_m = r->psi_bound_m = (double)NAN;
-    r->bound_reason = HF_BOUND_NOT_DEFINITE;
-    if (r->n_loose) return; /* such a node has no stiffness */
-    r->bound_reason = m->has_strut ? HF_BOUND_STRUTS : m->n_attachment ? HF_BOUND_TRUSS : HF_BOUND_NO_MATRIX;
-    if (m->has_strut || m->n_attachment || (!m->has_newton && hf_workspace_iterates(m, w))) return;
-    hf_refine_open(m, w, r->condition, &p);
-    r->bound_reason = hf_refine_approach(&p, has_factor);
-    if (r->bound_reason != HF_BOUND_PROVEN) return;
-    moved_m = largest_move(&p);
-    r->bound_reason = prove_radius(&p, least_N_per_m, moved_m, &radius);
+    r->bound_reason = m->has_strut ? HF_BOUND_STRUTS : r->n_loose ? HF_BOUND_LOOSE : HF_BOUND_NO_MATRIX;
+    if (m->has_strut || r->n_loose || (!m->has_newton && hf_workspace_iterates(m, w))) return;
+    int n_moving = w->n_moving;
+    w->n_moving = m->n_free + m->n_attachment;
+    r->bound_reason = HF_BOUND_TRUSS;
+    if (hf_refine_open(m, w, r->condition, &p)) r->bound_reason = hf_refine_approach(&p, has_factor);
+    if (r->bound_reason == HF_BOUND_PROVEN) {
+        moved_m = largest_move(&p);
+        r->bound_reason = prove_radius(&p, least_N_per_m, moved_m, &radius);
+    }
+    w->n_moving = n_moving;
     if (r->bound_reason != HF_BOUND_PROVEN) return;
     hf_twofold psi = hf_twofold_subtract(refined_psi(&p), hf_twofold_of(r->psi_m));
     r->position_bound_m = moved_m + radius;

@@ -9,8 +9,7 @@ static bool has_truss(const hf_model *m, const hf_workspace *w)
     return w->n_moving > m->n_free;
 }
 
-/* Where entry `at` of position_m is before the truss gives way. */
-static double resting_m(const hf_model *m, const hf_workspace *w, int at)
+double hf_joint_resting_m(const hf_model *m, const hf_workspace *w, int at)
 {
     return m->moves_supports ? m->position_m[at] + w->support_move_m[at] : m->position_m[at];
 }
@@ -18,7 +17,7 @@ static double resting_m(const hf_model *m, const hf_workspace *w, int at)
 static double displacement_m(const hf_model *m, const hf_workspace *w, const double *position_m, int i_dof)
 {
     int at = i_dof % 3 * m->n_node + m->attachment_row[i_dof / 3];
-    return position_m[at] - resting_m(m, w, at);
+    return position_m[at] - hf_joint_resting_m(m, w, at);
 }
 
 hf_status hf_joint_factor(const hf_model *m, hf_workspace *w, hf_newton_block *block_of, const double *spring_N_per_m,
@@ -84,6 +83,6 @@ void hf_joint_set_displacement(const hf_model *m, hf_workspace *w)
     for (int i = 0; i < 3 * m->n_attachment; i++) {
         int at = i % 3 * m->n_node + m->attachment_row[i / 3];
         w->displacement_m[i] = displacement_m(m, w, w->position_m, i);
-        w->position_m[at] = resting_m(m, w, at) + w->displacement_m[i];
+        w->position_m[at] = hf_joint_resting_m(m, w, at) + w->displacement_m[i];
     }
 }

@@ -24,6 +24,9 @@ void hf_joint_solve(const hf_model *model, const hf_workspace *workspace, hf_new
 double hf_joint_gap_m(const hf_model *model, const hf_workspace *workspace, const double *position_m,
                       const double *force, double *square);
 
+/* Returns where entry `at` of position_m [3][n_node] is before the truss deflects, m. */
+double hf_joint_resting_m(const hf_model *model, const hf_workspace *workspace, int at);
+
 /* Mean theoretical length of the cables. */
 double hf_joint_mean_length_m(const hf_model *model);
 

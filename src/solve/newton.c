@@ -215,8 +215,8 @@ static void look_for_drift(const hf_model *m, hf_workspace *w, hf_form_result *r
 {
     int n = hf_newton_matrix_dofs(m), row = -1;
     imbalance here = measure_imbalance(m, w, w->position_m, w->tension_N, w->newton_force_N);
-    for (int k = 0; k < n; k++)
-        w->newton_step[k] = 1 + k % 7 - k % 3;
+    for (int k = 0; k < 3 * w->n_moving; k++)
+        w->newton_step[k] = k < n ? 1 + k % 7 - k % 3 : 0; /* attachments stay, and so must the pull on them */
     for (int k = 0; k < DRIFT_ROUNDS; k++) {
         hf_newton_matrix_solve(m, w, w->newton_step);
         if ((row = normalise_step(m, w)) < 0) return;
@@ -228,6 +228,7 @@ static void look_for_drift(const hf_model *m, hf_workspace *w, hf_form_result *r
         const double *f = w->newton_force_N + 3 * row; /* beside a weak cable elsewhere all forces are small */
         if (!(sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) <= DRIFT_FORCE * pull_at_row_N(m, w, row))) continue;
         if (!(there.length_gap <= 1.001 * here.length_gap + DRIFT_NOTHING)) continue;
+        if (!(there.truss_m <= 1.001 * here.truss_m + HF_JOINT_NO_GAP_M)) continue;
         for (int i = 0; i < m->n_free; i++) {
             const double *d = w->newton_step + 3 * i;
             r->n_drifting += d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > DRIFT_PART * DRIFT_PART;
@@ -258,9 +259,9 @@ double hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
         double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
         if (!(square <= largest)) largest = square; /* keeps a NaN */
     }
+    if (status == HF_OK && !r->n_loose) r->position_error_m = sqrt(largest);
+    if (status != HF_OK) r->condition = (double)NAN;
+    if (r->condition > DRIFT_CONDITION) look_for_drift(m, w, r);
     w->n_moving = n_moving;
-    if (status != HF_OK) return 0;
-    r->position_error_m = sqrt(largest);
-    if (r->condition > DRIFT_CONDITION && !m->n_attachment) look_for_drift(m, w, r);
     return least;
 }

@@ -4,8 +4,10 @@
 #include "solve/refine.h"
 
 #include "linalg/band.h"
-#include "solve/newton_matrix.h"
+#include "solve/coupling.h"
+#include "solve/joint.h"
 #include "solve/refine_kernel.h"
+#include "solve/schur.h"
 
 #include <assert.h>
 #include <math.h>
@@ -41,20 +43,77 @@ static void set_first_state(hf_refined *p)
     }
 }
 
-void hf_refine_open(const hf_model *m, hf_workspace *w, double condition, hf_refined *p)
+/* Places the attachments where the truss has them. */
+static void place_attachments(hf_refined *p)
 {
-    size_t n_node = (size_t)m->n_node, n_free = (size_t)m->n_free;
-    *p = (hf_refined){
-        .m = m, .w = w, .cable = (hf_refined_cable *)w->bound_work, .condition = condition, .wanted = INFINITY};
+    const hf_model *m = p->m;
+    const hf_refined_truss *t = &p->truss;
+    for (int i = 0; i < 3 * m->n_attachment; i++) {
+        int at = i % 3 * m->n_node + m->attachment_row[i / 3];
+        hf_twofold r = hf_twofold_add(hf_flexibility_displace_twofold(&t->flexibility, t->s, i), t->rest_m[i]);
+        p->x[at] = hf_twofold_add(hf_twofold_of(hf_joint_resting_m(m, p->w, at)), r);
+    }
+}
+
+/* Sets gap and rest for the pull on the attachments. */
+static void measure_truss(hf_refined *p)
+{
+    hf_refined_truss *t = &p->truss;
+    const hf_twofold *pull = p->force + 3 * p->m->n_free;
+    for (int k = 0; k < t->flexibility.rank; k++)
+        t->gap[k] = hf_flexibility_load_twofold(&t->flexibility, pull, k);
+    for (int i = 0; i < t->flexibility.n; i++)
+        t->rest_m[i] = hf_twofold_subtract(hf_flexibility_row_twofold(p->m, pull, i),
+                                           hf_flexibility_displace_twofold(&t->flexibility, t->gap, i));
+    for (int k = 0; k < t->flexibility.rank; k++) {
+        t->gap[k] = hf_twofold_subtract(t->gap[k], t->s[k]);
+        t->near_gap[k] = t->gap[k].hi;
+    }
+}
+
+/* Starts from the displacements under the pull of the shape that was found. */
+static bool open_truss(hf_refined *p, double *room)
+{
+    const hf_model *m = p->m;
+    hf_refined_truss *t = &p->truss;
+    size_t n = 3 * (size_t)m->n_attachment;
+    if (n == 0) return true;
+    t->s = (hf_twofold *)room;
+    t->gap = t->s + n;
+    t->rest_m = t->gap + n;
+    t->move = (double *)(t->rest_m + n);
+    t->step = t->move + n;
+    t->near_gap = t->step + n;
+    t->flexibility.root = t->near_gap + n;
+    t->flexibility.factor = t->flexibility.root + n * n;
+    t->flexibility.window = t->flexibility.factor + n * n;
+    if (!hf_flexibility_factor(m, &t->flexibility)) return false;
+    hf_coupling_forces(m, p->w);
+    for (size_t i = 0; i < n; i++) {
+        p->force[3 * (size_t)m->n_free + i] = hf_twofold_of(p->w->attachment_force_N[i]);
+        t->s[i] = (hf_twofold){0, 0};
+    }
+    measure_truss(p);
+    memcpy(t->s, t->gap, (size_t)t->flexibility.rank * sizeof *t->s);
+    place_attachments(p);
+    return true;
+}
+
+bool hf_refine_open(const hf_model *m, hf_workspace *w, double condition, hf_refined *p)
+{
+    size_t n_node = (size_t)m->n_node, n_moving = (size_t)(m->n_free + m->n_attachment);
+    *p = (hf_refined){.m = m, .w = w, .n_moving = (int)n_moving, .condition = condition, .wanted = INFINITY};
+    p->cable = (hf_refined_cable *)w->bound_work;
     p->x = (hf_twofold *)(p->cable + m->n_cable);
     p->force = p->x + 3 * n_node;
-    p->move = (double *)(p->force + 3 * n_free);
-    p->step = p->move + 3 * n_free;
-    p->near_N = p->step + 3 * n_free;
-    p->sum = p->near_N + 3 * n_free;
+    p->move = (double *)(p->force + 3 * n_moving);
+    p->step = p->move + 3 * n_moving;
+    p->near_N = p->step + 3 * n_moving;
+    p->sum = p->near_N + 3 * n_moving;
     for (size_t i = 0; i < 3 * n_node; i++)
         p->x[i] = hf_twofold_of(w->position_m[i]);
     set_first_state(p);
+    return open_truss(p, p->sum + n_moving);
 }
 
 /* ---- forces and lengths at twice the precision ---- */
@@ -100,22 +159,33 @@ static double take_cable(hf_refined *p, int e, const hf_refine_lanes *l, int k)
     for (int i = 0; i < 3; i++) {
         hf_twofold pull = {l->pull[i][0][k], l->pull[i][1][k]};
         c->unit[i] = l->unit[i][k];
-        if (a < p->m->n_free) hf_twofold_add_to(p->force + 3 * a + i, pull);
-        if (b < p->m->n_free) hf_twofold_add_to(p->force + 3 * b + i, hf_twofold_minus(pull));
+        if (a < p->n_moving) hf_twofold_add_to(p->force + 3 * a + i, pull);
+        if (b < p->n_moving) hf_twofold_add_to(p->force + 3 * b + i, hf_twofold_minus(pull));
     }
     if (!hf_law_has((hf_law)p->w->law[e], HF_LAW_HAS_MULTIPLIER)) return 0;
     c->over = (hf_twofold){l->over[0][k], l->over[1][k]};
     return c->is_taut > 0 ? fabs(c->over.hi) / p->m->length_m[e] : 0;
 }
 
-/* Sets the forces out of balance, and length, unit, over and across of the cables. by_law: elastic cables pull with
+/* Largest displacement L near_gap of an attachment, relative to the mean length; 0 without a truss. */
+static double gap_error(const hf_refined *p)
+{
+    double largest = 0, *r = p->w->coupling_work;
+    if (!p->m->n_attachment) return 0;
+    hf_flexibility_displace(&p->truss.flexibility, p->truss.near_gap, r);
+    for (int i = 0; i < 3 * p->m->n_attachment; i++)
+        if (!(fabs(r[i]) <= largest)) largest = fabs(r[i]); /* keeps a NaN */
+    return largest / hf_joint_mean_length_m(p->m);
+}
+
+/* Sets the forces, the gaps, and length, unit, over and across of the cables. by_law: elastic cables pull with
  * what their law gives at their length, else with the multiplier. Returns the largest error, relative to the reference
  * tension and the theoretical lengths. */
 static double measure_refined(hf_refined *p, bool by_law)
 {
     const hf_model *m = p->m;
     double largest = 0;
-    for (int i = 0; i < 3 * m->n_free; i++)
+    for (int i = 0; i < 3 * p->n_moving; i++)
         p->force[i] = hf_twofold_of(m->load_N ? m->load_N[i % 3 * m->n_node + i / 3] : 0);
     int e = 0, kept[HF_LANES];
     hf_refine_lanes lanes;
@@ -133,6 +203,8 @@ static double measure_refined(hf_refined *p, bool by_law)
         for (int k = 0; k < n; k++)
             largest = fmax(largest, take_cable(p, kept[k], &lanes, k));
     }
+    measure_truss(p);
+    largest = fmax(largest, gap_error(p));
     for (int i = 0; i < 3 * m->n_free; i++) {
         double error = fabs(p->force[i].hi) / m->reference_N;
         if (!(error <= largest)) largest = error; /* keeps a NaN */
@@ -142,18 +214,17 @@ static double measure_refined(hf_refined *p, bool by_law)
 
 /* ---- sums at nodes ---- */
 
-/* Largest sum of a figure of the cables at a free node. */
 double hf_refine_largest_sum(const hf_refined *p, hf_refined_figure *figure)
 {
     double largest = 0;
-    memset(p->sum, 0, (size_t)p->m->n_free * sizeof *p->sum);
+    memset(p->sum, 0, (size_t)p->n_moving * sizeof *p->sum);
     for (int e = 0; e < p->m->n_cable; e++) {
         if (hf_refine_is_fixed(p->m, e) || !(p->cable[e].is_taut > 0)) continue;
         double value = figure(p, e);
         for (int k = 2 * e; k < 2 * e + 2; k++)
-            if (p->m->end_row[k] < p->m->n_free) p->sum[p->m->end_row[k]] += value;
+            if (p->m->end_row[k] < p->n_moving) p->sum[p->m->end_row[k]] += value;
     }
-    for (int i = 0; i < p->m->n_free; i++)
+    for (int i = 0; i < p->n_moving; i++)
         largest = fmax(largest, p->sum[i]);
     return largest;
 }
@@ -166,14 +237,29 @@ static double matrix_sum(const hf_refined *p, int e)
 
 /* ---- steps near a measured shape ---- */
 
-/* Sets near_N and near_over after move and change, from what was measured before them. Differences alone are computed,
- * so that errors are relative to the moves. Returns the largest error, as measure_refined does. */
+/* The forces that were measured; of attachments only their change counts, which a double holds. */
+static void begin_near(hf_refined *p)
+{
+    for (int i = 0; i < 3 * p->n_moving; i++)
+        p->near_N[i] = i < 3 * p->m->n_free ? p->force[i].hi : 0;
+}
+
+/* near_gap for the changes of pull and s. */
+static void end_near(hf_refined *p)
+{
+    hf_refined_truss *t = &p->truss;
+    hf_flexibility_load(&t->flexibility, p->near_N + 3 * p->m->n_free, t->near_gap);
+    for (int k = 0; k < t->flexibility.rank; k++)
+        t->near_gap[k] += t->gap[k].hi - t->move[k];
+}
+
+/* Sets near_N, near_gap and near_over after move and change, from what was measured before them. Differences alone are
+ * computed, so that errors are relative to the moves. Returns the largest error, as measure_refined does. */
 static double measure_near(hf_refined *p)
 {
     const hf_model *m = p->m;
     double largest = 0;
-    for (int i = 0; i < 3 * m->n_free; i++)
-        p->near_N[i] = p->force[i].hi;
+    begin_near(p);
     for (int e = 0; e < m->n_cable; e++) {
         hf_refined_cable *c = p->cable + e;
         if (hf_refine_is_fixed(m, e) || !(c->is_taut > 0)) continue;
@@ -182,7 +268,7 @@ static double measure_near(hf_refined *p)
         double d[3], more[3], square = 0, change = 0, pull[3], T = c->across * c->length;
         for (int k = 0; k < 3; k++) {
             d[k] = c->length * c->unit[k];
-            more[k] = (b < m->n_free ? p->move[3 * b + k] : 0) - (a < m->n_free ? p->move[3 * a + k] : 0);
+            more[k] = (b < p->n_moving ? p->move[3 * b + k] : 0) - (a < p->n_moving ? p->move[3 * a + k] : 0);
             change += (2 * d[k] + more[k]) * more[k];
             square += (d[k] + more[k]) * (d[k] + more[k]);
         }
@@ -196,6 +282,8 @@ static double measure_near(hf_refined *p)
         c->near_over = c->over.hi + longer - c->change / hf_law_stiffness_N_per_m(cable, INFINITY);
         largest = fmax(largest, fabs(c->near_over) / cable.theoretical_m);
     }
+    end_near(p);
+    largest = fmax(largest, gap_error(p));
     for (int i = 0; i < 3 * m->n_free; i++) {
         double error = fabs(p->near_N[i]) / m->reference_N;
         if (!(error <= largest)) largest = error; /* keeps a NaN */
@@ -203,19 +291,58 @@ static double measure_near(hf_refined *p)
     return largest;
 }
 
-static void solve_for_step(hf_refined *p)
+/* The step of the free nodes for the forces v [3 n_free], in place, while the attachments stay. */
+static void solve_free(const hf_refined *p, double *v)
 {
     const hf_model *m = p->m;
     if (m->has_newton) {
-        hf_newton_matrix_solve(m, p->w, p->step);
+        hf_newton_matrix_solve(m, p->w, v);
         return;
     }
     double *b = p->w->certificate_work;
     for (int i = 0; i < 3 * m->n_free; i++)
-        b[i % 3 * m->n_node + i / 3] = p->step[i];
+        b[i % 3 * m->n_node + i / 3] = v[i];
     hf_band_back_solve(m->n_free, m->half_bandwidth, 3, p->w->band, b, m->n_node);
     for (int i = 0; i < 3 * m->n_free; i++)
-        p->step[i] = b[i % 3 * m->n_node + i / 3];
+        v[i] = b[i % 3 * m->n_node + i / 3];
+}
+
+/* Ends the factorisation with the rows of the truss, for the matrix of hf_newton_certify. */
+static bool factor_first_truss(hf_refined *p)
+{
+    p->truss.block_of = hf_newton_matrix_block;
+    if (p->m->has_newton) return hf_flexibility_factor_schur(p->m, p->w, &p->truss.flexibility);
+    return hf_flexibility_factor_net(p->m, p->w, hf_newton_matrix_block, NULL, 1, &p->truss.flexibility);
+}
+
+/* The same for the matrix of the refined shape. */
+static bool factor_truss(hf_refined *p)
+{
+    p->truss.block_of = hf_refine_block;
+    return hf_flexibility_factor_net(p->m, p->w, hf_refine_block, NULL, 1, &p->truss.flexibility);
+}
+
+/* Replaces the forces in `step` by the step. With p the pull on the attachments after the step of the free nodes alone,
+ * and S of (M15), that of the truss is d_s = (1 + L' S L)^-1 (gap + L' p): (M24) for the unknowns s. */
+static void solve_for_step(hf_refined *p)
+{
+    const hf_model *m = p->m;
+    hf_refined_truss *t = &p->truss;
+    int n_free = 3 * m->n_free, rank = t->flexibility.rank;
+    double *at_attachment = p->step + n_free, *answer = p->w->force_N;
+    solve_free(p, p->step);
+    if (!m->n_attachment) return;
+    hf_schur_pull(m, p->w, t->block_of, p->step, at_attachment);
+    hf_flexibility_load(&t->flexibility, at_attachment, t->step);
+    for (int k = 0; k < rank; k++)
+        t->step[k] += t->near_gap[k];
+    if (rank) hf_band_back_solve(rank, rank - 1, 1, t->flexibility.factor, t->step, rank);
+    hf_flexibility_displace(&t->flexibility, t->step, at_attachment);
+    memset(answer, 0, (size_t)n_free * sizeof *answer);
+    hf_schur_push(m, p->w, t->block_of, at_attachment, answer);
+    solve_free(p, answer);
+    for (int i = 0; i < n_free; i++)
+        p->step[i] += answer[i];
 }
 
 /* The Newton step (M8) with the matrix that is factored: step, and last of the cables. */
@@ -223,6 +350,7 @@ static void find_refinement(hf_refined *p)
 {
     const hf_model *m = p->m;
     memcpy(p->step, p->near_N, 3 * (size_t)m->n_free * sizeof *p->step);
+    memset(p->step + 3 * m->n_free, 0, 3 * (size_t)m->n_attachment * sizeof *p->step);
     for (int pass = 0; pass < 2; pass++) {
         for (int e = 0; e < m->n_cable; e++) {
             hf_refined_cable *c = p->cable + e;
@@ -230,8 +358,8 @@ static void find_refinement(hf_refined *p)
             int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
             double longer = c->near_over, pull[3];
             for (int k = 0; k < 3 && pass; k++)
-                longer +=
-                    c->unit[k] * ((b < m->n_free ? p->step[3 * b + k] : 0) - (a < m->n_free ? p->step[3 * a + k] : 0));
+                longer += c->unit[k] *
+                          ((b < p->n_moving ? p->step[3 * b + k] : 0) - (a < p->n_moving ? p->step[3 * a + k] : 0));
             c->last = c->along * longer;
             for (int k = 0; k < 3; k++)
                 pull[k] = c->last * c->unit[k];
@@ -243,8 +371,10 @@ static void find_refinement(hf_refined *p)
 
 static void add_step(hf_refined *p, double part)
 {
-    for (int i = 0; i < 3 * p->m->n_free; i++)
+    for (int i = 0; i < 3 * p->n_moving; i++)
         p->move[i] += part * p->step[i];
+    for (int k = 0; k < p->truss.flexibility.rank; k++)
+        p->truss.move[k] += part * p->truss.step[k];
     for (int e = 0; e < p->m->n_cable; e++)
         p->cable[e].change += part * p->cable[e].last;
 }
@@ -253,9 +383,12 @@ static void add_step(hf_refined *p, double part)
  * cables. */
 static void find_move(hf_refined *p, double first)
 {
-    memset(p->move, 0, 3 * (size_t)p->m->n_free * sizeof *p->move);
-    for (int i = 0; i < 3 * p->m->n_free; i++)
-        p->near_N[i] = p->force[i].hi;
+    memset(p->move, 0, 3 * (size_t)p->n_moving * sizeof *p->move);
+    for (int k = 0; k < p->truss.flexibility.rank; k++) {
+        p->truss.move[k] = 0;
+        p->truss.near_gap[k] = p->truss.gap[k].hi;
+    }
+    begin_near(p);
     for (int e = 0; e < p->m->n_cable; e++) {
         p->cable[e].change = p->cable[e].last = 0;
         p->cable[e].near_over = p->cable[e].over.hi;
@@ -279,6 +412,9 @@ static void apply_move(hf_refined *p, double part)
         hf_twofold_add_to(p->x + i % 3 * m->n_node + i / 3, hf_twofold_of(part * p->move[i]));
     for (int e = 0; e < m->n_cable; e++)
         if (p->cable[e].along > 0) hf_twofold_add_to(&p->cable[e].T, hf_twofold_of(part * p->cable[e].change));
+    for (int k = 0; k < p->truss.flexibility.rank; k++)
+        hf_twofold_add_to(&p->truss.s[k], hf_twofold_of(part * p->truss.move[k]));
+    place_attachments(p);
 }
 
 /* Moves while each move halves the errors. Returns the errors at the end, where the forces are by law. */
@@ -302,8 +438,10 @@ static double refine(hf_refined *p)
 void hf_refine_block(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
 {
     const hf_refined_cable *c = (const hf_refined_cable *)w->bound_work + e;
+    double across = fmax(c->across, 0);
+    bool is_spring = hf_newton_matrix_is_spring((hf_law)w->law[e]);
     (void)m;
-    hf_newton_matrix_spring(c->along, fmax(c->across, 0), c->unit, block);
+    hf_newton_matrix_spring(is_spring ? across : c->along, across, c->unit, block);
 }
 
 /* Decides which cables are taut, as interior.c does, and factors the matrix of the refined shape. */
@@ -323,7 +461,8 @@ static bool factor_anew(hf_refined *p)
         c->along = c->is_taut > 0 ? hf_law_stiffness_N_per_m(cable, INFINITY) : 0;
         if (multiplier && isinf(c->along)) c->along = hf_newton_matrix_rigid_stiffness(m, e, c->T.hi);
     }
-    bool is_factored = hf_newton_matrix_factor_blocks(m, p->w, hf_refine_block, NULL, &p->condition) == HF_OK;
+    bool is_factored = hf_newton_matrix_factor_blocks(m, p->w, hf_refine_block, NULL, &p->condition) == HF_OK &&
+                       (!m->n_attachment || factor_truss(p));
     for (int e = 0; e < m->n_cable; e++) /* from here on `along` is of cables with a multiplier alone */
         if (!hf_law_has((hf_law)p->w->law[e], HF_LAW_HAS_MULTIPLIER)) p->cable[e].along = 0;
     return is_factored;
@@ -347,6 +486,7 @@ static bool is_told_apart(const hf_refined *p)
 hf_bound_reason hf_refine_approach(hf_refined *p, bool has_factor)
 {
     hf_bound_reason reason = HF_BOUND_NOT_CONTRACTING;
+    if (has_factor && p->m->n_attachment) has_factor = factor_first_truss(p);
     if (!has_factor) measure_refined(p, false);
     for (int k = has_factor ? 0 : 1; k <= MATRICES_MAX; k++) {
         p->is_first_matrix = k == 0;

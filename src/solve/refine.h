@@ -4,10 +4,11 @@
 #ifndef HIFDM_REFINE_H
 #define HIFDM_REFINE_H
 
-#include "linalg/twofold.h"
+#include "solve/flexibility.h"
 #include <hifdm/formfind.h>
 
-/* In HF_BOUND_ITEMS (workspace.h) is room for these. */
+/* HF_BOUND_ITEMS (workspace.h) has room for all of these. The rows that move are the free nodes and, on a truss, the
+ * attachments: n_moving of them. */
 typedef struct {
     hf_twofold T;         /* multiplier, N; 0 of a slack cable */
     hf_twofold over;      /* length less the wanted length at T, m; of cables with a multiplier */
@@ -19,22 +20,35 @@ typedef struct {
     double is_taut;       /* 1 or 0; 1 of a cable without a multiplier */
 } hf_refined_cable;
 
+/* The unknowns s of the truss (flexibility.h), each [rank]. */
+typedef struct {
+    hf_flexibility flexibility;
+    hf_twofold *s, *gap;       /* refined, and L' b - s for the pull b on the attachments */
+    hf_twofold *rest_m;        /* [n] (F - L L') b: what rounding has taken from L, so that r = L s + rest is F b */
+    double *move, *step;       /* of s: since the last measure, and the last step */
+    double *near_gap;          /* gap after the moves */
+    hf_newton_block *block_of; /* of the matrix that is factored */
+} hf_refined_truss;
+
 typedef struct {
     const hf_model *m;
     hf_workspace *w;
+    int n_moving;
     hf_refined_cable *cable; /* [n_cable] */
     hf_twofold *x;           /* [3][n_node] refined shape */
-    hf_twofold *force;       /* [3 n_free] out of balance, by dof */
-    double *move, *step;     /* [3 n_free] by dof: since the last measure, and the last step */
-    double *near_N;          /* [3 n_free] forces out of balance after the moves */
-    double *sum;             /* [n_free] scratch */
+    hf_twofold *force;       /* [3 n_moving] by dof: out of balance at free nodes, the pull on attachments */
+    double *move, *step;     /* [3 n_moving] by dof: since the last measure, and the last step */
+    double *near_N;          /* [3 n_moving] forces out of balance after the moves; of attachments the change of pull */
+    double *sum;             /* [n_moving] scratch */
     double wanted;           /* relative errors at which refinement ends */
     double condition;        /* estimate, of the matrix that is factored */
     bool is_first_matrix;    /* it is the one with which refinement began */
+    hf_refined_truss truss;  /* of a net on a truss */
 } hf_refined;
 
-/* Begin at the shape in the workspace, whose matrix of this condition is factored there. */
-void hf_refine_open(const hf_model *model, hf_workspace *workspace, double condition, hf_refined *refined);
+/* Begins at the shape in the workspace, whose matrix of this condition is factored there. Returns false when the
+ * flexibility of the truss is that of no elastic structure. */
+bool hf_refine_open(const hf_model *model, hf_workspace *workspace, double condition, hf_refined *refined);
 
 /* Go to the equilibrium. HF_BOUND_PROVEN, then with the forces by law, or the reason why it does not get there.
  * has_factor: a matrix is factored. */
@@ -46,13 +60,15 @@ double hf_refine_guess(const hf_refined *refined);
 /* The block of a cable from its along, across and unit, for hf_newton_matrix_assemble_blocks. */
 void hf_refine_block(const hf_model *model, const hf_workspace *workspace, int i_cable, double block[3][3]);
 
-/* Largest sum of a figure of the taut cables at a free node. */
+/* Returns the largest sum of a figure of the taut cables at a row that moves. */
 typedef double hf_refined_figure(const hf_refined *refined, int i_cable);
 double hf_refine_largest_sum(const hf_refined *refined, hf_refined_figure *figure);
 
+/* Whether neither end of the cable moves. */
 static inline bool hf_refine_is_fixed(const hf_model *model, int i_cable)
 {
-    return model->end_row[2 * i_cable] >= model->n_free && model->end_row[2 * i_cable + 1] >= model->n_free;
+    int n_moving = model->n_free + model->n_attachment;
+    return model->end_row[2 * i_cable] >= n_moving && model->end_row[2 * i_cable + 1] >= n_moving;
 }
 
 #endif

@@ -7,9 +7,12 @@ their errors are measured with fifty decimal digits.
 DUMP is written by tests/bounds.h: doubles, net after net, each with the shapes at its stops. Unknowns are the positions
 of free nodes and the tensions T of taut cables whose law has a multiplier, which obey l = L* (law length) or
 l = l0 + l0 T / EA (elastic); a slack one is shorter and pulls with nothing. The energy is convex, so a shape with these
-properties is an equilibrium, whatever way led there. Prints what was proven, why not, and how far the bounds are from
-the true errors; exit status 1 when a bound is below the error, the share proven below LEAST_SHARE_PROVEN, or the median
-of bound over error (condition below 1e10, error above rounding of the coordinates) above LARGEST_MEDIAN."""
+properties is an equilibrium, whatever way led there. On a truss the positions of the attachments are unknowns, too,
+which obey r = F b for the pull b of the net; F is positive semidefinite, so the energy is convex all the same.
+
+Prints what was proven, why not, and how far the bounds are from the true errors; exit status 1 when a bound is below
+the error, the share proven below LEAST_SHARE_PROVEN, or the median of bound over error (condition below 1e10, error
+above rounding of the coordinates) above LARGEST_MEDIAN."""
 import sys
 from collections import Counter
 from decimal import Decimal, getcontext
@@ -19,14 +22,17 @@ import numpy as np
 getcontext().prec = 50
 TENSION, LENGTH, FORCE_DENSITY, ELASTIC = range(4)
 REASON = ["none", "proven", "struts", "truss", "no_matrix", "not_definite", "not_contracting", "slack_or_taut",
-          "dependent_lengths"]
+          "dependent_lengths", "loose"]
 STOPS = 16
 
 
 class Net:
     def __init__(self, take):
-        self.kind, self.n_node, self.n_free, n_cable, self.reference, n_inner = take(6)
+        self.kind, self.n_node, self.n_free, n_cable, self.reference, n_inner, n_truss = take(7)
         self.n_node, self.n_free, n_cable = int(self.n_node), int(self.n_free), int(n_cable)
+        self.n_moving = self.n_free + int(n_truss)
+        self.flexibility = take(int(9 * n_truss * n_truss)).reshape(int(3 * n_truss), int(3 * n_truss))
+        self.exact_flexibility = [[Decimal(v) for v in row] for row in self.flexibility.tolist()]
         self.theory = take(3 * self.n_node).reshape(3, -1).T
         self.load = take(3 * self.n_node).reshape(3, -1).T
         self.inner = take(int(n_inner)).astype(int)
@@ -36,7 +42,7 @@ class Net:
             figures = take(8)
             x = take(3 * self.n_node).reshape(3, -1).T
             self.stops.append((figures, x, take(n_cable)))
-        keep = (cable[:, :2] < self.n_free).any(axis=1)
+        keep = (cable[:, :2] < self.n_moving).any(axis=1)
         self.kept = keep
         self.end, self.law = cable[keep, :2].astype(int), cable[keep, 2].astype(int)
         self.target, self.EA = cable[keep, 3], cable[keep, 4]
@@ -45,7 +51,8 @@ class Net:
         self.flex = np.where(self.law == ELASTIC, self.target / np.where(self.law == ELASTIC, self.EA, 1), 0)
 
     def errors(self, x, T, taut):
-        """Forces out of balance and, of cables with a multiplier, l - L(T), in floating point."""
+        """Forces out of balance of free nodes, F b - r of attachments, and, of cables with a multiplier, l - L(T), in
+        floating point."""
         d = x[self.end[:, 1]] - x[self.end[:, 0]]
         l = np.linalg.norm(d, axis=1)
         pull = np.where(self.law == TENSION, self.target, np.where(self.law == FORCE_DENSITY, self.target * l, T))
@@ -54,7 +61,9 @@ class Net:
         u = d / l[:, None]
         np.add.at(force, self.end[:, 0], pull[:, None] * u)
         np.add.at(force, self.end[:, 1], -pull[:, None] * u)
-        return force[:self.n_free], l - self.target - self.flex * T, u, l, pull
+        gap = self.flexibility @ force[self.n_free:self.n_moving].ravel() - (x - self.theory)[
+            self.n_free:self.n_moving].ravel()
+        return np.vstack((force[:self.n_free], gap.reshape(-1, 3))), l - self.target - self.flex * T, u, l, pull
 
     def exact_errors(self, x, T, taut):
         """The same with fifty digits; x, T: lists of Decimal. Also the lengths over the wanted ones."""
@@ -76,12 +85,18 @@ class Net:
             for c in range(3):
                 force[a][c] += q * d[c]
                 force[b][c] -= q * d[c]
-        return force[:self.n_free], over
+        b = [v for row in force[self.n_free:self.n_moving] for v in row]
+        for i in range(self.n_free, self.n_moving):
+            for c in range(3):
+                r = x[i][c] - Decimal(float(self.theory[i, c]))
+                row = self.exact_flexibility[3 * (i - self.n_free) + c]
+                force[i][c] = sum((f * v for f, v in zip(row, b)), -r)
+        return force[:self.n_moving], over
 
     def step(self, x, T, taut, force, over):
         """Newton step of positions and multipliers for these errors, by a dense matrix."""
         _, _, u, l, pull = self.errors(x, T, taut)
-        n, active = 3 * self.n_free, np.flatnonzero(self.multiplier & taut)
+        n, active = 3 * self.n_moving, np.flatnonzero(self.multiplier & taut)
         J = np.zeros((n + len(active), n + len(active)))
         for e in range(len(self.law)):
             K = pull[e] / l[e] * (np.eye(3) - np.outer(u[e], u[e]))
@@ -89,17 +104,20 @@ class Net:
                 K = self.target[e] * np.eye(3)
             a, b = self.end[e]
             for i, j, sign in ((a, a, 1), (b, b, 1), (a, b, -1), (b, a, -1)):
-                if i < self.n_free and j < self.n_free:
+                if i < self.n_moving and j < self.n_moving:
                     J[3 * i:3 * i + 3, 3 * j:3 * j + 3] += sign * K
         for k, e in enumerate(active):
             for i, sign in zip(self.end[e], (-1, 1)):
-                if i < self.n_free:
+                if i < self.n_moving:
                     J[3 * i:3 * i + 3, n + k] += sign * u[e]
                     J[n + k, 3 * i:3 * i + 3] += sign * u[e]
             J[n + k, n + k] = -self.flex[e]
+        truss = slice(3 * self.n_free, n)  # dr + F (change of -b) = F b - r
+        J[truss] = self.flexibility @ J[truss]
+        J[truss, truss] += np.eye(n - 3 * self.n_free)
         d = np.linalg.solve(J, np.concatenate([force.ravel(), -over[active]]))
         move, change = np.zeros((self.n_node, 3)), np.zeros(len(self.law))
-        move[:self.n_free] = d[:n].reshape(-1, 3)
+        move[:self.n_moving] = d[:n].reshape(-1, 3)
         change[active] = d[n:]
         return move, change
 
@@ -171,9 +189,9 @@ class Net:
         return (square / len(self.inner)).sqrt()
 
     def error(self, X, x):
-        """Largest distance of a free node of the shape x to the equilibrium X."""
+        """Largest distance of a node of the shape x that moves to the equilibrium X."""
         square = max(sum((X[i][c] - Decimal(v)) ** 2 for c, v in enumerate(row))
-                     for i, row in enumerate(x[:self.n_free].tolist()))
+                     for i, row in enumerate(x[:self.n_moving].tolist()))
         return square.sqrt()
 
 

@@ -1,6 +1,6 @@
 /* Proven bounds on nets whose answers are known, and the reasons for which there is none. Random nets are in
  * property/solve/bound. */
-#include "nets.h"
+#include "flexible.h"
 
 #include <hifdm/evaluate.h>
 
@@ -178,6 +178,139 @@ START_TEST(bounds_hold_on_the_way_to_a_small_tension)
 }
 END_TEST
 
+/* ---- on a truss ---- */
+
+/* Attaches the first n_attachment nodes to this flexibility. */
+static void attach(struct net *net, int n_attachment, const double *flexibility)
+{
+    static const int node[] = {0, 1, 2, 3, 4};
+    hf_messages messages = {0};
+    ck_assert_int_eq(hf_model_attach(&net->model, n_attachment, node, flexibility, &messages), HF_OK);
+    hf_workspace_free(&net->work);
+    ck_assert_int_eq(hf_workspace_create(&net->model, &net->work), HF_OK);
+    hf_workspace_poison(&net->model, &net->work);
+    net->form.coupling = (hf_coupling_settings){1e-12, HF_COUPLING_AUTO, 500};
+}
+
+/* A diagonal flexibility [6][6] of two attachments. */
+static void set_diagonal(double *flexibility, const double diagonal[6])
+{
+    memset(flexibility, 0, 36 * sizeof *flexibility);
+    for (int i = 0; i < 6; i++)
+        flexibility[7 * i] = diagonal[i];
+}
+
+static const struct hand_node two_supports[] = {
+    {{0, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{3, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{1, 1, 0}, HF_ROLE_INNER, {1, -2, 3}}};
+
+/* Closed form: for each coordinate the force density q and the flexibility f of an attachment are springs in series, of
+ * stiffness q/(1 + q f). Also with attachments that are rigid in some directions, and with a coupling that stops long
+ * before the truss has given what it will: the net alone is in balance there, and its own error is rounding. */
+START_TEST(the_truss_counts_in_the_bound)
+{
+    static const double diagonal[][6] = {
+        {1e-2, 2e-2, 5e-3, 1e-3, 3e-2, 1e-2}, {1e-2, 0, 5e-3, 0, 0, 1e-2}, {0}, {1e-7, 2e-7, 0, 0, 3e-7, 1e-7}};
+    static const double q[] = {3, 4}, load[] = {1, -2, 3};
+    const struct hand_cable cable[] = {{{0, 2}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, q[0]},
+                                       {{2, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, q[1]}};
+    const double *f = diagonal[_i / 2];
+    double flexibility[36], off = 0;
+    struct net net;
+    OPEN_HAND(&net, two_supports, cable, HF_METHOD_AUTO);
+    set_diagonal(flexibility, f);
+    attach(&net, 2, flexibility);
+    if (_i % 2) net.form.coupling = (hf_coupling_settings){1, HF_COUPLING_PLAIN, 500};
+    evaluate(&net);
+    ck_assert_int_eq(net.result.status, HF_OK);
+    ck_assert_int_eq(net.result.bound_reason, HF_BOUND_PROVEN);
+    for (int i = 0; i < 3; i++) {
+        double square = 0;
+        for (int c = 0; c < 3; c++) {
+            double k[] = {q[0] / (1 + q[0] * f[c]), q[1] / (1 + q[1] * f[3 + c])}, end = c ? 0 : 3;
+            double x = (k[1] * end + load[c]) / (k[0] + k[1]);
+            double at[] = {f[c] * k[0] * x, end - f[3 + c] * k[1] * (end - x), x};
+            square += pow(found_m(&net, i, c) - at[i], 2);
+        }
+        off = fmax(off, sqrt(square));
+    }
+    ck_assert_double_ge(net.result.position_bound_m, off - 1e-15);
+    ck_assert_double_le(net.result.position_bound_m, 1.0001 * off + 1e-15);
+    if (_i == 1) ck_assert_double_ge(off, 1e-5);
+    if (_i % 2 == 0) ck_assert_double_le(net.result.position_bound_m, 1e-11);
+    close_net(&net);
+}
+END_TEST
+
+/* A matrix that no elastic structure has: its diagonal is not below zero, an eigenvalue is. */
+START_TEST(a_truss_that_gives_energy_is_not_proven)
+{
+    const struct hand_cable cable[] = {{{0, 2}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 3},
+                                       {{2, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 4}};
+    double flexibility[36];
+    struct net net;
+    OPEN_HAND(&net, two_supports, cable, HF_METHOD_AUTO);
+    set_diagonal(flexibility, (double[]){1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3});
+    flexibility[3] = flexibility[18] = _i ? 1.0001e-3 : 0.9999e-3;
+    attach(&net, 2, flexibility);
+    evaluate(&net);
+    ck_assert_int_eq(net.result.status, HF_OK);
+    ck_assert_int_eq(net.result.bound_reason, _i ? HF_BOUND_TRUSS : HF_BOUND_PROVEN);
+    ck_assert(_i ? isnan(net.result.position_bound_m) : net.result.position_bound_m < 1e-10);
+    close_net(&net);
+}
+END_TEST
+
+/* Struts, dependent lengths, a cable at the brink and a loose node have no bound on a truss either. */
+START_TEST(a_truss_proves_nothing_more)
+{
+    static const hf_bound_reason reason[] = {HF_BOUND_PROVEN, HF_BOUND_STRUTS, HF_BOUND_DEPENDENT_LENGTHS,
+                                             HF_BOUND_SLACK_OR_TAUT, HF_BOUND_LOOSE};
+    struct hand_node node[] = {{{0, 0, 0}, HF_ROLE_SUPPORT, {0}},
+                               {{4, 0, 0}, HF_ROLE_SUPPORT, {0}},
+                               {{2, 0, 0}, HF_ROLE_INNER, {0}},
+                               {{2, 1, 0}, HF_ROLE_INNER, {0, _i == 4 ? 0 : 0.5, 0}}};
+    struct hand_cable cable[] = {
+        {{0, 2}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 3}, {{2, 1}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 3},
+        {{0, 3}, HF_GROUP_BOUNDARY, HF_LAW_LENGTH, 2.5},   {{3, 1}, HF_GROUP_BOUNDARY, HF_LAW_LENGTH, 2.5},
+        {{0, 2}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 1}, {{0, 1}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 0.5}};
+    if (_i == 1) cable[4].target = -1;
+    if (_i == 2) cable[4] = (struct hand_cable){{3, 0}, HF_GROUP_INNER, HF_LAW_LENGTH, 2.5};
+    if (_i == 3) cable[4] = (struct hand_cable){{0, 2}, HF_GROUP_INNER, HF_LAW_LENGTH, 2};
+    double flexibility[36];
+    struct net net;
+    OPEN_HAND(&net, node, cable, HF_METHOD_AUTO);
+    set_diagonal(flexibility, (double[]){_i == 3 ? 0 : 1e-4, 1e-4, 1e-4, _i == 3 ? 0 : 1e-4, 1e-4, 1e-4});
+    attach(&net, 2, flexibility);
+    evaluate(&net);
+    ck_assert_int_eq(net.result.status, HF_OK);
+    ck_assert_msg(net.result.bound_reason == reason[_i], "%s", hf_bound_reason_word((int)net.result.bound_reason));
+    ck_assert(_i ? isnan(net.result.position_bound_m) : net.result.position_bound_m < 1e-10);
+    if (_i == 4) ck_assert_double_nan(net.result.position_error_m);
+    close_net(&net);
+}
+END_TEST
+
+/* A node that may be anywhere along a line is one of many answers on a truss, too. */
+START_TEST(drift_on_a_truss_has_no_position_error)
+{
+    static const struct hand_node node[] = {
+        {{0, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0, 0, -3}, HF_ROLE_SUPPORT, {0}}, {{0, 0, -1}, HF_ROLE_INNER, {0}}};
+    static const struct hand_cable cable[] = {{{0, 2}, HF_GROUP_INNER, HF_LAW_TENSION, 3},
+                                              {{2, 1}, HF_GROUP_INNER, HF_LAW_TENSION, 3}};
+    double flexibility[36];
+    struct net net;
+    OPEN_HAND(&net, node, cable, HF_METHOD_AUTO);
+    set_diagonal(flexibility, (double[]){1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4});
+    attach(&net, 2, flexibility);
+    evaluate(&net);
+    ck_assert_int_eq(net.result.status, HF_OK);
+    ck_assert_int_eq(net.result.n_drifting, 1);
+    ck_assert_double_nan(net.result.position_error_m);
+    ck_assert_double_nan(net.result.position_bound_m);
+    close_net(&net);
+}
+END_TEST
+
 Suite *suite_unit_bound(void)
 {
     Suite *suite = suite_create("unit/solve/bound");
@@ -190,5 +323,9 @@ Suite *suite_unit_bound(void)
     tcase_add_loop_test(tests, force_densities_are_proven_and_struts_are_not, 0, 2);
     tcase_add_loop_test(tests, what_drowns_in_rounding_is_not_proven, 0, 3);
     tcase_add_test(tests, bounds_hold_on_the_way_to_a_small_tension);
+    tcase_add_loop_test(tests, the_truss_counts_in_the_bound, 0, 8);
+    tcase_add_loop_test(tests, a_truss_that_gives_energy_is_not_proven, 0, 2);
+    tcase_add_loop_test(tests, a_truss_proves_nothing_more, 0, 5);
+    tcase_add_test(tests, drift_on_a_truss_has_no_position_error);
     return suite;
 }

@@ -41,10 +41,10 @@ START_TEST(loose_node_is_placed_and_left_out)
     ck_assert_double_eq_tol(found_m(&net, 2, 2), sqrt(1.05 * 1.05 - 1), 1e-8);
     double dx = found_m(&net, 6, 0) - 1, dy = found_m(&net, 6, 1) - 4.5, dz = found_m(&net, 6, 2) - 0.1;
     ck_assert_double_eq_tol(net.result.psi_m, sqrt(dx * dx + dy * dy + dz * dz), 1e-12);
-    ck_assert_double_le(net.result.residual_N, 1e-8); /* 1e5 N by the rounding of a length */
-    ck_assert_double_le(net.result.position_error_m, 1e-9);
+    ck_assert_double_le(net.result.residual_N, 1e-8);  /* 1e5 N by the rounding of a length */
+    ck_assert_double_nan(net.result.position_error_m); /* it may hang elsewhere as well */
     ck_assert_double_le(net.result.condition, 1e6);
-    ck_assert_int_eq(net.result.bound_reason, HF_BOUND_NOT_DEFINITE);
+    ck_assert_int_eq(net.result.bound_reason, HF_BOUND_LOOSE);
     ck_assert_double_nan(net.result.position_bound_m);
     close_net(&net);
 }
