@@ -27,6 +27,12 @@ done
 has() { command -v "$1" >/dev/null 2>&1; }
 has_library() { pkg-config --exists "$@" 2>/dev/null; }
 has_header() { "${CC:-cc}" -E -include "$1" -x c /dev/null >/dev/null 2>&1; }
+# Does a program in C++ with this line link with these libraries?
+links() {
+    local line=$1
+    shift
+    printf '%s\nint main() { return 0; }\n' "$line" | g++ -o /dev/null -x c++ - "$@" 2>/dev/null
+}
 has_openmp() { printf '#include <omp.h>\n#include <stdlib.h>\n' | "$@" -fopenmp -fsyntax-only -x c - 2>/dev/null; }
 # Debian's own Python, as in the Makefile: its packages are of no use to another python3 that comes first in PATH.
 has_module() {
@@ -67,7 +73,7 @@ missing_packages() {
         has g++ || need g++
         has_library eigen3 || need libeigen3-dev
         has_library tbb || need libtbb-dev
-        has_library nlopt || need libnlopt-dev libnlopt-cxx-dev
+        links "#include <nlopt.hpp>" -lnlopt_cxx -lnlopt || need libnlopt-dev libnlopt-cxx-dev
         [ -e /usr/include/boost/serialization/access.hpp ] || need libboost-serialization-dev
         [ -e /usr/include/pagmo/population.hpp ] || need libpagmo-dev
         has_module scipy || need python3-scipy
