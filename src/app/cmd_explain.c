@@ -132,9 +132,12 @@ static bool print_keys(const char *word, FILE *f)
 static const char *join_words(const hf_options *o, char *joined, size_t size)
 {
     size_t used = 0;
+    bool words_alone = false; /* after "--" */
     *joined = '\0';
     for (int i = 2; i < o->argc && used < size; i++)
-        if (o->argv[i][0] != '-' || !o->argv[i][1])
+        if (!words_alone && !strcmp(o->argv[i], "--"))
+            words_alone = true;
+        else if (words_alone || o->argv[i][0] != '-' || !o->argv[i][1])
             used += (size_t)snprintf(joined + used, size - used, "%s%s", used ? " " : "", o->argv[i]);
     return joined;
 }

@@ -69,7 +69,7 @@ static void print_command(const hf_command *c, FILE *f)
         fputc('\n', f);
         hf_help_wrap(c->about, 2, 0, f);
     }
-    fputs("\nOptions, anywhere behind the command:\n", f);
+    fputs("\nOptions, anywhere behind the command; after -- all words are files:\n", f);
     for (int i = 0; i < hf_n_option; i++) {
         const hf_option o = hf_option_at(i);
         char name[96];

@@ -344,10 +344,15 @@ static hf_status read_file(const char *word, const hf_command *command, hf_optio
 static hf_status read_words(int argc, char *const *argv, const hf_command *command, hf_options *o,
                             hf_messages *messages)
 {
+    bool files_alone = false; /* after "--" */
     for (int i = 2; i < argc; i++) {
         hf_option option;
         const char *value = NULL, *equals = strchr(argv[i], '=');
-        if (argv[i][0] != '-' || !argv[i][1]) {
+        if (!files_alone && !strcmp(argv[i], "--")) {
+            files_alone = true;
+            continue;
+        }
+        if (files_alone || argv[i][0] != '-' || !argv[i][1]) {
             HF_TRY(read_file(argv[i], command, o, messages));
             continue;
         }

@@ -43,7 +43,8 @@ bool hf_path_choose(const char *given, const char *source, const char *ending, c
 {
     const char *name = hf_path_name(source);
     if (given) return fits(snprintf(path, size, "%s", given), size);
-    return fits(snprintf(path, size, "%.*s%s", (int)(hf_path_ending(source) - name), name, ending), size);
+    const char *here = *name == '-' ? "./" : ""; /* a command that a message suggests takes it for no option */
+    return fits(snprintf(path, size, "%s%.*s%s", here, (int)(hf_path_ending(source) - name), name, ending), size);
 }
 
 bool hf_path_insert(const char *path, const char *part, char *longer, size_t size)

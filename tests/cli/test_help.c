@@ -11,7 +11,7 @@ START_TEST(every_command_has_its_help)
     for (char *rest = commands, *name; (name = strtok_r(rest, "\n", &rest));) {
         HIFDM(0, "help", name);
         OUT(formatted("hifdm %s", name));
-        OUT("\nOptions, anywhere behind the command:\n");
+        OUT("\nOptions, anywhere behind the command; after -- all words are files:\n");
         OUT("  -h, --help              print this\n");
         if (strcmp(name, "version") != 0) OUT("\nExamples:\n  ");
         char *help = strdup(said.out);

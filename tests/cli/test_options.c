@@ -83,6 +83,28 @@ START_TEST(options_may_be_written_both_ways)
 }
 END_TEST
 
+/* After "--" a word is a file, whatever it begins with. */
+START_TEST(files_may_begin_with_a_hyphen)
+{
+    const char *folder = temp("");
+    file_with("-c.yaml", small_form_case);
+    SHELL(2, "cd \"$1\" && \"$0\" run -c.yaml", folder);
+    ERR("unknown option '-c.yaml'");
+    SHELL(0, "cd \"$1\" && \"$0\" run --json -- -c.yaml && test -e -c.h5", folder);
+    OUT("\"file\": \"./-c.h5\"");
+    SHELL(0, "cd \"$1\" && \"$0\" run --restart -o --new.h5 -- -c.yaml && test -e --new.h5", folder);
+    SHELL(0, "cd \"$1\" && \"$0\" diff --rtol 1 -- -c.h5 --new.h5", folder);
+    SHELL(2, "cd \"$1\" && \"$0\" show -- -c.h5 --json", folder);
+    ERR("'--json' is one argument too many for 'hifdm show'");
+    SHELL(5, "cd \"$1\" && \"$0\" show -- --", folder);
+    ERR("error: --: cannot open");
+    SHELL(2, "cd \"$1\" && \"$0\" show --", folder);
+    ERR("'hifdm show' needs a FILE");
+    HIFDM(2, "explain", "--", "-c.yaml");
+    ERR("nothing is called '-c.yaml'");
+}
+END_TEST
+
 /* On a terminal, on standard error, and only there. */
 START_TEST(progress_is_shown_on_a_terminal_only)
 {
@@ -121,6 +143,7 @@ Suite *suite_cli_options(void)
     tcase_add_test(tcase, seed_option_wins_over_the_case);
     tcase_add_test(tcase, threads_option_is_obeyed);
     tcase_add_test(tcase, options_may_be_written_both_ways);
+    tcase_add_test(tcase, files_may_begin_with_a_hyphen);
     tcase_add_test(tcase, progress_is_shown_on_a_terminal_only);
     suite_add_tcase(suite, tcase);
     return suite;
