@@ -28,7 +28,7 @@ int hf_file_io_open(const char *name, int flags)
 int hf_file_io_open_ordinary(const char *name, off_t *size)
 {
     struct stat info;
-    int file = hf_file_io_open(name, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    int file = hf_file_io_open(name, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     if (file < 0 && errno == ENXIO) errno = EEXIST; /* a socket */
     if (file < 0) return -1;
     int failed = fstat(file, &info), why = failed ? errno : EEXIST;
@@ -173,20 +173,6 @@ void hf_file_io_unlock_byte(int file, off_t at)
 }
 
 /* ---- waiting, and faults ---- */
-
-int hf_file_io_await(int file)
-{
-    struct pollfd one = {.fd = file, .events = POLLIN};
-    for (;;) {
-        if (*hf_signals_request()) {
-            errno = EINTR;
-            return -1;
-        }
-        int n = poll(&one, 1, AWAIT_MS);
-        if (n > 0) return 0;
-        if (n < 0 && errno != EINTR) return -1;
-    }
-}
 
 bool hf_file_io_await_room(int file, int grace_ms)
 {

@@ -42,10 +42,6 @@ hf_lock hf_file_io_lock(int file);                /* of the whole file, with thi
 hf_lock hf_file_io_lock_byte(int file, off_t at); /* with this process: a record lock of fcntl(2) */
 void hf_file_io_unlock_byte(int file, off_t at);
 
-/* Wait until something can be read from a pipe or a terminal, or its end has come. -1 with EINTR when meanwhile a
- * request to stop came (signals.h). A file of the disk never waits. */
-int hf_file_io_await(int file);
-
 /* Wait until something can be written to a pipe or a terminal, or writing would fail. False when a request to stop came
  * and nobody has read for grace_ms since. */
 bool hf_file_io_await_room(int file, int grace_ms);

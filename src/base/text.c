@@ -4,7 +4,6 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <limits.h>
 #include <locale.h>
 #include <math.h>
@@ -14,25 +13,32 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define FILE_MAX (1 << 30) /* bytes; endless files like /dev/zero are refused */
+#define FILE_MAX (1 << 30) /* bytes */
+#define READ_AT_ONCE 4096
 
-/* Read to the end. The buffer grows; it is NULL without memory. Returns 0, or -1 and errno. A pipe that nobody writes
- * to must not keep a program from hearing a request to stop. */
-static int read_to_end(int file, char **buffer, size_t *length)
+/* What is no ordinary file is refused before it is read: a device may have no end, a pipe no writer. */
+static hf_status refuse_kind(const char *path, hf_status code, hf_messages *messages)
 {
-    struct stat info;
-    size_t capacity = 1 << 14;
-    bool may_wait = fstat(file, &info) != 0 || !S_ISREG(info.st_mode);
+    struct stat info = {0};
+    stat(path, &info);
+    const char *kind = S_ISDIR(info.st_mode)                              ? "a folder"
+                       : S_ISFIFO(info.st_mode)                           ? "a pipe"
+                       : S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode) ? "a device"
+                       : S_ISSOCK(info.st_mode)                           ? "a socket"
+                                                                          : "no file of the disk";
+    return hf_error(messages, code, "%s: is %s; name an ordinary file", path, kind);
+}
+
+/* Reads to the end; a file may be longer than its size was, as those of /proc are. The buffer is NULL without memory.
+ * Returns 0, or -1 and errno. */
+static int read_to_end(int file, size_t capacity, char **buffer, size_t *length)
+{
     *buffer = malloc(capacity);
     while (*buffer) {
-        if (may_wait && hf_file_io_await(file) != 0) return -1;
-        ssize_t n = may_wait ? read(file, *buffer + *length, capacity - *length - 1)
-                             : hf_file_io_read(file, *buffer + *length, capacity - *length - 1);
-        if (n < 0 && may_wait && (errno == EAGAIN || errno == EINTR)) continue;
-        if (n <= 0) return (int)n;
+        ssize_t n = hf_file_io_read(file, *buffer + *length, capacity - *length - 1);
+        if (n < 0) return -1;
         *length += (size_t)n;
-        if (*length > FILE_MAX) return 0;
-        if (*length < capacity - 1) continue;
+        if (*length < capacity - 1 || *length > FILE_MAX) return 0;
         char *bigger = realloc(*buffer, capacity *= 2);
         if (!bigger) free(*buffer);
         *buffer = bigger;
@@ -42,19 +48,22 @@ static int read_to_end(int file, char **buffer, size_t *length)
 
 hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_t *length, hf_messages *messages)
 {
-    char *buffer;
+    char *buffer = NULL;
+    off_t size;
     *text = NULL;
     *length = 0;
-    int file = hf_file_io_open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* so that opening a pipe does not wait */
+    int file = hf_file_io_open_ordinary(path, &size);
+    if (file < 0 && errno == EEXIST) return refuse_kind(path, code, messages);
     if (file < 0)
         return hf_error(messages, hf_file_io_fault(errno, code), "%s: cannot open: %s", path, strerror(errno));
-    int failed = read_to_end(file, &buffer, length), why = errno;
+    bool is_long = size > FILE_MAX;
+    int failed = is_long ? 0 : read_to_end(file, (size_t)size + READ_AT_ONCE, &buffer, length), why = errno;
     close(file);
-    if (!buffer) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
-    if (failed || *length > FILE_MAX) free(buffer);
-    if (failed && why == EINTR) return hf_error(messages, HF_INTERRUPTED, "%s: told to stop while reading it", path);
+    is_long |= *length > FILE_MAX;
+    if (!buffer && !is_long) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    if (failed || is_long) free(buffer);
     if (failed) return hf_error(messages, hf_file_io_fault(why, code), "%s: cannot read: %s", path, strerror(why));
-    if (*length > FILE_MAX) return hf_error(messages, code, "%s: longer than %d MB", path, FILE_MAX >> 20);
+    if (is_long) return hf_error(messages, code, "%s: is longer than %d MB", path, FILE_MAX >> 20);
     buffer[*length] = '\0';
     *text = buffer;
     return HF_OK;

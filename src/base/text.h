@@ -14,9 +14,9 @@ enum {
     HF_FAULT_MAX_POINT = 10  /* points of a sweep, each with all its faults */
 };
 
-/* The whole file as a NUL-terminated string that the caller frees. HF_OK; `code` when there is no such file or it is
- * none to read; HF_IO or HF_NO_MEMORY when the machine cannot read it now; HF_INTERRUPTED when a request to stop came
- * while a pipe had nothing to read. */
+/* The whole file as a NUL-terminated string that the caller frees. HF_OK; `code` when there is no such file, when it is
+ * a folder, a pipe, a device or a socket, or longer than 1 GiB; HF_IO or HF_NO_MEMORY when the machine cannot read it
+ * now. */
 hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_t *length, hf_messages *messages);
 
 /* True when the whole string is one decimal number, without sign for hf_text_uint64. nan, inf, hexadecimal numbers and

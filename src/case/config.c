@@ -47,13 +47,13 @@ static const char *child_of(const char *path, const char *prefix)
     return strchr(path, '.') ? NULL : path;
 }
 
-static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, const char *key)
+/* The known key below `prefix` that is nearest to this one; NULL: none is near. */
+static const char *nearest_key(const char *prefix, const char *key)
 {
     hf_key of;
     const hf_list *row = hf_key_find(prefix, &of) && !of.field ? of.list : NULL;
-    const char *names[128], *near, *meant = hf_config_meant(prefix, key);
+    const char *names[128];
     int n = 0;
-    char detail[2 * HF_KEY_SIZE] = "";
     for (int i = 0; i < hf_n_field && n < 128; i++)
         if (child_of(hf_field_table[i].path, prefix)) names[n++] = child_of(hf_field_table[i].path, prefix);
     for (int i = 0; i < hf_n_section && n < 128; i++)
@@ -62,7 +62,23 @@ static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, co
         if (child_of(hf_list_table[i].path, prefix)) names[n++] = child_of(hf_list_table[i].path, prefix);
     for (int i = 0; row && i < row->n_field && n < 128; i++)
         names[n++] = row->field[i].path;
-    near = hf_text_nearest(key, names, n);
+    return hf_text_nearest(key, names, n);
+}
+
+/* The path of a key of this name in any section; NULL: there is none. */
+static const char *key_elsewhere(const char *key)
+{
+    for (int i = 0; i < hf_n_field; i++) {
+        const char *dot = strrchr(hf_field_table[i].path, '.');
+        if (dot && !strcmp(dot + 1, key)) return hf_field_table[i].path;
+    }
+    return NULL;
+}
+
+static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, const char *key)
+{
+    const char *near = nearest_key(prefix, key), *meant = hf_config_meant(prefix, key);
+    char detail[2 * HF_KEY_SIZE] = "";
     if (!*prefix && !strcmp(key, "base")) {
         l->is_study = true;
         snprintf(detail, sizeof detail, "; a file with a base is a study, for 'hifdm sweep'");
@@ -72,12 +88,8 @@ static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, co
         snprintf(detail, sizeof detail, "; did you mean %s%s", meant, strchr(meant, '?') ? "" : "?");
     } else if (near) {
         snprintf(detail, sizeof detail, "; did you mean '%s'?", near);
-    } else { /* look for the same key in another section */
-        for (int i = 0; i < hf_n_field && !*detail; i++) {
-            const char *dot = strrchr(hf_field_table[i].path, '.');
-            if (dot && !strcmp(dot + 1, key))
-                snprintf(detail, sizeof detail, "; did you mean '%s'?", hf_field_table[i].path);
-        }
+    } else if (key_elsewhere(key)) {
+        snprintf(detail, sizeof detail, "; did you mean '%s'?", key_elsewhere(key));
     }
     complain(l, mark, key, "unknown key", *detail ? detail : " (hifdm schema lists all keys)");
 }
@@ -300,6 +312,20 @@ static void with_document(loader *l, const char *text, size_t length,
     yaml_parser_delete(&parser);
 }
 
+/* Messages quote a case, and no other file: its keys may be a secret of whoever can read it. */
+static bool has_key_of_case(loader *l, const yaml_node_t *root)
+{
+    yaml_node_pair_t *p = root->data.mapping.pairs.start, *end = root->data.mapping.pairs.top;
+    bool is_empty = p == end;
+    for (; p < end; p++) {
+        const yaml_node_t *key = yaml_document_get_node(l->document, p->key);
+        const char *word = key->type == YAML_SCALAR_NODE ? key_text(key) : "";
+        if (!strcmp(word, "sweep") || !strcmp(word, "base")) return true;
+        if (hf_config_meant("", word) || nearest_key("", word) || key_elsewhere(word)) return true;
+    }
+    return is_empty;
+}
+
 static void use_root(loader *l, const yaml_node_t *root, const void *context)
 {
     (void)context;
@@ -308,6 +334,8 @@ static void use_root(loader *l, const yaml_node_t *root, const void *context)
         complain(l, start, "case", "the file is empty", "");
     else if (root->type != YAML_MAPPING_NODE)
         complain(l, root->start_mark, "case", "must be key: value lines", "");
+    else if (!has_key_of_case(l, root))
+        complain(l, root->start_mark, "case", "no key in this file is one of a case", " (hifdm schema lists all keys)");
     else {
         walk(l, root, "");
         l->walked = true;

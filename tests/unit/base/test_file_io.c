@@ -1,17 +1,17 @@
-/* Transfers to the last byte, locks, whose fault an error is, pipes, requests to stop. */
+/* Transfers to the last byte, locks, whose fault an error is, and what is no ordinary file. */
 #include "calls.h"
 #include "support.h"
 
 #include "base/file_io.h"
-#include "base/signals.h"
 #include "base/text.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -177,37 +177,38 @@ static void *read_text(const char *path, hf_status expected, const char *words)
     return text;
 }
 
-START_TEST(a_text_from_a_pipe)
+/* Nobody writes to the pipe, and /dev/zero has no end: neither is read. */
+START_TEST(what_is_no_ordinary_file_is_named_and_not_read)
 {
-    const char *path = temp_path("pipe");
-    ck_assert_int_eq(mkfifo(path, 0600), 0);
-    pid_t child = fork();
-    if (child == 0) {
-        int file = open(path, O_WRONLY);
-        char line[100];
-        memset(line, 'x', sizeof line);
-        for (int i = 0; i < 1000; i++) /* more than the pipe holds */
-            if (write(file, line, sizeof line) != sizeof line) _exit(1);
-        _exit(0);
+    static const struct {
+        const char *name, *words;
+    } other[] = {{"pipe", "pipe: is a pipe; name an ordinary file"},
+                 {"folder", "folder: is a folder; name"},
+                 {"socket", "socket: is a socket; name"},
+                 {"zero", "zero: is a device; name"},
+                 {"long", "long: is longer than 1024 MB"}};
+    struct sockaddr_un address = {.sun_family = AF_UNIX, .sun_path = "socket"}; /* a name of at most 107 bytes */
+    ck_assert_int_eq(chdir(temp_path("")), 0);
+    ck_assert_int_eq(mkfifo("pipe", 0600), 0);
+    ck_assert_int_eq(mkdir("folder", 0700), 0);
+    ck_assert_int_eq(bind(socket(AF_UNIX, SOCK_STREAM, 0), (const struct sockaddr *)&address, sizeof address), 0);
+    ck_assert_int_eq(symlink("/dev/zero", "zero"), 0);
+    write_file("long", "");
+    ck_assert_int_eq(truncate("long", (off_t)(1 << 30) + 1), 0);
+    for (size_t i = 0; i < sizeof other / sizeof *other; i++) {
+        fail_call_at("read", 1, EIO, false);
+        ck_assert_ptr_null(read_text(other[i].name, HF_BAD_CASE, other[i].words));
+        ck_assert(!end_call_failure()); /* it was not even tried */
     }
-    char *text = read_text(path, HF_OK, NULL);
-    int state;
-    ck_assert_uint_eq(strlen(text), 100000);
-    ck_assert_uint_eq(strspn(text, "x"), 100000);
-    ck_assert_int_eq(waitpid(child, &state, 0), child);
-    ck_assert_int_eq(state, 0);
-    free(text);
 }
 END_TEST
 
-START_TEST(a_pipe_that_nobody_writes_to_and_a_request_to_stop)
+/* Those of /proc have a size of 0. */
+START_TEST(a_file_may_be_longer_than_its_size)
 {
-    const char *path = temp_path("pipe");
-    ck_assert_int_eq(mkfifo(path, 0600), 0);
-    ck_assert_int_eq(*hf_signals_request(), 0);
-    hf_signals_watch();
-    raise(SIGTERM);
-    ck_assert_ptr_null(read_text(path, HF_INTERRUPTED, "told to stop while reading it"));
+    char *text = read_text("/proc/self/status", HF_OK, NULL);
+    ck_assert_ptr_nonnull(strstr(text, "VmRSS"));
+    free(text);
 }
 END_TEST
 
@@ -221,7 +222,7 @@ Suite *suite_unit_file_io(void)
     tcase_add_test(tests, a_sync_that_there_is_not);
     tcase_add_test(tests, locks);
     tcase_add_test(tests, whose_fault_it_is_that_a_text_cannot_be_read);
-    tcase_add_test(tests, a_text_from_a_pipe);
-    tcase_add_test(tests, a_pipe_that_nobody_writes_to_and_a_request_to_stop);
+    tcase_add_test(tests, what_is_no_ordinary_file_is_named_and_not_read);
+    tcase_add_test(tests, a_file_may_be_longer_than_its_size);
     return suite;
 }
