@@ -9,7 +9,10 @@
 #include <string.h>
 
 #define VALUES_TOLD 6 /* of an axis; of more the first and the last */
-#define MAKING_S 5.0  /* the nets of so many points are made as this time allows */
+#define MAKING_S 5.0 /* the nets of so many points are made as this time allows, */
+#define MANY 100000  /* and of more points than these as this one allows: */
+#define MAKING_FEW_S 0.5
+#define MADE_LEAST 1000 /* until one can be run */
 
 static const char *value_of(const hf_study_axis *axis, int k)
 {
@@ -64,26 +67,33 @@ static hf_status print_done(const hf_study *s, int count[HF_N_POINT_STATE], FILE
     return status;
 }
 
-/* Make scene and model of the points as `hifdm run` does, as many as there is time for, to find what only they show. */
-static hf_status make_points(const hf_study *s, int *n_made, hf_messages *messages)
+/* What making scene and model of the points as `hifdm run` does has shown, of as many as there is time for. */
+typedef struct {
+    int n_tried, n_fault;
+    int first; /* that can be run; -1: none */
+} trial;
+
+static hf_status try_points(const hf_study *s, trial *t, hf_messages *messages)
 {
-    double begin_s = hf_clock_s();
-    int n_fault = 0;
-    for (int i = 0; i < s->n_point && hf_clock_s() - begin_s < MAKING_S; i++, ++*n_made) {
+    static hf_problem p; /* too large for a small stack */
+    double end_s = hf_clock_s() + (s->n_point > MANY ? MAKING_FEW_S : MAKING_S);
+    *t = (trial){.first = -1};
+    for (; t->n_tried < s->n_point && (hf_clock_s() < end_s || (t->first < 0 && t->n_tried < MADE_LEAST)); t->n_tried++) {
+        int i = hf_study_spread(s, t->n_tried);
         hf_study_overrides o;
         hf_messages found = {0};
-        hf_problem p = {0};
         hf_study_point_overrides(s, i, &o);
         hf_status status = hf_problem_load(s->base, NULL, o.set, o.n_set, NULL, &p, &found);
         hf_problem_free(&p);
-        if (status != HF_OK && n_fault++ < HF_FAULT_MAX_POINT) hf_study_tell_faults(s, i, &found, messages);
+        if (status == HF_OK && (t->first < 0 || i < t->first)) t->first = i;
+        if (status != HF_OK && t->n_fault++ < HF_FAULT_MAX_POINT) hf_study_tell_faults(s, i, &found, messages);
         hf_messages_free(&found);
         if (status == HF_NO_MEMORY || status == HF_IO || status == HF_INTERRUPTED) return status;
     }
-    if (n_fault > HF_FAULT_MAX_POINT)
+    if (t->n_fault > HF_FAULT_MAX_POINT)
         hf_error(messages, HF_BAD_CASE, "%s: sweep: and %d more points with faults", s->path,
-                 n_fault - HF_FAULT_MAX_POINT);
-    return n_fault ? HF_BAD_CASE : HF_OK;
+                 t->n_fault - HF_FAULT_MAX_POINT);
+    return t->first < 0 ? HF_BAD_CASE : HF_OK;
 }
 
 double hf_check_together_s(double each_s, int n, int *threads)
@@ -134,26 +144,32 @@ static hf_status check_study(const hf_check_request *request, const hf_study *s,
     char text[512];
     hf_study_overrides o;
     double most_s;
-    int count[HF_N_POINT_STATE] = {0}, n_made = 0;
-    HF_TRY(make_points(s, &n_made, messages));
+    int count[HF_N_POINT_STATE] = {0};
+    trial t;
+    HF_TRY(try_points(s, &t, messages));
     hf_print_line(f, "%s: valid", request->name);
     if (*s->title) hf_print_line(f, "  %-13s %s", "study", s->title);
     hf_print_line(f, "  %-13s %s", "base case", s->base);
     print_axes(s, f);
     print_points(s, f);
-    if (n_made < s->n_point) fprintf(f, "  %-13s the nets of %d were made, the others are only read\n", "", n_made);
+    if (t.n_tried < s->n_point) fprintf(f, "  %-13s the nets of %d of them were made\n", "", t.n_tried);
+    if (t.n_fault) fprintf(f, "  %-13s %d of these cannot be run\n", "", t.n_fault);
     HF_TRY(print_done(s, count, f, messages));
-    hf_study_point_overrides(s, 0, &o);
-    snprintf(text, sizeof text, "the first point, %s", s->id[0]);
+    hf_study_point_overrides(s, t.first, &o);
+    snprintf(text, sizeof text, t.first ? "point %s" : "the first point, %s", s->id[t.first]);
     const hf_check_request first = {.path = s->base, .name = text, .set = o.set, .n_set = o.n_set, .threads = 1};
     hf_status status = hf_check_case(&first, &most_s, f, messages);
     print_left(s, count, most_s, request->threads, f);
-    return status;
+    if (status != HF_OK || t.n_fault == 0) return status;
+    return hf_error(messages, HF_POINTS_FAILED,
+                    "%s: sweep: %d of the %d points that were tried cannot be run; a sweep counts them as failed and "
+                    "runs the others",
+                    s->path, t.n_fault, t.n_tried);
 }
 
 hf_status hf_check_study(const hf_check_request *request, FILE *f, hf_messages *messages)
 {
-    hf_study study;
+    static hf_study study;
     if (request->n_set)
         return hf_error(messages, HF_BAD_USAGE, "%s: is a study, which takes no --set: change its base case or an axis",
                         request->name);

@@ -47,12 +47,7 @@ static void say_failures(const hf_study *study, const hf_points *points, FILE *f
 
 static void say_status(const hf_study *study, const char *folder, const hf_points *points, FILE *file)
 {
-    int n_begun = 0;
-    for (int i = 0; i < points->n_point; i++) {
-        char path[HF_PATH_SIZE + 32];
-        n_begun +=
-            points->point[i].state == HF_POINT_MISSING && hf_ledger_file(folder, study, i, path) == HF_LEDGER_FILE;
-    }
+    int n_begun = hf_ledger_n_begun(folder, study, points);
     hf_print_line(file, "%s: %d points, results in %s", study->path, points->n_point, folder);
     for (int k = 0; k < HF_N_POINT_STATE; k++)
         if (points->count[k] || k != HF_POINT_OUTDATED)
@@ -70,7 +65,7 @@ static void say_status(const hf_study *study, const char *folder, const hf_point
 static hf_status command_status(const hf_options *o, FILE *file, hf_messages *messages)
 {
     char folder[HF_PATH_SIZE];
-    hf_study study;
+    static hf_study study;
     hf_points points;
     hf_status status = hf_study_files_read(o, o->folder != NULL, folder, &study, &points, messages);
     if (status == HF_OK && o->json)

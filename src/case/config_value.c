@@ -43,18 +43,34 @@ static bool is_plain(const yaml_node_t *node)
     return node->type == YAML_SCALAR_NODE && node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
 }
 
-static void refuse_range(setter *s, const yaml_node_t *node, const hf_field *f)
+void hf_config_range_words(const hf_field *f, char words[HF_CONFIG_RANGE_SIZE])
 {
-    char what[160], low[48];
+    char low[48];
     if (f->min == HF_ABOVE_ZERO)
         snprintf(low, sizeof low, "must be above 0");
     else
         snprintf(low, sizeof low, "must be at least %.10g", f->min);
     if (f->max >= 1e300)
-        snprintf(what, sizeof what, "%s, not ", low);
+        snprintf(words, HF_CONFIG_RANGE_SIZE, "%s, not ", low);
     else
-        snprintf(what, sizeof what, "%s and at most %.10g, not ", low, f->max);
+        snprintf(words, HF_CONFIG_RANGE_SIZE, "%s and at most %.10g, not ", low, f->max);
+}
+
+static void refuse_range(setter *s, const yaml_node_t *node, const hf_field *f)
+{
+    char what[HF_CONFIG_RANGE_SIZE];
+    hf_config_range_words(f, what);
     refuse(s, node, f, what, scalar_text(node));
+}
+
+bool hf_config_is_in_range(const hf_field *f, const char *text)
+{
+    uint64_t whole;
+    double value;
+    if (f->type == HF_FIELD_DOUBLE || f->type == HF_FIELD_AMOUNT)
+        return hf_text_double(text, &value) && value >= f->min && value <= f->max;
+    bool is_whole = f->type == HF_FIELD_INT || f->type == HF_FIELD_UINT64;
+    return is_whole && hf_text_uint64(text, &whole) && (double)whole >= f->min && (double)whole <= f->max;
 }
 
 /* Every member of hf_case that an HF_FIELD_WORD sets has an enumeration type as wide as an int; values are not

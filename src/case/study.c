@@ -12,6 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define TRIED_MOST 1000  /* points, to find one that can be loaded */
+#define SPREAD_LEAST 100 /* points; fewer are taken one after the other */
+
 const char *const hf_study_files_word[3] = {"auto", "all", "none"};
 
 /* ---- values ---- */
@@ -55,11 +58,13 @@ char *hf_study_canonical(const hf_key *key, const char *value)
 void hf_study_range_value(const hf_field *field, double from, double to, bool is_log, double x, char text[40])
 {
     double value = is_log ? from * pow(to / from, x) : from + (to - from) * x;
+    if (is_log && !isnormal(to / from)) value = pow(from, 1 - x) * pow(to, x); /* ends too far apart for a quotient, */
+    if (!is_log && !isfinite(to - from)) value = from * (1 - x) + to * x;      /* for a difference */
     if (x >= 1) value = to;
     if (field->type == HF_FIELD_DOUBLE || field->type == HF_FIELD_AMOUNT) {
         /* 12 digits are the same on every machine, although pow() may differ in the last bit */
-        snprintf(text, 40, "%.12g", value);
-        if (hf_text_double(text, &value)) shortest(value, text);
+        snprintf(text, 40, "%.12g", value + 0.0);
+        if (strchr(text, 'e') && hf_text_double(text, &value)) shortest(value, text);
     } else {
         snprintf(text, 40, "%.0f", floor(value + 0.5));
     }
@@ -102,11 +107,10 @@ static hf_status out_of_memory(const hf_study *s, hf_messages *messages)
     return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for the points of the sweep", s->path);
 }
 
-/* Count the points; all sampled axes count as one axis. */
-static hf_status count_points(hf_study *s, hf_messages *messages)
+hf_status hf_study_count_points(hf_study *s, hf_messages *messages)
 {
     double n = 1;
-    int n_sampled = 0;
+    int n_sampled = 0; /* all sampled axes count as one */
     for (int a = 0; a < s->n_axis; a++) {
         const hf_study_axis *axis = &s->axis[a];
         if (s->is_zip && axis->n_value != s->axis[0].n_value)
@@ -120,7 +124,8 @@ static hf_status count_points(hf_study *s, hf_messages *messages)
             n *= axis->n_value;
     }
     if (n > HF_STUDY_POINT_MAX)
-        return hf_error(messages, HF_BAD_CASE, "%s: sweep: %.10g points, more than %d", s->path, n, HF_STUDY_POINT_MAX);
+        return hf_error(messages, HF_BAD_CASE, "%s: sweep: %.10g points, and a study has at most %d", s->path, n,
+                        HF_STUDY_POINT_MAX);
     s->n_point = (int)n;
     return HF_OK;
 }
@@ -143,6 +148,23 @@ static void place_point(const hf_study *s, int i, int *value)
     }
 }
 
+int hf_study_spread(const hf_study *s, int k)
+{
+    static const double golden = 0.6180339887498949;
+    long n = s->n_point, step = (long)(golden * (double)n), a = n, b = step;
+    if (n <= SPREAD_LEAST) return k;
+    while (b > 1) { /* until step and n have no common divisor, so that all points come once */
+        long rest = a % b;
+        a = b;
+        b = rest;
+        if (b == 0) {
+            a = n;
+            b = ++step;
+        }
+    }
+    return (int)(step * k % n);
+}
+
 /* Digest of the point's lines. Axes are sorted, so the lines are. */
 static bool digest_point(const hf_study *s, const int *value, char hex[65])
 {
@@ -158,28 +180,39 @@ static bool digest_point(const hf_study *s, const int *value, char hex[65])
     return true;
 }
 
-static int compare_ids(const void *a, const void *b)
+static uint64_t number_of_id(const char *id)
 {
-    return memcmp(*(const char *const *)a, *(const char *const *)b, HF_STUDY_ID_SIZE);
+    return strtoull(id, NULL, 16);
 }
 
-/* Two points that set the same values would write the same result. */
-static hf_status refuse_twins(const hf_study *s, hf_messages *messages)
+static int by_number(const void *a, const void *b)
 {
-    const char **sorted = malloc((size_t)s->n_point * sizeof *sorted);
-    if (!sorted) return out_of_memory(s, messages);
-    hf_status status = HF_OK;
+    const hf_study_name *x = a, *y = b;
+    return (x->number > y->number) - (x->number < y->number);
+}
+
+/* Sorts the names. Two points that set the same values would write the same result. */
+static hf_status sort_names(hf_study *s, hf_messages *messages)
+{
+    s->by_id = malloc((size_t)s->n_point * sizeof *s->by_id);
+    if (!s->by_id) return out_of_memory(s, messages);
     for (int i = 0; i < s->n_point; i++)
-        sorted[i] = s->id[i];
-    qsort(sorted, (size_t)s->n_point, sizeof *sorted, compare_ids);
-    for (int i = 1; i < s->n_point && status == HF_OK; i++) {
+        s->by_id[i] = (hf_study_name){number_of_id(s->id[i]), i};
+    qsort(s->by_id, (size_t)s->n_point, sizeof *s->by_id, by_number);
+    for (int i = 1; i < s->n_point; i++) {
         char text[512];
-        if (strcmp(sorted[i], sorted[i - 1])) continue;
-        hf_study_point_text(s, (int)((sorted[i] - s->id[0]) / HF_STUDY_ID_SIZE), text, sizeof text);
-        status = hf_error(messages, HF_BAD_CASE, "%s: sweep: two points are the same: %s", s->path, text);
+        if (s->by_id[i].number != s->by_id[i - 1].number) continue;
+        hf_study_point_text(s, s->by_id[i].point, text, sizeof text);
+        return hf_error(messages, HF_BAD_CASE, "%s: sweep: two points are the same: %s", s->path, text);
     }
-    free(sorted);
-    return status;
+    return HF_OK;
+}
+
+int hf_study_find(const hf_study *s, const char *id)
+{
+    hf_study_name key = {number_of_id(id), -1}, *found;
+    found = bsearch(&key, s->by_id, (size_t)s->n_point, sizeof key, by_number);
+    return found && !strcmp(s->id[found->point], id) ? found->point : -1;
 }
 
 static hf_status name_points(hf_study *s, hf_messages *messages)
@@ -195,7 +228,7 @@ static hf_status name_points(hf_study *s, hf_messages *messages)
         if (!digest_point(s, value, hex)) return out_of_memory(s, messages);
         memcpy(s->id[i], hex, HF_STUDY_ID_SIZE - 1);
     }
-    return refuse_twins(s, messages);
+    return sort_names(s, messages);
 }
 
 void hf_study_tell_faults(const hf_study *s, int i, const hf_messages *found, hf_messages *messages)
@@ -235,52 +268,63 @@ static hf_status take_fingerprint(hf_study *s, const hf_case *c, hf_messages *me
     return HF_OK;
 }
 
-/* Load each point as a case, which finds keys that exclude each other and all faults of the base case. */
-static hf_status check_points(hf_study *s, hf_messages *messages)
+/* Sets what all points share, which point i shows. */
+static hf_status learn_from(hf_study *s, int i, hf_case *c, hf_messages *messages)
 {
-    int n_fault = 0;
+    hf_study_overrides o;
     bool has_seed_axis = false;
     for (int a = 0; a < s->n_axis; a++)
         has_seed_axis |= !strcmp(s->axis[a].key.path, "optimize.seed");
-    for (int i = 0; i < s->n_point; i++) {
-        hf_study_overrides o;
-        hf_messages found = {0};
-        hf_case c;
-        hf_study_point_overrides(s, i, &o);
-        hf_status status = hf_config_load(s->base, o.set, o.n_set, &c, &found);
-        if (i == 0 && status == HF_OK) {
-            s->has_optimize = c.has_optimize;
-            s->derives_seed = c.has_optimize && !has_seed_axis;
-            s->seed = c.optimize.seed;
-            s->has_tolerance = c.has_tolerance;
-            if (!*s->title) snprintf(s->title, sizeof s->title, "%s", c.title);
-            status = take_fingerprint(s, &c, messages);
-        }
-        if (status != HF_OK && n_fault++ < HF_FAULT_MAX_POINT) hf_study_tell_faults(s, i, &found, messages);
+    hf_study_point_overrides(s, i, &o);
+    HF_TRY(hf_config_load(s->base, o.set, o.n_set, c, messages));
+    HF_TRY(take_fingerprint(s, c, messages));
+    s->has_optimize = c->has_optimize;
+    s->derives_seed = c->has_optimize && !has_seed_axis;
+    s->seed = c->optimize.seed;
+    s->has_tolerance = c->has_tolerance;
+    if (!*s->title) snprintf(s->title, sizeof s->title, "%s", c->title);
+    return HF_OK;
+}
+
+/* The machine's fault, and not that of a point. */
+static void tell_trouble(hf_status status, const hf_messages *found, hf_messages *messages)
+{
+    const char *why = found->text ? strstr(found->text, "error: ") : NULL;
+    why = why ? why + strlen("error: ") : hf_status_text(status);
+    hf_error(messages, status, "%.*s", (int)strcspn(why, "\n"), why);
+}
+
+/* Some points may be impossible. Where none of those that are tried can be loaded, the fault is that of the base or of
+ * an axis, and the first of them tells it. */
+static hf_status learn_from_a_point(hf_study *s, hf_messages *messages)
+{
+    hf_case *c = calloc(1, sizeof *c);
+    if (!c) return out_of_memory(s, messages);
+    hf_status status = HF_BAD_CASE;
+    hf_messages first = {0};
+    for (int k = 0; k < s->n_point && k < TRIED_MOST && status == HF_BAD_CASE; k++) {
+        hf_messages found = {0}, *to = k ? &found : &first;
+        status = learn_from(s, hf_study_spread(s, k), c, to);
+        if (status != HF_OK && status != HF_BAD_CASE) tell_trouble(status, to, messages);
         hf_messages_free(&found);
-        hf_case_free(&c);
-        if (status == HF_NO_MEMORY) return out_of_memory(s, messages);
-        if (status == HF_IO || status == HF_INTERRUPTED) return status;
-        if (i == 0 && status != HF_OK)
-            return HF_BAD_CASE; /* most likely a fault of the base case: do not repeat it for every point */
+        hf_case_free(c);
     }
-    if (n_fault > HF_FAULT_MAX_POINT)
-        hf_error(messages, HF_BAD_CASE, "%s: sweep: and %d more points with faults", s->path,
-                 n_fault - HF_FAULT_MAX_POINT);
-    return n_fault ? HF_BAD_CASE : HF_OK;
+    free(c);
+    if (status == HF_BAD_CASE) hf_study_tell_faults(s, 0, &first, messages);
+    hf_messages_free(&first);
+    return status;
 }
 
 hf_status hf_study_make_points(hf_study *s, hf_messages *messages)
 {
-    HF_TRY(count_points(s, messages));
     HF_TRY(name_points(s, messages));
-    return check_points(s, messages);
+    return learn_from_a_point(s, messages);
 }
 
 void hf_study_free(hf_study *s)
 {
     for (int a = 0; a < s->n_axis; a++) {
-        for (int k = 0; k < s->axis[a].n_value; k++) {
+        for (int k = 0; s->axis[a].set && s->axis[a].canonical && k < s->axis[a].n_value; k++) {
             free(s->axis[a].canonical[k]);
             free(s->axis[a].set[k]);
         }
@@ -289,6 +333,7 @@ void hf_study_free(hf_study *s)
     }
     free(s->value);
     free(s->id);
+    free(s->by_id);
     *s = (hf_study){0};
 }
 

@@ -38,6 +38,11 @@ typedef struct {
 } hf_study_axis;
 
 typedef struct {
+    uint64_t number; /* the id, read as a number */
+    int point;
+} hf_study_name;
+
+typedef struct {
     char path[HF_PATH_SIZE];                      /* of the study file */
     char base[HF_PATH_SIZE];                      /* of the case; the same in the one-file form */
     char title[256];                              /* its own, or that of the case; "": none */
@@ -49,6 +54,7 @@ typedef struct {
     int n_point;
     int *value;                   /* [n_point][n_axis] index of the value */
     char (*id)[HF_STUDY_ID_SIZE]; /* [n_point] */
+    hf_study_name *by_id;         /* [n_point] sorted */
     bool has_optimize;            /* the points have an optimize section */
     bool has_tolerance;           /* and one with tolerances */
     bool derives_seed;            /* optimize.seed is no axis: every point has a seed of its own */
@@ -67,14 +73,21 @@ typedef struct {
 /* Is it a study, a YAML file with a base or a sweep section? False for what cannot be read. */
 bool hf_study_is(const char *path);
 
-/* Read, and validate all values of all points against the table of config.h: HF_BAD_CASE with all faults, each with
- * file, line, column and axis; HF_NO_MEMORY. Free in any case. */
+/* Reads a study and checks each value of each axis against the table of config.h: HF_BAD_CASE with all faults, each
+ * with file, line, column and axis, and where no point can be loaded as a case; HF_NO_MEMORY. A point whose values do
+ * not go together is no fault of the study: it fails when it is run. Free in any case. */
 hf_status hf_study_read(const char *path, hf_study *study, hf_messages *messages);
 void hf_study_free(hf_study *study);
 
 /* What point i sets. Unless optimize.seed is an axis, it is set too, from the seed of the base case and the point's id,
  * so that no two points share their random numbers. */
 void hf_study_point_overrides(const hf_study *study, int i, hf_study_overrides *overrides);
+
+/* The point with this id; -1: there is none. */
+int hf_study_find(const hf_study *study, const char *id);
+
+/* Point k of an order in which any first few points are spread over all axes, k < n_point. */
+int hf_study_spread(const hf_study *study, int k);
 
 /* "key=value, key=value" for people, cut off with "..." where it is too long. */
 void hf_study_point_text(const hf_study *study, int i, char *text, size_t size);
@@ -95,7 +108,10 @@ void hf_study_range_value(const hf_field *field, double from, double to, bool is
 hf_status hf_study_sobol(int n, int n_axis, double *x);
 hf_status hf_study_latin_hypercube(int n, int n_axis, uint64_t seed, double *x);
 
-/* Make the points and their ids from the axes, and check each as a case. */
+/* Sets n_point from n_value of the axes, whose values need not be there yet. HF_BAD_CASE for too many points. */
+hf_status hf_study_count_points(hf_study *study, hf_messages *messages);
+
+/* Makes the points and their ids from the axes, and loads one of them as a case, which finds the faults of the base. */
 hf_status hf_study_make_points(hf_study *study, hf_messages *messages);
 
 /* "key=value" with the value in its canonical form; the caller frees it; NULL without memory. The value must be valid

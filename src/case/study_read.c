@@ -3,6 +3,7 @@
 
 #include "base/path.h"
 #include "base/text.h"
+#include "case/config_value.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -15,15 +16,16 @@
 
 typedef enum { SAMPLE_NONE, SAMPLE_LATIN_HYPERCUBE, SAMPLE_SOBOL } sampling;
 
-/* An axis {from, to, ...} until n is known. */
+/* What an axis was given as, until all axes are known and their points are counted. */
 typedef struct {
-    int i_axis; /* -1 = not a range */
+    const yaml_node_t *list; /* NULL = a range {from, to, ...} */
+    bool is_faulty;          /* and has no values */
     double from, to;
     bool is_log;
     int n;
     sampling sample;
     yaml_mark_t mark;
-} range;
+} source;
 
 typedef struct {
     hf_study *study;
@@ -32,7 +34,7 @@ typedef struct {
     bool failed, no_memory;
     int n; /* common to ranges, 0 = not given */
     uint64_t seed;
-    range range[HF_STUDY_AXIS_MAX]; /* of axis i */
+    source source[HF_STUDY_AXIS_MAX]; /* of axis i */
 } reader;
 
 /* ---- faults ---- */
@@ -147,15 +149,24 @@ static bool quote(const reader *r, const hf_field *field, const char *value, cha
     return true;
 }
 
-static void add_value(reader *r, hf_study_axis *axis, const char *value, yaml_mark_t mark)
+static hf_status check_value(reader *r, const hf_study_axis *axis, const char *text, yaml_mark_t mark)
+{
+    char place[HF_PATH_SIZE + 128];
+    snprintf(place, sizeof place, "%s:%zu:%zu: sweep", r->study->path, mark.line + 1, mark.column + 1);
+    return hf_config_check_value(axis->key.path, text, place, r->messages);
+}
+
+/* Sets value k of the axis. A study may have a million: what is plainly right is not looked at as YAML. */
+static void set_value(reader *r, hf_study_axis *axis, int k, const char *value, bool is_canonical, yaml_mark_t mark)
 {
     const char *key = axis->key.path;
-    char place[HF_PATH_SIZE + 128], text[VALUE_SIZE];
-    snprintf(place, sizeof place, "%s:%zu:%zu: sweep", r->study->path, mark.line + 1, mark.column + 1);
+    char text[VALUE_SIZE];
     bool fits = axis->key.field->type != HF_FIELD_TEXT ? snprintf(text, sizeof text, "%s", value) < VALUE_SIZE
                                                        : quote(r, axis->key.field, value, text);
     bool is_one_line = !strchr(value, '\n');
-    hf_status status = fits && is_one_line ? hf_config_check_value(key, text, place, r->messages) : HF_BAD_CASE;
+    hf_status status = fits && is_one_line ? HF_OK : HF_BAD_CASE;
+    if (status == HF_OK && !hf_config_is_in_range(axis->key.field, text))
+        status = check_value(r, axis, text, mark);
     if (!fits) fault(r, mark, key, "is too long");
     if (!is_one_line) fault(r, mark, key, "a value must be on one line");
     if (status != HF_OK) {
@@ -164,59 +175,71 @@ static void add_value(reader *r, hf_study_axis *axis, const char *value, yaml_ma
         return;
     }
     size_t size = strlen(key) + strlen(text) + 2;
-    char *set = malloc(size), *canonical = hf_study_canonical(&axis->key, value);
-    if (!set || !canonical) {
-        r->no_memory = true;
-        free(set);
-        free(canonical);
-        return;
-    }
-    snprintf(set, size, "%s=%s", key, text);
-    axis->set[axis->n_value] = set;
-    axis->canonical[axis->n_value++] = canonical;
+    char *set = axis->set[k] = malloc(size);
+    if (set) snprintf(set, size, "%s=%s", key, text);
+    axis->canonical[k] = set && is_canonical ? strdup(set) : hf_study_canonical(&axis->key, value);
+    r->no_memory |= !set || !axis->canonical[k];
 }
 
-static bool reserve_values(reader *r, hf_study_axis *axis, int n)
+static bool reserve_values(reader *r, hf_study_axis *axis)
 {
-    axis->set = calloc((size_t)n, sizeof *axis->set);
-    axis->canonical = calloc((size_t)n, sizeof *axis->canonical);
+    axis->set = calloc((size_t)axis->n_value, sizeof *axis->set);
+    axis->canonical = calloc((size_t)axis->n_value, sizeof *axis->canonical);
     if (axis->set && axis->canonical) return true;
     r->no_memory = true;
     return false;
 }
 
-static void read_list(reader *r, hf_study_axis *axis, const yaml_node_t *list)
+static void read_list(reader *r, hf_study_axis *axis, const yaml_node_t *list, source *to)
 {
-    const char *key = axis->key.path;
     long n = list->data.sequence.items.top - list->data.sequence.items.start;
+    to->list = list;
+    to->is_faulty = n < 1 || n > HF_STUDY_POINT_MAX;
+    if (to->is_faulty)
+        fault(r, list->start_mark, axis->key.path, "needs from 1 to %d values", HF_STUDY_POINT_MAX);
+    else
+        to->n = (int)n;
+}
+
+static void fill_list(reader *r, hf_study_axis *axis, const yaml_node_t *list)
+{
     char text[VALUE_SIZE];
-    if (n < 1 || n > HF_STUDY_POINT_MAX) {
-        fault(r, list->start_mark, key, "needs from 1 to %d values", HF_STUDY_POINT_MAX);
-        return;
-    }
-    if (!reserve_values(r, axis, (int)n)) return;
-    for (long i = 0; i < n; i++) {
-        const yaml_node_t *node = node_at(r, list->data.sequence.items.start[i]);
+    if (!reserve_values(r, axis)) return;
+    for (int k = 0; k < axis->n_value; k++) {
+        const yaml_node_t *node = node_at(r, list->data.sequence.items.start[k]);
         if (value_text(r, node, text))
-            add_value(r, axis, text, node->start_mark);
+            set_value(r, axis, k, text, false, node->start_mark);
         else
-            fault(r, node->start_mark, key, "a value must be one number, word or pair like [5, 5]");
+            fault(r, node->start_mark, axis->key.path, "a value must be one number, word or pair like [5, 5]");
     }
 }
 
 /* ---- axes given as ranges ---- */
 
-static void read_range_key(reader *r, const char *path, const yaml_node_t *key, const yaml_node_t *value, range *to,
+/* An end of the range, which has to be in the range of the key; an end at 0, which is none of the values where these
+ * are sampled, is left to the values. */
+static bool read_end(reader *r, const hf_key *key, const yaml_node_t *node, const char *name, double *value)
+{
+    const hf_field *f = key->field;
+    char words[HF_CONFIG_RANGE_SIZE];
+    if (!read_number(r, node, key->path, name, value)) return false;
+    if (*value <= f->max && *value >= (f->min == HF_ABOVE_ZERO ? 0 : f->min)) return true;
+    hf_config_range_words(f, words);
+    fault(r, node->start_mark, key->path, "%s %s%s", name, words, text_of(node));
+    return false;
+}
+
+static void read_range_key(reader *r, const hf_key *of, const yaml_node_t *key, const yaml_node_t *value, source *to,
                            bool given[2])
 {
     static const char *const names[] = {"from", "to", "n", "spacing", "sample"};
     static const char *const spacings[] = {"linear", "log"};
     static const char *const samplings[] = {"latin_hypercube", "sobol"}; /* in the order of sampling */
-    const char *word = text_of(key);
+    const char *word = text_of(key), *path = of->path;
     if (!strcmp(word, "from"))
-        given[0] = read_number(r, value, path, word, &to->from);
+        given[0] = read_end(r, of, value, word, &to->from);
     else if (!strcmp(word, "to"))
-        given[1] = read_number(r, value, path, word, &to->to);
+        given[1] = read_end(r, of, value, word, &to->to);
     else if (!strcmp(word, "n"))
         read_count(r, value, path, &to->n);
     else if (!strcmp(word, "spacing"))
@@ -227,12 +250,13 @@ static void read_range_key(reader *r, const char *path, const yaml_node_t *key, 
         fault_unknown(r, key->start_mark, path, word, names, 5);
 }
 
-static void read_range(reader *r, hf_study_axis *axis, const yaml_node_t *mapping, range *to)
+static void read_range(reader *r, hf_study_axis *axis, const yaml_node_t *mapping, source *to)
 {
     const char *path = axis->key.path;
     const hf_field_type type = axis->key.field->type;
     bool given[2] = {false, false}, failed_before = r->failed;
     to->mark = mapping->start_mark;
+    to->is_faulty = true;
     if (type == HF_FIELD_WORD || type == HF_FIELD_TEXT || type == HF_FIELD_INT_PAIR || type == HF_FIELD_BOUNDS ||
         type == HF_FIELD_VECTOR) {
         fault(r, to->mark, path, "is no number, so it needs a list of values");
@@ -240,7 +264,7 @@ static void read_range(reader *r, hf_study_axis *axis, const yaml_node_t *mappin
     }
     for (yaml_node_pair_t *p = mapping->data.mapping.pairs.start; p < mapping->data.mapping.pairs.top; p++)
         if (!is_repeated(r, mapping, p, path))
-            read_range_key(r, path, node_at(r, p->key), node_at(r, p->value), to, given);
+            read_range_key(r, &axis->key, node_at(r, p->key), node_at(r, p->value), to, given);
     if (r->failed != failed_before) return;
     if (!given[0] || !given[1])
         fault(r, to->mark, path, "a range needs from and to");
@@ -249,38 +273,33 @@ static void read_range(reader *r, hf_study_axis *axis, const yaml_node_t *mappin
     else if (to->sample && to->n)
         fault(r, to->mark, path, "sampled axes share the n of the sweep section");
     else
-        to->i_axis = (int)(axis - r->study->axis);
+        to->is_faulty = false;
 }
 
 /* The values of a range at x[0], x[stride], ... of 0..1. */
-static void fill_range(reader *r, const range *from, const double *x, int stride, int n)
+static void fill_range(reader *r, int a, const double *x, int stride)
 {
-    hf_study_axis *axis = &r->study->axis[from->i_axis];
+    hf_study_axis *axis = &r->study->axis[a];
+    const source *from = &r->source[a];
     char text[40];
-    if (!reserve_values(r, axis, n)) return;
-    axis->is_sampled = from->sample != SAMPLE_NONE;
+    if (!reserve_values(r, axis)) return;
     bool failed_before = r->failed;
     r->failed = false;
-    for (int i = 0; i < n && !r->failed; i++) { /* report one bad value of a range, not all */
+    for (int i = 0; i < axis->n_value && !r->failed; i++) { /* report one bad value of a range, not all */
         hf_study_range_value(axis->key.field, from->from, from->to, from->is_log, x[(size_t)i * (size_t)stride], text);
-        add_value(r, axis, text, from->mark);
+        set_value(r, axis, i, text, true, from->mark);
     }
     r->failed |= failed_before;
 }
 
-static void fill_even(reader *r, const range *from)
+static void fill_even(reader *r, int a)
 {
-    int n = from->n ? from->n : r->n;
-    double *x = n ? malloc((size_t)n * sizeof *x) : NULL;
-    if (!n) {
-        fault(r, from->mark, r->study->axis[from->i_axis].key.path,
-              "needs n, here or for all ranges in the sweep section");
-        return;
-    }
+    int n = r->study->axis[a].n_value;
+    double *x = malloc((size_t)n * sizeof *x);
     for (int i = 0; x && i < n; i++)
         x[i] = n > 1 ? i / (n - 1.0) : 0;
     if (x)
-        fill_range(r, from, x, 1, n);
+        fill_range(r, a, x, 1);
     else
         r->no_memory = true;
     free(x);
@@ -289,25 +308,50 @@ static void fill_even(reader *r, const range *from)
 /* All sampled axes of one kind, as one joint axis. */
 static void fill_sampled(reader *r, sampling kind)
 {
-    const range *member[HF_STUDY_AXIS_MAX];
-    int n_member = 0;
+    int member[HF_STUDY_AXIS_MAX], n_member = 0;
     for (int a = 0; a < r->study->n_axis; a++)
-        if (r->range[a].i_axis >= 0 && r->range[a].sample == kind) member[n_member++] = &r->range[a];
+        if (!r->source[a].is_faulty && r->source[a].sample == kind) member[n_member++] = a;
     if (!n_member) return;
-    if (!r->n) {
-        fault(r, member[0]->mark, "", "sampled axes need n in the sweep section");
-        return;
-    }
     double *x = malloc((size_t)r->n * (size_t)n_member * sizeof *x);
     if (!x || (kind == SAMPLE_SOBOL ? hf_study_sobol(r->n, n_member, x)
                                     : hf_study_latin_hypercube(r->n, n_member, r->seed, x)) != HF_OK)
         r->no_memory = true;
     for (int k = 0; k < n_member && !r->no_memory; k++)
-        fill_range(r, member[k], x + k, n_member, r->n);
+        fill_range(r, member[k], x + k, n_member);
     free(x);
 }
 
 /* ---- the sweep section ---- */
+
+/* How many values each axis has, before any is made. */
+static void count_values(reader *r)
+{
+    for (int a = 0; a < r->study->n_axis; a++) {
+        source *from = &r->source[a];
+        hf_study_axis *axis = &r->study->axis[a];
+        if (from->is_faulty) continue;
+        axis->is_sampled = from->sample != SAMPLE_NONE;
+        axis->n_value = from->n ? from->n : r->n;
+        from->is_faulty = axis->n_value == 0;
+        if (from->is_faulty && axis->is_sampled)
+            fault(r, from->mark, "", "sampled axes need n in the sweep section");
+        else if (from->is_faulty)
+            fault(r, from->mark, axis->key.path, "needs n, here or for all ranges in the sweep section");
+    }
+}
+
+static void fill_axes(reader *r)
+{
+    for (int a = 0; a < r->study->n_axis; a++)
+        if (r->source[a].is_faulty)
+            continue;
+        else if (r->source[a].list)
+            fill_list(r, &r->study->axis[a], r->source[a].list);
+        else if (r->source[a].sample == SAMPLE_NONE)
+            fill_even(r, a);
+    fill_sampled(r, SAMPLE_LATIN_HYPERCUBE);
+    fill_sampled(r, SAMPLE_SOBOL);
+}
 
 /* Report a key that is none: of a row the keys of its list are those that may be meant. */
 static void fault_no_axis(reader *r, const yaml_node_t *key, const char *const *names, int n)
@@ -351,10 +395,12 @@ static void read_axis(reader *r, const yaml_node_t *key, const yaml_node_t *valu
     *axis =
         (hf_study_axis){.key = found, .line = (int)key->start_mark.line + 1, .column = (int)key->start_mark.column + 1};
     if (value->type == YAML_SEQUENCE_NODE)
-        read_list(r, axis, value);
+        read_list(r, axis, value, &r->source[s->n_axis - 1]);
     else if (value->type == YAML_MAPPING_NODE)
-        read_range(r, axis, value, &r->range[s->n_axis - 1]);
+        read_range(r, axis, value, &r->source[s->n_axis - 1]);
     else
+        r->source[s->n_axis - 1].is_faulty = true;
+    if (value->type == YAML_SCALAR_NODE)
         fault(r, value->start_mark, text_of(key), "must be a list of values, or {from, to, n}");
 }
 
@@ -384,10 +430,11 @@ static void read_sweep(reader *r, const yaml_node_t *mapping)
             read_axis(r, key, value);
     }
     if (!s->n_axis && !r->failed) fault(r, mapping->start_mark, "", "has no axis");
-    for (int a = 0; a < s->n_axis; a++)
-        if (r->range[a].i_axis >= 0 && r->range[a].sample == SAMPLE_NONE) fill_even(r, &r->range[a]);
-    fill_sampled(r, SAMPLE_LATIN_HYPERCUBE);
-    fill_sampled(r, SAMPLE_SOBOL);
+    count_values(r);
+    if (!r->failed && hf_study_count_points(s, r->messages) != HF_OK)
+        r->failed = true;
+    else
+        fill_axes(r);
 }
 
 /* ---- the file ---- */
@@ -517,8 +564,6 @@ hf_status hf_study_read(const char *path, hf_study *study, hf_messages *messages
         return hf_error(messages, HF_BAD_CASE, "%s: the path is too long", path);
     HF_TRY(hf_text_read_file(path, HF_BAD_CASE, &text, &length, messages));
     reader r = {.study = study, .messages = messages, .seed = 1};
-    for (int a = 0; a < HF_STUDY_AXIS_MAX; a++)
-        r.range[a].i_axis = -1;
     hf_status status = HF_OK;
     if (length > STUDY_MAX)
         status = hf_error(messages, HF_BAD_CASE, "%s: longer than %d MB, so no study", path, STUDY_MAX >> 20);

@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/file_io.h"
 #include "base/file_out.h"
+#include "base/path.h"
 #include "base/text.h"
 #include "store/journal.h"
 
@@ -53,15 +54,13 @@ struct hf_ledger_news {
         off_t at;
     } * file;
     int n_file;
-    struct named_point *sorted; /* [n_point] by id */
-    bool *is_finished;          /* [n_point] */
+    bool *is_finished; /* [n_point] */
 };
 
 static void free_news(struct hf_ledger_news *news)
 {
     if (!news) return;
     free(news->file);
-    free(news->sorted);
     free(news->is_finished);
     free(news);
 }
@@ -130,9 +129,9 @@ static hf_status write_line(hf_ledger *l, const char *line, size_t length, hf_me
 }
 
 /* Make the points file of this process, with the names of the columns. */
-static hf_status start_rows(hf_ledger *l, hf_messages *messages)
+static hf_status start_rows(hf_ledger *l, char line[LINE_SIZE], hf_messages *messages)
 {
-    char host[64] = "host", path[HF_PATH_SIZE + 128], line[LINE_SIZE];
+    char host[64] = "host", path[HF_PATH_SIZE + 128];
     if (gethostname(host, sizeof host - 1) != 0) strcpy(host, "host");
     host[sizeof host - 1] = '\0';
     for (int k = 1; l->rows < 0 && k < 10000; k++) {
@@ -144,10 +143,10 @@ static hf_status start_rows(hf_ledger *l, hf_messages *messages)
     if (l->rows < 0 || fcntl(l->rows, F_SETFL, O_APPEND) != 0)
         return hf_error(messages, HF_IO, "%s: cannot create: %s", path, strerror(errno));
     l->size = 0;
-    size_t used = (size_t)snprintf(line, sizeof line, HEADER "\tfingerprint\tstatus\treason");
+    size_t used = (size_t)snprintf(line, LINE_SIZE, HEADER "\tfingerprint\tstatus\treason");
     for (int i = 0; i < hf_ledger_n_field(); i++) {
         line[used++] = '\t';
-        used += (size_t)hf_ledger_field_name(i, line + used, sizeof line - used);
+        used += (size_t)hf_ledger_field_name(i, line + used, LINE_SIZE - used);
     }
     line[used++] = '\n';
     hf_status status = write_line(l, line, used, messages);
@@ -172,23 +171,25 @@ static size_t put_reason(const char *reason, char *to)
 hf_status hf_ledger_write(hf_ledger *l, const hf_study *study, int point, hf_status status, const char *reason,
                           const hf_summary *s, hf_messages *messages)
 {
-    char line[LINE_SIZE];
-    size_t used = (size_t)snprintf(line, sizeof line, "%s\t%s\t%s\t", study->id[point], study->fingerprint,
+    char *line = malloc(2 * LINE_SIZE); /* the second half is for the names of the columns */
+    if (!line) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for a row", l->folder);
+    size_t used = (size_t)snprintf(line, LINE_SIZE, "%s\t%s\t%s\t", study->id[point], study->fingerprint,
                                    hf_status_word(status));
     used += put_reason(reason, line + used);
     for (int i = 0; i < hf_ledger_n_field(); i++) {
         line[used++] = '\t';
-        used += (size_t)hf_ledger_print_field(i, s, line + used, sizeof line - used);
+        used += (size_t)hf_ledger_print_field(i, s, line + used, LINE_SIZE - used);
     }
     line[used++] = '\n';
     pthread_mutex_lock(&l->lock);
-    hf_status result = l->rows < 0 ? start_rows(l, messages) : HF_OK;
+    hf_status result = l->rows < 0 ? start_rows(l, line + LINE_SIZE, messages) : HF_OK;
     if (result == HF_OK) result = write_line(l, line, used, messages);
     int file = l->rows;
     double now_s = hf_clock_s();
     bool is_due = now_s - l->synced_s >= SYNC_S;
     if (is_due) l->synced_s = now_s;
     pthread_mutex_unlock(&l->lock);
+    free(line);
     if (result == HF_OK && is_due && hf_file_io_sync(file, true) != 0)
         return hf_error(messages, HF_IO, "%s: cannot write to the disk: %s", l->folder, strerror(errno));
     return result;
@@ -196,39 +197,11 @@ hf_status hf_ledger_write(hf_ledger *l, const hf_study *study, int point, hf_sta
 
 /* ---- reading files ---- */
 
-typedef struct named_point {
-    const char *id;
-    int point;
-} named_point;
-
 typedef struct {
     const hf_study *study;
     hf_points *points;
-    named_point *sorted; /* [n_point] by id */
-    hf_point *failure;   /* [n_point] of this base case; what counts when a success has lost its file */
+    hf_point *failure; /* [n_point] of this base case; what counts when a success has lost its file */
 } reading;
-
-static int by_id(const void *a, const void *b)
-{
-    const named_point *x = a, *y = b;
-    return strcmp(x->id, y->id);
-}
-
-/* The points by id; the caller frees them. NULL without memory. */
-static named_point *sort_points(const hf_study *study)
-{
-    named_point *sorted = malloc((size_t)study->n_point * sizeof *sorted);
-    for (int i = 0; sorted && i < study->n_point; i++)
-        sorted[i] = (named_point){study->id[i], i};
-    if (sorted) qsort(sorted, (size_t)study->n_point, sizeof *sorted, by_id);
-    return sorted;
-}
-
-static int find_point(const reading *r, const char *id)
-{
-    named_point key = {id, -1}, *found = bsearch(&key, r->sorted, (size_t)r->study->n_point, sizeof key, by_id);
-    return found ? found->point : -1;
-}
 
 /* Cut a line up at its tabs: the number of fields, at most max. */
 static int split(char *line, char **field, int max)
@@ -245,7 +218,7 @@ static int split(char *line, char **field, int max)
 /* A success overrides a failure; a row of this base case overrides one of another. */
 static void take_row(reading *r, char **field, char **number)
 {
-    int i = find_point(r, field[0]);
+    int i = hf_study_find(r->study, field[0]);
     if (i < 0) return;
     hf_point *p = &r->points->point[i];
     if (strcmp(field[1], r->study->fingerprint)) {
@@ -395,11 +368,10 @@ static int place_of(struct hf_ledger_news *news, const char *name)
 /* Note the whole lines of a text; returns their length in bytes. */
 static off_t note_rows(struct hf_ledger_news *news, const hf_study *study, char *text)
 {
-    reading r = {.study = study, .sorted = news->sorted};
     char *line = text, *end, *field[3];
     for (; (end = strchr(line, '\n')) != NULL; line = end + 1) {
         *end = '\0';
-        int i = split(line, field, 3) == 3 && !strcmp(field[1], study->fingerprint) ? find_point(&r, field[0]) : -1;
+        int i = split(line, field, 3) == 3 && !strcmp(field[1], study->fingerprint) ? hf_study_find(study, field[0]) : -1;
         if (i >= 0) news->is_finished[i] = true;
     }
     return line - text;
@@ -442,11 +414,8 @@ static void read_news(hf_ledger *l, const hf_study *study, bool skip)
 hf_status hf_ledger_watch(hf_ledger *l, const hf_study *study, hf_messages *messages)
 {
     l->news = calloc(1, sizeof *l->news);
-    if (l->news) {
-        l->news->sorted = sort_points(study);
-        l->news->is_finished = calloc((size_t)study->n_point, sizeof(bool));
-    }
-    if (!l->news || !l->news->sorted || !l->news->is_finished)
+    if (l->news) l->news->is_finished = calloc((size_t)study->n_point, sizeof(bool));
+    if (!l->news || !l->news->is_finished)
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for %d points", l->folder, study->n_point);
     read_news(l, study, 1);
     return HF_OK;
@@ -473,7 +442,7 @@ static void find_locks(reading *r, int file, off_t from, off_t to)
         if (fcntl(file, F_GETLK, &lock) != 0 || lock.l_type == F_UNLCK) return;
         if (lock.l_start < from) lock.l_start = from; /* a foreign lock of several bytes */
         snprintf(id, sizeof id, "%012llx", (unsigned long long)lock.l_start);
-        int i = find_point(r, id);
+        int i = hf_study_find(r->study, id);
         if (i >= 0) r->points->point[i] = (hf_point){HF_POINT_RUNNING, HF_NOT_EVALUATED, "", NULL};
         find_locks(r, file, from, lock.l_start);
         from = lock.l_start + 1;
@@ -514,9 +483,8 @@ hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *p
     size_t n = (size_t)study->n_point;
     *points = (hf_points){.n_point = study->n_point};
     points->point = calloc(n, sizeof *points->point);
-    reading r = {study, points, sort_points(study), calloc(n, sizeof *r.failure)};
-    if (!points->point || !r.sorted || !r.failure) {
-        free(r.sorted);
+    reading r = {study, points, calloc(n, sizeof *r.failure)};
+    if (!points->point || !r.failure) {
         free(r.failure);
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for %d points", folder, study->n_point);
     }
@@ -527,9 +495,24 @@ hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *p
     find_lost(&r, folder);
     for (int i = 0; i < study->n_point; i++)
         points->count[points->point[i].state]++;
-    free(r.sorted);
     free(r.failure);
     return status;
+}
+
+int hf_ledger_n_begun(const char *folder, const hf_study *study, const hf_points *points)
+{
+    char path[HF_PATH_SIZE + 32];
+    int n = 0;
+    DIR *names = hf_study_has_files(study) ? opendir(folder) : NULL;
+    for (const struct dirent *entry; names && (entry = readdir(names)) != NULL;) {
+        char id[HF_STUDY_ID_SIZE];
+        snprintf(id, sizeof id, "%.12s", entry->d_name);
+        int i = strlen(entry->d_name) > strlen(id) ? hf_study_find(study, id) : -1;
+        n += i >= 0 && points->point[i].state == HF_POINT_MISSING &&
+             hf_ledger_file(folder, study, i, path) == HF_LEDGER_FILE && !strcmp(hf_path_name(path), entry->d_name);
+    }
+    if (names) closedir(names);
+    return n;
 }
 
 void hf_points_free(hf_points *points)

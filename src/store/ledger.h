@@ -118,4 +118,7 @@ typedef struct {
 hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *points, hf_messages *messages);
 void hf_points_free(hf_points *points);
 
+/* How many of the missing points have a result file that a sweep began. */
+int hf_ledger_n_begun(const char *folder, const hf_study *study, const hf_points *points);
+
 #endif

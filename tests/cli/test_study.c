@@ -355,10 +355,16 @@ START_TEST(check_tells_the_faults_of_a_study)
     ERR("did you mean 'surface'?");
     file_with("base.yaml", NET);
     file_with("s.yaml", "base: base.yaml\nsweep:\n  scene.paraboloid.focal_length_m: [3, 4]\n  "
-                        "scene.paraboloid.rear_distance_m: [1.8, 0.001]\n");
-    HIFDM(2, "check", path);
+                        "scene.paraboloid.rear_distance_m: [0.001, 1.8]\n");
+    HIFDM(3, "check", path);
+    OUT("2 of these cannot be run");
+    OUT("\npoint "); /* the first that can be run is checked as a case */
     ERR("point scene.paraboloid.focal_length_m=3, scene.paraboloid.rear_distance_m=0.001");
     ERR("point scene.paraboloid.focal_length_m=4, scene.paraboloid.rear_distance_m=0.001");
+    ERR("2 of the 4 points that were tried cannot be run");
+    file_with("s.yaml", "base: base.yaml\nsweep:\n  scene.paraboloid.rear_distance_m: [0.001, 0.002]\n");
+    HIFDM(2, "check", path);
+    ERR("point scene.paraboloid.rear_distance_m=0.001");
     file_with("s.yaml", "base: nowhere.yaml\nsweep:\n  form.pretension_N: [5, 6]\n");
     HIFDM(2, "check", path);
     ERR("nowhere.yaml");

@@ -197,6 +197,30 @@ START_TEST(a_failed_point_stops_no_other)
 }
 END_TEST
 
+/* A corner of the axes that is no case: the others are run and merged. */
+START_TEST(an_impossible_point_stops_no_other)
+{
+    const char *folder = temp("s.d"), *merged = temp("s.h5");
+    file_with("base.yaml", SMALL_SCENE SMALL_GA);
+    const char *path =
+        file_with("study.yaml", "base: base.yaml\nsweep:\n  optimize.elites: [6, 1]\n  form.pretension_N: [8, 9]\n");
+    HIFDM(3, "check", path);
+    ERR("point form.pretension_N=8, optimize.elites=6: --set optimize.elites: must be below optimize.population");
+    HIFDM(3, "sweep", path, "--dir", folder);
+    OUT("4 points run");
+    OUT("2 of them failed");
+    HIFDM(0, "status", path, "--dir", folder);
+    OUT("done      2");
+    OUT("failed    2");
+    OUT("form.pretension_N=9, optimize.elites=6: --set optimize.elites: must be below optimize.population");
+    HIFDM(0, "merge", path, "--dir", folder, "-o", merged);
+    OUT("4 points, 2 of them done, 2 failed");
+    EXPECT(merged, "--", "sorted(a['points/status'][:].tolist()) == [0, 0, 21, 21]", "len(a['runs']) == 2",
+           "sum(r.startswith('--set optimize.elites: must be below') for r in texts(a['points/reason'])) "
+           "== 2");
+}
+END_TEST
+
 /* A folder stands where the result file of a point should: that point fails, and can be run again when it is gone. */
 START_TEST(what_failed_can_be_run_again)
 {
@@ -404,6 +428,7 @@ Suite *suite_cli_sweep(void)
     tcase_add_test(tcase, shards_and_threads_make_the_same_whole);
     tcase_add_test(tcase, tasks_that_would_leave_points_out_are_refused);
     tcase_add_test(tcase, a_failed_point_stops_no_other);
+    tcase_add_test(tcase, an_impossible_point_stops_no_other);
     tcase_add_test(tcase, what_failed_can_be_run_again);
     tcase_add_test(tcase, results_of_another_base_case_are_not_mixed_in);
     tcase_add_test(tcase, results_of_other_tables_are_not_mixed_in);

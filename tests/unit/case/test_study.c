@@ -92,7 +92,7 @@ START_TEST(zip_goes_side_by_side)
     hf_study_free(&s);
     ck_assert_int_eq(read_study("  combine: zip\n  optimize.range_N: [1, 2]\n  form.pretension_N: [8, 9, 10]\n", &s),
                      HF_BAD_CASE);
-    ck_assert_msg(strstr(said, "study.yaml:4:3: sweep.optimize.range_N: has 2 values where form.pretension_N has 3"),
+    ck_assert_msg(strstr(said, "study.yaml:5:3: sweep.form.pretension_N: has 3 values where optimize.range_N has 2"),
                   "%s", said);
     hf_study_free(&s);
 }
@@ -114,6 +114,76 @@ START_TEST(ranges_are_linear_or_logarithmic)
     ck_assert_str_eq(value_at(&s, 1, "optimize.population"), "16"); /* 15.5, rounded: it counts */
     ck_assert_str_eq(value_at(&s, 1, "optimize.seed"), "6");
     hf_study_free(&s);
+}
+END_TEST
+
+/* The difference or the quotient of the ends is beyond what a double holds; the values between them are not. */
+START_TEST(the_ends_of_a_range_may_be_far_apart)
+{
+    static const struct {
+        double from, to, x;
+        bool is_log;
+        const char *value;
+    } at[] = {{1e308, -1e308, 0, false, "1e+308"},  {1e308, -1e308, 0.5, false, "0"},
+              {1e308, -1e308, 1, false, "-1e+308"}, {-1e308, 1e308, 0.75, false, "5e+307"},
+              {1e-300, 1e300, 0.5, true, "1"},      {1e300, 1e-300, 0.5, true, "1"},
+              {1e300, 1e-300, 0, true, "1e+300"},   {1e-300, 1e300, 0.75, true, "1e+150"}};
+    const hf_field any = {.type = HF_FIELD_DOUBLE};
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+        char text[40];
+        hf_study_range_value(&any, at[i].from, at[i].to, at[i].is_log, at[i].x, text);
+        ck_assert_str_eq(text, at[i].value);
+    }
+}
+END_TEST
+
+/* A point whose values do not go together is no fault of the study, wherever it stands; what the points share is that
+ * of the others. */
+START_TEST(impossible_points_are_points)
+{
+    hf_study s;
+    for (int k = 0; k < 2; k++) {
+        open_study(k ? "  optimize.elites: [60, 1]\n" : "  optimize.elites: [1, 60]\n", &s);
+        ck_assert_int_eq(s.n_point, 2);
+        ck_assert(s.has_optimize && s.derives_seed);
+        ck_assert_str_eq(s.title, "small");
+        hf_study_free(&s);
+    }
+}
+END_TEST
+
+START_TEST(points_are_found_by_their_names)
+{
+    hf_study s;
+    open_study("  form.pretension_N: {from: 1, to: 2, n: 50}\n  optimize.range_N: {from: 1, to: 2, n: 20}\n", &s);
+    char seen[1000] = "";
+    for (int i = 0; i < s.n_point; i++) {
+        ck_assert_int_eq(hf_study_find(&s, s.id[i]), i);
+        int k = hf_study_spread(&s, i);
+        ck_assert(k >= 0 && k < s.n_point && !seen[k]);
+        seen[k] = 1;
+    }
+    ck_assert_int_eq(hf_study_find(&s, "000000000000"), -1);
+    ck_assert_int_eq(hf_study_find(&s, ""), -1);
+    char longer[HF_STUDY_ID_SIZE + 1];
+    snprintf(longer, sizeof longer, "%sx", s.id[7]);
+    ck_assert_int_eq(hf_study_find(&s, longer), -1);
+    hf_study_free(&s);
+}
+END_TEST
+
+/* A study of 10^12 points is refused before two million values are made. */
+START_TEST(points_are_counted_before_any_is_made)
+{
+    hf_study s;
+    long before = allocation_count();
+    ck_assert_int_eq(read_study("  form.pretension_N: {from: 1, to: 2, n: 1000000}\n"
+                                "  optimize.range_N: {from: 1, to: 2, n: 1000000}\n",
+                                &s),
+                     HF_BAD_CASE);
+    ck_assert_msg(strstr(said, "sweep: 1e+12 points, and a study has at most 1000000"), "%s", said);
+    hf_study_free(&s);
+    ck_assert_int_lt(allocation_count() - before, 100);
 }
 END_TEST
 
@@ -378,7 +448,7 @@ static const struct {
      "study.yaml:3:3: sweep: unknown key 'form.pretenson_N'; did you mean 'form.pretension_N'?"},
     {"  form.pretension_N: [1, -2]\n", "study.yaml:3:26: sweep: form.pretension_N: must be above 0"},
     {"  form.pretension_N: [1, ten]\n", "study.yaml:3:26: sweep: form.pretension_N: must be a number"},
-    {"  form.pretension_N: {from: 1, to: -2, n: 3}\n", "study.yaml:3:22: sweep: form.pretension_N: must be above 0"},
+    {"  form.pretension_N: {from: 1, to: -2, n: 3}\n", "study.yaml:3:36: sweep.form.pretension_N: to must be above 0 and at most 1000000000, not -2"},
     {"  form.pretension_N: {from: 1, n: 3}\n", "study.yaml:3:22: sweep.form.pretension_N: a range needs from and to"},
     {"  form.pretension_N: {from: 1, to: 2}\n", "study.yaml:3:22: sweep.form.pretension_N: needs n"},
     {"  form.pretension_N: {from: 1, to: 2, n: 0}\n", "study.yaml:3:42: sweep.form.pretension_N: n must be a whole"},
@@ -399,10 +469,16 @@ static const struct {
     {"  files: some\n  form.pretension_N: [1]\n", "files must be one of auto, all, none"},
     {"  n: 3\n", "study.yaml:3:3: sweep: has no axis"},
     {"  form.pretension_N: {from: 1, to: 2, n: 2000}\n  optimize.seed: {from: 1, to: 2000, n: 2000}\n",
-     "4000000 points, more than"},
-    /* keys that do not go together: the point is named */
-    {"  optimize.elites: [1, 60]\n",
-     "point optimize.elites=60: --set optimize.elites: must be below optimize.population"},
+     "4000000 points, and a study has at most 1000000"},
+    /* ends too far apart for a difference or a quotient, and too large for a whole number */
+    {"  form.pretension_N: {from: 1e308, to: -1e308, n: 3}\n",
+     "study.yaml:3:29: sweep.form.pretension_N: from must be above 0 and at most 1000000000, not 1e308"},
+    {"  optimize.population: {from: 2, to: 1e300, n: 3}\n",
+     "study.yaml:3:38: sweep.optimize.population: to must be at least 2 and at most 100000, not 1e300"},
+    {"  form.pretension_N: {from: 0, to: 2, n: 3}\n", "study.yaml:3:22: sweep: form.pretension_N: must be above 0"},
+    /* keys that go together at no point: the first is named */
+    {"  optimize.elites: [70, 60]\n",
+     "point optimize.elites=70: --set optimize.elites: must be below optimize.population"},
 };
 
 START_TEST(faults_name_axis_file_and_line)
@@ -504,6 +580,10 @@ Suite *suite_unit_study(void)
     tcase_add_test(tests, product_has_every_combination);
     tcase_add_test(tests, zip_goes_side_by_side);
     tcase_add_test(tests, ranges_are_linear_or_logarithmic);
+    tcase_add_test(tests, the_ends_of_a_range_may_be_far_apart);
+    tcase_add_test(tests, impossible_points_are_points);
+    tcase_add_test(tests, points_are_found_by_their_names);
+    tcase_add_test(tests, points_are_counted_before_any_is_made);
     tcase_add_test(tests, latin_hypercube_fills_every_row_and_column);
     tcase_add_test(tests, sobol_is_the_sequence_and_combines_with_lists);
     tcase_add_test(tests, points_keep_their_names_when_axes_grow);
