@@ -48,6 +48,8 @@ LANGUAGE := -std=c11 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp
 CODEGEN := -fno-math-errno -ffp-contract=off -fPIC -fno-semantic-interposition
 # psabi: functions that take vectors are inlined.
 WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wno-psabi $(WERROR)
+# Of src: every command must run on a stack of 128 kB (tests/cli/test_stack.c). Sanitizers make frames larger.
+FRAME := $(if $(SANITIZE),,-Wframe-larger-than=16384)
 SANITIZER := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 
 # pkg-config is asked once, when a recipe first needs it: $(eval) replaces the question by its answer.
@@ -64,7 +66,8 @@ PKG_LIBS = -Wl,--push-state,--no-as-needed -lgslcblas -Wl,--pop-state $(filter-o
 CHOLMOD = $(eval CHOLMOD := $(shell $(CC) -E -include suitesparse/cholmod.h -x c /dev/null >/dev/null 2>&1 && \
   echo -DHF_BENCH_CHOLMOD -lcholmod))$(CHOLMOD)
 
-COMPILE = $(CC) $(CFLAGS) $(LANGUAGE) $(CODEGEN) $(SANITIZER) $(WARNINGS) -Iinclude -Isrc $(PKG_CFLAGS)
+COMPILE = $(CC) $(CFLAGS) $(LANGUAGE) $(CODEGEN) $(SANITIZER) $(WARNINGS) $(if $(filter src/%,$<),$(FRAME)) \
+  -Iinclude -Isrc $(PKG_CFLAGS)
 LINK = $(CC) $(CFLAGS) -fopenmp $(SANITIZER) $(LDFLAGS)
 
 # Build information, compiled into store/store.c alone because it is what stamps a result file.

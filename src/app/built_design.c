@@ -92,7 +92,7 @@ static void take_shape(const hf_export_stored *stored, hf_problem *p)
 
 static hf_status read_design(const hf_options *o, hf_problem *p, hf_messages *messages)
 {
-    hf_export_stored stored = {0};
+    static hf_export_stored stored;
     const hf_export_request request = {.file = o->result, .stage = o->stage};
     hf_status status = hf_export_read(&request, &stored, messages);
     if (status == HF_OK) status = compare(o, p, &stored, messages);

@@ -322,7 +322,7 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
 static hf_status command_adjust(const hf_options *o, FILE *file, hf_messages *messages)
 {
     if (!o->measured) return hf_error(messages, HF_BAD_USAGE, "'hifdm adjust' needs --measured FILE");
-    job j = {0};
+    static job j;
     hf_status status = execute(&j, o, messages);
     if (o->json)
         hf_adjust_print_json(&j, o, status, messages->text, file);

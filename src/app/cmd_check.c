@@ -556,7 +556,8 @@ static hf_status check(hf_problem *p, const hf_check_request *q, double *most_s,
 
 hf_status hf_check_case(const hf_check_request *request, double *most_s, FILE *file, hf_messages *messages)
 {
-    hf_problem p = {0};
+    static hf_problem p;
+    p = (hf_problem){0};
     *most_s = 0;
     hf_status status = check(&p, request, most_s, file, messages);
     hf_problem_free(&p);

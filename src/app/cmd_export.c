@@ -49,7 +49,7 @@ static hf_status check_request(const hf_options *o, hf_messages *messages)
 /* Once, whatever formats are asked for: one that writes every shape names them. */
 static void warn_of_front(const hf_options *o, hf_messages *messages)
 {
-    hf_summary summary;
+    static hf_summary summary;
     hf_messages unwanted = {0};
     bool has_one_shape = false;
     for (int i = 0; i < HF_N_EXPORTER; i++)

@@ -8,7 +8,7 @@
 static hf_status command_merge(const hf_options *o, FILE *file, hf_messages *messages)
 {
     char folder[HF_PATH_SIZE], output[HF_PATH_SIZE];
-    hf_study study;
+    static hf_study study;
     hf_points points;
     hf_status status = hf_study_files_read(o, true, folder, &study, &points, messages);
     if (status == HF_OK) status = hf_study_files_name(o->output, o->file, ".h5", output, messages);

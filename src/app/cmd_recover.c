@@ -7,7 +7,7 @@
 
 static hf_status command_recover(const hf_options *o, FILE *file, hf_messages *messages)
 {
-    hf_summary summary;
+    static hf_summary summary;
     HF_TRY(hf_store_recover(o->file, &summary, messages));
     return hf_cmd_show.run(o, file, messages);
 }

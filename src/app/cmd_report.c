@@ -8,7 +8,7 @@
 static hf_status command_report(const hf_options *o, FILE *file, hf_messages *messages)
 {
     const hf_export_request request = {.file = o->file, .output = o->output, .force = o->force};
-    char said[HF_EXPORT_SAID_SIZE];
+    static char said[HF_EXPORT_SAID_SIZE];
     HF_TRY(hf_report(&request, o->second, said, sizeof said, messages));
     hf_print_line(file, "%s", said);
     return HF_OK;

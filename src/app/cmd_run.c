@@ -20,7 +20,7 @@ static hf_status check_tasks(const hf_options *o, hf_messages *messages)
 
 hf_status hf_cmd_run_case(const hf_options *o, FILE *file, hf_messages *messages)
 {
-    hf_summary summary;
+    static hf_summary summary;
     char output[HF_OUTPUT_SIZE];
     bool of_tolerance = o->command == &hf_cmd_tolerance;
     HF_TRY(check_tasks(o, messages));

@@ -25,7 +25,7 @@ static hf_status refuse_case(const char *file, hf_messages *messages)
 
 static hf_status show_study(const hf_options *o, FILE *file, hf_messages *messages)
 {
-    hf_merged merged;
+    static hf_merged merged; /* too large for a small stack, as the summary below */
     hf_status status = hf_merged_read(o->file, &merged, messages);
     if (status == HF_OK && o->json)
         hf_print_study_json(&merged, file);
@@ -37,7 +37,7 @@ static hf_status show_study(const hf_options *o, FILE *file, hf_messages *messag
 
 static hf_status command_show(const hf_options *o, FILE *file, hf_messages *messages)
 {
-    hf_summary summary;
+    static hf_summary summary;
     HF_TRY(refuse_case(o->file, messages));
     if (hf_merged_is(o->file)) return show_study(o, file, messages);
     HF_TRY(hf_store_read_summary(o->file, &summary, messages));

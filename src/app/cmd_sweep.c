@@ -103,7 +103,7 @@ static hf_status sweep_study(const hf_sweep_request *request, bool quiet, FILE *
 static hf_status command_sweep(const hf_options *o, FILE *file, hf_messages *messages)
 {
     char folder[HF_PATH_SIZE];
-    hf_study study;
+    static hf_study study;
     hf_sweep_request request = {.study = &study,
                                 .folder = folder,
                                 .retry = o->retry,

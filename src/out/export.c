@@ -93,7 +93,8 @@ void hf_export_free(hf_export_stored *stored)
 hf_status hf_export_shape(const hf_export_request *o, hf_export_write_shape *write, char *said, size_t size,
                           hf_messages *messages)
 {
-    hf_export_stored stored = {0};
+    static hf_export_stored stored;
+    stored = (hf_export_stored){0};
     hf_status status = hf_export_read(o, &stored, messages);
     if (status == HF_OK) status = write(o, &stored, said, size, messages);
     hf_export_free(&stored);

@@ -166,7 +166,7 @@ static hf_status write_csv(const hf_export_request *o, const hf_export_stored *s
                            hf_messages *messages)
 {
     const hf_scene *scene = &stored->scene;
-    char nodes[PATH_MAX], cables[PATH_MAX], facets[PATH_MAX];
+    static char nodes[PATH_MAX], cables[PATH_MAX], facets[PATH_MAX];
     bool is_measured = stored->summary.surface.focal_length_m > 0;
     HF_TRY(hf_export_claim_in_folder(o, "nodes.csv", nodes,
                                      messages)); /* both names are checked before anything is made */

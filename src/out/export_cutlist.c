@@ -141,7 +141,7 @@ static hf_status write_cutlist(const hf_export_request *o, const hf_export_store
                                hf_messages *messages)
 {
     const hf_scene *scene = &stored->scene;
-    char path[N_FILE][PATH_MAX];
+    static char path[N_FILE][PATH_MAX];
     HF_TRY(hf_cable_demand_EA(scene, o->file, "cut lengths need", ", and run again", messages));
     HF_TRY(name_files(o, path, messages)); /* all names are checked before any file is written */
     const view v = {scene, &stored->shape, hf_model_reference_N(scene, stored->summary.pretension_N)};

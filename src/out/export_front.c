@@ -59,7 +59,8 @@ static void write_front(const void *context, FILE *f)
 
 static hf_status export_front(const hf_export_request *o, char *said, size_t size, hf_messages *messages)
 {
-    view v = {0};
+    static view v;
+    v = (view){0};
     HF_TRY(hf_export_claim(o, o->output, messages));
     HF_TRY(hf_store_read_summary(o->file, &v.summary, messages));
     if (!v.summary.has_front)

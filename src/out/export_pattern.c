@@ -36,7 +36,7 @@ static hf_status refuse(const char *file, const hf_summary *s, hf_stage stage, h
 
 static hf_status export_pattern(const hf_export_request *o, char *said, size_t size, hf_messages *messages)
 {
-    hf_summary summary;
+    static hf_summary summary;
     hf_pattern_table table;
     HF_TRY(hf_export_claim(o, o->output, messages));
     HF_TRY(hf_store_read_summary(o->file, &summary, messages));

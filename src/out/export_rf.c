@@ -234,7 +234,7 @@ static hf_status write_rf(const hf_export_request *o, const hf_export_stored *st
                           hf_messages *messages)
 {
     static const char *const name[3] = {"surface.grd", "points.csv", "facets.stl"};
-    char path[3][PATH_MAX];
+    static char path[3][PATH_MAX];
     view v = {.stored = stored};
     const hf_surface_settings *surface = &stored->summary.surface;
     if (!(surface->focal_length_m > 0))

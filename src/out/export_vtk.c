@@ -375,7 +375,7 @@ static hf_status claim_states(const hf_export_request *o, const hf_summary *s, c
 static hf_status write_state(const hf_export_request *o, int k, const hf_scene *scene, const hf_summary *summary,
                              scratch *t, hf_messages *messages)
 {
-    char path[N_STATE_FILE][PATH_MAX];
+    static char path[N_STATE_FILE][PATH_MAX];
     const char *name = summary->state[k].name;
     hf_shape shape = {0};
     for (int i = 0; i < N_STATE_FILE; i++)
@@ -410,7 +410,7 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
                                              "truss", /* by hf_stage */
                                              "form_facets", "optimize_facets", "polish_facets", "theoretical_facets"};
     bool has[N_FILE] = {true, hf_summary_has_best_shape(summary), summary->has_polish, true, summary->has_truss};
-    char path[N_FILE][PATH_MAX];
+    static char path[N_FILE][PATH_MAX];
     for (int i = 0; i < N_FILE; i++) { /* all names are checked before anything is made */
         if (i >= FACETS) has[i] = has[i - FACETS] && t->facets.n_facet > 0;
         if (snprintf(path[i], PATH_MAX, "%s/%s.hdf", o->output, name[i]) >= PATH_MAX)
@@ -435,7 +435,7 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
 static hf_status export_vtk(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
 {
     hf_scene scene = {0};
-    hf_summary summary;
+    static hf_summary summary;
     scratch t = {0};
     hf_arena arena = {0};
     HF_TRY(hf_store_read_summary(request->file, &summary, messages));

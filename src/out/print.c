@@ -12,7 +12,7 @@
 
 static void print_escaped(const char *text, FILE *f)
 {
-    char shown[LINE_SIZE];
+    static char shown[LINE_SIZE];
     hf_text_escape(text, shown, sizeof shown);
     fputs(shown, f);
     fputc('\n', f);
@@ -20,7 +20,7 @@ static void print_escaped(const char *text, FILE *f)
 
 void hf_print_line(FILE *f, const char *format, ...)
 {
-    char text[LINE_SIZE];
+    static char text[LINE_SIZE];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
@@ -30,7 +30,7 @@ void hf_print_line(FILE *f, const char *format, ...)
 
 void hf_print_lines(const char *lines, FILE *f)
 {
-    char text[LINE_SIZE];
+    static char text[LINE_SIZE];
     for (size_t n; *lines; lines += n + (lines[n] != '\0')) {
         n = strcspn(lines, "\n");
         snprintf(text, sizeof text, "%.*s", (int)n, lines);

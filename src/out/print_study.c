@@ -477,7 +477,8 @@ static void choose_rows(table *t, bool all)
 
 void hf_print_study(const hf_merged *m, hf_print_style style, FILE *f)
 {
-    table t = {.m = m};
+    static table t;
+    t = (table){.m = m};
     choose_rows(&t, style.verbose);
     add_columns(&t);
     if (style.has_colour) fputs(HF_PRINT_BOLD, f);

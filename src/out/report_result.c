@@ -491,7 +491,9 @@ static void free_page(page *p)
 hf_status hf_report_result(const char *path, const char *other, const hf_report_part *part, const char *output,
                            hf_messages *messages)
 {
-    page p = {.path = path, .part = part}, beside = {.path = other};
+    static page p, beside;
+    p = (page){.path = path, .part = part};
+    beside = (page){.path = other};
     hf_status status = read_page(&p, messages);
     if (status == HF_OK && other) {
         status = read_page(&beside, messages);

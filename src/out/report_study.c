@@ -181,7 +181,7 @@ static void write_page(const void *context, FILE *f)
  * another folder links by absolute paths. */
 static void find_folders(study_page *p, const char *output)
 {
-    char merge_folder[LINK_SIZE], page_folder[LINK_SIZE], merge_real[PATH_MAX], page_real[PATH_MAX];
+    static char merge_folder[LINK_SIZE], page_folder[LINK_SIZE], merge_real[PATH_MAX], page_real[PATH_MAX];
     snprintf(p->folder, sizeof p->folder, "%.*s", hf_path_prefix_length(p->merged.path), p->merged.path);
     hf_path_folder(p->merged.path, merge_folder, sizeof merge_folder);
     hf_path_folder(output, page_folder, sizeof page_folder);
@@ -192,7 +192,8 @@ static void find_folders(study_page *p, const char *output)
 
 hf_status hf_report_study(const char *path, const char *output, hf_messages *messages)
 {
-    study_page p = {0};
+    static study_page p;
+    p = (study_page){0};
     hf_status status = hf_merged_read(path, &p.merged, messages);
     find_folders(&p, output);
     if (status == HF_OK) status = hf_store_read_links(path, "/runs", &p.merged.id, &p.file, messages);

@@ -557,14 +557,17 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
 hf_status hf_run_case(const hf_run_request *request, hf_summary *summary, char output[HF_OUTPUT_SIZE],
                       hf_messages *messages)
 {
-    run r = {.request = request};
+    run *r = calloc(1, sizeof *r);
     if (request->unsettled) *request->unsettled = NULL;
     *summary = (hf_summary){.form.status = HF_NOT_EVALUATED, .threads = 1};
     snprintf(summary->version, sizeof summary->version, "%s", hf_store_version());
     output[0] = '\0';
-    hf_status status = execute(&r, summary, output, messages);
+    if (!r) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", request->case_path);
+    r->request = request;
+    hf_status status = execute(r, summary, output, messages);
     bool is_kept = leaves_result(status) || (summary->finished && summary->status == status);
     if (!is_kept || hf_tolerance_stage_is_task(request)) output[0] = '\0';
-    run_free(&r);
+    run_free(r);
+    free(r);
     return status;
 }

@@ -20,7 +20,7 @@ enum { DIFFERENCES_SIZE = 640 };
 
 /* A front as it is in its file. */
 typedef struct {
-    hf_summary summary;
+    hf_summary *summary;
     hf_front front;
     char *gene;
     size_t gene_size;
@@ -107,9 +107,9 @@ static hf_status check_point(const hf_problem *p, const stored_front *f, const h
     if (point->status != HF_OK)
         return hf_error(messages, HF_BAD_USAGE, "%s: point %d of its front failed and has no design: %s", taken->path,
                         taken->point, hf_status_text(point->status));
-    if (!has_objectives(p, &f->summary) || !has_variables(p, f))
+    if (!has_objectives(p, f->summary) || !has_variables(p, f))
         return hf_error(messages, HF_BAD_CASE, "%s: its front has other %s than %s: " MADE_OF, taken->path,
-                        has_objectives(p, &f->summary) ? "variables" : "objectives", p->settings.path,
+                        has_objectives(p, f->summary) ? "variables" : "objectives", p->settings.path,
                         tell_keys(p, words));
     if (point->mark == HF_FRONT_DOMINATED)
         hf_warning(messages, "%s: point %d is dominated: another point of its front is as good in all objectives",
@@ -136,18 +136,20 @@ static hf_status take(const hf_front *front, hf_front_origin *origin, hf_taken_p
 hf_status hf_take_point_read(const char *point, hf_problem *p, hf_taken_point *taken, hf_messages *messages)
 {
     hf_front_origin *origin = &p->settings.taken;
-    stored_front f = {0};
     HF_TRY(read_words(point, origin, messages));
-    HF_TRY(hf_store_read_summary(origin->path, &f.summary, messages));
-    if (!f.summary.has_front)
-        return hf_error(messages, HF_BAD_USAGE,
-                        "%s: has no front, so no points: a run of a case with optimize.objectives makes one",
-                        origin->path);
-    hf_status status = hf_store_read_front(origin->path, &f.front, &f.gene, &f.gene_size, messages);
+    stored_front f = {.summary = malloc(sizeof *f.summary)};
+    if (!f.summary) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", origin->path);
+    hf_status status = hf_store_read_summary(origin->path, f.summary, messages);
+    if (status == HF_OK && !f.summary->has_front)
+        status = hf_error(messages, HF_BAD_USAGE,
+                          "%s: has no front, so no points: a run of a case with optimize.objectives makes one",
+                          origin->path);
+    if (status == HF_OK) status = hf_store_read_front(origin->path, &f.front, &f.gene, &f.gene_size, messages);
     if (status == HF_OK) status = check_point(p, &f, origin, messages);
     if (status == HF_OK) status = take(&f.front, origin, taken, messages);
     hf_front_free(&f.front);
     free(f.gene);
+    free(f.summary);
     return status;
 }
 

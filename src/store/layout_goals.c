@@ -40,20 +40,20 @@ static hf_hdf5_array after_fit(int n)
     return (hf_hdf5_array){"after_fit", HF_KIND_INT, 1, {(hsize_t)n}, "", help};
 }
 
-void hf_layout_put_goals(hf_hdf5 *io, const hf_summary *summary)
+void hf_layout_put_goals(hf_hdf5 *io, const hf_summary *s)
 {
-    hf_summary s = *summary;
-    if (s.goals.n == 0) return;
-    hf_hdf5_array name = names(s.goals.n), weight = values("weight", s.goals.n, "of the value in the merit"),
-                  fit = after_fit(s.goals.n);
+    const hf_goal_list *g = &s->goals;
+    if (g->n == 0) return;
+    hf_hdf5_array name = names(g->n), weight = values("weight", g->n, "of the value in the merit"),
+                  fit = after_fit(g->n);
     hf_layout_renew(io, "/goals");
     hid_t group = hf_hdf5_make_group(io, "/goals");
-    hf_hdf5_write_array(io, group, &name, s.goals.name);
-    hf_hdf5_write_array(io, group, &fit, s.goals.after_fit);
-    if (!s.goals.are_objectives) hf_hdf5_write_array(io, group, &weight, s.goals.weight);
+    hf_hdf5_write_array(io, group, &name, g->name);
+    hf_hdf5_write_array(io, group, &fit, g->after_fit);
+    if (!g->are_objectives) hf_hdf5_write_array(io, group, &weight, g->weight);
     for (int stage = 0; stage < N_STAGE; stage++) {
-        hf_hdf5_array value = values(stage_name[stage], s.goals.n, "value of each goal, in its own unit");
-        if (has_stage(&s, stage)) hf_hdf5_write_array(io, group, &value, goals_of(&s, stage)->goal);
+        hf_hdf5_array value = values(stage_name[stage], g->n, "value of each goal, in its own unit");
+        if (has_stage(s, stage)) hf_hdf5_write_array(io, group, &value, hf_layout_goals(s, stage));
     }
     hf_hdf5_close(io, group);
 }

@@ -20,6 +20,7 @@ typedef struct {
     hf_hdf5 io;
     const hf_study *study;
     const hf_points *points;
+    hf_file_out out;
     void *room; /* one column of any kind but texts: [n_point][2] of 8 bytes */
 } merger;
 
@@ -252,11 +253,12 @@ static void write_points(merger *m)
 /* The folder as seen from the folder of the output; the absolute path where there is none. */
 static void relative_folder(const char *output, const char *folder, char *to, size_t size)
 {
-    char here[PATH_MAX + 1], there[PATH_MAX + 1], parent[PATH_MAX]; /* a slash is added */
+    char here[PATH_MAX + 1], there[PATH_MAX + 1]; /* a slash is added */
     size_t used = 0, common = 0;
-    hf_path_folder(output, parent, sizeof parent);
-    snprintf(to, size, "%s", folder);
-    if (!realpath(parent, here) || !realpath(folder, there)) return;
+    if (!hf_path_folder(output, to, size) || !realpath(to, here) || !realpath(folder, there)) {
+        snprintf(to, size, "%s", folder);
+        return;
+    }
     strcat(strcmp(here, "/") ? here : strcpy(here, ""), "/");
     strcat(there, "/");
     for (size_t i = 0; here[i] && here[i] == there[i]; i++)
@@ -274,13 +276,15 @@ static void relative_folder(const char *output, const char *folder, char *to, si
 
 static void write_links(merger *m, const char *folder)
 {
-    char relative[PATH_MAX + 1], file[HF_PATH_SIZE + 32], target[PATH_MAX + 64];
+    char target[PATH_MAX + 64], file[HF_PATH_SIZE + 32];
     hid_t group = hf_hdf5_make_group(&m->io, "/runs");
-    relative_folder(m->io.path, folder, relative, sizeof relative);
+    relative_folder(m->io.path, folder, target, PATH_MAX + 1);
+    if (!*target) strcpy(target, ".");
+    size_t n = strlen(target);
     for (int i = 0; i < m->study->n_point && m->io.status == HF_OK; i++) {
         const char *id = m->study->id[i];
         if (hf_ledger_file(folder, m->study, i, file) != HF_LEDGER_FILE) continue;
-        snprintf(target, sizeof target, "%s/%s", *relative ? relative : ".", hf_path_name(file));
+        snprintf(target + n, sizeof target - n, "/%s", hf_path_name(file));
         if (H5Lcreate_external(target, "/", group, id, H5P_DEFAULT, H5P_DEFAULT) < 0)
             hf_hdf5_fail(&m->io, "write", group, id);
     }
@@ -388,27 +392,37 @@ static hf_status spare_inputs(const hf_study *s, const char *folder, const char 
     return hf_error(messages, HF_EXISTS, "%s: belongs to the sweep in %s; choose another name", path, folder);
 }
 
+static hf_status merge(merger *m, const char *folder, const char *output, bool force, hf_messages *messages)
+{
+    m->io = (hf_hdf5){.path = m->out.path, .messages = messages, .status = HF_OK, .file = -1};
+    HF_TRY(hf_file_out_target(output, m->out.path, messages));
+    HF_TRY(hf_store_file_check(m->out.path, messages));
+    HF_TRY(spare_inputs(m->study, folder, m->out.path, messages));
+    if (!force) HF_TRY(check_output(m->out.path, messages));
+    m->room = calloc((size_t)m->study->n_point, 2 * sizeof(double));
+    if (!m->room) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", output);
+    hf_hdf5_lock();
+    m->io.status = hf_file_out_begin(output, &m->out, messages);
+    if (m->io.status == HF_OK) {
+        hf_hdf5_create_file(&m->io, &m->out);
+        if (m->io.status == HF_OK) write_all(m, folder);
+        if (m->io.status == HF_OK)
+            m->io.status = hf_file_out_publish(&m->out, messages);
+        else
+            hf_file_out_drop(&m->out);
+    }
+    free(m->room);
+    return hf_hdf5_unlock(m->io.status);
+}
+
 hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *points, const char *output, bool force,
                    hf_messages *messages)
 {
-    hf_file_out out;
-    merger m = {{.path = out.path, .messages = messages, .status = HF_OK, .file = -1}, study, points, NULL};
-    HF_TRY(hf_file_out_target(output, out.path, messages));
-    HF_TRY(hf_store_file_check(out.path, messages));
-    HF_TRY(spare_inputs(study, folder, out.path, messages));
-    if (!force) HF_TRY(check_output(out.path, messages));
-    m.room = calloc((size_t)study->n_point, 2 * sizeof(double));
-    if (!m.room) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", output);
-    hf_hdf5_lock();
-    m.io.status = hf_file_out_begin(output, &out, messages);
-    if (m.io.status == HF_OK) {
-        hf_hdf5_create_file(&m.io, &out);
-        if (m.io.status == HF_OK) write_all(&m, folder);
-        if (m.io.status == HF_OK)
-            m.io.status = hf_file_out_publish(&out, messages);
-        else
-            hf_file_out_drop(&out);
-    }
-    free(m.room);
-    return hf_hdf5_unlock(m.io.status);
+    merger *m = calloc(1, sizeof *m);
+    if (!m) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", output);
+    m->study = study;
+    m->points = points;
+    hf_status status = merge(m, folder, output, force, messages);
+    free(m);
+    return status;
 }

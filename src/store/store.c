@@ -430,11 +430,17 @@ hf_status hf_store_generation(hf_store *s, const hf_model *m, const hf_populatio
 
 static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
 {
-    hf_summary state = *summary;
+    hf_summary *state = malloc(sizeof *state);
+    if (!state) {
+        hf_hdf5_no_memory(&s->f.io);
+        return;
+    }
+    *state = *summary;
     /* these groups exist already, unless the run had no shape or no generation to store */
     hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/form"));
-    state.finished = finished;
-    hf_layout_put_summary(&s->f.io, HF_LAYOUT_FORM, &state);
+    state->finished = finished;
+    hf_layout_put_summary(&s->f.io, HF_LAYOUT_FORM, state);
+    free(state);
     if (summary->has_optimize || s->rows.block) { /* before the first generation, too: what is known already */
         hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/ga"));
         hf_layout_put_summary(&s->f.io, HF_LAYOUT_GA, summary);

@@ -107,13 +107,17 @@ static const char *name_point(const hf_front_origin *taken, char *text, size_t s
 /* Which keys differ between the stored case and this one, or the points that they took, in words. */
 static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t size)
 {
-    hf_case then = {0};
+    hf_case *then = calloc(1, sizeof *then);
     char one[300], other[300];
     hf_front_origin taken = {0};
+    if (!then) {
+        hf_hdf5_no_memory(io);
+        return;
+    }
     hf_layout_get_taken(io, &taken);
-    if (!hf_store_parse_case(io, now->path, &then))
+    if (!hf_store_parse_case(io, now->path, then))
         snprintf(words, size, "%s", "keys that this version does not know");
-    else if (hf_config_differences(&then, now, words, size) > 0)
+    else if (hf_config_differences(then, now, words, size) > 0)
         ;
     else if (taken.point && taken.point == now->taken.point && strcmp(taken.sha256, now->taken.sha256) != 0)
         snprintf(words, size, "it has %s, whose design is another one in the front that is there now",
@@ -124,7 +128,8 @@ static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t
     else
         snprintf(words, size, "%s",
                  "no key, but comments and layout of the case, or its tables of the net or of the truss");
-    hf_case_free(&then);
+    hf_case_free(then);
+    free(then);
 }
 
 /* A run that was killed after its result had got its name leaves a journal that nobody needs, and perhaps the temporary
@@ -156,12 +161,13 @@ static void ignore_difference(void *context, const char *name, const char *how)
 static void read_like_a_run(const char *path)
 {
     hf_messages unwanted = {0};
-    hf_summary summary;
+    hf_summary *summary = malloc(sizeof *summary);
     hf_comparison comparison = {0};
     hf_hdf5_limit();
-    hf_status status = hf_store_read_summary(path, &summary, &unwanted);
-    if (status == HF_OK && !summary.finished)
+    hf_status status = summary ? hf_store_read_summary(path, summary, &unwanted) : HF_NO_MEMORY;
+    if (status == HF_OK && !summary->finished)
         hf_compare_files(path, path, &comparison, ignore_difference, NULL, &unwanted);
+    free(summary);
 }
 
 hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, const hf_truss *truss,

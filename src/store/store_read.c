@@ -390,16 +390,18 @@ void hf_store_read_case(hf_hdf5 *io, hf_case *settings)
 
 int hf_store_case_differences(const char *path, const hf_case *settings, char *text, size_t size)
 {
-    hf_case then = {0};
+    hf_case *then = calloc(1, sizeof *then);
     hf_messages unwanted = {0};
+    *text = '\0';
+    if (!then) return 0;
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, &unwanted);
-    bool is_known = io.status == HF_OK && hf_store_parse_case(&io, settings->path, &then);
+    bool is_known = io.status == HF_OK && hf_store_parse_case(&io, settings->path, then);
     hf_hdf5_close_file(&io);
     is_known = hf_hdf5_unlock(io.status) == HF_OK && is_known;
-    *text = '\0';
-    int n = is_known ? hf_config_differences(&then, settings, text, size) : 0;
-    hf_case_free(&then);
+    int n = is_known ? hf_config_differences(then, settings, text, size) : 0;
+    hf_case_free(then);
+    free(then);
     hf_messages_free(&unwanted);
     return n;
 }
@@ -417,7 +419,7 @@ hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf
     size_t used = 0;
     *text = '\0';
     for (int i = 0; i < HF_HDF5_COUNT(from); i++) {
-        char value[8192] = "", line[8192]; /* the flags of a build may be long */
+        char value[6144] = "", line[6144]; /* the flags of a build may be long */
         if (!hf_hdf5_has_chars(&io, io.file, from[i][0], from[i][1])) continue;
         hf_hdf5_get(&io, io.file, from[i][0], from[i][1], HF_KIND_CHARS, value, sizeof value);
         hf_text_escape(value, line, sizeof line); /* a line each, whatever it holds */

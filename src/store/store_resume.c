@@ -401,26 +401,35 @@ static void close_stored_search(stored_search *a)
     free(a->rows);
 }
 
-hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages)
+/* *a is all zeros. */
+static hf_status recover(const char *path, stored_search *a, hf_summary *summary, hf_messages *messages)
 {
     hf_store *s;
-    stored_search a = {0};
+    HF_TRY(hf_store_resume(path, &s, messages));
+    hf_hdf5_lock();
+    s->f.io.messages = messages;
+    if (s->n_journal)
+        open_stored_search(s, a);
+    else
+        hf_generations_sum_up(&s->f.io, &s->rows, summary);
+    hf_status status = hf_hdf5_unlock(s->f.io.status);
+    if (status == HF_OK && s->n_journal) status = restore(s, &a->optimiser, 0, summary, messages);
+    if (status == HF_OK) status = hf_store_publish(s, summary, true, messages);
+    close_stored_search(a);
+    hf_store_end(s);
+    return status;
+}
+
+hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages)
+{
     HF_TRY(hf_store_read_summary(path, summary, messages));
     if (summary->finished) {
         hf_warning(messages, "%s: is finished: there is nothing to recover", path);
         return HF_OK;
     }
-    HF_TRY(hf_store_resume(path, &s, messages));
-    hf_hdf5_lock();
-    s->f.io.messages = messages;
-    if (s->n_journal)
-        open_stored_search(s, &a);
-    else
-        hf_generations_sum_up(&s->f.io, &s->rows, summary);
-    hf_status status = hf_hdf5_unlock(s->f.io.status);
-    if (status == HF_OK && s->n_journal) status = restore(s, &a.optimiser, 0, summary, messages);
-    if (status == HF_OK) status = hf_store_publish(s, summary, true, messages);
-    close_stored_search(&a);
-    hf_store_end(s);
+    stored_search *a = calloc(1, sizeof *a);
+    if (!a) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    hf_status status = recover(path, a, summary, messages);
+    free(a);
     return status;
 }
