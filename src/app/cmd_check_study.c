@@ -9,8 +9,8 @@
 #include <string.h>
 
 #define VALUES_TOLD 6 /* of an axis; of more the first and the last */
-#define MAKING_S 5.0 /* the nets of so many points are made as this time allows, */
-#define MANY 100000  /* and of more points than these as this one allows: */
+#define MAKING_S 5.0  /* the nets of so many points are made as this time allows, */
+#define MANY 100000   /* and of more points than these as this one allows: */
 #define MAKING_FEW_S 0.5
 #define MADE_LEAST 1000 /* until one can be run */
 
@@ -78,7 +78,8 @@ static hf_status try_points(const hf_study *s, trial *t, hf_messages *messages)
     static hf_problem p; /* too large for a small stack */
     double end_s = hf_clock_s() + (s->n_point > MANY ? MAKING_FEW_S : MAKING_S);
     *t = (trial){.first = -1};
-    for (; t->n_tried < s->n_point && (hf_clock_s() < end_s || (t->first < 0 && t->n_tried < MADE_LEAST)); t->n_tried++) {
+    for (; t->n_tried < s->n_point && (hf_clock_s() < end_s || (t->first < 0 && t->n_tried < MADE_LEAST));
+         t->n_tried++) {
         int i = hf_study_spread(s, t->n_tried);
         hf_study_overrides o;
         hf_messages found = {0};

@@ -21,11 +21,11 @@ static hf_status refuse_kind(const char *path, hf_status code, hf_messages *mess
 {
     struct stat info = {0};
     stat(path, &info);
-    const char *kind = S_ISDIR(info.st_mode)                              ? "a folder"
-                       : S_ISFIFO(info.st_mode)                           ? "a pipe"
+    const char *kind = S_ISDIR(info.st_mode)                            ? "a folder"
+                       : S_ISFIFO(info.st_mode)                         ? "a pipe"
                        : S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode) ? "a device"
-                       : S_ISSOCK(info.st_mode)                           ? "a socket"
-                                                                          : "no file of the disk";
+                       : S_ISSOCK(info.st_mode)                         ? "a socket"
+                                                                        : "no file of the disk";
     return hf_error(messages, code, "%s: is %s; name an ordinary file", path, kind);
 }
 

@@ -165,8 +165,7 @@ static void set_value(reader *r, hf_study_axis *axis, int k, const char *value, 
                                                        : quote(r, axis->key.field, value, text);
     bool is_one_line = !strchr(value, '\n');
     hf_status status = fits && is_one_line ? HF_OK : HF_BAD_CASE;
-    if (status == HF_OK && !hf_config_is_in_range(axis->key.field, text))
-        status = check_value(r, axis, text, mark);
+    if (status == HF_OK && !hf_config_is_in_range(axis->key.field, text)) status = check_value(r, axis, text, mark);
     if (!fits) fault(r, mark, key, "is too long");
     if (!is_one_line) fault(r, mark, key, "a value must be on one line");
     if (status != HF_OK) {

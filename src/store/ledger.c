@@ -173,8 +173,8 @@ hf_status hf_ledger_write(hf_ledger *l, const hf_study *study, int point, hf_sta
 {
     char *line = malloc(2 * LINE_SIZE); /* the second half is for the names of the columns */
     if (!line) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for a row", l->folder);
-    size_t used = (size_t)snprintf(line, LINE_SIZE, "%s\t%s\t%s\t", study->id[point], study->fingerprint,
-                                   hf_status_word(status));
+    size_t used =
+        (size_t)snprintf(line, LINE_SIZE, "%s\t%s\t%s\t", study->id[point], study->fingerprint, hf_status_word(status));
     used += put_reason(reason, line + used);
     for (int i = 0; i < hf_ledger_n_field(); i++) {
         line[used++] = '\t';
@@ -371,7 +371,8 @@ static off_t note_rows(struct hf_ledger_news *news, const hf_study *study, char 
     char *line = text, *end, *field[3];
     for (; (end = strchr(line, '\n')) != NULL; line = end + 1) {
         *end = '\0';
-        int i = split(line, field, 3) == 3 && !strcmp(field[1], study->fingerprint) ? hf_study_find(study, field[0]) : -1;
+        int i =
+            split(line, field, 3) == 3 && !strcmp(field[1], study->fingerprint) ? hf_study_find(study, field[0]) : -1;
         if (i >= 0) news->is_finished[i] = true;
     }
     return line - text;
