@@ -46,8 +46,11 @@ class HifdmError(Exception):
     """
 
     def __init__(self, status: str, message: str):
-        super().__init__(message)
+        super().__init__(status, message)  # what pickle makes it of again, in another process
         self.status = status
+
+    def __str__(self) -> str:
+        return self.args[1]
 
 
 def _candidates() -> list[str]:

@@ -207,6 +207,10 @@ class Case:
         self._goals = [name for name in self.figure_names if name.startswith("goal_")]
         self._result = [self._texts(name) for name in ("result", "result_kind")]
 
+    def __reduce__(self) -> Any:
+        raise TypeError("a Case belongs to its process and cannot be copied or pickled: open it in each process, "
+                        "and pass designs and results")
+
     # ---- calls ----
 
     @staticmethod

@@ -21,6 +21,9 @@ class Result:
 
         self.h5 = h5py.File(path, "r")
 
+    def __reduce__(self):
+        raise TypeError("a Result is an open file and cannot be copied or pickled: pass its path, or arrays of it")
+
     def __enter__(self) -> Result:
         return self
 
