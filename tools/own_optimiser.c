@@ -72,6 +72,7 @@ static hf_status search(const char *path, thing *t)
 int main(int argc, char **argv)
 {
     thing t = {0};
+    hf_batch_wait_quietly(argv);
     if (argc != 2) {
         fprintf(stderr, "usage: %s CASE\n", argv[0]);
         return 2;

@@ -11,6 +11,8 @@
  * Memory. What is given to hf_flat_open..., hf_flat_nodes, hf_flat_cables and hf_flat_sets is borrowed until
  *     hf_flat_free; everything else is copied. A text that is returned is valid until the next call with its handle.
  * Threads. A handle belongs to one thread at a time, but for hf_flat_stop; any number of handles may work at once.
+ * Waiting. Set OMP_WAIT_POLICY=passive and GOMP_SPINCOUNT=2000 in the environment before the library is loaded
+ *     (hf_batch_wait_quietly in batch.h says why); the Python package does.
  * GSL. See hifdm.h: call gsl_set_error_handler_off() once. */
 #ifndef HIFDM_FLAT_H
 #define HIFDM_FLAT_H

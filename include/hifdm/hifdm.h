@@ -21,6 +21,7 @@
  * Threads. No state is kept outside these structs. A scene, model, truss, frame, carrier or evaluator does not change
  *     once it is made, so threads share it; a workspace, batch, problem, optimiser or store belongs to one thread at a
  *     time.
+ * Waiting. Threads that wait for others spin for long unless the environment says otherwise: hf_batch_wait_quietly.
  * GSL. GSL has one error handler for the whole program, which by default ends it even where GSL only reports "no
  *     progress": call gsl_set_error_handler_off() (gsl/gsl_errno.h) before hf_surface_measure, hf_surface_fit_points,
  *     or hf_run_case for a case with a surface section. */

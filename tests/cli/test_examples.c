@@ -82,6 +82,24 @@ START_TEST(own_optimiser_finds_a_better_net)
 }
 END_TEST
 
+/* The OpenMP that is read again is told how to wait; what the user has set is left alone. */
+START_TEST(a_program_may_wait_quietly)
+{
+    static const char run[] =
+        "env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT OMP_DISPLAY_ENV=VERBOSE $3 \"$1\" \"$2\" 2>&1 | "
+        "grep -e GOMP_SPINCOUNT -e OMP_WAIT_POLICY | tr -d \"' \"";
+    const char *program = built(BUILD_SHARED, "own_optimiser"), *path = file_with("small.yaml", SMALL_SCENE);
+    SHELL(0, run, program, path, "");
+    ck_assert_ptr_nonnull(strstr(said.out, "OMP_WAIT_POLICY=PASSIVE\n"));
+    ck_assert_ptr_nonnull(strstr(said.out, "GOMP_SPINCOUNT=2000\n"));
+    SHELL(0, run, program, path, "GOMP_SPINCOUNT=5");
+    ck_assert_str_eq(said.out, "OMP_WAIT_POLICY=PASSIVE\nGOMP_SPINCOUNT=5\n");
+    SHELL(0, run, program, path, "OMP_WAIT_POLICY=active");
+    ck_assert_ptr_nonnull(strstr(said.out, "OMP_WAIT_POLICY=ACTIVE\n"));
+    ck_assert_ptr_null(strstr(said.out, "2000"));
+}
+END_TEST
+
 START_TEST(own_optimiser_tells_what_is_wrong)
 {
     const char *program = built(BUILD_STATIC, "own_optimiser");
@@ -287,6 +305,7 @@ Suite *suite_cli_examples(void)
     TCase *tcase = tcase_create("examples");
     tcase_add_test(tcase, python_reads_and_draws_a_result);
     tcase_add_test(tcase, own_optimiser_finds_a_better_net);
+    tcase_add_test(tcase, a_program_may_wait_quietly);
     tcase_add_test(tcase, own_optimiser_tells_what_is_wrong);
     tcase_add_test(tcase, c_reads_a_result);
     tcase_add_test(tcase, the_library_serves_cpp);

@@ -225,6 +225,21 @@ class Library(unittest.TestCase):
         self.assertEqual(ours, found)
         self.assertEqual(int(re.search(r"#define HF_FLAT_INTERFACE (\d+)", text)[1]), _library.INTERFACE)
 
+    def test_threads_wait_quietly(self):
+        """OpenMP is told so while it is loaded, unless the user tells it; nothing is left in the environment."""
+        script = "import hifdm, os; print(*(os.environ.get(n) for n in ('OMP_WAIT_POLICY', 'GOMP_SPINCOUNT')))"
+        plain = {key: value for key, value in os.environ.items() if key not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")}
+        for given, left, policy, spins in (({}, "None None", "PASSIVE", "2000"),
+                                           ({"GOMP_SPINCOUNT": "5"}, "None 5", "PASSIVE", "5"),
+                                           ({"OMP_WAIT_POLICY": "active"}, "active None", "ACTIVE", None)):
+            out = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True,
+                                 env={**plain, **given, "OMP_DISPLAY_ENV": "VERBOSE"})
+            self.assertEqual(out.stdout, left + "\n")
+            told = dict(re.findall(r"(\w+) = '(\w+)'", out.stderr))
+            self.assertEqual(told["OMP_WAIT_POLICY"], policy)
+            self.assertEqual(told["GOMP_SPINCOUNT"], spins or told["GOMP_SPINCOUNT"])
+            self.assertEqual(told["GOMP_SPINCOUNT"] == "2000", spins == "2000")
+
     def test_another_library_is_refused(self):
         """One that is none of ours, and one with another interface."""
         other = temp("other.so")
