@@ -69,6 +69,15 @@ double hf_print_loss_dB(double loss_dB)
     return loss_dB < LEAST_DB ? 0 : loss_dB;
 }
 
+const char *hf_print_change(double value, double base, char text[HF_PRINT_CHANGE_SIZE])
+{
+    double below = 100 * (1 - value / base);
+    int n = snprintf(text, HF_PRINT_CHANGE_SIZE, "%.2f %%", fabs(below));
+    snprintf(text + n, HF_PRINT_CHANGE_SIZE - (size_t)n, below > 0 ? " below" : " above");
+    if (!strncmp(text, "0.00 ", 5)) strcpy(text, "as large as");
+    return text;
+}
+
 double hf_print_scale(const char *unit, const char **told)
 {
     *told = !strcmp(unit, "m") ? "mm" : !strcmp(unit, "Hz") ? "GHz" : unit;

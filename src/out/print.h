@@ -32,6 +32,10 @@ void hf_print_duration(double seconds, char *text, size_t size);
 /* "4.2315", "inf", or "-" when it has no value. */
 const char *hf_print_decimals(double value, char text[32]);
 
+/* Where a value lies of a base above 0: "34.89 % below", "38.03 % above", and "as large as" for what rounds to 0. */
+#define HF_PRINT_CHANGE_SIZE 48
+const char *hf_print_change(double value, double base, char text[HF_PRINT_CHANGE_SIZE]);
+
 /* By what a value in this unit of files is multiplied where people are told it in another: m in mm, Hz in GHz. */
 double hf_print_scale(const char *unit, const char **told);
 

@@ -148,7 +148,7 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
 
 static void print_optimize(const hf_summary *s, FILE *f)
 {
-    char wall[32];
+    char wall[32], change[HF_PRINT_CHANGE_SIZE];
     hf_print_duration(s->optimize_wall_s, wall, sizeof wall);
     if (s->best.status != HF_OK) {
         fprintf(f, "  optimisation  no feasible design in %ld evaluations, %s\n", s->evaluations, wall);
@@ -158,10 +158,10 @@ static void print_optimize(const hf_summary *s, FILE *f)
     if (s->has_front)
         fprintf(f, ": the end of the front with the least %s", s->goals.name[0]);
     else if (s->goals.n > 0 && !s->goals.are_objectives && s->form.merit > 0) /* psi says nothing of goals */
-        fprintf(f, ", merit %.6g, %.2f %% below that of the form-finding", s->best.merit,
-                100 * (1 - s->best.merit / s->form.merit));
+        fprintf(f, ", merit %.6g, %s that of the form-finding", s->best.merit,
+                hf_print_change(s->best.merit, s->form.merit, change));
     else /* evaluated under the rule of the optimisation, so that only the tensions differ */
-        hf_print_below(s, s->best.psi_m, s->base_psi_m, f);
+        hf_print_gained(s, s->best.psi_m, s->base_psi_m, f);
     fprintf(f, "; found in generation %d\n", s->best_generation);
     print_result(&s->best, f);
     if (s->best_n_at_lower + s->best_n_at_upper > 0)

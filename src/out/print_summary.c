@@ -68,12 +68,12 @@ static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, F
     fputc(')', f);
 }
 
-void hf_print_below(const hf_summary *s, double psi_m, double base_psi_m, FILE *f)
+void hf_print_gained(const hf_summary *s, double psi_m, double base_psi_m, FILE *f)
 {
-    char base[32], form[32];
+    char base[32], form[32], change[HF_PRINT_CHANGE_SIZE];
     if (!(base_psi_m * 1e3 >= TOLD_MM) || !isfinite(base_psi_m)) return;
     bool is_same = !strcmp(hf_print_decimals(base_psi_m * 1e3, base), hf_print_decimals(s->form.psi_m * 1e3, form));
-    fprintf(f, ", %.2f %% below the %s mm of %s", 100 * (1 - psi_m / base_psi_m), base,
+    fprintf(f, ", %s the %s mm of %s", hf_print_change(psi_m, base_psi_m, change), base,
             is_same ? "the form-finding's tensions" : "the base design");
 }
 
@@ -84,7 +84,7 @@ static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
     const hf_form_result *r = result_of(s, stage);
     double base_psi_m = stage == HF_STAGE_OPTIMIZE ? s->base_psi_m : s->form.psi_m;
     if (stage == HF_STAGE_FORM || s->goals.are_objectives) return;
-    hf_print_below(s, r->psi_m, base_psi_m, f);
+    hf_print_gained(s, r->psi_m, base_psi_m, f);
 }
 
 /* Lengths in mm. */

@@ -24,8 +24,8 @@ void hf_print_objective(const char *before, const char *name, double value, FILE
 /* A line: the merit of a result, and the values of the goals behind it, or those of objectives. */
 void hf_print_goals(const hf_summary *summary, const hf_form_result *result, FILE *file);
 
-/* ", 56.90 % below the 19.7793 mm of ...": how far psi is below that of the base design, which is the form-finding's
- * shape unless optimize.rule finds another one for the same tensions. Nothing without a base. */
-void hf_print_below(const hf_summary *summary, double psi_m, double base_psi_m, FILE *file);
+/* ", 56.90 % below the 19.7793 mm of ...": psi beside that of the base design, which is the form-finding's shape unless
+ * optimize.rule finds another one for the same tensions. Nothing without a base. */
+void hf_print_gained(const hf_summary *summary, double psi_m, double base_psi_m, FILE *file);
 
 #endif

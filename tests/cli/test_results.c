@@ -21,6 +21,38 @@ START_TEST(every_data_set_has_units)
 }
 END_TEST
 
+/* The word for each sign, and for what rounds to 0; written out a second time, apart from the code. */
+START_TEST(a_change_has_the_word_of_its_sign)
+{
+    static const struct {
+        const char *part, *words; /* of the base in the result, of the file */
+    } change[] = {{"0.6197", "38.03 % below the "},
+                  {"1.3803", "38.03 % above the "},
+                  {"1.00004", "as large as the "},
+                  {"0.99996", "as large as the "},
+                  {"1", "as large as the "}};
+    static const char set[] = "import h5py, sys\n"
+                              "with h5py.File(sys.argv[1], 'r+') as f:\n"
+                              "    a, form = f['ga'].attrs, f['form'].attrs\n"
+                              "    a['best_psi_m'] = a['base_psi_m'] * float(sys.argv[2])\n"
+                              "    if 'merit' in form:\n"
+                              "        a['best_merit'] = form['merit'] * float(sys.argv[2])\n";
+    const char *out = temp("c.h5"), *goals = temp("g.h5");
+    const char *path =
+        file_with("c.yaml", SMALL_SCENE "optimize: {population: 4, generations: 1, compare_lm: false}\n");
+    HIFDM(0, "run", path, "-o", out, "--quiet");
+    HIFDM(0, "run", path, "-o", goals, "--quiet", "--set", "optimize.goals=[{goal: psi}]");
+    for (size_t i = 0; i < sizeof change / sizeof *change; i++) {
+        SHELL(0, "\"$1\" -c \"$2\" \"$3\" $4 && \"$0\" show \"$3\"", python_program(), set, out, change[i].part);
+        OUT(formatted(", %s", change[i].words));
+        ck_assert_ptr_null(strstr(said.out, "-38"));
+        SHELL(0, "\"$1\" -c \"$2\" \"$3\" $4 && \"$0\" show --verbose \"$3\"", python_program(), set, goals,
+              change[i].part);
+        OUT(formatted("%.*sthat of the form-finding; ", (int)strlen(change[i].words) - 4, change[i].words));
+    }
+}
+END_TEST
+
 START_TEST(h5dump_reads_the_file)
 {
     const char *const argv[] = {"h5dump", run_once(), NULL};
@@ -129,6 +161,7 @@ Suite *suite_cli_results(void)
     tcase_add_test(tcase, every_data_set_has_units);
     tcase_add_test(tcase, h5dump_reads_the_file);
     tcase_add_test(tcase, the_case_is_kept_with_its_digest);
+    tcase_add_test(tcase, a_change_has_the_word_of_its_sign);
     tcase_add_test(tcase, provenance_is_in_the_root_attributes);
     tcase_add_test(tcase, stored_shapes_belong_to_their_numbers);
     tcase_add_test(tcase, every_generation_is_there);

@@ -103,14 +103,11 @@ function writeFigures() {
     list.push(figure("ψ after form-finding", roundedMm(summary.form.psi_m), "mm"));
     // The genetic algorithm's base design can have another shape than the one found.
     const isFound = Math.abs(base - summary.form.psi_m) < 1e-6 * base;
+    const below = 100 * (1 - resultNumbers.psi_m / base),
+      size = Math.abs(below).toFixed(2),
+      side = Number(size) === 0 ? "against" : below > 0 ? "below" : "above";
     if (1e3 * base >= RESOLVED_MM)
-      list.push(
-        figure(
-          `ψ below that of the ${isFound ? "form-finding" : "base design"}`,
-          (100 * (1 - resultNumbers.psi_m / base)).toFixed(2),
-          "%",
-        ),
-      );
+      list.push(figure(`ψ ${side} that of the ${isFound ? "form-finding" : "base design"}`, size, "%"));
   }
   list.push(
     figure("tension ratio, inner cables", fmtRatio(resultNumbers.inner_tension_ratio)),
