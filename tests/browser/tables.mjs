@@ -158,6 +158,25 @@ async function checkCuts(tab, made, heads) {
   }
 }
 
+// A change of ψ has the word of its sign; in copies of the page with another base.
+export async function checkChange(browser, made, folder) {
+  const psi_m = made.summary.optimize.psi_m,
+    given = readFileSync(made.html, "utf8");
+  for (const [part, size, word] of [
+    [0.5, "100.00", "above"],
+    [2, "50.00", "below"],
+    [1.00001, "0.00", "against"],
+  ]) {
+    const copy = join(folder, `change-${word}.html`);
+    writeFileSync(copy, given.replace(/"base_psi_m": [^,}]*/, `"base_psi_m": ${part * psi_m}`));
+    const tab = await browser.newPage();
+    await tab.goto(pathToFileURL(copy).href);
+    assert.match(await tab.locator(".figures dt").nth(2).textContent(), new RegExp(`^ψ ${word} that of the `));
+    assert.equal(await tab.locator(".figures dd").nth(2).textContent(), `${size}%`);
+    await tab.close();
+  }
+}
+
 // A figure of which the page knows nothing but its row in the list of figures is in the summary with the words of that
 // row; in a copy of the page, which is given one.
 export async function checkUnknownFigure(browser, made, folder) {

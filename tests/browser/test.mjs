@@ -15,7 +15,7 @@ import { checkAdjust, checkFront, checkPattern, checkRounding, checkTolerance, c
 import { checkFacets, checkHover, checkMap, checkNet } from "./pictures.mjs";
 import { changes, csv, DATA, picture, settle } from "./see.mjs";
 import { checkPoints, checkSurfaceOfStudy } from "./study.mjs";
-import { checkCables, checkCharts, checkSummary, checkUnknownFigure } from "./tables.mjs";
+import { checkCables, checkChange, checkCharts, checkSummary, checkUnknownFigure } from "./tables.mjs";
 
 const { HIFDM, CHROMIUM, WORK } = process.env;
 const { chromium } = createRequire(join(WORK, "package.json"))("playwright-core");
@@ -181,6 +181,7 @@ async function test(browser, page) {
     const isOptimised = ["optimize", "polish", "front"].some((key) => key in made.summary);
     assert.equal(/ variables,/.test(await tab.locator("#subtitle").textContent()), isOptimised);
     if (page.name === "chen2022") await checkWords(tab, made);
+    if (page.name === "chen2022") await checkChange(browser, made, folder);
     const endless = await checkCharts(tab, 4, "#form-finding", /iteration \d+\s+ψ\s+[\d.]+.* mm/);
     await checkNet(tab, page, made);
     if (page.unlike) await checkUnlike(browser, tab, made, folder);
