@@ -203,7 +203,7 @@ START_TEST(what_is_no_file_is_told)
     HIFDM(2, "run", temp("missing.yaml"), NOWHERE);
     ERRS("error: %s: cannot open: No such file or directory\n", temp("missing.yaml"));
     HIFDM(2, "run", temp("."), NOWHERE);
-    ERR(": cannot read: Is a directory\n");
+    ERR(": is a folder; name an ordinary file\n");
     HIFDM(2, "run", "", NOWHERE);
     ERR("error: ");
     HIFDM(2, "check",
@@ -218,6 +218,69 @@ START_TEST(what_is_no_file_is_told)
     ERR("error: -: cannot open: No such file or directory\n");
     SHELL(0, "cd \"$1\" && ls | grep -v '^command-' | wc -l | tr -d '\\n'", temp("."));
     ck_assert_str_eq(said.out, "0");
+}
+END_TEST
+
+/* Every command that reads a text, of the file $2; $3 is in what each says. */
+static const char read_it[] =
+    "cd \"$1\" && f=\"$2\"; no=0\n"
+    "scene() { printf 'scene:\\n  import: {nodes: %s, cables: %s%s}\\nsurface: {focal_length_m: 1}\\n' \"$@\"; }\n"
+    "scene \"$f\" cables.csv '' >n.yaml; scene nodes.csv \"$f\" '' >e.yaml; scene nodes.csv cables.csv \", facets: "
+    "$f\" "
+    ">f.yaml\n"
+    "printf 'base: %s\\nsweep: {form.pretension_N: [1, 2]}\\n' \"$f\" >b.yaml\n"
+    "(cat full.yaml; printf 'cases:\\n  - {name: a, nodes: %s}\\n' \"$f\") >s.yaml\n"
+    "(cat full.yaml; printf 'truss: {import: {nodes: %s, members: %s}}\\n' \"$f\" \"$f\") >t.yaml\n"
+    "while read -r line; do\n"
+    "    \"$0\" $line >out.txt 2>err.txt </dev/null\n"
+    "    s=$?; if [ $s = 0 ] || [ $s -gt 5 ] || grep -q -e SECRET out.txt err.txt || ! grep -q \"$3\" err.txt; then\n"
+    "        echo \"$s: hifdm $line\"; cat out.txt err.txt; no=1; fi\n"
+    "done <<EOF\n"
+    "run $f\ncheck $f\nevaluate $f --template x.csv\ntolerance $f\nadjust $f --measured $f\nsweep $f\nstatus $f\n"
+    "merge $f\ncheck n.yaml\ncheck e.yaml\ncheck f.yaml\ncheck b.yaml\nsweep b.yaml\nmerge b.yaml --dir .\n"
+    "check s.yaml\ncheck t.yaml\nevaluate full.yaml --designs $f\nadjust full.yaml --stage form --measured $f\nEOF\n"
+    "exit $no";
+
+static void make_readers(void)
+{
+    net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,2,0,0,support\nc,1,1,0,inner\nd,1,2,0,support\n",
+             "id,i,j,group,law,value\n1,a,c,inner,tension,\n2,b,c,inner,tension,\n3,c,d,inner,tension,\n");
+    file_with("full.yaml",
+              EA_SCENE "tolerance: {sigma_cut_m: 1e-4}\nadjust: {set: inner, range_m: 0.002, step_m: 0.0001}\n");
+}
+
+/* Pipes that nobody writes to, devices without an end: named before a byte is read of them, by each reader. */
+START_TEST(what_is_no_ordinary_file_is_refused)
+{
+    const char *folder = temp("");
+    make_readers();
+    SHELL(0, "cd \"$1\" && mkfifo pipe && mkdir folder && truncate -s 1073741825 long", folder);
+    static const char *const file[][2] = {{"pipe", "is a pipe; name an ordinary file"},
+                                          {"folder", "is a folder; name an ordinary file"},
+                                          {"/dev/zero", "is a device; name an ordinary file"},
+                                          {"long", "is longer than 1024 MB"}};
+    SHELL(0, read_it, folder, file[_i][0], file[_i][1]);
+    ck_assert_str_eq(said.out, "");
+}
+END_TEST
+
+/* A file that is named by mistake, or by a program for somebody else, is not told in messages. */
+START_TEST(what_is_no_case_is_not_quoted)
+{
+    static const char *const text[] = {
+        "SECRETuser:SECRET$6$abc:19000:0:99999:7:::\nSECRETdaemon:*:19000:0:99999:7:::\n",
+        "SECRETkey: SECRETvalue\nSECRETother: [SECRETa, SECRETb]\n",
+        "[SECRETsection]\nSECRETpassword = \"SECRETx\"\n",
+        "-----BEGIN SECRET KEY-----\nSECRETMIIEow\n-----END SECRET KEY-----\n",
+        "SECRETuser,SECRETpw\nSECRETbob,SECRET123\n",
+        "{\"SECRETkey\": {\"SECRETb\": 1}, \"SECRETkey\": 2}\n",
+        "SECRETk: *SECRETalias\n",
+        "\"SECRETkey: unclosed\n",
+    };
+    make_readers();
+    file_with("it", text[_i]);
+    SHELL(0, read_it, temp(""), "it", "error: ");
+    ck_assert_str_eq(said.out, "");
 }
 END_TEST
 
@@ -266,6 +329,8 @@ Suite *suite_cli_bad_case(void)
     tcase_add_test(tcase, impossible_paraboloids_are_refused);
     tcase_add_loop_test(tcase, what_is_no_case_is_told, 0, N_UNREADABLE);
     tcase_add_test(tcase, what_is_no_file_is_told);
+    tcase_add_loop_test(tcase, what_is_no_ordinary_file_is_refused, 0, 4);
+    tcase_add_loop_test(tcase, what_is_no_case_is_not_quoted, 0, 8);
     tcase_add_test(tcase, settings_that_contradict_each_other_are_told);
     tcase_add_test(tcase, aliases_do_not_lead_astray);
     suite_add_tcase(suite, tcase);
