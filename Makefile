@@ -21,8 +21,8 @@ LDFLAGS ?=
 WERROR ?= -Werror
 # For instance address,undefined or thread; see asan and tsan below.
 SANITIZE ?=
-# Other LAPACK and BLAS than the ones pkg-config knows as openblas, or as lapack and blas.
-LAPACK_LIBS ?=
+# Names or paths under which LAPACK is looked for when the program first needs it; the first that loads is used.
+LAPACK ?= liblapack.so.3 libopenblas.so.0
 # For tests in Python. Debian's own, because that is the one its packages (h5py, yaml) are for.
 PYTHON ?= /usr/bin/python3
 CASE ?= configs/chen2022.yaml
@@ -53,14 +53,13 @@ FRAME := $(if $(SANITIZE),,-Wframe-larger-than=16384)
 SANITIZER := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 
 # pkg-config is asked once, when a recipe first needs it: $(eval) replaces the question by its answer.
-LAPACK_PC = $(if $(LAPACK_LIBS),,$(shell pkg-config --exists openblas && echo openblas || echo lapack blas))
-PKG = $(eval PKG := $(or $(shell pkg-config --cflags --libs gsl $(LAPACK_PC) hdf5 zlib yaml-0.1),$(PKG_MISSING)))$(PKG)
+PKG = $(eval PKG := $(or $(shell pkg-config --cflags --libs gsl hdf5 zlib yaml-0.1),$(PKG_MISSING)))$(PKG)
 PKG_MISSING = $(error A library or pkg-config itself is missing, see above: run `make setup`)
 CHECK = $(eval CHECK := $(or $(shell pkg-config --cflags --libs check),$(error run `make test`)))$(CHECK)
 # -isystem: our warnings are about our code, not about the headers of HDF5.
 PKG_CFLAGS = $(patsubst -I%,-isystem %,$(filter -I% -D%,$(PKG)))
-# GSL's own BLAS comes before LAPACK's: the other one's bits depend on the processor.
-PKG_LIBS = -Wl,--push-state,--no-as-needed -lgslcblas -Wl,--pop-state $(filter-out -I% -D%,$(PKG)) $(LAPACK_LIBS) -lm
+# -ldl: before glibc 2.34 dlopen was not in libc.
+PKG_LIBS = $(filter-out -I% -D%,$(PKG)) -ldl -lm
 
 # A peer of the benchmark, where its header is.
 CHOLMOD = $(eval CHOLMOD := $(shell $(CC) -E -include suitesparse/cholmod.h -x c /dev/null >/dev/null 2>&1 && \
@@ -352,8 +351,8 @@ $(Q)ln -sf $(SONAME) $(1)/$(LIB)/libhifdm.so
 $(Q)install -m 644 include/hifdm/*.h $(1)/include/hifdm/
 $(Q)printf '%s\n' 'prefix=$(2)' 'Name: hifdm' 'Version: $(VERSION)' \
     'Description: Form finding of cable nets with force densities' 'Cflags: -I$${prefix}/include' \
-    'Libs: -L$${prefix}/$(LIB) -lhifdm' 'Requires.private: gsl $(LAPACK_PC) hdf5 zlib yaml-0.1' \
-    'Libs.private: $(LAPACK_LIBS) -fopenmp -lm' >$(1)/$(LIB)/pkgconfig/hifdm.pc
+    'Libs: -L$${prefix}/$(LIB) -lhifdm' 'Requires.private: gsl hdf5 zlib yaml-0.1' \
+    'Libs.private: -fopenmp -ldl -lm' >$(1)/$(LIB)/pkgconfig/hifdm.pc
 $(Q)$(PROGRAM) help --man >$(1)/share/man/man1/hifdm.1
 $(Q)$(PROGRAM) help --bash >$(1)/share/bash-completion/completions/hifdm
 endef
@@ -401,6 +400,11 @@ $(BUILD)/flags: FORCE
 $(BUILD)/info: FORCE
 	$(call stamp,$(BUILD_INFO))
 
+$(BUILD)/lapack: FORCE
+	$(call stamp,$(LAPACK))
+
+$(BUILD)/src/linalg/lapack.o: $(BUILD)/lapack
+$(BUILD)/src/linalg/lapack.o: EXTRA = -DHF_LAPACK='$(foreach name,$(LAPACK),"$(name)",)'
 $(BUILD)/src/store/store.o: $(BUILD)/info
 $(BUILD)/src/store/store.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/tests/%.o: EXTRA = -Itests $(filter-out -l%,$(CHECK))

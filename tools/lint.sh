@@ -16,7 +16,7 @@ heap_files="base/status base/arena base/text base/csv net/scene net/generate_[a-
             run/flat run/sweep app/options app/cmd_evaluate"
 # may print (csv, json, summary: to a stream they are given)
 print_files="base/csv base/json store/summary out/[a-z_]* app/cmd_[a-z_]* app/progress app/main"
-openmp_files="search/parallel"                       # may mention OpenMP
+openmp_files="search/parallel linalg/lapack"         # may mention OpenMP
 # and dot-files
 top_level="Makefile README.md CHANGELOG.md CITATION.cff LICENSE src include configs tests results tools"
 max_file=600 max_function=80 long_function=60                        # lines; between the last two it is a warning
@@ -185,7 +185,7 @@ only_in "$print_files" '\b(v?f?printf|f?puts|f?putc|putchar|perror|exit|_Exit|ab
 file_calls='rename|renameat|link|linkat|mkstemp|mkdtemp|tmpfile|tempnam|creat|mkdir|truncate'
 only_in base/file_out "\b($file_calls)[[:blank:]]*\(|\bO_(CREAT|TRUNC|TMPFILE)\b" 'makes or names a file by hand'
 only_in store/hdf5 '\bH5Fcreate\b' 'HDF5 file that is not made by base/file_out'
-only_in base/text '\b(fopen|freopen)[[:blank:]]*\(' 'opens a file by fopen; files are made by base/file_out'
+only_in "base/text linalg/lapack" '\b(fopen|freopen)[[:blank:]]*\(' 'opens a file by fopen; files are made by base/file_out'
 only_in "base/file_io base/file_out base/text out/report_page out/export" \
     '(^|[^>._[:alnum:]])(p?read|p?writev?|f(data)?sync|ftruncate|flock)[[:blank:]]*\(' 'a transfer by hand'
 only_in "$openmp_files" '\bomp(\b|_)|\b_OPENMP\b' 'OpenMP'

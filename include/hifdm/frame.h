@@ -41,8 +41,8 @@ typedef struct {
 } hf_frame_load;
 
 /* Build the frame of a checked truss. Returns HF_OK; HF_MECHANISM with a message that names a node and dof that can
- * move without force (a mechanism, or a truss without enough supports); HF_NO_MEMORY. Free with hf_frame_free in any
- * case. */
+ * move without force (a mechanism, or a truss without enough supports); HF_NO_MEMORY; HF_NO_LAPACK. Free with
+ * hf_frame_free in any case. */
 hf_status hf_frame_build(const hf_truss *truss, hf_frame *frame, hf_messages *messages);
 void hf_frame_free(hf_frame *frame);
 

@@ -35,6 +35,7 @@ extern "C" {
     X(NO_MEMORY, 30, 5, "no_memory", "out of memory")                                                                  \
     X(IO, 31, 5, "io", "input/output failed")                                                                          \
     X(EXISTS, 32, 5, "exists", "the output file exists")                                                               \
+    X(NO_LAPACK, 35, 5, "no_lapack", "LAPACK cannot be loaded")                                                        \
     X(DIFFERENT, 34, 1, "different", "the files differ")                                                               \
     X(INTERRUPTED, 33, 75, "interrupted", "told to stop before the end")
 

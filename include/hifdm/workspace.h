@@ -119,7 +119,8 @@ static inline double hf_workspace_held_q_N_per_m(const hf_model *model, const hf
                                  workspace->q_N_per_m[i_cable]);
 }
 
-/* HF_OK or HF_NO_MEMORY. The caller frees the workspace in either case. */
+/* Loads LAPACK, which the solvers call, and allocates the workspace. HF_OK, HF_NO_MEMORY or HF_NO_LAPACK. The caller
+ * frees the workspace in any case. */
 hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace);
 size_t hf_workspace_bytes(const hf_model *model); /* memory that hf_workspace_create allocates */
 void hf_workspace_free(hf_workspace *workspace);

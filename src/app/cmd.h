@@ -17,7 +17,7 @@ typedef struct {
     const char *about;    /* a paragraph on what the help on options does not say; NULL: none */
     const char *examples; /* command lines, separated by '\n'; NULL: none */
     bool reads_results;   /* main lets a copy of the program do it: hf_reader_watch */
-    bool uses_threads;    /* main sets up LAPACK and OpenMP for options->threads before it calls run */
+    bool uses_threads;    /* main sets up OpenMP before it calls run */
     /* Output for people or programs goes to `file`. The returned status becomes the exit status of the program. */
     hf_status (*run)(const hf_options *options, FILE *file, hf_messages *messages);
 } hf_command;

@@ -6,10 +6,8 @@
 
 #include "base/file_io.h"
 #include "base/signals.h"
-#include "linalg/band.h"
 #include "out/print.h"
 #include "out/words.h"
-#include <hifdm/batch.h>
 #include <hifdm/store.h>
 
 #include <errno.h>
@@ -20,38 +18,23 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Sets the environment for OpenMP and OpenBLAS and starts the program a second time, because both libraries read the
- * environment before main begins. Variables that the user has set are kept; when a variable cannot be set, the program
- * continues as it is.
+/* Sets the environment for OpenMP and starts the program a second time, because that library reads the environment
+ * before main begins. Variables that the user has set are kept; when a variable cannot be set, the program continues as
+ * it is.
  *
- * OpenMP: a generation takes less than a millisecond. By default waiting threads spin for long; when the machine also
+ * A generation takes less than a millisecond. By default waiting threads spin for long; when the machine also
  * runs other programs, the thread they wait for may not be running, and runs were 30 times slower on two cores. Threads
- * that sleep at once lose 10 to 20 % of a run on an idle machine. Spinning for some microseconds avoids both.
- * OpenBLAS: its own threads are not used here, but would spin while the program starts. */
+ * that sleep at once lose 10 to 20 % of a run on an idle machine. Spinning for some microseconds avoids both. */
 static void wait_quietly(char **argv)
 {
     char path[PATH_MAX];
-    bool says_how = getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT");
-    if (says_how && getenv("OPENBLAS_NUM_THREADS")) return;
+    if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT")) return;
     ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
     if (n <= 0 || n == sizeof path - 1) return; /* no path, or one that may be cut */
     path[n] = '\0';
     if (strstr(path, "/ld-") || strstr(path, "/ld.so")) return; /* the dynamic linker, told to run this program */
-    bool failed = setenv("OPENBLAS_NUM_THREADS", "1", 0) != 0;
-    if (!says_how) failed |= setenv("GOMP_SPINCOUNT", "2000", 1);
-    if (!says_how) failed |= setenv("OMP_WAIT_POLICY", "passive", 1); /* of other OpenMP libraries */
-    if (!failed) execv(path, argv);
-}
-
-/* The buffers of LAPACK are taken now, before anything else needs memory and before there are threads. */
-static hf_status take_room(const hf_options *o, hf_messages *messages)
-{
-    int n_thread = o->threads > 0 ? o->threads : hf_batch_default_threads();
-    if (hf_band_take_room(n_thread)) return HF_OK;
-    return hf_error(messages, HF_NO_MEMORY,
-                    "LAPACK takes %d MB of address space for each of %d threads, more than there is (ulimit -v); "
-                    "raise it, or use fewer --threads",
-                    HF_BAND_ROOM_MB, n_thread);
+    if (setenv("GOMP_SPINCOUNT", "2000", 1) != 0) return;
+    if (setenv("OMP_WAIT_POLICY", "passive", 1) == 0) execv(path, argv); /* the latter for other OpenMP libraries */
 }
 
 static bool is_ending;
@@ -134,9 +117,7 @@ int main(int argc, char **argv)
     signal(SIGXFSZ, SIG_IGN);             /* writing beyond the limit on file size then fails with an error */
     gsl_set_error_handler_off();
     hf_store_quiet();
-    atexit(keep_exit_status);  /* last, so that it is called first */
-    hf_band_single_threaded(); /* threads of LAPACK's own would change bits and take cores from ours */
-    if (uses_threads) status = take_room(&options, &messages);
+    atexit(keep_exit_status); /* last, so that it is called first */
     FILE *output = hf_output_stream();
     if (status == HF_OK) status = options.command->run(&options, output, &messages);
     hf_options_free(&options);

@@ -3,7 +3,6 @@
 
 #include "base/arena.h"
 #include "built/near.h"
-#include "linalg/band.h"
 #include "search/parallel.h"
 
 #include <limits.h>
@@ -86,7 +85,6 @@ hf_status hf_built_batch_create(const hf_built *built, int n_thread, hf_built_ba
     if (n_thread <= 0) n_thread = hf_parallel_cores();
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, n_thread, batch, &room)));
     **batch = (hf_built_batch){.built = built, .n_thread = n_thread, .room = room};
-    hf_band_single_threaded();
     if (share(*batch) == HF_OK) return HF_OK;
     hf_built_batch_free(*batch);
     *batch = NULL;

@@ -3,7 +3,6 @@
 
 #include "base/arena.h"
 #include "base/random.h"
-#include "linalg/band.h"
 
 #include <math.h>
 #include <string.h>
@@ -66,7 +65,6 @@ hf_status hf_estimate_create(const hf_built *b, const hf_saddle_prior *prior, co
 {
     hf_arena arena = {0};
     *p = (hf_estimate){.built = b, .prior = *prior, .place_m = place_m};
-    hf_band_single_threaded();
     HF_TRY(hf_built_linear_make(b, &p->linear));
     HF_TRY(hf_saddle_create(&p->linear, &p->prior, &p->saddle));
     HF_TRY(hf_workspace_create(&b->model, &p->work));

@@ -1,40 +1,14 @@
-#define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
 #include "linalg/band.h"
 
 #include "base/lane.h"
 #include "linalg/band_kernel.h"
+#include "linalg/lapack.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
-#include <sys/mman.h>
-
-/* LAPACK (Fortran interface; the hidden string lengths of one-character arguments are never read) */
-double dlansb_(const char *norm, const char *uplo, const int *n, const int *k, const double *ab, const int *ldab,
-               double *work);
-void dlacn2_(const int *n, double *v, double *x, int *isgn, double *est, int *kase, int *isave);
-void dgbtrf_(const int *m, const int *n, const int *kl, const int *ku, double *ab, const int *ldab, int *ipiv,
-             int *info);
-void dgbtrs_(const char *trans, const int *n, const int *kl, const int *ku, const int *nrhs, const double *ab,
-             const int *ldab, const int *ipiv, double *b, const int *ldb, int *info);
-void dgbcon_(const char *norm, const int *n, const int *kl, const int *ku, const double *ab, const int *ldab,
-             const int *ipiv, const double *anorm, double *rcond, double *work, int *iwork, int *info);
-
-/* Only OpenBLAS defines these; with another library they are NULL. */
-#pragma weak openblas_set_num_threads
-#pragma weak openblas_get_config
-#pragma weak openblas_get_corename
-#pragma weak blas_memory_alloc
-#pragma weak blas_memory_free
-void openblas_set_num_threads(int n);
-char *openblas_get_config(void);
-char *openblas_get_corename(void);
-void *blas_memory_alloc(int which);
-void blas_memory_free(void *buffer);
 
 #define AT_A_TIME 64 /* columns between looks at a flag: a few tenths of a second at a half-bandwidth of 5000 */
-#define ROOMS_MAX 64 /* threads; OpenBLAS has buffers for as many processors as it was built for */
 
 /* ---- kernels ---- */
 
@@ -92,10 +66,31 @@ void hf_band_gram(int first, int end, int n_column, const double *a, int lda, do
 
 /* ---- LAPACK ---- */
 
+/* One call of a routine of LAPACK. */
+#define CALL(routine, ...)                                                                                             \
+    do {                                                                                                               \
+        int call_n_thread_ = hf_lapack_begin();                                                                        \
+        hf_lapack()->routine(__VA_ARGS__);                                                                             \
+        hf_lapack_end(call_n_thread_);                                                                                 \
+    } while (0)
+
+int hf_band_factor_lapack(int n, int half_bandwidth, double *band)
+{
+    int ldab = half_bandwidth + 1, info = 0;
+    CALL(dpbtrf, "L", &n, &half_bandwidth, band, &ldab, &info);
+    return info > 0 ? info : info < 0;
+}
+
+void hf_band_back_solve_lapack(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb)
+{
+    int ldab = half_bandwidth + 1, info = 0;
+    CALL(dpbtrs, "L", &n, &half_bandwidth, &n_rhs, factor, &ldab, b, &ldb, &info);
+}
+
 double hf_band_norm(int n, int half_bandwidth, const double *band, double *work)
 {
     int ldab = half_bandwidth + 1;
-    return dlansb_("1", "L", &n, &half_bandwidth, band, &ldab, work);
+    return hf_lapack()->dlansb("1", "L", &n, &half_bandwidth, band, &ldab, work);
 }
 
 double hf_band_condition(int n, int half_bandwidth, const double *factor, double norm, double *work, int *integer_work)
@@ -103,7 +98,7 @@ double hf_band_condition(int n, int half_bandwidth, const double *factor, double
     double inverse_norm = 0, *x = work + n;
     int what = 0, kept[3];
     do { /* asks for the inverse times x, or its transpose, until it has its estimate */
-        dlacn2_(&n, work, x, integer_work, &inverse_norm, &what, kept);
+        CALL(dlacn2, &n, work, x, integer_work, &inverse_norm, &what, kept);
         if (what != 0) hf_band_back_solve(n, half_bandwidth, 1, factor, x, n);
     } while (what != 0);
     double condition = norm * inverse_norm;
@@ -113,7 +108,7 @@ double hf_band_condition(int n, int half_bandwidth, const double *factor, double
 int hf_band_factor_general(int n, int half_bandwidth, double *general, int *pivot)
 {
     int k = half_bandwidth, ldab = 3 * k + 1, info = 0;
-    dgbtrf_(&n, &n, &k, &k, general, &ldab, pivot, &info);
+    CALL(dgbtrf, &n, &n, &k, &k, general, &ldab, pivot, &info);
     return info > 0 ? info : info < 0;
 }
 
@@ -153,7 +148,7 @@ void hf_band_back_solve_general(int n, int half_bandwidth, int n_rhs, const doub
     int k = half_bandwidth, ldab = 3 * k + 1, info = 0;
     for (; n_rhs >= GENERAL_PANEL; n_rhs -= GENERAL_PANEL, b += (ptrdiff_t)GENERAL_PANEL * ldb)
         back_solve_panel(n, k, GENERAL_PANEL, general, pivot, b, ldb);
-    dgbtrs_("N", &n, &k, &k, &n_rhs, general, &ldab, pivot, b, &ldb, &info);
+    CALL(dgbtrs, "N", &n, &k, &k, &n_rhs, general, &ldab, pivot, b, &ldb, &info);
 }
 
 hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band, double *general, int *pivot,
@@ -178,37 +173,6 @@ double hf_band_condition_indefinite(int n, int half_bandwidth, const double *gen
 {
     int k = half_bandwidth, ldab = 3 * k + 1, info = 0;
     double reciprocal = 0;
-    dgbcon_("1", &n, &k, &k, general, &ldab, pivot, &norm, &reciprocal, work, integer_work, &info);
+    CALL(dgbcon, "1", &n, &k, &k, general, &ldab, pivot, &norm, &reciprocal, work, integer_work, &info);
     return reciprocal > 0 ? 1 / reciprocal : (double)INFINITY;
-}
-
-void hf_band_single_threaded(void)
-{
-    if (openblas_set_num_threads) openblas_set_num_threads(1);
-}
-
-bool hf_band_take_room(int n_thread)
-{
-    void *buffer[ROOMS_MAX];
-    if (!openblas_get_config) return true;
-    size_t bytes = (size_t)n_thread * ((size_t)HF_BAND_ROOM_MB << 20);
-    void *room = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (room == MAP_FAILED) return false;
-    munmap(room, bytes);
-    if (!blas_memory_alloc || !blas_memory_free) return true;
-    if (n_thread > ROOMS_MAX) n_thread = ROOMS_MAX;
-    for (int i = 0; i < n_thread; i++)
-        buffer[i] = blas_memory_alloc(1);
-    for (int i = 0; i < n_thread; i++)
-        blas_memory_free(buffer[i]); /* it stays mapped, for the next thread that asks */
-    return true;
-}
-
-const char *hf_band_library(void)
-{
-    static char name[256];
-    if (!openblas_get_config) return "reference or unknown";
-    snprintf(name, sizeof name, "%s; core %s", openblas_get_config(),
-             openblas_get_corename ? openblas_get_corename() : "unknown");
-    return name;
 }

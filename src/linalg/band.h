@@ -1,7 +1,8 @@
 /* band - symmetric band matrices in LAPACK's layout: solve D X = B, condition numbers.
  *
  * Positive definite matrices are factored by kernels of our own, which give the same bits on every machine; indefinite
- * ones by LAPACK's LU with pivoting. Conditions are LAPACK's estimates. Measured with 512-bit vectors: factor and three
+ * ones by LAPACK's LU with pivoting. Conditions are LAPACK's estimates. Before a function that calls LAPACK is used,
+ * hf_lapack_load must have returned HF_OK; hf_workspace_create and hf_frame_build call it. Measured with 512-bit vectors: factor and three
  * solutions of n = 437, half-bandwidth 21 take two fifths of the reference LAPACK's time, with 65 a tenth. */
 #ifndef HIFDM_BAND_H
 #define HIFDM_BAND_H
@@ -35,6 +36,10 @@ int hf_band_factor_general(int n, int half_bandwidth, double *general, int *pivo
 void hf_band_back_solve_general(int n, int half_bandwidth, int n_rhs, const double *general, const int *pivot,
                                 double *b, int ldb);
 
+/* hf_band_factor and hf_band_back_solve by LAPACK (dpbtrf, dpbtrs). */
+int hf_band_factor_lapack(int n, int half_bandwidth, double *band);
+void hf_band_back_solve_lapack(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
+
 /* 1-norm of the matrix (before factoring; work: [n]) and LAPACK's estimate of its condition number in that norm
  * (dlacn2; work: [3n], integer_work: [n]); INFINITY when it is singular to working precision. */
 double hf_band_norm(int n, int half_bandwidth, const double *band, double *work);
@@ -47,18 +52,5 @@ double hf_band_condition_indefinite(int n, int half_bandwidth, const double *gen
 /* Compute rows `first` to end-1 of the lower triangle of A A' for the dense A [n][n_column] of row length lda: gram
  * [n][ldg] (of the upper triangle some places of these rows are written, too). `first` is a multiple of 4. */
 void hf_band_gram(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg);
-
-/* Keep a threaded BLAS from starting threads: each thread of this program solves systems of its own. Call once, before
- * any solve. */
-void hf_band_single_threaded(void);
-
-/* Take the buffers that LAPACK maps in n_thread threads, before there are threads. False when there is no address space
- * for them (ulimit -v). OpenBLAS maps HF_BAND_ROOM_MB for each as late as in its first solve, and repeats a refused
- * request without end. */
-#define HF_BAND_ROOM_MB 128
-bool hf_band_take_room(int n_thread);
-
-/* Name of the LAPACK in use, for the provenance, e.g. "OpenBLAS 0.3.21 ... Haswell"; "reference or unknown". */
-const char *hf_band_library(void);
 
 #endif

@@ -210,6 +210,8 @@ static const hf_word told[] = {
     {"points_failed", "what to do", "",
      "`hifdm status STUDY` says which and why; `hifdm sweep STUDY --retry failed` runs those again.", NULL},
     {"exists", "what to do", "", "Another name, or --force (of run: --restart), if it may be replaced.", NULL},
+    {"no_lapack", "what to do", "", "Install LAPACK, of Debian the package liblapack3 or libopenblas0.",
+     "LAPACK cannot be loaded"},
     {"interrupted", "what to do", "", "The same command goes on where it was.", NULL},
     {"io", "what to do", "", "The message names the file and the reason of the system; what was stored stays.", NULL},
     /* ---- stop_reason ---- */

@@ -1,7 +1,6 @@
 /* Contents: words - a case - texts - numbers - work - a run */
 #include <hifdm/flat.h>
 
-#include "linalg/band.h"
 #include "net/variables.h"
 #include "run/problem_explain.h"
 #include "run/problem_parts.h"
@@ -116,7 +115,6 @@ static bool begins(hf_flat *f, bool has, const char *what)
 int hf_flat_open(hf_flat *f, const char *path, int n_set, const char *const *set, int n_thread)
 {
     if (!begins(f, !f->path, "a handle opens one case")) return HF_BAD_USAGE;
-    hf_band_single_threaded(); /* as the program: LAPACK's own threads would change bits */
     f->path = path;
     f->n_set = n_set;
     f->set = set;

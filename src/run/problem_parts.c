@@ -3,6 +3,7 @@
 
 #include "base/elementary.h"
 #include "base/file_out.h"
+#include "linalg/lapack.h"
 #include "net/scene_doubt.h"
 #include "net/symmetry.h"
 #include "net/variables.h"
@@ -190,6 +191,7 @@ hf_status hf_problem_load(const char *path, const hf_problem_source *source, con
 
 hf_status hf_problem_allocate(hf_problem *p, hf_messages *messages)
 {
+    HF_TRY(hf_lapack_load(messages));
     p->start_q_N_per_m = malloc((size_t)p->model.n_cable * sizeof(double));
     p->base_N = malloc(((size_t)p->model.n_gene + 1) * sizeof(double));
     if (!p->start_q_N_per_m || !p->base_N || hf_workspace_create(&p->model, &p->workspace) != HF_OK)

@@ -26,7 +26,8 @@ void hf_problem_describe(const hf_problem *problem, hf_summary *summary);
 hf_status hf_problem_spare_inputs(const hf_problem *problem, const char *table, const char *output,
                                   hf_messages *messages);
 
-/* The workspace, and the arrays that hf_problem_base fills. HF_OK or HF_NO_MEMORY. */
+/* Loads LAPACK and allocates the workspace and the arrays that hf_problem_base fills. HF_OK, HF_NO_MEMORY or
+ * HF_NO_LAPACK. */
 hf_status hf_problem_allocate(hf_problem *problem, hf_messages *messages);
 
 /* base_N and start_q_N_per_m from the shape in the workspace, and the evaluator. With an optimize section HF_BAD_CASE

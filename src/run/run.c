@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/path.h"
 #include "base/text.h"
+#include "linalg/lapack.h"
 #include "run/cases.h"
 #include "run/measure_stage.h"
 #include "run/no_design.h"
@@ -501,6 +502,7 @@ static hf_status open_store(run *r, char *output, hf_store_state *state, hf_mess
     if (*state == HF_STORE_FINISHED) return HF_OK;
     HF_TRY(hf_tolerance_stage_look(q, &r->problem, output, messages));
     if (hf_tolerance_stage_is_task(q)) return HF_OK;
+    HF_TRY(hf_lapack_load(messages)); /* the file says which one it is */
     if (*state == HF_STORE_UNFINISHED) return hf_store_resume(output, &r->store, messages);
     return hf_store_create(output, q->restart, settings, scene, truss, q->argc, q->argv, &r->store, messages);
 }

@@ -6,6 +6,7 @@
 #include "base/later.h"
 #include "base/path.h"
 #include "base/text.h"
+#include "linalg/lapack.h"
 #include "search/parallel.h"
 #include "store/ledger.h"
 #include <hifdm/run.h>
@@ -206,6 +207,7 @@ static void run_point(void *context, int k)
 static hf_status run_points(sweep *w)
 {
     const hf_sweep_count *n = &w->count;
+    if (n->n_todo > 0) HF_TRY(hf_lapack_load(w->messages)); /* before there are threads */
     w->start_s = hf_clock_s();
     hf_parallel_for(w->request->threads, n->n_todo, run_point, w);
     w->count.wall_s = hf_clock_s() - w->start_s;

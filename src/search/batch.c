@@ -1,7 +1,6 @@
 #include <hifdm/batch.h>
 
 #include "base/clock.h"
-#include "linalg/band.h"
 #include "search/chord.h"
 #include "search/parallel.h"
 #include "search/swarm.h"
@@ -35,7 +34,6 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
     batch->n_thread = n_thread;
     for (int i = 0; i < n_room_at_once(batch); i++)
         HF_TRY(make_room(evaluator, &batch->workspace[i]));
-    hf_band_single_threaded();
     return HF_OK;
 }
 

@@ -2,6 +2,7 @@
 #include <hifdm/workspace.h>
 
 #include "base/arena.h"
+#include "linalg/lapack.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +26,7 @@ hf_status hf_workspace_create(const hf_model *m, hf_workspace *w)
 {
     *w = (hf_workspace){0};
     hf_arena arena = {0};
+    HF_TRY(hf_lapack_load(NULL));
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, m, w)));
     w->block = arena.block;
     w->n_moving = m->n_free;

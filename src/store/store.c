@@ -2,7 +2,7 @@
 #include <hifdm/store.h>
 
 #include "base/clock.h"
-#include "linalg/band.h"
+#include "linalg/lapack.h"
 #include "store/store_internal.h"
 #include "store/vtkhdf.h"
 
@@ -68,7 +68,7 @@ static void put_provenance(hf_store *s, int argc, char *const *argv)
                                     {"build_flags", HF_BUILD_FLAGS},
                                     {"hdf5_version", hdf5},
                                     {"gsl_version", gsl_version},
-                                    {"lapack", hf_band_library()},
+                                    {"lapack", hf_lapack_library()},
                                     {"rng", "splitmix64 keyed by (seed, generation, individual)"},
                                     {"host", host}};
     for (int i = 0; i < HF_HDF5_COUNT(table); i++)

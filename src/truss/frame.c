@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "linalg/band.h"
+#include "linalg/lapack.h"
 #include "net/numbering.h"
 #include "base/elementary.h"
 
@@ -316,6 +317,7 @@ static hf_status refuse(const hf_frame *f, int row, hf_messages *messages)
 static hf_status factor(hf_frame *f, hf_messages *messages)
 {
     size_t n = (size_t)f->n_dof;
+    HF_TRY(hf_lapack_load(messages));
     double *work = malloc(3 * n * sizeof *work);
     int *integer_work = malloc(n * sizeof *integer_work);
     hf_status status = HF_OK;

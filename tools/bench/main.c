@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "linalg/band.h"
+#include "linalg/lapack.h"
 #include <hifdm/store.h>
 
 #include <stdio.h>
@@ -70,7 +71,7 @@ void bench_fdm_step(const hf_model *m, const hf_form_settings *form, hf_workspac
 
 static void about(void)
 {
-    printf("hifdm %s\nlapack %s\ncholmod %s\n", hf_store_version(), hf_band_library(), bench_cholmod_version());
+    printf("hifdm %s\nlapack %s\ncholmod %s\n", hf_store_version(), hf_lapack_library(), bench_cholmod_version());
 }
 
 /* Called as: bench NAME FOLDER WHAT [more]; what: a scene, a size. */
@@ -90,7 +91,7 @@ static const section section_table[] = {{"step", bench_step},     {"peak", bench
 int main(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "", *folder = argc > 2 ? argv[2] : ".", *what = argc > 3 ? argv[3] : "";
-    hf_band_single_threaded();
+    if (hf_lapack_load(NULL) != HF_OK) bench_fail("LAPACK", "cannot be loaded");
     if (!strcmp(name, "about")) {
         about();
         return 0;

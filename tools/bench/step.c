@@ -2,6 +2,7 @@
 #include "bench.h"
 
 #include "linalg/band.h"
+#include "linalg/lapack.h"
 #include "search/swarm_lane.h"
 
 #include <math.h>
@@ -12,11 +13,8 @@
 #define ENOUGH_S 0.05
 #define ITERATIONS 200 /* of hf_form_find, to spread what it does once over many */
 
-void dpbtrf_(const char *uplo, const int *n, const int *kd, double *ab, const int *ldab, int *info);
-void dpbtrs_(const char *uplo, const int *n, const int *kd, const int *nrhs, const double *ab, const int *ldab,
-             double *b, const int *ldb, int *info);
-void dpbsv_(const char *uplo, const int *n, const int *kd, const int *nrhs, double *ab, const int *ldab, double *b,
-            const int *ldb, int *info);
+typedef void dpbsv_routine(const char *uplo, const int *n, const int *kd, const int *nrhs, double *ab, const int *ldab,
+                           double *b, const int *ldb, int *info);
 
 /* ---- ways to do a step: assembly, factor, three right-hand sides, lengths and tensions, per individual ---- */
 
@@ -43,10 +41,10 @@ static void step_by_lapack(bench_scene *b, bool at_once)
     hf_form_assemble(m, &b->workspace);
     hf_form_assemble_loads(m, &b->workspace);
     if (at_once) {
-        dpbsv_("L", &m->n_free, &m->half_bandwidth, &three, band, &ldab, x, &m->n_node, &info);
+        ((dpbsv_routine *)hf_lapack_find("dpbsv_"))("L", &m->n_free, &m->half_bandwidth, &three, band, &ldab, x, &m->n_node, &info);
     } else {
-        dpbtrf_("L", &m->n_free, &m->half_bandwidth, band, &ldab, &info);
-        dpbtrs_("L", &m->n_free, &m->half_bandwidth, &three, band, &ldab, x, &m->n_node, &info);
+        hf_lapack()->dpbtrf("L", &m->n_free, &m->half_bandwidth, band, &ldab, &info);
+        hf_lapack()->dpbtrs("L", &m->n_free, &m->half_bandwidth, &three, band, &ldab, x, &m->n_node, &info);
     }
     bench_measure(m, &b->form, &b->workspace);
 }

@@ -2,19 +2,28 @@
 #include "support.h"
 
 #include "linalg/dense.h"
+#include "linalg/lapack.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *pivot, int *info);
-void dgetrs_(const char *trans, const int *n, const int *n_rhs, const double *a, const int *lda, const int *pivot,
-             double *b, const int *ldb, int *info);
-void dgemm_(const char *trans_a, const char *trans_b, const int *m, const int *n, const int *k, const double *alpha,
-            const double *a, const int *lda, const double *b, const int *ldb, const double *beta, double *c,
-            const int *ldc);
+typedef void factor_routine(const int *m, const int *n, double *a, const int *lda, int *pivot, int *info);
+typedef void solve_routine(const char *trans, const int *n, const int *n_rhs, const double *a, const int *lda,
+                           const int *pivot, double *b, const int *ldb, int *info);
+typedef void multiply_routine(const char *trans_a, const char *trans_b, const int *m, const int *n, const int *k,
+                              const double *alpha, const double *a, const int *lda, const double *b, const int *ldb,
+                              const double *beta, double *c, const int *ldc);
 
 enum { MAX_N = 60, N_RHS = 3 };
+
+static void (*of_lapack(const char *name))(void)
+{
+    ck_assert_int_eq(hf_lapack_load(NULL), HF_OK);
+    void (*routine)(void) = hf_lapack_find(name);
+    ck_assert_msg(routine != NULL, "LAPACK has no %s", name);
+    return routine;
+}
 
 static void draw(int count, double *a, struct rng *rng)
 {
@@ -33,13 +42,13 @@ START_TEST(factor_and_solution)
     draw(N_RHS * n, b, &rng);
     memcpy(theirs, a, sizeof a);
     memcpy(x, b, sizeof b);
-    dgetrf_(&n, &n, theirs, &n, theirs_pivot, &info);
+    ((factor_routine *)of_lapack("dgetrf_"))(&n, &n, theirs, &n, theirs_pivot, &info);
     ck_assert_int_eq(hf_dense_factor(n, a, pivot), info);
     for (int i = 0; i < n; i++)
         ck_assert_int_eq(pivot[i], theirs_pivot[i] - 1);
     for (int i = 0; i < n * n; i++)
         ck_assert_double_eq_tol(a[i], theirs[i], 1e-10);
-    dgetrs_("N", &n, &n_rhs, theirs, &n, theirs_pivot, x, &n, &info);
+    ((solve_routine *)of_lapack("dgetrs_"))("N", &n, &n_rhs, theirs, &n, theirs_pivot, x, &n, &info);
     hf_dense_solve(n, a, pivot, N_RHS, b);
     for (int i = 0; i < N_RHS * n; i++)
         ck_assert_double_eq_tol(b[i], x[i], 1e-8 * (1 + fabs(x[i])));
@@ -54,7 +63,7 @@ START_TEST(product)
     draw(n * n, a, &rng);
     draw(n * n, b, &rng);
     hf_dense_multiply(n, a, b, c);
-    dgemm_("N", "N", &n, &n, &n, &one, a, &n, b, &n, &zero, theirs, &n);
+    ((multiply_routine *)of_lapack("dgemm_"))("N", "N", &n, &n, &n, &one, a, &n, b, &n, &zero, theirs, &n);
     for (int i = 0; i < n * n; i++)
         ck_assert_double_eq_tol(c[i], theirs[i], 1e-13 * n);
 }

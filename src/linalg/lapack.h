@@ -1,0 +1,50 @@
+/* lapack - LAPACK and its BLAS, loaded when they are first needed.
+ *
+ * Programs that use this library do not link LAPACK. A command that factors nothing never maps a BLAS, and any shared
+ * library with the routines below serves. */
+#ifndef HIFDM_LAPACK_H
+#define HIFDM_LAPACK_H
+
+#include <hifdm/status.h>
+
+/* The Fortran interface. The hidden lengths of one-character arguments are never read. */
+#define HF_LAPACK_ROUTINES(X)                                                                                          \
+    X(double, dlansb, const char *norm, const char *uplo, const int *n, const int *k, const double *ab,                \
+      const int *ldab, double *work)                                                                                   \
+    X(void, dlacn2, const int *n, double *v, double *x, int *isgn, double *est, int *kase, int *isave)                 \
+    X(void, dgbtrf, const int *m, const int *n, const int *kl, const int *ku, double *ab, const int *ldab, int *ipiv,  \
+      int *info)                                                                                                       \
+    X(void, dgbtrs, const char *trans, const int *n, const int *kl, const int *ku, const int *nrhs, const double *ab,  \
+      const int *ldab, const int *ipiv, double *b, const int *ldb, int *info)                                          \
+    X(void, dgbcon, const char *norm, const int *n, const int *kl, const int *ku, const double *ab, const int *ldab,   \
+      const int *ipiv, const double *anorm, double *rcond, double *work, int *iwork, int *info)                        \
+    X(void, dpbtrf, const char *uplo, const int *n, const int *k, double *ab, const int *ldab, int *info)              \
+    X(void, dpbtrs, const char *uplo, const int *n, const int *k, const int *nrhs, const double *ab, const int *ldab,  \
+      double *b, const int *ldb, int *info)
+
+typedef struct {
+#define HF_LAPACK_MEMBER(type, name, ...) type (*name)(__VA_ARGS__);
+    HF_LAPACK_ROUTINES(HF_LAPACK_MEMBER)
+#undef HF_LAPACK_MEMBER
+} hf_lapack_routines;
+
+/* Loads LAPACK unless it is loaded. Any thread may call it; the environment variables OPENBLAS_NUM_THREADS and
+ * OMP_NUM_THREADS are 1 while it loads. Returns HF_OK; HF_NO_LAPACK when no library is found; HF_NO_MEMORY when the
+ * address space is limited and too small. messages: NULL, or where an error says what to do. */
+hf_status hf_lapack_load(hf_messages *messages);
+
+/* Returns the routines; hf_lapack_load must have returned HF_OK. Calls of them stand between hf_lapack_begin and
+ * hf_lapack_end, which gets what the former returned. In between, LAPACK uses one thread; where the address space is
+ * limited, one caller at a time uses it. */
+const hf_lapack_routines *hf_lapack(void);
+int hf_lapack_begin(void);
+void hf_lapack_end(int n_thread);
+
+/* Returns another routine of the library, "dgetrf_", or NULL. For tests and benchmarks. */
+void (*hf_lapack_find(const char *name))(void);
+
+/* Returns the file of the loaded library and, of OpenBLAS, its configuration and the kernel it has chosen; "not loaded"
+ * before. For the provenance. */
+const char *hf_lapack_library(void);
+
+#endif
