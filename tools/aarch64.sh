@@ -13,7 +13,7 @@ for program in $triplet-gcc qemu-aarch64-static; do
 done
 
 if [ ! -e "$root/done" ]; then
-    wanted=(libhdf5-dev libgsl-dev liblapack-dev libblas-dev libyaml-dev zlib1g-dev check libgomp1 libc6-dev)
+    wanted=(libhdf5-dev libgsl-dev liblapack3 libyaml-dev zlib1g-dev check libgomp1 libc6-dev)
     mapfile -t packages < <(apt-get install -s --no-install-recommends "${wanted[@]/%/:arm64}" |
         awk '/^Inst/ && /arm64/ { sub(/:arm64$/, "", $2); print $2 ":arm64" }' | sort -u)
     [ ${#packages[@]} -gt 0 ] || { echo "apt knows no packages for arm64: see the beginning of $0" >&2; exit 2; }
@@ -27,7 +27,7 @@ fi
 path=$libraries:$libraries/lapack:$libraries/blas:$libraries/hdf5/serial
 export PKG_CONFIG_LIBDIR=$libraries/pkgconfig PKG_CONFIG_SYSROOT_DIR=$root
 make -s -j "$(nproc)" BUILD="$build" CC="$triplet-gcc --sysroot=$root" AR=$triplet-ar LDFLAGS="-Wl,-rpath-link,$path" \
-    LAPACK_LIBS="-L$libraries/lapack -llapack -L$libraries/blas -lblas" "$build/hifdm" "$build/tests/run_tests"
+    "$build/hifdm" "$build/tests/run_tests"
 unset PKG_CONFIG_LIBDIR PKG_CONFIG_SYSROOT_DIR
 emulated=(qemu-aarch64-static -L "$root" -E "LD_LIBRARY_PATH=$path")
 printf '#!/bin/sh\nexec %s "$@"\n' "${emulated[*]} $build/hifdm" >"$build/hifdm-emulated"

@@ -6,7 +6,7 @@
 #   --deb   also debhelper and lintian, for `make deb`     --workflows also Snakemake, for `make workflow-check`
 #   --optimisers also those of `make bench-optimisers`
 # Silent and quick when nothing is missing. Asks for what is needed (a compiler, a pkg-config name, a Python module)
-# rather than for packages, so that other providers do as well: reference LAPACK, modules from pip.
+# rather than for packages, so that other providers do as well: any LAPACK that can be loaded, modules from pip.
 set -eu
 
 with_test=no with_ci=no with_bench=no with_optimisers=no with_api=no with_docs=no with_deb=no with_workflows=no
@@ -26,6 +26,15 @@ done
 
 has() { command -v "$1" >/dev/null 2>&1; }
 has_library() { pkg-config --exists "$@" 2>/dev/null; }
+# As the program looks for it when it runs; LAPACK="NAME..." names others, as for make.
+has_lapack() {
+    local name
+    for name in ${LAPACK:-liblapack.so.3 libopenblas.so.0}; do
+        [[ $name != */* || ! -e $name ]] || return 0
+        if PATH=$PATH:/sbin ldconfig -p | grep -F "$name " >/dev/null; then return 0; fi
+    done
+    return 1
+}
 has_header() { "${CC:-cc}" -E -include "$1" -x c /dev/null >/dev/null 2>&1; }
 # Does a program in C++ with this line link with these libraries?
 links() {
@@ -52,7 +61,7 @@ missing_packages() {
     esac
     has make || need make
     has pkg-config || need pkg-config
-    [ -n "${LAPACK_LIBS:-}" ] || has_library openblas || has_library lapack blas || need libopenblas-dev
+    has_lapack || need libopenblas0-pthread
     has_library gsl || need libgsl-dev
     has_library hdf5 || need libhdf5-dev
     has_library zlib || need zlib1g-dev
@@ -67,6 +76,7 @@ missing_packages() {
     fi
     if [ $with_bench = yes ]; then
         has_header suitesparse/cholmod.h || need libsuitesparse-dev
+        has_library lapack blas || need liblapack-dev libblas-dev # old commits link them: make bench-before
         has_module scipy || need python3-scipy
     fi
     if [ $with_optimisers = yes ]; then

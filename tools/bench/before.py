@@ -68,7 +68,8 @@ def build(a):
                                    ("now", "include", a.library)):
         drivers[name] = f"{a.work}/finding-{name}"
         run([*make_words("CC"), *make_words("LANGUAGE"), "-O2", *make_words("PKG_CFLAGS"), "-include", "stdbool.h",
-             f"-I{include}", f"{HERE}/before/finding.c", library, "-o", drivers[name], *make_words("PKG_LIBS")])
+             f"-I{include}", f"{HERE}/before/finding.c", library, "-o", drivers[name], *make_words("PKG_LIBS"),
+             *(["-llapack", "-lblas"] if name == "before" else [])])  # of before LAPACK was loaded at run time
     return drivers
 
 

@@ -4,7 +4,7 @@
 #     spack install --no-checksum hifdm ^openblas
 #
 # NOT TRIED: there was no Spack where it was written. The build that it asks for is tried on Debian 12 by
-# `make dist-check`; LAPACK_LIBS by `make deb`.
+# `make dist-check`.
 import os
 
 from spack.package import *
@@ -22,7 +22,6 @@ class Hifdm(MakefilePackage):
     depends_on("c", type="build")
     depends_on("gmake", type="build")
     depends_on("pkgconfig", type="build")
-    depends_on("blas")
     depends_on("gsl")
     depends_on("hdf5@1.10:")
     depends_on("lapack")
@@ -32,15 +31,16 @@ class Hifdm(MakefilePackage):
     # A compiler newer than ours may have warnings of its own.
     @property
     def build_targets(self):
-        return ["WERROR=", f"PREFIX={self.prefix}", f"LAPACK_LIBS={self.lapack_libs}", "all"]
+        return ["WERROR=", f"PREFIX={self.prefix}", f"LAPACK={self.lapack}", "all"]
 
     @property
     def install_targets(self):
-        return ["WERROR=", f"PREFIX={self.prefix}", f"LAPACK_LIBS={self.lapack_libs}", "install"]
+        return ["WERROR=", f"PREFIX={self.prefix}", f"LAPACK={self.lapack}", "install"]
 
+    # Paths of the libraries, one of which the program loads when it needs it.
     @property
-    def lapack_libs(self):
-        return (self.spec["lapack"].libs + self.spec["blas"].libs).ld_flags
+    def lapack(self):
+        return " ".join(self.spec["lapack"].libs)
 
     @run_after("install")
     @on_package_attributes(run_tests=True)
