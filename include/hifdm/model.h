@@ -38,6 +38,7 @@ typedef struct {
     bool has_strut;  /* some force density is negative: D may be indefinite */
     bool has_newton; /* workspaces hold a Newton matrix: some law iterates (or hf_model_want_newton), and the energy is
                         convex (no strut) */
+    bool by_lapack;  /* positive definite matrices are factored by LAPACK (form.factor) */
     double pretension_N;
     double reference_N; /* residuals are relative to it: the largest tension of a law or load, else the pretension */
 

@@ -20,6 +20,7 @@ typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHO
 #define HF_OPTIMIZE_ENUMERATOR(name, word) HF_OPTIMIZE_##name,
 typedef enum { HF_OPTIMIZE_METHODS(HF_OPTIMIZE_ENUMERATOR) HF_OPTIMIZE_N_METHOD } hf_optimize_method;
 #undef HF_OPTIMIZE_ENUMERATOR
+typedef enum { HF_FACTOR_OWN, HF_FACTOR_LAPACK } hf_factor; /* of positive definite matrices of form-finding */
 typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
 typedef enum { HF_PRESTRESS_GIVEN, HF_PRESTRESS_EXACT } hf_prestress;
 typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
@@ -78,6 +79,7 @@ typedef enum {
 extern const char *const hf_method_word[6];
 extern const char *const hf_prestress_word[3];
 extern const char *const hf_stop_rule_word[3];
+extern const char *const hf_factor_word[3];
 extern const char *const hf_rule_word[4];
 extern const char *const hf_solver_word[5];
 extern const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1];
@@ -174,6 +176,7 @@ typedef struct {
     int max_iterations;        /* bound on the linear solves */
     double collapse_ratio; /* a cable of law tension shorter than this part of its theoretical length has collapsed */
     hf_coupling_settings coupling;
+    hf_factor factor;
 } hf_form_settings;
 
 typedef struct {

@@ -358,6 +358,10 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
         hf_config_fault_of(
             f, "optimize.compare_lm",
             "cannot be true with optimize.rule seeded, under which Levenberg-Marquardt has no derivatives");
+    if (o->solver == HF_SOLVER_CHORD && c->form.factor == HF_FACTOR_LAPACK)
+        hf_config_fault_of(f, "optimize.solver",
+                           "chord shares one factor among designs, which form.factor: lapack does not; use newton, "
+                           "fixed_point or auto");
     if (o->elites >= o->population) hf_config_fault_of(f, "optimize.elites", "must be below optimize.population");
     if (o->crossover_low > o->crossover_high)
         hf_config_fault_of(f, "optimize.crossover_low", "must not be above optimize.crossover_high");

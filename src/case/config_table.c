@@ -127,6 +127,10 @@ const hf_field hf_field_table[] = {
      "bound on the iterations; reached: not converged"},
     {"form.collapse_ratio", HF_FIELD_DOUBLE, AT(form.collapse_ratio), 1e-12, 0.5, "1e-3", "", NULL,
      "a cable of law tension shorter than this part of its theoretical length has collapsed"},
+    {"form.factor", HF_FIELD_WORD, AT(form.factor), 0, 0, "own", "", hf_factor_word,
+     "own: band Cholesky of this program; lapack: dpbtrf and dpbtrs of LAPACK for the positive definite matrices of "
+     "form-finding, of designs and of refinement; every design then has a factor of its own. Certificates and as-built "
+     "nets always use own"},
 
     {"coupling.tof_m", HF_FIELD_DOUBLE, AT(form.coupling.tof_m), HF_ABOVE_ZERO, BIG, "1e-6", "m", NULL,
      "net and truss are one when no attachment moves farther than this any more; the paper takes 1e-3"},

@@ -87,6 +87,14 @@ void hf_band_back_solve_lapack(int n, int half_bandwidth, int n_rhs, const doubl
     CALL(dpbtrs, "L", &n, &half_bandwidth, &n_rhs, factor, &ldab, b, &ldb, &info);
 }
 
+hf_status hf_band_solve_lapack(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row)
+{
+    *bad_row = hf_band_factor_lapack(n, half_bandwidth, band) - 1;
+    if (*bad_row >= 0) return HF_SINGULAR;
+    hf_band_back_solve_lapack(n, half_bandwidth, 3, band, b, ldb);
+    return HF_OK;
+}
+
 double hf_band_norm(int n, int half_bandwidth, const double *band, double *work)
 {
     int ldab = half_bandwidth + 1;

@@ -36,7 +36,8 @@ int hf_band_factor_general(int n, int half_bandwidth, double *general, int *pivo
 void hf_band_back_solve_general(int n, int half_bandwidth, int n_rhs, const double *general, const int *pivot,
                                 double *b, int ldb);
 
-/* hf_band_factor and hf_band_back_solve by LAPACK (dpbtrf, dpbtrs). */
+/* hf_band_solve, hf_band_factor and hf_band_back_solve by LAPACK (dpbtrf, dpbtrs). The factors have the same layout. */
+hf_status hf_band_solve_lapack(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row);
 int hf_band_factor_lapack(int n, int half_bandwidth, double *band);
 void hf_band_back_solve_lapack(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
 

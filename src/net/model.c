@@ -109,6 +109,7 @@ double hf_model_reference_N(const hf_scene *scene, double pretension_N)
 
 static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *m)
 {
+    m->by_lapack = form->factor == HF_FACTOR_LAPACK;
     m->pretension_N = form->pretension_N;
     m->reference_N = hf_model_reference_N(s, form->pretension_N);
     for (int e = 0; e < m->n_cable; e++) {

@@ -6,6 +6,7 @@
 const char *const hf_method_word[6] = {"hifdm", "iterative_fdm", "fdm", "newton", "auto", NULL};
 const char *const hf_prestress_word[3] = {"given", "exact", NULL};
 const char *const hf_stop_rule_word[3] = {"residual", "rms_change", NULL};
+const char *const hf_factor_word[3] = {"own", "lapack", NULL};
 const char *const hf_rule_word[4] = {"force_density", "tension", "seeded", NULL};
 const char *const hf_solver_word[5] = {"auto", "chord", "newton", "fixed_point", NULL};
 #define WORD(name, word) word,

@@ -56,7 +56,7 @@ static bool is_served(const hf_model *m, int e)
 bool hf_chord_applies(const hf_evaluator *v)
 {
     const hf_model *m = v->model;
-    if (!m->has_newton || m->n_gene == 0) return false;
+    if (!m->has_newton || m->n_gene == 0 || m->by_lapack) return false;
     for (int k = 0; k < m->n_gene; k++) {
         hf_gene_sets sets = hf_evaluate_sets(v, k);
         if (sets != HF_SETS_TENSION && sets != HF_SETS_DENSITY) return false;

@@ -93,7 +93,8 @@ static hf_status solve_positions(const hf_model *m, hf_workspace *w, int *bad_ro
     if (m->has_strut)
         return hf_band_solve_indefinite(m->n_free, m->half_bandwidth, w->band, w->general_band, w->pivot, w->position_m,
                                         m->n_node, bad_row);
-    return hf_band_solve(m->n_free, m->half_bandwidth, w->band, w->position_m, m->n_node, bad_row);
+    return (m->by_lapack ? hf_band_solve_lapack : hf_band_solve)(m->n_free, m->half_bandwidth, w->band, w->position_m,
+                                                                 m->n_node, bad_row);
 }
 
 /* ---- measuring cables ---- */

@@ -97,6 +97,11 @@ static void stiffen(const hf_model *m, hf_workspace *w, const hf_newton_rows *ro
 
 /* ---- factor and solve ---- */
 
+static void back_solve(const hf_model *m, const hf_workspace *w, int n, int half_bandwidth, int n_rhs, double *rhs)
+{
+    (m->by_lapack ? hf_band_back_solve_lapack : hf_band_back_solve)(n, half_bandwidth, n_rhs, w->newton_band, rhs, n);
+}
+
 static hf_status factor_some(const hf_model *m, hf_workspace *w, hf_newton_block *block_of,
                              const double *spring_N_per_m, const hf_newton_rows *rows, double *condition)
 {
@@ -107,7 +112,7 @@ static hf_status factor_some(const hf_model *m, hf_workspace *w, hf_newton_block
         if (!(isfinite(largest) && largest > 0) || shift > 1) return HF_SINGULAR;
         stiffen(m, w, rows, shift * largest, spring_N_per_m);
         double norm = condition ? hf_band_norm(n, k, w->newton_band, w->newton_work) : 0;
-        if (hf_band_factor(n, k, w->newton_band) != 0) continue;
+        if ((m->by_lapack ? hf_band_factor_lapack : hf_band_factor)(n, k, w->newton_band) != 0) continue;
         if (condition)
             *condition = hf_band_condition(n, k, w->newton_band, norm, w->newton_work, w->newton_integer_work);
         if (condition && shift > DIAGONAL_GUARD) *condition = INFINITY;
@@ -174,7 +179,7 @@ void hf_newton_matrix_solve_rows(const hf_model *m, const hf_workspace *w, const
     int n = 3 * rows->n;
     for (int i = 0; i < m->n_free; i++)
         if (rows->place[i] >= 0) memmove(rhs + 3 * rows->place[i], rhs + 3 * i, 3 * sizeof *rhs);
-    hf_band_back_solve(n, column_of(rows) - 1, 1, w->newton_band, rhs, n);
+    back_solve(m, w, n, column_of(rows) - 1, 1, rhs);
     for (int i = m->n_free - 1; i >= 0; i--)
         for (int c = 0; c < 3; c++)
             rhs[3 * i + c] = rows->place[i] >= 0 ? rhs[3 * rows->place[i] + c] : 0;
@@ -188,7 +193,7 @@ hf_status hf_newton_matrix_factor(const hf_model *m, hf_workspace *w, double *co
 void hf_newton_matrix_solve_many(const hf_model *m, const hf_workspace *w, int n_rhs, double *rhs)
 {
     int n = hf_newton_matrix_dofs(m);
-    hf_band_back_solve(n, 3 * m->half_bandwidth + 2, n_rhs, w->newton_band, rhs, n);
+    back_solve(m, w, n, 3 * m->half_bandwidth + 2, n_rhs, rhs);
 }
 
 void hf_newton_matrix_solve(const hf_model *m, const hf_workspace *w, double *rhs)

@@ -152,7 +152,7 @@ START_TEST(schema_is_yaml_with_every_key)
         "'auto', "
         "'polarisation': 'x'}}",
         "set(a['form']) == {'method', 'pretension_N', 'prestress', 'stop', 'residual_tolerance', 'length_tolerance', "
-        "'rms_tolerance_m', 'max_iterations', 'collapse_ratio'}",
+        "'rms_tolerance_m', 'max_iterations', 'collapse_ratio', 'factor'}",
         "set(a['optimize']) == {'method', 'symmetry', 'solver', 'polish_iterations', 'compare_lm', 'rule', "
         "'population', "
         "'generations', 'range_N', 'min_tension_N', 'max_tension_N', "

@@ -128,6 +128,9 @@ static const struct {
      "error: c.yaml:4:18: optimize.min_tension_N: must be below optimize.max_tension_N\n"},
     {CYLINDER "optimize: {elites: 9, population: 9}\n", NULL,
      "error: c.yaml:3:20: optimize.elites: must be below optimize.population\n"},
+    {CYLINDER "form: {factor: lapack}\noptimize: {solver: chord}\n", NULL,
+     "error: c.yaml:4:20: optimize.solver: chord shares one factor among designs, which form.factor: lapack does not; "
+     "use newton, fixed_point or auto\n"},
     {CYLINDER "optimize: {crossover_low: 0.95}\n", NULL,
      "error: c.yaml:3:27: optimize.crossover_low: must not be above optimize.crossover_high\n"},
     {CYLINDER "optimize: {}\n", "optimize.mutation_low=0.5",
