@@ -32,8 +32,8 @@ static bool takes_turns;
 static char name_of_library[PATH_MAX + 256];
 
 /* Of OpenBLAS, else NULL. openblas_get_parallel returns BY_OPENMP for a build whose number of threads is that of the
- * OpenMP library. */
-enum { BY_OPENMP = 2 };
+ * OpenMP library, and SEQUENTIAL for one whose buffers only some builds protect from callers in several threads. */
+enum { SEQUENTIAL = 0, BY_OPENMP = 2 };
 static struct {
     void (*set_num_threads)(int n);
     int (*get_parallel)(void);
@@ -122,10 +122,11 @@ static void open_library(char *reasons, size_t size)
         if (library && !find_routines(library, &routines)) {
             dlclose(library);
             library = NULL;
-            reason = "has not all routines that are needed";
+            reason = NULL;
         }
         if (!library && n < size)
-            n += (size_t)snprintf(reasons + n, size - n, "%s%s", n ? "; " : "", reason ? reason : candidate[i]);
+            n += (size_t)snprintf(reasons + n, size - n, "%s%s%s", n ? "; " : "", reason ? reason : candidate[i],
+                                  reason ? "" : " has not all routines that are needed");
     }
     for (int i = 0; i < N_VARIABLE; i++)
         if (!old[i])
@@ -165,9 +166,9 @@ static hf_status load(hf_messages *messages)
     find_in(library, "openblas_set_num_threads", &openblas.set_num_threads);
     find_in(library, "openblas_get_config", &openblas.get_config);
     find_in(library, "openblas_get_corename", &openblas.get_corename);
-    bool by_openmp = find_in(library, "openblas_get_parallel", &openblas.get_parallel) &&
-                     openblas.get_parallel() == BY_OPENMP &&
-                     find_in(library, "omp_get_max_threads", &openmp.get_max_threads) &&
+    int kind = find_in(library, "openblas_get_parallel", &openblas.get_parallel) ? openblas.get_parallel() : -1;
+    takes_turns |= kind == SEQUENTIAL;
+    bool by_openmp = kind == BY_OPENMP && find_in(library, "omp_get_max_threads", &openmp.get_max_threads) &&
                      find_in(library, "omp_set_num_threads", &openmp.set_num_threads);
     if (!by_openmp) openmp.set_num_threads = NULL;
     if (!by_openmp && openblas.set_num_threads) openblas.set_num_threads(1);

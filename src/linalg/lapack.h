@@ -35,7 +35,7 @@ hf_status hf_lapack_load(hf_messages *messages);
 
 /* Returns the routines; hf_lapack_load must have returned HF_OK. Calls of them stand between hf_lapack_begin and
  * hf_lapack_end, which gets what the former returned. In between, LAPACK uses one thread; where the address space is
- * limited, one caller at a time uses it. */
+ * limited, and with a BLAS that may not be safe in threads, one caller at a time uses it. */
 const hf_lapack_routines *hf_lapack(void);
 int hf_lapack_begin(void);
 void hf_lapack_end(int n_thread);
