@@ -143,8 +143,6 @@ void hf_help_man(FILE *f)
     put_roff("passive, with GOMP_SPINCOUNT=2000, unless one of them is set: threads that spin for long while they wait "
              "for one that is not running lose more than they gain.\n",
              f);
-    fputs(".TP\n\\fBOPENBLAS_NUM_THREADS\\fR\n", f);
-    put_roff("1 unless it is set: nothing here uses the threads of the linear algebra.\n", f);
     fputs(".SH SEE ALSO\n", f);
     put_roff("Chen, Dong, Song, Chen, Li, Form-Finding Analysis of Mesh Reflector of Large Parabolic Cylindrical "
              "Antenna, Aerospace 2022, 9, 239: the equations that are cited by number.\n",

@@ -24,7 +24,7 @@ START_TEST(data_sets_do_not_depend_on_the_threads_of_the_linear_algebra)
     static const char script[] =
         "OPENBLAS_NUM_THREADS=$3 OMP_NUM_THREADS=$3 exec \"$0\" run \"$1\" -o \"$2\" --quiet --set "
         "scene.parabolic_cylinder.modules=[1,1] --set scene.parabolic_cylinder.cells_per_module=[140,150] --set "
-        "scene.parabolic_cylinder.supports=perimeter --set form.max_iterations=4";
+        "scene.parabolic_cylinder.supports=perimeter --set form.max_iterations=4 --set form.factor=lapack";
     SHELL(3, script, REFLECTOR, one, "1");
     SHELL(3, script, REFLECTOR, two, "2");
     EXPECT(one, two, "--", "differing(a, b) == []", "a['scene/node/id'].shape == (141 * 151,)");
