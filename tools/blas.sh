@@ -26,7 +26,8 @@ find_libraries() {
         for file in "$there/$name"/*.deb; do dpkg -x "$file" "$there/$name"; done
         touch "$there/$name/done"
     fi
-    folders=$(find "$there/$name" \( -name liblapack.so.3 -o -name libblas.so.3 \) -printf '%h\n' | sort -u | paste -sd:)
+    folders=$(find "$there/$name" \( -name liblapack.so.3 -o -name libblas.so.3 \) -printf '%h\n' | sort -u |
+        paste -sd:)
 }
 
 # Is it this LAPACK that the program loads?

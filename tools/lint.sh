@@ -185,7 +185,8 @@ only_in "$print_files" '\b(v?f?printf|f?puts|f?putc|putchar|perror|exit|_Exit|ab
 file_calls='rename|renameat|link|linkat|mkstemp|mkdtemp|tmpfile|tempnam|creat|mkdir|truncate'
 only_in base/file_out "\b($file_calls)[[:blank:]]*\(|\bO_(CREAT|TRUNC|TMPFILE)\b" 'makes or names a file by hand'
 only_in store/hdf5 '\bH5Fcreate\b' 'HDF5 file that is not made by base/file_out'
-only_in "base/text linalg/lapack" '\b(fopen|freopen)[[:blank:]]*\(' 'opens a file by fopen; files are made by base/file_out'
+only_in "base/text linalg/lapack" '\b(fopen|freopen)[[:blank:]]*\(' \
+    'opens a file by fopen; files are made by base/file_out'
 only_in "base/file_io base/file_out base/text out/report_page out/export" \
     '(^|[^>._[:alnum:]])(p?read|p?writev?|f(data)?sync|ftruncate|flock)[[:blank:]]*\(' 'a transfer by hand'
 only_in "$openmp_files" '\bomp(\b|_)|\b_OPENMP\b' 'OpenMP'

@@ -4,7 +4,8 @@ solve with given force densities by each factorisation (form.factor): its errors
 
     literal.py --program build/hifdm --case configs/chen2022.yaml --work build/literal [--rounds 7]
 
-Prints two tables in Markdown. Rounds are interleaved; times are medians, and ratios medians of the ratios within a round.
+Prints two tables in Markdown. Rounds are interleaved; times are medians, and ratios medians of the ratios within a
+round.
 CPU time is that of the evaluations alone, over all threads: other work on the machine disturbs it least.
 """
 import argparse
@@ -16,7 +17,8 @@ import subprocess
 
 # rule, solver, factor, what it is
 WAYS = [
-    ("seeded", "fixed_point", "own", "the paper's: Eq. 8 from the design, to its stop; band Cholesky in each iteration"),
+    ("seeded", "fixed_point", "own",
+     "the paper's: Eq. 8 from the design, to its stop; band Cholesky in each iteration"),
     ("seeded", "fixed_point", "lapack", "the same, each design alone, by dpbtrf and dpbtrs"),
     ("force_density", "fixed_point", "own", "the same iteration to equilibrium, boundary force densities held"),
     ("force_density", "newton", "own", "Newton, each design with matrices of its own"),
@@ -90,8 +92,8 @@ def main():
 
     found = [[run_way(a, *way[:3]) for way in WAYS] for _ in range(a.rounds)]
     print(f"{a.case}: medians of {a.rounds} interleaved runs; {found[0][0]['threads']} threads; {processor()}\n")
-    print("| `rule`, `solver`, `factor` | an individual is | psi (mm) | evaluations | wall (s) | CPU per evaluation (us) "
-          "| CPU against the first |\n|---|---|---|---|---|---|---|")
+    print("| `rule`, `solver`, `factor` | an individual is | psi (mm) | evaluations | wall (s) "
+          "| CPU per evaluation (us) | CPU against the first |\n|---|---|---|---|---|---|---|")
     for i, (rule, solver, factor, what) in enumerate(WAYS):
         mine = [one[i] for one in found]
         wall_s = statistics.median(r["wall_s"] for r in mine)
@@ -99,8 +101,8 @@ def main():
         part = statistics.median((one[i]["cpu_s"] / one[i]["evaluations"]) /
                                  (one[0]["cpu_s"] / one[0]["evaluations"]) for one in found)
         psi = {f"{1e3 * r['psi_m']:.4f}" for r in mine}
-        print(f"| `{rule}`, `{solver}`, `{factor}` | {what} | {', '.join(sorted(psi))} | {mine[0]['evaluations']} | {wall_s:.2f} "
-              f"| {each_us:.1f} | {part:.2f} |", flush=True)
+        print(f"| `{rule}`, `{solver}`, `{factor}` | {what} | {', '.join(sorted(psi))} "
+              f"| {mine[0]['evaluations']} | {wall_s:.2f} | {each_us:.1f} | {part:.2f} |", flush=True)
     print_single(a)
 
 

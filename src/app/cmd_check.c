@@ -97,7 +97,8 @@ static void print_scene(const hf_problem *p, FILE *f)
     print_laws(m, f);
     print_sets(&p->scene, f);
     fprintf(f, "  equations     %d unknowns, three right-hand sides; half-bandwidth %d; %s\n", m->n_free,
-            m->half_bandwidth, m->has_strut   ? "indefinite: band LU (dgbtrf)"
+            m->half_bandwidth,
+            m->has_strut   ? "indefinite: band LU (dgbtrf)"
             : m->by_lapack ? "band Cholesky by LAPACK (dpbtrf)"
                            : "band Cholesky");
     if (m->n_chain) fprintf(f, "  note          %d straight chains of length-controlled cables\n", m->n_chain);

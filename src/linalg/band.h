@@ -2,8 +2,9 @@
  *
  * Positive definite matrices are factored by kernels of our own, which give the same bits on every machine; indefinite
  * ones by LAPACK's LU with pivoting. Conditions are LAPACK's estimates. Before a function that calls LAPACK is used,
- * hf_lapack_load must have returned HF_OK; hf_workspace_create and hf_frame_build call it. Measured with 512-bit vectors: factor and three
- * solutions of n = 437, half-bandwidth 21 take two fifths of the reference LAPACK's time, with 65 a tenth. */
+ * hf_lapack_load must have returned HF_OK; hf_workspace_create and hf_frame_build call it. Measured with 512-bit
+ * vectors: factor and three solutions of n = 437, half-bandwidth 21 take two fifths of the reference LAPACK's time,
+ * with 65 a tenth. */
 #ifndef HIFDM_BAND_H
 #define HIFDM_BAND_H
 

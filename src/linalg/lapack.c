@@ -162,7 +162,8 @@ static hf_status load(hf_messages *messages)
     if (find_in(RTLD_DEFAULT, "omp_get_max_threads", &openmp.get_max_threads)) openmp.get_max_threads();
     open_library(reasons, sizeof reasons);
     if (!library)
-        return hf_error(messages, HF_NO_LAPACK, "LAPACK cannot be loaded: %s. Install it (Debian: liblapack3)", reasons);
+        return hf_error(messages, HF_NO_LAPACK, "LAPACK cannot be loaded: %s. Install it (Debian: liblapack3)",
+                        reasons);
     find_in(library, "openblas_set_num_threads", &openblas.set_num_threads);
     find_in(library, "openblas_get_config", &openblas.get_config);
     find_in(library, "openblas_get_corename", &openblas.get_corename);

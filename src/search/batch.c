@@ -108,7 +108,8 @@ hf_solver hf_batch_solver(const hf_evaluator *v, bool *has_lanes)
     *has_lanes = false;
     if (each_by_newton(v)) return HF_SOLVER_NEWTON;
     /* the lanes serve neither LAPACK, struts, every law, a truss nor goals: such designs are solved one by one */
-    *has_lanes = !v->model->by_lapack && !v->model->has_strut && !v->model->n_attachment && !v->model->gene && !v->limits && !v->goals;
+    *has_lanes = !v->model->by_lapack && !v->model->has_strut && !v->model->n_attachment && !v->model->gene &&
+                 !v->limits && !v->goals;
     for (int e = 0; e < v->model->n_cable && *has_lanes; e++)
         *has_lanes = hf_law_is_served(v->model->law[e], HF_SWARM_LAWS);
     return HF_SOLVER_FIXED_POINT;

@@ -43,8 +43,10 @@ static const char *const factors_something[] = {
     "adjust cut.yaml --measured measured.csv",
     "sweep study.yaml --dir others",
 };
-enum { N_NOTHING = sizeof factors_nothing / sizeof *factors_nothing,
-       N_SOMETHING = sizeof factors_something / sizeof *factors_something };
+enum {
+    N_NOTHING = sizeof factors_nothing / sizeof *factors_nothing,
+    N_SOMETHING = sizeof factors_something / sizeof *factors_something
+};
 
 static const char *prepare(void)
 {
@@ -55,12 +57,13 @@ static const char *prepare(void)
                                    "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 3, sigma_m: 0.0001}\n"
                                    "surface: {frequencies_Hz: [2e9]}\n");
     file_with("study.yaml", "base: dish.yaml\nsweep:\n  form.pretension_N: [8, 12]\n");
-    SHELL(0,
-          "cd \"$1\" && \"$0\" run dish.yaml -o dish.h5 --quiet && \"$0\" run cut.yaml -o cut.h5 --quiet && "
-          "\"$0\" sweep study.yaml --dir points --quiet && \"$0\" merge study.yaml --dir points -o merged.h5 --quiet && "
-          "\"$0\" export cut.h5 --csv before && cut -d, -f1-4 before/nodes.csv >measured.csv && "
-          "\"$0\" evaluate dish.yaml --template table.csv --quiet",
-          folder);
+    SHELL(
+        0,
+        "cd \"$1\" && \"$0\" run dish.yaml -o dish.h5 --quiet && \"$0\" run cut.yaml -o cut.h5 --quiet && "
+        "\"$0\" sweep study.yaml --dir points --quiet && \"$0\" merge study.yaml --dir points -o merged.h5 --quiet && "
+        "\"$0\" export cut.h5 --csv before && cut -d, -f1-4 before/nodes.csv >measured.csv && "
+        "\"$0\" evaluate dish.yaml --template table.csv --quiet",
+        folder);
     return library;
 }
 

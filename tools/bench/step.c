@@ -41,7 +41,8 @@ static void step_by_lapack(bench_scene *b, bool at_once)
     hf_form_assemble(m, &b->workspace);
     hf_form_assemble_loads(m, &b->workspace);
     if (at_once) {
-        ((dpbsv_routine *)hf_lapack_find("dpbsv_"))("L", &m->n_free, &m->half_bandwidth, &three, band, &ldab, x, &m->n_node, &info);
+        ((dpbsv_routine *)hf_lapack_find("dpbsv_"))("L", &m->n_free, &m->half_bandwidth, &three, band, &ldab, x,
+                                                    &m->n_node, &info);
     } else {
         hf_lapack()->dpbtrf("L", &m->n_free, &m->half_bandwidth, band, &ldab, &info);
         hf_lapack()->dpbtrs("L", &m->n_free, &m->half_bandwidth, &three, band, &ldab, x, &m->n_node, &info);

@@ -10,9 +10,9 @@
 static const struct {
     const char *name;
     bool by_newton, by_paper;
-} config[] = {{"chen2022", true, true},     {"cylinder-tied-8m", true, true},
-              {"paraboloid-6m", true, true}, {"paraboloid-offset-12m", true, false},
-              {"reflector", true, true},     {"paraboloid-even", true, true},
+} config[] = {{"chen2022", true, true},        {"cylinder-tied-8m", true, true},
+              {"paraboloid-6m", true, true},   {"paraboloid-offset-12m", true, false},
+              {"reflector", true, true},       {"paraboloid-even", true, true},
               {"straight-edges", false, false}};
 enum { N_CONFIG = sizeof config / sizeof *config, N_RANDOM = 60, MOST_NODES = 300 };
 
@@ -89,7 +89,8 @@ static void compare_solves(struct net *net, const char *name)
         ck_assert_int_eq(find_shape(net), HF_OK);
         ck_assert_int_eq(net->result.iterations, 1);
         double error = backward_error(net);
-        ck_assert_msg(error <= BACKWARD_ERROR * m->n_free, "%s: %d unknowns, backward error %g", name, m->n_free, error);
+        ck_assert_msg(error <= BACKWARD_ERROR * m->n_free, "%s: %d unknowns, backward error %g", name, m->n_free,
+                      error);
         if (!by_lapack) memcpy(own, net->work.position_m, n * sizeof *own);
     }
     bool same_bits = !memcmp(own, net->work.position_m, n * sizeof *own);

@@ -152,7 +152,7 @@ START_TEST(one_buffer_for_all_threads)
     if (!HAS_LIMIT) return;
     limit_address_space(330);
     ck_assert_int_eq(hf_lapack_load(NULL), HF_OK);
-    mallopt(M_ARENA_MAX, 1); /* or each thread may take 128 MB for a heap of its own */
+    mallopt(M_ARENA_MAX, 1);  /* or each thread may take 128 MB for a heap of its own */
     limit_address_space(110); /* for stacks of 8 MB */
     in_threads(factor);
 }
