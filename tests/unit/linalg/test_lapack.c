@@ -45,6 +45,14 @@ static void *factor(void *unused)
     return is_right ? &yes : NULL;
 }
 
+static void *factor_often(void *unused)
+{
+    void *is_right = factor(unused);
+    for (int i = 1; i < 30 && is_right; i++)
+        is_right = factor(unused);
+    return is_right;
+}
+
 static void in_threads(void *(*work)(void *))
 {
     pthread_t thread[N_THREAD];
@@ -154,7 +162,7 @@ START_TEST(one_buffer_for_all_threads)
     ck_assert_int_eq(hf_lapack_load(NULL), HF_OK);
     mallopt(M_ARENA_MAX, 1);  /* or each thread may take 128 MB for a heap of its own */
     limit_address_space(110); /* for stacks of 8 MB */
-    in_threads(factor);
+    in_threads(factor_often);
 }
 END_TEST
 
