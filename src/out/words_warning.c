@@ -127,7 +127,13 @@ const hf_word hf_words_warning[] = {
      "Nothing was computed: the file has the finished result of just this case. --restart computes it again.",
      "is the finished result of this case"},
     {"seed_unused", "warning", "", "Without a section optimize nothing is random.", "--seed has no effect"},
-    {"design_alone", "warning", "", "`hifdm tolerance` with this case adds the samples.",
+    {"unfinished_result", "warning", "",
+     "A fault of the machine or a file in the way stopped a late stage. The stages before it are stored. Remove the "
+     "cause that the error states and run the same command again to resume.",
+     "is unfinished; run the same command again"},
+    {"design_alone", "warning", "",
+     "The net of this design has no samples; the error states why. Running the case again finds the same: change the "
+     "design or the section tolerance.",
      "the result has the design alone"},
     {"point_dominated", "warning", "",
      "The point that was taken is none that one would choose: another is better in an objective and as good in all. "

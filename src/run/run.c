@@ -458,17 +458,35 @@ static bool leaves_result(hf_status status)
     return status == HF_OK || status == HF_NOT_CONVERGED || status == HF_NO_FEASIBLE;
 }
 
-/* Is the design kept though its samples failed? A point of a sweep whose machine is sick is tried again. */
+/* Faults of the machine and files in the way: the same command may succeed once they are gone. */
+static bool is_of_machine(hf_status status)
+{
+    return status == HF_IO || status == HF_NO_MEMORY || status == HF_EXISTS;
+}
+
+/* Does the design end the run though its samples failed? Only where no other attempt finds any: the result says why. */
 static bool outlives_samples(const hf_run_request *q, hf_status status)
 {
-    if (status == HF_OK || status == HF_INTERRUPTED || hf_tolerance_stage_is_task(q)) return false;
-    return !q->of_sweep || (status != HF_IO && status != HF_NO_MEMORY);
+    return status != HF_OK && status != HF_INTERRUPTED && !is_of_machine(status) && !hf_tolerance_stage_is_task(q);
+}
+
+/* Publishes the stages that are stored, unfinished, so that the same command resumes after them. Where the disk is full
+ * already, what was published before and the journals remain. */
+static void keep_unfinished(const run *r, const hf_summary *s, hf_status status, const char *output,
+                            hf_messages *messages)
+{
+    hf_messages unwanted = {0}; /* the failure that led here has its message */
+    bool is_kept = r->store && hf_store_publish(r->store, s, true, &unwanted) == HF_OK;
+    if (is_kept && status != HF_INTERRUPTED && !r->request->of_sweep)
+        hf_warning(messages, "%s: is unfinished; run the same command again to resume", output);
+    hf_messages_free(&unwanted);
 }
 
 /* The result is finished already: return its stored summary and status, and the errors that explain the status. */
-static hf_status repeat_finished(const char *output, hf_summary *s, hf_messages *messages)
+static hf_status repeat_finished(const hf_run_request *q, const char *output, hf_summary *s, hf_messages *messages)
 {
     HF_TRY(hf_store_read_summary(output, s, messages));
+    if (s->has_tolerance) hf_tolerance_stage_end(q, output);
     hf_warning(messages, "%s: is the finished result of this case; --restart computes it again", output);
     for (const char *line = s->warnings; *line; line += strcspn(line, "\n"), line += *line == '\n')
         if (!strncmp(line, "error: ", 7)) hf_error(messages, s->status, "%.*s", (int)strcspn(line + 7, "\n"), line + 7);
@@ -523,9 +541,9 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     hf_problem_describe(&r->problem, s);
     hf_store_state state = HF_STORE_NOTHING;
     if (!q->no_file) HF_TRY(open_store(r, output, &state, messages));
-    if (state == HF_STORE_FINISHED && settings->has_tolerance) hf_tolerance_stage_end(q, output);
-    if (state == HF_STORE_FINISHED) return repeat_finished(output, s, messages);
+    if (state == HF_STORE_FINISHED) return repeat_finished(q, output, s, messages);
     hf_status status = stages(r, s, messages);
+    bool has_design = status == HF_OK;
     if (status == HF_OK && r->problem.states.n)
         status = hf_cases_run(&r->problem, &r->cases, r->store, q->stop_requested, s, messages);
     const hf_tolerance_stage stage = {q, &r->problem, r->shape, output, r->store};
@@ -535,6 +553,8 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
         keeps_design = outlives_samples(q, status);
         if (keeps_design) hf_warning(messages, "tolerance: the result has the design alone, without samples");
     }
+    if (has_design && (status == HF_INTERRUPTED || is_of_machine(status)))
+        keep_unfinished(r, s, status, output, messages);
     if (status == HF_INTERRUPTED && (r->store || hf_tolerance_stage_is_task(q)))
         hf_error(messages, status, "%s: told to stop%s; the same command goes on from there", output, r->stopped_at);
     if ((!leaves_result(status) && !keeps_design) || hf_tolerance_stage_is_task(q)) return status;

@@ -421,7 +421,7 @@ START_TEST(a_stopped_point_goes_on_to_the_same_bits)
     ck_assert(wait_until(&s, says_samples, temp("err")));
     ck_assert_int_eq(end_by(&s, SIGKILL), 128 + SIGKILL);
     HIFDM(5, "run", c, "--point", keep(formatted("%s:3", front)), "-o", path);
-    ERR(" has samples of another case; ");
+    ERR("is the unfinished result of another case; what differs: it has --point ");
     HIFDM(0, "run", c, "--point", point, "-o", path, "--quiet", "--threads", "1");
     HIFDM(0, "run", c, "--point", point, "-o", whole, "--quiet", "--threads", "2");
     HIFDM(0, "diff", path, whole);

@@ -1,0 +1,63 @@
+/* Stages after the search fail because of the machine: the result stays unfinished, the stages before and the samples
+ * stay, and the same command resumes to the bits of an undisturbed run. */
+#include "cli.h"
+
+#include <errno.h>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define HAS_PRELOAD 0 /* the sanitizer's library must be loaded first */
+#else
+#define HAS_PRELOAD 1
+#endif
+
+#define SAMPLES "tolerance: {sigma_cut_m: 1e-4, samples: 3000}\n"
+#define STATES                                                                                                         \
+    "cables:\n  - {expansion_per_K: -1e-6}\ncases:\n  - {name: cold, temperature_K: -100}\n"                           \
+    "  - {name: hot, temperature_K: 100}\n"
+#define SEARCH "optimize: {population: 6, generations: 3, seed: 7, method: ga+lm, polish_iterations: 3}\n"
+
+static const char *sick_machine(void)
+{
+    const char *library = temp("sick.so");
+    SHELL(0, "cc -shared -fPIC -O1 -w \"$1\" -o \"$2\" -ldl", keep(source_path("tests/cli/sick_machine.c")), library);
+    return library;
+}
+
+static const struct {
+    const char *sections, *how; /* what the case asks for; the call that fails, as sick_machine.c reads it */
+    bool keeps_samples;
+} late[] = {
+    {SAMPLES, "writev 28 1 .tolerance.journal", false},
+    {SAMPLES, "writev 28 2 .tolerance.journal", true},
+    {SAMPLES, "pwrite 28 2 /#", true},
+    {SAMPLES, "open 24 1 .tolerance.journal", false},
+    {SEARCH SAMPLES, "writev 122 2 .tolerance.journal", true},
+    {SEARCH STATES SAMPLES, "writev 28 2 .tolerance.journal", true},
+};
+enum { N_LATE = sizeof late / sizeof *late };
+
+START_TEST(a_late_stage_that_fails_is_resumed)
+{
+    const char *path = file_with("c.yaml", keep(formatted("%s%s", EA_SCENE, late[_i].sections)));
+    const char *undisturbed = temp("u.h5"), *result = temp("a.h5"), *library = sick_machine();
+    const char *journal = keep(formatted("%s.tolerance.journal", result));
+    HIFDM(0, "run", path, "-o", undisturbed, "--quiet");
+    SHELL(5, "SICK=\"$3\" LD_PRELOAD=\"$4\" \"$0\" run \"$1\" -o \"$2\" --quiet", path, result, late[_i].how, library);
+    ERR("is unfinished; run the same command again to resume");
+    EXPECT(result, "--", "not a.attrs['finished']", "len(a['form/length_m']) > 0", "'tolerance' not in a");
+    if (late[_i].keeps_samples) ck_assert(is_there(journal));
+    HIFDM(0, "run", path, "-o", result, "--quiet");
+    HIFDM(0, "diff", undisturbed, result);
+    EXPECT(result, "--", "a.attrs['finished']", "len(a['tolerance/sample/psi_m']) == 3000");
+    SHELL(0, "test \"$(ls -A \"$1\"*)\" = \"$1\"", result);
+}
+END_TEST
+
+Suite *suite_cli_late_stages(void)
+{
+    Suite *suite = suite_create("cli/late_stages");
+    TCase *tcase = tcase_create("late_stages");
+    if (HAS_PRELOAD) tcase_add_loop_test(tcase, a_late_stage_that_fails_is_resumed, 0, N_LATE);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
