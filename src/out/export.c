@@ -72,6 +72,14 @@ hf_status hf_export_read(const hf_export_request *o, hf_export_stored *stored, h
     return hf_store_read_shape(o->file, stage, &stored->shape, messages);
 }
 
+bool hf_export_has_truss(const hf_export_request *o, const hf_summary *s, hf_messages *messages)
+{
+    if (s->has_truss && !s->finished)
+        hf_warning(messages, "%s: is unfinished: the export has no truss, which is stored at the end of the run",
+                   o->file);
+    return s->has_truss && s->finished;
+}
+
 void hf_export_warn_of_front(const char *file, const hf_summary *s, bool is_state, hf_messages *messages)
 {
     int point = s->has_front ? hf_front_suggested(&s->front) : 0;

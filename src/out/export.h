@@ -67,6 +67,9 @@ typedef hf_status hf_export_write_shape(const hf_export_request *request, const 
 hf_status hf_export_read(const hf_export_request *request, hf_export_stored *stored, hf_messages *messages);
 void hf_export_free(hf_export_stored *stored);
 
+/* Returns whether the result has the nodes and members of a truss; warns of an unfinished one, which has not yet. */
+bool hf_export_has_truss(const hf_export_request *request, const hf_summary *summary, hf_messages *messages);
+
 /* Of the result `file` with a front: the shape of its result, or of a state, is none of the designs that were found. */
 void hf_export_warn_of_front(const char *file, const hf_summary *summary, bool is_state, hf_messages *messages);
 

@@ -179,7 +179,7 @@ static hf_status write_csv(const hf_export_request *o, const hf_export_stored *s
     if (is_measured) HF_TRY(export_facets(o, stored, facets, messages));
     snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s and %s", o->file, scene->n_node,
              scene->n_cable, stored->word, nodes, cables);
-    if (!stored->summary.has_truss) return HF_OK;
+    if (!hf_export_has_truss(o, &stored->summary, messages)) return HF_OK;
     hf_truss truss = {0};
     hf_carrier_state state = {0};
     hf_status status = export_truss(o, &truss, &state, said, size, messages);

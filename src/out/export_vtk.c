@@ -409,7 +409,8 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
     static const char *const name[N_FILE] = {"form",        "optimize",        "polish",        "theoretical",
                                              "truss", /* by hf_stage */
                                              "form_facets", "optimize_facets", "polish_facets", "theoretical_facets"};
-    bool has[N_FILE] = {true, hf_summary_has_best_shape(summary), summary->has_polish, true, summary->has_truss};
+    bool has[N_FILE] = {true, hf_summary_has_best_shape(summary), summary->has_polish, true,
+                        hf_export_has_truss(o, summary, messages)};
     static char path[N_FILE][PATH_MAX];
     for (int i = 0; i < N_FILE; i++) { /* all names are checked before anything is made */
         if (i >= FACETS) has[i] = has[i - FACETS] && t->facets.n_facet > 0;

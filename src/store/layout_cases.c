@@ -57,7 +57,8 @@ static bool is_name_right(const char *name)
 void hf_layout_get_cases(hf_hdf5 *io, hf_summary *summary)
 {
     char name[HF_STATES_MAX][HF_SET_NAME_SIZE] = {{0}}, path[HF_LAYOUT_STATE_SIZE];
-    if (!hf_hdf5_has(io, io->file, "/cases")) return;
+    /* an unfinished result has the shapes of states, and no list of them yet */
+    if (!hf_hdf5_has(io, io->file, "/cases") || !hf_hdf5_has(io, io->file, "/cases/name")) return;
     hid_t group = hf_hdf5_open_group(io, "/cases");
     int n = hf_hdf5_length(io, group, "name", HF_STATES_MAX);
     const hf_hdf5_array array = name_array(n);

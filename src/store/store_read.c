@@ -314,6 +314,10 @@ hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_stat
     hf_hdf5 io = hf_store_open_result(path, messages);
     if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/truss") && io.status == HF_OK)
         io.status = hf_error(messages, HF_IO, "%s: has no truss: its case has no truss section", path);
+    if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/truss/node") && io.status == HF_OK)
+        io.status =
+            hf_error(messages, HF_IO,
+                     "%s: is unfinished, and its truss is stored at the end of the run; resume the run first", path);
     if (io.status == HF_OK) hf_layout_read_truss(&io, truss, state);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) {
