@@ -200,6 +200,8 @@ hf_status hf_store_settle(hf_store *store, hf_messages *messages);
 /* Free the store, leaving on the disk what is there: the published file, and the journal with the generations that the
  * file does not hold. store may be NULL. */
 void hf_store_end(hf_store *store);
+/* The same. Warns if a temporary file cannot be removed. */
+void hf_store_abandon(hf_store *store, hf_messages *messages);
 
 /* One stored shape, in the order of the scene. */
 typedef struct {

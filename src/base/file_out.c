@@ -177,6 +177,17 @@ void hf_file_out_clean(const char *path)
 
 /* ---- temporary files ---- */
 
+static void remove_temporary(hf_file_out *f, hf_messages *messages)
+{
+    if (unlink(f->temporary) == 0 || errno == ENOENT) return;
+    f->is_left = true;
+    if (messages)
+        hf_warning(messages,
+                   "%s: cannot remove the temporary file %s: %s; the next command that writes %s removes it, or remove "
+                   "it yourself",
+                   f->path, f->temporary, strerror(errno), hf_path_name(f->path));
+}
+
 static int close_with(int file, int why)
 {
     close(file);
@@ -189,7 +200,10 @@ int hf_file_out_make(const char *path, hf_file_out *f)
     struct stat info;
     f->file = -1;
     *f->temporary = '\0';
-    if (path != f->path) snprintf(f->path, sizeof f->path, "%s", path);
+    if (path != f->path) {
+        snprintf(f->path, sizeof f->path, "%s", path);
+        f->is_left = false;
+    }
     for (int i = 0; i < ATTEMPTS; i++) {
         if (choose_name(f->path, f->temporary) != 0) return -1;
         f->file = hf_file_out_create(f->temporary);
@@ -199,19 +213,19 @@ int hf_file_out_make(const char *path, hf_file_out *f)
         bool is_ours = lock_file(f->file) != HELD_BY_ANOTHER;
         if (fstat(f->file, &info) != 0) break;
         if (is_ours && info.st_nlink > 0) return 0;
-        hf_file_out_drop(f);
+        hf_file_out_drop(f, NULL);
         errno = EAGAIN;
     }
     int why = errno;
-    hf_file_out_drop(f);
+    hf_file_out_drop(f, NULL);
     errno = why;
     return -1;
 }
 
-void hf_file_out_drop(hf_file_out *f)
+void hf_file_out_drop(hf_file_out *f, hf_messages *messages)
 {
     if (f->file < 0) return;
-    unlink(f->temporary);
+    remove_temporary(f, messages);
     close(f->file);
     f->file = -1;
 }
@@ -244,10 +258,10 @@ int hf_file_out_replace(hf_file_out *f, const char *path)
     return rename(f->temporary, path) == 0 ? end(f) : -1;
 }
 
-int hf_file_out_add(hf_file_out *f, const char *path)
+int hf_file_out_add(hf_file_out *f, const char *path, hf_messages *messages)
 {
     if (link(f->temporary, path) == 0) {
-        unlink(f->temporary); /* where that fails, hf_file_out_clean tries again */
+        remove_temporary(f, messages);
         return end(f);
     }
     if (errno == EEXIST) return -1;
@@ -305,6 +319,7 @@ hf_status hf_file_out_begin(const char *path, hf_file_out *f, hf_messages *messa
 {
     struct stat info;
     f->file = -1;
+    f->is_left = false;
     HF_TRY(hf_file_out_target(path, f->path, messages));
     if (lstat(f->path, &info) != 0 && errno == ENAMETOOLONG) return fail(path, messages);
     if (stat(f->path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) /* no rename replaces a folder */
@@ -317,7 +332,7 @@ hf_status hf_file_out_try(const char *path, hf_messages *messages)
 {
     hf_file_out f;
     HF_TRY(hf_file_out_begin(path, &f, messages));
-    hf_file_out_drop(&f);
+    hf_file_out_drop(&f, messages);
     return HF_OK;
 }
 
@@ -325,7 +340,7 @@ hf_status hf_file_out_publish(hf_file_out *f, hf_messages *messages)
 {
     if (hf_file_out_sync(f->file) == 0 && hf_file_out_replace(f, f->path) == 0) return HF_OK;
     hf_status status = fail(f->path, messages);
-    hf_file_out_drop(f);
+    hf_file_out_drop(f, messages);
     return status;
 }
 
@@ -345,7 +360,7 @@ static hf_status fill_file(hf_file_out *f, void (*write)(const void *context, FI
     }
     if (!failed) return HF_OK;
     hf_status status = fail(f->path, messages);
-    hf_file_out_drop(f);
+    hf_file_out_drop(f, messages);
     return status;
 }
 
@@ -388,7 +403,7 @@ hf_status hf_file_out_set_end(hf_file_out_set *set, hf_status status, hf_message
     for (int i = 0; i < set->n && status == HF_OK; i++)
         if (hf_file_out_replace(&set->file[i], set->file[i].path) != 0) status = fail(set->file[i].path, messages);
     for (int i = 0; i < set->n; i++)
-        hf_file_out_drop(&set->file[i]);
+        hf_file_out_drop(&set->file[i], messages);
     set->n = 0;
     return status;
 }
@@ -411,7 +426,7 @@ static int scratch_with_name(const char *beside)
     hf_file_out f = {0};
     if (hf_file_out_make(beside, &f) != 0) return -1;
     int file = fcntl(f.file, F_DUPFD_CLOEXEC, 0), why = errno;
-    hf_file_out_drop(&f);
+    hf_file_out_drop(&f, NULL);
     errno = why;
     return file;
 }

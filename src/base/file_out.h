@@ -24,6 +24,7 @@ typedef struct {
     char path[HF_FILE_OUT_SIZE];      /* the visible name, links followed */
     char temporary[HF_FILE_OUT_SIZE]; /* beside it */
     int file;                         /* the temporary file, open to read and write, locked; -1: there is none */
+    bool is_left;                     /* a temporary file of this path could not be removed */
 } hf_file_out;
 
 /* Make a temporary file for `path`, after removing what killed processes left there. HF_OK, or HF_IO with a message,
@@ -36,7 +37,8 @@ hf_status hf_file_out_try(const char *path, hf_messages *messages);
 /* The temporary file is written: give it the visible name, replacing what has it. HF_IO with a message and the
  * temporary file removed when that fails. Closes it in any case. */
 hf_status hf_file_out_publish(hf_file_out *file, hf_messages *messages);
-void hf_file_out_drop(hf_file_out *file); /* close and remove the temporary file, if there is one */
+/* Closes and removes the temporary file, if there is one. Warns if that fails; messages: NULL for no warning. */
+void hf_file_out_drop(hf_file_out *file, hf_messages *messages);
 
 /* All of the above for a text: `write` puts it on the stream. HF_OK or HF_IO. */
 hf_status hf_file_out_write(const char *path, void (*write)(const void *context, FILE *file), const void *context,
@@ -85,9 +87,9 @@ int hf_file_out_sync(int file);                            /* its content is on 
 int hf_file_out_sync_folder(const char *path);             /* the name `path` is on the disk */
 
 /* Give the temporary file a name and close it; the second never replaces: EEXIST when the name is taken. When it has
- * its name but the close failed, file->file is -1. */
+ * its name but the close failed, file->file is -1. The second warns if the temporary name cannot be removed. */
 int hf_file_out_replace(hf_file_out *file, const char *path);
-int hf_file_out_add(hf_file_out *file, const char *path);
+int hf_file_out_add(hf_file_out *file, const char *path, hf_messages *messages);
 
 /* A name under which a library opens the temporary file, and no other that has got its name meanwhile. */
 #define HF_FILE_OUT_NAME_SIZE (HF_FILE_OUT_SIZE + 32)

@@ -51,9 +51,9 @@ typedef struct {
     double earlier_wall_s, earlier_cpu_s, earlier_store_s; /* of other sessions, as far as it was published */
 } run;
 
-static void run_free(run *r)
+static void run_free(run *r, hf_messages *messages)
 {
-    hf_store_end(r->store); /* NULL once it is finished */
+    hf_store_abandon(r->store, messages); /* NULL once it is finished */
     hf_optimiser_free(&r->optimiser);
     hf_front_free(&r->front);
     free(r->taken.design);
@@ -589,7 +589,7 @@ hf_status hf_run_case(const hf_run_request *request, hf_summary *summary, char o
     hf_status status = execute(r, summary, output, messages);
     bool is_kept = leaves_result(status) || (summary->finished && summary->status == status);
     if (!is_kept || hf_tolerance_stage_is_task(request)) output[0] = '\0';
-    run_free(r);
+    run_free(r, messages);
     free(r);
     return status;
 }

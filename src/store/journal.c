@@ -308,7 +308,7 @@ hf_status hf_journal_rotate(hf_journal *j, hf_messages *messages)
         hf_file_out_replace(&next, j->path) != 0) {
         hf_status status = fail(j, "write", next.temporary, messages);
         if (file >= 0) close(file);
-        hf_file_out_drop(&next);
+        hf_file_out_drop(&next, messages);
         return status;
     }
     close(j->file);

@@ -409,7 +409,7 @@ static hf_status merge(merger *m, const char *folder, const char *output, bool f
         if (m->io.status == HF_OK)
             m->io.status = hf_file_out_publish(&m->out, messages);
         else
-            hf_file_out_drop(&m->out);
+            hf_file_out_drop(&m->out, messages);
     }
     free(m->room);
     return hf_hdf5_unlock(m->io.status);

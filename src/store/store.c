@@ -534,7 +534,7 @@ hf_status hf_store_settle(hf_store *s, hf_messages *messages)
     hf_store_file_publish(&s->f, true);
     hf_status status = s->f.io.status;
     if (status == HF_OK) hf_journal_forget(&s->f.journal);
-    hf_store_end(s);
+    hf_store_abandon(s, messages);
     return status;
 }
 
@@ -544,11 +544,16 @@ hf_status hf_store_finish(hf_store *s, const hf_summary *summary, hf_messages *m
     return hf_store_settle(s, messages);
 }
 
-void hf_store_end(hf_store *s)
+void hf_store_abandon(hf_store *s, hf_messages *messages)
 {
     if (!s) return;
     bool is_open = s->f.io.file >= 0;
     if (is_open) hf_hdf5_lock();
-    hf_store_free(s);
+    hf_store_free(s, messages);
     if (is_open) hf_hdf5_unlock(HF_OK);
+}
+
+void hf_store_end(hf_store *s)
+{
+    hf_store_abandon(s, NULL);
 }

@@ -52,7 +52,7 @@ hf_status hf_store_file_begin(const char *path, bool replaces, hf_store_file *f,
 
 static bool make_temporary(hf_store_file *f)
 {
-    hf_file_out_drop(&f->out);
+    hf_file_out_drop(&f->out, f->io.messages);
     f->flowing = 0;
     if (hf_file_out_make(f->out.path, &f->out) == 0) return true;
     f->io.status =
@@ -159,7 +159,7 @@ static void keep_work(hf_store_file *f, bool is_worth_keeping)
         int added = -1;
         for (int k = 1; added != 0 && k <= NAMES_MAX && (k == 1 || errno == EEXIST); k++) {
             snprintf(kept, sizeof kept, k == 1 ? "%s.%ld.h5" : "%s.%ld-%d.h5", f->out.path, (long)getpid(), k);
-            added = hf_file_out_add(&f->out, kept);
+            added = hf_file_out_add(&f->out, kept, f->io.messages);
         }
         if (added != 0) {
             snprintf(kept, sizeof kept, "%s", f->out.temporary);
@@ -187,7 +187,7 @@ void hf_store_file_publish(hf_store_file *f, bool durable)
     if (f->is_published ? is_ours(f) : f->replaces)
         taken = hf_file_out_replace(&f->out, f->out.path);
     else if (!f->is_published)
-        taken = hf_file_out_add(&f->out, f->out.path);
+        taken = hf_file_out_add(&f->out, f->out.path, f->io.messages);
     if (taken != 0) {
         if (f->out.file < 0)
             sync_failed(f); /* it has its name, but its close failed */
@@ -201,13 +201,16 @@ void hf_store_file_publish(hf_store_file *f, bool durable)
 
 /* ---- the end ---- */
 
-void hf_store_file_end(hf_store_file *f)
+/* The journal stays beside a temporary file that could not be removed: where there is one, the next command looks for
+ * such files. */
+void hf_store_file_end(hf_store_file *f, hf_messages *messages)
 {
     hf_messages unwanted = {0};
     f->io.messages = &unwanted;
     hf_store_file_close(f);
-    hf_file_out_drop(&f->out); /* before the lock is given back */
-    hf_journal_close(&f->journal, f->is_published ? hf_journal_is_empty(&f->journal) : f->journal.is_new);
+    hf_file_out_drop(&f->out, messages); /* before the lock is given back */
+    bool is_needless = f->is_published ? hf_journal_is_empty(&f->journal) : f->journal.is_new;
+    hf_journal_close(&f->journal, is_needless && !f->out.is_left);
     hf_messages_free(&unwanted);
     if (f->visible >= 0) close(f->visible);
     *f = (hf_store_file){.journal.file = -1, .io.file = -1, .visible = -1, .out.file = -1};

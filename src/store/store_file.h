@@ -64,6 +64,6 @@ void hf_store_file_publish(hf_store_file *file, bool durable);
 
 /* Close and free everything, remove the temporary file, release the lock. The journal stays when it holds generations
  * that the visible file does not, or was there before. */
-void hf_store_file_end(hf_store_file *file);
+void hf_store_file_end(hf_store_file *file, hf_messages *messages);
 
 #endif

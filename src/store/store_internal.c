@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <time.h>
 
-void hf_store_free(hf_store *s)
+void hf_store_free(hf_store *s, hf_messages *messages)
 {
-    hf_store_file_end(&s->f);
+    hf_store_file_end(&s->f, messages);
     hf_generations_free(&s->rows);
     free(s->polish);
     free(s->scratch);
@@ -18,7 +18,7 @@ hf_store *hf_store_new(const char *path, bool replaces, hf_status *status, hf_me
     *status = s ? hf_store_file_begin(path, replaces, &s->f, messages)
                 : hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     if (s && *status != HF_OK) {
-        hf_store_free(s);
+        hf_store_free(s, messages);
         s = NULL;
     }
     return s;
@@ -30,7 +30,7 @@ hf_status hf_store_hand_over(hf_store *s, hf_store **store)
     if (status == HF_OK)
         *store = s;
     else
-        hf_store_free(s);
+        hf_store_free(s, s->f.io.messages);
     return hf_hdf5_unlock(status);
 }
 

@@ -28,7 +28,7 @@ hf_store *hf_store_new(const char *path, bool replaces, hf_status *status, hf_me
  * returns the status. */
 hf_status hf_store_hand_over(hf_store *s, hf_store **store);
 
-void hf_store_free(hf_store *s);
+void hf_store_free(hf_store *s, hf_messages *messages);
 
 /* Scratch memory, valid until the next call. NULL when the store has failed already, or, with a message, without
  * memory. */

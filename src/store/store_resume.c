@@ -416,7 +416,7 @@ static hf_status recover(const char *path, stored_search *a, hf_summary *summary
     if (status == HF_OK && s->n_journal) status = restore(s, &a->optimiser, 0, summary, messages);
     if (status == HF_OK) status = hf_store_publish(s, summary, true, messages);
     close_stored_search(a);
-    hf_store_end(s);
+    hf_store_abandon(s, messages);
     return status;
 }
 

@@ -86,7 +86,7 @@ START_TEST(temporary_names_cannot_be_guessed)
     ck_assert_int_eq(strncmp(a.temporary, begin, (size_t)n), 0);
     ck_assert_str_eq(a.temporary + n + 32, ".tmp");
     ck_assert_int_eq(count_in(folder), 2); /* the second has not taken the first for a leftover */
-    hf_file_out_drop(&a);
+    hf_file_out_drop(&a, NULL);
     ck_assert_int_eq(hf_file_out_publish(&b, &messages), HF_OK);
     ck_assert_int_eq(count_in(folder), 1);
     ck_assert_ptr_null(messages.text);
@@ -130,7 +130,7 @@ START_TEST(leftovers_are_removed_and_nothing_else)
     ck_assert_int_eq(count_in(folder), n + 2);
     ck_assert_int_eq(hf_file_out_write(path, put_text, "x", &messages), HF_OK);
     ck_assert_int_eq(count_in(folder), n + 3);
-    hf_file_out_drop(&alive);
+    hf_file_out_drop(&alive, NULL);
     ck_assert_int_eq(count_in(folder), n + 2);
 }
 END_TEST
@@ -185,11 +185,11 @@ START_TEST(adding_never_replaces)
     write_file(path, "old");
     ck_assert_int_eq(hf_file_out_make(path, &f), 0);
     ck_assert_int_eq(write(f.file, "new", 3), 3);
-    ck_assert_int_eq(hf_file_out_add(&f, path), -1);
+    ck_assert_int_eq(hf_file_out_add(&f, path, NULL), -1);
     ck_assert_int_eq(errno, EEXIST);
     ck_assert_int_eq(unlink(path), 0);
     ck_assert_int_eq(hf_file_out_sync(f.file), 0);
-    ck_assert_int_eq(hf_file_out_add(&f, path), 0);
+    ck_assert_int_eq(hf_file_out_add(&f, path, NULL), 0);
     ck_assert_int_eq(count_in(folder), 1);
     demand_text(path, "new");
     ck_assert_int_eq(hf_file_out_sync_folder(path), 0);
@@ -217,7 +217,7 @@ START_TEST(a_library_opens_the_file_that_was_made)
     ck_assert_int_eq(stat(name, &opened), 0);
     ck_assert_int_eq(fstat(f.file, &made), 0);
     ck_assert(opened.st_ino == made.st_ino && opened.st_dev == made.st_dev);
-    hf_file_out_drop(&f);
+    hf_file_out_drop(&f, NULL);
     demand_text(victim, "mine");
 }
 END_TEST
