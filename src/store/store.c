@@ -149,6 +149,8 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
     *store = NULL;
     hf_store *s = hf_store_new(path, restart, &status, messages);
     if (!s) return status;
+    if (restart) s->f.io.status = hf_store_look_before(s->f.out.path, &s->f.earlier, messages);
+    if (s->f.io.status == HF_OK) s->f.io.status = hf_store_file_demand_room(&s->f, messages);
     hf_hdf5_lock();
     double begin_s = hf_clock_s();
     const hf_optimize_settings *o = &settings->optimize;
@@ -163,6 +165,8 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
         hf_store_file_create(&s->f);
         put_provenance(s, argc, argv);
         hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "identity", s->identity);
+        signed char keeps = s->f.earlier != HF_EARLIER_NONE;
+        hf_hdf5_put(&s->f.io, s->f.io.file, "/", HF_KEEPS_EARLIER, HF_KIND_FLAG, 0, &keeps);
         write_case(s, settings);
         write_scene(s, scene);
     }
@@ -503,7 +507,7 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, bool at_once,
     complete(s, summary, false);
     hf_hdf5_unlock(HF_OK); /* other stores need not wait for the sync of this file */
     /* without a sync before the first generation: a resumed run computes all of that again */
-    hf_store_file_publish(&s->f, s->rows.n_stored > 0);
+    hf_store_file_publish(&s->f, s->rows.n_stored > 0, false);
     if (s->f.io.status == HF_OK && !hf_journal_is_empty(&s->f.journal))
         s->f.io.status = hf_journal_rotate(&s->f.journal, messages);
     s->published_at_s = hf_clock_s();
@@ -531,7 +535,7 @@ hf_status hf_store_settle(hf_store *s, hf_messages *messages)
 {
     if (!s) return HF_OK;
     s->f.io.messages = messages;
-    hf_store_file_publish(&s->f, true);
+    hf_store_file_publish(&s->f, true, true);
     hf_status status = s->f.io.status;
     if (status == HF_OK) hf_journal_forget(&s->f.journal);
     hf_store_abandon(s, messages);

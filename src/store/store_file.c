@@ -177,10 +177,47 @@ static void keep_work(hf_store_file *f, bool is_worth_keeping)
             hf_error(f->io.messages, HF_IO, "%s: cannot be given this name: %s%s%s", f->out.path, why, words, kept);
 }
 
+#define EARLIER ".before-restart"
+
+hf_status hf_store_file_demand_room(hf_store_file *f, hf_messages *messages)
+{
+    char name[HF_FILE_OUT_SIZE + 16];
+    struct stat info;
+    snprintf(name, sizeof name, "%s" EARLIER, f->out.path);
+    if (f->earlier != HF_EARLIER_THERE || lstat(name, &info) != 0) return HF_OK;
+    return hf_error(messages, HF_EXISTS,
+                    "%s: this name is for the earlier result until the new one is finished; remove the file or give it "
+                    "another name",
+                    name);
+}
+
+/* Gives the earlier result its second name, or by a rename where the file system has no links. */
+static void keep_earlier(hf_store_file *f)
+{
+    char name[HF_FILE_OUT_SIZE + 16];
+    snprintf(name, sizeof name, "%s" EARLIER, f->out.path);
+    int failed = link(f->out.path, name);
+    if (failed && errno != EEXIST && errno != ENOENT) failed = rename(f->out.path, name);
+    if (failed && errno != ENOENT) /* somebody else has removed it */
+        f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot keep the earlier result as %s: %s", f->out.path,
+                                name, strerror(errno));
+    f->earlier = failed ? HF_EARLIER_NONE : HF_EARLIER_KEPT;
+}
+
+static void remove_earlier(hf_store_file *f)
+{
+    char name[HF_FILE_OUT_SIZE + 16];
+    snprintf(name, sizeof name, "%s" EARLIER, f->out.path);
+    if (f->earlier == HF_EARLIER_KEPT && unlink(name) != 0 && errno != ENOENT)
+        hf_warning(f->io.messages, "%s: cannot remove the earlier result %s: %s", f->out.path, name, strerror(errno));
+    f->earlier = HF_EARLIER_NONE;
+}
+
 /* Sync before the rename: after a power cut there is the old file or the new one, whole. */
-void hf_store_file_publish(hf_store_file *f, bool durable)
+void hf_store_file_publish(hf_store_file *f, bool durable, bool is_finished)
 {
     if (f->io.status == HF_OK && durable && hf_file_out_sync(f->out.file) != 0) sync_failed(f);
+    if (f->io.status == HF_OK && !is_finished && f->earlier == HF_EARLIER_THERE) keep_earlier(f);
     if (f->io.status != HF_OK) return;
     int taken = -1;
     errno = EEXIST;
@@ -197,6 +234,7 @@ void hf_store_file_publish(hf_store_file *f, bool durable)
     }
     hf_store_file_adopt(f);
     if (f->io.status == HF_OK && durable && hf_file_out_sync_folder(f->out.path) != 0) sync_failed(f);
+    if (f->io.status == HF_OK && is_finished) remove_earlier(f);
 }
 
 /* ---- the end ---- */
@@ -208,6 +246,9 @@ void hf_store_file_end(hf_store_file *f, hf_messages *messages)
     hf_messages unwanted = {0};
     f->io.messages = &unwanted;
     hf_store_file_close(f);
+    if (f->earlier == HF_EARLIER_KEPT && messages)
+        hf_warning(messages, "%s: the earlier finished result is %s" EARLIER " until this one is finished", f->out.path,
+                   f->out.path);
     hf_file_out_drop(&f->out, messages); /* before the lock is given back */
     bool is_needless = f->is_published ? hf_journal_is_empty(&f->journal) : f->journal.is_new;
     hf_journal_close(&f->journal, is_needless && !f->out.is_left);

@@ -26,10 +26,15 @@
 
 #include <sys/stat.h>
 
+/* A finished result that a run with --restart replaces: it gets the name RESULT.before-restart when the unfinished file
+ * of that run gets its name, and loses it when the run is finished. */
+typedef enum { HF_EARLIER_NONE, HF_EARLIER_THERE, HF_EARLIER_KEPT } hf_earlier;
+
 typedef struct {
     hf_hdf5 io; /* of the temporary file; io.file is -1 while it is not open */
     hf_journal journal;
-    bool replaces;     /* a file of another run with this name may be replaced */
+    bool replaces; /* a file of another run with this name may be replaced */
+    hf_earlier earlier;
     bool is_published; /* this run's file has the name */
     struct stat ours;  /* identity of that file */
     int visible;       /* that file, open, so that it can be copied even if its name is taken; or -1 */
@@ -45,6 +50,9 @@ hf_status hf_store_file_check(const char *path, hf_messages *messages);
  * names of result and journal may be replaced. HF_IO, HF_EXISTS (a foreign journal), HF_NO_MEMORY. End in any case. */
 hf_status hf_store_file_begin(const char *path, bool replaces, hf_store_file *file, hf_messages *messages);
 
+/* HF_EXISTS if the name for an earlier result is taken. */
+hf_status hf_store_file_demand_room(hf_store_file *file, hf_messages *messages);
+
 /* The calls from here on do nothing once io.status is not HF_OK. Create, open and close, and the end of an open file,
  * need the lock of HDF5. */
 
@@ -59,8 +67,9 @@ void hf_store_file_flow(hf_store_file *file);
 void hf_store_file_close(hf_store_file *file); /* the temporary file is whole */
 
 /* Give it the visible name; with `durable` only after a sync. HF_EXISTS when another process has taken the name. Then,
- * and after a rename that fails, the file is kept under a name that the message gives. */
-void hf_store_file_publish(hf_store_file *file, bool durable);
+ * and after a rename that fails, the file is kept under a name that the message gives. An earlier finished result keeps
+ * a name until is_finished. */
+void hf_store_file_publish(hf_store_file *file, bool durable, bool is_finished);
 
 /* Close and free everything, remove the temporary file, release the lock. The journal stays when it holds generations
  * that the visible file does not, or was there before. */

@@ -21,6 +21,14 @@ struct hf_store {
     size_t scratch_bytes;
 };
 
+/* An attribute of the root: beside this file, while it is unfinished, is an earlier result (store_file). */
+#define HF_KEEPS_EARLIER "keeps_earlier"
+
+/* What a run that replaces the file at `path` finds there. HF_OK, or HF_IO or HF_NO_MEMORY if it cannot be read now. */
+hf_status hf_store_look_before(const char *path, hf_earlier *earlier, hf_messages *messages);
+
+bool hf_store_keeps_earlier(hf_hdf5 *io);
+
 /* A new store that holds the lock of `path`; NULL and *status when the lock cannot be had. */
 hf_store *hf_store_new(const char *path, bool replaces, hf_status *status, hf_messages *messages);
 

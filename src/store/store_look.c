@@ -1,5 +1,5 @@
 /* What is at a path: nothing, a result of this case, or anything else.
- * Contents: identity - look */
+ * Contents: identity - look - before a restart */
 #include "store/store_read.h"
 
 #include "base/file_io.h"
@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "store/compare.h"
 #include "store/journal.h"
+#include "store/store_internal.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -219,5 +220,37 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
                         path, finished ? "finished" : "unfinished", words);
     *state = finished ? HF_STORE_FINISHED : HF_STORE_UNFINISHED;
     if (finished) remove_journal(path);
+    return HF_OK;
+}
+
+/* ---- before a restart ---- */
+
+bool hf_store_keeps_earlier(hf_hdf5 *io)
+{
+    signed char keeps = 0;
+    if (io->status == HF_OK && H5Aexists(io->file, HF_KEEPS_EARLIER) > 0)
+        hf_hdf5_get(io, io->file, "/", HF_KEEPS_EARLIER, HF_KIND_FLAG, &keeps, 1);
+    return keeps;
+}
+
+hf_status hf_store_look_before(const char *path, hf_earlier *earlier, hf_messages *messages)
+{
+    char words[64];
+    signed char finished = 0;
+    struct stat info;
+    hf_messages unwanted = {0};
+    *earlier = HF_EARLIER_NONE;
+    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return HF_OK;
+    hf_status tried = hf_hdf5_try(read_like_a_run, path, words, sizeof words, messages);
+    if (tried == HF_EXISTS) return HF_OK; /* damaged */
+    HF_TRY(tried);
+    hf_hdf5_lock();
+    hf_hdf5 io = hf_store_open_result(path, &unwanted);
+    hf_hdf5_get(&io, io.file, "/", "finished", HF_KIND_FLAG, &finished, 1);
+    bool keeps = hf_store_keeps_earlier(&io), is_read = io.status == HF_OK;
+    hf_hdf5_close_file(&io);
+    hf_hdf5_unlock(HF_OK);
+    hf_messages_free(&unwanted);
+    if (is_read) *earlier = finished ? HF_EARLIER_THERE : keeps ? HF_EARLIER_KEPT : HF_EARLIER_NONE;
     return HF_OK;
 }

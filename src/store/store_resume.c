@@ -90,6 +90,7 @@ static void read_state(hf_store *s)
     hf_hdf5_walk(io, demand_plain, io);
     hf_hdf5_get(io, io->file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     hf_hdf5_get(io, io->file, "/", "identity", HF_KIND_CHARS, s->identity, sizeof s->identity);
+    if (hf_store_keeps_earlier(io)) s->f.earlier = HF_EARLIER_KEPT;
     if (io->status == HF_OK && finished)
         io->status =
             hf_error(io->messages, HF_EXISTS, "%s: is finished, there is nothing to go on with", s->f.out.path);

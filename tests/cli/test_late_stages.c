@@ -80,12 +80,56 @@ START_TEST(an_unfinished_result_is_read)
 }
 END_TEST
 
+/* A full disk after --restart: the earlier finished result stays until the new one is finished. */
+START_TEST(a_restart_keeps_the_finished_result)
+{
+    const char *path = file_with("c.yaml", EA_SCENE SEARCH), *result = temp("a.h5"), *whole = temp("whole.h5");
+    const char *earlier = temp("a.h5.before-restart"), *library = sick_machine();
+    const char *restarted =
+        "SICK='writev 28 2 a.h5.journal' LD_PRELOAD=\"$3\" \"$0\" run \"$1\" -o \"$2\" --restart --quiet";
+    HIFDM(0, "run", path, "-o", whole, "--quiet");
+    HIFDM(0, "run", path, "-o", result, "--quiet");
+    for (int i = 0; i < 2; i++) { /* the second one replaces an unfinished result */
+        SHELL(5, restarted, path, result, library);
+        ERR("the earlier finished result is ");
+        HIFDM(0, "diff", whole, earlier);
+        HIFDM(0, "show", result);
+        OUT("unfinished: ");
+    }
+    HIFDM(0, "run", path, "-o", result, "--quiet");
+    HIFDM(0, "diff", whole, result);
+    ck_assert(!is_there(earlier));
+    HIFDM(0, "run", path, "-o", result, "--restart", "--quiet");
+    ck_assert(!is_there(earlier));
+    write_file(earlier, "precious");
+    HIFDM(5, "run", path, "-o", result, "--restart", "--quiet");
+    ERR("this name is for the earlier result");
+    HIFDM(0, "diff", whole, result);
+    SHELL(0, "test \"$(cat \"$1\")\" = precious", earlier);
+}
+END_TEST
+
+/* A file that cannot be removed is reported, and the next command removes it. */
+START_TEST(a_temporary_file_that_stays_is_reported)
+{
+    const char *path = file_with("c.yaml", EA_SCENE), *result = temp("a.h5"), *library = sick_machine();
+    SHELL(0, "SICK='unlink 13 1 .tmp' LD_PRELOAD=\"$3\" \"$0\" run \"$1\" -o \"$2\" --quiet", path, result, library);
+    ERR("cannot remove the temporary file ");
+    ERR("Permission denied");
+    SHELL(0, "ls -A \"$(dirname \"$1\")\" | grep -q 'tmp$'", result);
+    HIFDM(0, "run", path, "-o", result, "--quiet");
+    SHELL(0, "test \"$(ls -A \"$(dirname \"$1\")\" | grep a.h5)\" = a.h5", result);
+}
+END_TEST
+
 Suite *suite_cli_late_stages(void)
 {
     Suite *suite = suite_create("cli/late_stages");
     TCase *tcase = tcase_create("late_stages");
     if (HAS_PRELOAD) tcase_add_loop_test(tcase, a_late_stage_that_fails_is_resumed, 0, N_LATE);
     if (HAS_PRELOAD) tcase_add_loop_test(tcase, an_unfinished_result_is_read, 0, 2);
+    if (HAS_PRELOAD) tcase_add_test(tcase, a_restart_keeps_the_finished_result);
+    if (HAS_PRELOAD) tcase_add_test(tcase, a_temporary_file_that_stays_is_reported);
     suite_add_tcase(suite, tcase);
     return suite;
 }

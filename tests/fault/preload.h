@@ -41,6 +41,21 @@ CALL(ssize_t, pread, (int f, void *p, size_t n, off_t at), (f, p, n, at))
 CALL(ssize_t, pread64, (int f, void *p, size_t n, off_t at), (f, p, n, at))
 CALL(int, fsync, (int f), (f))
 CALL(int, fdatasync, (int f), (f))
+CALL(int, ftruncate, (int f, off_t size), (f, size))
+CALL(int, ftruncate64, (int f, off_t size), (f, size))
+
+/* Calls on names; that of a file in an open folder is taken as one in the current folder. */
+#define NAME_CALL(name, parameters, arguments, path)                                                                   \
+    int name parameters                                                                                                \
+    {                                                                                                                  \
+        static int(*real) parameters;                                                                                  \
+        if (!real) *(void **)&real = dlsym(RTLD_NEXT, #name);                                                          \
+        return strikes(#name, -1, path) ? -1 : real arguments;                                                         \
+    }
+NAME_CALL(rename, (const char *from, const char *to), (from, to), from)
+NAME_CALL(link, (const char *from, const char *to), (from, to), from)
+NAME_CALL(unlink, (const char *name), (name), name)
+NAME_CALL(unlinkat, (int folder, const char *name, int flags), (folder, name, flags), name)
 
 static int open_by(const char *real_name, const char *name, int flags, mode_t mode)
 {
