@@ -313,8 +313,11 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
     HF_TRY(
         explain_failure(hf_adjust_find(&j->estimate, &j->task, &j->adjustment), "the adjusted net", o->file, messages));
     HF_TRY(explain_failure(hf_adjust_find_instead(j), "the net with other moves", o->file, messages));
-    if (o->output) HF_TRY(hf_file_out_write(o->output, hf_adjust_print_table, j, messages));
-    return hf_adjust_print_page(j, o, messages);
+    static hf_file_out_set files; /* table and page, or none */
+    hf_status status = HF_OK;
+    if (o->output) status = hf_file_out_set_write(&files, o->output, hf_adjust_print_table, j, messages);
+    if (status == HF_OK) status = hf_adjust_print_page(j, o, &files, messages);
+    return hf_file_out_set_end(&files, status, messages);
 }
 
 /* HF_OK also when no move is worth it. HF_BAD_CASE for a faulty case or table, HF_EXISTS, HF_IO, HF_NO_MEMORY, or the

@@ -419,8 +419,9 @@ static void write_part(const void *context, hf_json *j)
     hf_json_pack_values("error_m", "f64", from->estimate.cut_m, from->built.model.n_cable, j->file);
 }
 
-hf_status hf_adjust_print_page(const hf_adjust_job *j, const hf_options *o, hf_messages *messages)
+hf_status hf_adjust_print_page(const hf_adjust_job *j, const hf_options *o, hf_file_out_set *files,
+                               hf_messages *messages)
 {
-    const hf_report_part part = {"adjust", write_part, j};
+    const hf_report_part part = {"adjust", write_part, j, files};
     return o->report ? hf_report_result(o->result, NULL, &part, o->report, messages) : HF_OK;
 }

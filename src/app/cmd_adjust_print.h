@@ -69,7 +69,9 @@ void hf_adjust_print_summary(const hf_adjust_job *job, const hf_options *options
 void hf_adjust_print_json(const hf_adjust_job *job, const hf_options *options, hf_status status, const char *messages,
                           FILE *file);
 
-/* The page of options->result with the moves on it, if options->report asks for it. HF_OK, HF_IO, HF_NO_MEMORY. */
-hf_status hf_adjust_print_page(const hf_adjust_job *job, const hf_options *options, hf_messages *messages);
+/* Adds the page of options->result with the moves on it to `files`, if options->report asks for it. HF_OK, HF_IO,
+ * HF_NO_MEMORY. */
+hf_status hf_adjust_print_page(const hf_adjust_job *job, const hf_options *options, hf_file_out_set *files,
+                               hf_messages *messages);
 
 #endif

@@ -357,13 +357,15 @@ static hf_status execute(job *j, const hf_options *o, const char *path, FILE *fi
     if (o->template_path) return hf_file_out_write(path, write_template, j, messages);
     if (o->jacobian) HF_TRY(hf_problem_has_slopes(&j->problem, messages));
     HF_TRY(evaluate(j, o->threads, messages));
-    if (o->jacobian) {
-        HF_TRY(differentiate(j, messages));
-        HF_TRY(hf_file_out_write(o->jacobian, write_jacobian, j, messages));
-    }
-    if (path) return hf_file_out_write(path, write_results, j, messages);
-    write_results(j, file);
-    return HF_OK;
+    static hf_file_out_set files; /* both tables, or none */
+    hf_status status = HF_OK;
+    if (o->jacobian) status = differentiate(j, messages);
+    if (status == HF_OK && o->jacobian)
+        status = hf_file_out_set_write(&files, o->jacobian, write_jacobian, j, messages);
+    if (status == HF_OK && path) status = hf_file_out_set_write(&files, path, write_results, j, messages);
+    status = hf_file_out_set_end(&files, status, messages);
+    if (status == HF_OK && !path) write_results(j, file);
+    return status;
 }
 
 static hf_status check_options(const hf_options *o, hf_messages *messages)

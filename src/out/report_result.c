@@ -499,7 +499,10 @@ hf_status hf_report_result(const char *path, const char *other, const hf_report_
         status = read_page(&beside, messages);
         p.other = &beside;
     }
-    if (status == HF_OK) status = hf_file_out_write(output, write_page, &p, messages);
+    if (status == HF_OK && part)
+        status = hf_file_out_set_write(part->files, output, write_page, &p, messages);
+    else if (status == HF_OK)
+        status = hf_file_out_write(output, write_page, &p, messages);
     free_page(&p);
     free_page(&beside);
     return status;

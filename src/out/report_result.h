@@ -2,6 +2,7 @@
 #ifndef HIFDM_REPORT_RESULT_H
 #define HIFDM_REPORT_RESULT_H
 
+#include "base/file_out.h"
 #include "base/json.h"
 #include <hifdm/status.h>
 
@@ -10,6 +11,7 @@ typedef struct {
     const char *key;
     void (*write)(const void *context, hf_json *json);
     const void *context;
+    hf_file_out_set *files; /* of the command, which the page joins */
 } hf_report_part;
 
 /* Writes the page of the result file `path` to `output`, beside the result `other` and with `part` unless these are

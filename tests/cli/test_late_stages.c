@@ -122,6 +122,65 @@ START_TEST(a_temporary_file_that_stays_is_reported)
 }
 END_TEST
 
+/* Commands with two outputs: no disk for the second one leaves none, so that the same command can be given again. */
+START_TEST(two_files_or_none)
+{
+    const char *path = file_with("c.yaml", EA_SCENE SEARCH), *library = sick_machine(), *designs = temp("d.csv");
+    const char *table = temp("e.csv"), *slopes = temp("j.csv");
+    HIFDM(0, "evaluate", path, "--template", designs, "--quiet");
+    for (int i = 0; i < 2; i++) {
+        const char *how = keep(formatted("SICK=fsync 28 1 %s", i ? "j.csv" : "e.csv"));
+        SHELL(5,
+              "exec env \"$5\" LD_PRELOAD=\"$6\" \"$0\" evaluate \"$1\" --designs \"$2\" -o \"$3\" --jacobian \"$4\"",
+              path, designs, table, slopes, how, library);
+        ERR("No space left on device");
+        ck_assert(!is_there(table) && !is_there(slopes));
+    }
+    HIFDM(0, "evaluate", path, "--designs", designs, "-o", table, "--jacobian", slopes, "--quiet");
+    ck_assert(is_there(table) && is_there(slopes));
+}
+END_TEST
+
+/* The nodes of a result, every fifth of them 0.4 mm too high. */
+static const char *measured_of(const char *result)
+{
+    const char *folder = temp("nodes"), *path = temp("m.csv");
+    HIFDM(0, "export", result, "--csv", folder);
+    char *text = read_file(keep(formatted("%s/nodes.csv", folder)), NULL);
+    FILE *to = fopen(path, "w");
+    int row = 0;
+    ck_assert_ptr_nonnull(to);
+    fputs("id,x_m,y_m,z_m\n", to);
+    for (char *line = strchr(text, '\n') + 1; *line; line = strchr(line, '\n') + 1, row++) {
+        char id[64];
+        double x, y, z;
+        if (sscanf(line, "%63[^,],%lf,%lf,%lf", id, &x, &y, &z) == 4)
+            fprintf(to, "%s,%.17g,%.17g,%.17g\n", id, x, y, row % 5 == 2 ? z + 4e-4 : z);
+    }
+    ck_assert_int_eq(fclose(to), 0);
+    free(text);
+    return path;
+}
+
+START_TEST(moves_and_page_or_none)
+{
+    const char *path = file_with("c.yaml", EA_SCENE "tolerance: {sigma_cut_m: 1e-3, samples: 50}\nadjust: {set: inner, "
+                                                    "range_m: 0.002, step_m: 1e-4, moves: 2, sigma_m: 1e-4}\n");
+    const char *result = temp("a.h5"), *moves = temp("moves.csv"), *page = temp("moves.html"),
+               *library = sick_machine();
+    HIFDM(0, "run", path, "-o", result, "--quiet");
+    const char *measured = measured_of(result);
+    SHELL(5,
+          "SICK='fsync 28 1 moves.html' LD_PRELOAD=\"$6\" \"$0\" adjust \"$1\" --measured \"$2\" --result \"$3\" -o "
+          "\"$4\" "
+          "--report \"$5\" --quiet",
+          path, measured, result, moves, page, library);
+    ck_assert(!is_there(moves) && !is_there(page));
+    HIFDM(0, "adjust", path, "--measured", measured, "--result", result, "-o", moves, "--report", page, "--quiet");
+    ck_assert(is_there(moves) && is_there(page));
+}
+END_TEST
+
 Suite *suite_cli_late_stages(void)
 {
     Suite *suite = suite_create("cli/late_stages");
@@ -130,6 +189,8 @@ Suite *suite_cli_late_stages(void)
     if (HAS_PRELOAD) tcase_add_loop_test(tcase, an_unfinished_result_is_read, 0, 2);
     if (HAS_PRELOAD) tcase_add_test(tcase, a_restart_keeps_the_finished_result);
     if (HAS_PRELOAD) tcase_add_test(tcase, a_temporary_file_that_stays_is_reported);
+    if (HAS_PRELOAD) tcase_add_test(tcase, two_files_or_none);
+    if (HAS_PRELOAD) tcase_add_test(tcase, moves_and_page_or_none);
     suite_add_tcase(suite, tcase);
     return suite;
 }
