@@ -30,6 +30,7 @@ hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messag
     char target[HF_FILE_OUT_SIZE];
     struct stat info;
     HF_TRY(hf_file_out_target(path, target, messages));
+    hf_file_out_clean(target); /* also if the name is refused below */
     if (lstat(target, &info) != 0) return HF_OK;
     if (!S_ISREG(info.st_mode))
         return hf_error(messages, HF_IO, "%s: is not an ordinary file; choose another name", path);

@@ -19,6 +19,7 @@
 #include "search/pareto.h"
 #include "solve/certificate.h"
 #include "solve/coupling.h"
+#include "store/store_read.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>
 
@@ -485,7 +486,7 @@ static void keep_unfinished(const run *r, const hf_summary *s, hf_status status,
 /* The result is finished already: return its stored summary and status, and the errors that explain the status. */
 static hf_status repeat_finished(const hf_run_request *q, const char *output, hf_summary *s, hf_messages *messages)
 {
-    HF_TRY(hf_store_read_summary(output, s, messages));
+    HF_TRY(hf_store_read_finished(output, s, messages));
     if (s->has_tolerance) hf_tolerance_stage_end(q, output);
     hf_warning(messages, "%s: is the finished result of this case; --restart computes it again", output);
     for (const char *line = s->warnings; *line; line += strcspn(line, "\n"), line += *line == '\n')

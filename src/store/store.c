@@ -243,7 +243,7 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
     hf_store_file_open(&s->f);
     if (s->is_resumed) {
         compare_shape(s, m, w);
-        return hf_hdf5_unlock(s->f.io.status);
+        return hf_hdf5_unlock(hf_store_judge(s));
     }
     hid_t group = hf_hdf5_make_group(&s->f.io, "/form");
     write_shape(s, group, m, w);
@@ -505,6 +505,7 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, bool at_once,
     HF_TRY(demand_restored(s, messages));
     hf_hdf5_lock();
     complete(s, summary, false);
+    hf_store_judge(s);
     hf_hdf5_unlock(HF_OK); /* other stores need not wait for the sync of this file */
     /* without a sync before the first generation: a resumed run computes all of that again */
     hf_store_file_publish(&s->f, s->rows.n_stored > 0, false);
@@ -528,7 +529,7 @@ hf_status hf_store_complete(hf_store *s, const hf_summary *summary, hf_messages 
     hf_hdf5_lock();
     complete(s, summary, true);
     hf_generations_free(&s->rows); /* hf_store_settle may come much later */
-    return hf_hdf5_unlock(s->f.io.status);
+    return hf_hdf5_unlock(hf_store_judge(s));
 }
 
 hf_status hf_store_settle(hf_store *s, hf_messages *messages)

@@ -1,4 +1,5 @@
 #include "store/store_internal.h"
+#include "store/store_read.h"
 
 #include <stdlib.h>
 #include <time.h>
@@ -22,6 +23,14 @@ hf_store *hf_store_new(const char *path, bool replaces, hf_status *status, hf_me
         s = NULL;
     }
     return s;
+}
+
+hf_status hf_store_judge(hf_store *s)
+{
+    hf_hdf5 *io = &s->f.io;
+    if (s->is_resumed && io->status == HF_IO && io->is_damaged)
+        io->status = hf_store_fail_damaged(s->f.out.path, io->messages);
+    return io->status;
 }
 
 hf_status hf_store_hand_over(hf_store *s, hf_store **store)

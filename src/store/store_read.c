@@ -71,7 +71,15 @@ static void get_status(hf_hdf5 *io, hf_summary *s)
     if (!s->finished) s->status = HF_NOT_EVALUATED;
 }
 
-hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messages *messages)
+hf_status hf_store_fail_damaged(const char *path, hf_messages *messages)
+{
+    return hf_error(messages, HF_EXISTS,
+                    "%s: is damaged or of another version; use --restart (of a sweep: --retry failed) to replace it or "
+                    "-o to choose another name",
+                    path);
+}
+
+static hf_status read_summary(const char *path, hf_summary *summary, bool *is_damaged, hf_messages *messages)
 {
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
@@ -98,8 +106,22 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
     summary->has_truss = hf_hdf5_has(&io, io.file, "/truss");
     if (summary->has_truss) hf_layout_get_summary(&io, HF_LAYOUT_TRUSS, summary);
     hf_hdf5_close_file(&io);
+    *is_damaged = io.is_damaged;
     if (io.status != HF_OK) *summary = (hf_summary){0};
     return hf_hdf5_unlock(io.status);
+}
+
+hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messages *messages)
+{
+    bool is_damaged;
+    return read_summary(path, summary, &is_damaged, messages);
+}
+
+hf_status hf_store_read_finished(const char *path, hf_summary *summary, hf_messages *messages)
+{
+    bool is_damaged;
+    hf_status status = read_summary(path, summary, &is_damaged, messages);
+    return status == HF_IO && is_damaged ? hf_store_fail_damaged(path, messages) : status;
 }
 
 hf_status hf_store_read_front(const char *path, hf_front *front, char **gene, size_t *gene_size, hf_messages *messages)

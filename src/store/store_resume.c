@@ -108,13 +108,6 @@ static void read_state(hf_store *s)
     if (io->status == HF_OK) io->status = hf_journal_replay(&s->f.journal, s->identity, count_record, s, io->messages);
 }
 
-/* What is damaged stands in the way, also of the next attempt. What the machine cannot do now it may do later. */
-static hf_status judge(hf_hdf5 *io)
-{
-    if (io->status == HF_IO && io->is_damaged) io->status = HF_EXISTS;
-    return io->status;
-}
-
 hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages)
 {
     hf_status status;
@@ -129,7 +122,7 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     hf_store_file_open(&s->f);
     read_state(s);
     if (s->f.io.status == HF_OK) note_session(s);
-    judge(&s->f.io);
+    hf_store_judge(s);
     return hf_store_hand_over(s, store);
 }
 
@@ -152,7 +145,7 @@ hf_status hf_store_restore_base(hf_store *s, int n_gene, double *base_N, hf_mess
         hf_hdf5_read_array(&s->f.io, s->f.io.file, &base, base_N);
         check_base(&s->f.io, n_gene, base_N);
     }
-    return hf_hdf5_unlock(judge(&s->f.io));
+    return hf_hdf5_unlock(hf_store_judge(s));
 }
 
 /* ---- breeding again ---- */
@@ -240,7 +233,7 @@ static hf_status restore(hf_store *s, hf_optimiser *optimiser, int drops, hf_sum
     }
     if (s->n_journal) breed_journal(s, optimiser, drops);
     hf_generations_sum_up(io, &s->rows, summary);
-    return hf_hdf5_unlock(judge(io));
+    return hf_hdf5_unlock(hf_store_judge(s));
 }
 
 hf_status hf_store_restore(hf_store *s, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages)

@@ -124,6 +124,38 @@ START_TEST(a_damaged_point_stops_no_other)
 END_TEST
 
 /* The threads of a sweep let a process look that is older than they are. Finished points take 13 reads, others more. */
+/* A data set that a run reads only when it writes its result: its header does not have its checksum. */
+START_TEST(damage_that_is_found_late_is_no_fault_of_the_machine)
+{
+    const char *c = file_with("c.yaml", SMALL_SCENE SMALL_GA), *a = temp("a.h5");
+    const char *study = file_with("s.yaml", "base: c.yaml\nsweep:\n  form.pretension_N: [8, 10]\n"),
+               *folder = temp("s.d");
+    const char *spoil = "\"$1\" -c 'import h5py, sys\nwith h5py.File(sys.argv[1], \"r\") as f: "
+                        "at = h5py.h5o.get_info(f[\"scene/cable/group\"].id).addr\n"
+                        "with open(sys.argv[1], \"r+b\") as f:\n f.seek(at + 20); b = f.read(1); f.seek(at + 20); "
+                        "f.write(bytes([b[0] ^ 1]))' \"$2\"";
+    HIFDM(0, "run", c, "-o", a, "--quiet");
+    SHELL(0, spoil, python_program(), unfinished(a));
+    for (int i = 0; i < 2; i++) {
+        HIFDM(5, "run", c, "-o", a, "--quiet");
+        ERR("is damaged or of another version; use --restart ");
+    }
+    HIFDM(0, "sweep", study, "--dir", folder, "--quiet");
+    SHELL(0, "rm \"$1\"/*.tsv; ls \"$1\"/*.h5 | head -1", folder);
+    const char *point = keep(formatted("%.*s", (int)strcspn(said.out, "\n"), said.out));
+    SHELL(0, spoil, python_program(), unfinished(point));
+    HIFDM(3, "sweep", study, "--dir", folder, "--quiet");
+    HIFDM(0, "sweep", study, "--dir", folder, "--quiet", "--retry", "failed");
+    SHELL(0,
+          "rm \"$2\"/*.tsv; \"$1\" -c 'import h5py, sys; f = h5py.File(sys.argv[1], \"a\"); del "
+          "f[\"form\"].attrs[\"psi_m\"]' "
+          "\"$3\"",
+          python_program(), folder, point);
+    HIFDM(3, "sweep", study, "--dir", folder, "--quiet");
+    HIFDM(0, "sweep", study, "--dir", folder, "--quiet", "--retry", "failed");
+}
+END_TEST
+
 START_TEST(a_crash_in_a_sweep_fails_its_point)
 {
     const char *library = make_library();
@@ -193,6 +225,7 @@ Suite *suite_cli_damaged(void)
     tcase_add_test(tcase, a_read_without_end_is_ended);
     tcase_add_test(tcase, a_damaged_point_stops_no_other);
     tcase_add_test(tcase, a_merge_survives_what_it_would_replace);
+    tcase_add_test(tcase, damage_that_is_found_late_is_no_fault_of_the_machine);
     tcase_add_test(tcase, a_crash_in_a_sweep_fails_its_point);
     tcase_add_test(tcase, a_reader_that_is_killed_blames_no_file);
     suite_add_tcase(suite, tcase);

@@ -1,6 +1,8 @@
 /* Result files: no other file is overwritten, damage is reported, a full disk or failed allocation leaves nothing. */
+#include "base/file_out.h"
 #include "results.h"
 #include "small_ga.h"
+#include "store/hdf5.h"
 
 #include <signal.h>
 #include <sys/resource.h>
@@ -345,6 +347,27 @@ START_TEST(failed_allocations_are_told)
 }
 END_TEST
 
+/* HDF5 counts objects of another file, too, when it takes this one for a file that it could not close. */
+START_TEST(a_file_that_cannot_be_closed_is_an_error)
+{
+    const char *path;
+    hf_messages messages = {0};
+    hf_file_out out = {.file = -1};
+    new_folder(&path);
+    hf_hdf5 io = {.path = path, .messages = &messages, .status = HF_OK, .file = -1};
+    ck_assert_int_eq(hf_file_out_make(path, &out), 0);
+    hf_hdf5_lock();
+    hf_hdf5_create_file(&io, &out);
+    ck_assert_int_eq(io.status, HF_OK);
+    hf_hdf5_make_group(&io, "/open");
+    hf_hdf5_close_file(&io);
+    ck_assert_int_eq(hf_hdf5_unlock(io.status), HF_IO);
+    ck_assert_ptr_nonnull(strstr(messages.text, "cannot close"));
+    hf_messages_free(&messages);
+    hf_file_out_drop(&out, NULL);
+}
+END_TEST
+
 Suite *suite_unit_store_faults(void)
 {
     Suite *suite = suite_create("unit/store_faults");
@@ -359,6 +382,7 @@ Suite *suite_unit_store_faults(void)
     tcase_add_loop_test(tests, damage_is_told, 0, N(damages));
     tcase_add_loop_test(tests, flipped_bits_do_no_harm, 0, 4);
     tcase_add_test(tests, failed_allocations_are_told);
+    tcase_add_test(tests, a_file_that_cannot_be_closed_is_an_error);
     tcase_add_loop_test(tests, a_full_disk_is_told, 0, 5); /* last: leaves ids open */
     return suite;
 }
