@@ -62,19 +62,16 @@ static bool find_routines(void *where, hf_lapack_routines *found)
 
 /* ---- room for it ---- */
 
-static bool is_limited_by(int resource)
-{
-    struct rlimit limit;
-    return getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
-}
-
 /* With vm.overcommit_memory=2 the system promises no more memory than it has. */
 static bool is_limited(void)
 {
     FILE *file = fopen("/proc/sys/vm/overcommit_memory", "r");
     int policy = file ? fgetc(file) : '0';
+    struct rlimit space = {.rlim_cur = RLIM_INFINITY}, data = space;
     if (file) fclose(file);
-    return policy == '2' || is_limited_by(RLIMIT_AS) || is_limited_by(RLIMIT_DATA);
+    getrlimit(RLIMIT_AS, &space);
+    getrlimit(RLIMIT_DATA, &data);
+    return policy == '2' || space.rlim_cur != RLIM_INFINITY || data.rlim_cur != RLIM_INFINITY;
 }
 
 static bool has_room(void)
