@@ -8,34 +8,15 @@
 #include "base/signals.h"
 #include "out/print.h"
 #include "out/words.h"
+#include <hifdm/batch.h>
 #include <hifdm/store.h>
 
 #include <errno.h>
 #include <gsl/gsl_errno.h>
-#include <limits.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-/* Sets the environment for OpenMP and starts the program a second time, because that library reads the environment
- * before main begins. Variables that the user has set are kept; when a variable cannot be set, the program continues as
- * it is.
- *
- * A generation takes less than a millisecond. By default waiting threads spin for long; when the machine also
- * runs other programs, the thread they wait for may not be running, and runs were 30 times slower on two cores. Threads
- * that sleep at once lose 10 to 20 % of a run on an idle machine. Spinning for some microseconds avoids both. */
-static void wait_quietly(char **argv)
-{
-    char path[PATH_MAX];
-    if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT")) return;
-    ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
-    if (n <= 0 || n == sizeof path - 1) return; /* no path, or one that may be cut */
-    path[n] = '\0';
-    if (strstr(path, "/ld-") || strstr(path, "/ld.so")) return; /* the dynamic linker, told to run this program */
-    if (setenv("GOMP_SPINCOUNT", "2000", 1) != 0) return;
-    if (setenv("OMP_WAIT_POLICY", "passive", 1) == 0) execv(path, argv); /* the latter for other OpenMP libraries */
-}
 
 static bool is_ending;
 
@@ -113,8 +94,8 @@ int main(int argc, char **argv)
         hf_options_free(&options);
         return exit_status;
     }
-    if (uses_threads) wait_quietly(argv); /* may start the program anew, so before the libraries are set up */
-    signal(SIGXFSZ, SIG_IGN);             /* writing beyond the limit on file size then fails with an error */
+    if (uses_threads) hf_batch_wait_quietly(argv); /* may start the program anew, so before the libraries are set up */
+    signal(SIGXFSZ, SIG_IGN);                      /* writing beyond the limit on file size then fails with an error */
     gsl_set_error_handler_off();
     hf_store_quiet();
     atexit(keep_exit_status); /* last, so that it is called first */
