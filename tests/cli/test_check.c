@@ -267,6 +267,25 @@ START_TEST(net_is_held_on_its_surface)
 }
 END_TEST
 
+/* Why there are no measures of facets: cables that cross, or cables that enclose nothing. */
+START_TEST(a_net_without_facets_says_why)
+{
+    const char *nodes = "id,x_m,y_m,z_m,role\na,1,1,0.1,support\nb,-1,1,0.1,support\nc,-1,-1,0.1,support\n"
+                        "d,1,-1,0.1,support\nm,0.3,0,0.0045,inner\nn,-0.3,0,0.0045,inner\n";
+#define STAR                                                                                                           \
+    "id,i,j,group,law,value\nam,a,m,inner,tension,10\ndm,d,m,inner,tension,10\nbn,b,n,inner,tension,10\n"              \
+    "cn,c,n,inner,tension,10\nmn,m,n,inner,tension,10\n"
+#define SURFACE "--set", "surface.kind=paraboloid", "--set", "surface.focal_length_m=5"
+    const char *cross =
+        "warning: surface: cables on it cross without a node, seen along z: it has no facets to measure\n";
+    HIFDM(0, "check", net_with(nodes, STAR), SURFACE);
+    ck_assert_ptr_null(strstr(said.err, cross));
+    HIFDM(0, "check", net_with(nodes, STAR "bm,b,m,inner,tension,1\nan,a,n,inner,tension,1\n"), SURFACE);
+    ERR(cross);
+#undef SURFACE
+}
+END_TEST
+
 /* What would take more than a trial is counted, and comes with advice where it is beyond all bounds: of 25 rings it
  * took hours and gigabytes. */
 START_TEST(check_of_many_variables_is_quick)
@@ -320,6 +339,7 @@ Suite *suite_cli_check(void)
     tcase_add_test(tcase, schema_with_its_gaps_filled_is_a_case);
     tcase_add_test(tcase, help_lists_every_command_and_exit_status);
     tcase_add_test(tcase, net_is_held_on_its_surface);
+    tcase_add_test(tcase, a_net_without_facets_says_why);
     tcase_add_test(tcase, show_refuses_what_is_no_result);
     suite_add_tcase(suite, tcase);
     return suite;

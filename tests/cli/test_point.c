@@ -203,6 +203,13 @@ START_TEST(a_front_of_another_case_is_refused)
     HIFDM(2, "run", file_with("b.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT), "--set", "form.pretension_N=11",
           "--point", point(front, 3), "-o", other);
     ERR("; what differs: form.pretension_N, cables\n");
+    HIFDM(2, "run", c, "--set", "form.pretension_N=11", "--set", "form.collapse_ratio=2e-3", "--set",
+          "form.max_iterations=99999", "--set", "form.residual_tolerance=2e-9", "--set", "form.rms_tolerance_m=2e-6",
+          "--set", "form.length_tolerance=2e-9", "--set", "optimize.max_tension_N=1e5", "--set", "optimize.seed=8",
+          "--set", "optimize.range_N=2", "--set", "optimize.polish_iterations=199", "--point", point(front, 3), "-o",
+          other);
+    ERR("; what differs: form.pretension_N, form.residual_tolerance, form.length_tolerance, form.rms_tolerance_m, "
+        "form.max_iterations, form.collapse_ratio, optimize.range_N, optimize.max_tension_N and 2 more\n");
     HIFDM(2, "run", c, "--set", "optimize.limits=[{limit: tension, set: boundary, bounds: [900, 901]}]", "--point",
           point(front, 3), "-o", other);
     ERRS("error: %s: point 3 of its front is no design of %s, ", front, c);

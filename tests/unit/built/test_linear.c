@@ -107,6 +107,49 @@ START_TEST(moves_and_tensions_are_derivatives)
 }
 END_TEST
 
+/* Two cables in line whose node has come loose, and two that are taut: there is an answer, the loose node stays where it
+ * is, and the taut one moves with its support by the part that its cables share. */
+START_TEST(a_loose_node_stays_where_it_is)
+{
+    static const struct hand_node node[] = {{{0, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{1, 0, 0}, HF_ROLE_INNER, {0}},
+                                            {{2, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0, 1, 0}, HF_ROLE_SUPPORT, {0}},
+                                            {{1, 1, 0}, HF_ROLE_INNER, {0}},   {{2, 1, 0}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_INNER, HF_LAW_TENSION, 10},
+                                              {{1, 2}, HF_GROUP_INNER, HF_LAW_TENSION, 10},
+                                              {{3, 4}, HF_GROUP_INNER, HF_LAW_TENSION, 10},
+                                              {{4, 5}, HF_GROUP_INNER, HF_LAW_TENSION, 10}};
+    static bench b;
+    hf_form_result r;
+    double cut_m[4], move[18] = {0};
+    for (int e = 0; e < 4; e++)
+        b.EA[e] = 2000;
+    OPEN_HAND(&b.net, node, cable, HF_METHOD_NEWTON);
+    b.net.scene.EA_N = b.EA;
+    ck_assert_int_eq(hf_evaluate_form(&b.net.model, &b.net.form, &b.net.work, NULL, &b.net.result), HF_OK);
+    hf_messages messages = {0};
+    ck_assert_int_eq(hf_built_make("x.yaml", &b.net.scene, &b.net.model, &b.net.form, &b.net.work, &b.built, &messages),
+                     HF_OK);
+    ck_assert_int_eq(hf_workspace_create(&b.built.model, &b.work), HF_OK);
+    ck_assert_int_eq(hf_built_linear_make(&b.built, &b.linear), HF_OK);
+    for (int e = 0; e < 4; e++)
+        cut_m[e] = b.built.scene.target[e] + (e < 2 ? 0.1 : 0);
+    ck_assert_int_eq(hf_built_solve(&b.built, &(hf_built_net){.cut_m = cut_m}, &b.work, &r), HF_OK);
+    ck_assert_int_eq(r.n_loose, 1);
+    ck_assert_int_eq(hf_built_linear_take(&b.linear, &b.work), HF_OK);
+    const int *row = b.built.model.row_of_node;
+    double *scratch = calloc(b.linear.n_scratch, sizeof *scratch);
+    move[3 * row[2]] = move[3 * row[5]] = 0.01;
+    hf_built_linear_apply(&b.linear, 1, NULL, move, scratch);
+    ck_assert_double_eq(move[3 * row[1]], 0);
+    ck_assert_double_eq_tol(move[3 * row[4]], 0.005, 1e-12);
+    int n_factor = b.linear.n_factor;
+    ck_assert_int_eq(hf_built_linear_take(&b.linear, &b.work), HF_OK);
+    ck_assert_int_eq(b.linear.n_factor, n_factor); /* it is the same shape */
+    free(scratch);
+    close_bench(&b);
+}
+END_TEST
+
 /* g'(S e) = (S'g)'e, several right-hand sides at a time. */
 START_TEST(the_transpose_is_one)
 {
@@ -147,6 +190,7 @@ Suite *suite_unit_linear(void)
     TCase *tcase = tcase_create("linear");
     tcase_add_loop_test(tcase, moves_and_tensions_are_derivatives, 0, 6);
     tcase_add_loop_test(tcase, the_transpose_is_one, 0, 6);
+    tcase_add_test(tcase, a_loose_node_stays_where_it_is);
     suite_add_tcase(suite, tcase);
     return suite;
 }

@@ -491,6 +491,19 @@ START_TEST(faults_name_axis_file_and_line)
 }
 END_TEST
 
+/* The name of a base that is empty would be that of the folder. */
+START_TEST(a_base_has_a_name)
+{
+    hf_study s;
+    hf_messages m = {0};
+    write_file(temp_path("study.yaml"), "base: ''\nsweep:\n  form.pretension_N: [1]\n");
+    ck_assert_int_eq(hf_study_read(temp_path("study.yaml"), &s, &m), HF_BAD_CASE);
+    ck_assert_ptr_nonnull(strstr(m.text, "study.yaml:1:7: sweep: base must be the name of a case file\n"));
+    hf_messages_free(&m);
+    hf_study_free(&s);
+}
+END_TEST
+
 START_TEST(all_faults_are_told_at_once)
 {
     hf_study s;
@@ -596,6 +609,7 @@ Suite *suite_unit_study(void)
     tcase_add_test(tests, keys_of_rows_are_swept);
     tcase_add_loop_test(tests, faults_of_axes_over_rows_are_told, 0, sizeof row_fault / sizeof *row_fault);
     tcase_add_loop_test(tests, faults_name_axis_file_and_line, 0, sizeof fault / sizeof *fault);
+    tcase_add_test(tests, a_base_has_a_name);
     tcase_add_test(tests, all_faults_are_told_at_once);
     tcase_add_test(tests, the_title_is_of_the_study_or_of_its_case);
     tcase_add_test(tests, damaged_files_are_refused);

@@ -281,6 +281,24 @@ START_TEST(faults_of_both_files_are_told_in_one_run)
 }
 END_TEST
 
+/* Within a set in the order of the file, however many names lie between. */
+START_TEST(faults_of_sets_are_in_order)
+{
+    char said[2048], cables[1024] = "id,i,j,group,law,value,set\n", expected[2048] = "";
+    hf_scene s;
+    for (int k = 0; k < 9; k++) {
+        char row[64], words[96];
+        snprintf(row, sizeof row, "c%d,a,b,inner,tension,%d,%s\n", k, k + 1, k % 2 ? "rim" : "hub rim hub");
+        strcat(cables, row);
+        snprintf(words, sizeof words, "error: cables.csv:%d: 'c%d': stands twice in the set hub\n", k + 2, k);
+        if (k % 2 == 0) strcat(expected, words);
+    }
+    ck_assert_int_eq(import(GOOD_NODES, cables, &s, said, sizeof said), HF_BAD_CASE);
+    ck_assert_str_eq(said, expected);
+    hf_scene_free(&s);
+}
+END_TEST
+
 START_TEST(many_faults_are_cut_short)
 {
     char nodes[2048] = NODES, said[8192];
@@ -320,6 +338,7 @@ Suite *suite_unit_scene_import(void)
     tcase_add_loop_test(tests, faults_are_named_by_file_line_and_id, 0, N_FAULTY);
     tcase_add_test(tests, binary_and_missing_files_are_refused);
     tcase_add_test(tests, faults_of_both_files_are_told_in_one_run);
+    tcase_add_test(tests, faults_of_sets_are_in_order);
     tcase_add_test(tests, many_faults_are_cut_short);
     tcase_add_test(tests, too_many_columns_are_refused);
     return suite;

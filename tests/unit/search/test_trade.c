@@ -141,6 +141,11 @@ START_TEST(objectives_that_agree_are_one_design)
     assert_relative(t.front.design[1] / t.front.design[0], 3, 1e-8); /* q0 1.5 = q1 0.5 */
     hf_front_tabulate(&t.front, &table);
     ck_assert(hf_front_agrees(&table));
+    table.n_failed = 1; /* a point that was not found may be another one */
+    ck_assert(!hf_front_agrees(&table));
+    table.n_failed = 0;
+    table.n_on = 2;
+    ck_assert(!hf_front_agrees(&table));
     close_traded(&t);
 }
 END_TEST

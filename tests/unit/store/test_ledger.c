@@ -408,6 +408,33 @@ START_TEST(a_point_runs_as_long_as_its_process_lives)
 }
 END_TEST
 
+/* A point that is given back is free at once, for other processes as well, while all others stay claimed. */
+START_TEST(a_released_point_is_free)
+{
+    hf_study s;
+    hf_messages m = {0};
+    hf_ledger mine;
+    open_study(&s);
+    ck_assert_int_eq(hf_ledger_open(folder, &mine, &m), HF_OK);
+    for (int i = 1; i <= 3; i++)
+        ck_assert_int_eq(hf_ledger_claim(&mine, s.id[i]), HF_LOCK_OURS);
+    hf_ledger_release(&mine, s.id[2]);
+    pid_t child = fork();
+    if (child == 0) {
+        hf_ledger theirs;
+        bool is_free =
+            hf_ledger_open(folder, &theirs, &m) == HF_OK && hf_ledger_claim(&theirs, s.id[1]) == HF_LOCK_TAKEN &&
+            hf_ledger_claim(&theirs, s.id[2]) == HF_LOCK_OURS && hf_ledger_claim(&theirs, s.id[3]) == HF_LOCK_TAKEN;
+        _exit(is_free ? 0 : 1);
+    }
+    int how;
+    ck_assert_int_eq(waitpid(child, &how, 0), child);
+    ck_assert(WIFEXITED(how) && WEXITSTATUS(how) == 0);
+    hf_ledger_close(&mine, &m);
+    hf_study_free(&s);
+}
+END_TEST
+
 /* Nothing of the folder is waited for, neither when a sweep begins nor later, and what cannot be rows is not read. */
 START_TEST(what_is_no_table_is_in_the_way)
 {
@@ -456,6 +483,7 @@ Suite *suite_unit_ledger(void)
     tcase_add_loop_test(tests, rows_that_do_not_reach_the_disk, 0, 2);
     tcase_add_test(tests, torn_rows_are_ignored);
     tcase_add_test(tests, a_point_runs_as_long_as_its_process_lives);
+    tcase_add_test(tests, a_released_point_is_free);
     tcase_add_loop_test(tests, what_is_no_table_is_in_the_way, 0, 3);
     return suite;
 }
