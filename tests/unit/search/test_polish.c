@@ -363,6 +363,44 @@ START_TEST(its_watcher_ends_it)
 }
 END_TEST
 
+/* Behind the last step the inner nodes' theoretical positions are elsewhere, so the best design is worse than its start
+ * was. */
+static hf_status shift_target(void *context, const hf_polish_progress *now)
+{
+    hf_model *m = context;
+    for (int i = 0; i < m->n_free && now->iterations == 3; i++)
+        m->position_m[2 * m->n_node + i] += 1;
+    return HF_OK;
+}
+
+/* When the best design's own evaluation is worse than the start was, the start stays, and its shape is the one in the
+ * workspace. */
+START_TEST(the_start_stays_when_the_end_is_worse)
+{
+    struct polish_run p;
+    hf_polish_result result;
+    hf_form_result start;
+    double start_N[MAX_GENE];
+    open_chen(&p, 1);
+    const hf_model *m = &p.r.net.model;
+    const hf_polish_watcher watcher = {.after = shift_target, .context = &p.r.net.model};
+    memcpy(start_N, p.r.base_N, (size_t)m->n_gene * sizeof(double));
+    ck_assert_int_eq(
+        hf_polish_run(&p.r.evaluator, p.lower_N, p.upper_N, 3, &watcher, p.r.base_N, &p.r.net.work, &result), HF_OK);
+    ck_assert_mem_eq(start_N, p.r.base_N, (size_t)m->n_gene * sizeof(double));
+    ck_assert_int_eq(result.stop, HF_POLISH_STALLED);
+    double *end_m = malloc(3 * (size_t)m->n_node * sizeof *end_m);
+    ck_assert_ptr_nonnull(end_m);
+    memcpy(end_m, p.r.net.work.position_m, 3 * (size_t)m->n_node * sizeof *end_m);
+    ck_assert_int_eq(hf_evaluate(&p.r.evaluator, start_N, &p.r.net.work, &start), HF_OK);
+    ck_assert_double_eq(result.merit, start.merit);
+    for (int i = 0; i < 3 * m->n_node; i++)
+        ck_assert_double_eq_tol(end_m[i], p.r.net.work.position_m[i], 1e-9);
+    free(end_m);
+    close_net(&p.r.net);
+}
+END_TEST
+
 Suite *suite_unit_polish(void)
 {
     Suite *suite = suite_create("unit/polish");
@@ -378,6 +416,7 @@ Suite *suite_unit_polish(void)
     tcase_add_test(tests, after_the_ga_the_same_optimum);
     tcase_add_loop_test(tests, goes_on_from_any_step_to_the_same_bits, 0, 3);
     tcase_add_test(tests, its_watcher_ends_it);
+    tcase_add_test(tests, the_start_stays_when_the_end_is_worse);
     tcase_add_test(tests, applies_to_convex_nets_and_rules_only);
     return suite;
 }
