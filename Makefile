@@ -37,6 +37,8 @@ TEST_WRAP_EXTRA ?=
 # The same in tests/calls.c.
 TEST_WRAP += open close write writev pwrite read pread fsync fdatasync rename link unlink ftruncate lseek flock fcntl \
              fstat stat access H5Fcreate H5Fopen H5Dcreate2 H5Dopen2 H5Dset_extent H5Dwrite H5Dread H5Awrite H5Aread
+# Arrays of arenas have guards: tests/guards.c.
+TEST_WRAP += hf_arena_take hf_arena_allocate hf_arena_free
 # The same in tests/unit/base/test_file_out.c.
 TEST_WRAP += geteuid
 
@@ -91,7 +93,7 @@ PAGE := $(addprefix src/out/report/,head.html page.css body.html \
           data.js scale.js chart.js table.js net_fast.js net.js net_hand.js cables.js map.js sections.js \
           front.js pattern.js adjust.js tolerance.js compare.js study.js main.js)
 APP_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(call sources,$(APP_ROOMS))) $(BUILD)/report_page_text.o
-TEST_OBJ := $(patsubst %.c,$(BUILD)/%.o,tests/run_tests.c tests/support.c tests/calls.c \
+TEST_OBJ := $(patsubst %.c,$(BUILD)/%.o,tests/run_tests.c tests/support.c tests/calls.c tests/guards.c \
              $(sort $(wildcard tests/*/test_*.c tests/*/*/test_*.c)))
 PROGRAM := $(BUILD)/hifdm
 STATIC := $(BUILD)/libhifdm.a

@@ -75,6 +75,10 @@ void fail_allocation_at(long n);   /* the n-th from now (1 is the next) returns 
 bool end_allocation_failure(void); /* back to normal; true if the n-th was reached */
 long allocation_count(void);       /* made by this process so far: for "the hot path allocates nothing" */
 
+/* ---- Arrays of arenas ----
+ * tests/guards.c puts guards behind them; without_guards: for tests of the arena itself. */
+void without_guards(void);
+
 /* ---- Random numbers for property tests ----
  * One seed for the whole run, the same every time unless HIFDM_TEST_SEED says otherwise; the runner prints it when a
  * test failed. A stream of it per trial: struct rng rng = rng_start(trial). */

@@ -112,6 +112,7 @@ Suite *suite_unit_arena(void)
     Suite *suite = suite_create("unit/arena");
     TCase *tests = tcase_create("arena");
     suite_add_tcase(suite, tests);
+    tcase_add_checked_fixture(tests, without_guards, NULL);
     tcase_add_test(tests, both_passes_agree);
     tcase_add_test(tests, parts_are_aligned_zero_and_apart);
     tcase_add_test(tests, empty_arena_can_be_allocated);
