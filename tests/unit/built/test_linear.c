@@ -107,8 +107,8 @@ START_TEST(moves_and_tensions_are_derivatives)
 }
 END_TEST
 
-/* Two cables in line whose node has come loose, and two that are taut: there is an answer, the loose node stays where it
- * is, and the taut one moves with its support by the part that its cables share. */
+/* Two cables in line whose node has come loose, and two that are taut: there is an answer, the loose node stays where
+ * it is, and the taut one moves with its support by the part that its cables share. */
 START_TEST(a_loose_node_stays_where_it_is)
 {
     static const struct hand_node node[] = {{{0, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{1, 0, 0}, HF_ROLE_INNER, {0}},

@@ -145,8 +145,8 @@ static const struct {
     {CYLINDER, "form=5", "error: --set form=5: form: must be a section of key: value lines ({} takes every default)\n"},
     {CYLINDER, "form.pretension_N=0",
      "error: --set form.pretension_N=0: form.pretension_N: must be above 0 and at most 1000000000, not 0\n"},
-    {"{scene: {parabolic_cylinder: {aperture_m: 10, length_m: 12, focal_length_m: 5, modules: [2, 3], cells_per_module: "
-     "[4, 2]}}, sweep: {form.pretension_N: [1, 2]}}\n",
+    {"{scene: {parabolic_cylinder: {aperture_m: 10, length_m: 12, focal_length_m: 5, modules: [2, 3], "
+     "cells_per_module: [4, 2]}}, sweep: {form.pretension_N: [1, 2]}}\n",
      "form.pretension_N=5", "error: c.yaml:1:125: sweep: must stand on lines of its own\n"},
     {"", NULL, "error: c.yaml:1:1: case: the file is empty\n"},
     {"# nothing\n", NULL, "error: c.yaml:1:1: case: the file is empty\n"},

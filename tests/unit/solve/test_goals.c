@@ -323,6 +323,32 @@ START_TEST(too_many_residuals_are_refused)
 }
 END_TEST
 
+/* The name under which files, tables and JSON have a goal tells it from every other. */
+START_TEST(names_tell_goals_apart)
+{
+    static const struct {
+        hf_goal_settings wanted;
+        const char *name;
+    } row[] = {
+        {{.goal = HF_GOAL_PSI}, "goal_%d_psi"},
+        {{.goal = HF_GOAL_TENSION, .set = "edge"}, "goal_%d_tension_edge"},
+        {{.goal = HF_GOAL_PSI, .state = "hot"}, "goal_%d_psi_hot"},
+        {{.goal = HF_GOAL_RATIO, .set = "edge", .state = "hot", .over = HF_OVER_STATES}, "goal_%d_ratio_edge_hot"},
+        {{.goal = HF_GOAL_PSI, .state = "a_name_of_a_state_of_31_letters"}, "goal_%d_psi_a_name_of_a_state_of_31_"},
+        {{.goal = HF_GOAL_PSI, .over = HF_OVER_STATES, .take = HF_TAKE_MEAN}, "goal_%d_psi_states_mean"},
+        {{.goal = HF_GOAL_PSI, .over = HF_OVER_STATES, .take = HF_TAKE_WORST}, "goal_%d_psi_states_worst"},
+        {{.goal = HF_GOAL_PSI, .over = HF_OVER_SAMPLES, .take = HF_TAKE_MEAN}, "goal_%d_psi_samples_mean"},
+        {{.goal = HF_GOAL_PSI, .over = HF_OVER_SAMPLES, .quantile = 0.9}, "goal_%d_psi_samples_quantile"}};
+    for (int k = 0; k < (int)(sizeof row / sizeof *row); k++) {
+        hf_goals goals = {.n_goal = 1};
+        char name[HF_GOAL_NAME_SIZE], expected[HF_GOAL_NAME_SIZE];
+        goals.goal[k].wanted = row[k].wanted;
+        snprintf(expected, sizeof expected, row[k].name, k);
+        ck_assert_str_eq(hf_goals_name(&goals, k, name), expected);
+    }
+}
+END_TEST
+
 Suite *suite_unit_goals(void)
 {
     Suite *suite = suite_create("unit/goals");
@@ -330,6 +356,7 @@ Suite *suite_unit_goals(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, without_rows_the_goal_is_psi, 0, 4);
     tcase_add_loop_test(tests, values_are_those_by_hand, 0, N_BY_HAND);
+    tcase_add_test(tests, names_tell_goals_apart);
     tcase_add_test(tests, loose_nodes_do_not_count);
     tcase_add_test(tests, a_slack_cable_has_no_ratio);
     tcase_add_test(tests, goals_are_weighed_together);
