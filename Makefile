@@ -140,7 +140,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
          bench-before bench-optimisers bench-fronts bench-sampling pretension-night api docs docs-browser lint \
          asan tsan fuzz fuzz-results install uninstall dist dist-check deb workflow-check
-FRONT += python-install
+FRONT += python-install mutants-random
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -194,6 +194,15 @@ test-under-load: ## the tests again and again beside a busy loop on every core
 mutants: ## one fault in the sources at a time: which ones do the tests miss?
 	$(Q)tools/setup.sh --test
 	+$(Q)BUILD=$(BUILD) $(PYTHON) tools/mutants.py $(MUTANTS)
+
+# SEED=... is another hexadecimal number than the first eight digits of the commit, N=... another number of edits;
+# MUTANTS_ARGS="--suite unit --enough 0.7": only such suites, and exit status 0 from such a part on.
+SEED ?= $(shell git rev-parse --short=8 HEAD 2>/dev/null | cut -c1-8)
+N ?= 200
+MUTANTS_ARGS ?=
+mutants-random: ## N edits at random places that SEED draws: which do the tests miss? build/mutants-random/SEED.log
+	$(Q)tools/setup.sh --test
+	+$(Q)BUILD=$(BUILD) $(PYTHON) tools/mutants_random.py --seed $(SEED) --n $(N) $(MUTANTS_ARGS)
 
 browser: ## open pages of hifdm report in headless Chromium; needs `tools/setup.sh --ci`
 	$(SUB) $(PROGRAM)

@@ -1,4 +1,5 @@
 /* The one test program: run_tests [WORD...] runs the suites of suites.list.h whose room/name contains a word, or all.
+ * The word =room/name stands for that suite alone.
  *
  * HIFDM_TEST_JOBS=N runs N suites at a time, each in a process of its own; without it all run in this one.
  * HIFDM_TEST_STOP=1 ends at the first suite that fails. check's own variables work: CK_FORK=no for a debugger,
@@ -43,7 +44,8 @@ typedef struct {
 static bool is_wanted(const char *name, int n_word, char **words)
 {
     for (int i_word = 0; i_word < n_word; i_word++)
-        if (strstr(name, words[i_word])) return true;
+        if (words[i_word][0] == '=' ? !strcmp(name, words[i_word] + 1) : strstr(name, words[i_word]) != NULL)
+            return true;
     return n_word == 0;
 }
 

@@ -21,76 +21,26 @@ import threading
 import time
 from pathlib import Path
 
+from mutation.listed import read_mutants
+from mutation.tree import end, run as run_alone, running
+
 TOP = Path(__file__).resolve().parent.parent
 WORK = Path(os.environ.get("BUILD", "build"))
 WORK = (WORK if WORK.is_absolute() else TOP / WORK) / "mutants"
-TEST_S, SUITES_S = 300, 3600  # a test, and all of them: a mutant that hangs is noticed, too
+TEST_S, SUITES_S = 300, 7200  # a test by the clock, all of them by processor time: a mutant that hangs is noticed, too
 ENOUGH = 0.95
 
 
-class Mutant:
-    def __init__(self, name, path, suites, line):
-        self.name, self.path, self.suites, self.line = name, path, suites, line
-        self.old, self.new = [], []
-
-    def words(self):
-        room = self.path.split("/")[1]
-        return self.suites or [f"unit/{room}/", f"property/{room}/"]
-
-    def edited(self, text):
-        """The text with the old lines, which stand there once, replaced; indentation does not count."""
-        pattern = r"\n[ \t]*".join(re.escape(part) for part in self.old)
-        found = re.findall(pattern, text)
-        if len(found) != 1:
-            n = len(found)
-            sys.exit(f"tests/mutants.txt:{self.line}: {self.name}: its old text stands {n} times in {self.path}")
-        new = "\n".join(self.new)
-        return re.sub(pattern, lambda _: new, text)
+def suites(mutant):
+    """What a mutant's row names, or else those of its room."""
+    room = mutant.path.split("/")[1]
+    return mutant.words or [f"unit/{room}/", f"property/{room}/"]
 
 
-def read_mutants(path):
-    mutants = []
-    for n, line in enumerate(path.read_text().splitlines(), 1):
-        if not line.strip() or line.startswith("#"):
-            continue
-        if line[0] in "-+":
-            (mutants[-1].old if line[0] == "-" else mutants[-1].new).append(line[2:].strip())
-        else:
-            head, _, suites = line.partition(":")
-            name, file = head.split()
-            mutants.append(Mutant(name, file, suites.split(), n))
-    for m in mutants:
-        if not m.old or not m.new:
-            sys.exit(f"tests/mutants.txt:{m.line}: {m.name}: needs '- old' and '+ new'")
-        m.edited((TOP / m.path).read_text())
-    return mutants
-
-
-def run(tree, log, *command, limit_s=SUITES_S, **environment):
-    """True when it succeeds. A process group of its own, so that a hang leaves nothing behind."""
-    with open(log, "w") as file:
-        child = subprocess.Popen(command, cwd=tree, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT,
-                                 env={**os.environ, "BUILD": "build", "WERROR": "", **environment},
-                                 start_new_session=True)
-        running.add(child.pid)
-        try:
-            return child.wait(limit_s) == 0
-        except subprocess.TimeoutExpired:
-            return False
-        finally:
-            end(child.pid)
-            child.wait()
-            running.discard(child.pid)
-
-
-running = set()
-
-
-def end(pid):
-    try:
-        os.killpg(pid, signal.SIGTERM)
-    except ProcessLookupError:
-        pass
+def run(tree, log, *command, **environment):
+    """True when it succeeds within its processor time."""
+    log.unlink(missing_ok=True)
+    return run_alone(command, tree, log, SUITES_S, {"BUILD": "build", "WERROR": "", **environment})[0] == "passed"
 
 
 def test(tree, log, words):
@@ -160,8 +110,8 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--no-base", action="store_true", help="do not ask whether HEAD itself passes")
     o = parser.parse_args()
-    mutants = read_mutants(TOP / "tests/mutants.txt")
-    chosen = [m for m in mutants if not o.word or any(w in f"{m.name} {m.path} {m.suites}" for w in o.word)]
+    mutants = read_mutants(TOP, "tests/mutants.txt")
+    chosen = [m for m in mutants if not o.word or any(w in f"{m.name} {m.path} {m.words}" for w in o.word)]
     if o.list or o.check:
         for m in chosen if o.list else []:
             print(m.name, m.path)
@@ -172,7 +122,7 @@ def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     if not o.no_base and not test(make_tree(0), WORK / "base.log", []):
         sys.exit(f"the tests fail without a mutant: {WORK}/base.log")
-    queue, results, lock = [(m, m.words()) for m in chosen], [], threading.Lock()
+    queue, results, lock = [(m, suites(m)) for m in chosen], [], threading.Lock()
     threads = [threading.Thread(target=work_off, args=(queue, results, lock, k), daemon=True) for k in range(o.jobs)]
     try:
         for t in threads:

@@ -1,0 +1,288 @@
+#!/usr/bin/env python3
+"""Do the tests notice edits at random places? Makes N edits at random lines of src and lists those that survive.
+
+    tools/mutants_random.py --seed 4cdb071a --n 200
+
+The edits depend on the seed and on the sources alone (tools/mutation/edits.py). Each is made in a worker's copy of the
+working tree below build/mutants-random, which is compiled and linked anew as far as needed. A draw that does not
+compile, that leaves the object code as it was, or that was drawn before is redrawn. The suites that execute the line
+(tools/mutation/coverage.py) run, the most promising first, up to the first that fails. A suite that needs more than
+three times its processor time, or whose processes all sleep for a minute, notices as well. What no suite executes
+survives.
+
+Edits of tests/mutants_equivalent.txt change no result, for the reason that stands there; with such an edit the results
+of all configs/ are compared, bit by bit. They are left out of the percentage and are to be at most 15 % of N.
+
+Every draw is a line in build/mutants-random/SEED.log; survivors follow there with their edit.
+"""
+
+import argparse
+import difflib
+import math
+import os
+import re
+import shutil
+import signal
+import sys
+import threading
+import time
+from pathlib import Path
+
+from mutation.coverage import Coverage, suites_of
+from mutation.edits import Draws, tokens_of
+from mutation.listed import read_mutants
+from mutation.tree import Tree, end, run, running, state_of
+
+TOP = Path(__file__).resolve().parent.parent
+EQUIVALENT_MOST = 0.15
+
+
+class Log:
+    def __init__(self, path):
+        self.lock, self.file = threading.Lock(), open(path, "w")
+
+    def __call__(self, line):
+        with self.lock:
+            print(line, flush=True)
+            self.file.write(line + "\n")
+            self.file.flush()
+
+
+class Order:
+    """Which suites first: the chance to notice over the processor time, both as they were measured or guessed."""
+
+    def __init__(self, coverage):
+        self.coverage = coverage
+
+    def __call__(self, path, line):
+        def worth(suite):
+            return self.chance(path, suite) / (0.2 + self.coverage.cpu_s[suite])
+        return sorted(self.coverage.suites_at(path, line), key=lambda s: (-worth(s), s))
+
+    @staticmethod
+    def chance(path, suite):
+        _, room, file = path.split("/")
+        parts, name = suite.split("/"), re.sub(r"(_part|_kernel)?\.[ch]$", "", file)
+        if parts[-1] == name or name == f"cmd_{parts[-1]}":
+            return 0.6
+        if name.startswith(parts[-1]) or parts[-1].startswith(name) or parts[-1] in name.split("_"):
+            return 0.3
+        if len(parts) == 3 and parts[1] == room or parts[0] == "cli" and room in ("app", "out", "run"):
+            return 0.15
+        return 0.05
+
+
+class Runner:
+    def __init__(self, options, log):
+        self.o, self.log, self.lock = options, log, threading.Condition()
+        self.work = TOP / os.environ.get("BUILD", "build") / "mutants-random"
+        self.draws = Draws(TOP, int(options.seed, 16))
+        self.equivalent = {}
+        for m in read_mutants(TOP, "tests/mutants_equivalent.txt"):
+            text = self.draws.sources[m.path].text
+            self.equivalent[m.path, words_of(m.edited(text))] = m
+        self.next, self.n_valid, self.n_running = 0, 0, 0
+        self.seen, self.rows, self.base, self.spent_s = set(), {}, {}, 0.0
+
+    def measure(self):
+        sources = [*TOP.glob("src/**/*"), *TOP.glob("include/**/*"), TOP / "Makefile"]
+        self.state = state_of(sorted(p for p in sources if p.is_file()))
+        self.coverage = Coverage(TOP, self.work, self.state, self.log)
+        suites = [s for s in suites_of(TOP) if not self.o.suite or any(w in s for w in self.o.suite)]
+        suites = [s for s in suites if not any(w in s for w in self.o.without)]
+        self.coverage.measure(suites, self.o.jobs)
+        self.order = Order(self.coverage)
+
+    def take(self):
+        """The next draw that is needed, or None. Draws are made in their order, so that their set does not depend on
+        how fast each is tried."""
+        with self.lock:
+            while self.n_valid < self.o.n and self.n_valid + self.n_running >= self.o.n:
+                self.lock.wait()
+            if self.n_valid >= self.o.n:
+                return None
+            k, self.next, self.n_running = self.next, self.next + 1, self.n_running + 1
+            return k
+
+    def give(self, k, row):
+        with self.lock:
+            self.n_running -= 1
+            self.n_valid += row is not None
+            if row:
+                self.rows[k] = row
+            self.lock.notify_all()
+
+    def work_off(self, tree):
+        try:
+            if not tree.is_prepared:
+                tree.prepare()
+            while (k := self.take()) is not None:
+                self.give(k, self.try_draw(k, tree))
+        except BaseException as error:  # the others must not wait for this one
+            self.log(f"a worker ended: {error!r}")
+            os.kill(os.getpid(), signal.SIGTERM)
+            raise
+
+    def try_draw(self, k, tree):
+        edit = self.draws.edit(k)
+        if edit is None:
+            path, line = self.draws.line_of(k)
+            self.log(f"draw {k}: {path}:{line}: no edit is possible at this line")
+            return None
+        source, start = self.draws.sources[edit.path], time.monotonic()
+        what = f"draw {k}: {edit.path}:{edit.line}: {edit.kind}: {shown(source.text[edit.start:edit.end])} -> " \
+               f"{shown(edit.new)}"
+        with self.lock:
+            was_seen = edit in self.seen
+            self.seen.add(edit)
+        if was_seen:
+            self.log(f"{what}: drawn before")
+            return None
+        log = self.work / "logs" / f"{self.o.seed}-{k}.log"
+        log.unlink(missing_ok=True)
+        text = source.edited(edit)
+        try:
+            built = tree.apply(edit, text, log)
+            if built != "built":
+                self.log(f"{what}: {built}")
+                return None
+            outcome, by, cpu_s = self.judge(edit, text, tree, log)
+        finally:
+            tree.revert()
+        self.log(f"{what}: {outcome}{' by ' + by if by else ''}, {cpu_s:.1f} s of processor time, "
+                 f"{time.monotonic() - start:.0f} s")
+        with self.lock:
+            self.spent_s += cpu_s
+        return outcome, by, edit, text
+
+    def judge(self, edit, text, tree, log):
+        listed = self.equivalent.get((edit.path, words_of(text)))
+        if listed:
+            differs = self.differing_config(tree, log)
+            return (f"SURVIVED: listed as equivalent, but {differs} differs" if differs else "equivalent"), "", 0.0
+        spent_s, suites = 0.0, self.order(edit.path, edit.line)
+        for suite in suites:
+            if self.base.get(suite) is False:
+                continue
+            if spent_s > self.o.cpu:
+                return "SURVIVED for as long as it had", "", spent_s
+            outcome, cpu_s = tree.test(suite, log, 20 + 3 * self.coverage.cpu_s[suite])
+            spent_s += cpu_s
+            if outcome != "passed" and self.passes_without(suite, edit, tree, text, log):
+                by = suite if outcome != "failed" else f"{suite} ({who_failed(log)})"
+                return "caught" if outcome == "failed" else f"caught ({outcome})", by, spent_s
+        return "SURVIVED" if suites else "SURVIVED: no suite executes the line", "", spent_s
+
+    def passes_without(self, suite, edit, tree, text, log):
+        """Whether a suite that failed passes without the edit, found once for each suite."""
+        if suite not in self.base:
+            tree.revert()
+            base = self.work / "logs" / f"base-{suite.replace('/', '-')}.log"
+            base.unlink(missing_ok=True)
+            built = tree.make(*tree.linked(), log=base)
+            outcome = tree.test(suite, base, 60 + 5 * self.coverage.cpu_s[suite])[0] if built else "does not build"
+            self.base[suite] = outcome == "passed"
+            if outcome != "passed":
+                self.log(f"{suite} fails without an edit, too, and is left out: {base}")
+            tree.apply(edit, text, log)
+        return self.base[suite]
+
+    def differing_config(self, tree, log):
+        """The first case of configs/ whose result has other bits with the edit that is built; None: all are equal."""
+        program = tree.build / "hifdm"
+        for case in sorted((TOP / "configs").glob("*.yaml")):
+            with self.lock:  # the results without an edit are made once
+                expected = self.work / "expected" / self.state / case.stem
+                if not expected.exists() and not make_result(tree.pristine / "hifdm", case, expected, log):
+                    return f"{case.name} without the edit"
+            found = tree.build / "tmp" / case.stem
+            if not make_result(program, case, found, log):
+                return case.name
+            for file in sorted(expected.glob("*.h5")):
+                if run([program, "diff", file, found / file.name], TOP, log, 600)[0] != "passed":
+                    return case.name
+        return None
+
+    def summary(self):
+        rows = [self.rows[k] for k in sorted(self.rows)]
+        caught = sum(row[0].startswith("caught") for row in rows)
+        equivalent = sum(row[0] == "equivalent" for row in rows)
+        for outcome, _, edit, text in rows:
+            if outcome.startswith("SURVIVED"):
+                self.log(f"{edit.path}:{edit.line}: {outcome}")
+                for line in changed_lines(self.draws.sources[edit.path].text, text):
+                    self.log(f"    {line}")
+        judged = len(rows) - equivalent
+        self.log(f"seed {self.o.seed}: {len(rows)} edits of {self.next} draws, {caught} caught, "
+                 f"{judged - caught} survived, {equivalent} equivalent: {100 * caught / max(judged, 1):.1f} % caught; "
+                 f"{self.spent_s / max(len(rows), 1):.0f} s of processor time per edit")
+        if equivalent > EQUIVALENT_MOST * len(rows):
+            self.log(f"more than {100 * EQUIVALENT_MOST:.0f} % are listed as equivalent")
+        return equivalent <= EQUIVALENT_MOST * len(rows) and caught >= math.ceil(self.o.enough * judged)
+
+
+def make_result(program, case, folder, log):
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    is_study = re.search(r"^sweep:", case.read_text(), re.M)
+    command = [program, "sweep", case, "--dir", folder] if is_study else \
+        [program, "run", case, "-o", folder / "result.h5", "--quiet"]
+    return run(command, TOP, log, 3600)[0] == "passed"
+
+
+def words_of(text):
+    return tuple(t.text for t in tokens_of(text))
+
+
+def shown(text):
+    return "'" + re.sub(r"\s+", " ", text) + "'"
+
+
+def changed_lines(old, new):
+    lines = difflib.unified_diff(old.split("\n"), new.split("\n"), n=0, lineterm="")
+    return [line for line in lines if line[:1] in "+-" and line[:3] not in ("+++", "---") and line.strip() != "+"]
+
+
+def who_failed(log):
+    found = re.findall(r":[FE]:[^:]*:([^:]*):", log.read_text(errors="replace"))
+    return found[0] if found else "its runner ended"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seed", required=True, help="hexadecimal, for instance the first eight digits of a commit")
+    parser.add_argument("--n", type=int, default=200, help="edits that compile and change the code")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--suite", nargs="*", help="only suites whose name contains a word")
+    parser.add_argument("--without", nargs="*", default=[], help="no suites whose name contains a word")
+    parser.add_argument("--cpu", type=float, default=240, help="processor seconds after which an edit has survived")
+    parser.add_argument("--enough", type=float, default=0.9, help="the part to catch for exit status 0")
+    o = parser.parse_args()
+    work = TOP / os.environ.get("BUILD", "build") / "mutants-random"
+    (work / "logs").mkdir(parents=True, exist_ok=True)
+    log = Log(work / f"{o.seed}.log")
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    start = time.monotonic()
+    try:
+        runner = Runner(o, log)
+        runner.measure()
+        trees = [Tree(TOP, work / f"tree-{k}") for k in range(o.jobs)]
+        trees[0].prepare(o.jobs)
+        for tree in trees[1:]:
+            tree.copy(trees[0])
+        threads = [threading.Thread(target=runner.work_off, args=(t,), daemon=True) for t in trees]
+        for t in threads:
+            t.start()
+        for t in threads:
+            while t.is_alive():
+                t.join(1)
+        is_enough = runner.summary()
+        log(f"{time.monotonic() - start:.0f} s")
+    finally:
+        for session in list(running):
+            end(session)
+    sys.exit(0 if is_enough else 1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,143 @@
+"""Which suites execute which line: one build with gcov, in which each suite runs alone and leaves counts of its own."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+
+from mutation.tree import FLAGS, copy_sources, run, state_of, test_environment
+
+# Children that end by _exit would lose their counts.
+EXIT = """#ifndef HF_COVERAGE_EXIT
+#define HF_COVERAGE_EXIT
+void __gcov_dump(void);
+_Noreturn void hf_end(int status) __asm__("_exit");
+static inline _Noreturn void hf_coverage_exit(int status)
+{
+    __gcov_dump();
+    hf_end(status);
+}
+#define _exit(status) hf_coverage_exit(status)
+#endif
+"""
+SUITE_CPU_S = 1800  # no suite takes as long, with counters
+
+
+def suites_of(top):
+    """The names of all suites, in the order in which they run."""
+    text = (top / "tests/suites.list.h").read_text()
+    rows = re.findall(r"^(?:SUITE|MIRROR)\((\w+), (\w+)(?:, (\w+))?\)", text, re.M)
+    return ["/".join(part for part in row if part) for row in rows]
+
+
+def state_of_suite(top, suite):
+    """A checksum of the tests of a suite and of all that tests share."""
+    folder, _, name = suite.rpartition("/")
+    files = [top / f"tests/{folder}/test_{name}.c", *top.glob("tests/*.[ch]"), *top.glob("tests/cli/*.h")]
+    return state_of(sorted(files))
+
+
+class Coverage:
+    """The map of one state of the sources, below `work`; what was measured for the same state is used again."""
+
+    def __init__(self, top, work, state, say):
+        self.top, self.work, self.say = top, work / "coverage", say
+        self.tree, self.build = self.work / "tree", self.work / "tree/build"
+        self.table = self.work / "suites.json"
+        self.lines = {}
+        known = json.loads(self.table.read_text()) if self.table.exists() else {}
+        if known.get("state") != state:
+            shutil.rmtree(self.work / "counts", ignore_errors=True)
+            shutil.rmtree(self.work / "lines", ignore_errors=True)
+            known = {"state": state, "suites": {}}
+        self.known, self.measured = known, known["suites"]
+
+    def measure(self, suites, jobs):
+        """Runs the suites that were not run yet since their tests changed, `jobs` at a time."""
+        states = {s: state_of_suite(self.top, s) for s in suites}
+        missing = [s for s in suites if self.measured.get(s, {}).get("state") != states[s]]
+        self._build(jobs)
+        with ThreadPoolExecutor(jobs) as pool:
+            for suite, (outcome, cpu_s) in zip(missing, pool.map(self._count, missing)):
+                self.measured[suite] = {"state": states[suite], "cpu_s": round(cpu_s, 2)}
+                self.table.write_text(json.dumps(self.known, indent=1) + "\n")
+                self.say(f"coverage of {suite}: {outcome}, {cpu_s:.1f} s")
+        self.suites = suites
+        self.cpu_s = {s: self.measured[s]["cpu_s"] for s in suites}
+        self.states = {s: states[s] for s in suites}
+
+    def _build(self, jobs):
+        self.tree.mkdir(parents=True, exist_ok=True)
+        copy_sources(self.top, self.tree)
+        (self.work / "exit.h").write_text(EXIT)
+        flags = [f for f in FLAGS if not f.startswith("CFLAGS")] + \
+                [f"CFLAGS=-O1 --coverage -include {self.work}/exit.h"]
+        targets = ["build/hifdm", "build/tests/run_tests", "build/prefix/lib/pkgconfig/hifdm.pc"]
+        if run(["make", "-s", f"-j{jobs}", *flags, *targets], self.tree, self.work / "build.log", 7200,
+               {"BUILD": "build", "MAKEFLAGS": ""})[0] != "passed":
+            raise SystemExit(f"the sources do not build with gcov: {self.work}/build.log")
+        self.objects = {}  # of each source
+        for d in (self.build / "src").rglob("*.d"):
+            for name in d.read_text().replace("\\\n", " ").split(":")[1].split():
+                self.objects.setdefault(name, []).append(d.with_suffix(".o").relative_to(self.build))
+
+    def _counts(self, suite):
+        return self.work / "counts" / suite.replace("/", "-")
+
+    def _count(self, suite):
+        counts = self._counts(suite)
+        shutil.rmtree(counts, ignore_errors=True)
+        tmp = self.build / "tmp" / suite.replace("/", "-")
+        shutil.rmtree(tmp, ignore_errors=True)
+        tmp.mkdir(parents=True)
+        log = self.work / f"{suite.replace('/', '-')}.log"
+        log.unlink(missing_ok=True)
+        environment = {**test_environment(self.tree, self.build, "--coverage"), "TMPDIR": str(tmp),
+                       "GCOV_PREFIX": str(counts), "GCOV_PREFIX_STRIP": str(len(self.build.parts) - 1)}
+        return run([self.build / "tests/run_tests", f"={suite}"], self.tree, log, SUITE_CPU_S, environment)
+
+    def suites_at(self, path, line):
+        """The suites that execute a line. A line of no code of its own, as the second line of a statement, belongs to
+        the code before it."""
+        if path not in self.lines:
+            self.lines[path] = self._read(path)
+        lines = self.lines[path]
+        known = sorted(lines)
+        before = [n for n in known if n <= line]
+        return lines[before[-1]] if before else lines[known[0]] if known else []
+
+    def _read(self, path):
+        """{line: [suite, ...]} of a source, from the counts of all objects that include it."""
+        cache = self.work / "lines" / f"{path.replace('/', '-')}.json"
+        if cache.exists():
+            table = json.loads(cache.read_text())
+            if table["suites"] == self.states:
+                return {int(n): s for n, s in table["lines"].items()}
+        lines = {}
+        for suite in self.suites:
+            there = [o for o in self.objects.get(path, []) if (self._counts(suite) / o.with_suffix(".gcda")).exists()]
+            for n, count in self._lines(suite, path, there):
+                here = lines.setdefault(n, [])
+                if count > 0 and (not here or here[-1] != suite):
+                    here.append(suite)
+        cache.parent.mkdir(parents=True, exist_ok=True)
+        cache.write_text(json.dumps({"suites": self.states, "lines": lines}))
+        return lines
+
+    def _lines(self, suite, path, objects):
+        if not objects:
+            return
+        for o in objects:
+            note = self._counts(suite) / o.with_suffix(".gcno")
+            if not note.exists():
+                os.link(self.build / o.with_suffix(".gcno"), note)
+        out = subprocess.run(["gcov", "--json-format", "--stdout",
+                              *(str(self._counts(suite) / o.with_suffix(".gcda")) for o in objects)],
+                             cwd=self.tree, check=True, capture_output=True, text=True).stdout
+        for text in out.splitlines():
+            for file in json.loads(text)["files"]:
+                if file["file"] == path:
+                    for row in file["lines"]:
+                        yield row["line_number"], row["count"]
