@@ -185,6 +185,37 @@ START_TEST(a_damaged_file_is_refused)
 }
 END_TEST
 
+/* An allocation that fails anywhere on the way back is said: a run that went on without its population would find other
+ * designs. */
+START_TEST(without_memory_nothing_is_restored)
+{
+    const char *path;
+    int n_failed = 0;
+    new_folder(&path);
+    leave_unfinished(path);
+    for (long n = 1;; n++) {
+        struct run r;
+        hf_store *s = NULL;
+        hf_summary summary = {0};
+        hf_messages messages = {0};
+        open_run(&r);
+        fail_allocation_at(n);
+        hf_status status = hf_store_resume(path, &s, &messages);
+        if (status == HF_OK) status = hf_store_restore_base(s, N_GENE, r.base_N, &messages);
+        if (status == HF_OK) status = hf_store_restore(s, &r.ga, &summary, &messages);
+        bool has_failed = end_allocation_failure();
+        ck_assert_msg(status == (has_failed ? HF_NO_MEMORY : HF_OK), "allocation %ld: %d: %s", n, status,
+                      messages.text);
+        n_failed += has_failed;
+        if (s) hf_store_end(s);
+        hf_messages_free(&messages);
+        close_run(&r);
+        if (!has_failed) break;
+    }
+    ck_assert_int_gt(n_failed, 5);
+}
+END_TEST
+
 Suite *suite_unit_store_resume(void)
 {
     Suite *suite = suite_create("unit/store_resume");
@@ -192,6 +223,7 @@ Suite *suite_unit_store_resume(void)
     suite_add_tcase(suite, tests);
     tcase_add_checked_fixture(tests, quiet, NULL);
     tcase_add_test(tests, designs_are_bred_again);
+    tcase_add_test(tests, without_memory_nothing_is_restored);
     tcase_add_test(tests, other_designs_are_told_apart);
     tcase_add_loop_test(tests, a_damaged_file_is_refused, 0, (int)(sizeof spoilt / sizeof spoilt[0]));
     tcase_add_test(tests, results_of_other_designs_are_left_out);
