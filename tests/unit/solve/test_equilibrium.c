@@ -2,6 +2,7 @@
 #include "laws.h"
 #include "verified.h"
 
+#include "solve/equilibrium.h"
 #include <hifdm/evaluate.h>
 
 /* A net of all laws in which a cable of law tension shrinks to 2e-6 of its theoretical length on the way of the paper's
@@ -46,6 +47,39 @@ START_TEST(out_of_iterations_on_the_way)
 }
 END_TEST
 
+/* Nets without a shape, with as many iterations as the paper's iteration takes to say so: its verdict stands, since
+ * nothing is left for another way. */
+START_TEST(a_refusal_with_the_last_iteration_stands)
+{
+    int n_refused = 0;
+    for (int i = 0; i < 40; i++) {
+        const struct hand_node node[] = {{{0, 0, 0}, HF_ROLE_SUPPORT, {0}},
+                                         {{2, 0, 0}, HF_ROLE_SUPPORT, {0}},
+                                         {{0.9, 0, -0.1}, HF_ROLE_INNER, {0, 0, i % 2 ? -0.7 * i : 0}}};
+        const struct hand_cable cable[] = {{{0, 2}, HF_GROUP_INNER, HF_LAW_TENSION, 10},
+                                           {{1, 2}, HF_GROUP_INNER, HF_LAW_TENSION, 10 + 4.0 * i}};
+        struct net net;
+        OPEN_HAND(&net, node, cable, HF_METHOD_NEWTON);
+        for (int n = 1; n <= 6; n++) {
+            hf_form_result by_iteration;
+            net.form.max_iterations = n;
+            hf_form_prepare(&net.model, &net.work);
+            hf_form_find(&net.model, &net.form, HF_STOP_RESIDUAL, &net.work, NULL, &by_iteration);
+            if (by_iteration.iterations < n) break;
+            bool is_refused = by_iteration.status != HF_OK && by_iteration.status != HF_NOT_CONVERGED;
+            hf_form_prepare(&net.model, &net.work);
+            hf_equilibrium_find(&net.model, &net.form, &net.work, NULL, &net.result);
+            ck_assert_int_eq(net.result.iterations, n);
+            ck_assert_int_eq(net.result.status, by_iteration.status);
+            ck_assert_int_eq(net.result.culprit, by_iteration.culprit);
+            n_refused += is_refused;
+        }
+        close_net(&net);
+    }
+    ck_assert_int_gt(n_refused, 3);
+}
+END_TEST
+
 Suite *suite_unit_equilibrium(void)
 {
     Suite *suite = suite_create("unit/solve/equilibrium");
@@ -53,5 +87,6 @@ Suite *suite_unit_equilibrium(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, nodes_that_part_again_have_not_collapsed);
     tcase_add_test(tests, out_of_iterations_on_the_way);
+    tcase_add_test(tests, a_refusal_with_the_last_iteration_stands);
     return suite;
 }
