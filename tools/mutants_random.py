@@ -85,7 +85,7 @@ class Runner:
         self.seen, self.rows, self.base, self.spent_s = set(), {}, {}, 0.0
 
     def measure(self):
-        sources = [*TOP.glob("src/**/*"), *TOP.glob("include/**/*"), TOP / "Makefile"]
+        sources = [*TOP.glob("src/**/*"), *TOP.glob("include/**/*")]
         self.state = state_of(sorted(p for p in sources if p.is_file()))
         self.coverage = Coverage(TOP, self.work, self.state, self.log)
         suites = [s for s in suites_of(TOP) if not self.o.suite or any(w in s for w in self.o.suite)]
