@@ -144,10 +144,11 @@ class Runner:
         text = source.edited(edit)
         try:
             built = tree.apply(edit, text, log)
-            if built != "built":
+            if built not in ("built", "does not install"):
                 self.log(f"{what}: {built}")
                 return None
-            outcome, by, cpu_s = self.judge(edit, text, tree, log)
+            outcome, by, cpu_s = self.judge(edit, text, tree, log) if built == "built" else \
+                ("caught", "the installation", 0.0)
         finally:
             tree.revert()
         self.log(f"{what}: {outcome}{' by ' + by if by else ''}, {cpu_s:.1f} s of processor time, "

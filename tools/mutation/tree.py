@@ -12,7 +12,7 @@ TICKS = os.sysconf("SC_CLK_TCK")
 ASLEEP_S = 60  # a suite that uses no processor time for so long waits for what never comes
 FLAGS = ["WERROR=-Werror=incompatible-pointer-types -Werror=int-conversion -Werror=implicit-function-declaration "
          "-Werror=return-type", "CFLAGS=-O1"]
-LIMITS = ["sh", "-c", 'ulimit -v 8000000 -f 4000000; exec "$@"', "sh"]  # kB, blocks: for edits that never stop writing
+LIMITS = ["sh", "-c", 'ulimit -v 8000000; exec "$@"', "sh"]  # kB, for edits that never stop taking memory
 running = set()  # sessions that were begun here
 
 
@@ -151,7 +151,8 @@ class Tree:
             (self.build / name).unlink(missing_ok=True)
 
     def apply(self, edit, text, log):
-        """Builds with the edit. Returns "built", "does not compile" or "same code"."""
+        """Builds with the edit. Returns "built", "does not compile", "same code", or "does not install": the program,
+        which writes its own manual page then, is broken."""
         source = self.path / edit.path
         self.kept = (source, source.read_text(), source.stat().st_mtime_ns)
         source.write_text(text)
@@ -161,7 +162,9 @@ class Tree:
         if all(o.read_bytes() == (self.pristine / o.relative_to(self.build)).read_bytes() for o in self.changed):
             return "same code"
         self.forget_links()
-        return "built" if self.make(*self.linked(), log=log) else "does not compile"
+        if not self.make(*self.linked()[:2], log=log):
+            return "does not compile"
+        return "built" if self.make(*self.linked(), log=log) else "does not install"
 
     def revert(self):
         source, text, time_ns = self.kept
