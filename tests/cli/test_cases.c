@@ -83,6 +83,21 @@ START_TEST(a_state_is_exported)
 }
 END_TEST
 
+/* Goals over states of a net on a truss are the errors that the states have in the same file. */
+START_TEST(goals_over_states_are_those_of_the_states)
+{
+    HIFDM(
+        0, "run", keep(source_path("configs/paraboloid-cases.yaml")), "-o", temp("goals.h5"), "--quiet", "--set",
+        "optimize.goals=[{goal: psi, over: states, take: worst}, {goal: psi, state: sun}, {goal: psi, state: cup_up}]",
+        "--set", "optimize.method=lm", "--set", "optimize.polish_iterations=1", "--set",
+        "optimize.variables=[{set: all, vary: force_density, range: 1 %}]");
+    EXPECT(temp("goals.h5"), "--", "a['polish'].attrs['polish_is_result'] == 1",
+           "near(a['goals/polish'][0], max(s.attrs['psi_m'] for s in a['cases'].values() if hasattr(s, 'keys')), 1e-6)",
+           "near(a['goals/polish'][1], a['cases/sun'].attrs['psi_m'], 1e-6)",
+           "near(a['goals/polish'][2], a['cases/cup_up'].attrs['psi_m'], 1e-6)");
+}
+END_TEST
+
 /* A table of nodes belongs to the run as much as the case does. */
 START_TEST(another_table_is_another_run)
 {
@@ -194,6 +209,7 @@ Suite *suite_cli_cases(void)
     tcase_add_test(tcase, states_are_printed_stored_and_shown);
     tcase_add_test(tcase, a_state_is_exported);
     tcase_add_test(tcase, another_table_is_another_run);
+    tcase_add_test(tcase, goals_over_states_are_those_of_the_states);
     tcase_add_test(tcase, the_optimised_design_is_built);
     tcase_add_test(tcase, a_truss_may_bend_by_its_weight);
     tcase_add_test(tcase, a_state_without_a_shape_does_not_stop_the_others);
