@@ -45,7 +45,7 @@ class Coverage:
         self.top, self.work, self.say = top, work / "coverage", say
         self.tree, self.build = self.work / "tree", self.work / "tree/build"
         self.table = self.work / "suites.json"
-        self.lines = {}
+        self.lines, self.functions = {}, {}
         known = json.loads(self.table.read_text()) if self.table.exists() else {}
         if known.get("state") != state:
             shutil.rmtree(self.work / "counts", ignore_errors=True)
@@ -101,13 +101,16 @@ class Coverage:
 
     def suites_at(self, path, line):
         """The suites that execute a line. A line of no code of its own, as the second line of a statement, belongs to
-        the code before it."""
+        the code before it in its function. What is outside of functions, as tables, all suites may use that execute
+        anything of the file."""
         if path not in self.lines:
             self.lines[path] = self._read(path)
         lines = self.lines[path]
-        known = sorted(lines)
-        before = [n for n in known if n <= line]
-        return lines[before[-1]] if before else lines[known[0]] if known else []
+        first = max((a for a, b in self.functions[path] if a <= line <= b), default=None)
+        before = [n for n in lines if first is not None and first <= n <= line]
+        if before:
+            return lines[max(before)]
+        return [s for s in self.suites if any(s in here for here in lines.values())]
 
     def _read(self, path):
         """{line: [suite, ...]} of a source, from the counts of all objects that include it."""
@@ -115,19 +118,21 @@ class Coverage:
         if cache.exists():
             table = json.loads(cache.read_text())
             if table["suites"] == self.states:
+                self.functions[path] = table["functions"]
                 return {int(n): s for n, s in table["lines"].items()}
-        lines = {}
+        lines, functions = {}, set()
         for suite in self.suites:
             there = [o for o in self.objects.get(path, []) if (self._counts(suite) / o.with_suffix(".gcda")).exists()]
-            for n, count in self._lines(suite, path, there):
+            for n, count in self._lines(suite, path, there, functions):
                 here = lines.setdefault(n, [])
                 if count > 0 and (not here or here[-1] != suite):
                     here.append(suite)
         cache.parent.mkdir(parents=True, exist_ok=True)
-        cache.write_text(json.dumps({"suites": self.states, "lines": lines}))
+        self.functions[path] = sorted(functions)
+        cache.write_text(json.dumps({"suites": self.states, "lines": lines, "functions": self.functions[path]}))
         return lines
 
-    def _lines(self, suite, path, objects):
+    def _lines(self, suite, path, objects, functions):
         if not objects:
             return
         for o in objects:
@@ -140,5 +145,6 @@ class Coverage:
         for text in out.splitlines():
             for file in json.loads(text)["files"]:
                 if file["file"] == path:
+                    functions.update((f["start_line"], f["end_line"]) for f in file["functions"])
                     for row in file["lines"]:
                         yield row["line_number"], row["count"]
