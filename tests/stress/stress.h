@@ -68,7 +68,8 @@ static inline struct outcome try_scene(hf_scene *scene, double pretension_N)
         o.condition = net.model.has_newton ? net.result.condition : 1;
         o.error_m = net.model.has_newton ? net.result.position_error_m : 0;
         int is_verified = o.residual <= STRESS_ROUNDED && v.length_gap <= STRESS_ROUNDED && v.least_tension_N >= 0;
-        int has_error = o.error_m >= 0 || net.result.n_drifting > 0; /* else it is named, why the error is not known */
+        int is_unique = net.result.n_drifting == 0 && net.result.n_loose == 0;
+        int has_error = is_unique || !net.model.has_newton ? o.error_m >= 0 : isnan(o.error_m);
         if (is_verified && isfinite(net.result.psi_m) && o.condition >= 1 && has_error) o.verdict = SOLVED;
     } else if (is_named(&net)) {
         o.verdict = NAMED;
