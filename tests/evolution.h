@@ -45,6 +45,7 @@ static inline void fill(hf_optimiser *o)
         if (g->pending[i])
             g->result[i] =
                 (hf_form_result){.status = HF_OK, .psi_m = psi_m, .merit = psi_m, .iterations = g->generation};
+        if (i == N_INDIVIDUAL - 1) g->result[i].status = HF_NOT_CONVERGED;
     }
     hf_optimiser_tell(o);
 }
