@@ -120,6 +120,18 @@ START_TEST(moves_are_a_table)
     HIFDM(0, "adjust", path, "--measured", measured, "--json");
     double probable_m = number_after("\"adjusted_m\": "), expected_m = number_after("\"adjusted_expected_m\": ");
     ck_assert_double_lt(probable_m, expected_m);
+    double before_m = number_after("\"estimated_expected_m\": "),
+           before_sigma_m = number_after("\"estimated_sigma_m\": "), sigma_m = number_after("\"adjusted_sigma_m\": "),
+           best_m = number_after("\"best_m\": ");
+    const char *before = keep(formatted("; with what is left open %.4f +- %.4f mm; as designed ", before_m * 1e3,
+                                        before_sigma_m * 1e3)),
+               *behind = keep(formatted(" %.4f mm; with what is left open %.4f +- %.4f mm; any moves of ",
+                                        probable_m * 1e3, expected_m * 1e3, sigma_m * 1e3)),
+               *best = keep(formatted("without least tensions: %.4f mm\n", best_m * 1e3));
+    HIFDM(0, "adjust", path, "--measured", measured); /* the words have the same figures */
+    OUT(before);
+    OUT(behind);
+    OUT(best);
     HIFDM(0, "adjust", path, "--measured", measured, "--set",
           formatted("adjust.target_m=%.17g", (probable_m + expected_m) / 2));
     OUT("no further move: the most probable net meets target_m, but ");
