@@ -61,7 +61,8 @@ fi
 
 # ---- whole results, against those of the default build ----
 
-cases=("straight-edges --set optimize.generations=20 --set optimize.compare_lm=true"
+cases=("chen2022 --set optimize.generations=20" "chen2022-truss"
+    "straight-edges --set optimize.generations=20 --set optimize.compare_lm=true"
     "straight-edges-truss --set optimize.generations=10 --set optimize.compare_lm=true"
     "reflector --set optimize.generations=10 --set optimize.method=ga+lm")
 

@@ -155,11 +155,14 @@ def sha256(content):
 
 
 def bits(file, case):
-    """A line per group of numbers: case, group, checksum of names, types, shapes and bytes."""
+    """A line per group of numbers: case, group, checksum of names, types, shapes and bytes. Of a merged study the
+    result files of its points are one group, "runs"."""
     groups = {}
     for name, (kind, shape, data) in sorted(contents(file).items()):
-        if isinstance(data, bytes) and not name.startswith(("case/", "surface/")):
-            group = groups.setdefault(name.split("/")[0], hashlib.sha256())
+        parts = name.split("/")
+        left_out = {"case", "surface"} & set(parts[:-1]) or parts[-1].endswith("condition")
+        if isinstance(data, bytes) and not left_out:
+            group = groups.setdefault(parts[0], hashlib.sha256())
             group.update(f"{name} {kind} {shape} ".encode() + data)
     return [f"{case} {group} {checksum.hexdigest()[:16]}" for group, checksum in sorted(groups.items())]
 
@@ -170,6 +173,11 @@ def bits_are(file, table, case):
     if found != wanted:
         print("tests/verify/data/bits.txt has other lines than:", *found, sep="\n")
     return found == wanted
+
+
+def write_bits(file, folder, case):
+    with open(f"{folder}/{case}", "w", encoding="utf-8") as out:
+        return out.write("".join(line + "\n" for line in bits(file, case))) > 0
 
 
 def near(value, wanted, tolerance):
