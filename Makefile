@@ -140,7 +140,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
          bench-before bench-optimisers bench-fronts bench-sampling pretension-night api docs docs-browser lint \
          asan tsan fuzz fuzz-results install uninstall dist dist-check deb workflow-check
-FRONT += python-install mutants-random bits
+FRONT += python-install mutants-random bench-instructions bits
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -252,6 +252,14 @@ bench-before: ## form-finding now against an old commit's, side by side: before.
 	$(SUB) $(STATIC) $(BENCH)
 	$(Q)OPENBLAS=$(OPENBLAS) $(PYTHON) tools/bench/before.py --library $(STATIC) --driver $(BENCH) \
 	    --work $(BUILD)/before --out $(BENCH_OUT) --commit $(COMMIT) --rounds $(BENCH_ROUNDS) $(CASES)
+
+# RECORD=yes writes the table, for the commit that all others are compared with. CASES="reflector 41x49" picks some.
+RECORD ?=
+bench-instructions: ## instructions of three cases on one thread against results/bench/instructions.csv (2 minutes)
+	$(Q)tools/setup.sh --instructions
+	$(SUB) $(PROGRAM)
+	$(PYTHON) tools/bench/instructions.py --program $(PROGRAM) --work $(BUILD)/instructions \
+	    --table results/bench/instructions.csv $(if $(RECORD),--record) $(CASES)
 
 # The same on every processor, but for what pagmo's mathematics makes of last bits.
 OPTIMISER_SEEDS ?= 7

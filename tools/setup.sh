@@ -4,18 +4,20 @@
 #   --bench also the peers of `make bench`     --api  also doxygen, for `make api`
 #   --docs  also Sphinx with its theme, for `make docs`
 #   --deb   also debhelper and lintian, for `make deb`     --workflows also Snakemake, for `make workflow-check`
-#   --optimisers also those of `make bench-optimisers`
+#   --optimisers also those of `make bench-optimisers`     --instructions also valgrind, for `make bench-instructions`
 # Silent and quick when nothing is missing. Asks for what is needed (a compiler, a pkg-config name, a Python module)
 # rather than for packages, so that other providers do as well: any LAPACK that can be loaded, modules from pip.
 set -eu
 
 with_test=no with_ci=no with_bench=no with_optimisers=no with_api=no with_docs=no with_deb=no with_workflows=no
+with_instructions=no
 for option in "$@"; do
     case $option in
     --test) with_test=yes ;;
-    --ci) with_test=yes with_ci=yes with_api=yes with_docs=yes ;;
+    --ci) with_test=yes with_ci=yes with_api=yes with_docs=yes with_instructions=yes ;;
     --bench) with_bench=yes ;;
     --optimisers) with_optimisers=yes ;;
+    --instructions) with_instructions=yes ;;
     --api) with_api=yes ;;
     --deb) with_deb=yes ;;
     --workflows) with_workflows=yes ;;
@@ -87,6 +89,9 @@ missing_packages() {
         [ -e /usr/include/boost/serialization/access.hpp ] || need libboost-serialization-dev
         [ -e /usr/include/pagmo/population.hpp ] || need libpagmo-dev
         has_module scipy || need python3-scipy
+    fi
+    if [ $with_instructions = yes ]; then
+        has valgrind || need valgrind
     fi
     if [ $with_api = yes ]; then
         has doxygen || need doxygen
