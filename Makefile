@@ -140,7 +140,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
          bench-before bench-optimisers bench-fronts bench-sampling pretension-night api docs docs-browser lint \
          asan tsan fuzz fuzz-results install uninstall dist dist-check deb workflow-check
-FRONT += python-install mutants-random bench-instructions bits
+FRONT += python-install mutants-random bench-instructions bits deb-check
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -401,6 +401,10 @@ dist-check: dist ## build that tarball without git, install and uninstall it, ru
 deb: dist ## Debian packages of that tarball: program, library, headers, Python: build/deb/*.deb
 	$(Q)tools/setup.sh --deb
 	+$(Q)tools/packages/make_deb.sh $(DIST).tar.gz $(BUILD)/deb
+
+# RELEASE=trixie is another Debian than the one that runs here, WITH="libopenblas0-pthread" another BLAS in the root.
+deb-check: deb ## install those packages in a bare root of debootstrap, run them there, and purge them (needs root)
+	$(Q)RELEASE=$(RELEASE) WITH=$(call quote,$(WITH)) tools/packages/check_deb.sh $(BUILD)/deb $(BUILD)/deb-root
 
 workflow-check: ## the rules for Snakemake, tools/packages/Snakefile, with Snakemake itself
 	$(Q)tools/setup.sh --workflows

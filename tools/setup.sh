@@ -3,8 +3,9 @@
 #   --test  also what the tests need     --ci  also clang, sanitizers, linters, VTK, a browser, Slurm (includes --test)
 #   --bench also the peers of `make bench`     --api  also doxygen, for `make api`
 #   --docs  also Sphinx with its theme, for `make docs`
-#   --deb   also debhelper and lintian, for `make deb`     --workflows also Snakemake, for `make workflow-check`
-#   --optimisers also those of `make bench-optimisers`     --instructions also valgrind, for `make bench-instructions`
+#   --deb   also debhelper, lintian and debootstrap, for `make deb-check`
+#   --workflows also Snakemake, for `make workflow-check`     --optimisers also those of `make bench-optimisers`
+#   --instructions also valgrind, for `make bench-instructions`
 # Silent and quick when nothing is missing. Asks for what is needed (a compiler, a pkg-config name, a Python module)
 # rather than for packages, so that other providers do as well: any LAPACK that can be loaded, modules from pip.
 set -eu
@@ -14,7 +15,7 @@ with_instructions=no
 for option in "$@"; do
     case $option in
     --test) with_test=yes ;;
-    --ci) with_test=yes with_ci=yes with_api=yes with_docs=yes with_instructions=yes ;;
+    --ci) with_test=yes with_ci=yes with_api=yes with_docs=yes with_instructions=yes with_deb=yes ;;
     --bench) with_bench=yes ;;
     --optimisers) with_optimisers=yes ;;
     --instructions) with_instructions=yes ;;
@@ -109,6 +110,7 @@ missing_packages() {
         has dh || need debhelper
         has dh_python3 || need dh-python
         has lintian || need lintian
+        has debootstrap || [ -x /usr/sbin/debootstrap ] || need debootstrap
     fi
     if [ $with_ci = yes ]; then
         has clang || need clang
