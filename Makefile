@@ -140,7 +140,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
          bench-before bench-optimisers bench-fronts bench-sampling pretension-night api docs docs-browser lint \
          asan tsan fuzz fuzz-results install uninstall dist dist-check deb workflow-check
-FRONT += python-install mutants-random bench-instructions bits deb-check
+FRONT += python-install mutants-random bench-instructions bits deb-check release-check
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -405,6 +405,10 @@ deb: dist ## Debian packages of that tarball: program, library, headers, Python:
 # RELEASE=trixie is another Debian than the one that runs here, WITH="libopenblas0-pthread" another BLAS in the root.
 deb-check: deb ## install those packages in a bare root of debootstrap, run them there, and purge them (needs root)
 	$(Q)RELEASE=$(RELEASE) WITH=$(call quote,$(WITH)) tools/packages/check_deb.sh $(BUILD)/deb $(BUILD)/deb-root
+
+# STEPS="fuzz stress" picks some. The log is committed for the release it was run on.
+release-check: ## what takes longer than .ci/run (hours): results/release/VERSION.log
+	$(Q)tools/release_check.sh $(STEPS)
 
 workflow-check: ## the rules for Snakemake, tools/packages/Snakefile, with Snakemake itself
 	$(Q)tools/setup.sh --workflows

@@ -1,24 +1,27 @@
 #!/usr/bin/env bash
 # Builds hifdm for aarch64 on Debian and runs its unit, property and verification tests, emulated; then compares results
 # with those of this machine: the same bits. Needs the packages gcc-aarch64-linux-gnu, libc6-dev-arm64-cross and
-# qemu-user-static, and `dpkg --add-architecture arm64 && apt-get update`; the libraries are fetched into
-# build/aarch64/root, nothing is installed. SUITE="unit verify" picks suites.
+# qemu-user-static (tools/setup.sh --release). The libraries are fetched into build/aarch64/root by an apt that has its
+# lists there, so nothing is installed and no architecture is added. SUITE="unit verify" picks suites.
 set -eu
 cd "$(dirname "$0")/.."
 build=$(realpath -m "${BUILD:-build}")/aarch64 triplet=aarch64-linux-gnu
 root=$build/root libraries=$build/root/usr/lib/$triplet
-mkdir -p "$build/debs" "$build/tmp"
+mkdir -p "$build/tmp"
 for program in $triplet-gcc qemu-aarch64-static; do
     command -v $program >/dev/null || { echo "no $program: see the beginning of $0" >&2; exit 2; }
 done
 
 if [ ! -e "$root/done" ]; then
+    mkdir -p "$build/apt/state/lists/partial" "$build/apt/cache/archives/partial"
+    : >"$build/apt/state/status"
+    own=(apt-get -q -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o "Dir::State=$build/apt/state"
+        -o "Dir::State::status=$build/apt/state/status" -o "Dir::Cache=$build/apt/cache" -o APT::Sandbox::User=root
+        -o Debug::NoLocking=true -o APT::Install-Recommends=false -o APT::Keep-Downloaded-Packages=true)
     wanted=(libhdf5-dev libgsl-dev liblapack3 libyaml-dev zlib1g-dev check libgomp1 libc6-dev)
-    mapfile -t packages < <(apt-get install -s --no-install-recommends "${wanted[@]/%/:arm64}" |
-        awk '/^Inst/ && /arm64/ { sub(/:arm64$/, "", $2); print $2 ":arm64" }' | sort -u)
-    [ ${#packages[@]} -gt 0 ] || { echo "apt knows no packages for arm64: see the beginning of $0" >&2; exit 2; }
-    (cd "$build/debs" && apt-get download "${packages[@]}")
-    for package in "$build"/debs/*.deb; do dpkg -x "$package" "$root"; done
+    { "${own[@]}" update && "${own[@]}" install -y --download-only "${wanted[@]}"; } >"$build/apt/log" 2>&1 ||
+        { tail -n 20 "$build/apt/log" >&2; echo "apt fetches no packages for arm64" >&2; exit 2; }
+    for package in "$build"/apt/cache/archives/*.deb; do dpkg -x "$package" "$root"; done
     find "$root" -type l -lname '/*' | while read -r link; do ln -snf "$root$(readlink "$link")" "$link"; done
     ln -sf hdf5-serial.pc "$libraries/pkgconfig/hdf5.pc" # made by its package's installation
     touch "$root/done"

@@ -5,13 +5,13 @@
 #   --docs  also Sphinx with its theme, for `make docs`
 #   --deb   also debhelper, lintian and debootstrap, for `make deb-check`
 #   --workflows also Snakemake, for `make workflow-check`     --optimisers also those of `make bench-optimisers`
-#   --instructions also valgrind, for `make bench-instructions`
+#   --instructions also valgrind, for `make bench-instructions`     --release also emulators, for `make release-check`
 # Silent and quick when nothing is missing. Asks for what is needed (a compiler, a pkg-config name, a Python module)
 # rather than for packages, so that other providers do as well: any LAPACK that can be loaded, modules from pip.
 set -eu
 
 with_test=no with_ci=no with_bench=no with_optimisers=no with_api=no with_docs=no with_deb=no with_workflows=no
-with_instructions=no
+with_instructions=no with_release=no
 for option in "$@"; do
     case $option in
     --test) with_test=yes ;;
@@ -19,6 +19,7 @@ for option in "$@"; do
     --bench) with_bench=yes ;;
     --optimisers) with_optimisers=yes ;;
     --instructions) with_instructions=yes ;;
+    --release) with_release=yes ;;
     --api) with_api=yes ;;
     --deb) with_deb=yes ;;
     --workflows) with_workflows=yes ;;
@@ -111,6 +112,11 @@ missing_packages() {
         has dh_python3 || need dh-python
         has lintian || need lintian
         has debootstrap || [ -x /usr/sbin/debootstrap ] || need debootstrap
+    fi
+    if [ $with_release = yes ]; then
+        has aarch64-linux-gnu-gcc || need gcc-aarch64-linux-gnu
+        [ -e /usr/aarch64-linux-gnu/include/stdio.h ] || need libc6-dev-arm64-cross
+        has qemu-aarch64-static && has qemu-x86_64-static || need qemu-user-static
     fi
     if [ $with_ci = yes ]; then
         has clang || need clang

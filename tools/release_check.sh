@@ -1,0 +1,102 @@
+#!/usr/bin/env bash
+# release_check.sh [STEP...]: the checks that take longer than .ci/run allows, for a release; all steps when none is named.
+#
+# A failing step does not stop the others. Each step is bounded; its output is in build/release/COMMIT/STEP.log.
+# results/release/VERSION.log has a line for each step: outcome, time, last words. It is committed for the release it was
+# run on. Steps may be run one by one: the log keeps the outcomes of the same commit, and names those not run. Exit status
+# 1 if a step of this call failed. Steps that are skipped in part say so in the log.
+set -eu
+cd "$(dirname "$0")/.."
+
+# name, limit, command
+steps() {
+    cat <<'STEPS'
+aarch64         120m tools/aarch64.sh
+same-bits       60m  tools/same_bits.sh
+fuzz            20m  make fuzz FUZZ_SECONDS=60
+stress          60m  make stress
+blas-matrix     150m tools/blas_matrix.sh
+faults          120m /usr/bin/python3 tests/fault/table.py --check --full
+deb-check       20m  make deb-check
+instructions    20m  make bench-instructions
+mutants-random  130m make mutants-random N=200
+STEPS
+}
+all=$(steps | awk '{ print $1 }')
+[ $# != 0 ] || set -- $all
+for name; do
+    grep -qxF -- "$name" <<<"$all" || { echo "usage: tools/release_check.sh [STEP...]; steps: $(echo $all)" >&2; exit 2; }
+done
+
+commit=$(git rev-parse HEAD)
+[ -z "$(git status --porcelain --untracked-files=no -- . ':!results/release')" ] || commit=$commit-dirty
+version=$(make -s print-VERSION)
+work=build/release/$commit log=results/release/$version.log
+mkdir -p "$work" results/release
+# The jobs and variables of the make that calls this are not those of its steps.
+unset MAKEFLAGS MFLAGS MAKELEVEL
+export HIFDM_NO_SKIP=1
+tools/setup.sh --ci --release
+make all
+
+# OpenBLAS beside the installed BLAS, for same_bits.sh: fetched, not installed.
+openblas=$(find build/release/openblas -name libblas.so.3 2>/dev/null | head -n 1)
+if [ -z "${OPENBLAS:-}" ] && [ -z "$openblas" ]; then
+    mkdir -p build/release/openblas
+    (cd build/release/openblas && apt-get download libopenblas0-pthread >/dev/null 2>&1 &&
+        for package in ./*.deb; do dpkg -x "$package" .; done) || echo "no OpenBLAS to fetch" >&2
+    openblas=$(find build/release/openblas -name libblas.so.3 | head -n 1)
+fi
+export OPENBLAS=${OPENBLAS:-${openblas:+$(realpath "$openblas")}}
+
+processor() { sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1; }
+system() { sed -n 's/^PRETTY_NAME="\(.*\)"/\1/p' /etc/os-release; }
+installed_blas() { realpath /usr/lib/*/libblas.so.3 /usr/lib/*/liblapack.so.3 2>/dev/null | tr '\n' ' '; }
+
+write_log() {
+    local name failed=""
+    {
+        echo "hifdm $version, make release-check"
+        echo "commit    $commit"
+        echo "machine   $(processor), $(nproc) cores; $(system), Linux $(uname -r), $(uname -m)"
+        echo "compiler  $("${CC:-cc}" --version | head -n 1)"
+        echo "BLAS      $(installed_blas)"
+        echo
+        for name in $all; do
+            if [ -e "$work/$name" ]; then cat "$work/$name"; else printf '%-15s not run\n' "$name"; fi
+            grep -q "^$name *passed" "$work/$name" 2>/dev/null || failed="$failed $name"
+        done
+        echo
+        [ -z "$failed" ] && echo "all passed" || echo "not passed:$failed"
+    } >"$log"
+}
+
+# The last line of a step's output, and the checks that it skipped, without paths of this machine.
+words() { # STEP
+    local text
+    text=$(grep -vE '^(make(\[[0-9]+\])?: .*|[[:space:]]*)$' "$work/$1.log" | tail -n 1 | tr -d '\r')
+    { echo "$text"; grep -hE '^not tried: ' "$work/$1.log"; sed 's/^/skipped: /' "$work/$1.skipped" 2>/dev/null; } |
+        awk '!seen[$0]++' | sed "s|$PWD/||g" | paste -sd ';' | sed 's/;/; /g' | cut -c 1-300
+}
+
+failed=""
+for name; do
+    read -r _ limit command < <(steps | grep "^$name ")
+    echo "==> $name: $command"
+    start=$SECONDS outcome=passed code=0
+    # shellcheck disable=SC2086 # these are words
+    rm -f "$work/$name.skipped"
+    HIFDM_SKIPPED=$PWD/$work/$name.skipped timeout --kill-after=30s "$limit" $command </dev/null >"$work/$name.log" 2>&1 || code=$?
+    case $code in
+    0) ;;
+    124 | 137) outcome="TIMEOUT ($limit)" ;;
+    *) outcome="FAILED ($code)" ;;
+    esac
+    [ $code = 0 ] || failed="$failed $name"
+    printf '%-15s %-14s %6s s  %s  %s\n' "$name" "$outcome" $((SECONDS - start)) "$(date -u +%F)" \
+        "$(words "$name")" >"$work/$name"
+    cat "$work/$name"
+    write_log
+done
+echo "==> $log"
+[ -z "$failed" ] || { echo "==> not passed:$failed" >&2; exit 1; }
