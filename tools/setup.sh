@@ -108,6 +108,8 @@ missing_packages() {
     fi
     if [ $with_deb = yes ]; then
         has dpkg-buildpackage || need dpkg-dev
+        # dpkg-buildpackage asks for this package by its name.
+        dpkg-query -W -f '${Status}' build-essential 2>/dev/null | grep ' installed$' >/dev/null || need build-essential
         has dh || need debhelper
         has dh_python3 || need dh-python
         has lintian || need lintian
