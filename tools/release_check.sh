@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# release_check.sh [STEP...]: the checks that take longer than .ci/run allows, for a release; all steps when none is named.
+# release_check.sh [STEP...]: the checks that take longer than .ci/run allows, for a release; all steps when none is
+# named.
 #
 # A failing step does not stop the others. Each step is bounded; its output is in build/release/COMMIT/STEP.log.
-# results/release/VERSION.log has a line for each step: outcome, time, last words. It is committed for the release it was
-# run on. Steps may be run one by one: the log keeps the outcomes of the same commit, and names those not run. Exit status
-# 1 if a step of this call failed. Steps that are skipped in part say so in the log.
+# results/release/VERSION.log has a line for each step: outcome, time, last words, and what was skipped. It is committed
+# for the release it was run on. Steps may be run one by one: the log keeps the outcomes of the same commit and names
+# the steps that were not run. Exit status 1 if a step of this call failed.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -25,7 +26,10 @@ STEPS
 all=$(steps | awk '{ print $1 }')
 [ $# != 0 ] || set -- $all
 for name; do
-    grep -qxF -- "$name" <<<"$all" || { echo "usage: tools/release_check.sh [STEP...]; steps: $(echo $all)" >&2; exit 2; }
+    grep -qxF -- "$name" <<<"$all" || {
+        echo "usage: tools/release_check.sh [STEP...]; steps: $(echo $all)" >&2
+        exit 2
+    }
 done
 
 commit=$(git rev-parse HEAD)
@@ -86,7 +90,8 @@ for name; do
     start=$SECONDS outcome=passed code=0
     # shellcheck disable=SC2086 # these are words
     rm -f "$work/$name.skipped"
-    HIFDM_SKIPPED=$PWD/$work/$name.skipped timeout --kill-after=30s "$limit" $command </dev/null >"$work/$name.log" 2>&1 || code=$?
+    HIFDM_SKIPPED=$PWD/$work/$name.skipped timeout --kill-after=30s "$limit" $command </dev/null \
+        >"$work/$name.log" 2>&1 || code=$?
     case $code in
     0) ;;
     124 | 137) outcome="TIMEOUT ($limit)" ;;

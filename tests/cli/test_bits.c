@@ -1,10 +1,11 @@
-/* Checksums of all numbers in results, by group of the result file, against tests/verify/data/bits.txt; they are the same
- * on every processor. `make bits` writes that file. A change of bits is a decision, and the commit says why.
+/* Checksums of all numbers in results, by group of the result file, against tests/verify/data/bits.txt; they are the
+ * same on every processor. `make bits` writes that file. A change of bits is a decision, and the commit says why.
  *
- * Every file of configs/ is here, so a new one needs a row. Overrides of cases, and shares and edits of studies, keep the
- * suite within some seconds, and within a minute where fused multiply-adds are emulated. Three kinds of data sets are left out (bits() in expect.py): texts of the case; measures of the surface,
- * whose best fit is GSL's; and condition numbers, which LAPACK estimates. tools/same_bits.sh compares processors,
- * compilers and LAPACKs, tools/aarch64.sh another architecture. */
+ * Every file of configs/ is here, so a new one needs a row. Overrides of cases, and shares and edits of studies, keep
+ * the suite within some seconds, and within a minute where fused multiply-adds are emulated. Three kinds of data sets
+ * are left out (bits() in expect.py): texts of the case; measures of the surface, whose best fit is GSL's; and
+ * condition numbers, which LAPACK estimates. tools/same_bits.sh compares processors, compilers and LAPACKs,
+ * tools/aarch64.sh another architecture. */
 #include "cli.h"
 
 #include <dirent.h>

@@ -3,10 +3,10 @@
 
     instructions.py --program build/hifdm --work build/instructions --table results/bench/instructions.csv [--record]
 
-`make bench-instructions` calls it so; RECORD=yes writes the table, CASES="reflector 41x49" picks cases. Counts are those
-of callgrind, a tool of valgrind, by shared object: the program itself, and its libraries. valgrind has no AVX-512, so
-the program chooses its AVX2 kernels; the table names them. The BLAS is the reference BLAS where Debian's package of it
-is installed.
+`make bench-instructions` calls it so; RECORD=yes writes the table, CASES="reflector 41x49" picks cases. callgrind, a
+tool of valgrind, counts by shared object: the program itself, and its libraries. valgrind has no AVX-512, so the
+program chooses its AVX2 kernels; the table names them. The BLAS is the reference BLAS where Debian's package of it is
+installed.
 
 The limit of 2 % holds for the program's own instructions, and for "computing": these and the libraries that compute.
 Both repeat to 0.01 %. HDF5 and libc do not: how often a run publishes its result file depends on the time it takes.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# check_deb.sh FOLDER WORK: do the Debian packages in FOLDER (make deb) install, run and purge in a bare root? Needs root
-# and debootstrap. The base root is made once and kept in WORK/base-RELEASE; the checks use a copy.
+# check_deb.sh FOLDER WORK: do the Debian packages in FOLDER (make deb) install, run and purge in a bare root? Needs
+# root and debootstrap. The base root is made once and kept in WORK/base-RELEASE; the checks use a copy.
 #   RELEASE=bookworm  the release of Debian; by default the one that runs here
 #   MIRROR=...        where packages come from (default: http://deb.debian.org/debian)
 #   WITH="PACKAGE"    packages installed first, such as libopenblas0-pthread for another BLAS
@@ -33,12 +33,15 @@ fi
 cp -a "$base" "$root"
 trap 'rm -rf "$root"' EXIT
 
+clean=(env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive
+    ${http_proxy:+"http_proxy=$http_proxy"})
 in_root() { # COMMAND...: its output goes into the log, and is shown when it fails
-    chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
-        ${http_proxy:+"http_proxy=$http_proxy"} "$@" </dev/null >"$log" 2>&1 || { tail -n 30 "$log" >&2; fail "failed: $*"; }
+    chroot "$root" "${clean[@]}" "$@" </dev/null >"$log" 2>&1 || { tail -n 30 "$log" >&2; fail "failed: $*"; }
 }
 get() { in_root apt-get install -y --no-install-recommends "$@"; }
-ours() { chroot "$root" dpkg-query -W -f '${db:Status-Abbrev}${Package}\n' '*hifdm*' 2>/dev/null | grep -v '^un' || true; }
+ours() { # the packages that dpkg knows, also those that are not purged
+    chroot "$root" dpkg-query -W -f '${db:Status-Abbrev}${Package}\n' '*hifdm*' 2>/dev/null | grep -v '^un' || true
+}
 
 mkdir "$root/debs"
 for package in "$packages"/*.deb; do
@@ -65,8 +68,8 @@ in_root python3 -c 'import hifdm'
 in_root python3 /usr/share/doc/python3-hifdm/examples/net_of_arrays.py
 # The example in C, as its head says, with a compiler and pkg-config.
 get gcc libc6-dev pkg-config
-in_root sh -c "cc -std=c11 /usr/share/doc/libhifdm-dev/examples/read_example.c \$(pkg-config --cflags --libs hifdm) -lm \
-    -o /read_example && /read_example /reflector.h5"
+in_root sh -c 'cc -std=c11 /usr/share/doc/libhifdm-dev/examples/read_example.c $(pkg-config --cflags --libs hifdm) \
+    -lm -o /read_example && /read_example /reflector.h5'
 grep -q '^psi .* mm after form-finding$' "$log" || fail "the example in C prints no psi"
 
 in_root apt-get purge -y "${names[@]}"
