@@ -44,8 +44,10 @@ static inline void fill(hf_optimiser *o)
             psi_m += fabs(g->design_N[i * N_GENE + k] - 0.1 * k);
         if (g->pending[i])
             g->result[i] =
-                (hf_form_result){.status = HF_OK, .psi_m = psi_m, .merit = psi_m, .iterations = g->generation};
-        if (i == N_INDIVIDUAL - 1) g->result[i].status = HF_NOT_CONVERGED;
+                (hf_form_result){.status = i == N_INDIVIDUAL - 1 ? HF_NOT_CONVERGED : HF_OK, /* not all have a shape */
+                                 .psi_m = psi_m,
+                                 .merit = psi_m,
+                                 .iterations = g->generation};
     }
     hf_optimiser_tell(o);
 }
