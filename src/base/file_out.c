@@ -276,6 +276,12 @@ int hf_file_out_add(hf_file_out *f, const char *path, hf_messages *messages)
     return -1;
 }
 
+int hf_file_out_second_name(const char *path, const char *name)
+{
+    if (link(path, name) == 0) return 0;
+    return errno == EEXIST || errno == ENOENT ? -1 : rename(path, name);
+}
+
 void hf_file_out_name(const hf_file_out *f, char name[HF_FILE_OUT_NAME_SIZE])
 {
     snprintf(name, HF_FILE_OUT_NAME_SIZE, "/proc/self/fd/%d", f->file);

@@ -86,6 +86,9 @@ int hf_file_out_make(const char *path, hf_file_out *file); /* a temporary file o
 int hf_file_out_sync(int file);                            /* its content is on the disk */
 int hf_file_out_sync_folder(const char *path);             /* the name `path` is on the disk */
 
+/* Gives the file `path` a second name, or its only one where the file system has no links. */
+int hf_file_out_second_name(const char *path, const char *name);
+
 /* Give the temporary file a name and close it; the second never replaces: EEXIST when the name is taken. When it has
  * its name but the close failed, file->file is -1. The second warns if the temporary name cannot be removed. */
 int hf_file_out_replace(hf_file_out *file, const char *path);

@@ -191,13 +191,11 @@ hf_status hf_store_file_demand_room(hf_store_file *f, hf_messages *messages)
                     name);
 }
 
-/* Gives the earlier result its second name, or by a rename where the file system has no links. */
 static void keep_earlier(hf_store_file *f)
 {
     char name[HF_FILE_OUT_SIZE + 16];
     snprintf(name, sizeof name, "%s" EARLIER, f->out.path);
-    int failed = link(f->out.path, name);
-    if (failed && errno != EEXIST && errno != ENOENT) failed = rename(f->out.path, name);
+    int failed = hf_file_out_second_name(f->out.path, name);
     if (failed && errno != ENOENT) /* somebody else has removed it */
         f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot keep the earlier result as %s: %s", f->out.path,
                                 name, strerror(errno));

@@ -32,8 +32,8 @@ bool hf_store_keeps_earlier(hf_hdf5 *io);
 /* A new store that holds the lock of `path`; NULL and *status when the lock cannot be had. */
 hf_store *hf_store_new(const char *path, bool replaces, hf_status *status, hf_messages *messages);
 
-/* Returns the status. Damage of a resumed file stands in the way of every attempt (HF_EXISTS); what the machine cannot do
- * now it may do later (HF_IO). */
+/* Returns the status. Damage of a resumed file stands in the way of every attempt (HF_EXISTS); what the machine cannot
+ * do now it may do later (HF_IO). */
 hf_status hf_store_judge(hf_store *s);
 
 /* Last step of the calls that make a store: sets *store, or frees `s` after a failure. Releases the lock of HDF5 and
