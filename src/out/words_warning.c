@@ -240,5 +240,19 @@ const hf_word hf_words_warning[] = {
      "The run was told to stop while it summed the far field: the shape is kept, its pattern is not there.",
      "told to stop: the shape of stage"},
     {"nothing_to_recover", "warning", "", "The result is finished.", "there is nothing to recover"},
+    {"export_without_truss", "warning", "",
+     "The result is not finished, and its truss is stored last. Run the same case again to resume, then export.",
+     "the export has no truss"},
+    {"temporary_file_left", "warning", "",
+     "The folder does not let the program remove its temporary file. The next command that writes the same file "
+     "removes it; or allow it, or remove the file yourself.",
+     "cannot remove the temporary file"},
+    {"earlier_result_kept", "warning", "",
+     "A run with --restart replaces a finished result only when it is finished itself. Until then the earlier one has "
+     "the name that ends in .before-restart.",
+     "the earlier finished result is"},
+    {"earlier_result_left", "warning", "",
+     "The new result is finished, but the folder does not let the program remove the earlier one: remove it yourself.",
+     "cannot remove the earlier result"},
 };
 const int hf_n_words_warning = sizeof hf_words_warning / sizeof *hf_words_warning;
