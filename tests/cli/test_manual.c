@@ -1,4 +1,5 @@
-/* Every command in the pages of src/manual does what the page says: its exit status, and the figures in the text. */
+/* Every command in the pages of src/manual does what the page says: its exit status, and the figures in the text. The
+ * table of faults in src/MANUAL.md has a row for each stage and command. */
 #include "cli.h"
 
 #define BLOCKS "cd \"$1\" && exec \"$2\" tools/docs/blocks.py --program \"$0\" --work \"$3\""
@@ -32,12 +33,41 @@ START_TEST(a_page_that_is_wrong_is_named)
 }
 END_TEST
 
+#define TABLE "cd \"$1\" && exec \"$2\" tests/fault/table.py --check"
+
+/* The table of faults; measuring it is for .ci/run. */
+START_TEST(the_fault_table_has_every_stage_and_command)
+{
+    SHELL(0, TABLE " --program \"$0\"", WHERE);
+}
+END_TEST
+
+/* A manual without a row, one with a row too many, and a program with a command and a section that have none. */
+START_TEST(a_fault_table_that_lacks_a_row_is_named)
+{
+    const char *copy = temp("copy.md"), *program = temp("program"), *manual = keep(source_path("src/MANUAL.md"));
+    SHELL(0, "sed 's/; load cases;/;/' \"$1\" >\"$2\"", manual, copy);
+    SHELL(1, TABLE " --program \"$0\" --manual \"$4\"", WHERE, copy);
+    ERR(", load cases");
+    SHELL(0, "sed 's/; load cases;/; load cases; surface;/' \"$1\" >\"$2\"", manual, copy);
+    SHELL(1, TABLE " --program \"$0\" --manual \"$4\"", WHERE, copy);
+    ERR("surface is no cell of ");
+    write_file(program, "#!/bin/sh\n\"$HIFDM\" \"$@\"\n[ \"$1\" != help ] || echo '  hifdm fold CASE fold it'\n"
+                        "[ \"$1\" != schema ] || echo 'folding:'\n");
+    SHELL(1, "chmod +x \"$4\" && export HIFDM=\"$0\" && " TABLE " --program \"$4\"", WHERE, program);
+    ERR("the command `fold` has no row");
+    ERR("the section `folding` is not in tests/fault/faults.py");
+}
+END_TEST
+
 Suite *suite_cli_manual(void)
 {
     Suite *suite = suite_create("cli/manual");
     TCase *tcase = tcase_create("manual");
     tcase_add_test(tcase, commands_of_the_manual_do_what_it_says);
     tcase_add_test(tcase, a_page_that_is_wrong_is_named);
+    tcase_add_test(tcase, the_fault_table_has_every_stage_and_command);
+    tcase_add_test(tcase, a_fault_table_that_lacks_a_row_is_named);
     suite_add_tcase(suite, tcase);
     return suite;
 }
