@@ -308,7 +308,7 @@ class Bench:
                 (out / FILLER).unlink()
             yield result
         finally:
-            subprocess.run(["umount", out], check=True)
+            subprocess.run(["umount", "--lazy", out], check=True)  # a reader on its way out keeps it busy
 
     def full_disk(self):
         """Levels of free space, from none to that of all files and as much again for those that are temporary."""
