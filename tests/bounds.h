@@ -128,7 +128,7 @@ static inline void put_scene(FILE *f, int kind, const hf_model *m)
     put(f, (double[]){kind, m->n_node, m->n_free, m->n_cable, m->reference_N, m->n_inner_node, m->n_attachment}, 7);
     for (int i = 0; i < m->n_attachment; i++)
         ck_assert_int_eq(m->attachment_row[i], m->n_free + i);
-    put(f, m->flexibility_m_per_N, n_truss * n_truss);
+    if (n_truss) put(f, m->flexibility_m_per_N, n_truss * n_truss);
     put(f, m->position_m, n);
     for (size_t i = 0; i < n; i++)
         put(f, &(double){m->load_N ? m->load_N[i] : 0}, 1);
