@@ -95,12 +95,6 @@ static double assemble_proof(hf_refined *p, double **band, int *n, int *k)
     return largest;
 }
 
-/* Of the matrix of the proof. */
-static double stiffness_sum_of_matrix(const hf_refined *p, int e)
-{
-    return p->cable[e].along + p->cable[e].across;
-}
-
 /* What rounding can do to an eigenvalue: of the factorisation, by Rump (BIT 46, 2006), whose entries of row i and
  * column j err by (k + 2) u times the root of their diagonal entries, doubled for other orders of the operations; and
  * of entries assembled from cables, of which `degree` are at one node. */
@@ -133,7 +127,7 @@ static double least_on_truss(hf_refined *p, double shift, const hf_flexibility_r
 static double least_eigenvalue_on_truss(hf_refined *p, double guess)
 {
     hf_flexibility_rounding rounding = hf_flexibility_rounding_of(
-        p->m, &p->truss.flexibility, hf_refine_largest_sum(p, stiffness_sum_of_matrix), hf_refine_largest_sum(p, one));
+        p->m, &p->truss.flexibility, hf_refine_largest_sum(p, hf_refine_matrix_sum), hf_refine_largest_sum(p, one));
     double smallest = 2 * rounding.free_N_per_m;
     for (;; guess *= SHARE_OF_LAST) {
         double least = least_on_truss(p, fmax(guess, smallest), &rounding);

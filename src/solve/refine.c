@@ -229,8 +229,7 @@ double hf_refine_largest_sum(const hf_refined *p, hf_refined_figure *figure)
     return largest;
 }
 
-/* Of the matrix that is factored, whose norm is at least as large as the largest sum. */
-static double matrix_sum(const hf_refined *p, int e)
+double hf_refine_matrix_sum(const hf_refined *p, int e)
 {
     return p->cable[e].along + p->cable[e].across;
 }
@@ -470,7 +469,7 @@ static bool factor_anew(hf_refined *p)
 
 double hf_refine_guess(const hf_refined *p)
 {
-    return SHARE_OF_GUESS * hf_refine_largest_sum(p, matrix_sum) / p->condition;
+    return SHARE_OF_GUESS * hf_refine_largest_sum(p, hf_refine_matrix_sum) / p->condition;
 }
 
 static bool is_told_apart(const hf_refined *p)

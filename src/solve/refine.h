@@ -64,6 +64,10 @@ void hf_refine_block(const hf_model *model, const hf_workspace *workspace, int i
 typedef double hf_refined_figure(const hf_refined *refined, int i_cable);
 double hf_refine_largest_sum(const hf_refined *refined, hf_refined_figure *figure);
 
+/* Such a figure: the stiffness of a cable in the matrix of `along` and `across`, N/m. The norm of that matrix is at
+ * least as large as the largest sum. */
+double hf_refine_matrix_sum(const hf_refined *refined, int i_cable);
+
 /* Whether neither end of the cable moves. */
 static inline bool hf_refine_is_fixed(const hf_model *model, int i_cable)
 {
