@@ -140,7 +140,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
          bench-before bench-optimisers bench-fronts bench-sampling pretension-night api docs docs-browser lint \
          asan tsan fuzz fuzz-results install uninstall dist dist-check deb workflow-check
-FRONT += python-install mutants-random bench-instructions bits deb-check release-check
+FRONT += python-install mutants-random bench-instructions bits transcripts deb-check release-check
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -178,6 +178,9 @@ bits: ## write the checksums of results that the suite cli/bits compares with: t
 	$(Q)rm -rf $(BUILD)/bits.new && mkdir -p $(BUILD)/bits.new
 	+$(Q)HIFDM_BITS=$(abspath $(BUILD))/bits.new $(MAKE) test SUITE=cli/bits
 	$(Q)LC_ALL=C; cat $(BUILD)/bits.new/* >tests/verify/data/bits.txt
+
+transcripts: ## write what the program says now into the files that the suite cli/transcripts compares with
+	+$(Q)HIFDM_TRANSCRIPTS=write $(MAKE) test SUITE=cli/transcripts
 
 # FUZZ_SEED=... does the same again; `python3 tests/fuzz/fuzz_results.py --only N` one of them.
 FUZZ_N ?= 5000
