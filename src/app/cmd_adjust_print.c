@@ -237,8 +237,8 @@ void hf_adjust_print_summary(const hf_adjust_job *j, const hf_options *o, FILE *
     print_places(j, f);
     print_moves(j, f);
     hf_print_line(f,
-                  "%s after %d move%s %.4f mm; with what is left open %.4f +- %.4f mm; any moves of %d cables, "
-                  "without least tensions: %.4f mm",
+                  "%s after %d move%s %.4f mm; with what is left open %.4f +- %.4f mm; a search over moves of "
+                  "%d cables, without least tensions, reached %.4f mm",
                   figure, a->n_move, a->n_move == 1 ? "" : "s", a->adjusted_m * 1e3, a->doubt_m[1] * 1e3,
                   a->spread_m[1] * 1e3, j->task.n_cable, a->best_m * 1e3);
     if (a->n_maybe_slack)

@@ -34,7 +34,7 @@ typedef struct {
     double nominal_m;   /* figure of the nominal net */
     double estimated_m; /* of the estimated shape, all nodes */
     double adjusted_m;  /* after the moves */
-    double best_m;      /* after any number of moves of any size within the range, whatever tensions they leave */
+    double best_m;      /* lowest that a local search found: any moves within the range, whatever tensions */
     double doubt_m[2];  /* RMS over what errors and measurement leave open, of the estimated and the adjusted shape */
     double spread_m[2]; /* standard deviation of these figures */
     int n_maybe_slack;  /* cables whose estimated tension is less than its standard deviation */

@@ -58,8 +58,8 @@ const hf_word hf_words_adjust[] = {
      "were by 3.8.",
      NULL},
     {"best_m", "figure of adjust", "m",
-     "What any moves of all cables that can be turned would reach, of any size within the range and without least "
-     "tensions.",
+     "What a search over moves of all cables that can be turned reached, of any size within the range and without "
+     "least tensions. It goes downhill from the moves of the table and ends where no step gains: there may be better.",
      NULL},
     {"end", "figure of adjust", "",
      "Why there is no further move: target (the most probable net meets target_m), moves (all are made), doubt (the "

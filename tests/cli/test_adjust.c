@@ -125,9 +125,9 @@ START_TEST(moves_are_a_table)
            best_m = number_after("\"best_m\": ");
     const char *before = keep(formatted("; with what is left open %.4f +- %.4f mm; as designed ", before_m * 1e3,
                                         before_sigma_m * 1e3)),
-               *behind = keep(formatted(" %.4f mm; with what is left open %.4f +- %.4f mm; any moves of ",
+               *behind = keep(formatted(" %.4f mm; with what is left open %.4f +- %.4f mm; a search over moves of ",
                                         probable_m * 1e3, expected_m * 1e3, sigma_m * 1e3)),
-               *best = keep(formatted("without least tensions: %.4f mm\n", best_m * 1e3));
+               *best = keep(formatted("without least tensions, reached %.4f mm\n", best_m * 1e3));
     HIFDM(0, "adjust", path, "--measured", measured); /* the words have the same figures */
     OUT(before);
     OUT(behind);

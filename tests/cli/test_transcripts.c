@@ -24,6 +24,9 @@ START_TEST(a_difference_is_noticed)
     } rows[] = {
         {"$ echo it took 3.2 s, 1.00004 N\nit took TIME, 1.00005 N\n", 0},
         {"$ echo 1e-12 2\n-3e-11 2\n", 0},
+        {"$ echo wall_s: 1e-9\nwall_s: TIME\n", 0},
+        {"$ echo wall_s: -1e-9\nwall_s: TIME\n", 1},
+        {"$ echo wall_s: 1e9\nwall_s: TIME\n", 1},
         {"$ echo 12\n13\n", 1},
         {"$ echo 1.00004 N\n1.00014 N\n", 1},
         {"$ echo 1.00004 N\n-1.00004 N\n", 1},

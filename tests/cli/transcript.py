@@ -19,6 +19,7 @@ import os
 import re
 import subprocess
 import sys
+import time
 import zlib
 from html.parser import HTMLParser
 from pathlib import Path
@@ -26,7 +27,6 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parents[2]
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w]*[\d_])")
 MASKS = [
-    (re.compile(r'((?:wall|cpu)_s"?: )[-\d.e+]+'), r"\1TIME"),
     (re.compile(r"(\(wall_s \* threads\) =) [\d.]+"), r"\1 PART"),
     (re.compile(r'("version": )"[^"]*"'), r'\1"VERSION"'),
     (re.compile(r"\b\d+ h \d+ min\b|\b\d+ min \d+ s\b"), "TIME"),
@@ -37,6 +37,7 @@ MASKS = [
     (re.compile(r"\b\d{4}-\d\d-\d\dT?[ \d:.]*Z?"), "DATE"),
     (re.compile(r"\b[0-9a-f]{64}\b"), "SHA256"),
 ]
+MEASURED = re.compile(r'((?:wall|cpu)_s"?: )([-\d.e+]+|nan)')
 PROVENANCE = {"argv", "build_flags", "compiler", "git_describe", "gsl_version", "hdf5_version", "host", "lapack",
               "program", "version"}
 
@@ -56,18 +57,22 @@ def commands_of(text):
     return head, found
 
 
-def masked(text, work):
+def masked(text, work, longest_s):
+    """Without what differs between two runs. Times that were measured are masked unless they cannot be."""
+    text = MEASURED.sub(lambda m: m[1] + "TIME" if 0 <= float(m[2]) <= longest_s else m[0], text)
     text = text.replace(f"{work}/", "").replace(str(work), ".").replace(f"{TOP}/", "TOP/")
     for pattern, word in MASKS:
         text = pattern.sub(word, text)
     return text
 
 
-def run(command, work, environment):
+def run(command, work, environment, start_s):
     script = "\n".join(line[2:] for line in command) + "\n"
     done = subprocess.run(["sh", "-c", script], cwd=work, env=environment, stdin=subprocess.DEVNULL,
                           capture_output=True, text=True, errors="backslashreplace", check=False)
-    lines = masked(done.stdout, work).splitlines() + ["! " + s for s in masked(done.stderr, work).splitlines()]
+    longest_s = 2 * (time.monotonic() - start_s)  # of two threads
+    lines = masked(done.stdout, work, longest_s).splitlines()
+    lines += ["! " + s for s in masked(done.stderr, work, longest_s).splitlines()]
     return [s.rstrip() for s in lines] + ([f"[exit {done.returncode}]"] if done.returncode else [])
 
 
@@ -105,11 +110,11 @@ def with_tools(work, program):
 def main(path, program, work, write=False):
     work = Path(work).resolve()
     work.mkdir()
-    environment = with_tools(work, Path(program).resolve())
+    environment, start_s = with_tools(work, Path(program).resolve()), time.monotonic()
     head, commands = commands_of(Path(path).read_text())
     new, n_different = list(head), 0
     for command, was in commands:
-        now = run(command, work, environment)
+        now = run(command, work, environment, start_s)
         new += command + now
         if not write and (len(now) != len(was) or not all(map(same_line, was, now))):
             n_different += 1
@@ -162,6 +167,8 @@ def contents(path):
 
     def visit(name, node):
         for key, value in sorted(node.attrs.items()):
+            if key.endswith(("wall_s", "cpu_s")):
+                print(f"{name}@{key}: {value:.9g}")
             if not timed(key) and key not in ("description", "units"):
                 print(f"{name}@{key} = {shown(value)}")
         if isinstance(node, h5py.Dataset):
@@ -253,7 +260,7 @@ class Page(HTMLParser):
 def by_key(value, name):
     if isinstance(value, dict):
         for key, part in value.items():
-            if key not in ("provenance", "version", "summary"):
+            if key not in ("provenance", "version", "summary", "words"):
                 by_key(part, f"{name}.{key}")
     elif isinstance(value, list):
         flat = []

@@ -79,7 +79,7 @@ function adjustChart(name) {
       { name: "predicted", stored: "predicted_m", values: scaled(values, 1e3), colour: "--one" },
       { name: "to expect", stored: "expected_m", values: scaled(expected, 1e3), colour: "--five", dash: "3 3" },
       ...level("target", adjust.target_m, "--four", "7 3"),
-      ...level("any moves of these cables, without least tensions", adjust.best_m, "--three", "2 3"),
+      ...level("reached by a search over all cables, without least tensions", adjust.best_m, "--three", "2 3"),
       ...level("as designed", adjust.nominal_m, "--two", "9 3 2 3"),
     ],
   });
