@@ -88,6 +88,10 @@ static void print_certificate(const hf_form_result *r, FILE *f)
 static void print_facets(const hf_surface_measures *m, FILE *f)
 {
     if (m->n_facet == 0) return;
+    if (isnan(m->facet_half_path_rms_m)) {
+        fprintf(f, "                its %d facets: not known, since the mesh pulls on a slack cable\n", m->n_facet);
+        return;
+    }
     fprintf(f, "                its %d facets: half-path RMS %.4f mm, normal %.4f mm", m->n_facet,
             m->facet_half_path_rms_m * 1e3, m->facet_normal_rms_m * 1e3);
     if (isfinite(m->facet_fit_half_path_rms_m))
@@ -132,7 +136,7 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
             fputs("; best fit: ", f);
             print_gain(m->fit_gain_loss_dB[k], m->fit.ruze_limit_Hz, f);
         }
-        if (m->n_facet) { /* what the nodes alone do not tell: the mesh is flat between them */
+        if (isfinite(m->facet_half_path_rms_m)) { /* what the nodes alone do not tell: the mesh is flat between them */
             fputs("; facets: ", f);
             print_gain(m->facet_gain_loss_dB[k], m->facet_ruze_limit_Hz, f);
         }
