@@ -95,9 +95,9 @@ static hf_status sweep_study(const hf_sweep_request *request, bool quiet, FILE *
     if (quiet || !n.has_run) return status;
     if (t.on_terminal && hf_file_io_await_room(STDERR_FILENO, 0)) fputs("\r\033[K", stderr);
     hf_print_duration(n.wall_s, took, sizeof took);
-    hf_print_line(file, "%d point%s run in %s on %d thread%s, %d of them failed; results in %s",
-                  n.n_done + n.n_failed, n.n_done + n.n_failed == 1 ? "" : "s", took, request->threads,
-                  request->threads == 1 ? "" : "s", n.n_failed, request->folder);
+    hf_print_line(file, "%d point%s run in %s on %d thread%s, %d of them failed; results in %s", n.n_done + n.n_failed,
+                  n.n_done + n.n_failed == 1 ? "" : "s", took, request->threads, request->threads == 1 ? "" : "s",
+                  n.n_failed, request->folder);
     return status;
 }
 

@@ -2,7 +2,8 @@
  * these files; the commit shows what a change makes the program say. */
 #include "cli.h"
 
-static const char *const transcripts[] = {"adjust", "help", "nets", "reflector", "search", "study"};
+static const char *const transcripts[] = {"adjust", "bad_nets",  "bad_values", "help",
+                                          "nets",   "reflector", "search",     "study"};
 enum { N_TRANSCRIPT = sizeof transcripts / sizeof *transcripts };
 
 #define TRANSCRIPT(exit_code, file)                                                                                    \
