@@ -27,6 +27,8 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parents[2]
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w]*[\d_])")
 MASKS = [
+    (re.compile(r'((?:left|evaluations_per)_s": )[\d.e+-]+'), r"\1TIME"),
+    (re.compile(r"the first \d+ tried"), "the first N tried"),
     (re.compile(r"(\(wall_s \* threads\) =) [\d.]+"), r"\1 PART"),
     (re.compile(r'("version": )"[^"]*"'), r'\1"VERSION"'),
     (re.compile(r"\b\d+ h \d+ min\b|\b\d+ min \d+ s\b"), "TIME"),
@@ -37,7 +39,7 @@ MASKS = [
     (re.compile(r"\b\d{4}-\d\d-\d\dT?[ \d:.]*Z?"), "DATE"),
     (re.compile(r"\b[0-9a-f]{64}\b"), "SHA256"),
 ]
-MEASURED = re.compile(r'((?:wall|cpu)_s"?: )([-\d.e+]+|nan)')
+MEASURED = re.compile(r'((?:wall|cpu|elapsed)_s"?: )([-\d.e+]+|nan)')
 PROVENANCE = {"argv", "build_flags", "compiler", "git_describe", "gsl_version", "hdf5_version", "host", "lapack",
               "program", "version"}
 
