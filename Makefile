@@ -500,7 +500,7 @@ $(PEERS) $(FRONTS): $(BUILD)/optimisers/%: tools/optimisers/%.cpp tools/optimise
 	$(Q)$(CXX) -O2 -std=c++17 -Wall -Iinclude $$(pkg-config --cflags eigen3) $(LDFLAGS) -o $@ $< $(STATIC) -fopenmp \
 	    -lpagmo -lboost_serialization -ltbb -lnlopt_cxx -lnlopt $(PKG_LIBS)
 
-$(RUNNER): $(TEST_OBJ) $(STATIC)
+$(RUNNER): $(TEST_OBJ) $(filter-out $(BUILD)/src/app/main.o,$(APP_OBJ)) $(STATIC)
 	$(call say,LD,$@)
 	$(Q)$(LINK) $(patsubst %,-Wl$(comma)--wrap=%,$(TEST_WRAP) $(TEST_WRAP_EXTRA)) -o $@ $^ \
 	    $(filter-out -I%,$(CHECK)) $(PKG_LIBS)

@@ -7,8 +7,8 @@ The edits depend on the seed and on the sources alone (tools/mutation/edits.py).
 working tree below build/mutants-random, which is compiled and linked anew as far as needed. A draw that does not
 compile, that leaves the object code as it was, or that was drawn before is redrawn. The suites that execute the line
 (tools/mutation/coverage.py) run, the most promising first, up to the first that fails. A suite that needs more than
-three times its processor time, or whose processes all sleep for a minute, notices as well. What no suite executes
-survives.
+three times its processor time, or whose processes all sleep for a minute, notices as well. What survives is tried once
+more with the sanitizers of `make asan`, for half as long. What no suite executes survives.
 
 Edits of tests/mutants_equivalent.txt change no result, for the reason that stands there; with such an edit the results
 of all configs/ are compared, bit by bit (of studies every fourth point). They are left out of the percentage and are
@@ -78,6 +78,7 @@ class Runner:
         self.o, self.log, self.lock = options, log, threading.Condition()
         self.work = TOP / os.environ.get("BUILD", "build") / "mutants-random"
         self.draws = Draws(TOP, int(options.seed, 16))
+        self.sanitized, self.sanitized_lock = Tree(TOP, self.work / "sanitized", True), threading.Lock()
         self.equivalent = {}
         for m in read_mutants(TOP, "tests/mutants_equivalent.txt"):
             text = self.draws.sources[m.path].text
@@ -162,11 +163,26 @@ class Runner:
         if listed:
             differs = self.differing_config(tree, log)
             return (f"SURVIVED: listed as equivalent, but {differs} differs" if differs else "equivalent"), "", 0.0
+        outcome, by, spent_s = self.try_suites(edit, text, tree, log, self.o.cpu)
+        if not outcome.startswith("SURVIVED") or "no suite" in outcome:
+            return outcome, by, spent_s
+        with self.sanitized_lock:
+            if not self.sanitized.is_prepared:
+                self.sanitized.prepare(self.o.jobs)
+            try:
+                if self.sanitized.apply(edit, text, log) != "built":
+                    return outcome, by, spent_s
+                last, by, more_s = self.try_suites(edit, text, self.sanitized, log, self.o.cpu / 2)
+            finally:
+                self.sanitized.revert()
+        return (outcome if last.startswith("SURVIVED") else f"{last} with sanitizers"), by, spent_s + more_s
+
+    def try_suites(self, edit, text, tree, log, most_s):
         spent_s, suites = 0.0, self.order(edit.path, edit.line)
         for suite in suites:
-            if self.base.get(suite) is False:
+            if self.base.get((tree.sanitized, suite)) is False:
                 continue
-            if spent_s > self.o.cpu:
+            if spent_s > most_s:
                 return "SURVIVED for as long as it had", "", spent_s
             outcome, cpu_s = tree.test(suite, log, 20 + 3 * self.coverage.cpu_s[suite])
             spent_s += cpu_s
@@ -176,18 +192,19 @@ class Runner:
         return "SURVIVED" if suites else "SURVIVED: no suite executes the line", "", spent_s
 
     def passes_without(self, suite, edit, tree, text, log):
-        """Whether a suite that failed passes without the edit, found once for each suite."""
-        if suite not in self.base:
+        """Whether a suite that failed passes without the edit, found once for each suite and kind of tree."""
+        key = (tree.sanitized, suite)
+        if key not in self.base:
             tree.revert()
             base = self.work / "logs" / f"base-{suite.replace('/', '-')}.log"
             base.unlink(missing_ok=True)
             built = tree.make(*tree.linked(), log=base)
             outcome = tree.test(suite, base, 60 + 5 * self.coverage.cpu_s[suite])[0] if built else "does not build"
-            self.base[suite] = outcome == "passed"
+            self.base[key] = outcome == "passed"
             if outcome != "passed":
                 self.log(f"{suite} fails without an edit, too, and is left out: {base}")
             tree.apply(edit, text, log)
-        return self.base[suite]
+        return self.base[key]
 
     def differing_config(self, tree, log):
         """The first case of configs/ whose result has other bits with the edit that is built; None: all are equal."""

@@ -13,6 +13,10 @@ ASLEEP_S = 60  # a suite that uses no processor time for so long waits for what 
 FLAGS = ["WERROR=-Werror=incompatible-pointer-types -Werror=int-conversion -Werror=implicit-function-declaration "
          "-Werror=return-type", "CFLAGS=-O1"]
 LIMITS = ["sh", "-c", 'ulimit -v 8000000; exec "$@"', "sh"]  # kB, for edits that never stop taking memory
+SANITIZED = ["SANITIZE=address,undefined", "WERROR=", "CFLAGS=-O1 -g"]
+SANITIZERS = {"ASAN_OPTIONS": "detect_leaks=1:detect_stack_use_after_return=1:quarantine_size_mb=16:"
+                              "hard_rss_limit_mb=6000"}  # their address space has no limit
+SLOWER = 6  # with sanitizers, at most
 running = set()  # sessions that were begun here
 
 
@@ -73,13 +77,13 @@ def end(session):
                     pass
 
 
-def run(command, cwd, log, cpu_limit_s, environment=None):
+def run(command, cwd, log, cpu_limit_s, environment=None, limits=LIMITS):
     """Runs a command in a session of its own. Returns ("passed", "failed", "too long" or "hangs", processor s).
 
     The limit is processor time, not time by the clock, so it holds on a busy machine. A command whose processes all
     sleep for a minute is one that hangs."""
     with open(log, "ab") as file:
-        child = subprocess.Popen([*LIMITS, *command], cwd=cwd, stdin=subprocess.DEVNULL, stdout=file,
+        child = subprocess.Popen([*limits, *command], cwd=cwd, stdin=subprocess.DEVNULL, stdout=file,
                                  stderr=subprocess.STDOUT, env={**os.environ, **(environment or {})},
                                  start_new_session=True)
     running.add(child.pid)
@@ -110,8 +114,9 @@ def run(command, cwd, log, cpu_limit_s, environment=None):
 class Tree:
     """One worker's copy. `pristine` holds the objects without an edit, which come back after each edit."""
 
-    def __init__(self, top, path):
+    def __init__(self, top, path, sanitized=False):
         self.top, self.path, self.log = top, path, path.parent / f"{path.name}.log"
+        self.sanitized, self.flags = sanitized, SANITIZED if sanitized else FLAGS
         self.build, self.pristine = path / "build", path / "build" / "pristine"
         self.is_prepared = False
 
@@ -121,8 +126,9 @@ class Tree:
         shutil.copytree(other.path, self.path, symlinks=True)
 
     def make(self, *targets, cpu_limit_s=3600, log=None):
-        return run(["make", "-s", *FLAGS, *(str(t) for t in targets)], self.path, log or self.log, cpu_limit_s,
-                   {"BUILD": "build", "MAKEFLAGS": ""})[0] == "passed"
+        environment = {"BUILD": "build", "MAKEFLAGS": "", **(SANITIZERS if self.sanitized else {})}
+        return run(["make", "-s", *self.flags, *(str(t) for t in targets)], self.path, log or self.log, cpu_limit_s,
+                   environment, [] if self.sanitized else LIMITS)[0] == "passed"
 
     def linked(self):
         return ["build/hifdm", "build/tests/run_tests", "build/prefix/lib/pkgconfig/hifdm.pc"]
@@ -177,8 +183,11 @@ class Tree:
     def test(self, suite, log, cpu_limit_s):
         shutil.rmtree(self.build / "tmp", ignore_errors=True)
         (self.build / "tmp").mkdir(parents=True)
-        return run([self.build / "tests/run_tests", f"={suite}"], self.path, log, cpu_limit_s,
-                   test_environment(self.path, self.build))
+        environment = test_environment(self.path, self.build, "-fsanitize=address,undefined" if self.sanitized else "")
+        if self.sanitized:
+            return run([self.build / "tests/run_tests", f"={suite}"], self.path, log, SLOWER * cpu_limit_s,
+                       {**environment, **SANITIZERS}, [])
+        return run([self.build / "tests/run_tests", f"={suite}"], self.path, log, cpu_limit_s, environment)
 
 
 def test_environment(sources, build, flags=""):
