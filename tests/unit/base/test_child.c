@@ -5,6 +5,7 @@
 #include "base/child.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -129,6 +130,8 @@ START_TEST(without_a_server_nothing_is_done)
     ck_assert(!hf_child_ask(work, "words", &how));
     end();
     ck_assert(!hf_child_ask(work, "words", &how));
+    for (int descriptor = 0; descriptor < 3; descriptor++) /* that of a server that has ended is closed once */
+        ck_assert_int_ge(fcntl(descriptor, F_GETFD), 0);
     free(longest);
 }
 END_TEST
