@@ -4,8 +4,8 @@
 #
 # A failing step does not stop the others. Each step is bounded; its output is in build/release/COMMIT/STEP.log.
 # results/release/VERSION.log has a line for each step: outcome, time, last words, and what was skipped. It is committed
-# for the release it was run on. Steps may be run one by one: the log keeps the outcomes of the same commit and names
-# the steps that were not run. Exit status 1 if a step of this call failed.
+# for the release it was run on. Steps may be run one by one, on several days and machines: the log keeps the outcomes
+# of the same commit and names the steps that were not run. Exit status 1 if a step of this call failed.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -52,6 +52,14 @@ if [ -z "${OPENBLAS:-}" ] && [ -z "$openblas" ]; then
     openblas=$(find build/release/openblas -name libblas.so.3 | head -n 1)
 fi
 export OPENBLAS=${OPENBLAS:-${openblas:+$(realpath "$openblas")}}
+
+# What the log has of this commit from elsewhere.
+if grep -qxF "commit    $commit" "$log" 2>/dev/null; then
+    for name in $all; do
+        line=$(grep -E "^$name +(passed|FAILED|TIMEOUT) " "$log") || continue
+        [ -e "$work/$name" ] || echo "$line" >"$work/$name"
+    done
+fi
 
 processor() { sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1; }
 system() { sed -n 's/^PRETTY_NAME="\(.*\)"/\1/p' /etc/os-release; }
