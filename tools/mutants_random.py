@@ -86,9 +86,12 @@ class Runner:
         self.next, self.n_valid, self.n_running = 0, 0, 0
         self.seen, self.rows, self.base, self.spent_s = set(), {}, {}, 0.0
 
+    @staticmethod
+    def state_of_sources():
+        return state_of(sorted(p for d in ("src", "include") for p in (TOP / d).glob("**/*") if p.is_file()))
+
     def measure(self):
-        sources = [*TOP.glob("src/**/*"), *TOP.glob("include/**/*")]
-        self.state = state_of(sorted(p for p in sources if p.is_file()))
+        self.state = self.state_of_sources()
         self.coverage = Coverage(TOP, self.work, self.state, self.log)
         suites = [s for s in suites_of(TOP) if not self.o.suite or any(w in s for w in self.o.suite)]
         suites = [s for s in suites if not any(w in s for w in self.o.without)]
@@ -222,6 +225,22 @@ class Runner:
                     return case.name
         return None
 
+    def check_equivalents(self):
+        """Whether all edits that are listed as equivalent keep all bits. Each is built and compared."""
+        tree, holds, self.state = Tree(TOP, self.work / "tree-0"), True, self.state_of_sources()
+        tree.prepare(self.o.jobs)
+        for m in self.equivalent.values():
+            log = self.work / "logs" / f"equivalent-{m.name}.log"
+            log.unlink(missing_ok=True)
+            try:
+                built = tree.apply(m, m.edited(self.draws.sources[m.path].text), log)
+                differs = self.differing_config(tree, log) if built == "built" else None
+            finally:
+                tree.revert()
+            holds = holds and built in ("built", "same code") and not differs
+            self.log(f"{m.name}: {differs + ' differs' if differs else built + ', all bits kept'}")
+        return holds
+
     def summary(self):
         rows = [self.rows[k] for k in sorted(self.rows)]
         caught = sum(row[0].startswith("caught") for row in rows)
@@ -270,7 +289,8 @@ def who_failed(log):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seed", required=True, help="hexadecimal, for instance the first eight digits of a commit")
+    parser.add_argument("--equivalent", action="store_true", help="instead: do those that are listed keep all bits?")
+    parser.add_argument("--seed", default="0", help="hexadecimal, for instance the first eight digits of a commit")
     parser.add_argument("--n", type=int, default=200, help="edits that compile and change the code")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--suite", nargs="*", help="only suites whose name contains a word")
@@ -280,11 +300,13 @@ def main():
     o = parser.parse_args()
     work = TOP / os.environ.get("BUILD", "build") / "mutants-random"
     (work / "logs").mkdir(parents=True, exist_ok=True)
-    log = Log(work / f"{o.seed}.log")
+    log = Log(work / f"{'equivalent' if o.equivalent else o.seed}.log")
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     start = time.monotonic()
     try:
         runner = Runner(o, log)
+        if o.equivalent:
+            sys.exit(0 if runner.check_equivalents() else 1)
         runner.measure()
         trees = [Tree(TOP, work / f"tree-{k}") for k in range(o.jobs)]
         trees[0].prepare(o.jobs)

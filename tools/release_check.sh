@@ -21,6 +21,7 @@ faults          120m /usr/bin/python3 tests/fault/table.py --check --full
 deb-check       20m  make deb-check
 instructions    20m  make bench-instructions
 mutants-random  130m make mutants-random N=200
+equivalents     30m /usr/bin/python3 tools/mutants_random.py --equivalent
 STEPS
 }
 all=$(steps | awk '{ print $1 }')
