@@ -102,15 +102,21 @@ class Coverage:
     def suites_at(self, path, line):
         """The suites that execute a line. A line of no code of its own, as the second line of a statement, belongs to
         the code before it in its function. What is outside of functions, as tables, all suites may use that execute
-        anything of the file."""
-        if path not in self.lines:
-            self.lines[path] = self._read(path)
-        lines = self.lines[path]
+        anything of the file; of a header without code, anything of a file that includes it."""
+        lines = self._lines_of(path)
         first = max((a for a, b in self.functions[path] if a <= line <= b), default=None)
         before = [n for n in lines if first is not None and first <= n <= line]
         if before:
             return lines[max(before)]
-        return [s for s in self.suites if any(s in here for here in lines.values())]
+        paths = [path] if lines else [p for p in self.objects if p.endswith(".c") and p.startswith("src/") and
+                                      set(self.objects[p]) & set(self.objects.get(path, []))]
+        there = {s for p in paths for here in self._lines_of(p).values() for s in here}
+        return [s for s in self.suites if s in there]
+
+    def _lines_of(self, path):
+        if path not in self.lines:
+            self.lines[path] = self._read(path)
+        return self.lines[path]
 
     def _read(self, path):
         """{line: [suite, ...]} of a source, from the counts of all objects that include it."""
