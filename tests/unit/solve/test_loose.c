@@ -106,6 +106,33 @@ START_TEST(equilibrium_that_is_not_unique_says_so)
 }
 END_TEST
 
+/* Beside a node that is held from all sides, before and behind it. */
+START_TEST(one_of_two_nodes_drifts)
+{
+    static const struct hand_node drifting[] = {
+        {{0, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0, 0, -1}, HF_ROLE_INNER, {0}}, {{0, 0, -3}, HF_ROLE_SUPPORT, {0}}};
+    static const struct hand_node held[] = {{{5, 0, 0}, HF_ROLE_INNER, {0}},
+                                            {{6, 0, 0}, HF_ROLE_SUPPORT, {0}},
+                                            {{4, 1, 0}, HF_ROLE_SUPPORT, {0}},
+                                            {{4, -1, 0}, HF_ROLE_SUPPORT, {0}}};
+    int first = _i ? 4 : 0, second = _i ? 0 : 3; /* where the nodes of each begin */
+    struct hand_node node[7];
+    memcpy(node + first, drifting, sizeof drifting);
+    memcpy(node + second, held, sizeof held);
+    const struct hand_cable cable[] = {{{first, first + 1}, HF_GROUP_INNER, HF_LAW_TENSION, 3},
+                                       {{first + 1, first + 2}, HF_GROUP_INNER, HF_LAW_TENSION, 3},
+                                       {{second, second + 1}, HF_GROUP_INNER, HF_LAW_TENSION, 4},
+                                       {{second, second + 2}, HF_GROUP_INNER, HF_LAW_TENSION, 3},
+                                       {{second, second + 3}, HF_GROUP_INNER, HF_LAW_TENSION, 3}};
+    struct net net;
+    open_hand(&net, 7, node, 5, cable, HF_METHOD_NEWTON);
+    ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &net.result), HF_OK);
+    ck_assert_int_eq(net.result.n_drifting, 1);
+    ck_assert_int_eq(net.model.node_of_row[net.result.culprit], first + 1);
+    close_net(&net);
+}
+END_TEST
+
 /* A net to be built holds its nodes: a design with a loose one is refused, and the node is named. */
 START_TEST(design_with_a_loose_node_is_infeasible)
 {
@@ -135,6 +162,7 @@ Suite *suite_unit_loose(void)
     tcase_add_loop_test(tests, loaded_node_is_not_loose, 0, 2);
     tcase_add_loop_test(tests, net_of_loose_nodes_has_no_psi, 0, 3);
     tcase_add_loop_test(tests, equilibrium_that_is_not_unique_says_so, 0, 6);
+    tcase_add_loop_test(tests, one_of_two_nodes_drifts, 0, 2);
     tcase_add_test(tests, design_with_a_loose_node_is_infeasible);
     return suite;
 }
