@@ -32,6 +32,8 @@ class Bits(unittest.TestCase):
                 stored = result.shape("form")
                 for name in ("position_m", "length_m", "tension_N", "q_N_per_m"):
                     self.assertTrue(same_bits(getattr(shape, name), getattr(stored, name)), (path, name))
+                coupled = [name for name in shape.figures if name.startswith("coupling_")]
+                self.assertEqual(len(coupled) > 2, "coupling" in result.h5, path)
                 for name in shape.figures:
                     if not isinstance(shape.figures[name], str):
                         owner = result.h5["coupling" if name.startswith("coupling_") else "form"].attrs
