@@ -95,7 +95,7 @@ START_TEST(shards_and_threads_make_the_same_whole)
     OUT("2 points run");
     OUT("on 3 threads");
     SHELL(0, "SLURM_ARRAY_TASK_ID=1 exec \"$0\" sweep \"$1\" --dir \"$2\" --tasks 3", path, temp("s.d"));
-    OUT("1 points run");
+    OUT("1 point run");
     HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", shards); /* replaces the merge of before */
     equal_merges(whole, shards, 4);
 }
@@ -189,7 +189,7 @@ START_TEST(a_failed_point_stops_no_other)
     HIFDM(3, "sweep", path, "--dir", folder); /* still failed, and left alone */
     OUT("0 points run");
     HIFDM(3, "sweep", path, "--dir", folder, "--retry", "failed,missing");
-    OUT("1 points run");
+    OUT("1 point run");
     HIFDM(0, "merge", path, "--dir", folder, "-o", merged);
     EXPECT(merged, "--", "a['points/status'][:].tolist() == [1, 0]", "len(a['runs']) == 0",
            "texts(a['points/reason'])[0].startswith('form-finding did not converge')",
@@ -235,7 +235,7 @@ START_TEST(what_failed_can_be_run_again)
     OUT("is a folder");
     SHELL(0, "rmdir $(cat \"$1\")", temp("blocked"));
     HIFDM(0, "sweep", path, "--dir", folder, "--retry", "failed");
-    OUT("1 points run");
+    OUT("1 point run");
     HIFDM(0, "merge", path, "--dir", folder, "-o", merged);
     equal_merges(clean, merged, 4);
 }
@@ -283,7 +283,7 @@ START_TEST(a_case_with_a_sweep_of_its_own)
     /* another point more: the three are not run again */
     file_with("one.yaml", SMALL_SCENE "sweep:\n  form.pretension_N: [7, 8, 9, 10]\n  files: all\n");
     HIFDM(0, "sweep", path, "--dir", temp("s.d"));
-    OUT("1 points run");
+    OUT("1 point run");
     HIFDM(2, "run", study(), NOWHERE);
     ERR("a file with a base is a study, for 'hifdm sweep'");
     ck_assert_msg(!strstr(said.err, "needs either"), "%s", said.err); /* a study has no scene of its own */

@@ -66,7 +66,7 @@ START_TEST(a_base_case_that_changes_under_begun_points)
     OUT("missing   1");
     ck_assert_ptr_null(strstr(said.out, "begun"));
     HIFDM(0, "sweep", path, "--dir", folder);
-    OUT("1 points run");
+    OUT("1 point run");
     HIFDM(0, "merge", path, "--dir", folder, "-o", temp("s.h5"));
     rows_are_of_their_files(temp("s.h5"), 1);
 }
@@ -107,7 +107,7 @@ START_TEST(a_second_run_that_was_killed_goes_on)
     OUT("missing   1");
     OUT("1 were begun and will go on");
     HIFDM(0, "sweep", path, "--dir", folder);
-    OUT("1 points run");
+    OUT("1 point run");
     HIFDM(0, "merge", path, "--dir", folder, "-o", temp("s.h5"));
     rows_are_of_their_files(temp("s.h5"), 1);
 }
@@ -123,7 +123,7 @@ static void retry_helps(const char *path, const char *folder, const char *why)
     OUT("(of a sweep: --retry failed)");
     OUT("--retry failed' runs these anew");
     HIFDM(0, "sweep", path, "--dir", folder, "--retry", "failed");
-    OUT("1 points run");
+    OUT("1 point run");
     HIFDM(0, "merge", path, "--dir", folder, "-o", temp("s.h5"));
     rows_are_of_their_files(temp("s.h5"), 1);
     SHELL(0, "! ls \"$1\"/*.journal", folder);

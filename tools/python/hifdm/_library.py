@@ -9,8 +9,6 @@ from collections.abc import Iterator
 from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int, c_long, c_ubyte, c_void_p
 from pathlib import Path
 
-import numpy as np
-
 INTERFACE = 1  # HF_FLAT_INTERFACE that this package is written for
 _WAITING = {"OMP_WAIT_POLICY": "passive", "GOMP_SPINCOUNT": "2000"}  # those of hf_batch_wait_quietly
 Observer = CFUNCTYPE(c_int, c_void_p, c_int, c_long, c_long, c_long, c_double, c_double)
@@ -110,7 +108,10 @@ def _load() -> ctypes.CDLL:
     return found
 
 
-lib = _load()
+lib = _load()  # before numpy, whose BLAS may load OpenMP
+
+import numpy as np  # noqa: E402  pylint: disable=wrong-import-position,wrong-import-order
+
 version: str = lib.hf_flat_version().decode()
 
 
