@@ -101,17 +101,18 @@ static void warm_up(void)
 
 /* Variables that OpenBLAS reads while it is loaded. They get their values back: they are the user's. */
 static const char *const variable[] = {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"};
-enum { N_VARIABLE = sizeof variable / sizeof *variable, VALUE_SIZE = 256 };
+enum { N_VARIABLE = sizeof variable / sizeof *variable };
 
 static void open_library(char *reasons, size_t size)
 {
-    char value[N_VARIABLE][VALUE_SIZE];
-    const char *old[N_VARIABLE];
+    char *old[N_VARIABLE];
+    bool is_set[N_VARIABLE];
     size_t n = 0;
     for (int i = 0; i < N_VARIABLE; i++) {
-        old[i] = getenv(variable[i]);
-        if (old[i]) snprintf(value[i], VALUE_SIZE, "%s", old[i]);
-        setenv(variable[i], "1", 1);
+        const char *value = getenv(variable[i]);
+        old[i] = value ? strdup(value) : NULL;
+        if (!value || old[i]) setenv(variable[i], "1", 1); /* without memory the user's value stays */
+        is_set[i] = !value || old[i];
     }
     for (int i = 0; i < N_CANDIDATE && !library; i++) {
         library = dlopen(candidate[i], RTLD_NOW | RTLD_LOCAL);
@@ -125,11 +126,13 @@ static void open_library(char *reasons, size_t size)
             n += (size_t)snprintf(reasons + n, size - n, "%s%s%s", n ? "; " : "", reason ? reason : candidate[i],
                                   reason ? "" : " has not all routines that are needed");
     }
-    for (int i = 0; i < N_VARIABLE; i++)
-        if (!old[i])
+    for (int i = 0; i < N_VARIABLE; i++) {
+        if (old[i])
+            setenv(variable[i], old[i], 1);
+        else if (is_set[i])
             unsetenv(variable[i]);
-        else
-            setenv(variable[i], value[i], 1);
+        free(old[i]);
+    }
 }
 
 static void describe(void)

@@ -49,8 +49,8 @@ hf_flexibility_rounding hf_flexibility_rounding_of(const hf_model *model, const 
 /* Ends the Cholesky factorisation of the Hessian of net and truss in the unknowns of the free nodes and s, with
  * `share` in place of 1 as the stiffness of the truss: `factor` becomes that of share + L' S L, S of (M15).
  * newton_band, or `band` without a Newton matrix, holds the factor of the free nodes; block_of gives the blocks of the
- * cables. rounding (may be NULL) is subtracted from the diagonal. Returns false when there is no factor. Overwrites the
- * factor of hf_schur_factor. */
+ * cables. rounding (may be NULL) is subtracted from the diagonal. Returns false when there is no factor. Overwrites
+ * `factor` and `flexed` of hf_schur_factor. */
 bool hf_flexibility_factor_net(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
                                const hf_flexibility_rounding *rounding, double share, hf_flexibility *flexibility);
 

@@ -35,7 +35,7 @@ END_TEST
 
 #define TABLE "cd \"$1\" && exec \"$2\" tests/fault/table.py --check"
 
-/* The table of faults; measuring it is for .ci/run. */
+/* The table of faults; `make release-check` measures it. */
 START_TEST(the_fault_table_has_every_stage_and_command)
 {
     SHELL(0, TABLE " --program \"$0\"", WHERE);

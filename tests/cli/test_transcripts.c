@@ -2,6 +2,8 @@
  * these files; the commit shows what a change makes the program say. */
 #include "cli.h"
 
+#include <dirent.h>
+
 static const char *const transcripts[] = {"adjust", "bad_nets",  "bad_values", "help",
                                           "nets",   "reflector", "search",     "study"};
 enum { N_TRANSCRIPT = sizeof transcripts / sizeof *transcripts };
@@ -13,6 +15,21 @@ enum { N_TRANSCRIPT = sizeof transcripts / sizeof *transcripts };
 START_TEST(it_says_what_it_said)
 {
     TRANSCRIPT(0, keep(source_path(formatted("tests/cli/transcripts/%s.txt", transcripts[_i]))));
+}
+END_TEST
+
+START_TEST(every_transcript_is_in_the_list)
+{
+    DIR *folder = opendir(source_path("tests/cli/transcripts"));
+    ck_assert_ptr_nonnull(folder);
+    for (const struct dirent *entry; (entry = readdir(folder));) {
+        if (!strstr(entry->d_name, ".txt")) continue;
+        int i = 0;
+        while (i < N_TRANSCRIPT && strcmp(entry->d_name, formatted("%s.txt", transcripts[i])))
+            i++;
+        ck_assert_msg(i < N_TRANSCRIPT, "%s is not in the list", entry->d_name);
+    }
+    closedir(folder);
 }
 END_TEST
 
@@ -29,6 +46,9 @@ START_TEST(a_difference_is_noticed)
         {"$ echo wall_s: -1e-9\nwall_s: TIME\n", 1},
         {"$ echo wall_s: 1e9\nwall_s: TIME\n", 1},
         {"$ echo 12\n13\n", 1},
+        {"$ echo position_bound_m: 1e-12\nposition_bound_m: 1.5e-12\n", 0},
+        {"$ echo position_bound_m: 1e-12\nposition_bound_m: 3e-12\n", 1},
+        {"nothing\n", 1},
         {"$ echo 1.00004 N\n1.00014 N\n", 1},
         {"$ echo 1.00004 N\n-1.00004 N\n", 1},
         {"$ echo one\ntwo\n", 1},
@@ -52,6 +72,7 @@ Suite *suite_cli_transcripts(void)
     Suite *suite = suite_create("cli/transcripts");
     TCase *tests = tcase_create("transcripts");
     tcase_add_loop_test(tests, it_says_what_it_said, 0, N_TRANSCRIPT);
+    tcase_add_test(tests, every_transcript_is_in_the_list);
     tcase_add_test(tests, a_difference_is_noticed);
     suite_add_tcase(suite, tests);
     return suite;

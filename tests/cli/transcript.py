@@ -10,7 +10,8 @@ that the commands of a file share; lines "> ..." go on with it. What it prints f
 program's: `contents` lists a result, `files` tables and folders, `page` what a reader of a report sees.
 
 What differs between two runs is masked: times, memory, rates, places, versions. Numbers are equal within 1e-6 of them,
-or one of their last digit; as are any two below 1e-9, the rounding of sums. Whole numbers are equal or not.
+or one of their last digit; as are any two below 1e-9, the rounding of sums, unless they are bounds of an error, which
+are equal within a factor of 2. Whole numbers are equal or not.
 """
 
 import difflib
@@ -40,6 +41,7 @@ MASKS = [
     (re.compile(r"\b[0-9a-f]{64}\b"), "SHA256"),
 ]
 MEASURED = re.compile(r'((?:wall|cpu|elapsed)_s"?: )([-\d.e+]+|nan)')
+BOUND = re.compile(r"(?:_bound_m\"?(?::| =)|no node is farther than|is right to) (-?[\d.]+(?:e[-+]?\d+)?)")
 PROVENANCE = {"argv", "build_flags", "compiler", "git_describe", "gsl_version", "hdf5_version", "host", "lapack",
               "program", "version"}
 
@@ -94,6 +96,9 @@ def last_digit(number):
 def same_line(a, b):
     if a == b:
         return True
+    bounds = [[float(x) for x in BOUND.findall(line)] for line in (a, b)]
+    if any(not 0.5 * x <= y <= 2 * x for x, y in zip(*bounds)):
+        return False
     return re.split(r"\s+", NUMBER.sub("0", a)) == re.split(r"\s+", NUMBER.sub("0", b)) and all(
         same_number(x, y) for x, y in zip(NUMBER.findall(a), NUMBER.findall(b)))
 
@@ -114,6 +119,8 @@ def main(path, program, work, write=False):
     work.mkdir()
     environment, start_s = with_tools(work, Path(program).resolve()), time.monotonic()
     head, commands = commands_of(Path(path).read_text())
+    if not commands:
+        sys.exit(f"{path}: has no command")
     new, n_different = list(head), 0
     for command, was in commands:
         now = run(command, work, environment, start_s)
