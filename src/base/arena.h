@@ -5,7 +5,7 @@
  *
  *     hf_arena arena = {0};
  *     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, object)));
- *     object->block = arena.block; // the owner frees it
+ *     object->block = arena.block; // the owner frees it by hf_arena_free_block
  */
 #ifndef HIFDM_ARENA_H
 #define HIFDM_ARENA_H
@@ -32,5 +32,10 @@ hf_status hf_arena_allocate(hf_arena *arena);
     ((void)(lay_out), hf_arena_allocate(arena) != HF_OK ? HF_NO_MEMORY : ((void)(lay_out), HF_OK))
 
 void hf_arena_free(hf_arena *arena);
+
+static inline void hf_arena_free_block(void *block)
+{
+    hf_arena_free(&(hf_arena){.block = block});
+}
 
 #endif

@@ -108,7 +108,7 @@ hf_status hf_near_create(const hf_built *b, hf_workspace *w, hf_near *near)
 void hf_near_free(hf_near *near)
 {
     hf_chord_free(&near->chord);
-    free(near->block);
+    hf_arena_free_block(near->block);
     near->block = NULL;
 }
 
@@ -136,7 +136,7 @@ hf_status hf_near_lanes_create(const hf_near *near, hf_near_lanes *l)
 void hf_near_lanes_free(hf_near_lanes *l)
 {
     hf_chord_lanes_free(&l->lanes);
-    free(l->block);
+    hf_arena_free_block(l->block);
     l->block = NULL;
 }
 

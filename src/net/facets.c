@@ -302,6 +302,6 @@ hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surfa
 
 void hf_facets_free(hf_facets *facets)
 {
-    free(facets->block);
+    hf_arena_free_block(facets->block);
     *facets = (hf_facets){0};
 }

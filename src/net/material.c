@@ -27,6 +27,6 @@ hf_status hf_material_allocate(const hf_scene *scene, hf_material *material)
 
 void hf_material_free(hf_material *material)
 {
-    hf_arena_free(&(hf_arena){.block = material->block});
+    hf_arena_free_block(material->block);
     *material = (hf_material){0};
 }

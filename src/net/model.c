@@ -400,9 +400,9 @@ hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf
 
 void hf_model_free(hf_model *m)
 {
-    free(m->block);
-    free(m->attachment_block);
-    free(m->gene_block);
+    hf_arena_free_block(m->block);
+    hf_arena_free_block(m->attachment_block);
+    hf_arena_free_block(m->gene_block);
     *m = (hf_model){0};
 }
 

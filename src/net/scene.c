@@ -50,9 +50,9 @@ hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, bool with_
 
 void hf_scene_free(hf_scene *scene)
 {
-    free(scene->block);
+    hf_arena_free_block(scene->block);
     free(scene->text);
-    free(scene->set_block);
+    hf_arena_free_block(scene->set_block);
     free(scene->facet);
     *scene = (hf_scene){0};
 }

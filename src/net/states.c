@@ -26,6 +26,6 @@ hf_status hf_states_allocate(const hf_scene *scene, int n_member, int n, hf_stat
 void hf_states_free(hf_states *states)
 {
     hf_material_free(&states->material);
-    hf_arena_free(&(hf_arena){.block = states->block});
+    hf_arena_free_block(states->block);
     *states = (hf_states){0};
 }

@@ -259,7 +259,7 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_worksp
 
 void hf_chord_free(hf_chord *chord)
 {
-    free(chord->block);
+    hf_arena_free_block(chord->block);
     *chord = (hf_chord){0};
 }
 
@@ -304,7 +304,7 @@ hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes)
 
 void hf_chord_lanes_free(hf_chord_lanes *lanes)
 {
-    free(lanes->block);
+    hf_arena_free_block(lanes->block);
     *lanes = (hf_chord_lanes){0};
 }
 

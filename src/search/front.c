@@ -30,7 +30,7 @@ hf_status hf_front_create(int n_objective, int n_gene, int n_point, hf_front *f)
 
 void hf_front_free(hf_front *f)
 {
-    free(f->block);
+    hf_arena_free_block(f->block);
     *f = (hf_front){.minimised = -1, .knee = -1};
 }
 

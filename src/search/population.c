@@ -106,7 +106,7 @@ hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m,
 
 void hf_population_free(hf_population *population)
 {
-    free(population->block);
+    hf_arena_free_block(population->block);
     *population = (hf_population){0};
 }
 

@@ -98,7 +98,7 @@ hf_status hf_swarm_plan_create(const hf_model *m, hf_lane_isa isa, hf_swarm_plan
 
 void hf_swarm_plan_free(hf_swarm_plan *plan)
 {
-    free(plan->block);
+    hf_arena_free_block(plan->block);
     *plan = (hf_swarm_plan){0};
 }
 
@@ -132,7 +132,7 @@ hf_status hf_swarm_lanes_create(const hf_swarm_plan *plan, hf_swarm_lanes *lanes
 
 void hf_swarm_lanes_free(hf_swarm_lanes *lanes)
 {
-    free(lanes->block);
+    hf_arena_free_block(lanes->block);
     *lanes = (hf_swarm_lanes){0};
 }
 

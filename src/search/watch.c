@@ -141,7 +141,7 @@ hf_status hf_watch_create(const hf_evaluator *v, const hf_sensitivity *s, const 
 
 void hf_watch_free(hf_watch *q)
 {
-    free(q->block);
+    hf_arena_free_block(q->block);
     *q = (hf_watch){0};
 }
 

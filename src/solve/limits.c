@@ -59,7 +59,7 @@ hf_status hf_limits_create(const hf_scene *scene, const hf_model *m, const hf_op
 
 void hf_limits_free(hf_limits *l)
 {
-    free(l->block);
+    hf_arena_free_block(l->block);
     *l = (hf_limits){0};
 }
 

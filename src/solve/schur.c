@@ -48,7 +48,7 @@ hf_status hf_schur_create(const hf_model *m, hf_schur *schur)
 
 void hf_schur_free(hf_schur *schur)
 {
-    free(schur->block);
+    hf_arena_free_block(schur->block);
     *schur = (hf_schur){0};
 }
 

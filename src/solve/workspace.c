@@ -37,7 +37,7 @@ void hf_workspace_free(hf_workspace *w)
 {
     if (w->goals) hf_goals_point_free(w->goals);
     free(w->goals);
-    free(w->block);
+    hf_arena_free_block(w->block);
     *w = (hf_workspace){0};
 }
 

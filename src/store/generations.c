@@ -93,7 +93,7 @@ hf_status hf_generations_create(int n_individual, int n_gene, int n_objective, i
 
 void hf_generations_free(hf_generations *g)
 {
-    free(g->block);
+    hf_arena_free_block(g->block);
     *g = (hf_generations){0};
 }
 

@@ -43,7 +43,7 @@ hf_status hf_carrier_build(hf_truss *truss, double match_tolerance_m, const hf_s
 
 void hf_carrier_free(hf_carrier *carrier)
 {
-    free(carrier->block);
+    hf_arena_free_block(carrier->block);
     hf_frame_free(&carrier->frame);
     hf_truss_free(&carrier->truss);
     *carrier = (hf_carrier){0};
@@ -126,6 +126,6 @@ double hf_carrier_second_order_m(const hf_carrier *c, const hf_carrier_state *st
 
 void hf_carrier_state_free(hf_carrier_state *state)
 {
-    free(state->block);
+    hf_arena_free_block(state->block);
     *state = (hf_carrier_state){0};
 }

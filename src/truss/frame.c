@@ -380,7 +380,7 @@ hf_status hf_frame_build(const hf_truss *truss, hf_frame *frame, hf_messages *me
 
 void hf_frame_free(hf_frame *frame)
 {
-    free(frame->block);
+    hf_arena_free_block(frame->block);
     *frame = (hf_frame){0};
 }
 

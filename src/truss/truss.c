@@ -47,7 +47,7 @@ hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, bool with
 
 void hf_truss_free(hf_truss *truss)
 {
-    free(truss->block);
+    hf_arena_free_block(truss->block);
     free(truss->text);
     *truss = (hf_truss){0};
 }

@@ -569,12 +569,16 @@ Suite *suite_unit_swarm_lane(void)
     Suite *suite = suite_create("unit/swarm_lane");
     TCase *solving = tcase_create("solving"), *isa = tcase_create("isa"), *apart = tcase_create("apart"),
           *whole = tcase_create("whole");
+    tcase_add_checked_fixture(solving, without_guards, NULL); /* poison fills the whole block */
     tcase_add_loop_test(solving, full_bands_like_lapack_and_plain_loops, 0, N_GRID);
     tcase_add_loop_test(solving, ragged_bands_like_lapack_and_plain_loops, 0, N_GRID);
+    tcase_add_checked_fixture(isa, without_guards, NULL);
     tcase_add_loop_test(isa, same_bits_on_every_instruction_set, 0, N_GRID);
     tcase_add_loop_test(isa, solve_is_assemble_factor_substitute, 0, HF_LANE_N_ISA);
+    tcase_add_checked_fixture(apart, without_guards, NULL);
     tcase_add_loop_test(apart, a_bad_lane_disturbs_no_other, 0, HF_LANE_N_ISA);
     tcase_add_loop_test(apart, the_first_bad_pivot_is_named, 0, 15);
+    tcase_add_checked_fixture(whole, without_guards, NULL);
     tcase_add_loop_test(whole, iterations_like_formfind_on_the_papers_net, 0, HF_LANE_N_ISA);
     tcase_add_loop_test(whole, iterations_like_formfind_on_a_scalloped_net, 0, HF_LANE_N_ISA);
     tcase_add_test(whole, measures_by_hand);
