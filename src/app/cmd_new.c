@@ -172,7 +172,9 @@ static void write_text(const void *context, FILE *f)
 
 static hf_status add_file(hf_file_out_set *files, const char *path, const new_text *text, hf_messages *messages)
 {
-    if (access(path, F_OK) == 0)
+    bool is_there;
+    HF_TRY(hf_file_out_look(path, &is_there, messages));
+    if (is_there)
         return hf_error(messages, HF_EXISTS, "%s exists, and is not replaced: use another name, or remove it", path);
     return hf_file_out_set_write(files, path, write_text, text, messages);
 }

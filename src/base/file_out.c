@@ -43,6 +43,12 @@ static hf_status refuse_link(const char *path, const char *what, hf_messages *me
                     path, what);
 }
 
+/* Call it after a look that failed, with its errno. */
+static hf_status cannot_look(const char *path, hf_messages *messages)
+{
+    return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
+}
+
 /* HF_IO when a folder on the way to `path` is a link that somebody else put where everybody may write. Other links of
  * others are followed here: whose folder they are in has let them be made. */
 static hf_status check_folders(const char *path, hf_messages *messages)
@@ -52,7 +58,9 @@ static hf_status check_folders(const char *path, hf_messages *messages)
     for (int i = 1; *path && path[i]; i++) {
         if (path[i] != '/' || path[i - 1] == '/') continue;
         snprintf(part, sizeof part, "%.*s", i, path);
-        if (lstat(part, &info) != 0 || !S_ISLNK(info.st_mode) || is_trusted(&info)) continue;
+        int seen = hf_path_look_at_link(part, &info);
+        if (seen < 0) return cannot_look(part, messages);
+        if (seen == 0 || !S_ISLNK(info.st_mode) || is_trusted(&info)) continue;
         if (!hf_path_folder(part, folder, sizeof folder) || stat(folder, &info) != 0 || info.st_mode & S_IWOTH)
             return refuse_link(part, "folder", messages);
     }
@@ -64,8 +72,9 @@ static hf_status follow(char target[HF_FILE_OUT_SIZE], const char *what, hf_mess
 {
     char to[HF_FILE_OUT_SIZE], next[HF_FILE_OUT_SIZE];
     struct stat info;
+    int seen;
     HF_TRY(check_folders(target, messages));
-    for (int i = 0; lstat(target, &info) == 0 && S_ISLNK(info.st_mode); i++) {
+    for (int i = 0; (seen = hf_path_look_at_link(target, &info)) > 0 && S_ISLNK(info.st_mode); i++) {
         if (!is_trusted(&info)) return refuse_link(target, what, messages);
         ssize_t n = readlink(target, to, sizeof to - 1);
         if (i == LINKS_MAX) errno = ELOOP;
@@ -76,7 +85,7 @@ static hf_status follow(char target[HF_FILE_OUT_SIZE], const char *what, hf_mess
         strcpy(target, next);
         HF_TRY(check_folders(target, messages));
     }
-    return HF_OK;
+    return seen < 0 ? cannot_look(target, messages) : HF_OK;
 }
 
 hf_status hf_file_out_target(const char *path, char target[HF_FILE_OUT_SIZE], hf_messages *messages)
@@ -84,7 +93,9 @@ hf_status hf_file_out_target(const char *path, char target[HF_FILE_OUT_SIZE], hf
     struct stat info;
     if (snprintf(target, HF_FILE_OUT_SIZE, "%s", path) >= HF_FILE_OUT_SIZE) return tell_too_long(path, messages);
     HF_TRY(follow(target, "file", messages));
-    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) strcpy(target, path);
+    int seen = hf_path_look(path, &info);
+    if (seen < 0) return cannot_look(path, messages);
+    if (seen > 0 && !S_ISREG(info.st_mode)) strcpy(target, path);
     return HF_OK;
 }
 
@@ -104,8 +115,18 @@ hf_status hf_file_out_folder(const char *path, hf_messages *messages)
 
 hf_status hf_file_out_spare(const char *input, const char *what, const char *output, hf_messages *messages)
 {
-    if (!input || !*input || !hf_path_is_same(input, output)) return HF_OK;
-    return hf_error(messages, HF_EXISTS, "%s: is %s; choose another name", output, what);
+    int is_same = input && *input ? hf_path_compare(input, output) : 0;
+    if (is_same == 0) return HF_OK;
+    if (is_same > 0) return hf_error(messages, HF_EXISTS, "%s: is %s; choose another name", output, what);
+    return hf_error(messages, HF_IO, "%s: cannot tell whether it is %s: %s", output, what, strerror(errno));
+}
+
+hf_status hf_file_out_look(const char *path, bool *is_there, hf_messages *messages)
+{
+    struct stat info;
+    int seen = hf_path_look(path, &info);
+    *is_there = seen != 0;
+    return seen < 0 ? cannot_look(path, messages) : HF_OK;
 }
 
 /* What the temporary names of `path` begin with, without the folder. */
@@ -328,7 +349,9 @@ hf_status hf_file_out_begin(const char *path, hf_file_out *f, hf_messages *messa
     f->is_left = false;
     HF_TRY(hf_file_out_target(path, f->path, messages));
     if (lstat(f->path, &info) != 0 && errno == ENAMETOOLONG) return fail(path, messages);
-    if (stat(f->path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) /* no rename replaces a folder */
+    int seen = hf_path_look(f->path, &info);
+    if (seen < 0) return cannot_look(f->path, messages);
+    if (seen > 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) /* no rename replaces a folder */
         return hf_error(messages, HF_IO, "%s: is not an ordinary file; choose another name", path);
     hf_file_out_clean(f->path);
     return hf_file_out_make(f->path, f) == 0 ? HF_OK : fail(path, messages);

@@ -75,8 +75,11 @@ hf_status hf_file_out_target(const char *path, char target[HF_FILE_OUT_SIZE], hf
  * dots behind it. */
 hf_status hf_file_out_folder(const char *path, hf_messages *messages);
 
-/* HF_EXISTS when `output` leads to the file `input`, which no option lets an output replace. what: what `input` is to
- * the user, such as "the result itself". input may be NULL or "". */
+/* Is anything at `path`, or where it leads to? HF_IO when the system cannot tell: it is not to be replaced then. */
+hf_status hf_file_out_look(const char *path, bool *is_there, hf_messages *messages);
+
+/* HF_EXISTS when `output` leads to the file `input`, which no option lets an output replace; HF_IO when the system
+ * cannot tell. what: what `input` is to the user, such as "the result itself". input may be NULL or "". */
 hf_status hf_file_out_spare(const char *input, const char *what, const char *output, hf_messages *messages);
 
 /* Remove the temporary files of `path` whose processes live no more. */

@@ -1,5 +1,6 @@
 #include "base/path.h"
 
+#include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
@@ -53,15 +54,38 @@ bool hf_path_insert(const char *path, const char *part, char *longer, size_t siz
     return fits(snprintf(longer, size, "%.*s%s%s", (int)(ending - path), path, part, ending), size);
 }
 
+static int judge(int failed)
+{
+    if (!failed) return 1;
+    return errno == ENOENT || errno == ENOTDIR || errno == ELOOP || errno == ENAMETOOLONG ? 0 : -1;
+}
+
+int hf_path_look(const char *path, struct stat *info)
+{
+    return judge(stat(path, info));
+}
+
+int hf_path_look_at_link(const char *path, struct stat *info)
+{
+    return judge(lstat(path, info));
+}
+
 bool hf_path_is_same_inode(const struct stat *a, const struct stat *b)
 {
     return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
 }
 
-bool hf_path_is_same(const char *a, const char *b)
+int hf_path_compare(const char *a, const char *b)
 {
     struct stat of_a, of_b;
-    return stat(a, &of_a) == 0 && stat(b, &of_b) == 0 && hf_path_is_same_inode(&of_a, &of_b);
+    int seen = hf_path_look(a, &of_a);
+    if (seen > 0) seen = hf_path_look(b, &of_b);
+    return seen > 0 ? hf_path_is_same_inode(&of_a, &of_b) : seen;
+}
+
+bool hf_path_is_same(const char *a, const char *b)
+{
+    return hf_path_compare(a, b) > 0;
 }
 
 bool hf_path_will_be_same(const char *a, const char *b)

@@ -30,10 +30,17 @@ bool hf_path_choose(const char *given, const char *source, const char *ending, c
 /* `part` between stem and ending: table.csv and "_nodes" make table_nodes.csv. */
 bool hf_path_insert(const char *path, const char *part, char *longer, size_t size);
 
-/* Do both names lead to one file that exists? Links are followed. */
+/* Do both names lead to one file that exists? Links are followed. The second also has -1 and errno: the system cannot
+ * tell. */
 bool hf_path_is_same(const char *a, const char *b);
+int hf_path_compare(const char *a, const char *b);
 /* Would both names lead to one file, if it existed? Same name in the same folder, however that is spelt. */
 bool hf_path_will_be_same(const char *a, const char *b);
+/* Looks at what `path` leads to, and at the link itself. 1: it is there. 0: nothing is there. -1 and errno: the system
+ * cannot tell, so nothing may be written there. */
+int hf_path_look(const char *path, struct stat *info);
+int hf_path_look_at_link(const char *path, struct stat *info);
+
 bool hf_path_is_same_inode(const struct stat *a, const struct stat *b);
 
 /* Is the open file still the one that `path` leads to? */

@@ -3,7 +3,9 @@
 
 #include "base/csv.h"
 #include "base/file_out.h"
+#include "base/path.h"
 
+#include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -31,7 +33,9 @@ hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messag
     struct stat info;
     HF_TRY(hf_file_out_target(path, target, messages));
     hf_file_out_clean(target); /* also if the name is refused below */
-    if (lstat(target, &info) != 0) return HF_OK;
+    int seen = hf_path_look_at_link(target, &info);
+    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
+    if (seen == 0) return HF_OK;
     if (!S_ISREG(info.st_mode))
         return hf_error(messages, HF_IO, "%s: is not an ordinary file; choose another name", path);
     return force ? HF_OK : hf_error(messages, HF_EXISTS, "%s exists; use --force to replace it", path);

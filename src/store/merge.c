@@ -330,19 +330,16 @@ static void write_all(merger *m, const char *folder)
         hf_hdf5_close_file(&m->io);
 }
 
-/* True when there is no file or it is a merge, which a further one may replace. */
+/* Is it a merge, which a further one may replace? */
 static bool is_replaceable(const char *path)
 {
     hf_messages unwanted = {0};
     hf_hdf5 io = {.path = path, .messages = &unwanted, .status = HF_OK, .file = -1};
-    bool is = access(path, F_OK) != 0;
-    if (!is) {
-        hf_hdf5_lock();
-        hf_hdf5_open_file(&io, path);
-        is = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/points") && hf_hdf5_has(&io, io.file, "/runs");
-        hf_hdf5_close_file(&io);
-        hf_hdf5_unlock(HF_OK);
-    }
+    hf_hdf5_lock();
+    hf_hdf5_open_file(&io, path);
+    bool is = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/points") && hf_hdf5_has(&io, io.file, "/runs");
+    hf_hdf5_close_file(&io);
+    hf_hdf5_unlock(HF_OK);
     hf_messages_free(&unwanted);
     return is;
 }
@@ -365,16 +362,24 @@ static hf_status check_output(const char *path, hf_messages *messages)
     if (is_replaceable(path)) return HF_OK;
     return hf_error(messages, HF_EXISTS, "%s: exists and is no merge; use --force or -o", path);
 }
+    bool is_there;
+    HF_TRY(hf_file_out_look(path, &is_there, messages));
+    if (!is_there) return HF_OK;
 
-/* Is it a file of the sweep: a point's result, also elsewhere by a link, or what is in its folder and no merge? */
-static bool is_of_sweep(const hf_study *s, const char *folder, const char *path)
+/* Is it a file of the sweep: a point's result, also elsewhere by a link, or what is in its folder and no merge? 1, 0, or
+ * -1 and errno: the system cannot tell. */
+static int is_of_sweep(const hf_study *s, const char *folder, const char *path)
 {
     char file[HF_PATH_SIZE + 32], here[PATH_MAX], how[128];
     hf_messages unwanted = {0};
-    if (access(path, F_OK) != 0) return false;
-    for (int i = 0; i < s->n_point; i++)
-        if (hf_ledger_file(folder, s, i, file) != HF_LEDGER_NO_FILE && hf_path_is_same(file, path)) return true;
-    if (!hf_path_folder(path, here, sizeof here) || !hf_path_is_same(here, folder)) return false;
+    struct stat info;
+    int is = hf_path_look(path, &info);
+    if (is <= 0) return is;
+    for (int i = 0; i < s->n_point; i++) {
+        hf_ledger_file(folder, s, i, file);
+        if ((is = hf_path_compare(file, path)) != 0) return is;
+    }
+    if (!hf_path_folder(path, here, sizeof here) || (is = hf_path_compare(here, folder)) <= 0) return is;
     hf_status tried = hf_hdf5_try(look_at_output, path, how, sizeof how, &unwanted);
     hf_messages_free(&unwanted);
     return tried == HF_OK && !is_replaceable(path); /* what is damaged or cannot be read is told, or may be replaced */
@@ -388,7 +393,11 @@ static hf_status spare_inputs(const hf_study *s, const char *folder, const char 
     HF_TRY(hf_file_out_spare(s->base, what, path, messages));
     for (int i = 0; i < HF_STUDY_TABLE_MAX; i++)
         HF_TRY(hf_file_out_spare(s->table[i], what, path, messages));
-    if (!is_of_sweep(s, folder, path)) return HF_OK;
+    int is = is_of_sweep(s, folder, path);
+    if (is == 0) return HF_OK;
+    if (is < 0)
+        return hf_error(messages, HF_IO, "%s: cannot tell whether it belongs to the sweep in %s: %s", path, folder,
+                        strerror(errno));
     return hf_error(messages, HF_EXISTS, "%s: belongs to the sweep in %s; choose another name", path, folder);
 }
 

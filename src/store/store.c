@@ -2,11 +2,13 @@
 #include <hifdm/store.h>
 
 #include "base/clock.h"
+#include "base/path.h"
 #include "linalg/lapack.h"
 #include "store/store_internal.h"
 #include "store/vtkhdf.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <gsl/gsl_version.h>
 #include <math.h>
 #include <stdio.h>
@@ -155,7 +157,10 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
     double begin_s = hf_clock_s();
     const hf_optimize_settings *o = &settings->optimize;
     s->every = o->store == HF_KEEP_BEST ? HF_GENERATIONS_BEST : o->store == HF_KEEP_EVERY ? o->store_every : 1;
-    if (!restart && lstat(s->f.out.path, &info) == 0)
+    int seen = hf_path_look_at_link(s->f.out.path, &info);
+    if (!restart && seen < 0)
+        s->f.io.status = hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
+    else if (!restart && seen > 0)
         s->f.io.status = hf_error(
             messages, HF_EXISTS,
             "%s: exists; use --restart (of a sweep: --retry failed) to replace it or -o to choose another name", path);

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 
 static int strikes(const char *call, int file, const char *path)
 {
@@ -24,6 +25,8 @@ static int strikes(const char *call, int file, const char *path)
 }
 
 CALL(int, flock, (int f, int how), (f, how))
+NAME_CALL(stat, (const char *name, struct stat *info), (name, info), name)
+NAME_CALL(lstat, (const char *name, struct stat *info), (name, info), name)
 CALL(int, close, (int f), (f))
 
 /* PART is of the name of the library that asks for memory. */

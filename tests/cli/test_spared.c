@@ -1,0 +1,69 @@
+/* What must not be replaced stays, even if the system cannot tell what is there: tests/fault/attack.py found these. */
+#include "cli.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define HAS_PRELOAD 0 /* the sanitizer's library must be loaded first */
+#else
+#define HAS_PRELOAD 1
+#endif
+
+static const char *sick_machine(void)
+{
+    const char *library = temp("sick.so");
+    SHELL(0, "cc -shared -fPIC -O1 -w \"$1\" -o \"$2\" -ldl", keep(source_path("tests/cli/sick_machine.c")), library);
+    return library;
+}
+
+/* A result, a table of designs, a swept study, and links: all that the commands below are given. */
+static const char *folder_of_files(void)
+{
+    const char *folder = temp("f");
+    SHELL(0, "mkdir \"$1\"", folder);
+    file_with("f/c.yaml", EA_SCENE SMALL_GA);
+    file_with("f/s.yaml", "base: c.yaml\nsweep: {form.pretension_N: [9, 10]}\n");
+    SHELL(0,
+          "cd \"$1\" && \"$0\" run c.yaml -o a.h5 --quiet && \"$0\" evaluate c.yaml --template d.csv && "
+          "\"$0\" sweep s.yaml --quiet && ln -s a.h5 link.h5 && ln -s s.d/$(cd s.d; ls *.h5 | head -1) point.h5",
+          folder);
+    return folder;
+}
+
+static const struct {
+    const char *how, *words, *spared; /* the call that fails, the command, and what it must not replace */
+} blind[] = {
+    {"stat 5 1 link.h5", "report a.h5 -o link.h5 --force", "a.h5"},
+    {"stat 12 1 a.h5", "export a.h5 --cutlist a.h5 --force", "a.h5"},
+    {"lstat 5 1 d.csv", "export a.h5 --cutlist d.csv", "d.csv"},
+    {"lstat 5 1 link.h5", "report a.h5 -o link.h5 --force", "a.h5"},
+    {"stat 5 1 d.csv", "evaluate c.yaml --designs d.csv -o d.csv --force", "d.csv"},
+    {"stat 5 1 s.yaml", "new s", "s.yaml"},
+    {"stat 5 1 a.h5", "merge s.yaml -o a.h5", "a.h5"},
+    {"stat 5 2 point.h5", "merge s.yaml -o point.h5 --force", "point.h5"},
+    {"lstat 5 1 a.h5", "run c.yaml -o a.h5 --set form.pretension_N=12 --quiet", "a.h5"},
+};
+enum { N_BLIND = sizeof blind / sizeof *blind };
+
+START_TEST(nothing_is_replaced_blindly)
+{
+    const char *folder = folder_of_files(), *library = sick_machine();
+    for (int i = 0; i < N_BLIND; i++) {
+        SHELL(5,
+              keep(formatted(
+                  "cd \"$1\" && cp -L %s copy || exit 9; (export SICK='%s' LD_PRELOAD=\"$2\"; exec \"$0\" %s); "
+                  "s=$?; cmp %s copy && exit $s",
+                  blind[i].spared, blind[i].how, blind[i].words, blind[i].spared)),
+              folder, library);
+        ERR("error: ");
+        SHELL(0, "cd \"$1\" && test -L link.h5 && test -L point.h5 && ! ls -A | grep 'tmp$'", folder);
+    }
+}
+END_TEST
+
+Suite *suite_cli_spared(void)
+{
+    Suite *suite = suite_create("cli/spared");
+    TCase *tcase = tcase_create("spared");
+    if (HAS_PRELOAD) tcase_add_test(tcase, nothing_is_replaced_blindly);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
