@@ -250,7 +250,7 @@ const hf_word hf_words_warning[] = {
     {"earlier_result_kept", "warning", "",
      "A run with --restart replaces a finished result only when it is finished itself. Until then the earlier one has "
      "the name that ends in .before-restart.",
-     "the earlier finished result is"},
+     "the earlier result is"},
     {"earlier_result_left", "warning", "",
      "The new result is finished, but the folder does not let the program remove the earlier one: remove it yourself.",
      "cannot remove the earlier result"},

@@ -149,6 +149,13 @@ void hf_journal_peek(const char *result, char identity[HF_JOURNAL_IDENTITY + 1])
 }
 
 /* 0, or -1 and errno. */
+bool hf_journal_is_of(const char *result, const char *identity)
+{
+    char header[HEADER_BYTES] = "";
+    bool has_records;
+    return read_head(result, header, &has_records) && *identity && !strncmp(header + 8, identity, HF_JOURNAL_IDENTITY);
+}
+
 static int write_header(int file, const char *identity)
 {
     char header[HEADER_BYTES] = {0};

@@ -45,6 +45,9 @@ bool hf_journal_is_there(const char *result);
 /* Whose records are in the journal of `result`, where there are any: identity, or "" . Takes no lock. */
 void hf_journal_peek(const char *result, char identity[HF_JOURNAL_IDENTITY + 1]);
 
+/* Is there a journal of the run of this identity, with records or without? Takes no lock. */
+bool hf_journal_is_of(const char *result, const char *identity);
+
 /* Empty the journal; from now on it is that of the run of this identity. HF_OK or HF_IO. */
 hf_status hf_journal_restart(hf_journal *journal, const char *identity, hf_messages *messages);
 

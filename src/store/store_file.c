@@ -179,12 +179,26 @@ static void keep_work(hf_store_file *f, bool is_worth_keeping)
 
 #define EARLIER ".before-restart"
 
+/* Is the name that of the earlier result itself? A restart that ended between its two changes of names leaves that. */
+static bool is_earlier(const char *name, const char *result)
+{
+    struct stat of_name, of_result;
+    return lstat(name, &of_name) == 0 && lstat(result, &of_result) == 0 && hf_path_is_same_inode(&of_name, &of_result);
+}
+
 hf_status hf_store_file_demand_room(hf_store_file *f, hf_messages *messages)
 {
     char name[HF_FILE_OUT_SIZE + 16];
     struct stat info;
     snprintf(name, sizeof name, "%s" EARLIER, f->out.path);
-    if (f->earlier != HF_EARLIER_THERE || lstat(name, &info) != 0) return HF_OK;
+    if (f->earlier != HF_EARLIER_THERE && f->earlier != HF_EARLIER_UNREAD) return HF_OK;
+    int seen = hf_path_look_at_link(name, &info);
+    if (f->earlier == HF_EARLIER_UNREAD && seen >= 0) {
+        f->earlier = seen ? HF_EARLIER_NONE : HF_EARLIER_THERE;
+        return HF_OK;
+    }
+    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot look at it: %s", name, strerror(errno));
+    if (seen == 0 || is_earlier(name, f->out.path)) return HF_OK;
     return hf_error(messages, HF_EXISTS,
                     "%s: this name is for the earlier result until the new one is finished; remove the file or give it "
                     "another name",
@@ -195,11 +209,18 @@ static void keep_earlier(hf_store_file *f)
 {
     char name[HF_FILE_OUT_SIZE + 16];
     snprintf(name, sizeof name, "%s" EARLIER, f->out.path);
-    int failed = hf_file_out_second_name(f->out.path, name);
+    int failed = is_earlier(name, f->out.path) ? 0 : hf_file_out_second_name(f->out.path, name);
     if (failed && errno != ENOENT) /* somebody else has removed it */
         f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot keep the earlier result as %s: %s", f->out.path,
                                 name, strerror(errno));
     f->earlier = failed ? HF_EARLIER_NONE : HF_EARLIER_KEPT;
+}
+
+void hf_store_file_forget_earlier(const char *result)
+{
+    char name[HF_FILE_OUT_SIZE + 16];
+    snprintf(name, sizeof name, "%s" EARLIER, result);
+    (void)unlink(name); /* what stays is in the way of a restart, which says so */
 }
 
 static void remove_earlier(hf_store_file *f)
@@ -245,7 +266,7 @@ void hf_store_file_end(hf_store_file *f, hf_messages *messages)
     f->io.messages = &unwanted;
     hf_store_file_close(f);
     if (f->earlier == HF_EARLIER_KEPT && messages)
-        hf_warning(messages, "%s: the earlier finished result is %s" EARLIER " until this one is finished", f->out.path,
+        hf_warning(messages, "%s: the earlier result is %s" EARLIER " until this one is finished", f->out.path,
                    f->out.path);
     hf_file_out_drop(&f->out, messages); /* before the lock is given back */
     bool is_needless = f->is_published ? hf_journal_is_empty(&f->journal) : f->journal.is_new;

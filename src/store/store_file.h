@@ -27,8 +27,9 @@
 #include <sys/stat.h>
 
 /* A finished result that a run with --restart replaces: it gets the name RESULT.before-restart when the unfinished file
- * of that run gets its name, and loses it when the run is finished. */
-typedef enum { HF_EARLIER_NONE, HF_EARLIER_THERE, HF_EARLIER_KEPT } hf_earlier;
+ * of that run gets its name, and loses it when the run is finished. So does a file that cannot be read, since it may be
+ * one, unless the name is taken. */
+typedef enum { HF_EARLIER_NONE, HF_EARLIER_THERE, HF_EARLIER_KEPT, HF_EARLIER_UNREAD } hf_earlier;
 
 typedef struct {
     hf_hdf5 io; /* of the temporary file; io.file is -1 while it is not open */
@@ -52,6 +53,9 @@ hf_status hf_store_file_begin(const char *path, bool replaces, hf_store_file *fi
 
 /* HF_EXISTS if the name for an earlier result is taken. */
 hf_status hf_store_file_demand_room(hf_store_file *file, hf_messages *messages);
+
+/* Removes the earlier result beside a finished one whose process ended before it did so. */
+void hf_store_file_forget_earlier(const char *result);
 
 /* The calls from here on do nothing once io.status is not HF_OK. Create, open and close, and the end of an open file,
  * need the lock of HDF5. */

@@ -4,6 +4,7 @@
 
 #include "base/file_io.h"
 #include "base/file_out.h"
+#include "base/path.h"
 #include "base/sha256.h"
 #include "base/text.h"
 #include "store/compare.h"
@@ -134,8 +135,8 @@ static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t
 }
 
 /* A run that was killed after its result had got its name leaves a journal that nobody needs, and perhaps the temporary
- * name of the result. */
-static void remove_journal(const char *path)
+ * name of the result, and the earlier result that it replaced. */
+static void remove_journal(const char *path, bool keeps_earlier, const char *identity)
 {
     char target[HF_FILE_OUT_SIZE], name[HF_FILE_OUT_SIZE + 16];
     hf_journal journal;
@@ -145,6 +146,8 @@ static void remove_journal(const char *path)
     if (status == HF_OK && access(name, F_OK) == 0) {
         status = hf_journal_open(target, 0, &journal, &unwanted);
         if (status == HF_OK) hf_file_out_clean(target);
+        if (status == HF_OK && keeps_earlier && hf_journal_is_of(target, identity))
+            hf_store_file_forget_earlier(target);
         hf_journal_close(&journal, status == HF_OK);
     }
     hf_messages_free(&unwanted);
@@ -169,6 +172,15 @@ static void read_like_a_run(const char *path)
     if (status == HF_OK && !summary->finished)
         hf_compare_files(path, path, &comparison, ignore_difference, NULL, &unwanted);
     free(summary);
+}
+
+/* The machine's fault, and not that of what is there. */
+static hf_status pass_on(hf_messages *said, hf_status status, hf_messages *messages)
+{
+    const char *why = said->text + strlen("error: ");
+    hf_error(messages, status, "%.*s", (int)strcspn(why, "\n"), why);
+    hf_messages_free(said);
+    return status;
 }
 
 hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
@@ -197,14 +209,10 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
     hf_hdf5_get(&io, io.file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     hf_hdf5_get(&io, io.file, "/", "identity", HF_KIND_CHARS, then, sizeof then);
     if (io.status == HF_OK && strcmp(now, then) != 0) tell_difference(&io, settings, words, sizeof words);
+    bool keeps = hf_store_keeps_earlier(&io);
     hf_hdf5_close_file(&io);
     hf_hdf5_unlock(HF_OK);
-    if (io.status != HF_OK && !io.is_damaged && said.text) {
-        const char *why = said.text + strlen("error: "); /* the machine's fault, and not that of what is there */
-        hf_error(messages, io.status, "%.*s", (int)strcspn(why, "\n"), why);
-        hf_messages_free(&said);
-        return io.status;
-    }
+    if (io.status != HF_OK && !io.is_damaged && said.text) return pass_on(&said, io.status, messages);
     bool is_cut = said.text && strstr(said.text, ": cannot open: truncated file");
     hf_messages_free(&said);
     if (io.status != HF_OK)
@@ -219,7 +227,7 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
                         "or -o to choose another name",
                         path, finished ? "finished" : "unfinished", words);
     *state = finished ? HF_STORE_FINISHED : HF_STORE_UNFINISHED;
-    if (finished) remove_journal(path);
+    if (finished) remove_journal(path, keeps, then);
     return HF_OK;
 }
 
@@ -235,22 +243,28 @@ bool hf_store_keeps_earlier(hf_hdf5 *io)
 
 hf_status hf_store_look_before(const char *path, hf_earlier *earlier, hf_messages *messages)
 {
-    char words[64];
+    char words[64], identity[65] = "";
     signed char finished = 0;
     struct stat info;
-    hf_messages unwanted = {0};
+    hf_messages said = {0};
     *earlier = HF_EARLIER_NONE;
-    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return HF_OK;
+    int seen = hf_path_look(path, &info);
+    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
+    if (seen == 0 || !S_ISREG(info.st_mode)) return HF_OK;
     hf_status tried = hf_hdf5_try(read_like_a_run, path, words, sizeof words, messages);
-    if (tried == HF_EXISTS) return HF_OK; /* damaged */
-    HF_TRY(tried);
+    if (tried != HF_EXISTS) HF_TRY(tried);
+    *earlier = HF_EARLIER_UNREAD;
+    if (tried == HF_EXISTS) return HF_OK;
     hf_hdf5_lock();
-    hf_hdf5 io = hf_store_open_result(path, &unwanted);
+    hf_hdf5 io = hf_store_open_result(path, &said);
     hf_hdf5_get(&io, io.file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     bool keeps = hf_store_keeps_earlier(&io), is_read = io.status == HF_OK;
+    if (keeps) hf_hdf5_get(&io, io.file, "/", "identity", HF_KIND_CHARS, identity, sizeof identity);
     hf_hdf5_close_file(&io);
     hf_hdf5_unlock(HF_OK);
-    hf_messages_free(&unwanted);
+    if (!is_read && !io.is_damaged && said.text) return pass_on(&said, io.status, messages);
+    hf_messages_free(&said);
+    if (is_read && finished && keeps && hf_journal_is_of(path, identity)) hf_store_file_forget_earlier(path);
     if (is_read) *earlier = finished ? HF_EARLIER_THERE : keeps ? HF_EARLIER_KEPT : HF_EARLIER_NONE;
     return HF_OK;
 }

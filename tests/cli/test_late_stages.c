@@ -91,7 +91,7 @@ START_TEST(a_restart_keeps_the_finished_result)
     HIFDM(0, "run", path, "-o", result, "--quiet");
     for (int i = 0; i < 2; i++) { /* the second one replaces an unfinished result */
         SHELL(5, restarted, path, result, library);
-        ERR("the earlier finished result is ");
+        ERR("the earlier result is ");
         HIFDM(0, "diff", whole, earlier);
         HIFDM(0, "show", result);
         OUT("unfinished: ");

@@ -59,11 +59,70 @@ START_TEST(nothing_is_replaced_blindly)
 }
 END_TEST
 
+/* A finished result that cannot be read now is no damaged file. Of what is damaged nobody knows whether it was one. */
+START_TEST(a_restart_keeps_what_it_cannot_read)
+{
+    const char *path = file_with("c.yaml", SMALL_SCENE SMALL_GA), *result = temp("a.h5"), *whole = temp("whole.h5");
+    const char *library = sick_machine(), *damaged = temp("damaged.h5"), *earlier = temp("a.h5.before-restart");
+    HIFDM(0, "run", path, "-o", whole, "--quiet");
+    SHELL(0, "cp \"$1\" \"$2\"; head -c 9000 \"$1\" >\"$3\"", whole, result, damaged);
+    SHELL(5, "SICK='flock 5 2 a.h5' LD_PRELOAD=\"$3\" \"$0\" run \"$1\" -o \"$2\" --restart --quiet", path, result,
+          library);
+    ERR("Input/output error");
+    SHELL(0, "cmp \"$1\" \"$2\"; rm \"$1\"", result, whole);
+    SHELL(0, "cp \"$1\" \"$2\"", damaged, result);
+    SHELL(5, "SICK='writev 28 2 a.h5.journal' LD_PRELOAD=\"$3\" \"$0\" run \"$1\" -o \"$2\" --restart --quiet", path,
+          result, library);
+    ERR("the earlier result is ");
+    SHELL(0, "cmp \"$1\" \"$2\"", earlier, damaged);
+    HIFDM(0, "run", path, "-o", result, "--quiet");
+    HIFDM(0, "diff", whole, result);
+    ck_assert(!is_there(earlier));
+}
+END_TEST
+
+/* A kill between the two changes of names leaves both names to the earlier result. */
+START_TEST(a_restart_goes_on_after_a_kill_between_two_names)
+{
+    const char *path = file_with("c.yaml", SMALL_SCENE SMALL_GA), *result = temp("a.h5"), *whole = temp("whole.h5");
+    HIFDM(0, "run", path, "-o", result, "--quiet");
+    SHELL(0, "cp \"$1\" \"$2\"; ln \"$1\" \"$1.before-restart\"", result, whole);
+    HIFDM(0, "run", path, "-o", result, "--restart", "--quiet");
+    HIFDM(0, "diff", whole, result);
+    ck_assert(!is_there(temp("a.h5.before-restart")));
+}
+END_TEST
+
+/* So does a kill between the last change of names and what is removed after it; no unlink leaves the same. Without the
+ * journal, which says whose it is, a file with that name stays. */
+START_TEST(a_run_that_ended_before_it_cleaned_up)
+{
+    static const char *const again[] = {"--quiet", "--restart"};
+    const char *path = file_with("c.yaml", SMALL_SCENE SMALL_GA), *result = temp("a.h5"), *library = sick_machine();
+    HIFDM(0, "run", path, "-o", result, "--quiet");
+    for (int i = 0; i < 2; i++) {
+        SHELL(0, "SICK='unlink 13 1 a.h5' LD_PRELOAD=\"$3\" \"$0\" run \"$1\" -o \"$2\" --restart --quiet", path,
+              result, library);
+        ERR(": cannot remove the earlier result ");
+        ck_assert(is_there(temp("a.h5.before-restart")) && is_there(temp("a.h5.journal")));
+        HIFDM(0, "run", path, "-o", result, again[i]);
+        ck_assert(!is_there(temp("a.h5.before-restart")) && !is_there(temp("a.h5.journal")));
+    }
+    write_file(temp("a.h5.before-restart"), "precious");
+    HIFDM(5, "run", path, "-o", result, "--restart");
+    HIFDM(0, "run", path, "-o", result);
+    ck_assert(file_is(temp("a.h5.before-restart"), "precious"));
+}
+END_TEST
+
 Suite *suite_cli_spared(void)
 {
     Suite *suite = suite_create("cli/spared");
     TCase *tcase = tcase_create("spared");
     if (HAS_PRELOAD) tcase_add_test(tcase, nothing_is_replaced_blindly);
+    if (HAS_PRELOAD) tcase_add_test(tcase, a_restart_keeps_what_it_cannot_read);
+    if (HAS_PRELOAD) tcase_add_test(tcase, a_run_that_ended_before_it_cleaned_up);
+    tcase_add_test(tcase, a_restart_goes_on_after_a_kill_between_two_names);
     suite_add_tcase(suite, tcase);
     return suite;
 }
