@@ -234,8 +234,9 @@ static int read_whole(int file, void *to, size_t n, int64_t at)
     return got < 0 ? -1 : (size_t)got == n;
 }
 
-/* The record at `at` into *payload, which grows: 1; 0 when there is no whole one; -1 and errno. A record
- * shorter than its head says was being written when the process ended; anything else is damage. */
+/* The record at `at` into *payload, which grows to the longest: 1; 0 when there is no whole one; -1 and errno. A record
+ * shorter than its head says was being written when the process ended, unless a whole one would have room; anything
+ * else is damage. */
 static int read_record(const hf_journal *j, int64_t at, int64_t end, record_head *head, char **payload,
                        size_t *capacity, bool *is_damaged)
 {
@@ -244,7 +245,8 @@ static int read_record(const hf_journal *j, int64_t at, int64_t end, record_head
     size_t bytes = head->length - sizeof head->generation;
     bool fits = at + (int64_t)sizeof *head + (int64_t)bytes <= end;
     if (head->magic != RECORD_MAGIC || head->length < sizeof head->generation || head->length > PAYLOAD_MAX || !fits) {
-        *is_damaged = fits || head->magic != RECORD_MAGIC;
+        bool has_room = *payload && at + (int64_t)sizeof *head + (int64_t)*capacity <= end;
+        *is_damaged = fits || has_room || head->magic != RECORD_MAGIC;
         return 0;
     }
     if (bytes > *capacity || !*payload) {

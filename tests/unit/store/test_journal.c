@@ -46,7 +46,7 @@ static hf_status count(void *context, int generation, const void *payload, size_
 /* One bit of head or payload is another: the record and those after it count for nothing, and that is told. */
 START_TEST(a_spoilt_record_is_told)
 {
-    static const off_t at[] = {4, 8, 12, 16, 500, 1015}; /* length, CRC, generation, payload */
+    static const off_t at[] = {4, 6, 8, 12, 16, 500, 1015}; /* length, CRC, generation, payload */
     for (size_t k = 0; k < sizeof at / sizeof *at; k++) {
         hf_journal j;
         hf_messages m = {0};
