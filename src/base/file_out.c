@@ -286,7 +286,9 @@ int hf_file_out_add(hf_file_out *f, const char *path, hf_messages *messages)
         return end(f);
     }
     if (errno == EEXIST) return -1;
-    /* a file system without links: take the name with an empty file, then replace that */
+    if (renameat2(AT_FDCWD, f->temporary, AT_FDCWD, path, RENAME_NOREPLACE) == 0) return end(f);
+    if (errno == EEXIST) return -1;
+    /* a file system without either: take the name with an empty file, then replace that */
     int file = hf_file_out_create(path);
     if (file < 0) return -1;
     close(file);

@@ -1,4 +1,5 @@
 /* Files that appear whole or not at all. Calls of the system that fail: tests/fault/test_store_calls.c. */
+#include "calls.h"
 #include "support.h"
 
 #include "base/file_out.h"
@@ -202,6 +203,29 @@ END_TEST
 /* ---- links ---- */
 
 /* The name of a temporary file may get another file while it is written: the open one is not left for that. */
+/* A file system without links: whenever the process ends, the name leads to the whole file or to none. */
+START_TEST(adding_without_links_is_whole_or_not)
+{
+    for (int n = 1; n < 8; n++) {
+        char path[4096];
+        snprintf(path, sizeof path, "%s.%d", temp_path("out"), n);
+        pid_t child = fork();
+        if (child == 0) {
+            hf_file_out f;
+            if (hf_file_out_make(path, &f) != 0 || write(f.file, "new", 3) != 3) _exit(1);
+            fail_call_at("link", 1, EPERM, true);
+            die_before_change(n);
+            _exit(hf_file_out_add(&f, path, NULL) != 0);
+        }
+        int state;
+        ck_assert_int_eq(waitpid(child, &state, 0), child);
+        ck_assert(WIFEXITED(state) && WEXITSTATUS(state) != 1);
+        if (access(path, F_OK) == 0) demand_text(path, "new");
+        if (WEXITSTATUS(state) == 0) ck_assert_int_eq(access(path, F_OK), 0);
+    }
+}
+END_TEST
+
 START_TEST(a_library_opens_the_file_that_was_made)
 {
     hf_file_out f;
@@ -432,6 +456,7 @@ Suite *suite_unit_file_out(void)
     tcase_add_test(tc, a_path_may_be_too_long);
     tcase_add_test(tc, a_file_that_cannot_be_is_told_before);
     tcase_add_test(tc, adding_never_replaces);
+    tcase_add_test(tc, adding_without_links_is_whole_or_not);
     tcase_add_test(tc, a_library_opens_the_file_that_was_made);
     tcase_add_test(tc, own_links_stand_for_what_they_lead_to);
     tcase_add_test(tc, links_of_others_are_refused);
