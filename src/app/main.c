@@ -106,7 +106,7 @@ int main(int argc, char **argv)
     hf_messages_free(&messages);
     is_ending = true;
     hf_status written = close_output(output);
-    if (written == HF_IO && status == HF_OK) fputs("error: cannot write to standard output\n", stderr);
-    if (status == HF_OK) status = written;
+    if (written == HF_IO) fputs("error: cannot write to standard output\n", stderr);
+    if (status == HF_OK || status == HF_DIFFERENT) status = written == HF_OK ? status : written;
     return hf_status_exit_code(status);
 }

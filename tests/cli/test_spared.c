@@ -115,6 +115,18 @@ START_TEST(a_run_that_ended_before_it_cleaned_up)
 }
 END_TEST
 
+/* Exit status 1 would be an answer. */
+START_TEST(a_difference_that_cannot_be_told_is_an_error)
+{
+    const char *path = file_with("c.yaml", SMALL_SCENE), *a = temp("a.h5"), *b = temp("b.h5");
+    HIFDM(0, "run", path, "-o", a, "--quiet");
+    HIFDM(0, "run", path, "-o", b, "--quiet", "--set", "form.pretension_N=12");
+    HIFDM(1, "diff", a, b);
+    SHELL(5, "exec \"$0\" diff \"$1\" \"$2\" >/dev/full", a, b);
+    ck_assert_str_eq(said.err, "error: cannot write to standard output\n");
+}
+END_TEST
+
 Suite *suite_cli_spared(void)
 {
     Suite *suite = suite_create("cli/spared");
@@ -123,6 +135,7 @@ Suite *suite_cli_spared(void)
     if (HAS_PRELOAD) tcase_add_test(tcase, a_restart_keeps_what_it_cannot_read);
     if (HAS_PRELOAD) tcase_add_test(tcase, a_run_that_ended_before_it_cleaned_up);
     tcase_add_test(tcase, a_restart_goes_on_after_a_kill_between_two_names);
+    tcase_add_test(tcase, a_difference_that_cannot_be_told_is_an_error);
     suite_add_tcase(suite, tcase);
     return suite;
 }
