@@ -86,6 +86,19 @@ static void stop_sweep(sweep *w, hf_status status, const char *id, const char *w
     pthread_mutex_unlock(&w->lock);
 }
 
+/* Of the warnings of a point those of files that are left in the folder of the sweep. The result file has the others. */
+static void warn_of_files(sweep *w, const hf_messages *said)
+{
+    static const char begin[] = "warning: ";
+    int n = 0;
+    for (const char *line = said->text; line && *line; line += n + (line[n] == '\n')) {
+        const char *found = strstr(line, ": cannot remove ");
+        n = (int)strcspn(line, "\n");
+        if (!strncmp(line, begin, strlen(begin)) && found && found < line + n)
+            hf_warning(w->messages, "%.*s", n - (int)strlen(begin), line + strlen(begin));
+    }
+}
+
 static void finish_point(sweep *w, int i, hf_status status, const hf_messages *said, const hf_summary *summary)
 {
     char reason[HF_LEDGER_REASON_MAX + 1] = "";
@@ -99,6 +112,7 @@ static void finish_point(sweep *w, int i, hf_status status, const hf_messages *s
     if (status != HF_OK) first_error(said, status, reason);
     hf_status written = hf_ledger_write(&w->ledger, w->request->study, i, status, reason, summary, &trouble);
     pthread_mutex_lock(&w->lock);
+    warn_of_files(w, said);
     w->count.n_done += status == HF_OK;
     w->count.n_failed += status != HF_OK;
     if (written != HF_OK && w->fatal == HF_OK) {

@@ -127,12 +127,23 @@ START_TEST(a_difference_that_cannot_be_told_is_an_error)
 }
 END_TEST
 
+START_TEST(a_sweep_tells_what_it_leaves)
+{
+    const char *folder = folder_of_files(), *library = sick_machine();
+    SHELL(0, "cd \"$1\" && rm -r s.d point.h5 && SICK='unlink 13 1 .tmp' LD_PRELOAD=\"$2\" \"$0\" sweep s.yaml --quiet",
+          folder, library);
+    ERR(": cannot remove the temporary file s.d/.");
+    SHELL(0, "cd \"$1\" && ls -A s.d | grep -q 'tmp$' && \"$0\" sweep s.yaml --quiet", folder);
+}
+END_TEST
+
 Suite *suite_cli_spared(void)
 {
     Suite *suite = suite_create("cli/spared");
     TCase *tcase = tcase_create("spared");
     if (HAS_PRELOAD) tcase_add_test(tcase, nothing_is_replaced_blindly);
     if (HAS_PRELOAD) tcase_add_test(tcase, a_restart_keeps_what_it_cannot_read);
+    if (HAS_PRELOAD) tcase_add_test(tcase, a_sweep_tells_what_it_leaves);
     if (HAS_PRELOAD) tcase_add_test(tcase, a_run_that_ended_before_it_cleaned_up);
     tcase_add_test(tcase, a_restart_goes_on_after_a_kill_between_two_names);
     tcase_add_test(tcase, a_difference_that_cannot_be_told_is_an_error);
