@@ -253,8 +253,8 @@ hf_status hf_store_read_state_truss(const char *path, const char *name, const hf
 const char *hf_store_version(void);
 
 /* Switch off HDF5's error printing and its exit handler, which crashes when the disk was full. Call it once, before the
- * first call of HDF5. */
-void hf_store_quiet(void);
+ * first call of HDF5. False: there is too little memory for HDF5, which would crash. */
+bool hf_store_quiet(void);
 
 #ifdef __cplusplus
 }

@@ -20,8 +20,8 @@
 
 static bool is_ending;
 
-/* libgomp ends the program by exit(1) when it gets no memory or no thread. It has said so, but 1 means something else
- * here. Nothing is lost by this more than by a kill. */
+/* libgomp ends the program by exit(1) when it gets no memory or no thread, HDF5 in its set-up by exit(-1). The former has
+ * said so, but 1 means something else here. Nothing is lost by this more than by a kill. */
 static void keep_exit_status(void)
 {
     static const char words[] = "error: a library gave up, see above; free memory or processes (ulimit -v, -u), or use "
@@ -97,8 +97,9 @@ int main(int argc, char **argv)
     if (uses_threads) hf_batch_wait_quietly(argv); /* may start the program anew, so before the libraries are set up */
     signal(SIGXFSZ, SIG_IGN);                      /* writing beyond the limit on file size then fails with an error */
     gsl_set_error_handler_off();
-    hf_store_quiet();
-    atexit(keep_exit_status); /* last, so that it is called first */
+    atexit(keep_exit_status);
+    if (!hf_store_quiet() && status == HF_OK) status = HF_NO_MEMORY;
+    atexit(keep_exit_status); /* again, as the last one, so that it is called first */
     FILE *output = hf_output_stream();
     if (status == HF_OK) status = options.command->run(&options, output, &messages);
     hf_options_free(&options);

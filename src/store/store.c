@@ -47,12 +47,18 @@ const char *hf_store_version(void)
     return HF_VERSION " (" HF_GIT_DESCRIBE ")";
 }
 
-void hf_store_quiet(void)
+#define SETUP_BYTES (1 << 20) /* HDF5 1.10.8 takes less than 400 kB to set itself up */
+
+bool hf_store_quiet(void)
 {
+    void *room = malloc(SETUP_BYTES); /* HDF5 1.10 crashes when its set-up gets no memory */
+    free(room);
+    if (!room) return false;
     hf_hdf5_lock();
     H5dont_atexit();
     hf_hdf5_quiet();
     hf_hdf5_unlock(HF_OK);
+    return true;
 }
 
 /* ---- provenance, case, scene ---- */
