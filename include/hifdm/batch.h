@@ -19,6 +19,7 @@ typedef struct {
     int n_thread;
     hf_workspace *workspace;        /* [n_thread]; inside hf_parallel_for all but the first are created when needed */
     struct hf_batch_engine *engine; /* what hf_batch_share made, or NULL */
+    bool lacks_memory;              /* hf_batch_share had too little for what it would share */
     double cpu_s; /* processor time spent in proposals (by hf_batch_next) and evaluations so far, over all threads */
 } hf_batch;
 
@@ -42,7 +43,7 @@ bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void
 /* Choose the solver of all designs from now on, and prepare what the threads share: one Newton matrix, factored at the
  * base design base_N [n_gene] > 0; or lanes of the paper's iteration; or nothing, when hf_evaluate solves each design
  * by itself. Returns the hf_solver that will be used. When the base is unsuitable or memory runs out, nothing is
- * shared. */
+ * shared. Another solver ends at other bits: batch->lacks_memory says that memory ran out. */
 hf_solver hf_batch_share(hf_batch *batch, const double *base_N);
 
 /* The solver that hf_batch_share returns unless the base is unsuitable or memory runs out. *has_lanes is set to true

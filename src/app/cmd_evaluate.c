@@ -154,7 +154,7 @@ static hf_status evaluate(job *j, int threads, hf_messages *messages)
 {
     double start_s = hf_clock_s();
     if (hf_problem_batch(&j->problem, threads) != HF_OK) return no_memory(j, messages);
-    hf_problem_share(&j->problem);
+    HF_TRY(hf_problem_share(&j->problem, messages));
     hf_batch_run(&j->problem.batch, j->table.n_row, j->design_N, NULL, j->result);
     j->wall_s = hf_clock_s() - start_s;
     for (int i = 0; i < j->table.n_row; i++) {

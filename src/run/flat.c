@@ -384,7 +384,7 @@ static hf_status make_batch(hf_flat *f)
     HF_TRY(hf_problem_base(p, &f->said));
     if (hf_problem_batch(p, f->n_thread) != HF_OK)
         return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the batch of a net of %d nodes", p->model.n_node);
-    hf_problem_share(p);
+    HF_TRY(hf_problem_share(p, &f->said));
     f->is_ready = true;
     return HF_OK;
 }

@@ -375,11 +375,14 @@ hf_status hf_problem_batch(hf_problem *p, int n_thread)
     return status;
 }
 
-void hf_problem_share(hf_problem *p)
+hf_status hf_problem_share(hf_problem *p, hf_messages *messages)
 {
     int n_taut = 0;
     while (n_taut < p->model.n_gene && (p->model.gene_cable[n_taut] < 0 || p->base_N[n_taut] > 0))
         n_taut++;
     p->solver = HF_SOLVER_AUTO;
     if (n_taut > 0 && n_taut == p->model.n_gene) p->solver = hf_batch_share(&p->batch, p->base_N);
+    if (!p->batch.lacks_memory) return HF_OK;
+    return hf_error(messages, HF_NO_MEMORY, "out of memory for what designs of a net of %d nodes share",
+                    p->model.n_node);
 }

@@ -55,7 +55,7 @@ hf_evaluator hf_problem_evaluator(const hf_problem *problem);
 hf_status hf_problem_batch(hf_problem *problem, int n_thread);
 
 /* Prepare the factorisation that the batch's threads share (hf_batch_share), if all of base_N is above 0, and set
- * problem->solver. */
-void hf_problem_share(hf_problem *problem);
+ * problem->solver. HF_OK, or HF_NO_MEMORY: without it the results would have other bits. */
+hf_status hf_problem_share(hf_problem *problem, hf_messages *messages);
 
 #endif

@@ -286,7 +286,7 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
 {
     const hf_population *p = &r->optimiser.population;
     s->best.status = HF_NO_FEASIBLE;
-    hf_problem_share(&r->problem);
+    HF_TRY(hf_problem_share(&r->problem, messages));
     s->solver = r->problem.solver;
     HF_TRY(begin_generations(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);

@@ -87,10 +87,13 @@ static hf_status create_lanes(hf_batch *batch, struct hf_batch_engine *e)
  * base design is unsuitable. */
 static bool set_engine(hf_batch *batch, hf_solver solver, const double *base_N)
 {
+    hf_status status = HF_NO_MEMORY;
     struct hf_batch_engine *e = batch->engine = calloc(1, sizeof *e);
-    if (!e) return false;
-    e->solver = solver;
-    hf_status status = solver == HF_SOLVER_CHORD ? create_chord(batch, e, base_N) : create_lanes(batch, e);
+    if (e) {
+        e->solver = solver;
+        status = solver == HF_SOLVER_CHORD ? create_chord(batch, e, base_N) : create_lanes(batch, e);
+    }
+    batch->lacks_memory = status == HF_NO_MEMORY;
     if (status != HF_OK) free_engine(batch);
     return status == HF_OK;
 }
@@ -120,6 +123,7 @@ hf_solver hf_batch_share(hf_batch *batch, const double *base_N)
     bool has_lanes;
     hf_solver solver = hf_batch_solver(batch->evaluator, &has_lanes);
     free_engine(batch); /* of an earlier base */
+    batch->lacks_memory = false;
     if (!has_lanes || set_engine(batch, solver, base_N) || solver == HF_SOLVER_FIXED_POINT) return solver;
     return each_by_newton(batch->evaluator) ? HF_SOLVER_NEWTON : HF_SOLVER_FIXED_POINT;
 }
