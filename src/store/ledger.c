@@ -36,7 +36,9 @@ hf_ledger_content hf_ledger_file(const char *folder, const hf_study *study, int 
 {
     struct stat info;
     snprintf(path, HF_PATH_SIZE + 32, "%s/%s-%.8s.h5", folder, study->id[point], study->fingerprint);
-    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return HF_LEDGER_NO_FILE;
+    int seen = hf_path_look(path, &info);
+    if (seen < 0) return HF_LEDGER_UNSEEN;
+    if (seen == 0 || !S_ISREG(info.st_mode)) return HF_LEDGER_NO_FILE;
     return info.st_size > 0 ? HF_LEDGER_FILE : HF_LEDGER_EMPTY_FILE;
 }
 
@@ -466,17 +468,21 @@ static hf_status find_running(reading *r, const char *folder, hf_messages *messa
 
 /* A point with a result file is done only if the file is there and whole: it may have been removed, and a second run of
  * the point may be under way. */
-static void find_lost(reading *r, const char *folder)
+static hf_status find_lost(reading *r, const char *folder, hf_messages *messages)
 {
     char path[HF_PATH_SIZE + 32];
-    if (!hf_study_has_files(r->study)) return;
+    if (!hf_study_has_files(r->study)) return HF_OK;
     for (int i = 0; i < r->study->n_point; i++) {
         hf_point *p = &r->points->point[i];
         if (p->state != HF_POINT_DONE) continue;
-        if (hf_ledger_file(folder, r->study, i, path) == HF_LEDGER_FILE && !hf_journal_is_there(path)) continue;
+        hf_ledger_content content = hf_ledger_file(folder, r->study, i, path);
+        if (content == HF_LEDGER_UNSEEN)
+            return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
+        if (content == HF_LEDGER_FILE && !hf_journal_is_there(path)) continue;
         *p = r->failure[i];
         r->points->n_lost += p->state == HF_POINT_MISSING;
     }
+    return HF_OK;
 }
 
 hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *points, hf_messages *messages)
@@ -493,7 +499,7 @@ hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *p
         points->point[i] = r.failure[i] = (hf_point){HF_POINT_MISSING, HF_NOT_EVALUATED, "", NULL};
     hf_status status = read_files(&r, folder, messages);
     if (status == HF_OK) status = find_running(&r, folder, messages);
-    find_lost(&r, folder);
+    if (status == HF_OK) status = find_lost(&r, folder, messages);
     for (int i = 0; i < study->n_point; i++)
         points->count[points->point[i].state]++;
     free(r.failure);

@@ -250,14 +250,15 @@ static void write_points(merger *m)
 
 /* ---- links ---- */
 
-/* The folder as seen from the folder of the output; the absolute path where there is none. */
-static void relative_folder(const char *output, const char *folder, char *to, size_t size)
+/* The folder as seen from the folder of the output; the absolute path where there is none. False and errno: one of them
+ * cannot be looked at. */
+static bool relative_folder(const char *output, const char *folder, char *to, size_t size)
 {
     char here[PATH_MAX + 1], there[PATH_MAX + 1]; /* a slash is added */
     size_t used = 0, common = 0;
     if (!hf_path_folder(output, to, size) || !realpath(to, here) || !realpath(folder, there)) {
-        snprintf(to, size, "%s", folder);
-        return;
+        *to = '\0';
+        return false;
     }
     strcat(strcmp(here, "/") ? here : strcpy(here, ""), "/");
     strcat(there, "/");
@@ -272,18 +273,26 @@ static void relative_folder(const char *output, const char *folder, char *to, si
         snprintf(to, size, "%s", there); /* longer than any path may be: the absolute one has room */
     used = strlen(to);
     if (used && to[used - 1] == '/') to[used - 1] = '\0';
+    return true;
 }
 
 static void write_links(merger *m, const char *folder)
 {
     char target[PATH_MAX + 64], file[HF_PATH_SIZE + 32];
     hid_t group = hf_hdf5_make_group(&m->io, "/runs");
-    relative_folder(m->io.path, folder, target, PATH_MAX + 1);
+    bool is_known = relative_folder(m->io.path, folder, target, PATH_MAX + 1);
+    int why = errno;
     if (!*target) strcpy(target, ".");
     size_t n = strlen(target);
     for (int i = 0; i < m->study->n_point && m->io.status == HF_OK; i++) {
         const char *id = m->study->id[i];
-        if (hf_ledger_file(folder, m->study, i, file) != HF_LEDGER_FILE) continue;
+        hf_ledger_content content = hf_ledger_file(folder, m->study, i, file);
+        if (content == HF_LEDGER_UNSEEN)
+            m->io.status = hf_error(m->io.messages, HF_IO, "%s: cannot look at it: %s", file, strerror(errno));
+        else if (content == HF_LEDGER_FILE && !is_known)
+            m->io.status =
+                hf_error(m->io.messages, HF_IO, "%s: cannot make links to %s: %s", m->io.path, folder, strerror(why));
+        if (content != HF_LEDGER_FILE || !is_known) continue;
         snprintf(target + n, sizeof target - n, "/%s", hf_path_name(file));
         if (H5Lcreate_external(target, "/", group, id, H5P_DEFAULT, H5P_DEFAULT) < 0)
             hf_hdf5_fail(&m->io, "write", group, id);
@@ -353,6 +362,9 @@ static void look_at_output(const char *path)
 static hf_status check_output(const char *path, hf_messages *messages)
 {
     char how[128];
+    bool is_there;
+    HF_TRY(hf_file_out_look(path, &is_there, messages));
+    if (!is_there) return HF_OK;
     hf_status tried = hf_hdf5_try(look_at_output, path, how, sizeof how, messages);
     if (tried == HF_EXISTS)
         return hf_error(messages, HF_EXISTS,
@@ -362,9 +374,6 @@ static hf_status check_output(const char *path, hf_messages *messages)
     if (is_replaceable(path)) return HF_OK;
     return hf_error(messages, HF_EXISTS, "%s: exists and is no merge; use --force or -o", path);
 }
-    bool is_there;
-    HF_TRY(hf_file_out_look(path, &is_there, messages));
-    if (!is_there) return HF_OK;
 
 /* Is it a file of the sweep: a point's result, also elsewhere by a link, or what is in its folder and no merge? 1, 0, or
  * -1 and errno: the system cannot tell. */

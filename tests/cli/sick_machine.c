@@ -29,6 +29,13 @@ NAME_CALL(stat, (const char *name, struct stat *info), (name, info), name)
 NAME_CALL(lstat, (const char *name, struct stat *info), (name, info), name)
 CALL(int, close, (int f), (f))
 
+char *realpath(const char *name, char *to)
+{
+    static char *(*real)(const char *, char *);
+    if (!real) *(void **)&real = dlsym(RTLD_NEXT, "realpath");
+    return strikes("realpath", -1, name) ? NULL : real(name, to);
+}
+
 /* PART is of the name of the library that asks for memory. */
 extern void *__libc_malloc(size_t n);
 void *malloc(size_t n)

@@ -137,6 +137,22 @@ START_TEST(a_sweep_tells_what_it_leaves)
 }
 END_TEST
 
+/* A result that the system cannot show is not missing. */
+START_TEST(points_are_not_missing_because_nobody_sees_them)
+{
+    static const char *const words[] = {"status s.yaml", "merge s.yaml -o m.h5", "sweep s.yaml --quiet"};
+    const char *folder = folder_of_files(), *library = sick_machine();
+    for (int i = 0; i < 3; i++) {
+        SHELL(5, keep(formatted("cd \"$1\"; export SICK='stat 5 1 s.d/' LD_PRELOAD=\"$2\"; exec \"$0\" %s", words[i])),
+              folder, library);
+        ERR(".h5: cannot look at it: Input/output error");
+    }
+    SHELL(5, "cd \"$1\"; export SICK='realpath 5 1 s.d' LD_PRELOAD=\"$2\"; exec \"$0\" merge s.yaml -o m.h5", folder,
+          library);
+    ERR("m.h5: cannot make links to s.d: Input/output error");
+}
+END_TEST
+
 /* HDF5 1.10 crashes when its set-up gets no memory: from what the loader needs on, in steps of less than that takes. */
 START_TEST(little_memory_ends_in_words)
 {
@@ -158,6 +174,7 @@ Suite *suite_cli_spared(void)
     if (HAS_PRELOAD) tcase_add_test(tcase, nothing_is_replaced_blindly);
     if (HAS_PRELOAD) tcase_add_test(tcase, a_restart_keeps_what_it_cannot_read);
     if (HAS_PRELOAD) tcase_add_test(tcase, a_sweep_tells_what_it_leaves);
+    if (HAS_PRELOAD) tcase_add_test(tcase, points_are_not_missing_because_nobody_sees_them);
     if (HAS_PRELOAD) tcase_add_test(tcase, a_run_that_ended_before_it_cleaned_up);
     tcase_add_test(tcase, a_restart_goes_on_after_a_kill_between_two_names);
     tcase_add_test(tcase, a_difference_that_cannot_be_told_is_an_error);
