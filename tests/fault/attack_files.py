@@ -1,0 +1,81 @@
+"""What is in files of hifdm, for attack.py: names, rows, records, and which bytes no checksum covers."""
+import re
+import struct
+
+import h5py
+
+
+def is_temporary(name):
+    return re.search(r"(^|/)\.[^/]*\.hifdm-[0-9a-f]{32}\.tmp$", name)
+
+
+def names_in(folder):
+    return {str(p.relative_to(folder)) for p in folder.rglob("*")
+            if (p.is_file() or p.is_symlink()) and p.suffix != ".tsv" and p.name != "claims"}
+
+
+def rows_of(folder):
+    """The rows of a sweep in all its tables, without times."""
+    rows = set()
+    for path in folder.glob("s.d/*.tsv"):
+        head, *lines = (line.split("\t") for line in path.read_text().splitlines())
+        rows |= {tuple(cell for name, cell in zip(head, line) if not name.endswith(("wall_s", "cpu_s")))
+                 for line in lines}
+    return rows
+
+
+def records_of(path):
+    """A journal without the order of its records, which threads decide."""
+    data, at, records = path.read_bytes(), 72, []
+    while at + 12 <= len(data):
+        length = 12 + struct.unpack_from("<I", data, at + 4)[0]
+        records.append(data[at:at + length])
+        at += length
+    return data[:72], sorted(records)
+
+
+def node_bytes(data, at, chunks):
+    """Size of a node of a tree of chunks. Its rank is that for which the first child is a chunk or a node."""
+    for rank in range(1, 6):
+        key = 8 + 8 * (rank + 1)
+        child = struct.unpack_from("<Q", data, at + 24 + key)[0]
+        if child in chunks or data[child:child + 4] == b"TREE":
+            return 24 + 64 * 8 + 65 * key
+    raise ValueError(f"no node at {at}")
+
+
+def open_ranges(path):
+    """[(from, to, data set)] of what no checksum covers in a file of HDF5: values, trees of chunks, long texts."""
+    data, ranges, chunks = path.read_bytes(), [], set()
+
+    def take(name, item):
+        if not isinstance(item, h5py.Dataset):
+            return
+        for i in range(item.id.get_num_chunks() if item.chunks else 0):
+            chunk = item.id.get_chunk_info(i)
+            chunks.add(chunk.byte_offset)
+            ranges.append((chunk.byte_offset, chunk.byte_offset + chunk.size, name))
+        if item.id.get_offset() is not None:
+            ranges.append((item.id.get_offset(), item.id.get_offset() + item.id.get_storage_size(), name))
+
+    with h5py.File(path) as file:
+        for group in set(file) - {"VTKHDF"}:  # `hifdm diff` leaves that out, but its links lead to other data sets
+            file[group].visititems(lambda name, item: take(f"{group}/{name}", item))
+        file.visititems(lambda name, item: take("", item))
+    for match in re.finditer(b"TREE|GCOL", data):
+        at = match.start()
+        if not any(low <= at < high for low, high, _ in ranges):
+            is_tree = match.group() == b"TREE"
+            size = node_bytes(data, at, chunks) if is_tree else struct.unpack_from("<Q", data, at + 8)[0]
+            ranges.append((at, at + size, ""))
+    return ranges
+
+
+def has_changed(folder, words, data_set):
+    """Do the two files of `diff` differ in this data set? Two values that are no numbers are alike."""
+    values = []
+    for name in words.split()[1:3]:
+        with h5py.File(folder / name) as file:
+            values.append(file[data_set][()])
+    a, b = values
+    return not ((a == b) | ((a != a) & (b != b)) if a.dtype.kind == "f" else a == b).all()
