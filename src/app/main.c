@@ -20,8 +20,8 @@
 
 static bool is_ending;
 
-/* libgomp ends the program by exit(1) when it gets no memory or no thread, HDF5 in its set-up by exit(-1). The former has
- * said so, but 1 means something else here. Nothing is lost by this more than by a kill. */
+/* libgomp ends the program by exit(1) when it gets no memory or no thread, HDF5 in its set-up by exit(-1). The former
+ * has said so, but 1 means something else here. Nothing is lost by this more than by a kill. */
 static void keep_exit_status(void)
 {
     static const char words[] = "error: a library gave up, see above; free memory or processes (ulimit -v, -u), or use "

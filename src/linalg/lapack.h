@@ -29,8 +29,9 @@ typedef struct {
 } hf_lapack_routines;
 
 /* Loads LAPACK unless it is loaded. Any thread may call it, but the call that loads changes the environment: the
- * variables OPENBLAS_NUM_THREADS and OMP_NUM_THREADS are 1 meanwhile, so no other thread may use getenv then. Returns HF_OK; HF_NO_LAPACK when no library is found; HF_NO_MEMORY when the
- * address space is limited and too small. messages: NULL, or where an error says what to do. */
+ * variables OPENBLAS_NUM_THREADS and OMP_NUM_THREADS are 1 meanwhile, so no other thread may use getenv then. Returns
+ * HF_OK; HF_NO_LAPACK when no library is found; HF_NO_MEMORY when the address space is limited and too small. messages:
+ * NULL, or where an error says what to do. */
 hf_status hf_lapack_load(hf_messages *messages);
 
 /* Returns the routines; hf_lapack_load must have returned HF_OK. Calls of them stand between hf_lapack_begin and

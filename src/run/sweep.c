@@ -86,7 +86,8 @@ static void stop_sweep(sweep *w, hf_status status, const char *id, const char *w
     pthread_mutex_unlock(&w->lock);
 }
 
-/* Of the warnings of a point those of files that are left in the folder of the sweep. The result file has the others. */
+/* Of the warnings of a point those of files that are left in the folder of the sweep. The result file has the others.
+ */
 static void warn_of_files(sweep *w, const hf_messages *said)
 {
     static const char begin[] = "warning: ";

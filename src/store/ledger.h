@@ -81,7 +81,8 @@ bool hf_ledger_is_finished(hf_ledger *ledger, const hf_study *study, int point);
 hf_status hf_ledger_write(hf_ledger *ledger, const hf_study *study, int point, hf_status status, const char *reason,
                           const hf_summary *summary, hf_messages *messages);
 
-/* Set the path of the point's result file; returns what is there. HF_LEDGER_UNSEEN and errno: the system cannot tell. */
+/* Set the path of the point's result file; returns what is there. HF_LEDGER_UNSEEN and errno: the system cannot tell.
+ */
 typedef enum { HF_LEDGER_NO_FILE, HF_LEDGER_EMPTY_FILE, HF_LEDGER_FILE, HF_LEDGER_UNSEEN } hf_ledger_content;
 hf_ledger_content hf_ledger_file(const char *folder, const hf_study *study, int point, char path[HF_PATH_SIZE + 32]);
 

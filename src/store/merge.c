@@ -375,8 +375,8 @@ static hf_status check_output(const char *path, hf_messages *messages)
     return hf_error(messages, HF_EXISTS, "%s: exists and is no merge; use --force or -o", path);
 }
 
-/* Is it a file of the sweep: a point's result, also elsewhere by a link, or what is in its folder and no merge? 1, 0, or
- * -1 and errno: the system cannot tell. */
+/* Is it a file of the sweep: a point's result, also elsewhere by a link, or what is in its folder and no merge? 1, 0,
+ * or -1 and errno: the system cannot tell. */
 static int is_of_sweep(const hf_study *s, const char *folder, const char *path)
 {
     char file[HF_PATH_SIZE + 32], here[PATH_MAX], how[128];

@@ -1,5 +1,5 @@
-/* What the program says, from help to pages, against tests/cli/transcripts; see transcript.py. `make transcripts` writes
- * these files; the commit shows what a change makes the program say. */
+/* What the program says, from help to pages, against tests/cli/transcripts; see transcript.py. `make transcripts`
+ * writes these files; the commit shows what a change makes the program say. */
 #include "cli.h"
 
 #include <dirent.h>

@@ -210,7 +210,8 @@ def table(path):
     else:
         words = " ".join(body).split()
         numbers = [number_or_none(w) for w in words]
-        print(" ", digest([v for v in numbers if v is not None]), of_text([w for w, v in zip(words, numbers) if v is None]))
+        texts = [w for w, v in zip(words, numbers) if v is None]
+        print(" ", digest([v for v in numbers if v is not None]), of_text(texts))
 
 
 def files(*paths):

@@ -99,7 +99,8 @@ OTHERS = {
 
 RESULT = ("show {0}", "show {0} --json", "show {0} --verbose", "diff {0} {1}", "diff {1} {0}",
           "report {0} -o out/p.html", "report {1} {0} -o out/p.html", "export {0} --csv out/csv",
-          "export {0} --vtk out/vtk", "export {0} --cutlist out/cut.csv", "export {0} --rf out/rf", "run all.yaml -o {0} --quiet", "recover {0}")
+          "export {0} --vtk out/vtk", "export {0} --cutlist out/cut.csv", "export {0} --rf out/rf",
+          "run all.yaml -o {0} --quiet", "recover {0}")
 FRONT = (*RESULT[:7], "export {0} --front out/front.csv", "run front.yaml -o {0} --quiet",
          "run front.yaml --point {0}:1 -o out/point.h5 --quiet")
 SWEEP = ("status s.yaml --dir out/s.d", "status s.yaml --dir out/s.d --json", "merge s.yaml --dir out/s.d -o out/m.h5",
