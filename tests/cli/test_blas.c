@@ -32,7 +32,7 @@ static const char *const factors_nothing[] = {
     "export cut.h5 --cutlist cutlist.csv --rf rf",
     "recover dish.h5",
     "status study.yaml --dir points",
-    "merge study.yaml --dir points -o other.h5",
+    "merge study.yaml --dir points -o merged.h5",
     "run dish.yaml -o dish.h5", /* again */
 };
 static const char *const factors_something[] = {
