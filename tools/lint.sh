@@ -138,7 +138,8 @@ done | report
 # What the documents name is there: hf_... and HF_... in a source, files such as search/batch.c, links to other files.
 # hf_module_verb, hf_noun and names with a part in capitals (hf_cmd_NAME) stand for many.
 documents="README.md src/ARCHITECTURE.md src/METHOD.md src/MANUAL.md .github/CONTRIBUTING.md"
-documents="$documents $(files_under src/manual | tr '\n' ' ')"
+# The table of renames names what is no longer there, and what is to come.
+documents="$documents $(files_under src/manual | grep -vx src/manual/renames.md | tr '\n' ' ')"
 grep -ohE '\b(hf|HF)_[A-Za-z0-9_]+' $source_files | sort -u >"$work/names"
 grep -HnoE '\b(hf|HF)_[A-Za-z0-9_]+\b' -- $documents | grep -vE ':(hf_module_verb|hf_noun|hf_.*[A-Z].*)$' |
     while IFS=: read -r file line name; do
