@@ -179,6 +179,15 @@ static double *best_design(const hf_population *p)
     return p->design_N + (size_t)p->best * (size_t)p->n_gene;
 }
 
+static void count_at_bounds(const hf_population *p, const double *design, int *at_lower, int *at_upper)
+{
+    *at_lower = *at_upper = 0; /* a resumed run has those of the session before */
+    for (int k = 0; k < p->n_gene; k++) {
+        *at_lower += design[k] <= p->lower_N[k];
+        *at_upper += design[k] >= p->upper_N[k];
+    }
+}
+
 static void note_best(const hf_population *p, hf_summary *s)
 {
     if (p->best < 0) return;
@@ -198,10 +207,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     hf_workspace *w = hf_batch_run_one(&r->problem.batch, design, &again);
     hf_certify(&r->problem.model, w, &again);
     s->best = again; /* the same bits, and the figures that are not stored for each individual */
-    for (int k = 0; k < r->optimiser.population.n_gene; k++) {
-        s->best_n_at_lower += design[k] <= r->optimiser.population.lower_N[k];
-        s->best_n_at_upper += design[k] >= r->optimiser.population.upper_N[k];
-    }
+    count_at_bounds(&r->optimiser.population, design, &s->best_n_at_lower, &s->best_n_at_upper);
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
     hf_measure_limits(&r->problem, HF_STAGE_OPTIMIZE, w, s);
     HF_TRY(measure_shape(r, HF_STAGE_OPTIMIZE, w, s, messages));
@@ -337,10 +343,7 @@ static hf_status take_point(run *r, hf_summary *s, hf_messages *messages)
     s->polish_is_result = true;
     s->polish_evaluations = 1;
     s->polish_stop = HF_POLISH_TAKEN;
-    for (int k = 0; k < p->n_gene; k++) {
-        s->polish_n_at_lower += design[k] <= p->lower_N[k];
-        s->polish_n_at_upper += design[k] >= p->upper_N[k];
-    }
+    count_at_bounds(p, design, &s->polish_n_at_lower, &s->polish_n_at_upper);
     return keep_polish(r, w, design, s, messages);
 }
 

@@ -49,6 +49,9 @@ START_TEST(a_late_stage_that_fails_is_resumed)
     HIFDM(0, "run", path, "-o", result, "--quiet");
     HIFDM(0, "diff", undisturbed, result);
     EXPECT(result, "--", "a.attrs['finished']", "len(a['tolerance/sample/psi_m']) == 3000");
+    EXPECT(result, undisturbed, "--",
+           "[(g, k) for g in a if g != 'case' for k, v in a[g].attrs.items() if k[-2:] != '_s' "
+           "and str(v) != str(b[g].attrs[k])] == []");
     SHELL(0, "test \"$(ls -A \"$1\"*)\" = \"$1\"", result);
 }
 END_TEST
