@@ -12,7 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-#define U 0x1p-53           /* unit of rounding */
 #define SHARE_OF_LAST 1e-3  /* part of a shift that has failed that is tried next */
 #define SMALL 1e-3          /* a radius by the first matrix that is a larger part of the bound is found anew */
 #define INSIDE_LENGTH 0.005 /* the ball is smaller than this part of every length */
@@ -101,7 +100,7 @@ static double assemble_proof(hf_refined *p, double **band, int *n, int *k)
 static double rounding_of(int n, int k, double degree, double largest)
 {
     double row = fmin(n, 2.0 * k + 1);
-    return U * largest * (2.02 * (k + 4) * row + 400 + 20 * degree);
+    return HF_UNIT * largest * (2.02 * (k + 4) * row + 400 + 20 * degree);
 }
 
 /* Returns a lower bound of the least eigenvalue for the free nodes of the Hessian of net and truss, from which a part
@@ -174,8 +173,8 @@ static double block_change(const hf_refined *p, int e)
     if (!(turn < 0.01)) return INFINITY;
     double along = hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER) ? c->along : 0;
     double over = hf_law_has(cable.law, HF_LAW_IS_RIGID) ? fabs(c->over.hi) : 0;
-    return fabs(c->across - across) + 16 * U * (c->across + fabs(across)) + across * turn + 8 * along * turn * turn +
-           along * over / length;
+    return fabs(c->across - across) + 16 * HF_UNIT * (c->across + fabs(across)) + across * turn +
+           8 * along * turn * turn + along * over / length;
 }
 
 /* A lower bound of the least eigenvalue at the refined shape from one at the found shape; 0 when they are too far
@@ -298,7 +297,7 @@ static hf_bound_reason stays_apart(const hf_refined *p, double radius)
         double least = is_rigid ? c->along * move : 0, longest = c->length - p->w->target[e];
         if (!(c->is_taut > 0) && !(c->over.hi < -move)) return HF_BOUND_SLACK_OR_TAUT;
         if (c->is_taut > 0 && is_rigid && !(c->T.hi > least)) return HF_BOUND_SLACK_OR_TAUT;
-        if (c->is_taut > 0 && !is_rigid && !(longest > move + 4 * U * c->length)) return HF_BOUND_SLACK_OR_TAUT;
+        if (c->is_taut > 0 && !is_rigid && !(longest > move + 4 * HF_UNIT * c->length)) return HF_BOUND_SLACK_OR_TAUT;
     }
     return HF_BOUND_PROVEN;
 }
@@ -375,7 +374,7 @@ static double largest_move(const hf_refined *p)
         }
         largest = fmax(largest, square);
     }
-    return sqrt(largest) * (1 + 16 * U);
+    return sqrt(largest) * (1 + 16 * HF_UNIT);
 }
 
 static hf_twofold refined_psi(const hf_refined *p)
@@ -412,5 +411,5 @@ void hf_bound_prove(const hf_model *m, bool has_factor, double least_N_per_m, hf
     r->position_bound_m = moved_m + radius;
     /* the ball is one of all coordinates together */
     double error_m = HF_TWOFOLD_UNIT * (64 + 4.0 * m->n_inner_node) * r->psi_m + radius / sqrt(m->n_inner_node);
-    r->psi_bound_m = (fabs(psi.hi) + error_m) * (1 + 8 * U);
+    r->psi_bound_m = (fabs(psi.hi) + error_m) * (1 + 8 * HF_UNIT);
 }

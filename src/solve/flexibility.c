@@ -7,8 +7,6 @@
 
 #include <string.h>
 
-#define U 0x1p-53 /* unit of rounding */
-
 /* y -= factor x */
 static void subtract(size_t n, double factor, const double *restrict x, double *restrict y)
 {
@@ -25,7 +23,7 @@ static double rounding_of_flexibility(const hf_model *m)
     double largest = 0;
     for (int i = 0; i < n; i++)
         largest = fmax(largest, m->flexibility_m_per_N[(size_t)i * (size_t)n + (size_t)i]);
-    return 8 * U * (n + 8) * largest;
+    return 8 * HF_UNIT * (n + 8) * largest;
 }
 
 /* Without pivoting: of a matrix that is positive definite beyond rounding, as most trusses have it. */
@@ -81,7 +79,7 @@ bool hf_flexibility_factor(const hf_model *m, hf_flexibility *f)
         const double *column = f->root + (size_t)k * (size_t)f->n;
         f->trace += hf_dot((size_t)f->n, column, column);
     }
-    f->trace *= 1 + 4 * U * f->n;
+    f->trace *= 1 + 4 * HF_UNIT * f->n;
     return true;
 }
 
@@ -146,9 +144,9 @@ hf_flexibility_rounding hf_flexibility_rounding_of(const hf_model *m, const hf_f
                                                    double n_cable)
 {
     double k = m->has_newton ? 3.0 * m->half_bandwidth + 2 : m->half_bandwidth, n = f->n;
-    double all = U * (1.1 * (k + 4) * (k + 1 + n) + 400 + 20 * n_cable);
-    double between = 1.1 * U * (3.0 * m->n_free + n + 4) * (n + 1) + 8 * U * n * sqrt(n);
-    return (hf_flexibility_rounding){all, 1.1 * U * (n + 4) * (n + 1), 2 * all * stiffness_N_per_m,
+    double all = HF_UNIT * (1.1 * (k + 4) * (k + 1 + n) + 400 + 20 * n_cable);
+    double between = 1.1 * HF_UNIT * (3.0 * m->n_free + n + 4) * (n + 1) + 8 * HF_UNIT * n * sqrt(n);
+    return (hf_flexibility_rounding){all, 1.1 * HF_UNIT * (n + 4) * (n + 1), 2 * all * stiffness_N_per_m,
                                      2 * (all + between) * stiffness_N_per_m * f->trace};
 }
 
@@ -181,26 +179,6 @@ static void add_border(const hf_model *m, const hf_workspace *w, const free_fact
         for (int d = 0; d < free->per_node; d++, row += ld)
             for (int c = 0; c < free->per_node; c++)
                 if (column + c >= first && column + c < end) row[column + c - first] -= block[c][d];
-    }
-}
-
-/* stiffness [n_border][n_border] = H_aa, its lower triangle by rows. */
-static void set_own(const hf_model *m, const hf_workspace *w, const free_factor *free, hf_newton_block *block_of,
-                    double *stiffness)
-{
-    size_t ld = (size_t)free->n_border, per_node = (size_t)free->per_node;
-    double block[3][3];
-    memset(stiffness, 0, ld * ld * sizeof *stiffness);
-    for (int tie = 0; tie < m->n_tie; tie++) {
-        int there = m->end_row[m->tie[tie] ^ 1] - m->n_free;
-        size_t here = per_node * (size_t)m->tie_attachment[tie];
-        block_of(m, w, m->tie[tie] / 2, block);
-        for (size_t r = 0; r < per_node; r++)
-            for (size_t c = 0; c < per_node; c++) {
-                stiffness[(here + r) * ld + here + c] += block[r][c];
-                if (there >= 0 && there < m->n_attachment && per_node * (size_t)there < here)
-                    stiffness[(here + r) * ld + per_node * (size_t)there + c] -= block[r][c];
-            }
     }
 }
 
@@ -276,7 +254,8 @@ bool hf_flexibility_factor_net(const hf_model *m, hf_workspace *w, hf_newton_blo
     size_t n_square = (size_t)free.n_border * (size_t)free.n_border;
     double *stiffness = m->has_newton ? hf_schur_of(m, w).factor : f->window + HF_BOUND_WINDOW(m);
     double *gram = m->has_newton ? hf_schur_of(m, w).flexed : stiffness + n_square;
-    set_own(m, w, &free, block_of, stiffness);
+    memset(stiffness, 0, n_square * sizeof *stiffness);
+    hf_schur_add_own(m, w, block_of, free.per_node, stiffness);
     eliminate_free(m, w, &free, block_of, f->window, gram, stiffness);
     return factor_own(f, &free, stiffness, rounding, share);
 }

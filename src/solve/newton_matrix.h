@@ -151,12 +151,14 @@ void hf_newton_matrix_solve_rows(const hf_model *model, const hf_workspace *work
  * clearly below that eigenvalue; newton_band then holds nothing. */
 double hf_newton_matrix_factor_below(const hf_model *model, hf_workspace *workspace, double *condition);
 
+#define HF_UNIT 0x1p-53 /* half the distance from 1 to the next double */
+
 /* What assembling a matrix from cables, of which n_cable are at one node, and factoring it in half-bandwidth k can
  * do to a quadratic form with it, relative to the sum of diagonal entries times squares. */
 static inline double hf_newton_matrix_rounding(int half_bandwidth, double n_cable)
 {
     double k = half_bandwidth;
-    return 0x1p-53 * (1.1 * (k + 4) * (k + 1) + 400 + 20 * n_cable);
+    return HF_UNIT * (1.1 * (k + 4) * (k + 1) + 400 + 20 * n_cable);
 }
 
 /* Solve in place, rhs [3 n_free] or [n_rhs][3 n_free], with the factor in newton_band. */

@@ -103,20 +103,20 @@ void hf_schur_hold(const hf_model *m, const hf_workspace *w, hf_newton_block *bl
     }
 }
 
-/* Adds H_aa to the stiffness: cables from attachments to free nodes, fixed supports and other attachments. */
-static void add_attachment_stiffness(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, hf_schur *s)
+void hf_schur_add_own(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, int per_node,
+                      double *stiffness)
 {
     double block[3][3];
-    size_t n = (size_t)s->n;
+    size_t n_coordinate = (size_t)per_node, n = n_coordinate * (size_t)m->n_attachment;
     for (int k = 0; k < m->n_tie; k++) {
         int partner = partner_of(m, k);
-        size_t here = 3 * (size_t)m->tie_attachment[k];
+        size_t here = n_coordinate * (size_t)m->tie_attachment[k];
         block_of(m, w, m->tie[k] / 2, block);
-        for (size_t r = 0; r < 3; r++)
-            for (size_t c = 0; c < 3; c++) {
-                s->stiffness[(here + r) * n + here + c] += block[r][c];
-                if (partner >= 0)
-                    s->stiffness[(here + r) * n + 3 * (size_t)m->tie_attachment[partner] + c] -= block[r][c];
+        for (size_t r = 0; r < n_coordinate; r++)
+            for (size_t c = 0; c < n_coordinate; c++) {
+                double *row = stiffness + (here + r) * n;
+                row[here + c] += block[r][c];
+                if (partner >= 0) row[n_coordinate * (size_t)m->tie_attachment[partner] + c] -= block[r][c];
             }
     }
 }
@@ -152,7 +152,7 @@ hf_status hf_schur_factor(const hf_model *m, const hf_workspace *w, hf_newton_bl
     memset(s->stiffness, 0, n * n * sizeof(double));
     for (int from = 0; from < m->n_attachment; from += HF_SCHUR_PANEL)
         subtract_panel(m, w, block_of, from, s);
-    add_attachment_stiffness(m, w, block_of, s);
+    hf_schur_add_own(m, w, block_of, 3, s->stiffness);
     hf_dense_multiply(s->n, m->flexibility_m_per_N, s->stiffness, s->flexed);
     memcpy(s->factor, s->flexed, n * n * sizeof(double));
     for (size_t i = 0; i < n; i++)

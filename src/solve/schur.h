@@ -35,6 +35,11 @@ hf_schur hf_schur_of(const hf_model *model, const hf_workspace *workspace);
 hf_status hf_schur_factor(const hf_model *model, const hf_workspace *workspace, hf_newton_block *block_of,
                           hf_schur *schur);
 
+/* stiffness [n][n] += H_aa, n = per_node n_attachment: cables from attachments to free nodes, fixed supports and other
+ * attachments. per_node is 3, or 1 where the three coordinates have the same matrix. */
+void hf_schur_add_own(const hf_model *model, const hf_workspace *workspace, hf_newton_block *block_of, int per_node,
+                      double *stiffness);
+
 /* pull [n] -= H_aa r. After hf_schur_push of r, a solve for the free nodes, and hf_schur_pull it is -S r. */
 void hf_schur_hold(const hf_model *model, const hf_workspace *workspace, hf_newton_block *block_of,
                    const double *displacement_m, double *pull);
