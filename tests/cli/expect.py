@@ -211,4 +211,5 @@ def main(words):
     return int(failed)
 
 
-sys.exit(main(sys.argv[1:]))
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
