@@ -140,7 +140,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
          bench-before bench-optimisers bench-fronts bench-sampling pretension-night api docs docs-browser lint \
          asan tsan fuzz fuzz-results install uninstall dist dist-check deb workflow-check
-FRONT += python-install mutants-random bench-instructions bits transcripts deb-check release-check
+FRONT += python-install mutants-random attack bench-instructions bits transcripts deb-check release-check
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -211,6 +211,11 @@ MUTANTS_ARGS ?=
 mutants-random: ## N edits at random places that SEED draws: which do the tests miss? build/mutants-random/SEED.log
 	$(Q)tools/setup.sh --test
 	+$(Q)BUILD=$(BUILD) $(PYTHON) tools/mutants_random.py --seed $(SEED) --n $(N) $(MUTANTS_ARGS)
+
+attack: ## 200 kills, 500 failing calls and 5000 flipped bits that SEED draws: results/release/attack-VERSION.log
+	$(Q)tools/setup.sh --test
+	$(SUB) $(PROGRAM)
+	$(Q)$(PYTHON) tests/fault/attack.py --program $(PROGRAM) --seed 0x$(SEED) --log results/release/attack-$(VERSION).log
 
 browser: ## open pages of hifdm report in headless Chromium; needs `tools/setup.sh --ci`
 	$(SUB) $(PROGRAM)

@@ -6,9 +6,10 @@
 The edits depend on the seed and on the sources alone (tools/mutation/edits.py). Each is made in a worker's copy of the
 working tree below build/mutants-random, which is compiled and linked anew as far as needed. A draw that does not
 compile, that leaves the object code as it was, or that was drawn before is redrawn. The suites that execute the line
-(tools/mutation/coverage.py) run, the most promising first, up to the first that fails. A suite that needs more than
-three times its processor time, or whose processes all sleep for a minute, notices as well. What survives is tried once
-more with the sanitizers of `make asan`, for half as long. What no suite executes survives.
+(tools/mutation/coverage.py) run, the most promising first, until one fails or --cpu seconds are used. A suite also
+catches the edit if it uses more than 20 s plus three times its processor time, or if its processes all sleep for a
+minute. If none failed, they run once more with the sanitizers of `make asan`, for half as long. An edit that no suite
+executes survives.
 
 Edits of tests/mutants_equivalent.txt change no result, for the reason that stands there; with such an edit the results
 of all configs/ are compared, bit by bit (of studies every fourth point). They are left out of the percentage and are

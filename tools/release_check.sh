@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# release_check.sh [STEP...]: the checks that take longer than .ci/run allows, for a release; all steps when none is
-# named.
+# release_check.sh [STEP...]: more checks than .ci/run has time for, before a release; all steps when none is named.
 #
 # A failing step does not stop the others. Each step is bounded; its output is in build/release/COMMIT/STEP.log.
 # results/release/VERSION.log has a line for each step: outcome, time, last words, and what was skipped. It is committed
@@ -15,6 +14,7 @@ steps() {
 aarch64         120m tools/aarch64.sh
 same-bits       60m  tools/same_bits.sh
 fuzz            20m  make fuzz FUZZ_SECONDS=60
+attack          20m  make attack
 stress          60m  make stress
 blas-matrix     150m tools/blas_matrix.sh
 faults          120m /usr/bin/python3 tests/fault/table.py --check --full
@@ -71,7 +71,7 @@ write_log() {
     {
         echo "hifdm $version, make release-check"
         echo "commit    $commit"
-        echo "machine   $(processor), $(nproc) cores; $(system), Linux $(uname -r), $(uname -m)"
+        echo "last on   $(processor), $(nproc) cores; $(system), Linux $(uname -r), $(uname -m)"
         echo "compiler  $("${CC:-cc}" --version | head -n 1)"
         echo "BLAS      $(installed_blas)"
         echo
@@ -80,7 +80,9 @@ write_log() {
             grep -q "^$name *passed" "$work/$name" 2>/dev/null || failed="$failed $name"
         done
         echo
-        [ -z "$failed" ] && echo "all passed" || echo "not passed:$failed"
+        if [ -n "$failed" ]; then echo "not passed:$failed"
+        elif cat "$work"/*.skipped 2>/dev/null | grep -q .; then echo "all passed, but for what was skipped"
+        else echo "all passed"; fi
     } >"$log"
 }
 
@@ -107,7 +109,7 @@ for name; do
     *) outcome="FAILED ($code)" ;;
     esac
     [ $code = 0 ] || failed="$failed $name"
-    printf '%-15s %-14s %6s s  %s  %s\n' "$name" "$outcome" $((SECONDS - start)) "$(date -u +%F)" \
+    printf '%-15s %-14s %6s s  %s  %s\n' "$name" "$outcome" $((SECONDS - start)) "$(date -u +%F), $(processor)" \
         "$(words "$name")" >"$work/$name"
     cat "$work/$name"
     write_log

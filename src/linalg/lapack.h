@@ -1,7 +1,7 @@
 /* lapack - LAPACK and its BLAS, loaded when they are first needed.
  *
- * Programs that use this library do not link LAPACK. A command that factors nothing never maps a BLAS, and any shared
- * library with the routines below serves. */
+ * Programs that use this library do not link LAPACK. A command that factors nothing loads neither LAPACK nor its BLAS.
+ * Any shared library with the routines below serves. */
 #ifndef HIFDM_LAPACK_H
 #define HIFDM_LAPACK_H
 
@@ -28,15 +28,15 @@ typedef struct {
 #undef HF_LAPACK_MEMBER
 } hf_lapack_routines;
 
-/* Loads LAPACK unless it is loaded. Any thread may call it, but the call that loads changes the environment: the
- * variables OPENBLAS_NUM_THREADS and OMP_NUM_THREADS are 1 meanwhile, so no other thread may use getenv then. Returns
+/* Loads LAPACK unless it is loaded. Any thread may call it. While it loads LAPACK, OPENBLAS_NUM_THREADS and
+ * OMP_NUM_THREADS are set to 1 in the environment, so no other thread may call getenv during that time. Returns
  * HF_OK; HF_NO_LAPACK when no library is found; HF_NO_MEMORY when the address space is limited and too small. messages:
  * NULL, or where an error says what to do. */
 hf_status hf_lapack_load(hf_messages *messages);
 
 /* Returns the routines; hf_lapack_load must have returned HF_OK. Calls of them stand between hf_lapack_begin and
- * hf_lapack_end, which gets what the former returned. In between, LAPACK uses one thread; where the address space is
- * limited, and with a BLAS that may not be safe in threads, one caller at a time uses it. */
+ * hf_lapack_end, which gets what the former returned. In between, LAPACK uses one thread. If the address space is
+ * limited, or if OpenBLAS is a sequential build that may not be thread-safe, one caller at a time is let in. */
 const hf_lapack_routines *hf_lapack(void);
 int hf_lapack_begin(void);
 void hf_lapack_end(int n_thread);

@@ -6,10 +6,11 @@
 
 #include <hifdm/formfind.h>
 
-/* Set position_bound_m, psi_bound_m and bound_reason of the result whose shape is in the workspace. Its status is HF_OK
- * or HF_NOT_CONVERGED. The workspace holds a factor of the matrix at the shape (hf_newton_certify; without a Newton
- * matrix that of D in `band`), which is overwritten unless the reason is HF_BOUND_STRUTS or HF_BOUND_LOOSE. has_factor
- * is false when there is none. least_N_per_m: a proven lower bound of its least eigenvalue, or 0. */
+/* Computes position_bound_m, psi_bound_m and bound_reason of the result whose shape is in the workspace. Its status
+ * must be HF_OK or HF_NOT_CONVERGED. If has_factor is true, the workspace holds a factor of the matrix at this shape:
+ * that of hf_newton_certify, or that of D in `band` if there is no Newton matrix. The factor is overwritten unless the
+ * reason is HF_BOUND_STRUTS, HF_BOUND_LOOSE or HF_BOUND_NO_MATRIX. least_N_per_m: a certified lower bound of its
+ * minimum eigenvalue, or 0. */
 void hf_bound_prove(const hf_model *model, bool has_factor, double least_N_per_m, hf_workspace *workspace,
                     hf_form_result *result);
 

@@ -63,6 +63,14 @@ def contents(file):
             for name, d in data_sets(file).items()}
 
 
+def attributes(file):
+    """(object, attribute) -> value, of all below the root but times and the case as it was typed."""
+    found = {}
+    file.visititems(lambda name, item: found.update({(name, k): str(v) for k, v in item.attrs.items()
+                                                     if k[-2:] != "_s" and name != "case"}))
+    return found
+
+
 def differing(one, other):
     x, y = contents(one), contents(other)
     return sorted(name for name in x.keys() | y.keys() if x.get(name) != y.get(name))
@@ -211,5 +219,4 @@ def main(words):
     return int(failed)
 
 
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+sys.exit(main(sys.argv[1:]))

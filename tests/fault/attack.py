@@ -1,16 +1,19 @@
-"""Random faults against every command: kills, failing calls, flipped bits. Exit status 1 if a promise is broken.
+"""Random faults against the commands of attack_cases.py. Exit status 1 if a promise is broken.
 
     tests/fault/attack.py --program build/hifdm --seed N --kills 200 --calls 500 --flips 5000
     tests/fault/attack.py --program build/hifdm --seed N --only flips:37     one case again, with what was said
 
-kills  SIGKILL at a random moment. Files that were there before are whole. The same command then ends with 0, its files
-       are those of an undisturbed run, and no temporary file is left.
-calls  The n-th call of a random function of the system, or of memory, threads or processes, fails once (attack.c); in
-       a quarter of the cases SIGKILL follows. The exit status is 0 with the undisturbed result, or 5 with words. What
-       is refused without a fault is refused. Then as for kills.
+kills  A command that writes gets SIGKILL at a random moment. Files that were there before are whole. The same command,
+       or the same with --force where its file is there already, then ends with 0. Its files are those of an
+       undisturbed run, and no temporary file is left.
+calls  The n-th call of a random function of the system, or of memory, threads or processes, fails once (attack.c).
+       For a quarter of the commands that write, SIGKILL follows. The command gives its usual exit status and result,
+       or it ends with 5 and an error message. Then as for kills.
 flips  One bit of a result, journal, ledger, merge or table is wrong, and a command reads it. The exit status is a
        documented one, with words that name a file. With 0 a figure may differ only if no checksum covers the bit, and
        `hifdm diff` finds each changed value. What is only read, or refused, is not changed.
+
+Kills and calls that struck nothing do not count: cases are drawn until as many as asked for have struck.
 
 Each case follows from the seed, its kind and its number. The moments of kills depend on the machine, too, and so does
 the content of files with times and of the result of a killed run. Cases and commands are in attack_cases.py. It needs
@@ -39,6 +42,7 @@ LIMIT_S = 60  # a command that takes longer hangs
 CALLS = re.findall(r'^ {4}\{"(\w+)"', (HERE / "attack.c").read_text(), re.M)
 BY_BYTES = 64  # of the name of the library that made the call
 COMMANDS = {**cases.WRITERS, **cases.OTHERS}
+MISSED = ("ended before the kill", "not reached")
 HDF5_CRASH = "HDF5 crashed when its set-up got no memory"
 Told = collections.namedtuple("Told", "status out err")
 Whole = collections.namedtuple("Whole", "told folder seconds counts")  # what an undisturbed command did
@@ -208,7 +212,7 @@ class Attack:
         left = sorted({"a temporary file" if is_temporary(n) else "a journal" if n.endswith(".journal") else "files"
                        for n in names_in(place.out)})
         wrong += place.losses(before, self.whole[name]) + place.again(words, self.whole[name])
-        outcome = f"killed, left {' and '.join(left) or 'nothing'}" if told.status else "ended before the kill"
+        outcome = f"killed, left {' and '.join(left) or 'nothing'}" if told.status else MISSED[0]
         return f"{name}, after {1e3 * moment_s:.1f} ms", outcome, wrong
 
     def calls(self, place, r):
@@ -244,7 +248,7 @@ class Attack:
             (place.folder / kept).unlink()
         wrong += place.again(words, whole, "cannot remove the earlier result" in told.err)
         return (f"{name}, {call} {n} of {whole.counts[call]}, {error}{', then a kill' if kill_s else ''}",
-                outcome if counts["struck"] else "not reached", wrong)
+                outcome if counts["struck"] else MISSED[1], wrong)
 
     def flips(self, place, r):
         source = r.choices(list(cases.DAMAGED), [len(d[2]) + 2 for d in cases.DAMAGED.values()])[0]
@@ -315,14 +319,25 @@ def judge_flip(place, source, words, whole, told, path, data, inside):
     return wrong + [f"{n} is left" for n in names_in(place.out) if is_temporary(n)]
 
 
+def machine(o):
+    """What was attacked, how, and where."""
+    said = subprocess.run([o.program, "version"], capture_output=True, text=True, check=True).stdout.splitlines()[0]
+    lapack = os.path.realpath("/etc/alternatives/liblapack.so.3-x86_64-linux-gnu")
+    processor = re.search(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(), re.M)
+    return [f"{said}; attack.py --seed {o.seed} --kills {o.kills} --calls {o.calls} --flips {o.flips}",
+            f"{processor.group(1) if processor else 'unknown'}, {os.cpu_count()} cores; Linux {os.uname().release}; "
+            f"{'/'.join(lapack.split('/')[-2:])}", ""]
+
+
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--program", default="build/hifdm")
     options.add_argument("--out", default="build/attack", help="the folder to work in")
-    options.add_argument("--seed", type=int, default=int(time.time()))
+    options.add_argument("--seed", type=lambda text: int(text, 0), default=int(time.time()))
     for kind, n in (("kills", 200), ("calls", 500), ("flips", 5000)):
         options.add_argument(f"--{kind}", type=int, default=n)
     options.add_argument("--jobs", type=int, default=2)
+    options.add_argument("--log", help="a file for what is printed")
     options.add_argument("--only", help="KIND:NUMBER")
     o = options.parse_args()
     root, start = Path(o.out).resolve(), time.time()
@@ -334,27 +349,38 @@ def main():
     subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-w", HERE / "attack.c", "-o", o.library, "-ldl"], check=True)
     o.program = shutil.copy(o.program, root / "hifdm")  # a build meanwhile does not disturb
     attack = Attack(o, root)
-    todo = [(kind, i) for kind in ("kills", "calls", "flips") for i in range(getattr(o, kind))]
     if o.only:
-        todo, o.jobs = [(o.only.split(":")[0], int(o.only.split(":")[1]))], 1
+        o.jobs = 1
     places = [Place(o, root / str(i), root / "base") for i in range(o.jobs)]
     for place in places:
         place.known = {}
 
     def work(i):
-        return [attack.one(*case, places[i]) for case in todo[i::o.jobs]]
+        if o.only:
+            kind, number = o.only.split(":")
+            return [attack.one(kind, int(number), places[i])]
+        found = []
+        for kind in ("kills", "calls", "flips"):
+            struck, number = 0, i
+            while struck < len(range(i, getattr(o, kind), o.jobs)):
+                found.append(attack.one(kind, number, places[i]))
+                struck, number = struck + (found[-1][3] not in MISSED), number + o.jobs
+        return found
 
     with concurrent.futures.ThreadPoolExecutor(o.jobs) as pool:
         found = [case for part in pool.map(work, range(o.jobs)) for case in part]
+    lines = machine(o)
     for kind, number, done, outcome, wrong in found:
-        for words in wrong:
-            print(f"violation: seed {o.seed}, {kind}:{number}, {done}: {' '.join(words.split())}")
+        lines += [f"violation: seed {o.seed}, {kind}:{number}, {done}: {' '.join(words.split())}" for words in wrong]
         if o.only:
-            print(f"{kind}:{number}, {done}: {outcome}", *places[0].log, sep="\n")
-    for (kind, outcome), n in sorted(collections.Counter((case[0], case[3]) for case in found).items()):
-        print(f"{kind}  {n:5}  {outcome}")
-    n_wrong = sum(bool(case[4]) for case in found)
-    print(f"{len(found)} cases, {n_wrong} with violations, {time.time() - start:.0f} s")
+            lines += [f"{kind}:{number}, {done}: {outcome}", *places[0].log]
+    lines += [f"{kind}  {n:5}  {outcome}"
+              for (kind, outcome), n in sorted(collections.Counter((case[0], case[3]) for case in found).items())]
+    n_wrong, n_struck = sum(bool(case[4]) for case in found), sum(case[3] not in MISSED for case in found)
+    lines.append(f"{n_struck} cases, {n_wrong} with violations, {time.time() - start:.0f} s")
+    print("\n".join(lines))
+    if o.log:
+        Path(o.log).write_text("\n".join(lines) + "\n")
     sys.exit(1 if n_wrong else 0)
 
 

@@ -14,14 +14,24 @@ def names_in(folder):
             if (p.is_file() or p.is_symlink()) and p.suffix != ".tsv" and p.name != "claims"}
 
 
-def rows_of(folder):
-    """The rows of a sweep in all its tables, without times."""
+def rows_of(folder, finished=False):
+    """The rows of a sweep in all its tables, without times; of finished points alone, because a point that was stopped
+    has one more."""
     rows = set()
     for path in folder.glob("s.d/*.tsv"):
-        head, *lines = (line.split("\t") for line in path.read_text().splitlines())
+        head, *lines = (line.split("\t") for line in path.read_text(errors="replace").splitlines() or [""])
         rows |= {tuple(cell for name, cell in zip(head, line) if not name.endswith(("wall_s", "cpu_s")))
-                 for line in lines}
+                 for line in lines if not finished or dict(zip(head, line)).get("//finished") == "1"}
     return rows
+
+
+def attributes_of(path):
+    """{(object, attribute): value} of a result, without times and without what tells of its session (the root's)."""
+    found = {}
+    with h5py.File(path) as file:
+        file.visititems(lambda name, item: found.update({(name, k): str(v) for k, v in item.attrs.items()
+                                                         if not k.endswith("_s") and name != "case"}))
+    return found
 
 
 def records_of(path):
