@@ -262,20 +262,6 @@ static void step_back(const hf_moves_problem *p, const tensions *t, int *steps, 
     }
 }
 
-/* The best steps of the cables of a list, all others at 0; with t those that tensions allow. move_m: [n] scratch.
- * Returns the sum of squares, INFINITY without memory. */
-static double fit_steps(const hf_moves_problem *p, int n, const int *list, const tensions *t, int *steps,
-                        double *move_m)
-{
-    memset(steps, 0, (size_t)p->n * sizeof *steps);
-    if (fit_list(p, n, list, t, move_m) != HF_OK) return (double)INFINITY;
-    for (int i = 0; i < n; i++)
-        steps[list[i]] = within(p, move_m[i] / p->step_m);
-    if (t) step_back(p, t, steps, move_m);
-    descend(p, n, list, t, steps);
-    return hf_moves_square(p, steps);
-}
-
 /* ---- which cables ---- */
 
 typedef struct {
@@ -286,7 +272,8 @@ typedef struct {
     double *gain;      /* [n] scratch */
     double least;      /* sum of squares of `best` */
     tensions tensions;
-    bool is_held; /* something better was not allowed */
+    bool is_held;     /* something better was not allowed */
+    hf_status status; /* HF_NO_MEMORY: a fit could not be made, so the choice means nothing */
 } choice;
 
 static void lay_out_choice(hf_arena *arena, size_t n, choice *c)
@@ -344,16 +331,33 @@ static int find_candidates(choice *c, int candidate[SHORT_LIST])
     return n;
 }
 
+/* Sets c->trial to the best steps of the cables of the list, and to 0 of all others; with t those that tensions allow.
+ * Returns the sum of squares, INFINITY without memory. */
+static double fit_steps(choice *c, const tensions *t)
+{
+    const hf_moves_problem *p = c->p;
+    memset(c->trial, 0, (size_t)p->n * sizeof *c->trial);
+    if (fit_list(p, c->n_list, c->list, t, c->move_m) != HF_OK) {
+        c->status = HF_NO_MEMORY;
+        return (double)INFINITY;
+    }
+    for (int i = 0; i < c->n_list; i++)
+        c->trial[c->list[i]] = within(p, c->move_m[i] / p->step_m);
+    if (t) step_back(p, t, c->trial, c->move_m);
+    descend(p, c->n_list, c->list, t, c->trial);
+    return hf_moves_square(p, c->trial);
+}
+
 /* Fit the list into c->trial, as tensions allow. Returns the sum of squares. */
 static double fit_allowed(choice *c)
 {
-    double square = fit_steps(c->p, c->n_list, c->list, NULL, c->trial, c->move_m);
+    double square = fit_steps(c, NULL);
     if (c->p->n_tension == 0 || !(square < c->least - GAIN_ROUNDING * c->p->square)) return square;
     take_list(&c->tensions, c->n_list, c->list);
     fall_by_steps(&c->tensions, c->trial, c->move_m);
     if (worst_tension(&c->tensions) < 0) return square;
     c->is_held = true;
-    return fit_steps(c->p, c->n_list, c->list, &c->tensions, c->trial, c->move_m);
+    return fit_steps(c, &c->tensions);
 }
 
 /* Put the candidate that fits best with the others into place k of the list. Whether `best` became better; else the
@@ -438,6 +442,7 @@ hf_status hf_moves_choose(const hf_moves_problem *p, int *steps, hf_moves_end *e
         *end = HF_MOVES_NONE;
         if (!add_cable(&c)) break;
         exchange(&c);
+        if (c.status != HF_OK) break;
         *end = HF_MOVES_DOUBT;
         if (is_doubtful(p, steps, c.best)) break;
         memcpy(steps, c.best, (size_t)p->n * sizeof *steps);
@@ -445,7 +450,7 @@ hf_status hf_moves_choose(const hf_moves_problem *p, int *steps, hf_moves_end *e
     }
     *is_held = c.is_held;
     hf_arena_free(&arena);
-    return HF_OK;
+    return c.status;
 }
 
 hf_status hf_moves_best(const hf_moves_problem *p, double *move_m)

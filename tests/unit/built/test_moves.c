@@ -252,6 +252,28 @@ START_TEST(no_room_is_no_reason_to_fail)
 }
 END_TEST
 
+/* A choice that ran out of memory is no choice, however late that was. */
+START_TEST(without_memory_there_is_no_choice)
+{
+    static example x;
+    struct rng rng = rng_start(7400);
+    int wanted[MAX_CABLES], steps[MAX_CABLES], n_failed = 0;
+    hf_moves_end end;
+    bool is_held;
+    make_example(&x, &rng, 8, 12, 3, 4);
+    ck_assert_int_eq(hf_moves_choose(&x.p, wanted, &end, &is_held), HF_OK);
+    for (long n = 1;; n++) {
+        fail_allocation_at(n);
+        hf_status status = hf_moves_choose(&x.p, steps, &end, &is_held);
+        if (!end_allocation_failure()) break;
+        ck_assert_int_eq(status, HF_NO_MEMORY);
+        n_failed++;
+    }
+    ck_assert_int_gt(n_failed, 10);
+    ck_assert_mem_eq(steps, wanted, (size_t)x.p.n * sizeof *steps);
+}
+END_TEST
+
 /* Without steps the moves are within the range, and no choice of steps is better. */
 START_TEST(the_best_is_a_bound)
 {
@@ -286,6 +308,7 @@ Suite *suite_unit_moves(void)
     tcase_add_test(tcase, the_most_promising_are_tried);
     tcase_add_test(tcase, tensions_are_kept);
     tcase_add_test(tcase, no_room_is_no_reason_to_fail);
+    tcase_add_test(tcase, without_memory_there_is_no_choice);
     tcase_add_loop_test(tcase, the_best_is_a_bound, 0, 8);
     suite_add_tcase(suite, tcase);
     return suite;
