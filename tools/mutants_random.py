@@ -8,7 +8,7 @@ working tree below build/mutants-random, which is compiled and linked anew as fa
 compile, that leaves the object code as it was, or that was drawn before is redrawn. The suites that execute the line
 (tools/mutation/coverage.py) run, the most promising first, until one fails or --cpu seconds are used. A suite also
 catches the edit if it uses more than 20 s plus three times its processor time, or if its processes all sleep for a
-minute. If none failed, they run once more with the sanitizers of `make asan`, for half as long. An edit that no suite
+minute. If none failed, they run once more with the sanitizers of `make asan`, for a quarter of the time. An edit that no suite
 executes survives.
 
 Edits of tests/mutants_equivalent.txt change no result, for the reason that stands there; with such an edit the results
@@ -65,6 +65,8 @@ class Order:
     def chance(path, suite):
         _, room, file = path.split("/")
         parts, name = suite.split("/"), re.sub(r"(_part|_kernel)?\.[ch]$", "", file)
+        if suite == "cli/transcripts":  # all that the program prints and stores
+            return 0.9 if room in ("app", "out", "run", "store", "case") else 0.2
         if parts[-1] == name or name == f"cmd_{parts[-1]}":
             return 0.6
         if name.startswith(parts[-1]) or parts[-1].startswith(name) or parts[-1] in name.split("_"):
@@ -176,7 +178,7 @@ class Runner:
             try:
                 if self.sanitized.apply(edit, text, log) != "built":
                     return outcome, by, spent_s
-                last, by, more_s = self.try_suites(edit, text, self.sanitized, log, self.o.cpu / 2)
+                last, by, more_s = self.try_suites(edit, text, self.sanitized, log, self.o.cpu / 4)
             finally:
                 self.sanitized.revert()
         return (outcome if last.startswith("SURVIVED") else f"{last} with sanitizers"), by, spent_s + more_s
