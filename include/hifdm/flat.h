@@ -28,8 +28,8 @@ typedef struct hf_flat hf_flat;
 int hf_flat_interface(void);       /* HF_FLAT_INTERFACE of the library */
 const char *hf_flat_version(void); /* of the library, "0.1.0" */
 
-/* The word of a code, NULL beyond the last; and the code of a word, -1 where there is none. `list`: "role", "group",
- * "law", "phase", "stop_reason", "bound_reason", "coupling_stop"; of statuses see status.h. */
+/* The word of a code, NULL where there is none; and the code of a word, -1 where there is none. `list`: "role", "group",
+ * "law", "phase", "status", "stop_reason", "bound_reason", "coupling_stop". */
 const char *hf_flat_word(const char *list, int code);
 int hf_flat_code(const char *list, const char *word);
 

@@ -55,6 +55,8 @@ static const char *word_at(const char *const *word, int n, int i)
     return i >= 0 && i < n ? word[i] : NULL;
 }
 
+#define CODE_MAX 127 /* of a list of words */
+
 static const char *known(const char *word)
 {
     return strcmp(word, "unknown") ? word : NULL;
@@ -75,9 +77,10 @@ const char *hf_flat_word(const char *list, int code)
 
 int hf_flat_code(const char *list, const char *word)
 {
-    const char *at;
-    for (int code = 0; (at = hf_flat_word(list, code)) != NULL; code++)
-        if (!strcmp(at, word)) return code;
+    for (int code = 0; code <= CODE_MAX; code++) { /* those of statuses have gaps */
+        const char *at = hf_flat_word(list, code);
+        if (at && !strcmp(at, word)) return code;
+    }
     return -1;
 }
 

@@ -96,6 +96,9 @@ START_TEST(what_is_read_has_its_size)
     hf_flat_free(flat);
     ck_assert_int_eq(hf_flat_code("law", "elastic"), 3);
     ck_assert_int_eq(hf_flat_code("law", "spring"), -1);
+    ck_assert_int_eq(hf_flat_code("status", "bad_usage"), HF_BAD_USAGE);
+    ck_assert_int_eq(hf_flat_code("status", "interrupted"), HF_INTERRUPTED);
+    ck_assert_int_eq(hf_flat_code("status", "unknown"), -1);
     ck_assert_str_eq(hf_flat_word("phase", 3), "tolerance");
     ck_assert_ptr_null(hf_flat_word("phase", 4));
 }
