@@ -32,7 +32,7 @@ extern "C" {
 #define HF_INTERIOR_BLOCK 416
 #define HF_INTERIOR_ITEMS(m) (HF_INTERIOR_BLOCK * (((size_t)(m)->n_cable + 7) / 8))
 
-/* Doubles of the proof of a bound (src/solve/refine.h): per cable, of the truss (src/solve/flexibility.h), in all. */
+/* Doubles of the proof of a bound (src/solve/precise.h): per cable, of the truss (src/solve/flexibility.h), in all. */
 #define HF_BOUND_CABLE_ITEMS 14
 #define HF_BOUND_CHUNK 128
 #define HF_BOUND_WINDOW(m) (3 * (size_t)(m)->n_attachment * (3 * (size_t)(m)->half_bandwidth + 2 + HF_BOUND_CHUNK))

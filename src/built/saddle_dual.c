@@ -268,7 +268,7 @@ static bool goes_on(const hf_saddle_dual *d, refinement *r)
 }
 
 /* At most HF_SADDLE_DUAL_PANEL right-hand sides. Are all residuals small? */
-static bool refine(const hf_saddle_dual *d, int n, double *band)
+static bool refine_iteratively(const hf_saddle_dual *d, int n, double *band)
 {
     refinement all[HF_SADDLE_DUAL_PANEL], *open[HF_SADDLE_DUAL_PANEL];
     size_t length = 2 * (size_t)d->n;
@@ -299,7 +299,8 @@ bool hf_saddle_dual_solve(const hf_saddle_dual *d, int n, double *band)
 {
     const int panel = HF_SADDLE_DUAL_PANEL;
     for (int first = 0; first < n; first += panel)
-        if (!refine(d, n - first < panel ? n - first : panel, band + 2 * (ptrdiff_t)first * d->n)) return false;
+        if (!refine_iteratively(d, n - first < panel ? n - first : panel, band + 2 * (ptrdiff_t)first * d->n))
+            return false;
     return true;
 }
 
@@ -334,5 +335,5 @@ bool hf_saddle_dual_factor(hf_saddle_dual *d, const double *sigma_m, const doubl
         d->solution[i] = i % 7 < 3 ? 1 : -1; /* what the probe is made of */
     memset(d->probe, 0, 2 * (size_t)d->n * sizeof *d->probe);
     take_off_product(d, d->solution, d->probe);
-    return refine(d, 1, d->probe);
+    return refine_iteratively(d, 1, d->probe);
 }

@@ -354,7 +354,7 @@ static void sum_forces(hf_sensitivity *s, const hf_workspace *w)
 
 /* A stiff spring as a 3 x 3 block rounds off what holds its nodes across, by up to 1e-7 of the moves. Forces that are
  * summed cable by cable do not: one more solve takes out what of them is left on the nodes, and on the truss. */
-static void refine(hf_sensitivity *s, const hf_workspace *w)
+static void refine_iteratively(hf_sensitivity *s, const hf_workspace *w)
 {
     const hf_model *m = s->v->model;
     size_t n_free = 3 * (size_t)m->n_free, n_attachment = 3 * (size_t)m->n_attachment;
@@ -395,7 +395,7 @@ static void harden(hf_sensitivity *s, const hf_workspace *w)
     }
     solve(s, w);
     move_supports(s);
-    refine(s, w);
+    refine_iteratively(s, w);
 }
 
 hf_status hf_sensitivity_find(hf_sensitivity *s, hf_workspace *w)

@@ -1,13 +1,13 @@
 /* Contents: sums at nodes - the least eigenvalue - independent lengths - the radius of the ball - the proof. The found
- * shape is refined at twice the precision (refine.c). What is then out of balance is so small that a crude proof
- * suffices: the energy is larger on the surface of a tiny ball around the refined shape than within it, so that every
- * equilibrium lies in the ball. The bound is the distance to the refined shape, plus the radius of the ball (METHOD
+ * shape is computed to twice the precision (precise.c). What is then out of balance is so small that a crude proof
+ * suffices: the energy is larger on the surface of a tiny ball around the precise shape than within it, so that every
+ * equilibrium lies in the ball. The bound is the distance to the precise shape, plus the radius of the ball (METHOD
  * section 3). */
 #include "solve/bound.h"
 
 #include "linalg/band.h"
 #include "solve/newton_matrix.h"
-#include "solve/refine.h"
+#include "solve/precise.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,42 +19,42 @@
 
 /* ---- sums at nodes ---- */
 
-static double one(const hf_refined *p, int e)
+static double one(const hf_precise *p, int e)
 {
     (void)p, (void)e;
     return 1;
 }
 
 /* phi'', N/m; of a rigid law the stiffness that the proof adds. */
-static double stiffness_of(const hf_refined *p, int e)
+static double stiffness_of(const hf_precise *p, int e)
 {
     hf_law_cable cable = hf_workspace_cable(p->m, p->w, e);
     double k = hf_law_stiffness_N_per_m(cable, INFINITY);
     return isinf(k) ? p->cable[e].along : k;
 }
 
-static double stiffness_sum(const hf_refined *p, int e)
+static double stiffness_sum(const hf_precise *p, int e)
 {
     return stiffness_of(p, e) + p->cable[e].across;
 }
 
 /* The same without what the proof adds, which has no gradient where the lengths are exact. */
-static double own_stiffness_sum(const hf_refined *p, int e)
+static double own_stiffness_sum(const hf_precise *p, int e)
 {
     bool is_rigid = hf_law_has((hf_law)p->w->law[e], HF_LAW_IS_RIGID);
     return (is_rigid ? 0 : stiffness_of(p, e)) + p->cable[e].across;
 }
 
 /* The Hessian of a cable of law force_density does not depend on the shape. */
-static double stiffness_change(const hf_refined *p, int e)
+static double stiffness_change(const hf_precise *p, int e)
 {
     return hf_newton_matrix_is_spring((hf_law)p->w->law[e]) ? 0 : stiffness_sum(p, e) / p->cable[e].length;
 }
 
 /* What the rounding of a pull is relative to, N. */
-static double rounded_force(const hf_refined *p, int e)
+static double rounded_force(const hf_precise *p, int e)
 {
-    const hf_refined_cable *c = p->cable + e;
+    const hf_precise_cable *c = p->cable + e;
     bool is_elastic = hf_law_has((hf_law)p->w->law[e], HF_LAW_NEEDS_EA);
     return (c->across + (is_elastic ? 2 * stiffness_of(p, e) : 0)) * c->length;
 }
@@ -63,11 +63,11 @@ static double rounded_force(const hf_refined *p, int e)
 
 /* Sets `along` to the stiffness of the proof: that of the law, but at most the largest `across`, which is less than the
  * true one and rounds off less; and as much for a cable of law length. */
-static void set_proof_stiffness(hf_refined *p)
+static void set_proof_stiffness(hf_precise *p)
 {
     double most = 0;
     for (int e = 0; e < p->m->n_cable; e++)
-        if (!hf_refine_is_fixed(p->m, e)) most = fmax(most, p->cable[e].across);
+        if (!hf_precise_is_fixed(p->m, e)) most = fmax(most, p->cable[e].across);
     for (int e = 0; e < p->m->n_cable; e++) {
         double k = hf_law_stiffness_N_per_m(hf_workspace_cable(p->m, p->w, e), INFINITY);
         p->cable[e].along = p->cable[e].is_taut > 0 ? fmin(k, most) : 0;
@@ -75,14 +75,14 @@ static void set_proof_stiffness(hf_refined *p)
 }
 
 /* Assembles the matrix of the proof. Returns its largest diagonal entry. */
-static double assemble_proof(hf_refined *p, double **band, int *n, int *k)
+static double assemble_proof(hf_precise *p, double **band, int *n, int *k)
 {
     const hf_model *m = p->m;
     if (m->has_newton) {
         *band = p->w->newton_band;
         *n = hf_newton_matrix_dofs(m);
         *k = 3 * m->half_bandwidth + 2;
-        return hf_newton_matrix_assemble_blocks(m, p->w, hf_refine_block);
+        return hf_newton_matrix_assemble_blocks(m, p->w, hf_precise_block);
     }
     double largest = 0;
     *band = p->w->band;
@@ -106,27 +106,27 @@ static double rounding_of(int n, int k, double degree, double largest)
 /* Returns a lower bound of the least eigenvalue for the free nodes of the Hessian of net and truss, from which a part
  * TRUSS_LEFT of the truss's own energy is left out, N/m; 0 when the Hessian less `shift` and rounding has no factor.
  * The bound is so small that |L s| is at most the norm of the ball, in which |s|^2 counts TRUSS_LEFT / bound times. */
-static double least_on_truss(hf_refined *p, double shift, const hf_flexibility_rounding *rounding)
+static double least_on_truss(hf_precise *p, double shift, const hf_flexibility_rounding *rounding)
 {
-    hf_refined_truss *t = &p->truss;
+    hf_precise_truss *t = &p->truss;
     double *band;
     int n, k;
     assemble_proof(p, &band, &n, &k);
     for (int i = 0; i < n; i++)
         band[(size_t)i * (size_t)(k + 1)] -= shift + rounding->free * band[(size_t)i * (size_t)(k + 1)];
     if (hf_band_factor(n, k, band) != 0 ||
-        !hf_flexibility_factor_net(p->m, p->w, hf_refine_block, rounding, 1 - TRUSS_LEFT, &t->flexibility))
+        !hf_flexibility_factor_net(p->m, p->w, hf_precise_block, rounding, 1 - TRUSS_LEFT, &t->flexibility))
         return 0;
     double least = shift - rounding->free_N_per_m;
     return t->flexibility.trace > 0 ? fmin(least, TRUSS_LEFT / t->flexibility.trace) : least;
 }
 
-/* A lower bound of the least eigenvalue of the Hessian of net and truss at the refined shape, N/m; 0 when there is no
+/* A lower bound of the least eigenvalue of the Hessian of net and truss at the precise shape, N/m; 0 when there is no
  * proof. `guess` is tried first. */
-static double least_eigenvalue_on_truss(hf_refined *p, double guess)
+static double least_eigenvalue_on_truss(hf_precise *p, double guess)
 {
     hf_flexibility_rounding rounding = hf_flexibility_rounding_of(
-        p->m, &p->truss.flexibility, hf_refine_largest_sum(p, hf_refine_matrix_sum), hf_refine_largest_sum(p, one));
+        p->m, &p->truss.flexibility, hf_precise_largest_sum(p, hf_precise_matrix_sum), hf_precise_largest_sum(p, one));
     double smallest = 2 * rounding.free_N_per_m;
     for (;; guess *= SHARE_OF_LAST) {
         double least = least_on_truss(p, fmax(guess, smallest), &rounding);
@@ -134,12 +134,12 @@ static double least_eigenvalue_on_truss(hf_refined *p, double guess)
     }
 }
 
-/* A lower bound of the least eigenvalue of the Hessian at the refined shape, N/m; 0 when there is no proof. `guess` is
+/* A lower bound of the least eigenvalue of the Hessian at the precise shape, N/m; 0 when there is no proof. `guess` is
  * tried first. */
-static double least_eigenvalue(hf_refined *p, double guess)
+static double least_eigenvalue(hf_precise *p, double guess)
 {
     int n, k;
-    double *band, degree = hf_refine_largest_sum(p, one);
+    double *band, degree = hf_precise_largest_sum(p, one);
     for (;;) {
         double largest = assemble_proof(p, &band, &n, &k);
         double rounding = rounding_of(n, k, degree, largest), shift = fmax(guess, 2 * rounding);
@@ -152,13 +152,13 @@ static double least_eigenvalue(hf_refined *p, double guess)
     }
 }
 
-/* A bound of the norm of the change of the block of a taut cable between the found and the refined shape, N/m, but
+/* A bound of the norm of the change of the block of a taut cable between the found and the precise shape, N/m, but
  * for an eighth of its stiffness along the cable: of the pull over the length, of the direction, and what the proof
  * adds for an error of length. */
-static double block_change(const hf_refined *p, int e)
+static double block_change(const hf_precise *p, int e)
 {
     const hf_model *m = p->m;
-    const hf_refined_cable *c = p->cable + e;
+    const hf_precise_cable *c = p->cable + e;
     hf_law_cable cable = hf_workspace_cable(m, p->w, e);
     if (hf_newton_matrix_is_spring(cable.law)) return 0;
     double u[3], length = hf_newton_matrix_direction(m, p->w->position_m, e, u), square = 0;
@@ -177,26 +177,26 @@ static double block_change(const hf_refined *p, int e)
            8 * along * turn * turn + along * over / length;
 }
 
-/* A lower bound of the least eigenvalue at the refined shape from one at the found shape; 0 when they are too far
+/* A lower bound of the least eigenvalue at the precise shape from one at the found shape; 0 when they are too far
  * apart. (u'.y)^2 >= 7/8 (u.y)^2 - 8 |u' - u|^2 |y|^2, so that a turned stiff cable costs little. */
-static double carried_over(const hf_refined *p, double least)
+static double carried_over(const hf_precise *p, double least)
 {
     for (int e = 0; e < p->m->n_cable; e++)
         if (!(p->cable[e].is_taut > 0) && p->w->tension_N[e] != 0) return 0; /* was in the matrix */
-    double now = 0.875 * least - 2.01 * hf_refine_largest_sum(p, block_change);
+    double now = 0.875 * least - 2.01 * hf_precise_largest_sum(p, block_change);
     return now > least / 4 ? now : 0;
 }
 
 /* ---- independent lengths ---- */
 
-static bool is_active(const hf_refined *p, int e)
+static bool is_active(const hf_precise *p, int e)
 {
     bool is_rigid = hf_law_has((hf_law)p->w->law[e], HF_LAW_IS_RIGID);
-    return is_rigid && p->cable[e].is_taut > 0 && !hf_refine_is_fixed(p->m, e);
+    return is_rigid && p->cable[e].is_taut > 0 && !hf_precise_is_fixed(p->m, e);
 }
 
 /* First or last free row of an active cable. */
-static int free_row(const hf_refined *p, int e, bool last)
+static int free_row(const hf_precise *p, int e, bool last)
 {
     int a = p->m->end_row[2 * e], b = p->m->end_row[2 * e + 1], low = a < b ? a : b, high = a < b ? b : a;
     return last && high < p->m->n_free ? high : low;
@@ -204,7 +204,7 @@ static int free_row(const hf_refined *p, int e, bool last)
 
 /* Writes the taut cables of law length into `order` [3 n_free] by their first free row. Returns their number; 0 and
  * *too_many when there are more than unknowns, which no shape obeys but by chance. */
-static int order_active(const hf_refined *p, int *order, bool *too_many)
+static int order_active(const hf_precise *p, int *order, bool *too_many)
 {
     int n = 0;
     *too_many = false;
@@ -221,7 +221,7 @@ static int order_active(const hf_refined *p, int *order, bool *too_many)
 }
 
 /* Product of the derivatives of the lengths of two cables by the free nodes. *meets: they share one. */
-static double length_product(const hf_refined *p, int e, int f, bool *meets)
+static double length_product(const hf_precise *p, int e, int f, bool *meets)
 {
     const double *u = p->cable[e].unit, *v = p->cable[f].unit;
     double inner = u[0] * v[0] + u[1] * v[1] + u[2] * v[2], sum = 0;
@@ -238,7 +238,7 @@ static double length_product(const hf_refined *p, int e, int f, bool *meets)
 
 /* A lower bound of the least singular value of the derivative of the lengths of the n cables in `order`; 0 when there
  * is no proof. The matrix of their products takes the place of the Newton matrix. */
-static double least_length_change(const hf_refined *p, const int *order, int n)
+static double least_length_change(const hf_precise *p, const int *order, int n)
 {
     double *band = p->w->newton_band;
     bool meets;
@@ -266,14 +266,14 @@ static double least_length_change(const hf_refined *p, const int *order, int n)
 /* ---- the radius of the ball ---- */
 
 /* Radius within which there is a shape with the exact lengths; -1 when there is no proof. */
-static double lengths_radius(const hf_refined *p)
+static double lengths_radius(const hf_precise *p)
 {
     double square = 0, bend = 0;
     bool too_many;
     int n = order_active(p, p->w->newton_integer_work, &too_many);
     if (n == 0) return too_many ? -1 : 0;
     for (int k = 0; k < n; k++) {
-        const hf_refined_cable *c = p->cable + p->w->newton_integer_work[k];
+        const hf_precise_cable *c = p->cable + p->w->newton_integer_work[k];
         double over = fabs(c->over.hi) + 128 * HF_TWOFOLD_UNIT * c->length;
         square += over * over;
         bend += 1 / (c->length * c->length);
@@ -284,13 +284,13 @@ static double lengths_radius(const hf_refined *p)
 
 /* Whether cables stay slack or taut within the radius. One that is not long against it: forces that only rounding has
  * left move so soft a net that far. */
-static hf_bound_reason stays_apart(const hf_refined *p, double radius)
+static hf_bound_reason stays_apart(const hf_precise *p, double radius)
 {
     double move = 1.5 * radius;
     for (int e = 0; e < p->m->n_cable; e++) {
-        const hf_refined_cable *c = p->cable + e;
+        const hf_precise_cable *c = p->cable + e;
         hf_law law = (hf_law)p->w->law[e];
-        if (hf_refine_is_fixed(p->m, e) || hf_newton_matrix_is_spring(law)) continue;
+        if (hf_precise_is_fixed(p->m, e) || hf_newton_matrix_is_spring(law)) continue;
         if (!(move < INSIDE_LENGTH * c->length)) return HF_BOUND_NOT_DEFINITE;
         if (!hf_law_has(law, HF_LAW_HAS_MULTIPLIER)) continue;
         bool is_rigid = hf_law_has(law, HF_LAW_IS_RIGID);
@@ -304,7 +304,7 @@ static hf_bound_reason stays_apart(const hf_refined *p, double radius)
 
 /* What rounding at twice the precision adds to the gradient: of the gap, whose part in it is at most the error of the
  * pull, and of the places of the attachments. */
-static double rounding_of_truss(const hf_refined *p)
+static double rounding_of_truss(const hf_precise *p)
 {
     const hf_model *m = p->m;
     double pull = 0, move_m = 0;
@@ -315,13 +315,13 @@ static double rounding_of_truss(const hf_refined *p)
     }
     for (int k = 0; k < p->truss.flexibility.rank; k++)
         move_m += fabs(p->truss.s[k].hi) * sqrt(p->truss.flexibility.trace);
-    double stiffness = 6 * hf_refine_largest_sum(p, stiffness_sum);
+    double stiffness = 6 * hf_precise_largest_sum(p, stiffness_sum);
     return HF_TWOFOLD_UNIT * (16 + 48.0 * m->n_attachment) * (pull + stiffness * move_m);
 }
 
-/* Sets *radius of the ball around the refined shape that holds every equilibrium, m, from a lower bound of the least
+/* Sets *radius of the ball around the precise shape that holds every equilibrium, m, from a lower bound of the least
  * eigenvalue there. */
-static hf_bound_reason find_radius(hf_refined *p, double least, double *radius)
+static hf_bound_reason find_radius(hf_precise *p, double least, double *radius)
 {
     const hf_model *m = p->m;
     double square = 0, lengths = 0;
@@ -333,26 +333,26 @@ static hf_bound_reason find_radius(hf_refined *p, double least, double *radius)
     for (int k = 0; k < p->truss.flexibility.rank; k++)
         square += least / TRUSS_LEFT * p->truss.gap[k].hi * p->truss.gap[k].hi;
     double rounding =
-        HF_TWOFOLD_UNIT * (128 + 4 * hf_refine_largest_sum(p, one)) * hf_refine_largest_sum(p, rounded_force);
+        HF_TWOFOLD_UNIT * (128 + 4 * hf_precise_largest_sum(p, one)) * hf_precise_largest_sum(p, rounded_force);
     double parts = m->n_attachment ? 2 : 1; /* of the gradient: by the free nodes, and by s */
     double force = 1.0001 * sqrt(square) + rounding * sqrt(3 * parts * p->n_moving) + rounding_of_truss(p);
-    double norm = 3 * parts * hf_refine_largest_sum(p, own_stiffness_sum),
-           change = 8 * hf_refine_largest_sum(p, stiffness_change);
+    double norm = 3 * parts * hf_precise_largest_sum(p, own_stiffness_sum),
+           change = 8 * hf_precise_largest_sum(p, stiffness_change);
     *radius = lengths + 4.1 * (force + norm * lengths) / least;
     if (!(change * *radius <= least / 2)) return HF_BOUND_NOT_DEFINITE;
     return stays_apart(p, *radius);
 }
 
-/* By the matrix of the found shape, if its least eigenvalue is known and the refined one is near; else by one of the
- * refined shape. */
-static hf_bound_reason prove_radius(hf_refined *p, double least_N_per_m, double moved_m, double *radius)
+/* By the matrix of the found shape, if its least eigenvalue is known and the precise one is near; else by one of the
+ * precise shape. */
+static hf_bound_reason prove_radius(hf_precise *p, double least_N_per_m, double moved_m, double *radius)
 {
     if (least_N_per_m > 0 && p->is_first_matrix) {
         double least = carried_over(p, least_N_per_m);
         if (least > 0 && find_radius(p, least, radius) == HF_BOUND_PROVEN && *radius <= SMALL * moved_m)
             return HF_BOUND_PROVEN;
     }
-    double guess = hf_refine_guess(p);
+    double guess = hf_precise_guess(p);
     set_proof_stiffness(p);
     double least = p->m->n_attachment ? least_eigenvalue_on_truss(p, guess) : least_eigenvalue(p, guess);
     return find_radius(p, least, radius);
@@ -360,8 +360,8 @@ static hf_bound_reason prove_radius(hf_refined *p, double least_N_per_m, double 
 
 /* ---- the proof ---- */
 
-/* Largest distance of a node to its refined place. */
-static double largest_move(const hf_refined *p)
+/* Largest distance of a node to its precise place. */
+static double largest_move(const hf_precise *p)
 {
     const hf_model *m = p->m;
     double largest = 0;
@@ -377,7 +377,7 @@ static double largest_move(const hf_refined *p)
     return sqrt(largest) * (1 + 16 * HF_UNIT);
 }
 
-static hf_twofold refined_psi(const hf_refined *p)
+static hf_twofold precise_psi(const hf_precise *p)
 {
     const hf_model *m = p->m;
     hf_twofold sum = {0, 0};
@@ -392,7 +392,7 @@ static hf_twofold refined_psi(const hf_refined *p)
 
 void hf_bound_prove(const hf_model *m, bool has_factor, double least_N_per_m, hf_workspace *w, hf_form_result *r)
 {
-    hf_refined p;
+    hf_precise p;
     double radius = 0, moved_m = 0;
     r->position_bound_m = r->psi_bound_m = (double)NAN;
     r->bound_reason = m->has_strut ? HF_BOUND_STRUTS : r->n_loose ? HF_BOUND_LOOSE : HF_BOUND_NO_MATRIX;
@@ -400,14 +400,14 @@ void hf_bound_prove(const hf_model *m, bool has_factor, double least_N_per_m, hf
     int n_moving = w->n_moving;
     w->n_moving = m->n_free + m->n_attachment;
     r->bound_reason = HF_BOUND_TRUSS;
-    if (hf_refine_open(m, w, r->condition, &p)) r->bound_reason = hf_refine_approach(&p, has_factor);
+    if (hf_precise_open(m, w, r->condition, &p)) r->bound_reason = hf_precise_approach(&p, has_factor);
     if (r->bound_reason == HF_BOUND_PROVEN) {
         moved_m = largest_move(&p);
         r->bound_reason = prove_radius(&p, least_N_per_m, moved_m, &radius);
     }
     w->n_moving = n_moving;
     if (r->bound_reason != HF_BOUND_PROVEN) return;
-    hf_twofold psi = hf_twofold_subtract(refined_psi(&p), hf_twofold_of(r->psi_m));
+    hf_twofold psi = hf_twofold_subtract(precise_psi(&p), hf_twofold_of(r->psi_m));
     r->position_bound_m = moved_m + radius;
     /* the ball is one of all coordinates together */
     double error_m = HF_TWOFOLD_UNIT * (64 + 4.0 * m->n_inner_node) * r->psi_m + radius / sqrt(m->n_inner_node);

@@ -1,7 +1,7 @@
-/* refine_kernel - a measure of HF_LANES cables side by side at twice the precision, compiled once for each instruction
- * set; refine.c chooses one at run time. All give the same bits. */
-#ifndef HIFDM_REFINE_KERNEL_H
-#define HIFDM_REFINE_KERNEL_H
+/* precise_kernel - a measure of HF_LANES cables side by side at twice the precision, compiled once for each instruction
+ * set; precise.c chooses one at run time. All give the same bits. */
+#ifndef HIFDM_PRECISE_KERNEL_H
+#define HIFDM_PRECISE_KERNEL_H
 
 #include "base/lane.h"
 
@@ -19,10 +19,10 @@ typedef struct {
     double over[2][HF_LANES];                   /* length less target, or less target (1 + T/EA) */
     double q[HF_LANES];                         /* pull over length, N/m */
     double pull[3][2][HF_LANES];                /* on the first end, N */
-} hf_refine_lanes;
+} hf_precise_lanes;
 
 /* by_law: elastic cables pull with what their law gives at their length, else with T. */
-typedef void hf_refine_measure(hf_refine_lanes *lanes, bool by_law);
-hf_refine_measure hf_refine_measure_portable, hf_refine_measure_avx2, hf_refine_measure_avx512;
+typedef void hf_precise_measure(hf_precise_lanes *lanes, bool by_law);
+hf_precise_measure hf_precise_measure_portable, hf_precise_measure_avx2, hf_precise_measure_avx512;
 
 #endif

@@ -3,17 +3,17 @@
 #include "support.h"
 
 #include "linalg/twofold.h"
-#include "solve/refine_kernel.h"
+#include "solve/precise_kernel.h"
 
 #include <math.h>
 #include <string.h>
 
-static hf_refine_measure *const measure[HF_LANE_N_ISA] = {hf_refine_measure_portable, hf_refine_measure_avx2,
-                                                          hf_refine_measure_avx512};
+static hf_precise_measure *const measure[HF_LANE_N_ISA] = {hf_precise_measure_portable, hf_precise_measure_avx2,
+                                                           hf_precise_measure_avx512};
 
 enum { SPRING, ELASTIC, SLACK_ELASTIC, RIGID, GIVEN, N_KIND };
 
-static void fill(hf_refine_lanes *p, struct rng *rng)
+static void fill(hf_precise_lanes *p, struct rng *rng)
 {
     memset(p, 0, sizeof *p);
     for (int k = 0; k < HF_LANES; k++) {
@@ -40,7 +40,7 @@ static void expect_same(hf_twofold a, const double b[2][HF_LANES], int k)
     ck_assert_double_eq(a.lo, b[1][k]);
 }
 
-static void expect_cable(const hf_refine_lanes *p, int k, bool by_law)
+static void expect_cable(const hf_precise_lanes *p, int k, bool by_law)
 {
     int kind = k % N_KIND;
     hf_twofold d[3], square = {0, 0}, T = {p->T[0][k], p->T[1][k]}, q;
@@ -69,7 +69,7 @@ static void expect_cable(const hf_refine_lanes *p, int k, bool by_law)
 START_TEST(lanes_are_the_scalar_operations)
 {
     struct rng rng = rng_start(60 + (uint64_t)_i);
-    hf_refine_lanes lanes;
+    hf_precise_lanes lanes;
     fill(&lanes, &rng);
     for (int isa = 0; isa < HF_LANE_N_ISA; isa++) {
         if (!hf_lane_has_isa((hf_lane_isa)isa)) continue;
@@ -80,10 +80,10 @@ START_TEST(lanes_are_the_scalar_operations)
 }
 END_TEST
 
-Suite *suite_unit_refine_kernel(void)
+Suite *suite_unit_precise_kernel(void)
 {
-    Suite *suite = suite_create("unit/solve/refine_kernel");
-    TCase *tests = tcase_create("refine_kernel");
+    Suite *suite = suite_create("unit/solve/precise_kernel");
+    TCase *tests = tcase_create("precise_kernel");
     tcase_add_loop_test(tests, lanes_are_the_scalar_operations, 0, 20);
     suite_add_tcase(suite, tests);
     return suite;

@@ -1,12 +1,12 @@
 /* Contents: start - forces and lengths at twice the precision - sums at nodes - steps near a measured shape -
  * refinement. Forces are measured at twice the precision once before and once after a move; the steps of which it
  * consists compute differences in doubles. */
-#include "solve/refine.h"
+#include "solve/precise.h"
 
 #include "linalg/band.h"
 #include "solve/coupling.h"
 #include "solve/joint.h"
-#include "solve/refine_kernel.h"
+#include "solve/precise_kernel.h"
 #include "solve/schur.h"
 
 #include <assert.h>
@@ -24,18 +24,18 @@
 
 /* ---- start ---- */
 
-static_assert(sizeof(hf_refined_cable) == HF_BOUND_CABLE_ITEMS * sizeof(double), "HF_BOUND_CABLE_ITEMS");
+static_assert(sizeof(hf_precise_cable) == HF_BOUND_CABLE_ITEMS * sizeof(double), "HF_BOUND_CABLE_ITEMS");
 
 /* Starts from the tensions in the workspace, and from what its matrix takes for taut. */
-static void set_first_state(hf_refined *p)
+static void set_first_state(hf_precise *p)
 {
     for (int e = 0; e < p->m->n_cable; e++) {
-        hf_refined_cable *c = p->cable + e;
+        hf_precise_cable *c = p->cable + e;
         hf_law_cable cable = hf_workspace_cable(p->m, p->w, e);
         c->T = (hf_twofold){0, 0};
         c->along = 0;
         c->is_taut = 1;
-        if (hf_refine_is_fixed(p->m, e) || !hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
+        if (hf_precise_is_fixed(p->m, e) || !hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
         double u[3], T = p->w->tension_N[e], length = hf_newton_matrix_direction(p->m, p->w->position_m, e, u);
         c->along = hf_newton_matrix_stiffness(cable, length, T);
         c->is_taut = c->along > 0;
@@ -44,10 +44,10 @@ static void set_first_state(hf_refined *p)
 }
 
 /* Places the attachments where the truss has them. */
-static void place_attachments(hf_refined *p)
+static void place_attachments(hf_precise *p)
 {
     const hf_model *m = p->m;
-    const hf_refined_truss *t = &p->truss;
+    const hf_precise_truss *t = &p->truss;
     for (int i = 0; i < 3 * m->n_attachment; i++) {
         int at = i % 3 * m->n_node + m->attachment_row[i / 3];
         hf_twofold r = hf_twofold_add(hf_flexibility_displace_twofold(&t->flexibility, t->s, i), t->rest_m[i]);
@@ -56,9 +56,9 @@ static void place_attachments(hf_refined *p)
 }
 
 /* Sets gap and rest for the pull on the attachments. */
-static void measure_truss(hf_refined *p)
+static void measure_truss(hf_precise *p)
 {
-    hf_refined_truss *t = &p->truss;
+    hf_precise_truss *t = &p->truss;
     const hf_twofold *pull = p->force + 3 * p->m->n_free;
     for (int k = 0; k < t->flexibility.rank; k++)
         t->gap[k] = hf_flexibility_load_twofold(&t->flexibility, pull, k);
@@ -72,10 +72,10 @@ static void measure_truss(hf_refined *p)
 }
 
 /* Starts from the displacements under the pull of the shape that was found. */
-static bool open_truss(hf_refined *p, double *room)
+static bool open_truss(hf_precise *p, double *room)
 {
     const hf_model *m = p->m;
-    hf_refined_truss *t = &p->truss;
+    hf_precise_truss *t = &p->truss;
     size_t n = 3 * (size_t)m->n_attachment;
     if (n == 0) return true;
     t->s = (hf_twofold *)room;
@@ -99,11 +99,11 @@ static bool open_truss(hf_refined *p, double *room)
     return true;
 }
 
-bool hf_refine_open(const hf_model *m, hf_workspace *w, double condition, hf_refined *p)
+bool hf_precise_open(const hf_model *m, hf_workspace *w, double condition, hf_precise *p)
 {
     size_t n_node = (size_t)m->n_node, n_moving = (size_t)(m->n_free + m->n_attachment);
-    *p = (hf_refined){.m = m, .w = w, .n_moving = (int)n_moving, .condition = condition, .wanted = INFINITY};
-    p->cable = (hf_refined_cable *)w->bound_work;
+    *p = (hf_precise){.m = m, .w = w, .n_moving = (int)n_moving, .condition = condition, .wanted = INFINITY};
+    p->cable = (hf_precise_cable *)w->bound_work;
     p->x = (hf_twofold *)(p->cable + m->n_cable);
     p->force = p->x + 3 * n_node;
     p->move = (double *)(p->force + 3 * n_moving);
@@ -118,17 +118,17 @@ bool hf_refine_open(const hf_model *m, hf_workspace *w, double condition, hf_ref
 
 /* ---- forces and lengths at twice the precision ---- */
 
-static hf_refine_measure *measure_here(void)
+static hf_precise_measure *measure_here(void)
 {
-    static hf_refine_measure *const of_isa[HF_LANE_N_ISA] = {hf_refine_measure_portable, hf_refine_measure_avx2,
-                                                             hf_refine_measure_avx512};
+    static hf_precise_measure *const of_isa[HF_LANE_N_ISA] = {hf_precise_measure_portable, hf_precise_measure_avx2,
+                                                              hf_precise_measure_avx512};
     return of_isa[hf_lane_best_isa()];
 }
 
 /* Puts cable e into a lane. */
-static void put_cable(const hf_refined *p, int e, hf_refine_lanes *l, int k)
+static void put_cable(const hf_precise *p, int e, hf_precise_lanes *l, int k)
 {
-    const hf_refined_cable *c = p->cable + e;
+    const hf_precise_cable *c = p->cable + e;
     const int *end = p->m->end_row + 2 * e;
     hf_law_cable cable = hf_workspace_cable(p->m, p->w, e);
     bool is_given = hf_law_has(cable.law, HF_LAW_GIVES_TENSION), is_elastic = hf_law_has(cable.law, HF_LAW_NEEDS_EA);
@@ -150,9 +150,9 @@ static void put_cable(const hf_refined *p, int e, hf_refine_lanes *l, int k)
 
 /* Takes the measures of cable e from its lane, and adds its pull to the forces. Returns the error of length of a taut
  * cable with a multiplier, over its theoretical length. */
-static double take_cable(hf_refined *p, int e, const hf_refine_lanes *l, int k)
+static double take_cable(hf_precise *p, int e, const hf_precise_lanes *l, int k)
 {
-    hf_refined_cable *c = p->cable + e;
+    hf_precise_cable *c = p->cable + e;
     int a = p->m->end_row[2 * e], b = p->m->end_row[2 * e + 1];
     c->length = l->length[k];
     c->across = l->q[k];
@@ -168,7 +168,7 @@ static double take_cable(hf_refined *p, int e, const hf_refine_lanes *l, int k)
 }
 
 /* Largest displacement L near_gap of an attachment, relative to the mean length; 0 without a truss. */
-static double gap_error(const hf_refined *p)
+static double gap_error(const hf_precise *p)
 {
     double largest = 0, *r = p->w->coupling_work;
     if (!p->m->n_attachment) return 0;
@@ -181,21 +181,21 @@ static double gap_error(const hf_refined *p)
 /* Sets the forces, the gaps, and length, unit, over and across of the cables. by_law: elastic cables pull with
  * what their law gives at their length, else with the multiplier. Returns the largest error, relative to the reference
  * tension and the theoretical lengths. */
-static double measure_refined(hf_refined *p, bool by_law)
+static double measure_precise(hf_precise *p, bool by_law)
 {
     const hf_model *m = p->m;
     double largest = 0;
     for (int i = 0; i < 3 * p->n_moving; i++)
         p->force[i] = hf_twofold_of(m->load_N ? m->load_N[i % 3 * m->n_node + i / 3] : 0);
     int e = 0, kept[HF_LANES];
-    hf_refine_lanes lanes;
+    hf_precise_lanes lanes;
     memset(&lanes, 0, sizeof lanes);
     for (int k = 0; k < HF_LANES; k++)
         lanes.to[0][0][k] = lanes.target[k] = lanes.EA[k] = 1;
     while (e < m->n_cable) {
         int n = 0;
         for (; e < m->n_cable && n < HF_LANES; e++) {
-            if (hf_refine_is_fixed(m, e)) continue;
+            if (hf_precise_is_fixed(m, e)) continue;
             kept[n] = e;
             put_cable(p, e, &lanes, n++);
         }
@@ -214,12 +214,12 @@ static double measure_refined(hf_refined *p, bool by_law)
 
 /* ---- sums at nodes ---- */
 
-double hf_refine_largest_sum(const hf_refined *p, hf_refined_figure *figure)
+double hf_precise_largest_sum(const hf_precise *p, hf_precise_figure *figure)
 {
     double largest = 0;
     memset(p->sum, 0, (size_t)p->n_moving * sizeof *p->sum);
     for (int e = 0; e < p->m->n_cable; e++) {
-        if (hf_refine_is_fixed(p->m, e) || !(p->cable[e].is_taut > 0)) continue;
+        if (hf_precise_is_fixed(p->m, e) || !(p->cable[e].is_taut > 0)) continue;
         double value = figure(p, e);
         for (int k = 2 * e; k < 2 * e + 2; k++)
             if (p->m->end_row[k] < p->n_moving) p->sum[p->m->end_row[k]] += value;
@@ -229,7 +229,7 @@ double hf_refine_largest_sum(const hf_refined *p, hf_refined_figure *figure)
     return largest;
 }
 
-double hf_refine_matrix_sum(const hf_refined *p, int e)
+double hf_precise_matrix_sum(const hf_precise *p, int e)
 {
     return p->cable[e].along + p->cable[e].across;
 }
@@ -237,31 +237,31 @@ double hf_refine_matrix_sum(const hf_refined *p, int e)
 /* ---- steps near a measured shape ---- */
 
 /* The forces that were measured; of attachments only their change counts, which a double holds. */
-static void begin_near(hf_refined *p)
+static void begin_near(hf_precise *p)
 {
     for (int i = 0; i < 3 * p->n_moving; i++)
         p->near_N[i] = i < 3 * p->m->n_free ? p->force[i].hi : 0;
 }
 
 /* near_gap for the changes of pull and s. */
-static void end_near(hf_refined *p)
+static void end_near(hf_precise *p)
 {
-    hf_refined_truss *t = &p->truss;
+    hf_precise_truss *t = &p->truss;
     hf_flexibility_load(&t->flexibility, p->near_N + 3 * p->m->n_free, t->near_gap);
     for (int k = 0; k < t->flexibility.rank; k++)
         t->near_gap[k] += t->gap[k].hi - t->move[k];
 }
 
 /* Sets near_N, near_gap and near_over after move and change, from what was measured before them. Differences alone are
- * computed, so that errors are relative to the moves. Returns the largest error, as measure_refined does. */
-static double measure_near(hf_refined *p)
+ * computed, so that errors are relative to the moves. Returns the largest error, as measure_precise does. */
+static double measure_near(hf_precise *p)
 {
     const hf_model *m = p->m;
     double largest = 0;
     begin_near(p);
     for (int e = 0; e < m->n_cable; e++) {
-        hf_refined_cable *c = p->cable + e;
-        if (hf_refine_is_fixed(m, e) || !(c->is_taut > 0)) continue;
+        hf_precise_cable *c = p->cable + e;
+        if (hf_precise_is_fixed(m, e) || !(c->is_taut > 0)) continue;
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         hf_law_cable cable = hf_workspace_cable(m, p->w, e);
         double d[3], more[3], square = 0, change = 0, pull[3], T = c->across * c->length;
@@ -291,7 +291,7 @@ static double measure_near(hf_refined *p)
 }
 
 /* The step of the free nodes for the forces v [3 n_free], in place, while the attachments stay. */
-static void solve_free(const hf_refined *p, double *v)
+static void solve_free(const hf_precise *p, double *v)
 {
     const hf_model *m = p->m;
     if (m->has_newton) {
@@ -307,26 +307,26 @@ static void solve_free(const hf_refined *p, double *v)
 }
 
 /* Ends the factorisation with the rows of the truss, for the matrix of hf_newton_certify. */
-static bool factor_first_truss(hf_refined *p)
+static bool factor_first_truss(hf_precise *p)
 {
     p->truss.block_of = hf_newton_matrix_block;
     if (p->m->has_newton) return hf_flexibility_factor_schur(p->m, p->w, &p->truss.flexibility);
     return hf_flexibility_factor_net(p->m, p->w, hf_newton_matrix_block, NULL, 1, &p->truss.flexibility);
 }
 
-/* The same for the matrix of the refined shape. */
-static bool factor_truss(hf_refined *p)
+/* The same for the matrix of the precise shape. */
+static bool factor_truss(hf_precise *p)
 {
-    p->truss.block_of = hf_refine_block;
-    return hf_flexibility_factor_net(p->m, p->w, hf_refine_block, NULL, 1, &p->truss.flexibility);
+    p->truss.block_of = hf_precise_block;
+    return hf_flexibility_factor_net(p->m, p->w, hf_precise_block, NULL, 1, &p->truss.flexibility);
 }
 
 /* Replaces the forces in `step` by the step. With p the pull on the attachments after the step of the free nodes alone,
  * and S of (M15), that of the truss is d_s = (1 + L' S L)^-1 (gap + L' p): (M24) for the unknowns s. */
-static void solve_for_step(hf_refined *p)
+static void solve_for_step(hf_precise *p)
 {
     const hf_model *m = p->m;
-    hf_refined_truss *t = &p->truss;
+    hf_precise_truss *t = &p->truss;
     int n_free = 3 * m->n_free, rank = t->flexibility.rank;
     double *at_attachment = p->step + n_free, *answer = p->w->force_N;
     solve_free(p, p->step);
@@ -345,14 +345,14 @@ static void solve_for_step(hf_refined *p)
 }
 
 /* The Newton step (M8) with the matrix that is factored: step, and last of the cables. */
-static void find_refinement(hf_refined *p)
+static void find_refinement(hf_precise *p)
 {
     const hf_model *m = p->m;
     memcpy(p->step, p->near_N, 3 * (size_t)m->n_free * sizeof *p->step);
     memset(p->step + 3 * m->n_free, 0, 3 * (size_t)m->n_attachment * sizeof *p->step);
     for (int pass = 0; pass < 2; pass++) {
         for (int e = 0; e < m->n_cable; e++) {
-            hf_refined_cable *c = p->cable + e;
+            hf_precise_cable *c = p->cable + e;
             if (!(c->along > 0)) continue;
             int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
             double longer = c->near_over, pull[3];
@@ -368,7 +368,7 @@ static void find_refinement(hf_refined *p)
     }
 }
 
-static void add_step(hf_refined *p, double part)
+static void add_step(hf_precise *p, double part)
 {
     for (int i = 0; i < 3 * p->n_moving; i++)
         p->move[i] += part * p->step[i];
@@ -380,7 +380,7 @@ static void add_step(hf_refined *p, double part)
 
 /* Takes steps from the measured shape, whose errors are `first`, while each halves the errors: move, and change of the
  * cables. */
-static void find_move(hf_refined *p, double first)
+static void find_move(hf_precise *p, double first)
 {
     memset(p->move, 0, 3 * (size_t)p->n_moving * sizeof *p->move);
     for (int k = 0; k < p->truss.flexibility.rank; k++) {
@@ -404,7 +404,7 @@ static void find_move(hf_refined *p, double first)
 
 /* ---- refinement ---- */
 
-static void apply_move(hf_refined *p, double part)
+static void apply_move(hf_precise *p, double part)
 {
     const hf_model *m = p->m;
     for (int i = 0; i < 3 * m->n_free; i++)
@@ -417,41 +417,41 @@ static void apply_move(hf_refined *p, double part)
 }
 
 /* Moves while each move halves the errors. Returns the errors at the end, where the forces are by law. */
-static double refine(hf_refined *p)
+static double correct(hf_precise *p)
 {
-    double now = measure_refined(p, false), before = INFINITY;
+    double now = measure_precise(p, false), before = INFINITY;
     p->wanted = fmax(fmin(fmin(ENOUGH * now, p->wanted), CONTRACTED), FINEST);
     for (int k = 0; k < MOVES_MAX && now > p->wanted && now < before / 2; k++) {
         find_move(p, now);
         apply_move(p, 1);
         before = now;
-        now = measure_refined(p, false);
+        now = measure_precise(p, false);
         if (now < before) continue;
         apply_move(p, -1);
-        measure_refined(p, false);
+        measure_precise(p, false);
     }
-    if (p->m->EA_N) measure_refined(p, true);
+    if (p->m->EA_N) measure_precise(p, true);
     return now < before ? now : before;
 }
 
-void hf_refine_block(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
+void hf_precise_block(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
 {
-    const hf_refined_cable *c = (const hf_refined_cable *)w->bound_work + e;
+    const hf_precise_cable *c = (const hf_precise_cable *)w->bound_work + e;
     double across = fmax(c->across, 0);
     bool is_spring = hf_newton_matrix_is_spring((hf_law)w->law[e]);
     (void)m;
     hf_newton_matrix_spring(is_spring ? across : c->along, across, c->unit, block);
 }
 
-/* Decides which cables are taut, as interior.c does, and factors the matrix of the refined shape. */
-static bool factor_anew(hf_refined *p)
+/* Decides which cables are taut, as interior.c does, and factors the matrix of the precise shape. */
+static bool factor_anew(hf_precise *p)
 {
     const hf_model *m = p->m;
     if (!m->has_newton) return false;
     for (int e = 0; e < m->n_cable; e++) {
-        hf_refined_cable *c = p->cable + e;
+        hf_precise_cable *c = p->cable + e;
         hf_law_cable cable = hf_workspace_cable(m, p->w, e);
-        if (hf_refine_is_fixed(m, e)) continue;
+        if (hf_precise_is_fixed(m, e)) continue;
         bool multiplier = hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER);
         if (multiplier) {
             c->is_taut = c->T.hi / m->reference_N + c->over.hi / cable.theoretical_m > 0;
@@ -460,37 +460,37 @@ static bool factor_anew(hf_refined *p)
         c->along = c->is_taut > 0 ? hf_law_stiffness_N_per_m(cable, INFINITY) : 0;
         if (multiplier && isinf(c->along)) c->along = hf_newton_matrix_rigid_stiffness(m, e, c->T.hi);
     }
-    bool is_factored = hf_newton_matrix_factor_blocks(m, p->w, hf_refine_block, NULL, &p->condition) == HF_OK &&
+    bool is_factored = hf_newton_matrix_factor_blocks(m, p->w, hf_precise_block, NULL, &p->condition) == HF_OK &&
                        (!m->n_attachment || factor_truss(p));
     for (int e = 0; e < m->n_cable; e++) /* from here on `along` is of cables with a multiplier alone */
         if (!hf_law_has((hf_law)p->w->law[e], HF_LAW_HAS_MULTIPLIER)) p->cable[e].along = 0;
     return is_factored;
 }
 
-double hf_refine_guess(const hf_refined *p)
+double hf_precise_guess(const hf_precise *p)
 {
-    return SHARE_OF_GUESS * hf_refine_largest_sum(p, hf_refine_matrix_sum) / p->condition;
+    return SHARE_OF_GUESS * hf_precise_largest_sum(p, hf_precise_matrix_sum) / p->condition;
 }
 
-static bool is_told_apart(const hf_refined *p)
+static bool is_told_apart(const hf_precise *p)
 {
     for (int e = 0; e < p->m->n_cable; e++) {
-        const hf_refined_cable *c = p->cable + e;
-        if (hf_refine_is_fixed(p->m, e) || !hf_law_has((hf_law)p->w->law[e], HF_LAW_HAS_MULTIPLIER)) continue;
+        const hf_precise_cable *c = p->cable + e;
+        if (hf_precise_is_fixed(p->m, e) || !hf_law_has((hf_law)p->w->law[e], HF_LAW_HAS_MULTIPLIER)) continue;
         if (c->is_taut > 0 ? !(c->T.hi > 0) : !(c->over.hi < 0)) return false;
     }
     return true;
 }
 
-hf_bound_reason hf_refine_approach(hf_refined *p, bool has_factor)
+hf_bound_reason hf_precise_approach(hf_precise *p, bool has_factor)
 {
     hf_bound_reason reason = HF_BOUND_NOT_CONTRACTING;
     if (has_factor && p->m->n_attachment) has_factor = factor_first_truss(p);
-    if (!has_factor) measure_refined(p, false);
+    if (!has_factor) measure_precise(p, false);
     for (int k = has_factor ? 0 : 1; k <= MATRICES_MAX; k++) {
         p->is_first_matrix = k == 0;
         if (k > 0 && !factor_anew(p)) return k == 1 && !has_factor ? HF_BOUND_NOT_DEFINITE : reason;
-        double error = refine(p);
+        double error = correct(p);
         reason = !(error < CONTRACTED) ? HF_BOUND_NOT_CONTRACTING
                  : is_told_apart(p)    ? HF_BOUND_PROVEN
                                        : HF_BOUND_SLACK_OR_TAUT;

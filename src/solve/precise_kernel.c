@@ -1,8 +1,8 @@
-/* The measure of refine_kernel.h, compiled once for each instruction set.
+/* The measure of precise_kernel.h, compiled once for each instruction set.
  *
  * Contents: numbers of twice the precision - measure */
 #define HF_LANE_EIGHT
-#include "solve/refine_kernel.h"
+#include "solve/precise_kernel.h"
 
 /* ---- numbers of twice the precision: the operations of linalg/twofold.h, of which the bits are the same ---- */
 
@@ -89,7 +89,7 @@ INLINE void store2(double to[2][HF_LANES], twofold a)
     lanes_store(to[1], a.lo);
 }
 
-void HF_KERNEL(hf_refine_measure)(hf_refine_lanes *p, bool by_law)
+void HF_KERNEL(hf_precise_measure)(hf_precise_lanes *p, bool by_law)
 {
     const twofold zero = {{0}, {0}};
     lanes_where elastic = lanes_load(p->is_elastic) != 0, spring = lanes_load(p->is_spring) != 0;
