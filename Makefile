@@ -4,7 +4,7 @@
 # files themselves, so that packages exist before pkg-config is asked about them, and builds use every core.
 
 # ---- The rooms: src/ROOM/*.c; what each may include stands in src/ARCHITECTURE.md (`make lint` checks it) ------------
-LIB_ROOMS := base linalg net truss solve search built case store run
+LIB_ROOMS := base linalg net truss surface solve search built case store run
 APP_ROOMS := out app
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------

@@ -133,6 +133,9 @@ bool hf_model_is_valid(const hf_model *model);
 /* Write the cables of a chain, "cable + cable + cable", into `text`; a text that does not fit ends with " ...". */
 void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_chain, char *text, size_t size);
 
+/* A shape by row, row_m [3][n_node], in the order of the scene: position_m [n_node][3]. */
+void hf_model_positions(const hf_model *model, const double *row_m, double *position_m);
+
 void hf_model_free(hf_model *model);
 
 #ifdef __cplusplus

@@ -10,7 +10,7 @@
 #define HIFDM_SURFACE_H
 
 #include <hifdm/facets.h>
-#include <hifdm/workspace.h>
+#include <hifdm/model.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -106,10 +106,11 @@ typedef struct {
     HF_SURFACE_LOSS_LIST(HF_SURFACE_LOSS_MEMBER)
 } hf_surface_measures;
 
-/* Measure the inner nodes of the shape in the workspace, and the facets between them. settings->focal_length_m > 0, and
- * the kind is known; `facets` are those of the model's scene. HF_OK or HF_NO_MEMORY. */
+/* Measures the inner nodes of a shape, position_m [3][n_node] by row and tension_N [n_cable], and the facets between
+ * them. settings->focal_length_m > 0, and the kind is known; `facets` are those of the model's scene. HF_OK or
+ * HF_NO_MEMORY. */
 hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_facets *facets, const hf_model *model,
-                             const hf_workspace *workspace, hf_surface_measures *measures);
+                             const double *position_m, const double *tension_N, hf_surface_measures *measures);
 
 /* All figures but numbers of facets are NaN: of a net whose inner nodes are all loose, where they hang says nothing. */
 void hf_surface_blank(hf_surface_measures *measures);

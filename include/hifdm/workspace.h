@@ -128,9 +128,6 @@ void hf_workspace_free(hf_workspace *workspace);
 /* True when the law in force of at least one cable changes its force density between iterations (Eqs. 7, 8). */
 bool hf_workspace_iterates(const hf_model *model, const hf_workspace *workspace);
 
-/* The shape in the order of the scene: place_m [n_node][3]. */
-void hf_workspace_places(const hf_model *model, const hf_workspace *workspace, double *place_m);
-
 /* For tests: fill every floating-point field with NaN and every other one with 0xff, so that stale contents
  * that a call reads show in its result. */
 void hf_workspace_poison(const hf_model *model, hf_workspace *workspace);

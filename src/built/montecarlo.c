@@ -3,7 +3,7 @@
 
 #include "base/arena.h"
 #include "search/parallel.h"
-#include "solve/facet_mesh.h"
+#include "surface/facet_mesh.h"
 
 #include <math.h>
 #include <string.h>
@@ -58,10 +58,8 @@ hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_montecarlo(&arena, n_thread, t)));
     t->block = arena.block;
     t->varies = hf_built_errors_vary(&t->errors);
-    const hf_workspace shape = {.position_m = (double *)(uintptr_t)b->place_m, /* which are only read */
-                                .tension_N = (double *)(uintptr_t)b->tension_N};
     if (!has_surface(t)) return HF_OK;
-    return hf_surface_design_make(surface, facets, &b->model, &shape, &t->design);
+    return hf_surface_design_make(surface, facets, &b->model, b->place_m, b->tension_N, &t->design);
 }
 
 void hf_montecarlo_free(hf_montecarlo *t)
@@ -125,12 +123,12 @@ static double loss_dB(const hf_montecarlo *t, double half_path_rms_m)
 }
 
 /* Pillows that a cable cannot hold have no far field. */
-static hf_status measure_pattern(const hf_montecarlo *t, const hf_workspace *w, double *value)
+static hf_status measure_pattern(const hf_montecarlo *t, const hf_built_shape *is, double *value)
 {
     hf_arena arena = {0}, sags = {0};
     hf_facet_shape shape;
     double pull_ratio = 0, mesh_N_per_m = t->surface->mesh_tension_N_per_m, *sag_m = NULL;
-    hf_status status = hf_facet_shape_take(&t->built->model, w, &shape, &arena);
+    hf_status status = hf_facet_shape_take(&t->built->model, is->position_m, is->tension_N, &shape, &arena);
     if (status == HF_OK && mesh_N_per_m > 0)
         status = hf_facet_mesh_make_sags(mesh_N_per_m, t->facets, &shape, &sags, &sag_m, &pull_ratio);
     if (status == HF_OK && pull_ratio <= HF_FACET_PULL_MOST)
@@ -144,10 +142,9 @@ static hf_status measure_pattern(const hf_montecarlo *t, const hf_workspace *w, 
 static void measure_surface(hf_montecarlo *t, const hf_built_shape *shape, double *value)
 {
     hf_surface_paths is;
-    const hf_workspace w = {.position_m = (double *)(uintptr_t)shape->position_m, /* which are only read */
-                            .tension_N = (double *)(uintptr_t)shape->tension_N};
-    if (hf_surface_measure_near(&t->design, t->surface, t->facets, &t->built->model, &w, &is) != HF_OK ||
-        (t->beam && measure_pattern(t, &w, &value[HF_TOLERANCE_PATTERN_LOSS]) != HF_OK)) {
+    if (hf_surface_measure_near(&t->design, t->surface, t->facets, &t->built->model, shape->position_m,
+                                shape->tension_N, &is) != HF_OK ||
+        (t->beam && measure_pattern(t, shape, &value[HF_TOLERANCE_PATTERN_LOSS]) != HF_OK)) {
         t->has_no_memory = true;
         return;
     }

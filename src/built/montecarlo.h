@@ -4,8 +4,8 @@
 
 #include "built/directions.h"
 #include <hifdm/built_batch.h>
-#include "solve/gain.h"
-#include "solve/surface_near.h"
+#include "surface/gain.h"
+#include "surface/surface_near.h"
 #include <hifdm/tolerance.h>
 
 #include <stdatomic.h>

@@ -581,3 +581,11 @@ bool hf_model_is_valid(const hf_model *m)
         if (m->attachment_row[i] != m->n_free + i || m->attachment_row[i] >= m->n_node) return false;
     return m->chain_start[0] == 0 && (m->gene || m->n_gene <= m->n_cable);
 }
+
+void hf_model_positions(const hf_model *m, const double *row_m, double *position_m)
+{
+    size_t n = (size_t)m->n_node;
+    for (size_t row = 0; row < n; row++)
+        for (size_t c = 0; c < 3; c++)
+            position_m[3 * (size_t)m->node_of_row[row] + c] = row_m[c * n + row];
+}

@@ -5,7 +5,7 @@
  * Numbers have 17 significant digits. */
 #include "out/export.h"
 
-#include "solve/facet_mesh.h"
+#include "surface/facet_mesh.h"
 
 #include <string.h>
 

@@ -16,7 +16,7 @@
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "net/wanted.h"
-#include "solve/facet_mesh.h"
+#include "surface/facet_mesh.h"
 
 #include <math.h>
 #include <string.h>

@@ -25,7 +25,7 @@
 #include "base/arena.h"
 #include "base/file_out.h"
 #include "net/wanted.h"
-#include "solve/facet_rms.h"
+#include "surface/facet_rms.h"
 #include "store/vtkhdf.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>

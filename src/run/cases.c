@@ -94,7 +94,8 @@ static hf_status keep_shape(const hf_problem *p, hf_cases *c, hf_store *store, c
 {
     const hf_model *m = &c->built.model;
     measure(&c->built, truss, truss ? p->carrier.truss.n_member : 0, &c->workspace, s);
-    if (p->settings.has_surface && hf_surface_measure(&p->surface, &p->facets, m, &c->workspace, &s->measures) != HF_OK)
+    if (p->settings.has_surface && hf_surface_measure(&p->surface, &p->facets, m, c->workspace.position_m,
+                                                      c->workspace.tension_N, &s->measures) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
     if (isnan(s->result.psi_m)) hf_surface_blank(&s->measures);
     return hf_store_built(store, s->name, m, &c->workspace, &p->carrier, truss, messages);

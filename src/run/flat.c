@@ -314,7 +314,7 @@ static hf_status keep_shape(hf_flat *f, const hf_workspace *w)
     const hf_model *m = &f->problem.model;
     if (!f->shape) f->shape = malloc(3 * ((size_t)s->n_node + (size_t)s->n_cable) * sizeof *f->shape);
     if (!f->shape) return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the shape of %d nodes", s->n_node);
-    hf_workspace_places(m, w, f->shape);
+    hf_model_positions(m, w->position_m, f->shape);
     copy_reals(w->length_m, s->n_cable, shape_part(f, SHAPE_LENGTH));
     copy_reals(w->tension_N, s->n_cable, shape_part(f, SHAPE_TENSION));
     copy_reals(w->q_N_per_m, s->n_cable, shape_part(f, SHAPE_Q));

@@ -1,7 +1,7 @@
 #include "run/measure_stage.h"
 
 #include "run/pattern_stage.h"
-#include "solve/facet_mesh.h"
+#include "surface/facet_mesh.h"
 #include "solve/limits.h"
 #include <hifdm/metrics.h>
 
@@ -50,7 +50,8 @@ hf_status hf_measure_stage(const hf_problem *p, hf_stage stage, const hf_workspa
     char words[64];
     measure_sets(p, stage, w, s);
     if (!p->settings.has_surface) return HF_OK;
-    if (hf_surface_measure(&p->surface, &p->facets, &p->model, w, &s->measures[stage]) != HF_OK)
+    if (hf_surface_measure(&p->surface, &p->facets, &p->model, w->position_m, w->tension_N, &s->measures[stage]) !=
+        HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
     if (isnan(hf_metrics_psi_m(&p->model, w))) hf_surface_blank(&s->measures[stage]);
     const hf_surface_fit *fit = &s->measures[stage].fit;

@@ -1,7 +1,7 @@
 #include "run/pattern_stage.h"
 
 #include "search/parallel.h"
-#include "solve/facet_mesh.h"
+#include "surface/facet_mesh.h"
 #include <hifdm/pattern.h>
 
 #include <string.h>
@@ -93,7 +93,7 @@ hf_status hf_pattern_stage(const hf_problem *p, hf_stage stage, const hf_workspa
     double pull_ratio = 0, mesh_N_per_m = p->surface.mesh_tension_N_per_m, *sag_m = NULL;
     if (!p->surface.has_pattern) return HF_OK;
     if (n_thread <= 0) n_thread = hf_parallel_cores();
-    hf_status status = hf_facet_shape_take(&p->model, w, &shape, &arena);
+    hf_status status = hf_facet_shape_take(&p->model, w->position_m, w->tension_N, &shape, &arena);
     if (status == HF_OK && mesh_N_per_m > 0)
         status = hf_facet_mesh_make_sags(mesh_N_per_m, &p->facets, &shape, &sags, &sag_m, &pull_ratio);
     if (status == HF_OK && pull_ratio <= HF_FACET_PULL_MOST) {

@@ -9,7 +9,7 @@
 #include "net/variables.h"
 #include "run/problem_nets.h"
 #include "search/polish.h"
-#include "solve/facet_rms.h"
+#include "surface/facet_rms.h"
 #include "solve/limits.h"
 #include "solve/prestress.h"
 #include <hifdm/evaluate.h>

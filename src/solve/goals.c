@@ -3,8 +3,8 @@
 
 #include "base/arena.h"
 #include "linalg/dot.h"
-#include "solve/cloud.h"
-#include "solve/gain.h"
+#include "surface/cloud.h"
+#include "surface/gain.h"
 #include "solve/newton_matrix.h"
 #include <hifdm/metrics.h>
 
@@ -12,6 +12,31 @@
 #include <string.h>
 
 /* ---- points ---- */
+
+static void lay_out_cloud(hf_arena *a, const hf_goals *goals, int k, hf_cloud *cloud)
+{
+    const hf_goal_settings *is = &goals->goal[k].wanted;
+    bool has_facets = is->goal == HF_GOAL_FACETS;
+    *cloud = (hf_cloud){.kind = goals->kind,
+                        .focal_length_m = goals->focal_length_m,
+                        .along = is->along,
+                        .fit = is->fit,
+                        .n_node = goals->model->n_node,
+                        .n = goals->goal[k].n_shape_row,
+                        .n_facet = has_facets ? goals->n_facet : 0,
+                        .row = has_facets ? goals->corner_row : goals->model->inner_row};
+    hf_cloud_lay_out(a, cloud);
+}
+
+static void lay_out_gain(hf_arena *a, const hf_goals *goals, int k, hf_gain *gain)
+{
+    *gain = (hf_gain){.beam = &goals->beam[k],
+                      .n_node = goals->model->n_node,
+                      .n = goals->goal[k].n_shape_row / 2,
+                      .n_facet = goals->n_facet,
+                      .row = goals->corner_row};
+    hf_gain_lay_out(a, gain);
+}
 
 static void lay_out_point(hf_arena *a, const hf_goals *goals, hf_goals_point *p)
 {
@@ -33,10 +58,10 @@ static void lay_out_point(hf_arena *a, const hf_goals *goals, hf_goals_point *p)
     p->gain = hf_arena_take(a, (size_t)goals->n_goal, sizeof *p->gain);
     for (int k = 0; k < goals->n_goal; k++) {
         hf_cloud cloud = {0};
-        if (hf_goals_is_on_surface(goals->goal[k].wanted.goal)) hf_cloud_lay_out(a, goals, &goals->goal[k], &cloud);
+        if (hf_goals_is_on_surface(goals->goal[k].wanted.goal)) lay_out_cloud(a, goals, k, &cloud);
         if (a->block) p->cloud[k] = cloud;
         hf_gain gain = {0};
-        if (goals->goal[k].wanted.goal == HF_GOAL_GAIN) hf_gain_lay_out(a, goals, k, &gain);
+        if (goals->goal[k].wanted.goal == HF_GOAL_GAIN) lay_out_gain(a, goals, k, &gain);
         if (a->block) p->gain[k] = gain;
     }
 }
@@ -243,11 +268,11 @@ hf_status hf_goals_measure_shape(const hf_goals *goals, int k, const hf_workspac
         return HF_OK;
     case HF_GOAL_SURFACE:
     case HF_GOAL_FACETS:
-        HF_TRY(hf_cloud_measure(&p->cloud[k], w, f));
+        HF_TRY(hf_cloud_measure(&p->cloud[k], w->position_m, f));
         has_own_value = false;
         break;
     case HF_GOAL_GAIN:
-        hf_gain_measure(&p->gain[k], w, f);
+        hf_gain_measure(&p->gain[k], w->position_m, f);
         has_own_value = false;
         break;
     default:
@@ -290,7 +315,7 @@ hf_status hf_goals_measure(const hf_goals *goals, const hf_workspace *w, hf_goal
 
 hf_status hf_goals_linearise_shape(const hf_goals *goals, int k, const hf_workspace *w, hf_goals_point *p)
 {
-    if (goals->goal[k].wanted.goal == HF_GOAL_GAIN) hf_gain_linearise(&p->gain[k], w);
+    if (goals->goal[k].wanted.goal == HF_GOAL_GAIN) hf_gain_linearise(&p->gain[k], w->position_m);
     return hf_goals_is_on_surface(goals->goal[k].wanted.goal) ? hf_cloud_linearise(&p->cloud[k]) : HF_OK;
 }
 

@@ -3,8 +3,8 @@
 
 #include "base/arena.h"
 #include "net/cable_pick.h"
-#include "solve/cloud.h"
-#include "solve/gain.h"
+#include "surface/cloud.h"
+#include "surface/gain.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -73,11 +73,12 @@ static int row_count(const hf_goals *goals, const hf_goal *g)
         return 1;
     case HF_GOAL_RATIO:
         return 2 * g->n_cable;
-    case HF_GOAL_SURFACE:
     case HF_GOAL_FACETS:
-        return hf_cloud_size(goals, g);
+        return hf_cloud_facet_points(goals->n_facet);
+    case HF_GOAL_SURFACE:
+        return m->n_inner_node;
     case HF_GOAL_GAIN:
-        return hf_gain_size(goals, (int)(g - goals->goal));
+        return 2 * hf_gain_points(&goals->beam[g - goals->goal], goals->n_facet);
     default:
         return g->n_cable;
     }

@@ -1,5 +1,5 @@
-/* precise - the equilibrium near a shape that was found, to twice the precision, and the cables there: what the proof of
- * bound.c is about (METHOD section 3).
+/* precise - the equilibrium near a shape that was found, to twice the precision, and the cables there: the shape that
+ * the proof of bound.c is about (METHOD section 3).
  * Stability: internal; may change in any version. */
 #ifndef HIFDM_PRECISE_H
 #define HIFDM_PRECISE_H

@@ -48,14 +48,6 @@ bool hf_workspace_iterates(const hf_model *m, const hf_workspace *w)
     return false;
 }
 
-void hf_workspace_places(const hf_model *m, const hf_workspace *w, double *place_m)
-{
-    size_t n = (size_t)m->n_node;
-    for (size_t row = 0; row < n; row++)
-        for (size_t c = 0; c < 3; c++)
-            place_m[3 * (size_t)m->node_of_row[row] + c] = w->position_m[c * n + row];
-}
-
 void hf_workspace_poison(const hf_model *m, hf_workspace *w)
 {
 /* all bits set are a NaN in IEEE 754, and for integers an index or law that no check accepts */

@@ -201,7 +201,7 @@ static void write_shape(hf_store *s, hid_t group, const hf_model *m, const hf_wo
                       .q_N_per_m = w->q_N_per_m,
                       .law = w->law};
     if (!shape.position_m) return;
-    hf_workspace_places(m, w, shape.position_m);
+    hf_model_positions(m, w->position_m, shape.position_m);
     hf_layout_write_columns(&s->f.io, group, &hf_layout_shape, m->n_node, m->n_cable, &shape);
 }
 

@@ -1,7 +1,7 @@
 /* Goals of a design: values by hand and by the measures of a result, residuals against values, and what is refused. */
 #include "goals.h"
 
-#include "solve/gain.h"
+#include "surface/gain.h"
 
 /* ---- values ---- */
 
@@ -178,7 +178,9 @@ START_TEST(errors_of_the_surface_are_those_of_a_result)
     for (int i = 0; i < 3 * t.net.model.n_node; i++)
         t.net.work.position_m[i] += rng_uniform(&rng, -1e-2, 1e-2);
     want(&t, 8, goal);
-    ck_assert_int_eq(hf_surface_measure(&t.surface, &t.facets, &t.net.model, &t.net.work, &is), HF_OK);
+    ck_assert_int_eq(
+        hf_surface_measure(&t.surface, &t.facets, &t.net.model, t.net.work.position_m, t.net.work.tension_N, &is),
+        HF_OK);
     ck_assert_int_eq(hf_goals_measure(&t.goals, &t.net.work, &t.point, value, &merit), HF_OK);
     const double wanted[8] = {is.normal_rms_m,          is.fit.normal_rms_m,         is.half_path_rms_m,
                               is.fit.half_path_rms_m,   is.facet_normal_rms_m,       is.facet_fit_normal_rms_m,
@@ -206,7 +208,7 @@ START_TEST(the_gain_is_what_the_field_loses)
     ck_assert_int_le(t.goals.n_row, 20000);
     const hf_model *m = &t.net.model;
     double *place = calloc(3 * (size_t)m->n_node, sizeof *place);
-    hf_workspace_places(m, &t.net.work, place);
+    hf_model_positions(m, t.net.work.position_m, place);
     hf_gain_beam_make(&t.surface, &t.facets, t.net.scene.position_m, _i % 2 ? 0.2e9 : 0.3e9, &beam);
     double loss_dB = hf_gain_loss_dB(&beam, &(hf_pattern_surface){&t.facets, place, NULL});
     ck_assert_int_eq(hf_goals_measure(&t.goals, &t.net.work, &t.point, &value, &merit), HF_OK);

@@ -1,7 +1,7 @@
 /* Derivatives of the goals of a design by its shape against differences, for every goal, fit and feed. */
 #include "goals.h"
 
-#include "solve/cloud.h"
+#include "surface/cloud.h"
 
 /* A shape without its solver, and a change of all of it. */
 struct shape {

@@ -3,7 +3,6 @@
 #ifndef HIFDM_GAIN_H
 #define HIFDM_GAIN_H
 
-#include <hifdm/goals.h>
 #include <hifdm/pattern.h>
 
 #include "base/arena.h"
@@ -39,7 +38,7 @@ typedef struct hf_gain {
     const hf_gain_beam *beam;
     int n_node;       /* of the model */
     int n, n_facet;   /* points; facets */
-    const int *row;   /* [n_facet][4] of the corners; borrowed from goals */
+    const int *row;   /* [n_facet][4] of the corners; borrowed */
     double all;       /* sum of sizes */
     double mean[2];   /* of phases, real and imaginary */
     double *size;     /* [n] */
@@ -49,14 +48,16 @@ typedef struct hf_gain {
     double *rate;     /* [2][n] scratch: of phase and size */
 } hf_gain;
 
-int hf_gain_size(const hf_goals *goals, int i_goal); /* number of residuals */
-void hf_gain_lay_out(hf_arena *arena, const hf_goals *goals, int i_goal, hf_gain *gain);
+int hf_gain_points(const hf_gain_beam *beam, int n_facet); /* each with two residuals */
 
-/* residual [2 n] of the shape in the workspace; NaN where nothing is lit. */
-void hf_gain_measure(hf_gain *gain, const hf_workspace *workspace, double *residual);
+/* Takes the memory of a gain whose members up to `row` are set. */
+void hf_gain_lay_out(hf_arena *arena, hf_gain *gain);
 
-/* Derivatives at the shape that was measured last, which the workspace still holds. */
-void hf_gain_linearise(hf_gain *gain, const hf_workspace *workspace);
+/* residual [2 n] of a shape, position_m [3][n_node] by row; NaN where nothing is lit. */
+void hf_gain_measure(hf_gain *gain, const double *position_m, double *residual);
+
+/* Derivatives at the shape that was measured last. */
+void hf_gain_linearise(hf_gain *gain, const double *position_m);
 
 /* rate [2 n] of the residuals for a move of all nodes [3][n_node]. */
 void hf_gain_push(hf_gain *gain, const double *move, double *rate);

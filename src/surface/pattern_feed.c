@@ -1,9 +1,9 @@
 /* Contents: the field - what a case leaves open - together */
-#include "solve/pattern_feed.h"
+#include "surface/pattern_feed.h"
 
 #include "base/elementary.h"
 #include "net/wanted.h"
-#include "solve/facet_mesh.h"
+#include "surface/facet_mesh.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* RMS over facets: integrals by hand, the published formula under refinement, the order of convergence. */
 #include "nets.h"
 
-#include "solve/facet_mesh.h"
-#include "solve/facet_rms.h"
+#include "surface/facet_mesh.h"
+#include "surface/facet_rms.h"
 
 /* ---- a triangular net over a hexagon ---- */
 

@@ -1,9 +1,9 @@
 /* The best fit of a surface. Contents: the fitted surface - the fit */
-#include "solve/surface_fit.h"
+#include "surface/surface_fit.h"
 
 #include "base/elementary.h"
 #include "net/wanted.h"
-#include "solve/fit_descend.h"
+#include "surface/fit_descend.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit_nlinear.h>

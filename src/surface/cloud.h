@@ -4,10 +4,10 @@
 #ifndef HIFDM_CLOUD_H
 #define HIFDM_CLOUD_H
 
-#include <hifdm/goals.h>
+#include <hifdm/settings.h>
 
 #include "base/arena.h"
-#include "solve/surface_fit.h"
+#include "surface/surface_fit.h"
 
 /* The best fit to the points: its parameters, and how they follow them. With G the derivatives of the sum of squares of
  * the half-path errors by the parameters, which are zero, the parameters change by -H^-1 dG, H = dG/dp. */
@@ -28,9 +28,9 @@ typedef struct hf_cloud {
     hf_along along;
     hf_fit fit;
     int n_node;         /* of the model */
-    int n, n_facet;     /* points; facets, or 0: the points are nodes */
+    int n, n_facet;     /* points, each with one residual; facets, or 0: the points are nodes */
+    const int *row;     /* [n] of the nodes, or [n_facet][4] of the corners; borrowed */
     hf_cloud_pose pose; /* only of fit best */
-    const int *row;     /* [n] of the nodes, or [n_facet][4] of the corners; borrowed from goals or model */
     double *position_m; /* [3][n] */
     double *move;       /* [3][n] scratch: of the points per unit of a variable */
     double *error_m;    /* [n] */
@@ -43,14 +43,14 @@ typedef struct hf_cloud {
     double *grow_m2; /* [n] scratch: change of that area */
 } hf_cloud;
 
-int hf_cloud_size(const hf_goals *goals, const hf_goal *goal); /* number of points, each with one residual */
+int hf_cloud_facet_points(int n_facet); /* points in so many facets */
 
-/* Take the memory of a cloud for this goal and set all that does not depend on a shape. */
-void hf_cloud_lay_out(hf_arena *arena, const hf_goals *goals, const hf_goal *goal, hf_cloud *cloud);
+/* Takes the memory of a cloud whose members up to `row` are set. */
+void hf_cloud_lay_out(hf_arena *arena, hf_cloud *cloud);
 
-/* residual [n] of the shape in the workspace, whose norm is the RMS of the errors; NaN without a best fit. HF_OK or
- * HF_NO_MEMORY. */
-hf_status hf_cloud_measure(hf_cloud *cloud, const hf_workspace *workspace, double *residual);
+/* residual [n] of a shape, position_m [3][n_node] by row, whose norm is the RMS of the errors; NaN without a best fit.
+ * HF_OK or HF_NO_MEMORY. */
+hf_status hf_cloud_measure(hf_cloud *cloud, const double *position_m, double *residual);
 
 /* Derivatives of a best fit, at the shape that was measured last. HF_OK, or HF_SINGULAR when the points leave the fit
  * open. */

@@ -1,5 +1,5 @@
 #define HF_LANE_VECTORS
-#include "solve/pattern_kernel.h"
+#include "surface/pattern_kernel.h"
 
 #include <stddef.h>
 

@@ -1,8 +1,8 @@
 /* Contents: the frame - one point - the sum of squares */
-#include "solve/fit_point.h"
+#include "surface/fit_point.h"
 
 #include "net/wanted.h"
-#include "solve/cloud.h"
+#include "surface/cloud.h"
 
 #include <string.h>
 

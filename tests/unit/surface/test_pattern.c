@@ -4,8 +4,8 @@
 
 #include "base/lane.h"
 #include "search/parallel.h"
-#include "solve/gain.h"
-#include "solve/pattern_kernel.h"
+#include "surface/gain.h"
+#include "surface/pattern_kernel.h"
 #include <hifdm/pattern.h>
 
 #include <math.h>

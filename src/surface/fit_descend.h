@@ -3,7 +3,7 @@
 #ifndef HIFDM_FIT_DESCEND_H
 #define HIFDM_FIT_DESCEND_H
 
-#include "solve/fit_point.h"
+#include "surface/fit_point.h"
 
 /* Does the sum of squares curve down nowhere? */
 bool hf_fit_is_least(const hf_fit_frame *frame);

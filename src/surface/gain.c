@@ -1,10 +1,10 @@
 /* Contents: the beam - a point - loss of a shape - a goal - derivatives */
-#include "solve/gain.h"
+#include "surface/gain.h"
 
 #include "base/elementary.h"
-#include "solve/facet_mesh.h"
-#include "solve/gauss.h"
-#include "solve/pattern_feed.h"
+#include "surface/facet_mesh.h"
+#include "surface/gauss.h"
+#include "surface/pattern_feed.h"
 
 #include <float.h>
 #include <math.h>
@@ -106,20 +106,14 @@ double hf_gain_loss_dB(const hf_gain_beam *b, const hf_pattern_surface *s)
 
 /* ---- a goal ---- */
 
-int hf_gain_size(const hf_goals *goals, int i_goal)
+int hf_gain_points(const hf_gain_beam *beam, int n_facet)
 {
-    int order = goals->beam[i_goal].order;
-    return 2 * order * order * goals->n_facet;
+    return beam->order * beam->order * n_facet;
 }
 
-void hf_gain_lay_out(hf_arena *a, const hf_goals *goals, int i_goal, hf_gain *g)
+void hf_gain_lay_out(hf_arena *a, hf_gain *g)
 {
-    size_t n = (size_t)hf_gain_size(goals, i_goal) / 2;
-    *g = (hf_gain){.beam = &goals->beam[i_goal],
-                   .n_node = goals->model->n_node,
-                   .n = (int)n,
-                   .n_facet = goals->n_facet,
-                   .row = goals->corner_row};
+    size_t n = (size_t)g->n;
     g->size = hf_arena_take(a, n, sizeof(double));
     g->phase = hf_arena_take(a, 2 * n, sizeof(double));
     g->by_place = hf_arena_take(a, 6 * n, sizeof(double));
@@ -142,13 +136,13 @@ static void take_facet(const hf_gain *g, const double *node, int i, facet *f)
     }
 }
 
-void hf_gain_measure(hf_gain *g, const hf_workspace *w, double *residual)
+void hf_gain_measure(hf_gain *g, const double *position_m, double *residual)
 {
     const int n = g->n, per_facet = n / g->n_facet;
     double sum[3] = {0}, phase[2];
     for (int i = 0; i < n; i++) {
         facet f;
-        take_facet(g, w->position_m, i / per_facet, &f);
+        take_facet(g, position_m, i / per_facet, &f);
         g->size[i] = add_point(g->beam, &f.flat, false, i % per_facet, sum, phase);
         for (int c = 0; c < 2; c++)
             g->phase[c * n + i] = phase[c];
@@ -185,13 +179,13 @@ static void derive_point(const hf_gain_beam *b, const double p[3], const double 
     }
 }
 
-void hf_gain_linearise(hf_gain *g, const hf_workspace *w)
+void hf_gain_linearise(hf_gain *g, const double *position_m)
 {
     const int n = g->n, per_facet = n / g->n_facet;
     for (int i = 0; i < n; i++) {
         facet f;
         double p[3], du[3], dv[3], by_place[6] = {0}, by_side[6] = {0};
-        take_facet(g, w->position_m, i / per_facet, &f);
+        take_facet(g, position_m, i / per_facet, &f);
         double weight = point_of(g->beam, &f.flat, false, i % per_facet, p, du, dv);
         if (g->size[i] > 0) derive_point(g->beam, p, du, dv, by_place, by_side);
         for (int d = 0; d < 6; d++) {

@@ -3,10 +3,10 @@
 
 #include "base/arena.h"
 #include "base/elementary.h"
-#include "solve/facet_mesh.h"
-#include "solve/gauss.h"
-#include "solve/pattern_feed.h"
-#include "solve/pattern_kernel.h"
+#include "surface/facet_mesh.h"
+#include "surface/gauss.h"
+#include "surface/pattern_feed.h"
+#include "surface/pattern_kernel.h"
 
 #include <math.h>
 #include <string.h>

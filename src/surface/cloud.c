@@ -1,9 +1,9 @@
 /* Contents: layout - points - errors - derivatives */
-#include "solve/cloud.h"
+#include "surface/cloud.h"
 
 #include "linalg/dot.h"
 #include "net/wanted.h"
-#include "solve/facet_rms.h"
+#include "surface/facet_rms.h"
 
 #include <math.h>
 
@@ -11,23 +11,15 @@ enum { N_GAUSS = HF_FACET_N_FLAT, N_POINT = N_GAUSS * N_GAUSS }; /* of a facet *
 
 /* ---- layout ---- */
 
-int hf_cloud_size(const hf_goals *goals, const hf_goal *g)
+int hf_cloud_facet_points(int n_facet)
 {
-    return g->wanted.goal == HF_GOAL_FACETS ? N_POINT * goals->n_facet : goals->model->n_inner_node;
+    return N_POINT * n_facet;
 }
 
-void hf_cloud_lay_out(hf_arena *a, const hf_goals *goals, const hf_goal *g, hf_cloud *c)
+void hf_cloud_lay_out(hf_arena *a, hf_cloud *c)
 {
-    bool has_facets = g->wanted.goal == HF_GOAL_FACETS;
-    size_t n = (size_t)hf_cloud_size(goals, g), n_area = has_facets ? n : 0;
-    *c = (hf_cloud){.kind = goals->kind,
-                    .focal_length_m = goals->focal_length_m,
-                    .along = g->wanted.along,
-                    .fit = g->wanted.fit,
-                    .n_node = goals->model->n_node,
-                    .n = (int)n,
-                    .n_facet = has_facets ? goals->n_facet : 0,
-                    .row = has_facets ? goals->corner_row : goals->model->inner_row};
+    bool has_facets = c->n_facet > 0;
+    size_t n = (size_t)c->n, n_area = has_facets ? n : 0;
     c->position_m = hf_arena_take(a, 3 * n, sizeof(double));
     c->move = hf_arena_take(a, 3 * n, sizeof(double));
     c->error_m = hf_arena_take(a, n, sizeof(double));
@@ -136,9 +128,9 @@ static void take_errors(hf_cloud *c)
     }
 }
 
-hf_status hf_cloud_measure(hf_cloud *c, const hf_workspace *w, double *residual)
+hf_status hf_cloud_measure(hf_cloud *c, const double *position_m, double *residual)
 {
-    take_points(c, w->position_m);
+    take_points(c, position_m);
     if (c->fit == HF_FIT_BEST)
         HF_TRY(hf_cloud_fit_measure(c));
     else

@@ -1,25 +1,26 @@
 /* Contents: a shape - points of quadrature - all facets - each facet */
-#include "solve/facet_rms.h"
+#include "surface/facet_rms.h"
 
 #include "base/arena.h"
 #include "net/wanted.h"
-#include "solve/facet_mesh.h"
+#include "surface/facet_mesh.h"
 
 #include <math.h>
 #include <string.h>
 
 /* ---- a shape ---- */
 
-hf_status hf_facet_shape_take(const hf_model *m, const hf_workspace *w, hf_facet_shape *shape, hf_arena *arena)
+hf_status hf_facet_shape_take(const hf_model *m, const double *position_m, const double *tension_N,
+                              hf_facet_shape *shape, hf_arena *arena)
 {
-    double *position_m;
+    double *of_node_m;
     int *end;
-    HF_TRY(HF_ARENA_MAKE(arena, (position_m = hf_arena_take(arena, 3 * (size_t)m->n_node, sizeof(double)),
+    HF_TRY(HF_ARENA_MAKE(arena, (of_node_m = hf_arena_take(arena, 3 * (size_t)m->n_node, sizeof(double)),
                                  end = hf_arena_take(arena, 2 * (size_t)m->n_cable, sizeof(int)))));
     for (int k = 0; k < 2 * m->n_cable; k++)
         end[k] = m->node_of_row[m->end_row[k]];
-    hf_workspace_places(m, w, position_m);
-    *shape = (hf_facet_shape){position_m, m->n_cable, end, w->tension_N};
+    hf_model_positions(m, position_m, of_node_m);
+    *shape = (hf_facet_shape){of_node_m, m->n_cable, end, tension_N};
     return HF_OK;
 }
 

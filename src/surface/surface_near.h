@@ -4,7 +4,7 @@
 #ifndef HIFDM_SURFACE_NEAR_H
 #define HIFDM_SURFACE_NEAR_H
 
-#include "solve/surface_fit.h"
+#include "surface/surface_fit.h"
 #include <hifdm/facets.h>
 
 /* A fitted surface: z = curvature x^2 (+ y^2) in a frame in which point p is at turn (p - center - shift) + center. */
@@ -20,7 +20,7 @@ hf_surface_pose hf_surface_pose_of(hf_surface_kind kind, double focal_length_m, 
 
 /* Half-path RMS after the best fit of points [3][n], with the roots of their weights [n] (NULL: all are 1), from this
  * pose. False where steps do not end at once, or end near what the reference takes for undetermined; half_path_rms_m
- * means nothing then. Agrees with the reference to 1e-9 of the RMS (unit/solve/surface). */
+ * means nothing then. Agrees with the reference to 1e-9 of the RMS (unit/surface/surface). */
 bool hf_surface_fit_near(const hf_surface_pose *from, int n, const double *position_m, const double *root_weight,
                          double *half_path_rms_m);
 
@@ -36,12 +36,12 @@ typedef struct {
 
 /* workspace: the shape. HF_OK or HF_NO_MEMORY. */
 hf_status hf_surface_design_make(const hf_surface_settings *settings, const hf_facets *facets, const hf_model *model,
-                                 const hf_workspace *workspace, hf_surface_design *design);
+                                 const double *position_m, const double *tension_N, hf_surface_design *design);
 
 /* What hf_surface_measure has of another shape of the same net, mostly in a tenth of its time or less. facets may be
  * NULL. HF_OK or HF_NO_MEMORY. */
 hf_status hf_surface_measure_near(const hf_surface_design *design, const hf_surface_settings *settings,
-                                  const hf_facets *facets, const hf_model *model, const hf_workspace *workspace,
-                                  hf_surface_paths *paths);
+                                  const hf_facets *facets, const hf_model *model, const double *position_m,
+                                  const double *tension_N, hf_surface_paths *paths);
 
 #endif

@@ -1,4 +1,4 @@
-#include "solve/gauss.h"
+#include "surface/gauss.h"
 
 #include "base/elementary.h"
 

@@ -1,8 +1,8 @@
 /* The best fit to a cloud as a function of its points. Contents: layout - one point - the fit - derivatives */
-#include "solve/cloud.h"
+#include "surface/cloud.h"
 
 #include "linalg/dense.h"
-#include "solve/fit_point.h"
+#include "surface/fit_point.h"
 
 #include <math.h>
 #include <string.h>

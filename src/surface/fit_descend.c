@@ -1,5 +1,5 @@
 /* Contents: curvature - steps */
-#include "solve/fit_descend.h"
+#include "surface/fit_descend.h"
 
 #include "linalg/dense.h"
 

@@ -3,7 +3,7 @@
 #ifndef HIFDM_FACET_MESH_H
 #define HIFDM_FACET_MESH_H
 
-#include "solve/facet_rms.h"
+#include "surface/facet_rms.h"
 
 enum { HF_FACET_N_BUBBLE = 6 };
 

@@ -2,7 +2,7 @@
 #ifndef HIFDM_FIT_POINT_H
 #define HIFDM_FIT_POINT_H
 
-#include "solve/surface_fit.h"
+#include "surface/surface_fit.h"
 
 /* Points, the surface that is fitted to them, and the derivatives of its turn by angles. */
 typedef struct {

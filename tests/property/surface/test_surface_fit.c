@@ -3,7 +3,7 @@
  * number after the test's name is the trial. */
 #include "laws.h"
 
-#include "solve/surface_near.h"
+#include "surface/surface_near.h"
 
 enum { N_TRIAL = 40, N_NET = 4, N_START = 3, SIDE = 9, N = SIDE * SIDE, N_PARAMETER = HF_FIT_N_PARAMETER, POWER = 6 };
 

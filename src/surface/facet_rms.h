@@ -5,8 +5,8 @@
 
 #include "base/arena.h"
 #include <hifdm/facets.h>
-#include "solve/surface_fit.h"
-#include "solve/surface_near.h"
+#include "surface/surface_fit.h"
+#include "surface/surface_near.h"
 
 /* A found shape in the order of the scene; borrowed. */
 typedef struct {
@@ -16,10 +16,10 @@ typedef struct {
     const double *tension_N; /* [n_cable]; NULL, as of the theoretical shape: facets are flat, whatever the mesh */
 } hf_facet_shape;
 
-/* The shape in the workspace; it borrows its tensions. Free the arena in
- * any case. HF_OK or HF_NO_MEMORY. */
-hf_status hf_facet_shape_take(const hf_model *model, const hf_workspace *workspace, hf_facet_shape *shape,
-                              hf_arena *arena);
+/* A shape of a model, position_m [3][n_node] by row; it borrows tension_N [n_cable]. Free the arena in any case. HF_OK
+ * or HF_NO_MEMORY. */
+hf_status hf_facet_shape_take(const hf_model *model, const double *position_m, const double *tension_N,
+                              hf_facet_shape *shape, hf_arena *arena);
 
 /* Gauss-Legendre on [0, 1] for flat facets, exact to the fifth power. */
 enum { HF_FACET_N_FLAT = 3 };

@@ -4,7 +4,7 @@
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "net/wanted.h"
-#include "solve/facet_rms.h"
+#include "surface/facet_rms.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -75,7 +75,7 @@ static double percentile(const double *sorted, int n, double part)
 
 /* Collects the inner nodes of the shape, [3][n], and their distances from the theoretical positions, and sets the raw
  * RMS values of `to`. */
-static void collect(const hf_surface_settings *s, const hf_model *m, const hf_workspace *w, double *position_m,
+static void collect(const hf_surface_settings *s, const hf_model *m, const double *position_m, double *inner_m,
                     double *deviation_m, hf_surface_measures *to)
 {
     int n = m->n_inner_node;
@@ -84,8 +84,8 @@ static void collect(const hf_surface_settings *s, const hf_model *m, const hf_wo
         double square = 0, d = 0, p[3], slope[2];
         for (int c = 0; c < 3; c++) {
             int at = c * m->n_node + m->inner_row[k];
-            position_m[c * n + k] = p[c] = w->position_m[at];
-            d = w->position_m[at] - m->position_m[at];
+            inner_m[c * n + k] = p[c] = position_m[at];
+            d = position_m[at] - m->position_m[at];
             square += d * d;
         }
         deviation_m[k] = sqrt(square);
@@ -101,11 +101,11 @@ static void collect(const hf_surface_settings *s, const hf_model *m, const hf_wo
 }
 
 static hf_status measure_facets(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
-                                const hf_workspace *w, hf_surface_measures *to)
+                                const double *position_m, const double *tension_N, hf_surface_measures *to)
 {
     hf_arena arena = {0};
     hf_facet_shape shape;
-    hf_status status = hf_facet_shape_take(m, w, &shape, &arena);
+    hf_status status = hf_facet_shape_take(m, position_m, tension_N, &shape, &arena);
     if (status == HF_OK) status = hf_facet_measure(s, facets, &shape, to);
     hf_arena_free(&arena);
     return status;
@@ -128,16 +128,16 @@ void hf_surface_blank(hf_surface_measures *of)
 }
 
 hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
-                             const hf_workspace *w, hf_surface_measures *measures)
+                             const double *position_m, const double *tension_N, hf_surface_measures *measures)
 {
     size_t n = (size_t)m->n_inner_node;
     hf_arena arena = {0};
     *measures = (hf_surface_measures){0};
-    double *position_m;
-    HF_TRY(HF_ARENA_MAKE(&arena, position_m = hf_arena_take(&arena, 4 * n, sizeof(double))));
-    double *deviation_m = position_m + 3 * n;
+    double *inner_m;
+    HF_TRY(HF_ARENA_MAKE(&arena, inner_m = hf_arena_take(&arena, 4 * n, sizeof(double))));
+    double *deviation_m = inner_m + 3 * n;
     hf_surface_measures all = {.is_measured = true};
-    collect(s, m, w, position_m, deviation_m, &all);
+    collect(s, m, position_m, inner_m, deviation_m, &all);
     qsort(deviation_m, n, sizeof *deviation_m, hf_compare_doubles);
     all.deviation_p50_m = percentile(deviation_m, (int)n, 0.50);
     all.deviation_p90_m = percentile(deviation_m, (int)n, 0.90);
@@ -146,8 +146,8 @@ hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *face
     all.deviation_max_m = deviation_m[n - 1];
     all.faceting_rms_m =
         s->strip_width_m > 0 ? s->strip_width_m * s->strip_width_m / (24 * sqrt(5) * s->focal_length_m) : (double)NAN;
-    hf_status status = hf_surface_fit_points(s->kind, s->focal_length_m, (int)n, position_m, NULL, &all.fit);
-    if (status == HF_OK) status = measure_facets(s, facets, m, w, &all);
+    hf_status status = hf_surface_fit_points(s->kind, s->focal_length_m, (int)n, inner_m, NULL, &all.fit);
+    if (status == HF_OK) status = measure_facets(s, facets, m, position_m, tension_N, &all);
     note_losses(s, &all);
     hf_arena_free(&arena);
     if (status == HF_OK) *measures = all;

@@ -1,11 +1,11 @@
 /* Contents: a pose - rows of points - steps - a shape */
-#include "solve/surface_near.h"
+#include "surface/surface_near.h"
 
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "linalg/dense.h"
 #include "net/wanted.h"
-#include "solve/facet_rms.h"
+#include "surface/facet_rms.h"
 
 #include <math.h>
 #include <string.h>
@@ -180,11 +180,11 @@ bool hf_surface_fit_near(const hf_surface_pose *from, int n, const double *posit
 
 /* ---- a shape ---- */
 
-static void take_nodes(const hf_model *m, const hf_workspace *w, double *position_m)
+static void take_nodes(const hf_model *m, const double *position_m, double *inner_m)
 {
     for (int c = 0; c < 3; c++)
         for (int k = 0; k < m->n_inner_node; k++)
-            position_m[c * m->n_inner_node + k] = w->position_m[c * m->n_node + m->inner_row[k]];
+            inner_m[c * m->n_inner_node + k] = position_m[c * m->n_node + m->inner_row[k]];
 }
 
 static void lay_out_nodes(hf_arena *arena, int n, double **position_m)
@@ -193,23 +193,23 @@ static void lay_out_nodes(hf_arena *arena, int n, double **position_m)
 }
 
 hf_status hf_surface_design_make(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
-                                 const hf_workspace *w, hf_surface_design *design)
+                                 const double *position_m, const double *tension_N, hf_surface_design *design)
 {
     hf_arena arena = {0}, shapes = {0};
     hf_facet_shape shape;
     hf_surface_fit fit;
     hf_fit_parameters parameters;
-    double *position_m;
+    double *inner_m;
     *design = (hf_surface_design){0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_nodes(&arena, m->n_inner_node, &position_m)));
-    take_nodes(m, w, position_m);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_nodes(&arena, m->n_inner_node, &inner_m)));
+    take_nodes(m, position_m, inner_m);
     hf_status status =
-        hf_surface_fit_find(s->kind, s->focal_length_m, m->n_inner_node, position_m, NULL, &fit, &parameters);
+        hf_surface_fit_find(s->kind, s->focal_length_m, m->n_inner_node, inner_m, NULL, &fit, &parameters);
     hf_arena_free(&arena);
     HF_TRY(status);
     design->nodes = hf_surface_pose_of(s->kind, s->focal_length_m, &fit, &parameters);
     if (!facets || facets->n_facet == 0) return HF_OK;
-    status = hf_facet_shape_take(m, w, &shape, &shapes);
+    status = hf_facet_shape_take(m, position_m, tension_N, &shape, &shapes);
     if (status == HF_OK) status = hf_facet_fit(s, facets, &shape, &fit, &parameters);
     hf_arena_free(&shapes);
     HF_TRY(status);
@@ -218,24 +218,24 @@ hf_status hf_surface_design_make(const hf_surface_settings *s, const hf_facets *
 }
 
 static hf_status measure_nodes(const hf_surface_design *design, const hf_surface_settings *s, const hf_model *m,
-                               const hf_workspace *w, hf_surface_paths *to)
+                               const double *position_m, hf_surface_paths *to)
 {
     int n = m->n_inner_node;
     hf_arena arena = {0};
     hf_surface_fit fit;
-    double *position_m, sum = 0, curvature = 1 / (4 * s->focal_length_m);
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_nodes(&arena, n, &position_m)));
-    take_nodes(m, w, position_m);
+    double *inner_m, sum = 0, curvature = 1 / (4 * s->focal_length_m);
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_nodes(&arena, n, &inner_m)));
+    take_nodes(m, position_m, inner_m);
     for (int k = 0; k < n; k++) {
-        double p[3] = {position_m[k], position_m[n + k], position_m[2 * (size_t)n + (size_t)k]}, slope[2];
+        double p[3] = {inner_m[k], inner_m[n + k], inner_m[2 * (size_t)n + (size_t)k]}, slope[2];
         double above = hf_wanted_height_above(s->kind, curvature, p, slope);
         double path = above / (1 + slope[0] * slope[0] + slope[1] * slope[1]);
         sum += path * path;
     }
     to->nodes_m = sqrt(sum / n);
     hf_status status = HF_OK;
-    if (!hf_surface_fit_near(&design->nodes, n, position_m, NULL, &to->nodes_fit_m)) {
-        status = hf_surface_fit_points(s->kind, s->focal_length_m, n, position_m, NULL, &fit);
+    if (!hf_surface_fit_near(&design->nodes, n, inner_m, NULL, &to->nodes_fit_m)) {
+        status = hf_surface_fit_points(s->kind, s->focal_length_m, n, inner_m, NULL, &fit);
         to->nodes_fit_m = fit.half_path_rms_m;
     }
     hf_arena_free(&arena);
@@ -243,15 +243,15 @@ static hf_status measure_nodes(const hf_surface_design *design, const hf_surface
 }
 
 hf_status hf_surface_measure_near(const hf_surface_design *design, const hf_surface_settings *s,
-                                  const hf_facets *facets, const hf_model *m, const hf_workspace *w,
-                                  hf_surface_paths *to)
+                                  const hf_facets *facets, const hf_model *m, const double *position_m,
+                                  const double *tension_N, hf_surface_paths *to)
 {
     hf_arena arena = {0};
     hf_facet_shape shape;
     *to = (hf_surface_paths){NAN, NAN, NAN, NAN};
-    HF_TRY(measure_nodes(design, s, m, w, to));
+    HF_TRY(measure_nodes(design, s, m, position_m, to));
     if (!facets || facets->n_facet == 0) return HF_OK;
-    hf_status status = hf_facet_shape_take(m, w, &shape, &arena);
+    hf_status status = hf_facet_shape_take(m, position_m, tension_N, &shape, &arena);
     if (status == HF_OK)
         status = hf_facet_measure_near(&design->facets, s, facets, &shape, &to->facets_m, &to->facets_fit_m);
     hf_arena_free(&arena);

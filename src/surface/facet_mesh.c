@@ -1,5 +1,5 @@
 /* Contents: facets - sides - the mesh of a facet */
-#include "solve/facet_mesh.h"
+#include "surface/facet_mesh.h"
 
 #include "base/elementary.h"
 #include "base/arena.h"
