@@ -45,9 +45,9 @@ TEST_WRAP += geteuid
 # ---- Flags -----------------------------------------------------------------------------------------------------------
 # No -ffast-math, and multiply-adds are fused only where fma() says so: our code gives the same bits on every machine
 # (LAPACK and GSL may not). One set of position-independent objects serves both libraries; -fno-semantic-interposition
-# lets them be inlined as if they were not.
+# lets them be inlined as if they were not. The shared library exports what the public headers declare.
 LANGUAGE := -std=c11 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp
-CODEGEN := -fno-math-errno -ffp-contract=off -fPIC -fno-semantic-interposition
+CODEGEN := -fno-math-errno -ffp-contract=off -fPIC -fno-semantic-interposition -fvisibility=hidden
 # psabi: functions that take vectors are inlined.
 WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wno-psabi $(WERROR)
 # Of src: every command must run on a stack of 128 kB (tests/cli/test_stack.c). Sanitizers make frames larger.
@@ -140,7 +140,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
          bench-before bench-optimisers bench-fronts bench-sampling pretension-night api docs docs-browser lint \
          asan tsan fuzz fuzz-results install uninstall dist dist-check deb workflow-check
-FRONT += python-install mutants-random attack bench-instructions bits transcripts deb-check release-check
+FRONT += python-install mutants-random attack abi bench-instructions bits transcripts deb-check release-check
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same place.
@@ -211,6 +211,10 @@ MUTANTS_ARGS ?=
 mutants-random: ## N edits at random places that SEED draws: which do the tests miss? build/mutants-random/SEED.log
 	$(Q)tools/setup.sh --test
 	+$(Q)BUILD=$(BUILD) $(PYTHON) tools/mutants_random.py --seed $(SEED) --n $(N) $(MUTANTS_ARGS)
+
+abi: ## does the shared library export what the public headers declare, and nothing that was there before is gone?
+	$(SUB) $(SHARED)
+	$(Q)$(PYTHON) tools/abi.py $(SHARED)
 
 attack: ## 200 kills, 500 failing calls and 5000 flipped bits that SEED draws: results/release/attack-VERSION.log
 	$(Q)tools/setup.sh --test

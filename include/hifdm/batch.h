@@ -6,13 +6,12 @@
 #ifndef HIFDM_BATCH_H
 #define HIFDM_BATCH_H
 
+#include <hifdm/api.h>
 #include <hifdm/evaluate.h>
 #include <hifdm/optimiser.h>
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 typedef struct {
     const hf_evaluator *evaluator; /* borrowed */
@@ -70,7 +69,5 @@ hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_
 /* Free the workspaces and what the threads share. The evaluator is not freed. */
 void hf_batch_free(hf_batch *batch);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

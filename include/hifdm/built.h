@@ -4,12 +4,11 @@
 #ifndef HIFDM_BUILT_H
 #define HIFDM_BUILT_H
 
+#include <hifdm/api.h>
 #include <hifdm/evaluate.h>
 #include <hifdm/states.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* A design that is made. Its model has the nodes and cables of the design's model in the same rows and the same order;
  * it lives as long as the scene and does not move in memory once it is made. */
@@ -61,7 +60,5 @@ hf_status hf_built_solve(const hf_built *built, const hf_built_net *net, hf_work
 void hf_built_state(const hf_built *built, const hf_material *material, const hf_state *state,
                     const double *attachment_move_m, double *cut_m, double *move_m, double *load_N, hf_built_net *net);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

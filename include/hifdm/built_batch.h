@@ -6,11 +6,10 @@
 #ifndef HIFDM_BUILT_BATCH_H
 #define HIFDM_BUILT_BATCH_H
 
+#include <hifdm/api.h>
 #include <hifdm/built.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* In what the samples of a run differ, beside the lengths of their cables. */
 enum {
@@ -58,7 +57,5 @@ const hf_workspace *hf_built_batch_find(hf_built_batch *batch, const hf_built_ne
 void hf_built_batch_run(hf_built_batch *batch, unsigned varies, long first, long n, hf_built_sample *make,
                         hf_built_take *take, void *context);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -12,12 +12,11 @@
 #ifndef HIFDM_CABLE_LAW_H
 #define HIFDM_CABLE_LAW_H
 
+#include <hifdm/api.h>
 #include <math.h>
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* What solvers may assume of a law. */
 enum {
@@ -209,7 +208,5 @@ static inline double hf_law_first_tension_N(hf_law_cable c, double otherwise_N)
     return fmin(fmax(tension_N, otherwise_N / HF_LAW_FIRST_RANGE), otherwise_N * HF_LAW_FIRST_RANGE);
 }
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -6,12 +6,11 @@
 #ifndef HIFDM_CABLE_SET_H
 #define HIFDM_CABLE_SET_H
 
+#include <hifdm/api.h>
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 #define HF_CABLE_SET_NAME_SIZE HF_SET_NAME_SIZE
 
@@ -38,7 +37,5 @@ int hf_cable_set_find(const hf_scene *scene, const char *name);
 
 bool hf_cable_set_has(const hf_scene *scene, int i_set, int i_cable);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -3,11 +3,10 @@
 #ifndef HIFDM_CARRIER_H
 #define HIFDM_CARRIER_H
 
+#include <hifdm/api.h>
 #include <hifdm/frame.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* Attachment k joins the net's support scene_node[k] to the truss node truss_node[k]. */
 typedef struct {
@@ -58,7 +57,5 @@ double hf_carrier_second_order_m(const hf_carrier *carrier, const hf_carrier_sta
 
 void hf_carrier_state_free(hf_carrier_state *state);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

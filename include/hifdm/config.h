@@ -6,6 +6,7 @@
 #ifndef HIFDM_CONFIG_H
 #define HIFDM_CONFIG_H
 
+#include <hifdm/api.h>
 #include <hifdm/carrier.h>
 #include <hifdm/generate.h>
 #include <hifdm/material.h>
@@ -15,9 +16,7 @@
 #include <hifdm/status.h>
 #include <hifdm/truss.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* A case file with every default filled in, also in sections that the file does not have. */
 typedef struct {
@@ -168,7 +167,5 @@ extern const int hf_n_list;
  * rules that involve several keys, and whether there is such a row. */
 hf_status hf_config_check_value(const char *key, const char *value, const char *place, hf_messages *messages);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

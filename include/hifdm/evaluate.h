@@ -4,12 +4,11 @@
 #ifndef HIFDM_EVALUATE_H
 #define HIFDM_EVALUATE_H
 
+#include <hifdm/api.h>
 #include <hifdm/formfind.h>
 #include <hifdm/goals.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* The method that form.method selects for this net: HF_METHOD_NEWTON, or HF_METHOD_HIFDM for the paper's iteration. The
  * methods iterative_fdm and fdm use this iteration, too; they differ in the laws of the model. *why is set to the
@@ -92,7 +91,5 @@ hf_status hf_evaluate_judge(const hf_evaluator *evaluator, hf_workspace *workspa
 /* L* (m) of a boundary cable: the prescribed length where there is one, else the theoretical length. */
 double hf_evaluate_design_length_m(const hf_model *model, int i_cable);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

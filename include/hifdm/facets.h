@@ -3,12 +3,11 @@
 #ifndef HIFDM_FACETS_H
 #define HIFDM_FACETS_H
 
+#include <hifdm/api.h>
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 typedef struct {
     int n_facet;
@@ -30,7 +29,5 @@ hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surfa
 
 void hf_facets_free(hf_facets *facets);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -17,9 +17,9 @@
 #ifndef HIFDM_FLAT_H
 #define HIFDM_FLAT_H
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include <hifdm/api.h>
+
+HF_API_BEGIN
 
 #define HF_FLAT_INTERFACE 1 /* raised when a function below changes what it takes, returns or means */
 
@@ -110,7 +110,5 @@ int hf_flat_run(hf_flat *flat, const char *output, int restart, hf_flat_observer
 /* Stop the run that goes on, from any thread or signal handler: hf_flat_run returns HF_INTERRUPTED. */
 void hf_flat_stop(hf_flat *flat);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

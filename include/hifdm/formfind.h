@@ -5,13 +5,12 @@
 #ifndef HIFDM_FORMFIND_H
 #define HIFDM_FORMFIND_H
 
+#include <hifdm/api.h>
 #include <hifdm/result.h>
 #include <hifdm/settings.h>
 #include <hifdm/workspace.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* Copy laws, targets and first force densities from the model into the workspace, set displacement_m to zero, and
  * n_moving to n_free. */
@@ -83,7 +82,5 @@ bool hf_form_chain_is_loaded(const hf_model *model, hf_workspace *workspace, int
 bool hf_form_chain_is_short(const hf_model *model, const hf_workspace *workspace, int i_chain, double *sum_m,
                             double *span_m);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

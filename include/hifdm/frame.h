@@ -9,11 +9,10 @@
 #ifndef HIFDM_FRAME_H
 #define HIFDM_FRAME_H
 
+#include <hifdm/api.h>
 #include <hifdm/truss.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* Shared and constant once it is built. */
 typedef struct {
@@ -71,7 +70,5 @@ double hf_frame_strain_energy(const hf_frame *frame, const hf_frame_load *load, 
  * HF_NO_MEMORY. */
 hf_status hf_frame_condense(const hf_frame *frame, int n_point, const int *node, double *flexibility_m_per_N);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -7,13 +7,12 @@
 #ifndef HIFDM_FRONT_H
 #define HIFDM_FRONT_H
 
+#include <hifdm/api.h>
 #include <hifdm/settings.h>
 #include <hifdm/status.h>
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* X(enumerator, word): what a point is. */
 #define HF_FRONT_MARKS(X)                                                                                              \
@@ -78,7 +77,5 @@ int hf_front_suggested(const hf_front_table *table);
 /* Is a as good as b in all objectives, and better in one? */
 bool hf_front_dominates(int n_objective, const double *a, const double *b);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -14,13 +14,12 @@
 #ifndef HIFDM_GENERATE_H
 #define HIFDM_GENERATE_H
 
+#include <hifdm/api.h>
 #include <hifdm/cable_law.h>
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* X(name of the section, type of the settings, keys, help). `hifdm schema` lists them in this order. */
 #define HF_GENERATORS(X)                                                                                               \
@@ -180,7 +179,5 @@ hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **pl
 const char *hf_scene_paraboloid_fault(const hf_paraboloid *paraboloid, char *what, size_t size);
 void hf_scene_paraboloid_surface(const hf_paraboloid *paraboloid, hf_surface_settings *surface);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

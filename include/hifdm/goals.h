@@ -11,12 +11,11 @@
 #ifndef HIFDM_GOALS_H
 #define HIFDM_GOALS_H
 
+#include <hifdm/api.h>
 #include <hifdm/facets.h>
 #include <hifdm/workspace.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 typedef struct {
     hf_goal_settings wanted;
@@ -180,7 +179,5 @@ void hf_goals_pulls(const hf_model *model, const hf_workspace *workspace, hf_goa
 void hf_goals_pull_rates(const hf_model *model, const hf_workspace *workspace, hf_goals_point *point,
                          const hf_goals_rate *by, double *rate);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

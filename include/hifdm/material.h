@@ -3,12 +3,11 @@
 #ifndef HIFDM_MATERIAL_H
 #define HIFDM_MATERIAL_H
 
+#include <hifdm/api.h>
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 typedef struct {
     double *expansion_per_K; /* [n_cable] NaN where not given */
@@ -27,7 +26,5 @@ static inline bool hf_material_names(hf_nodes nodes, unsigned char role)
     return nodes == HF_NODES_ALL || (int)nodes - 1 == (int)role; /* hf_role in the same order */
 }
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -4,11 +4,10 @@
 #ifndef HIFDM_METRICS_H
 #define HIFDM_METRICS_H
 
+#include <hifdm/api.h>
 #include <hifdm/workspace.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* A cable is slack when its tension is below this fraction of the reference tension. */
 #define HF_SLACK_RATIO 1e-3
@@ -28,7 +27,5 @@ double hf_metrics_set_ratio(const hf_model *model, const hf_workspace *workspace
 bool hf_metrics_is_slack(const hf_model *model, const hf_workspace *workspace, int i_cable);
 int hf_metrics_slack_count(const hf_model *model, const hf_workspace *workspace);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

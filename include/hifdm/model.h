@@ -10,13 +10,12 @@
 #ifndef HIFDM_MODEL_H
 #define HIFDM_MODEL_H
 
+#include <hifdm/api.h>
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
 #include <hifdm/status.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* A chain whose lengths exceed the distance of its supports by less than this part counts as straight: its sag would be
  * below 2e-5 of its span, and the tension above 1e4 times its load. With 1e-10 and 1e-8 the tests of model, solve and
@@ -138,7 +137,5 @@ void hf_model_positions(const hf_model *model, const double *row_m, double *posi
 
 void hf_model_free(hf_model *model);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

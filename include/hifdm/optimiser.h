@@ -16,11 +16,10 @@
 #ifndef HIFDM_OPTIMISER_H
 #define HIFDM_OPTIMISER_H
 
+#include <hifdm/api.h>
 #include <hifdm/population.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* The functions of one optimiser. A store keeps only the population, and a resumed run proposes the generations again
  * whose results are in the journal. Therefore a proposal depends only on the settings, the model, the population after
@@ -103,7 +102,5 @@ HF_OPTIMISER_LIST(HF_OPTIMISER_DECLARE)
 extern const hf_optimiser_kind hf_optimiser_nsga; /* of optimize.objectives, in place of ga */
 #undef HF_OPTIMISER_DECLARE
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

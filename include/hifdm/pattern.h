@@ -6,14 +6,13 @@
 #ifndef HIFDM_PATTERN_H
 #define HIFDM_PATTERN_H
 
+#include <hifdm/api.h>
 #include <hifdm/facets.h>
 
 #include <signal.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* What illuminates a surface. */
 typedef struct {
@@ -122,7 +121,5 @@ typedef struct {
 hf_status hf_pattern_table_create(int n_frequency, int n_cut, int n_theta, hf_pattern_table *table);
 void hf_pattern_table_free(hf_pattern_table *table);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

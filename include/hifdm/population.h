@@ -6,15 +6,14 @@
 #ifndef HIFDM_POPULATION_H
 #define HIFDM_POPULATION_H
 
+#include <hifdm/api.h>
 #include <hifdm/model.h>
 #include <hifdm/result.h>
 #include <hifdm/settings.h>
 
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 typedef enum {
     HF_POPULATION_RUNNING,
@@ -105,7 +104,5 @@ static inline double hf_population_clamp(const hf_population *population, int i_
  * bounds. */
 void hf_population_link(const hf_population *population, const hf_model *model, double *design_N);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -6,14 +6,13 @@
 #ifndef HIFDM_PROBLEM_H
 #define HIFDM_PROBLEM_H
 
+#include <hifdm/api.h>
 #include <hifdm/batch.h>
 #include <hifdm/config.h>
 #include <hifdm/facets.h>
 #include <hifdm/scene_arrays.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* Its members point to each other, so it is neither moved nor copied. */
 typedef struct {
@@ -74,7 +73,5 @@ hf_status hf_problem_has_slopes(const hf_problem *problem, hf_messages *messages
 
 void hf_problem_free(hf_problem *problem);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

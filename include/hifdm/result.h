@@ -8,13 +8,12 @@
 #ifndef HIFDM_RESULT_H
 #define HIFDM_RESULT_H
 
+#include <hifdm/api.h>
 #include <hifdm/settings.h>
 #include <hifdm/status.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* X(name, value, word stored in files). Never renumber. */
 #define HF_STOP_REASON_LIST(X)                                                                                         \
@@ -210,7 +209,5 @@ typedef struct {
     hf_coupling_history coupling;
 } hf_history;
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

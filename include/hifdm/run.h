@@ -7,15 +7,14 @@
 #ifndef HIFDM_RUN_H
 #define HIFDM_RUN_H
 
+#include <hifdm/api.h>
 #include <hifdm/problem.h>
 #include <hifdm/store.h>
 #include <hifdm/summary.h>
 #include <signal.h>
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 #define HF_OUTPUT_SIZE 4096
 
@@ -81,7 +80,5 @@ typedef struct {
 hf_status hf_run_case(const hf_run_request *request, hf_summary *summary, char output[HF_OUTPUT_SIZE],
                       hf_messages *messages);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

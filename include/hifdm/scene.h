@@ -7,13 +7,12 @@
 #ifndef HIFDM_SCENE_H
 #define HIFDM_SCENE_H
 
+#include <hifdm/api.h>
 #include <hifdm/cable_law.h>
 #include <hifdm/status.h>
 #include <stdbool.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 typedef enum { HF_ROLE_SUPPORT, HF_ROLE_INNER, HF_ROLE_EDGE } hf_role; /* psi counts the inner nodes */
 typedef enum { HF_GROUP_INNER, HF_GROUP_BOUNDARY } hf_group;
@@ -73,7 +72,5 @@ bool hf_scene_numbers_agree(size_t n, const double *a, const double *b);
 
 void hf_scene_free(hf_scene *scene);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -3,11 +3,10 @@
 #ifndef HIFDM_SCENE_ARRAYS_H
 #define HIFDM_SCENE_ARRAYS_H
 
+#include <hifdm/api.h>
 #include <hifdm/scene.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* All members are borrowed. What may be NULL is absent, or has the default of a table that lacks the column. */
 typedef struct {
@@ -35,7 +34,5 @@ typedef struct {
 hf_status hf_scene_from_arrays(const hf_scene_arrays *arrays, const double group_EA_N[2], hf_scene *scene,
                                hf_messages *messages);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -6,12 +6,11 @@
 #ifndef HIFDM_SETTINGS_H
 #define HIFDM_SETTINGS_H
 
+#include <hifdm/api.h>
 #include <stdbool.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* Choices of a case file; `hifdm schema` says what each means. */
 typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHOD_NEWTON, HF_METHOD_AUTO } hf_method;
@@ -371,7 +370,5 @@ typedef struct {
     hf_pattern_settings pattern;
 } hf_surface_settings;
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -3,11 +3,10 @@
 #ifndef HIFDM_STATES_H
 #define HIFDM_STATES_H
 
+#include <hifdm/api.h>
 #include <hifdm/material.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* Arrays of the state in the order of scene and truss, zero where nothing is said. */
 typedef struct {
@@ -31,7 +30,5 @@ typedef struct {
 hf_status hf_states_allocate(const hf_scene *scene, int n_member, int n, hf_states *states);
 void hf_states_free(hf_states *states);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

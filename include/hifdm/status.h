@@ -7,12 +7,11 @@
 #ifndef HIFDM_STATUS_H
 #define HIFDM_STATUS_H
 
+#include <hifdm/api.h>
 #include <stdbool.h>
 #include <stddef.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* X(name, value, exit code of the program, word stored in files, sentence for people).
  * The values are stored in HDF5 files: never renumber them. */
@@ -94,7 +93,5 @@ const char *hf_messages_place(const hf_messages *messages, char text[HF_PLACE_SI
     HF_PRINTF(3, 4);
 void hf_messages_free(hf_messages *messages); /* frees all lines; the list can be used again */
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

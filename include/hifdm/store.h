@@ -71,15 +71,14 @@
 #ifndef HIFDM_STORE_H
 #define HIFDM_STORE_H
 
+#include <hifdm/api.h>
 #include <hifdm/config.h>
-#include <hifdm/optimiser.h>
 #include <hifdm/model.h>
+#include <hifdm/optimiser.h>
 #include <hifdm/summary.h>
 #include <hifdm/workspace.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 typedef struct hf_store hf_store;
 
@@ -256,7 +255,5 @@ const char *hf_store_version(void);
  * first call of HDF5. False: there is too little memory for HDF5, which would crash. */
 bool hf_store_quiet(void);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

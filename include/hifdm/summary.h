@@ -5,6 +5,7 @@
 #ifndef HIFDM_SUMMARY_H
 #define HIFDM_SUMMARY_H
 
+#include <hifdm/api.h>
 #include <hifdm/cable_set.h>
 #include <hifdm/front.h>
 #include <hifdm/optimiser.h>
@@ -15,9 +16,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 #define HF_WARNINGS_SIZE 4096
 
@@ -191,7 +190,5 @@ bool hf_summary_has_best_shape(const hf_summary *summary);
 /* Share of the threads' time that was spent inside evaluations, 0..1; NaN when nothing was timed. */
 double hf_summary_utilisation(const hf_summary *summary);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

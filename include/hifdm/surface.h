@@ -9,12 +9,11 @@
 #ifndef HIFDM_SURFACE_H
 #define HIFDM_SURFACE_H
 
+#include <hifdm/api.h>
 #include <hifdm/facets.h>
 #include <hifdm/model.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* ---- The lists: X(type, member, kind, json, description) ----
  *
@@ -142,7 +141,5 @@ double hf_surface_ruze_dB(double half_path_rms_m, double frequency_Hz);
 /* The frequency at which that loss is loss_dB, 0 < loss_dB <= HF_RUZE_MOST_DB; INFINITY for an RMS of 0. */
 double hf_surface_frequency_of_loss_Hz(double half_path_rms_m, double loss_dB);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

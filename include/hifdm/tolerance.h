@@ -7,11 +7,10 @@
 #ifndef HIFDM_TOLERANCE_H
 #define HIFDM_TOLERANCE_H
 
+#include <hifdm/api.h>
 #include <hifdm/surface.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* Columns of a row: hf_status, psi of the same errors to first order (m), then the measures; NaN for what is not
  * measured, and for all measures of a sample without a shape. */
@@ -84,7 +83,5 @@ typedef struct {
 } hf_tolerance_summary;
 #undef HF_TOLERANCE_MEMBER
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -6,13 +6,12 @@
 #ifndef HIFDM_TRUSS_H
 #define HIFDM_TRUSS_H
 
+#include <hifdm/api.h>
 #include <hifdm/generate.h>
 #include <hifdm/settings.h>
 #include <hifdm/status.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 #define HF_TRUSS_DOF 6 /* of a node */
 
@@ -220,7 +219,5 @@ void hf_truss_describe(const hf_truss *truss, bool is_member, int index, char *t
 double hf_truss_member_length(const hf_truss *truss, int i_member); /* m */
 double hf_truss_mass(const hf_truss *truss);                        /* kg: members and hinges */
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -6,13 +6,12 @@
 #ifndef HIFDM_WORKSPACE_H
 #define HIFDM_WORKSPACE_H
 
+#include <hifdm/api.h>
 #include <hifdm/model.h>
 #include <hifdm/result.h>
 #include <signal.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+HF_API_BEGIN
 
 /* Unknowns of Newton's matrix, without and with the attachments. */
 #define HF_NEWTON_DOFS(m) ((m)->has_newton ? 3 * (size_t)(m)->n_free : 0)
@@ -132,7 +131,5 @@ bool hf_workspace_iterates(const hf_model *model, const hf_workspace *workspace)
  * that a call reads show in its result. */
 void hf_workspace_poison(const hf_model *model, hf_workspace *workspace);
 
-#ifdef __cplusplus
-}
-#endif
+HF_API_END
 #endif

@@ -1,0 +1,21 @@
+/* api - what the shared library exports.
+ * Stability: stable.
+ *
+ * Each public header declares its functions and variables between HF_API_BEGIN and HF_API_END: they have C linkage, and
+ * libhifdm.so exports them. All other symbols of the library are hidden, because it is compiled with
+ * -fvisibility=hidden. `make abi` compares the exported symbols with the declared ones. */
+#ifndef HIFDM_API_H
+#define HIFDM_API_H
+
+#ifdef __cplusplus
+#define HF_API_LINKAGE_BEGIN extern "C" {
+#define HF_API_LINKAGE_END }
+#else
+#define HF_API_LINKAGE_BEGIN
+#define HF_API_LINKAGE_END
+#endif
+
+#define HF_API_BEGIN HF_API_LINKAGE_BEGIN _Pragma("GCC visibility push(default)")
+#define HF_API_END _Pragma("GCC visibility pop") HF_API_LINKAGE_END
+
+#endif
