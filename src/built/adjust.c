@@ -24,7 +24,7 @@
 /* What a thread needs to find effects of cables. */
 typedef struct {
     hf_goals_point point;
-    hf_chord_lanes lanes;
+    double *lanes;                            /* of the packed matrix */
     double *strain_N, *answer_m, *scratch;    /* [PANEL][...] of the linear answer */
     double *rate_m, *rate_N, *displacement_m; /* of hf_goals_push */
 } adjust_room;
@@ -33,9 +33,8 @@ typedef struct {
     hf_estimate *estimate;
     const hf_adjust_task *task;
     int n_room;
-    adjust_room *room; /* [n_room] */
-    hf_evaluator evaluator;
-    hf_chord matrix;        /* of the linear answer, packed */
+    adjust_room *room;      /* [n_room] */
+    hf_packed_band matrix;  /* of the linear answer, packed */
     size_t n, n_row, n_dof; /* cables that can be turned; residuals of the figure; places */
     hf_workspace work;      /* the last shape */
     hf_form_result form;
@@ -68,6 +67,7 @@ static void lay_out_rooms(hf_arena *arena, adjustment *a)
     a->room = hf_arena_take(arena, (size_t)a->n_room, sizeof *a->room);
     for (int i = 0; i < a->n_room; i++) {
         adjust_room of = {0};
+        of.lanes = hf_arena_take(arena, hf_packed_band_rows(&a->matrix) * HF_LANES, sizeof(double));
         of.strain_N = hf_arena_take(arena, PANEL * (size_t)m->n_cable, sizeof(double));
         of.answer_m = hf_arena_take(arena, PANEL * a->n_dof, sizeof(double));
         of.scratch = hf_arena_take(arena, PANEL * a->estimate->linear.n_scratch, sizeof(double));
@@ -99,6 +99,7 @@ static void lay_out_adjustment(hf_arena *arena, adjustment *a)
     a->trial = hf_arena_take(arena, a->n, sizeof(int));
     a->least_N = hf_arena_take(arena, n_cable, sizeof(double));
     a->room_N = hf_arena_take(arena, n_cable, sizeof(double));
+    hf_packed_band_lay_out(arena, &a->matrix);
     lay_out_rooms(arena, a);
 }
 
@@ -127,16 +128,13 @@ static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, a
     *a = (adjustment){.estimate = p, .task = task, .n = (size_t)task->n_cable, .n_row = (size_t)task->goals->n_row};
     a->n_dof = p->linear.n_dof;
     a->n_room = task->n_thread > 0 ? task->n_thread : hf_parallel_cores();
+    a->matrix = hf_packed_band_of(3 * p->built->model.n_free, 3 * p->built->model.half_bandwidth + 2);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_adjustment(&arena, a)));
     a->block = arena.block;
     a->left_open = a->column + a->n * a->n_row;
     a->at_zero = a->left_open + HF_ESTIMATE_SAMPLES * a->n_row;
-    a->evaluator = (hf_evaluator){.model = &p->built->model, .form = &p->built->form};
-    HF_TRY(hf_chord_create_matrix(&a->evaluator, &a->matrix, &a->room[0].lanes));
-    for (int i = 0; i < a->n_room; i++) {
-        if (i > 0) HF_TRY(hf_chord_lanes_create(&a->matrix, &a->room[i].lanes));
+    for (int i = 0; i < a->n_room; i++)
         HF_TRY(hf_goals_point_create(task->goals, &a->room[i].point));
-    }
     const hf_adjust_settings *s = task->settings;
     a->problem = (hf_moves_problem){.n = task->n_cable,
                                     .gram = a->gram,
@@ -158,11 +156,8 @@ static void free_adjustment(adjustment *a)
 {
     hf_arena arena = {.block = a->block};
     hf_workspace_free(&a->work);
-    for (int i = 0; i < a->n_room && a->block; i++) {
+    for (int i = 0; i < a->n_room && a->block; i++)
         hf_goals_point_free(&a->room[i].point);
-        hf_chord_lanes_free(&a->room[i].lanes);
-    }
-    hf_chord_free(&a->matrix);
     hf_arena_free(&arena);
 }
 
@@ -243,7 +238,7 @@ static void find_panel(void *context, int room, int i_panel)
         size_t e = (size_t)a->task->cable[first + k];
         r->strain_N[k * n_cable + e] = l->cut_N_per_m[e];
     }
-    const hf_built_lanes by = {&a->matrix, &r->lanes};
+    const hf_built_lanes by = {&a->matrix, r->lanes};
     hf_built_linear_apply_by(l, &by, (int)n, r->strain_N, NULL, r->answer_m, r->scratch);
     for (size_t k = 0; k < n; k++)
         push_move(a, r, r->answer_m + k * a->n_dof, a->column + (first + k) * a->n_row);
@@ -315,7 +310,7 @@ static hf_status linearise(adjustment *a)
     for (int i = 0; i < a->n_room; i++)
         HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[i].point, a->residual));
     HF_TRY(hf_built_linear_take(&a->estimate->linear, &a->work));
-    hf_chord_pack(&a->estimate->linear.work, &a->matrix);
+    hf_packed_band_pack(&a->matrix, a->estimate->linear.work.newton_band);
     hf_parallel_each(a->n_room, (int)((n + PANEL - 1) / PANEL), find_panel, a);
     take_turns_off(a);
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++)

@@ -119,7 +119,7 @@ static void back_solve(const hf_built_linear *l, const hf_built_lanes *by, int n
 {
     const hf_model *m = &l->built->model;
     if (by)
-        hf_chord_back_solve(by->matrix, by->lanes, n, v, ld);
+        hf_packed_band_back_solve(by->matrix, by->lanes, n, v, ld);
     else
         hf_band_back_solve(3 * m->n_free, 3 * m->half_bandwidth + 2, n, l->work.newton_band, v, (int)ld);
 }

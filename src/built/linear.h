@@ -6,7 +6,7 @@
 #ifndef HIFDM_LINEAR_H
 #define HIFDM_LINEAR_H
 
-#include "search/chord.h"
+#include "linalg/packed_band.h"
 #include "solve/schur.h"
 #include <hifdm/built.h>
 
@@ -41,12 +41,12 @@ void hf_built_linear_free(hf_built_linear *linear);
 void hf_built_linear_apply(const hf_built_linear *linear, int n, const double *strain_N, double *move_m,
                            double *scratch);
 
-/* The same, eight at a time where n is large: of the factor, packed by hf_chord_pack(&linear->work, ...), with lanes of
- * the calling thread. by: NULL: hf_built_linear_apply. load_N [n][n_dof] (NULL: none): what is added to the loads of
- * nodes. */
+/* The same, eight at a time where n is large: with the factor of linear->work, packed, and lanes of the calling thread
+ * (linalg/packed_band.h). by: NULL: hf_built_linear_apply. load_N [n][n_dof] (NULL: none): what is added to the loads
+ * of nodes. */
 typedef struct {
-    const hf_chord *matrix;
-    const hf_chord_lanes *lanes;
+    const hf_packed_band *matrix;
+    double *lanes;
 } hf_built_lanes;
 void hf_built_linear_apply_by(const hf_built_linear *linear, const hf_built_lanes *by, int n, const double *strain_N,
                               const double *load_N, double *move_m, double *scratch);

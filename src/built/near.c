@@ -184,7 +184,7 @@ static void follow(const hf_near *near, hf_chord_lanes *l)
 {
     const hf_model *m = &near->model;
     const hf_chord *c = &near->chord;
-    double *step = l->force_N + (size_t)c->width * HF_LANES;
+    double *step = l->force_N + (size_t)c->matrix.width * HF_LANES;
     for (int k = 0; k < m->n_tie; k++) {
         int there = m->end_row[m->tie[k] ^ 1];
         const double *block = c->tie_block + 9 * k, *d = step + (ptrdiff_t)3 * there * HF_LANES;
@@ -195,7 +195,7 @@ static void follow(const hf_near *near, hf_chord_lanes *l)
             pull[row * HF_LANES + lane] += block[3 * row + column] * d[column * HF_LANES + lane];
         }
     }
-    memset(step, 0, (size_t)c->n_dof * HF_LANES * sizeof *step);
+    memset(step, 0, (size_t)c->matrix.n * HF_LANES * sizeof *step);
 }
 
 /* On a truss first the free nodes with the attachments held, then the attachments, and what their move does. */
@@ -204,7 +204,7 @@ void hf_near_step(const hf_near *near, hf_near_lanes *l)
     const hf_chord *c = &near->chord;
     const hf_chord_kernels *k = c->kernels;
     double gap_squared[HF_LANES];
-    k->solve(c, &l->lanes);
+    c->matrix.solve(&c->matrix, l->lanes.force_N);
     k->step(c, &l->lanes);
     if (!c->n_pull) return;
     follow(near, &l->lanes);
@@ -212,7 +212,7 @@ void hf_near_step(const hf_near *near, hf_near_lanes *l)
     memcpy(l->gap_lanes_m, l->lanes.move_m, (size_t)c->n_pull * HF_LANES * sizeof *l->gap_lanes_m);
     near->multiply(c->n_pull, near->answer, l->gap_lanes_m, l->lanes.move_m);
     k->move(c, &l->lanes);
-    k->solve(c, &l->lanes);
+    c->matrix.solve(&c->matrix, l->lanes.force_N);
     k->step(c, &l->lanes);
 }
 

@@ -1,4 +1,4 @@
-/* Contents: choice of instruction set - shared matrix - lanes - the matrix alone - the run */
+/* Contents: choice of instruction set - shared matrix - lanes - the run */
 #include "search/chord.h"
 
 #include "base/arena.h"
@@ -26,8 +26,7 @@ static const hf_chord_kernels *choose_kernels(void)
 {
 #define TABLE(isa)                                                                                                     \
     {                                                                                                                  \
-        hf_chord_forces_##isa, hf_chord_solve_##isa, hf_chord_step_##isa, hf_chord_couple_##isa, hf_chord_move_##isa,  \
-            hf_chord_measure_##isa                                                                                     \
+        hf_chord_forces_##isa, hf_chord_step_##isa, hf_chord_couple_##isa, hf_chord_move_##isa, hf_chord_measure_##isa \
     }
     static const hf_chord_kernels portable = TABLE(portable), avx2 = TABLE(avx2), avx512 = TABLE(avx512);
 #undef TABLE
@@ -76,14 +75,9 @@ bool hf_chord_applies(const hf_evaluator *v)
 static void lay_out(hf_arena *a, hf_chord *c)
 {
     const hf_model *m = c->evaluator->model;
-    size_t n_block = (size_t)c->n_block, n = n_block * HF_CHORD_ROWS, n_packed = n * (size_t)(c->width + HF_CHORD_ROWS);
     size_t n_cable = (size_t)m->n_cable, n_pull = (size_t)c->n_pull;
-    c->row = hf_arena_take(a, n_packed, sizeof(double));
-    c->column = hf_arena_take(a, n_packed, sizeof(double));
-    c->inverse_diagonal = hf_arena_take(a, n, sizeof(double));
+    hf_packed_band_lay_out(a, &c->matrix);
     c->base_m = hf_arena_take(a, 3 * (size_t)m->n_node, sizeof(double));
-    c->row_begin = hf_arena_take(a, n_block, sizeof(int));
-    c->column_end = hf_arena_take(a, n_block, sizeof(int));
     c->gene_of_cable = hf_arena_take(a, n_cable, sizeof(int));
     c->gene_divisor = hf_arena_take(a, (size_t)m->n_gene, sizeof(double));
     c->inverse_length = hf_arena_take(a, n_cable, sizeof(double));
@@ -100,60 +94,11 @@ static void lay_out(hf_arena *a, hf_chord *c)
     c->base_displacement_m = hf_arena_take(a, n_pull, sizeof(double));
 }
 
-static void pack_factor(const hf_workspace *w, hf_chord *c)
-{
-    const int rows = HF_CHORD_ROWS;
-    int n = c->n_dof, ld = 3 * c->evaluator->model->half_bandwidth + 3, places = c->width + rows;
-    for (int j = 0; j < n; j++)
-        c->inverse_diagonal[j] = 1 / w->newton_band[(ptrdiff_t)j * ld];
-    for (int j = 0; j < n; j++)
-        for (int d = 1; d < ld && j + d < n; d++) {
-            double value = w->newton_band[(ptrdiff_t)j * ld + d];
-            int i = j + d, row_0 = i / rows * rows, column_0 = j / rows * rows;
-            ptrdiff_t in_row = (ptrdiff_t)row_0 * places + (ptrdiff_t)(j - row_0 + c->width) * rows + i - row_0;
-            ptrdiff_t in_column = (ptrdiff_t)column_0 * places + (ptrdiff_t)(i - column_0) * rows + j - column_0;
-            c->row[in_row] = value * c->inverse_diagonal[i];
-            c->column[in_column] = value * c->inverse_diagonal[j];
-        }
-}
-
-/* Is any entry beside each other not zero? */
-static bool has_entry(const double *packed)
-{
-    for (int r = 0; r < HF_CHORD_ROWS; r++)
-        if (packed[r] != 0) return true;
-    return false;
-}
-
-static void find_skyline(hf_chord *c)
-{
-    int places = c->width + HF_CHORD_ROWS;
-    for (int b = 0; b < c->n_block; b++) {
-        const double *row = c->row + (ptrdiff_t)b * places * HF_CHORD_ROWS;
-        const double *column = c->column + (ptrdiff_t)b * places * HF_CHORD_ROWS;
-        int begin = 0, end = places;
-        while (begin < c->width && !has_entry(row + begin * HF_CHORD_ROWS))
-            begin++;
-        while (end > HF_CHORD_ROWS && !has_entry(column + (end - 1) * HF_CHORD_ROWS))
-            end--;
-        c->row_begin[b] = begin;
-        c->column_end[b] = end;
-    }
-}
-
-void hf_chord_pack(const hf_workspace *w, hf_chord *chord)
-{
-    pack_factor(w, chord);
-    find_skyline(chord);
-}
-
 static hf_chord dimensions(const hf_evaluator *v)
 {
-    int n_dof = 3 * v->model->n_free, n_pull = 3 * v->model->n_attachment;
+    int n_pull = 3 * v->model->n_attachment;
     return (hf_chord){.evaluator = v,
-                      .n_dof = n_dof,
-                      .n_block = (n_dof + HF_CHORD_ROWS - 1) / HF_CHORD_ROWS,
-                      .width = 3 * v->model->half_bandwidth + 2,
+                      .matrix = hf_packed_band_of(3 * v->model->n_free, 3 * v->model->half_bandwidth + 2),
                       .n_pull = n_pull,
                       .n_pull_pad = (n_pull + HF_CHORD_ROWS - 1) / HF_CHORD_ROWS * HF_CHORD_ROWS};
 }
@@ -241,7 +186,7 @@ hf_status hf_chord_create_here(const hf_evaluator *v, hf_workspace *w, hf_chord 
     *chord = dimensions(v);
     HF_TRY(hf_newton_matrix_factor(m, w, NULL));
     HF_TRY(allocate(chord));
-    hf_chord_pack(w, chord);
+    hf_packed_band_pack(&chord->matrix, w->newton_band);
     memcpy(chord->base_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
     list_cables(v, chord);
     list_incidences(m, chord);
@@ -269,7 +214,7 @@ static void lay_out_lanes(hf_arena *a, const hf_chord *c, hf_chord_lanes *l)
 {
     const hf_model *m = c->evaluator->model;
     l->x_m = hf_arena_take(a, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
-    l->force_N = hf_arena_take(a, ((size_t)c->n_dof + 2 * (size_t)c->width + HF_CHORD_ROWS) * HF_LANES, sizeof(double));
+    l->force_N = hf_arena_take(a, hf_packed_band_rows(&c->matrix) * HF_LANES, sizeof(double));
     l->gene = hf_arena_take(a, ((size_t)m->n_gene + (size_t)m->n_cable) * HF_LANES, sizeof(double));
     l->pull_N = hf_arena_take(a, (size_t)c->n_pull * HF_LANES, sizeof(double));
     l->displacement_m = hf_arena_take(a, (size_t)c->n_pull_pad * HF_LANES, sizeof(double));
@@ -306,35 +251,6 @@ void hf_chord_lanes_free(hf_chord_lanes *lanes)
 {
     hf_arena_free_block(lanes->block);
     *lanes = (hf_chord_lanes){0};
-}
-
-/* ---- the matrix alone ---- */
-
-hf_status hf_chord_create_matrix(const hf_evaluator *v, hf_chord *chord, hf_chord_lanes *lanes)
-{
-    *lanes = (hf_chord_lanes){0};
-    *chord = dimensions(v);
-    chord->n_pull = chord->n_pull_pad = 0;
-    HF_TRY(allocate(chord));
-    return hf_chord_lanes_create(chord, lanes);
-}
-
-void hf_chord_back_solve(const hf_chord *chord, const hf_chord_lanes *l, int n_rhs, double *b, size_t ldb)
-{
-    double *rows = l->force_N + (size_t)chord->width * HF_LANES;
-    size_t n = (size_t)chord->n_dof;
-    memset(rows, 0, (n + (size_t)chord->width + HF_CHORD_ROWS) * HF_LANES * sizeof *rows);
-    for (int first = 0; first < n_rhs; first += HF_LANES) {
-        int n_lane = n_rhs - first < HF_LANES ? n_rhs - first : HF_LANES;
-        double *column = b + (size_t)first * ldb;
-        for (int k = 0; k < n_lane; k++)
-            for (size_t i = 0; i < n; i++)
-                rows[i * HF_LANES + (size_t)k] = column[(size_t)k * ldb + i];
-        chord->kernels->solve(chord, l);
-        for (int k = 0; k < n_lane; k++)
-            for (size_t i = 0; i < n; i++)
-                column[(size_t)k * ldb + i] = rows[i * HF_LANES + (size_t)k];
-    }
 }
 
 /* ---- the run ---- */
@@ -499,7 +415,7 @@ static void step(void *solver)
     chord_run *s = solver;
     const hf_chord_kernels *k = s->chord->kernels;
     if (s->chord->n_pull) k->move(s->chord, s->lanes);
-    k->solve(s->chord, s->lanes);
+    s->chord->matrix.solve(&s->chord->matrix, s->lanes->force_N);
     k->step(s->chord, s->lanes);
 }
 

@@ -31,16 +31,6 @@ size_t hf_chord_bytes(const hf_evaluator *evaluator, size_t *lanes_bytes);
 hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes);
 void hf_chord_lanes_free(hf_chord_lanes *lanes);
 
-/* Make only room for the matrix and one set of lanes, without base design or truss: for hf_chord_pack and
- * hf_chord_back_solve. Returns HF_OK or HF_NO_MEMORY; free both in either case. */
-hf_status hf_chord_create_matrix(const hf_evaluator *evaluator, hf_chord *chord, hf_chord_lanes *lanes);
-
-/* Copy the factored Newton matrix of the workspace into the chord. */
-void hf_chord_pack(const hf_workspace *workspace, hf_chord *chord);
-
-/* Solve with the matrix, eight right-hand sides at a time, in place: b [n_rhs][ldb] with ldb >= 3 n_free. */
-void hf_chord_back_solve(const hf_chord *chord, const hf_chord_lanes *lanes, int n_rhs, double *b, size_t ldb);
-
 /* Evaluate the designs whose indices `next(context)` returns, until it returns -1: from design_N [][n_gene] into
  * result []. With keeps_shape the workspace holds the last shape at the end; else it is scratch. */
 void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, hf_lane_next *next,

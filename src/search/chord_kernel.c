@@ -1,7 +1,7 @@
 /* The inner loops of chord, over HF_LANES designs side by side. The order of the operations in a lane is always the
  * same, and products are fused with the sums that they go into (lane.h), so all instruction sets give the same bits.
  *
- * Contents: vectors - forces - the truss - the matrix - measures */
+ * Contents: vectors - forces - the truss - the step - measures */
 #define HF_LANE_VECTORS
 #include "search/chord_kernel.h"
 
@@ -74,7 +74,7 @@ INLINE void sum_force(const hf_chord *chord, const hf_chord_lanes *l, int place,
 static void forces(const hf_chord *chord, const hf_chord_lanes *l, int p, double *residual_squared)
 {
     const hf_model *m = chord->evaluator->model;
-    const double *force = l->force_N + chord->width * HF_LANES;
+    const double *force = l->force_N + chord->matrix.width * HF_LANES;
     vec f[3], largest = splat(0), scale = splat(1 / m->reference_N); /* squares of tiny forces would vanish */
     find_densities(chord, l, p);
     for (int i = 0; i < m->n_free; i++) {
@@ -84,7 +84,7 @@ static void forces(const hf_chord *chord, const hf_chord_lanes *l, int p, double
         largest = larger_or_nan(largest, norm_squared(scale * f[0], scale * f[1], scale * f[2]));
     }
     /* the rows after the last: a lane that failed may have left NaNs there */
-    for (int i = chord->n_dof; i < chord->n_dof + chord->width + ROWS; i++)
+    for (int i = chord->matrix.n; i < chord->matrix.n + chord->matrix.width + ROWS; i++)
         *lanes_of(force, i, p) = splat(0);
     for (int i = 0; 3 * i < chord->n_pull; i++) {
         sum_force(chord, l, m->n_free + i, m->attachment_row[i], p, f);
@@ -154,7 +154,7 @@ void HF_KERNEL(hf_chord_couple)(const hf_chord *chord, const hf_chord_lanes *l, 
 static void move(const hf_chord *chord, const hf_chord_lanes *l, int p)
 {
     const hf_model *m = chord->evaluator->model;
-    const double *force = l->force_N + chord->width * HF_LANES;
+    const double *force = l->force_N + chord->matrix.width * HF_LANES;
     for (int i = 0; i < m->n_attachment; i++)
         for (int c = 0; c < 3; c++) {
             vec step = *lanes_of(l->move_m, 3 * i + c, p);
@@ -179,70 +179,12 @@ void HF_KERNEL(hf_chord_move)(const hf_chord *chord, const hf_chord_lanes *l)
         move(chord, l, p);
 }
 
-/* ---- the matrix ---- */
-
-/* Both triangular solves take ROWS rows at a time, a block, which share the loads of what is already solved; each row
- * has one accumulator. `width` zero rows stand before and after the right-hand side, and up to ROWS - 1 rows after the
- * last are computed without being used, so no edge needs code of its own. */
-
-/* s[r] less the products of row k of a packed block with what is solved there, from row `first` to row `last`. */
-INLINE void eliminate(vec s[ROWS], const double *packed, int first, int last, vec solved)
-{
-    foreach (r, ROWS)
-        if (first <= r && r <= last) s[r] = less_product(s[r], splat(packed[r]), solved);
-}
-
-INLINE void begin_rows(const hf_chord *chord, const double *rows, int j, int p, vec s[ROWS])
-{
-    foreach (r, ROWS)
-        s[r] = *lanes_of(rows, j + r, p) * chord->inverse_diagonal[j + r];
-}
-
-INLINE void forward(const hf_chord *chord, const double *rows, int j, int p)
-{
-    int w = chord->width;
-    const double *packed = chord->row + (ptrdiff_t)j * (w + ROWS);
-    vec s[ROWS];
-    begin_rows(chord, rows, j, p, s);
-    for (int k = chord->row_begin[j / ROWS]; k < w; k++)
-        eliminate(s, packed + k * ROWS, 0, ROWS - 1, *lanes_of(rows, j - w + k, p));
-    foreach (k, ROWS) {
-        *lanes_of(rows, j + k, p) = s[k];
-        eliminate(s, packed + (w + k) * ROWS, k + 1, ROWS - 1, s[k]);
-    }
-}
-
-/* The farthest rows come first. */
-INLINE void backward(const hf_chord *chord, const double *rows, int j, int p)
-{
-    const double *packed = chord->column + (ptrdiff_t)j * (chord->width + ROWS);
-    vec s[ROWS];
-    begin_rows(chord, rows, j, p, s);
-    for (int k = chord->column_end[j / ROWS] - 1; k >= ROWS; k--)
-        eliminate(s, packed + k * ROWS, 0, ROWS - 1, *lanes_of(rows, j + k, p));
-    foreach (i, ROWS) {
-        int k = ROWS - 1 - i;
-        *lanes_of(rows, j + k, p) = s[k];
-        eliminate(s, packed + k * ROWS, 0, k - 1, s[k]);
-    }
-}
-
-/* Both halves of a block of rows before the next one, so that the matrix is read once. */
-void HF_KERNEL(hf_chord_solve)(const hf_chord *chord, const hf_chord_lanes *l)
-{
-    const double *rows = l->force_N + chord->width * HF_LANES;
-    for (int j = 0; j < chord->n_dof; j += ROWS)
-        for (int p = 0; p < HF_LANES; p += WIDTH)
-            forward(chord, rows, j, p);
-    for (int j = (chord->n_dof - 1) / ROWS * ROWS; j >= 0; j -= ROWS)
-        for (int p = 0; p < HF_LANES; p += WIDTH)
-            backward(chord, rows, j, p);
-}
+/* ---- the step ---- */
 
 void HF_KERNEL(hf_chord_step)(const hf_chord *chord, const hf_chord_lanes *l)
 {
     const hf_model *m = chord->evaluator->model;
-    const double *step = l->force_N + chord->width * HF_LANES;
+    const double *step = l->force_N + chord->matrix.width * HF_LANES;
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < m->n_free; i++)
             for (int p = 0; p < HF_LANES; p += WIDTH)

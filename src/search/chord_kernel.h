@@ -4,11 +4,12 @@
 
 #include "base/arena.h"
 #include "base/lane.h"
+#include "linalg/packed_band.h"
 #include <hifdm/evaluate.h>
 
 typedef struct hf_chord_kernels hf_chord_kernels;
 
-#define HF_CHORD_ROWS 8       /* rows of the matrix, and of the flexibility, that are worked on at a time */
+#define HF_CHORD_ROWS 8       /* rows of the flexibility that are worked on at a time */
 #define HF_CHORD_MODES_MAX 48 /* the largest n_mode */
 
 /* Laws that the kernels serve: the target is the tension or the force density, with no unknown but the positions. */
@@ -20,27 +21,17 @@ typedef struct {
     int other; /* model row at its other end */
 } hf_chord_incidence;
 
-/* What all threads share; constant after hf_chord_create.
- *
- * The factor is packed by blocks of HF_CHORD_ROWS rows, in the order in which the kernel `solve` reads it. `row` has
- * for each block the columns from `width` before its first row to its last row; `column` has the rows from its first to
- * `width` after its last. The entries of the block's rows (columns) stand beside each other, zeros where the band ends,
- * and each is over the diagonal entry of its row (column), so that a row, begun as right-hand side / diagonal, is
- * finished by its last product. */
+/* What all threads share; constant after hf_chord_create. */
 typedef struct hf_chord {
     const hf_evaluator *evaluator;
     const hf_chord_kernels *kernels;
-    int n_dof, n_block, width; /* rows of the matrix, their blocks, and the half-bandwidth */
-    double *row, *column;      /* [n_block][width + HF_CHORD_ROWS][HF_CHORD_ROWS] factor, forward and backward */
-    double *inverse_diagonal;  /* [n_block HF_CHORD_ROWS] */
-    int *row_begin;            /* [n_block] skyline: the first place in a block of `row` that is not all zero, */
-    int *column_end;           /* [n_block] and behind the last one of `column` */
-    double *base_m;            /* [3][n_node] shape the lanes start from */
-    int *gene_of_cable;        /* [n_cable] or -1 */
-    double *gene_divisor;      /* [n_gene] what a pretension is divided by: length (m) or 1 by rule */
-    double *inverse_length;    /* [n_cable] 1 / theoretical length, 1/m */
-    int *slot_of_cable;    /* [n_cable] row of its force density in `gene`: that of its gene, or n_gene + the cable */
-    int n_pulled, *pulled; /* [n_pulled] cables whose tension is given, */
+    hf_packed_band matrix;  /* Newton matrix of the base design, 3 rows for each free node */
+    double *base_m;         /* [3][n_node] shape the lanes start from */
+    int *gene_of_cable;     /* [n_cable] or -1 */
+    double *gene_divisor;   /* [n_gene] what a pretension is divided by: length (m) or 1 by rule */
+    double *inverse_length; /* [n_cable] 1 / theoretical length, 1/m */
+    int *slot_of_cable;     /* [n_cable] row of its force density in `gene`: that of its gene, or n_gene + the cable */
+    int n_pulled, *pulled;  /* [n_pulled] cables whose tension is given, */
     unsigned char *is_pulled;      /* [n_cable] and whether one is */
     int *place_of_row;             /* [n_node] free rows, then attachments; -1: neither */
     int *incidence_start;          /* [n_free + n_attachment + 1] by place */
@@ -59,7 +50,7 @@ typedef struct hf_chord {
 /* Scratch of one thread. */
 typedef struct {
     double *x_m;     /* [3][n_node][HF_LANES] */
-    double *force_N; /* [n_pad + n_dof + n_pad][HF_LANES], zero rows around for the solve */
+    double *force_N; /* [hf_packed_band_rows][HF_LANES] those of free nodes in the rows of the matrix */
     double *gene;    /* [n_gene + n_cable][HF_LANES] q (N/m) or T (N) of genes by rule; q of the other cables */
     double *pull_N;  /* [n_pull][HF_LANES] of the net on the truss */
     double *displacement_m, *move_m; /* [n_pull_pad][HF_LANES] of the attachments; what the next step adds */
@@ -80,7 +71,6 @@ typedef struct {
 /* The kernels of one instruction set; the comment below says what each does. */
 struct hf_chord_kernels {
     void (*forces)(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES]);
-    void (*solve)(const hf_chord *chord, const hf_chord_lanes *l);
     void (*step)(const hf_chord *chord, const hf_chord_lanes *l);
     void (*couple)(const hf_chord *chord, const hf_chord_lanes *l, double gap_squared[HF_LANES]);
     void (*move)(const hf_chord *chord, const hf_chord_lanes *l);
@@ -91,7 +81,6 @@ struct hf_chord_kernels {
     void hf_chord_forces_##isa(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES]);     \
     void hf_chord_couple_##isa(const hf_chord *chord, const hf_chord_lanes *l, double gap_squared[HF_LANES]);          \
     void hf_chord_move_##isa(const hf_chord *chord, const hf_chord_lanes *l);                                          \
-    void hf_chord_solve_##isa(const hf_chord *chord, const hf_chord_lanes *l);                                         \
     void hf_chord_step_##isa(const hf_chord *chord, const hf_chord_lanes *l);                                          \
     void hf_chord_measure_##isa(const hf_chord *chord, const hf_chord_lanes *l, hf_chord_measures *measures);
 
@@ -100,8 +89,7 @@ struct hf_chord_kernels {
  * couple: gap_squared is per lane the square (m^2) of the largest gap F f - r of the truss; writes into move_m the
  *         change of r that closes the gap.
  * move:   adds move_m to displacement_m and to the supports in x_m, and its effect to force_N.
- * solve:  turns force_N into the Newton step, in place.
- * step:   adds that step to x_m.
+ * step:   adds force_N, which matrix.solve has turned into the Newton step, to x_m.
  * measure: of the shapes in x_m with the force densities that `forces` found there. */
 HF_CHORD_KERNELS(portable)
 HF_CHORD_KERNELS(avx2)

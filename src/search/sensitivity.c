@@ -26,7 +26,8 @@ static void lay_out(hf_arena *a, hf_sensitivity *s)
 {
     const hf_model *m = s->v->model;
     size_t n = (size_t)s->n;
-    s->lanes = hf_arena_take(a, (size_t)n_room(s), sizeof *s->lanes);
+    hf_packed_band_lay_out(a, &s->matrix);
+    s->lanes = hf_arena_take(a, (size_t)n_room(s) * s->n_lane, sizeof *s->lanes);
     s->variable_of_gene = hf_arena_take(a, (size_t)m->n_gene, sizeof(int));
     s->gene_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
     s->strained = hf_arena_take(a, (size_t)m->n_cable, sizeof(strained));
@@ -104,22 +105,17 @@ hf_status hf_sensitivity_create(const hf_evaluator *v, hf_sensitivity *s)
     hf_arena arena = {0};
     *s = (hf_sensitivity){.v = v, .n = m->n_leader, .n_rigid = count_rigid(v)};
     s->n_dof = 3 * ((size_t)m->n_free + (size_t)m->n_attachment + (size_t)place_supports(m, NULL));
+    s->matrix = hf_packed_band_of(3 * m->n_free, 3 * m->half_bandwidth + 2);
+    s->n_lane = hf_packed_band_rows(&s->matrix) * HF_LANES;
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, s)));
     s->block = arena.block;
     number(s);
-    if (m->n_attachment) HF_TRY(hf_schur_create(m, &s->schur));
-    HF_TRY(hf_chord_create_matrix(v, &s->matrix, &s->lanes[0]));
-    for (int room = 1; room < n_room(s); room++)
-        HF_TRY(hf_chord_lanes_create(&s->matrix, &s->lanes[room]));
-    return HF_OK;
+    return m->n_attachment ? hf_schur_create(m, &s->schur) : HF_OK;
 }
 
 void hf_sensitivity_free(hf_sensitivity *s)
 {
     hf_arena arena = {.block = s->block};
-    for (int room = 0; s->block && room < n_room(s); room++)
-        hf_chord_lanes_free(&s->lanes[room]);
-    hf_chord_free(&s->matrix);
     hf_schur_free(&s->schur);
     hf_arena_free(&arena);
     *s = (hf_sensitivity){0};
@@ -215,7 +211,7 @@ static void follow_block(void *context, int room, int i_block)
     hf_sensitivity *s = ((solved *)context)->s;
     size_t n_free = 3 * (size_t)s->v->model->n_free, first = HF_LANES * (size_t)i_block;
     int n = lanes_in_block(s, i_block);
-    hf_chord_back_solve(&s->matrix, &s->lanes[room], n, s->answer + first * n_free, n_free);
+    hf_packed_band_back_solve(&s->matrix, s->lanes + (size_t)room * s->n_lane, n, s->answer + first * n_free, n_free);
     for (size_t k = first; k < first + (size_t)n; k++)
         for (size_t i = 0; i < n_free; i++)
             s->move[k * s->n_dof + i] += s->answer[k * n_free + i];
@@ -243,7 +239,8 @@ static void solve_block(void *context, int room, int i_block)
 {
     hf_sensitivity *s = ((solved *)context)->s;
     size_t first = HF_LANES * (size_t)i_block;
-    hf_chord_back_solve(&s->matrix, &s->lanes[room], lanes_in_block(s, i_block), s->move + first * s->n_dof, s->n_dof);
+    hf_packed_band_back_solve(&s->matrix, s->lanes + (size_t)room * s->n_lane, lanes_in_block(s, i_block),
+                              s->move + first * s->n_dof, s->n_dof);
     if (s->v->model->n_attachment) let_truss_answer(context, room, i_block);
 }
 
@@ -405,7 +402,7 @@ hf_status hf_sensitivity_find(hf_sensitivity *s, hf_workspace *w)
     if (m->n_attachment) HF_TRY(hf_schur_factor(m, w, hf_newton_matrix_block, &s->schur));
     memset(s->multiplier, 0, (size_t)s->n * (size_t)s->n_rigid * sizeof(double));
     add_forces(s, w);
-    hf_chord_pack(w, &s->matrix);
+    hf_packed_band_pack(&s->matrix, w->newton_band);
     solve(s, w);
     move_supports(s);
     for (int e = 0; e < m->n_cable; e++)

@@ -7,8 +7,9 @@
 #ifndef HIFDM_SENSITIVITY_H
 #define HIFDM_SENSITIVITY_H
 
-#include "search/chord.h"
+#include "linalg/packed_band.h"
 #include "solve/schur.h"
+#include <hifdm/evaluate.h>
 
 typedef struct {
     const hf_evaluator *v;
@@ -26,9 +27,10 @@ typedef struct {
     double *answer;               /* [n][3 n_free] scratch: what the moving truss, or refinement, adds to `move` */
     double *gap;                  /* [3 n_attachment] scratch */
     double *pull;                 /* [n][3 n_attachment] scratch: change of the pull on the truss */
-    hf_chord matrix;              /* of the net with fixed supports */
-    hf_chord_lanes *lanes;        /* [v->n_thread] */
-    hf_schur schur;               /* only with a truss */
+    hf_packed_band matrix;        /* of the net with fixed supports */
+    double *lanes;                /* [v->n_thread][n_lane] scratch of its solves */
+    size_t n_lane;
+    hf_schur schur; /* only with a truss */
     void *block;
 } hf_sensitivity;
 

@@ -164,8 +164,6 @@ START_TEST(many_right_hand_sides)
 {
     struct run r;
     struct rng rng = rng_start((uint64_t)_i);
-    hf_chord chord;
-    hf_chord_lanes lanes;
     open_run(&r, HF_RULE_FORCE_DENSITY);
     const hf_model *m = &r.net.model;
     int n = 3 * m->n_free, n_rhs = 1 + 6 * _i; /* 1, 7, 13: less than one pass of 8, and more than one */
@@ -175,9 +173,15 @@ START_TEST(many_right_hand_sides)
         b[i] = x[i] = rng_uniform(&rng, -1, 1);
     ck_assert_int_eq(hf_evaluate(&r.evaluator, r.design_N, &r.net.work, &(hf_form_result){0}), HF_OK);
     ck_assert_int_eq(hf_newton_matrix_factor(m, &r.net.work, NULL), HF_OK);
-    ck_assert_int_eq(hf_chord_create_matrix(&r.evaluator, &chord, &lanes), HF_OK);
-    hf_chord_pack(&r.net.work, &chord);
-    hf_chord_back_solve(&chord, &lanes, n_rhs, x, ld);
+    hf_packed_band packed = hf_packed_band_of(n, 3 * m->half_bandwidth + 2);
+    hf_arena arena = {0};
+    double *lanes;
+    ck_assert_int_eq(
+        HF_ARENA_MAKE(&arena, (hf_packed_band_lay_out(&arena, &packed),
+                               lanes = hf_arena_take(&arena, hf_packed_band_rows(&packed) * HF_LANES, sizeof *lanes))),
+        HF_OK);
+    hf_packed_band_pack(&packed, r.net.work.newton_band);
+    hf_packed_band_back_solve(&packed, lanes, n_rhs, x, ld);
     for (int k = 0; k < n_rhs; k++) {
         double *want = b + (size_t)k * ld, *got = x + (size_t)k * ld;
         ck_assert_mem_eq(want + n, got + n, 3 * sizeof(double)); /* the rows after the n of a column are not touched */
@@ -188,8 +192,7 @@ START_TEST(many_right_hand_sides)
             ck_assert_double_eq_tol(got[i], want[i], 1e-9 * largest);
     }
     ck_assert_double_gt(largest, 0);
-    hf_chord_lanes_free(&lanes);
-    hf_chord_free(&chord);
+    hf_arena_free(&arena);
     free(b);
     free(x);
     close_net(&r.net);

@@ -8,7 +8,7 @@
 #include "search/chord_kernel.h"
 
 typedef void (*forces_fn)(const hf_chord *, const hf_chord_lanes *, double *);
-typedef void (*solve_fn)(const hf_chord *, const hf_chord_lanes *);
+typedef void (*move_fn)(const hf_chord *, const hf_chord_lanes *);
 typedef void (*measure_fn)(const hf_chord *, const hf_chord_lanes *, hf_chord_measures *);
 
 enum { PORTABLE, AVX2, AVX512, N_ISA };
@@ -16,14 +16,15 @@ static const struct {
     const char *name;
     forces_fn forces;
     forces_fn couple;
-    solve_fn move, solve, step;
+    hf_packed_band_solve *solve;
+    move_fn move, step;
     measure_fn measure;
-} isa[] = {{"portable", hf_chord_forces_portable, hf_chord_couple_portable, hf_chord_move_portable,
-            hf_chord_solve_portable, hf_chord_step_portable, hf_chord_measure_portable},
-           {"avx2", hf_chord_forces_avx2, hf_chord_couple_avx2, hf_chord_move_avx2, hf_chord_solve_avx2,
+} isa[] = {{"portable", hf_chord_forces_portable, hf_chord_couple_portable, hf_packed_band_solve_portable,
+            hf_chord_move_portable, hf_chord_step_portable, hf_chord_measure_portable},
+           {"avx2", hf_chord_forces_avx2, hf_chord_couple_avx2, hf_packed_band_solve_avx2, hf_chord_move_avx2,
             hf_chord_step_avx2, hf_chord_measure_avx2},
-           {"avx512f", hf_chord_forces_avx512, hf_chord_couple_avx512, hf_chord_move_avx512, hf_chord_solve_avx512,
-            hf_chord_step_avx512, hf_chord_measure_avx512}};
+           {"avx512f", hf_chord_forces_avx512, hf_chord_couple_avx512, hf_packed_band_solve_avx512,
+            hf_chord_move_avx512, hf_chord_step_avx512, hf_chord_measure_avx512}};
 
 static int has_isa(int i)
 {
@@ -67,7 +68,7 @@ static void open_kernel(struct kernel_run *r, int trial, int rule)
     ck_assert_int_eq(hf_chord_create(&r->evaluator, r->base_N, &r->net.work, &r->chord), HF_OK);
     ck_assert_int_eq(hf_chord_lanes_create(&r->chord, &r->lanes), HF_OK);
     r->n_x = 3 * (size_t)m->n_node * HF_LANES;
-    r->n_force = ((size_t)r->chord.n_dof + 2 * (size_t)r->chord.width + 8) * HF_LANES;
+    r->n_force = hf_packed_band_rows(&r->chord.matrix) * HF_LANES;
 }
 
 static void fill_lanes(struct kernel_run *r, uint64_t stream)
@@ -108,7 +109,7 @@ static void work(struct kernel_run *r, int i, double squared[HF_LANES])
             for (int k = 0; k < HF_LANES; k++)
                 squared[k] += gap[k];
         }
-        isa[i].solve(&r->chord, &r->lanes);
+        isa[i].solve(&r->chord.matrix, r->lanes.force_N);
         isa[i].step(&r->chord, &r->lanes);
     }
 }
@@ -148,16 +149,17 @@ START_TEST(solve_is_lapacks)
     struct kernel_run r;
     double squared[HF_LANES];
     open_kernel(&r, _i, HF_RULE_FORCE_DENSITY);
-    int n = r.chord.n_dof, column = 3 * r.net.model.half_bandwidth + 3;
+    int n = r.chord.matrix.n, column = 3 * r.net.model.half_bandwidth + 3;
     fill_lanes(&r, 2);
     isa[PORTABLE].forces(&r.chord, &r.lanes, squared);
-    double *f = r.lanes.force_N + r.chord.width * HF_LANES, *expected = malloc((size_t)n * HF_LANES * sizeof *expected);
+    double *f = r.lanes.force_N + r.chord.matrix.width * HF_LANES,
+           *expected = malloc((size_t)n * HF_LANES * sizeof *expected);
     ck_assert_ptr_nonnull(expected);
     for (int k = 0; k < n * HF_LANES; k++)
         expected[k % HF_LANES * n + k / HF_LANES] = f[k];
     /* the factor is still in the workspace that hf_chord_create had */
     hf_band_back_solve(n, column - 1, HF_LANES, r.net.work.newton_band, expected, n);
-    isa[PORTABLE].solve(&r.chord, &r.lanes);
+    isa[PORTABLE].solve(&r.chord.matrix, r.lanes.force_N);
     double most = largest(expected, n * HF_LANES);
     for (int k = 0; k < n * HF_LANES; k++)
         ck_assert_double_eq_tol(f[k], expected[k % HF_LANES * n + k / HF_LANES], 1e-12 * most);
@@ -206,7 +208,7 @@ START_TEST(residual_is_the_largest_force)
     open_kernel(&r, _i, HF_RULE_TENSION);
     fill_lanes(&r, 4);
     isa[PORTABLE].forces(&r.chord, &r.lanes, squared);
-    const double *f = r.lanes.force_N + r.chord.width * HF_LANES;
+    const double *f = r.lanes.force_N + r.chord.matrix.width * HF_LANES;
     for (int lane = 0; lane < HF_LANES; lane++) {
         double most = 0;
         for (int i = 0; i < r.net.model.n_free; i++) {
