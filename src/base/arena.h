@@ -1,12 +1,11 @@
-/* arena - one zeroed, 64-byte aligned block per owner: the only heap call of everything on the hot path.
+/* arena - one zeroed, 64-byte aligned block of memory for each owner. Code on the hot path allocates nothing else.
  *
- * The same code lays the block out twice: first on an arena without a block, where it only counts, then on the real
- * one.
+ * The same layout code runs twice. The first run uses an arena without a block and only counts bytes. The second run
+ * uses the allocated block.
  *
  *     hf_arena arena = {0};
  *     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, object)));
- *     object->block = arena.block; // the owner frees it by hf_arena_free_block
- */
+ *     object->block = arena.block; // the owner frees it with hf_arena_free_block */
 #ifndef HIFDM_ARENA_H
 #define HIFDM_ARENA_H
 
@@ -20,14 +19,17 @@ typedef struct {
     size_t used;          /* bytes taken so far; SIZE_MAX after an overflow */
 } hf_arena;
 
-/* Zeroed space for `count` items of `item_bytes`, aligned to 64 bytes. While counting the pointer is not usable. */
+/* Returns zeroed space for `count` items of `item_bytes` bytes each, aligned to 64 bytes. Returns NULL while counting
+ * and after an overflow of the size. */
 void *hf_arena_take(hf_arena *arena, size_t count, size_t item_bytes);
 
-/* Allocate the block that the counting pass asked for, and start over at its beginning. HF_OK or HF_NO_MEMORY. */
+/* Allocates the block that the counting run needs, and resets `used` to 0 for the second run. Returns
+ * HF_OK or HF_NO_MEMORY. */
 hf_status hf_arena_allocate(hf_arena *arena);
 
-/* Evaluate `lay_out`, a call of hf_arena_take or of a function that calls it, to count; allocate; evaluate it again.
- * HF_OK, or HF_NO_MEMORY: all pointers are NULL then. */
+/* Evaluates the expression `lay_out` to count, allocates the block, and evaluates `lay_out` again. `lay_out` is a call
+ * of hf_arena_take or of a function that calls it. Returns HF_OK or HF_NO_MEMORY. After HF_NO_MEMORY all pointers that
+ * `lay_out` set are NULL. */
 #define HF_ARENA_MAKE(arena, lay_out)                                                                                  \
     ((void)(lay_out), hf_arena_allocate(arena) != HF_OK ? HF_NO_MEMORY : ((void)(lay_out), HF_OK))
 

@@ -25,7 +25,7 @@ pid_t hf_child_fork(void)
 #ifdef __linux__
     prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
-    if (getppid() != parent) _exit(1); /* it ended meanwhile */
+    if (getppid() != parent) _exit(1); /* the parent ended before prctl */
     return 0;
 }
 
@@ -35,8 +35,8 @@ static double seconds_of(const struct rusage *used)
            1e-6 * (double)(used->ru_utime.tv_usec + used->ru_stime.tv_usec);
 }
 
-/* Is it none of the signals that a fault of the program raises? A limit of CPU time is a fault when it is that of
- * hf_child_limit_cpu, and not a lower one of the user's, which this process has, too. */
+/* Returns true for a signal that no fault of the program raises. SIGXCPU is a fault if the limit of hf_child_limit_cpu
+ * raised it, and no fault if a lower limit of the user raised it. This process has the same limit of the user. */
 static bool is_from_outside(int number, const struct rusage *used)
 {
     static const int of_faults[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGTRAP, SIGSYS};
@@ -45,7 +45,7 @@ static bool is_from_outside(int number, const struct rusage *used)
         if (number == of_faults[i]) return false;
     if (number != SIGXCPU) return true;
     return getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
-           seconds_of(used) > (double)limit.rlim_cur - 0.5; /* it is told in ticks of the clock */
+           seconds_of(used) > (double)limit.rlim_cur - 0.5; /* the kernel counts CPU time in clock ticks */
 }
 
 hf_child_end hf_child_wait(pid_t child)
@@ -79,11 +79,12 @@ void hf_child_limit_cpu(int seconds)
     struct rusage used;
     struct rlimit limit;
     if (getrusage(RUSAGE_SELF, &used) != 0 || getrlimit(RLIMIT_CPU, &limit) != 0) return;
-    static rlim_t before; /* the user's own limit */
+    static rlim_t before; /* the limit set by the user */
     static bool is_known;
     if (!is_known) before = limit.rlim_cur;
     is_known = true;
-    rlim_t until = (rlim_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec + 1 + seconds); /* 1: parts of a second */
+    rlim_t until = (rlim_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec + 1 + seconds); /* 1: the fraction of a second
+                                                                                           that the sum drops */
     limit.rlim_cur = seconds == 0 || until > before ? before : until;
     setrlimit(RLIMIT_CPU, &limit);
 }
@@ -92,15 +93,15 @@ void hf_child_limit_cpu(int seconds)
 
 typedef struct {
     hf_child_work *work;
-    char text[HF_CHILD_TEXT_SIZE]; /* of a message as much as is needed */
+    char text[HF_CHILD_TEXT_SIZE]; /* a message carries only the used bytes */
 } order;
 
 static pthread_mutex_t server_lock = PTHREAD_MUTEX_INITIALIZER;
-static int n_begun; /* this and what follows under the lock */
+static int n_begun; /* server_lock protects this and the two variables below */
 static pid_t server;
 static int server_socket = -1;
 
-/* The end of a child that does what is ordered. */
+/* Runs one order in a child and returns how the child ended. */
 static hf_child_end obey(const order *o)
 {
     pid_t child = hf_child_fork();
@@ -112,14 +113,15 @@ static hf_child_end obey(const order *o)
     return (hf_child_end){.is_known = false};
 }
 
-/* Until the other end is closed. Only what POSIX allows in a copy of a process with threads, but for the work. */
+/* Serves orders until the other end of the socket closes. The server process is a copy of a process that may have
+ * threads. Outside `work` it therefore makes only calls that POSIX allows in such a copy. */
 static void serve_orders(int by)
 {
     static const int to_others[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGQUIT};
     static order o;
     for (size_t i = 0; i < sizeof to_others / sizeof *to_others; i++)
         signal(to_others[i], SIG_IGN);
-    signal(SIGCHLD, SIG_DFL); /* where it is ignored, nobody learns how a child ended */
+    signal(SIGCHLD, SIG_DFL); /* if SIGCHLD is ignored, wait4(2) cannot return the exit status */
     for (;;) {
         ssize_t n = recv(by, &o, sizeof o, 0);
         if (n < 0 && errno == EINTR) continue;
@@ -163,7 +165,8 @@ void hf_child_server_end(void)
     pthread_mutex_unlock(&server_lock);
 }
 
-/* A call that a signal interrupted is made again. False: the server has ended. */
+/* Sends an order and receives its answer. Repeats a call that a signal interrupted. Returns false if the
+ * server has ended. */
 static bool exchange(const order *o, size_t size, hf_child_end *end)
 {
     ssize_t n;

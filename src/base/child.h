@@ -1,8 +1,9 @@
-/* child - work that may crash or never end, done by a copy of this process: HDF5 answers some damaged files so.
+/* child - runs work that may crash or never end in a copy of this process. HDF5 crashes or loops on some damaged files.
  *
- * A copy (fork) has one thread, and finds every lock as another thread of this process held it: of a process with
- * several threads it may hang in malloc for ever. Such a process starts a server before its threads begin. The server
- * is a copy with one thread that makes the others. A child ends when its parent ends. */
+ * A copy made by fork(2) has one thread and inherits every lock in its current state. If another thread holds a lock at
+ * that moment, the copy can block in malloc for ever. A process with several threads therefore starts a server before
+ * it starts its threads. The server is a copy with one thread, and it forks the other children. On Linux, a child ends
+ * when its parent ends. */
 #ifndef HIFDM_CHILD_H
 #define HIFDM_CHILD_H
 
@@ -11,37 +12,40 @@
 #include <sys/types.h>
 
 typedef struct {
-    bool is_known;   /* false: somebody else has waited for it, or it could not be made */
+    bool is_known;   /* false: the process could not be created, or another caller waited for it */
     int exit_status; /* -1 after a signal */
-    int signal;      /* 0: it ended by itself */
-    bool is_sent;    /* the signal is none that a fault raises: it was killed, or had no more memory or CPU time of the
-                        user's; nothing follows for the work */
+    int signal;      /* 0: the process ended by itself */
+    bool is_sent;    /* true if the signal came from outside, or if memory or the user's CPU time ran out; the work is
+                        not at fault */
 } hf_child_end;
 
-/* As fork(2), for a process of one thread. The child leaves with _exit(2), or what is in buffers of stdio is written
- * twice. Signals of the terminal reach both. */
+/* Forks like fork(2), for a process with one thread. The child must leave with _exit(2), because exit(3) would write
+ * the buffers of stdio a second time. Signals from the terminal reach both processes. */
 pid_t hf_child_fork(void);
 
 hf_child_end hf_child_wait(pid_t child);
 
-/* "signal 11 (Segmentation fault)", "exit status 99", or after a signal that was sent the signal and what to do */
+/* Writes how a child ended into text[size]: "signal 11 (Segmentation fault)" or "exit status 99". After a signal from
+ * outside, the text also says what the user can do. */
 void hf_child_describe(hf_child_end end, char *text, size_t size);
 
-/* From now on this process ends by SIGXCPU when it has used so many more seconds of CPU time, at least 1; 0: it does
- * not. The next call replaces this one. A limit of the user's that is lower stays. */
+/* Limits the CPU time of this process. SIGXCPU ends the process when it has used `seconds` more seconds, at
+ * least 1. `seconds` = 0 removes the limit. A later call replaces the limit, and a lower limit set by the user
+ * stays in force. */
 void hf_child_limit_cpu(int seconds);
 
 /* ---- The server ---- */
 
-/* Between the two calls hf_child_ask works. Calls may be nested: the server of the first serves until the last has
- * ended. Without memory or processes there is no server, which is no error. What a thread holds when the server begins
- * (descriptors, and locks by them) the server holds until it ends. */
+/* Starts and ends the server. hf_child_ask works between the two calls. Calls may be nested: the server then runs from
+ * the first begin to the last end. If memory or processes run out, there is no server, and this is not an error. The
+ * server keeps open every descriptor that is open when it starts, with the locks on it, until the server ends. */
 void hf_child_server_begin(void);
 void hf_child_server_end(void);
 
-/* Do the work in a child of the server and wait for its end; exit status 0 when `work` returns. From any thread: one
- * child at a time. False when there is no server, or the text is too long for it. The child ignores SIGINT, SIGTERM,
- * SIGHUP and SIGUSR1: whoever waits decides. */
+/* Runs work(text) in a child of the server and waits for its end. The exit status is 0 when `work` returns. Any
+ * thread may call this function; the server runs one child at a time. Returns false if there is no server or
+ * `text` is too long for it. The child ignores SIGINT, SIGTERM, SIGHUP, SIGUSR1 and SIGQUIT, so that only the
+ * waiting process reacts. */
 typedef void hf_child_work(const char *text);
 #define HF_CHILD_TEXT_SIZE 8192
 bool hf_child_ask(hf_child_work *work, const char *text, hf_child_end *end);

@@ -1,8 +1,8 @@
-/* clock - elapsed time for measuring and for pacing: never the time of day. */
+/* clock - elapsed time for measuring and for pacing. It is not the time of day. */
 #ifndef HIFDM_CLOCK_H
 #define HIFDM_CLOCK_H
 
-double hf_clock_s(void);            /* since an unspecified moment; never runs backwards */
-double hf_clock_thread_cpu_s(void); /* processor time of the calling thread */
+double hf_clock_s(void);            /* seconds since an unspecified moment; never decreases */
+double hf_clock_thread_cpu_s(void); /* seconds of processor time of the calling thread */
 
 #endif

@@ -1,4 +1,4 @@
-/* Contents: faults - cells that spreadsheets run - cutting lines - reading - columns and cells - ids - writing */
+/* Contents: faults - cells that look like formulas - splitting lines - reading - columns and cells - ids - writing */
 #include "base/csv.h"
 
 #include "base/text.h"
@@ -49,10 +49,11 @@ hf_status hf_csv_close_faults(hf_csv *t)
     return t->n_fault ? HF_BAD_CASE : HF_OK;
 }
 
-/* ---- cells that spreadsheets run ----
- * A cell that starts with = + - @, also as full-width letters, or with a tab or an end of line is a formula to them,
- * and blanks in front may be dropped before they look. An apostrophe in front makes it a text. So that reading it
- * back is exact, one apostrophe is put before or taken from all that is a formula behind any number of apostrophes. */
+/* ---- cells that look like formulas ----
+ * Spreadsheets take a cell for a formula if it starts with = + - @, also as full-width letters, or with a tab or an end
+ * of line. Some drop leading blanks first. An apostrophe in front makes the cell a text. The writer puts one apostrophe
+ * before such a cell, and the reader removes one. Both also do so if the cell already begins with apostrophes, so that
+ * reading back is exact. */
 
 static bool is_formula(const char *text)
 {
@@ -69,14 +70,14 @@ static bool is_guarded(const char *text)
     return *text == '\'' && is_formula(text + strspn(text, "'"));
 }
 
-/* Numbers stay as they are: their signs do no harm. */
+/* Returns true if the text needs an apostrophe. Numbers need none, although they may begin with a sign. */
 static bool needs_guard(const char *text)
 {
     double number;
     return is_guarded(text) || (is_formula(text) && !hf_text_double(text, &number));
 }
 
-/* ---- cutting lines ---- */
+/* ---- splitting lines ---- */
 
 static char *trim(char *field)
 {
@@ -88,7 +89,8 @@ static char *trim(char *field)
     return field;
 }
 
-/* Take a "quoted ""field""" apart in place; *p moves past its closing quote. NULL when it does not close. */
+/* Removes the quotes of a field such as "quoted ""field""" in place, and moves *p past its closing quote. Returns NULL
+ * if there is no closing quote, or if another character than a comma follows it. */
 static char *unquote(char **p)
 {
     char *start = *p + 1, *to = start, *from = start;
@@ -107,7 +109,8 @@ static char *unquote(char **p)
     return **p == '\0' || **p == ',' ? start : NULL;
 }
 
-/* Cut one line into at most column_max fields; -1 when quotes do not match, column_max + 1 when there are too many. */
+/* Splits one line into at most column_max fields and returns their number. Returns -1 if quotes do not match, and
+ * column_max + 1 if there are too many fields. */
 static int split(char *line, char **field, int column_max)
 {
     int n = 0;
@@ -132,7 +135,8 @@ static int split(char *line, char **field, int column_max)
     }
 }
 
-/* Next line of the text, without its end (LF, CRLF, or CRCRLF of what was converted twice); NULL after the last. */
+/* Returns the next line without its end, or NULL after the last one. A line ends with LF, CRLF, or CRCRLF (a file that
+ * was converted twice). */
 static char *next_line(char **rest)
 {
     char *line = *rest;
@@ -165,14 +169,14 @@ static bool add_row(hf_csv *t, char **field, int line)
     return true;
 }
 
-/* What stands between the columns of a header line where commas should be, or NULL. */
+/* Returns a description of the separator if a header line has another one than commas, else NULL. */
 static const char *other_separator(const char *line)
 {
     if (strpbrk(line, ",\"")) return NULL;
     return strchr(line, ';') ? "';', and numbers have points" : strchr(line, '\t') ? "tabs" : NULL;
 }
 
-/* Lines that all have the same wrong number of fields are one mistake, and told as one. */
+/* Consecutive lines with the same wrong number of fields. They are reported as one fault. */
 typedef struct {
     int n_field, first_line, n_line;
 } uneven_lines;
@@ -180,7 +184,7 @@ typedef struct {
 static void tell_uneven(hf_csv *t, const uneven_lines *u)
 {
     char more[64] = "", what[192];
-    bool may_have_commas = u->n_field > t->n_column + 1; /* in numbers, of several columns */
+    bool may_have_commas = u->n_field > t->n_column + 1; /* probably decimal commas in several columns */
     if (u->n_line > 1) snprintf(more, sizeof more, ", here and on %d more lines", u->n_line - 1);
     snprintf(what, sizeof what, "%d fields where the header has %d%s%s", u->n_field, t->n_column, more,
              may_have_commas ? ": decimal commas? Numbers have points" : "");
@@ -197,7 +201,7 @@ static void note_uneven(hf_csv *t, int n_field, int line, uneven_lines *u)
     u->n_line++;
 }
 
-/* Take one line that is not a comment. False without memory. */
+/* Adds one line that is not a comment to the table. Returns false if memory runs out. */
 static bool take_line(hf_csv *t, char *line, int n_line, char **field, int column_max, uneven_lines *uneven)
 {
     if (strchr(line, '\r')) {
@@ -223,7 +227,7 @@ static bool take_line(hf_csv *t, char *line, int n_line, char **field, int colum
     return true;
 }
 
-/* By its byte order mark, or by the zeros of a first letter below 256. */
+/* Returns true for UTF-16 text. It has a byte order mark, or a zero among its first two bytes. */
 static bool is_utf16(const char *text, size_t length)
 {
     if (length < 2) return false;
@@ -238,7 +242,7 @@ hf_status hf_csv_read(const char *path, int column_max, hf_csv *t, hf_messages *
     if (is_utf16(t->text, length))
         return hf_error(messages, HF_BAD_CASE, "%s: UTF-16 text; save the file as CSV UTF-8", path);
     if (strlen(t->text) != length) return hf_error(messages, HF_BAD_CASE, "%s: not a text file", path);
-    t->header = malloc(2 * (size_t)column_max * sizeof *t->header); /* and the fields of one line behind it */
+    t->header = malloc(2 * (size_t)column_max * sizeof *t->header); /* the second half holds the fields of one line */
     if (!t->header) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     char *rest = t->text, *line, **field = t->header + column_max;
     uneven_lines uneven = {0};
@@ -268,7 +272,8 @@ char *hf_csv_cell(const hf_csv *t, int row, int column)
 
 /* ---- columns and cells ---- */
 
-/* Units of lengths, x_mm for x_m: the metre is moved by decimals of the text, or multiplied. */
+/* Units of length in column names. For mm and cm the decimal point of the text is moved; in and ft are multiplied
+ * by a factor. */
 static const struct {
     const char *suffix;
     int decimals;
@@ -276,7 +281,8 @@ static const struct {
 } unit[] = {{"_m", 0, 1}, {"_mm", -3, 1}, {"_cm", -2, 1}, {"_in", 0, 0.0254}, {"_ft", 0, 0.3048}};
 enum { N_UNIT = sizeof unit / sizeof *unit, METRE = 0 };
 
-/* In which unit a column with this head holds what is called `name`; -1: it is another. */
+/* Returns the unit (index into `unit`) in which the column `head` contains the quantity `name`, or -1
+ * for another quantity. */
 static int unit_of(const hf_csv *t, const char *head, const char *name)
 {
     size_t n = strlen(name), stem = n - strlen(unit[METRE].suffix);
@@ -304,7 +310,7 @@ int hf_csv_column(const hf_csv *t, const char *name)
     return -1;
 }
 
-/* A first line without any of the names is no header. */
+/* Returns true if the first line contains at least one of the names. Otherwise it is no header. */
 static bool has_header(const hf_csv *t, const char *const *names, int n_name)
 {
     for (int c = 0; c < t->n_column; c++)
@@ -314,7 +320,8 @@ static bool has_header(const hf_csv *t, const char *const *names, int n_name)
 
 #define LIST_SIZE 256
 
-/* Names with commas between them: all, or those that stand nowhere. Returns how many. */
+/* Writes names with commas between them into `list`: all n names, or those with where[k] < 0 if `where` is not NULL.
+ * Returns their number. */
 static int list_names(const char *const *names, int n, const int *where, char list[LIST_SIZE])
 {
     int n_listed = 0;
@@ -327,7 +334,8 @@ static int list_names(const char *const *names, int n, const int *where, char li
     return n_listed;
 }
 
-/* One that is missing is named; when more are, they have other names, and a list of all helps. */
+/* Reports required columns that are missing. If several are missing, the columns probably have other names, so the
+ * message lists all required ones. */
 static hf_status demand_columns(hf_csv *t, const char *const *names, int n_required, const int *where)
 {
     char missing[LIST_SIZE], list[LIST_SIZE], what[2 * LIST_SIZE];
@@ -340,7 +348,7 @@ static hf_status demand_columns(hf_csv *t, const char *const *names, int n_requi
     return hf_csv_close_faults(t);
 }
 
-/* Coordinates in two units are hardly meant. */
+/* Reports coordinates in two different units, because they are probably a mistake. */
 static void demand_one_unit(hf_csv *t, const char *const *names, int n_required, const int *where)
 {
     const char *first = NULL, *own;

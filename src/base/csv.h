@@ -1,10 +1,11 @@
-/* csv - tables in CSV files: a header line and rows of cells. Faults name file, line and id.
+/* csv - tables in CSV files: a header line and rows of cells. Error messages contain file, line and id.
  *
- * Fields may be quoted and then end on the same line. Lines end with LF or CRLF. A byte order mark, empty lines and
- * lines that start with '#' are skipped.
+ * Fields may be quoted; a quoted field ends on the line where it begins. Lines end with LF or CRLF. The reader skips a
+ * byte order mark, empty lines and lines that start with '#'.
  *
- * Ids may be what a spreadsheet takes for a formula: =1+1, or -a. They are written with an apostrophe in front, which
- * reading takes away: one of those in front of such a text. So every id that can be read is read back as it was. */
+ * A spreadsheet can take an id such as =1+1 or -a for a formula. Such ids are written with an apostrophe in
+ * front, and the reader removes one apostrophe in front of such a text. So every id that can be read is also
+ * read back unchanged. */
 #ifndef HIFDM_CSV_H
 #define HIFDM_CSV_H
 
@@ -14,55 +15,60 @@
 
 #define HF_CSV_UNKNOWN_MAX 16
 
-/* Header and cells point into the text, which reading cuts up in place. */
+/* A table. Header and cells point into `text`, which the reader splits in place. */
 typedef struct {
     const char *path;      /* borrowed */
     hf_messages *messages; /* borrowed */
     int n_column, n_row, header_line;
     char **header; /* [n_column] */
     char **cell;   /* [n_row][n_column] */
-    int *line;     /* [n_row] line number in the file */
+    int *line;     /* [n_row], line number in the file */
     int n_fault;
-    int n_comma;             /* numbers with decimal commas: the first is a fault of its own, the others are counted */
-    const char *const *ours; /* columns that our exports write and this reader does not need, up to NULL; or NULL */
-    bool names_are_ids;      /* of cables, say: column x_mm is no length x_m in another unit */
-    bool has_doubles;        /* ids stand twice: what names others may be a consequence */
-    int n_unknown;           /* names that are nothing in a table with doubles, each told once */
+    int n_comma;             /* numbers with decimal commas; only the first is reported in full */
+    const char *const *ours; /* columns of our exports that the reader ignores silently, up to a NULL; or NULL */
+    bool names_are_ids;      /* column names are ids (of cables, for example): x_mm is then not x_m in another unit */
+    bool has_doubles;        /* an id occurs twice: unknown names elsewhere may be a consequence */
+    int n_unknown;           /* ids that another table with duplicate ids lacks; each is reported once */
     const char *unknown[HF_CSV_UNKNOWN_MAX];
     char *text;
     int row_capacity;
 } hf_csv;
 
-/* HF_OK; HF_BAD_CASE with all faults (no file, uneven rows, no rows, more than column_max columns); HF_NO_MEMORY. Free
- * the table in any case. */
+/* Reads a table of at most column_max columns. Returns HF_OK. Returns HF_BAD_CASE after reporting the faults: no such
+ * file, uneven rows, no rows, too many columns, text that is not UTF-8. Returns HF_IO if the file cannot be read, and
+ * HF_NO_MEMORY if memory runs out. The caller frees the table in every case. */
 hf_status hf_csv_read(const char *path, int column_max, hf_csv *table, hf_messages *messages);
 void hf_csv_free(hf_csv *table);
 
 char *hf_csv_cell(const hf_csv *table, int row, int column);
 
-/* Report one fault at a line, about an id unless that is NULL. Beyond HF_FAULT_MAX of a file they are counted. */
+/* Reports one fault at a line. `id` is the id of the row, or NULL. Faults beyond HF_FAULT_MAX of a file
+ * are only counted. */
 void hf_csv_fault(hf_csv *table, int line, const char *id, const char *what, const char *detail);
 
-/* That `id` names something of `of` which is not there. When ids of that table stand twice one of those may be the
- * misspelt one: then each name is told once, whatever names it. */
+/* Reports that the row `id` refers to a `name` that table `of` does not contain. If `of` has duplicate ids, one of
+ * those may be the misspelt id. Each unknown name is then reported once, although several rows may contain it. */
 void hf_csv_fault_unknown(hf_csv *table, int line, const char *id, const char *what, const char *name,
                           const hf_csv *of);
 
-/* HF_BAD_CASE when there were faults; a last message counts those that were not spelled out. */
+/* Returns HF_BAD_CASE if there were faults, else HF_OK. Reports how many faults were only counted. */
 hf_status hf_csv_close_faults(hf_csv *table);
 
-/* Where the column of this name stands, or -1. */
+/* Returns the index of the column with this name, or -1. */
 int hf_csv_column(const hf_csv *table, const char *name);
 
-/* Where each known column stands (-1 = absent); the first n_required must be there. Unknown ones are warned about, but
- * for table->ours. A column x_m may be x_mm, x_cm, x_in or x_ft instead; all that are required are in one unit. */
+/* Writes the column index of each of the n_name names into where[n_name], -1 for an absent column. The first
+ * n_required columns must exist. Warns about unknown columns unless `ours` of the table lists them. Instead of a
+ * column x_m the table may have x_mm, x_cm, x_in or x_ft; all required lengths must have the same unit. Returns
+ * HF_OK or HF_BAD_CASE. */
 hf_status hf_csv_find_columns(hf_csv *table, const char *const *names, int n_name, int n_required, int *where);
 
-/* The cell as a finite number, in metres where its column is in another unit than its `name`: of x_mm and x_cm the
- * double nearest to the decimal number. NaN after a fault, which calls the column by its name. */
+/* Returns the cell as a finite number. If the column has another unit of length than `name`, the number is converted to
+ * metres. For mm and cm the result is the double nearest to the decimal number. Returns NaN after reporting a fault,
+ * which contains the name of the column as in the file. */
 double hf_csv_number(hf_csv *table, int row, int column, const char *id, const char *name);
 
-/* The cell as one of some words, in letters of any case; 0 after a fault. */
+/* Returns the index of the cell among n_word words, in upper or lower case; 0 after reporting a fault. */
 int hf_csv_word(hf_csv *table, int row, int column, const char *id, const char *const *words, int n_word);
 
 typedef struct {
@@ -70,32 +76,34 @@ typedef struct {
     int row;
 } hf_csv_named;
 
-/* Sorted ids of a table (caller frees), or NULL without memory; empty, duplicate and overlong (255 bytes) ids are
- * faults, and duplicate ones set has_doubles. */
+/* Returns the ids of a column, sorted, in a block that the caller frees; NULL if memory runs out. Reports ids that are
+ * empty, duplicate or longer than 255 bytes. Duplicate ids set has_doubles. */
 hf_csv_named *hf_csv_index(hf_csv *table, int column);
 
-/* The same of ids from elsewhere [n], without faults. */
+/* Returns a sorted index of the ids id[n], without checks. The caller frees it; NULL if memory runs out. */
 hf_csv_named *hf_csv_index_of(int n, const char *const *id);
 
-/* The row of an id, or -1. */
+/* Returns the row of an id in a sorted index, or -1. */
 int hf_csv_row_of(const hf_csv_named *index, int n_row, const char *id);
 
-/* The row of `of`, with its index, that a cell names; 0 after a fault, that `what` has no such id: a sentence up to the
- * name. */
+/* Returns the row of table `of`, found with its index, to which a cell refers. Reports a fault and returns 0 if there
+ * is no such id. The message is `what`, the begin of a sentence, followed by the name. */
 int hf_csv_reference(hf_csv *table, int row, int column, const char *id, const char *what, const hf_csv *of,
                      const hf_csv_named *index);
 
-/* Texts [n] that point into tables. */
+/* n texts that point into tables. */
 typedef struct {
     const char **text;
     int n;
 } hf_csv_texts;
 
-/* Moves all texts of the lists into one block, which the caller frees; NULL without memory, and nothing has changed. */
+/* Moves all texts of the lists into one block, and lets the lists point there. The caller frees the block. Returns NULL
+ * if memory runs out; the lists are then unchanged. */
 char *hf_csv_keep(int n_list, const hf_csv_texts *list);
 
-/* An id as a CSV field: quoted when it holds a comma, semicolon, quote, tab or end of line, blanks at its ends or a
- * leading '#'; with an apostrophe in front when a spreadsheet would run it. */
+/* Writes an id as a CSV field. The field is quoted if the id contains a comma, a semicolon, a quote, a tab or an end
+ * of line, or has blanks at its ends or a leading '#'. It begins with an apostrophe if a spreadsheet would take it
+ * for a formula. */
 void hf_csv_write_id(const char *id, FILE *file);
 
 #endif

@@ -43,16 +43,17 @@ void hf_cross(const double *a, const double *b, double *c)
 
 /* ---- sine and cosine ---- */
 
-/* pi/2 in three parts; the first two have 29 and 28 bits, so that multiples of up to 2^24 of them are exact, and up to
- * ANGLE_MOST all but. */
+/* pi/2 in three parts (Cody and Waite). The first part has 27 bits, so its product with a count of up to 2^26 is exact;
+ * ANGLE_MOST needs less. The second part has 30 bits; its products are exact up to a count of 2^23. Beyond that they
+ * have a rounding error below 1e-17. */
 #define HALF_PI_1 0x1.921fb54p+0
 #define HALF_PI_2 0x1.10b46118p-30
 #define HALF_PI_3 0x1.313198a2e0370p-61
 #define ANGLE_MOST 1e8
-#define TERMS 9 /* the first one left out is below 1e-18 at pi/4 */
+#define TERMS 9 /* the first omitted term is below 1e-18 at pi/4 */
 
-/* first (1 - s/((n+1)(n+2)) (1 - s/((n+3)(n+4)) (...))) with s = r^2: the series of the sine for n = 1, first = r, that
- * of the cosine for n = 0, first = 1 */
+/* Returns first (1 - s/((n+1)(n+2)) (1 - s/((n+3)(n+4)) (...))) with s = r^2. This is the series of the sine for n = 1,
+ * first = r, and the series of the cosine for n = 0, first = 1. */
 static double alternating_series(double r, int n, double first)
 {
     double sum = 1, square = r * r;
@@ -63,11 +64,13 @@ static double alternating_series(double r, int n, double first)
     return first * sum;
 }
 
-/* Of an angle that is larger by so many quarters of a turn. */
+/* Returns the sine of angle_rad + quarters pi/2. */
 static double turned_sine(double angle_rad, int quarters)
 {
     if (!isfinite(angle_rad)) return (double)NAN;
-    if (fabs(angle_rad) > ANGLE_MOST) angle_rad = remainder(angle_rad, 4 * (HALF_PI_1 + HALF_PI_2)); /* exact */
+    if (fabs(angle_rad) > ANGLE_MOST)
+        angle_rad = remainder(angle_rad, 4 * (HALF_PI_1 + HALF_PI_2)); /* remainder(3) is
+                                                                                                        exact */
     double count = nearbyint(angle_rad / HALF_PI_1);
     double r = ((angle_rad - count * HALF_PI_1) - count * HALF_PI_2) - count * HALF_PI_3;
     int quadrant = (int)(count - 4 * floor(count / 4)) + quarters;
@@ -87,8 +90,8 @@ double hf_cosine(double angle_rad)
 
 /* ---- inverse hyperbolic sine ---- */
 
-/* asinh x = 2 asinh(x / sqrt(2 (1 + sqrt(1 + x^2)))) until x is small; then artanh u = u + u^3/3 + u^5/5 ... with
- * u = x / sqrt(1 + x^2). */
+/* Halves the result until x is small: asinh x = 2 asinh(x / sqrt(2 (1 + sqrt(1 + x^2)))). Then asinh x = artanh u = u +
+ * u^3/3 + u^5/5 + ... with u = x / sqrt(1 + x^2). */
 double hf_inverse_sinh(double x)
 {
     double scale = 1;
@@ -105,7 +108,8 @@ double hf_inverse_sinh(double x)
 
 /* ---- logarithm ---- */
 
-/* x = 2^k m with m around 1; log m = 2 artanh u with u = (m - 1)/(m + 1), at most 0.172. */
+/* With x = 2^k m and m around 1, ln x = k ln 2 + ln m. ln m = 2 artanh u with u = (m - 1)/(m + 1), |u|
+ * at most 0.172. */
 double hf_logarithm(double x)
 {
     static const double inverse[] = {1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13, 1.0 / 11,
@@ -117,7 +121,7 @@ double hf_logarithm(double x)
     for (size_t i = 0; i < sizeof inverse / sizeof *inverse; i++)
         sum = sum * square + inverse[i];
     return k * 0x1.62e42fefa3800p-1 +
-           (2 * u * sum + k * 0x1.ef35793c76730p-45); /* ln 2 in two parts, the first exact */
+           (2 * u * sum + k * 0x1.ef35793c76730p-45); /* ln 2 in two parts; k times the first part is exact */
 }
 
 /* ---- normal distribution ---- */
@@ -130,7 +134,8 @@ static double polynomial(const double c[8], double x)
     return sum;
 }
 
-/* Quotients of polynomials for the middle, the tails and the far tails: numerator, denominator, highest power first. */
+/* Each region (middle, tails, far tails) has a quotient of two polynomials: numerator, denominator,
+ * highest power first. */
 double hf_normal_quantile(double probability)
 {
     static const double middle[2][8] = {

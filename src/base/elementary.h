@@ -1,6 +1,7 @@
-/* elementary - constants, lengths, products of vectors, and functions whose last digit in the C library depends on the
- * processor and on the version of the library. Here they are sums, products, quotients and roots of doubles in a fixed
- * order: the same bits everywhere. */
+/* elementary - constants, lengths, products of vectors, and elementary functions that give the same bits everywhere.
+ *
+ * The last digit of such a function in the C library depends on the processor and on the version of the library. The
+ * functions here consist of sums, products, quotients and roots of doubles in a fixed order. */
 #ifndef HIFDM_ELEMENTARY_H
 #define HIFDM_ELEMENTARY_H
 
@@ -10,37 +11,39 @@
 #define HF_DB_PER_LN 4.3429448190325182765 /* 10/ln 10 */
 #define HF_LIGHT_M_PER_S 299792458.0
 
-/* Of two doubles, for qsort: ascending. */
+/* Compares two doubles for qsort(3), ascending. */
 int hf_compare_doubles(const void *a, const void *b);
 
-/* sqrt(x^2 + y^2 + z^2) without overflow or underflow; error below 2 units in the last place. Infinite when one is,
- * else NaN when one is. */
+/* Returns sqrt(x^2 + y^2 + z^2) without overflow or underflow. The error is below 2 units in the last place. The result
+ * is infinite if a component is infinite, else NaN if a component is NaN. */
 double hf_norm(double x, double y, double z);
 
-/* Distance of two points [3]. */
+/* Returns the distance of two points [3]. */
 double hf_distance(const double *a, const double *b);
 
-/* c = a x b of vectors [3]; c is another array. */
+/* Computes c = a x b of vectors [3]. c must be another array than a and b. */
 void hf_cross(const double *a, const double *b, double *c);
 
-/* a . b of vectors of three. */
+/* Returns a . b of vectors [3]. */
 double hf_dot3(const double a[3], const double b[3]);
 
-/* Error below 3e-16 up to 1e8 rad; beyond, of an angle that differs by less than 1e-16 of it. */
+/* Return the sine and the cosine. The error is below 3e-16 up to 1e8 rad. Beyond that, the result belongs to an angle
+ * with a relative deviation below 1e-16. */
 double hf_sine(double angle_rad);
 double hf_cosine(double angle_rad);
 
-/* Inverse of the hyperbolic sine; relative error below 1e-15. */
+/* Returns the inverse hyperbolic sine. The relative error is below 1e-15. */
 double hf_inverse_sinh(double x);
 
-/* Natural logarithm of a normal number x > 0; error below 3e-16 of the result, or 1e-16 where that is larger. */
+/* Returns the natural logarithm of a normal number x > 0. The error is below 3e-16 of the result or below 1e-16,
+ * whichever is larger. */
 double hf_logarithm(double x);
 
-/* The number below which a normally distributed one of mean 0 and deviation 1 is with this probability, above 0 and
- * below 1; relative error below 2e-15 (Wichura, algorithm AS 241, Appl. Stat. 37, 1988). */
+/* Returns the quantile of the standard normal distribution for a probability in (0, 1). The relative error is below
+ * 2e-15 (Wichura, algorithm AS 241, Appl. Stat. 37, 1988). */
 double hf_normal_quantile(double probability);
 
-/* 2^x for |x| < 1000; relative error below 4e-16. */
+/* Returns 2^x for |x| < 1000. The relative error is below 4e-16. */
 double hf_power_of_two(double x);
 
 #endif

@@ -10,9 +10,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define AWAIT_MS 200 /* until a request to stop is seen that came just before poll(2) */
+#define AWAIT_MS 200 /* poll(2) misses a request that arrives just before it; this bounds the delay */
 
-/* Evaluates a system call again while a signal interrupts it. */
+/* Repeats a system call while a signal interrupts it. */
 #define UNINTERRUPTED(result, call)                                                                                    \
     do                                                                                                                 \
         (result) = (call);                                                                                             \
@@ -29,7 +29,7 @@ int hf_file_io_open_ordinary(const char *name, off_t *size)
 {
     struct stat info;
     int file = hf_file_io_open(name, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    if (file < 0 && errno == ENXIO) errno = EEXIST; /* a socket */
+    if (file < 0 && errno == ENXIO) errno = EEXIST; /* the file is a socket */
     if (file < 0) return -1;
     int failed = fstat(file, &info), why = failed ? errno : EEXIST;
     *size = failed ? 0 : info.st_size;
@@ -41,7 +41,8 @@ int hf_file_io_open_ordinary(const char *name, off_t *size)
 
 /* ---- whole transfers ---- */
 
-/* A call that writes nothing without a reason would be repeated for ever. */
+/* Returns true if a write failed or wrote nothing. A write of 0 bytes becomes ENOSPC, because its repetition
+ * would never end. */
 static bool is_stuck(ssize_t done)
 {
     if (done == 0) errno = ENOSPC;
@@ -135,7 +136,7 @@ int hf_file_io_sync(int file, bool content_alone)
 
 int hf_file_io_close(int file)
 {
-    return close(file) == 0 || errno == EINTR ? 0 : -1; /* Linux frees the descriptor before it can be interrupted */
+    return close(file) == 0 || errno == EINTR ? 0 : -1; /* Linux frees the descriptor before a signal can interrupt */
 }
 
 /* ---- locks ---- */
@@ -169,7 +170,7 @@ hf_lock hf_file_io_lock_byte(int file, off_t at)
 
 void hf_file_io_unlock_byte(int file, off_t at)
 {
-    set_byte(file, at, F_UNLCK); /* what fails is given back when the process ends */
+    set_byte(file, at, F_UNLCK); /* if this fails, the lock ends with the process */
 }
 
 /* ---- waiting, and faults ---- */

@@ -1,6 +1,6 @@
-/* Contents: names - locks and leftovers - temporary files - files with fixed names - a file from begin to end
- *           - files that belong together */
-#define _GNU_SOURCE /* F_OFD_SETLK */
+/* Contents: names - locks and leftovers - temporary files - files with fixed names - a file from begin to end - sets of
+ * files - files without a name */
+#define _GNU_SOURCE /* F_OFD_SETLK, renameat2 */
 #include "base/file_out.h"
 
 #include "base/file_io.h"
@@ -19,8 +19,8 @@
 #define MARK ".hifdm-"
 #define ENDING ".tmp"
 #define RANDOM_BYTES 16
-#define STEM_MAX 200 /* bytes of a name that its temporary names repeat: these fit into the 255 of a file system */
-#define LINKS_MAX 40 /* as Linux */
+#define STEM_MAX 200 /* bytes of a name that its temporary names repeat; file systems allow 255 bytes */
+#define LINKS_MAX 40 /* as in Linux */
 #define ATTEMPTS 100
 
 /* ---- names ---- */
@@ -43,14 +43,14 @@ static hf_status refuse_link(const char *path, const char *what, hf_messages *me
                     path, what);
 }
 
-/* Call it after a look that failed, with its errno. */
+/* Reports that a path cannot be examined. errno must be that of the failed call. */
 static hf_status cannot_look(const char *path, hf_messages *messages)
 {
     return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
 }
 
-/* HF_IO when a folder on the way to `path` is a link that somebody else put where everybody may write. Other links of
- * others are followed here: whose folder they are in has let them be made. */
+/* Returns HF_IO if a folder on the way to `path` is a link made by somebody else in a folder to which everybody may
+ * write. Other links to folders are followed: the owner of their folder allowed them. */
 static hf_status check_folders(const char *path, hf_messages *messages)
 {
     char part[HF_FILE_OUT_SIZE], folder[HF_FILE_OUT_SIZE];
@@ -67,7 +67,8 @@ static hf_status check_folders(const char *path, hf_messages *messages)
     return HF_OK;
 }
 
-/* Replaces `target` by what it leads to, as far as it is a link. what: a word for it. */
+/* Replaces `target` by the file that it leads to, as long as it is a link. `what` is "file" or
+ * "folder", for messages. */
 static hf_status follow(char target[HF_FILE_OUT_SIZE], const char *what, hf_messages *messages)
 {
     char to[HF_FILE_OUT_SIZE], next[HF_FILE_OUT_SIZE];
@@ -104,7 +105,7 @@ hf_status hf_file_out_folder(const char *path, hf_messages *messages)
     char name[HF_FILE_OUT_SIZE], target[HF_FILE_OUT_SIZE];
     int n = snprintf(name, sizeof name, "%s", path);
     if (n >= HF_FILE_OUT_SIZE) return tell_too_long(path, messages);
-    /* with a slash behind it a link is never seen as one */
+    /* lstat(2) of a link with a slash at its end does not show the link */
     while (n > 1 && (name[n - 1] == '/' || (name[n - 1] == '.' && name[n - 2] == '/')))
         name[--n] = '\0';
     strcpy(target, name);
@@ -129,7 +130,7 @@ hf_status hf_file_out_look(const char *path, bool *is_there, hf_messages *messag
     return seen < 0 ? cannot_look(path, messages) : HF_OK;
 }
 
-/* What the temporary names of `path` begin with, without the folder. */
+/* Writes the begin of the temporary names of `path`, without the folder. */
 static void begin_of_names(const char *path, char begin[STEM_MAX + 16])
 {
     char stem[STEM_MAX + 1];
@@ -138,7 +139,7 @@ static void begin_of_names(const char *path, char begin[STEM_MAX + 16])
     snprintf(begin, STEM_MAX + 16, ".%s%s", stem, MARK);
 }
 
-/* 0, or -1 and errno. */
+/* Writes a temporary name of `path`. Returns 0, or -1 and errno. */
 static int choose_name(const char *path, char name[HF_FILE_OUT_SIZE])
 {
     unsigned char bytes[RANDOM_BYTES];
@@ -164,8 +165,8 @@ static bool is_temporary_name(const char *name, const char *begin)
 
 typedef enum { LOCKED, HELD_BY_ANOTHER, WITHOUT_LOCKS } lock_answer;
 
-/* The lock belongs to the open file and ends with it, however the process ends. It is no flock(2), which HDF5 may take
- * on the same file by a descriptor of its own. */
+/* Locks a file. The lock belongs to the open file description and ends with it, also if the process is killed. flock(2)
+ * is not used, because HDF5 may lock the same file that way through another descriptor. */
 static lock_answer lock_file(int file)
 {
     struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
@@ -179,7 +180,7 @@ static void remove_leftover(const char *name)
     int file = hf_file_io_open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return;
     if (fstat(file, &info) == 0 && S_ISREG(info.st_mode) && lock_file(file) == LOCKED && hf_path_leads_to(name, file))
-        unlink(name); /* it may be a second name of the visible file (hf_file_out_add), so it is never written into */
+        unlink(name); /* only unlinked, never written: it may be a second name of the visible file (hf_file_out_add) */
     close(file);
 }
 
@@ -230,7 +231,7 @@ int hf_file_out_make(const char *path, hf_file_out *f)
         f->file = hf_file_out_create(f->temporary);
         if (f->file < 0 && errno != EEXIST) return -1;
         if (f->file < 0) continue;
-        /* between the two calls above and below another process may have taken it for a leftover */
+        /* another process may have taken the unlocked file for a leftover and removed it */
         bool is_ours = lock_file(f->file) != HELD_BY_ANOTHER;
         if (fstat(f->file, &info) != 0) break;
         if (is_ours && info.st_nlink > 0) return 0;
@@ -266,7 +267,7 @@ int hf_file_out_sync_folder(const char *path)
     return 0;
 }
 
-/* 0, or -1 and errno: the name is given, but not all of the content may be on the disk. */
+/* Closes the file after it has got its name. Returns 0, or -1 and errno: some content may then not be on the disk. */
 static int end(hf_file_out *f)
 {
     int file = f->file;
@@ -288,7 +289,7 @@ int hf_file_out_add(hf_file_out *f, const char *path, hf_messages *messages)
     if (errno == EEXIST) return -1;
     if (renameat2(AT_FDCWD, f->temporary, AT_FDCWD, path, RENAME_NOREPLACE) == 0) return end(f);
     if (errno == EEXIST) return -1;
-    /* a file system without either: take the name with an empty file, then replace that */
+    /* a file system without both calls: reserve the name with an empty file, then replace that file */
     int file = hf_file_out_create(path);
     if (file < 0) return -1;
     close(file);
@@ -326,7 +327,9 @@ int hf_file_out_keep(const char *name, bool *was_there)
         file = hf_file_io_open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
         *was_there = file >= 0;
         if (file < 0 && errno == ENOENT) file = hf_file_out_create(name);
-        if (file < 0 && errno != EEXIST && errno != ENOENT) break; /* those: made or removed between the two calls */
+        if (file < 0 && errno != EEXIST && errno != ENOENT)
+            break; /* another process made or removed the file between
+                                                                      the two calls */
     }
     if (file < 0) {
         if (errno == ELOOP || errno == EISDIR || errno == ENXIO) errno = EEXIST; /* a link, a folder, a socket */
@@ -353,7 +356,7 @@ hf_status hf_file_out_begin(const char *path, hf_file_out *f, hf_messages *messa
     if (lstat(f->path, &info) != 0 && errno == ENAMETOOLONG) return fail(path, messages);
     int seen = hf_path_look(f->path, &info);
     if (seen < 0) return cannot_look(f->path, messages);
-    if (seen > 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) /* no rename replaces a folder */
+    if (seen > 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) /* rename(2) never replaces a folder */
         return hf_error(messages, HF_IO, "%s: is not an ordinary file; choose another name", path);
     hf_file_out_clean(f->path);
     return hf_file_out_make(f->path, f) == 0 ? HF_OK : fail(path, messages);
@@ -375,11 +378,11 @@ hf_status hf_file_out_publish(hf_file_out *f, hf_messages *messages)
     return status;
 }
 
-/* The file is dropped after a failure. */
+/* Fills the temporary file with the text that `write` writes. Drops the file after a failure. */
 static hf_status fill_file(hf_file_out *f, void (*write)(const void *context, FILE *file), const void *context,
                            hf_messages *messages)
 {
-    int copy = fcntl(f->file, F_DUPFD_CLOEXEC, 0); /* that of the stream; the other keeps the lock */
+    int copy = fcntl(f->file, F_DUPFD_CLOEXEC, 0); /* for the stream; the original descriptor keeps the lock */
     FILE *stream = copy >= 0 ? fdopen(copy, "w") : NULL;
     int failed = !stream;
     if (stream) {
@@ -404,7 +407,7 @@ hf_status hf_file_out_write(const char *path, void (*write)(const void *context,
     return hf_file_out_publish(&f, messages);
 }
 
-/* ---- files that belong together ---- */
+/* ---- sets of files ---- */
 
 hf_status hf_file_out_set_begin(hf_file_out_set *set, const char *path, hf_file_out **file, hf_messages *messages)
 {
@@ -439,7 +442,7 @@ hf_status hf_file_out_set_end(hf_file_out_set *set, hf_status status, hf_message
     return status;
 }
 
-/* ---- without a name ---- */
+/* ---- files without a name ---- */
 
 static int scratch_of_system(void)
 {
@@ -451,7 +454,7 @@ static int scratch_of_system(void)
     return file;
 }
 
-/* Some file systems have no files without a name: there it loses its name at once. */
+/* Makes a file and removes its name at once, for file systems that have no files without a name. */
 static int scratch_with_name(const char *beside)
 {
     hf_file_out f = {0};

@@ -1,4 +1,4 @@
-/* Contents: the writer - compact lists */
+/* Contents: the writer - compact lists - numbers in base64 */
 #include "base/json.h"
 
 #include "base/text.h"
@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Hidden characters are escaped although JSON asks for that below U+0020 alone: what is read is the same, and a
- * terminal or the script of a page does not run them. JSON cannot say a byte that is not UTF-8: it becomes U+FFFD. */
+/* Writes a text in quotes. Escapes all hidden characters, although JSON requires it only below U+0020. A reader gets
+ * the same text, and a terminal or a script of a page does not execute the characters. JSON cannot contain a byte that
+ * is not UTF-8, so such a byte becomes U+FFFD. */
 static void write_string(const char *text, size_t length, FILE *f)
 {
     fputc('"', f);
@@ -31,7 +32,7 @@ static void write_string(const char *text, size_t length, FILE *f)
 
 /* ---- the writer ---- */
 
-/* What stands before an item. */
+/* Writes what precedes an item: a comma, a new line or a blank, and the key. */
 static void begin_item(hf_json *j, const char *key)
 {
     if (j->is_due) fputc(',', j->file);
@@ -42,7 +43,7 @@ static void begin_item(hf_json *j, const char *key)
     j->line = NULL;
     j->is_due = true;
     if (!key) return;
-    write_string(key, strlen(key), j->file); /* the id of a cable may be one */
+    write_string(key, strlen(key), j->file); /* a key may be the id of a cable */
     fputs(": ", j->file);
 }
 
@@ -143,7 +144,7 @@ void hf_json_value(double value, int digits, FILE *f)
     else if (isinf(value))
         fputs(value > 0 ? "\"Infinity\"" : "\"-Infinity\"", f);
     else
-        fprintf(f, "%.*g", digits, value + 0.0); /* no -0 */
+        fprintf(f, "%.*g", digits, value + 0.0); /* + 0.0 turns -0 into 0 */
 }
 
 void hf_json_strings(const char *key, const char *const *text, int n, FILE *f)
@@ -167,7 +168,7 @@ void hf_json_values(const char *key, const double *value, int n, int stride, int
     fputc(']', f);
 }
 
-/* ---- numbers as bytes, and these as letters ---- */
+/* ---- numbers in base64 ---- */
 
 hf_json_packed hf_json_pack(const char *key, const char *type, FILE *f)
 {
@@ -203,7 +204,7 @@ void hf_json_pack_value(hf_json_packed *p, double value)
 
 void hf_json_pack_end(hf_json_packed *p)
 {
-    static const char *const padding[] = {"", "", "==", "", "="}; /* of the 2 or 4 bits that are left */
+    static const char *const padding[] = {"", "", "==", "", "="}; /* for 2 or 4 remaining bits */
     if (p->n_bit) put_letter(p->bits << (6 - p->n_bit), p->file);
     fprintf(p->file, "%s\"}", padding[p->n_bit]);
 }

@@ -1,5 +1,5 @@
-/* json - JSON on a stream. The writer knows whether a comma is due; the functions for the page of `hifdm report` write
- * compact lists instead. */
+/* json - writes JSON to a stream. The writer hf_json puts commas where they are needed. The functions for the page of
+ * `hifdm report` write compact lists. */
 #ifndef HIFDM_JSON_H
 #define HIFDM_JSON_H
 
@@ -7,59 +7,63 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* Begin with {.file = ...}; the rest is the writer's own. */
+/* A writer. The caller sets {.file = ...}; the other members are internal. */
 typedef struct {
     FILE *file;
-    bool is_due;      /* a comma, before the next item */
-    const char *line; /* the indentation of a new line before the next item; NULL: no new line */
+    bool is_due;      /* the next item needs a comma before it */
+    const char *line; /* indentation of a new line before the next item; NULL: no new line */
 } hf_json;
 
-/* key: NULL for what stands in a list or outermost. bracket: '{' or '[', then '}' or ']'. */
+/* Begin and end an object or a list. `key` is NULL for an item of a list and for the outermost object. `bracket` is '{'
+ * or '[' to open, '}' or ']' to close. */
 void hf_json_open(hf_json *json, const char *key, char bracket);
 void hf_json_close(hf_json *json, char bracket);
 
-/* The next item begins a new line with this indentation, which is borrowed. */
+/* Begins a new line before the next item, with this indentation. The text is borrowed. */
 void hf_json_line(hf_json *json, const char *indentation);
 
 void hf_json_text(hf_json *json, const char *key, const char *text);
-/* 17 digits; NaN is null, and what is infinite the text "Infinity" or "-Infinity", which float() of Python and Number()
- * of JavaScript read. */
+/* Writes 17 significant digits. NaN becomes null. Infinite values become the texts "Infinity" and "-Infinity", which
+ * float() in Python and Number() in JavaScript can read. */
 void hf_json_number(hf_json *json, const char *key, double value);
 void hf_json_integer(hf_json *json, const char *key, int64_t value);
 void hf_json_unsigned(hf_json *json, const char *key, uint64_t value);
 void hf_json_bool(hf_json *json, const char *key, bool value);
-void hf_json_list(hf_json *json, const char *key, const double *value, int n); /* n numbers as hf_json_value has them */
+void hf_json_list(hf_json *json, const char *key, const double *value, int n); /* n numbers, as hf_json_number writes
+                                                                                  them */
 
-/* Those lines of `lines` (may be NULL) that start with `prefix`, without it, as a list of texts. */
+/* Writes a list of texts: the lines of `lines` that start with `prefix`, without this prefix. `lines` may be NULL. */
 void hf_json_lines(hf_json *json, const char *key, const char *prefix, const char *lines);
 
-/* How the object of a command ends: its warnings, its errors if it has failed, the brace and a newline. */
+/* Ends the JSON object of a command: its warnings, its errors if it has failed, the brace and a newline. */
 void hf_json_end(hf_json *json, bool has_failed, const char *messages);
 
-/* ---- without a writer: compact, for the page ---- */
+/* ---- compact lists without a writer, for the page ---- */
 
-/* A '<' in a text is written as \u003c, so that an object can stand in the script of an HTML page. A byte that is not
- * UTF-8 is written as \ufffd. */
+/* Writes a text in quotes. A '<' becomes \u003c, so that the text can be part of a script in an HTML page. A byte that
+ * is not UTF-8 becomes \ufffd. */
 void hf_json_string(const char *text, FILE *file);
-void hf_json_value(double value, int digits, FILE *file); /* null unless finite */
+void hf_json_value(double value, int digits, FILE *file); /* NaN: null; infinite: "Infinity" or "-Infinity" */
 
-/* ,"key":[...] with the comma in front: n texts; of n numbers every stride-th and the last. */
+/* Write ,"key":[...] with the comma in front. hf_json_strings writes n texts. hf_json_values writes every stride-th of
+ * n numbers, and always the last one. */
 void hf_json_strings(const char *key, const char *const *text, int n, FILE *file);
 void hf_json_values(const char *key, const double *value, int n, int stride, int digits, FILE *file);
 
-/* ,"key":{"f32":"..."} with the comma in front: numbers one after the other as base64 of their bytes, the lowest first.
- * The type is "i32", of whole numbers that an int32_t holds, "f32" or "f64", as in names of the typed arrays of
- * JavaScript and numpy. */
+/* Writes ,"key":{"f32":"..."} with the comma in front. The text is the base64 form of the bytes of all numbers, lowest
+ * byte first. The type is "i32" (whole numbers in the range of int32_t), "f32" or "f64", similar to the names of typed
+ * arrays in JavaScript and numpy. */
 typedef struct {
     FILE *file;
-    char type;     /* i or f */
-    int n_byte;    /* of a number */
-    unsigned bits; /* those that wait to become letters, the lowest n_bit */
+    char type;     /* 'i' or 'f' */
+    int n_byte;    /* bytes of a number */
+    unsigned bits; /* the lowest n_bit bits are not yet written */
     int n_bit;
 } hf_json_packed;
 hf_json_packed hf_json_pack(const char *key, const char *type, FILE *file);
 void hf_json_pack_value(hf_json_packed *packed, double value);
 void hf_json_pack_end(hf_json_packed *packed);
-void hf_json_pack_values(const char *key, const char *type, const double *value, int n, FILE *file); /* all of it */
+void hf_json_pack_values(const char *key, const char *type, const double *value, int n, FILE *file); /* all three
+                                                                                                        steps */
 
 #endif

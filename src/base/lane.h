@@ -1,9 +1,9 @@
-/* lane - the eight SIMD lanes that chord and swarm give a design each, the instruction sets that kernels are compiled
- * for, and the vectors that kernels are written in.
+/* lane - the eight SIMD lanes in which chord and swarm process eight designs, the instruction sets of the kernels, and
+ * the vector types and operations of the kernels.
  *
- * All instruction sets give the same bits: there are always eight lanes, one order of operations, and only IEEE + - *
- * /, square root and fused multiply-adds. A product is fused with the sum that it goes into where the source says so
- * (`plus_product`, `less_product`, C's fma()) and nowhere else: the compiler fuses nothing (Makefile). */
+ * All instruction sets give the same bits. There are always eight lanes and one order of operations. The only
+ * operations are IEEE + - * /, square root and fused multiply-add. The source marks every fused product
+ * (`plus_product`, `less_product`, C's fma()); the compiler fuses nothing else (see CODEGEN in the Makefile). */
 #ifndef HIFDM_LANE_H
 #define HIFDM_LANE_H
 
@@ -11,23 +11,23 @@
 
 #define HF_LANES 8
 
-/* Names of the instruction sets, slowest first. AVX2 stands for AVX2 with FMA. */
+/* The instruction sets, slowest first. HF_LANE_AVX2 means AVX2 with FMA. */
 typedef enum { HF_LANE_PORTABLE, HF_LANE_AVX2, HF_LANE_AVX512 } hf_lane_isa;
 #define HF_LANE_N_ISA 3
 
-bool hf_lane_has_isa(hf_lane_isa isa); /* can this machine run it? */
-hf_lane_isa hf_lane_best_isa(void);    /* the fastest that this machine can run */
+bool hf_lane_has_isa(hf_lane_isa isa); /* true if this machine can execute it */
+hf_lane_isa hf_lane_best_isa(void);    /* the fastest that this machine can execute */
 const char *hf_lane_isa_name(hf_lane_isa isa);
 
-/* ---- for *_kernel.c, which the Makefile compiles with -DHF_ISA=avx512 and so on ---- */
+/* ---- for *_kernel.c, which the Makefile compiles once for each instruction set with -DHF_ISA=avx512 and so on ---- */
 
 #define HF_JOIN_(a, b) a##_##b
 #define HF_JOIN(a, b) HF_JOIN_(a, b)
-#define HF_KERNEL(name) HF_JOIN(name, HF_ISA) /* a name of this instruction set's own */
+#define HF_KERNEL(name) HF_JOIN(name, HF_ISA) /* name with the instruction set as suffix */
 
 #define INLINE static inline __attribute__((always_inline))
 
-/* ---- vectors as wide as the processor's ---- */
+/* ---- vectors of the width of the processor ---- */
 
 #ifdef HF_LANE_VECTORS
 
@@ -36,7 +36,7 @@ const char *hf_lane_isa_name(hf_lane_isa isa);
 #include <immintrin.h>
 #endif
 
-/* WIDTH doubles are worked on at a time; PARTS vectors hold eight. */
+/* A vector holds WIDTH doubles; PARTS vectors hold eight doubles. */
 #if defined __AVX512F__
 enum { WIDTH = 8 };
 #elif defined __AVX2__
@@ -49,7 +49,7 @@ enum { PARTS = HF_LANES / WIDTH };
 typedef double vec __attribute__((vector_size(WIDTH * sizeof(double)), may_alias));
 typedef unsigned long long bits_of __attribute__((vector_size(WIDTH * sizeof(double))));
 
-/* a loop with a small constant count: it is unrolled, so that the arrays in it stay in registers */
+/* A loop with a small constant count. It is unrolled, so that the arrays in it stay in registers. */
 #define foreach(i, count) _Pragma("GCC unroll 16") for (int i = 0; i < (count); i++)
 
 INLINE vec splat(double x)
@@ -58,10 +58,11 @@ INLINE vec splat(double x)
 }
 
 #if !defined __AVX2__ && !defined FP_FAST_FMA
-/* Without an instruction for it: the algorithm of Boldo and Melquiond (IEEE Trans. Comput. 57, 2008), and beyond its
- * range C's fma(), which is as exact, but takes a call, and is slow where the processor cannot fuse. */
+/* Fused multiply-add for processors without such an instruction: the algorithm of Boldo and Melquiond (IEEE
+ * Trans. Comput. 57, 2008). Outside its range, C's fma() is called. It is as exact, but it is a call, and slow on
+ * such a processor. */
 
-/* What is left of a + b beside its rounded sum, exactly. */
+/* Returns the exact rounding error a + b - sum, where sum = a + b is rounded. */
 INLINE vec rest_of_sum(vec a, vec b, vec sum)
 {
     vec part = sum - a;
@@ -80,12 +81,12 @@ INLINE vec rest_of_product(vec a, vec b, vec product)
     return ((ah * bh - product) + ah * bl + al * bh) + al * bl;
 }
 
-/* a + b, or where that is not a double the neighbour whose last bit is odd. */
+/* Returns a + b if it is a double. Otherwise returns the neighbouring double whose last bit is odd. */
 INLINE vec odd_sum(vec a, vec b)
 {
     vec sum = a + b, rest = rest_of_sum(a, b, sum);
-    bits_of s = (bits_of)sum, is_even = (s & 1) - 1;    /* all bits, or none */
-    bits_of away = 1 - 2 * ((s ^ (bits_of)rest) >> 63); /* from 0: 1, or -1 where the rest has the other sign */
+    bits_of s = (bits_of)sum, is_even = (s & 1) - 1;    /* all bits set if s is even, else 0 */
+    bits_of away = 1 - 2 * ((s ^ (bits_of)rest) >> 63); /* 1 away from 0; -1 if the rest has the other sign */
     return (vec)(s + (away & is_even & (bits_of)(rest != 0)));
 }
 
@@ -96,7 +97,7 @@ INLINE bool is_within(vec a, double low, double high)
     return (is[0] & is[1]) != 0;
 }
 
-/* c + a b, rounded once. */
+/* Returns c + a b, rounded once. */
 static __attribute__((noinline, unused)) vec plus_product(vec c, vec a, vec b)
 {
     vec product = a * b;
@@ -110,7 +111,7 @@ static __attribute__((noinline, unused)) vec plus_product(vec c, vec a, vec b)
     return c;
 }
 #else
-/* c + a b, rounded once. */
+/* Returns c + a b, rounded once. */
 INLINE vec plus_product(vec c, vec a, vec b)
 {
 #if defined __AVX512F__
@@ -125,7 +126,7 @@ INLINE vec plus_product(vec c, vec a, vec b)
 }
 #endif
 
-/* c - a b, rounded once. */
+/* Returns c - a b, rounded once. */
 INLINE vec less_product(vec c, vec a, vec b)
 {
 #if defined __AVX512F__
@@ -150,13 +151,13 @@ INLINE vec root(vec a)
 #endif
 }
 
-/* The square of the length of (x, y, z). */
+/* Returns x^2 + y^2 + z^2. */
 INLINE vec norm_squared(vec x, vec y, vec z)
 {
     return plus_product(plus_product(x * x, y, y), z, z);
 }
 
-/* a > b ? yes : no; "no" where a or b is NaN */
+/* Returns `yes` where a > b, else `no`. Returns `no` where a or b is NaN. */
 INLINE vec if_greater(vec a, vec b, vec yes, vec no)
 {
     typedef long long mask __attribute__((vector_size(WIDTH * sizeof(double))));
@@ -181,14 +182,14 @@ INLINE vec magnitude(vec a)
 
 #endif
 
-/* ---- eight at once, which the compiler divides ---- */
+/* ---- eight doubles in one vector, which the compiler divides ---- */
 
 #ifdef HF_LANE_EIGHT
 
 #include <string.h>
 
 typedef double lanes __attribute__((vector_size(HF_LANES * sizeof(double))));
-typedef long long lanes_where __attribute__((vector_size(HF_LANES * sizeof(double)))); /* -1 or 0 */
+typedef long long lanes_where __attribute__((vector_size(HF_LANES * sizeof(double)))); /* -1: true, 0: false */
 
 INLINE lanes lanes_load(const double from[HF_LANES])
 {
@@ -202,7 +203,7 @@ INLINE void lanes_store(double to[HF_LANES], lanes a)
     memcpy(to, &a, sizeof a);
 }
 
-/* Lanes of a where the condition holds, else of b. */
+/* Returns the lanes of a where the condition holds, and those of b elsewhere. */
 INLINE lanes lanes_choose(lanes_where condition, lanes a, lanes b)
 {
     lanes_where x, y;
@@ -213,7 +214,7 @@ INLINE lanes lanes_choose(lanes_where condition, lanes a, lanes b)
     return a;
 }
 
-/* sqrt has no vector form in C; a loop over the lanes becomes one instruction */
+/* Returns the square roots. C has no vector form of sqrt; the compiler makes vector instructions from the loop. */
 INLINE lanes lanes_root(lanes a)
 {
     for (int k = 0; k < HF_LANES; k++)

@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
-static _Thread_local hf_later_list *joined_list; /* NULL: none */
+static _Thread_local hf_later_list *joined_list; /* NULL: the thread has joined no list */
 
 void hf_later_open(int n_worker, hf_later_list *list)
 {

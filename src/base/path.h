@@ -1,7 +1,7 @@
-/* path - names of files as text, and whether two names lead to the same file.
+/* path - file names as text, and whether two names lead to the same file.
  *
- * The name of a path is what follows its last slash. The ending of a name begins at its last dot; a dot at the very
- * beginning starts a hidden file and no ending. */
+ * The name of a path is the part after its last slash. The ending of a name begins at its last dot. A dot at the begin
+ * of a name marks a hidden file and starts no ending. */
 #ifndef HIFDM_PATH_H
 #define HIFDM_PATH_H
 
@@ -9,41 +9,45 @@
 #include <stddef.h>
 #include <sys/stat.h>
 
-/* A path that lost part of itself to a buffer of `size` bytes must not be used: functions that write a path return
- * false then. */
+/* Functions that write a path return false if the buffer of `size` bytes is too small. The truncated path must
+ * not be used. */
 
 const char *hf_path_name(const char *path);   /* points into `path` */
-const char *hf_path_ending(const char *path); /* ".h5"; points at the final NUL when there is none */
+const char *hf_path_ending(const char *path); /* ".h5", for example; points to the final NUL if there is no ending */
 
-/* Bytes of `path` up to and including its last slash, 0 without a slash: "%.*s" of them is the folder as a prefix. */
+/* Returns the number of bytes of `path` up to and including its last slash; 0 without a slash. Printed with "%.*s",
+ * these bytes are the folder as a prefix. */
 int hf_path_prefix_length(const char *path);
 
-/* The folder that `path` is in, as a path of its own: "." without a slash, "/" for the root. */
+/* Writes the folder of `path` as a path: "." without a slash, "/" for the root. */
 bool hf_path_folder(const char *path, char *folder, size_t size);
 
-/* What a file calls `name`: relative to that file's folder, unless absolute. */
+/* Writes the path of the file that `file` refers to as `name`: relative to the folder of `file`, unless
+ * `name` is absolute. */
 bool hf_path_beside(const char *file, const char *name, char *path, size_t size);
 
-/* `given` when it is not NULL; else the name of `source` with another ending, in the current folder. */
+/* Writes `given` if it is not NULL. Otherwise writes the name of `source` with another ending, in
+ * the current folder. */
 bool hf_path_choose(const char *given, const char *source, const char *ending, char *path, size_t size);
 
-/* `part` between stem and ending: table.csv and "_nodes" make table_nodes.csv. */
+/* Writes `path` with `part` inserted before the ending: table.csv and "_nodes" become table_nodes.csv. */
 bool hf_path_insert(const char *path, const char *part, char *longer, size_t size);
 
-/* Do both names lead to one file that exists? Links are followed. The second also has -1 and errno: the system cannot
- * tell. */
+/* Return whether both names lead to the same existing file, following links. hf_path_compare returns 1 or 0, and -1
+ * with errno if the system cannot answer. */
 bool hf_path_is_same(const char *a, const char *b);
 int hf_path_compare(const char *a, const char *b);
-/* Would both names lead to one file, if it existed? Same name in the same folder, however that is spelt. */
+/* Returns true if both names would lead to the same file once it exists: equal names in the same folder. The folder may
+ * be spelt in two ways. */
 bool hf_path_will_be_same(const char *a, const char *b);
-/* Looks at what `path` leads to, and at the link itself. 1: it is there. 0: nothing is there. -1 and errno: the system
- * cannot tell, so nothing may be written there. */
+/* Examine the file that `path` leads to, or the link itself. Return 1 if it exists, 0 if not. Return -1 with errno if
+ * the system cannot answer; the caller must not write there. */
 int hf_path_look(const char *path, struct stat *info);
 int hf_path_look_at_link(const char *path, struct stat *info);
 
 bool hf_path_is_same_inode(const struct stat *a, const struct stat *b);
 
-/* Is the open file still the one that `path` leads to? */
+/* Returns true if the open file is still the file that `path` leads to. */
 bool hf_path_leads_to(const char *path, int file);
 
 #endif

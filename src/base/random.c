@@ -1,6 +1,6 @@
 #include "base/random.h"
 
-/* The definitions for calls that the compiler does not inline. */
+/* Definitions for calls that the compiler does not inline. */
 extern inline uint64_t hf_random_mix(uint64_t z);
 extern inline hf_random hf_random_stream(uint64_t seed, int generation, int individual);
 extern inline uint64_t hf_random_next(hf_random *random);

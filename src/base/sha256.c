@@ -3,7 +3,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Fractional parts of the cube roots of the first 64 primes (FIPS 180-4, 4.2.2). */
+/* First 32 bits of the fractional parts of the cube roots of the first 64 primes (FIPS 180-4, 4.2.2). */
 static const uint32_t round_constant[64] = {
     0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
     0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
@@ -54,7 +54,7 @@ void hf_sha256(const void *data, size_t length, char hex[65])
     for (size_t i = 0; i < full; i += 64)
         compress(state, bytes + i);
 
-    /* padding: one bit, zeros, the length in bits as a big-endian 64-bit number */
+    /* Padding: a one bit, zeros, and the length in bits as a big-endian 64-bit number. */
     unsigned char tail[128] = {0};
     size_t n_tail = rest < 56 ? 64 : 128;
     if (rest) memcpy(tail, bytes + full, rest);

@@ -4,7 +4,7 @@
 #include <stddef.h>
 
 static volatile sig_atomic_t requested;
-static atomic_flag is_second = ATOMIC_FLAG_INIT; /* two threads may each hear one at the same time */
+static atomic_flag is_second = ATOMIC_FLAG_INIT; /* atomic: two threads may each receive a signal at the same time */
 
 static void request(int number)
 {

@@ -53,7 +53,7 @@ int hf_status_exit_code(hf_status status)
     return 5;
 }
 
-/* Room for `extra` more bytes and the final NUL; false when memory ran out. */
+/* Reserves room for `extra` more bytes and the final NUL. Returns false if memory runs out. */
 static bool reserve(hf_messages *m, size_t extra)
 {
     size_t need = m->length + extra + 1;
@@ -67,7 +67,8 @@ static bool reserve(hf_messages *m, size_t extra)
     return true;
 }
 
-/* The body is escaped as a whole: whatever stands in a name or a file, a message is one line of visible characters. */
+/* Appends one message. The body is escaped as a whole, so that a message is one line of visible characters, whatever
+ * names and files contain. */
 static void append(hf_messages *m, const char *prefix, const char *format, va_list args)
 {
     va_list count_args;
@@ -79,7 +80,7 @@ static void append(hf_messages *m, const char *prefix, const char *format, va_li
     size_t begin = m->length + n_prefix;
     vsnprintf(m->text + begin, (size_t)n_body + 1, format, args);
     size_t n_shown = hf_text_escape(m->text + begin, NULL, 0);
-    if (n_shown != (size_t)n_body) { /* the body moves behind the room for what is shown of it */
+    if (n_shown != (size_t)n_body) { /* the body moves behind the room for its escaped form */
         if (!reserve(m, n_prefix + n_shown + 1 + (size_t)n_body)) {
             m->text[m->length] = '\0';
             return;

@@ -16,7 +16,8 @@
 #define FILE_MAX (1 << 30) /* bytes */
 #define READ_AT_ONCE 4096
 
-/* What is no ordinary file is refused before it is read: a device may have no end, a pipe no writer. */
+/* Reports that a path is not an ordinary file. Such files are refused before reading: a device may have no end, and a
+ * pipe may have no writer. */
 static hf_status refuse_kind(const char *path, hf_status code, hf_messages *messages)
 {
     struct stat info = {0};
@@ -29,8 +30,8 @@ static hf_status refuse_kind(const char *path, hf_status code, hf_messages *mess
     return hf_error(messages, code, "%s: is %s; name an ordinary file", path, kind);
 }
 
-/* Reads to the end; a file may be longer than its size was, as those of /proc are. The buffer is NULL without memory.
- * Returns 0, or -1 and errno. */
+/* Reads to the end of the file. A file may be longer than its reported size; files in /proc are. Sets *buffer to NULL
+ * if memory runs out. Returns 0, or -1 and errno. */
 static int read_to_end(int file, size_t capacity, char **buffer, size_t *length)
 {
     *buffer = malloc(capacity);
@@ -76,7 +77,8 @@ static const char *skip_digits(const char *p)
     return p;
 }
 
-/* As strtod, whatever locale the program that uses the library may have set, which may have a decimal comma. */
+/* Converts like strtod(3) in the C locale, whatever locale the calling program has set. Another locale may use
+ * a decimal comma. */
 static double number_of(const char *text)
 {
     locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0), old = (locale_t)0;
@@ -94,8 +96,8 @@ bool hf_text_double(const char *text, double *value)
     return hf_text_decimal(text, 0, value);
 }
 
-#define DIGITS_MOST 400    /* of a number whose point is moved in its text */
-#define EXPONENT_MOST 9999 /* beyond it so many digits are 0 or too large in any case */
+#define DIGITS_MOST 400    /* maximum length of a number that hf_text_decimal scales */
+#define EXPONENT_MOST 9999 /* with so few digits, larger exponents give 0 or an overflow in any case */
 
 bool hf_text_decimal(const char *text, int decimals, double *value)
 {
@@ -220,9 +222,9 @@ int hf_text_too_deep(const char *text)
     return 0;
 }
 
-#define NEAREST_MAX 63 /* bytes; for longer words no candidate is suggested */
+#define NEAREST_MAX 63 /* bytes; longer words have no suggestion */
 
-/* Levenshtein distance of two short words, ignoring case. */
+/* Returns the Levenshtein distance of two short words, ignoring case. */
 static int edit_distance(const char *a, const char *b)
 {
     int row[NEAREST_MAX + 1], n_a = (int)strlen(a), n_b = (int)strlen(b);
@@ -244,7 +246,7 @@ static int edit_distance(const char *a, const char *b)
     return row[n_b];
 }
 
-/* Is the name this word with a unit behind it, as EA_N of EA? */
+/* Returns true if the name is this word with a unit, such as EA_N for EA. */
 static bool is_with_unit(const char *name, const char *word)
 {
     size_t n = strlen(word);
