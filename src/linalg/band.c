@@ -1,3 +1,9 @@
+/* Calls the fastest kernels of this machine for positive definite matrices, and LAPACK for indefinite ones:
+ *
+ *     positive definite   band [n][k+1]  -> hf_band_factor -> L  -> hf_band_back_solve -> x
+ *     indefinite          general band   -> dgbtrf         -> LU -> panels of 8, dgbtrs for the rest -> x
+ *
+ * Contents: kernels - LAPACK */
 #include "linalg/band.h"
 
 #include "base/lane.h"
@@ -8,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-#define AT_A_TIME 64 /* columns between looks at a flag: a few tenths of a second at a half-bandwidth of 5000 */
+#define AT_A_TIME 64 /* columns between two checks of the flag: a few tenths of a second at a half-bandwidth of 5000 */
 
 /* ---- kernels ---- */
 
@@ -66,7 +72,7 @@ void hf_band_gram(int first, int end, int n_column, const double *a, int lda, do
 
 /* ---- LAPACK ---- */
 
-/* One call of a routine of LAPACK. */
+/* Calls one routine of LAPACK. */
 #define CALL(routine, ...)                                                                                             \
     do {                                                                                                               \
         int call_n_thread_ = hf_lapack_begin();                                                                        \
@@ -105,7 +111,7 @@ double hf_band_condition(int n, int half_bandwidth, const double *factor, double
 {
     double inverse_norm = 0, *x = work + n;
     int what = 0, kept[3];
-    do { /* asks for the inverse times x, or its transpose, until it has its estimate */
+    do { /* dlacn2 asks for products with the inverse or its transpose until its estimate is complete */
         CALL(dlacn2, &n, work, x, integer_work, &inverse_norm, &what, kept);
         if (what != 0) hf_band_back_solve(n, half_bandwidth, 1, factor, x, n);
     } while (what != 0);
@@ -120,16 +126,17 @@ int hf_band_factor_general(int n, int half_bandwidth, double *general, int *pivo
     return info > 0 ? info : info < 0;
 }
 
-#define GENERAL_PANEL 8 /* right-hand sides that share one reading of the factor */
+#define GENERAL_PANEL 8 /* right-hand sides that share one pass over the factor */
 
-/* to -= factor times from */
+/* Computes to -= factor * from. */
 static void subtract(int n, double factor, const double *restrict from, double *restrict to)
 {
     for (int i = 0; i < n; i++)
         to[i] -= factor * from[i];
 }
 
-/* dgbtrs with one reading of the factor for all of b [n_rhs][ldb]: LAPACK reads the upper triangle once for each. */
+/* Solves like dgbtrs, with one pass over the factor for all right-hand sides b [n_rhs][ldb]. LAPACK reads the upper
+ * triangle once for each right-hand side. */
 static void back_solve_panel(int n, int k, int n_rhs, const double *general, const int *pivot, double *b, int ldb)
 {
     ptrdiff_t ldab = 3 * k + 1;

@@ -1,10 +1,15 @@
 /* The kernels of band, compiled once for each instruction set.
  *
+ *     factor       band -> for each block of 4 columns, for each strip of rows: subtract the products of the finished
+ *                  columns, divide by the pivots -> L, in place
+ *     back_solve   L, b -> forward and backward substitution, 4 columns at a time, for 1 to 3 right-hand sides -> x
+ *     gram         A -> tiles of 4 x 4 inner products of rows -> lower triangle of A A'
+ *
  * Contents: strips - factor - substitution - products of rows
  *
- * LAPACK's lower band: entry (i,j) stands at band[i - j + j (k + 1)] = band[i + j k], so that a row lies k apart in
- * memory and the rows of a column side by side. The factorisation is left-looking by blocks of four columns: for eight
- * or sixteen rows of them at a time, the 4 x 8 entries stay in registers while the finished columns stream by. */
+ * In LAPACK's lower band, entry (i,j) is at band[i - j + j (k + 1)] = band[i + j k]. The entries of a row are k apart
+ * in memory, and the entries of a column are adjacent. The factorisation is left-looking by blocks of four columns. It
+ * keeps the entries of eight or sixteen rows in registers while it reads the finished columns. */
 #define HF_LANE_VECTORS
 #include "linalg/band_kernel.h"
 
@@ -49,7 +54,7 @@ INLINE void store(double *to, strip s)
         *(row_vec *)(to + i * WIDTH) = s.part[i];
 }
 
-/* The first `count` rows; the others are 0 and are not read. */
+/* Returns the first `count` rows at `from`. The other rows are 0, and their memory is not read. */
 INLINE strip load_first(const double *from, int count)
 {
     if (count >= ROWS) return load(from);
@@ -72,7 +77,7 @@ INLINE strip load_first(const double *from, int count)
 #endif
 }
 
-/* Rows begin to end - 1 alone. */
+/* Stores only rows begin to end - 1. */
 INLINE void store_some(double *to, strip s, int begin, int end)
 {
 #if defined __AVX512F__
@@ -107,7 +112,7 @@ INLINE void multiply(strip *s, double by)
         s->part[i] *= by;
 }
 
-/* In the same order for all widths. */
+/* Returns the sum of the rows, added in the same order for all vector widths. */
 INLINE double sum(strip s)
 {
     double row[ROWS];
@@ -118,17 +123,17 @@ INLINE double sum(strip s)
 /* ---- factor ---- */
 
 #if defined __AVX512F__
-enum { STRIPS = 2 }; /* side by side */
+enum { STRIPS = 2 }; /* strips that are processed together */
 #else
 enum { STRIPS = 1 };
 #endif
 
-/* What one step on a block works with: columns j to j + n_column - 1 of a matrix of n rows. */
+/* One step: a block of columns j to j + n_column - 1 of a matrix of n rows. */
 typedef struct {
     double *band;
     ptrdiff_t k; /* half-bandwidth */
     int n, j, n_column;
-    double inverse[COLUMNS]; /* of the pivots */
+    double inverse[COLUMNS]; /* [n_column], reciprocals of the pivots */
 } block;
 
 INLINE double *place(const block *b, int row, int column)
@@ -136,16 +141,17 @@ INLINE double *place(const block *b, int row, int column)
     return b->band + row + column * b->k;
 }
 
-/* How many entries of a column stand at this row and below; those below row n - 1 are never changed. */
+/* Returns the number of entries that a column has in this row and below. The caller never changes those below row
+ * n - 1. */
 INLINE int entries(const block *b, int row, int column)
 {
     return column + (int)b->k - row + 1;
 }
 
-/* t, rows `row` and on of the block, less the products of the columns `begin` to j - 1. */
+/* Subtracts the products of columns `begin` to j - 1 from t. t contains the strips from row `row` on of the block. */
 INLINE void eliminate(const block *b, int n_strip, int n_column, int row, int begin, strip t[][COLUMNS])
 {
-    int full = least(b->j, row + ROWS * n_strip - 1 - (int)b->k); /* columns before have not all of these rows */
+    int full = least(b->j, row + ROWS * n_strip - 1 - (int)b->k); /* columns before `full` lack some of these rows */
     for (int p = begin; p < full; p++)
         foreach (s, n_strip) {
             strip l = load_first(place(b, row + ROWS * s, p), entries(b, row + ROWS * s, p));
@@ -160,8 +166,8 @@ INLINE void eliminate(const block *b, int n_strip, int n_column, int row, int be
         }
 }
 
-/* Finish the rows `row` and on, ROWS * n_strip of them; they begin at the diagonal where row is j. 0, or 1 + the row
- * whose pivot is not positive. */
+/* Finishes ROWS * n_strip rows of the block, from row `row` on. If row is j, they begin at the diagonal. Returns 0, or
+ * 1 + the row whose pivot is not positive. */
 INLINE int finish_rows(block *b, int n_strip, int n_column, int row, int begin)
 {
     strip t[STRIPS][COLUMNS];
@@ -198,8 +204,8 @@ INLINE int finish_rows(block *b, int n_strip, int n_column, int row, int begin)
     return 0;
 }
 
-/* Sixteen rows at a time. All begin with the same column where they are worked on in two halves: a product with an
- * entry outside the band can change the sign of a zero. */
+/* Factors one block, sixteen rows at a time. If STRIPS is 1, both halves still begin with the same column, because a
+ * product with an entry outside the band can change the sign of a zero. So all instruction sets give the same bits. */
 INLINE int factor_block(block *b, int n_column)
 {
     int last = least(b->j + n_column - 1 + (int)b->k, b->n - 1);
@@ -227,7 +233,7 @@ int HF_KERNEL(hf_band_factor)(int n, int half_bandwidth, double *band, int first
 
 /* ---- substitution ---- */
 
-/* Entry (j + d, j + c) of the block's triangle. */
+/* Returns entry (j + d, j + c) of the block's triangle. */
 INLINE double in_block(const block *b, int d, int c)
 {
     return d - c > b->k ? 0 : *place(b, b->j + d, b->j + c);
@@ -304,7 +310,7 @@ INLINE void back_solve(int n, int half_bandwidth, int n_rhs, double *factor, dou
 
 void HF_KERNEL(hf_band_back_solve)(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb)
 {
-    double *f = (double *)factor; /* which is only read */
+    double *f = (double *)factor; /* only read */
     for (; n_rhs >= 3; n_rhs -= 3, b += 3 * (ptrdiff_t)ldb)
         back_solve(n, half_bandwidth, 3, f, b, ldb);
     if (n_rhs == 2) back_solve(n, half_bandwidth, 2, f, b, ldb);
@@ -313,7 +319,7 @@ void HF_KERNEL(hf_band_back_solve)(int n, int half_bandwidth, int n_rhs, const d
 
 /* ---- products of rows ---- */
 
-/* The products of n_row rows from `row` on with n_column rows from `column` on. */
+/* Computes the inner products of n_row rows from `row` on with n_column rows from `column` on. */
 INLINE void gram_tile(int n_row, int n_column, int n, const double *row, const double *column, ptrdiff_t ld,
                       double *gram, ptrdiff_t ldg)
 {
@@ -336,7 +342,8 @@ INLINE void gram_tile(int n_row, int n_column, int n, const double *row, const d
             gram[r * ldg + c] = -sum(t[r][c]);
 }
 
-/* The few rows that a caller asks for at a time stay near while all others pass by once. */
+/* Computes the requested rows tile by tile. The few requested rows stay in the cache while all earlier rows
+ * are read once. */
 void HF_KERNEL(hf_band_gram)(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg)
 {
     for (int j = 0; j < end; j += COLUMNS)

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* y -= x a */
+/* Computes y -= x a. */
 static void subtract(int n, double x, const double *a, double *y)
 {
     for (int i = 0; i < n; i++)

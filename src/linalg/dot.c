@@ -10,7 +10,7 @@ double hf_dot(size_t n, const double *a, const double *b)
     return sum;
 }
 
-/* Many sums side by side: each alone waits for one addition after the other. */
+/* Computes eight sums at the same time, because each addition to a single sum waits for the one before. */
 void hf_dots(size_t n_row, size_t n, const double *restrict a, size_t lda, const double *restrict b,
              double *restrict dot)
 {

@@ -1,4 +1,4 @@
-/* dot - the inner product of two vectors, summed in the order of their entries. */
+/* dot - inner products of vectors, summed in the order of the entries. */
 #ifndef HIFDM_DOT_H
 #define HIFDM_DOT_H
 
@@ -6,7 +6,7 @@
 
 double hf_dot(size_t n, const double *a, const double *b);
 
-/* dot [n_row]: the same of each row of a [n_row][lda] with b [n], and the same bits. */
+/* Computes dot [n_row]: the inner product of each row of a [n_row][lda] with b [n], with the bits of hf_dot. */
 void hf_dots(size_t n_row, size_t n, const double *a, size_t lda, const double *b, double *dot);
 
 #endif

@@ -1,5 +1,5 @@
 #define _GNU_SOURCE /* dladdr, MAP_ANONYMOUS, RTLD_DEFAULT */
-/* Contents: the library - room for it - loading - calls - its name */
+/* Contents: the library - address space - loading - calls - name of the library */
 #include "linalg/lapack.h"
 
 #include <assert.h>
@@ -13,9 +13,9 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 
-/* OpenBLAS maps a buffer of 128 MB for each thread that is in it at the same time. It does so as late as in a call, and
+/* OpenBLAS maps a buffer of 128 MB for each thread that calls it at the same time. It does so as late as in a call, and
  * repeats a refused request without end. Measured with Debian's OpenBLAS 0.3.21: 47 MB for the library, one buffer when
- * its OpenMP build is loaded, and one in the first call of each build. */
+ * its OpenMP build is loaded, and one buffer in the first call of each build. */
 #define ROOM_MB 320
 
 /* ---- the library ---- */
@@ -25,14 +25,15 @@ enum { N_CANDIDATE = sizeof candidate / sizeof *candidate };
 
 static pthread_mutex_t loading = PTHREAD_MUTEX_INITIALIZER, turn = PTHREAD_MUTEX_INITIALIZER;
 static atomic_bool is_loaded;
-/* Written before is_loaded is set, and never again. */
+/* These variables are written before is_loaded is set, and never again. */
 static hf_lapack_routines routines;
 static void *library;
 static bool takes_turns;
 static char name_of_library[PATH_MAX + 256];
 
-/* Of OpenBLAS, else NULL. openblas_get_parallel returns BY_OPENMP for a build whose number of threads is that of the
- * OpenMP library, and SEQUENTIAL for one whose buffers only some builds protect from callers in several threads. */
+/* Functions of OpenBLAS; NULL for another library. openblas_get_parallel returns BY_OPENMP for a build that uses the
+ * threads of the OpenMP library. It returns SEQUENTIAL for a build without threads. Only some of those builds protect
+ * their buffers when several threads call them. */
 enum { SEQUENTIAL = 0, BY_OPENMP = 2 };
 static struct {
     void (*set_num_threads)(int n);
@@ -45,7 +46,8 @@ static struct {
     void (*set_num_threads)(int n);
 } openmp;
 
-/* A pointer to an object becomes one to a function as POSIX has it. */
+/* Looks up a symbol and returns whether it exists. memcpy converts the object pointer to a function pointer,
+ * as POSIX requires. */
 static bool find_in(void *where, const char *name, void *function)
 {
     void *symbol = dlsym(where, name);
@@ -60,9 +62,10 @@ static bool find_routines(void *where, hf_lapack_routines *found)
 #undef FIND
 }
 
-/* ---- room for it ---- */
+/* ---- address space ---- */
 
-/* With vm.overcommit_memory=2 the system promises no more memory than it has. */
+/* Returns true if the address space is limited. With vm.overcommit_memory=2 the system promises no more memory
+ * than it has. */
 static bool is_limited(void)
 {
     FILE *file = fopen("/proc/sys/vm/overcommit_memory", "r");
@@ -83,7 +86,7 @@ static bool has_room(void)
     return true;
 }
 
-/* A first solution, by which OpenBLAS maps the buffer that all later calls use, one after the other. */
+/* Solves a small system once. OpenBLAS then maps the buffer that all later calls use in turn. */
 static void warm_up(void)
 {
     enum { N = 4, K = 1, LDAB = 3 * K + 1 };
@@ -99,7 +102,7 @@ static void warm_up(void)
 
 /* ---- loading ---- */
 
-/* Variables that OpenBLAS reads while it is loaded. They get their values back: they are the user's. */
+/* Variables that OpenBLAS reads while it is loaded. They belong to the user and get their values back afterwards. */
 static const char *const variable[] = {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"};
 enum { N_VARIABLE = sizeof variable / sizeof *variable };
 
@@ -111,7 +114,7 @@ static void open_library(char *reasons, size_t size)
     for (int i = 0; i < N_VARIABLE; i++) {
         const char *value = getenv(variable[i]);
         old[i] = value ? strdup(value) : NULL;
-        if (!value || old[i]) setenv(variable[i], "1", 1); /* without memory the user's value stays */
+        if (!value || old[i]) setenv(variable[i], "1", 1); /* if strdup fails, the user's value stays */
         is_set[i] = !value || old[i];
     }
     for (int i = 0; i < N_CANDIDATE && !library; i++) {
@@ -158,7 +161,7 @@ static hf_status load(hf_messages *messages)
         return hf_error(messages, HF_NO_MEMORY,
                         "LAPACK needs %d MB of address space, and the limit leaves less: raise it (ulimit -v, -d)",
                         ROOM_MB);
-    /* The OpenMP library of this process, if it reads the environment late, reads it now. */
+    /* an OpenMP library of this process that reads the environment late must read it before it is changed */
     if (find_in(RTLD_DEFAULT, "omp_get_max_threads", &openmp.get_max_threads)) openmp.get_max_threads();
     open_library(reasons, sizeof reasons);
     if (!library)
@@ -222,7 +225,7 @@ void (*hf_lapack_find(const char *name))(void)
     return routine;
 }
 
-/* ---- its name ---- */
+/* ---- name of the library ---- */
 
 const char *hf_lapack_library(void)
 {

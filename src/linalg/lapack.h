@@ -1,13 +1,14 @@
-/* lapack - LAPACK and its BLAS, loaded when they are first needed.
+/* lapack - LAPACK and its BLAS, loaded at run time when they are first needed.
  *
  * Programs that use this library do not link LAPACK. A command that factors nothing loads neither LAPACK nor its BLAS.
- * Any shared library with the routines below serves. */
+ * Any shared library with the routines below can be used. */
 #ifndef HIFDM_LAPACK_H
 #define HIFDM_LAPACK_H
 
 #include <hifdm/status.h>
 
-/* The Fortran interface. The hidden lengths of one-character arguments are never read. */
+/* The Fortran interface. The hidden lengths of one-character arguments are omitted, because the routines
+ * never read them. */
 #define HF_LAPACK_ROUTINES(X)                                                                                          \
     X(double, dlansb, const char *norm, const char *uplo, const int *n, const int *k, const double *ab,                \
       const int *ldab, double *work)                                                                                   \
@@ -28,24 +29,26 @@ typedef struct {
 #undef HF_LAPACK_MEMBER
 } hf_lapack_routines;
 
-/* Loads LAPACK unless it is loaded. Any thread may call it. While it loads LAPACK, OPENBLAS_NUM_THREADS and
- * OMP_NUM_THREADS are set to 1 in the environment, so no other thread may call getenv during that time. Returns
- * HF_OK; HF_NO_LAPACK when no library is found; HF_NO_MEMORY when the address space is limited and too small. messages:
- * NULL, or where an error says what to do. */
+/* Loads LAPACK unless it is loaded. Any thread may call it. While LAPACK is loaded, OPENBLAS_NUM_THREADS and
+ * OMP_NUM_THREADS are 1 in the environment, so no other thread may call getenv during that time. Returns HF_OK. Returns
+ * HF_NO_LAPACK if no library is found, and HF_NO_MEMORY if a limit of the address space is too low. `messages` may be
+ * NULL; otherwise it gets an error that says what to do. */
 hf_status hf_lapack_load(hf_messages *messages);
 
-/* Returns the routines; hf_lapack_load must have returned HF_OK. Calls of them stand between hf_lapack_begin and
- * hf_lapack_end, which gets what the former returned. In between, LAPACK uses one thread. If the address space is
- * limited, or if OpenBLAS is a sequential build that may not be thread-safe, one caller at a time is let in. */
+/* hf_lapack returns the routines; hf_lapack_load must have returned HF_OK. Each call of a routine is enclosed by
+ * hf_lapack_begin and hf_lapack_end, which gets the value that hf_lapack_begin returned. In between, LAPACK uses one
+ * thread. One caller at a time passes hf_lapack_begin if the address space is limited, or if OpenBLAS is a sequential
+ * build, which may not be thread-safe. */
 const hf_lapack_routines *hf_lapack(void);
 int hf_lapack_begin(void);
 void hf_lapack_end(int n_thread);
 
-/* Returns another routine of the library, "dgetrf_", or NULL. For tests and benchmarks. */
+/* Returns another routine of the library by its name, such as "dgetrf_", or NULL. It is used by
+ * tests and benchmarks. */
 void (*hf_lapack_find(const char *name))(void);
 
-/* Returns the file of the loaded library and, of OpenBLAS, its configuration and the kernel it has chosen; "not loaded"
- * before. For the provenance. */
+/* Returns the path of the loaded library, or "not loaded". For OpenBLAS the text also contains its configuration and
+ * the kernel that it chose. Results store this text as provenance. */
 const char *hf_lapack_library(void);
 
 #endif

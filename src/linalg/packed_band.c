@@ -1,4 +1,9 @@
-/* Contents: the matrix - packing - solving */
+/* Packs a band factor and solves with it:
+ *
+ *     L of hf_band_factor -> pack: divide by the diagonal, copy into blocks, find the skyline -> packed factor
+ *     b [n_rhs][ldb] -> eight columns at a time into lanes -> kernel: forward, backward -> back into b
+ *
+ * Contents: the matrix - packing - solving */
 #include "linalg/packed_band.h"
 
 #include <stdbool.h>
@@ -56,7 +61,7 @@ static void pack_entries(hf_packed_band *b, const double *factor)
         }
 }
 
-/* Is any entry beside each other not zero? */
+/* Returns true if any entry of one packed row or column of a block is not zero. */
 static bool has_entry(const double *packed)
 {
     for (int r = 0; r < HF_PACKED_ROWS; r++)

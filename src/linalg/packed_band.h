@@ -1,10 +1,11 @@
-/* packed_band - the Cholesky factor of a band matrix, packed for triangular solves of eight right-hand sides at a time.
+/* packed_band - the Cholesky factor of a band matrix, packed for triangular solves with eight right-hand sides at a
+ * time.
  *
- * The factor is packed by blocks of HF_PACKED_ROWS rows, in the order in which the kernels read it. `row` has for each
- * block the columns from `width` before its first row to its last row; `column` has the rows from its first to `width`
- * after its last. The entries of the block's rows (columns) stand beside each other, zeros where the band ends. Each is
- * divided by the diagonal entry of its row (column). A row that begins as right-hand side / diagonal is then finished
- * by its last product. */
+ * The factor is packed in blocks of HF_PACKED_ROWS rows, in the order in which the kernels read it. For each block,
+ * `row` contains the columns from `width` before its first row to its last row. `column` contains the rows from its
+ * first row to `width` after its last row. The entries of the rows (columns) of a block are adjacent, with zeros
+ * outside the band. Each entry is divided by the diagonal entry of its row (column). So a solve starts each row with
+ * right-hand side / diagonal, and the row is finished after its last product; no division follows. */
 #ifndef HIFDM_PACKED_BAND_H
 #define HIFDM_PACKED_BAND_H
 
@@ -14,30 +15,32 @@
 
 #include <stddef.h>
 
-#define HF_PACKED_ROWS 8 /* rows that are worked on at a time */
+#define HF_PACKED_ROWS 8 /* rows that are processed together */
 
 typedef struct hf_packed_band {
-    int n, n_block, width;       /* rows, their blocks, half-bandwidth */
-    double *row, *column;        /* [n_block][width + HF_PACKED_ROWS][HF_PACKED_ROWS] factor, forward and backward */
-    double *inverse_diagonal;    /* [n_block HF_PACKED_ROWS] */
-    int *row_begin;              /* [n_block] skyline: the first place in a block of `row` that is not all zero, */
-    int *column_end;             /* [n_block] and behind the last one of `column` */
+    int n, n_block, width;       /* rows, blocks of rows, half-bandwidth */
+    double *row, *column;        /* [n_block][width + HF_PACKED_ROWS][HF_PACKED_ROWS], for the forward and for
+                                    the backward solve */
+    double *inverse_diagonal;    /* [n_block HF_PACKED_ROWS], 0 from n on */
+    int *row_begin;              /* [n_block], skyline: columns of a block before this one are zero in `row` */
+    int *column_end;             /* [n_block], skyline: rows of a block from this one on are zero in `column` */
     hf_packed_band_solve *solve; /* the kernel for this machine */
 } hf_packed_band;
 
-/* Returns a matrix of n rows without memory: hf_packed_band_lay_out takes it from an arena, and it needs no other
- * freeing. */
+/* hf_packed_band_of returns a matrix of n rows without arrays. hf_packed_band_lay_out takes the arrays from an arena;
+ * they are freed with the arena. */
 hf_packed_band hf_packed_band_of(int n, int half_bandwidth);
 void hf_packed_band_lay_out(hf_arena *arena, hf_packed_band *band);
 
-/* Packs a factor [n][half_bandwidth + 1] as hf_band_factor leaves it (linalg/band.h). */
+/* Packs a factor [n][half_bandwidth + 1] that hf_band_factor has computed (linalg/band.h). */
 void hf_packed_band_pack(hf_packed_band *band, const double *factor);
 
-/* Returns the rows of `lanes` for the kernel and for hf_packed_band_back_solve: those of the matrix and zero rows. */
+/* Returns the number of rows of `lanes` that the kernel and hf_packed_band_back_solve need: the rows of the matrix and
+ * zero rows before and after. */
 size_t hf_packed_band_rows(const hf_packed_band *band);
 
 /* Solves in place for n_rhs right-hand sides, b [n_rhs][ldb] with ldb >= n. lanes [hf_packed_band_rows][HF_LANES] is
- * scratch of the calling thread whose first `width` rows are zero. */
+ * scratch of the calling thread. Its first `width` rows must be zero. */
 void hf_packed_band_back_solve(const hf_packed_band *band, double *lanes, int n_rhs, double *b, size_t ldb);
 
 #endif

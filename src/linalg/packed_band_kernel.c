@@ -1,11 +1,16 @@
-/* Both triangular solves take ROWS rows at a time, a block. The rows of a block share the loads of what is already
- * solved, and each row has one accumulator. Edges need no code of their own, because zero rows stand before and after
- * the right-hand sides:
+/* Triangular solves with a packed factor, compiled once for each instruction set:
+ *
+ *     lanes: right-hand sides -> forward solve, blocks in rising order -> backward solve, falling order -> solutions
+ *
+ * Both solves process a block of ROWS rows at a time. The rows of a block share the loads of the solved rows, and each
+ * row has one accumulator. The edges need no code of their own, because zero rows precede and follow the right-hand
+ * sides:
  *
  *     lanes   | width zero rows | n rows: right-hand sides, then solutions | width + ROWS rows |
  *
- * Up to ROWS - 1 rows after the last are computed without being used. The order of operations in a lane is always the
- * same, and products are fused with the sums that they go into (lane.h), so all instruction sets give the same bits. */
+ * Up to ROWS - 1 rows after the last row are computed but not used. The order of operations in a lane is
+ * always the same. Products are fused with the sums that they are added to (lane.h). So all instruction sets
+ * give the same bits. */
 #define HF_LANE_VECTORS
 #include "linalg/packed_band_kernel.h"
 
@@ -16,13 +21,14 @@
 
 enum { ROWS = HF_PACKED_ROWS };
 
-/* WIDTH lanes of a row, from lane p on. */
+/* Returns WIDTH lanes of a row, from lane p on. */
 INLINE vec *lanes_of(double *rows, ptrdiff_t row, int p)
 {
     return (vec *)(void *)(rows + row * HF_LANES + p);
 }
 
-/* s[r] less the products of row k of a packed block with what is solved there, from row `first` to row `last`. */
+/* Subtracts the product of the packed entries and `solved` from rows `first` to `last` of s. `packed` contains the
+ * entries of the block in the column (forward) or row (backward) of the solved row. */
 INLINE void eliminate(vec s[ROWS], const double *packed, int first, int last, vec solved)
 {
     foreach (r, ROWS)
@@ -49,7 +55,7 @@ INLINE void forward(const hf_packed_band *band, double *rows, int j, int p)
     }
 }
 
-/* The farthest rows come first. */
+/* Solves the block of rows from j on. The most distant solved rows are subtracted first. */
 INLINE void backward(const hf_packed_band *band, double *rows, int j, int p)
 {
     const double *packed = band->column + (ptrdiff_t)j * (band->width + ROWS);
@@ -64,7 +70,8 @@ INLINE void backward(const hf_packed_band *band, double *rows, int j, int p)
     }
 }
 
-/* Both halves of a block of rows before the next one, so that the matrix is read once. */
+/* Solves forward, then backward. All lanes of a block are processed before the next block, so that each solve reads the
+ * packed factor once. */
 void HF_KERNEL(hf_packed_band_solve)(const hf_packed_band *band, double *lanes)
 {
     double *rows = lanes + band->width * HF_LANES;

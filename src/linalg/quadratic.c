@@ -1,3 +1,15 @@
+/* Solves a quadratic programme by the dual method of Goldfarb and Idnani:
+ *
+ *     H, g, active bounds of the last solution
+ *       -> begin    factor H = L L'; minimum subject to these bounds; drop bounds with a negative multiplier
+ *       -> worst    the caller reports the limit that x violates most; if there is none, x is the solution
+ *       -> obey     move x until this limit holds; drop active limits whose multiplier becomes 0 on the way
+ *       -> worst    and so on
+ *
+ * J with J J' = H^-1 is scratch, and R is the triangle of the active normals in terms of J. Adding and dropping a limit
+ * updates both by Givens rotations.
+ *
+ * Contents: kernels - layout - matrices - the start */
 #include "linalg/quadratic.h"
 
 #include "base/arena.h"
@@ -9,10 +21,13 @@
 #include <math.h>
 #include <string.h>
 
-/* A limit whose normal is this near to a combination of the active ones (as a part of its square) adds nothing: an
- * active one must go first. No test fails from 1e-26 to 1e-14. */
+/* The normal of a limit counts as dependent on the active normals if the square of its independent part is a
+ * smaller share of its whole square than this. An active limit must then be dropped first. All tests pass with
+ * 1e-26 to 1e-14. */
 #define DEPENDENT 1e-20
-#define STEPS_PER_VARIABLE 50 /* of limits taken in or let go: 5 pass every test, 1 does not; against cycles */
+#define STEPS_PER_VARIABLE                                                                                             \
+    50 /* maximum number of steps that add or drop a limit, per variable; all tests pass with 5,
+                                 not with 1 */
 
 /* ---- kernels ---- */
 
@@ -71,10 +86,10 @@ void hf_quadratic_free(hf_quadratic *q)
 
 /* ---- matrices ---- */
 
-/* J = L^-T for L as a band whose columns begin with the diagonal, L L' being H in the order of `order`. Columns of
- * L^-1, rows of J, are made side by side in `strip`, by columns of L, so that the inner loop has no sum and L passes
- * once for as many. The columns of J are in reverse: row order[n-1] of J has one entry, in column 0, row order[n-2]
- * two, in columns 0 and 1, ... */
+/* Computes J = L^-T for L as a band whose columns begin with the diagonal. L L' is H in the order of `order`. Eight
+ * columns of L^-1, which are rows of J, are computed together in `strip`. The loop runs over the columns of L, so that
+ * it has no sum and reads L once for eight columns. The columns of J are in reverse order. So row order[n-1] of J has
+ * one entry, in column 0; row order[n-2] has two, in columns 0 and 1. */
 static void invert_transposed(hf_quadratic *q)
 {
     int n = q->n;
@@ -90,11 +105,11 @@ static void invert_transposed(hf_quadratic *q)
     }
 }
 
-/* Factor H = L L' in the order of `order`. */
+/* Factors H = L L' in the order of `order`. Returns HF_OK or HF_SINGULAR. */
 static hf_status factor(hf_quadratic *q, const double *hessian)
 {
     int n = q->n;
-    double *L = q->triangle; /* which is needed as soon as a limit is active */
+    double *L = q->triangle; /* the array is free until a limit is active */
     for (int c = 0; c < n; c++) {
         int j = q->order[c];
         for (int r = c; r < n; r++) {
@@ -106,7 +121,7 @@ static hf_status factor(hf_quadratic *q, const double *hessian)
     return hf_band_factor(n, n - 1, L) == 0 ? HF_OK : HF_SINGULAR;
 }
 
-/* Turn columns a and b of J so that the pair (*f, *g), rows a and b of a column of R, becomes (length, 0). */
+/* Computes the Givens rotation that turns the pair (*f, *g) into (length, 0), and applies it to the pair. */
 static void rotate(double *f, double *g, double *cosine, double *sine)
 {
     double length = sqrt(*f * *f + *g * *g);
@@ -116,7 +131,7 @@ static void rotate(double *f, double *g, double *cosine, double *sine)
     *g = 0;
 }
 
-/* Take in a limit whose normal is d = J' normal in terms of J. */
+/* Adds a limit to the active ones. d = J' normal. */
 static void take_in(hf_quadratic *q, double *d, hf_quadratic_active limit)
 {
     int m = q->n_active, n = q->n;
@@ -128,7 +143,7 @@ static void take_in(hf_quadratic *q, double *d, hf_quadratic_active limit)
     q->active[q->n_active++] = limit;
 }
 
-/* Let the active limit k go: R without column k is made triangular again. */
+/* Removes active limit k. Rotations make R without its column k triangular again. */
 static void let_go(hf_quadratic *q, int k)
 {
     int n = q->n;
@@ -149,7 +164,7 @@ static void let_go(hf_quadratic *q, int k)
     }
 }
 
-/* d = J' normal. */
+/* Computes d = J' normal. */
 static void find_share(const hf_quadratic *q, const hf_quadratic_limit *limit, double *d)
 {
     for (int j = 0; j < q->n && limit->only >= 0; j++)
@@ -157,13 +172,14 @@ static void find_share(const hf_quadratic *q, const hf_quadratic_limit *limit, d
     if (limit->only < 0) hf_dots((size_t)q->n, (size_t)q->n, q->inverse, (size_t)q->ld, limit->normal, d);
 }
 
-/* z = the columns of J from the m-th on, times d. */
+/* Computes z, the sum of the columns of J from column m on, weighted with d. */
 static void find_direction(const hf_quadratic *q, int m, const double *d, double *z)
 {
     loops_here()->combine(q->ld, m, q->n, d, q->inverse, z);
 }
 
-/* Move until `limit` holds, letting active limits go whose multipliers would become negative. */
+/* Moves x until `limit` holds with equality, and adds it to the active limits. An active limit whose multiplier would
+ * become negative is removed first. Returns HF_DIFFERENT if no step is possible or no steps are left. */
 static hf_status obey(hf_quadratic *q, const hf_quadratic_limit *limit, int *steps_left)
 {
     int n = q->n;
@@ -206,7 +222,8 @@ static hf_status obey(hf_quadratic *q, const hf_quadratic_limit *limit, int *ste
 
 /* ---- the start ---- */
 
-/* Put the variables whose bounds held the last answer at the end of the order, and take these bounds as active. */
+/* Makes the bounds that were active in the last solution active again, and puts their variables at the end
+ * of the order. */
 static void guess(hf_quadratic *q, const double *low, const double *high)
 {
     int n = q->n, n_free = 0;
@@ -222,8 +239,9 @@ static void guess(hf_quadratic *q, const double *low, const double *high)
     }
 }
 
-/* The least under the active limits as equations: x = J (y, -J2' g) with R' y = their bounds, and the multipliers
- * R^-1 (J1' g + y). Returns the most negative multiplier's limit; -1: there is none. */
+/* Computes the minimum with the active limits as equations: x = J (y, -J2' g) with R' y = their bounds. The multipliers
+ * are R^-1 (J1' g + y). J1 is the first n_active columns of J, J2 the others. Returns the index of the active limit
+ * with the most negative multiplier, or -1 if none is negative. */
 static int hold(hf_quadratic *q, const double *gradient)
 {
     int n = q->n, m = q->n_active, worst = -1;
@@ -245,9 +263,10 @@ static int hold(hf_quadratic *q, const double *gradient)
     return worst;
 }
 
-/* Begin at the least under the bounds that held the last answer, without those that now pull the wrong way: what is
- * left is the answer to a part of the limits, as each point on the way is. Without such bounds that is the free minimum
- * x = -H^-1 g, and J is made when the first limit is broken. */
+/* Begins at the minimum subject to the bounds that were active in the last solution. Bounds with a negative
+ * multiplier are removed. The remaining x solves the programme with a part of the limits, as the dual method requires
+ * of every step. If no bound was active, this is the unconstrained minimum x = -H^-1 g, and J is computed when the
+ * first limit is violated. */
 static hf_status begin(hf_quadratic *q, const double *hessian, const double *gradient, const double *low,
                        const double *high, bool *has_inverse)
 {

@@ -1,60 +1,63 @@
-/* quadratic - a strictly convex quadratic programme in a few hundred variables: the least of x'Hx/2 + g'x under linear
- * limits a'x >= b, by the dual method of Goldfarb and Idnani (Math. Program. 27, 1983): it starts at the free minimum
- * and takes in one violated limit after the other, so a caller names the worst limit instead of listing all. */
+/* quadratic - strictly convex quadratic programmes with a few hundred variables: the minimum of x'Hx/2 + g'x subject to
+ * limits a'x >= b. The method is the dual method of Goldfarb and Idnani (Math. Program. 27, 1983). It starts at the
+ * unconstrained minimum and adds one violated limit after the other. So the caller only has to find the limit that is
+ * violated most; no list of all limits is needed. */
 #ifndef HIFDM_QUADRATIC_H
 #define HIFDM_QUADRATIC_H
 
 #include <hifdm/status.h>
 #include <stdbool.h>
 
-/* One limit, normal' x >= bound. `kind` is the caller's. */
+/* One limit, normal' x >= bound. `kind` belongs to the caller. */
 typedef struct {
     double *normal; /* [n] */
-    int only;       /* its only entry that is not zero, as of a bound of a variable; -1: not known */
+    int only;       /* index of its only nonzero entry (a bound of a variable); -1: not known */
     double bound;
     int kind;
 } hf_quadratic_limit;
 
-/* A limit that holds with equality. */
+/* An active limit: it holds with equality. */
 typedef struct {
-    int kind;          /* 0 of bounds that held the answer before */
-    int only;          /* of its normal; -1: not known */
-    double sign;       /* that entry, 1 or -1 of a bound of a variable */
-    double bound;      /* normal' x */
-    double multiplier; /* > 0 */
+    int kind;          /* kind of the limit; 0 for bounds taken from the last solution */
+    int only;          /* as in hf_quadratic_limit */
+    double sign;       /* nonzero entry of the normal if only >= 0; 1 or -1 for a bound */
+    double bound;      /* value of normal' x */
+    double multiplier; /* never negative at a solution */
 } hf_quadratic_active;
 
-/* Write the limit that x violates most into *limit, whose `normal` is n zeros and `only` -1 on entry; false when x
- * violates none beyond rounding. */
+/* Writes the limit that x violates most into *limit and returns true. Returns false if x violates no limit beyond
+ * rounding. On entry limit->normal is n zeros, and limit->only is -1. */
 typedef bool hf_quadratic_worst(void *context, const double *x, hf_quadratic_limit *limit);
 
 typedef struct {
-    int n, ld;                   /* ld: n, and as many more as make whole vectors */
-    double *inverse;             /* [n][ld] scratch: columns J, with J J' = H^-1; 0 from n on */
-    double *triangle;            /* [n][n] scratch: R, the active normals in terms of J */
-    double *x;                   /* [ld] the answer; 0 from n on */
+    int n, ld;                   /* ld: n rounded up to whole vectors */
+    double *inverse;             /* [n][ld], scratch: columns of J, with J J' = H^-1; 0 from row n on */
+    double *triangle;            /* [n][n], scratch: the factor of H, then R, the active normals in terms of J */
+    double *x;                   /* [ld], the solution; 0 from n on */
     int n_active;                /* limits that hold with equality */
-    hf_quadratic_active *active; /* [n] */
-    int *side;                   /* [n] the bound of each variable that held the last answer: 1 low, -1 high, 0 none */
-    int *order;                  /* [n] of the variables in the factor: those held from the start are last */
+    hf_quadratic_active *active; /* [n], the first n_active are in use */
+    int *side;                   /* [n], active bound of each variable in the last solution: 1 lower, -1
+                                    upper, 0 none */
+    int *order;                  /* [n], order of the variables in the factor; those at a bound at the start are last */
     double *scratch;             /* [6 ld] */
-    double *strip;               /* [n][HF_LANES] scratch: columns that are worked on side by side */
+    double *strip;               /* [n][HF_LANES], scratch: columns of L^-1 that are computed together */
     void *block;
 } hf_quadratic;
 
-/* HF_OK or HF_NO_MEMORY; free in either case. */
+/* Allocates the arrays for n variables. Returns HF_OK or HF_NO_MEMORY. Call hf_quadratic_free in either case. */
 hf_status hf_quadratic_create(int n, hf_quadratic *quadratic);
 void hf_quadratic_free(hf_quadratic *quadratic);
 
-/* hessian [n][n]: its lower triangle by rows is read. low, high [n]: bounds of x, which `worst` names like any other
- * limit, of kind 0; those that held the last answer are where this one begins, so that a programme much like the last
- * one takes few steps. HF_OK; HF_SINGULAR when the hessian is not positive definite; HF_DIFFERENT when no x obeys all
- * limits. */
+/* Solves a programme. hessian [n][n]: the lower triangle is read, by rows. gradient [n]. low, high [n]: bounds of x.
+ * `worst` must report these bounds like any other limit, with kind 0. The bounds that were active in the last solution
+ * are active at the start, so that a similar programme takes few steps. The solution is quadratic->x. Returns HF_OK.
+ * Returns HF_SINGULAR if the hessian is not positive definite. Returns HF_DIFFERENT if no x satisfies all limits, or if
+ * the maximum number of steps is reached. */
 hf_status hf_quadratic_solve(hf_quadratic *quadratic, const double *hessian, const double *gradient, const double *low,
                              const double *high, hf_quadratic_worst *worst, void *context);
 
-/* sum [ld] = weight[0] column 0 + weight[1] column 1 + ... of J [n][ld], added up in this order; ld: a multiple of
- * HF_LANES. */
+/* Computes sum [ld] = weight[0] column 0 + weight[1] column 1 + ... of J [n][ld], added in this order. ld must be a
+ * multiple of HF_LANES. */
 void hf_quadratic_combine(int ld, int n, const double *weight, const double *J, double *sum);
 
 #endif

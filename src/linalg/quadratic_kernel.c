@@ -1,4 +1,8 @@
-/* The kernels of quadratic, compiled once for each instruction set. */
+/* The kernels of quadratic, compiled once for each instruction set.
+ *
+ *     invert    triangle L, columns of the unit matrix in strip -> four columns of L per pass -> columns of L^-1
+ *     turn      columns of J, cosines and sines -> Givens rotations of neighbouring columns -> J, in place
+ *     combine   columns of J, weights -> weighted sum of the columns */
 #define HF_LANE_EIGHT
 #include "linalg/quadratic_kernel.h"
 
@@ -6,14 +10,14 @@
 
 #include <stddef.h>
 
-enum { COLUMNS = 4, BLOCKS = 4 }; /* of L, whose entries pass once for all of them; of eight rows, side by side */
+enum { COLUMNS = 4, BLOCKS = 4 }; /* columns of L per pass over strip; blocks of eight rows processed together */
 
 /* ---- the inverse of a triangle ---- */
 
-/* Finish rows k and on, n_column of them, and take them off the rows below. */
+/* Finishes rows k to k + n_column - 1 of strip, and subtracts their products from the rows below. */
 INLINE void pass_columns(int n, int k, int n_column, const double *triangle, double *strip)
 {
-    const double *l[COLUMNS]; /* entry (i, k + c) is l[c][i] */
+    const double *l[COLUMNS]; /* entry (i, k + c) of L is l[c][i] */
     lanes x[COLUMNS];
     for (int c = 0; c < n_column; c++) {
         l[c] = triangle + (ptrdiff_t)(k + c) * n - (k + c);
@@ -42,7 +46,8 @@ void HF_KERNEL(hf_quadratic_invert)(int n, int first, const double *triangle, do
 
 /* ---- columns ---- */
 
-/* Column i + 1 stays in registers while it becomes the first of the next pair. */
+/* Rotates the columns in n_block blocks of eight rows. Column i stays in registers and becomes column i + 1 of
+ * the next pair. */
 INLINE void turn_rows(int n_block, int ld, int first, int last, const double *cosine, const double *sine, double *J)
 {
     lanes v[BLOCKS];

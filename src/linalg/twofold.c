@@ -12,7 +12,7 @@ hf_twofold hf_twofold_divide(hf_twofold a, hf_twofold b)
     return hf_twofold_sum_ordered(first, rest / b.hi);
 }
 
-/* One step of Newton's method from the root of the leading part. */
+/* Does one Newton step from the root of the leading part. */
 hf_twofold hf_twofold_root(hf_twofold a)
 {
     if (!(a.hi > 0)) return (hf_twofold){0, 0};

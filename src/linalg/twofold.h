@@ -1,34 +1,34 @@
 /* twofold - numbers of twice the precision: the unevaluated sum of two doubles, about 106 bits.
  *
- * The algorithms are those of Dekker (Numer. Math. 18, 1971), of Joldes, Muller, Popescu (ACM Trans. Math. Softw. 44,
- * 2017), and for the root of Lefevre, Louvet, Muller, Picot, Rideau (ACM Trans. Math. Softw. 49, 2023), who prove the
- * errors that stand below, relative to the result, with u = 2^-53 and without overflow or underflow. Products are
- * split, not fused, so that the bits are the same on every processor. */
+ * The algorithms are those of Dekker (Numer. Math. 18, 1971) and of Joldes, Muller, Popescu (ACM Trans. Math. Softw.
+ * 44, 2017). The root is that of Lefevre, Louvet, Muller, Picot, Rideau (ACM Trans. Math. Softw. 49, 2023). They prove
+ * the error bounds stated below. The bounds are relative to the result, with u = 2^-53, and hold without overflow and
+ * underflow. Products are split, not fused, so that the bits are the same on every processor. */
 #ifndef HIFDM_TWOFOLD_H
 #define HIFDM_TWOFOLD_H
 
 typedef struct {
-    double hi, lo; /* hi is the sum rounded to double */
+    double hi, lo; /* hi is hi + lo rounded to double */
 } hf_twofold;
 
-/* u^2: the unit of the errors below. */
+/* The unit of the error bounds below, u^2. */
 #define HF_TWOFOLD_UNIT 0x1p-106
 
-/* a + b, exactly. */
+/* Returns a + b, exact. */
 static inline hf_twofold hf_twofold_sum(double a, double b)
 {
     double s = a + b, part = s - a;
     return (hf_twofold){s, (a - (s - part)) + (b - part)};
 }
 
-/* The same for |a| >= |b|. */
+/* Returns a + b, exact for |a| >= |b|. */
 static inline hf_twofold hf_twofold_sum_ordered(double a, double b)
 {
     double s = a + b;
     return (hf_twofold){s, b - (s - a)};
 }
 
-/* a b, exactly. */
+/* Returns a b, exact. */
 static inline hf_twofold hf_twofold_product(double a, double b)
 {
     double ca = 134217729.0 * a, cb = 134217729.0 * b; /* 2^27 + 1 */
@@ -46,7 +46,7 @@ static inline hf_twofold hf_twofold_minus(hf_twofold a)
     return (hf_twofold){-a.hi, -a.lo};
 }
 
-/* a + b; error below 3 u^2 + 13 u^3, whatever the signs. */
+/* Returns a + b. The error is below 3 u^2 + 13 u^3 for any signs. */
 static inline hf_twofold hf_twofold_add(hf_twofold a, hf_twofold b)
 {
     hf_twofold s = hf_twofold_sum(a.hi, b.hi), t = hf_twofold_sum(a.lo, b.lo);
@@ -64,17 +64,17 @@ static inline hf_twofold hf_twofold_subtract(hf_twofold a, hf_twofold b)
     return hf_twofold_add(a, hf_twofold_minus(b));
 }
 
-/* a b; error below 7 u^2. */
+/* Returns a b. The error is below 7 u^2. */
 static inline hf_twofold hf_twofold_multiply(hf_twofold a, hf_twofold b)
 {
     hf_twofold p = hf_twofold_product(a.hi, b.hi);
     return hf_twofold_sum_ordered(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
 }
 
-/* a / b; error below 16 u^2. */
+/* Returns a / b. The error is below 16 u^2. */
 hf_twofold hf_twofold_divide(hf_twofold a, hf_twofold b);
 
-/* Root of a >= 0; error below 4 u^2. */
+/* Returns the square root of a >= 0, and 0 for other a. The error is below 4 u^2. */
 hf_twofold hf_twofold_root(hf_twofold a);
 
 #endif
