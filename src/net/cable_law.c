@@ -1,4 +1,5 @@
-/* The words of the laws, and what a user may ask of them. The other functions of the laws are inline in the header. */
+/* Words of the cable laws, and checks of the values that a user gives for them. The other functions of the laws are
+ * inline in the header. */
 #include <hifdm/cable_law.h>
 
 #include <stddef.h>
@@ -11,7 +12,9 @@ const char *const hf_law_word[HF_N_LAW] = {HF_LAW_LIST(WORD)};
 const char *const hf_law_target_name[HF_N_LAW] = {HF_LAW_LIST(TARGET)};
 const char *const hf_law_target_unit[HF_N_LAW] = {HF_LAW_LIST(UNIT)};
 
-#define LENGTH_RATIO_MIN 1e-12 /* of an elastic cable, unstressed to theoretical: a tension of 1e12 EA says nothing */
+#define LENGTH_RATIO_MIN                                                                                               \
+    1e-12 /* minimum ratio of unstressed length to length at the target positions; below it the
+                                  tension would exceed 1e12 EA */
 
 const char *hf_law_target_fault(hf_law law, double target, double theoretical_m, char text[HF_LAW_FAULT_SIZE])
 {

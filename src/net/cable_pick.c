@@ -27,7 +27,7 @@ int hf_cable_pick(const hf_scene *s, const char *set, int *cable)
     return n;
 }
 
-/* The word nearest to `set` of those that hf_cable_pick knows, or NULL. */
+/* Returns the word nearest to `set` among those that hf_cable_pick accepts, or NULL. */
 static const char *nearest_set(const hf_scene *s, const char *set)
 {
     const char *known[] = {all_word, hf_group_word[HF_GROUP_INNER], hf_group_word[HF_GROUP_BOUNDARY]};
@@ -40,7 +40,7 @@ static const char *nearest_set(const hf_scene *s, const char *set)
     return pair[0];
 }
 
-/* ", front, rear", cut off with ", ..." where it is full. */
+/* Writes the names of all sets, such as ", front, rear". A list that is too long ends with ", ...". */
 static void list_sets(const hf_scene *s, char *text, size_t size)
 {
     size_t at = 0;

@@ -1,20 +1,20 @@
-/* cable_pick - the cables that a row of a case file names: a named set of the scene, or `inner`, `boundary`, `all`; and
- * those that lack an EA. */
+/* cable_pick - selects the cables that a row of a case file refers to (a named set of the scene, or `inner`,
+ * `boundary`, `all`), and checks that cables have an EA. */
 #ifndef HIFDM_CABLE_PICK_H
 #define HIFDM_CABLE_PICK_H
 
 #include <hifdm/cable_set.h>
 
-/* The cables of a set by its name; "" are all of them. Writes them, ascending, into `cable` [n_cable], which may be
- * NULL. Returns how many there are, or -1 when the scene has no such set. */
+/* Writes the cables of the set with this name, ascending, into `cable` [n_cable], which may be NULL. "" means all
+ * cables. Returns their number, or -1 if the scene has no such set. */
 int hf_cable_pick(const hf_scene *scene, const char *set, int *cable);
 
-/* The same where a row of the case needs a cable at least: else 0, and a message that begins with `where` and ": " and
- * names the sets there are. */
+/* Does the same for a row of a case that needs at least one cable. Returns the number of cables. If there are none,
+ * returns 0 with an error that begins with `where` and suggests a set or lists the sets of the net. */
 int hf_cable_pick_some(const hf_scene *scene, const char *set, const char *where, int *cable, hf_messages *messages);
 
-/* HF_BAD_CASE with a message for each group of cables without EA; it begins with `where` and says who needs it, such as
- * "cut lengths need", and what to do after it is given ("": nothing more). */
+/* Returns HF_BAD_CASE if cables have no EA, with one error for each group. The error begins with `where`. `who_needs`
+ * says what needs the EA, such as "cut lengths need"; `then` says what else to do, or is "". */
 hf_status hf_cable_demand_EA(const hf_scene *scene, const char *where, const char *who_needs, const char *then,
                              hf_messages *messages);
 

@@ -10,7 +10,7 @@ const char *hf_cable_set_name_fault(const char *name)
     static const char *const letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
     size_t n = strlen(name);
     if (name[strspn(name, letters)] || n == 0) return "must be made of letters, digits, _ and -";
-    if (*name == '-') return "must not begin with -"; /* spreadsheets run such cells */
+    if (*name == '-') return "must not begin with -"; /* a spreadsheet would take such a cell for a formula */
     if (n >= HF_CABLE_SET_NAME_SIZE) return "is longer than 63 letters";
     for (int g = 0; g < 2; g++)
         if (!strcmp(name, hf_group_word[g]))
@@ -43,7 +43,8 @@ hf_status hf_cable_set_make(hf_scene *scene, int n_set, const char *const *name,
 {
     int n_used = 0;
     if (n_member == 0) return HF_OK;
-    int *next = calloc((size_t)n_set, sizeof *next); /* first the size of a set, then where its next cable goes */
+    int *next = calloc((size_t)n_set, sizeof *next); /* [n_set]: at first the size of a set, later the index of
+                                                        its next cable */
     if (!next) return HF_NO_MEMORY;
     for (int k = 0; k < n_member; k++)
         next[member[k].set]++;

@@ -5,27 +5,27 @@
 #include <math.h>
 #include <stdio.h>
 
-#define FOUND 1e-10 /* step of Newton's method, over the length of the normal: the next one is below rounding */
+#define FOUND 1e-10 /* relative step at which Newton's method ends: the next step is below rounding */
 
 const char *const hf_tie_direction_word[3] = {"z", "normal", NULL};
 #define LAW_WORD(name, word, target, unit, flags) word,
 const char *const hf_tie_law_word[HF_N_LAW + 1] = {HF_LAW_LIST(LAW_WORD) NULL};
 #undef LAW_WORD
 
-/* ---- places ---- */
+/* ---- positions ---- */
 
 static double front_curvature(const hf_double_net *d)
 {
     return 1 / (4 * d->focal_length_m);
 }
 
-/* By how much the nets come nearer to each other per square of the distance from the rim, 1/m. */
+/* Returns how much the nets approach each other per square of the distance from the middle, 1/m. */
 static double nearing(const hf_double_net *d)
 {
     return front_curvature(d) + 1 / (4 * d->rear_focal_length_m);
 }
 
-/* z of the rear surface at x and y of this point, and its slopes. */
+/* Returns z of the rear surface at x and y of point p, m, and its slopes. */
 static double rear_height(const hf_double_net *d, const double p[3], double slope[2])
 {
     bool is_round = d->kind == HF_SURFACE_PARABOLOID;
@@ -74,7 +74,7 @@ bool hf_double_net_lacks_EA(const hf_double_net *d, const double EA_N[2])
 
 /* ---- cables ---- */
 
-/* The tie's target by its law, where its tension at the theoretical length is to be tension_N. */
+/* Returns the target value of a tie by its law. Its tension at length `length` is tension_N. */
 static double tie_target(const hf_double_net *d, double length, double EA_N)
 {
     switch (d->law) {

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define COLUMN_MAX 64
-#define NARROW_PART 1e-9 /* nodes that enclose this part of the square of their distance are in a line */
+#define NARROW_PART 1e-9 /* nodes are in a line if they enclose less than this share of their distance squared */
 
 enum { FACET_ID, FACET_A, FACET_D = FACET_A + 3, N_FACET_COLUMN };
 static const char *const facet_column[N_FACET_COLUMN] = {"id", "a", "b", "c", "d"};
@@ -23,7 +23,7 @@ double hf_facet_turn(const hf_scene *s, int a, int b, int c)
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
 
-/* What is wrong with the shape of n nodes; NULL: nothing. They are turned counter-clockwise. */
+/* Makes the n nodes of a facet go counter-clockwise. Returns what is wrong with their shape, or NULL. */
 static const char *fault_of_shape(const hf_scene *s, int n, int corner[4])
 {
     double area = 0, span = 0, least = INFINITY;
@@ -45,7 +45,7 @@ static const char *fault_of_shape(const hf_scene *s, int n, int corner[4])
                : "its nodes, in this order, do not go around a convex quadrilateral, seen along z";
 }
 
-/* Sets the corners of row r; those of a fault are 0. */
+/* Reads the corners of row r. If the row has a fault, they are all 0. */
 static void read_corners(hf_csv *t, const int *where, const hf_csv_named *node, hf_scene *s, int r)
 {
     const char *id = hf_csv_cell(t, r, where[FACET_ID]);
@@ -70,7 +70,8 @@ static void read_corners(hf_csv *t, const int *where, const hf_csv_named *node, 
 
 /* ---- sides ---- */
 
-/* Two nodes and what joins them: the side of a facet, with it on the left, or a cable, its lower node first. */
+/* Two nodes and the index of what joins them: the side of a facet, with the facet on its left, or a cable,
+ * lower node first. */
 typedef struct {
     int from, to, of;
 } side;
@@ -89,7 +90,7 @@ static int by_nodes_and_row(const void *a, const void *b)
     return order ? order : p->of < q->of ? -1 : p->of > q->of;
 }
 
-/* Each side is that of a cable or between supports, and of one facet on its left. */
+/* Checks that each side is a cable or lies between two supports, and that no other facet is on its left. */
 static void check_sides(hf_csv *t, const int *where, const hf_scene *s, side *of_cable, side *of_facet)
 {
     int n = 0;
@@ -102,7 +103,7 @@ static void check_sides(hf_csv *t, const int *where, const hf_scene *s, side *of
         for (int k = 0; k < 4; k++) {
             int i = s->facet[4 * r + k], j = s->facet[4 * r + (k + 1) % 4];
             side wanted = {i < j ? i : j, i < j ? j : i, 0};
-            if (i == j) continue; /* the fourth side of a triangle; all of a facet with a fault */
+            if (i == j) continue; /* the fourth side of a triangle, or any side of a facet with a fault */
             of_facet[n++] = (side){i, j, r};
             bool is_rim = s->role[i] == HF_ROLE_SUPPORT && s->role[j] == HF_ROLE_SUPPORT;
             if (is_rim || bsearch(&wanted, of_cable, (size_t)s->n_cable, sizeof *of_cable, by_nodes)) continue;

@@ -1,4 +1,13 @@
-/* Contents: the graph - faces - together */
+/* Finds the facets of a net as the faces of a plane graph:
+ *
+ *     scene, target surface -> choose_nodes: nodes on the surface
+ *       -> keep_named: if the scene has facets, those with a node on the surface
+ *       -> else drop_ends: remove nodes at the end of a single cable
+ *            -> collect: half edges, sorted around each node
+ *            -> find_faces: walk around each face; close_gaps adds faces at the rim
+ *       -> facets [n_facet][4]
+ *
+ * Contents: the graph - faces - together */
 #include <hifdm/facets.h>
 
 #include "base/arena.h"
@@ -11,29 +20,37 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define NEAR_PART 1e-3     /* supports and edge nodes nearer to the wanted surface, in parts of its depth, are on it */
-#define NEAR_SLOPE 0.1     /* and those whose cable to an inner node leaves the surface by this part of its length */
-#define STRAIGHT_ON 0.5    /* cosine of the turn below which two cables go on straight: a sag of 0.29 of the span */
-#define STRAIGHT_PART 1e-9 /* a corner that points inwards by this part of the area is straight but for rounding */
+#define NEAR_PART                                                                                                      \
+    1e-3 /* other nodes count as on the target surface if they are nearer to it than this share
+                              of its depth */
+#define NEAR_SLOPE                                                                                                     \
+    0.1 /* ... or if their cable to an inner node departs from the surface by less than this share
+                              of its length */
+#define STRAIGHT_ON                                                                                                    \
+    0.5 /* cosine of the maximum turn at which two cables continue each other; the sag is then 0.29
+                              of the span */
+#define STRAIGHT_PART                                                                                                  \
+    1e-9 /* a corner that points inwards by less than this share of the area counts as straight,
+                              because of rounding */
 
 /* ---- the graph ---- */
 
-/* A cable in one direction. Those of a node stand together, counter-clockwise by their direction. */
+/* A cable in one direction. Those of a node are adjacent, in counter-clockwise order of their directions. */
 typedef struct {
     int from, to;
     double dx, dy;
-    int twin, place; /* the other direction of the cable; the number in the order of the cables */
+    int twin, place; /* index of the other direction of the cable; index before sorting */
     int cable;
 } half;
 
 typedef struct {
     const hf_scene *scene;
-    double *above_m;      /* [n_node] heights above the wanted surface */
-    unsigned char *is_on; /* [n_node] of the graph */
-    int *degree, *mixed;  /* [n_node] of drop_ends */
-    int *first;           /* [n_node + 1] where the half edges from a node begin */
-    int *parent;          /* [n_node] of the classes of nodes that are joined */
-    int *sorted;          /* [n_half] where a half edge is after sorting */
+    double *above_m;      /* [n_node], height above the target surface */
+    unsigned char *is_on; /* [n_node], true for nodes of the graph */
+    int *degree, *mixed;  /* [n_node], used by drop_ends */
+    int *first;           /* [n_node + 1], first half edge of each node */
+    int *parent;          /* [n_node], classes of connected nodes (union-find) */
+    int *sorted;          /* [n_half], index of a half edge after sorting */
     half *edge;           /* [n_half] */
     unsigned char *seen;  /* [n_half] */
     int n_half;
@@ -53,7 +70,8 @@ static void lay_out(hf_arena *a, const hf_scene *s, graph *g)
     g->seen = hf_arena_take(a, m, 1);
 }
 
-/* A rim that gave way on its truss is off by millimetres, and still where the cables of the surface end. */
+/* Adds nodes that a cable joins to an inner node along the surface. The rim of a net on a deflected truss is off by
+ * millimetres, but the cables of the surface still end there. */
 static void follow_cables(graph *g)
 {
     const hf_scene *s = g->scene;
@@ -84,17 +102,18 @@ static bool in_graph(const graph *g, int cable)
     return g->is_on[end[0]] && g->is_on[end[1]];
 }
 
-/* A support that holds an inner node: the surface reaches it, even where no cable runs along the rim. */
+/* Returns true if end k of the cable is a support and its other end an inner node. The surface then extends to the
+ * support, even if no cable runs along the rim. */
 static bool is_rim(const graph *g, int cable, int k)
 {
     const hf_scene *s = g->scene;
     return s->role[s->end[2 * cable + k]] == HF_ROLE_SUPPORT && s->role[s->end[2 * cable + 1 - k]] == HF_ROLE_INNER;
 }
 
-/* Nodes at the end of a single cable, such as that of a tie of the edge, are at no face: they leave, one after the
- * other along a chain. Each node keeps the number of its cables that are left and their exclusive or, which is the
- * last one's index when one is left: all together takes a time in proportion to the net. Supports on the rim stay: a
- * cable counts twice at them. */
+/* Removes nodes at the end of a single cable, such as that of an edge tie, because no face contains them. A chain of
+ * such nodes is removed from its end. Each node stores the number of its remaining cables and the exclusive or of their
+ * indices. The latter is the index of the last cable when one remains, so the time is proportional to the size of the
+ * net. A cable counts twice at a support on the rim, so that such supports stay. */
 static void drop_ends(graph *g)
 {
     const hf_scene *s = g->scene;
@@ -117,9 +136,9 @@ static void drop_ends(graph *g)
         }
 }
 
-/* Order by node, then counter-clockwise from the direction of -x, without angles: those below the x axis come first.
- * Two cables between the same two nodes lie side by side: their order at one end is the reverse of that at the other.
- *  */
+/* Orders half edges by node, then counter-clockwise from the direction of -x. Directions below the x axis come first,
+ * so no angles are needed. Two cables between the same nodes are neighbours; their order at one end is the reverse of
+ * that at the other end. */
 static int by_direction(const void *a, const void *b)
 {
     const half *p = a, *q = b;
@@ -158,14 +177,15 @@ static void collect(graph *g)
 
 /* ---- faces ---- */
 
-/* The half edge that follows around the face on the left: at its far node the next one clockwise from the way back. */
+/* Returns the next half edge around the face on the left: at the far node, the next one clockwise from the way back. */
 static int next_around(const graph *g, int h)
 {
     int twin = g->edge[h].twin, node = g->edge[h].to;
     return twin > g->first[node] ? twin - 1 : g->first[node + 1] - 1;
 }
 
-/* Walk around the face on the left of h. Returns its number of sides; the first four corners, and twice its area. */
+/* Walks around the face on the left of h. Returns its number of sides. Writes its first four corners, and twice its
+ * area in m2. */
 static int walk(graph *g, int h, int corner[4], double *area)
 {
     const double *p0 = g->scene->position_m + 3 * (size_t)g->edge[h].from;
@@ -201,9 +221,9 @@ static void add_facet(const hf_scene *s, int n, const int node[4], double area, 
     f->n_facet++;
 }
 
-/* Whether the n >= 2 cables along the outside from half edge h are an edge that hangs between two supports, with
- * nothing beyond it: boundary cables alone, and where there are but two, such as also hold the last node before a
- * rim, they go on in nearly the same direction. */
+/* Returns true if the n >= 2 cables along the outside from half edge h are an edge that hangs between two supports,
+ * with nothing beyond it. All of them must be boundary cables. If there are only two, they must continue each other.
+ * Otherwise they can be the cables that hold the last node before a rim. */
 static bool is_hanging_edge(const graph *g, int h, int n)
 {
     const half *p = &g->edge[h], *q = &g->edge[next_around(g, h)];
@@ -213,9 +233,9 @@ static bool is_hanging_edge(const graph *g, int h, int n)
     return n > 2 || along > STRAIGHT_ON * hf_norm(p->dx, p->dy, 0) * hf_norm(q->dx, q->dy, 0);
 }
 
-/* Along the outside of the net, from half edge h: an inner node is surrounded by surface, so that the gap between two
- * supports in sequence with inner nodes alone between them is a face, too, whose last side is the straight line on the
- * rim; unless an edge of the net hangs there. */
+/* Walks along the outside of the net from half edge h and closes gaps at the rim. Surface surrounds every inner node.
+ * So the gap between two consecutive supports with only inner nodes between them is a face, and its last side is the
+ * straight line between the supports. There is no such face if an edge of the net hangs in the gap. */
 static void close_gaps(const graph *g, int h, hf_facets *f)
 {
     const hf_scene *s = g->scene;
@@ -236,9 +256,10 @@ static void close_gaps(const graph *g, int h, hf_facets *f)
     } while (h != from);
 }
 
-/* Finds all faces and keeps the facets. A face without an area lies between two cables of the same nodes; one of
- * negative area is the outside of the net, and so is the only face of a tree, like one node between supports.
- * Euler: a graph of C parts is drawn without crossings if and only if V - E + F = 2 C. */
+/* Finds all faces and keeps those that are facets. A face without area lies between two cables with the same nodes. A
+ * face with negative area is the outside of the net. The only face of a tree, such as one node between supports, is
+ * also the outside. By Euler's formula, a graph with C components is drawn without crossings if and only if V - E + F
+ * = 2 C. */
 static void find_faces(graph *g, hf_facets *f)
 {
     const hf_scene *s = g->scene;
@@ -268,7 +289,7 @@ static void find_faces(graph *g, hf_facets *f)
 
 /* ---- together ---- */
 
-/* Of the facets that the scene names those with a node on the surface: others are of a rear net. */
+/* Keeps the facets of the scene that have a node on the surface. Others belong to a rear net. */
 static void keep_named(const graph *g, hf_facets *f)
 {
     for (int i = 0; i < g->scene->n_facet; i++) {
@@ -284,7 +305,7 @@ hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surfa
     graph g = {.scene = scene};
     hf_arena arena = {0}, kept = {0};
     size_t n_named = (size_t)scene->n_facet;
-    size_t most = 4 * (n_named > 0 ? n_named : (size_t)scene->n_cable + 1); /* a face has at least 3/2 cables */
+    size_t most = 4 * (n_named > 0 ? n_named : (size_t)scene->n_cable + 1); /* a face needs at least 3/2 cables */
     HF_TRY(HF_ARENA_MAKE(&kept, facets->corner = hf_arena_take(&kept, most, sizeof *facets->corner)));
     facets->block = kept.block;
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, scene, &g)));

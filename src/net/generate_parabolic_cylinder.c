@@ -1,6 +1,11 @@
-/* Makes the net over a parabolic cylinder.
- * Contents: the parabola - places along the axes - what can be made - roles - nodes - scallops - cables - names -
- * together */
+/* Makes the net over a parabolic cylinder:
+ *
+ *     settings -> count cables and ties -> nodes on a grid (x along the directrix, y along the generatrix)
+ *       -> scallop the free outer edges -> cables, boundary cables, edge ties
+ *       -> rear net and ties, if asked for (double_net) -> sets of cables -> ids
+ *
+ * Contents: the parabola - positions along the axes - what can be made - roles - nodes - scallops - cables -
+ * names - together */
 #include <hifdm/generate.h>
 
 #include "base/elementary.h"
@@ -12,8 +17,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define NODE_MAX 4000000   /* keeps every index and band offset well inside an int */
-#define SUM_TOLERANCE 1e-9 /* relative: pitches are written with some ten digits at most */
+#define NODE_MAX 4000000   /* keeps every index and band offset far below the range of int */
+#define SUM_TOLERANCE 1e-9 /* relative; pitches are written with about ten digits at most */
 
 const char *const hf_spacing_word[3] = {"equal_arc", "equal_projected", NULL};
 const char *const hf_boundary_word[3] = {"outer_edge", "module_edges", NULL};
@@ -27,10 +32,10 @@ static double z_on_parabola(const hf_cylinder *c, double x)
     return x * x / (4 * c->focal_length_m);
 }
 
-/* ---- places along the axes ---- */
+/* ---- positions along the axes ---- */
 
-/* Where module border k lies along the sum of uneven pitches, which begins at `from` and ends at `to`. Each half is
- * summed from its own end, so that pitches that are symmetric give borders that are symmetric to the last bit. */
+/* Returns the position of module border k for uneven pitches that begin at `from` and end at `to`. Each half is summed
+ * from its own end. So symmetric pitches give borders that are symmetric to the last bit. */
 static double border(const hf_double_list *pitches, double from, double to, int k)
 {
     double low = from, high = to;
@@ -41,7 +46,7 @@ static double border(const hf_double_list *pitches, double from, double to, int 
     return 2 * k < pitches->n ? low : 2 * k > pitches->n ? high : (low + high) / 2;
 }
 
-/* x between two places, at this fraction of the arc or of the projection from a to b. */
+/* Returns x at this fraction of the arc or of the projection from a to b, as `spacing` says. */
 static double x_between(const hf_cylinder *c, double a, double b, double fraction)
 {
     if (c->spacing == HF_SPACING_EQUAL_PROJECTED || fraction == 0) return a + (b - a) * fraction;
@@ -50,7 +55,7 @@ static double x_between(const hf_cylinder *c, double a, double b, double fractio
     return copysign(hf_parabola_x_at_arc_m(fabs(s), c->focal_length_m), s);
 }
 
-/* x of the grid line half_index / 2; odd numbers lie in the middle of a cell. */
+/* Returns x of the grid line half_index / 2. An odd half_index is in the middle of a cell. */
 static double x_of(const hf_cylinder *c, int half_index)
 {
     double half = c->aperture_m / 2;
@@ -67,7 +72,7 @@ static double x_of(const hf_cylinder *c, int half_index)
     return copysign(hf_parabola_x_at_arc_m(fabs(t) * hf_parabola_arc_m(half, c->focal_length_m), c->focal_length_m), t);
 }
 
-/* y in the same way. */
+/* Returns y of the grid line half_index / 2. */
 static double y_of(const hf_cylinder *c, int half_index)
 {
     int n = 2 * c->cells_per_module[1];
@@ -109,7 +114,7 @@ static const char *fault_of_pitches(const hf_cylinder *c, int axis, char *what, 
     return key[axis];
 }
 
-/* The smallest module along an axis, m. */
+/* Returns the smallest module along an axis, m. */
 static double smallest_pitch(const hf_cylinder *c, int axis)
 {
     double smallest = INFINITY;
@@ -128,7 +133,8 @@ static const char *fault_of_ties(const hf_cylinder *c, char *what, size_t size)
     return "edge_tie_m";
 }
 
-/* How far a scallop moves nodes of the edges along `axis` at most, m: those of the widest module. */
+/* Returns the maximum distance by which a scallop displaces nodes of the edges along `axis`, m. It occurs in
+ * the widest module. */
 static double largest_sag(const hf_cylinder *c, int axis)
 {
     int n = c->cells_per_module[axis];
@@ -142,7 +148,8 @@ static double largest_sag(const hf_cylinder *c, int axis)
     return largest;
 }
 
-/* An edge must stay clear of the nodes next to it, or with one cell in between of the opposite edge. */
+/* Checks that the edges stay clear of the nodes next to them. If the net has only one cell across, they must stay clear
+ * of each other. */
 static const char *fault_of_scallops(const hf_cylinder *c, char *what, size_t size)
 {
     for (int axis = 0; axis < 2; axis++) {
@@ -168,7 +175,8 @@ static hf_double_net rear_of(const hf_cylinder *c)
                            HF_DOUBLE_NET_OF(c)};
 }
 
-/* Normals spread outwards. On a deep net the outermost ones may pass below the rim of the rear net. */
+/* Checks the rear net. The normals of the front net diverge outwards. On a deep net, the outermost ones can miss the
+ * rear net and pass below its rim. */
 static const char *fault_of_rear(const hf_cylinder *c, char *what, size_t size)
 {
     hf_double_net d = rear_of(c);
@@ -196,11 +204,12 @@ const char *hf_scene_parabolic_cylinder_fault(const hf_cylinder *cylinder, char 
 
 typedef struct {
     const hf_cylinder *c;
-    const double *EA_N; /* by hf_group, 0 = not given */
+    const double *EA_N; /* by hf_group, 0: not given */
     hf_scene *s;
-    int nx, ny;                  /* nodes along the directrix and the generatrix */
-    int first_middle, first_tie; /* nodes in the middle of cells (pattern diagonal), supports at the end of edge ties */
-    int n_cable, n_member;       /* so far; with member == NULL they are only counted */
+    int nx, ny;                  /* nodes along the directrix and along the generatrix */
+    int first_middle, first_tie; /* indices of the first node in the middle of a cell (pattern diagonal), and of the
+                                    first support of an edge tie */
+    int n_cable, n_member;       /* counted so far; if member is NULL, they are only counted */
     hf_cable_set_member *member;
 } grid;
 
@@ -214,7 +223,7 @@ static bool is_on_perimeter(const grid *g, int i, int j)
     return i == 0 || j == 0 || i == g->nx - 1 || j == g->ny - 1;
 }
 
-/* Does the truss hold this node, itself or by an edge tie? */
+/* Returns true if the truss holds this node, directly or by an edge tie. */
 static bool is_held(const grid *g, int i, int j)
 {
     bool on_rib = j % g->c->cells_per_module[1] == 0;
@@ -238,7 +247,7 @@ static bool is_outer_line(const grid *g, int axis, int index)
     return index == 0 || index == (axis == 0 ? g->nx : g->ny) - 1;
 }
 
-/* True when the grid line i = const (axis 0) or j = const (axis 1) is made of boundary cables. */
+/* Returns true if the grid line i = const (axis 0) or j = const (axis 1) consists of boundary cables. */
 static bool is_boundary_line(const grid *g, int axis, int index)
 {
     if (g->c->boundary == HF_BOUNDARY_MODULE_EDGES) return index % g->c->cells_per_module[axis] == 0;
@@ -277,15 +286,15 @@ static void place_nodes(const grid *g)
 
 /* ---- scallops ---- */
 
-/* Node k of the grid line that runs along `axis` (0: x, 1: y) at index `line` of the other axis. */
+/* Returns node k of the grid line along `axis` (0: x, 1: y) that has index `line` on the other axis. */
 static int on_line(const grid *g, int axis, int line, int k)
 {
     return axis == 0 ? at(g, k, line) : at(g, line, k);
 }
 
-/* Moves the free nodes of one outer edge inward by the parabola 4 s span t (1-t) between consecutive nodes that are
- * held, where span is their distance. A curved edge (axis 0, along x) moves in y; a straight edge moves in x and stays
- * on the cylinder. */
+/* Moves the free nodes of one outer edge inward by the parabola 4 s span t (1-t) between consecutive held nodes. span
+ * is the distance of these nodes, and s is `scallop`. An edge along x (axis 0) is curved and moves in y. An edge along
+ * y is straight, moves in x and stays on the cylinder. */
 static void scallop_edge(const grid *g, int axis, int line, double inward)
 {
     int n = axis == 0 ? g->nx : g->ny, from = 0;
@@ -315,7 +324,7 @@ static void scallop_edges(const grid *g)
 
 /* ---- cables ---- */
 
-/* Families of cables, in the order of their names: X(enumerator, name, that of the rear net). */
+/* Families of cables, sorted by name: X(enumerator, name, family in the rear net). */
 #define FAMILIES(X)                                                                                                    \
     X(DIAGONAL, "diagonal", REAR_DIAGONAL)                                                                             \
     X(DIRECTRIX, "directrix", REAR_DIRECTRIX)                                                                          \
@@ -361,8 +370,8 @@ static void add_cable(grid *g, int a, int b, hf_group group, int family, int sec
     if (s->EA_N) s->EA_N[e] = g->EA_N[group] > 0 ? g->EA_N[group] : (double)NAN;
 }
 
-/* The cable from node (i, j) to the next one along `axis`. The pattern diagonal has those of boundary lines alone, and
- * only the quad net has cables between two supports. */
+/* Adds the cable from node (i, j) to the next node along `axis`. The pattern diagonal has such cables only on boundary
+ * lines. Only the quad net has cables between two supports. */
 static void add_along(grid *g, int axis, int i, int j)
 {
     int to_i = i + (axis == 0), to_j = j + (axis == 1), line = axis == 0 ? j : i;
@@ -376,7 +385,7 @@ static void add_along(grid *g, int axis, int i, int j)
               axis == 0 ? DIRECTRIX : GENERATRIX, is_outer_line(g, 1 - axis, line) ? EDGE : NO_FAMILY);
 }
 
-/* What runs across the cell whose first corner is (i, j). */
+/* Adds the diagonals of the cell whose first corner is (i, j). */
 static void add_across(grid *g, int i, int j)
 {
     bool falls = g->c->pattern == HF_PATTERN_ALTERNATING && (i + j) % 2 != 0;
@@ -390,14 +399,14 @@ static void add_across(grid *g, int i, int j)
         add_cable(g, at(g, a, j), at(g, b, j + 1), HF_GROUP_INNER, DIAGONAL, NO_FAMILY);
 }
 
-/* -1 at the first line of n, 1 at the last. */
+/* Returns -1 for the first of n lines, 1 for the last, else 0. */
 static int side(int index, int n)
 {
     return index == 0 ? -1 : index == n - 1;
 }
 
-/* Edge ties run outward in the plane of x and y, at a corner of the net by the same distance along both, and end on the
- * cylinder. */
+/* Adds the edge ties. Seen along z, they run outward along x or y. At a corner of the net they extend by the same
+ * distance along both. They end on the cylinder. */
 static void add_edge_ties(grid *g, int *n_tie)
 {
     *n_tie = 0;
@@ -428,8 +437,8 @@ static void connect(grid *g, int *n_tie)
 
 /* ---- names ---- */
 
-/* Writes the ids n<i>_<j> of nodes, m<i>_<j> of those in the middle of cells, s<i>_<j> of the supports that hold
- * n<i>_<j> by an edge tie, and what follows from them. */
+/* Writes the ids: n<i>_<j> for nodes, m<i>_<j> for those in the middle of cells, and s<i>_<j> for the support that
+ * holds n<i>_<j> by an edge tie. The ids of rear nodes and cables follow from them. */
 static hf_status name_all(const grid *g, int n_tie)
 {
     hf_scene *s = g->s;
@@ -454,7 +463,7 @@ static hf_status name_all(const grid *g, int n_tie)
 
 /* ---- together ---- */
 
-/* Fills a scene of this size, of which the ties between the nets are n_between cables. */
+/* Fills an allocated scene. n_between is the number of ties between the nets. */
 static hf_status fill(grid *g, int n_between)
 {
     hf_scene *s = g->s;
@@ -471,7 +480,7 @@ static hf_status fill(grid *g, int n_between)
     return name_all(g, n_edge_tie);
 }
 
-/* Free nodes of the front net, each of which has a tie to the rear net. */
+/* Returns the number of free nodes of the front net. Each of them has a tie to the rear net. */
 static int count_free(const grid *g)
 {
     int n = g->first_tie - g->first_middle;
@@ -485,7 +494,7 @@ static hf_status make(grid *g)
 {
     bool is_double = g->c->rear_distance_m > 0, with_EA = g->EA_N && (g->EA_N[0] > 0 || g->EA_N[1] > 0);
     int n_edge_tie, n_between = is_double ? count_free(g) : 0;
-    connect(g, &n_edge_tie); /* only counts */
+    connect(g, &n_edge_tie); /* g->member is NULL: counts only */
     int n_layer = is_double ? 2 : 1, n_node = n_layer * (g->first_tie + n_edge_tie);
     hf_cable_set_member *member =
         malloc(((size_t)g->n_member * (size_t)n_layer + (size_t)n_between + 1) * sizeof *member);

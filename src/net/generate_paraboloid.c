@@ -1,6 +1,10 @@
-/* Makes the net over a paraboloid with a round aperture, alone or tied to a rear net.
- * Contents: what can be made - the plane grid - the triangular grid - the quad grid - the front net - together -
- * the rim */
+/* Makes the net over a paraboloid with a round aperture, alone or tied to a rear net:
+ *
+ *     settings -> plane grid in the aperture (triangular: rings, then relaxed; quad: rows and columns, ends on the rim)
+ *       -> front net on the paraboloid -> rear net and ties, if asked for (double_net) -> sets of cables -> ids
+ *
+ * Contents: what can be made - the plane grid - the triangular grid - relaxing the triangular grid - the quad grid -
+ * the front net - together - the rim */
 #include <hifdm/generate.h>
 
 #include "base/elementary.h"
@@ -11,11 +15,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define NODE_MAX 4000000  /* keeps every index and band offset well inside an int */
-#define LEAST_EDGE 0.25   /* of a cell: no cable of the quad grid ends nearer to the rim than this */
-#define SAME_SUPPORT 1e-9 /* of the radius: ends of rows and columns that meet on the rim */
-#define RELAXED 1e-16     /* of the first residual */
-#define RELAX_STEPS 40    /* per ring; 4 are taken */
+#define NODE_MAX 4000000 /* keeps every index and band offset far below the range of int */
+#define LEAST_EDGE 0.25  /* minimum distance of a node of the quad grid from the rim, in cells */
+#define SAME_SUPPORT                                                                                                   \
+    1e-9               /* relative to the radius; two ends of rows and columns nearer than this on the rim
+                             are one support */
+#define RELAXED 1e-16  /* relative to the first residual */
+#define RELAX_STEPS 40 /* maximum, per ring; about 4 are needed */
 
 const char *const hf_grid_word[3] = {"triangle", "quad", NULL};
 
@@ -44,8 +50,8 @@ static double front_height(const hf_paraboloid *p, double x, double y)
 static const char *const outside =
     "normal leads to places outside the rim of the rear net; take z, a flatter front net or fewer rings";
 
-/* Does a normal from where some of the outermost free nodes are, or from farther inside, lead past the rim of the rear
- * net, or nowhere? */
+/* Returns true if the normal at one of 24 points on a circle near the outermost free nodes misses the rear net or meets
+ * it outside its rim. */
 static bool leaves_rim(const hf_paraboloid *p)
 {
     hf_double_net d = rear_of(p);
@@ -71,13 +77,13 @@ const char *hf_scene_paraboloid_fault(const hf_paraboloid *p, char *what, size_t
 
 /* ---- the plane grid ---- */
 
-/* Nodes and cables in the plane of the aperture, about its middle, of one net. */
+/* Nodes and cables of one net in the plane of the aperture. The origin is the middle of the aperture. */
 typedef struct {
     int n_node, n_cable;
     double *plane_m; /* [n_node][2]; NULL while counting */
-    bool *is_rim;    /* [n_node] a support */
-    int *label;      /* [n_node][2] for the id */
-    int *end;        /* [n_cable][2] */
+    bool *is_rim;    /* [n_node], true for a support */
+    int *label;      /* [n_node][2], numbers for the id */
+    int *end;        /* [n_cable][2], node indices */
 } plane_grid;
 
 static int add_point(plane_grid *g, double x, double y, bool is_rim, int a, int b)
@@ -98,7 +104,7 @@ static void add_line(plane_grid *g, int a, int b)
     g->n_cable++;
 }
 
-/* Moves a point along its radius so that radii are divided evenly in arc length. */
+/* Returns the factor for a radius r that divides radii evenly in arc length, if `spacing` asks for it; else 1. */
 static double spread(const hf_paraboloid *p, double r)
 {
     double R = radius(p);
@@ -113,8 +119,8 @@ static int first_of_ring(int ring)
     return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1);
 }
 
-/* Ring k has 6k nodes, k to a side; those of the last ring stand evenly on the rim. The others are relaxed from places
- * on circles. */
+/* Adds ring k with 6k nodes, k on each side. The nodes of the last ring are evenly spaced on the rim. Those of the
+ * other rings start on circles and are relaxed later. */
 static void place_ring(const hf_paraboloid *p, plane_grid *g, int ring)
 {
     double r = radius(p) * ring / p->rings;
@@ -124,7 +130,7 @@ static void place_ring(const hf_paraboloid *p, plane_grid *g, int ring)
     }
 }
 
-/* Cables along the ring, and outward: two from each node, three from a corner. */
+/* Adds the cables along the ring, and those to the next ring: two from each node, three from a corner. */
 static void join_ring(const hf_paraboloid *p, plane_grid *g, int ring)
 {
     int here = first_of_ring(ring), out = first_of_ring(ring + 1), n = 6 * ring, n_out = 6 * (ring + 1);
@@ -149,11 +155,12 @@ static void make_triangles(const hf_paraboloid *p, plane_grid *g)
 }
 
 /* ---- relaxing the triangular grid ----
- * Cells of one size do not fill a circle. They change gradually where the grid lies as a plane net of equal force
- * densities that its rim holds. For any number of rings facets then err by 1.07 times as much (RMS after a best fit) as
- * equal-sided ones of the same mean side, and tensions that hold the net come out nearly even. */
+ * Cells of one size do not fill a circle. Their size changes gradually if the grid is a plane net of equal force
+ * densities that is held at its rim. For any number of rings, the facet error (RMS after a best fit) is then 1.07 times
+ * that of equilateral facets with the same mean side. The tensions that hold the net are nearly even. */
 
-/* minus_force = the forces of the cables on the free nodes at these places, with the sign changed. Both [n_node][2]. */
+/* Computes the forces of the cables on the free nodes at the positions `place` [n_node][2], with the sign changed.
+ * Writes them to minus_force [n_node][2]. */
 static void pull(const plane_grid *g, const double *place, double *minus_force)
 {
     for (int i = 0; i < 2 * g->n_node; i++)
@@ -175,7 +182,8 @@ static double product(size_t n, const double *a, const double *b)
     return sum;
 }
 
-/* Conjugate gradients, to rounding. The number of steps grows with that of the rings. */
+/* Relaxes the grid by conjugate gradients, to rounding. The number of steps is proportional to the number of rings.
+ * Then spaces the radii. */
 static hf_status relax(const hf_paraboloid *p, plane_grid *g)
 {
     size_t n = 2 * (size_t)g->n_node;
@@ -208,14 +216,15 @@ static hf_status relax(const hf_paraboloid *p, plane_grid *g)
 
 /* ---- the quad grid ---- */
 
-/* The last node of row or column k, counted from the middle: the farthest inside the rim. */
+/* Returns the index of the last node of row or column k, counted from the middle: the farthest inside the rim. Returns
+ * -1 if there is none. */
 static int last_in_row(const hf_paraboloid *p, int k)
 {
     double n = p->rings - LEAST_EDGE;
     return k > n ? -1 : (int)sqrt(n * n - (double)k * k);
 }
 
-/* The support at the end of a row or column, made unless the other one has made it. */
+/* Returns the support at the end of a row or column. Adds it unless another row or column ends there. */
 static int rim_point(const hf_paraboloid *p, plane_grid *g, int first_support, double x, double y)
 {
     for (int i = first_support; g->plane_m && i < g->n_node; i++)
@@ -223,7 +232,7 @@ static int rim_point(const hf_paraboloid *p, plane_grid *g, int first_support, d
     return add_point(g, x, y, true, -1, g->n_node - first_support);
 }
 
-/* node: [2 rings + 1][2 rings + 1] scratch, by rows: the nodes of the grid. */
+/* Makes the quad grid. node [2 rings + 1][2 rings + 1] is scratch for the node indices, by rows. */
 static void make_quads(const hf_paraboloid *p, plane_grid *g, int *node)
 {
     int N = p->rings, width = 2 * N + 1;
@@ -251,7 +260,7 @@ static void make_quads(const hf_paraboloid *p, plane_grid *g, int *node)
 
 /* ---- the front net ---- */
 
-/* Families of cables, in the order of their names. */
+/* Families of cables, sorted by name. */
 enum { FRONT, FRONT_EDGE, REAR, REAR_EDGE, TIE, N_FAMILY };
 static const char *const family_name[N_FAMILY] = {"front", "front_edge", "rear", "rear_edge", "tie"};
 static const int rear_family[N_FAMILY] = {REAR, REAR_EDGE};
@@ -267,7 +276,7 @@ static void place_front(const hf_paraboloid *p, const plane_grid *g, hf_scene *s
     }
 }
 
-/* member: [g->n_cable] */
+/* Writes the cables of the front net. member [g->n_cable] receives their sets. */
 static void put_front(const plane_grid *g, const double EA_N[2], hf_scene *s, hf_cable_set_member *member)
 {
     for (int e = 0; e < g->n_cable; e++) {
@@ -303,7 +312,7 @@ static hf_status name_all(const plane_grid *g, hf_scene *s)
 
 /* ---- together ---- */
 
-/* Counts with an empty grid, and fills it once it has its arrays. */
+/* Counts nodes and cables while the grid has no arrays, and fills it once it has them. */
 static void make_grid(const hf_paraboloid *p, plane_grid *g, int *node)
 {
     g->n_node = g->n_cable = 0;
@@ -337,7 +346,7 @@ static void free_grid(plane_grid *g, int *node)
     free(g->end);
 }
 
-/* Free nodes of the rear net whose place is beyond its rim. */
+/* Returns the number of free rear nodes that are outside the rim of the rear net. */
 static int count_outside(const hf_paraboloid *p, const plane_grid *g, const hf_scene *s)
 {
     int n = 0;
@@ -375,7 +384,7 @@ hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N
     char what[HF_GENERATE_FAULT_SIZE];
     *scene = (hf_scene){0};
     double rings = paraboloid->rings, n_layer = paraboloid->rear_distance_m > 0 ? 2 : 1;
-    bool is_quad = paraboloid->grid == HF_GRID_QUAD; /* of the square around the aperture */
+    bool is_quad = paraboloid->grid == HF_GRID_QUAD; /* nodes of the square around the aperture */
     if (n_layer * (is_quad ? (2 * rings + 1) * (2 * rings + 1) : 1 + 3 * rings * (rings + 1)) > NODE_MAX)
         return hf_error(messages, HF_BAD_CASE, "scene: %d rings make more nodes than this program takes (%d)",
                         paraboloid->rings, NODE_MAX);
@@ -401,7 +410,7 @@ hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N
 
 /* ---- the rim ---- */
 
-/* Counter-clockwise from x, without angles. a, b: places about the middle of the aperture. */
+/* Compares two positions about the middle of the aperture for qsort(3): counter-clockwise from x, without angles. */
 static int by_angle(const void *a, const void *b)
 {
     const double *p = a, *q = b;

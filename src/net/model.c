@@ -1,5 +1,11 @@
-/* Contents: layout - numbering and band places - laws and targets - chains of length-controlled cables - groups of
- * genes - build - attachments - checks */
+/* Builds a model from a scene:
+ *
+ *     scene -> number the nodes (numbering) -> positions in the band -> laws and targets, design variables
+ *       -> groups of design variables -> chains of length-controlled cables -> model
+ *     truss flexibility -> attach: supports become attachments -> model
+ *
+ * Contents: layout - numbering and band positions - laws and targets - chains of length-controlled cables - groups of
+ * design variables - build - attachments - checks */
 #include <hifdm/model.h>
 
 #include "base/arena.h"
@@ -16,7 +22,8 @@
 
 /* ---- layout ---- */
 
-/* True when a law in force needs the axial stiffness. The methods iterative_fdm and fdm replace every such law. */
+/* Returns true if a law in force needs the axial stiffness. The methods iterative_fdm and fdm replace
+ * every such law. */
 static bool needs_EA(const hf_scene *s, hf_method method)
 {
     if (method == HF_METHOD_ITERATIVE_FDM || method == HF_METHOD_FDM) return false;
@@ -52,7 +59,7 @@ static void lay_out(hf_arena *a, const hf_scene *s, hf_method method, hf_model *
     m->chain_of_row = hf_arena_take(a, n, sizeof(int));
 }
 
-/* ---- numbering and band places ---- */
+/* ---- numbering and band positions ---- */
 
 static void number_nodes(const hf_scene *s, hf_model *m)
 {
@@ -86,8 +93,8 @@ static void place_cables(const hf_scene *s, hf_model *m)
 
 /* ---- laws and targets ---- */
 
-/* The tension that a cable is given, N; 0 when its law gives none. The tension of an elastic cable in the theoretical
- * shape does not count: it may be a thousand times the one in the found shape. */
+/* Returns the tension that a cable is given, N; 0 if its law gives none. The tension of an elastic cable at the target
+ * positions does not count, because it may be a thousand times the tension in the final shape. */
 static double given_tension(const hf_scene *s, double pretension_N, int e)
 {
     if (hf_law_has(s->law[e], HF_LAW_HAS_MULTIPLIER)) return 0;
@@ -151,8 +158,8 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
 /* ---- chains of length-controlled cables ---- */
 
 typedef struct {
-    int *count; /* [n_node] cables of law length at a row */
-    int *cable; /* [n_node][2] two of them */
+    int *count; /* [n_node], number of cables of law length at a row */
+    int *cable; /* [n_node][2], two of them */
 } length_graph;
 
 static double distance(const hf_model *m, int row_a, int row_b)
@@ -163,14 +170,14 @@ static double distance(const hf_model *m, int row_a, int row_b)
     return hf_norm(d[0], d[1], d[2]);
 }
 
-/* Follow the chain that leaves the support `from` by cable `first`; keep it when it ends at a support and is straight
- * or has a sag, as want_straight says. Each chain is found from both its ends; it is kept only from the end with the
- * smaller cable index. */
+/* Follows the chain that leaves the support `from` by cable `first`. Keeps it if it ends at a support and is straight
+ * (want_straight) or has a sag (not want_straight). Each chain is found from both ends; it is kept only from the end
+ * with the smaller cable index. */
 static void follow_chain(hf_model *m, const length_graph *g, int from, int first, bool want_straight)
 {
     int start = m->chain_start[m->n_any_chain], n = 0, row = from, e = first;
     double sum = 0;
-    if (start == m->n_cable) return; /* every cable is in a chain already */
+    if (start == m->n_cable) return; /* all cables are already in chains */
     for (;;) {
         row = m->end_row[2 * e] == row ? m->end_row[2 * e + 1] : m->end_row[2 * e];
         m->chain_cable[start + n++] = e;
@@ -190,16 +197,16 @@ static void follow_chain(hf_model *m, const length_graph *g, int from, int first
     m->chain_start[++m->n_any_chain] = start + n;
 }
 
-/* Cables of law length at each row, and where a search from one support has got. */
+/* The cables of law length at each row, and the state of a search from one support. */
 typedef struct {
-    int *start, *cable; /* [n_node + 1], [2 n_cable] those at a row are cable[start[row] .. start[row + 1] - 1] */
-    int *queue, *via;   /* [n_node] rows to go on from; cable by which a row was reached */
-    char *is_waiting;   /* [n_node] in the queue */
-    double *reach_m;    /* [n_node] least sum of lengths to a row */
+    int *start, *cable; /* [n_node + 1], [2 n_cable]: those at a row are cable[start[row] .. start[row + 1] - 1] */
+    int *queue, *via;   /* [n_node]: rows to continue from; the cable by which a row was reached */
+    char *is_waiting;   /* [n_node], true if a row is in the queue */
+    double *reach_m;    /* [n_node], minimum sum of lengths to a row, m */
     long steps_left;
 } path_search;
 
-/* From one support through free nodes, cable by cable. */
+/* Finds the shortest path of cables from one support to every row. Paths pass only through free nodes. */
 static void search_from(const hf_model *m, path_search *s, int from)
 {
     int n_waiting = 1, first = 0;
@@ -229,7 +236,8 @@ static int row_before(const hf_model *m, const path_search *s, int row)
     return end[0] == row ? end[1] : end[0];
 }
 
-/* The way back from `to` to `from` as a chain, unless one of its cables is in a chain or there is just one. */
+/* Keeps the path from `to` back to `from` as a chain. Returns false if it has only one cable, or if one of its cables
+ * is already in a chain. */
 static bool keep_path(hf_model *m, const path_search *s, int from, int to)
 {
     int start = m->chain_start[m->n_any_chain], n = 0;
@@ -245,9 +253,9 @@ static bool keep_path(hf_model *m, const path_search *s, int from, int to)
     return true;
 }
 
-/* Lengths that do not span two supports, through nodes at which chains branch. One such path tells that no shape obeys
- * the lengths, so the first is kept, as a chain. The bound of steps is far above what nets need of which a part is
- * under law length; where it is met, a path may go unseen. */
+/* Finds cables whose lengths do not span two supports although chains branch between them. One such path proves that no
+ * shape satisfies the lengths, so the first one is kept as a chain. PATH_STEPS is far above the need of nets of which a
+ * part is under law length. If the search reaches it, a path may stay undetected. */
 #define PATH_STEPS 4000000
 static void keep_short_path(hf_model *m, path_search *s)
 {
@@ -273,7 +281,7 @@ static hf_status find_short_path(hf_model *m)
             if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID)) s.start[m->end_row[k] + 1]++;
         for (int row = 0; row < m->n_node; row++)
             s.start[row + 1] += s.start[row];
-        for (int k = 0; k < 2 * m->n_cable; k++) /* the counts in `via` are overwritten later */
+        for (int k = 0; k < 2 * m->n_cable; k++) /* `via` counts here; the search overwrites it later */
             if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID))
                 s.cable[s.start[m->end_row[k]] + s.via[m->end_row[k]]++] = k / 2;
         keep_short_path(m, &s);
@@ -331,7 +339,7 @@ void hf_model_chain_name(const hf_model *m, const hf_scene *scene, int i_chain, 
     }
 }
 
-/* ---- groups of genes ---- */
+/* ---- groups of design variables ---- */
 
 hf_status hf_model_group_genes(hf_model *m)
 {
@@ -386,7 +394,8 @@ hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf
     int *order = malloc((size_t)scene->n_node * sizeof *order);
     hf_status status = order ? hf_numbering_find(scene, order, &m->half_bandwidth) : HF_NO_MEMORY;
     double n_band = (double)m->n_free * (m->half_bandwidth + 1.0);
-    if (status == HF_OK && 3 * n_band > INT_MAX / 2) { /* 3: the general band of nets with struts */
+    if (status == HF_OK && 3 * n_band > INT_MAX / 2) { /* 3: the general band of a net with struts is three
+                                                          times as large */
         free(order);
         return hf_error(messages, HF_NO_MEMORY, "the band matrix of %d rows, half-bandwidth %d is too large", m->n_free,
                         m->half_bandwidth);
@@ -408,8 +417,8 @@ void hf_model_free(hf_model *m)
 
 /* ---- attachments ---- */
 
-/* Relative to the largest entry; it allows for the rounding of solves with a condition number of 1e6. From 1e-12 to
- * 1e-6 no test of model, truss or coupling changes. */
+/* Relative to the largest entry. It allows for the rounding of solves with a condition number of 1e6. No test of model,
+ * truss or coupling changes with values from 1e-12 to 1e-6. */
 #define SYMMETRY_TOLERANCE 1e-9
 
 static hf_status check_attachments(const hf_model *m, int n, const int *node, hf_messages *messages)
@@ -456,7 +465,7 @@ static void lay_out_attachments(hf_arena *a, hf_model *m)
     m->tie_attachment = hf_arena_take(a, (size_t)m->n_tie, sizeof(int));
 }
 
-/* List the cable ends at attachments, or only count them while there is no list. */
+/* Lists the cable ends at attachments. Without a list, only counts them. */
 static void find_ties(hf_model *m)
 {
     m->n_tie = 0;
@@ -469,8 +478,8 @@ static void find_ties(hf_model *m)
     }
 }
 
-/* A cable with a rigid law between two supports would be a rigid rod in the truss: it keeps its first tension
- * instead. */
+/* Replaces rigid laws of cables between an attachment and another support. Such a cable would be a rigid rod in the
+ * truss. It keeps its first tension instead. */
 static void hold_rods(hf_model *m)
 {
     for (int k = 0; k < m->n_tie; k++) {
@@ -482,7 +491,7 @@ static void hold_rods(hf_model *m)
     }
 }
 
-/* Moving supports can straighten a chain with a sag, so chain_of_row must be set for the nodes of these chains, too. */
+/* Sets chain_of_row for chains with a sag, too. The displacement of supports can straighten them. */
 static void mark_chains(hf_model *m)
 {
     for (int i = m->n_chain; i < m->n_any_chain; i++)
@@ -550,7 +559,8 @@ hf_status hf_model_attach(hf_model *m, int n_attachment, const int *node, const 
 
 void hf_model_want_newton(hf_model *m)
 {
-    m->has_newton |= m->n_attachment > 0 && !m->has_strut; /* laws that do not iterate are force densities: convex */
+    m->has_newton |= m->n_attachment > 0 && !m->has_strut; /* a law that does not iterate is force_density, and its
+                                                              energy is convex */
 }
 
 /* ---- checks ---- */

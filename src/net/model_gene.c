@@ -1,4 +1,4 @@
-/* What genes are called. */
+/* Names and units of design variables. */
 #include <hifdm/model.h>
 
 #include <stdio.h>

@@ -1,4 +1,10 @@
-/* Contents: adjacency of the free nodes - Cuthill-McKee - sorting along an axis - choice */
+/* Finds an order of the free nodes with little factorisation work:
+ *
+ *     scene -> adjacency of the free nodes
+ *       -> Cuthill-McKee, and sorting along x, y, z; each order and its reverse
+ *       -> estimate the work of factorisation, keep the best order
+ *
+ * Contents: adjacency of the free nodes - Cuthill-McKee - sorting along an axis - choice */
 #include "net/numbering.h"
 
 #include "base/arena.h"
@@ -8,17 +14,17 @@
 
 typedef struct {
     const hf_scene *s;
-    int n;          /* free nodes */
-    int *free_of;   /* [n_node] index among the free nodes, -1 for a support */
-    int *node_of;   /* [n] */
-    int *start;     /* [n + 1] into neighbour */
-    int *neighbour; /* free neighbours, twice per cable between free nodes */
-    int *place;     /* [n] position in the order under test */
-    int *order;     /* [n] */
-    int *level;     /* [n] distance from the root of a search; -1 = not reached, -2 = numbered already */
-    int *queue;     /* [n] */
-    int *best;      /* [n] */
-    int *wave;      /* [n] nodes of the last search */
+    int n;          /* number of free nodes */
+    int *free_of;   /* [n_node], index among the free nodes, -1 for a support */
+    int *node_of;   /* [n], node of the scene */
+    int *start;     /* [n + 1], first entry of each node in `neighbour` */
+    int *neighbour; /* free neighbours; each cable between free nodes has two entries */
+    int *place;     /* [n], position in the order under test */
+    int *order;     /* [n], the order under test */
+    int *level;     /* [n], distance from the root of a search; -1 = not reached, -2 = already numbered */
+    int *queue;     /* [n], scratch */
+    int *best;      /* [n], the best order so far */
+    int *wave;      /* [n], nodes of the last search */
 } graph;
 
 static void lay_out(hf_arena *a, graph *g)
@@ -60,7 +66,7 @@ static void build(graph *g)
         if (pass == 1) break;
         for (int i = 0; i < g->n; i++)
             g->start[i + 1] += g->start[i];
-        memcpy(g->queue, g->start, (size_t)g->n * sizeof(int)); /* next free place of each node */
+        memcpy(g->queue, g->start, (size_t)g->n * sizeof(int)); /* next free entry of each node */
     }
 }
 
@@ -71,8 +77,8 @@ static int degree(const graph *g, int i)
 
 /* ---- Cuthill-McKee ---- */
 
-/* Search breadth-first from `root` over the nodes that are not numbered yet, neighbours by rising degree. Lists the
- * nodes found in `wave`, sets their levels, and returns their number. */
+/* Searches breadth-first from `root` over the nodes that are not yet numbered, neighbours by rising degree. Writes the
+ * nodes it finds into `wave`, sets their levels, and returns their number. */
 static int search(graph *g, int root, int *wave)
 {
     int n = 0;
@@ -84,7 +90,7 @@ static int search(graph *g, int root, int *wave)
             int next = g->neighbour[k];
             if (g->level[next] != -1) continue;
             g->level[next] = g->level[node] + 1;
-            int at = n++; /* insertion by degree, stable */
+            int at = n++; /* stable insertion by degree */
             for (; at > first && degree(g, wave[at - 1]) > degree(g, next); at--)
                 wave[at] = wave[at - 1];
             wave[at] = next;
@@ -99,7 +105,7 @@ static void forget(graph *g, const int *wave, int n)
         g->level[wave[i]] = -1;
 }
 
-/* Find a node at the far end of the component of `root` (George & Liu 1979). */
+/* Returns a node at the far end of the component of `root` (George & Liu 1979). */
 static int peripheral(graph *g, int root)
 {
     for (int depth = -1;;) {
@@ -131,7 +137,7 @@ static void cuthill_mckee(graph *g)
 /* ---- sorting along an axis ---- */
 
 typedef struct {
-    double key[3]; /* the axis first, then the two others to break ties */
+    double key[3]; /* coordinate along the axis, then the two others to break ties */
     int node;
 } sort_item;
 
@@ -160,12 +166,14 @@ static hf_status sort_along(graph *g, int axis)
 
 /* ---- choice ---- */
 
-/* The band's part of the work: nearly all factorisations are those of populations. With 1/4 the examples' order changes
- * for a band narrower by a tenth; with less than 1/16 round nets keep one four times as dear. */
+/* Weight of the band in the work. It is small, because nearly all factorisations are those of populations. With 1/4,
+ * the order of the examples changes for a band that is 10 % narrower. With less than 1/16, round nets keep an order
+ * that costs four times as much. */
 #define BAND_PART 0.125
 
-/* The work of factorisations by the order under test: that of a skyline, as in the lanes of populations, grows with the
- * sum of squared row widths, that of a band, as of the Newton matrix, with n times the square of the half-bandwidth. */
+/* Returns the work of factorisations with the order under test. For a skyline, as in the lanes of populations, it
+ * grows with the sum of the squared row widths. For a band, as of the Newton matrix, it grows with n times the square
+ * of the half-bandwidth. */
 static double work(graph *g, int *half_bandwidth)
 {
     double sum = 0;
@@ -191,7 +199,8 @@ static void reverse(graph *g)
     }
 }
 
-/* Keep the order under test, or its reverse, whose rows have other widths, if it is better than the best so far. */
+/* Keeps the order under test or its reverse, if one of them is better than the best so far. The rows of the reverse
+ * have other widths. */
 static void keep_if_better(graph *g, double *best_work, int *best_half_bandwidth)
 {
     for (int pass = 0; pass < 2; pass++, reverse(g)) {

@@ -10,8 +10,8 @@ double hf_parabola_arc_m(double x, double focal)
     return focal * (slope * sqrt(1 + slope * slope) + hf_inverse_sinh(slope));
 }
 
-/* By Newton's method. The function is convex and increasing, and the start s is not
- * below the solution (x <= s); the iterates therefore decrease to the solution, and converge quadratically. */
+/* Solves arc(x) = s by Newton's method. The function is convex and increasing, and the start s is not below the
+ * solution (x <= s). So the iterates decrease to the solution and converge quadratically. */
 double hf_parabola_x_at_arc_m(double s, double focal)
 {
     double x = s;

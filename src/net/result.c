@@ -51,7 +51,7 @@ const char *hf_bound_reason_meaning(int reason)
     return "unknown";
 }
 
-/* ---- the list ---- */
+/* ---- the lists of fields ---- */
 
 #define RESULT_FIELD(type, member, kind, json, individual, key, units, description)                                    \
     {#member,     key, units, description, HF_RESULT_##kind, json, individual, offsetof(hf_form_result, member),       \

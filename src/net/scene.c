@@ -1,4 +1,4 @@
-/* Contents: words - memory - checks - two scenes */
+/* Contents: words - memory - checks - comparison of two scenes */
 #include <hifdm/scene.h>
 
 #include "base/arena.h"
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROUNDING 1e-9 /* relative to the largest */
+#define ROUNDING 1e-9 /* relative to the largest number */
 
 const char *const hf_role_word[3] = {"support", "inner", "edge"};
 const char *const hf_group_word[2] = {"inner", "boundary"};
@@ -97,7 +97,7 @@ static void check_nodes(const hf_scene *s, int *n_fault, hf_messages *messages)
         }
 }
 
-/* A law that needs EA_N also needs a target above zero. */
+/* Checks a cable whose law needs EA_N. Its target must also be above zero. */
 static void check_elastic(const hf_scene *s, int e, int *n_fault, hf_messages *messages)
 {
     char what[96];
@@ -120,7 +120,8 @@ static void check_cables(const hf_scene *s, int *n_fault, hf_messages *messages)
     }
 }
 
-/* Every free node must be joined to a support: cables join nodes into classes, and each class needs a support. */
+/* Checks that cables connect every free node with a support. Cables join nodes into classes, and each class
+ * needs a support. */
 static hf_status check_anchored(const hf_scene *s, int *n_fault, hf_messages *messages)
 {
     int *parent = malloc((size_t)s->n_node * 2 * sizeof *parent);
@@ -165,7 +166,7 @@ hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages)
     return n_fault ? HF_BAD_CASE : HF_OK;
 }
 
-/* ---- two scenes ---- */
+/* ---- comparison of two scenes ---- */
 
 bool hf_scene_numbers_agree(size_t n, const double *a, const double *b)
 {

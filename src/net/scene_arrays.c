@@ -12,7 +12,7 @@
 #include <string.h>
 
 #define ID_SIZE_MAX 256   /* as in tables */
-#define NUMBER_ID_SIZE 12 /* of an index that is an id */
+#define NUMBER_ID_SIZE 12 /* bytes of an index used as id */
 
 /* ---- ids ---- */
 
@@ -25,7 +25,7 @@ static size_t id_bytes(const char *const *id, int n)
     return size;
 }
 
-/* Copy ids to the text; returns where it ends. */
+/* Copies n ids to `text` and sets to[n]. Returns the end of the text. */
 static char *copy_ids(const char *const *id, int n, char *text, const char **to)
 {
     for (int i = 0; i < n; i++) {
@@ -42,7 +42,8 @@ static int by_id(const void *a, const void *b)
     return order ? order : (*p > *q) - (*p < *q);
 }
 
-/* Ids given by the caller are neither empty nor too long, and no two are alike. HF_OK or HF_NO_MEMORY. */
+/* Checks that ids given by the caller are UTF-8, unique, not empty and not too long. Returns HF_OK or HF_NO_MEMORY;
+ * faults are counted. */
 static hf_status check_ids(const hf_scene *s, bool is_cable, int *n_fault, hf_messages *messages)
 {
     const char **id = is_cable ? s->cable_id : s->node_id;
@@ -80,7 +81,7 @@ static hf_status take_ids(const hf_scene_arrays *a, hf_scene *s, int *n_fault, h
 static bool any_is_loaded(const hf_scene_arrays *a)
 {
     for (int i = 0; a->load_N && i < 3 * a->n_node; i++)
-        if (a->load_N[i] != 0) return true; /* and where it is no number */
+        if (a->load_N[i] != 0) return true; /* also true for NaN */
     return false;
 }
 

@@ -1,4 +1,4 @@
-/* Contents: cables twice - far nodes - lengths - the plane of the supports - together */
+/* Contents: duplicate cables - far nodes - lengths - the plane of the supports - together */
 #include "net/scene_doubt.h"
 
 #include "base/arena.h"
@@ -8,16 +8,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SAID_MAX 5    /* warnings of one sort */
-#define FAR 100.0     /* times as far from the middle as the others: mm for m are 1000 times */
-#define LARGE_M 500.0 /* across: no reflector of cables is larger, and one of 1 m in mm is */
+#define SAID_MAX 5    /* warnings of one kind */
+#define FAR 100.0     /* ratio to the distance of the others from the middle; mm given as m are 1000 times as far */
+#define LARGE_M 500.0 /* extent of the net; no reflector of cables is larger, but one of 1 m in mm is */
 #define LENGTH_PART 0.5
 #define PLANE_PART                                                                                                     \
-    1e-6 /* supports are in one plane up to this part of their extent: positions of a table are rounded */
-#define FLATTER_PART 1e-3 /* inner nodes that are not farther from that plane are meant to be in it */
+    1e-6 /* relative to the extent of the supports; they are in one plane up to this: positions in a
+            table are rounded */
+#define FLATTER_PART                                                                                                   \
+    1e-3 /* relative to the same extent; inner nodes within this distance of the plane are probably
+                             meant to be in it */
 
 typedef struct {
-    int low, high, cable; /* the ends, the smaller index first */
+    int low, high, cable; /* end nodes, smaller index first */
 } joint;
 
 typedef struct {
@@ -28,10 +31,10 @@ typedef struct {
 typedef struct {
     joint *joint;       /* [n_cable] */
     double *coordinate; /* [n_node] */
-    distance *from;     /* [n_node] of the nodes from the middle of the net */
+    distance *from;     /* [n_node], distances of the nodes from the middle of the net */
 } scratch;
 
-/* ---- cables twice ---- */
+/* ---- duplicate cables ---- */
 
 static int by_ends(const void *a, const void *b)
 {
@@ -72,7 +75,8 @@ static int by_distance(const void *a, const void *b)
     return x->node < y->node ? -1 : 1;
 }
 
-/* The middle is the median of each coordinate, which a few far nodes do not move. */
+/* Warns of nodes far from the middle of the net. The middle is the median of each coordinate, which a few far nodes
+ * do not change. */
 static void doubt_nodes(const hf_scene *s, const scratch *t, hf_messages *messages)
 {
     char place[HF_SCENE_PLACE_SIZE];
@@ -99,7 +103,7 @@ static void doubt_nodes(const hf_scene *s, const scratch *t, hf_messages *messag
     if (n > k + SAID_MAX) hf_warning(messages, "scene: and %d more nodes as far away", n - k - SAID_MAX);
 }
 
-/* The longest side of the box around all nodes. */
+/* Warns if the longest side of the box around all nodes is too long. */
 static void doubt_size(const hf_scene *s, hf_messages *messages)
 {
     double largest = 0;
@@ -116,7 +120,8 @@ static void doubt_size(const hf_scene *s, hf_messages *messages)
 
 /* ---- lengths ---- */
 
-/* Lengths in mm; no cable that is made to fit is so long or so short. */
+/* Warns of cables whose length by law differs much from the distance of their nodes. Lengths in mm are
+ * the usual reason. */
 static void doubt_lengths(const hf_scene *s, hf_messages *messages)
 {
     char place[HF_SCENE_PLACE_SIZE];
@@ -136,13 +141,13 @@ static void doubt_lengths(const hf_scene *s, hf_messages *messages)
 
 /* ---- the plane of the supports ---- */
 
-/* The flat that the supports span: a point, a line or a plane, by orthonormal directions. */
+/* The point, line or plane that the supports span, with orthonormal directions. */
 typedef struct {
     double origin[3], along[2][3];
     int n_along;
 } flat;
 
-/* Distance of a point from the flat; `off` is the vector. */
+/* Returns the distance of a point from the flat, m. `off` is the vector of this distance. */
 static double off_flat(const flat *f, const double *p, double off[3])
 {
     for (int c = 0; c < 3; c++)
@@ -155,7 +160,7 @@ static double off_flat(const flat *f, const double *p, double off[3])
     return sqrt(off[0] * off[0] + off[1] * off[1] + off[2] * off[2]);
 }
 
-/* Distance of the support that is farthest from the flat, and where it is. */
+/* Returns the maximum distance of a support from the flat, m, and writes its vector. */
 static double farthest_support(const hf_scene *s, const flat *f, double most_off[3])
 {
     double most = 0, off[3];
@@ -168,8 +173,8 @@ static double farthest_support(const hf_scene *s, const flat *f, double most_off
     return most;
 }
 
-/* A flat of at most two directions that goes through all supports, up to PLANE_PART of their extent. False when there
- * is none. */
+/* Computes a flat of at most two directions through all supports, to PLANE_PART of their extent. Returns false if
+ * there is none. */
 static bool span_supports(const hf_scene *s, flat *f, double *extent_m)
 {
     double off[3] = {0};
@@ -186,8 +191,8 @@ static bool span_supports(const hf_scene *s, flat *f, double *extent_m)
     return true;
 }
 
-/* Without loads and struts a taut net is inside the convex hull of its supports, because each free node is a weighted
- * mean of its neighbours. */
+/* Warns of a net that collapses into the flat of its supports. Without loads and struts, each free node is a weighted
+ * mean of its neighbours, so a taut net is inside the convex hull of its supports. */
 static void doubt_plane(const hf_scene *s, hf_messages *messages)
 {
     static const char *const word[3] = {"at one point", "on one line", "in one plane"};

@@ -16,10 +16,10 @@
 enum { NODE_ID, NODE_X, NODE_Y, NODE_Z, NODE_ROLE, NODE_FX, NODE_FY, NODE_FZ, N_NODE_COLUMN };
 static const char *const node_column[N_NODE_COLUMN] = {"id", "x_m", "y_m", "z_m", "role", "Fx_N", "Fy_N", "Fz_N"};
 
-/* What `hifdm export` writes beside them. */
+/* Columns that `hifdm export` writes in addition. */
 static const char *const node_ours[] = {"x0_m", "y0_m", "z0_m", NULL};
 
-/* Returns true when some load is not zero. */
+/* Reads the nodes. Returns true if some load is not zero. */
 static bool read_nodes(hf_csv *t, const int *where, hf_scene *s)
 {
     bool any_load = false;
@@ -27,7 +27,7 @@ static bool read_nodes(hf_csv *t, const int *where, hf_scene *s)
         const char *id = hf_csv_cell(t, r, where[NODE_ID]);
         for (int c = 0; c < 3; c++) {
             s->position_m[3 * r + c] = hf_csv_number(t, r, where[NODE_X + c], id, node_column[NODE_X + c]);
-            if (where[NODE_FX + c] < 0 || !*hf_csv_cell(t, r, where[NODE_FX + c])) continue; /* empty = no load */
+            if (where[NODE_FX + c] < 0 || !*hf_csv_cell(t, r, where[NODE_FX + c])) continue; /* empty: no load */
             s->load_N[3 * r + c] = hf_csv_number(t, r, where[NODE_FX + c], id, node_column[NODE_FX + c]);
             any_load |= s->load_N[3 * r + c] != 0;
         }
@@ -46,7 +46,8 @@ static const char *const cable_column[N_CABLE_COLUMN] = {"id", "i", "j", "group"
 static const char *const cable_ours[] = {"tension_N",    "length_m",          "q_N_per_m",    "l0_m",
                                          "elongation_m", "l0_minus_theory_m", "adjustment_m", NULL};
 
-/* Of such a column nothing is used, which must not be silent where `value` leaves it open. */
+/* Returns true if every cable has a value. Only then are the columns in cable_ours ignored silently. If a value is
+ * empty, the user may expect that one of these columns replaces it. */
 static bool has_values(const hf_csv *t)
 {
     int column = hf_csv_column(t, "value");
@@ -104,7 +105,7 @@ static void read_cables(hf_csv *t, const int *where, const hf_csv *nodes, const 
 #define BETWEEN_NAMES " \t;"
 
 typedef struct {
-    const char *name; /* in the text of the table */
+    const char *name; /* points into the text of the table */
     int row, set;
 } mention;
 
@@ -124,7 +125,7 @@ static int by_name_and_row(const void *a, const void *b)
     return order ? order : (p->row > q->row) - (p->row < q->row);
 }
 
-/* Cuts the cells into names, in the order of the rows. */
+/* Splits the cells of the column `set` into names, in the order of the rows. */
 static void read_mentions(hf_csv *t, const int *where, mention *all)
 {
     int n = 0;
@@ -178,7 +179,7 @@ static hf_status read_sets(hf_csv *t, const int *where, hf_scene *s)
 
 /* ---- together ---- */
 
-/* The ids still point into the two texts: move them to one block that the scene owns. */
+/* Moves the ids to one block that the scene owns. Until now they point into the texts of the two tables. */
 static hf_status keep_ids(hf_scene *s)
 {
     const hf_csv_texts all[] = {
@@ -190,7 +191,7 @@ static hf_status build(hf_csv *nodes, hf_csv *cables, const double group_EA_N[2]
                        hf_csv_named **cable_index, hf_scene *s)
 {
     int node_where[N_NODE_COLUMN] = {0}, cable_where[N_CABLE_COLUMN] = {0};
-    /* read both files before returning, so that one run shows the faults of both */
+    /* Both files are read before returning, so that one run reports the faults of both. */
     hf_status node_status = hf_csv_read(nodes->path, COLUMN_MAX, nodes, nodes->messages);
     hf_status cable_status = hf_csv_read(cables->path, COLUMN_MAX, cables, cables->messages);
     nodes->ours = node_ours;

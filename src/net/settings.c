@@ -1,4 +1,4 @@
-/* The words of the choices. Defaults, ranges and help are in case/config_table.c. */
+/* Words of the choices in case files. Defaults, ranges and help are in case/config_table.c. */
 #include <hifdm/settings.h>
 
 #include <stddef.h>

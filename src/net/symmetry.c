@@ -1,4 +1,11 @@
-/* Contents: mirror images of nodes - of cables - one plane - classes of genes - together - steps */
+/* Links design variables that are mirror images:
+ *
+ *     scene, model -> sort nodes along the longest axis, sort cables by their ends
+ *       -> for each plane: images of nodes -> images of cables -> join the design variables of each pair
+ *       -> classes with a leader, merged groups
+ *
+ * Contents: mirror images of nodes - mirror images of cables - one plane - classes of design variables -
+ * together - steps */
 #include "net/symmetry.h"
 
 #include "base/arena.h"
@@ -8,24 +15,24 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Tolerance of positions, relative to the net's size, and of loads and targets, relative to their values. From 1e-10 to
- * 1e-8 no test of this room changes; 1e-11 and 1e-7 each fail one. */
+/* Tolerance of positions, relative to the size of the net, and of loads and targets, relative to their values. No test
+ * of the room `net` changes with values from 1e-10 to 1e-8; 1e-11 and 1e-7 each fail one. */
 #define TOLERANCE 1e-9
-/* Base tensions closer than this, relative, are equal but for rounding and convergence. From 1e-6 to 1e-2 no test of
- * this room changes; 1e-9 fails one. */
+/* Initial tensions that agree to this relative tolerance differ only by rounding and convergence. No test of the room
+ * `net` changes with values from 1e-6 to 1e-2; 1e-9 fails one. */
 #define BASE_AGREEMENT 1e-6
-#define NAMED_MAX 5 /* cables that a message names; ids of tables have at most 255 bytes */
+#define NAMED_MAX 5 /* maximum number of cables in a message; ids of tables have at most 255 bytes */
 
 /* ---- mirror images of nodes ---- */
 
 typedef struct {
-    double at_m; /* along the axis of the sweep */
+    double at_m; /* coordinate along the axis of the sweep */
     int node;
 } place;
 
 typedef struct {
-    int end[2]; /* nodes, the smaller first */
-    int kind;   /* of group and law */
+    int end[2]; /* nodes, smaller index first */
+    int kind;   /* group and law */
     int cable;
     double target;
 } link;
@@ -34,12 +41,13 @@ typedef struct {
     const hf_scene *s;
     const hf_model *m;
     double low_m[3], high_m[3], size_m, load_N; /* extent; largest load component */
-    int sweep;                                  /* the axis along which nodes are sorted: the longest */
-    place *place;                               /* [n_node] sorted */
-    link *link;                                 /* [n_cable] sorted */
-    int *node_image, *cable_image;              /* [n_node], [n_cable] under the plane looked at; -1 = none */
-    int *gene_of_cable, *gene_of_node;          /* [n_cable], [n_node] or -1; of those that a plane may link */
-    int *parent;                                /* [n_gene] of the union-find over both planes */
+    int sweep;                                  /* the longest axis; nodes are sorted along it */
+    place *place;                               /* [n_node], sorted */
+    link *link;                                 /* [n_cable], sorted */
+    int *node_image, *cable_image;              /* [n_node], [n_cable], images under the current plane; -1: none */
+    int *gene_of_cable, *gene_of_node;          /* [n_cable], [n_node], design variables that a plane may
+                                                   link; -1: none */
+    int *parent;                                /* [n_gene], union-find over both planes */
     int *group_parent, *group_label;            /* [n_gene_group] */
 } search;
 
@@ -84,7 +92,7 @@ static void measure(search *q)
     }
 }
 
-/* True when node j is at `target`, has the role of node i, and carries its mirrored load. */
+/* Returns true if node j is at `target`, has the role of node i, and carries its mirrored load. */
 static bool is_node_image(const search *q, int axis, int i, int j, const double target[3])
 {
     if (q->s->role[i] != q->s->role[j]) return false;
@@ -103,7 +111,7 @@ static int find_node_image(const search *q, int axis, int i)
     for (int c = 0; c < 3; c++)
         target[c] = c == axis ? q->low_m[c] + q->high_m[c] - coordinate(q, i, c) : coordinate(q, i, c);
     int from = 0, to = q->s->n_node;
-    while (from < to) { /* the first node not before the target */
+    while (from < to) { /* finds the first node not before the target */
         int middle = from + (to - from) / 2;
         if (q->place[middle].at_m < target[q->sweep] - slack)
             from = middle + 1;
@@ -123,8 +131,8 @@ static int compare_ends(const int a[2], const int b[2])
     return first ? first : (a[1] > b[1]) - (a[1] < b[1]);
 }
 
-/* Orders cables by their ends, and cables with the same two ends by kind and target, so that a cable and its image have
- * the same rank among the cables that share their ends. */
+/* Orders cables by their ends. Cables with the same ends are ordered by kind and target. A cable and its image then
+ * have the same rank among the cables with their ends. */
 static int compare_links(const void *a, const void *b)
 {
     const link *x = a, *y = b;
@@ -134,8 +142,8 @@ static int compare_links(const void *a, const void *b)
     return order ? order : (x->cable > y->cable) - (x->cable < y->cable);
 }
 
-/* True when cables a and b agree in kind, target and EA. The tolerance of the target includes that of lengths, which
- * follows from the tolerance of the positions. */
+/* Returns true if cables a and b agree in kind, target and EA. The tolerance of the target includes that of lengths,
+ * which follows from the tolerance of positions. */
 static bool is_alike(const search *q, const link *a, const link *b)
 {
     double tolerance = fmax(TOLERANCE, 4 * TOLERANCE * q->size_m / q->m->length_m[a->cable]);
@@ -144,7 +152,8 @@ static bool is_alike(const search *q, const link *a, const link *b)
     return !EA_N || fabs(EA_N[a->cable] - EA_N[b->cable]) <= TOLERANCE * EA_N[a->cable];
 }
 
-/* The image of a cable has the same rank among the cables that join its two ends. */
+/* Returns the image of the cable at index `here`, or -1. The image has the same rank among the cables
+ * between its ends. */
 static int find_cable_image(const search *q, int here)
 {
     const link *own = q->link + here;
@@ -167,7 +176,7 @@ static int find_cable_image(const search *q, int here)
 
 /* ---- one plane ---- */
 
-/* Finds all images under one plane. Returns the number of cables without one. */
+/* Finds all images under one plane. Returns the number of cables without an image. */
 static int reflect(search *q, int axis)
 {
     int n_missing = 0;
@@ -175,7 +184,7 @@ static int reflect(search *q, int axis)
         q->node_image[i] = find_node_image(q, axis, i);
     for (int k = 0; k < q->s->n_cable; k++)
         q->cable_image[q->link[k].cable] = find_cable_image(q, k);
-    for (int e = 0; e < q->s->n_cable; e++) { /* with two nodes at one place, an image may not point back */
+    for (int e = 0; e < q->s->n_cable; e++) { /* if two nodes have the same position, an image may not point back */
         int image = q->cable_image[e];
         if (image < 0 || q->cable_image[image] != e) n_missing++;
     }
@@ -200,9 +209,9 @@ static hf_status refuse(const search *q, int axis, int n_missing, hf_messages *m
                     where, "xy"[axis], (q->low_m[axis] + q->high_m[axis]) / 2, n_missing, names, more);
 }
 
-/* ---- classes of genes ---- */
+/* ---- classes of design variables ---- */
 
-/* Join the classes of a and b; the smaller root stays, so that a root is the smallest member of its class. */
+/* Joins the classes of a and b. The smaller root remains, so that a root is the smallest member of its class. */
 static void join(int *parent, int a, int b)
 {
     a = hf_union_find_root(parent, a);
@@ -213,7 +222,8 @@ static void join(int *parent, int a, int b)
         parent[a] = b;
 }
 
-/* Merges the groups whose genes have the same leader, and numbers the groups again in the order of their genes. */
+/* Merges groups whose design variables have the same leader. Numbers the groups again in the order of
+ * their design variables. */
 static void merge_groups(const search *q, hf_model *m)
 {
     int *group_parent = q->group_parent, *label = q->group_label;
@@ -233,7 +243,8 @@ static void merge_groups(const search *q, hf_model *m)
 
 /* ---- together ---- */
 
-/* Rows that vary only one of two images link neither. */
+/* Joins two images. Neither is linked if only one of them is varied, or if different rows of
+ * optimize.variables vary them. */
 static void join_images(search *q, int gene, int image)
 {
     const hf_model *m = q->m;
@@ -335,7 +346,7 @@ void hf_symmetry_average(const hf_model *m, double *base_N)
 void hf_symmetry_follow(int n_gene, const int *leader, const double *base_N, double *design_N)
 {
     for (int k = 0; k < n_gene; k++)
-        if (base_N[k] == base_N[leader[k]]) /* equal in every bit */
+        if (base_N[k] == base_N[leader[k]]) /* equal in every bit: the copy stays exactly symmetric */
             design_N[k] = design_N[leader[k]];
         else
             design_N[k] = base_N[k] + (design_N[leader[k]] - base_N[leader[k]]);

@@ -1,4 +1,4 @@
-/* Contents: genes of cables - genes of supports - links - all rows - values and bounds */
+/* Contents: design variables of cables - design variables of supports - links - all rows - values and bounds */
 #include "net/variables.h"
 
 #include "base/arena.h"
@@ -10,26 +10,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* No tension, force density or length falls below this part of its value after form-finding, whatever the range: a
- * cable whose tension vanishes is no cable, and the solvers want values above zero. */
+/* Minimum of a tension, force density or length relative to its initial value, whatever its range. A cable without
+ * tension is no cable, and the solvers need values above zero. */
 #define LEFT 1e-3
 
-/* ---- genes of cables ---- */
+/* ---- design variables of cables ---- */
 
 typedef struct {
     const hf_scene *scene;
     const hf_optimize_settings *settings;
     const hf_surface_settings *surface;
     hf_model *m;
-    int *picked;   /* [n_cable] scratch: the cables of a row */
-    int *taken;    /* [n_cable + n_node] row that varies a cable, or a support; -1: none */
-    int *cable;    /* [n_cable + 3 n_node] genes, as in the model */
-    hf_gene *gene; /* [n_cable + 3 n_node] */
+    int *picked;   /* [n_cable], scratch: the cables of a row */
+    int *taken;    /* [n_cable + n_node], the row that varies a cable or a support; -1: none */
+    int *cable;    /* [n_cable + 3 n_node], cable of each design variable, as in the model */
+    hf_gene *gene; /* [n_cable + 3 n_node], design variables */
     hf_messages *messages;
     char place[HF_PLACE_SIZE];
 } maker;
 
-/* Where a key of a row stands. */
+/* Returns the location of a key of a row. */
 static const char *where_in(maker *q, int row, const char *key)
 {
     return hf_messages_place(q->messages, q->place, "optimize.variables.%d.%s", row, key);
@@ -49,7 +49,7 @@ static bool varies_support(hf_vary vary)
     return vary == HF_VARY_SUPPORT_Z || vary == HF_VARY_SUPPORT_NORMAL || vary == HF_VARY_SUPPORT_XYZ;
 }
 
-/* Note that a row varies cable or support `at`, which no other row may. */
+/* Records that a row varies cable or support `at`. Returns HF_BAD_CASE if another row already does. */
 static hf_status take(maker *q, int row, int at, const char *kind, const char *id)
 {
     if (q->taken[at] >= 0)
@@ -83,7 +83,7 @@ static hf_status add_cable(maker *q, int row, int e)
     return HF_OK;
 }
 
-/* ---- genes of supports ---- */
+/* ---- design variables of supports ---- */
 
 static void find_normal(const maker *q, int support_row, double normal[3])
 {
@@ -113,7 +113,7 @@ static hf_status add_support(maker *q, int row, int support_row)
     return HF_OK;
 }
 
-/* Does a cable join this support to a node that can move? */
+/* Returns true if a cable joins this support to a free node. */
 static bool holds_net(const hf_model *m, int support_row)
 {
     for (int k = 0; k < 2 * m->n_cable; k++)
@@ -121,7 +121,8 @@ static bool holds_net(const hf_model *m, int support_row)
     return false;
 }
 
-/* The supports at the ends of the cables of a row that hold the net, each once, in the order of the cables. */
+/* Adds the supports at the ends of the cables of a row that hold the net. Each is added once, in the order
+ * of the cables. */
 static hf_status add_supports(maker *q, int row, int n_picked)
 {
     const hf_model *m = q->m;
@@ -140,7 +141,8 @@ static hf_status add_supports(maker *q, int row, int n_picked)
 
 /* ---- links ---- */
 
-/* The genes of a row with link: set follow its first, component by component of supports. */
+/* Lets the design variables of a row with link: set follow the first one. For support_xyz, each component follows the
+ * same component of the first support. */
 static void link_sets(const maker *q)
 {
     hf_model *m = q->m;
@@ -155,7 +157,8 @@ static void link_sets(const maker *q)
     }
 }
 
-/* Linked genes are in one group. Groups are numbered in the order of their first genes. */
+/* Puts linked design variables into the same group. Groups are numbered in the order of their
+ * first design variables. */
 static void join_groups(hf_model *m, int *label)
 {
     int n = 0;
@@ -165,7 +168,7 @@ static void join_groups(hf_model *m, int *label)
         int group = m->gene_group[m->gene_leader[k]];
         if (label[group] < 0) label[group] = n++;
     }
-    for (int k = m->n_gene - 1; k >= 0; k--) /* a leader comes before those that follow it */
+    for (int k = m->n_gene - 1; k >= 0; k--) /* a leader precedes its followers */
         m->gene_group[k] = label[m->gene_group[m->gene_leader[k]]];
     m->n_gene_group = n;
 }
@@ -189,7 +192,7 @@ static hf_status make_row(maker *q, int row)
     return HF_OK;
 }
 
-/* Put the genes into a block of the model's own. */
+/* Copies the design variables into a block that the model owns. */
 static hf_status keep(const maker *q)
 {
     hf_model *m = q->m;
@@ -224,12 +227,12 @@ hf_status hf_variables_apply(const hf_scene *scene, const hf_optimize_settings *
         q.taken[i] = -1;
     m->n_gene = 0;
     hf_status status = HF_OK;
-    for (int row = 0; row < settings->n_variable; row++) /* the faults of all rows are told */
+    for (int row = 0; row < settings->n_variable; row++) /* reports the faults of all rows */
         if (make_row(&q, row) != HF_OK) status = HF_BAD_CASE;
     if (status != HF_OK) m->n_gene = 0;
     if (status == HF_OK && keep(&q) != HF_OK)
         status = hf_error(messages, HF_NO_MEMORY, "optimize.variables: out of memory");
-    m->has_newton = !m->has_strut; /* a design may change laws that one solve serves into others */
+    m->has_newton = !m->has_strut; /* a design may need Newton's method although the laws of the scene do not iterate */
     hf_arena_free(&arena);
     return status;
 }

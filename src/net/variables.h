@@ -1,25 +1,28 @@
-/* variables - makes the genes that the rows of optimize.variables ask for, in place of the boundary pretensions.
+/* variables - makes the design variables that the rows of optimize.variables ask for. They replace the boundary
+ * pretensions.
  *
- * A row has a gene for each cable of its set with a free end, or one or three for each support at which these cables
- * end, in the order of cables and nodes. Genes of a row that are linked change by the same step. */
+ * A row makes one design variable for each cable of its set with a free end. A row that varies supports makes one or
+ * three for each support at the ends of these cables, in the order of the cables. Linked design variables of a row
+ * change by the same step. */
 #ifndef HIFDM_VARIABLES_H
 #define HIFDM_VARIABLES_H
 
 #include <hifdm/model.h>
 
-/* Replace the genes of a newly built model; without rows nothing changes. surface: of support_normal. Returns HF_OK;
- * HF_BAD_CASE for a set that does not exist or has nothing to vary, for a cable or support that is varied twice, and
- * for what a cable of that law does not have; HF_NO_MEMORY. Links by symmetry are made by hf_symmetry_apply. */
+/* Replaces the design variables of a newly built model. Without rows nothing changes. `surface` is needed for
+ * support_normal. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE for a set that does not exist or has nothing to
+ * vary, for a cable or support that two rows vary, and for a quantity that the law of a cable lacks. hf_symmetry_apply
+ * makes links by symmetry later. */
 hf_status hf_variables_apply(const hf_scene *scene, const hf_optimize_settings *settings,
                              const hf_surface_settings *surface, hf_model *model, hf_messages *messages);
 
-/* The values of the genes in the shape in which cables have these force densities (N/m), tensions (N) and lengths (m),
- * [n_cable]: of supports 0. */
+/* Writes the values of the design variables into value [n_gene], from force densities (N/m), tensions (N) and lengths
+ * (m) of the cables, all [n_cable]. Displacements of supports are 0. */
 void hf_variables_read(const hf_model *model, const double *q_N_per_m, const double *tension_N, const double *length_m,
                        double *value);
 
-/* The bounds of gene k around its value `base`, and *reach: how far the first designs spread from it. *fault (unless
- * NULL): NULL, or why there is no value between them. */
+/* Writes the bounds of design variable i_gene around its initial value `base`. *reach is the distance from it over
+ * which the first designs are spread. */
 void hf_variables_bound(const hf_optimize_settings *settings, const hf_model *model, int i_gene, double base,
                         double *lower, double *upper, double *reach);
 
