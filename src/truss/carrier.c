@@ -1,3 +1,9 @@
+/* Builds the truss of a case and solves it under forces on its attachments:
+ *
+ *     checked truss, scene -> hf_frame_build: numbering, assembly, factor
+ *       -> hf_truss_attach: supports of the net -> nearest truss nodes
+ *       -> hf_frame_condense -> flexibility [3a][3a] of the attachments
+ *     forces on attachments, own loads -> hf_frame_solve -> displacements, reactions, member forces */
 #include <hifdm/carrier.h>
 
 #include "base/arena.h"

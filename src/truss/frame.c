@@ -1,5 +1,13 @@
-/* Contents: members - layout - dofs and numbering - assembly - mechanisms - build - load cases - from displacements -
- * condensation */
+/* Linear statics of a truss of spatial beams:
+ *
+ *     truss -> axes, lengths, stiffness of members -> degrees of freedom -> row numbering
+ *       -> assembly (lower band) -> unit diagonal -> Cholesky factor, condition number (or the error HF_MECHANISM)
+ *     load case: settlements, temperatures, forces -> forces out of balance -> back substitution -> displacements
+ *       -> reactions, member end forces, strain energy
+ *     condensation: unit forces at the attachments -> back substitution -> flexibility
+ *
+ * Contents: members - layout - dofs and numbering - assembly - mechanisms - build - load cases - from
+ * displacements - condensation */
 #include <hifdm/frame.h>
 
 #include "base/arena.h"
@@ -14,13 +22,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The ranges are those over which no test of this room and no frame of tests/verify changes. */
-#define CONDITION_MAX 1e13 /* of the scaled matrix: beyond it no digit of a displacement can be trusted; 1e11 to 1e15 */
-#define SHIFT 1e-11        /* makes the scaled matrix of a mechanism definite, well above rounding; 1e-13 to 1e-9 */
-#define POWER_STEPS 20     /* of inverse iteration, to see which node moves; 2 to 60 */
-#define CASES_AT_ONCE 64   /* of the condensation: bounds its memory; 1 to 512 */
+/* Each comment ends with the range in which no test of the room `truss` and no frame of tests/verify changes. */
+#define CONDITION_MAX                                                                                                  \
+    1e13                 /* maximum condition number of the scaled matrix; beyond it no digit of a displacement is
+                              certain; 1e11 to 1e15 */
+#define SHIFT 1e-11      /* makes the scaled matrix of a mechanism definite; far above rounding; 1e-13 to 1e-9 */
+#define POWER_STEPS 20   /* steps of inverse iteration to find the node that moves; 2 to 60 */
+#define CASES_AT_ONCE 64 /* right-hand sides per pass of the condensation; limits its memory; 1 to 512 */
 
-enum { N_DEFORMATION = 6 }; /* elongation, twist, end rotations about z at i, j, about y at i, j, against the chord */
+enum {
+    N_DEFORMATION = 6
+}; /* elongation, twist, then end rotations relative to the chord: about z at i and j, about y
+                               at i and j */
 
 /* ---- members ---- */
 
@@ -43,7 +56,8 @@ static void set_axes(const hf_truss *t, int e, hf_frame *f)
     }
 }
 
-/* Exact two-node Timoshenko beam: Phi = 12 E I/(G As L^2), 0 for an infinite shear area. */
+/* Computes the stiffness of an exact two-node Timoshenko beam with Phi = 12 E I/(G As L^2). Phi is 0 for an
+ * infinite shear area. */
 static void set_stiffness(const hf_truss *t, int e, hf_frame *f)
 {
     double length = f->length_m[e], *k = f->stiffness + N_DEFORMATION * (size_t)e;
@@ -63,8 +77,8 @@ static int n_deformation(const hf_truss *t, int e)
     return t->joint[e] == HF_JOINT_PINNED ? 1 : N_DEFORMATION;
 }
 
-/* Deformations per displacement of the two nodes, b[n_deformation][12]. Measured against the chord, so that a rigid
- * motion strains nothing, to rounding. */
+/* Computes the deformations per displacement of the two nodes, b [N_DEFORMATION][12]. Rotations are relative to the
+ * chord, so that a rigid-body motion causes no strain, to rounding. */
 static void deformation_matrix(const hf_frame *f, int e, double b[N_DEFORMATION][12])
 {
     const double *x = f->axes + 9 * (size_t)e, *y = x + 3, *z = x + 6;
@@ -86,7 +100,7 @@ static void deformation_matrix(const hf_frame *f, int e, double b[N_DEFORMATION]
     }
 }
 
-/* Forces of deformations: N, T, Mz at i and j, My at i and j. */
+/* Computes the forces q of deformations: N, T, Mz at i and j, My at i and j. */
 static void resist(const double *k, const double *deformation, double *q)
 {
     q[0] = k[0] * deformation[0];
@@ -97,7 +111,8 @@ static void resist(const double *k, const double *deformation, double *q)
     }
 }
 
-/* Elastic deformations of a member under a displacement of all nodes: the whole ones less those of its temperature. */
+/* Computes the elastic deformations of a member under displacements of all nodes: the total deformations minus
+ * the thermal ones. */
 static void deform(const hf_frame *f, int e, const double *displacement, double rise_K, double *deformation)
 {
     const hf_truss *t = f->truss;
@@ -124,7 +139,7 @@ static void deform(const hf_frame *f, int e, const double *displacement, double 
     deformation[5] = turn_j[1] + along[2] / length;
 }
 
-/* Local end forces from the forces of the deformations: equilibrium of the member. */
+/* Computes the local end forces s [12] from the forces q of the deformations, by equilibrium of the member. */
 static void end_forces(const double *q, double length, double *s)
 {
     double shear_y = (q[2] + q[3]) / length, shear_z = (q[4] + q[5]) / length;
@@ -147,7 +162,7 @@ static void lay_out(hf_arena *a, const hf_truss *t, hf_frame *f)
 
 /* ---- dofs and numbering ---- */
 
-/* Mark each dof before rows are numbered: 0 (will get a row), HF_FRAME_FIXED or HF_FRAME_ABSENT. */
+/* Marks each dof before rows are numbered: 0 (gets a row), HF_FRAME_FIXED or HF_FRAME_ABSENT. */
 static void classify_dofs(const hf_truss *t, int *row_of_dof)
 {
     for (int k = 0; k < HF_TRUSS_DOF * t->n_node; k++)
@@ -159,8 +174,8 @@ static void classify_dofs(const hf_truss *t, int *row_of_dof)
         if (t->fixed[k / HF_TRUSS_DOF] >> k % HF_TRUSS_DOF & 1) row_of_dof[k] = HF_FRAME_FIXED;
 }
 
-/* Nodes in an order with a small bandwidth, by hf_numbering_find on a net with a cable for each member, whose supports
- * are the nodes without any free dof. */
+/* Orders the nodes so that the bandwidth is small. hf_numbering_find does it for a net with one cable for each member.
+ * The supports of this net are the nodes without a free dof. */
 static hf_status order_nodes(const hf_truss *t, const int *row_of_dof, int *order, int *n_ordered)
 {
     int unused;
@@ -181,7 +196,7 @@ static hf_status order_nodes(const hf_truss *t, const int *row_of_dof, int *orde
     return status;
 }
 
-/* Number the rows in this order; returns their number. */
+/* Numbers the rows in this order. Returns their number. */
 static int give_rows(const int *order, int n_ordered, int *row_of_dof)
 {
     int n = 0;
@@ -245,7 +260,8 @@ static void assemble(const hf_frame *f, double *band)
     }
 }
 
-/* Make the diagonal 1, so that displacements and rotations weigh alike. Returns a row without stiffness, or -1. */
+/* Scales the matrix to a unit diagonal, so that displacements and rotations have equal weight. Returns a row without
+ * stiffness, or -1. */
 static int scale_to_unit_diagonal(const hf_frame *f, double *scale, double *band)
 {
     size_t width = (size_t)f->half_bandwidth + 1;
@@ -261,15 +277,16 @@ static int scale_to_unit_diagonal(const hf_frame *f, double *scale, double *band
 
 /* ---- mechanisms ---- */
 
-/* The row that moves most in the motion with the least stiffness, by inverse iteration on the matrix, which is
- * shifted to be definite. -1 when the shifted matrix has no finite factor. */
+/* Returns the row with the largest component in the motion with the smallest stiffness. The motion is found by inverse
+ * iteration on the matrix, which is shifted to be definite. Returns -1 if the shifted matrix has no finite factor. */
 static int find_loosest_row(const hf_frame *f, double *work)
 {
     assemble(f, f->factor);
     scale_to_unit_diagonal(f, f->scale, f->factor);
     for (int i = 0; i < f->n_dof; i++) {
         f->factor[(size_t)i * ((size_t)f->half_bandwidth + 1)] += SHIFT;
-        work[i] = 1 + 0.37 * (double)(i % 7) - 0.21 * (double)(i % 11); /* a start with a part of any motion */
+        work[i] = 1 + 0.37 * (double)(i % 7) - 0.21 * (double)(i % 11); /* start vector with a component
+                                                                           in every motion */
     }
     if (hf_band_factor(f->n_dof, f->half_bandwidth, f->factor) != 0) return -1;
     int loosest = 0;
@@ -286,7 +303,7 @@ static int find_loosest_row(const hf_frame *f, double *work)
     return loosest;
 }
 
-/* The error for a truss that moves in this row; row < 0: which one is unknown. */
+/* Reports that the truss moves without force in this row. If row < 0, the row is unknown. Returns HF_MECHANISM. */
 static hf_status refuse(const hf_frame *f, int row, hf_messages *messages)
 {
     static const char *const direction[] = {"move along x", "move along y", "move along z",
@@ -391,7 +408,7 @@ static double rise_of(const hf_frame_load *load, int e)
     return load->temperature_K ? load->temperature_K[e] : 0;
 }
 
-/* Subtract from a vector over the nodes the forces that the members need at them under a displacement. */
+/* Subtracts the forces that displaced members need at the nodes from `force` [n_node][6]. */
 static void subtract_members(const hf_frame *f, const hf_frame_load *load, const double *displacement, double *force)
 {
     const hf_truss *t = f->truss;
@@ -409,7 +426,8 @@ static void subtract_members(const hf_frame *f, const hf_frame_load *load, const
     }
 }
 
-/* Forces out of balance under a displacement, over all dofs: the load less the forces that the members need. */
+/* Computes the forces out of balance at all dofs under a displacement: the load minus the forces that
+ * the members need. */
 static void out_of_balance(const hf_frame *f, const hf_frame_load *load, const double *displacement, double *force)
 {
     size_t bytes = HF_TRUSS_DOF * (size_t)f->truss->n_node * sizeof *force;
@@ -420,7 +438,7 @@ static void out_of_balance(const hf_frame *f, const hf_frame_load *load, const d
     subtract_members(f, load, displacement, force);
 }
 
-/* The dof of a moment that nothing resists, or -1. */
+/* Returns the dof of a moment that nothing resists, or -1. */
 static int find_bad_dof(const hf_frame *f, int n_case, const hf_frame_load *load)
 {
     for (int k = 0; k < n_case; k++)
@@ -445,7 +463,7 @@ hf_status hf_frame_solve(const hf_frame *f, int n_case, const hf_frame_load *loa
         for (size_t i = 0; i < n; i++)
             displacement[k * n + i] =
                 load[k].settlement && f->row_of_dof[i] == HF_FRAME_FIXED ? load[k].settlement[i] : 0;
-    /* with supports settled and all other dofs held, the free ones move under the forces out of balance */
+    /* First, supports settle and all other dofs are held. Then the free dofs move under the forces out of balance. */
     for (size_t k = 0; k < (size_t)n_case; k++) {
         out_of_balance(f, &load[k], displacement + k * n, force);
         for (size_t i = 0; i < n; i++)
@@ -498,7 +516,7 @@ double hf_frame_strain_energy(const hf_frame *f, const hf_frame_load *load, cons
 
 /* ---- condensation ---- */
 
-/* Columns first..first+n-1 of the flexibility: one right-hand side, a unit force, for each. */
+/* Computes columns first to first+n-1 of the flexibility. Each has a unit force as right-hand side. */
 static void condense_some(const hf_frame *f, int n_point, const int *node, int first, int n, double *work,
                           double *flexibility)
 {

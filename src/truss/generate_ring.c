@@ -1,4 +1,6 @@
-/* Makes the hoop truss under the rim of a net over a paraboloid. */
+/* Makes the hoop truss under the rim of a net over a paraboloid:
+ *
+ *     rim of the net [n] -> front and rear joints -> longerons, verticals, bracing -> supports */
 #include <hifdm/truss.h>
 
 #include "base/elementary.h"
@@ -8,8 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define ID_SIZE 16        /* of f<k>; a member's id has room for two of them */
-#define HEIGHT_SLACK 1e-9 /* relative: the same height, written in two places */
+#define ID_SIZE 16        /* bytes of a node id such as f<k>; a member id has room for two of them */
+#define HEIGHT_SLACK 1e-9 /* relative; heights that agree to this are equal */
 
 const char *const hf_ring_held_word[4] = {"bay", "vertical", "three_verticals", NULL};
 
@@ -18,7 +20,7 @@ const char *const hf_ring_held_word[4] = {"bay", "vertical", "three_verticals", 
 const char *hf_truss_ring_fault(const hf_truss_settings *s, const hf_paraboloid *p, char *what, size_t size)
 {
     const hf_truss_ring *r = &s->ring;
-    int n_gap = 6 * p->rings; /* of triangles; those of a quad net are only counted when they are made */
+    int n_gap = 6 * p->rings; /* for triangles; the gaps of a quad net are known only when they are made */
     bool is_counted = p->grid == HF_GRID_TRIANGLE;
     if (p->rear_distance_m == 0 && r->height_m == 0) {
         snprintf(what, size, "is missing: the net has no rear rim that tells it");
@@ -46,12 +48,12 @@ const char *hf_truss_ring_fault(const hf_truss_settings *s, const hf_paraboloid 
 typedef struct {
     const hf_truss_settings *s;
     hf_truss *t;
-    int n, cells; /* joints of a ring; gaps between them in a bay */
+    int n, cells; /* joints of a ring; gaps between joints in a bay */
     int i_member;
     char *text, *end;
 } generator;
 
-/* Joint k of the front ring, counted around; that of the rear ring has the next index. */
+/* Returns joint k of the front ring, counted around. The joint of the rear ring below it has the next index. */
 static int joint(const generator *g, int k)
 {
     return 2 * (k % g->n);
@@ -103,8 +105,8 @@ static void place_joints(generator *g, const hf_paraboloid *p, const double *rim
         }
 }
 
-/* The end of a bay whose vertical, or for `is_middle` the end of that bay whose middle, is nearest to this direction
- * from the middle of the aperture. */
+/* Returns the first joint of the bay that is nearest to this direction from the middle of the aperture. A bay is at its
+ * first vertical, or at its middle if `is_middle` is true. */
 static int nearest_bay(const generator *g, const hf_paraboloid *p, double angle_deg, bool is_middle)
 {
     double along_x = hf_cosine(HF_RAD_PER_DEG * angle_deg), along_y = hf_sine(HF_RAD_PER_DEG * angle_deg),
@@ -115,7 +117,7 @@ static int nearest_bay(const generator *g, const hf_paraboloid *p, double angle_
         const double *b = is_middle ? g->t->position_m + 3 * (size_t)joint(g, k + g->cells) : a;
         double x = (a[0] + b[0]) / 2 - p->offset_m, y = (a[1] + b[1]) / 2;
         double cosine = (x * along_x + y * along_y) / hf_norm(x, y, 0);
-        if (!(cosine > most + 1e-12)) continue; /* the first of two that are equally near */
+        if (!(cosine > most + 1e-12)) continue; /* the first of two equally near ones */
         most = cosine;
         nearest = k;
     }
@@ -131,7 +133,7 @@ static void hold(const generator *g, const hf_paraboloid *p)
         g->t->fixed[joint(g, k) + side] = dofs;
         if (r->held == HF_RING_HELD_BAY) g->t->fixed[joint(g, k + g->cells) + side] = dofs;
     }
-    int n_bay = g->n / g->cells; /* three or more, so that thirds of them, rounded, are different verticals */
+    int n_bay = g->n / g->cells; /* at least 3, so that the rounded thirds are different verticals */
     for (int i = 0; i < 3 && r->held == HF_RING_HELD_THREE_VERTICALS; i++)
         g->t->fixed[joint(g, (k / g->cells + (i * n_bay + 1) / 3) % n_bay * g->cells) + 1] = dofs;
 }

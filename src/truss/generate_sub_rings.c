@@ -1,4 +1,7 @@
-/* Makes the truss of basic sub-rings over the modules of a net on a parabolic cylinder (Fig. 15). */
+/* Makes the truss of basic sub-rings over the modules of a net on a parabolic cylinder (Chen et al. 2022, Fig. 15):
+ *
+ *     net settings -> grid of front nodes on the ribs -> module corners with posts
+ *       -> ribs along x (unit BUD) -> lines along y (units MBUG, ABUG) -> supports */
 #include <hifdm/truss.h>
 #include "base/elementary.h"
 #include "truss/tube.h"
@@ -7,8 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define TRUSS_NODE_MAX 1000000 /* keeps every index well inside an int */
-#define ID_SIZE 40             /* of f<i>.<k>_<j>; a member's id has room for two of them */
+#define TRUSS_NODE_MAX 1000000 /* keeps every index far below the range of int */
+#define ID_SIZE 40             /* bytes of a node id such as f<i>.<k>_<j>; a member id has room for two of them */
 
 const char *const hf_diagonals_word[4] = {"none", "single", "crossed", NULL};
 const char *const hf_theory_word[3] = {"euler_bernoulli", "timoshenko", NULL};
@@ -29,21 +32,21 @@ static const hf_truss_unit *unit_of(const hf_truss_settings *s, hf_unit unit)
     return unit == HF_UNIT_BUD ? &s->bud : unit == HF_UNIT_MBUG ? &s->mbug : &s->abug;
 }
 
-/* Unit of the generatrix line i of n + 1: MBUG or ABUG. */
+/* Returns the unit of generatrix line i of n + 1: MBUG or ABUG. */
 static hf_unit line_unit(const hf_truss_settings *s, int i, int n)
 {
     int from_edge = i < n - i ? i : n - i;
     return from_edge % s->main_every == 0 ? HF_UNIT_MBUG : HF_UNIT_ABUG;
 }
 
-/* Index of the front node of module corner (i, j). Its rear node has the next index. */
+/* Returns the index of the front node of module corner (i, j). Its rear node has the next index. */
 static int corner(const generator *g, int i, int j)
 {
     return 2 * (j * (g->c->modules[0] + 1) + i);
 }
 
-/* The outer front nodes carry the supports of edge ties, which stand outside the net. i, j: module borders that the
- * node lies on; -1 between two of them. */
+/* Moves an outer front node to the support of its edge tie, which is outside the net. i, j: the module borders on which
+ * the node lies; -1 if it is between two borders. */
 static void push_out(const generator *g, int i, int j, double position_m[3])
 {
     const hf_cylinder *c = g->c;
@@ -52,7 +55,8 @@ static void push_out(const generator *g, int i, int j, double position_m[3])
     position_m[2] = position_m[0] * position_m[0] / (4 * c->focal_length_m);
 }
 
-/* i, j: as for push_out. */
+/* Adds a front node and the rear node behind it. i_line, j_line: as i, j of push_out. `where` is their id without
+ * the first letter. */
 static void add_node(generator *g, const double *grid_m, int i_line, int j_line, const char *where)
 {
     double front_m[3] = {grid_m[0], grid_m[1], grid_m[2]};
@@ -76,8 +80,8 @@ static void add_member(generator *g, int a, int b, hf_unit unit)
 }
 
 /* Adds chords, inner posts and diagonals of one unit between the front nodes a and b. Its inner front nodes have the
- * indices inside, inside + 2, ...; i_panel is the index of the unit's first panel along the whole line; single
- * diagonals fall in panels of even index and rise in the others. */
+ * indices inside, inside + 2, ... i_panel is the index of the unit's first panel along the whole line. Single diagonals
+ * fall in panels of even index and rise in the others. */
 static void add_unit(generator *g, hf_unit unit, int a, int b, int inside, int i_panel)
 {
     int n = unit_of(g->set, unit)->panels;
@@ -147,8 +151,8 @@ static void add_lines(generator *g)
     }
 }
 
-/* Holds the corners of the module in the middle. With an even number of modules there is none; then the corners on the
- * line between the two middle ones are held. */
+/* Holds the corners of the middle module. If the number of modules along an axis is even, the line between the two
+ * middle modules replaces the middle module along that axis. */
 static void hold(const generator *g)
 {
     const int *m = g->c->modules;
@@ -158,7 +162,7 @@ static void hold(const generator *g)
                 g->t->fixed[corner(g, i, j) + side] = g->set->support_dofs == HF_HELD_ALL_DOFS ? 0x3f : 0x07;
 }
 
-/* Adds the nodes and members of n_unit units to the counts; the corners and the posts there are not counted. */
+/* Adds the nodes and members of n_unit units to the counts, without module corners and the posts there. */
 static void count_unit(const hf_truss_unit *u, double n_unit, double *n_node, double *n_member)
 {
     *n_node += n_unit * 2 * (u->panels - 1);

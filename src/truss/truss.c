@@ -1,4 +1,4 @@
-/* Functions for any truss, generated or read. Contents: words - memory - measures - attachments - checks */
+/* Functions for all trusses, generated or imported. Contents: words - memory - measures - attachments - checks */
 #include <hifdm/truss.h>
 
 #include "base/arena.h"

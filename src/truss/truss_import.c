@@ -40,7 +40,7 @@ static unsigned char read_fixed(hf_csv *t, int row, int column, const char *id)
     }
 }
 
-/* What `hifdm export` writes behind them. */
+/* Columns that `hifdm export` writes in addition. */
 static const char *const node_ours[] = {"ux_m", "uy_m", "uz_m", "rx_rad", "ry_rad", "rz_rad", NULL};
 static const char *const member_ours[] = {"Nx_i_N", "Vy_i_N", "Vz_i_N",  "Tx_i_Nm", "My_i_Nm", "Mz_i_Nm", "Nx_j_N",
                                           "Vy_j_N", "Vz_j_N", "Tx_j_Nm", "My_j_Nm", "Mz_j_Nm", NULL};
@@ -107,7 +107,7 @@ static void read_members(hf_csv *t, const int *where, const hf_csv *nodes, const
 
 /* ---- together ---- */
 
-/* The ids still point into the two texts: move them to one block that the truss owns. */
+/* Moves the ids to one block that the truss owns. Until now they point into the texts of the two tables. */
 static hf_status keep_ids(hf_truss *s)
 {
     const hf_csv_texts all[] = {
@@ -119,7 +119,7 @@ static hf_status build(hf_csv *nodes, hf_csv *members, hf_csv_named **node_index
                        hf_truss *s)
 {
     int node_where[N_NODE_COLUMN] = {0}, member_where[N_MEMBER_COLUMN] = {0};
-    /* read both files before returning, so that one run shows the faults of both */
+    /* Both files are read before returning, so that one run reports the faults of both. */
     hf_status node_status = hf_csv_read(nodes->path, COLUMN_MAX, nodes, nodes->messages);
     hf_status member_status = hf_csv_read(members->path, COLUMN_MAX, members, members->messages);
     nodes->ours = node_ours;

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* The numbers of member e. */
+/* Sets the section, material and joint of member e. */
 static void set_section(const hf_truss_settings *s, double diameter_m, double wall_m, hf_truss *t, int e)
 {
     double outer = diameter_m / 2, inner = outer - wall_m;

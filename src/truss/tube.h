@@ -1,11 +1,11 @@
-/* tube - the section and material of a member, as the generators of trusses have them. */
+/* tube - the section and material of a member of a generated truss. */
 #ifndef HIFDM_TUBE_H
 #define HIFDM_TUBE_H
 
 #include <hifdm/truss.h>
 
-/* Member e from node a to b: a round tube of this outer diameter and wall in the material of the settings. Its id, of
- * the ids of its nodes, is written to text [size]; returns its end. */
+/* Makes member e from node a to b: a round tube with this outer diameter and wall, of the material in the settings.
+ * Writes its id, made of the ids of its nodes, to text [size]. Returns the end of the id. */
 char *hf_tube_join(const hf_truss_settings *settings, double diameter_m, double wall_m, hf_truss *truss, int e, int a,
                    int b, hf_unit unit, char *text, size_t size);
 
