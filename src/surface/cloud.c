@@ -1,4 +1,10 @@
-/* Contents: layout - points - errors - derivatives */
+/* Measures the errors of a shape at the points of a cloud:
+ *
+ *     nodes -> points: nodes themselves, or 3 x 3 quadrature points per facet, with their areas
+ *       -> best fit, if asked for (cloud_fit) -> errors -> residuals, weighted by area
+ *     motion of the nodes -> motion of points and change of areas -> rates of the residuals
+ *
+ * Contents: layout - points - errors - derivatives */
 #include "surface/cloud.h"
 
 #include "linalg/dot.h"
@@ -7,7 +13,7 @@
 
 #include <math.h>
 
-enum { N_GAUSS = HF_FACET_N_FLAT, N_POINT = N_GAUSS * N_GAUSS }; /* of a facet */
+enum { N_GAUSS = HF_FACET_N_FLAT, N_POINT = N_GAUSS * N_GAUSS }; /* quadrature points of a facet */
 
 /* ---- layout ---- */
 
@@ -32,8 +38,8 @@ void hf_cloud_lay_out(hf_arena *a, hf_cloud *c)
 
 /* ---- points ---- */
 
-/* A point of a facet of the corners `row`, bilinear in the nodes, and what belongs to it of `node` [3][n_node]:
- * places, or moves. du, dv: derivatives by u and v. */
+/* Computes quadrature point k of the facet with the corners `row`, bilinear in the nodes. node [3][n_node] contains
+ * positions, or a motion. du, dv: derivatives by u and v. */
 static void blend(const hf_cloud *c, const double *node, const int row[4], int k, double at[3], double du[3],
                   double dv[3])
 {
@@ -78,7 +84,8 @@ static void take_points(hf_cloud *c, const double *node)
             c->position_m[d * c->n + i] = node[d * c->n_node + c->row[i]];
 }
 
-/* The same of a move: `move` of the points, `grow_m2` of their areas; returns the change of the area of all. */
+/* Computes the motion of the points and the changes of their areas from a motion of the nodes. Returns the change of
+ * the total area. */
 static double take_moves(hf_cloud *c, const double *node)
 {
     double all_m2 = 0;
@@ -104,15 +111,15 @@ double hf_cloud_error(hf_surface_kind kind, double m, double curvature, const do
 {
     double t[2], u = hf_wanted_height_above(kind, curvature, p, t), square = 1 + t[0] * t[0] + t[1] * t[1];
     double weight = m < 1 ? 1 / sqrt(square) : 1 / square;
-    double flat = p[2] - u;     /* curvature times the square of the distance from the axis */
-    for (int k = 0; k < 2; k++) /* d(1 + t^2) = 2 t dt, and dt/dx = 2 curvature where there is a slope */
+    double flat = p[2] - u;     /* curvature times the squared distance from the axis */
+    for (int k = 0; k < 2; k++) /* d(1 + t^2) = 2 t dt, and dt/dx = 2 curvature along an axis with a slope */
         d[k] = -weight * t[k] * (1 + 4 * m * curvature * u / square);
     d[2] = weight;
     d[3] = -weight * (flat / curvature + 8 * m * u * flat / square);
     return u * weight;
 }
 
-/* Residual of point i per error. */
+/* Returns the residual of point i per metre of error. */
 static double residual_per_m(const hf_cloud *c, int i)
 {
     return c->n_facet > 0 ? c->root_m[i] / sqrt(c->area_m2) : 1 / sqrt(c->n);
@@ -147,7 +154,7 @@ hf_status hf_cloud_linearise(hf_cloud *c)
     return c->fit == HF_FIT_BEST ? hf_cloud_fit_linearise(c) : HF_OK;
 }
 
-/* rate [n]: of the errors. */
+/* Computes rate [n], the rates of the errors. */
 static void push_errors(const hf_cloud *c, double *rate)
 {
     for (int i = 0; i < c->n; i++) {
@@ -164,7 +171,7 @@ void hf_cloud_push(hf_cloud *c, const double *move, double *rate)
         hf_cloud_fit_push(c, rate);
     else
         push_errors(c, rate);
-    for (int i = 0; i < c->n; i++) { /* a residual is error sqrt(its area / all area) */
+    for (int i = 0; i < c->n; i++) { /* a residual is error * sqrt(own area / total area) */
         double square = c->n_facet > 0 ? c->root_m[i] * c->root_m[i] : 0;
         if (square > 0) rate[i] += c->error_m[i] * (c->grow_m2[i] / square - grow_m2 / c->area_m2) / 2;
         rate[i] *= residual_per_m(c, i);

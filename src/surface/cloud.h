@@ -1,6 +1,6 @@
-/* cloud - the points of a shape at which a goal measures its distance to the wanted surface, inner nodes or points of
- * quadrature in flat facets, with exact derivatives; also where the surface is the best fit to these points (METHOD
- * section 7). */
+/* cloud - points of a shape at which an objective measures the distance from the target surface: inner nodes, or
+ * quadrature points in flat facets. The derivatives are exact, also if the surface is the best fit to these points
+ * (METHOD section 7). */
 #ifndef HIFDM_CLOUD_H
 #define HIFDM_CLOUD_H
 
@@ -9,17 +9,20 @@
 #include "base/arena.h"
 #include "surface/surface_fit.h"
 
-/* The best fit to the points: its parameters, and how they follow them. With G the derivatives of the sum of squares of
- * the half-path errors by the parameters, which are zero, the parameters change by -H^-1 dG, H = dG/dp. */
+/* The best fit to the points: its parameters p, and their derivatives by the points. G is the gradient, by the
+ * parameters, of half the sum of squares of the half-path errors. It is 0 at the fit. So the parameters change by -H^-1
+ * dG, with H = dG/dp. */
 typedef struct {
     hf_fit_parameters found;
-    double factor[HF_FIT_N_PARAMETER * HF_FIT_N_PARAMETER]; /* of H, as hf_dense_factor leaves it */
+    double factor[HF_FIT_N_PARAMETER * HF_FIT_N_PARAMETER]; /* factor of H from hf_dense_factor */
     int pivot[HF_FIT_N_PARAMETER];
-    double *slope;                             /* [parameter][n] of the residual's error by a parameter */
-    double *slope_center;                      /* [3][n] of it by the centre of the points */
-    double *pull;                              /* [parameter][3][n] of G by a point, about the centre */
-    double *pull_area;                         /* [parameter][n] of G by the area that a point stands for */
-    double pull_center[HF_FIT_N_PARAMETER][3]; /* of G by the centre */
+    double *slope;                             /* [parameter][n], derivatives of the errors by the parameters */
+    double *slope_center;                      /* [3][n], derivatives of the errors by the centre of the points */
+    double *pull;                              /* [parameter][3][n], derivatives of G by a point relative
+                                                  to the centre */
+    double *pull_area;                         /* [parameter][n], derivatives of G by the area that
+                                                  a point represents */
+    double pull_center[HF_FIT_N_PARAMETER][3]; /* derivatives of G by the centre */
 } hf_cloud_pose;
 
 typedef struct hf_cloud {
@@ -27,42 +30,42 @@ typedef struct hf_cloud {
     double focal_length_m;
     hf_along along;
     hf_fit fit;
-    int n_node;         /* of the model */
-    int n, n_facet;     /* points, each with one residual; facets, or 0: the points are nodes */
-    const int *row;     /* [n] of the nodes, or [n_facet][4] of the corners; borrowed */
-    hf_cloud_pose pose; /* only of fit best */
+    int n_node;         /* nodes of the model */
+    int n, n_facet;     /* points, with one residual each; facets, or 0 if the points are nodes */
+    const int *row;     /* rows of the nodes [n], or of the corners [n_facet][4]; borrowed */
+    hf_cloud_pose pose; /* used only with fit: best */
     double *position_m; /* [3][n] */
-    double *move;       /* [3][n] scratch: of the points per unit of a variable */
+    double *move;       /* [3][n], scratch: motion of the points per unit of a design variable */
     double *error_m;    /* [n] */
-    double *slope;      /* [3][n] of the error by the place of its point; of a fit about the centre */
+    double *slope;      /* [3][n], derivatives of the error by the point; with a best fit, relative to the centre */
 
-    /* of facets */
-    double area_m2;  /* of all */
-    double *root_m;  /* [n] root of the projected area that a point stands for */
-    double *side_m;  /* [4][n] derivatives of that area by those of x and y by u, then v */
-    double *grow_m2; /* [n] scratch: change of that area */
+    /* only with facets */
+    double area_m2;  /* area of all facets */
+    double *root_m;  /* [n], root of the projected area that a point represents */
+    double *side_m;  /* [4][n], derivatives of that area by x_u, y_u, x_v and y_v */
+    double *grow_m2; /* [n], scratch: change of that area */
 } hf_cloud;
 
-int hf_cloud_facet_points(int n_facet); /* points in so many facets */
+int hf_cloud_facet_points(int n_facet); /* number of points in n_facet facets */
 
-/* Takes the memory of a cloud whose members up to `row` are set. */
+/* Takes the arrays of a cloud from an arena. The members up to `row` must be set. */
 void hf_cloud_lay_out(hf_arena *arena, hf_cloud *cloud);
 
-/* residual [n] of a shape, position_m [3][n_node] by row, whose norm is the RMS of the errors; NaN without a best fit.
- * HF_OK or HF_NO_MEMORY. */
+/* Computes the residuals [n] of a shape, position_m [3][n_node] by row. Their norm is the RMS of the errors. They are
+ * NaN if there is no best fit. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_cloud_measure(hf_cloud *cloud, const double *position_m, double *residual);
 
-/* Derivatives of a best fit, at the shape that was measured last. HF_OK, or HF_SINGULAR when the points leave the fit
- * open. */
+/* Computes the derivatives of the best fit at the shape measured last. Returns HF_OK, or HF_SINGULAR if the points do
+ * not determine the fit. */
 hf_status hf_cloud_linearise(hf_cloud *cloud);
 
-/* rate [n] of the residuals for a move of all nodes [3][n_node]. */
+/* Computes rate [n], the rates of the residuals for a motion `move` [3][n_node] of the nodes. */
 void hf_cloud_push(hf_cloud *cloud, const double *move, double *rate);
 
-/* ---- parts, for cloud.c ---- */
+/* ---- parts, for cloud.c and cloud_fit.c ---- */
 
-/* Error of a point, u / (1 + t^2)^m with its height u above a surface of this curvature and the slope t there (M16):
- * m = 1 of the half path, 1/2 along the normal. d [4]: its derivatives by the place and by the curvature. */
+/* Returns the error of a point p, m: u / (1 + t^2)^m, with its height u above a surface of this curvature and the slope
+ * t there (M16). m is 1 for the half path and 1/2 along the normal. d [4]: derivatives by p and by the curvature. */
 double hf_cloud_error(hf_surface_kind kind, double m, double curvature, const double p[3], double d[4]);
 
 static inline double hf_cloud_power(hf_along along)
@@ -72,11 +75,11 @@ static inline double hf_cloud_power(hf_along along)
 
 void hf_cloud_fit_lay_out(hf_arena *arena, hf_cloud *cloud);
 
-/* The best fit to position_m, and the errors from it; NaN where there is none. HF_OK or HF_NO_MEMORY. */
+/* Finds the best fit to position_m and the errors from it; NaN if there is no fit. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_cloud_fit_measure(hf_cloud *cloud);
 hf_status hf_cloud_fit_linearise(hf_cloud *cloud);
 
-/* rate [n]: of the errors, for `move` and `grow_m2`. */
+/* Computes rate [n], the rates of the errors, for `move` and `grow_m2`. */
 void hf_cloud_fit_push(hf_cloud *cloud, double *rate);
 
 #endif

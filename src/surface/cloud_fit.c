@@ -1,4 +1,10 @@
-/* The best fit to a cloud as a function of its points. Contents: layout - one point - the fit - derivatives */
+/* The best fit to a cloud as a function of its points:
+ *
+ *     points -> hf_surface_fit_find -> one Newton step -> errors from the fitted surface
+ *     linearise: H factored; derivatives of G and of the errors by each point
+ *     push: motion of points -> change of G -> change of the parameters by H^-1 -> rates of the errors
+ *
+ * Contents: layout - one point - the fit - derivatives */
 #include "surface/cloud.h"
 
 #include "linalg/dense.h"
@@ -9,7 +15,8 @@
 
 enum { N_MOST = HF_FIT_N_PARAMETER };
 
-/* Of parameters of the order of one. A longer step says that the fit is not a minimum as yet, and is not taken. */
+/* Maximum Newton step, for parameters of order one. After a longer step the fit is not yet a minimum, so the step
+ * is not taken. */
 #define STEP_MOST 1e-3
 
 /* ---- layout ---- */
@@ -38,15 +45,15 @@ static hf_fit_frame frame_of(const hf_cloud *c)
 
 /* ---- the fit ---- */
 
-/* G [n], and H [n][n] factored. HF_OK or HF_SINGULAR. */
+/* Computes G [n], and H [n][n] factored. Returns HF_OK or HF_SINGULAR. */
 static hf_status factor(hf_cloud *c, const hf_fit_frame *f, double *G)
 {
     hf_fit_hessian(f, G, c->pose.factor);
     return hf_dense_factor(c->pose.found.n, c->pose.factor, c->pose.pivot) == 0 ? HF_OK : HF_SINGULAR;
 }
 
-/* The fit ends where rounding keeps the sum of squares from falling, which is half of the digits away from where G is
- * zero; one step of Newton's method goes there. Differences of residuals need that. */
+/* Improves the fit by one Newton step. The fit ends when rounding keeps the sum of squares from falling. At that point
+ * the parameters have only half of the digits, which is not enough for differences of residuals. */
 static void refine(hf_cloud *c)
 {
     hf_fit_parameters *found = &c->pose.found;
@@ -79,7 +86,7 @@ hf_status hf_cloud_fit_measure(hf_cloud *c)
 
 /* ---- derivatives ---- */
 
-/* What point i adds to the derivatives of G by parameter k. */
+/* Adds the contributions of point i to the derivatives of G for parameter k. */
 static void pull_of(hf_cloud *c, const hf_fit_frame *f, const hf_fit_point *p, int i, int k)
 {
     hf_cloud_pose *q = &c->pose;
@@ -94,7 +101,7 @@ static void pull_of(hf_cloud *c, const hf_fit_frame *f, const hf_fit_point *p, i
             if (angle >= 0) pull += p->value * p->d[a] * f->slope[angle][a][d];
         }
         q->pull[(3 * k + d) * c->n + i] = weight * pull;
-        q->pull_center[k][d] += weight * (bent[d] - pull); /* a point is placed about the centre */
+        q->pull_center[k][d] += weight * (bent[d] - pull); /* points are measured relative to the centre */
     }
     q->pull_area[k * c->n + i] = p->value * by;
 }

@@ -1,4 +1,9 @@
-/* Contents: facets - sides - the mesh of a facet */
+/* Computes the shape of a mesh under tension N between cables:
+ *
+ *     shape, facets -> match the sides of facets with cables -> force F on cables between two facets
+ *       -> sags F l^2 / (8 T) of the sides -> per facet: Ritz method, minimum area -> lift at any u, v
+ *
+ * Contents: facets - sides - the mesh of a facet */
 #include "surface/facet_mesh.h"
 
 #include "base/elementary.h"
@@ -17,7 +22,7 @@ const double hf_facet_gauss_at[HF_FACET_N_GAUSS] = {0.046910077030668004, 0.2307
 const double hf_facet_gauss_weight[HF_FACET_N_GAUSS] = {0.11846344252809454, 0.23931433524968324, 64.0 / 225,
                                                         0.23931433524968324, 0.11846344252809454};
 
-/* to = b - a, scaled to length 1; 0 where a and b are one. Returns the length. */
+/* Computes `to`, the unit vector from a to b; 0 if a and b are equal. Returns the distance. */
 static double direction(const double *a, const double *b, double to[3])
 {
     for (int d = 0; d < 3; d++)
@@ -38,7 +43,7 @@ void hf_facet_mesh_take(const hf_facets *f, int i, const double *position_m, hf_
     *m = (hf_facet_mesh){.is_triangle = corner[2] == corner[3]};
     for (int k = 0; k < 4; k++)
         m->corner[k] = position_m + 3 * (size_t)corner[k];
-    for (int d = 0; d < 3; d++) { /* the diagonals; of a triangle two sides */
+    for (int d = 0; d < 3; d++) { /* the diagonals; for a triangle two sides */
         one[d] = m->corner[2][d] - m->corner[0][d];
         other[d] = m->corner[3][d] - m->corner[1][d];
     }
@@ -67,7 +72,7 @@ void hf_facet_mesh_at(const hf_facet_mesh *m, double u, double v, double p[3], d
 
 /* ---- sides ---- */
 
-/* A side of a facet, 4 i + k, or a cable, -1 - e, by its nodes, the lower one first. */
+/* A side of a facet (of = 4 i + k) or a cable (of = -1 - e) with its nodes, lower node first. */
 typedef struct {
     int low, high, of;
 } side;
@@ -98,8 +103,9 @@ static int collect(const hf_facets *f, const hf_facet_shape *shape, side *all)
     return n;
 }
 
-/* The mesh of each facet pulls on its side with N across it, in its own plane. Two facets in one plane balance each
- * other; at an angle what is left bends the cable into an arc of height F l^2 / (8 T). Returns N l / T. */
+/* Computes the sags of a side for its two facets. The mesh of each facet pulls on the side with the force N per length,
+ * in the plane of the facet. Two facets in one plane balance each other. At an angle, the rest F bends the cable into
+ * an arc of height F l^2 / (8 T). Returns N l / T. */
 static double bend(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape *shape, double tension_N,
                    const side pair[2], double *sag_m)
 {
@@ -131,7 +137,7 @@ hf_status hf_facet_mesh_sags(double mesh_N_per_m, const hf_facets *f, const hf_f
     int n = collect(f, shape, all);
     memset(sag_m, 0, 4 * (size_t)f->n_facet * sizeof *sag_m);
     *pull_ratio = 0;
-    for (int from = 0, to; from < n; from = to) { /* all between the same two nodes; cables come first */
+    for (int from = 0, to; from < n; from = to) { /* entries between the same two nodes; cables come first */
         double tension_N = 0;
         int first = from;
         for (to = from; to < n && all[to].low == all[from].low && all[to].high == all[from].high; to++)
@@ -155,7 +161,7 @@ hf_status hf_facet_mesh_make_sags(double mesh_N_per_m, const hf_facets *f, const
 
 /* ---- the mesh of a facet ---- */
 
-/* A function of u and v, and its derivatives. */
+/* A function of u and v with its derivatives. */
 typedef struct {
     double value, by_u, by_v;
 } jet;
@@ -175,12 +181,12 @@ static jet scaled(double s, jet a)
     return (jet){s * a.value, s * a.by_u, s * a.by_v};
 }
 
-/* Arcs of height 1 along the sides, then functions that vanish at all sides: the product of the distances from them,
- * times the polynomials to the second power. */
+/* Evaluates the basis at u, v: arcs of height 1 along the sides, then functions that vanish at all sides. The latter
+ * are the product of the distances from all sides, times polynomials up to degree 2. */
 static void evaluate_basis(bool is_triangle, double u, double v, jet to[N_BASIS])
 {
     const jet one = {1, 0, 0}, U = {u, 1, 0}, V = {v, 0, 1}, U1 = less(one, U), V1 = less(one, V);
-    const jet a = times(U1, V1), b = times(U, V1); /* of a triangle, with V: the barycentric coordinates */
+    const jet a = times(U1, V1), b = times(U, V1); /* with V, the barycentric coordinates of a triangle */
     jet bubble = is_triangle ? times(times(a, b), V) : times(times(U, U1), times(V, V1));
     jet s = is_triangle ? less(b, a) : less(U, U1), t = is_triangle ? less(V, a) : less(V, V1);
     to[0] = scaled(4, is_triangle ? times(a, b) : times(times(U, U1), V1));
@@ -192,8 +198,9 @@ static void evaluate_basis(bool is_triangle, double u, double v, jet to[N_BASIS]
         to[N_SIDE + k] = times(bubble, factor[k]);
 }
 
-/* The metric of the facet's plane at u, v: gradients a and b of two functions have the product (g[0] a_u b_u + g[1]
- * (a_u b_v + a_v b_u) + g[2] a_v b_v), times the element of area. `base`: height of the bilinear surface over it. */
+/* Computes the metric of the plane of the facet at u, v. The product of the gradients of two functions a and b, times
+ * the element of area, is g[0] a_u b_u + g[1] (a_u b_v + a_v b_u) + g[2] a_v b_v. *base: gradient of the height of the
+ * bilinear surface over the plane. */
 static void measure_at(const hf_facet_mesh *m, double u, double v, double g[3], jet *base)
 {
     double du[3], dv[3], rise[3];
@@ -240,7 +247,7 @@ void hf_facet_mesh_settle(hf_facet_mesh *m)
                 matrix[HF_FACET_N_BUBBLE * b + a] += weight * product(g, basis[N_SIDE + a], basis[N_SIDE + b]);
         }
     }
-    if (hf_dense_factor(HF_FACET_N_BUBBLE, matrix, pivot) != 0) return; /* a facet without an area has no mesh */
+    if (hf_dense_factor(HF_FACET_N_BUBBLE, matrix, pivot) != 0) return; /* a facet without area has no mesh */
     hf_dense_solve(HF_FACET_N_BUBBLE, matrix, pivot, 1, right);
     memcpy(m->bubble_m, right, sizeof right);
 }
@@ -272,7 +279,7 @@ void hf_facet_mesh_lifted(const hf_facet_mesh *m, double u, double v, double p[3
     }
 }
 
-/* Of a slack cable rounding may leave something of the tension. */
+/* Above this pull ratio a cable is slack: its remaining tension is rounding. */
 #define SLACK_PULL 1e6
 
 const char *hf_facet_mesh_pull_words(double pull_ratio, char text[64])

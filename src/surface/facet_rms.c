@@ -1,4 +1,9 @@
-/* Contents: a shape - points of quadrature - all facets - each facet */
+/* Measures the errors over the facets of a shape:
+ *
+ *     shape, facets -> quadrature points: 3 x 3 per flat facet, or 5 x 5 per facet with a mesh (facet_mesh)
+ *       -> RMS errors by projected area -> best fit to all points -> RMS errors after the fit
+ *
+ * Contents: a shape - quadrature points - all facets - each facet */
 #include "surface/facet_rms.h"
 
 #include "base/arena.h"
@@ -24,22 +29,22 @@ hf_status hf_facet_shape_take(const hf_model *m, const double *position_m, const
     return HF_OK;
 }
 
-/* ---- points of quadrature ---- */
+/* ---- quadrature points ---- */
 
-enum { N_GAUSS = HF_FACET_N_FLAT, N_POINT = N_GAUSS * N_GAUSS }; /* of a facet */
+enum { N_GAUSS = HF_FACET_N_FLAT, N_POINT = N_GAUSS * N_GAUSS }; /* quadrature points of a flat facet */
 
 const double hf_facet_flat_at[HF_FACET_N_FLAT] = {0.11270166537925831, 0.5, 0.88729833462074169};
 const double hf_facet_flat_weight[HF_FACET_N_FLAT] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
-/* Points of quadrature over all facets, those of a facet together: [3][n], and the roots of their weights, which are
- * projected area. */
+/* Quadrature points over all facets, [3][n], with those of a facet adjacent. root_m [n]: roots of their weights, which
+ * are projected areas. */
 typedef struct {
     int n, per_facet;
     double *position_m, *root_m;
-    double *error_m;                 /* [n] scratch of a map */
-    double *sag_m;                   /* [n_facet][4] of the mesh */
+    double *error_m;                 /* [n], scratch for hf_facet_map */
+    double *sag_m;                   /* [n_facet][4], sags of the mesh */
     double pull_ratio, pillow_rms_m; /* NaN without a mesh */
-    bool has_shape;                  /* false: a cable cannot hold the pull of the mesh */
+    bool has_shape;                  /* false: a cable cannot carry the pull of the mesh */
 } points;
 
 static void lay_out(hf_arena *a, int n_facet, points *q)
@@ -52,7 +57,8 @@ static void lay_out(hf_arena *a, int n_facet, points *q)
     q->error_m = hf_arena_take(a, n, sizeof(double));
 }
 
-/* A point of a facet, and projected area per du dv there. Lifting it does not change the area to first order. */
+/* Computes a point p of a facet, lifted along the normal. Returns the projected area per du dv there, m2. The lift does
+ * not change the area to first order. */
 static double point_at(const hf_facet_mesh *m, double u, double v, double lift_m, double p[3])
 {
     double du[3], dv[3];
@@ -62,9 +68,9 @@ static double point_at(const hf_facet_mesh *m, double u, double v, double lift_m
     return fabs(du[0] * dv[1] - du[1] * dv[0]);
 }
 
-/* The bilinear surface through four corners in space; through three of them, the last twice, it is their triangle. The
- * square of the error by height has the fourth power of each parameter, times the first of the area: the rule is exact
- * for it. */
+/* Computes the points of a flat facet: a bilinear surface through four corners, or a triangle if the last two
+ * are equal. The squared height error has degree 4 in each parameter, and the area has degree 1. So the rule is
+ * exact for it. */
 static void put_facet(const hf_facets *f, int i, const hf_facet_shape *shape, points *q)
 {
     hf_facet_mesh flat;
@@ -78,7 +84,8 @@ static void put_facet(const hf_facets *f, int i, const hf_facet_shape *shape, po
     }
 }
 
-/* The facets under their mesh. Where a cable cannot hold its pull there is no shape, and lifts are NaN. */
+/* Computes the points of the facets with their mesh. If a cable cannot carry its pull, there is no shape, and the lifts
+ * are NaN. Returns HF_OK or HF_NO_MEMORY. */
 static hf_status put_meshes(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape *shape, points *q)
 {
     double square = 0, all = 0;
@@ -117,7 +124,7 @@ static hf_status take_points(const hf_surface_settings *s, const hf_facets *f, c
     return HF_OK;
 }
 
-/* Height of a point above the wanted surface; 1 / (1 + t^2) with the slope t there. */
+/* Returns the height of a point above the target surface, m. *weight is 1 / (1 + t^2), with the slope t there. */
 static double height_of(const hf_surface_settings *s, const points *q, int i, double *weight)
 {
     double p[3] = {q->position_m[i], q->position_m[q->n + i], q->position_m[2 * (size_t)q->n + (size_t)i]}, slope[2];
@@ -209,7 +216,7 @@ hf_status hf_facet_measure_near(const hf_surface_pose *from, const hf_surface_se
 
 /* ---- each facet ---- */
 
-/* Mean and RMS of the errors of each facet, by projected area. */
+/* Computes mean and RMS of the errors of each facet, weighted by projected area. */
 static void average(const points *q, int n_facet, double *mean_m, double *rms_m)
 {
     for (int i = 0; i < n_facet; i++) {
@@ -239,7 +246,8 @@ hf_status hf_facet_map(const hf_surface_settings *s, const hf_facets *f, const h
     }
     if (status == HF_OK) {
         average(&q, f->n_facet, to->normal_mean_m, to->normal_rms_m);
-        average(&q, f->n_facet, to->fit_normal_mean_m, to->fit_normal_rms_m); /* NaN, as it stays without a shape */
+        average(&q, f->n_facet, to->fit_normal_mean_m, to->fit_normal_rms_m); /* NaN for now; it stays NaN
+                                                                                 without a shape */
     }
     if (status == HF_OK && q.has_shape)
         status = hf_surface_fit_points(s->kind, s->focal_length_m, q.n, q.position_m, q.root_m, &fit);

@@ -1,4 +1,9 @@
-/* Contents: curvature - steps */
+/* Descends to a minimum of a best fit:
+ *
+ *     parameters -> gradient G, Hessian H -> if H has a negative pivot: one step along it
+ *       -> damped Newton steps, each accepted only if the sum of squares does not rise -> minimum
+ *
+ * Contents: curvature - steps */
 #include "surface/fit_descend.h"
 
 #include "linalg/dense.h"
@@ -9,16 +14,17 @@
 enum { N = HF_FIT_N_PARAMETER };
 
 #define STEPS_MAX 60
-#define STEP_MOST 0.1       /* of parameters of the order of one: steps stay in their valley */
-#define FALL_STEP 1e-2      /* the first one, from a ridge */
-#define PIVOT_LEAST 1e-12   /* of the diagonal: a pivot that is less is rounding */
-#define DAMPING_LEAST 1e-12 /* of the diagonal */
+#define STEP_MOST 0.1       /* maximum step, for parameters of order one; keeps steps in their valley */
+#define FALL_STEP 1e-2      /* first step, down from a ridge */
+#define PIVOT_LEAST 1e-12   /* relative to the diagonal; a smaller pivot is rounding */
+#define DAMPING_LEAST 1e-12 /* relative to the diagonal */
 #define DAMPING_MOST 1e6
-#define SETTLED 1e-13 /* of the sum of squares: what a last step may take off it */
+#define SETTLED 1e-13 /* converged if fall_by of a Newton step is below this share of half the sum of squares */
 
 /* ---- curvature ---- */
 
-/* H [n][n] as L D L'. A pivot below zero of row k is the curvature along x with L' x = e_k: true, and x [n]. */
+/* Factors H [n][n] as L D L'. A negative pivot of row k is the curvature along x with L' x = e_k. Returns true and x
+ * [n] if there is one. */
 static bool find_fall(int n, const double *H, double *x)
 {
     double L[N][N] = {{0}}, D[N];
@@ -66,7 +72,8 @@ static void move(hf_fit_parameters *at, const double *step)
         at->value[at->quantity[k]] += step[k];
 }
 
-/* step [n] = -(H + damping diag H)^-1 G. False where that matrix is not positive, or the step is long. */
+/* Computes step [n] = -(H + damping diag H)^-1 G. Returns false if this matrix is not positive, or if the step
+ * is too long. */
 static bool find_step(int n, const double *H, const double *G, double damping, double *step)
 {
     double A[N * N], x[N];
@@ -81,14 +88,14 @@ static bool find_step(int n, const double *H, const double *G, double damping, d
     return largest(n, step) <= STEP_MOST;
 }
 
-/* The sum of squares and its derivatives at other parameters. */
+/* Returns half the sum of squares at other parameters, with its derivatives G and H. */
 static double look(const hf_fit_frame *f, const hf_fit_parameters *at, double *G, double *H)
 {
     hf_fit_frame here = hf_fit_frame_of(f->kind, 1 / (4 * f->wanted_per_m), f->n, f->position_m, f->root_weight, at);
     return hf_fit_hessian(&here, G, H);
 }
 
-/* Twice what a step of Newton's takes off the half of the sum of squares. */
+/* Returns twice the decrease of half the sum of squares that a Newton step predicts. */
 static double fall_by(int n, const double *G, const double *step)
 {
     double fall = 0;
@@ -97,8 +104,8 @@ static double fall_by(int n, const double *G, const double *step)
     return fall;
 }
 
-/* A step along a curved valley ends on its side, above the place where it began; one more from there ends on its floor.
- * False, and all as it was, where that is not lower either. */
+/* Takes a step. A step along a curved valley ends on its side, above its start. A second step from there then leads to
+ * the floor of the valley. Returns false and changes nothing if this is not lower either. */
 static bool take_step(const hf_fit_frame *f, hf_fit_parameters *at, const double *step, double damping, double *sum,
                       double *G, double *H)
 {

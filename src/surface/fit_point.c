@@ -21,7 +21,7 @@ static double dot4(const double a[4], const double b[4])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
 }
 
-/* Component of a shift, or -1. */
+/* Returns the component that a shift stands for, or -1. */
 static int shift_of(int quantity)
 {
     return quantity == HF_FIT_SHIFT_X ? 0 : quantity == HF_FIT_SHIFT_Y ? 1 : quantity == HF_FIT_SHIFT_Z ? 2 : -1;
@@ -64,7 +64,7 @@ double hf_fit_weight(const hf_fit_frame *f, int i)
     return f->root_weight ? f->root_weight[i] * f->root_weight[i] : 1;
 }
 
-/* Second derivatives of u / D with D = 1 + t^2, of a half-path error. */
+/* Computes the second derivatives of the half-path error u / D, with D = 1 + t^2. */
 static void bend_error(hf_surface_kind kind, double curvature, hf_fit_point *p)
 {
     double t[2], u = hf_wanted_height_above(kind, curvature, p->at, t), D = 1 + t[0] * t[0] + t[1] * t[1];
@@ -102,7 +102,7 @@ hf_fit_point hf_fit_point_take(const hf_fit_frame *f, int i)
     return p;
 }
 
-/* Derivative of the coordinates by parameters j and k. */
+/* Computes the second derivative of the coordinates by parameters j and k. */
 static void bend_place(const hf_fit_frame *f, const hf_fit_point *p, int j, int k, double to[4])
 {
     const int *quantity = f->found->quantity;

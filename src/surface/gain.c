@@ -1,4 +1,10 @@
-/* Contents: the beam - a point - loss of a shape - a goal - derivatives */
+/* Measures the gain in the direction of the beam as a sum of currents with phases:
+ *
+ *     beam: feed, polarisation, order of quadrature
+ *     shape -> quadrature points of all facets -> current and phase of each -> loss in dB, or residuals
+ *     linearise: derivatives of current and phase by each point -> push: motion -> rates of the residuals
+ *
+ * Contents: the beam - a point - loss of a shape - an objective - derivatives */
 #include "surface/gain.h"
 
 #include "base/elementary.h"
@@ -10,12 +16,12 @@
 #include <math.h>
 #include <string.h>
 
-#define ORDER_LN (-11.5) /* logarithm of the error of a quadrature, 1e-5 */
-#define ERROR_PHASE 0.5  /* rad, by which half of the phase across a facet may grow through errors of its shape */
+#define ORDER_LN (-11.5) /* logarithm of the quadrature error, 1e-5 */
+#define ERROR_PHASE 0.5  /* rad, by which errors of the shape may increase half of the phase across a facet */
 
 /* ---- the beam ---- */
 
-/* Half of the phase across facet i along its sides, at most. */
+/* Returns half of the maximum phase across facet i along its sides, rad. */
 static double phase_across(const hf_gain_beam *b, const hf_facets *facets, int i, const double *position_m)
 {
     hf_facet_mesh m;
@@ -51,8 +57,8 @@ void hf_gain_beam_make(const hf_surface_settings *s, const hf_facets *facets, co
 
 /* ---- a point ---- */
 
-/* The current along the polarisation per du dv of a point p where the surface has the derivatives du and dv, and its
- * phase in rad. */
+/* Returns the current along the polarisation per du dv at point p. du and dv are the derivatives of the surface. *phase
+ * is the phase in rad. */
 static double current_at(const hf_gain_beam *b, const double p[3], const double du[3], const double dv[3],
                          double *phase)
 {
@@ -64,7 +70,7 @@ static double current_at(const hf_gain_beam *b, const double p[3], const double 
     return hf_dot3(toward, up) < 0 ? 2 * hf_dot3(b->co, current) : 0;
 }
 
-/* Point k of a facet: what is there of places or moves, and its derivatives by u and v; returns its weight. */
+/* Computes point k of a facet, from positions or from a motion, and its derivatives by u and v. Returns its weight. */
 static double point_of(const hf_gain_beam *b, const hf_facet_mesh *m, bool is_bent, int k, double p[3], double du[3],
                        double dv[3])
 {
@@ -73,8 +79,8 @@ static double point_of(const hf_gain_beam *b, const hf_facet_mesh *m, bool is_be
     return b->weight[j] * b->weight[l];
 }
 
-/* Adds the current of point k of a facet to sum[0], its size, and [1], [2], with its phase; returns its size.
- * phase: as a unit number. */
+/* Adds point k of a facet to the sums: sum[0] is the current, sum[1] and sum[2] the current times its phase. Returns
+ * the current. `phase` is its phase as a complex unit number. */
 static double add_point(const hf_gain_beam *b, const hf_facet_mesh *m, bool is_bent, int k, double sum[3],
                         double phase[2])
 {
@@ -104,7 +110,7 @@ double hf_gain_loss_dB(const hf_gain_beam *b, const hf_pattern_surface *s)
     return part < DBL_MIN ? INFINITY : -HF_DB_PER_LN * hf_logarithm(part);
 }
 
-/* ---- a goal ---- */
+/* ---- an objective ---- */
 
 int hf_gain_points(const hf_gain_beam *beam, int n_facet)
 {
@@ -121,7 +127,7 @@ void hf_gain_lay_out(hf_arena *a, hf_gain *g)
     g->rate = hf_arena_take(a, 2 * n, sizeof(double));
 }
 
-/* Corners of a facet out of `node` [3][n_node], places or moves. */
+/* Corners of a facet, from positions or from a motion, both [3][n_node]. */
 typedef struct {
     double corner[4][3];
     hf_facet_mesh flat;
@@ -157,7 +163,8 @@ void hf_gain_measure(hf_gain *g, const double *position_m, double *residual)
 
 /* ---- derivatives ---- */
 
-/* With the vector product, the current is 2 (du x dv) (h x co), h the field. */
+/* Computes the derivatives of phase and current by a point and by the sides of its area. By the vector product, the
+ * current is 2 (du x dv) . (h x co), with the field h. */
 static void derive_point(const hf_gain_beam *b, const double p[3], const double du[3], const double dv[3],
                          double by_place[6], double by_side[6])
 {
@@ -195,7 +202,8 @@ void hf_gain_linearise(hf_gain *g, const double *position_m)
     }
 }
 
-/* Changes of phase and size of each point into `rate`; returns that of the sum of sizes and of the mean. */
+/* Writes the rates of phase and current of each point into `rate`, and that of the mean phase into mean_rate. Returns
+ * the rate of the sum of all currents. */
 static double push_points(hf_gain *g, const double *move, double mean_rate[2])
 {
     const int n = g->n, per_facet = n / g->n_facet;

@@ -1,4 +1,4 @@
-/* gain - how much of the far field in the direction of the beam is in phase, for a shape of facets, with exact
+/* gain - how much of the far field in the direction of the beam is in phase, for a shape with facets, with exact
  * derivatives (METHOD section 13). */
 #ifndef HIFDM_GAIN_H
 #define HIFDM_GAIN_H
@@ -9,57 +9,57 @@
 
 enum { HF_GAIN_ORDER_MOST = 16 };
 
-/* What a beam of this order is told of; the end of a sentence. */
+/* Text for a beam of order HF_GAIN_ORDER_MOST; the end of a sentence. */
 #define HF_GAIN_TOO_COARSE "its facets are too coarse for this frequency: the phase across one varies by several turns"
 
-/* One frequency: what does not depend on a shape. */
+/* Quantities of one frequency that do not depend on the shape. */
 typedef struct hf_gain_beam {
     hf_feed feed;
-    double co[3]; /* polarisation in the direction of feed.beam */
+    double co[3]; /* polarisation in the direction feed.beam */
     double wavelength_m;
-    int order;                                                 /* points of quadrature along each side of a facet */
-    double at[HF_GAIN_ORDER_MOST], weight[HF_GAIN_ORDER_MOST]; /* of their rule */
+    int order;                                                 /* quadrature points along each side of a facet */
+    double at[HF_GAIN_ORDER_MOST], weight[HF_GAIN_ORDER_MOST]; /* [order], the rule */
 } hf_gain_beam;
 
-/* surface->has_pattern; facets (there are some) at the theoretical places position_m [n_node][3], from which the order
- * follows: HF_GAIN_ORDER_MOST: they are too coarse for this frequency. */
+/* Computes a beam for facets at the target positions, position_m [n_node][3]. surface->has_pattern must be true, and
+ * there must be a facet. If the order is HF_GAIN_ORDER_MOST, the facets are too coarse for this frequency. */
 void hf_gain_beam_make(const hf_surface_settings *surface, const hf_facets *facets, const double *position_m,
                        double frequency_Hz, hf_gain_beam *beam);
 
-/* Loss of gain in the direction of the beam below that of the same current in phase, dB: infinite where all of it is
- * lost, NaN where nothing is lit. */
+/* Returns the loss of gain in the direction of the beam relative to the same current in phase, dB. It is infinite if
+ * all gain is lost, and NaN if no facet is illuminated. */
 double hf_gain_loss_dB(const hf_gain_beam *beam, const hf_pattern_surface *surface);
 
-/* ---- a goal ---- */
+/* ---- an objective ---- */
 
-/* The points of quadrature in flat facets. With a_i the size of the current that each stands for, e_i its phase as a
- * unit number, w_i = a_i/sum a: the residuals sqrt(w_i) (e_i - mean), whose squares have the sum 1 - |mean|^2. */
+/* Quadrature points in flat facets. Let a_i be the current of a point, e_i its phase as a complex unit number, and w_i
+ * = a_i / sum a. The residuals are sqrt(w_i) (e_i - mean). The sum of their squares is 1 - |mean|^2. */
 typedef struct hf_gain {
     const hf_gain_beam *beam;
-    int n_node;       /* of the model */
+    int n_node;       /* nodes of the model */
     int n, n_facet;   /* points; facets */
-    const int *row;   /* [n_facet][4] of the corners; borrowed */
-    double all;       /* sum of sizes */
-    double mean[2];   /* of phases, real and imaginary */
-    double *size;     /* [n] */
-    double *phase;    /* [2][n] */
-    double *by_place; /* [6][n] derivatives of phase and size by the place of a point */
-    double *by_side;  /* [6][n] of the size by those of the place by u, then v */
-    double *rate;     /* [2][n] scratch: of phase and size */
+    const int *row;   /* [n_facet][4], rows of the corners; borrowed */
+    double all;       /* sum of all currents */
+    double mean[2];   /* mean phase, real and imaginary */
+    double *size;     /* [n], current */
+    double *phase;    /* [2][n], phase, real and imaginary */
+    double *by_place; /* [6][n], derivatives of phase, then current, by the point */
+    double *by_side;  /* [6][n], derivatives of the current by du, then dv, of the point */
+    double *rate;     /* [2][n], scratch: rates of phase and current */
 } hf_gain;
 
-int hf_gain_points(const hf_gain_beam *beam, int n_facet); /* each with two residuals */
+int hf_gain_points(const hf_gain_beam *beam, int n_facet); /* number of points; each has two residuals */
 
-/* Takes the memory of a gain whose members up to `row` are set. */
+/* Takes the arrays of a gain from an arena. The members up to `row` must be set. */
 void hf_gain_lay_out(hf_arena *arena, hf_gain *gain);
 
-/* residual [2 n] of a shape, position_m [3][n_node] by row; NaN where nothing is lit. */
+/* Computes residual [2 n] of a shape, position_m [3][n_node] by row. They are NaN if no facet is illuminated. */
 void hf_gain_measure(hf_gain *gain, const double *position_m, double *residual);
 
-/* Derivatives at the shape that was measured last. */
+/* Computes the derivatives at the shape measured last. */
 void hf_gain_linearise(hf_gain *gain, const double *position_m);
 
-/* rate [2 n] of the residuals for a move of all nodes [3][n_node]. */
+/* Computes rate [2 n], the rates of the residuals for a motion `move` [3][n_node] of the nodes. */
 void hf_gain_push(hf_gain *gain, const double *move, double *rate);
 
 #endif

@@ -15,7 +15,7 @@ int hf_gauss_order(double phase, double error_ln, int most)
     return most;
 }
 
-/* Legendre's polynomial of order n at x, and its derivative. */
+/* Returns the Legendre polynomial of order n at x, and writes its derivative. */
 static double legendre(int n, double x, double *derivative)
 {
     double p = 1, before = 0;

@@ -1,4 +1,12 @@
-/* Contents: orders - layout - a facet - a block - gain - figures of a cut - tables */
+/* Computes the far field of a surface by physical optics:
+ *
+ *     plan: pieces and quadrature order of each facet, number of Chebyshev nodes in theta
+ *     for each of 32 blocks of facets, in any thread:
+ *       facet -> pieces -> quadrature points with current and path -> sums at the nodes (kernel points)
+ *         -> interpolate to all angles, move to its position (kernel spread) -> sums of the block
+ *     finish: add blocks in order -> co and cross polarisation -> gain in dBi -> figures of a cut
+ *
+ * Contents: orders - layout - a facet - a block - gain - figures of a cut - tables */
 #include <hifdm/pattern.h>
 
 #include "base/arena.h"
@@ -12,9 +20,11 @@
 #include <string.h>
 
 enum { GAUSS_MOST = 64, GAUSS_MORE = 2, LOOKS = 16, PIECES_MOST = 100000 };
-#define GAUSS_LN (-21.0)      /* logarithm of the error of a quadrature that is taken */
-#define NODE_LN (-22.0)       /* the same of what is found between angles */
-#define GAUSS_PHASE_MOST 77.0 /* half of the phase across a piece, at which GAUSS_MOST - GAUSS_MORE have that error */
+#define GAUSS_LN (-21.0) /* logarithm of the accepted quadrature error */
+#define NODE_LN (-22.0)  /* logarithm of the accepted error of interpolation between angles */
+#define GAUSS_PHASE_MOST                                                                                               \
+    77.0 /* half of the phase across a piece at which GAUSS_MOST - GAUSS_MORE points have
+                                 the accepted error */
 
 typedef struct {
     hf_pattern_points *points;
@@ -29,9 +39,9 @@ static const kernels kernels_of_isa[HF_LANE_N_ISA] = {KERNELS(portable), KERNELS
 
 /* ---- orders ---- */
 
-/* Smallest number of Chebyshev's nodes on [-1, 1] between which exp(j phase x) has an error below exp(NODE_LN): the
- * coefficients J_n(phase) that are left out are below (z exp(r) / (1 + r))^n, z = phase/n < 1, r^2 = 1 - z^2 (Kapteyn).
- */
+/* Returns the smallest number of Chebyshev nodes on [-1, 1] from which exp(j phase x) is interpolated with an error
+ * below exp(NODE_LN). The omitted coefficients J_n(phase) are below (z exp(r) / (1 + r))^n, with z = phase/n < 1 and
+ * r^2 = 1 - z^2 (Kapteyn). */
 static int node_order(double phase, int most)
 {
     int n = (int)fmin(phase, most) + 1;
@@ -57,7 +67,7 @@ static void direction_of(double theta, double phi, double to[3])
     to[2] = hf_cosine(theta);
 }
 
-/* Parts of the range of theta: of angle i, of Chebyshev's node i. */
+/* Return angle i and Chebyshev node i as a part of the range of theta. */
 static double part_of_angle(const hf_far_field *p, int i)
 {
     return (double)i / (p->settings->n_theta - 1);
@@ -79,7 +89,7 @@ static void fill_directions(const hf_far_field *p, bool are_nodes, int n, int n_
         }
 }
 
-/* Lagrange's polynomials of the nodes at the angles, by their barycentric form. */
+/* Computes the Lagrange polynomials of the nodes at the angles, in barycentric form. */
 static void fill_between(const hf_far_field *p)
 {
     for (int a = 0; a < p->settings->n_theta; a++) {
@@ -121,9 +131,9 @@ static void take_facet(const hf_far_field *p, int i, hf_facet_mesh *m)
     hf_facet_mesh_take_bent(p->surface.facets, i, p->surface.position_m, p->surface.sag_m, m);
 }
 
-/* Half of the phase across facet i, along u and along v, at most: k (direction - toward) along its sides, with the
- * waves that meet its corners, towards LOOKS + 1 angles of each cut and what may be between them. radius_m: of its
- * corners from its middle. */
+/* Returns half of the maximum phase across a facet along u and along v, rad. The phase is k (direction - toward) along
+ * its sides, with `toward` at its corners. The directions are LOOKS + 1 angles of each cut, with a margin for the
+ * angles between them. *radius_m: maximum distance of a corner from the middle. */
 static double phase_of(const hf_far_field *p, const hf_facet_mesh *m, double *radius_m)
 {
     double most = 0, longest = 0, middle[3], du[3], dv[3], wave = 2 * HF_PI / p->wavelength_m;
@@ -153,7 +163,7 @@ static double phase_of(const hf_far_field *p, const hf_facet_mesh *m, double *ra
     return wave * (most + between) / 2;
 }
 
-/* Pieces of a facet along u and along v, and points of quadrature of each along both. */
+/* Returns the number of pieces of a facet along u and along v. *order: quadrature points of a piece along both. */
 static int pieces_of(double phase, int *order)
 {
     int n = (int)fmin(phase / GAUSS_PHASE_MOST, PIECES_MOST) + 1,
@@ -162,7 +172,7 @@ static int pieces_of(double phase, int *order)
     return n;
 }
 
-/* A point of a facet: its place, and the current 2 n x H there per du dv. Returns the path. */
+/* Computes a point of a facet, and the current 2 n x H there per du dv. Returns the path, m. */
 static double current_at(const hf_far_field *p, const hf_facet_mesh *m, double u, double v, double place[3],
                          double to[3])
 {
@@ -176,8 +186,8 @@ static double current_at(const hf_far_field *p, const hf_facet_mesh *m, double u
     return path_m;
 }
 
-/* The points of a piece, whose corner of least u and v is a and b, of `size` along both. Returns their number, middle
- * and path of it in wavelengths. */
+/* Computes the quadrature points of a piece. a, b: smallest u and v of the piece; size: its extent along both. Writes
+ * the middle of the piece and the path to it, both in wavelengths. Returns the number of points. */
 static int put_points(const hf_far_field *p, const hf_facet_mesh *m, double a, double b, double size, int order,
                       double *point, double middle[3], double *path)
 {
@@ -255,7 +265,7 @@ void hf_pattern_plan(const hf_pattern_settings *s, const hf_pattern_surface *sur
         p->n_point += (long)n_piece * n_piece * order * order;
     }
     p->n_padded = whole_lanes(s->n_theta);
-    /* a pattern of this radius has no harmonics of theta beyond k r, but for some that decay fast */
+    /* the pattern of a facet of radius r has harmonics of theta only up to k r, and a few more that decay fast */
     p->n_node = node_order((2 * HF_PI * widest_m / p->wavelength_m + 10) * half, s->n_theta);
     if (2 * p->n_node > s->n_theta) p->n_node = 0;
     p->n_node_padded = p->n_node ? whole_lanes(p->n_node) : p->n_padded;
@@ -291,7 +301,7 @@ void hf_pattern_free(hf_far_field *p)
 
 /* ---- gain ---- */
 
-/* Vectors across the direction at theta, phi, after Ludwig's third definition. */
+/* Computes the co and cross polarisation vectors at theta, phi, by Ludwig's third definition. */
 static void polarisations(hf_polarisation along, double theta, double phi, double co[3], double cross[3])
 {
     double c = hf_cosine(phi), s = hf_sine(phi);
@@ -334,7 +344,8 @@ void hf_pattern_finish(hf_far_field *p, double *co_dBi, double *cross_dBi)
 
 /* ---- figures of a cut ---- */
 
-/* Where the cut crosses `level` on the way from angle i in steps of `step`, in angles; NaN: nowhere. */
+/* Returns where the cut falls below `level`, going from angle i in steps of `step`, as a fractional index. Returns NaN
+ * if it does not. */
 static double crossing(int n, const double *gain, int i, int step, double level)
 {
     for (; i + step >= 0 && i + step < n; i += step)
@@ -342,7 +353,7 @@ static double crossing(int n, const double *gain, int i, int step, double level)
     return (double)NAN;
 }
 
-/* The first local maximum beyond the valley beside angle i; -INFINITY: there is none. */
+/* Returns the first local maximum beyond the minimum beside angle i, or -INFINITY. */
 static double next_maximum(int n, const double *gain, int i, int step)
 {
     while (i + step >= 0 && i + step < n && gain[i + step] <= gain[i])
@@ -352,7 +363,7 @@ static double next_maximum(int n, const double *gain, int i, int step)
     return i > 0 && i < n - 1 ? gain[i] : -INFINITY;
 }
 
-/* The highest local maximum beyond the valley beside angle i. */
+/* Returns the highest local maximum beyond the minimum beside angle i, or -INFINITY. */
 static double highest_beyond(int n, const double *gain, int i, int step)
 {
     double most = -INFINITY;

@@ -1,4 +1,9 @@
-/* Contents: the field - what a case leaves open - together */
+/* Computes what a case leaves open about a feed, and its field:
+ *
+ *     case, facets -> kind, position, aim -> axis, polarisation, beam -> taper -> scale of the gain
+ *     point -> direction, path, field; rates of the field
+ *
+ * Contents: the field - what a case leaves open - together */
 #include "surface/pattern_feed.h"
 
 #include "base/elementary.h"
@@ -8,12 +13,14 @@
 #include <math.h>
 #include <string.h>
 
-#define EDGE_FIELD_LN (-0.5 * 2.30258509299404568402) /* 10 dB below the middle */
-#define POWER_MOST 1e4                                /* of the cosine: the beam of such a feed is a degree wide */
+#define EDGE_FIELD_LN (-0.5 * 2.30258509299404568402) /* natural logarithm of the field ratio of -10 dB */
+#define POWER_MOST                                                                                                     \
+    1e4 /* maximum power of the cosine; the beam of such a feed is about
+                                                         1 degree wide */
 
 /* ---- the field ---- */
 
-/* c^q; 0 where that is nothing beside 1. */
+/* Returns c^q, or 0 if it is negligible. */
 static double power(double c, double q)
 {
     if (!(c > 0)) return 0;
@@ -21,14 +28,14 @@ static double power(double c, double q)
     return exponent > -900 ? hf_power_of_two(exponent) : 0;
 }
 
-/* The field at an angle of this cosine from the axis. */
+/* Returns the size of the field at an angle with this cosine from the axis. */
 static double size_of(const hf_feed *f, double cosine, double path_m)
 {
     return power(cosine, f->cos_power) / (f->kind == HF_FEED_LINE ? sqrt(path_m) : path_m);
 }
 
-/* Polarised along x or y on the axis, turned without twist towards the other directions (Ludwig's third definition);
- * of a line along it, or across. */
+/* The field of a point source is polarised along x or y on the axis and turned without twist to the other directions
+ * (Ludwig's third definition). The field of a line source is polarised along the line or across it. */
 double hf_feed_light(const hf_feed *f, const double p[3], double toward[3], double field[3])
 {
     double along[3] = {0, 1, 0}, size = 1, path_m;
@@ -53,7 +60,7 @@ double hf_feed_light(const hf_feed *f, const double p[3], double toward[3], doub
     return path_m;
 }
 
-/* With t = toward, a the axis, c the polarisation: field = size t x along, and t x along = t x c - turn t x a. */
+/* With t = toward, axis a and polarisation c: field = size t x along, and t x along = t x c - turn t x a. */
 void hf_feed_light_rate(const hf_feed *f, const double p[3], const double move[3], double field_rate[3])
 {
     double t[3], field[3], dt[3], one[3], other[3];
@@ -81,8 +88,8 @@ void hf_feed_light_rate(const hf_feed *f, const double p[3], const double move[3
         field_rate[d] = grow * field[d] + size * one[d];
 }
 
-/* The integral of cos^(2q) from -pi/2 to pi/2, sqrt(pi) Gamma(q + 1/2)/Gamma(q + 1), by its recurrence from q above 40,
- * where the series of the quotient of two Gamma functions has an error below 1e-14. */
+/* Returns the integral of cos^(2q) from -pi/2 to pi/2, sqrt(pi) Gamma(q + 1/2)/Gamma(q + 1). The recurrence leads to q
+ * above 40, where the series of the quotient of the Gamma functions has an error below 1e-14. */
 static double half_circle(double q)
 {
     double factor = 1;
@@ -95,7 +102,7 @@ static double half_circle(double q)
 
 /* ---- what a case leaves open ---- */
 
-/* Extent of the facets' corners. */
+/* Computes the extent of the corners of the facets, m. */
 static void extent(const hf_facets *f, const double *position_m, double low[3], double high[3])
 {
     for (int d = 0; d < 3; d++) {
@@ -109,7 +116,7 @@ static void extent(const hf_facets *f, const double *position_m, double low[3], 
     }
 }
 
-/* The axis towards `aim`, and the polarisation across it. */
+/* Computes the axis towards `aim`, and the polarisation across it. */
 static void look(const hf_pattern_settings *s, const double aim_m[3], hf_feed *f)
 {
     double size = 0, part;
@@ -120,7 +127,7 @@ static void look(const hf_pattern_settings *s, const double aim_m[3], hf_feed *f
     for (int d = 0; d < 3; d++)
         f->axis[d] /= size;
     int along = s->polarisation == HF_POLARISATION_Y;
-    if (fabs(f->axis[along]) > 0.999) along = 2; /* it looks along its own polarisation */
+    if (fabs(f->axis[along]) > 0.999) along = 2; /* the feed looks along its own polarisation */
     part = f->axis[along];
     for (int d = 0; d < 3; d++)
         f->co[d] = ((d == along) - part * f->axis[d]) / sqrt(1 - part * part);
@@ -128,7 +135,8 @@ static void look(const hf_pattern_settings *s, const double aim_m[3], hf_feed *f
         memcpy(f->co, s->polarisation ? (double[3]){0, 1, 0} : (double[3]){1, 0, 0}, sizeof f->co);
 }
 
-/* The power of the cosine with which the field at the widest corner is 10 dB below the axis, distances aside. */
+/* Returns the power of the cosine at which the field at the outermost corner is 10 dB below that on the axis, apart
+ * from the distance. */
 static double tapered(const hf_feed *f, const hf_facets *facets, const double *position_m)
 {
     double least = 1, toward[3], field[3];
@@ -141,7 +149,8 @@ static double tapered(const hf_feed *f, const hf_facets *facets, const double *p
     return fmin(q, POWER_MOST);
 }
 
-/* Area of a facet that a wave along -z meets; 0 where its middle shows the back, as `sees` has it. */
+/* Returns the projected area of a facet that a wave along -z meets, m2. Returns 0 if the middle of the facet shows its
+ * back, as in `sees`. */
 static double met_area(const hf_facets *facets, int i, const double *position_m)
 {
     const int *c = facets->corner + 4 * (size_t)i;
@@ -151,7 +160,8 @@ static double met_area(const hf_facets *facets, int i, const double *position_m)
     return fmax(((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1])) / 2, 0);
 }
 
-/* Gain over N of (M44). What has no current has no share of the power either: gains stay below 4 pi area/lambda^2. */
+/* Returns the factor between |N|^2 / wavelength^2 and the gain (M44). Area without current has no share of the power,
+ * so gains stay below 4 pi area/lambda^2. */
 static double scale_of(const hf_feed *f, const hf_facets *facets, const double *position_m)
 {
     double low[3], high[3], area = 0;
@@ -163,7 +173,7 @@ static double scale_of(const hf_feed *f, const hf_facets *facets, const double *
     return HF_PI / area;
 }
 
-/* The ray that meets the wanted surface above or below `aim` is reflected there. */
+/* Computes the beam: the ray to the point of the target surface above or below `aim`, reflected there. */
 static void send_beam(const hf_surface_settings *s, const double aim_m[3], hf_feed *f)
 {
     double p[3] = {aim_m[0], aim_m[1], 0}, toward[3], field[3], slope[2];

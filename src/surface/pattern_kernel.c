@@ -1,3 +1,10 @@
+/* The kernels of pattern, compiled once for each instruction set.
+ *
+ *     points   quadrature points of a piece of facet, directions
+ *                -> for each direction: phase in turns -> cosine and sine -> sum of current times phase
+ *                -> local sums [6][n_angle], with phases relative to the middle of the piece
+ *     spread   local sums at the nodes -> interpolate to all angles -> multiply by the phase of the middle
+ *                -> add to the sums of the block */
 #define HF_LANE_VECTORS
 #include "surface/pattern_kernel.h"
 
@@ -13,8 +20,8 @@ INLINE void set(double *array, ptrdiff_t i, vec value)
     *(vec *)(void *)(array + i) = value;
 }
 
-/* Cosine and sine of so many whole turns, below 2^51; error below 6e-16. A turn is taken away to -1/2 ... 1/2, exactly;
- * series of half of the angle, then its double. */
+/* Computes cosine and sine of an angle in turns, below 2^51; the error is below 6e-16. Whole turns are subtracted
+ * exactly, which leaves -1/2 to 1/2. Series give cosine and sine of half of the angle, and then its double follows. */
 INLINE void turn(vec turns, vec *cosine, vec *sine)
 {
     static const double s[] = {-2.2948428997269873e-08, 7.952054001475513e-07,  -2.1915353447830217e-05,

@@ -1,4 +1,8 @@
-/* Contents: loss of gain - percentiles - together */
+/* Measures a shape as a reflector: errors at the inner nodes, best fit, facets, losses of gain:
+ *
+ *     shape -> raw RMS errors and percentiles -> best fit to the nodes -> facets (facet_rms) -> Ruze losses
+ *
+ * Contents: loss of gain - percentiles - together */
 #include <hifdm/surface.h>
 
 #include "base/arena.h"
@@ -62,7 +66,7 @@ static void note_losses(const hf_surface_settings *s, hf_surface_measures *to)
 
 /* ---- percentiles ---- */
 
-/* Percentile of n sorted values, 0 <= part <= 1, interpolated linearly between the two nearest. */
+/* Returns a percentile of n sorted values, 0 <= part <= 1, interpolated linearly. */
 static double percentile(const double *sorted, int n, double part)
 {
     double place = part * (n - 1);
@@ -73,8 +77,8 @@ static double percentile(const double *sorted, int n, double part)
 
 /* ---- together ---- */
 
-/* Collects the inner nodes of the shape, [3][n], and their distances from the theoretical positions, and sets the raw
- * RMS values of `to`. */
+/* Collects the inner nodes [3][n] of the shape and their distances from the target positions. Sets the raw RMS
+ * values of `to`. */
 static void collect(const hf_surface_settings *s, const hf_model *m, const double *position_m, double *inner_m,
                     double *deviation_m, hf_surface_measures *to)
 {
@@ -89,7 +93,7 @@ static void collect(const hf_surface_settings *s, const hf_model *m, const doubl
             square += d * d;
         }
         deviation_m[k] = sqrt(square);
-        up += d * d; /* d is that of z here */
+        up += d * d; /* d is the z component here */
         double dz = hf_wanted_height_above(s->kind, curvature, p, slope);
         double weight = 1 / (1 + slope[0] * slope[0] + slope[1] * slope[1]);
         normal += dz * dz * weight;

@@ -1,4 +1,11 @@
-/* The best fit of a surface. Contents: the fitted surface - the fit */
+/* Finds the best fit of a surface to weighted points:
+ *
+ *     points -> centre and size
+ *       -> three fits, each from the one before: rigid motion; + focal length; + shifts across
+ *            each fit: GSL trust region -> second derivatives -> if not a minimum: hf_fit_descend
+ *       -> keep the last fit that the points determine
+ *
+ * Contents: the fitted surface - the fit */
 #include "surface/surface_fit.h"
 
 #include "base/elementary.h"
@@ -10,17 +17,17 @@
 #include <math.h>
 #include <string.h>
 
-/* Bounds of the fit: largest number of steps of one fit; step at which it ends, of parameters of the order of one. The
- * tests of the surface pass with 30 steps, with 10 one fails (known_motion_and_focal_length_are_recovered); they pass
- * with a last step of 1e-16 and of 1e-12. */
+/* Bounds of a fit: the maximum number of steps, and the step at which it has converged, for parameters of order one.
+ * The tests of the surface pass with 30 steps; with 10 one fails (known_motion_and_focal_length_are_recovered). They
+ * pass with a last step of 1e-16 and of 1e-12. */
 #define FIT_STEPS_MAX 100
 #define FIT_STEP_LEAST 1e-14
-/* Largest accepted shift along x or y, in units of the net's size. A fit with a larger one has taken a turn for a
- * shift, because of the errors of the points. The tests of the surface pass with 0.01; with 1 one fails
- * (fit_of_few_rough_nodes_stays). */
+/* Maximum accepted shift along x or y, in units of the size of the net. A fit with a larger shift has
+ * replaced a turn by a shift, because of the errors of the points. The tests of the surface pass with 0.01;
+ * with 1 one fails (fit_of_few_rough_nodes_stays). */
 #define SHIFT_MOST 0.1
-/* The fitted focal length is at most this many times the wanted one, or as many times shorter: one beyond comes from
- * the errors of nodes that hardly show any curvature. The tests of the surface pass with 1.1 and with 5. */
+/* Maximum ratio of fitted to target focal length, or of target to fitted. A larger ratio results from the errors of
+ * nodes that show almost no curvature. The tests of the surface pass with 1.1 and with 5. */
 #define FOCAL_MOST 2.0
 
 /* ---- the fitted surface ---- */
@@ -37,8 +44,8 @@ enum {
     N_PARAMETER = HF_FIT_N_PARAMETER
 };
 
-/* The quantity of each parameter, and how many the three fits have, each of which starts from the one before. Moving a
- * cylinder along y changes nothing, nor does turning a paraboloid about its axis. */
+/* Quantity of each parameter, and the number of parameters of the three fits. Each fit starts from the one before. A
+ * shift of a cylinder along y changes nothing, and neither does a turn of a paraboloid about its axis. */
 static const int cylinder_parameter[N_PARAMETER] = {SHIFT_Z, TURN_X, TURN_Y, TURN_Z, CURVE, SHIFT_X};
 static const int paraboloid_parameter[N_PARAMETER] = {SHIFT_Z, TURN_X, TURN_Y, CURVE, SHIFT_X, SHIFT_Y};
 static const int cylinder_fit[3] = {4, 5, 6}, paraboloid_fit[3] = {3, 4, 6};
@@ -47,13 +54,13 @@ typedef struct {
     int n;
     const double *x, *y, *z;
     const double *root_weight; /* [n], or NULL: all are 1 */
-    const int *parameter;      /* [N_PARAMETER] the quantity of each */
+    const int *parameter;      /* [N_PARAMETER], quantity of each parameter */
     hf_surface_kind kind;
-    double curvature;       /* of the wanted surface */
-    double center[3], size; /* size: shifts are in units of it */
+    double curvature;       /* curvature of the target surface */
+    double center[3], size; /* size: the unit of shifts */
 } fit_problem;
 
-/* A set of parameters as a motion: in the frame of the surface node p is at turn (p - center - shift) + center. */
+/* Parameters as a motion. In the frame of the surface, node p is at turn (p - center - shift) + center. */
 typedef struct {
     double shift[3], curvature;
     double turn[3][3], slope[3][3][3]; /* rotation, and its derivatives by the three angles */
@@ -66,7 +73,7 @@ static void multiply(double a[3][3], double b[3][3], double to[3][3])
             to[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
 }
 
-/* Transposed rotation about axis k, or its derivative by the angle, of this order up to the second. */
+/* Computes the transposed rotation about axis k, or its derivative by the angle, of order 0 to 2. */
 static void transposed(int k, double angle, int order, double to[3][3])
 {
     int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -110,14 +117,15 @@ static pose pose_of(const fit_problem *p, const gsl_vector *v)
     return pose_at(p, value);
 }
 
-/* Row `k` of matrix m times the vector from the shifted centre to node i. */
+/* Returns row k of matrix m times the vector from the shifted centre to node i. */
 static double apply(const fit_problem *p, const pose *q, const double m[3][3], int k, int i)
 {
     return m[k][0] * (p->x[i] - p->center[0] - q->shift[0]) + m[k][1] * (p->y[i] - p->center[1] - q->shift[1]) +
            m[k][2] * (p->z[i] - p->center[2] - q->shift[2]);
 }
 
-/* Point i in the frame of the surface; its height above it, and the slopes there. */
+/* Computes point i in the frame of the surface, and the slopes of the surface there. Returns its height above
+ * the surface, m. */
 static double height(const fit_problem *p, const pose *q, int i, double at[3], double slope[2])
 {
     for (int k = 0; k < 3; k++)
@@ -134,7 +142,7 @@ static int residuals(const gsl_vector *v, void *context, gsl_vector *f)
 {
     const fit_problem *p = context;
     pose q = pose_of(p, v);
-    gsl_vector_set_zero(f); /* GSL wants as many rows as parameters: those beyond the points are zero */
+    gsl_vector_set_zero(f); /* GSL needs at least as many rows as parameters; the additional rows are zero */
     for (int i = 0; i < p->n; i++) {
         double at[3], s[2], u = height(p, &q, i, at, s);
         gsl_vector_set(f, (size_t)i, root_weight(p, i) * (u / (1 + s[0] * s[0] + s[1] * s[1])));
@@ -142,7 +150,7 @@ static int residuals(const gsl_vector *v, void *context, gsl_vector *f)
     return GSL_SUCCESS;
 }
 
-/* Derivatives of point i in the frame of the surface by all quantities. */
+/* Computes the derivatives of point i, in the frame of the surface, by all quantities. */
 static void derive(const fit_problem *p, const pose *q, int i, double d[3][N_QUANTITY])
 {
     static const int shift[3] = {SHIFT_X, SHIFT_Y, SHIFT_Z};
@@ -163,7 +171,7 @@ static int jacobian(const gsl_vector *v, void *context, gsl_matrix *J)
     for (int i = 0; i < p->n; i++) {
         double at[3], s[2], d[3][N_QUANTITY], u = height(p, &q, i, at, s), w = 1 / (1 + s[0] * s[0] + s[1] * s[1]);
         derive(p, &q, i, d);
-        for (int k = 0; k < (int)v->size; k++) { /* of u w, with u = z - c x^2 - c y^2, s = 2 c (x, y) */
+        for (int k = 0; k < (int)v->size; k++) { /* derivative of u w, with u = z - c x^2 - c y^2 and s = 2 c (x, y) */
             int by = p->parameter[k];
             double du = d[2][by], dw = 0, dc = by == CURVE ? p->curvature : 0;
             for (int e = 0; e < (p->kind == HF_SURFACE_PARABOLOID ? 2 : 1); e++) {
@@ -218,8 +226,8 @@ static void report(const fit_problem *p, const gsl_vector *v, hf_surface_fit *fi
     fit->rotation_z_rad = value[TURN_Z];
 }
 
-/* Iterates until the steps vanish, or until rounding keeps every step from lowering the sum of squares. False when
- * neither has happened after FIT_STEPS_MAX steps. */
+/* Iterates until the steps vanish, or until rounding keeps every step from lowering the sum of squares. Returns false
+ * if neither happens within FIT_STEPS_MAX steps. */
 static bool iterate(gsl_multifit_nlinear_workspace *solver, int *iterations)
 {
     const gsl_vector *at = gsl_multifit_nlinear_position(solver);
@@ -237,7 +245,8 @@ static bool iterate(gsl_multifit_nlinear_workspace *solver, int *iterations)
     return false;
 }
 
-/* Fits the first n_parameter parameters, starting from `parameter`, which it overwrites. Sets fit->converged. */
+/* Fits the first n_parameter parameters, starting from `parameter`, which it overwrites. Sets fit->converged. Returns
+ * HF_OK or HF_NO_MEMORY. */
 static hf_status fit_some(fit_problem *p, size_t n_parameter, double parameter[N_PARAMETER], hf_surface_fit *fit)
 {
     size_t n_row = p->n < N_PARAMETER ? N_PARAMETER : (size_t)p->n;
@@ -256,8 +265,9 @@ static hf_status fit_some(fit_problem *p, size_t n_parameter, double parameter[N
     return HF_OK;
 }
 
-/* fit_some that ends in a minimum, or has not converged. Its steps creep along valleys, and those of a net that is its
- * own mirror image stay on a ridge (METHOD section 9). */
+/* Calls fit_some, and continues to a minimum if that is not one. The steps of fit_some become very short along
+ * valleys. In a net that is its own mirror image they stay on a ridge (METHOD section 9). If no minimum is found,
+ * fit->converged is false. */
 static hf_status fit_least(fit_problem *p, int n_parameter, double parameter[N_PARAMETER], hf_surface_fit *fit)
 {
     HF_TRY(fit_some(p, (size_t)n_parameter, parameter, fit));
@@ -302,8 +312,8 @@ hf_status hf_surface_fit_find(hf_surface_kind kind, double focal_length_m, int n
     fit->center_x_m = p.center[0];
     fit->center_y_m = p.center[1];
     fit->center_z_m = p.center[2];
-    /* first rigid, then with the focal length, then with the shift across, each fit from the one before, as long as the
-     * points determine the parameters */
+    /* First a rigid motion, then with the focal length, then with the shifts across. Each fit starts from the one
+     * before. A fit that the points do not determine ends the sequence. */
     for (int k = 0; k < 3; k++) {
         hf_surface_fit next = *fit;
         int n_parameter = (is_round ? paraboloid_fit : cylinder_fit)[k];

@@ -1,4 +1,10 @@
-/* Contents: a pose - rows of points - steps - a shape */
+/* Finds the best fit to points near those of another fit:
+ *
+ *     pose of the other fit -> normal equations, factored once
+ *       -> Gauss-Newton steps with this factor: turn, shift, curvature -> RMS at convergence
+ *       -> if it does not converge or is not well inside the bounds: the caller uses hf_surface_fit_points
+ *
+ * Contents: a pose - rows of points - steps - a shape */
 #include "surface/surface_near.h"
 
 #include "base/arena.h"
@@ -10,10 +16,10 @@
 #include <math.h>
 #include <string.h>
 
-#define STEPS_MAX 6      /* of one fit; nets cut to 0.05 mm take two or three */
-#define SETTLED 1e-11    /* of the sum of squares: what a last step may take off it */
-#define ACROSS_MOST 0.05 /* of the size: half of what the reference takes for a shift */
-#define FOCAL_MOST 1.5   /* of the wanted curvature or of one over it; 2 in the reference */
+#define STEPS_MAX 6      /* maximum of one fit; nets cut to 0.05 mm need two or three */
+#define SETTLED 1e-11    /* converged if a step lowers the sum of squares by less than this share */
+#define ACROSS_MOST 0.05 /* relative to the size; half of the bound in the reference */
+#define FOCAL_MOST 1.5   /* ratio of fitted to target curvature, or its reciprocal; 2 in the reference */
 
 /* ---- a pose ---- */
 
@@ -32,8 +38,8 @@ hf_surface_pose hf_surface_pose_of(hf_surface_kind kind, double focal_length_m, 
     return q;
 }
 
-/* A small turn and shift within the frame of the surface: from p to E (p - center) + center + move, with the rotation
- * of Cayley, E = (1 - [a])^-1 (1 + [a]), a = turn/2, which agrees with the turn to second order. */
+/* Applies a small turn and shift in the frame of the surface: p goes to E (p - center) + center + move. E is Cayley's
+ * rotation (1 - [a])^-1 (1 + [a]) with a = turn/2. It agrees with the turn to second order. */
 static void move_pose(hf_surface_pose *q, const double move[3], const double turn[3])
 {
     double a[3] = {turn[0] / 2, turn[1] / 2, turn[2] / 2}, by = 2 / (1 + a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
@@ -52,9 +58,9 @@ static void move_pose(hf_surface_pose *q, const double move[3], const double tur
 
 /* ---- rows of points ---- */
 
-/* Parameters of a step: moves and turns in the frame of the surface, over the size and in radians, and the curvature
- * times the size. One of the seven changes nothing: of a cylinder the move along y, of a paraboloid the turn about z.
- */
+/* Parameters of a step: shifts and turns in the frame of the surface, shifts relative to the size, turns in rad, and
+ * the curvature times the size. One of the seven changes nothing: the shift along y of a cylinder, or the turn about z
+ * of a paraboloid. */
 enum { N = HF_FIT_N_PARAMETER, N_ALL = 7, LANES = 8, N_PRODUCT = (N + 1) * (N + 2) / 2 };
 
 typedef struct {
@@ -63,10 +69,10 @@ typedef struct {
     const double *x[3], *root_weight;
 } problem;
 
-/* Residuals of up to LANES points from the first on, and in front of each its derivatives, with their weights; 0 where
- * there is no point. Of the height u over the surface and w = 1/(1 + slope^2) the residual is u w. Its derivative by a
- * move of the point is a = w (-2 c x (1 + 4 c u w), the same of y, 1); by a turn, the vector from the centre times
- * a. */
+/* Computes the weighted residuals of up to LANES points from `first` on, and before each its derivatives. Missing
+ * points give 0. With the height u above the surface and w = 1/(1 + slope^2), the residual is u w. Its derivative by
+ * the point is a = w (-2 c x (1 + 4 c u w), -2 c y (1 + 4 c u w), 1). Its derivative by a turn is the vector from the
+ * centre, times a (vector product). */
 static void find_rows(const problem *p, int first, double row[N + 1][LANES])
 {
     const hf_surface_pose *q = &p->pose;
@@ -99,8 +105,8 @@ static void find_rows(const problem *p, int first, double row[N + 1][LANES])
         if (j != (round_ > 0 ? 5 : 2)) memcpy(row[to++], all[j], sizeof all[j]);
 }
 
-/* Sums over all points of products of the columns of rows: with the residual alone, [N + 1], or all of them, of the
- * lower triangle row by row. Lanes are added up at the end. */
+/* Sums the products of the columns of rows over all points. If `all` is true, these are all products, the lower
+ * triangle by rows; else only those with the residual, [N + 1]. Lanes are added at the end. */
 static void sum_products(const problem *p, bool all, double sum[N_PRODUCT])
 {
     double row[N + 1][LANES], lane[N_PRODUCT][LANES] = {0};
@@ -120,7 +126,8 @@ static void sum_products(const problem *p, bool all, double sum[N_PRODUCT])
 
 /* ---- steps ---- */
 
-/* Factor of the normal equations at the pose, and its slope and square in `last` [N + 1]. */
+/* Computes the factor of the normal equations at the pose. last [N + 1]: gradient and sum of squares. Returns false if
+ * the matrix is singular. */
 static bool take_normal(const problem *p, double factor[N * N], int pivot[N], double last[N + 1])
 {
     double sum[N_PRODUCT];
@@ -143,7 +150,7 @@ static void take_step(problem *p, const double step[N])
     q->curvature_per_m += step[N - 1] / size;
 }
 
-/* The reference takes the same fit for determined. */
+/* Returns true if the pose is so far inside the bounds that the reference also treats this fit as determined. */
 static bool is_well_inside(const hf_surface_pose *q)
 {
     double ratio = q->curvature_per_m / q->wanted_per_m;
@@ -160,7 +167,7 @@ bool hf_surface_fit_near(const hf_surface_pose *from, int n, const double *posit
     if (!from->is_whole || !take_normal(&p, factor, pivot, last)) return false;
     for (int i = 0; i < n; i++)
         weight += root_weight ? root_weight[i] * root_weight[i] : 1;
-    for (int k = 0; k < STEPS_MAX; k++) { /* the matrix of the first pose serves all: steps are small */
+    for (int k = 0; k < STEPS_MAX; k++) { /* the matrix of the first pose serves all steps, because they are small */
         double gain = 0, sum[N_PRODUCT];
         for (int j = 0; j < N; j++)
             step[j] = -last[j];
