@@ -1,4 +1,10 @@
-/* Contents: looking up keys - setting one value - walking the YAML tree - overrides - load */
+/* Loads a case file:
+ *
+ *     text -> defaults of all keys -> YAML tree -> values (config_value), rows of lists
+ *       -> overrides (--set) -> checks that involve several keys (config_check) -> completion
+ *       -> the sweep section is removed from the text -> SHA-256 of text and overrides
+ *
+ * Contents: looking up keys - setting one value - walking the YAML tree - overrides - load */
 #include "base/sha256.h"
 #include "base/text.h"
 #include "case/config_check.h"
@@ -10,15 +16,15 @@
 #include <string.h>
 #include <yaml.h>
 
-#define CASE_MAX (1 << 20) /* bytes of a case file */
+#define CASE_MAX (1 << 20) /* maximum size of a case file, bytes */
 
 typedef struct {
     hf_case *c;
     hf_config_faults faults;
-    yaml_mark_t cut[2]; /* the sweep section, when there is one */
+    yaml_mark_t cut[2]; /* begin and end of the sweep section, if there is one */
     yaml_document_t *document;
-    bool walked;   /* the file was readable YAML: keys that are missing can be reported */
-    bool is_study; /* it has the key `base`, so it is no case, and none of a case's keys is missing */
+    bool walked;   /* true: the file was readable YAML, so missing keys can be reported */
+    bool is_study; /* true: the file has the key `base`; it is a study, and no key of a case is missing */
     bool no_memory;
 } loader;
 
@@ -36,7 +42,7 @@ static int find_section(const char *path)
     return -1;
 }
 
-/* The part of `path` below `prefix`, when `path` is a direct child of it; else NULL. */
+/* Returns the part of `path` below `prefix` if `path` is a direct child of it, else NULL. */
 static const char *child_of(const char *path, const char *prefix)
 {
     size_t n = strlen(prefix);
@@ -47,7 +53,7 @@ static const char *child_of(const char *path, const char *prefix)
     return strchr(path, '.') ? NULL : path;
 }
 
-/* The known key below `prefix` that is nearest to this one; NULL: none is near. */
+/* Returns the known key below `prefix` that is nearest to this key, or NULL. */
 static const char *nearest_key(const char *prefix, const char *key)
 {
     hf_key of;
@@ -65,7 +71,7 @@ static const char *nearest_key(const char *prefix, const char *key)
     return hf_text_nearest(key, names, n);
 }
 
-/* The path of a key of this name in any section; NULL: there is none. */
+/* Returns the path of a key with this name in any section, or NULL. */
 static const char *key_elsewhere(const char *key)
 {
     for (int i = 0; i < hf_n_field; i++) {
@@ -94,8 +100,8 @@ static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, co
     complain(l, mark, key, "unknown key", *detail ? detail : " (hifdm schema lists all keys)");
 }
 
-/* Report what --set takes for a key of a row, but is none: no number of a row, or a row as a whole. Returns whether it
- * is in a list. */
+/* Reports a --set path in a list that is no key of a row: the row number is wrong, or it is a whole row. Returns false
+ * and reports nothing if the path is in no list, or if its row exists and only the key is misspelt. */
 static bool complain_of_row(loader *l, yaml_mark_t mark, const char *path)
 {
     char what[128];
@@ -106,7 +112,7 @@ static bool complain_of_row(loader *l, yaml_mark_t mark, const char *path)
         char row[HF_KEY_SIZE];
         if (strncmp(path, list->path, n) != 0 || path[n] != '.') continue;
         snprintf(row, sizeof row, "%.*s", (int)(dot - path), path);
-        if (hf_key_find(row, &of) && !of.field) return false; /* the key is misspelt */
+        if (hf_key_find(row, &of) && !of.field) return false; /* only the key is misspelt */
         snprintf(what, sizeof what, "is no key of a row, which is %s.N.KEY with N from 0 to %d", list->path,
                  list->max_row - 1);
         complain(l, mark, path, what, "");
@@ -148,7 +154,7 @@ static void with_document(loader *l, const char *text, size_t length,
                           void (*use)(loader *, const yaml_node_t *, const void *), const void *context);
 static void use_default(loader *l, const yaml_node_t *root, const void *context);
 
-/* Give all keys of a row their defaults. */
+/* Sets all keys of a row to their defaults. */
 static void clear_row(loader *l, const hf_list *list, int row)
 {
     for (int i = 0; i < list->n_field; i++) {
@@ -245,7 +251,7 @@ static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
     }
 }
 
-/* The place where the parser stopped. For a byte that is not UTF-8 the parser gives only an offset. */
+/* Returns the location where the parser stopped. For a byte that is not UTF-8 the parser gives only an offset. */
 static yaml_mark_t problem_mark(const yaml_parser_t *parser, const char *text)
 {
     yaml_mark_t mark = parser->problem_mark;
@@ -260,7 +266,7 @@ static yaml_mark_t problem_mark(const yaml_parser_t *parser, const char *text)
     return mark;
 }
 
-/* Is there a tab among the blanks before the place, or at the place itself? */
+/* Returns true if there is a tab among the leading blanks of the line, or at the location itself. */
 static bool has_tab_at(const char *text, yaml_mark_t at)
 {
     for (size_t line = 0; line < at.line && text; line++)
@@ -270,7 +276,8 @@ static bool has_tab_at(const char *text, yaml_mark_t at)
     return memchr(text, '\t', blanks) || (at.column < n && text[at.column] == '\t');
 }
 
-/* A parser that names no problem has no memory; it does not always say so in `error`. */
+/* Reports the problem of a parser. A parser without a problem text is out of memory; `error` does not
+ * always show it. */
 static void complain_of_yaml(loader *l, const yaml_parser_t *parser, const char *text)
 {
     yaml_mark_t at = problem_mark(parser, text);
@@ -282,11 +289,11 @@ static void complain_of_yaml(loader *l, const yaml_parser_t *parser, const char 
         l->no_memory = true;
 }
 
-/* Parse `text` as one YAML document and give its root to `use`. */
+/* Parses `text` as one YAML document and calls `use` with its root. */
 static void with_document(loader *l, const char *text, size_t length,
                           void (*use)(loader *, const yaml_node_t *, const void *), const void *context)
 {
-    yaml_document_t *outer = l->document; /* while its rows get their defaults */
+    yaml_document_t *outer = l->document; /* the outer document, while the defaults of its rows are read */
     yaml_parser_t parser;
     yaml_document_t document, next;
     if (!yaml_parser_initialize(&parser)) {
@@ -312,7 +319,8 @@ static void with_document(loader *l, const char *text, size_t length,
     yaml_parser_delete(&parser);
 }
 
-/* Messages quote a case, and no other file: its keys may be a secret of whoever can read it. */
+/* Returns true if the file has a key of a case, or no key at all. Otherwise it is another file. Messages must not quote
+ * its keys, because they may be secret. */
 static bool has_key_of_case(loader *l, const yaml_node_t *root)
 {
     yaml_node_pair_t *p = root->data.mapping.pairs.start, *end = root->data.mapping.pairs.top;
@@ -381,7 +389,7 @@ static void apply_override(loader *l, const char *argument)
         hf_error(l->faults.messages, HF_BAD_CASE, "--set %s: must be key=value, like form.pretension_N=12", argument);
         return;
     }
-    if (strchr(argument, '\n')) { /* a result keeps one override a line */
+    if (strchr(argument, '\n')) { /* a result stores one override per line */
         l->faults.failed = true;
         hf_error(l->faults.messages, HF_BAD_CASE, "--set %s: must be on one line", argument);
         return;
@@ -394,7 +402,7 @@ static void apply_override(loader *l, const char *argument)
     l->faults.origin = l->c->path;
 }
 
-/* The beginning of the next line: YAML 1.1 breaks lines at CR LF, CR, LF, NEL, LS and PS. */
+/* Returns the begin of the next line. YAML 1.1 breaks lines at CR LF, CR, LF, NEL, LS and PS. */
 static char *after_line(char *text)
 {
     for (; *text; text++) {
@@ -407,8 +415,8 @@ static char *after_line(char *text)
     return text;
 }
 
-/* Cut the lines of the sweep section out of the text. The rest is the case of one point, which is stored and digested;
- * it does not change when the sweep gets more points. */
+/* Removes the lines of the sweep section from the text. The rest is the case of one point; it is stored and digested.
+ * It does not change when the sweep gets more points. */
 static void cut_sweep(loader *l)
 {
     hf_case *c = l->c;
@@ -427,7 +435,7 @@ static void cut_sweep(loader *l)
     c->text_length -= (size_t)(to - from);
 }
 
-/* Join the overrides to one text and digest case text and overrides. */
+/* Joins the overrides to one text, and digests case text and overrides. Returns HF_OK or HF_NO_MEMORY. */
 static hf_status seal(hf_case *c, const char *const *overrides, int n_override)
 {
     size_t size = 1;
@@ -452,7 +460,7 @@ static hf_status seal(hf_case *c, const char *const *overrides, int n_override)
 
 /* ---- load ---- */
 
-/* Set all other members of settings from settings->text and the overrides. */
+/* Sets all other members of `settings` from settings->text and the overrides. */
 static hf_status parse(hf_case *settings, const char *const *overrides, int n_override, hf_messages *messages)
 {
     const char *path = settings->path;

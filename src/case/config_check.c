@@ -8,7 +8,7 @@
 
 #define WHAT_SIZE 512
 
-/* Does exactly one section make the net? If not, `what` says what is wrong with the section scene. */
+/* Returns true if exactly one section makes the net. Otherwise `what` describes the fault of the section scene. */
 static bool one_section_makes_the_net(const hf_case *c, char what[WHAT_SIZE])
 {
     int n_present = 0;
@@ -47,7 +47,7 @@ hf_surface_settings hf_config_known_surface(const hf_case *c, const char **key)
     return known;
 }
 
-/* What cannot be made of a generator's keys is a fault of one of them. */
+/* Reports settings from which a generator cannot make a net, as a fault of one of its keys. */
 static void check_generators(const hf_case *c, hf_config_faults *f)
 {
     char what[HF_GENERATE_FAULT_SIZE], path[128];
@@ -69,7 +69,7 @@ static void check_generators(const hf_case *c, hf_config_faults *f)
 #undef CHECK_TIES
 }
 
-/* Is the section of this key there? Sections that cannot be left out always are. */
+/* Returns true if the section of this key exists. Sections that cannot be omitted always exist. */
 static bool has_section_of(const hf_case *c, const char *key)
 {
     const char *dot = strrchr(key, '.');
@@ -82,12 +82,12 @@ static bool has_section_of(const hf_case *c, const char *key)
     return true;
 }
 
-/* A wave of 300 m and more, as long as a number that was given in GHz or MHz comes out. */
+/* Lower bound of a frequency, a wavelength of 300 m. A number in GHz or MHz without its exponent is far below. */
 #define LEAST_HZ 1e6
 
 static const char *frequency_fault(double frequency_Hz, char what[WHAT_SIZE])
 {
-    if (!(frequency_Hz > 0 && frequency_Hz < LEAST_HZ)) return NULL; /* 0, NaN: not given */
+    if (!(frequency_Hz > 0 && frequency_Hz < LEAST_HZ)) return NULL; /* 0 or NaN: not given */
     snprintf(what, WHAT_SIZE, "is %g Hz, and below 1 MHz there are no reflectors: was GHz meant? 6 GHz is 6e9",
              frequency_Hz);
     return what;
@@ -108,7 +108,7 @@ static void check_pattern(const hf_case *c, hf_config_faults *f)
     static const char *const of_feed[] = {"surface.pattern.feed.position_m", "surface.pattern.feed.aim_m",
                                           "surface.pattern.feed.cos_power"};
     const hf_pattern_settings *p = &c->surface.pattern;
-    const char *given = "surface.pattern"; /* the section itself has no line, but its keys have */
+    const char *given = "surface.pattern"; /* the section itself has no line, but its keys have one */
     for (int i = hf_n_field - 1; i >= 0; i--)
         if (!strncmp(hf_field_table[i].path, "surface.pattern.", 16) && *hf_config_where(f, i))
             given = hf_field_table[i].path;
@@ -123,7 +123,7 @@ static void check_pattern(const hf_case *c, hf_config_faults *f)
             hf_config_fault_of(f, of_feed[k], "has no meaning for a plane_wave, which comes along -z; remove it");
 }
 
-/* Keys of a truss that is not made here have no effect. */
+/* Reports keys of a generated truss that have no effect on an imported truss or a ring truss. */
 static void check_unused(const hf_case *c, hf_config_faults *f)
 {
     static const char *const of_units[] = {"truss.depth_m", "truss.main_every", "truss.supports"};
@@ -194,7 +194,7 @@ static void check_rows_are_whole(const hf_case *c, hf_config_faults *f)
 {
     for (const hf_list *list = hf_list_table; list < hf_list_table + hf_n_list; list++)
         for (int row = 0; row < hf_key_n_row(c, list); row++) {
-            if (!*hf_config_where(f, hf_key_of_row(list, row, -1).i_place)) continue; /* it was no row */
+            if (!*hf_config_where(f, hf_key_of_row(list, row, -1).i_place)) continue; /* the item was no row */
             for (int i = 0; i < list->n_field; i++) {
                 const hf_key key = hf_key_of_row(list, row, i);
                 if (!key.field->default_value && !*hf_config_where(f, key.i_place))
@@ -203,7 +203,7 @@ static void check_rows_are_whole(const hf_case *c, hf_config_faults *f)
         }
 }
 
-/* Refuse a key where the row is of a kind that has no use for it. users: the kinds that have, a bit each. */
+/* Reports a key in a row of a kind that does not use it. `users` has one bit for each kind that uses it. */
 static void check_use(hf_config_faults *f, const char *list, int row, const char *key, int kind,
                       const char *const *kind_word, unsigned users)
 {
@@ -246,7 +246,7 @@ static void check_variables(const hf_optimize_settings *o, hf_config_faults *f)
         hf_config_fault_of(f, "optimize.rule", "cannot be seeded with optimize.variables; remove one of them");
 }
 
-/* Rows of optimize.goals or optimize.objectives. */
+/* Checks the rows of optimize.goals or optimize.objectives. */
 static void check_goals(const char *list, int n_goal, const hf_goal_settings *goal, hf_config_faults *f)
 {
     enum {
@@ -280,7 +280,7 @@ static void check_goals(const char *list, int n_goal, const hf_goal_settings *go
     }
 }
 
-/* Keys of the genetic algorithm of one goal, which the one of fronts has no use for. */
+/* Reports keys of the genetic algorithm that have no meaning for a Pareto front. */
 static void check_use_of_front(const hf_optimize_settings *o, hf_config_faults *f)
 {
     static const char *const without[] = {"optimize.elites", "optimize.crossover_low", "optimize.mutation_low"};
@@ -322,7 +322,8 @@ static void check_limits(const hf_optimize_settings *o, hf_config_faults *f)
         const hf_limit_settings *l = &o->limit[i];
         check_use(f, list, i, "set", (int)l->limit, hf_limit_word, 1u << HF_LIMIT_TENSION | 1u << HF_LIMIT_RATIO);
         hf_config_check_set(f, list, i, l->set);
-        double least = l->limit == HF_LIMIT_RATIO ? 1 : 0; /* of what is limited from above alone */
+        double least = l->limit == HF_LIMIT_RATIO ? 1 : 0; /* natural bound of figures that are limited
+                                                              only from above */
         if (l->limit != HF_LIMIT_TENSION && (l->lower > least || l->upper <= least || isinf(l->upper)))
             hf_config_fault_in_row(f, list, i, "bounds",
                                    l->limit == HF_LIMIT_RATIO
@@ -351,7 +352,7 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
     if (!f->failed) check_generators(c, f);
     if ((c->has_truss || c->has_truss_import || c->has_truss_ring) && !f->failed) check_truss(c, f);
     if (!f->failed) hf_config_check_built(c, f);
-    if (!c->has_optimize || f->failed) return; /* values that were refused are not compared */
+    if (!c->has_optimize || f->failed) return; /* rejected values are not compared */
     if (o->min_tension_N >= o->max_tension_N)
         hf_config_fault_of(f, "optimize.min_tension_N", "must be below optimize.max_tension_N");
     if (o->compare_lm == HF_COMPARE_TRUE && o->rule == HF_RULE_SEEDED)

@@ -1,4 +1,5 @@
-/* What joins several keys about the net as built: adjust, and the lists cables, nodes, cases. */
+/* Checks of several keys about the as-built net: adjust, cables, cases and tolerance, and the rows of objectives
+ * over several nets. */
 #include "case/config_check.h"
 
 #include "base/text.h"
@@ -37,7 +38,7 @@ static void check_cables(const hf_built_settings *b, hf_config_faults *f)
     }
 }
 
-/* ---- states ---- */
+/* ---- load cases ---- */
 
 static const char states_list[] = "cases";
 
@@ -57,11 +58,11 @@ static void check_name(const hf_state_settings *s, int row, hf_config_faults *f)
     if (s->name[strspn(s->name, letters)] || *s->name == '-')
         hf_config_fault_in_row(f, states_list, row, "name",
                                "must be made of letters, digits, _ and -, and not begin with -");
-    if (!strcmp(s->name, "name")) /* the result file has the names there: /cases/name */
+    if (!strcmp(s->name, "name")) /* the result file has the names in /cases/name */
         hf_config_fault_in_row(f, states_list, row, "name", "must be another word than name");
 }
 
-/* Keys that mean something only beside another one. */
+/* Reports keys that have a meaning only together with another key. */
 static void check_company(const hf_state_settings *s, int row, hf_config_faults *f)
 {
     const struct {
@@ -86,7 +87,7 @@ static void check_company(const hf_state_settings *s, int row, hf_config_faults 
                                "force_N, move_m or nodes");
 }
 
-/* What two rows of a state say of the same thing. Forces and moves add up. */
+/* Reports a quantity that two rows of the same load case set. Forces and displacements add up instead. */
 static void check_twice(const hf_built_settings *b, int row, hf_config_faults *f)
 {
     const hf_state_settings *s = &b->state[row];
@@ -120,7 +121,7 @@ static void check_states(const hf_built_settings *b, hf_config_faults *f)
     }
 }
 
-/* An expansion is of use where something has a temperature. */
+/* Reports an expansion that has no effect, because nothing has a temperature. */
 static void check_expansions(const hf_case *c, hf_config_faults *f)
 {
     const hf_built_settings *b = &c->built;
@@ -206,7 +207,7 @@ void hf_config_check_built(const hf_case *c, hf_config_faults *f)
     if (c->has_tolerance) check_tolerance(c, f);
 }
 
-/* ---- what goals are over ---- */
+/* ---- objectives over load cases and samples ---- */
 
 static void check_state(const hf_case *c, const char *list, int row, const hf_goal_settings *g, hf_config_faults *f)
 {
@@ -248,7 +249,8 @@ static void check_quantile(const hf_optimize_settings *o, const char *list, int 
                                "has no derivatives, which optimize.compare_lm: true needs; remove one of them");
 }
 
-/* The front of Levenberg-Marquardt keeps limits on the norm of residuals, or on sizes of the design itself. */
+/* Reports objectives that the front of Levenberg-Marquardt cannot use. It keeps limits on the norm of residuals, or on
+ * figures of the design itself. */
 static void check_objective(const hf_optimize_settings *o, const char *list, int row, const hf_goal_settings *g,
                             hf_config_faults *f)
 {

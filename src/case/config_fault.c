@@ -19,7 +19,7 @@ void hf_config_fault_at(hf_config_faults *faults, size_t line, size_t column, co
                  what, detail);
 }
 
-/* Where a key stands, or else the row that it belongs to; "": nowhere. */
+/* Returns the location of a key, or else that of its row, or "". *is_given: the case contains the key. */
 static const char *place_of(const char *where_given, const char *path, bool *is_given)
 {
     hf_key key = {0};

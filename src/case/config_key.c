@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Places of a list: for each row one of its own and one for each key. */
+/* Returns the number of locations of a list: each row has one, and each key of each row has one. */
 static int places_of(const hf_list *list)
 {
     return list->max_row * (1 + list->n_field);
@@ -31,7 +31,7 @@ hf_key hf_key_of_row(const hf_list *list, int row, int i_field)
     return key;
 }
 
-/* The key, or the row, of this path in a list. */
+/* Finds the key or the row with this path in a list. */
 static bool find_in_list(const hf_list *list, const char *path, hf_key *key)
 {
     size_t n = strlen(list->path), n_digit = 0;
@@ -39,7 +39,7 @@ static bool find_in_list(const hf_list *list, const char *path, hf_key *key)
     path += n + 1;
     n_digit = strspn(path, "0123456789");
     int row = n_digit && n_digit < 6 ? atoi(path) : list->max_row;
-    if (row >= list->max_row || (n_digit > 1 && *path == '0')) return false; /* one way to write a row */
+    if (row >= list->max_row || (n_digit > 1 && *path == '0')) return false; /* a row number has only one spelling */
     path += n_digit;
     for (int i = *path ? 0 : -1; i < list->n_field; i++) {
         if (i >= 0 && (*path != '.' || strcmp(path + 1, list->field[i].path) != 0)) continue;

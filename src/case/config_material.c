@@ -1,4 +1,4 @@
-/* What cables and nodes are made of, from the rows of `cables` and `nodes`. */
+/* Reads the materials of cables and nodes from the rows of `cables` and `nodes`. */
 #include <hifdm/config.h>
 
 #include "base/arena.h"

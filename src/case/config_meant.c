@@ -7,7 +7,8 @@
 #include <stddef.h>
 #include <string.h>
 
-/* In this section, those below it but for rows of lists, or (section "*") any; the first row that fits counts. */
+/* A row is valid in its section and the sections below it, but not in rows of lists. Section "*" is valid everywhere.
+ * The first matching row is used. */
 static const struct {
     const char *section, *words, *meant;
 } synonym[] = {
@@ -50,7 +51,7 @@ static const struct {
     {"*", "output out", "the option -o of the command line? A case has no key for it"},
 };
 
-/* Is the key one of these words? */
+/* Returns true if the key is one of these words. */
 static bool is_among(const char *words, const char *key)
 {
     while (*words) {

@@ -1,11 +1,11 @@
-/* config_meant - what somebody means by a key that other programs have: by sense, where a guess by spelling would name
- * something else. */
+/* config_meant - suggests our key for a key that other programs use. It compares meanings, because the key with the
+ * nearest spelling would be another one. */
 #ifndef HIFDM_CONFIG_MEANT_H
 #define HIFDM_CONFIG_MEANT_H
 
-/* The key of ours, and where there are several what each is for, as words behind "did you mean "; NULL for a key that
- * nobody is known to use. section: "" of a key at the top. Capitals and "_" do not count. A row of a list, as
- * "optimize.goals.0", has no key of the section that it is in. */
+/* Returns the suggestion as words after "did you mean ", or NULL if the key is not known. If there are several keys,
+ * the words say what each is for. `section` is "" for a key at the top level. Upper case and "_" make no difference. In
+ * a row of a list, such as "optimize.goals.0", the suggestions of its section are not used. */
 const char *hf_config_meant(const char *section, const char *key);
 
 #endif

@@ -1,5 +1,9 @@
-/* The states of the net as built, from the rows of `cases`. Contents: names - temperatures - gravity - forces and moves
- * - a table of nodes - together */
+/* Makes the load cases of the as-built net from the rows of `cases`:
+ *
+ *     rows -> names in order of appearance -> materials -> for each row: temperatures, gravity, forces, displacements,
+ *     table of nodes -> hf_states
+ *
+ * Contents: names - temperatures - gravity - forces and displacements - a table of nodes - together */
 #include <hifdm/config.h>
 
 #include "base/csv.h"
@@ -12,16 +16,18 @@
 
 #define WHERE_SIZE (HF_PATH_SIZE + 96)
 #define COLUMN_MAX 64
-#define LARGEST_STRAIN 0.1 /* by temperature: beyond it a number is wrong, and far beyond it a length below zero */
+#define LARGEST_STRAIN                                                                                                 \
+    0.1 /* by temperature; beyond it a number is wrong, and far beyond it a length
+                              would be negative */
 
 _Static_assert(sizeof hf_part_word / sizeof *hf_part_word == HF_PART_UNIT + HF_N_UNIT + 1, "a part for each unit");
 
 typedef struct {
     const hf_case *c;
     const hf_scene *scene;
-    const hf_truss *truss; /* NULL: none */
+    const hf_truss *truss; /* NULL: no truss */
     hf_states *states;
-    int *cable; /* [n_cable] scratch: the cables of a row */
+    int *cable; /* [n_cable], scratch: the cables of a row */
     hf_messages *messages;
 } maker;
 
@@ -35,7 +41,7 @@ static const char *place_in_row(const maker *q, int row, const char *key, char w
 
 /* ---- names ---- */
 
-/* The states in the order in which their names come first. */
+/* Lists the names of the load cases in the order of their first appearance. Returns their number. */
 static int count_names(const hf_built_settings *b, const char *name[HF_STATES_MAX])
 {
     int n = 0;
@@ -43,7 +49,7 @@ static int count_names(const hf_built_settings *b, const char *name[HF_STATES_MA
         int k = 0;
         while (k < n && strcmp(name[k], b->state[i].name) != 0)
             k++;
-        if (k == n) name[n++] = b->state[i].name; /* the case has been checked: there are no more than fit */
+        if (k == n) name[n++] = b->state[i].name; /* the case has been checked, so all names fit */
     }
     return n;
 }
@@ -62,7 +68,7 @@ static double rise_at(const hf_state_settings *s, const double *a, const double 
 {
     double rise = isnan(s->temperature_K) ? 0 : s->temperature_K;
     for (int c = 0; c < 3 && !isnan(s->gradient_K_per_m[0]); c++)
-        rise += s->gradient_K_per_m[c] * (a[c] + b[c]) / 2; /* at its middle */
+        rise += s->gradient_K_per_m[c] * (a[c] + b[c]) / 2; /* at the middle of the cable or member */
     return rise;
 }
 
@@ -171,7 +177,7 @@ static hf_status weigh(const maker *q, int row)
         place_in_row(q, row, "gravity_m_per_s2", where), n_unknown, q->scene->cable_id[unknown]);
 }
 
-/* ---- forces and moves ---- */
+/* ---- forces and displacements ---- */
 
 static hf_status push(const maker *q, int row)
 {
@@ -198,7 +204,7 @@ static hf_status push(const maker *q, int row)
 enum { ROW_ID, ROW_FORCE, ROW_MOVE = ROW_FORCE + 3, N_ROW_COLUMN = ROW_MOVE + 3 };
 static const char *const row_column[N_ROW_COLUMN] = {"id", "Fx_N", "Fy_N", "Fz_N", "dx_m", "dy_m", "dz_m"};
 
-/* Adds a row of the table to the state. Empty cells are 0. */
+/* Adds a row of the table to the load case. Empty cells are 0. */
 static void add_node(hf_csv *t, const int *where, int r, const hf_csv_named *node, const hf_scene *s, hf_state *state)
 {
     const char *id = hf_csv_cell(t, r, where[ROW_ID]);
@@ -266,7 +272,7 @@ static hf_status check_EA(const maker *q)
 
 typedef hf_status row_step(const maker *, int);
 
-/* All rows, so that all their faults are told in one go. */
+/* Reads all rows, so that one run reports the faults of all. */
 static hf_status read_rows_of_states(const maker *q)
 {
     static row_step *const step[] = {heat, weigh, push, read_nodes};

@@ -1,16 +1,18 @@
-/* Is the net on the surface that the case wants? */
+/* Checks that the net lies on the target surface of the case. */
 #include "case/config_check.h"
 #include "net/wanted.h"
 
 #include <math.h>
 #include <stdio.h>
 
-/* Theoretical positions may be off the wanted surface by this part of its depth below the net, as RMS: 1 mm on the 50
- * mm of a shallow reflector, or nodes raised by half the sag of facets of a sixth of the radius. A paraboloid taken for
- * a cylinder is off by a third. */
+/* Maximum RMS distance of the target positions from the target surface, relative to the depth of the surface below the
+ * net. It is 1 mm for a shallow reflector of 50 mm, or half the sag of facets with a side of a sixth of the radius. If
+ * a paraboloid is taken for a cylinder, the distance is a third of the depth. */
 #define OFF_MOST 0.02
 
-#define FOCAL_MOST 20.0 /* apertures; beyond, the surface is as good as flat, and mm were meant */
+#define FOCAL_MOST                                                                                                     \
+    20.0 /* apertures; beyond this the surface is practically flat, and the length was probably
+                           given in mm */
 
 #define PLACE_SIZE (HF_PATH_SIZE + 128)
 
@@ -41,8 +43,8 @@ static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surfac
                     paraboloid->rms_m * 1e3, advice);
 }
 
-/* Focal lengths of reflectors are 0.2 to 10 apertures. The aperture is the extent across the axis: of a cylinder along
- * x. */
+/* Warns of a focal length out of proportion. Focal lengths of reflectors are 0.2 to 10 apertures. The aperture is the
+ * extent across the axis; for a cylinder, the extent along x. */
 static void doubt_focal_length(const hf_case *c, const hf_scene *scene, hf_messages *messages)
 {
     const char *key = NULL;
@@ -66,7 +68,7 @@ static void doubt_focal_length(const hf_case *c, const hf_scene *scene, hf_messa
                place, of.focal_length_m, of.focal_length_m / aperture_m, aperture_m, FOCAL_MOST);
 }
 
-/* What the case leaves open of the feed follows from the wanted surface. */
+/* Sets values of the feed that the case does not give to NaN. They follow from the target surface. */
 static void open_feed(const hf_case *c, hf_pattern_settings *p)
 {
     char place[PLACE_SIZE];

@@ -1,5 +1,5 @@
-/* The tables of config.h: every key of a case file, with its default. The rows of generators are written beside their
- * settings, in generate.h and truss.h. No default stands anywhere else. */
+/* The tables of config.h: every key of a case file with its default. The rows of generators are beside their settings,
+ * in generate.h and truss.h. No other file contains defaults. */
 #include "case/config_key.h"
 
 #include <stddef.h>
@@ -344,7 +344,7 @@ static const hf_field goal_field[] = {
     {"weight", HF_FIELD_DOUBLE, IN(weight), HF_ABOVE_ZERO, BIG, "1", "", NULL,
      "of this goal in the merit of a design, the root of the sum of (weight * value)^2"},
 };
-/* An objective is a goal without the last key, weight. */
+/* A row of optimize.objectives has the keys of a row of optimize.goals without the last one, weight. */
 enum { N_GOAL_FIELD = sizeof goal_field / sizeof *goal_field, N_OBJECTIVE_FIELD = N_GOAL_FIELD - 1 };
 #undef IN
 
@@ -469,7 +469,7 @@ const int hf_n_list = sizeof hf_list_table / sizeof *hf_list_table;
 static bool is_same(const hf_field *f, const char *a, const char *b)
 {
     const hf_double_list *p = (const void *)a, *q = (const void *)b;
-    switch (f->type) { /* no default label, so that the compiler reports a type that is not compared */
+    switch (f->type) { /* no default label, so that the compiler reports a type without a comparison */
     case HF_FIELD_TEXT:
         return !strcmp(a, b);
     case HF_FIELD_DOUBLE:
@@ -499,7 +499,7 @@ static int add_key(const char *key, int n, char *text, size_t size)
     return n + 1;
 }
 
-/* The keys in which the rows of a list differ, or the list itself when it is of another length. */
+/* Adds the keys in which the rows of a list differ. Adds the list itself if the numbers of rows differ. */
 static int add_rows(const hf_list *list, const hf_case *a, const hf_case *b, int n, char *text, size_t size)
 {
     int n_row = hf_key_n_row(a, list);

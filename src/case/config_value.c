@@ -21,7 +21,7 @@ static void refuse(setter *s, const yaml_node_t *node, const hf_field *f, const 
     hf_config_fault_at(s->faults, node->start_mark.line, node->start_mark.column, f->path, what, detail);
 }
 
-/* Number of items of a list; -1: it is none. */
+/* Returns the number of items of a list, or -1 if the node is no list. */
 static long n_item(const yaml_node_t *node)
 {
     if (node->type != YAML_SEQUENCE_NODE) return -1;
@@ -73,7 +73,7 @@ bool hf_config_is_in_range(const hf_field *f, const char *text)
     return is_whole && hf_text_uint64(text, &whole) && (double)whole >= f->min && (double)whole <= f->max;
 }
 
-/* Every member of hf_case that an HF_FIELD_WORD sets has an enumeration type as wide as an int; values are not
+/* Every member of hf_case that an HF_FIELD_WORD sets has an enumeration type with the size of int. Its values are not
  * negative, so the int with the same bytes has the same value. */
 _Static_assert(sizeof(hf_method) == sizeof(int) && sizeof(hf_diagonals) == sizeof(int), "enumerations are int-sized");
 
@@ -125,7 +125,8 @@ static void set_pair(setter *s, const yaml_node_t *node, const hf_field *f, int 
         set_int(s, item_of(s, node, k), f, to + k);
 }
 
-/* A number with a unit behind it, such as "10 N": letters that are no exponent and no digits of another base. */
+/* Returns true for a number with a unit, such as "10 N". Letters of an exponent or of digits in another base
+ * are no unit. */
 static bool has_unit(const char *text)
 {
     char number[64];
@@ -137,7 +138,7 @@ static bool has_unit(const char *text)
            !isdigit((unsigned char)unit[1]);
 }
 
-/* ".inf", "nan", or more than a double holds. */
+/* Returns true for ".inf", "nan", or a number too large for a double. */
 static bool is_not_finite(const char *text)
 {
     double value = 0;
@@ -171,7 +172,7 @@ static void set_double(setter *s, const yaml_node_t *node, const hf_field *f, do
         memcpy(to, &value, sizeof value);
 }
 
-/* A list of numbers, or one number. */
+/* Sets a list of numbers from a list or from one number. */
 static void set_list(setter *s, const yaml_node_t *node, const hf_field *f, hf_double_list *to)
 {
     long n = node->type == YAML_SEQUENCE_NODE ? n_item(node) : 1;
@@ -186,7 +187,7 @@ static void set_list(setter *s, const yaml_node_t *node, const hf_field *f, hf_d
     }
 }
 
-/* Text of a number with "%" behind it, with or without blanks between; false: it has none. */
+/* Writes the number of a text such as "30 %" or "30%". Returns false if the text does not end with "%". */
 static bool is_percentage(const char *text, char number[64])
 {
     size_t n = strlen(text);
@@ -214,7 +215,7 @@ static void set_amount(setter *s, const yaml_node_t *node, const hf_field *f, do
     }
 }
 
-/* A bound that is none. */
+/* Returns true if the node leaves a bound open. */
 static bool is_open(const yaml_node_t *node, bool is_upper)
 {
     const char *const word[] = {"null", "~", ".", is_upper ? ".inf" : "-.inf"};
@@ -264,7 +265,7 @@ static void set_text(setter *s, const yaml_node_t *node, const hf_field *f, char
         refuse(s, node, f, "must be a text", "");
         return;
     }
-    /* paths in a case file are relative to that file, paths on the command line to the current folder */
+    /* Paths in a case file are relative to that file, paths on the command line to the current folder. */
     const char *beside = size == HF_PATH_SIZE && !s->faults->is_override ? s->case_path : "";
     if (!hf_path_beside(beside, scalar_text(node), to, size)) refuse(s, node, f, "is too long", "");
 }

@@ -1,4 +1,4 @@
-/* config_value - one value of a case file, checked against its row of the table. */
+/* config_value - reads one value of a case file and checks it against its row of the table. */
 #ifndef HIFDM_CONFIG_VALUE_H
 #define HIFDM_CONFIG_VALUE_H
 
@@ -6,19 +6,20 @@
 
 #include <yaml.h>
 
-/* Set *to, of the type of `field`, from a node of the document, or report why not; field->path is the key in messages.
- * Paths of files that the case itself names lead from the folder of case_path. */
+/* Sets *to, of the type of `field`, from a node of the document, or reports the fault. field->path is the key in
+ * messages. Relative paths of files in the case start from the folder of case_path. */
 void hf_config_value(hf_config_faults *faults, yaml_document_t *document, const yaml_node_t *node,
                      const hf_field *field, const char *case_path, void *to);
 
-/* Is the text a number of a key of one number, within its range? False also for what only hf_config_value can judge. */
+/* Returns true if the text is a number within the range of a key of one number. Returns false for values that only
+ * hf_config_value can check, too. */
 bool hf_config_is_in_range(const hf_field *field, const char *text);
 
-/* "must be above 0, not ", "must be at least 1 and at most 5, not " */
+/* Writes the range of a key: "must be above 0, not ", "must be at least 1 and at most 5, not ". */
 #define HF_CONFIG_RANGE_SIZE 160
 void hf_config_range_words(const hf_field *field, char words[HF_CONFIG_RANGE_SIZE]);
 
-/* Set *to to what a row has where its key is not given and has no default. */
+/* Sets *to to the value of a key in a row that is not given and has no default. */
 void hf_config_no_value(const hf_field *field, void *to);
 
 #endif

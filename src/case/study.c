@@ -1,4 +1,10 @@
-/* Contents: values - samples - points - what a point sets */
+/* Makes the points of a sweep from its axes:
+ *
+ *     axes -> number of points -> values of each point -> ids (SHA-256), sorted
+ *       -> load one point as a case -> fingerprint, sections, seed
+ *     point -> overrides for hf_config_load
+ *
+ * Contents: values - samples - points - overrides of a point */
 #include "case/study.h"
 
 #include "base/random.h"
@@ -12,14 +18,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TRIED_MOST 1000  /* points, to find one that can be loaded */
-#define SPREAD_LEAST 100 /* points; fewer are taken one after the other */
+#define TRIED_MOST 1000  /* maximum number of points that are loaded to find a valid one */
+#define SPREAD_LEAST 100 /* fewer points are taken in order */
 
 const char *const hf_study_files_word[3] = {"auto", "all", "none"};
 
 /* ---- values ---- */
 
-/* The shortest of the usual ways to write a number that reads back as the same. */
+/* Writes the number with the fewest digits, from 15 to 17, that reads back as the same double. */
 static void shortest(double value, char text[40])
 {
     for (int digits = 15; digits <= 17; digits++) {
@@ -58,11 +64,15 @@ char *hf_study_canonical(const hf_key *key, const char *value)
 void hf_study_range_value(const hf_field *field, double from, double to, bool is_log, double x, char text[40])
 {
     double value = is_log ? from * pow(to / from, x) : from + (to - from) * x;
-    if (is_log && !isnormal(to / from)) value = pow(from, 1 - x) * pow(to, x); /* ends too far apart for a quotient, */
-    if (!is_log && !isfinite(to - from)) value = from * (1 - x) + to * x;      /* for a difference */
+    if (is_log && !isnormal(to / from))
+        value = pow(from, 1 - x) * pow(to, x); /* from and to are too far apart
+                                                                                  for a quotient */
+    if (!is_log && !isfinite(to - from))
+        value = from * (1 - x) + to * x; /* from and to are too far apart
+                                                                                  for a difference */
     if (x >= 1) value = to;
     if (field->type == HF_FIELD_DOUBLE || field->type == HF_FIELD_AMOUNT) {
-        /* 12 digits are the same on every machine, although pow() may differ in the last bit */
+        /* 12 digits are the same on every machine, although pow(3) may differ in the last bit. */
         snprintf(text, 40, "%.12g", value + 0.0);
         if (strchr(text, 'e') && hf_text_double(text, &value)) shortest(value, text);
     } else {
@@ -88,7 +98,8 @@ hf_status hf_study_latin_hypercube(int n, int n_axis, uint64_t seed, double *x)
     if (!row) return HF_NO_MEMORY;
     for (int axis = 0; axis < n_axis; axis++) {
         hf_random random = {seed ^ ((uint64_t)(unsigned)axis << 48)};
-        for (int i = 0; i < n; i++) { /* Fisher-Yates; n is so far below 2^64 that the remainder is fair enough */
+        for (int i = 0; i < n; i++) { /* Fisher-Yates; n is far below 2^64, so the bias of the
+                                         remainder is negligible */
             int k = (int)(hf_random_next(&random) % ((uint64_t)i + 1));
             row[i] = row[k];
             row[k] = i;
@@ -130,7 +141,7 @@ hf_status hf_study_count_points(hf_study *s, hf_messages *messages)
     return HF_OK;
 }
 
-/* Point i: the last axis changes fastest. */
+/* Writes the values of point i. The last axis changes fastest. */
 static void place_point(const hf_study *s, int i, int *value)
 {
     int rest = i, sampled = -1;
@@ -153,7 +164,7 @@ int hf_study_spread(const hf_study *s, int k)
     static const double golden = 0.6180339887498949;
     long n = s->n_point, step = (long)(golden * (double)n), a = n, b = step;
     if (n <= SPREAD_LEAST) return k;
-    while (b > 1) { /* until step and n have no common divisor, so that all points come once */
+    while (b > 1) { /* ends when step and n have no common divisor, so that every point occurs once */
         long rest = a % b;
         a = b;
         b = rest;
@@ -165,7 +176,7 @@ int hf_study_spread(const hf_study *s, int k)
     return (int)(step * k % n);
 }
 
-/* Digest of the point's lines. Axes are sorted, so the lines are. */
+/* Digests the lines of a point. The axes are sorted, so the lines are sorted too. Returns false if memory runs out. */
 static bool digest_point(const hf_study *s, const int *value, char hex[65])
 {
     size_t size = 1, used = 0;
@@ -191,7 +202,7 @@ static int by_number(const void *a, const void *b)
     return (x->number > y->number) - (x->number < y->number);
 }
 
-/* Sorts the names. Two points that set the same values would write the same result. */
+/* Sorts the ids. Returns HF_BAD_CASE if two points have the same values, because they would write the same result. */
 static hf_status sort_names(hf_study *s, hf_messages *messages)
 {
     s->by_id = malloc((size_t)s->n_point * sizeof *s->by_id);
@@ -242,7 +253,8 @@ void hf_study_tell_faults(const hf_study *s, int i, const hf_messages *found, hf
     }
 }
 
-/* Digest of the base case and the tables that it imports (those of the first point, when an axis names tables). */
+/* Digests the base case and the tables that it imports. If an axis changes the tables, those of the loaded
+ * point are used. */
 static hf_status take_fingerprint(hf_study *s, const hf_case *c, hf_messages *messages)
 {
     const char *table[HF_STUDY_TABLE_MAX] = {
@@ -268,7 +280,7 @@ static hf_status take_fingerprint(hf_study *s, const hf_case *c, hf_messages *me
     return HF_OK;
 }
 
-/* Sets what all points share, which point i shows. */
+/* Loads point i and sets what all points have in common. */
 static hf_status learn_from(hf_study *s, int i, hf_case *c, hf_messages *messages)
 {
     hf_study_overrides o;
@@ -286,7 +298,7 @@ static hf_status learn_from(hf_study *s, int i, hf_case *c, hf_messages *message
     return HF_OK;
 }
 
-/* The machine's fault, and not that of a point. */
+/* Reports a fault of the machine, which is no fault of a point. */
 static void tell_trouble(hf_status status, const hf_messages *found, hf_messages *messages)
 {
     const char *why = found->text ? strstr(found->text, "error: ") : NULL;
@@ -294,8 +306,8 @@ static void tell_trouble(hf_status status, const hf_messages *found, hf_messages
     hf_error(messages, status, "%.*s", (int)strcspn(why, "\n"), why);
 }
 
-/* Some points may be impossible. Where none of those that are tried can be loaded, the fault is that of the base or of
- * an axis, and the first of them tells it. */
+/* Loads points until one is valid, because some combinations may be impossible. If none of the tried points is valid,
+ * the fault is in the base case or in an axis. The faults of the first point are then reported. */
 static hf_status learn_from_a_point(hf_study *s, hf_messages *messages)
 {
     hf_case *c = calloc(1, sizeof *c);
@@ -337,7 +349,7 @@ void hf_study_free(hf_study *s)
     *s = (hf_study){0};
 }
 
-/* ---- what a point sets ---- */
+/* ---- overrides of a point ---- */
 
 void hf_study_point_overrides(const hf_study *s, int i, hf_study_overrides *o)
 {

@@ -1,4 +1,9 @@
-/* Contents: faults - axes given as lists - axes given as ranges - the sweep section - the file */
+/* Reads a study file:
+ *
+ *     YAML -> base, title, sweep section -> axes as lists or ranges -> number of values of each axis
+ *       -> number of points -> values (lists, even ranges, samples), each checked -> hf_study_make_points
+ *
+ * Contents: faults - axes given as lists - axes given as ranges - the sweep section - the file */
 #include "case/study.h"
 
 #include "base/path.h"
@@ -11,15 +16,15 @@
 #include <string.h>
 #include <yaml.h>
 
-#define STUDY_MAX (16 << 20) /* bytes of a study file */
-#define VALUE_SIZE 4200      /* of one value as text: a path, and every character of it escaped */
+#define STUDY_MAX (16 << 20) /* maximum size of a study file, bytes */
+#define VALUE_SIZE 4200      /* bytes of one value as text: a path with every character escaped */
 
 typedef enum { SAMPLE_NONE, SAMPLE_LATIN_HYPERCUBE, SAMPLE_SOBOL } sampling;
 
-/* What an axis was given as, until all axes are known and their points are counted. */
+/* How an axis was given. It is kept until all axes are known and their points are counted. */
 typedef struct {
-    const yaml_node_t *list; /* NULL = a range {from, to, ...} */
-    bool is_faulty;          /* and has no values */
+    const yaml_node_t *list; /* NULL: a range {from, to, ...} */
+    bool is_faulty;          /* true: the axis has no values */
     double from, to;
     bool is_log;
     int n;
@@ -32,9 +37,9 @@ typedef struct {
     hf_messages *messages;
     yaml_document_t *document;
     bool failed, no_memory;
-    int n; /* common to ranges, 0 = not given */
+    int n; /* n of the sweep section; 0: not given */
     uint64_t seed;
-    source source[HF_STUDY_AXIS_MAX]; /* of axis i */
+    source source[HF_STUDY_AXIS_MAX]; /* [n_axis], source of each axis */
 } reader;
 
 /* ---- faults ---- */
@@ -73,7 +78,7 @@ static void fault_unknown(reader *r, yaml_mark_t mark, const char *key, const ch
         fault(r, mark, key, "unknown key '%s'%s", word, *key ? "" : " (hifdm schema lists all keys)");
 }
 
-/* Report a fault when this key is in the mapping before `pair`, too. */
+/* Returns true and reports a fault if the mapping has this key before `pair`. */
 static bool is_repeated(reader *r, const yaml_node_t *mapping, const yaml_node_pair_t *pair, const char *path)
 {
     const yaml_node_t *key = node_at(r, pair->key);
@@ -104,7 +109,7 @@ static void read_count(reader *r, const yaml_node_t *node, const char *key, int 
         *n = (int)value;
 }
 
-/* The index of a word; 0 after a fault. */
+/* Returns the index of a word; 0 after reporting a fault. */
 static int read_word(reader *r, const yaml_node_t *node, const char *key, const char *name, const char *const *words,
                      int n_word)
 {
@@ -119,7 +124,7 @@ static int read_word(reader *r, const yaml_node_t *node, const char *key, const 
 
 /* ---- axes given as lists ---- */
 
-/* The value as YAML on one line; false when it is neither a scalar nor a list of scalars. */
+/* Writes the value as YAML on one line. Returns false if it is neither a scalar nor a list of scalars. */
 static bool value_text(reader *r, const yaml_node_t *node, char *text)
 {
     size_t used = 0;
@@ -134,7 +139,7 @@ static bool value_text(reader *r, const yaml_node_t *node, char *text)
     return true;
 }
 
-/* A text as a quoted YAML scalar; paths are relative to the study file. */
+/* Writes a text as a quoted YAML scalar. Paths are relative to the study file. */
 static bool quote(const reader *r, const hf_field *field, const char *value, char *text)
 {
     char whole[2 * HF_PATH_SIZE];
@@ -156,7 +161,8 @@ static hf_status check_value(reader *r, const hf_study_axis *axis, const char *t
     return hf_config_check_value(axis->key.path, text, place, r->messages);
 }
 
-/* Sets value k of the axis. A study may have a million: what is plainly right is not looked at as YAML. */
+/* Sets value k of the axis. A study may have a million values, so numbers that are within their range are not
+ * parsed as YAML. */
 static void set_value(reader *r, hf_study_axis *axis, int k, const char *value, bool is_canonical, yaml_mark_t mark)
 {
     const char *key = axis->key.path;
@@ -215,8 +221,8 @@ static void fill_list(reader *r, hf_study_axis *axis, const yaml_node_t *list)
 
 /* ---- axes given as ranges ---- */
 
-/* An end of the range, which has to be in the range of the key; an end at 0, which is none of the values where these
- * are sampled, is left to the values. */
+/* Reads an end of a range; it must be within the range of the key. An end of 0 is accepted for keys that must be above
+ * 0: samples do not reach it, and every value is checked later. */
 static bool read_end(reader *r, const hf_key *key, const yaml_node_t *node, const char *name, double *value)
 {
     const hf_field *f = key->field;
@@ -233,7 +239,7 @@ static void read_range_key(reader *r, const hf_key *of, const yaml_node_t *key, 
 {
     static const char *const names[] = {"from", "to", "n", "spacing", "sample"};
     static const char *const spacings[] = {"linear", "log"};
-    static const char *const samplings[] = {"latin_hypercube", "sobol"}; /* in the order of sampling */
+    static const char *const samplings[] = {"latin_hypercube", "sobol"}; /* in the order of `sampling` */
     const char *word = text_of(key), *path = of->path;
     if (!strcmp(word, "from"))
         given[0] = read_end(r, of, value, word, &to->from);
@@ -275,7 +281,7 @@ static void read_range(reader *r, hf_study_axis *axis, const yaml_node_t *mappin
         to->is_faulty = false;
 }
 
-/* The values of a range at x[0], x[stride], ... of 0..1. */
+/* Sets the values of a range at x[0], x[stride], ... in 0..1. */
 static void fill_range(reader *r, int a, const double *x, int stride)
 {
     hf_study_axis *axis = &r->study->axis[a];
@@ -284,7 +290,7 @@ static void fill_range(reader *r, int a, const double *x, int stride)
     if (!reserve_values(r, axis)) return;
     bool failed_before = r->failed;
     r->failed = false;
-    for (int i = 0; i < axis->n_value && !r->failed; i++) { /* report one bad value of a range, not all */
+    for (int i = 0; i < axis->n_value && !r->failed; i++) { /* reports only the first bad value of a range */
         hf_study_range_value(axis->key.field, from->from, from->to, from->is_log, x[(size_t)i * (size_t)stride], text);
         set_value(r, axis, i, text, true, from->mark);
     }
@@ -304,7 +310,7 @@ static void fill_even(reader *r, int a)
     free(x);
 }
 
-/* All sampled axes of one kind, as one joint axis. */
+/* Sets the values of all sampled axes of one kind, as one joint axis. */
 static void fill_sampled(reader *r, sampling kind)
 {
     int member[HF_STUDY_AXIS_MAX], n_member = 0;
@@ -322,7 +328,7 @@ static void fill_sampled(reader *r, sampling kind)
 
 /* ---- the sweep section ---- */
 
-/* How many values each axis has, before any is made. */
+/* Counts the values of each axis before any value is made. */
 static void count_values(reader *r)
 {
     for (int a = 0; a < r->study->n_axis; a++) {
@@ -352,7 +358,7 @@ static void fill_axes(reader *r)
     fill_sampled(r, SAMPLE_SOBOL);
 }
 
-/* Report a key that is none: of a row the keys of its list are those that may be meant. */
+/* Reports an unknown key. In a row, the suggestions are the keys of its list. */
 static void fault_no_axis(reader *r, const yaml_node_t *key, const char *const *names, int n)
 {
     const char *word = text_of(key), *dot = strrchr(word, '.'), *of_row[64];
@@ -458,7 +464,7 @@ static void read_title(reader *r, const yaml_node_t *node)
         fault(r, node->start_mark, "", "title is longer than %zu bytes", size - 1);
 }
 
-/* The index of a name; -1: not among them. */
+/* Returns the index of a name, or -1. */
 static int name_of(const char *word, const char *const *names, int n)
 {
     for (int i = 0; i < n; i++)
@@ -515,7 +521,7 @@ static void parse(reader *r, const char *text, size_t length)
         if (parser.problem)
             fault(r, parser.problem_mark, "", "YAML: %s", parser.problem);
         else
-            r->no_memory = true; /* the parser does not always say so in `error` */
+            r->no_memory = true; /* out of memory; `error` does not always show it */
     } else {
         r->document = &document;
         read_root(r, yaml_document_get_root_node(&document));
