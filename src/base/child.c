@@ -83,8 +83,7 @@ void hf_child_limit_cpu(int seconds)
     static bool is_known;
     if (!is_known) before = limit.rlim_cur;
     is_known = true;
-    rlim_t until = (rlim_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec + 1 + seconds); /* 1: the fraction of a second
-                                                                                           that the sum drops */
+    rlim_t until = (rlim_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec + 1 + seconds); /* 1: truncated fractions */
     limit.rlim_cur = seconds == 0 || until > before ? before : until;
     setrlimit(RLIMIT_CPU, &limit);
 }

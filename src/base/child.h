@@ -36,9 +36,10 @@ void hf_child_limit_cpu(int seconds);
 
 /* ---- The server ---- */
 
-/* Starts and ends the server. hf_child_ask works between the two calls. Calls may be nested: the server then runs from
- * the first begin to the last end. If memory or processes run out, there is no server, and this is not an error. The
- * server keeps open every descriptor that is open when it starts, with the locks on it, until the server ends. */
+/* Start and end the server. hf_child_ask works between the two calls. Calls may be nested: the server then runs from
+ * the first hf_child_server_begin to the last hf_child_server_end. If memory or processes run out, there is no server,
+ * and this is not an error. The server keeps open every descriptor that is open when it starts, with the locks on it,
+ * until the server ends. */
 void hf_child_server_begin(void);
 void hf_child_server_end(void);
 

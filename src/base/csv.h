@@ -87,7 +87,7 @@ hf_csv_named *hf_csv_index_of(int n, const char *const *id);
 int hf_csv_row_of(const hf_csv_named *index, int n_row, const char *id);
 
 /* Returns the row of table `of`, found with its index, to which a cell refers. Reports a fault and returns 0 if there
- * is no such id. The message is `what`, the begin of a sentence, followed by the name. */
+ * is no such id. `what` is the start of the message; the name follows it. */
 int hf_csv_reference(hf_csv *table, int row, int column, const char *id, const char *what, const hf_csv *of,
                      const hf_csv_named *index);
 

@@ -68,9 +68,7 @@ static double alternating_series(double r, int n, double first)
 static double turned_sine(double angle_rad, int quarters)
 {
     if (!isfinite(angle_rad)) return (double)NAN;
-    if (fabs(angle_rad) > ANGLE_MOST)
-        angle_rad = remainder(angle_rad, 4 * (HALF_PI_1 + HALF_PI_2)); /* remainder(3) is
-                                                                                                        exact */
+    if (fabs(angle_rad) > ANGLE_MOST) angle_rad = remainder(angle_rad, 4 * (HALF_PI_1 + HALF_PI_2)); /* exact */
     double count = nearbyint(angle_rad / HALF_PI_1);
     double r = ((angle_rad - count * HALF_PI_1) - count * HALF_PI_2) - count * HALF_PI_3;
     int quadrant = (int)(count - 4 * floor(count / 4)) + quarters;

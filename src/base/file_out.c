@@ -130,7 +130,7 @@ hf_status hf_file_out_look(const char *path, bool *is_there, hf_messages *messag
     return seen < 0 ? cannot_look(path, messages) : HF_OK;
 }
 
-/* Writes the begin of the temporary names of `path`, without the folder. */
+/* Writes the common beginning of all temporary names of `path`, without the folder. */
 static void begin_of_names(const char *path, char begin[STEM_MAX + 16])
 {
     char stem[STEM_MAX + 1];
@@ -327,9 +327,7 @@ int hf_file_out_keep(const char *name, bool *was_there)
         file = hf_file_io_open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
         *was_there = file >= 0;
         if (file < 0 && errno == ENOENT) file = hf_file_out_create(name);
-        if (file < 0 && errno != EEXIST && errno != ENOENT)
-            break; /* another process made or removed the file between
-                                                                      the two calls */
+        if (file < 0 && errno != EEXIST && errno != ENOENT) break; /* made or removed between the two calls */
     }
     if (file < 0) {
         if (errno == ELOOP || errno == EISDIR || errno == ENXIO) errno = EEXIST; /* a link, a folder, a socket */

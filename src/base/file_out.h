@@ -1,11 +1,11 @@
 /* file_out - makes all files that this program writes.
  *
- * A file is written under a temporary name, written to the disk, and renamed. So nobody sees a half-written file, and
- * after a power failure either the old or the new file exists, complete. The temporary file of FOLDER/NAME is
- * FOLDER/.NAME.hifdm-<32 random hexadecimal digits>.tmp. Nobody can guess this name and put a link or a file there. No
- * other program uses such names, so a file that a killed process left behind can be recognised. A temporary file is
- * locked (fcntl, F_OFD_SETLK) while its process runs, so that no other process removes it. On a file system without
- * these locks, temporary files that a killed process left behind remain.
+ * A file first has a temporary name. When its content is complete and on the disk, the file is renamed. So nobody sees
+ * a half-written file, and after a power failure either the old or the new file exists, complete. The temporary file of
+ * FOLDER/NAME is FOLDER/.NAME.hifdm-<32 random hexadecimal digits>.tmp. Nobody can guess this name and put a link or a
+ * file there. No other program uses such names, so a file that a killed process left behind can be recognised. A
+ * temporary file is locked (fcntl, F_OFD_SETLK) while its process runs, so that no other process removes it. On a file
+ * system without these locks, temporary files that a killed process left behind remain.
  *
  * If the user or root made a symbolic link, the file that it points to is written. A link made by anybody else is
  * refused, because in a shared folder it could point to any file of the user. The same holds for an output folder. A
@@ -84,16 +84,15 @@ hf_status hf_file_out_folder(const char *path, hf_messages *messages);
  * *is_there is then true, so that the file is not replaced. */
 hf_status hf_file_out_look(const char *path, bool *is_there, hf_messages *messages);
 
-/* Returns HF_EXISTS if `output` leads to the file `input`, which no option allows to replace. `what`
- * describes the input to the user, such as "the result itself". `input` may be NULL or "". Returns HF_IO if
- * the system cannot answer. */
+/* Returns HF_EXISTS if `output` leads to the file `input`. No option allows an output to replace its input. `what`
+ * describes the input to the user, such as "the result itself". `input` may be NULL or "". Returns HF_IO if the
+ * system cannot answer. */
 hf_status hf_file_out_spare(const char *input, const char *what, const char *output, hf_messages *messages);
 
 /* Removes the temporary files of `path` whose processes have ended. */
 void hf_file_out_clean(const char *path);
 
-int hf_file_out_make(const char *path, hf_file_out *file); /* makes the temporary file of `path`, whose links are
-                                                              already followed */
+int hf_file_out_make(const char *path, hf_file_out *file); /* temporary file of `path`, links already followed */
 int hf_file_out_sync(int file);                            /* waits until the content is on the disk */
 int hf_file_out_sync_folder(const char *path);             /* waits until the name `path` is on the disk */
 

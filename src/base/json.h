@@ -29,8 +29,7 @@ void hf_json_number(hf_json *json, const char *key, double value);
 void hf_json_integer(hf_json *json, const char *key, int64_t value);
 void hf_json_unsigned(hf_json *json, const char *key, uint64_t value);
 void hf_json_bool(hf_json *json, const char *key, bool value);
-void hf_json_list(hf_json *json, const char *key, const double *value, int n); /* n numbers, as hf_json_number writes
-                                                                                  them */
+void hf_json_list(hf_json *json, const char *key, const double *value, int n); /* n numbers as by hf_json_number */
 
 /* Writes a list of texts: the lines of `lines` that start with `prefix`, without this prefix. `lines` may be NULL. */
 void hf_json_lines(hf_json *json, const char *key, const char *prefix, const char *lines);
@@ -63,7 +62,6 @@ typedef struct {
 hf_json_packed hf_json_pack(const char *key, const char *type, FILE *file);
 void hf_json_pack_value(hf_json_packed *packed, double value);
 void hf_json_pack_end(hf_json_packed *packed);
-void hf_json_pack_values(const char *key, const char *type, const double *value, int n, FILE *file); /* all three
-                                                                                                        steps */
+void hf_json_pack_values(const char *key, const char *type, const double *value, int n, FILE *file); /* all steps */
 
 #endif

@@ -44,8 +44,7 @@ bool hf_path_choose(const char *given, const char *source, const char *ending, c
 {
     const char *name = hf_path_name(source);
     if (given) return fits(snprintf(path, size, "%s", given), size);
-    const char *here = *name == '-' ? "./" : ""; /* otherwise a command that a message suggests would take the name for
-                                                    an option */
+    const char *here = *name == '-' ? "./" : ""; /* so that no command takes the name for an option */
     return fits(snprintf(path, size, "%s%.*s%s", here, (int)(hf_path_ending(source) - name), name, ending), size);
 }
 

@@ -1,7 +1,7 @@
 /* path - file names as text, and whether two names lead to the same file.
  *
- * The name of a path is the part after its last slash. The ending of a name begins at its last dot. A dot at the begin
- * of a name marks a hidden file and starts no ending. */
+ * The name of a path is the part after its last slash. The ending of a name begins at its last dot. A dot at the start
+ * of a name marks a hidden file and begins no ending. */
 #ifndef HIFDM_PATH_H
 #define HIFDM_PATH_H
 

@@ -1,5 +1,5 @@
-/* random - the generator of all pseudo-random numbers: SplitMix64 (Steele, Lea & Flood 2014). Result files contain only
- * the seed, so the generated numbers must never change. */
+/* random - the generator of all pseudo-random numbers: SplitMix64 (Steele, Lea & Flood 2014). Results store the seed
+ * instead of the random numbers, so the generated numbers must never change. */
 #ifndef HIFDM_RANDOM_H
 #define HIFDM_RANDOM_H
 

@@ -402,7 +402,7 @@ static void apply_override(loader *l, const char *argument)
     l->faults.origin = l->c->path;
 }
 
-/* Returns the begin of the next line. YAML 1.1 breaks lines at CR LF, CR, LF, NEL, LS and PS. */
+/* Returns the start of the next line. YAML 1.1 breaks lines at CR LF, CR, LF, NEL, LS and PS. */
 static char *after_line(char *text)
 {
     for (; *text; text++) {

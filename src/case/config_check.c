@@ -322,8 +322,7 @@ static void check_limits(const hf_optimize_settings *o, hf_config_faults *f)
         const hf_limit_settings *l = &o->limit[i];
         check_use(f, list, i, "set", (int)l->limit, hf_limit_word, 1u << HF_LIMIT_TENSION | 1u << HF_LIMIT_RATIO);
         hf_config_check_set(f, list, i, l->set);
-        double least = l->limit == HF_LIMIT_RATIO ? 1 : 0; /* natural bound of figures that are limited
-                                                              only from above */
+        double least = l->limit == HF_LIMIT_RATIO ? 1 : 0; /* smallest possible value */
         if (l->limit != HF_LIMIT_TENSION && (l->lower > least || l->upper <= least || isinf(l->upper)))
             hf_config_fault_in_row(f, list, i, "bounds",
                                    l->limit == HF_LIMIT_RATIO

@@ -16,9 +16,7 @@
 
 #define WHERE_SIZE (HF_PATH_SIZE + 96)
 #define COLUMN_MAX 64
-#define LARGEST_STRAIN                                                                                                 \
-    0.1 /* by temperature; beyond it a number is wrong, and far beyond it a length
-                              would be negative */
+#define LARGEST_STRAIN 0.1 /* maximum thermal strain; a larger one is an error in the case */
 
 _Static_assert(sizeof hf_part_word / sizeof *hf_part_word == HF_PART_UNIT + HF_N_UNIT + 1, "a part for each unit");
 

@@ -10,9 +10,7 @@
  * a paraboloid is taken for a cylinder, the distance is a third of the depth. */
 #define OFF_MOST 0.02
 
-#define FOCAL_MOST                                                                                                     \
-    20.0 /* apertures; beyond this the surface is practically flat, and the length was probably
-                           given in mm */
+#define FOCAL_MOST 20.0 /* apertures; a larger one was probably given in mm */
 
 #define PLACE_SIZE (HF_PATH_SIZE + 128)
 

@@ -64,12 +64,8 @@ char *hf_study_canonical(const hf_key *key, const char *value)
 void hf_study_range_value(const hf_field *field, double from, double to, bool is_log, double x, char text[40])
 {
     double value = is_log ? from * pow(to / from, x) : from + (to - from) * x;
-    if (is_log && !isnormal(to / from))
-        value = pow(from, 1 - x) * pow(to, x); /* from and to are too far apart
-                                                                                  for a quotient */
-    if (!is_log && !isfinite(to - from))
-        value = from * (1 - x) + to * x; /* from and to are too far apart
-                                                                                  for a difference */
+    if (is_log && !isnormal(to / from)) value = pow(from, 1 - x) * pow(to, x); /* to / from is out of range */
+    if (!is_log && !isfinite(to - from)) value = from * (1 - x) + to * x;      /* to - from overflows */
     if (x >= 1) value = to;
     if (field->type == HF_FIELD_DOUBLE || field->type == HF_FIELD_AMOUNT) {
         /* 12 digits are the same on every machine, although pow(3) may differ in the last bit. */
@@ -98,8 +94,7 @@ hf_status hf_study_latin_hypercube(int n, int n_axis, uint64_t seed, double *x)
     if (!row) return HF_NO_MEMORY;
     for (int axis = 0; axis < n_axis; axis++) {
         hf_random random = {seed ^ ((uint64_t)(unsigned)axis << 48)};
-        for (int i = 0; i < n; i++) { /* Fisher-Yates; n is far below 2^64, so the bias of the
-                                         remainder is negligible */
+        for (int i = 0; i < n; i++) { /* Fisher-Yates; the bias of the remainder is negligible */
             int k = (int)(hf_random_next(&random) % ((uint64_t)i + 1));
             row[i] = row[k];
             row[k] = i;

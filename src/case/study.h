@@ -11,8 +11,8 @@
  *       seed: 1             # of the latin hypercube
  *       files: auto         # a result file per point: auto = with an optimize section, all, none
  *
- * A point is identified by its values, not by its number. Its id is the begin of the SHA-256 of its sorted lines
- * "key=value". If an axis grows, the existing points keep their ids, files and seeds. */
+ * A point is identified by its values, not by its number. Its id is the first 12 digits of the SHA-256 of its sorted
+ * lines "key=value". If an axis grows, the existing points keep their ids, files and seeds. */
 #ifndef HIFDM_STUDY_H
 #define HIFDM_STUDY_H
 

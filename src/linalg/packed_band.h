@@ -19,8 +19,7 @@
 
 typedef struct hf_packed_band {
     int n, n_block, width;       /* rows, blocks of rows, half-bandwidth */
-    double *row, *column;        /* [n_block][width + HF_PACKED_ROWS][HF_PACKED_ROWS], for the forward and for
-                                    the backward solve */
+    double *row, *column;        /* [n_block][width + HF_PACKED_ROWS][HF_PACKED_ROWS], forward and backward */
     double *inverse_diagonal;    /* [n_block HF_PACKED_ROWS], 0 from n on */
     int *row_begin;              /* [n_block], skyline: columns of a block before this one are zero in `row` */
     int *column_end;             /* [n_block], skyline: rows of a block from this one on are zero in `column` */

@@ -25,9 +25,7 @@
  * smaller share of its whole square than this. An active limit must then be dropped first. All tests pass with
  * 1e-26 to 1e-14. */
 #define DEPENDENT 1e-20
-#define STEPS_PER_VARIABLE                                                                                             \
-    50 /* maximum number of steps that add or drop a limit, per variable; all tests pass with 5,
-                                 not with 1 */
+#define STEPS_PER_VARIABLE 50 /* maximum of limits added or dropped, per variable; tests pass with 5, not with 1 */
 
 /* ---- kernels ---- */
 

@@ -36,8 +36,7 @@ typedef struct {
     double *x;                   /* [ld], the solution; 0 from n on */
     int n_active;                /* limits that hold with equality */
     hf_quadratic_active *active; /* [n], the first n_active are in use */
-    int *side;                   /* [n], active bound of each variable in the last solution: 1 lower, -1
-                                    upper, 0 none */
+    int *side;                   /* [n], active bound in the last solution: 1 lower, -1 upper, 0 none */
     int *order;                  /* [n], order of the variables in the factor; those at a bound at the start are last */
     double *scratch;             /* [6 ld] */
     double *strip;               /* [n][HF_LANES], scratch: columns of L^-1 that are computed together */

@@ -12,9 +12,7 @@ const char *const hf_law_word[HF_N_LAW] = {HF_LAW_LIST(WORD)};
 const char *const hf_law_target_name[HF_N_LAW] = {HF_LAW_LIST(TARGET)};
 const char *const hf_law_target_unit[HF_N_LAW] = {HF_LAW_LIST(UNIT)};
 
-#define LENGTH_RATIO_MIN                                                                                               \
-    1e-12 /* minimum ratio of unstressed length to length at the target positions; below it the
-                                  tension would exceed 1e12 EA */
+#define LENGTH_RATIO_MIN 1e-12 /* minimum of unstressed length / target length; below it the tension exceeds 1e12 EA */
 
 const char *hf_law_target_fault(hf_law law, double target, double theoretical_m, char text[HF_LAW_FAULT_SIZE])
 {

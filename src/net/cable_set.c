@@ -43,8 +43,7 @@ hf_status hf_cable_set_make(hf_scene *scene, int n_set, const char *const *name,
 {
     int n_used = 0;
     if (n_member == 0) return HF_OK;
-    int *next = calloc((size_t)n_set, sizeof *next); /* [n_set]: at first the size of a set, later the index of
-                                                        its next cable */
+    int *next = calloc((size_t)n_set, sizeof *next); /* [n_set], size of a set, later its next entry in set_cable */
     if (!next) return HF_NO_MEMORY;
     for (int k = 0; k < n_member; k++)
         next[member[k].set]++;

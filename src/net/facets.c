@@ -20,18 +20,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define NEAR_PART                                                                                                      \
-    1e-3 /* other nodes count as on the target surface if they are nearer to it than this share
-                              of its depth */
-#define NEAR_SLOPE                                                                                                     \
-    0.1 /* ... or if their cable to an inner node departs from the surface by less than this share
-                              of its length */
-#define STRAIGHT_ON                                                                                                    \
-    0.5 /* cosine of the maximum turn at which two cables continue each other; the sag is then 0.29
-                              of the span */
-#define STRAIGHT_PART                                                                                                  \
-    1e-9 /* a corner that points inwards by less than this share of the area counts as straight,
-                              because of rounding */
+/* Nodes that are no inner nodes are on the target surface if they are nearer to it than NEAR_PART of its depth. They are
+ * also on it if their cable to an inner node departs from it by less than NEAR_SLOPE of its length. */
+#define NEAR_PART 1e-3
+#define NEAR_SLOPE 0.1
+/* Cosine of the maximum turn at which two cables continue each other. The sag is then 0.29 of the span. */
+#define STRAIGHT_ON 0.5
+#define STRAIGHT_PART 1e-9 /* a corner that points inwards by less of the area is straight, but for rounding */
 
 /* ---- the graph ---- */
 

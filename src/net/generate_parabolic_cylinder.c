@@ -207,8 +207,7 @@ typedef struct {
     const double *EA_N; /* by hf_group, 0: not given */
     hf_scene *s;
     int nx, ny;                  /* nodes along the directrix and along the generatrix */
-    int first_middle, first_tie; /* indices of the first node in the middle of a cell (pattern diagonal), and of the
-                                    first support of an edge tie */
+    int first_middle, first_tie; /* first node in the middle of a cell; first support of an edge tie */
     int n_cable, n_member;       /* counted so far; if member is NULL, they are only counted */
     hf_cable_set_member *member;
 } grid;

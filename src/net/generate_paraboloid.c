@@ -15,13 +15,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define NODE_MAX 4000000 /* keeps every index and band offset far below the range of int */
-#define LEAST_EDGE 0.25  /* minimum distance of a node of the quad grid from the rim, in cells */
-#define SAME_SUPPORT                                                                                                   \
-    1e-9               /* relative to the radius; two ends of rows and columns nearer than this on the rim
-                             are one support */
-#define RELAXED 1e-16  /* relative to the first residual */
-#define RELAX_STEPS 40 /* maximum, per ring; about 4 are needed */
+#define NODE_MAX 4000000  /* keeps every index and band offset far below the range of int */
+#define LEAST_EDGE 0.25   /* minimum distance of a node of the quad grid from the rim, in cells */
+#define SAME_SUPPORT 1e-9 /* relative to the radius; nearer ends of rows and columns are one support */
+#define RELAXED 1e-16     /* relative to the first residual */
+#define RELAX_STEPS 40    /* maximum, per ring; about 4 are needed */
 
 const char *const hf_grid_word[3] = {"triangle", "quad", NULL};
 

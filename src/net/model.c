@@ -394,8 +394,7 @@ hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf
     int *order = malloc((size_t)scene->n_node * sizeof *order);
     hf_status status = order ? hf_numbering_find(scene, order, &m->half_bandwidth) : HF_NO_MEMORY;
     double n_band = (double)m->n_free * (m->half_bandwidth + 1.0);
-    if (status == HF_OK && 3 * n_band > INT_MAX / 2) { /* 3: the general band of a net with struts is three
-                                                          times as large */
+    if (status == HF_OK && 3 * n_band > INT_MAX / 2) { /* 3: the general band of a net with struts */
         free(order);
         return hf_error(messages, HF_NO_MEMORY, "the band matrix of %d rows, half-bandwidth %d is too large", m->n_free,
                         m->half_bandwidth);
@@ -559,8 +558,7 @@ hf_status hf_model_attach(hf_model *m, int n_attachment, const int *node, const 
 
 void hf_model_want_newton(hf_model *m)
 {
-    m->has_newton |= m->n_attachment > 0 && !m->has_strut; /* a law that does not iterate is force_density, and its
-                                                              energy is convex */
+    m->has_newton |= m->n_attachment > 0 && !m->has_strut; /* laws that do not iterate have convex energy */
 }
 
 /* ---- checks ---- */

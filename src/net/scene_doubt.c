@@ -12,12 +12,8 @@
 #define FAR 100.0     /* ratio to the distance of the others from the middle; mm given as m are 1000 times as far */
 #define LARGE_M 500.0 /* extent of the net; no reflector of cables is larger, but one of 1 m in mm is */
 #define LENGTH_PART 0.5
-#define PLANE_PART                                                                                                     \
-    1e-6 /* relative to the extent of the supports; they are in one plane up to this: positions in a
-            table are rounded */
-#define FLATTER_PART                                                                                                   \
-    1e-3 /* relative to the same extent; inner nodes within this distance of the plane are probably
-                             meant to be in it */
+#define PLANE_PART 1e-6   /* relative to the extent of the supports; positions in tables are rounded */
+#define FLATTER_PART 1e-3 /* relative to the same extent; nearer inner nodes are probably meant to be in the plane */
 
 typedef struct {
     int low, high, cable; /* end nodes, smaller index first */

@@ -45,8 +45,7 @@ typedef struct {
     place *place;                               /* [n_node], sorted */
     link *link;                                 /* [n_cable], sorted */
     int *node_image, *cable_image;              /* [n_node], [n_cable], images under the current plane; -1: none */
-    int *gene_of_cable, *gene_of_node;          /* [n_cable], [n_node], design variables that a plane may
-                                                   link; -1: none */
+    int *gene_of_cable, *gene_of_node;          /* [n_cable], [n_node], variables that may be linked; -1: none */
     int *parent;                                /* [n_gene], union-find over both planes */
     int *group_parent, *group_label;            /* [n_gene_group] */
 } search;

@@ -18,10 +18,8 @@ typedef struct {
     int pivot[HF_FIT_N_PARAMETER];
     double *slope;                             /* [parameter][n], derivatives of the errors by the parameters */
     double *slope_center;                      /* [3][n], derivatives of the errors by the centre of the points */
-    double *pull;                              /* [parameter][3][n], derivatives of G by a point relative
-                                                  to the centre */
-    double *pull_area;                         /* [parameter][n], derivatives of G by the area that
-                                                  a point represents */
+    double *pull;                              /* [parameter][3][n], derivatives of G by a point, about the centre */
+    double *pull_area;                         /* [parameter][n], derivatives of G by the area of a point */
     double pull_center[HF_FIT_N_PARAMETER][3]; /* derivatives of G by the centre */
 } hf_cloud_pose;
 

@@ -246,8 +246,7 @@ hf_status hf_facet_map(const hf_surface_settings *s, const hf_facets *f, const h
     }
     if (status == HF_OK) {
         average(&q, f->n_facet, to->normal_mean_m, to->normal_rms_m);
-        average(&q, f->n_facet, to->fit_normal_mean_m, to->fit_normal_rms_m); /* NaN for now; it stays NaN
-                                                                                 without a shape */
+        average(&q, f->n_facet, to->fit_normal_mean_m, to->fit_normal_rms_m); /* NaN; final if there is no shape */
     }
     if (status == HF_OK && q.has_shape)
         status = hf_surface_fit_points(s->kind, s->focal_length_m, q.n, q.position_m, q.root_m, &fit);

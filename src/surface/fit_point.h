@@ -14,14 +14,12 @@ typedef struct {
     double shift_m[3], turn[3][3];
     double slope[3][3][3];                /* first derivatives of the rotation, by each angle */
     double bend[3][3][3][3];              /* second derivatives of the rotation, by two angles */
-    double curvature_per_m, wanted_per_m; /* curvature of the fitted surface; of the target surface (CURVE is
-                                             relative to it) */
+    double curvature_per_m, wanted_per_m; /* of the fitted surface; of the target surface, the unit of CURVE */
 } hf_fit_frame;
 
 /* A point in the frame of the surface. Its position and the curvature are four coordinates. */
 typedef struct {
-    double at[3], arm[3];             /* position in that frame; vector from the shifted centre, in the frame
-                                         of the net */
+    double at[3], arm[3];             /* position there; vector from the shifted centre, frame of the net */
     double by[HF_FIT_N_PARAMETER][4]; /* derivatives of the coordinates by the parameters */
     double value, d[4], dd[4][4];     /* half-path error, with its derivatives by the coordinates */
 } hf_fit_point;

@@ -20,11 +20,9 @@
 #include <string.h>
 
 enum { GAUSS_MOST = 64, GAUSS_MORE = 2, LOOKS = 16, PIECES_MOST = 100000 };
-#define GAUSS_LN (-21.0) /* logarithm of the accepted quadrature error */
-#define NODE_LN (-22.0)  /* logarithm of the accepted error of interpolation between angles */
-#define GAUSS_PHASE_MOST                                                                                               \
-    77.0 /* half of the phase across a piece at which GAUSS_MOST - GAUSS_MORE points have
-                                 the accepted error */
+#define GAUSS_LN (-21.0)      /* logarithm of the accepted quadrature error */
+#define NODE_LN (-22.0)       /* logarithm of the accepted error of interpolation between angles */
+#define GAUSS_PHASE_MOST 77.0 /* half phase across a piece; GAUSS_MOST - GAUSS_MORE points reach the accepted error */
 
 typedef struct {
     hf_pattern_points *points;

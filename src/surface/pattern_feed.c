@@ -14,9 +14,7 @@
 #include <string.h>
 
 #define EDGE_FIELD_LN (-0.5 * 2.30258509299404568402) /* natural logarithm of the field ratio of -10 dB */
-#define POWER_MOST                                                                                                     \
-    1e4 /* maximum power of the cosine; the beam of such a feed is about
-                                                         1 degree wide */
+#define POWER_MOST 1e4                                /* maximum power of the cosine; its beam is about 1 degree wide */
 
 /* ---- the field ---- */
 

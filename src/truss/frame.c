@@ -23,17 +23,12 @@
 #include <string.h>
 
 /* Each comment ends with the range in which no test of the room `truss` and no frame of tests/verify changes. */
-#define CONDITION_MAX                                                                                                  \
-    1e13                 /* maximum condition number of the scaled matrix; beyond it no digit of a displacement is
-                              certain; 1e11 to 1e15 */
-#define SHIFT 1e-11      /* makes the scaled matrix of a mechanism definite; far above rounding; 1e-13 to 1e-9 */
-#define POWER_STEPS 20   /* steps of inverse iteration to find the node that moves; 2 to 60 */
-#define CASES_AT_ONCE 64 /* right-hand sides per pass of the condensation; limits its memory; 1 to 512 */
+#define CONDITION_MAX 1e13 /* maximum for the scaled matrix; beyond it no digit is certain; 1e11 to 1e15 */
+#define SHIFT 1e-11        /* makes the scaled matrix of a mechanism definite; far above rounding; 1e-13 to 1e-9 */
+#define POWER_STEPS 20     /* steps of inverse iteration to find the node that moves; 2 to 60 */
+#define CASES_AT_ONCE 64   /* right-hand sides per pass of the condensation; limits its memory; 1 to 512 */
 
-enum {
-    N_DEFORMATION = 6
-}; /* elongation, twist, then end rotations relative to the chord: about z at i and j, about y
-                               at i and j */
+enum { N_DEFORMATION = 6 }; /* elongation, twist, end rotations against the chord: about z at i, j, about y at i, j */
 
 /* ---- members ---- */
 
@@ -285,8 +280,7 @@ static int find_loosest_row(const hf_frame *f, double *work)
     scale_to_unit_diagonal(f, f->scale, f->factor);
     for (int i = 0; i < f->n_dof; i++) {
         f->factor[(size_t)i * ((size_t)f->half_bandwidth + 1)] += SHIFT;
-        work[i] = 1 + 0.37 * (double)(i % 7) - 0.21 * (double)(i % 11); /* start vector with a component
-                                                                           in every motion */
+        work[i] = 1 + 0.37 * (double)(i % 7) - 0.21 * (double)(i % 11); /* has a part of every motion */
     }
     if (hf_band_factor(f->n_dof, f->half_bandwidth, f->factor) != 0) return -1;
     int loosest = 0;
