@@ -21,7 +21,7 @@
 typedef struct {
     hf_case *c;
     hf_config_faults faults;
-    yaml_mark_t cut[2]; /* begin and end of the sweep section, if there is one */
+    yaml_mark_t cut[2]; /* start and end of the sweep section, if there is one */
     yaml_document_t *document;
     bool walked;   /* true: the file was readable YAML, so missing keys can be reported */
     bool is_study; /* true: the file has the key `base`; it is a study, and no key of a case is missing */

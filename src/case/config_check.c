@@ -82,7 +82,7 @@ static bool has_section_of(const hf_case *c, const char *key)
     return true;
 }
 
-/* Lower bound of a frequency, a wavelength of 300 m. A number in GHz or MHz without its exponent is far below. */
+/* Lower bound of a frequency, a wavelength of 300 m. A number in GHz or MHz without its exponent is far below it. */
 #define LEAST_HZ 1e6
 
 static const char *frequency_fault(double frequency_Hz, char what[WHAT_SIZE])

@@ -249,8 +249,8 @@ static void check_quantile(const hf_optimize_settings *o, const char *list, int 
                                "has no derivatives, which optimize.compare_lm: true needs; remove one of them");
 }
 
-/* Reports objectives that the front of Levenberg-Marquardt cannot use. It keeps limits on the norm of residuals, or on
- * figures of the design itself. */
+/* Reports objectives that cannot be part of a front with Levenberg-Marquardt. Such a front keeps limits on the norm of
+ * residuals, or on figures of the design itself. */
 static void check_objective(const hf_optimize_settings *o, const char *list, int row, const hf_goal_settings *g,
                             hf_config_faults *f)
 {

@@ -11,8 +11,8 @@
 void hf_config_value(hf_config_faults *faults, yaml_document_t *document, const yaml_node_t *node,
                      const hf_field *field, const char *case_path, void *to);
 
-/* Returns true if the text is a number within the range of a key of one number. Returns false for values that only
- * hf_config_value can check, too. */
+/* Returns true if the text is a number within the range of a key of one number. Also returns false for values that only
+ * hf_config_value can check. */
 bool hf_config_is_in_range(const hf_field *field, const char *text);
 
 /* Writes the range of a key: "must be above 0, not ", "must be at least 1 and at most 5, not ". */

@@ -18,8 +18,9 @@
  * matrix is not positive definite. b is then unchanged, and *bad_row is the row at which the factorisation failed. */
 hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row);
 
-/* Does the same for an indefinite matrix (negative force densities) by LU with pivoting (dgbtrf, dgbtrs). `band` is
- * only read. general [n][3*half_bandwidth+1] and pivot [n] are scratch; they contain the LU afterwards. */
+/* Solves D X = B like hf_band_solve, but for an indefinite matrix (negative force densities), by LU with pivoting
+ * (dgbtrf, dgbtrs). `band` is only read. general [n][3*half_bandwidth+1] and pivot [n] are scratch; they contain
+ * the LU afterwards. */
 hf_status hf_band_solve_indefinite(int n, int half_bandwidth, const double *band, double *general, int *pivot,
                                    double *b, int ldb, int *bad_row);
 
@@ -33,14 +34,15 @@ void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *fact
  * HF_INTERRUPTED soon after *stop is set. `stop` may be NULL. */
 hf_status hf_band_factor_until(const volatile sig_atomic_t *stop, int n, int half_bandwidth, double *band);
 
-/* The two steps for a general band matrix [n][3*half_bandwidth+1] in LAPACK's layout. Entry (i,j) is at index
- * 2*half_bandwidth + i - j of column j. The first half_bandwidth entries of each column are room for pivoting. pivot
- * [n]. hf_band_factor_general returns 0, or 1 + the row at which the factorisation failed. */
+/* Factor a general band matrix [n][3*half_bandwidth+1] in LAPACK's layout, and solve with the factor. Entry (i,j) is at
+ * index 2*half_bandwidth + i - j of column j. The first half_bandwidth entries of each column are room for pivoting.
+ * pivot [n]. hf_band_factor_general returns 0, or 1 + the row at which the factorisation failed. */
 int hf_band_factor_general(int n, int half_bandwidth, double *general, int *pivot);
 void hf_band_back_solve_general(int n, int half_bandwidth, int n_rhs, const double *general, const int *pivot,
                                 double *b, int ldb);
 
-/* The same functions with LAPACK (dpbtrf, dpbtrs) instead of our kernels. The factors have the same layout. */
+/* hf_band_solve, hf_band_factor and hf_band_back_solve with LAPACK (dpbtrf, dpbtrs) instead of our kernels. The factors
+ * have the same layout. */
 hf_status hf_band_solve_lapack(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row);
 int hf_band_factor_lapack(int n, int half_bandwidth, double *band);
 void hf_band_back_solve_lapack(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);

@@ -148,7 +148,7 @@ INLINE int entries(const block *b, int row, int column)
     return column + (int)b->k - row + 1;
 }
 
-/* Subtracts the products of columns `begin` to j - 1 from t. t contains the strips from row `row` on of the block. */
+/* Subtracts the products of columns `begin` to j - 1 from t. t contains the strips of the block from row `row` on. */
 INLINE void eliminate(const block *b, int n_strip, int n_column, int row, int begin, strip t[][COLUMNS])
 {
     int full = least(b->j, row + ROWS * n_strip - 1 - (int)b->k); /* columns before `full` lack some of these rows */

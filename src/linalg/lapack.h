@@ -35,10 +35,10 @@ typedef struct {
  * NULL; otherwise it gets an error that says what to do. */
 hf_status hf_lapack_load(hf_messages *messages);
 
-/* hf_lapack returns the routines; hf_lapack_load must have returned HF_OK. Each call of a routine is enclosed by
- * hf_lapack_begin and hf_lapack_end, which gets the value that hf_lapack_begin returned. In between, LAPACK uses one
- * thread. One caller at a time passes hf_lapack_begin if the address space is limited, or if OpenBLAS is a sequential
- * build, which may not be thread-safe. */
+/* hf_lapack returns the routines; hf_lapack_load must have returned HF_OK. Enclose each call of a routine in
+ * hf_lapack_begin and hf_lapack_end. hf_lapack_end gets the value that hf_lapack_begin returned. In between, LAPACK
+ * uses one thread. One caller at a time passes hf_lapack_begin if the address space is limited, or if OpenBLAS is a
+ * sequential build, which may not be thread-safe. */
 const hf_lapack_routines *hf_lapack(void);
 int hf_lapack_begin(void);
 void hf_lapack_end(int n_thread);

@@ -21,9 +21,8 @@
 #include <math.h>
 #include <string.h>
 
-/* The normal of a limit counts as dependent on the active normals if the square of its independent part is a
- * smaller share of its whole square than this. An active limit must then be dropped first. All tests pass with
- * 1e-26 to 1e-14. */
+/* The normal of a limit depends on the active normals if the square of its independent part is below DEPENDENT times
+ * its whole square. An active limit must then be dropped first. All tests pass with 1e-26 to 1e-14. */
 #define DEPENDENT 1e-20
 #define STEPS_PER_VARIABLE 50 /* maximum of limits added or dropped, per variable; tests pass with 5, not with 1 */
 
@@ -262,9 +261,9 @@ static int hold(hf_quadratic *q, const double *gradient)
 }
 
 /* Begins at the minimum subject to the bounds that were active in the last solution. Bounds with a negative
- * multiplier are removed. The remaining x solves the programme with a part of the limits, as the dual method requires
- * of every step. If no bound was active, this is the unconstrained minimum x = -H^-1 g, and J is computed when the
- * first limit is violated. */
+ * multiplier are removed. The resulting x solves the programme with some of the limits; the dual method requires this
+ * of every iterate. If no bound was active, x is the unconstrained minimum -H^-1 g, and J is computed when the first
+ * limit is violated. */
 static hf_status begin(hf_quadratic *q, const double *hessian, const double *gradient, const double *low,
                        const double *high, bool *has_inverse)
 {

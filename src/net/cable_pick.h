@@ -9,8 +9,9 @@
  * cables. Returns their number, or -1 if the scene has no such set. */
 int hf_cable_pick(const hf_scene *scene, const char *set, int *cable);
 
-/* Does the same for a row of a case that needs at least one cable. Returns the number of cables. If there are none,
- * returns 0 with an error that begins with `where` and suggests a set or lists the sets of the net. */
+/* Selects the cables of a set like hf_cable_pick, for a row of a case that needs at least one cable. Returns the number
+ * of cables. If there are none, returns 0 with an error that begins with `where` and suggests a set or lists the sets
+ * of the net. */
 int hf_cable_pick_some(const hf_scene *scene, const char *set, const char *where, int *cable, hf_messages *messages);
 
 /* Returns HF_BAD_CASE if cables have no EA, with one error for each group. The error begins with `where`. `who_needs`

@@ -19,7 +19,8 @@ static double front_curvature(const hf_double_net *d)
     return 1 / (4 * d->focal_length_m);
 }
 
-/* Returns how much the nets approach each other per square of the distance from the middle, 1/m. */
+/* Returns how the nets approach each other, 1/m: at the distance s from the middle, they are nearer than at the rim by
+ * (half_m^2 - s^2) times this. */
 static double nearing(const hf_double_net *d)
 {
     return front_curvature(d) + 1 / (4 * d->rear_focal_length_m);
@@ -74,7 +75,8 @@ bool hf_double_net_lacks_EA(const hf_double_net *d, const double EA_N[2])
 
 /* ---- cables ---- */
 
-/* Returns the target value of a tie by its law. Its tension at length `length` is tension_N. */
+/* Returns the target value of a tie by its law. With the laws tension, force_density and elastic, its tension at this
+ * length is tension_N. */
 static double tie_target(const hf_double_net *d, double length, double EA_N)
 {
     switch (d->law) {

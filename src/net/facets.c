@@ -20,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Nodes that are no inner nodes are on the target surface if they are nearer to it than NEAR_PART of its depth. They are
+/* Nodes other than inner nodes are on the target surface if they are nearer to it than NEAR_PART of its depth. They are
  * also on it if their cable to an inner node departs from it by less than NEAR_SLOPE of its length. */
 #define NEAR_PART 1e-3
 #define NEAR_SLOPE 0.1
@@ -218,7 +218,7 @@ static void add_facet(const hf_scene *s, int n, const int node[4], double area, 
 
 /* Returns true if the n >= 2 cables along the outside from half edge h are an edge that hangs between two supports,
  * with nothing beyond it. All of them must be boundary cables. If there are only two, they must continue each other.
- * Otherwise they can be the cables that hold the last node before a rim. */
+ * Two cables that do not continue each other can hold the last node before a rim. */
 static bool is_hanging_edge(const graph *g, int h, int n)
 {
     const half *p = &g->edge[h], *q = &g->edge[next_around(g, h)];
@@ -228,9 +228,9 @@ static bool is_hanging_edge(const graph *g, int h, int n)
     return n > 2 || along > STRAIGHT_ON * hf_norm(p->dx, p->dy, 0) * hf_norm(q->dx, q->dy, 0);
 }
 
-/* Walks along the outside of the net from half edge h and closes gaps at the rim. Surface surrounds every inner node.
- * So the gap between two consecutive supports with only inner nodes between them is a face, and its last side is the
- * straight line between the supports. There is no such face if an edge of the net hangs in the gap. */
+/* Walks along the outside of the net from half edge h and closes gaps at the rim. Every inner node is surrounded by
+ * surface. So the gap between two consecutive supports with only inner nodes between them is a face, and its last side
+ * is the straight line between the supports. There is no such face if an edge of the net hangs in the gap. */
 static void close_gaps(const graph *g, int h, hf_facets *f)
 {
     const hf_scene *s = g->scene;

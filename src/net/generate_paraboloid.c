@@ -102,7 +102,8 @@ static void add_line(plane_grid *g, int a, int b)
     g->n_cable++;
 }
 
-/* Returns the factor for a radius r that divides radii evenly in arc length, if `spacing` asks for it; else 1. */
+/* Returns the factor by which a point at radius r is scaled so that radii are divided evenly in arc length. It is 1 if
+ * `spacing` is equal_projected. */
 static double spread(const hf_paraboloid *p, double r)
 {
     double R = radius(p);
@@ -181,7 +182,7 @@ static double product(size_t n, const double *a, const double *b)
 }
 
 /* Relaxes the grid by conjugate gradients, to rounding. The number of steps is proportional to the number of rings.
- * Then spaces the radii. */
+ * Finally applies `spacing` to the radii. */
 static hf_status relax(const hf_paraboloid *p, plane_grid *g)
 {
     size_t n = 2 * (size_t)g->n_node;

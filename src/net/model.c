@@ -253,9 +253,9 @@ static bool keep_path(hf_model *m, const path_search *s, int from, int to)
     return true;
 }
 
-/* Finds cables whose lengths do not span two supports although chains branch between them. One such path proves that no
- * shape satisfies the lengths, so the first one is kept as a chain. PATH_STEPS is far above the need of nets of which a
- * part is under law length. If the search reaches it, a path may stay undetected. */
+/* Finds cables that are too short to span two supports, on a path through nodes at which chains branch. One such path
+ * proves that no shape satisfies the lengths, so the first one is kept as a chain. The limit PATH_STEPS is far above
+ * the need of nets in which only some cables have law length. If the search reaches it, a path may stay undetected. */
 #define PATH_STEPS 4000000
 static void keep_short_path(hf_model *m, path_search *s)
 {
@@ -281,7 +281,7 @@ static hf_status find_short_path(hf_model *m)
             if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID)) s.start[m->end_row[k] + 1]++;
         for (int row = 0; row < m->n_node; row++)
             s.start[row + 1] += s.start[row];
-        for (int k = 0; k < 2 * m->n_cable; k++) /* `via` counts here; the search overwrites it later */
+        for (int k = 0; k < 2 * m->n_cable; k++) /* `via` is a counter here; the search overwrites it later */
             if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID))
                 s.cable[s.start[m->end_row[k]] + s.via[m->end_row[k]]++] = k / 2;
         keep_short_path(m, &s);

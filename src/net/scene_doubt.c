@@ -10,7 +10,7 @@
 
 #define SAID_MAX 5    /* warnings of one kind */
 #define FAR 100.0     /* ratio to the distance of the others from the middle; mm given as m are 1000 times as far */
-#define LARGE_M 500.0 /* extent of the net; no reflector of cables is larger, but one of 1 m in mm is */
+#define LARGE_M 500.0 /* extent of the net; a larger one was probably given in mm */
 #define LENGTH_PART 0.5
 #define PLANE_PART 1e-6   /* relative to the extent of the supports; positions in tables are rounded */
 #define FLATTER_PART 1e-3 /* relative to the same extent; nearer inner nodes are probably meant to be in the plane */
@@ -137,7 +137,7 @@ static void doubt_lengths(const hf_scene *s, hf_messages *messages)
 
 /* ---- the plane of the supports ---- */
 
-/* The point, line or plane that the supports span, with orthonormal directions. */
+/* The flat that the supports span: a point, a line or a plane, with orthonormal directions. */
 typedef struct {
     double origin[3], along[2][3];
     int n_along;

@@ -37,7 +37,7 @@ typedef struct hf_cloud {
     double *error_m;    /* [n] */
     double *slope;      /* [3][n], derivatives of the error by the point; with a best fit, relative to the centre */
 
-    /* only with facets */
+    /* The members below are used only with facets. */
     double area_m2;  /* area of all facets */
     double *root_m;  /* [n], root of the projected area that a point represents */
     double *side_m;  /* [4][n], derivatives of that area by x_u, y_u, x_v and y_v */
@@ -62,8 +62,9 @@ void hf_cloud_push(hf_cloud *cloud, const double *move, double *rate);
 
 /* ---- parts, for cloud.c and cloud_fit.c ---- */
 
-/* Returns the error of a point p, m: u / (1 + t^2)^m, with its height u above a surface of this curvature and the slope
- * t there (M16). m is 1 for the half path and 1/2 along the normal. d [4]: derivatives by p and by the curvature. */
+/* Returns the error of a point p in metres, u / (1 + t^2)^m, with its height u above a surface of this
+ * curvature and the slope t there (M16). m is 1 for the half path and 1/2 along the normal. d [4]: derivatives
+ * by p and by the curvature. */
 double hf_cloud_error(hf_surface_kind kind, double m, double curvature, const double p[3], double d[4]);
 
 static inline double hf_cloud_power(hf_along along)

@@ -28,7 +28,7 @@ void hf_facet_mesh_take_bent(const hf_facets *facets, int i, const double *posit
 hf_status hf_facet_mesh_sags(double mesh_tension_N_per_m, const hf_facets *facets, const hf_facet_shape *shape,
                              double *sag_m, double *pull_ratio);
 
-/* Does the same with new memory for *sag_m from the arena. Free the arena in every case. */
+/* Computes the sags like hf_facet_mesh_sags, in new memory *sag_m of the arena. Free the arena in every case. */
 hf_status hf_facet_mesh_make_sags(double mesh_tension_N_per_m, const hf_facets *facets, const hf_facet_shape *shape,
                                   hf_arena *arena, double **sag_m, double *pull_ratio);
 

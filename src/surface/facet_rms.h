@@ -16,8 +16,8 @@ typedef struct {
     const double *tension_N; /* [n_cable]; NULL (target positions): facets are flat, even with a mesh tension */
 } hf_facet_shape;
 
-/* Makes such a shape from a shape of a model, position_m [3][n_node] by row. Borrows tension_N [n_cable]. Returns HF_OK
- * or HF_NO_MEMORY. Free the arena in every case. */
+/* Makes an hf_facet_shape from a shape of a model, position_m [3][n_node] by row. Borrows tension_N [n_cable]. Returns
+ * HF_OK or HF_NO_MEMORY. Free the arena in every case. */
 hf_status hf_facet_shape_take(const hf_model *model, const double *position_m, const double *tension_N,
                               hf_facet_shape *shape, hf_arena *arena);
 

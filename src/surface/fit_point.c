@@ -1,4 +1,10 @@
-/* Contents: the frame - one point - the sum of squares */
+/* Computes the points of a best fit and their derivatives by its parameters:
+ *
+ *     parameters -> frame: shift, rotation and its derivatives, curvature
+ *       -> each point: position in the frame, half-path error, first and second derivatives
+ *       -> sum of squares, gradient G, Hessian H
+ *
+ * Contents: the frame - one point - the sum of squares */
 #include "surface/fit_point.h"
 
 #include "net/wanted.h"

@@ -65,7 +65,7 @@ static void direction_of(double theta, double phi, double to[3])
     to[2] = hf_cosine(theta);
 }
 
-/* Return angle i and Chebyshev node i as a part of the range of theta. */
+/* Return angle i and Chebyshev node i as a share of the range of theta. */
 static double part_of_angle(const hf_far_field *p, int i)
 {
     return (double)i / (p->settings->n_theta - 1);

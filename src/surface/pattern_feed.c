@@ -70,7 +70,7 @@ void hf_feed_light_rate(const hf_feed *f, const double p[3], const double move[3
     double size = size_of(f, cosine, path_m);
     double grow =
         f->cos_power * hf_dot3(dt, f->axis) / cosine - (f->kind == HF_FEED_LINE ? 0.5 : 1) * longer_m / path_m;
-    hf_cross(dt, (const double[3]){0, f->co[1] != 0, 0}, one); /* of a line; its field across it keeps its direction */
+    hf_cross(dt, (const double[3]){0, f->co[1] != 0, 0}, one); /* line source: a field across it keeps its direction */
     if (f->kind != HF_FEED_LINE) {
         double down = 1 + hf_dot3(f->axis, t), turn = hf_dot3(f->co, t) / down;
         double turn_rate = (hf_dot3(f->co, dt) - turn * hf_dot3(f->axis, dt)) / down;

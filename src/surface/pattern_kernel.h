@@ -13,7 +13,7 @@ enum { HF_PATTERN_POINT = 7 };
  * x y z. direction [3][n_angle]. n_angle is a multiple of HF_LANES, and arrays are aligned to HF_ALIGNMENT. */
 typedef void hf_pattern_points(int n_point, const double *point, int n_angle, const double *direction, double *sum);
 
-/* Adds exp(j 2 pi (direction middle - path)) S to to [6][n_angle]. S is the sum over the nodes of between
+/* Adds exp(j 2 pi (direction middle - path)) S to the array `to` [6][n_angle]. S is the sum over the nodes of between
  * [n_node][n_angle] times local [6][n_node_padded]. If n_node is 0, S is local [6][n_angle] itself. middle [3] and path
  * are in wavelengths. */
 typedef void hf_pattern_spread(int n_node, int n_node_padded, const double *local, const double *between,

@@ -30,7 +30,7 @@ typedef struct {
  * 0 to 2. */
 void hf_fit_rotation(const double angle[3], const int order[3], double turn[3][3]);
 
-/* Does what hf_surface_fit_points does, and writes the parameters, too. */
+/* Finds the best fit like hf_surface_fit_points, and also writes its parameters. */
 hf_status hf_surface_fit_find(hf_surface_kind kind, double focal_length_m, int n, const double *position_m,
                               const double *root_weight, hf_surface_fit *fit, hf_fit_parameters *parameters);
 

@@ -105,8 +105,8 @@ static void place_joints(generator *g, const hf_paraboloid *p, const double *rim
         }
 }
 
-/* Returns the first joint of the bay that is nearest to this direction from the middle of the aperture. A bay is at its
- * first vertical, or at its middle if `is_middle` is true. */
+/* Returns the first joint of the bay that is nearest to this direction from the middle of the aperture. The position of
+ * a bay is that of its first vertical, or its middle if `is_middle` is true. */
 static int nearest_bay(const generator *g, const hf_paraboloid *p, double angle_deg, bool is_middle)
 {
     double along_x = hf_cosine(HF_RAD_PER_DEG * angle_deg), along_y = hf_sine(HF_RAD_PER_DEG * angle_deg),
