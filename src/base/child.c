@@ -120,7 +120,7 @@ static void serve_orders(int by)
     static order o;
     for (size_t i = 0; i < sizeof to_others / sizeof *to_others; i++)
         signal(to_others[i], SIG_IGN);
-    signal(SIGCHLD, SIG_DFL); /* if SIGCHLD is ignored, wait4(2) cannot return the exit status */
+    signal(SIGCHLD, SIG_DFL); /* where it is ignored, nobody learns how a child ended */
     for (;;) {
         ssize_t n = recv(by, &o, sizeof o, 0);
         if (n < 0 && errno == EINTR) continue;
