@@ -1,8 +1,19 @@
-/* Contents: sums at nodes - the least eigenvalue - independent lengths - the radius of the ball - the proof. The found
- * shape is computed to twice the precision (precise.c). What is then out of balance is so small that a crude proof
- * suffices: the energy is larger on the surface of a tiny ball around the precise shape than within it, so that every
- * equilibrium lies in the ball. The bound is the distance to the precise shape, plus the radius of the ball (METHOD
- * section 3). */
+/* Certifies error bounds for a shape that a solver has found (METHOD section 3).
+ *
+ *     found shape x, factor of the Hessian H
+ *         | precise.c: compute the equilibrium near x at twice the precision
+ *         v
+ *     precise shape x'
+ *         | minimum eigenvalue of H at x': Cholesky factorisation of H minus a shift
+ *         | independent lengths: a shape with exact lengths lies within rho of x'
+ *         v
+ *     radius R (M23): every equilibrium lies within rho + R of x'
+ *         |
+ *         v
+ *     position_bound_m = max |x' - x| + rho + R,   psi_bound_m
+ *
+ * The forces out of balance at x' are so small that crude estimates suffice for R. The energy is larger on the surface
+ * of a tiny ball around x' than inside it. Because the energy is convex, every equilibrium lies in the ball. */
 #include "solve/bound.h"
 
 #include "linalg/band.h"
@@ -12,10 +23,10 @@
 #include <math.h>
 #include <string.h>
 
-#define SHARE_OF_LAST 1e-3  /* part of a shift that has failed that is tried next */
-#define SMALL 1e-3          /* a radius by the first matrix that is a larger part of the bound is found anew */
-#define INSIDE_LENGTH 0.005 /* the ball is smaller than this part of every length */
-#define TRUSS_LEFT 0.5      /* part of the truss's energy that is not needed to keep the free nodes stiff */
+#define SHARE_OF_LAST 1e-3  /* factor applied to a shift for which no factor exists */
+#define SMALL 1e-3          /* a radius from the first matrix is accepted up to this part of max |x' - x| */
+#define INSIDE_LENGTH 0.005 /* 1.5 times the radius must be below this part of every length */
+#define TRUSS_LEFT 0.5      /* part of the truss's energy that enters the norm of the ball */
 
 /* ---- sums at nodes ---- */
 
@@ -25,7 +36,7 @@ static double one(const hf_precise *p, int e)
     return 1;
 }
 
-/* phi'', N/m; of a rigid law the stiffness that the proof adds. */
+/* Returns phi'', N/m. For a rigid law it is the stiffness k that the certificate adds (M22). */
 static double stiffness_of(const hf_precise *p, int e)
 {
     hf_law_cable cable = hf_workspace_cable(p->m, p->w, e);
@@ -38,20 +49,22 @@ static double stiffness_sum(const hf_precise *p, int e)
     return stiffness_of(p, e) + p->cable[e].across;
 }
 
-/* The same without what the proof adds, which has no gradient where the lengths are exact. */
+/* Returns stiffness_sum without the stiffness k that the certificate adds. At x^, where the lengths are exact, k
+ * contributes nothing to the gradient. */
 static double own_stiffness_sum(const hf_precise *p, int e)
 {
     bool is_rigid = hf_law_has((hf_law)p->w->law[e], HF_LAW_IS_RIGID);
     return (is_rigid ? 0 : stiffness_of(p, e)) + p->cable[e].across;
 }
 
-/* The Hessian of a cable of law force_density does not depend on the shape. */
+/* Returns (phi'' + T/l) / l, a cable's term in the sum of K (M23), N/m^2. Returns 0 for a cable under law
+ * force_density, because its Hessian does not depend on the shape. */
 static double stiffness_change(const hf_precise *p, int e)
 {
     return hf_newton_matrix_is_spring((hf_law)p->w->law[e]) ? 0 : stiffness_sum(p, e) / p->cable[e].length;
 }
 
-/* What the rounding of a pull is relative to, N. */
+/* Returns the force to which the rounding error of a cable's pull is relative, N. */
 static double rounded_force(const hf_precise *p, int e)
 {
     const hf_precise_cable *c = p->cable + e;
@@ -59,10 +72,11 @@ static double rounded_force(const hf_precise *p, int e)
     return (c->across + (is_elastic ? 2 * stiffness_of(p, e) : 0)) * c->length;
 }
 
-/* ---- the least eigenvalue ---- */
+/* ---- the minimum eigenvalue ---- */
 
-/* Sets `along` to the stiffness of the proof: that of the law, but at most the largest `across`, which is less than the
- * true one and rounds off less; and as much for a cable of law length. */
+/* Sets `along` to the stiffness that the certificate uses: phi'' of the law, but at most the maximum `across`. The
+ * smaller value is still a lower bound and causes smaller rounding errors. A cable under law length gets that
+ * maximum. */
 static void set_proof_stiffness(hf_precise *p)
 {
     double most = 0;
@@ -74,7 +88,8 @@ static void set_proof_stiffness(hf_precise *p)
     }
 }
 
-/* Assembles the matrix of the proof. Returns its largest diagonal entry. */
+/* Assembles the matrix of the certificate: the Newton matrix, or D where the model has none. Sets *band to its storage,
+ * *n to its rows and *k to its half-bandwidth. Returns its maximum diagonal entry, N/m. */
 static double assemble_proof(hf_precise *p, double **band, int *n, int *k)
 {
     const hf_model *m = p->m;
@@ -94,18 +109,20 @@ static double assemble_proof(hf_precise *p, double **band, int *n, int *k)
     return largest;
 }
 
-/* What rounding can do to an eigenvalue: of the factorisation, by Rump (BIT 46, 2006), whose entries of row i and
- * column j err by (k + 2) u times the root of their diagonal entries, doubled for other orders of the operations; and
- * of entries assembled from cables, of which `degree` are at one node. */
+/* Returns a bound of the change that rounding causes in an eigenvalue, N/m. n and k are the rows and the
+ * half-bandwidth, `degree` is the maximum number of cables at a node, `largest` the maximum diagonal entry c. An entry
+ * of L L' differs from that of the matrix by at most (k + 4) u sqrt(c_ii c_jj) (Rump, BIT 46, 2006), and a row has up
+ * to 2 k + 1 of them. The factor 2.02 covers other orders of the operations. The remaining terms cover the assembly of
+ * the entries. */
 static double rounding_of(int n, int k, double degree, double largest)
 {
     double row = fmin(n, 2.0 * k + 1);
     return HF_UNIT * largest * (2.02 * (k + 4) * row + 400 + 20 * degree);
 }
 
-/* Returns a lower bound of the least eigenvalue for the free nodes of the Hessian of net and truss, from which a part
- * TRUSS_LEFT of the truss's own energy is left out, N/m; 0 when the Hessian less `shift` and rounding has no factor.
- * The bound is so small that |L s| is at most the norm of the ball, in which |s|^2 counts TRUSS_LEFT / bound times. */
+/* Returns a lower bound lambda for which the matrix (M37) of net and truss is positive semidefinite, N/m. Returns 0 if
+ * the matrix minus `shift` and `rounding` has no Cholesky factor. lambda is at most TRUSS_LEFT / tr(L L'), so |L ds|
+ * does not exceed the norm of the ball, whose square is |dx|^2 + TRUSS_LEFT |ds|^2 / lambda. */
 static double least_on_truss(hf_precise *p, double shift, const hf_flexibility_rounding *rounding)
 {
     hf_precise_truss *t = &p->truss;
@@ -121,8 +138,8 @@ static double least_on_truss(hf_precise *p, double shift, const hf_flexibility_r
     return t->flexibility.trace > 0 ? fmin(least, TRUSS_LEFT / t->flexibility.trace) : least;
 }
 
-/* A lower bound of the least eigenvalue of the Hessian of net and truss at the precise shape, N/m; 0 when there is no
- * proof. `guess` is tried first. */
+/* Returns a lower bound of lambda in (M37) at the precise shape, N/m, or 0 if none can be certified. The shift `guess`,
+ * N/m, is tried first. */
 static double least_eigenvalue_on_truss(hf_precise *p, double guess)
 {
     hf_flexibility_rounding rounding = hf_flexibility_rounding_of(
@@ -134,8 +151,8 @@ static double least_eigenvalue_on_truss(hf_precise *p, double guess)
     }
 }
 
-/* A lower bound of the least eigenvalue of the Hessian at the precise shape, N/m; 0 when there is no proof. `guess` is
- * tried first. */
+/* Returns a lower bound of the minimum eigenvalue of the Hessian at the precise shape, N/m, or 0 if none can be
+ * certified. The shift `guess`, N/m, is tried first. */
 static double least_eigenvalue(hf_precise *p, double guess)
 {
     int n, k;
@@ -152,9 +169,9 @@ static double least_eigenvalue(hf_precise *p, double guess)
     }
 }
 
-/* A bound of the norm of the change of the block of a taut cable between the found and the precise shape, N/m, but
- * for an eighth of its stiffness along the cable: of the pull over the length, of the direction, and what the proof
- * adds for an error of length. */
+/* Returns a bound of the change of a taut cable's block between the found and the precise shape, N/m. The bound leaves
+ * out an eighth of the stiffness along the cable, which carried_over subtracts. It adds the change of T/l, the change
+ * of the direction, and the part that an error of a prescribed length adds. */
 static double block_change(const hf_precise *p, int e)
 {
     const hf_model *m = p->m;
@@ -177,12 +194,13 @@ static double block_change(const hf_precise *p, int e)
            8 * along * turn * turn + along * over / length;
 }
 
-/* A lower bound of the least eigenvalue at the precise shape from one at the found shape; 0 when they are too far
- * apart. (u'.y)^2 >= 7/8 (u.y)^2 - 8 |u' - u|^2 |y|^2, so that a turned stiff cable costs little. */
+/* Returns a lower bound of the minimum eigenvalue at the precise shape, N/m, from the bound `least` at the found shape.
+ * Returns 0 if the two shapes are too far apart. It uses (u'.y)^2 >= 7/8 (u.y)^2 - 8 |u' - u|^2 |y|^2, so a small turn
+ * of a stiff cable lowers the bound only a little. */
 static double carried_over(const hf_precise *p, double least)
 {
     for (int e = 0; e < p->m->n_cable; e++)
-        if (!(p->cable[e].is_taut > 0) && p->w->tension_N[e] != 0) return 0; /* was in the matrix */
+        if (!(p->cable[e].is_taut > 0) && p->w->tension_N[e] != 0) return 0; /* it was in that matrix */
     double now = 0.875 * least - 2.01 * hf_precise_largest_sum(p, block_change);
     return now > least / 4 ? now : 0;
 }
@@ -195,15 +213,16 @@ static bool is_active(const hf_precise *p, int e)
     return is_rigid && p->cable[e].is_taut > 0 && !hf_precise_is_fixed(p->m, e);
 }
 
-/* First or last free row of an active cable. */
+/* Returns the first free row of an active cable, or with `last` the last one. */
 static int free_row(const hf_precise *p, int e, bool last)
 {
     int a = p->m->end_row[2 * e], b = p->m->end_row[2 * e + 1], low = a < b ? a : b, high = a < b ? b : a;
     return last && high < p->m->n_free ? high : low;
 }
 
-/* Writes the taut cables of law length into `order` [3 n_free] by their first free row. Returns their number; 0 and
- * *too_many when there are more than unknowns, which no shape obeys but by chance. */
+/* Writes the taut cables under law length into `order` [3 n_free], sorted by their first free row. Returns their
+ * number. If there are more such cables than unknowns, returns 0 and sets *too_many: no shape has these lengths except
+ * by chance. */
 static int order_active(const hf_precise *p, int *order, bool *too_many)
 {
     int n = 0;
@@ -220,7 +239,8 @@ static int order_active(const hf_precise *p, int *order, bool *too_many)
     return n;
 }
 
-/* Product of the derivatives of the lengths of two cables by the free nodes. *meets: they share one. */
+/* Returns the inner product of the derivatives of the lengths of cables e and f by the free coordinates. Sets *meets to
+ * whether the cables share a free node. */
 static double length_product(const hf_precise *p, int e, int f, bool *meets)
 {
     const double *u = p->cable[e].unit, *v = p->cable[f].unit;
@@ -236,8 +256,8 @@ static double length_product(const hf_precise *p, int e, int f, bool *meets)
     return sum;
 }
 
-/* A lower bound of the least singular value of the derivative of the lengths of the n cables in `order`; 0 when there
- * is no proof. The matrix of their products takes the place of the Newton matrix. */
+/* Returns a lower bound beta of the minimum singular value of B, the derivative of the lengths of the n cables in
+ * `order`. Returns 0 if none can be certified. It factors B B' minus a shift, in the storage of the Newton matrix. */
 static double least_length_change(const hf_precise *p, const int *order, int n)
 {
     double *band = p->w->newton_band;
@@ -265,7 +285,8 @@ static double least_length_change(const hf_precise *p, const int *order, int n)
 
 /* ---- the radius of the ball ---- */
 
-/* Radius within which there is a shape with the exact lengths; -1 when there is no proof. */
+/* Returns rho, the radius within which a shape with the exact lengths exists, m. Returns 0 if no taut cable is under
+ * law length, and -1 if no radius can be certified. */
 static double lengths_radius(const hf_precise *p)
 {
     double square = 0, bend = 0;
@@ -282,8 +303,9 @@ static double lengths_radius(const hf_precise *p)
     return least > 0 && 2.3 * sqrt(bend) * radius <= least / 2 ? radius : -1;
 }
 
-/* Whether cables stay slack or taut within the radius. One that is not long against it: forces that only rounding has
- * left move so soft a net that far. */
+/* Returns HF_BOUND_PROVEN if every cable stays slack or taut within the radius (m), else HF_BOUND_SLACK_OR_TAUT.
+ * Returns HF_BOUND_NOT_DEFINITE if the radius is not small compared with a length. The net is then so soft that
+ * rounding errors of the forces alone move it that far. */
 static hf_bound_reason stays_apart(const hf_precise *p, double radius)
 {
     double move = 1.5 * radius;
@@ -302,8 +324,8 @@ static hf_bound_reason stays_apart(const hf_precise *p, double radius)
     return HF_BOUND_PROVEN;
 }
 
-/* What rounding at twice the precision adds to the gradient: of the gap, whose part in it is at most the error of the
- * pull, and of the places of the attachments. */
+/* Returns a bound of the errors of the gradient from rounding at twice the precision on a truss, N. They arise in the
+ * gap L'b - s, whose error is at most that of the pull, and in the positions of the attachments. */
 static double rounding_of_truss(const hf_precise *p)
 {
     const hf_model *m = p->m;
@@ -319,8 +341,9 @@ static double rounding_of_truss(const hf_precise *p)
     return HF_TWOFOLD_UNIT * (16 + 48.0 * m->n_attachment) * (pull + stiffness * move_m);
 }
 
-/* Sets *radius of the ball around the precise shape that holds every equilibrium, m, from a lower bound of the least
- * eigenvalue there. */
+/* Sets *radius to rho + R of (M23), m: the ball around the precise shape that contains every equilibrium. `least` is a
+ * lower bound of the minimum eigenvalue at that shape, N/m. Returns HF_BOUND_PROVEN, or the reason why the radius is
+ * not certified. */
 static hf_bound_reason find_radius(hf_precise *p, double least, double *radius)
 {
     const hf_model *m = p->m;
@@ -334,7 +357,7 @@ static hf_bound_reason find_radius(hf_precise *p, double least, double *radius)
         square += least / TRUSS_LEFT * p->truss.gap[k].hi * p->truss.gap[k].hi;
     double rounding =
         HF_TWOFOLD_UNIT * (128 + 4 * hf_precise_largest_sum(p, one)) * hf_precise_largest_sum(p, rounded_force);
-    double parts = m->n_attachment ? 2 : 1; /* of the gradient: by the free nodes, and by s */
+    double parts = m->n_attachment ? 2 : 1; /* blocks of the gradient: free nodes, and s of a truss */
     double force = 1.0001 * sqrt(square) + rounding * sqrt(3 * parts * p->n_moving) + rounding_of_truss(p);
     double norm = 3 * parts * hf_precise_largest_sum(p, own_stiffness_sum),
            change = 8 * hf_precise_largest_sum(p, stiffness_change);
@@ -343,8 +366,9 @@ static hf_bound_reason find_radius(hf_precise *p, double least, double *radius)
     return stays_apart(p, *radius);
 }
 
-/* By the matrix of the found shape, if its least eigenvalue is known and the precise one is near; else by one of the
- * precise shape. */
+/* Sets *radius as find_radius does. The matrix of the found shape is used if least_N_per_m, a lower bound of its
+ * minimum eigenvalue, is known and the precise shape is close. Otherwise the matrix is factored again at the precise
+ * shape. moved_m is the maximum distance between the two shapes, m. */
 static hf_bound_reason prove_radius(hf_precise *p, double least_N_per_m, double moved_m, double *radius)
 {
     if (least_N_per_m > 0 && p->is_first_matrix) {
@@ -358,9 +382,9 @@ static hf_bound_reason prove_radius(hf_precise *p, double least_N_per_m, double 
     return find_radius(p, least, radius);
 }
 
-/* ---- the proof ---- */
+/* ---- the certificate ---- */
 
-/* Largest distance of a node to its precise place. */
+/* Returns the maximum distance of a node between the found and the precise shape, m. */
 static double largest_move(const hf_precise *p)
 {
     const hf_model *m = p->m;
@@ -409,7 +433,7 @@ void hf_bound_prove(const hf_model *m, bool has_factor, double least_N_per_m, hf
     if (r->bound_reason != HF_BOUND_PROVEN) return;
     hf_twofold psi = hf_twofold_subtract(precise_psi(&p), hf_twofold_of(r->psi_m));
     r->position_bound_m = moved_m + radius;
-    /* the ball is one of all coordinates together */
+    /* the radius bounds the 2-norm over all coordinates, so psi changes by at most radius / sqrt(n_inner_node) */
     double error_m = HF_TWOFOLD_UNIT * (64 + 4.0 * m->n_inner_node) * r->psi_m + radius / sqrt(m->n_inner_node);
     r->psi_bound_m = (fabs(psi.hi) + error_m) * (1 + 8 * HF_UNIT);
 }

@@ -1,6 +1,5 @@
-/* bound - how far the true equilibrium can be from the shape that was found: a proof, not an estimate (METHOD section
- * 3).
- * Stability: internal; may change in any version. */
+/* bound - certified bounds of the distance between the shape that was found and the true equilibrium (METHOD section
+ * 3). Stability: internal; may change in any version. */
 #ifndef HIFDM_BOUND_H
 #define HIFDM_BOUND_H
 

@@ -1,3 +1,9 @@
+/* Estimates the errors of a shape and certifies bounds for them (METHOD section 3).
+ *
+ *     shape and tensions in the workspace
+ *         | residual / maximum sum of tensions at a node         -> backward_error
+ *         | Newton matrix (newton.c), or D: factor and one step  -> condition, position_error_m
+ *         | bound.c, with this factor                            -> position_bound_m, psi_bound_m, bound_reason */
 #include "solve/certificate.h"
 
 #include "base/elementary.h"
@@ -8,7 +14,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Largest sum of tensions at one node, by which the nodal residual is divided for the backward error. */
+/* Returns the maximum sum of tensions at one free node, N. The backward error is the nodal residual divided by it. pull
+ * [n_node] is scratch. */
 static double largest_pull_N(const hf_model *m, const hf_workspace *w, double *pull)
 {
     double largest = 0;
@@ -21,7 +28,8 @@ static double largest_pull_N(const hf_model *m, const hf_workspace *w, double *p
     return largest;
 }
 
-/* Assembles and factors D again, because its norm is needed and the band holds the factor of the form-finding. */
+/* Sets condition and position_error_m with D. D is assembled and factored again: its norm is needed, and the band holds
+ * the factor of the form-finding. */
 static void certify_linear(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
     int n = m->n_free, k = m->half_bandwidth, bad_row;

@@ -1,4 +1,13 @@
-/* Contents: the factor - products - rounding - the stiffness of the net - net and truss together */
+/* Factors the flexibility of the truss, and with it the Hessian of net and truss together (METHOD section 3).
+ *
+ *     F of the model ----- factor: Cholesky, with pivoting if F is singular ----> L with F = L L'
+ *     factor of H_ff, blocks of the cables at attachments
+ *         | stiffness of the net: S = own blocks - V V'  (M15), in chunks of columns
+ *         v
+ *     share + L' S L, minus what rounding may change
+ *         | Cholesky
+ *         v
+ *     factor of the rows of the truss; none if the Hessian is not positive definite */
 #include "solve/flexibility.h"
 
 #include "linalg/band.h"
@@ -7,7 +16,7 @@
 
 #include <string.h>
 
-/* y -= factor x */
+/* Subtracts factor x from y [n]. */
 static void subtract(size_t n, double factor, const double *restrict x, double *restrict y)
 {
     for (size_t i = 0; i < n; i++)
@@ -16,7 +25,7 @@ static void subtract(size_t n, double factor, const double *restrict x, double *
 
 /* ---- the factor ---- */
 
-/* Where an entry of the flexibility, or what is left over of it, counts as rounding, m/N. */
+/* Returns the value up to which an entry of the flexibility, or of its remainder, counts as rounding, m/N. */
 static double rounding_of_flexibility(const hf_model *m)
 {
     int n = 3 * m->n_attachment;
@@ -26,7 +35,8 @@ static double rounding_of_flexibility(const hf_model *m)
     return 8 * HF_UNIT * (n + 8) * largest;
 }
 
-/* Without pivoting: of a matrix that is positive definite beyond rounding, as most trusses have it. */
+/* Factors F without pivoting into root. Returns false unless F is positive definite beyond rounding, as for most
+ * trusses. */
 static bool factor_definite(const hf_model *m, double nothing, hf_flexibility *f)
 {
     size_t n = (size_t)f->n;
@@ -44,7 +54,7 @@ static bool factor_definite(const hf_model *m, double nothing, hf_flexibility *f
     return true;
 }
 
-/* With pivoting, until nothing is left over but rounding. */
+/* Factors F with pivoting until only rounding remains. Returns false if the remainder is larger than rounding. */
 static bool factor_semidefinite(const hf_model *m, double nothing, hf_flexibility *f)
 {
     size_t n = (size_t)f->n;
@@ -105,7 +115,7 @@ void hf_flexibility_load(const hf_flexibility *f, const double *b, double *s)
     hf_dots((size_t)f->rank, (size_t)f->n, f->root, (size_t)f->n, b, s);
 }
 
-/* Inner product of every stride-th entry of a with b. */
+/* Returns the inner product of b [n] with n entries of a, `stride` apart, at twice the precision. */
 static hf_twofold dot_twofold(size_t n, const double *a, size_t stride, const hf_twofold *b)
 {
     hf_twofold sum = {0, 0};
@@ -134,12 +144,14 @@ hf_twofold hf_flexibility_row_twofold(const hf_model *m, const hf_twofold *b, in
 
 /* ---- rounding ---- */
 
-/* The factor in the unknowns of free nodes and attachments has k + 1 + n entries in a column. Inner products have at
- * most k + 1 terms, but for those between two attachments, which have one for each unknown. Relative to the product of
- * two diagonal entries' roots an inner product of t terms errs by (t + 2) u; Cauchy's inequality turns that into the
- * diagonal, as in METHOD section 3. What concerns attachments becomes a part of |s|^2 by |L s|^2 <= trace |s|^2 and by
- * the stiffness W, as does what the products with L err by: 2 n u |L| |S| |L|, where | | are 2-norms of matrices of
- * absolute values, at most sqrt(n) times those of the matrices. */
+/* In the unknowns of free nodes and attachments, a column of the factor has at most k + 1 + n entries. An inner product
+ * has at most k + 1 terms; between two attachments it has one for each unknown. With t terms its error is at most (t +
+ * 2) u times the root of the product of two diagonal entries. Cauchy's inequality turns that into a part of the
+ * diagonal, as in METHOD section 3.
+ *
+ * Errors at attachments become a part of |s|^2 by |L s|^2 <= trace |s|^2 and stiffness_N_per_m. The products with L add
+ * 2 n u |L| |S| |L|. Here |.| is the 2-norm of the matrix of absolute values, at most sqrt(n) times that of the
+ * matrix. */
 hf_flexibility_rounding hf_flexibility_rounding_of(const hf_model *m, const hf_flexibility *f, double stiffness_N_per_m,
                                                    double n_cable)
 {
@@ -152,8 +164,8 @@ hf_flexibility_rounding hf_flexibility_rounding_of(const hf_model *m, const hf_f
 
 /* ---- the stiffness of the net ---- */
 
-/* The factor of the free nodes: one of all their coordinates, or one that serves each coordinate alone. Attachments
- * have as many coordinates in it. */
+/* The factor of the free nodes: of all their coordinates (per_node 3), or of D, which serves each coordinate alone
+ * (per_node 1). n_border is the number of attachment coordinates beside it. */
 typedef struct {
     int n, half_bandwidth, per_node, n_border;
     const double *band;
@@ -166,7 +178,8 @@ static free_factor free_factor_of(const hf_model *m, const hf_workspace *w)
     return (free_factor){m->n_free, m->half_bandwidth, 1, m->n_attachment, w->band};
 }
 
-/* Adds the blocks of the cables from free nodes to attachments in the columns `first` to end-1 to border [.][ld]. */
+/* Adds the blocks of the cables between free nodes and attachments to border [n_border][ld]. Only columns `first` to
+ * end - 1 are added. */
 static void add_border(const hf_model *m, const hf_workspace *w, const free_factor *free, hf_newton_block *block_of,
                        int first, int end, double *border, size_t ld)
 {
@@ -182,8 +195,9 @@ static void add_border(const hf_model *m, const hf_workspace *w, const free_fact
     }
 }
 
-/* stiffness -= V V', where (factor of the free nodes) V' = border, in chunks of columns. A row of the window has the
- * columns of a chunk, and behind them those that the band still reaches. */
+/* Subtracts V V' from stiffness [n_border][n_border], where V solves (factor of the free nodes) V' = border. It works
+ * in chunks of HF_BOUND_CHUNK columns. A row of `window` has the columns of a chunk, followed by those that the band
+ * still reaches. gram is scratch. */
 static void eliminate_free(const hf_model *m, const hf_workspace *w, const free_factor *free, hf_newton_block *block_of,
                            double *window, double *gram, double *stiffness)
 {
@@ -215,7 +229,8 @@ static void eliminate_free(const hf_model *m, const hf_workspace *w, const free_
 
 /* ---- net and truss together ---- */
 
-/* product [n] = S times column k of L. S is that of all coordinates, or of each alone; sum: [n_border] is scratch. */
+/* Sets product [n] to S times column k of L. S is that of all coordinates, or of each coordinate alone. sum [n_border]
+ * is scratch. */
 static void stiffen_column(const hf_flexibility *f, const free_factor *free, const double *stiffness, size_t k,
                            double *sum, double *product)
 {
@@ -230,7 +245,8 @@ static void stiffen_column(const hf_flexibility *f, const free_factor *free, con
     }
 }
 
-/* factor = that of share + L' S L. */
+/* Sets f->factor to the Cholesky factor of share + L' S L, with `rounding` (may be NULL) subtracted from the diagonal.
+ * Returns false if there is none. */
 static bool factor_own(const hf_flexibility *f, const free_factor *free, const double *stiffness,
                        const hf_flexibility_rounding *rounding, double share)
 {

@@ -1,6 +1,17 @@
-/* Contents: start - forces and lengths at twice the precision - sums at nodes - steps near a measured shape -
- * refinement. Forces are measured at twice the precision once before and once after a move; the steps of which it
- * consists compute differences in doubles. */
+/* Computes the equilibrium near a found shape at twice the precision. bound.c certifies its bounds at this precise
+ * shape.
+ *
+ *     shape, tensions and factored matrix in the workspace
+ *         | start: cables taut or slack, s of the truss from the pull on it
+ *         v
+ *     measure forces and lengths at twice the precision  <-----------------+
+ *         | Newton steps (M8) with one matrix; differences in doubles       |
+ *         | suffice near a measured shape                                   |
+ *         v                                                                 |
+ *     move = sum of the steps, added at twice the precision  ---------------+
+ *         | the errors are small enough, or no move halves them any more
+ *         v
+ *     HF_BOUND_PROVEN; else factor the matrix again at the precise shape and repeat */
 #include "solve/precise.h"
 
 #include "linalg/band.h"
@@ -13,20 +24,20 @@
 #include <math.h>
 #include <string.h>
 
-#define STEPS_MAX 12       /* steps with one matrix; a found shape takes two to four */
-#define NEAR_ENOUGH 1e-12  /* part of the errors of the measured shape at which steps end; 1e-15 would be rounding */
-#define MOVES_MAX 4        /* with one matrix; a found shape takes one or two */
-#define MATRICES_MAX 2     /* matrices of its own, for shapes far from balance and cables taken for slack or taut */
-#define ENOUGH 1e-11       /* part of the errors of the found shape at which refinement ends ... */
-#define FINEST 1e-28       /* ... or errors at which it does; twice the precision leaves 1e-30 */
-#define CONTRACTED 1e-18   /* errors that are not below it are taken for divergence; the proof does not rely on it */
-#define SHARE_OF_GUESS 0.1 /* part of the estimate of the least eigenvalue that is tried first */
+#define STEPS_MAX 12       /* steps in one move; a found shape takes two to four */
+#define NEAR_ENOUGH 1e-12  /* part of the measured errors at which the steps end; 1e-15 would be rounding */
+#define MOVES_MAX 4        /* moves with one matrix; a found shape takes one or two */
+#define MATRICES_MAX 2     /* matrices factored here: far from balance, or a cable taken wrongly for slack or taut */
+#define ENOUGH 1e-11       /* the aim of the errors: this part of those of the found shape, */
+#define FINEST 1e-28       /* but at least this; twice the precision reaches 1e-30 */
+#define CONTRACTED 1e-18   /* errors above it count as divergence; the certificate does not rely on it */
+#define SHARE_OF_GUESS 0.1 /* part of the estimated minimum eigenvalue that is tried first */
 
 /* ---- start ---- */
 
 static_assert(sizeof(hf_precise_cable) == HF_BOUND_CABLE_ITEMS * sizeof(double), "HF_BOUND_CABLE_ITEMS");
 
-/* Starts from the tensions in the workspace, and from what its matrix takes for taut. */
+/* Starts from the tensions in the workspace. A cable with a multiplier is taut if its matrix has stiffness along it. */
 static void set_first_state(hf_precise *p)
 {
     for (int e = 0; e < p->m->n_cable; e++) {
@@ -43,7 +54,7 @@ static void set_first_state(hf_precise *p)
     }
 }
 
-/* Places the attachments where the truss has them. */
+/* Sets the precise positions of the attachments: position at rest + L s + rest_m. */
 static void place_attachments(hf_precise *p)
 {
     const hf_model *m = p->m;
@@ -55,7 +66,7 @@ static void place_attachments(hf_precise *p)
     }
 }
 
-/* Sets gap and rest for the pull on the attachments. */
+/* Sets gap and rest_m for the pull on the attachments in `force`. */
 static void measure_truss(hf_precise *p)
 {
     hf_precise_truss *t = &p->truss;
@@ -71,7 +82,8 @@ static void measure_truss(hf_precise *p)
     }
 }
 
-/* Starts from the displacements under the pull of the shape that was found. */
+/* Lays out the arrays of the truss in `room` and starts from the displacements under the pull of the found shape.
+ * Returns false if the flexibility of the truss has a negative eigenvalue. */
 static bool open_truss(hf_precise *p, double *room)
 {
     const hf_model *m = p->m;
@@ -125,7 +137,7 @@ static hf_precise_measure *measure_here(void)
     return of_isa[hf_lane_best_isa()];
 }
 
-/* Puts cable e into a lane. */
+/* Copies cable e into lane k. */
 static void put_cable(const hf_precise *p, int e, hf_precise_lanes *l, int k)
 {
     const hf_precise_cable *c = p->cable + e;
@@ -148,8 +160,8 @@ static void put_cable(const hf_precise *p, int e, hf_precise_lanes *l, int k)
     l->is_slack[k] = !(c->is_taut > 0);
 }
 
-/* Takes the measures of cable e from its lane, and adds its pull to the forces. Returns the error of length of a taut
- * cable with a multiplier, over its theoretical length. */
+/* Copies the measures of cable e from lane k and adds its pull to the forces. Returns the length error of a taut cable
+ * with a multiplier, relative to its length at the target positions, else 0. */
 static double take_cable(hf_precise *p, int e, const hf_precise_lanes *l, int k)
 {
     hf_precise_cable *c = p->cable + e;
@@ -167,7 +179,7 @@ static double take_cable(hf_precise *p, int e, const hf_precise_lanes *l, int k)
     return c->is_taut > 0 ? fabs(c->over.hi) / p->m->length_m[e] : 0;
 }
 
-/* Largest displacement L near_gap of an attachment, relative to the mean length; 0 without a truss. */
+/* Returns the maximum component of the displacements L near_gap, relative to the mean length; 0 without a truss. */
 static double gap_error(const hf_precise *p)
 {
     double largest = 0, *r = p->w->coupling_work;
@@ -178,9 +190,9 @@ static double gap_error(const hf_precise *p)
     return largest / hf_joint_mean_length_m(p->m);
 }
 
-/* Sets the forces, the gaps, and length, unit, over and across of the cables. by_law: elastic cables pull with
- * what their law gives at their length, else with the multiplier. Returns the largest error, relative to the reference
- * tension and the theoretical lengths. */
+/* Sets the forces, the gaps, and length, unit, over and across of the cables. With by_law, elastic cables pull with the
+ * tension that their law gives at their length, else with the multiplier. Returns the maximum error, relative to the
+ * reference tension and the lengths at the target positions. */
 static double measure_precise(hf_precise *p, bool by_law)
 {
     const hf_model *m = p->m;
@@ -236,14 +248,15 @@ double hf_precise_matrix_sum(const hf_precise *p, int e)
 
 /* ---- steps near a measured shape ---- */
 
-/* The forces that were measured; of attachments only their change counts, which a double holds. */
+/* Sets near_N to the measured forces. For attachments only the change matters, which a double holds, so they start at
+ * 0. */
 static void begin_near(hf_precise *p)
 {
     for (int i = 0; i < 3 * p->n_moving; i++)
         p->near_N[i] = i < 3 * p->m->n_free ? p->force[i].hi : 0;
 }
 
-/* near_gap for the changes of pull and s. */
+/* Sets near_gap for the changes of pull and s. */
 static void end_near(hf_precise *p)
 {
     hf_precise_truss *t = &p->truss;
@@ -252,8 +265,8 @@ static void end_near(hf_precise *p)
         t->near_gap[k] += t->gap[k].hi - t->move[k];
 }
 
-/* Sets near_N, near_gap and near_over after move and change, from what was measured before them. Differences alone are
- * computed, so that errors are relative to the moves. Returns the largest error, as measure_precise does. */
+/* Sets near_N, near_gap and near_over after move and change, relative to the last measurement. It computes only
+ * differences, so rounding errors are relative to the moves. Returns the maximum error, as measure_precise does. */
 static double measure_near(hf_precise *p)
 {
     const hf_model *m = p->m;
@@ -290,7 +303,7 @@ static double measure_near(hf_precise *p)
     return largest;
 }
 
-/* The step of the free nodes for the forces v [3 n_free], in place, while the attachments stay. */
+/* Replaces the forces v [3 n_free] by the step of the free nodes while the attachments stay. */
 static void solve_free(const hf_precise *p, double *v)
 {
     const hf_model *m = p->m;
@@ -306,7 +319,8 @@ static void solve_free(const hf_precise *p, double *v)
         v[i] = b[i % 3 * m->n_node + i / 3];
 }
 
-/* Ends the factorisation with the rows of the truss, for the matrix of hf_newton_certify. */
+/* Completes the factor of hf_newton_certify, or that of D, with the rows of the truss. Returns false if there is
+ * none. */
 static bool factor_first_truss(hf_precise *p)
 {
     p->truss.block_of = hf_newton_matrix_block;
@@ -314,15 +328,17 @@ static bool factor_first_truss(hf_precise *p)
     return hf_flexibility_factor_net(p->m, p->w, hf_newton_matrix_block, NULL, 1, &p->truss.flexibility);
 }
 
-/* The same for the matrix of the precise shape. */
+/* Completes the factor of the matrix at the precise shape with the rows of the truss. Returns false if there is
+ * none. */
 static bool factor_truss(hf_precise *p)
 {
     p->truss.block_of = hf_precise_block;
     return hf_flexibility_factor_net(p->m, p->w, hf_precise_block, NULL, 1, &p->truss.flexibility);
 }
 
-/* Replaces the forces in `step` by the step. With p the pull on the attachments after the step of the free nodes alone,
- * and S of (M15), that of the truss is d_s = (1 + L' S L)^-1 (gap + L' p): (M24) for the unknowns s. */
+/* Replaces the forces in `step` by the step. Let p be the pull on the attachments after the step of the free nodes
+ * alone, and S the stiffness (M15). The step of the truss is then d_s = (1 + L' S L)^-1 (gap + L' p), which is (M24)
+ * for the unknowns s. */
 static void solve_for_step(hf_precise *p)
 {
     const hf_model *m = p->m;
@@ -344,7 +360,9 @@ static void solve_for_step(hf_precise *p)
         p->step[i] += answer[i];
 }
 
-/* The Newton step (M8) with the matrix that is factored: step, and last of the cables. */
+/* Sets `step`, the step of the truss, and `last` of the cables to the Newton step (M8) with the factored matrix. The
+ * first pass adds the effect of the length errors to the forces and solves. The second pass computes the changes of
+ * T. */
 static void find_refinement(hf_precise *p)
 {
     const hf_model *m = p->m;
@@ -378,8 +396,8 @@ static void add_step(hf_precise *p, double part)
         p->cable[e].change += part * p->cable[e].last;
 }
 
-/* Takes steps from the measured shape, whose errors are `first`, while each halves the errors: move, and change of the
- * cables. */
+/* Sets `move`, the move of the truss and `change` of the cables: the sum of steps from the measured shape, whose
+ * maximum error is `first`. It takes steps while each halves the errors. */
 static void find_move(hf_precise *p, double first)
 {
     memset(p->move, 0, 3 * (size_t)p->n_moving * sizeof *p->move);
@@ -398,7 +416,7 @@ static void find_move(hf_precise *p, double first)
         add_step(p, 1);
         before = now;
         now = measure_near(p);
-        if (!(now < before)) add_step(p, -1); /* which ends the loop */
+        if (!(now < before)) add_step(p, -1); /* this ends the loop */
     }
 }
 
@@ -416,7 +434,8 @@ static void apply_move(hf_precise *p, double part)
     place_attachments(p);
 }
 
-/* Moves while each move halves the errors. Returns the errors at the end, where the forces are by law. */
+/* Applies moves while each halves the errors. Returns the maximum error. The forces at the end have elastic cables at
+ * the tension of their law. */
 static double correct(hf_precise *p)
 {
     double now = measure_precise(p, false), before = INFINITY;
@@ -443,7 +462,8 @@ void hf_precise_block(const hf_model *m, const hf_workspace *w, int e, double bl
     hf_newton_matrix_spring(is_spring ? across : c->along, across, c->unit, block);
 }
 
-/* Decides which cables are taut, as interior.c does, and factors the matrix of the precise shape. */
+/* Decides which cables are taut, by the rule of interior.c, and factors the matrix at the precise shape. Returns false
+ * if it has no factor. */
 static bool factor_anew(hf_precise *p)
 {
     const hf_model *m = p->m;
@@ -462,7 +482,7 @@ static bool factor_anew(hf_precise *p)
     }
     bool is_factored = hf_newton_matrix_factor_blocks(m, p->w, hf_precise_block, NULL, &p->condition) == HF_OK &&
                        (!m->n_attachment || factor_truss(p));
-    for (int e = 0; e < m->n_cable; e++) /* from here on `along` is of cables with a multiplier alone */
+    for (int e = 0; e < m->n_cable; e++) /* from here on, `along` belongs to multipliers alone */
         if (!hf_law_has((hf_law)p->w->law[e], HF_LAW_HAS_MULTIPLIER)) p->cable[e].along = 0;
     return is_factored;
 }

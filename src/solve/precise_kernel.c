@@ -1,10 +1,15 @@
-/* The measure of precise_kernel.h, compiled once for each instruction set.
+/* Measures eight cables at twice the precision, one in each lane. The file is compiled once for each instruction set.
  *
- * Contents: numbers of twice the precision - measure */
+ *     ends from and to, tension T, target, EA
+ *         | d = to - from,  length = |d|
+ *         | over = length - target, of an elastic cable length - target (1 + T/EA)
+ *         | T: as given; target times length of a spring; by law of an elastic cable; 0 of a slack cable
+ *         v
+ *     length, unit = d / length, over, q = T / length, pull = q d */
 #define HF_LANE_EIGHT
 #include "solve/precise_kernel.h"
 
-/* ---- numbers of twice the precision: the operations of linalg/twofold.h, of which the bits are the same ---- */
+/* ---- numbers of twice the precision: the same operations and bits as in linalg/twofold.h ---- */
 
 typedef struct {
     lanes hi, lo;

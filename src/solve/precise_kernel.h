@@ -1,5 +1,5 @@
-/* precise_kernel - a measure of HF_LANES cables side by side at twice the precision, compiled once for each instruction
- * set; precise.c chooses one at run time. All give the same bits. */
+/* precise_kernel - measures HF_LANES cables side by side at twice the precision. It is compiled once for each
+ * instruction set, and precise.c chooses one at run time. All instruction sets give the same bits. */
 #ifndef HIFDM_PRECISE_KERNEL_H
 #define HIFDM_PRECISE_KERNEL_H
 
@@ -7,21 +7,23 @@
 
 #include <stdbool.h>
 
-/* Numbers of twice the precision are [2][HF_LANES]: the leading parts, then the rest. A lane without a cable has any
- * values with from != to. */
+/* Inputs and outputs of the kernel for HF_LANES cables. A number of twice the precision is [2][HF_LANES]: the leading
+ * parts, then the remainders. A lane without a cable has any values with from != to. */
 typedef struct {
     double from[3][2][HF_LANES], to[3][2][HF_LANES];                      /* coordinates of the ends, m */
     double T[2][HF_LANES];                                                /* given tension or multiplier, N */
-    double target[HF_LANES], EA[HF_LANES];                                /* EA: 1 where the law has none */
+    double target[HF_LANES], EA[HF_LANES];                                /* by law: N, m or N/m; EA in N, 1 where the
+                                                                           * law has none */
     double is_spring[HF_LANES], is_elastic[HF_LANES], is_slack[HF_LANES]; /* 1 or 0 */
 
-    double length[HF_LANES], unit[3][HF_LANES]; /* from here on what the kernel sets */
-    double over[2][HF_LANES];                   /* length less target, or less target (1 + T/EA) */
+    double length[HF_LANES], unit[3][HF_LANES]; /* outputs from here on; length in m */
+    double over[2][HF_LANES];                   /* length - target, or length - target (1 + T/EA), m */
     double q[HF_LANES];                         /* pull over length, N/m */
     double pull[3][2][HF_LANES];                /* on the first end, N */
 } hf_precise_lanes;
 
-/* by_law: elastic cables pull with what their law gives at their length, else with T. */
+/* Measures the cables in the lanes. With by_law, elastic cables pull with the tension that their law gives at their
+ * length, else with T. */
 typedef void hf_precise_measure(hf_precise_lanes *lanes, bool by_law);
 hf_precise_measure hf_precise_measure_portable, hf_precise_measure_avx2, hf_precise_measure_avx512;
 
