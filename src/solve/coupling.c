@@ -1,4 +1,14 @@
-/* Contents: forces and displacements - Anderson's method - the loop - in one matrix */
+/* Couples a net with its elastic truss (METHOD section 8).
+ *
+ *     displacements r of the attachments, force densities
+ *         |
+ *         v
+ *     loop: solve the net at supports displaced by r -> pull f(r)
+ *         | step = F f(r) - r: converged if no attachment steps farther than tof_m
+ *         | plain: r <- F f(r);   accelerated: Anderson's method on past steps
+ *         | auto: the loop ends early if its steps do not halve in two rounds
+ *         v
+ *     one matrix (auto only): the attachments become unknowns of the net solver (joint.c) */
 #include "solve/coupling.h"
 
 #include "linalg/dot.h"
@@ -9,15 +19,15 @@
 #include <math.h>
 #include <string.h>
 
-/* Measured on the tests of the coupling, all of which pass with GROWTHS_MAX 1 and 10, PATIENCE 5 and 50, STALLED 1e-4
- * and 0.3, RETREATS_MAX 4, and GRAM_SHIFT 1e-16 and 1e-11. */
-#define GROWTHS_MAX 3    /* growing steps in a row of the plain loop that count as divergence */
+/* The tests of the coupling also pass with other values: GROWTHS_MAX 1 and 10, PATIENCE 5 and 50, STALLED 1e-4 and 0.3,
+ * RETREATS_MAX 4, GRAM_SHIFT 1e-16 and 1e-11. */
+#define GROWTHS_MAX 3    /* consecutive growing steps of the plain loop that count as divergence */
 #define PATIENCE 15      /* iterations of the accelerated loop without a new smallest step */
-#define SLOW 0.5         /* auto: two rounds must bring the step down to this part ... */
-#define WILD 2.0         /* ... and the first not up to this one [0.2 to 0.7 and 1.5 to 10 pass] */
-#define STALLED 1e-2     /* a loop that stops improving below this fraction of its first step stalls, else diverges */
-#define RETREATS_MAX 12  /* halvings of steps that lead where the net has no shape */
-#define GRAM_SHIFT 1e-14 /* relative shift of the least squares' diagonal: past steps become nearly parallel */
+#define SLOW 0.5         /* auto: two rounds must reduce the step to this part [0.2 to 0.7 pass] */
+#define WILD 2.0         /* auto: no round may increase the step by more than this factor [1.5 to 10 pass] */
+#define STALLED 1e-2     /* without progress: stalled below this part of the first step, else divergence */
+#define RETREATS_MAX 12  /* halvings of steps to displacements at which the net has no shape */
+#define GRAM_SHIFT 1e-14 /* relative shift of the diagonal of the least squares: past steps become nearly parallel */
 
 static int dofs(const hf_model *m)
 {
@@ -41,7 +51,7 @@ void hf_coupling_forces(const hf_model *m, hf_workspace *w)
     }
 }
 
-/* Largest length of the vectors a - b of the attachments; b may be NULL. Keeps a NaN. */
+/* Returns the maximum length of the vectors a - b of the attachments, m; b may be NULL. A NaN stays. */
 static double largest_distance(int n_attachment, const double *a, const double *b)
 {
     double largest = 0;
@@ -73,17 +83,17 @@ void hf_coupling_accept(const hf_model *m, const hf_workspace *w, int iterations
     r->coupling.max_displacement_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
 }
 
-/* ---- Anderson's method: the combination of past displacements whose step would be the smallest ---- */
+/* ---- Anderson's method: combines past displacements so that their step is smallest ---- */
 
 typedef struct {
     size_t n;
-    int depth;                         /* differences to combine; 0: the plain loop */
-    int n_seen;                        /* iterations before this one, counted from the last restart */
-    double *next;                      /* [n] F f(r) */
-    double *step, *step_before;        /* [n] next - r, and that of the iteration before */
-    double *next_before;               /* [n] */
-    double *d_step[HF_COUPLING_DEPTH]; /* [n] differences of successive steps */
-    double *d_next[HF_COUPLING_DEPTH]; /* [n] the same of next */
+    int depth;                         /* maximum number of differences; 0: the plain loop */
+    int n_seen;                        /* iterations since the last restart */
+    double *next;                      /* [n] F f(r), m */
+    double *step, *step_before;        /* [n] next - r now and in the iteration before, m */
+    double *next_before;               /* [n] next of the iteration before, m */
+    double *d_step[HF_COUPLING_DEPTH]; /* [n] differences of successive steps, m */
+    double *d_next[HF_COUPLING_DEPTH]; /* [n] differences of successive next, m */
 } accelerator;
 
 static accelerator lay_out_accelerator(const hf_model *m, hf_coupling_scheme scheme, hf_workspace *w)
@@ -100,7 +110,8 @@ static accelerator lay_out_accelerator(const hf_model *m, hf_coupling_scheme sch
     return a;
 }
 
-/* Solves the n x n system of the matrix g in place, by Cholesky. False when g is not positive definite. */
+/* Solves the n x n system of the symmetric matrix g and the right-hand side b in place, by Cholesky. Returns false if g
+ * is not positive definite. */
 static bool solve_gram(int n, double g[HF_COUPLING_DEPTH][HF_COUPLING_DEPTH], double b[HF_COUPLING_DEPTH])
 {
     for (int i = 0; i < n; i++) {
@@ -127,7 +138,8 @@ static bool solve_gram(int n, double g[HF_COUPLING_DEPTH][HF_COUPLING_DEPTH], do
     return true;
 }
 
-/* Sets r to the next displacement, from the history and a->next and a->step, which then join the history. */
+/* Sets r [n] to the next displacements, m, from the history and a->next and a->step, and adds these two to the history.
+ * If the least squares have no factor, r becomes a->next and the history restarts. */
 static void accelerate(accelerator *a, double *r)
 {
     double gram[HF_COUPLING_DEPTH][HF_COUPLING_DEPTH], share[HF_COUPLING_DEPTH];
@@ -161,17 +173,17 @@ static void accelerate(accelerator *a, double *r)
 /* ---- the loop ---- */
 
 typedef struct {
-    double first_m, best_m, step_m, ratio; /* first, smallest and last step; last ratio of steps */
-    double before_m;                       /* the step before the last one */
+    double first_m, best_m, step_m, ratio; /* first, smallest and last step; ratio of the last two steps */
+    double before_m;                       /* step before the last */
     int n_growth, n_since_best;
 } progress;
 
-/* Takes one more step into account. True when the loop no longer improves. */
+/* Adds a step to the progress. Returns true if the loop no longer improves. */
 static bool is_hopeless(progress *p, hf_coupling_scheme scheme, double step_m)
 {
     if (isnan(p->step_m)) p->first_m = step_m;
     double two_m = p->before_m;
-    p->ratio = step_m / p->step_m; /* NaN after the first */
+    p->ratio = step_m / p->step_m; /* NaN at the first step */
     p->before_m = p->step_m;
     p->step_m = step_m;
     p->n_growth = p->ratio >= 1 ? p->n_growth + 1 : 0;
@@ -193,8 +205,8 @@ static void give_up(hf_status status, hf_coupling_stop reason, hf_form_result *r
     r->coupling.stop_reason = reason;
 }
 
-/* For a net without a shape at its present supports. If it had one before, sets displacements half the way back and
- * returns true; else sets the result and returns false. */
+/* Handles a net without a shape at its displaced supports. In the accelerated loop, if the net had a shape before, sets
+ * the displacements halfway back and returns true. Otherwise sets the result and returns false. */
 static bool try_nearer(const hf_model *m, const hf_coupling_settings *s, const accelerator *a, int *n_retreat,
                        hf_workspace *w, hf_form_result *r)
 {
@@ -217,19 +229,19 @@ static bool try_nearer(const hf_model *m, const hf_coupling_settings *s, const a
     return true;
 }
 
-/* For a net with a shape: decides whether the loop ends here, and sets status and reason if so. */
+/* Decides for a net with a shape whether the loop ends here. Returns true if so, with the status and the reason set. */
 static bool is_over(const hf_model *m, const hf_coupling_settings *s, accelerator *a, progress *p, hf_workspace *w,
                     hf_form_result *r)
 {
     double step_m = hf_coupling_measure(m, w, r);
     bool hopeless = is_hopeless(p, s->scheme, step_m);
     r->coupling.ratio = p->ratio;
-    /* the first step compares with the start, not with an iterate, so it ends the loop only when it is zero */
+    /* The first step is measured from the start and not from an iterate, so it ends the loop only if it is zero. */
     if (step_m <= s->tof_m && (a->n_seen > 0 || step_m == 0)) {
         r->coupling.stop_reason = HF_COUPLING_TOF;
         return true;
     }
-    /* the net's own tolerance limits the accuracy of the forces, which can keep the steps above tof_m */
+    /* The tolerance of the net limits the accuracy of its forces, so the steps may stay above tof_m. */
     bool stalls = hopeless && p->best_m < STALLED * p->first_m;
     if (hopeless && !stalls) {
         give_up(HF_TRUSS_TOO_SOFT, HF_COUPLING_DIVERGED, r);
@@ -260,7 +272,7 @@ hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_
             if (!try_nearer(m, s, &a, &n_retreat, w, r)) break;
             continue;
         }
-        double psi_m = r->psi_m; /* a refusal has none */
+        double psi_m = r->psi_m; /* is_over may refuse the result, which has no psi then */
         bool over = is_over(m, s, &a, &p, w, r);
         hf_history_add_coupling(history, r->coupling.step_m, psi_m, r->coupling.max_displacement_m);
         if (over) break;
@@ -275,7 +287,7 @@ hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_
 
 /* ---- in one matrix ---- */
 
-/* Status of the net alone, on supports that stay. Overwrites the workspace's shape. */
+/* Returns the status of the net alone on fixed supports. Overwrites the shape in the workspace. */
 static hf_status status_alone(const hf_model *m, hf_net_solver *solve, const void *context, hf_workspace *w)
 {
     hf_form_result alone;
@@ -314,12 +326,12 @@ hf_status hf_coupling_find_either_way(const hf_model *m, const hf_coupling_setti
                                       const void *context, hf_workspace *w, hf_history *history, hf_form_result *r)
 {
     hf_status status = hf_coupling_find(m, s, solve, context, false, w, history, r);
-    /* the net is out of iterations, and not because the loop has led it to where it has no shape */
+    /* the net ran out of iterations, and the loop was not diverging */
     bool is_over = status == HF_NOT_CONVERGED && r->coupling.stop_reason == HF_COUPLING_NET && !(r->coupling.ratio > 1);
     if (status == HF_OK || status == HF_INTERRUPTED || is_over) return status;
     int n_round = r->coupling.iterations, n_step = r->iterations;
-    w->starts_near = n_round > 1;    /* coupling_q_N_per_m is that of a shape */
-    if (!(r->coupling.ratio <= 1)) { /* the loop has led away, or nowhere */
+    w->starts_near = n_round > 1;    /* coupling_q_N_per_m belongs to a shape */
+    if (!(r->coupling.ratio <= 1)) { /* the loop diverged or made no progress */
         memcpy(w->q_N_per_m, w->coupling_q_N_per_m, (size_t)m->n_cable * sizeof(double));
         memset(w->displacement_m, 0, (size_t)dofs(m) * sizeof(double));
     }

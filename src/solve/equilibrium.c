@@ -1,4 +1,15 @@
-/* Contents: from a start near the answer - from anywhere */
+/* Finds the shape of minimum energy of a tension net (METHOD section 5).
+ *
+ *     force densities of the workspace
+ *         | near: 6 iterations of the paper, then Newton steps       -> shape, if they converge
+ *         |   (left out if cables are elastic and the start is not near)
+ *         v
+ *     path: primal-dual interior method from the target positions    -> shape
+ *         | not solved
+ *         v
+ *     name_reason: the straight chain or the cable whose rounding prevents convergence, or the status of the path
+ *
+ * The paper's iteration (form.method: hifdm) asks the same path whether a net that it refuses has a shape. */
 #include "solve/equilibrium.h"
 
 #include "solve/coupling.h"
@@ -8,10 +19,10 @@
 
 #include <string.h>
 
-#define FIRST_BLOCK 6  /* iterations of hf_form_find before Newton is tried. Tests pass with 2 and 20. */
-#define NEWTON_MAX 30  /* Newton steps after them */
-#define PATH_MAX 60    /* factorisations on the path; up to 49 were seen in stress tests */
-#define LAST_BLOCK 200 /* iterations that bring errors down to rounding, to name the cable at which it is largest */
+#define FIRST_BLOCK 6  /* iterations of hf_form_find before Newton's method; the tests pass with 2 and 20 */
+#define NEWTON_MAX 30  /* maximum Newton steps after them */
+#define PATH_MAX 60    /* maximum factorisations on the path; stress tests took up to 49 */
+#define LAST_BLOCK 200 /* iterations that reduce errors to rounding, to find the cable whose rounding is largest */
 
 static int smaller(int a, int b)
 {
@@ -20,7 +31,8 @@ static int smaller(int a, int b)
 
 /* ---- from a start near the answer ---- */
 
-/* Whether attachments that are unknowns have come to where the truss has them under the measured shape. */
+/* Returns whether the attachments, where they are unknowns, are within tof_m of the displacements under the measured
+ * shape. Sets displacement_m. Returns true for a net whose attachments are no unknowns. */
 static bool is_on_truss(const hf_model *m, const hf_form_settings *s, hf_workspace *w)
 {
     hf_form_result at;
@@ -29,8 +41,8 @@ static bool is_on_truss(const hf_model *m, const hf_form_settings *s, hf_workspa
     return hf_coupling_measure(m, w, &at) <= s->coupling.tof_m;
 }
 
-/* Iterations of the paper and Newton steps from the case's force densities: they take few steps when these are near the
- * answer's. True when the result is final. */
+/* Takes iterations of the paper and Newton steps from the force densities of the workspace. They converge in few steps
+ * if these are near the answer. Returns true if the result is final. */
 static bool try_near(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_history *history,
                      hf_form_result *r)
 {
@@ -42,7 +54,7 @@ static bool try_near(const hf_model *m, const hf_form_settings *s, hf_workspace 
     if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) return false;
     int n_step = r->iterations;
     bool is_near = hf_newton_run(m, s, w, smaller(NEWTON_MAX, s->max_iterations - n_step), &n_step);
-    /* the shape is not solved for again with D: that would add rounding errors in proportion to D's condition */
+    /* No further solve with D follows: it would add rounding errors in proportion to the condition of D. */
     is_near = is_near && hf_form_measure(m, s, w, r) == HF_OK && is_on_truss(m, s, w);
     if (is_near) hf_form_accept(m, s, HF_STOPPED_RESIDUAL, n_step, w, r);
     r->iterations = n_step;
@@ -51,13 +63,13 @@ static bool try_near(const hf_model *m, const hf_form_settings *s, hf_workspace 
 
 /* ---- from anywhere ---- */
 
-/* Whether the iterate, and not the net, may be the reason of this status. */
+/* Returns true if the status may be caused by the iterate and not by the net. */
 static bool is_refusal(hf_status status)
 {
     return status == HF_COLLAPSED || status == HF_SINGULAR || status == HF_NOT_FINITE;
 }
 
-/* First force densities of laws that may have changed since hf_form_prepare. */
+/* Sets first force densities for laws that may have changed since hf_form_prepare. */
 static void set_first_force_densities(const hf_model *m, hf_workspace *w)
 {
     for (int e = 0; e < m->n_cable; e++) {
@@ -67,9 +79,9 @@ static void set_first_force_densities(const hf_model *m, hf_workspace *w)
     }
 }
 
-/* For a net that the path has not solved: the straight chain that is the reason, the cable whose rounding is, or no
- * name. From where the path ended, iterations bring errors down to rounding; where they lead nowhere, those from the
- * start may still see a chain. */
+/* Finds the reason why the path has not solved the net: a straight chain, the cable whose rounding prevents
+ * convergence, or none (culprit -1). Iterations from the end of the path reduce the errors to rounding. If they fail,
+ * iterations from the first force densities may still find a chain. Returns result->status. */
 static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n_step, hf_workspace *w,
                              hf_history *history, hf_form_result *r)
 {
@@ -77,7 +89,7 @@ static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n
     hf_form_settings part = *s;
     hf_form_accept(m, s, HF_STOPPED_MAX_ITERATIONS, n_step, w, r);
     bool is_finite = r->status != HF_NOT_FINITE;
-    int cable = r->culprit; /* of a tension that is not finite */
+    int cable = r->culprit; /* with a tension that is not finite */
     if (is_finite && (r->status != HF_NOT_CONVERGED || r->culprit >= 0)) return r->status;
     memcpy(w->interior_tension_N, w->q_N_per_m, q);
     memcpy(w->interior_position_m, w->position_m, places);
@@ -85,7 +97,7 @@ static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n
         part.max_iterations = smaller(LAST_BLOCK, s->max_iterations - n_step);
         if (part.max_iterations < 1) break;
         if (start > 0) set_first_force_densities(m, w);
-        for (int e = 0; e < m->n_cable; e++) /* slack cables: see HF_LAW_LEAST_Q_N_PER_M */
+        for (int e = 0; e < m->n_cable; e++) /* a slack cable keeps HF_LAW_LEAST_Q_N_PER_M */
             if (w->q_N_per_m[e] == 0) w->q_N_per_m[e] = HF_LAW_LEAST_Q_N_PER_M;
         hf_form_find(m, &part, HF_STOP_RESIDUAL, w, history, r);
         n_step += r->iterations;
@@ -103,6 +115,7 @@ static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n
     return hf_form_accept(m, s, HF_STOPPED_MAX_ITERATIONS, n_step, w, r);
 }
 
+/* Finds the shape by the path, after n_step steps of other kinds. Returns result->status. */
 static hf_status find_on_path(const hf_model *m, const hf_form_settings *s, int n_step, hf_workspace *w,
                               hf_history *history, hf_form_result *r)
 {
@@ -121,7 +134,7 @@ hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_w
                               hf_form_result *r)
 {
     w->history = history;
-    /* first force densities of elastic cables can be decades away */
+    /* the first force densities of elastic cables can be wrong by decades */
     bool has_start = !m->EA_N || w->starts_near, is_over = has_start && try_near(m, s, w, history, r);
     if (!is_over) find_on_path(m, s, has_start ? r->iterations : 0, w, history, r);
     w->history = NULL;
@@ -130,10 +143,10 @@ hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_w
 
 /* ---- by the paper's iteration ---- */
 
-/* Steps of the path and of the iteration that names a reason, to learn whether a net has a shape. */
+/* Maximum steps of the path and of name_reason that decide whether a net has a shape. */
 #define VERDICT_MAX (PATH_MAX + 2 * LAST_BLOCK)
 
-/* What the path says of the net, in *said. Keeps q_N_per_m and position_m. */
+/* Runs the path and writes its result into *said. Keeps q_N_per_m and position_m. Returns said->status. */
 static hf_status ask_path(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *said)
 {
     size_t q = (size_t)m->n_cable * sizeof(double), places = 3 * (size_t)m->n_node * sizeof(double);
@@ -152,7 +165,7 @@ hf_status hf_equilibrium_judge_open(const hf_model *m, const hf_form_settings *s
     hf_form_result said;
     if (!m->has_newton || r->status != HF_NOT_CONVERGED || r->culprit >= 0) return r->status;
     hf_status status = ask_path(m, s, w, &said);
-    if (status == HF_OK || status == HF_NOT_CONVERGED) { /* the shape that is stored as not converged */
+    if (status == HF_OK || status == HF_NOT_CONVERGED) { /* measure again the shape that is stored as not converged */
         double length_gap;
         hf_form_measure_cables(m, s, w, &said, &length_gap);
         hf_form_residual_N(m, w);
@@ -174,13 +187,13 @@ hf_status hf_equilibrium_find_by_paper(const hf_model *m, const hf_form_settings
     hf_status status = ask_path(m, s, w, &said);
     bool has_shape =
         status == HF_OK || status == HF_NOT_CONVERGED ||
-        (status == HF_STRAIGHT_CHAIN && stop == HF_STOP_RMS_CHANGE); /* the paper's rule ends all the same */
+        (status == HF_STRAIGHT_CHAIN && stop == HF_STOP_RMS_CHANGE); /* the paper's rule stops in spite of the chain */
     if (has_shape) {
         hf_form_settings rest = *s;
         rest.collapse_ratio = HF_FORM_GONE;
         rest.max_iterations = n_step < s->max_iterations ? s->max_iterations - n_step : 1;
         hf_form_find(m, &rest, stop, w, history, r);
-        /* without finite places there is no iterate to speak of: a truss below must know */
+        /* HF_NOT_FINITE stays: the coupling measures an iterate that has not converged, and here there is none. */
         if (r->status == HF_COLLAPSED || r->status == HF_SINGULAR) hf_form_refuse(HF_NOT_CONVERGED, r->iterations, r);
     } else {
         *r = said;

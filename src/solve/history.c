@@ -23,7 +23,7 @@ void hf_history_add_coupling(hf_history *history, double step_m, double psi_m, d
     h->max_displacement_m[h->n++] = max_displacement_m;
 }
 
-/* Largest distance of an attachment from its theoretical place. */
+/* Returns the maximum distance of an attachment from its target position, m. */
 static double max_displacement_m(const hf_model *m, const hf_workspace *w)
 {
     double largest = 0;
@@ -33,7 +33,7 @@ static double max_displacement_m(const hf_model *m, const hf_workspace *w)
             double d = w->position_m[at] - m->position_m[at];
             square += d * d;
         }
-        if (!(square <= largest)) largest = square; /* keeps a NaN */
+        if (!(square <= largest)) largest = square; /* a NaN stays */
     }
     return sqrt(largest);
 }

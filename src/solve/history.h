@@ -1,21 +1,21 @@
-/* history - what a form-finding records of each of its iterations and steps (hf_history).
- * Stability: internal; may change in any version. */
+/* history - records the figures of each iteration and step of a form-finding (hf_history). Stability: internal; may
+ * change in any version. */
 #ifndef HIFDM_HISTORY_H
 #define HIFDM_HISTORY_H
 
 #include <hifdm/workspace.h>
 
-/* Add a row for the shape and the tension_N in the workspace. */
+/* Adds a row for the shape and the tension_N in the workspace. Does nothing if the history is full. */
 void hf_history_add(hf_history *history, const hf_model *model, const hf_workspace *workspace, double psi_m,
                     double residual_N, double length_error);
 
-/* Add a row to the workspace's history, if it has one, for a step of Newton's method or of the path to position_m, and
- * to that of the coupling when attachments are moved: gap_m as hf_joint_gap_m. tension_N must hold the tensions of the
- * cables with a multiplier; those of the others are set. */
+/* Adds a row to the workspace's history, if it has one, for a step of Newton's method or of the path to position_m. If
+ * the attachments are unknowns, adds a row to the history of the coupling as well; gap_m is that of hf_joint_gap_m.
+ * tension_N must hold the tensions of the cables with a multiplier, N; those of the others are set. */
 void hf_history_add_step(const hf_model *model, hf_workspace *workspace, double residual_N, double length_error,
                          double gap_m);
 
-/* Add a row to the history of the coupling; history may be NULL. */
+/* Adds a row to the history of the coupling. history may be NULL. */
 void hf_history_add_coupling(hf_history *history, double step_m, double psi_m, double max_displacement_m);
 
 #endif

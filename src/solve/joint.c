@@ -1,3 +1,12 @@
+/* Solves for a step of net and truss together (M24).
+ *
+ *     forces on free nodes and attachments
+ *         | solve H_ff: step of the free nodes with the attachments fixed
+ *         | b = pull on the attachments after that step
+ *         | d_r = (I + F S)^-1 (F b - r), the step of the attachments; F enters, its inverse does not
+ *         | d_r acts on the free nodes: solve H_ff again and add
+ *         v
+ *     steps of free nodes and attachments */
 #include "solve/joint.h"
 
 #include "solve/schur.h"
@@ -70,7 +79,7 @@ double hf_joint_gap_m(const hf_model *m, const hf_workspace *w, const double *po
             double d = gap[c] - displacement_m(m, w, position_m, c);
             sum += d * d;
         }
-        if (!(sum <= largest)) largest = sum; /* keeps a NaN */
+        if (!(sum <= largest)) largest = sum; /* a NaN stays */
         all += sum;
     }
     double mean_m = hf_joint_mean_length_m(m);

@@ -1,3 +1,13 @@
+/* Condenses the Newton matrix of the net to the attachments of its truss (METHOD section 8).
+ *
+ *     factor of H_ff, blocks of the cables at attachments
+ *         | H_ff^-1 H_fa, HF_SCHUR_PANEL attachments at a time
+ *         v
+ *     S = H_aa - H_af H_ff^-1 H_fa   (M15)
+ *         | F S, then the LU factor of I + F S
+ *         v
+ *     hf_schur_solve, hf_schur_displace: steps of the attachments
+ *     hf_schur_modes: (I + F S)^-1 as I plus a few modes, for the lanes of the population solver */
 #include "solve/schur.h"
 
 #include "base/arena.h"
@@ -8,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Goes through F by columns. F is symmetric, so they are its rows. */
+/* F is symmetric, so its columns are its rows. */
 void hf_schur_flex(const hf_model *m, const double *force, double *r)
 {
     size_t n = (size_t)(3 * m->n_attachment);
@@ -80,7 +90,7 @@ void hf_schur_pull(const hf_model *m, const hf_workspace *w, hf_newton_block *bl
     }
 }
 
-/* The tie at the other end of the same cable, if that is an attachment, too; -1. */
+/* Returns the tie at the other end of the same cable if that is an attachment, too, else -1. */
 static int partner_of(const hf_model *m, int k)
 {
     int partner = k > 0 && m->tie[k - 1] == (m->tie[k] ^ 1) ? k - 1 : k + 1;
@@ -121,7 +131,8 @@ void hf_schur_add_own(const hf_model *m, const hf_workspace *w, hf_newton_block 
     }
 }
 
-/* Subtracts H_af H_ff^-1 H_fa from the rows of the stiffness of some attachments, as many as have room in `column`. */
+/* Subtracts H_af H_ff^-1 H_fa from the rows of the stiffness that belong to HF_SCHUR_PANEL attachments, beginning with
+ * `from`. `column` has room for that many. */
 static void subtract_panel(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, int from, hf_schur *s)
 {
     int end = from + HF_SCHUR_PANEL < m->n_attachment ? from + HF_SCHUR_PANEL : m->n_attachment;
@@ -171,8 +182,8 @@ void hf_schur_displace(const hf_model *m, const hf_schur *s, const double *b, do
     hf_schur_solve(s, displacement_m);
 }
 
-/* Cross approximation of A = (I + F S)^-1 - I. The longest column of A, scaled to length 1, is `left`; the products of
- * all columns with it are `right`; left right' is subtracted from A before the next mode. */
+/* Cross approximation of A = (I + F S)^-1 - I. `left` is the longest column of A, scaled to length 1, and `right` has
+ * the inner products of all columns with it. left right' is subtracted from A before the next mode. */
 int hf_schur_modes(hf_schur *s, double tolerance, int max_mode, double *mode)
 {
     size_t n = (size_t)s->n;
