@@ -1,4 +1,14 @@
-/* Contents: choice of the method - one shape, alone or with a truss - one design */
+/* Evaluates the case itself or a design.
+ *
+ *     case: laws and first force densities of the model   design: those that its variables set
+ *         |                                                   |
+ *         +---------------------------+-----------------------+
+ *                                     v
+ *     one shape: Newton (equilibrium.c) or the paper's iteration, on a truss inside the coupling (coupling.c)
+ *         |                                                   |
+ *         v                                                   v
+ *     case: give loose nodes positions, certify           design: refuse loose nodes, apply cap and limits,
+ * objectives */
 #include <hifdm/evaluate.h>
 
 #include "base/arena.h"
@@ -35,7 +45,7 @@ typedef struct {
     const hf_model *m;
     const hf_form_settings *form;
     bool by_newton;
-    hf_stop_rule stop; /* of the paper's iteration */
+    hf_stop_rule stop; /* stopping rule of the paper's iteration */
 } net_problem;
 
 static hf_status find_alone(const void *context, hf_workspace *w, hf_history *history, hf_form_result *r)
@@ -45,8 +55,8 @@ static hf_status find_alone(const void *context, hf_workspace *w, hf_history *hi
     return hf_equilibrium_find_by_paper(p->m, p->form, p->stop, w, history, r);
 }
 
-/* Finds the shape from the workspace's first force densities. Under the paper's rule the place of the stop depends on
- * the start, so all iterations of the coupling then share one start. */
+/* Finds the shape from the workspace's first force densities. Under the paper's rule the point at which the iteration
+ * stops depends on the start. All iterations of the coupling then share one start. Returns r->status. */
 static hf_status find_net(const net_problem *p, hf_workspace *w, hf_history *history, hf_form_result *r)
 {
     if (!p->m->n_attachment) return find_alone(p, w, history, r);
@@ -108,8 +118,8 @@ double hf_evaluate_divisor(const hf_evaluator *v, int k)
     return hf_evaluate_design_length_m(v->model, v->model->gene_cable[k]);
 }
 
-/* Sets law, target and first force density of a cable from the value of its gene, or the place of a support (METHOD
- * section 7). */
+/* Sets law, target and first force density of a cable from the value of design variable k, or the displacement of a
+ * support (METHOD section 7). */
 static void apply_gene(const hf_evaluator *v, int k, double value, hf_workspace *w)
 {
     const hf_model *m = v->model;
@@ -164,8 +174,8 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_works
 {
     const hf_model *m = v->model;
     hf_form_prepare(m, w);
-    /* A convex problem has one answer, so a start near it changes nothing but the time. The answer under rule seeded
-     * depends on the start, so it keeps that of the model, as in the paper. */
+    /* A convex problem has one answer, so a start near it saves time and changes nothing else. Under rule seeded the
+     * answer depends on the start, so the start is that of the model, as in the paper. */
     for (int e = 0; e < m->n_cable && hf_evaluate_is_unique(v); e++)
         if (hf_law_has(m->law[e], HF_LAW_ITERATES))
             w->q_N_per_m[e] = fmax(v->start_q_N_per_m[e], HF_LAW_LEAST_Q_N_PER_M);
@@ -173,7 +183,7 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_works
         apply_gene(v, k, design_N[k], w);
 }
 
-/* Measures the goals of a shape, feasible or not. */
+/* Measures the objectives of a shape, feasible or not. */
 static void measure_goals(const hf_evaluator *v, hf_workspace *w, hf_form_result *r)
 {
     if (!v->goals) return;
@@ -189,7 +199,7 @@ hf_status hf_evaluate_judge(const hf_evaluator *v, hf_workspace *w, hf_form_resu
     if (breaks_cap) r->status = HF_RATIO_CAP;
     if (has_shape) measure_goals(v, w, r);
     if (!v->goals) r->merit = r->psi_m;
-    if (v->goals && r->status == HF_OK && !isfinite(r->merit)) { /* a goal has no value there */
+    if (v->goals && r->status == HF_OK && !isfinite(r->merit)) { /* an objective has no value for this shape */
         r->status = HF_NOT_FINITE;
         r->violation = (double)NAN;
     }

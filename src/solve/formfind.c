@@ -1,5 +1,16 @@
-/* Contents: starts - one linear solve (Eqs. 1-6) - measuring cables - nodal residual - straight chains -
- * updates (Eqs. 7, 8) - stopping - the iteration - shapes from elsewhere */
+/* The paper's iteration from force densities to a shape (METHOD sections 1 to 4).
+ *
+ *     force densities q, positions of the supports
+ *         |
+ *         v
+ *     1. solve D x_f = P - C_f' Q C_g x_g for x, y, z       (Eqs. 2, 5)  <---+
+ *     2. lengths, tensions q l, errors against the laws     (Eqs. 4, 6)     |
+ *     3. psi, residual, loaded straight chains: stop?                       |
+ *         | no: q by the laws of the cables                 (Eqs. 7, 8)  ---+
+ *         v yes
+ *     result, or the status of an ill-posed net
+ *
+ * hf_form_measure and hf_form_accept do steps 2 and 3 for a shape that another solver has found. */
 #include <hifdm/formfind.h>
 
 #include "base/elementary.h"
@@ -12,17 +23,17 @@
 #include <math.h>
 #include <string.h>
 
-/* Straight chains are examined after this many iterations, and again each time the number of iterations has doubled.
- * From 1 to 512 no net of the tests of solve and stress is judged otherwise; with 2048 one of the coupling fails
- * (soft_trusses_are_named). The fewer, the sooner a net is refused; the more, the longer its loads may settle. */
+/* Straight chains are examined after this many iterations, and again each time the number of iterations has doubled. A
+ * smaller value refuses a net sooner, a larger one gives its loads more iterations to settle. From 1 to 512 the tests
+ * of solve and stress judge all nets alike; with 2048 one of the coupling fails (soft_trusses_are_named). */
 #define FIRST_CHAIN_CHECK 64
-/* A load counts as settled when it changes by less than this, relatively, between two examinations. The tests of
- * form-finding pass with 0.01 and 0.1; with 0.001 one of them fails (loaded_straight_chain_is_ill_posed). */
+/* A load has settled when its relative change between two examinations is below this value. The tests of form-finding
+ * pass with 0.01 and 0.1; with 0.001 one of them fails (loaded_straight_chain_is_ill_posed). */
 #define CHAIN_LOAD_SETTLED 0.01
-/* An imbalance of up to this many roundings of the ends' coordinates is rounding. From 3 to 1000 the tests of solve and
- * stress take the same steps; with 1 one fails (what_rounding_leaves_is_named). */
+/* An imbalance of up to this many roundings of the coordinates of the ends counts as rounding. From 3 to 1000 the tests
+ * of solve and stress take the same steps; with 1 one fails (what_rounding_leaves_is_named). */
 #define ROUNDING_STEPS 32
-/* A lateral load below this fraction of the reference tension counts as none. The tests of form-finding pass with 1e-8
+/* A lateral load below this fraction of the reference tension counts as zero. The tests of form-finding pass with 1e-8
  * and 1e-4. */
 #define CHAIN_LOAD_NONE 1e-6
 
@@ -58,13 +69,13 @@ void hf_form_assemble(const hf_model *m, hf_workspace *w)
     memset(w->band, 0, ((size_t)m->n_band + 1) * sizeof(double));
     for (int e = 0; e < m->n_cable; e++) {
         double q = w->q_N_per_m[e];
-        w->band[m->diagonal_a[e]] += q; /* the entry of a support is the spare place behind the band */
+        w->band[m->diagonal_a[e]] += q; /* the entry of a support is the spare one after the band */
         w->band[m->diagonal_b[e]] += q;
         w->band[m->off_diagonal[e]] -= q;
     }
 }
 
-/* Writes the right-hand sides into the free rows of position_m; the support rows keep the support positions. */
+/* The support rows keep the positions of the supports. */
 void hf_form_assemble_loads(const hf_model *m, hf_workspace *w)
 {
     for (int c = 0; c < 3; c++) {
@@ -99,7 +110,7 @@ static hf_status solve_positions(const hf_model *m, hf_workspace *w, int *bad_ro
 
 /* ---- measuring cables ---- */
 
-/* fmax and fmin without the call; a NaN in `next` leaves `now` as it is. */
+/* fmax and fmin without a function call; a NaN in `next` leaves `now` unchanged. */
 static inline double larger(double now, double next)
 {
     return next > now ? next : now;
@@ -110,9 +121,9 @@ static inline double smaller(double now, double next)
     return next < now ? next : now;
 }
 
-/* Lengths, tensions (Eqs. 4, 6) and errors against the laws. length_gap is the length error that the stopping rule
- * reads. It covers taut cables, slack cables that are too long, and, weighted with the tension that is left in them,
- * slack cables that are too short. */
+/* Sets lengths, tensions (Eqs. 4, 6) and the errors against the laws. length_gap is the length error for the stopping
+ * rule. It includes taut cables and slack cables that are too long. Slack cables that are too short count with a
+ * weight, the tension that remains in them relative to the reference tension. */
 void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r,
                             double *length_gap)
 {
@@ -139,7 +150,7 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
             r->culprit = e;
             return;
         }
-        if (part > HF_FORM_BLOWN_UP) { /* D is singular but for rounding */
+        if (part > HF_FORM_BLOWN_UP) { /* D is singular except for rounding */
             r->status = HF_SINGULAR;
             r->culprit = a < b ? a : b;
             return;
@@ -162,12 +173,12 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
 /* ---- nodal residual ---- */
 
 typedef enum {
-    WITH_MULTIPLIERS, /* T* of law tension, q l of the others: what the iterations balance */
+    WITH_MULTIPLIERS, /* T* under law tension, q l of the others: the forces that the iteration balances */
     WITHOUT_CHAINS,   /* the same without the straight chains under law length */
-    BY_LAW            /* elastic cables, too, at the tension that their law gives at this length */
+    BY_LAW            /* as above, but elastic cables at the tension that their law gives at their length */
 } pulls;
 
-/* Sums the forces of all cables on their nodes, and the loads, into force_N. */
+/* Sets force_N to the sum of the loads and of the forces of all cables on their nodes. */
 static void nodal_forces(const hf_model *m, hf_workspace *w, pulls which)
 {
     const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
@@ -192,7 +203,7 @@ static void nodal_forces(const hf_model *m, hf_workspace *w, pulls which)
 
 static double largest_nodal_force_N(const hf_model *m, hf_workspace *w, pulls which)
 {
-    double largest = 0, scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
+    double largest = 0, scale = 1 / m->reference_N; /* the squares of tiny forces would underflow */
     const double *fx = w->force_N, *fy = fx + m->n_node, *fz = fy + m->n_node;
     nodal_forces(m, w, which);
     for (int i = 0; i < m->n_free; i++) {
@@ -207,7 +218,8 @@ double hf_form_residual_N(const hf_model *m, hf_workspace *w)
     return largest_nodal_force_N(m, w, WITH_MULTIPLIERS);
 }
 
-/* Largest coordinate of the ends of cable e, m. The rounding of the cable's length is relative to it. */
+/* Returns the maximum coordinate of the ends of cable e, m. The rounding error of the cable's length is relative to
+ * it. */
 static double largest_coordinate_m(const hf_model *m, const hf_workspace *w, int e)
 {
     double largest = 0;
@@ -217,8 +229,8 @@ static double largest_coordinate_m(const hf_model *m, const hf_workspace *w, int
     return largest;
 }
 
-/* Returns the cable that is so short against its coordinates that the rounding of its length keeps the tolerances from
- * being met, or -1. Reads the nodal forces in force_N. */
+/* Returns the cable whose length is so small compared with its coordinates that rounding prevents convergence, or -1.
+ * Reads the nodal forces in force_N. */
 static int find_rounded_cable(const hf_model *m, const hf_form_settings *s, const hf_workspace *w)
 {
     const double *f = w->force_N;
@@ -239,9 +251,9 @@ static int find_rounded_cable(const hf_model *m, const hf_form_settings *s, cons
     return worst > s->residual_tolerance * m->reference_N && worst <= ROUNDING_STEPS * floor_N ? culprit : -1;
 }
 
-/* ---- straight chains: a chain that cannot deflect cannot carry a lateral load at any finite tension ---- */
+/* ---- straight chains: a chain that cannot deflect carries no lateral load at a finite tension ---- */
 
-/* Rows of the supports at the two ends of chain i_chain. */
+/* Sets *from and *to to the rows of the supports at the two ends of chain i_chain. */
 static void chain_supports(const hf_model *m, int i_chain, int *from, int *to)
 {
     const int *first = m->end_row + 2 * m->chain_cable[m->chain_start[i_chain]];
@@ -250,7 +262,8 @@ static void chain_supports(const hf_model *m, int i_chain, int *from, int *to)
     *to = last[0] >= m->n_free ? last[0] : last[1];
 }
 
-/* Largest force perpendicular to chain i_chain at one of its nodes, N. force_N holds the forces without the chains. */
+/* Returns the maximum force perpendicular to chain i_chain at one of its nodes, N. force_N holds the forces without the
+ * chains. */
 static double lateral_load_N(const hf_model *m, const hf_workspace *w, int i_chain)
 {
     const double *x = w->position_m, *f = w->force_N;
@@ -283,7 +296,7 @@ int hf_form_n_chain(const hf_model *m)
     return m->n_attachment ? m->n_any_chain : m->n_chain;
 }
 
-/* Sum of the lengths of chain i_chain, and the square of the present distance of its supports. */
+/* Returns the sum of the lengths of chain i_chain, m, and sets *square to the squared distance of its supports, m^2. */
 static double chain_sum(const hf_model *m, const hf_workspace *w, int i_chain, double *square)
 {
     int from, to;
@@ -306,7 +319,7 @@ static bool chain_is_rigid(const hf_model *m, const hf_workspace *w, int i_chain
     return true;
 }
 
-/* True when chain i_chain is under law length and straight at the present places of its supports. */
+/* Returns true if chain i_chain is under law length and straight at the present positions of its supports. */
 static bool chain_is_straight(const hf_model *m, const hf_workspace *w, int i_chain)
 {
     double square;
@@ -323,7 +336,8 @@ bool hf_form_chain_is_short(const hf_model *m, const hf_workspace *w, int i_chai
     return chain_is_rigid(m, w, i_chain) && *sum_m * (1 + HF_STRAIGHT_EXCESS) < *span_m;
 }
 
-/* The lateral load; INFINITY when the chain is too short for its supports, which no shape cures. */
+/* Returns the lateral load of chain i_chain, N. Returns INFINITY if the chain is too short for its supports, because no
+ * shape has these lengths. */
 static double chain_burden_N(const hf_model *m, const hf_workspace *w, int i_chain)
 {
     double sum, span;
@@ -337,7 +351,7 @@ bool hf_form_chain_is_loaded(const hf_model *m, hf_workspace *w, int i_chain)
     return chain_burden_N(m, w, i_chain) > CHAIN_LOAD_NONE * m->reference_N;
 }
 
-/* Sets n_loaded_chain and returns the largest lateral load on a straight chain; *worst is that chain or -1. */
+/* Sets n_loaded_chain and returns the maximum lateral load on a straight chain, N. *worst is that chain, or -1. */
 static double look_at_chains(const hf_model *m, hf_workspace *w, hf_form_result *r, int *worst)
 {
     double largest = 0;
@@ -373,7 +387,7 @@ typedef struct {
     hf_stop_rule stop;
     bool iterates;
     double psi_before_m;      /* NaN at the first iteration */
-    double chain_load_before; /* NaN before the first look */
+    double chain_load_before; /* NaN before the first examination */
     int next_chain_look;
 } progress;
 
@@ -392,7 +406,7 @@ static bool is_last(const hf_model *m, const hf_form_settings *s, hf_workspace *
     } else {
         int worst;
         bool looks = hf_form_n_chain(m) && r->iterations == p->next_chain_look;
-        /* the residual is taken at the tensions of the laws; those of the last solve must agree with them, too */
+        /* The residual has cables at the tensions of their laws, so the tensions of the last solve are checked, too. */
         if (r->residual_N <= s->residual_tolerance * m->reference_N && r->tension_error <= s->residual_tolerance &&
             length_gap <= s->length_tolerance)
             r->stop_reason = HF_STOPPED_RESIDUAL;
@@ -411,9 +425,8 @@ static bool is_last(const hf_model *m, const hf_form_settings *s, hf_workspace *
     return true;
 }
 
-/* Under the stopping rule `residual` the answer must be an equilibrium. A net with a loaded straight chain has none,
- * even when its residual is small, and is refused. Under the paper's rule the result stands, and n_loaded_chain tells
- * of the chains. */
+/* Refuses a net with a loaded straight chain under the stopping rule `residual`. Such a net has no equilibrium, even if
+ * its residual is small. Under the paper's rule the result stands, and n_loaded_chain counts the chains. */
 static void judge_chains(const hf_model *m, hf_workspace *w, const progress *p, hf_form_result *r)
 {
     int worst;
@@ -423,7 +436,7 @@ static void judge_chains(const hf_model *m, hf_workspace *w, const progress *p, 
     r->culprit = worst;
 }
 
-/* A result before its first iteration: status ok, no culprit, all measures unknown (NaN). */
+/* Sets a result before its first iteration: status ok, no culprit, all measures NaN. */
 static void open_result(hf_form_result *r)
 {
     *r = (hf_form_result){.status = HF_OK, .culprit = -1};
@@ -481,7 +494,7 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, hf_stop_rul
     return finish_result(m, w, r);
 }
 
-/* ---- shapes from elsewhere: Newton, lanes ---- */
+/* ---- shapes of other solvers: Newton, lanes ---- */
 
 hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r)
 {

@@ -1,4 +1,15 @@
-/* Contents: points - sizes of which the largest counts - residuals - derivatives */
+/* Measures the objectives of a design as blocks of residuals, with their exact derivatives (METHOD section 7).
+ *
+ *     shape in the workspace
+ *         | measure: residuals f of each objective, whose norm is its value (the smooth one for a maximum)
+ *         v
+ *     weight f of all objectives, one after the other;   merit = their norm
+ *         | linearise: what the derivatives need of this shape
+ *         | push: changes of positions, tensions and displacements by a variable -> change of the residuals
+ *         v
+ *     derivative [n_row] by that variable
+ *
+ * goals_make.c creates the objectives, and goals_nets.c handles those over as-built nets. */
 #include <hifdm/goals.h>
 
 #include "base/arena.h"
@@ -84,10 +95,9 @@ void hf_goals_point_free(hf_goals_point *point)
     *point = (hf_goals_point){0};
 }
 
-/* ---- sizes of which the largest counts ---- */
+/* ---- sizes of which the maximum counts ---- */
 
-/* The smooth largest of n sizes is P = (sum s^16)^(1/16), and the residuals s^8/P^7 have the norm P. Returns the
- * largest size; size [n] becomes s/P. */
+/* The smooth maximum of n sizes is P = (sum s^16)^(1/16), and the residuals s^8/P^7 have the norm P. */
 double hf_goals_smooth_largest(int n, double *size, double *norm)
 {
     double largest = 0, sum = 0;
@@ -103,7 +113,8 @@ double hf_goals_smooth_largest(int n, double *size, double *norm)
     return largest;
 }
 
-/* rate [n]: changes of the sizes, then of the residuals; size [n]: s/P. Returns the change of P. */
+/* Replaces rate [n], the changes of the sizes s, by the changes of the residuals s^8/P^7. size [n] holds s/P. Returns
+ * the change of P. */
 static double push_smooth(int n, const double *size, double *rate)
 {
     double norm_rate = 0;
@@ -119,8 +130,7 @@ static double norm3(const double v[3])
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* Add `pull` of cable e at its first end, and its opposite at the other, to the forces on those ends that are supports.
- */
+/* Adds `pull` of cable e, N, to force_N at its first end, and subtracts it at the other, for ends that are supports. */
 static void add_pull(const hf_model *m, int e, const double pull[3], double *force_N)
 {
     for (int end = 0; end < 2; end++) {
@@ -153,7 +163,7 @@ void hf_goals_pulls(const hf_model *m, const hf_workspace *w, hf_goals_point *p)
 
 /* ---- residuals ---- */
 
-/* Of psi; hf_metrics_psi_m leaves loose nodes out, too. */
+/* Sets the residuals f [3 n_inner_node] of psi. Returns psi, m. Loose nodes are left out, as in hf_metrics_psi_m. */
 static double measure_psi(const hf_model *m, const hf_workspace *w, hf_goals_point *p, double *f)
 {
     int n = 0;
@@ -176,7 +186,7 @@ static double mean_tension_N(const hf_goal *g, const hf_workspace *w)
     return sum / g->n_cable;
 }
 
-/* Of tension, length, evenness and mass. */
+/* Sets the residuals f of an objective of tension, length or evenness [n_cable], or of mass [1]. */
 static void measure_cables(const hf_goal *g, const hf_model *m, const hf_workspace *w, double *f)
 {
     const hf_goal_settings *s = &g->wanted;
@@ -201,7 +211,8 @@ static void measure_cables(const hf_goal *g, const hf_model *m, const hf_workspa
     if (s->goal == HF_GOAL_MASS) f[0] = mass_kg;
 }
 
-/* f [n] from the n sizes in the point, which become parts of the smooth largest; returns the true largest. */
+/* Sets the residuals f [n] of the n sizes in the point, which become parts of their smooth maximum. Returns the true
+ * maximum. */
 static double measure_largest(int n, hf_goals_point *p, double *f)
 {
     double norm, largest = hf_goals_smooth_largest(n, p->size, &norm);
@@ -216,8 +227,8 @@ static void take_displacements(const hf_model *m, const hf_workspace *w, hf_goal
         p->size[i] = norm3(w->displacement_m + 3 * (size_t)i);
 }
 
-/* The largest over the smallest of n tensions is the largest T times the largest 1/T, each of them smooth as above: A
- * and B. size [2n] becomes T/A and 1/(T B); returns A B. */
+/* Returns A B, the smooth ratio of the maximum to the minimum of n tensions. It is the product of the smooth maximum A
+ * of T and B of 1/T, which *high and *low become. size [2n] becomes T/A and 1/(T B). */
 static double smooth_ratio(const hf_goal *g, const hf_workspace *w, double *size, double *high, double *low)
 {
     int n = g->n_cable;
@@ -230,7 +241,8 @@ static double smooth_ratio(const hf_goal *g, const hf_workspace *w, double *size
     return *high * *low;
 }
 
-/* f [2n] has the norm A B; with a slack cable or a strut there is no ratio. Returns the true ratio. */
+/* Sets the residuals f [2n] of a ratio, whose norm *norm is A B. With a slack cable or a strut there is no ratio, and f
+ * is 0. Returns the true ratio. */
 static double measure_ratio(const hf_goal *g, const hf_model *m, const hf_workspace *w, hf_goals_point *p, double *f,
                             double *norm)
 {
@@ -244,7 +256,8 @@ static double measure_ratio(const hf_goal *g, const hf_model *m, const hf_worksp
     return ratio;
 }
 
-/* Residuals of goal k without its weight, and their norm; *value as hf_goals_measure tells it. */
+/* value and norm differ for a maximum of several sizes and for a ratio: the value is the true one, the norm the smooth
+ * one. */
 hf_status hf_goals_measure_shape(const hf_goals *goals, int k, const hf_workspace *w, hf_goals_point *p, double *f,
                                  double *value, double *norm)
 {
@@ -284,7 +297,8 @@ hf_status hf_goals_measure_shape(const hf_goals *goals, int k, const hf_workspac
     return HF_OK;
 }
 
-/* All goals, or those of the design itself alone, into f [n_row], weighted. */
+/* Sets f [n_row] to the weighted residuals, `value` [n_goal] (may be NULL) and *merit. with_nets: of all objectives,
+ * else of those of the design itself alone. Returns HF_OK or HF_NO_MEMORY. */
 static hf_status measure_all(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, bool with_nets, double *f,
                              double *value, double *merit)
 {
@@ -349,7 +363,7 @@ static void push_psi(const hf_model *m, const hf_goals_point *p, const double *m
             rate[3 * k + c] = p->psi_per_m[k] * move[c * m->n_node + m->inner_row[k]];
 }
 
-/* Change of the vector from the first end of cable e to the other. */
+/* Sets `relative` to the change of the vector from the first end of cable e to the other. */
 static void relative_move(const hf_model *m, int e, const double *move, double relative[3])
 {
     for (int c = 0; c < 3; c++)
@@ -393,7 +407,7 @@ static void push_cables(const hf_goal *g, const hf_model *m, const hf_workspace 
     if (g->wanted.goal == HF_GOAL_MASS) rate[0] = g->wanted.mass_kg_per_m * sum_m;
 }
 
-/* Change of the size of a vector. */
+/* Returns the change of the length of the vector v when it changes by `rate`; 0 for v = 0. */
 static double size_rate(const double v[3], const double rate[3])
 {
     double size = norm3(v);

@@ -1,4 +1,10 @@
-/* Contents: what a case asks for - creation */
+/* Creates the objectives of a case from the rows of optimize.goals or optimize.objectives.
+ *
+ *     row of settings
+ *         | load case or samples -> nets;  set -> cables;  gain -> beam
+ *         | faults of the row in this scene -> messages
+ *         v
+ *     objective with its block of residuals among all */
 #include <hifdm/goals.h>
 
 #include "base/arena.h"
@@ -10,7 +16,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- what a case asks for ---- */
+/* ---- rows of the settings ---- */
 
 static const hf_goal_settings psi_alone = {.goal = HF_GOAL_PSI, .target = NAN, .weight = 1, .mass_kg_per_m = NAN};
 
@@ -35,7 +41,7 @@ bool hf_goals_is_largest(hf_goal_kind kind)
     return kind == HF_GOAL_PULL || kind == HF_GOAL_DISPLACEMENT || kind == HF_GOAL_RATIO;
 }
 
-/* What is wrong with goal k in this scene, as the end of a sentence, or NULL. */
+/* Returns what is wrong with objective k in this scene, as the end of a sentence, or NULL. */
 static const char *fault_of(const hf_goals *goals, int k, const hf_surface_settings *surface, const hf_facets *facets)
 {
     const hf_goal *g = &goals->goal[k];
@@ -86,17 +92,18 @@ static int row_count(const hf_goals *goals, const hf_goal *g)
 
 /* ---- creation ---- */
 
-#define LOSS_MOST_DB 3.0 /* of the theoretical shape, for a goal that raises the gain */
+#define LOSS_MOST_DB 3.0 /* of the shape at the target positions, above which an objective of gain causes a warning */
 
-/* Residuals of all goals: one table of them takes 1 GiB, and their numbers are int. */
+/* Maximum number of residuals of all objectives: a table of them takes 1 GiB, and their indices are int. */
 #define ROWS_MAX (1L << 27)
 
-/* Rows are counted in long: 3 000 nodes under 16 goals over 100 000 samples are more than an int holds. */
+/* Gives objective g its rows and adds their number to *n_all. That number is a long: 3 000 nodes under 16 objectives
+ * over 100 000 samples have more rows than an int holds. */
 static void number_rows(hf_goals *goals, hf_goal *g, long *n_all)
 {
     g->n_shape_row = row_count(goals, g);
     *n_all += (long)g->n_shape_row * (g->n_net ? g->n_net : 1);
-    if (*n_all > ROWS_MAX) return; /* which is refused */
+    if (*n_all > ROWS_MAX) return; /* hf_goals_create refuses it */
     g->first_row = goals->n_row;
     g->n_row = (int)*n_all - g->first_row;
     goals->n_row = (int)*n_all;
@@ -126,7 +133,7 @@ static void lay_out(hf_arena *a, const hf_model *m, hf_goals *goals)
     goals->beam = hf_arena_take(a, (size_t)goals->n_goal, sizeof *goals->beam);
 }
 
-/* The case has been checked: what a goal is over is there. */
+/* Sets the nets of an objective. The case has been checked, so the load case or the samples of the row exist. */
 static void choose_nets(const hf_goals_nets *nets, hf_goal *g)
 {
     const hf_goal_settings *s = &g->wanted;
@@ -136,7 +143,8 @@ static void choose_nets(const hf_goals_nets *nets, hf_goal *g)
     if (nets && s->over == HF_OVER_SAMPLES) g->first_net = nets->n_state, g->n_net = nets->n_sample;
 }
 
-/* The field that goal k is about; without a frequency of its own at the highest of the surface. */
+/* Makes the beam of objective k, if it is a gain. Without a frequency in the row it uses the highest one of the
+ * surface. */
 static void make_beam(const hf_scene *scene, const hf_surface_settings *s, const hf_facets *facets, hf_goals *goals,
                       int k)
 {
@@ -146,7 +154,8 @@ static void make_beam(const hf_scene *scene, const hf_surface_settings *s, const
     hf_gain_beam_make(s, facets, scene->position_m, frequency_Hz, &goals->beam[k]);
 }
 
-/* A wave that runs along the axis of a paraboloid is focused by it: there is no beam for the goal to raise. */
+/* Warns if the shape at the target positions has no beam whose gain objective k could raise. A paraboloid, for example,
+ * focuses a plane wave along its axis. */
 static void warn_of_no_beam(const hf_scene *scene, const hf_facets *facets, const hf_goals *goals, int k,
                             const char *where, hf_messages *messages)
 {
@@ -212,7 +221,7 @@ const char *hf_goals_name(const hf_goals *goals, int i_goal, char text[HF_GOAL_N
     int n =
         snprintf(text, HF_GOAL_NAME_SIZE, "goal_%d_%s%s%s", i_goal, hf_goal_word[s->goal], *s->set ? "_" : "", s->set);
     const char *of_many = s->quantile > 0 ? "quantile" : hf_take_word[s->take];
-    if (*s->state) /* as much of its name as there is room for */
+    if (*s->state) /* as much of the name as fits */
         snprintf(text + n, HF_GOAL_NAME_SIZE - (size_t)n, "_%.24s", s->state);
     else if (s->over != HF_OVER_DESIGN)
         snprintf(text + n, HF_GOAL_NAME_SIZE - (size_t)n, "_%s_%s", hf_over_word[s->over], of_many);

@@ -1,5 +1,15 @@
-/* Goals over nets that are made of the design: its states, and samples of its errors (METHOD section 7). Contents:
- * which nets - residuals - derivatives */
+/* Measures objectives over nets made of the design: its load cases, and samples of its errors (METHOD section 7).
+ *
+ *     shape of the design
+ *         | cut its pieces, solve the nets (functions of hf_goals_nets)
+ *         v
+ *     residuals, value and norm of each net
+ *         | gather: mean (root of the mean of squares), worst (smooth maximum P), or a quantile
+ *         v
+ *     residuals of the objective, with its value and norm
+ *         | linearise and push net by net, then close: the chain rule of mean and worst
+ *         v
+ *     change of these residuals by a variable */
 #include <hifdm/goals.h>
 
 #include "base/elementary.h"
@@ -28,7 +38,7 @@ bool hf_goals_are_over(const hf_goals *goals, int i_net)
     return false;
 }
 
-/* Where the residuals of a net begin among all. */
+/* Returns the row at which the residuals of net i_net begin. */
 static int row_of_net(const hf_goal *g, int i_net)
 {
     return g->first_row + (i_net - g->first_net) * g->n_shape_row;
@@ -48,7 +58,8 @@ typedef struct {
     hf_status status;
 } measured_nets;
 
-/* A net without a shape, or without a value, is the worst of all. */
+/* Measures the objectives over net i_net. A net without a shape, or without a value, counts as the worst: both are
+ * infinite. */
 static void measure_net(void *context, int i_net, const hf_workspace *shape)
 {
     measured_nets *q = context;
@@ -80,7 +91,8 @@ hf_status hf_goals_nets_measure(const hf_goals *goals, const hf_workspace *w, hf
     return q.status;
 }
 
-/* The value that a part q of n is not above, as statistics of tolerances have it (built/statistics.h). */
+/* Returns the value that the fraction `part` of n values does not exceed, an order statistic as in built/statistics.h.
+ * order [n] is scratch. */
 static double quantile_of(int n, const double *value, double part, double *order)
 {
     int rank = (int)ceil(part * n);
@@ -89,7 +101,8 @@ static double quantile_of(int n, const double *value, double part, double *order
     return order[rank > 0 ? rank - 1 : 0];
 }
 
-/* Residuals of each net times (norm/P)^7, with P the smooth largest norm, have the norm P. */
+/* Multiplies the residuals f of each net by (S/P)^7 and returns their norm P. S is the norm of a net and P the smooth
+ * maximum of all S. part [n_net] becomes S/P. */
 static double scale_worst(const hf_goal *g, const double *norm, double *part, double *f)
 {
     double smooth;
@@ -155,8 +168,9 @@ void hf_goals_nets_push(const hf_goals *goals, int i_net, const hf_workspace *sh
             hf_goals_push_shape(goals, k, shape, p, by, rate + row_of_net(&goals->goal[k], i_net));
 }
 
-/* f [n_row] are the residuals with their weights. The change of the norm S of a net is that of its residuals along
- * them, and d(f (S/P)^7) = df (S/P)^7 + 7 f (S/P)^7 (dS/S - dP/P), dP = sum (S/P)^15 dS. */
+/* Sets `rate` to the change of the scaled residuals from the changes of each net's own residuals. f are the residuals
+ * with scale and weight. The change dS of a net's norm is the component of its change along f. Then d(f (S/P)^7) = df
+ * (S/P)^7 + 7 f (S/P)^7 (dS/S - dP/P) with dP = sum (S/P)^15 dS. */
 static void close_worst(const hf_goal *g, const double *norm, const double *part, const double *f, double *rate)
 {
     double smooth = 0, smooth_rate = 0;

@@ -1,19 +1,29 @@
-/* Contents: state and start - errors - direction - step length - the path - the end
+/* A primal-dual interior method that finds the shape of minimum energy from the target positions (METHOD section 5).
  *
- * The net as a second-order cone programme. A cable of the vector d between its ends, |d| <= v, pulls with a force t of
- * at most T:
+ *     start: target positions, a centred point for mu = MU_FIRST
+ *         |
+ *         v
+ *     path: steps with mu -> 0 until the errors are at most `wanted`  <------+
+ *         | collapsed, or not held: refused with the cable or row            |
+ *         v                                                                  |
+ *     end: decide which cables are slack, Newton steps on the taut ones      |
+ *         | within the tolerances: HF_OK                                     |
+ *         +-- not found: wanted / NEARER, at most TRIES_MAX times -----------+
+ *
+ * The net is a second-order cone programme. A cable with the vector d between its ends, |d| <= v, pulls with a force t
+ * of at most T:
  *
  *     (v, d) and (T, -t) in the cone |.| <= first,   T v - t.d = 0,
  *     T = T* (law tension),   v = L + c T (laws with a multiplier; c is 0 under law length, l0/EA of an elastic cable),
  *     sum of t + loads = 0 at every free node.
  *
- * A slack cable has T = 0 and v > |d|; a taut one t = T d/v and v = |d|. Cables of law force_density are springs,
- * t = q d. All equations but the product are linear, also where a cable is turned or shrinks to nothing, so that steps
- * are long from any start: this is what distinguishes the path from Newton's method on the energy. The product is
- * replaced by a small one, mu times the weight of the cable, and mu goes to zero. Directions are those of Nesterov and
- * Todd (SIAM J. Optim. 8, 1998), centring and second-order term those of Mehrotra (SIAM J. Optim. 2, 1992), as in
- * Andersen, Roos, Terlaky (Math. Program. B 95, 2003). Per cable the variables v, T, t are eliminated; what is left has
- * the form of the Newton matrix. */
+ * A slack cable has T = 0 and v > |d|. A taut cable has t = T d/v and v = |d|. Cables of law force_density are springs,
+ * t = q d. All equations except the product T v - t.d = 0 are linear, even if a cable turns or shrinks to nothing.
+ * Steps are therefore long from any start, unlike those of Newton's method on the energy. The product is set to mu
+ * times the weight of the cable, and mu goes to zero. Directions are those of Nesterov and Todd (SIAM J. Optim. 8,
+ * 1998). Centring and second-order term are those of Mehrotra (SIAM J. Optim. 2, 1992), as in Andersen, Roos, Terlaky
+ * (Math. Program. B 95, 2003). The variables v, T and t of each cable are eliminated, which leaves a matrix of the form
+ * of the Newton matrix. */
 #include "solve/interior.h"
 
 #include "solve/history.h"
@@ -25,24 +35,24 @@
 #include <math.h>
 #include <string.h>
 
-/* In brackets: other values with which the tests of solve, stress and the elastic nets pass, or do not. The way through
- * the degenerate ones among these nets is narrow: many values lose one net. */
+/* Brackets show other values with which the tests of solve, stress and the elastic nets pass, or which lose nets. These
+ * tests include degenerate nets, and many other values lose one of them. */
 #define MU_FIRST 0.1      /* first mu over reference tension and mean length [1e-3 passes, 10 loses nets] */
 #define STEP_KEPT 0.995   /* part of the way to the boundary of the cones [0.9 and 0.9999 lose a net] */
-#define NEAR 1e-5         /* relative errors at which the end is tried first [1e-3 and 1e-7 lose nets] */
-#define LEAST_WEIGHT 1e-4 /* tension in the weight of a cable, over the reference tension [1e-6 to 1e-2 pass] */
-#define UNBALANCED 100.0  /* errors of balance may be larger than the others [1 loses a net, 1e4 passes] */
-#define NEARER 30.0       /* how much smaller they are at each next try [3 and 1e3 lose nets] */
-#define TRIES_MAX 8       /* [4 and 12 pass] */
-#define STALLED 1e-7      /* a shorter step does not move [1e-4 and 1e-12 pass] */
-#define STANDING_MAX 3    /* steps near the end that do not halve the errors [1 and 8 pass; without: all there are] */
-#define FINAL_MAX 12      /* steps of one try at the end [4 loses nets, 60 passes] */
-#define LAST_MAX 40       /* of the last try [with 12 fewer nets of stiff cables are solved] */
-#define CLEARLY 0.1       /* part of the errors left by a step at the end while the path can go on [0.03 loses a net] */
-#define FAR 1.0           /* errors after the first of these steps [0.1 passes; without: more steps] */
-#define DAMPING 1.0    /* of an end whose errors rise, at an error of 1, over mean length and tension [0: more steps] */
-#define CLEAR_FALL 0.1 /* fall of mu from which that of a tension tells whether the cable is slack [0 loses nets] */
-#define FIRST_RANGE 10.0 /* first tension of an elastic cable, around the reference tension [1 and 1e6 pass] */
+#define NEAR 1e-5         /* relative errors at which the end is first tried [1e-3 and 1e-7 lose nets] */
+#define LEAST_WEIGHT 1e-4 /* minimum tension in the weight of a cable, over the reference tension [1e-6 to 1e-2 pass] */
+#define UNBALANCED 100.0  /* allowed ratio of balance errors to the others [1 loses a net, 1e4 passes] */
+#define NEARER 30.0       /* factor between the errors of two tries [3 and 1e3 lose nets] */
+#define TRIES_MAX 8       /* maximum tries [4 and 12 pass] */
+#define STALLED 1e-7      /* a step below this part of its direction counts as none [1e-4 and 1e-12 pass] */
+#define STANDING_MAX 3    /* steps near the end that do not halve the errors [1 and 8 pass; no bound: all are used] */
+#define FINAL_MAX 12      /* maximum steps of one try at the end [4 loses nets, 60 passes] */
+#define LAST_MAX 40       /* maximum steps of the last try [12 solves fewer nets of stiff cables] */
+#define CLEARLY 0.1       /* part of the errors left by a later step at the end, unless last try [0.03 loses a net] */
+#define FAR 1.0           /* maximum error after the first step at the end [0.1 passes; no bound: more steps] */
+#define DAMPING 1.0       /* damping at an error of 1, over tension and mean length, once errors rise [0: more steps] */
+#define CLEAR_FALL 0.1 /* fall of mu from which the fall of a tension shows whether the cable is slack [0 loses nets] */
+#define FIRST_RANGE 10.0 /* bounds an elastic cable's first tension around the reference tension [1 and 1e6 pass] */
 
 /* ---- state and start ---- */
 
@@ -58,7 +68,7 @@ static hf_path_cables *blocks(const hf_workspace *w)
     return (hf_path_cables *)w->interior_cable;
 }
 
-/* The cables among which cable e is, at *lane. */
+/* Returns the block of eight that contains cable e, and sets *lane to its lane. */
 static hf_path_cables *block_of(const hf_workspace *w, int e, int *lane)
 {
     *lane = e % HF_LANES;
@@ -70,7 +80,7 @@ static double path_tension_N(const hf_workspace *w, int e)
     return blocks(w)[e / HF_LANES].T[e % HF_LANES];
 }
 
-/* Square of the length of the vector between the ends of cable e. */
+/* Returns the squared length of the vector between the ends of cable e, m^2. */
 static double path_square(const hf_workspace *w, int e)
 {
     int k;
@@ -93,7 +103,7 @@ static bool has_multiplier(const hf_workspace *w, int e)
     return hf_law_has((hf_law)w->law[e], HF_LAW_HAS_MULTIPLIER);
 }
 
-/* A cable whose force is a linear function of the positions has no cone. */
+/* Returns true if the force of the cable is a linear function of the positions. Such a cable has no cone. */
 static bool is_spring(const hf_workspace *w, int e)
 {
     return hf_newton_matrix_is_spring((hf_law)w->law[e]);
@@ -107,8 +117,9 @@ static void set_vector(const hf_model *m, const hf_workspace *w, int e)
         p->d[c][k] = w->position_m[c * m->n_node + b] - w->position_m[c * m->n_node + a];
 }
 
-/* That of the law, else T with v = L + c T and T (v - l) = MU_FIRST times reference tension and length, within
- * FIRST_RANGE of the reference tension. */
+/* Returns the first tension of a cable, N: that of its law, or for a law length the reference tension. For an elastic
+ * cable it solves v = L + c T and T (v - l) = MU_FIRST times reference tension and length. The result is within a
+ * factor of FIRST_RANGE of the reference tension. */
 static double first_tension_N(const hf_model *m, hf_law_cable cable, double flex, double length)
 {
     if (hf_law_has(cable.law, HF_LAW_GIVES_TENSION)) return cable.target;
@@ -119,9 +130,10 @@ static double first_tension_N(const hf_model *m, hf_law_cable cable, double flex
     return fmin(fmax(T, reference / FIRST_RANGE), reference * FIRST_RANGE);
 }
 
-/* Below, `held` are the rows that move among pinned ones (hf_interior_run_held), else NULL. */
+/* In the functions below, `held` are the moving rows among fixed ones (hf_interior_run_held), else NULL. */
 
-/* A centred point for MU_FIRST at the theoretical shape. Errors of length and balance are left to the path. */
+/* Sets a centred point for MU_FIRST at the target positions, or at spring_place_m with `held`. The path reduces the
+ * errors of length and balance that it has. */
 static void set_start(const hf_model *m, hf_workspace *w, const hf_newton_rows *held)
 {
     double mean_m = hf_joint_mean_length_m(m);
@@ -165,8 +177,8 @@ static void set_start(const hf_model *m, hf_workspace *w, const hf_newton_rows *
 /* ---- errors ---- */
 
 typedef struct {
-    double balance, length, gap; /* relative to reference tension and theoretical lengths */
-    double truss_m;              /* between attachments and truss, as hf_joint_gap_m */
+    double balance, length, gap; /* relative to reference tension and lengths at target positions */
+    double truss_m;              /* as hf_joint_gap_m */
     double mu;
 } path_error;
 
@@ -176,12 +188,12 @@ static double largest_force_N(const hf_model *m, const double *force)
     for (int i = 0; i < m->n_free; i++) {
         double f[3] = {scale_N * force[3 * i], scale_N * force[3 * i + 1], scale_N * force[3 * i + 2]};
         double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
-        if (!(square <= largest)) largest = square; /* keeps a NaN */
+        if (!(square <= largest)) largest = square; /* a NaN stays */
     }
     return sqrt(largest) * m->reference_N;
 }
 
-/* Adds the pull of the springs at the rows to newton_force_N. A row that does not move is in balance. */
+/* Adds the pull of the springs at the rows to newton_force_N. A fixed row is in balance. */
 static void add_springs_pull(const hf_model *m, hf_workspace *w)
 {
     for (int k = 0; k < hf_newton_matrix_dofs(m); k++) {
@@ -191,7 +203,8 @@ static void add_springs_pull(const hf_model *m, hf_workspace *w)
     }
 }
 
-/* Sets newton_force_N to the forces out of balance, and d and short_m of the cables. */
+/* Measures the point of the path. Sets newton_force_N to the forces out of balance, N, and d, t of springs, gap and
+ * short_m of the cables. Returns the errors and mu. */
 static path_error measure_path(const hf_model *m, hf_workspace *w, const hf_newton_rows *held)
 {
     path_error error = {0};
@@ -230,7 +243,7 @@ static void path_block(const hf_model *m, const hf_workspace *w, int e, double b
     hf_newton_matrix_spring(p->along[k], p->across[k], unit, block);
 }
 
-/* Sets Dd, the change of the vector between the ends of a cable by newton_step. */
+/* Sets Dd, the change of the vector between the ends of cable e by newton_step. */
 static void set_vector_step(const hf_model *m, const hf_workspace *w, int e)
 {
     int k, i = m->end_row[2 * e], j = m->end_row[2 * e + 1];
@@ -240,14 +253,15 @@ static void set_vector_step(const hf_model *m, const hf_workspace *w, int e)
             (j < w->n_moving ? w->newton_step[3 * j + c] : 0) - (i < w->n_moving ? w->newton_step[3 * i + c] : 0);
 }
 
-/* Factor path_block with springs (may be NULL), which tie rows to the ground. */
+/* Factors the matrix of path_block with springs (may be NULL) that tie rows to the ground. Returns HF_OK or
+ * HF_SINGULAR. */
 static hf_status factor(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, const double *spring_N_per_m)
 {
     if (held) return hf_newton_matrix_factor_rows(m, w, path_block, spring_N_per_m, held);
     return hf_joint_factor(m, w, path_block, spring_N_per_m, NULL);
 }
 
-/* newton_step from the right-hand side to the step. */
+/* Replaces the right-hand side in newton_step by the step. */
 static void solve_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *held)
 {
     if (held)
@@ -256,8 +270,9 @@ static void solve_step(const hf_model *m, hf_workspace *w, const hf_newton_rows 
         hf_joint_solve(m, w, path_block, w->newton_step);
 }
 
-/* Sets newton_step and the D... of all cables. newton_band holds the factor. Returns the largest part of the direction
- * that stays in all cones. With `corrects` the second-order terms are set, too. */
+/* Sets newton_step and the direction of all cables for mu = `target`; newton_band holds the factor. With `corrected` it
+ * uses the second-order terms, with `corrects` it sets them. Returns the maximum part of the direction that stays in
+ * all cones. */
 static double find_path_direction(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double target,
                                   bool corrected, bool corrects)
 {
@@ -295,7 +310,8 @@ static void move(const hf_model *m, hf_workspace *w, double part)
 
 /* ---- the path ---- */
 
-/* The cable that is shorter than collapse_ratio, relatively the shortest, or -1. */
+/* Returns the cable that is shorter than collapse_ratio times its length at the target positions, or -1. Of several it
+ * returns the relatively shortest. */
 static int find_collapsed(const hf_model *m, const hf_form_settings *s, const hf_workspace *w)
 {
     int worst = -1;
@@ -309,7 +325,8 @@ static int find_collapsed(const hf_model *m, const hf_form_settings *s, const hf
     return worst;
 }
 
-/* A free node at a cable that is longer than HF_FORM_BLOWN_UP times its theoretical length, or -1. */
+/* Returns a free node at a cable that is longer than HF_FORM_BLOWN_UP times its length at the target positions, or
+ * -1. */
 static int find_lost_row(const hf_model *m, const hf_workspace *w)
 {
     for (int e = 0; e < m->n_cable; e++) {
@@ -324,7 +341,7 @@ static bool is_told_to_stop(const hf_workspace *w)
     return w->stop && *w->stop;
 }
 
-/* One step of the path. False when it does not move. */
+/* Takes one step of the path. Returns false if it does not move. */
 static bool take_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double mu)
 {
     hf_path_set_scaling(n_block(m), blocks(w));
@@ -343,8 +360,8 @@ static void record_path(const hf_model *m, hf_workspace *w, const path_error *er
     hf_history_add_step(m, w, error->balance * m->reference_N, error->length, error->truss_m);
 }
 
-/* Goes along the path until the errors are at most `wanted`. False when they are not after max_steps, or when they are
- * near and stand still: rounding. *fall: mu over that before the last step. */
+/* Follows the path until the errors are at most `wanted`. Returns false if they are larger after max_steps, or if they
+ * are near and no longer fall because of rounding. *fall becomes mu over that before the last step. */
 static bool follow_path(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double wanted, int max_steps,
                         int *n_step, double *fall)
 {
@@ -369,8 +386,9 @@ static bool follow_path(const hf_model *m, hf_workspace *w, const hf_newton_rows
 
 /* ---- the end: Newton's method on the taut cables; which are taut is decided anew in each step ---- */
 
-/* Sets newton_force_N at position_m and tension_N, and per cable unit, along, across, and DT (the change of T for
- * the error of length alone). Returns the errors: lengths of taut cables, tensions left in slack ones. */
+/* Measures the shape position_m with tension_N. Sets newton_force_N, and unit, along and across of each cable. DT
+ * becomes the change of T for the error of length alone. Returns the errors: lengths of taut cables, and tensions left
+ * in slack ones. */
 static path_error measure_end(const hf_model *m, hf_workspace *w, const hf_newton_rows *held)
 {
     path_error error = {0};
@@ -417,11 +435,12 @@ static bool is_within(const path_error *error, const hf_form_settings *s, double
 
 static double largest_error(const hf_model *m, const path_error *error)
 {
-    if (!isfinite(error->balance)) return INFINITY; /* fmax passes over a NaN */
+    if (!isfinite(error->balance)) return INFINITY; /* fmax ignores a NaN */
     return fmax(fmax(error->balance, error->length), fmax(error->gap, error->truss_m / hf_joint_mean_length_m(m)));
 }
 
-/* Moves position_m and tension_N by one Newton step. `error`: that before it. False when its matrix has no factor. */
+/* Moves position_m and tension_N by one Newton step. `error` sets the damping. Returns false if the matrix has no
+ * factor. */
 static bool take_last_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double error)
 {
     double pull[3], *step = w->newton_step,
@@ -451,9 +470,9 @@ static bool take_last_step(const hf_model *m, hf_workspace *w, const hf_newton_r
     return true;
 }
 
-/* Tensions at the end of the path: none of slack cables. These are the cables whose tension has fallen with mu in the
- * last step (Tapia's indicator, SIAM Rev. 36, 1994), and when mu has hardly fallen those whose slack is larger than
- * their tension, relatively. */
+/* Sets the tensions at the end of the path, with 0 for slack cables. A cable is slack if its tension has fallen with mu
+ * in the last step (Tapia's indicator, SIAM Rev. 36, 1994). If mu has hardly fallen, a cable is slack if its relative
+ * slack is at least its relative tension. */
 static void begin_end(const hf_model *m, hf_workspace *w, double fall)
 {
     for (int e = 0; e < m->n_cable; e++) {
@@ -491,11 +510,13 @@ static void take_point(const hf_model *m, hf_workspace *w, const double *positio
     memcpy(w->tension_N, tension_N, (size_t)m->n_cable * sizeof(double));
 }
 
-/* Newton steps from the present point of the path, in position_m and tension_N alone, until the errors are a tenth of
- * the tolerances or fall no more. True when they are within the tolerances; else the point is the first, or the last if
- * that is near and has smaller errors. With `impatient` the first step must not lead far away and the others must
- * reduce the errors clearly: the path can go on, and its next steps are worth more. Without, all steps are damped:
- * rounding hides which cables are slack, and a node that too few hold would be lost in one step. */
+/* Takes Newton steps from the present point of the path, in position_m and tension_N alone, until the errors are a
+ * tenth of the tolerances or no longer fall. Returns true if they are within the tolerances. Otherwise restores the
+ * first point, or keeps the last one if it is near and has smaller errors.
+ *
+ * With `impatient` the path can continue, and its next steps are worth more. The first step must then not lead far
+ * away, and the others must reduce the errors clearly. Without it all steps are damped. Rounding then hides which
+ * cables are slack, and an undamped step would lose a node that too few cables hold. */
 static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w, const hf_newton_rows *held,
                    bool impatient, int max_steps, int *n_step)
 {
@@ -539,7 +560,7 @@ static bool has_loaded_chain(const hf_model *m, hf_workspace *w)
     return false;
 }
 
-/* hf_interior_run, and with `held` hf_interior_run_held. */
+/* Does the work of hf_interior_run, and with `held` that of hf_interior_run_held. */
 static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_workspace *w, const hf_newton_rows *held,
                           int max_steps, int *n_step, int *culprit)
 {
@@ -554,7 +575,7 @@ static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_works
         if ((*culprit = find_lost_row(m, w)) >= 0) return HF_SINGULAR;
         if (is_there && (*culprit = find_collapsed(m, s, w)) >= 0) return HF_COLLAPSED;
         bool is_rounding = k > 0 && !has_places(m, w), goes_on = is_there && k < TRIES_MAX - 1 && !is_rounding;
-        if (is_rounding) /* the point before counts */
+        if (is_rounding) /* the point before this path counts */
             take_point(m, w, w->interior_position_m, w->interior_tension_N);
         else
             begin_end(m, w, fall);

@@ -1,4 +1,8 @@
-/* Contents: from the rows - violations - what a shape is at */
+/* Checks a shape against the limits of designs: the rows of optimize.limits and the cap on the boundary tension ratio.
+ *
+ *     settings -> rows with their cables
+ *     rows, shape -> violation: 0, or by how much the shape is beyond the limits, by which designs are ranked
+ *     rows, shape -> the limits that the shape reaches or breaks, for messages and results */
 #include "solve/limits.h"
 
 #include "base/arena.h"
@@ -52,7 +56,7 @@ hf_status hf_limits_create(const hf_scene *scene, const hf_model *m, const hf_op
     }
     l->block = arena.block;
     hf_status status = HF_OK;
-    for (int i = 0; i < l->n; i++) /* all faults are told */
+    for (int i = 0; i < l->n; i++) /* reports all faults */
         if (read_row(scene, m, &s->limit[i], i, &l->row[i], messages) != HF_OK) status = HF_BAD_CASE;
     return status;
 }
@@ -79,12 +83,12 @@ double hf_limits_ratio_violation(int n, const int *cable, const double *tension_
         if (tension < least) sum += 1 - tension / least;
         if (tension > most) sum += 1 - most / tension;
     }
-    return sum > 0 ? sum : 1 - low / slack_N; /* slack, under a cap so large that the rest is within it */
+    return sum > 0 ? sum : 1 - low / slack_N; /* slack, with a cap so large that all ratios are within it */
 }
 
-#define LIMIT_ROUNDING 1e-9 /* a value so near to its bound, over its unit, is at it */
+#define LIMIT_ROUNDING 1e-9 /* a violation below this part of its unit is rounding */
 
-/* How far a value is outside of the bounds, over what it is measured in. */
+/* Returns by how much a value is outside of its bounds, divided by `unit`; 0 within rounding. */
 static double outside(double lower, double upper, double value, double unit)
 {
     double beyond = fmax(lower - value, value - upper) / unit;
@@ -132,17 +136,17 @@ double hf_limits_violation(const hf_evaluator *v, const hf_workspace *w)
     return sum;
 }
 
-/* ---- what a shape is at ---- */
+/* ---- limits that a shape reaches ---- */
 
-/* How far a value is beyond its bound, over the bound; of a bound of 0 over `unit`. sign: 1 of an upper bound, -1 of a
- * lower one. */
+/* Returns by how much a value is beyond its bound, relative to the bound, or to `unit` if the bound is 0. sign is 1 for
+ * an upper bound and -1 for a lower one. A value within the bound gives a negative result. */
 static double beyond(double value, double bound, double sign, double unit)
 {
     double size = fabs(bound) > 0 ? fabs(bound) : unit;
     return isfinite(bound) ? sign * (value - bound) / size : -INFINITY;
 }
 
-/* Count a value at its bound, and keep that which is farthest out. */
+/* Counts a value at or beyond its bound, and keeps the one with the maximum excess. */
 static void count(hf_limit_held *h, int cable, int attachment, double value, double bound, double excess)
 {
     if (!(excess >= -HF_LIMITS_AT)) return;

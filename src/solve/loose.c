@@ -1,4 +1,11 @@
-/* Contents: which nodes - their places - results */
+/* Finds free nodes that no taut cable holds, and gives them positions (METHOD section 4).
+ *
+ *     converged equilibrium
+ *         | mark: nodes without load and without taut cable  -> workspace->loose
+ *         | remove the tensions of their cables, which may be above zero by rounding; balance the other nodes again
+ *         | path (interior.c) with springs to the target positions, cables under law length, other nodes fixed
+ *         v
+ *     positions of the loose nodes, result measured again */
 #include "solve/loose.h"
 
 #include "solve/interior.h"
@@ -8,9 +15,9 @@
 #include <math.h>
 #include <string.h>
 
-#define PLACE_MAX 100         /* factorisations for the places of loose nodes */
-#define PLACE_TOLERANCE 1e-10 /* relative errors at which they end */
-#define POLISH_MAX 10         /* Newton steps without the tension of their cables */
+#define PLACE_MAX 100         /* maximum factorisations for the positions of loose nodes */
+#define PLACE_TOLERANCE 1e-10 /* relative errors at which that path ends */
+#define POLISH_MAX 10         /* maximum Newton steps after the tensions of loose cables are removed */
 
 /* ---- which nodes ---- */
 
@@ -19,7 +26,8 @@ static bool may_be_slack(const hf_workspace *w, int e)
     return hf_law_has((hf_law)w->law[e], HF_LAW_HAS_MULTIPLIER);
 }
 
-/* The equilibrium is known within the tolerance of its residual: a cable or a load below that holds nothing. */
+/* Returns the force up to which a cable or a load holds nothing, N. The equilibrium is known only within the tolerance
+ * of its residual. */
 static double nothing_N(const hf_model *m, const hf_form_settings *s)
 {
     return s->residual_tolerance * m->reference_N;
@@ -45,7 +53,7 @@ static bool is_loose_cable(const hf_model *m, const hf_workspace *w, int e)
     return w->loose[m->end_row[2 * e]] || w->loose[m->end_row[2 * e + 1]];
 }
 
-/* Marks the rows without load and without taut cable in w->loose. Returns their number. */
+/* Marks the free rows without load and without taut cable in w->loose. Returns their number. */
 static int mark(const hf_model *m, const hf_form_settings *s, hf_workspace *w)
 {
     int n = 0;
@@ -58,14 +66,14 @@ static int mark(const hf_model *m, const hf_form_settings *s, hf_workspace *w)
     return n;
 }
 
-/* ---- their places ---- */
+/* ---- their positions ---- */
 
 double hf_loose_spring_N_per_m(const hf_model *m)
 {
     return m->reference_N / hf_joint_mean_length_m(m);
 }
 
-/* Longest that cable e may be without tension, m. */
+/* Returns the maximum length of cable e without tension, m. */
 static double slack_length_m(const hf_model *m, const hf_workspace *w, int e)
 {
     return hf_law_wanted_length_m(hf_workspace_cable(m, w, e), 0);
@@ -81,8 +89,9 @@ static bool fits(const hf_model *m, const hf_form_settings *s, const hf_workspac
     return true;
 }
 
-/* The nearest places are again a shape of least energy: the cables of the loose nodes are under law length, all others
- * without force, the other nodes do not move, and a spring pulls each loose node to its theoretical place. */
+/* Prepares the path that finds the positions, which are a shape of minimum energy, too. The cables of loose nodes are
+ * under law length, and all others have no force. The other nodes are fixed, and a spring pulls each loose node to its
+ * target position. */
 static void set_up_places(const hf_model *m, hf_workspace *w)
 {
     double spring = hf_loose_spring_N_per_m(m);
@@ -100,8 +109,8 @@ static void set_up_places(const hf_model *m, hf_workspace *w)
     }
 }
 
-/* Moves the marked nodes. *n_step is increased by the number of factorisations. Where the path finds no place, they
- * stay. */
+/* Moves the marked nodes and increases *n_step by the number of factorisations. If the path finds no positions at which
+ * their cables are short enough, they stay. Returns the status of the path. */
 static hf_status find_places(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int *n_step)
 {
     size_t n = (size_t)m->n_cable, bytes = n * sizeof(double), places = 3 * (size_t)m->n_node * sizeof(double);
@@ -124,7 +133,7 @@ static hf_status find_places(const hf_model *m, const hf_form_settings *s, hf_wo
     return status;
 }
 
-/* Balances the nodes that are held once more, supports kept. Where Newton's method does not end, nothing moves. */
+/* Balances the held nodes again with the attachments fixed. If Newton's method fails, restores the positions. */
 static void polish(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int *n_step)
 {
     size_t places = 3 * (size_t)m->n_node * sizeof(double);
@@ -145,7 +154,7 @@ void hf_loose_settle(const hf_model *m, const hf_form_settings *s, hf_workspace 
     hf_form_result before = *r;
     for (int e = 0; e < m->n_cable; e++)
         if (is_loose_cable(m, w, e)) w->q_N_per_m[e] = w->tension_N[e] = 0;
-    if (hf_form_residual_N(m, w) > nothing_N(m, s)) /* the paper's iteration leaves slack cables a little tension */
+    if (hf_form_residual_N(m, w) > nothing_N(m, s)) /* the paper's iteration leaves some tension in slack cables */
         polish(m, s, w, &before.iterations);
     hf_status status = find_places(m, s, w, &before.iterations);
     hf_form_measure(m, s, w, r);

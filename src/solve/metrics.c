@@ -18,7 +18,7 @@ double hf_metrics_psi_m(const hf_model *m, const hf_workspace *w)
     return n > 0 ? sqrt(sum / n) : (double)NAN;
 }
 
-/* What is known of some tensions after each of them. */
+/* The minimum and maximum tension of the cables seen so far that are neither slack nor struts. */
 typedef struct {
     double low, high;
     bool any_slack, any_strut;
@@ -62,7 +62,7 @@ double hf_metrics_set_ratio(const hf_model *m, const hf_workspace *w, int n, con
 
 bool hf_metrics_is_slack(const hf_model *m, const hf_workspace *w, int i_cable)
 {
-    /* by absolute value, because a strut has a negative tension and is not slack */
+    /* A strut has a negative tension and is not slack, hence the absolute value. */
     return fabs(w->tension_N[i_cable]) < HF_SLACK_RATIO * m->reference_N;
 }
 

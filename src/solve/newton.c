@@ -1,4 +1,14 @@
-/* Contents: forces - one step - Newton from a shape - certificate */
+/* Newton's method on the energy of a tension net (METHOD section 5).
+ *
+ *     position_m and tension_N of the workspace
+ *         | forces out of balance (M2), length errors of the multipliers
+ *         | factor H, solve H d = rhs (M8); multipliers change by (M7)
+ *         | halve the step until the merit falls; repeat
+ *         v
+ *     hf_newton_run: shape and force densities
+ *
+ * hf_newton_certify takes the same step once from a final shape. Its size estimates the position error, and the factor
+ * gives the condition. */
 #include "solve/newton.h"
 
 #include "solve/history.h"
@@ -8,20 +18,21 @@
 #include <math.h>
 #include <string.h>
 
-/* Halvings of one step before it counts as failed. From 0 to 6 the tests of solve and stress pass; with 12 those of
- * stress fail. */
+/* Maximum halvings of one step before it counts as failed. From 0 to 6 the tests of solve and stress pass; with 12
+ * those of stress fail. */
 #define HALVINGS_MAX 6
 /* At most TRUSTED_MAX steps per run may raise the merit, each by less than the factor TRUSTED_RISE. The tests of
  * form-finding pass with 0 and 30 such steps, and with factors of 1e1 and 1e12. */
 #define TRUSTED_MAX 6
 #define TRUSTED_RISE 1e6
-/* Steps after which the merit must be below the first one, else the path is tried: steps are dear in large nets. The
- * tests of form-finding pass with 4 and 12. */
+/* After more steps than this the merit must be below the first one, else the path is tried: in large nets steps are
+ * expensive. The tests of form-finding pass with 4 and 12. */
 #define LOST_AFTER 8
-/* A step leaves at least this fraction of a multiplier. The tests of form-finding pass with 0.01 and 0.5. */
+/* A step keeps at least this fraction of a multiplier. The tests of form-finding pass with 0.01 and 0.5. */
 #define TENSION_KEPT 0.1
-/* Equilibria that are not unique: condition number from which they are looked for, rounds of inverse iteration, move of
- * the trial over the mean length, errors that are rounding, and force that counts as none over the tensions there. */
+/* Constants of look_for_drift: the condition number above which it looks, the rounds of inverse iteration, the
+ * displacement of the trial relative to the mean length, the error that counts as rounding, and the force, relative to
+ * the tensions at its node, that counts as zero. */
 #define DRIFT_CONDITION 1e12
 #define DRIFT_ROUNDS 3
 #define DRIFT_PART 1e-2
@@ -31,18 +42,19 @@
 /* ---- forces ---- */
 
 typedef struct {
-    double residual_N; /* largest nodal force */
-    double length_gap; /* largest length error; that of a cable that is too short is weighted by its tension */
-    double truss_m;    /* largest distance of an attachment from where the truss has it under its forces */
-    double merit; /* sum of squared forces over the reference tension and squared relative lengths: steps lower it */
+    double residual_N; /* maximum nodal force */
+    double length_gap; /* maximum length error; that of a cable that is too short is weighted by its tension */
+    double truss_m;    /* maximum |F f - r| of an attachment, m */
+    double merit;      /* sum of squares of the forces over the reference tension, and of length errors and gaps */
 } imbalance;
 
-/* Sets force [3*row + c] to the nodal forces out of balance, minus the gradient of Pi (M2). */
+/* Measures the shape position_m with the multipliers T [n_cable]. Sets force [3*row + c] to the nodal forces out of
+ * balance, N: minus the gradient of Pi (M2). */
 static imbalance measure_imbalance(const hf_model *m, const hf_workspace *w, const double *position_m, const double *T,
                                    double *force)
 {
     imbalance result = {0};
-    double u[3], sum = 0, largest = 0, scale = 1 / m->reference_N; /* squares of tiny forces would vanish */
+    double u[3], sum = 0, largest = 0, scale = 1 / m->reference_N; /* the squares of tiny forces would underflow */
     hf_newton_matrix_set_loads(m, w, force);
     for (int e = 0; e < m->n_cable; e++) {
         hf_law_cable cable = hf_workspace_cable(m, w, e);
@@ -70,14 +82,16 @@ static imbalance measure_imbalance(const hf_model *m, const hf_workspace *w, con
 
 /* ---- one step ---- */
 
-/* Change of the multiplier T in `part` of a step after which the cable is longer than wanted by `beyond`, m (M7). */
+/* Returns the change of the multiplier T, N, for `part` of a step. After the whole step the cable would exceed its
+ * required length by `beyond`, m (M7). A cable without stiffness loses `part` of T. */
 static double tension_change(hf_law_cable cable, double length, double T, double part, double beyond)
 {
     double k = hf_newton_matrix_stiffness(cable, length, T);
     return k > 0 ? part * k * beyond : -part * T;
 }
 
-/* Right-hand side of (M8): the forces, plus the changes of the multipliers for the present errors of length. */
+/* Sets rhs [3 n_moving] to the right-hand side of (M8): the forces, plus the effect of the multiplier changes for the
+ * present length errors. */
 static void right_hand_side(const hf_model *m, const hf_workspace *w, const double *force, double *rhs)
 {
     double u[3];
@@ -99,7 +113,7 @@ static void solve_step_of(const hf_model *m, hf_workspace *w)
     hf_joint_solve(m, w, hf_newton_matrix_block, w->newton_step);
 }
 
-/* Sets newton_trial_m and newton_trial_tension_N to shape and multipliers after `part` of the step. */
+/* Sets newton_trial_m and newton_trial_tension_N to the shape and the multipliers after `part` of the step. */
 static void try_step(const hf_model *m, hf_workspace *w, double part)
 {
     const double *step = w->newton_step;
@@ -134,7 +148,7 @@ static bool is_balanced(const hf_model *m, const hf_form_settings *s, const imba
 
 bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int max_steps, int *n_step)
 {
-    /* a tenth of the tolerances asked for, so that a later linear solve still meets them */
+    /* A tenth of the tolerances is the aim, so that a later linear solve still meets them. */
     hf_form_settings tight = *s;
     tight.residual_tolerance = fmax(0.1 * s->residual_tolerance, 1e-13);
     tight.length_tolerance = fmax(0.1 * s->length_tolerance, 1e-14);
@@ -154,7 +168,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         }
         ++*n_step;
         if (halvings > HALVINGS_MAX) {
-            /* the merit can rise on the way to tensions that are decades away: allow a few such full steps */
+            /* The merit can rise on the way to tensions that are decades away, so a few such full steps are allowed. */
             if (++n_trusted > TRUSTED_MAX || is_balanced(m, s, &now)) break;
             try_step(m, w, 1);
             next = measure_imbalance(m, w, w->newton_trial_m, w->newton_trial_tension_N, w->newton_force_N);
@@ -180,8 +194,8 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
 
 /* ---- certificate ---- */
 
-/* Scales newton_step so that the node that moves farthest moves by 1, and leaves loose nodes where they are. Returns
- * its row, or -1. */
+/* Scales newton_step so that the maximum displacement of a node is 1, and sets loose nodes to 0. Returns the row of
+ * that node, or -1. */
 static int normalise_step(const hf_model *m, const hf_workspace *w)
 {
     int row = -1;
@@ -199,7 +213,7 @@ static int normalise_step(const hf_model *m, const hf_workspace *w)
     return row;
 }
 
-/* Sum of the tensions at a row, N. */
+/* Returns the sum of the tensions at a row, N. */
 static double pull_at_row_N(const hf_model *m, const hf_workspace *w, int row)
 {
     double sum = 0;
@@ -208,15 +222,15 @@ static double pull_at_row_N(const hf_model *m, const hf_workspace *w, int row)
     return sum;
 }
 
-/* Where the factored matrix is nearly singular: moves the nodes a little along its softest direction, which inverse
- * iteration finds. When the forces still balance there, the equilibrium is one of many: sets n_drifting to the number
- * of nodes that take part, culprit to the one that moves farthest, and takes the position error away. */
+/* Checks whether a nearly singular matrix means that the equilibrium is not unique. It displaces the nodes slightly
+ * along the softest direction, which inverse iteration finds. If the forces still balance there, it sets n_drifting to
+ * the number of nodes that take part and culprit to the one that moves farthest. position_error_m becomes NaN. */
 static void look_for_drift(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
     int n = hf_newton_matrix_dofs(m), row = -1;
     imbalance here = measure_imbalance(m, w, w->position_m, w->tension_N, w->newton_force_N);
     for (int k = 0; k < 3 * w->n_moving; k++)
-        w->newton_step[k] = k < n ? 1 + k % 7 - k % 3 : 0; /* attachments stay, and so must the pull on them */
+        w->newton_step[k] = k < n ? 1 + k % 7 - k % 3 : 0; /* attachments stay, and the pull on them must not change */
     for (int k = 0; k < DRIFT_ROUNDS; k++) {
         hf_newton_matrix_solve(m, w, w->newton_step);
         if ((row = normalise_step(m, w)) < 0) return;
@@ -225,7 +239,7 @@ static void look_for_drift(const hf_model *m, hf_workspace *w, hf_form_result *r
         try_step(m, w, side * DRIFT_PART * hf_joint_mean_length_m(m));
         imbalance there = measure_imbalance(m, w, w->newton_trial_m, w->tension_N, w->newton_force_N);
         if (!(there.residual_N <= 1.001 * here.residual_N + DRIFT_NOTHING * m->reference_N)) continue;
-        const double *f = w->newton_force_N + 3 * row; /* beside a weak cable elsewhere all forces are small */
+        const double *f = w->newton_force_N + 3 * row; /* next to a weak cable elsewhere, all forces are small */
         if (!(sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) <= DRIFT_FORCE * pull_at_row_N(m, w, row))) continue;
         if (!(there.length_gap <= 1.001 * here.length_gap + DRIFT_NOTHING)) continue;
         if (!(there.truss_m <= 1.001 * here.truss_m + HF_JOINT_NO_GAP_M)) continue;
@@ -257,7 +271,7 @@ double hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
     for (int i = 0; i < w->n_moving && status == HF_OK; i++) {
         const double *d = w->newton_step + 3 * i;
         double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        if (!(square <= largest)) largest = square; /* keeps a NaN */
+        if (!(square <= largest)) largest = square; /* a NaN stays */
     }
     if (status == HF_OK && !r->n_loose) r->position_error_m = sqrt(largest);
     if (status != HF_OK) r->condition = (double)NAN;

@@ -1,28 +1,31 @@
-/* newton - Newton's method on the convex energy Pi(x) = sum phi_e(l_e) - P.x of a tension net (METHOD section 5): steps
- * from a shape near the answer, and the error estimate for shapes that any method has found.
- * Stability: internal; may change in any version.
+/* newton - Newton's method on the convex energy Pi(x) = sum phi_e(l_e) - P.x of a tension net (METHOD section 5). It
+ * takes steps from a shape near the answer, and estimates the errors of shapes that any method has found. Stability:
+ * internal; may change in any version.
  *
- * Unknowns: the coordinates of the free nodes, and the tensions of the cables whose law has a multiplier (length,
- * elastic). newton_matrix.h has the matrix. */
+ * The unknowns are the coordinates of the free nodes, and the tensions of the cables whose law has a multiplier
+ * (length, elastic). newton_matrix.h has the matrix. */
 #ifndef HIFDM_NEWTON_H
 #define HIFDM_NEWTON_H
 
 #include <hifdm/formfind.h>
 
-/* Take Newton steps from the workspace's position_m and tension_N while they reduce the imbalance, at most max_steps.
- * *n_step is increased by their number. Needs a workspace of a model with has_newton. Returns true when the imbalance
- * is smaller at the end than at the start; q_N_per_m then belongs to the new shape. Else q_N_per_m is unchanged. */
+/* Takes at most max_steps Newton steps from the workspace's position_m and tension_N while they reduce the imbalance.
+ * *n_step is increased by their number. The workspace must be of a model with has_newton. Returns true if the imbalance
+ * is smaller at the end than at the start; q_N_per_m then belongs to the new shape. Otherwise q_N_per_m is unchanged,
+ * but position_m and tension_N may have changed. */
 bool hf_newton_run(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace, int max_steps,
                    int *n_step);
 
-/* Set position_error_m (largest move of a node in the next Newton step, of net and truss together) and condition of
- * the result whose shape is in the workspace. Leaves both unchanged when there is no such step. Returns a lower
- * bound of the least eigenvalue of the matrix at that shape, N/m, or 0 (hf_newton_matrix_factor_below). */
+/* Sets condition and position_error_m of the result whose shape is in the workspace. The position error is the maximum
+ * displacement of a node in the next Newton step of net and truss together. If there is no such step, condition is NaN
+ * and position_error_m is unchanged; it is also unchanged with loose nodes. Sets n_drifting and culprit if the
+ * equilibrium is not unique. Returns a lower bound of the minimum eigenvalue of the matrix at that shape, N/m, or 0
+ * (hf_newton_matrix_factor_below). */
 double hf_newton_certify(const hf_model *model, hf_workspace *workspace, hf_form_result *result);
 
-/* A tension below this fraction of the reference tension, in an elastic cable, is rounding: the cable is slack, and its
- * force density is set to 0. A node held by such cables alone has no position. The tests of solve pass from 1e-14 to
- * 1e-8; the larger, the more nodes of nets of stiff cables count as loose. */
+/* A tension below this fraction of the reference tension counts as rounding in an elastic cable. The cable is then
+ * slack, and its force density is 0. A node held by such cables alone has no determined position. The tests of solve
+ * pass from 1e-14 to 1e-8; a larger value makes more nodes of nets of stiff cables count as loose. */
 #define HF_NEWTON_NOTHING 1e-12
 
 #endif

@@ -1,19 +1,30 @@
-/* Contents: rows that move - assembling - factor and solve */
+/* Assembles and factors the Newton matrix of a net (METHOD section 5).
+ *
+ *     block K_e = (T/l) (I - uu') + k uu' of each cable   (M6)
+ *         | assemble: lower band of the free rows, or of the rows that move alone
+ *         | add the Levenberg shift and the springs to the diagonal
+ *         | band Cholesky; if it fails, repeat with a larger shift
+ *         v
+ *     factor in newton_band, estimate of the condition
+ *
+ * hf_newton_matrix_factor_below subtracts a shift instead. Its factor certifies a lower bound of the minimum
+ * eigenvalue. */
 #include "solve/newton_matrix.h"
 
 #include "linalg/band.h"
 
 #include <string.h>
 
-/* Levenberg shift of every matrix, relative to the largest diagonal entry. From 0 to 1e-12 the tests of solve and
+/* Levenberg shift of every matrix, relative to the maximum diagonal entry. From 0 to 1e-12 the tests of solve and
  * stress pass; with 1e-10 two fail (last_digits_are_cheap, flat_edges_are_solved). */
 #define DIAGONAL_GUARD 1e-14
-/* Shift after the first failed factorisation, a hundredfold after each further one. No net of these tests has such a
- * matrix, so that nothing changes from 1e-13 to 1e-4; the unit test makes one by a cable that pushes. */
+/* Shift after the first failed factorisation; each further failure multiplies it by 100. No net of these tests has such
+ * a matrix, so values from 1e-13 to 1e-4 make no difference. The unit test makes one with a cable that pushes. */
 #define SHIFT_FIRST 1e-10
-/* What hf_newton_matrix_factor_below takes from the diagonal, over the largest sum of T/l at a node, and how much
- * the estimate of the least eigenvalue must be above it. The larger, the farther a shape may be from the equilibrium
- * for its bound; from 1e-9 to 1e-7 refinement takes the same steps with this matrix as with the whole one. */
+/* BELOW is the shift that hf_newton_matrix_factor_below subtracts, relative to the maximum sum of T/l at a node. The
+ * estimated minimum eigenvalue must exceed the shift by the factor BELOW_CLEARLY. A larger shift allows bounds for
+ * shapes farther from the equilibrium. From 1e-9 to 1e-7 the precise iteration takes the same steps with this matrix as
+ * with the unshifted one. */
 #define BELOW 1e-7
 #define BELOW_CLEARLY 100.0
 
@@ -80,7 +91,7 @@ double hf_newton_matrix_assemble_blocks(const hf_model *m, hf_workspace *w, hf_n
     return assemble_rows(m, w, block_of, &rows);
 }
 
-/* Adds `shift` to the diagonal, and the springs (may be NULL). */
+/* Adds `shift` and the springs [n_free] (may be NULL) to the diagonal, N/m. */
 static void stiffen(const hf_model *m, hf_workspace *w, const hf_newton_rows *rows, double shift,
                     const double *spring_N_per_m)
 {
@@ -133,7 +144,8 @@ hf_status hf_newton_matrix_factor_rows(const hf_model *m, hf_workspace *w, hf_ne
     return factor_some(m, w, block_of, spring_N_per_m, rows, NULL);
 }
 
-/* Largest sum of T/l of the cables at a free node, N/m. *n_most: most cables at one. */
+/* Returns the maximum sum of T/l of the cables at a free node, N/m. Sets *n_most to the maximum number of cables at
+ * one. */
 static double largest_across(const hf_model *m, hf_workspace *w, double *n_most)
 {
     double *sum = w->newton_work, *count = sum + m->n_free, largest = 0, u[3];
@@ -173,7 +185,7 @@ double hf_newton_matrix_factor_below(const hf_model *m, hf_workspace *w, double 
     return norm / *condition > BELOW_CLEARLY * shift ? least : 0;
 }
 
-/* In place: a row stands before or at its place among all rows. */
+/* This works in place because the index of a row among the moving ones never exceeds its index among all. */
 void hf_newton_matrix_solve_rows(const hf_model *m, const hf_workspace *w, const hf_newton_rows *rows, double *rhs)
 {
     int n = 3 * rows->n;

@@ -1,3 +1,4 @@
+/* Calls the functions of path_kernel.c for the best instruction set of the processor. */
 #include "solve/path_cable.h"
 
 #include "solve/path_kernel.h"

@@ -1,6 +1,12 @@
-/* The functions of path_cable.h, compiled once for each instruction set.
+/* Computes the parts of the cables in a step of the primal-dual path (path_cable.h), eight cables at a time. The file
+ * is compiled once for each instruction set.
  *
- * Contents: eight cables - errors - the cone - scaling - right-hand side - direction and room - move */
+ *     measure:        v, d, T, t  -> gap = T v - t.d, short_m = L + c T - v, t of springs
+ *     set_scaling:    v, d, T, t  -> scaling W and scaled point lambda, stiffness K = along, across, unit (M21)
+ *     set_side:       target of the product, second-order terms  -> R0, off, pull = K off
+ *         (interior.c solves for the nodes and sets Dd)
+ *     set_direction:  Dd  -> DT, Dv, Dt; the maximum part of the step; second-order terms
+ *     move:           part of the step  -> v, T, t */
 #define HF_LANE_EIGHT
 #include "solve/path_kernel.h"
 
@@ -21,7 +27,7 @@ INLINE void store3(double to[3][HF_LANES], const vectors *a)
         lanes_store(to[c], a->x[c]);
 }
 
-/* fmax: a NaN gives the other. */
+/* Returns the larger of a and b in each lane, as fmax does: a NaN gives the other. */
 INLINE lanes larger(lanes a, lanes b)
 {
     return lanes_choose((a >= b) | (b != b), a, b);
@@ -37,7 +43,7 @@ INLINE lanes inner(vectors a, vectors b)
     return a.x[0] * b.x[0] + a.x[1] * b.x[1] + a.x[2] * b.x[2];
 }
 
-/* Largest lane of `a` above 0; NaNs do not count. */
+/* Returns the maximum positive lane of `a`, or 0. A NaN does not count. */
 INLINE double largest(lanes a)
 {
     double most = 0;
@@ -86,7 +92,7 @@ double HF_KERNEL(hf_path_measure)(int n_block, hf_path_cables *block)
 
 /* ---- the cone ---- */
 
-/* Root of the determinant a0^2 - |a1|^2 of a point in the cone; never zero. */
+/* Returns the root of the determinant a0^2 - |a1|^2 of a point in the cone. It is never zero. */
 INLINE lanes root_det(lanes a0, vectors a1)
 {
     lanes length = lanes_root(inner(a1, a1)), det = (a0 - length) * (a0 + length), least = (lanes){0} + 1e-300;
@@ -103,7 +109,7 @@ INLINE scaling scaling_of(const hf_path_cables *p)
     return (scaling){lanes_root(lanes_load(p->eta2)), lanes_load(p->w0), load3(p->w1)};
 }
 
-/* b = W a */
+/* Computes b = W a: sets the vector part b1 and returns b0. */
 INLINE lanes scale(const scaling *s, lanes a0, vectors a1, vectors *b1)
 {
     lanes along = inner(s->w1, a1), share = a0 + along / (1 + s->w0);
@@ -112,7 +118,7 @@ INLINE lanes scale(const scaling *s, lanes a0, vectors a1, vectors *b1)
     return s->eta * (s->w0 * a0 + along);
 }
 
-/* b = W^-1 a */
+/* Computes b = W^-1 a: sets the vector part b1 and returns b0. */
 INLINE lanes unscale(const scaling *s, lanes a0, vectors a1, vectors *b1)
 {
     lanes along = inner(s->w1, a1), share = along / (1 + s->w0) - a0;
@@ -121,7 +127,7 @@ INLINE lanes unscale(const scaling *s, lanes a0, vectors a1, vectors *b1)
     return (s->w0 * a0 - along) / s->eta;
 }
 
-/* K a */
+/* Returns K a. */
 INLINE vectors times_K(const hf_path_cables *p, vectors a)
 {
     lanes across = lanes_load(p->across);
@@ -188,7 +194,7 @@ void HF_KERNEL(hf_path_set_side)(int n_block, hf_path_cables *block, double targ
             for (int c = 0; c < 3; c++)
                 r1.x[c] -= lanes_load(p->corrector1[c]);
         }
-        lanes q0 = (l0 * r0 - inner(l1, r1)) / (det * det); /* lambda o q = r */
+        lanes q0 = (l0 * r0 - inner(l1, r1)) / (det * det); /* solves lambda o q = r */
         for (int c = 0; c < 3; c++)
             q1.x[c] = (r1.x[c] - q0 * l1.x[c]) / l0;
         lanes R0 = scale(&s, q0, q1, &R1);
@@ -204,10 +210,10 @@ void HF_KERNEL(hf_path_set_side)(int n_block, hf_path_cables *block, double targ
     }
 }
 
-/* ---- direction and room ---- */
+/* ---- direction and distance to the boundary ---- */
 
-/* How many times the scaled direction fits between the scaled point and the boundary of the cone, inverted: <= 0
- * without end. */
+/* Returns the reciprocal of the maximum part of the scaled direction a that keeps the scaled point in its cone. A value
+ * <= 0 means that every part does. */
 INLINE lanes inverse_room(const hf_path_cables *p, lanes a0, vectors a1)
 {
     lanes det = lanes_load(p->det), l0 = lanes_load(p->lambda0) / det;

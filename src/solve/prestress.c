@@ -1,4 +1,15 @@
-/* Contents: layout - what is wanted - tensions and forces - the dual problem - what cannot be held - the scene */
+/* Finds tensions that hold every free node at its target position, for form.prestress: exact (METHOD section 11).
+ *
+ *     scene and model: positions, laws, loads
+ *         | required tensions and weights by law; minimum tensions
+ *         v
+ *     dual of (M27): displacements of the free nodes, tensions by (M28)  <----+
+ *         | Newton's method without limits, then with them                    |
+ *         v                                                                   |
+ *     tensions; the mean of each family becomes the required tension  --------+
+ *         | the means have settled, or no tensions hold the nodes
+ *         v
+ *     every cable under law force_density, or an error that names the nodes */
 #include "solve/prestress.h"
 
 #include "base/arena.h"
@@ -14,31 +25,33 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Weight of a cable whose law gives no tension, over that of one whose law does. */
+/* Weight of a cable whose law gives no tension, relative to that of one whose law does. */
 #define FREE_WEIGHT 1e-2
-/* Least tension over the largest that is wanted: ten times what counts as slack beside that one. */
+/* Minimum tension over the reference tension: ten times the tension that counts as slack (HF_SLACK_RATIO). */
 #define LEAST_RATIO 1e-2
-/* Nodal residual, over the reference tension, at which the tensions are as exact as rounding lets them be. */
+/* Maximum nodal force, over the reference tension, at which the tensions are as exact as rounding permits. */
 #define EXACT 1e-14
-/* Largest residual, over the reference tension, of tensions that hold the net. */
+/* Maximum nodal force, over the reference tension, of tensions that hold the net. */
 #define HELD 1e-10
-/* Where tensions do not hold the net, a node is not held when its force reaches this part of the largest one. */
+/* If no tensions hold the net, a node counts as not held when its force is at least this part of the maximum one. */
 #define OUT_OF_BALANCE 1e-3
-/* Shift of the matrix over its largest diagonal entry; a hundredfold after a failed factorisation. */
+/* Shift of the matrix over its maximum diagonal entry; a failed factorisation multiplies it by 100. */
 #define SHIFT 1e-13
-/* Part of its stiffness that a cable at its least tension keeps in the matrix, so that its nodes have some. */
+/* Part of its stiffness that a cable at its minimum tension keeps in the matrix, so that its nodes have some. */
 #define AT_LEAST 1e-9
-/* A given length that differs from the theoretical one by this part of it: tables have six digits. */
+/* A given length is the user's own if it differs from that at the target positions by this part: tables have six
+ * digits. */
 #define OWN_LENGTH 1e-4
 #define STEP_MAX 200
-/* Solutions for the means of families, each by the factor at hand; they settle at this change over the reference. */
+/* Maximum number of solutions for the means of families, and the change over the reference tension at which they have
+ * settled. */
 #define MEANS_MAX 10
 #define MEANS_SETTLED 1e-5
 
 /* ---- layout ---- */
 
-/* The programme and its dual: the multipliers of the 3 n_free equations are displacements, and a cable's tension rises
- * by its stretch under them over its weight, as in a net of linear springs. */
+/* The programme (M27) and its dual (M28). The multipliers of the 3 n_free equations are displacements. As in a net of
+ * linear springs, the tension of a cable rises by its stretch under them divided by its weight. */
 typedef struct {
     const hf_model *m;
     int n, half_bandwidth, n_family;
@@ -50,11 +63,11 @@ typedef struct {
     double *family_sum_N;                /* [n_family] */
     int *family_count;                   /* [n_family] */
     bool *is_free;                       /* [n_cable] its law gives no tension */
-    bool *is_least, *was_least;          /* [n_cable] at its least tension now, and in the factor */
-    double *multiplier, *trial;          /* [n] */
-    double *force_N;                     /* [n] A T + p */
+    bool *is_least, *was_least;          /* [n_cable] at its minimum tension now, and in the factor */
+    double *multiplier, *trial;          /* [n] multipliers, and those at the end of a trial step */
+    double *force_N;                     /* [n] A T + P, N */
     double *step;                        /* [n] */
-    double *band;                        /* [n][half_bandwidth+1] the factor */
+    double *band;                        /* [n][half_bandwidth+1] the factor of A W A' */
     bool has_factor;
     const volatile sig_atomic_t *stop;
 } programme;
@@ -80,7 +93,7 @@ static void lay_out_programme(hf_arena *a, const hf_model *m, programme *p)
     p->band = hf_arena_take(a, n * ((size_t)p->half_bandwidth + 1), sizeof(double));
 }
 
-/* ---- what is wanted ---- */
+/* ---- required tensions ---- */
 
 static void set_wants(programme *p)
 {
@@ -94,7 +107,7 @@ static void set_wants(programme *p)
             p->unit[3 * e + c] =
                 (m->position_m[c * m->n_node + end[1]] - m->position_m[c * m->n_node + end[0]]) / m->length_m[e];
         bool is_density = m->law[e] == HF_LAW_FORCE_DENSITY, is_strut = is_density && m->target[e] < 0;
-        bool moves_none = end[0] >= m->n_free && end[1] >= m->n_free; /* balance needs nothing of it */
+        bool moves_none = end[0] >= m->n_free && end[1] >= m->n_free; /* balance needs no tension of it */
         bool gives = is_density || hf_law_has(m->law[e], HF_LAW_GIVES_TENSION);
         p->is_free[e] = is_any_given && !moves_none && !gives;
         p->least_N[e] = is_strut ? -INFINITY : LEAST_RATIO * p->reference_N;
@@ -114,8 +127,8 @@ int hf_prestress_family(const hf_scene *s, int e)
     return family;
 }
 
-/* Cables that may have any tension want the mean of those of their family, and so come near each other. Returns the
- * largest change, N. */
+/* Sets the required tension of each cable whose law gives none to the mean of its family, so the tensions of a family
+ * become similar. Returns the maximum change, N. */
 static double want_means(programme *p)
 {
     double change_N = 0;
@@ -142,7 +155,8 @@ static double component(const programme *p, const double *vector, int row, int c
     return row < p->m->n_free ? vector[3 * row + c] : 0;
 }
 
-/* Sets the tensions under these multipliers. Returns the dual function, which is least at the answer. */
+/* Sets the tensions under these multipliers [n], within their limits if is_bounded. Returns the dual function, which
+ * has its minimum at the answer. */
 static double set_tensions(programme *p, const double *multiplier, bool is_bounded)
 {
     const hf_model *m = p->m;
@@ -164,7 +178,7 @@ static double set_tensions(programme *p, const double *multiplier, bool is_bound
     return value;
 }
 
-/* Sets the forces on the free nodes. Returns the largest component, N. */
+/* Sets the forces on the free nodes. Returns the maximum component, N. */
 static double set_forces(programme *p)
 {
     const hf_model *m = p->m;
@@ -218,8 +232,9 @@ static hf_status factor_springs(programme *p)
     return HF_SINGULAR;
 }
 
-/* One step of Newton's method on the dual function, halved until the function falls as it should. Returns the part of
- * the step that was taken; the tensions and forces are those at its end, and *largest_N the largest force. */
+/* Takes one step of Newton's method on the dual function, halved until the function falls enough. `value` is the
+ * function before the step. Returns the part of the step taken. The tensions and forces are those at its end, and
+ * *largest_N becomes the maximum force. */
 static double take_step(programme *p, bool is_bounded, double value, double *largest_N)
 {
     double slope = 0, part = 1;
@@ -233,7 +248,7 @@ static double take_step(programme *p, bool is_bounded, double value, double *lar
             p->trial[i] = p->multiplier[i] + part * p->step[i];
         double fallen = value - set_tensions(p, p->trial, is_bounded);
         if (!is_bounded || fallen >= -1e-4 * part * slope || part < 1e-8) break;
-        /* near the answer the function is flat to rounding, and the forces tell */
+        /* near the answer the function is flat to rounding, so the forces decide */
         if (set_forces(p) < *largest_N / 2) break;
     }
     memcpy(p->multiplier, p->trial, (size_t)p->n * sizeof *p->trial);
@@ -241,8 +256,9 @@ static double take_step(programme *p, bool is_bounded, double value, double *lar
     return part;
 }
 
-/* Newton's method, which ends after finitely many steps as the function is quadratic between changes of the set of
- * cables at their least tension. Returns the largest force that is left, N. */
+/* Minimises the dual function by Newton's method. It ends after finitely many steps because the function is quadratic
+ * as long as the set of cables at their minimum tension does not change. *largest_N becomes the maximum remaining
+ * force. Returns HF_OK, HF_SINGULAR or HF_INTERRUPTED. */
 static hf_status solve_dual(programme *p, bool is_bounded, double *largest_N)
 {
     double value = set_tensions(p, p->multiplier, is_bounded);
@@ -253,14 +269,14 @@ static hf_status solve_dual(programme *p, bool is_bounded, double *largest_N)
         double part = take_step(p, is_bounded, value, largest_N);
         value = set_tensions(p, p->multiplier, is_bounded);
         bool is_same = !memcmp(p->is_least, p->was_least, (size_t)p->m->n_cable * sizeof(bool));
-        /* where rounding is all that is left, a step that is cut short leads no nearer either */
+        /* if only rounding remains, a shortened step leads no nearer either */
         bool is_as_near = part == 1 || *largest_N <= HELD * p->reference_N;
         if (is_same && is_as_near && !(*largest_N < before_N / 2)) break;
     }
     return HF_OK;
 }
 
-/* First without limits, which needs one factorisation and is the answer of most nets. */
+/* Solves first without limits, which needs one factorisation and is the answer for most nets, then with limits. */
 static hf_status solve_within_limits(programme *p, double *largest_N)
 {
     HF_TRY(solve_dual(p, false, largest_N));
@@ -268,7 +284,7 @@ static hf_status solve_within_limits(programme *p, double *largest_N)
     return solve_dual(p, true, largest_N);
 }
 
-/* ---- what cannot be held ---- */
+/* ---- nodes that no tensions hold ---- */
 
 static double node_force_N(const programme *p, int row)
 {
@@ -319,7 +335,7 @@ static hf_status find_tensions(programme *p, const hf_scene *scene, hf_messages 
     return name_unheld(p, scene, messages);
 }
 
-/* Lengths of one's own that the cables lose with their laws. */
+/* Warns about lengths of the user's own that are not used because the cables change their laws. */
 static void tell_lengths(const hf_scene *s, hf_messages *messages)
 {
     int n = 0, first = 0;

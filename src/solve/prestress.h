@@ -1,12 +1,13 @@
-/* prestress - tensions that hold every free node of a net at its theoretical place (form.prestress: exact).
+/* prestress - tensions that hold every free node of a net at its target position (form.prestress: exact).
  *
- * At fixed positions equilibrium is linear in the tensions, A T + p = 0, where column e of A has the unit vector of
- * cable e at its first end and the opposite at its second. Of all such tensions with T >= least the one is taken that
- * is nearest to what the cables are wanted to have (METHOD section 11):
+ * At fixed positions equilibrium is linear in the tensions, A T + P = 0. Column e of A has the unit vector of cable e
+ * at its first end and the opposite at its second. Among all tensions with T >= the minimum tension, it finds those
+ * nearest to the tensions t that the laws require (METHOD section 11):
  *
- *     minimise  sum w_e (T_e - wanted_e)^2 / 2
+ *     minimise  sum w_e (T_e - t_e)^2 / 2
  *
- * Cables whose law gives a tension want it; the others take what balance needs, evenly within their family. */
+ * A cable whose law gives a tension requires that one. The others take what balance needs, evenly within their
+ * family. */
 #ifndef HIFDM_PRESTRESS_H
 #define HIFDM_PRESTRESS_H
 
@@ -15,14 +16,14 @@
 #include <hifdm/status.h>
 #include <signal.h>
 
-/* Put every cable of the checked scene under law force_density, with the force densities, N/m, that hold its nodes.
- * HF_OK; HF_BAD_CASE, naming the nodes that no tensions hold; HF_INTERRUPTED, soon after *stop is set (NULL: never);
- * HF_NO_MEMORY. The scene changes under HF_OK alone. */
+/* Puts every cable of the checked scene under law force_density, with the force densities, N/m, that hold its nodes.
+ * Returns HF_OK; HF_BAD_CASE with the names of the nodes that no tensions hold; HF_INTERRUPTED soon after *stop is set
+ * (NULL: never); HF_NO_MEMORY; or the status of hf_model_build. The scene changes under HF_OK alone. */
 hf_status hf_prestress_hold(hf_scene *scene, const hf_form_settings *form, const volatile sig_atomic_t *stop,
                             hf_messages *messages);
 
-/* The family of a cable: the smallest set that it is in (the first of several), 0..n_set-1, or n_set + its group where
- * it is in none. */
+/* Returns the family of a cable: the smallest set that contains it (the first of several), 0..n_set-1. A cable in no
+ * set has the family n_set + its group. */
 int hf_prestress_family(const hf_scene *scene, int i_cable);
 
 #endif

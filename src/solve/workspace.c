@@ -50,7 +50,7 @@ bool hf_workspace_iterates(const hf_model *m, const hf_workspace *w)
 
 void hf_workspace_poison(const hf_model *m, hf_workspace *w)
 {
-/* all bits set are a NaN in IEEE 754, and for integers an index or law that no check accepts */
+/* In IEEE 754 all bits set are a NaN; in an integer they are an index or a law that no check accepts. */
 #define POISON(type, name, count, unit, meaning) memset(w->name, 0xff, (size_t)(count) * sizeof(type));
     HF_WORKSPACE_FIELDS(POISON)
 #undef POISON
