@@ -1,4 +1,12 @@
-/* Contents: the design - one state - all states */
+/* Finds the load cases of the as-built net, once the design is known (METHOD section 12).
+ *
+ *     design -> cut pieces of its cables (hf_built_make)
+ *     each load case
+ *         | truss alone, under its temperature and weight: displacements of the attachments
+ *         | lengths at the temperature, displacements of supports, loads (hf_built_state)
+ *         | shape (hf_built_solve), forces in the truss under the pull of the net
+ *         v
+ *     measures of the shape -> summary and store */
 #include "run/cases.h"
 
 #include "base/arena.h"
@@ -44,9 +52,10 @@ void hf_cases_free(hf_cases *c)
     *c = (hf_cases){0};
 }
 
-/* ---- one state ---- */
+/* ---- one load case ---- */
 
-/* What acts on the truss itself: its temperature and its weight. */
+/* Returns the loads of the truss itself, its temperature and its weight. force [n_truss_node][6] receives the
+ * weight. */
 static hf_frame_load load_of_truss(const hf_carrier *carrier, const hf_state *state, double *force)
 {
     memset(force, 0, HF_TRUSS_DOF * (size_t)carrier->truss.n_node * sizeof *force);
@@ -54,7 +63,7 @@ static hf_frame_load load_of_truss(const hf_carrier *carrier, const hf_state *st
     return (hf_frame_load){.force = force, .temperature_K = state->member_rise_K};
 }
 
-/* Where the truss puts the attachments before the net pulls. */
+/* Sets move_m [3 n_attachment] to the displacements of the attachments by the truss without the net, m. */
 static hf_status move_attachments(const hf_carrier *carrier, const hf_frame_load *own, double *move_m)
 {
     hf_carrier_state alone;
@@ -88,7 +97,8 @@ static void measure(const hf_built *b, const hf_carrier_state *truss, int n_memb
         s->largest_member_N = fmax(s->largest_member_N, fabs(truss->end_force[12 * e]));
 }
 
-/* Measure and store a shape that was found; `truss` is of the state, NULL without one. */
+/* Measures and stores a shape that was found. `truss` is the state of the truss in this load case, NULL without a
+ * truss. */
 static hf_status keep_shape(const hf_problem *p, hf_cases *c, hf_store *store, const hf_carrier_state *truss,
                             hf_state_summary *s, hf_messages *messages)
 {
@@ -163,7 +173,7 @@ static hf_status run_state(const hf_problem *p, const hf_state *state, hf_cases 
     return status;
 }
 
-/* ---- all states ---- */
+/* ---- all load cases ---- */
 
 static void blank(const char *name, hf_state_summary *s)
 {

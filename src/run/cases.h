@@ -1,4 +1,4 @@
-/* cases - the states of the net as built that a case asks for, once its design is found. */
+/* cases - the load cases of the as-built net that a case describes, once its design is known. */
 #ifndef HIFDM_CASES_H
 #define HIFDM_CASES_H
 
@@ -8,32 +8,33 @@
 
 #include <signal.h>
 
-/* The net that is made of a design, and memory for its states. All zero before a design is taken, and without states.
- * It does not move in memory. */
+/* The as-built net of a design, and memory for its load cases. All members are zero before a design is taken, and for a
+ * case without load cases. It must not be moved in memory. */
 typedef struct {
     hf_built built;
     hf_workspace workspace;
-    double *cut_m, *move_m, *load_N; /* of a state, as hf_built_state */
-    double *attachment_move_m;       /* [3 n_attachment] */
+    double *cut_m, *move_m, *load_N; /* of one load case, as for hf_built_state */
+    double *attachment_move_m;       /* [3 n_attachment] m, by the truss alone */
     double *truss_force;             /* [n_truss_node][6] N, N m */
     void *block;
 } hf_cases;
 
-/* Make the net of the design whose shape `workspace` holds, in place of an earlier one. HF_BAD_CASE for a design that
- * cannot be made, HF_NO_MEMORY, both with a message. */
+/* Makes the as-built net of the design whose shape `workspace` holds, and replaces an earlier one. Returns HF_OK;
+ * HF_BAD_CASE for a design that cannot be made; HF_NO_MEMORY; both with a message. */
 hf_status hf_cases_take(const hf_problem *problem, const hf_workspace *workspace, hf_cases *cases,
                         hf_messages *messages);
 
-/* Where the truss puts the attachments in each state before the net pulls: move_m [n_state][3 n_attachment]. HF_OK or
- * HF_NO_MEMORY. */
+/* Sets move_m [n_load_case][3 n_attachment] to the displacements of the attachments in each load case by the truss
+ * without the net, m. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_cases_rest(const hf_problem *problem, double *move_m);
 
-/* The same of each row of tolerance.truss, by 1 K of its part: move_m_per_K [n_truss][3 n_attachment]. */
+/* Sets move_m_per_K [n_truss][3 n_attachment] to the same displacements for each row of tolerance.truss, caused by a
+ * rise of its part by 1 K, m/K. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_cases_rest_by_heat(const hf_problem *problem, double *move_m_per_K);
 
-/* Find, measure and store all states of problem->states. A state without a shape has a warning and its status in the
- * summary, and the run goes on. HF_INTERRUPTED, when *stop is set (stop may be NULL); HF_NO_MEMORY; errors of the
- * store, which may be NULL. */
+/* Finds, measures and stores all load cases of problem->states. If a load case has no shape, the summary gets its
+ * status and the user a warning, and the run continues. Returns HF_OK; HF_INTERRUPTED if *stop is set (stop may be
+ * NULL); HF_NO_MEMORY; or an error of the store, which may be NULL. */
 hf_status hf_cases_run(const hf_problem *problem, hf_cases *cases, hf_store *store, const volatile sig_atomic_t *stop,
                        hf_summary *summary, hf_messages *messages);
 

@@ -1,4 +1,10 @@
-/* Contents: words - a case - texts - numbers - work - a run */
+/* The C interface for other languages: one opaque handle, plain arrays, numbers and words (flat.h).
+ *
+ *     open: case or arrays of a net -> model
+ *     form: shape of the case -> initial design and batch, once
+ *     evaluate, shape, slopes: designs -> figures, shape, derivatives
+ *     run: the whole run, with its own problem -> result file and summary
+ *     text, ints, reals: read what these calls left in the handle */
 #include <hifdm/flat.h>
 
 #include "net/variables.h"
@@ -11,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* HF_TRY of functions that return a status as int. */
+/* Does what HF_TRY does, for functions that return a status as int. */
 #define TRY(expression)                                                                                                \
     do {                                                                                                               \
         hf_status status_ = (expression);                                                                              \
@@ -24,13 +30,13 @@ struct hf_flat {
     const char *const *set;
     int n_set, n_thread;
     hf_scene_arrays net;
-    hf_problem_source source; /* text NULL: files */
+    hf_problem_source source; /* text is NULL for a case file */
     hf_problem problem;
     bool is_open, is_ready; /* there is a model; there is a batch */
-    double *shape;          /* [3 n_node + 3 n_cable] of the last form or shape (shape_part), NULL before */
-    hf_form_result result;  /* of the same */
+    double *shape;          /* [3 n_node + 3 n_cable] of the last form or shape call (shape_part); NULL before */
+    hf_form_result result;  /* result of the same call */
     int n_room;
-    hf_form_result *room; /* [n_room] of designs */
+    hf_form_result *room; /* [n_room] results of designs */
     char text[HF_GENE_NAME_SIZE];
     hf_summary summary;
     char *summary_text;
@@ -49,7 +55,7 @@ const char *hf_flat_version(void)
 
 /* ---- words ---- */
 
-/* An entry of a list of n words. */
+/* Returns word i of a list of n words, or NULL. */
 static const char *word_at(const char *const *word, int n, int i)
 {
     return i >= 0 && i < n ? word[i] : NULL;
@@ -107,7 +113,7 @@ const char *hf_flat_said(const hf_flat *f)
     return f->said.text ? f->said.text : "";
 }
 
-/* Forget what was said. False, with a message, unless the handle has what the call needs. */
+/* Clears the messages. Returns `has`; if that is false, adds the message `what`. */
 static bool begins(hf_flat *f, bool has, const char *what)
 {
     hf_messages_free(&f->said);
@@ -201,7 +207,7 @@ static const char *of_goal(hf_flat *f, int i, int column)
     return column == COLUMN_KIND ? "real" : "value of the goal, without its weight";
 }
 
-/* Figures of designs: those of an individual, then goals. */
+/* Returns a text about figure i of a design: figures of an individual first, then objectives. NULL beyond the last. */
 static const char *figure_text(hf_flat *f, int i, int column)
 {
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
@@ -214,7 +220,8 @@ static int n_coupling(const hf_flat *f)
     return f->problem.model.n_attachment ? HF_COUPLING_N : 0;
 }
 
-/* Figures of a shape: all, then with a truss those of the coupling, then goals. */
+/* Returns a text about figure i of a shape: all figures of a result, those of the coupling with a truss, then
+ * objectives. NULL beyond the last. */
 static const char *result_text(hf_flat *f, int i, int column)
 {
     if (i < HF_RESULT_N) return of_field(&hf_result_field_of[i], column);
@@ -300,14 +307,14 @@ static int copy_reals(const double *from, int n, double *to)
 
 enum { SHAPE_LENGTH, SHAPE_TENSION, SHAPE_Q };
 
-/* Behind the positions [n_node][3], [n_cable] each. */
+/* Returns one of the arrays [n_cable] of the shape. They follow the positions [n_node][3]. */
 static double *shape_part(const hf_flat *f, int part)
 {
     const hf_scene *s = &f->problem.scene;
     return f->shape + 3 * (size_t)s->n_node + (size_t)part * (size_t)s->n_cable;
 }
 
-/* Calls that follow overwrite the workspace. */
+/* Copies the shape from the workspace, because later calls overwrite that. */
 static hf_status keep_shape(hf_flat *f, const hf_workspace *w)
 {
     const hf_scene *s = &f->problem.scene;
@@ -327,7 +334,7 @@ static double field_value(const hf_result_field *field, const void *owner)
     return field->kind == HF_RESULT_REAL ? *(const double *)value : *(const int *)value;
 }
 
-/* Designs beyond a limit have a shape, and its goals. */
+/* A design that breaks a limit has a shape, and with it values of the objectives. */
 static double goal_value(const hf_form_result *r, int i)
 {
     return hf_status_has_shape(r->status) ? r->goal[i] : (double)NAN;
@@ -380,7 +387,7 @@ int hf_flat_reals(const hf_flat *f, const char *name, double *to)
 #define NEEDS_CASE "open a case first"
 #define NEEDS_SHAPE "the case has no shape yet: hf_flat_form finds it"
 
-/* The batch, once the shape of the case is in the problem's workspace. */
+/* Makes the batch. The problem's workspace must hold the shape of the case. */
 static hf_status make_batch(hf_flat *f)
 {
     hf_problem *p = &f->problem;
@@ -413,7 +420,7 @@ int hf_flat_form(hf_flat *f)
     return (int)find_form(f);
 }
 
-/* Values are finite numbers, those of cables above zero. */
+/* Checks that all values are finite and those of cables above zero. Returns HF_OK, or HF_BAD_CASE with a message. */
 static hf_status check_designs(hf_flat *f, int n, const double *design)
 {
     const hf_model *m = &f->problem.model;
@@ -428,7 +435,7 @@ static hf_status check_designs(hf_flat *f, int n, const double *design)
     return HF_OK;
 }
 
-/* Leave the results of n designs in the room. */
+/* Evaluates n designs and leaves their results in f->room. */
 static hf_status evaluate(hf_flat *f, int n, const double *design)
 {
     if (!begins(f, f->is_ready, NEEDS_SHAPE)) return HF_BAD_USAGE;
@@ -472,7 +479,7 @@ int hf_flat_slopes(hf_flat *f, int n, const double *design, double *slope)
     size_t size = (size_t)hf_problem_n_slope(p) * (size_t)p->model.n_gene, n_feasible = 0;
     for (int i = 0; i < n; i++)
         n_feasible += f->room[i].status == HF_OK;
-    for (int i = n - 1; i >= 0; i--) { /* they stand one behind the other: each goes to the place of its design */
+    for (int i = n - 1; i >= 0; i--) { /* the feasible ones are contiguous; each moves to its design */
         double *to = slope + (size_t)i * size;
         bool is_feasible = f->room[i].status == HF_OK;
         if (is_feasible) memmove(to, slope + --n_feasible * size, size * sizeof *to);
@@ -506,7 +513,7 @@ static void pass_on(void *context, const hf_run_progress *now)
         hf_flat_stop(w->flat);
 }
 
-/* The figures as the program's JSON. */
+/* Writes the summary as the JSON of the program into f->summary_text. Returns `status`, or HF_NO_MEMORY. */
 static hf_status tell_summary(hf_flat *f, hf_status status, const char *output)
 {
     size_t size = 0;
@@ -524,7 +531,7 @@ int hf_flat_run(hf_flat *f, const char *output, int restart, hf_flat_observer *o
     char written[HF_OUTPUT_SIZE];
     watcher beside = {f, observer, context};
     if (!begins(f, f->is_open, NEEDS_CASE)) return HF_BAD_USAGE;
-    f->stop = 0; /* of a run before, at whose end it came */
+    f->stop = 0; /* clears a stop that came at the end of an earlier run */
     hf_run_request request = {.case_path = f->path,
                               .source = f->source.text ? &f->source : NULL,
                               .set = f->set,

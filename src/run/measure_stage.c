@@ -8,9 +8,9 @@
 #include <math.h>
 #include <stdio.h>
 
-#define MESH_PULL_DOUBT 0.3 /* of N l / T: the figures of the facets are warned about */
+#define MESH_PULL_DOUBT 0.3 /* N l / T above which the figures of the facets cause a warning */
 
-/* Tensions of the named sets of cables: once for each shape that is reported. */
+/* Sets the minimum and maximum tension and their ratio for the named sets of cables, up to HF_SUMMARY_SETS of them. */
 static void measure_sets(const hf_problem *p, hf_stage stage, const hf_workspace *w, hf_summary *s)
 {
     const hf_scene *scene = &p->scene;

@@ -1,4 +1,4 @@
-/* measure_stage - what is told of each shape that is reported. */
+/* measure_stage - measures each shape that a run reports. */
 #ifndef HIFDM_MEASURE_STAGE_H
 #define HIFDM_MEASURE_STAGE_H
 
@@ -8,14 +8,14 @@
 
 #include <signal.h>
 
-/* The shape in the workspace as that of `stage`: tensions of its sets and, for a case with a section `surface`, the
- * surface and its far field, the last by n_thread threads (0: all cores) until *stop. HF_OK, HF_NO_MEMORY;
- * HF_INTERRUPTED without the far field. */
+/* Measures the shape in the workspace as that of `stage`: the tensions of its sets and, for a case with a section
+ * `surface`, the surface and its far field. n_thread threads (0: all cores) compute the far field until *stop is set.
+ * Returns HF_OK; HF_NO_MEMORY; HF_INTERRUPTED without the far field; or an error of the store. */
 hf_status hf_measure_stage(const hf_problem *problem, hf_stage stage, const hf_workspace *workspace, int n_thread,
                            const volatile sig_atomic_t *stop, hf_store *store, hf_summary *summary,
                            hf_messages *messages);
 
-/* Limits at which a found design is, whose shape the workspace holds. */
+/* Lists the limits that the design whose shape the workspace holds reaches, in the summary. */
 void hf_measure_limits(const hf_problem *problem, hf_stage stage, const hf_workspace *workspace, hf_summary *summary);
 
 #endif

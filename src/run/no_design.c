@@ -21,7 +21,8 @@ const char *hf_no_design_cap(const hf_problem *p, double boundary_tension_ratio,
     return text;
 }
 
-/* What the shape in the workspace breaks most: ": tension of cable c7 is 9 beside 50 of optimize.limits.1", or "". */
+/* Writes which limit the shape in the workspace exceeds most, ": tension of cable c7 is 9 beside 50 of
+ * optimize.limits.1", or "". */
 static void name_broken(const hf_problem *p, const hf_workspace *w, const hf_form_result *r,
                         char text[2 * HF_HELD_NAME_SIZE])
 {

@@ -1,4 +1,4 @@
-/* no_design - why a run has no design, by counts and names, and what would change that. */
+/* no_design - explains with counts and names why a run has no design, and what would change that. */
 #ifndef HIFDM_NO_DESIGN_H
 #define HIFDM_NO_DESIGN_H
 
@@ -8,16 +8,16 @@
 #define HF_NO_DESIGN_SIZE 1024
 #define HF_NO_DESIGN_HINT_SIZE 192
 
-/* No individual of any generation was feasible: HF_NO_FEASIBLE with a message. */
+/* Reports that no individual of any generation was feasible. Returns HF_NO_FEASIBLE, with a message. */
 hf_status hf_no_design_evolved(hf_problem *problem, const hf_population *population, hf_messages *messages);
 
-/* Levenberg-Marquardt refused to start from this design with this status. Overwrites the shape in the problem's
- * workspace; returns text. */
+/* Writes why Levenberg-Marquardt refused to start from this design [n_gene] with this status. Overwrites the shape in
+ * the problem's workspace. Returns text. */
 const char *hf_no_design_to_polish(hf_problem *problem, const double *design, hf_status status,
                                    char text[HF_NO_DESIGN_SIZE]);
 
-/* "; 10 is the default of ..." for a shape above a cap that the case does not give, which its author may not know of;
- * else "". */
+/* Writes "; 10 is the default of ..." if the ratio exceeds a cap that the case does not set, because its author may not
+ * know that cap. Otherwise writes "". Returns text. */
 const char *hf_no_design_cap(const hf_problem *problem, double boundary_tension_ratio,
                              char text[HF_NO_DESIGN_HINT_SIZE]);
 

@@ -1,3 +1,11 @@
+/* Computes the far field of one shape (METHOD section 13).
+ *
+ *     positions and tensions -> facets, with the sags of the mesh
+ *     feed of the net at the target positions
+ *         | each frequency: integral over the facets, by all threads
+ *         v
+ *     table of co and cross components -> store
+ *     gain, width and sidelobes of each cut -> summary */
 #include "run/pattern_stage.h"
 
 #include "search/parallel.h"
@@ -6,13 +14,13 @@
 
 #include <string.h>
 
-/* How it is found, besides the case. */
+/* The threads and the stop flag of a far field. */
 typedef struct {
     int n_thread;
     const volatile sig_atomic_t *stop;
 } means;
 
-/* One frequency, into its part of the table. */
+/* Computes the far field at frequency i into its part of the table. Returns HF_OK, HF_NO_MEMORY or HF_INTERRUPTED. */
 static hf_status solve(const hf_problem *p, const hf_pattern_surface *surface, const hf_feed *feed, int i, means by,
                        hf_pattern_table *t)
 {
@@ -32,7 +40,8 @@ static hf_status solve(const hf_problem *p, const hf_pattern_surface *surface, c
     return status;
 }
 
-/* Figures that are not told, for the reason that holds for the first such cut. */
+/* Warns about cuts without width and sidelobes. The message gives the number of these cuts and the reason for the first
+ * one. */
 static void doubt(const hf_pattern_settings *s, const hf_pattern_summary *to, hf_stage stage, hf_messages *messages)
 {
     int n = 0, first = -1, n_all = to->n_frequency * to->n_cut;

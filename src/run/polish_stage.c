@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-#define PUBLISH_AFTER_S 1.0 /* shorter runs are not worth a file between */
-#define LATELY 10           /* steps: a warning says what the last ones gained */
+#define PUBLISH_AFTER_S 1.0 /* a shorter refinement publishes no file between steps */
+#define LATELY 10           /* steps whose gain a warning about convergence reports */
 
 typedef struct {
     const hf_run_request *request;
@@ -13,9 +13,9 @@ typedef struct {
     const hf_summary *summary;
     hf_store *store;
     hf_messages *messages;
-    double begin_s, earlier_s;         /* when this session began, and how long others took */
-    int first_iteration, n_evaluation; /* of this session; of others */
-    double merit[LATELY + 1];          /* of the steps before: step i in [i % (LATELY + 1)] */
+    double begin_s, earlier_s;         /* start of this session, and duration of earlier ones, s */
+    int first_iteration, n_evaluation; /* first step of this session; evaluations of earlier ones */
+    double merit[LATELY + 1];          /* merits of the last steps: step i in [i % (LATELY + 1)] */
     hf_polish_progress now;
 } polish_job;
 
@@ -41,7 +41,8 @@ static void tell_step(const polish_job *j)
     q->observer(q->observer_context, &progress);
 }
 
-/* Only steps that are safe are told of, as with generations. */
+/* Stores a step, publishes the file if the refinement takes long, then notifies the observer, which thus hears of
+ * stored steps only. Returns HF_OK, HF_INTERRUPTED, or an error of the store. */
 static hf_status between_steps(void *context, const hf_polish_progress *now)
 {
     polish_job *j = context;
@@ -58,7 +59,7 @@ static hf_status between_steps(void *context, const hf_polish_progress *now)
     return is_stopped(j->request) ? HF_INTERRUPTED : HF_OK;
 }
 
-/* A result that is not converged looks like one that is. */
+/* Warns if the steps ended before convergence, because such a result looks like a converged one. */
 static void warn_of_steps(const polish_job *j, const hf_polish_result *r)
 {
     int n = r->iterations - j->first_iteration < LATELY ? r->iterations - j->first_iteration : LATELY;
@@ -75,7 +76,7 @@ static void warn_of_steps(const polish_job *j, const hf_polish_result *r)
                    r->iterations);
 }
 
-/* What the message of a stop says of it. */
+/* Writes into stopped_at where the refinement has stopped, for the message of an interrupted run. */
 static void tell_stop(const polish_job *j, char stopped_at[HF_POLISH_STAGE_TEXT])
 {
     int n = snprintf(stopped_at, HF_POLISH_STAGE_TEXT, " after %d steps of Levenberg-Marquardt", j->now.iterations);

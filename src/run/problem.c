@@ -67,7 +67,7 @@ hf_status hf_problem_slopes(hf_problem *p, int n, const double *design_N, const 
 {
     hf_jacobian jacobian;
     hf_form_result r;
-    double *all = NULL; /* with the merit behind, where objectives have none */
+    double *all = NULL; /* derivatives of all figures; the merit is last */
     size_t n_gene = (size_t)p->model.n_gene, size = (size_t)hf_problem_n_slope(p) * n_gene;
     HF_TRY(hf_problem_has_slopes(p, messages));
     hf_status status = hf_jacobian_create(&p->evaluator, &jacobian);

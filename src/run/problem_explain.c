@@ -1,4 +1,10 @@
-/* Contents: names - warnings - what is not a shape */
+/* Explains a form-finding to the user, with the names of cables, nodes and chains.
+ *
+ *     result and shape
+ *         | a shape: warnings about balance, chains, loose and slack parts
+ *         | none: an error with the culprit and a remedy
+ *         v
+ *     messages */
 #include "run/problem_explain.h"
 
 #include <hifdm/metrics.h>
@@ -6,7 +12,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#define NAMED_MAX 5 /* cables or chains that a message names */
+#define NAMED_MAX 5 /* maximum number of names in a message */
 
 /* ---- names ---- */
 
@@ -43,7 +49,7 @@ static void name_loaded_chains(const hf_problem *p, hf_workspace *w, name_list *
 
 #define NODE_SIZE 2048
 
-/* "n (cables a, b)": a row and the cables around it. */
+/* Writes "n (cables a, b)": the node of a row and the cables at it. Returns text. */
 static const char *name_node(const hf_problem *p, int row, char text[NODE_SIZE])
 {
     const hf_model *m = &p->model;
@@ -75,8 +81,9 @@ static void name_loose(const hf_problem *p, const char *stage, const hf_workspac
 
 /* ---- warnings ---- */
 
-/* Whether the shape is in balance with the multipliers of elastic cables, and far from it with the tensions of their
- * laws, by more than rounding of lengths explains. */
+/* Returns true if the shape is in balance with the multipliers of elastic cables, but not with the tensions of their
+ * laws. The difference must be larger than OFF_BY_LAW times the tolerance, and the length errors larger than
+ * rounding. */
 #define OFF_BY_LAW 10.0
 #define ROUNDED_LENGTH 1e-13
 static bool is_off_by_law(const hf_problem *p, const hf_form_result *r)
@@ -118,9 +125,9 @@ void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, co
     if (r->n_slack) hf_warning(messages, "slack in the %s shape, %d: %s", stage, r->n_slack, close_names(&slack));
 }
 
-/* ---- what is not a shape ---- */
+/* ---- errors ---- */
 
-/* The cable with the largest relative deviation from its law. */
+/* Returns the cable under law tension or length with the maximum relative deviation from its law. */
 static int furthest_off(const hf_problem *p)
 {
     const hf_workspace *w = &p->workspace;
@@ -139,7 +146,8 @@ static int furthest_off(const hf_problem *p)
 
 #define MOVE_SIZE 96
 
-/* How far an attachment would still move, and the ratio to the step before where it is known. */
+/* Writes how far an attachment still moved in the last step, and the ratio to the step before if it is known. Returns
+ * text. */
 static const char *name_move(const hf_coupling_result *c, char text[MOVE_SIZE])
 {
     if (!isfinite(c->step_m)) return "beyond all bounds";
@@ -160,7 +168,7 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
             "tighten form.%s, which limits how well the forces are known",
             r->coupling.iterations, name_move(&r->coupling, move),
             r->stop_reason == HF_STOPPED_RMS_CHANGE ? "rms_tolerance_m" : "residual_tolerance");
-    if (r->culprit >= 0 && r->n_drifting == 0) /* a cable; where nodes drift it is one of them */
+    if (r->culprit >= 0 && r->n_drifting == 0) /* a cable; with drifting nodes it is a row */
         return hf_error(messages, r->status,
                         "form-finding is as exact as double precision allows, nodal residual %.2e N: cable '%s' is "
                         "%.2e m long under %.2e N, too short or too tight for coordinates of its size; move the origin "
@@ -177,7 +185,7 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
         w->tension_N[e], w->length_m[e]);
 }
 
-/* What makes the net pull less. */
+/* Returns an advice that reduces the pull of the net. */
 static const char *name_pull(const hf_problem *p)
 {
     const hf_scene *s = &p->scene;
@@ -191,7 +199,8 @@ static const char *name_pull(const hf_problem *p)
                        : "give the cables longer values";
 }
 
-/* The loop of net and truss diverges, or net and truss together have no shape, where the net alone has one. */
+/* Reports a truss that is too soft. The loop of net and truss diverges, or they have no shape together although the net
+ * alone has one. Returns r->status. */
 static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, hf_messages *messages)
 {
     const hf_coupling_result *c = &r->coupling;

@@ -7,9 +7,9 @@
 
 struct hf_problem_nets {
     hf_built_nets nets;
-    hf_material material;       /* for the expansion of samples */
-    double *attachment_move_m;  /* [n_state][3 n_attachment] */
-    double *truss_move_m_per_K; /* [n_truss][3 n_attachment] of samples */
+    hf_material material;       /* expansion of the cables of samples */
+    double *attachment_move_m;  /* [n_load_case][3 n_attachment] m */
+    double *truss_move_m_per_K; /* [n_truss][3 n_attachment] m/K, of samples */
 };
 
 static bool is_over_states(const hf_goal_settings *g, int n)
@@ -66,7 +66,7 @@ hf_status hf_problem_nets_make(hf_problem *p, hf_messages *messages)
 
 void hf_problem_nets_free(hf_problem *p)
 {
-    hf_arena arena = {.block = (unsigned char *)p->nets}; /* the first thing in its block */
+    hf_arena arena = {.block = (unsigned char *)p->nets}; /* it begins its block */
     if (p->nets) hf_material_free(&p->nets->material);
     hf_arena_free(&arena);
     p->nets = NULL;

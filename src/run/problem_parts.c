@@ -1,4 +1,13 @@
-/* Contents: from the case to the model - the base design - the batch */
+/* The steps from a case to a problem that can evaluate designs.
+ *
+ *     case file or source
+ *         | load: scene, surface and facets, prestress, model, truss, load cases, limits, objectives, symmetry
+ *         v
+ *     model  -- allocate, form-finding (evaluate.c) -->  shape
+ *         | base: initial design and evaluator, with checks of its bounds
+ *         | batch, share: threads and the factorisation that they share
+ *         v
+ *     problem */
 #include "run/problem_parts.h"
 
 #include "base/elementary.h"
@@ -20,14 +29,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define RUZE_MOST_DB 3.0        /* beyond, his formula says nothing */
-#define FACET_LOSS_MOST_DB 1.0  /* of facets that are taken for the surface (METHOD section 13) */
-#define PATTERN_TERMS_MOST 1e13 /* of the sums of a far field at one frequency: hours of a core */
-#define WAVELENGTHS_LEAST 5.0   /* across a reflector of physical optics */
+#define RUZE_MOST_DB 3.0        /* maximum loss for which Ruze's formula holds */
+#define FACET_LOSS_MOST_DB 1.0  /* loss above which facets are too coarse for the surface (METHOD section 13) */
+#define PATTERN_TERMS_MOST 1e13 /* maximum terms of a far field at one frequency: hours on one core */
+#define WAVELENGTHS_LEAST 5.0   /* minimum diameter of a reflector for physical optics */
 
 /* ---- from the case to the model ---- */
 
-/* Are waves short beside the reflector, as physical optics wants them, and long enough for the sums to end? */
+/* Checks the frequencies of the far field. Returns HF_OK, with a warning if the reflector is too small for physical
+ * optics. Returns HF_BAD_CASE with a message if a far field would take too many terms. */
 static hf_status check_frequencies(const hf_problem *p, const hf_feed *feed, double area_m2, hf_messages *messages)
 {
     const hf_double_list *at = &p->surface.frequencies_Hz;
@@ -56,7 +66,8 @@ static hf_status check_frequencies(const hf_problem *p, const hf_feed *feed, dou
     return HF_OK;
 }
 
-/* Does the feed see all facets of the theoretical net, and are they small enough to be taken for its surface? */
+/* Checks that the feed sees all facets of the net at the target positions, and warns if these are too coarse to be
+ * taken for the surface. Returns HF_OK, HF_BAD_CASE or HF_NO_MEMORY, with a message. */
 static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
 {
     char place[HF_PATH_SIZE + 128];
@@ -124,7 +135,7 @@ static hf_status find_goals(hf_problem *p, hf_messages *messages)
                            &p->goals, messages);
 }
 
-/* The rows of limits and of goals or objectives; the faults of all are told. */
+/* Creates limits and objectives from their rows, and reports the faults of both. */
 static hf_status judge_by_rows(hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
@@ -199,7 +210,7 @@ hf_status hf_problem_allocate(hf_problem *p, hf_messages *messages)
     return HF_OK;
 }
 
-/* Has no cable a use for form.pretension_N? */
+/* Returns true if no cable uses form.pretension_N. */
 static bool has_own_tensions(const hf_problem *p)
 {
     if (p->settings.form.prestress == HF_PRESTRESS_EXACT) return false;
@@ -256,7 +267,7 @@ hf_status hf_problem_spare_inputs(const hf_problem *p, const char *table, const 
     return HF_OK;
 }
 
-/* ---- the base design ---- */
+/* ---- the initial design ---- */
 
 hf_evaluator hf_problem_evaluator(const hf_problem *p)
 {
@@ -271,7 +282,8 @@ hf_evaluator hf_problem_evaluator(const hf_problem *p)
                           .goals = p->goals.n_goal ? &p->goals : NULL};
 }
 
-/* Is there a value for gene k? Values of cables are above zero. */
+/* Checks that design variable k has an initial value and bounds that allow values; those of cables must be above zero.
+ * Returns HF_OK, or HF_NO_FEASIBLE or HF_BAD_CASE with a message. */
 static hf_status check_gene(const hf_problem *p, int k, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;

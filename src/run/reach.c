@@ -1,8 +1,15 @@
-/* By exact derivatives at the base design and at one beside it, since a derivative may vanish at one point. Genes are
- * taken together in as many classes as one solve has lanes: each class is of one row of optimize.variables, and linked
- * genes are of one, so a goal that some gene changes is changed by some class, but for chance.
+/* Finds objectives, limits and rows of variables that no design variable changes.
  *
- * Contents: classes of genes - what changes - what rows look at - messages */
+ *     initial design, then one beside it, because a derivative may vanish at one point
+ *         | exact derivatives of positions and tensions by classes of variables
+ *         v
+ *     strike out each row that looks at something that a class changes
+ *         |
+ *         v
+ *     remaining rows: warnings, or errors if an objective would be constant
+ *
+ * A class has variables of one row of optimize.variables, and linked variables are in one class. An objective that some
+ * variable changes is therefore changed by some class, except by chance. */
 #include "run/reach.h"
 
 #include "base/arena.h"
@@ -16,39 +23,39 @@
 #include <math.h>
 #include <string.h>
 
-#define ROUNDED 1e-9  /* of the largest change: no change; what is prescribed comes out a thousand times smaller */
-#define BESIDE 0.05   /* of what a gene may move by: the second design */
-#define FAR_RANGE 3.0 /* times the largest value */
-#define CLASSES 16    /* at least one for each row */
+#define ROUNDED 1e-9  /* part of the maximum change that counts as none; prescribed values show up to 1e-12 */
+#define BESIDE 0.05   /* distance of the second design, over the range of a variable */
+#define FAR_RANGE 3.0 /* a range above this multiple of the maximum value is in doubt */
+#define CLASSES 16    /* maximum number of classes; at least one for each row */
 
-/* What each row is left as; a row of variables that changes nothing. */
+/* What no variable has been seen to change, and rows of variables that have been seen to change nothing. */
 typedef struct {
-    bool psi; /* with an inner node, and without goals */
+    bool psi; /* of a case with inner nodes and without objectives */
     bool goal[HF_DESIGN_ROWS_MAX], limit[HF_DESIGN_ROWS_MAX], variable[HF_DESIGN_ROWS_MAX];
 } unchanged;
 
 typedef struct {
     const hf_problem *p;
-    hf_model model; /* that of the problem, with genes linked by class */
-    hf_evaluator v; /* that of the problem, of this model, without limits */
+    hf_model model; /* the model of the problem with variables linked by class */
+    hf_evaluator v; /* the evaluator of the problem for this model, without limits */
     hf_sensitivity slopes;
     hf_workspace w;
-    int *leader;             /* [n_gene] of the model */
-    double *design;          /* [n_gene] */
-    double *move_m, *rate_N; /* [3][n_node], [n_cable] of a class */
-    double most_m, most_N;   /* the largest of them */
+    int *leader;             /* [n_gene] first variable of the class */
+    double *design;          /* [n_gene] values of the design variables */
+    double *move_m, *rate_N; /* [3][n_node], [n_cable] changes by a class */
+    double most_m, most_N;   /* maximum changes */
     unchanged now;
     void *block;
 } reach;
 
-/* ---- classes of genes ---- */
+/* ---- classes of variables ---- */
 
 static int row_of_gene(const hf_model *m, int k)
 {
     return m->gene ? m->gene[k].setting : 0;
 }
 
-/* Of a gene that leads: among the classes of its row, any. */
+/* Returns the class of a leading variable: any of the classes of its row. */
 static int class_of(const reach *q, int k)
 {
     int n_row = q->p->settings.optimize.n_variable, n = n_row > 1 ? CLASSES / n_row : CLASSES;
@@ -145,7 +152,7 @@ static bool lengthens(const reach *q, int e)
     return fabs(sum) > ROUNDED * q->most_m;
 }
 
-/* ---- what rows look at ---- */
+/* ---- what rows depend on ---- */
 
 static bool any_cable(const reach *q, int n, const int *cable, bool (*changes)(const reach *, int))
 {
@@ -164,7 +171,7 @@ static bool any_row(const reach *q, int n, const int *row)
 static bool changes_goal(const reach *q, const hf_goal *g)
 {
     const hf_goals *goals = &q->p->goals;
-    if (g->n_net) return true; /* a net that is cut otherwise has other tensions, and another shape */
+    if (g->n_net) return true; /* another cut changes the tensions and the shape of an as-built net */
     switch (g->wanted.goal) {
     case HF_GOAL_PSI:
     case HF_GOAL_SURFACE:
@@ -181,7 +188,7 @@ static bool changes_goal(const reach *q, const hf_goal *g)
         return any_cable(q, g->n_cable, g->cable, lengthens);
     case HF_GOAL_PULL:
     case HF_GOAL_DISPLACEMENT:
-        return true; /* what changes pulls its supports otherwise */
+        return true; /* any change of the shape changes the pull on supports */
     }
     return true;
 }
@@ -191,7 +198,7 @@ static bool changes_limit(const reach *q, const hf_limit *row)
     return row->kind == HF_LIMIT_DISPLACEMENT || any_cable(q, row->n_cable, row->cable, pulls_otherwise);
 }
 
-/* Strike out what the variables change at the design of the workspace. */
+/* Strikes out the rows that the variables change at the design in the workspace. */
 static void strike(reach *q)
 {
     const hf_optimize_settings *o = &q->p->settings.optimize;
@@ -209,7 +216,7 @@ static void strike(reach *q)
     }
 }
 
-/* The base design, or one a little beside it that has no symmetry. */
+/* Sets q->design to the initial design, or to one near it without its symmetry. */
 static void choose_design(reach *q, bool is_beside)
 {
     const hf_problem *p = q->p;
@@ -217,7 +224,7 @@ static void choose_design(reach *q, bool is_beside)
     for (int k = 0; k < q->model.n_gene; k++) {
         double lower, upper, range, base = p->base_N[k];
         hf_variables_bound(&p->settings.optimize, &q->model, k, base, &lower, &upper, &range);
-        if (q->model.gene_cable[k] >= 0) range = fmin(range, base); /* they stay above zero */
+        if (q->model.gene_cable[k] >= 0) range = fmin(range, base); /* values of cables stay above zero */
         double part = hf_random_uniform(&random);
         q->design[k] = is_beside && isfinite(range) ? base + BESIDE * (2 * part - 1) * range : base;
     }
@@ -290,7 +297,7 @@ static hf_status tell(const reach *q, hf_messages *messages)
                     why_goal(HF_GOAL_PSI));
 }
 
-/* Is there a row left of which it is not known that something changes it? */
+/* Returns true if a row remains that no variable has been seen to change, or that has changed nothing. */
 static bool is_open(const reach *q)
 {
     const hf_optimize_settings *o = &q->p->settings.optimize;
@@ -301,7 +308,8 @@ static bool is_open(const reach *q)
     return is;
 }
 
-/* HF_OK, also with nothing known of the second design; HF_NOT_EVALUATED with nothing known at all. */
+/* Examines both designs. Returns HF_OK, also if the second one has no shape; HF_NOT_EVALUATED if the first one has
+ * none; HF_NO_MEMORY. */
 static hf_status look(reach *q)
 {
     for (int i = 0; i < 2 && (i == 0 || is_open(q)); i++) {
@@ -316,7 +324,7 @@ static hf_status look(reach *q)
     return HF_OK;
 }
 
-/* A range of 50 for 50 %: far beyond the values of a row, where bounds do not say how far is meant. */
+/* Warns about ranges such as 50 for 50 %: far above the values of a row that has no upper bound. */
 static void doubt_ranges(const hf_problem *p, hf_messages *messages)
 {
     const hf_model *m = &p->model;

@@ -1,4 +1,8 @@
-/* Contents: the truss - strains - nodes that no goal counts */
+/* Checks a result for three things that its user should know before the net is built.
+ *
+ *     truss:   displacements too large for linear theory
+ *     strains: T/EA of a cable above a few per cent
+ *     nodes:   far from their positions after form-finding, in a direction that no objective counts */
 #include "run/result_doubt.h"
 
 #include "base/arena.h"
@@ -12,11 +16,13 @@
 
 /* ---- the truss ---- */
 
-/* Of the span of the attachments, 0.1 mm on 10 m: what errors of the cut may be; and of psi. */
+/* Neglected displacement, relative to the span of the attachments, from which on a warning appears: 0.1 mm on 10 m, as
+ * much as an error of cutting may be. It must also exceed SECOND_ORDER_PSI times psi. */
 #define SECOND_ORDER_DOUBT 1e-5
 #define SECOND_ORDER_PSI 0.05
 
-/* The truss is linear: is what that leaves out too much for a reflector of this size, with this psi? */
+/* The truss is computed by linear theory. This warns if the neglected second order is large for the size of the
+ * reflector and its psi. */
 void hf_result_doubt_truss(const hf_problem *p, const hf_carrier_state *truss, const hf_workspace *shape,
                            hf_messages *messages)
 {
@@ -32,7 +38,7 @@ void hf_result_doubt_truss(const hf_problem *p, const hf_carrier_state *truss, c
 
 /* ---- strains ---- */
 
-/* Fibres and steel break at a few per cent: beyond that EA or the tension is not what was meant. */
+/* Fibres and steel break at a few per cent. With more strain, EA or the tension is not the intended one. */
 #define STRAIN_DOUBT 0.05
 
 void hf_result_doubt_strain(const hf_problem *p, const hf_workspace *shape, hf_messages *messages)
@@ -57,10 +63,11 @@ void hf_result_doubt_strain(const hf_problem *p, const hf_workspace *shape, hf_m
         p->scene.cable_id[worst], more, most * 100, shape->tension_N[worst], EA_N[worst]);
 }
 
-/* ---- nodes that no goal counts ---- */
+/* ---- nodes that no objective counts ---- */
 
-/* Of the mean length of a node's cables. In the cases of configs/ the largest open move is 0.11 of it; those that the
- * goal facets leaves open where every force density varies are 0.3 to 1.3 [0.17 to 0.3]. */
+/* Displacement, relative to the mean length of a node's cables, from which on a warning appears. In the cases of
+ * configs/ the maximum uncounted one is 0.11. With every force density as a variable, the objective facets permits 0.3
+ * to 1.3 [0.17 to 0.3]. */
 #define FAR_MOVE 0.25
 
 static void lay_out_places(hf_arena *a, const hf_model *m, hf_places *to)
@@ -94,7 +101,7 @@ static void count_goal(const hf_problem *p, const hf_goal *g, hf_places *to)
         for (int i = 0; i < g->n_cable; i++)
             count_rows(to, m->end_row + 2 * (ptrdiff_t)g->cable[i], 2, HF_COUNTED);
         break;
-    default: /* forces, and what all lengths add up to, leave places open */
+    default: /* forces, and sums of lengths, do not fix positions */
         break;
     }
 }
@@ -132,7 +139,8 @@ void hf_places_free(hf_places *places)
     *places = (hf_places){0};
 }
 
-/* How far a node has moved in a way that goals count, and in one that they do not. */
+/* Splits the displacement of a node since form-finding, m, into a part that objectives count and one that they do
+ * not. */
 static void split_move(const hf_problem *p, const hf_places *form, const hf_workspace *shape, int row,
                        double *counted_m, double *open_m)
 {
@@ -153,7 +161,7 @@ static void split_move(const hf_problem *p, const hf_places *form, const hf_work
     *open_m = sqrt(fmax(0, square - across * across));
 }
 
-/* The set that most cables at a node are of, as a row of a case can name it. */
+/* Returns the set to which most cables at a node belong, or their group, as a row of a case can name it. */
 static const char *set_at(const hf_problem *p, int row)
 {
     const hf_scene *s = &p->scene;
@@ -171,11 +179,11 @@ static const char *set_at(const hf_problem *p, int row)
 }
 
 typedef struct {
-    int row, n; /* the farthest; how many are far */
+    int row, n; /* row of the farthest node, and number of far nodes */
     double move_m;
 } far_nodes;
 
-/* "", or ", and 61 more". */
+/* Writes "", or ", and 61 more". Returns text. */
 static const char *and_more(const far_nodes *far, char text[32])
 {
     *text = '\0';

@@ -1,4 +1,16 @@
-/* Contents: form-finding - optimisation - the whole run */
+/* One whole run of a case, as `hifdm run` does it.
+ *
+ *     case, net, truss, model (problem_parts.c); the result file is opened, resumed or found finished
+ *         | form-finding: shape, certificate, measures
+ *         | search: generations, each stored when it is evaluated
+ *         | refinement by Levenberg-Marquardt; or a front; or a point taken from an earlier front
+ *         | load cases of the as-built net (cases.c)
+ *         | tolerance: samples of the as-built net (tolerance_stage.c)
+ *         v
+ *     doubts about the result, summary, finished file
+ *
+ * Each stage measures and stores its shape. A run that is stopped publishes its file, and the same command resumes
+ * it. */
 #include <hifdm/run.h>
 
 #include "base/clock.h"
@@ -29,27 +41,27 @@
 
 const char *const hf_run_phase_word[4] = {"form", "optimize", "polish", "tolerance"};
 
-#define HISTORY_MAX 1000000 /* iterations whose history is kept */
+#define HISTORY_MAX 1000000 /* maximum number of iterations in the history */
 
 /* Everything a run owns. */
 typedef struct {
     const hf_run_request *request;
     hf_problem problem;
-    hf_carrier_state truss;    /* under the shape of the last stage whose shape is the result */
-    const hf_workspace *shape; /* that holds the same shape */
-    hf_places places;          /* of the form-finding, when an optimisation follows it */
-    hf_cases cases;            /* the net as built of that design, if the case has states */
+    hf_carrier_state truss;    /* of the truss, under the shape of the result */
+    const hf_workspace *shape; /* workspace that holds that shape */
+    hf_places places;          /* after form-finding, if an optimisation follows */
+    hf_cases cases;            /* as-built net of the design, if there are load cases */
     hf_history history;
     hf_store *store;
     hf_optimiser optimiser;
-    hf_front front;         /* of optimize.objectives */
-    hf_taken_point taken;   /* in place of that front */
-    hf_optimiser_plan plan; /* what optimize.method consists of */
+    hf_front front;         /* front of optimize.objectives */
+    hf_taken_point taken;   /* point taken instead of a search for a front */
+    hf_optimiser_plan plan; /* the stages and algorithms of optimize.method */
     int first_generation;   /* of this session */
     long first_evaluation;
-    char stopped_at[HF_POLISH_STAGE_TEXT]; /* how far a stage came that was told to stop, for the message */
-    double store_cpu_s;                    /* spent in storing generations */
-    double earlier_wall_s, earlier_cpu_s, earlier_store_s; /* of other sessions, as far as it was published */
+    char stopped_at[HF_POLISH_STAGE_TEXT];                 /* how far an interrupted stage came, for the message */
+    double store_cpu_s;                                    /* processor time for storing generations */
+    double earlier_wall_s, earlier_cpu_s, earlier_store_s; /* of earlier sessions, as published */
 } run;
 
 static void run_free(run *r, hf_messages *messages)
@@ -75,14 +87,16 @@ static void observe(const run *r, hf_run_progress progress)
     if (r->request->observer) r->request->observer(r->request->observer_context, &progress);
 }
 
-/* End a run that was told to stop: publish all finished generations, from which the same command goes on. */
+/* Publishes all finished generations of a run that was told to stop; the same command resumes from them. Returns
+ * HF_INTERRUPTED, or an error of the store. */
 static hf_status stop_here(run *r, const hf_summary *s, hf_messages *messages)
 {
     HF_TRY(hf_store_publish(r->store, s, true, messages));
     return HF_INTERRUPTED;
 }
 
-/* Once for each shape that is reported. */
+/* Measures a shape that is reported, and stops the run if that was interrupted. An interrupted form-finding is stopped
+ * by find_form, after its shape is stored. */
 static hf_status measure_shape(run *r, hf_stage stage, const hf_workspace *w, hf_summary *s, hf_messages *messages)
 {
     const hf_run_request *q = r->request;
@@ -90,7 +104,7 @@ static hf_status measure_shape(run *r, hf_stage stage, const hf_workspace *w, hf
     return status == HF_INTERRUPTED && stage != HF_STAGE_FORM ? stop_here(r, s, messages) : status;
 }
 
-/* Forces and displacements of the truss, if there is one, under the net of this shape. */
+/* Sets r->truss to the forces and displacements of the truss, if there is one, under the net of this shape. */
 static hf_status load_truss(run *r, hf_workspace *w, hf_messages *messages)
 {
     const hf_problem *p = &r->problem;
@@ -101,7 +115,7 @@ static hf_status load_truss(run *r, hf_workspace *w, hf_messages *messages)
     return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the forces in the truss");
 }
 
-/* The shape in the workspace is the result, unless a later stage finds another. */
+/* Makes the shape in the workspace the result, unless a later stage finds another. */
 static hf_status take_result(run *r, hf_workspace *w, hf_messages *messages)
 {
     HF_TRY(load_truss(r, w, messages));
@@ -140,7 +154,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     hf_evaluate_form(&p->model, form, &p->workspace, &r->history, &p->form);
     s->form_wall_s = hf_clock_s() - start_s;
     s->form = p->form;
-    for (int k = 0; k < HF_DESIGN_ROWS_MAX; k++) /* measured with the base design, if the run comes to that */
+    for (int k = 0; k < HF_DESIGN_ROWS_MAX; k++) /* measured in prepare_optimize, with the initial design */
         s->form.goal[k] = (double)NAN;
     hf_status status = hf_problem_explain(p, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
@@ -154,8 +168,8 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
 
 /* ---- optimisation ---- */
 
-/* Base design with its goals, batch and optimiser. Everything that the generations need is allocated here, before the
- * first one. */
+/* Prepares the initial design with its objectives, the batch and the optimiser. It allocates everything that the
+ * generations need before the first one. */
 static hf_status prepare_optimize(run *r, hf_summary *s, hf_messages *messages)
 {
     hf_problem *p = &r->problem;
@@ -181,7 +195,7 @@ static double *best_design(const hf_population *p)
 
 static void count_at_bounds(const hf_population *p, const double *design, int *at_lower, int *at_upper)
 {
-    *at_lower = *at_upper = 0; /* a resumed run has those of the session before */
+    *at_lower = *at_upper = 0; /* a resumed run has the counts of the session before */
     for (int k = 0; k < p->n_gene; k++) {
         *at_lower += design[k] <= p->lower_N[k];
         *at_upper += design[k] >= p->upper_N[k];
@@ -198,15 +212,15 @@ static void note_best(const hf_population *p, hf_summary *s)
     s->best_individual = p->best;
 }
 
-/* Store the shape of the best individual. It is in the last generation (elitism) and is evaluated once more for its
- * shape, which gives the same bits. */
+/* Stores the shape of the best individual. That is in the last generation (elitism), and evaluating it again for its
+ * shape gives the same bits. */
 static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
 {
     const double *design = best_design(&r->optimiser.population);
     hf_form_result again;
     hf_workspace *w = hf_batch_run_one(&r->problem.batch, design, &again);
     hf_certify(&r->problem.model, w, &again);
-    s->best = again; /* the same bits, and the figures that are not stored for each individual */
+    s->best = again; /* the same bits, with the figures that individuals do not store */
     count_at_bounds(&r->optimiser.population, design, &s->best_n_at_lower, &s->best_n_at_upper);
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
     hf_measure_limits(&r->problem, HF_STAGE_OPTIMIZE, w, s);
@@ -215,7 +229,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->problem.model, w, design, messages);
 }
 
-/* Write the state of the generations into the summary; files published between generations hold it as well. */
+/* Writes the state of the generations into the summary, which files published between generations contain as well. */
 static void sum_up(const run *r, double start_s, hf_summary *s)
 {
     const hf_population *p = &r->optimiser.population;
@@ -229,10 +243,10 @@ static void sum_up(const run *r, double start_s, hf_summary *s)
     s->optimize_stop = p->stop_reason;
 }
 
-/* A generation that is being stored while the next one is bred and evaluated. */
+/* A generation that is stored while the next one is bred and evaluated. */
 typedef struct {
     run *r;
-    hf_population population; /* as hf_optimiser_tell left it */
+    hf_population population; /* copy of the state after hf_optimiser_tell */
     const hf_summary *summary;
     hf_messages *messages;
     hf_status status;
@@ -251,7 +265,8 @@ static void observe_generation(const told *t)
                                     .elapsed_s = t->summary->optimize_wall_s - t->r->earlier_wall_s});
 }
 
-/* Store a generation, publish it when due, then notify the observer: only generations that are safe are reported. */
+/* Stores a generation, publishes it when due, then notifies the observer, which thus hears of stored generations
+ * only. */
 static void keep(void *context)
 {
     told *t = context;
@@ -262,8 +277,8 @@ static void keep(void *context)
     t->r->store_cpu_s += hf_clock_thread_cpu_s() - start_s;
 }
 
-/* Restore the generations of earlier sessions. Without any, publish a file without generations at once, since a journal
- * is always read together with a published file. */
+/* Restores the generations of earlier sessions. If there are none, publishes a file without generations at once,
+ * because a journal is always read together with a published file. */
 static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
 {
     const hf_population *p = &r->optimiser.population;
@@ -279,7 +294,7 @@ static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
     return HF_OK;
 }
 
-/* Evaluate the first generation of this session; false when there is none. */
+/* Evaluates the first generation of this session. Returns false if there is none. */
 static bool evaluate_first(run *r)
 {
     const hf_population *p = &r->optimiser.population;
@@ -317,7 +332,7 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
     return hf_no_design_evolved(&r->problem, p, messages);
 }
 
-/* The shape of s->polish is in the workspace, of this design. */
+/* Completes and stores the refinement: s->polish is the result of this design, and the workspace holds its shape. */
 static hf_status keep_polish(run *r, hf_workspace *w, const double *design, hf_summary *s, hf_messages *messages)
 {
     hf_certify(&r->problem.model, w, &s->polish);
@@ -328,7 +343,7 @@ static hf_status keep_polish(run *r, hf_workspace *w, const double *design, hf_s
     return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);
 }
 
-/* A point of a front that was found before. */
+/* Takes a point of an earlier front as the design. */
 static hf_status take_point(run *r, hf_summary *s, hf_messages *messages)
 {
     hf_workspace *w = &r->problem.workspace;
@@ -347,7 +362,7 @@ static hf_status take_point(run *r, hf_summary *s, hf_messages *messages)
     return keep_polish(r, w, design, s, messages);
 }
 
-/* Levenberg-Marquardt from the best individual, or from the base design when there was no genetic algorithm. */
+/* Refines the best individual, or the initial design if no search was run. */
 static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
 {
     hf_workspace *w = &r->problem.workspace;
@@ -355,7 +370,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     hf_polish_result outcome;
     double *design = r->problem.base_N;
     if (s->has_optimize && p->best >= 0) design = best_design(p);
-    for (int k = 0; k < p->n_gene; k++) /* a base may be outside of the bounds */
+    for (int k = 0; k < p->n_gene; k++) /* the initial design may violate the bounds */
         design[k] = hf_population_clamp(p, k, design[k]);
     observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});
     hf_status status = hf_polish_stage_run(r->request, &r->problem, p, s, r->store, design, &outcome, &s->polish_wall_s,
@@ -371,7 +386,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
         return HF_OK;
     }
     hf_evaluate(&r->problem.evaluator, design, w, &s->polish);
-    if (must_stop(r)) return stop_here(r, s, messages); /* the evaluation may have been cut short */
+    if (must_stop(r)) return stop_here(r, s, messages); /* the evaluation may have been interrupted */
     s->polish_is_result = r->plan.ends_with_polish;
     s->polish_iterations = outcome.iterations;
     s->polish_evaluations = outcome.evaluations;
@@ -383,7 +398,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     return keep_polish(r, w, design, s, messages);
 }
 
-/* As the result, or as the comparison that was asked for; unasked only where it is cheap. */
+/* Returns true if a refinement is to be run: as the result, on request, or by default if it is cheap. */
 static bool wants_polish(const run *r, const hf_summary *s)
 {
     hf_compare compare = r->problem.settings.optimize.compare_lm;
@@ -391,7 +406,7 @@ static bool wants_polish(const run *r, const hf_summary *s)
     return compare == HF_COMPARE_AUTO && hf_polish_is_cheap(&r->problem.evaluator, s->evaluations);
 }
 
-/* The front by Levenberg-Marquardt. */
+/* Finds the front by Levenberg-Marquardt and stores it. */
 static hf_status follow_front(run *r, hf_summary *s, hf_messages *messages)
 {
     double begin_s = hf_clock_s();
@@ -405,8 +420,8 @@ static hf_status follow_front(run *r, hf_summary *s, hf_messages *messages)
     return hf_store_front(r->store, &r->problem.scene, &r->problem.model, s, &r->front, messages);
 }
 
-/* The front of objectives: that of the last generation, from which Levenberg-Marquardt sets out where the method ends
- * with it; or by that alone. */
+/* Finds and stores the front of the objectives. With a search it is that of the last generation, from which
+ * Levenberg-Marquardt starts if the method ends with it. Otherwise Levenberg-Marquardt finds it alone. */
 static hf_status find_front(run *r, hf_summary *s, hf_messages *messages)
 {
     hf_problem_warn_of_front(&r->problem, messages);
@@ -437,14 +452,16 @@ static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
 
 /* ---- the whole run ---- */
 
-/* The path given by -o, or else the name of the case with .h5, in the current folder. */
+/* Sets output to the path given by -o, or else to the name of the case with .h5 in the current folder. Returns HF_OK,
+ * or HF_IO if the path is too long. */
 static hf_status choose_output(const hf_run_request *o, char output[HF_OUTPUT_SIZE], hf_messages *messages)
 {
     if (hf_path_choose(o->output, o->case_path, ".h5", output, HF_OUTPUT_SIZE)) return HF_OK;
     return hf_error(messages, HF_IO, "%s: the path is too long", o->output ? o->output : o->case_path);
 }
 
-/* The stages that the case asks for, in order. No stage follows a form-finding that fails or does not converge. */
+/* Runs form-finding and optimisation as the case requires. No optimisation follows a form-finding that fails or does
+ * not converge. */
 static hf_status stages(run *r, hf_summary *s, hf_messages *messages)
 {
     HF_TRY(find_form(r, s, messages));
@@ -456,37 +473,41 @@ static hf_status stages(run *r, hf_summary *s, hf_messages *messages)
     return HF_OK;
 }
 
-/* A run that did not converge or found no feasible design still writes its file, which says how far it came. */
+/* Returns true if the run writes its file. A run that did not converge or found no feasible design writes one that
+ * shows how far it came. */
 static bool leaves_result(hf_status status)
 {
     return status == HF_OK || status == HF_NOT_CONVERGED || status == HF_NO_FEASIBLE;
 }
 
-/* Faults of the machine and files in the way: the same command may succeed once they are gone. */
+/* Returns true for faults of the machine and for files in the way. The same command may succeed once they are
+ * removed. */
 static bool is_of_machine(hf_status status)
 {
     return status == HF_IO || status == HF_NO_MEMORY || status == HF_EXISTS;
 }
 
-/* Does the design end the run though its samples failed? Only where no other attempt finds any: the result says why. */
+/* Returns true if the result keeps the design although its samples failed. That is so only if another attempt would
+ * fail, too; the result then contains the reason. */
 static bool outlives_samples(const hf_run_request *q, hf_status status)
 {
     return status != HF_OK && status != HF_INTERRUPTED && !is_of_machine(status) && !hf_tolerance_stage_is_task(q);
 }
 
-/* Publishes the stages that are stored, unfinished, so that the same command resumes after them. Where the disk is full
- * already, what was published before and the journals remain. */
+/* Publishes the stages that are stored, unfinished, so that the same command resumes after them. If the disk is full,
+ * the file published before and the journals remain. */
 static void keep_unfinished(const run *r, const hf_summary *s, hf_status status, const char *output,
                             hf_messages *messages)
 {
-    hf_messages unwanted = {0}; /* the failure that led here has its message */
+    hf_messages unwanted = {0}; /* the failure that led here has its own message */
     bool is_kept = r->store && hf_store_publish(r->store, s, true, &unwanted) == HF_OK;
     if (is_kept && status != HF_INTERRUPTED && !r->request->of_sweep)
         hf_warning(messages, "%s: is unfinished; run the same command again to resume", output);
     hf_messages_free(&unwanted);
 }
 
-/* The result is finished already: return its stored summary and status, and the errors that explain the status. */
+/* Returns the stored summary and status of a result that is already finished, with the errors that explain the
+ * status. */
 static hf_status repeat_finished(const hf_run_request *q, const char *output, hf_summary *s, hf_messages *messages)
 {
     HF_TRY(hf_store_read_finished(output, s, messages));
@@ -497,7 +518,8 @@ static hf_status repeat_finished(const hf_run_request *q, const char *output, hf
     return s->status;
 }
 
-/* Errors first: where there is no room for all lines, warnings are lost, not why the run failed. */
+/* Copies the messages into text, errors first. If there is no room for all lines, warnings are lost and not the reason
+ * of a failure. */
 static void keep_messages(const hf_messages *messages, char text[HF_WARNINGS_SIZE])
 {
     size_t n = 0, length;
@@ -511,7 +533,8 @@ static void keep_messages(const hf_messages *messages, char text[HF_WARNINGS_SIZ
     hf_text_trim_utf8(text);
 }
 
-/* Set *state, and open the store unless the state is HF_STORE_FINISHED, or for one task of several, which has none. */
+/* Sets *state and opens the store. No store is opened for a finished result, nor for one task of several, which has
+ * none. */
 static hf_status open_store(run *r, char *output, hf_store_state *state, hf_messages *messages)
 {
     const hf_run_request *q = r->request;
@@ -524,7 +547,7 @@ static hf_status open_store(run *r, char *output, hf_store_state *state, hf_mess
     if (*state == HF_STORE_FINISHED) return HF_OK;
     HF_TRY(hf_tolerance_stage_look(q, &r->problem, output, messages));
     if (hf_tolerance_stage_is_task(q)) return HF_OK;
-    HF_TRY(hf_lapack_load(messages)); /* the file says which one it is */
+    HF_TRY(hf_lapack_load(messages)); /* the file records which one it is */
     if (*state == HF_STORE_UNFINISHED) return hf_store_resume(output, &r->store, messages);
     return hf_store_create(output, q->restart, settings, scene, truss, q->argc, q->argv, &r->store, messages);
 }

@@ -1,3 +1,9 @@
+/* Finds the front of the objectives by Levenberg-Marquardt (METHOD section 7, fronts).
+ *
+ *     designs of an earlier front within the bounds, or the initial design
+ *         | hf_trade_find: points between the ends, with progress to the observer
+ *         v
+ *     front -> summary; if it fails, the earlier front stays, with a warning */
 #include "run/run_front.h"
 
 #include "base/clock.h"
@@ -23,7 +29,8 @@ void hf_run_front_tell(const hf_front *front, double wall_s, hf_summary *s, hf_m
     }
 }
 
-/* Points that the bound on steps stopped; one that stalls gains nothing from more of them. */
+/* Warns about points that stopped at the maximum number of steps. Points that stalled would gain nothing from more
+ * steps. */
 static void warn_of_steps(const hf_front *front, int max_iterations, hf_messages *messages)
 {
     int n = 0;
@@ -38,7 +45,7 @@ static void warn_of_steps(const hf_front *front, int max_iterations, hf_messages
                    n, front->n_point, max_iterations);
 }
 
-/* Why Levenberg-Marquardt has found no front; returns text. */
+/* Writes why Levenberg-Marquardt has found no front. Returns text. */
 static const char *explain(const hf_problem *p, hf_status status, int end, char *text, size_t size)
 {
     char name[HF_GOAL_NAME_SIZE];
@@ -58,7 +65,8 @@ static const char *explain(const hf_problem *p, hf_status status, int end, char 
     return text;
 }
 
-/* The designs of the earlier front within the bounds, or the base design: [n][n_gene], n at least 1. */
+/* Returns the designs of the earlier front within the bounds, or else the initial design: [n][n_gene], n at least 1.
+ * The caller frees them. Returns NULL if there is no memory. */
 static double *make_starts(const hf_problem *p, const hf_population *bounds, const hf_front *earlier, int *n)
 {
     int n_gene = p->model.n_gene;
@@ -74,11 +82,11 @@ static double *make_starts(const hf_problem *p, const hf_population *bounds, con
     return start;
 }
 
-/* How far the front is, for the observer of the run. */
+/* What the observer of the run needs to know about the search for a front. */
 typedef struct {
     const hf_run_request *request;
     double start_s;
-    int n_point; /* asked for */
+    int n_point; /* maximum number of points */
 } progress;
 
 static void tell(const progress *p, int n_point, long n_step, bool is_last)

@@ -1,4 +1,11 @@
-/* Contents: which points - one point - all points */
+/* Runs the missing points of a study on all cores.
+ *
+ *     ledger of the folder -> points to run (their states, task of several)
+ *         | each point, on any thread:
+ *         |     claim it by a lock, run the case with its overrides
+ *         |     settle the file in the background, write the row of the ledger, release the lock
+ *         v
+ *     counts; a fault of the machine stops the sweep and fails no point */
 #include "run/sweep.h"
 
 #include "base/child.h"
@@ -19,7 +26,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- which points ---- */
+/* ---- points to run ---- */
 
 typedef struct {
     const hf_sweep_request *request;
@@ -30,8 +37,8 @@ typedef struct {
     pthread_mutex_t lock; /* protects count, messages and the observer */
     hf_sweep_count count;
     hf_messages *messages;
-    bool is_without_locks;   /* and this was said */
-    _Atomic hf_status fatal; /* not HF_OK: the machine is sick, so no point may begin; read without the lock */
+    bool is_without_locks;   /* a warning about this was given */
+    _Atomic hf_status fatal; /* not HF_OK: fault of the machine, no point may begin; read without the lock */
 } sweep;
 
 static hf_status choose_points(sweep *w, const hf_points *points)
@@ -58,7 +65,7 @@ static hf_status choose_points(sweep *w, const hf_points *points)
 
 /* ---- one point ---- */
 
-/* Writes the first error message as one line, without "error: " in front. */
+/* Writes the first error message as one line, without "error: ". */
 static void first_error(const hf_messages *said, hf_status status, char reason[HF_LEDGER_REASON_MAX + 1])
 {
     const char *from = said->text;
@@ -73,7 +80,8 @@ static void first_error(const hf_messages *said, hf_status status, char reason[H
     hf_text_trim_utf8(reason);
 }
 
-/* Not the point's fault: it may go well another time. So the point does not count as failed, and no other begins. */
+/* Returns true for a fault of the machine, which another attempt may not have. The point does not count as failed, and
+ * no other point begins. */
 static bool is_of_machine(hf_status status)
 {
     return status == HF_IO || status == HF_NO_MEMORY;
@@ -86,8 +94,8 @@ static void stop_sweep(sweep *w, hf_status status, const char *id, const char *w
     pthread_mutex_unlock(&w->lock);
 }
 
-/* Of the warnings of a point those of files that are left in the folder of the sweep. The result file has the others.
- */
+/* Repeats those warnings of a point that are about files left in the folder of the sweep. The result file contains the
+ * others. */
 static void warn_of_files(sweep *w, const hf_messages *said)
 {
     static const char begin[] = "warning: ";
@@ -132,12 +140,12 @@ static bool must_stop(const sweep *w)
     return *w->request->stop_requested || w->fatal != HF_OK;
 }
 
-/* A point whose computation has ended and whose result file is being written to the disk. */
+/* A point that has been computed and whose result file is being written to the disk. */
 typedef struct {
     sweep *w;
     int i;
     hf_status status;
-    hf_store *store; /* NULL: there is no file, or it already has its final name */
+    hf_store *store; /* NULL: no file, or it has its final name */
     hf_messages said;
     hf_summary summary;
 } finished_point;
@@ -153,7 +161,7 @@ static void settle_point(void *context)
     free(p);
 }
 
-/* Is the point ours to run? Where the file system has no locks, it is. */
+/* Returns true if this process is to run the point. Without locks of the file system it always is. */
 static bool claim(sweep *w, int i)
 {
     const char *id = w->request->study->id[i];
@@ -167,7 +175,7 @@ static bool claim(sweep *w, int i)
     }
     bool is_ours = lock != HF_LOCK_TAKEN, is_finished = false;
     if (is_ours) is_finished = hf_ledger_is_finished(&w->ledger, w->request->study, i);
-    if (is_finished) hf_ledger_release(&w->ledger, id); /* another sweep has done it meanwhile */
+    if (is_finished) hf_ledger_release(&w->ledger, id); /* another sweep has finished it in the meantime */
     pthread_mutex_lock(&w->lock);
     w->count.n_elsewhere += !is_ours || is_finished;
     if (lock == HF_LOCK_NONE && !w->is_without_locks)

@@ -10,15 +10,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the largest size of an objective. Those of Levenberg-Marquardt come again to the bit, those of generations, which
- * other solvers find, within 3.5e-8 (configs/chen2022-truss.yaml, 20 generations); machines differ by less. */
+/* Maximum difference of an objective to the stored one, relative to its maximum over the front. Levenberg-Marquardt
+ * reproduces its points to the bit. Points of generations come from other solvers and agree within 3.5e-8
+ * (configs/chen2022-truss.yaml, 20 generations); machines differ by less. */
 #define SAME 1e-6
 
 #define MADE_OF "give the case and the --set that it was made of%s"
 #define KEYS_TOLD 8
 enum { DIFFERENCES_SIZE = 640 };
 
-/* A front as it is in its file. */
+/* A front as stored in its file. */
 typedef struct {
     hf_summary *summary;
     hf_front front;
@@ -26,7 +27,7 @@ typedef struct {
     size_t gene_size;
 } stored_front;
 
-/* ---- which point ---- */
+/* ---- the point ---- */
 
 static hf_status read_words(const char *point, hf_front_origin *taken, hf_messages *messages)
 {
@@ -44,9 +45,9 @@ static hf_status read_words(const char *point, hf_front_origin *taken, hf_messag
     return HF_OK;
 }
 
-/* ---- is it of this case? ---- */
+/* ---- does it belong to this case? ---- */
 
-/* Does a point of the front have nothing to do with this key? */
+/* Returns true if this key of the case has no effect on the points of its front. */
 static bool is_beside(const hf_problem *p, const char *key)
 {
     static const char *const section[] = {"cases", "tolerance", "adjust", "sweep"};
@@ -55,7 +56,7 @@ static bool is_beside(const hf_problem *p, const char *key)
     return false;
 }
 
-/* "; what differs: form.pretension_N", or nothing where that cannot be told; returns words. */
+/* Writes "; what differs: form.pretension_N", or "" if the differences are unknown. Returns words. */
 static const char *tell_keys(const hf_problem *p, char words[DIFFERENCES_SIZE])
 {
     char keys[4096], *next = keys;

@@ -1,4 +1,15 @@
-/* Contents: what cannot be - the identity of samples - samples - what comes of them - a trial - together */
+/* Samples of the as-built net: errors of cutting, stiffness, supports and temperature (METHOD section 12).
+ *
+ *     design -> as-built net (hf_built_make), prediction to first order
+ *         |
+ *         v
+ *     samples in chunks (hf_montecarlo_run) -> journal, kept for a resumed run and for other tasks
+ *         | all chunks are there
+ *         v
+ *     statistics; the scale of the errors for a required yield -> summary and store
+ *
+ * hf_tolerance_stage_check refuses a case before the form-finding. hf_tolerance_stage_try estimates the time from a few
+ * samples. */
 #include "run/tolerance_stage.h"
 
 #include "base/arena.h"
@@ -13,19 +24,21 @@
 #include <math.h>
 #include <string.h>
 
-#define SLACK_DOUBT 0.05   /* part of the samples: more of them with slack cables are warned about */
-#define SCALE_SAMPLES 1000 /* at most, of each yield on the way to the scale that is wanted */
+#define SLACK_DOUBT 0.05   /* part of the samples with slack cables above which a warning appears */
+#define SCALE_SAMPLES 1000 /* maximum samples of each yield in the search for the scale */
 
-/* ---- what cannot be ---- */
+/* ---- checks of the case ---- */
 
-/* The field of which samples tell the loss; returns whether the facets are fine enough for its frequency. */
+/* Makes the beam whose loss the samples measure, at the highest frequency. Returns true if the facets are fine enough
+ * for it. */
 static bool make_beam(const hf_problem *p, hf_gain_beam *beam)
 {
     hf_gain_beam_make(&p->surface, &p->facets, p->scene.position_m, hf_surface_highest_Hz(&p->surface), beam);
     return beam->order < HF_GAIN_ORDER_MOST;
 }
 
-/* A loss of gain that somebody asks for is that of a reflector, which is made of its facets. */
+/* Returns the word of the same loss of gain of the facets, if `measure` is one of the nodes and the net has facets,
+ * else NULL. The gain of a reflector is that of its facets. */
 static const char *loss_of_nodes(const hf_problem *p, hf_tolerance_measure measure)
 {
     if (measure != HF_TOLERANCE_GAIN_LOSS && measure != HF_TOLERANCE_FIT_GAIN_LOSS) return NULL;
@@ -74,7 +87,8 @@ static hf_status check_expansion(const hf_problem *p, const hf_material *t, hf_m
                     s->cable_id[first]);
 }
 
-/* What rows of tolerance.truss name must be there, and its expansion known. */
+/* Checks that the parts of the truss in tolerance.truss exist and have an expansion. Returns HF_OK, or the status of
+ * the last fault, with messages. */
 static hf_status check_truss_heat(const hf_problem *p, hf_messages *messages)
 {
     const hf_tolerance_settings *t = &p->settings.tolerance;
@@ -90,7 +104,7 @@ static hf_status check_truss_heat(const hf_problem *p, hf_messages *messages)
     return worst;
 }
 
-/* All errors together must leave half of each cable. */
+/* Checks that all errors together leave at least half of each cable. Returns HF_OK, or HF_BAD_CASE with a message. */
 #define LARGEST_NUMBER 9 /* no number of either distribution is larger */
 static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf_messages *messages)
 {
@@ -101,7 +115,7 @@ static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf
     for (int e = 0; e < s->n_cable; e++) {
         double length = hf_scene_theoretical_length(s, e), by_cut = LARGEST_NUMBER * t->sigma_cut_m / length;
         double by_heat = 0;
-        if (t->sigma_temperature_K > 0 && !isnan(material->expansion_per_K[e])) /* check_expansion tells of others */
+        if (t->sigma_temperature_K > 0 && !isnan(material->expansion_per_K[e])) /* check_expansion reports the others */
             by_heat = LARGEST_NUMBER * t->sigma_temperature_K * fabs(material->expansion_per_K[e]);
         if (by_cut + by_ratio + by_heat < 0.5) continue;
         const char *key = by_cut >= by_ratio && by_cut >= by_heat ? "tolerance.sigma_cut_m"
@@ -116,7 +130,7 @@ static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf
     return HF_OK;
 }
 
-/* The place of the section, for messages: that of the first sigma that the case gives. */
+/* Writes the location of the section for messages: that of the first sigma in the case. */
 static void place_section(const hf_case *c, char *place, size_t size)
 {
     static const char *const key[] = {"tolerance.sigma_cut_m",         "tolerance.sigma_cut_ratio",
@@ -133,7 +147,7 @@ static hf_status check_EA(const hf_problem *p, hf_messages *messages)
     return hf_cable_demand_EA(&p->scene, place, "errors of nets as built need", "", messages);
 }
 
-/* Struts that the laws tell of; those that other laws lead to show after form-finding alone. */
+/* Refuses struts that are visible in the laws. Struts that result from other laws show only after form-finding. */
 static hf_status check_struts(const hf_problem *p, hf_messages *messages)
 {
     const hf_scene *s = &p->scene;
@@ -181,7 +195,8 @@ static hf_status identify_case(const hf_problem *p, char identity[65])
     return hf_store_identify(&p->settings, &p->scene, truss, identity);
 }
 
-/* Of the case, and of the net that is made: machines that find other designs do not share samples. */
+/* The identity depends on the case and on the net made of the design, so machines that find different designs do not
+ * share samples. */
 static hf_status identify(const hf_problem *p, const hf_built *b, char identity[65])
 {
     char of_case[65], of_design[65];
@@ -206,7 +221,7 @@ typedef struct {
     const hf_tolerance_stage *stage;
     hf_built built;
     hf_montecarlo montecarlo;
-    hf_gain_beam beam; /* that of the theoretical net, as of all shapes */
+    hf_gain_beam beam; /* of the net at the target positions, used for all shapes */
     hf_samples samples;
     double begin_s;
 } job;
@@ -237,7 +252,7 @@ static void tell(const job *j, long n_new, bool is_last)
     q->observer(q->observer_context, &now);
 }
 
-/* It takes a while in large nets, and no sample is found meanwhile. */
+/* Reports the phase without samples, because the first order takes a while in large nets. */
 static void tell_first_order(const job *j)
 {
     const hf_run_request *q = j->stage->request;
@@ -245,7 +260,7 @@ static void tell_first_order(const job *j)
     if (q->observer) q->observer(q->observer_context, &now);
 }
 
-/* The samples are there; some of them are solved again with other errors. */
+/* Reports the search for the scale: all samples exist, and some are solved again with scaled errors. */
 static void tell_scale(void *context, double scale)
 {
     const job *j = context;
@@ -286,7 +301,8 @@ static hf_status open_samples(job *j, hf_messages *messages)
     const hf_run_request *q = stage->request;
     char identity[65];
     bool is_task = hf_tolerance_stage_is_task(q);
-    const char *output = *stage->output && !q->of_sweep ? stage->output : NULL; /* points of a sweep begin anew */
+    const char *output = *stage->output && !q->of_sweep ? stage->output : NULL; /* points of a sweep start without old
+                                                                                 * samples */
     if (identify(p, &j->built, identity) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
     const char *beside = *stage->output ? stage->output : NULL;
     HF_TRY(hf_samples_open(output, beside, q->task, is_task ? q->tasks : 0, identity, q->restart,
@@ -324,10 +340,10 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
     return status;
 }
 
-/* ---- what comes of them ---- */
+/* ---- results ---- */
 
-/* Of the cable whose tension the errors of its own cut outweigh most: what sigma is of its tension where its ends stay,
- * EA sigma/length, the most that it can be. */
+/* Returns the cable for which the error of its own cut is largest relative to its tension. *sigma_m is that error.
+ * *by_error_N is the change of its tension with fixed ends, EA sigma/length, an upper bound. */
 static int find_touchiest(const job *j, double *by_error_N, double *sigma_m)
 {
     const hf_problem *p = j->stage->problem;
@@ -347,7 +363,7 @@ static int find_touchiest(const job *j, double *by_error_N, double *sigma_m)
     return touchiest;
 }
 
-/* Cables of the design that are slack, and the first of them. */
+/* Returns the number of slack cables of the design. *first becomes the first of them. */
 static int count_slack(const job *j, int *first)
 {
     const hf_model *m = &j->stage->problem->model;
@@ -360,7 +376,7 @@ static int count_slack(const job *j, int *first)
     return n;
 }
 
-/* A net some of whose cables hang loose is not the one that was designed. */
+/* Warns about samples with slack cables: such a net is not the one that was designed. */
 static void warn_of_slack(const job *j, const hf_tolerance_summary *t, hf_messages *messages)
 {
     const hf_scene *scene = &j->stage->problem->scene;
@@ -423,14 +439,16 @@ static void aim_beam(job *j, hf_messages *messages)
 
 /* ---- a trial ---- */
 
-/* Samples from the first one, twice as many each time, while that takes no longer than a trial may: those with slack
- * cables take far longer than others. TRIED are enough where they took TRIED_S, of less a cold start is much. */
+/* Solves the first samples, twice as many each time, while that takes no longer than a trial may. Samples with slack
+ * cables take far longer than others, so few are not enough. TRIED samples are enough if they took TRIED_S; in a
+ * shorter time the cold start would be a large part. */
 #define TRIED 16 /* two rounds of the lanes of a thread */
 #define TRIED_MOST 128
 #define TRIED_S 0.1
-#define OPERATIONS_PER_S 8e9 /* of one core, in solves of several right-hand sides */
+#define OPERATIONS_PER_S 8e9 /* of one core, in solves with several right-hand sides */
 
-/* Of first order: a solve for each coordinate of an inner node (built/covariance). */
+/* Returns the estimated time of the first order, s: one solve for each coordinate of an inner node
+ * (built/covariance). */
 static double first_order_s(const hf_model *m)
 {
     double rows = 3.0 * m->n_free;
@@ -462,8 +480,8 @@ static hf_status try_samples(job *j, double most_s, hf_tolerance_trial *trial, h
     return HF_OK;
 }
 
-/* Nets with larger errors take longer, and yields that fail end early: so the search itself is tried, with TRIED nets.
- */
+/* Tries the search for the scale itself, with TRIED nets. Nets with larger errors take longer, and yields that fail end
+ * early, so the time of a sample does not predict that of the search. */
 static hf_status try_scale(job *j, double most_s, hf_tolerance_trial *trial)
 {
     double first_s = hf_clock_thread_cpu_s(), scale;
@@ -492,7 +510,7 @@ hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape,
     return status;
 }
 
-/* ---- together ---- */
+/* ---- the stage ---- */
 
 static hf_status work_off_stage(job *j, hf_summary *summary, hf_messages *messages)
 {

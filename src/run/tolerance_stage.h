@@ -1,4 +1,4 @@
-/* tolerance_stage - the last stage of a run whose case has a section `tolerance`: samples of the net as built at the
+/* tolerance_stage - the last stage of a run whose case has a section `tolerance`: samples of the as-built net at the
  * shape of the result. */
 #ifndef HIFDM_TOLERANCE_STAGE_H
 #define HIFDM_TOLERANCE_STAGE_H
@@ -6,49 +6,50 @@
 #include <hifdm/problem.h>
 #include <hifdm/run.h>
 
-/* What is borrowed of a run. */
+/* What the stage borrows from a run. */
 typedef struct {
     const hf_run_request *request;
     const hf_problem *problem;
     const hf_workspace *shape; /* of the result, an equilibrium of problem->model */
-    const char *output;        /* the result file, beside which journals are; "": there is none */
+    const char *output;        /* result file, next to which journals are; "": none */
     hf_store *store;           /* NULL: none is written */
 } hf_tolerance_stage;
 
-/* One task of several finds samples and writes no result. */
+/* Returns true if the request is one task of several. Such a task finds samples and writes no result. */
 static inline bool hf_tolerance_stage_is_task(const hf_run_request *request)
 {
     return request->tasks > 0 && request->task >= 0;
 }
 
-/* Remove what is left beside a finished result: nobody needs its journals any more. */
+/* Removes the journals next to a finished result, which are not needed any more. */
 void hf_tolerance_stage_end(const hf_run_request *request, const char *output);
 
-/* Fails where hf_tolerance_stage_run would before it solves anything: cables without EA or expansion, struts,
- * errors that may leave nothing of a cable, measures that the net does not have. HF_OK, also without a section
- * `tolerance` unless it is demanded: then HF_BAD_USAGE. HF_BAD_CASE. */
+/* Refuses a case for which hf_tolerance_stage_run would fail before it solves anything: cables without EA or expansion,
+ * struts, errors that may leave nothing of a cable, measures that the net does not have. Returns HF_OK or HF_BAD_CASE.
+ * Without a section `tolerance` it returns HF_OK, or HF_BAD_USAGE if is_demanded. */
 hf_status hf_tolerance_stage_check(const hf_problem *problem, bool is_demanded, hf_messages *messages);
 
-/* HF_EXISTS when a journal beside the output has samples of another case, and the request does not begin anew.
- * HF_NO_MEMORY. */
+/* Returns HF_EXISTS if a journal next to the output has samples of another case and the request does not restart;
+ * HF_NO_MEMORY; else HF_OK. */
 hf_status hf_tolerance_stage_look(const hf_run_request *request, const hf_problem *problem, const char *output,
                                   hf_messages *messages);
 
-/* What the samples of a run would take, by the first n_tried of them at this shape in one thread: processor time until
- * the first one, mostly for first order, and for one. No more are begun than those before foretell to end within
- * most_s. n_tried is 0 where counted operations foretell more than that until the first one, which is then in begin_s.
- * tolerance.yield takes up to scale_yields yields of scale_samples nets more, of scale_sample_s each at these errors,
- * most of them ended early: scale_s in all, by a search with a few nets where that fits into half of most_s; else 0.
- * HF_OK, or why there are no samples, without a message. */
+/* Estimated processor time of the samples of a run, s. begin_s is the time until the first sample, mostly for the first
+ * order, and sample_s that of one sample, from n_tried samples in one thread. n_tried is 0 if counted operations
+ * predict a begin_s above most_s; begin_s is then that prediction. The search for the scale (tolerance.yield) takes up
+ * to scale_yields yields of scale_samples nets, at scale_sample_s each. Most yields end early: scale_s is the time of
+ * the search, extrapolated from one with few nets, or 0 if that would not fit into half of most_s. */
 typedef struct {
     double begin_s, sample_s, scale_sample_s, scale_s;
     int scale_yields, scale_samples, n_tried;
 } hf_tolerance_trial;
+/* Sets *trial for this shape. No more samples are started than earlier ones predict to end within most_s, s. Returns
+ * HF_OK, or the status that prevents samples, without a message. */
 hf_status hf_tolerance_stage_try(const hf_problem *problem, const hf_workspace *shape, double most_s,
                                  hf_tolerance_trial *trial);
 
-/* Find all samples, or those of request->task, and sum them up into the summary. HF_OK; HF_INTERRUPTED: the same
- * request goes on; HF_BAD_CASE, HF_SINGULAR, HF_EXISTS, HF_IO, HF_NO_MEMORY. */
+/* Finds all samples, or those of request->task, and writes their statistics into the summary. Returns HF_OK;
+ * HF_INTERRUPTED, after which the same request resumes; HF_BAD_CASE, HF_SINGULAR, HF_EXISTS, HF_IO, HF_NO_MEMORY. */
 hf_status hf_tolerance_stage_run(const hf_tolerance_stage *stage, hf_summary *summary, hf_messages *messages);
 
 #endif
