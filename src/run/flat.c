@@ -1,4 +1,4 @@
-/* The C interface for other languages: one opaque handle, plain arrays, numbers and words (flat.h).
+/* Implements the C interface for other languages: one opaque handle, plain arrays, numbers and words (flat.h).
  *
  *     open: case or arrays of a net -> model
  *     form: shape of the case -> initial design and batch, once
@@ -479,7 +479,7 @@ int hf_flat_slopes(hf_flat *f, int n, const double *design, double *slope)
     size_t size = (size_t)hf_problem_n_slope(p) * (size_t)p->model.n_gene, n_feasible = 0;
     for (int i = 0; i < n; i++)
         n_feasible += f->room[i].status == HF_OK;
-    for (int i = n - 1; i >= 0; i--) { /* the feasible ones are contiguous; each moves to its design */
+    for (int i = n - 1; i >= 0; i--) { /* slopes of feasible designs are contiguous; each moves to its design */
         double *to = slope + (size_t)i * size;
         bool is_feasible = f->room[i].status == HF_OK;
         if (is_feasible) memmove(to, slope + --n_feasible * size, size * sizeof *to);

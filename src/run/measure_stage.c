@@ -1,3 +1,10 @@
+/* Measures a shape that a run reports.
+ *
+ *     shape in the workspace
+ *         | tensions of the named sets
+ *         | section surface: surface and facets, then the far field (pattern_stage.c), with warnings
+ *         v
+ *     summary of this stage */
 #include "run/measure_stage.h"
 
 #include "run/pattern_stage.h"

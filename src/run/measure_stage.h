@@ -15,7 +15,7 @@ hf_status hf_measure_stage(const hf_problem *problem, hf_stage stage, const hf_w
                            const volatile sig_atomic_t *stop, hf_store *store, hf_summary *summary,
                            hf_messages *messages);
 
-/* Lists the limits that the design whose shape the workspace holds reaches, in the summary. */
+/* Writes into the summary which limits a design reaches. The workspace holds its shape. */
 void hf_measure_limits(const hf_problem *problem, hf_stage stage, const hf_workspace *workspace, hf_summary *summary);
 
 #endif

@@ -1,3 +1,5 @@
+/* Writes messages that explain why a run has no design: counts of evaluations, the limit that the initial design
+ * exceeds most, and the settings to change. */
 #include "run/no_design.h"
 
 #include "solve/limits.h"

@@ -1,3 +1,12 @@
+/* Runs the refinement of a design by Levenberg-Marquardt, so that an interrupted run resumes it.
+ *
+ *     state of an earlier session in the store, if there is one
+ *         |
+ *         v
+ *     hf_polish_run; after each step: store its state, publish the file, notify the observer, check the stop flag
+ *         |
+ *         v
+ *     refined design, with a warning if it has not converged */
 #include "run/polish_stage.h"
 
 #include "base/clock.h"

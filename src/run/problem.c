@@ -1,3 +1,4 @@
+/* Opens a case as a problem that evaluates designs, and finds the derivatives of its figures. */
 #include <hifdm/problem.h>
 
 #include "run/problem_nets.h"

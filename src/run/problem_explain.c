@@ -185,7 +185,7 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
         w->tension_N[e], w->length_m[e]);
 }
 
-/* Returns an advice that reduces the pull of the net. */
+/* Returns advice on how to reduce the pull of the net. */
 static const char *name_pull(const hf_problem *p)
 {
     const hf_scene *s = &p->scene;

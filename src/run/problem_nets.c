@@ -1,3 +1,5 @@
+/* Makes the as-built nets over which objectives are measured: load cases with the displacements of the truss, and
+ * samples of the errors of tolerance. */
 #include "run/problem_nets.h"
 
 #include "base/arena.h"
@@ -66,7 +68,7 @@ hf_status hf_problem_nets_make(hf_problem *p, hf_messages *messages)
 
 void hf_problem_nets_free(hf_problem *p)
 {
-    hf_arena arena = {.block = (unsigned char *)p->nets}; /* it begins its block */
+    hf_arena arena = {.block = (unsigned char *)p->nets}; /* p->nets is the first item of its block */
     if (p->nets) hf_material_free(&p->nets->material);
     hf_arena_free(&arena);
     p->nets = NULL;

@@ -1,4 +1,4 @@
-/* The steps from a case to a problem that can evaluate designs.
+/* Leads from a case to a problem that can evaluate designs, step by step.
  *
  *     case file or source
  *         | load: scene, surface and facets, prestress, model, truss, load cases, limits, objectives, symmetry

@@ -55,7 +55,7 @@ static int row_of_gene(const hf_model *m, int k)
     return m->gene ? m->gene[k].setting : 0;
 }
 
-/* Returns the class of a leading variable: any of the classes of its row. */
+/* Returns the class of a leading variable, chosen by a hash among the classes of its row. */
 static int class_of(const reach *q, int k)
 {
     int n_row = q->p->settings.optimize.n_variable, n = n_row > 1 ? CLASSES / n_row : CLASSES;

@@ -16,7 +16,7 @@
 
 /* ---- the truss ---- */
 
-/* Neglected displacement, relative to the span of the attachments, from which on a warning appears: 0.1 mm on 10 m, as
+/* Neglected displacement above which a warning appears, relative to the span of the attachments: 0.1 mm on 10 m, as
  * much as an error of cutting may be. It must also exceed SECOND_ORDER_PSI times psi. */
 #define SECOND_ORDER_DOUBT 1e-5
 #define SECOND_ORDER_PSI 0.05
@@ -65,9 +65,9 @@ void hf_result_doubt_strain(const hf_problem *p, const hf_workspace *shape, hf_m
 
 /* ---- nodes that no objective counts ---- */
 
-/* Displacement, relative to the mean length of a node's cables, from which on a warning appears. In the cases of
- * configs/ the maximum uncounted one is 0.11. With every force density as a variable, the objective facets permits 0.3
- * to 1.3 [0.17 to 0.3]. */
+/* Displacement above which a warning appears, relative to the mean length of a node's cables. In the cases of configs/
+ * the maximum uncounted one is 0.11. With every force density as a variable, the objective facets permits 0.3 to 1.3.
+ * The tests pass with 0.17 to 0.3. */
 #define FAR_MOVE 0.25
 
 static void lay_out_places(hf_arena *a, const hf_model *m, hf_places *to)

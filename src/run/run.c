@@ -1,4 +1,4 @@
-/* One whole run of a case, as `hifdm run` does it.
+/* Runs a whole case, as `hifdm run` does.
  *
  *     case, net, truss, model (problem_parts.c); the result file is opened, resumed or found finished
  *         | form-finding: shape, certificate, measures
@@ -95,8 +95,8 @@ static hf_status stop_here(run *r, const hf_summary *s, hf_messages *messages)
     return HF_INTERRUPTED;
 }
 
-/* Measures a shape that is reported, and stops the run if that was interrupted. An interrupted form-finding is stopped
- * by find_form, after its shape is stored. */
+/* Measures a shape that is reported, and stops the run if the measurement was interrupted. An interrupted form-finding
+ * is stopped by find_form, after its shape is stored. */
 static hf_status measure_shape(run *r, hf_stage stage, const hf_workspace *w, hf_summary *s, hf_messages *messages)
 {
     const hf_run_request *q = r->request;

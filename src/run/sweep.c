@@ -37,7 +37,7 @@ typedef struct {
     pthread_mutex_t lock; /* protects count, messages and the observer */
     hf_sweep_count count;
     hf_messages *messages;
-    bool is_without_locks;   /* a warning about this was given */
+    bool is_without_locks;   /* the file system has no locks, and a warning was given */
     _Atomic hf_status fatal; /* not HF_OK: fault of the machine, no point may begin; read without the lock */
 } sweep;
 

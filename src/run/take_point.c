@@ -1,3 +1,12 @@
+/* Takes a point of the front in an earlier result as the design of a run.
+ *
+ *     "FILE:N" -> front of the file
+ *         | the objectives and variables must be those of this case
+ *         v
+ *     design of point N
+ *         | evaluated by run.c: objectives as stored, design within the bounds
+ *         v
+ *     result of the run */
 #include "run/take_point.h"
 
 #include "base/sha256.h"

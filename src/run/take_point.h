@@ -9,8 +9,7 @@
 typedef struct {
     double *design;                      /* [n_gene]; NULL: no point is taken. The caller frees it. */
     double objective[HF_OBJECTIVES_MAX]; /* values of the objectives in the front */
-    double largest[HF_OBJECTIVES_MAX];   /* maximum size of each objective over the points of the front and its initial
-                                          * design */
+    double largest[HF_OBJECTIVES_MAX];   /* maximum size of each objective over the front and its initial design */
 } hf_taken_point;
 
 /* Reads "FILE:N": point N of the front in the result FILE, which must have the objectives and variables of the problem.

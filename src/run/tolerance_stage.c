@@ -1,4 +1,4 @@
-/* Samples of the as-built net: errors of cutting, stiffness, supports and temperature (METHOD section 12).
+/* Finds samples of the as-built net with errors of cutting, stiffness, supports and temperature (METHOD section 12).
  *
  *     design -> as-built net (hf_built_make), prediction to first order
  *         |
@@ -37,8 +37,8 @@ static bool make_beam(const hf_problem *p, hf_gain_beam *beam)
     return beam->order < HF_GAIN_ORDER_MOST;
 }
 
-/* Returns the word of the same loss of gain of the facets, if `measure` is one of the nodes and the net has facets,
- * else NULL. The gain of a reflector is that of its facets. */
+/* Returns the word of the measure of the facets that corresponds to a gain loss of the nodes. Returns NULL if `measure`
+ * is no such loss or the net has no facets. The gain of a reflector is that of its facets. */
 static const char *loss_of_nodes(const hf_problem *p, hf_tolerance_measure measure)
 {
     if (measure != HF_TOLERANCE_GAIN_LOSS && measure != HF_TOLERANCE_FIT_GAIN_LOSS) return NULL;
@@ -301,8 +301,7 @@ static hf_status open_samples(job *j, hf_messages *messages)
     const hf_run_request *q = stage->request;
     char identity[65];
     bool is_task = hf_tolerance_stage_is_task(q);
-    const char *output = *stage->output && !q->of_sweep ? stage->output : NULL; /* points of a sweep start without old
-                                                                                 * samples */
+    const char *output = *stage->output && !q->of_sweep ? stage->output : NULL; /* points of a sweep begin anew */
     if (identify(p, &j->built, identity) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
     const char *beside = *stage->output ? stage->output : NULL;
     HF_TRY(hf_samples_open(output, beside, q->task, is_task ? q->tasks : 0, identity, q->restart,

@@ -110,19 +110,19 @@ static double assemble_proof(hf_precise *p, double **band, int *n, int *k)
 }
 
 /* Returns a bound of the change that rounding causes in an eigenvalue, N/m. n and k are the rows and the
- * half-bandwidth, `degree` is the maximum number of cables at a node, `largest` the maximum diagonal entry c. An entry
- * of L L' differs from that of the matrix by at most (k + 4) u sqrt(c_ii c_jj) (Rump, BIT 46, 2006), and a row has up
- * to 2 k + 1 of them. The factor 2.02 covers other orders of the operations. The remaining terms cover the assembly of
- * the entries. */
+ * half-bandwidth, `degree` is the maximum number of cables at a node, and `largest` the maximum diagonal entry c. An
+ * entry of L L' differs from that of the matrix by at most (k + 4) u sqrt(c_ii c_jj) (Rump, BIT 46, 2006). A row has up
+ * to 2 k + 1 entries. The factor 2.02 covers other orders of the operations, and the remaining terms cover the assembly
+ * of the entries. */
 static double rounding_of(int n, int k, double degree, double largest)
 {
     double row = fmin(n, 2.0 * k + 1);
     return HF_UNIT * largest * (2.02 * (k + 4) * row + 400 + 20 * degree);
 }
 
-/* Returns a lower bound lambda for which the matrix (M37) of net and truss is positive semidefinite, N/m. Returns 0 if
- * the matrix minus `shift` and `rounding` has no Cholesky factor. lambda is at most TRUSS_LEFT / tr(L L'), so |L ds|
- * does not exceed the norm of the ball, whose square is |dx|^2 + TRUSS_LEFT |ds|^2 / lambda. */
+/* Returns lambda, N/m, for which the matrix (M37) of net and truss is positive semidefinite. Returns 0 if the matrix
+ * minus `shift` and `rounding` has no Cholesky factor. lambda is at most TRUSS_LEFT / tr(L L'), so |L ds| does not
+ * exceed the norm of the ball, whose square is |dx|^2 + TRUSS_LEFT |ds|^2 / lambda. */
 static double least_on_truss(hf_precise *p, double shift, const hf_flexibility_rounding *rounding)
 {
     hf_precise_truss *t = &p->truss;
@@ -138,8 +138,8 @@ static double least_on_truss(hf_precise *p, double shift, const hf_flexibility_r
     return t->flexibility.trace > 0 ? fmin(least, TRUSS_LEFT / t->flexibility.trace) : least;
 }
 
-/* Returns a lower bound of lambda in (M37) at the precise shape, N/m, or 0 if none can be certified. The shift `guess`,
- * N/m, is tried first. */
+/* Returns lambda of (M37) at the precise shape, N/m, or 0 if none can be certified. The shift `guess`, N/m, is tried
+ * first. */
 static double least_eigenvalue_on_truss(hf_precise *p, double guess)
 {
     hf_flexibility_rounding rounding = hf_flexibility_rounding_of(
@@ -169,9 +169,9 @@ static double least_eigenvalue(hf_precise *p, double guess)
     }
 }
 
-/* Returns a bound of the change of a taut cable's block between the found and the precise shape, N/m. The bound leaves
- * out an eighth of the stiffness along the cable, which carried_over subtracts. It adds the change of T/l, the change
- * of the direction, and the part that an error of a prescribed length adds. */
+/* Returns a bound of the change of a taut cable's block between the found and the precise shape, N/m. It is the sum of
+ * three changes: of T/l, of the direction, and of the stiffness that is added for an error of a prescribed length. An
+ * eighth of the stiffness along the cable is not included; carried_over subtracts it. */
 static double block_change(const hf_precise *p, int e)
 {
     const hf_model *m = p->m;
@@ -200,7 +200,7 @@ static double block_change(const hf_precise *p, int e)
 static double carried_over(const hf_precise *p, double least)
 {
     for (int e = 0; e < p->m->n_cable; e++)
-        if (!(p->cable[e].is_taut > 0) && p->w->tension_N[e] != 0) return 0; /* it was in that matrix */
+        if (!(p->cable[e].is_taut > 0) && p->w->tension_N[e] != 0) return 0; /* that matrix has it as taut */
     double now = 0.875 * least - 2.01 * hf_precise_largest_sum(p, block_change);
     return now > least / 4 ? now : 0;
 }
@@ -239,8 +239,8 @@ static int order_active(const hf_precise *p, int *order, bool *too_many)
     return n;
 }
 
-/* Returns the inner product of the derivatives of the lengths of cables e and f by the free coordinates. Sets *meets to
- * whether the cables share a free node. */
+/* Returns the inner product of the derivatives of the lengths of cables e and f by the free coordinates. *meets becomes
+ * true if the cables share a free node. */
 static double length_product(const hf_precise *p, int e, int f, bool *meets)
 {
     const double *u = p->cable[e].unit, *v = p->cable[f].unit;

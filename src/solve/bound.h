@@ -1,5 +1,6 @@
 /* bound - certified bounds of the distance between the shape that was found and the true equilibrium (METHOD section
- * 3). Stability: internal; may change in any version. */
+ * 3).
+ * Stability: internal; may change in any version. */
 #ifndef HIFDM_BOUND_H
 #define HIFDM_BOUND_H
 

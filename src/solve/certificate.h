@@ -1,5 +1,6 @@
 /* certificate - error estimates and certified bounds for a shape that a solver has found: backward error, condition,
- * position error, and the bounds of bound.h (METHOD section 3). Stability: internal; may change in any version. */
+ * position error, and the bounds of bound.h (METHOD section 3).
+ * Stability: internal; may change in any version. */
 #ifndef HIFDM_CERTIFICATE_H
 #define HIFDM_CERTIFICATE_H
 

@@ -272,7 +272,7 @@ hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_
             if (!try_nearer(m, s, &a, &n_retreat, w, r)) break;
             continue;
         }
-        double psi_m = r->psi_m; /* is_over may refuse the result, which has no psi then */
+        double psi_m = r->psi_m; /* is_over may refuse the result and blank its psi */
         bool over = is_over(m, s, &a, &p, w, r);
         hf_history_add_coupling(history, r->coupling.step_m, psi_m, r->coupling.max_displacement_m);
         if (over) break;
@@ -326,7 +326,7 @@ hf_status hf_coupling_find_either_way(const hf_model *m, const hf_coupling_setti
                                       const void *context, hf_workspace *w, hf_history *history, hf_form_result *r)
 {
     hf_status status = hf_coupling_find(m, s, solve, context, false, w, history, r);
-    /* the net ran out of iterations, and the loop was not diverging */
+    /* The loop is final if the net ran out of iterations while the loop was not diverging. */
     bool is_over = status == HF_NOT_CONVERGED && r->coupling.stop_reason == HF_COUPLING_NET && !(r->coupling.ratio > 1);
     if (status == HF_OK || status == HF_INTERRUPTED || is_over) return status;
     int n_round = r->coupling.iterations, n_step = r->iterations;

@@ -12,7 +12,8 @@
  *                net, so it works with every law and stopping rule.
  *
  * The answer of a convex net is unique, because it minimises Pi(x, r) + r' F^-1 r / 2, which is convex, too. schur.h
- * has the exact derivative of the coupled net. Stability: internal; may change in any version. */
+ * has the exact derivative of the coupled net.
+ * Stability: internal; may change in any version. */
 #ifndef HIFDM_COUPLING_H
 #define HIFDM_COUPLING_H
 
@@ -34,9 +35,9 @@ hf_status hf_coupling_find(const hf_model *model, const hf_coupling_settings *se
                            hf_form_result *result);
 
 /* Finds the coupled shape by one call of `solve` (hf_equilibrium_find), with the attachments as unknowns (n_moving).
- * Returns result->status: that of the net, or HF_NOT_CONVERGED if the attachments miss their displacements by more than
- * tof_m. It is HF_TRUSS_TOO_SOFT if the net has no shape on its truss, but has one on fixed supports or fails there in
- * another way. */
+ * Returns result->status: that of the net, or HF_NOT_CONVERGED if |F f - r| of an attachment exceeds tof_m. It is
+ * HF_TRUSS_TOO_SOFT if the net has no shape on its truss, but has one on fixed supports or fails there in another
+ * way. */
 hf_status hf_coupling_find_at_once(const hf_model *model, const hf_coupling_settings *settings, hf_net_solver *solve,
                                    const void *context, hf_workspace *workspace, hf_history *history,
                                    hf_form_result *result);

@@ -1,13 +1,13 @@
 /* Finds the shape of minimum energy of a tension net (METHOD section 5).
  *
  *     force densities of the workspace
- *         | near: 6 iterations of the paper, then Newton steps       -> shape, if they converge
+ *         | near: FIRST_BLOCK iterations of the paper, then Newton steps   -> shape, if they converge
  *         |   (left out if cables are elastic and the start is not near)
  *         v
- *     path: primal-dual interior method from the target positions    -> shape
+ *     path: primal-dual interior method from the target positions        -> shape
  *         | not solved
  *         v
- *     name_reason: the straight chain or the cable whose rounding prevents convergence, or the status of the path
+ *     the reason: a straight chain, a cable whose rounding prevents convergence, or the status of the path
  *
  * The paper's iteration (form.method: hifdm) asks the same path whether a net that it refuses has a shape. */
 #include "solve/equilibrium.h"
@@ -31,8 +31,8 @@ static int smaller(int a, int b)
 
 /* ---- from a start near the answer ---- */
 
-/* Returns whether the attachments, where they are unknowns, are within tof_m of the displacements under the measured
- * shape. Sets displacement_m. Returns true for a net whose attachments are no unknowns. */
+/* Returns true if the attachments are within tof_m of the displacements F f under the measured shape, and sets
+ * displacement_m. Also returns true if the attachments are not unknowns. */
 static bool is_on_truss(const hf_model *m, const hf_form_settings *s, hf_workspace *w)
 {
     hf_form_result at;
@@ -109,7 +109,7 @@ static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n
         hf_form_refuse(HF_NOT_FINITE, n_step, r);
         r->culprit = cable;
     }
-    if (!is_finite || r->status == HF_COLLAPSED) return r->status; /* from both starts */
+    if (!is_finite || r->status == HF_COLLAPSED) return r->status; /* both starts have failed */
     memcpy(w->q_N_per_m, w->interior_tension_N, q);
     memcpy(w->position_m, w->interior_position_m, places);
     return hf_form_accept(m, s, HF_STOPPED_MAX_ITERATIONS, n_step, w, r);

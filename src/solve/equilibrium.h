@@ -21,9 +21,9 @@ hf_status hf_equilibrium_find(const hf_model *model, const hf_form_settings *set
 hf_status hf_equilibrium_find_by_paper(const hf_model *model, const hf_form_settings *settings, hf_stop_rule stop,
                                        hf_workspace *workspace, hf_history *history, hf_form_result *result);
 
-/* Decides about an iteration under the rule residual that has not converged; its laws, force densities and shape are in
- * the workspace. If the path finds that the net has no shape, status and culprit become those of the path. Returns
- * result->status. */
+/* Decides whether a net has a shape after an iteration under the rule residual has not converged. The workspace holds
+ * the laws, force densities and shape of that iteration. If the path finds that the net has no shape, status and
+ * culprit become those of the path. Returns result->status. */
 hf_status hf_equilibrium_judge_open(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                                     hf_form_result *result);
 

@@ -1,14 +1,13 @@
 /* Evaluates the case itself or a design.
  *
- *     case: laws and first force densities of the model   design: those that its variables set
- *         |                                                   |
- *         +---------------------------+-----------------------+
- *                                     v
- *     one shape: Newton (equilibrium.c) or the paper's iteration, on a truss inside the coupling (coupling.c)
- *         |                                                   |
- *         v                                                   v
- *     case: give loose nodes positions, certify           design: refuse loose nodes, apply cap and limits,
- * objectives */
+ *     case: laws and first q of the model        design: laws and first q by its variables
+ *         |                                          |
+ *         +--------------------+---------------------+
+ *                              v
+ *     one shape: Newton (equilibrium.c) or the paper's iteration, on a truss by the coupling (coupling.c)
+ *         |                                          |
+ *         v                                          v
+ *     positions for loose nodes, certificate     refusal of loose nodes, cap and limits, objectives */
 #include <hifdm/evaluate.h>
 
 #include "base/arena.h"

@@ -35,7 +35,7 @@ static double rounding_of_flexibility(const hf_model *m)
     return 8 * HF_UNIT * (n + 8) * largest;
 }
 
-/* Factors F without pivoting into root. Returns false unless F is positive definite beyond rounding, as for most
+/* Factors F without pivoting into root. Returns true if F is positive definite beyond rounding, as it is for most
  * trusses. */
 static bool factor_definite(const hf_model *m, double nothing, hf_flexibility *f)
 {
@@ -144,13 +144,13 @@ hf_twofold hf_flexibility_row_twofold(const hf_model *m, const hf_twofold *b, in
 
 /* ---- rounding ---- */
 
-/* In the unknowns of free nodes and attachments, a column of the factor has at most k + 1 + n entries. An inner product
- * has at most k + 1 terms; between two attachments it has one for each unknown. With t terms its error is at most (t +
- * 2) u times the root of the product of two diagonal entries. Cauchy's inequality turns that into a part of the
- * diagonal, as in METHOD section 3.
+/* Computes the bounds from the numbers of operations. In the unknowns of free nodes and attachments, a column of the
+ * factor has at most k + 1 + n entries. An inner product has at most k + 1 terms; between two attachments it has one
+ * for each unknown. With t terms its error is at most (t + 2) u times the root of the product of two diagonal entries.
+ * Cauchy's inequality turns that into a part of the diagonal, as in METHOD section 3.
  *
  * Errors at attachments become a part of |s|^2 by |L s|^2 <= trace |s|^2 and stiffness_N_per_m. The products with L add
- * 2 n u |L| |S| |L|. Here |.| is the 2-norm of the matrix of absolute values, at most sqrt(n) times that of the
+ * at most 2 n u |L| |S| |L|. Here |.| is the 2-norm of the matrix of absolute values, at most sqrt(n) times that of the
  * matrix. */
 hf_flexibility_rounding hf_flexibility_rounding_of(const hf_model *m, const hf_flexibility *f, double stiffness_N_per_m,
                                                    double n_cable)
@@ -222,7 +222,7 @@ static void eliminate_free(const hf_model *m, const hf_workspace *w, const free_
             memset(window + r * ld + k, 0, HF_BOUND_CHUNK * sizeof *window);
         }
     }
-    for (size_t i = 0; i < n_border; i++) /* the upper triangle */
+    for (size_t i = 0; i < n_border; i++) /* copies the lower triangle to the upper one */
         for (size_t j = 0; j < i; j++)
             stiffness[j * n_border + i] = stiffness[i * n_border + j];
 }

@@ -1,5 +1,6 @@
 /* flexibility - the flexibility of the truss as F = L L', which gives net and truss one convex energy (METHOD section
- * 3). Stability: internal; may change in any version.
+ * 3).
+ * Stability: internal; may change in any version.
  *
  * The displacements of the attachments are r = L s, and the truss stores the energy s's/2. The components of s are the
  * unknowns of the truss. Their number is the rank of F, so the truss may be rigid in some directions. Vectors b and r

@@ -1,12 +1,12 @@
-/* The paper's iteration from force densities to a shape (METHOD sections 1 to 4).
+/* Iterates from force densities to a shape by the paper's method (METHOD sections 1 to 4).
  *
  *     force densities q, positions of the supports
  *         |
  *         v
  *     1. solve D x_f = P - C_f' Q C_g x_g for x, y, z       (Eqs. 2, 5)  <---+
- *     2. lengths, tensions q l, errors against the laws     (Eqs. 4, 6)     |
- *     3. psi, residual, loaded straight chains: stop?                       |
- *         | no: q by the laws of the cables                 (Eqs. 7, 8)  ---+
+ *     2. lengths, tensions q l, errors against the laws     (Eqs. 4, 6)      |
+ *     3. psi, residual, loaded straight chains: stop?                        |
+ *         | no: q by the laws of the cables                 (Eqs. 7, 8)  ----+
  *         v yes
  *     result, or the status of an ill-posed net
  *
@@ -110,7 +110,7 @@ static hf_status solve_positions(const hf_model *m, hf_workspace *w, int *bad_ro
 
 /* ---- measuring cables ---- */
 
-/* fmax and fmin without a function call; a NaN in `next` leaves `now` unchanged. */
+/* Return the larger and the smaller number without a function call. A NaN in `next` leaves `now` unchanged. */
 static inline double larger(double now, double next)
 {
     return next > now ? next : now;
@@ -122,8 +122,8 @@ static inline double smaller(double now, double next)
 }
 
 /* Sets lengths, tensions (Eqs. 4, 6) and the errors against the laws. length_gap is the length error for the stopping
- * rule. It includes taut cables and slack cables that are too long. Slack cables that are too short count with a
- * weight, the tension that remains in them relative to the reference tension. */
+ * rule. It includes taut cables and slack cables that are too long. A slack cable that is too short counts with a
+ * weight: the tension that remains in it, relative to the reference tension. */
 void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r,
                             double *length_gap)
 {
@@ -337,7 +337,7 @@ bool hf_form_chain_is_short(const hf_model *m, const hf_workspace *w, int i_chai
 }
 
 /* Returns the lateral load of chain i_chain, N. Returns INFINITY if the chain is too short for its supports, because no
- * shape has these lengths. */
+ * shape then has its lengths. */
 static double chain_burden_N(const hf_model *m, const hf_workspace *w, int i_chain)
 {
     double sum, span;

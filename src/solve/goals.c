@@ -256,8 +256,8 @@ static double measure_ratio(const hf_goal *g, const hf_model *m, const hf_worksp
     return ratio;
 }
 
-/* value and norm differ for a maximum of several sizes and for a ratio: the value is the true one, the norm the smooth
- * one. */
+/* The value and the norm differ for a maximum of several sizes and for a ratio. The value is then the true one, and the
+ * norm the smooth one. */
 hf_status hf_goals_measure_shape(const hf_goals *goals, int k, const hf_workspace *w, hf_goals_point *p, double *f,
                                  double *value, double *norm)
 {

@@ -92,7 +92,7 @@ static int row_count(const hf_goals *goals, const hf_goal *g)
 
 /* ---- creation ---- */
 
-#define LOSS_MOST_DB 3.0 /* of the shape at the target positions, above which an objective of gain causes a warning */
+#define LOSS_MOST_DB 3.0 /* loss at the target positions above which an objective of gain causes a warning */
 
 /* Maximum number of residuals of all objectives: a table of them takes 1 GiB, and their indices are int. */
 #define ROWS_MAX (1L << 27)
@@ -103,7 +103,7 @@ static void number_rows(hf_goals *goals, hf_goal *g, long *n_all)
 {
     g->n_shape_row = row_count(goals, g);
     *n_all += (long)g->n_shape_row * (g->n_net ? g->n_net : 1);
-    if (*n_all > ROWS_MAX) return; /* hf_goals_create refuses it */
+    if (*n_all > ROWS_MAX) return; /* hf_goals_create refuses more rows */
     g->first_row = goals->n_row;
     g->n_row = (int)*n_all - g->first_row;
     goals->n_row = (int)*n_all;

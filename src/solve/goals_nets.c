@@ -168,9 +168,9 @@ void hf_goals_nets_push(const hf_goals *goals, int i_net, const hf_workspace *sh
             hf_goals_push_shape(goals, k, shape, p, by, rate + row_of_net(&goals->goal[k], i_net));
 }
 
-/* Sets `rate` to the change of the scaled residuals from the changes of each net's own residuals. f are the residuals
- * with scale and weight. The change dS of a net's norm is the component of its change along f. Then d(f (S/P)^7) = df
- * (S/P)^7 + 7 f (S/P)^7 (dS/S - dP/P) with dP = sum (S/P)^15 dS. */
+/* Replaces rate, the changes dg of the residuals g of each net alone, by the changes of f = weight (S/P)^7 g, the
+ * residuals of the objective. They are df = weight (S/P)^7 dg + 7 f (dS/S - dP/P) with dP = sum (S/P)^15 dS. dS is the
+ * component of dg along g. norm [n_net] has S and part [n_net] has S/P. */
 static void close_worst(const hf_goal *g, const double *norm, const double *part, const double *f, double *rate)
 {
     double smooth = 0, smooth_rate = 0;

@@ -1,3 +1,4 @@
+/* Adds rows to the history of a form-finding and to that of its coupling. */
 #include "solve/history.h"
 
 #include "solve/newton_matrix.h"

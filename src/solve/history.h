@@ -1,5 +1,5 @@
-/* history - records the figures of each iteration and step of a form-finding (hf_history). Stability: internal; may
- * change in any version. */
+/* history - records the figures of each iteration and step of a form-finding (hf_history).
+ * Stability: internal; may change in any version. */
 #ifndef HIFDM_HISTORY_H
 #define HIFDM_HISTORY_H
 

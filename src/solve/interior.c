@@ -1,4 +1,4 @@
-/* A primal-dual interior method that finds the shape of minimum energy from the target positions (METHOD section 5).
+/* Finds the shape of minimum energy from the target positions by a primal-dual interior method (METHOD section 5).
  *
  *     start: target positions, a centred point for mu = MU_FIRST
  *         |
@@ -20,10 +20,11 @@
  * A slack cable has T = 0 and v > |d|. A taut cable has t = T d/v and v = |d|. Cables of law force_density are springs,
  * t = q d. All equations except the product T v - t.d = 0 are linear, even if a cable turns or shrinks to nothing.
  * Steps are therefore long from any start, unlike those of Newton's method on the energy. The product is set to mu
- * times the weight of the cable, and mu goes to zero. Directions are those of Nesterov and Todd (SIAM J. Optim. 8,
- * 1998). Centring and second-order term are those of Mehrotra (SIAM J. Optim. 2, 1992), as in Andersen, Roos, Terlaky
- * (Math. Program. B 95, 2003). The variables v, T and t of each cable are eliminated, which leaves a matrix of the form
- * of the Newton matrix. */
+ * times the weight of the cable, and mu goes to zero.
+ *
+ * Directions are those of Nesterov and Todd (SIAM J. Optim. 8, 1998). Centring and second-order term are those of
+ * Mehrotra (SIAM J. Optim. 2, 1992), as in Andersen, Roos, Terlaky (Math. Program. B 95, 2003). The variables v, T and
+ * t of each cable are eliminated. The remaining matrix has the form of the Newton matrix. */
 #include "solve/interior.h"
 
 #include "solve/history.h"
@@ -52,7 +53,7 @@
 #define FAR 1.0           /* maximum error after the first step at the end [0.1 passes; no bound: more steps] */
 #define DAMPING 1.0       /* damping at an error of 1, over tension and mean length, once errors rise [0: more steps] */
 #define CLEAR_FALL 0.1 /* fall of mu from which the fall of a tension shows whether the cable is slack [0 loses nets] */
-#define FIRST_RANGE 10.0 /* bounds an elastic cable's first tension around the reference tension [1 and 1e6 pass] */
+#define FIRST_RANGE 10.0 /* maximum factor from the reference to an elastic cable's first tension [1 and 1e6 pass] */
 
 /* ---- state and start ---- */
 
@@ -132,8 +133,8 @@ static double first_tension_N(const hf_model *m, hf_law_cable cable, double flex
 
 /* In the functions below, `held` are the moving rows among fixed ones (hf_interior_run_held), else NULL. */
 
-/* Sets a centred point for MU_FIRST at the target positions, or at spring_place_m with `held`. The path reduces the
- * errors of length and balance that it has. */
+/* Sets a centred point for MU_FIRST at the target positions, or at spring_place_m with `held`. The path then reduces
+ * its errors of length and balance. */
 static void set_start(const hf_model *m, hf_workspace *w, const hf_newton_rows *held)
 {
     double mean_m = hf_joint_mean_length_m(m);
@@ -439,8 +440,8 @@ static double largest_error(const hf_model *m, const path_error *error)
     return fmax(fmax(error->balance, error->length), fmax(error->gap, error->truss_m / hf_joint_mean_length_m(m)));
 }
 
-/* Moves position_m and tension_N by one Newton step. `error` sets the damping. Returns false if the matrix has no
- * factor. */
+/* Moves position_m and tension_N by one Newton step. `error` is the error before it, which sets the damping. Returns
+ * false if the matrix has no factor. */
 static bool take_last_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double error)
 {
     double pull[3], *step = w->newton_step,
@@ -575,7 +576,7 @@ static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_works
         if ((*culprit = find_lost_row(m, w)) >= 0) return HF_SINGULAR;
         if (is_there && (*culprit = find_collapsed(m, s, w)) >= 0) return HF_COLLAPSED;
         bool is_rounding = k > 0 && !has_places(m, w), goes_on = is_there && k < TRIES_MAX - 1 && !is_rounding;
-        if (is_rounding) /* the point before this path counts */
+        if (is_rounding) /* use the point before this part of the path */
             take_point(m, w, w->interior_position_m, w->interior_tension_N);
         else
             begin_end(m, w, fall);

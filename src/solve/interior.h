@@ -1,5 +1,6 @@
 /* interior - finds the equilibrium of a tension net by a primal-dual interior path, for all laws and from any shape
- * (METHOD section 5). Stability: internal; may change in any version. */
+ * (METHOD section 5).
+ * Stability: internal; may change in any version. */
 #ifndef HIFDM_INTERIOR_H
 #define HIFDM_INTERIOR_H
 

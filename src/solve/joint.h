@@ -1,5 +1,6 @@
 /* joint - one Newton matrix for a net and its truss (METHOD section 8): the band of the free nodes, and a dense matrix
- * for the attachments. Stability: internal; may change in any version.
+ * for the attachments.
+ * Stability: internal; may change in any version.
  *
  * Vectors [3 n_moving] hold the free nodes by dof 3*row + c, followed by the attachments in the same way. The forces on
  * attachments are those of cables and loads. The truss answers them by the displacements F f, so the inverse of F is

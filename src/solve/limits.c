@@ -83,7 +83,7 @@ double hf_limits_ratio_violation(int n, const int *cable, const double *tension_
         if (tension < least) sum += 1 - tension / least;
         if (tension > most) sum += 1 - most / tension;
     }
-    return sum > 0 ? sum : 1 - low / slack_N; /* slack, with a cap so large that all ratios are within it */
+    return sum > 0 ? sum : 1 - low / slack_N; /* a slack cable, but a cap so large that no tension is below t */
 }
 
 #define LIMIT_ROUNDING 1e-9 /* a violation below this part of its unit is rounding */
@@ -179,7 +179,7 @@ static void count_row(const hf_limit *row, const hf_model *m, const hf_workspace
     case HF_LIMIT_RATIO:
         if (sign > 0) count_ratio(m, w, row->n_cable, row->cable, bound, h);
         break;
-    case HF_LIMIT_DISPLACEMENT: /* none is below zero */
+    case HF_LIMIT_DISPLACEMENT: /* displacements are not below zero, so they have no lower side */
         for (int i = 0; i < m->n_attachment && sign > 0; i++)
             count(h, -1, i, displacement_of(w, i), bound, beyond(displacement_of(w, i), bound, 1, 1));
         break;

@@ -26,7 +26,7 @@ static bool may_be_slack(const hf_workspace *w, int e)
     return hf_law_has((hf_law)w->law[e], HF_LAW_HAS_MULTIPLIER);
 }
 
-/* Returns the force up to which a cable or a load holds nothing, N. The equilibrium is known only within the tolerance
+/* Returns the force below which a cable or a load counts as zero, N. The equilibrium is known only within the tolerance
  * of its residual. */
 static double nothing_N(const hf_model *m, const hf_form_settings *s)
 {
@@ -84,7 +84,7 @@ static bool fits(const hf_model *m, const hf_form_settings *s, const hf_workspac
     double u[3];
     for (int e = 0; e < m->n_cable; e++)
         if (is_loose_cable(m, w, e) && !(hf_newton_matrix_direction(m, w->position_m, e, u) <=
-                                         (1 + s->length_tolerance) * slack_length_m(m, w, e))) /* also for a NaN */
+                                         (1 + s->length_tolerance) * slack_length_m(m, w, e))) /* true for a NaN, too */
             return false;
     return true;
 }
@@ -110,7 +110,7 @@ static void set_up_places(const hf_model *m, hf_workspace *w)
 }
 
 /* Moves the marked nodes and increases *n_step by the number of factorisations. If the path finds no positions at which
- * their cables are short enough, they stay. Returns the status of the path. */
+ * their cables are short enough, the nodes stay. Returns the status of the path. */
 static hf_status find_places(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int *n_step)
 {
     size_t n = (size_t)m->n_cable, bytes = n * sizeof(double), places = 3 * (size_t)m->n_node * sizeof(double);

@@ -5,19 +5,19 @@
 
 #include <hifdm/formfind.h>
 
-/* Marks the loose nodes of a final equilibrium (status OK, stopped by residual) in workspace->loose and moves them.
+/* Marks the loose nodes of a final equilibrium (status HF_OK, stopped by residual) in workspace->loose and moves them.
  * They come as near to their target positions as their cables allow without being too long. Their cables have no force,
  * and all other nodes stay. The result is then measured again and n_loose is set; psi leaves loose nodes out. The
- * status becomes NOT_CONVERGED if there are no such positions within the tolerance. Does nothing without loose
+ * status becomes HF_NOT_CONVERGED if there are no such positions within the tolerance. Does nothing without loose
  * nodes. */
 void hf_loose_settle(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                      hf_form_result *result);
 
-/* Refuses a design with loose nodes: the status becomes SINGULAR, and the first of them is the culprit. */
+/* Refuses a design with loose nodes: the status becomes HF_SINGULAR, and the first of them is the culprit. */
 void hf_loose_refuse(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                      hf_form_result *result);
 
-/* Returns the stiffness that replaces the missing one of loose rows in a matrix, N/m. */
+/* Returns the stiffness that a loose row is given in a matrix, because it has none of its own, N/m. */
 double hf_loose_spring_N_per_m(const hf_model *model);
 
 #endif

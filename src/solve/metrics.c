@@ -1,3 +1,4 @@
+/* Measures the quality of a shape: psi (Eqs. 9, 10), tension ratios and slack cables (METHOD section 9). */
 #include <hifdm/metrics.h>
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* Newton's method on the energy of a tension net (METHOD section 5).
+/* Solves for the shape of a tension net by Newton's method on its energy (METHOD section 5).
  *
  *     position_m and tension_N of the workspace
  *         | forces out of balance (M2), length errors of the multipliers

@@ -1,6 +1,6 @@
 /* newton - Newton's method on the convex energy Pi(x) = sum phi_e(l_e) - P.x of a tension net (METHOD section 5). It
- * takes steps from a shape near the answer, and estimates the errors of shapes that any method has found. Stability:
- * internal; may change in any version.
+ * takes steps from a shape near the answer, and estimates the errors of shapes that any method has found.
+ * Stability: internal; may change in any version.
  *
  * The unknowns are the coordinates of the free nodes, and the tensions of the cables whose law has a multiplier
  * (length, elastic). newton_matrix.h has the matrix. */

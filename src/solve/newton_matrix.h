@@ -91,7 +91,8 @@ static inline double hf_newton_matrix_tension_N(hf_law_cable cable, double lengt
     return hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER) ? multiplier_N : hf_law_tension_N(cable, length_m);
 }
 
-/* Returns k = phi'' of a cable of this length, N/m. For a rigid law it is the stiffness of the spring in its place. */
+/* Returns k = phi'' of a cable of this length, N/m. For a rigid law it is the stiffness of the spring that replaces
+ * it. */
 static inline double hf_newton_matrix_stiffness(hf_law_cable cable, double length_m, double tension_N)
 {
     if (hf_law_has(cable.law, HF_LAW_IS_RIGID))
@@ -99,7 +100,8 @@ static inline double hf_newton_matrix_stiffness(hf_law_cable cable, double lengt
     return hf_law_stiffness_N_per_m(cable, length_m);
 }
 
-/* Returns the stiffness of the same spring for a taut cable whose tension may be near zero or still negative, N/m. */
+/* Returns the stiffness of the spring that replaces a taut cable under a rigid law, N/m. Its tension may be near zero
+ * or still negative. */
 static inline double hf_newton_matrix_rigid_stiffness(const hf_model *m, int i_cable, double tension_N)
 {
     return HF_NEWTON_STIFFENING * fmax(tension_N, HF_NEWTON_LEAST_PULL * m->reference_N) / m->length_m[i_cable];

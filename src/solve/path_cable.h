@@ -1,5 +1,6 @@
 /* path_cable - the cables on the primal-dual path (interior.h), HF_LANES side by side: their two cones, the common
- * scaling, and their part of a step. Stability: internal; may change in any version.
+ * scaling, and their part of a step.
+ * Stability: internal; may change in any version.
  *
  * The points (v, d) and (T, -t) are in the cone |.| <= first. Directions are those of Nesterov and Todd (SIAM J. Optim.
  * 8, 1998), the second-order term is that of Mehrotra (SIAM J. Optim. 2, 1992), as in Andersen, Roos, Terlaky (Math.
@@ -28,7 +29,7 @@ typedef struct {
     double det[HF_LANES];                           /* root of the determinant of the scaled point */
     double along[HF_LANES], across[HF_LANES], unit[3][HF_LANES];         /* K = across (I - uu') + along uu' */
     double flex[HF_LANES], short_m[HF_LANES];                            /* c, m/N, and L + c T - v, m */
-    double weight[HF_LANES];                                             /* of mu: tension times length, J */
+    double weight[HF_LANES];                                             /* weight of mu: tension times length, J */
     double gap[HF_LANES];                                                /* T v - t.d, J */
     double R0[HF_LANES], off[3][HF_LANES], pull[3][HF_LANES];            /* right-hand side; pull = K off */
     double Dv[HF_LANES], DT[HF_LANES], Dt[3][HF_LANES], Dd[3][HF_LANES]; /* direction */

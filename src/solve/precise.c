@@ -4,7 +4,7 @@
  *     shape, tensions and factored matrix in the workspace
  *         | start: cables taut or slack, s of the truss from the pull on it
  *         v
- *     measure forces and lengths at twice the precision  <-----------------+
+ *     measure forces and lengths at twice the precision  <------------------+
  *         | Newton steps (M8) with one matrix; differences in doubles       |
  *         | suffice near a measured shape                                   |
  *         v                                                                 |
@@ -28,9 +28,9 @@
 #define NEAR_ENOUGH 1e-12  /* part of the measured errors at which the steps end; 1e-15 would be rounding */
 #define MOVES_MAX 4        /* moves with one matrix; a found shape takes one or two */
 #define MATRICES_MAX 2     /* matrices factored here: far from balance, or a cable taken wrongly for slack or taut */
-#define ENOUGH 1e-11       /* the aim of the errors: this part of those of the found shape, */
-#define FINEST 1e-28       /* but at least this; twice the precision reaches 1e-30 */
-#define CONTRACTED 1e-18   /* errors above it count as divergence; the certificate does not rely on it */
+#define ENOUGH 1e-11       /* target of the errors: this part of those of the found shape */
+#define FINEST 1e-28       /* minimum target of the errors; twice the precision reaches 1e-30 */
+#define CONTRACTED 1e-18   /* maximum target of the errors; more is divergence; the certificate does not rely on it */
 #define SHARE_OF_GUESS 0.1 /* part of the estimated minimum eigenvalue that is tried first */
 
 /* ---- start ---- */
@@ -420,7 +420,7 @@ static void find_move(hf_precise *p, double first)
     }
 }
 
-/* ---- refinement ---- */
+/* ---- moves ---- */
 
 static void apply_move(hf_precise *p, double part)
 {

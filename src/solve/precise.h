@@ -1,5 +1,6 @@
 /* precise - the equilibrium near a found shape at twice the precision, and the cables there. bound.c certifies its
- * bounds at this precise shape (METHOD section 3). Stability: internal; may change in any version. */
+ * bounds at this precise shape (METHOD section 3).
+ * Stability: internal; may change in any version. */
 #ifndef HIFDM_PRECISE_H
 #define HIFDM_PRECISE_H
 
@@ -34,16 +35,15 @@ typedef struct {
     hf_workspace *w;
     int n_moving;
     hf_precise_cable *cable; /* [n_cable] */
-    hf_twofold *x;           /* [3][n_node] precise shape */
-    hf_twofold *force;       /* [3][n_node] precise shape, m */
-    double *move, *step;     /* [3 n_moving] by dof, N: force out of balance of a free node, pull on an attachment */
-    double *near_N;          /* [3 n_moving] by dof, m: since the last measurement, and in the last step */
-    double *sum;             /* [3 n_moving] force out of balance after the changes, N; of attachments the change of the
-                              * pull */
-    double wanted;           /* relative errors at which refinement ends */
-    double condition;        /* relative error at which the iteration ends */
-    bool is_first_matrix;    /* estimated condition of the factored matrix */
-    hf_precise_truss truss;  /* no matrix has been factored here yet */
+    hf_twofold *x;           /* [3][n_node] precise shape, m */
+    hf_twofold *force;       /* [3 n_moving] by dof, N: out of balance at free nodes, pull on attachments */
+    double *move, *step;     /* [3 n_moving] by dof, m: since the last measurement, and in the last step */
+    double *near_N;          /* [3 n_moving] by dof, N: force after these changes; of attachments the change of pull */
+    double *sum;             /* [n_moving] scratch */
+    double wanted;           /* relative error at which the iteration ends */
+    double condition;        /* estimated condition of the factored matrix */
+    bool is_first_matrix;    /* no matrix has been factored here yet */
+    hf_precise_truss truss;  /* used for a net on a truss */
 } hf_precise;
 
 /* Starts at the shape in the workspace. `condition` is that of the matrix whose factor the workspace holds. Returns

@@ -12,8 +12,7 @@
 typedef struct {
     double from[3][2][HF_LANES], to[3][2][HF_LANES];                      /* coordinates of the ends, m */
     double T[2][HF_LANES];                                                /* given tension or multiplier, N */
-    double target[HF_LANES], EA[HF_LANES];                                /* by law: N, m or N/m; EA in N, 1 where the
-                                                                           * law has none */
+    double target[HF_LANES], EA[HF_LANES];                                /* by law: N, m or N/m; EA in N, or 1 */
     double is_spring[HF_LANES], is_elastic[HF_LANES], is_slack[HF_LANES]; /* 1 or 0 */
 
     double length[HF_LANES], unit[3][HF_LANES]; /* outputs from here on; length in m */

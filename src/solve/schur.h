@@ -1,5 +1,6 @@
 /* schur - the exact derivative of a net on its truss, for sensitivities, certificates and the population solver (METHOD
- * section 8). Stability: internal; may change in any version.
+ * section 8).
+ * Stability: internal; may change in any version.
  *
  * r are the displacements of the attachments and F is their flexibility. H is the Newton matrix in parts of free nodes
  * (f) and attachments (a). The stiffness of the net at the attachments is S = H_aa - H_af H_ff^-1 H_fa. */

@@ -1,3 +1,4 @@
+/* Allocates all memory that one solver thread writes to, from the list HF_WORKSPACE_FIELDS. */
 #include <hifdm/goals.h>
 #include <hifdm/workspace.h>
 
