@@ -25,11 +25,15 @@ typedef hf_status hf_net_solver(const void *context, hf_workspace *workspace, hf
                                 hf_form_result *result);
 
 /* Finds the coupled shape, starting from the workspace's displacement_m. With start_counts every form-finding starts
- * from the force densities of the first one; the caller sets it if the answer of `solve` depends on them. history may
+ * from the force densities of the first one. The caller sets it if the answer of `solve` depends on them. history may
  * be NULL. The result is that of the last form-finding, with the iterations of all. The workspace ends with the
- * displacements that belong to its shape. Returns result->status: HF_OK; HF_TRUSS_TOO_SOFT if the loop diverges, or if
- * the net loses its shape after the first iteration; HF_NOT_CONVERGED after max_iterations, if the steps stall, or if a
- * form-finding did not converge; HF_INTERRUPTED; or the status of the first form-finding if that finds no shape. */
+ * displacements that belong to its shape. Returns result->status:
+ *
+ *   HF_OK              the shape is coupled to within tof_m
+ *   HF_TRUSS_TOO_SOFT  the loop diverges, or the net loses its shape after the first iteration
+ *   HF_NOT_CONVERGED   max_iterations is reached, the steps stall, or a form-finding did not converge
+ *   HF_INTERRUPTED     the workspace's stop was set
+ *   other              the first form-finding finds no shape, with this status */
 hf_status hf_coupling_find(const hf_model *model, const hf_coupling_settings *settings, hf_net_solver *solve,
                            const void *context, bool start_counts, hf_workspace *workspace, hf_history *history,
                            hf_form_result *result);

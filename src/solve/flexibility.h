@@ -48,10 +48,10 @@ hf_flexibility_rounding hf_flexibility_rounding_of(const hf_model *model, const 
                                                    double stiffness_N_per_m, double n_cable);
 
 /* Completes the Cholesky factorisation of the Hessian of net and truss in the unknowns of the free nodes and s. The
- * stiffness of the truss is `share` in place of 1: `factor` becomes that of share + L' S L, with S of (M15).
- * newton_band, or `band` without a Newton matrix, holds the factor of the free nodes. block_of gives the blocks of the
- * cables, and `rounding` (may be NULL) is subtracted from the diagonal. Returns false if there is no factor. Overwrites
- * `factor` and `flexed` of hf_schur_factor. */
+ * stiffness of the truss is `share` in place of 1, so `factor` becomes that of share + L' S L, with S of (M15). Before,
+ * newton_band, or `band` without a Newton matrix, must hold the factor of the free nodes. The function block_of gives
+ * the blocks of the cables. `rounding` (may be NULL) is subtracted from the diagonal. Returns false if there is no
+ * factor. Overwrites `factor` and `flexed` of hf_schur_factor. */
 bool hf_flexibility_factor_net(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
                                const hf_flexibility_rounding *rounding, double share, hf_flexibility *flexibility);
 

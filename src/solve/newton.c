@@ -30,9 +30,13 @@
 #define LOST_AFTER 8
 /* A step keeps at least this fraction of a multiplier. The tests of form-finding pass with 0.01 and 0.5. */
 #define TENSION_KEPT 0.1
-/* Constants of look_for_drift: the condition number above which it looks, the rounds of inverse iteration, the
- * displacement of the trial relative to the mean length, the error that counts as rounding, and the force, relative to
- * the tensions at its node, that counts as zero. */
+/* Constants of look_for_drift, in this order:
+ *
+ *   the condition number above which it looks
+ *   the rounds of inverse iteration
+ *   the displacement of the trial, relative to the mean length
+ *   the error that counts as rounding
+ *   the force at a node that counts as zero, relative to the tensions there */
 #define DRIFT_CONDITION 1e12
 #define DRIFT_ROUNDS 3
 #define DRIFT_PART 1e-2

@@ -182,8 +182,8 @@ void hf_schur_displace(const hf_model *m, const hf_schur *s, const double *b, do
     hf_schur_solve(s, displacement_m);
 }
 
-/* Cross approximation of A = (I + F S)^-1 - I. `left` is the longest column of A, scaled to length 1, and `right` has
- * the inner products of all columns with it. left right' is subtracted from A before the next mode. */
+/* Approximates A = (I + F S)^-1 - I by crosses. `left` is the longest column of A, scaled to length 1. `right` has the
+ * inner products of all columns with it. left right' is subtracted from A before the next mode. */
 int hf_schur_modes(hf_schur *s, double tolerance, int max_mode, double *mode)
 {
     size_t n = (size_t)s->n;
