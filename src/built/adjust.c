@@ -1,5 +1,21 @@
-/* Contents: memory - the figure of a shape - the linear model - the choice - the best there is - what is left open -
- * one move after the other - together */
+/* Chooses turnbuckle adjustments on a linear model that is renewed at each better shape:
+ *
+ *     estimate ---> solve the shape with the present adjustments
+ *                     |
+ *                     v
+ *                   linearise: J = d(residuals of the figure) / d(cut lengths), J'J, J'r       <---+
+ *                     |                                                                            |
+ *                     v                                                                            |
+ *                   choose whole steps of few turnbuckles (built/moves) within the tension limits  |
+ *                     |                                                                            |
+ *                     v                                                                            |
+ *                   solve the adjusted shape: better? ---------------------------------------yes---+
+ *                     | no
+ *                     v
+ *                   order the adjustments, judge each by posterior samples, find the continuous optimum
+ *
+ * Contents: memory, figure of a shape, linear model, choice, continuous optimum, posterior samples, order of
+ * adjustments, all steps together. */
 #include "built/adjust.h"
 
 #include "base/arena.h"
@@ -12,46 +28,55 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROUNDS_MAX 12  /* linear models of a choice, or of the best there is */
-#define PANEL 16       /* cables whose effects are found at a time */
-#define GRAM_ROWS 32   /* of the products that a thread finds at a time; a multiple of 4 */
-#define HALVINGS_MAX 6 /* of a step to the best there is */
-#define LITTLE 1e-5    /* of the figure: what a step to the best there is has to gain */
-#define KEPT 0.9       /* of a least tension: less in a shape is a linear model that does not hold */
+#define ROUNDS_MAX 12  /* linear models of a choice, and of the continuous optimum */
+#define PANEL 16       /* turnbuckles whose effects are computed together */
+#define GRAM_ROWS 32   /* rows of the product matrix that a thread computes at a time; a multiple of 4 */
+#define HALVINGS_MAX 6 /* halvings of a step towards the continuous optimum */
+#define LITTLE 1e-5    /* relative reduction of the figure that such a step must reach */
+#define KEPT 0.9       /* fraction of its minimum tension below which a cable invalidates the linear model */
 
 /* ---- memory ---- */
 
-/* What a thread needs to find effects of cables. */
+/* Holds what one thread needs to compute the effects of cables on the figure. */
 typedef struct {
     hf_goals_point point;
-    double *lanes;                            /* of the packed matrix */
-    double *strain_N, *answer_m, *scratch;    /* [PANEL][...] of the linear answer */
-    double *rate_m, *rate_N, *displacement_m; /* of hf_goals_push */
+    double *lanes; /* scratch for solves with the packed matrix */
+    /* [PANEL][...] strains, displacements and scratch of hf_built_linear_apply_by. */
+    double *strain_N, *answer_m, *scratch;
+    /* Arguments of hf_goals_push. The figure depends on positions alone, so the last two stay 0. */
+    double *rate_m, *rate_N, *displacement_m;
 } adjust_room;
 
 typedef struct {
     hf_estimate *estimate;
     const hf_adjust_task *task;
     int n_room;
-    adjust_room *room;      /* [n_room] */
-    hf_packed_band matrix;  /* of the linear answer, packed */
-    size_t n, n_row, n_dof; /* cables that can be turned; residuals of the figure; places */
-    hf_workspace work;      /* the last shape */
+    adjust_room *room;      /* [n_room], one for each thread */
+    hf_packed_band matrix;  /* factor of the linear model, packed for eight right-hand sides */
+    size_t n, n_row, n_dof; /* numbers of turnbuckles, of residuals of the figure, of coordinates */
+    hf_workspace work;      /* the shape solved last */
     hf_form_result form;
-    double *turn_m;                         /* [n_cable of the model] of the last shape */
-    double *doubt_m;                        /* [samples][n_dof] */
-    double *doubt_N;                        /* [n_cable of the model] deviation of estimated tensions */
-    hf_estimate_cause cause;                /* of doubt_m */
-    double *answer_m, *beyond_m;            /* [samples][n_dof] by stiffness; what that misses after all turns */
-    double *residual;                       /* [n_row] of the last shape */
-    double *column;                         /* [n][n_row] change of residuals per metre of each cable, and behind it */
-    double *left_open, *at_zero;            /* [samples][n_row]; [n_row] residuals without turns, by the linear model */
-    double *product;                        /* of these n + samples + 1 rows with each other */
-    double *gram, *slope, *sample, *move_m; /* [n][n], [n], [samples][n], [n] */
+    double *turn_m;          /* [n_cable of the model] adjustments of that shape */
+    double *doubt_m;         /* [HF_ESTIMATE_SAMPLES][n_dof] posterior displacements */
+    double *doubt_N;         /* [n_cable of the model] standard deviations of the estimated tensions */
+    hf_estimate_cause cause; /* posterior errors that cause doubt_m */
+    /* [HF_ESTIMATE_SAMPLES][n_dof] linear displacements of the posterior samples, and what they miss of the solved ones
+     * after all adjustments. */
+    double *answer_m, *beyond_m;
+    double *residual; /* [n_row] of the shape solved last */
+    /* [n][n_row] derivatives of the residuals with respect to each cut length, per metre. The rows of left_open and
+     * at_zero follow in the same array. */
+    double *column;
+    /* [HF_ESTIMATE_SAMPLES][n_row] changes of the residuals by each posterior sample, and [n_row] residuals without
+     * adjustments by the linear model. */
+    double *left_open, *at_zero;
+    double *product;                        /* products of these n + HF_ESTIMATE_SAMPLES + 1 rows with each other */
+    double *gram, *slope, *sample, *move_m; /* [n][n], [n], [HF_ESTIMATE_SAMPLES][n], [n] */
     int *steps, *trial;                     /* [n] */
-    double *least_N;                        /* [n_cable of the model] tensions that moves keep */
-    double *room_N;  /* [n_cable of the model] how far tensions may fall from those without turns */
-    bool is_current; /* is the linear model that of the shape with `steps`? */
+    double *least_N;                        /* [n_cable of the model] tensions that adjustments must keep */
+    /* [n_cable of the model] how far each tension may fall below its value without adjustments. */
+    double *room_N;
+    bool is_current; /* true: the linear model belongs to the shape with `steps` */
     hf_moves_problem problem;
     void *block;
 } adjustment;
@@ -103,7 +128,7 @@ static void lay_out_adjustment(hf_arena *arena, adjustment *a)
     lay_out_rooms(arena, a);
 }
 
-/* What the strains in the first room do to tensions, by the linear model. */
+/* Computes the changes of tension [n_cable], N, that the strains in the first room cause in the linear model. */
 static void find_tensions(const adjustment *a, double *change_N)
 {
     adjust_room *r = &a->room[0];
@@ -112,7 +137,7 @@ static void find_tensions(const adjustment *a, double *change_N)
     hf_built_linear_tension(&a->estimate->linear, r->strain_N, r->answer_m, change_N);
 }
 
-/* For hf_moves_choose. */
+/* Computes the changes of tension per metre of turnbuckle i, for hf_moves_choose. */
 static void find_rates(void *context, int i, double *rate_N_per_m)
 {
     adjustment *a = context;
@@ -169,7 +194,7 @@ static hf_status measure_work(adjustment *a, double *figure_m)
     return hf_goals_measure(a->task->goals, &a->work, &a->room[0].point, figure_m, &merit);
 }
 
-/* Of the net with the estimated errors and the turns in turn_m. */
+/* Solves the net with the estimated errors and the adjustments in turn_m, and measures its figure. */
 static hf_status solve_turned(adjustment *a, double *figure_m)
 {
     *figure_m = (double)NAN;
@@ -190,7 +215,8 @@ static hf_status solve_nominal(adjustment *a, double *figure_m)
     return measure_work(a, figure_m);
 }
 
-/* From the shape without turns. */
+/* Sets the tension that each cable must keep, from the shape without adjustments in `work`. Counts the cables below
+ * their required minimum. */
 static void find_least(adjustment *a, hf_adjustment *found)
 {
     const hf_built *b = a->estimate->built;
@@ -214,7 +240,7 @@ static bool keeps_least(const adjustment *a)
 
 /* ---- the linear model ---- */
 
-/* Residuals per unit of a move by dof. */
+/* Computes the derivative of the residuals, rate [n_row], along the displacements move_m [n_dof]. */
 static void push_move(const adjustment *a, adjust_room *r, const double *move_m, double *rate)
 {
     const hf_model *m = &a->estimate->built->model;
@@ -253,7 +279,8 @@ static void multiply_rows(void *context, int room, int i_block)
     hf_band_gram(first, end, (int)a->n_row, a->column, (int)a->n_row, a->product, n_all);
 }
 
-/* Products of the effects of cables, the samples and the residuals without turns. */
+/* Multiplies all rows with each other and copies J'J, J'r, r'r and the products with the samples to where
+ * hf_moves_choose reads them. */
 static void find_products(adjustment *a)
 {
     size_t n = a->n, n_all = rows_of(a), last = n_all - 1;
@@ -267,7 +294,8 @@ static void find_products(adjustment *a)
     a->problem.square = a->product[last * n_all + last];
 }
 
-/* How far tensions may fall from those without turns. */
+/* Computes how far each tension may fall below its value without adjustments, which the linear model extrapolates from
+ * the present shape. */
 static void find_room(adjustment *a)
 {
     int n_cable = a->problem.n_tension;
@@ -281,7 +309,7 @@ static void find_room(adjustment *a)
         a->room_N[e] = fmax(a->work.tension_N[e] - a->room_N[e] - a->least_N[e], 0);
 }
 
-/* From the residuals to those without turns. */
+/* Sets at_zero to the residuals without adjustments: r(0) = r(a) - J a. */
 static void take_turns_off(adjustment *a)
 {
     memcpy(a->at_zero, a->residual, a->n_row * sizeof *a->at_zero);
@@ -292,7 +320,7 @@ static void take_turns_off(adjustment *a)
     }
 }
 
-/* The same at a shape near that of the last linear model, whose effects of cables stay. */
+/* Renews the residuals at a shape near that of the last linear model and keeps the derivatives of that model. */
 static hf_status look_again(adjustment *a)
 {
     HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[0].point, a->residual));
@@ -303,7 +331,8 @@ static hf_status look_again(adjustment *a)
     return HF_OK;
 }
 
-/* At the shape in `work`: residuals, what each cable does to them, and what is left open. */
+/* Builds the linear model at the shape in `work`: residuals, their derivatives with respect to each turnbuckle, and
+ * their changes by each posterior sample. */
 static hf_status linearise(adjustment *a)
 {
     size_t n = a->n, n_row = a->n_row;
@@ -322,9 +351,11 @@ static hf_status linearise(adjustment *a)
 
 /* ---- the choice ---- */
 
-/* Into a->steps, 0 on entry: choices by the linear model of the last shape, as long as their own shapes are better.
- * After one that leaves a cable too little tension, has no shape or, as the first one, is no better, the range of the
- * next is half as large: as far as that the model does not hold. */
+/* Finds the best steps and writes them to a->steps, which is 0 on entry. Each choice starts from the linear model of
+ * the last accepted shape and is accepted when its own solved shape is better.
+ *
+ * The range is halved when the solved shape fails, when a cable has too little tension in it, or when the first choice
+ * is no better. The linear model does not hold that far in these cases. */
 static hf_status choose(adjustment *a, hf_adjustment *found)
 {
     double figure_m;
@@ -336,7 +367,7 @@ static hf_status choose(adjustment *a, hf_adjustment *found)
         hf_moves_end end;
         bool is_held;
         hf_status status = a->is_current ? HF_OK : linearise(a);
-        if (status == HF_SINGULAR) return HF_OK; /* the net has no stiffness there to go on with */
+        if (status == HF_SINGULAR) return HF_OK; /* without stiffness there is no linear model to improve on */
         HF_TRY(status);
         found->n_round += !a->is_current;
         a->is_current = true;
@@ -365,10 +396,11 @@ static hf_status choose(adjustment *a, hf_adjustment *found)
     return HF_OK;
 }
 
-/* ---- the best there is ---- */
+/* ---- continuous optimum ---- */
 
-/* From the turns that are there towards a->move_m, whatever tensions do. Whether the figure became better by more than
- * a little; else the turns and the shape are as before. */
+/* Takes a step from the present adjustments towards a->move_m, without limits on tensions, and halves it until the
+ * figure falls by more than LITTLE. *gains is false when no step does; the adjustments and the shape are then as
+ * before. */
 static hf_status go_on(adjustment *a, double *best_m, bool *gains)
 {
     double length = 1, at = 0, figure_m = (double)NAN;
@@ -389,7 +421,7 @@ static hf_status go_on(adjustment *a, double *best_m, bool *gains)
     return HF_OK;
 }
 
-/* Does the linear model have a figure below this one after a->move_m? */
+/* Returns whether the linear model predicts a figure below figure_m after the adjustments a->move_m. */
 static bool promises(const adjustment *a, double figure_m)
 {
     double square = a->problem.square;
@@ -398,8 +430,8 @@ static bool promises(const adjustment *a, double figure_m)
     return !(square >= figure_m * figure_m * (1 - LITTLE) * (1 - LITTLE));
 }
 
-/* From the shape that was chosen. Effects of cables stay those of the last linear model as long as steps by them gain.
- */
+/* Searches the continuous optimum from the chosen shape and writes its figure to found->best_m. The derivatives of the
+ * last linear model are kept as long as steps with them reduce the figure. */
 static hf_status find_best(adjustment *a, hf_adjustment *found)
 {
     bool gains = true, is_new = true;
@@ -409,7 +441,7 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
         is_new = round_ == 0 || !gains;
         hf_status status = !is_new ? look_again(a) : round_ == 0 && a->is_current ? HF_OK : linearise(a);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-        if (status != HF_OK) return HF_OK; /* no stiffness there to go on with: cables may be slack */
+        if (status != HF_OK) return HF_OK; /* the shape has no stiffness, perhaps because cables are slack */
         HF_TRY(hf_moves_best(&a->problem, a->move_m));
         if (!promises(a, found->best_m)) return HF_OK;
         HF_TRY(go_on(a, &found->best_m, &gains));
@@ -417,14 +449,14 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
     return HF_OK;
 }
 
-/* ---- what is left open ---- */
+/* ---- posterior samples ---- */
 
 static hf_turned turned_of(const adjustment *a)
 {
     return (hf_turned){a->estimate, a->doubt_m, &a->cause, a->room[0].strain_N, a->room[0].scratch};
 }
 
-/* What first order misses of the samples after all turns. */
+/* Solves each posterior sample after all adjustments and stores what its linear displacements miss. */
 static hf_status find_beyond(adjustment *a)
 {
     double figure_m;
@@ -433,7 +465,8 @@ static hf_status find_beyond(adjustment *a)
     return hf_turned_beyond(&t, a->turn_m, &a->work, a->task->n_thread, a->answer_m, a->beyond_m);
 }
 
-/* The figure of each sample at the shape in `work`, after this part of the turns. */
+/* Computes the figure of each posterior sample at the shape in `work`. `part` is the share of all adjustments made so
+ * far; it scales the nonlinear correction beyond_m. */
 static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_ESTIMATE_SAMPLES])
 {
     adjust_room *r = &a->room[0];
@@ -444,7 +477,7 @@ static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_E
         double *move_m = a->answer_m + s * a->n_dof;
         for (size_t i = 0; i < a->n_dof && part > 0; i++)
             move_m[i] += part * a->beyond_m[s * a->n_dof + i];
-        push_move(a, r, move_m, a->at_zero); /* which nobody reads any more */
+        push_move(a, r, move_m, a->at_zero); /* at_zero is free at this point */
         for (size_t i = 0; i < a->n_row; i++)
             a->at_zero[i] += a->residual[i];
         figure_m[s] = sqrt(hf_dot(a->n_row, a->at_zero, a->at_zero));
@@ -452,12 +485,12 @@ static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_E
     return HF_OK;
 }
 
-/* ---- one move after the other ---- */
+/* ---- order of adjustments ---- */
 
-/* What the chosen moves do to tensions, by the linear model. */
+/* Holds the changes of tension that the chosen adjustments cause in the linear model. */
 typedef struct {
-    double *change_N; /* [n_move][n_cable] by each, in the order of a->steps */
-    double *fall_N;   /* [n_cable] after the moves in a->trial */
+    double *change_N; /* [n_move][n_cable] changes by each adjustment, in the order of a->steps */
+    double *fall_N;   /* [n_cable] fall of each tension after the adjustments in a->trial */
     void *block;
 } move_order;
 
@@ -484,7 +517,8 @@ static hf_status make_order(adjustment *a, int n_move, move_order *o)
     return HF_OK;
 }
 
-/* What the move gains by the samples, whose figures before it are taken over by those after it. */
+/* Computes mean and standard deviation of the reduction of the figure over the posterior samples. before_m holds the
+ * figures of the samples before this adjustment, and those after it on return. */
 static hf_status judge_move(adjustment *a, double part, double before_m[HF_ESTIMATE_SAMPLES], hf_adjust_move *move)
 {
     double gain_m[HF_ESTIMATE_SAMPLES], unwanted;
@@ -499,7 +533,8 @@ static hf_status judge_move(adjustment *a, double part, double before_m[HF_ESTIM
     return HF_OK;
 }
 
-/* a->trial: no moves; the shape is that without any. sample_m: figures of samples there, then after all moves. */
+/* Makes the adjustments one by one and judges each of them. On entry a->trial is 0 and `work` holds the shape without
+ * adjustments. sample_m holds the figures of the samples without adjustments, and those after all of them on return. */
 static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_ESTIMATE_SAMPLES], hf_adjustment *found)
 {
     double made = 0, all = 0;
@@ -532,9 +567,10 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
     found->block = arena.block;
     if (!a->is_current) HF_TRY(solve_steps(a, a->steps, &figure_m));
     hf_status status = a->is_current ? HF_OK : linearise(a);
-    if (status != HF_OK && status != HF_SINGULAR) return status; /* then in the order of the last linear model */
+    /* without stiffness the last linear model orders them */
+    if (status != HF_OK && status != HF_SINGULAR) return status;
     a->is_current = status == HF_OK;
-    HF_TRY(make_order(a, found->n_move, &order)); /* by the linear model, which samples take elsewhere */
+    HF_TRY(make_order(a, found->n_move, &order)); /* before hf_turned_answer moves the linear model */
     status = found->n_move ? find_beyond(a) : HF_OK;
     memset(a->trial, 0, a->n * sizeof *a->trial);
     if (status == HF_OK) status = solve_steps(a, a->trial, &figure_m);
@@ -542,17 +578,17 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
     if (status == HF_OK) {
         hf_estimate_spread(sample_m, &found->doubt_m[0], &found->spread_m[0]);
         for (int e = 0; e < a->problem.n_tension; e++)
-            found->n_maybe_slack += !(a->work.tension_N[e] > a->doubt_N[e]); /* one that is slack has neither */
+            found->n_maybe_slack += !(a->work.tension_N[e] > a->doubt_N[e]); /* a slack cable has 0 for both */
         status = make_moves(a, &order, sample_m, found);
     }
     arena.block = order.block;
     hf_arena_free(&arena);
     HF_TRY(status);
-    hf_estimate_spread(sample_m, &found->doubt_m[1], &found->spread_m[1]); /* of the last one, with all moves */
+    hf_estimate_spread(sample_m, &found->doubt_m[1], &found->spread_m[1]); /* sample_m belongs to the last adjustment */
     return HF_OK;
 }
 
-/* ---- together ---- */
+/* ---- all steps together ---- */
 
 int hf_adjust_steps(const hf_adjust_settings *s)
 {

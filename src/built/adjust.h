@@ -1,6 +1,9 @@
-/* adjust - from the estimated errors of the net as built to the fewest moves of turnbuckles that bring its figure back:
- * chosen on a linear model of the shape, whose predictions are solved and linearised again until the choice stays
- * (METHOD section 12). */
+/* adjust - finds the fewest turnbuckle adjustments that restore the figure of an as-built net (METHOD section 12).
+ *
+ * Input is an estimate of the errors of the net (built/estimate.h) and the list of cables that have a turnbuckle.
+ * Output is an ordered list of adjustments in whole steps, each with the figure that it reaches and its uncertainty.
+ * The adjustments are chosen on a linear model of the shape. The adjusted shape is then solved and linearised again
+ * until the choice no longer changes. */
 #ifndef HIFDM_ADJUST_H
 #define HIFDM_ADJUST_H
 
@@ -8,57 +11,70 @@
 #include "built/moves.h"
 #include <hifdm/goals.h>
 
-/* What may be turned, and what for. Borrowed. */
+/* Specifies which turnbuckles can be adjusted, and for which figure. All pointers are borrowed. */
 typedef struct {
     const hf_adjust_settings *settings;
-    const hf_goals *goals; /* the figure, of one goal and of the model of the net as built */
-    int n_cable, *cable;   /* [n_cable] that can be turned */
+    /* The figure: exactly one objective, made for the model of the as-built net. */
+    const hf_goals *goals;
+    int n_cable, *cable; /* [n_cable] cables that have a turnbuckle */
     const double
-        *least_N; /* [n_cable of the net] tensions below which no move takes a cable; NULL: HF_ADJUST_TAUT alone */
-    int n_thread; /* 0: all cores */
+        /* [n_cable of the net] minimum tensions that adjustments must keep, N; NULL: only HF_ADJUST_TAUT limits
+         * them. */
+        *least_N;
+    int n_thread; /* number of threads; 0: all cores */
 } hf_adjust_task;
 
-/* One move, in the order in which they are made. Longer cables have a move above 0. */
+/* Describes one adjustment. Adjustments are listed in the order in which they are to be made; move_m is positive where
+ * the cable becomes longer. */
 typedef struct {
     int cable, steps;
     double move_m;
-    double before_N, after_N; /* tension of the cable, right before and after its move */
-    double figure_m;          /* of the shape after this move, solved */
-    double expected_m;        /* RMS of it over what errors and measurement leave open */
-    double gain_m;       /* how far this move lowers the figure, mean over that; below 0: it makes room for others */
-    double gain_sigma_m; /* the standard deviation */
-    int n_slack;         /* cables in this shape */
+    double before_N, after_N; /* tension of this cable immediately before and after its adjustment */
+    double figure_m;          /* solved figure after this adjustment */
+    double expected_m;        /* RMS of the figure over the posterior samples */
+    /* Mean reduction of the figure over the posterior samples. It is negative for an adjustment that raises tensions so
+     * that later ones are allowed. */
+    double gain_m;
+    double gain_sigma_m; /* standard deviation of that reduction over the samples */
+    int n_slack;         /* slack cables after this adjustment */
 } hf_adjust_move;
 
 typedef struct {
     double nominal_m;   /* figure of the nominal net */
-    double estimated_m; /* of the estimated shape, all nodes */
-    double adjusted_m;  /* after the moves */
-    double best_m;      /* lowest that a local search found: any moves within the range, whatever tensions */
-    double doubt_m[2];  /* RMS over what errors and measurement leave open, of the estimated and the adjusted shape */
-    double spread_m[2]; /* standard deviation of these figures */
-    int n_maybe_slack;  /* cables whose estimated tension is less than its standard deviation */
-    int n_low;          /* cables that have less than is asked for without moves: they may not lose more */
-    double low_N;       /* the most that is asked for of one of them */
-    int n_round;        /* linear models */
-    bool is_held_taut;  /* other moves were better but for tensions that fall too low, or cables that go slack */
-    bool is_settled;    /* the last of them chose nothing better than the moves that it was linearised at */
+    double estimated_m; /* figure of the estimated shape, over all nodes */
+    double adjusted_m;  /* figure after all adjustments */
+    /* Lowest figure found by a local search over all turnbuckles within their range, without steps and without limits
+     * on tensions. */
+    double best_m;
+    double doubt_m[2];  /* RMS of the figure over the posterior samples, before and after all adjustments */
+    double spread_m[2]; /* standard deviations of the figure over the same samples */
+    int n_maybe_slack;  /* cables whose estimated tension is at most its standard deviation */
+    /* Cables whose tension is below its required minimum before any adjustment. They must not lose more tension. */
+    int n_low;
+    double low_N; /* the largest minimum that one of these cables misses, N */
+    int n_round;  /* number of linear models used for the choice */
+    /* True when tension limits, or a solved shape with too little tension, ruled out other adjustments with a lower
+     * figure. */
+    bool is_held_taut;
+    bool is_settled; /* the choice has converged: the last linear model leads to no better one */
     hf_moves_end end;
     int n_move;
     hf_adjust_move *move; /* [n_move] */
     void *block;
 } hf_adjustment;
 
-/* The part of its tension in the design that moves leave a cable, by the linear model; of one that has less without
- * moves, what it has. */
+/* Fraction of its design tension that adjustments must leave in each cable, by the linear model. A cable that has less
+ * before any adjustment must keep what it has. */
 #define HF_ADJUST_TAUT 0.02
 
-/* How many steps a cable may be turned either way; 0 when the range is smaller than a step. */
+/* Returns the maximum number of steps by which a turnbuckle may be adjusted either way, at most HF_ADJUST_STEPS_MAX.
+ * Returns 0 when the range is smaller than one step. */
 #define HF_ADJUST_STEPS_MAX 1e9
 int hf_adjust_steps(const hf_adjust_settings *settings);
 
-/* The estimate is found. HF_OK, HF_NO_MEMORY, HF_SINGULAR, or the status of a shape that failed. Free it in any
- * case. */
+/* Finds the adjustments for an estimate on which hf_estimate_find has succeeded. Returns HF_OK, HF_NO_MEMORY or
+ * HF_INTERRUPTED; HF_SINGULAR when the estimated shape has no stiffness; HF_NOT_FINITE when the figure of a shape has
+ * no value; or the status of a shape that cannot be solved. Call hf_adjust_free in any case. */
 hf_status hf_adjust_find(hf_estimate *estimate, const hf_adjust_task *task, hf_adjustment *adjustment);
 void hf_adjust_free(hf_adjustment *adjustment);
 

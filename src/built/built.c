@@ -1,4 +1,9 @@
-/* Contents: the nominal net - one net */
+/* Makes the as-built net of a design and solves it (METHOD section 12):
+ *
+ *     design: lengths l, tensions T, stiffnesses EA ---> cut lengths l0 = l/(1 + T/EA), all cables elastic
+ *     cut lengths, EA, supports, loads of one net   ---> shape and tensions (hf_built_solve)
+ *
+ * Contents: the nominal net, one net. */
 #include <hifdm/built.h>
 
 #include "base/arena.h"
@@ -23,7 +28,8 @@ static void lay_out(hf_arena *arena, const hf_scene *s, hf_built *b)
     b->tension_N = hf_arena_take(arena, n, sizeof(double));
 }
 
-/* HF_BAD_CASE with a message for each kind of cable that cannot be cut: those without EA, by group, and struts. */
+/* Returns HF_BAD_CASE with a message for each kind of cable that cannot be cut. These are cables without EA, listed by
+ * group, and struts. */
 static hf_status refuse_cables(const char *where, const hf_scene *s, const hf_workspace *w, hf_messages *messages)
 {
     int n = 0, first = 0;
@@ -36,7 +42,8 @@ static hf_status refuse_cables(const char *where, const hf_scene *s, const hf_wo
                     s->cable_id[first], w->tension_N[first]);
 }
 
-/* Supports rest where the design has them; attachments where they are before the truss gives way. */
+/* Sets the resting positions of the supports: those of the design, less the displacement of the truss at
+ * attachments. */
 static void rest_supports(const hf_model *m, const hf_workspace *w, hf_scene *s)
 {
     for (int i = 0; i < s->n_node; i++)
@@ -47,6 +54,7 @@ static void rest_supports(const hf_model *m, const hf_workspace *w, hf_scene *s)
             s->position_m[3 * m->node_of_row[m->attachment_row[k]] + c] -= w->displacement_m[3 * k + c];
 }
 
+/* Sets the cut length of each cable, l0 = l/(1 + T/EA) (M32), and its design tension. */
 static void cut_cables(const hf_model *m, const hf_workspace *w, hf_built *b)
 {
     for (int e = 0; e < b->scene.n_cable; e++) {
@@ -65,7 +73,7 @@ static double largest_N(const hf_built *b)
     return largest;
 }
 
-/* The flexibility of the truss, and the loads, as the design's model has them. */
+/* Puts the supports on the same truss as in the design's model. */
 static hf_status attach_truss(const hf_model *m, hf_built *b, hf_messages *messages)
 {
     hf_arena arena = {0};
@@ -79,6 +87,7 @@ static hf_status attach_truss(const hf_model *m, hf_built *b, hf_messages *messa
     return status;
 }
 
+/* Copies what the net takes from the shape of the design. */
 static void take_design(const hf_model *m, const hf_workspace *w, hf_built *b)
 {
     rest_supports(m, w, &b->scene);
@@ -86,7 +95,7 @@ static void take_design(const hf_model *m, const hf_workspace *w, hf_built *b)
     memcpy(b->place_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
 }
 
-/* What in the model depends on the design. */
+/* Sets those entries of the model that depend on the design. */
 static void hold_design(const hf_workspace *w, hf_built *b)
 {
     hf_model *m = &b->model;
@@ -112,7 +121,7 @@ hf_status hf_built_make(const char *where, const hf_scene *s, const hf_model *m,
     b->block = arena.block;
     b->form.method = HF_METHOD_NEWTON;
     b->form.stop = HF_STOP_RESIDUAL;
-    b->form.factor = HF_FACTOR_OWN; /* which samples share */
+    b->form.factor = HF_FACTOR_OWN; /* the factor that samples share has this layout */
     memcpy(b->scene.position_m, s->position_m, 3 * (size_t)s->n_node * sizeof(double));
     memcpy(b->scene.EA_N, s->EA_N, (size_t)s->n_cable * sizeof(double));
     memset(b->scene.law, HF_LAW_ELASTIC, (size_t)s->n_cable);
@@ -148,7 +157,7 @@ hf_status hf_built_solve(const hf_built *b, const hf_built_net *net, hf_workspac
 {
     hf_model loaded = b->model;
     size_t n = (size_t)loaded.n_cable * sizeof(double);
-    if (net->load_N) loaded.load_N = (double *)(uintptr_t)net->load_N; /* no solver writes to it */
+    if (net->load_N) loaded.load_N = (double *)(uintptr_t)net->load_N; /* no solver writes to load_N */
     hf_form_prepare(&loaded, w);
     if (net->cut_m) memcpy(w->target, net->cut_m, n);
     if (net->EA_N) memcpy(w->EA_N, net->EA_N, n);

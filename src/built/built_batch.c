@@ -1,4 +1,18 @@
-/* Contents: what one thread works with - the batch - one sample - the run */
+/* Solves many samples of an as-built net on all cores (METHOD section 12). Each thread runs this pipeline:
+ *
+ *     queue of sample numbers ---> make_sample: cut lengths, EA and positions of supports of the sample
+ *                                    |
+ *                                    v
+ *                                  chord steps, eight samples in the lanes of the vectors (built/near)
+ *                                    |                    |
+ *                                    | converged          | does not contract
+ *                                    v                    v
+ *                                  give <---------------- Newton's method (hf_near_find), else hf_built_solve
+ *                                    |
+ *                                    v
+ *                                  the caller's hf_built_take
+ *
+ * Contents: working memory of a thread, the batch, one sample, the run. */
 #include <hifdm/built_batch.h>
 
 #include "base/arena.h"
@@ -9,23 +23,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- what one thread works with ---- */
+/* ---- working memory of a thread ---- */
 
-/* Each array has a part for each lane. */
+/* Holds the working memory of one thread. Each array has a part for each lane. */
 typedef struct {
     hf_workspace work;
     hf_near_lanes near;
     double *cut_m, *EA_N;   /* [HF_LANES][n_cable] of the samples in the lanes */
-    double *support_move_m; /* [HF_LANES][3][n_node] */
+    double *support_move_m; /* [HF_LANES][3][n_node] by row */
     void *block;
 } batch_room;
 
 struct hf_built_batch {
     const hf_built *built;
     int n_thread;
-    bool has_lanes; /* false: the nominal net has no matrix to share */
+    bool has_lanes; /* false: the nominal net has no matrix that samples could share */
     hf_near near;
-    batch_room *room; /* [n_thread] each is made by the first thread that needs it; the first one with the batch */
+    /* [n_thread] The first room is made with the batch, each other one by the first thread that needs it. */
+    batch_room *room;
 };
 
 static void lay_out_room(hf_arena *arena, const hf_model *m, batch_room *room)
@@ -35,8 +50,8 @@ static void lay_out_room(hf_arena *arena, const hf_model *m, batch_room *room)
     room->support_move_m = hf_arena_take(arena, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
 }
 
-/* Returns HF_OK, also when the room has been made before, or HF_NO_MEMORY. Only one thread at a time has the number of
- * a room, so nothing is locked. */
+/* Makes a room unless it exists. Returns HF_OK or HF_NO_MEMORY. Only one thread at a time has the number of a room, so
+ * no lock is needed. */
 static hf_status make_room(const hf_built_batch *batch, batch_room *room)
 {
     const hf_model *m = &batch->built->model;
@@ -68,7 +83,7 @@ static void lay_out(hf_arena *arena, int n_thread, hf_built_batch **batch, batch
     *room = hf_arena_take(arena, (size_t)n_thread, sizeof **room);
 }
 
-/* The first room, and the matrix, which is factored in its workspace. */
+/* Makes the first room and factors the shared matrix, which needs the workspace of that room. */
 static hf_status share(hf_built_batch *batch)
 {
     HF_TRY(hf_workspace_create(&batch->built->model, &batch->room[0].work));
@@ -103,7 +118,7 @@ hf_status hf_built_batch_renew(hf_built_batch *batch)
 
 void hf_built_batch_free(hf_built_batch *batch)
 {
-    hf_arena arena = {.block = (unsigned char *)batch}; /* the batch is the first thing in its block */
+    hf_arena arena = {.block = (unsigned char *)batch}; /* the batch is the first item of its block */
     if (!batch) return;
     for (int i = 0; i < batch->n_thread; i++)
         free_room(&batch->room[i]);
@@ -118,7 +133,7 @@ int hf_built_batch_threads(const hf_built_batch *batch)
 
 /* ---- one sample ---- */
 
-/* The samples of one call, shared by all its threads. */
+/* Holds the samples of one call of hf_built_batch_run. All threads share it. */
 typedef struct {
     hf_built_batch *batch;
     unsigned varies;
@@ -129,15 +144,16 @@ typedef struct {
     void *context;
 } batch_job;
 
-/* The work of one thread. */
+/* Holds the state of one thread. */
 typedef struct {
     const batch_job *job;
     batch_room *room;
     int place;
-    hf_built_net net[HF_LANES]; /* in the lanes, or in work by itself */
+    hf_built_net net[HF_LANES]; /* nets of the lanes; without lanes only the first is used */
 } batch_work;
 
-/* Make sample i in a lane's part of the arrays. */
+/* Makes sample i in the arrays of one lane. It starts with the nominal values, which the caller's function then
+ * changes. */
 static void make_sample(batch_work *work, int lane, int i)
 {
     const batch_job *j = work->job;
@@ -153,7 +169,7 @@ static void make_sample(batch_work *work, int lane, int i)
     work->net[lane] = (hf_built_net){cut_m, EA_N, move_m, NULL};
 }
 
-/* The workspace holds the shape. */
+/* Passes the shape of sample i, which the workspace holds, to the caller's function. */
 static void give(const batch_work *work, int i, const hf_form_result *r)
 {
     const batch_job *j = work->job;
@@ -163,6 +179,7 @@ static void give(const batch_work *work, int i, const hf_form_result *r)
     j->take(j->context, j->first + i, work->place, &shape, r);
 }
 
+/* Solves one net by Newton's method from the nominal shape, or by the reference where that does not converge. */
 static void find_net(const hf_built_batch *batch, const hf_built_net *net, hf_workspace *w, hf_form_result *r)
 {
     if (!batch->has_lanes || !hf_near_find(&batch->near, net, w, r)) hf_built_solve(batch->built, net, w, r);
@@ -183,6 +200,7 @@ const hf_workspace *hf_built_batch_find(hf_built_batch *batch, const hf_built_ne
 
 /* ---- the run ---- */
 
+/* Puts sample i into a lane. This function and the next three form the hf_lane_solver of work_on_job. */
 static void load(void *solver, int lane, int i)
 {
     batch_work *work = solver;
@@ -190,12 +208,14 @@ static void load(void *solver, int lane, int i)
     hf_near_load(&work->job->batch->near, &work->room->near, lane, &work->net[lane]);
 }
 
+/* Measures the forces in all lanes. */
 static void look(void *solver)
 {
     batch_work *work = solver;
     hf_near_look(&work->job->batch->near, &work->room->near);
 }
 
+/* Returns whether the lane is free: its sample has converged, or has been solved by another method. */
 static bool settle(void *solver, int lane, int i)
 {
     batch_work *work = solver;
@@ -214,20 +234,22 @@ static bool settle(void *solver, int lane, int i)
     return true;
 }
 
+/* Takes a chord step in all lanes. */
 static void step(void *solver)
 {
     batch_work *work = solver;
     hf_near_step(&work->job->batch->near, &work->room->near);
 }
 
-/* An hf_lane_next: no sample begins when the batch is told to stop. */
+/* Returns the next sample, or -1 when none is left or the batch is told to stop. It is an hf_lane_next. */
 static int take_next(void *context)
 {
     batch_job *j = context;
     return hf_built_must_stop(j->batch->built) ? -1 : hf_parallel_take(&j->queue);
 }
 
-/* The work of one thread. When there is no memory for its room, it returns and the other threads do its work. */
+/* Does the work of one thread. It returns without any work when there is no memory for its room; the other threads then
+ * take all samples. */
 static void work_on_job(void *context, int place)
 {
     static const hf_lane_solver in_lanes = {load, look, settle, step};
@@ -248,7 +270,7 @@ static void work_on_job(void *context, int place)
 void hf_built_batch_run(hf_built_batch *batch, unsigned varies, long first, long n, hf_built_sample *make,
                         hf_built_take *take, void *context)
 {
-    const long most = INT_MAX / 2; /* in one queue, which goes on counting when it is empty */
+    const long most = INT_MAX / 2; /* samples of one queue; its counter still rises when it is empty */
     for (; n > 0 && !hf_built_must_stop(batch->built); first += most, n -= most) {
         batch_job job = {batch, varies, first, {(int)(n < most ? n : most), 0, NULL}, make, take, context};
         if (batch->n_thread > 1)

@@ -1,4 +1,11 @@
-/* Contents: the room of a thread - one net - shapes - derivatives - all nets */
+/* Solves and linearises the as-built nets of a design, for objectives over load cases and samples (METHOD section 7):
+ *
+ *     cut        shape of the design ---> cut lengths, and the nominal net as starting point
+ *     solve      number of a net     ---> its shape and tensions, or none
+ *     linearise  number of a net     ---> its shape, and the factor of its Hessian there
+ *     follow     change of the design ---> change of the cut lengths ---> change of the shape of the linearised net
+ *
+ * Contents: working memory of a thread, one net, shapes, derivatives, all nets. */
 #include "built/built_nets.h"
 
 #include "base/arena.h"
@@ -6,32 +13,35 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- the room of a thread ---- */
+/* ---- working memory of a thread ---- */
 
 typedef struct {
     const hf_built_nets *nets;
-    bool is_made; /* of the first design that was cut */
+    bool is_made; /* false before the first design that could be cut */
     hf_built built;
     hf_built_batch *batch;
-    hf_built_linear linear;      /* of the net that was linearised last; its factor only from then on */
-    hf_built_errors errors;      /* only with samples */
-    hf_workspace design, of_net; /* views of a shape: arrays of others */
+    hf_built_linear linear;      /* the net linearised last; not factored before the first one */
+    hf_built_errors errors;      /* made only with samples */
+    hf_workspace design, of_net; /* views of a shape; other objects own the arrays */
     hf_goals_take *take;
     void *context;
-    double *cut_m, *EA_N, *move_m, *load_N; /* [n_cable] or [3][n_node] of one net */
-    double *z;                              /* [errors] numbers of a sample */
-    double *stretch;                        /* [n_cable] derivative of its length by that of the design */
-    double *weight_N_per_m;                 /* [n_cable][3] of a state: weight by unstressed length */
+    double *cut_m, *EA_N, *move_m, *load_N; /* [n_cable] or [3][n_node] by row, of one net */
+    double *z;                              /* [hf_built_errors_count] numbers of a sample */
+    /* [n_cable] derivative of the cut length in this net with respect to the cut length of the design. */
+    double *stretch;
+    double *weight_N_per_m; /* [n_cable][3] weight per unstressed length in a load case */
     bool has_weight;
-    double *length_m;                                     /* [n_cable] of a shape */
-    unsigned char *loose;                                 /* [n_node] zero: every node counts where it is */
-    double *strain_N, *dof_load_N, *dof_move_m, *scratch; /* [HF_GOALS_AT_ONCE] of linear */
-    double *cut_rate;                                     /* [n_cable] */
-    double *rate_m, *rate_N, *rate_displacement_m;        /* [HF_GOALS_AT_ONCE] of a net */
+    double *length_m;     /* [n_cable] lengths in one shape */
+    unsigned char *loose; /* [n_node] all 0: each node counts at the position that it has */
+    /* arguments of hf_built_linear_apply_by, [HF_GOALS_AT_ONCE] each */
+    double *strain_N, *dof_load_N, *dof_move_m, *scratch;
+    double *cut_rate;                              /* [n_cable] derivatives of the cut lengths of the design */
+    double *rate_m, *rate_N, *rate_displacement_m; /* [HF_GOALS_AT_ONCE] derivatives of the shape of a net */
     void *block, *more;
 } nets_room;
 
-static size_t scratch_of(const hf_model *m) /* of hf_built_linear */
+/* Returns hf_built_linear.n_scratch, which is needed before the linear model exists. */
+static size_t scratch_of(const hf_model *m)
 {
     return 3 * (size_t)m->n_node + (m->n_attachment ? 3 * (size_t)(m->n_free + m->n_attachment) : 0);
 }
@@ -91,13 +101,13 @@ static void lay_out_numbers(hf_arena *arena, nets_room *r)
     r->z = hf_arena_take(arena, (size_t)hf_built_errors_count(&r->errors), sizeof(double));
 }
 
-/* What depends on the first design by its model alone. */
+/* Makes the as-built net, the batch and the errors for the first design. Later designs only renew the net. */
 static hf_status make_room_for(nets_room *r, const hf_workspace *w)
 {
     const hf_built_nets *nets = r->nets;
     hf_messages messages = {0};
     hf_arena arena = {0};
-    hf_built_free(&r->built); /* of a design that could not be cut */
+    hf_built_free(&r->built); /* left by an earlier design that could not be cut */
     hf_status status = hf_built_make("", nets->scene, nets->model, nets->form, w, &r->built, &messages);
     hf_messages_free(&messages);
     HF_TRY(status);
@@ -112,6 +122,7 @@ static hf_status make_room_for(nets_room *r, const hf_workspace *w)
     return HF_OK;
 }
 
+/* Cuts the nets for the design in the workspace, as hf_goals_nets.cut. */
 static hf_status cut_for(void *room, const hf_workspace *w)
 {
     nets_room *r = room;
@@ -138,6 +149,7 @@ static void make_state(nets_room *r, int i, hf_built_net *net)
                    net);
 }
 
+/* Sets *net to a load case or a sample, in the arrays of the room. */
 static void make_net(nets_room *r, int i_net, hf_built_net *net)
 {
     const hf_model *m = &r->built.model;
@@ -159,7 +171,8 @@ static void make_net(nets_room *r, int i_net, hf_built_net *net)
 
 /* ---- shapes ---- */
 
-/* All nodes of a net count, loose ones at the places that they are given, as in samples of `tolerance`. */
+/* Returns a view of a shape for goals.h. All nodes of a net count, loose ones at the positions that they were given, as
+ * in the samples of `tolerance`. */
 static const hf_workspace *view(nets_room *r, const double *position_m, const double *tension_N,
                                 const double *displacement_m)
 {
@@ -173,7 +186,7 @@ static const hf_workspace *view(nets_room *r, const double *position_m, const do
         }
         r->length_m[e] = sqrt(square);
     }
-    r->of_net = (hf_workspace){.position_m = (double *)(uintptr_t)position_m, /* which are only read */
+    r->of_net = (hf_workspace){.position_m = (double *)(uintptr_t)position_m, /* the view is only read */
                                .tension_N = (double *)(uintptr_t)tension_N,
                                .displacement_m = (double *)(uintptr_t)displacement_m,
                                .length_m = r->length_m,
@@ -195,6 +208,7 @@ static void take_from_lane(void *context, long i, int place, const hf_built_shap
             has_shape ? view(r, s->position_m, s->tension_N, s->displacement_m) : NULL);
 }
 
+/* Solves one net. Returns a view of its shape, or NULL when it has none. *whole is the workspace that holds it. */
 static const hf_workspace *find_one(nets_room *r, int i_net, const hf_workspace **whole)
 {
     hf_built_net net;
@@ -221,7 +235,8 @@ static void solve_nets(void *room, int first, int n, hf_goals_take *take, void *
 
 /* ---- derivatives ---- */
 
-/* Of the lengths of a net by those of the design, to which they are linear. */
+/* Sets `stretch` for one net. Its cut lengths are linear functions of those of the design, so the derivatives of a
+ * sample are the difference of two values. */
 static void find_stretch(nets_room *r, int i_net)
 {
     const hf_built_nets *nets = r->nets;
@@ -248,6 +263,8 @@ static void find_stretch(nets_room *r, int i_net)
         r->stretch[e] -= r->cut_rate[e];
 }
 
+/* Solves one net and factors its Hessian, as hf_goals_nets.linearise. A net without a shape or without stiffness gives
+ * HF_NOT_FINITE. */
 static hf_status linearise_net(void *room, int i_net, const hf_workspace **shape)
 {
     nets_room *r = room;
@@ -264,7 +281,7 @@ static hf_status linearise_net(void *room, int i_net, const hf_workspace **shape
     return HF_OK;
 }
 
-/* Of the pieces that are cut for the design: l0 = l/(1 + T/EA). */
+/* Sets cut_rate for a change of the design, the derivative of l0 = l/(1 + T/EA) (M32). */
 static void follow_cut(nets_room *r, const hf_goals_rate *by)
 {
     const hf_model *m = r->nets->model;
@@ -278,7 +295,8 @@ static void follow_cut(nets_room *r, const hf_goals_rate *by)
     }
 }
 
-/* The rest of the supports follows the design, that of attachments without what the truss gives way. */
+/* Sets the displacements of the supports where they rest. They follow the design, at attachments less the change of the
+ * displacement of the truss. */
 static void follow_rest(const nets_room *r, const hf_goals_rate *by, double *dof_move)
 {
     const hf_model *m = r->nets->model;
@@ -290,16 +308,18 @@ static void follow_rest(const nets_room *r, const hf_goals_rate *by, double *dof
             dof_move[3 * m->attachment_row[k] + c] -= by->displacement_m[3 * k + c];
 }
 
+/* Sets the change of the loads: the weight of each cable follows its cut length. */
 static void follow_weight(const nets_room *r, double *dof_load)
 {
     const hf_model *m = r->nets->model;
     memset(dof_load, 0, 3 * (size_t)m->n_node * sizeof *dof_load);
-    for (int k = 0; k < 6 * m->n_cable; k++) { /* half of a piece at each of its ends */
+    for (int k = 0; k < 6 * m->n_cable; k++) { /* half of the weight at each end */
         int e = k / 6, row = m->end_row[k / 3];
         dof_load[3 * row + k % 3] += r->weight_N_per_m[3 * e + k % 3] * r->cut_rate[e] / 2;
     }
 }
 
+/* Sorts the solution by coordinate for goals.h, and sets the displacements of the attachments by the truss. */
 static void spread_net(const nets_room *r, int k, double *displacement_m)
 {
     const hf_model *m = r->nets->model;
@@ -309,10 +329,11 @@ static void spread_net(const nets_room *r, int k, double *displacement_m)
     for (int row = 0; row < m->n_node; row++)
         for (int c = 0; c < 3; c++)
             move[c * m->n_node + row] = dof_move[3 * row + c];
-    for (int i = 0; i < 3 * m->n_attachment; i++) /* which held the rest's */
+    for (int i = 0; i < 3 * m->n_attachment; i++) /* it held the displacement of the resting position */
         displacement_m[i] = dof_move[3 * m->attachment_row[i / 3] + i % 3] - displacement_m[i];
 }
 
+/* Turns n changes of the design into those of the net linearised last, as hf_goals_nets.follow. */
 static void follow_net(void *room, int n, const hf_goals_rate *by, hf_goals_rate *by_net)
 {
     nets_room *r = room;

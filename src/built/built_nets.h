@@ -1,9 +1,13 @@
-/* built_nets - the nets that goals of a design are over, as goals.h wants them: states of the case, then samples of the
- * errors of `tolerance` (METHOD section 7). Samples are the first random ones, also where `tolerance` takes Sobol's
- * sequence, whose directions follow the design: every design is judged by the same numbers.
+/* built_nets - the as-built nets of a design over which objectives are taken (METHOD section 7).
  *
- * A net is cut for the shape of the design, and found from it: samples eight at a time by built_batch, states one by
- * one. Everything is constant once it is made, and each thread has a room of its own. */
+ * It implements the interface hf_goals_nets of goals.h. The nets are the load cases of the case file, followed by
+ * samples of the errors of its section `tolerance`. Samples use random numbers even where `tolerance` uses Sobol's
+ * sequence. The directions of that sequence depend on the design, whereas all designs must be judged by the same
+ * errors.
+ *
+ * Each net is cut for the shape of the design and solved from that shape. built_batch solves samples eight at a time;
+ * load cases are solved one by one. An hf_built_nets does not change after it is made. Each thread has its own working
+ * memory. */
 #ifndef HIFDM_BUILT_NETS_H
 #define HIFDM_BUILT_NETS_H
 
@@ -12,18 +16,21 @@
 #include <hifdm/goals.h>
 
 typedef struct {
-    hf_goals_nets as; /* the first member: what goals see */
+    hf_goals_nets as; /* the first member: the interface that goals.h uses */
     const hf_scene *scene;
-    const hf_model *model; /* of the design */
+    const hf_model *model; /* the model of the design */
     const hf_form_settings *form;
     const hf_states *states;
     const hf_tolerance_settings *tolerance;
-    const double *attachment_move_m; /* [n_state][3 n_attachment] how far the truss alone moves them; NULL without */
-    hf_built_heat heat;              /* what temperatures of samples do */
+    /* [n_state][3 n_attachment] displacements of the attachments that the truss alone causes in each load case; NULL
+     * without a truss. */
+    const double *attachment_move_m;
+    hf_built_heat heat; /* effects of the temperatures of samples */
     const char *name[HF_STATES_MAX];
 } hf_built_nets;
 
-/* All but n_sample is borrowed; `states` and `tolerance` may be NULL where there are none of them. */
+/* Makes the nets of n_sample samples and of all load cases in `states`. All pointers are borrowed. `states` is NULL
+ * without load cases, `tolerance` is NULL without samples. */
 void hf_built_nets_make(const hf_scene *scene, const hf_model *model, const hf_form_settings *form,
                         const hf_states *states, const double *attachment_move_m,
                         const hf_tolerance_settings *tolerance, const hf_built_heat *heat, int n_sample,

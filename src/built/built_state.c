@@ -1,8 +1,9 @@
-/* The net that a state of the built net is: lengths, supports and loads. */
+/* Sets the cut lengths, supports and loads of the as-built net in one load case (METHOD section 12). */
 #include <hifdm/built.h>
 
 #include <string.h>
 
+/* Adds the weights of nodes and cables under the gravity g to load_N [3][n_node] by row. */
 static void add_weight(const hf_built *b, const hf_material *t, const double g[3], double *load_N)
 {
     const hf_model *m = &b->model;
@@ -12,7 +13,7 @@ static void add_weight(const hf_built *b, const hf_material *t, const double g[3
         for (int i = 0; i < s->n_node; i++)
             load[m->row_of_node[i]] += t->node_mass_kg[i] * g[c];
         for (int e = 0; e < s->n_cable; e++)
-            for (int k = 0; k < 2; k++) /* the mass is that of the piece that was cut */
+            for (int k = 0; k < 2; k++) /* the mass is that of the unstressed length */
                 load[m->end_row[2 * e + k]] += t->mass_kg_per_m[e] * s->target[e] * g[c] / 2;
     }
 }

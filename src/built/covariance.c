@@ -1,3 +1,8 @@
+/* Computes the exact first-order mean of psi^2 and the shares of errors in it (M31).
+ *
+ *     for each coordinate of an inner node:  unit vector ---> transposed linear model (one solve)
+ *                                                        ---> derivatives of the coordinate by all errors
+ *                                                        ---> their squares, added to the shares */
 #include "built/covariance.h"
 
 #include "base/arena.h"
@@ -6,16 +11,17 @@
 #include <math.h>
 #include <string.h>
 
-/* Coordinates whose shares are summed together, in order: so the sum does not depend on threads. */
+/* Number of groups of coordinates. Shares are summed within a group in order, and then over the groups, so that the
+ * result does not depend on the number of threads. */
 #define STRIPS 32
-#define AT_ONCE 6 /* right-hand sides of a solve; the solver takes three at a time, and no sum changes with it */
+#define AT_ONCE 6 /* right-hand sides of one solve; their number does not change any sum */
 
 typedef struct {
     const hf_built_errors *errors;
     double *share;   /* [STRIPS][n] */
-    double *square;  /* [3 n_inner_node] of each coordinate */
-    double *scratch; /* [n_thread][AT_ONCE][...] */
-    size_t n_room;   /* of it for a thread */
+    double *square;  /* [3 n_inner_node] variance of each coordinate */
+    double *scratch; /* [n_thread][n_room] */
+    size_t n_room;   /* doubles of scratch for one thread */
 } strips;
 
 static void lay_out_strips(hf_arena *arena, size_t n_thread, size_t n_inner, strips *s)
@@ -28,7 +34,7 @@ static void lay_out_strips(hf_arena *arena, size_t n_thread, size_t n_inner, str
     s->scratch = hf_arena_take(arena, n_thread * s->n_room, sizeof(double));
 }
 
-/* Coordinates first to first + count - 1 of the inner nodes. */
+/* Adds the squares for the coordinates first to first + count - 1 of the inner nodes. */
 static void add_coordinates(strips *s, int i_strip, int first, int count, double *room)
 {
     const hf_built_linear *l = s->errors->linear;
@@ -79,11 +85,12 @@ static void sum_up(const strips *s, hf_covariance *c)
         c->deviation_m[k] = sqrt(s->square[3 * k] + s->square[3 * k + 1] + s->square[3 * k + 2]);
 }
 
-/* A psi so small beside what errors add, root of the mean square, is no figure that a cut raises or lowers: it has a
- * corner there, and the direction of what is left is that of rounding. */
+/* psi has a corner at 0. Below this fraction of the RMS that errors add, its derivative is mostly rounding, so none is
+ * given. */
 #define NO_PSI 1e-3
 
-/* One solve for all cables: psi has the slope d/(n psi) by the places of the inner nodes, d their distances. */
+/* Computes psi_by_cut by one transposed solve. The derivative of psi with respect to an inner node is d/(n psi), where
+ * d is its distance from its target position. */
 static void find_psi_by_cut(const hf_built_linear *l, double *room, hf_covariance *c)
 {
     const hf_model *m = &l->built->model;

@@ -1,4 +1,10 @@
-/* Contents: leading directions - points - numbers */
+/* Finds the leading directions of the errors and draws quasi-random samples:
+ *
+ *     linear model M ---> orthogonal iteration with M'M ---> axis V (normal errors)
+ *     shares of errors ---> the largest of them              (uniform errors)
+ *     point of Sobol's sequence xi, random numbers zeta ---> z = zeta + V (xi - V' zeta)
+ *
+ * Contents: leading directions, points, numbers. */
 #include "built/directions.h"
 
 #include "base/arena.h"
@@ -9,10 +15,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Rounds of orthogonal iteration. Any orthonormal directions give right samples; the nearer they are to the leading
- * ones, the faster means converge. */
+/* Rounds of orthogonal iteration. Samples are correct for any orthonormal directions. Means converge faster, the nearer
+ * the directions are to the leading ones. */
 #define ROUNDS 6
-/* In place of the kind of an error, for numbers that belong to the sequence. */
+/* Streams of random numbers for the sequence itself. Their numbers continue those of the kinds of errors. */
 enum { SHIFTS = HF_ERROR_STREAMS, LAST_BITS, STARTS };
 
 /* ---- leading directions ---- */
@@ -25,7 +31,7 @@ typedef struct {
     size_t n_room;
 } iteration;
 
-/* column i -> M'M column i, where M is what errors move the inner nodes by. */
+/* Replaces column i by M'M times it, where M is the linear model from errors to the positions of inner nodes. */
 static void multiply(void *context, int room, int i)
 {
     iteration *t = context;
@@ -44,8 +50,8 @@ static void multiply(void *context, int room, int i)
     hf_built_errors_slope(e, strain, slope, column);
 }
 
-/* Gram and Schmidt, twice, in the order of the columns: sums in a fixed order, which LAPACK does not promise. A column
- * that the others span becomes 0: then it is no direction. */
+/* Orthonormalises the columns in their order, by Gram-Schmidt applied twice. The order of its sums is fixed, unlike
+ * LAPACK's. A column that depends linearly on earlier ones becomes 0 and has no effect. */
 static void orthonormalise(iteration *t)
 {
     size_t n = (size_t)hf_built_errors_count(t->errors);
@@ -63,6 +69,7 @@ static void orthonormalise(iteration *t)
     }
 }
 
+/* Finds the leading right singular vectors by orthogonal iteration. Returns HF_OK, HF_NO_MEMORY or HF_INTERRUPTED. */
 static hf_status find_axes(const hf_built_errors *e, int n_thread, hf_directions *d)
 {
     const hf_built_linear *l = e->linear;
@@ -87,7 +94,7 @@ static hf_status find_axes(const hf_built_errors *e, int n_thread, hf_directions
     return hf_built_must_stop(l->built) ? HF_INTERRUPTED : HF_OK;
 }
 
-/* The errors of the largest shares, in this order. */
+/* Lists the errors with the largest shares, in descending order. */
 static void pick_errors(const hf_covariance *c, int n_error, hf_directions *d)
 {
     int n = 0;
@@ -133,7 +140,7 @@ void hf_directions_free(hf_directions *d)
 
 /* ---- points ---- */
 
-/* GSL's sequence, of 30 bits, begins after the origin, which belongs to it. */
+/* The origin is point 0. GSL's generator begins with point 1 and has 30 bits; the lower bits are random. */
 void hf_directions_points(hf_directions *d, long first, int count, double *point)
 {
     double at[HF_DIRECTIONS_MAX] = {0};

@@ -1,4 +1,5 @@
-/* Contents: making - numbers - errors of a net - to first order */
+/* Turns independent random numbers into the errors of an as-built net, exactly and to first order (METHOD section 12).
+ * Contents: making, numbers, errors of a net, first order. */
 #include "built/errors.h"
 
 #include "base/arena.h"
@@ -9,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#define KIND_SHIFT 27 /* bits of an item's number: 3 coordinates of more nodes than a net can have */
+#define KIND_SHIFT 27 /* bits of an item; enough for three coordinates of each node */
 
 /* ---- making ---- */
 
@@ -24,7 +25,7 @@ static void lay_out_errors(hf_arena *arena, const hf_model *m, hf_built_errors *
 
 static void find_spools(const hf_scene *s, hf_built_errors *e)
 {
-    e->n_spool = s->n_set + 2; /* sets, then the two groups */
+    e->n_spool = s->n_set + 2; /* the sets, then the two groups */
     for (int i = 0; i < s->n_cable; i++)
         e->spool[i] = s->n_set + s->group[i];
     for (int k = s->n_set - 1; k >= 0; k--)
@@ -133,7 +134,7 @@ double hf_built_errors_largest_scale(const hf_built_errors *e)
     return 0.5 / (largest * most);
 }
 
-/* By which an error is known: 3 node + component of supports, 1 + part of the truss, else its place in its kind. */
+/* Returns the item of error i of a kind: 3 node + component for supports, 1 + part for the truss, otherwise i. */
 static int item_of(const hf_built_errors *e, int kind, int i)
 {
     if (kind == HF_ERROR_TRUSS_TEMPERATURE) return 1 + e->part[i];
@@ -152,18 +153,19 @@ void hf_built_errors_draw(const hf_built_errors *e, long sample, double *z)
 
 /* ---- errors of a net ---- */
 
-/* sigma z of item i of a kind; 0 where there are none. */
+/* Returns sigma z of item i of a kind, or 0 when the kind has no errors. */
 static double error_of(const hf_built_errors *e, hf_error_kind kind, int i, const double *z)
 {
     return e->sigma[kind] > 0 ? e->sigma[kind] * z[e->first[kind] + i] : 0;
 }
 
+/* Returns the relative error of cable i, its own and that of its spool. */
 static double ratio_of(const hf_built_errors *e, hf_error_kind own, hf_error_kind batch, int i, const double *z)
 {
     return error_of(e, own, i, z) + error_of(e, batch, e->spool[i], z);
 }
 
-/* How far the truss moves number i_move of the attachments, 3 attachment + component. */
+/* Returns the displacement by the truss of coordinate i_move = 3 attachment + component, m. */
 static double truss_move_of(const hf_built_errors *e, int i_move, const double *z)
 {
     int n = 3 * e->linear->built->model.n_attachment;
@@ -191,7 +193,7 @@ void hf_built_errors_apply(const hf_built_errors *e, double scale, const double 
         support_move_m[k % 3 * m->n_node + m->attachment_row[k / 3]] += scale * truss_move_of(e, k, z);
 }
 
-/* ---- to first order ---- */
+/* ---- first order ---- */
 
 void hf_built_errors_strain(const hf_built_errors *e, double scale, const double *z, double *strain_N, double *move_m)
 {
@@ -210,7 +212,7 @@ void hf_built_errors_strain(const hf_built_errors *e, double scale, const double
         move_m[3 * m->attachment_row[k / 3] + k % 3] += scale * truss_move_of(e, k, z);
 }
 
-/* slope_z of item i of a kind += sigma times rate, where there are such errors. */
+/* Adds sigma times rate to slope_z of item i of a kind, when the kind has errors. */
 static void add_slope(const hf_built_errors *e, hf_error_kind kind, int i, double rate, double *slope_z)
 {
     if (e->sigma[kind] > 0) slope_z[e->first[kind] + i] += e->sigma[kind] * rate;

@@ -1,16 +1,17 @@
-/* errors - the errors of a net as built, as independent numbers of mean 0 and deviation 1: what they make of cut
- * lengths, stiffnesses and supports, and to first order of tensions (METHOD section 12).
+/* errors - the errors of an as-built net as independent random numbers of mean 0 and standard deviation 1 (METHOD
+ * section 12). The functions turn these numbers into cut lengths, stiffnesses and supports, or into first-order changes
+ * of tensions.
  *
- * Errors are numbered by kind. A number depends on (seed, sample, kind, item) alone: neither a kind that is added nor
- * the order of nodes in the model changes the others. */
+ * Errors are numbered by kind. A number depends on (seed, sample, kind, item) alone. Other kinds of errors and the
+ * order of nodes in the model do not change it. */
 #ifndef HIFDM_ERRORS_H
 #define HIFDM_ERRORS_H
 
 #include "built/linear.h"
 #include <hifdm/built_batch.h>
 
-/* X(name, word, items of a kind). An error of a ratio is the sum of that of the cable and that of its spool, which all
- * its cables share. */
+/* X(name, word, items of a kind). A relative error is the sum of the cable's own one and of its spool's, which all
+ * cables of the spool share. */
 #define HF_ERROR_KINDS(X)                                                                                              \
     X(CUT, "cut_m", "cables")                                                                                          \
     X(RATIO, "cut_ratio", "cables")                                                                                    \
@@ -25,34 +26,36 @@
 typedef enum { HF_ERROR_KINDS(HF_ERROR_ENUMERATOR) HF_ERROR_N_KIND } hf_error_kind;
 #undef HF_ERROR_ENUMERATOR
 
-/* Kinds of numbers below it are errors, others are free for other numbers: temperatures of the truss are of the kind of
- * that of the cables, items 1 + part. */
+/* Kinds of random numbers below this one belong to errors, others are free for other uses. Temperatures of the truss
+ * have the kind HF_ERROR_TEMPERATURE and the items 1 + part. */
 #define HF_ERROR_STREAMS HF_ERROR_TRUSS_TEMPERATURE
 
-/* What temperatures do. Both NULL: nothing of the kind varies. */
+/* Describes the effects of temperatures. A member is NULL when its temperatures do not vary. */
 typedef struct {
     const double *expansion_per_K; /* [n_cable] of cables, needed with sigma_temperature_K */
     const double
-        *truss_move_m_per_K; /* [n_truss][3 n_attachment] of attachments without any force, by tolerance.truss */
+        /* [n_truss][3 n_attachment] displacements of the attachments without any forces, for each row of
+         * tolerance.truss. */
+        *truss_move_m_per_K;
 } hf_built_heat;
 
 typedef struct {
     const hf_built_linear *linear;
     hf_distribution distribution;
     uint64_t seed;
-    double sigma[HF_ERROR_N_KIND];  /* of each kind; 0: there are none */
-    int first[HF_ERROR_N_KIND + 1]; /* numbers of the errors of each kind; the last entry is the number of all */
-    int n_spool, *spool;            /* [n_cable] spool of each cable */
+    double sigma[HF_ERROR_N_KIND];  /* standard deviation of each kind; 0: it has no errors */
+    int first[HF_ERROR_N_KIND + 1]; /* first error of each kind; the last entry is the number of all errors */
+    int n_spool, *spool;            /* spools, and [n_cable] spool of each cable */
     int n_support, *support;        /* [n_support] nodes of the scene, ascending */
     double *expansion_per_K;        /* [n_cable] */
-    int n_truss, part[HF_TRUSS_HEAT_ROWS_MAX]; /* of each row, as in settings */
-    double *truss_move_m;                      /* [n_truss][3 n_attachment] of attachments, by one sigma */
+    int n_truss, part[HF_TRUSS_HEAT_ROWS_MAX]; /* part of each row of tolerance.truss */
+    double *truss_move_m; /* [n_truss][3 n_attachment] displacements of the attachments by one sigma */
     void *block;
 } hf_built_errors;
 
-/* A spool is a set of cables: the first in the order of names that has the cable, or else its group.
- * heat: NULL where none varies.
- * HF_OK or HF_NO_MEMORY; free in any case. */
+/* Makes the errors that `settings` describes, for the net of `linear`. Both `linear` and its net are borrowed. The
+ * spool of a cable is the first set, in the order of names, that has the cable, or else its group. heat is NULL when no
+ * temperature varies. Returns HF_OK or HF_NO_MEMORY; call hf_built_errors_free in any case. */
 hf_status hf_built_errors_make(const hf_built_linear *linear, const hf_tolerance_settings *settings,
                                const hf_built_heat *heat, hf_built_errors *errors);
 void hf_built_errors_free(hf_built_errors *errors);
@@ -62,35 +65,38 @@ static inline int hf_built_errors_count(const hf_built_errors *errors)
     return errors->first[HF_ERROR_N_KIND];
 }
 
-/* What of a net they change beside lengths: flags HF_BUILT_VARIES_... */
+/* Returns which properties of a net vary beside its cut lengths, as flags HF_BUILT_VARIES_... */
 unsigned hf_built_errors_vary(const hf_built_errors *errors);
 
 hf_error_kind hf_built_errors_kind(const hf_built_errors *errors, int i_error);
 
-/* The cable that error i_error is of, or -1. */
+/* Returns the cable to which an error belongs, or -1 for an error that is not a cable's own. */
 int hf_built_errors_cable(const hf_built_errors *errors, int i_error);
 
-/* A number in (0, 1), uniform, and what the distribution makes of it. */
+/* hf_built_errors_uniform returns a uniform random number in (0, 1). hf_built_errors_shape transforms it to the
+ * distribution with mean 0 and standard deviation 1. */
 double hf_built_errors_uniform(uint64_t seed, long sample, int kind, int item);
 double hf_built_errors_shape(hf_distribution distribution, double uniform);
 
-/* The largest factor of all errors that leaves at least half of each cut length and of each EA, for numbers up to 6, or
- * up to the largest of uniform ones. INFINITY where neither varies. */
+/* Returns the largest factor of all errors that leaves at least half of each cut length and of each EA. It assumes
+ * numbers up to 6 sigma, or up to the maximum of uniform ones. Returns INFINITY when neither varies. */
 double hf_built_errors_largest_scale(const hf_built_errors *errors);
 
-/* The numbers z [n] of a sample. */
+/* Draws the numbers z [n] of a sample. */
 void hf_built_errors_draw(const hf_built_errors *errors, long sample, double *z);
 
-/* What numbers times `scale` change in the nominal cut_m, EA_N [n_cable] (NULL: EA does not vary), and support_move_m
- * [3][n_node] by row (NULL: supports do not). */
+/* Applies the numbers z, times `scale`, to the nominal values in cut_m and EA_N [n_cable], and adds them to
+ * support_move_m [3][n_node] by row. EA_N and support_move_m may be NULL when they do not vary. */
 void hf_built_errors_apply(const hf_built_errors *errors, double scale, const double *z, double *cut_m, double *EA_N,
                            double *support_move_m);
 
-/* The same to first order, as hf_built_linear_apply takes it: strain_N [n_cable], move_m [n_dof]. */
+/* Computes the first-order effect of the numbers z, times `scale`, as hf_built_linear_apply expects it: strain_N
+ * [n_cable], move_m [n_dof]. */
 void hf_built_errors_strain(const hf_built_errors *errors, double scale, const double *z, double *strain_N,
                             double *move_m);
 
-/* The transpose: from what hf_built_linear_transpose gives to derivatives with respect to the numbers, slope_z [n]. */
+/* Computes the transpose of hf_built_errors_strain: from the output of hf_built_linear_transpose to the derivatives
+ * with respect to the numbers, slope_z [n]. */
 void hf_built_errors_slope(const hf_built_errors *errors, const double *strain, const double *slope, double *slope_z);
 
 #endif
