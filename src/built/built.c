@@ -121,7 +121,7 @@ hf_status hf_built_make(const char *where, const hf_scene *s, const hf_model *m,
     b->block = arena.block;
     b->form.method = HF_METHOD_NEWTON;
     b->form.stop = HF_STOP_RESIDUAL;
-    b->form.factor = HF_FACTOR_OWN; /* the factor that samples share has this layout */
+    b->form.factor = HF_FACTOR_OWN; /* samples share a factor of hf_band_factor */
     memcpy(b->scene.position_m, s->position_m, 3 * (size_t)s->n_node * sizeof(double));
     memcpy(b->scene.EA_N, s->EA_N, (size_t)s->n_cable * sizeof(double));
     memset(b->scene.law, HF_LAW_ELASTIC, (size_t)s->n_cable);

@@ -1,4 +1,15 @@
-/* Contents: making - shapes - steps - samples */
+/* Estimates the errors of an as-built net from measured positions, by the Gauss-Newton method:
+ *
+ *     errors e_k ---> shape x_k (hf_near_find or hf_built_solve) ---> linear model at x_k (built/linear)
+ *      ^                                                                |
+ *      |                                                                v
+ *      |                                          saddle-point system (M41), damped (built/saddle)
+ *      |                                                                |
+ *      |   smaller misfit: k + 1                                        v
+ *      +--------------------------- trial shape <--- errors e, predicted reduction of the misfit
+ *          else: more damping
+ *
+ * Contents: making, shapes, steps, posterior samples. */
 #include "built/estimate.h"
 
 #include "base/arena.h"
@@ -8,23 +19,27 @@
 #include <string.h>
 
 #define STEPS_MAX 100
-#define SETTLED 1e-10      /* of the misfit: what a step promises at the end */
-#define LEAST_MISFIT 1.0   /* half of chi^2: less of it is a table without noise, as of a design that is read again */
-#define NEAR_SETTLED 1e-3  /* of that, where rounding of shapes damps the steps */
-#define ENOUGH 1e-4        /* of what a step promises, that it has to gain */
-#define DAMPING_LEAST 0.05 /* below it there is none */
+#define SETTLED 1e-10 /* predicted reduction, relative to the misfit, at which it has converged */
+/* Smaller misfits count as this one. Half of chi^2 is below it for positions without noise, such as those of a
+ * design. */
+#define LEAST_MISFIT 1.0
+#define NEAR_SETTLED 1e-3  /* factor of SETTLED for damped steps; the rounding of shapes damps them */
+#define ENOUGH 1e-4        /* fraction of the predicted reduction that a step must reach */
+#define DAMPING_LEAST 0.05 /* damping up to this value is dropped instead of reduced */
 #define DAMPING_MOST 1e12
-#define PANEL HF_SADDLE_DUAL_PANEL /* samples that are solved together */
-#define SEED 20260000u             /* of the signs; nothing depends on it but the digits of standard deviations */
+#define PANEL HF_SADDLE_DUAL_PANEL /* samples solved together */
+#define SEED 20260000u             /* of the random signs; only statistical figures depend on it */
 
 /* ---- making ---- */
 
-/* Scratch: a step's errors, supports, numbers, gap before and after, and move; the band; of shapes
- * cut lengths and supports; answers of `linear`. Those of samples have room for PANEL. */
+/* Divides the scratch of an estimate. A step uses errors, supports, displacements, shared numbers, the differences to
+ * measured positions before and after it, and the band. A shape uses cut lengths and supports; the linear model uses
+ * the last two. Arrays that samples use have room for PANEL of them. */
 typedef struct {
     double *cut_m, *rest_m, *shared, *gap_m, *trial_m, *move_m, *band, *length_m, *support_m, *strain_N, *linear;
 } estimate_scratch;
 
+/* Reserves n doubles and returns their offset. */
 static size_t take(size_t *used, size_t n)
 {
     size_t at = *used;
@@ -32,6 +47,7 @@ static size_t take(size_t *used, size_t n)
     return at;
 }
 
+/* Sets *to to the parts of the scratch, if there is one. Returns the number of doubles that it needs. */
 static size_t share_scratch(const hf_estimate *p, estimate_scratch *to)
 {
     size_t n_cable = (size_t)p->built->model.n_cable, n_dof = p->linear.n_dof, used = 0;
@@ -93,20 +109,25 @@ void hf_estimate_free(hf_estimate *p)
 
 /* ---- shapes ---- */
 
-/* From the last shape, by Newton's method, which takes fewer steps than the reference and rarely fails; else by that.
- * On a truss always by that: the other ends with gaps of coupling.tof_m, which are much in a figure. */
+/* Solves a net by Newton's method from the shape solved last. This takes fewer steps than the reference hf_built_solve
+ * and rarely fails; the reference solves the nets that it does not.
+ *
+ * On a truss it always calls the reference. Newton's method may leave gaps of coupling.tof_m there, which are too large
+ * for a measured figure. */
 static hf_status solve_from_last(const hf_estimate *p, const hf_built_net *net, hf_workspace *w, hf_form_result *r)
 {
     const hf_model *m = &p->built->model;
     hf_near from = p->near;
     from.built = &p->last;
     if (!p->has_near || !hf_near_find(&from, net, w, r)) HF_TRY(hf_built_solve(p->built, net, w, r));
-    for (int c = 0; c < 3; c++) /* held places are those of the nominal net: their moves are added to it */
+    /* supports stay at their nominal positions: displacements of a net are added to these */
+    for (int c = 0; c < 3; c++)
         memcpy(p->last.place_m + c * m->n_node, w->position_m + c * m->n_node, (size_t)m->n_free * sizeof(double));
     memcpy(p->last.tension_N, w->tension_N, (size_t)m->n_cable * sizeof(double));
     return HF_OK;
 }
 
+/* Solves the net with errors cut_m [n_cable] and rest_m [n_dof] and with adjustments turn_m [n_cable] (NULL: none). */
 static hf_status solve_net(const hf_estimate *p, const double *cut_m, const double *rest_m, const double *turn_m,
                            hf_workspace *w, hf_form_result *r)
 {
@@ -126,7 +147,7 @@ hf_status hf_estimate_shape(const hf_estimate *p, const double *turn_m, hf_works
     return solve_net(p, p->cut_m, p->rest_m, turn_m, w, r);
 }
 
-/* What numbers that cables share make of the length of cable e. */
+/* Returns the error of the length of cable e by numbers that cables share, m. */
 static double shared_error_m(const hf_estimate *p, const double *shared, int e)
 {
     double sum = 0;
@@ -140,7 +161,7 @@ double hf_estimate_own_m(const hf_estimate *p, int e)
     return p->cut_m[e] - shared_error_m(p, p->shared, e);
 }
 
-/* Half the sum of squares of errors over their sigmas. */
+/* Returns half the sum of squares of all errors, each divided by its sigma. */
 static double misfit_of_errors(const hf_estimate *p, const double *cut_m, const double *rest_m, const double *shared)
 {
     double sum = 0, rest = p->prior.support_sigma_m;
@@ -155,7 +176,7 @@ static double misfit_of_errors(const hf_estimate *p, const double *cut_m, const 
     return sum / 2;
 }
 
-/* Measured less present places, where they are measured. */
+/* Sets gap_m [n_dof] to measured minus present positions, and to 0 where nothing was measured. */
 static void find_gap(const hf_estimate *p, double *gap_m)
 {
     const hf_model *m = &p->built->model;
@@ -167,7 +188,7 @@ static void find_gap(const hf_estimate *p, double *gap_m)
         }
 }
 
-/* The same of the differences that a move (NULL: none) leaves of the gap. */
+/* Returns half the sum of squares of the differences gap_m - move_m, each divided by its sigma. move_m may be NULL. */
 static double misfit_of_places(const hf_estimate *p, const double *gap_m, const double *move_m)
 {
     double sum = 0;
@@ -178,7 +199,8 @@ static double misfit_of_places(const hf_estimate *p, const double *gap_m, const 
     return sum / 2;
 }
 
-/* Solve for these errors; *misfit is INFINITY when there is no shape. */
+/* Solves the net with these errors and computes its differences and misfit. *misfit is INFINITY when it has no
+ * shape. */
 static hf_status try_errors(hf_estimate *p, const double *cut_m, const double *rest_m, const double *shared,
                             double *gap_m, double *misfit)
 {
@@ -192,7 +214,7 @@ static hf_status try_errors(hf_estimate *p, const double *cut_m, const double *r
 
 /* ---- steps ---- */
 
-/* The first n of what the scratch has room for. */
+/* Solves the saddle-point system for the first n right-hand sides of the scratch. */
 static hf_status ask_saddle(const hf_estimate *p, const estimate_scratch *s, int n)
 {
     hf_saddle_answer answer[PANEL];
@@ -203,10 +225,15 @@ static hf_status ask_saddle(const hf_estimate *p, const estimate_scratch *s, int
     return hf_saddle_solve(&p->saddle, n, answer, s->band);
 }
 
-/* The answer of the linear model, damped, into s->cut_m, s->rest_m and s->shared. Damping t pulls towards the present
- * errors e, with t times the weight with which the prior pulls to none: together with 1 + t to e t/(1 + t). Divided by
- * 1 + t this is the system of lesser weights of places, for what the errors are beyond e t/(1 + t). *promise: what the
- * undamped model promises of the misfit. HF_OK or HF_SINGULAR. */
+/* Solves the linear model with damping t and writes its errors to s->cut_m, s->rest_m and s->shared.
+ *
+ * With present errors e_k, prior covariance S and misfit m(x) of the positions, it minimises
+ *
+ *     e'S^-1 e/2 + t (e - e_k)'S^-1 (e - e_k)/2 + m(x).
+ *
+ * Up to a constant, the first two terms are (1 + t) d'S^-1 d/2 with d = e - e_k t/(1 + t). Division by 1 + t gives the
+ * undamped system in d, with all weights of positions divided by 1 + t. *promise is the reduction of the misfit that
+ * the undamped model predicts for this step. Returns HF_OK or HF_SINGULAR. */
 static hf_status aim(const hf_estimate *p, const estimate_scratch *s, double damping, double *promise)
 {
     int n_cable = p->built->model.n_cable, n_dof = (int)p->linear.n_dof;
@@ -227,7 +254,7 @@ static hf_status aim(const hf_estimate *p, const estimate_scratch *s, double dam
     return HF_OK;
 }
 
-/* The damping after a step that gained this part of what was promised. */
+/* Returns the damping after a step. `ratio` is its reduction of the misfit, divided by the predicted one. */
 static double damp(double damping, double ratio)
 {
     if (ratio < 0.25) return fmax(1, 10 * damping);
@@ -240,7 +267,7 @@ hf_status hf_estimate_find(hf_estimate *p)
     const hf_model *m = &p->built->model;
     estimate_scratch s;
     double damping = 0, misfit, promise;
-    bool is_new = true; /* the linear model is that of an earlier shape */
+    bool is_new = true; /* the shape is newer than the linear model */
     share_scratch(p, &s);
     HF_TRY(try_errors(p, p->cut_m, p->rest_m, p->shared, s.gap_m, &p->misfit));
     for (p->n_step = 0; p->n_step < STEPS_MAX && damping < DAMPING_MOST; p->n_step++) {
@@ -251,7 +278,7 @@ hf_status hf_estimate_find(hf_estimate *p)
         if (p->is_settled) break;
         hf_status status = try_errors(p, s.cut_m, s.rest_m, s.shared, s.trial_m, &misfit);
         if (status == HF_INTERRUPTED || status == HF_NO_MEMORY) return status;
-        double ratio = (p->misfit - misfit) / promise; /* -infinity without a shape */
+        double ratio = (p->misfit - misfit) / promise; /* -INFINITY without a shape */
         damping = damp(damping, ratio);
         is_new = ratio > ENOUGH;
         if (!is_new) continue;
@@ -264,15 +291,15 @@ hf_status hf_estimate_find(hf_estimate *p)
     return is_new ? HF_OK : try_errors(p, p->cut_m, p->rest_m, p->shared, s.gap_m, &misfit);
 }
 
-/* ---- samples ---- */
+/* ---- posterior samples ---- */
 
 static double random_sign(hf_random *random)
 {
     return hf_random_next(random) >> 63 ? 1 : -1;
 }
 
-/* Random errors of the sizes of the prior, of one sample: of lengths (NULL: not wanted), the strains [n_cable] that
- * these are, and moves of supports. */
+/* Draws the errors of one sample, each as large as its sigma, with random signs. Sets own_m [n_cable] to the errors of
+ * lengths (NULL: not stored), strain_N [n_cable] to their strains, and move_m [n_dof] at the supports. */
 static void draw_errors(const hf_estimate *p, hf_random *random, const estimate_scratch *s, double *own_m,
                         double *strain_N, double *move_m)
 {
@@ -288,8 +315,8 @@ static void draw_errors(const hf_estimate *p, hf_random *random, const estimate_
         move_m[i] = random_sign(random) * p->prior.support_sigma_m;
 }
 
-/* The moves [n][n_dof] of random errors from sample `first` on, by streams of random numbers, and these errors (NULL:
- * not wanted). Returns n. */
+/* Computes the displacements move_m [n][n_dof] of random errors for samples from `first` on. cause receives these
+ * errors; it may be NULL. Returns n, at most PANEL. */
 static int draw_moves(const hf_estimate *p, int stream, int first, const estimate_scratch *s, hf_random random[PANEL],
                       double *move_m, const hf_estimate_cause *cause)
 {
@@ -323,7 +350,7 @@ hf_status hf_estimate_expect(hf_estimate *p, double *expected_m)
     return HF_OK;
 }
 
-/* What would be measured of a shape that is moved so. */
+/* Sets gap_m [n_dof] to what a measurement with random errors finds of the displacements move_m [n_dof]. */
 static void draw_gap(const hf_estimate *p, hf_random *random, const double *move_m, double *gap_m)
 {
     for (size_t i = 0; i < p->linear.n_dof; i++) {
@@ -332,8 +359,8 @@ static void draw_gap(const hf_estimate *p, hf_random *random, const double *move
     }
 }
 
-/* With prior S and posterior P of independent errors the answer to a unit error of one cable has 1 - P/S of it, and
- * the information 1/P - 1/S that places alone have gives that estimate over 1 - P/S. */
+/* Let S be the prior and P the posterior variance of a cable's own error. A unit error of this cable is estimated as 1
+ * - P/S. The positions alone have the information 1/P - 1/S, so they would give this estimate divided by 1 - P/S. */
 hf_status hf_estimate_belief(hf_estimate *p, int n, const int *cable, double *part)
 {
     size_t n_dof = p->linear.n_dof, n_cable = (size_t)p->built->model.n_cable;
@@ -357,7 +384,7 @@ hf_status hf_estimate_belief(hf_estimate *p, int n, const int *cable, double *pa
     return HF_OK;
 }
 
-/* The errors of samples from `first` on, less what the estimate makes of them. */
+/* Subtracts the estimates of n samples from their errors, for samples from `first` on. */
 static void take_estimates_off(const hf_estimate *p, const estimate_scratch *s, int first, int n,
                                const hf_estimate_cause *cause)
 {
@@ -369,7 +396,8 @@ static void take_estimates_off(const hf_estimate *p, const estimate_scratch *s, 
         rest_m[i] -= s->rest_m[i];
 }
 
-/* Of samples whose strains are in s->strain_N, less what the estimate makes of them. */
+/* Subtracts the estimates of n samples from their strains, and adds the squares of the resulting changes of tension to
+ * square_N [n_cable]. */
 static void add_tensions(const hf_estimate *p, const estimate_scratch *s, int n, const double *move_m, double *square_N)
 {
     size_t n_cable = (size_t)p->built->model.n_cable;

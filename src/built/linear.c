@@ -1,4 +1,11 @@
-/* Contents: making - net and truss under forces - errors to moves - the transpose */
+/* Solves the linear model of an as-built net (METHOD section 12):
+ *
+ *     apply      errors ---> forces f (push_by_errors) ---> H^-1 f, with the truss by (M24) (answer_forces)
+ *                       ---> displacements ---> changes of tension (hf_built_linear_tension)
+ *     transpose  derivatives by positions ---> H^-1, with the truss ---> derivatives by errors (pull_errors)
+ *
+ * H is symmetric, so both directions use the same factor. Contents: making, net and truss under forces, errors to
+ * displacements, the transpose. */
 #include "built/linear.h"
 
 #include "base/arena.h"
@@ -21,7 +28,7 @@ static void lay_out_linear(hf_arena *arena, const hf_model *m, hf_built_linear *
     l->block_N_per_m = hf_arena_take(arena, 9 * n, sizeof(double));
 }
 
-/* The nominal net in the workspace. */
+/* Puts the nominal net into the workspace. */
 static void take_shape(const hf_built *b, hf_workspace *w)
 {
     const hf_model *m = &b->model;
@@ -30,6 +37,7 @@ static void take_shape(const hf_built *b, hf_workspace *w)
     memcpy(w->tension_N, b->tension_N, (size_t)m->n_cable * sizeof(double));
 }
 
+/* Sets all arrays of cable e from the shape in the workspace. */
 static void look_at_cable(hf_built_linear *l, int e)
 {
     const hf_model *m = &l->built->model;
@@ -43,6 +51,7 @@ static void look_at_cable(hf_built_linear *l, int e)
     l->cut_N_per_m[e] = -k * length / l0;
 }
 
+/* Sets the springs of loose nodes, which would make the Hessian singular. Returns whether there are any. */
 static bool spring_loose(const hf_model *m, hf_workspace *w)
 {
     bool has_loose = false;
@@ -53,6 +62,7 @@ static bool spring_loose(const hf_model *m, hf_workspace *w)
     return has_loose;
 }
 
+/* Factors the Hessian at the shape in the workspace. Returns HF_OK or HF_SINGULAR. */
 static hf_status factor_shape(hf_built_linear *l)
 {
     const hf_model *m = &l->built->model;
@@ -83,7 +93,7 @@ hf_status hf_built_linear_make(const hf_built *b, hf_built_linear *l)
     return factor_shape(l);
 }
 
-/* In all that hf_built_linear_take copies. */
+/* Returns whether two shapes agree in all arrays that hf_built_linear_take copies. */
 static bool is_same_shape(const hf_model *m, const hf_workspace *a, const hf_workspace *b)
 {
     size_t by_cable = (size_t)m->n_cable * sizeof(double);
@@ -115,6 +125,7 @@ void hf_built_linear_free(hf_built_linear *l)
 
 /* ---- net and truss under forces ---- */
 
+/* Solves for the free nodes with attachments held, n right-hand sides v of row length ld, in place. */
 static void back_solve(const hf_built_linear *l, const hf_built_lanes *by, int n, double *v, size_t ld)
 {
     const hf_model *m = &l->built->model;
@@ -124,8 +135,8 @@ static void back_solve(const hf_built_linear *l, const hf_built_lanes *by, int n
         hf_band_back_solve(3 * m->n_free, 3 * m->half_bandwidth + 2, n, l->work.newton_band, v, (int)ld);
 }
 
-/* Turn forces into moves, in place, v [n][n_dof]: on free nodes and attachments. Those of supports on rigid ground stay
- * as they are. */
+/* Turns forces on free nodes and attachments into their displacements, in place, v [n][n_dof]. Entries of supports on
+ * rigid ground do not change. */
 static void answer_forces(const hf_built_linear *l, const hf_built_lanes *by, int n, double *v, double *scratch)
 {
     const hf_model *m = &l->built->model;
@@ -147,7 +158,7 @@ static void answer_forces(const hf_built_linear *l, const hf_built_lanes *by, in
             v[k * l->n_dof + i] += answer[k * n_free + i];
 }
 
-/* K (v of the second end - v of the first) of cable e. */
+/* Computes the force [3] of the stretched cable e, its stiffness matrix times v(second end) - v(first end). */
 static void stretch(const hf_built_linear *l, int e, const double *v, double force[3])
 {
     const int *end = l->built->model.end_row + 2 * (ptrdiff_t)e;
@@ -157,13 +168,13 @@ static void stretch(const hf_built_linear *l, int e, const double *v, double for
         force[r] = k[3 * r] * d[0] + k[3 * r + 1] * d[1] + k[3 * r + 2] * d[2];
 }
 
-/* Does cable e end at a support, on a truss or on rigid ground? */
+/* Returns whether cable e ends at a support, on a truss or on rigid ground. */
 static bool is_at_support(const hf_model *m, int e)
 {
     return m->end_row[2 * e] >= m->n_free || m->end_row[2 * e + 1] >= m->n_free;
 }
 
-/* Rows from `first` on get +force at the first end of cable e, -force at the second. */
+/* Adds the force to the first end of cable e and subtracts it from the second. `sum` has the rows from `first` on. */
 static void add_to_ends(const hf_model *m, int e, int first, const double force[3], double *sum)
 {
     int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
@@ -173,10 +184,10 @@ static void add_to_ends(const hf_model *m, int e, int first, const double force[
     }
 }
 
-/* ---- errors to moves ---- */
+/* ---- errors to displacements ---- */
 
-/* The forces [n_dof] of loads, of strained cables, and of supports that are as far off as v says; its free nodes become
- * 0. */
+/* Computes the forces [n_dof] of loads, of strained cables, and of supports displaced by v [n_dof]. Sets the free nodes
+ * of v to 0. */
 static void push_by_errors(const hf_built_linear *l, const double *strain_N, const double *load_N, double *v,
                            double *force)
 {
@@ -209,7 +220,7 @@ void hf_built_linear_apply_by(const hf_built_linear *l, const hf_built_lanes *by
                        move + k * l->n_dof, force + k * l->n_dof);
     answer_forces(l, by, n, force, more);
     for (size_t k = 0; k < (size_t)n; k++)
-        for (size_t i = 0; i < n_moving; i++) /* free nodes were 0, attachments rest where they are off */
+        for (size_t i = 0; i < n_moving; i++) /* v of free nodes is 0; v of attachments is their displacement at rest */
             move[k * l->n_dof + i] += force[k * l->n_dof + i];
 }
 
@@ -226,7 +237,8 @@ void hf_built_linear_tension(const hf_built_linear *l, const double *strain_N, c
 
 /* ---- the transpose ---- */
 
-/* From the answer z to the slopes as forces, and the slopes of supports. */
+/* Turns z, the solution for the derivatives as forces, into the derivatives with respect to strains, and adds to those
+ * of supports. */
 static void pull_errors(const hf_built_linear *l, const double *z, double *slope, double *strain)
 {
     const hf_model *m = &l->built->model;

@@ -1,4 +1,5 @@
-/* Contents: the table - another unit, another frame - nodes far away */
+/* Reads measured positions and compares them with the nominal net. Contents: the table, another unit or frame, nodes
+ * far away. */
 #include "built/measured.h"
 
 #include "base/arena.h"
@@ -13,9 +14,11 @@
 
 enum { ID, X, Y, Z, SIGMA, N_COLUMN };
 static const char *const column_name[N_COLUMN] = {"id", "x_m", "y_m", "z_m", "sigma_m"};
-static const char *const ours[] = {"x0_m", "y0_m", "z0_m", "role", NULL}; /* of `hifdm export --csv` */
+/* columns of `hifdm export --csv` that are ignored */
+static const char *const ours[] = {"x0_m", "y0_m", "z0_m", "role", NULL};
 #define SPARE_COLUMNS 64
-#define NODES_LEAST 3 /* that can move: fewer do not show a frame that is shifted or turned */
+/* Measured nodes that can move. Fewer do not determine a displacement and a rotation of the whole net. */
+#define NODES_LEAST 3
 
 /* ---- the table ---- */
 
@@ -27,6 +30,7 @@ static void lay_out_measured(hf_arena *arena, const hf_model *m, hf_measured *me
     measured->line = hf_arena_take(arena, n, sizeof(int));
 }
 
+/* Returns the standard deviation of the node in row r: its own, or sigma_m. */
 static double read_sigma(hf_csv *t, const int *where, int r, const char *id, double sigma_m)
 {
     bool is_given = where[SIGMA] >= 0 && *hf_csv_cell(t, r, where[SIGMA]);
@@ -49,7 +53,8 @@ static void read_node(hf_csv *t, const int *where, int r, int row, double sigma_
     measured->n_node++;
 }
 
-/* Every node of the scene looks for its row of the table; rows that nobody found have unknown ids. */
+/* Reads the row of each node of the scene. Rows that belong to no node have unknown ids; repeated ids are reported by
+ * hf_csv_index. */
 static hf_status read_nodes(hf_csv *t, const int *where, const hf_scene *scene, const hf_model *m, double sigma_m,
                             hf_measured *measured)
 {
@@ -74,6 +79,7 @@ static hf_status read_nodes(hf_csv *t, const int *where, const hf_scene *scene, 
     return status;
 }
 
+/* Returns HF_BAD_CASE unless enough nodes that can move were measured. */
 static hf_status count_nodes(const char *path, const hf_model *m, const hf_measured *measured, hf_messages *messages)
 {
     int n = 0;
@@ -110,14 +116,14 @@ void hf_measured_free(hf_measured *measured)
     *measured = (hf_measured){0};
 }
 
-/* ---- another unit, another frame ---- */
+/* ---- another unit or frame ---- */
 
-/* The best rigid motion from the nominal places to the measured ones. */
+/* Describes the rigid motion that fits the measured positions best to the nominal ones. */
 typedef struct {
-    double centre_m[2][3]; /* of nominal and measured places */
-    double spread[2];      /* sums of squares of distances to them */
-    double square, rest;   /* of the differences, before and after the motion */
-    double angle;          /* rad */
+    double centre_m[2][3]; /* centres of the nominal and of the measured positions */
+    double spread[2];      /* sums of squares of the distances from these centres */
+    double square, rest;   /* sums of squares of the differences before and after the motion */
+    double angle;          /* angle of rotation, rad */
 } rigid_fit;
 
 static const double *measured_at(const hf_measured *measured, int row)
@@ -130,7 +136,8 @@ static double nominal_at(const hf_built *b, int row, int c)
     return b->place_m[c * b->model.n_node + row];
 }
 
-/* Sums over the measured nodes. product [3][3]: of nominal and measured coordinates about the centres. */
+/* Computes the sums over the measured nodes. product [3][3] is the sum of nominal times measured coordinates about the
+ * centres. */
 static void sum_up(const hf_built *b, const hf_measured *measured, rigid_fit *f, double product[3][3])
 {
     for (int row = 0; row < b->model.n_node; row++)
@@ -152,8 +159,9 @@ static void sum_up(const hf_built *b, const hf_measured *measured, rigid_fit *f,
         }
 }
 
-/* Horn, J. Opt. Soc. Am. A 4 (1987): the rotation is the eigenvector of the largest eigenvalue of a symmetric 4 x 4
- * matrix, which many squarings of it leave. Returns that eigenvalue. */
+/* Finds the rotation by Horn's method (J. Opt. Soc. Am. A 4, 1987). Its quaternion is the eigenvector of the largest
+ * eigenvalue of a symmetric 4 x 4 matrix. Repeated squaring of this matrix leaves that eigenvector. Returns the
+ * eigenvalue and sets *angle, rad. */
 static double turn(double s[3][3], double *angle)
 {
     double trace = s[0][0] + s[1][1] + s[2][2], size = 0, best = 0, value = 0;
@@ -166,7 +174,8 @@ static double turn(double s[3][3], double *angle)
     for (int i = 0; i < 16; i++)
         size = fmax(size, fabs(n[i / 4][i % 4]));
     for (int i = 0; i < 16; i++)
-        power[i / 4][i % 4] = n[i / 4][i % 4] + (i % 5 == 0 ? 4 * size : 0); /* all eigenvalues above zero */
+        /* the shift makes all eigenvalues positive */
+        power[i / 4][i % 4] = n[i / 4][i % 4] + (i % 5 == 0 ? 4 * size : 0);
     for (int k = 0; k < 40; k++) {
         for (int i = 0; i < 16; i++) {
             next[i / 4][i % 4] = 0;
@@ -191,6 +200,7 @@ static double turn(double s[3][3], double *angle)
     return value;
 }
 
+/* Returns the best rigid motion. What it leaves is the sum of both spreads minus twice the eigenvalue. */
 static rigid_fit fit_motion(const hf_built *b, const hf_measured *measured)
 {
     rigid_fit f = {0};
@@ -200,7 +210,7 @@ static rigid_fit fit_motion(const hf_built *b, const hf_measured *measured)
     return f;
 }
 
-/* The unit that these lengths seem to be in; NULL: metres, or none that is known. */
+/* Returns the unit of lengths that are `ratio` times as large as in metres; NULL: metres, or no known unit. */
 static const char *guess_unit(double ratio)
 {
     static const struct {
@@ -214,11 +224,11 @@ static const char *guess_unit(double ratio)
 
 /* ---- nodes far away ---- */
 
-#define FAR 10.0      /* times what errors do to a node: not an error of this net */
-#define DOUBTFUL 3.0  /* times what they do to all nodes: a word of warning where a motion explains it */
-#define EXPLAINED 0.1 /* of the sum of squares that a motion may leave */
-#define VAGUE 30.0    /* times what errors do to all nodes: sigma_m in another unit */
-#define MANY 0.2      /* of the nodes; fewer are named one by one */
+#define FAR 10.0      /* times its expected distance: a node farther off is reported as a fault */
+#define DOUBTFUL 3.0  /* times the expected RMS distance: above it, a motion that explains it gives a warning */
+#define EXPLAINED 0.1 /* fraction of the sum of squares that a motion may leave unexplained */
+#define VAGUE 30.0    /* times the expected displacements: a larger sigma_m may be in another unit */
+#define MANY 0.2      /* fraction of the nodes: up to it, distant nodes are reported one by one */
 #define FRAME_SIZE 256
 
 static void describe_motion(const rigid_fit *f, int n, char text[FRAME_SIZE])
@@ -229,6 +239,7 @@ static void describe_motion(const rigid_fit *f, int n, char text[FRAME_SIZE])
              (f->centre_m[1][2] - f->centre_m[0][2]) * 1e3, f->angle / HF_RAD_PER_DEG, sqrt(f->rest / n) * 1e3);
 }
 
+/* Returns the distance between measured and nominal position of a node, m. */
 static double distance_of(const hf_built *b, const hf_measured *measured, int row)
 {
     double square = 0;
@@ -239,13 +250,15 @@ static double distance_of(const hf_built *b, const hf_measured *measured, int ro
     return sqrt(square);
 }
 
-/* What errors and measurement do to a node, RMS. */
+/* Returns the expected RMS distance of a node by errors and measurement, m. */
 static double allowed_m(const double *expected_m, double all_m, const hf_measured *measured, int row)
 {
     double weight = measured->weight_per_m2[3 * row], own = fmax(expected_m[row], all_m);
     return sqrt(own * own + 3 / weight);
 }
 
+/* Reports what explains the positions of all nodes: another unit, another frame, or another net. Returns
+ * HF_BAD_CASE. */
 static hf_status explain_far(const char *path, const hf_built *b, double all_m, const hf_measured *measured,
                              hf_messages *messages)
 {
@@ -268,6 +281,7 @@ static hf_status explain_far(const char *path, const hf_built *b, double all_m, 
                     path, rms_m * 1e3, all_m * 1e3);
 }
 
+/* Reports the distant nodes one by one, at most HF_FAULT_MAX of them. */
 static void name_far(const char *path, const hf_built *b, const double *expected_m, double all_m,
                      const hf_measured *measured, hf_messages *messages)
 {

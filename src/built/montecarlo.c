@@ -1,4 +1,16 @@
-/* Contents: making - errors of a sample - measures - first order - samples - what is required */
+/* Draws, solves and measures samples of an as-built net (METHOD section 12):
+ *
+ *     seed, sample ---> numbers z (built/errors, built/directions) ---> cut lengths, EA, supports
+ *                        |                                                |
+ *                        v                                                v
+ *              linear model: psi (predict)                  shape (hf_built_batch_run)
+ *                        |                                                |
+ *                        |                                                v
+ *                        |                      psi, tensions, surface, far field (take_sample)
+ *                        v                                                v
+ *                      row of the sample [HF_TOLERANCE_COLUMNS] <---------+
+ *
+ * Contents: making, errors of a sample, measures, first order, samples, requirements. */
 #include "built/montecarlo.h"
 
 #include "base/arena.h"
@@ -8,12 +20,12 @@
 #include <math.h>
 #include <string.h>
 
-/* Samples at a time: their errors are kept until first order has been found, in up to so many bytes. Neither number
- * changes a bit of any sample. */
+/* Limits of the number of samples in one call. Their numbers are kept in at most CHUNK_BYTES until the linear model has
+ * used them, but for CHUNK_LEAST samples in any case. No limit affects the bits of a sample. */
 #define CHUNK_BYTES (64 << 20)
 #define CHUNK_LEAST 64
 #define CHUNK_MOST 256
-#define AT_ONCE 6 /* right-hand sides of a solve to first order */
+#define AT_ONCE 6 /* right-hand sides of one solve of the linear model */
 
 /* ---- making ---- */
 
@@ -76,6 +88,7 @@ void hf_montecarlo_free(hf_montecarlo *t)
 
 /* ---- errors of a sample ---- */
 
+/* Makes the errors of sample i, as an hf_built_sample. */
 static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_move_m)
 {
     hf_montecarlo *t = context;
@@ -114,15 +127,16 @@ bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets 
     }
 }
 
+/* Returns Ruze's gain loss at the highest frequency; NaN without a frequency. */
 static double loss_dB(const hf_montecarlo *t, double half_path_rms_m)
 {
     double highest_Hz = hf_surface_highest_Hz(t->surface);
     if (!(highest_Hz > 0)) return (double)NAN;
     double loss = hf_surface_gain_loss_dB(half_path_rms_m, highest_Hz);
-    return isnan(loss) && !isnan(half_path_rms_m) ? (double)INFINITY : loss; /* beyond what Ruze's formula holds for */
+    return isnan(loss) && !isnan(half_path_rms_m) ? (double)INFINITY : loss; /* outside the range of Ruze's formula */
 }
 
-/* Pillows that a cable cannot hold have no far field. */
+/* Measures the far-field loss of a sample. Pillows whose mesh tension exceeds what a cable can hold have none. */
 static hf_status measure_pattern(const hf_montecarlo *t, const hf_built_shape *is, double *value)
 {
     hf_arena arena = {0}, sags = {0};
@@ -138,7 +152,8 @@ static hf_status measure_pattern(const hf_montecarlo *t, const hf_built_shape *i
     return status;
 }
 
-/* A fit that did not converge has no value, nor has its loss of gain: neither meets a requirement. */
+/* Measures the surface of a sample. A fit that does not converge gives NaN, and so does its gain loss. Neither meets a
+ * requirement. */
 static void measure_surface(hf_montecarlo *t, const hf_built_shape *shape, double *value)
 {
     hf_surface_paths is;
@@ -159,7 +174,8 @@ static void measure_surface(hf_montecarlo *t, const hf_built_shape *shape, doubl
         value[HF_TOLERANCE_GAIN_LOSS + k] = loss_dB(t, value[HF_TOLERANCE_HALF_PATH + k]);
 }
 
-/* Over all inner nodes, as to first order. That of a result leaves out loose nodes; they have a place here, too. */
+/* Returns psi over all inner nodes, as in the linear model. The psi of a result leaves out loose nodes; here they count
+ * at the positions that they were given. */
 static double psi_m_of(const hf_montecarlo *t, const hf_built_shape *shape, const hf_form_result *r)
 {
     const hf_model *m = &t->built->model;
@@ -173,6 +189,7 @@ static double psi_m_of(const hf_montecarlo *t, const hf_built_shape *shape, cons
     return m->n_inner_node > 0 ? sqrt(sum / m->n_inner_node) : (double)NAN;
 }
 
+/* Measures the shape of sample i and writes its row, as an hf_built_take. */
 static void take_sample(void *context, long i, int place, const hf_built_shape *shape, const hf_form_result *r)
 {
     hf_montecarlo *t = context;
@@ -195,7 +212,7 @@ static void take_sample(void *context, long i, int place, const hf_built_shape *
 
 /* ---- first order ---- */
 
-/* psi of AT_ONCE samples to first order, with one call of the solver. */
+/* Computes psi of up to AT_ONCE samples by the linear model, in one solve. */
 static void predict(void *context, int room, int i)
 {
     hf_montecarlo *t = context;
@@ -228,7 +245,7 @@ hf_status hf_montecarlo_run(hf_montecarlo *t, double scale, long first, int n)
     return t->has_no_memory ? HF_NO_MEMORY : HF_OK;
 }
 
-/* ---- what is required ---- */
+/* ---- requirements ---- */
 
 bool hf_montecarlo_meets(const hf_tolerance_settings *s, int k, const double *row)
 {
@@ -244,7 +261,7 @@ bool hf_montecarlo_meets_all(const hf_tolerance_settings *s, const double *row)
     return row[HF_TOLERANCE_STATUS] == HF_OK;
 }
 
-/* Do at least a part settings->yield of the first n samples meet everything, at this scale? */
+/* Computes whether at least the share settings->yield of the first n samples meets all requirements at this scale. */
 static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reaches)
 {
     long met = 0, failed = 0;
@@ -258,7 +275,7 @@ static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reac
             met += hf_montecarlo_meets_all(t->settings, t->row + i * HF_TOLERANCE_COLUMNS);
         failed = first + count - met;
         *reaches = (double)met >= needed;
-        if (*reaches || (double)(n - failed) < needed) break; /* the others do not change it */
+        if (*reaches || (double)(n - failed) < needed) break; /* the remaining samples cannot change the answer */
     }
     return HF_OK;
 }
@@ -271,7 +288,8 @@ bool hf_montecarlo_requires_surface(const hf_tolerance_settings *s)
     return false;
 }
 
-/* All scales that are tried have the yield, or none has it: then the net without errors tells whether any does. */
+/* Sets the result when all tried scales reach the yield, or none does. In the latter case the net without errors shows
+ * whether any scale can. */
 static hf_status judge_end(hf_montecarlo *t, bool goes_up, double *scale, int *bound)
 {
     bool reaches = true;
@@ -281,8 +299,8 @@ static hf_status judge_end(hf_montecarlo *t, bool goes_up, double *scale, int *b
     return HF_OK;
 }
 
-/* In the logarithm of the scale: 10 doublings either way, but none beyond what leaves something of each cable; then 7
- * halvings, to 2^(1/128). */
+/* Bisects the logarithm of the scale. It doubles or halves the scale up to 10 times, but not beyond
+ * hf_built_errors_largest_scale. It then halves the interval 7 times, to a factor of 2^(1/128). */
 static hf_status find_scale(hf_montecarlo *t, int n, double *scale, int *bound)
 {
     double largest = fmin(ldexp(1, HF_SCALE_DOUBLINGS), fmax(1, hf_built_errors_largest_scale(&t->errors)));
@@ -308,6 +326,7 @@ static hf_status find_scale(hf_montecarlo *t, int n, double *scale, int *bound)
     return HF_OK;
 }
 
+/* Measures the surface only where a requirement needs it. */
 hf_status hf_montecarlo_find_scale(hf_montecarlo *t, int n, double *scale, int *bound)
 {
     t->skips_surface = !hf_montecarlo_requires_surface(t->settings);

@@ -1,4 +1,4 @@
-/* montecarlo - samples of a net as built: their errors, their shapes, what is measured of them. */
+/* montecarlo - samples of an as-built net: their errors, their shapes and their measures (METHOD section 12). */
 #ifndef HIFDM_MONTECARLO_H
 #define HIFDM_MONTECARLO_H
 
@@ -10,64 +10,72 @@
 
 #include <stdatomic.h>
 
-/* Everything that samples need; it is not moved. */
+/* Holds everything that samples need. It must not be moved in memory, because its members point to each other. */
 typedef struct {
     const hf_tolerance_settings *settings;
     const hf_built *built;
-    const hf_surface_settings *surface; /* focal_length_m 0: the surface is not measured */
+    const hf_surface_settings *surface; /* NULL or focal_length_m 0: the surface is not measured */
     const hf_facets *facets;
-    const hf_gain_beam *beam; /* borrowed, to be set before samples; NULL: the far field is not measured */
-    hf_surface_design design; /* where the best fits of samples begin */
+    /* Borrowed, to be set before the first sample; NULL: the far field is not measured. */
+    const hf_gain_beam *beam;
+    hf_surface_design design; /* starting values of the best fits of samples */
     hf_built_linear linear;
     hf_built_errors errors;
     hf_covariance covariance;
     hf_directions directions; /* n is 0 with random numbers alone */
     hf_built_batch *batch;
-    int n_chunk;  /* most samples at a time */
-    double scale; /* of all errors, now */
-    long first;   /* sample of the first row, now */
+    int n_chunk;  /* maximum number of samples in one call of hf_montecarlo_run */
+    double scale; /* present factor of all errors */
+    long first;   /* sample of the first row */
+    /* Present number of rows. */
     int n_now;
     double *row;     /* [n_chunk][HF_TOLERANCE_COLUMNS] */
-    double *z;       /* [n_chunk][n_z] errors of each sample */
+    double *z;       /* [n_chunk][n_z] numbers of each sample */
     double *point;   /* [n_chunk][directions.n] */
     double *scratch; /* [n_thread][n_room] */
     size_t n_z, n_room;
-    unsigned varies;                           /* HF_BUILT_VARIES_... */
-    atomic_bool has_no_memory;                 /* some sample could not be measured; any thread may find that */
-    bool skips_surface;                        /* it is not measured, now */
-    void (*tell)(void *context, double scale); /* before each yield on the way to a scale; NULL: not */
+    unsigned varies;           /* flags HF_BUILT_VARIES_... */
+    atomic_bool has_no_memory; /* a sample could not be measured; any thread may set it */
+    bool skips_surface;        /* the surface is not measured at present */
+    /* Reports each scale before its yield is computed; may be NULL. */
+    void (*tell)(void *context, double scale);
     void *tell_context;
     void *block;
 } hf_montecarlo;
 
-/* settings, built, surface, facets are borrowed. heat: as hf_built_errors_make. HF_OK; HF_SINGULAR when the nominal
- * net has no factor; HF_INTERRUPTED; HF_NO_MEMORY. Free in any case. */
+/* Makes the nominal net's linear model, its errors and their covariance, for samples in n_thread threads (0: all
+ * cores). settings, built, surface and facets are borrowed; heat is that of hf_built_errors_make. Returns HF_OK;
+ * HF_SINGULAR when the nominal net has no stiffness; HF_INTERRUPTED; HF_NO_MEMORY. Call hf_montecarlo_free in any
+ * case. */
 hf_status hf_montecarlo_create(const hf_tolerance_settings *settings, const hf_built *built,
                                const hf_surface_settings *surface, const hf_facets *facets, const hf_built_heat *heat,
                                int n_thread, hf_montecarlo *montecarlo);
 void hf_montecarlo_free(hf_montecarlo *montecarlo);
 
-/* Is this measured? */
+/* Returns whether samples have a value of this measure. */
 bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets *facets, hf_tolerance_measure measure);
 
-/* Solve samples first to first + n - 1, n <= n_chunk, with all errors times `scale`, into montecarlo->row. HF_OK;
- * HF_INTERRUPTED when built->stop says so; HF_NO_MEMORY. */
+/* Solves and measures the samples first to first + n - 1, n <= n_chunk, with all errors multiplied by `scale`. Writes
+ * their rows to montecarlo->row. Returns HF_OK; HF_INTERRUPTED when built->stop requests it; HF_NO_MEMORY. */
 hf_status hf_montecarlo_run(hf_montecarlo *montecarlo, double scale, long first, int n);
 
-/* Does a row meet row k of the requirements, or all of them? */
+/* Return whether a row meets requirement k, or all requirements. A row without the required value does not meet it. */
 bool hf_montecarlo_meets(const hf_tolerance_settings *settings, int k, const double *row);
 bool hf_montecarlo_meets_all(const hf_tolerance_settings *settings, const double *row);
 
-/* The search of a scale: doublings, then halvings, with a yield for each, and one for where it begins. */
+/* Limits of the search for a scale: doublings, halvings, and all yields that it computes, including the first. */
 enum { HF_SCALE_DOUBLINGS = 10, HF_SCALE_HALVINGS = 7, HF_SCALE_YIELDS = 1 + HF_SCALE_DOUBLINGS + HF_SCALE_HALVINGS };
 
-/* Is a requirement about the surface? To measure it takes longer than to find a sample, so a search measures it only
- * then. */
+/* Returns whether a requirement concerns the surface. Measuring the surface takes longer than solving a sample, so the
+ * search for a scale measures it only in this case. */
 bool hf_montecarlo_requires_surface(const hf_tolerance_settings *settings);
 
-/* The factor of all errors with which a part settings->yield of the first n samples meets what is required, by
- * bisection with the same numbers for each, to 1 %. bound 0: found, and `scale` 0: not even the nominal net does; 1: at
- * least `scale`, the largest that is tried (hf_built_errors_largest_scale); -1: below `scale`, the smallest. */
+/* Finds the factor of all errors at which the share settings->yield of the first n samples meets all requirements, by
+ * bisection to 1 %. Each factor uses the same random numbers.
+ *
+ * *bound is 0 when *scale is the factor, or when *scale is 0 because not even the nominal net meets the requirements.
+ * It is 1 when the factor is at least *scale, the largest one tried (hf_built_errors_largest_scale). It is -1 when the
+ * factor is below *scale, the smallest one tried. Returns the status of hf_montecarlo_run. */
 hf_status hf_montecarlo_find_scale(hf_montecarlo *montecarlo, int n, double *scale, int *bound);
 
 #endif

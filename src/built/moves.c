@@ -1,5 +1,13 @@
-/* Contents: sums of squares - tensions - without steps - in whole steps - which cables - together - one after
- * the other */
+/* Chooses adjustments a = step * whole number that minimise |r + J a|^2:
+ *
+ *     rank all turnbuckles by their gain alone ---> SHORT_LIST candidates
+ *       ---> for each: fit the list without steps (linalg/quadratic), round, descend by steps of one or two turnbuckles
+ *       ---> add the best candidate, then exchange listed turnbuckles for others while that gains
+ *       ---> repeat until the target, the number, or the uncertainty ends it
+ *
+ * A fit is first made without tension limits. Only when it is better and breaks a limit is it repeated with them.
+ * Contents: sums of squares, tensions, without steps, in whole steps, which turnbuckles, all steps together, order of
+ * adjustments. */
 #include "built/moves.h"
 
 #include "base/arena.h"
@@ -9,12 +17,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SHORT_LIST 12    /* cables that are tried in full for each move */
-#define EXCHANGES_MAX 50 /* rounds of exchanges for each number of moves */
-#define ROUNDS_MAX 1000  /* of steps of one cable or two */
-#define RIDGE 1e-12      /* on the diagonal, relative: columns may depend on each other */
+#define SHORT_LIST 12    /* candidates that are fitted in full for each entry of the list */
+#define EXCHANGES_MAX 50 /* rounds of exchanges for each length of the list */
+#define ROUNDS_MAX 1000  /* rounds of steps of one or two turnbuckles */
+#define RIDGE 1e-12      /* relative addition to the diagonal: columns of J may be linearly dependent */
 #define BOUND_ROUNDING 1e-9
-#define GAIN_ROUNDING 1e-12 /* a smaller part of the sum of squares is no gain */
+#define GAIN_ROUNDING 1e-12 /* fraction of the sum of squares below which a reduction is rounding */
 
 /* ---- sums of squares ---- */
 
@@ -33,7 +41,7 @@ double hf_moves_square(const hf_moves_problem *p, const int *steps)
     return p->square + p->step_m * (2 * linear + p->step_m * quadratic);
 }
 
-/* Half the derivative by the move of cable i. */
+/* Returns half the derivative of the sum of squares with respect to adjustment i. */
 static double slope_at(const hf_moves_problem *p, const int *steps, int i)
 {
     double sum = 0;
@@ -49,14 +57,14 @@ static double gram_of(const hf_moves_problem *p, int i, int j)
 
 /* ---- tensions ---- */
 
-/* What the cables of a list do to tensions. */
+/* Holds the effects of the listed turnbuckles on tensions. */
 typedef struct {
     const hf_moves_problem *p;
-    int n;          /* of the list */
-    int *cable;     /* [of lists at most] of each row; -1: none */
-    double *rate;   /* [of lists at most][n_tension] by metre */
-    int *row;       /* [n of the problem] of a cable of the list */
-    double *fall_N; /* [n_tension] after the present steps */
+    int n;          /* number of listed turnbuckles */
+    int *cable;     /* [maximum length of a list] turnbuckle of each row; -1: none */
+    double *rate;   /* [maximum length of a list][n_tension] changes of tension per metre */
+    int *row;       /* [n of the problem] row of a listed turnbuckle */
+    double *fall_N; /* [n_tension] fall of each tension after the present steps */
 } tensions;
 
 static const double *rates_of(const tensions *t, int row)
@@ -64,7 +72,7 @@ static const double *rates_of(const tensions *t, int row)
     return t->rate + (size_t)row * (size_t)t->p->n_tension;
 }
 
-/* Make the rows those of this list. Lists differ in few places. */
+/* Fills the rows for this list. It computes only rows that differ from the previous list, which are few. */
 static void take_list(tensions *t, int n, const int *list)
 {
     t->n = n;
@@ -76,7 +84,7 @@ static void take_list(tensions *t, int n, const int *list)
     }
 }
 
-/* How far tensions fall after moves [n] of the list, into fall_N. */
+/* Sets fall_N to the fall of each tension after the adjustments move_m [n] of the list. */
 static void fall_by(const tensions *t, const double *move_m)
 {
     memset(t->fall_N, 0, (size_t)t->p->n_tension * sizeof *t->fall_N);
@@ -94,12 +102,13 @@ static void fall_by_steps(const tensions *t, const int *steps, double *move_m)
     fall_by(t, move_m);
 }
 
+/* Returns how far tension k may fall, including rounding. */
 static double room_to_fall(const hf_moves_problem *p, int k)
 {
     return p->room_N[k] + BOUND_ROUNDING * (p->room_N[k] + p->reference_N);
 }
 
-/* The tension that falls furthest beyond its room; -1: none does. */
+/* Returns the tension that falls furthest beyond its room, or -1 when none does. */
 static int worst_tension(const tensions *t)
 {
     double worst = 0;
@@ -113,7 +122,8 @@ static int worst_tension(const tensions *t)
     return at;
 }
 
-/* Do tensions allow a more steps of cable i and b of cable j? Then these are part of fall_N. */
+/* Adds a steps of turnbuckle i and b of turnbuckle j to fall_N, if no tension that they lower leaves its room. Returns
+ * whether it did. */
 static bool take_steps(const tensions *t, int i, int j, int a, int b)
 {
     const double *u = rates_of(t, t->row[i]), *v = rates_of(t, t->row[j]), step = t->p->step_m;
@@ -131,9 +141,10 @@ static bool take_steps(const tensions *t, int i, int j, int a, int b)
 typedef struct {
     int n;
     double most_m;
-    const tensions *t; /* NULL: whatever they do */
+    const tensions *t; /* NULL: no limits on tensions */
 } box;
 
+/* Writes the limit of the tension that falls furthest beyond its room. Returns false when there is none. */
 static bool worst_fall(const box *b, const double *x, hf_quadratic_limit *limit)
 {
     fall_by(b->t, x);
@@ -145,7 +156,8 @@ static bool worst_fall(const box *b, const double *x, hf_quadratic_limit *limit)
     return at >= 0;
 }
 
-/* For hf_quadratic: the bound that x breaks most; when it breaks none, the tension that falls furthest too far. */
+/* Writes the bound that x violates most, for hf_quadratic. When x violates none, it writes the worst limit on
+ * tensions. */
 static bool worst_bound(void *context, const double *x, hf_quadratic_limit *limit)
 {
     const box *b = context;
@@ -171,7 +183,7 @@ static void lay_out_box(hf_arena *arena, int n, double **hessian, double **vecto
     *vector = hf_arena_take(arena, 3 * (size_t)n, sizeof(double));
 }
 
-/* The best moves of the n cables of a list, move_m [n]. */
+/* Finds the best adjustments move_m [n] of a list without rounding to steps. t is NULL without limits on tensions. */
 static hf_status fit_list(const hf_moves_problem *p, int n, const int *list, const tensions *t, double *move_m)
 {
     hf_arena arena = {0};
@@ -189,7 +201,7 @@ static hf_status fit_list(const hf_moves_problem *p, int n, const int *list, con
         move_m[i] = 0;
     }
     for (int i = 0; i < n; i++)
-        hessian[i * n + i] += largest > 0 ? RIDGE * largest : 1; /* of a slack cable everything is 0 */
+        hessian[i * n + i] += largest > 0 ? RIDGE * largest : 1; /* all entries of a slack cable are 0 */
     hf_status status = hf_quadratic_create(n, &q);
     if (status == HF_OK)
         status = hf_quadratic_solve(&q, hessian, gradient, gradient + n, gradient + 2 * n, worst_bound, &b);
@@ -197,7 +209,7 @@ static hf_status fit_list(const hf_moves_problem *p, int n, const int *list, con
         move_m[i] = fmin(fmax(q.x[i], -b.most_m), b.most_m);
     hf_quadratic_free(&q);
     hf_arena_free(&arena);
-    return status == HF_NO_MEMORY ? status : HF_OK; /* else rounding: no move is a move */
+    return status == HF_NO_MEMORY ? status : HF_OK; /* other failures are rounding: move_m stays 0 */
 }
 
 /* ---- in whole steps ---- */
@@ -207,7 +219,8 @@ static int within(const hf_moves_problem *p, double steps)
     return (int)fmin(fmax(round(steps), -p->steps_max), p->steps_max);
 }
 
-/* Change two cables by (a, b) steps where that gains. */
+/* Changes two turnbuckles by a and b steps, if that lowers the sum of squares and tensions allow it. Returns whether it
+ * did. */
 static bool step_both(const hf_moves_problem *p, const tensions *t, int *steps, int i, int j, int a, int b)
 {
     if (abs(steps[i] + a) > p->steps_max || abs(steps[j] + b) > p->steps_max) return false;
@@ -220,7 +233,7 @@ static bool step_both(const hf_moves_problem *p, const tensions *t, int *steps, 
     return true;
 }
 
-/* Step cables of the list, one or two at a time, until nothing gains. */
+/* Changes one or two turnbuckles of the list at a time until nothing lowers the sum of squares. */
 static void descend(const hf_moves_problem *p, int n, const int *list, const tensions *t, int *steps)
 {
     bool moves = true;
@@ -241,8 +254,8 @@ static void descend(const hf_moves_problem *p, int n, const int *list, const ten
     }
 }
 
-/* Rounding may have broken what tensions allow: take steps back, each time the one that costs least of those that help.
- * After as many as rounding can ask for, all. */
+/* Takes steps back until rounding to whole steps no longer breaks a limit on tensions. Each time it takes back the step
+ * that costs least among those that help. After 10 of these for each turnbuckle it sets all steps to 0. */
 static void step_back(const hf_moves_problem *p, const tensions *t, int *steps, double *move_m)
 {
     fall_by_steps(t, steps, move_m);
@@ -262,17 +275,17 @@ static void step_back(const hf_moves_problem *p, const tensions *t, int *steps, 
     }
 }
 
-/* ---- which cables ---- */
+/* ---- which turnbuckles ---- */
 
 typedef struct {
     const hf_moves_problem *p;
-    int n_list, *list; /* cables that are turned */
+    int n_list, *list; /* adjusted turnbuckles */
     int *best, *trial; /* [n] steps */
     double *move_m;    /* [n] scratch */
     double *gain;      /* [n] scratch */
     double least;      /* sum of squares of `best` */
     tensions tensions;
-    bool is_held;     /* something better was not allowed */
+    bool is_held;     /* a limit on tensions ruled out a better choice */
     hf_status status; /* HF_NO_MEMORY: a fit could not be made, so the choice means nothing */
 } choice;
 
@@ -293,7 +306,7 @@ static void lay_out_choice(hf_arena *arena, size_t n, choice *c)
     c->gain = hf_arena_take(arena, n, sizeof(double));
 }
 
-/* What turning cable i alone gains, beside the moves that are there, those of the cables turned [n_turned]. */
+/* Returns the gain of adjusting turnbuckle i alone, beside the present steps of turned [n_turned]. */
 static double gain_alone(const choice *c, int i, int n_turned, const int *turned)
 {
     double curve = gram_of(c->p, i, i), sum = 0, most = c->p->steps_max * c->p->step_m;
@@ -312,10 +325,10 @@ static bool is_on_list(const choice *c, int i)
     return false;
 }
 
-/* The cables off the list that gain most alone, best first. Returns how many. */
+/* Lists the turnbuckles off the list that gain most alone, in descending order. Returns their number. */
 static int find_candidates(choice *c, int candidate[SHORT_LIST])
 {
-    int n = 0, n_turned = 0, *turned = c->trial; /* which nobody reads now */
+    int n = 0, n_turned = 0, *turned = c->trial; /* trial is free at this point */
     for (int i = 0; i < c->p->n; i++)
         if (c->best[i]) turned[n_turned++] = i;
     for (int i = 0; i < c->p->n; i++) {
@@ -331,8 +344,8 @@ static int find_candidates(choice *c, int candidate[SHORT_LIST])
     return n;
 }
 
-/* Sets c->trial to the best steps of the cables of the list, and to 0 of all others; with t those that tensions allow.
- * Returns the sum of squares, INFINITY without memory. */
+/* Finds the best steps of the list, into c->trial, with all others at 0; t is NULL without limits on tensions. Returns
+ * the sum of squares, or INFINITY without memory. */
 static double fit_steps(choice *c, const tensions *t)
 {
     const hf_moves_problem *p = c->p;
@@ -348,7 +361,7 @@ static double fit_steps(choice *c, const tensions *t)
     return hf_moves_square(p, c->trial);
 }
 
-/* Fit the list into c->trial, as tensions allow. Returns the sum of squares. */
+/* Fits the list within the limits on tensions, into c->trial. Returns the sum of squares. */
 static double fit_allowed(choice *c)
 {
     double square = fit_steps(c, NULL);
@@ -360,8 +373,8 @@ static double fit_allowed(choice *c)
     return fit_steps(c, &c->tensions);
 }
 
-/* Put the candidate that fits best with the others into place k of the list. Whether `best` became better; else the
- * list is as before. */
+/* Puts the candidate that fits best with the others into entry k of the list. Returns whether `best` improved;
+ * otherwise the list is unchanged. */
 static bool try_place(choice *c, int k, int n_candidate, const int *candidate)
 {
     int was = c->list[k], better = -1;
@@ -377,7 +390,7 @@ static bool try_place(choice *c, int k, int n_candidate, const int *candidate)
     return better >= 0;
 }
 
-/* One cable more. Whether it gained. */
+/* Adds one turnbuckle to the list. Returns whether that improved `best`. */
 static bool add_cable(choice *c)
 {
     int candidate[SHORT_LIST], n = find_candidates(c, candidate);
@@ -388,8 +401,8 @@ static bool add_cable(choice *c)
     return false;
 }
 
-/* Exchange cables of the list for others while that gains. Those that gain most are looked for without the one that
- * leaves. */
+/* Exchanges turnbuckles of the list for others while that gains. Candidates are ranked with the steps of the one to be
+ * exchanged set to 0. */
 static void exchange(choice *c)
 {
     bool gains = c->n_list > 1;
@@ -405,9 +418,10 @@ static void exchange(choice *c)
     }
 }
 
-/* ---- together ---- */
+/* ---- all steps together ---- */
 
-/* Is the gain of `steps` over `before` below its standard deviation? */
+/* Returns whether the gain of `steps` over `before` is below its standard deviation. The gain of a sample differs by 2
+ * (J' dr)' da, with the difference dr of its residuals and the difference da of the adjustments. */
 static bool is_doubtful(const hf_moves_problem *p, const int *before, const int *steps)
 {
     double gain = hf_moves_square(p, before) - hf_moves_square(p, steps), variance = 0;
@@ -420,6 +434,7 @@ static bool is_doubtful(const hf_moves_problem *p, const int *before, const int 
     return gain * gain < variance;
 }
 
+/* Removes turnbuckles with 0 steps from the list. */
 static void drop_idle(choice *c)
 {
     int n = 0;
@@ -465,9 +480,9 @@ hf_status hf_moves_best(const hf_moves_problem *p, double *move_m)
     return status;
 }
 
-/* ---- one after the other ---- */
+/* ---- order of adjustments ---- */
 
-/* Do all cables keep their least tension after a further move? */
+/* Returns whether all tensions stay within their room after a further adjustment. */
 static bool keeps_taut(const hf_moves_problem *p, const double *fall_N, const double *change_N)
 {
     for (int k = 0; k < p->n_tension; k++)

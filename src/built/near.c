@@ -1,4 +1,14 @@
-/* Contents: what all threads share - lanes - the shape in a workspace - what a lane comes to */
+/* Solves as-built nets by chord steps with the matrix H0 of the nominal net (M33), eight in the lanes:
+ *
+ *     load ---> look:    tensions by the elastic law, forces f out of balance, gap of the truss
+ *      nominal   |
+ *      shape     v
+ *               settle:  converged ---> shape, tensions and result of this lane
+ *                |       no longer contracting, or too many steps ---> lost, to be solved by Newton's method
+ *                v
+ *               step:    free nodes x <- x + H0^-1 f; on a truss also attachments, then free nodes again ---> look
+ *
+ * Contents: what all threads share, lanes, the shape in a workspace, the end of a lane. */
 #include "built/near.h"
 
 #include "base/arena.h"
@@ -14,12 +24,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* These decide how long a lane goes on before its net is solved by Newton's method, which reaches the same shape within
- * the tolerance in 4 to 8 steps, each of which takes as long as a dozen in the lanes. The tests of near, built_batch
- * and samples pass with STEPS_MAX 20 and 180, PATIENCE 1 and 10, CONTRACTION 0.3 and 0.95. */
+/* The following limits decide when a lane gives up and Newton's method solves its net. Newton's method finds the same
+ * shape within the tolerance in 4 to 8 steps, each of which takes as long as a dozen chord steps. The tests of near,
+ * built_batch and samples pass with STEPS_MAX 20 and 180, PATIENCE 1 and 10, CONTRACTION 0.3 and 0.95. */
 #define STEPS_MAX 60
-#define PATIENCE 2      /* steps before CONTRACTION is asked for */
-#define CONTRACTION 0.7 /* the residual must fall at least by this factor per step */
+#define PATIENCE 2      /* steps before CONTRACTION is required */
+#define CONTRACTION 0.7 /* maximum ratio of the residuals of two successive steps */
 
 /* ---- what all threads share ---- */
 
@@ -66,7 +76,8 @@ static void lay_out_matrices(hf_arena *arena, hf_near *near)
     near->answer = hf_arena_take(arena, (size_t)near->chord.n_pull_pad * (size_t)near->chord.n_pull, sizeof(double));
 }
 
-/* How the truss answers gaps F f - r of the nominal net, whose matrix the workspace has factored. */
+/* Computes (I + F S)^-1 of the nominal net, the displacement of the attachments by a gap F f - r. The workspace holds
+ * the factored matrix of that net. */
 static hf_status find_answer(hf_workspace *w, hf_near *near)
 {
     const hf_model *m = &near->model;
@@ -174,12 +185,13 @@ void hf_near_look(const hf_near *near, hf_near_lanes *l)
         l->residual_N[lane] = m->reference_N * sqrt(squared[lane]);
         l->gap_m[lane] = sqrt(gap_squared[lane]);
         double gap_N = scale * l->gap_m[lane];
-        l->excess_N[lane] = gap_N <= l->residual_N[lane] ? l->residual_N[lane] : gap_N; /* keeps a NaN of the gap */
+        /* this order keeps a NaN of the gap */
+        l->excess_N[lane] = gap_N <= l->residual_N[lane] ? l->residual_N[lane] : gap_N;
     }
 }
 
-/* Adds to the pulls on the truss what the step of the free nodes does to them, and takes the step out of force_N, where
- * it has been added to the shape. */
+/* Adds to the pulls on the truss the effect of the step of the free nodes. Clears the step in force_N, because it is
+ * already part of the shape. */
 static void follow(const hf_near *near, hf_chord_lanes *l)
 {
     const hf_model *m = &near->model;
@@ -198,7 +210,8 @@ static void follow(const hf_near *near, hf_chord_lanes *l)
     memset(step, 0, (size_t)c->matrix.n * HF_LANES * sizeof *step);
 }
 
-/* On a truss first the free nodes with the attachments held, then the attachments, and what their move does. */
+/* Takes a step in two halves on a truss: the free nodes with the attachments held, then the attachments with their
+ * effect on the free nodes. */
 void hf_near_step(const hf_near *near, hf_near_lanes *l)
 {
     const hf_chord *c = &near->chord;
@@ -218,7 +231,7 @@ void hf_near_step(const hf_near *near, hf_near_lanes *l)
 
 /* ---- the shape in a workspace ---- */
 
-/* Measures it, and places loose nodes. False when it is no equilibrium within the tolerances. */
+/* Measures the shape and places loose nodes. Returns false when the shape is no equilibrium within the tolerances. */
 static bool accept(const hf_near *near, int n_step, hf_workspace *w, hf_form_result *r)
 {
     const hf_model *m = &near->model;
@@ -239,13 +252,14 @@ bool hf_near_find(const hf_near *near, const hf_built_net *net, hf_workspace *w,
 {
     hf_near loaded = *near;
     int n_step = 0;
-    if (net->load_N) loaded.model.load_N = (double *)(uintptr_t)net->load_N; /* no solver writes to it */
+    if (net->load_N) loaded.model.load_N = (double *)(uintptr_t)net->load_N; /* no solver writes to load_N */
     hf_near_prepare(&loaded, net, w);
     return hf_near_newton(&loaded, w, &n_step) && accept(&loaded, n_step, w, r);
 }
 
-/* ---- what a lane comes to ---- */
+/* ---- the end of a lane ---- */
 
+/* Copies the shape of a lane into the workspace. */
 static void unload(const hf_near *near, const hf_near_lanes *l, int lane, hf_workspace *w)
 {
     const hf_model *m = &near->model;
@@ -268,7 +282,8 @@ static double ratio_of(const hf_near_lanes *l, hf_group group, int lane)
     return high_N > 0 ? high_N / l->now.lowest_N[group][lane] : (double)NAN;
 }
 
-/* Of a lane without slack cables. Each cable has the tension of its law, so there is no error of lengths. */
+/* Sets the result of a lane without slack cables. Each cable has the tension of its law, so the error of lengths is
+ * 0. */
 static void report(const hf_near *near, const hf_near_lanes *l, int lane, hf_workspace *w, hf_form_result *r)
 {
     const hf_model *m = &near->model;
@@ -285,7 +300,7 @@ static void report(const hf_near *near, const hf_near_lanes *l, int lane, hf_wor
     if (m->n_attachment) hf_coupling_accept(m, w, l->steps[lane], l->gap_m[lane], r);
 }
 
-/* A lane that has converged, with slack cables: the scalar code counts them and looks for loose nodes. */
+/* Accepts a converged lane with slack cables. The scalar code counts them and looks for loose nodes. */
 static bool accept_slack(const hf_near *near, const hf_near_lanes *l, int lane, const hf_built_net *net,
                          hf_workspace *w, hf_form_result *r)
 {

@@ -1,6 +1,13 @@
-/* Newton's method for one elastic net, from the nominal shape (METHOD section 12). In the matrix a cable has the
- * tension that the last step foretold, not that of its length, in which the sag of a step would count as stretch; and
- * it stays taut until a step has foretold that it is slack. */
+/* Newton's method for one elastic net from the nominal shape (METHOD section 12, M34):
+ *
+ *     shape, tensions T ---> forces f out of balance; converged, or only rounding left: end
+ *                       ---> H = sum of (k - T/l) u u' + T/l I over taut cables, k = EA/l0 (first step: nominal H0)
+ *                       ---> H d = f for the free nodes; on a truss (I + F S)^-1 of the gap by GMRES
+ *                       ---> x <- x + d, limited to REACH; T <- max(k (l - l0 + elongation to first order), 0)
+ *
+ * The matrix uses the tension that the last step predicted to first order, not that of the new length. A step across a
+ * cable lengthens it in second order only. Times EA this would be a large tension, and the steps would become very
+ * short. A cable stays taut until a step predicts that it is slack. */
 #include "built/near.h"
 
 #include "linalg/band.h"
@@ -12,23 +19,24 @@
 #include <stddef.h>
 #include <string.h>
 
-/* The tests of near, built_batch and samples pass with the five below, in their order, at 40, 0.02, 0.01, 0.001, 1e-8
- * and at 100, 0.1, 1, 0.1, 1e-4. With REACH 0.01 nets of 525 nodes take two steps more at errors of 0.1 mm, and without
- * it most of those of 0.5 mm are not found. */
+/* The tests of near, built_batch and samples pass with the five values below, in their order, at 40, 0.02, 0.01, 0.001,
+ * 1e-8 and at 100, 0.1, 1, 0.1, 1e-4. With REACH 0.01, nets of 525 nodes take two steps more at errors of 0.1 mm.
+ * Without REACH, most of those with errors of 0.5 mm are not found. */
 #define STEPS_MAX 40
-/* A step moves no node farther than this, over the mean length of the cables. */
+/* Maximum displacement of a node in one step, relative to the mean length of the cables. */
 #define REACH 0.04
-/* The least tension in the matrix: so much of the largest force out of balance, and of the reference tension. */
+/* The minimum tension in the matrix is the smaller of two values: this fraction of the largest force out of balance,
+ * and FLOOR_MAX of the reference tension. */
 #define FLOOR_OF_RESIDUAL 0.1
 #define FLOOR_MAX 0.01
-/* From this residual on, over the reference tension, each step halves it, or it is rounding. */
+/* Residual relative to the reference tension, below which a step that does not halve it shows rounding. */
 #define END_GAME 1e-6
-/* On a truss: what may be left of the gap in a linear step, and in how many vectors at most. */
+/* On a truss: fraction of the gap that a linear step may leave, and the maximum number of vectors of GMRES. */
 #define GAP_LEFT 1e-2
 enum { KRYLOV = 12 };
 
-/* Stiffness in the matrix of the cables, which hf_near_newton has put into newton_trial_tension_N (along, N/m) and
- * q_N_per_m (across). */
+/* Computes the stiffness block of cable e. hf_near_newton has stored the stiffness along the cables in
+ * newton_trial_tension_N, N/m, and that across them in q_N_per_m. */
 static void block_of(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
 {
     double u[3];
@@ -36,14 +44,14 @@ static void block_of(const hf_model *m, const hf_workspace *w, int e, double blo
     hf_newton_matrix_spring(w->newton_trial_tension_N[e], w->q_N_per_m[e], u, block);
 }
 
-/* Is the cable taut in the matrix? */
+/* Returns whether the cable is taut in the matrix. */
 static bool holds(const hf_workspace *w, int e, double over_m)
 {
     return w->tension_N[e] > 0 || over_m > 0;
 }
 
-/* Sets newton_force_N to the forces out of balance with the tensions of the law, and newton_step to those in which
- * cables that hold may push. Returns the largest of the first, N. */
+/* Sets newton_force_N to the forces out of balance by the elastic law. Sets newton_step to the same with compression in
+ * cables that are taut in the matrix. Returns the largest of the former, N. */
 static double measure(const hf_model *m, hf_workspace *w)
 {
     double u[3], largest = 0;
@@ -62,11 +70,12 @@ static double measure(const hf_model *m, hf_workspace *w)
     for (int i = 0; i < m->n_free; i++) {
         const double *f = w->newton_force_N + 3 * i;
         double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
-        if (!(square <= largest)) largest = square; /* keeps a NaN */
+        if (!(square <= largest)) largest = square; /* this form keeps a NaN */
     }
     return sqrt(largest);
 }
 
+/* Sets the stiffnesses along and across each cable for block_of, with tensions of at least floor_N across. */
 static void set_stiffness(const hf_model *m, hf_workspace *w, double floor_N)
 {
     for (int e = 0; e < m->n_cable; e++) {
@@ -86,7 +95,7 @@ static double largest_move_m(const hf_workspace *w)
     return sqrt(largest);
 }
 
-/* Adds `part` of the step to positions, and foretells the tensions. */
+/* Adds `part` of the step to positions and predicts the tensions to first order. */
 static void move(const hf_model *m, hf_workspace *w, double part)
 {
     const double *step = w->newton_step;
@@ -108,7 +117,7 @@ static void move(const hf_model *m, hf_workspace *w, double part)
 
 /* ---- the truss ---- */
 
-/* How the truss answers gaps of the nominal net. */
+/* Computes the displacements of the attachments by a gap with the matrix of the nominal net. */
 static void answer_nominal(const hf_near *near, const double *gap_m, double *answer_m)
 {
     int n = near->chord.n_pull;
@@ -120,7 +129,7 @@ static void answer_nominal(const hf_near *near, const double *gap_m, double *ans
     }
 }
 
-/* Free nodes after a move of the attachments, into newton_force_N. */
+/* Solves for the displacements of the free nodes after displacements of the attachments, into newton_force_N. */
 static void push_free(const hf_near *near, const double *factor, const double *move_m, hf_workspace *w)
 {
     const hf_model *m = &near->model;
@@ -130,7 +139,8 @@ static void push_free(const hf_near *near, const double *factor, const double *m
     hf_band_back_solve(n, 3 * m->half_bandwidth + 2, 1, factor, w->newton_force_N, n);
 }
 
-/* to = A (1 + F S) move: S the stiffness of this net at the attachments, A about the inverse, the nominal net's. */
+/* Computes to = A (1 + F S) move_m, both [n_pull]. S is the stiffness of this net at the attachments, A the inverse for
+ * the nominal net. */
 static void apply(const hf_near *near, const double *factor, const double *move_m, hf_workspace *w, double *to)
 {
     const hf_model *m = &near->model;
@@ -145,8 +155,8 @@ static void apply(const hf_near *near, const double *factor, const double *move_
     answer_nominal(near, gap, to);
 }
 
-/* A column of the Hessenberg matrix, turned by the rotations of those before, and by one of its own, which takes its
- * last entry to 0. What is left of the residual is in rest[j + 1]. */
+/* Applies the previous Givens rotations to column j of the Hessenberg matrix, and a new one that zeroes its last entry.
+ * rest[j + 1] is then the remaining residual. */
 static void rotate(int j, double *h, double rotation[][2], double *rest)
 {
     for (int i = 0; i < j; i++) {
@@ -162,7 +172,7 @@ static void rotate(int j, double *h, double rotation[][2], double *rest)
     rest[j] *= rotation[j][0];
 }
 
-/* The next vector of the space that A (1 + F S) makes of the gap: less its parts along those before, of length 1. */
+/* Computes the next vector of the Krylov space of A (1 + F S), orthogonalised to the previous ones and normalised. */
 static void extend(const hf_near *near, const double *factor, int j, hf_workspace *w, double *h)
 {
     size_t n = (size_t)near->chord.n_pull;
@@ -178,12 +188,13 @@ static void extend(const hf_near *near, const double *factor, int j, hf_workspac
         next[k] /= h[j + 1];
 }
 
-/* The move of the attachments that closes the gap, in its place: (1 + F S)^-1 gap by GMRES (Saad, Schultz, SIAM J. Sci.
- * Stat. Comput. 7, 1986), with the answer of the nominal net in front. Slack cables take stiffness away in a few
- * directions: that answer alone closes a fifth of the gap at a step. Nothing is divided by 0: F and S are not negative,
- * so 1 + F S is regular as its nominal counterpart is, its images of the vectors are independent, and a space that ends
- * early (h[j + 1] = 0) has the answer. What rounding made of it otherwise would be no number, and Newton's method ends
- * on it. */
+/* Replaces the gap by the displacement of the attachments that closes it, (1 + F S)^-1 gap. It uses GMRES (Saad,
+ * Schultz, SIAM J. Sci. Stat. Comput. 7, 1986) with the inverse A of the nominal net as preconditioner. A alone closes
+ * only a fifth of the gap per step, because slack cables remove stiffness in a few directions.
+ *
+ * No division by 0 occurs. F and S are positive semidefinite, so 1 + F S is regular, as is its nominal counterpart. The
+ * images of the vectors are therefore independent, and a space that ends early (h[j + 1] = 0) contains the solution. If
+ * rounding breaks this, the result is NaN and Newton's method stops on it. */
 static void close_gap(const hf_near *near, const double *factor, double *gap_m, hf_workspace *w)
 {
     enum { MOST = KRYLOV };
@@ -210,8 +221,7 @@ static void close_gap(const hf_near *near, const double *factor, double *gap_m, 
     }
 }
 
-/* Net and truss with the attachments where they are now: turns newton_step, which the factor of the free nodes has made
- * their step with the attachments held, into the step of both. */
+/* Turns newton_step, the step of the free nodes with the attachments held, into the step of net and truss together. */
 static void follow_truss(const hf_near *near, bool is_nominal, const double *factor, hf_workspace *w)
 {
     const hf_model *m = &near->model;
@@ -235,7 +245,8 @@ static void follow_truss(const hf_near *near, bool is_nominal, const double *fac
 
 /* ---- Newton ---- */
 
-/* Turns newton_step into the step, the first one with the matrix of the nominal net. */
+/* Turns the forces in newton_step into the step. The first step uses the matrix of the nominal net. Returns false when
+ * the matrix cannot be factored. */
 static bool solve(const hf_near *near, int k, double floor_N, hf_workspace *w)
 {
     const hf_model *m = &near->model;
@@ -248,8 +259,8 @@ static bool solve(const hf_near *near, int k, double floor_N, hf_workspace *w)
     return true;
 }
 
-/* The tensions of the law at the shape; else those that the last step foretold, which balance where EA times the
- * rounding of lengths does not. */
+/* Sets the tensions of the elastic law at the shape, or keeps those that the last step predicted. The latter balance
+ * even where EA times the rounding of lengths does not. */
 static void set_tensions(const hf_model *m, bool by_law, hf_workspace *w)
 {
     for (int e = 0; e < m->n_cable; e++) {

@@ -1,3 +1,5 @@
+/* Computes the prior covariance D + U U' of the errors of cut lengths (METHOD section 12). own_m are the roots of D,
+ * shared_m are the columns of U. Input are the sigmas of built/errors.h. */
 #include "built/prior.h"
 
 #include "base/arena.h"
@@ -12,7 +14,7 @@ static void lay_out_prior(hf_arena *arena, size_t n_cable, size_t n_shared, hf_p
     p->shared_m = hf_arena_take(arena, n_shared * n_cable, sizeof(double));
 }
 
-/* What an error of 1 of this kind adds to the length of cable i. */
+/* Returns the error of the length of cable i by an error of 1 of this kind. */
 static double effect_of(const hf_built_errors *errors, hf_error_kind kind, int i)
 {
     const hf_built *b = errors->linear->built;
@@ -23,6 +25,7 @@ static double effect_of(const hf_built_errors *errors, hf_error_kind kind, int i
     return is_length ? l0 : -l0 * b->tension_N[i] / b->scene.EA_N[i];
 }
 
+/* Returns the name of a spool: that of its set, or the word of its group. */
 static const char *set_of(const hf_scene *s, int spool)
 {
     return spool < s->n_set ? s->set_name[spool] : hf_group_word[spool - s->n_set];
@@ -36,7 +39,8 @@ static int count_cables(const hf_built_errors *errors, int spool)
     return n;
 }
 
-/* The number of this kind that the cables of a spool share (-1: all cables), or their own, of a spool of one cable. */
+/* Adds the shared number of a kind for the cables of a spool, or for all cables when spool is -1. A spool of one cable
+ * adds to the own error of that cable instead. */
 static void add_number(const hf_built_errors *errors, hf_error_kind kind, int spool, hf_prior *p)
 {
     const hf_scene *s = &errors->linear->built->scene;
@@ -81,18 +85,19 @@ static void fill_prior(const hf_built_errors *errors, hf_prior *p)
     }
 }
 
+/* Returns an upper limit of the shared numbers. */
 static size_t numbers_at_most(const hf_built_errors *e)
 {
     size_t n = e->sigma[HF_ERROR_TEMPERATURE] > 0, per_spool = e->sigma[HF_ERROR_RATIO_BATCH] > 0;
     per_spool += e->sigma[HF_ERROR_EA_BATCH] > 0;
     for (int spool = 0; spool < e->n_spool && per_spool; spool++)
         n += count_cables(e, spool) > 1 ? per_spool : 0;
-    return n + 1; /* one of a spool of one cable is written behind the last */
+    return n + 1; /* one spare: add_number forms the address of a column for a spool of one cable, too */
 }
 
 hf_status hf_prior_make(const hf_built *b, const hf_tolerance_settings *t, const double *expansion_per_K, hf_prior *p)
 {
-    const hf_built_linear of = {.built = b}; /* errors are made from the net alone */
+    const hf_built_linear of = {.built = b}; /* making errors reads only the net */
     hf_arena arena = {0};
     hf_built_errors errors;
     *p = (hf_prior){0};

@@ -1,29 +1,32 @@
-/* prior - what the section tolerance says of the errors of cut lengths before anything is measured (METHOD section 12):
- * each cable's own, and those that cables share: one number for each spool, one for the temperature. Their covariance
- * is a diagonal and a few columns. */
+/* prior - the covariance of the errors of cut lengths before any measurement, from the section `tolerance` (METHOD
+ * section 12).
+ *
+ * Each cable has its own error. Cables share one number for each spool and one for the temperature. The covariance is
+ * therefore a diagonal and a few columns. */
 #ifndef HIFDM_PRIOR_H
 #define HIFDM_PRIOR_H
 
 #include "built/errors.h"
 
-/* A number of mean 0 and deviation 1 that several cables share. */
+/* Describes a number of mean 0 and standard deviation 1 that several cables share. */
 typedef struct {
     hf_error_kind kind; /* HF_ERROR_RATIO_BATCH, HF_ERROR_EA_BATCH or HF_ERROR_TEMPERATURE */
-    const char *set;    /* name of the spool, of the scene; NULL of temperature */
-    double sigma;       /* ratio, or K */
+    const char *set;    /* name of the spool, owned by the scene or static; NULL for temperature */
+    double sigma;       /* relative, or in K for temperature */
 } hf_prior_number;
 
 typedef struct {
-    double *own_m;           /* [n_cable] deviation of a cable's own error */
-    double *sigma_m;         /* [n_cable] of its whole error */
-    int n_shared;            /* numbers */
+    double *own_m;           /* [n_cable] standard deviation of a cable's own error */
+    double *sigma_m;         /* [n_cable] standard deviation of its whole error */
+    int n_shared;            /* shared numbers */
     hf_prior_number *number; /* [n_shared] */
-    double *shared_m;        /* [n_shared][n_cable] what each number adds to the lengths */
+    double *shared_m;        /* [n_shared][n_cable] error of each length by each number */
     void *block;
 } hf_prior;
 
-/* An error of EA acts as one of the length by which the cable is strained. A spool of one cable is part of that cable's
- * own error. expansion_per_K [n_cable] is needed with sigma_temperature_K. HF_OK or HF_NO_MEMORY; free in any case. */
+/* Makes the prior. An error of EA counts as the error of the length that strains the cable by the same tension. The
+ * number of a spool with one cable is part of that cable's own error. expansion_per_K [n_cable] is needed with
+ * sigma_temperature_K. Returns HF_OK or HF_NO_MEMORY; call hf_prior_free in any case. */
 hf_status hf_prior_make(const hf_built *built, const hf_tolerance_settings *settings, const double *expansion_per_K,
                         hf_prior *prior);
 void hf_prior_free(hf_prior *prior);

@@ -1,4 +1,7 @@
-/* The inner loops over cables and over attachments of nets side by side. */
+/* Kernels of as-built nets in lanes. HF_LANES nets stand side by side in the last index of each array:
+ *
+ *     hf_pull_find      positions [3][n_node] ---> lengths l ---> T = max(EA/l0 (l - l0), 0), q = T/l   [n_cable]
+ *     hf_pull_multiply  A [n][n] in blocks of HF_PULL_ROWS rows, in [n] ---> out = A in                [n] */
 #define HF_LANE_VECTORS
 #include "built/pull_kernel.h"
 

@@ -1,4 +1,11 @@
-/* Contents: making - assembling - factor - an answer */
+/* Assembles and solves the saddle-point system (M41) of an estimate:
+ *
+ *     cables, nodes, shared numbers ---> band, border columns, corner   (factor_parts)
+ *     band ---> saddle_dual where it applies, otherwise LU with pivoting
+ *     corner - columns' band^-1 columns, with the truss ---> dense LU   (factor_border)
+ *     right-hand side ---> band ---> border ---> band again             (hf_saddle_solve)
+ *
+ * Contents: making, assembling, factor, solution. */
 #include "built/saddle.h"
 
 #include "base/arena.h"
@@ -30,12 +37,13 @@ static void lay_out_saddle(hf_arena *arena, hf_saddle *s)
     s->dense_pivot = hf_arena_take(arena, border, sizeof(int));
 }
 
+/* Returns whether the border has only shared numbers. */
 static bool may_be_dual(const hf_saddle *s)
 {
     return s->n_border == s->prior.n_shared;
 }
 
-/* Of a length, one deviation of the own error or of a number. */
+/* Returns the largest error of a length by one standard deviation of an own error or of a shared number. */
 static double largest_error_m(const hf_model *m, const hf_saddle_prior *prior)
 {
     double largest = 0;
@@ -70,9 +78,9 @@ void hf_saddle_free(hf_saddle *s)
 
 /* ---- assembling ---- */
 
-enum { MULTIPLIER, MOVE }; /* the kinds of unknowns */
+enum { MULTIPLIER, MOVE }; /* kinds of unknowns */
 
-/* The first of three unknowns of a row; -1: it has none. Those of the border are from n_band on. */
+/* Returns the first of three unknowns of a row, or -1 when it has none. Unknowns of the border begin at n_band. */
 static int unknown_of(const hf_saddle *s, int row, int kind)
 {
     const hf_model *m = &s->linear->built->model;
@@ -82,6 +90,7 @@ static int unknown_of(const hf_saddle *s, int row, int kind)
     return kind == MOVE && s->n_off ? s->n_band + s->n_attached + i : -1;
 }
 
+/* Adds a value to the band, a column of the border or the corner. Columns of the border stand for its rows, too. */
 static void add_entry(hf_saddle *s, int i, int j, double value)
 {
     int k = s->half_bandwidth;
@@ -98,7 +107,7 @@ static double unit_of(const hf_saddle *s, int kind)
     return kind == MOVE ? s->size_m : s->force_m_per_N;
 }
 
-/* Add block [3][3] between unknowns of two rows. */
+/* Adds a block [3][3], times sign and units, between the unknowns of two rows. */
 static void add_rows(hf_saddle *s, int row_i, int kind_i, int row_j, int kind_j, double sign, double block[3][3])
 {
     int i = unknown_of(s, row_i, kind_i), j = unknown_of(s, row_j, kind_j);
@@ -108,6 +117,7 @@ static void add_rows(hf_saddle *s, int row_i, int kind_i, int row_j, int kind_j,
             add_entry(s, i + r, j + c, unit * block[r][c]);
 }
 
+/* Adds the blocks of cable e: its stiffness, and the forces of its own error. */
 static void add_cable(hf_saddle *s, int e)
 {
     const hf_built_linear *l = s->linear;
@@ -127,6 +137,7 @@ static void add_cable(hf_saddle *s, int e)
         }
 }
 
+/* Adds the weight of a row, the precision of a support, and the spring of a loose node. */
 static void add_row(hf_saddle *s, int row)
 {
     const hf_model *m = &s->linear->built->model;
@@ -142,7 +153,8 @@ static void add_row(hf_saddle *s, int row)
     add_rows(s, row, MULTIPLIER, row, MOVE, 1, spring);
 }
 
-/* The border of number k, with which z = U'B'p: what its errors push, in the rows of the multipliers. */
+/* Adds the border of shared number k: the forces of its errors, in the rows of the multipliers. They express z =
+ * U'B'p. */
 static void add_number(hf_saddle *s, int k)
 {
     const hf_built_linear *l = s->linear;
@@ -162,17 +174,19 @@ static void add_number(hf_saddle *s, int k)
 
 /* ---- factor ---- */
 
-/* Matrix of the border in moves of attachments, forces on them, and moves of supports. With T the corner less what the
- * band answers, F the flexibility and D the variance of where attachments rest: rows (T11, T12 F + 1, T13),
- * (F T21 + 1, F T22 F - D, F T23), (T31, T32 F, T33), numbers after supports. It
- * is symmetric, so rows may be read as columns. */
+/* Fills the dense matrix of the border. Its unknowns are displacements of attachments, forces f on them, displacements
+ * of supports, and shared numbers. The multipliers of attachments are F f with the flexibility F.
+ *
+ * Let T be the corner minus its part through the band, and D the variance of resting positions of attachments. Index 1
+ * are displacements of attachments, 2 their multipliers, 3 supports and numbers. The rows are (T11, T12 F + 1, T13), (F
+ * T21 + 1, F T22 F - D, F T23), (T31, T32 F, T33). The matrix is symmetric, so rows may be read as columns. */
 static void fill_border(hf_saddle *s)
 {
     const double *flex = s->flex;
     size_t n = (size_t)s->n_border, a = (size_t)s->n_attached;
     double rest = s->prior.support_sigma_m / s->size_m, *to = s->dense, *sum = s->work;
     memcpy(to, s->corner, n * n * sizeof *to);
-    for (int side = 0; side < 2; side++) /* of the multipliers' rows, then columns */
+    for (int side = 0; side < 2; side++) /* first the rows of the multipliers, then the columns */
         for (size_t j = 0; j < n; j++) {
             size_t along = side ? 1 : n, at = side ? n * j : j;
             for (size_t i = 0; i < a; i++) {
@@ -190,7 +204,8 @@ static void fill_border(hf_saddle *s)
     }
 }
 
-/* In place, b [n][n_band]. HF_OK; HF_SINGULAR when rounding leaves no answer. */
+/* Solves the band in place for n right-hand sides b [n][n_band]. Returns HF_OK; or HF_SINGULAR when rounding prevents a
+ * solution. */
 static hf_status solve_band(const hf_saddle *s, int n, double *b)
 {
     if (s->is_dual) return hf_saddle_dual_solve(&s->dual, n, b) ? HF_OK : HF_SINGULAR;
@@ -198,6 +213,7 @@ static hf_status solve_band(const hf_saddle *s, int n, double *b)
     return HF_OK;
 }
 
+/* Solves the band for the columns of the border, subtracts the products from the corner, and factors it. */
 static hf_status factor_border(hf_saddle *s)
 {
     size_t n = (size_t)s->n_border, n_band = (size_t)s->n_band;
@@ -206,7 +222,7 @@ static hf_status factor_border(hf_saddle *s)
     HF_TRY(solve_band(s, s->n_border, s->solved));
     for (size_t i = 0; i < n; i++)
         for (size_t k = 0; k < n_band; k++) {
-            double entry = s->column[i * n_band + k]; /* few are not 0 */
+            double entry = s->column[i * n_band + k]; /* most entries are 0 */
             for (size_t j = 0; j < n && entry != 0; j++)
                 s->corner[i * n + j] -= entry * s->solved[j * n_band + k];
         }
@@ -214,7 +230,7 @@ static hf_status factor_border(hf_saddle *s)
     return hf_dense_factor(s->n_border, s->dense, s->dense_pivot) == 0 ? HF_OK : HF_SINGULAR;
 }
 
-/* Units in which the entries of the matrix are about 1. */
+/* Chooses units in which the entries of the matrix are about 1. */
 static void choose_units(hf_saddle *s)
 {
     const hf_built_linear *l = s->linear;
@@ -235,6 +251,7 @@ static void clear_border(hf_saddle *s)
         add_number(s, k);
 }
 
+/* Factors by saddle_dual where it applies and succeeds, otherwise by LU. */
 static hf_status factor_parts(hf_saddle *s)
 {
     const hf_model *m = &s->linear->built->model;
@@ -265,9 +282,9 @@ hf_status hf_saddle_factor(hf_saddle *s, double damping)
     return HF_OK;
 }
 
-/* ---- an answer ---- */
+/* ---- solution ---- */
 
-/* A right-hand side: of the band [n_band], and of the border. */
+/* Writes a right-hand side: band [n_band] and border [n_border]. */
 static void ask(const hf_saddle *s, const hf_saddle_answer *a, double *band, double *border)
 {
     const hf_built_linear *l = s->linear;
@@ -294,8 +311,9 @@ static void ask(const hf_saddle *s, const hf_saddle_answer *a, double *band, dou
         }
 }
 
-/* From the right-hand side of the border, of which the band's answer is taken off, to moves of attachments, their
- * multipliers, moves of supports and numbers; forces on attachments into `force`. */
+/* Solves the border. On entry it is the right-hand side minus the part through the band. On return it holds the
+ * displacements of attachments, their multipliers, displacements of supports, and numbers; `force` holds the forces on
+ * attachments. */
 static void solve_border(const hf_saddle *s, const hf_saddle_answer *a, double *border, double *force)
 {
     const hf_model *m = &s->linear->built->model;
@@ -315,7 +333,7 @@ static void solve_border(const hf_saddle *s, const hf_saddle_answer *a, double *
     }
 }
 
-/* Three unknowns of a row; zeros where it has none. */
+/* Reads the three unknowns of a row in SI units, or zeros when it has none. */
 static void read_unknown(const hf_saddle *s, int row, int kind, const double *band, const double *border, double to[3])
 {
     int at = unknown_of(s, row, kind);
@@ -323,6 +341,7 @@ static void read_unknown(const hf_saddle *s, int row, int kind, const double *ba
         to[c] = at < 0 ? 0 : unit_of(s, kind) * (at < s->n_band ? band[at + c] : border[at - s->n_band + c]);
 }
 
+/* Writes displacements, errors and shared numbers from the unknowns. */
 static void read_answer(const hf_saddle *s, hf_saddle_answer *a, const double *band, const double *border,
                         const double *force)
 {
@@ -353,7 +372,8 @@ static void read_answer(const hf_saddle *s, hf_saddle_answer *a, const double *b
     }
 }
 
-/* From what the factor makes of the band's right-hand side. */
+/* Completes a solution from the band's own part: first the border, then the part of the band that the border
+ * changes. */
 static void finish_answer(const hf_saddle *s, hf_saddle_answer *a, double *band, double *border)
 {
     size_t n_band = (size_t)s->n_band;

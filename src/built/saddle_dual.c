@@ -1,4 +1,11 @@
-/* Contents: making - the matrix - products - refinement - factor */
+/* Solves the saddle-point band by Cholesky and iterative refinement:
+ *
+ *     factor   P + H (W + R)^-1 H ---> Cholesky ---> solve a probe of known solution; accepted to REFINED
+ *     solve    residual ---> multipliers p (Cholesky) ---> displacements x ---> add both ---> residual with R = 0
+ *                ^                                                                               |
+ *                +---------------------- not small enough, still shrinking ----------------------+
+ *
+ * Contents: making, the matrix, products, refinement, factor. */
 #include "built/saddle_dual.h"
 
 #include "base/arena.h"
@@ -8,10 +15,10 @@
 #include <math.h>
 #include <string.h>
 
-#define WEAK 2.5e-7        /* weight that stands in for none: of moves 2000 times the largest error of a length */
-#define REFINEMENTS_MAX 20 /* steps; a probe that takes more is for the other way */
-#define REFINED 1e-12      /* of the right-hand side: residual of a probe */
-#define ENOUGH 1e-13       /* of the right-hand side: no more steps */
+#define WEAK 2.5e-7        /* weight R of displacements of 2000 times the largest error of a length */
+#define REFINEMENTS_MAX 20 /* refinement steps; a probe that takes more shows that LU is needed */
+#define REFINED 1e-12      /* required residual of a solution, relative to the right-hand side */
+#define ENOUGH 1e-13       /* relative residual at which refinement stops */
 
 /* ---- making ---- */
 
@@ -32,7 +39,7 @@ static void lay_out_dual(hf_arena *arena, hf_saddle_dual *d, size_t n_end)
     d->probe = hf_arena_take(arena, 2 * n, sizeof(double));
 }
 
-/* The cables of each free row, one row after the other. */
+/* Lists the cables of each free row, one row after the other. */
 static void list_cables(hf_saddle_dual *d)
 {
     const hf_model *m = &d->linear->built->model;
@@ -40,7 +47,7 @@ static void list_cables(hf_saddle_dual *d)
         if (m->end_row[i] < m->n_free) d->start[m->end_row[i] + 1]++;
     for (int row = 0; row < m->n_free; row++)
         d->start[row + 1] += d->start[row];
-    for (int i = 2 * m->n_cable - 1; i >= 0; i--) /* start[row + 1] is where the next one of `row` goes */
+    for (int i = 2 * m->n_cable - 1; i >= 0; i--) /* start[row + 1] is where the next cable of `row` goes */
         if (m->end_row[i] < m->n_free) d->cable[--d->start[m->end_row[i] + 1]] = i / 2;
     int n_end = 0;
     for (int i = 0; i < 2 * m->n_cable; i++)
@@ -75,12 +82,13 @@ void hf_saddle_dual_free(hf_saddle_dual *d)
 
 /* ---- the matrix ---- */
 
+/* Returns the weight of coordinate i including R. */
 static double weight_of(const hf_saddle_dual *d, int i)
 {
     return fmax(d->weight[i], WEAK);
 }
 
-/* Add sign times block to rows of node i and columns of node j, where that is the lower triangle. */
+/* Adds sign times block to the rows of node i and the columns of node j, within the lower triangle. */
 static void add_block(hf_saddle_dual *d, int i, int j, double sign, double block[3][3])
 {
     for (int r = 0; r < 3; r++)
@@ -92,7 +100,7 @@ static void add_block(hf_saddle_dual *d, int i, int j, double sign, double block
         }
 }
 
-/* P: what errors of cable e push. */
+/* Adds the part of P by the errors of cable e. */
 static void add_push(hf_saddle_dual *d, int e)
 {
     const hf_model *m = &d->linear->built->model;
@@ -112,7 +120,8 @@ static int other_end(const hf_model *m, int e, int row)
     return m->end_row[2 * e] == row ? m->end_row[2 * e + 1] : m->end_row[2 * e];
 }
 
-/* The part k of the block row of H at `row`: 0 is its diagonal, then its cables. Returns the column; -1: none. */
+/* Computes block k of the row of H at `row`: its diagonal block for k = 0, otherwise that of one of its cables. Returns
+ * the column, or -1 when it is not a free node. */
 static int part_of_row(const hf_saddle_dual *d, int row, int k, double block[3][3])
 {
     const hf_model *m = &d->linear->built->model;
@@ -131,7 +140,7 @@ static int part_of_row(const hf_saddle_dual *d, int row, int k, double block[3][
     return other < m->n_free ? other : -1;
 }
 
-/* H (W + R)^-1 H: what the moves of one node add. */
+/* Adds the part of H (W + R)^-1 H by the displacements of one node. */
 static void add_node(hf_saddle_dual *d, int row)
 {
     double left[3][3], right[3][3], product[3][3];
@@ -154,7 +163,7 @@ static void add_node(hf_saddle_dual *d, int row)
 
 /* ---- products ---- */
 
-/* Take M z off `left`, M the saddle's matrix. */
+/* Subtracts M z from `left`, where M is the matrix of the saddle-point system. */
 static void take_off_product(const hf_saddle_dual *d, const double *z, double *left)
 {
     const hf_model *m = &d->linear->built->model;
@@ -186,7 +195,7 @@ static void take_off_product(const hf_saddle_dual *d, const double *z, double *l
     }
 }
 
-/* H times a vector by node, sign times into sum. */
+/* Adds sign times H v to `sum`, both [n]. */
 static void add_stiffness(const hf_saddle_dual *d, double sign, const double *v, double *sum)
 {
     const hf_model *m = &d->linear->built->model;
@@ -210,16 +219,17 @@ static void add_stiffness(const hf_saddle_dual *d, double sign, const double *v,
 
 /* ---- refinement ---- */
 
-/* One of the right-hand sides that are refined together. */
+/* Holds one of the right-hand sides that are refined together. */
 typedef struct {
     double *band, *solution, *error; /* [2 n] */
-    double size, last, largest;      /* entries: of the right-hand side, of the residual one step ago and now */
+    double size, last, largest;      /* largest entries: of the right-hand side, of the last two residuals */
 } refinement;
 
-/* Make of a residual in r->error, which is overwritten, the multipliers' right-hand side p. */
+/* Computes the right-hand side p of the multipliers from the residual in r->error, which it overwrites. */
 static void ask_multipliers(const hf_saddle_dual *d, refinement *r, double *p)
 {
-    double *right = r->error, *moved = right; /* moves by node need less room than the residual */
+    /* displacements need less room than the residual, so they may overwrite it */
+    double *right = r->error, *moved = right;
     for (int i = 0; i < d->n; i++)
         p[i] = -right[6 * (i / 3) + i % 3];
     for (int i = 0; i < d->n; i++)
@@ -227,7 +237,7 @@ static void ask_multipliers(const hf_saddle_dual *d, refinement *r, double *p)
     add_stiffness(d, 1, moved, p);
 }
 
-/* Add to the solution these multipliers and the moves that follow. */
+/* Adds the multipliers p and the displacements that follow from them to the solution. */
 static void add_answer(const hf_saddle_dual *d, refinement *r, const double *p)
 {
     double *moved = r->error, *pull = moved + d->n, *z = r->solution;
@@ -239,7 +249,7 @@ static void add_answer(const hf_saddle_dual *d, refinement *r, const double *p)
     }
 }
 
-/* Add to the solutions what the weighted matrix makes of the residuals. */
+/* Adds corrections to n solutions: the solutions of the matrix with R for their residuals. */
 static void correct(const hf_saddle_dual *d, int n, refinement *const *open)
 {
     for (int k = 0; k < n; k++)
@@ -257,7 +267,7 @@ static double largest_entry(const hf_saddle_dual *d, const double *v)
     return largest;
 }
 
-/* Find the residual. Whether a further step is worth while. */
+/* Computes the residual. Returns whether a further step is useful. */
 static bool goes_on(const hf_saddle_dual *d, refinement *r)
 {
     memcpy(r->error, r->band, 2 * (size_t)d->n * sizeof(double));
@@ -267,7 +277,7 @@ static bool goes_on(const hf_saddle_dual *d, refinement *r)
     return r->largest > ENOUGH * r->size && !(r->largest <= REFINED * r->size && r->largest > r->last / 2);
 }
 
-/* At most HF_SADDLE_DUAL_PANEL right-hand sides. Are all residuals small? */
+/* Solves at most HF_SADDLE_DUAL_PANEL right-hand sides in place. Returns whether all residuals are small. */
 static bool refine_iteratively(const hf_saddle_dual *d, int n, double *band)
 {
     refinement all[HF_SADDLE_DUAL_PANEL], *open[HF_SADDLE_DUAL_PANEL];
@@ -306,6 +316,7 @@ bool hf_saddle_dual_solve(const hf_saddle_dual *d, int n, double *band)
 
 /* ---- factor ---- */
 
+/* Scales the stiffness and the variance of cable e. */
 static void take_cable(hf_saddle_dual *d, int e, double sigma_m, double size_m, double force_m_per_N)
 {
     const hf_built_linear *l = d->linear;
@@ -332,7 +343,7 @@ bool hf_saddle_dual_factor(hf_saddle_dual *d, const double *sigma_m, const doubl
         add_node(d, row);
     if (hf_band_factor(d->n, d->half_bandwidth, d->band) != 0) return false;
     for (int i = 0; i < 2 * d->n; i++)
-        d->solution[i] = i % 7 < 3 ? 1 : -1; /* what the probe is made of */
+        d->solution[i] = i % 7 < 3 ? 1 : -1; /* the known solution of the probe */
     memset(d->probe, 0, 2 * (size_t)d->n * sizeof *d->probe);
     take_off_product(d, d->solution, d->probe);
     return refine_iteratively(d, 1, d->probe);

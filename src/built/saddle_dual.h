@@ -1,42 +1,48 @@
-/* saddle_dual - the system of a saddle without border by band Cholesky, several times as fast as by LU (METHOD section
+/* saddle_dual - solves the band of the saddle-point system by Cholesky, several times as fast as by LU (METHOD section
  * 12).
  *
- * With weights W + R of all coordinates, where R > 0 stands in for those that nobody measured, moves follow from the
- * multipliers p, and what is left for these is symmetric and positive definite,
- *     (P + H (W + R)^-1 H) p = H (W + R)^-1 b - a,    of   -P p + H x = a,   H p + W x = b,
- * with P = B sigma^2 B'. Its band is twice that of H. What R and rounding do wrong is taken off by refinement. */
+ * The weights are W + R, where a small R > 0 stands for coordinates that were not measured. Displacements x then follow
+ * from the multipliers p. With P = B sigma^2 B', the system -P p + H x = a, H p + W x = b becomes
+ *
+ *     (P + H (W + R)^-1 H) p = H (W + R)^-1 b - a.
+ *
+ * This matrix is symmetric and positive definite, with twice the bandwidth of H. Iterative refinement with the original
+ * matrix removes the errors of R and of rounding. */
 #ifndef HIFDM_SADDLE_DUAL_H
 #define HIFDM_SADDLE_DUAL_H
 
 #include "built/linear.h"
 
-#define HF_SADDLE_DUAL_PANEL 3 /* right-hand sides for which the kernel of the band reads the factor once */
+#define HF_SADDLE_DUAL_PANEL 3 /* right-hand sides for which the band kernel reads the factor once */
 
 typedef struct {
     const hf_built_linear *linear;
-    int n, half_bandwidth;    /* 3 n_free rows */
-    int *start, *cable;       /* [n_free + 1], [start[n_free]] cables of each free row */
-    double *block;            /* [n_cable][9] of H, without unit */
-    double *push;             /* [n_cable] diagonal of sigma^2 times B's square, without unit */
-    double *spring;           /* [n_free] of loose nodes, without unit */
-    double *weight;           /* [n] W, without unit */
-    double *band, *right;     /* the matrix, then its factor; [HF_SADDLE_DUAL_PANEL][n] */
-    double *solution, *error; /* [HF_SADDLE_DUAL_PANEL][2 n] three multipliers and three moves of each row */
-    double *probe;            /* [2 n] a right-hand side */
+    int n, half_bandwidth; /* n: 3 n_free rows */
+    int *start, *cable;    /* [n_free + 1], [start[n_free]] cables of each free row */
+    double *block;         /* [n_cable][9] stiffness blocks, scaled */
+    double *push;          /* [n_cable] sigma^2 (dT/dl0)^2, scaled */
+    double *spring;        /* [n_free] springs of loose nodes, scaled */
+    double *weight;        /* [n] W, scaled */
+    double *band, *right;  /* the matrix, then its factor; [HF_SADDLE_DUAL_PANEL][n] */
+    /* [HF_SADDLE_DUAL_PANEL][2 n], three multipliers and three displacements of each row. */
+    double *solution, *error;
+    double *probe; /* [2 n] right-hand side of the probe */
     void *memory;
 } hf_saddle_dual;
 
-/* HF_OK or HF_NO_MEMORY; free in either case. */
+/* Makes the matrix for the linear model `linear`, which is borrowed. Returns HF_OK or HF_NO_MEMORY; call
+ * hf_saddle_dual_free in either case. */
 hf_status hf_saddle_dual_create(const hf_built_linear *linear, hf_saddle_dual *dual);
 void hf_saddle_dual_free(hf_saddle_dual *dual);
 
-/* Factor at the shape that the linear answer has, in units of moves and multipliers; sigma_m [n_cable], weight_per_m2
- * [n_dof] times `part`. False when refinement does not find solutions: another way is needed. */
+/* Factors the matrix at the present shape of the linear model. size_m and force_m_per_N are the units of displacements
+ * and multipliers. The prior is sigma_m [n_cable], the weights are weight_per_m2 [n_dof] times `part`. Returns false
+ * when the matrix has no factor or refinement does not solve a probe; another method is then needed. */
 bool hf_saddle_dual_factor(hf_saddle_dual *dual, const double *sigma_m, const double *weight_per_m2, double part,
                            double size_m, double force_m_per_N);
 
-/* Right-hand sides [n][6 n_free], rows of each node side by side, replaced by the solutions. False when refinement does
- * not find one of them. No solution depends on the others. */
+/* Replaces n right-hand sides band [n][6 n_free] by their solutions; three multipliers and three displacements of each
+ * row are side by side. Returns false when refinement fails for one of them. No solution depends on the others. */
 bool hf_saddle_dual_solve(const hf_saddle_dual *dual, int n, double *band);
 
 #endif

@@ -1,4 +1,11 @@
-/* Contents: rows - intervals - order - moments - together */
+/* Computes the figures of a tolerance analysis from the rows of its samples (METHOD section 12):
+ *
+ *     pass 1      counts, sums, minimum, maximum           (add_row)
+ *     pass 2      deviations, products with the linear psi (add_deviations)
+ *     passes 3-6  ranks of each measure, 16 bits per pass  (hf_statistics_order)
+ *     ---> means, quantiles and yields with their intervals, control variate, ranked cables
+ *
+ * Contents: rows, intervals, order, moments, all figures together. */
 #include "built/statistics.h"
 
 #include "base/arena.h"
@@ -7,14 +14,15 @@
 #include <stdint.h>
 #include <string.h>
 
-#define BLOCK 1024  /* rows that are read at a time */
-#define TAIL 0.025  /* on either side of an interval */
+#define BLOCK 1024  /* rows read at a time */
+#define TAIL 0.025  /* probability beyond each end of an interval */
 #define DIGIT 65536 /* values of a digit of 16 bits */
+/* 97.5 % quantile of the normal distribution. */
 #define NORMAL_95 1.959963984540054
 
 /* ---- rows ---- */
 
-/* Call `take` for each row, in order. */
+/* Calls `take` for each row, in order. Returns HF_OK, HF_NO_MEMORY, or a status of rows->read. */
 static hf_status visit_rows(const hf_statistics_rows *rows, void (*take)(void *context, const double *row),
                             void *context)
 {
@@ -34,8 +42,8 @@ static hf_status visit_rows(const hf_statistics_rows *rows, void (*take)(void *c
 
 /* ---- intervals ---- */
 
-/* Of the continued fraction of the incomplete beta function (Abramowitz and Stegun 26.5.8, by Lentz's method), up to
- * its factor: it takes some sqrt(a + b) terms where x is at most about the mean, a/(a + b). */
+/* Returns the continued fraction of the incomplete beta function without its factor (Abramowitz and Stegun 26.5.8, by
+ * Lentz's method). It takes about sqrt(a + b) terms when x is at most about the mean, a/(a + b). */
 static double beta_fraction(double x, double a, double b)
 {
     enum { TERMS = 1000000 };
@@ -54,8 +62,8 @@ static double beta_fraction(double x, double a, double b)
     return value;
 }
 
-/* P(B <= x) of a beta distribution, to 1e-6 of itself for a + b up to 1e8. GSL's fails where its fraction takes more
- * than 512 terms, and its inverse at a = 969, b = 32. */
+/* Returns P(B <= x) of a beta distribution, to a relative error of 1e-6 for a + b up to 1e8. GSL's function fails when
+ * its fraction takes more than 512 terms, and its inverse fails at a = 969, b = 32. */
 static double beta_below(double x, double a, double b)
 {
     if (!(x > 0) || !(x < 1)) return x >= 1;
@@ -64,7 +72,7 @@ static double beta_below(double x, double a, double b)
                                       : 1 - factor / b * beta_fraction(1 - x, b, a);
 }
 
-/* Its inverse: of two neighbouring numbers the lower one. */
+/* Returns the inverse of beta_below by bisection: the lower of the two neighbouring doubles that enclose it. */
 static double beta_quantile(double probability, double a, double b)
 {
     double low = 0, high = 1;
@@ -73,12 +81,13 @@ static double beta_quantile(double probability, double a, double b)
     return low;
 }
 
-/* The least k with P(B <= k) >= probability, for B successes in n trials. */
+/* Returns the smallest k with P(B <= k) >= probability, where B is the number of successes in n trials of probability
+ * `part`. */
 static long binomial_quantile(long n, double part, double probability)
 {
     long low = 0, high = n;
     while (low < high) {
-        long middle = low + (high - low) / 2; /* below n */
+        long middle = low + (high - low) / 2; /* less than n */
         if (1 - beta_below(part, (double)middle + 1, (double)(n - middle)) >= probability)
             high = middle;
         else
@@ -87,7 +96,8 @@ static long binomial_quantile(long n, double part, double probability)
     return low;
 }
 
-/* The quantile is below the value of rank k when at least k values are below it. */
+/* A quantile is below the value of rank k when at most k - 1 values are below the quantile, so the ranks follow from
+ * the binomial distribution. */
 void hf_statistics_ranks(long n, double part, long *low, long *high)
 {
     *low = binomial_quantile(n, part, TAIL);
@@ -103,7 +113,7 @@ void hf_statistics_interval(long n, long met, double *low, double *high)
 
 /* ---- order ---- */
 
-/* Bits whose order as whole numbers is that of the values. */
+/* Returns a whole number whose order is that of the values. */
 static uint64_t key_of(double value)
 {
     uint64_t bits;
@@ -111,6 +121,7 @@ static uint64_t key_of(double value)
     return bits >> 63 ? ~bits : bits | 1ull << 63;
 }
 
+/* Returns the value of a key, the inverse of key_of. */
 static double value_of(uint64_t key)
 {
     double value;
@@ -119,14 +130,16 @@ static double value_of(uint64_t key)
     return value;
 }
 
+/* Holds the state of the search for ranks, digit by digit from the top. */
 typedef struct {
-    int column, n_rank, shift;           /* the digit that is looked for begins at bit `shift` */
-    double missing;                      /* what NaN counts as */
-    uint64_t above[HF_STATISTICS_RANKS]; /* digits that are known */
-    long left[HF_STATISTICS_RANKS];      /* rank among the values that have them */
+    int column, n_rank, shift;           /* the digit in question begins at bit `shift` */
+    double missing;                      /* value that replaces NaN */
+    uint64_t above[HF_STATISTICS_RANKS]; /* known leading digits of each rank's value */
+    long left[HF_STATISTICS_RANKS];      /* rank among the values with these digits */
     long *count;                         /* [n_rank][DIGIT] */
 } selection;
 
+/* Counts the next digit of a row for each rank whose leading digits it has. */
 static void count_digit(void *context, const double *row)
 {
     selection *s = context;
@@ -136,6 +149,7 @@ static void count_digit(void *context, const double *row)
         s->count[(size_t)k * DIGIT + (key >> s->shift & (DIGIT - 1))] += above == s->above[k];
 }
 
+/* Appends to each rank the digit that its count leads to. */
 static void choose_digits(selection *s)
 {
     for (int k = 0; k < s->n_rank; k++) {
@@ -167,14 +181,16 @@ hf_status hf_statistics_order(const hf_statistics_rows *rows, int column, double
 
 /* ---- moments ---- */
 
+/* Holds the sums over all rows. x is psi^2 of the linear model, y is psi^2 of the solved sample. */
 typedef struct {
     const hf_tolerance_settings *settings;
     hf_tolerance_summary *to;
     long n[HF_TOLERANCE_N_MEASURE], n_both, met, met_row[HF_REQUIRE_ROWS_MAX], bin[HF_TOLERANCE_BINS];
     double sum[HF_TOLERANCE_N_MEASURE], square[HF_TOLERANCE_N_MEASURE]; /* of values, of (value - mean)^2 */
-    double mean_y, mean_x, xx, xy, yy; /* psi^2 of samples, and to first order: means, then sums of products */
+    double mean_y, mean_x, xx, xy, yy; /* means of y and x, sums of products of deviations */
 } moments;
 
+/* Adds a row in the first pass. */
 static void add_row(void *context, const double *row)
 {
     moments *s = context;
@@ -199,6 +215,7 @@ static void add_row(void *context, const double *row)
     s->mean_x += linear * linear;
 }
 
+/* Adds a row in the second pass, which knows the means. */
 static void add_deviations(void *context, const double *row)
 {
     moments *s = context;
@@ -218,9 +235,9 @@ static void add_deviations(void *context, const double *row)
     s->bin[bin < HF_TOLERANCE_BINS ? bin : HF_TOLERANCE_BINS - 1]++;
 }
 
-/* ---- together ---- */
+/* ---- all figures together ---- */
 
-/* Of all nets: those without a value are the worst. */
+/* Finds the quantiles of measure k over all samples, with intervals. A sample without a value counts as the worst. */
 static hf_status find_quantiles(const hf_statistics_rows *rows, int k, hf_tolerance_figures *f)
 {
     long rank[HF_STATISTICS_RANKS], n = rows->n;
@@ -230,7 +247,7 @@ static hf_status find_quantiles(const hf_statistics_rows *rows, int k, hf_tolera
         rank[3 * q] = (long)ceil(hf_tolerance_quantile[q] * (double)n);
         hf_statistics_ranks(n, hf_tolerance_quantile[q], &rank[3 * q + 1], &rank[3 * q + 2]);
         if (!more_is_better) continue;
-        long low = rank[3 * q + 1]; /* the same ranks from the other end */
+        long low = rank[3 * q + 1]; /* with a larger value better, ranks count from the other end */
         rank[3 * q] = n + 1 - rank[3 * q];
         rank[3 * q + 1] = n + 1 - rank[3 * q + 2];
         rank[3 * q + 2] = n + 1 - low;
@@ -247,15 +264,15 @@ static hf_status find_quantiles(const hf_statistics_rows *rows, int k, hf_tolera
     return HF_OK;
 }
 
-/* A root of what an interval of a mean square says: below zero it says nothing, but NaN stays NaN. */
+/* Returns the square root of an end of an interval, 0 for a negative one. NaN remains NaN. */
 static double root_of(double square)
 {
     return sqrt(square < 0 ? 0 : square);
 }
 
-/* The mean of psi^2 with psi^2 to first order, whose mean is known, as control variate: its covariance with the other
- * over its variance is how much of its error is taken off. That mean is one over all nets, so there is no control where
- * some have no psi. */
+/* Estimates the mean of psi^2 with x, psi^2 of the linear model, as control variate. The mean of x is known exactly.
+ * The mean of y is corrected by beta = cov(x, y)/var(x) times the error of the mean of x. The known mean holds for all
+ * nets, so there is no correction when samples have no psi. */
 static void control(const hf_covariance *c, const moments *s, hf_tolerance_summary *to)
 {
     double known = c->nominal_psi_m * c->nominal_psi_m + c->spread_m2, n = (double)s->n_both;
@@ -273,6 +290,7 @@ static void control(const hf_covariance *c, const moments *s, hf_tolerance_summa
     to->variance_saved = isnan(mean) ? (double)NAN : to->correlation * to->correlation;
 }
 
+/* Computes the yield of all requirements with its interval, and that of each requirement. */
 static void judge_yield(const moments *s, long n, hf_tolerance_summary *to)
 {
     const hf_tolerance_settings *t = s->settings;
@@ -288,6 +306,7 @@ static void judge_yield(const moments *s, long n, hf_tolerance_summary *to)
     }
 }
 
+/* Lists the cables with the largest shares in the spread of psi^2, and sets the share of each kind of error. */
 static void rank_cables(const hf_montecarlo *t, hf_tolerance_summary *to)
 {
     const hf_covariance *c = &t->covariance;
@@ -308,7 +327,7 @@ static void rank_cables(const hf_montecarlo *t, hf_tolerance_summary *to)
         to->kind_share[k] = c->spread_m2 > 0 ? c->kind_m2[k] / c->spread_m2 : 0;
 }
 
-/* What is known of a measure once its sums are: nothing is NaN, not 0. */
+/* Computes mean, deviation and interval of the mean of measure k from its sums. Unknown figures are NaN. */
 static void find_figures(const moments *s, int k, hf_tolerance_figures *f)
 {
     double n = (double)s->n[k], nothing = (double)NAN;
@@ -318,11 +337,12 @@ static void find_figures(const moments *s, int k, hf_tolerance_figures *f)
             f->value[q] = f->low[q] = f->high[q] = nothing;
         return;
     }
-    if (!isfinite(f->mean)) f->mean = nothing; /* some loss of gain is infinite */
+    if (!isfinite(f->mean)) f->mean = nothing; /* an infinite gain loss has no mean */
     f->deviation = s->n[k] > 1 && !isnan(f->mean) ? sqrt(s->square[k] / (n - 1)) : nothing;
     f->mean_low = f->mean - NORMAL_95 * f->deviation / sqrt(n);
     f->mean_high = f->mean + NORMAL_95 * f->deviation / sqrt(n);
-    if (!hf_tolerance_more_is_better((hf_tolerance_measure)k) && f->mean_low < 0) f->mean_low = 0; /* no value is */
+    /* no value is negative */
+    if (!hf_tolerance_more_is_better((hf_tolerance_measure)k) && f->mean_low < 0) f->mean_low = 0;
 }
 
 hf_status hf_statistics_sum_up(const hf_montecarlo *t, const hf_statistics_rows *rows, hf_tolerance_summary *to)
@@ -346,7 +366,7 @@ hf_status hf_statistics_sum_up(const hf_montecarlo *t, const hf_statistics_rows 
     control(c, &s, to);
     judge_yield(&s, rows->n, to);
     rank_cables(t, to);
-    to->psi_95_m = to->figure[HF_TOLERANCE_PSI].value[1]; /* hf_tolerance_quantile */
+    to->psi_95_m = to->figure[HF_TOLERANCE_PSI].value[1]; /* index 1 is the 95 % quantile of hf_tolerance_quantile */
     to->bin_low_m = to->figure[HF_TOLERANCE_PSI].least;
     to->bin_high_m = to->figure[HF_TOLERANCE_PSI].largest;
     for (int k = 0; k < HF_TOLERANCE_BINS; k++)

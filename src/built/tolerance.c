@@ -1,3 +1,4 @@
+/* Defines the units, descriptions and words of the measures and kinds of errors of a tolerance analysis. */
 #include <hifdm/tolerance.h>
 
 #include "built/errors.h"

@@ -1,3 +1,5 @@
+/* Solves posterior samples of an adjusted net (METHOD section 12). Input are the estimated errors, the posterior errors
+ * of each sample and the adjustments. Output is the difference between solved and linear displacements. */
 #include "built/turned.h"
 
 #include <hifdm/built_batch.h>
@@ -19,6 +21,7 @@ hf_status hf_turned_answer(const hf_turned *t, const hf_workspace *shape, double
     return HF_OK;
 }
 
+/* Passes the arguments of hf_turned_beyond to each sample. */
 typedef struct {
     const hf_turned *turned;
     const double *turn_m, *answer_m;
@@ -26,6 +29,7 @@ typedef struct {
     double *beyond_m;
 } turned_samples;
 
+/* Makes sample i: the estimated errors, its posterior errors and the adjustments. */
 static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_move_m)
 {
     const turned_samples *t = context;
@@ -41,6 +45,7 @@ static void make_sample(void *context, long i, double *cut_m, double *EA_N, doub
             support_move_m[c * m->n_node + row] = p->rest_m[3 * row + c] + rest_m[3 * row + c];
 }
 
+/* Stores what the linear displacements of sample i miss. */
 static void take_sample(void *context, long i, int place, const hf_built_shape *shape, const hf_form_result *result)
 {
     const turned_samples *t = context;

@@ -1,26 +1,31 @@
-/* turned - how far the samples of what an estimate leaves open lie apart once the net is turned: by the stiffness of
- * the turned net, and each of them solved, since cables that become slack or taut by the turns are beyond first order
- * (METHOD section 12). */
+/* turned - posterior samples of an estimate after turnbuckle adjustments (METHOD section 12).
+ *
+ * It gives their displacements by the linear model of the adjusted net, and the corrections of samples that are solved
+ * in full. The corrections matter when an adjustment makes cables slack or taut, because this is beyond first order. */
 #ifndef HIFDM_TURNED_H
 #define HIFDM_TURNED_H
 
 #include "built/estimate.h"
 
-/* What hf_estimate_doubt has found, and scratch. Borrowed. */
+/* Holds the output of hf_estimate_doubt, and scratch. All pointers are borrowed. */
 typedef struct {
     hf_estimate *estimate;
-    const double *doubt_m; /* [samples][n_dof] of the estimated shape */
+    const double *doubt_m; /* [HF_ESTIMATE_SAMPLES][n_dof] posterior displacements of the estimated shape */
     const hf_estimate_cause *cause;
     double *strain_N, *scratch; /* [n_cable]; [linear.n_scratch] */
 } hf_turned;
 
-/* What the errors that are left move, move_m [samples][n_dof], by the stiffness of this shape of the estimated net;
- * where it has none, doubt_m. HF_OK, HF_INTERRUPTED, HF_NO_MEMORY. */
+/* Computes the displacements move_m [HF_ESTIMATE_SAMPLES][n_dof] of the posterior samples by the linear model at
+ * `shape`, a shape of the estimated net. Where that has no stiffness, move_m is doubt_m. Returns HF_OK, HF_INTERRUPTED
+ * or HF_NO_MEMORY. */
 hf_status hf_turned_answer(const hf_turned *turned, const hf_workspace *shape, double *move_m);
 
-/* What that misses of the solved samples, beyond_m [samples][n_dof], with cut lengths changed by turn_m [n_cable], by
- * which the estimated net got `shape`; 0 of a sample without a shape. answer_m: as of hf_turned_answer. n_thread 0: all
- * cores; the same bits for any number. HF_OK, HF_INTERRUPTED, HF_NO_MEMORY. */
+/* Solves the posterior samples with cut lengths increased by turn_m [n_cable], and computes what their linear
+ * displacements miss, beyond_m [HF_ESTIMATE_SAMPLES][n_dof]. A sample without a shape gets 0. `shape` is the estimated
+ * net with these adjustments. answer_m receives the output of hf_turned_answer.
+ *
+ * n_thread is the number of threads, 0 for all cores; it does not change a bit. Returns HF_OK, HF_INTERRUPTED or
+ * HF_NO_MEMORY. */
 hf_status hf_turned_beyond(const hf_turned *turned, const double *turn_m, const hf_workspace *shape, int n_thread,
                            double *answer_m, double *beyond_m);
 
