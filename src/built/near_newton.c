@@ -1,7 +1,7 @@
 /* Newton's method for one elastic net from the nominal shape (METHOD section 12, M34):
  *
  *     shape, tensions T ---> forces f out of balance; converged, or only rounding left: end
- *                       ---> H = sum of (k - T/l) u u' + T/l I over taut cables, k = EA/l0 (first step: nominal H0)
+ *                       ---> H = sum of (k - T/l) u u' + T/l I with k = EA/l0, or 0 if slack (first step: H0)
  *                       ---> H d = f for the free nodes; on a truss (I + F S)^-1 of the gap by GMRES
  *                       ---> x <- x + d, limited to REACH; T <- max(k (l - l0 + elongation to first order), 0)
  *
@@ -35,7 +35,7 @@
 #define GAP_LEFT 1e-2
 enum { KRYLOV = 12 };
 
-/* Computes the stiffness block of cable e. hf_near_newton has stored the stiffness along the cables in
+/* Computes the stiffness block of cable e. set_stiffness has stored the stiffness along the cables in
  * newton_trial_tension_N, N/m, and that across them in q_N_per_m. */
 static void block_of(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
 {

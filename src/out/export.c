@@ -1,4 +1,4 @@
-/* The table of exporters, and the functions that they share. */
+/* Defines the table of exporters and the functions that they share. */
 #include "out/export.h"
 
 #include "base/csv.h"
@@ -32,7 +32,7 @@ hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messag
     char target[HF_FILE_OUT_SIZE];
     struct stat info;
     HF_TRY(hf_file_out_target(path, target, messages));
-    hf_file_out_clean(target); /* also if the name is refused below */
+    hf_file_out_clean(target); /* temporary files of ended processes, also when the name is refused below */
     int seen = hf_path_look_at_link(target, &info);
     if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
     if (seen == 0) return HF_OK;
@@ -43,7 +43,7 @@ hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messag
 
 static const char *const shape_word[3] = {"form-finding", "optimised", "polished"};
 
-/* A state of the net as built; its name is what messages call the shape. */
+/* Reads a load case of the as-built net. Messages call the shape by the name of the load case. */
 static hf_status read_state(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
 {
     const hf_summary *s = &stored->summary;

@@ -1,11 +1,12 @@
-/* Writes a stored shape as CSV files into the folder of --csv, which is made if it does not exist:
+/* Writes a stored shape as CSV files into the folder of --csv, which is created when it does not exist:
  *
- * nodes.csv : id,x_m,y_m,z_m,x0_m,y0_m,z0_m,role   (found and theoretical position)
- * cables.csv: id,i,j,group,law,length_m,tension_N,q_N_per_m[,set]   (when the net has sets; blanks between names)
- * facets.csv: id,a,b,c,d   (nodes around each, of a triangle without d; of nets with measures of the surface)
- * With a truss also truss_nodes.csv and members.csv, in the columns that truss_import reads; when the result has
- * displacements and end forces, they follow in further columns.
- * Numbers have 17 significant digits, so reading them back gives the same bits. */
+ *   nodes.csv : id,x_m,y_m,z_m,x0_m,y0_m,z0_m,role   position of the shape, target position
+ *   cables.csv: id,i,j,group,law,length_m,tension_N,q_N_per_m[,set]   set: names of sets, blanks between, if any
+ *   facets.csv: id,a,b,c,d   nodes of each facet, d empty for a triangle; only when the case measures the surface
+ *
+ * A result with a truss also gives truss_nodes.csv and members.csv, in the columns that truss_import reads.
+ * Displacements and end forces follow in further columns when the result has them. Numbers have 17 significant digits,
+ * so reading them gives the same bits. */
 #include "out/export.h"
 
 #include "base/csv.h"
@@ -67,7 +68,7 @@ static void write_facets(const void *context, FILE *f)
     }
 }
 
-/* Nothing for a net without facets. */
+/* Writes facets.csv, unless the net has no facets. */
 static hf_status export_facets(const hf_export_request *o, const hf_export_stored *stored, const char *path,
                                hf_messages *messages)
 {
@@ -134,7 +135,7 @@ static void write_members(const void *context, FILE *f)
             hf_csv_write_id(t->node_id[t->end[2 * e + k]], f);
         }
         for (size_t k = 0; k < sizeof number / sizeof *number; k++)
-            fprintf(f, isfinite(number[k]) ? ",%.17g" : ",", number[k]); /* an infinite shear area is left out */
+            fprintf(f, isfinite(number[k]) ? ",%.17g" : ",", number[k]); /* an infinite shear area is an empty cell */
         fprintf(f, ",%s,%s", hf_joint_word[t->joint[e]], hf_unit_word[t->unit[e]]);
         for (size_t k = 0; end_force && k < 12; k++)
             fprintf(f, ",%.17g", end_force[12 * (size_t)e + k]);
@@ -169,7 +170,7 @@ static hf_status write_csv(const hf_export_request *o, const hf_export_stored *s
     static char nodes[PATH_MAX], cables[PATH_MAX], facets[PATH_MAX];
     bool is_measured = stored->summary.surface.focal_length_m > 0;
     HF_TRY(hf_export_claim_in_folder(o, "nodes.csv", nodes,
-                                     messages)); /* both names are checked before anything is made */
+                                     messages)); /* all names are checked before a file is written */
     HF_TRY(hf_export_claim_in_folder(o, "cables.csv", cables, messages));
     if (is_measured) HF_TRY(hf_export_claim_in_folder(o, "facets.csv", facets, messages));
     HF_TRY(hf_file_out_folder(o->output, messages));

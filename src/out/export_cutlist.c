@@ -1,22 +1,24 @@
 /* Writes what a workshop needs to make the net of a stored shape. --cutlist NAME.csv gives four CSV files:
  *
- * NAME.csv       : id,i,j,group,tension_N,length_m,l0_m,elongation_m,EA_N,l0_minus_theory_m,law,value[,set]
- *                  l0_m          unstressed length, length_m / (1 + T/EA); a slack cable of law length or elastic has
- *                                the length that its law gives
- *                  elongation_m  length_m - l0_m
- *                  l0_minus_theory_m
- *                                l0_m minus the unstressed length of a cable that has the same tension in the
- *                                theoretical shape. A cable that is cut to l0_m needs no turn of a turnbuckle; one
- *                                that was cut for the theoretical shape must be made so much longer (> 0) or shorter
- *                  law, value    "elastic" and l0_m again, so that NAME.csv can be imported as cables.csv of the net
- *                                as built
- *                  set           names of sets, when the net has some; blanks between them
- * NAME_mm.csv    : id,i,j,group,l0_mm,length_mm,elongation_mm,tension_N,l0_minus_theory_mm[,set]    the same for
- *                  people: to 0.001 mm, tensions to 0.01 N
- * NAME_nodes.csv : id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]    where the jig holds each node; can be imported as nodes.csv
- * NAME_totals.csv: group,cables,l0_m,length_m,least_tension_N,largest_tension_N,least_l0_minus_theory_m,
- *                  largest_l0_minus_theory_m    a row for each group, all cables, and each set
- * Numbers have 17 significant digits, but in NAME_mm.csv, so the net imported from these files has the stored shape. */
+ *   NAME.csv       : id,i,j,group,tension_N,length_m,l0_m,elongation_m,EA_N,l0_minus_theory_m,law,value[,set]
+ *                    l0_m               unstressed length, length_m / (1 + T/EA); a slack cable of law length or
+ *                                       elastic has the length that its law gives
+ *                    elongation_m       length_m - l0_m
+ *                    l0_minus_theory_m  l0_m minus the unstressed length for the same tension at the target positions:
+ *                                       how much longer (> 0) a turnbuckle must make a cable cut for these positions
+ *                    law, value         "elastic" and l0_m, so that NAME.csv can be imported as cables.csv of the
+ *                                       as-built net
+ *                    set                names of sets with blanks between them, when the net has sets
+ *   NAME_mm.csv    : id,i,j,group,l0_mm,length_mm,elongation_mm,tension_N,l0_minus_theory_mm[,set]
+ *                    the same for people, rounded to 0.001 mm and 0.01 N
+ *   NAME_nodes.csv : id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]
+ *                    positions of the nodes in the jig; can be imported as nodes.csv
+ *   NAME_totals.csv: group,cables,l0_m,length_m,least_tension_N,largest_tension_N,least_l0_minus_theory_m,
+ *                    largest_l0_minus_theory_m
+ *                    one row for each group, for all cables, and for each set
+ *
+ * Numbers have 17 significant digits except in NAME_mm.csv, so the net imported from these files has the stored
+ * shape. */
 #include "out/export.h"
 
 #include "base/csv.h"
@@ -53,7 +55,7 @@ static void write_cables(const void *context, FILE *f)
     }
 }
 
-/* In thousandths of a millimetre, without -0. */
+/* Converts a length to millimetres, rounds it to 0.001 mm and turns -0 into 0. */
 static double bench_mm(double length_m)
 {
     return round(1e6 * length_m) / 1e3 + 0.0;
@@ -124,7 +126,7 @@ static void write_totals(const void *context, FILE *f)
         write_total(v, v->scene->set_name[k], OF_SET, k, f);
 }
 
-/* Makes the names: NAME.csv, NAME_mm.csv, NAME_nodes.csv, NAME_totals.csv. */
+/* Sets the paths NAME.csv, NAME_mm.csv, NAME_nodes.csv and NAME_totals.csv, and checks that they may be written. */
 enum { N_FILE = 4 };
 static hf_status name_files(const hf_export_request *o, char path[N_FILE][PATH_MAX], hf_messages *messages)
 {
@@ -143,7 +145,7 @@ static hf_status write_cutlist(const hf_export_request *o, const hf_export_store
     const hf_scene *scene = &stored->scene;
     static char path[N_FILE][PATH_MAX];
     HF_TRY(hf_cable_demand_EA(scene, o->file, "cut lengths need", ", and run again", messages));
-    HF_TRY(name_files(o, path, messages)); /* all names are checked before any file is written */
+    HF_TRY(name_files(o, path, messages)); /* all names are checked before a file is written */
     const view v = {scene, &stored->shape, hf_model_reference_N(scene, stored->summary.pretension_N)};
     HF_TRY(hf_file_out_set_write(o->files, path[0], write_cables, &v, messages));
     HF_TRY(hf_file_out_set_write(o->files, path[1], write_bench, &v, messages));

@@ -1,11 +1,11 @@
-/* Writes a stored front as one CSV file:
+/* Writes a stored Pareto front as one CSV file:
  *
- * id,mark,status,iterations[,converged],NAME...,slope_NAME...,GENE...
+ *   id,mark,status,iterations[,converged],NAME...,slope_NAME...,GENE...
  *
- * converged (1 or 0) is of Levenberg-Marquardt alone. slope_NAME is what the minimised objective changes by for one
- * unit more of each other (empty where it is not known). Rows are numbered from 1, in the order of the file.
- * `hifdm evaluate` reads it as a table of designs when the rows that failed are taken out. Numbers have 17 significant
- * digits. */
+ * converged (1 or 0) exists only for fronts by Levenberg-Marquardt. slope_NAME is the change of the minimised objective
+ * per unit of objective NAME; it is empty where it is unknown. Points are numbered from 1 in the order of the front.
+ * `hifdm evaluate` reads the file as a table of designs when the rows of failed points are removed. Numbers have 17
+ * significant digits. */
 #include "out/export.h"
 
 #include "base/csv.h"
@@ -20,6 +20,7 @@ typedef struct {
     size_t gene_size;
 } view;
 
+/* Writes a number, "inf", or an empty cell for NaN, with a comma before it. */
 static void write_number(double value, FILE *f)
 {
     if (isfinite(value))

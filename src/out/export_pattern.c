@@ -1,6 +1,6 @@
 /* Writes the far field of a shape as one CSV file:
  *
- * frequency_Hz,phi_deg,theta_deg,co_dBi,cross_dBi
+ *   frequency_Hz,phi_deg,theta_deg,co_dBi,cross_dBi
  *
  * Numbers have 17 significant digits. */
 #include "out/export.h"
@@ -19,6 +19,7 @@ static void write_pattern(const void *context, FILE *f)
                 t->theta_deg[k % t->n_theta], t->co_dBi[k], t->cross_dBi[k]);
 }
 
+/* Reports why this shape has no far field. Returns HF_BAD_USAGE. */
 static hf_status refuse(const char *file, const hf_summary *s, hf_stage stage, hf_messages *messages)
 {
     double pull_ratio = stage == HF_STAGE_NONE ? 0 : s->measures[stage].mesh_pull_ratio;

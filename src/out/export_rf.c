@@ -1,16 +1,18 @@
 /* Writes the facets of a shape for physical-optics programs into the folder of --rf, in m, in the frame of the scene:
  *
- * surface.grd: z over a regular grid of x and y, in the layout of GRASP's text files for such surfaces (TICRA's GRASP
- *   Technical Description, surfaces given by z-values in a rectangular grid): a line of text; XS YS XE YE, the corners;
- *   NX NY KLIMIT, KLIMIT = 0: every row has all its points; then z, x fastest, a row for each y from YS. Beside the
- *   facets it is z of the wanted surface.
- * points.csv : x,y,z,nx,ny,nz,dA: points all over the facets with the unit normal on the side of +z and the area that
- *   each stands for, a wavelength apart or less at the highest frequency of the case, but 3 to 16 along a side.
- * facets.stl : the flat facets as triangles, in text, counter-clockwise seen from +z.
+ *   surface.grd: z over a regular grid of x and y, in the layout of GRASP's text files (TICRA's GRASP Technical
+ *                Description, surfaces given by z-values in a rectangular grid). A line of text; XS YS XE YE, the
+ *                corners; NX NY KLIMIT with KLIMIT = 0, so every row has all its points; then z, x fastest, one row for
+ *                each y from YS. Outside the facets z is that of the target surface.
+ *   points.csv : x,y,z,nx,ny,nz,dA: points on the facets, unit normals on the side of +z, and the areas that the points
+ *                represent. Points are at most a wavelength of the highest frequency apart; there are 3 to 16 along
+ *                a side.
+ *   facets.stl : the flat facets as triangles, in text, counter-clockwise seen from +z.
  *
- * Facets under a mesh tension are pillows in the first two. Numbers have 17 significant digits, those of the grid 12.
+ * Facets under a mesh tension are pillows in the first two files. Numbers have 17 significant digits, those of the grid
+ * 12.
  *
- * Contents: facets - grid - points - triangles - together */
+ * Contents: facets, grid, points, triangles, all files together. */
 #include "out/export.h"
 
 #include "base/arena.h"
@@ -26,19 +28,21 @@ enum { GRID = 301, POINTS_LEAST = 3, POINTS_MOST = 16 };
 typedef struct {
     const hf_export_stored *stored;
     hf_facets facets;
-    double *sag_m;          /* [n_facet][4]; NULL: flat */
+    double *sag_m;          /* [n_facet][4] sags of the sides; NULL: flat facets */
     double *z_m;            /* [n_y][n_x] of the grid */
-    double low[2], high[2]; /* its corners */
-    int n[2], n_side;       /* points of the grid along x and y; of a facet along each side */
+    double low[2], high[2]; /* corners of the grid */
+    int n[2], n_side;       /* points of the grid along x and y; points along each side of a facet */
 } view;
 
 /* ---- facets ---- */
 
+/* Takes the mesh of facet i from the shape. */
 static void take(const view *v, int i, hf_facet_mesh *m)
 {
     hf_facet_mesh_take_bent(&v->facets, i, v->stored->shape.position_m, v->sag_m, m);
 }
 
+/* Computes the sags of the pillows, if the mesh has a tension. Returns HF_BAD_USAGE when the cables cannot hold it. */
 static hf_status find_sags(view *v, const char *file, hf_arena *arena, hf_messages *messages)
 {
     const hf_export_stored *s = v->stored;
@@ -56,7 +60,7 @@ static hf_status find_sags(view *v, const char *file, hf_arena *arena, hf_messag
                     file, s->word, hf_facet_mesh_pull_words(pull_ratio, words), HF_FACET_PULL_MOST);
 }
 
-/* Extent of the facets, and points along their sides. */
+/* Computes the extent of the grid and the numbers of points. */
 static void measure(view *v)
 {
     double longest_m = 0, most_Hz = hf_surface_highest_Hz(&v->stored->summary.surface);
@@ -82,12 +86,14 @@ static void measure(view *v)
 
 /* ---- grid ---- */
 
+/* Returns coordinate d of grid line i, m. */
 static double place_of(const view *v, int d, int i)
 {
     return v->low[d] + (v->high[d] - v->low[d]) * i / (v->n[d] - 1);
 }
 
-/* Is x, y on the facet, up to rounding? uv: its parameters there, by Newton's method on the bilinear map. */
+/* Returns whether (x, y) is on the facet, up to rounding, and sets uv to its parameters there. Newton's method inverts
+ * the bilinear map. */
 static bool is_on(const hf_facet_mesh *m, const double xy[2], double uv[2])
 {
     uv[0] = uv[1] = 0.5;
@@ -95,8 +101,7 @@ static bool is_on(const hf_facet_mesh *m, const double xy[2], double uv[2])
         double p[3], du[3], dv[3];
         hf_facet_mesh_at(m, uv[0], uv[1], p, du, dv);
         double det = du[0] * dv[1] - du[1] * dv[0], gap[2] = {xy[0] - p[0], xy[1] - p[1]};
-        if (fabs(det) < 1e-300)
-            return false; /* the corner where two are one; the place is that of another facet, too */
+        if (fabs(det) < 1e-300) return false; /* the doubled corner of a triangle; the point is on another facet, too */
         double step[2] = {(gap[0] * dv[1] - gap[1] * dv[0]) / det, (du[0] * gap[1] - du[1] * gap[0]) / det};
         uv[0] += step[0];
         uv[1] += step[1];
@@ -105,7 +110,8 @@ static bool is_on(const hf_facet_mesh *m, const double xy[2], double uv[2])
     return uv[0] > -1e-9 && uv[0] < 1 + 1e-9 && uv[1] > -1e-9 && uv[1] < 1 + 1e-9;
 }
 
-/* The points of the grid on facet i. Lifting a plane along its normal by h raises it by h over the slope's cosine. */
+/* Writes the grid points on facet i. A pillow that rises by h along the normal of the facet rises by h / normal_z along
+ * z. */
 static void put_facet(view *v, int i)
 {
     hf_facet_mesh m;
@@ -129,6 +135,7 @@ static void put_facet(view *v, int i)
         }
 }
 
+/* Fills the grid: the target surface first, then the facets over it. */
 static void fill_grid(view *v)
 {
     const hf_surface_settings *s = &v->stored->summary.surface;
@@ -210,7 +217,7 @@ static void write_triangles(const void *context, FILE *f)
     fputs("endsolid facets in m, frame of the scene\n", f);
 }
 
-/* ---- together ---- */
+/* ---- all files together ---- */
 
 static hf_status write_files(const hf_export_request *o, view *v, char path[3][PATH_MAX], hf_messages *messages)
 {

@@ -1,25 +1,27 @@
-/* Writes the shapes of a run for ParaView: VTKHDF 1.0 files, each an unstructured grid, which VTK 9.1, ParaView 5.11
- * and newer versions read. The folder of --vtk gets theoretical.hdf, form.hdf, and if the run has these shapes
- * optimize.hdf and polish.hdf, whose cells are the cables as lines.
+/* Writes the shapes of a run for ParaView: VTKHDF 1.0 files with unstructured grids, which VTK 9.1, ParaView 5.11 and
+ * newer versions read. The folder of --vtk receives these files, as far as the run has the shapes:
  *
- * Points and cells are in the order of the scene. Point data: role, load_N; a found shape also has displacement_m (from
- * the theoretical shape), its size deviation_m, and, when the case asks for measures of the surface, normal_error_m.
- * Cell data: group, law, length_m, EA_N; a found shape also has tension_N, q_N_per_m, slack, length_change_m (from the
- * theoretical length). Words are stored as numbers: role 0 support, 1 inner, 2 edge; group 0 inner, 1 boundary; law
- * 0 tension, 1 length, 2 force_density, 3 elastic.
+ *   theoretical.hdf, form.hdf, optimize.hdf, polish.hdf    cables as lines, at the target positions and of each stage
+ *   form_facets.hdf and so on                              facets as cells over the same points
+ *   truss.hdf                                              members as lines
+ *   case_1.hdf, case_facets_1.hdf, case_truss_1.hdf, ...   load cases of the as-built net, in the order of the case
  *
- * When the case asks for measures of the surface, each of these shapes has a second file, such as form_facets.hdf,
- * with the same points. Its cells are the facets, triangles and quadrilaterals, with normal_mean_m and normal_rms_m,
- * mean and RMS of the error along the normal over the facet, and fit_normal_mean_m, fit_normal_rms_m, the same after
- * the best fit to all facets (NaN when it does not converge).
+ * ParaView opens files that differ only in a number as steps in time.
  *
- * A run with a truss also gives truss.hdf. Point data: fixed (bit k: dof k is held), mass_kg, displacement_m,
- * rotation_rad; cell data: unit, joint, axial_force_N (tension > 0).
+ * Points and cells are in the order of the scene. Point data are role and load_N. A solved shape also has
+ * displacement_m from the target positions and its magnitude deviation_m, and normal_error_m when the case measures the
+ * surface. Cell data are group, law, length_m and EA_N. A solved shape also has tension_N, q_N_per_m, slack, and
+ * length_change_m from the length at the target positions. Words are stored as numbers: role 0 support, 1 inner, 2
+ * edge; group 0 inner, 1 boundary; law 0 tension, 1 length, 2 force_density, 3 elastic.
  *
- * States of the net as built are case_1.hdf, case_2.hdf, ..., case_facets_1.hdf and case_truss_1.hdf, in the order of
- * the case: ParaView opens such files as steps in time.
+ * Files of facets exist when the case measures the surface. Their cells are triangles and quadrilaterals. normal_mean_m
+ * and normal_rms_m are mean and RMS over the facet of the error along the normal. fit_normal_mean_m and
+ * fit_normal_rms_m are the same after the best fit to all facets; they are NaN when the fit does not converge.
  *
- * Contents: a grid - its file - the shapes of a run - facets - the truss - states - together */
+ * Point data of the truss are fixed (bit k: degree of freedom k is fixed), mass_kg, displacement_m and rotation_rad.
+ * Its cell data are unit, joint and axial_force_N (tension > 0).
+ *
+ * Contents: a grid, its file, the shapes of a run, facets, the truss, load cases, all files together. */
 #include "out/export.h"
 
 #include "base/arena.h"
@@ -36,11 +38,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#define FIELDS_MAX 12 /* point or cell fields of one file; add() demands that all have room */
+#define FIELDS_MAX 12 /* maximum number of point or cell fields of a file; add() asserts it */
 
 /* ---- a grid ---- */
 
-/* A data field of the grid; `values` stay the caller's. */
+/* Describes a data field of a grid. The caller owns `values`. */
 typedef struct {
     const char *name, *units;
     const hf_hdf5_kind *kind;
@@ -51,12 +53,13 @@ typedef struct {
 typedef struct {
     int n_point, n_cell, n_point_field, n_cell_field;
     const double *position_m;  /* [n_point][3] */
-    const int *corner;         /* [offset[n_cell]] points of the cells, one after the other */
-    const int *offset;         /* [n_cell + 1] where those of each begin */
-    const unsigned char *type; /* [n_cell] */
+    const int *corner;         /* [offset[n_cell]] points of the cells, one cell after the other */
+    const int *offset;         /* [n_cell + 1] first point of each cell in `corner` */
+    const unsigned char *type; /* [n_cell] type of each cell */
     field point[FIELDS_MAX], cell[FIELDS_MAX];
 } grid;
 
+/* Appends a field to a list, unless it has no values. */
 static void add(field *list, int *n, const char *name, const char *units, const hf_hdf5_kind *kind, int columns,
                 const void *values)
 {
@@ -102,7 +105,7 @@ static hf_status write_grid(const hf_export_request *o, const char *path, const 
     return io.status;
 }
 
-/* All cells are lines. offset: [n + 1], type: [n] */
+/* Makes all n cells lines; offset is [n + 1], type is [n]. */
 static void set_lines(int n, int *offset, unsigned char *type)
 {
     for (int e = 0; e <= n; e++)
@@ -112,12 +115,12 @@ static void set_lines(int n, int *offset, unsigned char *type)
 
 /* ---- the shapes of a run ---- */
 
-/* Values by node or by cable that a scene or shape holds as bytes or not at all, converted to what VTK reads. */
+/* Holds values of nodes or cables, converted to the types that VTK reads. */
 typedef struct {
     int *role, *group, *law, *slack, *offset;
     unsigned char *type;
     double *theoretical_m, *displacement_m, *deviation_m, *normal_error_m, *length_change_m;
-    hf_facets facets; /* none without measures of the surface */
+    hf_facets facets; /* empty when the case does not measure the surface */
     int *facet_corner, *facet_offset;
     unsigned char *facet_type;
     hf_facet_errors facet_error;
@@ -146,6 +149,7 @@ static void lay_out(hf_arena *a, const hf_scene *s, scratch *t)
     t->facet_error.fit_normal_rms_m = hf_arena_take(a, n_facet, sizeof(double));
 }
 
+/* Computes the fields of a shape; shape NULL stands for the target positions. */
 static void fill(const hf_scene *s, const hf_shape *shape, const hf_summary *summary, scratch *t)
 {
     const hf_surface_settings *surface = &summary->surface;
@@ -171,7 +175,7 @@ static void fill(const hf_scene *s, const hf_shape *shape, const hf_summary *sum
     }
 }
 
-/* When shape is NULL, the grid is that of the theoretical shape. */
+/* Returns the grid of cables of a shape; shape NULL stands for the target positions. */
 static grid grid_of(const hf_scene *s, const hf_shape *shape, const hf_summary *summary, const scratch *t)
 {
     grid g = {.n_point = s->n_node, .n_cell = s->n_cable, .corner = s->end, .offset = t->offset, .type = t->type};
@@ -196,7 +200,7 @@ static grid grid_of(const hf_scene *s, const hf_shape *shape, const hf_summary *
 
 /* ---- facets ---- */
 
-/* A triangle has its last corner once here. */
+/* Makes the cells of facets. A triangle, whose last corner is stored twice, becomes a cell of three points. */
 static void set_facet_cells(scratch *t)
 {
     int n = 0;
@@ -211,7 +215,7 @@ static void set_facet_cells(scratch *t)
     t->facet_offset[t->facets.n_facet] = n;
 }
 
-/* Cells are the facets; the points are those of the cables' grid. */
+/* Returns the grid of facets, over the points of the grid of cables. */
 static grid grid_of_facets(const grid *cables, const scratch *t)
 {
     const hf_facet_errors *e = &t->facet_error;
@@ -239,7 +243,7 @@ static hf_status write_facets(const hf_export_request *o, const char *path, cons
     return write_grid(o, path, &g, messages);
 }
 
-/* A shape, and its facets if there are any; found NULL: the theoretical shape. */
+/* Writes a shape and its facets, if there are any; found NULL stands for the target positions. */
 static hf_status write_found(const hf_export_request *o, const hf_shape *found, const char *path,
                              const char *facets_path, const hf_scene *scene, const hf_summary *summary, scratch *t,
                              hf_messages *messages)
@@ -250,7 +254,7 @@ static hf_status write_found(const hf_export_request *o, const hf_shape *found, 
     return t->facets.n_facet ? write_facets(o, facets_path, &g, found, summary, t, messages) : HF_OK;
 }
 
-/* The shape of a stage; stage HF_STAGE_NONE stands for the theoretical shape. */
+/* Writes the shape of a stage; HF_STAGE_NONE stands for the target positions. */
 static hf_status write_stage(const hf_export_request *o, int stage, const char *path, const char *facets_path,
                              const hf_scene *scene, const hf_summary *summary, scratch *t, hf_messages *messages)
 {
@@ -303,7 +307,7 @@ static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *state, 
     for (int e = 0; e < truss->n_member; e++) {
         t->unit[e] = truss->unit[e];
         t->joint[e] = truss->joint[e];
-        if (has_state) t->axial_force_N[e] = state->end_force[12 * (size_t)e + HF_TRUSS_DOF]; /* of end j, along x */
+        if (has_state) t->axial_force_N[e] = state->end_force[12 * (size_t)e + HF_TRUSS_DOF]; /* axial force at end j */
     }
     add(g.point, n, "fixed", "", HF_KIND_INT, 1, t->fixed);
     add(g.point, n, "mass_kg", "kg", HF_KIND_REAL, 1, truss->mass_kg);
@@ -316,7 +320,7 @@ static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *state, 
     return g;
 }
 
-/* The truss under the result of the run, or in a state of the net as built. */
+/* Writes the truss under the result of the run, or in a load case of the as-built net. */
 static hf_status write_truss(const hf_export_request *o, const char *of_state, const char *path, hf_messages *messages)
 {
     hf_truss truss = {0};
@@ -342,9 +346,9 @@ static hf_status write_truss(const hf_export_request *o, const char *of_state, c
     return status;
 }
 
-/* ---- states of the net as built ---- */
+/* ---- load cases of the as-built net ---- */
 
-/* The files of state k, from 1: ParaView takes files that differ in a number at the end as steps in time. */
+/* Names of the files of load case k, from 1. ParaView opens files that differ only in a number as steps in time. */
 enum { STATE_NET, STATE_FACETS, STATE_TRUSS, N_STATE_FILE };
 static const char *const state_file[N_STATE_FILE] = {"case", "case_facets", "case_truss"};
 
@@ -354,12 +358,13 @@ static hf_status path_of_state(const hf_export_request *o, int kind, int k, char
     return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
 }
 
-/* Is there this file of a state with a shape? */
+/* Returns whether a load case that has a shape has this file. */
 static bool has_state_file(const hf_summary *s, const scratch *t, int kind)
 {
     return kind == STATE_NET || (kind == STATE_FACETS ? t->facets.n_facet > 0 : s->has_truss);
 }
 
+/* Checks the names of the files of all load cases. */
 static hf_status claim_states(const hf_export_request *o, const hf_summary *s, const scratch *t, hf_messages *messages)
 {
     char path[PATH_MAX];
@@ -399,7 +404,7 @@ static hf_status write_states(const hf_export_request *o, const hf_scene *scene,
     return HF_OK;
 }
 
-/* ---- together ---- */
+/* ---- all files together ---- */
 
 enum { N_FILE = 9, FACETS = 5 }; /* the facets of stage i are file FACETS + i */
 
@@ -407,12 +412,12 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
                            char *said, size_t size, hf_messages *messages)
 {
     static const char *const name[N_FILE] = {"form",        "optimize",        "polish",        "theoretical",
-                                             "truss", /* by hf_stage */
+                                             "truss", /* the first four are in the order of hf_stage */
                                              "form_facets", "optimize_facets", "polish_facets", "theoretical_facets"};
     bool has[N_FILE] = {true, hf_summary_has_best_shape(summary), summary->has_polish, true,
                         hf_export_has_truss(o, summary, messages)};
     static char path[N_FILE][PATH_MAX];
-    for (int i = 0; i < N_FILE; i++) { /* all names are checked before anything is made */
+    for (int i = 0; i < N_FILE; i++) { /* all names are checked before a file is written */
         if (i >= FACETS) has[i] = has[i - FACETS] && t->facets.n_facet > 0;
         if (snprintf(path[i], PATH_MAX, "%s/%s.hdf", o->output, name[i]) >= PATH_MAX)
             return hf_error(messages, HF_IO, "%s: the path is too long", o->output);

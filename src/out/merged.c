@@ -1,4 +1,9 @@
-/* Contents: reading - what varies - the best point - beyond an axis - the yield that is wanted */
+/* Reads a merged study and ranks its points:
+ *
+ *     tables of points ---> axes, figures of each stage ---> which figures vary ---> ranking figure ---> best point
+ *       ---> whether the figure still falls at the end of an axis
+ *
+ * Contents: reading, what varies, the best point, the end of an axis, the required yield. */
 #include "out/merged.h"
 
 #include "base/path.h"
@@ -9,15 +14,15 @@
 #include <stdio.h>
 #include <string.h>
 
-#define SAME_RATIO 1e-6    /* values so near to each other are told as one */
-#define REACHED_RATIO 1e-9 /* of what a goal is of the shape found */
+#define SAME_RATIO 1e-6    /* relative difference up to which values count as equal */
+#define REACHED_RATIO 1e-9 /* rounding of an objective, relative to its value after form-finding */
 
 const char *const hf_merged_stage_word[HF_MERGED_N_STAGE] = {"form", "optimize", "polish", "tolerance", "cases"};
 const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER] = {"", "no", "open", "yes"};
 
 /* ---- reading ---- */
 
-/* Where a merge has the figures of each stage: the group, and what the names of its data sets begin with. */
+/* Locations of the figures of each stage in a merged file: the group, and the prefix of the names of its data sets. */
 static const struct {
     const char *group, *prefix, *surface;
 } source[HF_MERGED_CASES] = {{"/points/form", "", "/points/surface/form"},
@@ -40,7 +45,7 @@ bool hf_merged_is(const char *path)
     return is_study;
 }
 
-/* A data set that is not there, or has no value for each point, is no figure. */
+/* Reads a figure. A data set that is missing, or that does not have one value for each point, is skipped. */
 static hf_status read_figure(hf_merged *m, hf_merged_stage stage, const char *group, const char *prefix,
                              const char *key, hf_messages *messages)
 {
@@ -58,7 +63,7 @@ static hf_status read_figure(hf_merged *m, hf_merged_stage stage, const char *gr
     return HF_OK;
 }
 
-/* All of a group whose names go on, behind the prefix, with these letters. */
+/* Reads all figures of a group whose names, after the prefix, begin with `begin`. */
 static hf_status read_group(hf_merged *m, hf_merged_stage stage, const char *group, const char *prefix,
                             const char *begin, hf_messages *messages)
 {
@@ -74,7 +79,8 @@ static hf_status read_group(hf_merged *m, hf_merged_stage stage, const char *gro
     return status;
 }
 
-/* Those of each state, from a group of its name; names that no state can have are left out. */
+/* Reads the figures of each load case from the group of its name. Names that are too long for a load case are
+ * skipped. */
 static hf_status read_states(hf_merged *m, hf_messages *messages)
 {
     static const char *const key[] = {"psi_m", "n_slack", "n_loose", "largest_tension_N"};
@@ -153,6 +159,7 @@ bool hf_merged_is_done(const hf_merged *m, int i)
     return m->status.value[i] == HF_OK;
 }
 
+/* Returns whether points i and j have the same value of axis a. */
 static bool agree(const hf_merged *m, int a, int i, int j)
 {
     const hf_series *s = &m->input[a];
@@ -188,6 +195,7 @@ bool hf_merged_is_beyond(const hf_merged *m, const hf_merged_figure *loss, int i
     return false;
 }
 
+/* Computes hf_merged_figure.is_same. */
 static bool is_same(const hf_merged *m, const hf_merged_figure *f)
 {
     double low = INFINITY, high = -INFINITY;
@@ -207,6 +215,7 @@ static bool is_same(const hf_merged *m, const hf_merged_figure *f)
     return high - low <= SAME_RATIO * size || (size < HF_MERGED_RESOLVED_M && !strcmp(hf_ledger_unit(f->key), "m"));
 }
 
+/* Computes hf_merged_figure.is_psi. */
 static bool is_psi(const hf_merged *m, const hf_merged_figure *f)
 {
     const hf_merged_figure *psi = hf_merged_find(m, f->stage, "psi_m");
@@ -216,7 +225,8 @@ static bool is_psi(const hf_merged *m, const hf_merged_figure *f)
     return true;
 }
 
-/* The genetic algorithm's where it ran, unless Levenberg-Marquardt went on from there for the result. */
+/* Chooses the stage that is the result. It is the search where that ran, unless a refinement continued it to the
+ * result. */
 static hf_status choose_main(hf_merged *m, hf_messages *messages)
 {
     hf_series is_result = {0};
@@ -232,18 +242,19 @@ static hf_status choose_main(hf_merged *m, hf_messages *messages)
 
 /* ---- the best point ---- */
 
-/* What says which point is best: the first figure that varies, and the next where points are alike. */
+/* Holds the figures that rank points: the first that varies, and a second one for points that are equal in it. */
 typedef struct {
     int figure[2], n;
 } leads;
 
+/* Appends a figure to the ranking, if it varies and there is room. */
 static void try_lead(const hf_merged *m, hf_merged_stage stage, const char *key, leads *to)
 {
     const hf_merged_figure *f = hf_merged_find(m, stage, key);
     if (to->n < 2 && f && !f->is_same) to->figure[to->n++] = (int)(f - m->figure);
 }
 
-/* A goal that is reached leaves rounding, which says nothing of points. */
+/* Returns the rounding of an objective. Values below it do not rank points. */
 static double rounding_of(const hf_merged *m, const char *goal)
 {
     const hf_merged_figure *f = hf_merged_find(m, HF_MERGED_FORM, goal);
@@ -253,6 +264,7 @@ static double rounding_of(const hf_merged *m, const char *goal)
     return REACHED_RATIO * size;
 }
 
+/* Returns whether point i ranks before `best`, which is -1 for none. */
 static bool is_better(const hf_merged *m, const leads *by, double rounding, int i, int best)
 {
     for (int k = 0; k < by->n && best >= 0; k++) {
@@ -263,8 +275,9 @@ static bool is_better(const hf_merged *m, const leads *by, double rounding, int 
     return best < 0;
 }
 
-/* What the goals want, where that is not psi alone: of several their merit. Else psi of the nets as built where it is
- * known, psi of the result, and the errors of the surface where psi is the same everywhere. */
+/* Chooses the ranking figures and the best point. The objective comes first where it is not psi alone, as merit if
+ * there are several. Otherwise it is psi of the as-built nets where known, then psi of the result. The surface error
+ * decides where psi is the same everywhere. */
 static void choose_best(hf_merged *m)
 {
     static const char *const error[] = {"facet_half_path_rms_m", "half_path_rms_m", "facet_fit_half_path_rms_m",
@@ -294,8 +307,9 @@ static void choose_best(hf_merged *m)
     if (is_rounding && by.n > 1) m->lead = by.figure[1];
 }
 
-/* ---- beyond the end of an axis ---- */
+/* ---- the end of an axis ---- */
 
+/* Returns whether point i agrees with the best point in all axes but this one. */
 static bool is_on_curve(const hf_merged *m, int axis, int i)
 {
     for (int a = 0; a < m->n_axis; a++)
@@ -303,7 +317,7 @@ static bool is_on_curve(const hf_merged *m, int axis, int i)
     return i != m->best;
 }
 
-/* Is the value of point j lower than that of i, by more than rounding? */
+/* Returns whether the ranking figure falls from point i to point j by more than rounding. */
 static bool falls(const hf_merged *m, int i, int j)
 {
     const hf_merged_figure *f = &m->figure[m->lead];
@@ -315,7 +329,7 @@ static bool falls(const hf_merged *m, int i, int j)
 int hf_merged_falls_on(const hf_merged *m, int axis)
 {
     const hf_series *s = &m->input[axis];
-    int near = -1, next = -1, side = 0; /* the two points nearest to the best one, which are all on one side of it */
+    int near = -1, next = -1, side = 0; /* the two points nearest to the best one, both on the same side of it */
     bool is_error = !strncmp(hf_texts_at(&m->input_name, axis), "tolerance.sigma_", 16);
     if (m->best < 0 || !s->n || s->columns != 1 || is_error) return 0;
     double at = s->value[m->best];
@@ -335,7 +349,7 @@ int hf_merged_falls_on(const hf_merged *m, int axis)
     return -side;
 }
 
-/* ---- the yield that is wanted ---- */
+/* ---- the required yield ---- */
 
 static double built_value(const hf_merged *m, const char *key, int i)
 {

@@ -1,12 +1,12 @@
-/* merged - a merged study as people are shown it: axes, points, the figures of each stage, which of these vary, and
- * which point is best. The page of `hifdm report` and the table of `hifdm show` are made from it. */
+/* merged - a merged study prepared for display: its axes, its points, the figures of each stage, which of these vary,
+ * and the best point. The page of `hifdm report` and the table of `hifdm show` use it. */
 #ifndef HIFDM_MERGED_H
 #define HIFDM_MERGED_H
 
 #include "case/study.h"
 #include "store/store_series.h"
 
-/* Stages of a run, the net as built (`tolerance`), and its states (`cases`). */
+/* The stages of a run, the as-built net (`tolerance`) and its load cases (`cases`). */
 typedef enum {
     HF_MERGED_FORM,
     HF_MERGED_OPTIMIZE,
@@ -17,61 +17,70 @@ typedef enum {
 } hf_merged_stage;
 extern const char *const hf_merged_stage_word[HF_MERGED_N_STAGE];
 
-/* Does a point meet the yield that its case wants? Open: the wanted one is within the 95 % interval of its samples. */
+/* Whether a point meets the yield that its case requires. HF_MERGED_OPEN: the 95 % interval of its samples contains the
+ * required yield. */
 typedef enum { HF_MERGED_NOT_ASKED, HF_MERGED_NO, HF_MERGED_OPEN, HF_MERGED_YES, HF_MERGED_N_ANSWER } hf_merged_answer;
 extern const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER]; /* "", "no", "open", "yes" */
 
 typedef struct {
     hf_merged_stage stage;
-    char state[HF_SET_NAME_SIZE]; /* of `cases`; "" of other stages */
+    char state[HF_SET_NAME_SIZE]; /* load case of HF_MERGED_CASES; "" for other stages */
     char key[HF_GOAL_NAME_SIZE];  /* psi_m, goal_1_tension_edge, facet_half_path_rms_m, ... */
-    hf_series value;              /* [n]; NaN where a point has none */
-    bool is_same;                 /* at all points that are done, but for rounding; also: no value at all of them */
-    bool is_psi;                  /* a goal that is psi of this stage at all points */
+    hf_series value;              /* [n]; NaN where a point has no value */
+    bool is_same;                 /* equal at all completed points up to rounding, or without a value at all of them */
+    bool is_psi;                  /* an objective that equals psi of this stage at all points */
 } hf_merged_figure;
 
 #define HF_MERGED_FIGURE_MAX 1536
-#define HF_MERGED_RESOLVED_M 1e-9 /* lengths below it are what rounding leaves */
+#define HF_MERGED_RESOLVED_M 1e-9 /* differences of lengths below this are rounding */
 
 typedef struct {
     const char *path; /* borrowed */
-    int n;            /* points */
+    int n;            /* number of points */
     hf_texts id, reason, title, input_name;
-    hf_series status;                       /* [n] hf_status */
-    hf_series input[HF_STUDY_AXIS_MAX];     /* [n] or [n][2] of axis a, */
-    hf_texts input_text[HF_STUDY_AXIS_MAX]; /* or, of axes whose values are words or seeds, [n] */
+    hf_series status;                       /* [n] values of hf_status */
+    hf_series input[HF_STUDY_AXIS_MAX];     /* [n] or [n][2] values of axis a */
+    hf_texts input_text[HF_STUDY_AXIS_MAX]; /* [n] values of an axis of words or seeds */
     int n_axis;
     int n_figure;
-    hf_merged_figure figure[HF_MERGED_FIGURE_MAX]; /* by stage */
+    hf_merged_figure figure[HF_MERGED_FIGURE_MAX]; /* in the order of the stages */
     hf_merged_stage main;                          /* the stage that is the result */
-    int lead, best; /* the figure that says which point is best: it has the least value there; -1: none varies */
+    /* The figure that ranks the points, and the point with its minimum; -1 when no figure varies. */
+    int lead, best;
 } hf_merged;
 
-/* True when the file has a table of points. False for any other file, also for one that cannot be read. */
+/* Returns whether the file has a table of points. Returns false for any other file and for one that cannot be read. */
 bool hf_merged_is(const char *path);
 
-/* HF_OK, HF_IO or HF_NO_MEMORY with a message. Free in any case. */
+/* Reads a merged study. `path` is borrowed. Returns HF_OK; HF_IO or HF_NO_MEMORY with a message. Call hf_merged_free in
+ * any case. */
 hf_status hf_merged_read(const char *path, hf_merged *merged, hf_messages *messages);
 void hf_merged_free(hf_merged *merged);
 
+/* hf_merged_is_done returns whether the run of a point has completed with HF_OK. hf_merged_axis_varies returns whether
+ * an axis has different values. */
 bool hf_merged_is_done(const hf_merged *merged, int point);
 bool hf_merged_axis_varies(const hf_merged *merged, int axis);
 
-/* The figure of this stage, of the first state that has it; NULL without it. */
+/* Returns a figure of a stage, that of the first load case that has it, or NULL. */
 const hf_merged_figure *hf_merged_find(const hf_merged *merged, hf_merged_stage stage, const char *key);
 
-/* A loss of gain without a value: is there a surface, whose loss is more than Ruze's formula holds for? */
+/* Returns whether a missing gain loss of a point is outside the range of Ruze's formula. This is so when the surface
+ * error has a value. */
 bool hf_merged_is_beyond(const hf_merged *merged, const hf_merged_figure *loss, int point);
 
-/* Where the best point lies at an end of this axis and the figure that says which is best still falls towards it, over
- * the last two steps and beyond rounding, between points that agree in all other axes: 1 at the largest value, -1 at
- * the smallest. Else 0; of an axis of errors, too, of which less is better anyway. */
+/* Returns 1 or -1 when an axis should be extended above or below its range, otherwise 0. This is so when the best point
+ * is at an end of the axis and the ranking figure still falls towards it. The figure must fall over the last two steps
+ * by more than rounding, between points that agree in all other axes. Returns 0 for an axis of errors, too, because
+ * smaller errors are always better. */
 int hf_merged_falls_on(const hf_merged *merged, int axis);
 
+/* Returns whether a point meets its required yield. */
 hf_merged_answer hf_merged_meets_yield(const hf_merged *merged, int point);
-double hf_merged_wanted_yield(const hf_merged *merged); /* of all points; NaN: of none, or not one and the same */
+/* Returns the required yield, or NaN when points require none or different ones. */
+double hf_merged_wanted_yield(const hf_merged *merged);
 
-/* The title of the study or, without one, the name of the merged file. */
+/* Returns the title of the study or, without a title, the name of the merged file. */
 const char *hf_merged_heading(const hf_merged *merged);
 
 #endif

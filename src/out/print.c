@@ -1,4 +1,4 @@
-/* Contents: lines - units for people */
+/* Prints lines and formats numbers for people. Contents: lines, units for people. */
 #include "out/print.h"
 
 #include "base/text.h"
@@ -63,7 +63,7 @@ void hf_print_bytes(double bytes, char *text, size_t size)
     snprintf(text, size, i ? "%.1f %s" : "%.0f %s", bytes, unit[i]);
 }
 
-#define LEAST_DB 1e-9 /* of an RMS of 1e-6 of the wavelength; that of exact places is some 1e-27 */
+#define LEAST_DB 1e-9 /* the loss of an RMS of 1e-6 wavelengths; exact positions give about 1e-27 */
 double hf_print_loss_dB(double loss_dB)
 {
     return loss_dB < LEAST_DB ? 0 : loss_dB;

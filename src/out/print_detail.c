@@ -1,4 +1,4 @@
-/* Contents: parts - form-finding - genetic algorithm - Levenberg-Marquardt */
+/* Prints a block for each stage of a result. Contents: parts, search, refinement. */
 #include "out/print_summary.h"
 
 #include "net/symmetry.h"
@@ -28,7 +28,7 @@ static void print_sets(const hf_set_tensions *s, FILE *f)
     fputc('\n', f);
 }
 
-/* "boundary_ratio_cap", or a row of optimize.limits. */
+/* Returns the name of a limit: "boundary_ratio_cap", or a row of optimize.limits. */
 static const char *limit_of(const hf_held_limits *h, int i, char text[32])
 {
     snprintf(text, 32, "optimize.limits.%d", h->row[i]);
@@ -52,7 +52,7 @@ void hf_print_objective(const char *before, const char *name, double value, FILE
     fprintf(f, "%s%s %.6g%s%s", before, name, scale * value, *unit ? " " : "", unit);
 }
 
-/* In SI, as merit and weights are. */
+/* Prints an objective in SI units, as in merit and weights. */
 static void print_goal(const char *before, const char *name, double value, FILE *f)
 {
     const char *unit = hf_ledger_goal_unit(name);
@@ -61,7 +61,7 @@ static void print_goal(const char *before, const char *name, double value, FILE 
 
 void hf_print_goals(const hf_summary *s, const hf_form_result *r, FILE *f)
 {
-    if (s->goals.n == 0 || !isfinite(r->merit)) return; /* a run that ended before its base design has none as yet */
+    if (s->goals.n == 0 || !isfinite(r->merit)) return; /* a run that ended before its initial design has no merit */
     if (s->goals.are_objectives)
         fputs("                objectives", f);
     else
@@ -110,7 +110,7 @@ static void print_gain(double loss_dB, double limit_Hz, FILE *f)
         fprintf(f, "%.3g dB", hf_print_loss_dB(loss_dB));
 }
 
-/* Prints the measures of the surface of one stage, when the case asks for them. */
+/* Prints the measures of the surface of a stage, if the case measures the surface. */
 static void print_surface(const hf_summary *s, int stage, FILE *f)
 {
     const hf_surface_measures *m = &s->measures[stage];
@@ -136,7 +136,8 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
             fputs("; best fit: ", f);
             print_gain(m->fit_gain_loss_dB[k], m->fit.ruze_limit_Hz, f);
         }
-        if (isfinite(m->facet_half_path_rms_m)) { /* what the nodes alone do not tell: the mesh is flat between them */
+        /* facets add an error to that of the nodes, because the mesh is flat between them */
+        if (isfinite(m->facet_half_path_rms_m)) {
             fputs("; facets: ", f);
             print_gain(m->facet_gain_loss_dB[k], m->facet_ruze_limit_Hz, f);
         }
@@ -148,7 +149,7 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
     }
 }
 
-/* ---- genetic algorithm ---- */
+/* ---- search ---- */
 
 static void print_optimize(const hf_summary *s, FILE *f)
 {
@@ -161,10 +162,10 @@ static void print_optimize(const hf_summary *s, FILE *f)
     fprintf(f, "  optimisation  psi %.4f mm", s->best.psi_m * 1e3);
     if (s->has_front)
         fprintf(f, ": the end of the front with the least %s", s->goals.name[0]);
-    else if (s->goals.n > 0 && !s->goals.are_objectives && s->form.merit > 0) /* psi says nothing of goals */
+    else if (s->goals.n > 0 && !s->goals.are_objectives && s->form.merit > 0) /* psi is not the objective */
         fprintf(f, ", merit %.6g, %s that of the form-finding", s->best.merit,
                 hf_print_change(s->best.merit, s->form.merit, change));
-    else /* evaluated under the rule of the optimisation, so that only the tensions differ */
+    else /* base_psi_m is evaluated under the same rule, so only the tensions differ */
         hf_print_gained(s, s->best.psi_m, s->base_psi_m, f);
     fprintf(f, "; found in generation %d\n", s->best_generation);
     print_result(&s->best, f);
@@ -181,7 +182,7 @@ static void print_optimize(const hf_summary *s, FILE *f)
                 s->n_leader, s->n_gene);
     fprintf(f, "                %d generations, %ld evaluations (%ld infeasible)", s->generations, s->evaluations,
             s->infeasible);
-    if (!s->finished) { /* everything else is as of the last publication, which may be before the first generation */
+    if (!s->finished) { /* other figures are those of the last publication, which may be before the first generation */
         fputs(" so far\n", f);
         return;
     }
@@ -191,7 +192,7 @@ static void print_optimize(const hf_summary *s, FILE *f)
             s->threads == 1 ? "" : "s");
 }
 
-/* ---- Levenberg-Marquardt ---- */
+/* ---- refinement ---- */
 
 static void print_polish(const hf_summary *s, FILE *f)
 {

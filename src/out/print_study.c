@@ -1,4 +1,4 @@
-/* Contents: columns - cells - the table - lines - all together - JSON */
+/* Prints a merged study as text or as JSON. Contents: columns, cells, the table, lines, the whole text, JSON. */
 #include "out/print_study.h"
 
 #include "base/json.h"
@@ -12,35 +12,35 @@
 #include <string.h>
 
 #define WIDTH 100      /* characters of a line */
-#define POINTS_MOST 64 /* more points than this: the best */
-#define POINTS_BEST 32 /* of them are shown */
+#define POINTS_MOST 64 /* maximum number of points that are all shown */
+#define POINTS_BEST 32 /* points shown of a larger study, the best ones */
 #define REASON_MOST 60 /* characters of a reason */
 #define CELL_SIZE 40
 #define WORD_MOST 24 /* characters of a word that is the value of an axis */
-#define SMALL_M 0.1  /* an axis of lengths below this is told in millimetres */
+#define SMALL_M 0.1  /* an axis of smaller lengths is shown in millimetres */
 
 /* ---- columns ---- */
 
 typedef enum { OF_AXIS, OF_STATUS, OF_FIGURE, OF_YIELD } column_kind;
 
-/* A column of the table. Two lines of head: what it is, and its unit. */
+/* Describes a column of the table. Its head has two lines: the name and the unit. */
 typedef struct {
     column_kind kind;
     int index; /* of the axis or the figure */
     char head[HF_AXIS_NAME_SIZE], unit[8];
-    double scale; /* the values in this unit */
+    double scale; /* factor of the values for this unit */
     int width;
 } column;
 
 typedef struct {
     const hf_merged *m;
     column column[HF_STUDY_AXIS_MAX + HF_MERGED_FIGURE_MAX + 2];
-    int n_column, n_axis; /* the axes come first */
-    bool is_all;          /* all points are rows, or these: */
+    int n_column, n_axis; /* n_axis: the first columns are axes */
+    bool is_all;          /* true: all points are rows; false: those of `best` */
     int n_row, best[POINTS_BEST];
 } table;
 
-/* Words of a name, which may hold anything. */
+/* Makes a name printable, which may contain any characters, with blanks for "_". */
 static void show_name(char name[HF_AXIS_NAME_SIZE])
 {
     char shown[HF_AXIS_NAME_SIZE];
@@ -58,7 +58,7 @@ const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE])
     const char *row = dot;
     while (row && row > key && row[-1] >= '0' && row[-1] <= '9')
         row--;
-    if (row && row < dot && row > key && row[-1] == '.') /* a key of a row: goals.1.weight */
+    if (row && row < dot && row > key && row[-1] == '.') /* a key of a row, such as goals.1.weight */
         for (from = row - 1; from > key && from[-1] != '.';)
             from--;
     const char *end = strstr(from, "_N_per_m");
@@ -69,6 +69,7 @@ const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE])
     return unit;
 }
 
+/* Returns the column of an axis. */
 static column axis_column(const hf_merged *m, int a)
 {
     const hf_series *s = &m->input[a];
@@ -89,7 +90,8 @@ const char *hf_print_goal_words(const char *key, char words[HF_AXIS_NAME_SIZE])
     return words;
 }
 
-/* Of which state a figure is; beside states the slack cables of the design are told as those. */
+/* Prepends the load case to the name of its figure. The slack cables of the design get the word "design" when load
+ * cases have slack cables, too. */
 static void name_state(const hf_merged *m, const hf_merged_figure *f, char name[HF_AXIS_NAME_SIZE])
 {
     char plain[HF_AXIS_NAME_SIZE];
@@ -99,8 +101,8 @@ static void name_state(const hf_merged *m, const hf_merged_figure *f, char name[
     snprintf(name, HF_AXIS_NAME_SIZE, "%.31s %.31s", is_design ? "design" : f->state, plain);
 }
 
-/* What a figure is called: of goal_1_tension_edge "goal tension edge", of facet_fit_gain_loss_at_10_GHz_dB "fitted loss
- * 10 GHz". */
+/* Formats the name of a figure: "goal tension edge" for goal_1_tension_edge, "fitted loss 10 GHz" for
+ * facet_fit_gain_loss_at_10_GHz_dB. */
 static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name[HF_AXIS_NAME_SIZE])
 {
     static const char *const word[][2] = {{"psi_95_m", "psi of 95 %"},
@@ -149,7 +151,8 @@ static column figure_column(const hf_merged *m, int k)
     return c;
 }
 
-/* Of the surface the losses of gain or, where no frequencies are asked for, the errors. */
+/* Returns whether the table has this figure of a load case. Of the surface it has the gain losses or, without
+ * frequencies, the errors. */
 static bool is_told_of_state(const hf_merged *m, const hf_merged_figure *f)
 {
     if (strstr(f->key, "good_to_Hz")) return false;
@@ -159,7 +162,8 @@ static bool is_told_of_state(const hf_merged *m, const hf_merged_figure *f)
     return true;
 }
 
-/* Is it a figure that the table is for? psi of every stage; all but the residual of the one that is the result. */
+/* Returns whether the table has this figure. It has psi of every stage, and of the result everything but the
+ * residual. */
 static bool is_told(const hf_merged *m, const hf_merged_figure *f)
 {
     if (f->is_psi || !strcmp(f->key, "residual_N")) return false;
@@ -168,7 +172,8 @@ static bool is_told(const hf_merged *m, const hf_merged_figure *f)
     return f->stage == m->main || !strcmp(f->key, "psi_m");
 }
 
-/* First what says which point is best, then psi, the net as built, the surface, goals, the rest, and the states. */
+/* Returns the rank of a figure in the table: the ranking figure, psi, the as-built net, the surface, objectives, other
+ * figures, load cases. */
 enum { RANK_REST = 10, RANK_STATES, N_RANK };
 static int rank_of(const hf_merged *m, int k)
 {
@@ -186,6 +191,7 @@ static int rank_of(const hf_merged *m, int k)
 
 /* ---- cells ---- */
 
+/* Formats the value of an axis at point i. A long word is cut. */
 static void print_axis_value(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])
 {
     const hf_series *s = &m->input[c->index];
@@ -204,7 +210,8 @@ static void print_axis_value(const hf_merged *m, const column *c, int i, char te
     if (is_long) strcat(text, "...");
 }
 
-/* A loss that has no value is above what the formula holds for. */
+/* Formats a figure at point i. A gain loss without a value is above the range of Ruze's formula, if the surface error
+ * has a value. */
 static void print_figure(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])
 {
     const hf_merged_figure *f = &m->figure[c->index];
@@ -238,7 +245,7 @@ static void print_cell(const hf_merged *m, const column *c, int i, char text[CEL
         snprintf(text, CELL_SIZE, "%s", hf_status_word((hf_status)m->status.value[i]));
 }
 
-/* How many points meet the yield that is wanted, by answer; 0: it is asked of none. */
+/* Counts the points by their answer to the required yield. Returns the number of points that require one. */
 static int count_answers(const hf_merged *m, int count[HF_MERGED_N_ANSWER])
 {
     memset(count, 0, HF_MERGED_N_ANSWER * sizeof *count);
@@ -254,6 +261,7 @@ static int point_of(const table *t, int row)
     return t->is_all ? row : t->best[row];
 }
 
+/* Appends a column that is wide enough for its head and all its cells. */
 static void add_column(table *t, column c)
 {
     char text[CELL_SIZE];
@@ -284,6 +292,7 @@ static void add_columns(table *t)
                 add_column(t, figure_column(m, k));
 }
 
+/* Prints the axes and the columns from `from` to to - 1. */
 static void print_block(const table *t, int from, int to, hf_print_style style, FILE *f)
 {
     char text[CELL_SIZE];
@@ -302,7 +311,7 @@ static void print_block(const table *t, int from, int to, hf_print_style style, 
     }
 }
 
-/* Columns that have no room go on below, beside the axes again. */
+/* Prints the table in blocks. Columns that do not fit into a line continue in the next block, beside the axes again. */
 static void print_blocks(const table *t, hf_print_style style, FILE *f)
 {
     int axes = 1;
@@ -321,7 +330,7 @@ static void print_blocks(const table *t, hf_print_style style, FILE *f)
 
 /* ---- lines ---- */
 
-/* Items behind a title, broken at the width. */
+/* Prints items after a title, with line breaks at WIDTH. */
 typedef struct {
     FILE *file;
     const char *title;
@@ -358,7 +367,7 @@ static void print_item(const hf_merged *m, const column *c, int i, items *t)
     add_item(t, text);
 }
 
-/* What is the same at all points: axes and figures; of states psi and slack cables are enough. */
+/* Prints axes and figures that are the same at all points. Load cases show only psi and slack cables. */
 static void print_same(const hf_merged *m, FILE *f)
 {
     items t = {.file = f, .title = "at all points"};
@@ -379,6 +388,7 @@ static void print_same(const hf_merged *m, FILE *f)
     end_items(&t);
 }
 
+/* Prints the best point, and axes that should be extended beyond it. */
 static void print_best(const table *t, FILE *f)
 {
     const hf_merged *m = t->m;
@@ -415,7 +425,7 @@ static void print_yield(const hf_merged *m, FILE *f)
     fputc('\n', f);
 }
 
-/* How many points failed in which way, each with the reason of its first one. */
+/* Prints the number of failed points for each status, with the reason of the first one. */
 static void print_failures(const hf_merged *m, FILE *f)
 {
     bool is_told[SCHAR_MAX + 1] = {[HF_OK] = true, [HF_NOT_EVALUATED] = true};
@@ -452,9 +462,9 @@ static void print_head(const hf_merged *m, FILE *f)
     end_items(&axes);
 }
 
-/* ---- together ---- */
+/* ---- the whole text ---- */
 
-/* All points or, of a large study, those with the least values of what says which is best. */
+/* Selects the rows: all points or, in a large study, those with the smallest values of the ranking figure. */
 static void choose_rows(table *t, bool all)
 {
     const hf_merged *m = t->m;

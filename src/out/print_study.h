@@ -1,21 +1,24 @@
-/* print_study - a merged study for a terminal: what it asks, axes, points as a table, the best of them marked. */
+/* print_study - prints a merged study for a terminal: its axes, its points as a table with the best one marked, and
+ * what they have in common. */
 #ifndef HIFDM_PRINT_STUDY_H
 #define HIFDM_PRINT_STUDY_H
 
 #include "out/merged.h"
 #include "out/print.h"
 
-/* Lines of at most 100 characters, as far as names allow; without `verbose` only the best points of a large study. */
+/* Prints the study. Lines have at most 100 characters, if names allow it. Without `verbose` a large study shows only
+ * its best points. */
 void hf_print_study(const hf_merged *merged, hf_print_style style, FILE *file);
 
-/* The same as one JSON object: an object for each point with what it sets and the figures of each stage. */
+/* Writes the study as one JSON object, with an object for each point: its inputs and the figures of each stage. */
 void hf_print_study_json(const hf_merged *merged, FILE *file);
 
-/* What people call an axis, "pretension" of form.pretension_N, and the unit that its values are told in. */
+/* Sets `name` to the name of an axis for people, such as "pretension" for form.pretension_N. Returns the unit of its
+ * values. */
 #define HF_AXIS_NAME_SIZE 64
 const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE]);
 
-/* What a goal is called: "tension edge" of goal_1_tension_edge. Returns words. */
+/* Formats the name of an objective: "tension edge" for goal_1_tension_edge. Returns words. */
 const char *hf_print_goal_words(const char *key, char words[HF_AXIS_NAME_SIZE]);
 
 #endif

@@ -1,4 +1,5 @@
-/* Contents: the answer - the table of stages - surface - front, states, truss - together */
+/* Prints the summary of a result. Contents: the answer, the table of stages, surface, front, load cases and truss, the
+ * whole summary. */
 #include "out/print_summary.h"
 #include "out/print_tolerance.h"
 #include "base/text.h"
@@ -10,10 +11,10 @@
 
 /* ---- the answer ---- */
 
-#define GOALS_TOLD 4           /* in the first line */
-#define FREQUENCY_MOST_HZ 1e12 /* beyond there the errors that are left have no meaning */
-#define BETTER_FIT 1.01        /* less is not worth a line */
-#define TOLD_MM 5e-5           /* less is told as 0.0000, of which there is no part */
+#define GOALS_TOLD 4           /* objectives in the first line */
+#define FREQUENCY_MOST_HZ 1e12 /* higher frequencies come from errors that are only rounding */
+#define BETTER_FIT 1.01        /* ratio of surface errors that is worth a line */
+#define TOLD_MM 5e-5           /* smaller lengths, in mm, print as 0.0000, so they have no relative change */
 
 static const hf_form_result *result_of(const hf_summary *s, hf_stage stage)
 {
@@ -25,7 +26,7 @@ static bool has_merit(const hf_summary *s)
     return s->goals.n > 0 && !s->goals.are_objectives;
 }
 
-/* Is the surface wanted after its best fit alone, by what nets must keep and by what designs are led by? */
+/* Returns whether the case judges the surface only after its best fit, in all its requirements and objectives. */
 static bool wants_fit(const hf_summary *s)
 {
     int n_raw = 0, n_fit = 0;
@@ -43,9 +44,9 @@ static bool wants_fit(const hf_summary *s)
     return n_fit > 0 && n_raw == 0;
 }
 
-/* Up to which frequency the surface loses no more gain: by its facets where they are measured, else by its nodes; psi,
- * which is no less than the half-path RMS of the nodes to first order (METHOD section 9), where no surface is. As it
- * stands, or first after the best fit where that is what the case wants. */
+/* Prints the frequency of 1 dB gain loss. It uses the error of the facets where they are measured, otherwise that of
+ * the nodes. Without a surface it uses psi, which to first order is at least the half-path RMS of the nodes (METHOD
+ * section 9). The frequency after the best fit comes first where the case judges the surface only after it. */
 static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, FILE *f)
 {
     const hf_surface_measures *m = &s->measures[stage];
@@ -77,8 +78,8 @@ void hf_print_gained(const hf_summary *s, double psi_m, double base_psi_m, FILE 
             is_same ? "the form-finding's tensions" : "the base design");
 }
 
-/* How far the result is below the base design. Designs of an optimisation are evaluated under its rule, so that only
- * the tensions differ. */
+/* Prints the reduction of psi from the initial design. An optimisation evaluates designs under its rule, so its initial
+ * design differs from the best one only in the tensions. */
 static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_form_result *r = result_of(s, stage);
@@ -87,7 +88,7 @@ static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
     hf_print_gained(s, r->psi_m, base_psi_m, f);
 }
 
-/* Lengths in mm. */
+/* Prints the value of an objective, lengths in mm. */
 static void print_goal_value(double value, const char *unit, FILE *f)
 {
     char text[32];
@@ -104,7 +105,7 @@ static void print_goal_unit(const char *unit, FILE *f)
     if (*unit) fprintf(f, " %s", !strcmp(unit, "m") ? "mm" : unit);
 }
 
-/* Is psi, of the design itself, one of the goals? */
+/* Returns whether psi of the design itself is an objective. */
 static bool wants_psi(const hf_summary *s)
 {
     for (int k = 0; k < s->goals.n; k++)
@@ -117,7 +118,7 @@ static bool is_psi_all(const hf_summary *s)
     return s->goals.n == 1 && wants_psi(s);
 }
 
-/* What was wanted, before and after, in its units: "facets 1.7436 -> 1.4720 mm". */
+/* Prints the objectives before and after, in their units: "facets 1.7436 -> 1.4720 mm". */
 static void print_goals_gained(const hf_summary *s, const hf_form_result *r, FILE *f)
 {
     for (int k = 0; k < s->goals.n && k < GOALS_TOLD; k++) {
@@ -137,7 +138,7 @@ static void print_goals_gained(const hf_summary *s, const hf_form_result *r, FIL
     fputs(" mm, which counts drift within the surface, too", f);
 }
 
-/* "front of 21 points: least psi 4.2834 mm, least ratio_boundary 4.56". */
+/* Prints "front of 21 points: least psi 4.2834 mm, least ratio_boundary 4.56". */
 static void print_front_answer(const hf_summary *s, FILE *f)
 {
     const char *before = "";
@@ -156,8 +157,8 @@ static void print_front_answer(const hf_summary *s, FILE *f)
     }
 }
 
-/* Why a run failed whose form-finding did not, and what its figures are of. Without an error in the file, as one whose
- * text was cut, the sentence of the status. */
+/* Prints why a run failed after a successful form-finding, and which design its figures describe. When the stored
+ * warnings contain no error, for example because they were cut, it prints the text of the status. */
 static void print_failure(const hf_summary *s, hf_stage stage, FILE *f)
 {
     static const char begin[] = "error: ";
@@ -193,7 +194,7 @@ void hf_print_answer(const hf_summary *s, FILE *f)
     }
     if ((has_merit(s) || s->taken.point) && stage != HF_STAGE_FORM && !is_psi_all(s)) {
         print_goals_gained(s, r, f);
-    } else if (r->status == HF_OK && !isfinite(r->psi_m)) { /* what is at a place that was given has no error */
+    } else if (r->status == HF_OK && !isfinite(r->psi_m)) { /* loose nodes have no psi: their positions were assigned */
         fputs("no psi: no taut cable holds an inner node", f);
         return;
     } else {
@@ -221,7 +222,8 @@ static void print_proof(const hf_form_result *r, FILE *f)
     fprintf(f, "  %-11s", text);
 }
 
-/* The row of a stage up to the words on how it ended. at_bounds: of n_variable variables; negative: of no design. */
+/* Prints the row of a stage except how it ended. at_bounds is the number of variables at their bounds, negative for a
+ * shape without a design. */
 static void print_figures(const hf_summary *s, const char *name, const hf_form_result *r, int at_bounds, FILE *f)
 {
     char psi[32], boundary[32], inside[32], bounds[40] = "-";
@@ -287,7 +289,8 @@ static void print_stages(const hf_summary *s, hf_stage result, FILE *f)
 
 /* ---- surface ---- */
 
-/* A loss without a value is beyond Ruze's formula, but where the errors themselves have none. */
+/* Prints the gain losses. One without a value is outside the range of Ruze's formula if the surface error has a value,
+ * otherwise it is unknown. */
 static void print_losses(const hf_summary *s, double rms_m, const double *loss_dB, FILE *f)
 {
     for (int k = 0; k < s->surface.frequencies_Hz.n; k++) {
@@ -317,7 +320,8 @@ void hf_print_gain_loss(const hf_summary *s, FILE *f)
     fputs(" dB", f);
 }
 
-/* Goals that count the reflector as it stands may cost what is left when it is pointed and focused again. */
+/* Prints a line when the error after the best fit has risen in the optimisation. This happens with objectives that
+ * measure the reflector as it stands, not repointed and refocused. */
 static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_surface_measures *before = &s->measures[HF_STAGE_FORM], *m = &s->measures[stage];
@@ -333,7 +337,7 @@ static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
             before_Hz / 1e9, has_facets ? "facets" : "surface");
 }
 
-/* The errors of the result, of its facets where there are some, and what these cost. */
+/* Prints the surface errors of the result, those of its facets if there are any, and their gain losses. */
 static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_surface_measures *m = &s->measures[stage];
@@ -354,9 +358,9 @@ static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
     print_better_fit(s, stage, f);
 }
 
-/* ---- front, states, truss ---- */
+/* ---- front, load cases, truss ---- */
 
-/* The unit of objective k where it is told, "unit" of one without. */
+/* Returns the factor of objective k for display and sets *unit, "unit" when it has none. */
 static double front_unit(const hf_summary *s, int k, const char **unit)
 {
     double scale = hf_print_scale(hf_ledger_goal_unit(s->goals.name[k]), unit);
@@ -364,7 +368,7 @@ static double front_unit(const hf_summary *s, int k, const char **unit)
     return scale;
 }
 
-/* A slope in the units of the minimised objective and of objective k. */
+/* Returns the factor of a slope for display, from the units of the minimised objective and of objective k. */
 static double slope_scale(const hf_summary *s, int k)
 {
     const char *unit;
@@ -380,8 +384,8 @@ static void print_slope_head(const hf_summary *s, int k, FILE *f)
             is_plain ? "" : of, per, s->goals.name[k]);
 }
 
-/* One line of the front: the values of a point and, where it is known, what the minimised objective changes
- * by per unit of the others. number: of the point, from 1; 0: of the base, which is none. */
+/* Prints one line of the front: the values of a point and, where known, the changes of the minimised objective per unit
+ * of the others. number is that of the point, from 1; 0 for the initial design, which is no point. */
 static void print_front_values(const hf_summary *s, const char *name, int number, const double *objective,
                                const double *multiplier, FILE *f)
 {
@@ -403,7 +407,7 @@ static void print_front_point(const hf_summary *s, const char *name, int row, FI
     print_front_values(s, name, s->front.place[row] + 1, p->objective, p->multiplier, f);
 }
 
-/* Its points in numbers, and what slopes are. */
+/* Prints the numbers of points of the front and the units of the slopes. */
 static void print_front_counts(const hf_summary *s, FILE *f)
 {
     const hf_front_table *t = &s->front;
@@ -439,7 +443,7 @@ static void print_front(const hf_summary *s, const char *path, FILE *f)
                       path, point, point);
 }
 
-/* What a front has beside its points is of no design among them. */
+/* Prints which parts of the result belong to the shape of the form-finding and to no point of the front. */
 static void print_form_parts(const hf_summary *s, hf_stage result, FILE *f)
 {
     bool is_form = result == HF_STAGE_FORM;
@@ -460,7 +464,7 @@ static void print_form_parts(const hf_summary *s, hf_stage result, FILE *f)
         fputs(": of the form-finding's shape, no point of the front; --point gives those of a point\n", f);
 }
 
-/* A dash, this wide, in place of NaN. */
+/* Prints a value, or a dash of this width for NaN. */
 static void print_if_finite(const char *format, double value, int width, FILE *f)
 {
     if (isfinite(value))
@@ -469,7 +473,8 @@ static void print_if_finite(const char *format, double value, int width, FILE *f
         fprintf(f, "%*s", width, "-");
 }
 
-/* The errors of the surface or, with frequencies, what they cost at the highest one, as it stands and fitted. */
+/* Prints the surface errors of a load case or, with frequencies, the gain losses at the highest one, both without and
+ * with best fit. */
 static void print_state_surface(const hf_summary *s, const hf_surface_measures *m, FILE *f)
 {
     const hf_double_list *at = &s->surface.frequencies_Hz;
@@ -493,7 +498,7 @@ static void print_state_surface(const hf_summary *s, const hf_surface_measures *
     }
 }
 
-/* The states of the net as built, a line each. */
+/* Prints a line for each load case of the as-built net. */
 static void print_states(const hf_summary *s, FILE *f)
 {
     bool has_surface = s->surface.focal_length_m > 0, has_truss = s->has_truss, has_loose = false;
@@ -527,7 +532,7 @@ static void print_states(const hf_summary *s, FILE *f)
         fputs("                psi leaves the loose nodes out; moved and the surface have them where they hang\n", f);
 }
 
-/* The far field of the result, a line for each frequency and cut. */
+/* Prints the far field of the result, one line for each frequency and cut. */
 static void print_pattern(const hf_pattern_summary *s, FILE *f)
 {
     static const char *const of_feed[] = {"", "a point", "a line", "a plane wave"};
@@ -547,7 +552,7 @@ static void print_pattern(const hf_pattern_summary *s, FILE *f)
     }
 }
 
-/* Rounds are those of the form-finding. */
+/* Prints the deflections of the truss and the convergence of the coupling in the form-finding. */
 static void print_coupling(const hf_summary *s, hf_stage result, FILE *f)
 {
     const hf_coupling_result *r = &s->form.coupling, *end = &result_of(s, result)->coupling;
@@ -557,7 +562,7 @@ static void print_coupling(const hf_summary *s, hf_stage result, FILE *f)
             r->step_m, hf_coupling_stop_word((int)r->stop_reason));
 }
 
-/* ---- together ---- */
+/* ---- the whole summary ---- */
 
 static void print_end(const hf_summary *s, const char *path, hf_print_style style, FILE *f)
 {

@@ -1,3 +1,4 @@
+/* Prints the figures of a tolerance analysis. */
 #include "out/print_tolerance.h"
 
 #include <math.h>
@@ -5,7 +6,7 @@
 
 #define CABLES_TOLD 3
 
-/* Lengths are told in mm, counts and tensions as they are. */
+/* Returns the factor of a measure for display and sets *word to its unit. Lengths are in mm. */
 static double unit_of(int measure, const char **word)
 {
     bool is_length = !strcmp(hf_tolerance_measure_unit[measure], "m");
@@ -13,7 +14,7 @@ static double unit_of(int measure, const char **word)
     return is_length ? 1e3 : 1;
 }
 
-/* Numbers for people, as "1/2/3": what is not known, or is infinite, is "-". */
+/* Prints numbers as "1/2/3", with "-" for those that are unknown or infinite. */
 static void print_numbers(FILE *file, int n, const double *value, double times)
 {
     for (int i = 0; i < n; i++) {
@@ -25,7 +26,8 @@ static void print_numbers(FILE *file, int n, const double *value, double times)
     }
 }
 
-/* Of small nets, or of small errors, with three digits; below a nanometre it is rounding. */
+/* Prints a length in mm. Values below 1e-5 m have three significant digits; those below 1e-9 m are rounding and print
+ * as 0.0000. */
 static void print_mm(FILE *file, double value_m)
 {
     if (value_m >= 1e-9 && value_m < 1e-5)
@@ -52,7 +54,7 @@ static void print_measure(const hf_tolerance_figures *f, int measure, FILE *file
     fputc('\n', file);
 }
 
-/* First order is no control of samples that have little to do with it. */
+/* Smallest correlation at which the linear psi is used as control variate. */
 #define LEAST_CORRELATION 0.5
 
 static void print_first_order(const hf_tolerance_summary *t, FILE *f)

@@ -1,4 +1,4 @@
-/* Chooses the name of the page, and by the kind of file which page is written. */
+/* Chooses the name of the page, and the kind of page by the kind of file. */
 #include "out/report.h"
 
 #include "base/path.h"
@@ -10,8 +10,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Sets the name of the page: that of -o, or the name of the file with the ending .html in the current folder; of two
- * files both names, A_B.html. A name that is the file itself is refused. */
+/* Sets the path of the page: that of -o, or the name of the file with the ending .html in the current folder. Two files
+ * give both names, A_B.html. The path of the file itself is refused. */
 static hf_status choose_output(const hf_export_request *o, const char *other, char output[PATH_MAX],
                                hf_messages *messages)
 {

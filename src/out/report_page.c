@@ -1,3 +1,4 @@
+/* Writes a page: style, title, body, data as JSON, script. */
 #include "out/report_page.h"
 
 #include "base/text.h"
@@ -13,7 +14,7 @@ static void write_html(const char *text, FILE *f)
     }
 }
 
-/* Texts of any kind: hidden characters are shown, and nothing becomes markup. */
+/* Writes text of any origin. Hidden characters become visible, and nothing becomes markup. */
 static void write_text(const char *text, FILE *f)
 {
     char shown[4096];

@@ -1,3 +1,4 @@
+/* Writes the far field of a shape as JSON, thinned to what a screen can show. */
 #include "out/report_pattern.h"
 
 #include "base/json.h"
@@ -5,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-#define ANGLES_MAX 1000  /* of a cut on the page: about what a screen can show */
-#define GAINS_MAX 100000 /* of all cuts of a shape: some 600 kB */
+#define ANGLES_MAX 1000  /* angles of a cut on the page, about what a screen can show */
+#define GAINS_MAX 100000 /* gains of all cuts of a shape, about 600 kB */
 
 static double highest(const double *value, int n)
 {
@@ -16,7 +17,7 @@ static double highest(const double *value, int n)
     return most;
 }
 
-/* So many neighbouring angles share a point. */
+/* Returns the number of neighbouring angles that share a point. */
 static int stride_of(const hf_pattern_table *t)
 {
     int most = GAINS_MAX / (t->n_frequency * t->n_cut);
@@ -24,7 +25,8 @@ static int stride_of(const hf_pattern_table *t)
     return (t->n_theta + most - 1) / most;
 }
 
-/* Lobes lie between some angles, so that of neighbours the highest is taken, not the first. */
+/* Writes one cut. The maximum of each few neighbours is kept, because a sidelobe can lie between the angles that are
+ * kept otherwise. */
 static void write_cut(const hf_pattern_table *t, int k, const hf_cut_figures *c, FILE *f)
 {
     hf_json j = {.file = f};

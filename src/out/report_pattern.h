@@ -5,9 +5,9 @@
 #include <hifdm/pattern.h>
 #include <stdio.h>
 
-/* One JSON object: stage, feed, theta_deg, and of each frequency and cut its figures and the gain at these angles. Of a
- * table with more angles than a screen can show it has the highest gain of each few neighbours. Figures that the angles
- * do not reach are null. */
+/* Writes one JSON object: stage, feed, theta_deg, and for each frequency and cut its figures and the gains at these
+ * angles. When a table has more angles than a screen can show, each gain is the maximum over a few neighbouring angles.
+ * Figures outside the range of the angles are null. */
 void hf_report_pattern_write(const char *stage, const hf_pattern_summary *figures, const hf_pattern_table *table,
                              FILE *file);
 

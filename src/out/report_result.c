@@ -1,4 +1,5 @@
-/* The page of one result. Contents: texts - net and shapes - series - the page, and another - reading */
+/* Writes the page of one result: reads what it shows from the result file and writes it as JSON. Contents: texts, net
+ * and shapes, series, the page with a second result, reading. */
 #include "out/report_result.h"
 
 #include "base/arena.h"
@@ -20,11 +21,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define POINTS_MAX 1000       /* points of a series that the page keeps: about what a screen can show */
-#define ANSWER_SIZE 8192      /* 100 bytes are usual, 20 more for each frequency, the error of a run; longer is cut */
-#define PROVENANCE_SIZE 16384 /* 500 bytes are usual; lines that have no room are left out */
+#define POINTS_MAX 1000 /* points of a series on the page, about what a screen can show */
+/* Size of the answer: usually 100 bytes, 20 more for each frequency, and the error of a failed run. Longer text is
+ * cut. */
+#define ANSWER_SIZE 8192
+#define PROVENANCE_SIZE 16384 /* usually 500 bytes; lines that do not fit are left out */
 
-/* The series of a page: path in the file, group and key on the page. The first row of a group sets its length. */
+/* The series of a page: group and key on the page, path in the file. The first row of a group sets the length of its
+ * series; those of another length are left out. */
 static const struct {
     const char *group, *path, *key;
 } series_table[] = {
@@ -42,32 +46,33 @@ static const struct {
 };
 enum { N_SERIES = sizeof series_table / sizeof *series_table };
 
-enum { N_SHAPE = HF_STAGE_NONE + HF_STATES_MAX }; /* those of stages, then states of the net as built */
+enum { N_SHAPE = HF_STAGE_NONE + HF_STATES_MAX }; /* shapes of the stages, then of the load cases */
 
-/* Everything that a page shows. */
+/* Holds everything that a page shows. */
 typedef struct page {
     const char *path;
     hf_summary summary;
     hf_scene scene;
     bool has_shape[N_SHAPE];
     hf_shape shape[N_SHAPE];
-    hf_series state_displacement[HF_STATES_MAX]; /* [n][6] of the truss in a state, or none */
+    hf_series state_displacement[HF_STATES_MAX]; /* [n][6] of the truss in a load case; may be empty */
     hf_series series[N_SERIES];
-    hf_facets facets;                     /* none without measures of the surface */
-    hf_facet_errors facet_error[N_SHAPE]; /* of each shape, in facet_block */
+    hf_facets facets;                     /* empty when the case does not measure the surface */
+    hf_facet_errors facet_error[N_SHAPE]; /* errors of each shape, in facet_block */
     void *facet_block;
-    hf_pattern_table pattern[HF_STAGE_NONE];                   /* without angles: none */
-    hf_series psi_by_cut;                                      /* [n_cable] of the net as built, or none */
-    hf_series cable_share;                                     /* [n_cable] of the error of the net as built, or none */
-    hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or none, [m][2] */
+    hf_pattern_table pattern[HF_STAGE_NONE];                   /* without angles: empty */
+    hf_series psi_by_cut;                                      /* [n_cable] of the as-built net; may be empty */
+    hf_series cable_share;                                     /* [n_cable] shares in its error; may be empty */
+    hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or empty, [m][2] */
     char provenance[PROVENANCE_SIZE];
-    hf_texts case_text, overrides; /* one each */
-    const struct page *other;      /* the result that this one is compared with, or NULL */
-    const hf_report_part *part;    /* or NULL */
+    hf_texts case_text, overrides; /* one text each */
+    const struct page *other;      /* the result for comparison, or NULL */
+    const hf_report_part *part;    /* an addition of the command, or NULL */
 } page;
 
 /* ---- texts ---- */
 
+/* Writes small numbers as a string of digits. */
 static void write_codes(const char *key, const unsigned char *value, int n, FILE *f)
 {
     fprintf(f, ",\"%s\":\"", key);
@@ -76,13 +81,13 @@ static void write_codes(const char *key, const unsigned char *value, int n, FILE
     fputc('"', f);
 }
 
-/* The heading of the page: the title of the case or, without a title, the name of the case file. */
+/* Returns the heading of the page: the title of the case or, without a title, the name of the case file. */
 static const char *heading(const hf_summary *s)
 {
     return *s->title ? s->title : hf_path_name(s->case_path);
 }
 
-/* What `hifdm show` says in its first line, or of losses of gain; "" if nothing. */
+/* Returns the text that `print` prints, the answer or the gain losses; "" when it prints nothing. */
 static const char *said_of(const hf_summary *s, void (*print)(const hf_summary *s, FILE *f), char text[ANSWER_SIZE])
 {
     *text = '\0';
@@ -136,7 +141,7 @@ static void write_net(const page *p, FILE *f)
     fputc('}', f);
 }
 
-/* Of the nodes of the truss, without the rotations; nothing when there are none. */
+/* Writes the displacements of the nodes of the truss without rotations, or nothing when there are none. */
 static void write_displacement(const char *key, const hf_series *d, FILE *f)
 {
     if (!d->n) return;
@@ -146,7 +151,8 @@ static void write_displacement(const char *key, const hf_series *d, FILE *f)
     hf_json_pack_end(&packed);
 }
 
-/* What the workshop cuts and turns for a stage; NaN of a cable without EA, and nothing when none has one. */
+/* Writes cutting lengths and their differences from the target positions for a stage. A cable without EA has NaN.
+ * Writes nothing when no cable has EA. */
 static void write_cuts(const page *p, const hf_shape *shape, FILE *f)
 {
     const hf_scene *s = &p->scene;
@@ -163,14 +169,14 @@ static void write_cuts(const page *p, const hf_shape *shape, FILE *f)
     }
 }
 
-/* Writes displacements, not positions: single precision of a displacement reaches nanometres, that of a position only
- * micrometres. */
+/* Writes a shape as displacements from the target positions. In single precision a displacement has a resolution of
+ * nanometres, a position only of micrometres. */
 static void write_shape(const page *p, int stage, FILE *f)
 {
     const hf_shape *shape = &p->shape[stage];
     if (stage < HF_STAGE_NONE) {
         fprintf(f, "{\"stage\":\"%s\"", hf_stage_word[stage]);
-    } else { /* names are letters, digits, _ and - */
+    } else { /* names consist of letters, digits, _ and - */
         const char *name = p->summary.state[stage - HF_STAGE_NONE].name;
         fprintf(f, "{\"stage\":\"case %s\",\"case\":\"%s\"", name, name);
         write_displacement("truss_displacement_m", &p->state_displacement[stage - HF_STAGE_NONE], f);
@@ -218,12 +224,13 @@ static void write_truss(const page *p, FILE *f)
     fputc('}', f);
 }
 
-/* The figures of a result that JSON has, so that the page shows one even if it has no words of its own for it. */
+/* Writes key, unit and description of each figure of a result. The page can then show a figure that it has no text
+ * for. */
 static void write_figures(FILE *f)
 {
     static const struct {
         const char *key, *units, *description;
-        int json; /* 0: not there */
+        int json; /* 0: not in JSON */
     } figure[] = {
 #define FIGURE(type, member, kind, json, individual, key, units, description) {key, units, description, json},
         HF_RESULT_LIST(FIGURE)
@@ -243,7 +250,7 @@ static void write_figures(FILE *f)
     hf_json_close(&j, ']');
 }
 
-/* The units of goals and objectives by their names. */
+/* Writes the units of objectives by their names. */
 static void write_goal_units(const hf_summary *s, FILE *f)
 {
     hf_json j = {.file = f, .is_due = true};
@@ -254,7 +261,7 @@ static void write_goal_units(const hf_summary *s, FILE *f)
     hf_json_close(&j, '}');
 }
 
-/* Terms, what figures mean, and the words that some of these are, as `hifdm explain` has them. */
+/* Writes terms, descriptions of figures, and the words of stop reasons and bounds, as `hifdm explain` prints them. */
 static void write_words(FILE *f)
 {
     hf_json j = {.file = f, .is_due = true};
@@ -299,7 +306,7 @@ static void write_patterns(const page *p, FILE *f)
     if (n) fputc(']', f);
 }
 
-/* ---- the page, and another ---- */
+/* ---- the page with a second result ---- */
 
 static void write_overrides(const page *p, FILE *f)
 {
@@ -341,7 +348,7 @@ static void write_data(const void *context, FILE *f)
     hf_json_lines(&j, "provenance", "", p->provenance);
     fputs(",\n\"summary\":", f);
     hf_summary_write_json(s, hf_summary_status(s), s->warnings, p->path, f);
-    fprintf(f, ",\"seed\":\"%llu\"", (unsigned long long)s->seed); /* as a number it would lose its last digits */
+    fprintf(f, ",\"seed\":\"%llu\"", (unsigned long long)s->seed); /* a JSON number would lose its last digits */
     bool has_variables = s->has_optimize || s->has_polish || s->has_front;
     fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, has_variables ? s->n_gene : 0);
     hf_json_value(s->has_own_tensions ? (double)NAN : s->pretension_N, 17, f);
@@ -373,6 +380,7 @@ static void write_page(const void *context, FILE *f)
 
 /* ---- reading ---- */
 
+/* Checks that the members of the truss end at its nodes. */
 static hf_status check_truss(const page *p, hf_messages *messages)
 {
     for (int i = 0; i < 2 * p->truss_end.n; i++)
@@ -386,7 +394,7 @@ static hf_status read_shapes(page *p, hf_messages *messages)
 {
     hf_series there = {0};
     HF_TRY(hf_store_read_series(p->path, "/form/tension_N", 1, &there, messages));
-    p->has_shape[HF_STAGE_FORM] = there.n > 0; /* a form-finding that broke down stores no shape */
+    p->has_shape[HF_STAGE_FORM] = there.n > 0; /* a failed form-finding stores no shape */
     hf_series_free(&there);
     p->has_shape[HF_STAGE_OPTIMIZE] = hf_summary_has_best_shape(&p->summary);
     p->has_shape[HF_STAGE_POLISH] = p->summary.has_polish;

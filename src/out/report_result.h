@@ -6,16 +6,17 @@
 #include "base/json.h"
 #include <hifdm/status.h>
 
-/* What a command adds to the page of a result: `write` writes the members of the object `key` of the page's data. */
+/* Describes what a command adds to the page of a result. `write` writes the members of the object `key` in the data of
+ * the page. */
 typedef struct {
     const char *key;
     void (*write)(const void *context, hf_json *json);
     const void *context;
-    hf_file_out_set *files; /* of the command, which the page joins */
+    hf_file_out_set *files; /* files of the command, which the page joins */
 } hf_report_part;
 
-/* Writes the page of the result file `path` to `output`, beside the result `other` and with `part` unless these are
- * NULL. HF_OK, HF_IO or HF_NO_MEMORY with a message. */
+/* Writes the page of the result file `path` to `output`. `other` is a result for comparison, `part` an addition; both
+ * may be NULL. Returns HF_OK; HF_IO or HF_NO_MEMORY with a message. */
 hf_status hf_report_result(const char *path, const char *other, const hf_report_part *part, const char *output,
                            hf_messages *messages);
 

@@ -1,4 +1,4 @@
-/* The page of a merged study. */
+/* Writes the page of a merged study. */
 #include "out/report_study.h"
 
 #include "base/file_out.h"
@@ -15,15 +15,15 @@
 #include <string.h>
 #include <unistd.h>
 
-#define LINK_SIZE (PATH_MAX + 2) /* of a path to a folder, with a slash; the system refuses longer ones */
+#define LINK_SIZE (PATH_MAX + 2) /* size of a path to a folder with a slash; the system refuses longer ones */
 
 typedef struct {
     hf_merged merged;
-    hf_texts file;                                /* of each point's result */
-    char folder[LINK_SIZE], from_page[LINK_SIZE]; /* paths to the merged file's folder: "" or ending in '/' */
+    hf_texts file;                                /* result file of each point */
+    char folder[LINK_SIZE], from_page[LINK_SIZE]; /* paths to the folder of the merged file: "" or ending in '/' */
 } study_page;
 
-/* ,"key":["...",...] */
+/* Writes ,"key":["...",...]. */
 static void write_texts(const char *key, const hf_texts *texts, FILE *f)
 {
     fprintf(f, ",\"%s\":[", key);
@@ -44,7 +44,7 @@ static void write_status(const hf_merged *m, FILE *f)
     fputc(']', f);
 }
 
-/* Writes links: to the result file of each point, and to the page of that result when one lies beside it. */
+/* Writes links to the result file of each point, and to the page of that result if it is in the same folder. */
 static void write_links(const study_page *p, FILE *f)
 {
     char link[LINK_SIZE + 1100];
@@ -88,7 +88,7 @@ static void write_inputs(const hf_merged *m, FILE *f)
     fputc(']', f);
 }
 
-/* The page takes each state for a stage of its own. */
+/* Returns the stage of a figure on the page, where each load case is a stage of its own. */
 static const char *stage_word(const hf_merged_figure *figure, char word[HF_SET_NAME_SIZE + 8])
 {
     if (!*figure->state) return hf_merged_stage_word[figure->stage];
@@ -101,7 +101,7 @@ static bool is_of_one_stage(const hf_merged_figure *a, const hf_merged_figure *b
     return a->stage == b->stage && !strcmp(a->state, b->state);
 }
 
-/* The figures of each stage that has psi, of the net as built, and of its states. */
+/* Writes the figures of each stage that has psi, of the as-built net, and of its load cases. */
 static void write_outputs(const hf_merged *m, FILE *f)
 {
     const char *comma = "";
@@ -122,7 +122,8 @@ static void write_outputs(const hf_merged *m, FILE *f)
     fputc(']', f);
 }
 
-/* What a reader of the page is told of each figure: its unit, whether it is the same at all points, or psi. */
+/* Writes the properties of each figure: its unit, whether it is the same at all points, whether it is psi, and whether
+ * it ranks the points. */
 static void write_figures(const hf_merged *m, FILE *f)
 {
     hf_json j = {.file = f, .is_due = true};
@@ -177,8 +178,8 @@ static void write_page(const void *context, FILE *f)
     hf_report_page_write(hf_merged_heading(&p->merged), NULL, write_data, p, f);
 }
 
-/* A page in the folder of the merged file links to the results by the same relative paths as that file. A page in
- * another folder links by absolute paths. */
+/* Finds the folders for links. A page in the folder of the merged file links to the results by the same relative paths
+ * as that file. A page in another folder uses absolute paths. */
 static void find_folders(study_page *p, const char *output)
 {
     static char merge_folder[LINK_SIZE], page_folder[LINK_SIZE], merge_real[PATH_MAX], page_real[PATH_MAX];

@@ -4,7 +4,7 @@
 
 #include <hifdm/status.h>
 
-/* Writes the page of the merged study `path` to `output`. HF_OK, HF_IO or HF_NO_MEMORY with a message. */
+/* Writes the page of the merged study `path` to `output`. Returns HF_OK; HF_IO or HF_NO_MEMORY with a message. */
 hf_status hf_report_study(const char *path, const char *output, hf_messages *messages);
 
 #endif

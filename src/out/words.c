@@ -1,5 +1,6 @@
-/* Contents: entries from the lists - terms - what to do about a status - why something stopped - objects and figures of
- * --json - all together */
+/* Defines the entries of `hifdm explain`, from the lists of figures and statuses and from a table of its own. Contents:
+ * entries from the lists, other entries (terms, what to do, stop reasons, objects and figures of --json), all entries
+ * together. */
 #include "out/words.h"
 
 #include <hifdm/front.h>
@@ -35,7 +36,7 @@ static const hf_word listed[] = {HF_STATUS_LIST(STATUS) HF_BOUND_REASON_LIST(PRO
                                          HF_SURFACE_LIST(SURFACE) HF_SURFACE_FIT_LIST(FIT) HF_SURFACE_LOSS_LIST(LOSS)};
 enum { N_LISTED = sizeof listed / sizeof *listed };
 
-/* ---- and what the lists do not say ---- */
+/* ---- other entries ---- */
 
 static const hf_word told[] = {
     /* ---- term ---- */
@@ -388,7 +389,7 @@ static const hf_word told[] = {
 };
 enum { N_TOLD = sizeof told / sizeof *told };
 
-/* ---- all together ---- */
+/* ---- all entries together ---- */
 
 int hf_word_count(void)
 {
@@ -414,7 +415,7 @@ int hf_word_letter(char letter)
     return letter == '-' || letter == '_' ? ' ' : tolower((unsigned char)letter);
 }
 
-/* Behind a figure's name: its unit, which nobody says. */
+/* Returns whether the rest of the name of a figure is a unit, which users leave out. */
 static bool is_unit(const char *rest)
 {
     static const char *const unit[] = {"_m", "_N", "_dB", "_deg", "_s", "_kg", "_Hz"};

@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-/* Keys of `hifdm adjust --json`, and columns of its table. */
+/* Keys of `hifdm adjust --json` and columns of its table. */
 const hf_word hf_words_adjust[] = {
     {"order", "column of adjust", "", "Moves are made in this order.", NULL},
     {"move_mm", "column of adjust", "mm", "How far the turnbuckle is turned; above 0 lets the cable out.", NULL},

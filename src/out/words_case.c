@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-/* Words of case files, of cut lists, and of the trade. */
+/* Words of case files, of cut lists, and of trade-offs. */
 const hf_word hf_words_case[] = {
     {"goal", "term", "",
      "What a design should reach: a row of optimize.goals, a figure of the shape of which less is better (psi, facets, "

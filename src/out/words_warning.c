@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-/* Warnings; each with words that its text has and no other's. */
+/* Warnings, each with text that occurs in no other warning. */
 const hf_word hf_words_warning[] = {
     {"loose_nodes", "warning", "",
      "The nodes hang on slack cables alone. Shorten a cable there, raise its tension, or take the node out; their "
