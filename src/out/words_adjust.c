@@ -1,8 +1,8 @@
+/* Defines the entries of `hifdm explain` for keys of `hifdm adjust --json` and columns of its table. */
 #include "out/words.h"
 
 #include <stddef.h>
 
-/* Keys of `hifdm adjust --json` and columns of its table. */
 const hf_word hf_words_adjust[] = {
     {"order", "column of adjust", "", "Moves are made in this order.", NULL},
     {"move_mm", "column of adjust", "mm", "How far the turnbuckle is turned; above 0 lets the cable out.", NULL},

@@ -1,8 +1,8 @@
+/* Defines the entries of `hifdm explain` for words of case files, of cut lists, and of trade-offs. */
 #include "out/words.h"
 
 #include <stddef.h>
 
-/* Words of case files, of cut lists, and of trade-offs. */
 const hf_word hf_words_case[] = {
     {"goal", "term", "",
      "What a design should reach: a row of optimize.goals, a figure of the shape of which less is better (psi, facets, "

@@ -1,8 +1,8 @@
+/* Defines the entries of `hifdm explain` for warnings. Each has text that occurs in no other warning. */
 #include "out/words.h"
 
 #include <stddef.h>
 
-/* Warnings, each with text that occurs in no other warning. */
 const hf_word hf_words_warning[] = {
     {"loose_nodes", "warning", "",
      "The nodes hang on slack cables alone. Shorten a cable there, raise its tension, or take the node out; their "

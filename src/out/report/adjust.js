@@ -1,8 +1,8 @@
-// Contents: a net that was measured: its errors, and the moves of turnbuckles that bring it back (`hifdm adjust`)
+// The section of `hifdm adjust`: the errors of a measured net, and the turnbuckle adjustments that restore its figure.
 
 const adjust = data.adjust;
 const cableAt = adjust && new Map(net.cable_id.map((id, e) => [id, e]));
-// The move of each cable that has one.
+// Adjustments by cable, for the cables that have one.
 const moveOf = new Map(adjust ? adjust.moves.map((move) => [cableAt.get(move.cable), move]) : []);
 
 const FIGURE = { psi: "ψ", surface: "RMS along the normal", facets: "RMS of the facets along the normal" };
@@ -53,7 +53,8 @@ function adjustChart(name) {
   const values = [adjust.estimated_m, ...adjust.moves.map((move) => move.predicted_m)],
     expected = [adjust.estimated_expected_m, ...adjust.moves.map((move) => move.expected_m)],
     [low, high] = range([...values, ...expected]),
-    isFar = (at) => at < low - REACH * (high - low) || at > high + REACH * (high - low), // then it is only named
+    // a level that is too far away is named and not drawn
+    isFar = (at) => at < low - REACH * (high - low) || at > high + REACH * (high - low),
     level = (text, at, colour, dash) =>
       typeof at === "number" && 1e3 * at > RESOLVED_MM
         ? [
@@ -115,7 +116,7 @@ const SHARED = {
   cut_ratio: (error, set) => `lengths of spool ${set}: ${signed(100 * error, 3)} %`,
 };
 
-// What moves would do that aim at something else.
+// Lists what adjustments with another aim would reach.
 function otherAims() {
   if (!adjust.instead.length) return [];
   const items = adjust.instead.map(({ figure: of, aim, before_m, after_m, move_count, at_range }) =>
@@ -140,9 +141,9 @@ function otherAims() {
   ];
 }
 
-const NAMED_MOST = 10, // of what stands out
-  PLACES_MOST = 3, // the same of places
-  SEEMS_OFF = 2; // σ of a number that cables share
+const NAMED_MOST = 10, // maximum number of outlying cables in the list
+  PLACES_MOST = 3, // maximum number of outlying nodes in the list
+  SEEMS_OFF = 2; // σ above which a shared number is listed
 function outliers(choose) {
   const { stand_out: cables, off_shape: places } = adjust,
     shared = adjust.shared.filter((number) => number.sigmas > SEEMS_OFF),

@@ -1,15 +1,16 @@
-// Contents: the table of cables: which one to change, and by how much
+// The table of cables, with the columns that show which cables to adjust and by how much.
 
-// The names of the families of every cable.
+// Returns the names of the families of every cable.
 function allFamilies() {
   const all = Array.from({ length: net.n_cable }, () => []);
   for (const { name, cable } of net.sets) for (const e of cable) all[e].push(familyName(name));
   return all;
 }
 
-// A column of numbers, to so many digits of the largest; nothing when no row has one, or all are rounding.
-//   unit: what it is multiplied by to be shown; isChange: it is sorted by its size, and has a sign
-//   rounding: a largest one below this says nothing
+// Returns a column of numbers with `digits` digits of the largest one. Returns null when no row has a number or all are
+// rounding.
+//   unit: factor for display; isChange: sorted by size, shown with a sign
+//   rounding: the column is left out when the largest number is below this
 function numberColumn(name, values, digits, { unit = 1, isChange = false, rounding = 0 } = {}) {
   const [low, high] = range(values) || [0, 0],
     size = Math.max(Math.abs(low), Math.abs(high)),
@@ -20,13 +21,13 @@ function numberColumn(name, values, digits, { unit = 1, isChange = false, roundi
     Number.isFinite(v) ? (isChange && v > 0 ? "+" : "") + minus((unit * v).toFixed(decimals)) : "–";
   return { name, number: true, of: (e) => values[e], show: (e) => show(values[e]), size: isChange };
 }
-// With a value of each cable.
-const RESOLVED_RATIO = 1e-9; // of tensions
+// The same for a column with a value of each cable.
+const RESOLVED_RATIO = 1e-9; // relative size of rounding of tensions
 const cableColumn = (name, of, digits, options) =>
   numberColumn(name, Array.from({ length: net.n_cable }, (_, e) => of(e)), digits, options);
 
-// What the turnbuckle of a cable must do to make the found net the result; of a net that is only found, what it must
-// do in one that was cut for the theoretical shape.
+// Returns heading and values of a column of adjustments. They turn the net of the form-finding into the result. Without
+// a search they adjust a net that was cut for the target positions.
 function turned(before, after) {
   if (!after.l0_m || (before !== after && !before.l0_m)) return null;
   if (before === after) return ["turn, if cut to theory (mm)", (e) => after.l0_minus_theory_m[e]];
@@ -60,14 +61,14 @@ const CABLES_SAID =
   "A click on a heading sorts, a name shows its cable in the picture, and a click on a cable there puts its row at " +
   "the top.";
 
-// The name of a cable, which shows it in the picture.
+// Returns the id of a cable as a button that shows the cable in the picture.
 function cableLink(e, choose) {
   const press = el("button", { type: "button", class: "link" }, net.cable_id[e]);
   press.addEventListener("click", () => choose(e));
   return press;
 }
 
-// Shows a cable in the picture, and brings that to the reader.
+// Returns a function that shows a cable in the picture and scrolls to it.
 const chooserOf = (view) => (e) => {
   view.choose(e);
   document.getElementById("net").scrollIntoView({ block: "nearest" });

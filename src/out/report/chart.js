@@ -1,4 +1,4 @@
-// Contents: tooltips - one chart
+// Contents: tooltips, one chart.
 
 // ---- tooltips: a heading, and rows of name, value and the name in the file ----
 
@@ -21,7 +21,7 @@ function tipContent(heading, rows) {
   ];
 }
 
-// Places the tooltip beside the point (x, y) of its parent, inside the parent.
+// Shows the tooltip beside the point (x, y) of its parent, inside the parent.
 function placeTip(tip, x, y, content) {
   tip.replaceChildren(...content);
   tip.hidden = false;
@@ -34,17 +34,17 @@ function placeTip(tip, x, y, content) {
 }
 
 // ---- one chart: series over x with a cursor that follows the pointer or the arrow keys ----
-// series: { name, stored, values, colour, dash, dots: marks instead of a line, free: may lie outside of the picture }
-//   isLevel: the same value everywhere, without marks; size: of its marks, in pixels
-//   bars: half the width of a bar around each x, from 0 up
-// marks: { name, at, colour, dash } of vertical lines, which the axis of x includes
+// series: { name, stored, values, colour, dash, dots: marks instead of a line, free: may lie outside the picture }
+//   isLevel: the same value everywhere, drawn without marks; size: of its marks, in pixels
+//   bars: half the width of a bar around each x, which begins at 0
+// marks: { name, at, colour, dash } of vertical lines; the axis of x includes them
 // colour: a variable of the page's style, or a function that returns red, green and blue
-// floor: what lies below is under the picture
-// x is in rising order; counted: x are whole numbers; log: "auto" = logarithmic when the values span a factor over 20
+// floor: lower limit of the axis; smaller values are outside the picture
+// x ascends; counted: x are whole numbers; log: "auto" is logarithmic when the values span a factor above 20
 let clips = 0;
 const paint = (colour) => (typeof colour === "function" ? rgb(colour()) : `var(${colour})`);
 const LINES_MAX = 12, // lines of a tooltip
-  MARKED_MAX = 16; // a curve with up to so many points gets marks besides its line
+  MARKED_MAX = 16; // a curve with at most so many points gets marks on its line
 
 function chart(options) {
   const { title, caption, xLabel, yLabel, unit = "", x, series, marks = [], counted = true, head, floor } = options;
@@ -88,7 +88,7 @@ function chart(options) {
     let text = "",
       on = false;
     s.values.forEach((v, i) => {
-      if (v === undefined) return; // no place of this series: its line goes on
+      if (v === undefined) return; // the series has no point here: its line continues
       const good = Number.isFinite(v) && yAxis.has(v);
       if (good) text += `${on && !s.dots ? "L" : "M"}${sx(x[i]).toFixed(1)} ${sy(v).toFixed(1)}${s.dots ? "h0" : ""}`;
       on = good;
@@ -97,7 +97,7 @@ function chart(options) {
     return s.dots || s.isLevel || x.length > MARKED_MAX ? line : [line, path({ ...s, dots: true }, sx, sy, yAxis)];
   }
 
-  // Infinite values stand on the upper edge of the picture, one sign for each run of neighbours.
+  // Draws infinite values at the upper edge of the picture, with one sign for each run of neighbours.
   function endless(s, sx) {
     const marks = s.values.flatMap((v, i) =>
       v === Infinity ? svg("circle", { cx: sx(x[i]), cy: margin.top, r: 3, style: `fill:${paint(s.colour)}` }) : [],
@@ -113,7 +113,7 @@ function chart(options) {
   function draw() {
     const width = Math.max(holder.clientWidth, 260),
       yAxis = axis(leading, log);
-    if (!range(leading)) yAxis.ticks = []; // nothing finite has a place
+    if (!range(leading)) yAxis.ticks = []; // no finite value, so no ticks
     margin.left = 16 + 7 * Math.max(4, ...yAxis.ticks.map((t) => t.text.length));
     const w = width - margin.left - margin.right;
     const h = height - margin.top - margin.bottom;
@@ -128,7 +128,7 @@ function chart(options) {
     const sy = (v) => margin.top + h * (1 - yAxis.at(v));
     place = { sx, sy, yAxis, bottom: margin.top + h };
     picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    // as many as there is room for
+    // as many ticks as have room for their labels
     let wanted = Math.max(4, w / 64),
       xTicks;
     do {

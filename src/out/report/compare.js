@@ -1,6 +1,7 @@
-// Contents: this result beside another: figures, and what differs in the cases
+// Compares this result with another: figures, and differences of the cases.
 
-// Lines that only one of two texts has, by the longest common subsequence; "-" of the first, "+" of the second.
+// Returns the lines that only one of two texts has, by the longest common subsequence: "−" of the first, "+" of the
+// second.
 function differences(x, y) {
   const longest = Array.from({ length: x.length + 1 }, () => new Uint16Array(y.length + 1));
   for (let i = x.length - 1; i >= 0; i--)
@@ -22,7 +23,7 @@ function differences(x, y) {
   return found.filter(([, line]) => line.trim());
 }
 
-// Lines of the case and its overrides, without comments. Tables that it imports are not in it.
+// Shows the differences of the cases and their overrides, without comments. Imported tables are not compared.
 const LINES_OF_CASE_MAX = 600;
 function caseDifferences() {
   const linesOf = (of) => `${of.case_text[0]}\n${of.overrides[0]}`.split("\n").filter((line) => !/^\s*#/.test(line));
@@ -46,7 +47,7 @@ function caseDifferences() {
   ];
 }
 
-// The text of a number with no more decimals than these texts have, if anything is left of it then.
+// Returns the text of a number with no more decimals than the texts beside it, unless that leaves 0.
 function decimalsOf(text, beside) {
   const decimals = (number) => (/^−?\d+(\.\d+)?$/.test(number) ? (number.split(".")[1] || "").length : Infinity),
     most = Math.max(...beside.map(decimals));

@@ -1,7 +1,7 @@
-// Contents: the data - elements - numbers for people - what is derived
+// Contents: the data, elements, numbers for people, derived values.
 "use strict";
 
-// Numbers of all nodes or cables are base64 of their bytes, which only an object of this kind can be.
+// Numbers of all nodes or cables are stored as base64 of their bytes, as the only member of an object.
 const PACKED = { i32: Int32Array, f32: Float32Array, f64: Float64Array };
 function unpack(type, text) {
   const letters = atob(text),
@@ -9,7 +9,8 @@ function unpack(type, text) {
   for (let k = 0; k < bytes.length; k++) bytes[k] = letters.charCodeAt(k);
   return new PACKED[type](bytes.buffer);
 }
-// What JSON has no numbers for, replaced in place: a reviver of JSON.parse would be called for every name of a cable.
+// Replaces packed numbers and "Infinity" in place. A reviver of JSON.parse would be slower, because it is called for
+// the id of every cable.
 function revived(value) {
   if (value === "Infinity") return Infinity;
   if (value === null || typeof value !== "object") return value;
@@ -25,9 +26,9 @@ function revived(value) {
 }
 const data = revived(JSON.parse(document.getElementById("data").textContent));
 
-// ---- elements: texts only ever become text nodes, so nothing in a case can become markup ----
+// ---- elements: texts become text nodes only, so nothing in a case can become markup ----
 
-// Hidden characters as the program shows them elsewhere (hf_text_escape); texts are cut to what a page can hold.
+// Shows hidden characters as the program does (hf_text_escape) and cuts texts to TEXT_MAX.
 const TEXT_MAX = 2000;
 const clip = (text, most) => (text.length > most ? `${[...text.slice(0, most)].slice(0, -1).join("")}…` : text);
 const escaped = (text) =>
@@ -55,7 +56,7 @@ const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "
 const power = (exponent) => "10" + [...String(exponent)].map((c) => RAISED[c]).join("");
 const minus = (text) => text.replace(/^-/, "−");
 
-// A number with so many significant digits; tiny and huge ones as 1.2×10⁻⁷.
+// Formats a number with so many significant digits; tiny and huge ones as 1.2×10⁻⁷.
 function fmt(value, digits = 4) {
   if (value === Infinity) return "∞";
   if (typeof value !== "number" || !Number.isFinite(value)) return "–";
@@ -66,12 +67,12 @@ function fmt(value, digits = 4) {
   const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
   return minus(`${Number(mantissa)}×${power(Number(exponent))}`);
 }
-// The same with all its digits, so that numbers below each other have as many: 0.89200 and 0.94694.
+// Formats a number with all its digits, so that numbers of a column have the same number of them: 0.89200 and 0.94694.
 function digitsOf(value, digits) {
   const size = Math.abs(value);
   return size >= 1e-3 && size < 10 ** digits ? minus(value.toPrecision(digits)) : fmt(value, digits);
 }
-// Ratios of tensions: 1 means uniform tensions, so a fixed number of decimals is shown, not of digits.
+// Formats a ratio of tensions. 1 means uniform tensions, so the number of decimals is fixed, not that of digits.
 const fmtRatio = (value) => (typeof value === "number" && value < 1e4 ? value.toFixed(4) : fmt(value));
 const fmtCount = (value) => (typeof value === "number" ? String(value).replace(/\B(?=(\d{3})+$)/g, "\u202f") : "–");
 
@@ -80,13 +81,13 @@ function fmtDuration(s) {
   if (s < 1) return `${fmt(s * 1e3, 3)}\u00a0ms`;
   if (s < 59.95) return `${fmt(s, 3)}\u00a0s`;
   const whole = Math.round(s),
-    minutes = Math.round(s / 60); // rounded first, so that no rest is a whole 60
+    minutes = Math.round(s / 60); // rounded first, so that seconds or minutes never show as 60
   return whole < 3600
     ? `${Math.floor(whole / 60)} min ${whole % 60} s`
     : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
 
-// Words of the file in plain ones; what they mean is told by `hifdm explain`, whose words the page has, too.
+// Plain words for the words of the file. The page also has their descriptions from `hifdm explain`.
 const STOP = {
   direct: "one direct solve",
   rms_change: "the change of ψ",
@@ -105,14 +106,14 @@ const STOP = {
   stalled: "steps that gain nothing",
 };
 const plainWord = (word) => String(word).replace(/_/g, " ");
-// Of the bounds of a shape: proven, or why not.
+// Returns "proven", or why a shape has no proven bound.
 const boundText = (word) => (word === "proven" ? word : `no: ${plainWord(word)}`);
 const stopText = (word) => STOP[word] || plainWord(word);
 
-// ---- what is derived ----
+// ---- derived values ----
 
 const net = data.net;
-// Of a result whose design is a point of a front.
+// Returns the number of the point of a front that is the design, or 0.
 const pointIn = (figures) => (figures.polish && figures.polish.front_point) || 0;
 const stageName = {
   form: "found",
@@ -126,7 +127,7 @@ const roleOf = (i) => net.role_word[digit(net.role, i)];
 const groupOf = (e) => net.group_word[digit(net.group, e)];
 
 const summary = data.summary || {};
-// The stage that is a run's result, of those that it has, chosen as `hifdm export` chooses it; and its shape.
+// Returns the stage that is the result, as `hifdm export` chooses it; and its shape.
 const resultStageIn = (figures, has) =>
   (figures.polish && figures.polish.is_result && has("polish") && "polish") ||
   (has("optimize") && "optimize") ||
@@ -135,13 +136,13 @@ const resultIn = (figures, shapes) => {
   const of = (stage) => (shapes || []).find((shape) => shape.stage === stage);
   return of(resultStageIn(figures, of));
 };
-// The result that this one is compared with: its shapes are drawn with the others where it has the same net.
+// The result for comparison. Its shape is shown with the others when it has the same net.
 if (data.other) data.other.name = clip(data.other.name, 40);
 const otherShape = data.other && resultIn(data.other.summary, data.other.shapes);
 const resultShape = resultIn(summary, data.shapes);
 if (otherShape) data.shapes.push(otherShape);
 
-// Distance of each node from its theoretical position, and its signed difference in z, in millimetres.
+// Sets the distance of each node from its target position and its difference in z, mm.
 for (const shape of data.shapes || []) {
   const d = shape.displacement_m,
     n = net.n_node;
@@ -158,8 +159,8 @@ for (const shape of data.shapes || []) {
 
 const shapeOf = (stage) => (data.shapes || []).find((shape) => shape.stage === stage);
 
-// Upper end of the colours: the largest deviation of the inner nodes, which psi counts. The nodes of a free edge move
-// much farther; a range with them would show all inner nodes in one colour.
+// Returns the upper end of the colours: the largest deviation of the inner nodes, which psi counts. Nodes of a free
+// edge move much farther, and with them all inner nodes would have one colour.
 function innerMost(values) {
   let inner = -1,
     any = -1;

@@ -1,6 +1,6 @@
-// Contents: the front of optimize.objectives, two objectives at a time
+// The section of the Pareto front of optimize.objectives, with a chart for each pair of objectives.
 
-// Objectives as people read them: without their number, and lengths in mm.
+// Names of objectives for people: without their number, lengths in mm.
 const objectiveName = (key) => key.replace(/^goal_[0-9]+_/, "").replace(/_/g, " ").replace(/^psi\b/, "ψ");
 const goalUnit = (key) => ({ ...(data.other && data.other.goal_unit), ...data.goal_unit })[key] || "";
 const objectiveUnit = (key) => (goalUnit(key) === "m" ? "mm" : goalUnit(key));
@@ -8,8 +8,8 @@ const objectiveScale = (key) => (goalUnit(key) === "m" ? 1e3 : 1);
 const objectiveLabel = (key) => objectiveName(key) + (objectiveUnit(key) ? ` (${objectiveUnit(key)})` : "");
 const objectiveText = (key, value) => `${fmt(value, 6)} ${objectiveUnit(key)}`.trim();
 
-// Points of the front in rising order of objective a, with the base design among them. A place without a value for a
-// series has undefined there, which leaves its line whole.
+// Returns the points of the front in ascending order of objective a, with the initial design among them. A series
+// without a value at a point has undefined there, so its line continues.
 function frontPlaces(front, a, b) {
   const place = (objective) => {
     const at = (key) => (typeof objective[key] === "number" ? objectiveScale(key) * objective[key] : null);
@@ -23,7 +23,7 @@ function frontPlaces(front, a, b) {
   return places.filter(({ x }) => typeof x === "number").sort((p, q) => p.x - q.x);
 }
 
-// What the minimised objective changes by for one unit more of each other, where it is known.
+// Formats the changes of the minimised objective per unit of the others, where they are known.
 function slopesOf(front, point) {
   return Object.entries(point.multiplier || {})
     .filter(([key, value]) => key !== front.minimised && typeof value === "number")
@@ -75,7 +75,7 @@ function frontChart(front, a, b) {
   });
 }
 
-// The command that makes a point the result: that of the front with --point.
+// Returns the command that makes a point the result: the command of the front with --point.
 function pointCommand(front) {
   const quoted = (text) => (/^[\w@%+=:,.\/-]+$/.test(text) ? text : `'${text.replace(/'/g, "'\\''")}'`),
     sets = (data.overrides[0] || "").split("\n").filter((line) => line),
@@ -94,7 +94,7 @@ const takeText = (front) =>
     el("code", {}, pointCommand(front)),
   );
 
-// A front has no shape of its own: whose those of the page are, and what is told of them.
+// Explains which shape the page shows, because a front has no shape of its own.
 function writeWhose(told) {
   const { front } = summary;
   if (!front) return;
@@ -117,7 +117,7 @@ function writeWhose(told) {
   );
 }
 
-// Objectives that do not conflict.
+// Writes the section of a front whose objectives do not conflict.
 function writeOneDesign(front, names, point) {
   const valueOf = (name, value) =>
     goalUnit(name) === "m" ? `${roundedMm(value)} mm` : objectiveText(name, value);

@@ -1,4 +1,4 @@
-// Contents: sections - head - net and map - the page
+// Contents: sections, head, net and map, the page.
 
 const main = document.getElementById("main");
 
@@ -12,7 +12,7 @@ function section(id, title, ...children) {
   return node;
 }
 
-// ---- head: title, warnings, the figures that matter ----
+// ---- head: title, warnings, the main figures ----
 
 function writeHead() {
   document.getElementById("title").textContent = shown(data.title);
@@ -46,7 +46,7 @@ function writeWarnings(title, lines) {
   );
 }
 
-// Errors and warnings: of two results those of both, each with the name of its file.
+// Writes errors and warnings; with two results those of both, each with the name of its file.
 function writeMessages() {
   const { other } = data,
     file = clip(summary.file.split("/").pop(), 40),
@@ -56,7 +56,7 @@ function writeMessages() {
       ...((other && other.summary[key]) || []).map((line) => `${other.name}: ${line}`),
     ];
   const lines = [...linesOf("errors"), ...linesOf("warnings")],
-    isOfForm = resultStage === "form" && summary.status !== "not_converged"; // which failed itself
+    isOfForm = resultStage === "form" && summary.status !== "not_converged"; // otherwise the form-finding itself failed
   let title = lines.length === 1 ? "One warning" : `${lines.length} warnings`;
   if (other && other.summary.errors) title = `The run of ${other.name} failed`;
   if (summary.errors) title = `This run failed${isOfForm ? ": its figures are those of the form-finding" : ""}`;
@@ -64,7 +64,7 @@ function writeMessages() {
   writeWarnings(title, lines);
 }
 
-// For paper, which has no controls: what is chosen in them.
+// Returns a line for print with the choices of the controls, which paper does not have.
 function chosenLine(tools) {
   const line = el("div", { class: "paper muted" });
   const write = () => {
@@ -84,7 +84,7 @@ const resultNumbers = { form: summary.form, optimize: summary.optimize, polish: 
 const figure = (name, value, unit) =>
   el("div", {}, el("dt", {}, name), el("dd", {}, value, unit && value !== "–" ? el("small", {}, unit) : null));
 
-// The answer in the words of the program's summary.
+// Writes the answer in the words of the program's summary.
 function writeAnswer() {
   const said = [data.answer, data.gain_loss].filter((text) => text);
   if (!said.length) return;
@@ -96,12 +96,12 @@ function writeAnswer() {
 
 function writeFigures() {
   if (!resultNumbers) return;
-  const base = summary.optimize && !summary.form.goals && summary.optimize.base_psi_m, // goals may want another shape
+  const base = summary.optimize && !summary.form.goals && summary.optimize.base_psi_m, // other objectives may raise psi
     list = [];
   list.push(figure(`surface error ψ, ${resultShape.name}`, roundedMm(resultNumbers.psi_m), "mm"));
   if (resultStage !== "form") {
     list.push(figure("ψ after form-finding", roundedMm(summary.form.psi_m), "mm"));
-    // The genetic algorithm's base design can have another shape than the one found.
+    // The initial design of the search can have another shape than that of the form-finding.
     const isFound = Math.abs(base - summary.form.psi_m) < 1e-6 * base;
     const below = 100 * (1 - resultNumbers.psi_m / base),
       size = Math.abs(below).toFixed(2),
@@ -142,11 +142,11 @@ function button(text, name, act) {
   return node;
 }
 
-// The scale factors to choose from, 1, 2, 5, 10, ...; the first one draws the largest deviation as a twentieth of the
-// net's size.
+// Scale factors 1, 2, 5, 10, ... The first one chosen draws the largest deviation as a twentieth of the size of the
+// net.
 const SCALES = Array.from({ length: 22 }, (_, k) => [1, 2, 5][k % 3] * 10 ** Math.floor(k / 3));
 function firstScale(radius) {
-  const stages = data.shapes.filter((s) => !s.case); // a case of the net as built may move it much farther
+  const stages = data.shapes.filter((s) => !s.case); // nodes of a load case may move much farther
   const largest = Math.max(0, ...stages.map((s) => range(s.distance_mm)[1])) / 1e3;
   const wanted = 1e3 * largest > RESOLVED_MM ? (0.1 * radius) / largest : 1;
   return Math.max(0, SCALES.filter((s) => s <= wanted).length - 1);
@@ -248,7 +248,7 @@ function writeNet() {
   report.net = view;
 }
 
-// Switches of the families of cables, such as front, rear and ties; many of them are folded away.
+// Returns switches for the families of cables, such as front, rear and ties. A long list of them is collapsed.
 const FAMILIES_OPEN = 8;
 function familyTicks(act) {
   const { sets } = net;
@@ -339,7 +339,7 @@ function writeMap() {
 
 // ---- the page ----
 
-const report = {}; // gives the console and the tests access to the two pictures
+const report = {}; // access to the two pictures for the console and the tests
 window.report = report;
 if (data.study) {
   writeStudy(data.study);
@@ -359,7 +359,7 @@ if (data.study) {
   writeFront();
   writePattern();
   writeSummary();
-  writeHistory(); // how it was found
+  writeHistory(); // sections from here on describe the iterations
   writeGa();
   writeCoupling();
   writeProvenance();

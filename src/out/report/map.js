@@ -1,7 +1,7 @@
-// Contents: faces of the net seen along z - the deviation map over the aperture
+// Contents: faces of the net along z, cables on the map, the map.
 
-// ---- faces: at every node the cables are sorted by direction; the next side of a face is the one before the cable
-// by which the walk arrived.
+// ---- faces: the cables at every node are sorted by direction; the next side of a face is the cable before the one on
+// which the walk arrives ----
 
 function findFaces(cables) {
   const p = net.position_m,
@@ -35,8 +35,8 @@ function findFaces(cables) {
   return faces;
 }
 
-// ---- what is on the map: where there are facets, their nodes, the supports that these hang on, and the cables between
-// them; a rear net and its ties are behind it ----
+// ---- cables on the map: with facets only their nodes, the supports of these nodes and the cables between them; a rear
+// net and its ties are behind the facets ----
 
 function mapParts() {
   const every = Array.from({ length: net.n_cable }, (_, e) => e),
@@ -68,7 +68,7 @@ function aperture({ canvas, tip, bar }) {
     right = 14;
   const spans = [0, 1].map((k) => range(p.filter((_, i) => i % 3 === k)));
   const across = spans[1][1] - spans[1][0] > spans[0][1] - spans[0][0] ? 1 : 0,
-    up = 1 - across; // the longer axis is drawn horizontally
+    up = 1 - across; // the longer axis is horizontal
   const box = [spans[across], spans[up]];
   const sx = new Float64Array(n),
     sy = new Float64Array(n);
@@ -86,7 +86,7 @@ function aperture({ canvas, tip, bar }) {
     return state.quantity === "distance" ? [0, size] : [-size, size];
   }
 
-  // The value at every pixel of a triangle is linear between those at its corners.
+  // Fills a triangle with colours of values that are linear between its corners.
   function triangle(image, ratio, table, limit, [a, b, c]) {
     const [ax, ay, av] = a,
       [bx, by, bv] = b,
@@ -131,7 +131,7 @@ function aperture({ canvas, tip, bar }) {
     c.putImageData(image, 0, 0);
   }
 
-  // A facet has one colour. Its border has it, too, so that no gap shows between neighbours.
+  // Fills each facet with one colour. Its border has the same colour, so that there is no gap between neighbours.
   function paintFacets(c) {
     const table = levels(colours()),
       limit = limits(),
@@ -148,7 +148,7 @@ function aperture({ canvas, tip, bar }) {
     });
   }
 
-  // A net without closed faces is shown by a disc at every node.
+  // Draws a disc at every node, for a net without closed faces.
   function paintNodes(c) {
     const table = levels(colours()),
       limit = limits(),
@@ -239,7 +239,7 @@ function aperture({ canvas, tip, bar }) {
   };
 
   const middleOf = (facet, s) => facet.reduce((sum, i) => sum + s[i] / facet.length, 0);
-  // All sides of a convex facet turn the same way around a point inside.
+  // Returns whether a point is inside a convex facet: all sides then turn the same way around it.
   function isInside(facet, x, y) {
     const turns = facet.map((i, k) => {
       const j = facet[(k + 1) % facet.length];

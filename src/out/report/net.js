@@ -1,20 +1,22 @@
 // ---- families: sets of cables ----
 
 const familyName = (name) => name.replace(/_/g, " ");
-// The colours of series, and of more families than these some around the circle of hues, every other one lighter.
+// Returns the colour of a family: one of the series, or for many families one around the circle of hues with
+// alternating lightness.
 function familyColour(k) {
   if (net.sets.length <= SERIES.length) return css(SERIES[k]);
   const light = (isDark() ? 0.7 : 0.45) + 0.15 * (k % 2);
   return rgb(oklch(light, 0.14, 250 + (360 * k) / net.sets.length));
 }
 
-// Draws the net in space. Lines of one colour are drawn in one call; nothing is allocated while it is turned.
+// Draws the net in space. Lines of one colour are drawn in one call. Nothing is allocated while the net is turned.
 
-const MANY_LINES = 4000; // from so many on there are fewer details while it is turned
-const REST_MS = 160; // without a move, after which they are back
+const MANY_LINES = 4000; // a net with more lines loses details while it is turned
+const REST_MS = 160; // time without a movement after which the details return
 
 function netView({ canvas, tip, bar, scaleLabel }) {
-  const view = { yaw: -35, pitch: 32, zoom: 1, panX: 0, panY: 0, fitted: true }; // fitted: the zoom follows the room
+  // fitted: the zoom follows the size of the picture
+  const view = { yaw: -35, pitch: 32, zoom: 1, panX: 0, panY: 0, fitted: true };
   const state = {
     shape: resultShape,
     colour: moveOf.size ? "moves" : "deviation",
@@ -22,15 +24,15 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     theory: true,
     truss: !!data.truss,
     picked: null,
-    chosen: -1, // the cable that was clicked, here or in the table
-    off: new Set(), // sets of cables that are not drawn
+    chosen: -1, // the cable selected by a click, here or in the table
+    off: new Set(), // sets of cables that are hidden
   };
   const theory = data.net.position_m,
     n = net.n_node,
     m = net.n_cable,
     end = net.end,
     truss = data.truss;
-  // Places in space, and on the screen: of the net as it is drawn, of theory, of the truss.
+  // Positions in space and on the screen: of the drawn net, of the target positions, of the truss.
   const drawn = { at: new Float64Array(3 * n), x: new Float32Array(n), y: new Float32Array(n) },
     ghost = { at: theory, x: new Float32Array(n), y: new Float32Array(n) },
     beams = truss && {
@@ -41,27 +43,27 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   const box = [0, 1, 2].map((k) => range(theory.filter((_, i) => i % 3 === k)));
   const centre = box.map(([a, b]) => (a + b) / 2),
     radius = Math.hypot(...box.map(([a, b]) => b - a)) / 2 || 1;
-  // A cable is in any number of sets: it is drawn unless one of them is off, and has the colour of the smallest.
+  // A cable can belong to several sets. It is hidden when one of them is off, and has the colour of the smallest.
   const setsOf = Array.from({ length: m }, () => []);
   net.sets.forEach((set, k) => set.cable.forEach((e) => setsOf[e].push(k)));
   const familyOf = setsOf.map((sets) => sets.sort((a, b) => net.sets[a].cable.length - net.sets[b].cable.length)[0]);
   const supports = Array.from({ length: n }, (_, i) => i).filter((i) => digit(net.role, i) === 0),
     isHeavy = m > MANY_LINES;
-  // The cables that are drawn in the order of their batches, with those ends; batch k from start[k] on.
+  // The visible cables in the order of their batches, with their ends; batch k begins at start[k].
   const order = new Int32Array(m),
     first = new Int32Array(m),
     second = new Int32Array(m),
     batchOf = new Int32Array(m),
-    hasVisible = new Uint8Array(n); // nodes with a cable that is drawn
+    hasVisible = new Uint8Array(n); // nodes with a visible cable
   let batches = [], // { colour, width }
     start = new Int32Array(1),
     nVisible = 0;
   const ink = {};
-  const still = document.createElement("canvas"); // the picture without what is marked
-  let fast = null; // the picture while a large net is turned
+  const still = document.createElement("canvas"); // the picture without marks
+  let fast = null; // the picture of a large net while it is turned
   const camera = { fit: 1, ax: 0, ay: 0, bx: 0, by: 0, bz: 0, x0: 0, y0: 0 };
   let queued = false,
-    isStale = true, // what is drawn has changed, not just the direction
+    isStale = true, // the drawn objects have changed, not only the direction
     isStill = false,
     resting = 0,
     width = 0,
@@ -69,14 +71,14 @@ function netView({ canvas, tip, bar, scaleLabel }) {
 
   // ---- what is drawn, and in which colours ----
 
-  // Places of a shape whose displacements are drawn `scale` times as large; [3] of each place, stride of d.
+  // Sets positions with displacements d multiplied by the scale, three numbers for each.
   function displace(at, from, d) {
     for (let k = 0; k < at.length; k++) at[k] = from[k] + (d ? state.scale * d[k] : 0);
   }
 
   const isNone = (v) => state.colour === "deviation" && v < RESOLVED_MM;
   const isRounding = () => state.colour === "deviation" && innerMost(state.shape.distance_mm) < RESOLVED_MM;
-  // The value that a cable's colour shows, and the range of these values.
+  // Returns the value that the colour of a cable shows. limits() returns the range of these values.
   function valueOf(e) {
     const shape = state.shape;
     if (state.colour === "tension") return shape.tension_N[e];
@@ -88,7 +90,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     return [0, isRounding() ? range(state.shape.distance_mm)[1] : innerMost(state.shape.distance_mm)];
   }
 
-  // Batches for the present colours, and the batch of a cable.
+  // Returns the batches for the present colours, and a function from a cable to its batch.
   function colourRule() {
     const shape = state.shape,
       thin = isHeavy ? 1 : 1.7;
@@ -146,7 +148,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     isStale = false;
   }
 
-  // ---- where it is on the screen ----
+  // ---- positions on the screen ----
 
   function aim() {
     const a = (view.yaw * Math.PI) / 180,
@@ -169,7 +171,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     }
   }
 
-  // The zoom at which net and truss, seen from the present direction, fill the picture.
+  // Sets the zoom at which net and truss fill the picture, seen from the present direction.
   function fitZoom() {
     Object.assign(view, { zoom: 1, panX: 0, panY: 0 });
     aim();
@@ -222,7 +224,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
       strokePart(c, start[k], start[k + 1], drawn);
     }
   }
-  // The same while it is turned, in lines of one pixel.
+  // Draws the cables in lines of one pixel, while the net is turned.
   function drawFast(c) {
     if (!fast || fast.width !== canvas.width || fast.height !== canvas.height)
       fast = linePicture(c, canvas.width, canvas.height);
@@ -299,7 +301,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     drawAxes(c);
   }
 
-  // isFast: while a net of many lines is turned.
+  // isFast: a net of many lines is being turned.
   function draw(isFast) {
     width = canvas.clientWidth;
     height = canvas.clientHeight;
@@ -348,7 +350,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     isStill = false;
     request();
   }
-  // The net is seen from elsewhere.
+  // Redraws the net from another direction.
   function move() {
     isStill = false;
     if (isHeavy) {
@@ -357,7 +359,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     }
     request();
   }
-  // Something about it is drawn otherwise.
+  // Redraws the net after a change of its contents.
   function redraw() {
     isStale = true;
     request();
@@ -381,7 +383,8 @@ function netView({ canvas, tip, bar, scaleLabel }) {
           .filter(([name]) => !state.off.has(name))
           .map(([name, colour]) => {
             const swatch = el("span", { class: "swatch" });
-            swatch.style.background = colour; // not an attribute: the rules of the page allow this alone
+            // set here, because the security policy of the page forbids style attributes
+            swatch.style.background = colour;
             return el("span", { class: "family" }, swatch, familyName(name));
           }),
       );
@@ -393,7 +396,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     }
   }
 
-  // ---- what is under the pointer, and its values ----
+  // ---- the object under the pointer, and its values ----
 
   function segmentDistance(x, y, e) {
     const ax = drawn.x[end[2 * e]],
@@ -472,7 +475,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     request();
   }
 
-  // Marks a cable for good: view.onChoose tells the table.
+  // Selects a cable from the table, or none with -1.
   function choose(e) {
     state.chosen = e;
     state.picked = null;
@@ -498,7 +501,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     view.panY += dy;
     move();
   }
-  // Zooms about a point of the picture: that point stays where it is.
+  // Zooms about a point of the picture, which keeps its position.
   function zoom(factor, x = width / 2, y = height / 2) {
     const before = view.zoom;
     view.fitted = false;

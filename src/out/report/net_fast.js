@@ -1,7 +1,7 @@
-// Lines of one pixel, written straight into the pixels of a picture: while a large net is turned this takes a fraction
-// of what strokes take, which a browser smooths one by one.
+// Draws lines of one pixel directly into the pixels of a picture. While a large net is turned, this takes a fraction of
+// the time of strokes, which a browser smooths one by one.
 
-// The part of the line p + t d that lies within 0..end, cut from `part` = [t0, t1]; false when nothing is left.
+// Cuts the line p + t d, t within `part` = [t0, t1], to 0..end. Returns false when nothing is left.
 function cutLine(part, p, d, end) {
   if (d === 0) return p >= 0 && p <= end;
   const a = -p / d,
@@ -11,7 +11,7 @@ function cutLine(part, p, d, end) {
   return part[0] <= part[1];
 }
 
-// A picture of width x height pixels for a context, to be drawn on and shown.
+// Returns a picture of width x height pixels of a context, with functions to draw lines and to show it.
 function linePicture(c, width, height) {
   const image = c.createImageData(width, height),
     pixels = new Uint32Array(image.data.buffer),
@@ -21,7 +21,7 @@ function linePicture(c, width, height) {
     bytes = new Uint8Array(4),
     word = new Uint32Array(bytes.buffer);
 
-  // The pixel of a colour of the style: the context knows every way to write it.
+  // Returns the pixel of a colour of the style. The context parses any notation of it.
   function pixelOf(colour) {
     c.fillStyle = colour;
     const text = c.fillStyle; // #rrggbb
@@ -50,7 +50,7 @@ function linePicture(c, width, height) {
       ay += dy;
     }
   }
-  // Lines from..to between the places x, y of their ends.
+  // Draws the lines from..to between the screen positions x, y of their ends.
   function lines(colour, from, to, first, second, { x, y }) {
     const pixel = pixelOf(colour);
     for (let k = from; k < to; k++) line(pixel, x[first[k]], y[first[k]], x[second[k]], y[second[k]]);

@@ -1,4 +1,4 @@
-// The net in space under pointer, fingers and keys.
+// Handles pointer, touch and keys for the net in space.
 
 function netHand(canvas, { turn, pan, zoom, look, step, pick, select, chooseFound }) {
   const pointers = new Map();

@@ -1,6 +1,6 @@
-// Contents: the far field of surface.pattern: cuts, and the figures of each
+// The section of the far field of surface.pattern: cuts, and the figures of each.
 
-// Of this result, and of the other one its result.
+// Returns the far fields of this result, and that of the result of the other one.
 function patterns() {
   const named = (list, name) => (list || []).map((p) => ({ ...p, name: name(p) }));
   const { other } = data,
@@ -16,12 +16,13 @@ const phi = (angle) => `φ ${fmt(angle, 6)}°`,
   angles = (list) => (list.length > 1 ? `${phi(list[0])} to ${fmt(list.at(-1), 6)}°` : phi(list[0]));
 const different = (values) => [...new Set(values)].sort((a, b) => a - b);
 
-const CUTS_MAX = 4, // as many as there are colours
+const CUTS_MAX = 4, // not more than there are colours
   DASHES = ["7 3", "2 3", "9 3 2 3"],
-  DEPTH_DB = 60; // below the beam
+  DEPTH_DB = 60; // range below the beam
 
-// Cuts of one frequency, at most CUTS_MAX of them; a colour each, and a dash for each shape that is not the result.
-//   isPart: there are more cuts, in other charts
+// Draws the cuts of one frequency, at most CUTS_MAX of them. Each cut has a colour, and each shape other than the
+// result has a dash.
+//   isPart: other charts show further cuts
 function patternChart(all, frequency_Hz, phi_deg, isPart) {
   const x = different(all.flatMap((p) => p.theta_deg)),
     at = new Map(x.map((theta, i) => [theta, i]));

@@ -1,4 +1,4 @@
-// Contents: colours - ticks
+// Contents: colours, ticks.
 
 // ---- colours ----
 
@@ -7,10 +7,10 @@ const printing = matchMedia("print");
 const isDark = () => darkScheme.matches && !printing.matches;
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-// Far from each other for any kind of colour vision (tests/browser/look.mjs), in this order.
+// Colours that can be told apart with any kind of colour vision, in this order (tests/browser/look.mjs).
 const SERIES = ["--one", "--two", "--three", "--four", "--five", "--six"];
 
-// OKLCH -> sRGB bytes (Ottosson 2020): equal steps of lightness look equal.
+// Converts OKLCH to sRGB bytes (Ottosson 2020), in which equal steps of lightness look equal.
 function oklch(lightness, chroma, hue) {
   const a = chroma * Math.cos((hue * Math.PI) / 180),
     b = chroma * Math.sin((hue * Math.PI) / 180);
@@ -27,25 +27,26 @@ function oklch(lightness, chroma, hue) {
   });
 }
 
-// Lightness changes evenly away from the background, hue from yellow to blue: colours that people with any kind of
-// colour vision can tell apart.
+// Returns a colour for t = 0..1. Lightness changes evenly away from the background and hue from yellow to blue, so the
+// colours can be told apart with any kind of colour vision.
 function sequential(t) {
   return isDark()
     ? oklch(0.42 + 0.48 * t, 0.11 + 0.02 * t, 265 - 165 * t)
     : oklch(0.83 - 0.52 * t, 0.13, 95 + 170 * t);
 }
-// For signed values: t = 0.5 is zero, blue lies below and orange above, both away from the background's lightness.
+// Returns a colour for signed values: t = 0.5 is zero, blue is below, orange is above. Both move away from the
+// lightness of the background.
 function diverging(t) {
   const size = Math.abs(2 * t - 1),
     hue = t < 0.5 ? 255 : 55;
   return isDark() ? oklch(0.3 + 0.48 * size, 0.15 * size, hue) : oklch(0.95 - 0.47 * size, 0.16 * size, hue);
 }
 
-// Smaller deviations are rounding: they have one colour and no scale.
+// Smaller deviations are rounding. They have one colour and no scale.
 const RESOLVED_MM = 1e-6;
 const neutral = () => diverging(0.5);
 
-// What is farther from the values of a picture than so many times their range is named, and not drawn.
+// A mark or level is named instead of drawn when its distance from the values exceeds so many times their range.
 const REACH = 2;
 
 const LEVELS = 64;
@@ -58,7 +59,7 @@ function levelOf(value, [low, high]) {
   return Math.max(0, Math.min(LEVELS - 1, Math.round(t * (LEVELS - 1))));
 }
 
-// Millimetres, and dB, which are as small where it is noise.
+// Formats millimetres, or dB, for which the same limit of rounding is used.
 const rounded = (v, digits) => (Math.abs(v) < RESOLVED_MM ? `< ${power(-6)}` : digitsOf(v, digits));
 const roundedMm = (m) => (typeof m === "number" ? rounded(1e3 * m, 5) : "–");
 const roundingNote = () =>
@@ -68,11 +69,12 @@ const roundingNote = () =>
     "The inner nodes are within 1 nm of theory, less than what is resolved here: they have one neutral colour.",
   );
 
-// The colour bar of a picture. Values outside its range, down to lowest and up to highest, take the colours of its
+// Draws the colour bar of a picture. Values outside low..high, from `lowest` to `highest`, have the colours of its
 // ends.
 function drawBar(bar, colours, [low, high], label, [lowest, highest] = [low, high]) {
   const size = Math.max(Math.abs(low), Math.abs(high)),
-    digits = high > low ? Math.max(3, Math.ceil(Math.log10(size / (high - low))) + 2) : 3; // that tell its ends apart
+    // enough digits to distinguish the ends
+    digits = high > low ? Math.max(3, Math.ceil(Math.log10(size / (high - low))) + 2) : 3;
   const canvas = el("canvas", { width: 256, height: 1, role: "img", "aria-label": `colour bar: ${label}` });
   const c = canvas.getContext("2d");
   for (let x = 0; x < 256; x++) {
@@ -135,7 +137,7 @@ function logTicks(low, high) {
   return ticks;
 }
 
-// An axis over the values: `at` maps a value to 0..1; all ticks lie within that range.
+// Returns an axis over the values. `at` maps a value to 0..1; all ticks are within that range.
 function axis(values, log) {
   let [low, high] = range(log ? values.filter((v) => v > 0) : values) || [0, 1];
   if (log && low > 0) {

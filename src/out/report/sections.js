@@ -1,4 +1,4 @@
-// Contents: histories - tensions - tables
+// Contents: histories, tensions, tables.
 
 // ---- histories ----
 
@@ -223,7 +223,7 @@ function tensionChart(group) {
       values: of.map((e) => s.tension_N[e]),
       colour: colour[s.stage],
       dots: true,
-      size: (of.length > 300 ? 2.5 : 4) + 2 * (shapes.length - 1 - k), // so that those below others are seen
+      size: (of.length > 300 ? 2.5 : 4) + 2 * (shapes.length - 1 - k), // larger marks below others remain visible
     })),
   });
 }
@@ -245,7 +245,7 @@ function writeTensions() {
 
 // ---- tables ----
 
-// Of more than three columns a phone shows one below the other.
+// Returns a table. On a phone, a table of more than three columns shows them one below the other.
 function table(headings, rows, caption) {
   const isWide = headings.length > 3;
   if (isWide)
@@ -270,7 +270,8 @@ function table(headings, rows, caption) {
   );
 }
 
-// The RMS that each loss of gain is computed from: a loss without a number is beyond Ruze's formula if it has one.
+// The RMS from which each gain loss is computed. If it has a value and the loss has none, the loss is outside the range
+// of Ruze's formula.
 const RMS_OF_LOSS = {
   gain_loss_dB: "half_path_rms_m",
   fit_gain_loss_dB: "fit_half_path_rms_m",
@@ -278,8 +279,8 @@ const RMS_OF_LOSS = {
   facet_fit_gain_loss_dB: "facet_fit_half_path_rms_m",
 };
 
-// All figures of a stage by their keys, those of the surface, goals and losses of gain too; of a loss the key has the
-// place of its frequency among those given, by default the stage's own.
+// Returns all figures of a stage by their keys, with those of the surface, objectives and gain losses. The key of a
+// gain loss contains the index of its frequency in frequency_Hz, by default the stage's own.
 function stageValues(stage, frequency_Hz) {
   const surface = stage.surface || {},
     own_Hz = surface.frequency_Hz || [],
@@ -294,10 +295,10 @@ function stageValues(stage, frequency_Hz) {
   return values;
 }
 
-// Rows of tables of figures: words, unit, key, how it is shown. `first`: the values of a stage.
+// Returns the rows of tables of figures: name, unit, key, format. `first` has the values of a stage.
 function figureRows(first) {
   const mm = (v) => rounded(1e3 * v, 5);
-  const hz = (v) => (v < 1e15 ? digitsOf(v / 1e9, 3) : `> ${power(6)}`); // beyond any use: its RMS is rounding
+  const hz = (v) => (v < 1e15 ? digitsOf(v / 1e9, 3) : `> ${power(6)}`); // higher frequencies come from rounding
   const goals = Object.entries(first.goals || {});
   const loss = (v) => (typeof v === "string" ? v : rounded(v, 3));
   const frequencies = (first.frequency_Hz || []).map((v) => `${fmt(v / 1e9, 4)} GHz`);
@@ -361,14 +362,14 @@ function figureRows(first) {
     ["stopped by", "", "stop_reason", stopText],
     ["wall time", "", "wall_s", fmtDuration],
   ];
-  // Figures of the result without a row above get one with the words of the list they come from.
+  // Other figures of the result have the description of the list that defines them.
   const named = new Set(rows.map(([, , key]) => key));
   const others = (data.figures || []).filter(({ key }) => !named.has(key));
   rows.push(...others.map(({ key, units, description }) => [description, units, key, (v) => fmt(v, 4)]));
   return rows;
 }
 
-// Terms, the figures of these keys, and the words that they are in the stages, as `hifdm explain` tells them.
+// Lists terms, figures of these keys and words of these stages with their descriptions, as `hifdm explain` prints them.
 function writtenWords(keys, stages) {
   const wanted = new Set(keys.map((key) => key.replace(/\[.*/, ""))),
     told = new Set();
@@ -390,14 +391,14 @@ function writtenWords(keys, stages) {
 
 const hasFigure = (v) => typeof v === "number" || typeof v === "string";
 
-// What a figure means; of a word, such as why an iteration stopped, what that one means.
+// Returns the description of a figure or, with `of`, of a word that is the value of figure `of`.
 function meaning(word, of) {
   const found = (data.words || []).find((entry) => entry.word === word && entry.of === of);
   return found ? found.text : undefined;
 }
 const quantity = (name, unit, key) =>
   el("th", { scope: "row", "data-unit": unit || null, title: meaning(key.replace(/\[.*/, "")) }, name);
-// A value, and the meaning of one that is a word.
+// Returns a value, with its description if it is a word.
 const shownFigure = (key, value, format) =>
   hasFigure(value) ? el("span", { title: typeof value === "string" ? meaning(value, key) : null }, format(value)) : "–";
 const breakable = (key) => key.split(/(?<=_)/).flatMap((part, k) => (k ? [el("wbr"), part] : part));
@@ -438,7 +439,7 @@ function writeSummary() {
   );
 }
 
-// The states of the net as built, a row each.
+// Writes the load cases of the as-built net, one row each.
 function writeCases() {
   const cases = Object.entries(summary.cases || {});
   if (!cases.length) return;

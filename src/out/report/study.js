@@ -1,4 +1,4 @@
-// Contents: axes - curves - table of points - the page of a merged study
+// Contents: axes, figures, curves and maps, table of points, the page of a merged study.
 
 // ---- axes ----
 
@@ -19,7 +19,7 @@ function readAxes(study) {
     const columns = input.columns || 1,
       named = axisName(input.name),
       isNumber = !input.texts && columns === 1;
-    // small lengths, such as errors of the cut, in millimetres
+    // small lengths, such as errors of the cut, in mm
     const isSmall = isNumber && named.unit === "m" && (range(input.values.map(Math.abs)) || [0, 1])[1] < 0.1,
       values = isSmall ? input.values.map((v) => Number((1e3 * v).toPrecision(12))) : input.values;
     if (isSmall) Object.assign(named, { unit: "mm", text: `${named.name} (mm)` });
@@ -32,28 +32,27 @@ function readAxes(study) {
       done = all.filter((i) => study.status[i] === "ok");
     return {
       key: input.name,
-      goOn: input.go_on, // above or below its end, where the best point is
+      goOn: input.go_on, // the side on which to extend the axis, if any
       ...named,
       label,
       isNumber,
       varies: countOf(all) > 1,
-      isDrawn: countOf(done) > 1, // several of its values led to a result
+      isDrawn: countOf(done) > 1, // several of its values have a result
       only: done.length ? label(done[0]) : "",
       value: (i) => (isNumber ? values[i] : label(i)),
     };
   });
 }
 
-// ---- figures: what the points have, and which axis it depends on ----
+// ---- figures of the points ----
 
 const STAGE_STYLE = { form: ["--one", null], optimize: ["--two", "7 3"], polish: ["--three", "2 3"] };
-const BUILT = "tolerance"; // the stage of the net as built
-const isState = (stage) => stage.startsWith("case "); // of `cases`
+const BUILT = "tolerance"; // the stage of the as-built net
+const isState = (stage) => stage.startsWith("case "); // a load case of the as-built net
 const stageWords = (stage) => stageName[stage] || stage;
 const TOLD_IN = { m: ["mm", 1e3], Hz: ["GHz", 1e-9] };
 
-// What a figure is called: its title, the name of its values on an axis, where it stands among the others, the head of
-// its column in the table.
+// Returns the names of a figure: title, name of its values on an axis, rank among the figures, heading of its column.
 function figureWords({ key, goal: goalWords }) {
   const [, facets, fit, rest] = key.match(/^(facet_)?(fit_)?(.*)$/),
     after = fit ? ", after best fit" : "",
@@ -82,8 +81,9 @@ function figureWords({ key, goal: goalWords }) {
 }
 const lowered = (title) => title.replace(/^[A-Z]/, (c) => c.toLowerCase());
 
-// The figures of a study, each with its stages: of: (i, stage) -> its value at a finished point, or null; drawn: the
-// stages in which it varies, by more than rounding.
+// Returns the figures of a study with their stages.
+//   of: (i, stage) -> value at a finished point, or null
+//   drawn: the stages in which the figure varies by more than rounding
 function readFigures(study, mainStage) {
   const rows = study.figure.filter((row) => figureWords(row) && !row.psi);
   return [...new Set(rows.map(({ key }) => key))]
@@ -103,8 +103,8 @@ function readFigures(study, mainStage) {
         yLabel: unit ? `${name} (${unit})` : name,
         isLoss: /gain_loss_at_/.test(key),
         isError: /half_path_rms_m|good_to_Hz/.test(key),
-        log: /^n_/.test(key) ? false : "auto", // a count of 0 is drawn
-        // a loss without a value is above what the formula holds for, where there is a surface
+        log: /^n_/.test(key) ? false : "auto", // a count may be 0
+        // a loss without a value is outside the range of the formula if the surface error has one
         isBeyond: (i, stage = main) => {
           const errors = study.output.find((o) => o.stage === stage) || {},
             rms = errors[key.replace(/gain_loss_at_.*/, "half_path_rms_m")] || [];
@@ -121,7 +121,7 @@ function readFigures(study, mainStage) {
     .sort((f, g) => f.rank - g.rank);
 }
 
-// What a figure is where it is the same everywhere; of other stages than the result psi alone is told.
+// Returns the text of a figure that is the same at all points. Of stages other than the result only psi is named.
 function sameText(study, f, stage) {
   const i = study.status.findIndex((word, k) => word === "ok" && f.of(k, stage) !== null),
     of = f.key === "psi_m" && f.stages.length > 1 ? ` ${stageWords(stage)}` : "";
@@ -133,8 +133,8 @@ function sameText(study, f, stage) {
   return `${lowered(f.title)}${of} ${value}${f.unit ? `\u00a0${f.unit}` : ""}`;
 }
 
-// Which part of the variance of a figure the mean over the points with the same value of an axis has. In a product of
-// axes the parts of all axes and of their interplay make 1.
+// Returns the share of an axis in the variance of a figure: the variance of the means over points with the same value
+// of the axis. In a full product of axes, the shares of all axes and of their interaction add up to 1.
 function shareOf(study, figure, axis) {
   const groups = new Map();
   let n = 0,
@@ -158,12 +158,12 @@ function shareOf(study, figure, axis) {
 
 // ---- curves and maps ----
 
-const CURVES_MAX = 4; // more curves than these colours are drawn as a map of two axes, or as marks
+const CURVES_MAX = 4; // more curves are drawn as a map of two axes, or as marks
 const pointsDone = (study) => Array.from({ length: study.n }, (_, i) => i).filter((i) => study.status[i] === "ok");
 const valuesOf = (study, axis) =>
   [...new Set(pointsDone(study).map(axis.value))].sort((a, b) => (a < b ? -1 : a > b ? 1 : 0));
 
-// Groups the points into curves: the points of a curve agree in all axes but one. Curves are in the order of the values
+// Groups the points into curves. Points of a curve agree in all axes but one. Curves are in the order of the values
 // that their points share.
 function curves(study, axis, others) {
   const groups = new Map();
@@ -207,7 +207,7 @@ function curveChart(study, figure, axis, others, groups, stage) {
       dots: x.length < 2,
     })),
   );
-  const isAlone = isOne && isStaged && stages.length === 1 && figure.stages.length > 1; // without a legend, then
+  const isAlone = isOne && isStaged && stages.length === 1 && figure.stages.length > 1; // the chart then has no legend
   return chart({
     ...figure,
     title: isAlone ? `${figure.title}, ${stageWords(stages[0])}` : figure.title,
@@ -215,7 +215,7 @@ function curveChart(study, figure, axis, others, groups, stage) {
     x,
     series,
     counted: isWhole(x),
-    floor: ["mm", "N"].includes(figure.unit) ? RESOLVED_MM : undefined, // what rounding leaves is not drawn
+    floor: ["mm", "N"].includes(figure.unit) ? RESOLVED_MM : undefined, // smaller values are rounding
     marks:
       isOne && figure.isLead
         ? [{ name: "best point", at: axis.value(study.best), colour: "--alarm", dash: "2 3" }]
@@ -225,7 +225,7 @@ function curveChart(study, figure, axis, others, groups, stage) {
   });
 }
 
-// A mark for each point, and the mean over those with the same value.
+// Draws a mark for each point.
 function markChart(study, figure, axis, others, stage) {
   const points = pointsDone(study).sort((i, j) => axis.value(i) - axis.value(j));
   return chart({
@@ -247,8 +247,8 @@ function markChart(study, figure, axis, others, stage) {
   });
 }
 
-// Two axes and a colour: a cell for each pair of values, with its value where there is room.
-const CELL_TEXT_MAX = 44; // characters of a row that still have room
+// Draws a map of two axes, with a coloured cell for each pair of values. The cell shows its value if there is room.
+const CELL_TEXT_MAX = 44; // characters of a row that fit
 function heatMap(study, figure, axis, other, stage) {
   const columns = valuesOf(study, axis),
     rows = valuesOf(study, other).reverse(),
@@ -310,7 +310,7 @@ function heatMap(study, figure, axis, other, stage) {
   );
 }
 
-// Does the figure change where all axes but this one stay?
+// Returns whether the figure changes along the axis of these curves.
 function changesAlong(figure, groups, stage) {
   const from = figure.main === BUILT ? BUILT : stage;
   return groups.some(({ at }) => {
@@ -340,9 +340,9 @@ function drawFigures(study, figures, axis, others, stage, place, said) {
   place.replaceChildren(...charts.filter((c) => c));
 }
 
-const LITTLE = 0.001; // an axis that has no more of the variance does not matter
+const LITTLE = 0.001; // a smaller share of the variance is negligible
 
-// Sentences: what each axis explains, and figures that are the same everywhere.
+// Describes the shares of the axes in the variance of a figure.
 function whatMatters(figure, shares) {
   if (shares.length < 2) return "";
   const part = (share) => (share < LITTLE ? "less than 0.1\u00a0%" : percent(share, 2));
@@ -422,10 +422,10 @@ function writeCurves(study, axes, figures, mainStage) {
 // ---- table of points ----
 
 const TOLD_MAX = 5,
-  COLUMNS_WIDE = 11, // more columns than this are narrow
+  COLUMNS_WIDE = 11, // a table with more columns has narrow ones
   POINTS_SHOWN = 64;
 
-// A link is made only to a file: any other scheme in the data stays text.
+// Returns a link to a file only. Any other scheme in the data becomes part of a path.
 const href = (path) => (path.startsWith("/") ? "" : "./") + path.split("/").map(encodeURIComponent).join("/");
 
 function pointLink(study, i) {
@@ -435,7 +435,7 @@ function pointLink(study, i) {
 
 const aligned = (v, digits) => (v === 0 ? "0" : Math.abs(v) < RESOLVED_MM ? rounded(v) : digitsOf(v, digits));
 
-// A figure of a stage as a column.
+// Returns the column of a figure of a stage.
 function figureColumn(study, f, stage) {
   const of = (i) => f.of(i, stage),
     name = f.key === "psi_m" ? `ψ ${stageWords(stage)}` : isState(stage) ? `${f.column}, ${stage}` : f.column,
@@ -516,7 +516,7 @@ function writeStudy(study) {
   document.getElementById("footer").textContent = shown(
     `Merged study ${study.path}.`,
   );
-  // points that failed in one way: how many, and the reason of the first
+  // points grouped by the kind of failure, with the reason of the first
   const ways = new Map();
   study.reason.forEach((reason, i) => {
     const way = reason.split(": ")[0];

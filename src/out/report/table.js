@@ -1,25 +1,24 @@
-// Contents: tables that are sorted by a click on a heading, and searched
+// Tables that can be sorted by a click on a heading, and searched.
 
 const ROWS_AT_ONCE = 100;
 const phone = matchMedia("(max-width: 40rem)");
 let tables = 0;
 
-// A table of n rows, of which a few are shown until the reader asks for all; of all those are made that are
-// scrolled to. Paper has those that are shown, and says which they are.
+// Returns a table of n rows. It shows a few rows until the reader asks for all, and then creates those that are
+// scrolled into view. Print has the rows that are shown, and a line that says which.
 //   columns: { name, number: right-aligned, of: (i) -> value to sort by, show: (i) -> text or node of the cell,
-//     beside: on a phone it stands beside the name of the row }
-//   by: the column that it is sorted by at first, largest value first; -1: none, in the order of the rows
-//   search: what the field of the search says; most: how many rows there are at first
+//     beside: on a phone it is beside the name of the row, size: sorted by size without the sign }
+//   by: column of the first order, largest value first; -1: in the order of the rows
+//   search: hint in the search field; most: number of rows at first
 //   dense: many columns, which are narrow
-//   size: its values without their signs (a change)
-//   words: (i) -> text that a search looks in; without it there is no search
-// Returns the node, and first(i): puts row i at the top and marks it; -1: none.
+//   words: (i) -> text that the search looks in; without it there is no search
+// The result has the node, and first(i), which puts row i at the top and marks it; -1: none.
 function sortableTable({ caption, columns, n, by, words, search: hint = "name or family", most: few = 0, dense }) {
   const most = () => few || (phone.matches ? 10 : 20);
   const state = { by, falls: true, text: "", all: false, first: -1, order: [], made: 0 };
   const every = Array.from({ length: n }, (_, i) => i),
     letters = new Intl.Collator("en", { numeric: true });
-  let texts = null; // made by the first search
+  let texts = null; // created by the first search
   const body = el("tbody", { id: `rows-${++tables}` }),
     more = el("button", { type: "button", "aria-controls": body.id }),
     said = el("span", { class: "muted", role: "status" }),
@@ -33,7 +32,7 @@ function sortableTable({ caption, columns, n, by, words, search: hint = "name or
     return el("th", { scope: "col", class: column.number ? "number" : undefined, "data-name": column.name }, press);
   });
 
-  // Rows without a value are last, whichever way the others are sorted.
+  // Compares rows. Those without a value are last in either direction.
   function compare(a, b) {
     const { of, size } = columns[state.by];
     const at = (i) => (size && typeof of(i) === "number" ? Math.abs(of(i)) : of(i));
@@ -56,7 +55,7 @@ function sortableTable({ caption, columns, n, by, words, search: hint = "name or
     return el("tr", { class: i === state.first ? "chosen" : undefined }, cells);
   }
 
-  // More rows, as long as the end of those that are there is less than `far` below the upper edge of the screen.
+  // Adds rows while the end of the table is less than `far` below the upper edge of the screen.
   function makeRows(far = 2 * innerHeight) {
     const { order } = state,
       now = most(),

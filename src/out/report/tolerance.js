@@ -1,4 +1,4 @@
-// Contents: samples of the net as built, which are under `tolerance` in the summary
+// The section of the samples of the as-built net, which are under `tolerance` in the summary.
 
 const ERROR_KIND = {
   cut_m: "cut lengths",
@@ -12,8 +12,8 @@ const ERROR_KIND = {
 };
 const percent = (part, digits = 3) => `${fmt(100 * part, digits)}\u00a0%`;
 
-// Limits of psi that the case requires, and figures of the samples. A limit that is farther from the samples than
-// REACH times their range would make the histogram a line, so it is only named.
+// Returns marks for figures of the samples and for limits of psi that the case requires. A mark is only named when its
+// distance from the samples exceeds REACH times their range, because it would compress the histogram.
 function toleranceMarks(t, [low, high]) {
   const reach = REACH * (high - low);
   const all = [
@@ -38,7 +38,7 @@ function toleranceChart(t) {
   if (typeof low !== "number" || typeof high !== "number") return null; // no sample has a shape
   const n = t.histogram.length,
     width = (1e3 * (high - low)) / n,
-    digits = Math.max(5, Math.ceil(Math.log10((1e3 * high) / width)) + 1), // edges differ in the last of them
+    digits = Math.max(5, Math.ceil(Math.log10((1e3 * high) / width)) + 1), // edges differ in the last digit
     edge = (i) => fmt(1e3 * low + i * width, high > low ? digits : 5),
     marks = toleranceMarks(t, [low, high]);
   const far = marks.filter(({ isFar }) => isFar).map(({ name }) => name);
