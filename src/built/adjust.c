@@ -70,10 +70,11 @@ typedef struct {
     /* [HF_ESTIMATE_SAMPLES][n_row] changes of the residuals by each posterior sample, and [n_row] residuals without
      * adjustments by the linear model. */
     double *left_open, *at_zero;
-    double *product;                        /* products of these n + HF_ESTIMATE_SAMPLES + 1 rows with each other */
-    double *gram, *slope, *sample, *move_m; /* [n][n], [n], [HF_ESTIMATE_SAMPLES][n], [n] */
-    int *steps, *trial;                     /* [n] */
-    double *least_N;                        /* [n_cable of the model] tensions that adjustments must keep */
+    double *product; /* products of these n + HF_ESTIMATE_SAMPLES + 1 rows with each other */
+    /* [n][n] J'J; [n] J'r; [HF_ESTIMATE_SAMPLES][n] J'dr; [n] for continuous adjustments, m. */
+    double *gram, *slope, *sample, *move_m;
+    int *steps, *trial; /* [n] steps of the accepted and of the tried choice */
+    double *least_N;    /* [n_cable of the model] tensions that adjustments must keep */
     /* [n_cable of the model] how far each tension may fall below its value without adjustments. */
     double *room_N;
     bool is_current; /* true: the linear model belongs to the shape with `steps` */
@@ -430,8 +431,8 @@ static bool promises(const adjustment *a, double figure_m)
     return !(square >= figure_m * figure_m * (1 - LITTLE) * (1 - LITTLE));
 }
 
-/* Searches the continuous optimum from the chosen shape and writes its figure to found->best_m. The derivatives of the
- * last linear model are kept as long as steps with them reduce the figure. */
+/* Searches for the continuous optimum from the chosen shape and writes its figure to found->best_m. The derivatives of
+ * the last linear model are kept as long as steps with them reduce the figure. */
 static hf_status find_best(adjustment *a, hf_adjustment *found)
 {
     bool gains = true, is_new = true;
@@ -567,10 +568,10 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
     found->block = arena.block;
     if (!a->is_current) HF_TRY(solve_steps(a, a->steps, &figure_m));
     hf_status status = a->is_current ? HF_OK : linearise(a);
-    /* without stiffness the last linear model orders them */
+    /* Without stiffness the last linear model orders them. */
     if (status != HF_OK && status != HF_SINGULAR) return status;
     a->is_current = status == HF_OK;
-    HF_TRY(make_order(a, found->n_move, &order)); /* before hf_turned_answer moves the linear model */
+    HF_TRY(make_order(a, found->n_move, &order)); /* before hf_turned_answer changes the linear model */
     status = found->n_move ? find_beyond(a) : HF_OK;
     memset(a->trial, 0, a->n * sizeof *a->trial);
     if (status == HF_OK) status = solve_steps(a, a->trial, &figure_m);
@@ -578,7 +579,7 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
     if (status == HF_OK) {
         hf_estimate_spread(sample_m, &found->doubt_m[0], &found->spread_m[0]);
         for (int e = 0; e < a->problem.n_tension; e++)
-            found->n_maybe_slack += !(a->work.tension_N[e] > a->doubt_N[e]); /* a slack cable has 0 for both */
+            found->n_maybe_slack += !(a->work.tension_N[e] > a->doubt_N[e]); /* both are 0 for a slack cable */
         status = make_moves(a, &order, sample_m, found);
     }
     arena.block = order.block;

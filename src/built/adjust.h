@@ -1,4 +1,4 @@
-/* adjust - finds the fewest turnbuckle adjustments that restore the figure of an as-built net (METHOD section 12).
+/* adjust - finds a few turnbuckle adjustments that restore the figure of an as-built net (METHOD section 12).
  *
  * Input is an estimate of the errors of the net (built/estimate.h) and the list of cables that have a turnbuckle.
  * Output is an ordered list of adjustments in whole steps, each with the figure that it reaches and its uncertainty.
@@ -17,10 +17,8 @@ typedef struct {
     /* The figure: exactly one objective, made for the model of the as-built net. */
     const hf_goals *goals;
     int n_cable, *cable; /* [n_cable] cables that have a turnbuckle */
-    const double
-        /* [n_cable of the net] minimum tensions that adjustments must keep, N; NULL: only HF_ADJUST_TAUT limits
-         * them. */
-        *least_N;
+    /* [n_cable of the net] minimum tensions that adjustments must keep, N; NULL: only HF_ADJUST_TAUT limits them. */
+    const double *least_N;
     int n_thread; /* number of threads; 0: all cores */
 } hf_adjust_task;
 
@@ -43,8 +41,8 @@ typedef struct {
     double nominal_m;   /* figure of the nominal net */
     double estimated_m; /* figure of the estimated shape, over all nodes */
     double adjusted_m;  /* figure after all adjustments */
-    /* Lowest figure found by a local search over all turnbuckles within their range, without steps and without limits
-     * on tensions. */
+    /* Lowest figure found by a local search over all turnbuckles within their range, without rounding to steps and
+     * without limits on tensions. */
     double best_m;
     double doubt_m[2];  /* RMS of the figure over the posterior samples, before and after all adjustments */
     double spread_m[2]; /* standard deviations of the figure over the same samples */
@@ -59,7 +57,7 @@ typedef struct {
     bool is_settled; /* the choice has converged: the last linear model leads to no better one */
     hf_moves_end end;
     int n_move;
-    hf_adjust_move *move; /* [n_move] */
+    hf_adjust_move *move; /* [n_move] the adjustments in their order */
     void *block;
 } hf_adjustment;
 

@@ -54,7 +54,7 @@ static void rest_supports(const hf_model *m, const hf_workspace *w, hf_scene *s)
             s->position_m[3 * m->node_of_row[m->attachment_row[k]] + c] -= w->displacement_m[3 * k + c];
 }
 
-/* Sets the cut length of each cable, l0 = l/(1 + T/EA) (M32), and its design tension. */
+/* Sets the cut length (M32) and the design tension of each cable. */
 static void cut_cables(const hf_model *m, const hf_workspace *w, hf_built *b)
 {
     for (int e = 0; e < b->scene.n_cable; e++) {

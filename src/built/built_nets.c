@@ -33,7 +33,7 @@ typedef struct {
     bool has_weight;
     double *length_m;     /* [n_cable] lengths in one shape */
     unsigned char *loose; /* [n_node] all 0: each node counts at the position that it has */
-    /* arguments of hf_built_linear_apply_by, [HF_GOALS_AT_ONCE] each */
+    /* [HF_GOALS_AT_ONCE][...] arguments of hf_built_linear_apply_by. */
     double *strain_N, *dof_load_N, *dof_move_m, *scratch;
     double *cut_rate;                              /* [n_cable] derivatives of the cut lengths of the design */
     double *rate_m, *rate_N, *rate_displacement_m; /* [HF_GOALS_AT_ONCE] derivatives of the shape of a net */
@@ -319,7 +319,7 @@ static void follow_weight(const nets_room *r, double *dof_load)
     }
 }
 
-/* Sorts the solution by coordinate for goals.h, and sets the displacements of the attachments by the truss. */
+/* Rearranges the solution by coordinate for goals.h, and sets the displacements of the attachments by the truss. */
 static void spread_net(const nets_room *r, int k, double *displacement_m)
 {
     const hf_model *m = r->nets->model;

@@ -18,9 +18,9 @@
 
 typedef struct {
     const hf_built_errors *errors;
-    double *share;   /* [STRIPS][n] */
+    double *share;   /* [STRIPS][n] sums of squares of each group */
     double *square;  /* [3 n_inner_node] variance of each coordinate */
-    double *scratch; /* [n_thread][n_room] */
+    double *scratch; /* [n_thread][n_room] scratch of each thread */
     size_t n_room;   /* doubles of scratch for one thread */
 } strips;
 

@@ -26,8 +26,8 @@ enum { SHIFTS = HF_ERROR_STREAMS, LAST_BITS, STARTS };
 typedef struct {
     const hf_built_errors *errors;
     int n;
-    double *column;  /* [n][n_error] */
-    double *scratch; /* [n_thread][n_room] */
+    double *column;  /* [n][n_error] present directions */
+    double *scratch; /* [n_thread][n_room] scratch of each thread */
     size_t n_room;
 } iteration;
 

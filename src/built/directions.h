@@ -30,9 +30,9 @@ hf_status hf_directions_find(const hf_built_errors *errors, const hf_covariance 
                              hf_directions *directions);
 void hf_directions_free(hf_directions *directions);
 
-/* Computes the points first to first + count - 1 of the sequence into point [count][n]. A digital shift by the seed
- * moves them into (0, 1). A point has the same bits in whatever order points are requested. Only one thread at a time
- * may call this. */
+/* Computes the points first to first + count - 1 of the sequence into point [count][n]. Its numbers are in (0, 1),
+ * after a digital shift by the seed. A point has the same bits in whatever order points are requested. Only one thread
+ * at a time may call this. */
 void hf_directions_points(hf_directions *directions, long first, int count, double *point);
 
 /* Computes the numbers z of a sample. Those in the directions of the sequence come from its point [n], all others from

@@ -33,10 +33,8 @@ typedef enum { HF_ERROR_KINDS(HF_ERROR_ENUMERATOR) HF_ERROR_N_KIND } hf_error_ki
 /* Describes the effects of temperatures. A member is NULL when its temperatures do not vary. */
 typedef struct {
     const double *expansion_per_K; /* [n_cable] of cables, needed with sigma_temperature_K */
-    const double
-        /* [n_truss][3 n_attachment] displacements of the attachments without any forces, for each row of
-         * tolerance.truss. */
-        *truss_move_m_per_K;
+    /* [n_truss][3 n_attachment] displacements of the attachments without forces, for each row of tolerance.truss. */
+    const double *truss_move_m_per_K;
 } hf_built_heat;
 
 typedef struct {
@@ -47,7 +45,7 @@ typedef struct {
     int first[HF_ERROR_N_KIND + 1]; /* first error of each kind; the last entry is the number of all errors */
     int n_spool, *spool;            /* spools, and [n_cable] spool of each cable */
     int n_support, *support;        /* [n_support] nodes of the scene, ascending */
-    double *expansion_per_K;        /* [n_cable] */
+    double *expansion_per_K;        /* [n_cable] thermal expansion of each cable */
     int n_truss, part[HF_TRUSS_HEAT_ROWS_MAX]; /* part of each row of tolerance.truss */
     double *truss_move_m; /* [n_truss][3 n_attachment] displacements of the attachments by one sigma */
     void *block;

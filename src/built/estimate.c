@@ -120,7 +120,7 @@ static hf_status solve_from_last(const hf_estimate *p, const hf_built_net *net, 
     hf_near from = p->near;
     from.built = &p->last;
     if (!p->has_near || !hf_near_find(&from, net, w, r)) HF_TRY(hf_built_solve(p->built, net, w, r));
-    /* supports stay at their nominal positions: displacements of a net are added to these */
+    /* Supports stay at their nominal positions, because displacements of a net are added to these. */
     for (int c = 0; c < 3; c++)
         memcpy(p->last.place_m + c * m->n_node, w->position_m + c * m->n_node, (size_t)m->n_free * sizeof(double));
     memcpy(p->last.tension_N, w->tension_N, (size_t)m->n_cable * sizeof(double));
@@ -227,7 +227,7 @@ static hf_status ask_saddle(const hf_estimate *p, const estimate_scratch *s, int
 
 /* Solves the linear model with damping t and writes its errors to s->cut_m, s->rest_m and s->shared.
  *
- * With present errors e_k, prior covariance S and misfit m(x) of the positions, it minimises
+ * Let e_k be the present errors, S their prior covariance and m(x) the misfit of the positions. The step minimises
  *
  *     e'S^-1 e/2 + t (e - e_k)'S^-1 (e - e_k)/2 + m(x).
  *

@@ -14,7 +14,7 @@
 
 enum { ID, X, Y, Z, SIGMA, N_COLUMN };
 static const char *const column_name[N_COLUMN] = {"id", "x_m", "y_m", "z_m", "sigma_m"};
-/* columns of `hifdm export --csv` that are ignored */
+/* Columns of `hifdm export --csv` that are ignored. */
 static const char *const ours[] = {"x0_m", "y0_m", "z0_m", "role", NULL};
 #define SPARE_COLUMNS 64
 /* Measured nodes that can move. Fewer do not determine a displacement and a rotation of the whole net. */
@@ -174,7 +174,7 @@ static double turn(double s[3][3], double *angle)
     for (int i = 0; i < 16; i++)
         size = fmax(size, fabs(n[i / 4][i % 4]));
     for (int i = 0; i < 16; i++)
-        /* the shift makes all eigenvalues positive */
+        /* The shift makes all eigenvalues positive. */
         power[i / 4][i % 4] = n[i / 4][i % 4] + (i % 5 == 0 ? 4 * size : 0);
     for (int k = 0; k < 40; k++) {
         for (int i = 0; i < 16; i++) {

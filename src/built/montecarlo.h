@@ -29,10 +29,10 @@ typedef struct {
     long first;   /* sample of the first row */
     /* Present number of rows. */
     int n_now;
-    double *row;     /* [n_chunk][HF_TOLERANCE_COLUMNS] */
+    double *row;     /* [n_chunk][HF_TOLERANCE_COLUMNS] results of the samples */
     double *z;       /* [n_chunk][n_z] numbers of each sample */
-    double *point;   /* [n_chunk][directions.n] */
-    double *scratch; /* [n_thread][n_room] */
+    double *point;   /* [n_chunk][directions.n] points of Sobol's sequence */
+    double *scratch; /* [n_thread][n_room] scratch of each thread */
     size_t n_z, n_room;
     unsigned varies;           /* flags HF_BUILT_VARIES_... */
     atomic_bool has_no_memory; /* a sample could not be measured; any thread may set it */

@@ -185,7 +185,7 @@ void hf_near_look(const hf_near *near, hf_near_lanes *l)
         l->residual_N[lane] = m->reference_N * sqrt(squared[lane]);
         l->gap_m[lane] = sqrt(gap_squared[lane]);
         double gap_N = scale * l->gap_m[lane];
-        /* this order keeps a NaN of the gap */
+        /* This order of the comparison keeps a NaN of the gap. */
         l->excess_N[lane] = gap_N <= l->residual_N[lane] ? l->residual_N[lane] : gap_N;
     }
 }

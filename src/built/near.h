@@ -35,8 +35,8 @@ void hf_near_free(hf_near *near);
 /* Holds the nets in the lanes of one thread. */
 typedef struct {
     hf_chord_lanes lanes;
-    double *cut_m, *stiffness_N_per_m, *tension_N; /* [n_cable][HF_LANES] */
-    double *gap_lanes_m;                           /* [chord.n_pull][HF_LANES] */
+    double *cut_m, *stiffness_N_per_m, *tension_N; /* [n_cable][HF_LANES] of the nets in the lanes */
+    double *gap_lanes_m;                           /* [chord.n_pull][HF_LANES] gaps of the truss */
     int steps[HF_LANES];
     /* The residual, or the gap of the truss in units of its tolerance where that is larger; now and one step before. */
     double excess_N[HF_LANES], excess_before_N[HF_LANES];

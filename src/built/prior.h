@@ -19,7 +19,7 @@ typedef struct {
     double *own_m;           /* [n_cable] standard deviation of a cable's own error */
     double *sigma_m;         /* [n_cable] standard deviation of its whole error */
     int n_shared;            /* shared numbers */
-    hf_prior_number *number; /* [n_shared] */
+    hf_prior_number *number; /* [n_shared] their descriptions */
     double *shared_m;        /* [n_shared][n_cable] error of each length by each number */
     void *block;
 } hf_prior;

@@ -40,12 +40,12 @@ typedef struct {
     int n_factor;                 /* linear->n_factor at the last factorisation; 0: there is no factor */
     double size_m, force_m_per_N; /* units of displacements and multipliers; they scale the entries to about 1 */
     double *general;              /* the band, then its factor */
-    int *pivot;                   /* [n_band] */
+    int *pivot;                   /* [n_band] row exchanges of the band */
     double *column, *solved;      /* [n_border][n_band] columns of the border, and the solutions of the band for them */
-    /* [n_border][n_border] corner; [n_border][n_border] its factor; [n_attached][n_attached] */
+    /* [n_border][n_border] corner; [n_border][n_border] its factor; [n_attached][n_attached] scaled flexibility. */
     double *corner, *dense, *flex;
-    double *work;     /* [1 + HF_SADDLE_DUAL_PANEL][n_border] */
-    int *dense_pivot; /* [n_border] */
+    double *work;     /* [1 + HF_SADDLE_DUAL_PANEL][n_border] scratch, then right-hand sides */
+    int *dense_pivot; /* [n_border] row exchanges of the corner */
     void *block;
 } hf_saddle;
 

@@ -221,14 +221,14 @@ static void add_stiffness(const hf_saddle_dual *d, double sign, const double *v,
 
 /* Holds one of the right-hand sides that are refined together. */
 typedef struct {
-    double *band, *solution, *error; /* [2 n] */
+    double *band, *solution, *error; /* [2 n] right-hand side, its solution, its residual */
     double size, last, largest;      /* largest entries: of the right-hand side, of the last two residuals */
 } refinement;
 
 /* Computes the right-hand side p of the multipliers from the residual in r->error, which it overwrites. */
 static void ask_multipliers(const hf_saddle_dual *d, refinement *r, double *p)
 {
-    /* displacements need less room than the residual, so they may overwrite it */
+    /* Displacements need less room than the residual, so they may overwrite it. */
     double *right = r->error, *moved = right;
     for (int i = 0; i < d->n; i++)
         p[i] = -right[6 * (i / 3) + i % 3];

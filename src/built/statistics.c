@@ -96,8 +96,8 @@ static long binomial_quantile(long n, double part, double probability)
     return low;
 }
 
-/* A quantile is below the value of rank k when at most k - 1 values are below the quantile, so the ranks follow from
- * the binomial distribution. */
+/* A quantile is below the value of rank k when at most k - 1 values are below the quantile. The ranks therefore follow
+ * from the binomial distribution. */
 void hf_statistics_ranks(long n, double part, long *low, long *high)
 {
     *low = binomial_quantile(n, part, TAIL);
@@ -136,7 +136,7 @@ typedef struct {
     double missing;                      /* value that replaces NaN */
     uint64_t above[HF_STATISTICS_RANKS]; /* known leading digits of each rank's value */
     long left[HF_STATISTICS_RANKS];      /* rank among the values with these digits */
-    long *count;                         /* [n_rank][DIGIT] */
+    long *count;                         /* [n_rank][DIGIT] values with each digit */
 } selection;
 
 /* Counts the next digit of a row for each rank whose leading digits it has. */
@@ -341,7 +341,7 @@ static void find_figures(const moments *s, int k, hf_tolerance_figures *f)
     f->deviation = s->n[k] > 1 && !isnan(f->mean) ? sqrt(s->square[k] / (n - 1)) : nothing;
     f->mean_low = f->mean - NORMAL_95 * f->deviation / sqrt(n);
     f->mean_high = f->mean + NORMAL_95 * f->deviation / sqrt(n);
-    /* no value is negative */
+    /* No value of such a measure is negative. */
     if (!hf_tolerance_more_is_better((hf_tolerance_measure)k) && f->mean_low < 0) f->mean_low = 0;
 }
 

@@ -52,7 +52,7 @@ typedef struct {
 
 typedef struct {
     int n_point, n_cell, n_point_field, n_cell_field;
-    const double *position_m;  /* [n_point][3] */
+    const double *position_m;  /* [n_point][3], m */
     const int *corner;         /* [offset[n_cell]] points of the cells, one cell after the other */
     const int *offset;         /* [n_cell + 1] first point of each cell in `corner` */
     const unsigned char *type; /* [n_cell] type of each cell */

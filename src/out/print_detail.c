@@ -136,7 +136,7 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
             fputs("; best fit: ", f);
             print_gain(m->fit_gain_loss_dB[k], m->fit.ruze_limit_Hz, f);
         }
-        /* facets add an error to that of the nodes, because the mesh is flat between them */
+        /* Facets add an error to that of the nodes, because the mesh is flat between them. */
         if (isfinite(m->facet_half_path_rms_m)) {
             fputs("; facets: ", f);
             print_gain(m->facet_gain_loss_dB[k], m->facet_ruze_limit_Hz, f);
