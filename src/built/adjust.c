@@ -60,8 +60,8 @@ typedef struct {
     double *doubt_m;         /* [HF_ESTIMATE_SAMPLES][n_dof] posterior displacements */
     double *doubt_N;         /* [n_cable of the model] standard deviations of the estimated tensions */
     hf_estimate_cause cause; /* posterior errors that cause doubt_m */
-    /* [HF_ESTIMATE_SAMPLES][n_dof] linear displacements of the posterior samples, and what they miss of the solved ones
-     * after all adjustments. */
+    /* [HF_ESTIMATE_SAMPLES][n_dof] linear displacements of the posterior samples, and the solved displacements minus
+     * these after all adjustments. */
     double *answer_m, *beyond_m;
     double *residual; /* [n_row] of the shape solved last */
     /* [n][n_row] derivatives of the residuals with respect to each cut length, per metre. The rows of left_open and
@@ -457,7 +457,7 @@ static hf_turned turned_of(const adjustment *a)
     return (hf_turned){a->estimate, a->doubt_m, &a->cause, a->room[0].strain_N, a->room[0].scratch};
 }
 
-/* Solves each posterior sample after all adjustments and stores what its linear displacements miss. */
+/* Solves each posterior sample after all adjustments and stores its displacements minus the linear ones. */
 static hf_status find_beyond(adjustment *a)
 {
     double figure_m;

@@ -49,7 +49,7 @@ typedef struct {
     int n_maybe_slack;  /* cables whose estimated tension is at most its standard deviation */
     /* Cables whose tension is below its required minimum before any adjustment. They must not lose more tension. */
     int n_low;
-    double low_N; /* the largest minimum that one of these cables misses, N */
+    double low_N; /* maximum of the tensions required of these cables, N */
     int n_round;  /* number of linear models used for the choice */
     /* True when tension limits, or a solved shape with too little tension, ruled out other adjustments with a lower
      * figure. */

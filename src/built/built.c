@@ -87,7 +87,7 @@ static hf_status attach_truss(const hf_model *m, hf_built *b, hf_messages *messa
     return status;
 }
 
-/* Copies what the net takes from the shape of the design. */
+/* Copies supports, cut lengths and positions from the shape of the design. */
 static void take_design(const hf_model *m, const hf_workspace *w, hf_built *b)
 {
     rest_supports(m, w, &b->scene);

@@ -241,7 +241,7 @@ static void step(void *solver)
     hf_near_step(&work->job->batch->near, &work->room->near);
 }
 
-/* Returns the next sample, or -1 when none is left or the batch is told to stop. It is an hf_lane_next. */
+/* Returns the next sample, or -1 when none is left or built->stop requests a stop. It is an hf_lane_next. */
 static int take_next(void *context)
 {
     batch_job *j = context;

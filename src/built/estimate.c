@@ -110,7 +110,7 @@ void hf_estimate_free(hf_estimate *p)
 /* ---- shapes ---- */
 
 /* Solves a net by Newton's method from the shape solved last. This takes fewer steps than the reference hf_built_solve
- * and rarely fails; the reference solves the nets that it does not.
+ * and rarely fails. The reference solves the nets for which it fails.
  *
  * On a truss it always calls the reference. Newton's method may leave gaps of coupling.tof_m there, which are too large
  * for a measured figure. */
@@ -359,8 +359,8 @@ static void draw_gap(const hf_estimate *p, hf_random *random, const double *move
     }
 }
 
-/* Let S be the prior and P the posterior variance of a cable's own error. A unit error of this cable is estimated as 1
- * - P/S. The positions alone have the information 1/P - 1/S, so they would give this estimate divided by 1 - P/S. */
+/* Let S be the prior and P the posterior variance of a cable's own error. The estimate of a unit error of this cable is
+ * 1 - P/S. The positions alone have the information 1/P - 1/S, so they would give this estimate divided by 1 - P/S. */
 hf_status hf_estimate_belief(hf_estimate *p, int n, const int *cable, double *part)
 {
     size_t n_dof = p->linear.n_dof, n_cable = (size_t)p->built->model.n_cable;

@@ -31,9 +31,9 @@ typedef struct {
     void *block;
 } hf_estimate;
 
-/* Makes an estimate that starts at the nominal net. All arguments are borrowed. place_m [n_dof] are the measured
- * positions. Returns HF_OK; HF_NO_MEMORY; or HF_SINGULAR when the nominal net has no stiffness. Call hf_estimate_free
- * in any case. */
+/* Makes an estimate that starts at the nominal net. `built`, place_m and the arrays of `prior` are borrowed. place_m
+ * [n_dof] are the measured positions. Returns HF_OK; HF_NO_MEMORY; or HF_SINGULAR when the nominal net has no
+ * stiffness. Call hf_estimate_free in any case. */
 hf_status hf_estimate_create(const hf_built *built, const hf_saddle_prior *prior, const double *place_m,
                              hf_estimate *estimate);
 void hf_estimate_free(hf_estimate *estimate);
@@ -54,9 +54,9 @@ hf_status hf_estimate_shape(const hf_estimate *estimate, const double *turn_m, h
 #define HF_ESTIMATE_SAMPLES 64
 hf_status hf_estimate_expect(hf_estimate *estimate, double *expected_m);
 
-/* Computes how strongly the prior holds back the estimates of single cables, to first order. part[k], 0 to 1, is the
- * part of an error of cable[k] alone that the estimate attributes to this cable. Without a prior for this one cable,
- * its own error would be estimated as the present value divided by this part. Returns HF_OK or HF_SINGULAR. */
+/* Computes how much the prior reduces the estimates of single cables, to first order. part[k], 0 to 1, is the part of
+ * an error of cable[k] alone that the estimate attributes to this cable. Without a prior for this one cable, its own
+ * error would be estimated as the present value divided by this part. Returns HF_OK or HF_SINGULAR. */
 hf_status hf_estimate_belief(hf_estimate *estimate, int n, const int *cable, double *part);
 
 /* Returns the part of the estimated error of a cable that is its own and not shared, m. */

@@ -24,9 +24,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The following limits decide when a lane gives up and Newton's method solves its net. Newton's method finds the same
- * shape within the tolerance in 4 to 8 steps, each of which takes as long as a dozen chord steps. The tests of near,
- * built_batch and samples pass with STEPS_MAX 20 and 180, PATIENCE 1 and 10, CONTRACTION 0.3 and 0.95. */
+/* The following limits decide when a net leaves its lane and is solved by Newton's method. Newton's method finds the
+ * same shape within the tolerance in 4 to 8 steps, each of which takes as long as a dozen chord steps. The tests of
+ * near, built_batch and samples pass with STEPS_MAX 20 and 180, PATIENCE 1 and 10, CONTRACTION 0.3 and 0.95. */
 #define STEPS_MAX 60
 #define PATIENCE 2      /* steps before CONTRACTION is required */
 #define CONTRACTION 0.7 /* maximum ratio of the residuals of two successive steps */
@@ -231,7 +231,8 @@ void hf_near_step(const hf_near *near, hf_near_lanes *l)
 
 /* ---- the shape in a workspace ---- */
 
-/* Measures the shape and places loose nodes. Returns false when the shape is no equilibrium within the tolerances. */
+/* Measures the shape and assigns positions to loose nodes. Returns false when the shape is no equilibrium within the
+ * tolerances. */
 static bool accept(const hf_near *near, int n_step, hf_workspace *w, hf_form_result *r)
 {
     const hf_model *m = &near->model;

@@ -65,8 +65,9 @@ typedef enum { HF_NEAR_GOES_ON, HF_NEAR_FOUND, HF_NEAR_LOST } hf_near_verdict;
 hf_near_verdict hf_near_settle(const hf_near *near, hf_near_lanes *lanes, int lane, const hf_built_net *net,
                                hf_workspace *w, hf_form_result *result);
 
-/* Solves one net by Newton's method from the nominal shape. Loose nodes are placed and counted as by hf_built_solve.
- * Returns false when it does not converge. Otherwise the status is HF_OK and the workspace holds the shape. */
+/* Solves one net by Newton's method from the nominal shape. Loose nodes get positions and are counted as in
+ * hf_built_solve. Returns false when it does not converge. Otherwise the status is HF_OK and the workspace holds the
+ * shape. */
 bool hf_near_find(const hf_near *near, const hf_built_net *net, hf_workspace *w, hf_form_result *result);
 
 /* ---- parts of hf_near_find ---- */

@@ -25,7 +25,7 @@
 #define STEPS_MAX 40
 /* Maximum displacement of a node in one step, relative to the mean length of the cables. */
 #define REACH 0.04
-/* The minimum tension in the matrix is the smaller of two values: this fraction of the largest force out of balance,
+/* The minimum tension in the matrix is the smaller of two values: this fraction of the maximum force out of balance,
  * and FLOOR_MAX of the reference tension. */
 #define FLOOR_OF_RESIDUAL 0.1
 #define FLOOR_MAX 0.01
@@ -51,7 +51,7 @@ static bool holds(const hf_workspace *w, int e, double over_m)
 }
 
 /* Sets newton_force_N to the forces out of balance by the elastic law. Sets newton_step to the same with compression in
- * cables that are taut in the matrix. Returns the largest of the former, N. */
+ * cables that are taut in the matrix. Returns the maximum of the former, N. */
 static double measure(const hf_model *m, hf_workspace *w)
 {
     double u[3], largest = 0;

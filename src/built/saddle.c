@@ -43,7 +43,7 @@ static bool may_be_dual(const hf_saddle *s)
     return s->n_border == s->prior.n_shared;
 }
 
-/* Returns the largest error of a length by one standard deviation of an own error or of a shared number. */
+/* Returns the maximum error of a length by one standard deviation of an own error or of a shared number. */
 static double largest_error_m(const hf_model *m, const hf_saddle_prior *prior)
 {
     double largest = 0;

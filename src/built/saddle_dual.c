@@ -15,7 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-#define WEAK 2.5e-7        /* weight R of displacements of 2000 times the largest error of a length */
+#define WEAK 2.5e-7        /* weight R of displacements of 2000 times the maximum error of a length */
 #define REFINEMENTS_MAX 20 /* refinement steps; a probe that takes more shows that LU is needed */
 #define REFINED 1e-12      /* required residual of a solution, relative to the right-hand side */
 #define ENOUGH 1e-13       /* relative residual at which refinement stops */
@@ -222,7 +222,7 @@ static void add_stiffness(const hf_saddle_dual *d, double sign, const double *v,
 /* Holds one of the right-hand sides that are refined together. */
 typedef struct {
     double *band, *solution, *error; /* [2 n] right-hand side, its solution, its residual */
-    double size, last, largest;      /* largest entries: of the right-hand side, of the last two residuals */
+    double size, last, largest;      /* maximum entries: of the right-hand side, of the last two residuals */
 } refinement;
 
 /* Computes the right-hand side p of the multipliers from the residual in r->error, which it overwrites. */

@@ -2,7 +2,7 @@
  *
  *     pass 1      counts, sums, minimum, maximum           (add_row)
  *     pass 2      deviations, products with the linear psi (add_deviations)
- *     passes 3-6  ranks of each measure, 16 bits per pass  (hf_statistics_order)
+ *     4 passes for each measure: its ranks, 16 bits a pass (hf_statistics_order)
  *     ---> means, quantiles and yields with their intervals, control variate, ranked cables
  *
  * Contents: rows, intervals, order, moments, all figures together. */
@@ -215,7 +215,7 @@ static void add_row(void *context, const double *row)
     s->mean_x += linear * linear;
 }
 
-/* Adds a row in the second pass, which knows the means. */
+/* Adds a row in the second pass, after the means are known. */
 static void add_deviations(void *context, const double *row)
 {
     moments *s = context;

@@ -45,7 +45,7 @@ static void make_sample(void *context, long i, double *cut_m, double *EA_N, doub
             support_move_m[c * m->n_node + row] = p->rest_m[3 * row + c] + rest_m[3 * row + c];
 }
 
-/* Stores what the linear displacements of sample i miss. */
+/* Stores the displacements of sample i minus the linear ones. */
 static void take_sample(void *context, long i, int place, const hf_built_shape *shape, const hf_form_result *result)
 {
     const turned_samples *t = context;

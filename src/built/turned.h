@@ -20,12 +20,12 @@ typedef struct {
  * or HF_NO_MEMORY. */
 hf_status hf_turned_answer(const hf_turned *turned, const hf_workspace *shape, double *move_m);
 
-/* Solves the posterior samples with cut lengths increased by turn_m [n_cable], and computes what their linear
- * displacements miss, beyond_m [HF_ESTIMATE_SAMPLES][n_dof]. A sample without a shape gets 0. `shape` is the estimated
- * net with these adjustments. answer_m receives the output of hf_turned_answer.
+/* Solves the posterior samples with cut lengths increased by turn_m [n_cable], and computes their displacements minus
+ * the linear ones, beyond_m [HF_ESTIMATE_SAMPLES][n_dof]. It is 0 for a sample without a shape. `shape` is the
+ * estimated net with these adjustments. answer_m receives the output of hf_turned_answer.
  *
- * n_thread is the number of threads, 0 for all cores; it does not change a bit. Returns HF_OK, HF_INTERRUPTED or
- * HF_NO_MEMORY. */
+ * n_thread is the number of threads, 0 for all cores. The result has the same bits for any number. Returns HF_OK,
+ * HF_INTERRUPTED or HF_NO_MEMORY. */
 hf_status hf_turned_beyond(const hf_turned *turned, const double *turn_m, const hf_workspace *shape, int n_thread,
                            double *answer_m, double *beyond_m);
 

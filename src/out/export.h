@@ -21,7 +21,7 @@ typedef struct {
     const char *stage;      /* a word of hf_stage_word; NULL: the stage that is the result */
     const char *state;      /* name of a load case of the as-built net; NULL: a stage */
     bool force;             /* replace existing files */
-    hf_file_out_set *files; /* collects the files; the caller gives all of them their names at once */
+    hf_file_out_set *files; /* collects the files; the caller renames them all at once */
 } hf_export_request;
 
 typedef struct {
@@ -36,7 +36,7 @@ typedef struct {
     hf_status (*write)(const hf_export_request *request, char *said, size_t size, hf_messages *messages);
 } hf_exporter;
 
-/* Lists the exporters in the order of the help. One command that asks for several writes them in this order. */
+/* Lists the exporters in the order of the help. A command with several of their options writes them in this order. */
 #define HF_EXPORTERS(X) X(csv) X(vtk) X(cutlist) X(front) X(pattern) X(rf)
 
 #define HF_EXPORTER_ROW(name) extern const hf_exporter hf_exporter_##name;

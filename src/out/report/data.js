@@ -106,7 +106,7 @@ const STOP = {
   stalled: "steps that gain nothing",
 };
 const plainWord = (word) => String(word).replace(/_/g, " ");
-// Returns "proven", or why a shape has no proven bound.
+// Returns "proven", or why a shape has no certified error bound.
 const boundText = (word) => (word === "proven" ? word : `no: ${plainWord(word)}`);
 const stopText = (word) => STOP[word] || plainWord(word);
 
