@@ -326,7 +326,7 @@ static hf_status find_scale(hf_montecarlo *t, int n, double *scale, int *bound)
     return HF_OK;
 }
 
-/* Measures the surface only where a requirement needs it. */
+/* Finds the scale, and measures the surface only if a requirement needs it. */
 hf_status hf_montecarlo_find_scale(hf_montecarlo *t, int n, double *scale, int *bound)
 {
     t->skips_surface = !hf_montecarlo_requires_surface(t->settings);

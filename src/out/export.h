@@ -73,7 +73,8 @@ void hf_export_free(hf_export_stored *stored);
  * yet; it causes a warning. */
 bool hf_export_has_truss(const hf_export_request *request, const hf_summary *summary, hf_messages *messages);
 
-/* Warns when the result `file` has a Pareto front. The exported shape is then none of the points of the front. */
+/* Warns when the result `file` has a Pareto front from which no point was taken. The exported shape is then an end of
+ * the front, or belongs to the form-finding. Load cases always belong to the form-finding. */
 void hf_export_warn_of_front(const char *file, const hf_summary *summary, bool is_state, hf_messages *messages);
 
 /* Reads a shape by hf_export_read and calls `write` with it, for exporters that take a stage. */

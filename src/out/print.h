@@ -19,7 +19,7 @@ void hf_print_lines(const char *lines, FILE *file);
 #define HF_PRINT_PLAIN "\x1b[0m"
 
 typedef struct {
-    bool verbose;    /* also certificates, tension ratios of sets, times and further figures */
+    bool verbose;    /* adds certificates, tension ratios of sets, times and further figures */
     bool has_colour; /* colours of a terminal, see app/output.h */
 } hf_print_style;
 

@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#define WIDTH 100      /* characters of a line */
+#define WIDTH 100      /* maximum characters of a line of the table */
 #define POINTS_MOST 64 /* maximum number of points that are all shown */
 #define POINTS_BEST 32 /* points shown of a larger study, the best ones */
 #define REASON_MOST 60 /* characters of a reason */

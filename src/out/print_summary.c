@@ -337,7 +337,7 @@ static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
             before_Hz / 1e9, has_facets ? "facets" : "surface");
 }
 
-/* Prints the surface errors of the result, those of its facets if there are any, and their gain losses. */
+/* Prints the surface errors of the nodes of the result and of its facets, if there are any, and the gain losses. */
 static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_surface_measures *m = &s->measures[stage];

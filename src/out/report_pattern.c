@@ -25,8 +25,8 @@ static int stride_of(const hf_pattern_table *t)
     return (t->n_theta + most - 1) / most;
 }
 
-/* Writes one cut. The maximum of each few neighbours is kept, because a sidelobe can lie between the angles that are
- * kept otherwise. */
+/* Writes one cut. The maximum of each few neighbours is kept, because a sidelobe can lie between two of the angles that
+ * remain. */
 static void write_cut(const hf_pattern_table *t, int k, const hf_cut_figures *c, FILE *f)
 {
     hf_json j = {.file = f};
