@@ -1,3 +1,13 @@
+/* batch - evaluates many designs on all cores. <hifdm/batch.h> describes the interface.
+ *
+ *     hf_batch_share   chooses the solver and makes its engine: chord, swarm or none
+ *     hf_batch_run     designs [n][n_gene] -> results [n]
+ *     hf_batch_next    the optimiser proposes individuals -> results of the next generation
+ *
+ *     each thread: take the next index -> load the design into a lane -> solve -> store result[i] -> take ...
+ *
+ * Without an engine, each thread solves one design after the other by hf_evaluate.
+ * Contents: the engine - the parallel run - the next generation */
 #include <hifdm/batch.h>
 
 #include "base/clock.h"
@@ -12,13 +22,14 @@ int hf_batch_default_threads(void)
     return hf_parallel_cores();
 }
 
-/* The number of rooms (parallel.h) whose memory is allocated when the batch is made. A batch inside hf_parallel_for
- * begins with one; has_room allocates the others when a thread comes to help. */
+/* Returns the number of rooms (parallel.h) whose memory is allocated when the batch is made. A batch inside
+ * hf_parallel_for begins with one room. has_room allocates each of the others when a thread begins to work in it. */
 static int n_room_at_once(const hf_batch *batch)
 {
     return hf_parallel_is_inside() ? 1 : batch->n_thread;
 }
 
+/* Allocates the workspace of one room, and the scratch that the objectives of the evaluator need. */
 static hf_status make_room(const hf_evaluator *v, hf_workspace *w)
 {
     HF_TRY(hf_workspace_create(v->model, w));
@@ -37,14 +48,15 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
     return HF_OK;
 }
 
-/* ---- what designs are solved with ---- */
+/* ---- the engine ---- */
 
+/* What the threads share to solve designs, and the lanes of each thread. */
 struct hf_batch_engine {
-    hf_solver solver;      /* CHORD or FIXED_POINT; Newton's method for each design needs no engine */
-    hf_chord shared;       /* of CHORD */
-    hf_chord_lanes *chord; /* of CHORD: [n_thread] */
-    hf_swarm_plan plan;    /* of FIXED_POINT */
-    hf_swarm_lanes *lanes; /* of FIXED_POINT: [n_thread] */
+    hf_solver solver;      /* CHORD or FIXED_POINT; no other solver has an engine */
+    hf_chord shared;       /* for CHORD: the shared Newton matrix */
+    hf_chord_lanes *chord; /* for CHORD: [n_thread], the lanes of each room */
+    hf_swarm_plan plan;    /* for FIXED_POINT: what the lanes share */
+    hf_swarm_lanes *lanes; /* for FIXED_POINT: [n_thread], the lanes of each room */
 };
 
 static void free_engine(hf_batch *batch)
@@ -83,8 +95,8 @@ static hf_status create_lanes(hf_batch *batch, struct hf_batch_engine *e)
     return HF_OK;
 }
 
-/* Make the engine of this solver. Returns false, and leaves the batch without an engine, when there is no memory or the
- * base design is unsuitable. */
+/* Makes the engine of this solver; base_N [n_gene] is the initial design. Returns false and leaves the batch without an
+ * engine if memory runs out, or if the initial design is unsuitable. lacks_memory is true in the first case. */
 static bool set_engine(hf_batch *batch, hf_solver solver, const double *base_N)
 {
     hf_status status = HF_NO_MEMORY;
@@ -98,6 +110,7 @@ static bool set_engine(hf_batch *batch, hf_solver solver, const double *base_N)
     return status == HF_OK;
 }
 
+/* Returns true if hf_evaluate solves each design of this evaluator by Newton's method. */
 static bool each_by_newton(const hf_evaluator *v)
 {
     return v->solver != HF_SOLVER_FIXED_POINT && hf_evaluate_is_unique(v) && v->model->has_newton;
@@ -110,7 +123,8 @@ hf_solver hf_batch_solver(const hf_evaluator *v, bool *has_lanes)
     if (may_share && hf_chord_applies(v)) return HF_SOLVER_CHORD;
     *has_lanes = false;
     if (each_by_newton(v)) return HF_SOLVER_NEWTON;
-    /* the lanes serve neither LAPACK, struts, every law, a truss nor goals: such designs are solved one by one */
+    /* The lanes of swarm support neither LAPACK, struts, a truss, optimize.variables, limits nor objectives, and only
+     * some laws. Such designs are solved one after the other. */
     *has_lanes = !v->model->by_lapack && !v->model->has_strut && !v->model->n_attachment && !v->model->gene &&
                  !v->limits && !v->goals;
     for (int e = 0; e < v->model->n_cable && *has_lanes; e++)
@@ -122,14 +136,14 @@ hf_solver hf_batch_share(hf_batch *batch, const double *base_N)
 {
     bool has_lanes;
     hf_solver solver = hf_batch_solver(batch->evaluator, &has_lanes);
-    free_engine(batch); /* of an earlier base */
+    free_engine(batch); /* made for an earlier initial design */
     batch->lacks_memory = false;
     if (!has_lanes || set_engine(batch, solver, base_N) || solver == HF_SOLVER_FIXED_POINT) return solver;
     return each_by_newton(batch->evaluator) ? HF_SOLVER_NEWTON : HF_SOLVER_FIXED_POINT;
 }
 
-/* Allocate the memory of a room unless it has been. Returns false when there is none. Only one thread at a time has the
- * room's number, so nothing is locked. */
+/* Allocates the memory of a room unless it is allocated already. Returns false if that fails. Only one thread at a time
+ * works in a room, so no lock is needed. */
 static bool has_room(hf_batch *batch, int room)
 {
     struct hf_batch_engine *e = batch->engine;
@@ -139,8 +153,8 @@ static bool has_room(hf_batch *batch, int room)
     return true;
 }
 
-/* Evaluate designs that `next` hands out, in one thread, until none is left. With keeps_shape the room's workspace
- * holds the last shape. */
+/* Evaluates designs in the calling thread until `next` returns -1. design_N: [][n_gene]; r: [], written at the indices
+ * that `next` returns. If keeps_shape is true, the workspace of the room holds the last shape afterwards. */
 static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *context, bool keeps_shape,
                      const double *design_N, hf_form_result *r)
 {
@@ -158,7 +172,7 @@ static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *contex
 
 /* ---- the parallel run ---- */
 
-/* The designs of one call, shared by all its threads. */
+/* The designs of one call of hf_batch_run, shared by all its threads. */
 typedef struct {
     hf_batch *batch;
     hf_parallel_queue queue;
@@ -166,15 +180,16 @@ typedef struct {
     hf_form_result *result;
 } batch_job;
 
-/* The work of one thread. When there is no memory for its room, it returns and the other threads do its work. */
+/* Does the work of one thread. If the memory for its room cannot be allocated, the thread returns, and the others
+ * evaluate the remaining designs. */
 static void work_on_job(void *context, int room)
 {
     batch_job *j = context;
     if (hf_parallel_is_empty(&j->queue) || !has_room(j->batch, room)) return;
     double start_s = hf_clock_thread_cpu_s();
     work_off(j->batch, room, hf_parallel_take, &j->queue, false, j->design_N, j->result);
-    hf_parallel_add(&j->batch->cpu_s,
-                    hf_clock_thread_cpu_s() - start_s); /* the wait for other threads is not counted */
+    /* Only the processor time of this thread counts. Its wait for other threads is not included. */
+    hf_parallel_add(&j->batch->cpu_s, hf_clock_thread_cpu_s() - start_s);
 }
 
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *r)
@@ -185,16 +200,16 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
 
 /* ---- the next generation ---- */
 
-/* Of the individuals of a generation, shared by all threads. */
+/* The individuals of the next generation, shared by all threads. */
 typedef struct {
     hf_batch *batch;
     hf_optimiser *optimiser;
-    hf_parallel_queue place; /* those that nobody has proposed yet */
+    hf_parallel_queue place; /* indices of the individuals that are still to be proposed */
     void (*beside)(void *context);
     void *context;
 } generation_job;
 
-/* Propose individuals until one must be evaluated; -1: there is none. */
+/* Proposes individuals until one must be evaluated, and returns its index. Returns -1 when no individual is left. */
 static int propose_one(void *context)
 {
     generation_job *g = context;
@@ -206,6 +221,7 @@ static int propose_one(void *context)
     return i;
 }
 
+/* Does the work of one thread. Room 0 first calls `beside`. */
 static void work_on_generation(void *context, int room)
 {
     generation_job *g = context;

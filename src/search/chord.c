@@ -1,4 +1,14 @@
-/* Contents: choice of instruction set - shared matrix - lanes - the run */
+/* Takes Newton steps that share one matrix, for eight designs at a time. chord.h describes the interface,
+ * chord_kernel.c the inner loops.
+ *
+ *     initial design -> hf_evaluate -> Newton matrix H0, factored and packed once for all threads
+ *
+ *     load     a design into a lane, at the initial shape
+ *     look     forces f of the net, gap F f - r of the truss
+ *     settle   converged: measure and store the result; too slow: hf_evaluate; otherwise one more step
+ *     step     r <- r + (I + F S)^-1 (F f - r),  x <- x + H0^-1 f                                    (M9)
+ *
+ * Contents: choice of instruction set - shared matrix - lanes - the run */
 #include "search/chord.h"
 
 #include "base/arena.h"
@@ -12,13 +22,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* These decide how long a lane goes on before its design is evaluated on its own, which reaches the same shape within
- * the tolerance by another way. No test of search (unit and property) fails at the values measured: ITERATIONS_MAX 20
- * and 180, PATIENCE 1 and 10, CONTRACTION 0.3 and 0.95, MODES_LEFT 0.005 and 0.5. */
+/* These constants decide how long a lane works on a design before hf_evaluate solves the design alone. Both ways reach
+ * the same shape within the tolerance. No test of search (unit and property) fails with ITERATIONS_MAX 20 and 180,
+ * PATIENCE 1 and 10, CONTRACTION 0.3 and 0.95, MODES_LEFT 0.005 and 0.5. */
 #define ITERATIONS_MAX 60
-#define PATIENCE 3      /* steps before CONTRACTION is asked for */
-#define MODES_LEFT 0.05 /* what may be left out of the inverse of the coupling (hf_schur_modes) */
-#define CONTRACTION 0.7 /* a residual must fall at least by this factor per step */
+#define PATIENCE 3      /* steps before CONTRACTION is required */
+#define MODES_LEFT 0.05 /* tolerance of the truncated inverse of I + F S (hf_schur_modes) */
+#define CONTRACTION 0.7 /* after PATIENCE steps, a step must reduce the residual to less than this part */
 
 /* ---- choice of instruction set ---- */
 
@@ -60,14 +70,14 @@ bool hf_chord_applies(const hf_evaluator *v)
         hf_gene_sets sets = hf_evaluate_sets(v, k);
         if (sets != HF_SETS_TENSION && sets != HF_SETS_DENSITY) return false;
     }
-    int n_other = 0; /* cables whose laws the kernels do not serve */
+    int n_other = 0; /* cables whose laws the kernels do not support */
     for (int e = 0; e < m->n_cable; e++)
         n_other += !is_served(m, e);
-    for (int k = 0; k < m->n_gene; k++) /* the rule replaces the law of a gene's cable */
+    for (int k = 0; k < m->n_gene; k++) /* a design replaces the law of a cable that it varies */
         n_other -= !is_served(m, m->gene_cable[k]);
-    for (int e = 0; e < m->n_cable; e++) /* a cable between two supports moves no node */
+    for (int e = 0; e < m->n_cable; e++) /* a cable between two supports pulls on no free node */
         n_other -= !is_served(m, e) && is_between_supports(m, e);
-    for (int k = 0; k < m->n_tie; k++) /* but such a cable pulls on a truss */
+    for (int k = 0; k < m->n_tie; k++) /* a cable between supports counts if it pulls on the truss */
         n_other += !is_served(m, m->tie[k] / 2) && is_between_supports(m, m->tie[k] / 2);
     return n_other == 0;
 }
@@ -94,6 +104,7 @@ static void lay_out(hf_arena *a, hf_chord *c)
     c->base_displacement_m = hf_arena_take(a, n_pull, sizeof(double));
 }
 
+/* Returns a shared matrix with its sizes, without memory. */
 static hf_chord dimensions(const hf_evaluator *v)
 {
     int n_pull = 3 * v->model->n_attachment;
@@ -103,12 +114,13 @@ static hf_chord dimensions(const hf_evaluator *v)
                       .n_pull_pad = (n_pull + HF_CHORD_ROWS - 1) / HF_CHORD_ROWS * HF_CHORD_ROWS};
 }
 
-/* Pack what the lanes need of the truss. The workspace holds the shape of the base and its factored matrix. */
+/* Packs the flexibility of the truss, the stiffness of the cables at attachments, and the modes of (I + F S)^-1. The
+ * workspace holds the initial shape and its factored Newton matrix. Returns HF_OK, HF_NO_MEMORY or HF_SINGULAR. */
 static hf_status pack_truss(const hf_model *m, hf_workspace *w, hf_chord *c)
 {
     size_t n = (size_t)c->n_pull;
     hf_schur schur;
-    for (size_t i = 0; i < n; i++) /* the rows that fill up stay zero */
+    for (size_t i = 0; i < n; i++) /* padding rows stay zero */
         for (size_t j = 0; j < n; j++)
             c->flexibility[(i / HF_CHORD_ROWS * n + j) * HF_CHORD_ROWS + i % HF_CHORD_ROWS] =
                 m->flexibility_m_per_N[i * n + j];
@@ -134,7 +146,8 @@ static hf_status allocate(hf_chord *chord)
     return HF_OK;
 }
 
-/* Which cables are whose, and where their force densities stand. */
+/* Lists for each cable its design variable, the row of its force density in `gene`, and whether its tension is
+ * given. */
 static void list_cables(const hf_evaluator *v, hf_chord *c)
 {
     const hf_model *m = v->model;
@@ -156,8 +169,9 @@ static void list_cables(const hf_evaluator *v, hf_chord *c)
     }
 }
 
-/* The incidences are counted first. Then incidence_start[place] is that of the place's next one; when all are filled
- * in, it is where the next place starts. */
+/* Lists the cables at each free node and attachment, by a counting sort. incidence_start first counts the cables of
+ * each node. While the list is filled, incidence_start[i] is the index of the next entry of node i. At the end it is
+ * where node i + 1 begins, so the array is shifted by one. */
 static void list_incidences(const hf_model *m, hf_chord *c)
 {
     int *start = c->incidence_start, *place_of_row = c->place_of_row, n_place = m->n_free + m->n_attachment, sum = 0;
@@ -198,7 +212,7 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_worksp
     hf_form_result base;
     *chord = (hf_chord){0};
     hf_status status = hf_evaluate(v, base_N, w, &base);
-    if (!hf_status_has_shape(status)) return status; /* above the cap it has a shape, too */
+    if (!hf_status_has_shape(status)) return status; /* a design that only breaks a limit has a shape, too */
     return hf_chord_create_here(v, w, chord);
 }
 
@@ -242,7 +256,9 @@ hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes)
     double *q_N_per_m = lanes->gene + (size_t)m->n_gene * HF_LANES;
     for (size_t i = 0; i < 3 * (size_t)m->n_node * HF_LANES; i++)
         lanes->x_m[i] = chord->base_m[i / HF_LANES];
-    for (size_t i = 0; i < (size_t)m->n_cable * HF_LANES; i++) /* which is that of cables of law force_density */
+    /* The target of law force_density is the force density. The kernels overwrite those of cables with a given
+     * tension. */
+    for (size_t i = 0; i < (size_t)m->n_cable * HF_LANES; i++)
         q_N_per_m[i] = m->target[i / HF_LANES];
     return HF_OK;
 }
@@ -257,9 +273,9 @@ void hf_chord_lanes_free(hf_chord_lanes *lanes)
 
 /* How far a lane is from equilibrium. */
 typedef struct {
-    double residual_N; /* largest nodal force out of balance */
-    double gap_m;      /* largest |F f - r| of the truss; 0 without one */
-    double excess_N;   /* the larger of the residual and the gap in units of its tolerance */
+    double residual_N; /* maximum nodal force out of balance */
+    double gap_m;      /* maximum |F f - r| of an attachment; 0 without a truss */
+    double excess_N;   /* maximum of residual_N and of gap_m scaled to the same tolerance */
 } standing;
 
 /* One call of hf_chord_run, with the state of its lanes. */
@@ -273,11 +289,12 @@ typedef struct {
     int steps[HF_LANES];
     double excess_before_N[HF_LANES];
     standing at[HF_LANES];
-    bool is_measured; /* has `now` the figures of the lanes' shapes? */
+    bool is_measured; /* true if `now` holds the figures of the lanes' shapes */
     hf_chord_measures now;
 } chord_run;
 
-/* The supports that do not move are where hf_chord_lanes_create put them. */
+/* Begins with a design in a lane, at the initial shape. Fixed supports keep the positions that hf_chord_lanes_create
+ * wrote. */
 static void load(void *solver, int lane, int i_design)
 {
     chord_run *s = solver;
@@ -301,7 +318,7 @@ static void load(void *solver, int lane, int i_design)
     s->excess_before_N[lane] = INFINITY;
 }
 
-/* Copy the lane's shape into the workspace and measure it there, by the scalar code, into the result. */
+/* Copies the shape of the lane into the workspace. The scalar code measures it there and writes the result. */
 static void unload(const chord_run *s, int lane, const double *design_N, hf_form_result *r)
 {
     const hf_chord *c = s->chord;
@@ -314,8 +331,8 @@ static void unload(const chord_run *s, int lane, const double *design_N, hf_form
     hf_form_measure(m, c->evaluator->form, w, r);
 }
 
-/* Are the figures of the lane's shape those that the kernel has measured? No fault is to be named, and no cable is
- * slack. */
+/* Returns true if the figures that the kernel measured are those of the result. Otherwise a cable is slack, or the
+ * shape has a fault that the scalar code must identify. */
 static bool is_ordinary(const chord_run *s, int lane)
 {
     const hf_chord_measures *now = &s->now;
@@ -331,6 +348,7 @@ static double tension_ratio(const hf_chord_measures *now, hf_group group, int la
     return high_N > 0 ? high_N / now->lowest_N[group][lane] : (double)NAN;
 }
 
+/* Writes the figures that the kernel measured in this lane into the result. */
 static void report(const chord_run *s, int lane, hf_form_result *r)
 {
     const hf_chord_measures *now = &s->now;
@@ -345,8 +363,8 @@ static void report(const chord_run *s, int lane, hf_form_result *r)
     r->shortest_length_ratio = fmin(now->shortest_pulled[lane], now->shortest_other[lane]);
 }
 
-/* The result of a lane that has converged. The kernel measures all lanes at once; a shape with a fault goes to the
- * scalar code, which names it. */
+/* Stores the result of a lane that has converged. The kernel measures all lanes at once. If the shape is not ordinary,
+ * the scalar code measures it again. */
 static void finish(chord_run *s, int lane, const double *design_N, hf_form_result *r)
 {
     const hf_chord *c = s->chord;
@@ -364,7 +382,7 @@ static void finish(chord_run *s, int lane, const double *design_N, hf_form_resul
     hf_evaluate_judge(c->evaluator, s->w, r);
 }
 
-/* Compute the forces of net and truss in all lanes, and from them `at`. */
+/* Computes the forces of net and truss in all lanes, and from them `at`. */
 static void look(void *solver)
 {
     chord_run *s = solver;
@@ -384,12 +402,12 @@ static void look(void *solver)
         standing *at = &s->at[lane];
         at->gap_m = sqrt(squared[lane]);
         double gap_N = scale * at->gap_m;
-        if (!(gap_N <= at->excess_N)) at->excess_N = gap_N; /* keeps a NaN */
+        if (!(gap_N <= at->excess_N)) at->excess_N = gap_N; /* a gap that is NaN is kept */
     }
 }
 
-/* Store the result of a lane that has converged. A lane whose residual falls goes on (false); the design of any other
- * is evaluated on its own. */
+/* Stores the result of a lane that has converged, and returns true. Returns false if the lane takes another step,
+ * because its residual falls fast enough. Otherwise hf_evaluate solves the design, and the function returns true. */
 static bool settle(void *solver, int lane, int i_design)
 {
     chord_run *s = solver;
@@ -410,6 +428,7 @@ static bool settle(void *solver, int lane, int i_design)
     return true;
 }
 
+/* Advances all lanes by one Newton step: first the attachments, then the free nodes. */
 static void step(void *solver)
 {
     chord_run *s = solver;

@@ -1,5 +1,14 @@
-/* The inner loops of chord, over HF_LANES designs side by side. The order of the operations in a lane is always the
- * same, and products are fused with the sums that they go into (lane.h), so all instruction sets give the same bits.
+/* Implements the inner loops of chord, for HF_LANES designs side by side.
+ *
+ *     x_m, tensions -> forces  -> q of the cables, force_N, pull_N, maximum nodal force
+ *     pull_N        -> couple  -> move_m, maximum gap F f - r                            (only with a truss)
+ *     move_m        -> move    -> displacement_m, attachments in x_m, force_N            (only with a truss)
+ *     force_N       -> packed_band solves H0 step = force -> step in force_N
+ *     step          -> step    -> free nodes in x_m
+ *     x_m, q        -> measure -> psi, tensions and length ratios of the shape in each lane
+ *
+ * The order of the operations in a lane is always the same. Products are fused with sums only where the source says so
+ * (lane.h). All instruction sets therefore give the same bits.
  *
  * Contents: vectors - forces - the truss - the step - measures */
 #define HF_LANE_VECTORS
@@ -8,16 +17,17 @@
 #include <math.h>
 #include <stddef.h>
 
-/* ---- vectors: WIDTH lanes of a row, from lane p on ---- */
+/* ---- vectors ---- */
 
 enum { ROWS = HF_CHORD_ROWS };
 
+/* Returns the WIDTH lanes of a row from lane p on. */
 INLINE vec *lanes_of(const double *array, ptrdiff_t row, int p)
 {
     return (vec *)(void *)(array + row * HF_LANES + p);
 }
 
-/* The larger one; NaN where one of them is. */
+/* Returns the larger value in each lane, or NaN if one of the two is NaN. */
 INLINE vec larger_or_nan(vec now, vec next)
 {
     typedef long long mask __attribute__((vector_size(WIDTH * sizeof(double))));
@@ -25,14 +35,14 @@ INLINE vec larger_or_nan(vec now, vec next)
     return (vec)((takes & (mask)next) | (~takes & (mask)now));
 }
 
-/* To an array of any alignment. */
+/* Stores a vector in an array of any alignment, from index p on. */
 INLINE void put(double *to, vec from, int p)
 {
     foreach (k, WIDTH)
         to[p + k] = from[k];
 }
 
-/* From end to end of a cable. */
+/* Computes d, the vector from node `from` to node `to`; both are rows of the model. */
 INLINE void difference(const double *x_m, int n_node, int from, int to, int p, vec d[3])
 {
     foreach (c, 3)
@@ -41,6 +51,7 @@ INLINE void difference(const double *x_m, int n_node, int from, int to, int p, v
 
 /* ---- forces ---- */
 
+/* Computes the force densities q = T / l of the cables with a given tension. */
 static void find_densities(const hf_chord *chord, const hf_chord_lanes *l, int p)
 {
     const hf_model *m = chord->evaluator->model;
@@ -53,8 +64,8 @@ static void find_densities(const hf_chord *chord, const hf_chord_lanes *l, int p
     }
 }
 
-/* The force on model row `row`, whose cables are the incidences of `place`. The loop goes over the nodes, so that a
- * force is summed in registers. */
+/* Computes the force f on model row `row`, whose cables are the incidences of `place`. The loop runs over the nodes and
+ * not over the cables, so that a force is summed in registers. */
 INLINE void sum_force(const hf_chord *chord, const hf_chord_lanes *l, int place, int row, int p, vec f[3])
 {
     const hf_model *m = chord->evaluator->model;
@@ -71,11 +82,14 @@ INLINE void sum_force(const hf_chord *chord, const hf_chord_lanes *l, int place,
     }
 }
 
+/* Computes the forces on the free nodes and attachments, and the square of the maximum nodal force over the reference
+ * tension. */
 static void forces(const hf_chord *chord, const hf_chord_lanes *l, int p, double *residual_squared)
 {
     const hf_model *m = chord->evaluator->model;
     const double *force = l->force_N + chord->matrix.width * HF_LANES;
-    vec f[3], largest = splat(0), scale = splat(1 / m->reference_N); /* squares of tiny forces would vanish */
+    /* The forces are scaled by the reference tension, because the squares of tiny forces would vanish. */
+    vec f[3], largest = splat(0), scale = splat(1 / m->reference_N);
     find_densities(chord, l, p);
     for (int i = 0; i < m->n_free; i++) {
         sum_force(chord, l, i, i, p, f);
@@ -83,7 +97,7 @@ static void forces(const hf_chord *chord, const hf_chord_lanes *l, int p, double
             *lanes_of(force, 3 * i + c, p) = f[c];
         largest = larger_or_nan(largest, norm_squared(scale * f[0], scale * f[1], scale * f[2]));
     }
-    /* the rows after the last: a lane that failed may have left NaNs there */
+    /* Clear the rows after the last one: a lane that failed may have left NaNs there. */
     for (int i = chord->matrix.n; i < chord->matrix.n + chord->matrix.width + ROWS; i++)
         *lanes_of(force, i, p) = splat(0);
     for (int i = 0; 3 * i < chord->n_pull; i++) {
@@ -102,7 +116,7 @@ void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, 
 
 /* ---- the truss ---- */
 
-/* Compute F f - r for ROWS rows at a time, which share the loads of f. */
+/* Computes the gaps F f - r of ROWS rows at a time, which share the loads of f. */
 static void find_gap(const hf_chord *chord, const hf_chord_lanes *l, int p)
 {
     const double *f = chord->flexibility;
@@ -120,6 +134,7 @@ static void find_gap(const hf_chord *chord, const hf_chord_lanes *l, int p)
     }
 }
 
+/* Finds the maximum gap and multiplies the gaps by (I + F S)^-1 = I + sum of left right' over the modes. */
 static void couple(const hf_chord *chord, const hf_chord_lanes *l, int p, double *gap_squared)
 {
     vec share[HF_CHORD_MODES_MAX], largest = splat(0);
@@ -151,6 +166,8 @@ void HF_KERNEL(hf_chord_couple)(const hf_chord *chord, const hf_chord_lanes *l, 
         couple(chord, l, p, gap_squared);
 }
 
+/* Moves the attachments by move_m, and adds the stiffness of their cables times this step to the forces on free
+ * nodes. */
 static void move(const hf_chord *chord, const hf_chord_lanes *l, int p)
 {
     const hf_model *m = chord->evaluator->model;
@@ -193,6 +210,7 @@ void HF_KERNEL(hf_chord_step)(const hf_chord *chord, const hf_chord_lanes *l)
 
 /* ---- measures ---- */
 
+/* Returns the surface error psi of Eq. 10. */
 static vec psi(const hf_model *m, const double *x_m, int p)
 {
     vec sum = splat(0), d[3];
@@ -205,6 +223,7 @@ static vec psi(const hf_model *m, const double *x_m, int p)
     return root(sum / (double)m->n_inner_node);
 }
 
+/* Finds the extreme tensions of each group, the extreme length ratios, the error against given tensions, and psi. */
 static void measure(const hf_chord *chord, const hf_chord_lanes *l, int p, hf_chord_measures *out)
 {
     const hf_model *m = chord->evaluator->model;

@@ -1,4 +1,5 @@
-/* chord_kernel - the inner loops of chord, compiled once for each instruction set; chord.c chooses one at run time. */
+/* chord_kernel - the inner loops of chord. They are compiled once for each instruction set, and chord.c chooses one at
+ * run time. */
 #ifndef HIFDM_CHORD_KERNEL_H
 #define HIFDM_CHORD_KERNEL_H
 
@@ -9,66 +10,69 @@
 
 typedef struct hf_chord_kernels hf_chord_kernels;
 
-#define HF_CHORD_ROWS 8       /* rows of the flexibility that are worked on at a time */
-#define HF_CHORD_MODES_MAX 48 /* the largest n_mode */
+#define HF_CHORD_ROWS 8       /* rows of the flexibility that are multiplied at a time */
+#define HF_CHORD_MODES_MAX 48 /* maximum of n_mode */
 
-/* Laws that the kernels serve: the target is the tension or the force density, with no unknown but the positions. */
+/* Flags of the laws that the kernels support: a given tension or force density, so that the positions are the only
+ * unknowns. */
 #define HF_CHORD_LAWS (HF_LAW_ITERATES | HF_LAW_IS_CONVEX | HF_LAW_GIVES_TENSION | HF_LAW_MAY_PUSH)
 
 /* A cable seen from one of its nodes. */
 typedef struct {
-    int slot;  /* of its force density */
-    int other; /* model row at its other end */
+    int slot;  /* row of its force density in `gene` */
+    int other; /* model row of its other end */
 } hf_chord_incidence;
 
-/* What all threads share; constant after hf_chord_create. */
+/* What all threads share. It is constant after hf_chord_create. */
 typedef struct hf_chord {
     const hf_evaluator *evaluator;
     const hf_chord_kernels *kernels;
-    hf_packed_band matrix;  /* Newton matrix of the base design, 3 rows for each free node */
-    double *base_m;         /* [3][n_node] shape the lanes start from */
-    int *gene_of_cable;     /* [n_cable] or -1 */
-    double *gene_divisor;   /* [n_gene] what a pretension is divided by: length (m) or 1 by rule */
-    double *inverse_length; /* [n_cable] 1 / theoretical length, 1/m */
-    int *slot_of_cable;     /* [n_cable] row of its force density in `gene`: that of its gene, or n_gene + the cable */
-    int n_pulled, *pulled;  /* [n_pulled] cables whose tension is given, */
-    unsigned char *is_pulled;      /* [n_cable] and whether one is */
-    int *place_of_row;             /* [n_node] free rows, then attachments; -1: neither */
-    int *incidence_start;          /* [n_free + n_attachment + 1] by place */
-    hf_chord_incidence *incidence; /* [incidence_start[n_free + n_attachment]], of each place by rising cable */
-    bool serves_all;               /* no cable between supports has a law that the kernels do not serve */
+    hf_packed_band matrix;         /* factored Newton matrix of the initial design, 3 rows per free node */
+    double *base_m;                /* [3][n_node], shape from which the lanes start */
+    int *gene_of_cable;            /* [n_cable], design variable of the cable, or -1 */
+    double *gene_divisor;          /* [n_gene], divisor of the design variable: a length (m) or 1 */
+    double *inverse_length;        /* [n_cable], 1 / length between target positions, 1/m */
+    int *slot_of_cable;            /* [n_cable], row of its q in `gene`: its design variable or n_gene + cable */
+    int n_pulled, *pulled;         /* [n_pulled], cables with a given tension */
+    unsigned char *is_pulled;      /* [n_cable], 1 for cables with a given tension */
+    int *place_of_row;             /* [n_node], free node, or n_free + attachment, or -1 */
+    int *incidence_start;          /* [n_free + n_attachment + 1], first incidence of each node, by place_of_row */
+    hf_chord_incidence *incidence; /* [incidence_start[n_free + n_attachment]], of each node by rising cable */
+    bool serves_all;               /* true if all cables without a design variable have laws of HF_CHORD_LAWS */
 
-    /* Net and truss together; all empty without attachments. n_pull is 3 n_attachment, filled up to n_pull_pad. */
+    /* Net and truss together. Without attachments, all of these are empty. n_pull is 3 n_attachment, and n_pull_pad is
+     * n_pull rounded up to a multiple of HF_CHORD_ROWS. */
     int n_pull, n_pull_pad, n_mode;
-    double *flexibility; /* [n_pull_pad / HF_CHORD_ROWS][n_pull][HF_CHORD_ROWS] rows of F side by side */
-    double *mode;        /* [n_mode][2][n_pull] (I + F S)^-1 = I + sum mode[0] mode[1]', where F S is large */
-    double *tie_block; /* [n_tie][9] stiffness of the cables at attachments; read where the other end is a free node */
-    double *base_displacement_m; /* [n_pull] */
+    double *flexibility; /* [n_pull_pad / HF_CHORD_ROWS][n_pull][HF_CHORD_ROWS], m/N, flexibility F by blocks of rows */
+    double *mode;        /* [n_mode][2][n_pull], left and right: (I + F S)^-1 = I + sum of left right' */
+    double *tie_block;   /* [n_tie][9], N/m, stiffness of cables from attachments; used if the other end is free */
+    double *base_displacement_m; /* [n_pull], m, displacements of the attachments in the initial design */
     void *block;
 } hf_chord;
 
-/* Scratch of one thread. */
+/* The scratch of one thread. */
 typedef struct {
-    double *x_m;     /* [3][n_node][HF_LANES] */
-    double *force_N; /* [hf_packed_band_rows][HF_LANES] those of free nodes in the rows of the matrix */
-    double *gene;    /* [n_gene + n_cable][HF_LANES] q (N/m) or T (N) of genes by rule; q of the other cables */
-    double *pull_N;  /* [n_pull][HF_LANES] of the net on the truss */
-    double *displacement_m, *move_m; /* [n_pull_pad][HF_LANES] of the attachments; what the next step adds */
+    double *x_m;     /* [3][n_node][HF_LANES], positions */
+    double *force_N; /* [hf_packed_band_rows][HF_LANES], forces on free nodes; after the solve the step, m */
+    double *gene;    /* [n_gene + n_cable][HF_LANES], q (N/m) or T (N) of design variables, then q of other cables */
+    double *pull_N;  /* [n_pull][HF_LANES], forces of the net on the attachments */
+    double *displacement_m, *move_m; /* [n_pull_pad][HF_LANES], displacements of attachments; their next change */
     void *block;
 } hf_chord_lanes;
 
-/* The figures of the shape in each lane, with the meanings of hf_form_result and hf_metrics_tension_ratio. They mean
- * nothing in a lane that is not a shape. */
+/* The figures of the shape in each lane, as defined by hf_form_result and hf_metrics_tension_ratio. They are undefined
+ * in a lane without a shape. */
 typedef struct {
     _Alignas(HF_ALIGNMENT) double psi_m[HF_LANES];
-    double lowest_N[2][HF_LANES], highest_N[2][HF_LANES]; /* tension by hf_group; +-INFINITY without cables */
+    /* The extreme tensions of each hf_group; INFINITY and -INFINITY if it has no cables. */
+    double lowest_N[2][HF_LANES], highest_N[2][HF_LANES];
     double tension_error[HF_LANES];
-    double shortest_pulled[HF_LANES],
-        shortest_other[HF_LANES]; /* l / theoretical l of cables of given tension or not */
+    /* The minimum of l / length at target over cables with a given tension, and over the others. */
+    double shortest_pulled[HF_LANES], shortest_other[HF_LANES];
     double longest[HF_LANES];
 } hf_chord_measures;
 
-/* The kernels of one instruction set; the comment below says what each does. */
+/* The kernels of one instruction set. The comment below describes each of them. */
 struct hf_chord_kernels {
     void (*forces)(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES]);
     void (*step)(const hf_chord *chord, const hf_chord_lanes *l);
@@ -84,13 +88,14 @@ struct hf_chord_kernels {
     void hf_chord_step_##isa(const hf_chord *chord, const hf_chord_lanes *l);                                          \
     void hf_chord_measure_##isa(const hf_chord *chord, const hf_chord_lanes *l, hf_chord_measures *measures);
 
-/* forces: writes the nodal forces of every lane into force_N, the pull on the truss into pull_N and the force densities
- *         into gene; residual_squared is per lane the square of the largest nodal force over the reference tension.
- * couple: gap_squared is per lane the square (m^2) of the largest gap F f - r of the truss; writes into move_m the
- *         change of r that closes the gap.
- * move:   adds move_m to displacement_m and to the supports in x_m, and its effect to force_N.
- * step:   adds force_N, which matrix.solve has turned into the Newton step, to x_m.
- * measure: of the shapes in x_m with the force densities that `forces` found there. */
+/* forces:  computes the nodal forces of every lane into force_N, the forces on the attachments into pull_N and the
+ *          force densities into `gene`. residual_squared receives, per lane, the square of the maximum nodal force
+ *          divided by the reference tension.
+ * couple:  computes the change of r that closes the gap F f - r of the truss into move_m. gap_squared receives, per
+ *          lane, the square of the maximum gap, m^2.
+ * move:    adds move_m to displacement_m and to the attachments in x_m, and its effect on the forces to force_N.
+ * step:    adds force_N, which matrix.solve has replaced by the Newton step, to the free nodes in x_m.
+ * measure: measures the shapes in x_m with the force densities that `forces` computed there. */
 HF_CHORD_KERNELS(portable)
 HF_CHORD_KERNELS(avx2)
 HF_CHORD_KERNELS(avx512)

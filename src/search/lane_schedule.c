@@ -1,14 +1,21 @@
+/* Distributes designs to the lanes of one thread. lane_schedule.h describes the interface.
+ *
+ *     load designs into free lanes -> look at all lanes -> settle: store results, free lanes -> step -> load ...
+ *
+ * The loop ends when `next` returns -1 and all lanes are free. */
 #include "search/lane_schedule.h"
 
 #include "base/lane.h"
 
 void hf_lane_schedule_run(const hf_lane_solver *work, void *solver, hf_lane_next *next, void *context)
 {
-    int design[HF_LANES], n_busy = 0; /* -1: the lane is free */
+    int design[HF_LANES], n_busy = 0; /* design[lane]: index, or -1 if the lane is free */
     bool has_more = true;
-    int i = next(context); /* -1: to be asked for */
+    int i = next(context); /* design that waits for a lane, or -1 */
     if (i < 0) return;
-    for (int lane = 0; lane < HF_LANES; lane++) { /* free lanes repeat a design of this thread: others may be written */
+    /* Load the first design into all lanes, because the kernels also compute in free lanes. Other designs must not be
+     * read: another thread may be writing them. */
+    for (int lane = 0; lane < HF_LANES; lane++) {
         work->load(solver, lane, i);
         design[lane] = -1;
     }

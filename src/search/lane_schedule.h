@@ -1,24 +1,24 @@
-/* lane_schedule - hands designs to the SIMD lanes of one thread: a lane that has finished takes the next design, until
- * none is left. The solvers chord and swarm supply the work on a lane. */
+/* lane_schedule - distributes designs to the SIMD lanes of one thread. A lane that has finished takes the next design,
+ * until no design is left. The solvers chord and swarm supply the work on a lane. */
 #ifndef HIFDM_LANE_SCHEDULE_H
 #define HIFDM_LANE_SCHEDULE_H
 
 #include <stdbool.h>
 
-/* The index of the next design, or -1 when none is left. */
+/* Returns the index of the next design, or -1 when no design is left. */
 typedef int hf_lane_next(void *context);
 
-/* The work of a solver; `solver` points to its own struct. */
+/* The work of a solver. `solver` points to the solver's own struct. */
 typedef struct {
-    void (*load)(void *solver, int lane, int i_design);   /* begin with a design in a lane */
-    void (*look)(void *solver);                           /* measure the shapes of all lanes */
-    bool (*settle)(void *solver, int lane, int i_design); /* store a final result; true: the lane is free */
-    void (*step)(void *solver);                           /* advance all lanes by one iteration */
+    void (*load)(void *solver, int lane, int i_design);   /* begins with a design in a lane */
+    void (*look)(void *solver);                           /* measures the shapes of all lanes */
+    bool (*settle)(void *solver, int lane, int i_design); /* stores a final result and returns true: the lane is free */
+    void (*step)(void *solver);                           /* advances all lanes by one iteration */
 } hf_lane_solver;
 
-/* Solve every design whose index next(context) returns. A lane that has no design yet is loaded with the first of
- * them, because the kernels work on all lanes and need ordinary numbers there; it is not settled. Designs that `next`
- * has not returned are not looked at: other threads may be writing them. */
+/* Solves every design whose index next(context) returns. The kernels compute in all lanes and need ordinary numbers
+ * there, so free lanes hold a copy of the first design until they get one of their own. Their results are not stored.
+ * Designs that `next` has not returned are not read, because other threads may be writing them. */
 void hf_lane_schedule_run(const hf_lane_solver *work, void *solver, hf_lane_next *next, void *context);
 
 #endif

@@ -1,3 +1,8 @@
+/* Implements loops over threads by OpenMP. parallel.h describes the interface.
+ *
+ *     hf_parallel_for     n_thread workers and one server -> items 0 ... n-1
+ *     hf_parallel_run     inside hf_parallel_for: a task for each room; otherwise: a thread for each room
+ *     hf_parallel_each    hf_parallel_run, whose rooms take items 0 ... n-1 from one queue */
 #include "search/parallel.h"
 
 #include "base/later.h"
@@ -41,7 +46,7 @@ void hf_parallel_add(double *sum, double value)
     *sum += value;
 }
 
-/* Called in a thread of hf_parallel_for. Each task has its own room, whichever thread takes it. */
+/* Runs the rooms as tasks, in a thread of hf_parallel_for. Each task has its own room, whichever thread runs it. */
 static void run_inside(int n_thread, void (*work)(void *context, int room), void *context)
 {
     for (int room = 1; room < n_thread; room++) {
@@ -86,7 +91,7 @@ void hf_parallel_each(int n_thread, int n, void (*work)(void *context, int room,
         work_in_room(&items, 0);
 }
 
-/* later is NULL when no thread serves it. */
+/* Works on items until none is left. `later` is NULL if no thread serves the list. */
 static void work_on_items(hf_parallel_queue *items, hf_later_list *later, void (*work)(void *context, int i),
                           void *context)
 {
@@ -104,11 +109,13 @@ void hf_parallel_for(int n_thread, int n, void (*work)(void *context, int i), vo
     hf_later_open(n_thread, &later);
 #pragma omp parallel num_threads(n_thread + 1)
     {
-        bool has_server = omp_get_num_threads() > n_thread; /* with fewer threads than asked for all of them work */
+        /* If OpenMP provides fewer threads than requested, all of them work and none serves. */
+        bool has_server = omp_get_num_threads() > n_thread;
         if (omp_get_thread_num() < n_thread)
             work_on_items(&items, has_server ? &later : NULL, work, context);
         else
             hf_later_serve(&later);
-    } /* at this barrier threads without an item take the tasks of hf_parallel_run */
+        /* At this barrier, threads without an item run the tasks of hf_parallel_run. */
+    }
     hf_later_close(&later);
 }

@@ -1,3 +1,10 @@
+/* Runs the paper's iteration for many designs, eight at a time. swarm.h describes the interface, swarm_lane.h one
+ * iteration.
+ *
+ *     load     force densities, targets and supports of a design into a lane
+ *     look     solve for the positions of all lanes; lengths, errors, next force densities; residual or psi
+ *     settle   converged: store the result; no shape: its status, or hf_evaluate; otherwise one more iteration
+ *     step     the next force densities become the present ones                                (Eqs. 7, 8) */
 #include "search/swarm.h"
 
 #include "solve/equilibrium.h"
@@ -16,7 +23,7 @@ typedef struct {
     hf_form_result *result;
     hf_stop_rule stop;
     int iterations[HF_LANES];
-    double psi_before_m[HF_LANES]; /* NaN at the first iteration */
+    double psi_before_m[HF_LANES]; /* NaN in the first iteration */
     hf_swarm_measures now;
 } swarm;
 
@@ -25,7 +32,8 @@ static void load(void *solver, int lane, int i_design)
     swarm *s = solver;
     const hf_model *m = s->v->model;
     hf_evaluate_prepare(s->v, s->design_N + (size_t)i_design * (size_t)m->n_gene, s->w);
-    memcpy(s->w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double)); /* the support rows count */
+    /* hf_swarm_put reads the positions of the supports only. */
+    memcpy(s->w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double));
     hf_swarm_put(s->plan, s->w, lane, s->lanes);
     s->iterations[lane] = 0;
     s->psi_before_m[lane] = (double)NAN;
@@ -42,7 +50,7 @@ static void look(void *solver)
         hf_swarm_residual(s->plan, s->lanes, &s->now);
 }
 
-/* HF_OK, or why there is no shape in this lane. */
+/* Returns HF_OK, or the reason why there is no shape in this lane. */
 static hf_status health(const swarm *s, const hf_swarm_measures *now, int lane)
 {
     if (s->lanes->bad_row[lane] >= 0) return HF_SINGULAR;
@@ -52,6 +60,7 @@ static hf_status health(const swarm *s, const hf_swarm_measures *now, int lane)
     return now->longest_length_ratio[lane] > HF_FORM_BLOWN_UP ? HF_SINGULAR : HF_OK;
 }
 
+/* Returns the reason for which the iteration of this lane ends, or HF_STOPPED_NONE. */
 static hf_stop_reason stop_reason(swarm *s, const hf_swarm_measures *now, int lane)
 {
     const hf_form_settings *form = s->v->form;
@@ -67,7 +76,7 @@ static hf_stop_reason stop_reason(swarm *s, const hf_swarm_measures *now, int la
     return s->iterations[lane] < form->max_iterations ? HF_STOPPED_NONE : HF_STOPPED_MAX_ITERATIONS;
 }
 
-/* Count the iteration of this lane, and store the result when it was the last. */
+/* Counts the iteration of this lane. If it was the last one, stores the result and returns true. */
 static bool settle(void *solver, int lane, int i_design)
 {
     swarm *s = solver;
@@ -83,7 +92,7 @@ static bool settle(void *solver, int lane, int i_design)
         hf_form_accept(s->v->model, s->v->form, reason, s->iterations[lane], s->w, r);
         if (s->stop == HF_STOP_RESIDUAL) hf_equilibrium_judge_open(s->v->model, s->v->form, s->w, r);
         hf_loose_refuse(s->v->model, s->v->form, s->w, r);
-    } else if (s->v->model->has_newton) { /* on its own it is asked whether the net has a shape all the same */
+    } else if (s->v->model->has_newton) { /* hf_evaluate finds out whether the net has a shape all the same */
         hf_evaluate(s->v, design_N, s->w, r);
         return true;
     } else {
@@ -111,6 +120,6 @@ void hf_swarm_run(const hf_evaluator *evaluator, const hf_swarm_plan *plan, hf_s
                .result = r,
                .stop = evaluator->rule == HF_RULE_SEEDED ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
     hf_evaluate_prepare(evaluator, design_N, w);
-    memcpy(lanes->law, w->law, (size_t)evaluator->model->n_cable); /* the same for all designs */
+    memcpy(lanes->law, w->law, (size_t)evaluator->model->n_cable); /* all designs have the same laws */
     hf_lane_schedule_run(&work, &s, next, context);
 }

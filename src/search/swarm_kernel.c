@@ -1,20 +1,29 @@
-/* The kernels of swarm, compiled once for each instruction set: HF_ISA names the table at the end of the file.
+/* Implements the kernels of swarm, which are compiled once for each instruction set. The table at the end of the file
+ * has the name of the instruction set (HF_ISA).
  *
- * Contents: vectors - tiles - factor - substitution - assembly - solve - measures - table
+ *     q, supports -> assemble   -> tiles of D, right-hand sides in position_m
+ *     D           -> factor     -> Cholesky factor, bad_row
+ *     factor      -> substitute -> positions of the free nodes
+ *     q, supports -> solve      -> the three steps above, block row by block row
+ *     positions   -> measure    -> lengths, errors, next q                           (Eqs. 4, 7, 8)
+ *     positions   -> residual, psi
  *
- * The factorisation is left-looking by tiles of 4 x 4 entries: a tile stays in registers (16 of AVX-512's 32) while the
- * finished parts of its two block rows stream by, 8 loads for 16 fused multiply-adds. Both parts are contiguous,
- * whatever the bandwidth. Each entry has one accumulator that runs over the columns in rising order, so how the entries
- * are grouped (GROUP columns at a time) cannot change a bit.
+ * The factorisation is left-looking, by tiles of 4 x 4 entries. A tile stays in registers (16 of the 32 of AVX-512)
+ * while the finished parts of its two block rows are read: 8 loads for 16 fused multiply-adds. Both parts are
+ * contiguous for every bandwidth. Each entry has one accumulator that runs over the columns in rising order. How the
+ * entries are grouped (GROUP columns at a time) therefore cannot change a bit.
  *
- * What fusing is worth: *measured* on one core of a Zen 5 EPYC, which multiplies and adds in separate units, so that it
- * gains least; the cores were busy, and these are medians of the processor time that factoring 8 x (n = 440,
- * half-bandwidth 21) took, per matrix. A processor without fused multiply-adds runs "any x86-64".
+ * The following table shows the gain by fused multiply-adds. It was *measured* on one core of a Zen 5 EPYC, which gains
+ * little because it multiplies and adds in separate units. The numbers are medians of the processor time per matrix for
+ * factoring 8 matrices (n = 440, half-bandwidth 21) on busy cores. A processor without fused multiply-adds runs "any
+ * x86-64".
  *
- *                    fused        not fused
- *     AVX-512        1.8 us       2.0 us
- *     AVX2           3.6 us       4.2 us
- *     any x86-64     239 us       8.4 us      (C's fma() in software takes thirty times as long as lane.h does) */
+ *                        fused        not fused
+ *         AVX-512        1.8 us       2.0 us
+ *         AVX2           3.6 us       4.2 us
+ *         any x86-64     239 us       8.4 us      (C's fma() in software takes thirty times as long as lane.h does)
+ *
+ * Contents: vectors - tiles - factor - substitution - assembly - solve - measures - table */
 #define HF_LANE_VECTORS
 #include "search/swarm_kernel.h"
 
@@ -25,7 +34,7 @@
 
 /* ---- vectors ---- */
 
-/* Columns of a tile that are eliminated at a time: their accumulators fill the registers. */
+/* GROUP columns of a tile are eliminated at a time: their accumulators fill the registers. */
 #if defined __AVX512F__
 enum { GROUP = 4 };
 #else
@@ -63,10 +72,13 @@ INLINE bool all_positive(vec a)
 
 enum { BLOCK = HF_SWARM_BLOCK, COLUMN = BLOCK * HF_LANES, TILE = BLOCK * COLUMN, POINT = 3 * HF_LANES };
 
-/* Eliminate in GROUP columns of n_row rows, when all columns before them are finished:
- *     t(r,c) = (t(r,c) - sum over k of t(r,k) l(c,k)) / l(c,c), k rising
- * `row` points to column k = first of the rows, whose columns are `stride` apart; `pivot_row` to the same of the rows
- * of l; n_before columns further on lie the t(r,c) and the l(c,c). With is_empty the t(r,c) are taken as 0. */
+/* Eliminates GROUP columns of n_row rows, after all columns before them are finished:
+ *
+ *     t(r,c) = (t(r,c) - sum over k of t(r,k) l(c,k)) / l(c,c),   k rising
+ *
+ * `row` points to the first column k of the rows, whose columns are `stride` apart. `pivot_row` points to the same
+ * column of the rows of l. The entries t(r,c) and l(c,c) are n_before columns further on. If is_empty is true, the
+ * t(r,c) are taken as 0. */
 INLINE void eliminate(int n_row, double *row, int stride, const double *pivot_row, int n_before, bool is_empty)
 {
     vec t[BLOCK][GROUP];
@@ -101,8 +113,8 @@ INLINE void eliminate(int n_row, double *row, int stride, const double *pivot_ro
     }
 }
 
-/* Subtract the products of the n_before columns before it from the lower half of a tile on the diagonal. `row`: as
- * above. */
+/* Subtracts the products of the n_before columns before a diagonal tile from its lower half. `row` points to the first
+ * of these columns. */
 INLINE void reduce_diagonal(double *row, int n_before)
 {
     vec t[BLOCK][BLOCK];
@@ -123,7 +135,8 @@ INLINE void reduce_diagonal(double *row, int n_before)
             if (r >= c) store(tile + c * COLUMN + r * HF_LANES, t[r][c]);
 }
 
-/* The reciprocal of an infinite pivot is 0, which takes its row and column out, so that no number grows from there. */
+/* Replaces pivots that are not positive by infinity, and stores the row of the first one in bad_row. The reciprocal of
+ * an infinite pivot is 0, which removes its row and column, so no number grows from there. */
 static __attribute__((noinline, cold)) vec mend_pivot(vec pivot, int i_row, int *bad_row)
 {
     for (int k = 0; k < WIDTH; k++) {
@@ -134,8 +147,8 @@ static __attribute__((noinline, cold)) vec mend_pivot(vec pivot, int i_row, int 
     return pivot;
 }
 
-/* Finish column c of a reduced tile: its pivot and the rest of the column; then subtract its products from the columns
- * after it. */
+/* Finishes column c of a reduced tile: the reciprocal of its pivot and the rest of the column. Then subtracts its
+ * products from the columns after it. */
 INLINE void finish_column(int c, double *tile, int i_row, int *bad_row)
 {
     double *column = tile + c * COLUMN;
@@ -156,6 +169,7 @@ INLINE void finish_column(int c, double *tile, int i_row, int *bad_row)
 
 /* ---- factor ---- */
 
+/* Returns the tile of a block row in tile column j_block. */
 static double *tile_at(const hf_swarm_plan *plan, const hf_swarm_lanes *w, int i_block, int j_block)
 {
     return w->matrix + (plan->tile_0[i_block] + (size_t)j_block) * TILE;
@@ -170,7 +184,7 @@ static void finish_one(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block
 {
     double *tile = tile_at(plan, w, i_block, i_block) + p;
     int i_row = i_block * BLOCK + c - plan->n_pad;
-    switch (c) { /* constants, so that the loops unroll */
+    switch (c) { /* The columns are constants, so that the loops unroll. */
     case 0:
         finish_column(0, tile, i_row, w->bad_row + p);
         break;
@@ -185,7 +199,8 @@ static void finish_one(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block
     }
 }
 
-/* Finish at most `count` columns of the diagonal tile of a block row, from column *c on; *c becomes the next column. */
+/* Finishes at most `count` columns of the diagonal tile of a block row, from column *c on. *c becomes the next
+ * column. */
 static void finish_columns(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block, int count, int *c)
 {
     for (; count > 0 && *c < BLOCK; count--, ++*c)
@@ -193,9 +208,9 @@ static void finish_columns(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_b
             finish_one(plan, w, i_block, *c, p);
 }
 
-/* Tiles of a kilobyte that the second level of a cache does not hold: of so many, those of the next block row are
- * fetched while this one is worked on. *Measured* with half-bandwidth 65, 18 000 tiles and AVX2: 74 % of the peak
- * instead of 59; with half-bandwidth 21 and 660 tiles a loss of 0 to 4 %. */
+/* From this number of tiles on (1 kB each), the matrix does not fit into the second-level cache. The tiles of the next
+ * block row are then prefetched while this one is factored. *Measured* with half-bandwidth 65, 18 000 tiles and AVX2:
+ * 74 % of the peak speed instead of 59 %. With half-bandwidth 21 and 660 tiles, prefetching costs 0 to 4 %. */
 enum { FETCHED_FROM = 2000 };
 
 INLINE void fetch_tile(const double *tile)
@@ -204,10 +219,10 @@ INLINE void fetch_tile(const double *tile)
         __builtin_prefetch(tile + k, 1);
 }
 
-/* Finish a block row up to its diagonal tile, which is only reduced. The root and the division of a pivot take as long
- * as half a tile, and the next pivot depends on them. Therefore the pivots of the block row before this one are found
- * here, one before each tile that does not need them. All lanes of a tile are done before the next one, so that the
- * finished rows come from the second level of the cache once. */
+/* Factors a block row up to its diagonal tile, which is only reduced. The root and the division of a pivot take as long
+ * as half a tile, and the next pivot depends on them. The pivots of the block row before are therefore found here, one
+ * before each tile that does not need them. All lanes of a tile are done before the next tile, so the finished rows are
+ * read from the second-level cache once. */
 static void factor_block_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block)
 {
     int first = plan->first_column[i_block], c = i_block ? 0 : BLOCK;
@@ -246,7 +261,7 @@ static void factor(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 
 /* ---- substitution ---- */
 
-/* The right-hand sides are three more rows of the matrix. */
+/* Substitutes forward in a block row. The right-hand sides are treated as three more rows of the matrix. */
 static void substitute_forward(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block, int p)
 {
     int first = plan->first_column[i_block], n_before = i_block * BLOCK - first;
@@ -255,8 +270,8 @@ static void substitute_forward(const hf_swarm_plan *plan, hf_swarm_lanes *w, int
         eliminate(3, w->position_m + first * POINT + p, POINT, row + g * HF_LANES, n_before + g, 0);
 }
 
-/* Find the unknowns of the block row, the last one first; then subtract their part from all rows before it, the nearest
- * row first. */
+/* Finds the unknowns of the block row, the last one first. Then subtracts their part from all rows before it, the
+ * nearest row first. */
 static void substitute_back(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block, int p)
 {
     const double *column = tile_at(plan, w, i_block, i_block) + p;
@@ -304,7 +319,7 @@ static void substitute(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 
 /* ---- assembly ---- */
 
-/* The loop goes over the nodes, so that diagonal and right-hand sides are summed in registers. */
+/* Assembles a row of D and its right-hand sides. The loop runs over the nodes, so that both are summed in registers. */
 static void assemble_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_row, int p)
 {
     const hf_model *m = plan->model;
@@ -336,8 +351,8 @@ static void assemble_dummy_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int
         store(w->position_m + i * POINT + c * HF_LANES + p, splat(0));
 }
 
-/* Tiles without entries need no zeros, because `eliminate` does not read them. The loop is unrolled, because gcc 12
- * makes a memset of a plain loop and rep stos of the memset, which takes three times as long. */
+/* Clears the tiles of a block row that have entries; `eliminate` does not read the others. The loop is unrolled,
+ * because gcc 12 makes a memset of a plain loop and `rep stos` of the memset, which takes three times as long. */
 static void clear_block_row(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block)
 {
     for (int j_block = plan->first_column[i_block] / BLOCK; j_block <= i_block; j_block++) {
@@ -368,7 +383,7 @@ static void assemble(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 
 /* ---- solve ---- */
 
-/* Each block row is assembled when it is factored, so that it is still in the first level of the cache. */
+/* Assembles each block row just before it is factored, so that it is still in the first-level cache. */
 static void solve(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 {
     memset(w->bad_row, -1, HF_LANES * sizeof(int));
@@ -376,7 +391,7 @@ static void solve(const hf_swarm_plan *plan, hf_swarm_lanes *w)
         assemble_block_row(plan, w, i_block);
         factor_block_row(plan, w, i_block);
         for (int p = 0; i_block && p < HF_LANES; p += WIDTH)
-            substitute_forward(plan, w, i_block - 1, p); /* the row that has just got its pivots */
+            substitute_forward(plan, w, i_block - 1, p); /* the row whose pivots have just been found */
     }
     factor_last_tile(plan, w);
     for (int p = 0; p < HF_LANES; p += WIDTH)
@@ -399,7 +414,7 @@ static void measure_part(const hf_swarm_plan *plan, hf_swarm_lanes *w, hf_swarm_
         vec q = load(w->q_N_per_m + e * HF_LANES + p), target = load(w->target + e * HF_LANES + p);
         vec length = root(norm_squared(dx, dy, dz)), tension = q * length;
         vec part = length * plan->inverse_length[e];
-        finite += tension - tension; /* NaN from infinity and NaN, else 0 */
+        finite += tension - tension; /* NaN if the tension is infinite or NaN, else 0 */
         longest = larger(part, longest);
         if (hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)) {
             shortest[HF_LAW_TENSION] = smaller(part, shortest[HF_LAW_TENSION]);
@@ -437,12 +452,13 @@ static void measure(const hf_swarm_plan *plan, hf_swarm_lanes *w, hf_swarm_measu
         measure_part(plan, w, out, p);
 }
 
-/* The loop goes over the nodes, so that forces need no array. */
+/* Computes the maximum nodal force. The loop runs over the nodes, so that the forces need no array. */
 static void residual_part(const hf_swarm_plan *plan, const hf_swarm_lanes *w, hf_swarm_measures *out, int p)
 {
     const hf_model *m = plan->model;
     const double *q_by_law[] = {w->q_N_per_m, w->next_q_N_per_m};
-    vec largest = splat(0), scale = splat(1 / m->reference_N); /* squares of tiny forces would vanish */
+    /* The forces are scaled by the reference tension, because the squares of tiny forces would vanish. */
+    vec largest = splat(0), scale = splat(1 / m->reference_N);
     for (int i_row = 0; i_row < m->n_free; i_row++) {
         const double *x = w->position_m + (plan->n_pad + i_row) * POINT + p;
         vec f[3], x_i[3];

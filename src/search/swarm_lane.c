@@ -1,4 +1,9 @@
-/* Contents: plan - lanes - one lane in and out - kernels */
+/* Makes the plan and the lanes of the paper's iteration. swarm_lane.h describes the interface.
+ *
+ *     model -> incidences of each node -> skyline and tiles of D -> plan (shared)
+ *     plan  -> lanes of a thread -> put a design into a lane -> kernels -> get the shape of a lane
+ *
+ * Contents: plan - lanes - one lane in and out - kernels */
 #include "search/swarm_lane.h"
 
 #include <assert.h>
@@ -27,8 +32,9 @@ static void lay_out(hf_arena *a, hf_swarm_plan *p)
     p->inverse_length = hf_arena_take(a, n_cable, sizeof(double));
 }
 
-/* The incidences are counted first. Then incidence_start[row] is the place of the row's next incidence; when all are
- * filled in, it is where the next row starts. */
+/* Lists the cables at each free node, by a counting sort. incidence_start first counts the cables of each row. While
+ * the list is filled, incidence_start[row] is the index of the next entry of the row. At the end it is where the next
+ * row begins, so the array is shifted by one. */
 static void list_incidences(hf_swarm_plan *p)
 {
     const hf_model *m = p->model;
@@ -48,7 +54,7 @@ static void list_incidences(hf_swarm_plan *p)
     start[0] = 0;
 }
 
-/* Lane rows of cable e, the lower one first; false when one of its ends is a support. */
+/* Returns the lane rows of cable e, the lower one first. Returns false if one of its ends is a support. */
 static bool is_between_free_nodes(const hf_swarm_plan *p, int e, int *low, int *high)
 {
     const hf_model *m = p->model;
@@ -58,7 +64,8 @@ static bool is_between_free_nodes(const hf_swarm_plan *p, int e, int *low, int *
     return *high < p->n_pad + m->n_free;
 }
 
-/* The factor may have an entry in every column of a row from the first entry of D on: storage starts there. */
+/* Finds the tiles of each block row. The factor may have an entry in every column from the first entry of D in the row
+ * on, so storage begins there. */
 static void find_skyline(hf_swarm_plan *p)
 {
     int low, high;
@@ -71,9 +78,9 @@ static void find_skyline(hf_swarm_plan *p)
     }
     for (int i = 0; i < p->n_block; i++) {
         size_t first = (size_t)(p->first_column[i] / HF_SWARM_BLOCK);
-        p->tile_0[i] = p->n_tile - first; /* never negative: each block row before this one has a tile at least */
+        p->tile_0[i] = p->n_tile - first; /* never negative: each earlier block row has at least one tile */
         p->n_tile += (size_t)i - first + 1;
-        p->has_entry[p->n_tile - 1] = 1; /* the diagonal */
+        p->has_entry[p->n_tile - 1] = 1; /* the diagonal tile has entries */
     }
     for (int e = 0; e < p->model->n_cable; e++)
         if (is_between_free_nodes(p, e, &low, &high))
