@@ -1,8 +1,9 @@
-/* breeding - how designs are made from designs: the first generation, moves along the difference of two, mutation. The
- * optimisers of METHOD section 7 differ in who the parents are and who lives on.
+/* breeding - the operators that make designs from other designs: the first generation, crossover along the difference
+ * of two designs, and mutation. The genetic algorithms of METHOD section 7 differ in how they select parents and
+ * survivors.
  *
- * Every change is one of whole chains of boundary cables, or of genes each for itself. Linked genes follow their leader
- * only after hf_population_link, with which the caller ends. */
+ * An operator changes whole chains of boundary cables, or single genes. Crossover and mutation do not make linked genes
+ * follow their leaders. After them, the caller calls hf_population_link. */
 #ifndef HIFDM_BREEDING_H
 #define HIFDM_BREEDING_H
 
@@ -13,32 +14,35 @@
 
 typedef struct {
     const hf_model *model; /* borrowed */
-    double *draw;          /* [n_individual][n_gene_group] scratch of each child, as several are bred at a time */
+    double *draw; /* [n_individual][n_gene_group] scratch of each child; threads make several children at a time */
 } hf_breeding;
 
-/* A design that moves by a part of the difference of two others. */
+/* How a crossover moves a design along the difference of two others. */
 typedef struct {
-    double step_max;      /* it moves by 0 to so many differences */
-    double share_octaves; /* 2^-share_octaves of the chains, or genes, to all of them are moved; log-uniform */
-    double by_chain;      /* so many of the moves are of whole chains, the others of each gene for itself */
+    double step_max;      /* the step is uniform between 0 and this many differences */
+    double share_octaves; /* the share of chains or genes that move is log-uniform between 2^-share_octaves and 1 */
+    double by_chain;      /* probability that whole chains move, instead of single genes */
 } hf_breeding_move;
 
-/* Does the gene follow no other gene? */
+/* hf_breeding_leads returns true if the gene follows no other gene. hf_breeding_n_leader returns the number of genes
+ * that follow no other gene. */
 bool hf_breeding_leads(const hf_breeding *breeding, int i_gene);
 int hf_breeding_n_leader(const hf_breeding *breeding);
 
-/* A number for each chain of individual i. */
+/* Returns the scratch of individual i, [n_gene_group]: one number for each chain. */
 double *hf_breeding_draws(const hf_breeding *breeding, int i);
 
-/* Eq. 13 around the base, with one random number per chain. Individual 0 is the base itself, so that the result is
- * never worse than the base. */
+/* Writes the first generation: Eq. 13 around the initial design, with one random number per chain. Individual 0 is the
+ * initial design itself, so the best individual is never worse than the initial design. */
 void hf_breeding_first(const hf_breeding *breeding, uint64_t seed, hf_population *population);
 
-/* Move child [n_gene], of individual i, by some part of the way from one design to another, and beyond. */
+/* Moves child [n_gene] of individual i along the difference from design `from` to design `to`, both [n_gene]. A random
+ * share of its chains or genes moves, by a random number of differences from 0 to step_max. */
 void hf_breeding_move_along(const hf_breeding *breeding, const hf_population *population, const hf_breeding_move *move,
                             const double *from, const double *to, int i, double *child, hf_random *random);
 
-/* Each chain takes a step with probability `rate`, and on average `single` genes take one alone. */
+/* Mutates child [n_gene] of individual i. Each chain takes a step with probability `rate`. In addition, `single` genes
+ * on average take a step of their own. */
 void hf_breeding_mutate(const hf_breeding *breeding, const hf_population *population, double rate, double single, int i,
                         double *child, hf_random *random);
 

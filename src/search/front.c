@@ -1,3 +1,10 @@
+/* Sorts and marks the points of a Pareto front, finds its knee and makes its table. <hifdm/front.h> describes the
+ * interface.
+ *
+ *     points -> sort: feasible ones by their objectives, then failed ones -> mark: on, dominated, failed -> knee
+ *     front  -> tabulate: ends, knee and evenly spaced points -> table of a summary
+ *
+ * Contents: order - the knee - the table */
 #include <hifdm/front.h>
 
 #include "base/arena.h"
@@ -71,7 +78,7 @@ static void swap(void *a, void *b, size_t size)
     }
 }
 
-/* By insertion: equal points keep their order, and the points of a front are few. */
+/* Sorts the points by insertion: equal points keep their order, and a front has few points. */
 static void sort(hf_front *f)
 {
     size_t n_gene = (size_t)f->n_gene;
@@ -82,6 +89,7 @@ static void sort(hf_front *f)
         }
 }
 
+/* Marks each point: failed, dominated by another one or equal to an earlier one, or on the front. */
 static void mark(hf_front *f)
 {
     for (int i = 0; i < f->n_point; i++) {
@@ -98,9 +106,9 @@ static void mark(hf_front *f)
 
 /* ---- the knee ---- */
 
-/* The point farthest below the line, or plane, through the least of each objective: with each objective as 0 at its
- * least and 1 at its largest on the front, that of the least sum. A front that is straight or bent outwards has none.
- */
+/* Returns the knee: the point farthest below the line, or plane, through the minimum of each objective. Each objective
+ * is scaled to 0 at its minimum and 1 at its maximum on the front. The knee is then the point with the smallest sum of
+ * objectives. Returns -1 if no sum is below 1, as for a straight front, or if an objective has no range. */
 static int find_knee(const hf_front *f)
 {
     double low[HF_OBJECTIVES_MAX], high[HF_OBJECTIVES_MAX], least = 1 - 1e-9; /* sums of 1 differ by rounding */
@@ -136,7 +144,7 @@ void hf_front_settle(hf_front *f)
 
 /* ---- the table ---- */
 
-/* The first point on the front with the least of objective k, or -1. */
+/* Returns the first point on the front with the minimum of objective k, or -1 if no point is on the front. */
 static int find_end(const hf_front *f, int k)
 {
     int end = -1;
@@ -146,6 +154,7 @@ static int find_end(const hf_front *f, int k)
     return end;
 }
 
+/* Returns true if point i is the knee or an end of the front. */
 static bool has_a_name(const hf_front *f, const int end[HF_OBJECTIVES_MAX], int i)
 {
     bool is_named = i == f->knee;
@@ -154,7 +163,7 @@ static bool has_a_name(const hf_front *f, const int end[HF_OBJECTIVES_MAX], int 
     return is_named;
 }
 
-/* The rows: each point with a name, and of the n_other without one n_kept, evenly. */
+/* Chooses the rows of the table: all ends and the knee, and n_kept evenly spaced ones of the n_other other points. */
 static void choose_rows(const hf_front *f, const int end[HF_OBJECTIVES_MAX], hf_front_table *t)
 {
     long n_named = 0, n_other, n_kept, other = 0;
@@ -186,6 +195,7 @@ int hf_front_suggested(const hf_front_table *t)
     return row < 0 ? 0 : t->place[row] + 1;
 }
 
+/* Returns the row of the table that holds point `place` of the front, or -1. */
 static int row_of(const hf_front_table *t, int place)
 {
     int row = place < 0 ? -1 : t->n_row - 1;

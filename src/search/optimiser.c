@@ -1,4 +1,9 @@
-/* Contents: ask and tell - the methods of a case */
+/* Implements the ask-and-tell interface of the optimisers, and lists the optimiser of each method of a case.
+ * <hifdm/optimiser.h> describes both.
+ *
+ *     create -> first generation -> caller evaluates it -> tell: survivors, ranks -> next: begin, propose, end -> ...
+ *
+ * Contents: ask and tell - the methods of a case */
 #include <hifdm/optimiser.h>
 
 #include <assert.h>
@@ -78,7 +83,7 @@ hf_optimiser_plan hf_optimiser_plan_of(const hf_optimize_settings *settings)
     static const hf_optimiser_plan plan[] = {HF_OPTIMISER_LIST(ROW)};
 #undef ROW
     hf_optimiser_plan it = plan[settings->method];
-    assert(it.kind); /* every method has a row */
+    assert(it.kind); /* every method has a row in HF_OPTIMISER_LIST */
     if (it.kind == &hf_optimiser_none) it.kind = NULL;
     if (it.kind && settings->n_objective) it.kind = &hf_optimiser_nsga;
     return it;

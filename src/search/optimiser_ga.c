@@ -1,11 +1,19 @@
-/* The adaptive real-coded genetic algorithm (Eqs. 11-13), in two variations.
+/* Implements the adaptive real-coded genetic algorithm of Eqs. 11 to 13, in two variations.
  *
- * Both: roulette on psi_worst - psi; the multi-scale mutation of the breeder GA (Muehlenbein & Schlierkamp-Voosen
- * 1993), acting on the chains of boundary cables (model->gene_group) and on single cables; rates of Srinivas & Patnaik
- * (1994), minimising.
- * Difference: a crossover moves an elite along the difference of two parents, as differential evolution does (Storn &
- * Price 1997), and a child takes the place of an individual that is no better (hf_population_survive).
- * Chain: intermediate recombination; whole generations are replaced, but for the elites.
+ *     generation -> fitness -> two parents by roulette -> crossover -> mutation -> child, clamped to the bounds
+ *     individuals and evaluated children -> survivors -> next generation
+ *
+ * Both variations select parents by roulette with the fitness psi_worst - psi. Both have the multi-scale mutation of
+ * the breeder GA (Muehlenbein & Schlierkamp-Voosen 1993), which changes chains of boundary cables (model->gene_group)
+ * and single cables. Their rates are those of Srinivas & Patnaik (1994) for minimisation.
+ *
+ * Variation `difference`: a crossover moves an elite along the difference of two parents, as in differential evolution
+ * (Storn & Price 1997). A child replaces the individual of the same index unless the child is worse
+ * (hf_population_keep_better).
+ *
+ * Variation `chain`: a crossover is an intermediate recombination. The children replace the whole generation except the
+ * elites.
+ *
  * Contents: state - adaptive rates - selection - variation - the next generation */
 #include <hifdm/optimiser.h>
 
@@ -16,29 +24,32 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the variation `difference`; measured on the nets of METHOD section 7, which says what others give. */
+/* The crossover of the variation `difference`. Its constants were measured on the nets of METHOD section 7, which also
+ * lists the results of other constants. */
 static const hf_breeding_move crossover = {.step_max = 2.0, .share_octaves = 2.3, .by_chain = 0.6};
-#define SINGLES 10.0 /* genes that mutate alone are so many times as frequent as in the variation `chain` */
-/* Intermediate recombination, one draw per chain, reaches this far beyond the parents, so that the population's spread
- * does not shrink by recombination alone. The designs proposed depend on it; test_optimiser_ga passes with 0 and with
- * 0.75. */
+#define SINGLES 10.0 /* single genes mutate this many times as often as in the variation `chain` */
+/* Intermediate recombination draws one number per chain, which reaches this far beyond both parents. So recombination
+ * alone does not shrink the spread of the population. The proposed designs depend on this constant. The test
+ * test_optimiser_ga passes with 0 and with 0.75. */
 #define RECOMBINATION_REACH 0.25
-/* Even the worst individual keeps about this share of the best one's fitness. A test fails at 0.0133 and at 0.03. */
+/* Even the worst individual has about this part of the fitness of the best one. A test fails with 0.0133 and with
+ * 0.03. */
 #define FITNESS_FLOOR 0.02
 
 /* ---- state ---- */
 
 typedef struct {
-    const hf_optimize_settings *settings; /* borrowed, as the model */
+    const hf_optimize_settings *settings; /* borrowed, like the model */
     hf_breeding breeding;
-    /* What the children of a generation share, made before the first of them: */
+    /* Shared by the children of a generation; `begin` computes it before the first child. */
     double *fitness; /* [n_individual] */
     double total_fitness, best_merit, mean_merit;
-    int *elite;           /* [elites] the best, in order */
-    unsigned char *taken; /* [n_individual] scratch */
+    int *elite;           /* [elites], indices of the best individuals, best first */
+    unsigned char *taken; /* [n_individual], scratch */
 } breeder;
 
-/* The struct itself comes first, so that its address is that of the block, and free(state) frees all. */
+/* Lays out the arrays of the state. The struct itself comes first: its address is then that of the block, and
+ * free(state) frees everything. */
 static breeder *lay_out(hf_arena *a, breeder *g)
 {
     breeder *itself = hf_arena_take(a, 1, sizeof *itself);
@@ -67,8 +78,10 @@ static void first(void *state, hf_population *p)
     hf_breeding_first(&g->breeding, g->settings->seed, p);
 }
 
-/* ---- adaptive rates (Srinivas & Patnaik 1994, minimising): the better an individual, the less it is disturbed ---- */
+/* ---- adaptive rates ---- */
 
+/* Returns the rate of crossover or mutation between `low` and `high` (M10), after Srinivas & Patnaik (1994) for
+ * minimisation. `merit` is that of the better parent: the better it is, the less the parents are disturbed. */
 static double adaptive(const breeder *g, double high, double low, double merit)
 {
     double spread = g->mean_merit - g->best_merit;
@@ -79,12 +92,14 @@ static double adaptive(const breeder *g, double high, double low, double merit)
 
 /* ---- selection ---- */
 
-/* What is to be least: psi, or while no design is feasible the violation. NaN or INFINITY: it is no parent. */
+/* Returns what is minimised: the merit, or the violation while no design is feasible. An individual for which it is NaN
+ * or INFINITY cannot be a parent. */
 static double merit_of(const hf_population *p, int i)
 {
     return p->best >= 0 ? p->result[i].merit : hf_population_violation(&p->result[i]);
 }
 
+/* Sets the fitness of each individual, and the merits on which the adaptive rates depend. */
 static void set_fitness(breeder *g, const hf_population *p)
 {
     double best = INFINITY, worst = -INFINITY, sum = 0;
@@ -106,9 +121,10 @@ static void set_fitness(breeder *g, const hf_population *p)
     for (int i = 0; i < p->n_individual; i++)
         g->total_fitness += g->fitness[i];
     g->best_merit = best;
-    g->mean_merit = n > 1 ? sum / n : n == 1 ? INFINITY : (double)NAN; /* one alone is not to be lost */
+    g->mean_merit = n > 1 ? sum / n : n == 1 ? INFINITY : (double)NAN; /* a single parent gets low rates */
 }
 
+/* Returns a random individual, with a probability in proportion to its fitness. */
 static int spin_roulette(const breeder *g, hf_random *random)
 {
     double left = hf_random_uniform(random) * g->total_fitness;
@@ -124,6 +140,7 @@ static int spin_roulette(const breeder *g, hf_random *random)
 
 /* ---- variation ---- */
 
+/* Makes child [n_gene] = a + share (b - a) from designs a and b, with one random share per chain (`draw`). */
 static void recombine(const breeder *g, const hf_population *p, const double *a, const double *b, double *draw,
                       double *child, hf_random *random)
 {
@@ -135,7 +152,8 @@ static void recombine(const breeder *g, const hf_population *p, const double *a,
     }
 }
 
-/* An elite, moved by some part of the way from the worse of two parents to the better one, and beyond. */
+/* Makes child [n_gene] of individual i: an elite, moved along the difference from the worse of the parents a and b to
+ * the better one. */
 static void move_elite(const breeder *g, const hf_population *p, int a, int b, int i, double *child, hf_random *random)
 {
     size_t n = (size_t)p->n_gene;
@@ -146,8 +164,8 @@ static void move_elite(const breeder *g, const hf_population *p, int a, int b, i
     hf_breeding_move_along(&g->breeding, p, &crossover, from, to, i, child, random);
 }
 
-/* Make one child, all by random numbers of its own stream. A child equal to a design of the generation before needs no
- * evaluation: it takes that one's result. */
+/* Makes one child with random numbers of its own stream. A child that equals the design from which it began (`same`)
+ * needs no evaluation, because it has the result of that design. */
 static void breed(const breeder *g, const hf_population *now, hf_population *next, int i)
 {
     const hf_optimize_settings *s = g->settings;
@@ -156,7 +174,8 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
     hf_random random = hf_random_stream(s->seed, now->generation + 1, i);
     int a = spin_roulette(g, &random);
     int b = spin_roulette(g, &random);
-    /* What a child is that no crossover makes. From outside the limits the way in leads past the best. */
+    /* The child without crossover is a copy of this individual. In the variation `difference`, it is the best
+     * individual instead of an infeasible one, because the best one is nearest to the limits. */
     int itself = by_chain ? a : now->result[i].status == HF_OK ? i : g->elite[0];
     const double *mother = now->design_N + (size_t)a * n, *father = now->design_N + (size_t)b * n;
     const double *same = now->design_N + (size_t)itself * n;
@@ -182,7 +201,7 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
 
 /* ---- the next generation ---- */
 
-/* The best individuals, by repeated selection (elites are few). */
+/* Lists the best individuals by repeated selection; there are few elites. */
 static void list_elites(const breeder *g, const hf_population *p)
 {
     memset(g->taken, 0, (size_t)p->n_individual);
@@ -195,7 +214,7 @@ static void list_elites(const breeder *g, const hf_population *p)
     }
 }
 
-/* The elite e lives on, in place e. */
+/* Copies elite e to individual e of the next generation. */
 static void keep_elite(const breeder *g, const hf_population *now, hf_population *next, int e)
 {
     size_t n = (size_t)now->n_gene;
@@ -223,7 +242,7 @@ static void propose(void *state, const hf_population *now, hf_population *next, 
         breed(g, now, next, i);
 }
 
-/* In the variation `difference` an individual gives way to a child that is not worse. */
+/* In the variation `difference`, a child replaces an individual unless the child is worse. */
 static void survive(void *state, const hf_population *before, hf_population *now)
 {
     const breeder *g = state;

@@ -1,12 +1,16 @@
-/* The front of designs of two or three objectives: who lives on is NSGA-II's choice (Deb, Pratap, Agarwal & Meyarivan,
- * IEEE Trans. Evol. Comput. 6, 2002), how children are made is that of the genetic algorithm's variation `difference`.
+/* Implements the genetic algorithm for a Pareto front of two or three objectives. NSGA-II selects the survivors (Deb,
+ * Pratap, Agarwal & Meyarivan, IEEE Trans. Evol. Comput. 6, 2002). Children are made as in the variation `difference`
+ * of optimiser_ga.c.
  *
- * Of all individuals and their children those of the first fronts live on, and of the front that does not fit the ones
- * that cover it best (hf_pareto_keep); infeasible ones by violation. Each child has weights of its own, drawn at
- * random, by which one of the individuals is the best: this one it moves, along the difference of two others or towards
- * another. So all parts of the front draw the population their way, as in decomposition (Zhang & Li, IEEE Trans. Evol.
- * Comput. 11, 2007), and there are no neighbourhoods to be kept.
- * Contents: state - what children begin from - weights - a child - survival */
+ *     N individuals -> first front -> random weights -> best individual by them -> crossover -> mutation -> child
+ *     N individuals + N children -> fronts -> whole fronts, then the best spread part of the next front -> N survivors
+ *
+ * hf_pareto_keep selects the part of the front that does not fit as a whole. Infeasible designs rank after all feasible
+ * ones, by their violation. The best individual by the weights moves along the difference of two others, or towards
+ * another one. Because each child draws its own weights, the population moves towards all parts of the front, as in
+ * decomposition (Zhang & Li, IEEE Trans. Evol. Comput. 11, 2007), but without neighbourhoods.
+ *
+ * Contents: state - origins of children - weights - a child - survival */
 #include <hifdm/optimiser.h>
 
 #include "base/arena.h"
@@ -17,27 +21,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Measured on the nets of METHOD section 7, which says what others give. */
+/* Measured on the nets of METHOD section 7, which also lists the results of other constants. */
 static const hf_breeding_move crossover = {.step_max = 3.0, .share_octaves = 4.0, .by_chain = 0.7};
-#define BY_APPROACH 0.4 /* so many crossovers go towards another individual, the others along a difference of two */
-#define BY_SUM 0.5      /* so many weigh the sum of the objectives, the others the largest of them */
-#define SUM_SHARE 0.01  /* of the sum beside the largest, so that no design that another dominates is the least */
-#define RATE 0.2        /* of mutation_high: what a chain mutates with */
-#define SINGLES 10.0    /* genes that mutate alone, over a chain's rate */
+#define BY_APPROACH 0.4 /* share of crossovers towards another individual; the others use the difference of two */
+#define BY_SUM 0.5      /* share of children that weigh the sum of the objectives; the others weigh their maximum */
+#define SUM_SHARE 0.01  /* part of the sum that is added to the maximum, so that no dominated design is the best */
+#define RATE 0.2        /* mutation rate of a chain, as a part of mutation_high */
+#define SINGLES 10.0    /* mean number of genes that mutate alone, divided by the rate of a chain */
 
 /* ---- state ---- */
 
 typedef struct {
-    const hf_optimize_settings *settings; /* borrowed, as the model */
+    const hf_optimize_settings *settings; /* borrowed, like the model */
     hf_breeding breeding;
-    hf_pareto both; /* an individual and, N places behind it, its child; of the present generation alone the first N */
-    int *rank;      /* [2 N] */
-    int *member;    /* [2 N] of a generation: the first front; then who lives on */
-    int n_leader;   /* members of the first front */
-    double least[HF_OBJECTIVES_MAX], range[HF_OBJECTIVES_MAX]; /* of each objective on the first front */
+    hf_pareto both; /* individual i, and its child at i + N; `begin` uses the first N alone */
+    int *rank;      /* [2 N], number of the front */
+    int *member;    /* [2 N], in a generation the first front, later the survivors */
+    int n_leader;   /* number of members of the first front */
+    /* The minimum and the range of each objective on the first front. */
+    double least[HF_OBJECTIVES_MAX], range[HF_OBJECTIVES_MAX];
 } front_breeder;
 
-/* The struct itself comes first, so that its address is that of the block, and free(state) frees all. */
+/* Lays out the arrays of the state. The struct itself comes first: its address is then that of the block, and
+ * free(state) frees everything. */
 static front_breeder *lay_out_breeder(hf_arena *a, front_breeder *g)
 {
     front_breeder *itself = hf_arena_take(a, 1, sizeof *itself);
@@ -67,14 +73,16 @@ static void first_front(void *state, hf_population *p)
     hf_breeding_first(&g->breeding, g->settings->seed, p);
 }
 
-/* ---- what children begin from ---- */
+/* ---- origins of children ---- */
 
+/* Copies the objectives and violations of a generation into `both`, from index `at` on. */
 static void take_values(front_breeder *g, const hf_population *p, int at)
 {
     for (int i = 0; i < p->n_individual; i++)
         hf_pareto_set(&g->both, at + i, p->result[i].goal, hf_population_violation(&p->result[i]));
 }
 
+/* Finds the first front of the present generation, and the range of each objective on it. */
 static void begin_front(void *state, const hf_population *now)
 {
     front_breeder *g = state;
@@ -100,11 +108,11 @@ static void begin_front(void *state, const hf_population *now)
 /* ---- weights ---- */
 
 typedef struct {
-    double of[HF_OBJECTIVES_MAX]; /* their sum is 1 */
-    bool by_sum;                  /* weigh the sum of the objectives, else the largest of them */
+    double of[HF_OBJECTIVES_MAX]; /* weight of each objective; their sum is 1 */
+    bool by_sum;                  /* true: weigh the sum of the objectives; false: weigh their maximum */
 } weights;
 
-/* All weights with the sum 1 are equally likely. */
+/* Draws weights with the sum 1, all of which are equally likely. */
 static weights draw_weights(int n_objective, hf_random *random)
 {
     weights w = {.by_sum = hf_random_uniform(random) < BY_SUM};
@@ -115,7 +123,8 @@ static weights draw_weights(int n_objective, hf_random *random)
     return w;
 }
 
-/* Is individual a better than b by these weights? Infeasible ones come last, by their violation. */
+/* Returns true if individual a is better than b by these weights. Infeasible individuals come last, by their
+ * violation. */
 static bool is_better_by(const front_breeder *g, const weights *w, int a, int b)
 {
     double value[2];
@@ -136,13 +145,14 @@ static bool is_better_by(const front_breeder *g, const weights *w, int a, int b)
 
 /* ---- a child ---- */
 
+/* Returns a random number from 0 to n - 1. */
 static int pick(int n, hf_random *random)
 {
     return (int)(hf_random_uniform(random) * n);
 }
 
-/* By random numbers of the child's own stream. One that is equal to the individual that it began from needs no
- * evaluation, and does not live on beside it. */
+/* Makes a child with random numbers of its own stream. A child that equals the individual from which it began is not
+ * evaluated, and does not survive beside that individual. */
 static void propose_child(void *state, const hf_population *now, hf_population *next, int i)
 {
     const front_breeder *g = state;
@@ -176,12 +186,12 @@ static void propose_child(void *state, const hf_population *now, hf_population *
 
 /* ---- survival ---- */
 
-/* Fill member [N] with those of both generations that live on, front after front. */
+/* Fills member [N] with the survivors of both generations, front after front. */
 static void choose_survivors(front_breeder *g, const hf_population *now)
 {
     int n = now->n_individual, n_front = hf_pareto_rank(&g->both, g->rank), n_kept = 0;
     for (int i = 0; i < n; i++)
-        if (!now->pending[i]) g->rank[n + i] = n_front; /* it is the individual that it began from */
+        if (!now->pending[i]) g->rank[n + i] = n_front; /* a copy of its origin comes last */
     for (int front = 0; n_kept < n; front++) {
         int n_member = 0, *member = g->member + n_kept;
         for (int i = 0; i < 2 * n; i++)
@@ -191,7 +201,8 @@ static void choose_survivors(front_breeder *g, const hf_population *now)
     }
 }
 
-/* A child that lives on stays at its place; individuals of before take the places of those that do not, in order. */
+/* A child that survives keeps its index. Surviving individuals of the previous generation take the indices of the other
+ * children, in order. */
 static void survive_front(void *state, const hf_population *before, hf_population *now)
 {
     front_breeder *g = state;
@@ -199,7 +210,7 @@ static void survive_front(void *state, const hf_population *before, hf_populatio
     take_values(g, before, 0);
     take_values(g, now, n);
     choose_survivors(g, now);
-    int *lives = g->rank; /* not needed any more */
+    int *lives = g->rank; /* the ranks are no longer needed */
     memset(lives, 0, 2 * (size_t)n * sizeof *lives);
     for (int k = 0; k < n; k++)
         lives[g->member[k]] = 1;

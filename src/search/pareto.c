@@ -1,4 +1,9 @@
-/* Contents: values and dominance - order - fronts - what to keep of a front - the front of a population */
+/* Ranks designs with two or three objectives. pareto.h describes the interface.
+ *
+ *     objectives, violations -> heapsort -> fronts, by binary search over the fronts so far -> rank of each design
+ *     one front -> room between neighbours -> remove the most crowded design, again and again -> designs to keep
+ *
+ * Contents: values and dominance - order - fronts - crowded fronts - the front of a population */
 #include "search/pareto.h"
 
 #include <math.h>
@@ -38,14 +43,17 @@ bool hf_pareto_dominates(const hf_pareto *p, int a, int b)
 
 /* ---- order ---- */
 
-/* Below zero: a comes before b. With objective < 0 by violation and then all objectives in turn, so that nobody comes
- * before one that dominates it; else by this objective. Of equals by index. */
+/* Returns a number below zero if a comes before b. If `objective` is below 0, the order is by violation and then by all
+ * objectives in turn, so that no design comes before one that dominates it. Otherwise the order is by this objective.
+ * The index decides between equal designs. */
 static int compare(const hf_pareto *p, int objective, int a, int b)
 {
     const double *x = hf_pareto_value(p, a), *y = hf_pareto_value(p, b);
     if (objective >= 0) {
         if (x[objective] != y[objective]) return x[objective] < y[objective] ? -1 : 1;
-        return objective == 0 ? a - b : b - a; /* so that one of two equal designs is no end */
+        /* In the other objectives, the index decides the other way round. So only one of two equal designs is an
+         * end. */
+        return objective == 0 ? a - b : b - a;
     }
     if (!is_feasible(p, a) || !is_feasible(p, b)) {
         if (p->violation[a] != p->violation[b]) return p->violation[a] < p->violation[b] ? -1 : 1;
@@ -56,6 +64,7 @@ static int compare(const hf_pareto *p, int objective, int a, int b)
     return a - b;
 }
 
+/* Restores the heap order [n] below entry i. */
 static void sink(const hf_pareto *p, int objective, int *order, int i, int n)
 {
     int item = order[i];
@@ -67,7 +76,7 @@ static void sink(const hf_pareto *p, int objective, int *order, int i, int n)
     order[i] = item;
 }
 
-/* Heapsort: qsort may allocate memory. */
+/* Sorts by heapsort, because qsort may allocate memory. */
 static void sort(const hf_pareto *p, int objective, int *order, int n)
 {
     for (int i = n / 2 - 1; i >= 0; i--)
@@ -82,8 +91,8 @@ static void sort(const hf_pareto *p, int objective, int *order, int n)
 
 /* ---- fronts ---- */
 
-/* Does a member of the front dominate design i, which comes after all of them in the order? Of two objectives its last
- * member has the least second one. */
+/* Returns true if a member of the front dominates design i, which comes after all members in the order. With two
+ * objectives, the last member has the minimum of the second one, so the other members need no test. */
 static bool front_dominates(const hf_pareto *p, int last, const int *earlier, int i)
 {
     for (int k = last; k >= 0; k = earlier[k]) {
@@ -101,8 +110,8 @@ int hf_pareto_rank(const hf_pareto *p, int *rank)
     sort(p, -1, order, p->n);
     for (int k = 0; k < p->n; k++) {
         int i = order[k], low = 0, high = n_front;
-        while (low <
-               high) { /* the first front that does not dominate it: one that does, is dominated by those before */
+        /* Find the first front that does not dominate design i. If a front dominates it, so do the fronts before. */
+        while (low < high) {
             int middle = low + (high - low) / 2;
             if (front_dominates(p, last[middle], earlier, i))
                 low = middle + 1;
@@ -117,16 +126,17 @@ int hf_pareto_rank(const hf_pareto *p, int *rank)
     return n_front;
 }
 
-/* ---- what to keep of a front ---- */
+/* ---- crowded fronts ---- */
 
-/* In the order of each objective: the design before and after each design; -1 at the ends. */
+/* The neighbours of each design in the order of each objective; -1 at the ends. */
 typedef struct {
     int *before, *after; /* [n_objective][n] */
     double range[HF_OBJECTIVES_MAX];
 } neighbours;
 
-/* How much room there is between the neighbours of design i. Of two objectives the rectangle that it alone dominates
- * (its part of the hypervolume); of three the sum of the sides between its neighbours, as parts of the ranges. */
+/* Returns the room between the neighbours of design i, or INFINITY at an end. With two objectives, it is the area that
+ * this design alone dominates (its part of the hypervolume). With three, it is the sum of the distances between its
+ * neighbours in each objective, in parts of the ranges. */
 static double room_of(const hf_pareto *p, const neighbours *list, int i)
 {
     double sum = 0, side[HF_OBJECTIVES_MAX];
@@ -140,6 +150,7 @@ static double room_of(const hf_pareto *p, const neighbours *list, int i)
     return p->n_objective == 2 ? side[0] * side[1] : sum;
 }
 
+/* Sorts the members by each objective, and links each member with its neighbours. */
 static neighbours link_up(const hf_pareto *p, int n_member, const int *member)
 {
     int *order = p->scratch, n_all = p->n_objective * p->n;
@@ -158,7 +169,7 @@ static neighbours link_up(const hf_pareto *p, int n_member, const int *member)
     return list;
 }
 
-/* Take design i out of the lists, which gives its neighbours more room. */
+/* Removes design i from the lists. Its neighbours then have more room. */
 static void unlink_one(const hf_pareto *p, neighbours *list, int i)
 {
     p->room[i] = -1;
@@ -227,8 +238,8 @@ hf_status hf_pareto_front(const hf_population *population, hf_front *front)
     for (int i = 0; i < p.n; i++)
         hf_pareto_set(&p, i, population->result[i].goal, hf_population_violation(&population->result[i]));
     hf_pareto_rank(&p, rank);
-    int *order =
-        p.scratch; /* as hf_pareto_rank leaves it: by the objectives in turn, so that equal ones are neighbours */
+    int *order = p.scratch;
+    /* hf_pareto_rank leaves this order: by the objectives in turn, so that equal designs are neighbours. */
     for (int k = 0, last = -1; k < p.n; k++) {
         int i = order[k];
         if (rank[i] > 0 || !is_feasible(&p, i) || (last >= 0 && are_equal(&p, last, i))) continue;

@@ -1,4 +1,10 @@
-/* Contents: memory - linked genes - two generations - ranking */
+/* Keeps the designs of two successive generations, with their bounds and their ranking. <hifdm/population.h> describes
+ * the interface.
+ *
+ *     initial design, settings -> bounds, reach -> designs of a generation (optimiser) -> results (batch)
+ *     results -> best, mean and worst psi, minimum violation, counts -> stop reason
+ *
+ * Contents: memory - linked design variables - two generations - ranking */
 #include <hifdm/population.h>
 
 #include "base/arena.h"
@@ -11,7 +17,7 @@
 
 const char *const hf_population_stop_word[4] = {"running", "stagnation", "generations", "all_infeasible"};
 
-/* A run without a feasible design ends when the least violation falls by less than this part in the window of
+/* A run without a feasible design ends if the minimum violation falls by less than this part during the window of
  * stagnation. */
 #define VIOLATION_GAIN 1e-3
 
@@ -45,15 +51,15 @@ static void lay_out_both(hf_arena *a, hf_population *p, hf_population *next)
     lay_out_generation(a, next);
 }
 
-/* ---- linked genes ---- */
+/* ---- linked design variables ---- */
 
 static bool has_links(const hf_model *m)
 {
     return m->n_leader < m->n_gene && m->gene_leader;
 }
 
-/* The bounds of a class of linked genes are those of the steps that all its genes can take. Where there is no such
- * step, each gene keeps its own bounds, and hf_population_link clamps to them. */
+/* Restricts the bounds of a class of linked design variables to the steps that all of its members can take. If there is
+ * no such step, each member keeps its own bounds, to which hf_population_link clamps it. */
 static void link_bounds(const hf_model *m, hf_population *p)
 {
     const int *leader_of = m->gene_leader;
@@ -143,7 +149,7 @@ double hf_population_merit(const hf_population *p, const hf_form_result *r)
     return p->n_objective ? r->goal[0] : r->merit;
 }
 
-/* Below zero: result a is better than b. */
+/* Returns a number below zero if result a is better than b, above zero if it is worse, and 0 if they are equal. */
 static int rank_of_two(const hf_population *p, const hf_form_result *a, const hf_form_result *b)
 {
     bool are_ok = a->status == HF_OK && b->status == HF_OK;
@@ -186,12 +192,12 @@ void hf_population_keep_better(const hf_population *before, hf_population *popul
             hf_population_take_over(before, i, population, i);
 }
 
-/* Without a feasible design a run goes on as long as designs come nearer to the limits. A front has no single figure
- * whose stagnation would say that it is done. */
+/* Returns the reason for which the run ends after this generation, or HF_POPULATION_RUNNING. Without a feasible design,
+ * a run continues as long as the minimum violation falls. A front has no single figure that could stagnate. */
 static hf_population_stop judge(const hf_optimize_settings *s, const hf_population *p)
 {
     int window = s->stagnation_generations, now = p->generation;
-    if (isinf(p->least_violation[now])) return HF_POPULATION_ALL_INFEASIBLE; /* not one has a shape */
+    if (isinf(p->least_violation[now])) return HF_POPULATION_ALL_INFEASIBLE; /* no design has a shape */
     if (now >= window && isnan(p->best_merit[now])) {
         double then = p->least_violation[now - window];
         if (!(then - p->least_violation[now] > VIOLATION_GAIN * then)) return HF_POPULATION_ALL_INFEASIBLE;
