@@ -1,3 +1,6 @@
+/* Computes derivatives of the figures of a design. jacobian.h describes the interface.
+ *
+ *     shape -> sensitivities dx/dv, dT/dv -> residuals f, df/dv -> derivatives of psi, or of objectives and merit */
 #include "search/jacobian.h"
 
 #include "base/arena.h"
@@ -38,7 +41,7 @@ void hf_jacobian_free(hf_jacobian *j)
     *j = (hf_jacobian){0};
 }
 
-/* The change of the norm of n residuals. */
+/* Returns the derivative of the norm of n residuals f by a variable: f' df/dv / |f|, or NaN if the norm is 0. */
 static double norm_rate(int n, const double *residual, const double *rate)
 {
     double norm = sqrt(hf_dot((size_t)n, residual, residual));

@@ -1,34 +1,36 @@
-/* jacobian - exact derivatives of the figures of a design by each of its genes: of psi, or of each goal and of the
- * merit. For optimisers other than ours.
+/* jacobian - exact derivatives of the figures of a design with respect to each design variable. The figures are psi, or
+ * each objective and the merit (the value of the weighted objectives). They serve optimisers outside this program.
  *
- * The derivative of a goal is that of the norm of its residuals (goals.h), without its weight: of pull and displacement
- * that of the smooth largest, which the merit has, and not of the largest itself. A gene changes alone, also where
- * genes are linked. */
+ * The derivative of an objective is that of the norm of its residuals (goals.h), without its weight. For pull and
+ * displacement, this norm is a smooth maximum, which the merit contains, and not the maximum itself. Linked design
+ * variables are varied one by one. */
 #ifndef HIFDM_JACOBIAN_H
 #define HIFDM_JACOBIAN_H
 
 #include "search/residuals.h"
 
 typedef struct {
-    hf_model model; /* that of the caller, with genes that are not linked */
-    hf_evaluator v; /* that of the caller, of this model */
-    int n_figure;   /* 1: psi_m; with goals one more than these: each goal, then the merit */
+    hf_model model; /* copy of the caller's model in which no design variables are linked */
+    hf_evaluator v; /* copy of the caller's evaluator with this model */
+    int n_figure;   /* 1 for psi_m; with objectives: each of them, then the merit */
     hf_sensitivity slopes;
     hf_residuals residuals;
-    int *leader;      /* [n_gene] of the model */
-    double *rate;     /* [n_gene][residuals.n_row] */
-    double *gradient; /* [n_gene] scratch */
+    int *leader;      /* [n_gene], gene_leader of the model */
+    double *rate;     /* [n_gene][residuals.n_row], derivatives of the residuals */
+    double *gradient; /* [n_gene], scratch */
     void *block;
 } hf_jacobian;
 
-/* For designs of an evaluator for which hf_polish_applies, which is borrowed. A jacobian is neither moved nor copied.
- * HF_OK or HF_NO_MEMORY; free in either case. */
+/* Prepares derivatives of designs of an evaluator to which hf_polish_applies; the evaluator is borrowed. A jacobian
+ * must not be moved or copied, because it points into itself. Returns HF_OK or HF_NO_MEMORY; call hf_jacobian_free in
+ * either case. */
 hf_status hf_jacobian_create(const hf_evaluator *evaluator, hf_jacobian *jacobian);
 void hf_jacobian_free(hf_jacobian *jacobian);
 
-/* derivative [n_figure][n_gene] at the shape in the workspace, which hf_evaluate has found for a feasible design, in
- * the unit of the figure per unit of the gene; NaN of a figure that is 0 there. HF_OK, HF_SINGULAR, HF_NOT_FINITE or
- * HF_NO_MEMORY; otherwise than with HF_OK all are NaN. */
+/* Computes derivative [n_figure][n_gene] at the shape in the workspace, in the unit of the figure per unit of the
+ * design variable. hf_evaluate must have found the shape for a feasible design. The derivative of a figure that is 0
+ * there is NaN. Returns HF_OK, HF_SINGULAR, HF_NOT_FINITE or HF_NO_MEMORY; all derivatives are NaN unless it is
+ * HF_OK. */
 hf_status hf_jacobian_find(hf_jacobian *jacobian, hf_workspace *workspace, double *derivative);
 
 #endif

@@ -1,3 +1,9 @@
+/* Computes the residuals of a design and their derivatives. residuals.h describes the interface.
+ *
+ *     hf_residuals_find     shape -> f: of the objectives, or of psi
+ *     hf_residuals_rates    rate_one:   dx/dv, dT/dv -> rows of the design itself          (for each variable)
+ *                           rate_net:   rows of the objectives over an as-built net        (for each net)
+ *                           close_rate: rows over all nets -> df/dv, gradient J'f          (for each variable) */
 #include "search/residuals.h"
 
 #include "base/arena.h"
@@ -19,7 +25,7 @@ static void lay_out(hf_arena *a, hf_residuals *r)
     }
 }
 
-/* Without goals nothing is to be taken by threads: their derivatives are read off the moves. */
+/* Without objectives there are no rooms, because residuals and rates follow directly from positions and their rates. */
 hf_status hf_residuals_create(const hf_evaluator *v, hf_residuals *r)
 {
     hf_arena arena = {0};
@@ -48,7 +54,7 @@ typedef struct {
     const hf_workspace *w;
 } entered;
 
-/* The goals' own derivatives, whichever thread finds them. */
+/* Linearises the objectives in room i, whichever thread does it. */
 static void enter_room(void *context, int any_room, int i)
 {
     const entered *q = context;
@@ -60,7 +66,7 @@ static void enter_room(void *context, int any_room, int i)
         room->status = hf_goals_linearise(q->r->v->goals, q->w, room->point, q->r->value);
 }
 
-/* No node of a feasible design is loose. */
+/* A feasible design has no loose nodes, so psi counts all inner nodes. */
 hf_status hf_residuals_find(hf_residuals *r, hf_workspace *w)
 {
     const hf_model *m = r->v->model;
@@ -80,7 +86,7 @@ hf_status hf_residuals_find(hf_residuals *r, hf_workspace *w)
     return HF_OK;
 }
 
-/* rate [n_row] for one unit of a variable: all of it but the rows of goals over nets. */
+/* Computes rate [n_row] by one variable, without the rows of objectives over as-built nets. */
 static void find_rate(const hf_residuals *r, const hf_sensitivity *slopes, const hf_workspace *w, int i_room,
                       int i_variable, double *rate)
 {
@@ -116,7 +122,7 @@ static void rate_one(void *context, int i_room, int i_variable)
     find_rate(q->r, q->slopes, q->w, i_room, i_variable, rate_of(q, i_variable));
 }
 
-/* A thread cuts the nets of the design for itself. */
+/* Cuts the as-built nets of the design in room i. */
 static void cut_nets(void *context, int any_room, int i)
 {
     const all_rates *q = context;
@@ -125,7 +131,7 @@ static void cut_nets(void *context, int any_room, int i)
     room->status = q->r->v->goals->nets->cut(room->point->nets, q->w);
 }
 
-/* The rows of goals over one net, by all variables. */
+/* Computes the rows of all objectives over one as-built net, by all variables. */
 static void rate_net(void *context, int i_room, int i_net)
 {
     const all_rates *q = context;
@@ -150,6 +156,7 @@ static void rate_net(void *context, int i_room, int i_net)
     }
 }
 
+/* Completes the rows of one variable, and computes its gradient. */
 static void close_rate(void *context, int i_room, int i_variable)
 {
     const all_rates *q = context;

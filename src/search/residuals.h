@@ -1,36 +1,39 @@
-/* residuals - what Levenberg-Marquardt and tables of derivatives want to be zero: the residuals of a design's goals, or
- * without goals those of psi, and their derivatives by its variables (METHOD section 7). */
+/* residuals - the residuals that Levenberg-Marquardt minimises and their derivatives by the variables of a design
+ * (METHOD section 7). They are those of the objectives, or of psi if there are no objectives. Tables of derivatives use
+ * them, too. */
 #ifndef HIFDM_RESIDUALS_H
 #define HIFDM_RESIDUALS_H
 
 #include "search/sensitivity.h"
 
-/* What a thread needs with goals; the point of the first one is that of the workspace. */
+/* The working memory of a thread, if there are objectives. The point of the first room is that of the workspace. */
 typedef struct {
     hf_goals_point own, *point;
     hf_status status;
-    double *move_m, *tension_rate; /* [at once][3][n_node], [at once][n_cable] scratch */
-    double *value;                 /* [n_row] scratch of the others */
+    double *move_m, *tension_rate; /* [HF_GOALS_AT_ONCE][3][n_node], [HF_GOALS_AT_ONCE][n_cable], scratch */
+    double *value;                 /* [n_row], scratch; not in the first room */
 } hf_residuals_room;
 
 typedef struct {
     const hf_evaluator *v; /* borrowed */
     int n_row;
-    double *value;           /* [n_row] f; |f| is the merit */
-    int n_room;              /* threads */
+    double *value;           /* [n_row], f; |f| is the merit */
+    int n_room;              /* number of threads */
     hf_residuals_room *room; /* [n_room] */
     void *block;
 } hf_residuals;
 
-/* HF_OK or HF_NO_MEMORY; free in either case. */
+/* Allocates the residuals of an evaluator. Returns HF_OK or HF_NO_MEMORY; call hf_residuals_free in either case. */
 hf_status hf_residuals_create(const hf_evaluator *evaluator, hf_residuals *residuals);
 void hf_residuals_free(hf_residuals *residuals);
 
-/* Take those of the shape in the workspace, which is feasible, in every room. HF_OK, or why goals have none. */
+/* Computes the residuals at the shape in the workspace, which must be feasible, and linearises the objectives in every
+ * room. Returns HF_OK, HF_NOT_FINITE if an objective has no value, or HF_NO_MEMORY. */
 hf_status hf_residuals_find(hf_residuals *residuals, hf_workspace *workspace);
 
-/* rate [slopes->n][n_row] by all variables of `slopes`, which were found at the same shape, and the gradient
- * [slopes->n] of |f|^2/2, by all threads. HF_OK, or why the nets of a design have none. */
+/* Computes rate [slopes->n][n_row], the derivatives of the residuals by all variables of `slopes`, which must be of the
+ * same shape. gradient [slopes->n] receives that of |f|^2/2. All threads share the work. Returns HF_OK, or the status
+ * of an as-built net without derivatives. */
 hf_status hf_residuals_rates(const hf_residuals *residuals, const hf_sensitivity *slopes, const hf_workspace *workspace,
                              double *rate, double *gradient);
 

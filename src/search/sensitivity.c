@@ -1,4 +1,11 @@
-/* Contents: layout - forces of genes - first derivatives - tensions - cables of law length - what others read */
+/* Computes the derivatives of the shape of a net by the variables of a design. sensitivity.h describes the interface.
+ *
+ *     shape -> Newton matrix H, factored -> for each variable: forces -dg/dv -> H dx/dv = -dg/dv
+ *     with a truss:               attachments move by (I + F S)^-1 F b -> free nodes follow
+ *     with cables of law length:  multipliers in place of stiff springs -> solve again -> iterative refinement
+ *     dx/dv -> dT/dv of each cable
+ *
+ * Contents: layout - forces of variables - first derivatives - tensions - cables of law length - access */
 #include "search/sensitivity.h"
 
 #include "base/arena.h"
@@ -10,13 +17,14 @@
 
 /* ---- layout ---- */
 
-/* A cable at the workspace's shape. */
+/* A cable at the shape in the workspace. */
 typedef struct hf_strained {
     double unit[3], stiffness_N_per_m;
-    double direct;       /* what its gene changes in its tension, if it has one */
-    int rigid, variable; /* of its gene; -1: none */
+    double direct;       /* dT/dv by its own design variable at fixed nodes, or 0 */
+    int rigid, variable; /* index in `rigid`, and variable of the cable; -1: none */
 } strained;
 
+/* Returns the number of rooms (parallel.h) of a solve. */
 static int n_room(const hf_sensitivity *s)
 {
     return s->v->n_thread > 1 ? s->v->n_thread : 1;
@@ -42,7 +50,8 @@ static void lay_out(hf_arena *a, hf_sensitivity *s)
     s->multiplier = hf_arena_take(a, n * (size_t)s->n_rigid, sizeof(double));
 }
 
-/* Is cable e of law length in the designs of this evaluator? It moves no node between two supports. */
+/* Returns true if cable e has law length in the designs of this evaluator. `gene` is its design variable, or -1. A
+ * cable between two supports does not count, because it moves no node. */
 static bool is_rigid(const hf_evaluator *v, int e, int gene)
 {
     const hf_model *m = v->model;
@@ -51,6 +60,7 @@ static bool is_rigid(const hf_evaluator *v, int e, int gene)
     return sets == HF_SETS_LENGTH || (sets == HF_SETS_START && hf_law_has((hf_law)m->law[e], HF_LAW_IS_RIGID));
 }
 
+/* Returns the number of cables of law length. */
 static int count_rigid(const hf_evaluator *v)
 {
     const hf_model *m = v->model;
@@ -62,7 +72,8 @@ static int count_rigid(const hf_evaluator *v)
     return n;
 }
 
-/* Number of supports that genes move. place_of_row [n_node] (may be NULL): where their moves stand in `move`. */
+/* Returns the number of supports that design variables move. place_of_row [n_node] (may be NULL) receives the index of
+ * the first coordinate of each of them in `move`, and -1 for all other rows. */
 static int place_supports(const hf_model *m, int *place_of_row)
 {
     int n = 0;
@@ -78,6 +89,8 @@ static int place_supports(const hf_model *m, int *place_of_row)
     return n;
 }
 
+/* Numbers the variables and lists the design variable of each cable, the cables of law length, and the coordinates of
+ * each row. */
 static void number(hf_sensitivity *s)
 {
     const hf_model *m = s->v->model;
@@ -121,9 +134,10 @@ void hf_sensitivity_free(hf_sensitivity *s)
     *s = (hf_sensitivity){0};
 }
 
-/* ---- forces of genes ---- */
+/* ---- forces of variables ---- */
 
-/* Add a pull on the first end of cable e, and the opposite on its second, to the forces on free nodes and truss. */
+/* Adds a pull on the first end of cable e, and the opposite on its second end, to the forces on free nodes and on the
+ * truss. */
 static void add_pull(const hf_model *m, int e, const double pull[3], double *force, double *on_truss)
 {
     int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
@@ -135,7 +149,7 @@ static void add_pull(const hf_model *m, int e, const double pull[3], double *for
     }
 }
 
-/* What one unit of gene k changes in the tension of its cable, whose nodes do not move. */
+/* Returns the change of the tension of its cable per unit of design variable k, at fixed nodes. */
 static double direct_tension(const hf_sensitivity *s, const hf_workspace *w, int k, double length)
 {
     int e = s->v->model->gene_cable[k];
@@ -152,7 +166,7 @@ static double direct_tension(const hf_sensitivity *s, const hf_workspace *w, int
     }
 }
 
-/* A support that moves drags its cables along. */
+/* Adds the forces with which a support pulls on the other ends of its cables, per unit of design variable k. */
 static void add_force_of_support(const hf_sensitivity *s, const hf_workspace *w, int k, double *force, double *on_truss)
 {
     const hf_model *m = s->v->model;
@@ -169,8 +183,8 @@ static void add_force_of_support(const hf_sensitivity *s, const hf_workspace *w,
     }
 }
 
-/* Add -dg/dv of gene k at the workspace's shape: the change of the nodal forces for one unit of its value, and of the
- * pull on the truss. */
+/* Adds -dg/dv of design variable k at the shape in the workspace: the change of the nodal forces, and of the forces on
+ * the truss, per unit of its value (M11). */
 static void add_force_of_gene(const hf_sensitivity *s, const hf_workspace *w, int k, double *force, double *on_truss)
 {
     const hf_model *m = s->v->model;
@@ -192,20 +206,21 @@ static void add_force_of_gene(const hf_sensitivity *s, const hf_workspace *w, in
 
 /* ---- first derivatives ---- */
 
-/* Variables that one thread solves for at a time, as many as a solve has lanes: their numbers depend neither on the
- * threads nor on each other. */
+/* A thread solves for a block of HF_LANES variables at a time. The derivatives depend neither on the threads nor on the
+ * other variables of the block. */
 typedef struct {
     hf_sensitivity *s;
     const hf_workspace *w;
 } solved;
 
+/* Returns the number of variables in a block. */
 static int lanes_in_block(const hf_sensitivity *s, int i_block)
 {
     int left = s->n - HF_LANES * i_block;
     return left < HF_LANES ? left : HF_LANES;
 }
 
-/* Add what the forces in `answer` move. */
+/* Solves for the displacements under the forces in `answer`, and adds them to `move`. */
 static void follow_block(void *context, int room, int i_block)
 {
     hf_sensitivity *s = ((solved *)context)->s;
@@ -217,7 +232,7 @@ static void follow_block(void *context, int room, int i_block)
             s->move[k * s->n_dof + i] += s->answer[k * n_free + i];
 }
 
-/* Turn the moves with fixed supports into those of net and truss together. */
+/* Turns displacements with fixed attachments into those of net and truss together. */
 static void let_truss_answer(solved *q, int room, int i_block)
 {
     hf_sensitivity *s = q->s;
@@ -255,12 +270,13 @@ static void follow(hf_sensitivity *s, const hf_workspace *w)
     do_blocks(s, w, follow_block);
 }
 
-/* Solve for the moves of all variables; `move` and `pull` hold the forces. */
+/* Solves for dx/dv of all variables. On entry `move` and `pull` hold the forces. */
 static void solve(hf_sensitivity *s, const hf_workspace *w)
 {
     do_blocks(s, w, solve_block);
 }
 
+/* Sets `move` and `pull` to the forces of all variables. */
 static void add_forces(hf_sensitivity *s, const hf_workspace *w)
 {
     const hf_model *m = s->v->model;
@@ -272,7 +288,7 @@ static void add_forces(hf_sensitivity *s, const hf_workspace *w)
     }
 }
 
-/* The supports that genes move, for themselves. */
+/* Adds the displacements of the supports that design variables move. */
 static void move_supports(hf_sensitivity *s)
 {
     const hf_model *m = s->v->model;
@@ -286,14 +302,14 @@ static void move_supports(hf_sensitivity *s)
 
 /* ---- tensions ---- */
 
-/* Component c of the move of a row. */
+/* Returns component c of dx/dv of a row. */
 static double move_of_row(const hf_sensitivity *s, const double *move, int row, int c)
 {
     int place = s->place_of_row[row], base = s->base_of_row[row];
     return (place >= 0 ? move[place + c] : 0) + (base >= 0 ? move[base + c] : 0);
 }
 
-/* What the other end of cable e moves by relative to the first. */
+/* Computes dx/dv of the second end of cable e relative to its first end. */
 static void relative_move(const hf_sensitivity *s, int e, const double *move, double relative[3])
 {
     const int *end = s->v->model->end_row + 2 * (ptrdiff_t)e;
@@ -301,6 +317,7 @@ static void relative_move(const hf_sensitivity *s, int e, const double *move, do
         relative[c] = move_of_row(s, move, end[1], c) - move_of_row(s, move, end[0], c);
 }
 
+/* Returns the direction, stiffness and variable of cable e at the shape in the workspace. */
 static strained look_at(const hf_sensitivity *s, const hf_workspace *w, int e)
 {
     const hf_model *m = s->v->model;
@@ -314,6 +331,7 @@ static strained look_at(const hf_sensitivity *s, const hf_workspace *w, int e)
     return q;
 }
 
+/* Returns dT/dv of cable e by variable i. */
 static double tension_rate(const hf_sensitivity *s, int e, int i)
 {
     const strained *q = &s->strained[e];
@@ -328,7 +346,8 @@ static double tension_rate(const hf_sensitivity *s, int e, int i)
 
 /* ---- cables of law length ---- */
 
-/* The forces on free nodes and truss by the moves as they stand, cable by cable, into `answer` and `pull`. */
+/* Computes the change of the forces on free nodes (`answer`) and truss (`pull`) under the present derivatives, cable by
+ * cable. */
 static void sum_forces(hf_sensitivity *s, const hf_workspace *w)
 {
     const hf_model *m = s->v->model;
@@ -349,8 +368,9 @@ static void sum_forces(hf_sensitivity *s, const hf_workspace *w)
     }
 }
 
-/* A stiff spring as a 3 x 3 block rounds off what holds its nodes across, by up to 1e-7 of the moves. Forces that are
- * summed cable by cable do not: one more solve takes out what of them is left on the nodes, and on the truss. */
+/* Improves the derivatives by a step of iterative refinement. As a 3 x 3 block of the matrix, a stiff spring loses its
+ * transverse stiffness to rounding, which changes `move` by up to 1e-7 of it. Forces that are summed cable by cable do
+ * not have this error. One more solve therefore removes the forces that are left on nodes and truss. */
 static void refine_iteratively(hf_sensitivity *s, const hf_workspace *w)
 {
     const hf_model *m = s->v->model;
@@ -372,7 +392,8 @@ static void refine_iteratively(hf_sensitivity *s, const hf_workspace *w)
     if (n_attachment) follow(s, w);
 }
 
-/* With the forces of the multipliers that the stiff springs have found, the springs need to give next to nothing. */
+/* Solves again with the tensions that the stiff springs have found as forces (`multiplier`). The springs then carry
+ * almost no force, and hardly stretch. */
 static void harden(hf_sensitivity *s, const hf_workspace *w)
 {
     const hf_model *m = s->v->model;
@@ -411,7 +432,7 @@ hf_status hf_sensitivity_find(hf_sensitivity *s, hf_workspace *w)
     return HF_OK;
 }
 
-/* ---- what others read ---- */
+/* ---- access ---- */
 
 void hf_sensitivity_tension(const hf_sensitivity *s, int e, double *rate)
 {
