@@ -1,4 +1,15 @@
-/* Contents: one step - the run */
+/* Implements Levenberg-Marquardt with linear limits on each step. polish.h describes the interface, polish_problem.c
+ * the variables and derivatives, watch.c the limits on tensions, deflections and objectives.
+ *
+ *     design -> evaluate -> linearise: residuals f, J'J, J'f, limits
+ *     step   -> quadratic programme -> trial -> limits broken? -> solve again with the values found there
+ *            -> gain below the promised one? -> correct the step for the curvature of f
+ *            -> merit lower? -> keep the trial, less damping, linearise
+ *            -> merit not lower? -> more damping
+ *     end    -> converged, settled, stalled or max_iterations -> best design
+ *
+ * A start outside the limits is first moved into them (enter).
+ * Contents: one step - the run */
 #include "search/polish.h"
 
 #include "linalg/dot.h"
@@ -8,29 +19,37 @@
 #include <math.h>
 #include <string.h>
 
-/* In brackets: the range over which no test of this module and of cli/limits fails, as far as it was tried. */
-#define GAIN_CONVERGED 1e-12  /* converged: a step promises less than this part of psi^2 [1e-15 to 1e-8] */
-#define TRADE_CONVERGED 1e-20 /* the same of a trade, whose multipliers are wanted */
-#define DAMPING_FIRST 1e-3    /* relative to the squared columns of J [1e-6 to 1] */
+/* Brackets contain the range in which no test of this module and of cli/limits fails, as far as it was tried. */
+#define GAIN_CONVERGED 1e-12  /* converged: a step promises less than this part of merit^2 [1e-15 to 1e-8] */
+#define TRADE_CONVERGED 1e-20 /* converged, for a point of a front: its multipliers must be accurate */
+#define DAMPING_FIRST 1e-3    /* first damping, relative to the squared columns of J [1e-6 to 1] */
+/* The multipliers are found with this damping, which is nearly none. */
 #define DAMPING_OF_MULTIPLIERS 1e-9
-#define SCALE_LEAST 1e-8    /* part of the largest column of J: one below it is damped as the largest */
-#define DAMPING_LEAST 1e-14 /* [1e-20 to 1e-8] */
-#define DAMPING_MOST 1e12   /* with this much a step is too short to change psi [1e4 to 1e24] */
-#define CORRECTIONS_MAX 4  /* of a step that breaks a limit on tensions [40 passes; 1 fails: the runs stall at a cap] */
-#define DAMPING_OF_WAY 1e3 /* of a way into limits that steps with less do not find [1e8 passes; 1 fails] */
-#define WAY_LEAST 1e-3     /* part of the way into the limits that a step goes [1e-2; 1e-6] */
-#define LIMIT_INSIDE 2e-9  /* a tension so near to its bound, relative, is at it: twice what a step stays within */
-#define LIMIT_ROUNDING 1e-12 /* a violation below this part of the tension is rounding [1e-14 to 1e-10] */
-#define BENDS_MAX 4          /* corrections of a step for the bend of its residuals [2 to 4] */
-#define BEND_BELOW 0.65      /* part of the promised gain from which on a step needs none [0.65 to 0.75; 0.5 fails] */
-#define SETTLED_STEPS 10     /* settled: as many steps change the merit and what each goal adds to it by less than */
-#define SETTLED_MERIT 1e-6   /* this part of the merit, which is told to six digits, */
-#define SETTLED_GOAL 1e-5    /* and this one: a goal of little weight may still gain where the merit hardly does */
-#define BEND_WORTH 0.5       /* a correction that leaves more of the merit than this is the last [0.5 to 0.9] */
+#define SCALE_LEAST 1e-8    /* a column of J below this part of the maximum one is damped like the maximum */
+#define DAMPING_LEAST 1e-14 /* minimum damping [1e-20 to 1e-8] */
+#define DAMPING_MOST 1e12   /* stalled: with more damping, a step is too short to change psi [1e4 to 1e24] */
+#define CORRECTIONS_MAX 4   /* corrections of a step that breaks limits [40 passes; with 1, runs stall at a cap] */
+#define DAMPING_OF_WAY 1e3  /* damping on the way into the limits, if less damping fails [1e8 passes; 1 fails] */
+#define WAY_LEAST 1e-3      /* minimum part of the way into the limits that a step takes [1e-2; 1e-6] */
+/* A tension within this relative distance of its bound counts as being at it. This is twice the distance that a step
+ * keeps (LIMIT_INSIDE of watch.c). */
+#define LIMIT_INSIDE 2e-9
+#define LIMIT_ROUNDING 1e-12 /* a relative violation below this value is rounding [1e-14 to 1e-10] */
+#define BENDS_MAX 4          /* corrections of a step for the curvature of its residuals [2 to 4] */
+/* A step that gains more than this part of what it promises needs no such correction [0.65 to 0.75; 0.5 fails]. */
+#define BEND_BELOW 0.65
+/* A run has settled if two conditions hold over SETTLED_STEPS steps. The merit falls by less than SETTLED_MERIT of it,
+ * and no weight x objective changes by more than SETTLED_GOAL of the merit. The merit is reported to six digits. An
+ * objective of little weight may still improve when the merit hardly changes. */
+#define SETTLED_STEPS 10
+#define SETTLED_MERIT 1e-6
+#define SETTLED_GOAL 1e-5
+#define BEND_WORTH 0.5 /* a correction is the last one if it leaves more than this part of the merit [0.5 to 0.9] */
 
 /* ---- one step ---- */
 
-/* The limit that the step x violates most; for hf_quadratic. */
+/* Finds the limit that the step x violates most, for hf_quadratic_solve. Returns false if no violation exceeds
+ * rounding. */
 static bool worst_limit(void *context, const double *x, hf_quadratic_limit *limit)
 {
     hf_polish_problem *p = context;
@@ -52,7 +71,7 @@ static bool worst_limit(void *context, const double *x, hf_quadratic_limit *limi
     return true;
 }
 
-/* The level of a goal with corners is the last variable of a step: level^2/2 is to be least. */
+/* Adds the level of an objective with corners (polish.h) as the last variable of a step: level^2/2 is minimised. */
 static void begin_level(hf_polish_problem *p)
 {
     int n = p->n, n_step = p->step.n;
@@ -63,7 +82,7 @@ static void begin_level(hf_polish_problem *p)
     p->up[n] = INFINITY;
 }
 
-/* Find the shape at the end of the step, which becomes `trial`. */
+/* Evaluates the design at the end of the step, which becomes `trial`. Returns the status of hf_evaluate. */
 static hf_status take_step(hf_polish_problem *p)
 {
     for (int r = 0; r < p->n; r++)
@@ -71,16 +90,16 @@ static hf_status take_step(hf_polish_problem *p)
     return hf_polish_evaluate(p, p->trial);
 }
 
-/* A variable that does not act on what is to be least has no column of J to be damped by, and the model would have no
- * single least. */
+/* Returns the scale by which variable r is damped. A variable that hardly acts on the residuals has no column of J that
+ * could damp it, and the minimum of the model would not be unique. It gets the maximum scale. */
 static double damped_scale(const hf_polish_problem *p, int r)
 {
     if (p->scale[r] > SCALE_LEAST * p->largest_scale) return p->scale[r];
     return p->largest_scale > 0 ? p->largest_scale : 1;
 }
 
-/* The least of the model |f + J x|^2/2 + damping |scale x|^2/2 within the limits, as step.x. *gain: what the model
- * promises of psi^2/2. */
+/* Finds step.x, the minimum of the model |f + J x|^2/2 + damping |scale x|^2/2 within the limits. *gain receives the
+ * decrease of merit^2/2 that the model promises. Returns the status of hf_quadratic_solve. */
 static hf_status solve_step(hf_polish_problem *p, double damping, double *gain)
 {
     const double *x = p->step.x;
@@ -103,8 +122,9 @@ static hf_status solve_step(hf_polish_problem *p, double damping, double *gain)
     return HF_OK;
 }
 
-/* Evaluate the step. One that breaks a limit on tensions, because they are not linear in the variables, is solved again
- * with what they really were. HF_RATIO_CAP: a limit is still broken. */
+/* Solves a step and evaluates its end. Tensions are not linear in the variables, so the step may break a limit on them.
+ * It is then solved again with the tensions that were found at its end. Returns HF_OK, HF_RATIO_CAP if a limit is still
+ * broken after CORRECTIONS_MAX corrections, or the status of the failure. */
 static hf_status try_step(hf_polish_problem *p, double damping, double *gain)
 {
     hf_watch_forget(&p->watch);
@@ -118,7 +138,8 @@ static hf_status try_step(hf_polish_problem *p, double damping, double *gain)
     return HF_RATIO_CAP;
 }
 
-/* The gradient, at a step of zero, of the model that has at x the residuals found there: J'(f(x) - J x). */
+/* Computes `pull` = J'(f(x) - J x), where x is the step taken and f(x) are the residuals found at its end. It is the
+ * gradient at a step of zero of the linear model that has these residuals at x. */
 static void find_pull(hf_polish_problem *p)
 {
     const double *x = p->step_taken;
@@ -133,8 +154,10 @@ static void find_pull(hf_polish_problem *p)
         }
 }
 
-/* Where residuals bend, a step along a valley ends up on its flank. The same matrices lead back to the floor with the
- * residuals found there; again while that takes off a good part. `trial` and the workspace's shape become the best. */
+/* Corrects a step for the curvature of the residuals: along a curved valley, a step ends on its flank. With the
+ * residuals found there, the same matrices lead back to the floor. This is repeated as long as it at least halves the
+ * merit (BEND_WORTH). `before` is merit^2/2 before the step, `gain` its promised decrease. `trial` and the shape in the
+ * workspace become the best ones. Returns HF_OK, HF_NO_MEMORY, HF_INTERRUPTED or the status of the last evaluation. */
 static hf_status bend_step(hf_polish_problem *p, double before, double gain)
 {
     size_t size = (size_t)p->n * sizeof(double);
@@ -158,7 +181,7 @@ static hf_status bend_step(hf_polish_problem *p, double before, double gain)
 
 /* ---- the run ---- */
 
-/* Between iterations: tell where the run is, if anyone wants to know. */
+/* Calls the watcher between two iterations, if there is one. Returns its status. */
 static hf_status tell_watcher(hf_polish_problem *p, const hf_polish_result *r, int max_iterations)
 {
     const hf_polish_watcher *watcher = p->watcher;
@@ -175,9 +198,11 @@ static hf_status tell_watcher(hf_polish_problem *p, const hf_polish_result *r, i
     return p->told = watcher->after(watcher->context, &now);
 }
 
-/* From outside into the limits: each step goes as much of the way as brings the shape nearer to them. They are not
- * linear, and where the whole way leads elsewhere, a part of it does not. Near a limit that bends, what leads away is
- * what a step does for the merit: with more damping it does less of that. */
+/* Moves a start from outside into the limits. Each step aims at a part (`way`) of the way to the linear limits. Limits
+ * are not linear: if the step does not come nearer to them, the next one takes half of that part, otherwise twice. Near
+ * a curved limit, the part of a step that lowers the merit leads away from the limit. If small parts of the way do not
+ * succeed, more damping therefore reduces that part of the step. Returns HF_OK, also if it stays outside, or the status
+ * of the failure. */
 static hf_status enter(hf_polish_problem *p, int max_iterations, hf_polish_result *r)
 {
     double gain;
@@ -209,7 +234,7 @@ static hf_status enter(hf_polish_problem *p, int max_iterations, hf_polish_resul
     return HF_OK;
 }
 
-/* The multipliers of the last step, goal by goal. */
+/* Stores the multipliers of the last step for each objective. */
 static void learn_pressure(hf_polish_problem *p)
 {
     int goal;
@@ -228,7 +253,8 @@ static void forget_multipliers(hf_polish_result *r)
         r->multiplier[k] = NAN;
 }
 
-/* Those of the linear model at the best design, free of what held the last step back; NaN where it has none. */
+/* Computes the multipliers of the linear model at the best design, nearly without damping. They are NaN if the model
+ * has no solution. Returns HF_OK, HF_NO_MEMORY or HF_INTERRUPTED. */
 static hf_status find_multipliers(hf_polish_problem *p, hf_polish_result *r)
 {
     double gain, merit;
@@ -240,7 +266,7 @@ static hf_status find_multipliers(hf_polish_problem *p, hf_polish_result *r)
     if (status != HF_OK) return status == HF_NO_MEMORY || status == HF_INTERRUPTED ? status : HF_OK;
     learn_pressure(p);
     merit = hf_polish_merit(p, &p->result);
-    merit = sqrt(fmax(0, merit * merit - 2 * gain)); /* where the linear model is least: a last small step away */
+    merit = sqrt(fmax(0, merit * merit - 2 * gain)); /* merit at the minimum of the linear model, a small step away */
     for (int k = 0; k < p->v.goals->n_goal; k++) {
         r->multiplier[k] = p->pressure[k] > 0 ? p->pressure[k] / merit : 0;
         if (p->v.goals->goal[p->trade->least].wanted.goal == HF_GOAL_RATIO) r->multiplier[k] *= exp(merit);
@@ -249,8 +275,9 @@ static hf_status find_multipliers(hf_polish_problem *p, hf_polish_result *r)
     return HF_OK;
 }
 
-/* After a step that was kept: do the last ones change no goal that anyone could read? In a flat valley that bends each
- * step promises far more than the next one keeps, so that a promise alone never says so. */
+/* Returns true if the last SETTLED_STEPS steps changed neither the merit nor an objective noticeably. It is called
+ * after each step that is kept. In a flat curved valley, each step promises far more than the next one gains, so the
+ * promised gain alone would not end the run. */
 static bool is_settled(hf_polish_problem *p, double merit)
 {
     const hf_goals *goals = p->v.goals;
@@ -264,9 +291,10 @@ static bool is_settled(hf_polish_problem *p, double merit)
     return false;
 }
 
-/* Steps until one promises nothing more, none lowers psi any more, the last ones gained nothing that matters, or the
- * iteration limit is reached. Of a trade, whose multipliers are wanted, small gains count, too. The damping
- * follows Nielsen (Madsen, Nielsen, Tingleff, Methods for non-linear least squares problems, DTU 2004). */
+/* Takes steps until the run has converged, settled or stalled, or until max_iterations is reached. A point of a front
+ * needs accurate multipliers, so its steps must promise far less, and it never settles. The damping follows Nielsen
+ * (Madsen, Nielsen, Tingleff, Methods for non-linear least squares problems, DTU 2004). Returns HF_OK, HF_NO_MEMORY,
+ * HF_INTERRUPTED or the status of the watcher. */
 static hf_status minimise(hf_polish_problem *p, int max_iterations, hf_polish_result *r)
 {
     double gain = 0, converged = p->trade ? TRADE_CONVERGED : GAIN_CONVERGED;
@@ -287,8 +315,9 @@ static hf_status minimise(hf_polish_problem *p, int max_iterations, hf_polish_re
         if (status == HF_OK && !p->trade) status = bend_step(p, before, gain);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         double merit = hf_polish_merit(p, &p->result), after = status == HF_OK ? merit * merit / 2 : (double)INFINITY;
-        double promise =
-            p->trade ? p->promise : gain; /* limits of goals may bend so far that a corrected step goes back */
+        /* Limits on objectives may be so curved that a corrected step leads back. The promise is then that of the first
+         * solve. */
+        double promise = p->trade ? p->promise : gain;
         bool promises = promise > converged * before && 2 * promise > p->noise * p->noise;
         if ((status == HF_OK || status == HF_RATIO_CAP) && !promises) r->stop = HF_POLISH_CONVERGED;
         status = HF_OK;
@@ -313,7 +342,7 @@ static hf_status minimise(hf_polish_problem *p, int max_iterations, hf_polish_re
     return HF_OK;
 }
 
-/* What holds the design, whose shape is in the workspace. */
+/* Counts the bounds and limits that are active at the design, whose shape is in the workspace. */
 static void count_limits(const hf_polish_problem *p, const double *design, hf_polish_result *r)
 {
     hf_limit_held held[HF_LIMITS_HELD];
@@ -329,8 +358,9 @@ static void count_limits(const hf_polish_problem *p, const double *design, hf_po
     }
 }
 
-/* The best design, in the caller's meaning, replaces `design` if its own evaluation keeps all limits and is not worse
- * than the start; else the start stays, without multipliers, which are not its own. */
+/* Replaces `design` by the best design if the caller's evaluator finds that it keeps all limits and is not worse than
+ * the start. Otherwise the start remains, without multipliers, which belong to another design. Returns HF_OK, or the
+ * status of a start outside the limits if nothing feasible was found. */
 static hf_status hand_over(const hf_polish_problem *p, const hf_form_result *start, double *design, hf_polish_result *r)
 {
     hf_form_result end;

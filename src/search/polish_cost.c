@@ -1,9 +1,11 @@
-/* For which designs, and at what cost: see search/polish.h. */
+/* Determines whether Levenberg-Marquardt applies to an evaluator, and what it costs. polish.h describes the
+ * interface. */
 #include "search/polish.h"
 
 #include <math.h>
 
-/* Steps that were counted on the cases of configs and METHOD; operations in about 0.1 s. */
+/* The numbers of steps were counted on the cases of configs and METHOD. UNNOTICED is the number of operations in about
+ * 0.1 s. */
 #define STEPS_EXPECTED 8
 #define STEP_EVALUATIONS 2
 #define NEWTON_STEPS 5
@@ -19,7 +21,7 @@ bool hf_polish_applies(const hf_evaluator *v)
     return v->model->has_newton && v->model->n_gene > 0;
 }
 
-/* Operations of one step; *evaluation: of one evaluation of the genetic algorithm. */
+/* Returns the operations of one step. *evaluation_of_ga receives those of one evaluation of the genetic algorithm. */
 static double count_step(const hf_evaluator *v, double *evaluation_of_ga)
 {
     const hf_model *m = v->model;

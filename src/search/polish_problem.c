@@ -1,4 +1,8 @@
-/* Contents: the problem - evaluation - between two iterations */
+/* Sets up the problem that Levenberg-Marquardt solves. polish_problem.h describes the interface.
+ *
+ *     variables x [n] -> design [n_gene] -> hf_evaluate -> shape -> sensitivities -> f, J', J'J, J'f, limits
+ *
+ * Contents: the problem - evaluation - stored state */
 #include "search/polish_problem.h"
 
 #include "linalg/band.h"
@@ -9,14 +13,14 @@
 #include <math.h>
 #include <string.h>
 
-/* In brackets: the range over which no test of this module and of cli/limits fails, as far as it was tried. */
-#define GRAM_ROWS 32      /* of J'J that one thread works on at a time; the bits do not depend on it */
-#define DENSITY_LEFT 1e-3 /* part of its first value below which no force density falls [1e-6 to 0.3] */
+/* Brackets contain the range in which no test of this module and of cli/limits fails, as far as it was tried. */
+#define GRAM_ROWS 32      /* rows of J'J that a thread computes at a time; the bits do not depend on it */
+#define DENSITY_LEFT 1e-3 /* minimum of a force density, as a part of its first value [1e-6 to 0.3] */
 
 /* ---- the problem ---- */
 
-/* Scalars of a state; behind them are at, scale and the sides of the bounds that held the last step [n], and best
- * [n_gene]. */
+/* The scalars of a stored state. Behind them are the arrays `at` [n], `scale` [n], the sides of the bounds that held
+ * the last step [n], and `best` [n_gene]. */
 enum {
     STATE_FORMAT,
     STATE_ITERATIONS,
@@ -67,8 +71,8 @@ bool hf_polish_is_tension(const hf_polish_problem *p, int k)
     return hf_evaluate_sets(p->caller, k) == HF_SETS_TENSION;
 }
 
-/* The size of the values of gene k, which starts at `start`. Of a support, which starts at 0: how far it may move, or
- * the longest cable where that is open, or nothing. */
+/* Returns the magnitude of design variable k, which starts at `start`. A support starts at 0: its magnitude is the
+ * width of its bounds or, if that is not finite, the maximum length of a cable. */
 static double unit_of(const hf_polish_problem *p, int k, double start)
 {
     const hf_model *m = p->v.model;
@@ -107,7 +111,7 @@ void hf_polish_begin(hf_polish_problem *p, const double *design)
     memcpy(p->design, p->start, (size_t)m->n_gene * sizeof(double));
 }
 
-/* Which rows are to be least: all, or those of one goal. */
+/* Selects the residuals to minimise: all of them, or those of one objective. */
 static void aim(hf_polish_problem *p)
 {
     p->n_row = p->residuals.n_row;
@@ -171,8 +175,9 @@ void hf_polish_keep(hf_polish_problem *p)
         p->best[k] = hf_polish_is_tension(p, k) ? p->w->tension_N[m->gene_cable[k]] : p->design[k];
 }
 
-/* Forces may be out of balance by residual_tolerance of the tensions, as if each value were off by that part of itself.
- * A merit below what this changes in it is zero as far as shapes are known. */
+/* Returns the part of the merit that the tolerance of the form-finding leaves open. Forces out of balance by
+ * residual_tolerance of the tensions act like an error of this part in each variable. A merit below the resulting
+ * change is zero as far as shapes are known. */
 static double find_noise(const hf_polish_problem *p)
 {
     double square = 0;
@@ -181,7 +186,7 @@ static double find_noise(const hf_polish_problem *p)
     return p->v.form->residual_tolerance * sqrt(square);
 }
 
-/* Some rows of J'J. */
+/* Computes some rows of J'J. */
 static void multiply_rows(void *context, int room, int i_block)
 {
     hf_polish_problem *p = context;
@@ -190,7 +195,8 @@ static void multiply_rows(void *context, int room, int i_block)
     hf_band_gram(first, end, p->n_row, p->row + p->first_row, p->residuals.n_row, p->gram, p->n);
 }
 
-/* The rate of a goal's norm, and what its residuals r bend a limit on it by: pressure (J'J - gg')/|r|, g the rate. */
+/* Computes the gradient g = J'f/|f| of an objective |f|, and adds the curvature of the limit on it to the matrix: m
+ * (J'J - g g')/|f|, where m is the multiplier of the last step. */
 static void press(hf_polish_problem *p, int i_goal, int first_row, int n_row)
 {
     const double *f = p->residuals.value + first_row;
@@ -207,8 +213,8 @@ static void press(hf_polish_problem *p, int i_goal, int first_row, int n_row)
             p->gram[r * p->n + c] += pressure * (p->hessian[r * p->n + c] - rate[r] * rate[c]);
 }
 
-/* What a trade changes: goals without corners are limits that bend; one with corners that is to be least has a level
- * instead of residuals. */
+/* Changes the model for a point of a front. Objectives without corners become curved limits. If the minimised objective
+ * has corners, its level is minimised in place of its residuals. */
 static void linearise_trade(hf_polish_problem *p)
 {
     const hf_goals *g = p->v.goals;
@@ -229,7 +235,7 @@ hf_status hf_polish_linearise(hf_polish_problem *p)
     HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
     HF_TRY(hf_residuals_find(&p->residuals, p->w));
     HF_TRY(hf_residuals_rates(&p->residuals, &p->slopes, p->w, p->row, p->gradient));
-    if (p->trade) /* that of the residuals which are to be least, not of all */
+    if (p->trade) /* the gradient of the residuals to minimise, not of all */
         hf_dots((size_t)p->n, (size_t)p->n_row, p->row + p->first_row, (size_t)p->residuals.n_row,
                 p->residuals.value + p->first_row, p->gradient);
     hf_parallel_each(p->v.n_thread, (p->n + GRAM_ROWS - 1) / GRAM_ROWS, multiply_rows, p);
@@ -243,7 +249,7 @@ hf_status hf_polish_linearise(hf_polish_problem *p)
     return HF_OK;
 }
 
-/* ---- between two iterations ---- */
+/* ---- stored state ---- */
 
 void hf_polish_pack(hf_polish_problem *p, const hf_polish_result *r)
 {
@@ -270,7 +276,7 @@ void hf_polish_pack(hf_polish_problem *p, const hf_polish_result *r)
     memcpy(array + 3 * n, p->best, n_gene * sizeof(double));
 }
 
-/* The file that it comes from may be damaged. */
+/* Returns true if s [n_state] is a state of this problem. The file from which it comes may be damaged. */
 static bool is_state(const hf_polish_problem *p, size_t n_state, const double *s)
 {
     if (n_state != p->n_state || s[STATE_FORMAT] != FORMAT) return false;
@@ -288,7 +294,7 @@ bool hf_polish_go_on(hf_polish_problem *p, size_t n_state, const double *s, hf_p
     size_t n = (size_t)p->n;
     if (!is_state(p, n_state, s)) return false;
     r->iterations = (int)s[STATE_ITERATIONS];
-    p->evaluations = (int)s[STATE_EVALUATIONS] - 1; /* that of the best design comes once more */
+    p->evaluations = (int)s[STATE_EVALUATIONS] - 1; /* the best design is evaluated once more */
     r->stop = (hf_polish_stop)s[STATE_STOP];
     p->is_outside = s[STATE_IS_OUTSIDE] != 0;
     r->merit = s[STATE_MERIT];

@@ -1,5 +1,5 @@
-/* polish_problem - what Levenberg-Marquardt works on: variables, their bounds, the shape of the last design and its
- * derivatives. polish.c is the way to the optimum. */
+/* polish_problem - the problem that Levenberg-Marquardt solves: the variables and their bounds, the shape of the last
+ * design and its derivatives. polish.c has the steps. */
 #ifndef HIFDM_POLISH_PROBLEM_H
 #define HIFDM_POLISH_PROBLEM_H
 
@@ -9,79 +9,83 @@
 #include "search/residuals.h"
 #include "search/watch.h"
 
-/* Shapes of tensions T and of the force densities T/l are the same, but the shape is a far more even function of the
- * force densities: single tensions in a chain drag its nodes along. So genes that set a tension mean force densities
- * here, and their bounds are limits on the tensions. */
+/* The tensions T and the force densities T/l of a shape describe the same shape. But the shape depends far more
+ * linearly on the force densities, because a change of a single tension in a chain drags its nodes along. A design
+ * variable that sets a tension therefore sets a force density here, and its bounds are limits on the tension. */
 typedef struct {
-    hf_evaluator v;             /* that of the caller, by force densities and without limits */
-    const hf_evaluator *caller; /* that of the caller */
+    hf_evaluator v;             /* copy of `caller` with force densities and without limits */
+    const hf_evaluator *caller; /* the evaluator of the caller */
     const double *lower, *upper;
     hf_workspace *w;
     hf_sensitivity slopes;
     hf_residuals residuals;
     hf_watch watch;
     hf_quadratic step;
-    const hf_watch_trade *trade;      /* or NULL: the merit is to be least */
-    const hf_polish_watcher *watcher; /* or NULL */
-    hf_status told;                   /* what it returned last */
-    int first_row, n_row;             /* of the residuals that are to be least */
-    bool has_corners;                 /* the goal to be least: then the level is one more variable of a step */
-    int n;                            /* variables: steps from `start`, one for each class of linked genes */
+    const hf_watch_trade *trade;      /* the objective to minimise and the limits on the others, or NULL */
+    const hf_polish_watcher *watcher; /* NULL: no watcher */
+    hf_status told;                   /* the last status of the watcher */
+    int first_row, n_row;             /* residuals to minimise */
+    bool has_corners;                 /* true if the minimised objective has corners: a step then has its level, too */
+    int n; /* number of variables: steps from `start` of each class of linked design variables */
     int evaluations;
-    bool is_outside;                     /* no shape within the limits is known yet */
-    hf_form_result result;               /* of the last evaluation */
-    double *start;                       /* [n_gene] values; of tensions the pretensions q L* */
-    double *low, *high;                  /* [n] bounds of the variables */
-    double *down, *up;                   /* [n] of a step: how far it may go */
-    double *unit;                        /* [n] size of the values: violations are relative to it */
-    double *at, *trial;                  /* [n] the best variables; those of the last step */
-    double *design;                      /* [n_gene] of the last evaluation, tensions as pretensions q L* */
-    double *best;                        /* [n_gene] the best design in the caller's meaning */
-    double *step_taken;                  /* [n] that led to `trial`, while it is corrected */
-    double *pull;                        /* [n] gradient of a correction */
-    double *scale;                       /* [n] largest norm of each column of J so far */
-    double largest_scale;                /* of them */
-    double *row;                         /* [n][rows of the residuals] J' */
-    double *gram;                        /* [n][n] J'J; lower triangle by rows, as `hessian` */
-    double *hessian;                     /* [n][n] J'J, damped */
-    double *gradient;                    /* [n] J'f */
-    double *goal_rate;                   /* [n_goal][n] of a trade: of goals without corners */
-    double pressure[HF_DESIGN_ROWS_MAX]; /* of a trade: multipliers of the last step, in units of merit^2/2 */
-    double promise;                      /* of a step before it was solved again: what the linear model says */
-    double damping, growth;              /* of the next step, and by what the former grows if that is none */
-    double way, violation; /* outside of the limits: the part of the way that the next step goes; how far outside */
-    double best_psi_m;     /* of the best design */
-    int settled_steps;     /* since the merit, or a goal, last changed by more than what is read of it */
-    double settled_merit, settled_goal[HF_DESIGN_ROWS_MAX]; /* of then */
+    bool is_outside;       /* true while no shape within the limits is known */
+    hf_form_result result; /* result of the last evaluation */
+    double *start;         /* [n_gene], first values; those of tensions are pretensions q L* */
+    double *low, *high;    /* [n], bounds of the variables */
+    double *down, *up;     /* [n], bounds of a step */
+    double *unit;          /* [n], magnitude of the values; violations are relative to it */
+    double *at, *trial;    /* [n], best variables; variables at the end of the last step */
+    double *design;        /* [n_gene], design of the last evaluation; tensions as pretensions q L* */
+    double *best;          /* [n_gene], best design in terms of `caller` */
+    double *step_taken;    /* [n], the step that led to `trial` while it is corrected */
+    double *pull;          /* [n], gradient of a correction */
+    double *scale;         /* [n], maximum norm so far of each column of J */
+    double largest_scale;  /* maximum of `scale` */
+    double *row;           /* [n][rows of the residuals], J' */
+    double *gram;          /* [n][n], J'J; lower triangle by rows, like `hessian` */
+    double *hessian;       /* [n][n], J'J with damping */
+    double *gradient;      /* [n], J'f */
+    double *goal_rate;     /* [n_goal][n], gradients of objectives without corners, for a point of a front */
+    double pressure[HF_DESIGN_ROWS_MAX]; /* multipliers of the last step for merit^2/2, for a point of a front */
+    double promise;                      /* gain that the linear model promised before the step was corrected */
+    double damping, growth;              /* damping of the next step, and its factor if that step fails */
+    double way, violation;               /* outside the limits: part of the way for the next step, and the violation */
+    double best_psi_m;                   /* psi of the best design */
+    int settled_steps;                   /* steps since the merit or an objective last changed noticeably */
+    double settled_merit, settled_goal[HF_DESIGN_ROWS_MAX]; /* merit and objectives at that change */
     size_t n_state;
-    double *state; /* [n_state] where the run is, for hf_polish_watcher */
-    double noise;  /* what the tolerance of the form-finding leaves open in the merit */
+    double *state; /* [n_state], the state of the run for hf_polish_watcher */
+    double noise;  /* part of the merit that the tolerance of the form-finding leaves open */
 } hf_polish_problem;
 
-/* v, caller, lower, upper, w, trade are set. HF_OK or HF_NO_MEMORY; destroy it in either case. */
+/* Allocates the problem, in which the caller has set v, caller, lower, upper, w and trade. Returns HF_OK or
+ * HF_NO_MEMORY; call hf_polish_destroy in either case. */
 hf_status hf_polish_create(hf_polish_problem *problem, hf_arena *arena);
 void hf_polish_destroy(hf_polish_problem *problem, hf_arena *arena);
 
-/* Start at the design [n_gene] whose shape is in the workspace. */
+/* Begins at the design [n_gene] whose shape is in the workspace. */
 void hf_polish_begin(hf_polish_problem *problem, const double *design);
 
-/* Does gene k set a tension for the caller, and a force density here? */
+/* Returns true if design variable k sets a tension for the caller, and therefore a force density here. */
 bool hf_polish_is_tension(const hf_polish_problem *problem, int k);
 
-/* What is to be least. */
+/* Returns the merit of a result, or for a point of a front the value of the minimised objective (of a ratio its
+ * logarithm). */
 double hf_polish_merit(const hf_polish_problem *problem, const hf_form_result *result);
 
-/* Find the shape of these variables [n] in the workspace. */
+/* Evaluates the design of these variables [n]; its shape is in the workspace afterwards. Returns the status of
+ * hf_evaluate. */
 hf_status hf_polish_evaluate(hf_polish_problem *problem, const double *variable);
 
-/* Take the shape in the workspace, that of `trial`, as the best. */
+/* Makes `trial`, whose shape is in the workspace, the best design. */
 void hf_polish_keep(hf_polish_problem *problem);
 
-/* Write residuals, J', J'J, the gradient and what is watched with its rates at the workspace's shape. */
+/* Computes the residuals, J', J'J, the gradient, and the limits with their rates at the shape in the workspace. Returns
+ * HF_OK or the status of the failure. */
 hf_status hf_polish_linearise(hf_polish_problem *problem);
 
-/* Write where the run is between two iterations into `state`: with it hf_polish_go_on, after hf_polish_begin of the
- * same design, makes a run go on with the same bits. A state of another problem is refused: false. */
+/* Writes the state between two iterations into `state`. hf_polish_go_on resumes from a state, after hf_polish_begin of
+ * the same design, with the same bits. It returns false and changes nothing if the state belongs to another problem. */
 void hf_polish_pack(hf_polish_problem *problem, const hf_polish_result *result);
 bool hf_polish_go_on(hf_polish_problem *problem, size_t n_state, const double *state, hf_polish_result *result);
 

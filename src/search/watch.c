@@ -1,4 +1,12 @@
-/* Contents: what is watched - shapes - a step */
+/* Watches the limits of a step of Levenberg-Marquardt besides the bounds of its variables. watch.h describes the
+ * interface.
+ *
+ *     hf_watch_create      cap, rows of optimize.limits, bounds of tensions, objectives -> items
+ *     hf_watch_linearise   shape -> value and rate of each item
+ *     hf_watch_worst       step x -> predicted values -> the limit that is violated most, for the quadratic programme
+ *     hf_watch_learn       shape at the end of the step -> what each item is beyond the linear model (`bend`)
+ *
+ * Contents: items - shapes - a step */
 #include "search/watch.h"
 
 #include "base/arena.h"
@@ -10,24 +18,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* In brackets: the range over which no test of this module and of cli/limits fails, as far as it was tried. */
-#define LIMIT_INSIDE 1e-9 /* part by which a step stays within the limits on tensions [1e-11; 1e-7 fails] */
+/* Brackets contain the range in which no test of this module and of cli/limits fails, as far as it was tried. */
+#define LIMIT_INSIDE 1e-9 /* relative distance that a step keeps from its limits [1e-11; 1e-7 fails] */
 
-/* ---- what is watched ---- */
+/* ---- items ---- */
 
-/* An item of a cable, an attachment, a support or a goal: what it is not is -1. */
+/* Adds an item for a cable, an attachment, a support or an objective; the other indices are -1. The item is only
+ * counted while there is no memory. */
 static void add(hf_watch *q, hf_watched item)
 {
     if (q->item) q->item[q->n] = item;
     q->n++;
 }
 
+/* Adds a cap on a ratio, and returns its index. */
 static int add_cap(hf_watch *q, double cap)
 {
     if (q->cap) q->cap[q->n_cap] = cap;
     return q->n_cap++;
 }
 
+/* Adds the items of a row of optimize.limits. */
 static void add_row(const hf_evaluator *v, const hf_limit *row, hf_watch *q)
 {
     bool is_ratio = row->kind == HF_LIMIT_RATIO;
@@ -48,11 +59,11 @@ static void add_row(const hf_evaluator *v, const hf_limit *row, hf_watch *q)
                             .goal = -1,
                             .ratio = -1,
                             .kind = HF_WATCH_ROW,
-                            .lower = -INFINITY, /* its derivative vanishes at zero, and none is below */
+                            .lower = -INFINITY, /* the derivative vanishes at 0, and no size is below 0 */
                             .upper = row->upper});
 }
 
-/* A goal below its limit; or the sizes of one that is to be least and has corners. */
+/* Adds the items of objective k: those of its limit or, if it is minimised and has corners, those of its level. */
 static void add_goal(const hf_evaluator *v, const hf_watch_trade *trade, int k, hf_watch *q)
 {
     const hf_goal *g = &v->goals->goal[k];
@@ -81,7 +92,7 @@ static void add_goal(const hf_evaluator *v, const hf_watch_trade *trade, int k, 
     if (!has_corners) add(q, item);
 }
 
-/* Count the items, or write them where there is room. */
+/* Lists all items. They are only counted while there is no memory. */
 static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *lower, const double *upper, hf_watch *q)
 {
     const hf_model *m = v->model;
@@ -154,7 +165,7 @@ bool hf_watch_breaks(const hf_watch_trade *trade, const hf_goals *goals, double 
 
 /* ---- shapes ---- */
 
-/* Look at the shape in the workspace. */
+/* Measures the items at the shape in the workspace. */
 static void look(hf_watch *q, hf_workspace *w)
 {
     if (q->trade) hf_goals_pulls(q->v->model, w, w->goals);
@@ -170,7 +181,8 @@ static void look(hf_watch *q, hf_workspace *w)
     }
 }
 
-/* The largest over the least of the values that cap k counts; INFINITY where the least is not above zero. */
+/* Returns the ratio of maximum to minimum of the values that belong to cap k, or INFINITY if the minimum is not above
+ * 0. */
 static double ratio_of(const hf_watch *q, int k)
 {
     double least = INFINITY, largest = -INFINITY;
@@ -207,13 +219,13 @@ double hf_watch_violation(hf_watch *q, hf_workspace *w)
     return sum;
 }
 
-/* Where the rate of an item by variable j stands. */
+/* Returns the location of the rate of an item by variable j. */
 static double *rate_at(const hf_watch *q, ptrdiff_t i_item, int j)
 {
     return q->rate + (ptrdiff_t)(1 + j) * q->ld + i_item;
 }
 
-/* Of the displacement of an attachment, along itself. */
+/* Computes the rates of the magnitude of the displacement of an attachment. */
 static void displacement_rates(const hf_watched *t, const hf_sensitivity *s, const hf_workspace *w, double *rate)
 {
     const double *d = w->displacement_m + 3 * (ptrdiff_t)t->attachment;
@@ -223,7 +235,7 @@ static void displacement_rates(const hf_watched *t, const hf_sensitivity *s, con
     }
 }
 
-/* Of the pulls on all supports that are watched, variable by variable. */
+/* Computes the rates of the forces on all supports that are watched, variable by variable. */
 static void pull_rates(hf_watch *q, const hf_sensitivity *s, hf_workspace *w)
 {
     for (int j = 0; j < s->n; j++) {
@@ -261,7 +273,7 @@ void hf_watch_linearise(hf_watch *q, const hf_sensitivity *s, hf_workspace *w)
     hf_watch_aim(q, 1);
 }
 
-/* A part of the way from a value to its limit; all of it without rounding. */
+/* Returns the value at a part of the way from a value to its limit; exactly the limit if the part is 1. */
 static double on_the_way(double value, double limit, double part)
 {
     return part < 1 && isfinite(value) ? value + part * (limit - value) : limit;
@@ -286,7 +298,7 @@ void hf_watch_forget(hf_watch *q)
 
 /* ---- a step ---- */
 
-/* The values that the linear model gives for the step x. */
+/* Computes the values that the linear model gives for the step x. */
 static void predict(hf_watch *q, const double *x)
 {
     q->weight[0] = 1;
@@ -306,12 +318,13 @@ void hf_watch_learn(hf_watch *q, const double *x, hf_workspace *w)
         q->item[i].bend += q->item[i].now - q->item[i].predicted;
 }
 
+/* Returns the rate of an item by variable j. */
 static double rate_of(const hf_watch *q, const hf_watched *t, int j)
 {
     return *rate_at(q, t - q->item, j);
 }
 
-/* HF_WATCH_GOAL and the number of an item, by which hf_watch_relief finds it again. */
+/* Returns HF_WATCH_GOAL plus the index of the item, by which hf_watch_relief finds it again. */
 static int kind_of_goal(const hf_watch *q, const hf_watched *t)
 {
     return HF_WATCH_GOAL + (int)(t - q->item);
@@ -321,10 +334,11 @@ double hf_watch_relief(const hf_watch *q, int kind, int *goal)
 {
     const hf_watched *t = &q->item[kind - HF_WATCH_GOAL];
     *goal = t->goal;
-    return t->ratio >= 0 ? t->value : 1; /* high <= cap low */
+    return t->ratio >= 0 ? t->value : 1; /* the limit is high <= cap low */
 }
 
-/* high <= cap low: the largest and the least of the predicted values that cap k counts. */
+/* Tests the limit high <= cap low of cap k for the maximum and the minimum of its predicted values. If it is violated
+ * by more than *worst, writes it to *limit, updates *worst and returns true. */
 static bool breaks_cap(const hf_watch *q, int k, double *worst, hf_quadratic_limit *limit)
 {
     double cap = q->aim[k] * (1 - LIMIT_INSIDE);
@@ -346,13 +360,15 @@ static bool breaks_cap(const hf_watch *q, int k, double *worst, hf_quadratic_lim
     return true;
 }
 
-/* Tensions by their logarithms, whose difference is the level of a ratio; other sizes as they are. */
+/* Returns the size of a value for the level of an objective: of a tension the linearised logarithm, because the level
+ * of a ratio is a difference of logarithms, and otherwise the value itself. */
 static double size_of(const hf_watched *t, double value)
 {
     return t->cable >= 0 ? log(t->value + t->bend) + (value - t->value - t->bend) / (t->value + t->bend) : value;
 }
 
-/* size <= level, or high - low <= level of logarithms, where the last of x is what the level rises by. */
+/* Tests the limit size <= level of the maximum size, or high - low <= level for logarithms of tensions. The last entry
+ * of x is the increase of the level. Writes *limit and *worst like breaks_cap. */
 static bool breaks_level(const hf_watch *q, const double *x, double *worst, hf_quadratic_limit *limit)
 {
     const hf_watched *high = NULL, *low = NULL;

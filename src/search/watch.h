@@ -1,87 +1,94 @@
-/* watch - what limits a step of Levenberg-Marquardt beside the bounds of its variables: tensions between bounds, ratios
- * of tensions, displacements of attachments. Each is linear in a step to first order, and `bend` is what it was beyond
- * that at the last trial, so that a step that breaks a limit can be solved again. */
+/* watch - the limits of a step of Levenberg-Marquardt besides the bounds of its variables. They are tensions between
+ * bounds, ratios of tensions, deflections of attachments, and objectives. Each limit is linear in the step to first
+ * order. `bend` is what the value was beyond the linear model at the last trial. With it, a step that breaks a limit is
+ * solved again. */
 #ifndef HIFDM_WATCH_H
 #define HIFDM_WATCH_H
 
 #include "linalg/quadratic.h"
 #include "search/sensitivity.h"
 
-/* Of the goals of an evaluator one is to be least while the others stay below limits. */
+/* A point of a Pareto front: one objective of the evaluator is minimised under limits on the others. */
 typedef struct {
     int least;
-    const double *most; /* [n_goal], above 0; INFINITY: no limit */
+    const double *most; /* [n_goal], limits above 0; INFINITY: none */
 } hf_watch_trade;
 
-/* Is a goal beyond its limit by more than this part of it? Without a trade (NULL) none is. */
+/* Returns true if an objective exceeds its limit by more than `part` of it. Returns false if trade is NULL. */
 bool hf_watch_breaks(const hf_watch_trade *trade, const hf_goals *goals, double part, const double *goal);
 
 typedef struct {
-    int cable, attachment;  /* whose tension, or displacement; else -1 */
-    int support, goal;      /* whose pull; the goal that it limits, and measures where all others are -1 */
-    int ratio;              /* the cap that counts it; -1: none */
+    /* An item is the tension of a cable, the deflection of an attachment, the force on a support, or an objective. The
+     * indices that it does not need are -1. */
+    int cable, attachment;
+    int support, goal;      /* goal: objective that the item limits; with no other index, the item itself */
+    int ratio;              /* index of the cap to which the item belongs, or -1 */
     int kind;               /* HF_WATCH_BOUND, HF_WATCH_ROW, HF_WATCH_LEVEL or HF_WATCH_GOAL */
-    double lower, upper;    /* infinite where only a cap limits it */
-    double from, to;        /* what a step keeps it between, see hf_watch_aim */
-    double value, bend;     /* at the best variables; beyond the linear model at the last trial */
-    double now;             /* of the shape that was looked at last */
-    double predicted, unit; /* by the linear model; violations are relative to the unit */
+    double lower, upper;    /* bounds; infinite if only a cap limits the item */
+    double from, to;        /* bounds of the next step, see hf_watch_aim */
+    double value, bend;     /* value at the best variables; its excess over the linear model at the last trial */
+    double now;             /* value at the shape that was measured last */
+    double predicted, unit; /* value by the linear model; unit of violations */
 } hf_watched;
 
 typedef struct {
-    const hf_evaluator *v;                     /* borrowed; with the limits */
-    int n, n_variable, n_cap, n_cap_of_limits; /* the others are of goals */
-    bool has_cap;                              /* the first of them is that of the boundary */
-    hf_watched *item;                          /* [n] */
-    int ld;                                    /* n, and as many more as make whole vectors */
-    double *rate;                /* [1 + n_variable][ld] values, as far as they are known; of them per variable */
-    double *weight;              /* [1 + n_variable] 1, and a step */
-    double *predicted;           /* [ld] of the step, by the linear model */
-    double *by_item;             /* [n_variable] scratch */
-    double *cap;                 /* [n_cap] largest over least of the tensions that it counts */
-    double *ratio;               /* [n_cap] the same at the best variables */
-    double *aim;                 /* [n_cap] what a step keeps it below */
-    const hf_watch_trade *trade; /* or NULL */
-    const double *goal;          /* with a trade: [n_goal] of the shape that is looked at; borrowed, as the next */
-    const double *goal_rate;     /* [n_goal][n_variable] of goals without corners, at the best variables */
-    double level;                /* of a goal with corners that is to be least: its value; of a ratio the logarithm */
-    double *move_m, *tension_rate, *pull_rate; /* scratch of pulls: [3][n_node], [n_cable], [n_support] */
+    const hf_evaluator *v; /* borrowed; its limits are watched */
+    /* The first n_cap_of_limits caps are those of the boundary and of optimize.limits, the others those of
+     * objectives. */
+    int n, n_variable, n_cap, n_cap_of_limits;
+    bool has_cap;                /* true if the first cap is that of the boundary tension ratio */
+    hf_watched *item;            /* [n] */
+    int ld;                      /* n, rounded up to whole vectors */
+    double *rate;                /* [1 + n_variable][ld], values with `bend`, then rates by each variable */
+    double *weight;              /* [1 + n_variable], weights of the columns of `rate`: 1, then a step */
+    double *predicted;           /* [ld], values after a step by the linear model */
+    double *by_item;             /* [n_variable], scratch */
+    double *cap;                 /* [n_cap], limit on the ratio of maximum to minimum of its items */
+    double *ratio;               /* [n_cap], this ratio of maximum to minimum at the best variables */
+    double *aim;                 /* [n_cap], limit on the ratio in the next step */
+    const hf_watch_trade *trade; /* NULL: no objective is limited */
+    const double *goal;      /* [n_goal], objectives of the shape that is measured; borrowed; NULL without `trade` */
+    const double *goal_rate; /* [n_goal][n_variable], rates of objectives without corners, borrowed */
+    double level;            /* value of a minimised objective with corners, or the logarithm of a ratio */
+    double *move_m, *tension_rate, *pull_rate; /* scratch for forces on supports: [3][n_node], [n_cable], [n_support] */
     void *block;
 } hf_watch;
 
-/* Watch the cap and the limits of the evaluator, and the bounds [n_gene] of genes that set a tension; with a trade
- * (else NULL) the goals as well, when their values and rates have been set. HF_OK or HF_NO_MEMORY; free in either case.
- */
+/* Watches the cap and the limits of the evaluator, and the bounds lower and upper [n_gene] of design variables that set
+ * a tension. If `trade` is not NULL, it also watches the objectives, after the caller has set goal and goal_rate.
+ * Returns HF_OK or HF_NO_MEMORY; call hf_watch_free in either case. */
 hf_status hf_watch_create(const hf_evaluator *evaluator, const hf_sensitivity *slopes, const double *lower,
                           const double *upper, const hf_watch_trade *trade, hf_watch *watch);
 void hf_watch_free(hf_watch *watch);
 
-/* Does the shape in the workspace keep everything that is watched? */
+/* Returns true if the shape in the workspace keeps all limits. */
 bool hf_watch_keeps(hf_watch *watch, hf_workspace *workspace);
 
-/* Take the shape in the workspace as the best. */
+/* Makes the shape in the workspace the best one, and computes the rates of all items there. */
 void hf_watch_linearise(hf_watch *watch, const hf_sensitivity *slopes, hf_workspace *workspace);
 
-/* A step shall go this part of the way from the best variables into limits that they break; 1, as after
- * hf_watch_linearise: it shall keep all limits. */
+/* Sets the limits of the next step: it goes this part of the way from the best variables into the limits that they
+ * break. With part 1, as after hf_watch_linearise, it keeps all limits. */
 void hf_watch_aim(hf_watch *watch, double part);
 
-/* How far the shape in the workspace is beyond what is watched, in all: the violation by which designs are ranked, and
- * that of the bounds of tensions and of goals. */
+/* Returns the total violation of the shape in the workspace: the one by which designs are ranked, and those of the
+ * bounds of tensions and of the limits on objectives. */
 double hf_watch_violation(hf_watch *watch, hf_workspace *workspace);
 
-/* Forget what was beyond the linear model; or learn it from the shape that the step x has led to. */
+/* hf_watch_forget sets `bend` of all items to 0. hf_watch_learn computes it from the shape in the workspace, to which
+ * the step x has led. */
 void hf_watch_forget(hf_watch *watch);
 void hf_watch_learn(hf_watch *watch, const double *x, hf_workspace *workspace);
 
-/* The limit that the step x breaks by more than `worst`, and by the most of all, over its unit; false: none does. Its
- * kind says whether it is a bound of a gene, the cap on the boundary ratio, a row of optimize.limits, or a goal. Where
- * a goal with corners is to be least, x has one entry more, by which its level rises, and the level is a limit: no
- * size is above it. */
+/* Finds the limit that the step x violates most, relative to its unit, and by more than `worst`. Returns false if there
+ * is none. The kind of the limit is that of a bound of a design variable, of the cap on the boundary tension ratio, of
+ * a row of optimize.limits, of a level or of an objective. If the minimised objective has corners, x has one more
+ * entry, the increase of its level, and no size may exceed the level. */
 enum { HF_WATCH_BOUND = 1, HF_WATCH_CAP, HF_WATCH_ROW, HF_WATCH_LEVEL, HF_WATCH_GOAL };
 bool hf_watch_worst(hf_watch *watch, const double *x, double worst, hf_quadratic_limit *limit);
 
-/* How far a limit of kind HF_WATCH_GOAL or above gives way for one unit more of *goal, whose limit it is. */
+/* Returns by how much a limit of kind HF_WATCH_GOAL or above is relaxed per unit of the limit on objective *goal, to
+ * which it belongs. */
 double hf_watch_relief(const hf_watch *watch, int kind, int *goal);
 
 #endif
