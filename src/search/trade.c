@@ -1,7 +1,14 @@
-/* Contents: one point - many points at once - lines - the ends - between them - the front
+/* Finds the points of a Pareto front. trade.h describes the interface, trade_point.c one point.
  *
- * One objective, MAIN, is least under limits on the others. Of two objectives the points are a line in the order of the
- * limit on the OTHER. Of three they are lines that each keep one limit on the THIRD, from its least to none. */
+ *     minimum of each objective alone -> ends, ranges -> first lines: without a limit on THIRD, and at its minimum
+ *     longest gap on a line      -> mean limit on OTHER -> one more point
+ *     longest gap between lines  -> mean limit on THIRD -> one more line
+ *     ... until there are n_point points
+ *
+ * One objective, MAIN, is minimised under limits on the others. With two objectives, the points form one line, in the
+ * order of the limit on OTHER. With three, they form several lines. Each line has its own limit on THIRD, from its
+ * minimum to no limit.
+ * Contents: one point - many points at once - lines - the ends - gaps - the front */
 #include "search/trade.h"
 
 #include "base/arena.h"
@@ -12,59 +19,64 @@
 #include <math.h>
 #include <string.h>
 
-/* In brackets: the range over which no test fails, as far as it was tried. */
-#define END_GIVES 1e-6 /* part of its range by which the objective of an end may rise where that lowers the other ... */
-#define END_GAINS 0.05 /* ... by more than this part of the other's range */
-#define AGREE 1e-5     /* parts of their ranges: a design so near to the least of every objective is best in all */
-#define ENDS_MAX 12    /* designs that are found before the first between the ends */
-#define NO_RANGE 1e-9  /* part of an objective: what differs by less does not differ */
-#define LONG_GAP 0.5 /* gaps longer than this part of the longest are halved at once, whatever the number of threads */
-#define NO_GAP 1e-9  /* part of the range of the limited objective: no limit fits between */
-#define HELD 1e-6 /* part of its range that an objective is below a limit which holds it, at most [1e-4; 1e-8 fails] */
-#define ONE_POINT 0.05 /* parts of the ranges: the line of the least third with ends so near is a point [0.01 to 0.2] */
+/* Brackets contain the range in which no test fails, as far as it was tried. */
+/* The objective of an end may rise by END_GIVES of its range if another objective then falls by more than END_GAINS of
+ * its range. */
+#define END_GIVES 1e-6
+#define END_GAINS 0.05
+#define AGREE 1e-5    /* a design this near (in parts of the ranges) to the minimum of every objective is best in all */
+#define ENDS_MAX 12   /* maximum number of designs found before the first one between the ends */
+#define NO_RANGE 1e-9 /* a difference below this part of an objective counts as none */
+#define LONG_GAP 0.5  /* gaps above this part of the longest one are halved at once, with any number of threads */
+#define NO_GAP 1e-9   /* in a gap below this part of the range of the limited objective, there is no room for a limit */
+#define HELD 1e-6     /* an objective within this part of its range below its limit is held by it [1e-4; 1e-8 fails] */
+/* If the ends of the line at the minimum of THIRD are nearer than this, in parts of the ranges, the line is one point
+ * [0.01 to 0.2]. */
+#define ONE_POINT 0.05
 
-enum { MAIN, OTHER, THIRD }; /* what objectives are, see search.role */
+enum { MAIN, OTHER, THIRD }; /* roles of the objectives, see search.role */
 
-/* A point that is wanted, and what is found. */
+/* A point to find, and what was found. */
 typedef struct {
-    int least;                      /* the objective that is to be least */
-    double most[HF_OBJECTIVES_MAX]; /* of the others; INFINITY: any */
-    const double *from[2];          /* [n_gene] to begin from: the second where the first leads nowhere; or NULL */
-    int met;                        /* is nothing at from[0]; `least`: all objectives may be; -1: none is */
-    double *design;                 /* [n_gene] the answer */
+    int least;                      /* the objective to minimise */
+    double most[HF_OBJECTIVES_MAX]; /* limits on the others; INFINITY: none */
+    /* [n_gene], the designs to begin from. The second one (or NULL) is used if the first one does not succeed. */
+    const double *from[2];
+    int met;        /* objective that is 0 at from[0]; equal to `least`: all may be 0; -1: none */
+    double *design; /* [n_gene], the design found */
     hf_front_point found;
-    bool is_point;      /* of the front, whatever is found */
-    const void *closed; /* the next point on the way, with none to be found between */
+    bool is_point;      /* true if it is a point of the front, even if it fails */
+    const void *closed; /* the next point of the line, if no point is to be sought between them */
 } job;
 
-/* Designs that keep one limit on the third objective. */
+/* Designs under one limit on THIRD. */
 typedef struct {
-    double most; /* of the third; INFINITY: any, as on the only line of two objectives */
-    job *end[2]; /* the least MAIN and the least OTHER */
+    double most; /* limit on THIRD; INFINITY: none, as on the only line of two objectives */
+    job *end[2]; /* the points of minimum MAIN and of minimum OTHER */
     bool is_new[2];
-    job *beside[2]; /* at each end the least of the one that is not least there */
+    job *beside[2]; /* for each end, the minimum of the other objective next to it */
     int n_way;
-    job **way;          /* [n_job] points that none of them beats in MAIN and OTHER, ascending by OTHER */
-    double *length;     /* [n_job] of the gap that follows each */
-    const void *closed; /* the next line, with none to be found between */
-    double gap;         /* to the next line */
+    job **way;          /* [n_job], points that none of them beats in MAIN and OTHER, ascending by OTHER */
+    double *length;     /* [n_job], length of the gap after each point */
+    const void *closed; /* the next line, if no line is to be sought between them */
+    double gap;         /* distance to the next line */
 } line;
 
 typedef struct {
     const hf_trade *t;
     size_t n_gene;
-    int n_objective, role[HF_OBJECTIVES_MAX]; /* the objective that is MAIN, OTHER, THIRD */
-    double range[HF_OBJECTIVES_MAX];          /* of the objectives between the ends */
-    double largest[HF_OBJECTIVES_MAX];        /* at the designs that the search begins from */
-    int failed_end;                           /* the objective whose end has no design; else -1 */
-    int n, n_run, n_job;                      /* jobs, those of them that have run, and room for them */
+    int n_objective, role[HF_OBJECTIVES_MAX]; /* the objectives that are MAIN, OTHER and THIRD */
+    double range[HF_OBJECTIVES_MAX];          /* range of each objective between the ends */
+    double largest[HF_OBJECTIVES_MAX];        /* maximum of each objective at the designs to begin from */
+    int failed_end;                           /* the objective whose end has no design, or -1 */
+    int n, n_run, n_job;                      /* jobs, jobs that have run, and maximum of jobs */
     job *job;
     int n_point;
-    job **point;             /* [n_job] of the front, without those that only led to others */
-    int n_line, n_room;      /* lines, and those that were begun */
-    line *line_room, **line; /* [n_point + 2]; in the order of their limits */
+    job **point;             /* [n_job], points of the front, without those that only led to others */
+    int n_line, n_room;      /* lines of the front, and all lines that were begun */
+    line *line_room, **line; /* [n_point + 2]; lines in the order of their limits */
     hf_parallel_queue queue;
-    hf_status *of_room; /* [n_thread] */
+    hf_status *of_room; /* [n_thread], status of each thread */
 } search;
 
 bool hf_trade_applies(const hf_evaluator *v)
@@ -74,7 +86,8 @@ bool hf_trade_applies(const hf_evaluator *v)
 
 /* ---- one point ---- */
 
-/* Slopes are those of MAIN. Returns what ends the whole search, else HF_OK. */
+/* Refines the design of a job by Levenberg-Marquardt. Multipliers are slopes of MAIN, so they are NaN if another
+ * objective is minimised. Returns HF_OK, or a status that ends the whole search. */
 static hf_status polish(const search *s, const job *j, double *design, hf_workspace *w, hf_front_point *point)
 {
     const hf_watch_trade limits = {j->least, j->most};
@@ -84,7 +97,7 @@ static hf_status polish(const search *s, const job *j, double *design, hf_worksp
     return HF_OK;
 }
 
-/* Is a point unfinished, or worse than one that is there? */
+/* Returns true if a point has not converged, or if a known point dominates it. */
 static bool is_doubtful(const search *s, const job *j)
 {
     if (j->found.status != HF_OK || !j->found.is_converged) return true;
@@ -95,6 +108,8 @@ static bool is_doubtful(const search *s, const job *j)
     return false;
 }
 
+/* Finds the point of a job from its first design. If it is doubtful, searches again from the second design and keeps
+ * the better point. */
 static hf_status find(const search *s, job *j, hf_workspace *w)
 {
     size_t size = s->n_gene * sizeof(double);
@@ -103,7 +118,7 @@ static hf_status find(const search *s, job *j, hf_workspace *w)
     if (j->met >= 0) HF_TRY(hf_trade_meet(s->t, j->met, j->least, s->range, j->design, w));
     HF_TRY(polish(s, j, j->design, w, &j->found));
     if (!j->from[1] || !is_doubtful(s, j)) return HF_OK;
-    double *design = j->design + s->n_gene; /* the second half of its room */
+    double *design = j->design + s->n_gene; /* the second half of its memory */
     memcpy(design, j->from[1], size);
     HF_TRY(polish(s, j, design, w, &again));
     again.iterations += j->found.iterations;
@@ -119,6 +134,7 @@ static hf_status find(const search *s, job *j, hf_workspace *w)
 
 /* ---- many points at once ---- */
 
+/* Runs jobs in one thread until none is left. */
 static void work(void *context, int room)
 {
     search *s = context;
@@ -136,7 +152,8 @@ static void work(void *context, int room)
     s->of_room[room] = status;
 }
 
-/* Run the jobs that were added. Each depends on earlier ones alone, so threads change nothing. */
+/* Runs the jobs that were added. Each depends on earlier jobs only, so the number of threads does not change the
+ * results. */
 static hf_status run(search *s)
 {
     int n_thread = s->t->n_thread;
@@ -149,7 +166,8 @@ static hf_status run(search *s)
     return HF_OK;
 }
 
-/* The least of what has this role, with a limit on the third objective. */
+/* Adds a job that minimises the objective with this role under a limit on THIRD, from the designs `first` and
+ * `second`. */
 static job *add(search *s, int role, double third_most, const double *first, const double *second)
 {
     job *j = &s->job[s->n++];
@@ -168,15 +186,16 @@ static double value_of(const search *s, const job *j, int role)
     return j->found.objective[s->role[role]];
 }
 
-/* Is the least of what has this role nothing? */
+/* Returns true if the minimum of the objective with this role is 0, compared with its range. */
 static bool is_met(const search *s, const job *least, int role)
 {
     double range = s->range[s->role[role]];
     return range > 0 && value_of(s, least, role) <= END_GIVES * range;
 }
 
-/* The least of what has this role beside the least of `of`, which gives little way. Where that one is met, and no limit
- * but its own holds, the search begins with squares; where these lead nowhere, without. */
+/* Adds a job that minimises the objective with this role next to the end `end` of role `of`, whose objective may rise
+ * by END_GIVES of its range. If the minimum at that end is 0, and no other limit is active, the search begins with a
+ * sum of squares. If that does not succeed, it begins again without. */
 static job *begin_beside(search *s, int role, double third_most, const job *end, int of)
 {
     job *j = add(s, role, third_most, end->design, NULL);
@@ -187,7 +206,7 @@ static job *begin_beside(search *s, int role, double third_most, const job *end,
     return j;
 }
 
-/* In parts of the ranges. */
+/* Returns the distance of two points in parts of the ranges. */
 static double distance(const search *s, const job *a, const job *b)
 {
     return hf_trade_distance(s->n_objective, s->range, &a->found, &b->found);
@@ -195,13 +214,14 @@ static double distance(const search *s, const job *a, const job *b)
 
 /* ---- lines ---- */
 
-/* Is a as good as b in MAIN and OTHER? */
+/* Returns true if a is as good as b in MAIN and OTHER. */
 static bool beats(const search *s, const job *a, const job *b)
 {
     return value_of(s, a, MAIN) <= value_of(s, b, MAIN) && value_of(s, a, OTHER) <= value_of(s, b, OTHER);
 }
 
-/* Put a point in its place on the way, and what it beats out of it; nothing if it is beaten itself. */
+/* Inserts a point into a line, and removes the points that it beats. Does nothing if the point has failed or is beaten
+ * itself. */
 static void join(const search *s, line *l, job *j)
 {
     int at = 0, n = 0;
@@ -217,7 +237,7 @@ static void join(const search *s, line *l, job *j)
     l->n_way = n + 1;
 }
 
-/* A line whose ends are to be found. */
+/* Adds a line whose ends are still to be found. */
 static line *add_line(search *s, double third_most)
 {
     line *l = &s->line_room[s->n_room++];
@@ -226,8 +246,8 @@ static line *add_line(search *s, double third_most)
     return l;
 }
 
-/* The next lines, when the jobs of their new ends have been added: where the least leaves room, the least of the other
- * one beside it. */
+/* Completes the lines from index `first` on, after the jobs of their new ends have been added. Next to each new end,
+ * the other objective is minimised. If it gains more than END_GAINS, the design found becomes the end. */
 static hf_status finish_lines(search *s, int first)
 {
     HF_TRY(run(s));
@@ -246,13 +266,13 @@ static hf_status finish_lines(search *s, int first)
             double gain = value_of(s, l->end[e], 1 - e) - value_of(s, beside, 1 - e);
             if (!(gain > END_GAINS * s->range[s->role[1 - e]])) continue;
             l->end[e] = beside;
-            for (int k = 0; k < s->n_objective; k++) /* those of the limit of END_GIVES, not of the front */
+            for (int k = 0; k < s->n_objective; k++) /* multipliers of the limit of END_GIVES, not of the front */
                 beside->found.multiplier[k] = NAN;
         }
     return HF_OK;
 }
 
-/* Take the ends of a line for the front. */
+/* Adds the new ends of a line to the front, and both ends to the line. */
 static void close_line(search *s, line *l)
 {
     for (int e = 0; e < 2; e++) {
@@ -266,7 +286,7 @@ static void close_line(search *s, line *l)
 
 /* ---- the ends ---- */
 
-/* How far each objective rises above its own end at the ends of the others. */
+/* Sets the range of each objective: how far it rises above its own end at the ends of the others. */
 static void measure_ranges(search *s, job *const end[])
 {
     for (int r = 0; r < s->n_objective; r++) {
@@ -278,7 +298,7 @@ static void measure_ranges(search *s, job *const end[])
     }
 }
 
-/* What has no range is no MAIN of three: the other two are traded. */
+/* Chooses another MAIN of three objectives if the present one has no range. The other two then form the front. */
 static void choose_main(search *s, job *end[])
 {
     if (s->n_objective < 3 || s->range[s->role[MAIN]] > 0) return;
@@ -290,11 +310,12 @@ static void choose_main(search *s, job *end[])
     }
     s->role[THIRD] = role;
     end[THIRD] = first;
-    for (int k = 0; k < s->n_objective; k++) /* its slopes were those of what was MAIN */
+    for (int k = 0; k < s->n_objective; k++) /* the multipliers were slopes of the old MAIN */
         first->found.multiplier[k] = NAN;
 }
 
-/* The least of each objective alone, by its role. */
+/* Minimises each objective alone, by its role. Returns HF_OK or the status of the failure; failed_end is then the
+ * objective of an end without a design. */
 static hf_status find_alone(search *s, job *alone[])
 {
     const double *start[HF_OBJECTIVES_MAX];
@@ -318,7 +339,7 @@ static hf_status find_alone(search *s, job *alone[])
     return HF_OK;
 }
 
-/* Where the least of every objective is nothing, one design may meet them all. */
+/* If the minimum of every objective is 0, searches for one design that reaches all of them. */
 static hf_status meet_all(search *s, job *const alone[])
 {
     for (int r = 0; r < s->n_objective; r++)
@@ -330,7 +351,7 @@ static hf_status meet_all(search *s, job *const alone[])
     return run(s);
 }
 
-/* Is one of the designs at the ends best in all objectives? It alone is the front then. */
+/* Returns true if one of the designs at the ends is best in all objectives. It is then the only point of the front. */
 static bool take_common(search *s)
 {
     const hf_front_point *found[ENDS_MAX];
@@ -346,7 +367,7 @@ static bool take_common(search *s)
     return true;
 }
 
-/* The line without a limit on the third objective, and that of its least. */
+/* Finds the line without a limit on THIRD, and the line at the minimum of THIRD. */
 static hf_status find_ends(search *s)
 {
     job *end[HF_OBJECTIVES_MAX];
@@ -357,7 +378,7 @@ static hf_status find_ends(search *s)
     if (take_common(s)) return HF_OK;
     double main = s->range[s->role[MAIN]], other = s->range[s->role[OTHER]];
     double third = s->n_objective > 2 ? s->range[s->role[THIRD]] : 0;
-    if (!(main > 0 && (other > 0 || third > 0))) { /* one design is as good as any in MAIN */
+    if (!(main > 0 && (other > 0 || third > 0))) { /* MAIN has no trade-off: the ends are the front */
         for (int r = 0; r < s->n_objective; r++)
             s->point[s->n_point++] = end[r];
         return HF_OK;
@@ -393,10 +414,10 @@ static hf_status find_ends(search *s)
     return HF_OK;
 }
 
-/* ---- between them ---- */
+/* ---- gaps ---- */
 
-/* Is there something to be found between two neighbours on the way? A line whose limit holds neither of them runs there
- * where one with more room runs. */
+/* Returns true if there may be a point between two neighbours of a line. If the limit on THIRD is active at neither of
+ * them, the points between them belong to a line with a higher limit. */
 static bool is_open(const search *s, const line *l, const job *low, const job *high)
 {
     if (low->closed == high) return false;
@@ -405,7 +426,7 @@ static bool is_open(const search *s, const line *l, const job *low, const job *h
     return fmax(value_of(s, low, THIRD), value_of(s, high, THIRD)) > l->most - HELD * s->range[s->role[THIRD]];
 }
 
-/* Lengths of the gaps; 0 of one into which nothing fits. Returns the longest. */
+/* Computes the lengths of all gaps on the lines; 0 if there is no room for a point. Returns the maximum. */
 static double measure_gaps(search *s)
 {
     double longest = 0;
@@ -419,7 +440,8 @@ static double measure_gaps(search *s)
     return longest;
 }
 
-/* Halve the longest gaps, up to n_more of them. The design of the tighter limit keeps the new one. */
+/* Halves up to n_more of the longest gaps. A search begins at the neighbour with the tighter limit, which also keeps
+ * the new limit. */
 static hf_status halve_gaps(search *s, int n_more, double longest)
 {
     line *of[HF_FRONT_POINTS_MAX];
@@ -440,7 +462,7 @@ static hf_status halve_gaps(search *s, int n_more, double longest)
         job *j = add(s, MAIN, l->most, low->design, high->design);
         j->most[s->role[OTHER]] = (value_of(s, low, OTHER) + value_of(s, high, OTHER)) / 2;
         j->is_point = true;
-        low->closed = high; /* until a point comes between them */
+        low->closed = high; /* the gap is closed until a point comes between them */
     }
     HF_TRY(run(s));
     for (int i = first; i < s->n; i++) {
@@ -450,13 +472,14 @@ static hf_status halve_gaps(search *s, int n_more, double longest)
     return HF_OK;
 }
 
-/* The largest third objective at the ends of a line. */
+/* Returns the maximum of THIRD at the ends of a line. */
 static double third_of(const search *s, const line *l)
 {
     return fmax(value_of(s, l->end[MAIN], THIRD), value_of(s, l->end[OTHER], THIRD));
 }
 
-/* How far the ends of neighbouring lines are from each other; 0 where none fits between. Returns the longest. */
+/* Computes the distances between the ends of neighbouring lines; 0 if there is no room for a line. Returns the
+ * maximum. */
 static double measure_lines(search *s)
 {
     double longest = 0;
@@ -470,8 +493,8 @@ static double measure_lines(search *s)
     return longest;
 }
 
-/* The ends of a new line between two, whose third objectives it has the mean of: those of the tighter line keep it, and
- * where one of the other's does, too, that is its own. */
+/* Begins a line between two others, with the mean of their THIRD as its limit. The ends of the tighter line keep this
+ * limit, so the searches begin there. An end of the looser line that also keeps it is an end of the new line. */
 static void begin_line(search *s, const line *tight, const line *loose)
 {
     line *l = add_line(s, (third_of(s, tight) + third_of(s, loose)) / 2);
@@ -481,7 +504,8 @@ static void begin_line(search *s, const line *tight, const line *loose)
     }
 }
 
-/* Put the new lines in their order. One without an end is none, and nothing more is looked for where it would be. */
+/* Inserts the new lines in the order of their limits. A line without an end is removed, and no other line is sought
+ * between the same neighbours. */
 static void place_lines(search *s, int first, line *const *tight)
 {
     int n_new = s->n_line - first;
@@ -503,7 +527,7 @@ static void place_lines(search *s, int first, line *const *tight)
     }
 }
 
-/* Lines in the longest gaps between lines, up to n_more of them. */
+/* Adds up to n_more lines in the longest gaps between lines. */
 static hf_status halve_lines(search *s, int n_more, double longest)
 {
     line *tight[HF_FRONT_POINTS_MAX];
@@ -522,7 +546,7 @@ static hf_status halve_lines(search *s, int n_more, double longest)
     return HF_OK;
 }
 
-/* Points where the gaps are longest, on lines or between them. */
+/* Adds points in the longest gaps, on lines or between them, until there are n_point points or no gap is left. */
 static hf_status fill(search *s)
 {
     while (s->n_point < s->t->n_point) {
@@ -539,7 +563,7 @@ static hf_status fill(search *s)
 
 /* ---- the front ---- */
 
-/* Each point takes one job; each end of a line one more for the least beside it. */
+/* Lays out the arrays. Each point needs one job. Each end of a line needs another one for the minimum next to it. */
 static void lay_out(hf_arena *a, search *s)
 {
     size_t n = (size_t)s->n_job, n_line = s->n_objective > 2 ? (size_t)s->t->n_point + 2 : 1;
@@ -561,6 +585,7 @@ static void lay_out(hf_arena *a, search *s)
     }
 }
 
+/* Creates the front from the points found. */
 static hf_status hand_over(const search *s, hf_front *front)
 {
     HF_TRY(hf_front_create(s->n_objective, (int)s->n_gene, s->n_point, front));
@@ -579,7 +604,8 @@ static hf_status hand_over(const search *s, hf_front *front)
 hf_status hf_trade_find(const hf_trade *trade, hf_front *front, int *failed_end)
 {
     hf_trade t = *trade;
-    hf_evaluator alone = *trade->evaluator; /* each point has one thread */
+    /* Each point is found in one thread, so this copy of the evaluator has one. */
+    hf_evaluator alone = *trade->evaluator;
     hf_arena arena = {0};
     if (t.n_thread <= 0) t.n_thread = hf_parallel_cores();
     search s = {.t = &t, .failed_end = -1, .n_gene = (size_t)t.evaluator->model->n_gene};

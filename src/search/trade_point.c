@@ -1,3 +1,9 @@
+/* Finds one point of a Pareto front. trade_point.h describes the interface.
+ *
+ *     hf_trade_start    best start for an objective
+ *     hf_trade_meet     sums of squares, if the minimum of an objective is 0 -> a design to begin from
+ *     hf_trade_point    Levenberg-Marquardt under limits on the other objectives -> objectives, multipliers
+ *     hf_trade_common   points at the ends -> one that is best in all objectives */
 #include "search/trade_point.h"
 
 #include "search/polish.h"
@@ -5,12 +11,13 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Of `least` beside an objective that is met, both in parts of their ranges: that one rises by the square. From where
- * it is nothing the last weight alone may find no bent way. */
+/* The weights of `least` next to an objective whose minimum is 0 (`met`), both in parts of their ranges. `met` then
+ * rises by about the square of the weight. With the last weight alone, a search that begins where `met` is 0 may find
+ * no way along a curved valley. */
 static const double weight[] = {1e-2, 1e-4};
 enum { N_WEIGHT = sizeof weight / sizeof *weight };
 
-#define SAME 1e-9 /* part of an objective: what differs by less does not differ */
+#define SAME 1e-9 /* a range below this part of an objective counts as none */
 
 void hf_trade_roles(const hf_goals *goals, int *role)
 {
@@ -60,6 +67,7 @@ double hf_trade_distance(int n_objective, const double *range, const hf_front_po
     return sqrt(square);
 }
 
+/* Counts a step of the search, and reports the progress unless another thread is reporting. */
 static hf_status tell_step(void *context, const hf_polish_progress *now)
 {
     hf_trade_watcher *w = context;
