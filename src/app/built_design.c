@@ -1,4 +1,9 @@
-/* Contents: the net of the result - its shape - together */
+/* Makes the as-built net of a case at the shape of a design. built_design.h describes the interface.
+ *
+ *     options -> form-finding of the case, or a stored result of the same net and truss -> shape in the workspace
+ *     shape   -> hf_built_make -> as-built net
+ *
+ * Contents: the net of the result - the shape of the result - interface */
 #include "app/built_design.h"
 
 #include "run/problem_explain.h"
@@ -13,7 +18,7 @@
 
 /* ---- the net of the result ---- */
 
-/* In what two nets differ; NULL: in nothing that a design of the one would not fit to the other for. */
+/* Returns the property in which two nets differ, or NULL if a design of one net fits the other. */
 static const char *net_difference(const hf_scene *a, const hf_scene *b)
 {
     const char *what = hf_scene_difference(a, b);
@@ -23,6 +28,7 @@ static const char *net_difference(const hf_scene *a, const hf_scene *b)
     return NULL;
 }
 
+/* Returns the property in which two trusses differ, or NULL. */
 static const char *truss_difference(const hf_truss *a, const hf_truss *b)
 {
     size_t n = (size_t)a->n_node, n_member = (size_t)a->n_member;
@@ -38,6 +44,8 @@ static const char *truss_difference(const hf_truss *a, const hf_truss *b)
     return NULL;
 }
 
+/* Checks that the stored result has the net and the truss of the case. Returns HF_OK, HF_BAD_CASE, HF_IO or
+ * HF_NO_MEMORY. */
 static hf_status compare(const hf_options *o, const hf_problem *p, const hf_export_stored *stored,
                          hf_messages *messages)
 {
@@ -59,10 +67,10 @@ static hf_status compare(const hf_options *o, const hf_problem *p, const hf_expo
                     o->file, what);
 }
 
-/* ---- its shape ---- */
+/* ---- the shape of the result ---- */
 
-/* A design may have replaced what the laws of the scene aim at, so each cable keeps its force density. A slack one is
- * as long as its law says, as in the cut list, if that is still the scene's. */
+/* Makes each cable keep its force density, because a design may have replaced the targets of the laws. A slack cable
+ * keeps its law if that is still the law of the scene: it has the length that its law gives, as in the cut list. */
 static void hold_cables(const hf_model *m, const hf_shape *s, hf_workspace *w)
 {
     for (int e = 0; e < m->n_cable; e++) {
@@ -72,6 +80,7 @@ static void hold_cables(const hf_model *m, const hf_shape *s, hf_workspace *w)
     }
 }
 
+/* Copies the stored shape into the workspace, and computes the displacements by the truss. */
 static void take_shape(const hf_export_stored *stored, hf_problem *p)
 {
     const hf_model *m = &p->model;
@@ -102,7 +111,7 @@ static hf_status read_design(const hf_options *o, hf_problem *p, hf_messages *me
     return status;
 }
 
-/* ---- together ---- */
+/* ---- interface ---- */
 
 hf_status hf_built_design_check(const hf_options *o, const hf_case *c, hf_messages *messages)
 {

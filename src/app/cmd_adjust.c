@@ -1,12 +1,14 @@
-/* `hifdm adjust`: from measured places of the net as built to the errors of its cut lengths, and to the fewest moves of
- * turnbuckles that bring its figure back.
+/* `hifdm adjust` estimates the errors of cutting lengths from measured positions of the as-built net. It then finds the
+ * fewest turnbuckle adjustments that restore the figure of the net.
  *
- * in : nodes.csv id,x_m,y_m,z_m[,sigma_m]; the sections tolerance (how large errors are) and adjust (what may be
- *      turned) of the case.
- * out: order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm. One row per move, in
- *      the order in which they are made; a move above 0 lets cable out.
+ * in : nodes.csv id,x_m,y_m,z_m[,sigma_m]; the sections tolerance (sizes of errors) and adjust (cables that have a
+ *      turnbuckle) of the case.
+ * out: order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm. One row per
+ *      adjustment, in the order in which they are made. A value above 0 makes the cable longer.
  *
- * Contents: the prior - the work - figures of what was measured - together */
+ *      case, design -> as-built net -> prior of the errors -> estimate from measured positions -> adjustments -> table
+ *
+ * Contents: the prior - estimate - figure of the measurement - the command */
 #include "app/cmd.h"
 
 #include "app/cmd_adjust_findings.h"
@@ -21,9 +23,11 @@
 #include <math.h>
 #include <string.h>
 
-#define FOREIGN 100.0    /* chi^2 by coordinate that no one's sigmas explain: they were ten times as large */
-#define ROUNDING 0.005   /* of figures in messages */
-#define SIGMA_LEAST 3e-5 /* of that of errors: weights beyond 1e9 times theirs are beyond double precision */
+/* Above this chi^2 per coordinate, the measurement is of another net: the sigmas would have to be ten times larger. */
+#define FOREIGN 100.0
+#define ROUNDING 0.005 /* relative rounding of numbers in messages */
+/* The minimum sigma, as a part of the sigma of the errors: weights above 1e9 times theirs exceed double precision. */
+#define SIGMA_LEAST 3e-5
 
 typedef hf_adjust_job job;
 
@@ -42,7 +46,8 @@ static void job_free(job *j)
 
 /* ---- the prior ---- */
 
-/* Nothing may be known so much better than the errors that a difference of places is all rounding. */
+/* Checks that no sigma is so small beside the errors that differences of positions are only rounding. Returns HF_OK or
+ * HF_BAD_CASE. */
 static hf_status check_sigmas(const job *j, const char *path, double error_m, hf_messages *messages)
 {
     const hf_model *m = &j->built.model;
@@ -77,6 +82,7 @@ static hf_status make_prior(job *j, hf_messages *messages)
     return status;
 }
 
+/* Makes the prior of the errors from the section tolerance, and checks that it leaves something to estimate. */
 static hf_status find_prior(job *j, const char *path, hf_messages *messages)
 {
     double largest = 0;
@@ -95,7 +101,7 @@ static hf_status find_prior(job *j, const char *path, hf_messages *messages)
                     path);
 }
 
-/* ---- the work ---- */
+/* ---- estimate ---- */
 
 static hf_status check_sections(const hf_case *c, const char *path, hf_messages *messages)
 {
@@ -125,7 +131,7 @@ static hf_status pick_cables(job *j, hf_messages *messages)
     return n > 0 ? HF_OK : HF_BAD_CASE;
 }
 
-/* The least tensions that tolerance.require and optimize.limits ask for; 0 where they ask for none. */
+/* Finds the minimum tensions that tolerance.require and optimize.limits demand; 0 for cables without a demand. */
 static hf_status find_least(job *j, hf_messages *messages)
 {
     const hf_case *c = &j->problem.settings;
@@ -154,7 +160,7 @@ static hf_status find_figure(job *j, hf_messages *messages)
     return hf_adjust_make_goals(j, p->settings.adjust.figure, &j->goals, messages);
 }
 
-/* psi is the distance to the places that moves aim at. */
+/* Makes the as-built net. psi is then measured from the positions that are the aim of the adjustments. */
 static hf_status make_net(job *j, const hf_options *o, hf_messages *messages)
 {
     hf_problem *p = &j->problem;
@@ -169,7 +175,8 @@ static hf_status explain_failure(hf_status status, const char *what, const char 
     return hf_error(messages, status, "%s: %s: %s", path, what, hf_status_text(status));
 }
 
-/* The measured node that is farthest from the estimated shape in parts of its sigma, its row; and how far, m. */
+/* Returns the row of the measured node that is farthest from the estimated shape in parts of its sigma. *distance_m
+ * receives its distance. */
 static int worst_row(const job *j, double *distance_m)
 {
     const hf_model *m = &j->built.model;
@@ -186,7 +193,8 @@ static int worst_row(const job *j, double *distance_m)
     return worst;
 }
 
-/* What the net cannot explain is told; moves for a measurement that is not of this net would do harm. */
+/* Reports a measurement that the net and its tolerances cannot explain. If it cannot be of this net, the run fails,
+ * because adjustments would do harm. Returns HF_OK or HF_BAD_CASE. */
 static hf_status check_misfit(const job *j, hf_messages *messages)
 {
     double distance_m = 0, chi = hf_adjust_chi_square(j);
@@ -209,6 +217,8 @@ static hf_status check_misfit(const job *j, hf_messages *messages)
     return HF_OK;
 }
 
+/* Estimates the errors of cutting lengths, and checks the measurement before and after. Returns HF_OK or the status of
+ * the failure, with a message. */
 static hf_status estimate_errors(job *j, const hf_options *o, hf_messages *messages)
 {
     const hf_tolerance_settings *t = &j->problem.settings.tolerance;
@@ -227,8 +237,9 @@ static hf_status estimate_errors(job *j, const hf_options *o, hf_messages *messa
     return HF_OK;
 }
 
-/* ---- figures of what was measured ---- */
+/* ---- figure of the measurement ---- */
 
+/* Returns psi of the measured inner nodes, m; NaN without any, and for other figures. */
 static double measured_psi_m(const job *j)
 {
     const hf_model *m = &j->built.model;
@@ -246,7 +257,7 @@ static double measured_psi_m(const job *j)
     return n > 0 && j->problem.settings.adjust.figure == HF_GOAL_PSI ? sqrt(square / n) : (double)NAN;
 }
 
-/* ---- together ---- */
+/* ---- the command ---- */
 
 static void lay_out_job(hf_arena *arena, job *j)
 {
@@ -313,15 +324,15 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
     HF_TRY(
         explain_failure(hf_adjust_find(&j->estimate, &j->task, &j->adjustment), "the adjusted net", o->file, messages));
     HF_TRY(explain_failure(hf_adjust_find_instead(j), "the net with other moves", o->file, messages));
-    static hf_file_out_set files; /* table and page, or none */
+    static hf_file_out_set files; /* both table and page are written, or neither */
     hf_status status = HF_OK;
     if (o->output) status = hf_file_out_set_write(&files, o->output, hf_adjust_print_table, j, messages);
     if (status == HF_OK) status = hf_adjust_print_page(j, o, &files, messages);
     return hf_file_out_set_end(&files, status, messages);
 }
 
-/* HF_OK also when no move is worth it. HF_BAD_CASE for a faulty case or table, HF_EXISTS, HF_IO, HF_NO_MEMORY, or the
- * status of a shape that failed. */
+/* Runs the command. Returns HF_OK, also if no adjustment is worthwhile. Returns HF_BAD_USAGE, HF_BAD_CASE for a faulty
+ * case or table, HF_EXISTS, HF_IO, HF_NO_MEMORY, or the status of a shape that failed. */
 static hf_status command_adjust(const hf_options *o, FILE *file, hf_messages *messages)
 {
     if (!o->measured) return hf_error(messages, HF_BAD_USAGE, "'hifdm adjust' needs --measured FILE");

@@ -1,20 +1,22 @@
-/* Contents: what stands out - what else could be aimed at */
+/* Finds what a measured net shows besides its adjustments. cmd_adjust_findings.h describes the interface.
+ *
+ * Contents: outliers - other aims */
 #include "app/cmd_adjust_findings.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- what stands out ---- */
+/* ---- outliers ---- */
 
-#define TOLD 0.05 /* a smaller part is not told of: near rounding nothing follows from it */
+#define TOLD 0.05 /* a smaller part is not reported, because it may be rounding */
 
 typedef struct {
     double size;
     int at;
 } sized;
 
-/* The largest first; of two alike the first. */
+/* Compares two items for qsort: in descending order of size, and equal ones by their index. */
 static int by_size(const void *a, const void *b)
 {
     const sized *p = a, *q = b;
@@ -27,12 +29,13 @@ double hf_adjust_sigmas(const hf_adjust_job *j, int e)
     return j->prior.sigma_m[e] > 0 ? j->estimate.cut_m[e] / j->prior.sigma_m[e] : 0;
 }
 
-/* Nearly all of its error is that of its spool, or of the temperature. */
+/* Returns true if nearly all of the error of cable e is shared with its spool, or is that of the temperature. */
 static bool is_shared(const hf_adjust_job *j, int e)
 {
     return fabs(hf_estimate_own_m(&j->estimate, e)) < TOLD * fabs(j->estimate.cut_m[e]);
 }
 
+/* Lists the cables whose estimated errors stand out, in descending order. */
 static void find_cables(hf_adjust_job *j, sized *list)
 {
     j->n_out = 0;
@@ -45,6 +48,7 @@ static void find_cables(hf_adjust_job *j, sized *list)
         j->out[k] = list[k].at;
 }
 
+/* Lists the measured nodes that are far from the estimated shape, in descending order of distance. */
 static void find_places(hf_adjust_job *j, sized *list)
 {
     const hf_model *m = &j->built.model;
@@ -93,7 +97,7 @@ hf_status hf_adjust_find_outliers(hf_adjust_job *j)
     return HF_OK;
 }
 
-/* ---- what else could be aimed at ---- */
+/* ---- other aims ---- */
 
 hf_status hf_adjust_make_goals(const hf_adjust_job *j, hf_goal_kind figure, hf_goals *goals, hf_messages *messages)
 {
@@ -119,7 +123,8 @@ int hf_adjust_at_range(const hf_adjustment *a, const hf_adjust_settings *s)
     return n;
 }
 
-/* Distance of the inner nodes of the design from their theoretical places, and of a net with errors from the design. */
+/* Computes the RMS distance of the inner nodes of the design from their target positions, and of a net with errors from
+ * the design. */
 static void find_psi_of_design(hf_adjust_job *j)
 {
     const hf_model *m = &j->built.model;
@@ -136,6 +141,7 @@ static void find_psi_of_design(hf_adjust_job *j)
     j->error_psi_m = m->n_inner_node > 0 ? sqrt(errors / m->n_inner_node) : 0;
 }
 
+/* Finds the adjustments for another figure and aim, and stores what they would reach. */
 static hf_status try_instead(hf_adjust_job *j, hf_goal_kind figure, hf_aim aim)
 {
     hf_messages unwanted = {0};
@@ -158,7 +164,8 @@ static hf_status try_instead(hf_adjust_job *j, hf_goal_kind figure, hf_aim aim)
     hf_adjust_free(&found);
     hf_goals_free(&goals);
     hf_adjust_take_aim(j, j->task.settings->aim);
-    return status == HF_INTERRUPTED || status == HF_NO_MEMORY ? status : HF_OK; /* what has no shape is not offered */
+    /* An aim without a shape is not offered. */
+    return status == HF_INTERRUPTED || status == HF_NO_MEMORY ? status : HF_OK;
 }
 
 hf_status hf_adjust_find_instead(hf_adjust_job *j)

@@ -1,21 +1,23 @@
-/* cmd_adjust_findings - what a measured net tells beside its moves: cables and places that stand out, and what the
- * moves would reach if they aimed at something else. */
+/* cmd_adjust_findings - what a measured net shows besides its adjustments: cables and nodes that stand out, and what
+ * adjustments with another aim would reach. */
 #ifndef HIFDM_CMD_ADJUST_FINDINGS_H
 #define HIFDM_CMD_ADJUST_FINDINGS_H
 
 #include "app/cmd_adjust_print.h"
 
-/* After the estimate. HF_OK, HF_SINGULAR, HF_NO_MEMORY. */
+/* Lists the cables and nodes that stand out, after the estimate. Returns HF_OK, HF_SINGULAR or HF_NO_MEMORY. */
 hf_status hf_adjust_find_outliers(hf_adjust_job *job);
 
-/* Goals of a figure of the net as built. HF_OK, HF_BAD_CASE, HF_NO_MEMORY. */
+/* Makes the objective of one figure of the as-built net. Returns HF_OK, HF_BAD_CASE or HF_NO_MEMORY; free goals in any
+ * case. */
 hf_status hf_adjust_make_goals(const hf_adjust_job *job, hf_goal_kind figure, hf_goals *goals, hf_messages *messages);
 
-/* The places that psi is measured from, into the model of the net as built. */
+/* Copies the positions from which psi is measured into the model of the as-built net: those of the design, or the
+ * target positions. */
 void hf_adjust_take_aim(hf_adjust_job *job, hf_aim aim);
 
-/* After the moves. Other figures and aims are tried where the psi of the design is beyond that which errors make, or
- * most moves are as far as the range allows. HF_OK, HF_INTERRUPTED, HF_NO_MEMORY. */
+/* Tries other figures and aims, after the adjustments are found. It does so if psi of the design exceeds that of the
+ * errors, or if most adjustments reach the range. Returns HF_OK, HF_INTERRUPTED or HF_NO_MEMORY. */
 hf_status hf_adjust_find_instead(hf_adjust_job *job);
 
 #endif

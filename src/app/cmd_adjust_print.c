@@ -1,4 +1,6 @@
-/* Contents: chi^2 - the table - for people - for programs */
+/* Prints the output of `hifdm adjust`. cmd_adjust_print.h describes the interface.
+ *
+ * Contents: chi^2 - the table - for people - for programs - the page */
 #include "app/cmd_adjust_print.h"
 
 #include "base/csv.h"
@@ -9,10 +11,10 @@
 #include <math.h>
 #include <string.h>
 
-#define SEEMS_OFF 2.0 /* sigmas of a number that cables share, of which there are few */
-#define NAMED_MAX 10  /* of these, for people */
-#define PLACES_MAX 3  /* the same of places */
-#define MISFIT 5.0    /* standard deviations of the sum of squares that is no accident any more */
+#define SEEMS_OFF 2.0 /* sigmas above which a shared number is reported; there are few such numbers */
+#define NAMED_MAX 10  /* maximum number of cables, and of shared numbers, in the summary */
+#define PLACES_MAX 3  /* maximum number of nodes in the summary */
+#define MISFIT 5.0    /* standard deviations above which a sum of squares is not due to chance */
 
 /* ---- chi^2 ---- */
 
@@ -44,13 +46,13 @@ void hf_adjust_print_table(const void *context, FILE *f)
 
 /* ---- for people ---- */
 
-/* Figures other than psi aim at the wanted surface. */
+/* Returns the word of an aim. Figures other than psi aim at the target surface. */
 static const char *aim_word(hf_goal_kind figure, hf_aim aim)
 {
     return hf_aim_word[figure == HF_GOAL_PSI ? aim : HF_AIM_THEORY];
 }
 
-/* What psi is measured from, or other figures are. */
+/* Prints the surface or positions from which the figure is measured. */
 static void print_aim(const hf_adjust_job *j, FILE *f)
 {
     const hf_adjust_settings *s = j->task.settings;
@@ -89,6 +91,7 @@ static void print_instead(const hf_adjust_job *j, FILE *f)
 
 static const char *const end_word[] = {"target", "moves", "doubt", "none"};
 
+/* Prints why there are no more adjustments. */
 static void print_end(const hf_adjust_job *j, FILE *f)
 {
     const hf_adjust_settings *s = j->task.settings;
@@ -123,7 +126,8 @@ static const char *too_what(double error_m)
     return error_m > 0 ? " too long" : " too short";
 }
 
-/* The rest of them says how much: one that is held back by its sigma is worse than it seems. */
+/* Prints the cables that stand out. The sigma of a cable holds its estimate back, so its true error is larger. The
+ * positions alone show how large. */
 static void print_outliers(const hf_adjust_job *j, FILE *f)
 {
     for (int k = 0; k < j->n_out && k < NAMED_MAX; k++) {
@@ -148,6 +152,7 @@ static double off_sigmas(const hf_adjust_job *j, int k)
     return hf_adjust_off_m(j, row) * sqrt(j->measured.weight_per_m2[3 * row]);
 }
 
+/* Prints the measured nodes that are far from the estimated shape. */
 static void print_places(const hf_adjust_job *j, FILE *f)
 {
     if (!j->n_far) return;
@@ -168,7 +173,7 @@ static const char *number_word(const hf_prior_number *n)
     return n->kind == HF_ERROR_TEMPERATURE ? "temperature_K" : n->kind == HF_ERROR_EA_BATCH ? "EA_ratio" : "cut_ratio";
 }
 
-/* What cables of a spool, or all of them, share, where it is no accident. */
+/* Prints the numbers that the cables of a spool, or all cables, share, if they are not due to chance. */
 static void print_numbers(const hf_adjust_job *j, FILE *f)
 {
     int n_off = 0;

@@ -1,5 +1,5 @@
-/* `hifdm check` says whether a case is valid and what a run of it would do: which solvers would run, the memory they
- * would take, and about how long. Only short trials are run, never the optimisation. */
+/* `hifdm check` reports whether a case is valid, and what a run of it would do: the solvers, the memory and about how
+ * long it takes. It runs short trials only, never the whole optimisation. */
 #include "app/cmd.h"
 
 #include "app/cmd_check_study.h"
@@ -23,13 +23,13 @@
 #include <limits.h>
 #include <math.h>
 
-#define OPERATIONS_PER_S 2e9 /* of one core, as in search/polish_cost.c */
-#define LONG_S 3600.0        /* more than this, or than that of memory, comes with advice */
+#define OPERATIONS_PER_S 2e9 /* speed of one core, as in search/polish_cost.c */
+#define LONG_S 3600.0        /* above this time, or above LARGE_BYTES, advice is printed */
 #define LARGE_BYTES 2e9
-#define TRIAL_S 1.0 /* wall-clock time that the trial of form-finding may take, about */
+#define TRIAL_S 1.0 /* approximate wall-clock time of the trial of form-finding */
 
-/* Prints how many cables obey each law. The paper's three laws are always named, the others only when a cable has them.
- */
+/* Prints how many cables obey each law. The three laws of the paper are always listed, the others only if a cable has
+ * them. */
 static void print_laws(const hf_model *m, FILE *f)
 {
     int count[HF_N_LAW] = {0};
@@ -48,7 +48,7 @@ static void print_laws(const hf_model *m, FILE *f)
 
 #define SETS_NAMED 12
 
-/* Prints how many cables are in each set; the groups come first. */
+/* Prints how many cables are in each set, the groups first. */
 static void print_sets(const hf_scene *s, FILE *f)
 {
     int count[2] = {0};
@@ -104,7 +104,7 @@ static void print_scene(const hf_problem *p, FILE *f)
     if (m->n_chain) fprintf(f, "  note          %d straight chains of length-controlled cables\n", m->n_chain);
 }
 
-/* Prints the names of the states of the net as built. */
+/* Prints the names of the load cases of the as-built net. */
 static void print_states(const hf_states *s, FILE *f)
 {
     fprintf(f, "                %d case%s of the net as built:", s->n, s->n == 1 ? "" : "s");
@@ -131,7 +131,7 @@ static hf_status print_truss(const hf_problem *p, FILE *f, hf_messages *messages
     return status;
 }
 
-/* Does Levenberg-Marquardt run, or may it? */
+/* Returns true if Levenberg-Marquardt runs, or may run. */
 static bool polishes(const hf_problem *p, const hf_evaluator *v)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
@@ -140,7 +140,7 @@ static bool polishes(const hf_problem *p, const hf_evaluator *v)
     return v && is_wanted && (is_result || !o->n_objective) && hf_polish_applies(v);
 }
 
-/* The objectives of a front by name. */
+/* Prints the objectives of a front by name. */
 static void print_objectives(const hf_problem *p, FILE *f)
 {
     char name[HF_GOAL_NAME_SIZE];
@@ -158,13 +158,13 @@ static const char *set_or_all(const char *set)
     return *set ? set : "all";
 }
 
-/* ", bounds 5 .. 12"; nothing where both sides are open. */
+/* Prints ", bounds 5 .. 12", or nothing if both sides are open. */
 static void print_bounds(double lower, double upper, FILE *f)
 {
     if (isfinite(lower) || isfinite(upper)) fprintf(f, ", bounds %g .. %g", lower, upper);
 }
 
-/* Prints the rows of optimize.variables with their genes. */
+/* Prints the rows of optimize.variables with their numbers of design variables. */
 static void print_variables(const hf_problem *p, FILE *f)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
@@ -186,7 +186,7 @@ static void print_variables(const hf_problem *p, FILE *f)
     }
 }
 
-/* Of what nets as built a goal is. */
+/* Prints the as-built nets over which an objective is taken. */
 static void print_nets(const hf_goal_settings *s, FILE *f)
 {
     if (*s->state) fprintf(f, ", in state %s", s->state);
@@ -197,6 +197,7 @@ static void print_nets(const hf_goal_settings *s, FILE *f)
         fprintf(f, "%s", hf_take_word[s->take]);
 }
 
+/* Prints how many as-built nets are solved for each design. */
 static void print_cost_of_nets(const hf_problem *p, FILE *f)
 {
     const hf_goals_nets *nets = p->goals.nets;
@@ -212,7 +213,7 @@ static void print_cost_of_nets(const hf_problem *p, FILE *f)
     fputc('\n', f);
 }
 
-/* Prints goals, limits and the cap on the boundary ratio, which holds also where the case does not name it. */
+/* Prints objectives, limits and the cap on the boundary tension ratio, which also holds if the case does not set it. */
 static void print_wishes(const hf_problem *p, FILE *f)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
@@ -259,7 +260,7 @@ static void print_tolerance(const hf_case *c, FILE *f)
     fprintf(f, "\n");
 }
 
-/* Size of the sums of the far field at each frequency. */
+/* Prints the size of the sums of the far field at each frequency. */
 static void print_pattern(const hf_problem *p, FILE *f)
 {
     const hf_double_list *at = &p->surface.frequencies_Hz;
@@ -275,7 +276,7 @@ static void print_pattern(const hf_problem *p, FILE *f)
     }
 }
 
-/* v: NULL without an optimisation */
+/* Prints what would run. v is NULL without an optimisation. */
 static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
 {
     const hf_case *c = &p->settings;
@@ -331,8 +332,8 @@ static void print_allocation(const char *title, const char *what, double bytes, 
     fprintf(f, "  %-13s %-38s %s\n", title, what, bytes > 0 ? text : without);
 }
 
-/* Bytes that Levenberg-Marquardt needs: sensitivities (twice as many with a truss), their rows of inner nodes, matrices
- * of its steps, and the packed Newton matrix. */
+/* Returns the bytes that Levenberg-Marquardt needs: sensitivities (twice as many with a truss), residuals of the inner
+ * nodes, matrices of its steps, and the packed Newton matrix. */
 static double polish_bytes(const hf_problem *p, const hf_evaluator *v)
 {
     const hf_model *m = &p->model;
@@ -343,7 +344,8 @@ static double polish_bytes(const hf_problem *p, const hf_evaluator *v)
     return 8 * n * (column + 4 * n) + (double)(matrix + lanes);
 }
 
-/* Bytes that the evaluation of a population would need: `shared` once for all threads, `lanes` for each thread. */
+/* Computes the bytes that the evaluation of a population needs: `shared` once for all threads, `lanes` for each
+ * thread. */
 static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lanes)
 {
     bool has_lanes;
@@ -360,7 +362,7 @@ static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lan
     return HF_OK;
 }
 
-/* Prints what a run would allocate. Items that it would not allocate are listed with the reason. */
+/* Prints the memory that a run would allocate. Items that it would not allocate are listed with the reason. */
 static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int threads, FILE *f)
 {
     const hf_model *m = &p->model;
@@ -391,7 +393,7 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
 }
 
 /* Evaluates the first generation in one thread and measures the time. The time printed for the whole optimisation is
- * that of one design times the largest number of evaluations, divided by the number of threads. */
+ * that of one design, times the designs per thread, times the maximum number of generations. */
 static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int threads, const hf_population *ga,
                                double *most_s, FILE *f)
 {
@@ -415,7 +417,7 @@ static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int t
     return status;
 }
 
-/* What to do about a step that takes long, or much memory. */
+/* Prints advice if a refinement takes long, or much memory. */
 static void print_fewer(const hf_problem *p, const hf_evaluator *v, double all_s, FILE *f)
 {
     if (all_s > LONG_S || polish_bytes(p, v) > LARGE_BYTES)
@@ -425,8 +427,8 @@ static void print_fewer(const hf_problem *p, const hf_evaluator *v, double all_s
                 p->model.n_leader);
 }
 
-/* Runs two iterations of Levenberg-Marquardt from the base design and prints the time of one; nothing is run that
- * counted operations foretell to take longer than a trial. */
+/* Runs two steps of Levenberg-Marquardt from the initial design and prints the time of one. If counted operations
+ * predict more time than that of a trial, nothing is run, and the prediction is printed. */
 static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const hf_population *ga, double *most_s,
                                    FILE *f)
 {
@@ -469,7 +471,7 @@ static hf_status print_optimize_time(hf_problem *p, const hf_evaluator *v, int t
     return status;
 }
 
-/* Samples of the net as built, at the shape of form-finding. */
+/* Prints the time of the as-built samples, at the shape of form-finding. */
 static void print_tolerance_time(const hf_problem *p, int threads, FILE *f)
 {
     int n = p->settings.tolerance.samples;
@@ -500,7 +502,8 @@ static void print_tolerance_time(const hf_problem *p, int threads, FILE *f)
     fputc('\n', f);
 }
 
-/* Tries the form-finding: three iterations measure what one costs, then as many are done as fit into TRIAL_S. */
+/* Tries the form-finding: three iterations measure the time of one, then as many run as fit into TRIAL_S. Also prints
+ * the times of the other stages. */
 static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, double *most_s, FILE *f,
                             hf_messages *messages)
 {
@@ -567,7 +570,8 @@ hf_status hf_check_case(const hf_check_request *request, double *most_s, FILE *f
     return status;
 }
 
-/* Returns HF_OK, HF_BAD_CASE with all faults, or an ill-posed status when the trial finds the scene ill-posed. */
+/* Runs the command. Returns HF_OK, HF_BAD_CASE with all faults, the status of the trial if it finds the scene
+ * ill-posed, or that of another failure. */
 static hf_status command_check(const hf_options *options, FILE *file, hf_messages *messages)
 {
     double most_s;

@@ -1,3 +1,6 @@
+/* `hifdm check` of a study. cmd_check_study.h describes the interface.
+ *
+ *     study -> make the nets of as many points as time allows -> axes, points, results so far -> check of one point */
 #include "app/cmd_check_study.h"
 
 #include "app/study_files.h"
@@ -8,11 +11,12 @@
 
 #include <string.h>
 
-#define VALUES_TOLD 6 /* of an axis; of more the first and the last */
-#define MAKING_S 5.0  /* the nets of so many points are made as this time allows, */
-#define MANY 100000   /* and of more points than these as this one allows: */
+#define VALUES_TOLD 6 /* maximum number of values that are listed for an axis; else the first and the last */
+#define MAKING_S 5.0  /* time for making the nets of the points */
+/* A study of more points has MAKING_FEW_S only. */
+#define MANY 100000
 #define MAKING_FEW_S 0.5
-#define MADE_LEAST 1000 /* until one can be run */
+#define MADE_LEAST 1000 /* while no point can be run, at least so many are made */
 
 static const char *value_of(const hf_study_axis *axis, int k)
 {
@@ -48,7 +52,7 @@ static void print_points(const hf_study *s, FILE *f)
     }
 }
 
-/* What is in the folder of the results: the number of points in each state. */
+/* Prints the number of points in each state, from the folder of the results. */
 static hf_status print_done(const hf_study *s, int count[HF_N_POINT_STATE], FILE *f, hf_messages *messages)
 {
     char folder[HF_PATH_SIZE];
@@ -67,12 +71,14 @@ static hf_status print_done(const hf_study *s, int count[HF_N_POINT_STATE], FILE
     return status;
 }
 
-/* What making scene and model of the points as `hifdm run` does has shown, of as many as there is time for. */
+/* What was found when scenes and models were made, for as many points as time allowed. */
 typedef struct {
     int n_tried, n_fault;
-    int first; /* that can be run; -1: none */
+    int first; /* the first point that can be run, or -1 */
 } trial;
 
+/* Makes scene and model of points, as `hifdm run` does, in an order that is spread over all axes. Returns HF_OK, or
+ * HF_BAD_CASE if no point can be run. */
 static hf_status try_points(const hf_study *s, trial *t, hf_messages *messages)
 {
     static hf_problem p; /* too large for a small stack */
@@ -113,7 +119,7 @@ static void print_time(int n, const char *what, double each_s, int threads, bool
             has_tolerance ? ", and the time of the nets as built" : "");
 }
 
-/* What a sweep runs by itself, and what it runs anew where it is told to. */
+/* Prints what a sweep runs by default, and what it runs again with --retry. */
 static void print_left(const hf_study *s, const int count[HF_N_POINT_STATE], double each_s, int threads, FILE *f)
 {
     static const hf_point_state other[] = {HF_POINT_FAILED, HF_POINT_OUTDATED, HF_POINT_RUNNING};

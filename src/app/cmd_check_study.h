@@ -6,19 +6,22 @@
 #include <stdio.h>
 
 typedef struct {
-    const char *path, *name; /* of the case; what it is called where it is told to be valid */
-    const char *const *set;  /* [n_set] "key=value" */
+    const char *path, *name; /* path of the case; its name in messages */
+    const char *const *set;  /* [n_set], "key=value" */
     int n_set, threads;
 } hf_check_request;
 
-/* In cmd_check.c. Checks and tries a case, and tells how long a run of it may take at most (the nets as built of a
- * section `tolerance` left out): HF_OK, HF_BAD_CASE with all faults, an ill-posed status. */
+/* Checks and tries a case (in cmd_check.c). *most_s receives the maximum time of a run, without the as-built nets of a
+ * section `tolerance`. Returns HF_OK, HF_BAD_CASE with all faults, the status of an ill-posed scene, or that of another
+ * failure. */
 hf_status hf_check_case(const hf_check_request *request, double *most_s, FILE *file, hf_messages *messages);
 
-/* What n > 0 things of each_s take side by side, each in one thread; *threads becomes the number of those with work. */
+/* Returns the time of n > 0 tasks of each_s, which run in parallel, each in one thread. *threads becomes the number of
+ * threads with work. */
 double hf_check_together_s(double each_s, int n, int *threads);
 
-/* The same of a study; request->n_set is 0. HF_BAD_CASE with all faults of study, base case and points. */
+/* Checks a study; request->n_set must be 0. Returns HF_OK, HF_BAD_USAGE, HF_BAD_CASE with all faults of study, base
+ * case and points, or HF_POINTS_FAILED if some points cannot be run. */
 hf_status hf_check_study(const hf_check_request *request, FILE *file, hf_messages *messages);
 
 #endif
