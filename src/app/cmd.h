@@ -1,5 +1,5 @@
 /* cmd - the commands of `hifdm`. The file cmd_NAME.c holds the command NAME: its row and its function. A new command
- * needs such a file and its name in HF_COMMANDS; its options are rows in options.c. */
+ * needs such a file, and its name in HF_COMMANDS. Its options are rows in options.c. */
 #ifndef HIFDM_CMD_H
 #define HIFDM_CMD_H
 
@@ -11,18 +11,19 @@ typedef struct hf_options hf_options;
 
 typedef struct {
     const char *name;
-    /* "CASE"; "A B": two files; "[COMMAND]": may be left out; "[WORD...]": and may be several; NULL: none */
+    /* Examples: "CASE"; "A B" for two files; "[COMMAND]" for an optional one; "[WORD...]" for any number; NULL for
+     * none. */
     const char *argument;
     const char *help;     /* one line */
-    const char *about;    /* a paragraph on what the help on options does not say; NULL: none */
+    const char *about;    /* a paragraph on what the help of the options does not say; NULL: none */
     const char *examples; /* command lines, separated by '\n'; NULL: none */
-    bool reads_results;   /* main lets a copy of the program do it: hf_reader_watch */
-    bool uses_threads;    /* main sets up OpenMP before it calls run */
-    /* Output for people or programs goes to `file`. The returned status becomes the exit status of the program. */
+    bool reads_results;   /* main runs it in a copy of the program: hf_reader_watch */
+    bool uses_threads;    /* main prepares OpenMP before it calls run */
+    /* Runs the command. Its output goes to `file`. The returned status becomes the exit status of the program. */
     hf_status (*run)(const hf_options *options, FILE *file, hf_messages *messages);
 } hf_command;
 
-/* In the order in which help lists them. */
+/* X(name): the commands, in the order in which the help lists them. */
 #define HF_COMMANDS(X)                                                                                                 \
     X(new)                                                                                                             \
     X(run)                                                                                                             \

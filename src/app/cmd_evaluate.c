@@ -1,16 +1,18 @@
-/* `hifdm evaluate` evaluates a table of designs. It serves optimisers and parameter studies that the user wrote.
+/* `hifdm evaluate` evaluates a table of designs, for optimisers and parameter studies outside this program.
  *
- * in : one design per row. Each variable has a column by the name of its gene (hf_model_gene_name): without
- *      optimize.variables each boundary cable with a free end, by its id, with its pretension in N. The columns may be
- *      in any order. An optional column `id` names the rows.
- * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation,merit, and with
- *      optimize.goals or objectives a column for each (hf_goals_name); objectives have no merit. One row per design, in
- *      the order of the input, with 17 significant digits; a missing value is nan. Without an id column the rows are
- *      numbered from 1.
- * --jacobian: id,figure and a column for each variable: for every feasible design the derivatives of psi_m, or of each
- *      goal and of the merit, or of each objective.
+ * in : one design per row, one column per design variable, with its name (hf_model_gene_name). Without
+ *      optimize.variables, there is a column for each boundary cable with a free end: its id, with its pretension
+ *      in N. The columns may be in any order. An optional column `id` names the rows.
+ * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation,merit, and one
+ *      column per row of optimize.goals or optimize.objectives (hf_goals_name). With objectives, there is no merit.
+ *      One row per design, in the order of the input, with 17 significant digits. A missing value is nan. Without a
+ *      column `id`, the rows are numbered from 1.
+ * --jacobian: id,figure and a column per design variable. For every feasible design, the table has the derivatives
+ *      of psi_m, or of each goal and of the merit, or of each objective.
  *
- * Contents: the table - the base design - evaluation - derivatives - writing - together */
+ *      case -> form-finding -> table -> batch -> results, and derivatives of feasible designs
+ *
+ * Contents: the table - the initial design - evaluation - derivatives - writing - the command */
 #include "app/cmd.h"
 
 #include "app/options.h"
@@ -33,18 +35,18 @@
 #include <string.h>
 #include <unistd.h>
 
-#define COLUMN_SPARE 64 /* columns that a table may have besides one per gene; more are refused when it is read */
+#define COLUMN_SPARE 64 /* columns that a table may have besides one per design variable */
 
 typedef struct {
     hf_problem problem;
     hf_csv table;
-    char (*gene)[HF_GENE_NAME_SIZE]; /* [n_gene] */
-    const char **name;               /* [n_gene + 1] columns: the name of each gene, then "id" */
-    int *where;                      /* [n_gene + 1] column in the table */
+    char (*gene)[HF_GENE_NAME_SIZE]; /* [n_gene], names of the design variables */
+    const char **name;               /* [n_gene + 1], names of the columns: those of the design variables, then "id" */
+    int *where;                      /* [n_gene + 1], their columns in the table, or -1 */
     double *design_N;                /* [n_row][n_gene] */
     hf_form_result *result;          /* [n_row] */
-    double *derivative;              /* [n_feasible][n_slope][n_gene]; NULL: not asked for */
-    int n_feasible, best;            /* best: row, or -1; -1 with objectives, which no single design is best in */
+    double *derivative;              /* [n_feasible][n_slope][n_gene]; NULL without --jacobian */
+    int n_feasible, best;            /* best: row of the minimum merit, or -1; -1 with objectives */
     double wall_s;
 } job;
 
@@ -60,7 +62,7 @@ static void job_free(job *j)
     hf_problem_free(&j->problem);
 }
 
-/* Objectives are weighed against each other by whoever asks: the table has no merit then. */
+/* Reports that memory ran out for the table. Returns HF_NO_MEMORY. */
 static hf_status no_memory(const job *j, hf_messages *messages)
 {
     return hf_error(messages, HF_NO_MEMORY, "out of memory for %d designs of %d variables", j->table.n_row,
@@ -69,6 +71,8 @@ static hf_status no_memory(const job *j, hf_messages *messages)
 
 /* ---- the table ---- */
 
+/* Names the columns of the table. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE if two design variables have the same
+ * name. */
 static hf_status name_columns(job *j, hf_messages *messages)
 {
     const hf_model *m = &j->problem.model;
@@ -82,7 +86,9 @@ static hf_status name_columns(job *j, hf_messages *messages)
         j->name[k] = j->gene[k];
     }
     j->name[m->n_gene] = "id";
-    for (int k = 0; k < m->n_gene; k++) { /* cables among each other have ids of their own, and so have supports */
+    /* Cables have different ids, and so have supports. Only a cable and a variable of a support can have the same
+     * name. */
+    for (int k = 0; k < m->n_gene; k++) {
         for (int i = 0; m->gene_cable[k] < 0 && i < m->n_gene; i++)
             if (m->gene_cable[i] >= 0 && !strcmp(j->name[i], j->name[k]))
                 return hf_error(messages, HF_BAD_CASE,
@@ -92,13 +98,14 @@ static hf_status name_columns(job *j, hf_messages *messages)
     return HF_OK;
 }
 
-/* The id that the user gave to a row, or NULL without an id column. */
+/* Returns the id that the user gave to a row, or NULL without a column `id`. */
 static const char *row_id(const job *j, int row)
 {
     int column = j->where[j->problem.model.n_gene];
     return column < 0 ? NULL : hf_csv_cell(&j->table, row, column);
 }
 
+/* Reads the design of a row. Faults are added to those of the table. */
 static void read_row(job *j, int row)
 {
     hf_csv *t = &j->table;
@@ -106,7 +113,7 @@ static void read_row(job *j, int row)
     for (int k = 0; k < j->problem.model.n_gene; k++) {
         if (j->where[k] < 0) continue;
         design[k] = hf_csv_number(t, row, j->where[k], row_id(j, row), j->name[k]);
-        bool is_cable = j->problem.model.gene_cable[k] >= 0; /* supports move either way */
+        bool is_cable = j->problem.model.gene_cable[k] >= 0; /* the value for a support may have either sign */
         if (!is_cable || design[k] > 0 || isnan(design[k])) continue;
         char what[512];
         snprintf(what, sizeof what, "%s must be above zero, not ", j->name[k]);
@@ -120,7 +127,7 @@ static hf_status read_table(job *j, const char *path, hf_messages *messages)
     hf_csv *t = &j->table;
     int most = n_gene > j->problem.scene.n_cable ? n_gene : j->problem.scene.n_cable;
     hf_status status = hf_csv_read(path, most + COLUMN_SPARE, t, messages);
-    /* a fault in one line does not end the reading: one run reports the faults of all lines */
+    /* A fault in one line does not end the reading: one run reports the faults of all lines. */
     if (status == HF_NO_MEMORY || t->n_row == 0 || t->n_fault > HF_FAULT_MAX) return status;
     t->names_are_ids = true;
     status = hf_csv_find_columns(t, j->name, n_gene + 1, n_gene, j->where);
@@ -134,7 +141,7 @@ static hf_status read_table(job *j, const char *path, hf_messages *messages)
     return hf_csv_close_faults(t);
 }
 
-/* ---- the base design ---- */
+/* ---- the initial design ---- */
 
 /* Runs the form-finding. The solve of each design starts from its tensions and force densities. */
 static hf_status find_base(job *j, hf_messages *messages)
@@ -149,7 +156,7 @@ static hf_status find_base(job *j, hf_messages *messages)
 /* ---- evaluation ---- */
 
 /* Evaluates the designs exactly as `hifdm run` evaluates its individuals: the results have the same bits. The cap on
- * the boundary ratio is that of the section optimize. */
+ * the boundary tension ratio is that of the section optimize. */
 static hf_status evaluate(job *j, int threads, hf_messages *messages)
 {
     double start_s = hf_clock_s();
@@ -180,7 +187,7 @@ static hf_status differentiate(job *j, hf_messages *messages)
 
 static void write_number(double value, FILE *f)
 {
-    if (isnan(value)) /* printf would show the sign of a NaN */
+    if (isnan(value)) /* printf would print the sign of a NaN */
         fputs(",nan", f);
     else
         fprintf(f, ",%.17g", value);
@@ -205,7 +212,7 @@ static void write_figure(const hf_result_field *field, const hf_form_result *r, 
         fprintf(f, ",%d", *(const int *)value);
 }
 
-/* Designs beyond a limit have a shape, and its goals. */
+/* Writes the objectives of a design. A design that only breaks a limit has a shape, and therefore objectives. */
 static void write_goals(const hf_goals *goals, const hf_form_result *r, FILE *f)
 {
     for (int k = 0; k < goals->n_goal; k++)
@@ -277,7 +284,7 @@ static void write_template(const void *context, FILE *f)
 
 static void print_summary(const job *j, const char *path, FILE *f)
 {
-    char wall[32], best[400] = "", row[16]; /* a longer id is cut */
+    char wall[32], best[400] = "", row[16]; /* a longer id is truncated */
     hf_print_duration(j->wall_s, wall, sizeof wall);
     snprintf(row, sizeof row, "%d", j->best + 1);
     const char *id = j->best >= 0 && row_id(j, j->best) ? row_id(j, j->best) : row;
@@ -291,7 +298,7 @@ static void print_summary(const job *j, const char *path, FILE *f)
                   j->problem.batch.n_thread == 1 ? "" : "s", path);
 }
 
-/* The best design, and its goals with optimize.goals. */
+/* Prints the best design, and with optimize.goals its objectives. */
 static void print_best(const job *from, hf_json *j)
 {
     const hf_goals *goals = &from->problem.goals;
@@ -332,9 +339,10 @@ static void print_json(const job *from, const char *path, const char *jacobian, 
     hf_json_end(&j, status != HF_OK, messages);
 }
 
-/* ---- together ---- */
+/* ---- the command ---- */
 
-/* Refuses an output name before the work begins: one that exists, that is an input, or that cannot be written. */
+/* Checks an output name before the work begins. Refuses a file that exists, that is an input, or that cannot be
+ * written. */
 static hf_status check_output(const job *j, const hf_options *o, const char *path, hf_messages *messages)
 {
     if (!path) return HF_OK;
@@ -357,7 +365,7 @@ static hf_status execute(job *j, const hf_options *o, const char *path, FILE *fi
     if (o->template_path) return hf_file_out_write(path, write_template, j, messages);
     if (o->jacobian) HF_TRY(hf_problem_has_slopes(&j->problem, messages));
     HF_TRY(evaluate(j, o->threads, messages));
-    static hf_file_out_set files; /* both tables, or none */
+    static hf_file_out_set files; /* both tables are written, or neither */
     hf_status status = HF_OK;
     if (o->jacobian) status = differentiate(j, messages);
     if (status == HF_OK && o->jacobian)
@@ -383,10 +391,11 @@ static hf_status check_options(const hf_options *o, hf_messages *messages)
     return HF_OK;
 }
 
-/* Evaluates options->designs and writes the table to options->output, or to `file` when no output is given; with
- * options->template_path it writes an empty table instead. `file` also gets a line for people or, with options->json,
- * one JSON object. HF_OK also when designs are infeasible; HF_BAD_CASE for a faulty case or table, HF_EXISTS, HF_IO,
- * HF_NO_MEMORY, or the status of a form-finding that failed. */
+/* Runs the command: evaluates options->designs and writes the table to options->output, or to `file` without one. With
+ * options->template_path, writes a table with the initial design as its only row instead. `file` also receives a line
+ * for people or, with options->json, one JSON object. Returns HF_OK, also if designs are infeasible, HF_BAD_USAGE,
+ * HF_BAD_CASE for a faulty case or table, HF_EXISTS, HF_IO, HF_NO_MEMORY, or the status of a form-finding that
+ * failed. */
 static hf_status command_evaluate(const hf_options *options, FILE *file, hf_messages *messages)
 {
     HF_TRY(check_options(options, messages));

@@ -1,4 +1,7 @@
-/* `hifdm explain` says what a word of the summary, of --json or of a warning means, and what to do about it. */
+/* `hifdm explain` prints the meaning of a word of the summary, of --json or of a warning, and what to do about it.
+ *
+ *     words of the command line -> exit status? -> entries of that word -> keys of the case file -> similar entries
+ *                               -> nothing found: a suggestion, or one term after the other */
 #include "app/cmd.h"
 
 #include "app/cmd_help.h"
@@ -10,7 +13,7 @@
 
 #include <string.h>
 
-#define SHORT 4 /* letters: words as short as this are like many others, and a guess has the first one in common */
+#define SHORT 4 /* number of letters up to which a suggestion must begin with the same letter */
 
 static void print_entry(const hf_word *w, const char *word, FILE *f)
 {
@@ -19,7 +22,7 @@ static void print_entry(const hf_word *w, const char *word, FILE *f)
     hf_help_wrap(w->text, 4, 0, f);
 }
 
-/* Is entry i the first of its kind, or of its kind and word? */
+/* Returns true if entry i is the first one of its kind, or of its kind and word. */
 static bool is_first(int i, bool of_word)
 {
     const hf_word entry = hf_word_at(i);
@@ -30,7 +33,7 @@ static bool is_first(int i, bool of_word)
     return true;
 }
 
-/* All words, kind by kind. */
+/* Prints all words, kind by kind. */
 static void print_words(FILE *f)
 {
     for (int i = 0; i < hf_word_count(); i++) {
@@ -48,7 +51,7 @@ static void print_words(FILE *f)
     }
 }
 
-/* Is the one entry of what another names among those that this word has? */
+/* Returns true if an entry of `word` is also an entry of `other`. */
 static bool is_told(const char *other, const char *word)
 {
     for (int i = 0; i < hf_word_count(); i++)
@@ -56,7 +59,7 @@ static bool is_told(const char *other, const char *word)
     return false;
 }
 
-/* Prints the entries of a word, or of those that are like it; 0: there are none. */
+/* Prints the entries of a word, or of similar ones if is_like is true. Returns their number. */
 static int print_entries(const char *word, bool is_like, FILE *f)
 {
     int n = 0;
@@ -69,7 +72,7 @@ static int print_entries(const char *word, bool is_like, FILE *f)
     return n;
 }
 
-/* An entry may do no more than name another: "See far_node; ...". That one follows. */
+/* Prints the entries to which the entries of a word refer: "See far_node; ...". */
 static void follow(const char *word, FILE *f)
 {
     static const char *const pointer[] = {"See ", "Column of the summary: "};
@@ -85,7 +88,8 @@ static void follow(const char *word, FILE *f)
     }
 }
 
-/* "75" or "exit status 75": what the help says of it, and the statuses that end so. */
+/* Prints an exit status ("75" or "exit status 75") and the statuses with this exit code. Returns false if there is
+ * none. */
 static bool print_exit_status(const char *word, FILE *f)
 {
     static const char begin[] = "exit status ";
@@ -105,7 +109,8 @@ static bool print_exit_status(const char *word, FILE *f)
     return false;
 }
 
-/* A key of the case file, by its last part or as a whole: where it stands, in what unit, and what it is. */
+/* Prints the keys of the case file with this name, or with this last part: path, unit and help. Returns false if there
+ * is none. */
 static bool print_keys(const char *word, FILE *f)
 {
     size_t length = strlen(word);
@@ -128,7 +133,7 @@ static bool print_keys(const char *word, FILE *f)
     return n > 0;
 }
 
-/* The words of the command line with blanks between them: nobody quotes "best fit". */
+/* Joins the words of the command line by blanks, because few users quote a term such as "best fit". */
 static const char *join_words(const hf_options *o, char *joined, size_t size)
 {
     size_t used = 0;
@@ -153,7 +158,7 @@ static bool explain_word(const char *word, FILE *f)
     return true;
 }
 
-/* Explains the longest beginning, of whole words, that is a term; its length, 0: there is none. */
+/* Explains the longest term that consists of the first words. Returns its length, or 0 if there is none. */
 static size_t explain_first(const char *words, FILE *f)
 {
     char some[1024];
@@ -165,7 +170,7 @@ static size_t explain_first(const char *words, FILE *f)
     return 0;
 }
 
-/* Words that are nothing all together: one term after the other. */
+/* Explains words that are no term together, one term after the other. */
 static hf_status explain_each(const char *all, FILE *f, hf_messages *messages)
 {
     char unknown[1024] = "";
@@ -186,7 +191,7 @@ static hf_status explain_each(const char *all, FILE *f, hf_messages *messages)
 
 static hf_status command_explain(const hf_options *o, FILE *file, hf_messages *messages)
 {
-    static const char no_proof[] = "no: "; /* as the table has it before a bound_reason */
+    static const char no_proof[] = "no: "; /* the table has this prefix before a bound_reason */
     char joined[1024];
     const char *names[1024], *all = join_words(o, joined, sizeof joined), *word = all;
     int n_name = 0;

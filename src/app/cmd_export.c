@@ -1,4 +1,4 @@
-/* `hifdm export` writes a result in the formats that the table of exporters lists (out/export.h). */
+/* `hifdm export` writes a result in the formats of the table of exporters (out/export.h). */
 #include "app/cmd.h"
 
 #include "app/options.h"
@@ -6,7 +6,7 @@
 
 #include <unistd.h>
 
-/* "--csv DIR, --vtk DIR or --cutlist FILE" */
+/* Writes the list of options, "--csv DIR, --vtk DIR or --cutlist FILE", into text. */
 static void list_exporters(char *text, size_t size)
 {
     size_t used = 0;
@@ -18,7 +18,8 @@ static void list_exporters(char *text, size_t size)
     }
 }
 
-/* Checks that at least one format is asked for, and with --stage at least one format that shows a single shape. */
+/* Checks that at least one format is requested, and that --stage and --case suit the formats. Returns HF_OK or
+ * HF_BAD_USAGE. */
 static hf_status check_request(const hf_options *o, hf_messages *messages)
 {
     char list[512];
@@ -46,7 +47,8 @@ static hf_status check_request(const hf_options *o, hf_messages *messages)
     return HF_OK;
 }
 
-/* Once, whatever formats are asked for: one that writes every shape names them. */
+/* Warns once if the shape of a result with a front is none of its designs, whatever formats are requested. A format
+ * that writes every shape also writes their names. */
 static void warn_of_front(const hf_options *o, hf_messages *messages)
 {
     static hf_summary summary;
@@ -75,7 +77,7 @@ static hf_status command_export(const hf_options *o, FILE *file, hf_messages *me
     }
     status = hf_file_out_set_end(&files, status, messages);
     for (int i = 0; i < HF_N_EXPORTER && status != HF_OK; i++)
-        if (is_new[i]) rmdir(o->export_to[i]); /* a folder that was made for files which it did not get */
+        if (is_new[i]) rmdir(o->export_to[i]); /* a folder that was made for files that failed */
     HF_TRY(status);
     warn_of_front(o, messages);
     for (int i = 0; i < HF_N_EXPORTER; i++)

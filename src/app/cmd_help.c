@@ -1,4 +1,4 @@
-/* `hifdm help` prints the overview, or the help on one command; with --man or --bash it calls the other forms. */
+/* `hifdm help` prints the overview, or the help of one command. With --man or --bash it calls the other forms. */
 #include "app/cmd_help.h"
 
 #include <string.h>
@@ -13,7 +13,7 @@ const struct hf_help_exit hf_help_exit_table[HF_HELP_N_EXIT] = {
     {"75", "told to stop"},
 };
 
-#define WIDTH 100 /* columns of the help; longer words stand alone on a line */
+#define WIDTH 100 /* width of the help in columns; a longer word has a line of its own */
 
 void hf_help_wrap(const char *text, int indent, int column, FILE *f)
 {

@@ -1,4 +1,4 @@
-/* cmd_help - what the three forms of `hifdm help` share: text, manual page, completion. All three are made from the
+/* cmd_help - what the three forms of `hifdm help` share: text, manual page and completion. All three are made from the
  * tables of commands, of options, and of the keys of a case file. */
 #ifndef HIFDM_CMD_HELP_H
 #define HIFDM_CMD_HELP_H
@@ -16,7 +16,7 @@ extern const struct hf_help_exit {
  * `indent`. */
 void hf_help_wrap(const char *text, int indent, int column, FILE *file);
 
-/* Write the manual page for man(1), and the completion script for bash. The caller checks the stream for errors. */
+/* Print the manual page for man(1), and the completion script for bash. The caller checks the stream for errors. */
 void hf_help_man(FILE *file);
 void hf_help_bash(FILE *file);
 

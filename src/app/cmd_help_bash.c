@@ -27,7 +27,7 @@ static const char bash_head[] = "# Completion of hifdm for bash, made by `hifdm 
                                 "    if [ \"$COMP_CWORD\" = 1 ]; then\n"
                                 "        mapfile -t COMPREPLY < <(compgen -W '";
 
-/* Bash splits --name=value and KEY=VALUE into words at the '='. The script has to put them together again. */
+/* Bash splits --name=value and KEY=VALUE into words at the '='. The script must join them again. */
 static const char bash_equals[] = "' -- \"$cur\")\n"
                                   "        return\n"
                                   "    fi\n"
@@ -57,7 +57,7 @@ static void bash_commands(FILE *f)
         fprintf(f, "%s%s", i ? " " : "", hf_command_table[i]->name);
 }
 
-/* Prints what may follow an option: files, folders or words. For a number nothing is proposed. */
+/* Prints what may follow an option: files, folders or words. Nothing is proposed for a number. */
 static void bash_value(const char *argument, FILE *f)
 {
     if (!strcmp(argument, "FILE")) {
@@ -86,7 +86,7 @@ static void bash_value(const char *argument, FILE *f)
     fputs(" ;;\n", f);
 }
 
-/* What may be the value of a key that is a word; `between` stands for the number of a row. */
+/* Prints the possible values of a key that is a word. `between` stands for the number of a row. */
 static void bash_words(const char *list, const char *between, const hf_field *field, FILE *f)
 {
     if (!field->words) return;
@@ -96,6 +96,7 @@ static void bash_words(const char *list, const char *between, const hf_field *fi
     fputs("' ;;\n", f);
 }
 
+/* Prints the values of all options and keys. */
 static void bash_values(FILE *f)
 {
     for (int i = 0; i < hf_n_option; i++) {
@@ -119,7 +120,7 @@ static void bash_values(FILE *f)
             bash_words(hf_list_table[i].path, ".*.", &hf_list_table[i].field[k], f);
 }
 
-/* Each word once. Terms of several words are left out: bash would take them apart. */
+/* Prints each word of `hifdm explain` once. Terms of several words are left out, because bash would split them. */
 static void bash_explained(FILE *f)
 {
     fputs("words='", f);

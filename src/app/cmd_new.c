@@ -1,4 +1,4 @@
-/* `hifdm new` writes a case to begin with: commented, complete, and it runs as it is. */
+/* `hifdm new` writes a new case: commented, complete, and ready to run. */
 #include "app/cmd.h"
 
 #include "app/options.h"
@@ -9,7 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* ---- what is written: '@' stands for the name ---- */
+/* ---- the texts: '@' stands for the name ---- */
 
 static const char head[] =
     "# Lengths are in m, forces in N; the unit is the last part of a name. `hifdm schema` prints every key.\n"
@@ -179,7 +179,7 @@ static hf_status add_file(hf_file_out_set *files, const char *path, const new_te
     return hf_file_out_set_write(files, path, write_text, text, messages);
 }
 
-/* The name is part of a file in YAML: no character of it may mean something there. */
+/* Checks the name of the case. It is part of a YAML file, so none of its characters may have a meaning there. */
 static hf_status check_name(const char *word, const char *name, size_t n, hf_messages *messages)
 {
     static const char may_have[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";

@@ -1,4 +1,4 @@
-/* `hifdm recover` adds the generations in the journal of an unfinished result to the result file. It does not continue
+/* `hifdm recover` adds the generations in the journal of an unfinished result to the result file. It does not resume
  * the run. */
 #include "app/cmd.h"
 

@@ -1,10 +1,11 @@
-/* cmd_run - what `hifdm run` does, and `hifdm tolerance`. */
+/* cmd_run - the function of the commands `hifdm run` and `hifdm tolerance`. */
 #ifndef HIFDM_CMD_RUN_H
 #define HIFDM_CMD_RUN_H
 
 #include "app/cmd.h"
 
-/* Run the case, store and print its result. The commands differ by options->command. */
+/* Runs the case, stores its result and prints the summary. The commands differ by options->command. Returns the status
+ * of hf_run_case, or HF_BAD_USAGE. */
 hf_status hf_cmd_run_case(const hf_options *options, FILE *file, hf_messages *messages);
 
 #endif

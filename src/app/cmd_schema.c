@@ -67,7 +67,7 @@ static void print_field(const hf_field *field, FILE *f)
                 *field->default_value ? field->default_value : "\"\"");
 }
 
-/* A list has no rows by default, so the keys of a row are told in comments. */
+/* Prints a list. It has no rows by default, so the keys of a row are printed in comments. */
 static void print_list(const hf_list *list, FILE *f)
 {
     int indent = 2 * depth_of(list->path);

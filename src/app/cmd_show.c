@@ -1,4 +1,4 @@
-/* `hifdm show` prints the summary of a result file. */
+/* `hifdm show` prints the summary of a result file, or the table of a merged study. */
 #include "app/cmd.h"
 
 #include "app/options.h"
@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Of what is no HDF5 file, its name tells what was meant. */
+/* Refuses a file that is a case or a study by its name, and prints which command to use. Returns HF_OK or HF_IO. */
 static hf_status refuse_case(const char *file, hf_messages *messages)
 {
     const char *ending = hf_path_ending(file);
@@ -25,7 +25,7 @@ static hf_status refuse_case(const char *file, hf_messages *messages)
 
 static hf_status show_study(const hf_options *o, FILE *file, hf_messages *messages)
 {
-    static hf_merged merged; /* too large for a small stack, as the summary below */
+    static hf_merged merged; /* too large for a small stack, like the summary below */
     hf_status status = hf_merged_read(o->file, &merged, messages);
     if (status == HF_OK && o->json)
         hf_print_study_json(&merged, file);

@@ -5,7 +5,8 @@
 #include "base/json.h"
 #include "out/print.h"
 
-#define FAILURES_SHOWN 10 /* failed points that are named with their reasons; of the others the number is told */
+/* At most this many failed points are listed with their reasons. Of the others, only the number is printed. */
+#define FAILURES_SHOWN 10
 
 static void write_status_json(const hf_study *study, const hf_points *points, FILE *file)
 {

@@ -1,4 +1,5 @@
 /* `hifdm sweep` runs the missing points of a study, on all cores.
+ *
  * Contents: which points - progress - the command */
 #include "app/cmd.h"
 
@@ -13,12 +14,12 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define REFRESH_S 0.1 /* between two updates of the line on a terminal */
-#define LOG_S 60.0    /* between two lines in a log */
+#define REFRESH_S 0.1 /* seconds between two updates of the line on a terminal */
+#define LOG_S 60.0    /* seconds between two lines in a log */
 
 /* ---- which points ---- */
 
-/* True when the variable is there and holds a number. */
+/* Returns true if the environment variable is set and holds a number. */
 static bool environment_number(const char *name, int *value)
 {
     const char *text = getenv(name);
@@ -28,8 +29,9 @@ static bool environment_number(const char *name, int *value)
     return true;
 }
 
-/* Which part of the points this process runs: by --task and --tasks, or by the index in a Slurm array. Indices of an
- * array must be evenly spaced, else some points would belong to no task. */
+/* Chooses which part of the points this process runs: by --task and --tasks, or by the index in a Slurm array. The
+ * indices of an array must be evenly spaced, otherwise some points would belong to no task. Returns HF_OK or
+ * HF_BAD_USAGE. */
 static hf_status choose_task(const hf_options *o, int *task, int *tasks, hf_messages *messages)
 {
     int id = 0, count = 1, low = 0, high = 0, step = 1;
@@ -62,7 +64,7 @@ static hf_status choose_task(const hf_options *o, int *task, int *tasks, hf_mess
 
 typedef struct {
     bool on_terminal;
-    double said_s; /* hf_sweep_count.wall_s when something was said last */
+    double said_s; /* hf_sweep_count.wall_s at the last report */
 } teller;
 
 static void show_points(void *context, const hf_sweep_count *n)

@@ -1,4 +1,4 @@
-/* `hifdm tolerance` runs a case with a section tolerance, also as one task of several. */
+/* `hifdm tolerance` runs a case with a section tolerance, as a whole or as one task of several. */
 #include "app/cmd_run.h"
 
 const hf_command hf_cmd_tolerance = {

@@ -1,5 +1,8 @@
 /* main - reads the command line, runs the command, and returns the exit status. The file cmd_NAME.c holds the command
- * NAME. */
+ * NAME.
+ *
+ *     command line -> options -> a copy of the program, if the command reads results -> libraries -> command
+ *                  -> messages -> standard output is closed -> exit status */
 #include "app/options.h"
 #include "app/output.h"
 #include "app/reader.h"
@@ -20,8 +23,9 @@
 
 static bool is_ending;
 
-/* libgomp ends the program by exit(1) when it gets no memory or no thread, HDF5 in its set-up by exit(-1). The former
- * has said so, but 1 means something else here. Nothing is lost by this more than by a kill. */
+/* Replaces the exit status of a library that ends the program. libgomp calls exit(1) with a message if it gets no
+ * memory or no thread, and HDF5 calls exit(-1) during its set-up. But exit status 1 means that two files differ. No
+ * more is lost than when the program is killed. */
 static void keep_exit_status(void)
 {
     static const char words[] = "error: a library gave up, see above; free memory or processes (ulimit -v, -u), or use "
@@ -31,6 +35,7 @@ static void keep_exit_status(void)
     _exit(hf_status_exit_code(HF_NO_MEMORY));
 }
 
+/* Prints messages with the words "error" and "warning" in colour. */
 static void say_in_colours(const char *lines)
 {
     for (const char *line = lines; *line; line += strcspn(line, "\n") + 1) {
@@ -43,7 +48,7 @@ static void say_in_colours(const char *lines)
     }
 }
 
-/* Where people read: which words `hifdm explain` knows of these messages, and of a status that speaks of the net. */
+/* Prints the words of these messages, and of a status about the net, that `hifdm explain` can explain. */
 static void say_where_to_read_on(const char *lines, hf_status status)
 {
     int n = 0;
@@ -57,7 +62,7 @@ static void say_where_to_read_on(const char *lines, hf_status status)
     if (n) fputc('\n', stderr);
 }
 
-/* Messages need memory, too: a failure is never silent. */
+/* Prints the messages. They need memory, too: if it ran out, an error is printed nevertheless. */
 static void say(const hf_messages *messages, hf_status status)
 {
     if (messages->text && hf_output_has_colour(STDERR_FILENO))
@@ -70,8 +75,8 @@ static void say(const hf_messages *messages, hf_status status)
         fprintf(stderr, "error: %s\n", hf_status_text(status));
 }
 
-/* A file server may tell of a full disk as late as at the close. A closed standard output is no fault unless something
- * was written to it. */
+/* Closes the output. A file server may report a full disk only at the close. A closed standard output is no error
+ * unless something was written to it. Returns HF_OK, HF_IO or HF_INTERRUPTED. */
 static hf_status close_output(FILE *output)
 {
     bool failed = fflush(output) != 0 || ferror(output);
@@ -87,19 +92,19 @@ int main(int argc, char **argv)
     hf_status status = hf_options_parse(argc, argv, &options, &messages);
     bool uses_threads = status == HF_OK && options.command->uses_threads;
     int exit_status;
-    signal(SIGCHLD, SIG_DFL); /* where a launcher left it ignored, nobody would learn how a child has ended */
+    signal(SIGCHLD, SIG_DFL); /* if a launcher ignores it, the end of a child cannot be read */
     if (status == HF_OK && options.command->reads_results && hf_reader_watch(&options, &exit_status, &messages)) {
         say(&messages, status);
         hf_messages_free(&messages);
         hf_options_free(&options);
         return exit_status;
     }
-    if (uses_threads) hf_batch_wait_quietly(argv); /* may start the program anew, so before the libraries are set up */
+    if (uses_threads) hf_batch_wait_quietly(argv); /* may start the program again, so it comes before the libraries */
     signal(SIGXFSZ, SIG_IGN);                      /* writing beyond the limit on file size then fails with an error */
     gsl_set_error_handler_off();
     atexit(keep_exit_status);
     if (!hf_store_quiet() && status == HF_OK) status = HF_NO_MEMORY;
-    atexit(keep_exit_status); /* again, as the last one, so that it is called first */
+    atexit(keep_exit_status); /* registered again as the last one, so that it is called first */
     FILE *output = hf_output_stream();
     if (status == HF_OK) status = options.command->run(&options, output, &messages);
     hf_options_free(&options);

@@ -1,4 +1,8 @@
-/* Contents: reading a value - the table - reading a command line */
+/* Reads the options of the command line. options.h describes the interface.
+ *
+ *     table of options -> for each word: command, option with its value, or file -> hf_options
+ *
+ * Contents: reading a value - the table - reading a command line */
 #include "app/options.h"
 
 #include "base/text.h"
@@ -8,11 +12,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define THREADS_MAX 4096  /* of --threads; larger numbers are taken for a slip of the pen */
-#define TASKS_MAX 1000000 /* of --tasks */
+#define THREADS_MAX 4096  /* maximum of --threads; a larger number is probably a typing error */
+#define TASKS_MAX 1000000 /* maximum of --tasks */
 
-/* ---- reading a value: the functions of the table ---- */
+/* ---- reading a value ---- */
 
+/* Returns the address of the member of hf_options that an option sets. */
 static void *place_of(const hf_option *option, hf_options *o)
 {
     return (char *)o + option->offset;
@@ -104,7 +109,7 @@ static hf_status read_tasks(const hf_option *option, const char *value, hf_optio
     return read_count(option, value, TASKS_MAX, &o->tasks, messages);
 }
 
-/* Turns a list of states, "failed,missing", into bits 1 << hf_point_state. 0 when a word is unknown. */
+/* Turns a list of states such as "failed,missing" into bits 1 << hf_point_state. Returns 0 if a word is unknown. */
 static unsigned states_of(const char *text)
 {
     static const hf_point_state state[] = {HF_POINT_MISSING, HF_POINT_FAILED, HF_POINT_OUTDATED};
@@ -253,7 +258,7 @@ hf_option hf_option_at(int i)
     return option;
 }
 
-/* Is `word` one of the blank-separated words? */
+/* Returns true if `word` is one of the words, which are separated by blanks. */
 static bool is_listed(const char *words, const char *word)
 {
     size_t length = strlen(word);
@@ -272,7 +277,8 @@ bool hf_option_goes_with(const hf_option *option, const hf_command *command)
 
 /* ---- reading a command line ---- */
 
-/* `where`: what follows 'hifdm help' in the command that lists the known words. */
+/* Reports an unknown word with the most similar known one, or with the command that lists the known words; `where`
+ * follows 'hifdm help' in that command. Returns HF_BAD_USAGE. */
 static hf_status unknown(const char *kind, const char *word, const char *const *names, int n_name, const char *where,
                          hf_messages *messages)
 {
@@ -286,7 +292,7 @@ static bool needs_argument(const hf_command *command)
     return command->argument && *command->argument != '[';
 }
 
-/* Commands with two arguments have "A B" in their row, or "A [B]" where the second may be missing. */
+/* Returns true for a command with two arguments: "A B" in its row, or "A [B]" if the second is optional. */
 static bool takes_two(const hf_command *command)
 {
     return command->argument && strchr(command->argument, ' ');
@@ -334,7 +340,7 @@ static hf_status read_file(const char *word, const hf_command *command, hf_optio
         o->file = word;
     else if (takes_two(command) && !o->second)
         o->second = word;
-    else if (command->argument && strstr(command->argument, "...")) /* it takes them from argv */
+    else if (command->argument && strstr(command->argument, "...")) /* such a command reads them from argv */
         return HF_OK;
     else
         return hf_error(messages, HF_BAD_USAGE, "'%s' is one argument too many for 'hifdm %s'", word, command->name);

@@ -16,33 +16,33 @@ struct hf_options {
     const hf_command *command;
     int argc; /* the whole command line, for the provenance of results */
     char *const *argv;
-    const char *file;                     /* the CASE or FILE, NULL for commands without one */
+    const char *file;                     /* the CASE or FILE; NULL for commands without one */
     const char *second;                   /* the other FILE of diff and report */
-    const char *output;                   /* -o */
-    const char *point;                    /* --point */
-    const char *export_to[HF_N_EXPORTER]; /* file or folder by exporter; NULL: not asked for */
-    const char *designs, *template_path;  /* --designs, --template */
-    const char *jacobian;                 /* --jacobian */
-    const char *measured;                 /* --measured */
-    const char *result;                   /* --result */
-    const char *report;                   /* --report */
-    const char *stage;                    /* --stage */
-    const char *state;                    /* --case */
-    const char **set;                     /* [n_set] --set key=value, owned */
+    const char *output;                   /* argument of -o */
+    const char *point;                    /* argument of --point */
+    const char *export_to[HF_N_EXPORTER]; /* file or folder of each exporter; NULL: not requested */
+    const char *designs, *template_path;  /* arguments of --designs and --template */
+    const char *jacobian;                 /* argument of --jacobian */
+    const char *measured;                 /* argument of --measured */
+    const char *result;                   /* argument of --result */
+    const char *report;                   /* argument of --report */
+    const char *stage;                    /* argument of --stage */
+    const char *state;                    /* argument of --case */
+    const char **set;                     /* [n_set], "key=value" of each --set, owned */
     int n_set;
-    const char *folder; /* --dir */
-    unsigned retry;     /* --retry, bits 1 << hf_point_state; 0 = not given */
-    int task, tasks;    /* --task I --tasks N: -1, 0 = not given */
-    int threads;        /* 0 = all cores; SLURM_CPUS_PER_TASK where --threads is not given */
+    const char *folder; /* argument of --dir */
+    unsigned retry;     /* --retry as bits 1 << hf_point_state; 0: not given */
+    int task, tasks;    /* arguments of --task and --tasks; -1 and 0: not given */
+    int threads;        /* --threads or SLURM_CPUS_PER_TASK; 0: all cores */
     bool has_seed;
     uint64_t seed;
-    double rtol, atol; /* of diff */
+    double rtol, atol; /* arguments of --rtol and --atol */
     hf_progress_mode progress;
     bool json, quiet, verbose, force;
-    bool help;               /* --help */
-    const hf_command *topic; /* of help; NULL = all commands */
+    bool help;               /* true with --help */
+    const hf_command *topic; /* the command to describe, for help; NULL: all commands */
     hf_help_form help_as;
-    hf_new_case new_case; /* of new */
+    hf_new_case new_case; /* kind of case that the command new writes */
 };
 
 typedef struct hf_option hf_option;
@@ -50,23 +50,25 @@ typedef struct hf_option hf_option;
 /* A row of the table. */
 struct hf_option {
     const char *name, *letter; /* "--output", "-o" or NULL */
-    const char *argument; /* N, FILE, DIR, KEY=VALUE, the words themselves as in form|optimize|polish, NULL: none */
+    const char *argument; /* N, FILE, DIR, KEY=VALUE, or the words themselves as in form|optimize|polish; NULL: none */
     const char *help;
     const char *commands; /* names of the commands that take it, separated by blanks; NULL: all */
     hf_status (*read)(const hf_option *option, const char *value, hf_options *options, hf_messages *messages);
-    size_t offset;               /* in hf_options, for `read` */
-    const hf_exporter *exporter; /* NULL, or the exporter whose row gives name, argument and help */
+    size_t offset;               /* offset of the member of hf_options, for `read` */
+    const hf_exporter *exporter; /* the exporter whose row gives name, argument and help, or NULL */
 };
 
 extern const int hf_n_option;
 
-/* Option i of 0..hf_n_option-1, in the order in which help prints them. A name may come more than once, for different
- * commands. */
+/* Returns option i from 0 to hf_n_option - 1, in the order in which the help prints them. A name may occur more than
+ * once, for different commands. */
 hf_option hf_option_at(int i);
 
+/* Returns true if the command takes the option. */
 bool hf_option_goes_with(const hf_option *option, const hf_command *command);
 
-/* HF_BAD_USAGE with a message that says what to write instead. Free with hf_options_free in any case. */
+/* Reads the command line into *options. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_USAGE with a message that says what to
+ * write instead. Call hf_options_free in any case. */
 hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_messages *messages);
 
 void hf_options_free(hf_options *options);

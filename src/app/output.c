@@ -1,4 +1,5 @@
-#define _GNU_SOURCE /* fopencookie */
+/* Writes to readers that may have stopped reading. output.h describes the interface. */
+#define _GNU_SOURCE /* for fopencookie */
 #include "app/output.h"
 
 #include "base/file_io.h"
@@ -8,8 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#define PART 4096     /* bytes that a pipe takes at once when it takes any: PIPE_BUF */
-#define GRACE_MS 3000 /* for a reader that is slow, once the program has been told to stop; in all */
+#define PART 4096     /* a pipe with any room takes this many bytes at once (PIPE_BUF) */
+#define GRACE_MS 3000 /* total time for a slow reader, after a request to stop */
 
 int hf_output_write(int file, const char *text, size_t n)
 {
@@ -32,6 +33,7 @@ bool hf_output_has_colour(int file)
     return isatty(file) && !(none && *none) && term && strcmp(term, "dumb") != 0;
 }
 
+/* Writes for fopencookie; returns 0 after a failure. */
 static ssize_t take(void *unused, const char *text, size_t n)
 {
     (void)unused;

@@ -1,5 +1,5 @@
-/* output - what the program says to a reader that may have stopped to read: a request to stop (base/signals.h) is heard
- * while it waits. */
+/* output - writes to readers that may have stopped reading. A request to stop (base/signals.h) is noticed while the
+ * program waits for such a reader. */
 #ifndef HIFDM_OUTPUT_H
 #define HIFDM_OUTPUT_H
 
@@ -7,14 +7,15 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* Write all of the text to a descriptor. 0, or -1 with errno: EINTR when the program was told to stop and nobody
- * reads. */
+/* Writes all of the text [n] to a descriptor. Returns 0, or -1 with errno. errno is EINTR if the program was asked to
+ * stop and nobody reads. */
 int hf_output_write(int file, const char *text, size_t n);
 
-/* May colours go there? To terminals alone, and not where the user wants none (NO_COLOR, or TERM is dumb). */
+/* Returns true if colours may be written there: to terminals only, and not if the user does not want any (NO_COLOR is
+ * set, or TERM is dumb). */
 bool hf_output_has_colour(int file);
 
-/* A stream that writes so to standard output; the one of stdio when there is no memory for it. */
+/* Returns a stream that writes in this way to standard output, or stdout itself if memory runs out. */
 FILE *hf_output_stream(void);
 
 #endif

@@ -1,3 +1,5 @@
+/* Prints the progress of a run: lines on a terminal or in a log, or JSON objects. progress.h describes the
+ * interface. */
 #include "app/progress.h"
 
 #include "base/file_io.h"
@@ -8,7 +10,8 @@
 #include <unistd.h>
 
 const char *const hf_progress_word[6] = {"auto", "none", "line", "log", "jsonl", NULL};
-static const double interval_s[] = {0, 0, 0.1, HF_PROGRESS_LOG_S, 1}; /* between two lines, by hf_progress_mode */
+/* The time in s between two lines, for each hf_progress_mode. */
+static const double interval_s[] = {0, 0, 0.1, HF_PROGRESS_LOG_S, 1};
 
 hf_progress hf_progress_on(FILE *file, hf_progress_mode mode)
 {
@@ -16,14 +19,14 @@ hf_progress hf_progress_on(FILE *file, hf_progress_mode mode)
     return (hf_progress){.file = file, .mode = mode};
 }
 
-/* Evaluations per second, counting only those of this process. */
+/* Returns the evaluations per second of this process. */
 static double rate_per_s(const hf_run_progress *now)
 {
     return now->elapsed_s > 0 ? (double)now->evaluations / now->elapsed_s : 0;
 }
 
-/* An upper bound on the remaining time: the optimisation may stop before its last generation. Generations of an earlier
- * process are not counted, because the elapsed time does not contain them. */
+/* Returns an upper bound of the remaining time; the optimisation may stop before its last generation. Generations of an
+ * earlier process do not count, because the elapsed time does not contain them. */
 static double left_s(const hf_run_progress *now)
 {
     bool steps = now->phase == HF_RUN_POLISH;

@@ -1,4 +1,8 @@
-#define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
+/* Runs a command that reads results in a copy of the program. reader.h describes the interface.
+ *
+ *     fork -> copy: runs the command, notes the file that it reads -> ends
+ *          -> first process: waits -> same exit status, same signal, or a message about the damaged file */
+#define _DEFAULT_SOURCE /* for MAP_ANONYMOUS */
 #include "app/reader.h"
 
 #include "base/child.h"
@@ -8,7 +12,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-/* A status of the manual, not one of a sanitizer or of abort handlers. */
+/* Returns true for an exit status of the manual, not of a sanitizer or an abort handler. */
 static bool is_ours(int exit_status)
 {
 #define IS(name, value, exit_code, word, text) exit_status == exit_code ||
@@ -16,7 +20,7 @@ static bool is_ours(int exit_status)
 #undef IS
 }
 
-/* Is it a signal by which somebody ends programs, and means this one as well as its copy? */
+/* Returns true for a signal that is meant to end this process as well as its copy. */
 static bool is_for_us(int number)
 {
     return number == SIGINT || number == SIGTERM || number == SIGHUP || number == SIGPIPE || number == SIGQUIT;
@@ -31,7 +35,7 @@ bool hf_reader_watch(const hf_options *options, int *exit_status, hf_messages *m
     pid_t child = hf_child_fork();
     if (child <= 0) return false;
     hf_child_end end = hf_child_wait(child);
-    if (is_for_us(end.signal)) { /* this program ends by the same */
+    if (is_for_us(end.signal)) { /* this process ends by the same signal */
         signal(end.signal, SIG_DFL);
         raise(end.signal);
     }

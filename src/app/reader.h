@@ -1,12 +1,13 @@
-/* reader - commands that read files of HDF5 do so in a copy of the program: HDF5 crashes on some damaged files, which
- * no check can know before. The first process waits, and tells which file it was. */
+/* reader - runs commands that read HDF5 files in a copy of the program. HDF5 crashes on some damaged files, and no
+ * check detects them beforehand. The first process waits for the copy, and reports the file that was damaged. */
 #ifndef HIFDM_READER_H
 #define HIFDM_READER_H
 
 #include "app/options.h"
 
-/* False in the copy, which is to do the work and to end as the program does; there, too, when no copy can be made. True
- * in the first process, when the copy has ended: *exit_status is that of the copy, or 5 with a message. */
+/* Makes the copy. Returns false in the copy, which does the work and then ends like the program. Also returns false if
+ * no copy can be made. Returns true in the first process after the copy has ended: *exit_status is then that of the
+ * copy, or that of HF_IO after a message. */
 bool hf_reader_watch(const hf_options *options, int *exit_status, hf_messages *messages);
 
 #endif

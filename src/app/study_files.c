@@ -1,3 +1,4 @@
+/* Finds and reads the files of a study. study_files.h describes the interface. */
 #include "app/study_files.h"
 
 #include "base/path.h"

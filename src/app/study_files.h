@@ -1,18 +1,19 @@
-/* study_files - what the commands sweep, status and merge share: the names of a study's files, and reading the study
- * with the state of its points. */
+/* study_files - what the commands sweep, status, merge and check share: the names of a study's files, and reading the
+ * study with the state of its points. */
 #ifndef HIFDM_STUDY_FILES_H
 #define HIFDM_STUDY_FILES_H
 
 #include "app/options.h"
 #include "store/ledger.h"
 
-/* Sets `name` to `given` or, when that is NULL, to the study's name with another ending, in the current folder. HF_OK
- * or HF_IO. */
+/* Sets `name` to `given` or, if that is NULL, to the name of the study with another ending, in the current folder.
+ * Returns HF_OK or HF_IO. */
 hf_status hf_study_files_name(const char *given, const char *study, const char *ending, char name[HF_PATH_SIZE],
                               hf_messages *messages);
 
-/* Finds the folder of the results and reads the study o->file and the state of its points. Without the folder all are
- * missing, or, with demand_folder, it is HF_IO. Free study and points in any case. */
+/* Finds the folder of the results, and reads the study o->file and the state of its points. Without the folder, all
+ * points are missing or, with demand_folder, the status is HF_IO. Returns HF_OK or the status of the failure. Free
+ * study and points in any case. */
 hf_status hf_study_files_read(const hf_options *o, bool demand_folder, char folder[HF_PATH_SIZE], hf_study *study,
                               hf_points *points, hf_messages *messages);
 
