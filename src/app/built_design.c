@@ -70,7 +70,8 @@ static hf_status compare(const hf_options *o, const hf_problem *p, const hf_expo
 /* ---- the shape of the result ---- */
 
 /* Makes each cable keep its force density, because a design may have replaced the targets of the laws. A slack cable
- * keeps its law if that is still the law of the scene: it has the length that its law gives, as in the cut list. */
+ * keeps its law if that is still the law of the scene. It then has the length that its law gives, as in the cut
+ * list. */
 static void hold_cables(const hf_model *m, const hf_shape *s, hf_workspace *w)
 {
     for (int e = 0; e < m->n_cable; e++) {

@@ -1,5 +1,5 @@
-/* cmd - the commands of `hifdm`. The file cmd_NAME.c holds the command NAME: its row and its function. A new command
- * needs such a file, and its name in HF_COMMANDS. Its options are rows in options.c. */
+/* cmd - lists the commands of `hifdm`. The file cmd_NAME.c holds the command NAME: its row and its function. A new
+ * command needs such a file, and its name in HF_COMMANDS. Its options are rows in options.c. */
 #ifndef HIFDM_CMD_H
 #define HIFDM_CMD_H
 

@@ -1,5 +1,5 @@
-/* cmd_adjust_findings - what a measured net shows besides its adjustments: cables and nodes that stand out, and what
- * adjustments with another aim would reach. */
+/* cmd_adjust_findings - finds what a measured net shows besides its adjustments: the cables and nodes that stand out,
+ * and what adjustments with another aim would reach. */
 #ifndef HIFDM_CMD_ADJUST_FINDINGS_H
 #define HIFDM_CMD_ADJUST_FINDINGS_H
 

@@ -1,5 +1,5 @@
-/* cmd_adjust_print - the output of `hifdm adjust`: the table for the workshop, the summary for people, the JSON object
- * for programs, and the page. */
+/* cmd_adjust_print - prints the output of `hifdm adjust`: the table for the workshop, the summary for people, the JSON
+ * object for programs, and the page. */
 #ifndef HIFDM_CMD_ADJUST_PRINT_H
 #define HIFDM_CMD_ADJUST_PRINT_H
 

@@ -1,4 +1,4 @@
-/* `hifdm check` of a study. cmd_check_study.h describes the interface.
+/* Runs `hifdm check` of a study. cmd_check_study.h describes the interface.
  *
  *     study -> make the nets of as many points as time allows -> axes, points, results so far -> check of one point */
 #include "app/cmd_check_study.h"
@@ -13,7 +13,7 @@
 
 #define VALUES_TOLD 6 /* maximum number of values that are listed for an axis; else the first and the last */
 #define MAKING_S 5.0  /* time for making the nets of the points */
-/* A study of more points has MAKING_FEW_S only. */
+/* For a study with more points than this, the time is MAKING_FEW_S only. */
 #define MANY 100000
 #define MAKING_FEW_S 0.5
 #define MADE_LEAST 1000 /* while no point can be run, at least so many are made */

@@ -1,4 +1,4 @@
-/* cmd_check_study - `hifdm check` of a study: what `hifdm sweep` would do. */
+/* cmd_check_study - runs `hifdm check` of a study: it prints what `hifdm sweep` would do. */
 #ifndef HIFDM_CMD_CHECK_STUDY_H
 #define HIFDM_CMD_CHECK_STUDY_H
 

@@ -170,7 +170,7 @@ static size_t explain_first(const char *words, FILE *f)
     return 0;
 }
 
-/* Explains words that are no term together, one term after the other. */
+/* Explains words that do not form a term together, one term after the other. */
 static hf_status explain_each(const char *all, FILE *f, hf_messages *messages)
 {
     char unknown[1024] = "";

@@ -1,5 +1,5 @@
-/* cmd_help - what the three forms of `hifdm help` share: text, manual page and completion. All three are made from the
- * tables of commands, of options, and of the keys of a case file. */
+/* cmd_help - declares what the three forms of `hifdm help` share: text, manual page and completion. All three are made
+ * from the tables of commands, of options, and of the keys of a case file. */
 #ifndef HIFDM_CMD_HELP_H
 #define HIFDM_CMD_HELP_H
 

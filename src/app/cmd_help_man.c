@@ -4,8 +4,8 @@
 #include <hifdm/config.h>
 #include <hifdm/store.h>
 
-/* Writes text escaped for troff: no line begins with a request, '-' remains a plain hyphen that can be copied, and
- * lists of words may be broken between lines. */
+/* Writes text escaped for troff. No line begins with a request, and '-' remains a plain hyphen that can be copied.
+ * Lists of words may be broken between lines. */
 static void put_roff(const char *text, FILE *f)
 {
     bool at_start = true;

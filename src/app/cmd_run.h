@@ -1,4 +1,4 @@
-/* cmd_run - the function of the commands `hifdm run` and `hifdm tolerance`. */
+/* cmd_run - runs the commands `hifdm run` and `hifdm tolerance`. */
 #ifndef HIFDM_CMD_RUN_H
 #define HIFDM_CMD_RUN_H
 

@@ -24,8 +24,8 @@
 static bool is_ending;
 
 /* Replaces the exit status of a library that ends the program. libgomp calls exit(1) with a message if it gets no
- * memory or no thread, and HDF5 calls exit(-1) during its set-up. But exit status 1 means that two files differ. No
- * more is lost than when the program is killed. */
+ * memory or no thread. HDF5 may call exit(-1) during its set-up. But exit status 1 means that two files differ. No more
+ * is lost than when the program is killed. */
 static void keep_exit_status(void)
 {
     static const char words[] = "error: a library gave up, see above; free memory or processes (ulimit -v, -u), or use "

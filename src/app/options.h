@@ -1,5 +1,5 @@
-/* options - the options of the command line. One table of rows serves the reading of the command line, the help, the
- * manual page and the completion for bash. */
+/* options - reads the options of the command line. One table of rows serves the reading of the command line, the help,
+ * the manual page and the completion for bash. */
 #ifndef HIFDM_OPTIONS_H
 #define HIFDM_OPTIONS_H
 

@@ -1,5 +1,5 @@
-/* study_files - what the commands sweep, status, merge and check share: the names of a study's files, and reading the
- * study with the state of its points. */
+/* study_files - finds and reads the files of a study, for the commands sweep, status, merge and check: the study itself
+ * and the state of its points. */
 #ifndef HIFDM_STUDY_FILES_H
 #define HIFDM_STUDY_FILES_H
 

@@ -1,4 +1,4 @@
-/* breeding - the operators that make designs from other designs: the first generation, crossover along the difference
+/* breeding - makes designs from other designs. Its operators are the first generation, crossover along the difference
  * of two designs, and mutation. The genetic algorithms of METHOD section 7 differ in how they select parents and
  * survivors.
  *

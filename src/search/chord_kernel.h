@@ -1,5 +1,5 @@
-/* chord_kernel - the inner loops of chord. They are compiled once for each instruction set, and chord.c chooses one at
- * run time. */
+/* chord_kernel - implements the inner loops of chord. They are compiled once for each instruction set, and chord.c
+ * chooses one at run time. */
 #ifndef HIFDM_CHORD_KERNEL_H
 #define HIFDM_CHORD_KERNEL_H
 

@@ -1,5 +1,5 @@
-/* jacobian - exact derivatives of the figures of a design with respect to each design variable. The figures are psi, or
- * each objective and the merit (the value of the weighted objectives). They serve optimisers outside this program.
+/* jacobian - computes exact derivatives of the figures of a design with respect to each design variable, for optimisers
+ * outside this program. The figures are psi, or each objective and the merit (the value of the weighted objectives).
  *
  * The derivative of an objective is that of the norm of its residuals (goals.h), without its weight. For pull and
  * displacement, this norm is a smooth maximum, which the merit contains, and not the maximum itself. Linked design
@@ -28,9 +28,9 @@ hf_status hf_jacobian_create(const hf_evaluator *evaluator, hf_jacobian *jacobia
 void hf_jacobian_free(hf_jacobian *jacobian);
 
 /* Computes derivative [n_figure][n_gene] at the shape in the workspace, in the unit of the figure per unit of the
- * design variable. hf_evaluate must have found the shape for a feasible design. The derivative of a figure that is 0
- * there is NaN. Returns HF_OK, HF_SINGULAR, HF_NOT_FINITE or HF_NO_MEMORY; all derivatives are NaN unless it is
- * HF_OK. */
+ * design variable. The shape must be that of a feasible design that hf_evaluate has found. The derivative of a figure
+ * that is 0 there is NaN. Returns HF_OK, HF_SINGULAR, HF_NOT_FINITE or HF_NO_MEMORY; all derivatives are NaN unless it
+ * is HF_OK. */
 hf_status hf_jacobian_find(hf_jacobian *jacobian, hf_workspace *workspace, double *derivative);
 
 #endif

@@ -17,8 +17,8 @@ typedef struct {
 } hf_lane_solver;
 
 /* Solves every design whose index next(context) returns. The kernels compute in all lanes and need ordinary numbers
- * there, so free lanes hold a copy of the first design until they get one of their own. Their results are not stored.
- * Designs that `next` has not returned are not read, because other threads may be writing them. */
+ * there. Free lanes therefore hold a copy of the first design until they get one of their own. Their results are not
+ * stored. Designs that `next` has not returned are not read, because other threads may be writing them. */
 void hf_lane_schedule_run(const hf_lane_solver *work, void *solver, hf_lane_next *next, void *context);
 
 #endif

@@ -34,7 +34,7 @@ void hf_parallel_run(int n_thread, void (*work)(void *context, int room), void *
 void hf_parallel_each(int n_thread, int n, void (*work)(void *context, int room, int i), void *context);
 
 /* Calls work(context, i) for each i from 0 to n - 1. The values of i are handed out in rising order to n_thread threads
- * (0: all cores). Calls of hf_parallel_run inside it share these threads: a thread that finds no i left helps there, so
+ * (0: all cores). Calls of hf_parallel_run inside it share these threads. A thread that finds no i left helps there, so
  * all threads are busy until the last i is done. Work that is given to hf_later_do runs in one further thread, and is
  * done when this function returns. */
 void hf_parallel_for(int n_thread, int n, void (*work)(void *context, int i), void *context);

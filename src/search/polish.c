@@ -90,8 +90,8 @@ static hf_status take_step(hf_polish_problem *p)
     return hf_polish_evaluate(p, p->trial);
 }
 
-/* Returns the scale by which variable r is damped. A variable that hardly acts on the residuals has no column of J that
- * could damp it, and the minimum of the model would not be unique. It gets the maximum scale. */
+/* Returns the scale by which variable r is damped: the norm of its column of J, or the maximum scale if that norm is
+ * nearly 0. Without damping of such a variable, the minimum of the model would not be unique. */
 static double damped_scale(const hf_polish_problem *p, int r)
 {
     if (p->scale[r] > SCALE_LEAST * p->largest_scale) return p->scale[r];

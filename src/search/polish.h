@@ -1,9 +1,9 @@
 /* polish - refines a design by Levenberg-Marquardt, with exact sensitivities and within limits (METHOD section 7). It
  * shows how far a design of the genetic algorithm is from an optimum, and can improve it.
  *
- * Each step is the minimum of the damped quadratic model of merit^2 within the bounds, the cap on the boundary tension
- * ratio and the limits of the case. These are linear limits of a quadratic programme. So a step meets an active bound
- * exactly, and no penalty slows the convergence.
+ * Each step is the minimum of the damped quadratic model of merit^2 within linear limits. The limits are the bounds,
+ * the cap on the boundary tension ratio, and the limits of the case. The step is the solution of a quadratic programme,
+ * so it meets an active bound exactly, and no penalty slows the convergence.
  *
  * An objective with corners is the maximum of several sizes, such as forces on supports, or a ratio of tensions. It has
  * no derivative where two sizes are equal. */
@@ -53,9 +53,9 @@ bool hf_polish_applies(const hf_evaluator *evaluator);
 /* Returns the counted floating-point operations of one step. A core performs about 2e9 of them per second. */
 double hf_polish_operations(const hf_evaluator *evaluator);
 
-/* Returns true if a run from a design of the genetic algorithm is cheap compared with its n_evaluation evaluations: at
- * most a tenth of their operations, or too few to be noticed. The operations are counted, so the result does not depend
- * on the machine. */
+/* Returns true if a run from a design of the genetic algorithm is cheap. It then takes at most a tenth of the
+ * operations of the n_evaluation evaluations, or too few to be noticed. The operations are counted, so the result does
+ * not depend on the machine. */
 bool hf_polish_is_cheap(const hf_evaluator *evaluator, long n_evaluation);
 
 /* Refines the design [n_gene], which has a shape and is within lower and upper [n_gene]. It is replaced by the best

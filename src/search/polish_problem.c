@@ -195,8 +195,8 @@ static void multiply_rows(void *context, int room, int i_block)
     hf_band_gram(first, end, p->n_row, p->row + p->first_row, p->residuals.n_row, p->gram, p->n);
 }
 
-/* Computes the gradient g = J'f/|f| of an objective |f|, and adds the curvature of the limit on it to the matrix: m
- * (J'J - g g')/|f|, where m is the multiplier of the last step. */
+/* Computes the gradient g = J'f/|f| of an objective |f|. Adds the curvature of its limit to the matrix: m (J'J - g
+ * g')/|f|, where m is the multiplier of the last step. */
 static void press(hf_polish_problem *p, int i_goal, int first_row, int n_row)
 {
     const double *f = p->residuals.value + first_row;

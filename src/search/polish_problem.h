@@ -1,5 +1,5 @@
-/* polish_problem - the problem that Levenberg-Marquardt solves: the variables and their bounds, the shape of the last
- * design and its derivatives. polish.c has the steps. */
+/* polish_problem - sets up the problem that Levenberg-Marquardt solves: the variables and their bounds, the shape of
+ * the last design and its derivatives. polish.c takes the steps. */
 #ifndef HIFDM_POLISH_PROBLEM_H
 #define HIFDM_POLISH_PROBLEM_H
 

@@ -1,6 +1,6 @@
-/* residuals - the residuals that Levenberg-Marquardt minimises and their derivatives by the variables of a design
- * (METHOD section 7). They are those of the objectives, or of psi if there are no objectives. Tables of derivatives use
- * them, too. */
+/* residuals - computes the residuals that Levenberg-Marquardt minimises, and their derivatives by the variables of a
+ * design (METHOD section 7). They are those of the objectives, or of psi if there are no objectives. Tables of
+ * derivatives use them, too. */
 #ifndef HIFDM_RESIDUALS_H
 #define HIFDM_RESIDUALS_H
 

@@ -73,7 +73,7 @@ static int count_rigid(const hf_evaluator *v)
 }
 
 /* Returns the number of supports that design variables move. place_of_row [n_node] (may be NULL) receives the index of
- * the first coordinate of each of them in `move`, and -1 for all other rows. */
+ * their first coordinates in `move`, and -1 for all other rows. */
 static int place_supports(const hf_model *m, int *place_of_row)
 {
     int n = 0;
@@ -183,8 +183,8 @@ static void add_force_of_support(const hf_sensitivity *s, const hf_workspace *w,
     }
 }
 
-/* Adds -dg/dv of design variable k at the shape in the workspace: the change of the nodal forces, and of the forces on
- * the truss, per unit of its value (M11). */
+/* Adds -dg/dv of design variable k at the shape in the workspace (M11): the change of the forces on nodes and truss per
+ * unit of its value. */
 static void add_force_of_gene(const hf_sensitivity *s, const hf_workspace *w, int k, double *force, double *on_truss)
 {
     const hf_model *m = s->v->model;

@@ -1,5 +1,5 @@
-/* sensitivity - exact derivatives of the shape of a net by the variables of a design (METHOD section 7, M11). Each
- * variable takes one solve with the factored Newton matrix. A variable is a design variable, or a class of linked
+/* sensitivity - computes exact derivatives of the shape of a net by the variables of a design (METHOD section 7, M11).
+ * Each variable takes one solve with the factored Newton matrix. A variable is a design variable, or a class of linked
  * design variables that change by the same step. With a truss, the attachments move, too.
  *
  * In the matrix, a cable of law length is a stiff spring. The derivative of its length is then wrong by a part of

@@ -1,6 +1,6 @@
-/* swarm - the paper's iteration for many designs, eight at a time in the SIMD lanes of `lane`. It does what hf_evaluate
- * does with the solver fixed_point, about fifteen times faster. A lane that has finished takes the next design. No
- * operation mixes lanes, so a result depends neither on the designs in the other lanes nor on the thread. */
+/* swarm - runs the paper's iteration for many designs, eight at a time in the SIMD lanes of `lane`. It does what
+ * hf_evaluate does with the solver fixed_point, about fifteen times faster. A lane that has finished takes the next
+ * design. No operation mixes lanes, so a result depends neither on the designs in the other lanes nor on the thread. */
 #ifndef HIFDM_SWARM_H
 #define HIFDM_SWARM_H
 

@@ -9,9 +9,9 @@
  *     positions   -> residual, psi
  *
  * The factorisation is left-looking, by tiles of 4 x 4 entries. A tile stays in registers (16 of the 32 of AVX-512)
- * while the finished parts of its two block rows are read: 8 loads for 16 fused multiply-adds. Both parts are
- * contiguous for every bandwidth. Each entry has one accumulator that runs over the columns in rising order. How the
- * entries are grouped (GROUP columns at a time) therefore cannot change a bit.
+ * while the finished parts of its two block rows are read. That takes 8 loads for 16 fused multiply-adds. Both parts
+ * are contiguous for every bandwidth. Each entry has one accumulator that runs over the columns in rising order. How
+ * the entries are grouped (GROUP columns at a time) therefore cannot change a bit.
  *
  * The following table shows the gain by fused multiply-adds. It was *measured* on one core of a Zen 5 EPYC, which gains
  * little because it multiplies and adds in separate units. The numbers are medians of the processor time per matrix for

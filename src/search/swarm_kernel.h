@@ -1,5 +1,5 @@
-/* swarm_kernel - the inner loops of swarm and the arrays that they work on. The loops are compiled once for each
- * instruction set.
+/* swarm_kernel - implements the inner loops of swarm, and defines the arrays on which they work. The loops are compiled
+ * once for each instruction set.
  *
  * A lane row is a model row plus n_pad: n_pad dummy rows in front make the free rows fill blocks of HF_SWARM_BLOCK. The
  * matrix is stored as square tiles of HF_SWARM_BLOCK by HF_SWARM_BLOCK entries. The tiles of a block row are

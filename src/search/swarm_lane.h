@@ -1,4 +1,4 @@
-/* swarm_lane - the paper's iteration for eight designs of one net at a time, one in each SIMD lane.
+/* swarm_lane - runs the paper's iteration for eight designs of one net at a time, one in each SIMD lane.
  *
  * The eight share the net, its numbering and the laws. Each has its own force densities, targets and support positions.
  * Every array below ends in [HF_LANES], with entry k for lane k, and no operation mixes lanes. Meaningless numbers, NaN

@@ -30,8 +30,8 @@
 #define LONG_GAP 0.5  /* gaps above this part of the longest one are halved at once, with any number of threads */
 #define NO_GAP 1e-9   /* in a gap below this part of the range of the limited objective, there is no room for a limit */
 #define HELD 1e-6     /* an objective within this part of its range below its limit is held by it [1e-4; 1e-8 fails] */
-/* If the ends of the line at the minimum of THIRD are nearer than this, in parts of the ranges, the line is one point
- * [0.01 to 0.2]. */
+/* The line at the minimum of THIRD is one point if its ends are nearer than this, in parts of the ranges [0.01 to
+ * 0.2]. */
 #define ONE_POINT 0.05
 
 enum { MAIN, OTHER, THIRD }; /* roles of the objectives, see search.role */

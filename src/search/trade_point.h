@@ -1,6 +1,6 @@
-/* trade_point - finds one point of a Pareto front (METHOD section 7). It chooses the role of each objective, the design
- * from which a search begins, the minimum under limits on the other objectives, and a design that is best in all of
- * them.
+/* trade_point - finds one point of a Pareto front (METHOD section 7). It chooses the role of each objective and the
+ * design from which a search begins. It finds the minimum under limits on the other objectives, and a design that is
+ * best in all of them.
  *
  * Some objectives can be 0, such as evenness of tensions. Their size has no slope there that a limit could follow, but
  * their square has one. Such an objective is called `met`. */

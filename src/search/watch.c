@@ -1,4 +1,4 @@
-/* Watches the limits of a step of Levenberg-Marquardt besides the bounds of its variables. watch.h describes the
+/* Keeps a step of Levenberg-Marquardt within limits other than the bounds of its variables. watch.h describes the
  * interface.
  *
  *     hf_watch_create      cap, rows of optimize.limits, bounds of tensions, objectives -> items
@@ -360,8 +360,8 @@ static bool breaks_cap(const hf_watch *q, int k, double *worst, hf_quadratic_lim
     return true;
 }
 
-/* Returns the size of a value for the level of an objective: of a tension the linearised logarithm, because the level
- * of a ratio is a difference of logarithms, and otherwise the value itself. */
+/* Returns the size of a value for the level of an objective. For a tension, it is the linearised logarithm, because the
+ * level of a ratio is a difference of logarithms. Otherwise it is the value itself. */
 static double size_of(const hf_watched *t, double value)
 {
     return t->cable >= 0 ? log(t->value + t->bend) + (value - t->value - t->bend) / (t->value + t->bend) : value;

@@ -1,7 +1,7 @@
-/* watch - the limits of a step of Levenberg-Marquardt besides the bounds of its variables. They are tensions between
- * bounds, ratios of tensions, deflections of attachments, and objectives. Each limit is linear in the step to first
- * order. `bend` is what the value was beyond the linear model at the last trial. With it, a step that breaks a limit is
- * solved again. */
+/* watch - keeps a step of Levenberg-Marquardt within limits other than the bounds of its variables. They are bounds of
+ * tensions, and limits on ratios of tensions, on deflections of attachments and on objectives. Each limit is linear in
+ * the step to first order. `bend` is what the value was beyond the linear model at the last trial. With it, a step that
+ * breaks a limit is solved again. */
 #ifndef HIFDM_WATCH_H
 #define HIFDM_WATCH_H
 
@@ -44,7 +44,7 @@ typedef struct {
     double *predicted;           /* [ld], values after a step by the linear model */
     double *by_item;             /* [n_variable], scratch */
     double *cap;                 /* [n_cap], limit on the ratio of maximum to minimum of its items */
-    double *ratio;               /* [n_cap], this ratio of maximum to minimum at the best variables */
+    double *ratio;               /* [n_cap], ratio of maximum to minimum at the best variables */
     double *aim;                 /* [n_cap], limit on the ratio in the next step */
     const hf_watch_trade *trade; /* NULL: no objective is limited */
     const double *goal;      /* [n_goal], objectives of the shape that is measured; borrowed; NULL without `trade` */
@@ -71,8 +71,8 @@ void hf_watch_linearise(hf_watch *watch, const hf_sensitivity *slopes, hf_worksp
  * break. With part 1, as after hf_watch_linearise, it keeps all limits. */
 void hf_watch_aim(hf_watch *watch, double part);
 
-/* Returns the total violation of the shape in the workspace: the one by which designs are ranked, and those of the
- * bounds of tensions and of the limits on objectives. */
+/* Returns the total violation of the shape in the workspace. It is the violation by which designs are ranked, plus
+ * those of the bounds of tensions and of the limits on objectives. */
 double hf_watch_violation(hf_watch *watch, hf_workspace *workspace);
 
 /* hf_watch_forget sets `bend` of all items to 0. hf_watch_learn computes it from the shape in the workspace, to which
@@ -81,9 +81,14 @@ void hf_watch_forget(hf_watch *watch);
 void hf_watch_learn(hf_watch *watch, const double *x, hf_workspace *workspace);
 
 /* Finds the limit that the step x violates most, relative to its unit, and by more than `worst`. Returns false if there
- * is none. The kind of the limit is that of a bound of a design variable, of the cap on the boundary tension ratio, of
- * a row of optimize.limits, of a level or of an objective. If the minimised objective has corners, x has one more
- * entry, the increase of its level, and no size may exceed the level. */
+ * is none. If the minimised objective has corners, x has one more entry, the increase of its level, and no size may
+ * exceed the level. The kind of the limit is
+ *
+ *     HF_WATCH_BOUND             for a bound of a design variable that sets a tension,
+ *     HF_WATCH_CAP               for the cap on the boundary tension ratio,
+ *     HF_WATCH_ROW               for a row of optimize.limits,
+ *     HF_WATCH_LEVEL             for the level of an objective,
+ *     HF_WATCH_GOAL or above     for the limit on an objective. */
 enum { HF_WATCH_BOUND = 1, HF_WATCH_CAP, HF_WATCH_ROW, HF_WATCH_LEVEL, HF_WATCH_GOAL };
 bool hf_watch_worst(hf_watch *watch, const double *x, double worst, hf_quadratic_limit *limit);
 
