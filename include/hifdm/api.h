@@ -1,8 +1,8 @@
-/* api - what the shared library exports.
+/* api - macros that mark what the shared library exports.
  * Stability: stable.
  *
- * Each public header declares its functions and variables between HF_API_BEGIN and HF_API_END: they have C linkage, and
- * libhifdm.so exports them. All other symbols of the library are hidden, because it is compiled with
+ * Each public header declares its functions and variables between HF_API_BEGIN and HF_API_END. These declarations have
+ * C linkage, and libhifdm.so exports them. All other symbols of the library are hidden, because it is compiled with
  * -fvisibility=hidden. `make abi` compares the exported symbols with the declared ones. */
 #ifndef HIFDM_API_H
 #define HIFDM_API_H

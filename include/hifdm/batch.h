@@ -1,8 +1,15 @@
-/* batch - evaluate many designs on all cores.
+/* batch - evaluates many designs on all cores.
  * Stability: stable.
  *
- * A program with its own optimiser creates a batch, shares the base design, runs the batch for each set of designs, and
- * frees it; tools/own_optimiser.c is such a program. `hifdm evaluate` does the same with tables in CSV files. */
+ * Pipeline:
+ *
+ *   hf_batch_create   allocates a workspace for each thread
+ *   hf_batch_share    selects the solver and prepares what the threads share
+ *   hf_batch_run      designs [n][n_gene] -> results [n], as often as needed
+ *   hf_batch_free     frees all of it
+ *
+ * hf_batch_next does the work of hf_batch_run for the generations of an optimiser. tools/own_optimiser.c is a program
+ * with its own optimiser that calls these functions. `hifdm evaluate` does the same with designs in a CSV file. */
 #ifndef HIFDM_BATCH_H
 #define HIFDM_BATCH_H
 
@@ -13,60 +20,71 @@
 
 HF_API_BEGIN
 
+/* The memory with which n_thread threads evaluate designs. A batch belongs to one thread at a time. */
 typedef struct {
-    const hf_evaluator *evaluator; /* borrowed */
-    int n_thread;
-    hf_workspace *workspace;        /* [n_thread]; inside hf_parallel_for all but the first are created when needed */
-    struct hf_batch_engine *engine; /* what hf_batch_share made, or NULL */
-    bool lacks_memory;              /* hf_batch_share had too little for what it would share */
-    double cpu_s; /* processor time spent in proposals (by hf_batch_next) and evaluations so far, over all threads */
+    const hf_evaluator *evaluator;  /* evaluates one design; borrowed */
+    int n_thread;                   /* number of threads */
+    hf_workspace *workspace;        /* [n_thread]; inside hf_parallel_for all but the first are created on first use */
+    struct hf_batch_engine *engine; /* solver data that hf_batch_share created; NULL: there are none */
+    bool lacks_memory;              /* memory was too small for what hf_batch_share would create */
+    /* processor time of all proposals (hf_batch_next) and evaluations so far, summed over the threads, s */
+    double cpu_s;
 } hf_batch;
 
-/* n_thread 0 means hf_batch_default_threads(). The evaluator is borrowed until hf_batch_free. Returns HF_OK or
- * HF_NO_MEMORY; call hf_batch_free in either case. */
+/* Creates a batch of n_thread threads; 0 stands for hf_batch_default_threads(). The evaluator is borrowed until
+ * hf_batch_free. Returns HF_OK or HF_NO_MEMORY. Call hf_batch_free in either case. */
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch);
 
-/* Evaluate the designs with pending[i] != 0 (all when pending is NULL). design_N: [n][n_gene] boundary pretensions > 0;
- * result: [n].
- * Each design is one whole form-finding in one thread; the results do not depend on the number of threads, nor on which
- * other designs are evaluated beside it. A design that has no shape, or breaks a cap, has its status in its result and
- * NaN for psi, and without a shape for the ratios. */
+/* Evaluates the designs i = 0 ... n-1 with pending[i] != 0, or all of them if pending is NULL. design_N has the shape
+ * [n][n_gene] and holds the values of the design variables, in N for boundary pretensions. The values of cables are
+ * above 0. result [n] receives the results of the evaluated designs.
+ *
+ * Each design is one whole form-finding in one thread. A result depends neither on the number of threads nor on the
+ * other designs of the call. If a design has no shape or breaks a constraint, its result contains the status, and psi_m
+ * is NaN. Without a shape the tension ratios are NaN, too. */
 void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result);
 
-/* Propose the next generation and evaluate what is pending in it: hf_optimiser_next and hf_batch_run in one, by all
- * threads. First the calling thread runs beside(context) once (NULL: nothing), while the others, if there are any,
- * begin. `beside` may read the population only from a copy of the struct that was made before the call. Returns false
- * when no generation is left; then only `beside` has run. */
+/* Proposes the next generation of the optimiser and evaluates its pending designs, both with all threads. The result is
+ * the same as that of hf_optimiser_next and hf_batch_run. The calling thread first calls beside(context) once, unless
+ * `beside` is NULL; the other threads begin at the same time. `beside` must not read the population itself, only a copy
+ * of the struct that was made before the call. Returns false if no generation is left; then only `beside` was
+ * called. */
 bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
 
-/* Choose the solver of all designs from now on, and prepare what the threads share: one Newton matrix, factored at the
- * base design base_N [n_gene] > 0; or lanes of the paper's iteration; or nothing, when hf_evaluate solves each design
- * by itself. Returns the hf_solver that will be used. When the base is unsuitable or memory runs out, nothing is
- * shared. Another solver ends at other bits: batch->lacks_memory says that memory ran out. */
+/* Selects the solver of all later evaluations and creates the data that its threads share. base_N [n_gene] is the
+ * design at which the shared Newton matrix is factored; the values of cables are above 0. If the solver is the paper's
+ * iteration in vector lanes, the shared data are its plan. If each design is solved alone by hf_evaluate, nothing is
+ * shared.
+ *
+ * Returns the solver that will be used. If no matrix can be factored at base_N or memory runs out, nothing is shared,
+ * and another solver may be returned. Its results differ in the last bits, so batch->lacks_memory is true after a lack
+ * of memory. */
 hf_solver hf_batch_share(hf_batch *batch, const double *base_N);
 
-/* The solver that hf_batch_share returns unless the base is unsuitable or memory runs out. *has_lanes is set to true
- * when this solver works on eight designs at once, in the lanes of vector registers. */
+/* Returns the solver that hf_batch_share selects if base_N is suitable and memory suffices. Sets *has_lanes to true if
+ * this solver works on eight designs at once, one in each lane of the vector registers. @52- */
 hf_solver hf_batch_solver(const hf_evaluator *evaluator, bool *has_lanes);
 
+/* Returns the number of cores that are available to this process. */
 int hf_batch_default_threads(void); /* available cores */
 
-/* Makes threads that wait for others sleep after some microseconds. Call it first in main, with the arguments of main:
- * OpenMP reads how its threads wait when it is loaded, which is before main begins, and has no call to change it. So
- * this sets GOMP_SPINCOUNT=2000 and OMP_WAIT_POLICY=passive and starts the program again. It returns, and has done
- * nothing, where one of the two is set already, as it is in the program that was started again.
+/* Makes threads that wait for others sleep after some microseconds. Call it first in main, with main's argument argv.
+ * It sets GOMP_SPINCOUNT=2000 and OMP_WAIT_POLICY=passive in the environment and starts the program again. OpenMP reads
+ * these variables when it is loaded, which is before main begins, and has no call to change them. The function returns
+ * without effect if one of the two variables is set, as it is in the restarted program. It also returns if the path of
+ * the program cannot be read, or if the dynamic linker was called to run the program.
  *
- * A generation takes less than a millisecond, and by default waiting threads spin for about as long: small batches take
- * three times the processor time, and where other programs keep the cores busy, runs were 30 times slower on two cores.
- * Threads that sleep at once lose 10 to 20 % of a run on an idle machine. A program that loads the library itself, as
- * an interpreter does, sets the two variables before it loads it. */
+ * Reason: a generation takes less than a millisecond, and by default waiting threads spin for about as long. Small
+ * batches then take three times the processor time. Where other programs kept the cores busy, runs were 30 times slower
+ * on two cores. Threads that sleep at once would lose 10 to 20 % of a run on an idle machine. A program that loads the
+ * library at run time, such as an interpreter, sets the two variables before it loads the library. */
 void hf_batch_wait_quietly(char *const *argv);
 
-/* Evaluate one design in the calling thread, with the same bits as hf_batch_run. Returns the workspace that holds its
- * shape until the next call with this batch. */
+/* Evaluates design_N [n_gene] in the calling thread; the result has the same bits as that of hf_batch_run. Returns the
+ * workspace that holds the shape of the design until the next call with this batch. The batch owns the workspace. */
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result);
 
-/* Free the workspaces and what the threads share. The evaluator is not freed. */
+/* Frees the workspaces and the shared data of the solver, but not the evaluator. */
 void hf_batch_free(hf_batch *batch);
 
 HF_API_END

@@ -1,7 +1,16 @@
-/* formfind - from force densities to shape, tensions and residual by classical FDM (Eqs. 1-6), iterative FDM (Eq. 7)
- * or HIFDM (Eqs. 7 and 8). One iteration does all three; the laws of the cables decide which one it is (METHOD sections
- * 1 and 2).
- * Stability: stable. */
+/* formfind - finds shape, tensions and residual from force densities, and iterates them until the cables obey their
+ * laws.
+ * Stability: stable.
+ *
+ * The laws of the cables decide which method this is (METHOD sections 1 and 2): classical FDM (Eqs. 1-6), iterative FDM
+ * (Eq. 7) or HIFDM (Eqs. 7 and 8). Pipeline of one iteration:
+ *
+ *   hf_form_assemble         force densities -> matrix D (Eq. 2)
+ *   hf_form_assemble_loads   loads and supports -> right-hand sides (Eq. 5)
+ *   band solver              D x = right-hand sides, for x, y and z -> positions
+ *   hf_form_measure_cables   positions -> lengths, tensions (Eqs. 4, 6), errors against the laws
+ *   hf_form_residual_N       tensions -> maximum nodal force out of balance
+ *   hf_form_update           Eqs. 7 and 8 -> next force densities, unless the stopping rule holds */
 #ifndef HIFDM_FORMFIND_H
 #define HIFDM_FORMFIND_H
 
@@ -12,73 +21,84 @@
 
 HF_API_BEGIN
 
-/* Copy laws, targets and first force densities from the model into the workspace, set displacement_m to zero, and
- * n_moving to n_free. */
+/* Prepares the workspace for the case of the model: copies laws, target values, EA and first force densities; sets
+ * displacement_m, support_move_m and loose to zero, and n_moving to n_free. */
 void hf_form_prepare(const hf_model *model, hf_workspace *workspace);
 
-/* Copy the theoretical positions into position_m, and add displacement_m to the attachments. */
+/* Writes the positions from which a solve starts into position_m: the target positions. Supports that a design moves
+ * are displaced by support_move_m, attachments by displacement_m. */
 void hf_form_place_supports(const hf_model *model, hf_workspace *workspace);
 
-/* Iterate from the workspace's q_N_per_m under its law and target, with the attachments moved by displacement_m, until
- * the rule `stop` or a bound is met. Only the tolerances and bounds of `settings` are read. history may be NULL.
- * Returns result->status. Does not allocate. */
+/* Finds a shape by iteration from the workspace's q_N_per_m under its laws and target values. The attachments are
+ * displaced by displacement_m. The iteration ends when the rule `stop` holds, at max_iterations, or when the net is
+ * ill-posed; only the tolerances and bounds of `settings` are read. The figures of each iteration are recorded in
+ * `history` unless it is NULL. Does not allocate.
+ *
+ * Returns result->status: HF_OK, HF_NOT_CONVERGED, HF_INTERRUPTED (*workspace->stop was set), or HF_SINGULAR,
+ * HF_COLLAPSED, HF_NOT_FINITE, HF_STRAIGHT_CHAIN with the cable, row or chain in result->culprit. */
 hf_status hf_form_find(const hf_model *model, const hf_form_settings *settings, hf_stop_rule stop,
                        hf_workspace *workspace, hf_history *history, hf_form_result *result);
 
-/* Measure the shape that the workspace holds (position_m, law, target; q_N_per_m for cables under law length or
- * elastic): lengths, tensions by law, residual, all measures of the result. No system is solved: iterations is 0. The
- * stopping reason is RESIDUAL when the residual is within the tolerance; otherwise the status is HF_NOT_CONVERGED.
- * Returns result->status. */
+/* Measures the shape that the workspace holds, without solving a system; result->iterations is 0. It reads position_m,
+ * law and target, and q_N_per_m except for cables of law tension. Sets lengths, tensions, residual and all other
+ * figures of the result. The stop reason is HF_STOPPED_RESIDUAL if residual and lengths are within their tolerances.
+ * Otherwise the status is HF_NOT_CONVERGED, and the stop reason is HF_STOPPED_MAX_ITERATIONS. A shape with a collapsed
+ * cable is HF_COLLAPSED. Returns result->status. */
 hf_status hf_form_measure(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                           hf_form_result *result);
 
-/* Assemble the force density matrix D of q_N_per_m (Eq. 2) into the workspace's band. */
+/* Writes the force density matrix D of q_N_per_m (Eq. 2) into the band of the workspace. */
 void hf_form_assemble(const hf_model *model, hf_workspace *workspace);
 
-/* Largest nodal force out of balance at the workspace's shape, N, with the tensions q l of elastic cables. Leaves the
- * nodal forces in force_N. The residual_N of a result has these cables at the tension of their law. */
+/* Returns the maximum nodal force out of balance of the workspace's shape, N, and leaves the nodal forces in force_N. A
+ * cable of law tension has its target tension; all others have q l. In a final result, residual_N has elastic cables at
+ * the tension of their law instead. */
 double hf_form_residual_N(const hf_model *model, hf_workspace *workspace);
 
-/* A cable of law force_density has collapsed when it is shorter than HF_FORM_GONE times its theoretical length (for a
- * cable of law tension the bound is collapse_ratio). A cable longer than HF_FORM_BLOWN_UP times its theoretical length
- * shows that the matrix was singular and was factored only because of rounding. The tests of solve and stress pass with
- * HF_FORM_GONE from 1e-15 to 1e-6 and HF_FORM_BLOWN_UP from 1e6 to 1e12. Of their 1988 solves, three fewer end well
- * with 1e-6, 17 fewer with 1e6, and six more with 1e12. */
+/* Limits on the length of a cable, as a part of the length at the target positions. A cable of law force_density below
+ * HF_FORM_GONE has collapsed; for law tension the limit is collapse_ratio. A cable above HF_FORM_BLOWN_UP shows that D
+ * was singular and could be factored only because of rounding.
+ *
+ * The tests of solve and stress pass with HF_FORM_GONE from 1e-15 to 1e-6 and HF_FORM_BLOWN_UP from 1e6 to 1e12. Of
+ * their 1988 solves, three fewer end well with 1e-6, 17 fewer with 1e6, and six more with 1e12. */
 #define HF_FORM_GONE 1e-12
 #define HF_FORM_BLOWN_UP 1e9
 
-/* Do what hf_form_find does after its last iteration, for a shape that another solver has found: the workspace holds
- * law, target, and positions that are the solution for q_N_per_m. Measures the shape and looks for loaded straight
- * chains. Returns result->status. */
+/* Completes a shape that another solver has found, as hf_form_find does after its last iteration. The workspace holds
+ * laws, target values, and positions that are the solution for q_N_per_m. `reason` and `iterations` are copied into the
+ * result. Measures the shape and looks for loaded straight chains. Returns result->status. */
 hf_status hf_form_accept(const hf_model *model, const hf_form_settings *settings, hf_stop_reason reason, int iterations,
                          hf_workspace *workspace, hf_form_result *result);
 
-/* Set the result of a candidate without a shape: the given status (an ill-posed one), NaN measures, no culprit. */
+/* Sets the result of a design without a shape: `status` is that of the fault, all real figures are NaN, the culprit is
+ * -1, and the stop reason is HF_STOPPED_ILL_POSED. */
 void hf_form_refuse(hf_status status, int iterations, hf_form_result *result);
 
-/* The other parts of an iteration of hf_form_find, for programs with their own linear solver and for timing. Order:
- *   1. hf_form_assemble.
- *   2. hf_form_assemble_loads writes the right-hand sides (Eq. 5) into the free rows of position_m; its other rows hold
- *      the supports.
- *   3. The caller solves band * x = those rows, for x, y and z.
- *   4. hf_form_measure_cables computes lengths, tensions and the errors against the laws. result->status must be HF_OK
- *      before; afterwards it says whether this is a shape. *length_gap is the length error for the stopping rule.
- *   5. hf_form_residual_N.
- *   6. hf_form_update applies Eqs. 7 and 8. */
+/* Writes the right-hand sides (Eq. 5) into the free rows of position_m; the other rows hold the positions of the
+ * supports.
+ *
+ * This function and the next two are for programs with their own linear solver and for timing. The order of an
+ * iteration is that in the head of this file. The caller solves band * x = the free rows of position_m, in place, for
+ * x, y and z. */
 void hf_form_assemble_loads(const hf_model *model, hf_workspace *workspace);
+/* Computes lengths, tensions and the errors against the laws from the positions. result->status must be HF_OK before.
+ * It is HF_NOT_FINITE, HF_COLLAPSED or HF_SINGULAR afterwards if this is no shape. *length_gap is set to the length
+ * error that the stopping rule reads. */
 void hf_form_measure_cables(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                             hf_form_result *result, double *length_gap);
+/* Computes the next force densities from lengths and tensions, by Eqs. 7 and 8. */
 void hf_form_update(const hf_model *model, hf_workspace *workspace);
 
-/* Number of chains of the model that can be straight in a shape. On a truss these are all chains, because their
- * supports move. */
+/* Returns the number of chains of the model that can be straight in a shape. On a truss these are all chains, because
+ * their supports move. */
 int hf_form_n_chain(const hf_model *model);
 
-/* True when chain i is straight and under lateral load, or too short, in the workspace's shape. For messages that name
- * it. */
+/* Returns true if chain i_chain is straight in the workspace's shape and carries a lateral load or is too short for its
+ * supports. Overwrites force_N. */
 bool hf_form_chain_is_loaded(const hf_model *model, hf_workspace *workspace, int i_chain);
 
-/* True when the lengths of chain i, which add up to *sum_m, are too short for the distance *span_m of its supports. */
+/* Returns true if all cables of chain i_chain have law length and their lengths are too short for its supports. Sets
+ * *sum_m to the sum of the lengths and *span_m to the present distance of the supports, both in m. */
 bool hf_form_chain_is_short(const hf_model *model, const hf_workspace *workspace, int i_chain, double *sum_m,
                             double *span_m);
 

@@ -1,12 +1,18 @@
-/* model - a scene prepared for solving: numbering, bandwidth, band maps, laws, targets, loads.
+/* model - a scene prepared for solving: numbering, band of the matrix, laws, target values, loads, design variables.
  * Stability: stable.
+ *
+ * Pipeline:
+ *
+ *   hf_model_build        scene and settings -> model
+ *   hf_model_attach       flexibility of a truss -> attachments, if there is a truss
+ *   hf_workspace_create   memory of a thread for this model
  *
  * A model does not change once it is built, so all threads share it.
  *
- * Nodes are renumbered: "row" is a node's index in the model, free nodes first in band order (rows 0..n_free-1 are the
- * rows of the force density matrix D), then the supports on a truss, then the others. Cables keep the order of the
- * scene. The force density matrix is kept as LAPACK's lower band, column-major: D(i,j) at
- * band[i-j + j*(half_bandwidth+1)]. */
+ * Nodes are renumbered; the row of a node is its index in the model. Free nodes come first, in the order of the band:
+ * rows 0 to n_free-1 are the rows of the force density matrix D. Supports on a truss follow, then all other supports.
+ * Cables keep the order of the scene. D is stored as a lower band in LAPACK's layout, column-major: D(i,j) is band[i-j
+ * + j*(half_bandwidth+1)]. */
 #ifndef HIFDM_MODEL_H
 #define HIFDM_MODEL_H
 
@@ -17,124 +23,136 @@
 
 HF_API_BEGIN
 
-/* A chain whose lengths exceed the distance of its supports by less than this part counts as straight: its sag would be
- * below 2e-5 of its span, and the tension above 1e4 times its load. With 1e-10 and 1e-8 the tests of model, solve and
- * stress pass; 1e-11 and 1e-7 each fail one of the model (straight_chains_are_found). */
+/* A chain is straight if its lengths exceed the distance of its supports by less than this part. Its sag would be below
+ * 2e-5 of its span, and its tension above 1e4 times its load. The tests of model, solve and stress pass with 1e-10 and
+ * 1e-8. With 1e-11 and with 1e-7 one test of the model fails (straight_chains_are_found). */
 #define HF_STRAIGHT_EXCESS 1e-9
 
-/* What a gene sets in a scene with optimize.variables. */
+/* What a design variable of optimize.variables sets. */
 typedef struct {
-    hf_vary vary;        /* of the gene's cable, or HF_VARY_SUPPORT_... for a component of any of these */
+    hf_vary vary;        /* quantity of its cable; HF_VARY_SUPPORT_...: a displacement of its support */
     int setting;         /* row of optimize.variables */
-    int support_row;     /* the support that moves, or -1 */
-    double direction[3]; /* in which it moves, of length 1 */
+    int support_row;     /* row of the support that is displaced; -1: none */
+    double direction[3]; /* unit vector of the displacement */
 } hf_gene;
 
+/* A scene prepared for solving. "Row" stands for the index of a node in the model. */
 typedef struct {
-    int n_node, n_free, n_cable, n_inner_node; /* n_free: nodes that are no supports; n_inner_node: those in psi */
-    int half_bandwidth;                        /* of D: columns below the diagonal */
-    int n_band;      /* n_free * (half_bandwidth + 1); one spare place behind it takes the terms of supports */
-    bool has_strut;  /* some force density is negative: D may be indefinite */
-    bool has_newton; /* workspaces hold a Newton matrix: some law iterates (or hf_model_want_newton), and the energy is
-                        convex (no strut) */
-    bool by_lapack;  /* positive definite matrices are factored by LAPACK (form.factor) */
-    double pretension_N;
-    double reference_N; /* residuals are relative to it: the largest tension of a law or load, else the pretension */
+    int n_node, n_free, n_cable, n_inner_node; /* n_free: not supports; n_inner_node: counted in psi */
+    int half_bandwidth;                        /* number of columns of D below the diagonal */
+    int n_band;     /* n_free * (half_bandwidth + 1); an entry behind the band takes the terms of supports */
+    bool has_strut; /* a force density is negative, so D may be indefinite */
+    /* Workspaces hold a Newton matrix: a law iterates (or hf_model_want_newton was called), and the energy is
+     * convex. */
+    bool has_newton;
+    bool by_lapack;      /* LAPACK factors the positive definite matrices (form.factor) */
+    double pretension_N; /* pretension Td of the case */
+    double reference_N;  /* reference of residuals: maximum tension of a law or load, otherwise pretension_N */
 
-    int *row_of_node;                            /* [n_node] */
-    int *node_of_row;                            /* [n_node] */
-    int *end_row;                                /* [n_cable][2] */
-    int *diagonal_a, *diagonal_b, *off_diagonal; /* [n_cable] places in the band; n_band: none */
-    int *inner_row;                              /* [n_inner_node] rows that psi counts */
-    double *position_m;                          /* [3][n_node] theoretical, component by component; supports: real */
-    double *load_N;                              /* [3][n_node], or NULL */
-    double *length_m;                            /* [n_cable] theoretical */
-    unsigned char *group;                        /* [n_cable] hf_group */
-    int n_boundary, *boundary_cable;             /* [n_boundary] the cables of HF_GROUP_BOUNDARY */
-    unsigned char *law;                          /* [n_cable] hf_law in force under the case's method */
-    double *target;                              /* [n_cable] T* (N), L* (m), q (N/m) or l0 (m) by law */
-    double *EA_N;                                /* [n_cable]; NULL unless some cable is elastic under the method */
-    double *start_q_N_per_m;                     /* [n_cable] first force densities */
+    int *row_of_node;                            /* [n_node] row of each node */
+    int *node_of_row;                            /* [n_node] node of each row */
+    int *end_row;                                /* [n_cable][2] rows of the ends */
+    int *diagonal_a, *diagonal_b, *off_diagonal; /* [n_cable] entries in the band; n_band: none */
+    int *inner_row;                              /* [n_inner_node] rows that count in psi */
+    double *position_m;              /* [3][n_node] target positions by component; of supports the real ones */
+    double *load_N;                  /* [3][n_node] loads by component, or NULL */
+    double *length_m;                /* [n_cable] lengths between target positions */
+    unsigned char *group;            /* [n_cable] hf_group */
+    int n_boundary, *boundary_cable; /* [n_boundary] cables of HF_GROUP_BOUNDARY */
+    unsigned char *law;              /* [n_cable] hf_law in force under form.method */
+    double *target;                  /* [n_cable] T* (N), L* (m), q (N/m) or l0 (m) by law */
+    double *EA_N;                    /* [n_cable] axial stiffness; NULL if no law in force needs it */
+    double *start_q_N_per_m;         /* [n_cable] first force densities */
 
-    /* Genes: the boundary cables with a free end, whose pretensions a design sets. Genes that meet at a free node
-     * without a third one are in the same group, a chain. Unequal changes inside a chain push its nodes along it; equal
-     * changes change its sag. */
-    int n_gene, n_gene_group;
-    int *gene_cable; /* [n_gene] -1: none, the gene moves a support */
-    int *gene_group; /* [n_gene] 0..n_gene_group-1 */
-    hf_gene *gene;   /* [n_gene] under optimize.variables, else NULL: boundary pretensions by optimize.rule */
-    bool moves_supports;
+    /* Design variables: by default the pretensions of the boundary cables with a free end, otherwise those of
+     * optimize.variables. If exactly two of their cables meet at a free node, the two are in one group, a chain.
+     * Unequal changes inside a chain push its nodes along it; equal changes change its sag. */
+    int n_gene, n_gene_group; /* numbers of design variables and of chains */
+    int *gene_cable;          /* [n_gene] cable that it varies; -1: it displaces a support */
+    int *gene_group;          /* [n_gene] chain, 0 to n_gene_group-1 */
+    hf_gene *gene;            /* [n_gene] with optimize.variables; NULL: boundary pretensions under optimize.rule */
+    bool moves_supports;      /* some design variable displaces a support */
 
-    /* Genes linked by a symmetry of the net (module symmetry) change by the same step as the first of their class. */
-    int n_leader;     /* number of classes, the independent genes; n_gene without a symmetry */
-    int *gene_leader; /* [n_gene] first gene of the class: the gene itself without a symmetry */
+    /* Design variables that a symmetry or a row of optimize.variables links are a class. All change by the step of the
+     * first. */
+    int n_leader;     /* number of classes, which is that of the independent design variables */
+    int *gene_leader; /* [n_gene] first of the class; without links the variable itself */
 
-    /* Chains of length-controlled cables between two supports. Straight chains, whose sum of L* does not exceed the
-     * distance of the supports, come first. */
-    int n_chain;       /* straight */
-    int n_any_chain;   /* straight or with a sag */
-    int *chain_start;  /* [n_any_chain + 1] into chain_cable */
+    /* Chains of at least two cables of law length between two supports, through free nodes with no other such cable.
+     * Straight chains come first: their lengths L* do not exceed the distance of the supports. One path that is too
+     * short, through nodes where chains branch, may be among them. */
+    int n_chain;       /* number of straight chains */
+    int n_any_chain;   /* number of all chains */
+    int *chain_start;  /* [n_any_chain + 1] first cable of each chain in chain_cable */
     int *chain_cable;  /* [chain_start[n_any_chain]] cables in order along the chain */
-    int *chain_of_row; /* [n_node] straight chain that passes through a free node, or -1 */
+    int *chain_of_row; /* [n_node] straight chain through a free node, on a truss any chain; -1: none */
 
-    /* Supports on an elastic truss (hf_model_attach): the displacement of degree of freedom 3*i + c under the forces on
-     * the attachments, r = F f, Eq. 15 condensed. All zero without a truss. */
-    int n_attachment, n_tie;
+    /* Supports on an elastic truss (hf_model_attach). The flexibility F gives the displacements r = F f of the
+     * attachments under the forces f on them (Eq. 15, condensed), both by degree of freedom 3*i + c. All members are
+     * zero without a truss. */
+    int n_attachment, n_tie;     /* numbers of attachments and of cable ends at them */
     int *attachment_row;         /* [n_attachment] rows n_free + i, in the order of the flexibility */
     double *flexibility_m_per_N; /* [3 n_attachment][3 n_attachment] symmetric; NULL without a truss */
-    int *tie;                    /* [n_tie] cable ends at attachments: 2*cable + which end, by cable */
-    int *tie_attachment;         /* [n_tie] index of the attachment */
+    int *tie;                    /* [n_tie] cable ends at attachments, 2*cable + end (0 or 1), by cable */
+    int *tie_attachment;         /* [n_tie] attachment of each */
 
-    void *block, *attachment_block, *gene_block;
+    void *block, *attachment_block, *gene_block; /* owned memory behind the arrays */
 } hf_model;
 
-/* Build from a checked scene. HF_OK or HF_NO_MEMORY (with a message). Free with hf_model_free in any case. */
+/* Builds a model from a checked scene with the laws that form->method puts in force. Returns HF_OK or HF_NO_MEMORY with
+ * a message, also if the band is too large. Call hf_model_free in either case. */
 hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages);
 
-/* Put supports on a truss: node[i], a support of the scene, becomes attachment i. Forces on the attachments displace
- * them by the flexibility [3a][3a] in m/N (copied); all other supports stay fixed. A cable of law length between an
- * attachment and another support would be a rigid rod in the truss: it keeps its first tension instead. Returns HF_OK;
- * HF_BAD_CASE, naming the attachment by its index, when a node is no support or comes twice, or when the matrix is not
- * finite, not symmetric to 1e-9 of its largest entry (the copy is, exactly), or has a negative diagonal entry;
- * HF_NO_MEMORY. Call it once per model, before workspaces are created for it. */
+/* Puts supports on a truss: node[i], a support of the scene, becomes attachment i of n_attachment > 0. Forces on the
+ * attachments displace them by flexibility_m_per_N [3 n_attachment][3 n_attachment], which is copied and made exactly
+ * symmetric. All other supports stay fixed. A cable of law length between an attachment and another support would be a
+ * rigid rod in the truss; it gets law tension with its first tension instead. Call this at most once per model, before
+ * workspaces are created for it.
+ *
+ * Returns HF_OK; HF_BAD_CASE, with a message that contains the index of the attachment, if a node is no support or
+ * occurs twice, or if the matrix is not finite, not symmetric to 1e-9 of its largest entry, or negative on the
+ * diagonal; HF_NO_MEMORY. */
 hf_status hf_model_attach(hf_model *model, int n_attachment, const int *node, const double *flexibility_m_per_N,
                           hf_messages *messages);
 
-/* Let workspaces of a net on a truss hold a Newton matrix where no law iterates, too, but for nets with struts: then
- * populations share one, and move net and truss in lanes (chord). Its set-up is dear beside one form-finding. Call it
- * before workspaces are created. */
+/* Makes workspaces of a net on a truss hold a Newton matrix also if no law iterates, except with struts. Populations
+ * then share one matrix and move net and truss in vector lanes (chord). Its set-up is expensive compared with one
+ * form-finding. Call it before workspaces are created. */
 void hf_model_want_newton(hf_model *model);
 
-/* The force to which residuals and slack are relative, N: reference_N of a model of this scene. */
+/* Returns the force to which residuals and slack are relative, N: reference_N of a model of this scene. pretension_N is
+ * Td. */
 double hf_model_reference_N(const hf_scene *scene, double pretension_N);
 
-/* What gene k sets: HF_VARY_PRETENSION unless optimize.variables says more. */
+/* Returns what design variable i_gene sets: HF_VARY_PRETENSION without optimize.variables. */
 static inline hf_vary hf_model_vary(const hf_model *model, int i_gene)
 {
     return model->gene ? model->gene[i_gene].vary : HF_VARY_PRETENSION;
 }
 
-/* Number the chains of the genes: gene_group, n_gene_group; and unlink them: gene_leader, n_leader. HF_OK or
- * HF_NO_MEMORY. For those who make genes. */
+/* Numbers the chains of the design variables (gene_group, n_gene_group) and unlinks the variables (gene_leader,
+ * n_leader). For code that sets gene_cable. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_model_group_genes(hf_model *model);
 
-#define HF_GENE_NAME_SIZE 320 /* ids of tables have at most 255 bytes */
+#define HF_GENE_NAME_SIZE 320 /* the ids of tables have at most 255 bytes */
 
-/* The name of a gene in tables: the id of its cable, or of the support that it moves with .x, .y, .z or .normal. */
+/* Writes the name of a design variable in tables into text[size]: the id of its cable, or of its support followed by
+ * .x, .y, .z or .normal. */
 void hf_model_gene_name(const hf_model *model, const hf_scene *scene, int i_gene, char *text, size_t size);
 
-/* The unit of a gene: "N", "N/m" or "m". */
+/* Returns the unit of a design variable, "N", "N/m" or "m", a constant string. */
 const char *hf_model_gene_unit(const hf_model *model, int i_gene);
 
-/* True when every index and band place obeys its invariants; for asserts and tests. */
+/* Returns true if all indices of the model obey their invariants. For asserts and tests. */
 bool hf_model_is_valid(const hf_model *model);
 
-/* Write the cables of a chain, "cable + cable + cable", into `text`; a text that does not fit ends with " ...". */
+/* Writes the cables of a chain, "cable + cable + cable", into text[size]. A text that does not fit ends with " ...". */
 void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_chain, char *text, size_t size);
 
-/* A shape by row, row_m [3][n_node], in the order of the scene: position_m [n_node][3]. */
+/* Copies row_m [3][n_node], positions by row, into position_m [n_node][3] in the order of the scene, m. */
 void hf_model_positions(const hf_model *model, const double *row_m, double *position_m);
 
+/* Frees the arrays of the model. */
 void hf_model_free(hf_model *model);
 
 HF_API_END

@@ -1,18 +1,21 @@
-/* optimiser - proposes the designs of a population generation by generation (ask/tell): no threads, files or printing.
+/* optimiser - proposes the designs of a population, generation by generation (ask and tell).
  * Stability: stable.
  *
- *     hf_optimiser_create(...);               // generation 0 is proposed; its individual 0 is the base design
+ * An optimiser starts no threads, opens no files and prints nothing. Pipeline:
+ *
+ *     hf_optimiser_create(...);               // proposes generation 0; its individual 0 is the initial design
  *     hf_population *p = &optimiser.population;
  *     do {
  *         evaluate every individual with p->pending[i] != 0: design p->design_N + i*n_gene into p->result[i];
  *         hf_optimiser_tell(&optimiser);      // ranks; p->stop_reason says whether this was the last generation
  *     } while (hf_optimiser_next(&optimiser)); // proposes the next one
  *
- * hf_batch_next does the first and the last step of the loop with all threads, each of which proposes individuals and
- * evaluates them. A generation stays as it is while the next one is proposed: a copy of the struct hf_population, made
- * after hf_optimiser_tell, may be read until the hf_optimiser_next after that.
+ * hf_batch_next does the first and the last step of this loop with all threads; each of them proposes individuals and
+ * evaluates them. A generation remains unchanged while the next one is proposed. A copy of the struct hf_population
+ * that is made after hf_optimiser_tell may therefore be read until the end of the following hf_optimiser_next.
  *
- * A new optimiser needs a file src/search/optimiser_NAME.c, a row of HF_OPTIMISER_LIST and a word in settings.h. */
+ * A new optimiser needs a file src/search/optimiser_NAME.c, a row of HF_OPTIMISER_LIST and a row of HF_OPTIMIZE_METHODS
+ * in settings.h. */
 #ifndef HIFDM_OPTIMISER_H
 #define HIFDM_OPTIMISER_H
 
@@ -21,61 +24,74 @@
 
 HF_API_BEGIN
 
-/* The functions of one optimiser. A store keeps only the population, and a resumed run proposes the generations again
- * whose results are in the journal. Therefore a proposal depends only on the settings, the model, the population after
- * hf_optimiser_tell (best_psi_m holds the earlier generations) and random numbers by (seed, generation, individual).
- * `state` holds constants, and scratch whose contents mean nothing between generations. */
+/* The functions of one optimiser. A store keeps only the population. A resumed run proposes the generations again whose
+ * results are in the journal. Therefore a proposal depends only on the settings, the model, the population after
+ * hf_optimiser_tell and random numbers by (seed, generation, individual). best_psi_m and best_merit of the population
+ * hold the values of earlier generations. `state` holds constants, and scratch that has no meaning between
+ * generations. */
 typedef struct {
-    /* Make the state. HF_OK or HF_NO_MEMORY. */
+    /* Creates the state. Returns HF_OK or HF_NO_MEMORY. */
     hf_status (*create)(const hf_optimize_settings *settings, const hf_model *model, void **state);
-    /* Propose generation 0: fill all arrays of the generation but the results. */
+    /* Proposes generation 0: fills all arrays of the generation except the results. */
     void (*first)(void *state, hf_population *population);
-    /* Prepare what all proposals of the generation after `now` need. */
+    /* Prepares the data that all proposals of the generation after `now` share. */
     void (*begin)(void *state, const hf_population *now);
-    /* Propose individual i of that generation in the arrays of `next`, with its result when it is not pending. Several
-     * threads call this at once, each for other individuals, in any order. */
+    /* Proposes individual i of the next generation in the arrays of `next`. If it need not be evaluated, pending is 0
+     * and its result is set. Several threads call this at once, each with different individuals, in any order. */
     void (*propose)(void *state, const hf_population *now, hf_population *next, int i);
-    /* Choose, once `now` is evaluated, what stands in it of its own individuals and of those before. NULL: its own. */
+    /* Selects the survivors once `now` is evaluated: the individuals of `now` and `before` that form the generation.
+     * NULL: all individuals of `now` survive. */
     void (*survive)(void *state, const hf_population *before, hf_population *now);
-    void (*free)(void *state); /* state may be NULL */
+    void (*free)(void *state); /* frees the state, which may be NULL */
 } hf_optimiser_kind;
 
+/* An optimiser with its present generation. */
 typedef struct {
-    hf_population population;
-    hf_population next; /* internal: the arrays that kind->propose writes to */
-    const hf_optimiser_kind *kind;
-    const hf_optimize_settings *settings; /* borrowed */
-    void *state;
-    bool is_fresh; /* internal: evaluated since it was proposed, and not yet told */
+    hf_population population;      /* the present generation */
+    hf_population next;            /* internal: the arrays of the next generation, to which kind->propose writes */
+    const hf_optimiser_kind *kind; /* the functions of the optimiser; NULL: it cannot propose designs */
+    const hf_optimize_settings *settings; /* settings of the search; borrowed */
+    void *state;                          /* data of the functions */
+    bool is_fresh; /* internal: the generation has been proposed, but hf_optimiser_tell has not been called for it */
 } hf_optimiser;
 
-/* Settings and model are borrowed until hf_optimiser_free. base_N: [n_gene] pretensions T after form-finding. With kind
- * NULL the population has its bounds, but no designs. Returns HF_OK or HF_NO_MEMORY; call hf_optimiser_free in either
- * case. */
+/* Creates an optimiser and proposes generation 0. base_N [n_gene] is the initial design: the values of the design
+ * variables after form-finding. Settings and model are borrowed until hf_optimiser_free. If kind is NULL, the
+ * population has its bounds, but no designs. Returns HF_OK or HF_NO_MEMORY. Call hf_optimiser_free in either case. */
 hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *settings,
                               const hf_model *model, const double *base_N, hf_optimiser *optimiser);
 
-/* Take the results that the caller has written into population.result: choose the survivors, and rank them. */
+/* Reads the results that the caller has written into population.result, selects the survivors and ranks them
+ * (hf_population_rank). */
 void hf_optimiser_tell(hf_optimiser *optimiser);
 
-/* Propose the next generation. Returns false, and does nothing, when stop_reason says that there is none. */
+/* Proposes the next generation, which becomes the present one. Returns false and does nothing if stop_reason is not
+ * HF_POPULATION_RUNNING. */
 bool hf_optimiser_next(hf_optimiser *optimiser);
 
-/* The same in steps, for several threads: after hf_optimiser_begin, which returns false when there is none,
- * hf_optimiser_propose for each individual, which may be evaluated at once: design and result are those of
- * optimiser->next. After hf_optimiser_end this is the present generation. */
+/* Begins the next generation for several threads. Returns false if there is none (hf_optimiser_next). Otherwise call
+ * hf_optimiser_propose for each individual, then hf_optimiser_end. */
 bool hf_optimiser_begin(hf_optimiser *optimiser);
+/* Proposes individual i in the arrays of optimiser->next; it may be evaluated at once. Several threads may call this,
+ * each with different individuals. */
 void hf_optimiser_propose(hf_optimiser *optimiser, int i);
+/* Makes optimiser->next, in which all individuals have been proposed, the present generation. */
 void hf_optimiser_end(hf_optimiser *optimiser);
 
+/* Frees the population and the state, but neither settings nor model. */
 void hf_optimiser_free(hf_optimiser *optimiser);
 
 /* ---- the methods of a case ---- */
 
-/* How Levenberg-Marquardt ended. CONVERGED: no step within the limits promises a lower psi. STALLED: one does, but even
- * a short one does not keep the promise. MAX_ITERATIONS: neither yet. SETTLED: the last ten steps lowered the merit by
- * less than 1e-6 of it, and changed no goal (weight x value) by 1e-5 of the merit. TAKEN: it did not run, the design is
- * a point of a front. */
+/* Why Levenberg-Marquardt ended:
+ *
+ *   CONVERGED        no step within the limits promises a lower merit
+ *   STALLED          steps promise a lower merit, but none brings one, however short; or the result is the start,
+ *                    because no better design was found or could be measured
+ *   MAX_ITERATIONS   the limit on the steps was reached before any of the others
+ *   SETTLED          the last ten steps lowered the merit by less than 1e-6 of it and changed no objective, in
+ *                    weight x value, by 1e-5 of the merit
+ *   TAKEN            it did not run: the design is a point of a front */
 typedef enum {
     HF_POLISH_CONVERGED,
     HF_POLISH_STALLED,
@@ -88,18 +104,20 @@ extern const char *const hf_polish_stop_word[5]; /* "converged", "stalled", "max
 /* One row for each hf_optimize_method: X(method, optimiser of its generations or `none`, ends_with_polish). */
 #define HF_OPTIMISER_LIST(X) X(GA, ga, false) X(LM, none, true) X(GA_LM, ga, true)
 
+/* Which algorithms a method uses. */
 typedef struct {
-    const hf_optimiser_kind *kind; /* NULL: no generations */
-    bool ends_with_polish;         /* the design of Levenberg-Marquardt is the result; else it is only reported */
+    const hf_optimiser_kind *kind; /* optimiser of the generations; NULL: there are none */
+    bool ends_with_polish;         /* the refinement is the result; false: it is run for comparison only */
 } hf_optimiser_plan;
 
-/* Of the settings' method; the generations of a front are those of hf_optimiser_nsga. */
+/* Returns the algorithms of settings->method. With optimize.objectives, hf_optimiser_nsga takes the place of
+ * hf_optimiser_ga. */
 hf_optimiser_plan hf_optimiser_plan_of(const hf_optimize_settings *settings);
 
 #define HF_OPTIMISER_DECLARE(method, optimiser, ends_with_polish)                                                      \
     extern const hf_optimiser_kind hf_optimiser_##optimiser;
 HF_OPTIMISER_LIST(HF_OPTIMISER_DECLARE)
-extern const hf_optimiser_kind hf_optimiser_nsga; /* of optimize.objectives, in place of ga */
+extern const hf_optimiser_kind hf_optimiser_nsga; /* NSGA-II, for optimize.objectives */
 #undef HF_OPTIMISER_DECLARE
 
 HF_API_END

@@ -1,8 +1,8 @@
 /* population - the designs of one generation and their results.
  * Stability: stable.
  *
- * An optimiser proposes the designs, a batch evaluates them and a store keeps them. How the next generation is made is
- * left to the optimiser (optimiser.h). */
+ * An optimiser (optimiser.h) proposes the designs, a batch evaluates them, and a store keeps them. This header ranks
+ * the results; it does not determine how the next generation is made. */
 #ifndef HIFDM_POPULATION_H
 #define HIFDM_POPULATION_H
 
@@ -15,93 +15,100 @@
 
 HF_API_BEGIN
 
+/* Why the genetic algorithm ended (optimize.stagnation_generations, optimize.generations). */
 typedef enum {
-    HF_POPULATION_RUNNING,
-    HF_POPULATION_STAGNATION,
-    HF_POPULATION_GENERATIONS,
-    HF_POPULATION_ALL_INFEASIBLE
+    HF_POPULATION_RUNNING,       /* it has not ended */
+    HF_POPULATION_STAGNATION,    /* the best merit no longer falls */
+    HF_POPULATION_GENERATIONS,   /* the maximum number of generations has been evaluated */
+    HF_POPULATION_ALL_INFEASIBLE /* no individual is feasible, and the violations no longer fall */
 } hf_population_stop;
 extern const char *const hf_population_stop_word[4]; /* "running", "stagnation", "generations", "all_infeasible" */
 
+/* A generation, and figures of all generations so far. */
 typedef struct {
-    int n_gene, n_individual;
-    int n_objective;           /* of optimize.objectives; 0: there are none */
-    bool has_rows;             /* the genes are those of optimize.variables, in the unit of each; else pretensions */
-    int generation;            /* number of the present generation, from 0 */
-    int generation_limit;      /* the largest number of generations */
-    double *base_N;            /* [n_gene] pretensions T after form-finding */
-    double *lower_N, *upper_N; /* [n_gene] bounds on the pretensions T' of a design */
-    double *reach;             /* [n_gene] how far the first designs spread from the base */
+    int n_gene, n_individual; /* number of design variables and of individuals */
+    int n_objective;          /* number of rows of optimize.objectives; 0: there are none */
+    bool has_rows; /* design variables are those of optimize.variables, each in its own unit; false: pretensions in N */
+    int generation;            /* index of the present generation, from 0 */
+    int generation_limit;      /* maximum number of generations */
+    double *base_N;            /* [n_gene] initial design: values after form-finding (tensions T of Eq. 13) */
+    double *lower_N, *upper_N; /* [n_gene] bounds on the values of a design (T' of Eq. 13) */
+    double *reach;             /* [n_gene] maximum distance of the first designs from base_N */
 
-    /* Written by the optimiser; the results of pending designs by the batch. */
-    double *design_N;                       /* [n_individual][n_gene] boundary pretensions T' */
-    hf_form_result *result;                 /* [n_individual]; valid from the start where pending is 0 */
-    unsigned char *pending;                 /* [n_individual] 1: must be evaluated */
-    double *crossover_rate, *mutation_rate; /* [n_individual] rates of the trial; NaN where there are none */
-    int *parent;                            /* [n_individual][2] in the generation before; -1 where there are none;
-                                               k, -1: individual k of the generation before, which was kept */
+    /* The optimiser writes these arrays. The batch writes the results of pending designs. */
+    double *design_N;                       /* [n_individual][n_gene] values of the design variables */
+    hf_form_result *result;                 /* [n_individual]; where pending is 0 it is valid from the start */
+    unsigned char *pending;                 /* [n_individual] 1: the design must be evaluated */
+    double *crossover_rate, *mutation_rate; /* [n_individual] rates by which the trial was made; NaN: none */
+    /* [n_individual][2] indices of the parents in the previous generation, -1: none. The pair k, -1 stands for
+     * individual k of the previous generation, which was kept. */
+    int *parent;
 
-    /* Written by hf_optimiser_tell: what the evaluation of the proposed design gave, kept or not. */
-    hf_status *trial_status; /* [n_individual] */
-    double *trial_psi_m;     /* [n_individual] */
+    /* hf_optimiser_tell writes these arrays: figures of each proposed design, whether or not it survived. */
+    hf_status *trial_status; /* [n_individual] status of the proposed design */
+    double *trial_psi_m;     /* [n_individual] psi of the proposed design */
 
-    /* Written by hf_population_rank. */
-    int best;                                   /* index; -1 while no design is feasible */
-    double *best_merit;                         /* [generation_limit] hf_population_merit of the best, or NaN */
-    double *best_psi_m;                         /* [generation_limit] psi of these; the same without goals */
-    double *least_violation;                    /* [generation_limit] of each generation */
-    double mean_psi_m, worst_psi_m;             /* of the feasible individuals */
-    int n_infeasible;                           /* in this generation */
-    long n_evaluation, n_evaluation_infeasible; /* in all generations so far */
-    long n_evaluation_above_cap;                /* of the infeasible ones: those that have a shape */
-    hf_population_stop stop_reason;
+    /* hf_population_rank writes the following members. */
+    int best;                       /* index of the best individual; -1: none is feasible */
+    double *best_merit;             /* [generation_limit] hf_population_merit of the best; NaN: none is feasible */
+    double *best_psi_m;             /* [generation_limit] psi of the best */
+    double *least_violation;        /* [generation_limit] minimum violation of the individuals */
+    double mean_psi_m, worst_psi_m; /* mean and maximum psi of the feasible individuals */
+    int n_infeasible;               /* number of infeasible individuals of this generation */
+    long n_evaluation, n_evaluation_infeasible; /* designs evaluated so far, and the infeasible ones of them */
+    long n_evaluation_above_cap;                /* the infeasible ones of them that have a shape */
+    hf_population_stop stop_reason;             /* why the generations end with this one */
 
-    void *block;
+    void *block; /* owned memory behind the arrays */
 } hf_population;
 
-/* Make a population whose designs are all zero. The bounds are T -+ range_N within [min, max]_tension_N; genes with the
- * same leader share the step from T, and the bounds on that step. `next` has its own arrays for a second generation,
- * and shares the other arrays and the block with `population`. Returns HF_OK or HF_NO_MEMORY; free `population`, and
- * not `next`, in either case. */
+/* Creates a population whose designs are all zero. base_N [n_gene] is the initial design; it is copied. The bounds are
+ * base_N -+ range_N within [min_tension_N, max_tension_N], or as the row of optimize.variables says. Design variables
+ * with the same leader change by the same step, so they share the bounds on that step. `next` gets its own arrays for a
+ * second generation; it shares the other arrays and the block with `population`. Returns HF_OK or HF_NO_MEMORY. Free
+ * `population`, but not `next`, in either case. */
 hf_status hf_population_create(const hf_optimize_settings *settings, const hf_model *model, const double *base_N,
                                hf_population *population, hf_population *next);
+/* Frees the arrays of the population and those of `next`. */
 void hf_population_free(hf_population *population);
 
-/* Write the trials from the results as they were evaluated. */
+/* Copies status and psi of the results into trial_status and trial_psi_m. */
 void hf_population_note_trials(hf_population *population);
 
-/* Let individual k of the generation before stand in place of individual i. */
+/* Replaces individual i by individual k of the previous generation: design, result and parent. */
 void hf_population_take_over(const hf_population *before, int k, hf_population *population, int i);
 
-/* Let each individual of the generation before stand in its place where the trial there is worse, or was not
- * evaluated. */
+/* Replaces each individual whose trial is worse than the individual of the same index in the previous generation, or
+ * was not evaluated, by the latter. */
 void hf_population_keep_better(const hf_population *before, hf_population *population);
 
-/* Exchange the arrays of the two generations and count the generation: `next` becomes the present one. */
+/* Makes `next` the present generation: exchanges the arrays of the two and increments population->generation. */
 void hf_population_advance(hf_population *population, hf_population *next);
 
-/* Set best, mean, worst, counts and stop_reason from the results of this generation, which must be complete. */
+/* Sets best, mean, worst, counts and stop_reason from the results of this generation, which must be complete. */
 void hf_population_rank(const hf_optimize_settings *settings, hf_population *population);
 
-/* How far a result is beyond its limits: 0 when it is feasible, INFINITY without a shape, else its violation. */
+/* Returns how far a result is beyond its constraints: 0 if it is feasible, INFINITY without a shape, otherwise
+ * result->violation. */
 double hf_population_violation(const hf_form_result *result);
 
-/* What is to be least of a feasible result: its merit, or the first of its objectives. */
+/* Returns the figure of a feasible result that is minimised: its merit, or the first of its objectives. */
 double hf_population_merit(const hf_population *population, const hf_form_result *result);
 
-/* Is individual a better than b? Of feasible ones by merit, or by their objectives in turn, of infeasible ones, which
- * come last, by violation; of equals the lower index comes first. */
+/* Returns true if individual a is better than b. Feasible ones are ordered by merit, or by their objectives in turn,
+ * and come before infeasible ones, which are ordered by violation (Deb 2000). Of two equals the lower index is
+ * better. */
 bool hf_population_is_better(const hf_population *population, int a, int b);
 
-/* The value of the gene within its bounds that is nearest to value_N. */
+/* Returns the value within the bounds of design variable i_gene that is nearest to value_N. */
 static inline double hf_population_clamp(const hf_population *population, int i_gene, double value_N)
 {
     double low = population->lower_N[i_gene], high = population->upper_N[i_gene];
     return value_N < low ? low : value_N > high ? high : value_N;
 }
 
-/* Change the genes of design_N [n_gene] that follow a leader: each takes the leader's step from T, within its own
- * bounds. */
+/* Changes the design variables of design_N [n_gene] that follow a leader: each is moved from base_N by the step of its
+ * leader, within its own bounds. */
 void hf_population_link(const hf_population *population, const hf_model *model, double *design_N);
 
 HF_API_END

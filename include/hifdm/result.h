@@ -1,10 +1,10 @@
-/* result - what a form-finding gives: status, measures, why it stopped. Plain values, no pointers.
+/* result - the figures of a form-finding: status, measures, and why it stopped. Plain values without pointers.
  * Stability: stable.
  *
- * HF_RESULT_LIST is the one list of the figures of a result. From it come the members of hf_form_result, the attributes
- * of /form, best_... of /ga and those of /polish, the data sets of /ga with a value per individual, the columns of a
- * sweep's ledger and of the merged study, the JSON objects of the stages (which the report shows), and the columns of
- * `evaluate`. A new figure is a row here and the code that computes it. */
+ * HF_RESULT_LIST is the one list of the figures of a result. It defines the members of hf_form_result, the attributes
+ * of /form, those of /ga with the prefix best_, and those of /polish. It also defines the data sets of /ga with a value
+ * per individual, the columns of a sweep's ledger and of the merged study, the JSON objects of the stages, and the
+ * columns of `hifdm evaluate`. A new figure is a row of the list and the code that computes it. */
 #ifndef HIFDM_RESULT_H
 #define HIFDM_RESULT_H
 
@@ -15,41 +15,46 @@
 
 HF_API_BEGIN
 
-/* X(name, value, word stored in files). Never renumber. */
+/* X(name, value, word stored in files): why a form-finding stopped. Files contain the values; never renumber them. */
 #define HF_STOP_REASON_LIST(X)                                                                                         \
     X(NONE, 0, "none")                                                                                                 \
-    X(DIRECT, 1, "direct")                 /* no law changes a force density: one solve is the answer */               \
-    X(RESIDUAL, 2, "residual")             /* equilibrium and lengths within the tolerances */                         \
-    X(RMS_CHANGE, 3, "rms_change")         /* the paper's rule */                                                      \
-    X(MAX_ITERATIONS, 4, "max_iterations") /* not converged */                                                         \
-    X(ILL_POSED, 5, "ill_posed")           /* see the status */
+    X(DIRECT, 1, "direct")                 /* no law changes a force density, so one solve is exact */                 \
+    X(RESIDUAL, 2, "residual")             /* converged: residual and lengths are within their tolerances */           \
+    X(RMS_CHANGE, 3, "rms_change")         /* the paper's rule: psi changed by less than its tolerance */              \
+    X(MAX_ITERATIONS, 4, "max_iterations") /* the limit on the iterations was reached without convergence */           \
+    X(ILL_POSED, 5, "ill_posed")           /* the net has no shape, see the status */
 
+/* Why a form-finding stopped. */
 typedef enum {
 #define HF_STOP_REASON_ENUM(name, value, word) HF_STOPPED_##name = value,
     HF_STOP_REASON_LIST(HF_STOP_REASON_ENUM)
 #undef HF_STOP_REASON_ENUM
 } hf_stop_reason;
 
-const char *hf_stop_reason_word(int reason); /* "unknown" for a foreign value */
+/* Returns the word of a stop reason, a constant string; "unknown" for other values. */
+const char *hf_stop_reason_word(int reason);
 
-/* How the coupling of the net with an elastic truss ended. X(name, value, word stored in files). Never renumber. */
+/* X(name, value, word stored in files): why the coupling of the net with an elastic truss ended. Files contain the
+ * values; never renumber them. */
 #define HF_COUPLING_STOP_LIST(X)                                                                                       \
     X(NONE, 0, "none")                     /* there is no truss */                                                     \
-    X(TOF, 1, "tof")                       /* no attachment moves farther than tof_m any more */                       \
-    X(MAX_ITERATIONS, 2, "max_iterations") /* not converged */                                                         \
-    X(DIVERGED, 3, "diverged")             /* the steps grow: the truss is too soft */                                 \
+    X(TOF, 1, "tof")                       /* converged: no attachment moves farther than coupling.tof_m */            \
+    X(MAX_ITERATIONS, 2, "max_iterations") /* the limit on the iterations was reached without convergence */           \
+    X(DIVERGED, 3, "diverged")             /* the steps grow, because the truss is too soft */                         \
     X(NET, 4, "net")                       /* the net has no shape, see the status */
 
+/* Why the coupling ended. */
 typedef enum {
 #define HF_COUPLING_STOP_ENUM(name, value, word) HF_COUPLING_##name = value,
     HF_COUPLING_STOP_LIST(HF_COUPLING_STOP_ENUM)
 #undef HF_COUPLING_STOP_ENUM
 } hf_coupling_stop;
 
-const char *hf_coupling_stop_word(int stop); /* "unknown" for a foreign value */
+/* Returns the word of a reason why a coupling ended, a constant string; "unknown" for other values. */
+const char *hf_coupling_stop_word(int stop);
 
-/* Whether the bounds of a result are proven, and if not, why. X(name, value, word stored in files, what it means).
- * Never renumber. */
+/* X(name, value, word stored in files, what it means): whether the error bounds of a result are certified, otherwise
+ * why not (METHOD section 3). Files contain the values; never renumber them. */
 #define HF_BOUND_REASON_LIST(X)                                                                                        \
     X(NONE, 0, "none", "no proof was tried")                                                                           \
     X(PROVEN, 1, "proven", "no equilibrium is farther away")                                                           \
@@ -62,46 +67,50 @@ const char *hf_coupling_stop_word(int stop); /* "unknown" for a foreign value */
     X(DEPENDENT_LENGTHS, 8, "dependent_lengths", "prescribed lengths depend on each other")                            \
     X(LOOSE, 9, "loose", "no taut cable holds some node: its position is not unique")
 
+/* Whether the error bounds are certified, otherwise why not. */
 typedef enum {
 #define HF_BOUND_REASON_ENUM(name, value, word, meaning) HF_BOUND_##name = value,
     HF_BOUND_REASON_LIST(HF_BOUND_REASON_ENUM)
 #undef HF_BOUND_REASON_ENUM
 } hf_bound_reason;
 
-const char *hf_bound_reason_word(int reason);    /* "unknown" for a foreign value */
-const char *hf_bound_reason_meaning(int reason); /* the same */
+/* Returns the word of a bound reason, or what it means, a constant string; "unknown" for other values. */
+const char *hf_bound_reason_word(int reason);
+const char *hf_bound_reason_meaning(int reason);
 
 /* ---- The list: X(type, member, kind, json, individual, key, units, description) ----
  *
- * kind         of the stored value (REAL, INT, or an enumeration of the store's layout)
- * json         place in the JSON object of a stage; equal places are in the order of the list; 0 = not there
- * individual   place among the figures of one individual (data sets of /ga, columns of `evaluate`); 0 = not there
- * key          in JSON; the attribute has the name of the member
- * description  attribute of the data set, where there is one
+ *   kind         of the stored value: REAL, INT, or an enumeration of the store
+ *   json         place in the JSON object of a stage; equal places keep the order of the list; 0: not there
+ *   individual   place among the figures of one individual, which are data sets of /ga and columns of
+ *                `hifdm evaluate`; 0: not there
+ *   key          name in JSON; the HDF5 attribute has the name of the member
+ *   description  description of the data set, if there is one
  *
  * Attributes and columns of the ledger are in the order of the list. JSON has the figures of a coupling between places
- * 4 and 5. Under a status other than HF_OK, HF_NOT_CONVERGED and those of a broken limit the REAL ones are NaN. Of a
- * design of hf_evaluate under any status but HF_OK psi_m and merit are NaN, and without a shape (hf_status_has_shape)
- * the two tension ratios and the violation are. In more detail:
- *   culprit                 cable (COLLAPSED, NOT_FINITE; NOT_CONVERGED: the one whose rounding stands in the way), row
- *                           of D (SINGULAR), chain (STRAIGHT_CHAIN)
- *                           OK, NOT_CONVERGED: with n_drifting > 0, the row that moves farthest
- *   psi_m                   Eq. 10, of the inner nodes that a taut cable holds; NaN when none does
- *   residual_N              with every cable at the tension of its law: of an elastic one EA (l/l0 - 1) at its length
- *                           l, not the multiplier that the iterations balance and of which length_error speaks
- *   length_error            for elastic cables L* = l0 (1 + T/EA); 0 without a cable of these laws
- *   inner_tension_ratio     max T / min T of the group, as boundary_tension_ratio; INFINITY when a cable of it is slack
- *                           (n_slack counts those of both groups), NaN when the group is empty or has a strut
- *   violation               sum over boundary cables of 1 - T/t below t and 1 - cap t/T above cap t, where t^2 = min T
- *                           max T / cap, with a slack T as if just taut; and what shapes are beyond optimize.limits;
- *                           NaN for what is no design
- *   n_loose                 such nodes are where no cable of theirs is too long, as near to their theoretical places as
- *                           that allows. A design (hf_evaluate) with such a node is SINGULAR
- *   n_drifting              others than those; position_error_m is then NaN
- *   position_error_m        this one, the bounds, condition (INFINITY: singular) and backward_error are NaN unless
- *                           hf_certify was called
- *   position_bound_m        for the exact values of laws, loads and supports as doubles (METHOD section 3); NaN when
- *                           bound_reason is not PROVEN */
+ * 4 and 5. The REAL figures are NaN unless the status is HF_OK, HF_NOT_CONVERGED or that of a broken limit. In the
+ * result of a design (hf_evaluate), psi_m and merit are NaN unless the status is HF_OK. Without a shape
+ * (hf_status_has_shape) its tension ratios and its violation are NaN, too. Details of single figures:
+ *
+ *   culprit              HF_COLLAPSED, HF_NOT_FINITE: a cable; HF_SINGULAR: a row of D; HF_STRAIGHT_CHAIN: a chain;
+ *                        HF_NOT_CONVERGED: the cable whose rounding prevents convergence; HF_OK and
+ *                        HF_NOT_CONVERGED with n_drifting > 0: the row that moves farthest
+ *   psi_m                Eq. 10, over the inner nodes that a taut cable holds; NaN if there are none
+ *   residual_N           with every cable at the tension of its law; for an elastic one of length l this is
+ *                        EA (l/l0 - 1). The iterations balance a multiplier instead, and length_error shows how far
+ *                        the two differ.
+ *   length_error         for elastic cables L* = l0 (1 + T/EA); 0 if no cable has one of these laws
+ *   inner_tension_ratio  max T / min T of the group, as boundary_tension_ratio; INFINITY if one of its cables is slack,
+ *                        NaN if the group is empty or has a strut. n_slack counts the cables of both groups.
+ *   violation            sum over boundary cables of 1 - T/t for T < t and of 1 - cap t/T for T > cap t, where
+ *                        t^2 = min T max T / cap and a slack T counts as if just taut; plus how far the shape is
+ *                        beyond the rows of optimize.limits
+ *   n_loose              these nodes have the positions nearest to their target positions at which none of their
+ *                        cables is too long. A design with such a node is HF_SINGULAR.
+ *   n_drifting           does not include the nodes of n_loose; if it is above 0, position_error_m is NaN
+ *   position_error_m     NaN without hf_certify, as are the bounds, condition (INFINITY: singular) and backward_error
+ *   position_bound_m     for laws, loads and supports exactly as their doubles; NaN unless bound_reason is
+ *                        HF_BOUND_PROVEN */
 #define HF_RESULT_LIST(X)                                                                                              \
     X(hf_status, status, STATUS, 1, 1, "status", "", "ok = feasible; under any other psi is NaN")                      \
     X(hf_stop_reason, stop_reason, STOP_REASON, 0, 0, "stop_reason", "", "why the iteration stopped")                  \
@@ -129,7 +138,7 @@ const char *hf_bound_reason_meaning(int reason); /* the same */
     X(int, n_loaded_chain, INT, 5, 0, "loaded_straight_chains", "",                                                    \
       "chains under lateral load: their tensions mean nothing")
 
-/* The same list for the coupling of the net with its truss. */
+/* The same list for the figures of the coupling of the net with its truss. */
 #define HF_COUPLING_LIST(X)                                                                                            \
     X(hf_coupling_stop, stop_reason, COUPLING_STOP, 4, 0, "stop_reason", "", "how the coupling ended")                 \
     X(int, iterations, INT, 1, 0, "iterations", "", "form-findings of the loop, or steps in one matrix")               \
@@ -139,22 +148,24 @@ const char *hf_bound_reason_meaning(int reason); /* the same */
 
 #define HF_RESULT_MEMBER(type, member, kind, json, individual, key, units, description) type member;
 
-/* All zero without a truss. */
+/* The figures of a coupling; all zero without a truss. */
 typedef struct {
     HF_COUPLING_LIST(HF_RESULT_MEMBER)
 } hf_coupling_result;
 
+/* The figures of a form-finding or of a design. */
 typedef struct {
     HF_RESULT_LIST(HF_RESULT_MEMBER)
-    hf_coupling_result coupling;
-    double goal[HF_DESIGN_ROWS_MAX]; /* of a design with goals: each in its own unit, in the order of optimize.goals */
+    hf_coupling_result coupling;     /* figures of the coupling with the truss */
+    double goal[HF_DESIGN_ROWS_MAX]; /* objectives of a design in the order of their rows, each in its unit */
 } hf_form_result;
 
-/* Set every REAL member of HF_RESULT_LIST to NaN. */
+/* Sets every REAL member of HF_RESULT_LIST to NaN. */
 void hf_result_blank(hf_form_result *result);
 
 /* ---- The list at run time ---- */
 
+/* Type of a stored value. */
 typedef enum {
     HF_RESULT_REAL,
     HF_RESULT_INT,
@@ -162,7 +173,7 @@ typedef enum {
     HF_RESULT_STOP_REASON,
     HF_RESULT_COUPLING_STOP,
     HF_RESULT_BOUND_REASON,
-    /* only in the lists of <hifdm/summary.h> and <hifdm/surface.h> */
+    /* The following types occur only in the lists of <hifdm/summary.h> and <hifdm/surface.h>. */
     HF_RESULT_LONG,
     HF_RESULT_FLAG,
     HF_RESULT_TRUTH,
@@ -171,11 +182,12 @@ typedef enum {
     HF_RESULT_GA_STOP
 } hf_result_kind;
 
+/* A row of a list at run time. */
 typedef struct {
-    const char *name, *key, *units, *description;
-    hf_result_kind kind;
-    int json, individual;
-    size_t offset, size; /* in its struct */
+    const char *name, *key, *units, *description; /* texts of the row */
+    hf_result_kind kind;                          /* type of the stored value */
+    int json, individual; /* places in JSON and among the figures of an individual; 0: not there */
+    size_t offset, size;  /* offset and size of the member in its struct, bytes */
 } hf_result_field;
 
 #define HF_RESULT_COUNT(type, member, kind, json, individual, key, units, description) +1
@@ -187,26 +199,30 @@ enum {
 };
 enum { HF_RESULT_JSON_COUNTS = 5 }; /* first JSON place of the counts, which follow the figures of a coupling */
 
-extern const hf_result_field hf_result_field_of[HF_RESULT_N];     /* of hf_form_result */
-extern const hf_result_field hf_coupling_field_of[HF_COUPLING_N]; /* of hf_coupling_result */
+extern const hf_result_field hf_result_field_of[HF_RESULT_N];     /* rows of HF_RESULT_LIST, for hf_form_result */
+extern const hf_result_field hf_coupling_field_of[HF_COUPLING_N]; /* rows of HF_COUPLING_LIST, for hf_coupling_result */
 
-/* The fields with a place among the figures of one individual, in that order. */
+/* Writes the rows with a place among the figures of one individual into `field`, in the order of their places. The rows
+ * are constants of the library. */
 void hf_result_list_individual(const hf_result_field *field[HF_RESULT_N_INDIVIDUAL]);
 
 /* ---- History of the iterations ---- */
 
-/* Figures of each iteration of the coupling: arrays of `capacity`, owned by the caller. Iterations beyond the capacity
- * are not kept. */
+/* Figures of each iteration of the coupling. The caller owns the arrays of `capacity` items. Iterations beyond
+ * `capacity` are not recorded. */
 typedef struct {
-    int capacity, n;
+    int capacity, n; /* room in the arrays, and number of iterations recorded */
+    /* [capacity] step |F f - r|, psi and maximum deflection of the attachments, m */
     double *step_m, *psi_m, *max_displacement_m;
 } hf_coupling_history;
 
-/* Figures of each iteration of the form-finding: arrays of `capacity` >= max_iterations, owned by the caller. */
+/* Figures of each iteration of a form-finding. The caller owns the arrays of `capacity` items, at least
+ * max_iterations. */
 typedef struct {
-    int capacity, n;
+    int capacity, n; /* room in the arrays, and number of iterations recorded */
+    /* [capacity] figures of HF_RESULT_LIST */
     double *psi_m, *residual_N, *inner_tension_ratio, *boundary_tension_ratio, *length_error;
-    hf_coupling_history coupling;
+    hf_coupling_history coupling; /* the same for a coupling */
 } hf_history;
 
 HF_API_END

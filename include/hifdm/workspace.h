@@ -1,8 +1,10 @@
-/* workspace - all memory that the solvers of one thread write to, allocated once, from one list of fields.
+/* workspace - all memory that the solvers of one thread write to, allocated once from one list of fields.
  * Stability: stable.
  *
- * After hf_form_find and hf_evaluate the workspace holds the last shape: position, force density, tension, length. All
- * other fields are scratch without meaning between calls, and may change in any version. */
+ * After hf_form_find and hf_evaluate the workspace holds the last shape: position_m, q_N_per_m, length_m and tension_N,
+ * the laws and target values in force, loose, and displacement_m of the attachments. After a coupling it also holds
+ * attachment_force_N. All other fields are scratch without meaning between calls. Scratch fields may change in any
+ * version. */
 #ifndef HIFDM_WORKSPACE_H
 #define HIFDM_WORKSPACE_H
 
@@ -13,25 +15,26 @@
 
 HF_API_BEGIN
 
-/* Unknowns of Newton's matrix, without and with the attachments. */
+/* Number of unknowns of Newton's matrix, and the same with the attachments. */
 #define HF_NEWTON_DOFS(m) ((m)->has_newton ? 3 * (size_t)(m)->n_free : 0)
 #define HF_NEWTON_MOVES(m) ((m)->has_newton ? 3 * (size_t)((m)->n_free + (m)->n_attachment) : 0)
 
-/* Number of past displacements and steps that the accelerated coupling combines, and the doubles that they take. */
+/* Number of past displacements and steps that the accelerated coupling combines, and the doubles that they occupy. */
 #define HF_COUPLING_DEPTH 8
 #define HF_COUPLING_ITEMS(m) (3 * (size_t)(m)->n_attachment * (2 * HF_COUPLING_DEPTH + 4))
 
-/* Doubles of the dense matrices of net and truss together (src/solve/schur.h); columns of so many attachments are found
- * at a time. */
+/* Number of attachments whose columns are solved together, and the doubles of the dense matrices of net and truss
+ * (src/solve/schur.h). */
 #define HF_SCHUR_PANEL 16
 #define HF_SCHUR_COLUMNS(m) (3 * ((size_t)(m)->n_attachment + HF_SCHUR_PANEL * 3 * (size_t)(m)->n_free))
 #define HF_SCHUR_ITEMS(m) (27 * (size_t)(m)->n_attachment * (size_t)(m)->n_attachment + HF_SCHUR_COLUMNS(m))
 
-/* Doubles of the primal-dual path (src/solve/path_cable.h): blocks of eight cables. */
+/* Doubles of the primal-dual path (src/solve/path_cable.h): HF_INTERIOR_BLOCK for each block of eight cables. */
 #define HF_INTERIOR_BLOCK 416
 #define HF_INTERIOR_ITEMS(m) (HF_INTERIOR_BLOCK * (((size_t)(m)->n_cable + 7) / 8))
 
-/* Doubles of the proof of a bound (src/solve/precise.h): per cable, of the truss (src/solve/flexibility.h), in all. */
+/* Doubles of the certificate's error bound: for each cable (src/solve/precise.h), for the truss
+ * (src/solve/flexibility.h), and in all. HF_BOUND_CHUNK rows of the band are processed at a time. */
 #define HF_BOUND_CABLE_ITEMS 14
 #define HF_BOUND_CHUNK 128
 #define HF_BOUND_WINDOW(m) (3 * (size_t)(m)->n_attachment * (3 * (size_t)(m)->half_bandwidth + 2 + HF_BOUND_CHUNK))
@@ -41,8 +44,8 @@ HF_API_BEGIN
     (HF_BOUND_CABLE_ITEMS * (size_t)(m)->n_cable + 6 * (size_t)(m)->n_node +                                           \
      16 * (size_t)((m)->n_free + (m)->n_attachment) + HF_BOUND_TRUSS_ITEMS(m))
 
-/* X(type, name, number of items for a model m, unit, meaning). The solver of a net with struts needs a general band
- * matrix and pivots; other nets have none. */
+/* X(type, name, number of items for a model m, unit, meaning): one row for each field. The solver of a net with struts
+ * needs a general band matrix and pivots; other nets have none. */
 #define HF_WORKSPACE_FIELDS(X)                                                                                         \
     X(double, position_m, 3 * (size_t)m->n_node, "m", "[3][n_node] by row, supports included")                         \
     X(double, band, (size_t)m->n_band + 1, "N/m", "lower band of D, then its Cholesky factor; one spare place")        \
@@ -86,21 +89,23 @@ HF_API_BEGIN
       "[3][n_node] of a design's supports")                                                                            \
     X(int, pivot, m->has_strut ? (size_t)m->n_free : 0, "", "struts")
 
+/* The fields of HF_WORKSPACE_FIELDS and the state of the solver. A workspace belongs to one thread at a time. */
 typedef struct {
 #define HF_WORKSPACE_MEMBER(type, name, count, unit, meaning) type *name;
     HF_WORKSPACE_FIELDS(HF_WORKSPACE_MEMBER)
 #undef HF_WORKSPACE_MEMBER
-    void *block;
-    /* Rows that Newton's matrix moves: n_free, or the attachments as well, when net and truss are solved together. */
+    void *block; /* owned memory behind the fields */
+    /* Number of rows that Newton's matrix moves: n_free, or with the attachments if net and truss are solved
+     * together. */
     int n_moving;
-    bool starts_near;                  /* q_N_per_m is that of a shape on other supports */
-    int n_joint_step;                  /* steps with the attachments, since they move */
-    hf_history *history;               /* of the form-finding that runs, or NULL */
-    struct hf_goals_point *goals;      /* owned: of designs with goals (hf_evaluate_attend), else NULL */
+    bool starts_near;                  /* q_N_per_m is that of a shape on supports in other positions */
+    int n_joint_step;                  /* number of steps of net and truss together in this solve */
+    hf_history *history;               /* history of the current form-finding, or NULL */
+    struct hf_goals_point *goals;      /* scratch of the objectives (hf_evaluate_attend), owned; else NULL */
     const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 makes hf_form_find return HF_INTERRUPTED */
 } hf_workspace;
 
-/* Cable i_cable with the law and the target that are in force in the workspace. */
+/* Returns cable i_cable with the law and the target value in force in the workspace. */
 static inline hf_law_cable hf_workspace_cable(const hf_model *model, const hf_workspace *workspace, int i_cable)
 {
     hf_law_cable cable;
@@ -111,24 +116,27 @@ static inline hf_law_cable hf_workspace_cable(const hf_model *model, const hf_wo
     return cable;
 }
 
-/* Force density of a cable in the workspace's shape, N/m: from the tension that its law gives, else its q_N_per_m. */
+/* Returns the force density of cable i_cable in the workspace's shape, N/m: from the tension that its law gives,
+ * otherwise its q_N_per_m. */
 static inline double hf_workspace_held_q_N_per_m(const hf_model *model, const hf_workspace *workspace, int i_cable)
 {
     return hf_law_held_q_N_per_m(hf_workspace_cable(model, workspace, i_cable), workspace->length_m[i_cable],
                                  workspace->q_N_per_m[i_cable]);
 }
 
-/* Loads LAPACK, which the solvers call, and allocates the workspace. HF_OK, HF_NO_MEMORY or HF_NO_LAPACK. The caller
- * frees the workspace in any case. */
+/* Allocates a workspace and loads LAPACK, which the solvers call. Returns HF_OK, HF_NO_MEMORY or HF_NO_LAPACK. Call
+ * hf_workspace_free in any case. */
 hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace);
-size_t hf_workspace_bytes(const hf_model *model); /* memory that hf_workspace_create allocates */
+/* Returns the number of bytes that hf_workspace_create allocates. */
+size_t hf_workspace_bytes(const hf_model *model);
+/* Frees the fields and the scratch of the objectives. */
 void hf_workspace_free(hf_workspace *workspace);
 
-/* True when the law in force of at least one cable changes its force density between iterations (Eqs. 7, 8). */
+/* Returns true if the law in force of at least one cable changes its force density between iterations (Eqs. 7, 8). */
 bool hf_workspace_iterates(const hf_model *model, const hf_workspace *workspace);
 
-/* For tests: fill every floating-point field with NaN and every other one with 0xff, so that stale contents
- * that a call reads show in its result. */
+/* Fills every floating-point field with NaN and every other field with 0xff, so that a test sees it in the result if a
+ * call reads stale contents. */
 void hf_workspace_poison(const hf_model *model, hf_workspace *workspace);
 
 HF_API_END
