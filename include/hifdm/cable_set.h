@@ -1,8 +1,9 @@
-/* cable_set - named sets of cables: what several cables have in common beside their group, such as front or edge_tie.
+/* cable_set - named sets of cables, such as front or edge_tie: what cables have in common besides their group.
  * Stability: stable.
  *
  * A cable belongs to any number of sets. Generators name the families of their cables; an import has the column `set`.
- * The groups inner and boundary are not listed, because hf_scene.group has them; their names are taken, as is `all`. */
+ * The groups inner and boundary are no sets, because hf_scene.group has them. No set may have their names, nor the name
+ * `all`. */
 #ifndef HIFDM_CABLE_SET_H
 #define HIFDM_CABLE_SET_H
 
@@ -12,29 +13,33 @@
 
 HF_API_BEGIN
 
+/* Size of the name of a set with its NUL, bytes. */
 #define HF_CABLE_SET_NAME_SIZE HF_SET_NAME_SIZE
 
+/* One cable of one set, by index. */
 typedef struct {
     int set, cable;
 } hf_cable_set_member;
 
-/* What is wrong with the name of a set, as the end of a sentence; NULL when it is right: letters, digits, _ and -, none
- * of the latter in front, and neither the name of a group nor `all`. */
+/* Checks the name of a set: 1 to 63 letters, digits, _ and -, not beginning with -, neither the name of a group nor
+ * `all`. Returns NULL if the name is valid, otherwise the fault as the end of a sentence, a constant string. */
 const char *hf_cable_set_name_fault(const char *name);
 
-/* Make room in a scene without sets for n_set >= 1 sets with n_member cables in all, names of up to
- * HF_CABLE_SET_NAME_SIZE bytes; everything is zero, the names are empty. HF_OK, HF_NO_MEMORY. hf_scene_free frees it.
- */
+/* Allocates n_set >= 1 sets with n_member cables in all, in a scene without sets. Everything is zero, and the names are
+ * empty with room for HF_CABLE_SET_NAME_SIZE bytes. hf_scene_free frees the memory. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_cable_set_allocate(hf_scene *scene, int n_set, int n_member);
 
-/* Give a scene without sets these. name [n_set]: sorted by strcmp, no two alike; member [n_member]: no two alike, those
- * of one set with ascending cables. Sets without a cable are left out. HF_OK, HF_NO_MEMORY. */
+/* Sets the sets of a scene without sets. name [n_set] is sorted by strcmp without duplicates. member [n_member] has no
+ * duplicates, and the cables of a set are in ascending order. Sets without a cable are left out. The names are copied.
+ * Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_cable_set_make(hf_scene *scene, int n_set, const char *const *name, int n_member,
                             const hf_cable_set_member *member);
 
-/* Index of the set of this name, or -1. */
+/* Returns the index of the set of this name; -1 if there is none. */
 int hf_cable_set_find(const hf_scene *scene, const char *name);
 
+/* Returns true if set i_set contains cable i_cable. Takes a time proportional to the logarithm of the size of the
+ * set. */
 bool hf_cable_set_has(const hf_scene *scene, int i_set, int i_cable);
 
 HF_API_END

@@ -1,4 +1,4 @@
-/* material - what cables and nodes are made of, as far as a case says it: for the net as built.
+/* material - thermal expansion and mass of cables and nodes, as far as the case gives them, for the as-built net.
  * Stability: internal; may change in any version. */
 #ifndef HIFDM_MATERIAL_H
 #define HIFDM_MATERIAL_H
@@ -9,21 +9,24 @@
 
 HF_API_BEGIN
 
+/* Properties by cable and node of a scene. */
 typedef struct {
-    double *expansion_per_K; /* [n_cable] NaN where not given */
-    double *mass_kg_per_m;   /* [n_cable] of unstressed length; NaN where not given */
-    double *node_mass_kg;    /* [n_node] 0 where not given */
-    void *block;
+    double *expansion_per_K; /* [n_cable] coefficient of thermal expansion; NaN: not given */
+    double *mass_kg_per_m;   /* [n_cable] mass per unstressed length; NaN: not given */
+    double *node_mass_kg;    /* [n_node] mass; 0: not given */
+    void *block;             /* owned memory behind the arrays */
 } hf_material;
 
-/* Nothing is given. HF_OK or HF_NO_MEMORY. */
+/* Allocates the properties of a scene; none is given. Returns HF_OK or HF_NO_MEMORY. Call hf_material_free in either
+ * case. */
 hf_status hf_material_allocate(const hf_scene *scene, hf_material *material);
+/* Frees the properties. */
 void hf_material_free(hf_material *material);
 
-/* Is this one of the nodes that a row names? */
+/* Returns true if a row for `nodes` applies to a node with this hf_role. */
 static inline bool hf_material_names(hf_nodes nodes, unsigned char role)
 {
-    return nodes == HF_NODES_ALL || (int)nodes - 1 == (int)role; /* hf_role in the same order */
+    return nodes == HF_NODES_ALL || (int)nodes - 1 == (int)role; /* hf_nodes has the roles in the order of hf_role */
 }
 
 HF_API_END

@@ -1,4 +1,5 @@
-/* states - named states of the net as built: what its temperatures, loads and supports are in each.
+/* states - the load cases of the as-built net: temperatures, loads and support displacements of each (METHOD section
+ * 12).
  * Stability: internal; may change in any version. */
 #ifndef HIFDM_STATES_H
 #define HIFDM_STATES_H
@@ -8,26 +9,28 @@
 
 HF_API_BEGIN
 
-/* Arrays of the state in the order of scene and truss, zero where nothing is said. */
+/* One load case. Its arrays are in the order of scene and truss, and zero where the case gives nothing. */
 typedef struct {
-    const char *name;
-    double *rise_K;        /* [n_cable] above the temperature at which they were cut */
-    double *member_rise_K; /* [n_member] of the truss, the same */
-    double *force_N;       /* [n_node][3] beside the loads of the design */
-    double *move_m;        /* [n_node][3] of supports */
-    double gravity_m_per_s2[3];
+    const char *name;           /* name of the load case; borrowed */
+    double *rise_K;             /* [n_cable] rise above the temperature at which the cables were cut */
+    double *member_rise_K;      /* [n_member] rise above the temperature at which the truss was made */
+    double *force_N;            /* [n_node][3] forces, in addition to the loads of the design */
+    double *move_m;             /* [n_node][3] displacements of supports */
+    double gravity_m_per_s2[3]; /* acceleration of gravity along x, y, z */
 } hf_state;
 
+/* The load cases of a case, with the material of its net. */
 typedef struct {
-    int n; /* 0: nothing is allocated */
-    hf_state state[HF_STATES_MAX];
-    hf_material material;
-    void *block;
+    int n;                         /* number of load cases; 0: nothing is allocated */
+    hf_state state[HF_STATES_MAX]; /* [n] the load cases */
+    hf_material material;          /* expansion and mass of cables and nodes */
+    void *block;                   /* owned memory behind the arrays */
 } hf_states;
 
-/* Make room for n >= 1 states of a scene and a truss of n_member members; all is zero, names are NULL. HF_OK or
- * HF_NO_MEMORY. Free it in any case. */
+/* Allocates n >= 1 load cases of a scene and a truss of n_member members (0 without a truss). All values are zero and
+ * the names NULL. Returns HF_OK or HF_NO_MEMORY. Call hf_states_free in either case. */
 hf_status hf_states_allocate(const hf_scene *scene, int n_member, int n, hf_states *states);
+/* Frees the load cases and the material. */
 void hf_states_free(hf_states *states);
 
 HF_API_END

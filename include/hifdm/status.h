@@ -1,9 +1,9 @@
-/* status - result codes with their texts and exit codes from one list, and messages for people.
+/* status - result codes with their texts and exit codes from one list, and messages for the user.
  * Stability: stable.
  *
- * There are three classes of errors. A programmer's error is an assert. A bad candidate gets a status, its numbers are
- * NaN, and the batch goes on. A failed run returns a status and messages to its caller; the library never prints and
- * never exits. */
+ * There are three classes of errors. A programming error fails an assert. A design without a shape gets a status, its
+ * numbers are NaN, and the batch continues. A run that fails returns a status and messages to its caller; the library
+ * never prints and never exits. */
 #ifndef HIFDM_STATUS_H
 #define HIFDM_STATUS_H
 
@@ -13,8 +13,8 @@
 
 HF_API_BEGIN
 
-/* X(name, value, exit code of the program, word stored in files, sentence for people).
- * The values are stored in HDF5 files: never renumber them. */
+/* X(name, value, exit code of the program, word stored in files, sentence for the user). HDF5 files contain the values;
+ * never renumber them. */
 #define HF_STATUS_LIST(X)                                                                                              \
     X(OK, 0, 0, "ok", "done")                                                                                          \
     X(NOT_CONVERGED, 1, 3, "not_converged", "the iteration limit was reached before the stopping rule held")           \
@@ -38,42 +38,55 @@ HF_API_BEGIN
     X(DIFFERENT, 34, 1, "different", "the files differ")                                                               \
     X(INTERRUPTED, 33, 75, "interrupted", "told to stop before the end")
 
+/* A result code; HF_OK is 0. */
 typedef enum {
 #define HF_STATUS_ENUM(name, value, exit_code, word, text) HF_##name = value,
     HF_STATUS_LIST(HF_STATUS_ENUM)
 #undef HF_STATUS_ENUM
 } hf_status;
 
-const char *hf_status_word(hf_status status);  /* one token, as stored in files; "unknown" for a value not listed */
-hf_status hf_status_of_word(const char *word); /* HF_IO for a word not listed, as another version may store */
-const char *hf_status_text(hf_status status);  /* a sentence */
-/* 0 done, 1 two files differ, 2 usage or case, 3 not converged, 4 ill-posed, 5 input/output, 75 told to stop */
+/* Returns the word of a status as files contain it, a constant string; "unknown" for a value that is not listed. */
+const char *hf_status_word(hf_status status);
+/* Returns the status of a word; HF_IO for a word that is not listed, as another version may store. */
+hf_status hf_status_of_word(const char *word);
+/* Returns the status as a sentence, a constant string; "unknown status" for a value that is not listed. */
+const char *hf_status_text(hf_status status);
+/* Returns the exit status of the program:
+ *
+ *   0    done
+ *   1    two files differ
+ *   2    wrong usage, or errors in the case
+ *   3    not converged, not evaluated, no feasible design, or failed points of a sweep
+ *   4    ill-posed: the net or the truss has no shape, or the design breaks a constraint
+ *   5    input or output failed, out of memory, or LAPACK is missing
+ *   75   interrupted before the end */
 int hf_status_exit_code(hf_status status);
 
-/* Has a design with this status a shape: is it feasible, or infeasible by a limit alone? */
+/* Returns true if a design with this status has a shape: it is feasible, or infeasible only because it breaks a
+ * constraint. */
 static inline bool hf_status_has_shape(hf_status status)
 {
     return status == HF_OK || status == HF_RATIO_CAP || status == HF_OUT_OF_LIMITS;
 }
 
-/* Evaluate `expression` once; return its status from the calling function unless it is HF_OK. */
+/* Evaluates `expression` once and returns its status from the calling function unless it is HF_OK. */
 #define HF_TRY(expression)                                                                                             \
     do {                                                                                                               \
         hf_status hf_try_status_ = (expression);                                                                       \
         if (hf_try_status_ != HF_OK) return hf_try_status_;                                                            \
     } while (0)
 
-/* Who knows where a key of a case stands: writes "case.yaml:7:3: optimize.goals.0.set" or the like into text[size]. */
+/* Finds the location of a key of a case: writes "case.yaml:7:3: optimize.goals.0.set" or the like into text[size]. */
 typedef void hf_place_find(const void *context, const char *key, char *text, size_t size);
 
-/* A growing list of lines for people. Zero-initialise; call hf_messages_free when done. When memory runs out,
- * lines are lost, but the counts stay correct. */
+/* A growing list of messages for the user. Initialise it to zero and call hf_messages_free at the end. When memory runs
+ * out, lines are lost, but the counts remain correct. */
 typedef struct {
-    char *text; /* lines ending in '\n', or NULL while empty */
-    size_t length, capacity;
-    int n_error, n_warning;
-    hf_place_find *find_place; /* of keys that messages name; NULL: messages name the key alone */
-    const void *place_context; /* borrowed */
+    char *text;                /* lines that end with '\n'; NULL: there are none */
+    size_t length, capacity;   /* bytes in use and allocated */
+    int n_error, n_warning;    /* numbers of errors and warnings */
+    hf_place_find *find_place; /* finds the location of keys in messages; NULL: messages contain the key alone */
+    const void *place_context; /* first argument of find_place; borrowed */
 } hf_messages;
 
 #define HF_PLACE_SIZE 1280 /* room for a path, a line, a column and a key */
@@ -84,14 +97,17 @@ typedef struct {
 #define HF_PRINTF(format_index, first)
 #endif
 
-/* Append "error: ..." or "warning: ..."; hf_error returns `code`, so that a caller can `return hf_error(...)`. */
+/* Appends the line "error: ..." and returns `code`, so that a caller can `return hf_error(...)`. The format is that of
+ * printf. */
 hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...) HF_PRINTF(3, 4);
+/* Appends the line "warning: ...". The format is that of printf. */
 void hf_warning(hf_messages *messages, const char *format, ...) HF_PRINTF(2, 3);
-/* Write where a key stands, for the begin of a message: "case.yaml:7:3: optimize.goals.0.set", or the key alone where
- * nobody knows its place. Returns text. */
+/* Writes the location of a key, with which a message begins: "case.yaml:7:3: optimize.goals.0.set", or the key alone if
+ * its location is unknown. The format of the key is that of printf. Returns text. */
 const char *hf_messages_place(const hf_messages *messages, char text[HF_PLACE_SIZE], const char *key_format, ...)
     HF_PRINTF(3, 4);
-void hf_messages_free(hf_messages *messages); /* frees all lines; the list can be used again */
+/* Frees all lines; the list can be used again. */
+void hf_messages_free(hf_messages *messages);
 
 HF_API_END
 #endif
