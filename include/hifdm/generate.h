@@ -1,16 +1,21 @@
 /* generate - nets that are made from a few numbers of a case file, in the section scene.NAME.
  * Stability: stable.
  *
- * A new generator NAME of settings hf_TYPE is a row of HF_GENERATORS with its settings and keys, here, and
- * src/net/generate_NAME.c with
+ * Pipeline: settings of the section -> hf_scene_NAME_fault, in the check of the case -> hf_scene_NAME -> scene.
  *
- *   hf_scene_NAME         : const hf_TYPE *, const double EA_N[2], hf_scene *, hf_messages * -> hf_status
- *   hf_scene_NAME_fault   : const hf_TYPE *, char what[size] -> the member that asks for what cannot be made, with the
- *                           reason in `what` (HF_GENERATE_FAULT_SIZE is enough), or NULL; few steps, whatever the size
- *   hf_scene_NAME_surface : const hf_TYPE *, hf_surface_settings * that is all zero: sets what the net determines of
- *                           the wanted surface (kind, focal length, width of a strip); the rest stays 0
+ * A new generator NAME with settings hf_TYPE is a row of HF_GENERATORS with its settings and keys, in this header, and
+ * a file src/net/generate_NAME.c with three functions:
  *
- * The key table, the loading and checking of the section, the help and the making of the scene follow from the row. */
+ *   hf_scene_NAME         const hf_TYPE *, const double EA_N[2], hf_scene *, hf_messages * -> hf_status
+ *                         makes the scene
+ *   hf_scene_NAME_fault   const hf_TYPE *, char what[size], size -> the member whose value cannot be realised, with
+ *                         the reason in `what` (HF_GENERATE_FAULT_SIZE suffices), or NULL, in few steps
+ *                         whatever the size of the net
+ *   hf_scene_NAME_surface const hf_TYPE *, hf_surface_settings *, which is all zero -> sets what the net determines of
+ *                         the target surface: kind, focal length, width of a strip; the rest remains 0
+ *
+ * The key table, the loading and checking of the section, its help and the creation of the scene follow from the
+ * row. */
 #ifndef HIFDM_GENERATE_H
 #define HIFDM_GENERATE_H
 
@@ -21,31 +26,37 @@
 
 HF_API_BEGIN
 
-/* X(name of the section, type of the settings, keys, help). `hifdm schema` lists them in this order. */
+/* X(name of the section, type of the settings, keys, help): one row for each generator. `hifdm schema` lists them in
+ * this order. */
 #define HF_GENERATORS(X)                                                                                               \
     X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS, "A net over a parabolic cylinder.")                           \
     X(paraboloid, hf_paraboloid, HF_PARABOLOID_KEYS,                                                                   \
       "A net over a paraboloid with a round aperture, alone or tied to a rear net.")
-/* Help of the section scene. Its number of subsections is the number of generators and one for import. */
+/* Help of the section scene. It contains the number of generators plus one for import. */
 #define HF_GENERATORS_HELP "The net: exactly one of the three sections below."
 
-#define HF_GENERATE_FAULT_SIZE 256 /* of the reason why something cannot be made */
+#define HF_GENERATE_FAULT_SIZE 256 /* bytes of the reason why something cannot be made */
 
 /* ---- rear nets, which several generators have ---- */
 
+/* The direction of the ties between the nets of a double net. */
 typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
 
+/* Words of a case file, indexed by hf_tie_direction and by hf_law; the last entry is NULL. */
 extern const char *const hf_tie_direction_word[3];
 extern const char *const hf_tie_law_word[HF_N_LAW + 1];
 
-/* Members of the settings. A rear net has its rim rear_distance below that of the front net, and bulges towards it. */
+/* Members that settings with a rear net share. The rim of the rear net is rear_distance_m below that of the front net,
+ * and the rear net bulges towards the front net. */
 #define HF_DOUBLE_NET_MEMBERS                                                                                          \
-    double rear_distance_m;     /* 0: no rear net */                                                                   \
-    double rear_focal_length_m; /* 0: that of the front */                                                             \
-    hf_tie_direction tie_direction;                                                                                    \
-    hf_law tie_law;                                                                                                    \
-    double tie_tension_N; /* what tension, force_density and elastic ties have at the theoretical places */
+    double rear_distance_m;         /* distance of the rims; 0: no rear net */                                         \
+    double rear_focal_length_m;     /* focal length of the rear net; 0: that of the front */                           \
+    hf_tie_direction tie_direction; /* direction of the ties */                                                        \
+    hf_law tie_law;                 /* law of the ties */                                                              \
+    double tie_tension_N;           /* tension of ties of law tension, force_density, elastic at target positions */
 
+/* Keys of these members, as rows of hf_field_table (config.h): X(section, member, type, minimum, maximum, default,
+ * unit, words, help). */
 #define HF_DOUBLE_NET_KEYS(X, section)                                                                                 \
     X(section, rear_distance_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                               \
       "above 0: a rear net, whose rim lies so far below that of the front net, and a tie to each of its free nodes")   \
@@ -60,9 +71,13 @@ extern const char *const hf_tie_law_word[HF_N_LAW + 1];
 
 /* ---- parabolic_cylinder ---- */
 
+/* The spacing of the nodes: equal arc length, or equal projection. */
 typedef enum { HF_SPACING_EQUAL_ARC, HF_SPACING_EQUAL_PROJECTED } hf_spacing;
+/* Which cables are boundary cables. */
 typedef enum { HF_BOUNDARY_OUTER_EDGE, HF_BOUNDARY_MODULE_EDGES } hf_boundary;
+/* Which nodes are supports. */
 typedef enum { HF_SUPPORTS_MODULE_CORNERS, HF_SUPPORTS_RIBS, HF_SUPPORTS_PERIMETER } hf_supports;
+/* The pattern of the cables. */
 typedef enum { HF_PATTERN_QUAD, HF_PATTERN_TRIANGLE, HF_PATTERN_DIAGONAL, HF_PATTERN_ALTERNATING } hf_pattern;
 
 /* Words of a case file, indexed by the enumerations above; the last entry is NULL. */
@@ -71,24 +86,25 @@ extern const char *const hf_boundary_word[3];
 extern const char *const hf_supports_word[4];
 extern const char *const hf_pattern_word[5];
 
-/* A parabolic cylinder z = x^2/(4 f): x along the directrix, y along the generatrix, origin on the vertex line. */
+/* A net over the parabolic cylinder z = x^2/(4 f). x runs along the directrix and y along the generatrix; the origin is
+ * on the vertex line. */
 typedef struct {
-    double aperture_m; /* along the directrix (x), symmetric about x = 0 */
-    double length_m;   /* along the generatrix (y), from y = 0 */
-    double focal_length_m;
-    int modules[2];                          /* along x, along y */
-    int cells_per_module[2];                 /* along x, along y */
-    hf_double_list pitches_x_m, pitches_y_m; /* of the modules, from x = -aperture_m/2 and y = 0; empty: all alike */
-    hf_pattern pattern;
-    hf_spacing spacing;   /* of the nodes along the directrix */
-    hf_boundary boundary; /* which cables are boundary cables (law length) */
-    double scallop;       /* sag of a free outer edge between two supports, relative to their distance */
-    hf_supports supports; /* which nodes are fixed */
-    double edge_tie_m;    /* 0, or how far outside the fixed nodes of the outer edge are, which then hang on ties */
+    double aperture_m;                       /* along the directrix (x), symmetric about x = 0 */
+    double length_m;                         /* along the generatrix (y), from y = 0 */
+    double focal_length_m;                   /* focal length f */
+    int modules[2];                          /* numbers of modules along x and y */
+    int cells_per_module[2];                 /* numbers of cells of a module along x and y */
+    hf_double_list pitches_x_m, pitches_y_m; /* sizes of the modules from x = -aperture_m/2 and y = 0; empty: equal */
+    hf_pattern pattern;                      /* pattern of the cables */
+    hf_spacing spacing;                      /* spacing of the nodes along the directrix */
+    hf_boundary boundary;                    /* which cables are boundary cables (law length) */
+    double scallop;       /* inward sag of a free outer edge between two supports, over their distance */
+    hf_supports supports; /* which nodes are supports */
+    double edge_tie_m;    /* length of the edge ties on which free nodes of the outer edge hang; 0: none */
     HF_DOUBLE_NET_MEMBERS
 } hf_cylinder;
 
-/* Keys of the section, as rows of hf_field_table (config.h): X(section, member, type, least, largest, default, unit,
+/* Keys of the section, as rows of hf_field_table (config.h): X(section, member, type, minimum, maximum, default, unit,
  * words, help). */
 #define HF_CYLINDER_KEYS(X, section)                                                                                   \
     X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "aperture along the directrix (x)")   \
@@ -120,38 +136,48 @@ typedef struct {
       "supports stand so far outside of them along x or y, at corners of the net along both")                          \
     HF_DOUBLE_NET_KEYS(X, section)
 
-/* Make the net over the cylinder. Ids of nodes: n<i>_<j>; m<i>_<j> in the middle of cells; s<i>_<j> for the support
- * that holds n<i>_<j> by an edge tie; behind them r<i>_<j>, rm<i>_<j>, rs<i>_<j> of the rear net. Ids of cables:
- * <node>-<node>. Sets of cables: directrix (along x), generatrix (along y), diagonal, edge (of the outer edge),
- * edge_tie; with a rear net front (all of the former), rear, tie, and the families of the rear net, rear_directrix and
- * so on. Free nodes of the rear net have role edge: psi counts those of the front. Rear supports stand behind those of
- * the front as ties do. EA_N: axial stiffness by hf_group, 0 = not given; NULL: none is given. Free the scene with
- * hf_scene_free in any case. Returns HF_OK; HF_BAD_CASE when the net would be too large, or for what
- * hf_scene_parabolic_cylinder_fault tells; HF_NO_MEMORY. */
+/* Makes the net over the cylinder.
+ *
+ *   ids of nodes    n<i>_<j>; m<i>_<j> in the middle of cells; s<i>_<j> for the support of n<i>_<j> at an edge tie;
+ *                   after them r<i>_<j>, rm<i>_<j>, rs<i>_<j> of the rear net
+ *   ids of cables   <node>-<node>
+ *   sets            directrix (along x), generatrix (along y), diagonal, edge (of the outer edge), edge_tie; with a
+ *                   rear net also front (all of the former), rear, tie, and rear_directrix and so on
+ *
+ * Free nodes of the rear net have the role edge, so psi counts those of the front. The rear supports follow those of
+ * the front, as ties follow the cables of the front. EA_N has the axial stiffness by hf_group, N; 0: not given; NULL:
+ * neither is given. Returns HF_OK; HF_BAD_CASE if the net would be too large, for a fault that
+ * hf_scene_parabolic_cylinder_fault finds, and for elastic ties without EA; HF_NO_MEMORY. Call hf_scene_free in any
+ * case. */
 hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double EA_N[2], hf_scene *scene,
                                       hf_messages *messages);
+/* Returns the member whose value cannot be realised and writes the reason into what[size], or returns NULL. */
 const char *hf_scene_parabolic_cylinder_fault(const hf_cylinder *cylinder, char *what, size_t size);
+/* Sets kind, focal length and, for equal strips, their width in *surface, which is all zero. */
 void hf_scene_parabolic_cylinder_surface(const hf_cylinder *cylinder, hf_surface_settings *surface);
 
 /* ---- paraboloid ---- */
 
+/* The grid of a net over a paraboloid. */
 typedef enum { HF_GRID_TRIANGLE, HF_GRID_QUAD } hf_grid;
 
+/* Words of hf_grid in a case file; the last entry is NULL. */
 extern const char *const hf_grid_word[3];
 
-/* A paraboloid z = (x^2 + y^2)/(4 f) over the circle of the aperture, whose centre is at x = offset. Its rim lies in a
- * plane, z_rim(x). The rear net has its rim rear_distance below, and is z_rim - rear_distance + (R^2 - r^2)/(4 f_rear),
- * r being the distance from the axis of the aperture: it bulges towards the front net. */
+/* A net over the paraboloid z = (x^2 + y^2)/(4 f), above the circle of the aperture, whose centre is at x = offset_m.
+ * The rim is in the plane z_rim(x). The rear net is z_rim - rear_distance_m + (R^2 - r^2)/(4 f_rear), where r is the
+ * distance from the axis of the aperture and R its radius. */
 typedef struct {
-    double aperture_m; /* diameter */
-    double focal_length_m;
-    double offset_m;
-    int rings; /* cells from the centre to the rim */
-    hf_grid grid;
-    hf_spacing spacing; /* of the nodes along a radius */
+    double aperture_m;     /* diameter of the aperture */
+    double focal_length_m; /* focal length f */
+    double offset_m;       /* distance of the centre of the aperture from the axis, along x */
+    int rings;             /* number of cells from the centre to the rim */
+    hf_grid grid;          /* grid of the cables */
+    hf_spacing spacing;    /* spacing of the nodes along a radius */
     HF_DOUBLE_NET_MEMBERS
 } hf_paraboloid;
 
+/* Keys of the section, as HF_CYLINDER_KEYS. */
 #define HF_PARABOLOID_KEYS(X, section)                                                                                 \
     X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "diameter of the aperture")           \
     X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL,                                   \
@@ -167,16 +193,24 @@ typedef struct {
       "middle")                                                                                                        \
     HF_DOUBLE_NET_KEYS(X, section)
 
-/* Make the net over the paraboloid. Ids of nodes: f<ring>_<k> of the front net, r<ring>_<k> of the rear one (quad:
- * f<i>_<j> by rows and fs<k> for supports); of cables: <node>-<node>. Sets of cables: front, rear, front_edge,
- * rear_edge (those that end at a support), tie. Free nodes of the rear net have role edge: psi counts those of the
- * front. Else as hf_scene_parabolic_cylinder. */
+/* Makes the net over the paraboloid.
+ *
+ *   ids of nodes    f<ring>_<k> of the front net, r<ring>_<k> of the rear net; with grid quad f<i>_<j> by rows, and
+ *                   fs<k> for supports
+ *   ids of cables   <node>-<node>
+ *   sets            front, front_edge (those that end at a support); with a rear net also rear, rear_edge, tie
+ *
+ * Free nodes of the rear net have the role edge, so psi counts those of the front. EA_N, errors and ownership are those
+ * of hf_scene_parabolic_cylinder. */
 hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N[2], hf_scene *scene,
                               hf_messages *messages);
-/* The supports of the front net, counted around from x towards y: place_m [n][3], from malloc. HF_OK or HF_NO_MEMORY;
- * free *place_m in any case. */
+/* Finds the supports of the front net, in the order of their angle from x towards y. *n is set to their number and
+ * *place_m to their positions [n][3], m, from malloc; the caller frees it in any case. Returns HF_OK or
+ * HF_NO_MEMORY. */
 hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **place_m);
+/* Returns the member whose value cannot be realised and writes the reason into what[size], or returns NULL. */
 const char *hf_scene_paraboloid_fault(const hf_paraboloid *paraboloid, char *what, size_t size);
+/* Sets kind and focal length in *surface, which is all zero. */
 void hf_scene_paraboloid_surface(const hf_paraboloid *paraboloid, hf_surface_settings *surface);
 
 HF_API_END

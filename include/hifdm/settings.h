@@ -1,7 +1,7 @@
 /* settings - all settings of the engine, as plain values.
  * Stability: stable.
  *
- * hf_config_load fills them in from a case file; `hifdm schema` says what each means. A program may also set them
+ * hf_config_load fills them in from a case file, and `hifdm schema` describes their keys. A program may also set them
  * itself. */
 #ifndef HIFDM_SETTINGS_H
 #define HIFDM_SETTINGS_H
@@ -12,66 +12,85 @@
 
 HF_API_BEGIN
 
-/* Choices of a case file; `hifdm schema` says what each means. */
+/* Choices of a case file, each with its key. `hifdm schema` describes the values.
+ *
+ * The method of the form-finding (form.method). */
 typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHOD_NEWTON, HF_METHOD_AUTO } hf_method;
-/* X(enumerator, word). HF_OPTIMISER_LIST has a row for each, with the optimiser that it uses. */
+/* The method of the optimisation (optimize.method): X(enumerator, word). HF_OPTIMISER_LIST has a row for each, with the
+ * optimiser that it uses. */
 #define HF_OPTIMIZE_METHODS(X) X(GA, "ga") X(LM, "lm") X(GA_LM, "ga+lm")
 #define HF_OPTIMIZE_ENUMERATOR(name, word) HF_OPTIMIZE_##name,
+/* The method of the optimisation (optimize.method). */
 typedef enum { HF_OPTIMIZE_METHODS(HF_OPTIMIZE_ENUMERATOR) HF_OPTIMIZE_N_METHOD } hf_optimize_method;
 #undef HF_OPTIMIZE_ENUMERATOR
-typedef enum { HF_FACTOR_OWN, HF_FACTOR_LAPACK } hf_factor; /* of positive definite matrices of form-finding */
+/* Who factors the positive definite matrices of form-finding (form.factor). */
+typedef enum { HF_FACTOR_OWN, HF_FACTOR_LAPACK } hf_factor;
+/* The solver of the designs (optimize.solver). */
 typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
+/* Whether tensions are given or computed to hold every node at its target position (form.prestress). */
 typedef enum { HF_PRESTRESS_GIVEN, HF_PRESTRESS_EXACT } hf_prestress;
+/* The stopping rule of the form-finding (form.stop). */
 typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
+/* The meaning of the pretension of a boundary cable in a design (optimize.rule, METHOD section 7). */
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
+/* The scheme that couples net and truss (coupling.scheme, METHOD section 8). */
 typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN, HF_COUPLING_AUTO } hf_coupling_scheme;
+/* Whether Levenberg-Marquardt follows method ga for comparison (optimize.compare_lm). */
 typedef enum { HF_COMPARE_AUTO, HF_COMPARE_TRUE, HF_COMPARE_FALSE } hf_compare;
+/* How the genetic algorithm makes children (optimize.variation). */
 typedef enum { HF_VARIATION_DIFFERENCE, HF_VARIATION_CHAIN } hf_variation;
+/* Which individuals a result file keeps (optimize.store). */
 typedef enum { HF_KEEP_ALL, HF_KEEP_BEST, HF_KEEP_EVERY } hf_keep;
+/* The kind of the target surface (surface.kind). */
 typedef enum { HF_SURFACE_AUTO, HF_SURFACE_PARABOLIC_CYLINDER, HF_SURFACE_PARABOLOID } hf_surface_kind;
+/* The mirror planes that link design variables (optimize.symmetry). */
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
-/* What a row of optimize.variables varies of each cable of its set, or of the supports at which its cables end. */
+/* The quantity that a row of optimize.variables varies for each cable of its set, or for the supports at its cables. */
 typedef enum {
-    HF_VARY_TENSION,           /* N, of a cable held at it */
-    HF_VARY_FORCE_DENSITY,     /* N/m */
-    HF_VARY_LENGTH,            /* m */
-    HF_VARY_UNSTRESSED_LENGTH, /* m, of cables of law elastic */
-    HF_VARY_SUPPORT_Z,         /* m, from where the net has the support */
-    HF_VARY_SUPPORT_NORMAL,    /* the same along the normal of the wanted surface */
-    HF_VARY_SUPPORT_XYZ,       /* three variables for each support */
-    HF_VARY_PRETENSION         /* of no row: N, what optimize.rule makes of the pretension of a boundary cable */
+    HF_VARY_TENSION,           /* tension of a cable, which gets law tension, N */
+    HF_VARY_FORCE_DENSITY,     /* force density of a cable, which gets law force_density, N/m */
+    HF_VARY_LENGTH,            /* length of a cable, which gets law length, m */
+    HF_VARY_UNSTRESSED_LENGTH, /* unstressed length of a cable of law elastic, m */
+    HF_VARY_SUPPORT_Z,         /* displacement of a support along z, m */
+    HF_VARY_SUPPORT_NORMAL,    /* displacement of a support along the normal of the target surface, m */
+    HF_VARY_SUPPORT_XYZ,       /* displacement of a support along x, y and z: three design variables, m */
+    HF_VARY_PRETENSION         /* pretension of a boundary cable under optimize.rule, N; not in optimize.variables */
 } hf_vary;
-/* Which variables of a row change by the same step: none, all, or those at mirrored places (optimize.symmetry). */
+/* The design variables of a row that change by the same step: none, all, or those at mirrored positions
+ * (optimize.link). */
 typedef enum { HF_LINK_EACH, HF_LINK_SET, HF_LINK_SYMMETRY } hf_link;
 
-/* What a row of optimize.goals or optimize.objectives measures; each is zero or more, and less is better. */
+/* The figure that a row of optimize.goals or optimize.objectives measures. Each is zero or more, and is minimised. */
 typedef enum {
-    HF_GOAL_PSI,          /* m, distance of the inner nodes to their theoretical places, RMS */
-    HF_GOAL_SURFACE,      /* m, distance of the inner nodes to the wanted surface, RMS */
-    HF_GOAL_FACETS,       /* m, distance of the facets to it, RMS */
-    HF_GOAL_TENSION,      /* N, difference of tensions to `target`, RMS over the set */
-    HF_GOAL_LENGTH,       /* m, difference of lengths to `target`, RMS over the set */
+    HF_GOAL_PSI,          /* psi: RMS distance of the inner nodes from their target positions, m */
+    HF_GOAL_SURFACE,      /* RMS distance of the inner nodes from the target surface, m */
+    HF_GOAL_FACETS,       /* RMS distance of the facets from the target surface, m */
+    HF_GOAL_TENSION,      /* RMS difference of tensions from `target` over the set, N */
+    HF_GOAL_LENGTH,       /* RMS difference of lengths from `target` over the set, m */
     HF_GOAL_EVENNESS,     /* standard deviation of the tensions of the set over their mean */
-    HF_GOAL_PULL,         /* N, largest force of the net on a support */
-    HF_GOAL_DISPLACEMENT, /* m, largest displacement of an attachment by the truss */
-    HF_GOAL_MASS,         /* kg, of the cables of the set at mass_kg_per_m */
-    HF_GOAL_RATIO,        /* largest over smallest tension of the set */
-    HF_GOAL_GAIN          /* root of the part of the gain that is lost in the direction of the beam */
+    HF_GOAL_PULL,         /* maximum force of the net on a support, N */
+    HF_GOAL_DISPLACEMENT, /* maximum deflection of the truss at an attachment, m */
+    HF_GOAL_MASS,         /* mass of the cables of the set at mass_kg_per_m, kg */
+    HF_GOAL_RATIO,        /* maximum over minimum tension of the set */
+    HF_GOAL_GAIN          /* square root of the lost part of the gain in the direction of the beam */
 } hf_goal_kind;
+/* The direction in which the distance to a surface is measured. */
 typedef enum { HF_ALONG_NORMAL, HF_ALONG_HALF_PATH } hf_along;
-typedef enum { HF_FIT_NONE, HF_FIT_BEST } hf_fit; /* the wanted surface itself, or its best fit to the shape */
+/* The surface to which the distance is measured: the target surface, or its best fit to the shape. */
+typedef enum { HF_FIT_NONE, HF_FIT_BEST } hf_fit;
 
-/* Of what a goal is: the design, all states of the net that is cut for it, or samples of its errors; and which figure
- * of these: the root of the mean of squares, or the largest. */
+/* The shapes that an objective is measured on: the design, all load cases of the as-built net, or samples of its
+ * errors. */
 typedef enum { HF_OVER_DESIGN, HF_OVER_STATES, HF_OVER_SAMPLES } hf_over;
+/* The figure of several shapes: the root of the mean of squares, or the maximum. */
 typedef enum { HF_TAKE_MEAN, HF_TAKE_WORST } hf_take;
 
-/* What a row of optimize.limits keeps between bounds. */
+/* The quantity that a row of optimize.limits bounds. */
 typedef enum {
-    HF_LIMIT_TENSION,     /* N, of each cable of the set */
-    HF_LIMIT_RATIO,       /* largest over smallest tension of the set */
-    HF_LIMIT_DISPLACEMENT /* m, of each attachment */
+    HF_LIMIT_TENSION,     /* tension of each cable of the set, N */
+    HF_LIMIT_RATIO,       /* maximum over minimum tension of the set */
+    HF_LIMIT_DISPLACEMENT /* deflection of each attachment, m */
 } hf_limit_kind;
 
 /* The words of these choices in a case file, indexed by the enumerations above; the last entry is NULL. */
@@ -95,191 +114,204 @@ extern const char *const hf_coupling_scheme_word[4];
 extern const char *const hf_vary_word[8];
 extern const char *const hf_link_word[4];
 extern const char *const hf_goal_word[12];
-extern const char *const hf_goal_unit[11]; /* of the values; "" where they have none */
+extern const char *const hf_goal_unit[11]; /* units of the figures; "": no dimension */
 extern const char *const hf_along_word[3];
 extern const char *const hf_fit_word[3];
 extern const char *const hf_over_word[4];
 extern const char *const hf_take_word[3];
 extern const char *const hf_limit_word[4];
-extern const char *const hf_figure_word[4]; /* the first goals, those that are figures of a shape */
+extern const char *const hf_figure_word[4]; /* words of the figures that HF_GOAL_PSI to HF_GOAL_FACETS measure */
 
-/* Room for the path of a case, a study or a table of a net or truss; a longer one is refused. */
+/* Size of the path of a case, a study or a table of a net or truss, bytes. A longer path is refused. */
 #define HF_PATH_SIZE 1024
 
-/* The point of a front that a run takes for its result, in place of a search. */
+/* The point of a front that a run takes as its result instead of a search. */
 typedef struct {
-    int point;               /* its number, from 1; 0: none is taken */
-    char path[HF_PATH_SIZE]; /* of the result with the front, as it was given */
-    char sha256[65];         /* of its design */
+    int point;               /* number of the point, from 1; 0: none is taken */
+    char path[HF_PATH_SIZE]; /* path of the result with the front, as it was given */
+    char sha256[65];         /* digest of the design, hexadecimal */
 } hf_front_origin;
 
+/* The words of these choices in a case file, indexed by the enumerations below; the last entry is NULL. */
 extern const char *const hf_distribution_word[3];
 extern const char *const hf_sampling_word[3];
-extern const char *const hf_tolerance_measure_word[]; /* by hf_tolerance_measure, ended by NULL */
+extern const char *const hf_tolerance_measure_word[]; /* by hf_tolerance_measure */
 
-#define HF_SET_NAME_SIZE 64 /* of the name of a set of cables with its NUL */
+#define HF_SET_NAME_SIZE 64 /* bytes of the name of a set of cables with its NUL */
 
-/* A row of optimize.variables. Values in the unit of what varies. */
+/* A row of optimize.variables. Values are in the unit of the quantity that varies. */
 typedef struct {
-    char set[HF_SET_NAME_SIZE]; /* of cables, or inner, boundary, all */
-    hf_vary vary;
-    double range;        /* how far each may move from its value after form-finding; NaN: as far as the bounds */
-    double range_ratio;  /* the same over that value (`range: 30 %`); NaN: `range` holds */
-    double lower, upper; /* `bounds`; infinite where none are given */
-    hf_link link;
+    char set[HF_SET_NAME_SIZE]; /* cables: a set, or inner, boundary, all */
+    hf_vary vary;               /* quantity that varies */
+    double range;               /* maximum change from the value after form-finding; NaN: not given */
+    double range_ratio;         /* the same over that value (`range: 30 %`); NaN: not given */
+    double lower, upper;        /* key `bounds`; infinite where none are given */
+    hf_link link;               /* which design variables are linked */
 } hf_variable_settings;
 
-/* A row of optimize.goals, or of optimize.objectives, where weight is nothing. */
+/* A row of optimize.goals or optimize.objectives. Objectives of the latter have no weight. */
 typedef struct {
-    hf_goal_kind goal;
-    char set[HF_SET_NAME_SIZE];   /* of tension, length, evenness, mass, ratio; "": all */
-    double target;                /* of tension and length; NaN: of lengths the theoretical ones */
-    double weight;                /* the merit of a design is sqrt(sum (weight * value)^2) */
-    double mass_kg_per_m;         /* of mass */
-    hf_along along;               /* of surface and facets */
-    hf_fit fit;                   /* the same */
-    char state[HF_SET_NAME_SIZE]; /* of `cases`; "": `over` says */
-    hf_over over;
-    hf_take take;        /* of states and samples */
-    double quantile;     /* of samples, instead of `take`: so large a part has no larger value; 0 or NaN: none */
-    double frequency_Hz; /* of gain; 0 or NaN: the highest of the surface */
+    hf_goal_kind goal;          /* figure */
+    char set[HF_SET_NAME_SIZE]; /* cables of tension, length, evenness, mass, ratio; "": all */
+    double target;        /* target value of tension or length; NaN for length: the lengths at the target positions */
+    double weight;        /* weight of the objective: merit = sqrt(sum (weight * value)^2) */
+    double mass_kg_per_m; /* mass of the cables per length, for mass */
+    hf_along along;       /* direction of the distance, for surface and facets */
+    hf_fit fit;           /* surface of the distance, for surface and facets */
+    char state[HF_SET_NAME_SIZE]; /* name of a load case of `cases`; "": none */
+    hf_over over;                 /* shapes on which it is measured, without a load case */
+    hf_take take;                 /* figure of several load cases or samples */
+    double quantile;     /* replaces `take` for samples: this part of them has no larger value; 0 or NaN: none */
+    double frequency_Hz; /* frequency, for gain; 0 or NaN: the highest of the surface */
 } hf_goal_settings;
 
 /* A row of optimize.limits. */
 typedef struct {
-    hf_limit_kind limit;
-    char set[HF_SET_NAME_SIZE]; /* of tension and ratio; "": all */
-    double lower, upper;        /* `bounds`; infinite where none is given */
+    hf_limit_kind limit;        /* quantity that is bounded */
+    char set[HF_SET_NAME_SIZE]; /* cables of tension and ratio; "": all */
+    double lower, upper;        /* key `bounds`; infinite where none are given */
 } hf_limit_settings;
 
-#define HF_DESIGN_ROWS_MAX 16 /* rows of each of these lists */
-#define HF_OBJECTIVES_MAX 3   /* rows of optimize.objectives */
-#define HF_FRONT_POINTS_MAX 512
-#define HF_GOAL_NAME_SIZE 112 /* of a goal in tables: "goal_15_displacement_" and the name of a set */
+#define HF_DESIGN_ROWS_MAX 16   /* maximum number of rows of each of these lists */
+#define HF_OBJECTIVES_MAX 3     /* maximum number of rows of optimize.objectives */
+#define HF_FRONT_POINTS_MAX 512 /* maximum of optimize.front_points */
+#define HF_GOAL_NAME_SIZE 112   /* bytes of the name of an objective: "goal_15_displacement_" and a set */
 
-/* How a net is coupled with an elastic truss. They are not used without a truss. */
+/* The coupling of the net with an elastic truss (section coupling). Without a truss it is not used. */
 typedef struct {
-    double tof_m; /* largest difference of an attachment's displacements in two iterations */
-    hf_coupling_scheme scheme;
-    int max_iterations;
+    double tof_m;              /* tolerance: no attachment moves farther in an iteration */
+    hf_coupling_scheme scheme; /* scheme of the coupling */
+    int max_iterations;        /* maximum number of iterations */
 } hf_coupling_settings;
 
+/* The form-finding (section form) and its coupling. */
 typedef struct {
-    hf_method method;
-    double pretension_N; /* Td */
-    hf_prestress prestress;
-    hf_stop_rule stop;
-    double residual_tolerance; /* max nodal residual relative to the pretension */
-    double length_tolerance;   /* max |l/L*-1| of cables under the length law */
-    double rms_tolerance_m;    /* change of psi between iterations, the paper's rule */
-    int max_iterations;        /* bound on the linear solves */
-    double collapse_ratio; /* a cable of law tension shorter than this part of its theoretical length has collapsed */
-    hf_coupling_settings coupling;
-    hf_factor factor;
+    hf_method method;          /* method of the form-finding */
+    double pretension_N;       /* pretension Td of cables of law tension without a target value */
+    hf_prestress prestress;    /* whether tensions are given */
+    hf_stop_rule stop;         /* stopping rule */
+    double residual_tolerance; /* rule residual: maximum nodal force out of balance over the reference tension */
+    double length_tolerance;   /* rule residual: maximum |l/L* - 1| of cables of law length or elastic */
+    double rms_tolerance_m;    /* rule rms_change, the paper's: maximum change of psi in an iteration */
+    int max_iterations;        /* maximum number of linear solves */
+    double collapse_ratio;     /* minimum length of a cable of law tension over its length at the target positions */
+    hf_coupling_settings coupling; /* coupling with the truss */
+    hf_factor factor;              /* who factors the matrices */
 } hf_form_settings;
 
+/* The optimisation (section optimize). */
 typedef struct {
-    hf_optimize_method method;
-    hf_rule rule;                        /* what a design (a set of boundary pretensions) means */
-    hf_solver solver;                    /* of the individuals */
-    int population, generations;         /* individuals; largest number of generations */
-    double range_N;                      /* |dT| of Eq. 13 */
-    double min_tension_N, max_tension_N; /* bounds on T' */
-    double boundary_ratio_cap;           /* largest allowed boundary tension ratio of an individual */
-    uint64_t seed;
-    double crossover_high, crossover_low; /* Pc1, Pc2 */
-    double mutation_high, mutation_low;   /* Pm1, Pm2 */
+    hf_optimize_method method;            /* algorithms of the optimisation */
+    hf_rule rule;                         /* meaning of the pretension of a boundary cable */
+    hf_solver solver;                     /* solver of the designs */
+    int population, generations;          /* number of individuals, and maximum number of generations */
+    double range_N;                       /* |dT| of Eq. 13: maximum change of a boundary pretension */
+    double min_tension_N, max_tension_N;  /* bounds on a boundary pretension, T' of Eq. 13 */
+    double boundary_ratio_cap;            /* maximum boundary tension ratio of a feasible design */
+    uint64_t seed;                        /* seed of the genetic algorithm */
+    double crossover_high, crossover_low; /* crossover rates Pc1 and Pc2 (METHOD section 7, M10) */
+    double mutation_high, mutation_low;   /* mutation rates Pm1 and Pm2 (METHOD section 7, M10) */
     hf_variation variation;               /* how the genetic algorithm makes children */
-    int elites;                           /* best individuals: kept unchanged, and what crossovers move */
-    double stagnation_tolerance_m;        /* stop when the best psi improved by less than this ... */
-    int stagnation_generations;           /* ... in so many generations */
-    int polish_iterations;                /* bound on the iterations of Levenberg-Marquardt */
-    hf_compare compare_lm;                /* Levenberg-Marquardt after method ga, for comparison */
-    hf_symmetry symmetry;                 /* mirror planes that link genes */
-    hf_keep store;                        /* what a result file holds of the generations */
-    int store_every;                      /* of HF_KEEP_EVERY: whole generations so far apart */
-    int n_variable, n_goal, n_limit;      /* 0: the pretensions of the boundary by rule and range_N; psi; no limits */
-    hf_variable_settings variable[HF_DESIGN_ROWS_MAX];
-    hf_goal_settings goal[HF_DESIGN_ROWS_MAX];
-    hf_limit_settings limit[HF_DESIGN_ROWS_MAX];
-    int n_objective; /* 0, or 2 or 3 instead of goals: the front of designs of which none is better in all of them */
-    hf_goal_settings objective[HF_OBJECTIVES_MAX];
-    int front_points; /* of this front */
-    int samples;      /* of goals over samples: the first so many of the random ones of `tolerance` */
+    int elites; /* number of best individuals; chain: survive unchanged, difference: are moved by crossovers */
+    double stagnation_tolerance_m;   /* the generations end if the best merit improves by less than this */
+    int stagnation_generations;      /* number of generations over which the improvement is measured */
+    int polish_iterations;           /* maximum number of steps of Levenberg-Marquardt */
+    hf_compare compare_lm;           /* whether Levenberg-Marquardt follows method ga for comparison */
+    hf_symmetry symmetry;            /* mirror planes that link design variables */
+    hf_keep store;                   /* which individuals a result file keeps */
+    int store_every;                 /* HF_KEEP_EVERY: one generation of so many is kept */
+    int n_variable, n_goal, n_limit; /* numbers of rows; 0: boundary pretensions by rule and range_N; psi; no limits */
+    hf_variable_settings variable[HF_DESIGN_ROWS_MAX]; /* [n_variable] rows of optimize.variables */
+    hf_goal_settings goal[HF_DESIGN_ROWS_MAX];         /* [n_goal] rows of optimize.goals */
+    hf_limit_settings limit[HF_DESIGN_ROWS_MAX];       /* [n_limit] rows of optimize.limits */
+    int n_objective;                               /* number of rows of optimize.objectives: 0, or 2 or 3 for a front */
+    hf_goal_settings objective[HF_OBJECTIVES_MAX]; /* [n_objective] rows of optimize.objectives */
+    int front_points;                              /* number of points of a front that Levenberg-Marquardt finds */
+    int samples; /* objectives over samples use the first so many random samples of `tolerance` */
 } hf_optimize_settings;
 
-/* Is a goal, or an objective, over samples of nets with errors? */
+/* Returns true if an objective is measured on samples of as-built nets. */
 bool hf_optimize_takes_samples(const hf_optimize_settings *settings);
 
-/* A row of `cables`: what the cables of a set are made of. NaN where it is not given. */
+/* A row of `cables`: the material of the cables of a set. NaN: not given. */
 typedef struct {
-    char set[HF_SET_NAME_SIZE]; /* of cables, or inner, boundary, all */
-    double expansion_per_K, mass_kg_per_m;
+    char set[HF_SET_NAME_SIZE];            /* cables: a set, or inner, boundary, all */
+    double expansion_per_K, mass_kg_per_m; /* thermal expansion; mass per unstressed length */
 } hf_cable_settings;
 
-/* Which nodes a row names: all, or those of a role. */
+/* The nodes to which a row applies: all, or those of a role. */
 typedef enum { HF_NODES_ALL, HF_NODES_SUPPORT, HF_NODES_INNER, HF_NODES_EDGE } hf_nodes;
 
-/* A row of `nodes`. */
+/* A row of `nodes`: a mass at nodes. */
 typedef struct {
-    hf_nodes role;
-    double mass_kg; /* of each */
+    hf_nodes role;  /* the nodes */
+    double mass_kg; /* mass of each node */
 } hf_node_settings;
 
-#define HF_MATERIAL_ROWS_MAX 16 /* rows of each of these lists */
+#define HF_MATERIAL_ROWS_MAX 16 /* maximum number of rows of each of these lists */
 
-/* What the temperature of a row of `cases` is that of: members of the truss by hf_unit from HF_PART_UNIT on. */
+/* The part that has the temperature of a row of `cases`: everything, all cables, the truss, or from HF_PART_UNIT on the
+ * truss members of a unit, in the order of hf_unit. */
 typedef enum { HF_PART_ALL, HF_PART_NET, HF_PART_TRUSS, HF_PART_UNIT } hf_part;
 
-/* A row of `cases`; rows with the same name are one state. NaN where a number is not given. */
+/* A row of `cases`; rows with the same name make up one load case. NaN: a number is not given. */
 typedef struct {
-    char name[HF_SET_NAME_SIZE];
-    char set[HF_SET_NAME_SIZE]; /* of cables whose temperature it is; "": `part` says */
-    hf_part part;
-    double temperature_K;          /* difference to that at which the net was cut and the truss made */
-    double gradient_K_per_m[3];    /* added to it, linear in the place from the origin */
-    double gravity_m_per_s2;       /* weight */
-    double direction[3];           /* in which it pulls; default: -z */
+    char name[HF_SET_NAME_SIZE];   /* name of the load case */
+    char set[HF_SET_NAME_SIZE];    /* cables that have the temperature; "": the part has it */
+    hf_part part;                  /* part that has the temperature */
+    double temperature_K;          /* difference from the temperature at which the net was cut and the truss made */
+    double gradient_K_per_m[3];    /* addition to it, in proportion to the position, zero at the origin */
+    double gravity_m_per_s2;       /* acceleration of gravity */
+    double direction[3];           /* direction of gravity; default: -z */
     hf_nodes role;                 /* nodes on which force_N acts */
-    double force_N[3];             /* on each of them */
-    double move_m[3];              /* of all supports */
-    char nodes_path[HF_PATH_SIZE]; /* table of forces and moves by node; "": none */
+    double force_N[3];             /* force on each of these nodes */
+    double move_m[3];              /* displacement of all supports */
+    char nodes_path[HF_PATH_SIZE]; /* table of forces and displacements by node; "": none */
 } hf_state_settings;
 
-#define HF_STATE_ROWS_MAX 32 /* rows of `cases` */
-#define HF_STATES_MAX 16     /* states that they may name */
+#define HF_STATE_ROWS_MAX 32 /* maximum number of rows of `cases` */
+#define HF_STATES_MAX 16     /* maximum number of load cases */
 
-/* The net as built. */
+/* Material and load cases of the as-built net. */
 typedef struct {
-    int n_cable, n_node, n_state;
-    hf_cable_settings cable[HF_MATERIAL_ROWS_MAX];
-    hf_node_settings node[HF_MATERIAL_ROWS_MAX];
-    hf_state_settings state[HF_STATE_ROWS_MAX];
+    int n_cable, n_node, n_state;                  /* numbers of rows */
+    hf_cable_settings cable[HF_MATERIAL_ROWS_MAX]; /* [n_cable] rows of `cables` */
+    hf_node_settings node[HF_MATERIAL_ROWS_MAX];   /* [n_node] rows of `nodes` */
+    hf_state_settings state[HF_STATE_ROWS_MAX];    /* [n_state] rows of `cases` */
 } hf_built_settings;
 
-/* The places that psi of a net that is adjusted is measured from. */
+/* The positions from which psi is measured when an as-built net is adjusted: the target positions, or those of the
+ * design. */
 typedef enum { HF_AIM_THEORY, HF_AIM_DESIGN } hf_aim;
-extern const char *const hf_aim_word[3]; /* "theory", "design", NULL */
+extern const char *const hf_aim_word[3]; /* the last entry is NULL */
 
-/* Turnbuckles that bring the figure of the net as built back: some cables of a set, by whole steps within a range. */
+/* The turnbuckles of an as-built net (section adjust). Some cables of a set are adjusted by whole steps within a range,
+ * so that the figure of the net becomes small again. */
 typedef struct {
-    char set[HF_SET_NAME_SIZE]; /* cables that can be turned */
-    double range_m, step_m;     /* how far either way, and in which steps */
-    int moves;                  /* cables that are turned at most */
-    double target_m;            /* enough when the figure is below it */
+    char set[HF_SET_NAME_SIZE]; /* cables with turnbuckles: a set, or inner, boundary, all */
+    double range_m, step_m;     /* maximum change of the cut length either way; step */
+    int moves;                  /* maximum number of cables that are adjusted */
+    double target_m;            /* no further cable is adjusted once the figure is below this */
     hf_goal_kind figure;        /* HF_GOAL_PSI, HF_GOAL_SURFACE or HF_GOAL_FACETS */
-    hf_aim aim;                 /* of psi */
-    double sigma_m;             /* of measured coordinates without one of their own; 0: not given */
+    hf_aim aim;                 /* positions from which psi is measured */
+    double sigma_m;             /* standard deviation of measured coordinates without their own; 0: not given */
 } hf_adjust_settings;
 
-/* How errors are distributed, and how samples of them are chosen. */
+/* The distribution of errors, and how samples of them are chosen. */
 typedef enum { HF_DISTRIBUTION_NORMAL, HF_DISTRIBUTION_UNIFORM } hf_distribution;
 typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
 
-/* X(name, word, unit, condition, description): what is measured of each sample of the net as built. The words are in
- * case files and result files. Conditions: ALWAYS, SURFACE (a section surface), FACETS (it has facets), LOSS (it has
- * frequencies), FACET_LOSS (both), PATTERN (it has facets and a section pattern). Losses stand in the order of the
- * half-path errors that make them. */
+/* X(name, word, unit, condition, description): the measures of each sample of the as-built net. Case files and result
+ * files contain the words. A measure exists under its condition:
+ *
+ *   ALWAYS       always
+ *   SURFACE      with a section surface
+ *   FACETS       with a section surface, if the net has facets
+ *   LOSS         with frequencies of the surface
+ *   FACET_LOSS   with frequencies, if the net has facets
+ *   PATTERN      with a section surface.pattern, if the net has facets
+ *
+ * The losses are in the order of the half-path errors from which they follow. */
 #define HF_TOLERANCE_MEASURES(X)                                                                                       \
     X(PSI, "psi_m", "m", ALWAYS, "RMS distance of the inner nodes to their theoretical places")                        \
     X(HALF_PATH, "half_path_rms_m", "m", SURFACE, "of the inner nodes to the wanted surface")                          \
@@ -298,76 +330,80 @@ typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
     X(LOOSE, "n_loose", "", ALWAYS, "nodes that no taut cable holds")
 
 #define HF_TOLERANCE_ENUMERATOR(name, word, unit, condition, description) HF_TOLERANCE_##name,
+/* A measure of a sample. */
 typedef enum { HF_TOLERANCE_MEASURES(HF_TOLERANCE_ENUMERATOR) HF_TOLERANCE_N_MEASURE } hf_tolerance_measure;
 #undef HF_TOLERANCE_ENUMERATOR
 
-/* A row of tolerance.require. */
+/* A row of tolerance.require: bounds on a measure. */
 typedef struct {
-    hf_tolerance_measure measure;
-    double at_most, at_least; /* NaN: not given */
+    hf_tolerance_measure measure; /* the measure */
+    double at_most, at_least;     /* bounds in its unit; NaN: not given */
 } hf_require_settings;
 
-#define HF_REQUIRE_ROWS_MAX 8
+#define HF_REQUIRE_ROWS_MAX 8 /* maximum number of rows of tolerance.require */
 
-/* A row of tolerance.truss: a temperature of its own of all members of a part. */
+/* A row of tolerance.truss: an error of the temperature that all members of a part share. */
 typedef struct {
-    int part; /* from HF_PART_TRUSS on: 0 is the whole truss, 1 + k the members of hf_unit k */
-    double sigma_temperature_K;
+    int part;                   /* 0: the whole truss; 1 + k: the members of hf_unit k */
+    double sigma_temperature_K; /* standard deviation of the temperature */
 } hf_truss_heat_settings;
 
-#define HF_TRUSS_HEAT_ROWS_MAX 8 /* each part once */
+#define HF_TRUSS_HEAT_ROWS_MAX 8 /* one for each part */
 
-/* Errors of the net as built; standard deviations, whatever the distribution. */
+/* Errors of the as-built net (section tolerance). They are standard deviations, whatever the distribution. */
 typedef struct {
-    double sigma_cut_m, sigma_cut_ratio; /* of cut lengths: absolute, and over the length */
+    double sigma_cut_m, sigma_cut_ratio; /* of cut lengths: absolute, and relative to the length */
     double sigma_support_m;              /* of each coordinate of a support */
-    double sigma_EA_ratio;               /* of EA over EA */
-    double sigma_temperature_K;          /* of the one temperature that all cables have */
-    hf_distribution distribution;
-    double batch; /* correlation of the errors sigma_cut_ratio, and of sigma_EA_ratio, among cables of one spool */
-    int samples;
-    uint64_t seed;
-    hf_sampling sampling;
-    double yield; /* part of the nets that should meet what is required; 0 = not asked for */
-    int n_require, n_truss;
-    hf_require_settings require[HF_REQUIRE_ROWS_MAX];
-    hf_truss_heat_settings truss[HF_TRUSS_HEAT_ROWS_MAX];
+    double sigma_EA_ratio;               /* of EA, relative to EA */
+    double sigma_temperature_K;          /* of the temperature, which is the same for all cables */
+    hf_distribution distribution;        /* distribution of the errors */
+    double batch;           /* correlation of the relative errors of length, and of those of EA, within a spool */
+    int samples;            /* number of samples */
+    uint64_t seed;          /* seed of the random numbers */
+    hf_sampling sampling;   /* how samples are chosen */
+    double yield;           /* required share of samples that meet the requirements; 0: none */
+    int n_require, n_truss; /* numbers of rows */
+    hf_require_settings require[HF_REQUIRE_ROWS_MAX];     /* [n_require] rows of tolerance.require */
+    hf_truss_heat_settings truss[HF_TRUSS_HEAT_ROWS_MAX]; /* [n_truss] rows of tolerance.truss */
 } hf_tolerance_settings;
 
-#define HF_LIST_MAX 32
+#define HF_LIST_MAX 32 /* maximum number of values of a list */
 
+/* A list of numbers of a case file. */
 typedef struct {
-    int n; /* number of values in use */
-    double value[HF_LIST_MAX];
+    int n;                     /* number of values */
+    double value[HF_LIST_MAX]; /* [n] the values */
 } hf_double_list;
 
-/* What illuminates the reflector, and the polarisation of its field. HF_FEED_AUTO: a line of a cylinder, else a point.
- */
+/* What illuminates the reflector. HF_FEED_AUTO stands for a line over a cylinder and a point otherwise. */
 typedef enum { HF_FEED_AUTO, HF_FEED_POINT, HF_FEED_LINE, HF_FEED_PLANE_WAVE } hf_feed_kind;
+/* The polarisation of the field of the feed on its axis. */
 typedef enum { HF_POLARISATION_X, HF_POLARISATION_Y } hf_polarisation;
 
-#define HF_PATTERN_CUTS 8
+#define HF_PATTERN_CUTS 8 /* maximum number of cuts */
 
-/* The far field that is asked for (pattern.h). NaN: what the feed of the wanted surface has. */
+/* The far field of the reflector (section surface.pattern, see pattern.h). NaN in the feed: the default that follows
+ * from the target surface. */
 typedef struct {
-    double theta_deg[2];    /* angles from +z at which each cut begins and ends */
-    int n_theta;            /* of them, at even steps */
-    hf_double_list phi_deg; /* cuts, at most HF_PATTERN_CUTS */
-    hf_feed_kind feed;
-    double position_m[3], aim_m[3]; /* of the feed, and the point it looks at; a line is along y through it */
-    double cos_power;               /* q: its field goes as cos^q of the angle from there */
-    hf_polarisation polarisation;
+    double theta_deg[2];            /* first and last angle of each cut from +z */
+    int n_theta;                    /* number of angles, at even steps */
+    hf_double_list phi_deg;         /* angle of each cut from +x, at most HF_PATTERN_CUTS */
+    hf_feed_kind feed;              /* kind of the feed */
+    double position_m[3], aim_m[3]; /* the feed, and the point at which it looks; a line runs along y through it */
+    double cos_power;               /* q: the field is cos^q of the angle from the axis */
+    hf_polarisation polarisation;   /* polarisation of the feed */
 } hf_pattern_settings;
 
-/* The reflecting surface: the parabolic cylinder z = x^2/(4f) along y, or the paraboloid z = (x^2 + y^2)/(4f). */
+/* The reflecting surface (section surface): the parabolic cylinder z = x^2/(4f) along y, or the paraboloid z = (x^2 +
+ * y^2)/(4f). */
 typedef struct {
-    double focal_length_m; /* 0 when no measures of the surface are asked for */
-    double strip_width_m;  /* of the flat strips along y of which it consists; 0 = not known */
-    hf_double_list frequencies_Hz;
-    double mesh_tension_N_per_m; /* of the mesh on the front net, in all directions; 0 = not known */
-    hf_surface_kind kind;        /* HF_SURFACE_AUTO in a case alone, until hf_config_surface has looked at the nodes */
-    bool has_pattern;            /* false: no far field is asked for */
-    hf_pattern_settings pattern;
+    double focal_length_m;         /* focal length f; 0: no measures of the surface are computed */
+    double strip_width_m;          /* width of the flat strips along y that make up the surface; 0: unknown */
+    hf_double_list frequencies_Hz; /* frequencies of the losses and of the far field */
+    double mesh_tension_N_per_m;   /* tension of the mesh in all directions; 0: unknown */
+    hf_surface_kind kind;          /* HF_SURFACE_AUTO only in a case, until hf_config_surface determines the kind */
+    bool has_pattern;              /* the far field is computed */
+    hf_pattern_settings pattern;   /* the far field */
 } hf_surface_settings;
 
 HF_API_END

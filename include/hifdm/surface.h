@@ -1,11 +1,16 @@
-/* surface - the errors of a shape as a reflector (METHOD section 9): RMS along the normal and of the half path length,
- * raw and after the best fit of the wanted kind of surface; loss of gain, faceting, percentiles. Computed once per
- * reported shape, for cases with a section `surface`.
+/* surface - the errors of a shape as a reflector surface (METHOD section 9).
  * Stability: stable.
  *
- * The wanted surface is the cylinder z = x^2/(4f), with its generatrix along y, or the paraboloid z = (x^2 + y^2)/(4f).
- * With dz the height of an inner node above it and t the slope there, x/(2f) or r/(2f), the error along the normal is
- * dz / sqrt(1 + t^2), that of the half path length dz / (1 + t^2). */
+ * The figures are the RMS errors along the normal and of the half path length, raw and after the best fit of the target
+ * kind of surface; the loss of gain; faceting; percentiles. They are computed once for each reported shape of a case
+ * with a section surface. Pipeline:
+ *
+ *   inner nodes of a shape -> errors (M16) -> RMS, percentiles -> best fit -> RMS -> loss of gain (M17)
+ *   facets of the shape    -> errors (M16) -> RMS              -> best fit -> RMS -> loss of gain (M17)
+ *
+ * The target surface is the cylinder z = x^2/(4f), with its generatrix along y, or the paraboloid z = (x^2 + y^2)/(4f).
+ * Let dz be the height of a point above it, and t the slope there, x/(2f) or r/(2f). Then the error along the normal is
+ * dz / sqrt(1 + t^2), and that of the half path length is dz / (1 + t^2). */
 #ifndef HIFDM_SURFACE_H
 #define HIFDM_SURFACE_H
 
@@ -17,12 +22,12 @@ HF_API_BEGIN
 
 /* ---- The lists: X(type, member, kind, json, description) ----
  *
- * kind  of the stored value, see HF_RESULT_LIST; TRUTH is a bool stored as a number
- * json  place in the JSON object `surface` of a stage, where the fit's figures are called fit_...; equal places are in
- *       the order of the list, the measures before the fit; 0 = not there
+ *   kind   of the stored value, see HF_RESULT_LIST; TRUTH is a bool stored as a number
+ *   json   place in the JSON object `surface` of a stage, where the figures of the fit have the prefix fit_; equal
+ *          places keep the order of the list, measures before the fit; 0: not there
  *
- * Attributes in HDF5 (/surface/STAGE; those of the fit are fit_...) are in the order of the lists. A new figure is a
- * row here and the code that computes it. */
+ * Attributes in HDF5 (/surface/STAGE, those of the fit with the prefix fit_) are in the order of the lists. A new
+ * figure is a row here and the code that computes it. */
 #define HF_SURFACE_LIST(X)                                                                                             \
     X(double, z_rms_m, REAL, 1, "of the nodes' heights above their theoretical heights")                               \
     X(double, normal_rms_m, REAL, 1, "RMS error along the normal at the inner nodes, raw")                             \
@@ -74,71 +79,82 @@ HF_API_BEGIN
 
 #define HF_SURFACE_MEMBER(type, member, kind, json, description) type member;
 
-/* The surface of the wanted kind with the least half-path RMS from a set of nodes (METHOD section 9): the wanted one
- * with another focal length, turned about the centre of the nodes by Rx(a) Ry(b) Rz(c), then shifted. What changes
- * nothing is left out: of a cylinder the shift along y, of a paraboloid the turn Rz. In a shallow reflector a shift
- * across and a turn are nearly the same motion: each of the two numbers is uncertain, but the fitted surface is not.
- * shift_x_m and shift_y_m are 0 where the nodes do not determine them, which means that the least RMS needs a shift of
- * more than a tenth of the net's half-width or is not found; of a paraboloid both are 0 then. focal_length_m is the
- * wanted one where the nodes do not determine it: where no least RMS is found, or one with a focal length more than
- * twice or less than half as long, for example of two lines along y. */
+/* The best fit of a surface to a set of points: the surface of the target kind with the minimum half-path RMS (METHOD
+ * section 9). It is the target surface with another focal length, turned about the centre of the points by Rx(a) Ry(b)
+ * Rz(c), then shifted. Motions that change nothing are left out: the shift of a cylinder along y, the turn Rz of a
+ * paraboloid. In a shallow reflector a shift across and a turn are nearly the same motion. Each of the two numbers is
+ * uncertain, but the fitted surface is not.
+ *
+ * Parameters that the points do not determine keep the values of the target surface. shift_x_m, and of a paraboloid
+ * also shift_y_m, is 0 if the minimum is not found or needs a shift of more than a tenth of the net's half-width.
+ * focal_length_m is that of the target surface if the minimum is not found or has more than twice or less than half
+ * that focal length. Points on two lines along y are an example. */
 typedef struct {
     HF_SURFACE_FIT_LIST(HF_SURFACE_MEMBER)
 } hf_surface_fit;
 
-/* Fit n points, position_m [3][n], each with the square of root_weight [n]; NULL: all weigh the same. `kind` is not
- * HF_SURFACE_AUTO. With fewer than six points the answer is not unique. HF_OK or HF_NO_MEMORY. GSL's error handler must
- * be off here and in hf_surface_measure (hifdm.h). */
+/* Fits a surface to n points position_m [3][n], m. The weight of a point is the square of root_weight [n]; NULL: all
+ * weights are equal. `kind` is not HF_SURFACE_AUTO; focal_length_m is that of the target surface. With fewer than six
+ * points the fit is not unique. Call gsl_set_error_handler_off() before (hifdm.h). Returns HF_OK, also without
+ * convergence (fit->converged), or HF_NO_MEMORY. */
 hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int n, const double *position_m,
                                 const double *root_weight, hf_surface_fit *fit);
 
-/* The errors along the normal of n points, position_m [3][n], against a fitted surface of this kind; NaN when the fit
- * did not converge. */
+/* Computes the errors error_m [n] of n points position_m [3][n] along the normal of a fitted surface of this kind, m;
+ * NaN if the fit did not converge. */
 void hf_surface_fit_errors(hf_surface_kind kind, const hf_surface_fit *fit, int n, const double *position_m,
                            double *error_m);
 
+/* The figures of a shape as a reflector surface. */
 typedef struct {
     bool is_measured; /* false: the other members have no meaning */
     HF_SURFACE_LIST(HF_SURFACE_MEMBER)
+    /* figures of the best fit to the inner nodes */
     hf_surface_fit fit;
 #define HF_SURFACE_LOSS_MEMBER(member, description) double member[HF_LIST_MAX];
     HF_SURFACE_LOSS_LIST(HF_SURFACE_LOSS_MEMBER)
 } hf_surface_measures;
 
-/* Measures the inner nodes of a shape, position_m [3][n_node] by row and tension_N [n_cable], and the facets between
- * them. settings->focal_length_m > 0, and the kind is known; `facets` are those of the model's scene. HF_OK or
- * HF_NO_MEMORY. */
+/* Measures the inner nodes of a shape and the facets between them. position_m [3][n_node] has the positions by row, m,
+ * and tension_N [n_cable] the tensions. settings->focal_length_m is above 0, and settings->kind is not HF_SURFACE_AUTO;
+ * `facets` are those of the scene of the model. Call gsl_set_error_handler_off() before (hifdm.h). Returns HF_OK, or
+ * HF_NO_MEMORY with all measures zero. */
 hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_facets *facets, const hf_model *model,
                              const double *position_m, const double *tension_N, hf_surface_measures *measures);
 
-/* All figures but numbers of facets are NaN: of a net whose inner nodes are all loose, where they hang says nothing. */
+/* Sets all figures to NaN except the counts. It is for a net whose inner nodes are all loose, because their positions
+ * have no meaning. */
 void hf_surface_blank(hf_surface_measures *measures);
 
-/* The errors that a shape is judged by, of its facets or of its nodes: raw and after the best fit to them; the losses
- * of gain that they cost [frequencies_Hz.n] point into the measures. */
+/* The errors by which a shape is judged, of its facets or of its nodes, raw and after the best fit to them. The losses
+ * of gain [frequencies_Hz.n] point into the measures. */
 typedef struct {
-    double half_path_rms_m, fit_half_path_rms_m;
-    const double *gain_loss_dB, *fit_gain_loss_dB;
+    double half_path_rms_m, fit_half_path_rms_m;   /* RMS of the half-path error, raw and after the best fit */
+    const double *gain_loss_dB, *fit_gain_loss_dB; /* [frequencies_Hz.n] losses of gain by these errors */
 } hf_surface_errors;
 
+/* Returns these errors for the facets, or for the nodes if of_facets is false. */
 hf_surface_errors hf_surface_errors_of(const hf_surface_measures *measures, bool of_facets);
 
-/* The loss of gain that a reflector is called good to, dB. */
+/* The loss of gain that defines the maximum frequency of a reflector, dB. */
 #define HF_SURFACE_GOOD_TO_DB 1.0
 
-/* Ruze's formula holds for errors that are small beside a wavelength: up to about this loss, an RMS of lambda/15. */
+/* Maximum loss for which Ruze's formula holds, dB. Errors must be small compared with a wavelength; this loss
+ * corresponds to an RMS of lambda/15. */
 #define HF_RUZE_MOST_DB 3.0
 
-/* The highest of frequencies_Hz; 0 without one. */
+/* Returns the highest of frequencies_Hz, Hz; 0 if there is none. */
 double hf_surface_highest_Hz(const hf_surface_settings *settings);
 
-/* Loss of gain by a half-path RMS at a frequency, positive, dB: Ruze's formula (M17). NaN beyond HF_RUZE_MOST_DB. */
+/* Returns the loss of gain by a half-path RMS at a frequency, positive, dB, by Ruze's formula (M17); NaN above
+ * HF_RUZE_MOST_DB. */
 double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz);
 
-/* The same without that bound. */
+/* Returns the loss of Ruze's formula without that bound, dB. */
 double hf_surface_ruze_dB(double half_path_rms_m, double frequency_Hz);
 
-/* The frequency at which that loss is loss_dB, 0 < loss_dB <= HF_RUZE_MOST_DB; INFINITY for an RMS of 0. */
+/* Returns the frequency at which the loss by a half-path RMS is loss_dB, Hz, for 0 < loss_dB <= HF_RUZE_MOST_DB;
+ * INFINITY for an RMS of 0. */
 double hf_surface_frequency_of_loss_Hz(double half_path_rms_m, double loss_dB);
 
 HF_API_END

@@ -1,9 +1,13 @@
-/* tolerance - what errors of cut lengths, stiffness, supports and temperature do to a net as built: to first order, and
- * by many samples that are solved (METHOD section 12).
+/* tolerance - the effect of errors of cut lengths, stiffness, supports and temperature on an as-built net (METHOD
+ * section 12).
  * Stability: internal; may change in any version.
  *
- * A sample's errors depend on (seed, sample, error) alone, so samples may be found in any order, by any threads and
- * machines. */
+ * Errors are taken to first order, and as samples that are solved. Pipeline:
+ *
+ *   errors of the case (hf_tolerance_settings) -> samples -> a row of measures for each -> hf_tolerance_summary
+ *
+ * The errors of a sample depend on (seed, sample, error) alone. Samples may therefore be computed in any order, by any
+ * threads and machines. */
 #ifndef HIFDM_TOLERANCE_H
 #define HIFDM_TOLERANCE_H
 
@@ -12,35 +16,40 @@
 
 HF_API_BEGIN
 
-/* Columns of a row: hf_status, psi of the same errors to first order (m), then the measures; NaN for what is not
- * measured, and for all measures of a sample without a shape. */
+/* Columns of the row of a sample: hf_status, psi of the same errors to first order in m, then the measures. What is not
+ * measured is NaN, as are all measures of a sample without a shape. */
 enum { HF_TOLERANCE_STATUS, HF_TOLERANCE_LINEAR_PSI, HF_TOLERANCE_FIRST };
-#define HF_TOLERANCE_COLUMNS (HF_TOLERANCE_FIRST + HF_TOLERANCE_N_MEASURE)
-extern const char *const hf_tolerance_measure_unit[HF_TOLERANCE_N_MEASURE];
-extern const char *const hf_tolerance_measure_help[HF_TOLERANCE_N_MEASURE];
+#define HF_TOLERANCE_COLUMNS (HF_TOLERANCE_FIRST + HF_TOLERANCE_N_MEASURE)  /* number of columns */
+extern const char *const hf_tolerance_measure_unit[HF_TOLERANCE_N_MEASURE]; /* units of the measures */
+extern const char *const hf_tolerance_measure_help[HF_TOLERANCE_N_MEASURE]; /* descriptions of the measures */
 
-/* Quantiles that are told: so many samples have no larger value, or no smaller one where more is better. */
+/* Reported quantiles: this part of the samples has no larger value, or no smaller one if more is better. */
 #define HF_TOLERANCE_QUANTILES 3
 extern const double hf_tolerance_quantile[HF_TOLERANCE_QUANTILES]; /* 0.5, 0.95, 0.99 */
+/* Returns true if a larger value of the measure is better, as of the minimum tension. */
 bool hf_tolerance_more_is_better(hf_tolerance_measure measure);
 
-/* Of one measure: mean, deviation, least and largest over the samples that have a value, quantiles over all samples, of
- * which those without a value are the worst (infinite). NaN is what is not known; there is no mean of infinite values.
- * Intervals hold the true value with 95 %: of quantiles by order statistics, which need no assumption (NaN: too few
- * samples), of the mean by its standard error. */
+/* Statistics of one measure. Mean, deviation, minimum and maximum are over the samples that have a value. Quantiles are
+ * over all samples; those without a value count as the worst, infinite. NaN: unknown; there is no mean of infinite
+ * values.
+ *
+ * Intervals contain the true value with a probability of 95 %. Those of quantiles are order statistics, which need no
+ * assumption (NaN: too few samples). That of the mean follows from its standard error. */
 typedef struct {
-    bool is_measured;
+    bool is_measured; /* false: the other members have no meaning */
+    /* mean with its interval, standard deviation, minimum, maximum */
     double mean, mean_low, mean_high, deviation, least, largest;
+    /* quantiles with their intervals */
     double value[HF_TOLERANCE_QUANTILES], low[HF_TOLERANCE_QUANTILES], high[HF_TOLERANCE_QUANTILES];
 } hf_tolerance_figures;
 
-#define HF_TOLERANCE_RANKED 20 /* cables that are named */
-#define HF_TOLERANCE_BINS 40   /* of the histogram of psi */
-#define HF_TOLERANCE_ID_SIZE 256
-#define HF_TOLERANCE_KINDS 8 /* of errors */
-extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS];
+#define HF_TOLERANCE_RANKED 20                                       /* maximum number of cables that are listed */
+#define HF_TOLERANCE_BINS 40                                         /* bins of the histogram of psi */
+#define HF_TOLERANCE_ID_SIZE 256                                     /* bytes of the id of a cable */
+#define HF_TOLERANCE_KINDS 8                                         /* kinds of errors */
+extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS]; /* their words */
 
-/* X(type, member, kind, json, key, description), as the lists of summary.h. */
+/* X(type, member, kind, json, key, description): the figures of the samples, as the lists of summary.h. */
 #define HF_TOLERANCE_LIST(X)                                                                                           \
     X(int, samples, INT, 1, "samples", "nets as built")                                                                \
     X(int, n_failed, INT, 1, "failed", "those of them without a shape")                                                \
@@ -68,18 +77,19 @@ extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS];
     X(double, tolerance_wall_s, REAL, 5, "wall_s", "wall-clock time")
 
 #define HF_TOLERANCE_MEMBER(type, member, kind, json, key, description) type member;
+/* The result of the tolerance analysis. */
 typedef struct {
     HF_TOLERANCE_LIST(HF_TOLERANCE_MEMBER)
-    hf_tolerance_figures figure[HF_TOLERANCE_N_MEASURE];
-    int n_require;
-    hf_require_settings require[HF_REQUIRE_ROWS_MAX];
-    double require_yield[HF_REQUIRE_ROWS_MAX]; /* of each row alone */
-    int n_ranked;                              /* cables by the share of their own errors in what psi^2 gains */
-    char ranked_id[HF_TOLERANCE_RANKED][HF_TOLERANCE_ID_SIZE];
-    double ranked_share[HF_TOLERANCE_RANKED];
-    double kind_share[HF_TOLERANCE_KINDS]; /* of each kind of errors, see hf_tolerance_kind_word */
-    double bin_low_m, bin_high_m;          /* range of the histogram: least and largest psi */
-    double bin[HF_TOLERANCE_BINS];         /* part of the samples with a shape in each */
+    hf_tolerance_figures figure[HF_TOLERANCE_N_MEASURE]; /* statistics by hf_tolerance_measure */
+    int n_require;                                       /* number of rows of tolerance.require */
+    hf_require_settings require[HF_REQUIRE_ROWS_MAX];    /* [n_require] the rows */
+    double require_yield[HF_REQUIRE_ROWS_MAX];           /* [n_require] yield under each row alone */
+    int n_ranked; /* number of cables with the largest shares of their own errors in the growth of psi^2 */
+    char ranked_id[HF_TOLERANCE_RANKED][HF_TOLERANCE_ID_SIZE]; /* [n_ranked] ids of these cables */
+    double ranked_share[HF_TOLERANCE_RANKED];                  /* [n_ranked] their shares */
+    double kind_share[HF_TOLERANCE_KINDS];                     /* share of each kind of errors in the growth of psi^2 */
+    double bin_low_m, bin_high_m;                              /* range of the histogram: minimum and maximum psi */
+    double bin[HF_TOLERANCE_BINS];                             /* part of the samples with a shape in each bin */
 } hf_tolerance_summary;
 #undef HF_TOLERANCE_MEMBER
 

@@ -1,8 +1,9 @@
 /* truss - the deployable truss that carries the net: nodes, straight members with their sections, supports.
  * Stability: stable.
  *
- * A truss is made by a generator or read from CSV files (truss_import), checked once, and never changed afterwards;
- * hf_frame solves it. Dofs of a node: displacement along x, y, z (m), rotation about x, y, z (rad). */
+ * A truss is made by a generator or read from CSV files (truss_import). It is checked once and does not change
+ * afterwards; hf_frame solves it. Degrees of freedom (dofs) of a node: displacements along x, y, z in m, rotations
+ * about x, y, z in rad. */
 #ifndef HIFDM_TRUSS_H
 #define HIFDM_TRUSS_H
 
@@ -13,13 +14,14 @@
 
 HF_API_BEGIN
 
-#define HF_TRUSS_DOF 6 /* of a node */
+#define HF_TRUSS_DOF 6 /* number of dofs of a node */
 
 /* A rigid member is a beam clamped to its two nodes; a pinned one carries axial force alone. */
 typedef enum { HF_JOINT_RIGID, HF_JOINT_PINNED } hf_joint;
 
-/* What a member belongs to. Basic units of the deployable structure (Fig. 15): on the directrix, main and assistant on
- * the generatrix. Parts of a ring truss: along a ring, between the rings, across a bay. */
+/* The unit to which a member belongs. BUD, MBUG and ABUG are the basic units of the deployable structure (Fig. 15): on
+ * the directrix, and main and assistant ones on the generatrix. LONGERON, VERTICAL and DIAGONAL are the parts of a ring
+ * truss: along a ring, between the rings, across a bay. */
 typedef enum {
     HF_UNIT_BUD,
     HF_UNIT_MBUG,
@@ -31,14 +33,17 @@ typedef enum {
     HF_N_UNIT
 } hf_unit;
 
-extern const char *const hf_dof_word[HF_TRUSS_DOF]; /* "ux".."rz" */
+extern const char *const hf_dof_word[HF_TRUSS_DOF]; /* "ux", "uy", "uz", "rx", "ry", "rz" */
 extern const char *const hf_joint_word[3];          /* "rigid", "pinned", NULL */
-extern const char *const hf_unit_word[HF_N_UNIT];   /* "bud", "mbug", ... */
+extern const char *const hf_unit_word[HF_N_UNIT];   /* "bud", "mbug", "abug", "other", "longeron", ... */
 
-/* Numbers of a member, X(name in struct and files, units, default when a file leaves it out, description). A number
- * whose default is NaN must be given. Local axes: x from i to j; y horizontal, y = (-x_y, x_x, 0) normalised, or the
- * global y of a vertical member; z = x cross y; roll turns y and z about x. Iz resists bending in the plane of x and y
- * (with the shear area Asy), Iy in that of x and z (Asz). An infinite shear area is Euler and Bernoulli's beam. */
+/* The numbers of a member: X(name in struct and files, units, default if a file has no value, description). A number
+ * whose default is NaN must be given.
+ *
+ * Local axes: x runs from end i to end j. y is horizontal, (-x_y, x_x, 0) normalised, or the global y for a vertical
+ * member. z = x cross y. roll turns y and z about x. Iz resists bending in the plane of x and y, with the shear area
+ * Asy; Iy resists bending in the plane of x and z, with Asz. An infinite shear area is the beam of Euler and
+ * Bernoulli. */
 #define HF_MEMBER_NUMBERS(X)                                                                                           \
     X(E_Pa, "Pa", NAN, "Young's modulus")                                                                              \
     X(A_m2, "m2", NAN, "cross-section")                                                                                \
@@ -52,24 +57,26 @@ extern const char *const hf_unit_word[HF_N_UNIT];   /* "bud", "mbug", ... */
     X(density_kg_per_m3, "kg/m3", 0, "density")                                                                        \
     X(expansion_per_K, "1/K", 0, "coefficient of thermal expansion")
 
+/* Nodes, members and supports of a truss. */
 typedef struct {
-    int n_node, n_member;
-    double *position_m;   /* [n_node][3] */
-    unsigned char *fixed; /* [n_node] bit k: dof k is held by a support */
-    double *mass_kg;      /* [n_node] of hinges */
-    int *end;             /* [n_member][2] node indices i, j */
-    unsigned char *joint; /* [n_member] hf_joint */
-    unsigned char *unit;  /* [n_member] hf_unit */
+    int n_node, n_member;                                                  /* numbers of nodes and members */
+    double *position_m;                                                    /* [n_node][3] positions */
+    unsigned char *fixed;                                                  /* [n_node] bit k: a support holds dof k */
+    double *mass_kg;                                                       /* [n_node] mass of the hinges */
+    int *end;                                                              /* [n_member][2] nodes at the ends i, j */
+    unsigned char *joint;                                                  /* [n_member] hf_joint */
+    unsigned char *unit;                                                   /* [n_member] hf_unit */
 #define HF_MEMBER_FIELD(name, units, otherwise, description) double *name; /* [n_member] */
     HF_MEMBER_NUMBERS(HF_MEMBER_FIELD)
 #undef HF_MEMBER_FIELD
-    const char **node_id, **member_id;     /* [n_node], [n_member] */
+    const char **node_id, **member_id;     /* [n_node], [n_member] ids */
     int *node_line, *member_line;          /* lines in the files, or NULL for a generated truss */
-    const char *nodes_file, *members_file; /* names for messages, or NULL */
+    const char *nodes_file, *members_file; /* file names for messages, or NULL */
     void *block, *text;                    /* owned memory behind all of the above */
 } hf_truss;
 
-/* Is member i_member of this part, from HF_PART_UNIT on of one unit? */
+/* Returns true if member i_member belongs to this part: always below HF_PART_UNIT, from there on if it belongs to the
+ * unit. */
 static inline bool hf_truss_is_of(const hf_truss *truss, int i_member, hf_part part)
 {
     return part < HF_PART_UNIT || (int)truss->unit[i_member] == (int)part - HF_PART_UNIT;
@@ -77,10 +84,15 @@ static inline bool hf_truss_is_of(const hf_truss *truss, int i_member, hf_part p
 
 /* ---- the generated trusses ---- */
 
+/* The diagonals of a panel or bay. */
 typedef enum { HF_DIAGONALS_NONE, HF_DIAGONALS_SINGLE, HF_DIAGONALS_CROSSED } hf_diagonals;
+/* The beam theory, which determines the shear areas. */
 typedef enum { HF_THEORY_EULER_BERNOULLI, HF_THEORY_TIMOSHENKO } hf_theory;
+/* The nodes that the spacecraft holds: corners of the central module, or only its rear ones. */
 typedef enum { HF_HELD_CENTRAL_MODULE, HF_HELD_CENTRAL_MODULE_REAR } hf_held;
+/* The dofs that are held at these nodes. */
 typedef enum { HF_HELD_ALL_DOFS, HF_HELD_TRANSLATIONS } hf_held_dofs;
+/* The joints of a ring truss that are held. */
 typedef enum { HF_RING_HELD_BAY, HF_RING_HELD_VERTICAL, HF_RING_HELD_THREE_VERTICALS } hf_ring_held;
 
 /* Words of a case file, indexed by the enumerations above; the last entry is NULL. */
@@ -90,44 +102,46 @@ extern const char *const hf_held_word[3];
 extern const char *const hf_held_dofs_word[3];
 extern const char *const hf_ring_held_word[4];
 
-/* A basic unit: a planar truss one module long with chords, posts and diagonals of one round tube. */
+/* A basic unit: a planar truss one module long, with chords, posts and diagonals of one round tube. */
 typedef struct {
-    double diameter_m, wall_m; /* of the tube, outside */
-    int panels;                /* along a module */
-    hf_diagonals diagonals;    /* of a panel */
+    double diameter_m, wall_m; /* outer diameter and wall thickness of the tube */
+    int panels;                /* number of panels along a module */
+    hf_diagonals diagonals;    /* diagonals of a panel */
 } hf_truss_unit;
 
+/* A round tube. */
 typedef struct {
-    double diameter_m, wall_m; /* outside */
+    double diameter_m, wall_m; /* outer diameter and wall thickness */
 } hf_tube;
 
-/* A hoop truss under the rim of a paraboloid: a front ring through the supports of the front net, a rear ring straight
- * below it, through those of the rear net; bays between verticals. */
+/* A hoop truss under the rim of a paraboloid. The front ring runs through the supports of the front net. The rear ring
+ * is straight below it and runs through the supports of the rear net. Verticals divide the rings into bays. */
 typedef struct {
-    double height_m;   /* 0: that of the rear rim below the front rim */
-    int cells_per_bay; /* gaps between supports along the rim in a bay */
-    hf_diagonals bracing;
-    hf_ring_held held;
-    double held_at_deg; /* about the middle of the aperture, from x towards y */
-    hf_tube longeron, vertical, diagonal;
+    double height_m;      /* distance of the rings along z; 0: that of the rear rim from the front rim */
+    int cells_per_bay;    /* number of gaps between supports along the rim in a bay */
+    hf_diagonals bracing; /* diagonals of a bay */
+    hf_ring_held held;    /* joints that are held */
+    double held_at_deg;   /* angle of the held joints about the centre of the aperture, from x towards y */
+    hf_tube longeron, vertical, diagonal; /* tubes of the members */
 } hf_truss_ring;
 
+/* The truss of a case (section truss). */
 typedef struct {
-    double depth_m;                /* of all units: the rear chords lie this far behind the surface, along its normal */
-    int main_every;                /* counted from both edges, every main_every-th generatrix line is MBUG, else ABUG */
+    double depth_m;                /* distance of the rear chords from the surface along its normal, for all units */
+    int main_every;                /* from both edges, every so many generatrix lines are MBUG, the others ABUG */
     hf_truss_unit bud, mbug, abug; /* BUD on the module borders along x, the others along y */
-    double E_Pa, G_Pa, density_kg_per_m3, expansion_per_K;
-    double hinge_mass_kg; /* of each node */
-    hf_theory theory;     /* shear area of a thin round tube: half its cross-section */
-    hf_joint joints;      /* of all members */
-    hf_held supports;     /* which nodes */
-    hf_held_dofs support_dofs;
-    double match_tolerance_m; /* between a net support and its attachment */
-    hf_truss_ring ring;       /* instead of units */
+    double E_Pa, G_Pa, density_kg_per_m3, expansion_per_K; /* material of the tubes */
+    double hinge_mass_kg;                                  /* mass of the hinges at each node */
+    hf_theory theory;          /* Timoshenko: the shear area is half the cross-section, as of a thin round tube */
+    hf_joint joints;           /* joints of all members */
+    hf_held supports;          /* nodes that are held */
+    hf_held_dofs support_dofs; /* dofs that are held there */
+    double match_tolerance_m;  /* maximum distance of a support of the net from its node of the truss */
+    hf_truss_ring ring;        /* the ring truss, which replaces the units */
 } hf_truss_settings;
 
-/* Keys of the section truss, and of each of its units with the defaults of diameter and number of panels, as rows of
- * hf_field_table (config.h): X(section, member, type, least, largest, default, unit, words, help). */
+/* Keys of the section truss, and of each of its units with the defaults of diameter and number of panels. They are rows
+ * of hf_field_table (config.h): X(section, member, type, minimum, maximum, default, unit, words, help). */
 #define HF_TRUSS_KEYS(X, section)                                                                                      \
     X(section, depth_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "1", "m", NULL,                                           \
       "distance of the rear chords from the front chords, along the normal of the surface")                            \
@@ -176,48 +190,56 @@ typedef struct {
     X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL, "outer diameter of its tubes")     \
     X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "wall thickness of its tubes")
 
-/* Make the truss of basic sub-rings over the modules of the net, with front nodes on the module corners, on the
- * cylinder; the outer ones stand where the supports of edge ties are. Node ids f<i>_<j> in front and r<i>_<j> behind,
- * f<i>.<k>_<j> or f<i>_<j>.<k> inside units of several panels; member ids <node>-<node>. Free the truss in any case.
- * Returns HF_OK; HF_BAD_CASE when it would be too large; HF_NO_MEMORY. */
+/* Makes the truss of basic sub-rings over the modules of the net. Its front nodes are the module corners on the
+ * cylinder; the outer ones are at the supports of edge ties. Ids of nodes are f<i>_<j> in front and r<i>_<j> behind,
+ * and f<i>.<k>_<j> or f<i>_<j>.<k> inside units of several panels. Ids of members are <node>-<node>. Returns HF_OK;
+ * HF_BAD_CASE if the truss would be too large; HF_NO_MEMORY. Call hf_truss_free in any case. */
 hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder *cylinder, hf_truss *truss,
                             hf_messages *messages);
 
-/* Make the ring truss under the rim of the net. Node ids f<k> in front and r<k> behind, counted around from x towards y
- * as the supports of the net are; member ids <node>-<node>. Hinges are where verticals end. Free the truss in any case.
- * Returns HF_OK; HF_BAD_CASE for what hf_truss_ring_fault tells, or when a quad net's cells do not divide into bays;
- * HF_NO_MEMORY. */
+/* Makes the ring truss under the rim of the net. Ids of nodes are f<k> in front and r<k> behind, in the order of the
+ * supports of the net from x towards y; ids of members are <node>-<node>. Hinges have their mass at the ends of
+ * verticals. Returns HF_OK; HF_BAD_CASE for a fault that hf_truss_ring_fault finds, or if the cells of a quad net do
+ * not divide into bays; HF_NO_MEMORY. Call hf_truss_free in any case. */
 hf_status hf_truss_ring_generate(const hf_truss_settings *settings, const hf_paraboloid *paraboloid, hf_truss *truss,
                                  hf_messages *messages);
 
-/* The key of truss.ring that asks for what cannot be made, with the reason in what[size] (HF_GENERATE_FAULT_SIZE is
- * enough), or NULL. */
+/* Returns the key of truss.ring whose value cannot be realised and writes the reason into what[size], for which
+ * HF_GENERATE_FAULT_SIZE suffices. Returns NULL if there is no fault. */
 const char *hf_truss_ring_fault(const hf_truss_settings *settings, const hf_paraboloid *paraboloid, char *what,
                                 size_t size);
 
 /* ---- any truss ---- */
 
-/* Find the truss node that carries each support of the net: the nearest one, within the tolerance. scene_node,
- * truss_node: room for scene->n_node; n_attachment of each are set. HF_BAD_CASE names every net support without one. */
+/* Finds the node of the truss that carries each support of the net: the nearest one, at most tolerance_m away.
+ * scene_node and truss_node have room for scene->n_node indices; *n_attachment of each are set. Returns HF_OK, or
+ * HF_BAD_CASE with messages that name the supports without such a node. */
 hf_status hf_truss_attach(const hf_truss *truss, const hf_scene *scene, double tolerance_m, int *n_attachment,
                           int *scene_node, int *truss_node, hf_messages *messages);
 
-/* Allocate a truss of this size, all zero. Returns HF_OK or HF_NO_MEMORY. */
+/* Allocates a truss of this size, all zero; with_line says whether the line numbers exist. Returns HF_OK or
+ * HF_NO_MEMORY. */
 hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, bool with_line);
+/* Frees the memory of the truss. */
 void hf_truss_free(hf_truss *truss);
 
-/* Check what must hold for every truss, generated or read: finite numbers, stiffness above zero, members with two
- * different ends and a length. Reports all faults in one go, each with file, line and id. HF_OK, HF_BAD_CASE. */
+/* Checks what must hold for every truss, generated or read: finite numbers, stiffness above zero, members with two
+ * different ends and a length. Writes a message with file, line and id for each fault, up to a limit. Returns HF_OK or
+ * HF_BAD_CASE. */
 hf_status hf_truss_check(const hf_truss *truss, hf_messages *messages);
 
-/* Room for a path of HF_PATH_SIZE bytes, a line and an id of 255 bytes, the most that a table may have. */
+/* Size of the text of hf_truss_describe: a path of HF_PATH_SIZE bytes, a line and an id of 255 bytes, the most that a
+ * table may have. */
 #define HF_TRUSS_DESCRIPTION_SIZE (HF_PATH_SIZE + 300)
 
-/* Write "truss_nodes.csv:7: node 'a'" or "truss: node 'a'" into text[size], for messages; what has no room is cut. */
+/* Writes "truss_nodes.csv:7: node 'a'", or "truss: node 'a'" without a file, into text[size], for messages. A text that
+ * does not fit is cut. */
 void hf_truss_describe(const hf_truss *truss, bool is_member, int index, char *text, size_t size);
 
-double hf_truss_member_length(const hf_truss *truss, int i_member); /* m */
-double hf_truss_mass(const hf_truss *truss);                        /* kg: members and hinges */
+/* Returns the length of member i_member, m. */
+double hf_truss_member_length(const hf_truss *truss, int i_member);
+/* Returns the mass of members and hinges, kg. */
+double hf_truss_mass(const hf_truss *truss);
 
 HF_API_END
 #endif
