@@ -1,13 +1,21 @@
-/* goals - what a design wants: blocks of residuals of a shape, one for each row of optimize.goals, or of
- * optimize.objectives, whose weights are 1, with their exact derivatives (METHOD section 7).
+/* goals - the objectives of a design: blocks of residuals of a shape with their exact derivatives (METHOD section 7).
  * Stability: internal; may change in any version.
  *
- * Each goal has a value in its own unit (settings.h), and residuals whose norm is that value; the merit of a design is
- * sqrt(sum (weight * value)^2). Of pull and displacement, which are the largest of several sizes s, value is the
- * largest, but the residuals have the norm (sum s^16)^(1/16), which is smooth: it is between the largest of n sizes and
- * n^(1/16) times that, and it is what the merit has. Of ratio, the largest tension times the largest 1/tension, both
- * are smooth. A value is NaN or infinite where the shape has none: psi when all nodes are loose, a surface without a
- * best fit, the ratio of a set with a slack cable. */
+ * There is one block for each row of optimize.goals, or of optimize.objectives, whose weights are 1. Pipeline:
+ *
+ *   hf_goals_measure                shape in a workspace -> values of the objectives, merit
+ *   hf_goals_linearise              shape -> weighted residuals, and the data of its derivatives
+ *   hf_goals_push                   rates of the shape by a design variable -> rates of the residuals
+ *   hf_goals_nets_linearise, _push, _close   the same for objectives over as-built nets
+ *
+ * Each objective has a value in its own unit (settings.h), and residuals whose norm is that value. The merit of a
+ * design is sqrt(sum (weight * value)^2).
+ *
+ * Pull and deflection are the maximum of several sizes s. Their value is that maximum, but their residuals have the
+ * norm (sum s^16)^(1/16), which is smooth. It is between the maximum of n sizes and n^(1/16) times the maximum, and the
+ * merit contains it. A ratio is the maximum tension times the maximum 1/tension, and both are smoothed in this way. A
+ * value is NaN or infinite where the shape has none: psi if all nodes are loose, a surface without a best fit, the
+ * ratio of a set with a slack cable. */
 #ifndef HIFDM_GOALS_H
 #define HIFDM_GOALS_H
 
@@ -17,165 +25,185 @@
 
 HF_API_BEGIN
 
+/* One objective. */
 typedef struct {
-    hf_goal_settings wanted;
-    int n_cable;          /* of its set */
-    int *cable;           /* [n_cable] ascending; NULL where the goal has no set */
-    int n_shape_row;      /* residuals of one shape */
-    int first_net, n_net; /* nets that it is over; n_net 0: the design itself */
-    int first_row, n_row; /* its residuals among all: of one shape after the other */
+    hf_goal_settings wanted; /* its row of the case */
+    int n_cable;             /* number of cables of its set */
+    int *cable;              /* [n_cable] cables of its set, ascending; NULL without a set */
+    int n_shape_row;         /* number of residuals of one shape */
+    int first_net, n_net;    /* the as-built nets on which it is measured; n_net 0: the design itself */
+    int first_row, n_row;    /* its rows among all residuals, one shape after the other */
 } hf_goal;
 
-/* Changes of a shape per unit of a variable. */
+/* Rates of change of a shape by a design variable, per unit of the variable. */
 typedef struct {
-    const double *position_m;     /* [3][n_node] by row, supports included */
-    const double *tension_N;      /* [n_cable] */
-    const double *displacement_m; /* [3 n_attachment], of the attachments by the truss; NULL without a truss */
+    const double *position_m;     /* [3][n_node] of the positions by row, supports included, m */
+    const double *tension_N;      /* [n_cable] of the tensions, N */
+    const double *displacement_m; /* [3 n_attachment] of the displacements by the truss, m; NULL without a truss */
 } hf_goals_rate;
 
-/* Take the shape of a net, NULL where it has none: position_m, tension_N, length_m, displacement_m and loose alone. */
+/* Receives the shape of as-built net i_net; NULL: it has none. Of the workspace only position_m, tension_N, length_m,
+ * displacement_m and loose are valid. */
 typedef void hf_goals_take(void *context, int i_net, const hf_workspace *shape);
 
-/* The nets that are made of a design and that goals may be over: its states, then samples of its errors. Who knows them
- * (built/built_nets.h) stands above this room, and fills in the functions. What is found of a net depends on the design
- * and on the number of the net alone. */
+/* The as-built nets of a design on which objectives may be measured: its load cases, then samples of its errors. The
+ * room that makes these nets (built/built_nets.h) is above this one, so it supplies the functions. Shapes depend on the
+ * design and on the number of the net alone. */
 typedef struct hf_goals_nets {
-    int n_state, n_sample;
-    const char *const *state_name; /* [n_state] */
-    /* The scratch of one thread. HF_OK or HF_NO_MEMORY; close it in either case. */
+    int n_state, n_sample;         /* numbers of load cases and of samples */
+    const char *const *state_name; /* [n_state] names of the load cases */
+    /* Allocates the scratch of one thread, *room. Returns HF_OK or HF_NO_MEMORY. Call close in either case. */
     hf_status (*open)(const struct hf_goals_nets *nets, void **room);
+    /* Frees the scratch of a thread. */
     void (*close)(void *room);
-    /* Cut the nets for the design whose shape the workspace holds. HF_OK; HF_NO_MEMORY; HF_BAD_CASE where it cannot be
-     * cut. The other functions are of this design. */
+    /* Cuts the nets for the design whose shape the workspace holds; the functions below are then about this design.
+     * Returns HF_OK; HF_NO_MEMORY; HF_BAD_CASE if the cables cannot be cut. */
     hf_status (*cut)(void *room, const hf_workspace *design);
-    /* Find shapes; `take` is called in this thread, in any order. */
+    /* Finds the shapes of the nets first to first + n - 1 and calls `take` for each, in this thread and in any
+     * order. */
     void (*solve)(void *room, int first, int n, hf_goals_take *take, void *context);
-    /* Find the shape of one net and factor its matrix there: HF_OK, it is the net of `follow`; HF_NOT_FINITE: it has
-     * none; HF_NO_MEMORY. */
+    /* Finds the shape of one net and factors its matrix there. *shape is set to the workspace, owned by the room.
+     * Returns HF_OK, and `follow` is then about this net; HF_NOT_FINITE if the net has no shape; HF_NO_MEMORY. */
     hf_status (*linearise)(void *room, int i_net, const hf_workspace **shape);
-    /* n <= HF_GOALS_AT_ONCE changes of the design to those of the net, in arrays of the room. */
+    /* Converts n <= HF_GOALS_AT_ONCE rates of the design to rates of the net. by_net [n] points into arrays of the
+     * room. */
     void (*follow)(void *room, int n, const hf_goals_rate *by_design, hf_goals_rate *by_net);
 } hf_goals_nets;
-#define HF_GOALS_AT_ONCE 8
+#define HF_GOALS_AT_ONCE 8 /* maximum number of rates in one call of `follow` */
 
-/* Constant after creation, shared by all threads. */
+/* The objectives of a case. They do not change after creation, so threads share them. */
 typedef struct {
-    const hf_model *model; /* borrowed */
-    hf_surface_kind kind;  /* of the wanted surface, as the next; only with goals surface and facets */
-    double focal_length_m;
-    int n_facet;
-    int *corner_row;           /* [n_facet][4] rows of the model; only with a goal facets or gain */
-    struct hf_gain_beam *beam; /* [n_goal] of those of gain */
-    int n_goal, n_row;
-    hf_goal goal[HF_DESIGN_ROWS_MAX];
-    const hf_goals_nets *nets; /* borrowed; NULL where no goal is over any */
-    void *block;
+    const hf_model *model;            /* the net; borrowed */
+    hf_surface_kind kind;             /* kind of the target surface; used by surface and facets */
+    double focal_length_m;            /* focal length of the target surface; used by surface and facets */
+    int n_facet;                      /* number of facets */
+    int *corner_row;                  /* [n_facet][4] rows of the corners; used by facets and gain */
+    struct hf_gain_beam *beam;        /* [n_goal] the beam of each objective gain */
+    int n_goal, n_row;                /* numbers of objectives and of all residuals */
+    hf_goal goal[HF_DESIGN_ROWS_MAX]; /* [n_goal] the objectives */
+    const hf_goals_nets *nets;        /* as-built nets; borrowed; NULL if no objective is measured on them */
+    void *block;                      /* owned memory behind the arrays */
 } hf_goals;
 
-/* What a thread needs: scratch of a measurement, and what hf_goals_push has to know of the shape of the last
- * hf_goals_linearise. */
+/* The memory of one thread: scratch of a measurement, and the data of the last hf_goals_linearise that hf_goals_push
+ * needs. */
 typedef struct hf_goals_point {
-    double *psi_per_m;      /* [n_inner_node] residual per distance; 0 of a loose node */
-    double *force_N;        /* [n_support][3] scratch: sums of T u, forces of the net on the supports */
-    double *rate_N;         /* [n_support][3] scratch: their change */
-    double *size;           /* [n_support], [n_attachment] or of ratio [2 n_cable] scratch */
-    double *row;            /* [n_row] scratch */
-    struct hf_gain *gain;   /* [n_goal] of those of gain */
-    struct hf_cloud *cloud; /* [n_goal] of those of the surface: its points, their errors, the best fit */
-    void *nets;             /* the room of goals->nets; NULL without */
-    void (*free_nets)(void *room);
-    double *net_value; /* [n_goal][n_state + n_sample] of the goals over nets, in each; infinite without a shape */
-    double *net_norm;  /* the same of residuals */
-    double *net_part;  /* the same over the smooth largest; or scratch */
-    void *block;
+    double *psi_per_m;             /* [n_inner_node] residual of psi per distance; 0 for a loose node */
+    double *force_N;               /* [n_support][3] scratch: forces of the net on the supports */
+    double *rate_N;                /* [n_support][3] scratch: rates of these forces */
+    double *size;                  /* [n_support], [n_attachment] or for a ratio [2 n_cable] scratch */
+    double *row;                   /* [n_row] scratch */
+    struct hf_gain *gain;          /* [n_goal] scratch of each objective gain */
+    struct hf_cloud *cloud;        /* [n_goal] of surface and facets: points, errors, best fit */
+    void *nets;                    /* scratch of goals->nets; NULL without nets */
+    void (*free_nets)(void *room); /* frees `nets` */
+    double *net_value;             /* [n_goal][n_state + n_sample] value in each net; infinite without a shape */
+    double *net_norm;              /* [n_goal][n_state + n_sample] norm of the residuals in each net */
+    double *net_part;              /* [n_goal][n_state + n_sample] norm over the smooth maximum; or scratch */
+    void *block;                   /* owned memory behind the arrays */
 } hf_goals_point;
 
-/* The goals of a case, its objectives, or psi where there is no row. The model has its truss already; `surface` and
- * `facets` may be NULL for goals that do not need them, `nets` (borrowed) where all are of the design. HF_OK;
- * HF_BAD_CASE with a message for each row that asks for what this scene does not have, "optimize.goals.1: ..." or
- * "optimize.objectives.1: ..."; HF_NO_MEMORY. Free in any case. */
+/* Creates the objectives of a case: the rows of optimize.objectives or optimize.goals, or psi if there are none. The
+ * model has its truss already. `surface` and `facets` may be NULL if no objective needs them, `nets` (borrowed) if all
+ * are measured on the design. Returns HF_OK; HF_BAD_CASE with a message for each row that needs what this scene does
+ * not have, or if there would be too many residuals; HF_NO_MEMORY. Call hf_goals_free in any case. */
 hf_status hf_goals_create(const hf_scene *scene, const hf_model *model, const hf_optimize_settings *settings,
                           const hf_surface_settings *surface, const hf_facets *facets, const hf_goals_nets *nets,
                           hf_goals *goals, hf_messages *messages);
+/* Frees the objectives. */
 void hf_goals_free(hf_goals *goals);
 
-/* What goal i_goal is called in tables: goal_0_psi, or goal_1_tension_edge of a goal of a set; returns text. */
+/* Writes the name of objective i_goal in tables into text: goal_0_psi, goal_1_tension_edge for a set, followed by the
+ * load case or by what it is measured on. Returns text. */
 const char *hf_goals_name(const hf_goals *goals, int i_goal, char text[HF_GOAL_NAME_SIZE]);
 
-/* HF_OK or HF_NO_MEMORY; free in either case. */
+/* Allocates the memory of one thread for these objectives. Returns HF_OK or HF_NO_MEMORY. Call hf_goals_point_free in
+ * either case. */
 hf_status hf_goals_point_create(const hf_goals *goals, hf_goals_point *point);
+/* Frees the memory of a thread. */
 void hf_goals_point_free(hf_goals_point *point);
 
-/* value [n_goal] of the shape in the workspace, and its merit. Allocates nothing but for a best fit. HF_OK, also when a
- * goal has no value (nor has the merit); HF_NO_MEMORY. Overwrites the point. */
+/* Measures the shape in the workspace: value [n_goal] receives the values of the objectives, and *merit the merit.
+ * Overwrites the point. Allocates memory only for a best fit. Returns HF_OK, also if an objective and so the merit has
+ * no value; HF_NO_MEMORY. */
 hf_status hf_goals_measure(const hf_goals *goals, const hf_workspace *workspace, hf_goals_point *point, double *value,
                            double *merit);
 
-/* Weighted residuals [n_row] of the shape in the workspace, whose norm is the merit, and what hf_goals_push needs.
- * HF_OK; HF_NOT_FINITE when one has no value; HF_NO_MEMORY. */
+/* Computes the weighted residuals residual [n_row] of the shape in the workspace, whose norm is the merit, and the data
+ * for hf_goals_push. Returns HF_OK; HF_NOT_FINITE if an objective has no value; HF_NO_MEMORY. */
 hf_status hf_goals_linearise(const hf_goals *goals, const hf_workspace *workspace, hf_goals_point *point,
                              double *residual);
 
-/* The same of the goals of the design itself alone; the rows of others are left as they are. */
+/* Does the same for the objectives that are measured on the design itself; the rows of the others are not changed. */
 hf_status hf_goals_linearise_design(const hf_goals *goals, const hf_workspace *workspace, hf_goals_point *point,
                                     double *residual);
 
-/* The derivative [n_row] of these residuals by a variable, of the goals of the design itself. The workspace holds the
- * same shape. */
+/* Computes the rates rate [n_row] of these residuals by a design variable, from the rates `by` of the shape. The rows
+ * of objectives over as-built nets are not changed. The workspace holds the same shape. */
 void hf_goals_push(const hf_goals *goals, const hf_workspace *workspace, hf_goals_point *point, const hf_goals_rate *by,
                    double *rate);
 
-/* ---- goals over nets ---- */
+/* ---- objectives over as-built nets ---- */
 
-/* Has this goal derivatives? Not a quantile. */
+/* Returns true if an objective has derivatives; a quantile has none. */
 bool hf_goals_is_smooth(const hf_goal_settings *goal);
 
-/* Is some goal over this net? */
+/* Returns true if an objective is measured on net i_net. */
 bool hf_goals_are_over(const hf_goals *goals, int i_net);
 
-/* Find the nets of the design in the workspace: residuals of the goals over them, without weights, and net_value and
- * net_norm of the point. HF_OK, also when nets have no shape; HF_NO_MEMORY. */
+/* Finds the as-built nets of the design in the workspace. residual [n_row] receives the residuals of the objectives
+ * over nets, without weights; net_value and net_norm of the point are set. Returns HF_OK, also if nets have no shape;
+ * HF_NO_MEMORY. */
 hf_status hf_goals_nets_measure(const hf_goals *goals, const hf_workspace *workspace, hf_goals_point *point,
                                 double *residual);
 
-/* What goal i_goal takes of its nets: scales its residuals [n_row], whose norm is *norm then. */
+/* Combines the nets of objective i_goal: sets *value and *norm. Except for a quantile, its residuals [n_row of the
+ * objective] are scaled so that they have this norm. */
 void hf_goals_nets_gather(const hf_goals *goals, int i_goal, hf_goals_point *point, double *residual, double *value,
                           double *norm);
 
-/* Derivatives by a variable, net by net: hf_goals_nets_push writes into rate [n_row] the change of the residuals of net
- * i_net by themselves, at the shape that hf_goals_nets_linearise took last (HF_OK or HF_NOT_FINITE). When all are there
- * hf_goals_nets_close makes of them the change of `residual` [n_row], which hf_goals_linearise wrote with `point`. */
+/* Finds net i_net of the design that was cut last and prepares its derivatives. *shape is set to the workspace with its
+ * shape. Returns HF_OK; HF_NOT_FINITE if the net has no shape or an objective no value there; HF_NO_MEMORY. */
 hf_status hf_goals_nets_linearise(const hf_goals *goals, int i_net, hf_goals_point *point, const hf_workspace **shape);
+/* Writes the rates of the residuals of net i_net by a design variable, without weights, into rate [n_row]. `by` has the
+ * rates of the net. The shape is that of the last hf_goals_nets_linearise. */
 void hf_goals_nets_push(const hf_goals *goals, int i_net, const hf_workspace *shape, hf_goals_point *point,
                         const hf_goals_rate *by, double *rate);
+/* Combines the rates of all nets in rate [n_row] to the rates of `residual` [n_row], which hf_goals_linearise computed
+ * with `point`. */
 void hf_goals_nets_close(const hf_goals *goals, const hf_goals_point *point, const double *residual, double *rate);
 
 /* ---- parts, for goals_nets.c ---- */
 
-/* Residuals of goal i_goal of one shape, without its weight, with their norm and value; and their derivative. */
+/* Computes the residuals of objective i_goal for one shape, without its weight, their norm and the value. Returns HF_OK
+ * or HF_NO_MEMORY. */
 hf_status hf_goals_measure_shape(const hf_goals *goals, int i_goal, const hf_workspace *shape, hf_goals_point *point,
                                  double *residual, double *value, double *norm);
+/* Computes the rates of these residuals from the rates `by` of the shape. */
 void hf_goals_push_shape(const hf_goals *goals, int i_goal, const hf_workspace *shape, hf_goals_point *point,
                          const hf_goals_rate *by, double *rate);
-/* What goal i_goal needs for that derivative, of the shape that was measured last. As hf_goals_linearise. */
+/* Prepares these rates for the shape that was measured last. Returns HF_OK, HF_NOT_FINITE or HF_NO_MEMORY. */
 hf_status hf_goals_linearise_shape(const hf_goals *goals, int i_goal, const hf_workspace *shape, hf_goals_point *point);
+/* Returns true for the objectives surface and facets. */
 bool hf_goals_is_on_surface(hf_goal_kind kind);
 
-/* The largest of n sizes, and the smooth one P = (sum s^16)^(1/16) as *norm; size [n] becomes s/P. */
+/* Returns the maximum of n sizes, and sets *norm to the smooth maximum P = (sum s^16)^(1/16). size [n] becomes s/P. */
 double hf_goals_smooth_largest(int n, double *size, double *norm);
 
+/* Returns x^7. */
 static inline double hf_goals_seventh(double x)
 {
     double square = x * x;
     return square * square * square * x;
 }
 
-/* Is the value the largest of several sizes, or over their least? Then it has corners, and residuals are of a smooth
- * value beside it. */
+/* Returns true if the value is a maximum of several sizes, or a ratio to a minimum. Such a value has corners, so its
+ * residuals are those of a smooth value. */
 bool hf_goals_is_largest(hf_goal_kind kind);
 
-/* The forces (N) of the net on its supports, as point->size [n_support], and their change [n_support] by a variable. */
+/* Sets point->size [n_support] to the forces of the net on its supports, N. */
 void hf_goals_pulls(const hf_model *model, const hf_workspace *workspace, hf_goals_point *point);
+/* Computes the rates rate [n_support] of these forces by a design variable, from the rates `by` of the shape. */
 void hf_goals_pull_rates(const hf_model *model, const hf_workspace *workspace, hf_goals_point *point,
                          const hf_goals_rate *by, double *rate);
 
