@@ -1,8 +1,16 @@
-/* pattern - the far field of a reflector: physical optics over its facets (METHOD section 13).
+/* pattern - the far field of a reflector by physical optics over its facets (METHOD section 13).
  * Stability: internal; may change in any version.
  *
- * Everything in the frame of the scene. A direction has the angle theta from +z, and phi from +x towards +y; a cut is a
- * half plane phi with theta of both signs. Time goes as exp(+j w t). */
+ * Pipeline at one frequency:
+ *
+ *   hf_feed_make           target surface and facets -> feed
+ *   hf_pattern_create      settings, facets, feed -> directions, points of quadrature
+ *   hf_pattern_sum_block   currents of a block of facets -> sums over its points (M44), by any thread
+ *   hf_pattern_finish      sums of all blocks -> gain by polarisation
+ *   hf_pattern_figures     gain of a cut -> width of the beam, sidelobes
+ *
+ * Everything is in the frame of the scene. A direction has the angle theta from +z, and phi from +x towards +y. A cut
+ * is a half plane phi with theta of both signs. The time dependence is exp(+j w t). */
 #ifndef HIFDM_PATTERN_H
 #define HIFDM_PATTERN_H
 
@@ -16,109 +24,118 @@ HF_API_BEGIN
 
 /* What illuminates a surface. */
 typedef struct {
-    hf_feed_kind kind;     /* not HF_FEED_AUTO */
-    double position_m[3];  /* of a point; of a line x and z */
-    double axis[3], co[3]; /* unit vectors: where it looks, and the polarisation there; of a line across y */
-    double cos_power;      /* q: the field goes as cos^q of the angle from the axis, 0 behind */
-    double beam[3];        /* unit vector into which the wanted surface sends what meets the point it looks at */
+    hf_feed_kind kind;     /* kind of the feed, not HF_FEED_AUTO */
+    double position_m[3];  /* position of a point; of a line its x and z */
+    double axis[3], co[3]; /* unit vectors of the axis and of the polarisation on it */
+    double cos_power;      /* q: the field is cos^q of the angle from the axis, 0 behind it */
+    double beam[3];        /* unit vector of the axis after its reflection by the target surface */
     double scale;          /* gain = scale |N|^2 / wavelength^2, with N of (M44) */
 } hf_feed;
 
-/* Work out the feed of surface->pattern for facets at position_m [n_node][3]: what the case leaves open is the focus of
- * the wanted surface, the middle of the aperture as its aim, and a field 10 dB weaker at the edge of the facets.
- * surface->kind is known, and there is a facet. Returns the number of facets that it does not see from the side of +z:
- * such a surface has no pattern. */
+/* Determines the feed of surface->pattern for facets at position_m [n_node][3], m. Defaults are the focus of the target
+ * surface as its position, the middle of the aperture as its aim, and a field 10 dB weaker at the edge of the facets.
+ * surface->kind is not HF_SURFACE_AUTO, and there is at least one facet. Returns the number of facets whose front, on
+ * the side of +z, the feed does not illuminate. If it is not 0, the surface has no pattern. */
 int hf_feed_make(const hf_surface_settings *surface, const hf_facets *facets, const double *position_m, hf_feed *feed);
 
-/* A shape to be illuminated: facets with what bends them. sag_m [n_facet][4] as hf_facet_mesh_sags; NULL: flat. */
+/* A surface that is illuminated. */
 typedef struct {
-    const hf_facets *facets;
-    const double *position_m; /* [n_node][3] */
-    const double *sag_m;
+    const hf_facets *facets;  /* its facets; borrowed */
+    const double *position_m; /* [n_node][3] positions */
+    const double *sag_m;      /* [n_facet][4] sags of the mesh as of hf_facet_mesh_sags; NULL: flat */
 } hf_pattern_surface;
 
-#define HF_PATTERN_BLOCKS 32 /* parts of the surface, which threads share */
+#define HF_PATTERN_BLOCKS 32 /* number of blocks of facets, which threads share */
 
-/* One frequency. */
+/* The far field at one frequency. */
 typedef struct {
-    const hf_pattern_settings *settings;
-    hf_pattern_surface surface;
-    hf_feed feed;
-    double wavelength_m;
-    int n_thread;                      /* rooms of scratch */
-    const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 ends the sums early, which then mean nothing */
-    int n_padded;                      /* angles of a cut, filled up to whole lanes */
-    int n_node, n_node_padded;         /* angles at which a facet is summed; n_node 0: at those of the cut themselves */
-    long n_point;                      /* of quadrature, over all facets */
-    double *gauss_at, *gauss_weight;   /* Gauss-Legendre on [0, 1], row n of the rule of n points */
-    double *direction;                 /* [n_cut][3][n_padded] unit vectors of the angles */
-    double *node_direction;            /* [n_cut][3][n_node_padded] */
-    double *between;                   /* [n_node][n_padded] what each node gives to an angle */
-    double *sum;                       /* [HF_PATTERN_BLOCKS][n_cut][6][n_padded] of the blocks */
-    double *local, *point;             /* [n_thread] scratch of each room */
-    void *block;                       /* owned memory */
+    const hf_pattern_settings *settings; /* settings; borrowed */
+    hf_pattern_surface surface;          /* the surface */
+    hf_feed feed;                        /* its feed */
+    double wavelength_m;                 /* wavelength */
+    int n_thread;                        /* number of threads, each with scratch of its own */
+    const volatile sig_atomic_t *stop;   /* NULL, or a flag: *stop != 0 ends the sums early; they are then invalid */
+    int n_padded;                        /* number of angles of a cut, filled up to whole vectors */
+    int n_node, n_node_padded;           /* angles at which a facet is summed; n_node 0: those of the cut */
+    long n_point;                        /* number of points of quadrature over all facets */
+    double *gauss_at, *gauss_weight;     /* Gauss-Legendre on [0, 1]; row n is the rule of n points */
+    double *direction;                   /* [n_cut][3][n_padded] unit vectors of the angles */
+    double *node_direction;              /* [n_cut][3][n_node_padded] unit vectors of the summed angles */
+    double *between;                     /* [n_node][n_padded] weight of each summed angle in an angle */
+    double *sum;                         /* [HF_PATTERN_BLOCKS][n_cut][6][n_padded] sums of the blocks */
+    double *local, *point;               /* [n_thread] scratch */
+    void *block;                         /* owned memory behind the arrays */
 } hf_far_field;
 
-/* What the sums at one frequency will take, without memory for them: n_point, n_node and the settings of *pattern. */
+/* Determines the size of the sums at one frequency without allocating memory: n_point, n_node and the settings of
+ * *pattern. */
 void hf_pattern_plan(const hf_pattern_settings *settings, const hf_pattern_surface *surface, const hf_feed *feed,
                      double frequency_Hz, hf_far_field *pattern);
 
-/* Angles of all cuts at which each point of quadrature is summed. */
+/* Returns the number of angles, over all cuts, at which each point of quadrature is summed. */
 int hf_pattern_angles(const hf_far_field *pattern);
 
-/* Lay out the sums at one frequency for n_thread rooms. HF_OK or HF_NO_MEMORY; free in any case. */
+/* Allocates and prepares the sums at one frequency for n_thread threads. settings and surface are borrowed. Returns
+ * HF_OK or HF_NO_MEMORY. Call hf_pattern_free in either case. */
 hf_status hf_pattern_create(const hf_pattern_settings *settings, const hf_pattern_surface *surface, const hf_feed *feed,
                             double frequency_Hz, int n_thread, hf_far_field *pattern);
 
-/* Sum block i < HF_PATTERN_BLOCKS of the surface in the scratch of a room; for hf_parallel_each, context: the pattern.
- * The sums are the same in every room. */
+/* Sums block i < HF_PATTERN_BLOCKS of the surface with the scratch of thread number `room`. It is a callback for
+ * hf_parallel_each; `pattern` is the hf_far_field. The sums do not depend on the room. */
 void hf_pattern_sum_block(void *pattern, int room, int i);
 
-/* With all blocks summed: gain over isotropic radiation of the power of the feed, by polarisation after Ludwig's third
- * definition, dBi; co_dBi, cross_dBi [n_cut][n_theta]. */
+/* Computes the gain from the sums of all blocks, relative to isotropic radiation of the power of the feed, dBi. co_dBi
+ * and cross_dBi [n_cut][n_theta] receive the components by Ludwig's third definition. Overwrites the sums of the first
+ * block. */
 void hf_pattern_finish(hf_far_field *pattern, double *co_dBi, double *cross_dBi);
 
+/* Frees the sums. */
 void hf_pattern_free(hf_far_field *pattern);
 
-#define HF_PATTERN_WIDTH_STEPS 4.0 /* of angle, in the width of a beam whose figures are told */
+#define HF_PATTERN_WIDTH_STEPS 4.0 /* minimum number of angles in the half-power width of a cut with figures */
 
-/* What speaks against the figures of a cut. */
+/* Why figures of a cut are doubtful. */
 typedef enum {
-    HF_CUT_FINE,
-    HF_CUT_COARSE, /* fewer than HF_PATTERN_WIDTH_STEPS steps of angle in the half-power width: lobes are missed */
-    HF_CUT_AT_END  /* the highest angle is the first or the last */
+    HF_CUT_FINE,   /* they are not */
+    HF_CUT_COARSE, /* too few steps of angle in the half-power width: lobes are missed */
+    HF_CUT_AT_END  /* the maximum is at the first or the last angle */
 } hf_cut_doubt;
 
-/* Of one cut; NaN where the angles do not reach it, and but for the highest point where there is a doubt. */
+/* The figures of one cut. They are NaN if the angles do not reach them, and except for the maximum if there is a
+ * doubt. */
 typedef struct {
-    double gain_dBi, beam_deg;   /* the highest point, by the parabola through the highest angle and its neighbours */
-    double half_power_width_deg; /* around it */
-    double first_sidelobe_dB;    /* the higher one of the two beside the beam, below it */
-    double highest_sidelobe_dB;  /* of all of the cut */
-    hf_cut_doubt doubt;          /* not stored */
+    double gain_dBi, beam_deg;   /* the maximum and its angle, by the parabola through three angles */
+    double half_power_width_deg; /* half-power width of the beam */
+    double first_sidelobe_dB;    /* the higher one of the lobes beside the beam, relative to the beam */
+    double highest_sidelobe_dB;  /* the highest lobe of the cut, relative to the beam */
+    hf_cut_doubt doubt;          /* why figures are NaN; not stored */
 } hf_cut_figures;
 
+/* Returns the figures of a cut from its co-polar gain co_dBi [n_theta], at even steps from theta_deg[0] to
+ * theta_deg[1]. */
 hf_cut_figures hf_pattern_figures(int n_theta, const double theta_deg[2], const double *co_dBi);
 
 /* ---- of a shape ---- */
 
-/* Figures of the cuts at all frequencies, in the order of the tables. */
+/* The figures of the cuts of a shape at all frequencies, in the order of the tables. */
 typedef struct {
-    int n_frequency, n_cut; /* 0: no pattern */
-    double frequency_Hz[HF_LIST_MAX], phi_deg[HF_PATTERN_CUTS];
-    hf_feed feed;
-    hf_cut_figures figure[HF_LIST_MAX * HF_PATTERN_CUTS]; /* [n_frequency][n_cut] */
+    int n_frequency, n_cut; /* numbers of frequencies and cuts; 0: there is no pattern */
+    double frequency_Hz[HF_LIST_MAX], phi_deg[HF_PATTERN_CUTS]; /* frequencies and angles of the cuts */
+    hf_feed feed;                                               /* the feed */
+    hf_cut_figures figure[HF_LIST_MAX * HF_PATTERN_CUTS];       /* [n_frequency][n_cut] the figures */
 } hf_pattern_summary;
 
-/* All angles. */
+/* The gain of a shape at all frequencies and angles. */
 typedef struct {
-    int n_frequency, n_cut, n_theta;
-    double *frequency_Hz, *phi_deg, *theta_deg;
-    double *co_dBi, *cross_dBi; /* [n_frequency][n_cut][n_theta] */
-    void *block;                /* owned memory */
+    int n_frequency, n_cut, n_theta;            /* numbers of frequencies, cuts and angles */
+    double *frequency_Hz, *phi_deg, *theta_deg; /* [n_frequency], [n_cut], [n_theta] */
+    double *co_dBi, *cross_dBi;                 /* [n_frequency][n_cut][n_theta] gain by polarisation */
+    void *block;                                /* owned memory behind the arrays */
 } hf_pattern_table;
 
+/* Allocates a table of this size. Returns HF_OK or HF_NO_MEMORY. Call hf_pattern_table_free in either case. */
 hf_status hf_pattern_table_create(int n_frequency, int n_cut, int n_theta, hf_pattern_table *table);
+/* Frees the table. */
 void hf_pattern_table_free(hf_pattern_table *table);
 
 HF_API_END
