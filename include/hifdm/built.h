@@ -40,7 +40,7 @@ static inline bool hf_built_must_stop(const hf_built *built)
  * with `where`, if cables have no EA or are struts; HF_NO_MEMORY. Call hf_built_free in any case. */
 hf_status hf_built_make(const char *where, const hf_scene *scene, const hf_model *model, const hf_form_settings *form,
                         const hf_workspace *workspace, hf_built *built, hf_messages *messages);
-/* Frees the as-built net. */
+/* Frees the as-built net; the settings in it are not reset. */
 void hf_built_free(hf_built *built);
 
 /* Changes the net to that of another design of the same model, as hf_built_make would make it. Returns HF_OK, or

@@ -66,7 +66,7 @@ typedef struct {
 /* Allocates a front of n_point points with all values 0. Returns HF_OK or HF_NO_MEMORY. Call hf_front_free in either
  * case. */
 hf_status hf_front_create(int n_objective, int n_gene, int n_point, hf_front *front);
-/* Frees points and designs. */
+/* Frees points and designs; `minimised` and `knee` become -1. */
 void hf_front_free(hf_front *front);
 
 /* Completes a front whose objectives, designs and statuses are set. It sorts the points, marks those that have failed

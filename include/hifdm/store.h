@@ -1,60 +1,76 @@
-/* store - one HDF5 file per run. The file is written under a temporary name and renamed when it is whole, so that the
- * visible file is always complete; a journal beside it holds what the file does not hold yet. `show`, `report` and
- * `export` read the file.
+/* store - one HDF5 file per run, with a journal beside it while the run is unfinished.
  * Stability: stable.
  *
- * Layout, with n nodes, m cables, i iterations, g generations, p individuals, k genes. Every data set has the
- * attributes `units` ("" = dimensionless) and `description`. Role, group, law, status and the like are HDF5
+ * The file is written under a temporary name and renamed when it is complete, so the visible file is always complete.
+ * The journal holds what the file does not hold yet. `show`, `report` and `export` read the file. Pipeline of a run:
+ *
+ *   hf_store_create or hf_store_resume     provenance, case, scene
+ *   hf_store_form                          shape of the form-finding
+ *   hf_store_genes, hf_store_generation    generations, first into the journal; hf_store_publish between them
+ *   hf_store_best, hf_store_front, ...     shapes and results of the later stages
+ *   hf_store_finish                        summary; the file gets its name
+ *
+ * Layout of the file: n nodes, m cables, i iterations, g generations, p individuals, k design variables. Every data set
+ * has the attributes `units` ("": no dimension) and `description`. Role, group, law, status and the like are HDF5
  * enumerations. Texts are UTF-8. Those that are read back (provenance, title, warnings, case_path, the version in
  * /form, ids) have a fixed length, because HDF5 1.10 crashes on damaged texts of variable length; the others have a
- * variable length. Times, threads and host are attributes only: the data sets of two runs of the same case are equal.
+ * variable length. Times, threads and host are attributes only, so the data sets of two runs of the same case are
+ * equal.
+ *
  *   /            attributes: program ("hifdm"), format_version, version, git_describe, compiler, build_flags,
  *                hdf5_version, gsl_version, lapack, rng, host, argv[], started_utc, finished_utc, title, seed, threads,
- *                warnings, has_optimize, status (word of the run's),
- *                finished (FALSE: the run can go on), published_utc, identity (of the run, see hf_store_identify);
- *                after a resumption sessions, resumed_utc, resumed_host, resumed_version (of the last); under Slurm
+ *                warnings, has_optimize, has_polish, finished (FALSE: the run can be resumed), status (word of the run,
+ *                or "unfinished"), published_utc, identity (see hf_store_identify), keeps_earlier (internal);
+ *                after a resumption sessions, resumed_utc, resumed_host, resumed_version (of the last one); under Slurm
  *                slurm_job_id, slurm_array_job_id, slurm_array_task_id, slurm_restart_count
  *   /case        text, overrides; attributes sha256, case_path; front_point, front_file, front_design_sha256 if the
  *                result is a point of the front in that file
  *   /scene/node  id [n], position_m [n][3], role [n]; load_N [n][3] if there are loads
- *   /scene/cable id, group, law, target, length_m (theoretical) [m], end [m][2]; EA_N [m] if any is given
- *   /scene/set   if there are named sets of cables, of the s sets with c cables in all: name [s], start [s + 1],
- *                cable (index into /scene/cable) [c]; set k has cable[start[k]] to cable[start[k + 1] - 1]
- *   /form        position_m [n][3]; length_m, tension_N, q_N_per_m, law [m]
+ *   /scene/cable id, group, law, target, length_m (at target positions) [m], end [m][2]; EA_N [m] if any is given
+ *   /scene/set   if there are named sets of cables: name [s], start [s + 1] of the s sets, cable (index into
+ *                /scene/cable) [c] with c cables in all; set k has cable[start[k]] to cable[start[k + 1] - 1]
+ *   /scene/facet [f][4] if an import names f facets
+ *   /form        position_m [n][3]; length_m, tension_N, q_N_per_m, law [m];
  *                attributes: version, HF_SUMMARY_FORM_LIST, and the figures of hf_summary.form
  *   /form/history  psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio, length_error [i]
- *   /coupling    with a truss, of the a attachments: node [a], displacement_m, force_N [a][3]; history/step_m, psi_m,
- *                max_displacement_m [rounds]; attributes: the members of hf_summary.form.coupling (those of best
+ *   /coupling    with a truss of a attachments: node [a], displacement_m, force_N [a][3]; history/step_m, psi_m,
+ *                max_displacement_m [iterations]; attributes: the members of hf_summary.form.coupling (those of best
  *                and polish are best_coupling_... of /ga and coupling_... of /polish)
  *   /ga          design_N [g][p][k]; evaluated, status, psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio,
- *                iterations, violation, merit, trial_status, trial_psi_m, crossover_rate, mutation_rate [g][p];
- *                parent [g][p][2];
+ *                iterations, violation, merit, trial_status, trial_psi_m, crossover_rate, mutation_rate [g][p], and
+ *                objective_0, objective_1, objective_2 with optimize.objectives; parent [g][p][2];
  *                best_individual, best_psi_m, best_merit, least_violation, mean_psi_m, worst_psi_m, n_infeasible [g];
- *                with optimize.store best the rows of [g][p] are of one individual, the best, [g][1]; with every they
- *                are those of generations 0, n, 2n, ..., and both have /ga/last, the same of the last one [1][p], with
- *                attributes n_evaluation, n_evaluation_infeasible, n_evaluation_above_cap of all;
+ *                with optimize.store best the rows of [g][p] are those of the best individual, [g][1]; with every they
+ *                are those of generations 0, n, 2n, ...; both have /ga/last, the same of the last generation [1][p],
+ *                with attributes n_evaluation, n_evaluation_infeasible, n_evaluation_above_cap of all generations;
  *                gene_cable (index into /scene/cable), gene_group, base_N, lower_N, upper_N [k]; gene_leader [k] under
  *                a symmetry; attributes: HF_SUMMARY_GA_LIST, the figures of hf_summary.best as best_...; n_individual,
- *                n_variable, generations_limit, store_every (0: best), by which a run goes on
- *                with optimize.variables design, base, lower and upper have no unit in their names, because each gene
- *                has its own, and gene_variable (row of optimize.variables), gene_node, gene_direction [k][3] are there
+ *                n_variable, n_objective, generations_limit, store_every (0: best), from which a run is resumed;
+ *                with optimize.variables design, base, lower and upper have no unit in their names, because each
+ *                variable has its own, and gene_variable (row of optimize.variables), gene_node, gene_direction [k][3]
+ *                exist
  *   /ga/best     as /form, and design_N [k]
- *   /polish      the same, of Levenberg-Marquardt; attributes: HF_SUMMARY_POLISH_LIST, the figures of
+ *   /polish      the same for Levenberg-Marquardt; attributes: HF_SUMMARY_POLISH_LIST, the figures of
  *                hf_summary.polish
- *   /polish_state  of an unfinished run that was in Levenberg-Marquardt: its time and where it goes on, opaque numbers
- *   /surface     when the case asks for it: attributes focal_length_m, strip_width_m; frequency_Hz [f]
+ *   /polish_state  of a run that was interrupted in Levenberg-Marquardt: its time and its state, opaque numbers
+ *   /surface     with a section surface: attributes kind, focal_length_m, strip_width_m, mesh_tension_N_per_m;
+ *                frequency_Hz [f]
  *   /surface/form, /surface/optimize, /surface/polish   attributes: HF_SURFACE_LIST, HF_SURFACE_FIT_LIST as fit_...;
- *                gain_loss_dB, fit_gain_loss_dB [f]
+ *                HF_SURFACE_LOSS_LIST [f]
+ *   /pattern/form, /pattern/optimize, /pattern/polish   with surface.pattern, for f frequencies, c cuts, t angles:
+ *                frequency_Hz [f], phi_deg [c], theta_deg [t]; co_dBi, cross_dBi [f][c][t]; gain_dBi, beam_deg,
+ *                half_power_width_deg, first_sidelobe_dB, highest_sidelobe_dB [f][c]; attributes: the feed
  *   /set_tension/form, /set_tension/optimize, /set_tension/polish   of the first s <= HF_SUMMARY_SETS sets of cables,
  *                if there are any: name, least_N, largest_N, ratio [s]
- *   /at_limit/optimize, /at_limit/polish   when the shape is at h limits that its design must keep: row of
- *                optimize.limits or -1, the cap on the boundary; count, name, value, bound [h]
- *   /goals       with g rows of optimize.goals: name, weight [g]; the value of each in the shapes of form, optimize,
- *                polish [g], as far as these ran
- *   /front       of optimize.objectives, with p points, o objectives, k genes: name, base [o]; objective, multiplier
- *                [p][o]; status, mark, iterations [p]; design_N (with optimize.variables design) [p][k]; gene, the name
- *                of each [k]; attributes n_on, n_dominated, n_failed, minimised, knee (index into p, -1: none), wall_s
- *   /cases       states of the net as built, when there are any: name [c] in the order of the case
+ *   /at_limit/optimize, /at_limit/polish   if the shape is at h limits that its design must keep: row of
+ *                optimize.limits or -1, the maximum boundary tension ratio; count, name, value, bound [h]
+ *   /goals       with g rows of optimize.goals: name, weight, after_fit [g]; values in the shapes of form, optimize,
+ *                polish [g], if these exist; with optimize.objectives the same without weight
+ *   /front       of optimize.objectives, with p points, o objectives, k design variables: name, base [o]; objective,
+ *                multiplier [p][o]; status, mark, iterations, converged [p]; design_N (with optimize.variables design)
+ *                [p][k]; gene, the name of each variable [k]; attributes n_on, n_dominated, n_failed, minimised,
+ *                knee (index into p, -1: none), wall_s
+ *   /cases       load cases of the as-built net, if there are any: name [c] in the order of the case
  *   /cases/NAME  as /form, unless it has no shape; attributes: the figures of its result, those of its coupling as
  *                coupling_..., HF_STATE_LIST; /cases/NAME/surface as /surface/form; with a truss /cases/NAME/truss/node
  *                with displacement, reaction [a][6], /cases/NAME/truss/member with end_force [b][12]
@@ -80,179 +96,190 @@
 
 HF_API_BEGIN
 
+/* The file of a run that is being written. A store belongs to one thread at a time. */
 typedef struct hf_store hf_store;
 
-/* Several threads may call these functions at once: those that write each with its own store, those that read freely.
- * The calls wait for each other, because HDF5 works for one thread at a time. */
+/* Several threads may call these functions at once. A store is used by one of them at a time; functions that read may
+ * be called freely. The calls wait for each other, because HDF5 works for one thread at a time. */
 
 /* The stages of a run that produce a shape. */
 typedef enum { HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, HF_STAGE_NONE } hf_stage;
 extern const char *const hf_stage_word[4];  /* "form", "optimize", "polish", "none" */
-extern const char *const hf_stage_group[4]; /* where a file keeps the shape: "/form", "/ga/best", "/polish", "/" */
+extern const char *const hf_stage_group[4]; /* group of the shape in a file: "/form", "/ga/best", "/polish", "/" */
 
-/* The stage whose shape is the result of a finished run. */
+/* Returns the stage whose shape is the result of a finished run. */
 hf_stage hf_store_result_stage(const hf_summary *summary);
 
-/* The identity of a run: 64 hexadecimal digits of a digest of the case's text and overrides, the seed, the scene and
- * the truss (NULL: none), with their ids. HF_OK or HF_NO_MEMORY. */
+/* Computes the identity of a run: 64 hexadecimal digits and a NUL. It is a digest of text and overrides of the case,
+ * the seed, the scene and the truss (NULL: none) with their ids, the tables of load cases, and the point of a front
+ * that was taken. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, const hf_truss *truss, char identity[65]);
 
+/* What exists at a path. */
 typedef enum { HF_STORE_NOTHING, HF_STORE_UNFINISHED, HF_STORE_FINISHED } hf_store_state;
 
-/* Find out what is at `path`: nothing, or a result of this case, scene and truss. HF_EXISTS for anything else, with a
- * message that says in which keys the cases differ; HF_IO, HF_NO_MEMORY. */
+/* Determines what exists at `path`: nothing, or an unfinished or finished result of this case, scene and truss. Returns
+ * HF_OK; HF_EXISTS for anything else, with a message that names the keys in which the cases differ; HF_IO;
+ * HF_NO_MEMORY. */
 hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
                         hf_store_state *state, hf_messages *messages);
 
-/* Begin the file of a new run. The name `path` is checked now, not only at the end: HF_EXISTS when it is taken and
- * `restart` is false; HF_IO when it is a folder, when its folder does not exist or is not writable, when another
- * process is writing it, or when the file cannot be made; HF_NO_MEMORY. argv (argc may be 0) goes into the provenance.
- * Case and scene are written at once, nothing is borrowed. *store is NULL after a failure. */
+/* Begins the file of a new run and writes case, scene and provenance. argv [argc] goes into the provenance; argc may be
+ * 0. Nothing is borrowed. The name `path` is checked now, not only at the end. Returns HF_OK; HF_EXISTS if it is in use
+ * and `restart` is false; HF_IO if it is a folder, if its folder does not exist or is not writable, if another process
+ * is writing it, or if the file cannot be made; HF_NO_MEMORY. After a failure *store is NULL. */
 hf_status hf_store_create(const char *path, bool restart, const hf_case *settings, const hf_scene *scene,
                           const hf_truss *truss, int argc, char *const *argv, hf_store **store, hf_messages *messages);
 
-/* Continue the unfinished file at `path`. HF_EXISTS when it is finished, HF_IO, HF_NO_MEMORY. *store is NULL after a
- * failure, and nothing has changed. */
+/* Opens the unfinished file at `path` to resume its run. Returns HF_OK; HF_EXISTS if it is finished; HF_IO;
+ * HF_NO_MEMORY. After a failure *store is NULL, and the file is unchanged. */
 hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages);
 
-/* Add the generations of the journal to the unfinished file at `path`, without computing more, and return its summary.
- * A finished file stays as it is; a warning says so. Errors as hf_store_resume; HF_EXISTS also when this build does not
- * propose the designs to which the journal's results belong. */
+/* Adds the generations of the journal to the unfinished file at `path` without further computation, and reads its
+ * summary. A finished file is unchanged, and a warning says so. Returns the same status as hf_store_resume, and
+ * HF_EXISTS if this build proposes other designs than those to which the results in the journal belong. */
 hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages);
 
-/* How many generations the store holds, those in the journal included. */
+/* Returns the number of generations in the store, including those in the journal. */
 int hf_store_generations(const hf_store *store);
 
-/* The calls that write return HF_OK, HF_IO or HF_NO_MEMORY with a message. After a failure the store cannot be
- * used any more: later calls write nothing and return the same status without a message, except hf_store_complete,
- * which adds one. With store == NULL they write nothing and return HF_OK. */
+/* The functions that write return HF_OK, HF_IO or HF_NO_MEMORY, with a message. After a failure the store cannot be
+ * used any more: later calls write nothing and return the same status. They add no message, except hf_store_complete.
+ * With store == NULL they write nothing and return HF_OK. */
 
-/* Write the shape in the workspace in the order of the scene, and the history unless it is NULL. Call it once per
- * store. A resumed store compares the shape with the stored one instead: a warning when the tensions differ in their
- * last bits, HF_EXISTS when they differ by more than 1e-5 of the largest. */
+/* Writes the shape in the workspace in the order of the scene, and the history unless it is NULL. Call it once per
+ * store. A resumed store compares the shape with the stored one instead. If the tensions differ in their last bits, it
+ * adds a warning. If they differ by more than 1e-5 of the maximum, it returns HF_EXISTS. */
 hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspace *workspace,
                         const hf_history *history, hf_messages *messages);
 
-/* Write base, bounds and gene cables of the population. Call it once the population is created; a resumed store has
- * them already and writes nothing. */
+/* Writes the initial design, the bounds and the cables of the design variables. Call it once the population is created;
+ * a resumed store already has them and writes nothing. */
 hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_population *population,
                          hf_messages *messages);
 
-/* Append the generation that hf_optimiser_tell has just ranked. After HF_OK it survives the end of this process, and
- * the same build can restore it (see hf_store_restore). After HF_IO all generations before it survive, provided that
+/* Appends the generation that hf_optimiser_tell has just ranked. After HF_OK it survives the end of this process, and
+ * the same build can restore it (hf_store_restore). After HF_IO all generations before it survive, provided that
  * hf_store_publish was called after hf_store_genes. */
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_population *population,
                               hf_messages *messages);
 
-/* Read the pretensions base_N [n_gene] from which the genetic algorithm of a resumed store started; those that this
- * machine computes may differ in the last bits. base_N is unchanged when the store has none. */
+/* Reads the initial design base_N [n_gene] with which the genetic algorithm of a resumed store started, because the
+ * values that this machine computes may differ in the last bits. base_N is unchanged if the store has none. */
 hf_status hf_store_restore_base(hf_store *store, int n_gene, double *base_N, hf_messages *messages);
 
-/* Put the optimiser, just created from that base, into the state before hf_optimiser_tell of the last generation that
- * the store holds, and what was the best until then into the summary. The designs of generations in the journal are
- * proposed again; a build that proposes others leaves these generations out, with a warning. Does nothing when
- * the store holds no generation. */
+/* Restores an optimiser that was just created from that design: its state before hf_optimiser_tell of the last
+ * generation in the store. The figures of the best individual so far go into the summary. The designs of generations in
+ * the journal are proposed again; if this build proposes others, these generations are left out with a warning. Does
+ * nothing if the store has no generation. */
 hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages);
 
-/* Take where Levenberg-Marquardt is, after this time, for the publications to come; a finished file does not have it.
- * Restoring it: n is 0 where a resumed store has none; state is borrowed until hf_store_polish. */
+/* Keeps the state of Levenberg-Marquardt, state [n], after the time wall_s, for later publications. It is copied. A
+ * finished file does not contain it. */
 hf_status hf_store_polish(hf_store *store, double wall_s, size_t n, const double *state, hf_messages *messages);
+/* Reads this state in a resumed store: *wall_s and *state [*n]. *n is 0 if there is none. *state is borrowed until the
+ * next hf_store_polish. */
 hf_status hf_store_restore_polish(hf_store *store, double *wall_s, size_t *n, const double **state,
                                   hf_messages *messages);
 
-/* Publish everything so far: give the visible name to a file that is marked as unfinished. With at_once it is done now,
- * otherwise only when the last publication took less than 2 % of the time since then. Call it after every
- * generation. */
+/* Publishes everything so far: a file that is marked as unfinished gets the visible name. With at_once this is done
+ * now. Otherwise it is done only if at least 0.5 s and 50 times the duration of the last publication have passed since
+ * then, so that it takes less than 2 % of the time. Call it after every generation. */
 hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_once, hf_messages *messages);
 
-/* Write the shape in the workspace as the one that an optimisation stage found, with its design_N [model->n_gene]. Call
- * it once per stage. */
+/* Writes the shape in the workspace as that of stage HF_STAGE_OPTIMIZE or HF_STAGE_POLISH, with its design design_N
+ * [model->n_gene]. Call it once per stage. */
 hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
                         const double *design_N, hf_messages *messages);
 
-/* Write the front, whose objectives are named by the goals of the summary, in place of an earlier one. */
+/* Writes the front, in place of an earlier one. The names of its objectives are those in the summary. */
 hf_status hf_store_front(hf_store *store, const hf_scene *scene, const hf_model *model, const hf_summary *summary,
                          const hf_front *front, hf_messages *messages);
 
-/* Write the far field of the shape of a stage, in place of an earlier one. Reading it: HF_IO when there is none; free
- * the table in any case. */
+/* Writes the far field of the shape of a stage, in place of an earlier one. */
 hf_status hf_store_pattern(hf_store *store, hf_stage stage, const hf_pattern_table *table,
                            const hf_pattern_summary *figures, hf_messages *messages);
+/* Reads the far field of the shape of a stage. Returns HF_OK; HF_IO, also if there is none; HF_NO_MEMORY. Call
+ * hf_pattern_table_free in any case. */
 hf_status hf_store_read_pattern(const char *path, hf_stage stage, hf_pattern_table *table, hf_messages *messages);
 
-/* Write the shape in the workspace as that of a state of the net as built, with the truss in it (NULL without one). A
- * state that is there already is replaced. */
+/* Writes the shape in the workspace as that of load case `name` of the as-built net, in place of an earlier one.
+ * `truss` has the displacements and forces of the truss in it; NULL: there is no truss. */
 hf_status hf_store_built(hf_store *store, const char *name, const hf_model *model, const hf_workspace *workspace,
                          const hf_carrier *carrier, const hf_carrier_state *truss, hf_messages *messages);
 
-/* Write the summary, close the file and give it its name. The store is freed in any case. A failure leaves the
- * published file and the journal as they were. When the file is whole but cannot get its name (HF_EXISTS, HF_IO), it
- * stays under another name, which the message gives. */
+/* Writes the summary, closes the file and gives it its name: hf_store_complete and hf_store_settle. The store is freed
+ * in any case. A failure leaves the published file and the journal unchanged. If the file is complete but cannot get
+ * its name (HF_EXISTS, HF_IO), it remains under another name, which the message contains. */
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
 
-/* hf_store_finish in two parts. hf_store_complete writes and closes the file, which takes processor time.
- * hf_store_settle writes it through to the disk and renames it, which is mostly waiting and may be done by another
- * thread; it frees the store in any case. */
+/* Writes the summary and closes the file, which takes processor time. hf_store_settle must follow, also after a
+ * failure. */
 hf_status hf_store_complete(hf_store *store, const hf_summary *summary, hf_messages *messages);
+/* Writes the file through to the disk and renames it. This is mostly waiting, and another thread may do it. Frees the
+ * store in any case. */
 hf_status hf_store_settle(hf_store *store, hf_messages *messages);
 
-/* Free the store, leaving on the disk what is there: the published file, and the journal with the generations that the
- * file does not hold. store may be NULL. */
+/* Frees the store, which may be NULL. The published file remains on the disk, and the journal with the generations that
+ * the file does not contain. */
 void hf_store_end(hf_store *store);
-/* The same. Warns if a temporary file cannot be removed. */
+/* Frees the store as hf_store_end does. Warns if a temporary file cannot be removed. */
 void hf_store_abandon(hf_store *store, hf_messages *messages);
 
-/* One stored shape, in the order of the scene. */
+/* A stored shape, in the order of the scene. */
 typedef struct {
-    double *position_m;                       /* [n_node][3] */
+    double *position_m;                       /* [n_node][3] positions */
     double *length_m, *tension_N, *q_N_per_m; /* [n_cable] */
     unsigned char *law;                       /* [n_cable] hf_law in force */
-    void *block;
+    void *block;                              /* owned memory behind the arrays */
 } hf_shape;
 
-/* The functions that read return HF_OK; HF_IO with one message when the file does not exist, is no file of hifdm, or is
- * damaged; HF_NO_MEMORY. The output is all zero after a failure. */
+/* The functions that read return HF_OK; HF_IO with one message if the file does not exist, is no file of hifdm, or is
+ * damaged; HF_NO_MEMORY. After a failure the output is all zero. */
 
-/* Read every member as it was given to hf_store_finish, bit by bit; those after has_optimize are 0 when it is false. */
+/* Reads every member of the summary as it was passed to hf_store_finish, bit by bit. The members after has_optimize are
+ * 0 if it is false. */
 hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messages *messages);
 
-/* Read the scene, without its line numbers. Free it with hf_scene_free in any case. */
+/* Reads the scene, without its line numbers. Call hf_scene_free in any case. */
 hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages);
 
-/* Read the shape that a stage found; HF_IO when there is none. Its counts are those of hf_store_read_scene. */
+/* Reads the shape of a stage; HF_IO also if there is none. Its counts are those of hf_store_read_scene. Call
+ * hf_shape_free in any case. */
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
-/* The same of a state of the net as built. */
+/* Reads the shape of load case `name`, as hf_store_read_shape does. */
 hf_status hf_store_read_state(const char *path, const char *name, hf_shape *shape, hf_messages *messages);
+/* Frees the arrays of a shape. */
 void hf_shape_free(hf_shape *shape);
 
-/* Read the front, and *gene, the names of its genes, [n_gene] of *gene_size bytes each. HF_IO when there is none. Free
- * the front by hf_front_free and *gene by free in any case. */
+/* Reads the front, and *gene, the names of its design variables, [n_gene] of *gene_size bytes each. HF_IO also if there
+ * is none. Free the front by hf_front_free and *gene by free in any case. */
 hf_status hf_store_read_front(const char *path, hf_front *front, char **gene, size_t *gene_size, hf_messages *messages);
 
-/* Write the keys in which the case of a result differs from this one into text[size], as hf_config_differences. Returns
- * their number; 0 also where that cannot be told. */
+/* Writes the keys in which the case of a result differs from this one into text[size], as hf_config_differences does.
+ * Returns their number; 0 also if the result cannot be read. */
 int hf_store_case_differences(const char *path, const hf_case *settings, char *text, size_t size);
 
-/* Write the group /truss: the truss as described, its attachments to the net and, when `state` is not NULL, its
- * displacements and forces under the pull of the net. Call it once, before hf_store_finish of a summary that
+/* Writes the group /truss: the truss as described, its attachments to the net and, unless `state` is NULL, its
+ * displacements and forces under the forces of the net. Call it once, before hf_store_finish with a summary that
  * has_truss. */
 hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_carrier_state *state,
                          hf_messages *messages);
 
-/* Read the truss, without its line numbers; state: all NULL when none was stored. HF_IO when there is no truss. Free
- * both in any case. */
+/* Reads the truss, without its line numbers, and its displacements and forces, which are all NULL if none were stored.
+ * HF_IO also if there is no truss. Call hf_truss_free and hf_carrier_state_free in any case. */
 hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_state *state, hf_messages *messages);
 
-/* Read what a state of the net as built makes of the truss that hf_store_read_truss has read. HF_IO when it has no
- * shape. Free it in any case. */
+/* Reads displacements and forces of the truss in load case `name`; `truss` is that of hf_store_read_truss. HF_IO also
+ * if the load case has no shape. Call hf_carrier_state_free in any case. */
 hf_status hf_store_read_state_truss(const char *path, const char *name, const hf_truss *truss, hf_carrier_state *state,
                                     hf_messages *messages);
 
-/* "VERSION (git describe)" of this library. */
+/* Returns "VERSION (git describe)" of this library, a constant string. */
 const char *hf_store_version(void);
 
-/* Switch off HDF5's error printing and its exit handler, which crashes when the disk was full. Call it once, before the
- * first call of HDF5. False: there is too little memory for HDF5, which would crash. */
+/* Switches off the error output of HDF5 and its exit handler, which crashes if the disk was full. Call it once, before
+ * the first call of HDF5. Returns false if there is too little memory for HDF5, which would then crash. */
 bool hf_store_quiet(void);
 
 HF_API_END

@@ -1,7 +1,8 @@
-/* summary - the figures of a whole run. `run` prints them and stores them with the results; `show` prints them again.
+/* summary - the figures of a whole run.
  * Stability: stable.
  *
- * The figures of a result (form, best, polish) are those of HF_RESULT_LIST in <hifdm/result.h>. */
+ * `run` prints them and stores them with the results; `show` prints them again. The figures of a result (form, best,
+ * polish) are those of HF_RESULT_LIST in <hifdm/result.h>. */
 #ifndef HIFDM_SUMMARY_H
 #define HIFDM_SUMMARY_H
 
@@ -18,19 +19,19 @@
 
 HF_API_BEGIN
 
-#define HF_WARNINGS_SIZE 4096
+#define HF_WARNINGS_SIZE 4096 /* bytes of the text of warnings */
 
 /* ---- The lists: X(type, member, kind, json, key, description) ----
  *
- * kind  of the stored value, see HF_RESULT_LIST
- * json  place in the JSON object of the stage, after the figures of its result; equal places are in the order of the
- *       list; 0 = not there
- * key   in JSON; the attribute in HDF5 has the name of the member
+ *   kind   of the stored value, see HF_RESULT_LIST
+ *   json   place in the JSON object of the stage, after the figures of its result; equal places keep the order of the
+ *          list; 0: not there
+ *   key    name in JSON; the attribute in HDF5 has the name of the member
  *
- * From them come the members of hf_summary, attributes in HDF5, columns of a sweep's ledger (both in the order of the
+ * The lists define the members of hf_summary, attributes in HDF5, columns of a sweep's ledger (both in the order of the
  * list) and the JSON objects. A new figure of a run is a row here and the code that computes it. */
 
-/* Net and form-finding. */
+/* The net and the form-finding. */
 #define HF_SUMMARY_FORM_LIST(X)                                                                                        \
     X(int, n_node, INT, 0, "", "nodes")                                                                                \
     X(int, n_free, INT, 0, "", "nodes that are no supports")                                                           \
@@ -72,7 +73,7 @@ HF_API_BEGIN
     X(int, polish_n_at_limit, INT, 5, "at_limit", "limits of optimize.limits that hold it, cable by cable")            \
     X(double, polish_wall_s, REAL, 3, "wall_s", "wall-clock time")
 
-/* A state of the net as built (`cases`), beside the figures of its result. */
+/* A load case of the as-built net (`cases`), besides the figures of its result. */
 #define HF_STATE_LIST(X)                                                                                               \
     X(double, least_tension_N, REAL, 1, "least_tension_N", "least tension of all cables")                              \
     X(double, largest_tension_N, REAL, 1, "largest_tension_N", "largest tension of all cables")                        \
@@ -85,109 +86,115 @@ HF_API_BEGIN
     X(int, n_node, INT, 1, "nodes", "nodes of the truss")                                                              \
     X(int, n_member, INT, 1, "members", "members of the truss")
 
-/* Tensions of the named sets of cables in one shape: the first HF_SUMMARY_SETS of the net, which a page can tell. The
- * ratio is that of hf_metrics_tension_ratio. */
+/* Tensions of the named sets of cables in one shape, for the first HF_SUMMARY_SETS sets of the net. A page has room for
+ * as many. The ratio is that of hf_metrics_tension_ratio. */
 #define HF_SUMMARY_SETS 16
 
 typedef struct {
-    int n;
-    char name[HF_SUMMARY_SETS][HF_CABLE_SET_NAME_SIZE];
+    int n;                                              /* number of sets */
+    char name[HF_SUMMARY_SETS][HF_CABLE_SET_NAME_SIZE]; /* [n] names of the sets */
+    /* [n] minimum, maximum and ratio of the tensions */
     double least_N[HF_SUMMARY_SETS], largest_N[HF_SUMMARY_SETS], ratio[HF_SUMMARY_SETS];
 } hf_set_tensions;
 
-/* What the shape of a stage is at, within 1e-8, of the limits that its design keeps: boundary_ratio_cap, rows of
- * optimize.limits. The form-finding has none to keep. */
+/* Maximum number of constraints in hf_held_limits, and bytes of the name of one. */
 #define HF_SUMMARY_HELD (2 * HF_DESIGN_ROWS_MAX + 1)
 #define HF_HELD_NAME_SIZE 160
 
+/* The constraints that hold the shape of a stage, which is at their bounds within 1e-8: boundary_ratio_cap, and rows of
+ * optimize.limits, one side of a row after the other. The form-finding has none. */
 typedef struct {
-    int n;
-    int row[HF_SUMMARY_HELD];                      /* of optimize.limits; -1: boundary_ratio_cap */
-    int count[HF_SUMMARY_HELD];                    /* cables or attachments of the row that are at this bound */
-    char name[HF_SUMMARY_HELD][HF_HELD_NAME_SIZE]; /* of one: "tension of cable c7", "ratio of cable c7 to c9" */
-    double value[HF_SUMMARY_HELD], bound[HF_SUMMARY_HELD]; /* of this one, N, m or a ratio */
+    int n;                                         /* number of constraints */
+    int row[HF_SUMMARY_HELD];                      /* [n] row of optimize.limits; -1: boundary_ratio_cap */
+    int count[HF_SUMMARY_HELD];                    /* [n] number of cables or attachments of the row at this bound */
+    char name[HF_SUMMARY_HELD][HF_HELD_NAME_SIZE]; /* [n] "tension of cable c7", "ratio of cable c7 to c9" */
+    double value[HF_SUMMARY_HELD], bound[HF_SUMMARY_HELD]; /* [n] its value and bound, N, m or a ratio */
 } hf_held_limits;
 
-/* The rows of optimize.goals, or of optimize.objectives, which have neither weights nor a merit. Their values are in
- * the results of the stages, merit beside them: of the form-finding, the best individual and Levenberg-Marquardt. */
+/* The rows of optimize.goals or optimize.objectives. The latter have neither weights nor a merit. The values, with the
+ * merit, are in the results of the stages. */
 typedef struct {
-    int n;                                            /* 0: psi is the goal */
-    char name[HF_DESIGN_ROWS_MAX][HF_GOAL_NAME_SIZE]; /* goal_1_tension_edge: number, goal, set */
-    double weight[HF_DESIGN_ROWS_MAX];
-    int after_fit[HF_DESIGN_ROWS_MAX]; /* of the surface: 1 after its best fit, 0 as it stands; -1: of other things */
-    bool are_objectives;
+    int n;                                            /* number of objectives; 0: psi is minimised */
+    char name[HF_DESIGN_ROWS_MAX][HF_GOAL_NAME_SIZE]; /* [n] goal_1_tension_edge: number, figure, set */
+    double weight[HF_DESIGN_ROWS_MAX];                /* [n] weights */
+    int after_fit[HF_DESIGN_ROWS_MAX]; /* [n] surface figures: 1 after the best fit, 0 without; -1: other figures */
+    bool are_objectives;               /* the rows are those of optimize.objectives */
 } hf_goal_list;
 
 #define HF_SUMMARY_MEMBER(type, member, kind, json, key, description) type member;
 
+/* The figures of the truss. */
 typedef struct {
     HF_SUMMARY_TRUSS_LIST(HF_SUMMARY_MEMBER)
 } hf_truss_summary;
 
-/* The figures of a state without a shape are NaN, but for its status. */
+/* The figures of a load case. Without a shape they are NaN, except for the status. */
 typedef struct {
-    char name[HF_SET_NAME_SIZE];
-    hf_form_result result;
+    char name[HF_SET_NAME_SIZE]; /* name of the load case */
+    hf_form_result result;       /* result of its form-finding */
     HF_STATE_LIST(HF_SUMMARY_MEMBER)
-    hf_surface_measures measures;
+    hf_surface_measures measures; /* surface of its shape */
 } hf_state_summary;
 
+/* The figures of a run. */
 typedef struct {
-    char version[64], title[256], case_path[HF_PATH_SIZE];
-    bool finished;                   /* false: the run can be resumed */
-    hf_status status;                /* of the whole run; HF_NOT_EVALUATED unless finished */
-    int threads;                     /* number used */
-    uint64_t seed;                   /* of the genetic algorithm */
+    char version[64], title[256], case_path[HF_PATH_SIZE]; /* of the program; of the case; of the case file */
+    bool finished;                                         /* false: the run can be resumed */
+    hf_status status;                /* status of the whole run; HF_NOT_EVALUATED unless finished */
+    int threads;                     /* number of threads of the run */
+    uint64_t seed;                   /* seed of the genetic algorithm */
     char warnings[HF_WARNINGS_SIZE]; /* lines "error: ...", then lines "warning: ..." */
 
-    hf_surface_settings surface;     /* focal_length_m is 0 when the case has no such section */
-    hf_pattern_summary pattern[3];   /* of the same; none without surface.pattern */
-    hf_surface_measures measures[3]; /* of the shapes of form, optimize, polish (hf_stage) */
-    hf_set_tensions sets[3];         /* of the same; n is 0 of a net without sets, and of a shape that is not there */
-    hf_held_limits held[3];          /* of the same */
+    hf_surface_settings surface;     /* target surface; focal_length_m is 0 without a section surface */
+    hf_pattern_summary pattern[3];   /* [hf_stage] far fields of the shapes; none without surface.pattern */
+    hf_surface_measures measures[3]; /* [hf_stage] surfaces of the shapes of form, optimize, polish */
+    hf_set_tensions sets[3];         /* [hf_stage] tensions of sets; n is 0 without sets or without the shape */
+    hf_held_limits held[3];          /* [hf_stage] constraints that hold the shapes */
 
-    hf_goal_list goals;
-    hf_front_origin taken; /* the result is this point of another run's front: the shape of `polish` */
+    hf_goal_list goals;    /* objectives of the run */
+    hf_front_origin taken; /* the point of another run's front that is the result, as the shape of `polish` */
 
-    int n_state; /* of the net as built */
-    hf_state_summary state[HF_STATES_MAX];
+    int n_state;                           /* number of load cases of the as-built net */
+    hf_state_summary state[HF_STATES_MAX]; /* [n_state] the load cases */
 
     HF_SUMMARY_FORM_LIST(HF_SUMMARY_MEMBER)
-    hf_form_result form;
-    bool has_coupling; /* the net is attached to an elastic truss; else member `coupling` of the results is all zero */
+    hf_form_result form; /* result of the form-finding */
+    bool has_coupling;   /* the net is on an elastic truss; false: `coupling` of all results is zero */
 
-    bool has_polish; /* Levenberg-Marquardt ran, or `taken` */
-    hf_form_result polish;
+    bool has_polish;       /* Levenberg-Marquardt ran, or a point of a front was taken */
+    hf_form_result polish; /* result of Levenberg-Marquardt */
     HF_SUMMARY_POLISH_LIST(HF_SUMMARY_MEMBER)
 
-    bool has_front; /* of optimize.objectives, whose names are those of `goals` */
-    hf_front_table front;
+    bool has_front;       /* `front` is set; its objectives are those of `goals` */
+    hf_front_table front; /* the front of optimize.objectives */
 
-    bool has_truss; /* `truss` is set */
-    hf_truss_summary truss;
+    bool has_truss;         /* `truss` is set */
+    hf_truss_summary truss; /* figures of the truss */
 
-    bool has_tolerance; /* samples of the net as built were found */
-    hf_tolerance_summary tolerance;
+    bool has_tolerance;             /* `tolerance` is set: samples of the as-built net were computed */
+    hf_tolerance_summary tolerance; /* result of the tolerance analysis */
 
-    bool has_optimize;   /* the genetic algorithm ran; all that follows is about it */
-    hf_form_result best; /* of the best individual; status HF_NOT_EVALUATED when none was feasible */
+    bool has_optimize;   /* the genetic algorithm ran; all following members are about it */
+    hf_form_result best; /* result of the best individual; status HF_NO_FEASIBLE: none is feasible */
     HF_SUMMARY_GA_LIST(HF_SUMMARY_MEMBER)
 } hf_summary;
 
-/* One JSON object, grouped by stage; a stage that did not run is absent, NaN is null. `messages`: lines as hf_messages
- * holds them, or NULL; `path`: of the result file, or NULL when none was written. Write errors can be read from the
- * stream (ferror). */
+/* Writes one JSON object, grouped by stage, to `file`. A stage that did not run is absent, and NaN is null. `messages`
+ * has lines as hf_messages, or is NULL. `path` is that of the result file; NULL: none was written. Write errors can be
+ * read from the stream (ferror). */
 void hf_summary_write_json(const hf_summary *summary, hf_status status, const char *messages, const char *path,
                            FILE *file);
 
-/* The status that hf_summary_write_json takes of a file: of the whole run, or while that has not ended of its
- * form-finding. */
+/* Returns the status with which hf_summary_write_json presents a file: that of the whole run, or of its form-finding
+ * while the run has not ended. */
 hf_status hf_summary_status(const hf_summary *summary);
 
-/* True when the file holds the shape of the best individual, which is stored when the genetic algorithm has ended. */
+/* Returns true if the file contains the shape of the best individual: the run is finished, and its genetic algorithm
+ * found a feasible design. */
 bool hf_summary_has_best_shape(const hf_summary *summary);
 
-/* Share of the threads' time that was spent inside evaluations, 0..1; NaN when nothing was timed. */
+/* Returns the share of the time of all threads that was spent in breeding, evaluating and storing, 0 to 1; NaN if no
+ * time was measured. */
 double hf_summary_utilisation(const hf_summary *summary);
 
 HF_API_END
