@@ -17,7 +17,7 @@
 HF_API_BEGIN
 
 /* The as-built net of a design. Its model has nodes and cables in the same rows and order as the design's model. It
- * lives as long as the scene, and it must not be moved in memory. */
+ * must not outlive the scene, and it must not be moved in memory. */
 typedef struct {
     hf_scene scene; /* as the design's, with its own laws, target values, EA and supports; the rest is borrowed */
     hf_model model; /* cables of law elastic with their unstressed lengths, on the truss of the design */

@@ -60,10 +60,10 @@ hf_status hf_built_batch_renew(hf_built_batch *batch);
  * holds the shape until the next call. */
 const hf_workspace *hf_built_batch_find(hf_built_batch *batch, const hf_built_net *net, hf_form_result *result);
 
-/* Makes, solves and hands over samples first to first + n - 1. It ends early if built->stop is set. `varies` is 0 or
- * flags HF_BUILT_VARIES_... The bits of a sample depend on its own values alone, not on the number of threads, the
- * other samples or the instruction set. The result has all figures of hf_built_solve except the counts of steps
- * (iterations, and the coupling on a truss), which are those of the faster method. */
+/* Makes and solves the samples first to first + n - 1, and passes each of them to `take`. It ends early if built->stop
+ * is set. `varies` is 0 or flags HF_BUILT_VARIES_... The bits of a sample depend on its own values alone, not on the
+ * number of threads, the other samples or the instruction set. The result has all figures of hf_built_solve except the
+ * counts of steps (iterations, and the coupling on a truss), which are those of the faster method. */
 void hf_built_batch_run(hf_built_batch *batch, unsigned varies, long first, long n, hf_built_sample *make,
                         hf_built_take *take, void *context);
 

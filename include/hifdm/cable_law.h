@@ -161,8 +161,8 @@ static inline double hf_law_stiffness_N_per_m(hf_law_cable c, double length_m)
     return 0;
 }
 
-/* Returns the change of the potential phi from length from_m to length to_m, J; NaN for a rigid law. `square` is to_m^2
- * - from_m^2, m^2. The caller computes it so that no digits are lost if the lengths are nearly equal. */
+/* Returns the change of the potential phi from length from_m to length to_m, J; NaN for a rigid law. `square` is
+ * to_m^2 - from_m^2, m^2. The caller computes it so that no digits are lost if the lengths are nearly equal. */
 static inline double hf_law_energy_change_J(hf_law_cable c, double from_m, double to_m, double square)
 {
     double longer = square / (from_m + to_m), l0 = c.target;
@@ -207,7 +207,8 @@ static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, doub
 
 /* Returns the tension with which an iteration begins, N: otherwise_N, unless the cable can go slack and is taut at its
  * target positions. Such a cable begins with its tension there, limited to a factor HF_LAW_FIRST_RANGE of otherwise_N.
- * A stiff cable that is just taut would hold nothing, and one that was cut too short would hold everything. */
+ * Without the limit a stiff cable that is just taut would hold nothing, and one that was cut too short would hold
+ * everything. */
 #define HF_LAW_FIRST_RANGE 10.0
 static inline double hf_law_first_tension_N(hf_law_cable c, double otherwise_N)
 {

@@ -29,9 +29,9 @@ const char *hf_cable_set_name_fault(const char *name);
  * empty with room for HF_CABLE_SET_NAME_SIZE bytes. hf_scene_free frees the memory. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_cable_set_allocate(hf_scene *scene, int n_set, int n_member);
 
-/* Sets the sets of a scene without sets. name [n_set] is sorted by strcmp without duplicates. member [n_member] has no
- * duplicates, and the cables of a set are in ascending order. Sets without a cable are left out. The names are copied.
- * Returns HF_OK or HF_NO_MEMORY. */
+/* Defines the sets of a scene that has none. name [n_set] is sorted by strcmp without duplicates. member [n_member] has
+ * no duplicates, and the cables of a set are in ascending order. Sets without a cable are left out. The names are
+ * copied. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_cable_set_make(hf_scene *scene, int n_set, const char *const *name, int n_member,
                             const hf_cable_set_member *member);
 

@@ -105,8 +105,9 @@ hf_status hf_config_demand_expansion(const hf_case *settings, const hf_truss *tr
 
 /* Makes the load cases of the as-built net from the rows of `cases`, with their material. truss is NULL if there is
  * none. A case without rows has no load cases. Returns HF_OK; HF_NO_MEMORY; HF_BAD_CASE for rows that match nothing in
- * this net or truss, cables without EA, temperatures of parts with unknown expansion, gravity on cables with unknown
- * mass, or a table that cannot be read. The names are borrowed from the case. Call hf_states_free in any case. */
+ * this net or truss, for cables without EA, and for a table that cannot be read. A temperature of a part with unknown
+ * expansion and gravity on cables with unknown mass are also HF_BAD_CASE. The names are borrowed from the case. Call
+ * hf_states_free in any case. */
 hf_status hf_config_states(const hf_case *settings, const hf_scene *scene, const hf_truss *truss, hf_states *states,
                            hf_messages *messages);
 

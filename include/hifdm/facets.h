@@ -25,7 +25,7 @@ typedef struct {
  *
  * A node is on the target surface if it is an inner node or its target position is within 1e-3 of the depth of the
  * surface. A node that a cable joins to an inner node is also on it if the cable leaves the surface by at most 0.1 of
- * its length, as at a rim on a truss that deflects.
+ * its length. These are nodes of a rim on a truss that deflects.
  *
  * If the scene has facets, those with a node on the surface are taken. Otherwise a facet is a minimal face of the plane
  * graph that the cables between nodes on the surface form, seen along z. Where no cable runs along the rim, the

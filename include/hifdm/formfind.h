@@ -70,8 +70,8 @@ double hf_form_residual_N(const hf_model *model, hf_workspace *workspace);
 hf_status hf_form_accept(const hf_model *model, const hf_form_settings *settings, hf_stop_reason reason, int iterations,
                          hf_workspace *workspace, hf_form_result *result);
 
-/* Sets the result of a design without a shape: `status` is that of the fault, all real figures are NaN, the culprit is
- * -1, and the stop reason is HF_STOPPED_ILL_POSED. */
+/* Sets the result of a design without a shape: `status` is that of the fault, all real figures are NaN, the culprit
+ * is -1, and the stop reason is HF_STOPPED_ILL_POSED. */
 void hf_form_refuse(hf_status status, int iterations, hf_form_result *result);
 
 /* Writes the right-hand sides (Eq. 5) into the free rows of position_m; the other rows hold the positions of the

@@ -8,9 +8,9 @@
  *   hf_frame_reactions, hf_frame_member_forces, hf_frame_strain_energy   displacements -> forces, energy
  *   hf_frame_condense    factor -> flexibility of some nodes
  *
- * Members are spatial beams with 12 degrees of freedom by the theory of Euler and Bernoulli or of Timoshenko (METHOD
- * section 8), or they carry axial force alone. The matrix is a lower band in LAPACK's layout, numbered for a small
- * bandwidth.
+ * Members are spatial beams with 12 degrees of freedom (METHOD section 8), or they carry axial force alone. The beam
+ * theory is that of Euler and Bernoulli or of Timoshenko. The matrix is a lower band in LAPACK's layout, numbered for a
+ * small bandwidth.
  *
  * Vectors over the nodes are [n_node][6]: components along x, y, z in m or N, then about x, y, z in rad or N m. */
 #ifndef HIFDM_FRAME_H
@@ -79,9 +79,9 @@ void hf_frame_member_forces(const hf_frame *frame, const hf_frame_load *load, co
  * thermal expansion. */
 double hf_frame_strain_energy(const hf_frame *frame, const hf_frame_load *load, const double *displacement);
 
-/* Computes the flexibility F of the nodes node [n_point] (Eq. 15, condensed). flexibility_m_per_N [3 n_point][3
- * n_point] at row 3*i+c and column 3*k+d receives the displacement of node[i] along c under a unit force on node[k]
- * along d. It is symmetric to the last bit. Returns HF_OK or HF_NO_MEMORY. */
+/* Computes the flexibility F of the nodes node [n_point] (Eq. 15, condensed). flexibility_m_per_N
+ * [3 n_point][3 n_point] at row 3*i+c and column 3*k+d receives the displacement of node[i] along c under a unit force
+ * on node[k] along d. It is symmetric to the last bit. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_frame_condense(const hf_frame *frame, int n_point, const int *node, double *flexibility_m_per_N);
 
 HF_API_END

@@ -19,7 +19,7 @@ HF_API_BEGIN
 /* X(enumerator, word): what a point is. */
 #define HF_FRONT_MARKS(X)                                                                                              \
     X(ON, "on")               /* no other point is as good in all objectives and better in one */                      \
-    X(DOMINATED, "dominated") /* such a point exists */                                                                \
+    X(DOMINATED, "dominated") /* another point is as good in all objectives and better in one */                       \
     X(FAILED, "failed")       /* it has no feasible design; `status` has the reason */
 #define HF_FRONT_ENUMERATOR(name, word) HF_FRONT_##name,
 /* What a point is. */
@@ -36,7 +36,7 @@ typedef struct {
     hf_status status;   /* status of its design */
     hf_front_mark mark; /* what the point is */
     int iterations;     /* steps of Levenberg-Marquardt; 0 for the genetic algorithm */
-    bool is_converged;  /* no step promised a lower merit; without convergence there is no multiplier */
+    bool is_converged;  /* Levenberg-Marquardt has converged; otherwise there is no multiplier */
 } hf_front_point;
 
 /* A front with its designs. */
@@ -53,7 +53,7 @@ typedef struct {
 /* A front without its designs, as in a summary: n_row of n_point points. If there are more than HF_FRONT_POINTS_MAX
  * points, the rows are the ends, the knee, and as many evenly spaced others as fit. */
 typedef struct {
-    /* counts, and `minimised` as in hf_front */
+    /* Counts of the front, and `minimised` as in hf_front. */
     int n_objective, n_point, n_row, n_on, n_dominated, n_failed, minimised;
     int knee, end[HF_OBJECTIVES_MAX];        /* rows of the knee and of the first minimum of each objective; -1: none */
     double base[HF_OBJECTIVES_MAX];          /* objectives of the initial design */

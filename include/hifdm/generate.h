@@ -3,8 +3,8 @@
  *
  * Pipeline: settings of the section -> hf_scene_NAME_fault, in the check of the case -> hf_scene_NAME -> scene.
  *
- * A new generator NAME with settings hf_TYPE is a row of HF_GENERATORS with its settings and keys, in this header, and
- * a file src/net/generate_NAME.c with three functions:
+ * A new generator NAME with settings hf_TYPE is a row of HF_GENERATORS, with its settings and keys, in this header. Its
+ * file src/net/generate_NAME.c has three functions:
  *
  *   hf_scene_NAME         const hf_TYPE *, const double EA_N[2], hf_scene *, hf_messages * -> hf_status
  *                         makes the scene
@@ -89,8 +89,8 @@ extern const char *const hf_pattern_word[5];
 /* A net over the parabolic cylinder z = x^2/(4 f). x runs along the directrix and y along the generatrix; the origin is
  * on the vertex line. */
 typedef struct {
-    double aperture_m;                       /* along the directrix (x), symmetric about x = 0 */
-    double length_m;                         /* along the generatrix (y), from y = 0 */
+    double aperture_m;                       /* aperture along the directrix (x), symmetric about x = 0 */
+    double length_m;                         /* length along the generatrix (y), from y = 0 */
     double focal_length_m;                   /* focal length f */
     int modules[2];                          /* numbers of modules along x and y */
     int cells_per_module[2];                 /* numbers of cells of a module along x and y */
@@ -100,7 +100,7 @@ typedef struct {
     hf_boundary boundary;                    /* which cables are boundary cables (law length) */
     double scallop;       /* inward sag of a free outer edge between two supports, over their distance */
     hf_supports supports; /* which nodes are supports */
-    double edge_tie_m;    /* length of the edge ties on which free nodes of the outer edge hang; 0: none */
+    double edge_tie_m;    /* distance along x or y of supports outside the outer edge, for edge ties; 0: no ties */
     HF_DOUBLE_NET_MEMBERS
 } hf_cylinder;
 
@@ -144,8 +144,8 @@ typedef struct {
  *   sets            directrix (along x), generatrix (along y), diagonal, edge (of the outer edge), edge_tie; with a
  *                   rear net also front (all of the former), rear, tie, and rear_directrix and so on
  *
- * Free nodes of the rear net have the role edge, so psi counts those of the front. The rear supports follow those of
- * the front, as ties follow the cables of the front. EA_N has the axial stiffness by hf_group, N; 0: not given; NULL:
+ * Free nodes of the rear net have the role edge, so psi counts those of the front. The rear supports are behind those
+ * of the front net, in the direction of the ties. EA_N has the axial stiffness by hf_group, N; 0: not given; NULL:
  * neither is given. Returns HF_OK; HF_BAD_CASE if the net would be too large, for a fault that
  * hf_scene_parabolic_cylinder_fault finds, and for elastic ties without EA; HF_NO_MEMORY. Call hf_scene_free in any
  * case. */
@@ -200,8 +200,8 @@ typedef struct {
  *   ids of cables   <node>-<node>
  *   sets            front, front_edge (those that end at a support); with a rear net also rear, rear_edge, tie
  *
- * Free nodes of the rear net have the role edge, so psi counts those of the front. EA_N, errors and ownership are those
- * of hf_scene_parabolic_cylinder. */
+ * Free nodes of the rear net have the role edge, so psi counts those of the front. The rear supports are straight below
+ * those of the front net. EA_N, errors and ownership are those of hf_scene_parabolic_cylinder. */
 hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N[2], hf_scene *scene,
                               hf_messages *messages);
 /* Finds the supports of the front net, in the order of their angle from x towards y. *n is set to their number and

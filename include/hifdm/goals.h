@@ -12,10 +12,10 @@
  * design is sqrt(sum (weight * value)^2).
  *
  * Pull and deflection are the maximum of several sizes s. Their value is that maximum, but their residuals have the
- * norm (sum s^16)^(1/16), which is smooth. It is between the maximum of n sizes and n^(1/16) times the maximum, and the
- * merit contains it. A ratio is the maximum tension times the maximum 1/tension, and both are smoothed in this way. A
- * value is NaN or infinite where the shape has none: psi if all nodes are loose, a surface without a best fit, the
- * ratio of a set with a slack cable. */
+ * norm (sum s^16)^(1/16), which is smooth. This norm is between the maximum of n sizes and n^(1/16) times the maximum.
+ * The merit contains the norm. A ratio is the maximum tension times the maximum 1/tension, and both are smoothed in
+ * this way. A value is NaN or infinite where the shape has none: psi if all nodes are loose, a surface without a best
+ * fit, the ratio of a set with a slack cable. */
 #ifndef HIFDM_GOALS_H
 #define HIFDM_GOALS_H
 
@@ -37,9 +37,10 @@ typedef struct {
 
 /* Rates of change of a shape by a design variable, per unit of the variable. */
 typedef struct {
-    const double *position_m;     /* [3][n_node] of the positions by row, supports included, m */
-    const double *tension_N;      /* [n_cable] of the tensions, N */
-    const double *displacement_m; /* [3 n_attachment] of the displacements by the truss, m; NULL without a truss */
+    const double *position_m; /* [3][n_node] rates of the positions by row, supports included, m */
+    const double *tension_N;  /* [n_cable] rates of the tensions, N */
+    /* [3 n_attachment] rates of the displacements by the truss, m; NULL without a truss */
+    const double *displacement_m;
 } hf_goals_rate;
 
 /* Receives the shape of as-built net i_net; NULL: it has none. Of the workspace only position_m, tension_N, length_m,
@@ -134,12 +135,13 @@ hf_status hf_goals_measure(const hf_goals *goals, const hf_workspace *workspace,
 hf_status hf_goals_linearise(const hf_goals *goals, const hf_workspace *workspace, hf_goals_point *point,
                              double *residual);
 
-/* Does the same for the objectives that are measured on the design itself; the rows of the others are not changed. */
+/* Computes the same as hf_goals_linearise, but only for the objectives that are measured on the design itself. The rows
+ * of the other objectives are not changed. */
 hf_status hf_goals_linearise_design(const hf_goals *goals, const hf_workspace *workspace, hf_goals_point *point,
                                     double *residual);
 
-/* Computes the rates rate [n_row] of these residuals by a design variable, from the rates `by` of the shape. The rows
- * of objectives over as-built nets are not changed. The workspace holds the same shape. */
+/* Computes the rates rate [n_row] of the residuals of hf_goals_linearise by a design variable, from the rates `by` of
+ * the shape. The rows of objectives over as-built nets are not changed. The workspace holds the same shape. */
 void hf_goals_push(const hf_goals *goals, const hf_workspace *workspace, hf_goals_point *point, const hf_goals_rate *by,
                    double *rate);
 
@@ -179,10 +181,12 @@ void hf_goals_nets_close(const hf_goals *goals, const hf_goals_point *point, con
  * or HF_NO_MEMORY. */
 hf_status hf_goals_measure_shape(const hf_goals *goals, int i_goal, const hf_workspace *shape, hf_goals_point *point,
                                  double *residual, double *value, double *norm);
-/* Computes the rates of these residuals from the rates `by` of the shape. */
+/* Computes the rates of the residuals of objective i_goal for one shape, without its weight, from the rates `by` of the
+ * shape. */
 void hf_goals_push_shape(const hf_goals *goals, int i_goal, const hf_workspace *shape, hf_goals_point *point,
                          const hf_goals_rate *by, double *rate);
-/* Prepares these rates for the shape that was measured last. Returns HF_OK, HF_NOT_FINITE or HF_NO_MEMORY. */
+/* Prepares hf_goals_push_shape for objective i_goal and the shape that was measured last. Returns HF_OK, HF_NOT_FINITE
+ * or HF_NO_MEMORY. */
 hf_status hf_goals_linearise_shape(const hf_goals *goals, int i_goal, const hf_workspace *shape, hf_goals_point *point);
 /* Returns true for the objectives surface and facets. */
 bool hf_goals_is_on_surface(hf_goal_kind kind);
@@ -203,7 +207,8 @@ bool hf_goals_is_largest(hf_goal_kind kind);
 
 /* Sets point->size [n_support] to the forces of the net on its supports, N. */
 void hf_goals_pulls(const hf_model *model, const hf_workspace *workspace, hf_goals_point *point);
-/* Computes the rates rate [n_support] of these forces by a design variable, from the rates `by` of the shape. */
+/* Computes the rates rate [n_support] of the forces of the net on its supports by a design variable, from the rates
+ * `by` of the shape. */
 void hf_goals_pull_rates(const hf_model *model, const hf_workspace *workspace, hf_goals_point *point,
                          const hf_goals_rate *by, double *rate);
 

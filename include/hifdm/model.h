@@ -11,8 +11,8 @@
  *
  * Nodes are renumbered; the row of a node is its index in the model. Free nodes come first, in the order of the band:
  * rows 0 to n_free-1 are the rows of the force density matrix D. Supports on a truss follow, then all other supports.
- * Cables keep the order of the scene. D is stored as a lower band in LAPACK's layout, column-major: D(i,j) is band[i-j
- * + j*(half_bandwidth+1)]. */
+ * Cables keep the order of the scene. D is stored as a lower band in LAPACK's layout, column-major: D(i,j) is
+ * band[i-j + j*(half_bandwidth+1)]. */
 #ifndef HIFDM_MODEL_H
 #define HIFDM_MODEL_H
 
@@ -88,8 +88,8 @@ typedef struct {
     int *chain_of_row; /* [n_node] straight chain through a free node, on a truss any chain; -1: none */
 
     /* Supports on an elastic truss (hf_model_attach). The flexibility F gives the displacements r = F f of the
-     * attachments under the forces f on them (Eq. 15, condensed), both by degree of freedom 3*i + c. All members are
-     * zero without a truss. */
+     * attachments under the forces f on them (Eq. 15, condensed). Both are vectors by degree of freedom 3*i + c. All
+     * members are zero without a truss. */
     int n_attachment, n_tie;     /* numbers of attachments and of cable ends at them */
     int *attachment_row;         /* [n_attachment] rows n_free + i, in the order of the flexibility */
     double *flexibility_m_per_N; /* [3 n_attachment][3 n_attachment] symmetric; NULL without a truss */
@@ -109,9 +109,9 @@ hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf
  * rigid rod in the truss; it gets law tension with its first tension instead. Call this at most once per model, before
  * workspaces are created for it.
  *
- * Returns HF_OK; HF_BAD_CASE, with a message that contains the index of the attachment, if a node is no support or
- * occurs twice, or if the matrix is not finite, not symmetric to 1e-9 of its largest entry, or negative on the
- * diagonal; HF_NO_MEMORY. */
+ * Returns HF_OK; HF_NO_MEMORY; HF_BAD_CASE with a message that contains the index of the attachment. That is the status
+ * if a node is no support or occurs twice. It is also the status if the matrix is not finite, is negative on the
+ * diagonal, or is not symmetric to 1e-9 of its maximum absolute entry. */
 hf_status hf_model_attach(hf_model *model, int n_attachment, const int *node, const double *flexibility_m_per_N,
                           hf_messages *messages);
 

@@ -88,7 +88,7 @@ void hf_optimiser_free(hf_optimiser *optimiser);
  *   CONVERGED        no step within the limits promises a lower merit
  *   STALLED          steps promise a lower merit, but none brings one, however short; or the result is the start,
  *                    because no better design was found or could be measured
- *   MAX_ITERATIONS   the limit on the steps was reached before any of the others
+ *   MAX_ITERATIONS   the maximum number of steps was reached
  *   SETTLED          the last ten steps lowered the merit by less than 1e-6 of it and changed no objective, in
  *                    weight x value, by 1e-5 of the merit
  *   TAKEN            it did not run: the design is a point of a front */

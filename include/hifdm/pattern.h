@@ -32,10 +32,10 @@ typedef struct {
     double scale;          /* gain = scale |N|^2 / wavelength^2, with N of (M44) */
 } hf_feed;
 
-/* Determines the feed of surface->pattern for facets at position_m [n_node][3], m. Defaults are the focus of the target
- * surface as its position, the middle of the aperture as its aim, and a field 10 dB weaker at the edge of the facets.
- * surface->kind is not HF_SURFACE_AUTO, and there is at least one facet. Returns the number of facets whose front, on
- * the side of +z, the feed does not illuminate. If it is not 0, the surface has no pattern. */
+/* Determines the feed of surface->pattern for facets at position_m [n_node][3], m. By default its position is the focus
+ * of the target surface, and it looks at the middle of the aperture. Its field is then 10 dB weaker at the edge of the
+ * facets. surface->kind is not HF_SURFACE_AUTO, and there is at least one facet. Returns the number of facets whose
+ * front, on the side of +z, the feed does not illuminate. If it is not 0, the surface has no pattern. */
 int hf_feed_make(const hf_surface_settings *surface, const hf_facets *facets, const double *position_m, hf_feed *feed);
 
 /* A surface that is illuminated. */
@@ -92,12 +92,12 @@ void hf_pattern_finish(hf_far_field *pattern, double *co_dBi, double *cross_dBi)
 /* Frees the sums. */
 void hf_pattern_free(hf_far_field *pattern);
 
-#define HF_PATTERN_WIDTH_STEPS 4.0 /* minimum number of angles in the half-power width of a cut with figures */
+#define HF_PATTERN_WIDTH_STEPS 4.0 /* minimum number of steps of angle in a half-power width */
 
 /* Why figures of a cut are doubtful. */
 typedef enum {
-    HF_CUT_FINE,   /* they are not */
-    HF_CUT_COARSE, /* too few steps of angle in the half-power width: lobes are missed */
+    HF_CUT_FINE,   /* there is no doubt */
+    HF_CUT_COARSE, /* fewer than HF_PATTERN_WIDTH_STEPS steps in the half-power width: lobes are missed */
     HF_CUT_AT_END  /* the maximum is at the first or the last angle */
 } hf_cut_doubt;
 

@@ -20,7 +20,7 @@ typedef enum {
     HF_POPULATION_RUNNING,       /* it has not ended */
     HF_POPULATION_STAGNATION,    /* the best merit no longer falls */
     HF_POPULATION_GENERATIONS,   /* the maximum number of generations has been evaluated */
-    HF_POPULATION_ALL_INFEASIBLE /* no individual is feasible, and the violations no longer fall */
+    HF_POPULATION_ALL_INFEASIBLE /* it ended without a feasible individual */
 } hf_population_stop;
 extern const char *const hf_population_stop_word[4]; /* "running", "stagnation", "generations", "all_infeasible" */
 
@@ -55,8 +55,8 @@ typedef struct {
     double *least_violation;        /* [generation_limit] minimum violation of the individuals */
     double mean_psi_m, worst_psi_m; /* mean and maximum psi of the feasible individuals */
     int n_infeasible;               /* number of infeasible individuals of this generation */
-    long n_evaluation, n_evaluation_infeasible; /* designs evaluated so far, and the infeasible ones of them */
-    long n_evaluation_above_cap;                /* the infeasible ones of them that have a shape */
+    long n_evaluation, n_evaluation_infeasible; /* numbers of designs evaluated so far, and of infeasible ones */
+    long n_evaluation_above_cap;                /* number of infeasible designs so far that have a shape */
     hf_population_stop stop_reason;             /* why the generations end with this one */
 
     void *block; /* owned memory behind the arrays */
@@ -78,8 +78,8 @@ void hf_population_note_trials(hf_population *population);
 /* Replaces individual i by individual k of the previous generation: design, result and parent. */
 void hf_population_take_over(const hf_population *before, int k, hf_population *population, int i);
 
-/* Replaces each individual whose trial is worse than the individual of the same index in the previous generation, or
- * was not evaluated, by the latter. */
+/* Restores the individual of the previous generation at each index where it is better than the trial, or where the
+ * trial was not evaluated. */
 void hf_population_keep_better(const hf_population *before, hf_population *population);
 
 /* Makes `next` the present generation: exchanges the arrays of the two and increments population->generation. */

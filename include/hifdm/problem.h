@@ -19,19 +19,19 @@ HF_API_BEGIN
 /* An opened case. Its members point to each other, so it must be neither moved nor copied. It belongs to one thread at
  * a time. */
 typedef struct {
-    hf_case settings;            /* the case */
-    hf_scene scene;              /* the net as described */
-    hf_carrier carrier;          /* the truss; all zero without one */
-    hf_model model;              /* the net prepared for solving */
-    hf_states states;            /* load cases of the as-built net; none without `cases` */
-    hf_surface_settings surface; /* target surface with its kind; all zero without a section surface */
-    hf_facets facets;            /* facets of the target surface; none without a section surface */
-    int planes;                  /* mirror planes that link design variables: bit 1 = x, bit 2 = y */
-    hf_workspace workspace;      /* holds the shape of the form-finding until another one is computed in it */
-    hf_form_result form;         /* result of the form-finding */
-    double *start_q_N_per_m;     /* [n_cable] force densities of its shape */
-    double *base_N;   /* [n_gene] initial design: values in that shape, averaged over linked design variables */
-    hf_limits limits; /* rows of optimize.limits; none without rows */
+    hf_case settings;             /* the case */
+    hf_scene scene;               /* the net as described */
+    hf_carrier carrier;           /* the truss; all zero without one */
+    hf_model model;               /* the net prepared for solving */
+    hf_states states;             /* load cases of the as-built net; none without `cases` */
+    hf_surface_settings surface;  /* target surface with its kind; all zero without a section surface */
+    hf_facets facets;             /* facets of the target surface; none without a section surface */
+    int planes;                   /* mirror planes that link design variables: flags 1 (x) and 2 (y) */
+    hf_workspace workspace;       /* holds the shape of the form-finding until another one is computed in it */
+    hf_form_result form;          /* result of the form-finding */
+    double *start_q_N_per_m;      /* [n_cable] force densities of the form-finding */
+    double *base_N;               /* [n_gene] initial design, averaged over linked design variables */
+    hf_limits limits;             /* rows of optimize.limits; none without rows */
     struct hf_problem_nets *nets; /* as-built nets of objectives over load cases or samples; NULL: there are none */
     hf_goals goals;               /* rows of optimize.goals or optimize.objectives; none without rows: psi */
     hf_evaluator evaluator;       /* common data of the designs */
@@ -66,15 +66,16 @@ int hf_problem_list_figures(const hf_problem *problem, const hf_result_field *fi
 /* Returns the number of figures that have derivatives by the design variables: the value of each objective and, without
  * optimize.objectives, the merit. Without objectives the only one is psi_m. */
 int hf_problem_n_slope(const hf_problem *problem);
-/* Writes the name of such a figure into text: that of its objective, "merit" or "psi_m". Returns text. */
+/* Writes the name of figure i_slope with derivatives into text: that of its objective, "merit" or "psi_m". Returns
+ * text. */
 const char *hf_problem_slope_name(const hf_problem *problem, int i_slope, char text[HF_GOAL_NAME_SIZE]);
 
-/* Computes exact derivatives of these figures (METHOD section 7). design_N [n][n_gene] has n designs, and result [n]
- * their results of hf_batch_run. slope [feasible designs][n_slope][n_gene] receives the derivatives by each design
- * variable alone, in the unit of the figure per unit of the variable. They do not contain the weights of objectives.
- * For an objective that is a maximum of several sizes they are those of its smooth maximum. The derivatives of a figure
- * that is 0 are NaN. Overwrites problem->workspace. Returns HF_OK; HF_BAD_CASE with a message if there are no
- * derivatives (hf_problem_has_slopes); HF_NO_MEMORY. */
+/* Computes the exact derivatives of the hf_problem_n_slope figures (METHOD section 7). design_N [n][n_gene] has n
+ * designs, and result [n] their results of hf_batch_run. slope [feasible designs][n_slope][n_gene] receives the
+ * derivatives by each design variable alone, in the unit of the figure per unit of the variable. They do not contain
+ * the weights of objectives. For an objective that is a maximum of several sizes they are those of its smooth maximum.
+ * The derivatives of a figure that is 0 are NaN. Overwrites problem->workspace. Returns HF_OK; HF_BAD_CASE with a
+ * message if there are no derivatives (hf_problem_has_slopes); HF_NO_MEMORY. */
 hf_status hf_problem_slopes(hf_problem *problem, int n, const double *design_N, const hf_form_result *result,
                             double *slope, hf_messages *messages);
 /* Returns HF_OK if designs of this problem have derivatives. Returns HF_BAD_CASE with a message if not: for nets with

@@ -3,8 +3,8 @@
  *
  * HF_RESULT_LIST is the one list of the figures of a result. It defines the members of hf_form_result, the attributes
  * of /form, those of /ga with the prefix best_, and those of /polish. It also defines the data sets of /ga with a value
- * per individual, the columns of a sweep's ledger and of the merged study, the JSON objects of the stages, and the
- * columns of `hifdm evaluate`. A new figure is a row of the list and the code that computes it. */
+ * per individual and the JSON objects of the stages. The columns of `hifdm evaluate`, of a sweep's ledger and of the
+ * merged study follow from it, too. A new figure is a row of the list and the code that computes it. */
 #ifndef HIFDM_RESULT_H
 #define HIFDM_RESULT_H
 
@@ -216,13 +216,13 @@ typedef struct {
     double *step_m, *psi_m, *max_displacement_m;
 } hf_coupling_history;
 
-/* Figures of each iteration of a form-finding. The caller owns the arrays of `capacity` items, at least
- * max_iterations. */
+/* Figures of each iteration of a form-finding. The caller owns the arrays of `capacity` items. Iterations beyond
+ * `capacity` are not recorded. */
 typedef struct {
     int capacity, n; /* room in the arrays, and number of iterations recorded */
-    /* [capacity] figures of HF_RESULT_LIST */
+    /* [capacity] figures of HF_RESULT_LIST of each iteration */
     double *psi_m, *residual_N, *inner_tension_ratio, *boundary_tension_ratio, *length_error;
-    hf_coupling_history coupling; /* the same for a coupling */
+    hf_coupling_history coupling; /* history of the coupling */
 } hf_history;
 
 HF_API_END

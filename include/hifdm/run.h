@@ -47,9 +47,9 @@ typedef struct {
     long steps;
 } hf_run_progress;
 
-/* Receives the progress of a run. It is called at the start of the form-finding, of the refinement and of the samples,
- * after each generation once it is stored, after each step of Levenberg-Marquardt, and after each block of samples.
- * Only one thread at a time calls it, but not always the same one. */
+/* Receives the progress of a run. It is called at the start of the form-finding, of the refinement and of the samples.
+ * It is also called after each generation once it is stored, each step of Levenberg-Marquardt, and each block of
+ * samples. Only one thread at a time calls it, but not always the same one. */
 typedef void hf_run_observer(void *context, const hf_run_progress *progress);
 
 /* What a run shall do. All members are borrowed until hf_run_case returns. Every member except case_path may be
@@ -71,8 +71,8 @@ typedef struct {
     int threads;       /* number of threads; 0: all cores */
     bool has_seed;     /* use `seed` instead of optimize.seed */
     uint64_t seed;     /* seed of the genetic algorithm */
-    int argc;          /* command line for the provenance; 0: none */
-    char *const *argv; /* [argc] its arguments */
+    int argc;          /* number of arguments of the command line, for the provenance */
+    char *const *argv; /* [argc] arguments of the command line */
     const volatile sig_atomic_t *stop_requested; /* a flag: *stop_requested != 0 interrupts the run; NULL: never */
     /* NULL: the result file gets its name before hf_run_case returns. Otherwise *unsettled is set to the store for
      * which the caller must still call hf_store_settle, in any thread, or to NULL if there is none. */

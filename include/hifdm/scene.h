@@ -48,10 +48,11 @@ typedef struct {
  * numbers exist. Returns HF_OK or HF_NO_MEMORY. Call hf_scene_free in either case. */
 hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, bool with_load, bool with_EA, bool with_line);
 
-/* Checks what must hold for every scene, generated or read: a free node, an inner node, a support, finite numbers, two
- * different ends and a length of each cable, EA and unstressed length of elastic cables, a path of cables from every
- * free node to a support. Cables are checked if the nodes have no faults. Writes one message for each fault, with file,
- * line and id; beyond HF_FAULT_MAX faults it writes only their number. Returns HF_OK; HF_BAD_CASE; HF_NO_MEMORY. */
+/* Checks what must hold for every scene, generated or read. It has a free node, an inner node and a support, and all
+ * numbers are finite. Each cable has two different ends and a length, and an elastic cable has EA and an unstressed
+ * length. A path of cables leads from every free node to a support. Cables are checked if the nodes have no faults.
+ * Writes one message for each fault, with file, line and id; beyond HF_FAULT_MAX faults it writes only their number.
+ * Returns HF_OK; HF_BAD_CASE; HF_NO_MEMORY. */
 hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages);
 
 #define HF_SCENE_PLACE_SIZE 1324 /* a path, a line and an id of a table; a longer id is cut */
@@ -72,8 +73,8 @@ double hf_scene_theoretical_length(const hf_scene *scene, int i_cable);
  * Returns NULL if they agree in all of these. */
 const char *hf_scene_difference(const hf_scene *a, const hf_scene *b);
 
-/* Returns true if the numbers a [n] and b [n] are equal up to rounding, 1e-9 of the largest finite one, as results of
- * two machines are. NULL agrees with NULL only. */
+/* Returns true if the numbers a [n] and b [n] are equal up to rounding, which is 1e-9 of the maximum absolute value of
+ * a. Results of two machines may differ so. NULL agrees with NULL only. */
 bool hf_scene_numbers_agree(size_t n, const double *a, const double *b);
 
 /* Frees all memory of the scene. */

@@ -93,7 +93,7 @@ typedef enum {
     HF_LIMIT_DISPLACEMENT /* deflection of each attachment, m */
 } hf_limit_kind;
 
-/* The words of these choices in a case file, indexed by the enumerations above; the last entry is NULL. */
+/* The words of the choices in a case file, indexed by the enumerations of this header. The last entry is NULL. */
 extern const char *const hf_method_word[6];
 extern const char *const hf_prestress_word[3];
 extern const char *const hf_stop_rule_word[3];
@@ -120,7 +120,7 @@ extern const char *const hf_fit_word[3];
 extern const char *const hf_over_word[4];
 extern const char *const hf_take_word[3];
 extern const char *const hf_limit_word[4];
-extern const char *const hf_figure_word[4]; /* words of the figures that HF_GOAL_PSI to HF_GOAL_FACETS measure */
+extern const char *const hf_figure_word[4]; /* words of adjust.figure, HF_GOAL_PSI to HF_GOAL_FACETS */
 
 /* Size of the path of a case, a study or a table of a net or truss, bytes. A longer path is refused. */
 #define HF_PATH_SIZE 1024
@@ -132,10 +132,10 @@ typedef struct {
     char sha256[65];         /* digest of the design, hexadecimal */
 } hf_front_origin;
 
-/* The words of these choices in a case file, indexed by the enumerations below; the last entry is NULL. */
+/* The words of hf_distribution, hf_sampling and hf_tolerance_measure in a case file. The last entry is NULL. */
 extern const char *const hf_distribution_word[3];
 extern const char *const hf_sampling_word[3];
-extern const char *const hf_tolerance_measure_word[]; /* by hf_tolerance_measure */
+extern const char *const hf_tolerance_measure_word[];
 
 #define HF_SET_NAME_SIZE 64 /* bytes of the name of a set of cables with its NUL */
 
@@ -144,14 +144,14 @@ typedef struct {
     char set[HF_SET_NAME_SIZE]; /* cables: a set, or inner, boundary, all */
     hf_vary vary;               /* quantity that varies */
     double range;               /* maximum change from the value after form-finding; NaN: not given */
-    double range_ratio;         /* the same over that value (`range: 30 %`); NaN: not given */
-    double lower, upper;        /* key `bounds`; infinite where none are given */
+    double range_ratio;         /* maximum change over that value (`range: 30 %`); NaN: not given */
+    double lower, upper;        /* bounds on the value (`bounds`); infinite where none are given */
     hf_link link;               /* which design variables are linked */
 } hf_variable_settings;
 
 /* A row of optimize.goals or optimize.objectives. Objectives of the latter have no weight. */
 typedef struct {
-    hf_goal_kind goal;          /* figure */
+    hf_goal_kind goal;          /* figure that is measured */
     char set[HF_SET_NAME_SIZE]; /* cables of tension, length, evenness, mass, ratio; "": all */
     double target;        /* target value of tension or length; NaN for length: the lengths at the target positions */
     double weight;        /* weight of the objective: merit = sqrt(sum (weight * value)^2) */
@@ -169,10 +169,10 @@ typedef struct {
 typedef struct {
     hf_limit_kind limit;        /* quantity that is bounded */
     char set[HF_SET_NAME_SIZE]; /* cables of tension and ratio; "": all */
-    double lower, upper;        /* key `bounds`; infinite where none are given */
+    double lower, upper;        /* bounds on the quantity (`bounds`); infinite where none are given */
 } hf_limit_settings;
 
-#define HF_DESIGN_ROWS_MAX 16   /* maximum number of rows of each of these lists */
+#define HF_DESIGN_ROWS_MAX 16   /* maximum number of rows of optimize.variables, goals and limits */
 #define HF_OBJECTIVES_MAX 3     /* maximum number of rows of optimize.objectives */
 #define HF_FRONT_POINTS_MAX 512 /* maximum of optimize.front_points */
 #define HF_GOAL_NAME_SIZE 112   /* bytes of the name of an objective: "goal_15_displacement_" and a set */
@@ -219,15 +219,15 @@ typedef struct {
     hf_compare compare_lm;           /* whether Levenberg-Marquardt follows method ga for comparison */
     hf_symmetry symmetry;            /* mirror planes that link design variables */
     hf_keep store;                   /* which individuals a result file keeps */
-    int store_every;                 /* HF_KEEP_EVERY: one generation of so many is kept */
-    int n_variable, n_goal, n_limit; /* numbers of rows; 0: boundary pretensions by rule and range_N; psi; no limits */
+    int store_every;                 /* HF_KEEP_EVERY: generations 0, n, 2n, ... are kept */
+    int n_variable, n_goal, n_limit; /* numbers of rows; without rows: boundary pretensions, psi, no limits */
     hf_variable_settings variable[HF_DESIGN_ROWS_MAX]; /* [n_variable] rows of optimize.variables */
     hf_goal_settings goal[HF_DESIGN_ROWS_MAX];         /* [n_goal] rows of optimize.goals */
     hf_limit_settings limit[HF_DESIGN_ROWS_MAX];       /* [n_limit] rows of optimize.limits */
     int n_objective;                               /* number of rows of optimize.objectives: 0, or 2 or 3 for a front */
     hf_goal_settings objective[HF_OBJECTIVES_MAX]; /* [n_objective] rows of optimize.objectives */
     int front_points;                              /* number of points of a front that Levenberg-Marquardt finds */
-    int samples; /* objectives over samples use the first so many random samples of `tolerance` */
+    int samples; /* number of random samples for objectives that are measured on samples */
 } hf_optimize_settings;
 
 /* Returns true if an objective is measured on samples of as-built nets. */
@@ -248,7 +248,7 @@ typedef struct {
     double mass_kg; /* mass of each node */
 } hf_node_settings;
 
-#define HF_MATERIAL_ROWS_MAX 16 /* maximum number of rows of each of these lists */
+#define HF_MATERIAL_ROWS_MAX 16 /* maximum number of rows of `cables`, and of `nodes` */
 
 /* The part that has the temperature of a row of `cases`: everything, all cables, the truss, or from HF_PART_UNIT on the
  * truss members of a unit, in the order of hf_unit. */
@@ -260,7 +260,7 @@ typedef struct {
     char set[HF_SET_NAME_SIZE];    /* cables that have the temperature; "": the part has it */
     hf_part part;                  /* part that has the temperature */
     double temperature_K;          /* difference from the temperature at which the net was cut and the truss made */
-    double gradient_K_per_m[3];    /* addition to it, in proportion to the position, zero at the origin */
+    double gradient_K_per_m[3];    /* addition to the temperature, in proportion to the position, 0 at the origin */
     double gravity_m_per_s2;       /* acceleration of gravity */
     double direction[3];           /* direction of gravity; default: -z */
     hf_nodes role;                 /* nodes on which force_N acts */
@@ -348,14 +348,14 @@ typedef struct {
     double sigma_temperature_K; /* standard deviation of the temperature */
 } hf_truss_heat_settings;
 
-#define HF_TRUSS_HEAT_ROWS_MAX 8 /* one for each part */
+#define HF_TRUSS_HEAT_ROWS_MAX 8 /* maximum number of rows of tolerance.truss, one for each part */
 
 /* Errors of the as-built net (section tolerance). They are standard deviations, whatever the distribution. */
 typedef struct {
-    double sigma_cut_m, sigma_cut_ratio; /* of cut lengths: absolute, and relative to the length */
-    double sigma_support_m;              /* of each coordinate of a support */
-    double sigma_EA_ratio;               /* of EA, relative to EA */
-    double sigma_temperature_K;          /* of the temperature, which is the same for all cables */
+    double sigma_cut_m, sigma_cut_ratio; /* errors of cut lengths: absolute, and relative to the length */
+    double sigma_support_m;              /* error of each coordinate of a support */
+    double sigma_EA_ratio;               /* error of EA, relative to EA */
+    double sigma_temperature_K;          /* error of the temperature, which is the same for all cables */
     hf_distribution distribution;        /* distribution of the errors */
     double batch;           /* correlation of the relative errors of length, and of those of EA, within a spool */
     int samples;            /* number of samples */
@@ -389,13 +389,13 @@ typedef struct {
     int n_theta;                    /* number of angles, at even steps */
     hf_double_list phi_deg;         /* angle of each cut from +x, at most HF_PATTERN_CUTS */
     hf_feed_kind feed;              /* kind of the feed */
-    double position_m[3], aim_m[3]; /* the feed, and the point at which it looks; a line runs along y through it */
+    double position_m[3], aim_m[3]; /* position of the feed, and point at which it looks; a line runs along y */
     double cos_power;               /* q: the field is cos^q of the angle from the axis */
     hf_polarisation polarisation;   /* polarisation of the feed */
 } hf_pattern_settings;
 
-/* The reflecting surface (section surface): the parabolic cylinder z = x^2/(4f) along y, or the paraboloid z = (x^2 +
- * y^2)/(4f). */
+/* The reflecting surface (section surface): the parabolic cylinder z = x^2/(4f) along y, or the paraboloid
+ * z = (x^2 + y^2)/(4f). */
 typedef struct {
     double focal_length_m;         /* focal length f; 0: no measures of the surface are computed */
     double strip_width_m;          /* width of the flat strips along y that make up the surface; 0: unknown */

@@ -12,8 +12,8 @@
  *
  * Layout of the file: n nodes, m cables, i iterations, g generations, p individuals, k design variables. Every data set
  * has the attributes `units` ("": no dimension) and `description`. Role, group, law, status and the like are HDF5
- * enumerations. Texts are UTF-8. Those that are read back (provenance, title, warnings, case_path, the version in
- * /form, ids) have a fixed length, because HDF5 1.10 crashes on damaged texts of variable length; the others have a
+ * enumerations. Texts are UTF-8. Those that are read back have a fixed length, because HDF5 1.10 crashes on damaged
+ * texts of variable length: provenance, title, warnings, case_path, the version in /form, ids. The others have a
  * variable length. Times, threads and host are attributes only, so the data sets of two runs of the same case are
  * equal.
  *
@@ -99,8 +99,8 @@ HF_API_BEGIN
 /* The file of a run that is being written. A store belongs to one thread at a time. */
 typedef struct hf_store hf_store;
 
-/* Several threads may call these functions at once. A store is used by one of them at a time; functions that read may
- * be called freely. The calls wait for each other, because HDF5 works for one thread at a time. */
+/* Several threads may call the functions of this header at once. A store is used by one of them at a time; functions
+ * that read may be called freely. The calls wait for each other, because HDF5 works for one thread at a time. */
 
 /* The stages of a run that produce a shape. */
 typedef enum { HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, HF_STAGE_NONE } hf_stage;
@@ -126,8 +126,8 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
 
 /* Begins the file of a new run and writes case, scene and provenance. argv [argc] goes into the provenance; argc may be
  * 0. Nothing is borrowed. The name `path` is checked now, not only at the end. Returns HF_OK; HF_EXISTS if it is in use
- * and `restart` is false; HF_IO if it is a folder, if its folder does not exist or is not writable, if another process
- * is writing it, or if the file cannot be made; HF_NO_MEMORY. After a failure *store is NULL. */
+ * and `restart` is false; HF_IO if it is a folder or another process is writing it, if its folder does not exist or is
+ * not writable, or if the file cannot be made; HF_NO_MEMORY. After a failure *store is NULL. */
 hf_status hf_store_create(const char *path, bool restart, const hf_case *settings, const hf_scene *scene,
                           const hf_truss *truss, int argc, char *const *argv, hf_store **store, hf_messages *messages);
 
@@ -164,27 +164,27 @@ hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_popula
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_population *population,
                               hf_messages *messages);
 
-/* Reads the initial design base_N [n_gene] with which the genetic algorithm of a resumed store started, because the
- * values that this machine computes may differ in the last bits. base_N is unchanged if the store has none. */
+/* Reads the initial design base_N [n_gene] with which the genetic algorithm of a resumed store started. The values that
+ * this machine computes may differ in the last bits. base_N is unchanged if the store has none. */
 hf_status hf_store_restore_base(hf_store *store, int n_gene, double *base_N, hf_messages *messages);
 
-/* Restores an optimiser that was just created from that design: its state before hf_optimiser_tell of the last
- * generation in the store. The figures of the best individual so far go into the summary. The designs of generations in
- * the journal are proposed again; if this build proposes others, these generations are left out with a warning. Does
- * nothing if the store has no generation. */
+/* Restores an optimiser that was just created from the design of hf_store_restore_base: its state before
+ * hf_optimiser_tell of the last generation in the store. The figures of the best individual so far go into the summary.
+ * The designs of generations in the journal are proposed again; if this build proposes others, these generations are
+ * left out with a warning. Does nothing if the store has no generation. */
 hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages);
 
-/* Keeps the state of Levenberg-Marquardt, state [n], after the time wall_s, for later publications. It is copied. A
- * finished file does not contain it. */
+/* Copies the state of Levenberg-Marquardt, state [n], and its time so far, wall_s in s, for later publications. A
+ * finished file does not contain them. */
 hf_status hf_store_polish(hf_store *store, double wall_s, size_t n, const double *state, hf_messages *messages);
-/* Reads this state in a resumed store: *wall_s and *state [*n]. *n is 0 if there is none. *state is borrowed until the
- * next hf_store_polish. */
+/* Reads the state of Levenberg-Marquardt in a resumed store: *wall_s, s, and *state [*n]. *n is 0 if there is none.
+ * *state is borrowed until the next hf_store_polish. */
 hf_status hf_store_restore_polish(hf_store *store, double *wall_s, size_t *n, const double **state,
                                   hf_messages *messages);
 
 /* Publishes everything so far: a file that is marked as unfinished gets the visible name. With at_once this is done
  * now. Otherwise it is done only if at least 0.5 s and 50 times the duration of the last publication have passed since
- * then, so that it takes less than 2 % of the time. Call it after every generation. */
+ * then. Publishing thus takes less than 2 % of the time. Call it after every generation. */
 hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_once, hf_messages *messages);
 
 /* Writes the shape in the workspace as that of stage HF_STAGE_OPTIMIZE or HF_STAGE_POLISH, with its design design_N
@@ -192,25 +192,25 @@ hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_o
 hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
                         const double *design_N, hf_messages *messages);
 
-/* Writes the front, in place of an earlier one. The names of its objectives are those in the summary. */
+/* Writes the front and replaces an earlier one. The names of its objectives are those in the summary. */
 hf_status hf_store_front(hf_store *store, const hf_scene *scene, const hf_model *model, const hf_summary *summary,
                          const hf_front *front, hf_messages *messages);
 
-/* Writes the far field of the shape of a stage, in place of an earlier one. */
+/* Writes the far field of the shape of a stage and replaces an earlier one. */
 hf_status hf_store_pattern(hf_store *store, hf_stage stage, const hf_pattern_table *table,
                            const hf_pattern_summary *figures, hf_messages *messages);
 /* Reads the far field of the shape of a stage. Returns HF_OK; HF_IO, also if there is none; HF_NO_MEMORY. Call
  * hf_pattern_table_free in any case. */
 hf_status hf_store_read_pattern(const char *path, hf_stage stage, hf_pattern_table *table, hf_messages *messages);
 
-/* Writes the shape in the workspace as that of load case `name` of the as-built net, in place of an earlier one.
+/* Writes the shape in the workspace as that of load case `name` of the as-built net, and replaces an earlier one.
  * `truss` has the displacements and forces of the truss in it; NULL: there is no truss. */
 hf_status hf_store_built(hf_store *store, const char *name, const hf_model *model, const hf_workspace *workspace,
                          const hf_carrier *carrier, const hf_carrier_state *truss, hf_messages *messages);
 
-/* Writes the summary, closes the file and gives it its name: hf_store_complete and hf_store_settle. The store is freed
- * in any case. A failure leaves the published file and the journal unchanged. If the file is complete but cannot get
- * its name (HF_EXISTS, HF_IO), it remains under another name, which the message contains. */
+/* Writes the summary, closes the file and gives it its name, by hf_store_complete and hf_store_settle. The store is
+ * freed in any case. A failure leaves the published file and the journal unchanged. If the file is complete but cannot
+ * get its name (HF_EXISTS, HF_IO), it remains under another name, which the message contains. */
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
 
 /* Writes the summary and closes the file, which takes processor time. hf_store_settle must follow, also after a
@@ -229,7 +229,7 @@ void hf_store_abandon(hf_store *store, hf_messages *messages);
 /* A stored shape, in the order of the scene. */
 typedef struct {
     double *position_m;                       /* [n_node][3] positions */
-    double *length_m, *tension_N, *q_N_per_m; /* [n_cable] */
+    double *length_m, *tension_N, *q_N_per_m; /* [n_cable] lengths, tensions, force densities */
     unsigned char *law;                       /* [n_cable] hf_law in force */
     void *block;                              /* owned memory behind the arrays */
 } hf_shape;
@@ -244,7 +244,7 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
 /* Reads the scene, without its line numbers. Call hf_scene_free in any case. */
 hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages);
 
-/* Reads the shape of a stage; HF_IO also if there is none. Its counts are those of hf_store_read_scene. Call
+/* Reads the shape of a stage. Returns HF_IO also if there is none. Its counts are those of hf_store_read_scene. Call
  * hf_shape_free in any case. */
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
 /* Reads the shape of load case `name`, as hf_store_read_shape does. */
@@ -252,8 +252,8 @@ hf_status hf_store_read_state(const char *path, const char *name, hf_shape *shap
 /* Frees the arrays of a shape. */
 void hf_shape_free(hf_shape *shape);
 
-/* Reads the front, and *gene, the names of its design variables, [n_gene] of *gene_size bytes each. HF_IO also if there
- * is none. Free the front by hf_front_free and *gene by free in any case. */
+/* Reads the front, and *gene, the names of its design variables, [n_gene] of *gene_size bytes each. Returns HF_IO also
+ * if there is no front. Free the front by hf_front_free and *gene by free in any case. */
 hf_status hf_store_read_front(const char *path, hf_front *front, char **gene, size_t *gene_size, hf_messages *messages);
 
 /* Writes the keys in which the case of a result differs from this one into text[size], as hf_config_differences does.
@@ -267,11 +267,11 @@ hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_ca
                          hf_messages *messages);
 
 /* Reads the truss, without its line numbers, and its displacements and forces, which are all NULL if none were stored.
- * HF_IO also if there is no truss. Call hf_truss_free and hf_carrier_state_free in any case. */
+ * Returns HF_IO also if there is no truss. Call hf_truss_free and hf_carrier_state_free in any case. */
 hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_state *state, hf_messages *messages);
 
-/* Reads displacements and forces of the truss in load case `name`; `truss` is that of hf_store_read_truss. HF_IO also
- * if the load case has no shape. Call hf_carrier_state_free in any case. */
+/* Reads displacements and forces of the truss in load case `name`; `truss` is that of hf_store_read_truss. Returns
+ * HF_IO also if the load case has no shape. Call hf_carrier_state_free in any case. */
 hf_status hf_store_read_state_truss(const char *path, const char *name, const hf_truss *truss, hf_carrier_state *state,
                                     hf_messages *messages);
 

@@ -28,8 +28,8 @@ HF_API_BEGIN
  *          list; 0: not there
  *   key    name in JSON; the attribute in HDF5 has the name of the member
  *
- * The lists define the members of hf_summary, attributes in HDF5, columns of a sweep's ledger (both in the order of the
- * list) and the JSON objects. A new figure of a run is a row here and the code that computes it. */
+ * The lists define the members of hf_summary and the JSON objects, and in their own order the attributes in HDF5 and
+ * the columns of a sweep's ledger. A new figure of a run is a row here and the code that computes it. */
 
 /* The net and the form-finding. */
 #define HF_SUMMARY_FORM_LIST(X)                                                                                        \
@@ -86,10 +86,11 @@ HF_API_BEGIN
     X(int, n_node, INT, 1, "nodes", "nodes of the truss")                                                              \
     X(int, n_member, INT, 1, "members", "members of the truss")
 
-/* Tensions of the named sets of cables in one shape, for the first HF_SUMMARY_SETS sets of the net. A page has room for
- * as many. The ratio is that of hf_metrics_tension_ratio. */
+/* Maximum number of sets in hf_set_tensions, for which a page has room. */
 #define HF_SUMMARY_SETS 16
 
+/* Tensions of the named sets of cables in one shape, for the first HF_SUMMARY_SETS sets of the net. The ratio is that
+ * of hf_metrics_set_ratio. */
 typedef struct {
     int n;                                              /* number of sets */
     char name[HF_SUMMARY_SETS][HF_CABLE_SET_NAME_SIZE]; /* [n] names of the sets */
@@ -107,8 +108,8 @@ typedef struct {
     int n;                                         /* number of constraints */
     int row[HF_SUMMARY_HELD];                      /* [n] row of optimize.limits; -1: boundary_ratio_cap */
     int count[HF_SUMMARY_HELD];                    /* [n] number of cables or attachments of the row at this bound */
-    char name[HF_SUMMARY_HELD][HF_HELD_NAME_SIZE]; /* [n] "tension of cable c7", "ratio of cable c7 to c9" */
-    double value[HF_SUMMARY_HELD], bound[HF_SUMMARY_HELD]; /* [n] its value and bound, N, m or a ratio */
+    char name[HF_SUMMARY_HELD][HF_HELD_NAME_SIZE]; /* [n] one of these, such as "tension of cable c7" */
+    double value[HF_SUMMARY_HELD], bound[HF_SUMMARY_HELD]; /* [n] value and bound of this one, N, m or a ratio */
 } hf_held_limits;
 
 /* The rows of optimize.goals or optimize.objectives. The latter have neither weights nor a merit. The values, with the
@@ -138,7 +139,7 @@ typedef struct {
 
 /* The figures of a run. */
 typedef struct {
-    char version[64], title[256], case_path[HF_PATH_SIZE]; /* of the program; of the case; of the case file */
+    char version[64], title[256], case_path[HF_PATH_SIZE]; /* version of the program; title and path of the case */
     bool finished;                                         /* false: the run can be resumed */
     hf_status status;                /* status of the whole run; HF_NOT_EVALUATED unless finished */
     int threads;                     /* number of threads of the run */

@@ -88,7 +88,7 @@ HF_API_BEGIN
  * Parameters that the points do not determine keep the values of the target surface. shift_x_m, and of a paraboloid
  * also shift_y_m, is 0 if the minimum is not found or needs a shift of more than a tenth of the net's half-width.
  * focal_length_m is that of the target surface if the minimum is not found or has more than twice or less than half
- * that focal length. Points on two lines along y are an example. */
+ * that focal length. Points on two lines along y are such a case. */
 typedef struct {
     HF_SURFACE_FIT_LIST(HF_SURFACE_MEMBER)
 } hf_surface_fit;
@@ -109,7 +109,7 @@ void hf_surface_fit_errors(hf_surface_kind kind, const hf_surface_fit *fit, int 
 typedef struct {
     bool is_measured; /* false: the other members have no meaning */
     HF_SURFACE_LIST(HF_SURFACE_MEMBER)
-    /* figures of the best fit to the inner nodes */
+    /* The figures of the best fit to the inner nodes. */
     hf_surface_fit fit;
 #define HF_SURFACE_LOSS_MEMBER(member, description) double member[HF_LIST_MAX];
     HF_SURFACE_LOSS_LIST(HF_SURFACE_LOSS_MEMBER)
@@ -133,7 +133,7 @@ typedef struct {
     const double *gain_loss_dB, *fit_gain_loss_dB; /* [frequencies_Hz.n] losses of gain by these errors */
 } hf_surface_errors;
 
-/* Returns these errors for the facets, or for the nodes if of_facets is false. */
+/* Returns the errors of the facets, or of the nodes if of_facets is false. */
 hf_surface_errors hf_surface_errors_of(const hf_surface_measures *measures, bool of_facets);
 
 /* The loss of gain that defines the maximum frequency of a reflector, dB. */
@@ -150,7 +150,7 @@ double hf_surface_highest_Hz(const hf_surface_settings *settings);
  * HF_RUZE_MOST_DB. */
 double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz);
 
-/* Returns the loss of Ruze's formula without that bound, dB. */
+/* Returns the loss of gain by Ruze's formula (M17) for errors of any size, dB. */
 double hf_surface_ruze_dB(double half_path_rms_m, double frequency_Hz);
 
 /* Returns the frequency at which the loss by a half-path RMS is loss_dB, Hz, for 0 < loss_dB <= HF_RUZE_MOST_DB;

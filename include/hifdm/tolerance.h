@@ -23,10 +23,11 @@ enum { HF_TOLERANCE_STATUS, HF_TOLERANCE_LINEAR_PSI, HF_TOLERANCE_FIRST };
 extern const char *const hf_tolerance_measure_unit[HF_TOLERANCE_N_MEASURE]; /* units of the measures */
 extern const char *const hf_tolerance_measure_help[HF_TOLERANCE_N_MEASURE]; /* descriptions of the measures */
 
-/* Reported quantiles: this part of the samples has no larger value, or no smaller one if more is better. */
+/* Number of reported quantiles. A quantile is a value that a part of the samples does not exceed, or does not fall
+ * below if more is better. */
 #define HF_TOLERANCE_QUANTILES 3
-extern const double hf_tolerance_quantile[HF_TOLERANCE_QUANTILES]; /* 0.5, 0.95, 0.99 */
-/* Returns true if a larger value of the measure is better, as of the minimum tension. */
+extern const double hf_tolerance_quantile[HF_TOLERANCE_QUANTILES]; /* parts of the samples: 0.5, 0.95, 0.99 */
+/* Returns true if a larger value of the measure is better, such as the minimum tension. */
 bool hf_tolerance_more_is_better(hf_tolerance_measure measure);
 
 /* Statistics of one measure. Mean, deviation, minimum and maximum are over the samples that have a value. Quantiles are
@@ -44,10 +45,10 @@ typedef struct {
 } hf_tolerance_figures;
 
 #define HF_TOLERANCE_RANKED 20                                       /* maximum number of cables that are listed */
-#define HF_TOLERANCE_BINS 40                                         /* bins of the histogram of psi */
+#define HF_TOLERANCE_BINS 40                                         /* number of bins of the histogram of psi */
 #define HF_TOLERANCE_ID_SIZE 256                                     /* bytes of the id of a cable */
-#define HF_TOLERANCE_KINDS 8                                         /* kinds of errors */
-extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS]; /* their words */
+#define HF_TOLERANCE_KINDS 8                                         /* number of kinds of errors */
+extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS]; /* words of the kinds of errors */
 
 /* X(type, member, kind, json, key, description): the figures of the samples, as the lists of summary.h. */
 #define HF_TOLERANCE_LIST(X)                                                                                           \
@@ -84,9 +85,9 @@ typedef struct {
     int n_require;                                       /* number of rows of tolerance.require */
     hf_require_settings require[HF_REQUIRE_ROWS_MAX];    /* [n_require] the rows */
     double require_yield[HF_REQUIRE_ROWS_MAX];           /* [n_require] yield under each row alone */
-    int n_ranked; /* number of cables with the largest shares of their own errors in the growth of psi^2 */
+    int n_ranked; /* number of cables listed by the share of their own errors in the growth of psi^2 */
     char ranked_id[HF_TOLERANCE_RANKED][HF_TOLERANCE_ID_SIZE]; /* [n_ranked] ids of these cables */
-    double ranked_share[HF_TOLERANCE_RANKED];                  /* [n_ranked] their shares */
+    double ranked_share[HF_TOLERANCE_RANKED];                  /* [n_ranked] shares of these cables */
     double kind_share[HF_TOLERANCE_KINDS];                     /* share of each kind of errors in the growth of psi^2 */
     double bin_low_m, bin_high_m;                              /* range of the histogram: minimum and maximum psi */
     double bin[HF_TOLERANCE_BINS];                             /* part of the samples with a shape in each bin */

@@ -75,8 +75,8 @@ typedef struct {
     void *block, *text;                    /* owned memory behind all of the above */
 } hf_truss;
 
-/* Returns true if member i_member belongs to this part: always below HF_PART_UNIT, from there on if it belongs to the
- * unit. */
+/* Returns true if member i_member belongs to this part of the truss. Below HF_PART_UNIT this is the whole truss, from
+ * there on one unit. */
 static inline bool hf_truss_is_of(const hf_truss *truss, int i_member, hf_part part)
 {
     return part < HF_PART_UNIT || (int)truss->unit[i_member] == (int)part - HF_PART_UNIT;
@@ -128,7 +128,7 @@ typedef struct {
 /* The truss of a case (section truss). */
 typedef struct {
     double depth_m;                /* distance of the rear chords from the surface along its normal, for all units */
-    int main_every;                /* from both edges, every so many generatrix lines are MBUG, the others ABUG */
+    int main_every;                /* every main_every-th generatrix line from both edges is MBUG, the others ABUG */
     hf_truss_unit bud, mbug, abug; /* BUD on the module borders along x, the others along y */
     double E_Pa, G_Pa, density_kg_per_m3, expansion_per_K; /* material of the tubes */
     double hinge_mass_kg;                                  /* mass of the hinges at each node */
@@ -191,16 +191,16 @@ typedef struct {
     X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "wall thickness of its tubes")
 
 /* Makes the truss of basic sub-rings over the modules of the net. Its front nodes are the module corners on the
- * cylinder; the outer ones are at the supports of edge ties. Ids of nodes are f<i>_<j> in front and r<i>_<j> behind,
- * and f<i>.<k>_<j> or f<i>_<j>.<k> inside units of several panels. Ids of members are <node>-<node>. Returns HF_OK;
- * HF_BAD_CASE if the truss would be too large; HF_NO_MEMORY. Call hf_truss_free in any case. */
+ * cylinder; the outer ones are at the supports of edge ties. Ids of nodes are f<i>_<j> in front and r<i>_<j> behind.
+ * Inside units of several panels they are f<i>.<k>_<j> or f<i>_<j>.<k>. Ids of members are <node>-<node>. Returns
+ * HF_OK; HF_BAD_CASE if the truss would be too large; HF_NO_MEMORY. Call hf_truss_free in any case. */
 hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder *cylinder, hf_truss *truss,
                             hf_messages *messages);
 
 /* Makes the ring truss under the rim of the net. Ids of nodes are f<k> in front and r<k> behind, in the order of the
- * supports of the net from x towards y; ids of members are <node>-<node>. Hinges have their mass at the ends of
- * verticals. Returns HF_OK; HF_BAD_CASE for a fault that hf_truss_ring_fault finds, or if the cells of a quad net do
- * not divide into bays; HF_NO_MEMORY. Call hf_truss_free in any case. */
+ * supports of the net from x towards y; ids of members are <node>-<node>. The hinges, with their mass, are at the ends
+ * of the verticals. Returns HF_OK; HF_BAD_CASE for a fault that hf_truss_ring_fault finds, or if the cells of a quad
+ * net do not divide into bays; HF_NO_MEMORY. Call hf_truss_free in any case. */
 hf_status hf_truss_ring_generate(const hf_truss_settings *settings, const hf_paraboloid *paraboloid, hf_truss *truss,
                                  hf_messages *messages);
 
