@@ -18,7 +18,7 @@ HF_API_BEGIN
 
 /* One cable of one set, by index. */
 typedef struct {
-    int set, cable;
+    int set, cable; /* indices of the set and of the cable */
 } hf_cable_set_member;
 
 /* Checks the name of a set: 1 to 63 letters, digits, _ and -, not beginning with -, neither the name of a group nor

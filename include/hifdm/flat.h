@@ -112,7 +112,7 @@ int hf_flat_ints(const hf_flat *flat, const char *name, int *to);
  *                                           of the last hf_flat_form or hf_flat_shape */
 int hf_flat_reals(const hf_flat *flat, const char *name, double *to);
 
-/* ---- Work ---- */
+/* ---- Computation ---- */
 
 /* Finds the shape of the case. Returns HF_OK, HF_NOT_CONVERGED or the status of an ill-posed net; HF_BAD_USAGE without
  * a case; HF_BAD_CASE for a section optimize that cannot start from the shape; HF_NO_MEMORY; HF_NO_LAPACK. */

@@ -110,8 +110,8 @@ hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf
  * workspaces are created for it.
  *
  * Returns HF_OK; HF_NO_MEMORY; HF_BAD_CASE with a message that contains the index of the attachment. That is the status
- * if a node is no support or occurs twice. It is also the status if the matrix is not finite, is negative on the
- * diagonal, or is not symmetric to 1e-9 of its maximum absolute entry. */
+ * if a node is no support or occurs twice. It is also the status if the matrix is not finite, negative on the diagonal,
+ * or not symmetric to 1e-9 of its maximum absolute entry. */
 hf_status hf_model_attach(hf_model *model, int n_attachment, const int *node, const double *flexibility_m_per_N,
                           hf_messages *messages);
 

@@ -110,8 +110,7 @@ typedef struct {
     bool ends_with_polish;         /* the refinement is the result; false: it is run for comparison only */
 } hf_optimiser_plan;
 
-/* Returns the algorithms of settings->method. With optimize.objectives, hf_optimiser_nsga takes the place of
- * hf_optimiser_ga. */
+/* Returns the algorithms of settings->method. With optimize.objectives, hf_optimiser_nsga replaces hf_optimiser_ga. */
 hf_optimiser_plan hf_optimiser_plan_of(const hf_optimize_settings *settings);
 
 #define HF_OPTIMISER_DECLARE(method, optimiser, ends_with_polish)                                                      \

@@ -32,10 +32,10 @@ typedef struct {
     double scale;          /* gain = scale |N|^2 / wavelength^2, with N of (M44) */
 } hf_feed;
 
-/* Determines the feed of surface->pattern for facets at position_m [n_node][3], m. By default its position is the focus
- * of the target surface, and it looks at the middle of the aperture. Its field is then 10 dB weaker at the edge of the
- * facets. surface->kind is not HF_SURFACE_AUTO, and there is at least one facet. Returns the number of facets whose
- * front, on the side of +z, the feed does not illuminate. If it is not 0, the surface has no pattern. */
+/* Determines the feed of surface->pattern for facets at position_m [n_node][3], m. By default it is at the focus of the
+ * target surface and looks at the middle of the aperture. The default of cos_power makes the field 10 dB weaker at the
+ * edge of the facets. surface->kind is not HF_SURFACE_AUTO, and there is at least one facet. Returns the number of
+ * facets whose front, on the side of +z, the feed does not illuminate. If it is not 0, the surface has no pattern. */
 int hf_feed_make(const hf_surface_settings *surface, const hf_facets *facets, const double *position_m, hf_feed *feed);
 
 /* A surface that is illuminated. */

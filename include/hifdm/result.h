@@ -192,6 +192,7 @@ typedef struct {
 
 #define HF_RESULT_COUNT(type, member, kind, json, individual, key, units, description) +1
 #define HF_RESULT_COUNT_INDIVIDUAL(type, member, kind, json, individual, key, units, description) +(individual > 0)
+/* Numbers of rows of the two lists, and of those with a place among the figures of one individual. */
 enum {
     HF_RESULT_N = 0 HF_RESULT_LIST(HF_RESULT_COUNT),
     HF_COUPLING_N = 0 HF_COUPLING_LIST(HF_RESULT_COUNT),

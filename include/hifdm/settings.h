@@ -61,7 +61,8 @@ typedef enum {
  * (optimize.link). */
 typedef enum { HF_LINK_EACH, HF_LINK_SET, HF_LINK_SYMMETRY } hf_link;
 
-/* The figure that a row of optimize.goals or optimize.objectives measures. Each is zero or more, and is minimised. */
+/* The figure that a row of optimize.goals or optimize.objectives measures. A figure is zero or more, and it is
+ * minimised. */
 typedef enum {
     HF_GOAL_PSI,          /* psi: RMS distance of the inner nodes from their target positions, m */
     HF_GOAL_SURFACE,      /* RMS distance of the inner nodes from the target surface, m */

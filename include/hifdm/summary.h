@@ -28,8 +28,8 @@ HF_API_BEGIN
  *          list; 0: not there
  *   key    name in JSON; the attribute in HDF5 has the name of the member
  *
- * The lists define the members of hf_summary and the JSON objects, and in their own order the attributes in HDF5 and
- * the columns of a sweep's ledger. A new figure of a run is a row here and the code that computes it. */
+ * The lists define the members of hf_summary and the JSON objects. In their own order they define the attributes in
+ * HDF5 and the columns of a sweep's ledger. A new figure of a run is a row here and the code that computes it. */
 
 /* The net and the form-finding. */
 #define HF_SUMMARY_FORM_LIST(X)                                                                                        \

@@ -85,8 +85,8 @@ HF_API_BEGIN
  * paraboloid. In a shallow reflector a shift across and a turn are nearly the same motion. Each of the two numbers is
  * uncertain, but the fitted surface is not.
  *
- * Parameters that the points do not determine keep the values of the target surface. shift_x_m, and of a paraboloid
- * also shift_y_m, is 0 if the minimum is not found or needs a shift of more than a tenth of the net's half-width.
+ * Parameters that the points do not determine keep the values of the target surface. shift_x_m is 0 if the minimum is
+ * not found or needs a shift of more than a tenth of the net's half-width; so is shift_y_m of a paraboloid.
  * focal_length_m is that of the target surface if the minimum is not found or has more than twice or less than half
  * that focal length. Points on two lines along y are such a case. */
 typedef struct {

@@ -135,8 +135,8 @@ void hf_workspace_free(hf_workspace *workspace);
 /* Returns true if the law in force of at least one cable changes its force density between iterations (Eqs. 7, 8). */
 bool hf_workspace_iterates(const hf_model *model, const hf_workspace *workspace);
 
-/* Fills every floating-point field with NaN and every other field with 0xff, so that a test sees it in the result if a
- * call reads stale contents. */
+/* Fills every floating-point field with NaN and every other field with 0xff. For tests: if a call reads stale contents,
+ * its result shows it. */
 void hf_workspace_poison(const hf_model *model, hf_workspace *workspace);
 
 HF_API_END
