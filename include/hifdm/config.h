@@ -142,7 +142,7 @@ typedef enum {
 typedef struct {
     const char *path;   /* name with its sections, "form.pretension_N" */
     hf_field_type type; /* type of the value */
-    size_t offset;      /* of the member in hf_case; for a key of a row: in the row */
+    size_t offset;      /* offset of the member in hf_case; for a key of a row: in the row */
     double min, max;    /* inclusive bounds; min HF_ABOVE_ZERO: above 0; text: max is the size of the buffer */
     /* As written in a case file. NULL: the key is required if its section or row exists. "": no value; in a row,
      * numbers are then NaN and bounds are open. */
@@ -155,14 +155,14 @@ typedef struct {
 /* A section of a case file. */
 typedef struct {
     const char *path;      /* name, "scene.import" */
-    size_t present_offset; /* of the bool in hf_case that is true if the section exists; SIZE_MAX: there is none */
+    size_t present_offset; /* offset of the bool in hf_case that is true if the section exists; SIZE_MAX: none */
     const char *help;      /* help of the section */
 } hf_section;
 
 /* A list of rows. A row is a section without a name; its keys are "optimize.variables.0.range" and so on. */
 typedef struct {
     const char *path;            /* name, "optimize.variables" */
-    size_t count_offset, offset; /* in hf_case: of the number of rows, and of the first row */
+    size_t count_offset, offset; /* offsets in hf_case of the number of rows and of the first row */
     size_t row_size;             /* bytes from one row to the next */
     int max_row;                 /* maximum number of rows */
     const hf_field *field;       /* [n_field] keys of a row, whose path is the last part, "range" */

@@ -78,8 +78,8 @@ typedef enum {
 /* Returns what design variable i_gene sets. */
 hf_gene_sets hf_evaluate_sets(const hf_evaluator *evaluator, int i_gene);
 
-/* Returns true if the shape of a design does not depend on the start of its solver. Under rule seeded it does, unless
- * the case has optimize.variables. */
+/* Returns true if the shape of a design does not depend on the start of its solver. It depends on the start only under
+ * rule seeded without optimize.variables. */
 bool hf_evaluate_is_unique(const hf_evaluator *evaluator);
 
 /* Returns the number by which the value of design variable i_gene is divided to get a force density: L* in m for

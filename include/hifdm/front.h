@@ -44,7 +44,7 @@ typedef struct {
     int n_objective, n_gene, n_point; /* numbers of objectives, design variables and points */
     int minimised;                    /* objective that is minimised under limits on the others; -1: all are */
     int knee;                         /* point farthest below the line of the ends (hf_front_settle); -1: none */
-    double base[HF_OBJECTIVES_MAX];   /* objectives of the initial design; NaN: it has none */
+    double base[HF_OBJECTIVES_MAX];   /* objectives of the initial design; NaN: no value */
     hf_front_point *point;            /* [n_point] by objective 0, then 1, then 2, ascending; failed ones last */
     double *design;                   /* [n_point][n_gene] designs as of hf_evaluate; NaN for a failed point */
     void *block;                      /* owned memory behind point and design */

@@ -76,7 +76,7 @@ typedef struct {
     /* Design variables that a symmetry or a row of optimize.variables links are a class. All change by the step of the
      * first. */
     int n_leader;     /* number of classes, which is that of the independent design variables */
-    int *gene_leader; /* [n_gene] first of the class; without links the variable itself */
+    int *gene_leader; /* [n_gene] first design variable of the class; without links the variable itself */
 
     /* Chains of at least two cables of law length between two supports, through free nodes with no other such cable.
      * Straight chains come first: their lengths L* do not exceed the distance of the supports. One path that is too
@@ -88,7 +88,7 @@ typedef struct {
     int *chain_of_row; /* [n_node] straight chain through a free node, on a truss any chain; -1: none */
 
     /* Supports on an elastic truss (hf_model_attach). The flexibility F gives the displacements r = F f of the
-     * attachments under the forces f on them (Eq. 15, condensed). Both are vectors by degree of freedom 3*i + c. All
+     * attachments under the forces f on them (Eq. 15, condensed). Both are vectors by degree of freedom 3*i + c. These
      * members are zero without a truss. */
     int n_attachment, n_tie;     /* numbers of attachments and of cable ends at them */
     int *attachment_row;         /* [n_attachment] rows n_free + i, in the order of the flexibility */

@@ -74,7 +74,7 @@ double hf_scene_theoretical_length(const hf_scene *scene, int i_cable);
 const char *hf_scene_difference(const hf_scene *a, const hf_scene *b);
 
 /* Returns true if the numbers a [n] and b [n] are equal up to rounding, which is 1e-9 of the maximum absolute value of
- * a. Results of two machines may differ so. NULL agrees with NULL only. */
+ * a. Results of two machines differ by rounding. NULL agrees with NULL only. */
 bool hf_scene_numbers_agree(size_t n, const double *a, const double *b);
 
 /* Frees all memory of the scene. */

@@ -135,7 +135,7 @@ typedef struct {
     hf_theory theory;          /* Timoshenko: the shear area is half the cross-section, as of a thin round tube */
     hf_joint joints;           /* joints of all members */
     hf_held supports;          /* nodes that are held */
-    hf_held_dofs support_dofs; /* dofs that are held there */
+    hf_held_dofs support_dofs; /* dofs that are held at these nodes */
     double match_tolerance_m;  /* maximum distance of a support of the net from its node of the truss */
     hf_truss_ring ring;        /* the ring truss, which replaces the units */
 } hf_truss_settings;
