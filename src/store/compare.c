@@ -1,4 +1,10 @@
-/* Contents: one value - one data set - both files */
+/* Compares two HDF5 files:
+ *
+ *     walk through file a    a data set of both files: compare type and dimensions, then the values in blocks of rows
+ *                            a data set of file a alone: report it
+ *     walk through file b    a data set of file b alone: report it
+ *
+ * The comparison of a data set ends at its first difference. Sections: one value, one data set, both files. */
 #include "store/compare.h"
 
 #include "store/hdf5.h"
@@ -8,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BLOCK_BYTES (1 << 20) /* read at a time: memory does not grow with the files */
+#define BLOCK_BYTES (1 << 20) /* bytes read at a time, but at least one row; bounds the memory for files of any size */
 
 typedef struct {
     hf_hdf5 a, b;
@@ -18,12 +24,12 @@ typedef struct {
     bool are_results;
 } comparing;
 
-/* A data set of one file: what is read, and how a value looks in memory. */
+/* An open data set of one file, with the type and the block of memory of its values. */
 typedef struct {
     hid_t id, space, type;
     int rank;
     hsize_t dims[H5S_MAX_RANK];
-    size_t bytes; /* of a value */
+    size_t bytes; /* per value in memory */
     char *block;
 } side;
 
@@ -71,7 +77,7 @@ static void show(const side *s, const char *value, char *text, size_t size)
     } else if (H5Tget_class(s->type) == H5T_ENUM && H5Tenum_nameof(s->type, value, text, size) >= 0) {
         return;
     } else if (H5Tget_class(s->type) == H5T_INTEGER && s->bytes <= sizeof n) {
-        memcpy(&n, value, s->bytes); /* little-endian, sign below */
+        memcpy(&n, value, s->bytes); /* fills the low bytes on a little-endian machine; the sign is extended below */
         int shift = 8 * (int)(sizeof n - s->bytes);
         if (H5Tget_sign(s->type) == H5T_SGN_2)
             snprintf(text, size, "%lld", (long long)((unsigned long long)n << shift) >> shift);
@@ -113,7 +119,8 @@ static void open_side(hf_hdf5 *io, const char *name, side *s)
     hf_hdf5_close(io, stored);
 }
 
-/* Read n_row rows of the first dimension, from `row` on, into the block. Returns the space of memory, or -1. */
+/* Reads rows row to row + n_row - 1 of the first dimension into s->block. Returns the data space of the block, which
+ * the caller closes, or -1 if there is none. */
 static hid_t read_rows(hf_hdf5 *io, const char *name, side *s, hsize_t row, hsize_t n_row)
 {
     hsize_t start[H5S_MAX_RANK] = {row}, count[H5S_MAX_RANK];
@@ -147,7 +154,8 @@ static void tell_value(comparing *q, const char *name, const side *a, const side
     q->tell(q->context, name, how);
 }
 
-/* True when a difference was told. */
+/* Compares the values of two data sets with the same type and dimensions. Returns true if it has reported a
+ * difference. */
 static bool compare_values(comparing *q, const char *name, side *a, side *b)
 {
     hsize_t per_row = 1, rows = a->rank ? a->dims[0] : 1;
@@ -220,7 +228,8 @@ static void tell_absent(comparing *q, const char *path, const hf_hdf5 *io)
     q->c->n_different++;
 }
 
-/* What results have for ParaView follows from their other groups, and older versions did not write it. */
+/* Returns true for the data sets of /VTKHDF of two results. They follow from the other groups, and earlier versions did
+ * not write them. */
 static bool is_second(const comparing *q, const char *path)
 {
     return q->are_results && !strncmp(path, "/VTKHDF/", 8);
@@ -236,7 +245,7 @@ static void visit_a(void *context, const char *path, hid_t object, H5I_type_t ty
         q->c->n_different += compare_data_set(q, path);
     else if (q->b.status == HF_OK)
         tell_absent(q, path, &q->b);
-    if (q->a.status == HF_OK) q->a.status = q->b.status; /* ends the walk */
+    if (q->a.status == HF_OK) q->a.status = q->b.status; /* a failure in file b ends the walk through file a */
 }
 
 static void visit_b(void *context, const char *path, hid_t object, H5I_type_t type)

@@ -1,20 +1,28 @@
-/* compare - two result files, data set by data set. Attributes are not compared: they hold times, machine and
- * provenance, which differ between two runs of the same case, and a summary of what is in the data sets. Nor is /VTKHDF
- * of two results, which follows from the rest of each. */
+/* compare - compares two HDF5 files, data set by data set.
+ *
+ * Attributes are not compared. They hold times, the machine and the provenance, which differ between two runs of the
+ * same case, and a summary of the data sets. If both files are results, the group /VTKHDF is not compared either,
+ * because it follows from the other groups. */
 #ifndef HIFDM_COMPARE_H
 #define HIFDM_COMPARE_H
 
 #include <hifdm/status.h>
 
 typedef struct {
-    double rtol, atol; /* numbers a, b are equal when |a - b| <= atol + rtol |b|; both 0: to the last bit, NaN = NaN */
+    /* Two real numbers a and b are equal if |a - b| <= atol + rtol |b|. If both tolerances are 0, they are equal if all
+     * their bits are equal or if both are NaN. Values of all other types must be equal exactly. */
+    double rtol, atol;
+    /* Numbers of data sets: all of them, and those that differ or that only one file has. */
     int n_data_set, n_different;
 } hf_comparison;
 
-/* Called for each data set that differs, with its path and a text: the first difference, or that it is missing. */
+/* Receives one data set that differs: its path, and a text with the first difference or with the reason why the values
+ * cannot be compared. */
 typedef void hf_compare_tell(void *context, const char *path, const char *how);
 
-/* HF_OK: all are equal within the tolerances; HF_DIFFERENT; HF_IO when a file cannot be read; HF_NO_MEMORY. */
+/* Compares the files a and b, and calls `tell` for each data set that differs. The caller sets the tolerances of
+ * *comparison; the function sets its counts. Returns HF_OK if all data sets are equal within the tolerances, and
+ * HF_DIFFERENT if not. HF_IO: a file cannot be read. HF_NO_MEMORY. */
 hf_status hf_compare_files(const char *a, const char *b, hf_comparison *comparison, hf_compare_tell *tell,
                            void *context, hf_messages *messages);
 

@@ -1,4 +1,5 @@
-/* Contents: failures - types - files, groups - writing data sets - reading data sets - attributes - tables */
+/* Implements the calls of hdf5.h that make, write and read files, groups, data sets and attributes. Sections: failures,
+ * types, files and groups, writing data sets, reading data sets, attributes. */
 #include "store/hdf5.h"
 
 #include <assert.h>
@@ -8,16 +9,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define OPEN_BYTES (8 << 20) /* HDF5 1.10.8 takes less than 3 MB to open a file */
+#define OPEN_BYTES (8 << 20) /* HDF5 1.10.8 needs less than 3 MB to open a file */
 
 /* ---- failures ---- */
 
 typedef struct {
-    char words[256]; /* "": HDF5 gives none */
+    char words[256]; /* "": HDF5 gives no reason */
     bool is_of_system, is_no_memory;
 } hdf5_reason;
 
-/* Keeps the first, innermost entry of HDF5's error stack; of an entry about a system call only the system's words. */
+/* Keeps the first, innermost entry of HDF5's error stack. If the entry is about a system call, keeps only the words of
+ * the system. */
 static herr_t keep_reason(unsigned n, const H5E_error2_t *entry, void *context)
 {
     static const char key[] = "error message = '";
@@ -34,7 +36,7 @@ static herr_t keep_reason(unsigned n, const H5E_error2_t *entry, void *context)
     return 1;
 }
 
-/* "/group/name", or "attribute a of /group/name". The name "." is the place itself. */
+/* Writes "/group/name", or "attribute a of /group/name", into text[size]. The name "." means the place itself. */
 static void full_name(hid_t place, const char *name, const char *attribute, char *text, size_t size)
 {
     char group[256] = "";
@@ -50,7 +52,7 @@ static void fail_at(hf_hdf5 *io, const char *verb, hid_t place, const char *name
     char where[800];
     hdf5_reason reason = {.words = ""};
     if (io->status != HF_OK) return;
-    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_reason, &reason); /* before the next call empties it */
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_reason, &reason); /* before the next HDF5 call clears the error stack */
     full_name(place, name, attribute, where, sizeof where);
     io->is_damaged = *reason.words && !reason.is_of_system && !reason.is_no_memory;
     io->status = hf_error(io->messages, reason.is_no_memory ? HF_NO_MEMORY : HF_IO, "%s: cannot %s%s%s: %s", io->path,
@@ -100,10 +102,10 @@ void hf_hdf5_damaged(hf_hdf5 *io, hid_t place, const char *name, const char *wha
 const hf_hdf5_kind hf_hdf5_number[4] = {
     {.class = HF_HDF5_REAL}, {.class = HF_HDF5_INT}, {.class = HF_HDF5_LONG}, {.class = HF_HDF5_UINT64}};
 const hf_hdf5_kind hf_hdf5_text = {.class = HF_HDF5_TEXT}, hf_hdf5_chars = {.class = HF_HDF5_CHARS};
-static const char *const flag_word[2] = {"FALSE", "TRUE"}; /* h5py's bool */
+static const char *const flag_word[2] = {"FALSE", "TRUE"}; /* names that h5py reads as bool */
 const hf_hdf5_kind hf_hdf5_flag = {HF_HDF5_ENUM, 2, flag_word, NULL};
 
-/* The value of the i-th word of an enumeration. */
+/* Returns the value of word i of an enumeration. */
 static signed char value_at(const hf_hdf5_kind *kind, int i)
 {
     return kind->value ? kind->value[i] : (signed char)i;
@@ -145,7 +147,7 @@ static hid_t make_enum(const hf_hdf5_kind *kind)
     return type;
 }
 
-/* length: bytes of each string, or H5T_VARIABLE */
+/* Makes a type of strings. length: bytes of each string, or H5T_VARIABLE. */
 static hid_t make_string(size_t length)
 {
     hid_t type = H5Tcopy(H5T_C_S1);
@@ -157,7 +159,8 @@ static hid_t make_string(size_t length)
     return type;
 }
 
-/* The caller closes it. Negative after a failure of HDF5. length: of HF_KIND_CHARS. */
+/* Makes the HDF5 type of a kind, which the caller closes; negative after a failure of HDF5. length: bytes of each
+ * string of HF_KIND_CHARS. */
 static hid_t make_type(const hf_hdf5_kind *kind, hsize_t length)
 {
     switch (kind->class) {
@@ -183,7 +186,7 @@ hid_t hf_hdf5_array_type(const hf_hdf5_array *a)
     return make_type(a->kind, a->kind == HF_KIND_CHARS ? a->dims[a->rank] : 0);
 }
 
-/* May values of this stored type be read as `kind`? Words are matched by HDF5 itself. */
+/* Returns true if values of this stored type can be read as `kind`. HDF5 itself matches the words of enumerations. */
 static bool is_of_kind(hid_t stored, const hf_hdf5_kind *kind)
 {
     H5T_class_t class = H5Tget_class(stored);
@@ -231,7 +234,7 @@ void hf_hdf5_close(hf_hdf5 *io, hid_t id)
     if (id >= 0 && close_any(id) < 0) hf_hdf5_fail(io, "close", -1, NULL);
 }
 
-/* Properties of a new object without the time of its making: the same results are the same bytes. */
+/* Makes properties of a new object. They leave out the creation time, so that equal results have equal bytes. */
 static hid_t make_properties(hid_t class)
 {
     hid_t properties = H5Pcreate(class);
@@ -242,8 +245,9 @@ static hid_t make_properties(hid_t class)
     return properties;
 }
 
-/* The format of HDF5 1.8: its object headers have checksums, and everything in use today reads it. Temporary files have
- * a lock already (file_out), which that of HDF5 would meet on file systems that do not keep the two kinds apart. */
+/* Makes the access properties of a file: the format of HDF5 1.8, whose object headers have checksums and which all
+ * current programs read. Temporary files have a lock already (file_out). The lock of HDF5 would conflict with it on
+ * file systems that do not distinguish the two kinds of locks. */
 static hid_t make_access(bool locks)
 {
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
@@ -258,8 +262,8 @@ static hid_t make_access(bool locks)
     return access;
 }
 
-/* HDF5 1.10 crashes when it gets no memory for the caches of a file that it opens. Other threads may take what is found
- * here, so that there is more of it than HDF5 needs. */
+/* Returns true if there is memory to open a file. HDF5 1.10 crashes if it gets no memory for the caches of the file.
+ * OPEN_BYTES is more than HDF5 needs, because other threads may take memory between this test and the call. */
 static bool has_memory(hf_hdf5 *io)
 {
     void *room = malloc(OPEN_BYTES);
@@ -308,7 +312,8 @@ void hf_hdf5_open_to_write(hf_hdf5 *io, const hf_file_out *file)
 void hf_hdf5_close_file(hf_hdf5 *io)
 {
     if (io->file >= 0) {
-        /* An object is open still, or HDF5 takes the file for an earlier one of this inode that it could not close. */
+        /* Either an object is still open, or HDF5 takes the file for an earlier file of this inode that it could not
+         * close. */
         if (io->status == HF_OK && H5Fget_obj_count(io->file, H5F_OBJ_ALL | H5F_OBJ_LOCAL) != 1)
             hf_hdf5_fail(io, "close", -1, NULL);
         hf_hdf5_close(io, io->file);
@@ -336,7 +341,8 @@ hid_t hf_hdf5_open_group(hf_hdf5 *io, const char *path)
 
 /* ---- making and writing data sets ---- */
 
-/* HDF5 wants every chunk within the largest dimensions, and none of nothing: a fixed dimension of 0 may become 1. */
+/* Makes the data space of a new data set. HDF5 requires that each chunk fits within the maximum dimensions and that no
+ * chunk is empty. A fixed dimension of 0 therefore gets the maximum 1. */
 static hid_t make_space(const hf_hdf5_array *a, bool grows)
 {
     hsize_t dims[3], max[3];
@@ -353,7 +359,7 @@ hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const
     if (io->status != HF_OK) return -1;
     if ((type = hf_hdf5_array_type(a)) < 0 || (space = make_space(a, chunk != NULL)) < 0 ||
         (properties = make_properties(H5P_DATASET_CREATE)) < 0 ||
-        (chunk && (H5Pset_chunk(properties, a->rank, chunk) < 0 || /* what is in it is written before it can be read */
+        (chunk && (H5Pset_chunk(properties, a->rank, chunk) < 0 || /* chunks are written before they are read */
                    H5Pset_fill_time(properties, H5D_FILL_TIME_NEVER) < 0)) ||
         (data_set = H5Dcreate2(group, a->name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT)) < 0)
         hf_hdf5_fail(io, "write", group, a->name);
@@ -455,7 +461,7 @@ size_t hf_hdf5_chars_length(hf_hdf5 *io, hid_t group, const char *name)
 
 /* ---- attributes ---- */
 
-/* Takes ownership of the type, which is negative when it could not be made. */
+/* Writes an attribute. Takes ownership of the type, which is negative if it could not be made. */
 static void put_typed(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, hid_t type, hsize_t n,
                       const void *values)
 {
@@ -484,11 +490,11 @@ void hf_hdf5_put_text(hf_hdf5 *io, hid_t place, const char *name, const char *at
 
 void hf_hdf5_put_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text)
 {
-    size_t length = strlen(text) ? strlen(text) : 1; /* HDF5 has no type of no bytes; the NUL serves as padding */
+    size_t length = strlen(text) ? strlen(text) : 1; /* HDF5 has no type of 0 bytes; the NUL serves as padding */
     if (io->status == HF_OK) put_typed(io, place, name, attribute, make_string(length), 0, text);
 }
 
-/* False also when the object itself is not there, and after a failure. */
+/* Returns false also if the object itself is missing, and after a failure. */
 static bool has_attribute(hf_hdf5 *io, hid_t place, const char *name, const char *attribute)
 {
     if (!hf_hdf5_has(io, place, name)) return false;

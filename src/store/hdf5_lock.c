@@ -1,15 +1,15 @@
-/* One thread at a time in HDF5. */
+/* The lock that lets one thread at a time use HDF5. */
 #include "store/hdf5.h"
 
 #include <pthread.h>
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
-static bool is_quiet; /* under the lock */
+static bool is_quiet; /* read and set under the lock */
 
 static void silence(void)
 {
-    if (is_quiet) H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 has an error stack per thread */
+    if (is_quiet) H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 has one error stack per thread */
 }
 
 void hf_hdf5_lock(void)

@@ -1,4 +1,4 @@
-/* Members of a struct <-> attributes. */
+/* Writes members of a struct as attributes, and reads them back. */
 #include "store/hdf5.h"
 
 #include <assert.h>
@@ -43,7 +43,7 @@ void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const 
     }
 }
 
-/* Is the file of another version, which had no such figure yet? */
+/* Returns true if the file is of another version that did not have this attribute yet. */
 static bool is_newer_than_file(hf_hdf5 *io, const hf_hdf5_member *m)
 {
     return *io->made_by && hf_hdf5_has(io, io->file, m->object) &&

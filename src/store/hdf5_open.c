@@ -1,5 +1,12 @@
-/* The door to what a file holds: files, links and objects are looked at before HDF5 opens, follows or reads them.
- * Contents: the file - links - data sets - crashes - objects */
+/* Checks files, links and objects before HDF5 opens, follows or reads them:
+ *
+ *     file        an ordinary file with HDF5 content
+ *     each link   a hard link
+ *     object      of the expected type
+ *     data set    all values in this file, as many as the dimensions say
+ *
+ * Damaged files can crash HDF5 or make it run forever; hf_hdf5_try reads a file in a child process first.
+ * Sections: the file, links, data sets, crashes, objects. */
 #include "store/hdf5.h"
 
 #include "base/file_io.h"
@@ -32,8 +39,9 @@ bool hf_hdf5_look_at_file(hf_hdf5 *io, const char *name)
 
 /* ---- links ---- */
 
-/* A link of another kind than a hard one may lead into another file, to a pipe that nobody writes into, or round in a
- * circle. Only merges have such links, to the results of their points, which store_series reads and never follows. */
+/* Returns true for a hard link; records damage for another link. A soft or external link may lead into another file, to
+ * a pipe into which no process writes, or round in a circle. Only merges have such links, to the results of their
+ * points. store_series reads these links and never follows them. */
 static bool is_hard(hf_hdf5 *io, hid_t place, const char *name)
 {
     H5L_info_t info;
@@ -44,7 +52,7 @@ static bool is_hard(hf_hdf5 *io, hid_t place, const char *name)
     return io->status == HF_OK;
 }
 
-/* False for a data set: what a path names below one is not there. */
+/* Returns true for a group. Below a data set there are no objects, so a path through one does not exist. */
 static bool is_group(hf_hdf5 *io, hid_t place, const char *name)
 {
     hid_t object = H5Oopen(place, name, H5P_DEFAULT);
@@ -74,9 +82,9 @@ bool hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name)
 
 /* ---- data sets ---- */
 
-#define DEFLATE_MAX 1100 /* zlib packs at most 1032 bytes into one; the other filters of HDF5 pack less */
+#define DEFLATE_MAX 1100 /* zlib packs at most 1032 bytes into one byte; the other filters of HDF5 pack less */
 
-/* Bytes of all values; SIZE_MAX for more than that. */
+/* Returns the bytes of all values, SIZE_MAX if they exceed it. */
 static size_t size_of_values(hid_t space, hid_t type)
 {
     hsize_t dims[H5S_MAX_RANK];
@@ -90,8 +98,8 @@ static size_t size_of_values(hid_t space, hid_t type)
     return bytes;
 }
 
-/* The values must be in this file, and as many of them as the dimensions say: HDF5 fills in what was never written, for
- * days if the dimensions are large. */
+/* Checks that the values are in this file, and that there are as many as the dimensions say. HDF5 would fill in values
+ * that were never written, for days if the dimensions are large. */
 static void check_storage(hf_hdf5 *io, hid_t place, const char *name, hid_t data_set)
 {
     hid_t space = H5Dget_space(data_set), type = H5Dget_type(data_set), how = H5Dget_create_plist(data_set);
@@ -131,7 +139,7 @@ hf_status hf_hdf5_try(hf_child_work *work, const char *path, char *how, size_t s
 {
     hf_child_end end = {.is_known = false};
     if (!hf_child_ask(work, path, &end)) {
-        hf_hdf5_lock(); /* no other thread is within HDF5 */
+        hf_hdf5_lock(); /* ensures that no other thread is within HDF5 */
         pid_t child = hf_child_fork();
         hf_hdf5_unlock(HF_OK);
         if (child == 0) {

@@ -1,4 +1,4 @@
-/* Data sets that grow row by row, texts that are read back, and names. */
+/* Data sets that grow row by row, strings that are read back, and ids. */
 #include "store/hdf5.h"
 
 #include "base/arena.h"
@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The rows [row, row + dims[0]) of an open data set, as spaces of the file and of memory. 0, or -1. */
+/* Selects rows row to row + dims[0] - 1 of an open data set: *space is their data space in the file, *memory that of
+ * the values. Returns 0, or -1 after a failure. The caller closes both. */
 static int select_rows(const hf_hdf5_array *a, hsize_t row, hid_t data_set, hid_t *space, hid_t *memory)
 {
     hsize_t start[3] = {row, 0, 0};
@@ -16,7 +17,8 @@ static int select_rows(const hf_hdf5_array *a, hsize_t row, hid_t data_set, hid_
     return H5Sselect_hyperslab(*space, H5S_SELECT_SET, start, NULL, a->dims, NULL) < 0 ? -1 : 0;
 }
 
-/* Rows come many at a time: HDF5's cache of chunks would only copy them once more. */
+/* Opens a data set without HDF5's cache of chunks. Many rows come at a time, so the cache would only copy them once
+ * more. */
 static hid_t open_uncached(hid_t group, const char *name)
 {
     hid_t access = H5Pcreate(H5P_DATASET_ACCESS), data_set = -1;
@@ -85,7 +87,7 @@ void hf_hdf5_write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *c
     free(chars);
 }
 
-/* The n strings of a data set as they are stored, side by side; the caller frees the arena. */
+/* Reads the n strings of a data set side by side, as they are stored: chars[n][*length]. The caller frees the arena. */
 static char *read_chars(hf_hdf5 *io, hid_t group, const char *name, int n, size_t *length, hf_arena *arena)
 {
     *length = hf_hdf5_chars_length(io, group, name);
@@ -100,7 +102,7 @@ static char *read_chars(hf_hdf5 *io, hid_t group, const char *name, int n, size_
     return chars;
 }
 
-/* Lay the strings out one after the other from `text` on, each with its NUL, and set the ids. */
+/* Copies the n strings one after the other to `text`, each with a NUL, and points id[n] at them. */
 static void place_ids(const char *chars, size_t length, int n, const char **id, char *text)
 {
     for (int i = 0; i < n; i++) {

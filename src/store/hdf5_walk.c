@@ -1,11 +1,11 @@
-/* Every object of a file in turn. HDF5's own H5Lvisit crashes on damaged files and has no bound. */
+/* Visits every object of a file in turn. H5Lvisit of HDF5 itself crashes on damaged files and has no limit. */
 #include "store/hdf5.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* A result has 5 levels and some 200 objects, a merge as many as the figures of a run and the axes of its study. The
- * bounds end the walk through a group that holds itself. */
+/* Limits of a walk. A result has 5 levels and about 200 objects. A merge has as many objects as a run has figures and
+ * its study has axes. The limits end the walk through a group that contains itself. */
 #define DEPTH_MAX 12
 #define OBJECTS_MAX 20000
 
@@ -14,7 +14,7 @@ typedef struct {
     hf_hdf5_visit *visit;
     void *context;
     int depth, n_object;
-    char path[1024]; /* of the group at hand, with a slash at its end */
+    char path[1024]; /* of the current group, ending with a slash */
 } walk;
 
 static void walk_group(walk *w, hid_t group);
@@ -61,8 +61,9 @@ static herr_t pass_link(hid_t group, const char *name, const H5L_info_t *info, v
     return 0;
 }
 
-/* The first pass, in the order in which the links are stored, fails where the second one would crash: HDF5 sorts links
- * in a table, and frees what it has not filled when one of them cannot be read. */
+/* Walks the objects of a group. The first pass visits the links in the order in which they are stored, and fails where
+ * the second pass would crash. For the second pass HDF5 sorts the links in a table, and it frees entries that it has
+ * not filled if one link cannot be read. */
 static void walk_group(walk *w, hid_t group)
 {
     if (H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, pass_link, NULL) < 0 ||

@@ -1,14 +1,17 @@
-/* journal - the file `<result>.journal` with the generations that a result file does not hold yet: a killed process
- * loses none.
+/* journal - the file `<result>.journal` with the generations that the result file does not hold yet. A killed process
+ * therefore loses none of them.
  *
- * File: 8 bytes "hifdm-j2", 64 of the run's identity, then records: magic, length and CRC-32 of what follows,
- * generation, payload. A record is one writev(2), so that a process killed at any instant leaves whole records and at
- * most one incomplete record at the end, which the next run cuts off. The file is synced every HF_JOURNAL_SYNC_S, so
- * that a power cut loses no more than that.
+ *     8 bytes     "hifdm-j2"
+ *     64 bytes    identity of the run
+ *     records     magic, length and CRC-32 of the rest, generation, payload
  *
- * The journal is also the lock of the result: flock(2) on it is held from before the result is looked at until after
- * it is finished. The name moves to another file only by rename(2). A process that gets the lock of a file which no
- * longer has the name opens the name again. */
+ * Each record is written by one writev(2). A process that is killed at any instant leaves whole records and at most one
+ * incomplete record at the end. The next run cuts that record off. The file is synced every HF_JOURNAL_SYNC_S, so a
+ * power cut loses the records of that time at most.
+ *
+ * The journal is also the lock of the result. The lock is flock(2) on the journal, held from before the process looks
+ * at the result until the result is finished. The name of the journal moves to another file only by rename(2). If a
+ * process gets the lock of a file that no longer has the name, it opens the name again. */
 #ifndef HIFDM_JOURNAL_H
 #define HIFDM_JOURNAL_H
 
@@ -17,64 +20,67 @@
 #include <stdint.h>
 #include <sys/uio.h>
 
-#define HF_JOURNAL_SYNC_S 5.0 /* from 0.5 to 50 no test of the store, of resuming or of interrupting changes */
-#define HF_JOURNAL_PIECES 32  /* most pieces of a payload */
+#define HF_JOURNAL_SYNC_S 5.0 /* s; from 0.5 to 50 no test of the store, of resuming or of interrupting changes */
+#define HF_JOURNAL_PIECES 32  /* maximum number of pieces of a payload */
 #define HF_JOURNAL_IDENTITY 64
 
 typedef struct {
-    int file;           /* -1: closed */
-    bool is_new;        /* made or emptied by this process */
-    bool was_there;     /* another process has left it, and may have left temporary files */
-    const char *result; /* as messages call the result; borrowed */
+    int file;           /* descriptor; -1: closed */
+    bool is_new;        /* this process has made or emptied it */
+    bool was_there;     /* another process has left it, perhaps with temporary files */
+    const char *result; /* name of the result in messages; borrowed */
     char *path;         /* owned */
-    int64_t size;       /* up to the end of the last whole record */
+    int64_t size;       /* bytes up to the end of the last whole record */
     double synced_s;    /* time of the last sync, or of the first hf_journal_tend */
-    bool has_news;      /* something was appended since that sync */
+    bool has_news;      /* something was appended after that sync */
     char identity[HF_JOURNAL_IDENTITY + 1];
 } hf_journal;
 
-/* Make or open the journal of `result`, which is no link, and take its lock. HF_IO when it cannot be made or locked;
- * HF_EXISTS when another process holds the lock, or when what has that name is no journal, a link included, unless
- * `replaces`: then it is removed, with a warning. On a file system without locks there is a warning instead.
- * HF_NO_MEMORY. Close in any case. */
+/* Makes or opens the journal of `result`, which must not be a link, and takes its lock. If the name of the journal
+ * belongs to something else, a link included, `replaces` decides: true: it is removed, with a warning; false:
+ * HF_EXISTS. Returns HF_EXISTS also if another process holds the lock; HF_IO if the journal cannot be made or locked;
+ * HF_NO_MEMORY. On a file system without locks it only warns. The caller calls hf_journal_close in any case. */
 hf_status hf_journal_open(const char *result, bool replaces, hf_journal *journal, hf_messages *messages);
 
-/* Is there a journal of `result`, or of the file that it leads to, with a header? Takes no lock. */
+/* Returns true if `result`, or the file that it leads to, has a journal with a header. Takes no lock. */
 bool hf_journal_is_there(const char *result);
 
-/* Whose records are in the journal of `result`, where there are any: identity, or "" . Takes no lock. */
+/* Sets `identity` to that of the journal of `result` if the journal has records, else to "". Takes no lock. */
 void hf_journal_peek(const char *result, char identity[HF_JOURNAL_IDENTITY + 1]);
 
-/* Is there a journal of the run of this identity, with records or without? Takes no lock. */
+/* Returns true if `result` has a journal of the run with this identity, with or without records. Takes no lock. */
 bool hf_journal_is_of(const char *result, const char *identity);
 
-/* Empty the journal; from now on it is that of the run of this identity. HF_OK or HF_IO. */
+/* Empties the journal and gives it the identity of a run. Returns HF_OK or HF_IO. */
 hf_status hf_journal_restart(hf_journal *journal, const char *identity, hf_messages *messages);
 
-/* Give each whole record to `take`, oldest first, until it returns something other than HF_OK. An incomplete record at
- * the end is cut off. HF_DIFFERENT from `take` is no failure: that record and all after it are cut off. Other damage is
- * cut off with a warning. A journal of another identity, or without one, is restarted when it has no record; else
- * HF_EXISTS. HF_OK, HF_IO, HF_NO_MEMORY, or what `take` returned. */
+/* Passes each whole record to `take`, oldest first, until it returns another status than HF_OK. An incomplete record at
+ * the end is cut off. If `take` returns HF_DIFFERENT, that record and all after it are cut off, and this is no failure.
+ * Other damage is cut off with a warning. A journal of another identity is restarted if it has no records; otherwise
+ * the status is HF_EXISTS. Returns HF_OK, HF_EXISTS, HF_IO, HF_NO_MEMORY, or what `take` returned. */
 typedef hf_status hf_journal_take(void *context, int generation, const void *payload, size_t bytes);
 hf_status hf_journal_replay(hf_journal *journal, const char *identity, hf_journal_take *take, void *context,
                             hf_messages *messages);
 
-/* Append a generation: piece[n], n <= HF_JOURNAL_PIECES. HF_OK: it survives the end of this process. HF_IO: none
- * of it is in the file, all generations before it are. */
+/* Appends a generation in n <= HF_JOURNAL_PIECES pieces. HF_OK: it survives the end of this process. HF_IO: none of it
+ * is in the file, but all generations before it are. */
 hf_status hf_journal_append(hf_journal *journal, int generation, const struct iovec *piece, int n,
                             hf_messages *messages);
 
-/* Call it regularly: it syncs the file when HF_JOURNAL_SYNC_S have passed, and checks that it still has its name. */
+/* Syncs the file if HF_JOURNAL_SYNC_S have passed since the last sync, and checks that the file still has its name. The
+ * caller must call it regularly. now_s: present time, as hf_clock_s gives it. Returns HF_OK or HF_IO. */
 hf_status hf_journal_tend(hf_journal *journal, double now_s, hf_messages *messages);
 
-/* Replace the journal by a new, empty one. Call it when the result file holds all records. */
+/* Replaces the journal by a new, empty one. The caller calls it when the result file holds all records. Returns HF_OK
+ * or HF_IO. */
 hf_status hf_journal_rotate(hf_journal *journal, hf_messages *messages);
 
-/* Does it hold no record? hf_journal_forget makes it count as empty. */
+/* hf_journal_is_empty returns true if the journal has no records. After hf_journal_forget the journal counts as
+ * empty. */
 bool hf_journal_is_empty(const hf_journal *journal);
 void hf_journal_forget(hf_journal *journal);
 
-/* Release the lock; with `remove` delete the file, too. */
+/* Releases the lock and closes the file; with `remove` it deletes the file, too. */
 void hf_journal_close(hf_journal *journal, bool remove);
 
 #endif

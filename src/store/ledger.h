@@ -1,13 +1,13 @@
-/* ledger - the state of the points of a study, in a folder into which any number of processes, on any number of
- * machines that share it, write at the same time.
+/* ledger - the state of the points of a study, in a folder. Any number of processes, on any number of machines that
+ * share the folder, write into it at the same time.
  *
- *   points-HOST-PID.tsv   a line per finished point, by the process that finished it: id, fingerprint of the base
- *                         case, status, reason, every number of hf_summary, the goals and the errors of the surface
- *                         of each stage, the states. One write(2) each; an incomplete line is ignored.
- *   claims                no content: the process that runs a point holds a record lock on the byte at the offset that
- *                         the point's id gives as a number; the system releases it when the process ends.
- *   ID-FINGERPRINT.h5     result files of points that have one; of the fingerprint the first digits: runs of different
- *                         base cases never share a file. */
+ *   points-HOST-PID.tsv   one line per finished point, written by the process that finished it: id, fingerprint of the
+ *                         base case, status, reason, every number of hf_summary, the objectives and the surface errors
+ *                         of each stage, the load cases. Each line is one write(2); an incomplete line is ignored.
+ *   claims                an empty file. The process that runs a point holds a record lock on one byte of it. The
+ *                         offset of the byte is the id of the point as a number. The lock ends with the process.
+ *   ID-FINGERPRINT.h5     the result file of a point, if it has one. FINGERPRINT are the first 8 digits of that of the
+ *                         base case, so that runs of different base cases never share a file. */
 #ifndef HIFDM_LEDGER_H
 #define HIFDM_LEDGER_H
 
@@ -20,69 +20,79 @@
 
 /* ---- The numbers of a point ---- */
 
+/* hf_ledger_n_column returns the number of columns. hf_ledger_column returns column i, a member of hf_summary but never
+ * one of HF_KIND_CHARS, or NULL after the last one. */
 int hf_ledger_n_column(void);
-const hf_hdf5_member *hf_ledger_column(int i); /* a member of hf_summary, never of HF_KIND_CHARS */
+const hf_hdf5_member *hf_ledger_column(int i);
 
-/* Does the column depend on the machine and its load? Times and the number of threads do. */
+/* Returns true if the column depends on the machine and its load. These are the times and the number of threads. */
 bool hf_ledger_is_circumstance(const hf_hdf5_member *column);
 
-/* ---- The fields of a row: these numbers, then lists "name=value name=value" as texts (ledger_fields.c) ---- */
+/* ---- The fields of a row: the numbers, then lists as texts (ledger_fields.c) ---- */
 
-/* The goals of each stage, then the errors of its surface, of facets where there are some, else of nodes, then the
- * figures of the states of the net as built, whose names are STATE.NAME here and STATE/NAME in a merge. */
+/* The lists of a row, each a text "name=value name=value": the objectives of each stage, the surface errors of each
+ * stage, and the figures of the load cases. The surface errors are those of the facets if there are any, else those of
+ * the nodes. The names of the last list are CASE.FIGURE here and CASE/FIGURE in a merge. */
 enum { HF_LEDGER_LIST_CASES = 2 * HF_LAYOUT_N_GOALS_STAGE, HF_LEDGER_N_LIST };
 #define HF_LEDGER_CASES "/cases"
 typedef struct {
-    const char *field;          /* what a row calls it, behind group and prefix */
-    const char *group, *prefix; /* where a merge has its values, below /points: the group, what data sets begin with */
-    const char *begin;          /* what the names of its values begin with */
+    const char *field;          /* name of the list in a header, after group and prefix */
+    const char *group, *prefix; /* in a merge: group of its values below /points, and prefix of their data sets */
+    const char *begin;          /* prefix of the names of its values */
 } hf_ledger_list;
 extern const hf_ledger_list hf_ledger_list_of[HF_LEDGER_N_LIST];
 
-int hf_ledger_n_field(void); /* HF_LEDGER_N_LIST more than columns */
+/* hf_ledger_n_field returns the number of fields, HF_LEDGER_N_LIST more than columns. hf_ledger_field_name writes the
+ * name of field i into text[size]. hf_ledger_print_field writes its value, and nothing if the field does not apply.
+ * Both return the number of bytes, like snprintf. */
+int hf_ledger_n_field(void);
 int hf_ledger_field_name(int i, char *text, size_t size);
-int hf_ledger_print_field(int i, const hf_summary *summary, char *text, size_t size); /* nothing: not applicable */
+int hf_ledger_print_field(int i, const hf_summary *summary, char *text, size_t size);
 
-/* Take the next value from the text of a list, which moves behind it; false at the end, or where it is damaged. */
+/* Takes the next value from the text of a list and moves *text behind it. Returns false at the end of the list, or if
+ * the list is damaged. */
 bool hf_ledger_next_value(int list, const char **text, char name[HF_GOAL_NAME_SIZE], double *value);
-const char *hf_ledger_goal(const char *name);      /* "tension_edge" of goal_1_tension_edge */
-const char *hf_ledger_goal_unit(const char *name); /* of goal_1_tension_edge: N */
-const char *hf_ledger_unit(const char *name);      /* the same, and of names that end in their unit */
+const char *hf_ledger_goal(const char *name);      /* returns "tension_edge" for goal_1_tension_edge */
+const char *hf_ledger_goal_unit(const char *name); /* returns the unit of such a name, here "N" */
+const char *hf_ledger_unit(const char *name);      /* returns the unit of any name in a list */
 
 /* ---- Writing ---- */
 
 typedef struct {
     char folder[HF_PATH_SIZE];
-    int rows, claims; /* file descriptors, -1 */
-    int64_t size;     /* of the whole lines that this process has written into `rows` */
+    int rows, claims; /* file descriptors, or -1 */
+    int64_t size;     /* bytes of the whole lines in `rows` */
     double synced_s;
     pthread_mutex_t lock;
     struct hf_ledger_news *news; /* NULL before hf_ledger_watch */
 } hf_ledger;
 
-/* Makes the folder when it is not there. HF_OK or HF_IO. Close in any case: HF_IO when rows may not be on the disk. */
+/* Opens the ledger, and makes the folder if it does not exist. Returns HF_OK or HF_IO. The caller calls hf_ledger_close
+ * in any case. hf_ledger_close returns HF_IO if rows may not be on the disk. */
 hf_status hf_ledger_open(const char *folder, hf_ledger *ledger, hf_messages *messages);
 hf_status hf_ledger_close(hf_ledger *ledger, hf_messages *messages);
 
-/* Claim the point for this process. On a file system without locks only shards keep processes apart. */
+/* Claims the point for this process, or releases it. On a file system without locks only shards keep processes
+ * apart. */
 hf_lock hf_ledger_claim(hf_ledger *ledger, const char *id);
 void hf_ledger_release(hf_ledger *ledger, const char *id);
 
-/* Begin to watch which points any process finishes. Call it before hf_ledger_read. HF_OK or HF_NO_MEMORY. */
+/* Begins to watch which points any process finishes. The caller calls it before hf_ledger_read. Returns HF_OK or
+ * HF_NO_MEMORY. */
 hf_status hf_ledger_watch(hf_ledger *ledger, const hf_study *study, hf_messages *messages);
 
-/* Has the point been finished since hf_ledger_watch, with success or not? Call it after claiming the point. From any
- * thread. */
+/* Returns true if the point was finished after hf_ledger_watch, successfully or not. The caller has claimed the point
+ * before. Any thread may call it. */
 bool hf_ledger_is_finished(hf_ledger *ledger, const hf_study *study, int point);
 
-/* A finished point, from any thread. reason: one line, "" after success; what is longer than HF_LEDGER_REASON_MAX bytes
- * is cut. HF_OK or HF_IO. */
+/* Writes the row of a finished point. Any thread may call it. reason: one line, "" after success, cut off after
+ * HF_LEDGER_REASON_MAX bytes. Returns HF_OK, HF_IO or HF_NO_MEMORY. */
 #define HF_LEDGER_REASON_MAX 4000
 hf_status hf_ledger_write(hf_ledger *ledger, const hf_study *study, int point, hf_status status, const char *reason,
                           const hf_summary *summary, hf_messages *messages);
 
-/* Set the path of the point's result file; returns what is there. HF_LEDGER_UNSEEN and errno: the system cannot tell.
- */
+/* Writes the path of the result file of a point into `path`, and returns what is there. HF_LEDGER_UNSEEN: the system
+ * cannot tell, and errno has the reason. */
 typedef enum { HF_LEDGER_NO_FILE, HF_LEDGER_EMPTY_FILE, HF_LEDGER_FILE, HF_LEDGER_UNSEEN } hf_ledger_content;
 hf_ledger_content hf_ledger_file(const char *folder, const hf_study *study, int point, char path[HF_PATH_SIZE + 32]);
 
@@ -90,10 +100,10 @@ hf_ledger_content hf_ledger_file(const char *folder, const hf_study *study, int 
 
 typedef enum {
     HF_POINT_MISSING,
-    HF_POINT_RUNNING, /* by a living process */
+    HF_POINT_RUNNING, /* a living process runs it */
     HF_POINT_DONE,
     HF_POINT_FAILED,
-    HF_POINT_OUTDATED, /* finished, but of another base case */
+    HF_POINT_OUTDATED, /* finished, but with another base case */
     HF_N_POINT_STATE
 } hf_point_state;
 extern const char *const hf_point_state_word[HF_N_POINT_STATE];
@@ -102,24 +112,26 @@ typedef struct {
     hf_point_state state;
     hf_status status;   /* HF_NOT_EVALUATED unless done or failed */
     const char *reason; /* "" unless failed */
-    char *const *field; /* [hf_ledger_n_field()] as text, "" = not applicable; NULL unless done or failed */
+    /* [hf_ledger_n_field()] The fields as texts, "" = not applicable; NULL unless done or failed. */
+    char *const *field;
 } hf_point;
 
 typedef struct {
     hf_point *point; /* [n_point] in the order of the study */
     int n_point, count[HF_N_POINT_STATE];
-    int n_lost;  /* of the missing ones: finished once, but the result file is gone or begun anew */
+    int n_lost;  /* missing points that were finished once, but whose result file is gone or begun again */
     char **text; /* contents of the files; reasons and fields point into them */
     char ***fields;
     int n_text, n_field_block;
 } hf_points;
 
-/* Read the state of the study's points. Without the folder all are missing. HF_OK; HF_IO, also when a name of ours is
- * that of no ordinary file or of one that is longer than rows can be; HF_NO_MEMORY. Free in any case. */
+/* Reads the state of the points of the study. If the folder does not exist, all points are missing. Returns HF_OK;
+ * HF_IO, also if a file of the ledger is no ordinary file or is longer than its rows can be; HF_NO_MEMORY. The caller
+ * calls hf_points_free in any case. */
 hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *points, hf_messages *messages);
 void hf_points_free(hf_points *points);
 
-/* How many of the missing points have a result file that a sweep began. */
+/* Returns how many of the missing points have a result file that a sweep has begun. */
 int hf_ledger_n_begun(const char *folder, const hf_study *study, const hf_points *points);
 
 #endif

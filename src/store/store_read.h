@@ -1,26 +1,29 @@
-/* store_read - opening a result file, and what the program reads in addition to <hifdm/store.h>. */
+/* store_read - opens a result file, and reads what the program needs in addition to <hifdm/store.h>. */
 #ifndef HIFDM_STORE_READ_H
 #define HIFDM_STORE_READ_H
 
 #include "store/layout.h"
 #include <hifdm/store.h>
 
-/* The provenance of the file, as lines "key: value". Attributes of variable length, from older versions of the program,
- * are left out. */
+/* Writes the provenance of the file into text[size], as lines "key: value". Attributes of variable length, which
+ * earlier versions wrote, are left out. Errors as in <hifdm/store.h>. */
 hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf_messages *messages);
 
-/* The case that the file was made from; false when this version does not know all its keys. path: of the case, beside
- * which the files that it names are looked for. Free it with hf_case_free in any case. */
+/* Reads the case that the file was made from. path: of the case; the files that it names are searched beside it.
+ * Returns false after a failure, or if this version does not know all keys of the case. The caller calls hf_case_free
+ * in any case. */
 bool hf_store_parse_case(hf_hdf5 *io, const char *path, hf_case *settings);
 
-/* The same, with the result's own path; keys that this version does not know are damage. */
+/* Reads the case with the path of the result in place of its own. Keys that this version does not know are damage. */
 void hf_store_read_case(hf_hdf5 *io, hf_case *settings);
 
-/* As hf_store_read_summary. HF_EXISTS, with a hint, if the content of the file is at fault, and not the machine. */
+/* hf_store_read_finished reads a summary like hf_store_read_summary. If the content of the file is at fault, and not
+ * the machine, it returns HF_EXISTS with a hint. hf_store_fail_damaged returns HF_EXISTS with this hint. */
 hf_status hf_store_read_finished(const char *path, hf_summary *summary, hf_messages *messages);
 hf_status hf_store_fail_damaged(const char *path, hf_messages *messages);
 
-/* A file of ours, open for reading; its status says whether. The caller closes it in any case. */
+/* Opens a result file of hifdm to read, under the lock of HDF5. The status of the returned hf_hdf5 says whether it is
+ * open. The caller closes it in any case. */
 hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages);
 
 #endif
