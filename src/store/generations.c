@@ -1,4 +1,4 @@
-/* Contents: memory - waiting - writing - putting back */
+/* Implements generations.h. Sections: memory, waiting rows, writing, restoring. */
 #include "store/generations.h"
 
 #include "base/arena.h"
@@ -9,21 +9,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Memory, chunks and time depend on these, the values stored do not. The tests of the store pass within the ranges
- * given; with a CHUNK_BYTES of 25 MiB or a CHUNK_MAX of 100 MiB one fails (generations_are_appended). */
-#define WAITING_BYTES (512 << 10) /* of waiting rows without designs; a larger generation waits alone; 1 to 50 MiB */
-#define DESIGN_CHUNKS 3           /* chunks of designs that may wait, so that a run seldom waits for HDF5; 1 to 300 */
-#define CHUNK_BYTES (256 << 10)   /* of a data set: rows as far as they fit; 1 to 256 KiB */
-#define CHUNK_MAX (1 << 20)       /* of a row larger than CHUNK_BYTES: what HDF5 caches of a data set; 1 KiB to 1 MiB */
-#define BLOCK 1024                /* generations read at a time for the sums; 1 to 102400 */
+/* Memory, chunks and time depend on the constants below; the stored values do not. The tests of the store pass within
+ * the ranges given. With a CHUNK_BYTES of 25 MiB or a CHUNK_MAX of 100 MiB the test generations_are_appended fails. */
+/* Bytes of waiting rows without designs. A generation that is larger waits alone. Tested from 1 to 50 MiB. */
+#define WAITING_BYTES (512 << 10)
+/* Chunks of designs that may wait, so that a run seldom waits for HDF5. Tested from 1 to 300. */
+#define DESIGN_CHUNKS 3
+/* Bytes of a chunk of a data set, which has as many rows as fit. Tested from 1 to 256 KiB. */
+#define CHUNK_BYTES (256 << 10)
+/* Bytes of a chunk of one row that is larger than CHUNK_BYTES: the size of HDF5's cache of a data set. Tested from 1
+ * KiB to 1 MiB. */
+#define CHUNK_MAX (1 << 20)
+/* Generations that are read at a time for the sums. Tested from 1 to 102400. */
+#define BLOCK 1024
 
-/* Individuals that a row has. */
+/* Returns the number of individuals in one row. */
 static int n_in_row(const hf_generations *g)
 {
     return g->every == HF_GENERATIONS_BEST ? 1 : g->n_individual;
 }
 
-/* Rows of individuals that the first n generations have. */
+/* Returns how many rows of individuals the first n generations have. */
 static int rows_of(const hf_generations *g, int n)
 {
     return g->every > 1 ? (n + g->every - 1) / g->every : n;
@@ -47,13 +53,13 @@ bool hf_generations_are_of(const hf_generations *g, const hf_population *populat
            g->n_objective == population->n_objective && g->limit == population->generation_limit;
 }
 
-/* At least one, and no more than there can be. */
+/* Returns how many units are used if `fit` of them fit: at least 1, at most `limit`. */
 static int how_many(size_t fit, int limit)
 {
     return fit < 1 ? 1 : fit < (size_t)limit ? (int)fit : limit;
 }
 
-/* Bytes of one generation of n individuals in each data set. */
+/* Sets the bytes of one generation of n_individual individuals in each data set. */
 static void measure_rows(const hf_generations *g, int n_individual, size_t bytes[HF_GENERATIONS_PIECES])
 {
     hf_generations_row row[HF_GENERATIONS_PIECES];
@@ -117,12 +123,12 @@ static char *slot(const hf_generations *g, int i)
     return g->row[i] + (size_t)n * g->row_bytes[i];
 }
 
-/* Hash that differs for designs which differ in a bit or in their order: four interleaved chains like FNV-1a, of 8-byte
- * words. */
+/* Returns a hash of the designs that depends on every bit and on their order. Four interleaved chains, similar to
+ * FNV-1a, take words of 8 bytes. */
 static uint64_t hash_designs(const hf_population *population)
 {
     enum { CHAINS = 4 };
-    const uint64_t factor = 0x9e3779b97f4a7c15u; /* odd: multiplication by it is a bijection */
+    const uint64_t factor = 0x9e3779b97f4a7c15u; /* odd, so that multiplication by it is a bijection */
     uint64_t chain[CHAINS] = {1, 2, 3, 4}, bits, all = 0;
     for (size_t i = 0; i < (size_t)population->n_individual * (size_t)population->n_gene; i++) {
         uint64_t *h = &chain[i % CHAINS];
@@ -135,7 +141,8 @@ static uint64_t hash_designs(const hf_population *population)
     return all;
 }
 
-/* A population of the best individual alone; while none is feasible, of the one that violates its limits least. */
+/* Returns a population of the best individual alone. While no individual is feasible, this is the one with the smallest
+ * violation of its limits. */
 static hf_population best_alone(const hf_population *p)
 {
     hf_population one = *p;
@@ -154,7 +161,7 @@ static hf_population best_alone(const hf_population *p)
     return one;
 }
 
-/* Add what the rows of individuals hold of a generation that stands in g->last. */
+/* Adds the rows of individuals that the file keeps of a generation. The whole generation is in g->last already. */
 static void add_part(hf_generations *g, const hf_population *population)
 {
     hf_generations_row row[HF_GENERATIONS_PIECES];
@@ -213,7 +220,7 @@ bool hf_generations_take_payload(const hf_generations *g, const void *payload, c
     return hash == hash_designs(population);
 }
 
-/* Has every value of an enumeration a word? */
+/* Returns true if every value of an enumeration has a word, and for values of other kinds. */
 static bool are_words(const hf_generations_row *row, int n)
 {
     if (row->array.kind->class != HF_HDF5_ENUM) return true;
@@ -227,7 +234,8 @@ static bool are_words(const hf_generations_row *row, int n)
     return true;
 }
 
-/* On another machine the bounds may have other last bits. */
+/* Returns true if the value is within its bounds. The slack allows for other last bits of the bounds on another
+ * machine. */
 static bool is_within(double value, double low, double high)
 {
     double slack = 1e-6 * (fabs(low) + fabs(high));
@@ -256,14 +264,14 @@ bool hf_generations_are_sound(const hf_population *p)
 
 /* ---- writing ---- */
 
-/* Not an objective that the case does not have. */
+/* Returns false for an objective that the case does not have. */
 static bool is_stored(const hf_generations *g, int i)
 {
     return i < HF_ROW_OBJECTIVE + g->n_objective || i >= HF_ROW_OBJECTIVE + HF_OBJECTIVES_MAX;
 }
 
-/* As many rows as fit, but no more than are written at a time; a row larger than CHUNK_BYTES is cut along its other
- * sides. */
+/* Chooses as many rows per chunk as fit, but no more than are written at a time. A row larger than CHUNK_BYTES is
+ * divided along its other dimensions. */
 static void choose_chunk(const hf_hdf5_array *a, size_t row_bytes, hsize_t rows, hsize_t chunk[3])
 {
     size_t fit = row_bytes ? CHUNK_BYTES / row_bytes : rows;
@@ -292,7 +300,7 @@ static hid_t open_arrays(hf_hdf5 *io, const hf_generations *g, hf_generations_ro
     return group;
 }
 
-/* Write n rows that wait, the last ones so far. */
+/* Writes the n waiting rows of data set i. They are its last rows so far. */
 static void write_row(hf_hdf5 *io, const hf_generations *g, hid_t group, hf_generations_row *row, int i, int n)
 {
     int end = g->n_stored + g->n_waiting;
@@ -301,7 +309,7 @@ static void write_row(hf_hdf5 *io, const hf_generations *g, hid_t group, hf_gene
     if (n > 0 && is_stored(g, i)) hf_hdf5_write_rows(io, group, &row[i].array, (hsize_t)(end - n), g->row[i]);
 }
 
-/* The last generation as a whole, from which a run goes on, and the counts of all generations until then. */
+/* Writes the last generation as a whole, from which a run is resumed, and the counts of all generations so far. */
 static void write_last(hf_hdf5 *io, const hf_generations *g)
 {
     hf_generations_row row[HF_GENERATIONS_PIECES];
@@ -360,7 +368,7 @@ int hf_generations_count(hf_hdf5 *io, hf_generations *g)
     return g->n_stored;
 }
 
-/* Evaluations of the first n generations, from what was stored, a block of generations at a time. */
+/* Counts the evaluations of the first n generations in the file, one block of generations at a time. */
 static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g, int n,
                               long count[HF_GENERATIONS_COUNTS])
 {
@@ -388,7 +396,7 @@ static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g,
     free(block);
 }
 
-/* Read one figure of an individual from the row of its generation. */
+/* Reads one figure of an individual from row `at`, the row of its generation. */
 static void read_of_best(hf_hdf5 *io, hid_t group, const hf_generations_row *row, const hf_result_field *field,
                          hsize_t at, int individual, hf_summary *s)
 {
@@ -402,8 +410,8 @@ static void read_of_best(hf_hdf5 *io, hid_t group, const hf_generations_row *row
     free(values);
 }
 
-/* The best as the run noted it: of the first generation with the least merit, which lives on in the last one. Figures
- * that are not stored are NaN. */
+/* Sets the best design as the run noted it: that of the first generation with the minimum merit. The best design stays
+ * in the population, so /ga/last has its figures. Figures that are not stored are NaN. */
 static void note_best(hf_hdf5 *io, hid_t group, const hf_generations *g, const double *best_merit, hf_summary *s)
 {
     hf_generations_row row[HF_GENERATIONS_PIECES];
@@ -434,7 +442,7 @@ static void note_best(hf_hdf5 *io, hid_t group, const hf_generations *g, const d
     hf_hdf5_close(io, from);
 }
 
-/* Counts of the generations before the last one: hf_optimiser_tell adds those of that one. */
+/* Restores the counts of the generations before the last one. hf_optimiser_tell will add those of the last one. */
 static void restore_counts(hf_hdf5 *io, hid_t group, const hf_generations *g, hf_population *p)
 {
     long count[HF_GENERATIONS_COUNTS];
@@ -498,7 +506,7 @@ void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
     hf_generations_list_empty(g, g->n_individual, row);
     if (isfinite(g->base_psi_m)) s->base_psi_m = g->base_psi_m;
     if (g->every != HF_GENERATIONS_BEST) {
-        hf_hdf5_read_rows(io, group, &row[HF_ROW_PSI].array, 0, values); /* of the first generation */
+        hf_hdf5_read_rows(io, group, &row[HF_ROW_PSI].array, 0, values); /* the first generation */
         if (io->status == HF_OK) s->base_psi_m = values[0];
     }
     row[HF_ROW_BEST_MERIT].array.dims[0] = (hsize_t)g->n_stored;

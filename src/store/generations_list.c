@@ -1,4 +1,4 @@
-/* Contents: the list - values */
+/* Implements generations_list.h. Sections: the list, values. */
 #include "store/generations_list.h"
 
 #include <assert.h>
@@ -104,7 +104,7 @@ void hf_generations_tally(const hf_population *p, int sign, long count[HF_GENERA
     }
 }
 
-/* An enumeration is an int in memory, a byte in the file. */
+/* An enumeration is an int in memory and a byte in the file. */
 void hf_generations_gather(const hf_generations_row *row, size_t bytes, char *to)
 {
     size_t each = hf_hdf5_kind_bytes(row->array.kind), n = bytes / each;

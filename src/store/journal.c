@@ -1,4 +1,4 @@
-/* Contents: file and lock - records - replay - rotation and end */
+/* Implements journal.h. Sections: file and lock, records, replay, rotation and end. */
 #include "store/journal.h"
 
 #include "base/file_io.h"
@@ -15,15 +15,15 @@
 #include <zlib.h>
 
 #define MAGIC "hifdm-j2"
-#define RECORD_MAGIC 0x4a444648u /* "HFDJ" */
+#define RECORD_MAGIC 0x4a444648u /* "HFDJ" as bytes of a little-endian machine */
 #define HEADER_BYTES (8 + HF_JOURNAL_IDENTITY)
 #define PAYLOAD_MAX (1u << 31)
-/* Each attempt fails only when another process removes the journal between opening and locking it. No test of the store
- * or of interrupting changes with 1 and with 500. */
+/* An attempt fails only if another process removes the journal between opening and locking it. No test of the store or
+ * of interrupting changes with 1 and with 500. */
 #define OPEN_ATTEMPTS 5
 
 typedef struct {
-    uint32_t magic, length, crc; /* of generation and payload */
+    uint32_t magic, length, crc; /* crc and length: of generation and payload */
     int32_t generation;
 } record_head;
 _Static_assert(sizeof(record_head) == 16, "records have no padding");
@@ -35,7 +35,8 @@ static hf_status fail(const hf_journal *j, const char *what, const char *path, h
     return hf_error(messages, HF_IO, "%s: cannot %s %s: %s", j->result, what, path, strerror(errno));
 }
 
-/* HF_OK with j->file -1: the name is that of a link or something else that is no ordinary file. */
+/* Opens and locks the journal. Returns HF_OK with j->file -1 if the name belongs to a link or to another thing that is
+ * no ordinary file. */
 static hf_status open_and_lock(hf_journal *j, hf_messages *messages)
 {
     bool was_there;
@@ -60,7 +61,7 @@ static hf_status open_and_lock(hf_journal *j, hf_messages *messages)
                        "start none",
                        j->result, strerror(errno));
         if (hf_path_leads_to(j->path, j->file)) return HF_OK;
-        close(j->file); /* the owner rotated or removed it between open and lock */
+        close(j->file); /* its owner rotated or removed it between open and lock */
         j->file = -1;
     }
     return hf_error(messages, HF_EXISTS, "%s: %s changes all the time; is another process writing it?", j->result,
@@ -81,7 +82,7 @@ static hf_status look_at_head(hf_journal *j, content *is, hf_messages *messages)
     ssize_t n = hf_file_io_read_at(j->file, magic, sizeof magic, 0);
     if (n < 0) return fail(j, "read", j->path, messages);
     if (n == sizeof magic && memcmp(magic, MAGIC, sizeof magic - 1) == 0) *is = OTHER_VERSION;
-    if (memcmp(magic, MAGIC, (size_t)n) == 0) *is = JOURNAL; /* a header may be torn */
+    if (memcmp(magic, MAGIC, (size_t)n) == 0) *is = JOURNAL; /* also true for the beginning of a header */
     return HF_OK;
 }
 
@@ -94,7 +95,7 @@ hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_m
     snprintf(j->path, size, "%s.journal", result);
     HF_TRY(open_and_lock(j, messages));
     HF_TRY(look_at_head(j, &is, messages));
-    if (is != JOURNAL && replaces) { /* unlink, never truncate: the name may be a link to another file */
+    if (is != JOURNAL && replaces) { /* unlink, not truncate: the name may be a link to another file */
         if (unlink(j->path) != 0) return fail(j, "remove", j->path, messages);
         hf_warning(messages, "%s: %s was no journal of hifdm; it is replaced", result, j->path);
         if (j->file >= 0) close(j->file);
@@ -115,7 +116,8 @@ hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_m
                     result, j->path);
 }
 
-/* Whether there is a journal with a header; read through a name that nobody may have put a link at. */
+/* Reads the header of the journal of `result`. Returns true if there is a journal with a header; *has_records: it has
+ * records, too. The journal itself must not be a link. */
 static bool read_head(const char *result, char header[HEADER_BYTES], bool *has_records)
 {
     char path[HF_FILE_OUT_SIZE + 16];
@@ -123,7 +125,7 @@ static bool read_head(const char *result, char header[HEADER_BYTES], bool *has_r
     hf_messages unwanted = {0};
     hf_status status = hf_file_out_target(result, path, &unwanted);
     hf_messages_free(&unwanted);
-    if (status != HF_OK && !realpath(result, path)) return false; /* looking is allowed behind anybody's link */
+    if (status != HF_OK && !realpath(result, path)) return false; /* reading through links of other users is safe */
     strcat(path, ".journal");
     int file = hf_file_io_open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
     ssize_t n = file >= 0 ? hf_file_io_read(file, header, HEADER_BYTES) : -1;
@@ -148,7 +150,6 @@ void hf_journal_peek(const char *result, char identity[HF_JOURNAL_IDENTITY + 1])
         snprintf(identity, HF_JOURNAL_IDENTITY + 1, "%.*s", HF_JOURNAL_IDENTITY, header + 8);
 }
 
-/* 0, or -1 and errno. */
 bool hf_journal_is_of(const char *result, const char *identity)
 {
     char header[HEADER_BYTES] = "";
@@ -156,6 +157,7 @@ bool hf_journal_is_of(const char *result, const char *identity)
     return read_head(result, header, &has_records) && *identity && !strncmp(header + 8, identity, HF_JOURNAL_IDENTITY);
 }
 
+/* Writes a header and goes to its end. Returns 0, or -1 and errno. */
 static int write_header(int file, const char *identity)
 {
     char header[HEADER_BYTES] = {0};
@@ -227,16 +229,17 @@ hf_status hf_journal_tend(hf_journal *j, double now_s, hf_messages *messages)
 
 /* ---- replay ---- */
 
-/* Read exactly n bytes: 1, 0 when there are fewer, or -1 and errno. */
+/* Reads exactly n bytes. Returns 1, 0 if there are fewer, or -1 and errno. */
 static int read_whole(int file, void *to, size_t n, int64_t at)
 {
     ssize_t got = hf_file_io_read_at(file, to, n, (off_t)at);
     return got < 0 ? -1 : (size_t)got == n;
 }
 
-/* The record at `at` into *payload, which grows to the longest: 1; 0 when there is no whole one; -1 and errno. A record
- * shorter than its head says was being written when the process ended, unless a whole one would have room; anything
- * else is damage. */
+/* Reads the record at `at` into *payload, which grows as needed. Returns 1, 0 if there is no whole record, or -1 and
+ * errno. *is_damaged becomes true if there is no whole record because of damage. A record shorter than its head says is
+ * no damage if the rest of the file is shorter than the longest record so far: the process ended while it wrote the
+ * record. */
 static int read_record(const hf_journal *j, int64_t at, int64_t end, record_head *head, char **payload,
                        size_t *capacity, bool *is_damaged)
 {
@@ -311,7 +314,7 @@ hf_status hf_journal_rotate(hf_journal *j, hf_messages *messages)
 {
     hf_file_out next;
     if (hf_file_out_make(j->result, &next) != 0) return fail(j, "create", next.temporary, messages);
-    int file = fcntl(next.file, F_DUPFD_CLOEXEC, 0); /* the other is closed as it gets its name */
+    int file = fcntl(next.file, F_DUPFD_CLOEXEC, 0); /* a copy, because hf_file_out_replace closes next.file */
     hf_lock lock = file < 0 ? HF_LOCK_FAILED : hf_file_io_lock(file);
     if ((lock != HF_LOCK_OURS && lock != HF_LOCK_NONE) || write_header(file, j->identity) != 0 ||
         hf_file_out_replace(&next, j->path) != 0) {

@@ -1,5 +1,5 @@
-/* Contents: names - opening and writing - reading files - news of other processes - reading locks - the
- * whole */
+/* Implements ledger.h. Sections: names, opening and writing, reading files, news of other processes, reading locks, the
+ * whole. */
 #include "store/ledger.h"
 
 #include "base/clock.h"
@@ -20,12 +20,12 @@
 #include <unistd.h>
 
 #define HEADER "#hifdm-points-1"
-#define SYNC_S 5.0 /* finished points of the last 5 s may be lost by a power cut */
-/* Of one row: the reason, 25 bytes for each number, lists with names (a goal: 138, an error: 70; of each of 16 states
- * four figures and 68 errors of up to 135). */
+#define SYNC_S 5.0 /* s; a power cut may lose the points that finished since the last sync */
+/* Maximum bytes of one row: the reason, 25 for each number, the lists with their names. An objective takes 138, a
+ * surface error 70. Each of 16 load cases has four figures and 68 surface errors of up to 135. */
 #define LINE_SIZE 200000
 #define ROWS_MAX                                                                                                       \
-    (HF_STUDY_POINT_MAX * (off_t)4096) /* bytes of a file that is read: all points have a row, few so much */
+    (HF_STUDY_POINT_MAX * (off_t)4096) /* bytes of a file that is read: a row per point, few of them so long */
 #define N_FIXED 4                      /* fields before the numbers: id, fingerprint, status, reason */
 
 const char *const hf_point_state_word[HF_N_POINT_STATE] = {"missing", "running", "done", "failed", "outdated"};
@@ -49,7 +49,7 @@ static off_t byte_of(const char *id)
 
 /* ---- opening and writing ---- */
 
-/* How far each file has been read, and which points were finished since. */
+/* How far each file has been read, and which points were finished after that. */
 struct hf_ledger_news {
     struct {
         char name[256];
@@ -114,8 +114,9 @@ void hf_ledger_release(hf_ledger *l, const char *id)
     hf_file_io_unlock_byte(l->claims, byte_of(id));
 }
 
-/* One write, so that a process killed at any instant leaves at most one incomplete line. What of a line is there after
- * a failure is cut off, since the next line must begin on one of its own. */
+/* Writes a line with one write(2). A process that is killed at any instant therefore leaves at most one incomplete
+ * line. After a failure the written part of the line is cut off, because the next line must begin on a line of its
+ * own. */
 static hf_status write_line(hf_ledger *l, const char *line, size_t length, hf_messages *messages)
 {
     if (hf_file_io_write(l->rows, line, length) == 0) {
@@ -130,7 +131,7 @@ static hf_status write_line(hf_ledger *l, const char *line, size_t length, hf_me
     return status;
 }
 
-/* Make the points file of this process, with the names of the columns. */
+/* Makes the points file of this process and writes the names of the columns. */
 static hf_status start_rows(hf_ledger *l, char line[LINE_SIZE], hf_messages *messages)
 {
     char host[64] = "host", path[HF_PATH_SIZE + 128];
@@ -153,13 +154,14 @@ static hf_status start_rows(hf_ledger *l, char line[LINE_SIZE], hf_messages *mes
     line[used++] = '\n';
     hf_status status = write_line(l, line, used, messages);
     if (status == HF_OK) return HF_OK;
-    unlink(path); /* without the names no line of it counts */
+    unlink(path); /* its lines are useless without the names of the columns */
     if (l->rows >= 0) close(l->rows);
     l->rows = -1;
     return status;
 }
 
-/* Copy at most HF_LEDGER_REASON_MAX bytes, with tabs and newlines replaced by blanks. */
+/* Copies at most HF_LEDGER_REASON_MAX bytes. Tabs, newlines and other control characters become blanks. Returns the
+ * length. */
 static size_t put_reason(const char *reason, char *to)
 {
     size_t n = 0;
@@ -202,10 +204,10 @@ hf_status hf_ledger_write(hf_ledger *l, const hf_study *study, int point, hf_sta
 typedef struct {
     const hf_study *study;
     hf_points *points;
-    hf_point *failure; /* [n_point] of this base case; what counts when a success has lost its file */
+    hf_point *failure; /* [n_point] rows of this base case; used if a success has lost its file */
 } reading;
 
-/* Cut a line up at its tabs: the number of fields, at most max. */
+/* Splits a line at its tabs. Returns the number of fields, at most max. */
 static int split(char *line, char **field, int max)
 {
     int n = 0;
@@ -217,7 +219,8 @@ static int split(char *line, char **field, int max)
     return n;
 }
 
-/* A success overrides a failure; a row of this base case overrides one of another. */
+/* Takes a row into the state of its point. A success overrides a failure. A row of this base case overrides a row of
+ * another one. */
 static void take_row(reading *r, char **field, char **number)
 {
     int i = hf_study_find(r->study, field[0]);
@@ -233,10 +236,11 @@ static void take_row(reading *r, char **field, char **number)
     if (p->state != HF_POINT_DONE) *p = row;
 }
 
-/* Fields of a row that are read: this version writes 120 or so. */
+/* Maximum number of fields that are read from a row; this version writes about 120. */
 enum { FIELD_MAX = 512 };
 
-/* from[i]: the field of the file's rows that holds our field i, or -1: files of other versions have others. */
+/* Sets from[i] to the field of the file's rows that holds our field i, or -1, because files of other versions have
+ * other fields. Returns the number of fields, 0 if the line is no header. */
 static int read_header(char *line, int *from, int n_ours)
 {
     char *name[FIELD_MAX];
@@ -251,7 +255,7 @@ static int read_header(char *line, int *from, int n_ours)
     return strcmp(name[0], HEADER) ? 0 : n;
 }
 
-/* Take the rows of one file. False without memory. */
+/* Takes the rows of one file. Returns false if memory runs out. */
 static bool read_rows(reading *r, char *text)
 {
     hf_points *points = r->points;
@@ -286,7 +290,7 @@ static hf_status tell_in_the_way(const char *path, hf_messages *messages)
     return hf_error(messages, HF_IO, "%s: is a folder or no ordinary file, and in the way; remove it", path);
 }
 
-/* What the file holds now, as a text; rows that are added meanwhile are left out. The caller frees it. */
+/* Reads what the file holds now as a text, which the caller frees. Rows that are added meanwhile are left out. */
 static hf_status read_text(const char *path, char **text, hf_messages *messages)
 {
     off_t size;
@@ -336,7 +340,7 @@ static int by_name(const struct dirent **a, const struct dirent **b)
     return strcmp((*a)->d_name, (*b)->d_name);
 }
 
-/* In sorted order, so that of several rows of one point always the same counts. */
+/* Reads the files in sorted order, so that always the same of several rows of one point counts. */
 static hf_status read_files(reading *r, const char *folder, hf_messages *messages)
 {
     struct dirent **entry;
@@ -354,7 +358,7 @@ static hf_status read_files(reading *r, const char *folder, hf_messages *message
 
 /* ---- news of other processes ---- */
 
-/* The file's place in the list, or -1 without memory. */
+/* Returns the index of the file in the list, and adds it if it is new; -1 if memory runs out. */
 static int place_of(struct hf_ledger_news *news, const char *name)
 {
     for (int k = 0; k < news->n_file; k++)
@@ -367,7 +371,7 @@ static int place_of(struct hf_ledger_news *news, const char *name)
     return news->n_file++;
 }
 
-/* Note the whole lines of a text; returns their length in bytes. */
+/* Notes the points of the whole lines of a text. Returns the length of these lines in bytes. */
 static off_t note_rows(struct hf_ledger_news *news, const hf_study *study, char *text)
 {
     char *line = text, *end, *field[3];
@@ -380,7 +384,8 @@ static off_t note_rows(struct hf_ledger_news *news, const hf_study *study, char 
     return line - text;
 }
 
-/* Note the rows that a file has more than before; with `skip` only its length. A file that cannot be read has none. */
+/* Notes the points of the rows that a file has gained since the last call; with `skip` only its length. A file that
+ * cannot be read has no rows. */
 static void read_news_of(hf_ledger *l, const hf_study *study, const char *name, bool skip)
 {
     char path[HF_PATH_SIZE + 300];
@@ -435,15 +440,15 @@ bool hf_ledger_is_finished(hf_ledger *l, const hf_study *study, int point)
 
 /* ---- reading locks ---- */
 
-/* Find the points whose bytes from..to-1 are locked. The system returns any one lock of a range; the parts before and
- * after it are searched in turn. */
+/* Finds the points whose bytes from `from` to `to` - 1 are locked. The system returns one lock of a range, so the parts
+ * before and after it are searched in turn. */
 static void find_locks(reading *r, int file, off_t from, off_t to)
 {
     while (from < to) {
         struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = from, .l_len = to - from};
         char id[32];
         if (fcntl(file, F_GETLK, &lock) != 0 || lock.l_type == F_UNLCK) return;
-        if (lock.l_start < from) lock.l_start = from; /* a foreign lock of several bytes */
+        if (lock.l_start < from) lock.l_start = from; /* the lock of another program may cover several bytes */
         snprintf(id, sizeof id, "%012llx", (unsigned long long)lock.l_start);
         int i = hf_study_find(r->study, id);
         if (i >= 0) r->points->point[i] = (hf_point){HF_POINT_RUNNING, HF_NOT_EVALUATED, "", NULL};
@@ -466,8 +471,8 @@ static hf_status find_running(reading *r, const char *folder, hf_messages *messa
 
 /* ---- the whole ---- */
 
-/* A point with a result file is done only if the file is there and whole: it may have been removed, and a second run of
- * the point may be under way. */
+/* Finds points whose result file is lost. A point with a result file is done only if the file exists and is whole. The
+ * file may have been removed, or a second run of the point may be unfinished. */
 static hf_status find_lost(reading *r, const char *folder, hf_messages *messages)
 {
     char path[HF_PATH_SIZE + 32];

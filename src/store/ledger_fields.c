@@ -1,6 +1,6 @@
-/* What a row of a ledger holds of a point's summary: its numbers, for each stage two lists as texts, the goals and the
- * errors of the surface, and one of the states of the net as built, since what is in them may differ from point to
- * point. Contents: numbers - lists - fields - reading lists */
+/* The fields of a ledger row, made from the summary of a point. First come its numbers. Then come lists as texts: for
+ * each stage the objectives and the surface errors, and one for the load cases. They are texts because the values may
+ * differ from point to point. Sections: numbers, lists, fields, reading lists. */
 #include "store/ledger.h"
 
 #include <inttypes.h>
@@ -35,7 +35,7 @@ bool hf_ledger_is_circumstance(const hf_hdf5_member *column)
     return !strcmp(column->name, "threads") || (n > 2 && !strcmp(column->name + n - 2, "_s"));
 }
 
-/* Did the run reach the stage to which this number belongs? */
+/* Returns true if the run reached the stage to which this number belongs. */
 static bool applies(const hf_hdf5_member *column, const hf_summary *s)
 {
     if (s->form.status == HF_NOT_EVALUATED) return false;
@@ -69,7 +69,7 @@ const hf_ledger_list hf_ledger_list_of[HF_LEDGER_N_LIST] = {
     {"errors", "/surface/form", "", ""}, {"errors", "/surface/optimize", "", ""}, {"errors", "/surface/polish", "", ""},
     {"figures", HF_LEDGER_CASES, "", ""}};
 
-/* "goal_0_psi=0.001 goal_1_tension_edge=3" */
+/* Writes the objectives of a stage: "goal_0_psi=0.001 goal_1_tension_edge=3". Returns the length. */
 static int print_goals(const hf_summary *s, int stage, char *text, size_t size)
 {
     const double *goal = hf_layout_goals(s, stage);
@@ -79,8 +79,9 @@ static int print_goals(const hf_summary *s, int stage, char *text, size_t size)
     return (int)used;
 }
 
-/* "facet_half_path_rms_m=0.001 facet_good_to_Hz=3e9 facet_gain_loss_at_2.5_GHz_dB=0.1 facet_fit_half_path_rms_m=...",
- * each name behind these words: of a state its name and a dot. */
+/* Writes the surface errors of a shape: "facet_half_path_rms_m=0.001 facet_good_to_Hz=3e9
+ * facet_gain_loss_at_2.5_GHz_dB=0.1 facet_fit_half_path_rms_m=...". before: prefix of each name, of a load case its
+ * name and a dot. Returns the length. */
 static int print_errors(const hf_double_list *at, const hf_surface_measures *m, const char *before, char *text,
                         size_t size)
 {
@@ -102,7 +103,8 @@ static int print_errors(const hf_double_list *at, const hf_surface_measures *m, 
     return (int)used;
 }
 
-/* "cold.psi_m=0.001 cold.n_slack=3 ... sun.psi_m=..."; without a shape the figures are NaN. */
+/* Writes the load cases: "cold.psi_m=0.001 cold.n_slack=3 ... sun.psi_m=...". Figures of a load case without a shape
+ * are NaN. Returns the length. */
 static int print_states(const hf_summary *s, char *text, size_t size)
 {
     size_t used = 0;

@@ -1,4 +1,5 @@
-/* Contents: columns - inputs - outputs - lists - points - links - the file */
+/* Implements merge.h: checks that the output is no input and may be replaced, then writes the temporary file group by
+ * group and publishes it. Sections: columns, inputs, outputs, lists, points, links, the file. */
 #include "store/merge.h"
 
 #include "base/file_out.h"
@@ -21,7 +22,7 @@ typedef struct {
     const hf_study *study;
     const hf_points *points;
     hf_file_out out;
-    void *room; /* one column of any kind but texts: [n_point][2] of 8 bytes */
+    void *room; /* one column of any kind except texts: [n_point][2] of 8 bytes */
 } merger;
 
 /* ---- columns ---- */
@@ -34,7 +35,7 @@ static void write_column(merger *m, hid_t group, const char *name, const hf_hdf5
     hf_hdf5_write_array(&m->io, group, &array, m->room);
 }
 
-/* Write texts with the length of the longest. */
+/* Writes a column of texts, each padded to the length of the longest. */
 static void write_texts(merger *m, hid_t group, const char *name, const char *(*text_of)(const merger *, int, int),
                         int axis, const char *description)
 {
@@ -71,7 +72,7 @@ static const char *value_of(const merger *m, int i, int axis)
     return strchr(s->axis[axis].canonical[s->value[(size_t)i * (size_t)s->n_axis + (size_t)axis]], '=') + 1;
 }
 
-/* Are all values of an amount numbers, none a part such as 30 %? */
+/* Returns true if all values of an amount are numbers, none a percentage such as 30 %. */
 static bool has_numbers(const hf_study_axis *axis)
 {
     double value;
@@ -129,7 +130,7 @@ static void set_number(void *room, int i, const hf_hdf5_kind *kind, const char *
     }
 }
 
-/* A number of hf_summary over all points; left out where no point has it. */
+/* Writes one number of hf_summary for all points. A number that no point has is left out. */
 static void write_output(merger *m, hid_t group, int column)
 {
     const hf_hdf5_member *c = hf_ledger_column(column);
@@ -151,7 +152,7 @@ static void write_output(merger *m, hid_t group, int column)
 
 /* ---- lists ---- */
 
-/* What is called so in the text of a point; NaN without it. */
+/* Returns the value of this name in the list of a point, or NaN if there is none. */
 static double value_in(const hf_point *p, int list, const char *wanted)
 {
     char name[HF_GOAL_NAME_SIZE];
@@ -181,7 +182,7 @@ static void write_value(merger *m, hid_t group, int list, const char *value)
                                                   : "of the surface");
 }
 
-/* The group, and the one that it is in. */
+/* Makes the group, and before it the group that contains it. */
 static hid_t make_nested_group(merger *m, const char *path)
 {
     char outer[32];
@@ -190,7 +191,8 @@ static hid_t make_nested_group(merger *m, const char *path)
     return hf_hdf5_make_group(&m->io, path);
 }
 
-/* A column for each name that any point has in this list: sets and kinds of goals, and frequencies, may be axes. */
+/* Writes one column for each name that any point has in this list. Points may have different names, because sets and
+ * figures of objectives and frequencies can be axes. */
 static void write_list(merger *m, int list)
 {
     char(*done)[HF_GOAL_NAME_SIZE] = NULL, path[32], name[HF_GOAL_NAME_SIZE];
@@ -250,11 +252,11 @@ static void write_points(merger *m)
 
 /* ---- links ---- */
 
-/* The folder as seen from the folder of the output; the absolute path where there is none. False and errno: one of them
- * cannot be looked at. */
+/* Writes the folder into to[size], relative to the folder of the output, or as an absolute path if there is no room.
+ * Returns false and errno if a folder cannot be resolved. */
 static bool relative_folder(const char *output, const char *folder, char *to, size_t size)
 {
-    char here[PATH_MAX + 1], there[PATH_MAX + 1]; /* a slash is added */
+    char here[PATH_MAX + 1], there[PATH_MAX + 1]; /* one byte more for a slash */
     size_t used = 0, common = 0;
     if (!hf_path_folder(output, to, size) || !realpath(to, here) || !realpath(folder, there)) {
         *to = '\0';
@@ -270,7 +272,7 @@ static bool relative_folder(const char *output, const char *folder, char *to, si
     if (used + strlen(there + common) < size)
         strcpy(to + used, there + common);
     else
-        snprintf(to, size, "%s", there); /* longer than any path may be: the absolute one has room */
+        snprintf(to, size, "%s", there); /* the absolute path always has room */
     used = strlen(to);
     if (used && to[used - 1] == '/') to[used - 1] = '\0';
     return true;
@@ -332,14 +334,14 @@ static void write_all(merger *m, const char *folder)
     hf_hdf5_close(&m->io, group);
     write_points(m);
     write_links(m, folder);
-    /* HDF5 1.10 crashes in a close that cannot write: flush first, and leave the file open after a failure */
+    /* HDF5 1.10 crashes in a close that cannot write. The file is flushed first, and stays open if that fails. */
     if (H5Fflush(m->io.file, H5F_SCOPE_GLOBAL) < 0)
         hf_hdf5_fail(&m->io, "write", -1, NULL);
     else
         hf_hdf5_close_file(&m->io);
 }
 
-/* Is it a merge, which a further one may replace? */
+/* Returns true if the file is a merge, which a later merge may replace. */
 static bool is_replaceable(const char *path)
 {
     hf_messages unwanted = {0};
@@ -375,8 +377,8 @@ static hf_status check_output(const char *path, hf_messages *messages)
     return hf_error(messages, HF_EXISTS, "%s: exists and is no merge; use --force or -o", path);
 }
 
-/* Is it a file of the sweep: a point's result, also elsewhere by a link, or what is in its folder and no merge? 1, 0,
- * or -1 and errno: the system cannot tell. */
+/* Returns 1 if the file belongs to the sweep: if it is the result of a point, also by a link, or lies in the folder of
+ * the sweep and is no merge. Otherwise returns 0, or -1 and errno if the system cannot tell. */
 static int is_of_sweep(const hf_study *s, const char *folder, const char *path)
 {
     char file[HF_PATH_SIZE + 32], here[PATH_MAX], how[128];
@@ -391,10 +393,11 @@ static int is_of_sweep(const hf_study *s, const char *folder, const char *path)
     if (!hf_path_folder(path, here, sizeof here) || (is = hf_path_compare(here, folder)) <= 0) return is;
     hf_status tried = hf_hdf5_try(look_at_output, path, how, sizeof how, &unwanted);
     hf_messages_free(&unwanted);
-    return tried == HF_OK && !is_replaceable(path); /* what is damaged or cannot be read is told, or may be replaced */
+    /* A file that is damaged or cannot be read is reported later, or may be replaced. */
+    return tried == HF_OK && !is_replaceable(path);
 }
 
-/* What the merge is made of is never replaced. */
+/* Checks that the output is no input of the merge, because inputs are never replaced. */
 static hf_status spare_inputs(const hf_study *s, const char *folder, const char *path, hf_messages *messages)
 {
     static const char what[] = "an input of this merge";

@@ -1,3 +1,5 @@
+/* Implements samples.h: a chunk is appended to the journal first and then written to its position in the scratch
+ * file. */
 #include "store/samples.h"
 
 #include "base/arena.h"
@@ -12,7 +14,7 @@
 #include <unistd.h>
 
 #define ROW_BYTES (HF_TOLERANCE_COLUMNS * sizeof(double))
-#define OF_CASE 32 /* characters of an identity that are known before the design is */
+#define OF_CASE 32 /* characters of the identity that are known before the design is */
 
 static void name_journal(const char *result, int task, int tasks, char name[HF_SAMPLES_NAME_SIZE])
 {
@@ -38,7 +40,7 @@ static hf_status keep_rows(hf_samples *s, int chunk, const void *row)
     return HF_OK;
 }
 
-/* An hf_journal_take. */
+/* Takes a chunk from a journal; an hf_journal_take. */
 static hf_status take_chunk(void *context, int chunk, const void *payload, size_t bytes)
 {
     hf_samples *s = context;
@@ -126,7 +128,7 @@ hf_status hf_samples_add(hf_samples *s, int chunk, const double *row)
 {
     int n;
     hf_samples_first(s, chunk, &n);
-    const struct iovec piece = {(void *)(uintptr_t)row, (size_t)n * ROW_BYTES}; /* which is only read */
+    const struct iovec piece = {(void *)(uintptr_t)row, (size_t)n * ROW_BYTES}; /* the row is only read */
     if (s->has_journal) {
         HF_TRY(hf_journal_append(&s->journal, chunk, &piece, 1, s->messages));
         HF_TRY(hf_journal_tend(&s->journal, hf_clock_s(), s->messages));
@@ -154,7 +156,8 @@ void hf_samples_close(hf_samples *s)
     *s = (hf_samples){.messages = messages, .rows = -1};
 }
 
-/* RESULT.tolerance-*-of-*.journal, of any number of tasks: `name` begins behind RESULT. */
+/* Returns true for the journal of a task, RESULT.tolerance-*-of-*.journal, with any number of tasks. `name` begins
+ * after RESULT. */
 static bool is_of_task(const char *name)
 {
     int task, tasks, end = 0;
