@@ -5,8 +5,8 @@
  *     object      of the expected type
  *     data set    all values in this file, as many as the dimensions say
  *
- * Damaged files can crash HDF5 or make it run forever; hf_hdf5_try reads a file in a child process first.
- * Sections: the file, links, data sets, crashes, objects. */
+ * Damaged files can crash HDF5 or make it run forever; hf_hdf5_try reads a file in a child process first. Sections: the
+ * file, links, data sets, crashes, objects. */
 #include "store/hdf5.h"
 
 #include "base/file_io.h"

@@ -18,8 +18,8 @@
 #define RECORD_MAGIC 0x4a444648u /* "HFDJ" as bytes of a little-endian machine */
 #define HEADER_BYTES (8 + HF_JOURNAL_IDENTITY)
 #define PAYLOAD_MAX (1u << 31)
-/* An attempt fails only if another process removes the journal between opening and locking it. No test of the store or
- * of interrupting changes with 1 and with 500. */
+/* An attempt fails only if another process removes the journal between opening and locking it. The tests of the store
+ * and of interrupting pass with 1 and with 500. */
 #define OPEN_ATTEMPTS 5
 
 typedef struct {

@@ -20,7 +20,7 @@
 #include <stdint.h>
 #include <sys/uio.h>
 
-#define HF_JOURNAL_SYNC_S 5.0 /* s; from 0.5 to 50 no test of the store, of resuming or of interrupting changes */
+#define HF_JOURNAL_SYNC_S 5.0 /* s; the tests of the store, of resuming and of interrupting pass with 0.5 to 50 */
 #define HF_JOURNAL_PIECES 32  /* maximum number of pieces of a payload */
 #define HF_JOURNAL_IDENTITY 64
 

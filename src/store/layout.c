@@ -1,4 +1,5 @@
-/* Contents: enumerations - columns - summary */
+/* Implements layout.h for the scene, the shapes, the truss and the summary. Sections: enumerations, columns,
+ * summary. */
 #include "store/layout.h"
 
 #include <hifdm/formfind.h>
@@ -25,7 +26,7 @@ static const signed char coupling_value[] = {HF_COUPLING_STOP_LIST(STOP_VALUE)};
 static const char *const bound_word[] = {HF_BOUND_REASON_LIST(BOUND_WORD)};
 static const signed char bound_value[] = {HF_BOUND_REASON_LIST(BOUND_VALUE)};
 
-/* Values 0, 1, 2, ... for the words; ENDED_WORDS: the list of words is ended by NULL. */
+/* Values of the words are 0, 1, 2, ... Lists of words for ENDED_WORDS end with NULL. */
 #define WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, NULL
 #define ENDED_WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word) - 1, word, NULL
 #define VALUES(word, value) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, value
@@ -62,7 +63,7 @@ const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind)
 
 /* ---- columns ---- */
 
-/* X(struct, name, member, kind, per_cable, columns, units, description) */
+/* Rows of the lists below: X(struct, name, member, kind, per_cable, columns, units, description) */
 #define SCENE_COLUMNS(X)                                                                                               \
     X(hf_scene, "node/position_m", position_m, REAL, 0, 3, "m", "theoretical position; of supports also the real one") \
     X(hf_scene, "node/load_N", load_N, REAL, 0, 3, "N", "load")                                                        \
@@ -82,7 +83,7 @@ const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind)
     X(hf_shape, "q_N_per_m", q_N_per_m, REAL, 1, 1, "N/m", "force density")                                            \
     X(hf_shape, "law", law, LAW, 1, 1, "", "law in force, under the case's method or rule")
 
-/* Columns of hf_truss and of hf_carrier_state, below /truss; here per_cable means per member. */
+/* Columns of hf_truss and of hf_carrier_state in /truss. Here per_cable means per member. */
 #define TRUSS_NUMBER_COLUMN(name, units, otherwise, description)                                                       \
     {"member/" #name, HF_KIND_REAL, 1, 1, units, description, offsetof(hf_truss, name)},
 #define TRUSS_COLUMNS(X)                                                                                               \
@@ -118,7 +119,7 @@ static hf_hdf5_array column_array(const hf_layout_column *c, int n_node, int n_c
                            .description = c->description};
 }
 
-/* The pointer kept in column `c` of `owner`. */
+/* Returns the pointer that `owner` has for column `c`. */
 static void *column_values(const hf_layout_column *c, const void *owner)
 {
     void *values;
@@ -154,11 +155,11 @@ void hf_layout_renew(hf_hdf5 *io, const char *path)
 
 /* ---- summary ---- */
 
-/* The figures of the results, by stage: <hifdm/result.h> lists them. */
+/* The figures of the results, by stage; <hifdm/result.h> lists them. */
 #define FORM_FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/form", #member, form.member, kind)
 #define BEST_FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/ga", "best_" #member, best.member, kind)
 #define POLISH_FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/polish", #member, polish.member, kind)
-/* The figures of a coupling stand beside the results of their stage. */
+/* The figures of a coupling. Those of the search and of the refinement are beside the results of these stages. */
 #define FORM_COUPLING(type, member, kind, ...)                                                                         \
     HF_HDF5_MEMBER(hf_summary, "/coupling", #member, form.coupling.member, kind)
 #define BEST_COUPLING(type, member, kind, ...)                                                                         \
@@ -166,7 +167,7 @@ void hf_layout_renew(hf_hdf5 *io, const char *path)
 #define POLISH_COUPLING(type, member, kind, ...)                                                                       \
     HF_HDF5_MEMBER(hf_summary, "/polish", "coupling_" #member, polish.coupling.member, kind)
 
-/* What the summary says of the run itself: X(struct, object, attribute, member, kind) */
+/* The members of the summary about the run itself. Rows: X(struct, object, attribute, member, kind) */
 #define RUN_MEMBERS(X)                                                                                                 \
     X(hf_summary, "/", "title", title, CHARS)                                                                          \
     X(hf_summary, "/", "threads", threads, INT)                                                                        \

@@ -157,7 +157,7 @@ void hf_layout_get_cases(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_put_sets(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_sets(hf_hdf5 *io, hf_summary *summary);
 
-/* layout_held: the limits that hold the shape of a stage, in /at_limit/STAGE: row, count, name, value, bound [n]. A
+/* layout_held: the limits that the shape of a stage is at, in /at_limit/STAGE: row, count, name, value, bound [n]. A
  * shape that is at no limit has no such group. */
 void hf_layout_put_held(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_held(hf_hdf5 *io, hf_summary *summary);

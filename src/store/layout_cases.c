@@ -1,10 +1,10 @@
-/* The group /cases. */
+/* Writes and reads the group /cases: the names and the figures of the load cases. */
 #include "store/layout.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* The object is set by state. */
+/* The object is NULL here; figures_of sets it for each load case. */
 #define FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_state_summary, NULL, #member, result.member, kind)
 #define COUPLING(type, member, kind, ...)                                                                              \
     HF_HDF5_MEMBER(hf_state_summary, NULL, "coupling_" #member, result.coupling.member, kind)
@@ -47,7 +47,7 @@ void hf_layout_put_cases(hf_hdf5 *io, const hf_summary *summary)
     }
 }
 
-/* They are printed as they are, and name groups. */
+/* Returns true if a name has only harmless characters. Names are printed as they are, and groups have them. */
 static bool is_name_right(const char *name)
 {
     static const char *const letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
@@ -57,7 +57,7 @@ static bool is_name_right(const char *name)
 void hf_layout_get_cases(hf_hdf5 *io, hf_summary *summary)
 {
     char name[HF_STATES_MAX][HF_SET_NAME_SIZE] = {{0}}, path[HF_LAYOUT_STATE_SIZE];
-    /* an unfinished result has the shapes of states, and no list of them yet */
+    /* An unfinished result has shapes of load cases, but no list of their names yet. */
     if (!hf_hdf5_has(io, io->file, "/cases") || !hf_hdf5_has(io, io->file, "/cases/name")) return;
     hid_t group = hf_hdf5_open_group(io, "/cases");
     int n = hf_hdf5_length(io, group, "name", HF_STATES_MAX);

@@ -1,4 +1,4 @@
-/* The group /coupling. */
+/* Writes and reads the group /coupling: the attachments, the history of the coupling and its results. */
 #include "store/layout.h"
 
 #include <stdlib.h>

@@ -1,16 +1,18 @@
-/* The group /front, and the point of another one that a run has taken. */
+/* Writes and reads the group /front, and the point that a run has taken from another front. In memory a front is an
+ * array of points; in the file each member of the points is a data set. The struct rows has these data sets as
+ * arrays. */
 #include "store/layout.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define POINTS_MAX 100000 /* of a file: the largest optimize.population */
+#define POINTS_MAX 100000 /* of a file; the maximum of optimize.population */
 #define GENES_MAX 10000000
 
 static const hf_hdf5_kind kind_of_mark = {HF_HDF5_ENUM, HF_FRONT_N_MARK, hf_front_mark_word, NULL};
 
-/* What the rows of a front are. */
+/* The data sets with one row per point. */
 enum { OBJECTIVE, MULTIPLIER, STATUS, MARK, ITERATIONS, CONVERGED, N_COLUMN };
 static hf_hdf5_array column(int i, int n_point, int n_objective)
 {
@@ -41,7 +43,7 @@ static hf_hdf5_array base_of(int n)
     return (hf_hdf5_array){"base", HF_KIND_REAL, 1, {(hsize_t)n}, "", "objectives of the shape after form-finding"};
 }
 
-/* The rows as arrays, for the file. */
+/* The members of all points as arrays, for the file. */
 typedef struct {
     double *objective, *multiplier; /* [n][n_objective] */
     signed char *status, *mark;     /* [n] */
@@ -71,7 +73,7 @@ static void free_rows(rows *r)
     free(r->converged);
 }
 
-/* Between rows and points, one way or the other. */
+/* pack copies points into rows, and unpack copies rows into points. */
 static void pack(rows *r, int n, int n_objective, const hf_front_point *point)
 {
     for (int i = 0; i < n; i++) {
@@ -180,7 +182,7 @@ static bool is_index(int value, int n)
     return value >= -1 && value < n;
 }
 
-/* A front of n_gene genes without its designs; the caller frees it. */
+/* Reads a front of n_gene design variables without its designs. The caller frees it. */
 static void read_front(hf_hdf5 *io, hid_t group, int n_gene, hf_front *front)
 {
     int n_objective = hf_hdf5_length(io, group, "base", HF_OBJECTIVES_MAX);
@@ -210,7 +212,7 @@ void hf_layout_get_front(hf_hdf5 *io, hf_summary *s)
     hf_front_free(&front);
 }
 
-/* Names of genes are printed: each ends within its room. */
+/* Reads the names of n design variables, each of *size bytes. They are printed, so each one ends with a NUL. */
 static char *read_genes(hf_hdf5 *io, hid_t group, int n, size_t *size)
 {
     size_t length = hf_hdf5_chars_length(io, group, "gene");

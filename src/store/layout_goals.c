@@ -1,9 +1,9 @@
-/* The group /goals. */
+/* Writes and reads the group /goals: the rows of the objective and their values in each stage. */
 #include "store/layout.h"
 
 #include <string.h>
 
-/* Where the values of a stage are in a summary, and its data set. */
+/* The stages whose results have values of objectives, and the names of their data sets. */
 enum { N_STAGE = HF_LAYOUT_N_GOALS_STAGE };
 static const char *const stage_name[N_STAGE] = {"form", "optimize", "polish"};
 
@@ -58,7 +58,7 @@ void hf_layout_put_goals(hf_hdf5 *io, const hf_summary *s)
     hf_hdf5_close(io, group);
 }
 
-/* They are printed as they are. */
+/* Returns true if all names have only harmless characters. They are printed as they are. */
 static bool are_names_right(hf_goal_list *g)
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
@@ -78,7 +78,7 @@ void hf_layout_get_goals(hf_hdf5 *io, hf_summary *s)
     hf_hdf5_array name = names(s->goals.n), weight = values("weight", s->goals.n, ""), fit = after_fit(s->goals.n);
     hf_hdf5_read_array(io, group, &name, s->goals.name);
     for (int k = 0; k < s->goals.n; k++)
-        s->goals.after_fit[k] = -1; /* of a file of before */
+        s->goals.after_fit[k] = -1; /* in files of earlier versions */
     if (hf_hdf5_has(io, group, "after_fit")) hf_hdf5_read_array(io, group, &fit, s->goals.after_fit);
     if (!s->goals.are_objectives) hf_hdf5_read_array(io, group, &weight, s->goals.weight);
     for (int stage = 0; stage < N_STAGE; stage++) {

@@ -1,4 +1,4 @@
-/* The group /at_limit. */
+/* Writes and reads the groups /at_limit/STAGE: the limits that the shape of a stage is at. */
 #include "store/layout.h"
 
 #include "base/text.h"
@@ -8,7 +8,7 @@
 enum { N_STAGE = 3, N_COLUMN = 5 };
 static const char *const group_of[N_STAGE] = {"/at_limit/form", "/at_limit/optimize", "/at_limit/polish"};
 
-/* The figures of one shape, and where they are. */
+/* Describes the data sets of one shape, and sets value[] to their values in `h`. */
 static void list_columns(hf_held_limits *h, hf_hdf5_array array[N_COLUMN], void *value[N_COLUMN])
 {
     const hsize_t n = (hsize_t)h->n;
@@ -43,7 +43,8 @@ void hf_layout_put_held(hf_hdf5 *io, const hf_summary *summary)
     }
 }
 
-/* They are printed as they are. */
+/* Returns true if names and indices are valid. Names are printed as they are, so they are trimmed to whole UTF-8
+ * characters. */
 static bool is_sound(hf_held_limits *h)
 {
     bool is_right = true;

@@ -1,4 +1,4 @@
-/* The groups /pattern/STAGE. */
+/* Writes and reads the groups /pattern/STAGE: the far field, its figures and the feed. */
 #include "store/layout.h"
 
 #include <string.h>
@@ -6,7 +6,7 @@
 static const hf_hdf5_kind kind_of_feed = {HF_HDF5_ENUM, 4, hf_feed_word, NULL};
 static const char *const stage_group[3] = {"/pattern/form", "/pattern/optimize", "/pattern/polish"};
 
-#define N_THETA_MOST 1000000 /* of a file */
+#define N_THETA_MOST 1000000 /* maximum number of angles in a file */
 
 /* ---- what stands there ---- */
 
@@ -53,7 +53,7 @@ static hf_hdf5_array array_of_figure(int i, int n_frequency, int n_cut)
         figure_table[i].description};
 }
 
-/* Figure i of all cuts: between the structs and a list of numbers, one way or the other. */
+/* Copies figure i of n cuts from the structs to a list of numbers (to_list), or back. */
 static void move_figure(int i, int n, hf_cut_figures *figure, double *list, bool to_list)
 {
     for (int k = 0; k < n; k++) {

@@ -1,4 +1,4 @@
-/* The group /set_tension. */
+/* Writes and reads the groups /set_tension/STAGE: minimum, maximum and ratio of the tensions in the named sets. */
 #include "store/layout.h"
 
 #include <string.h>
@@ -7,7 +7,7 @@ static const char *const stage_group[3] = {"/set_tension/form", "/set_tension/op
 
 enum { N_COLUMN = 3 };
 
-/* The numbers of one shape, and where they are. */
+/* Describes the data sets of one shape, and sets value[] to their values in `s`. */
 static void columns_of(hf_set_tensions *s, hf_hdf5_array array[N_COLUMN], double *value[N_COLUMN])
 {
     static const char *const name[N_COLUMN] = {"least_N", "largest_N", "ratio"};
@@ -45,7 +45,7 @@ void hf_layout_put_sets(hf_hdf5 *io, const hf_summary *summary)
     }
 }
 
-/* They are printed as they are. */
+/* Returns true if the names are valid and in ascending order. They are printed as they are. */
 static bool are_names_right(hf_set_tensions *s)
 {
     for (int k = 0; k < s->n; k++) {

@@ -1,9 +1,9 @@
-/* The group /surface. */
+/* Writes and reads the group /surface: the settings and the measures of the surface. */
 #include "store/layout.h"
 
 #include <string.h>
 
-/* The object is set by stage. */
+/* The object is NULL here; table_of sets it for each stage. */
 #define MEASURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_surface_measures, NULL, #member, member, kind)
 #define FIT(type, member, kind, ...) HF_HDF5_MEMBER(hf_surface_measures, NULL, "fit_" #member, fit.member, kind)
 static const hf_hdf5_member measures_table[] = {HF_SURFACE_LIST(MEASURE) HF_SURFACE_FIT_LIST(FIT)};
@@ -35,7 +35,7 @@ static hf_hdf5_array frequency_array(int n)
     return (hf_hdf5_array){"frequency_Hz", HF_KIND_REAL, 1, {(hsize_t)n}, "Hz", "at which the loss of gain is told"};
 }
 
-/* The data sets of losses of gain of a stage, and where their values are. */
+/* The data sets of the gain losses of a stage, and where hf_surface_measures has their values. */
 #define LOSS(member, description) {#member, description, offsetof(hf_surface_measures, member)},
 static const struct {
     const char *name, *description;

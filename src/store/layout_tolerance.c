@@ -1,4 +1,5 @@
-/* The figures in the group /tolerance. */
+/* Writes and reads the statistics in the group /tolerance. The functions pass_... list the data sets once. With
+ * put_values they write, with get_values they read. */
 #include "store/layout.h"
 
 #include <string.h>
@@ -7,7 +8,7 @@
 
 enum { WORD_SIZE = 32, N_PLAIN = 7, N_QUANTILE = 3 };
 
-/* Figures of all measures, side by side as data sets have them. */
+/* The statistics of all measures in arrays, as the data sets have them. */
 typedef struct {
     char measure[HF_TOLERANCE_N_MEASURE][WORD_SIZE];
     double plain[N_PLAIN][HF_TOLERANCE_N_MEASURE];
@@ -44,7 +45,7 @@ static void gather(const hf_tolerance_summary *s, figures *f)
     }
 }
 
-/* The row of a measure among n, or -1. */
+/* Returns the row of a measure among n, or -1. */
 static int row_of(int n, const figures *f, hf_tolerance_measure measure)
 {
     for (int k = 0; k < n; k++)
@@ -52,14 +53,14 @@ static int row_of(int n, const figures *f, hf_tolerance_measure measure)
     return -1;
 }
 
-/* What a file of before, which had one loss, calls gain_loss_dB. */
+/* Returns the measure that files of earlier versions call gain_loss_dB. They have only one loss. */
 static hf_tolerance_measure loss_of_before(int n, const figures *f)
 {
     int facets = row_of(n, f, HF_TOLERANCE_FACET_FIT_HALF_PATH);
     return facets >= 0 && f->plain[0][facets] == 1 ? HF_TOLERANCE_FACET_FIT_GAIN_LOSS : HF_TOLERANCE_FIT_GAIN_LOSS;
 }
 
-/* Of n rows: a file of before has fewer. */
+/* Copies n rows of figures into the summary. Files of earlier versions have fewer rows. */
 static void scatter(int n, const figures *f, hf_tolerance_summary *s)
 {
     bool has_losses = row_of(n, f, HF_TOLERANCE_FIT_GAIN_LOSS) >= 0;
@@ -79,7 +80,7 @@ static void scatter(int n, const figures *f, hf_tolerance_summary *s)
     }
 }
 
-/* An array of numbers that is read or written. */
+/* Describes an array of numbers for writing or reading. */
 static hf_hdf5_array numbers(const char *name, int n, const char *units, const char *description)
 {
     return (hf_hdf5_array){name, HF_KIND_REAL, 1, {(hsize_t)n}, units, description};
@@ -118,7 +119,7 @@ static void pass_figures(hf_hdf5 *io, hid_t group, pass *with, int n, figures *f
     }
 }
 
-/* The rows of tolerance.require, side by side. */
+/* The rows of tolerance.require in arrays. */
 typedef struct {
     char measure[HF_REQUIRE_ROWS_MAX][WORD_SIZE];
     double at_most[HF_REQUIRE_ROWS_MAX], at_least[HF_REQUIRE_ROWS_MAX];
@@ -190,7 +191,7 @@ void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
 {
     hf_tolerance_summary *s = &summary->tolerance;
     summary->has_tolerance = io->status == HF_OK && hf_hdf5_has(io, io->file, GROUP) &&
-                             hf_hdf5_has(io, io->file, GROUP "/histogram"); /* the last of its figures */
+                             hf_hdf5_has(io, io->file, GROUP "/histogram"); /* the last data set that is written */
     if (!summary->has_tolerance) return;
     requirements r = {0};
     figures f;
@@ -204,7 +205,7 @@ void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
     find_measures(io, group, &r, s);
     if (hf_hdf5_has(io, group, "ranked_share"))
         s->n_ranked = hf_hdf5_length(io, group, "ranked_share", HF_TOLERANCE_RANKED);
-    int n_kind = hf_hdf5_length(io, group, "kind_share", HF_TOLERANCE_KINDS); /* there were fewer in version 0.1 */
+    int n_kind = hf_hdf5_length(io, group, "kind_share", HF_TOLERANCE_KINDS); /* version 0.1 had fewer kinds */
     if (n_kind > 0) pass_shares(io, group, get_values, n_kind, s);
     for (int k = 0; k < s->n_ranked; k++)
         s->ranked_id[k][HF_TOLERANCE_ID_SIZE - 1] = '\0';

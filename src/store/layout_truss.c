@@ -1,11 +1,11 @@
-/* The group /truss. Contents: writing - reading */
+/* Writes and reads the group /truss. Sections: writing, reading. */
 #include "store/layout.h"
 
 #include "base/arena.h"
 
 #include <stdlib.h>
 
-/* "node/fixed": a bit of each dof in memory, a flag of each in the file */
+/* Describes "node/fixed": one bit per degree of freedom in memory, one flag per degree of freedom in the file. */
 static hf_hdf5_array fixed_array(int n_node)
 {
     return (hf_hdf5_array){"node/fixed",

@@ -1,4 +1,13 @@
-/* Contents: provenance, case, scene - beginning - shapes - generations - summary - publishing - the end */
+/* Implements <hifdm/store.h>, from the new file to the finished result:
+ *
+ *     hf_store_create        locks the result; writes provenance, case and scene into the temporary file
+ *     hf_store_form, ...     write shapes, truss, front, far field and load cases
+ *     hf_store_generation    appends a record to the journal; writes rows into the temporary file when enough wait
+ *     hf_store_publish       writes the summary, gives the file the visible name, empties the journal
+ *     hf_store_complete      writes the summary of the finished run and closes the file
+ *     hf_store_settle        syncs the file, gives it the visible name, removes the journal
+ *
+ * Sections: provenance, case and scene, beginning, shapes, generations, summary, publishing, the end. */
 #include <hifdm/store.h>
 
 #include "base/clock.h"
@@ -16,7 +25,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#ifndef HF_VERSION /* these four come from the Makefile */
+#ifndef HF_VERSION /* the Makefile defines the four macros below */
 #define HF_VERSION "unknown"
 #endif
 #ifndef HF_GIT_DESCRIBE
@@ -29,14 +38,16 @@
 #define HF_BUILD_FLAGS "unknown"
 #endif
 
-#define ARGUMENTS_MAX 4000 /* kept of the command line: an attribute holds 64 KiB */
-/* A publication is due when 50 times the time that the last one took has passed, so that publishing takes 2 % of the
- * run, and at least 0.5 s, so that most short runs are published at their beginning and their end alone. No test of the
- * store, of resuming or of interrupting changes for ratios from 5 to 500 and for times from 0.05 to 5 s. */
+#define ARGUMENTS_MAX 4000 /* maximum number of stored arguments; an attribute holds 64 KiB */
+/* A publication is due when PUBLISH_RATIO times the duration of the last one has passed. Publishing then takes 2 % of
+ * the run. At least PUBLISH_S must have passed, so that most short runs are published only at their beginning and their
+ * end. The tests of the store, of resuming and of interrupting pass with ratios from 5 to 500 and times from 0.05 to 5
+ * s. */
 #define PUBLISH_RATIO 50
 #define PUBLISH_S 0.5
-/* Of the largest tension: a stopping rule may leave 1e-6 between two builds. From 1e-9 to 1e-4 no test of the store, of
- * resuming or of interrupting changes; with 1e-2 one fails. */
+/* Maximum difference between the tensions of a resumed run and the stored ones, as part of the largest tension. A
+ * stopping rule may leave a difference of 1e-6 between two builds. The tests of the store, of resuming and of
+ * interrupting pass from 1e-9 to 1e-4; with 1e-2 one fails. */
 #define SAME_SHAPE 1e-5
 
 const char *const hf_stage_word[4] = {"form", "optimize", "polish", "none"};
@@ -47,11 +58,11 @@ const char *hf_store_version(void)
     return HF_VERSION " (" HF_GIT_DESCRIBE ")";
 }
 
-#define SETUP_BYTES (1 << 20) /* HDF5 1.10.8 takes less than 400 kB to set itself up */
+#define SETUP_BYTES (1 << 20) /* HDF5 1.10.8 needs less than 400 kB to set itself up */
 
 bool hf_store_quiet(void)
 {
-    void *room = malloc(SETUP_BYTES); /* HDF5 1.10 crashes when its set-up gets no memory */
+    void *room = malloc(SETUP_BYTES); /* HDF5 1.10 crashes if its set-up gets no memory */
     free(room);
     if (!room) return false;
     hf_hdf5_lock();
@@ -94,7 +105,7 @@ static void write_case(hf_store *s, const hf_case *settings)
     const char *overrides = settings->overrides ? settings->overrides : "";
     hf_hdf5_array text = {"text", HF_KIND_CHARS, 0, {strlen(settings->text)}, "", "the case file"};
     hf_hdf5_array set = {"overrides", HF_KIND_CHARS, 0, {strlen(overrides)}, "", "the --set arguments, a line each"};
-    for (int i = 0; i < 2; i++) /* HDF5 has no type of no bytes; the NUL serves as padding */
+    for (int i = 0; i < 2; i++) /* HDF5 has no type of 0 bytes; the NUL serves as padding */
         if (!(i ? &set : &text)->dims[0]) (i ? &set : &text)->dims[0] = 1;
     hid_t group = hf_hdf5_make_group(&s->f.io, "/case");
     hf_hdf5_write_array(&s->f.io, group, &text, settings->text);
@@ -205,7 +216,8 @@ static void write_shape(hf_store *s, hid_t group, const hf_model *m, const hf_wo
     hf_layout_write_columns(&s->f.io, group, &hf_layout_shape, m->n_node, m->n_cable, &shape);
 }
 
-/* A session on another machine, or of another build, may find the shape with other bits. */
+/* Compares a shape with the stored one. A session on another machine, or of another build, may find it with other
+ * bits. */
 static void compare_shape(hf_store *s, const hf_model *m, const hf_workspace *w)
 {
     hf_hdf5_array tension = {.name = "/form/tension_N", .kind = HF_KIND_REAL, .rank = 1};
@@ -282,7 +294,7 @@ hf_status hf_store_best(hf_store *s, hf_stage stage, const hf_model *m, const hf
     s->f.io.messages = messages;
     hf_store_file_open(&s->f);
     if (stage == HF_STAGE_OPTIMIZE) hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/ga"));
-    if (hf_hdf5_has(&s->f.io, s->f.io.file, hf_stage_group[stage]) && /* left by a session that was told to stop */
+    if (hf_hdf5_has(&s->f.io, s->f.io.file, hf_stage_group[stage]) && /* an interrupted session has left it */
         H5Ldelete(s->f.io.file, hf_stage_group[stage], H5P_DEFAULT) < 0)
         hf_hdf5_fail(&s->f.io, "replace", s->f.io.file, hf_stage_group[stage]);
     hid_t group = hf_hdf5_make_group(&s->f.io, hf_stage_group[stage]);
@@ -355,7 +367,8 @@ hf_status hf_store_pattern(hf_store *s, hf_stage stage, const hf_pattern_table *
 
 /* ---- generations ---- */
 
-/* What each gene of optimize.variables is: its row there, and the support that it moves. */
+/* Writes what each design variable of optimize.variables varies: its row there, and the support that it displaces with
+ * the direction. */
 static void write_rows(hf_hdf5 *io, hid_t group, const hf_model *m)
 {
     const hsize_t k[1] = {(hsize_t)m->n_gene};
@@ -422,19 +435,20 @@ hf_status hf_store_generation(hf_store *s, const hf_model *m, const hf_populatio
     hf_generations *g = &s->rows;
     s->f.io.messages = messages;
     HF_TRY(s->f.io.status);
-    HF_TRY(hf_store_genes(s, m, population, messages)); /* unless they are there, as in a run */
+    HF_TRY(hf_store_genes(s, m, population, messages)); /* a run has written them already */
     int generation = g->n_stored + g->n_waiting;
     hf_generations_add(g, population, piece);
     s->f.io.status = hf_journal_append(&s->f.journal, generation, piece, HF_GENERATIONS_PIECES, messages);
     if (s->f.io.status != HF_OK || !hf_generations_are_due(g)) return s->f.io.status;
-    /* The journal has it. Making room can wait while another run uses HDF5, unless there is none left. */
+    /* The journal has the generation already. While another run uses HDF5, making room can wait, unless no room is
+     * left. */
     if (hf_generations_are_full(g))
         hf_hdf5_lock();
     else if (!hf_hdf5_try_lock())
         return HF_OK;
     double begin_s = hf_clock_s();
     hf_store_file_open(&s->f);
-    s->publish_s += hf_clock_s() - begin_s; /* the copy is what publishing costs, too */
+    s->publish_s += hf_clock_s() - begin_s; /* the copy is part of the cost of publishing */
     hf_generations_make_room(&s->f.io, g);
     HF_TRY(hf_hdf5_unlock(s->f.io.status));
     hf_store_file_flow(&s->f);
@@ -451,12 +465,13 @@ static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
         return;
     }
     *state = *summary;
-    /* these groups exist already, unless the run had no shape or no generation to store */
+    /* These groups exist already, unless the run had no shape or no generation to store. */
     hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/form"));
     state->finished = finished;
     hf_layout_put_summary(&s->f.io, HF_LAYOUT_FORM, state);
     free(state);
-    if (summary->has_optimize || s->rows.block) { /* before the first generation, too: what is known already */
+    /* The search is written before its first generation, too, as far as it is known. */
+    if (summary->has_optimize || s->rows.block) {
         hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/ga"));
         hf_layout_put_summary(&s->f.io, HF_LAYOUT_GA, summary);
     }
@@ -482,7 +497,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
 
 /* ---- publishing ---- */
 
-/* Write the waiting generations and the summary and close the file. */
+/* Writes the waiting generations and the summary, and closes the file. */
 static void complete(hf_store *s, const hf_summary *summary, bool finished)
 {
     hf_store_file_open(&s->f);
@@ -492,7 +507,8 @@ static void complete(hf_store *s, const hf_summary *summary, bool finished)
     hf_store_file_close(&s->f);
 }
 
-/* This session may have stopped before the generations of the journal were restored: they would be lost. */
+/* Fails if generations of the journal were not restored, because this session stopped before that. They would be
+ * lost. */
 static hf_status demand_restored(hf_store *s, hf_messages *messages)
 {
     if (s->n_journal == 0) return HF_OK;
@@ -518,7 +534,7 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, bool at_once,
     complete(s, summary, false);
     hf_store_judge(s);
     hf_hdf5_unlock(HF_OK); /* other stores need not wait for the sync of this file */
-    /* without a sync before the first generation: a resumed run computes all of that again */
+    /* Before the first generation no sync is needed, because a resumed run computes everything again. */
     hf_store_file_publish(&s->f, s->rows.n_stored > 0, false);
     if (s->f.io.status == HF_OK && !hf_journal_is_empty(&s->f.journal))
         s->f.io.status = hf_journal_rotate(&s->f.journal, messages);
@@ -539,7 +555,7 @@ hf_status hf_store_complete(hf_store *s, const hf_summary *summary, hf_messages 
     HF_TRY(demand_restored(s, messages));
     hf_hdf5_lock();
     complete(s, summary, true);
-    hf_generations_free(&s->rows); /* hf_store_settle may come much later */
+    hf_generations_free(&s->rows); /* frees memory now, because hf_store_settle may come much later */
     return hf_hdf5_unlock(hf_store_judge(s));
 }
 

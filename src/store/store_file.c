@@ -1,4 +1,4 @@
-/* Contents: names and checks - the temporary file - publishing - the end */
+/* Implements store_file.h. Sections: names and checks, the temporary file, publishing, the end. */
 #include "store/store_file.h"
 
 #include "base/file_io.h"
@@ -12,11 +12,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#define COPY_BYTES (1 << 20) /* copied at a time; the copy does not depend on it */
-/* Written since the system was last asked to bring the file to the disk in the meantime. It is an advice, which the
- * file does not depend on: with 0 and with 100 MiB no test of the store, of results or of interrupting changes. */
+#define COPY_BYTES (1 << 20) /* bytes copied at a time; the copy does not depend on it */
+/* Bytes written after which the system is asked again to write the file to the disk. This is only advice, and the file
+ * does not depend on it. The tests of the store, of results and of interrupting pass with 0 and with 100 MiB. */
 #define FLOW_BYTES (1 << 20)
-#define NAMES_MAX 100 /* of a result that cannot get its own */
+#define NAMES_MAX 100 /* names that are tried for a result that cannot get its own */
 
 /* ---- names and checks ---- */
 
@@ -65,7 +65,7 @@ void hf_store_file_create(hf_store_file *f)
     if (f->io.status == HF_OK && make_temporary(f)) hf_hdf5_create_file(&f->io, &f->out);
 }
 
-/* 0, or -1 and errno. */
+/* Copies the rest of one file to another, through buffer[COPY_BYTES]. Returns 0, or -1 and errno. */
 static int copy_bytes(int from, int to, char *buffer)
 {
     ssize_t n;
@@ -97,7 +97,7 @@ void hf_store_file_open(hf_store_file *f)
     if (f->io.status == HF_OK) hf_hdf5_open_to_write(&f->io, &f->out);
 }
 
-/* Only advice to the system: its failure does not matter. */
+/* The call is only advice to the system, so its failure does not matter. */
 void hf_store_file_flow(hf_store_file *f)
 {
     struct stat info;
@@ -120,9 +120,9 @@ void hf_store_file_adopt(hf_store_file *f)
 
 /* ---- publishing ---- */
 
-/* HDF5 1.10 does not survive a close that cannot write what is left: the ids stay open and the program crashes at its
- * end. So all is written before; and when the disk is full, the file stays open, for which hf_store_quiet has prepared,
- * but empty. */
+/* HDF5 1.10 does not survive a close that cannot write the remaining data. The ids stay open, and the program crashes
+ * at its end. All data are therefore flushed before the close. If the disk is full, the file stays open but empty;
+ * hf_store_quiet has prepared the program for this. */
 void hf_store_file_close(hf_store_file *f)
 {
     if (f->io.file < 0) return;
@@ -141,7 +141,7 @@ static void sync_failed(hf_store_file *f)
     f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot write to the disk: %s", f->out.path, strerror(errno));
 }
 
-/* Is the visible file still the one of this run? */
+/* Returns true if the visible file is still that of this run. */
 static bool is_ours(const hf_store_file *f)
 {
     struct stat now;
@@ -149,7 +149,8 @@ static bool is_ours(const hf_store_file *f)
            now.st_mtim.tv_sec == f->ours.st_mtim.tv_sec && now.st_mtim.tv_nsec == f->ours.st_mtim.tv_nsec;
 }
 
-/* Keep a whole file that cannot get its name, under a name that no later run uses. */
+/* Sets the status after a file could not get its name. If the file is worth keeping, it gets a name that no later run
+ * uses. */
 static void keep_work(hf_store_file *f, bool is_worth_keeping)
 {
     char kept[HF_FILE_OUT_SIZE + 64] = "";
@@ -179,7 +180,8 @@ static void keep_work(hf_store_file *f, bool is_worth_keeping)
 
 #define EARLIER ".before-restart"
 
-/* Is the name that of the earlier result itself? A restart that ended between its two changes of names leaves that. */
+/* Returns true if `name` is a second name of the earlier result itself. A restart leaves both names if it ended between
+ * its two changes of names. */
 static bool is_earlier(const char *name, const char *result)
 {
     struct stat of_name, of_result;
@@ -210,7 +212,7 @@ static void keep_earlier(hf_store_file *f)
     char name[HF_FILE_OUT_SIZE + 16];
     snprintf(name, sizeof name, "%s" EARLIER, f->out.path);
     int failed = is_earlier(name, f->out.path) ? 0 : hf_file_out_second_name(f->out.path, name);
-    if (failed && errno != ENOENT) /* somebody else has removed it */
+    if (failed && errno != ENOENT) /* another process has removed it */
         f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot keep the earlier result as %s: %s", f->out.path,
                                 name, strerror(errno));
     f->earlier = failed ? HF_EARLIER_NONE : HF_EARLIER_KEPT;
@@ -220,7 +222,7 @@ void hf_store_file_forget_earlier(const char *result)
 {
     char name[HF_FILE_OUT_SIZE + 16];
     snprintf(name, sizeof name, "%s" EARLIER, result);
-    (void)unlink(name); /* what stays is in the way of a restart, which says so */
+    (void)unlink(name); /* if it stays, the next restart reports it */
 }
 
 static void remove_earlier(hf_store_file *f)
@@ -232,7 +234,7 @@ static void remove_earlier(hf_store_file *f)
     f->earlier = HF_EARLIER_NONE;
 }
 
-/* Sync before the rename: after a power cut there is the old file or the new one, whole. */
+/* Syncs the file before the rename. After a power cut there is either the old file or the new one, whole. */
 void hf_store_file_publish(hf_store_file *f, bool durable, bool is_finished)
 {
     if (f->io.status == HF_OK && durable && hf_file_out_sync(f->out.file) != 0) sync_failed(f);
@@ -258,7 +260,7 @@ void hf_store_file_publish(hf_store_file *f, bool durable, bool is_finished)
 
 /* ---- the end ---- */
 
-/* The journal stays beside a temporary file that could not be removed: where there is one, the next command looks for
+/* The journal stays beside a temporary file that could not be removed. The next command that finds a journal looks for
  * such files. */
 void hf_store_file_end(hf_store_file *f, hf_messages *messages)
 {
@@ -268,7 +270,7 @@ void hf_store_file_end(hf_store_file *f, hf_messages *messages)
     if (f->earlier == HF_EARLIER_KEPT && messages)
         hf_warning(messages, "%s: the earlier result is %s" EARLIER " until this one is finished", f->out.path,
                    f->out.path);
-    hf_file_out_drop(&f->out, messages); /* before the lock is given back */
+    hf_file_out_drop(&f->out, messages); /* before the lock is released */
     bool is_needless = f->is_published ? hf_journal_is_empty(&f->journal) : f->journal.is_new;
     hf_journal_close(&f->journal, is_needless && !f->out.is_left);
     hf_messages_free(&unwanted);

@@ -1,5 +1,6 @@
-/* What is at a path: nothing, a result of this case, or anything else.
- * Contents: identity - look - before a restart */
+/* Finds out what is at a path: nothing, a result of this case, or something else. A child process reads the file first,
+ * because some damaged files crash HDF5. Then the identity in the file is compared with that of the case. Sections:
+ * identity, look, before a restart. */
 #include "store/store_read.h"
 
 #include "base/file_io.h"
@@ -20,7 +21,7 @@
 
 /* ---- identity ---- */
 
-/* identity = digest of the identity so far and of these bytes */
+/* Replaces the identity by the digest of the identity so far and of the digest of these bytes. */
 static void extend(char identity[65], const void *data, size_t bytes)
 {
     char both[128], hex[65];
@@ -42,7 +43,7 @@ static void extend_columns(char identity[65], const hf_layout_columns *columns, 
     }
 }
 
-/* Ids are digested with their NULs, so that "a", "bc" differs from "ab", "c". */
+/* Extends the identity by n ids. They are digested with their NULs, so that "a", "bc" differs from "ab", "c". */
 static hf_status extend_ids(char identity[65], int n, const char *const *id)
 {
     size_t size = 1, used = 0;
@@ -57,7 +58,8 @@ static hf_status extend_ids(char identity[65], int n, const char *const *id)
     return HF_OK;
 }
 
-/* The tables that rows of `cases` name. The case has been read: one that cannot be read now is as good as empty. */
+/* Extends the identity by the tables that rows of `cases` name. These were read with the case. A table that cannot be
+ * read now is left out. */
 static hf_status extend_tables(char identity[65], const hf_case *c)
 {
     for (int i = 0; i < c->built.n_state; i++) {
@@ -83,7 +85,7 @@ hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, cons
     HF_TRY(extend_ids(identity, scene->n_node, scene->node_id));
     HF_TRY(extend_ids(identity, scene->n_cable, scene->cable_id));
     if (scene->n_facet > 0) extend(identity, scene->facet, 4 * (size_t)scene->n_facet * sizeof *scene->facet);
-    if (scene->n_set > 0 && scene->cables_file) { /* those of a generated net follow from the case */
+    if (scene->n_set > 0 && scene->cables_file) { /* sets of a generated net follow from the case */
         extend(identity, scene->set_start, ((size_t)scene->n_set + 1) * sizeof *scene->set_start);
         extend(identity, scene->set_cable, (size_t)scene->set_start[scene->n_set] * sizeof *scene->set_cable);
         HF_TRY(extend_ids(identity, scene->n_set, scene->set_name));
@@ -99,14 +101,14 @@ hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, cons
 
 /* ---- look ---- */
 
-/* "--point night.h5:7", of as much of the path as there is room for; returns text. */
+/* Writes "--point night.h5:7" into text[size], with at most 250 bytes of the path. Returns text. */
 static const char *name_point(const hf_front_origin *taken, char *text, size_t size)
 {
     snprintf(text, size, taken->point ? "--point %.250s:%d" : "no --point", taken->path, taken->point);
     return text;
 }
 
-/* Which keys differ between the stored case and this one, or the points that they took, in words. */
+/* Writes into words[size] in which keys the stored case and this one differ, or which points they took. */
 static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t size)
 {
     hf_case *then = calloc(1, sizeof *then);
@@ -134,8 +136,8 @@ static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t
     free(then);
 }
 
-/* A run that was killed after its result had got its name leaves a journal that nobody needs, and perhaps the temporary
- * name of the result, and the earlier result that it replaced. */
+/* Removes the journal of a finished result. A run that was killed after its result had got its name leaves a journal,
+ * and perhaps the temporary name of the result and the earlier result that it replaced. All of them are removed. */
 static void remove_journal(const char *path, bool keeps_earlier, const char *identity)
 {
     char target[HF_FILE_OUT_SIZE], name[HF_FILE_OUT_SIZE + 16];
@@ -160,8 +162,8 @@ static void ignore_difference(void *context, const char *name, const char *how)
     (void)how;
 }
 
-/* Read all that a run will read, in a child: HDF5 crashes on some damaged files, or reads them for ever. Of a finished
- * result a run reads the summary alone. */
+/* Reads everything that a run will read. It runs in a child process, because HDF5 crashes on some damaged files or
+ * reads them forever. Of a finished result a run reads only the summary. */
 static void read_like_a_run(const char *path)
 {
     hf_messages unwanted = {0};
@@ -174,7 +176,8 @@ static void read_like_a_run(const char *path)
     free(summary);
 }
 
-/* The machine's fault, and not that of what is there. */
+/* Reports the first message of `said` again, as a failure of the machine and not of the file. Frees `said` and returns
+ * the status. */
 static hf_status pass_on(hf_messages *said, hf_status status, hf_messages *messages)
 {
     const char *why = said->text + strlen("error: ");
@@ -193,7 +196,7 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
     int failed = stat(path, &info);
     if (failed && hf_file_io_fault(errno, HF_OK) != HF_OK)
         return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
-    if (failed || !S_ISREG(info.st_mode)) return HF_OK; /* hf_store_create says what is wrong */
+    if (failed || !S_ISREG(info.st_mode)) return HF_OK; /* hf_store_create reports what is wrong */
     hf_messages said = {0};
     hf_status tried = hf_hdf5_try(read_like_a_run, path, words, sizeof words, messages);
     if (tried == HF_EXISTS)

@@ -1,4 +1,5 @@
-/* Contents: opening a result file - summary - scene - shape - truss - the stored case - provenance */
+/* Implements the reading calls of <hifdm/store.h> and of store_read.h. Sections: opening a result file, summary, scene,
+ * shape, truss, the stored case, provenance. */
 #include "store/store_read.h"
 
 #include "base/arena.h"
@@ -12,8 +13,8 @@
 
 /* ---- opening a result file ---- */
 
-/* Is an open file one of ours? No message when the attribute `program` is missing or of another type. *could_read:
- * false when the machine, not the file, is why it cannot be told. */
+/* Returns true if an open file is a file of hifdm. There is no message if the attribute `program` is missing or of
+ * another type. *could_read: false if the machine, not the file, is the reason why this is unknown. */
 static bool is_ours(const hf_hdf5 *io, bool *could_read)
 {
     char program[16] = "";
@@ -25,7 +26,7 @@ static bool is_ours(const hf_hdf5 *io, bool *could_read)
     return !strcmp(program, HF_PROGRAM);
 }
 
-/* Note which version made the file, if not this one. */
+/* Notes in io->made_by which version made the file, if not this one. */
 static void note_version(hf_hdf5 *io)
 {
     char version[64] = "", git[64] = "", both[132];
@@ -58,8 +59,8 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
 
 /* ---- summary ---- */
 
-/* Status of the run. Older files have it as a text of variable length, which is not read: there it follows from the
- * stages. */
+/* Reads the status of the run. Earlier versions wrote it as a text of variable length, which is not read; the status
+ * then follows from the stages. */
 static void get_status(hf_hdf5 *io, hf_summary *s)
 {
     char word[32] = "";
@@ -178,7 +179,7 @@ static bool are_sets_right(const hf_scene *s, int n_member)
     return true;
 }
 
-/* The sets of a scene; results of before have none. The start of each is checked before anything is taken from it. */
+/* Reads the sets of a scene; results of earlier versions have none. The sets are checked before anything uses them. */
 static void read_sets(hf_hdf5 *io, hid_t group, hf_scene *s)
 {
     if (io->status != HF_OK || !hf_hdf5_has(io, group, "set")) return;
@@ -205,7 +206,7 @@ static void read_sets(hf_hdf5 *io, hid_t group, hf_scene *s)
     free(name);
 }
 
-/* The facets that the import named, if any. */
+/* Reads the facets that the import named, if there are any. */
 static void read_facets(hf_hdf5 *io, hid_t group, hf_scene *s)
 {
     if (io->status != HF_OK || !hf_hdf5_has(io, group, "facet")) return;
@@ -285,7 +286,7 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
     *shape = (hf_shape){0};
     bool is_there = stage != HF_STAGE_NONE && (stage != HF_STAGE_OPTIMIZE || hf_hdf5_has(&io, io.file, "/ga")) &&
                     hf_hdf5_has(&io, io.file, hf_stage_group[stage]);
-    if (!is_there && io.status == HF_OK) /* a failure of hf_hdf5_has has its message already */
+    if (!is_there && io.status == HF_OK) /* hf_hdf5_has has reported a failure already */
         io.status =
             hf_error(messages, HF_IO, "%s: has no %s shape: that stage did not run, or found no feasible design", path,
                      hf_stage_word[stage]);
@@ -295,7 +296,8 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
     return hf_hdf5_unlock(io.status);
 }
 
-/* Is there this part of a state? If not, io has its error. */
+/* Returns true if this part of a load case exists; if not, io has the error. Writes the path of the load case into
+ * `group`. */
 static bool has_state(hf_hdf5 *io, const char *name, const char *part, char group[HF_LAYOUT_STATE_SIZE])
 {
     char object[HF_LAYOUT_STATE_SIZE];
@@ -369,7 +371,8 @@ hf_status hf_store_read_state_truss(const char *path, const char *name, const hf
 
 /* ---- the stored case ---- */
 
-/* Split lines in place; the caller frees the list. NULL when memory ran out. */
+/* Splits a text into *n lines in place. Returns the list of lines, which the caller frees, or NULL if memory runs
+ * out. */
 static const char **split_lines(char *text, int *n)
 {
     size_t count = 1;
@@ -400,7 +403,7 @@ bool hf_store_parse_case(hf_hdf5 *io, const char *path, hf_case *settings)
     hf_hdf5_read_text(io, io->file, "/case/overrides", &overrides);
     if (io->status == HF_OK && !(set = split_lines(overrides, &n_set))) hf_hdf5_no_memory(io);
     if (io->status == HF_OK) is_known = hf_config_parse(path, text, set, n_set, settings, &unwanted) == HF_OK;
-    settings->optimize.seed = seed; /* as --seed may have set it */
+    settings->optimize.seed = seed; /* --seed may have set it */
     hf_messages_free(&unwanted);
     free(set);
     free(text);
@@ -445,12 +448,12 @@ hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf
     size_t used = 0;
     *text = '\0';
     for (int i = 0; i < HF_HDF5_COUNT(from); i++) {
-        char value[6144] = "", line[6144]; /* the flags of a build may be long */
+        char value[6144] = "", line[6144]; /* build flags may be long */
         if (!hf_hdf5_has_chars(&io, io.file, from[i][0], from[i][1])) continue;
         hf_hdf5_get(&io, io.file, from[i][0], from[i][1], HF_KIND_CHARS, value, sizeof value);
-        hf_text_escape(value, line, sizeof line); /* a line each, whatever it holds */
+        hf_text_escape(value, line, sizeof line); /* one line, whatever the value contains */
         int n = snprintf(text + used, size - used, "%s: %s\n", from[i][1], line);
-        if (n < 0 || (size_t)n >= size - used) break; /* cut at the end of the room */
+        if (n < 0 || (size_t)n >= size - used) break; /* the text ends where its room ends */
         used += (size_t)n;
     }
     hf_hdf5_close_file(&io);

@@ -1,4 +1,13 @@
-/* Contents: state of the file - breeding again - Levenberg-Marquardt - recovery */
+/* Resumes an unfinished result:
+ *
+ *     hf_store_resume            copies the visible file and counts the records of the journal
+ *     hf_store_restore_base      reads the initial design of the search
+ *     hf_store_restore           puts the optimiser into the state of the last generation of the file; then, for each
+ *                                record, proposes its designs again, compares their hash and takes its results
+ *     hf_store_restore_polish    reads the state of the refinement
+ *
+ * hf_store_recover does the same without a run: it makes the optimiser from the file alone and publishes the result.
+ * Sections: state of the file, proposing again, refinement, recovery. */
 #include "store/store_internal.h"
 #include "store/store_read.h"
 
@@ -11,13 +20,14 @@
 
 /* ---- state of the file ---- */
 
-/* Is this record the generation that follows those of the file? False when the file has it already, or with *status,
- * which the hf_journal_take returns. */
+/* Returns true if this record is the generation that follows those of the file. Otherwise *status is HF_OK if the file
+ * has the generation already, and HF_EXISTS if the record does not fit. The hf_journal_take that calls this returns
+ * *status. */
 static bool is_news(hf_store *s, int generation, size_t bytes, int next, hf_status *status)
 {
     const hf_generations *g = &s->rows;
     *status = HF_OK;
-    if (generation < next) return false; /* published before the journal could be rotated */
+    if (generation < next) return false; /* published before the journal was rotated */
     if (generation == next && bytes == g->payload_bytes && generation < g->limit) return true;
     *status = hf_error(s->f.io.messages, HF_EXISTS,
                        "%s: does not fit to %s, which goes on with generation %d of %zu bytes, not %d of %zu; was it "
@@ -35,18 +45,22 @@ static hf_status count_record(void *context, int generation, const void *payload
     return status;
 }
 
-#define INDIVIDUALS_MAX 100000  /* as optimize.population and optimize.generations in the table of keys: the */
-#define GENERATIONS_MAX 1000000 /* limits keep a damaged file from taking all memory */
+/* Limits of optimize.population and optimize.generations, as in the table of keys. They keep a damaged file from taking
+ * all memory. */
+#define INDIVIDUALS_MAX 100000
+#define GENERATIONS_MAX 1000000
 
-/* Sizes of the population, limit of generations and which of them the file holds. */
+/* Reads the sizes of the population, the limit of generations, and which of their individuals the file holds. */
 static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_gene, int *n_objective, int *limit, int *every)
 {
     hf_hdf5_get(io, io->file, "/ga", "n_individual", HF_KIND_INT, n_individual, sizeof *n_individual);
     hf_hdf5_get(io, io->file, "/ga", "n_variable", HF_KIND_INT, n_gene, sizeof *n_gene);
     hf_hdf5_get(io, io->file, "/ga", "generations_limit", HF_KIND_INT, limit, sizeof *limit);
-    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "store_every", H5P_DEFAULT) > 0) /* new */
+    /* Files of earlier versions do not have this attribute. */
+    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "store_every", H5P_DEFAULT) > 0)
         hf_hdf5_get(io, io->file, "/ga", "store_every", HF_KIND_INT, every, sizeof *every);
-    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "n_objective", H5P_DEFAULT) > 0) /* of a front */
+    /* Only populations of a front have this attribute. */
+    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "n_objective", H5P_DEFAULT) > 0)
         hf_hdf5_get(io, io->file, "/ga", "n_objective", HF_KIND_INT, n_objective, sizeof *n_objective);
     int n_stored =
         io->status == HF_OK && *n_gene == 0 ? 0 : hf_hdf5_length(io, io->file, "/ga/gene_group", HF_LAYOUT_COUNT_MAX);
@@ -70,8 +84,8 @@ static void note_session(hf_store *s)
     hf_store_put_time(s, "resumed_utc");
 }
 
-/* What is written later, by name, must go into this file and nowhere else: no links, no data sets with values in other
- * files. */
+/* Checks an object of a resumed file. Data that are written later, by name, must go into this file and nowhere else.
+ * Links, and data sets with values in other files, are therefore damage. */
 static void demand_plain(void *context, const char *path, hid_t object, H5I_type_t type)
 {
     hf_hdf5 *io = context;
@@ -94,7 +108,7 @@ static void read_state(hf_store *s)
     if (io->status == HF_OK && finished)
         io->status =
             hf_error(io->messages, HF_EXISTS, "%s: is finished, there is nothing to go on with", s->f.out.path);
-    if (!hf_hdf5_has(io, io->file, "/ga")) { /* stopped before, or without, a genetic algorithm */
+    if (!hf_hdf5_has(io, io->file, "/ga")) { /* the run stopped before its search, or has none */
         if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, io->messages);
         return;
     }
@@ -116,8 +130,8 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     if (!s) return status;
     hf_hdf5_lock();
     s->is_resumed = true;
-    s->every = 1;                     /* unless the file says otherwise: none of its generations is dropped */
-    s->published_at_s = hf_clock_s(); /* what is there is visible */
+    s->every = 1;                     /* every generation, unless the file says otherwise */
+    s->published_at_s = hf_clock_s(); /* the content so far is visible */
     hf_store_file_adopt(&s->f);
     hf_store_file_open(&s->f);
     read_state(s);
@@ -141,30 +155,30 @@ hf_status hf_store_restore_base(hf_store *s, int n_gene, double *base_N, hf_mess
     hf_hdf5_lock();
     s->f.io.messages = messages;
     hf_store_file_open(&s->f);
-    if (hf_hdf5_has(&s->f.io, s->f.io.file, base.name)) { /* earlier builds had none */
+    if (hf_hdf5_has(&s->f.io, s->f.io.file, base.name)) { /* earlier versions stored none */
         hf_hdf5_read_array(&s->f.io, s->f.io.file, &base, base_N);
         check_base(&s->f.io, n_gene, base_N);
     }
     return hf_hdf5_unlock(hf_store_judge(s));
 }
 
-/* ---- breeding again ---- */
+/* ---- proposing again ---- */
 
 typedef struct {
     hf_store *store;
-    hf_optimiser *optimiser; /* before hf_optimiser_tell of the last generation that was taken, or just created */
+    hf_optimiser *optimiser; /* just created, or before hf_optimiser_tell of the last generation that was taken */
     int n_taken;
-    bool drops; /* drop generations that this build breeds otherwise; else they are an error */
+    bool drops; /* generations whose designs this build proposes differently are dropped; else an error */
 } breeding;
 
-/* The designs of a record are bred from the generation before it. */
+/* Takes a record of the journal. Its designs are proposed again from the generation before it. */
 static hf_status breed_record(void *context, int generation, const void *payload, size_t bytes)
 {
     breeding *b = context;
     hf_store *s = b->store;
     hf_generations *g = &s->rows;
     hf_optimiser *o = b->optimiser;
-    const hf_optimiser before = *o; /* the generation before stays as it is, see hf_optimiser_kind */
+    const hf_optimiser before = *o; /* its arrays do not change, see hf_optimiser_kind */
     hf_status status;
     if (!is_news(s, generation, bytes, g->n_stored + g->n_waiting, &status)) return status;
     int goes_on = 1;
@@ -186,7 +200,7 @@ static hf_status breed_record(void *context, int generation, const void *payload
                         "%s: %s is damaged: generation %d is none that a run stores; --restart (of a sweep: --retry "
                         "failed) begins anew",
                         s->f.out.path, s->f.journal.path, generation);
-    o->is_fresh = false; /* the record is of a generation that was told */
+    o->is_fresh = false; /* the generation of the record has been ranked */
     hf_generations_add(g, &o->population, NULL);
     b->n_taken++;
     if (hf_generations_are_full(g)) hf_generations_make_room(&s->f.io, g);
@@ -209,8 +223,8 @@ static void breed_journal(hf_store *s, hf_optimiser *optimiser, int drops)
     s->n_journal = 0;
 }
 
-/* Read the summary of the genetic algorithm as it was published last. Files of earlier builds have none before the
- * first generation. */
+/* Reads the summary of the search as it was published last. Files of earlier versions have none before the first
+ * generation. */
 static void read_known(hf_hdf5 *io, hf_summary *summary)
 {
     if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "solver", H5P_DEFAULT) > 0)
@@ -241,7 +255,7 @@ hf_status hf_store_restore(hf_store *s, hf_optimiser *optimiser, hf_summary *sum
     return restore(s, optimiser, 1, summary, messages);
 }
 
-/* ---- Levenberg-Marquardt ---- */
+/* ---- refinement ---- */
 
 #define POLISH_STATE "/polish_state"
 
@@ -306,17 +320,17 @@ void hf_store_put_polish(hf_store *s, bool finished)
 
 /* ---- recovery ---- */
 
-/* The optimiser of an unfinished file, made from the file alone: of the model only the genes are set. */
+/* The optimiser of an unfinished file, made from the file alone. Only the design variables of the model are set. */
 typedef struct {
     hf_case settings;
     hf_model model;
     int *group, *leader; /* [n_gene] */
     double *base_N;      /* [n_gene] */
-    hf_gene *rows;       /* [n_gene] under optimize.variables, else NULL */
+    hf_gene *rows;       /* [n_gene] with optimize.variables, else NULL */
     hf_optimiser optimiser;
 } stored_search;
 
-/* The rows of optimize.variables that the genes are of. */
+/* Reads the rows of optimize.variables that the design variables belong to. */
 static void read_variables(hf_hdf5 *io, hid_t group, stored_search *a)
 {
     const hf_optimize_settings *o = &a->settings.optimize;
@@ -395,7 +409,7 @@ static void close_stored_search(stored_search *a)
     free(a->rows);
 }
 
-/* *a is all zeros. */
+/* Adds the generations of the journal to the file and publishes it. *a must be all zero. */
 static hf_status recover(const char *path, stored_search *a, hf_summary *summary, hf_messages *messages)
 {
     hf_store *s;

@@ -1,4 +1,4 @@
-/* Contents: numbers - texts - names - links */
+/* Implements store_series.h. Sections: numbers, texts, names, links. */
 #include "store/store_series.h"
 
 #include "base/arena.h"
@@ -8,13 +8,13 @@
 #include <stdio.h>
 #include <string.h>
 
-#define NAMES_MAX 1000 /* in a group; a study has fewer axes than there are keys */
-#define FILE_MAX 1024  /* of the file name of a link; longer ones are given as "", and a page shows no link */
+#define NAMES_MAX 1000 /* names in a group; more than there are keys, and so more than a study has axes */
+#define FILE_MAX 1024  /* bytes of the file name of a link; a longer name becomes "", and a page shows no link */
 
 /* ---- numbers ---- */
 
-/* n of a data set of numbers [n] or [n][columns]; 0 = as many columns as it has. Sets series->columns and the type to
- * read as: HDF5 turns every kind of number into double, but no enumeration. */
+/* Returns n of a data set of numbers [n] or [n][columns]; columns = 0: any number. Sets series->columns, and *type to
+ * the type to read. HDF5 converts every kind of number to double, but not enumerations. */
 static int measure_series(hf_hdf5 *io, const char *name, hid_t data_set, int columns, hf_series *series, hid_t *type)
 {
     hsize_t dims[H5S_MAX_RANK] = {0};
@@ -85,7 +85,8 @@ void hf_texts_free(hf_texts *texts)
     *texts = (hf_texts){0};
 }
 
-/* All zero: a text always ends, whatever is copied into its first length - 1 bytes. */
+/* Allocates n texts of `length` bytes, all zero. A text therefore ends with a NUL if only its first length - 1 bytes
+ * are written. */
 static bool allocate(hf_hdf5 *io, int n, size_t length, hf_texts *texts)
 {
     hf_arena arena = {0};
@@ -104,9 +105,9 @@ static hf_status finish(hf_hdf5 *io, hf_texts *texts)
     return hf_hdf5_unlock(io->status);
 }
 
-#define DIGITS_SIZE 24 /* of 64 bits in decimal, and the NUL; a multiple of 8 */
+#define DIGITS_SIZE 24 /* bytes for 64 bits in decimal digits and the NUL; a multiple of 8 */
 
-/* Decimal digits of n numbers that a double might not hold. */
+/* Reads n unsigned 64-bit numbers as decimal digits. A double might not hold them exactly. */
 static void read_digits(hf_hdf5 *io, const char *name, hid_t data_set, int n, hf_texts *texts)
 {
     if (!allocate(io, n, DIGITS_SIZE, texts)) return;
@@ -144,7 +145,7 @@ static void read_texts(hf_hdf5 *io, const char *name, hid_t data_set, hf_texts *
         else if (is_uint64)
             read_digits(io, name, data_set, (int)n, texts);
         else if (allocate(io, (int)n, length + 1, texts)) {
-            type = H5Tcopy(H5T_C_S1); /* one byte longer than stored: room for the NUL */
+            type = H5Tcopy(H5T_C_S1); /* one byte longer than stored, for the NUL */
             if (type < 0 || H5Tset_size(type, length + 1) < 0 || H5Tset_cset(type, H5Tget_cset(stored)) < 0 ||
                 H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts->text) < 0)
                 hf_hdf5_fail(io, "read", io->file, name);
@@ -207,7 +208,8 @@ hf_status hf_store_read_names(const char *path, const char *group, hf_texts *nam
 
 /* ---- links ---- */
 
-/* The file of an external link, into `file` of FILE_MAX bytes; nothing when it is none. */
+/* Writes the file of an external link into file[FILE_MAX]. Writes nothing for another link, or if the name is too
+ * long. */
 static void read_link(hf_hdf5 *io, hid_t group, const char *name, char *file)
 {
     char value[2 * FILE_MAX];

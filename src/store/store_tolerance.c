@@ -1,3 +1,5 @@
+/* Implements store_tolerance.h. The samples are read and written block by block. The shares and deviations come from
+ * the covariance, to first order. */
 #include "store/store_tolerance.h"
 
 #include "base/arena.h"
@@ -9,7 +11,7 @@
 
 typedef struct {
     hf_hdf5_array array;
-    int column; /* of a row */
+    int column; /* index into a row */
 } sample_column;
 
 static int list_columns(const hf_montecarlo *t, sample_column of[HF_TOLERANCE_COLUMNS])
@@ -31,7 +33,7 @@ static int list_columns(const hf_montecarlo *t, sample_column of[HF_TOLERANCE_CO
     return n;
 }
 
-/* Values of a column, as the data set has them. */
+/* Copies the values of a column from n rows into real[n]. The column of the status is also copied to whole[n]. */
 static void pick_column(const sample_column *c, int n, const double *row, double *real, int *whole)
 {
     for (int i = 0; i < n; i++) {
@@ -119,6 +121,6 @@ hf_status hf_store_tolerance(hf_store *s, const hf_montecarlo *t, const hf_stati
     hf_status status = write_first_order(io, t);
     if (status == HF_OK) status = write_samples(io, t, rows);
     if (status == HF_NO_MEMORY) hf_hdf5_no_memory(io);
-    if (io->status == HF_OK) io->status = status; /* reading them has told why */
+    if (io->status == HF_OK) io->status = status; /* rows->read has reported the reason */
     return hf_hdf5_unlock(io->status);
 }

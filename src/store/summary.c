@@ -1,3 +1,5 @@
+/* Implements <hifdm/summary.h>: writes a summary as one JSON object, stage by stage. Most members come from the lists
+ * in <hifdm/summary.h> and <hifdm/result.h>. */
 #include <hifdm/summary.h>
 
 #include "base/json.h"
@@ -84,7 +86,7 @@ static void write_field(const hf_result_field *field, const void *owner, hf_json
     }
 }
 
-/* Write the members of an object with places from..to, in that order. */
+/* Writes the members of an object with the places `from` to `to`, in that order. */
 static void write_fields(const hf_result_field *field, int n, int from, int to, const void *owner, hf_json *j)
 {
     for (int place = from; place <= to; place++)
@@ -103,7 +105,7 @@ static void write_result(const hf_form_result *r, hf_json *j)
     write_fields(hf_result_field_of, HF_RESULT_N, HF_RESULT_JSON_COUNTS, LAST_PLACE, r, j);
 }
 
-/* The member "surface" of a stage, after its others; nothing when the surface was not measured. */
+/* Writes the member "surface" of a stage, after its others. Writes nothing if the surface was not measured. */
 static void write_surface(const hf_summary *s, const hf_surface_measures *m, hf_json *j)
 {
     if (!m->is_measured) return;
@@ -120,7 +122,8 @@ static void write_surface(const hf_summary *s, const hf_surface_measures *m, hf_
     hf_json_close(j, '}');
 }
 
-/* The member "pattern" of a stage: an object for each frequency and cut; nothing without surface.pattern. */
+/* Writes the member "pattern" of a stage: an object for each frequency and cut. Writes nothing without
+ * surface.pattern. */
 static void write_pattern(const hf_pattern_summary *s, hf_json *j)
 {
     if (s->n_frequency == 0) return;
@@ -142,7 +145,7 @@ static void write_pattern(const hf_pattern_summary *s, hf_json *j)
     hf_json_close(j, ']');
 }
 
-/* The member "sets" of a stage: an object for each named set of cables. */
+/* Writes the member "sets" of a stage: an object for each named set of cables. */
 static void write_sets(const hf_set_tensions *s, hf_json *j)
 {
     if (s->n == 0) return;
@@ -158,7 +161,7 @@ static void write_sets(const hf_set_tensions *s, hf_json *j)
     hf_json_close(j, '}');
 }
 
-/* The member "at_limits" of a stage: what its shape is at. */
+/* Writes the member "at_limits" of a stage: the limits that its shape is at. */
 static void write_held(const hf_held_limits *h, hf_json *j)
 {
     if (h->n == 0) return;
@@ -176,7 +179,8 @@ static void write_held(const hf_held_limits *h, hf_json *j)
     hf_json_close(j, ']');
 }
 
-/* The members "merit" and "goals" of a stage: value and weight of each. Objectives have values alone. */
+/* Writes the members "merit" and "goals" of a stage: value and weight of each term of the objective. Objectives of a
+ * front have only values. */
 static void write_goals(const hf_summary *s, const hf_form_result *r, hf_json *j)
 {
     if (s->goals.n == 0) return;
@@ -255,7 +259,7 @@ static void write_polish(const hf_summary *s, hf_json *j)
     hf_json_close(j, '}');
 }
 
-/* Values of all objectives by their names. */
+/* Writes the values of all objectives of a front by their names. */
 static void write_objectives(const hf_summary *s, const char *key, const double *value, hf_json *j)
 {
     hf_json_open(j, key, '{');
@@ -297,7 +301,7 @@ static void write_front(const hf_summary *s, hf_json *j)
     hf_json_close(j, '}');
 }
 
-/* The member "cases": an object for each state of the net as built. */
+/* Writes the member "cases": an object for each load case of the as-built net. */
 static void write_states(const hf_summary *s, hf_json *j)
 {
     if (s->n_state == 0) return;

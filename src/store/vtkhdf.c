@@ -1,4 +1,4 @@
-/* Contents: cells - links - a result */
+/* Implements vtkhdf.h. Sections: cells, links, a result. */
 #include "store/vtkhdf.h"
 
 #include "base/arena.h"
@@ -10,12 +10,12 @@
 
 #define POINT_DATA "/VTKHDF/PointData"
 #define CELL_DATA "/VTKHDF/CellData"
-#define PACKED_MIN 4096 /* bytes; a chunk of its own takes 2 KiB of tables */
-#define LINKS_MAX 1000  /* of a group: 3 for each of HF_STATES_MAX states and of 5 shapes, and a few more */
+#define PACKED_MIN 4096 /* bytes from which data sets are compressed; the tables of a chunk take 2 KiB */
+#define LINKS_MAX 1000  /* in a group: 3 for each of HF_STATES_MAX load cases and 5 shapes, and a few more */
 
 /* ---- cells ---- */
 
-/* VTK's reader accepts this attribute only as an ASCII string. */
+/* Writes the attribute Type. VTK's reader accepts it only as an ASCII string. */
 static void put_type(hf_hdf5 *io, hid_t group)
 {
     static const char word[] = "UnstructuredGrid";
@@ -31,7 +31,8 @@ static void put_type(hf_hdf5 *io, hid_t group)
     hf_hdf5_close(io, type);
 }
 
-/* Properties of a data set of n values, packed when they are many: what is written here only repeats or counts. */
+/* Makes the properties of a data set of n values. Large data sets are compressed, because their values only repeat or
+ * count. */
 static hid_t make_properties(hid_t type, hsize_t n)
 {
     hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
@@ -45,7 +46,8 @@ static hid_t make_properties(hid_t type, hsize_t n)
     return properties;
 }
 
-/* type: H5T_NATIVE_UCHAR, which VTK's reader expects of the types of cells, or H5T_NATIVE_INT */
+/* Writes a data set of n values. type: H5T_NATIVE_UCHAR, which VTK's reader expects for the types of cells, or
+ * H5T_NATIVE_INT. */
 static void put_packed(hf_hdf5 *io, hid_t group, const char *name, hid_t type, int n, const void *values,
                        const char *description)
 {
@@ -63,7 +65,8 @@ static void put_packed(hf_hdf5 *io, hid_t group, const char *name, hid_t type, i
     hf_hdf5_close(io, data_set);
 }
 
-/* A new group that keeps all its links in its header: the tables that HDF5 makes for more than eight take 4 KiB. */
+/* Makes a group that keeps all its links in its header. The tables that HDF5 makes for more than eight links take 4
+ * KiB. */
 static hid_t make_group(hf_hdf5 *io, const char *path)
 {
     hid_t properties = -1, group = -1;
@@ -101,7 +104,7 @@ void hf_vtkhdf_put_cells(hf_hdf5 *io, const hf_vtkhdf_cells *c)
 
 /* ---- links ---- */
 
-/* A second name for what is there. */
+/* Makes `to` a second name of the object `from`, if that exists. */
 static void link_to(hf_hdf5 *io, const char *from, const char *to)
 {
     if (hf_hdf5_has(io, io->file, from) && H5Lcreate_hard(io->file, from, io->file, to, H5P_DEFAULT, H5P_DEFAULT) < 0)
@@ -116,7 +119,7 @@ static void link_as(hf_hdf5 *io, const char *folder, const char *name, const cha
     link_to(io, from, to);
 }
 
-/* The numbers of the cables of a shape, but the law, which is an enumeration. */
+/* Links the numbers of the cables of a shape. The law is left out, because it is an enumeration. */
 static void link_forces(hf_hdf5 *io, const char *folder, const char *prefix)
 {
     link_as(io, folder, "tension_N", CELL_DATA, prefix);
@@ -156,7 +159,7 @@ static void link_all(hf_hdf5 *io, const char *result, const char *position, cons
 
 typedef struct {
     int *corner, *offset;
-    unsigned char *bytes; /* a value of each node or of each cable */
+    unsigned char *bytes; /* one value for each node or for each cable */
 } room;
 
 static void lay_out(hf_arena *a, size_t n, size_t m, room *r)
@@ -166,7 +169,7 @@ static void lay_out(hf_arena *a, size_t n, size_t m, room *r)
     r->bytes = hf_arena_take(a, n > m ? n : m, 1);
 }
 
-/* Copies an enumeration, as its numbers. */
+/* Copies an enumeration as its numbers. */
 static void copy_numbers(hf_hdf5 *io, const char *from, const hf_hdf5_kind *kind, int n, void *values,
                          const char *group, const char *name, const char *description)
 {
