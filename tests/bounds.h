@@ -1,7 +1,7 @@
-/* bounds - random nets of all laws, on rigid supports and on trusses, each solved and stopped at sixteen places between
- * its first iteration and its answer, for the oracle tests/verify/bound_oracle.py, which finds the equilibrium with
- * fifty digits and compares it with the bounds. Header only: a short run is in `make test` (property/solve), a long one
- * in `make stress`. */
+/* bounds - tests the error bounds on random nets of all laws, on rigid supports and on trusses. Each net is solved and
+ * stopped at sixteen points between its first iteration and its answer. The oracle tests/verify/bound_oracle.py finds
+ * the equilibrium with fifty digits and compares it with the bounds. Header only: a short run is part of `make test`
+ * (property/solve), a long one of `make stress`. */
 #ifndef HIFDM_TESTS_BOUNDS_H
 #define HIFDM_TESTS_BOUNDS_H
 
@@ -14,8 +14,8 @@ enum { BOUND_STOPS = 16 };
 
 /* ---- nets ---- */
 
-/* Cables of `part` of net->scene become elastic, cut for the shape in the workspace with relative errors of up to
- * `off`; the stiffness is spread over `decades` above EA_N. */
+/* Makes the fraction `part` of the cables of net->scene elastic. Their unstressed lengths fit the shape in the
+ * workspace, with relative errors of up to `off`. Their stiffness is EA_N or up to 10^decades times larger. */
 static inline void cut_cables(struct rng *rng, struct net *net, double part, double EA_N, double decades, double off)
 {
     hf_scene *s = &net->scene;
@@ -43,7 +43,8 @@ static inline void cut_cables(struct rng *rng, struct net *net, double part, dou
     *s = cut;
 }
 
-/* A cable of length L* = span (1 + excess) in n pieces between two supports, loaded across by springs. */
+/* Makes a cable of length L* = span (1 + excess), divided into n pieces between two supports and loaded across by
+ * cables of given tension. */
 static inline void chain_scene(struct rng *rng, hf_scene *scene)
 {
     struct hand_node node[24];
@@ -67,7 +68,7 @@ static inline void known_of(struct rng *rng, const char *law, double decades, in
     known_scene(rng, &(struct known){.decades = decades, .shake = 0.05, .law = law, .one_side = one_side}, s);
 }
 
-/* Kinds of nets; those from 6 on are made elastic as a whole or in part. */
+/* Kinds of nets. In those from 6 on, some or all cables are made elastic. */
 enum { BOUND_KINDS = 12 };
 
 static inline void open_kind(struct rng *rng, int kind, struct net *net)
@@ -104,8 +105,8 @@ static inline void open_kind(struct rng *rng, int kind, struct net *net)
 
 /* ---- stops ---- */
 
-/* The first eight end early, by the paper's iteration, the others at tolerances from 1e-2 to 1e-14. On a truss the
- * schemes of the coupling take turns, and its tolerance is that of the lengths, in metres. */
+/* Sets stop i. The first eight stops end the paper's iteration early; the others have tolerances from 1e-2 to 1e-14. On
+ * a truss, the schemes of the coupling alternate, and its tolerance in metres is that of the lengths. */
 static inline void set_stop(int i, hf_form_settings *form)
 {
     static const int last[] = {1, 3, 10, 30, 100, 300, 1000, 3000};
@@ -141,7 +142,7 @@ static inline void put_scene(FILE *f, int kind, const hf_model *m)
             5);
 }
 
-/* One record per stop: eight figures, positions, tensions. */
+/* Writes one record per stop: eight figures, positions, tensions. */
 static inline void put_stop(FILE *f, const struct net *net, const hf_form_result *r)
 {
     put(f,
@@ -152,7 +153,8 @@ static inline void put_stop(FILE *f, const struct net *net, const hf_form_result
     put(f, net->work.tension_N, (size_t)net->model.n_cable);
 }
 
-/* Writes n_scene nets with their stops, and compares them with the oracle. */
+/* Writes n_scene nets with their stops, and lets the oracle check them. least_proven: minimum share of shapes with
+ * certified bounds. most_ratio: maximum of the median ratio of bound to true error. */
 static inline void hold_bounds(uint64_t stream, int n_scene, bool on_truss, double least_proven, double most_ratio)
 {
     const char *path = temp_path("bounds.bin");

@@ -1,5 +1,5 @@
-/* built_nets - designs of random nets, the nets that are made of them, and samples of these with errors. Header only,
- * as nets.h. */
+/* built_nets - designs of random nets, the as-built nets that are made from them, and samples of these with errors.
+ * Header only, like nets.h. */
 #ifndef HIFDM_TESTS_BUILT_NETS_H
 #define HIFDM_TESTS_BUILT_NETS_H
 
@@ -10,8 +10,8 @@
 
 enum { MAX_BUILT_CABLE = 400 };
 
-/* A random saddle net of cables with tensions of about 10 N and EA of 1e3 to 1e5 N, found to 1e-11; every fourth is
- * without loads, so that nodes can be loose. close_design closes it. */
+/* Opens a random saddle net of cables with tensions of about 10 N and EA of 1e3 to 1e5 N, and finds its shape to 1e-11.
+ * Every fourth net has no loads, so nodes can be loose. close_design closes it. */
 static inline void open_design(struct net *net, int trial, double EA[MAX_BUILT_CABLE], bool on_truss)
 {
     struct rng rng = rng_start(900 + (uint64_t)trial);
@@ -29,7 +29,7 @@ static inline void open_design(struct net *net, int trial, double EA[MAX_BUILT_C
 
 static inline void close_design(struct net *net)
 {
-    net->scene.EA_N = NULL; /* the caller's */
+    net->scene.EA_N = NULL; /* belongs to the caller */
     close_net(net);
 }
 
@@ -42,7 +42,7 @@ static inline void make_built(const struct net *net, hf_built *built, hf_workspa
     hf_workspace_poison(&built->model, w);
 }
 
-/* Errors of samples, uniform between plus and minus these, each sample with a stream of its own. */
+/* Errors of samples, uniform between minus and plus these values. Each sample has its own stream of random numbers. */
 struct errors {
     const hf_model *model;
     uint64_t stream;

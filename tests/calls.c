@@ -50,14 +50,14 @@ void disturb_calls(bool on)
     atomic_store(&is_disturbed, on);
 }
 
-static atomic_long n_left; /* changes of files that this process may still begin, and one more; 0: any number */
+static atomic_long n_left; /* changes of files that this process may still begin, plus one; 0: any number */
 
 void die_before_change(long n)
 {
     atomic_store(&n_left, n);
 }
 
-/* The calls by which files are made, changed, named and removed. */
+/* Returns true for calls that make, change, name or remove files. */
 static bool is_change(const char *name)
 {
     static const char *const change[] = {"open",   "write", "writev", "pwrite",    "fsync", "fdatasync",
@@ -67,7 +67,7 @@ static bool is_change(const char *name)
     return false;
 }
 
-static const char *awaited; /* the name of a call; NULL: none */
+static const char *awaited; /* name of a call; NULL: none */
 static void (*act_before)(void);
 
 void before_call(const char *name, void (*act)(void))
@@ -100,7 +100,7 @@ static bool is_interrupted(void)
     return true;
 }
 
-/* How many of n bytes such a call transfers. */
+/* Returns how many of n bytes such a call transfers. */
 static size_t allowed(size_t n)
 {
     return atomic_load(&is_disturbed) && atomic_load(&n_disturbed) % 3 == 2 && n > 1 ? 1 : n;
@@ -152,7 +152,7 @@ ssize_t __wrap_writev(int file, const struct iovec *piece, int n)
     return allowed(2) == 1 ? __real_writev(file, &one, 1) : __real_writev(file, piece, n);
 }
 
-/* The real close is called in any case, so that no descriptor stays open. */
+/* Calls the real close in any case, so that no descriptor stays open. */
 int __real_close(int file);
 int __wrap_close(int file);
 int __wrap_close(int file)
@@ -174,7 +174,7 @@ int __wrap_open(const char *name, int flags, ...)
     return fails("open") || is_interrupted() ? -1 : __real_open(name, flags, mode);
 }
 
-/* Of fcntl, the record locks alone. */
+/* Makes only the record locks of fcntl fail. */
 int __real_fcntl(int file, int command, ...);
 int __wrap_fcntl(int file, int command, ...);
 int __wrap_fcntl(int file, int command, ...)

@@ -1,4 +1,4 @@
-/* evolution - a small run of the genetic algorithm into a store, without a net behind its results. */
+/* evolution - a small run of the genetic algorithm that goes into a store. Its results come from no net. */
 #ifndef HIFDM_TESTS_EVOLUTION_H
 #define HIFDM_TESTS_EVOLUTION_H
 
@@ -34,7 +34,7 @@ static inline void close_run(struct run *r)
     close_net(&r->net);
 }
 
-/* Results that depend on the designs alone. */
+/* Writes results that depend only on the designs, and ranks them. */
 static inline void fill(hf_optimiser *o)
 {
     hf_population *g = &o->population;
@@ -52,7 +52,8 @@ static inline void fill(hf_optimiser *o)
     hf_optimiser_tell(o);
 }
 
-/* Store the generations from `first` on, publishing in the middle. *acknowledged: how many are stored for sure. */
+/* Stores generations first to n - 1, and publishes in between. *acknowledged: number of generations that are certainly
+ * stored. */
 static inline hf_status store_some(hf_store *s, struct run *r, int first, int n, int *acknowledged,
                                    hf_messages *messages)
 {

@@ -1,5 +1,5 @@
-/* figures - figures of tests/verify that are held to a source. Where HIFDM_FIGURES names a file, each leaves a line
- * there for the manual's table: file, line, kind, figure, ours, reference, tolerance. */
+/* figures - compares figures of tests/verify with those of a source. If HIFDM_FIGURES names a file, each comparison
+ * adds a line to it for the table of the manual: file, line, kind, figure, ours, reference, tolerance. */
 #ifndef HIFDM_TESTS_FIGURES_H
 #define HIFDM_TESTS_FIGURES_H
 
@@ -29,15 +29,16 @@ static inline void keep_figure(const char *file, int line, const char *kind, dou
     fclose(kept);
 }
 
-/* VERIFY(ours, reference, tolerance, "psi at %s m, mm", ...): ours is within tolerance of what the source says. */
+/* VERIFY(ours, reference, tolerance, "psi at %s m, mm", ...): our figure is within the tolerance of that of the
+ * source. */
 #define VERIFY(ours, reference, tolerance, ...)                                                                        \
     keep_figure(__FILE__, __LINE__, "=", ours, reference, tolerance, __VA_ARGS__)
-/* The largest difference of many figures. */
+/* The largest difference of many figures is within the tolerance. */
 #define VERIFY_WORST(difference, tolerance, ...)                                                                       \
     keep_figure(__FILE__, __LINE__, "worst", difference, 0, tolerance, __VA_ARGS__)
-/* At most what the source reaches. */
+/* Our figure is at most that of the source. */
 #define VERIFY_AT_MOST(ours, reference, ...) keep_figure(__FILE__, __LINE__, "<=", ours, reference, 0, __VA_ARGS__)
-/* What the source has and we do not meet. */
+/* A figure of the source that we do not reach. */
 #define NOT_MET(ours, reference, ...) keep_figure(__FILE__, __LINE__, "not met", ours, reference, NAN, __VA_ARGS__)
 
 #endif

@@ -1,5 +1,5 @@
-/* flexible - supports on an elastic foundation made up for tests: any symmetric positive definite matrix is the
- * flexibility of some structure. Header only, as nets.h. */
+/* flexible - random elastic foundations for the supports of test nets. Every symmetric positive definite matrix is the
+ * flexibility of some structure. Header only, like nets.h. */
 #ifndef HIFDM_TESTS_FLEXIBLE_H
 #define HIFDM_TESTS_FLEXIBLE_H
 
@@ -12,7 +12,7 @@
 
 enum { MAX_ATTACHMENT = 160 };
 
-/* All supports of the net, as attachments: their number, their nodes in the scene. */
+/* Lists all supports of the net as attachments: sets their nodes in the scene and returns their number. */
 static inline int list_supports(const struct net *net, int node[MAX_ATTACHMENT])
 {
     int n = 0;
@@ -24,11 +24,12 @@ static inline int list_supports(const struct net *net, int node[MAX_ATTACHMENT])
     return n;
 }
 
-/* What a random flexibility has: springs of stiffness about 1/scale at each attachment, and a few modes in which all
- * attachments move together, as in a bending truss, also by about `scale` per newton. */
+/* Contents of a random flexibility: springs with a stiffness of about 1/scale at each attachment, and a few modes that
+ * move all attachments together, like those of a bending truss, also by about `scale` per newton. */
 enum { FLEX_FULL, FLEX_MODES_ALONE, FLEX_RIGID_IN_SOME, N_FLEX };
 
-/* [3n][3n], the caller frees it. FLEX_RIGID_IN_SOME: every third component or so does not move at all. */
+/* Returns a random flexibility [3n][3n], m/N, which the caller frees. With FLEX_RIGID_IN_SOME about every third
+ * component does not move at all. */
 static inline double *random_flexibility_of(struct rng *rng, int kind, int n_attachment, double scale_m_per_N)
 {
     enum { N_MODE = 6 };
@@ -75,13 +76,13 @@ static inline void attach_all(struct net *net, struct rng *rng, double scale_m_p
     attach_all_to(net, rng, FLEX_FULL, scale_m_per_N);
 }
 
-/* On a foundation from stiff to so soft that supports move by centimetres. */
+/* Puts the supports on a foundation of random stiffness. On the softest one supports move by centimetres. */
 static inline void attach_some_way(struct net *net, struct rng *rng, int kind)
 {
     attach_all_to(net, rng, kind % N_FLEX, exp(rng_uniform(rng, log(1e-7), log(3e-3))));
 }
 
-/* The coupled shape of the net. */
+/* Finds the coupled shape of the net. */
 static inline hf_status find_coupled(struct net *net, int scheme, double tof_m)
 {
     net->form.coupling = (hf_coupling_settings){tof_m, (hf_coupling_scheme)scheme, 500};
@@ -94,7 +95,7 @@ static inline hf_status find_net_of(const void *net, hf_workspace *w, hf_history
     return hf_equilibrium_find(&n->model, &n->form, w, history, r);
 }
 
-/* The same in one matrix, without rounds of the loop before. */
+/* Finds the coupled shape in one matrix, without prior iterations of the coupling. */
 static inline hf_status find_at_once(struct net *net, double tof_m)
 {
     net->form.coupling = (hf_coupling_settings){tof_m, HF_COUPLING_AUTO, 500};

@@ -1,4 +1,5 @@
-/* goals - rows of optimize.goals for tests, and a net with the surface that they want. Header only, as nets.h. */
+/* goals - rows of optimize.goals for tests, and a net with the target surface of these rows. Header only, like
+ * nets.h. */
 #ifndef HIFDM_TESTS_GOALS_H
 #define HIFDM_TESTS_GOALS_H
 
@@ -25,7 +26,7 @@
 #define WANT_ERRORS(kind, weighed)                                                                                     \
     WANT_ERROR(kind, NORMAL, NONE, weighed), WANT_ERROR(kind, NORMAL, BEST, weighed),                                  \
         WANT_ERROR(kind, HALF_PATH, NONE, weighed), WANT_ERROR(kind, HALF_PATH, BEST, weighed)
-/* Eight rows: of nodes, then of facets. */
+/* Eight rows: four for nodes, then four for facets. */
 #define WANT_SURFACES(weighed) WANT_ERRORS(SURFACE, weighed), WANT_ERRORS(FACETS, weighed)
 
 static inline hf_goal_settings goal_of(hf_goal_kind kind)
@@ -38,7 +39,7 @@ static inline hf_goal_settings goal_of(hf_goal_kind kind)
 #define SMALL_BOWL "configs/paraboloid-6m.yaml", "scene.paraboloid.rings=3"
 #define FAR_FIELD "surface.frequencies_Hz=[0.2e9, 0.3e9]", "surface.pattern.n_theta=3"
 
-/* A net with its wanted surface and facets. */
+/* A net with its target surface and facets. */
 struct wanting {
     struct net net;
     hf_surface_settings surface;
@@ -82,7 +83,7 @@ static inline void want(struct wanting *t, int n_goal, const hf_goal_settings *g
     hf_status status =
         hf_goals_create(&t->net.scene, &t->net.model, &s, &t->surface, &t->facets, NULL, &t->goals, &messages);
     ck_assert_msg(status == HF_OK, "%s", messages.text);
-    hf_messages_free(&messages); /* a feed without a beam is warned of */
+    hf_messages_free(&messages); /* warns of a feed without a beam */
     ck_assert_int_eq(hf_goals_point_create(&t->goals, &t->point), HF_OK);
 }
 

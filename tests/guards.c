@@ -1,7 +1,7 @@
-/* Guards behind every array of an arena, in the test program alone: bytes FF 7F FF 7F ..., which are NaN as a double
- * and beyond every array as an index. A read beyond an array then gives a number that no test accepts, and a write is
- * found when the arena is freed. Without guards both would meet the zeros that fill an array up to whole cache lines,
- * or the next array. */
+/* Puts guards behind every array of an arena, in the test program alone. A guard has the bytes FF 7F FF 7F ..., which
+ * are NaN as a double and beyond every array as an index. A read beyond an array therefore gives a number that no test
+ * accepts. A write is found when the arena is freed. Without guards such an access would reach the zeros that fill an
+ * array up to whole cache lines, or the next array. */
 #include "support.h"
 
 #include "base/arena.h"
@@ -35,7 +35,7 @@ void without_guards(void)
     is_off = true;
 }
 
-/* Forgets the guards of a block; returns whether all of them were as they should be. */
+/* Removes the guards of a block from the list. Returns true if all of them were unchanged. */
 static bool forget_guards(const unsigned char *block)
 {
     bool is_whole = true;
@@ -66,7 +66,7 @@ void *__wrap_hf_arena_take(hf_arena *arena, size_t count, size_t item_bytes)
     return array;
 }
 
-/* Blocks that were given back by free alone may be handed out again. */
+/* The system may return a block again that was freed by free alone, so its old guards are removed. */
 hf_status __wrap_hf_arena_allocate(hf_arena *arena)
 {
     hf_status status = __real_hf_arena_allocate(arena);

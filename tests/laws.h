@@ -1,4 +1,4 @@
-/* laws - what tests of laws need beside nets.h. Contents: random nets - shapes and what changes a scene. */
+/* laws - what tests of cable laws need in addition to nets.h. Sections: random nets; shapes, and changes of a scene. */
 #ifndef HIFDM_TESTS_LAWS_H
 #define HIFDM_TESTS_LAWS_H
 
@@ -6,8 +6,8 @@
 
 /* ---- random nets ---- */
 
-/* A random connected net under load, with positive force densities over a decade, so that classical FDM has exactly one
- * answer. The first three nodes are always supports, so that every net is held. */
+/* Makes a random connected net under load. Its force densities are positive and span a decade, so the force density
+ * method has exactly one answer. The first three nodes are always supports, so that every net is held. */
 static inline void random_fdm_scene(struct rng *rng, hf_scene *scene)
 {
     enum { MAX_NODE = 60, MAX_CABLE = 3 * MAX_NODE };
@@ -15,14 +15,14 @@ static inline void random_fdm_scene(struct rng *rng, hf_scene *scene)
     struct hand_cable cable[MAX_CABLE];
     int n_node = rng_int(rng, 5, MAX_NODE), n_cable = rng_int(rng, n_node, MAX_CABLE);
     for (int i = 0; i < n_node; i++) {
-        int is_support = i < 3 || (i > 3 && rng_int(rng, 0, 5) == 0); /* node 3 is free in any case */
+        int is_support = i < 3 || (i > 3 && rng_int(rng, 0, 5) == 0); /* node 3 is always free */
         node[i] = (struct hand_node){.role = is_support ? HF_ROLE_SUPPORT : HF_ROLE_INNER};
         for (int c = 0; c < 3; c++)
             node[i].position_m[c] = rng_uniform(rng, -2.385, 2.385);
         for (int c = 0; c < 3; c++)
             node[i].load_N[c] = rng_uniform(rng, -1.25, 1.25);
     }
-    for (int e = 0; e < n_cable; e++) { /* the first n_node - 1 cables are a tree, which joins all */
+    for (int e = 0; e < n_cable; e++) { /* the first n_node - 1 cables are a tree that joins all nodes */
         int i = e + 1 < n_node ? e + 1 : rng_int(rng, 1, n_node - 1), j = rng_int(rng, 0, i - 1);
         double q = exp(rng_uniform(rng, log(0.317), log(3.17)));
         cable[e] = (struct hand_cable){{i, j}, e % 3 ? HF_GROUP_INNER : HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, q};
@@ -30,9 +30,9 @@ static inline void random_fdm_scene(struct rng *rng, hf_scene *scene)
     hand_scene(scene, n_node, node, n_cable, cable);
 }
 
-/* A quad net over a random saddle, its nodes moved at random, its perimeter fixed. Tensions are 10 N +- 10 %, but
- * nearly the same along a line: small kinks at the crossing cables balance the differences, and no cable shrinks to
- * nothing. */
+/* Makes a net of quadrilaterals over a random saddle, with randomly displaced nodes and a fixed perimeter. Tensions are
+ * 10 N +- 10 %, but nearly equal along a line. Small kinks at the crossing cables balance the differences, so no cable
+ * collapses. */
 static inline void random_tension_scene(struct rng *rng, hf_scene *scene)
 {
     enum { MAX_SIDE = 8 };
@@ -59,7 +59,8 @@ static inline void random_tension_scene(struct rng *rng, hf_scene *scene)
     hand_scene(scene, nx * ny, node, n_cable, cable);
 }
 
-/* A cylinder of random size, topology and scallop, supports at module corners, outer edge under the law length. */
+/* Makes a cylinder of random size, topology and scallop, with supports at the module corners. Its outer edge has the
+ * law length. */
 static inline void random_reflector_scene(struct rng *rng, hf_scene *scene)
 {
     hf_messages messages = {0};
@@ -75,9 +76,9 @@ static inline void random_reflector_scene(struct rng *rng, hf_scene *scene)
     ck_assert_msg(hf_scene_parabolic_cylinder(&cylinder, NULL, scene, &messages) == HF_OK, "%s", messages.text);
 }
 
-/* ---- shapes and what changes a scene ---- */
+/* ---- shapes, and changes of a scene ---- */
 
-/* The found shape in the order of the scene, [n_node][3]; the caller frees it. */
+/* Returns the found shape in the order of the scene, [n_node][3]; the caller frees it. */
 static inline double *copy_shape(const struct net *net)
 {
     double *shape = malloc(3 * (size_t)net->scene.n_node * sizeof *shape);
@@ -101,7 +102,7 @@ static inline double length_between(const double *shape, const int end[2])
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
-/* Positions p -> M p + t, loads P -> M P. */
+/* Maps positions p to M p + t and loads P to M P. */
 static inline void map_scene(hf_scene *scene, const double m[3][3], const double t[3])
 {
     for (int i = 0; i < scene->n_node; i++)
@@ -113,7 +114,7 @@ static inline void map_scene(hf_scene *scene, const double m[3][3], const double
         }
 }
 
-/* A random rotation, from a unit quaternion. */
+/* Makes a random rotation from a unit quaternion. */
 static inline void random_rotation(struct rng *rng, double m[3][3])
 {
     double q[4], norm = 0;
@@ -126,7 +127,7 @@ static inline void random_rotation(struct rng *rng, double m[3][3])
     memcpy(m, r, sizeof r);
 }
 
-/* The same net with nodes and cables in another order and cables turned round; node i becomes node to[i]. */
+/* Shuffles nodes and cables of a scene and reverses some cables. Node i becomes node to[i]. */
 static inline void shuffle_scene(struct rng *rng, hf_scene *scene, int *to)
 {
     hf_scene s;
@@ -135,7 +136,7 @@ static inline void shuffle_scene(struct rng *rng, hf_scene *scene, int *to)
     ck_assert_int_eq(hf_scene_allocate(&s, n, scene->n_cable, scene->load_N != NULL, 0, 0), HF_OK);
     for (int pass = 0; pass < 2; pass++) {
         int *place = pass ? cable_to : to, count = pass ? scene->n_cable : n;
-        for (int i = 0; i < count; i++) { /* Fisher and Yates, inside out */
+        for (int i = 0; i < count; i++) { /* Fisher-Yates shuffle, inside-out */
             int j = rng_int(rng, 0, i);
             place[i] = place[j];
             place[j] = i;
@@ -156,14 +157,14 @@ static inline void shuffle_scene(struct rng *rng, hf_scene *scene, int *to)
         s.target[k] = scene->target[e];
         s.cable_id[k] = scene->cable_id[e];
     }
-    s.text = scene->text; /* the ids */
+    s.text = scene->text; /* the text of the ids */
     scene->text = NULL;
     hf_scene_free(scene);
     free(cable_to);
     *scene = s;
 }
 
-/* Solves net->scene as it is now, gives the shape (caller frees), and closes the net. */
+/* Solves net->scene as it is now, closes the net and returns the shape, which the caller frees. */
 static inline double *shape_of(struct net *net)
 {
     open_net(net);

@@ -1,5 +1,5 @@
-/* nets - nets for tests, written out by hand or from a case file. Header only, since most test files need two or three
- * of these functions and none needs all. Contents: opening and closing - nets by hand - nets from a case. */
+/* nets - nets for tests, written by hand or from a case file. Header only, because most test files need two or three of
+ * these functions and none needs all. Sections: opening and closing, nets by hand, nets from a case. */
 #ifndef HIFDM_TESTS_NETS_H
 #define HIFDM_TESTS_NETS_H
 
@@ -14,7 +14,7 @@
 #include <string.h>
 
 struct net {
-    hf_case settings; /* only of a net from a case */
+    hf_case settings; /* only for a net from a case */
     hf_form_settings form;
     hf_scene scene;
     hf_model model;
@@ -24,7 +24,8 @@ struct net {
 
 /* ---- opening and closing ---- */
 
-/* Tolerances far below a case file's defaults, so that a test compares laws and not where the iteration stopped. */
+/* Returns settings with tolerances far below the defaults of a case file. A test then compares laws, and not where the
+ * iteration stopped. */
 static inline hf_form_settings tight_form(int method)
 {
     return (hf_form_settings){.method = (hf_method)method,
@@ -37,7 +38,8 @@ static inline hf_form_settings tight_form(int method)
                               .collapse_ratio = 1e-3};
 }
 
-/* Model and workspace of net->scene under net->form; the workspace holds rubbish, as it may between calls. */
+/* Makes model and workspace of net->scene under net->form. The workspace is filled with garbage, because its content
+ * between calls has no meaning. */
 static inline void open_net(struct net *net)
 {
     hf_messages messages = {0};
@@ -55,14 +57,14 @@ static inline void close_net(struct net *net)
     hf_case_free(&net->settings);
 }
 
-/* From the model's first force densities, under the settings' stopping rule. */
+/* Finds the shape from the first force densities of the model, with the stop criterion of the settings. */
 static inline hf_status find_shape(struct net *net)
 {
     hf_form_prepare(&net->model, &net->work);
     return hf_form_find(&net->model, &net->form, net->form.stop, &net->work, NULL, &net->result);
 }
 
-/* Component c (0, 1, 2) of the found position of the scene's node i. */
+/* Returns component c (0, 1, 2) of the found position of node i of the scene, m. */
 static inline double found_m(const struct net *net, int i_node, int c)
 {
     return net->work.position_m[c * net->model.n_node + net->model.row_of_node[i_node]];
@@ -80,10 +82,10 @@ struct hand_cable {
     int end[2];
     hf_group group;
     hf_law law;
-    double target; /* T* (N), L* (m) or q (N/m) by law */
+    double target; /* T* (N), L* (m) or q (N/m), by law */
 };
 
-/* Ids are n0, n1, ... and c0, c1, ...; loads exist when one of them is not zero. */
+/* Makes a scene. The ids are n0, n1, ... and c0, c1, ... The scene has loads if one of them is not zero. */
 static inline void hand_scene(hf_scene *scene, int n_node, const struct hand_node *node, int n_cable,
                               const struct hand_cable *cable)
 {
@@ -118,7 +120,7 @@ static inline void open_hand(struct net *net, int n_node, const struct hand_node
     open_net(net);
 }
 
-/* OPEN_HAND(&net, node, cable, HF_METHOD_HIFDM): from two arrays. */
+/* OPEN_HAND(&net, node, cable, HF_METHOD_HIFDM) opens a net of two arrays. */
 #define OPEN_HAND(pointer, nodes, cables, method)                                                                      \
     open_hand(pointer, (int)(sizeof(nodes) / sizeof *(nodes)), nodes, (int)(sizeof(cables) / sizeof *(cables)),        \
               cables, method)
@@ -136,7 +138,8 @@ static inline void open_case_file(struct net *net, const char *path, const char 
     open_net(net);
 }
 
-/* OPEN_CASE(&net, "configs/reflector.yaml", "form.pretension_N=12"): a case file of the sources, with overrides. */
+/* OPEN_CASE(&net, "configs/reflector.yaml", "form.pretension_N=12") opens a case file of the sources, with
+ * overrides. */
 #define OPEN_CASE(pointer, ...) open_case(pointer, (const char *const[]){__VA_ARGS__, NULL})
 
 static inline void open_case(struct net *net, const char *const *argument)
@@ -147,7 +150,7 @@ static inline void open_case(struct net *net, const char *const *argument)
     open_case_file(net, source_path(argument[0]), argument + 1, n_override);
 }
 
-/* A small well-posed reflector, 9 x 11 nodes, scalloped edge, supports at the corners of 4 x 5 modules. */
+/* A small well-posed reflector with 9 x 11 nodes, a scalloped edge and supports at the corners of 4 x 5 modules. */
 #define SMALL_REFLECTOR                                                                                                \
     "configs/reflector.yaml", "scene.parabolic_cylinder.modules=[4, 5]", "scene.parabolic_cylinder.aperture_m=4",      \
         "scene.parabolic_cylinder.length_m=5"

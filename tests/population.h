@@ -1,4 +1,4 @@
-/* population - designs around the boundary tensions of a found shape, for tests of what evaluates many of them. */
+/* population - designs around the boundary tensions of a found shape, for tests of code that evaluates many designs. */
 #ifndef HIFDM_TESTS_POPULATION_H
 #define HIFDM_TESTS_POPULATION_H
 
@@ -6,7 +6,7 @@
 
 #include <hifdm/evaluate.h>
 
-enum { MAX_GENE = 200, MAX_CABLE = 600, N_DESIGN = 29 }; /* no multiple of the lanes */
+enum { MAX_GENE = 200, MAX_CABLE = 600, N_DESIGN = 29 }; /* N_DESIGN is no multiple of the lanes */
 #define TOLERANCE 1e-10
 
 struct run {
@@ -15,7 +15,7 @@ struct run {
     double start_q[MAX_CABLE], base_N[MAX_GENE], design_N[N_DESIGN * MAX_GENE];
 };
 
-/* Finds the shape of net->scene and draws designs up to range_N around its boundary tensions. */
+/* Finds the shape of net->scene, and draws designs up to range_N around its boundary tensions. */
 static inline void draw_designs(struct run *r, uint64_t seed, double range_N)
 {
     const hf_model *m = &r->net.model;
@@ -39,8 +39,8 @@ static inline void evaluate_by(struct run *r, int rule, hf_solver solver)
                                   .boundary_ratio_cap = 1e9};
 }
 
-/* A shape to TOLERANCE and designs for the population solver: up to 0.5 N around the found tensions, or 0.01 N under
- * the rule tension, where larger changes may have no equilibrium. */
+/* Finds a shape to TOLERANCE and draws designs for the population solver, up to 0.5 N around the found tensions. Under
+ * the rule tension it is 0.01 N, because after larger changes there may be no equilibrium. */
 static inline void start_run(struct run *r, int rule)
 {
     r->net.form.residual_tolerance = r->net.form.length_tolerance = TOLERANCE;

@@ -1,10 +1,10 @@
-/* reference - nets of tests/verify/data. Header only, as nets.h. */
+/* reference - nets of tests/verify/data. Header only, like nets.h. */
 #ifndef HIFDM_TESTS_REFERENCE_H
 #define HIFDM_TESTS_REFERENCE_H
 
 #include "nets.h"
 
-/* The net NAME_nodes.csv, NAME_cables.csv with these keys of the section form. */
+/* Opens the net NAME_nodes.csv, NAME_cables.csv. form: keys of the section form. */
 static inline void open_reference(struct net *net, const char *name, const char *form)
 {
     char path[2][128], text[512], nodes[1024], cables[1024];

@@ -1,4 +1,4 @@
-/* results - writing and reading result files in tests. Header only, as nets.h. */
+/* results - writes and reads result files in tests. Header only, like nets.h. */
 #ifndef HIFDM_TESTS_RESULTS_H
 #define HIFDM_TESTS_RESULTS_H
 
@@ -12,7 +12,7 @@
 
 #define N(table) ((int)(sizeof(table) / sizeof(table)[0]))
 
-/* Three nodes, two cables, one load: the least that makes a result file. */
+/* Opens three nodes with two cables and one load, the smallest net that makes a result file. */
 static inline void open_bow(struct net *net)
 {
     static const struct hand_node node[] = {{{0, 0, 0}, HF_ROLE_SUPPORT, {0}},
@@ -39,10 +39,10 @@ static inline const hf_case *any_case(void)
     return &any;
 }
 
-/* A new, empty folder, for counting what is in it, and "<folder>/run.h5". */
+/* Makes an empty folder, in which a test can count files, and sets *result to "<folder>/run.h5". */
 static inline const char *new_folder(const char **result)
 {
-    static int serial; /* tests share their temporary directory when they do not fork */
+    static int serial; /* without fork, tests share their temporary directory */
     char file[64];
     snprintf(file, sizeof file, "results-%d", serial++);
     const char *folder = temp_path(file);
@@ -60,7 +60,7 @@ static inline int count_files(const char *folder)
     while (readdir(directory))
         n++;
     closedir(directory);
-    return n - 2; /* . and .. */
+    return n - 2; /* without . and .. */
 }
 
 static inline hf_store *begin(const char *path, int force, const hf_scene *scene)
@@ -81,7 +81,8 @@ static inline void end(hf_store *store, const hf_summary *summary)
     no_id_is_open();
 }
 
-/* All four ways of reading; returns how many failed, each with HF_IO and exactly one message, and the last message. */
+/* Reads a file in all four ways. Each failure must be HF_IO with exactly one message. Returns the number of failures,
+ * and the messages in text[size]. */
 static inline int read_all(const char *path, char *text, size_t size)
 {
     hf_messages messages = {0};
@@ -107,7 +108,7 @@ static inline int read_all(const char *path, char *text, size_t size)
     return n_failed;
 }
 
-/* Python with h5py as `f`, opened from argv[1] in this mode; it must end well. */
+/* Runs a script of Python with h5py. The file `path` is open as `f` in this mode. The script must succeed. */
 static inline void python(const char *mode, const char *path, const char *script)
 {
     char text[4096];
@@ -120,7 +121,7 @@ static inline void python(const char *mode, const char *path, const char *script
     free_command(&command);
 }
 
-/* A finished file with both shapes. */
+/* Writes a finished file with both shapes. */
 static inline void write_result(const char *path, struct net *net)
 {
     hf_messages messages = {0};

@@ -1,10 +1,10 @@
-/* The one test program: run_tests [WORD...] runs the suites of suites.list.h whose room/name contains a word, or all.
- * The word =room/name stands for that suite alone.
+/* The test program: run_tests [WORD...] runs the suites of suites.list.h whose room/name contains a word, or all
+ * suites. The word =room/name stands for that suite alone.
  *
- * HIFDM_TEST_JOBS=N runs N suites at a time, each in a process of its own; without it all run in this one.
- * HIFDM_TEST_STOP=1 ends at the first suite that fails. check's own variables work: CK_FORK=no for a debugger,
- * CK_RUN_SUITE, CK_RUN_CASE, CK_VERBOSITY=verbose. */
-#define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
+ * HIFDM_TEST_JOBS=N runs N suites at a time, each in its own process. Without it all suites run in this process.
+ * HIFDM_TEST_STOP=1 ends the run at the first suite that fails. The variables of check work, too: CK_FORK=no for a
+ * debugger, CK_RUN_SUITE, CK_RUN_CASE, CK_VERBOSITY=verbose. */
+#define _DEFAULT_SOURCE /* for MAP_ANONYMOUS */
 #include "support.h"
 
 #include "base/clock.h"
@@ -32,10 +32,10 @@ static const struct {
 };
 enum { N_SUITE = sizeof suites / sizeof suites[0] };
 
-/* What a suite came to; shared by the processes. */
+/* The outcome of a suite, shared by the processes. */
 typedef struct {
     pid_t runner; /* 0: not running */
-    FILE *words;  /* what it says, told in one piece when it has ended */
+    FILE *words;  /* its output, printed when it has ended */
     bool has_ended;
     int n_run, n_failed;
     double start_s;
@@ -49,10 +49,11 @@ static bool is_wanted(const char *name, int n_word, char **words)
     return n_word == 0;
 }
 
-/* What failed, for the end of the run: the tail of a log should name it. Runners that are forked share it. */
+/* Failures, to be printed at the end of the run, because the tail of a log should list them. Forked runners share the
+ * file. */
 static FILE *failures;
 
-/* Add the failures of a suite, in check's own words: it has no other way to the names of tests. */
+/* Adds the failures of a suite as check prints them. check has no other way to list the names of the tests. */
 static void note_failures(SRunner *runner)
 {
     fflush(stdout);
@@ -120,7 +121,7 @@ static void tell_suite(int i_suite, outcome *o)
     tell(o->words);
 }
 
-/* Wait until one of the suites that run has ended; true when it failed. */
+/* Waits until one of the running suites has ended. Returns true if it failed. */
 static bool end_suite(outcome *all)
 {
     pid_t ended;

@@ -1,5 +1,5 @@
-/* small_ga - settings of a small genetic algorithm, for tests that need generations, not a good search.
- * Nothing in them ends a run early, and no limit but the range holds a gene. */
+/* small_ga - settings of a small genetic algorithm, for tests that need generations but no good search. Nothing in them
+ * ends a run early, and only the range limits a design variable. */
 #ifndef HIFDM_TESTS_SMALL_GA_H
 #define HIFDM_TESTS_SMALL_GA_H
 

@@ -1,6 +1,6 @@
-/* One line per test file, in the order in which they run. SUITE(kind, name) stands for tests/kind/test_name.c and
- * MIRROR(kind, room, name) for tests/kind/room/test_name.c, which tests src/room; both define
- * `Suite *suite_kind_name(void)`. A forgotten line is a compile error (no prototype), so no test goes unrun. */
+/* One line per test file, in the order in which they run. SUITE(kind, name) stands for tests/kind/test_name.c.
+ * MIRROR(kind, room, name) stands for tests/kind/room/test_name.c, which tests src/room. Both files define `Suite
+ * *suite_kind_name(void)`. A missing line is a compile error (no prototype), so every test runs. */
 SUITE(unit, support)
 MIRROR(unit, base, status)
 MIRROR(unit, base, arena)

@@ -1,4 +1,5 @@
-/* Contents: temporary directories, skipped checks, files, programs, failing allocations, random numbers. */
+/* Implements support.h. Sections: temporary directories, skipped checks, files, programs, failing allocations, random
+ * numbers. */
 #include "support.h"
 
 #include "base/clock.h"
@@ -24,13 +25,13 @@
 extern char **environ;
 
 /* ---- Temporary directories ----
- * The runner makes one directory and removes it at the end; each test's process makes its own inside. So nothing is
- * left behind by tests that fail or crash, which end without running any clean-up of theirs. */
+ * The runner makes one directory and removes it at its end. The process of each test makes its own directory inside.
+ * So tests that fail or crash leave nothing behind, although none of their clean-up runs. */
 static char run_directory[PATH_MAX];
 
 void begin_test_run(void)
 {
-    gsl_set_error_handler_off(); /* as hifdm.h asks of every program */
+    gsl_set_error_handler_off(); /* hifdm.h requires it of every program */
     const char *parent = getenv("TMPDIR");
     snprintf(run_directory, sizeof run_directory, "%s/hifdm-test-XXXXXX", parent && *parent ? parent : "/tmp");
     if (!mkdtemp(run_directory)) {
@@ -54,9 +55,9 @@ void end_test_run(void)
 }
 
 /* ---- What this machine lacks ----
- * Tests are processes of their own, so they leave their lines in a file of the run. A test that is repeated leaves the
+ * Each test is a process of its own, so it writes its lines into a file of the run. A test that is repeated writes the
  * same line again. */
-#define SKIPPED_MAX 256 /* different lines */
+#define SKIPPED_MAX 256 /* maximum number of different lines */
 
 void skip_for_machine(const char *check, const char *reason)
 {
@@ -193,7 +194,8 @@ static double timeout_multiplier(void)
     return multiplier > 0.0 ? multiplier : 1.0;
 }
 
-/* Polls, since waitpid has no time limit and the alternatives need a signal handler of the whole process. */
+/* Waits for a child. It polls, because waitpid has no time limit, and the alternatives need a signal handler of the
+ * whole process. Returns the exit code as a shell does. */
 static int wait_for(pid_t child, double timeout_s, bool *timed_out)
 {
     const struct timespec pause = {.tv_nsec = 2000000};
@@ -213,7 +215,7 @@ static int wait_for(pid_t child, double timeout_s, bool *timed_out)
     return WIFSIGNALED(state) ? 128 + WTERMSIG(state) : WEXITSTATUS(state);
 }
 
-/* Output goes to files rather than pipes: nothing to drain while waiting, no limit to its length. */
+/* Output goes to files and not to pipes, so that nothing must be read while waiting, and its length has no limit. */
 struct command run_command(double timeout_s, const char *const argv[])
 {
     static unsigned serial;
@@ -248,9 +250,9 @@ void free_command(struct command *command)
 }
 
 /* ---- Failing allocations ----
- * Atomic, because the threads of batch may allocate at the same time. */
+ * The counters are atomic, because the threads of a batch may allocate at the same time. */
 static atomic_long n_allocation;
-static atomic_long fail_at; /* the value of n_allocation that fails; 0 is none */
+static atomic_long fail_at; /* value of n_allocation that fails; 0: none */
 
 void fail_allocation_at(long n)
 {
@@ -275,7 +277,7 @@ static bool is_denied(void)
     return true;
 }
 
-/* ld --wrap=NAME sends calls of NAME to __wrap_NAME, and __real_NAME to the C library. */
+/* ld --wrap=NAME redirects calls of NAME to __wrap_NAME, and calls of __real_NAME to the C library. */
 #define WRAP(type, name, parameters, arguments)                                                                        \
     type __real_##name parameters;                                                                                     \
     type __wrap_##name parameters;                                                                                     \
@@ -314,7 +316,7 @@ struct rng rng_start(uint64_t stream)
 double rng_uniform(struct rng *rng, double low, double high)
 {
     double value = low + (high - low) * ((double)(rng_next(rng) >> 11) * 0x1p-53);
-    return value < high ? value : low; /* rounding may reach high */
+    return value < high ? value : low; /* rounding may reach `high` */
 }
 
 int rng_int(struct rng *rng, int low, int high)

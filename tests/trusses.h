@@ -1,4 +1,4 @@
-/* trusses - trusses for tests, written out by hand or at random. Header only. */
+/* trusses - trusses for tests, written by hand or made at random. Header only. */
 #ifndef HIFDM_TESTS_TRUSSES_H
 #define HIFDM_TESTS_TRUSSES_H
 
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* n doubles, all zero */
+/* Returns n doubles, all zero. */
 static inline double *zeros(size_t n)
 {
     double *values = calloc(n ? n : 1, sizeof *values);
@@ -18,7 +18,7 @@ static inline double *zeros(size_t n)
     return values;
 }
 
-/* Ids a0, a1, ... for nodes, m0, m1, ... for members. */
+/* Gives nodes the ids a0, a1, ... and members the ids m0, m1, ... */
 static inline void name_truss(hf_truss *t)
 {
     char *text = t->text = malloc(16 * (size_t)(t->n_node + t->n_member));
@@ -30,7 +30,7 @@ static inline void name_truss(hf_truss *t)
     }
 }
 
-/* A truss of one tube, given as nodes and pairs of nodes; nothing is supported yet. */
+/* Makes a truss of one tube from nodes and pairs of nodes. It has no supports yet. */
 static inline void make_truss(hf_truss *t, int n_node, const double (*position_m)[3], int n_member, const int (*end)[2])
 {
     ck_assert_int_eq(hf_truss_allocate(t, n_node, n_member, 0), HF_OK);
@@ -48,8 +48,8 @@ static inline void make_truss(hf_truss *t, int n_node, const double (*position_m
     name_truss(t);
 }
 
-/* A random frame: nodes at random, each joined to an earlier one and a few more, unequal sections with roll and shear;
- * nodes 0 and 1 held in some dofs, together against every motion. */
+/* Makes a random frame. Each node is joined to an earlier one, and a few more pairs are joined. Sections differ and
+ * have roll and shear. Node 0 is held in all degrees of freedom and node 1 in some. */
 static inline void random_truss(hf_truss *t, struct rng *rng)
 {
     int n = rng_int(rng, 3, 40), m = n - 1, extra = rng_int(rng, 0, 2 * n);
@@ -126,7 +126,8 @@ static inline double largest(int n, const double *value)
     return most;
 }
 
-/* The components 0..2 (or 3..5) of every six agree to `tolerance` times the largest of them in b. */
+/* Checks that a and b agree, separately for the first and the last three of every six components. The tolerance is
+ * relative to the largest of these components in b. */
 static inline void check_alike(int n, const double *a, const double *b, double tolerance)
 {
     for (int kind = 0; kind < 2; kind++) {

@@ -1,4 +1,4 @@
-/* twins - a net as built whose errors the test knows, measured with noise. Header only, as nets.h. */
+/* twins - as-built nets with errors that the test knows, measured with noise. Header only, like nets.h. */
 #ifndef HIFDM_TESTS_TWINS_H
 #define HIFDM_TESTS_TWINS_H
 
@@ -12,11 +12,11 @@ enum { TWIN_CABLES = 4000, TWIN_DOFS = 6000, TWIN_SPOOLS = 3 };
 typedef struct {
     struct net net;
     hf_built built;
-    hf_workspace work; /* the last shape, first that of the truth */
+    hf_workspace work; /* the last shape; at first the true one */
     double EA[TWIN_CABLES];
-    double sigma_m[TWIN_CABLES], cut_m[TWIN_CABLES]; /* prior, true errors */
+    double sigma_m[TWIN_CABLES], cut_m[TWIN_CABLES]; /* prior deviations, true errors */
     double place_m[TWIN_DOFS], weight_per_m2[TWIN_DOFS], rest_m[TWIN_DOFS];
-    double shared[TWIN_SPOOLS], shared_m[TWIN_SPOOLS * TWIN_CABLES]; /* true numbers; what they add to lengths */
+    double shared[TWIN_SPOOLS], shared_m[TWIN_SPOOLS * TWIN_CABLES]; /* true values; their part of the lengths, m */
     hf_saddle_prior prior;
     struct rng rng;
 } twin;
@@ -35,7 +35,8 @@ static inline void make_twin(twin *t)
     t->prior = (hf_saddle_prior){.sigma_m = t->sigma_m, .weight_per_m2 = t->weight_per_m2};
 }
 
-/* A random saddle of 10 N and EA of 1e3 to 1e4 N; on a truss that gives way, or on rigid ground. */
+/* Makes a random saddle with tensions of about 10 N and EA of 1e3 to 1e4 N, on a truss that deflects or on rigid
+ * supports. */
 static inline void open_random_twin(twin *t, int trial, bool on_truss)
 {
     *t = (twin){.rng = rng_start(2600 + (uint64_t)trial), .net.form = tight_form(HF_METHOD_NEWTON)};
@@ -47,7 +48,7 @@ static inline void open_random_twin(twin *t, int trial, bool on_truss)
     t->net.form.coupling = (hf_coupling_settings){1e-13, HF_COUPLING_AUTO, 500};
     if (on_truss) attach_all(&t->net, &t->rng, 1e-3);
     make_twin(t);
-    for (int c = 0; c < 3; c++) /* theory is where the design is */
+    for (int c = 0; c < 3; c++) /* the target positions are those of the design */
         memcpy(t->built.model.position_m + c * t->built.model.n_node, t->built.place_m + c * t->built.model.n_node,
                sizeof(double) * (size_t)t->built.model.n_free);
 }
@@ -60,7 +61,7 @@ static inline void close_twin(twin *t)
     close_net(&t->net);
 }
 
-/* About the normal distribution: a sum of twelve. */
+/* Returns a number that is approximately normally distributed, the sum of twelve uniform ones. */
 static inline double rng_normal(struct rng *rng)
 {
     double sum = 0;
@@ -69,8 +70,8 @@ static inline double rng_normal(struct rng *rng)
     return sum;
 }
 
-/* Before measure_twin: n spools, each of every n-th cable, whose lengths have an error in common, of this deviation
- * over the length. */
+/* Adds n spools, each with every n-th cable. The lengths of a spool have a common error with the deviation `ratio`
+ * times the length. Must be called before measure_twin. */
 static inline void spool_twin(twin *t, int n, double ratio)
 {
     const hf_model *m = &t->built.model;
@@ -82,8 +83,8 @@ static inline void spool_twin(twin *t, int n, double ratio)
     t->prior.shared_m = t->shared_m;
 }
 
-/* Errors of cut lengths (m) and of supports (m), the shape that they give, and its measurement of free nodes and
- * attachments, of which about one of `missing` is left out (0: none). */
+/* Draws errors of cut lengths and of supports (m), finds the shape that they give, and measures the free nodes and
+ * attachments with noise (m). About one node of `missing` is left out (0: none). */
 static inline void measure_twin(twin *t, double cut_m, double support_m, double noise_m, int missing)
 {
     const hf_model *m = &t->built.model;

@@ -1,18 +1,19 @@
-/* verified - the measures of a result computed a second time, from positions and laws alone, in long double and in
- * another order of sums, so that a mistake in how the library measures a result is found. */
+/* verified - computes the measures of a result a second time, from positions and laws alone, in long double and with
+ * sums in another order. A mistake in how the library measures a result is found in this way. */
 #ifndef HIFDM_TESTS_VERIFIED_H
 #define HIFDM_TESTS_VERIFIED_H
 
 #include "nets.h"
 
 struct verified {
-    double residual_N;      /* largest nodal force out of balance; INFINITY when something is not finite */
-    double length_gap;      /* largest |l/L-1| of laws length and elastic, weighted by the pull of what is too short */
-    double least_tension_N; /* of these laws: a multiplier must not be negative */
-    double truss_m; /* largest distance of an attachment from where the truss has it under the pull of the net */
+    double residual_N;      /* largest nodal force out of balance; INFINITY if something is not finite */
+    double length_gap;      /* largest |l/L-1| of laws length and elastic; too short: weighted by the tension */
+    double least_tension_N; /* minimum tension of these laws: a multiplier must not be negative */
+    /* Largest distance of an attachment from its position on the truss under the pull of the net. */
+    double truss_m;
 };
 
-/* The shape in `w` under law[] and target[] of the model's cables (NaN: the case's pretension). */
+/* Measures the shape in `w` under law[] and target[] of the cables of the model (NaN: the pretension of the case). */
 static inline struct verified verify_shape(const hf_model *m, const hf_workspace *w, const unsigned char *law,
                                            const double *target)
 {
@@ -64,7 +65,7 @@ static inline struct verified verify_shape(const hf_model *m, const hf_workspace
     return v;
 }
 
-/* Largest distance between the same node in two shapes [3][n_node] of one model, m. */
+/* Returns the largest distance between the positions of a node in two shapes [3][n_node] of one model, m. */
 static inline double largest_move_m(const hf_model *m, const double *a, const double *b)
 {
     double most = 0;
@@ -86,7 +87,8 @@ static inline double *copy_positions(const hf_model *m, const hf_workspace *w)
     return copy;
 }
 
-/* The same reflector with some inner cables at given force densities and loads on every inner node: all three laws. */
+/* Gives some inner cables of a reflector force densities, and all inner nodes loads. The net then has all three
+ * laws. */
 static inline void mix_laws(struct rng *rng, hf_scene *scene)
 {
     hf_scene s;
@@ -106,7 +108,7 @@ static inline void mix_laws(struct rng *rng, hf_scene *scene)
         }
     for (int k = 0; k < 3 * s.n_node; k++)
         s.load_N[k] = s.role[k / 3] == HF_ROLE_INNER ? rng_uniform(rng, -0.3, 0.3) : 0;
-    s.text = scene->text; /* the ids */
+    s.text = scene->text; /* the text of the ids */
     scene->text = NULL;
     hf_scene_free(scene);
     *scene = s;

@@ -1,4 +1,5 @@
-/* cli - what the tests of the program share: making cases, running it, and checking its exit code, output and files. */
+/* cli - shared by the tests of the program: makes cases, runs the program, and checks its exit code, output and
+ * files. */
 #ifndef HIFDM_TESTS_CLI_H
 #define HIFDM_TESTS_CLI_H
 
@@ -14,8 +15,8 @@
 
 /* ---- cases ---- */
 
-/* Copies of paths that stay valid. Those of support.h are overwritten after 16 further calls, and each run of the
- * program makes two calls. */
+/* Returns a copy of a path that stays valid. Paths of support.h are overwritten after 16 further calls, and each run of
+ * the program makes two calls. */
 static inline const char *keep(const char *path)
 {
     static char *kept[128];
@@ -30,7 +31,7 @@ static inline const char *temp(const char *name)
     return keep(temp_path(name));
 }
 
-/* For runs that must leave no result: if one does, then in the test's own directory. */
+/* For runs that must leave no result. A result would go to the directory of the test. */
 #define NOWHERE "-o", temp("nowhere.h5")
 
 #define CHEN keep(source_path("configs/straight-edges.yaml"))
@@ -45,7 +46,7 @@ static inline const char *temp(const char *name)
 #define EA_SCENE SMALL_SCENE "  EA_inner_N: 47000\n  EA_boundary_N: 47000\n"
 #define SMALL_GA "optimize: {population: 6, generations: 3, seed: 7}\n"
 
-/* Write `text` to `name` in the test's directory and return its path. */
+/* Writes `text` to the file `name` in the directory of the test and returns its path. */
 static inline const char *file_with(const char *name, const char *text)
 {
     const char *path = temp(name);
@@ -53,7 +54,7 @@ static inline const char *file_with(const char *name, const char *text)
     return path;
 }
 
-/* An imported net, as two files and their case. Returns the path of the case. */
+/* Writes an imported net as two files and their case. Returns the path of the case. */
 static inline const char *net_with(const char *nodes, const char *cables)
 {
     file_with("nodes.csv", nodes);
@@ -63,7 +64,7 @@ static inline const char *net_with(const char *nodes, const char *cables)
 
 /* ---- running the program ---- */
 
-/* The one command whose output is looked at; released by the next. */
+/* The last command, whose output is tested. The next command releases it. */
 static struct command said;
 
 static inline void demand_exit(struct command command, int exit_code, const char *words, int line)
@@ -75,16 +76,17 @@ static inline void demand_exit(struct command command, int exit_code, const char
                   command.exit_code, exit_code, command.out, command.err);
 }
 
-/* HIFDM(0, "check", path): run it and demand the exit code. What it said is in said.out and said.err. */
+/* HIFDM(0, "check", path) runs the program and demands the exit code. Its output is in said.out and said.err. */
 #define HIFDM(exit_code, ...) demand_exit(run_hifdm(__VA_ARGS__), exit_code, #__VA_ARGS__, __LINE__)
 
-/* SHELL(5, "exec \"$0\" schema >/dev/full"): with the program as $0 and further arguments as $1, $2, ... */
+/* SHELL(5, "exec \"$0\" schema >/dev/full") runs a script of the shell, with the program as $0 and further arguments as
+ * $1, $2, ... */
 #define SHELL(exit_code, ...) SHELL_(exit_code, __VA_ARGS__, NULL)
 #define SHELL_(code, script, ...)                                                                                      \
     demand_exit(run_command(HANG_S, (const char *const[]){"sh", "-c", script, hifdm_program(), __VA_ARGS__, NULL}),    \
                 code, script, __LINE__)
 
-/* ---- what it said ---- */
+/* ---- output ---- */
 
 static inline void demand_part(const char *text, const char *part, int line)
 {
@@ -94,7 +96,7 @@ static inline void demand_part(const char *text, const char *part, int line)
 #define OUT(part) demand_part(said.out, part, __LINE__)
 #define ERR(part) demand_part(said.err, part, __LINE__)
 
-/* ERRS("error: %s:4:3: ...", path): the same with a format. */
+/* ERRS("error: %s:4:3: ...", path) is ERR with a format. */
 #define ERRS(...) demand_part(said.err, formatted(__VA_ARGS__), __LINE__)
 
 static inline const char *formatted(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -123,7 +125,7 @@ static inline bool is_there(const char *path)
     return access(path, F_OK) == 0;
 }
 
-/* Not everywhere may root: containers have no devices of their own. */
+/* Returns true if the user can make devices. In containers not even root may be able to. */
 static inline bool can_make_devices(void)
 {
     return geteuid() == 0 && mknod(temp_path("device"), S_IFCHR | 0600, makedev(1, 3)) == 0 &&
@@ -138,13 +140,13 @@ static inline bool file_is(const char *path, const char *text)
     return same;
 }
 
-/* said.out as a file, for EXPECT. */
+/* Writes said.out to a file, for EXPECT. */
 static inline const char *out_as(const char *name)
 {
     return file_with(name, said.out);
 }
 
-/* EXPECT(path_a, path_b, "--", "a[...] == b[...]"): see expect.py. */
+/* EXPECT(path_a, path_b, "--", "a[...] == b[...]") runs expect.py. */
 #define EXPECT(...)                                                                                                    \
     do {                                                                                                               \
         const char *const expect_argv_[] = {python_program(), source_path("tests/cli/expect.py"), __VA_ARGS__, NULL};  \
@@ -153,7 +155,7 @@ static inline const char *out_as(const char *name)
         free_command(&expect_);                                                                                        \
     } while (0)
 
-/* The JSON block of a page as a file for EXPECT. */
+/* Writes the JSON block of a page to a file, for EXPECT. */
 static inline const char *data_of(const char *page, const char *name)
 {
     static const char open_tag[] = "<script type=\"application/json\" id=\"data\">";
@@ -168,7 +170,7 @@ static inline const char *data_of(const char *page, const char *name)
     return path;
 }
 
-/* The number behind these words of the output. */
+/* Returns the number that follows these words in the output. */
 static inline double number_after(const char *what)
 {
     const char *at = strstr(said.out, what);

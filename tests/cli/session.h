@@ -1,4 +1,5 @@
-/* session - starts programs that a test kills, stops or disturbs while they run, and reads the files they leave. */
+/* session - starts programs that a test kills, stops or disturbs while they run, and reads the files that they
+ * leave. */
 #ifndef HIFDM_TESTS_SESSION_H
 #define HIFDM_TESTS_SESSION_H
 
@@ -17,7 +18,8 @@
 
 extern char **environ;
 
-/* A genetic algorithm on SMALL_SCENE that does little else than store: its evaluations take some 20 us a generation. */
+/* A genetic algorithm on SMALL_SCENE that does little else than store. Its evaluations take about 20 us per
+ * generation. */
 #define STORING_GA                                                                                                     \
     "optimize: {population: 20, generations: %d, seed: 7, stagnation_generations: 1000000, "                           \
     "polish_iterations: 3}\n"
@@ -28,19 +30,19 @@ static inline const char *storing_case(const char *name, int generations)
 }
 
 /* ---- a program that a test kills, stops or disturbs ----
- * No test waits by the clock: it waits for a mark that the program leaves in a folder, and for its end. */
+ * No test waits for a fixed time. It waits for a mark that the program leaves in a folder, and for its end. */
 
 typedef struct {
     pid_t id;
-    int changes;  /* inotify, of the folder */
-    int life;     /* hangs up when the program ends */
-    int err;      /* what a held program says; -1: it is not held */
-    int n_change; /* seen so far */
+    int changes;  /* inotify of the folder */
+    int life;     /* closed when the program ends */
+    int err;      /* output of a held program; -1: it is not held */
+    int n_change; /* changes seen so far */
     bool has_ended;
-    int state; /* of waitpid, once it has ended */
+    int state; /* as waitpid returns it, after the end */
 } session;
 
-/* A full pipe: who writes into it waits until somebody has read. */
+/* Makes a full pipe. A process that writes into it waits until another one has read. */
 static inline void make_full_pipe(int end[2])
 {
     static const char zeros[4096];
@@ -51,9 +53,9 @@ static inline void make_full_pipe(int end[2])
     ck_assert_int_eq(fcntl(end[1], F_SETFL, 0), 0);
 }
 
-/* Start the program (argv[0], its full path), its words in the files "out" and "err" of the test's directory. Changes
- * in `folder`, which exists, are what can be waited for. A held one stays in the first line that it writes to its
- * standard error, until let_go: `run --progress line` after it has stored a generation. */
+/* Starts the program (argv[0], its full path). Its output goes to the files "out" and "err" of the directory of the
+ * test. The test can wait for changes in `folder`, which must exist. A held program stays in the first line that it
+ * writes to its standard error, until let_go: `run --progress line` stays there after it has stored a generation. */
 static inline session start_session(const char *folder, bool is_held, const char *const argv[])
 {
     session s = {.err = -1, .changes = inotify_init1(IN_CLOEXEC)};
@@ -74,7 +76,8 @@ static inline session start_session(const char *folder, bool is_held, const char
     } else {
         posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, temp_path("err"), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     }
-    posix_spawnattr_t heard; /* SIGHUP, which nohup before `make test` would have it ignore */
+    /* The program must react to SIGHUP. With nohup before `make test` it would ignore SIGHUP. */
+    posix_spawnattr_t heard;
     sigset_t set;
     sigemptyset(&set);
     sigaddset(&set, SIGHUP);
@@ -98,7 +101,7 @@ static inline session start_program(const char *const argv[])
     return start_session(temp_path(""), false, argv);
 }
 
-/* `hifdm run` of a genetic algorithm, held after the first generation of this process. */
+/* Starts `hifdm run` of a genetic algorithm, held after the first generation of this process. */
 static inline session start_held_run(const char *case_path, const char *path, const char *const more[])
 {
     const char *argv[32] = {hifdm_program(), "run", case_path, "-o", path, "--progress", "line"};
@@ -107,7 +110,7 @@ static inline session start_held_run(const char *case_path, const char *path, co
     return start_session(temp_path(""), true, argv);
 }
 
-/* `hifdm sweep` into this folder; `threads` may be NULL. */
+/* Starts `hifdm sweep` into this folder; `threads` may be NULL. */
 static inline session start_sweep(const char *study, const char *folder, const char *threads)
 {
     const char *argv[] = {hifdm_program(), "sweep", study, "--dir", folder, "--quiet", threads ? "--threads" : NULL,
@@ -116,7 +119,7 @@ static inline session start_sweep(const char *study, const char *folder, const c
     return start_session(folder, false, argv);
 }
 
-/* Sleep until something has changed in the folder: the number of changes. 0 when the program has ended. */
+/* Sleeps until something has changed in the folder. Returns the number of changes, or 0 if the program has ended. */
 static inline int wait_for_change(session *s)
 {
     struct pollfd on[] = {{.fd = s->changes, .events = POLLIN}, {.fd = s->life}};
@@ -136,7 +139,7 @@ static inline int wait_for_change(session *s)
     return n;
 }
 
-/* Wait until is_so(path); false when the program ends before. */
+/* Waits until is_so(path). Returns false if the program ends before. */
 static inline bool wait_until(session *s, bool (*is_so)(const char *path), const char *path)
 {
     while (!is_so(path))
@@ -144,7 +147,8 @@ static inline bool wait_until(session *s, bool (*is_so)(const char *path), const
     return true;
 }
 
-/* The same, and the program stands still (SIGSTOP) when it is so: SIGKILL ends it, SIGCONT lets it go on. */
+/* Waits until is_so(path) and stops the program (SIGSTOP) in this state. SIGKILL ends it, SIGCONT lets it continue.
+ * Returns false if the program ends before. */
 static inline bool freeze_when(session *s, bool (*is_so)(const char *path), const char *path)
 {
     while (wait_until(s, is_so, path)) {
@@ -159,7 +163,7 @@ static inline bool freeze_when(session *s, bool (*is_so)(const char *path), cons
     return false;
 }
 
-/* Read all that a held program says from now on, until its end, into the file "err". */
+/* Reads the output of a held program from now until its end into the file "err". */
 static inline void let_go(session *s)
 {
     char part[4096];
@@ -167,14 +171,14 @@ static inline void let_go(session *s)
     int file = open(temp_path("err"), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     ck_assert_int_ge(file, 0);
     while ((n = read(s->err, part, sizeof part)) > 0)
-        for (ssize_t i = 0; i < n; i++) /* without what filled the pipe */
+        for (ssize_t i = 0; i < n; i++) /* without the bytes that filled the pipe */
             if (part[i]) ck_assert_int_eq(write(file, part + i, 1), 1);
     close(file);
     close(s->err);
     s->err = -1;
 }
 
-/* The exit code, as a shell says it: 128 + number when killed. */
+/* Waits for the end and returns the exit code as a shell does: 128 + number if killed by a signal. */
 static inline int end_of(session *s)
 {
     if (s->err >= 0) let_go(s);
@@ -200,7 +204,7 @@ static inline bool has_generations(const char *path)
     return stat(formatted("%s.journal", path), &info) == 0 && info.st_size >= 1000;
 }
 
-/* The program's words in this file contain a part. */
+/* Returns true if the output of the program in this file contains `part`. */
 static inline bool says(const char *path, const char *part)
 {
     char *text = read_file(path, NULL);
@@ -209,7 +213,7 @@ static inline bool says(const char *path, const char *part)
     return found;
 }
 
-/* The file in this folder whose name fits the pattern, the first of several; NULL: there is none. */
+/* Returns the first file in this folder whose name fits the pattern, or NULL. */
 static inline const char *file_like(const char *folder, const char *pattern)
 {
     static char path[PATH_MAX];
@@ -220,7 +224,7 @@ static inline const char *file_like(const char *folder, const char *pattern)
     return is_found ? path : NULL;
 }
 
-/* Of a point of the sweep in this folder: it is being computed. */
+/* Returns true if a point of the sweep in this folder is being computed. */
 static inline bool has_begun_point(const char *folder)
 {
     char path[PATH_MAX];
@@ -230,7 +234,7 @@ static inline bool has_begun_point(const char *folder)
     return is_there(path) && has_generations(path);
 }
 
-/* Of a run with --progress jsonl: form-finding or Levenberg-Marquardt has begun. */
+/* Return true if the form-finding or the refinement of a run with --progress jsonl has begun. `err`: its output. */
 static inline bool says_form(const char *err)
 {
     return says(err, "\"phase\": \"form\"");
@@ -241,15 +245,15 @@ static inline bool says_polish(const char *err)
     return says(err, "\"phase\": \"polish\"");
 }
 
-/* Wait until the run has stored a generation in the journal of `path`. */
+/* Waits until the run has stored a generation in the journal of `path`. */
 static inline void wait_for_generations(session *s, const char *path)
 {
     if (!wait_until(s, has_generations, path)) ck_abort_msg("no generation was stored: exit code %d", end_of(s));
 }
 
-/* What the journal of `path` holds: one more than its last whole record's generation, 0 without a record; *end (may be
- * NULL) is where that record ends. Reads the format by itself: 72 bytes of header, then {"HFDJ", length, crc,
- * generation}, where length counts from generation. */
+/* Returns the number of generations up to that of the last whole record in the journal of `path`, 0 without a record.
+ * *end (may be NULL) is where that record ends. The format is read independently: 72 bytes of header, then {"HFDJ",
+ * length, crc, generation}, where length counts from generation. */
 static inline int generations_in_journal(const char *path, size_t *end)
 {
     size_t size = 0, at = 72;
@@ -272,7 +276,7 @@ static inline int generations_in_journal(const char *path, size_t *end)
     return n;
 }
 
-/* What `hifdm show` says that the visible file holds. */
+/* Returns the number of generations that `hifdm show` reports for the visible file. */
 static inline int generations_in_file(const char *path)
 {
     HIFDM(0, "show", path, "--json");
