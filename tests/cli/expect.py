@@ -1,8 +1,8 @@
-"""expect.py FILE... -- EXPRESSION...: every Python expression must hold of what the files hold.
+"""expect.py FILE... -- EXPRESSION...: checks that every Python expression holds for the content of the files.
 
-The files are a, b, c, ... in the order given: .json the object, .h5 an open h5py.File, .csv a list of rows as
-dictionaries, .yaml the document, anything else its bytes. What an expression may use besides is below. One that does
-not hold is printed with the values of its two sides, and the exit status is 1."""
+The files are a, b, c, ... in the order given. A .json file is its object, .h5 an open h5py.File, .csv a list of rows as
+dictionaries, .yaml its document, and any other file its bytes. Expressions may also use the functions below. An
+expression that does not hold is printed with the values of its two sides, and the exit status is 1."""
 import ast
 import base64
 import csv
@@ -34,7 +34,7 @@ def load(path):
 
 
 def unpacked(item):
-    """Numbers of a page, which stand in it as base64 of their bytes (base/json.h)."""
+    """Returns the numbers of a page, which stores them as base64 of their bytes (base/json.h)."""
     types = {"i32": "<i4", "f32": "<f4", "f64": "<f8"}
     for name, text in item.items():
         if name in types and len(item) == 1:
@@ -47,7 +47,7 @@ def refuse(word):
 
 
 def data_sets(file):
-    """Path -> data set, of all of them, but second names in the grid for ParaView."""
+    """Returns {path: data set} of all data sets, without the links in the grid for ParaView."""
     found = {}
     for name, item in file.items():
         if hasattr(item, "dtype"):
@@ -58,13 +58,15 @@ def data_sets(file):
 
 
 def contents(file):
-    """Path -> (type, shape, bytes) of all data sets: equal means the same bits; attributes do not count."""
+    """Returns {path: (type, shape, bytes)} of all data sets. Two results are equal if all their bits are. Attributes do
+    not count."""
     return {name: (str(d.dtype), d.shape, d[()].tobytes() if d.dtype.kind != "O" else repr(d[()]))
             for name, d in data_sets(file).items()}
 
 
 def attributes(file):
-    """(object, attribute) -> value, of all below the root but times and the case as it was typed."""
+    """Returns {(object, attribute): value} of all objects below the root, without times and without the case as it was
+    typed."""
     found = {}
     file.visititems(lambda name, item: found.update({(name, k): str(v) for k, v in item.attrs.items()
                                                      if k[-2:] != "_s" and name != "case"}))
@@ -77,7 +79,8 @@ def differing(one, other):
 
 
 def holds_of(thin, whole, store, every):
-    """Are the rows of /ga in `thin` those that optimize.store leaves of a whole file, and the last generation there?"""
+    """Checks that the rows of /ga in `thin` are those that optimize.store keeps of the file `whole`, and that the last
+    generation is there."""
     best = whole["ga/best_individual"][:]
     rows = {"best": lambda v: v[np.arange(len(v)), best][:, None], "every": lambda v: v[::every]}[store]
     per = [n for n, d in whole["ga"].items() if hasattr(d, "shape") and d.shape[:2] == whole["ga/psi_m"].shape]
@@ -89,8 +92,8 @@ def holds_of(thin, whole, store, every):
 
 
 def facet_rms(grid, f, n):
-    """RMS along the normal of the bilinear cells of a grid of nodes [j][i][xyz] above the cylinder x^2/(4f), over the
-    projected area, with n x n points of Gauss-Legendre in a cell."""
+    """Returns the RMS error along the normal of a grid of nodes [j][i][xyz] above the cylinder x^2/(4f). The cells are
+    bilinear, with n x n points of Gauss-Legendre each; the mean is over the projected area."""
     at, weight = np.polynomial.legendre.leggauss(n)
     u, v = np.meshgrid((at + 1) / 2, (at + 1) / 2)
     a, b, c, d = (part[..., :, None, None] for part in (grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]))
@@ -102,7 +105,7 @@ def facet_rms(grid, f, n):
 
 
 def column(rows, *names):
-    """Columns of a CSV file as numbers, one array row per line."""
+    """Returns columns of a CSV file as numbers, one row of the array per line."""
     values = np.array([[float(row[name]) for name in names] for row in rows])
     return values[:, 0] if len(names) == 1 else values
 
@@ -112,13 +115,13 @@ def text(value):
 
 
 def texts(data_set):
-    """Strings of a data set of whatever kind of strings and any shape."""
+    """Returns the strings of a data set, of any kind of string and any shape."""
     values = data_set[()]
     return [text(t) for t in values.tolist()] if isinstance(values, np.ndarray) else text(values)
 
 
 def sets_of(file):
-    """Name -> ids of the cables of each set."""
+    """Returns {name: ids of the cables} of all sets."""
     ids, start, cable = texts(file["scene/cable/id"]), file["scene/set/start"][:], file["scene/set/cable"][:]
     names = texts(file["scene/set/name"])
     return {name: {ids[e] for e in cable[start[k] : start[k + 1]]} for k, name in enumerate(names)}
@@ -129,20 +132,20 @@ def attribute(item, name):
 
 
 def psi_m(file, position_m):
-    """Eq. 10, computed here and not by the program."""
+    """Returns psi by Eq. 10, computed here and not by the program."""
     inner = file["scene/node/role"][:] == 1
     gap = position_m[inner] - file["scene/node/position_m"][:][inner]
     return float(np.sqrt((gap**2).sum(axis=1).mean()))
 
 
 def ratio(file, tension_N, group):
-    """Largest over smallest tension of group 0 (inner) or 1 (boundary)."""
+    """Returns the ratio of maximum to minimum tension in group 0 (inner) or 1 (boundary)."""
     mine = tension_N[file["scene/cable/group"][:] == group]
     return float(mine.max() / mine.min())
 
 
 def residual_N(file):
-    """Largest force out of balance on a free node of /form, loads included."""
+    """Returns the largest force out of balance at a free node of /form, loads included."""
     position_m, end = file["form/position_m"][:], file["scene/cable/end"][:]
     pull_N = file["form/q_N_per_m"][:][:, None] * (position_m[end[:, 1]] - position_m[end[:, 0]])
     force_N = file["scene/node/load_N"][:] if "scene/node/load_N" in file else np.zeros_like(position_m)
@@ -152,7 +155,7 @@ def residual_N(file):
 
 
 def held(q_N_per_m, support_m):
-    """Where cables of these force densities hold a node among supports, and their tensions."""
+    """Returns the position where cables with these force densities hold a node between supports, and their tensions."""
     q, support = np.array(q_N_per_m), np.array(support_m)
     node = q @ support / q.sum()
     return node, q * np.linalg.norm(node - support, axis=1)
@@ -163,8 +166,8 @@ def sha256(content):
 
 
 def bits(file, case):
-    """A line per group of numbers: case, group, checksum of names, types, shapes and bytes. Of a merged study the
-    result files of its points are one group, "runs"."""
+    """Returns one line per group of numbers: case, group, and a checksum of names, types, shapes and bytes. In a merged
+    study the result files of the points are one group, "runs"."""
     groups = {}
     for name, (kind, shape, data) in sorted(contents(file).items()):
         parts = name.split("/")

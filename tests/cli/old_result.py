@@ -1,10 +1,10 @@
-"""Result files of earlier versions as text, because no binary files are kept here.
+"""Converts result files of earlier versions to text and back, because the repository keeps no binary files.
 
-old_result.py text RESULT > FILE.json    every group, data set, attribute and type of a result, a line each
-old_result.py file FILE.json RESULT      the result again: the same objects, types and bits, though not the same bytes
+old_result.py text RESULT > FILE.json    writes each group, data set, attribute and type of a result on a line
+old_result.py file FILE.json RESULT      makes the result again, with the same objects, types and bits, but other bytes
 
-tests/cli/data/result-0.1.0.json is of commit 2c5643c, the last of version 0.1.0, by `hifdm run old.yaml -o old.h5`; the
-case is in it. Name of the machine: "host"."""
+tests/cli/data/result-0.1.0.json is from commit 2c5643c, the last one of version 0.1.0. `hifdm run old.yaml -o old.h5`
+made it, and its case is in it. The name of the machine is "host"."""
 import json
 import sys
 
@@ -13,7 +13,8 @@ import numpy as np
 
 
 def type_of(item):
-    """A type as JSON: that of numpy, "text", "chars" with the length of each, or the words of an enumeration."""
+    """Returns a type as JSON: the name that numpy gives it, "text", "chars" with the length, or the words of an
+    enumeration."""
     words, text = h5py.check_enum_dtype(item.dtype), h5py.check_string_dtype(item.dtype)
     if words:
         return [item.dtype.str, dict(sorted(words.items()))]
@@ -32,7 +33,7 @@ def dtype_of(kind):
 
 
 def as_json(values):
-    """Numbers and texts; json writes doubles so that they are read back to the bit, and NaN as NaN."""
+    """Converts numbers and texts. json writes doubles so that they are read back to the bit, and NaN as NaN."""
     values = np.asarray(values).tolist()
 
     def words(v):

@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""Does the program say what it said? A transcript is a file of commands, each with what it printed.
+"""Checks that the program prints what a transcript says. A transcript is a file of commands with their output.
 
-    transcript.py FILE PROGRAM WORK            exit status 1 and the differences if it says something else
-    transcript.py FILE PROGRAM WORK --write    write what it says into FILE
+    transcript.py FILE PROGRAM WORK            prints the differences and exits with status 1 if there are any
+    transcript.py FILE PROGRAM WORK --write    writes the output of the program into FILE
 
-Lines before the first command say what the file is about. A command is a line "$ ...", for sh, in a folder of its own
-that the commands of a file share; lines "> ..." go on with it. What it prints follows, that on standard error behind
-"! ", its exit status as "[exit 2]" unless it is 0. Beside hifdm there are commands that make files comparable, this
-program's: `contents` lists a result, `files` tables and folders, `page` what a reader of a report sees.
+The lines before the first command describe the file. A command is a line "$ ..." for sh, and lines "> ..." continue it.
+The commands of a file run in one folder of their own. The output follows the command. Lines of standard error begin
+with "! ", and the exit status is "[exit 2]" unless it is 0. In addition to hifdm there are three commands of this
+script that make files comparable: `contents` lists a result, `files` lists tables and folders, and `page` prints what a
+reader of a report sees.
 
-What differs between two runs is masked: times, memory, rates, places, versions. Numbers are equal within 1e-6 of them,
-or one of their last digit; as are any two below 1e-9, the rounding of sums, unless they are bounds of an error, which
-are equal within a factor of 2. Whole numbers are equal or not.
-"""
+What differs between two runs is masked: times, memory, rates, paths and versions. Two numbers are equal if they differ
+by at most 1e-6 of them or by one unit of their last digit. Two numbers below 1e-9 are equal, too, because they are
+rounding errors of sums. Error bounds are equal within a factor of 2. Whole numbers must be equal."""
 
 import difflib
 import json
@@ -48,7 +48,7 @@ PROVENANCE = {"argv", "build_flags", "compiler", "git_describe", "gsl_version", 
 
 
 def commands_of(text):
-    """The words before the first command; pairs of a command and what it printed."""
+    """Returns the text before the first command, and pairs of a command and its output."""
     head, found = [], []
     for line in text.splitlines():
         if line.startswith("$ "):
@@ -63,7 +63,7 @@ def commands_of(text):
 
 
 def masked(text, work, longest_s):
-    """Without what differs between two runs. Times that were measured are masked unless they cannot be."""
+    """Returns the text without what differs between two runs. Measured times are masked if they can be right."""
     text = MEASURED.sub(lambda m: m[1] + "TIME" if 0 <= float(m[2]) <= longest_s else m[0], text)
     text = text.replace(f"{work}/", "").replace(str(work), ".").replace(f"{TOP}/", "TOP/")
     for pattern, word in MASKS:
@@ -105,7 +105,8 @@ def same_line(a, b):
 
 
 def with_tools(work, program):
-    """A folder with hifdm and this program's commands, which does not lie in the commands' folder."""
+    """Makes a folder with hifdm and the commands of this script. It is not in the folder of the commands. Returns the
+    environment for them."""
     tools = Path(f"{work}.tools")
     tools.mkdir()
     (tools / "hifdm").symlink_to(program)
@@ -139,7 +140,8 @@ def main(path, program, work, write=False):
 # ---- commands of transcripts ----
 
 def digest(values):
-    """Of numbers: how many, the sum of their sizes, each with a weight of its place, how many are negative."""
+    """Returns how many numbers there are, the sum of their absolute values, each weighted by its index, and how many
+    are negative."""
     weight = [1 + (7 * i % 11) / 11 for i in range(len(values))]
     total = sum(w * abs(v) for w, v in zip(weight, values) if v == v and abs(v) != float("inf"))
     odd = sum(v != v or abs(v) == float("inf") for v in values)
@@ -226,7 +228,8 @@ def files(*paths):
 
 
 class Page(HTMLParser):
-    """Text by line; of each drawing its elements and the numbers in them; of data the numbers and texts by key."""
+    """The text of a page by line, the elements of each drawing with their numbers, and the numbers and texts of data by
+    key."""
 
     def __init__(self):
         super().__init__()

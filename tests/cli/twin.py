@@ -1,12 +1,12 @@
-"""A net as built whose errors nobody but the test knows: an imported net of elastic cables, cut wrong.
+"""Makes an as-built net with errors that only the test knows: an imported net of elastic cables, cut with errors.
 
-    twin.py built CUT.csv SHAPE CABLES.csv NODES.csv SIGMA_M SEED    tables of the net with random errors of cut lengths
-    twin.py measured SHAPE MEASURED.csv SIGMA_M SEED                 places of what is not held, with noise
-    twin.py turned CABLES.csv MOVES.csv TURNED.csv                   the net with the moves of a table of `hifdm adjust`
+    twin.py built CUT.csv SHAPE CABLES.csv NODES.csv SIGMA_M SEED    tables of the net, cut lengths with random errors
+    twin.py measured SHAPE MEASURED.csv SIGMA_M SEED                 measured positions of all nodes, with noise
+    twin.py turned CABLES.csv MOVES.csv TURNED.csv                   the net after the adjustments of `hifdm adjust`
     twin.py distance SHAPE SHAPE                                     RMS of inner nodes between two shapes, m
 
-CUT.csv is that of `hifdm export --cutlist`, SHAPE a folder of `--csv`.
-"""
+CUT.csv is a cut list of `hifdm export --cutlist`, MOVES.csv a table of `hifdm adjust`, and SHAPE a folder of
+`--csv`."""
 import csv
 import math
 import random

@@ -1,6 +1,10 @@
-"""vtk_reads.py RESULT FOLDER: VTK (python3-vtk9) reads every file of `hifdm export --vtk`, and point and cell data are
-the numbers of the result file, bit by bit. vtk_reads.py RESULT: the same of the grid in the result itself. Without VTK
-h5py looks at the same files, which is no proof that VTK can."""
+"""Checks the files of `hifdm export --vtk`, and the grid in a result.
+
+    vtk_reads.py RESULT FOLDER    VTK (python3-vtk9) reads every file of `hifdm export --vtk` in FOLDER
+    vtk_reads.py RESULT           VTK reads the grid in the result itself
+
+Point and cell data must be the numbers of the result file, bit by bit. Without VTK, h5py reads the same files. This
+does not prove that VTK can read them."""
 import os
 import sys
 
@@ -56,9 +60,9 @@ def same(name, one, other):
 
 
 def errors(points, cell, kind, f):
-    """Errors along the normal at 3 x 3 points of a facet and their weights, projected area. In a triangle the side
-    v = 1 is its third corner. More points change the RMS by 1e-5 of it, where the slope of a deep dish changes over a
-    facet."""
+    """Returns the errors along the normal at 3 x 3 points of a facet, and their weights, projected area. In a triangle
+    the side v = 1 is its third corner. More points change the RMS by 1e-5 of it, because the slope of a deep dish
+    changes over a facet."""
     x, w = np.polynomial.legendre.leggauss(3)
     u, v = (g.ravel() for g in np.meshgrid((x + 1) / 2, (x + 1) / 2))
     w = np.outer(w, w).ravel() / 4
@@ -160,7 +164,7 @@ def check_truss(result, path, stage, read):
 
 
 def by_calculator(path, formula):
-    """The points after ParaView's filter Calculator with Coordinate Results."""
+    """Returns the points after ParaView's filter Calculator with Coordinate Results."""
     reader, calculator = vtk.vtkHDFReader(), vtk.vtkArrayCalculator()
     reader.SetFileName(path)
     calculator.SetInputConnection(reader.GetOutputPort())
@@ -177,8 +181,8 @@ def by_calculator(path, formula):
 
 
 def check_result(path):
-    """The grid of a result has the arrays of its other groups, all of them and no others, and its stages and states can
-    be made the coordinates."""
+    """Checks that the grid of a result has all arrays of the other groups and no others, and that the positions of its
+    stages and load cases can become the coordinates."""
     result = h5py.File(path, "r")
     assert result.attrs["finished"]
     scene, shapes = result["scene"], {"form": result["form"]}

@@ -1,23 +1,23 @@
 """Random faults against the commands of attack_cases.py. Exit status 1 if a promise is broken.
 
     tests/fault/attack.py --program build/hifdm --seed N --kills 200 --calls 500 --flips 5000
-    tests/fault/attack.py --program build/hifdm --seed N --only flips:37     one case again, with what was said
+    tests/fault/attack.py --program build/hifdm --seed N --only flips:37     repeats one case and prints the output
 
-kills  A command that writes gets SIGKILL at a random moment. Files that were there before are whole. The same command,
-       or the same with --force where its file is there already, then ends with 0. Its files are those of an
-       undisturbed run, and no temporary file is left.
+kills  A command that writes gets SIGKILL at a random moment. Files that were there before must be whole. The same
+       command, or the same with --force where its file is there already, must then end with 0. Its files must be those
+       of an undisturbed run, and no temporary file may remain.
 calls  The n-th call of a random function of the system, or of memory, threads or processes, fails once (attack.c).
-       For a quarter of the commands that write, SIGKILL follows. The command gives its usual exit status and result,
-       or it ends with 5 and an error message. Then as for kills.
-flips  One bit of a result, journal, ledger, merge or table is wrong, and a command reads it. The exit status is a
-       documented one, with words that name a file. With 0 a figure may differ only if no checksum covers the bit, and
-       `hifdm diff` finds each changed value. What is only read, or refused, is not changed.
+       For a quarter of the commands that write, SIGKILL follows. The command must give its usual exit status and
+       result, or end with 5 and an error message. Then the same holds as for kills.
+flips  One bit of a result, journal, ledger, merge or table is wrong, and a command reads it. The exit status must be
+       a documented one, with a message that names a file. With 0, a figure may differ only if no checksum covers the
+       bit, and `hifdm diff` must find each changed value. A file that is only read, or refused, must not change.
 
-Kills and calls that struck nothing do not count: cases are drawn until as many as asked for have struck.
+Kills and calls that struck nothing do not count. Cases are drawn until as many as asked for have struck.
 
-Each case follows from the seed, its kind and its number. The moments of kills depend on the machine, too, and so does
-the content of files with times and of the result of a killed run. Cases and commands are in attack_cases.py. It needs
-x86-64, cc and h5py."""
+Each case follows from the seed, its kind and its number. The moments of kills also depend on the machine, and so does
+the content of files with times and of the result of a killed run. Cases and commands are in attack_cases.py. The script
+needs x86-64, cc and h5py."""
 import argparse
 import collections
 import concurrent.futures
@@ -49,7 +49,7 @@ Whole = collections.namedtuple("Whole", "told folder seconds counts")  # what an
 
 
 class Place:
-    """A folder with all inputs, in which commands are given. Its out/ is made anew for each case."""
+    """A folder with all inputs, in which commands run. Its folder out/ is made again for each case."""
 
     def __init__(self, o, folder, base=None):
         self.o, self.folder, self.out, self.log, self.base = o, folder, folder / "out", [], base
@@ -98,7 +98,7 @@ class Place:
         return {**counts, "by": data[-BY_BYTES:].split(b"\0")[0].decode()}
 
     def whole(self, folder, words, before, counts=False):
-        """Gives the command undisturbed, and keeps a copy of its files."""
+        """Runs the command undisturbed and keeps a copy of its files."""
         counted = {}
         if counts:
             self.prepare(before)
@@ -123,14 +123,14 @@ class Place:
         return path.suffix == ".h5" and path.name != "m.h5" and self.call(f"diff {path} {other}").status == 0
 
     def differences(self, whole, skips=lambda name: False):
-        """out/ against the files of the undisturbed command."""
+        """Returns the differences between out/ and the files of the undisturbed command."""
         here, there = ({n for n in names_in(folder) if not skips(n)} for folder in (self.out, whole.folder))
         wrong = [f"{name} is {'left' if name in here else 'missing'}" for name in sorted(here ^ there)]
         return wrong + [f"{name} is not that of the undisturbed command" for name in sorted(here & there)
                         if not self.is_same(self.out / name, whole.folder / name)]
 
     def losses(self, before, whole):
-        """Files that are neither whole nor what they were, and earlier ones that are gone."""
+        """Returns the files that are neither whole nor unchanged, and earlier files that are missing."""
         wrong, earlier = [], [self.folder / of for of in before.values() if (self.folder / of).is_file()]
         for path in (self.out / name for name in sorted(names_in(self.out))):
             if is_temporary(path.name) or path.suffix == ".journal" or path.is_symlink() or any(
@@ -151,7 +151,8 @@ class Place:
         return wrong
 
     def again(self, words, whole, is_told=False):
-        """The same command without a fault. is_told: it was said that the earlier result is left."""
+        """Runs the same command without a fault and returns what is wrong. is_told: a message said that the earlier
+        result remains."""
         told = self.call(words)
         if told.status == 5 != whole.told.status and "--force" in told.err and not words.startswith(("run", "merge")):
             told = self.call(words + " --force")
@@ -166,7 +167,7 @@ class Place:
 
 
 class Attack:
-    """The three kinds of cases. Each returns what was done, the outcome, and what is wrong."""
+    """The three kinds of cases. Each returns what it did, the outcome, and what is wrong."""
 
     def __init__(self, o, root):
         self.o, self.root, self.ranges = o, root, {}
@@ -292,7 +293,7 @@ class Attack:
 
 
 def judge_flip(place, source, words, whole, told, path, data, inside):
-    """What is wrong with the end of a command that met a damaged file."""
+    """Returns what is wrong with the end of a command that read a damaged file."""
     command, wrong, is_table = words.split()[0], [], path.suffix == ".csv"
     may_write = command in ("run", "recover", "sweep", "tolerance") or source == "merge" and command == "merge"
     allowed = {0, 5} | {"diff": {1}, "sweep": {3}, "adjust": {2}}.get(command, set())
@@ -320,7 +321,7 @@ def judge_flip(place, source, words, whole, told, path, data, inside):
 
 
 def machine(o):
-    """What was attacked, how, and where."""
+    """Returns what was attacked, how, and on which machine."""
     said = subprocess.run([o.program, "version"], capture_output=True, text=True, check=True).stdout.splitlines()[0]
     lapack = os.path.realpath("/etc/alternatives/liblapack.so.3-x86_64-linux-gnu")
     processor = re.search(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(), re.M)

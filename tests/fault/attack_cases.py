@@ -1,4 +1,4 @@
-"""What attack.py attacks: cases, commands, what may be damaged, and which errors fit which call."""
+"""The data of attack.py: cases, commands, files that may be damaged, and which errors fit which call."""
 
 NET = """scene:
   paraboloid: {aperture_m: 3, focal_length_m: 2, rings: 2, rear_distance_m: 0.8}

@@ -1,4 +1,4 @@
-"""What is in files of hifdm, for attack.py: names, rows, records, and which bytes no checksum covers."""
+"""Reads files of hifdm for attack.py: names, rows, records, and the bytes that no checksum covers."""
 import re
 import struct
 
@@ -15,8 +15,8 @@ def names_in(folder):
 
 
 def rows_of(folder, finished=False):
-    """The rows of a sweep in all its tables, without times; of finished points alone, because a point that was stopped
-    has one more."""
+    """Returns the rows of a sweep in all its tables, without times. `finished`: only rows of finished points, because a
+    point that was stopped has one row more."""
     rows = set()
     for path in folder.glob("s.d/*.tsv"):
         head, *lines = (line.split("\t") for line in path.read_text(errors="replace").splitlines() or [""])
@@ -26,7 +26,8 @@ def rows_of(folder, finished=False):
 
 
 def attributes_of(path):
-    """{(object, attribute): value} of a result, without times and without what tells of its session (the root's)."""
+    """Returns {(object, attribute): value} of a result, without times and without the attributes of the root, which
+    describe its session."""
     found = {}
     with h5py.File(path) as file:
         file.visititems(lambda name, item: found.update({(name, k): str(v) for k, v in item.attrs.items()
@@ -35,7 +36,7 @@ def attributes_of(path):
 
 
 def records_of(path):
-    """A journal without the order of its records, which threads decide."""
+    """Returns the header of a journal and its records without their order, which depends on threads."""
     data, at, records = path.read_bytes(), 72, []
     while at + 12 <= len(data):
         length = 12 + struct.unpack_from("<I", data, at + 4)[0]
@@ -45,7 +46,8 @@ def records_of(path):
 
 
 def node_bytes(data, at, chunks):
-    """Size of a node of a tree of chunks. Its rank is that for which the first child is a chunk or a node."""
+    """Returns the size of a node in a tree of chunks. Its rank is the one for which its first child is a chunk or a
+    node."""
     for rank in range(1, 6):
         key = 8 + 8 * (rank + 1)
         child = struct.unpack_from("<Q", data, at + 24 + key)[0]
@@ -55,7 +57,8 @@ def node_bytes(data, at, chunks):
 
 
 def open_ranges(path):
-    """[(from, to, data set)] of what no checksum covers in a file of HDF5: values, trees of chunks, long texts."""
+    """Returns [(from, to, data set)] of all bytes of an HDF5 file that no checksum covers: values, trees of chunks,
+    long texts."""
     data, ranges, chunks = path.read_bytes(), [], set()
 
     def take(name, item):
@@ -82,7 +85,7 @@ def open_ranges(path):
 
 
 def has_changed(folder, words, data_set):
-    """Do the two files of `diff` differ in this data set? Two values that are no numbers are alike."""
+    """Returns true if the two files of `diff` differ in this data set. Two NaN are equal."""
     values = []
     for name in words.split()[1:3]:
         with h5py.File(folder / name) as file:

@@ -1,4 +1,4 @@
-"""What table.py measures: the commands (ROWS), the faults (FAULTS), and a Bench that does one to the other."""
+"""What table.py measures: the commands (ROWS), the faults (FAULTS), and a Bench that applies a fault to a command."""
 import os
 import random
 import re
@@ -48,7 +48,7 @@ FILES = {
 
 
 class Row:
-    """A stage or a command. reads: files that a `damaged file` is one of, as a list of patterns below the folder."""
+    """A stage or a command. reads: patterns below the folder, of the files from which a `damaged file` is chosen."""
 
     def __init__(self, name, words, out=None, reads=()):
         self.name, self.words, self.out, self.reads = name, words.split(), out, reads
@@ -107,7 +107,7 @@ def is_temporary(path):
 
 
 class Bench:
-    """A folder in which one command after the other has its faults."""
+    """A folder in which one command after the other runs with faults."""
 
     def __init__(self, program, folder, library, most):
         self.program, self.folder, self.library, self.most = program, Path(folder), library, most
@@ -116,7 +116,8 @@ class Bench:
     # ---- what is there before a fault ----
 
     def call(self, words, cwd=None, fault="", limit="", **more):
-        """(exit status, what was said); negative for a signal, "hangs" for a command that does not end."""
+        """Returns (exit status, output). The status is negative for a signal, and "hangs" for a command that does not
+        end."""
         environment = dict(os.environ, OMP_NUM_THREADS="2", **more)
         shell = (f"{limit}; " if limit else "") + 'exec "$0" "$@"'
         if fault:
@@ -134,7 +135,7 @@ class Bench:
             return "hangs", ""
 
     def make_base(self):
-        """The inputs of all commands, which all benches of a parent folder share."""
+        """Makes the inputs of all commands. All benches of a parent folder share them."""
         shutil.rmtree(self.base, ignore_errors=True)
         (self.base / "out").mkdir(parents=True)
         for name, text in FILES.items():
@@ -148,7 +149,7 @@ class Bench:
         self.begin_unfinished()
 
     def write_measured(self):
-        """m.csv: the nodes of the design, some of them moved a little."""
+        """Writes m.csv: the nodes of the design, some of them slightly displaced."""
         lines = (self.base / "nodes/nodes.csv").read_text().splitlines()
         at = [lines[0].split(",").index(word) for word in ("id", "x_m", "y_m", "z_m")]
         with open(self.base / "m.csv", "w", encoding="ascii") as file:
@@ -158,7 +159,7 @@ class Bench:
                 file.write(f"{cell[0]},{cell[1]},{cell[2]},{float(cell[3]) + (i % 5 - 2) * 2e-4!r}\n")
 
     def begin_unfinished(self):
-        """n.h5: a run that was killed while its journal has generations that the file has not."""
+        """Makes n.h5 by a run that is killed while its journal has generations that the file does not have."""
         journal = self.base / "n.h5.journal"
         for n in range(20, 2000, 10):
             for path in self.base.glob("*n.h5*"):
@@ -195,7 +196,7 @@ class Bench:
         return sorted(p for p in folder.rglob("*") if p.is_file() and not p.is_symlink() and p.name != FILLER)
 
     def state_of(self, path):
-        """Of a file of HDF5, in words; `damaged file` for what cannot be read."""
+        """Returns the state of an HDF5 file in words; `damaged file` if it cannot be read."""
         if path.name == "m.h5" or path.suffix == ".hdf":
             status = self.call(["diff", str(path), str(path)], self.folder)[0]
             return "its files" if status in (0, 1) else "damaged file"
@@ -205,7 +206,7 @@ class Bench:
         return "unfinished result" if said.startswith("unfinished: ") else "finished result"
 
     def left(self, compares):
-        """What is in out/, in words."""
+        """Returns what is in out/, in words."""
         words = set()
         for path in self.files(self.work / "out"):
             name = path.relative_to(self.work / "out")
@@ -236,7 +237,7 @@ class Bench:
         self.wrong.append(f"{fault}, {self.row.name}: {what}: {said.strip()[:300]}")
 
     def compare(self, fault):
-        """Are the files those of an undisturbed command, to the bit, and no others?"""
+        """Checks that the files are those of an undisturbed command, to the bit, and no others."""
         here, there = (
             {p.relative_to(folder) for p in self.files(folder)
              if p.suffix not in (".tsv", "") and not is_temporary(p) and not KEPT.search(p.name)}
@@ -250,7 +251,7 @@ class Bench:
             self.tell_wrong("the rows are not those of an undisturbed command", fault)
 
     def afterwards(self, fault, compares):
-        """What the same command does without the fault, in a word."""
+        """Runs the same command without the fault and returns its outcome in a word."""
         status, said = self.call(self.row.words)
         if any(is_temporary(p) for p in self.files(self.work / "out")):
             self.tell_wrong("the same command leaves a temporary file", fault, said)
@@ -268,7 +269,7 @@ class Bench:
         return sorted({1 + round(i * (n - 1) / max(most - 1, 1)) for i in range(most)})
 
     def at_call(self, what, n, letters):
-        """((exit status, words), how many of these calls on files of the folder the command made)."""
+        """Returns ((exit status, output), number of these calls on files of the folder that the command made)."""
         tally = self.folder / "tally"
         tally.unlink(missing_ok=True)
         self.fresh()
@@ -294,7 +295,7 @@ class Bench:
             yield self.call(self.row.words, limit=f"ulimit {limits[limit - 1]}")
 
     def mounted(self, free_kB):
-        """out/ is a file system of its own, with so much room left, or read-only (None)."""
+        """Mounts a file system on out/, with this much free space, or read-only (None)."""
         out = self.work / "out"
         subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16m", "none", out], check=True)
         try:
@@ -314,7 +315,8 @@ class Bench:
             subprocess.run(["umount", "--lazy", out], check=True)  # a reader on its way out keeps it busy
 
     def full_disk(self):
-        """Levels of free space, from none to that of all files and as much again for those that are temporary."""
+        """Yields outcomes at levels of free space, from none to the size of all files and as much again for temporary
+        files."""
         whole_kB = sum(p.stat().st_size for p in self.files(self.reference)) // 1024 + 4
         for i in range(self.most):
             self.fresh()
@@ -345,7 +347,7 @@ class Bench:
             yield self.call(self.row.words)
 
     def begun(self):
-        """A folder with what SIGTERM in the middle leaves of a stage, or else with its finished result."""
+        """Returns a folder with what SIGTERM in the middle of a stage leaves, or else with its finished result."""
         folder = self.folder / "begun"
         if not folder.exists() or self.begun_of != self.row:
             calls = self.count("w")
@@ -391,7 +393,7 @@ class Bench:
             gone.rename(self.work / "out")
 
     def cell(self, fault):
-        """(exit statuses, what remains, what the same command does) of one fault in the row that was taken."""
+        """Returns (exit statuses, what remains, what the same command does) of one fault in the current row."""
         exits, remains, after = set(), set(), set()
         does = FAULTS[fault]
         for status, said in does.make(self):
@@ -432,7 +434,8 @@ def reads_files(row):
 
 
 def writes_itself(row):
-    """Others write by the C library, whose own calls nothing here makes fail: a full disk does."""
+    """Returns true for commands that write by calls of our own. The others write by the C library, whose own calls no
+    fault but a full disk makes fail."""
     return row.is_stage or row.words[0] in ("sweep", "merge", "recover", "export")
 
 

@@ -1,11 +1,11 @@
-"""Faults x stages and commands: the table in src/MANUAL.md ("What a fault leaves") against the program.
+"""Checks faults x stages and commands: the table "What a fault leaves" in src/MANUAL.md against the program.
 
-    table.py --check            the table has a row for each stage, command and fault; nothing is measured
-    table.py --check --measure  also: few places of each fault, which must end as the table says (3 minutes)
-    table.py --check --full     the same with many places
-    table.py --write [--full]   measure, and write the table; --fault and --row WORD measure some cells anew
+    table.py --check            checks that the table has a row for each stage, command and fault; measures nothing
+    table.py --check --measure  also measures few points of each fault, which must end as in the table (3 minutes)
+    table.py --check --full     measures many points
+    table.py --write [--full]   measures and writes the table; --fault and --row WORD measure some cells again
 
-A full disk is a small tmpfs, and another mount is read-only: the script needs root, or user namespaces."""
+A full disk is a small tmpfs, and another mount is read-only. The script therefore needs root, or user namespaces."""
 import argparse
 import collections
 import concurrent.futures
@@ -33,7 +33,7 @@ def cells():
 # ---- the table as text ----
 
 def order(words):
-    """Numbers by their size, words by the alphabet, `nothing` and `completes` first."""
+    """Sorts words: `nothing` and `completes` first, then numbers by size and words alphabetically."""
     return sorted(words, key=lambda w: (w not in ("nothing", "completes"), not w[0].isdigit(),
                                         int(re.match(r"\d+", w).group()) if w[0].isdigit() else 0, w))
 
@@ -47,7 +47,7 @@ def columns(outcome, row):
 
 
 def text_of(outcomes, measured_with):
-    """Rows of the same fault that end alike share a line."""
+    """Returns the table. Rows of the same fault with the same outcome share a line."""
     lines = [measured_with, "", HEAD, "|---|---|---|---|---|"]
     for fault in faults.FAULTS:
         alike = collections.OrderedDict()
@@ -59,7 +59,8 @@ def text_of(outcomes, measured_with):
 
 
 def read(manual):
-    """({(fault, row): outcome}, the line that says what it was measured with) of the manual's table."""
+    """Reads the table of the manual. Returns {(fault, row): outcome} and the line that says what it was measured
+    with."""
     text = manual.read_text(encoding="utf-8")
     if text.count(BEGIN) != 1 or text.count(END) != 1:
         sys.exit(f"{manual}: has no place for the table: {BEGIN}")
@@ -90,7 +91,7 @@ def said_by(program, *words):
 
 
 def missing_rows(program):
-    """What the program does and ROWS does not have."""
+    """Returns what the program has and ROWS does not have."""
     names, wrong = {row.name for row in faults.ROWS}, []
     covered = {row.words[0] for row in faults.ROWS}
     commands = re.findall(r"^  hifdm (\w+)", said_by(program, "help"), re.M)
@@ -108,7 +109,7 @@ def missing_rows(program):
 
 
 def wrong_table(outcomes, manual, measured_with):
-    """How the manual's rows differ from those of the script."""
+    """Returns how the rows of the manual differ from those of the script."""
     wanted = {(fault, row.name) for fault, row in cells()}
     wrong = [f"{manual}: no row of {fault}, {name}" for fault, name in sorted(wanted - set(outcomes))]
     wrong += [f"{manual}: {fault}, {name} is no cell of tests/fault/faults.py"
@@ -123,7 +124,7 @@ def wrong_table(outcomes, manual, measured_with):
 
 
 def differences(outcomes, measured):
-    """What was measured and is not in the table."""
+    """Returns what was measured and is not in the table."""
     wrong = []
     for (fault, name), outcome in measured.items():
         for what, seen, known in zip(("exit status", "left", "the same command"), outcome,
@@ -135,7 +136,7 @@ def differences(outcomes, measured):
 # ---- measuring ----
 
 def measured_with(program, folder):
-    """The machine in a line."""
+    """Returns a line about the machine."""
     show = "import h5py, sys; v = h5py.File(sys.argv[1])['/'].attrs['lapack']; print(getattr(v, 'decode', lambda: v)())"
     lapack = subprocess.run(["/usr/bin/python3", "-c", show, folder / "base/r.h5"], capture_output=True, text=True,
                             check=True).stdout.strip()
@@ -159,7 +160,7 @@ def measure_row(program, folder, row, chosen, most, library):
 
 
 def measure(program, folder, chosen, most):
-    """({(fault, row): outcome}, what is wrong whatever the table says)."""
+    """Returns {(fault, row): outcome}, and what is wrong whatever the table says."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     if most == PLACES["reduced"]:  # many small files: in memory
@@ -182,7 +183,8 @@ def measure(program, folder, chosen, most):
 
 
 def in_own_mounts():
-    """Starts the script again where it may mount, and where its mounts end with it; False where nobody may."""
+    """Starts the script again where it may mount; the mounts end with it. Returns False if the machine allows no
+    mounts."""
     if "HIFDM_FAULT_TABLE" in os.environ:
         return True
     os.environ["HIFDM_FAULT_TABLE"] = "1"

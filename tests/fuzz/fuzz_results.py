@@ -1,9 +1,9 @@
-"""Damaged result files against every command that reads one: fuzz_results.py --program build/asan/hifdm --n 5000
+"""Damages result files and runs every command that reads one: fuzz_results.py --program build/asan/hifdm --n 5000
 
-A mutant (mutate_results.py; of a journal or a ledger: its bytes) and one command make one run. Each must end by itself
-within LIMIT_S with an exit status that the manual has, and, unless it is 0, with a message that names the file; never
-by a signal, a failed assertion, or a report of a sanitizer. Mutant and command follow from the seed and the number of
-the run: --only NUMBER does one again and keeps its files."""
+A run is one mutant (mutate_results.py; for a journal or a ledger, of its bytes) and one command. Each command must end
+by itself within LIMIT_S. Its exit status must be in the manual and, unless it is 0, a message must name the file. A
+signal, a failed assertion or a report of a sanitizer is a failure. Mutant and command follow from the seed and the
+number of the run. --only NUMBER repeats one run and keeps its files."""
 import argparse
 import collections
 import os
@@ -48,7 +48,7 @@ class Fuzz:
                                 UBSAN_OPTIONS="print_stacktrace=1:exitcode=99")
 
     def run(self, *words, cwd=None):
-        """(exit status, output); the status is 'late' for one that does not end."""
+        """Returns (exit status, output). The status is 'late' for a command that does not end."""
         child = subprocess.Popen([self.program, *words], cwd=cwd or self.work, env=self.environment,
                                  stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                  start_new_session=True)
@@ -82,7 +82,7 @@ class Fuzz:
         assert status == 0, f"{words}: {status}\n{out}{err}"
 
     def interrupt(self):
-        """night.h5: unfinished, with generations; dusk.h5: the same with a journal of further generations."""
+        """Makes night.h5, unfinished with generations, and dusk.h5, the same with a journal of further generations."""
         path, journal = (os.path.join(self.base, "night.h5" + ending) for ending in ("", ".journal"))
         for attempt in range(100):
             for name in (path, journal):
@@ -107,13 +107,13 @@ class Fuzz:
     # ---- one run ----
 
     def prepare(self):
-        """A fresh folder in which all files are names of those of the base, until one is damaged or replaced."""
+        """Makes a new folder. All its files are links to those of the base, until one is damaged or replaced."""
         shutil.rmtree(self.work, ignore_errors=True)
         shutil.copytree(self.base, self.work, copy_function=link_or_copy)
         os.mkfifo(os.path.join(self.work, "fifo"))
 
     def own(self, name):
-        """Copies of the files that a command may write into."""
+        """Copies the files that a command may write into. Returns the path of the first."""
         for ending in ("", ".journal"):
             path = os.path.join(self.work, name + ending)
             if os.path.exists(path):
@@ -122,7 +122,7 @@ class Fuzz:
         return os.path.join(self.work, name)
 
     def plan(self, r):
-        """(file to damage, kind of damage, command line)."""
+        """Returns (file to damage, kind of damage, command line)."""
         name = r.choice(["ga", "ga", "truss", "night", "dusk", "study", "point", "journal", "ledger"])
         if name == "journal":
             return "dusk.h5.journal", "journal", r.choice(
@@ -168,7 +168,7 @@ class Fuzz:
 
 
 def link_or_copy(source, target):
-    """A link, but of a sweep's lock file, which may have one name only."""
+    """Makes a link; copies the lock file of a sweep, which may have only one name."""
     return (shutil.copy if os.path.basename(source) == "claims" else os.link)(source, target)
 
 
@@ -206,7 +206,7 @@ def write(path, data):
 
 
 def mutate_journal(path, seed):
-    """Bytes, or records whose checksum is right: other payloads, lengths, generations; in another order."""
+    """Damages bytes, or records so that their checksums are right: other payloads, lengths, generations or order."""
     r = random.Random(seed)
     with open(path, "rb") as file:
         data = bytearray(file.read())
@@ -285,7 +285,7 @@ def mutate_ledger(path, seed):
 
 
 def fault(file, command, status, out, err):
-    """What is wrong with the end of a run, or None."""
+    """Returns what is wrong with the end of a run, or None."""
     if status == "late":
         return "does not end"
     report = re.search(r"(ERROR: \w+Sanitizer: [\w-]+|runtime error: [^\n]{,80}|Assertion [^\n]{,120})", err)

@@ -1,9 +1,10 @@
-"""Damage to HDF5 files, of two kinds. mutate(path, random) damages a copy in place and returns what it did, in words.
+"""Damages HDF5 files in two ways. mutate(path, random) damages a copy in place and returns a description.
 
-Structure: what h5py can write but hifdm never writes: other dimensions and types, missing and additional objects, links
-of every kind, huge attributes, numbers out of range. Bytes: flips, blocks of zeros or of other bytes, blocks copied or
-cut out, a file cut short; in some of the cases the checksums of the object headers are made right again, so that HDF5
-reads what is in them. HDF5's older format, which has no checksums, is reached by copying the file into it first."""
+Structure: what h5py can write but hifdm never writes. These are other dimensions and types, missing and additional
+objects, links of every kind, huge attributes, and numbers out of range. Bytes: flips, blocks of zeros or of other
+bytes, blocks that are copied or cut out, and a file that is cut short. In some cases the checksums of the object
+headers are corrected, so that HDF5 reads their content. To reach HDF5's older format, which has no checksums, the file
+is first copied into it."""
 import os
 import random as random_module
 import shutil
@@ -18,8 +19,8 @@ REALS = [0.0, -0.0, -1.0, 1e-308, 1e308, -1e308, float("nan"), float("inf"), -fl
 
 
 def walk(group, prefix="", depth=0):
-    """(name, object) of everything below, to a depth that our files do not reach: earlier changes may have made cycles,
-    in which HDF5's own walk does not end."""
+    """Yields (name, object) of everything below, to a depth that our files do not reach. Earlier changes may have made
+    cycles, in which HDF5's own walk does not end."""
     for name in group if depth < 6 else ():
         if not isinstance(group.get(name, getlink=True), h5py.HardLink):
             continue
@@ -42,7 +43,7 @@ def objects(file):
 
 
 def some_value(r, dtype):
-    """A number that fits the type, often at its edge."""
+    """Returns a number that fits the type, often a limit of it."""
     dtype = np.dtype(dtype)
     if dtype.kind == "f":
         return np.array(r.choice(REALS), dtype)
@@ -70,7 +71,7 @@ def some_shape(r, shape):
 
 
 def replace(file, name, shape, dtype, r):
-    """A new data set under the name, with the attributes of the old one; without storage where it is large."""
+    """Makes a new data set with this name and the attributes of the old one. A large one has no storage."""
     old = dict(file[name].attrs) if name in file else {}
     if name in file:
         del file[name]
@@ -129,7 +130,7 @@ def other_values(file, r):
 
 
 def resized(file, r):
-    """Rows that were never written, or rows that are gone."""
+    """Adds rows that were never written, or removes rows."""
     names = [n for n in data_sets(file) if file[n].chunks]
     if not names:
         return other_shape(file, r)
@@ -141,7 +142,7 @@ def resized(file, r):
 
 
 def storage(file, r):
-    """The same values, stored in another way: filters, chunks, other files, virtual data sets, nothing at all."""
+    """Stores the same values in another way: filters, chunks, other files, virtual data sets, or nothing at all."""
     name = r.choice([n for n in data_sets(file) if file[n].dtype.kind in "fiu" and file[n].shape])
     values = file[name][()]
     attributes = dict(file[name].attrs)
@@ -171,7 +172,7 @@ def storage(file, r):
 
 
 def exchanged(file, r):
-    """A group where a data set is wanted, a data set or a type where a group is."""
+    """Puts a data set or a type in the place of a group, or a group in the place of a data set."""
     name = r.choice([n for n in objects(file) if n != "/"])
     is_group = isinstance(file[name], h5py.Group)
     del file[name]
@@ -256,7 +257,7 @@ def attribute(file, r):
 
 
 def more(file, r):
-    """What nobody asked for: many attributes, many groups, deep groups, names that no name should be."""
+    """Adds many attributes, many groups, deep groups, or names that are not allowed."""
     kind = r.choice(["attributes", "groups", "deep", "name", "dense"])
     place = file[r.choice(groups(file))]
     if kind == "attributes":
@@ -288,7 +289,7 @@ def rotate(x, k):
 
 
 def lookup3(data):
-    """Jenkins' hash of 2006 with the start value 0, HDF5's checksum of metadata."""
+    """Returns Jenkins' hash of 2006 with the start value 0, HDF5's checksum of metadata."""
     m = 0xFFFFFFFF
     n = len(data)
     a = b = c = (0xDEADBEEF + n) & m
@@ -320,7 +321,7 @@ def lookup3(data):
 
 
 def blocks(data):
-    """(from, to) of what a checksum of 4 bytes follows: superblock, object headers, and blocks of other kinds."""
+    """Returns (from, to) of the bytes before each checksum of 4 bytes: superblock, object headers and other blocks."""
     found = []
     if data[:8] == b"\x89HDF\r\n\x1a\n" and data[8] >= 2:
         found.append((0, 44))
@@ -394,7 +395,7 @@ def copy_attributes(source, copy):
 
 
 def into_old_format(path):
-    """The same content in the format of HDF5 1.0 to 1.6, whose headers, trees and heaps have no checksums."""
+    """Converts a file to the format of HDF5 1.0 to 1.6, whose headers, trees and heaps have no checksums."""
     old = path + ".old"
     with h5py.File(path, "r") as source, h5py.File(old, "w", libver="earliest") as copy:
         copy_attributes(source, copy)

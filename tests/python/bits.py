@@ -1,5 +1,5 @@
-"""What the package gives is, bit by bit, what the program gives: form-finding, designs, derivatives, runs, tolerances;
-and a net of arrays is the net of the files."""
+"""Checks that the package returns, bit by bit, what the program returns: form-finding, designs, derivatives, runs and
+tolerances. A net of arrays must equal the net of the files."""
 import csv
 import json
 import os
@@ -114,7 +114,7 @@ class Bits(unittest.TestCase):
 
 
 def strip(item):
-    """Without times."""
+    """Returns the item without times."""
     if isinstance(item, dict):
         return {key: strip(value) for key, value in item.items() if not key.endswith(("wall_s", "cpu_s", "utilisation"))
                 and "per_s" not in key}
@@ -122,7 +122,7 @@ def strip(item):
 
 
 class Arrays(unittest.TestCase):
-    """Nets exported as tables and imported by the program; the same given as arrays."""
+    """Nets that the program exports as tables and imports, and the same nets given as arrays."""
 
     def test_net_of_arrays_is_the_imported_one(self):
         sections = {"form": {"pretension_N": 12}, "optimize": {"population": 6, "generations": 2}}

@@ -1,4 +1,4 @@
-"""What the scripts here share: the program, cases, and random designs. Each is run as `script.py FOLDER`."""
+"""Shared by the scripts here: the program, cases, and random designs. Each script runs as `script.py FOLDER`."""
 import csv
 import os
 import subprocess
@@ -31,7 +31,7 @@ def temp(name, text=None):
 
 
 def program(*arguments, status=0):
-    """Run the program; returns what it said on standard output."""
+    """Runs the program and returns its standard output."""
     done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False)
     if done.returncode != status:
         raise AssertionError(f"{arguments}: status {done.returncode}: {done.stderr}")
@@ -39,13 +39,13 @@ def program(*arguments, status=0):
 
 
 def near(case, n, seed=1, part=0.02):
-    """Designs [n, n_gene] around the base."""
+    """Returns designs [n, n_gene] around the initial design."""
     random = np.random.default_rng(seed).uniform(-1, 1, (n, case.n_gene))
     return case.base * (1 + part * random) + np.where(case.base == 0, 1e-3 * random, 0)
 
 
 def evaluate_by_program(path, case, designs, *more):
-    """Rows of `hifdm evaluate` as dictionaries, and of its derivatives if `more` asks for them."""
+    """Returns the rows of `hifdm evaluate` as dictionaries; with `more` also its derivatives."""
     table, results = temp("designs.csv"), temp("results.csv")
     with open(table, "w", encoding="utf-8", newline="") as file:
         csv.writer(file).writerows([case.genes, *[[repr(float(x)) for x in row] for row in designs]])
@@ -55,7 +55,7 @@ def evaluate_by_program(path, case, designs, *more):
 
 
 def same_bits(a, b):
-    """Equal, NaN where NaN."""
+    """Returns true if all values are equal, with NaN equal to NaN."""
     return np.array_equal(np.asarray(a, float), np.asarray(b, float), equal_nan=True)
 
 

@@ -1,4 +1,4 @@
-"""What is refused, and in which words: arrays, cases, designs, runs; a package that does not go with its library."""
+"""What the package refuses, and with which messages: arrays, cases, designs, runs, and a library that does not fit."""
 import os
 import re
 import shutil
@@ -107,7 +107,7 @@ class Errors(unittest.TestCase):
             self.assertEqual(self.refused(hifdm.HifdmError, part, self.net, **arguments).status, "bad_case")
 
     def test_sets_and_texts(self):
-        """Nothing is rounded or cut on the way to C."""
+        """Checks that nothing is rounded or cut on the way to C."""
         self.assertEqual(self.net(sets={"a": [2, 0], "b": []}).sets["a"].tolist(), [0, 2])
         for bad in ([0.9, 2.2], [True, False], [[0, 1]], 0):
             self.refused(TypeError, "sets['a'] has dtype", self.net, sets={"a": bad})
@@ -180,7 +180,7 @@ class Errors(unittest.TestCase):
         self.assertIsNone(formed.get("optimize"))
 
     def test_interrupt(self):
-        """Ctrl-C ends a run that would take hours."""
+        """Checks that Ctrl-C ends a run that would take hours."""
         script = ("import hifdm, os, signal, sys\n"
                   "long = {'optimize.generations': 100000, 'optimize.stagnation_generations': 100000}\n"
                   "case = hifdm.open(sys.argv[1], long)\n"
@@ -226,7 +226,8 @@ class Library(unittest.TestCase):
         self.assertEqual(int(re.search(r"#define HF_FLAT_INTERFACE (\d+)", text)[1]), _library.INTERFACE)
 
     def test_threads_wait_quietly(self):
-        """OpenMP is told so while it is loaded, unless the user tells it; nothing is left in the environment."""
+        """Checks the wait policy: OpenMP gets it while it is loaded, unless the user sets one; the environment stays
+        unchanged."""
         script = "import hifdm, os; print(*(os.environ.get(n) for n in ('OMP_WAIT_POLICY', 'GOMP_SPINCOUNT')))"
         plain = {key: value for key, value in os.environ.items() if key not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")}
         for given, left, policy, spins in (({}, "None None", "PASSIVE", "2000"),
@@ -241,7 +242,7 @@ class Library(unittest.TestCase):
             self.assertEqual(told["GOMP_SPINCOUNT"] == "2000", spins == "2000")
 
     def test_another_library_is_refused(self):
-        """One that is none of ours, and one with another interface."""
+        """Checks that a library which is not ours, and one with another interface, are refused."""
         other = temp("other.so")
         source_of = temp("other.c", "int hf_flat_interface(void) { return 999; }\n")
         subprocess.run(["cc", "-shared", "-fPIC", source_of, "-o", other], check=True)

@@ -1,4 +1,4 @@
-"""Every example of tools/python/examples runs, and what it says holds."""
+"""Runs every example of tools/python/examples and checks its output."""
 import glob
 import os
 import re
@@ -15,7 +15,7 @@ CASE = source("configs/chen2022.yaml")
 
 
 def example(name, *arguments):
-    """What it says; None where a module is missing."""
+    """Returns the output of an example; None if a module is missing."""
     path = source(f"tools/python/examples/{name}.py")
     with open(path, encoding="utf-8") as file:
         needed = set(re.findall(r"^(?:import|from) (\w+)", file.read(), flags=re.M))
@@ -40,7 +40,8 @@ class Examples(unittest.TestCase):
         self.assertEqual(there, {"least_squares", "ask_tell", "table", "net_of_arrays", "run_and_read"})
 
     def finds_optimum(self, name):
-        """Most of the way to Levenberg-Marquardt's optimum, which is within the same bounds; four decimals."""
+        """Checks that a search gets most of the way to the optimum of Levenberg-Marquardt, which has the same bounds.
+        Examples print four decimals."""
         before, after = numbers(example(name, CASE))[:2]
         optimum = hifdm.open(CASE, {"optimize.method": "lm"}).run()["polish"]["psi_m"] * 1e3
         self.assertGreaterEqual(after, optimum - 6e-5)
@@ -59,7 +60,7 @@ class Examples(unittest.TestCase):
             self.assertEqual(len(said.split("surest:\n")[1].splitlines()), 5)
 
     def draws(self, path):
-        """A whole PNG with something in it."""
+        """Checks that a file is a whole PNG with content."""
         with open(path, "rb") as file:
             content = file.read()
         self.assertEqual(content[:8], b"\x89PNG\r\n\x1a\n")

@@ -1,4 +1,4 @@
-"""The code with our package in README.md and src/MANUAL.md runs as it stands there."""
+"""Runs the code in README.md and src/MANUAL.md that uses our package."""
 import os
 import re
 import unittest
@@ -9,7 +9,7 @@ import hifdm
 
 
 def pieces(path):
-    """Indented pieces that import hifdm."""
+    """Returns the indented pieces that import hifdm."""
     with open(source(path), encoding="utf-8") as file:
         found = re.findall(r"(?:^    .*\n)+", file.read(), flags=re.M)
     ours = [piece for piece in found if re.search("^    import hifdm", piece, flags=re.M)]
@@ -17,7 +17,7 @@ def pieces(path):
 
 
 def run(piece):
-    """In a folder with the configs; the names that it leaves."""
+    """Runs a piece in a folder with the configs and returns the names that it defines."""
     names, before = {}, os.getcwd()
     if not os.path.exists(temp("configs")):
         os.symlink(os.path.abspath(source("configs")), temp("configs"))

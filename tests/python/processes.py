@@ -1,4 +1,4 @@
-"""Processes: what workers raise and return arrives, and what belongs to one process says so."""
+"""Processes: results and exceptions of workers arrive, and objects of one process are refused in another."""
 import concurrent.futures
 import copy
 import multiprocessing
@@ -16,7 +16,7 @@ HANG_S = 200  # for a test that fails in place of one that hangs
 
 
 def evaluate(path):
-    """In a worker: the figures of one design, or what hifdm raises."""
+    """Runs in a worker. Returns the figures of one design, or raises what hifdm raises."""
     case = hifdm.open(path)
     return case.evaluate(near(case, 1)), case.form()
 
@@ -26,10 +26,10 @@ def paths():
 
 
 class Across(unittest.TestCase):
-    """The first class of this script: a process that has used hifdm cannot be forked."""
+    """Must be the first class of this script, because a process that has used hifdm cannot be forked."""
 
     def check(self, work):
-        """work(path): what a worker returns for it."""
+        """Checks work(path), which returns what a worker returns for it."""
         good, wrong = paths()
         with self.assertRaises(hifdm.HifdmError) as caught:
             work(wrong)
@@ -53,7 +53,7 @@ class Across(unittest.TestCase):
 
 class Pickles(unittest.TestCase):
     def again(self, value):
-        """Its copies: by each protocol of pickle, and of copy."""
+        """Returns copies of a value: by each protocol of pickle, and by copy."""
         by_pickle = [pickle.loads(pickle.dumps(value, protocol)) for protocol in range(pickle.HIGHEST_PROTOCOL + 1)]
         return [*by_pickle, copy.copy(value), copy.deepcopy(value)]
 
@@ -94,7 +94,7 @@ class Pickles(unittest.TestCase):
         self.assertEqual(case.form().status, "ok")  # and still works
 
     def test_a_pool_after_hifdm_was_used(self):
-        """Its workers refuse, and that arrives, too."""
+        """Checks that the workers refuse and that their exception arrives."""
         hifdm.open(paths()[0]).form()
         with multiprocessing.get_context("fork").Pool(1) as pool, self.assertRaises(hifdm.HifdmError) as caught:
             pool.apply_async(evaluate, paths()[:1]).get(HANG_S)

@@ -1,4 +1,4 @@
-"""Threads of Python side by side, and very many calls."""
+"""Several threads of Python at the same time, and very many calls."""
 import os
 import threading
 import time
@@ -12,7 +12,7 @@ import hifdm
 
 
 def work(path, overrides, n_round):
-    """All that a case gives, as one list of arrays."""
+    """Returns all results of a case as one list of arrays."""
     case = hifdm.open(path, overrides)
     found = [case.form().position_m, case.base]
     for seed in range(n_round):
@@ -49,7 +49,7 @@ class Threads(unittest.TestCase):
                     self.assertTrue(same_bits(a, b))
 
     def test_two_threads_with_one_case(self):
-        """They wait for each other."""
+        """Checks that the threads wait for each other."""
         case = hifdm.open(temp("small.yaml", SMALL))
         designs = near(case, 50)
         whole, wrong = case.evaluate(designs).table, []
@@ -69,7 +69,7 @@ class Threads(unittest.TestCase):
         self.assertEqual(wrong, [])
 
     def test_the_interpreter_goes_on(self):
-        """While a batch runs, another thread of Python does: the GIL is released."""
+        """Checks that another thread of Python continues while a batch runs: the GIL is released."""
         case = hifdm.open(source("configs/reflector.yaml"), threads=1)
         designs, beats, is_over = near(case, 300), [], threading.Event()
         case.form()

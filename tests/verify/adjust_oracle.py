@@ -1,13 +1,14 @@
-"""An independent `hifdm adjust`: scipy's least squares on dense matrices, sensitivities by differences of solved nets.
+"""An independent `hifdm adjust`: scipy's least squares on dense matrices, with sensitivities from differences of solved
+nets.
 
     adjust_oracle.py measure CUT.csv JIG.csv SHAPE MEASURED.csv SEED    a net with random errors, measured with noise
     adjust_oracle.py check CUT.csv JIG.csv SHAPE MEASURED.csv ANSWER.json
 
-CUT.csv and JIG.csv are those of `hifdm export --cutlist`, SHAPE the folder of `--csv`, ANSWER.json what `hifdm adjust
---json` said. Cables are elastic and push never. Errors of cut lengths have the dense covariance of the constants below,
-which are those of the case: sets of cables are spools, the first in the order of names. Prints the largest differences
-of estimated errors and of predicted figures; exit 1 when they are too large.
-"""
+CUT.csv and JIG.csv are those of `hifdm export --cutlist`, SHAPE is the folder of `--csv`, and ANSWER.json the output of
+`hifdm adjust --json`. Cables are elastic and never push. The errors of cut lengths have the dense covariance of the
+constants below, which are those of the case. Sets of cables are spools. A cable of several sets is of the spool that
+comes first by name. The script prints the largest differences of estimated errors and of predicted figures, and exits
+with 1 if they are too large."""
 import csv
 import json
 import sys
@@ -50,7 +51,7 @@ class Net:
                            + SIGMA_TEMPERATURE_K**2 * np.outer(expansion, expansion))
 
     def forces(self, place, cut):
-        """Out of balance at all nodes, and the stiffness of the free ones."""
+        """Returns the forces out of balance at all nodes, and the stiffness of the free ones."""
         d = place[self.end[:, 1]] - place[self.end[:, 0]]
         length = np.linalg.norm(d, axis=1)
         unit = d / length[:, None]
@@ -69,7 +70,7 @@ class Net:
         return force.ravel()[dof], stiffness[np.ix_(dof, dof)], tension
 
     def solve(self, cut, start):
-        """Newton with halved steps on the forces."""
+        """Solves for equilibrium by Newton's method with halved steps."""
         place = start.copy()
         for _ in range(100):
             force, stiffness, tension = self.forces(place, cut)
@@ -102,7 +103,7 @@ def measure(cut, jig, shape, measured, seed):
 
 
 def estimate(net, which, target):
-    """The most probable errors by Gauss and Newton with halved steps."""
+    """Returns the most probable errors by the Gauss-Newton method with halved steps."""
     last, whiten = [net.place], np.linalg.inv(np.linalg.cholesky(net.covariance))
 
     def shape(e):

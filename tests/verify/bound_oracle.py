@@ -1,18 +1,19 @@
 #!/usr/bin/env python3
-"""Oracle for proven bounds, independent of the program: dense Newton steps on the conditions of Karush, Kuhn, Tucker;
-their errors are measured with fifty decimal digits.
+"""Oracle for certified error bounds, independent of the program: dense Newton steps on the conditions of Karush, Kuhn
+and Tucker. The true errors are computed with fifty decimal digits.
 
     bound_oracle.py DUMP [LEAST_SHARE_PROVEN] [LARGEST_MEDIAN]
 
-DUMP is written by tests/bounds.h: doubles, net after net, each with the shapes at its stops. Unknowns are the positions
-of free nodes and the tensions T of taut cables whose law has a multiplier, which obey l = L* (law length) or
-l = l0 + l0 T / EA (elastic); a slack one is shorter and pulls with nothing. The energy is convex, so a shape with these
-properties is an equilibrium, whatever way led there. On a truss the positions of the attachments are unknowns, too,
-which obey r = F b for the pull b of the net; F is positive semidefinite, so the energy is convex all the same.
+tests/bounds.h writes DUMP: doubles, net after net, each with the shapes at its stops. The unknowns are the positions of
+the free nodes and the tensions T of taut cables whose law has a multiplier. These cables obey l = L* (law length) or l
+= l0 + l0 T / EA (elastic). A slack cable is shorter and has no tension. The energy is convex, so a shape with these
+properties is an equilibrium, however it was found. On a truss the positions of the attachments are unknowns, too. They
+obey r = F b for the pull b of the net. F is positive semidefinite, so the energy is still convex.
 
-Prints what was proven, why not, and how far the bounds are from the true errors; exit status 1 when a bound is below
-the error, the share proven below LEAST_SHARE_PROVEN, or the median of bound over error (condition below 1e10, error
-above rounding of the coordinates) above LARGEST_MEDIAN."""
+The script prints which bounds are certified, why others are not, and how far the bounds are from the true errors. It
+exits with status 1 if a bound is below the error, if the certified share is below LEAST_SHARE_PROVEN, or if the median
+of bound over error is above LARGEST_MEDIAN. The median is over shapes with a condition below 1e10 and an error above
+the rounding of the coordinates."""
 import sys
 from collections import Counter
 from decimal import Decimal, getcontext
@@ -51,8 +52,8 @@ class Net:
         self.flex = np.where(self.law == ELASTIC, self.target / np.where(self.law == ELASTIC, self.EA, 1), 0)
 
     def errors(self, x, T, taut):
-        """Forces out of balance of free nodes, F b - r of attachments, and, of cables with a multiplier, l - L(T), in
-        floating point."""
+        """Returns, in floating point: forces out of balance at free nodes, F b - r of attachments, and l - L(T) of
+        cables with a multiplier."""
         d = x[self.end[:, 1]] - x[self.end[:, 0]]
         l = np.linalg.norm(d, axis=1)
         pull = np.where(self.law == TENSION, self.target, np.where(self.law == FORCE_DENSITY, self.target * l, T))
@@ -66,7 +67,8 @@ class Net:
         return np.vstack((force[:self.n_free], gap.reshape(-1, 3))), l - self.target - self.flex * T, u, l, pull
 
     def exact_errors(self, x, T, taut):
-        """The same with fifty digits; x, T: lists of Decimal. Also the lengths over the wanted ones."""
+        """Returns the same as `errors` with fifty digits, and lengths over the target lengths. x, T: lists of
+        Decimal."""
         force = [[Decimal(v) for v in row] for row in self.load.tolist()]
         over = [Decimal(0)] * len(T)
         for e, (a, b) in enumerate(self.end.tolist()):
@@ -94,7 +96,7 @@ class Net:
         return force[:self.n_moving], over
 
     def step(self, x, T, taut, force, over):
-        """Newton step of positions and multipliers for these errors, by a dense matrix."""
+        """Returns the Newton step of positions and multipliers for these errors, by a dense matrix."""
         _, _, u, l, pull = self.errors(x, T, taut)
         n, active = 3 * self.n_moving, np.flatnonzero(self.multiplier & taut)
         J = np.zeros((n + len(active), n + len(active)))
@@ -125,8 +127,8 @@ class Net:
         return T / self.reference + over / self.rest > 0
 
     def solve_from(self, x, T):
-        """The equilibrium as lists of Decimal, or None. First in floating point, the taut cables decided anew in each
-        step, then with fifty digits."""
+        """Returns the equilibrium as lists of Decimal, or None. The first steps are in floating point, and each decides
+        again which cables are taut. The last steps have fifty digits."""
         x, T = x.copy(), np.where(self.multiplier, T, 0.0)
         T = np.maximum(np.where(np.isfinite(T), T, 0), 0)
         taut = np.ones(len(T), bool)
@@ -189,7 +191,7 @@ class Net:
         return (square / len(self.inner)).sqrt()
 
     def error(self, X, x):
-        """Largest distance of a node of the shape x that moves to the equilibrium X."""
+        """Returns the largest distance of a free node or an attachment from the shape x to the equilibrium X."""
         square = max(sum((X[i][c] - Decimal(v)) ** 2 for c, v in enumerate(row))
                      for i, row in enumerate(x[:self.n_moving].tolist()))
         return square.sqrt()

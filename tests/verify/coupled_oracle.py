@@ -3,15 +3,15 @@
 
     coupled_oracle.py CASE_FOLDER FOUND_FOLDER [TOLERANCE_m [SCALE]]
 
-CASE_FOLDER holds nodes.csv and cables.csv of the net (every cable with its law and value) and truss_nodes.csv and
-members.csv of the truss, all as imported; FOUND_FOLDER the files that `hifdm export --csv` wrote. E and G of the truss
-are multiplied by SCALE. Prints how far the attachments give way, and the largest distance of a node of the net from
-where the program has it; exit status 0 when it is not above the tolerance (1e-7 m).
+CASE_FOLDER has the imported tables: nodes.csv and cables.csv of the net (every cable with its law and value), and
+truss_nodes.csv and members.csv of the truss. FOUND_FOLDER has the files of `hifdm export --csv`. E and G of the truss
+are multiplied by SCALE. The script prints the deflection of the attachments and the largest distance of a node of the
+net from its position in the program. The exit status is 0 if this distance is not above the tolerance (1e-7 m).
 
-Method: the energy of net and truss together, the net's as in net_oracle.py, the truss's r' K r / 2 with its whole
-stiffness matrix K, assembled here from Euler and Bernoulli's beam with 12 degrees of freedom: no flexibility, and no
-condensation. Supports of the net are one with the truss node nearest to them.
-"""
+The method minimises the energy of net and truss together. The energy of the net is that of net_oracle.py, and that of
+the truss is r' K r / 2. Its whole stiffness matrix K is assembled here from Euler-Bernoulli beams with 12 degrees of
+freedom. There is no flexibility matrix and no condensation. Each support of the net is identical with the truss node
+nearest to it."""
 import csv
 import sys
 
@@ -27,7 +27,8 @@ def rows(path):
 
 
 def beam(p, q, E, G, A, Iy, Iz, J):
-    """Stiffness [12, 12] in global axes of a member clamped to its nodes p and q. Iy = Iz, so its roll is free."""
+    """Returns the stiffness [12, 12] in global axes of a member clamped to its nodes p and q. Iy = Iz, so its roll is
+    free."""
     assert Iy == Iz
     d = q - p
     L = np.linalg.norm(d)
@@ -84,7 +85,7 @@ class Coupled(Net):
         return x
 
     def gradient(self, z, mu, T0):
-        """Forces out of balance by unknown, and the stiffness matrix."""
+        """Returns the forces out of balance by unknown, and the stiffness matrix."""
         T, k, u, l = self.pull(self.shape(z), mu, T0)
         f, H = np.zeros(self.n + 1), np.zeros((self.n + 1, self.n + 1))  # the last takes what is held
         ends = self.place[self.end]

@@ -1,4 +1,5 @@
-"""Figures of an oracle for the manual's table, as tests/figures.h has them: where HIFDM_FIGURES names a file."""
+"""Adds figures of an oracle to the file HIFDM_FIGURES, if it is set, for the table of the manual (like
+tests/figures.h)."""
 import inspect
 import os
 

@@ -4,13 +4,12 @@
     generators_oracle.py CASE.yaml RESULT.h5
 
 The case has scene.paraboloid (grid triangle, ties along z) with or without truss.ring, or scene.parabolic_cylinder with
-a rear net, equal arcs, modules all alike, and no scallops. Everything that the generators make is made again and held
-against the result: nodes by their names, cables by their ends, joints, members and their sections. Of a ring it solves
-one load case, the pull of the net as stored, with a dense stiffness matrix of its own. Prints what was compared; an
-assertion fails where something differs.
+a rear net, equal arcs, equal modules and no scallops. The script makes everything again that the generators make, and
+compares it with the result: nodes by their names, cables by their ends, joints, members and their sections. For a ring
+it solves one load case, the stored pull of the net, with its own dense stiffness matrix. It prints what it has
+compared. An assertion fails if something differs.
 
-The triangular grid is made here from axial coordinates of a hexagonal lattice, and its plane balance by a dense solve.
-"""
+The triangular grid is made from axial coordinates of a hexagonal lattice, and its plane balance from a dense solve."""
 import sys
 
 import figures
@@ -30,7 +29,7 @@ def words(data):
 
 
 def lattice(rings):
-    """Axial coordinates by name."""
+    """Returns the axial coordinates by name."""
     at = {"f0_0": (0, 0)}
     for ring in range(1, rings + 1):
         q, r = ring, 0
@@ -43,7 +42,7 @@ def lattice(rings):
 
 
 def plane_grid(p):
-    """Places in the plane of the aperture about its middle, cables, and which nodes are on the rim."""
+    """Returns positions in the plane of the aperture relative to its middle, cables, and the nodes on the rim."""
     N, R = p["rings"], p["aperture_m"] / 2
     at = lattice(N)
     rim = {name for name in at if name.startswith(f"f{N}_")}
@@ -79,7 +78,7 @@ def plane_grid(p):
 
 
 def paraboloid(p):
-    """Places by name, cables as pairs of names, supports."""
+    """Returns positions by name, cables as pairs of names, and supports."""
     f, R, off = p["focal_length_m"], p["aperture_m"] / 2, p.get("offset_m", 0)
     d, rear_f = p.get("rear_distance_m", 0), p.get("rear_focal_length_m", 0) or p["focal_length_m"]
     plane, cables, rim = plane_grid(p)
@@ -151,7 +150,7 @@ def compare_net(h, place, cables, supports):
 
 
 def ring(p, t):
-    """Joints, members as name -> (ends, unit, diameter, wall), held joints."""
+    """Returns joints, members as name -> (ends, unit, diameter, wall), and held joints."""
     N, R, off, f = p["rings"], p["aperture_m"] / 2, p.get("offset_m", 0), p["focal_length_m"]
     r, n = t["ring"], 6 * p["rings"]
     step, height = r.get("cells_per_bay", 1), p.get("rear_distance_m") or r["height_m"]

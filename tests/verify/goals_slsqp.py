@@ -1,10 +1,10 @@
-"""goals_slsqp.py HIFDM FOLDER SEED N: N random nets or more, until a limit holds one, with goals beside psi: tensions
-of a set under a limit on their ratio, or the displacement of a truss with tensions between bounds. `hifdm run` with
-Levenberg-Marquardt, and scipy's SLSQP from its result, with equilibria, a truss and derivatives of this script's own.
+"""goals_slsqp.py HIFDM FOLDER SEED N: N random nets, or more until a limit holds one, with objectives beside psi. The
+second objective is the tension of a set under a limit on its ratio, or the deflection of a truss with tensions between
+bounds. The result of `hifdm run` with Levenberg-Marquardt is the start of SLSQP of scipy. Equilibria, truss and
+derivatives are this script's own.
 
-Fails when merit or goals differ, a limit is broken, SLSQP gains more than 1e-6 of the merit, or hifdm ended neither
-converged nor settled.
-"""
+The script fails if merit or objectives differ, if a limit is broken, if SLSQP lowers the merit by more than 1e-6 of it,
+or if hifdm ended neither converged nor settled."""
 import os
 import subprocess
 import sys
@@ -21,7 +21,7 @@ MAST_M = 1.5
 
 
 class OnMasts(Net):
-    """The same net; each corner stands on a mast that is clamped to the ground, and beams join the tops."""
+    """The same net, but each corner stands on a mast that is clamped to the ground, and beams join the tops."""
 
     def __init__(self, random):
         super().__init__(random)
@@ -59,14 +59,14 @@ class OnMasts(Net):
 
 
 class Wanted:
-    """weight x psi, and weight x (RMS difference of the boundary tensions to the target, or the smooth largest
-    displacement); limits: ratio of the boundary tensions, or all of them between bounds."""
+    """The objectives: weight x psi, and weight x (RMS difference of the boundary tensions from the target, or the
+    smooth maximum deflection). The limits: ratio of the boundary tensions, or all of them between bounds."""
 
     def __init__(self, net, weight, target, cap, bounds):
         self.net, self.weight, self.target, self.cap, self.bounds = net, weight, target, cap, bounds
 
     def goals(self, solved):
-        """Values and derivatives by the force densities of both goals."""
+        """Returns both objectives and their derivatives with respect to the force densities."""
         net, (x, T, move, rate) = self.net, solved
         off = (x - net.theory)[net.inner]
         psi = np.sqrt(np.mean(np.sum(off**2, axis=1)))
@@ -99,7 +99,7 @@ class Wanted:
 
 
 def improve(wanted, density, low, high, x):
-    """The merit within the limits, or infinity outside them."""
+    """Returns the merit within the limits, or infinity outside them."""
     at = remember(wanted.net, x)
 
     def value(v):

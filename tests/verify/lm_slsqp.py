@@ -1,9 +1,9 @@
-"""lm_slsqp.py HIFDM FOLDER SEED N: N random nets whose cap on the boundary tension ratio matters, which the case gives
-as such or as a row of optimize.limits, `hifdm run` with Levenberg-Marquardt, and scipy's SLSQP from its result, with
-equilibria and derivatives of this script's own.
+"""lm_slsqp.py HIFDM FOLDER SEED N: N random nets whose cap on the boundary tension ratio matters. The case has the cap
+as such or as a row of optimize.limits. The result of `hifdm run` with Levenberg-Marquardt is the start of SLSQP of
+scipy. Equilibria and derivatives are this script's own.
 
-Fails when the equilibrium differs, a limit is broken, SLSQP gains more than 1e-6 of psi, or hifdm ended neither
-converged nor settled."""
+The script fails if the equilibrium differs, if a limit is broken, if SLSQP lowers psi by more than 1e-6 of it, or if
+hifdm ended neither converged nor settled."""
 import os
 import subprocess
 import sys
@@ -18,9 +18,9 @@ ENDED = 0, 3  # converged, settled
 
 
 class Net:
-    """A square grid of cells on a paraboloid-like sheet: the four corners are supports; edge cables are the
-    boundary, scalloped, and held to their theoretical lengths before the design; the others have the tension
-    pretension_N; loads on the inner nodes."""
+    """A square grid of cells on a sheet like a paraboloid, with loads on the inner nodes. The four corners are
+    supports. Edge cables are the boundary. They are scalloped and have their target lengths before the design. The
+    other cables have the tension pretension_N."""
 
     def __init__(self, random):
         n = int(random.integers(4, 6))
@@ -72,8 +72,8 @@ class Net:
         return of_nets + density @ l[self.boundary] ** 2 / 2 - np.sum(self.load * x) + off @ self.K @ off / 2
 
     def solve(self, density, start):
-        """Newton's method for the equilibrium where boundary cable k has the force density density[k]: shape, boundary
-        tensions, and the derivatives of both with respect to the force densities."""
+        """Solves for the equilibrium by Newton's method, where boundary cable k has the force density density[k].
+        Returns the shape, the boundary tensions, and the derivatives of both with respect to the force densities."""
         x, n, b = start.copy(), len(self.theory), self.boundary
         dof = np.flatnonzero(self.moving)
         for _ in range(200):
@@ -119,7 +119,8 @@ class Net:
 
 
 def remember(net, x):
-    """The shape and its rates by force densities v[:-1]; of the last ones that were asked for they are kept."""
+    """Returns a function of v that gives the shape and its rates for force densities v[:-1]. It keeps those of its last
+    call."""
     kept = {}
 
     def at(v):
@@ -133,8 +134,8 @@ def remember(net, x):
 
 
 def minimise(at, value, density, bounds, limits, limit_rates, iterations):
-    """SLSQP over the force densities and the least tension, from `density`; `value` is 1e4 times a square, with its
-    slope. Returns the root of that square, or infinity outside the limits."""
+    """Runs SLSQP over the force densities and the minimum tension, from `density`. `value` is 1e4 times a square, with
+    its slope. Returns the root of that square, or infinity outside the limits."""
     found = scipy.optimize.minimize(
         value, np.append(density, at(np.append(density, 0))[1].min()), jac=True, method="SLSQP",
         bounds=[*bounds, (1e-6, None)], constraints={"type": "ineq", "fun": limits, "jac": limit_rates},
@@ -143,8 +144,8 @@ def minimise(at, value, density, bounds, limits, limit_rates, iterations):
 
 
 def improve(net, density, low, high, cap, is_density, x):
-    """psi^2 subject to t <= T <= cap t with the least tension t and, by rule, bounds on the tensions, or on force
-    density times theoretical length. Returns psi, or infinity outside the limits."""
+    """Minimises psi^2 subject to t <= T <= cap t with the minimum tension t. By rule there are also bounds on the
+    tensions, or on force density times target length. Returns psi, or infinity outside the limits."""
     at, length = remember(net, x), net.length[net.boundary]
 
     def psi2(v):

@@ -3,11 +3,11 @@
 
     mesh_oracle.py RESULT FACETS
 
-RESULT is a result file of `hifdm run` with surface.mesh_tension_N_per_m, FACETS the form_facets.hdf of `hifdm export
---vtk`. Each facet is a membrane of tension N in its
-mean plane (Laplace's equation); its sides are straight, but those between two facets are arcs of height F l^2 / (8 T),
-F the pull of both membranes on the cable. Re z^k and Im z^k up to k = DEGREE fit the values on the sides by least
-squares. Demands the errors of the facets along the normal that the file has, to 1e-3 of what the mesh adds to them."""
+RESULT is a result file of `hifdm run` with surface.mesh_tension_N_per_m, and FACETS the form_facets.hdf of `hifdm
+export --vtk`. Each facet is a membrane of tension N in its mean plane (Laplace's equation). Its sides are straight, but
+sides between two facets are arcs of height F l^2 / (8 T), where F is the pull of both membranes on the cable. Re z^k
+and Im z^k up to k = DEGREE fit the values on the sides by least squares. The errors of the facets along the normal must
+be those of the file, to 1e-3 of the errors that the mesh adds."""
 import sys
 
 import figures
@@ -34,7 +34,7 @@ class Facet:
         return self.p[k], self.p[(k + 1) % len(self.p)]
 
     def settle(self):
-        """Coefficients of the harmonic polynomials; t runs along the sides."""
+        """Computes the coefficients of the harmonic polynomials. t runs along the sides."""
         t = (1 - np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS)) / 2
         at, value = [], []
         for k in range(len(self.p)):
@@ -51,7 +51,7 @@ class Facet:
         return np.hstack([power.real, power.imag[:, 1:]])
 
     def quadrature(self, n=8):
-        """Points of the membrane and weights, projected area: triangles around the middle."""
+        """Returns points of the membrane and weights, projected area: triangles around the middle."""
         g, w = np.polynomial.legendre.leggauss(n)
         u, v = (a.ravel() for a in np.meshgrid((g + 1) / 2, (g + 1) / 2))
         w = np.outer(w, w).ravel() / 4 * v

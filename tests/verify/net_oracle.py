@@ -3,18 +3,18 @@
 
     net_oracle.py CASE_FOLDER FOUND_FOLDER [TOLERANCE_m [LOOSE]]
 
-CASE_FOLDER holds nodes.csv and cables.csv as imported (every cable with its law and value), FOUND_FOLDER those that
-`hifdm export --csv` wrote. Prints the largest distance of a node and the largest difference of a tension; exit status 0
-when no node is farther off than the tolerance (1e-7 m) and LOOSE nodes (none) are loose.
+CASE_FOLDER has nodes.csv and cables.csv as imported (every cable with its law and value), and FOUND_FOLDER those of
+`hifdm export --csv`. The script prints the largest distance of a node and the largest difference of a tension. The exit
+status is 0 if no node is farther off than the tolerance (1e-7 m) and LOOSE nodes (none) are loose.
 
-Method: the energy of the net, every law replaced by a smooth one, is minimised by damped Newton steps, and the
-smoothing is taken away step by step. A cable with a multiplier pulls with the positive root T of
+The method minimises the energy of the net by damped Newton steps. Every law is replaced by a smooth one, and the
+smoothing is removed step by step. A cable with a multiplier pulls with the positive root T of the equation
 
     l + mu / T = L + c T     (law length: c (T - T0) with T0 the last tension and a small c, an augmented Lagrangian)
 
-so a slack cable has a small tension instead of none. Free nodes without load all of whose cables are slack are loose:
-scipy (SLSQP) puts them as near to their theoretical places, by the sum of squares, as no cable of theirs is too long.
-"""
+A slack cable therefore has a small tension instead of none. Free nodes without load are loose if all their cables are
+slack. SLSQP of scipy puts them as near to their target positions, by the sum of squares, as possible without a cable
+that is too long."""
 import csv
 import sys
 
@@ -47,7 +47,7 @@ class Net:
         self.size = np.mean(np.linalg.norm(self.x[self.end[:, 1]] - self.x[self.end[:, 0]], axis=1))
 
     def pull(self, x, mu, T0):
-        """Tension of each cable, its derivative by the length, unit vectors and lengths."""
+        """Returns the tension of each cable, its derivative by the length, unit vectors and lengths."""
         d = x[self.end[:, 1]] - x[self.end[:, 0]]
         l = np.sqrt((d * d).sum(1) + 1e-24 * self.size**2)
         T, k = np.array(self.value), np.zeros(len(l))
@@ -109,13 +109,13 @@ class Net:
 
 
     def loose(self, T):
-        """Which nodes no taut cable holds."""
+        """Returns which nodes no taut cable holds."""
         taut = np.zeros(len(self.x), bool)
         taut[self.end[T > 1e-6 * self.reference]] = True
         return self.free & ~taut & (self.load == 0).all(axis=1)
 
     def place(self, x, loose):
-        """x with the loose nodes at their places."""
+        """Returns x with the loose nodes at their positions."""
         cables = loose[self.end].any(axis=1)
 
         def moved(z):

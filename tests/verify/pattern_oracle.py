@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 """Oracle for far fields and for the files of `hifdm export --rf`, independent of the program: dense numpy.
 
-    pattern_oracle.py field RESULT CSV      of /pattern/form of RESULT, from the facets in the folder CSV
-    pattern_oracle.py points RESULT RF      the same from RF/points.csv alone, and what RF/ holds
+    pattern_oracle.py field RESULT CSV      /pattern/form of RESULT, from the facets in the folder CSV
+    pattern_oracle.py points RESULT RF      the same from RF/points.csv alone, and the content of RF/
 
-`field` sums the currents 2 n x H over 18 x 18 points of Gauss-Legendre on each facet; the feed is worked out anew from
-the theoretical places. `points` is what a physical-optics program would make of the points, which stand for areas.
-Prints the largest differences; exit status 1 when one is too large.
-"""
+`field` sums the currents 2 n x H over 18 x 18 points of Gauss-Legendre on each facet, and computes the feed again from
+the target positions. `points` does what a physical-optics program would do with the points, each of which stands for an
+area. The script prints the largest differences. The exit status is 1 if one is too large."""
 import csv
 import sys
 
@@ -18,7 +17,8 @@ C = 299792458.0
 
 
 def feed_of(h5, corners, f):
-    """Focus, axis, polarisation, power of the cosine with 10 dB at the widest corner, of a point along x."""
+    """Returns focus, axis, polarisation, and the power of the cosine with 10 dB at the widest corner, of a point feed
+    with polarisation along x."""
     x0 = h5["scene/node/position_m"][:]
     used = x0[np.unique(corners)]
     middle = (used[:, :2].min(axis=0) + used[:, :2].max(axis=0)) / 2
@@ -33,7 +33,7 @@ def feed_of(h5, corners, f):
 
 
 def far_field(feed, wavelength, p, area, directions):
-    """N of all points p with vectors of area, in each direction; and the factor that makes it a gain."""
+    """Returns N of all points p with vectors of area, in each direction, and the factor that makes it a gain."""
     focus, axis, co, q = feed
     rho = np.linalg.norm(p - focus, axis=1)
     to = (p - focus) / rho[:, None]
@@ -47,7 +47,7 @@ def far_field(feed, wavelength, p, area, directions):
 
 
 def compare(name, h5, feed, p, area, tolerance):
-    """Against the stored gains; the roots of gains differ by at most this part of the largest."""
+    """Compares with the stored gains. The roots of gains may differ by at most this part of the largest."""
     g = h5["pattern/form"]
     theta, worst = np.radians(g["theta_deg"][:]), 0
     for i, frequency in enumerate(g["frequency_Hz"][:]):
@@ -125,7 +125,7 @@ def points(result, folder):
 
 
 def check_grid(z, x, y, tri, f, bent):
-    """Each point against the plane of the triangle it is in, or against the wanted surface beside all."""
+    """Checks each point against the plane of the triangle it is in, or against the target surface if it is in none."""
     X, Y = np.meshgrid(x, y)
     want, inside = (X**2 + Y**2) / (4 * f), np.zeros(X.shape, bool)
     for a, b, c in tri:

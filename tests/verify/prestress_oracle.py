@@ -3,10 +3,11 @@
 
     prestress_oracle.py HIFDM NETS [SEED]
 
-Makes NETS random double nets with ties, whose nodes are up to 0.8 of a cell off the grid, so that some cannot be held
-by cables that pull. Of each: the program holds it if and only if a linear programme finds tensions that do; then no
-node moves, no tension is below the least one, and the sum of squared differences from what is wanted is that of a
-quadratic programme over the null space of the equilibrium equations. Exit status 0 when all of this holds."""
+The script makes NETS random double nets with ties. Their nodes are up to 0.8 of a cell off the grid, so that cables in
+tension cannot hold some nets. The program must hold a net if and only if a linear programme finds tensions that do.
+Then no node may move, and no tension may be below the minimum. The sum of squared differences from the required
+tensions must be that of a quadratic programme over the null space of the equilibrium equations. The exit status is 0 if
+all of this holds."""
 import subprocess
 import sys
 import tempfile
@@ -55,7 +56,7 @@ def write(folder, x, fixed, ends, wanted):
 
 
 def judge(program, folder, x, fixed, ends, wanted):
-    """What is wrong, or None; and whether the net can be held."""
+    """Returns what is wrong, or None, and whether the net can be held."""
     write(folder, x, fixed, ends, wanted)
     run = subprocess.run([program, "run", folder / "case.yaml", "-o", folder / "r.h5", "--force"], capture_output=True)
     A, least = equations(x, fixed, ends), LEAST * wanted.max()

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Oracle for states of the net as built, independent of the program: dense numpy, an own bar truss.
+"""Oracle for load cases of the as-built net, independent of the program: dense numpy, its own bar truss.
 
-    states_oracle.py make N FOLDER       writes FOLDER/1 ... FOLDER/N, each a random case: net, truss (odd ones), states
-    states_oracle.py check N FOLDER      of the results FOLDER/1.h5 ... FOLDER/N.h5
+    states_oracle.py make N FOLDER       writes random cases FOLDER/1 ... FOLDER/N: net, truss (odd ones), load cases
+    states_oracle.py check N FOLDER      checks the results FOLDER/1.h5 ... FOLDER/N.h5
 
-`check` makes the same random numbers again, takes of the result only the design (lengths and tensions of /form), cuts
-the cables, and finds each state by minimising the energy of cables without compression, the bars of the truss (linear,
-pinned, in the shape in which it was made) and the dead loads, by damped Newton steps. Prints the largest differences of
-places, tensions and forces of bars, and the numbers of slack cables; exit status 1 when one is too large.
-"""
+`check` draws the same random numbers again. It takes only the design from the result (lengths and tensions of /form)
+and cuts the cables. It finds each load case by damped Newton steps, which minimise an energy. The energy is that of
+cables without compression, of the bars of the truss (linear, pinned, in the shape in which it was made) and of the dead
+loads. The script prints the largest differences of positions, tensions and bar forces, and the numbers of slack cables.
+The exit status is 1 if one is too large."""
 import os
 import sys
 
@@ -54,7 +54,7 @@ class Case:
                 "move": np.where(self.support[:, None], r.uniform(-2e-3, 2e-3, (n, 3)), 0)}
 
     def make_truss(self, r, at):
-        """Each support stands on three bars to the ground, and bars join neighbours."""
+        """Makes a truss: each support stands on three bars to the ground, and bars join neighbours."""
         top = self.x[self.support]
         self.ground = top * [1.2, 1.2, 0] + [0, 0, -1] + r.uniform(-0.1, 0.1, top.shape)
         self.truss_x = np.concatenate([top, self.ground])
@@ -113,7 +113,7 @@ class Case:
     # ---- the truss alone ----
 
     def stiffness(self):
-        """Of the supports [3 ARMS][3 ARMS]; directions, lengths and EA of the bars."""
+        """Returns the stiffness of the supports [3 ARMS][3 ARMS], and directions, lengths and EA of the bars."""
         d = self.truss_x[self.bar[:, 1]] - self.truss_x[self.bar[:, 0]]
         L = np.linalg.norm(d, axis=1)
         n, EA, K = d / L[:, None], self.E * self.A, np.zeros((6 * ARMS, 6 * ARMS))
@@ -124,7 +124,7 @@ class Case:
         return K[: 3 * ARMS, : 3 * ARMS], n, L, EA
 
     def own_load(self, s, n, L, EA):
-        """Of temperature and weight on the nodes of the truss that are free."""
+        """Returns the loads of temperature and weight on the free nodes of the truss."""
         f, down = np.zeros((2 * ARMS, 3)), s["g"] * s["direction"] / np.linalg.norm(s["direction"])
         for e, (i, j) in enumerate(self.bar):
             hot = EA[e] * self.bar_alpha[e] * s["T_truss"] * n[e]
@@ -136,7 +136,7 @@ class Case:
     # ---- one state ----
 
     def solve(self, s, l0, start):
-        """Places, tensions, forces of bars."""
+        """Returns positions, tensions and bar forces."""
         middle = (self.x[self.end[:, 0]] + self.x[self.end[:, 1]]) / 2
         heat = np.where(self.is_radial, s["T_radial"], s["T"] + middle @ s["gradient"])
         l0_hot, down = l0 * (1 + self.alpha * heat), s["g"] * s["direction"] / np.linalg.norm(s["direction"])

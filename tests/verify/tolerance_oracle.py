@@ -1,8 +1,9 @@
-"""Draws the errors of a result's samples anew and solves each net as built by numpy alone: psi, least tension and slack
-cables as in the result. Usage: tolerance_oracle.py RESULT.h5
+"""Draws the errors of a result's samples again and solves each as-built net by numpy alone: psi, minimum tension and
+slack cables must be those of the result. Usage: tolerance_oracle.py RESULT.h5
 
-The stream of an error is SplitMix64 scattered by (seed, sample, kind, item), as METHOD section 12 says; the net is the
-least energy of its cables, sum EA/(2 l0) max(l - l0, 0)^2, by Newton with a shrinking ridge and a line search."""
+METHOD section 12 describes the stream of an error: SplitMix64 scattered by (seed, sample, kind, item). The net has the
+minimum energy of its cables, sum EA/(2 l0) max(l - l0, 0)^2. Newton's method with a shrinking ridge and a line search
+finds it."""
 import sys
 
 import figures
