@@ -2,8 +2,8 @@
 """abi.py LIBRARY: compares what the shared library exports with the public headers and with tests/abi.txt.
 
 The library must export exactly the functions and variables that include/hifdm declares. tests/abi.txt lists them for
-the SOVERSION of the Makefile. A name that is gone breaks programs that were linked before, so SOVERSION must rise then.
-`abi.py --write LIBRARY` writes the list anew."""
+the SOVERSION of the Makefile. A missing name breaks programs that were linked before, so SOVERSION must then increase.
+`abi.py --write LIBRARY` writes the list again."""
 import re
 import subprocess
 import sys
@@ -21,7 +21,8 @@ def exported(library):
 
 
 def declared():
-    """Names of functions and variables at the outermost level of the public headers, those of static ones aside."""
+    """Returns the names of functions and variables at the outermost level of the public headers, without static
+    ones."""
     text = "".join(f"#include <hifdm/{p.name}>\n" for p in sorted((TOP / "include/hifdm").glob("*.h")))
     code = subprocess.run(["cc", "-E", "-std=c11", f"-I{TOP}/include", "-x", "c", "-"], input=text, check=True,
                           capture_output=True, text=True).stdout

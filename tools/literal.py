@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""The paper's literal way to evaluate an individual beside the program's others: psi and time on one case. Then one
-solve with given force densities by each factorisation (form.factor): its errors and time.
+"""Compares the literal method of the paper for evaluating an individual with the other methods of the program: psi and
+time on one case. Then it compares one solve with given force densities by each factorisation (form.factor): errors and
+time.
 
     literal.py --program build/hifdm --case configs/chen2022.yaml --work build/literal [--rounds 7]
 
-Prints two tables in Markdown. Rounds are interleaved; times are medians, and ratios medians of the ratios within a
-round.
-CPU time is that of the evaluations alone, over all threads: other work on the machine disturbs it least.
-"""
+The script prints two tables in Markdown. Rounds are interleaved. Times are medians, and ratios are medians of the
+ratios within a round. CPU time is that of the evaluations alone, over all threads, because other work on the machine
+disturbs it least."""
 import argparse
 import csv
 import json
@@ -15,7 +15,7 @@ import os
 import statistics
 import subprocess
 
-# rule, solver, factor, what it is
+# rule, solver, factor, description
 WAYS = [
     ("seeded", "fixed_point", "own",
      "the paper's: Eq. 8 from the design, to its stop; band Cholesky in each iteration"),
@@ -35,7 +35,7 @@ def processor():
 
 
 def run(a, name, *settings):
-    """The answer of a run under these settings; its result is NAME.h5 in the folder for results."""
+    """Returns the JSON of a run with these settings. Its result is NAME.h5 in the folder for results."""
     out = os.path.join(a.work, f"{name}.h5")
     command = [a.program, "run", a.case, "-o", out, "--force", "--json", "--quiet"]
     for setting in settings:
@@ -53,7 +53,8 @@ def run_way(a, rule, solver, factor):
 
 
 def solve_once(a, factor):
-    """Form-finding alone with given force densities: one factorisation, three right-hand sides, and the measures."""
+    """Runs form-finding alone with given force densities: one factorisation, three right-hand sides, and the
+    measures."""
     return run(a, f"once-{factor}", "form.method=fdm", f"form.factor={factor}", "optimize.method=ga",
                "optimize.compare_lm=false", "optimize.generations=1")["form"]
 
@@ -67,7 +68,8 @@ def positions(a, factor):
 
 
 def print_single(a):
-    """Backward error: the largest nodal force over the largest sum of tensions at a node."""
+    """Prints the table of single solves. Backward error: the largest nodal force over the largest sum of tensions at a
+    node."""
     found = [[solve_once(a, factor) for factor in FACTORS] for _ in range(a.rounds)]
     own = positions(a, "own")
     largest = max(map(abs, own))

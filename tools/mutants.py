@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Do the tests notice? Makes the mutants of tests/mutants.txt one at a time and names those that `make test` misses.
+"""Makes the mutants of tests/mutants.txt one at a time and lists those that `make test` does not notice.
 
-Each is one edit at one place of the sources, in clones of HEAD under build/mutants: the user's tree is not touched. The
-suites of the touched room run first, up to the first that fails; at the end those that lived through them meet all
-suites. The table is build/mutants/table.txt.
+Each mutant is one edit at one place of the sources, in clones of HEAD under build/mutants; the user's tree is not
+touched. The suites of the affected room run first, up to the first that fails. At the end, mutants that survived them
+meet all suites. The table is build/mutants/table.txt.
 
-    tools/mutants.py                   all of them, as many at a time as there are cores
+    tools/mutants.py                   all mutants, as many at a time as there are cores
     tools/mutants.py WORD...           those whose name, file or suites contain a word
-    tools/mutants.py --list            names only; --check: does every edit still apply?
+    tools/mutants.py --list            only lists the names
+    tools/mutants.py --check           checks that every edit still applies
 """
 
 import argparse
@@ -27,18 +28,19 @@ from mutation.tree import end, run as run_alone, running
 TOP = Path(__file__).resolve().parent.parent
 WORK = Path(os.environ.get("BUILD", "build"))
 WORK = (WORK if WORK.is_absolute() else TOP / WORK) / "mutants"
-TEST_S, SUITES_S = 300, 7200  # a test by the clock, all of them by processor time: a mutant that hangs is noticed, too
+# s by the clock for a test, and of processor time for all tests. A mutant that hangs is noticed by them, too.
+TEST_S, SUITES_S = 300, 7200
 ENOUGH = 0.95
 
 
 def suites(mutant):
-    """What a mutant's row names, or else those of its room."""
+    """Returns the suites that the row of a mutant names, or else those of its room."""
     room = mutant.path.split("/")[1]
     return mutant.words or [f"unit/{room}/", f"property/{room}/"]
 
 
 def run(tree, log, *command, **environment):
-    """True when it succeeds within its processor time."""
+    """Returns true if the command succeeds within its processor time."""
     log.unlink(missing_ok=True)
     return run_alone(command, tree, log, SUITES_S, {"BUILD": "build", "WERROR": "", **environment})[0] == "passed"
 
@@ -49,7 +51,8 @@ def test(tree, log, words):
 
 
 def who_failed(log):
-    """The test that noticed, as check names it. On a busy machine a time limit may say nothing about the mutant."""
+    """Returns the test that noticed the mutant, as check names it. A time limit does not count, because on a busy
+    machine it may not be due to the mutant."""
     by = "a run that did not end"
     for line in log.read_text(errors="replace").splitlines():
         found = re.search(r":[FE]:[^:]*:([^:]*):", line)

@@ -1,22 +1,21 @@
 #!/usr/bin/env python3
-"""Do the tests notice edits at random places? Makes N edits at random lines of src and lists those that survive.
+"""Makes N edits at random lines of src and lists those that the tests do not notice.
 
     tools/mutants_random.py --seed 4cdb071a --n 200
 
-The edits depend on the seed and on the sources alone (tools/mutation/edits.py). Each is made in a worker's copy of the
-working tree below build/mutants-random, which is compiled and linked anew as far as needed. A draw that does not
-compile, that leaves the object code as it was, or that was drawn before is redrawn. The suites that execute the line
+The edits depend on the seed and on the sources alone (tools/mutation/edits.py). Each edit is made in a worker's copy of
+the working tree below build/mutants-random, which is compiled and linked again as far as needed. A draw is repeated if
+it does not compile, if it leaves the object code unchanged, or if it was drawn before. The suites that execute the line
 (tools/mutation/coverage.py) run, the most promising first, until one fails or --cpu seconds are used. A suite also
-catches the edit if it uses more than 20 s plus three times its processor time, or if its processes all sleep for a
-minute. If none failed, they run once more with the sanitizers of `make asan`, for a quarter of the time. An edit that no suite
-executes survives.
+catches the edit if it uses more than 20 s plus three times its processor time, or if all its processes sleep for a
+minute. If none failed, the suites run once more with the sanitizers of `make asan`, for a quarter of the time. An edit
+that no suite executes survives.
 
-Edits of tests/mutants_equivalent.txt change no result, for the reason that stands there; with such an edit the results
-of all configs/ are compared, bit by bit (of studies every fourth point). They are left out of the percentage and are
-to be at most 15 % of N.
+Edits of tests/mutants_equivalent.txt change no result, for the reason given there. If such an edit is drawn, the
+results of all configs/ are compared, bit by bit (of studies every fourth point). These edits are left out of the
+percentage and must be at most 15 % of N.
 
-Every draw is a line in build/mutants-random/SEED.log; survivors follow there with their edit.
-"""
+Every draw is a line in build/mutants-random/SEED.log. The survivors follow there with their edits."""
 
 import argparse
 import difflib
@@ -51,7 +50,8 @@ class Log:
 
 
 class Order:
-    """Which suites first: the chance to notice over the processor time, both as they were measured or guessed."""
+    """The order of the suites: the probability that a suite notices the edit over its processor time, both as measured
+    or estimated."""
 
     def __init__(self, coverage):
         self.coverage = coverage
@@ -102,8 +102,8 @@ class Runner:
         self.order = Order(self.coverage)
 
     def take(self):
-        """The next draw that is needed, or None. Draws are made in their order, so that their set does not depend on
-        how fast each is tried."""
+        """Returns the next draw that is needed, or None. Draws are made in their order, so that their set does not
+        depend on how fast each is tried."""
         with self.lock:
             while self.n_valid < self.o.n and self.n_valid + self.n_running >= self.o.n:
                 self.lock.wait()
@@ -126,7 +126,7 @@ class Runner:
                 tree.prepare()
             while (k := self.take()) is not None:
                 self.give(k, self.try_draw(k, tree))
-        except BaseException as error:  # the others must not wait for this one
+        except BaseException as error:  # the other workers must not wait for this one
             self.log(f"a worker ended: {error!r}")
             os.kill(os.getpid(), signal.SIGTERM)
             raise
@@ -198,7 +198,8 @@ class Runner:
         return "SURVIVED" if suites else "SURVIVED: no suite executes the line", "", spent_s
 
     def passes_without(self, suite, edit, tree, text, log):
-        """Whether a suite that failed passes without the edit, found once for each suite and kind of tree."""
+        """Returns whether a suite that failed passes without the edit. This is found once for each suite and kind of
+        tree."""
         key = (tree.sanitized, suite)
         if key not in self.base:
             tree.revert()
@@ -213,13 +214,14 @@ class Runner:
         return self.base[key]
 
     def differing_config(self, tree, log):
-        """The first case of configs/ whose result has other bits with the edit that is built; None: all are equal."""
+        """Returns the first case of configs/ whose result has other bits with the edit that is built; None if all are
+        equal."""
         program = tree.build / "hifdm"
         for case in sorted((TOP / "configs").glob("*.yaml")):
             with self.lock:  # the results without an edit are made once
                 expected = self.work / "expected" / self.state / case.stem
                 if not expected.exists():
-                    made = expected.with_name(case.stem + ".part")  # one that was interrupted is made again
+                    made = expected.with_name(case.stem + ".part")  # a result that was interrupted is made again
                     if not make_result(tree.pristine / "hifdm", case, made, log):
                         return f"{case.name} without the edit"
                     made.rename(expected)
@@ -233,7 +235,7 @@ class Runner:
         return None
 
     def check_equivalents(self):
-        """Whether all edits that are listed as equivalent keep all bits. Each is built and compared."""
+        """Returns whether all edits that are listed as equivalent keep all bits. Each edit is built and compared."""
         tree, holds, self.state = Tree(TOP, self.work / "tree-0"), True, self.state_of_sources()
         tree.prepare(self.o.jobs)
         for m in self.equivalent.values():
@@ -267,8 +269,8 @@ class Runner:
 
 
 def make_result(program, case, folder, log):
-    """Runs a case, or every fourth point of a study, whose figures are in the merge: all points would take minutes for
-    each edit."""
+    """Runs a case. Of a study it runs every fourth point, and the figures are in the merge. All points would take
+    minutes for each edit."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     is_study = re.search(r"^sweep:", case.read_text(), re.M)

@@ -1,7 +1,8 @@
-"""read_example.py RESULT [-o PICTURE]: what a result file of hifdm holds, in words and in one picture.
+"""read_example.py RESULT [-o PICTURE]: describes a result file of hifdm in words and in one picture.
 
-The net, coloured by how far its nodes are from where they should be, and psi by generation if there was a genetic
-algorithm. Needs h5py and matplotlib (Debian: python3-h5py python3-matplotlib). A place to start from."""
+The picture shows the net, coloured by the distance of its nodes from their target positions. If there was a genetic
+algorithm, it also shows psi by generation. The script needs h5py and matplotlib (Debian: python3-h5py
+python3-matplotlib). It is an example for scripts of your own."""
 import argparse
 import os
 
@@ -9,7 +10,7 @@ import h5py
 import matplotlib
 import numpy as np
 
-matplotlib.use("Agg")  # no screen needed
+matplotlib.use("Agg")  # needs no screen
 import matplotlib.pyplot as plt
 
 SHAPES = {"form": "form-finding", "ga/best": "genetic algorithm", "polish": "Levenberg-Marquardt"}
@@ -30,13 +31,13 @@ def print_summary(file):
         print(f"  {name}: psi {group.attrs[prefix + 'psi_m'] * 1e3:.4f} mm, cables from {tension.min():.3f} "
               f"to {tension.max():.3f} N, residual {group.attrs[prefix + 'residual_N']:.1e} N")
     if "ga/psi_m" in file:
-        psi = file["ga/psi_m"][:]  # [generation, individual], nan where infeasible
+        psi = file["ga/psi_m"][:]  # [generation, individual], NaN if infeasible
         print(f"  {len(psi)} generations, best psi {np.nanmin(psi[0]) * 1e3:.4f} -> {np.nanmin(psi[-1]) * 1e3:.4f} mm")
     print(text(file.attrs["warnings"]), end="")
 
 
 def draw_net(axes, file, path):
-    """Seen from above. Colours: the inner nodes, which are those that psi counts."""
+    """Draws the net from above. Colours: the inner nodes, which are those that count in psi."""
     theoretical, position = file["scene/node/position_m"][:], file[path]["position_m"][:]
     roles = h5py.check_enum_dtype(file["scene/node/role"].dtype)  # word -> number
     inner = file["scene/node/role"][:] == roles["inner"]

@@ -1,4 +1,4 @@
-"""Figures as SVG, written directly: log-log panels and stacked shares. Nothing but the standard library."""
+"""Writes figures as SVG: log-log panels and stacked shares. It needs only the standard library."""
 import math
 from html import escape
 
@@ -58,7 +58,8 @@ def cross(x, y, colour, r=6):
 
 
 def series(axes, points, colour, style, name):
-    """line: points joined in order; dash: the same, broken; mark: crosses with their name beside them."""
+    """Draws points. line: joined in order; dash: the same with a dashed line; mark: crosses with their name beside
+    them."""
     at = [axes.at(x, y) for x, y in points]
     if style == "mark":
         return [cross(x, y, colour) + text(x + 10, y - 4, name, 11, "start") for x, y in at]
@@ -75,7 +76,8 @@ def document(width, height, body, comment):
 
 
 def loglog(path, panels, x_label, y_label, comment, columns=2, styles=None):
-    """panels: {title: {name: [(x, y), ...]}}; one legend for all below. styles: {name: line, dash or mark}."""
+    """Writes panels: {title: {name: [(x, y), ...]}}, with one legend for all below. styles: {name: line, dash or
+    mark}."""
     body, names, styles = [], [], styles or {}
     for panel in panels.values():
         names += [name for name in panel if name not in names]
@@ -99,7 +101,7 @@ def loglog(path, panels, x_label, y_label, comment, columns=2, styles=None):
 
 
 def shares(path, bars, comment):
-    """bars: {label: {part: share}}; one horizontal bar each."""
+    """Writes bars: {label: {part: share}}, one horizontal bar each."""
     body, names, width = [], [], 800
     for bar in bars.values():
         names += [name for name in bar if name not in names]

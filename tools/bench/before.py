@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Form-finding now against an old commit's: takes that commit out of the repository's history, builds its library, and
-runs both in turn on the same nets. The table says, for a true error of 1e-6 m and of 1e-12 m, what either takes: steps,
-processor time, the error that is reached. Errors are those against today's shape at a tolerance of 1e-13.
+"""Compares form-finding now with that of an old commit. The script takes that commit from the history of the
+repository, builds its library, and runs both in turn on the same nets. For a true error of 1e-6 m and of 1e-12 m, the
+table shows the steps, the processor time and the error that each reaches. Errors are relative to today's shape at a
+tolerance of 1e-13.
 
     before.py --library build/libhifdm.a --driver build/bench/bench --work build/bench/before --out results/bench
 
-`make bench-before` calls it so; COMMIT=... is another commit than 2161b94, the last one before the interior path
-(METHOD section 5). Cases given as arguments are measured, too. OPENBLAS=.../libblas.so.3 is the BLAS for both.
-"""
+`make bench-before` runs the script in this way. COMMIT=... selects another commit than 2161b94, the last one before the
+interior path (METHOD section 5). Cases given as arguments are measured, too. OPENBLAS=.../libblas.so.3 is the BLAS for
+both."""
 import argparse
 import os
 import re
@@ -22,7 +23,7 @@ from run import processor  # noqa: E402
 CYLINDER = "scene.parabolic_cylinder."
 TRUSS = ["configs/straight-edges-truss.yaml", CYLINDER + "boundary=outer_edge", CYLINDER + "scallop=0.1"]
 ALL = ["form.method=auto", "form.stop=residual"]
-# A case and overrides each. {work}: cases that the driver of the benchmark writes there.
+# A case and overrides each. {work} stands for cases that the driver of the benchmark writes there.
 NETS = {
     "straight-edges (no answer)": ["configs/straight-edges.yaml"],
     "21x25 f=15": ["configs/reflector.yaml", CYLINDER + "focal_length_m=15"],
@@ -39,7 +40,7 @@ NETS = {
     "on its truss": TRUSS,
     "on a truss 300 times as soft": TRUSS + ["truss.E_Pa=4.3e8"],
 }
-# Written by the benchmark's driver: section, name there, folder under WORK.
+# Cases that the driver of the benchmark writes: section, name there, folder under WORK.
 WRITTEN = [("equilibrium", "21x25 elastic", "elastic"),
            ("equilibrium", "21x25 elastic; cut with errors of 0.5 mm", "cut"),
            ("equilibrium", "21x25 tension; length and elastic", "mixed"), ("cases", "imported 31x37", ".")]
@@ -54,13 +55,13 @@ def make_words(name, folder="."):
 
 
 def build(a):
-    """Drivers for today's library and the old one."""
+    """Builds the drivers for today's library and for the old one."""
     old = f"{a.work}/{a.commit}"
     if not os.path.exists(f"{old}/build/libhifdm.a"):
         os.makedirs(old, exist_ok=True)
         archive = subprocess.run(["git", "archive", a.commit], check=True, stdout=subprocess.PIPE)
         subprocess.run(["tar", "x", "-C", old], input=archive.stdout, check=True)
-        # Not the jobs of the make that calls this: the old Makefile is another project to it.
+        # The old Makefile is another project, so it does not get the jobs of the make that runs this script.
         env = {k: v for k, v in os.environ.items() if k not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "BUILD")}
         run(["make", f"-j{os.cpu_count()}", "WERROR=", "build/libhifdm.a"], cwd=old, env=env)
     drivers = {}
@@ -69,7 +70,7 @@ def build(a):
         drivers[name] = f"{a.work}/finding-{name}"
         run([*make_words("CC"), *make_words("LANGUAGE"), "-O2", *make_words("PKG_CFLAGS"), "-include", "stdbool.h",
              f"-I{include}", f"{HERE}/before/finding.c", library, "-o", drivers[name], *make_words("PKG_LIBS"),
-             *(["-llapack", "-lblas"] if name == "before" else [])])  # of before LAPACK was loaded at run time
+             *(["-llapack", "-lblas"] if name == "before" else [])])  # it did not load LAPACK at run time
     return drivers
 
 
@@ -85,7 +86,7 @@ def write_cases(a):
 
 
 def measure(a, drivers):
-    """{net: {who: {wanted: [rows]}}}; a row is steps, seconds, error, slack cables, status."""
+    """Returns {net: {who: {wanted: [rows]}}}; a row is steps, seconds, error, slack cables, status."""
     env = dict(os.environ, OPENBLAS_NUM_THREADS="1")
     if os.environ.get("OPENBLAS"):
         env["LD_LIBRARY_PATH"] = os.path.dirname(os.environ["OPENBLAS"])

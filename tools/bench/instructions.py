@@ -3,17 +3,16 @@
 
     instructions.py --program build/hifdm --work build/instructions --table results/bench/instructions.csv [--record]
 
-`make bench-instructions` calls it so; RECORD=yes writes the table, CASES="reflector 41x49" picks cases. callgrind, a
-tool of valgrind, counts by shared object: the program itself, and its libraries. valgrind has no AVX-512, so the
-program chooses its AVX2 kernels; the table names them. The BLAS is the reference BLAS where Debian's package of it is
-installed.
+`make bench-instructions` runs the script in this way. RECORD=yes writes the table, CASES="reflector 41x49" selects
+cases. callgrind, a tool of valgrind, counts by shared object: the program itself, and its libraries. valgrind has no
+AVX-512, so the program chooses its AVX2 kernels; the table lists them. The BLAS is the reference BLAS, if Debian's
+package of it is installed.
 
 The limit of 2 % holds for the program's own instructions, and for "computing": these and the libraries that compute.
-Both repeat to 0.01 %. HDF5 and libc do not: how often a run publishes its result file depends on the time it takes.
+Both repeat to 0.01 %. HDF5 and libc do not, because the number of publications depends on the time that a run takes.
 
-Other compilers and libraries give other counts. If one of them differs from the table's, this script builds the commit
-of the table from the history of git and counts it here; these counts then replace those of the table.
-"""
+Other compilers and libraries give other counts. If one of them differs from that of the table, this script builds the
+commit of the table from the history of git and counts it here. These counts then replace those of the table."""
 import argparse
 import concurrent.futures
 import csv
@@ -25,7 +24,7 @@ import sys
 
 LIMIT = 0.02
 CYLINDER = "scene.parabolic_cylinder."
-# The last is the bench's "41x49 f=5" (tools/bench/scene.c).
+# The last case is "41x49 f=5" of the benchmark (tools/bench/scene.c).
 CASES = {
     "chen2022": ["configs/chen2022.yaml"],
     "reflector": ["configs/reflector.yaml"],
@@ -61,9 +60,9 @@ def of_object(path):
 
 
 def read_profile(path):
-    """Counts by object, and the names of the files of the libraries. A line of cost counts for the object named last.
-    The line after "calls=" is left out, because it repeats the cost of the called function. A name is spelt out where
-    its number appears first."""
+    """Returns the counts by object, and the file names of the libraries. A line of cost counts for the object that was
+    given last. The line after "calls=" is left out, because it repeats the cost of the called function. A name is
+    written in full where its number appears first."""
     count, names, isas = dict.fromkeys(COLUMNS, 0), {}, set()
     which, is_call, summary = "other", False, None
     with open(path, encoding="utf-8", errors="replace") as file:
@@ -94,7 +93,8 @@ def read_profile(path):
 
 
 def environment():
-    """With all of these set, the program does not start itself a second time, which callgrind would not follow."""
+    """Returns the environment. With all of these variables the program does not start itself a second time. callgrind
+    would not follow it."""
     env = dict(os.environ, OMP_NUM_THREADS="1", OMP_WAIT_POLICY="passive", GOMP_SPINCOUNT="2000",
                OPENBLAS_NUM_THREADS="1", LC_ALL="C")
     reference = glob.glob("/usr/lib/*/lapack/liblapack.so.3") + glob.glob("/usr/lib/*/blas/libblas.so.3")
@@ -104,7 +104,7 @@ def environment():
 
 
 def measure(program, work, name):
-    """One run under callgrind."""
+    """Runs the program once under callgrind."""
     profile = f"{work}/{name}.callgrind"
     run(["valgrind", "--quiet", "--tool=callgrind", f"--callgrind-out-file={profile}", program, "run", *CASES[name],
          "--threads", "1", "--restart", "--quiet", "-o", f"{work}/{name}.h5"], env=environment())
@@ -112,7 +112,7 @@ def measure(program, work, name):
 
 
 def measure_all(program, work, cases):
-    """Counts by case, the kernels that ran, and the files of the libraries."""
+    """Returns counts by case, the kernels that ran, and the files of the libraries."""
     os.makedirs(work, exist_ok=True)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         found = list(pool.map(lambda name: measure(os.path.abspath(program), work, name), cases))
@@ -125,7 +125,7 @@ def make_word(name):
 
 
 def machine(isas, objects):
-    """What counts depend on besides the sources, as rows of the table's head."""
+    """Returns what the counts depend on besides the sources, as rows of the head of the table."""
     libraries = sorted(o for o in objects if of_object(o) in ("lapack", "gsl", "hdf5"))
     libc = run(["ldd", "--version"]).splitlines()[0].split()[-1]
     return {
@@ -138,7 +138,8 @@ def machine(isas, objects):
 
 
 def differ(key, one, other):
-    """A library that only one of the two uses is no difference: the program may stop using it."""
+    """Returns true if the two values differ. A library that only one of them uses is no difference, because the program
+    may stop using it."""
     if key != "libraries" or one is None or other is None:
         return one != other
     versions = [dict(name.split(".so", 1) for name in text.split()) for text in (one, other)]
@@ -162,14 +163,14 @@ def write_table(path, head, counts):
 
 
 def build_before(work, commit):
-    """The program of a commit, out of the history of git; None where that is not there."""
+    """Returns the program of a commit, built from the history of git; None if there is no history."""
     folder = f"{work}/{commit}"
     archive = subprocess.run(["git", "archive", commit], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     if archive.returncode != 0:
         return None
     os.makedirs(folder, exist_ok=True)
     subprocess.run(["tar", "x", "-C", folder], input=archive.stdout, check=True)
-    # Not the jobs of the make that calls this: the old Makefile is another project to it.
+    # The old Makefile is another project, so it does not get the jobs of the make that runs this script.
     env = {k: v for k, v in os.environ.items() if k not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "BUILD")}
     run(["make", f"-j{os.cpu_count()}", "WERROR=", f"CC={make_word('CC')}", f"CFLAGS={make_word('CFLAGS')}",
          "build/hifdm"], cwd=folder, env=env)
@@ -184,7 +185,7 @@ def skip(why):
 
 
 def compare(counts, before, commit):
-    """Prints counts and ratios; names of the cases that take too many."""
+    """Prints counts and ratios. Returns the names of the cases that need too many instructions."""
     too_many = []
     print(f"{'case':<12}{'object':<8}{'instructions':>16}{commit:>16}{'ratio':>9}")
     for name, count in counts.items():

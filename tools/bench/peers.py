@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The force density method as a strong user of numpy and scipy writes it today: pattern fixed once, values by one
-sparse product, LAPACK's band solver or SuperLU. Called by run.py; prints samples as the C driver does. Reads
-FOLDER/NAME.net.
+"""The force density method as an expert in numpy and scipy would write it today. The pattern is fixed once, one sparse
+product gives the values, and LAPACK's band solver or SuperLU solves. run.py runs the script, which prints samples as
+the C driver does and reads FOLDER/NAME.net.
 
     peers.py version | peers.py step FOLDER | peers.py single FOLDER NAME | peers.py precision FOLDER NAME
     peers.py built FOLDER SIGMA_MM
@@ -29,7 +29,7 @@ TENSION, LENGTH, FORCE_DENSITY = range(3)
 
 
 class Net:
-    """A net as bench_write_net (step.c) wrote it: rows instead of nodes, free ones first."""
+    """A net as bench_write_net (step.c) writes it: rows instead of nodes, free ones first."""
 
     def __init__(self, path):
         field = {}
@@ -56,7 +56,7 @@ class Net:
         column = np.concatenate([a[a < n], b[b < n], low[inside]])
         who = np.concatenate([cable[a < n], cable[b < n], cable[inside]])
         sign = np.concatenate([np.ones((a < n).sum() + (b < n).sum()), -np.ones(inside.sum())])
-        # lower band column by column, as LAPACK wants it, so that nothing is copied
+        # lower band column by column, as LAPACK requires it, so that nothing is copied
         self.band_of_q = sp.csr_matrix((sign, (row - column + column * (self.b + 1), who)), shape=((self.b + 1) * n, m))
         # the full matrix for SuperLU, by columns
         off = sign < 0
@@ -66,7 +66,7 @@ class Net:
         self.sparse_of_q = sp.csr_matrix((sign, (inverse, who)), shape=(place.size, m))
         pointer = np.searchsorted(place // n, np.arange(n + 1))
         self.matrix = sp.csc_matrix((np.zeros(place.size), place % n, pointer), shape=(n, n))
-        # right-hand side: what supports pull at the free nodes
+        # right-hand side: the pull of the supports on the free nodes
         k = cable[one_end]
         values, free = self.x0[high[k]], low[k]
         where = (free[:, None] + np.arange(3) * n).ravel()
@@ -94,17 +94,18 @@ class Net:
                     options={"SymmetricMode": True}).solve(self.rhs(q))
 
     def step(self, solve, q, x):
-        """Assembly, factor, three right-hand sides, lengths."""
+        """Does one step: assembly, factor, three right-hand sides, lengths."""
         x[: self.n] = solve(q)
         d = self.branch @ x
         return np.sqrt(np.einsum("ij,ij->i", d, d))
 
     def update(self, q, length):
-        """Eqs. 7 and 8."""
+        """Returns the force densities after Eqs. 7 and 8."""
         return np.where(self.is_tension, self.target / length, np.where(self.is_length, q * length / self.target, q))
 
     def iterate(self, solve, count, wanted_m=None):
-        """`count` iterations, or as many as bring the shape within wanted_m of the reference; how many."""
+        """Does `count` iterations, or as many as bring the shape within wanted_m of the reference. Returns their
+        number."""
         q, x = self.q0, self.x0.copy()
         for k in range(1, count + 1):
             length = self.step(solve, q, x)
@@ -118,7 +119,8 @@ class Net:
         return np.sqrt(((x - self.reference) ** 2).sum(axis=1)).max()
 
     def trace(self, solve):
-        """(decade, seconds, error, iterations) whenever the error has fallen below another decade; it is not timed."""
+        """Yields (decade, seconds, error, iterations) whenever the error has fallen below another decade. Computing the
+        error is not timed."""
         q, x, passed_s, wanted_m, k = self.q0, self.x0.copy(), 0.0, np.inf, 0
         while passed_s < TRACE_S and wanted_m > TRACE_LEAST:
             k, start = k + 1, time.perf_counter()
@@ -160,7 +162,8 @@ def step(folder):
 
 
 def single(folder, scene):
-    """The fixed point to the wanted error: counted first, then timed without looking at the error."""
+    """Solves the fixed point to the required error: counts the iterations first, then times them without computing the
+    error."""
     net = Net(f"{folder}/{scene}.net")
     count = net.iterate(net.solveh_banded, 200000, WANTED_M)
     for name, solve in {"scipy fixed point, band": net.solveh_banded, "scipy fixed point, splu": net.splu}.items():
@@ -181,7 +184,7 @@ def precision(folder, scene):
 
 
 class BuiltNet:
-    """The net as built with its samples, as built.c wrote them: elastic cables, sum EA/(2 l0) max(l - l0, 0)^2."""
+    """The as-built net with its samples, as built.c writes them: elastic cables, sum EA/(2 l0) max(l - l0, 0)^2."""
 
     def __init__(self, path):
         with open(path, "rb") as file:
@@ -221,7 +224,8 @@ class BuiltNet:
         return (self.EA / (2 * cut) * np.maximum(self.geometry(x)[1] - cut, 0) ** 2).sum()
 
     def newton(self, cut, tolerance, most):
-        """Newton's method from the nominal shape with Armijo's rule on the energy; the shape, steps and residual."""
+        """Solves by Newton's method from the nominal shape, with Armijo's rule on the energy. Returns shape, steps and
+        residual."""
         x, residual = self.x0.copy(), np.inf
         for k in range(most + 1):
             u, length = self.geometry(x)
@@ -235,7 +239,7 @@ class BuiltNet:
             block = (stiffness - across)[:, None, None] * u[:, :, None] * u[:, None, :] \
                 + across[:, None, None] * np.eye(3)
             self.matrix.data = self.data_of_blocks @ block.ravel()
-            self.matrix.data[self.soft] += 1e-6  # N/m: what a node without taut cables has
+            self.matrix.data[self.soft] += 1e-6  # N/m, for nodes without taut cables
             step = splu(self.matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
                         options={"SymmetricMode": True}).solve(force)
             part, before, slope = 1.0, self.energy(x, cut), force @ step
@@ -250,7 +254,7 @@ class BuiltNet:
 
 
 def built(folder, sigma_mm):
-    """Samples that do not converge in 60 steps are counted, and left out of the differences."""
+    """Measures samples. Those that do not converge in 60 steps are counted and left out of the differences."""
     net = BuiltNet(f"{folder}/built_{sigma_mm}.bin")
     net.newton(net.cut[0], 1e-8, 2)  # the first calls are slow
     start, steps, missed, difference = time.process_time(), [], 0, 0.0
@@ -259,7 +263,7 @@ def built(folder, sigma_mm):
         steps.append(k)
         missed += residual > 1e-8
         if residual <= 1e-8:
-            held = np.zeros(net.n_node, dtype=bool)  # loose nodes are anywhere
+            held = np.zeros(net.n_node, dtype=bool)  # loose nodes have no unique position
             held[net.end[net.geometry(x)[1] > cut * (1 + 1e-9)]] = True
             difference = max(difference, np.sqrt(((x - found)[held] ** 2).sum(axis=1)).max())
     seconds = (time.process_time() - start) / len(net.cut)
@@ -269,8 +273,8 @@ def built(folder, sigma_mm):
 
 
 def pattern(folder, to_deg):
-    """The far field of pattern.c: as many points of Gauss-Legendre on each facet, all angles at a time by blocks of
-    points, the currents by one product of matrices. Only the sum is timed."""
+    """Computes the far field of pattern.c. Each facet has as many points of Gauss-Legendre. All angles are computed at
+    a time, by blocks of points, and the currents by one product of matrices. Only the sum is timed."""
     lines = open(f"{folder}/pattern.txt").read().split("\n")
     head = lines[0].split()
     n_facet, n_point = int(head[0]), int(head[1])

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""A batch of designs through the package for Python beside the same in C: processor time of one thread, medians of
-interleaved rounds, a process of its own for each. The C side is `hifdm evaluate`, whose cpu_s is that of its batch
-alone; the Python side is the whole first call, checks and results included, and beside it the second one.
+"""Compares a batch of designs through the package for Python with the same in C.
+
+The script measures processor time on one thread, as medians of interleaved rounds, with one process for each
+measurement. The C side is `hifdm evaluate`, whose cpu_s is that of its batch alone. The Python side is the whole first
+call, including checks and results, and the second call.
 
     PYTHONPATH=tools/python python_batch.py --program build/hifdm --work build/bench [CASE]
 """
@@ -21,7 +23,7 @@ import hifdm
 
 
 def once(path, table):
-    """Print processor times of the first and the second call, s."""
+    """Prints the processor times of the first and the second call, s."""
     case = hifdm.open(path, threads=1)
     designs = np.loadtxt(table, delimiter=",", skiprows=1)
     case.form()

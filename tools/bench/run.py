@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The whole benchmark: calls the C driver, the peers in Python and the program in interleaved rounds, takes medians,
+"""Runs the whole benchmark: the C driver, the peers in Python and the program in interleaved rounds. It takes medians
 and writes tables (CSV) and figures (SVG) into a folder of OUT for this processor. Times are compared within one run
-only; no time is asserted anywhere.
+only. No time is asserted anywhere.
 
     run.py --driver build/bench/bench --program build/hifdm --work build/bench --out results/bench --flags TEXT
 """
@@ -26,10 +26,10 @@ import svg  # noqa: E402
 LANE_SCENES = ["21x25 f=15", "21x25 f=15 tied", "21x25 f=15 tied and held"]
 SCENES = ["straight-edges", "21x25 f=15", "imported 31x37", "41x49 f=5"]
 KERNEL_NET = "21x25 perimeter"
-# The nets of equilibrium.c.
+# Nets of equilibrium.c.
 FORM_FINDINGS = ["21x25 f=15", "41x49 f=5", "on its truss", "on a truss 300 times as soft", "21x25 elastic",
                  "21x25 elastic; cut with errors of 0.5 mm", "21x25 tension; length and elastic"]
-# The methods of precision.csv that its picture shows, in the order of its legend: words and style.
+# Methods of precision.csv in its picture, in the order of the legend: words and style.
 PICTURE = {
     "scipy fixed point": ("scipy, fixed point", "line"),
     "CHOLMOD fixed point": ("CHOLMOD in C, fixed point", "line"),
@@ -41,18 +41,18 @@ PICTURE = {
 }
 BOUND = "its proven bound"
 BUILT_NET = "21x25 f=7.2 as built"
-BUILT_MM = ["0.01", "0.03", "0.1", "0.5"]  # errors of cut lengths of the net as built
+BUILT_MM = ["0.01", "0.03", "0.1", "0.5"]  # errors of cut lengths of the as-built net
 PATTERN_DEG = ["2", "5"]  # ends of the 721 angles of the far field
-SCALES = {1: 3, 2: 3, 4: 3, 8: 2, 16: 1}  # nets of the cost growth: rounds, fewer for those that take seconds
+SCALES = {1: 3, 2: 3, 4: 3, 8: 2, 16: 1}  # nets of the cost growth: rounds, fewer for nets that take seconds
 BIG = "scene.parabolic_cylinder.cells_per_module=[4,4]"
-# Arguments of the program. The polish is not what is measured here, and takes long.
+# Arguments of the program. The refinement is not measured here, and takes long.
 GA_CASES = {
     "straight-edges": ["configs/straight-edges.yaml"],
     "41x49 f=5": ["configs/reflector.yaml", "--set", BIG, "--set", "scene.parabolic_cylinder.focal_length_m=5",
                   "--set", "form.method=auto"],
 }
 GA_GENERATIONS = (400, 100)
-# What a scene does not need is skipped: a case file and overrides each.
+# Cases that show what is skipped if a scene does not need it: a case file and overrides each.
 STAGE_CASES = {
     "FDM only": ["configs/reflector.yaml", "form.method=fdm"],
     "HIFDM": ["configs/reflector.yaml", "form.method=hifdm"],
@@ -61,7 +61,7 @@ STAGE_CASES = {
 
 
 class Samples:
-    """Every sample of the run by (section, scene, method, parameter, quantity)."""
+    """All samples of the run by (section, scene, method, parameter, quantity)."""
 
     def __init__(self):
         self.values = defaultdict(list)
@@ -74,7 +74,7 @@ class Samples:
             self.add(*row.split("\t"))
 
     def keys(self, section):
-        """(scene, method, parameter) of a section, in the order of arrival."""
+        """Returns (scene, method, parameter) of a section, in the order of arrival."""
         return list(dict.fromkeys(k[1:4] for k in self.values if k[0] == section))
 
     def get(self, section, scene, method, parameter, quantity):
@@ -82,7 +82,8 @@ class Samples:
         return statistics.median(found) if found else None
 
     def paired(self, section, scene, over, under):
-        """Median of ratios of samples taken one after the other; over, under: (method, parameter, quantity)."""
+        """Returns the median of ratios of samples taken one after the other. over, under: (method, parameter,
+        quantity)."""
         a, b = (self.values.get((section, scene, m, float(p), q), []) for m, p, q in (over, under))
         return statistics.median([x / y for x, y in zip(a, b)]) if a and b else None
 
@@ -109,7 +110,7 @@ class Bench:
 
     def call(self, command):
         done = subprocess.run(command, env=self.env, stdout=subprocess.PIPE, text=True)
-        if done.returncode != 0:  # what was measured before stays; the gap shows in the tables
+        if done.returncode != 0:  # earlier samples stay; the gap is visible in the tables
             print(f"bench: failed ({done.returncode}): {' '.join(command)}", file=sys.stderr)
         self.samples.read(done.stdout)
 
@@ -121,7 +122,7 @@ class Bench:
             self.call([sys.executable, f"{HERE}/peers.py", what[0], self.a.work, *what[1:]])
 
     def program(self, name, threads, generations, policy="passive"):
-        """One run of the program with its GA; times, memory and bytes of the whole process."""
+        """Runs the program once with its genetic algorithm, and keeps times, memory and bytes of the whole process."""
         path = f"{self.a.work}/ga.h5"
         command = [self.a.program, "run", *GA_CASES[name], "-o", path, "--force", "--json", "--quiet",
                    "--threads", str(threads)]
@@ -147,10 +148,11 @@ class Bench:
         for quantity, value in row.items():
             self.samples.add("ga", name, f"{threads} threads, {policy}", generations, quantity, value)
 
-    # ---- what is measured ----
+    # ---- measurements ----
 
     def sweep(self, files):
-        """The 64 points of configs/pretension-sweep.yaml; how busy two cores are, start and end included."""
+        """Runs the 64 points of configs/pretension-sweep.yaml and measures how busy two cores are, from start to
+        end."""
         folder, study = f"{self.a.work}/sweep.d", f"{self.a.work}/sweep.yaml"
         with open("configs/pretension-sweep.yaml") as file:
             text = file.read().replace("base: ", f"base: {os.path.abspath('configs')}/")
@@ -182,7 +184,7 @@ class Bench:
                 self.driver("stages", name, *case)
             self.say("work-precision, one evaluation")
             for scene in SCENES:
-                if scene != SCENES[-1] or r == 0:  # the fixed point takes 20 s there
+                if scene != SCENES[-1] or r == 0:  # there the fixed point takes 20 s
                     self.driver("precision", scene)
                     self.peers("precision", scene)
             for scene in (KERNEL_NET, *SCENES):
@@ -210,7 +212,7 @@ class Bench:
                 self.driver("population", "straight-edges")
                 self.driver("whole", STAGE_CASES["HIFDM + GA"][0])
                 self.program("straight-edges", 2, GA_GENERATIONS[0])
-                self.program("straight-edges", 2, GA_GENERATIONS[0], "active")  # what a user gets who sets nothing
+                self.program("straight-edges", 2, GA_GENERATIONS[0], "active")  # as a user who sets nothing
             self.driver("population", SCENES[-1])
             self.say("a sweep")
             for files in ("all", "none"):
@@ -222,7 +224,7 @@ class Bench:
         self.checks = {name: self.check(*case) for name, case in STAGE_CASES.items()}
 
     def check(self, path, *overrides):
-        """The rows of `hifdm check` that say what runs, what is skipped and who allocates what."""
+        """Returns the rows of `hifdm check` about what runs, what is skipped and which memory is allocated."""
         command = [self.a.program, "check", path, "--threads", "2"]
         for override in overrides:
             command += ["--set", override]
@@ -243,7 +245,7 @@ class Bench:
                 f"build {self.a.flags}", *filter(None, about), f"python peers {self.peer_version or 'not there'}",
                 f"medians of interleaved samples; load average at the end {os.getloadavg()[0]:.2f}"]
 
-    # ---- what is written ----
+    # ---- output ----
 
     def table(self, name, columns, rows):
         with open(f"{self.out}/{name}.csv", "w") as file:
@@ -253,12 +255,12 @@ class Bench:
                 file.write(",".join("" if v is None else v if isinstance(v, str) else f"{v:.6g}" for v in row) + "\n")
 
     def wide(self, name, section, quantities, labels=("scene", "method", "parameter")):
-        """One row per (scene, method, parameter), one column per quantity."""
+        """Writes a table with one row per (scene, method, parameter) and one column per quantity."""
         rows = []
         for key in self.samples.keys(section):
             values = [self.samples.get(section, *key, q) for q in quantities]
             if any(v is not None for v in values):
-                # commas part columns
+                # commas separate columns
                 rows.append([key[0].replace(",", ";"), key[1].replace(",", ";"), key[2], *values])
         self.table(name, [*labels, *quantities], rows)
 
@@ -335,7 +337,7 @@ class Bench:
                 if value:
                     panels.setdefault(title, {}).setdefault(method, []).append((nodes, value))
             for method, points in panels[title].items():
-                if len(points) >= 3:  # over all sizes, and over the upper three, where it has settled
+                if len(points) >= 3:  # over all sizes, and over the upper three, where it is constant
                     rows.append([method.replace(",", ";"), quantity, slope(points), slope(points[-3:])])
         self.table("growth_exponents", ["method", "quantity", "exponent", "exponent_upper_three"], rows)
         svg.loglog(f"{self.out}/growth.svg", panels, "nodes", "per solve or evaluation", "\n".join(self.head))
@@ -396,7 +398,7 @@ class Bench:
 
 
 def processor():
-    """Its name without a comma; with family and model, because hypervisors shorten names."""
+    """Returns the name of the processor without commas, with family and model, because hypervisors shorten names."""
     with open("/proc/cpuinfo") as file:
         rows = dict(row.split(":", 1) for row in file.read().split("\n\n")[0].splitlines() if ":" in row)
     row = {key.strip(): value.strip().replace(",", " ") for key, value in rows.items()}
@@ -406,7 +408,7 @@ def processor():
 
 
 def slope(points):
-    """Least-squares exponent."""
+    """Returns the exponent by least squares."""
     x, y = [[math.log(p[i]) for p in points] for i in (0, 1)]
     mx, my = statistics.mean(x), statistics.mean(y)
     return sum((a - mx) * (b - my) for a, b in zip(x, y)) / sum((a - mx) ** 2 for a in x)
@@ -417,7 +419,7 @@ def ratio(a, b):
 
 
 def idle_s():
-    """How long this machine's cores have done nothing, or only waited for the disk."""
+    """Returns how long the cores of this machine have been idle or have only waited for the disk, s."""
     with open("/proc/stat") as file:
         ticks = file.readline().split()[4:6]
     return sum(map(int, ticks)) / os.sysconf("SC_CLK_TCK")
@@ -428,7 +430,7 @@ def milli(value):
 
 
 def summary(s):
-    """Rows (figure, wanted, measured) against the numbers that the project set itself."""
+    """Yields rows (figure, wanted, measured) that compare with the numbers that the project has set itself."""
     def step(method):
         return s.any("step", KERNEL_NET, method, "time_s")
 
@@ -440,7 +442,7 @@ def summary(s):
     name = "lanes" if step("lanes") else "dpbtrf (no lane path yet)"
     for method, wanted in (("dpbtrf", "6"), ("CHOLMOD", "4"), ("scipy solveh_banded", "12"), ("scipy splu", "")):
         yield [f"FDM step, 437 free: {method} / {name}", wanted, ratio(step(method), base)]
-    best = {key[0]: key for key in s.keys("peak")}  # the last instruction set is the one that the program picks
+    best = {key[0]: key for key in s.keys("peak")}  # the program chooses the last instruction set
     for net, isa, half_bandwidth in list(best.values())[1:]:
         yield [f"lane factorisation / FMA peak ({isa}); half-bandwidth {half_bandwidth:.0f}", "0.65",
                s.get("peak", net, isa, half_bandwidth, "share_of_fma_peak")]
@@ -454,7 +456,7 @@ def summary(s):
                ratio(s.get("built", BUILT_NET, "scipy Newton; splu", float(sigma), "cpu_s"),
                      s.get("built", BUILT_NET, "hifdm, 1 thread", float(sigma), "cpu_s"))]
     for truss, what, unknowns in s.keys("frame"):
-        if what.endswith("five load cases"):  # Frame3DD took 2.2 s and 9.9 s for such trusses
+        if what.endswith("five load cases"):  # Frame3DD needed 2.2 s and 9.9 s for such trusses
             wanted = "0.5" if what.startswith("factor") else ""
             yield [f"{truss}: {what}; s", wanted, s.get("frame", truss, what, unknowns, "time_s")]
     for scene in (KERNEL_NET, *SCENES):

@@ -1,7 +1,9 @@
-"""Random and quasi-random samples of a net as built: the error of the mean of psi^2 over samples and processor time.
+"""Compares random and quasi-random samples of an as-built net: the error of the mean of psi^2 over samples and
+processor time.
 
-Writes sampling.csv and sampling.svg. The net is that of configs/reflector.yaml with EA of 1e5 and 2e5 N; the truth is
-the mean of many random samples with first order as control variate, which is known to some 1e-6 of itself."""
+The script writes sampling.csv and sampling.svg. The net is that of configs/reflector.yaml with EA of 1e5 and 2e5 N. The
+reference is the mean of many random samples, with the first order as control variate. It is known to about 1e-6 of
+itself."""
 import argparse
 import csv
 import json

@@ -1,13 +1,14 @@
-"""Commands and files in the pages of src/manual: blocks.py --program build/hifdm --work FOLDER [PAGE...] runs them all.
+"""Runs the commands and files in the pages of src/manual: blocks.py --program build/hifdm --work FOLDER [PAGE...]
 
-A page has a folder of its own, with links to configs and tools of the sources. In its order,
+Each page has its own folder, with links to the configs and tools of the sources. In the order of the page,
 
     ```yaml file=NAME        writes the block to that file (any language)
-    ```console               runs the lines that begin with "$ ", with bash; what they print is not in the source
+    ```console               runs the lines that begin with "$ ", with bash; their output is not in the source
 
-and behind `console` stand status=N (of every command of the block; 0 unless given), quiet (the page does not show what
-is printed), lines=N (nor what follows the first N lines of it), by=FILE (run by that script instead, which has these
-words). {out}`WORDS` in a text must be in what the last block has printed, whatever blanks are between the words."""
+These words may follow `console`. status=N is the exit status of every command of the block (default 0). With quiet the
+page does not show the output, and with lines=N only its first N lines. With by=FILE that script runs the commands, and
+it must contain these words. The last block must have printed the words of {out}`WORDS` in a text, whatever blanks are
+between the words."""
 import argparse
 import glob
 import os
@@ -24,7 +25,8 @@ class Fault(Exception):
 
 
 def prepare(folder, program):
-    """The page's folder, and an environment in which the program and this Python have their plain names."""
+    """Makes the folder of the page. Returns an environment in which the program and this Python have their plain
+    names."""
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
     names = os.path.join(os.path.dirname(folder), ".bin")
@@ -40,7 +42,7 @@ def prepare(folder, program):
 
 
 def commands(lines):
-    """Lines that begin with "$ ", each with those below it that a backslash joins to it."""
+    """Yields the lines that begin with "$ ", each with the lines that a backslash joins to it."""
     command = []
     for line in lines:
         if command or line.startswith("$ "):
@@ -60,7 +62,7 @@ def run(command, status, folder, env):
 
 
 def console(lines, options, folder, env):
-    """The block as the page shows it, and what was printed."""
+    """Returns the block as the page shows it, and the output."""
     if "by" in options:
         text = open(options["by"], encoding="utf-8").read()
         for command in commands(lines):
@@ -83,7 +85,7 @@ def words(text):
 
 
 def run_page(path, folder, program):
-    """The lines of a page with what its commands print."""
+    """Returns the lines of a page with the output of its commands."""
     env = prepare(folder, program)
     made, said, block, head = [], "", None, ""
     for number, line in enumerate(open(path, encoding="utf-8").read().split("\n"), 1):

@@ -1,7 +1,7 @@
-"""The manual, `make docs`: build.py --program build/hifdm --version 0.1.0 --make make --work FOLDER --out FOLDER.
+"""Makes the manual, `make docs`: build.py --program build/hifdm --version 0.1.0 --make make --work FOLDER --out FOLDER.
 
-Pages are those of src/manual, the sections of src/MANUAL.md, src/METHOD.md and src/ARCHITECTURE.md, the tables in
-results/chen2022, and what the program prints about itself. Sphinx turns them into HTML; its warnings are errors."""
+The pages are those of src/manual, the sections of src/MANUAL.md, src/METHOD.md and src/ARCHITECTURE.md, the tables in
+results/chen2022, and what the program prints about itself. Sphinx makes HTML of them; its warnings are errors."""
 import argparse
 import glob
 import json
@@ -23,7 +23,8 @@ def read(path, name):
 
 
 def written(program, work):
-    """The pages of src/manual, with what their commands print and the pages of hifdm report that they made."""
+    """Returns the pages of src/manual with the output of their commands, and the pages of hifdm report that they
+    made."""
     pages = []
     for path in sorted(glob.glob("src/manual/**/*.md", recursive=True)):
         name = path[len("src/manual/") : -3]
@@ -35,8 +36,9 @@ def written(program, work):
 
 
 def report_parts(pages, work):
-    """![words](report:FILE.html#PART) is a picture of a part of a page of `hifdm report`, and a link to the whole page;
-    with ?press=LABEL after pressing a button, with ?only=ELEMENT of the first such in it. What is to be drawn."""
+    """Replaces each ![words](report:FILE.html#PART) by a picture of a part of a page of `hifdm report` and a link to
+    the whole page. ?press=LABEL takes the picture after pressing a button; ?only=ELEMENT takes the first such element
+    in the part. Returns what must be drawn."""
     wanted = []
     for page in pages:
         for k, line in enumerate(page.lines):
@@ -88,7 +90,7 @@ def all_pages(program, make, work):
 
 
 def contents(line, guide, method, program):
-    """`@guide` and `@method` in a list of contents stand for the pages of a document, `@words` for all words."""
+    """Returns the pages that `@guide` and `@method` in a list of contents stand for; `@words` stands for all words."""
     if line == "@words":
         return reference.glossary(program)
     pages = {"@guide": guide, "@method": method}.get(line)
@@ -110,8 +112,9 @@ def write(pages, guide, method, program, work):
 
 
 def mend_theme(out):
-    """What Debian 12 makes of furo 2022.12: a style sheet and a script that ask a server for their parts, which a page
-    opened from a disk has not; and the dark colours only by the button, not where the system is set to dark."""
+    """Corrects what Debian 12 makes of furo 2022.12. A style sheet and a script ask a server for their parts, but a
+    page that is opened from a disk has no server. The dark colours follow only the button, and not a system that is set
+    to dark."""
     style, script = f"{out}/_static/styles/furo.css", f"{out}/_static/scripts/furo.js"
     text = open(style, encoding="utf-8").read()
     text = re.sub(r"@import url\([^)]*\);\n?", "", text)

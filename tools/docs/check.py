@@ -1,4 +1,4 @@
-"""Looks at finished pages: links that lead nowhere, what would be fetched from elsewhere, paths of this machine."""
+"""Checks finished pages: links that lead nowhere, parts from other servers, and paths of this machine."""
 import glob
 import html.parser
 import os

@@ -1,4 +1,5 @@
-"""Reference pages from what the program prints about itself (`hifdm schema`, `hifdm help`), and the headers."""
+"""Makes reference pages from the headers and from what the program prints about itself (`hifdm schema`, `hifdm
+help`)."""
 import glob
 import os
 import re
@@ -12,12 +13,13 @@ def ask(*words):
 
 
 def plain(text):
-    """Text that means itself, in Markdown."""
+    """Returns the text in Markdown that shows it unchanged."""
     return re.sub(r"([\\`*_<\[\]|#])", r"\\\1", text)
 
 
 def schema_rows(comments):
-    """Keys of the rows of a list: "#   set: text; required." and what it means on the line below."""
+    """Yields the keys of the rows of a list. A line "# set: text; required." has the key, and the line below its
+    meaning."""
     for line in comments:
         key = re.match(r"  (\w+): (.*)", line)
         if key:
@@ -27,7 +29,7 @@ def schema_rows(comments):
 
 
 def schema(program):
-    """The keys of a case file, by section. Every key has a comment that says what it means and one with its range."""
+    """Returns the keys of a case file by section. Every key has a comment with its meaning and one with its range."""
     lines = ["# Keys of a case file", "", "As `hifdm schema` prints them, which is a case file itself: a key, what it",
              "may be, and its default. The unit is the last part of a name.", ""]
     said, path = [], []
@@ -56,7 +58,7 @@ def schema(program):
 
 
 def command_help(program, name):
-    """One command: its line, what it does, options, examples."""
+    """Returns one command: its usage, what it does, options, examples."""
     usage, *rest = ask(program, "help", name)
     lines, option, examples = [f"## `{usage.split(' [OPTION]')[0]}`", ""], [], []
     part = "about"
@@ -91,7 +93,8 @@ def commands(program):
 
 
 def glossary(program):
-    """Terms, statuses, warnings and figures, as `hifdm explain` has them: a list by kind, then word by word. Lines."""
+    """Returns terms, statuses, warnings and figures of `hifdm explain`: a list by kind, then one word after the other,
+    as lines."""
     kinds, words = {}, set()
     for line in ask(program, "explain"):
         kind = re.match(r"(\S[^:]*):", line)
@@ -115,7 +118,7 @@ def glossary(program):
 
 
 def headers():
-    """A page for each public header, and one that lists them by what their first comment says."""
+    """Returns a page for each public header, and one that lists the headers with their first comments."""
     lines = ["# Headers", "", "The library's interface, header by header: shapes, units and errors stand in the",
              "comments. `make api` makes pages of them with links between types and functions.", ""]
     pages = []

@@ -1,19 +1,19 @@
-"""Long documents of the sources, such as src/MANUAL.md, as pages of the manual, and the links between all of them."""
+"""Makes pages of the manual from long documents such as src/MANUAL.md, and the links between all pages."""
 import os
 import re
 
-LONG = 250  # lines of a section above which its parts are pages of their own
+LONG = 250  # the parts of a section with more lines become pages of their own
 
 
 def slug(title):
-    """The anchor that a heading has, on a page of ours and where the source is read as it stands."""
+    """Returns the anchor of a heading, both on our pages and where the source is shown unchanged."""
     return re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-")
 
 
 class Page:
     def __init__(self, name, source, lines):
-        self.name = name  # folder/name below the manual's root, without suffix
-        self.source = source  # path in the repository, which its links start from
+        self.name = name  # folder/name below the root of the manual, without suffix
+        self.source = source  # path in the repository; links are relative to it
         self.lines = lines
 
     @property
@@ -22,7 +22,7 @@ class Page:
 
 
 def headings(lines):
-    """(number of line, level, title) of all headings outside of fenced blocks."""
+    """Yields (number of line, level, title) of all headings outside of fenced blocks."""
     fence = None
     for k, line in enumerate(lines):
         mark = re.match(r"(```+|~~~+)", line)
@@ -39,8 +39,8 @@ def promoted(lines, by):
 
 
 def split(path, folder):
-    """Pages of a document: one for each second-level heading, or one for each part of a section that is long. What
-    stands before the first of them, a list of contents, is left out: the manual makes its own."""
+    """Yields the pages of a document: one for each second-level heading, or one for each part of a long section. The
+    text before the first of them is left out. It is a list of contents, and the manual makes its own."""
     lines = open(path, encoding="utf-8").read().split("\n")
     marks = [(k, level, title) for k, level, title in headings(lines) if level in (2, 3)] + [(len(lines), 2, "")]
     sections = [mark for mark in marks if mark[1] == 2]
@@ -55,7 +55,7 @@ def split(path, folder):
 
 
 def coloured(lines):
-    """Indented blocks of a document as fenced ones that name their language, where it is seen at once."""
+    """Returns indented blocks of a document as fenced blocks with their language, if it is recognised."""
     text = "\n".join(lines)
 
     def fenced(match):
@@ -75,7 +75,7 @@ def coloured(lines):
 
 
 class Links:
-    """Where a link of a source leads in the manual."""
+    """Finds the target of a link of a source in the manual."""
 
     def __init__(self, pages):
         self.place = {}  # (path in the repository, anchor) -> (page, anchor)
@@ -87,14 +87,15 @@ class Links:
                 first = False
 
     def rewritten(self, page):
-        """The lines of a page with links to pages of the manual; to a file that is no page only the words are left."""
+        """Yields the lines of a page with links to pages of the manual. Of a link to a file without a page only the
+        words remain."""
 
         def to(name, anchor=""):
             return os.path.relpath(name, os.path.dirname(page.name)) + ".md" + ("#" + anchor if anchor else "")
 
         def link(match):
             words, target = match[1], match[2]
-            if target.startswith("page:"):  # one that is made
+            if target.startswith("page:"):  # a page that is made
                 return f"[{words}]({to(target[5:])})"
             if re.match(r"[a-z]+:", target):
                 return match[0]

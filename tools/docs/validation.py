@@ -1,4 +1,4 @@
-"""The page of validation: every figure that a run of the suites below has held to a source (tests/figures.h)."""
+"""The page of validation: every figure that a run of the suites below has compared with a source (tests/figures.h)."""
 import os
 import re
 import subprocess
@@ -19,14 +19,14 @@ def run_suites(make, file):
 
 
 def measured(make, file):
-    """Runs the suites, which append a line per figure to the file; what failed stops here. A file of all tests that
-    have just been run, which HIFDM_FIGURES names, spares that."""
+    """Runs the suites, which append one line per figure to the file. A failure stops here. HIFDM_FIGURES may name a
+    file of all tests that have just been run; then the suites do not run."""
     given = os.environ.get("HIFDM_FIGURES")
     if given:
         file = given
     else:
         run_suites(make, file)
-    rows = {}  # of several cases of one figure, the worst stays
+    rows = {}  # for a figure with several cases the worst one remains
     for line in open(file, encoding="utf-8"):
         r = line.rstrip("\n").split("\t")
         key = tuple(r[:4])
@@ -40,19 +40,19 @@ def natural(row):
 
 
 def said_on_top(path):
-    """The first comment, or docstring, of a test: its title, and its paragraphs in Markdown."""
+    """Returns the first comment or docstring of a test: its title, and its paragraphs in Markdown."""
     text = open(path, encoding="utf-8").read()
     if path.endswith(".py"):
         top = re.match(r'(?:#[^\n]*\n)*"""(?:\w+\.py [A-Z_ ]+: )?(.*?)"""', text, re.S)[1]
     else:
         top = re.sub(r"(?m)^ \* ?", "", re.match(r"/\* (.*?)\*/", text, re.S)[1])
-    paragraphs = [p.strip("\n") for p in top.split("\n\n") if not re.match(r"\s+\w+\.py ", p)]  # how it is called
+    paragraphs = [p.strip("\n") for p in top.split("\n\n") if not re.match(r"\s+\w+\.py ", p)]  # usages are left out
     title = re.split(r"[:.](?:\s|$)", " ".join(paragraphs[0].split()))[0]
     return title, [p if p.startswith("    ") else plain(" ".join(p.split())) for p in paragraphs]
 
 
 def plain(text):
-    """Text that means itself but for `names`."""
+    """Returns a text that is shown unchanged, except for `names`."""
     parts = re.split(r"(`[^`]*`)", text)
     return "".join(part if part.startswith("`") else escaped(part) for part in parts)
 
@@ -62,7 +62,7 @@ def shown(value):
 
 
 def table(rows):
-    """Figures side by side with those of the source; of many at once the largest difference alone."""
+    """Returns our figures beside those of the source; for many figures at once only the largest difference."""
     lines = []
     for kind, figure, ours, reference, tolerance in rows:
         difference = float(ours) - float(reference)

@@ -1,4 +1,5 @@
-"""Which suites execute which line: one build with gcov, in which each suite runs alone and leaves counts of its own."""
+"""Finds which suites execute which line. One build with gcov serves all suites; each suite runs alone and has its own
+counts."""
 
 import json
 import os
@@ -22,24 +23,25 @@ static inline _Noreturn void hf_coverage_exit(int status)
 #define _exit(status) hf_coverage_exit(status)
 #endif
 """
-SUITE_CPU_S = 1800  # no suite takes as long, with counters
+SUITE_CPU_S = 1800  # s; with counters all suites take less
 
 
 def suites_of(top):
-    """The names of all suites, in the order in which they run."""
+    """Returns the names of all suites, in the order in which they run."""
     text = (top / "tests/suites.list.h").read_text()
     rows = re.findall(r"^(?:SUITE|MIRROR)\((\w+), (\w+)(?:, (\w+))?\)", text, re.M)
     return ["/".join(part for part in row if part) for row in rows]
 
 
 def state_of_suite(top, suite):
-    """A checksum of the tests of a suite. What tests share changes too little of the map to measure it anew."""
+    """Returns a checksum of the tests of a suite. Shared files of the tests change too little of the map to measure it
+    again."""
     folder, _, name = suite.rpartition("/")
     return state_of([top / f"tests/{folder}/test_{name}.c"])
 
 
 class Coverage:
-    """The map of one state of the sources, below `work`; what was measured for the same state is used again."""
+    """The map of one state of the sources, below `work`. Measurements of the same state are used again."""
 
     def __init__(self, top, work, state, say):
         self.top, self.work, self.say = top, work / "coverage", say
@@ -54,7 +56,7 @@ class Coverage:
         self.known, self.measured = known, known["suites"]
 
     def measure(self, suites, jobs):
-        """Runs the suites that were not run yet since their tests changed, `jobs` at a time."""
+        """Runs the suites that have not run since their tests changed, `jobs` at a time."""
         states = {s: state_of_suite(self.top, s) for s in suites}
         missing = [s for s in suites if self.measured.get(s, {}).get("state") != states[s]]
         self._build(jobs)
@@ -79,7 +81,7 @@ class Coverage:
         if run(["make", "-s", f"-j{jobs}", *flags, *targets], self.tree, self.work / "build.log", 7200,
                {"BUILD": "build", "MAKEFLAGS": ""})[0] != "passed":
             raise SystemExit(f"the sources do not build with gcov: {self.work}/build.log")
-        self.objects = {}  # of each source
+        self.objects = {}  # objects of each source
         for d in (self.build / "src").rglob("*.d"):
             for name in d.read_text().replace("\\\n", " ").split(":")[1].split():
                 self.objects.setdefault(name, []).append(d.with_suffix(".o").relative_to(self.build))
@@ -100,9 +102,10 @@ class Coverage:
         return run([self.build / "tests/run_tests", f"={suite}"], self.tree, log, SUITE_CPU_S, environment)
 
     def suites_at(self, path, line):
-        """The suites that execute a line. A line of no code of its own, as the second line of a statement, belongs to
-        the code before it in its function. What is outside of functions, as tables, all suites may use that execute
-        anything of the file; of a header without code, anything of a file that includes it."""
+        """Returns the suites that execute a line. A line without code of its own, such as the second line of a
+        statement, belongs to the code before it in its function. Code outside of functions, such as a table, belongs to
+        all suites that execute anything of the file. For a header without code these are the suites that execute
+        anything of a file that includes it."""
         lines = self._lines_of(path)
         first = max((a for a, b in self.functions[path] if a <= line <= b), default=None)
         before = [n for n in lines if first is not None and first <= n <= line]
@@ -119,7 +122,7 @@ class Coverage:
         return self.lines[path]
 
     def _read(self, path):
-        """{line: [suite, ...]} of a source, from the counts of all objects that include it."""
+        """Returns {line: [suite, ...]} of a source, from the counts of all objects that include it."""
         cache = self.work / "lines" / f"{path.replace('/', '-')}.json"
         if cache.exists():
             table = json.loads(cache.read_text())

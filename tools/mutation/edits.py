@@ -1,11 +1,11 @@
-"""Edits of C sources at random lines: the same seed and the same sources give the same edits.
+"""Edits C sources at random lines. The same seed and the same sources give the same edits.
 
-Draw k is made by random numbers of its own, SHA-256 of "SEED:k:j" for j = 0, 1, ..., so it depends on nothing else. The
-first number chooses a line among all lines of code below src, each with the same probability; the next ones choose the
-kind of edit among those that are possible at this line, and the place. Lines of code are lines with at least one
-token. Not drawn are preprocessor directives other than the body of #define, macros that are one number (tuning
-constants: the range over which nothing changes stands beside them) and assertions, which only wrong calls reach.
-"""
+Each draw k has its own random numbers, SHA-256 of "SEED:k:j" for j = 0, 1, ..., so it depends on nothing else. The
+first number chooses a line among all lines of code below src, each with the same probability. The next ones choose the
+kind of edit among those that are possible at this line, and the place. Lines of code are lines with at least one token.
+Some code is not drawn: preprocessor directives other than the body of #define, macros that are one number, and
+assertions. Such macros are tuning constants, and the range over which nothing changes is given beside them. Only wrong
+calls reach assertions."""
 
 import hashlib
 import re
@@ -30,7 +30,7 @@ CLOSING = {"(": ")", "[": "]", "{": "}"}
 
 
 def tokens_of(text):
-    """The tokens outside of comments and of the directives that are not drawn."""
+    """Returns the tokens outside of comments and of the directives that are not drawn."""
     found, line, at = [], 1, 0
     skipped = [m.span() for m in DIRECTIVE.finditer(text)
                if m[1] != "define" or ONE_NUMBER.match(re.sub(r"/\*.*?(\*/|$)", "", m[0], flags=re.S))]
@@ -82,7 +82,7 @@ class Source:
         return inside
 
     def edits(self, line):
-        """All edits at a line, as a dictionary from kinds to lists; in the order of the text."""
+        """Returns all edits at a line, as a dictionary from kinds to lists, in the order of the text."""
         kinds = {}
         for i, t in enumerate(self.tokens):
             if t.line == line and i not in self.assertions:
@@ -108,7 +108,7 @@ class Source:
         t, before = self.tokens[i], self.tokens[i - 1] if i else None
         is_binary = before and (before.kind in ("word", "number", "text") and before.text not in KEYWORDS
                                 or before.text in (")", "]"))
-        is_binary = is_binary and (t.text not in "*&" or self.text[t.end].isspace())  # not that of a declaration
+        is_binary = is_binary and (t.text not in "*&" or self.text[t.end].isspace())  # no declaration
         if is_binary or t.text in ("++", "--"):
             for kind, table in (("bound", BOUNDS), ("relation", RELATIONS), ("arithmetic", ARITHMETIC),
                                 ("logic", LOGIC)):
@@ -144,7 +144,7 @@ class Source:
             yield "swapped arms", a, d, self.text[c:d] + self.text[b:c] + self.text[a:b]
 
     def _arguments(self, i):
-        """The spans of what stands between the commas of a bracket."""
+        """Returns the spans of what is between the commas of a bracket."""
         spans, first, j, end = [], i + 1, i + 1, self.partner[i]
         while j <= end:
             if j == end or self.tokens[j].text == ",":
@@ -176,7 +176,8 @@ class Source:
         return self.tokens[self.partner[i - 1] - 1].text in ("if", "for", "while")
 
     def _dropped(self, i):
-        """The statement that begins here; that of an `if` without an `else` is dropped with it."""
+        """Yields the edit that drops the statement that begins here. That of an `if` without an `else` is dropped with
+        it."""
         t = self.tokens[i]
         if t.text in ("for", "while", "switch", "do", "else", "case", "default", "typedef", "static"):
             return
@@ -196,14 +197,14 @@ class Source:
         yield "dropped statement", t.start, self.tokens[j].end, ";"
 
     def edited(self, edit):
-        """The text after the edit, which keeps the numbers of all lines."""
+        """Returns the text after the edit. All lines keep their numbers."""
         old = self.text[edit.start:edit.end]
         lost = old.count("\n") - edit.new.count("\n")
         return self.text[:edit.start] + edit.new + "\n" * lost + self.text[edit.end:]
 
 
 def type_of(text):
-    """The type of a parameter, '' for an expression: parameters of two types cannot be swapped."""
+    """Returns the type of a parameter, '' for an expression. Parameters of two types cannot be swapped."""
     found = re.fullmatch(r"((?:const |volatile |struct |unsigned )*\w+ \**(?:const )?)\w+((?:\[[^]]*\])*)", text)
     return found[1] + found[2] if found else ""
 
@@ -227,7 +228,7 @@ def float_of(text):
 
 
 class Draws:
-    """draws[k] is an Edit, or None when there is no edit at the line; line_of(k) is the line that was drawn."""
+    """draws[k] is an Edit, or None if there is no edit at the line. line_of(k) is the line that was drawn."""
 
     def __init__(self, top, seed):
         self.seed = seed

@@ -1,4 +1,4 @@
-"""Edits that are written down: tests/mutants.txt and tests/mutants_equivalent.txt."""
+"""Reads the lists of edits: tests/mutants.txt and tests/mutants_equivalent.txt."""
 
 import re
 import sys
@@ -10,7 +10,7 @@ class Mutant:
         self.old, self.new = [], []
 
     def edited(self, text):
-        """The text with the old lines, which stand there once, replaced; indentation does not count."""
+        """Returns the text with the old lines, which must occur once, replaced. Indentation does not count."""
         pattern = r"\n[ \t]*".join(re.escape(part) for part in self.old)
         found = re.findall(pattern, text)
         if len(found) != 1:
@@ -21,8 +21,8 @@ class Mutant:
 
 
 def read_mutants(top, name):
-    """The rows of a list: NAME FILE: WORD..., which may go on in indented lines, then '- old' and '+ new'. Each edit
-    must apply to the sources."""
+    """Returns the rows of a list: NAME FILE: WORD..., which may continue in indented lines, then '- old' and '+ new'.
+    Each edit must apply to the sources."""
     mutants = []
     for n, line in enumerate((top / name).read_text().splitlines(), 1):
         if not line.strip() or line.startswith("#"):

@@ -1,4 +1,5 @@
-"""A copy of the sources that is built once and then again and again with one edit, and suites that are run in it."""
+"""A copy of the sources that is built once, and then again with one edit after the other, and the suites that run in
+it."""
 
 import hashlib
 import os
@@ -9,19 +10,19 @@ import time
 from pathlib import Path
 
 TICKS = os.sysconf("SC_CLK_TCK")
-ASLEEP_S = 60  # a suite that uses no processor time for so long waits for what never comes
+ASLEEP_S = 60  # s; a suite that uses no processor time for so long hangs
 FLAGS = ["WERROR=-Werror=incompatible-pointer-types -Werror=int-conversion -Werror=implicit-function-declaration "
          "-Werror=return-type", "CFLAGS=-O1"]
-LIMITS = ["sh", "-c", 'ulimit -v 8000000; exec "$@"', "sh"]  # kB, for edits that never stop taking memory
+LIMITS = ["sh", "-c", 'ulimit -v 8000000; exec "$@"', "sh"]  # kB, for edits that take memory without end
 SANITIZED = ["SANITIZE=address,undefined", "WERROR=", "CFLAGS=-O1 -g"]
 SANITIZERS = {"ASAN_OPTIONS": "detect_leaks=1:detect_stack_use_after_return=1:quarantine_size_mb=16:"
-                              "hard_rss_limit_mb=6000"}  # their address space has no limit
-SLOWER = 6  # with sanitizers, at most
-running = set()  # sessions that were begun here
+                              "hard_rss_limit_mb=6000"}  # the address space of sanitizers has no limit
+SLOWER = 6  # factor of time with sanitizers, at most
+running = set()  # sessions that this process has begun
 
 
 def copy_sources(top, tree):
-    """Copies what git tracks or would track, so that uncommitted tests count, and nothing that was built."""
+    """Copies the files that git tracks or would track, so that uncommitted tests count, and nothing that was built."""
     files = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=top, check=True,
                            capture_output=True, text=True).stdout.split("\0")
     for name in filter(None, files):
@@ -38,7 +39,7 @@ def copy_sources(top, tree):
 
 
 def state_of(files):
-    """A checksum of the contents of files."""
+    """Returns a checksum of the contents of files."""
     digest = hashlib.sha256()
     for path in files:
         digest.update(str(path.name).encode() + b"\0" + path.read_bytes() + b"\0")
@@ -46,7 +47,8 @@ def state_of(files):
 
 
 def cpu_of_session(session):
-    """Processor seconds of the processes of a session and of their children that have ended; and whether all sleep."""
+    """Returns the processor seconds of the processes of a session and of their children that have ended, and whether
+    all processes sleep."""
     total, asleep = 0.0, True
     for entry in os.scandir("/proc"):
         if not entry.name.isdigit():
@@ -80,8 +82,8 @@ def end(session):
 def run(command, cwd, log, cpu_limit_s, environment=None, limits=LIMITS):
     """Runs a command in a session of its own. Returns ("passed", "failed", "too long" or "hangs", processor s).
 
-    The limit is processor time, not time by the clock, so it holds on a busy machine. A command whose processes all
-    sleep for a minute is one that hangs."""
+    The limit is processor time, not time by the clock, so it holds on a busy machine. A command hangs if all its
+    processes sleep for a minute."""
     with open(log, "ab") as file:
         child = subprocess.Popen([*limits, *command], cwd=cwd, stdin=subprocess.DEVNULL, stdout=file,
                                  stderr=subprocess.STDOUT, env={**os.environ, **(environment or {})},
@@ -112,7 +114,7 @@ def run(command, cwd, log, cpu_limit_s, environment=None, limits=LIMITS):
 
 
 class Tree:
-    """One worker's copy. `pristine` holds the objects without an edit, which come back after each edit."""
+    """The copy of one worker. `pristine` holds the objects without an edit, which are restored after each edit."""
 
     def __init__(self, top, path, sanitized=False):
         self.top, self.path, self.log = top, path, path.parent / f"{path.name}.log"
@@ -121,7 +123,7 @@ class Tree:
         self.is_prepared = False
 
     def copy(self, other):
-        """Begins with what was built there; times are kept, so nothing is compiled again."""
+        """Copies what was built in another tree. Times are kept, so nothing is compiled again."""
         shutil.rmtree(self.path, ignore_errors=True)
         shutil.copytree(other.path, self.path, symlinks=True)
 
@@ -134,7 +136,7 @@ class Tree:
         return ["build/hifdm", "build/tests/run_tests", "build/prefix/lib/pkgconfig/hifdm.pc"]
 
     def prepare(self, jobs=1):
-        """Copies, builds, and keeps the objects; what was built before for the same sources is used again."""
+        """Copies, builds, and keeps the objects. Objects that were built for the same sources are used again."""
         self.path.mkdir(parents=True, exist_ok=True)
         copy_sources(self.top, self.path)
         self.forget_links()
@@ -157,8 +159,8 @@ class Tree:
             (self.build / name).unlink(missing_ok=True)
 
     def apply(self, edit, text, log):
-        """Builds with the edit. Returns "built", "does not compile", "same code", or "does not install": the program,
-        which writes its own manual page then, is broken."""
+        """Builds with the edit. Returns "built", "does not compile", "same code", or "does not install". In the last
+        case the program is broken, because it cannot write its own manual page."""
         source = self.path / edit.path
         self.kept = (source, source.read_text(), source.stat().st_mtime_ns)
         source.write_text(text)
@@ -191,7 +193,8 @@ class Tree:
 
 
 def test_environment(sources, build, flags=""):
-    """As `make test` sets it; no limit by the clock, because ours is one of processor time."""
+    """Returns the environment that `make test` sets, without limits by the clock, because ours is one of processor
+    time."""
     return {"HIFDM": str(build / "hifdm"), "HIFDM_SOURCE_DIR": str(sources), "HIFDM_PREFIX": str(build / "prefix"),
             "HIFDM_CC": f"cc {flags}".strip(), "TMPDIR": str(build / "tmp"), "CK_DEFAULT_TIMEOUT": "3000",
             "CK_TIMEOUT_MULTIPLIER": "10", "PYTHON": os.environ.get("PYTHON", "/usr/bin/python3")}

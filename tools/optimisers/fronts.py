@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Our optimiser of fronts beside pagmo's NSGA-II: `make bench-fronts`.
+"""Compares our optimiser of fronts with NSGA-II of pagmo: `make bench-fronts`.
 
-Fronts of two and three objectives on several nets, the same evaluations and the same first 100 designs for both
-(fronts.cpp), pagmo's also with one variable per chain of boundary cables. The measure is the hypervolume of the last
-population: what it dominates below the corner of the worst that a front of any run's first population, or the best
-front that is known, has in each objective. The best front known is that of all individuals of all runs. Writes into
---out:
+The fronts have two and three objectives and belong to several nets. Both optimisers have the same evaluations and the
+same first 100 designs (fronts.cpp). That of pagmo also runs with one variable per chain of boundary cables. The measure
+is the hypervolume of the last population: what it dominates below a corner. In each objective, the corner is the worst
+value that a front has in the first population of any run, or in the best known front. The best known front is that of
+all individuals of all runs. The script writes into --out:
 
-fronts.csv  per problem, optimiser and 1000, 5000 and 20 000 evaluations: how much of the best front's hypervolume is
-            missing, in %: median, least and most over the seeds
+fronts.csv  per problem, optimiser and 1000, 5000 and 20 000 evaluations: how much of the hypervolume of the best front
+            is missing, in %: median, minimum and maximum over the seeds
 """
 
 import argparse
@@ -24,7 +24,7 @@ BUDGETS = 1000, 5000, 20000
 PSI, FACETS, PULL = "{goal: psi}", "{goal: facets}", "{goal: pull}"
 RATIO = "{goal: ratio, set: boundary}"
 TRIANGLES = ["pattern=triangle", "modules=[3, 3]", "focal_length_m=30", "optimize.range_N=2"]
-PROBLEMS = {  # name: case, objectives, changes of the case; the recipe was chosen by other nets than the last four
+PROBLEMS = {  # name: case, objectives, changes of the case; the settings were chosen on other nets than the last four
     "chen2022, psi and ratio": ("chen2022", (PSI, RATIO), []),
     "straight-edges, psi and ratio": ("straight-edges", (PSI, RATIO), []),
     "triangles 3x3, f = 30 m, psi and ratio": ("reflector", (PSI, RATIO), TRIANGLES),
@@ -47,17 +47,17 @@ def settings(objectives, changes):
 
 
 def front_of(points):
-    """The points that no other dominates, in the order of their objectives."""
+    """Returns the points that no other point dominates, in the order of their objectives."""
     points = np.unique(np.asarray(points), axis=0)
     kept = []
-    for point in points:  # one that dominates it comes before it
+    for point in points:  # a point that dominates this one comes before it
         if not kept or not np.any(np.all(np.asarray(kept) <= point, axis=1)):
             kept.append(point)
     return np.asarray(kept)
 
 
 def hypervolume(points, corner):
-    """Of two or three objectives, by slices across the last of three."""
+    """Returns the hypervolume of two or three objectives, by slices across the last of three."""
     points = np.asarray(points)
     points = points[np.all(points < corner, axis=1)]
     if len(points) == 0:
@@ -76,7 +76,7 @@ def hypervolume(points, corner):
 
 
 def measure(o, case, objectives, changes):
-    """{(optimiser, variables, evaluations, seed): points}; designs beyond their limits are none."""
+    """Returns {(optimiser, variables, evaluations, seed): points}. Designs beyond their limits are left out."""
     run = subprocess.run([o.driver, f"{o.cases}/{case}.yaml", str(o.seeds), ",".join(map(str, BUDGETS)),
                           *settings(objectives, changes)], check=True, text=True, stdout=subprocess.PIPE,
                          stderr=subprocess.DEVNULL)

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Our genetic algorithm beside other people's optimisers: `make bench-optimisers`.
+"""Compares our genetic algorithm with other optimisers: `make bench-optimisers`.
 
-Ten nets that played no part in choosing the recipe of optimize.variation (METHOD section 7), each with as many
-evaluations and the same first population for all (peers.cpp). Besides those of the driver there are scipy's
+Ten nets were not used in choosing the settings of optimize.variation (METHOD section 7). All optimisers have the same
+number of evaluations and the same first population (peers.cpp). In addition to those of the driver there are scipy's
 differential evolution, and Levenberg-Marquardt of `hifdm run`, whose evaluations are form-findings with derivatives.
-psi* of a net is the least that anybody found. Writes into --out:
+psi* of a net is the minimum that any optimiser has found. The script writes into --out:
 
-optimisers.csv       per net (psi_mm: of its base design) and optimiser: what psi is above psi*, in % of psi*, after
-                     1000, 5000 and 20 000 evaluations (median over seeds), and the expected running time (evaluations
-                     of all seeds until the target or their end, over the number of seeds that got there) to
+optimisers.csv       per net (psi_mm: of its initial design) and optimiser: psi above psi*, in % of psi*, after 1000,
+                     5000 and 20 000 evaluations (median over seeds), and the expected running time (evaluations of all
+                     seeds until the target or their end, over the number of seeds that reached it) to
                      psi* (1 + 10^-1 ... 10^-6)
 optimisers_lost.csv  each budget at which another population, or BOBYQA or Levenberg-Marquardt, is better than ours
 optimisers.svg       share of (net, seed, target) not reached yet, over evaluations
@@ -60,7 +60,7 @@ def settings(changes):
 
 
 class Record:
-    """The least psi so far at each of `counts`."""
+    """The minimum of psi so far at each of `counts`."""
 
     def __init__(self, counts):
         self.counts, self.used, self.best_m, self.at = counts, 0, math.inf, []
@@ -79,7 +79,8 @@ class Record:
 
 
 def ask(server, by_chain, n, values=b""):
-    """n > 0: costs of n designs; else the number of variables and the first designs of seed -n."""
+    """Asks the driver. n > 0: returns costs of n designs; else the number of variables and the first designs of seed
+    -n."""
     server.stdin.write(struct.pack("ii", by_chain, n) + values)
     server.stdin.flush()
     if n > 0:
@@ -104,7 +105,7 @@ def evolve_scipy(server, by_chain, seed, counts):
 
 
 def measure(o, changes):
-    """{(optimiser, variables): [psi of each seed at each of counts]}, and counts."""
+    """Returns {(optimiser, variables): [psi of each seed at each of counts]}, and counts."""
     run = subprocess.run([o.driver, o.case, str(o.seeds), str(BUDGETS[-1]), *settings(changes)], check=True, text=True,
                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     rows = list(csv.reader(run.stdout.splitlines()))
@@ -124,7 +125,8 @@ def measure(o, changes):
 
 
 def polish(o, changes, method, seed):
-    """psi and form-findings of Levenberg-Marquardt in `hifdm run` with this method, and psi of the first design."""
+    """Returns psi and form-findings of Levenberg-Marquardt in `hifdm run` with this method, and psi of the first
+    design."""
     with tempfile.TemporaryDirectory() as folder:
         run = subprocess.run([o.program, "run", o.case, "-o", folder + "/r.h5", "--json", *settings(changes), "--set",
                               "optimize.method=" + method, "--seed", str(seed)], text=True, stdout=subprocess.PIPE,
@@ -136,7 +138,8 @@ def polish(o, changes, method, seed):
 
 
 def running_time(rows, counts, limit_m):
-    """Evaluations of all seeds until the target, or until their end, over the number of those that reached it."""
+    """Returns the evaluations of all seeds until the target, or until their end, over the number of those that reached
+    it."""
     at = [next((count for count, value in zip(counts, row) if value <= limit_m), None) for row in rows]
     hits = sum(count is not None for count in at)
     return sum(counts[-1] if count is None else count for count in at) / hits if hits else math.inf

@@ -1,4 +1,5 @@
-"""Figures with linear axes and line drawings of nets, as SVG; nothing but numpy. A figure is panels over a caption."""
+"""Draws figures with linear axes and line drawings of nets as SVG, with numpy alone. A figure is panels over a
+caption."""
 import math
 import os
 import sys
@@ -14,7 +15,8 @@ WIDTH, LEFT, TOP, RIGHT, BOTTOM = 800, 74, 40, 20, 50
 
 
 def figure(path, panels, caption, source):
-    """panels: list of (body, height). The caption is wrapped below them; source stays in the file as a comment."""
+    """Writes a figure. panels: list of (body, height). The caption is wrapped below them. `source` goes into the file
+    as a comment."""
     body, y = [], 0
     for part, height in panels:
         body.append(f'<g transform="translate(0 {y})">' + "\n".join(part) + "</g>")
@@ -27,7 +29,7 @@ def figure(path, panels, caption, source):
 
 
 def legend(entries, x, y):
-    """entries: (name, colour, kind), kind one of line, dash, dot."""
+    """Draws a legend. entries: (name, colour, kind), where kind is line, dash or dot."""
     out = []
     for name, colour, kind in entries:
         if kind == "dot":
@@ -46,7 +48,7 @@ def path_of(points, colour, width=1.5, dashed=False):
 
 
 def ticks(low, high, n=6):
-    """Round numbers between low and high."""
+    """Returns round numbers between low and high."""
     step = 10.0 ** math.floor(math.log10((high - low) / n))
     step *= min((m for m in (1, 2, 5, 10) if (high - low) / (m * step) <= n), default=10)
     return [k * step for k in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
@@ -57,7 +59,8 @@ def number(value):
 
 
 class Plot:
-    """One panel with linear axes; log_y for the powers of ten. Curves, dots and marks are added, then it is drawn."""
+    """One panel with linear axes; with log_y the y axis has powers of ten. Curves, dots and marks are added before it
+    is drawn."""
 
     def __init__(self, x, y, x_range, y_range, height=330, title="", log_y=False):
         self.labels, self.title, self.height, self.log_y = (x, y), title, height, log_y
@@ -83,14 +86,14 @@ class Plot:
         return self
 
     def level(self, y, words, above=True):
-        """A number of the paper as a horizontal line."""
+        """Marks a number of the paper by a horizontal line."""
         a, b = self.at(self.x_range[0], y), self.at(self.x_range[1], y)
         self.body += [path_of([a, b], ORANGE, 1.3, True),
                       f'<g fill="{ORANGE}">{text(b[0] - 4, b[1] + (-5 if above else 14), words, 12, "end")}</g>']
         return self
 
     def upright(self, x, words):
-        """A number of the paper as a vertical line."""
+        """Marks a number of the paper by a vertical line."""
         a, b = self.at(x, self.floor()), (self.at(x, self.floor())[0], TOP)
         self.body += [path_of([a, b], ORANGE, 1.3, True),
                       f'<g fill="{ORANGE}">{text(b[0] + 5, b[1] + 14, words, 12, "start")}</g>']
@@ -100,7 +103,7 @@ class Plot:
         return 10.0 ** self.y_range[0] if self.log_y else self.y_range[0]
 
     def draw(self):
-        """(body, height), for figure()."""
+        """Returns (body, height) for figure()."""
         out, bottom = [], TOP + self.h
         for t in ticks(*self.x_range, 8):
             x = self.at(t, self.floor())[0]
@@ -119,7 +122,7 @@ class Plot:
 
 
 class View:
-    """Orthographic line drawing; heights are enlarged so that a shallow surface shows its curve."""
+    """Orthographic line drawing. Heights are enlarged so that a shallow surface shows its curvature."""
 
     def __init__(self, points, heights=1.0, azimuth=-58, elevation=32, height=430):
         a, e = math.radians(azimuth), math.radians(elevation)
@@ -153,7 +156,7 @@ class View:
         return self
 
     def bar(self, length_m, origin):
-        """Lengths along both axes of the plane, from a corner."""
+        """Draws lengths along both axes of the plane, from a corner."""
         out = []
         for way, word in ((np.array([1.0, 0, 0]), "x"), (np.array([0, 1.0, 0]), "y")):
             a, b = self.at([np.array(origin), np.array(origin) + length_m * way])

@@ -1,23 +1,25 @@
-"""One function per figure of Chen et al. 2022; each draws what the program found and marks what the paper prints."""
+"""One function per figure of Chen et al. 2022. Each draws the results of the program and marks the numbers of the
+paper."""
 import os
 
 import numpy as np
 
 from draw import BLACK, BLUE, CYAN, GREY, RED, Plot, View, figure
 
-HEIGHTS = 4  # of the reflector in the line drawings: it is 38 cm deep and 10 m wide
-MOVES = 20  # how much larger than they are Figs. 5, 12 and 18 show the deviations from theory
+HEIGHTS = 4  # factor of heights in the line drawings: the reflector is 38 cm deep and 10 m wide
+MOVES = 20  # factor of the deviations from the target positions in Figs. 5, 12 and 18
 
 
 def save(out, number, panels, caption, result):
-    """fig02.svg and so on, with the settings in the caption and the case in the file."""
+    """Writes fig02.svg and so on, with the settings in the caption and the case in the file."""
     source = "\n".join([result.setting] + [result.file[f"case/{name}"].asstr()[()] for name in ("text", "overrides")])
     figure(os.path.join(out, f"fig{number:02d}.svg"), [panel.draw() for panel in panels],
            f"As Fig. {number} of the paper. {caption[0].upper()}{caption[1:]}", source)
 
 
 def shapes(result, group, found_name, moves=MOVES):
-    """Theory and what was found, as Figs. 2, 5, 12 and 18 show them; deviations are drawn `moves` times too large."""
+    """Draws the target shape and the found shape, as Figs. 2, 5, 12 and 18 do. Deviations are drawn `moves` times too
+    large."""
     shown = result.theory_m + moves * (result[f"{group}/position_m"] - result.theory_m)
     view = View(np.vstack([result.theory_m, shown]), HEIGHTS)
     view.cables(result.theory_m, result.end, "theoretical shape", BLUE, 1.0)
@@ -71,13 +73,14 @@ def fig05(runs, out):
 
 
 def ties_and_ends(result):
-    """Edge ties, and inner cables that end at the edge."""
+    """Returns a mask of edge ties, and of inner cables that end at the edge."""
     role = result.role[result.end]
     return np.where(result.boundary, (role == "support").any(1), (role == "edge").any(1))
 
 
 def tension_plot(result, group, kind, paper_ratio, before=None):
-    """Tension of each cable, in the order of the scene; the paper's ratio as the level it would reach here."""
+    """Draws the tension of each cable in the order of the scene. A level shows the tension at which the paper's ratio
+    would be reached."""
     pick = result.inner if kind == "inner" else result.boundary
     tension, index = result[f"{group}/tension_N"][pick], np.arange(1, pick.sum() + 1)
     marked = ties_and_ends(result)[pick]
@@ -164,7 +167,7 @@ def fig11(runs, out):
 
 
 def last_fall(result):
-    """Generation, counted from 1, of the last fall of the best psi by more than the paper's tol."""
+    """Returns the generation, counted from 1, in which the best psi last fell by more than the paper's tol."""
     return int(np.flatnonzero(-np.diff(result["ga/best_psi_m"]) > 1e-6).max()) + 2
 
 

@@ -1,6 +1,6 @@
-"""Which pretension? Runs the studies below and writes a table of each and night.svg: over the pretension, psi of the
-design and psi that 95 % of the nets as built keep, for each error of the cut. Marked are its least value, and the
-pretension from which on 95 % of the nets have no slack cable."""
+"""Finds the best pretension. Runs the studies below and writes a table of each and night.svg. The figure shows, over
+the pretension, psi of the design and the psi that 95 % of the as-built nets do not exceed, for each error of the cut
+lengths. It marks the minimum, and the pretension from which 95 % of the nets have no slack cable."""
 import argparse
 import csv
 import math
@@ -25,14 +25,15 @@ def read(path):
 
 
 def best_of(rows):
-    """The row with the least psi of 95 % of the nets, unless it is at an end; and the first taut one."""
+    """Returns the row in which psi of 95 % of the nets is minimal, unless it is at an end, and the first taut row."""
     best = min(rows, key=lambda row: row[3])
     taut = next((row for row in rows if row[4] <= 0.05 * row[5]), None)
     return best if best not in (rows[0], rows[-1]) else None, taut
 
 
 def panel(title, rows):
-    """Taut pretensions are drawn whole, those at which more than 5 % of the nets have slack cables broken."""
+    """Draws taut pretensions as solid lines, and those at which more than 5 % of the nets have slack cables as dashed
+    lines."""
     sigmas, top = sorted({row[1] for row in rows}), 1e3 * max(row[3] for row in rows)
     first = [row for row in rows if row[1] == sigmas[0]]
     end = 10 * math.ceil(first[-1][0] / 10)

@@ -3,7 +3,7 @@
 search.md, the table of the nets that were tried.
 
     paper.py --program build/hifdm --work build/paper --out results/chen2022
-    paper.py --program build/hifdm --work build/paper --check results/chen2022     # the tables only, compared
+    paper.py --program build/hifdm --work build/paper --check results/chen2022     # compares the tables only
 """
 import argparse
 import os

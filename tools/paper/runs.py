@@ -1,4 +1,5 @@
-"""The runs of the program behind the figures of Chen et al. 2022: cases made from configs/, results read from HDF5."""
+"""Runs the program for the figures of Chen et al. 2022, with cases made from configs/, and reads the results from
+HDF5."""
 import os
 import shutil
 import subprocess
@@ -16,7 +17,7 @@ USUAL_E_PA = 130e9  # CFRP; that of the case is calibrated
 
 
 class Result:
-    """One result file; the shape of any stage by its group: form, ga/best, polish."""
+    """One result file. The group of a stage gives its shape: form, ga/best, polish."""
 
     def __init__(self, path, setting):
         self.file, self.setting = h5py.File(path, "r"), setting
@@ -37,7 +38,7 @@ class Result:
 
 
 def words(data):
-    """An HDF5 enumeration as an array of words."""
+    """Returns an HDF5 enumeration as an array of words."""
     names = {value: word for word, value in h5py.check_enum_dtype(data.dtype).items()}
     return np.array([names[value] for value in data[:]])
 
@@ -55,7 +56,7 @@ class Runs:
         return done.stdout
 
     def case(self, name, base, drop=(), **extra):
-        """A case file from a shipped one: without the sections of `drop`, with those of `extra`."""
+        """Writes a case file from a given one, without the sections of `drop` and with those of `extra`."""
         with open(base) as file:
             case = yaml.safe_load(file)
         case = {key: value for key, value in case.items() if key not in drop} | extra
@@ -65,7 +66,7 @@ class Runs:
         return path
 
     def sweep(self, study, merged, allowed=(0,)):
-        """A whole study, from the start; its table is written to `merged`. Failed points are exit status 3."""
+        """Runs a whole study from the start and writes its table to `merged`. Failed points give exit status 3."""
         start, folder = time.monotonic(), os.path.splitext(os.path.basename(study))[0] + ".d"
         shutil.rmtree(os.path.join(self.work, folder), ignore_errors=True)
         self.call("sweep", study, "--quiet", allowed=allowed)
@@ -73,7 +74,8 @@ class Runs:
         print(f"  {folder[:-2]:18} sweep {time.monotonic() - start:18.1f} s", flush=True)
 
     def run(self, name, case, setting, **overrides):
-        """setting: what distinguishes this run, for captions. Overrides: form__stop="residual" and the like."""
+        """Runs a case. setting: what distinguishes this run, for captions. Overrides: form__stop="residual" and the
+        like."""
         path, start = os.path.join(self.work, name + ".h5"), time.monotonic()
         keys = [word for key, value in overrides.items() for word in ("--set", f"{key.replace('__', '.')}={value}")]
         self.call("run", case, *keys, "-o", path, "--force", "--quiet")
@@ -88,7 +90,7 @@ EXACT = "at equilibrium (residual 1e-8 N)"
 
 
 def net_runs(runs):
-    """Everything on rigid supports: Figs. 2 to 14."""
+    """Runs everything on rigid supports: Figs. 2 to 14."""
     form = runs.case("form", NET, drop=["optimize"])
     return {"fdm": runs.run("fdm", form, "first step of the iterative FDM", form__method="fdm"),
             "hifdm": runs.run("hifdm", form, f"HIFDM, {EXACT}"),
@@ -110,7 +112,7 @@ class Sweep:
 
 
 def truss_runs(runs):
-    """On the truss, whose softness is calibrated: Figs. 15 to 22."""
+    """Runs everything on the truss, whose flexibility is calibrated: Figs. 15 to 22."""
     with open(NET) as file:
         optimize = yaml.safe_load(file)["optimize"]
     loop = {"coupling__scheme": "plain", "coupling__tof_m": 1e-3}

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""The search for the paper's net: patterns, modules, cells, supports, ties and spacings, each with the focal length and
-the scallop that give the paper's 6.6 mm and 4.8445. Every scene is solved by `hifdm sweep`.
+"""Searches for the net of the paper: patterns, modules, cells, supports, ties and spacings, each with the focal length
+and the scallop that give the paper's 6.6 mm and 4.8445. `hifdm sweep` solves every scene.
 
     search.py --program build/hifdm --work build/search      # writes the two studies configs/chen2022-search*.yaml
 
-1. a grid of focal lengths and scallops for every net; 2. Newton's method on both from each crossing of the grid; 3. the
-genetic algorithm, 50 x 400 within 1 N, on all nets that give both figures; 4. the best on a truss, whose stiffness is
-calibrated to 8.38 mm. `make paper` runs the two studies and writes results/chen2022/search.md.
-"""
+1. A grid of focal lengths and scallops for every net.
+2. Newton's method on both from each crossing of the grid.
+3. The genetic algorithm, 50 x 400 within 1 N, on all nets that give both figures.
+4. The best nets on a truss, whose stiffness is calibrated to 8.38 mm.
+
+`make paper` runs the two studies and writes results/chen2022/search.md."""
 import argparse
 import itertools
 import math
@@ -24,14 +26,14 @@ PSI_M, RATIO, GA_PSI_M, GA_RATIO, TRUSS_PSI_M = 6.6e-3, 4.8445, 4.3e-3, 5.608, 8
 FOCAL_M = [8, 11, 15, 21, 30, 45, 70, 110, 180, 300, 500]
 SCALLOP = [0.05, 0.07, 0.09, 0.115, 0.14, 0.16, 0.17, 0.175, 0.18, 0.19]
 KEPT = 24
-# Nets that another search found, at the paper's stop, with its focal lengths and scallops.
+# Nets that another search has found, at the paper's stop, with their focal lengths and scallops.
 KNOWN = [("triangle", "module_corners", [3, 3], [1, 2], "equal_arc", 0.1, 458.924208982529, 0.113401206248162),
          ("triangle", "ribs", [1, 2], [6, 2], "equal_arc", 0.15, 242.244555706559, 0.0758665519960033),
          ("alternating", "ribs", [1, 5], [6, 2], "equal_arc", 0.1, 154.09689404534, 0.0524282744218751)]
 
 
 def nets():
-    """pattern, supports, modules, cells, spacing, tie of every net of the search."""
+    """Yields pattern, supports, modules, cells, spacing and tie of every net of the search."""
     both = ("triangle", "alternating")
     for pattern, my, cells, tie in itertools.product(both, range(2, 6), ([2, 2], [4, 2], [6, 2]), (0.1, 0.15, 0.2)):
         yield pattern, "ribs", [1, my], cells, "equal_arc", tie
@@ -50,7 +52,7 @@ def scene(net, focal_length_m, scallop):
 
 
 def fits(net, scallop):
-    """The scallops stay well before the next nodes."""
+    """Returns true if the scallops end well before the next nodes."""
     pattern, _, modules, cells, _, _ = net
     size, share = (10, 12), 0.8
     spans, pitch = [size[k] / modules[k] for k in (0, 1)], [size[k] / modules[k] / cells[k] for k in (0, 1)]
@@ -67,7 +69,7 @@ def write_study(path, base, points, head=""):
 
 
 def solve(runs, name, base, points, **more):
-    """Columns of the merged table, a row per point; NaN where a point failed."""
+    """Returns the columns of the merged table, one row per point; NaN if a point failed."""
     study, merged = os.path.join(runs.work, name + ".yaml"), os.path.join(runs.work, name + ".h5")
     write_study(study, base, [point | more for point in points])
     runs.sweep(study, merged, allowed=(0, 3))
@@ -92,7 +94,8 @@ def errors(table):
 
 
 def crossings(net, psi, ratio):
-    """Where both errors change sign on the grid [focal length][scallop], or the ratio is least and nearly right."""
+    """Finds where both errors change sign on the grid [focal length][scallop], or where the ratio has a minimum and is
+    nearly right."""
     f, r = np.full(len(SCALLOP), np.nan), np.full(len(SCALLOP), np.nan)
     for k, j in itertools.product(range(len(SCALLOP)), reversed(range(len(FOCAL_M) - 1))):
         a, b = psi[j, k], psi[j + 1, k]
@@ -110,7 +113,8 @@ def crossings(net, psi, ratio):
 
 
 def newton(runs, found, rounds=4, step=1.004):
-    """Focal length and scallop of each net such that psi and the ratio are the paper's, where it gets there."""
+    """Returns focal length and scallop of each net for which psi and the ratio are those of the paper, if Newton's
+    method converges."""
     done = {}
     for k in range(rounds):
         found = list({str(scene(n, round(f, 2), round(s, 4))): (n, f, s) for n, f, s in found
@@ -133,13 +137,13 @@ def newton(runs, found, rounds=4, step=1.004):
 
 
 def misfit(psi_m, ratio, focal_length_m):
-    """What the calibration leaves: psi and ratio after the genetic algorithm, and the depth."""
+    """Returns the misfit that the calibration leaves: psi and ratio after the genetic algorithm, and the depth."""
     return (max(abs(psi_m - GA_PSI_M) / 0.1e-3 - 1, 0) + abs(math.log(ratio / GA_RATIO)) / 0.05
             + max(math.log(focal_length_m / 10), 0))
 
 
 def soften(runs, points, rounds=6, step=1.02):
-    """Young's modulus of the truss of each point such that psi is the paper's 8.38 mm; NaN where none is found."""
+    """Returns Young's modulus of the truss of each point for which psi is the paper's 8.38 mm; NaN if none is found."""
     E = np.full(len(points), 1e11)
     for k in range(rounds):
         table = solve(runs, f"truss{k}", TRUSS, [point | {"truss.E_Pa": f"{e * h:.4g}"}

@@ -1,4 +1,4 @@
-"""search.md: the nets that meet the paper's figures best, a row each, with the paper's figures on top."""
+"""Writes search.md: the nets that meet the figures of the paper best, one row each, below the figures of the paper."""
 import os
 
 import numpy as np
@@ -32,7 +32,7 @@ PAPER = ["**paper**", "-", "-", "-", "6.6", "1.0011", "4.8445", "4.3", "34.8", "
 
 
 def word(points, key, row):
-    """A cell of input/KEY as text."""
+    """Returns a cell of input/KEY as text."""
     value = points[f"input/{key}"][row]
     return value.decode() if isinstance(value, bytes) else value
 
@@ -45,7 +45,7 @@ def solved(runs, study):
 
 
 def collapsed(runs):
-    """How many of the nets the iterative FDM does not hold."""
+    """Returns how many of the nets collapse under the iterative force density method."""
     with open(SEARCH) as file:
         sweep = yaml.safe_load(file)["sweep"]
     sweep["form.method"] = ["iterative_fdm"] * len(sweep["optimize.seed"])

@@ -1,4 +1,4 @@
-"""table.md: the paper's numbers next to ours, and every input with where it comes from."""
+"""Writes table.md: the numbers of the paper beside ours, and every input with its origin."""
 import re
 
 import numpy as np
@@ -24,7 +24,7 @@ these say so. Every other figure of ours is a prediction. All inputs are listed 
 PAPER, ASSUMED, CHOICE = "printed in the paper", "assumed", "our choice"
 CALIBRATED = "**calibrated**"
 CYLINDER = "scene.parabolic_cylinder."
-UNUSED = ("title", "scene.EA_inner_N", "scene.EA_boundary_N")  # lengths to cut, which no figure shows
+UNUSED = ("title", "scene.EA_inner_N", "scene.EA_boundary_N")  # cutting lengths, which no figure shows
 ORIGIN = {
     CYLINDER + "aperture_m": (PAPER, "12 m x 10 m; that the directrix is the shorter side is assumed"),
     CYLINDER + "length_m": (PAPER, "see above"),
@@ -88,8 +88,8 @@ def flat(tree, prefix=""):
 
 
 def inputs(case_path, schema, origin, known=()):
-    """Every key of a case and every default that matters, with its origin; a key without one is an error. Those of
-    `known` are in another table."""
+    """Returns every key of a case and every default that matters, with its origin. A key without an origin is an error.
+    Keys of `known` are in another table."""
     with open(case_path) as file:
         values, defaults = dict(flat(yaml.safe_load(file))), dict(flat(yaml.safe_load(schema)))
     rows = ["| input | value | origin | |", "|---|---|---|---|"]
@@ -106,7 +106,7 @@ def ratio(result, group, kind):
 
 
 def change_N(result, group):
-    """Largest change of a boundary tension by the optimisation."""
+    """Returns the largest change of a boundary tension by the optimisation."""
     return np.abs(result[f"{group}/tension_N"] - result["form/tension_N"])[result.boundary].max()
 
 
@@ -153,7 +153,7 @@ def net_rows(runs):
 
 
 def depth_ratio(result):
-    """Focal length over aperture, from the theoretical places of the nodes."""
+    """Returns focal length over aperture, from the target positions of the nodes."""
     x, z = result.theory_m[:, 0], result.theory_m[:, 2]
     far = np.abs(x).argmax()
     return x[far] ** 2 / (4 * z[far]) / 10
@@ -218,12 +218,12 @@ def truss_notes(runs):
 
 
 def links(figures):
-    """"5, 9" with links to the files."""
+    """Returns a text such as "5, 9" with links to the files."""
     return re.sub(r"\d+", lambda number: f"[{number[0]}](fig{int(number[0]):02d}.svg)", figures)
 
 
 def write(runs, schema):
-    """The text of table.md."""
+    """Returns the text of table.md."""
     rows = ["| Fig. | quantity | paper | ours | | ours, at the paper's stop | LM |",
             "|---|---|---|---|---|---|---|"]
     rows += ["| " + " | ".join([links(fig)] + [cell or "-" for cell in row]) + " |"
@@ -238,10 +238,10 @@ NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
 def differences(kept, now):
-    """Lines that differ by more than two units in the last printed digit of a number: one is rounding, the other for
-    processors whose LAPACK orders its sums differently. On one machine the runs repeat to the bit; between four kernels
-    of OpenBLAS (OPENBLAS_CORETYPE) no printed digit changed. The boundary ratio of LM has a digit less: psi hardly
-    depends on it where LM stops."""
+    """Returns the lines that differ by more than two units in the last printed digit of a number. One unit allows for
+    rounding, the other for processors whose LAPACK orders its sums differently. On one machine the runs repeat to the
+    bit. Between four kernels of OpenBLAS (OPENBLAS_CORETYPE) no printed digit changed. The boundary ratio of
+    Levenberg-Marquardt has one digit less, because psi hardly depends on it where the method stops."""
     a, b = kept.splitlines(), now.splitlines()
     found = [f"{len(a)} lines are now {len(b)}"] if len(a) != len(b) else []
     for old, new in zip(a, b):

@@ -23,7 +23,7 @@ def fig15(runs, out):
 
 
 class Blocks:
-    """The blocks of the stiffness matrix that are not zero, as dots in a square."""
+    """Draws the nonzero blocks of the stiffness matrix as dots in a square."""
 
     def __init__(self, result, size=470):
         end, unit, n = result["truss/member/end"], result.words("truss/member/unit"), len(result["truss/node/id"])
@@ -54,7 +54,7 @@ def fig16(runs, out):
 
 
 class Flow:
-    """Boxes from top to bottom, with an arrow back from the last question."""
+    """Draws boxes from top to bottom, with an arrow back from the last question."""
 
     def __init__(self, boxes, again, back_to):
         self.body, self.height, middle, w, h, gap = [], 0, 300, 470, 44, 22
@@ -125,7 +125,7 @@ def fig20(runs, out):
 
 def fig21(runs, out):
     r = runs["truss"]
-    y = 1e3 * r["coupling/history/step_m"][1:]  # the first is the displacement itself
+    y = 1e3 * r["coupling/history/step_m"][1:]  # the first one is the displacement itself
     x = np.arange(1, len(y) + 1)
     plot = Plot("comparison of two displacements", "change of the displacements (mm)", (0, len(y) + 1), (0.1, 100),
                 log_y=True)

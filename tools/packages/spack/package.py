@@ -1,10 +1,9 @@
-# Recipe for Spack. Put the tarball of `make dist` into the current folder, this file into packages/hifdm of a
-# repository of your own (`spack repo create FOLDER`, `spack repo add FOLDER`), and:
+# Recipe for Spack. Put the tarball of `make dist` into the current folder, and this file into packages/hifdm of a
+# repository of your own (`spack repo create FOLDER`, `spack repo add FOLDER`). Then run:
 #
 #     spack install --no-checksum hifdm ^openblas
 #
-# NOT TRIED: there was no Spack where it was written. The build that it asks for is tried on Debian 12 by
-# `make dist-check`.
+# NOT TESTED: no Spack was available when this recipe was written. `make dist-check` tests the build on Debian 12.
 import os
 
 from spack.package import *
@@ -28,7 +27,7 @@ class Hifdm(MakefilePackage):
     depends_on("libyaml")
     depends_on("zlib-api")
 
-    # A compiler newer than ours may have warnings of its own.
+    # A newer compiler than ours may have other warnings.
     @property
     def build_targets(self):
         return ["WERROR=", f"PREFIX={self.prefix}", f"LAPACK={self.lapack}", "all"]
@@ -37,7 +36,7 @@ class Hifdm(MakefilePackage):
     def install_targets(self):
         return ["WERROR=", f"PREFIX={self.prefix}", f"LAPACK={self.lapack}", "install"]
 
-    # Paths of the libraries, one of which the program loads when it needs it.
+    # Paths of the libraries. The program loads one of them when it needs it.
     @property
     def lapack(self):
         return " ".join(self.spec["lapack"].libs)

@@ -1,4 +1,4 @@
-"""An optimiser of one's own that is asked for designs and told what became of them: a simple evolution strategy.
+"""An optimiser of your own with an ask/tell interface: a simple evolution strategy.
 
     python3 tools/python/examples/ask_tell.py configs/chen2022.yaml
 """
@@ -10,7 +10,7 @@ import hifdm
 
 
 class Evolution:
-    """The best quarter of a generation are the parents of the next one, whose spread follows theirs."""
+    """The best quarter of a generation are the parents of the next one. Its spread follows theirs."""
 
     def __init__(self, base, lower, upper, n=64, seed=1):
         self.random = np.random.default_rng(seed)
@@ -36,6 +36,6 @@ case = hifdm.open(sys.argv[1])
 optimiser = Evolution(case.base, case.lower, case.upper)
 for generation in range(30):
     designs = optimiser.ask()
-    out = case.evaluate(designs)  # on all cores
+    out = case.evaluate(designs)  # uses all cores
     optimiser.tell(designs, np.where(out.feasible, out.merit, np.inf))
 print(f"psi {case.form().psi_m * 1e3:.4f} -> {case.shape(optimiser.best_x).psi_m * 1e3:.4f} mm")

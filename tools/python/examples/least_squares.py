@@ -1,4 +1,4 @@
-"""scipy's least squares with exact derivatives: tensions of the least psi within the bounds of the case.
+"""Least squares of scipy with exact derivatives: finds the tensions with the minimum psi within the bounds of the case.
 
     python3 tools/python/examples/least_squares.py configs/chen2022.yaml
 """
@@ -16,7 +16,7 @@ case = hifdm.open(sys.argv[1])
 
 def psi_mm(design):
     out = case.evaluate(design[np.newaxis])
-    return out.psi_m * 1e3 if out.feasible[0] else [1e3]  # so bad that the step is taken back
+    return out.psi_m * 1e3 if out.feasible[0] else [1e3]  # so large that scipy takes the step back
 
 
 def slopes(design):

@@ -1,4 +1,4 @@
-"""A whole run with its progress, and its result read again.
+"""Runs a whole case with its progress, and reads its result.
 
     python3 tools/python/examples/run_and_read.py configs/straight-edges.yaml RESULT.h5 [PICTURE.png]
 """
@@ -10,7 +10,7 @@ import hifdm
 def progress(now):
     if now.phase == "optimize" and now.done % 10 == 0:
         print(f"generation {now.done} of {now.all}: psi {now.best_psi_m * 1e3:.4f} mm")
-    return now.elapsed_s < 60  # False stops the run; the same call goes on with it
+    return now.elapsed_s < 60  # False stops the run; a call without restart resumes it
 
 
 if len(sys.argv) < 3:

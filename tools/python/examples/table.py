@@ -1,4 +1,4 @@
-"""A table of designs with pandas: what do the best tenth have in common?
+"""A table of designs with pandas: finds what the best tenth of the designs have in common.
 
     python3 tools/python/examples/table.py configs/chen2022.yaml
 """

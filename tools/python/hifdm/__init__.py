@@ -6,7 +6,8 @@
     designs = case.base + np.random.default_rng(1).uniform(-1, 1, (1000, case.n_gene))
     out = case.evaluate(designs)  # out.psi_m, on all cores
 
-SI, and the unit is the last part of a name. Errors are HifdmError with the program's words and .status.
+All units are SI, and the unit is the last part of a name. Errors are HifdmError with the message of the program and
+.status.
 """
 
 from ._library import HifdmError, version as __version__

@@ -1,4 +1,5 @@
-"""The shared library and its flat interface (include/hifdm/flat.h), by ctypes, which releases the GIL in every call."""
+"""Loads the shared library and its flat interface (include/hifdm/flat.h) by ctypes, which releases the GIL in every
+call."""
 
 from __future__ import annotations
 
@@ -10,11 +11,11 @@ from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int, c_long, c_ubyt
 from pathlib import Path
 
 INTERFACE = 1  # HF_FLAT_INTERFACE that this package is written for
-_WAITING = {"OMP_WAIT_POLICY": "passive", "GOMP_SPINCOUNT": "2000"}  # those of hf_batch_wait_quietly
+_WAITING = {"OMP_WAIT_POLICY": "passive", "GOMP_SPINCOUNT": "2000"}  # as in hf_batch_wait_quietly
 Observer = CFUNCTYPE(c_int, c_void_p, c_int, c_long, c_long, c_long, c_double, c_double)
 
 _texts, _ints, _reals, _codes = POINTER(c_char_p), POINTER(c_int), POINTER(c_double), POINTER(c_ubyte)
-# Function: result, arguments; a test compares them with flat.h.
+# Functions: result, arguments. A test compares them with flat.h.
 PROTOTYPES = {
     "interface": (c_int, []),
     "version": (c_char_p, []),
@@ -41,13 +42,13 @@ PROTOTYPES = {
 
 
 class HifdmError(Exception):
-    """What the library refuses or cannot do, in the program's words.
+    """An error of the library, with the message of the program.
 
     status: its word, such as "bad_case", "not_converged" or "no_memory".
     """
 
     def __init__(self, status: str, message: str):
-        super().__init__(status, message)  # what pickle makes it of again, in another process
+        super().__init__(status, message)  # arguments from which pickle makes it again in another process
         self.status = status
 
     def __str__(self) -> str:
@@ -55,7 +56,8 @@ class HifdmError(Exception):
 
 
 def _candidates() -> list[str]:
-    """Where the library may be: as told, beside an installed package, built in the sources, where the loader looks."""
+    """Returns where the library may be: the given path, beside an installed package, in the built sources, or where the
+    loader looks."""
     told = os.environ.get("HIFDM_LIBRARY")
     if told:
         return [told]
@@ -69,10 +71,10 @@ def _candidates() -> list[str]:
 
 @contextlib.contextmanager
 def _quiet_waiting() -> Iterator[None]:
-    """Inside, OpenMP is told how its threads wait, as the program hifdm tells it, unless the user does.
+    """Sets how the threads of OpenMP wait, as the program hifdm does, unless the user sets it.
 
-    OpenMP reads the environment when it is loaded, which is with libhifdm, or earlier with another package. By default
-    waiting threads spin for a millisecond, and a call with small batches takes three times the processor time.
+    OpenMP reads the environment when it is loaded, with libhifdm or earlier with another package. By default waiting
+    threads spin for a millisecond. A call with small batches then takes three times the processor time.
     """
     ours = {} if {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"} & os.environ.keys() else _WAITING
     os.environ.update(ours)
@@ -104,7 +106,7 @@ def _load() -> ctypes.CDLL:
         function.restype, function.argtypes = result, arguments
     for name in ("hf_status_word", "hf_status_text"):
         getattr(found, name).restype = c_char_p
-    found.gsl_set_error_handler_off()  # GSL's default ends the process where it only reports no progress
+    found.gsl_set_error_handler_off()  # GSL's default handler would end the process where it only reports no progress
     return found
 
 
@@ -120,13 +122,13 @@ def status_word(status: int) -> str:
 
 
 def word(of: str, code: int) -> str:
-    """The word of a code in the list `of`."""
+    """Returns the word of a code in the list `of`."""
     found = status_word(code) if of == "status" else lib.hf_flat_word(of.encode(), code)
     return "unknown" if found is None else found if isinstance(found, str) else found.decode()
 
 
 def c_text(text: bytes) -> bytes:
-    """The text itself; ValueError when C would see only its beginning."""
+    """Returns the text itself. Raises ValueError if C would read only its beginning."""
     if b"\0" in text:
         raise ValueError(f"{text.decode(errors='replace')!r} has a NUL character")
     return text
@@ -140,14 +142,14 @@ _pointer_of = {np.dtype(np.float64): _reals, np.dtype(np.int32): _ints, np.dtype
 
 
 def pointer(array: np.ndarray | None):
-    """Into the memory of an array, which its user keeps alive."""
+    """Returns a pointer to the memory of an array, which the user keeps alive."""
     return None if array is None else array.ctypes.data_as(_pointer_of[array.dtype])
 
 
 def wanted(name: str, array, dtype, shape: tuple) -> np.ndarray:
-    """The array itself, without a copy, when it has this dtype and shape (None: any length) in C order.
+    """Returns the array itself, without a copy, if it has this dtype and shape (None: any length) in C order.
 
-    Else TypeError or ValueError that name the argument, what it is, and what is wanted.
+    Otherwise raises TypeError or ValueError with the argument, what it is, and what is required.
     """
     want = "(" + ", ".join("n" if n is None else str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
     want = f"a numpy array of dtype {np.dtype(dtype)} and shape {want} in C order"

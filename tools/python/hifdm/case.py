@@ -20,22 +20,22 @@ _process = {"pid": os.getpid(), "is_used": False}
 
 
 class HifdmWarning(UserWarning):
-    """What the program warns of, in its words."""
+    """A warning of the program, in its words."""
 
 
 class Progress(NamedTuple):
-    """How far a run is."""
+    """The progress of a run."""
 
     phase: str  # "form", "optimize", "polish", "tolerance"
-    done: int  # generations, steps of "polish", or samples of "tolerance"
-    all: int  # at most
-    evaluations: int  # of this run
-    best_psi_m: float  # NaN while nothing is feasible
-    elapsed_s: float  # in this phase
+    done: int  # number of generations, steps of "polish", or samples of "tolerance"
+    all: int  # maximum of `done`
+    evaluations: int  # in this run
+    best_psi_m: float  # NaN while no design is feasible
+    elapsed_s: float  # time in this phase
 
 
 class Shape:
-    """A shape found: arrays, and each figure as an attribute: psi_m, residual_N, status, ... (all in `figures`)."""
+    """A shape: arrays, and each figure as an attribute: psi_m, residual_N, status, ... (all in `figures`)."""
 
     position_m: np.ndarray  # [n_node, 3] m, supports included
     length_m: np.ndarray  # [n_cable] m
@@ -43,8 +43,8 @@ class Shape:
     q_N_per_m: np.ndarray  # [n_cable] N/m, force densities
 
     def __init__(self, figures: dict[str, Any], goals: dict[str, float], arrays: dict[str, np.ndarray]):
-        self.figures = figures  # by name
-        self.goals = goals  # the value of each goal, in its unit
+        self.figures = figures  # {name: figure}
+        self.goals = goals  # {name: value}, each in its unit
         self.__dict__.update(arrays)
 
     def __getattr__(self, name: str) -> Any:
@@ -57,15 +57,15 @@ class Shape:
 
 
 class Designs:
-    """Results of n designs; each column as an attribute or an item: psi_m, merit, iterations, goal_0_psi, ..."""
+    """Results of n designs. Each column is an attribute and an item: psi_m, merit, iterations, goal_0_psi, ..."""
 
     def __init__(self, names: list[str], n_goal: int, table: np.ndarray):
         self.names = names
         self.goal_names = names[len(names) - n_goal:]
-        self.table = table  # [n_figure, n]; status as a code
+        self.table = table  # [n_figure, n]; the status is a code
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """[n]; NaN where a design has no such figure."""
+        """Returns a column [n]; NaN if a design has no such figure."""
         if name not in self.names:
             raise KeyError(f"there is no {name}; there are {', '.join(self.names)}")
         column = self.table[self.names.index(name)]
@@ -83,30 +83,31 @@ class Designs:
 
     @property
     def feasible(self) -> np.ndarray:
-        """[n] bool"""
+        """[n] bool: true for feasible designs."""
         return self.table[0] == 0
 
     @property
     def best(self) -> int:
-        """Index of the feasible design with the least merit; -1 when none is feasible. Objectives have no merit."""
+        """Index of the feasible design with the minimum merit; -1 if none is feasible. Objectives of a front have no
+        merit."""
         merit = np.where(self.feasible, self["merit"], np.inf)
         return int(merit.argmin()) if self.feasible.any() else -1
 
     def columns(self) -> dict[str, np.ndarray]:
-        """By name, for pandas.DataFrame or numpy."""
+        """Returns the columns by name, for pandas.DataFrame or numpy."""
         return {name: self[name] for name in self.names}
 
 
 class Run(Mapping[str, Any]):
-    """A run that has ended: its figures, as `hifdm run --json` prints them, by keys as of a dict."""
+    """A finished run: its figures, as `hifdm run --json` prints them, by key as in a dict."""
 
     def __init__(self, figures: dict[str, Any]):
         self.figures = figures
         self.status: str = figures["status"]
-        self.file: str | None = figures.get("file")  # the result file, if one was written
+        self.file: str | None = figures.get("file")  # the result file, if the run has written one
 
     def __getitem__(self, stage: str) -> Any:
-        """Of a stage: "form", "optimize", "polish", "tolerance", ..."""
+        """Returns the figures of a stage: "form", "optimize", "polish", "tolerance", ..."""
         if stage not in self.figures:
             stages = [key for key, value in self.figures.items() if isinstance(value, (dict, list))]
             raise KeyError(f"this run has no '{stage}'; it has {', '.join(stages)}")
@@ -125,7 +126,7 @@ class Run(Mapping[str, Any]):
         return f"<hifdm.Run {self.status}: {', '.join(said + [self.file] if self.file else said)}>"
 
     def read(self):
-        """The result file (hifdm.read)."""
+        """Opens the result file (hifdm.read)."""
         from .results import read
 
         if self.file is None:
@@ -134,7 +135,7 @@ class Run(Mapping[str, Any]):
 
 
 def _user_level() -> int:
-    """How many calls above the caller the first is that is not of this package."""
+    """Returns how many calls above its caller the first call is that is not of this package."""
     level = 2
     while sys._getframe(level).f_globals.get("__name__", "").startswith("hifdm.") and level < 9:
         level += 1
@@ -157,7 +158,8 @@ def _plain(value: Any) -> Any:
 
 
 class _Lock:
-    """One thread at a time works with a case. Not the one that a run calls `progress` in: the run has the lock."""
+    """Lets one thread at a time work with a case. The run has the lock while it calls `progress`, so the thread of
+    `progress` cannot work with the case."""
 
     def __init__(self) -> None:
         self._lock = threading.RLock()
@@ -174,7 +176,8 @@ class _Lock:
 
 
 class Case:
-    """Made by hifdm.open or hifdm.net. One thread at a time works with a case; others wait. Indices count from 0."""
+    """A case of hifdm.open or hifdm.net. One thread at a time works with a case, and others wait. Indices count from
+    0."""
 
     def __init__(self, open_handle: Callable[[int], int], keep: Any = ()):
         self._lock = _Lock()
@@ -182,26 +185,26 @@ class Case:
         self._handle = lib.hf_flat_create()
         if not self._handle:
             raise MemoryError("no memory for a case")
-        self._keep = keep  # what the library borrows
+        self._keep = keep  # memory that the library borrows
         self._shape: Shape | None = None
         weakref.finalize(self, lib.hf_flat_free, self._handle)
         self._call(open_handle, self._handle)
         self.title = self._texts("title")[0]
         self.node_ids, self.cable_ids = self._texts("node_id"), self._texts("cable_id")
-        self.genes = self._texts("gene")  # the variables of a design: ids of cables, or of supports with .x, .y, .z
+        self.genes = self._texts("gene")  # design variables: ids of cables, or of supports with .x, .y, .z
         self.gene_units = self._texts("gene_unit")  # "N", "N/m" or "m"
-        self.gene_leader = self._numbers("gene_leader", dtype=np.int32)  # [n_gene] with which each is linked, or itself
+        self.gene_leader = self._numbers("gene_leader", dtype=np.int32)  # [n_gene] gene that it follows, or itself
         self.figure_names = self._texts("figure")  # columns of evaluate
         self.slope_names = self._texts("slope")  # figures of jacobian
         self.n_node, self.n_cable, self.n_gene = len(self.node_ids), len(self.cable_ids), len(self.genes)
-        self.theoretical_m = self._numbers("theoretical_m", 3)  # [n_node, 3] wanted; of supports the real ones
+        self.theoretical_m = self._numbers("theoretical_m", 3)  # [n_node, 3] target; of supports real ones
         self.role = self._words("role")  # [n_node] "support", "inner" or "edge"
         self.end = self._numbers("end", 2, dtype=np.int32)  # [n_cable, 2] indices of nodes
         self.group = self._words("group")  # [n_cable] "inner" or "boundary"
         self.law = self._words("law")  # [n_cable] "tension", "length", "force_density" or "elastic"
         self.target = self._numbers("target")  # [n_cable] N, m, N/m or m by law; NaN: the pretension of the case
         self.load_N = self._numbers("load_N", 3)  # [n_node, 3], or [0, 3] without loads
-        self.EA_N = self._numbers("EA_N")  # [n_cable], NaN where not given; [0] when no cable has one
+        self.EA_N = self._numbers("EA_N")  # [n_cable], NaN if not given; [0] if no cable has one
         start, cable = (self._numbers(name, dtype=np.int32) for name in ("set_start", "set_cable"))
         self.sets = {name: cable[start[k]:start[k + 1]] for k, name in enumerate(self._texts("set_name"))}
         self._goals = [name for name in self.figure_names if name.startswith("goal_")]
@@ -221,7 +224,7 @@ class Case:
         _process.update(pid=os.getpid())
 
     def _call(self, function: Callable, *arguments: Any) -> int:
-        """Call the library; its warnings become warnings, a status other than ok an exception."""
+        """Calls the library. Its warnings become warnings, and a status other than ok becomes an exception."""
         self._check_process()
         _process["is_used"] = True
         status = function(*arguments)
@@ -264,7 +267,7 @@ class Case:
         return Shape(figures, goals, {"position_m": self._numbers("position_m", 3), **arrays})
 
     def form(self) -> Shape:
-        """Find the shape of the case. HifdmError when there is none, or when the iteration does not converge."""
+        """Finds the shape of the case. Raises HifdmError if there is none, or if the iteration does not converge."""
         with self._lock:
             if self._shape is None:
                 self._call(lib.hf_flat_form, self._handle)
@@ -272,7 +275,7 @@ class Case:
             return self._shape
 
     def shape(self, design: np.ndarray) -> Shape:
-        """The shape of one design [n_gene], with its status as a figure: no error when it is infeasible."""
+        """Returns the shape of one design [n_gene]. Its status is a figure; an infeasible design raises no error."""
         design = wanted("design", design, float, (self.n_gene,))
         with self._lock:
             self.form()
@@ -286,28 +289,29 @@ class Case:
 
     @property
     def base(self) -> np.ndarray:
-        """[n_gene] the design of the shape found, in gene_units."""
+        """[n_gene] The initial design, that of the shape of form-finding, in gene_units."""
         return self._after_form("base")
 
     @property
     def lower(self) -> np.ndarray:
-        """[n_gene] lower bounds, by the section optimize; -inf where open."""
+        """[n_gene] Lower bounds of the section optimize; -inf where there is none."""
         return self._after_form("lower")
 
     @property
     def upper(self) -> np.ndarray:
-        """[n_gene] upper bounds."""
+        """[n_gene] Upper bounds."""
         return self._after_form("upper")
 
     @property
     def solver(self) -> str:
-        """By which designs are solved."""
+        """The solver of designs."""
         with self._lock:
             self.form()
             return self._texts("solver")[0]
 
     def evaluate(self, designs: np.ndarray) -> Designs:
-        """Evaluate designs [n, n_gene] in gene_units, on all cores: the results, bit by bit, of `hifdm evaluate`."""
+        """Evaluates designs [n, n_gene] in gene_units on all cores. The results are those of `hifdm evaluate`, bit by
+        bit."""
         designs = wanted("designs", designs, float, (None, self.n_gene))
         table = np.empty((len(self.figure_names), len(designs)))
         with self._lock:
@@ -316,9 +320,11 @@ class Case:
         return Designs(self.figure_names, len(self._goals), table)
 
     def jacobian(self, designs: np.ndarray) -> np.ndarray:
-        """Exact derivatives [n, n_slope, n_gene] of slope_names at designs [n, n_gene]; NaN of infeasible designs.
+        """Returns exact derivatives [n, n_slope, n_gene] of slope_names at designs [n, n_gene]; NaN for infeasible
+        designs.
 
-        psi_m, or with goals the value of each and the merit, in the unit of the figure per unit of the gene.
+        The figures are psi_m, or with goals the value of each goal and the merit. The unit is that of the figure per
+        unit of the gene.
         """
         designs = wanted("designs", designs, float, (None, self.n_gene))
         slopes = np.empty((len(designs), len(self.slope_names), self.n_gene))
@@ -331,12 +337,12 @@ class Case:
 
     def run(self, output: str | os.PathLike | None = None, *, restart: bool = False,
             progress: Callable[[Progress], Any] | None = None) -> Run:
-        """Run the case as `hifdm run` does: form-finding, optimisation, `cases` and `tolerance`.
+        """Runs the case as `hifdm run` does: form-finding, optimisation, `cases` and `tolerance`.
 
-        output: the result file; a later run into it goes on where this one was stopped, or with restart begins anew.
-        None: figures alone. progress: called as the run goes on, in a thread of its own; a run is stopped when it
-        returns False (the status is then "interrupted"), and when it raises, which is raised here, as is Ctrl-C. It
-        cannot call this case, which is busy.
+        output: the result file. A later run into it resumes a run that was stopped, or with `restart` begins again.
+        None: the run returns figures alone. progress: called during the run, in a thread of its own. If it returns
+        False, the run is stopped, and the status is "interrupted". If it raises an exception, the run is stopped, and
+        the exception is raised here, as is Ctrl-C. It cannot call this case, which is busy.
         """
         path = None if output is None else c_text(os.fsencode(output))
         raised: list[BaseException] = []
@@ -364,7 +370,7 @@ class Case:
                     worker.join(0.2 if raised else None)
                 except BaseException as fault:
                     raised.append(fault)
-                if raised:  # again and again: a run that only begins forgets what came before
+                if raised:  # repeatedly, because a run that has just begun forgets earlier requests
                     lib.hf_flat_stop(self._handle)
             if raised:
                 raise raised[0]
@@ -375,16 +381,17 @@ class Case:
 
 
 def open(path: str | os.PathLike, set: Overrides = (), *, threads: int = 0) -> Case:
-    """Open a case file under overrides, {"form.pretension_N": 12} or ["form.pretension_N=12"]; threads 0: all cores."""
+    """Opens a case file with overrides, {"form.pretension_N": 12} or ["form.pretension_N=12"]; threads = 0: all
+    cores."""
     lines = _lines(set)
     given = os.fsencode(path)
-    full = given if os.path.isabs(given) else os.path.join(os.getcwdb(), given)  # a run reads it again
+    full = given if os.path.isabs(given) else os.path.join(os.getcwdb(), given)  # a run reads the file again
     keep = (c_text(full), text_list(lines))
     return Case(lambda handle: lib.hf_flat_open(handle, keep[0], len(lines), keep[1], threads), keep)
 
 
 def _codes(name: str, words: str | Sequence[str] | np.ndarray, of: str, n: int) -> np.ndarray:
-    """Codes [n] of a word for all, of n words, or as given (uint8)."""
+    """Returns codes [n] for one word, for n words, or as given (uint8)."""
     if isinstance(words, np.ndarray) and words.dtype.kind != "U":
         return wanted(name, words, np.uint8, (n,))
     each = [words] * n if isinstance(words, str) else list(words)
@@ -405,7 +412,7 @@ def _ids(name: str, ids: Sequence[str] | None, n: int) -> ctypes.Array | None:
 
 
 def _members(name: str, cables: Sequence[int]) -> np.ndarray:
-    """Indices of the cables of a set, in order."""
+    """Returns the indices of the cables of a set, in ascending order."""
     given = np.asarray(cables)
     if given.ndim != 1 or given.size and given.dtype.kind not in "iu":
         raise TypeError(f"sets[{name!r}] has dtype {given.dtype} and {given.ndim} dimensions; "
@@ -417,7 +424,7 @@ def _members(name: str, cables: Sequence[int]) -> np.ndarray:
 
 
 def _sets(sets: Mapping[str, Sequence[int]]) -> tuple:
-    """Names in the order of strcmp, where each begins, indices."""
+    """Returns names in the order of strcmp, where each set begins, and indices."""
     names = sorted(sets, key=lambda name: name.encode())
     members = [_members(name, sets[name]) for name in names]
     start = np.cumsum([0] + [len(member) for member in members], dtype=np.int32)
@@ -430,14 +437,15 @@ def net(position_m: np.ndarray, end: np.ndarray, *, role: str | Sequence[str] | 
         node_ids: Sequence[str] | None = None, cable_ids: Sequence[str] | None = None,
         sets: Mapping[str, Sequence[int]] | None = None, set: Overrides = (), threads: int = 0,
         **sections: Any) -> Case:
-    """A case whose net is given by arrays, which are used without a copy and must not be changed while it lives.
+    """Makes a case from a net of arrays. They are used without a copy and must not be changed while the case exists.
 
-    position_m [n_node, 3] m, theoretical; of supports the real ones. end [n_cable, 2] int32, indices of nodes.
-    role, by node: "support", "inner" (counted by psi), "edge". group, by cable: "inner", "boundary" (the variables of
-    a design without optimize.variables). law, by cable: "tension", "length", "force_density", "elastic". Words are one
-    for all, a sequence, or codes [n] uint8. value [n_cable] N, m, N/m or m (unstressed) by law; NaN: the pretension of
-    the case, or the theoretical length. EA_N [n_cable] N, load_N [n_node, 3] N. sets: names of cables, by indices.
-    sections: those of a case file, as form={"pretension_N": 10}, optimize={"goals": [{"goal": "psi"}]}.
+    position_m [n_node, 3] m: target positions; of supports the real ones. end [n_cable, 2] int32: indices of nodes.
+    role, by node: "support", "inner" (counts in psi) or "edge". group, by cable: "inner" or "boundary" (the design
+    variables without optimize.variables). law, by cable: "tension", "length", "force_density" or "elastic". role, group
+    and law are one word for all, a sequence of words, or codes [n] uint8. value [n_cable]: N, m, N/m or m (unstressed)
+    by law; NaN: the pretension of the case, or the length between target positions. EA_N [n_cable] N, load_N [n_node,
+    3] N. sets: names of sets, with indices of their cables. sections: those of a case file, such as
+    form={"pretension_N": 10}, optimize={"goals": [{"goal": "psi"}]}.
     """
     wanted("position_m", position_m, float, (None, 3))
     wanted("end", end, np.int32, (None, 2))

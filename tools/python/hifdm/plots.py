@@ -1,4 +1,4 @@
-"""Pictures by matplotlib, which is imported only when one is drawn."""
+"""Pictures by matplotlib, which is imported only for drawing."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def plot_net(position_m: np.ndarray, end: np.ndarray, tension_N: np.ndarray | None = None, ax=None):
-    """Draw cables [n_cable, 2] between positions [n_node, 3] m, coloured by tension [n_cable] N; returns the axes."""
+    """Draws cables [n_cable, 2] between positions [n_node, 3] m, coloured by tension [n_cable] N. Returns the axes."""
     import matplotlib.pyplot as plt
     from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
@@ -24,7 +24,7 @@ def plot_net(position_m: np.ndarray, end: np.ndarray, tension_N: np.ndarray | No
 
 
 def plot_generations(best_psi_m: np.ndarray, ax=None):
-    """Draw the best psi [generation] m of a run; returns the axes."""
+    """Draws the best psi [generation] m of a run. Returns the axes."""
     import matplotlib.pyplot as plt
 
     ax = ax or plt.figure().add_subplot()

@@ -1,4 +1,4 @@
-"""Result files, thin over h5py: `h5` is the open file, and include/hifdm/store.h lists what is in it."""
+"""Result files as a thin layer over h5py. `h5` is the open file; include/hifdm/store.h lists its contents."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _STAGES = {"form": "form", "optimize": "ga/best", "polish": "polish"}
 
 
 class Result:
-    """An open result file. Read it when its run has ended, or in another process: HDF5 is not safe for threads."""
+    """An open result file. Open it when its run has ended, or in another process, because HDF5 is not thread-safe."""
 
     def __init__(self, path: str | os.PathLike):
-        import h5py  # only here: the rest of the package does without
+        import h5py  # imported here, because the rest of the package does not need it
 
         self.h5 = h5py.File(path, "r")
 
@@ -32,12 +32,12 @@ class Result:
 
     @property
     def stages(self) -> list[str]:
-        """Those with a shape: "form", "optimize", "polish", then the states of `cases`, "cases/cold"."""
+        """The stages with a shape: "form", "optimize", "polish", then the load cases of `cases` as "cases/cold"."""
         states = [f"cases/{name}" for name, item in self.h5.get("cases", {}).items() if "position_m" in item]
         return [name for name, group in _STAGES.items() if group in self.h5] + states
 
     def shape(self, stage: str = "form") -> Shape:
-        """Arrays of a stage as hifdm.Shape, and as figures the attributes of its group."""
+        """Returns the arrays of a stage as hifdm.Shape, with the attributes of its group as figures."""
         group = self.h5[_STAGES.get(stage, stage)]
         arrays = {name: group[name][:] for name in ("position_m", "length_m", "tension_N", "q_N_per_m")}
         figures = {name: word(name, int(value)) if name in _WORDS else value for name, value in group.attrs.items()}
@@ -45,20 +45,20 @@ class Result:
 
     @property
     def end(self) -> np.ndarray:
-        """[n_cable, 2] indices of nodes."""
+        """[n_cable, 2] Indices of nodes."""
         return self.h5["scene/cable/end"][:]
 
     @property
     def psi_m(self) -> np.ndarray:
-        """[generation, individual] m, of the genetic algorithm; NaN of infeasible ones."""
+        """[generation, individual] psi in the genetic algorithm, m; NaN for infeasible individuals."""
         return self.h5["ga/psi_m"][:]
 
     @property
     def best_psi_m(self) -> np.ndarray:
-        """[generation] m"""
+        """[generation] Best psi, m."""
         return self.h5["ga/best_psi_m"][:]
 
 
 def read(path: str | os.PathLike) -> Result:
-    """Open a result file."""
+    """Opens a result file."""
     return Result(path)
