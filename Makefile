@@ -1,9 +1,9 @@
-# hifdm: one library, one program. `make help` lists what can be made; everything made goes under build/.
+# hifdm: one library, one program. `make help` lists the targets; everything made goes under build/.
 #
 # The targets people type (all, run, test, ...) only install what is missing and then call this Makefile again for the
-# files themselves, so that packages exist before pkg-config is asked about them, and builds use every core.
+# files themselves. Packages therefore exist before pkg-config is asked about them, and builds use every core.
 
-# ---- The rooms: src/ROOM/*.c; what each may include stands in src/ARCHITECTURE.md (`make lint` checks it) ------------
+# ---- The rooms: src/ROOM/*.c; src/ARCHITECTURE.md has what each may include (`make lint` checks it) ------------------
 LIB_ROOMS := base linalg net truss surface solve search built case store run
 APP_ROOMS := out app
 
@@ -12,58 +12,59 @@ VERSION := 0.2.0
 SOVERSION := 0
 BUILD ?= build
 PREFIX ?= /usr/local
-# Where libraries go below PREFIX; Debian's is lib/x86_64-linux-gnu.
+# Folder of the libraries below PREFIX; Debian's is lib/x86_64-linux-gnu.
 LIB ?= lib
 DESTDIR ?=
 CFLAGS ?= -O3 -g
 LDFLAGS ?=
-# `make WERROR=` lets a compiler newer than ours, with warnings of its own, still build it.
+# With `make WERROR=` a compiler newer than ours, which may have other warnings, can still build it.
 WERROR ?= -Werror
-# For instance address,undefined or thread; see asan and tsan below.
+# Sanitizers, such as address,undefined or thread; see asan and tsan below.
 SANITIZE ?=
-# Names or paths under which LAPACK is looked for when the program first needs it; the first that loads is used.
+# Names or paths under which the program looks for LAPACK when it first needs it. It uses the first one that loads.
 LAPACK ?= liblapack.so.3 libopenblas.so.0
-# For tests in Python. Debian's own, because that is the one its packages (h5py, yaml) are for.
+# For tests in Python: Debian's own Python, because its packages (h5py, yaml) are for this one.
 PYTHON ?= /usr/bin/python3
 CASE ?= configs/chen2022.yaml
 RESULT ?= results/$(basename $(notdir $(CASE))).h5
 TSAN_CASE ?= $(CASE)
 TSAN_ARGS ?= --set optimize.generations=5
-# Only the suites whose ROOM/NAME contains one of these words: `make test SUITE="unit verify/band"`.
+# Runs only the suites whose ROOM/NAME contains one of these words: `make test SUITE="unit verify/band"`.
 SUITE ?=
-# Calls that tests/support.c counts and can make fail; each needs a __wrap_ function there.
+# Calls that tests/support.c counts and can make fail. Each needs a __wrap_ function there.
 TEST_WRAP := malloc calloc realloc aligned_alloc strdup strndup
 TEST_WRAP_EXTRA ?=
-# The same in tests/calls.c.
+# Calls that tests/calls.c can make fail.
 TEST_WRAP += open close write writev pwrite read pread fsync fdatasync rename link unlink ftruncate lseek flock fcntl \
              fstat stat access H5Fcreate H5Fopen H5Dcreate2 H5Dopen2 H5Dset_extent H5Dwrite H5Dread H5Awrite H5Aread
-# Arrays of arenas have guards: tests/guards.c.
+# tests/guards.c puts guards behind the arrays of arenas.
 TEST_WRAP += hf_arena_take hf_arena_allocate hf_arena_free
-# The same in tests/unit/base/test_file_out.c.
+# A call that tests/unit/base/test_file_out.c replaces.
 TEST_WRAP += geteuid
 
 # ---- Flags -----------------------------------------------------------------------------------------------------------
-# No -ffast-math, and multiply-adds are fused only where fma() says so: our code gives the same bits on every machine
-# (LAPACK and GSL may not). One set of position-independent objects serves both libraries; -fno-semantic-interposition
-# lets them be inlined as if they were not. The shared library exports what the public headers declare.
+# There is no -ffast-math, and multiply-adds are fused only by fma(). Our code therefore gives the same bits on every
+# machine (LAPACK and GSL may not). One set of position-independent objects serves both libraries;
+# -fno-semantic-interposition lets them be inlined like others. The shared library exports what the public headers
+# declare.
 LANGUAGE := -std=c11 -D_POSIX_C_SOURCE=200809L -D_XOPEN_SOURCE=700 -fopenmp
 CODEGEN := -fno-math-errno -ffp-contract=off -fPIC -fno-semantic-interposition -fvisibility=hidden
 # psabi: functions that take vectors are inlined.
 WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wno-psabi $(WERROR)
-# Of src: every command must run on a stack of 128 kB (tests/cli/test_stack.c). Sanitizers make frames larger.
+# Only for src: every command must run on a stack of 128 kB (tests/cli/test_stack.c). Sanitizers make frames larger.
 FRAME := $(if $(SANITIZE),,-Wframe-larger-than=16384)
 SANITIZER := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 
-# pkg-config is asked once, when a recipe first needs it: $(eval) replaces the question by its answer.
+# pkg-config is asked once, when a recipe first needs it. $(eval) replaces the question by its answer.
 PKG = $(eval PKG := $(or $(shell pkg-config --cflags --libs gsl hdf5 zlib yaml-0.1),$(PKG_MISSING)))$(PKG)
 PKG_MISSING = $(error A library or pkg-config itself is missing, see above: run `make setup`)
 CHECK = $(eval CHECK := $(or $(shell pkg-config --cflags --libs check),$(error run `make test`)))$(CHECK)
-# -isystem: our warnings are about our code, not about the headers of HDF5.
+# -isystem: our warnings are for our code, not for the headers of HDF5.
 PKG_CFLAGS = $(patsubst -I%,-isystem %,$(filter -I% -D%,$(PKG)))
 # -ldl: before glibc 2.34 dlopen was not in libc.
 PKG_LIBS = $(filter-out -I% -D%,$(PKG)) -ldl -lm
 
-# A peer of the benchmark, where its header is.
+# A peer of the benchmark, if its header is installed.
 CHOLMOD = $(eval CHOLMOD := $(shell $(CC) -E -include suitesparse/cholmod.h -x c /dev/null >/dev/null 2>&1 && \
   echo -DHF_BENCH_CHOLMOD -lcholmod))$(CHOLMOD)
 
@@ -71,8 +72,8 @@ COMPILE = $(CC) $(CFLAGS) $(LANGUAGE) $(CODEGEN) $(SANITIZER) $(WARNINGS) $(if $
   -Iinclude -Isrc $(PKG_CFLAGS)
 LINK = $(CC) $(CFLAGS) -fopenmp $(SANITIZER) $(LDFLAGS)
 
-# Build information, compiled into store/store.c alone because it is what stamps a result file.
-# `make dist` leaves the commit in .describe.
+# Build information. Only store/store.c is compiled with it, because it writes it into result files. `make dist` leaves
+# the commit in .describe.
 GIT_DESCRIBE = $(shell test -e .git && git describe --always --dirty --tags 2>/dev/null || \
   cat .describe 2>/dev/null || echo unknown)
 COMPILER = $(shell $(CC) --version | head -n 1)
@@ -82,7 +83,7 @@ BUILD_INFO = $(eval BUILD_INFO := -DHF_VERSION=$(call c_string,$(VERSION)) \
   -DHF_BUILD_FLAGS=$(call c_string,$(CFLAGS) $(LANGUAGE) $(CODEGEN) $(SANITIZER)))$(BUILD_INFO)
 
 # ---- Files -----------------------------------------------------------------------------------------------------------
-# Kernels are compiled once per instruction set; the program chooses when it runs.
+# Kernels are compiled once per instruction set. The program chooses one when it runs.
 ISAS := portable avx2 avx512
 KERNELS := $(wildcard src/*/*_kernel.c)
 sources = $(sort $(foreach room,$(1),$(wildcard src/$(room)/*.c)))
@@ -102,7 +103,7 @@ SONAME := libhifdm.so.$(SOVERSION)
 RUNNER := $(BUILD)/tests/run_tests
 PAPER_OUT ?= results/chen2022
 INSTALLED := $(BUILD)/prefix/lib/pkgconfig/hifdm.pc
-# The folder below a prefix in which PYTHON looks for packages.
+# The folder below a prefix where PYTHON looks for packages.
 PYTHON_PLACE = $(eval PYTHON_PLACE := $(shell $(PYTHON) -c 'import sys, sysconfig; print("lib/python%d.%d/%s-packages" \
   % (*sys.version_info[:2], "dist" if "deb_system" in sysconfig.get_scheme_names() else "site"))'))$(PYTHON_PLACE)
 PYTHON_DIR ?= $(PREFIX)/$(PYTHON_PLACE)
@@ -118,22 +119,22 @@ FUZZERS := $(patsubst tests/fuzz/%.c,$(BUILD)/%,$(sort $(wildcard tests/fuzz/fuz
 FUZZ_OBJ := $(FUZZERS:$(BUILD)/%=$(BUILD)/tests/fuzz/%.o) $(BUILD)/tests/fuzz/fuzz.o
 FUZZ_WRAP := hf_config_load hf_scene_parabolic_cylinder hf_scene_paraboloid hf_truss_generate \
              hf_truss_ring_generate hf_text_uint64 hf_study_make_points
-# The run is benchmarked with a clock around these calls: tools/bench/stages.c.
+# The benchmark of a run measures the time of these calls: tools/bench/stages.c.
 BENCH_WRAP := hf_config_load hf_config_scene hf_model_build hf_symmetry_apply hf_workspace_create hf_evaluate_form \
               hf_batch_create hf_batch_share hf_optimiser_create hf_batch_run hf_batch_next hf_batch_run_one \
               hf_optimiser_tell hf_polish_run hf_store_create hf_store_form hf_store_generation \
               hf_store_publish hf_store_best hf_store_complete hf_store_settle
 
-# ---- How things are said and called ----------------------------------------------------------------------------------
-# Short lines, nothing when all is up to date; V=1 shows the full commands.
+# ---- Output of make, and how it calls itself -------------------------------------------------------------------------
+# Lines are short, and there are none if all is up to date. V=1 shows the full commands.
 V ?=
 Q := $(if $(V),,@)
 say = @$(if $(V),:,printf '  %-5s %s\n') '$(1)' '$(2)'
 MAKEFLAGS += -r --no-print-directory
-# All cores, unless the caller of make said how many.
+# All cores, unless the caller of make has set the number of jobs.
 SUB = +$(Q)$(MAKE) $(if $(V),,-s) $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,-j$(shell nproc))
 quote = '$(subst ','\'',$(1))'
-# Rewrites the target only when the text differs, so that what depends on it is rebuilt only then.
+# Writes the target only if the text differs, so that targets that depend on it are rebuilt only then.
 stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || printf '%s\n' $(call quote,$(1)) >$@
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
@@ -143,7 +144,7 @@ FRONT := all compile-all run test stress test-under-load mutants browser paper p
 FRONT += python-install mutants-random attack abi bench-instructions bits transcripts deb-check release-check
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
-# `make run test` must not build twice at the same time in the same place.
+# `make run test` must not build twice at the same time in the same folder.
 ifneq ($(filter $(FRONT) setup,$(MAKECMDGOALS)),)
 .NOTPARALLEL:
 endif
@@ -151,14 +152,14 @@ endif
 all: ## the program and both libraries, under build/ (or BUILD=...)
 	$(SUB) $(PROGRAM) $(STATIC) $(SHARED)
 
-# To see another compiler's warnings: `make compile-all BUILD=build/clang CC=clang`.
+# Shows the warnings of another compiler: `make compile-all BUILD=build/clang CC=clang`.
 compile-all: ## everything, the tests too, without running anything
 	$(SUB) $(PROGRAM) $(STATIC) $(SHARED) $(RUNNER) $(BENCH)
 
 setup: ## install the packages that are missing
 	$(Q)tools/setup.sh
 
-# What a program that is there was built from is there, too.
+# If the program exists, the packages that it was built from exist, too.
 run: ## set up, build, and run CASE (configs/chen2022.yaml) into results/
 	$(Q)test -x $(PROGRAM) || tools/setup.sh
 	$(SUB) $(PROGRAM)
@@ -182,7 +183,7 @@ bits: ## write the checksums of results that the suite cli/bits compares with: t
 transcripts: ## write what the program says now into the files that the suite cli/transcripts compares with
 	+$(Q)HIFDM_TRANSCRIPTS=write $(MAKE) test SUITE=cli/transcripts
 
-# FUZZ_SEED=... does the same again; `python3 tests/fuzz/fuzz_results.py --only N` one of them.
+# FUZZ_SEED=... repeats a run; `python3 tests/fuzz/fuzz_results.py --only N` repeats one of its files.
 FUZZ_N ?= 5000
 FUZZ_SEED ?= $(shell date +%s)
 fuzz-results: ## FUZZ_N damaged result files against every command that reads one, with sanitizers
@@ -190,21 +191,21 @@ fuzz-results: ## FUZZ_N damaged result files against every command that reads on
 	$(SUB) BUILD=build/asan SANITIZE=address,undefined CFLAGS='-O2 -g' WERROR= build/asan/hifdm
 	$(PYTHON) tests/fuzz/fuzz_results.py --program build/asan/hifdm --n $(FUZZ_N) --seed $(FUZZ_SEED)
 
-# Twenty times as many nets as `make test` tries, ten times as many kills.
+# Tries twenty times as many nets as `make test`, and ten times as many kills.
 stress: ## the numerical-stability suite and the killed runs at full length
 	+$(Q)HIFDM_STRESS=1 CK_DEFAULT_TIMEOUT=1800 $(MAKE) test SUITE="stress cli/resume"
 
-# RUNS=20 times; CLONE=yes: and once in a fresh clone; SUITE=... as for test.
+# RUNS=20 is the number of runs. CLONE=yes adds one in a fresh clone. SUITE=... is as for test.
 test-under-load: ## the tests again and again beside a busy loop on every core
 	+$(Q)RUNS=$(RUNS) CLONE=$(CLONE) SUITE=$(call quote,$(SUITE)) BUILD=$(BUILD) tools/test_under_load.sh
 
-# Hours: MUTANTS="WORD..." picks some. The list is tests/mutants.txt.
+# Takes hours. MUTANTS="WORD..." selects some. tests/mutants.txt has the list.
 mutants: ## one fault in the sources at a time: which ones do the tests miss?
 	$(Q)tools/setup.sh --test
 	+$(Q)BUILD=$(BUILD) $(PYTHON) tools/mutants.py $(MUTANTS)
 
-# SEED=... is another hexadecimal number than the first eight digits of the commit, N=... another number of edits;
-# MUTANTS_ARGS="--suite unit --enough 0.7": only such suites, and exit status 0 from such a part on.
+# SEED=... is a hexadecimal number, by default the first eight digits of the commit; N=... is the number of edits.
+# MUTANTS_ARGS="--suite unit --enough 0.7" runs only such suites, and gives exit status 0 from this share on.
 SEED ?= $(shell git rev-parse --short=8 HEAD 2>/dev/null | cut -c1-8)
 N ?= 200
 MUTANTS_ARGS ?=
@@ -240,14 +241,14 @@ paper-search: ## search for the paper's net anew (some minutes): writes configs/
 	$(SUB) $(PROGRAM)
 	$(PYTHON) tools/paper/search.py --program $(PROGRAM) --work $(BUILD)/paper-search
 
-# LITERAL_ROUNDS=... interleaved runs of each.
+# LITERAL_ROUNDS=... is the number of interleaved runs of each.
 LITERAL_ROUNDS ?= 7
 literal: setup ## the paper's literal evaluation of an individual beside the default: psi and time on CASE
 	$(SUB) $(PROGRAM)
 	$(PYTHON) tools/literal.py --program $(PROGRAM) --case $(CASE) --work $(BUILD)/literal --rounds $(LITERAL_ROUNDS)
 
-# Peers that cannot be installed are left out of the tables. BENCH_OUT=... writes elsewhere; in it, each processor has a
-# folder.
+# Peers that cannot be installed are left out of the tables. BENCH_OUT=... writes to another folder, in which each
+# processor has a folder.
 bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/PROCESSOR (4 minutes)
 	$(Q)tools/setup.sh --bench || tools/setup.sh
 	$(SUB) $(PROGRAM) $(SHARED) $(BENCH)
@@ -257,7 +258,7 @@ bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in res
 	HIFDM_LIBRARY=$(abspath $(SHARED)) PYTHONPATH=tools/python PYTHONDONTWRITEBYTECODE=1 \
 	    $(PYTHON) tools/bench/python_batch.py --program $(PROGRAM) --work $(BUILD)/bench
 
-# COMMIT=... is another one than 2161b94, OPENBLAS=.../libblas.so.3 the BLAS for both, CASES="FILE..." more nets.
+# COMMIT=... is another commit than 2161b94, OPENBLAS=.../libblas.so.3 is the BLAS for both, CASES="FILE..." adds nets.
 COMMIT ?= 2161b94
 bench-before: ## form-finding now against an old commit's, side by side: before.csv in results/bench/PROCESSOR
 	$(Q)tools/setup.sh --bench || tools/setup.sh
@@ -265,7 +266,7 @@ bench-before: ## form-finding now against an old commit's, side by side: before.
 	$(Q)OPENBLAS=$(OPENBLAS) $(PYTHON) tools/bench/before.py --library $(STATIC) --driver $(BENCH) \
 	    --work $(BUILD)/before --out $(BENCH_OUT) --commit $(COMMIT) --rounds $(BENCH_ROUNDS) $(CASES)
 
-# RECORD=yes writes the table, for the commit that all others are compared with. CASES="reflector 41x49" picks some.
+# RECORD=yes writes the table, for the commit that all others are compared with. CASES="reflector 41x49" selects cases.
 RECORD ?=
 bench-instructions: ## instructions of three cases on one thread against results/bench/instructions.csv (2 minutes)
 	$(Q)tools/setup.sh --instructions
@@ -273,7 +274,7 @@ bench-instructions: ## instructions of three cases on one thread against results
 	$(PYTHON) tools/bench/instructions.py --program $(PROGRAM) --work $(BUILD)/instructions \
 	    --table results/bench/instructions.csv $(if $(RECORD),--record) $(CASES)
 
-# The same on every processor, but for what pagmo's mathematics makes of last bits.
+# Results are the same on every processor, except for what pagmo's mathematics makes of last bits.
 OPTIMISER_SEEDS ?= 7
 bench-optimisers: ## our genetic algorithm beside pagmo's, nlopt's, scipy's: results/bench/optimisers.* (10 minutes)
 	$(Q)tools/setup.sh --optimisers
@@ -297,7 +298,7 @@ pretension-night: ## which pretension, with errors of the cut: results/pretensio
 	$(SUB) $(PROGRAM)
 	$(PYTHON) tools/paper/night.py --program $(PROGRAM) --work $(BUILD)/night --out results/pretension
 
-# From the headers' own comments: tools/api/filter.awk. A warning of doxygen's is an error.
+# Pages are made from the comments of the headers: tools/api/filter.awk. A warning of doxygen is an error.
 api: ## the library's interface as pages, from the public headers: build/api/index.html
 	$(Q)tools/setup.sh --api
 	@rm -rf $(BUILD)/api && mkdir -p $(BUILD)/api
@@ -318,16 +319,17 @@ docs-browser: docs ## every page of the manual in headless Chromium, on a phone;
 lint: ## check the rules of the house
 	+$(Q)tools/lint.sh
 
-# -O2: the longest tests take a third of what they take with -O1; no -Werror since instrumented code draws false
-# warnings. Instrumented code is slow, hence the multiplier, which the tests' own time limits follow too.
-# A small quarantine: the runner forks each test, and what it holds on to is copied and searched for leaks each time.
+# With -O2 the longest tests take a third of the time with -O1. There is no -Werror, because instrumented code causes
+# false warnings. Instrumented code is slow, so there is a multiplier; the time limits of the tests follow it, too. The
+# quarantine is small. The runner forks each test, and what the quarantine holds is copied and searched for leaks each
+# time.
 asan: ## the tests under the address and undefined-behaviour sanitizers, in build/asan
 	+$(Q)ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1:quarantine_size_mb=16 \
 	    UBSAN_OPTIONS=print_stacktrace=1 \
 	    CK_TIMEOUT_MULTIPLIER=5 $(MAKE) BUILD=build/asan SANITIZE=address,undefined CFLAGS='-O2 -g' WERROR= test
 
-# clang, because gcc's OpenMP runtime hides its barriers from the thread sanitizer; OpenBLAS and HDF5 are not
-# instrumented, so what goes on inside them is ignored. setarch -R: clang 14 cannot place its shadow memory on kernels
+# clang is used because gcc's OpenMP runtime hides its barriers from the thread sanitizer. OpenBLAS and HDF5 are not
+# instrumented, so what happens inside them is ignored. setarch -R: clang 14 cannot place its shadow memory on kernels
 # that randomise addresses widely.
 tsan: ## a short run of TSAN_CASE, and some points of a sweep, under the thread sanitizer, in build/tsan
 	$(Q)tools/setup.sh --ci
@@ -338,8 +340,8 @@ tsan: ## a short run of TSAN_CASE, and some points of a sweep, under the thread 
 TSAN_RUN = OMP_NUM_THREADS=4 TSAN_OPTIONS=ignore_noninstrumented_modules=1 $(NO_ASLR) build/tsan/hifdm
 NO_ASLR = $(shell setarch -R true 2>/dev/null && echo setarch -R)
 
-# FUZZ="case net" picks harnesses; FUZZ_SECONDS=60 each, or FUZZ_RUNS=1000000; FUZZ_SEED=...; FUZZ_JOBS=2 at a time.
-# -O1: twice the inputs per second of -O0, and no longer to compile.
+# FUZZ="case net" selects harnesses. Each runs for FUZZ_SECONDS=60, or for FUZZ_RUNS=1000000, with FUZZ_SEED=... and
+# FUZZ_JOBS=2 at a time. With -O1 there are twice as many inputs per second as with -O0, and compiling takes no longer.
 fuzz: ## inputs that a fuzzer makes up, under the sanitizers, in build/fuzz; findings and how to repeat them are printed
 	$(Q)tools/setup.sh --ci
 	$(SUB) BUILD=build/fuzz CC=clang SANITIZE=address,undefined,fuzzer-no-link CFLAGS='-O1 -g' WERROR= fuzzers
@@ -365,7 +367,7 @@ $(Q)install -d $(1)/hifdm
 $(Q)install -m 644 $(PYTHON_FILES) $(1)/hifdm/
 endef
 
-# The same PREFIX, LIB, PYTHON_DIR and DESTDIR as when it was installed; folders that others use, too, stay.
+# Needs the same PREFIX, LIB, PYTHON_DIR and DESTDIR as the installation. Folders that others use, too, remain.
 uninstall: ## remove what `make install` or `make python-install` of this version has put there
 	$(call no_blanks,PREFIX DESTDIR LIB PYTHON_DIR)
 	$(Q)rm -f $(addprefix $(DESTDIR)$(PREFIX)/,bin/hifdm share/man/man1/hifdm.1 \
@@ -376,7 +378,7 @@ uninstall: ## remove what `make install` or `make python-install` of this versio
 	$(Q)rm -rf $(DESTDIR)$(PYTHON_DIR)/hifdm/__pycache__
 	$(Q)rmdir $(DESTDIR)$(PYTHON_DIR)/hifdm 2>/dev/null || true
 
-# What goes where: $(call install_files,FOLDER,PREFIX that the files will be found under).
+# The files and their folders: $(call install_files,FOLDER,PREFIX under which the files will be found).
 define install_files
 $(Q)install -d $(addprefix $(1)/,bin $(LIB)/pkgconfig include/hifdm share/man/man1 share/bash-completion/completions)
 $(Q)install -m 755 $(PROGRAM) $(1)/bin/
@@ -393,7 +395,7 @@ $(Q)$(PROGRAM) help --man >$(1)/share/man/man1/hifdm.1
 $(Q)$(PROGRAM) help --bash >$(1)/share/bash-completion/completions/hifdm
 endef
 
-# What is committed, and the commit. Of the same commit the same bytes.
+# The tarball has what is committed, and the commit. The same commit gives the same bytes.
 DIST := $(BUILD)/dist/hifdm-$(VERSION)
 dist: ## a tarball of what is committed, which builds and is tested without git: build/dist/hifdm-VERSION.tar.gz
 	$(Q)test -e .git || { echo 'make dist: takes what is committed, so it needs a checkout of git' >&2; exit 1; }
@@ -405,20 +407,21 @@ dist: ## a tarball of what is committed, which builds and is tested without git:
 	@rm $(DIST).tar
 	@echo $(DIST).tar.gz
 
-# It needs nothing but what `make` needs. SUITE="...": also runs those tests there.
+# Needs nothing but what `make` needs. SUITE="..." also runs those tests there.
 dist-check: dist ## build that tarball without git, install and uninstall it, run a case with it
 	+$(Q)SUITE=$(call quote,$(SUITE)) tools/packages/check_dist.sh $(DIST).tar.gz $(BUILD)/dist/check
 
-# tools/debian has the recipe, the tarball the sources. Checked by lintian where that is installed.
+# tools/debian has the recipe, and the tarball the sources. If lintian is installed, it checks the packages.
 deb: dist ## Debian packages of that tarball: program, library, headers, Python: build/deb/*.deb
 	$(Q)tools/setup.sh --deb
 	+$(Q)tools/packages/make_deb.sh $(DIST).tar.gz $(BUILD)/deb
 
-# RELEASE=trixie is another Debian than the one that runs here, WITH="libopenblas0-pthread" another BLAS in the root.
+# RELEASE=trixie is another Debian than that of this machine. WITH="libopenblas0-pthread" installs another BLAS in the
+# root.
 deb-check: deb ## install those packages in a bare root of debootstrap, run them there, and purge them (needs root)
 	$(Q)RELEASE=$(RELEASE) WITH=$(call quote,$(WITH)) tools/packages/check_deb.sh $(BUILD)/deb $(BUILD)/deb-root
 
-# STEPS="fuzz stress" picks some. The log is committed for the release it was run on.
+# STEPS="fuzz stress" selects steps. The log is committed for the release that it was run on.
 release-check: ## what takes longer than .ci/run (hours): results/release/VERSION.log
 	$(Q)tools/release_check.sh $(STEPS)
 
@@ -433,7 +436,7 @@ clean: ## remove build/
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
 
-# The value of a variable, for tools/lint.sh.
+# Prints the value of a variable, for tools/lint.sh.
 print-%:
 	@echo '$($*)'
 
@@ -453,11 +456,11 @@ $(BUILD)/src/store/store.o: $(BUILD)/info
 $(BUILD)/src/store/store.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/tests/%.o: EXTRA = -Itests $(filter-out -l%,$(CHECK))
 
-# Elsewhere than on x86-64 all are the portable one, and the program chooses that.
+# On other machines than x86-64 all of them are the portable one, and the program chooses that.
 X86 = $(eval X86 := $(filter x86_64-%,$(shell $(CC) -dumpmachine)))$(X86)
 FLAGS_avx2 = $(if $(X86),-mavx2 -mfma)
 FLAGS_avx512 = $(if $(X86),-mavx512f -mprefer-vector-width=512)
-# The stack on which gcc 12's address sanitizer finds uses after a return is not aligned for 512-bit vectors.
+# gcc 12's address sanitizer has its own stack to find uses after a return. It is not aligned for 512-bit vectors.
 FLAGS_kernel := $(if $(findstring address,$(SANITIZE)),$(if $(findstring clang,$(CC)),,--param=asan-stack=0))
 define kernel_rule
 $(BUILD)/src/%_kernel_$(1).o: EXTRA = -DHF_ISA=$(1) $$(FLAGS_$(1)) $$(FLAGS_kernel)
@@ -473,7 +476,7 @@ $(BUILD)/%.o: %.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(Q)$(COMPILE) $(EXTRA) -MMD -MP -c $< -o $@
 
-# Bytes rather than a string: a string literal of this length is beyond what C promises.
+# The page is an array of bytes and not a string, because C does not guarantee string literals of this length.
 $(BUILD)/report_page_text.c: $(PAGE) Makefile
 	$(call say,PAGE,$@)
 	@mkdir -p $(@D)
@@ -489,7 +492,7 @@ $(BUILD)/report_page_text.o: $(BUILD)/report_page_text.c $(BUILD)/flags
 	$(call say,CC,$<)
 	$(Q)$(COMPILE) -MMD -MP -c $< -o $@
 
-# The Makefile is a prerequisite of what is linked because it says what belongs to them.
+# The Makefile is a prerequisite of what is linked, because it lists the parts.
 $(STATIC): $(LIB_OBJ) Makefile
 	$(call say,AR,$@)
 	$(Q)rm -f $@ && $(AR) rcs $@ $(LIB_OBJ)
@@ -535,7 +538,7 @@ $(FUZZERS): $(BUILD)/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/fuzz/fuzz.o $(fil
 	$(call say,LD,$@)
 	$(Q)$(LINK) -fsanitize=fuzzer $(patsubst %,-Wl$(comma)--wrap=%,$(FUZZ_WRAP)) -o $@ $^ $(PKG_LIBS)
 
-# The targets to type make no files by themselves, and reading these takes a while.
+# The targets to type make no files by themselves, and reading these files takes a while.
 ifneq ($(filter-out $(FRONT) setup clean help print-%,$(MAKECMDGOALS)),)
 -include $(LIB_OBJ:.o=.d) $(APP_OBJ:.o=.d) $(TEST_OBJ:.o=.d) $(BENCH_OBJ:.o=.d) $(FUZZ_OBJ:.o=.d)
 endif

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Builds hifdm for aarch64 on Debian and runs its unit, property and verification tests, emulated; then compares results
-# with those of this machine: the same bits. Needs the packages gcc-aarch64-linux-gnu, libc6-dev-arm64-cross and
-# qemu-user-static (tools/setup.sh --release). The libraries are fetched into build/aarch64/root by an apt that has its
-# lists there, so nothing is installed and no architecture is added. SUITE="unit verify" picks suites.
+# Builds hifdm for aarch64 on Debian, runs its unit, property and verification tests in an emulator, and checks that
+# results have the same bits as those of this machine. Needs the packages gcc-aarch64-linux-gnu, libc6-dev-arm64-cross
+# and qemu-user-static (tools/setup.sh --release). An apt that has its lists in build/aarch64 fetches the libraries into
+# build/aarch64/root, so nothing is installed and no architecture is added. SUITE="unit verify" selects suites.
 set -eu
 cd "$(dirname "$0")/.."
 build=$(realpath -m "${BUILD:-build}")/aarch64 triplet=aarch64-linux-gnu
@@ -23,7 +23,7 @@ if [ ! -e "$root/done" ]; then
         { tail -n 20 "$build/apt/log" >&2; echo "apt fetches no packages for arm64" >&2; exit 2; }
     for package in "$build"/apt/cache/archives/*.deb; do dpkg -x "$package" "$root"; done
     find "$root" -type l -lname '/*' | while read -r link; do ln -snf "$root$(readlink "$link")" "$link"; done
-    ln -sf hdf5-serial.pc "$libraries/pkgconfig/hdf5.pc" # made by its package's installation
+    ln -sf hdf5-serial.pc "$libraries/pkgconfig/hdf5.pc" # the installation of its package would make it
     touch "$root/done"
 fi
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # blas.sh [--with "NAME..."] COMMAND...: runs a command under each of four builds of BLAS and LAPACK: reference, and
 # OpenBLAS pthread, serial and openmp. The packages of Debian are fetched into build/blas and unpacked there; nothing is
-# installed. The program finds them by LD_LIBRARY_PATH. Exit status 1 when the command fails under one of them.
+# installed. The program finds them by LD_LIBRARY_PATH. Exit status 1 if the command fails under one of them.
 #
 #     tools/blas.sh make test SUITE="unit property fault"
 #     tools/blas.sh --with "reference pthread" make deb
@@ -13,14 +13,14 @@ if [ "${1:-}" = --with ]; then names=$2; shift 2; fi
 there=$PWD/build/blas
 mkdir -p "$there"
 
-# Sets $folders to those with the libraries, fetching them first.
+# Sets $folders to the folders with the libraries, and fetches the libraries first.
 find_libraries() {
     local name=$1 packages=libopenblas0-$1 file
     [ "$name" != reference ] || packages="liblapack3 libblas3"
     if [ ! -e "$there/$name/done" ]; then
         rm -rf "${there:?}/$name"
         mkdir "$there/$name"
-        # apt-get warns of its sandbox, which cannot write here.
+        # apt-get warns about its sandbox, which cannot write here.
         # shellcheck disable=SC2086
         (cd "$there/$name" && apt-get download -qq $packages 2>log) || { cat "$there/$name/log" >&2; exit 1; }
         for file in "$there/$name"/*.deb; do dpkg -x "$file" "$there/$name"; done
@@ -30,7 +30,7 @@ find_libraries() {
         paste -sd:)
 }
 
-# Is it this LAPACK that the program loads?
+# Checks that the program loads this LAPACK.
 check() {
     local used
     [ -x build/hifdm ] || make -s build/hifdm

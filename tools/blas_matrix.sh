@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# blas_matrix.sh: builds, tests and packages the commit that is checked out in bare roots of Debian, one for each build
-# of BLAS and LAPACK, whose development package is installed there first: `tools/setup.sh`, `make`, `make test`,
-# `make deb`. Needs root, debootstrap and the network; writes to build/matrix. One line a root; exit status 0 when all
-# of them passed, 1 otherwise. BLAS="reference pthread serial openmp" picks some, SUITE="..." some tests,
-# RELEASE=bookworm and MIRROR=http://... another Debian, JOBS=... cores.
+# blas_matrix.sh: builds, tests and packages the current commit in bare roots of Debian, one for each build of BLAS and
+# LAPACK. The development package of the build is installed first; then run `tools/setup.sh`, `make`, `make test` and
+# `make deb`. Needs root, debootstrap and the network; writes to build/matrix. Prints one line per root. The exit status
+# is 0 if all of them passed, and 1 otherwise. BLAS="reference pthread serial openmp" selects builds, SUITE="..." tests,
+# RELEASE=bookworm and MIRROR=http://... another Debian, and JOBS=... the number of cores.
 set -eu
 cd "$(dirname "$0")/.."
 release=${RELEASE:-bookworm} mirror=${MIRROR:-http://deb.debian.org/debian} jobs=${JOBS:-$(nproc)}
@@ -36,7 +36,7 @@ inside() {
         HIFDM_TEST_JOBS="$jobs" chroot "$root" sh -ec "cd /hifdm && $*"
 }
 
-# The steps in one root; the last one that has begun is in $work/NAME.step.
+# Runs the steps in one root. $work/NAME.step holds the last step that has begun.
 try() {
     local name=$1 root=$work/$1
     step() { echo "$1" >"$work/$name.step"; echo "==> $name: $1"; }
@@ -64,7 +64,7 @@ try() {
 failed=""
 for name in ${BLAS:-reference pthread serial openmp}; do
     start=$SECONDS
-    set +e # with || behind it, a step that fails would not end it
+    set +e # with || after it, a step that fails would not end it
     (set -e; try "$name") >"$work/$name.log" 2>&1
     set -e
     leave

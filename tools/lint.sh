@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# The rules of the house that a program can check. Each finding is one line, file:line: text; exit status 1 if any.
+# Checks the rules of the house that a program can check. Each finding is one line, file:line: text. Exit status 1 if
+# there is any.
 set -eu
 export LC_ALL=C.UTF-8
 cd "$(dirname "$0")/.."
 
-# ---- The rules' own lists: change them here when the house changes ---------------------------------------------------
-# may call malloc and its kin: set-up, never the hot path
+# ---- Lists for the rules; change them here when the house changes ----------------------------------------------------
+# may call malloc and related functions: set-up, never the hot path
 heap_files="base/status base/arena base/text base/csv linalg/lapack net/scene net/generate_[a-z_]*
             net/cable_set net/scene_arrays net/facet_import case/config_states net/scene_import net/numbering net/model
             truss/truss truss/generate_[a-z_]* truss/truss_import truss/frame search/swarm_lane search/batch
@@ -14,21 +15,21 @@ heap_files="base/status base/arena base/text base/csv linalg/lapack net/scene ne
             store/store_look store/layout_truss store/layout_coupling store/layout_front store/ledger store/merge
             run/problem run/problem_parts run/run run/run_front run/take_point
             run/flat run/sweep app/options app/cmd_evaluate"
-# may print (csv, json, summary: to a stream they are given)
+# may print (csv, json, summary: to a given stream)
 print_files="base/csv base/json store/summary out/[a-z_]* app/cmd_[a-z_]* app/progress app/main"
 openmp_files="search/parallel linalg/lapack"         # may mention OpenMP
-# and dot-files
+# in addition to dot-files
 top_level="Makefile README.md CHANGELOG.md CITATION.cff LICENSE src include configs tests results tools"
-max_file=1000 max_function=80 long_function=60                        # lines; between the last two it is a warning
+max_file=1000 max_function=80 long_function=60                        # lines; between the last two lint only warns
 
 rooms="$(make -s print-LIB_ROOMS) $(make -s print-APP_ROOMS)"
-page=$(make -s print-PAGE)                           # parts of the page that `report` writes
+page=$(make -s print-PAGE)                           # parts of the page of `report`
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 findings=$work/findings
 report() { tee -a "$findings"; }
-# Tracked and new files alike, so that lint finds faults before they are committed; in a tarball, all files.
+# Lists tracked and new files, so that lint finds faults before they are committed; in a tarball, all files.
 files_under() {
     if [ -e .git ]; then
         git ls-files -co --exclude-standard -- "$@" | while read -r file; do [ ! -e "$file" ] || echo "$file"; done
@@ -37,14 +38,14 @@ files_under() {
     fi | sort
 }
 source_files=$(files_under src include | grep '\.[ch]$' || true)
-# Without files the tools below would wait for standard input.
+# Without files the tools below would read standard input.
 [ -n "$source_files" ] || { echo "lint: no sources found (does git ls-files work here?)" >&2; exit 1; }
 c_files=$(files_under src include tests | grep '\.[ch]$')
 text_files=$(files_under src include tests tools configs .ci .github Makefile README.md CHANGELOG.md CITATION.cff |
     grep -E '\.(c|h|sh|py|awk|ya?ml|md|cff|html|css|js|mjs)$|^\.ci/|^Makefile$')
 
-# ---- Rooms: what stands in src/, and what each room may include -------------------------------------------------
-# A module is src/ROOM/NAME.c with one header, src/ROOM/NAME.h or include/hifdm/NAME.h; X_part.c implements a part of X
+# ---- Rooms: what is in src/, and what each room may include ---------------------------------------------------------
+# A module is src/ROOM/NAME.c with one header, src/ROOM/NAME.h or include/hifdm/NAME.h. X_part.c implements a part of X
 # and may share its header.
 files_under src include | while read -r file; do
     name=$(basename "${file%.[ch]}")
@@ -71,7 +72,7 @@ files_under src include | while read -r file; do
     esac
 done | report
 
-# The may-use table is the one of src/ARCHITECTURE.md. hifdm.h includes everything, so it is for programs.
+# src/ARCHITECTURE.md has the table of what each room may use. hifdm.h includes everything, so it is for programs.
 for file in src/*/*.c; do echo "$(basename "${file%.c}") $(basename "$(dirname "$file")")"; done >"$work/room_of"
 awk -v rooms="$rooms" '
     FILENAME == "src/ARCHITECTURE.md" {
@@ -96,7 +97,7 @@ awk -v rooms="$rooms" '
     }' src/ARCHITECTURE.md "$work/room_of" $source_files | report
 
 # ---- Sizes -----------------------------------------------------------------------------------------------------------
-# A function is what stands between a { and a } in column 0; its lines are those in between.
+# A function is everything between a { and a } in column 0; its lines are those in between.
 awk -v max_file=$max_file -v max=$max_function -v long=$long_function '
     function end_file() {
         if (lines > max_file) print file ":" lines ": " lines " lines in a file, more than " max_file
@@ -116,7 +117,7 @@ grep -v ' warning: ' "$work/sizes" | report || true
 grep ' warning: ' "$work/sizes" || true
 
 # ---- Text ------------------------------------------------------------------------------------------------------------
-# search PATTERN MESSAGE FILE...; the brackets in the patterns below keep them from matching this file.
+# search PATTERN MESSAGE FILE... The brackets in the patterns below keep them from matching this file.
 search() {
     local pattern=$1 message=$2
     shift 2
@@ -128,7 +129,7 @@ search '^.{121}' 'more than 120 columns' $(echo "$text_files" | grep -v '\.md$')
 search '\b(TOD[O]|FIXM[E]|XX[X])\b' 'unfinished: say it in an issue' $text_files
 search '(^|[^[:alnum:]_.])/(wor[k]|hom[e]|roo[t]|User[s])/' 'path of one machine' $text_files
 
-# A section or equation of the method that a comment names must exist in src/METHOD.md: "METHOD section 7, M11".
+# A section or equation of the method in a comment must exist in src/METHOD.md: "METHOD section 7, M11".
 grep -HnoE 'METHOD(\.md)? section [0-9]+|METHOD[^:]*\bM[0-9]+\b' -- $c_files | while IFS= read -r found; do
     place=$(echo "$found" | cut -d: -f1,2) words=$(echo "$found" | cut -d: -f3-)
     for n in $(echo "$words" | grep -oE 'section [0-9]+' | cut -d' ' -f2); do
@@ -139,10 +140,10 @@ grep -HnoE 'METHOD(\.md)? section [0-9]+|METHOD[^:]*\bM[0-9]+\b' -- $c_files | w
     done
 done | report
 
-# What the documents name is there: hf_... and HF_... in a source, files such as search/batch.c, links to other files.
-# hf_module_verb, hf_noun and names with a part in capitals (hf_cmd_NAME) stand for many.
+# What the documents mention must exist: hf_... and HF_... in a source, files such as search/batch.c, targets of links.
+# hf_module_verb, hf_noun and names with a part in capitals (hf_cmd_NAME) stand for several names.
 documents="README.md src/ARCHITECTURE.md src/METHOD.md src/MANUAL.md .github/CONTRIBUTING.md"
-# The table of renames names what is no longer there, and what is to come.
+# The table of renames has names that no longer exist, and names to come.
 documents="$documents $(files_under src/manual | grep -vx src/manual/renames.md | tr '\n' ' ')"
 grep -ohE '\b(hf|HF)_[A-Za-z0-9_]+' $source_files | sort -u >"$work/names"
 grep -HnoE '\b(hf|HF)_[A-Za-z0-9_]+\b' -- $documents | grep -vE ':(hf_module_verb|hf_noun|hf_.*[A-Z].*)$' |
@@ -157,8 +158,8 @@ grep -HnoE '\]\([^)#:]+[)#]' -- $documents | sed -E 's/\]\(([^)#]+)[)#]$/\1/' | 
     [ -e "$(dirname "$file")/$name" ] || echo "$file:$line: a link to $name, which is not there"
 done | report
 
-# ---- Calls that belong to few modules --------------------------------------------------------------------------------
-# Looked for in the code without its comments and literals, laid out as file:line:code.
+# ---- Calls that only few modules may make ----------------------------------------------------------------------------
+# The search is in the code without its comments and literals, as lines file:line:code.
 awk -v sq="'" '
     FNR == 1 { comment = 0 }
     {
@@ -202,7 +203,7 @@ if [ -e .git ]; then
         sed 's/$/:1: not one of the rooms of the top level/' | report || true
 fi
 
-# ---- Commits: an imperative of at most 60 characters, since this is a rule -------------------------------------------
+# ---- Commits: an imperative of at most 60 characters, since this became a rule ---------------------------------------
 rule=2f01c563711a
 if [ -e .git ] && git cat-file -e $rule 2>/dev/null; then
     git log --no-merges --format='%h %s' $rule..HEAD | while read -r commit subject; do
@@ -215,7 +216,7 @@ if [ -e .git ] && git cat-file -e $rule 2>/dev/null; then
     done | report
 fi
 
-# ---- The version is the Makefile's; what else names it agrees --------------------------------------------------------
+# ---- All versions agree with that of the Makefile --------------------------------------------------------------------
 version=$(make -s print-VERSION)
 grep -qx "version: $version" CITATION.cff || echo "CITATION.cff:1: version is not the Makefile's, $version" | report
 recipes=$(cat tools/packages/conda/meta.yaml tools/packages/spack/package.py)
@@ -225,13 +226,13 @@ done
 [ "$(grep -m 1 '^## \[' CHANGELOG.md | cut -d'[' -f2 | cut -d']' -f1)" = "$version" ] ||
     echo "CHANGELOG.md:1: the first version is not the Makefile's, $version" | report
 
-# ---- Mutants: an edit that no longer applies would go unseen until the next hours of make mutants --------------------
+# ---- Mutants: edits that no longer apply, which `make mutants` would find only after hours ---------------------------
 "${PYTHON:-/usr/bin/python3}" tools/mutants.py --check 2>&1 | grep -vE '^[0-9]+ mutants$' | report || true
 
-# ---- Other programs, where installed ---------------------------------------------------------------------------------
+# ---- Other programs, if installed ------------------------------------------------------------------------------------
 skipped=""
 if command -v cppcheck >/dev/null; then
-    # missingIncludeSystem: system headers are not checked. normalCheckLevel...: a note, printed like a finding.
+    # missingIncludeSystem: system headers are not checked. normalCheckLevel...: a note that is printed like a finding.
     cppcheck --quiet --std=c11 --language=c -j "$(nproc)" --enable=warning,performance,portability --inline-suppr \
         --suppress=missingIncludeSystem --suppress=normalCheckLevelMaxBranches --suppress=unmatchedSuppression \
         -Iinclude -Isrc --template='{file}:{line}: cppcheck: {message} [{id}]' src 2>&1 | report

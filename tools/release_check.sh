@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# release_check.sh [STEP...]: more checks than .ci/run has time for, before a release; all steps when none is named.
+# release_check.sh [STEP...]: runs checks before a release that take too long for .ci/run; without STEP, all of them.
 #
-# A failing step does not stop the others. Each step is bounded; its output is in build/release/COMMIT/STEP.log.
-# results/release/VERSION.log has a line for each step: outcome, time, last words, and what was skipped. It is committed
-# for the release it was run on. Steps may be run one by one, on several days and machines: the log keeps the outcomes
-# of the same commit and names the steps that were not run. Exit status 1 if a step of this call failed.
+# A failing step does not stop the others. Each step has a time limit; its output is in build/release/COMMIT/STEP.log.
+# results/release/VERSION.log has one line per step: outcome, time, last words, and what was skipped. It is committed
+# for the release that it was run on. Steps may be run one by one, on several days and machines. The log keeps the
+# outcomes of the same commit and lists the steps that were not run. Exit status 1 if a step of this call failed.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -38,13 +38,13 @@ commit=$(git rev-parse HEAD)
 version=$(make -s print-VERSION)
 work=build/release/$commit log=results/release/$version.log
 mkdir -p "$work" results/release
-# The jobs and variables of the make that calls this are not those of its steps.
+# The steps must not get the jobs and variables of the make that calls this script.
 unset MAKEFLAGS MFLAGS MAKELEVEL
 export HIFDM_NO_SKIP=1
 tools/setup.sh --ci --release
 make all
 
-# OpenBLAS beside the installed BLAS, for same_bits.sh: fetched, not installed.
+# OpenBLAS in addition to the installed BLAS, for same_bits.sh: fetched, not installed.
 openblas=$(find build/release/openblas -name libblas.so.3 2>/dev/null | head -n 1)
 if [ -z "${OPENBLAS:-}" ] && [ -z "$openblas" ]; then
     mkdir -p build/release/openblas
@@ -54,7 +54,7 @@ if [ -z "${OPENBLAS:-}" ] && [ -z "$openblas" ]; then
 fi
 export OPENBLAS=${OPENBLAS:-${openblas:+$(realpath "$openblas")}}
 
-# What the log has of this commit from elsewhere.
+# Takes over what the log has of this commit from other machines.
 if grep -qxF "commit    $commit" "$log" 2>/dev/null; then
     for name in $all; do
         line=$(grep -E "^$name +(passed|FAILED|TIMEOUT) " "$log") || continue
@@ -86,7 +86,7 @@ write_log() {
     } >"$log"
 }
 
-# The last line of a step's output, and the checks that it skipped, without paths of this machine.
+# Returns the last line of a step's output and the checks that it skipped, without paths of this machine.
 words() { # STEP
     local text
     text=$(grep -vE '^(make(\[[0-9]+\])?: .*|[[:space:]]*)$' "$work/$1.log" | tail -n 1 | tr -d '\r')

@@ -1,24 +1,24 @@
 #!/usr/bin/env bash
-# The same bits?
+# Checks that results have the same bits.
 #
-# tools/same_bits.sh: runs cases by other compilers and at other levels of optimisation, with fewer instruction sets,
-# with other LAPACKs, and on emulated processors, and tells for each how many data sets differ from those of the default
-# build. What is not installed is named and left out: clang, OpenBLAS (Debian: libopenblas0-pthread, or
+# tools/same_bits.sh runs cases with other compilers and levels of optimisation, with fewer instruction sets, with other
+# LAPACKs, and on emulated processors. For each it prints how many data sets differ from those of the default build.
+# Programs that are not installed are listed and left out: clang, OpenBLAS (Debian: libopenblas0-pthread, or
 # OPENBLAS=.../libblas.so.3), qemu-x86_64 (Debian: qemu-user).
 #
-# tools/same_bits.sh built: builds nothing, but holds the programs that are there, build/hifdm and build/clang/hifdm, to
-# the checksums of the suite cli/bits, each with the kernels of every instruction set of this machine and, where it is
-# installed, with OpenBLAS as two processors have it. Needs build/tests/run_tests.
+# tools/same_bits.sh built builds nothing. It compares the existing programs build/hifdm and build/clang/hifdm with the
+# checksums of the suite cli/bits. Each runs with the kernels of every instruction set of this machine and, if OpenBLAS
+# is installed, with OpenBLAS for two processors. Needs build/tests/run_tests.
 set -eu
 cd "$(dirname "$0")/.."
 build=${BUILD:-build} work=${BUILD:-build}/bits n_differ=0 n_case=0
 mkdir -p "$work"
 openblas=${OPENBLAS:-$(find /usr/lib -name 'libblas.so.3' -path '*openblas*' 2>/dev/null | head -n 1)}
-isas=(portable) # of this machine, in the order of hf_lane_isa
+isas=(portable) # instruction sets of this machine, in the order of hf_lane_isa
 if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then isas+=(avx2); fi
 if grep -qw avx512f /proc/cpuinfo; then isas+=(avx512); fi
 
-# Links the objects of BUILD-FOLDER once more, into a program that takes the kernels of this instruction set.
+# Links the objects of BUILD-FOLDER again, into a program that uses the kernels of this instruction set.
 link_isa() { # BUILD-FOLDER CC ISA-NUMBER PROGRAM
     local of=(make -s "BUILD=$1" "CC=$2") link objects libraries
     link=$("${of[@]}" print-LINK) objects=$("${of[@]}" print-APP_OBJ) libraries=$("${of[@]}" print-PKG_LIBS)
@@ -27,7 +27,7 @@ link_isa() { # BUILD-FOLDER CC ISA-NUMBER PROGRAM
     $link -Wl,--wrap=hf_lane_best_isa -o "$4" $objects "$4.c" "$1/libhifdm.a" $libraries
 }
 
-# ---- the programs that are there, against the checksums of cli/bits ----
+# ---- the existing programs, against the checksums of cli/bits ----
 
 hold() { # NAME COMMAND-BEFORE... PROGRAM
     local name=$1 program=${*: -1} ok=same

@@ -6,8 +6,8 @@
 #   --deb   also debhelper, lintian and debootstrap, for `make deb-check`
 #   --workflows also Snakemake, for `make workflow-check`     --optimisers also those of `make bench-optimisers`
 #   --instructions also valgrind, for `make bench-instructions`     --release also emulators, for `make release-check`
-# Silent and quick when nothing is missing. Asks for what is needed (a compiler, a pkg-config name, a Python module)
-# rather than for packages, so that other providers do as well: any LAPACK that can be loaded, modules from pip.
+# It is silent and quick if nothing is missing. It looks for what is needed (a compiler, a pkg-config name, a Python
+# module) and not for packages, so other providers will do as well: any LAPACK that can be loaded, modules from pip.
 set -eu
 
 with_test=no with_ci=no with_bench=no with_optimisers=no with_api=no with_docs=no with_deb=no with_workflows=no
@@ -30,7 +30,7 @@ done
 
 has() { command -v "$1" >/dev/null 2>&1; }
 has_library() { pkg-config --exists "$@" 2>/dev/null; }
-# As the program looks for it when it runs; LAPACK="NAME..." names others, as for make.
+# Returns true if the program finds a LAPACK when it runs. LAPACK="NAME..." gives other names, as for make.
 has_lapack() {
     local name
     for name in ${LAPACK:-liblapack.so.3 libopenblas.so.0}; do
@@ -40,25 +40,26 @@ has_lapack() {
     return 1
 }
 has_header() { "${CC:-cc}" -E -include "$1" -x c /dev/null >/dev/null 2>&1; }
-# Does a program in C++ with this line link with these libraries?
+# Returns true if a program in C++ with this line links with these libraries.
 links() {
     local line=$1
     shift
     printf '%s\nint main() { return 0; }\n' "$line" | g++ -o /dev/null -x c++ - "$@" 2>/dev/null
 }
 has_openmp() { printf '#include <omp.h>\n#include <stdlib.h>\n' | "$@" -fopenmp -fsyntax-only -x c - 2>/dev/null; }
-# Debian's own Python, as in the Makefile: its packages are of no use to another python3 that comes first in PATH.
+# Returns true if Debian's own Python has the module, as in the Makefile. Its packages are of no use to another python3
+# that comes first in PATH.
 has_module() {
     "${PYTHON:-/usr/bin/python3}" -c \
         'import sys, importlib.util as u; sys.exit(not u.find_spec(sys.argv[1]))' "$1" 2>/dev/null
 }
 
-# The Debian packages that would provide what is missing, on one line.
+# Prints the Debian packages that would provide what is missing, on one line.
 missing_packages() {
     local list="" cc=${CC:-cc}
     need() { list="$list $*"; }
 
-    # libc6-dev is only recommended by gcc, and recommended packages are not installed below.
+    # gcc only recommends libc6-dev, and recommended packages are not installed below.
     case $cc in
     *clang*) has_openmp "$cc" || need clang libc6-dev libomp-dev ;;
     *) has_openmp "$cc" || need gcc libc6-dev ;;
@@ -108,7 +109,7 @@ missing_packages() {
     fi
     if [ $with_deb = yes ]; then
         has dpkg-buildpackage || need dpkg-dev
-        # dpkg-buildpackage asks for this package by its name.
+        # dpkg-buildpackage requires this package by its name.
         dpkg-query -W -f '${Status}' build-essential 2>/dev/null | grep ' installed$' >/dev/null || need build-essential
         has dh || need debhelper
         has dh_python3 || need dh-python
@@ -123,8 +124,8 @@ missing_packages() {
     if [ $with_ci = yes ]; then
         has clang || need clang
         has_openmp clang || need libomp-dev
-        # Its package carries clang's version in its name, which is known once clang is there: the second round below.
-        # Wanted are the thread sanitizer, the address sanitizer and the fuzzer.
+        # The package has clang's version in its name, which is known only after clang is installed, in the second round
+        # below. It must have the thread sanitizer, the address sanitizer and the fuzzer.
         if has clang && ! ls "$(clang -print-resource-dir)"/lib/linux/libclang_rt.{tsan,asan,fuzzer}-*.a \
             >/dev/null 2>&1; then
             need "libclang-rt-$(clang -dumpversion | cut -d. -f1)-dev"
@@ -149,7 +150,7 @@ missing_packages() {
     echo $list
 }
 
-# Succeeds if we may run apt-get, and says how in $as_root.
+# Succeeds if we may run apt-get, and sets $as_root to the way.
 may_install() {
     has apt-get || return 1
     as_root=""
@@ -167,7 +168,8 @@ have_lists() { ls /var/lib/apt/lists/*_Packages* >/dev/null 2>&1; }
 
 install() {
     have_lists || apt update
-    # The package list may be older than the archive: the only failure that an update and a second try can repair.
+    # The package list may be older than the archive. This is the only failure that an update and a second try can
+    # repair.
     apt install --no-install-recommends "$@" || { apt update && apt install --no-install-recommends "$@"; }
 }
 

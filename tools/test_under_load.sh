@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Runs `make test` RUNS times beside a busy loop on every core, then (CLONE=yes) once in a fresh clone of HEAD, and
-# tells each run's result and time: a test that races with the clock fails here. SUITE picks suites as for `make test`.
+# prints the result and the time of each run. A test that depends on timing fails here. SUITE selects suites as for
+# `make test`.
 set -eu
 cd "$(dirname "$0")/.."
 runs=${RUNS:-20} logs=${BUILD:-build}/test-under-load n_failed=0
 rm -rf "$logs"
 mkdir -p "$logs"
 
-# They end with this script, even when that is killed.
+# The loops end with this script, even if it is killed.
 busy() {
     while kill -0 $$ 2>/dev/null; do
         for ((i = 0; i < 100000; i++)); do :; done

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# check_deb.sh FOLDER WORK: do the Debian packages in FOLDER (make deb) install, run and purge in a bare root? Needs
+# check_deb.sh FOLDER WORK: installs, runs and purges the Debian packages in FOLDER (make deb) in a bare root. Needs
 # root and debootstrap. The base root is made once and kept in WORK/base-RELEASE; the checks use a copy.
-#   RELEASE=bookworm  the release of Debian; by default the one that runs here
-#   MIRROR=...        where packages come from (default: http://deb.debian.org/debian)
-#   WITH="PACKAGE"    packages installed first, such as libopenblas0-pthread for another BLAS
+#   RELEASE=bookworm  the release of Debian; by default that of this machine
+#   MIRROR=...        source of the packages (default: http://deb.debian.org/debian)
+#   WITH="PACKAGE"    packages that are installed first, such as libopenblas0-pthread for another BLAS
 set -eu
 packages=$(realpath "$1") work=$2
 release=${RELEASE:-$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)} mirror=${MIRROR:-http://deb.debian.org/debian}
@@ -35,11 +35,11 @@ trap 'rm -rf "$root"' EXIT
 
 clean=(env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive
     ${http_proxy:+"http_proxy=$http_proxy"})
-in_root() { # COMMAND...: its output goes into the log, and is shown when it fails
+in_root() { # COMMAND...: its output goes into the log, and is printed if it fails
     chroot "$root" "${clean[@]}" "$@" </dev/null >"$log" 2>&1 || { tail -n 30 "$log" >&2; fail "failed: $*"; }
 }
 get() { in_root apt-get install -y --no-install-recommends "$@"; }
-ours() { # the packages that dpkg knows, also those that are not purged
+ours() { # lists the packages that dpkg knows, also those that are not purged
     chroot "$root" dpkg-query -W -f '${db:Status-Abbrev}${Package}\n' '*hifdm*' 2>/dev/null | grep -v '^un' || true
 }
 
@@ -56,7 +56,7 @@ get "${debs[@]}"
 mapfile -t names < <(ours | cut -c4- | sort)
 mapfile -t files < <(chroot "$root" dpkg -L "${names[@]}" | grep hifdm)
 
-# The program and the library, with what the packages ask for and nothing else.
+# Tests the program and the library with only what the packages depend on.
 version=$(basename "$packages"/hifdm_*.deb | cut -d_ -f2 | sed 's/-[^-]*$//')
 in_root hifdm version
 grep -q "^hifdm $version " "$log" || fail "hifdm version is not $version: $(head -n 1 "$log")"
@@ -66,7 +66,7 @@ in_root hifdm run $examples/reflector.yaml -o /reflector.h5 --quiet
 in_root hifdm show /reflector.h5
 in_root python3 -c 'import hifdm'
 in_root python3 /usr/share/doc/python3-hifdm/examples/net_of_arrays.py
-# The example in C, as its head says, with a compiler and pkg-config.
+# Builds the example in C as its head describes, with a compiler and pkg-config.
 get gcc libc6-dev pkg-config
 in_root sh -c 'cc -std=c11 /usr/share/doc/libhifdm-dev/examples/read_example.c $(pkg-config --cflags --libs hifdm) \
     -lm -o /read_example && /read_example /reflector.h5'

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# check_dist.sh TARBALL FOLDER: does a tarball of `make dist` build where there is no git, install, run and
-# uninstall? SUITE="..." also runs those suites of its tests.
+# check_dist.sh TARBALL FOLDER: builds a tarball of `make dist` without git, installs it, runs it and uninstalls it.
+# SUITE="..." also runs those suites of its tests.
 set -eu
 tarball=$(realpath "$1") folder=$2
 fail() { echo "check_dist: $*" >&2; exit 1; }
@@ -10,7 +10,7 @@ mkdir -p "$folder/bin"
 tar -xzf "$tarball" -C "$folder" --strip-components=1
 cd "$folder"
 [ ! -e .git ] || fail "$tarball has a folder .git"
-# Whoever calls git here fails, as where there is none.
+# A call of git fails here, as on a machine without git.
 printf '#!/bin/sh\necho "git was called: $*" >&2\nexit 127\n' >bin/git
 chmod +x bin/git
 export PATH="$PWD/bin:$PATH"

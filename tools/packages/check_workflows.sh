@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# check_workflows.sh PROGRAM FOLDER: the rules for Snakemake, with Snakemake itself, in FOLDER. Its table is
-# that of hifdm sweep, what is done is not done again, and a study that grew runs its new points alone.
+# check_workflows.sh PROGRAM FOLDER: tests the rules for Snakemake with Snakemake itself, in FOLDER. The table must be
+# that of hifdm sweep, finished work must not be repeated, and a study that grew must run only its new points.
 set -eu
 program=$(realpath "$1") folder=$2 rules=$(realpath "$(dirname "$0")")/Snakefile
 fail() { echo "check_workflows: $*" >&2; exit 1; }
@@ -36,14 +36,14 @@ sed -i 's/pretension_N: 10 /pretension_N: 11 /' dish.yaml
 run
 [ "$(count)" = 10 ] || fail "another base case is not all points anew"
 
-# Two studies of one name would write one table.
+# Two studies of the same name would write the same table.
 mkdir other
 cp "a study.yaml" other
 if snakemake -s "$rules" --cores 2 --config studies="['a study.yaml', 'other/a study.yaml']" \
     program="$program" >log 2>&1; then fail "two studies of one name"; fi
 grep -q "would both write" log || { cat log; fail "two studies of one name are not told"; }
 
-# One iteration is too few: that point fails, the job does not.
+# One iteration is too few, so that point fails, but the job does not.
 "$program" new strips --cylinder >/dev/null
 printf '%s\n' 'base: strips.yaml' 'sweep: {form.method: [hifdm], form.max_iterations: [1, 20000]}' >failing.yaml
 sed -i '/^optimize:/,$d' strips.yaml

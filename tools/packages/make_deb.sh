@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# make_deb.sh TARBALL FOLDER: Debian packages of a tarball of `make dist`, in FOLDER, by the recipe in its tools/debian.
-# The date of a version is the one in CHANGELOG.md, so that the same tarball makes the same packages; MAINTAINER="Name
-# <mail>" is whom the packages name. DEB_BUILD_OPTIONS as dpkg-buildpackage knows them.
+# make_deb.sh TARBALL FOLDER: makes Debian packages of a tarball of `make dist` in FOLDER, by the recipe in its
+# tools/debian. The date of a version is the one in CHANGELOG.md, so that the same tarball makes the same packages.
+# MAINTAINER="Name <mail>" is the maintainer in the packages. DEB_BUILD_OPTIONS is as in dpkg-buildpackage.
 set -eu
 tarball=$(realpath "$1") folder=$2
 name=$(basename "$tarball" .tar.gz)
@@ -16,7 +16,7 @@ cd "$name"
 cp -r tools/debian debian
 maintainer=${MAINTAINER:-$(sed -n 's/^Maintainer: //p' debian/control)}
 sed -i "s/^Maintainer: .*/Maintainer: $maintainer/" debian/control
-# An entry for each version of CHANGELOG.md; one that is not released yet has the date of the tarball.
+# Writes an entry for each version of CHANGELOG.md. A version that is not released yet has the date of the tarball.
 sed -n 's/^## \[\(.*\)\] - \(.*\)$/\1 \2/p' CHANGELOG.md | while read -r of day; do
     [ "$day" != unreleased ] || day=@$(stat -c %Y CHANGELOG.md)
     printf 'hifdm (%s-1) unstable; urgency=medium\n\n  * Version %s: CHANGELOG.md says what is new.\n\n -- %s  %s\n\n' \
