@@ -15,7 +15,7 @@ enum { BOUND_STOPS = 16 };
 /* ---- nets ---- */
 
 /* Makes the fraction `part` of the cables of net->scene elastic. Their unstressed lengths fit the shape in the
- * workspace, with relative errors of up to `off`. Their stiffness is EA_N or up to 10^decades times larger. */
+ * workspace, with relative errors of up to `off`. Their stiffness is EA_N times a factor of 1 to 10^decades. */
 static inline void cut_cables(struct rng *rng, struct net *net, double part, double EA_N, double decades, double off)
 {
     hf_scene *s = &net->scene;

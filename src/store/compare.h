@@ -22,7 +22,7 @@ typedef void hf_compare_tell(void *context, const char *path, const char *how);
 
 /* Compares the files a and b, and calls `tell` for each data set that differs. The caller sets the tolerances of
  * *comparison; the function sets its counts. Returns HF_OK if all data sets are equal within the tolerances, and
- * HF_DIFFERENT if not. HF_IO: a file cannot be read. HF_NO_MEMORY. */
+ * HF_DIFFERENT if not. Errors: HF_IO if a file cannot be read, HF_NO_MEMORY. */
 hf_status hf_compare_files(const char *a, const char *b, hf_comparison *comparison, hf_compare_tell *tell,
                            void *context, hf_messages *messages);
 

@@ -53,7 +53,7 @@ bool hf_generations_are_of(const hf_generations *g, const hf_population *populat
            g->n_objective == population->n_objective && g->limit == population->generation_limit;
 }
 
-/* Returns how many units are used if `fit` of them fit: at least 1, at most `limit`. */
+/* Returns `fit`, but at least 1 and at most `limit`. */
 static int how_many(size_t fit, int limit)
 {
     return fit < 1 ? 1 : fit < (size_t)limit ? (int)fit : limit;
@@ -220,7 +220,7 @@ bool hf_generations_take_payload(const hf_generations *g, const void *payload, c
     return hash == hash_designs(population);
 }
 
-/* Returns true if every value of an enumeration has a word, and for values of other kinds. */
+/* Returns true if every value of an enumeration has a word. Values of other kinds need none. */
 static bool are_words(const hf_generations_row *row, int n)
 {
     if (row->array.kind->class != HF_HDF5_ENUM) return true;
@@ -410,8 +410,8 @@ static void read_of_best(hf_hdf5 *io, hid_t group, const hf_generations_row *row
     free(values);
 }
 
-/* Sets the best design as the run noted it: that of the first generation with the minimum merit. The best design stays
- * in the population, so /ga/last has its figures. Figures that are not stored are NaN. */
+/* Sets the best design of the summary: that of the first generation with the minimum merit. The best design stays in
+ * the population, so /ga/last has its figures. Figures that are not stored are NaN. */
 static void note_best(hf_hdf5 *io, hid_t group, const hf_generations *g, const double *best_merit, hf_summary *s)
 {
     hf_generations_row row[HF_GENERATIONS_PIECES];

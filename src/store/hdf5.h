@@ -102,8 +102,9 @@ typedef struct {
 } hf_hdf5_array;
 
 /* ---- Failures ----
- * Record the failure of the HDF5 call just made on `name` (may be NULL) below `place` (an id, or negative): HF_IO and
- * the message "path: cannot <verb> /place/name: <HDF5's or the system's reason>". Close nothing before. */
+ * Records the failure of the last HDF5 call on `name` (may be NULL) below `place` (an id, or negative): HF_IO and the
+ * message "path: cannot <verb> /place/name: <HDF5's or the system's reason>". Nothing may be closed before, because the
+ * next call of HDF5 clears the reason. */
 void hf_hdf5_fail(hf_hdf5 *io, const char *verb, hid_t place, const char *name);
 
 /* Records that the stored data are not what this program writes: HF_IO, "path: is damaged: /place/name <what>". */

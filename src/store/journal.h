@@ -36,9 +36,9 @@ typedef struct {
     char identity[HF_JOURNAL_IDENTITY + 1];
 } hf_journal;
 
-/* Makes or opens the journal of `result`, which must not be a link, and takes its lock. If the name of the journal
- * belongs to something else, a link included, `replaces` decides: true: it is removed, with a warning; false:
- * HF_EXISTS. Returns HF_EXISTS also if another process holds the lock; HF_IO if the journal cannot be made or locked;
+/* Makes or opens the journal of `result`, which must not be a link, and takes its lock. The name of the journal may
+ * belong to something else, a link included. With `replaces` this is removed with a warning; without it the status is
+ * HF_EXISTS. Other errors: HF_EXISTS if another process holds the lock, HF_IO if the journal cannot be made or locked,
  * HF_NO_MEMORY. On a file system without locks it only warns. The caller calls hf_journal_close in any case. */
 hf_status hf_journal_open(const char *result, bool replaces, hf_journal *journal, hf_messages *messages);
 

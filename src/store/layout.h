@@ -134,11 +134,11 @@ void hf_layout_get_surface(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_put_measures(hf_hdf5 *io, const char *path, int n_frequency, const hf_surface_measures *measures);
 void hf_layout_get_measures(hf_hdf5 *io, const char *path, int n_frequency, hf_surface_measures *measures);
 
-/* layout_pattern: the far field of a stage, in /pattern/STAGE. Attributes: the feed. Data sets, for f frequencies, c
- * cuts and t angles: frequency_Hz [f], phi_deg [c], theta_deg [t]; co_dBi, cross_dBi [f][c][t]; the members of
- * hf_cut_figures [f][c]. Without surface.pattern there is no such group. hf_layout_get_pattern reads all but theta_deg,
- * co_dBi and cross_dBi into the summary. hf_layout_read_pattern reads all arrays of one stage into a new table, which
- * the caller frees in any case. */
+/* layout_pattern: the far field of a stage, in /pattern/STAGE. Its attributes describe the feed. Its data sets, for f
+ * frequencies, c cuts and t angles, are frequency_Hz [f], phi_deg [c], theta_deg [t], co_dBi and cross_dBi [f][c][t],
+ * and the members of hf_cut_figures [f][c]. Without surface.pattern there is no such group. hf_layout_get_pattern reads
+ * all but theta_deg, co_dBi and cross_dBi into the summary. hf_layout_read_pattern reads all arrays of one stage into a
+ * new table, which the caller frees in any case. */
 void hf_layout_write_pattern(hf_hdf5 *io, int stage, const hf_pattern_table *table, const hf_pattern_summary *figures);
 void hf_layout_get_pattern(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_read_pattern(hf_hdf5 *io, int stage, hf_pattern_table *table);

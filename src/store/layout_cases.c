@@ -47,7 +47,7 @@ void hf_layout_put_cases(hf_hdf5 *io, const hf_summary *summary)
     }
 }
 
-/* Returns true if a name has only harmless characters. Names are printed as they are, and groups have them. */
+/* Returns true if a name has only harmless characters. Names are printed as they are, and groups have these names. */
 static bool is_name_right(const char *name)
 {
     static const char *const letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";

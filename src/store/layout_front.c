@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define POINTS_MAX 100000 /* of a file; the maximum of optimize.population */
+#define POINTS_MAX 100000 /* maximum number of points in a file, that of optimize.population */
 #define GENES_MAX 10000000
 
 static const hf_hdf5_kind kind_of_mark = {HF_HDF5_ENUM, HF_FRONT_N_MARK, hf_front_mark_word, NULL};

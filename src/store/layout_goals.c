@@ -78,7 +78,7 @@ void hf_layout_get_goals(hf_hdf5 *io, hf_summary *s)
     hf_hdf5_array name = names(s->goals.n), weight = values("weight", s->goals.n, ""), fit = after_fit(s->goals.n);
     hf_hdf5_read_array(io, group, &name, s->goals.name);
     for (int k = 0; k < s->goals.n; k++)
-        s->goals.after_fit[k] = -1; /* in files of earlier versions */
+        s->goals.after_fit[k] = -1; /* files of earlier versions have no such values */
     if (hf_hdf5_has(io, group, "after_fit")) hf_hdf5_read_array(io, group, &fit, s->goals.after_fit);
     if (!s->goals.are_objectives) hf_hdf5_read_array(io, group, &weight, s->goals.weight);
     for (int stage = 0; stage < N_STAGE; stage++) {

@@ -25,7 +25,7 @@
  * surface error 70. Each of 16 load cases has four figures and 68 surface errors of up to 135. */
 #define LINE_SIZE 200000
 #define ROWS_MAX                                                                                                       \
-    (HF_STUDY_POINT_MAX * (off_t)4096) /* bytes of a file that is read: a row per point, few of them so long */
+    (HF_STUDY_POINT_MAX * (off_t)4096) /* maximum bytes of a file: every point has a row, few rows have 4096 bytes */
 #define N_FIXED 4                      /* fields before the numbers: id, fingerprint, status, reason */
 
 const char *const hf_point_state_word[HF_N_POINT_STATE] = {"missing", "running", "done", "failed", "outdated"};
@@ -340,7 +340,7 @@ static int by_name(const struct dirent **a, const struct dirent **b)
     return strcmp((*a)->d_name, (*b)->d_name);
 }
 
-/* Reads the files in sorted order, so that always the same of several rows of one point counts. */
+/* Reads the files in sorted order. If a point has several rows, the same one therefore always counts. */
 static hf_status read_files(reading *r, const char *folder, hf_messages *messages)
 {
     struct dirent **entry;

@@ -21,8 +21,8 @@
 #include "store/ledger.h"
 
 /* Merges `points`, which hf_ledger_read has read from `folder`, into the file `output`. An earlier merge there is
- * replaced. Any other file is replaced only with `force`, else HF_EXISTS. Inputs of the merge, and anything but an
- * ordinary file, are never replaced. HF_IO, HF_NO_MEMORY. */
+ * replaced. Any other file is replaced only with `force`. Inputs of the merge, and anything but an ordinary file, are
+ * never replaced. Returns HF_OK, HF_EXISTS if the file may not be replaced, HF_IO or HF_NO_MEMORY. */
 hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *points, const char *output, bool force,
                    hf_messages *messages);
 

@@ -42,7 +42,7 @@ void hf_samples_identify(const char of_case[65], const char of_design[65], char 
 hf_status hf_samples_look(const char *result, int task, int tasks, const char of_case[65], hf_messages *messages);
 
 /* Takes over the chunks of the journals of all tasks. With `restart`, journals of another identity are removed; without
- * it they are HF_EXISTS. */
+ * it they give HF_EXISTS. */
 hf_status hf_samples_collect(hf_samples *samples, const char *result, int tasks, bool restart);
 
 /* Returns the first sample of a chunk, and sets *n to the number of its samples. */
@@ -57,7 +57,7 @@ static inline long hf_samples_first(const hf_samples *samples, int chunk, int *n
  * survive the end of this process after HF_OK. */
 hf_status hf_samples_add(hf_samples *samples, int chunk, const double *row);
 
-/* Reads rows as an hf_statistics_read. samples: an hf_samples that has all chunks. */
+/* Reads rows for the statistics; an hf_statistics_read. samples: an hf_samples that has all chunks. */
 hf_status hf_samples_read(void *samples, long first, int n, double *row);
 
 void hf_samples_close(hf_samples *samples);

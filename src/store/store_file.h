@@ -38,7 +38,7 @@
 typedef enum { HF_EARLIER_NONE, HF_EARLIER_THERE, HF_EARLIER_KEPT, HF_EARLIER_UNREAD } hf_earlier;
 
 typedef struct {
-    hf_hdf5 io; /* of the temporary file; io.file is -1 while it is not open */
+    hf_hdf5 io; /* the temporary file in HDF5; io.file is -1 while it is not open */
     hf_journal journal;
     bool replaces; /* a file of another run with this name may be replaced */
     hf_earlier earlier;

@@ -10,7 +10,7 @@ typedef struct hf_store hf_store;
 struct hf_store {
     hf_store_file f;
     hf_generations rows;
-    int every;     /* of the rows to come, see hf_generations_create */
+    int every;     /* as in hf_generations_create, for the rows to come */
     int n_journal; /* generations that only the journal has, until hf_store_restore has taken them */
     bool is_resumed;
     char identity[65];
@@ -25,8 +25,8 @@ struct hf_store {
 /* Attribute of the root: an earlier result is beside this file while it is unfinished (store_file). */
 #define HF_KEEPS_EARLIER "keeps_earlier"
 
-/* Sets *earlier to what a run finds that replaces the file at `path`. Returns HF_OK, or HF_IO or HF_NO_MEMORY if the
- * file cannot be read now. */
+/* Sets *earlier to the kind of the file at `path`, which a run is about to replace. Returns HF_OK, or HF_IO or
+ * HF_NO_MEMORY if the file cannot be read now. */
 hf_status hf_store_look_before(const char *path, hf_earlier *earlier, hf_messages *messages);
 
 /* Returns the value of the attribute HF_KEEPS_EARLIER, and false if the file does not have it. */
@@ -50,7 +50,7 @@ void hf_store_free(hf_store *s, hf_messages *messages);
  * memory runs out. */
 void *hf_store_scratch(hf_store *s, size_t bytes);
 
-/* Writes the state that hf_store_polish has taken into a file that is published. Removes it from a finished file. */
+/* Writes the state of hf_store_polish to a file that is published, and removes it from a finished file. */
 void hf_store_put_polish(hf_store *s, bool finished);
 
 /* hf_store_put_time writes the present time in UTC as an attribute of the root. hf_store_put_job writes the ids of the

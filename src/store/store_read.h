@@ -9,7 +9,7 @@
  * earlier versions wrote, are left out. Errors as in <hifdm/store.h>. */
 hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf_messages *messages);
 
-/* Reads the case that the file was made from. path: of the case; the files that it names are searched beside it.
+/* Reads the case that the file was made from. path: of the case; the files that it names are looked up beside it.
  * Returns false after a failure, or if this version does not know all keys of the case. The caller calls hf_case_free
  * in any case. */
 bool hf_store_parse_case(hf_hdf5 *io, const char *path, hf_case *settings);
