@@ -46,8 +46,7 @@ const char *hf_flat_version(void);
 /* Returns the word of a code; NULL if there is none. `list` is "role", "group", "law", "phase", "status",
  * "stop_reason", "bound_reason" or "coupling_stop". */
 const char *hf_flat_word(const char *list, int code);
-/* Returns the code of a word in one of these lists; -1 if there is none. For the list "status" use hf_status_of_word
- * instead, because its codes have gaps. */
+/* Returns the code of a word in one of these lists; -1 if there is none. */
 int hf_flat_code(const char *list, const char *word);
 
 /* Creates a handle. Returns NULL if memory runs out. */
