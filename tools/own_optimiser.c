@@ -3,8 +3,8 @@
  *     cc -std=c11 tools/own_optimiser.c $(pkg-config --cflags --libs hifdm) -o own_optimiser
  *     ./own_optimiser configs/chen2022.yaml
  *
- * If libhifdm is installed under another prefix than that of the system, put PKG_CONFIG_PATH=PREFIX/lib/pkgconfig
- * before the first line and LD_LIBRARY_PATH=PREFIX/lib before the second. */
+ * Under a prefix that is not the system's, PKG_CONFIG_PATH=PREFIX/lib/pkgconfig in front of the first line, and
+ * LD_LIBRARY_PATH=PREFIX/lib in front of the second. */
 #include <hifdm/hifdm.h>
 
 #include <math.h>
@@ -12,18 +12,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define N_DESIGN 64 /* designs evaluated at a time, on all cores */
+#define N_DESIGN 64 /* evaluated at a time, on all cores */
 #define N_ROUND 30
 
-/* All zero at first, so that main can free it after any failure. */
+/* All zero at first, so that main can free it whatever went wrong. */
 typedef struct {
-    hf_messages said; /* messages: errors and warnings */
+    hf_messages said; /* errors and warnings, in words */
     hf_problem p;
     double *best_N, *design_N; /* [n_gene], [N_DESIGN][n_gene] */
     double *step;              /* [n_gene_group] */
 } thing;
 
-/* Returns a random number from -1 to 1, by splitmix64. */
+/* -1 to 1: splitmix64 */
 static double uniform(uint64_t *state)
 {
     uint64_t z = *state += 0x9e3779b97f4a7c15u;
@@ -43,7 +43,7 @@ static hf_status search(const char *path, thing *t)
     t->design_N = calloc(N_DESIGN * n + 1, sizeof(double));
     t->step = calloc((size_t)m->n_gene_group + 1, sizeof(double));
     if (!t->best_N || !t->design_N || !t->step) return HF_NO_MEMORY;
-    memcpy(t->best_N, t->p.base_N, n * sizeof(double)); /* the pretensions after form-finding */
+    memcpy(t->best_N, t->p.base_N, n * sizeof(double)); /* the pretensions of the shape that was found */
 
     uint64_t state = 1;
     double size = 0.2, best_m = INFINITY;
@@ -51,10 +51,10 @@ static hf_status search(const char *path, thing *t)
         for (int i = 0; i < N_DESIGN; i++) {
             for (int g = 0; g < m->n_gene_group; g++) /* the first design of a round is the best so far */
                 t->step[g] = i ? size * uniform(&state) : 0;
-            for (size_t k = 0; k < n; k++) /* equal changes along a chain, else they drag its nodes along it */
+            for (size_t k = 0; k < n; k++) /* cables of a chain change alike, else they drag its nodes along it */
                 t->design_N[(size_t)i * n + k] = t->best_N[k] * (1 + t->step[m->gene_group[k]]);
         }
-        hf_batch_run(&t->p.batch, N_DESIGN, t->design_N, NULL, result); /* sets result[i].psi_m, .status, ... */
+        hf_batch_run(&t->p.batch, N_DESIGN, t->design_N, NULL, result); /* -> result[i].psi_m, .status, ... */
         int best = 0;
         for (int i = 1; i < N_DESIGN; i++)
             if (result[i].status == HF_OK && !(result[i].psi_m >= result[best].psi_m)) best = i;

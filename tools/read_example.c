@@ -1,5 +1,5 @@
-/* read_example - reads a result file from C with libhifdm. Prints psi of each shape, and the nodes that are farthest
- * from their target positions in the shape after form-finding.
+/* read_example - a result file from C, by libhifdm: psi of each shape, and the nodes that are farthest from where they
+ * should be in the shape after form-finding.
  *
  *     cc -std=c11 tools/read_example.c $(pkg-config --cflags --libs hifdm) -lm -o read_example
  *     ./read_example results/chen2022.h5 */
