@@ -75,7 +75,7 @@ static const hf_run_progress events[N_EVENT] = {
      .evaluations = 1600,
      .samples_all = 1000,
      .elapsed_s = 70,
-     .sigma_scale = 1.5,
+     .sigma_scale = 0.5,
      .best_psi_m = NAN,
      .merit = NAN},
     {.phase = HF_RUN_TOLERANCE,
@@ -118,7 +118,7 @@ START_TEST(a_line_is_written_anew_ten_times_a_second)
                  "front: point 0/21  0 steps of Levenberg-Marquardt  0 us so far" CLEAR
                  "front: point 3/21  70 steps of Levenberg-Marquardt  1 min 1 s so far" CLEAR
                  "first order, before 1000 samples" CLEAR "sample 128/1000  2 samples/s  7 min 16 s left" CLEAR
-                 "sample 640/1000; the yield with 1.5 times the errors" CLEAR);
+                 "sample 640/1000; the yield with 0.5 times the errors" CLEAR);
 }
 END_TEST
 
@@ -128,7 +128,7 @@ START_TEST(a_log_has_a_line_every_half_minute)
                             "Levenberg-Marquardt: step 6/200  psi 0.9000 mm, merit 0.0012  at most 50 min 7 s left\n"
                             "front: point 3/21  70 steps of Levenberg-Marquardt  1 min 1 s so far\n"
                             "sample 128/1000  2 samples/s  7 min 16 s left\n"
-                            "sample 640/1000; the yield with 1.5 times the errors\n");
+                            "sample 640/1000; the yield with 0.5 times the errors\n");
 }
 END_TEST
 
@@ -152,7 +152,7 @@ START_TEST(objects_are_written_each_second_and_at_the_end)
         "{\"phase\": \"polish\", \"point\": 3, \"points\": 21, \"steps\": 70, \"elapsed_s\": 61}\n"
         "{\"phase\": \"tolerance\", \"sample\": 0, \"samples\": 1000, \"samples_per_s\": 0, \"elapsed_s\": 0}\n"
         "{\"phase\": \"tolerance\", \"sample\": 128, \"samples\": 1000, \"samples_per_s\": 2, \"elapsed_s\": 32}\n"
-        "{\"phase\": \"tolerance\", \"sample\": 640, \"samples\": 1000, \"sigma_scale\": 1.5, \"elapsed_s\": 70}\n"
+        "{\"phase\": \"tolerance\", \"sample\": 640, \"samples\": 1000, \"sigma_scale\": 0.5, \"elapsed_s\": 70}\n"
         "{\"phase\": \"tolerance\", \"sample\": 1000, \"samples\": 1000, \"samples_per_s\": 28.563267637817766, "
         "\"elapsed_s\": 70.019999999999996}\n");
 }
