@@ -306,7 +306,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--suite", nargs="*", help="only suites whose name contains a word")
     parser.add_argument("--without", nargs="*", default=[], help="no suites whose name contains a word")
-    parser.add_argument("--cpu", type=float, default=240, help="processor seconds after which an edit has survived")
+    parser.add_argument("--cpu", type=float, default=150, help="processor seconds after which an edit has survived")
     parser.add_argument("--enough", type=float, default=0.9, help="the part to catch for exit status 0")
     o = parser.parse_args()
     work = TOP / os.environ.get("BUILD", "build") / "mutants-random"
