@@ -202,6 +202,28 @@ END_TEST
 
 /* ---- links ---- */
 
+/* The temporary name of a long name has its first 200 bytes, the mark and 32 digits, whatever its length is. */
+START_TEST(temporary_names_of_long_names)
+{
+    static const int length[] = {1, 183, 184, 185, 199, 200, 201, 240};
+    hf_messages messages = {0};
+    for (size_t i = 0; i < sizeof length / sizeof *length; i++) {
+        char name[256] = "", path[4096], want[300], folder[16];
+        int kept = length[i] < 200 ? length[i] : 200;
+        memset(name, 'n', (size_t)length[i]);
+        snprintf(folder, sizeof folder, "long%d", length[i]);
+        own_folder(folder, name, path);
+        hf_file_out f;
+        ck_assert_int_eq(hf_file_out_begin(path, &f, &messages), HF_OK);
+        const char *temporary = strrchr(f.temporary, '/') + 1;
+        snprintf(want, sizeof want, ".%.*s.hifdm-", kept, name);
+        ck_assert_msg(!strncmp(temporary, want, strlen(want)), "%s does not begin with %s", temporary, want);
+        ck_assert_uint_eq(strlen(temporary), strlen(want) + 32 + strlen(".tmp"));
+        hf_file_out_drop(&f, NULL);
+    }
+}
+END_TEST
+
 /* The name of a temporary file may get another file while it is written: the open one is not left for that. */
 /* A file system without links: whenever the process ends, the name leads to the whole file or to none. */
 START_TEST(adding_without_links_is_whole_or_not)
@@ -453,6 +475,7 @@ Suite *suite_unit_file_out(void)
     tcase_add_test(tc, what_cannot_get_its_name_leaves_nothing);
     tcase_add_test(tc, temporary_names_cannot_be_guessed);
     tcase_add_test(tc, leftovers_are_removed_and_nothing_else);
+    tcase_add_test(tc, temporary_names_of_long_names);
     tcase_add_test(tc, a_path_may_be_too_long);
     tcase_add_test(tc, a_file_that_cannot_be_is_told_before);
     tcase_add_test(tc, adding_never_replaces);
