@@ -226,6 +226,12 @@ done
 [ "$(grep -m 1 '^## \[' CHANGELOG.md | cut -d'[' -f2 | cut -d']' -f1)" = "$version" ] ||
     echo "CHANGELOG.md:1: the first version is not the Makefile's, $version" | report
 
+# ---- Suites: each is in the file after which it is called ------------------------------------------------------------
+sed -nE 's/^(SUITE|MIRROR)\((.*)\)$/\2/p' tests/suites.list.h | tr -d ' ' | while IFS=, read -r kind room name; do
+    file=tests/$kind/${name:+$room/}test_${name:-$room}.c
+    [ -e "$file" ] || echo "tests/suites.list.h:1: there is no $file"
+done | report
+
 # ---- Mutants: edits that no longer apply, which `make mutants` would find only after hours ---------------------------
 "${PYTHON:-/usr/bin/python3}" tools/mutants.py --check 2>&1 | grep -vE '^[0-9]+ mutants$' | report || true
 
