@@ -8,8 +8,8 @@ the working tree below build/mutants-random, which is compiled and linked again 
 it does not compile, if it leaves the object code unchanged, or if it was drawn before. The suites that execute the line
 (tools/mutation/coverage.py) run, the most promising first, until one fails or --cpu seconds are used. A suite also
 catches the edit if it uses more than 20 s plus three times its processor time, or if all its processes sleep for a
-minute. If none failed, the suites run once more with the sanitizers of `make asan`, for a quarter of the time. An edit
-that no suite executes survives.
+minute. If none failed, the suites run once more with the sanitizers of `make asan`, for a quarter of the time, unless
+--plain is given. An edit that no suite executes survives.
 
 Edits of tests/mutants_equivalent.txt change no result, for the reason given there. If such an edit is drawn, the
 results of all configs/ are compared, bit by bit (of studies every fourth point). These edits are left out of the
@@ -170,7 +170,7 @@ class Runner:
             differs = self.differing_config(tree, log)
             return (f"SURVIVED: listed as equivalent, but {differs} differs" if differs else "equivalent"), "", 0.0
         outcome, by, spent_s = self.try_suites(edit, text, tree, log, self.o.cpu)
-        if not outcome.startswith("SURVIVED") or "no suite" in outcome:
+        if self.o.plain or not outcome.startswith("SURVIVED") or "no suite" in outcome:
             return outcome, by, spent_s
         with self.sanitized_lock:
             if not self.sanitized.is_prepared:
@@ -306,6 +306,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--suite", nargs="*", help="only suites whose name contains a word")
     parser.add_argument("--without", nargs="*", default=[], help="no suites whose name contains a word")
+    parser.add_argument("--plain", action="store_true", help="without the sanitizers")
     parser.add_argument("--cpu", type=float, default=150, help="processor seconds after which an edit has survived")
     parser.add_argument("--enough", type=float, default=0.9, help="the part to catch for exit status 0")
     o = parser.parse_args()

@@ -59,6 +59,7 @@ class Coverage:
         """Runs the suites that have not run since their tests changed, `jobs` at a time."""
         states = {s: state_of_suite(self.top, s) for s in suites}
         missing = [s for s in suites if self.measured.get(s, {}).get("state") != states[s]]
+        missing.sort(key=lambda s: s != "cli/transcripts")  # the longest first, so that no thread waits for it
         self._build(jobs)
         with ThreadPoolExecutor(jobs) as pool:
             for suite, (outcome, cpu_s) in zip(missing, pool.map(self._count, missing)):
