@@ -32,6 +32,7 @@ const char *hf_lane_isa_name(hf_lane_isa isa);
 #ifdef HF_LANE_VECTORS
 
 #include <math.h>
+#include <stddef.h>
 #if defined __AVX2__
 #include <immintrin.h>
 #endif
@@ -55,6 +56,12 @@ typedef unsigned long long bits_of __attribute__((vector_size(WIDTH * sizeof(dou
 INLINE vec splat(double x)
 {
     return x - (vec){0};
+}
+
+/* Returns WIDTH lanes of a row of array [][HF_LANES], from lane p on. */
+INLINE vec *lanes_of(const double *array, ptrdiff_t row, int p)
+{
+    return (vec *)(void *)(array + row * HF_LANES + p);
 }
 
 #if !defined __AVX2__ && !defined FP_FAST_FMA

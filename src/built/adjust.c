@@ -154,7 +154,7 @@ static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, a
     *a = (adjustment){.estimate = p, .task = task, .n = (size_t)task->n_cable, .n_row = (size_t)task->goals->n_row};
     a->n_dof = p->linear.n_dof;
     a->n_room = task->n_thread > 0 ? task->n_thread : hf_parallel_cores();
-    a->matrix = hf_packed_band_of(3 * p->built->model.n_free, 3 * p->built->model.half_bandwidth + 2);
+    a->matrix = hf_newton_matrix_packed(&p->built->model);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_adjustment(&arena, a)));
     a->block = arena.block;
     a->left_open = a->column + a->n * a->n_row;

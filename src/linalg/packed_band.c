@@ -11,24 +11,15 @@
 
 /* ---- the matrix ---- */
 
-static hf_packed_band_solve *choose_kernel(void)
-{
-    switch (hf_lane_best_isa()) {
-    case HF_LANE_AVX512:
-        return hf_packed_band_solve_avx512;
-    case HF_LANE_AVX2:
-        return hf_packed_band_solve_avx2;
-    default:
-        return hf_packed_band_solve_portable;
-    }
-}
+static hf_packed_band_solve *const solve_of_isa[HF_LANE_N_ISA] = {
+    hf_packed_band_solve_portable, hf_packed_band_solve_avx2, hf_packed_band_solve_avx512};
 
 hf_packed_band hf_packed_band_of(int n, int half_bandwidth)
 {
     return (hf_packed_band){.n = n,
                             .n_block = (n + HF_PACKED_ROWS - 1) / HF_PACKED_ROWS,
                             .width = half_bandwidth,
-                            .solve = choose_kernel()};
+                            .solve = solve_of_isa[hf_lane_best_isa()]};
 }
 
 void hf_packed_band_lay_out(hf_arena *a, hf_packed_band *b)

@@ -21,12 +21,6 @@
 
 enum { ROWS = HF_PACKED_ROWS };
 
-/* Returns WIDTH lanes of a row, from lane p on. */
-INLINE vec *lanes_of(double *rows, ptrdiff_t row, int p)
-{
-    return (vec *)(void *)(rows + row * HF_LANES + p);
-}
-
 /* Subtracts the product of the packed entries and `solved` from rows `first` to `last` of s. `packed` contains the
  * entries of the block in the column (forward) or row (backward) of the solved row. */
 INLINE void eliminate(vec s[ROWS], const double *packed, int first, int last, vec solved)

@@ -109,7 +109,7 @@ static hf_chord dimensions(const hf_evaluator *v)
 {
     int n_pull = 3 * v->model->n_attachment;
     return (hf_chord){.evaluator = v,
-                      .matrix = hf_packed_band_of(3 * v->model->n_free, 3 * v->model->half_bandwidth + 2),
+                      .matrix = hf_newton_matrix_packed(v->model),
                       .n_pull = n_pull,
                       .n_pull_pad = (n_pull + HF_CHORD_ROWS - 1) / HF_CHORD_ROWS * HF_CHORD_ROWS};
 }

@@ -21,12 +21,6 @@
 
 enum { ROWS = HF_CHORD_ROWS };
 
-/* Returns the WIDTH lanes of a row from lane p on. */
-INLINE vec *lanes_of(const double *array, ptrdiff_t row, int p)
-{
-    return (vec *)(void *)(array + row * HF_LANES + p);
-}
-
 /* Returns the larger value in each lane, or NaN if one of the two is NaN. */
 INLINE vec larger_or_nan(vec now, vec next)
 {
@@ -98,7 +92,7 @@ static void forces(const hf_chord *chord, const hf_chord_lanes *l, int p, double
         largest = larger_or_nan(largest, norm_squared(scale * f[0], scale * f[1], scale * f[2]));
     }
     /* Clear the rows after the last one: a lane that failed may have left NaNs there. */
-    for (int i = chord->matrix.n; i < chord->matrix.n + chord->matrix.width + ROWS; i++)
+    for (int i = chord->matrix.n; i < chord->matrix.n + chord->matrix.width + HF_PACKED_ROWS; i++)
         *lanes_of(force, i, p) = splat(0);
     for (int i = 0; 3 * i < chord->n_pull; i++) {
         sum_force(chord, l, m->n_free + i, m->attachment_row[i], p, f);

@@ -118,7 +118,7 @@ hf_status hf_sensitivity_create(const hf_evaluator *v, hf_sensitivity *s)
     hf_arena arena = {0};
     *s = (hf_sensitivity){.v = v, .n = m->n_leader, .n_rigid = count_rigid(v)};
     s->n_dof = 3 * ((size_t)m->n_free + (size_t)m->n_attachment + (size_t)place_supports(m, NULL));
-    s->matrix = hf_packed_band_of(3 * m->n_free, 3 * m->half_bandwidth + 2);
+    s->matrix = hf_newton_matrix_packed(m);
     s->n_lane = hf_packed_band_rows(&s->matrix) * HF_LANES;
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, s)));
     s->block = arena.block;

@@ -10,6 +10,7 @@
 #ifndef HIFDM_NEWTON_MATRIX_H
 #define HIFDM_NEWTON_MATRIX_H
 
+#include "linalg/packed_band.h"
 #include <hifdm/workspace.h>
 
 #include <math.h>
@@ -155,6 +156,12 @@ void hf_newton_matrix_solve_rows(const hf_model *model, const hf_workspace *work
  * Returns 0 if there is no such factor, or if the estimated eigenvalue is not clearly above the shift; newton_band and
  * *condition are then of no use. */
 double hf_newton_matrix_factor_below(const hf_model *model, hf_workspace *workspace, double *condition);
+
+/* Returns a packed matrix, without arrays, for the factor of the Newton matrix in newton_band. */
+static inline hf_packed_band hf_newton_matrix_packed(const hf_model *model)
+{
+    return hf_packed_band_of(3 * model->n_free, 3 * model->half_bandwidth + 2);
+}
 
 #define HF_UNIT 0x1p-53 /* half the distance from 1 to the next double */
 

@@ -173,7 +173,7 @@ START_TEST(many_right_hand_sides)
         b[i] = x[i] = rng_uniform(&rng, -1, 1);
     ck_assert_int_eq(hf_evaluate(&r.evaluator, r.design_N, &r.net.work, &(hf_form_result){0}), HF_OK);
     ck_assert_int_eq(hf_newton_matrix_factor(m, &r.net.work, NULL), HF_OK);
-    hf_packed_band packed = hf_packed_band_of(n, 3 * m->half_bandwidth + 2);
+    hf_packed_band packed = hf_newton_matrix_packed(m);
     hf_arena arena = {0};
     double *lanes;
     ck_assert_int_eq(
