@@ -39,9 +39,7 @@ def declared():
     names = set()
     for statement in re.split(r"[;}]", "".join(outer)):
         words = statement.split()
-        if not words or words[0] in ("typedef", "static", "struct", "enum", "_Static_assert") and "(" not in statement:
-            continue
-        if words[0] in ("typedef", "static", "_Static_assert"):
+        if not words or words[0] in ("typedef", "static", "_Static_assert"):
             continue
         function = re.search(r"\b(hf_\w+)\s*\(", statement)
         variable = re.search(r"\bextern\b.*?\b(hf_\w+)\s*(?:\[[^\]]*\]\s*)*$", statement, re.S)

@@ -222,4 +222,5 @@ def main(words):
     return int(failed)
 
 
-sys.exit(main(sys.argv[1:]))
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

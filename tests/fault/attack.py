@@ -35,7 +35,7 @@ import time
 from pathlib import Path
 
 import attack_cases as cases
-from attack_files import has_changed, is_temporary, names_in, open_ranges, records_of, rows_of
+from attack_files import has_changed, is_temporary, lapack_of, names_in, open_ranges, records_of, rows_of
 
 HERE = Path(__file__).resolve().parent
 LIMIT_S = 60  # a command that takes longer hangs
@@ -320,14 +320,13 @@ def judge_flip(place, source, words, whole, told, path, data, inside):
     return wrong + [f"{n} is left" for n in names_in(place.out) if is_temporary(n)]
 
 
-def machine(o):
+def machine(o, root):
     """Returns what was attacked, how, and on which machine."""
     said = subprocess.run([o.program, "version"], capture_output=True, text=True, check=True).stdout.splitlines()[0]
-    lapack = os.path.realpath("/etc/alternatives/liblapack.so.3-x86_64-linux-gnu")
     processor = re.search(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(), re.M)
     return [f"{said}; attack.py --seed {o.seed} --kills {o.kills} --calls {o.calls} --flips {o.flips}",
             f"{processor.group(1) if processor else 'unknown'}, {os.cpu_count()} cores; Linux {os.uname().release}; "
-            f"{'/'.join(lapack.split('/')[-2:])}", ""]
+            f"{lapack_of(root / 'base/r.h5')}", ""]
 
 
 def main():
@@ -370,7 +369,7 @@ def main():
 
     with concurrent.futures.ThreadPoolExecutor(o.jobs) as pool:
         found = [case for part in pool.map(work, range(o.jobs)) for case in part]
-    lines = machine(o)
+    lines = machine(o, root)
     for kind, number, done, outcome, wrong in found:
         lines += [f"violation: seed {o.seed}, {kind}:{number}, {done}: {' '.join(words.split())}" for words in wrong]
         if o.only:

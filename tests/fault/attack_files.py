@@ -1,8 +1,13 @@
 """Reads files of hifdm for attack.py: names, rows, records, and the bytes that no checksum covers."""
 import re
 import struct
+import sys
+from pathlib import Path
 
 import h5py
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
+from expect import attributes  # noqa: E402
 
 
 def is_temporary(name):
@@ -25,14 +30,17 @@ def rows_of(folder, finished=False):
     return rows
 
 
-def attributes_of(path):
-    """Returns {(object, attribute): value} of a result, without times and without the attributes of the root, which
-    describe its session."""
-    found = {}
+def lapack_of(path):
+    """The end of the path of the LAPACK that a result was computed with."""
     with h5py.File(path) as file:
-        file.visititems(lambda name, item: found.update({(name, k): str(v) for k, v in item.attrs.items()
-                                                         if not k.endswith("_s") and name != "case"}))
-    return found
+        name = file.attrs["lapack"]
+    return "/".join(getattr(name, "decode", lambda: name)().split("/")[-2:])
+
+
+def attributes_of(path):
+    """What expect.py compares of the attributes of a result."""
+    with h5py.File(path) as file:
+        return attributes(file)
 
 
 def records_of(path):

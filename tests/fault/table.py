@@ -18,6 +18,7 @@ import time
 from pathlib import Path
 
 import faults
+from attack_files import lapack_of
 
 BEGIN, END = "<!-- tests/fault/table.py --write: begin -->", "<!-- tests/fault/table.py --write: end -->"
 HEAD = "| fault | stage or command | exit status | what remains | the same command afterwards |"
@@ -137,11 +138,8 @@ def differences(outcomes, measured):
 
 def measured_with(program, folder):
     """Returns a line about the machine."""
-    show = "import h5py, sys; v = h5py.File(sys.argv[1])['/'].attrs['lapack']; print(getattr(v, 'decode', lambda: v)())"
-    lapack = subprocess.run(["/usr/bin/python3", "-c", show, folder / "base/r.h5"], capture_output=True, text=True,
-                            check=True).stdout.strip()
     blas = [os.path.realpath(p) for p in Path("/etc/alternatives").glob("libblas.so.3-*")]
-    named = ", ".join("/".join(p.split("/")[-2:]) for p in [lapack, *blas])
+    named = ", ".join([lapack_of(folder / "base/r.h5"), *("/".join(p.split("/")[-2:]) for p in blas)])
     kind = subprocess.run(["findmnt", "-n", "-o", "FSTYPE", "-T", folder], capture_output=True, text=True,
                           check=True).stdout.strip()
     version = said_by(program, "version").split()[1]
