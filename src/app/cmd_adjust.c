@@ -336,7 +336,8 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
 static hf_status command_adjust(const hf_options *o, FILE *file, hf_messages *messages)
 {
     if (!o->measured) return hf_error(messages, HF_BAD_USAGE, "'hifdm adjust' needs --measured FILE");
-    static job j;
+    static job j; /* too large for a small stack */
+    memset(&j, 0, sizeof j);
     hf_status status = execute(&j, o, messages);
     if (o->json)
         hf_adjust_print_json(&j, o, status, messages->text, file);

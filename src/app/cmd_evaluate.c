@@ -399,7 +399,9 @@ static hf_status check_options(const hf_options *o, hf_messages *messages)
 static hf_status command_evaluate(const hf_options *options, FILE *file, hf_messages *messages)
 {
     HF_TRY(check_options(options, messages));
-    static job j = {.best = -1};
+    static job j; /* too large for a small stack */
+    memset(&j, 0, sizeof j);
+    j.best = -1;
     const char *path = options->template_path ? options->template_path : options->output;
     hf_status status = execute(&j, options, path, file, messages);
     if (options->json)
