@@ -8,8 +8,8 @@ LIB_ROOMS := base linalg net truss surface solve search built case store run
 APP_ROOMS := out app
 
 # ---- What may be set on the command line -----------------------------------------------------------------------------
-VERSION := 0.2.0
-SOVERSION := 0
+VERSION := 0.3.0
+SOVERSION := 1
 BUILD ?= build
 PREFIX ?= /usr/local
 # Folder of the libraries below PREFIX; Debian's is lib/x86_64-linux-gnu.

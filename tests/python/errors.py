@@ -258,13 +258,13 @@ class Library(unittest.TestCase):
         folder = temp("broken/lib")
         shutil.copytree(os.path.dirname(_library.__file__), folder + "/python3/dist-packages/hifdm")
         os.makedirs(folder + "/some-linux-gnu")
-        os.symlink(os.path.realpath(_library.lib._name), folder + "/some-linux-gnu/libhifdm.so.0")
-        temp("broken/lib/libhifdm.so.0", "no library")
+        os.symlink(os.path.realpath(_library.lib._name), folder + "/some-linux-gnu/libhifdm.so.1")
+        temp("broken/lib/libhifdm.so.1", "no library")
         plain = {key: value for key, value in os.environ.items() if key != "HIFDM_LIBRARY"}
         out = subprocess.run([sys.executable, "-c", "from hifdm import _library; print(_library.lib._name)"], text=True,
                              capture_output=True, check=False,
                              env={**plain, "PYTHONPATH": folder + "/python3/dist-packages"})
-        self.assertIn("broken/lib/some-linux-gnu/libhifdm.so.0", out.stdout, out.stderr)
+        self.assertIn("broken/lib/some-linux-gnu/libhifdm.so.1", out.stdout, out.stderr)
 
 
 if __name__ == "__main__":

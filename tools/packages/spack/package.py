@@ -13,10 +13,10 @@ class Hifdm(MakefilePackage):
     """Form finding of cable nets with force densities: shape and pretension of mesh reflectors."""
 
     manual_download = True
-    url = f"file://{os.getcwd()}/hifdm-0.2.0.tar.gz"
+    url = f"file://{os.getcwd()}/hifdm-0.3.0.tar.gz"
     license("GPL-3.0-or-later")
 
-    version("0.2.0")
+    version("0.3.0")
 
     depends_on("c", type="build")
     depends_on("gmake", type="build")

@@ -63,10 +63,10 @@ def _candidates() -> list[str]:
         return [told]
     here = Path(__file__).resolve()
     lib = here.parents[3]  # of PREFIX/lib/pythonX/dist-packages/hifdm
-    places = [lib / "libhifdm.so.0", *lib.glob("*-linux-*/libhifdm.so.0")]
+    places = [lib / "libhifdm.so.1", *lib.glob("*-linux-*/libhifdm.so.1")]
     if (lib / "Makefile").exists():  # tools/python/hifdm in the sources
         places.append(lib / "build" / "libhifdm.so")
-    return [str(place) for place in places if place.exists()] + ["libhifdm.so.0"]
+    return [str(place) for place in places if place.exists()] + ["libhifdm.so.1"]
 
 
 @contextlib.contextmanager
