@@ -7,15 +7,15 @@
 
 #include <math.h>
 
-enum { N_GENERATION = 6, N_INDIVIDUAL = 5, N_GENE = 4 };
+enum { N_GENERATION = 6, N_INDIVIDUAL = 5, N_VARIABLE = 4 };
 
 struct run {
     struct net net;
     hf_model model;
     hf_optimize_settings settings;
     hf_optimiser ga;
-    double base_N[N_GENE];
-    int gene[N_GENE];
+    double base_N[N_VARIABLE];
+    int variable[N_VARIABLE];
 };
 
 static inline void open_run(struct run *r)
@@ -24,7 +24,8 @@ static inline void open_run(struct run *r)
     open_bow(&r->net);
     find_shape(&r->net);
     r->settings = small_ga(N_INDIVIDUAL, N_GENERATION);
-    r->model = (hf_model){.n_gene = N_GENE, .n_gene_group = 1, .gene_cable = r->gene, .gene_group = r->gene};
+    r->model = (hf_model){
+        .n_variable = N_VARIABLE, .n_variable_group = 1, .variable_cable = r->variable, .variable_group = r->variable};
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &r->model, r->base_N, &r->ga), HF_OK);
 }
 
@@ -40,8 +41,8 @@ static inline void fill(hf_optimiser *o)
     hf_population *g = &o->population;
     for (int i = 0; i < N_INDIVIDUAL; i++) {
         double psi_m = 0;
-        for (int k = 0; k < N_GENE; k++)
-            psi_m += fabs(g->design_N[i * N_GENE + k] - 0.1 * k);
+        for (int k = 0; k < N_VARIABLE; k++)
+            psi_m += fabs(g->design_N[i * N_VARIABLE + k] - 0.1 * k);
         if (g->pending[i])
             g->result[i] =
                 (hf_form_result){.status = i == N_INDIVIDUAL - 1 ? HF_NOT_CONVERGED : HF_OK, /* not all have a shape */
@@ -72,7 +73,7 @@ static inline hf_status begin_new(const char *path, struct run *r, hf_store **s,
     hf_messages *m = messages;
     HF_TRY(hf_store_create(path, 0, any_case(), &r->net.scene, NULL, 0, NULL, s, m));
     HF_TRY(hf_store_form(*s, &r->net.model, &r->net.work, NULL, m));
-    HF_TRY(hf_store_genes(*s, &r->model, &r->ga.population, m));
+    HF_TRY(hf_store_variables(*s, &r->model, &r->ga.population, m));
     return hf_store_publish(*s, &(hf_summary){0}, 1, m);
 }
 

@@ -19,8 +19,8 @@
 typedef struct {
     hf_messages said; /* errors and warnings, in words */
     hf_problem p;
-    double *best_N, *design_N; /* [n_gene], [N_DESIGN][n_gene] */
-    double *step;              /* [n_gene_group] */
+    double *best_N, *design_N; /* [n_variable], [N_DESIGN][n_variable] */
+    double *step;              /* [n_variable_group] */
 } thing;
 
 /* -1 to 1: splitmix64 */
@@ -37,11 +37,11 @@ static hf_status search(const char *path, thing *t)
     hf_form_result result[N_DESIGN];
     HF_TRY(hf_problem_open(path, NULL, 0, 0, &t->p, &t->said)); /* NULL, 0: no overrides; 0: all cores */
     const hf_model *m = &t->p.model;
-    size_t n = (size_t)m->n_gene; /* gene k is the pretension of the cable p.scene.cable_id[m->gene_cable[k]] */
+    size_t n = (size_t)m->n_variable; /* gene k is the pretension of the cable p.scene.cable_id[m->variable_cable[k]] */
 
     t->best_N = calloc(n + 1, sizeof(double));
     t->design_N = calloc(N_DESIGN * n + 1, sizeof(double));
-    t->step = calloc((size_t)m->n_gene_group + 1, sizeof(double));
+    t->step = calloc((size_t)m->n_variable_group + 1, sizeof(double));
     if (!t->best_N || !t->design_N || !t->step) return HF_NO_MEMORY;
     memcpy(t->best_N, t->p.base_N, n * sizeof(double)); /* the pretensions of the shape that was found */
 
@@ -49,10 +49,10 @@ static hf_status search(const char *path, thing *t)
     double size = 0.2, best_m = INFINITY;
     for (int round = 0; round < N_ROUND; round++) {
         for (int i = 0; i < N_DESIGN; i++) {
-            for (int g = 0; g < m->n_gene_group; g++) /* the first design of a round is the best so far */
+            for (int g = 0; g < m->n_variable_group; g++) /* the first design of a round is the best so far */
                 t->step[g] = i ? size * uniform(&state) : 0;
             for (size_t k = 0; k < n; k++) /* cables of a chain change alike, else they drag its nodes along it */
-                t->design_N[(size_t)i * n + k] = t->best_N[k] * (1 + t->step[m->gene_group[k]]);
+                t->design_N[(size_t)i * n + k] = t->best_N[k] * (1 + t->step[m->variable_group[k]]);
         }
         hf_batch_run(&t->p.batch, N_DESIGN, t->design_N, NULL, result); /* -> result[i].psi_m, .status, ... */
         int best = 0;

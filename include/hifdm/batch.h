@@ -5,7 +5,7 @@
  *
  *   hf_batch_create   allocates a workspace for each thread
  *   hf_batch_share    selects the solver and prepares what the threads share
- *   hf_batch_run      designs [n][n_gene] -> results [n], as often as needed
+ *   hf_batch_run      designs [n][n_variable] -> results [n], as often as needed
  *   hf_batch_free     frees all of it
  *
  * hf_batch_next does the work of hf_batch_run for the generations of an optimiser. tools/own_optimiser.c is a program
@@ -36,7 +36,7 @@ typedef struct {
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch);
 
 /* Evaluates the designs i = 0 ... n-1 with pending[i] != 0, or all of them if pending is NULL. design_N has the shape
- * [n][n_gene] and holds the values of the design variables, in N for boundary pretensions. The values of cables are
+ * [n][n_variable] and holds the values of the design variables, in N for boundary pretensions. The values of cables are
  * above 0. result [n] receives the results of the evaluated designs.
  *
  * Each design is one whole form-finding in one thread. A result depends neither on the number of threads nor on the
@@ -51,7 +51,7 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
  * called. */
 bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
 
-/* Selects the solver of all later evaluations and creates the data that its threads share. base_N [n_gene] is the
+/* Selects the solver of all later evaluations and creates the data that its threads share. base_N [n_variable] is the
  * design at which the shared Newton matrix is factored; the values of cables are above 0. If the solver is the paper's
  * iteration in vector lanes, the shared data are its plan. If each design is solved alone by hf_evaluate, nothing is
  * shared.
@@ -80,8 +80,9 @@ int hf_batch_default_threads(void); /* available cores */
  * library at run time, such as an interpreter, sets the two variables before it loads the library. */
 void hf_batch_wait_quietly(char *const *argv);
 
-/* Evaluates design_N [n_gene] in the calling thread; the result has the same bits as that of hf_batch_run. Returns the
- * workspace that holds the shape of the design until the next call with this batch. The batch owns the workspace. */
+/* Evaluates design_N [n_variable] in the calling thread; the result has the same bits as that of hf_batch_run. Returns
+ * the workspace that holds the shape of the design until the next call with this batch. The batch owns the
+ * workspace. */
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result);
 
 /* Frees the workspaces and the shared data of the solver, but not the evaluator. */

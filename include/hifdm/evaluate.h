@@ -74,32 +74,32 @@ typedef enum {
     HF_SETS_LENGTH,  /* law length with the target value L* = value */
     HF_SETS_CUT,     /* unstressed length of a cable of law elastic */
     HF_SETS_SUPPORT  /* displacement of a support along its direction */
-} hf_gene_sets;
-/* Returns what design variable i_gene sets. */
-hf_gene_sets hf_evaluate_sets(const hf_evaluator *evaluator, int i_gene);
+} hf_variable_sets;
+/* Returns what design variable i_variable sets. */
+hf_variable_sets hf_evaluate_sets(const hf_evaluator *evaluator, int i_variable);
 
 /* Returns true if the shape of a design does not depend on the start of its solver. It depends on the start only under
  * rule seeded without optimize.variables. */
 bool hf_evaluate_is_unique(const hf_evaluator *evaluator);
 
-/* Returns the number by which the value of design variable i_gene is divided to get a force density: L* in m for
+/* Returns the number by which the value of design variable i_variable is divided to get a force density: L* in m for
  * tensions, 1 for force densities. The variable must be one of a cable. */
-double hf_evaluate_divisor(const hf_evaluator *evaluator, int i_gene);
+double hf_evaluate_divisor(const hf_evaluator *evaluator, int i_variable);
 
 /* Allocates in the workspace what the objectives of the evaluator need. Call it once before designs are evaluated
  * there; it does nothing without objectives or when it was called before. hf_workspace_free frees the memory. Returns
  * HF_OK or HF_NO_MEMORY. */
 hf_status hf_evaluate_attend(const hf_evaluator *evaluator, hf_workspace *workspace);
 
-/* Finds the shape of design_N [model->n_gene], the values of the design variables, and leaves it in the workspace.
+/* Finds the shape of design_N [model->n_variable], the values of the design variables, and leaves it in the workspace.
  * Values of cables are above 0. Returns result->status. If it is not HF_OK, the design is infeasible, and psi_m and
  * merit are NaN. Without a shape (hf_status_has_shape) the tension ratios and the violation are NaN, too. A design with
  * a node that no taut cable holds is HF_SINGULAR. A design for which an objective has no value is HF_NOT_FINITE. */
 hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace,
                       hf_form_result *result);
 
-/* Writes laws, target values and first force densities of design_N [n_gene] into the workspace: the part of hf_evaluate
- * before the solver. */
+/* Writes laws, target values and first force densities of design_N [n_variable] into the workspace: the part of
+ * hf_evaluate before the solver. */
 void hf_evaluate_prepare(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace);
 /* Returns true if hf_evaluate_judge will read the shape in the workspace: for limits, for objectives, or because the
  * boundary tension ratio exceeds its maximum. */

@@ -96,8 +96,8 @@ const char *hf_flat_text(hf_flat *flat, const char *list, int i);
  * open:
  *
  *   end [n_cable][2], role [n_node], group, law [n_cable]
- *   gene_cable [n_gene]     cable of each design variable; -1: it displaces a support
- *   gene_leader [n_gene]    design variable with which it is linked
+ *   gene_cable [n_variable]     cable of each design variable; -1: it displaces a support
+ *   gene_leader [n_variable]    design variable with which it is linked
  *   set_start [n_set + 1], set_cable */
 int hf_flat_ints(const hf_flat *flat, const char *name, int *to);
 
@@ -105,7 +105,7 @@ int hf_flat_ints(const hf_flat *flat, const char *name, int *to);
  *
  *   theoretical_m [n_node][3]               target positions
  *   load_N [n_node][3] or none, target [n_cable], EA_N [n_cable] or none
- *   base, lower, upper [n_gene]             after hf_flat_form: initial design, and the bounds of optimize around it,
+ *   base, lower, upper [n_variable]         after hf_flat_form: initial design, and the bounds of optimize around it,
  *                                           infinite where a side is open
  *   position_m [n_node][3]; length_m, tension_N, q_N_per_m [n_cable]; result [n_result]
  *                                           of the last hf_flat_form or hf_flat_shape */
@@ -117,18 +117,18 @@ int hf_flat_reals(const hf_flat *flat, const char *name, double *to);
  * a case; HF_BAD_CASE for a section optimize that cannot start from the shape; HF_NO_MEMORY; HF_NO_LAPACK. */
 int hf_flat_form(hf_flat *flat);
 
-/* Evaluates n designs design [n][n_gene] on all cores, as `hifdm evaluate` does. figure [n_figure][n] receives a row
- * for each text of the list "figure"; the first row has the status of each design as a code. Returns HF_OK, also if
+/* Evaluates n designs design [n][n_variable] on all cores, as `hifdm evaluate` does. figure [n_figure][n] receives a
+ * row for each text of the list "figure"; the first row has the status of each design as a code. Returns HF_OK, also if
  * designs are infeasible; HF_BAD_CASE for a value that is not finite, or that is of a cable and not above zero;
  * HF_BAD_USAGE before hf_flat_form; HF_NO_MEMORY. */
 int hf_flat_evaluate(hf_flat *flat, int n, const double *design, double *figure);
 
-/* Finds the shape of one design [n_gene], which is then read with hf_flat_reals. Its status is in the result. Returns
- * the same status as hf_flat_evaluate. */
+/* Finds the shape of one design [n_variable], which is then read with hf_flat_reals. Its status is in the result.
+ * Returns the same status as hf_flat_evaluate. */
 int hf_flat_shape(hf_flat *flat, const double *design);
 
-/* Computes the derivatives of n designs [n][n_gene] by the design variables (hf_problem_slopes): slope
- * [n][n_slope][n_gene], NaN for infeasible designs. Returns the same status as hf_flat_evaluate, and HF_BAD_CASE if
+/* Computes the derivatives of n designs [n][n_variable] by the design variables (hf_problem_slopes): slope
+ * [n][n_slope][n_variable], NaN for infeasible designs. Returns the same status as hf_flat_evaluate, and HF_BAD_CASE if
  * there are no derivatives. */
 int hf_flat_slopes(hf_flat *flat, int n, const double *design, double *slope);
 

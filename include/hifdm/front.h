@@ -41,13 +41,13 @@ typedef struct {
 
 /* A front with its designs. */
 typedef struct {
-    int n_objective, n_gene, n_point; /* numbers of objectives, design variables and points */
-    int minimised;                    /* objective that is minimised under limits on the others; -1: all are */
-    int knee;                         /* point farthest below the line of the ends (hf_front_settle); -1: none */
-    double base[HF_OBJECTIVES_MAX];   /* objectives of the initial design; NaN: no value */
-    hf_front_point *point;            /* [n_point] by objective 0, then 1, then 2, ascending; failed ones last */
-    double *design;                   /* [n_point][n_gene] designs as of hf_evaluate; NaN for a failed point */
-    void *block;                      /* owned memory behind point and design */
+    int n_objective, n_variable, n_point; /* numbers of objectives, design variables and points */
+    int minimised;                        /* objective that is minimised under limits on the others; -1: all are */
+    int knee;                             /* point farthest below the line of the ends (hf_front_settle); -1: none */
+    double base[HF_OBJECTIVES_MAX];       /* objectives of the initial design; NaN: no value */
+    hf_front_point *point;                /* [n_point] by objective 0, then 1, then 2, ascending; failed ones last */
+    double *design;                       /* [n_point][n_variable] designs as of hf_evaluate; NaN for a failed point */
+    void *block;                          /* owned memory behind point and design */
 } hf_front;
 
 /* A front without its designs, as in a summary: n_row of n_point points. If there are more than HF_FRONT_POINTS_MAX
@@ -65,7 +65,7 @@ typedef struct {
 
 /* Allocates a front of n_point points with all values 0. Returns HF_OK or HF_NO_MEMORY. Call hf_front_free in either
  * case. */
-hf_status hf_front_create(int n_objective, int n_gene, int n_point, hf_front *front);
+hf_status hf_front_create(int n_objective, int n_variable, int n_point, hf_front *front);
 /* Frees points and designs; `minimised` and `knee` become -1. */
 void hf_front_free(hf_front *front);
 

@@ -34,7 +34,7 @@ typedef struct {
     int setting;         /* row of optimize.variables */
     int support_row;     /* row of the support that is displaced; -1: none */
     double direction[3]; /* unit vector of the displacement */
-} hf_gene;
+} hf_variable;
 
 /* A scene prepared for solving. "Row" stands for the index of a node in the model. */
 typedef struct {
@@ -67,16 +67,16 @@ typedef struct {
     /* Design variables: by default the pretensions of the boundary cables with a free end, otherwise those of
      * optimize.variables. If exactly two of their cables meet at a free node, the two are in one group, a chain.
      * Unequal changes inside a chain push its nodes along it; equal changes change its sag. */
-    int n_gene, n_gene_group; /* numbers of design variables and of chains */
-    int *gene_cable;          /* [n_gene] cable that it varies; -1: it displaces a support */
-    int *gene_group;          /* [n_gene] chain, 0 to n_gene_group-1 */
-    hf_gene *gene;            /* [n_gene] with optimize.variables; NULL: boundary pretensions under optimize.rule */
-    bool moves_supports;      /* some design variable displaces a support */
+    int n_variable, n_variable_group; /* numbers of design variables and of chains */
+    int *variable_cable;              /* [n_variable] cable that it varies; -1: it displaces a support */
+    int *variable_group;              /* [n_variable] chain, 0 to n_variable_group-1 */
+    hf_variable *variable; /* [n_variable] with optimize.variables; NULL: boundary pretensions under optimize.rule */
+    bool moves_supports;   /* some design variable displaces a support */
 
     /* Design variables that a symmetry or a row of optimize.variables links are a class. All change by the step of the
      * first. */
-    int n_leader;     /* number of classes, which is that of the independent design variables */
-    int *gene_leader; /* [n_gene] first design variable of the class; without links the variable itself */
+    int n_leader;         /* number of classes, which is that of the independent design variables */
+    int *variable_leader; /* [n_variable] first design variable of the class; without links the variable itself */
 
     /* Chains of at least two cables of law length between two supports, through free nodes with no other such cable.
      * Straight chains come first: their lengths L* do not exceed the distance of the supports. One path that is too
@@ -96,7 +96,7 @@ typedef struct {
     int *tie;                    /* [n_tie] cable ends at attachments, 2*cable + end (0 or 1), by cable */
     int *tie_attachment;         /* [n_tie] attachment of each */
 
-    void *block, *attachment_block, *gene_block; /* owned memory behind the arrays */
+    void *block, *attachment_block, *variable_block; /* owned memory behind the arrays */
 } hf_model;
 
 /* Builds a model from a checked scene with the laws that form->method puts in force. Returns HF_OK or HF_NO_MEMORY with
@@ -124,24 +124,24 @@ void hf_model_want_newton(hf_model *model);
  * Td. */
 double hf_model_reference_N(const hf_scene *scene, double pretension_N);
 
-/* Returns what design variable i_gene sets: HF_VARY_PRETENSION without optimize.variables. */
-static inline hf_vary hf_model_vary(const hf_model *model, int i_gene)
+/* Returns what design variable i_variable sets: HF_VARY_PRETENSION without optimize.variables. */
+static inline hf_vary hf_model_vary(const hf_model *model, int i_variable)
 {
-    return model->gene ? model->gene[i_gene].vary : HF_VARY_PRETENSION;
+    return model->variable ? model->variable[i_variable].vary : HF_VARY_PRETENSION;
 }
 
-/* Numbers the chains of the design variables (gene_group, n_gene_group) and unlinks the variables (gene_leader,
- * n_leader). For code that sets gene_cable. Returns HF_OK or HF_NO_MEMORY. */
-hf_status hf_model_group_genes(hf_model *model);
+/* Numbers the chains of the design variables (variable_group, n_variable_group) and unlinks the variables
+ * (variable_leader, n_leader). For code that sets variable_cable. Returns HF_OK or HF_NO_MEMORY. */
+hf_status hf_model_group_variables(hf_model *model);
 
-#define HF_GENE_NAME_SIZE 320 /* the ids of tables have at most 255 bytes */
+#define HF_VARIABLE_NAME_SIZE 320 /* the ids of tables have at most 255 bytes */
 
 /* Writes the name of a design variable in tables into text[size]: the id of its cable, or of its support followed by
  * .x, .y, .z or .normal. */
-void hf_model_gene_name(const hf_model *model, const hf_scene *scene, int i_gene, char *text, size_t size);
+void hf_model_variable_name(const hf_model *model, const hf_scene *scene, int i_variable, char *text, size_t size);
 
 /* Returns the unit of a design variable, "N", "N/m" or "m", a constant string. */
-const char *hf_model_gene_unit(const hf_model *model, int i_gene);
+const char *hf_model_variable_unit(const hf_model *model, int i_variable);
 
 /* Returns true if all indices of the model obey their invariants. For asserts and tests. */
 bool hf_model_is_valid(const hf_model *model);

@@ -214,17 +214,17 @@ typedef struct {
     double mutation_high, mutation_low;   /* mutation rates Pm1 and Pm2 (METHOD section 7, M10) */
     hf_variation variation;               /* how the genetic algorithm makes children */
     int elites; /* number of best individuals; chain: survive unchanged, difference: are moved by crossovers */
-    double stagnation_tolerance_m;   /* the generations end if the best merit improves by less than this */
-    int stagnation_generations;      /* number of generations over which the improvement is measured */
-    int polish_iterations;           /* maximum number of steps of Levenberg-Marquardt */
-    hf_compare compare_lm;           /* whether Levenberg-Marquardt follows method ga for comparison */
-    hf_symmetry symmetry;            /* mirror planes that link design variables */
-    hf_keep store;                   /* which individuals a result file keeps */
-    int store_every;                 /* HF_KEEP_EVERY: generations 0, n, 2n, ... are kept */
-    int n_variable, n_goal, n_limit; /* numbers of rows; without rows: boundary pretensions, psi, no limits */
-    hf_variable_settings variable[HF_DESIGN_ROWS_MAX]; /* [n_variable] rows of optimize.variables */
-    hf_goal_settings goal[HF_DESIGN_ROWS_MAX];         /* [n_goal] rows of optimize.goals */
-    hf_limit_settings limit[HF_DESIGN_ROWS_MAX];       /* [n_limit] rows of optimize.limits */
+    double stagnation_tolerance_m;       /* the generations end if the best merit improves by less than this */
+    int stagnation_generations;          /* number of generations over which the improvement is measured */
+    int polish_iterations;               /* maximum number of steps of Levenberg-Marquardt */
+    hf_compare compare_lm;               /* whether Levenberg-Marquardt follows method ga for comparison */
+    hf_symmetry symmetry;                /* mirror planes that link design variables */
+    hf_keep store;                       /* which individuals a result file keeps */
+    int store_every;                     /* HF_KEEP_EVERY: generations 0, n, 2n, ... are kept */
+    int n_variable_row, n_goal, n_limit; /* numbers of rows; without rows: boundary pretensions, psi, no limits */
+    hf_variable_settings variable_row[HF_DESIGN_ROWS_MAX]; /* [n_variable_row] rows of optimize.variables */
+    hf_goal_settings goal[HF_DESIGN_ROWS_MAX];             /* [n_goal] rows of optimize.goals */
+    hf_limit_settings limit[HF_DESIGN_ROWS_MAX];           /* [n_limit] rows of optimize.limits */
     int n_objective;                               /* number of rows of optimize.objectives: 0, or 2 or 3 for a front */
     hf_goal_settings objective[HF_OBJECTIVES_MAX]; /* [n_objective] rows of optimize.objectives */
     int front_points;                              /* number of points of a front that Levenberg-Marquardt finds */

@@ -6,7 +6,7 @@
  *
  *   hf_store_create or hf_store_resume     provenance, case, scene
  *   hf_store_form                          shape of the form-finding
- *   hf_store_genes, hf_store_generation    generations, first into the journal; hf_store_publish between them
+ *   hf_store_variables, hf_store_generation  generations, first into the journal; hf_store_publish between them
  *   hf_store_best, hf_store_front, ...     shapes and results of the later stages
  *   hf_store_finish                        summary; the file gets its name
  *
@@ -155,18 +155,18 @@ hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspa
 
 /* Writes the initial design, the bounds and the cables of the design variables. Call it once the population is created;
  * a resumed store already has them and writes nothing. */
-hf_status hf_store_genes(hf_store *store, const hf_model *model, const hf_population *population,
-                         hf_messages *messages);
+hf_status hf_store_variables(hf_store *store, const hf_model *model, const hf_population *population,
+                             hf_messages *messages);
 
 /* Appends the generation that hf_optimiser_tell has just ranked. After HF_OK it survives the end of this process, and
  * the same build can restore it (hf_store_restore). After HF_IO all generations before it survive, provided that
- * hf_store_publish was called after hf_store_genes. */
+ * hf_store_publish was called after hf_store_variables. */
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_population *population,
                               hf_messages *messages);
 
-/* Reads the initial design base_N [n_gene] with which the genetic algorithm of a resumed store started. The values that
- * this machine computes may differ in the last bits. base_N is unchanged if the store has none. */
-hf_status hf_store_restore_base(hf_store *store, int n_gene, double *base_N, hf_messages *messages);
+/* Reads the initial design base_N [n_variable] with which the genetic algorithm of a resumed store started. The values
+ * that this machine computes may differ in the last bits. base_N is unchanged if the store has none. */
+hf_status hf_store_restore_base(hf_store *store, int n_variable, double *base_N, hf_messages *messages);
 
 /* Restores an optimiser that was just created from the design of hf_store_restore_base: its state before
  * hf_optimiser_tell of the last generation in the store. The figures of the best individual so far go into the summary.
@@ -188,7 +188,7 @@ hf_status hf_store_restore_polish(hf_store *store, double *wall_s, size_t *n, co
 hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_once, hf_messages *messages);
 
 /* Writes the shape in the workspace as that of stage HF_STAGE_OPTIMIZE or HF_STAGE_POLISH, with its design design_N
- * [model->n_gene]. Call it once per stage. */
+ * [model->n_variable]. Call it once per stage. */
 hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
                         const double *design_N, hf_messages *messages);
 
@@ -252,9 +252,10 @@ hf_status hf_store_read_state(const char *path, const char *name, hf_shape *shap
 /* Frees the arrays of a shape. */
 void hf_shape_free(hf_shape *shape);
 
-/* Reads the front, and *gene, the names of its design variables, [n_gene] of *gene_size bytes each. Returns HF_IO also
- * if there is no front. Free the front by hf_front_free and *gene by free in any case. */
-hf_status hf_store_read_front(const char *path, hf_front *front, char **gene, size_t *gene_size, hf_messages *messages);
+/* Reads the front, and *variable, the names of its design variables, [n_variable] of *variable_size bytes each. Returns
+ * HF_IO also if there is no front. Free the front by hf_front_free and *variable by free in any case. */
+hf_status hf_store_read_front(const char *path, hf_front *front, char **variable, size_t *variable_size,
+                              hf_messages *messages);
 
 /* Writes the keys in which the case of a result differs from this one into text[size], as hf_config_differences does.
  * Returns their number; 0 also if the result cannot be read. */

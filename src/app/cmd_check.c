@@ -169,15 +169,15 @@ static void print_variables(const hf_problem *p, FILE *f)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     const hf_model *m = &p->model;
-    for (int row = 0; row < o->n_variable && m->gene; row++) {
-        const hf_variable_settings *s = &o->variable[row];
+    for (int row = 0; row < o->n_variable_row && m->variable; row++) {
+        const hf_variable_settings *s = &o->variable_row[row];
         int n = 0, last = 0;
-        for (int k = 0; k < m->n_gene; k++) {
-            if (m->gene[k].setting != row) continue;
+        for (int k = 0; k < m->n_variable; k++) {
+            if (m->variable[k].setting != row) continue;
             last = k;
             n++;
         }
-        const char *unit = hf_model_gene_unit(m, last);
+        const char *unit = hf_model_variable_unit(m, last);
         fprintf(f, "                variables.%d: %s of %s: %d in %s", row, hf_vary_word[s->vary], s->set, n, unit);
         if (!isnan(s->range_ratio)) fprintf(f, ", range %g %%", 100 * s->range_ratio);
         if (isnan(s->range_ratio) && !isnan(s->range)) fprintf(f, ", range %g", s->range);
@@ -297,7 +297,7 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
     if (evolves)
         fprintf(f,
                 "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
-                hf_rule_word[o->rule], p->model.n_gene, o->population, o->generations, (unsigned long long)o->seed);
+                hf_rule_word[o->rule], p->model.n_variable, o->population, o->generations, (unsigned long long)o->seed);
     bool is_result = hf_optimiser_plan_of(o).ends_with_polish;
     bool is_front = optimizes && o->n_objective > 0;
     if (is_front) print_objectives(p, f);
@@ -312,7 +312,7 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
                                                    : "for comparison");
     if (optimizes && o->symmetry != HF_SYMMETRY_NONE)
         fprintf(f, "                symmetry: %s, %s; %d independent genes of %d\n", hf_symmetry_word[o->symmetry],
-                hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_gene);
+                hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_variable);
     if (p->states.n) print_states(&p->states, f);
     print_tolerance(c, f);
     print_pattern(p, f);
@@ -372,7 +372,7 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
     bool evolves = v && hf_optimiser_plan_of(&p->settings.optimize).kind;
     if (evolves) HF_TRY(engine_bytes(v, &shared, &lanes));
     double workspaces = v ? threads + 1 : 1, bare = (double)hf_workspace_bytes(&without);
-    double population = evolves ? (double)p->settings.optimize.population : 0, genes = 8.0 * m->n_gene;
+    double population = evolves ? (double)p->settings.optimize.population : 0, variables = 8.0 * m->n_variable;
     double newton = (double)hf_workspace_bytes(m) - bare;
     const char *without_ga = v ? "none (no genetic algorithm)" : "none (no optimisation)";
     char what[64];
@@ -384,11 +384,11 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
     print_allocation("", "Newton matrices in them", workspaces * newton, "none (no law iterates, or struts)", f);
     print_allocation("", "matrix shared by all threads", (double)shared, evolves ? "none" : without_ga, f);
     print_allocation("", "lanes of designs", (double)lanes * threads, evolves ? "none" : without_ga, f);
-    print_allocation("", "population", 2 * population * (genes + (double)sizeof(hf_form_result)), "none", f);
+    print_allocation("", "population", 2 * population * (variables + (double)sizeof(hf_form_result)), "none", f);
     print_allocation("", "sensitivities of Levenberg-Marquardt", polish_bytes(p, v), "none", f);
     if (evolves)
         print_allocation("result file", "generations, at most",
-                         population * (genes + 70) * p->settings.optimize.generations, "", f);
+                         population * (variables + 70) * p->settings.optimize.generations, "", f);
     return HF_OK;
 }
 
@@ -550,7 +550,7 @@ static hf_status check(hf_problem *p, const hf_check_request *q, double *most_s,
     HF_TRY(hf_tolerance_stage_check(p, false, messages));
     HF_TRY(hf_problem_allocate(p, messages));
     hf_evaluator evaluator = hf_problem_evaluator(p);
-    const hf_evaluator *v = p->settings.has_optimize && p->model.n_gene > 0 ? &evaluator : NULL;
+    const hf_evaluator *v = p->settings.has_optimize && p->model.n_variable > 0 ? &evaluator : NULL;
     hf_print_line(f, "%s: valid", q->name);
     print_scene(p, f);
     if (p->settings.form.prestress == HF_PRESTRESS_EXACT) print_prestress(&p->scene, f);

@@ -1,6 +1,6 @@
 /* `hifdm evaluate` evaluates a table of designs, for optimisers and parameter studies outside this program.
  *
- * in : one design per row, one column per design variable, with its name (hf_model_gene_name). Without
+ * in : one design per row, one column per design variable, with its name (hf_model_variable_name). Without
  *      optimize.variables, there is a column for each boundary cable with a free end: its id, with its pretension
  *      in N. The columns may be in any order. An optional column `id` names the rows.
  * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation,merit, and one
@@ -40,20 +40,20 @@
 typedef struct {
     hf_problem problem;
     hf_csv table;
-    char (*gene)[HF_GENE_NAME_SIZE]; /* [n_gene], names of the design variables */
-    const char **name;               /* [n_gene + 1], names of the columns: those of the design variables, then "id" */
-    int *where;                      /* [n_gene + 1], their columns in the table, or -1 */
-    double *design_N;                /* [n_row][n_gene] */
-    hf_form_result *result;          /* [n_row] */
-    double *derivative;              /* [n_feasible][n_slope][n_gene]; NULL without --jacobian */
-    int n_feasible, best;            /* best: row of the minimum merit, or -1; -1 with objectives */
+    char (*variable)[HF_VARIABLE_NAME_SIZE]; /* [n_variable], names of the design variables */
+    const char **name;      /* [n_variable + 1], names of the columns: those of the design variables, then "id" */
+    int *where;             /* [n_variable + 1], their columns in the table, or -1 */
+    double *design_N;       /* [n_row][n_variable] */
+    hf_form_result *result; /* [n_row] */
+    double *derivative;     /* [n_feasible][n_slope][n_variable]; NULL without --jacobian */
+    int n_feasible, best;   /* best: row of the minimum merit, or -1; -1 with objectives */
     double wall_s;
 } job;
 
 static void job_free(job *j)
 {
     hf_csv_free(&j->table);
-    free(j->gene);
+    free(j->variable);
     free(j->name);
     free(j->where);
     free(j->design_N);
@@ -66,7 +66,7 @@ static void job_free(job *j)
 static hf_status no_memory(const job *j, hf_messages *messages)
 {
     return hf_error(messages, HF_NO_MEMORY, "out of memory for %d designs of %d variables", j->table.n_row,
-                    j->problem.model.n_gene);
+                    j->problem.model.n_variable);
 }
 
 /* ---- the table ---- */
@@ -76,21 +76,21 @@ static hf_status no_memory(const job *j, hf_messages *messages)
 static hf_status name_columns(job *j, hf_messages *messages)
 {
     const hf_model *m = &j->problem.model;
-    size_t n = (size_t)m->n_gene + 1;
-    j->gene = calloc(n, sizeof *j->gene);
+    size_t n = (size_t)m->n_variable + 1;
+    j->variable = calloc(n, sizeof *j->variable);
     j->name = calloc(n, sizeof *j->name);
     j->where = calloc(n, sizeof *j->where);
-    if (!j->gene || !j->name || !j->where) return no_memory(j, messages);
-    for (int k = 0; k < m->n_gene; k++) {
-        hf_model_gene_name(m, &j->problem.scene, k, j->gene[k], sizeof j->gene[k]);
-        j->name[k] = j->gene[k];
+    if (!j->variable || !j->name || !j->where) return no_memory(j, messages);
+    for (int k = 0; k < m->n_variable; k++) {
+        hf_model_variable_name(m, &j->problem.scene, k, j->variable[k], sizeof j->variable[k]);
+        j->name[k] = j->variable[k];
     }
-    j->name[m->n_gene] = "id";
+    j->name[m->n_variable] = "id";
     /* Cables have different ids, and so have supports. Only a cable and a variable of a support can have the same
      * name. */
-    for (int k = 0; k < m->n_gene; k++) {
-        for (int i = 0; m->gene_cable[k] < 0 && i < m->n_gene; i++)
-            if (m->gene_cable[i] >= 0 && !strcmp(j->name[i], j->name[k]))
+    for (int k = 0; k < m->n_variable; k++) {
+        for (int i = 0; m->variable_cable[k] < 0 && i < m->n_variable; i++)
+            if (m->variable_cable[i] >= 0 && !strcmp(j->name[i], j->name[k]))
                 return hf_error(messages, HF_BAD_CASE,
                                 "optimize.variables: cable '%s' has the name of a variable of a support; rename it",
                                 j->name[i]);
@@ -101,7 +101,7 @@ static hf_status name_columns(job *j, hf_messages *messages)
 /* Returns the id that the user gave to a row, or NULL without a column `id`. */
 static const char *row_id(const job *j, int row)
 {
-    int column = j->where[j->problem.model.n_gene];
+    int column = j->where[j->problem.model.n_variable];
     return column < 0 ? NULL : hf_csv_cell(&j->table, row, column);
 }
 
@@ -109,11 +109,11 @@ static const char *row_id(const job *j, int row)
 static void read_row(job *j, int row)
 {
     hf_csv *t = &j->table;
-    double *design = j->design_N + (size_t)row * (size_t)j->problem.model.n_gene;
-    for (int k = 0; k < j->problem.model.n_gene; k++) {
+    double *design = j->design_N + (size_t)row * (size_t)j->problem.model.n_variable;
+    for (int k = 0; k < j->problem.model.n_variable; k++) {
         if (j->where[k] < 0) continue;
         design[k] = hf_csv_number(t, row, j->where[k], row_id(j, row), j->name[k]);
-        bool is_cable = j->problem.model.gene_cable[k] >= 0; /* the value for a support may have either sign */
+        bool is_cable = j->problem.model.variable_cable[k] >= 0; /* the value for a support may have either sign */
         if (!is_cable || design[k] > 0 || isnan(design[k])) continue;
         char what[512];
         snprintf(what, sizeof what, "%s must be above zero, not ", j->name[k]);
@@ -123,17 +123,17 @@ static void read_row(job *j, int row)
 
 static hf_status read_table(job *j, const char *path, hf_messages *messages)
 {
-    int n_gene = j->problem.model.n_gene;
+    int n_variable = j->problem.model.n_variable;
     hf_csv *t = &j->table;
-    int most = n_gene > j->problem.scene.n_cable ? n_gene : j->problem.scene.n_cable;
+    int most = n_variable > j->problem.scene.n_cable ? n_variable : j->problem.scene.n_cable;
     hf_status status = hf_csv_read(path, most + COLUMN_SPARE, t, messages);
     /* A fault in one line does not end the reading: one run reports the faults of all lines. */
     if (status == HF_NO_MEMORY || t->n_row == 0 || t->n_fault > HF_FAULT_MAX) return status;
     t->names_are_ids = true;
-    status = hf_csv_find_columns(t, j->name, n_gene + 1, n_gene, j->where);
+    status = hf_csv_find_columns(t, j->name, n_variable + 1, n_variable, j->where);
     if (t->n_fault > HF_FAULT_MAX) return status;
     size_t n = (size_t)t->n_row;
-    j->design_N = malloc(n * (size_t)n_gene * sizeof *j->design_N);
+    j->design_N = malloc(n * (size_t)n_variable * sizeof *j->design_N);
     j->result = calloc(n, sizeof *j->result);
     if (!j->design_N || !j->result) return no_memory(j, messages);
     for (int row = 0; row < t->n_row; row++)
@@ -177,7 +177,7 @@ static hf_status evaluate(job *j, int threads, hf_messages *messages)
 
 static hf_status differentiate(job *j, hf_messages *messages)
 {
-    size_t n = (size_t)hf_problem_n_slope(&j->problem) * (size_t)j->problem.model.n_gene;
+    size_t n = (size_t)hf_problem_n_slope(&j->problem) * (size_t)j->problem.model.n_variable;
     j->derivative = calloc((size_t)j->n_feasible + 1, n * sizeof *j->derivative);
     if (!j->derivative) return no_memory(j, messages);
     return hf_problem_slopes(&j->problem, j->table.n_row, j->design_N, j->result, j->derivative, messages);
@@ -242,9 +242,9 @@ static void write_results(const void *context, FILE *f)
     }
 }
 
-static void write_gene_names(const job *j, FILE *f)
+static void write_variable_names(const job *j, FILE *f)
 {
-    for (int k = 0; k < j->problem.model.n_gene; k++) {
+    for (int k = 0; k < j->problem.model.n_variable; k++) {
         fputc(',', f);
         hf_csv_write_id(j->name[k], f);
     }
@@ -254,17 +254,17 @@ static void write_gene_names(const job *j, FILE *f)
 static void write_jacobian(const void *context, FILE *f)
 {
     const job *j = context;
-    int n_gene = j->problem.model.n_gene;
+    int n_variable = j->problem.model.n_variable;
     const double *value = j->derivative;
     fputs("id,figure", f);
-    write_gene_names(j, f);
+    write_variable_names(j, f);
     for (int i = 0; i < j->table.n_row; i++) {
         if (j->result[i].status != HF_OK) continue;
         for (int k = 0; k < hf_problem_n_slope(&j->problem); k++) {
             char name[HF_GOAL_NAME_SIZE];
             write_row_id(j, i, f);
             fprintf(f, ",%s", hf_problem_slope_name(&j->problem, k, name));
-            for (int gene = 0; gene < n_gene; gene++)
+            for (int variable = 0; variable < n_variable; variable++)
                 write_number(*value++, f);
             fputc('\n', f);
         }
@@ -275,9 +275,9 @@ static void write_template(const void *context, FILE *f)
 {
     const job *j = context;
     fputs("id", f);
-    write_gene_names(j, f);
+    write_variable_names(j, f);
     fputs("base", f);
-    for (int k = 0; k < j->problem.model.n_gene; k++)
+    for (int k = 0; k < j->problem.model.n_variable; k++)
         write_number(j->problem.base_N[k], f);
     fputc('\n', f);
 }
@@ -354,7 +354,7 @@ static hf_status check_output(const job *j, const hf_options *o, const char *pat
 static hf_status execute(job *j, const hf_options *o, const char *path, FILE *file, hf_messages *messages)
 {
     HF_TRY(hf_problem_load(o->file, NULL, o->set, o->n_set, NULL, &j->problem, messages));
-    if (j->problem.model.n_gene == 0)
+    if (j->problem.model.n_variable == 0)
         return hf_error(messages, HF_BAD_CASE, "%s: no boundary cable has a free end: there is nothing to set",
                         o->file);
     HF_TRY(check_output(j, o, path, messages));
@@ -409,8 +409,8 @@ static hf_status command_evaluate(const hf_options *options, FILE *file, hf_mess
     else if (status == HF_OK && path && !options->quiet && options->designs)
         print_summary(&j, path, file);
     else if (status == HF_OK && path && !options->quiet)
-        hf_print_line(file, "%d %s after form-finding in %s", j.problem.model.n_gene,
-                      j.problem.model.gene ? "variables; their values" : "adjustable cables; their tensions", path);
+        hf_print_line(file, "%d %s after form-finding in %s", j.problem.model.n_variable,
+                      j.problem.model.variable ? "variables; their values" : "adjustable cables; their tensions", path);
     job_free(&j);
     return status;
 }

@@ -102,8 +102,8 @@ hf_status hf_near_create(const hf_built *b, hf_workspace *w, hf_near *near)
 {
     hf_arena arena = {0};
     *near = (hf_near){.built = b, .model = b->model};
-    near->model.n_gene = near->model.n_leader = near->model.n_gene_group = 0;
-    near->model.gene = NULL;
+    near->model.n_variable = near->model.n_leader = near->model.n_variable_group = 0;
+    near->model.variable = NULL;
     near->evaluator = (hf_evaluator){.model = &near->model, .form = &b->form, .rule = HF_RULE_TENSION};
     choose_kernels(near);
     hf_near_prepare(near, &(hf_built_net){0}, w);
@@ -177,7 +177,7 @@ void hf_near_look(const hf_near *near, hf_near_lanes *l)
     const hf_form_settings *form = &near->built->form;
     double squared[HF_LANES], gap_squared[HF_LANES] = {0};
     double scale = c->n_pull ? form->residual_tolerance * m->reference_N / form->coupling.tof_m : 0;
-    near->find(m, l->lanes.x_m, l->cut_m, l->stiffness_N_per_m, l->tension_N, l->lanes.gene);
+    near->find(m, l->lanes.x_m, l->cut_m, l->stiffness_N_per_m, l->tension_N, l->lanes.variable);
     c->kernels->forces(c, &l->lanes, squared);
     if (c->n_pull) c->kernels->couple(c, &l->lanes, gap_squared);
     l->is_measured = false;
@@ -309,7 +309,7 @@ static bool accept_slack(const hf_near *near, const hf_near_lanes *l, int lane, 
     hf_near_prepare(near, net, w);
     unload(near, l, lane, w);
     for (int e = 0; e < m->n_cable; e++)
-        w->q_N_per_m[e] = l->lanes.gene[e * HF_LANES + lane];
+        w->q_N_per_m[e] = l->lanes.variable[e * HF_LANES + lane];
     return accept(near, l->steps[lane], w, r);
 }
 

@@ -221,8 +221,8 @@ static void check_variables(const hf_optimize_settings *o, hf_config_faults *f)
 {
     static const char list[] = "optimize.variables";
     static const char *const of_default[] = {"optimize.range_N", "optimize.min_tension_N", "optimize.max_tension_N"};
-    for (int i = 0; i < o->n_variable; i++) {
-        const hf_variable_settings *v = &o->variable[i];
+    for (int i = 0; i < o->n_variable_row; i++) {
+        const hf_variable_settings *v = &o->variable_row[i];
         bool has_bounds = !isinf(v->lower) || !isinf(v->upper);
         hf_config_check_set(f, list, i, v->set);
         if (isnan(v->range) && isnan(v->range_ratio) && !has_bounds)
@@ -236,7 +236,7 @@ static void check_variables(const hf_optimize_settings *o, hf_config_faults *f)
             hf_config_fault_in_row(f, list, i, "link",
                                    "cannot be symmetry with support_xyz: mirrored supports move apart along x or y");
     }
-    if (o->n_variable == 0) return;
+    if (o->n_variable_row == 0) return;
     for (size_t k = 0; k < sizeof of_default / sizeof *of_default; k++)
         if (hf_config_is_given(f, of_default[k]))
             hf_config_fault_of(

@@ -436,7 +436,7 @@ static const hf_field truss_heat_field[] = {
             sizeof keys / sizeof *keys, help                                                                           \
     }
 const hf_list hf_list_table[] = {
-    LIST("variables", n_variable, variable, HF_DESIGN_ROWS_MAX, variable_field, N_VARIABLE_FIELD,
+    LIST("variables", n_variable_row, variable_row, HF_DESIGN_ROWS_MAX, variable_field, N_VARIABLE_FIELD,
          "What a design varies; without rows the pretensions of the boundary, within range_N by rule"),
     LIST("goals", n_goal, goal, HF_DESIGN_ROWS_MAX, goal_field, N_GOAL_FIELD,
          "What a design should reach; without rows psi"),

@@ -103,18 +103,18 @@ static void warm_up(void)
 /* ---- loading ---- */
 
 /* Variables that OpenBLAS reads while it is loaded. They belong to the user and get their values back afterwards. */
-static const char *const variable[] = {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"};
-enum { N_VARIABLE = sizeof variable / sizeof *variable };
+static const char *const setting[] = {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"};
+enum { N_SETTING = sizeof setting / sizeof *setting };
 
 static void open_library(char *reasons, size_t size)
 {
-    char *old[N_VARIABLE];
-    bool is_set[N_VARIABLE];
+    char *old[N_SETTING];
+    bool is_set[N_SETTING];
     size_t n = 0;
-    for (int i = 0; i < N_VARIABLE; i++) {
-        const char *value = getenv(variable[i]);
+    for (int i = 0; i < N_SETTING; i++) {
+        const char *value = getenv(setting[i]);
         old[i] = value ? strdup(value) : NULL;
-        if (!value || old[i]) setenv(variable[i], "1", 1); /* if strdup fails, the user's value stays */
+        if (!value || old[i]) setenv(setting[i], "1", 1); /* if strdup fails, the user's value stays */
         is_set[i] = !value || old[i];
     }
     for (int i = 0; i < N_CANDIDATE && !library; i++) {
@@ -129,11 +129,11 @@ static void open_library(char *reasons, size_t size)
             n += (size_t)snprintf(reasons + n, size - n, "%s%s%s", n ? "; " : "", reason ? reason : candidate[i],
                                   reason ? "" : " has not all routines that are needed");
     }
-    for (int i = 0; i < N_VARIABLE; i++) {
+    for (int i = 0; i < N_SETTING; i++) {
         if (old[i])
-            setenv(variable[i], old[i], 1);
+            setenv(setting[i], old[i], 1);
         else if (is_set[i])
-            unsetenv(variable[i]);
+            unsetenv(setting[i]);
         free(old[i]);
     }
 }

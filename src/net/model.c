@@ -51,9 +51,9 @@ static void lay_out(hf_arena *a, const hf_scene *s, hf_method method, hf_model *
     m->target = hf_arena_take(a, e, sizeof(double));
     m->EA_N = needs_EA(s, method) ? hf_arena_take(a, e, sizeof(double)) : NULL;
     m->start_q_N_per_m = hf_arena_take(a, e, sizeof(double));
-    m->gene_cable = hf_arena_take(a, e, sizeof(int));
-    m->gene_group = hf_arena_take(a, e, sizeof(int));
-    m->gene_leader = hf_arena_take(a, e, sizeof(int));
+    m->variable_cable = hf_arena_take(a, e, sizeof(int));
+    m->variable_group = hf_arena_take(a, e, sizeof(int));
+    m->variable_leader = hf_arena_take(a, e, sizeof(int));
     m->chain_start = hf_arena_take(a, e + 1, sizeof(int));
     m->chain_cable = hf_arena_take(a, e, sizeof(int));
     m->chain_of_row = hf_arena_take(a, n, sizeof(int));
@@ -145,7 +145,7 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
         m->start_q_N_per_m[e] = q;
         m->has_strut |= q < 0;
         if (s->group[e] == HF_GROUP_BOUNDARY && (m->end_row[2 * e] < m->n_free || m->end_row[2 * e + 1] < m->n_free))
-            m->gene_cable[m->n_gene++] = e;
+            m->variable_cable[m->n_variable++] = e;
     }
     bool iterates = false, is_convex = !m->has_strut;
     for (int e = 0; e < m->n_cable; e++) {
@@ -341,32 +341,34 @@ void hf_model_chain_name(const hf_model *m, const hf_scene *scene, int i_chain, 
 
 /* ---- groups of design variables ---- */
 
-hf_status hf_model_group_genes(hf_model *m)
+hf_status hf_model_group_variables(hf_model *m)
 {
-    int *scratch = malloc(((size_t)m->n_node * 3 + (size_t)m->n_gene * 2) * sizeof *scratch);
+    int *scratch = malloc(((size_t)m->n_node * 3 + (size_t)m->n_variable * 2) * sizeof *scratch);
     if (!scratch) return HF_NO_MEMORY;
-    int *count = scratch, *gene_at = count + m->n_node, *parent = gene_at + 2 * m->n_node, *label = parent + m->n_gene;
+    int *count = scratch, *variable_at = count + m->n_node, *parent = variable_at + 2 * m->n_node,
+        *label = parent + m->n_variable;
     memset(count, 0, (size_t)m->n_node * sizeof *count);
-    m->n_gene_group = 0;
-    for (int k = 0; k < m->n_gene; k++) {
+    m->n_variable_group = 0;
+    for (int k = 0; k < m->n_variable; k++) {
         parent[k] = k;
         label[k] = -1;
-        for (int end = 0; end < 2 && m->gene_cable[k] >= 0; end++) {
-            int row = m->end_row[2 * m->gene_cable[k] + end];
-            if (count[row] < 2) gene_at[2 * row + count[row]] = k;
+        for (int end = 0; end < 2 && m->variable_cable[k] >= 0; end++) {
+            int row = m->end_row[2 * m->variable_cable[k] + end];
+            if (count[row] < 2) variable_at[2 * row + count[row]] = k;
             count[row]++;
         }
     }
     for (int row = 0; row < m->n_free; row++)
         if (count[row] == 2)
-            parent[hf_union_find_root(parent, gene_at[2 * row])] = hf_union_find_root(parent, gene_at[2 * row + 1]);
-    for (int k = 0; k < m->n_gene; k++) {
+            parent[hf_union_find_root(parent, variable_at[2 * row])] =
+                hf_union_find_root(parent, variable_at[2 * row + 1]);
+    for (int k = 0; k < m->n_variable; k++) {
         int root = hf_union_find_root(parent, k);
-        if (label[root] < 0) label[root] = m->n_gene_group++;
-        m->gene_group[k] = label[root];
-        m->gene_leader[k] = k;
+        if (label[root] < 0) label[root] = m->n_variable_group++;
+        m->variable_group[k] = label[root];
+        m->variable_leader[k] = k;
     }
-    m->n_leader = m->n_gene;
+    m->n_leader = m->n_variable;
     free(scratch);
     return HF_OK;
 }
@@ -382,7 +384,7 @@ static hf_status build(const hf_scene *scene, const hf_form_settings *form, cons
     number_nodes(scene, m);
     place_cables(scene, m);
     set_laws(scene, form, m);
-    HF_TRY(hf_model_group_genes(m));
+    HF_TRY(hf_model_group_variables(m));
     return find_chains(m);
 }
 
@@ -410,7 +412,7 @@ void hf_model_free(hf_model *m)
 {
     hf_arena_free_block(m->block);
     hf_arena_free_block(m->attachment_block);
-    hf_arena_free_block(m->gene_block);
+    hf_arena_free_block(m->variable_block);
     *m = (hf_model){0};
 }
 
@@ -579,15 +581,15 @@ bool hf_model_is_valid(const hf_model *m)
                              : m->off_diagonal[e] != m->n_band)
             return false;
     }
-    for (int k = 0; k < m->n_gene; k++)
-        if (m->gene_leader[k] < 0 || m->gene_leader[k] > k) return false;
+    for (int k = 0; k < m->n_variable; k++)
+        if (m->variable_leader[k] < 0 || m->variable_leader[k] > k) return false;
     for (int k = 0; k < m->n_inner_node; k++)
         if (m->inner_row[k] < 0 || m->inner_row[k] >= m->n_free) return false;
     for (int k = 0; k < m->n_tie; k++)
         if (m->end_row[m->tie[k]] != m->attachment_row[m->tie_attachment[k]]) return false;
     for (int i = 0; i < m->n_attachment; i++)
         if (m->attachment_row[i] != m->n_free + i || m->attachment_row[i] >= m->n_node) return false;
-    return m->chain_start[0] == 0 && (m->gene || m->n_gene <= m->n_cable);
+    return m->chain_start[0] == 0 && (m->variable || m->n_variable <= m->n_cable);
 }
 
 void hf_model_positions(const hf_model *m, const double *row_m, double *position_m)

@@ -45,9 +45,9 @@ typedef struct {
     place *place;                               /* [n_node], sorted */
     link *link;                                 /* [n_cable], sorted */
     int *node_image, *cable_image;              /* [n_node], [n_cable], images under the current plane; -1: none */
-    int *gene_of_cable, *gene_of_node;          /* [n_cable], [n_node], variables that may be linked; -1: none */
-    int *parent;                                /* [n_gene], union-find over both planes */
-    int *group_parent, *group_label;            /* [n_gene_group] */
+    int *variable_of_cable, *variable_of_node;  /* [n_cable], [n_node], variables that may be linked; -1: none */
+    int *parent;                                /* [n_variable], union-find over both planes */
+    int *group_parent, *group_label;            /* [n_variable_group] */
 } search;
 
 static void lay_out(hf_arena *a, search *q)
@@ -57,11 +57,11 @@ static void lay_out(hf_arena *a, search *q)
     q->link = hf_arena_take(a, e, sizeof *q->link);
     q->node_image = hf_arena_take(a, n, sizeof(int));
     q->cable_image = hf_arena_take(a, e, sizeof(int));
-    q->gene_of_cable = hf_arena_take(a, e, sizeof(int));
-    q->gene_of_node = hf_arena_take(a, n, sizeof(int));
-    q->parent = hf_arena_take(a, (size_t)q->m->n_gene, sizeof(int));
-    q->group_parent = hf_arena_take(a, (size_t)q->m->n_gene_group, sizeof(int));
-    q->group_label = hf_arena_take(a, (size_t)q->m->n_gene_group, sizeof(int));
+    q->variable_of_cable = hf_arena_take(a, e, sizeof(int));
+    q->variable_of_node = hf_arena_take(a, n, sizeof(int));
+    q->parent = hf_arena_take(a, (size_t)q->m->n_variable, sizeof(int));
+    q->group_parent = hf_arena_take(a, (size_t)q->m->n_variable_group, sizeof(int));
+    q->group_label = hf_arena_take(a, (size_t)q->m->n_variable_group, sizeof(int));
 }
 
 static double coordinate(const search *q, int node, int c)
@@ -226,17 +226,17 @@ static void join(int *parent, int a, int b)
 static void merge_groups(const search *q, hf_model *m)
 {
     int *group_parent = q->group_parent, *label = q->group_label;
-    for (int g = 0; g < m->n_gene_group; g++) {
+    for (int g = 0; g < m->n_variable_group; g++) {
         group_parent[g] = g;
         label[g] = -1;
     }
-    for (int k = 0; k < m->n_gene; k++)
-        join(group_parent, m->gene_group[k], m->gene_group[m->gene_leader[k]]);
-    m->n_gene_group = 0;
-    for (int k = 0; k < m->n_gene; k++) {
-        int root = hf_union_find_root(group_parent, m->gene_group[k]);
-        if (label[root] < 0) label[root] = m->n_gene_group++;
-        m->gene_group[k] = label[root];
+    for (int k = 0; k < m->n_variable; k++)
+        join(group_parent, m->variable_group[k], m->variable_group[m->variable_leader[k]]);
+    m->n_variable_group = 0;
+    for (int k = 0; k < m->n_variable; k++) {
+        int root = hf_union_find_root(group_parent, m->variable_group[k]);
+        if (label[root] < 0) label[root] = m->n_variable_group++;
+        m->variable_group[k] = label[root];
     }
 }
 
@@ -244,14 +244,15 @@ static void merge_groups(const search *q, hf_model *m)
 
 /* Joins two images. Neither is linked if only one of them is varied, or if different rows of
  * optimize.variables vary them. */
-static void join_images(search *q, int gene, int image)
+static void join_images(search *q, int variable, int image)
 {
     const hf_model *m = q->m;
-    if (gene < 0 || image < 0 || (m->gene && m->gene[gene].setting != m->gene[image].setting)) return;
-    join(q->parent, gene, image);
+    if (variable < 0 || image < 0 || (m->variable && m->variable[variable].setting != m->variable[image].setting))
+        return;
+    join(q->parent, variable, image);
 }
 
-static hf_status link_genes(search *q, hf_symmetry wanted, hf_model *m, int *planes, hf_messages *messages)
+static hf_status link_variables(search *q, hf_symmetry wanted, hf_model *m, int *planes, hf_messages *messages)
 {
     for (int axis = 0; axis < 2; axis++) {
         bool by_name = wanted == HF_SYMMETRY_XY || wanted == (axis == 0 ? HF_SYMMETRY_X : HF_SYMMETRY_Y);
@@ -261,14 +262,15 @@ static hf_status link_genes(search *q, hf_symmetry wanted, hf_model *m, int *pla
         if (n_missing) continue;
         *planes |= axis == 0 ? HF_PLANE_X : HF_PLANE_Y;
         for (int e = 0; e < m->n_cable; e++)
-            join_images(q, q->gene_of_cable[e], q->gene_of_cable[q->cable_image[e]]);
+            join_images(q, q->variable_of_cable[e], q->variable_of_cable[q->cable_image[e]]);
         for (int i = 0; i < m->n_node; i++)
-            if (q->gene_of_node[i] >= 0) join_images(q, q->gene_of_node[i], q->gene_of_node[q->node_image[i]]);
+            if (q->variable_of_node[i] >= 0)
+                join_images(q, q->variable_of_node[i], q->variable_of_node[q->node_image[i]]);
     }
     m->n_leader = 0;
-    for (int k = 0; k < m->n_gene; k++) {
-        m->gene_leader[k] = hf_union_find_root(q->parent, k);
-        m->n_leader += m->gene_leader[k] == k;
+    for (int k = 0; k < m->n_variable; k++) {
+        m->variable_leader[k] = hf_union_find_root(q->parent, k);
+        m->n_leader += m->variable_leader[k] == k;
     }
     if (*planes) merge_groups(q, m);
     return HF_OK;
@@ -282,17 +284,17 @@ static void sort(search *q, const hf_optimize_settings *o)
     for (int e = 0; e < q->s->n_cable; e++) {
         int a = q->s->end[2 * e], b = q->s->end[2 * e + 1];
         q->link[e] = (link){{a < b ? a : b, a < b ? b : a}, m->group[e] << 8 | m->law[e], e, m->target[e]};
-        q->gene_of_cable[e] = -1;
+        q->variable_of_cable[e] = -1;
     }
     for (int i = 0; i < m->n_node; i++)
-        q->gene_of_node[i] = -1;
-    for (int k = 0; k < m->n_gene; k++) {
-        q->parent[k] = m->gene_leader[k];
-        if (m->gene && o->variable[m->gene[k].setting].link != HF_LINK_SYMMETRY) continue;
-        if (m->gene_cable[k] >= 0)
-            q->gene_of_cable[m->gene_cable[k]] = k;
+        q->variable_of_node[i] = -1;
+    for (int k = 0; k < m->n_variable; k++) {
+        q->parent[k] = m->variable_leader[k];
+        if (m->variable && o->variable_row[m->variable[k].setting].link != HF_LINK_SYMMETRY) continue;
+        if (m->variable_cable[k] >= 0)
+            q->variable_of_cable[m->variable_cable[k]] = k;
         else
-            q->gene_of_node[m->node_of_row[m->gene[k].support_row]] = k;
+            q->variable_of_node[m->node_of_row[m->variable[k].support_row]] = k;
     }
     qsort(q->place, (size_t)q->s->n_node, sizeof *q->place, compare_places);
     qsort(q->link, (size_t)q->s->n_cable, sizeof *q->link, compare_links);
@@ -310,7 +312,7 @@ hf_status hf_symmetry_apply(const hf_scene *scene, const hf_optimize_settings *s
         return hf_error(messages, HF_NO_MEMORY, "optimize.symmetry: out of memory");
     measure(&q);
     sort(&q, settings);
-    hf_status status = link_genes(&q, wanted, m, planes, messages);
+    hf_status status = link_variables(&q, wanted, m, planes, messages);
     hf_arena_free(&arena);
     return status;
 }
@@ -325,26 +327,26 @@ const char *hf_symmetry_planes_text(int planes)
 
 void hf_symmetry_average(const hf_model *m, double *base_N)
 {
-    for (int leader = 0; leader < m->n_gene && m->n_leader < m->n_gene; leader++) {
+    for (int leader = 0; leader < m->n_variable && m->n_leader < m->n_variable; leader++) {
         double low = base_N[leader], high = low, sum = 0;
         int n = 0;
-        if (m->gene_leader[leader] != leader) continue;
-        for (int k = leader; k < m->n_gene; k++) {
-            if (m->gene_leader[k] != leader) continue;
+        if (m->variable_leader[leader] != leader) continue;
+        for (int k = leader; k < m->n_variable; k++) {
+            if (m->variable_leader[k] != leader) continue;
             low = fmin(low, base_N[k]);
             high = fmax(high, base_N[k]);
             sum += base_N[k];
             n++;
         }
         if (!(high - low <= BASE_AGREEMENT * fabs(high))) continue;
-        for (int k = leader; k < m->n_gene; k++)
-            if (m->gene_leader[k] == leader) base_N[k] = sum / n;
+        for (int k = leader; k < m->n_variable; k++)
+            if (m->variable_leader[k] == leader) base_N[k] = sum / n;
     }
 }
 
-void hf_symmetry_follow(int n_gene, const int *leader, const double *base_N, double *design_N)
+void hf_symmetry_follow(int n_variable, const int *leader, const double *base_N, double *design_N)
 {
-    for (int k = 0; k < n_gene; k++)
+    for (int k = 0; k < n_variable; k++)
         if (base_N[k] == base_N[leader[k]]) /* equal in every bit: the copy stays exactly symmetric */
             design_N[k] = design_N[leader[k]];
         else

@@ -12,22 +12,22 @@
 #define HF_PLANE_X 1
 #define HF_PLANE_Y 2
 
-/* Sets gene_leader, n_leader and the merged gene_group of a newly built model, as settings->symmetry asks for. A design
- * variable of optimize.variables is linked if its row has link: symmetry. *planes receives the HF_PLANE_ bits of the
- * planes used. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if the user named a plane about which the net is not
- * symmetric; the message lists cables without an image. */
+/* Sets variable_leader, n_leader and the merged variable_group of a newly built model, as settings->symmetry asks for.
+ * A design variable of optimize.variables is linked if its row has link: symmetry. *planes receives the HF_PLANE_ bits
+ * of the planes used. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if the user named a plane about which the net
+ * is not symmetric; the message lists cables without an image. */
 hf_status hf_symmetry_apply(const hf_scene *scene, const hf_optimize_settings *settings, hf_model *model, int *planes,
                             hf_messages *messages);
 
 /* Returns "planes x and y", "plane x", "plane y" or "no plane". */
 const char *hf_symmetry_planes_text(int planes);
 
-/* Replaces the initial values base_N [n_gene] of each class by their mean if they agree to 1e-6. Other
+/* Replaces the initial values base_N [n_variable] of each class by their mean if they agree to 1e-6. Other
  * classes are unchanged. */
 void hf_symmetry_average(const hf_model *model, double *base_N);
 
 /* Changes every design variable by the step of its leader from the initial design: T'_k = T_k + (T'_leader - T_leader).
- * leader, base_N (T) and design_N (T') are [n_gene]. */
-void hf_symmetry_follow(int n_gene, const int *leader, const double *base_N, double *design_N);
+ * leader, base_N (T) and design_N (T') are [n_variable]. */
+void hf_symmetry_follow(int n_variable, const int *leader, const double *base_N, double *design_N);
 
 #endif

@@ -21,10 +21,10 @@ typedef struct {
     const hf_optimize_settings *settings;
     const hf_surface_settings *surface;
     hf_model *m;
-    int *picked;   /* [n_cable], scratch: the cables of a row */
-    int *taken;    /* [n_cable + n_node], the row that varies a cable or a support; -1: none */
-    int *cable;    /* [n_cable + 3 n_node], cable of each design variable, as in the model */
-    hf_gene *gene; /* [n_cable + 3 n_node], design variables */
+    int *picked;           /* [n_cable], scratch: the cables of a row */
+    int *taken;            /* [n_cable + n_node], the row that varies a cable or a support; -1: none */
+    int *cable;            /* [n_cable + 3 n_node], cable of each design variable, as in the model */
+    hf_variable *variable; /* [n_cable + 3 n_node], design variables */
     hf_messages *messages;
     char place[HF_PLACE_SIZE];
 } maker;
@@ -41,7 +41,7 @@ static void lay_out(hf_arena *a, maker *q)
     q->picked = hf_arena_take(a, e, sizeof(int));
     q->taken = hf_arena_take(a, e + n, sizeof(int));
     q->cable = hf_arena_take(a, e + 3 * n, sizeof(int));
-    q->gene = hf_arena_take(a, e + 3 * n, sizeof(hf_gene));
+    q->variable = hf_arena_take(a, e + 3 * n, sizeof(hf_variable));
 }
 
 static bool varies_support(hf_vary vary)
@@ -59,15 +59,15 @@ static hf_status take(maker *q, int row, int at, const char *kind, const char *i
     return HF_OK;
 }
 
-static void add(maker *q, int cable, hf_gene gene)
+static void add(maker *q, int cable, hf_variable variable)
 {
-    q->cable[q->m->n_gene] = cable;
-    q->gene[q->m->n_gene++] = gene;
+    q->cable[q->m->n_variable] = cable;
+    q->variable[q->m->n_variable++] = variable;
 }
 
 static hf_status add_cable(maker *q, int row, int e)
 {
-    const hf_variable_settings *s = &q->settings->variable[row];
+    const hf_variable_settings *s = &q->settings->variable_row[row];
     const hf_model *m = q->m;
     const char *id = q->scene->cable_id[e];
     if (m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free) return HF_OK;
@@ -79,7 +79,7 @@ static hf_status add_cable(maker *q, int row, int e)
         return hf_error(q->messages, HF_BAD_CASE, "%s: cable '%s' of set %s is a strut, which cannot be varied",
                         where_in(q, row, "set"), id, s->set);
     HF_TRY(take(q, row, e, "cable", id));
-    add(q, e, (hf_gene){.vary = s->vary, .setting = row, .support_row = -1});
+    add(q, e, (hf_variable){.vary = s->vary, .setting = row, .support_row = -1});
     return HF_OK;
 }
 
@@ -100,15 +100,15 @@ static void find_normal(const maker *q, int support_row, double normal[3])
 static hf_status add_support(maker *q, int row, int support_row)
 {
     const hf_model *m = q->m;
-    hf_gene gene = {.vary = q->settings->variable[row].vary, .setting = row, .support_row = support_row};
+    hf_variable variable = {.vary = q->settings->variable_row[row].vary, .setting = row, .support_row = support_row};
     HF_TRY(take(q, row, m->n_cable + support_row, "support", q->scene->node_id[m->node_of_row[support_row]]));
-    if (gene.vary == HF_VARY_SUPPORT_NORMAL) find_normal(q, support_row, gene.direction);
-    if (gene.vary == HF_VARY_SUPPORT_Z) gene.direction[2] = 1;
-    if (gene.vary != HF_VARY_SUPPORT_XYZ) add(q, -1, gene);
-    for (int c = 0; c < 3 && gene.vary == HF_VARY_SUPPORT_XYZ; c++) {
+    if (variable.vary == HF_VARY_SUPPORT_NORMAL) find_normal(q, support_row, variable.direction);
+    if (variable.vary == HF_VARY_SUPPORT_Z) variable.direction[2] = 1;
+    if (variable.vary != HF_VARY_SUPPORT_XYZ) add(q, -1, variable);
+    for (int c = 0; c < 3 && variable.vary == HF_VARY_SUPPORT_XYZ; c++) {
         for (int d = 0; d < 3; d++)
-            gene.direction[d] = c == d;
-        add(q, -1, gene);
+            variable.direction[d] = c == d;
+        add(q, -1, variable);
     }
     return HF_OK;
 }
@@ -126,7 +126,7 @@ static bool holds_net(const hf_model *m, int support_row)
 static hf_status add_supports(maker *q, int row, int n_picked)
 {
     const hf_model *m = q->m;
-    if (q->settings->variable[row].vary == HF_VARY_SUPPORT_NORMAL && !(q->surface->focal_length_m > 0))
+    if (q->settings->variable_row[row].vary == HF_VARY_SUPPORT_NORMAL && !(q->surface->focal_length_m > 0))
         return hf_error(q->messages, HF_BAD_CASE,
                         "%s: support_normal needs the wanted surface: add a section `surface`",
                         where_in(q, row, "vary"));
@@ -148,12 +148,12 @@ static void link_sets(const maker *q)
     hf_model *m = q->m;
     int first = 0;
     m->n_leader = 0;
-    for (int k = 0; k < m->n_gene; k++) {
-        const hf_variable_settings *s = &q->settings->variable[m->gene[k].setting];
+    for (int k = 0; k < m->n_variable; k++) {
+        const hf_variable_settings *s = &q->settings->variable_row[m->variable[k].setting];
         int n_component = s->vary == HF_VARY_SUPPORT_XYZ ? 3 : 1;
-        if (k == 0 || m->gene[k].setting != m->gene[k - 1].setting) first = k;
-        if (s->link == HF_LINK_SET) m->gene_leader[k] = first + (k - first) % n_component;
-        m->n_leader += m->gene_leader[k] == k;
+        if (k == 0 || m->variable[k].setting != m->variable[k - 1].setting) first = k;
+        if (s->link == HF_LINK_SET) m->variable_leader[k] = first + (k - first) % n_component;
+        m->n_leader += m->variable_leader[k] == k;
     }
 }
 
@@ -162,29 +162,29 @@ static void link_sets(const maker *q)
 static void join_groups(hf_model *m, int *label)
 {
     int n = 0;
-    for (int k = 0; k < m->n_gene; k++)
+    for (int k = 0; k < m->n_variable; k++)
         label[k] = -1;
-    for (int k = 0; k < m->n_gene; k++) {
-        int group = m->gene_group[m->gene_leader[k]];
+    for (int k = 0; k < m->n_variable; k++) {
+        int group = m->variable_group[m->variable_leader[k]];
         if (label[group] < 0) label[group] = n++;
     }
-    for (int k = m->n_gene - 1; k >= 0; k--) /* a leader precedes its followers */
-        m->gene_group[k] = label[m->gene_group[m->gene_leader[k]]];
-    m->n_gene_group = n;
+    for (int k = m->n_variable - 1; k >= 0; k--) /* a leader precedes its followers */
+        m->variable_group[k] = label[m->variable_group[m->variable_leader[k]]];
+    m->n_variable_group = n;
 }
 
 /* ---- all rows ---- */
 
 static hf_status make_row(maker *q, int row)
 {
-    const hf_variable_settings *s = &q->settings->variable[row];
-    int before = q->m->n_gene, n_picked;
+    const hf_variable_settings *s = &q->settings->variable_row[row];
+    int before = q->m->n_variable, n_picked;
     n_picked = hf_cable_pick_some(q->scene, s->set, where_in(q, row, "set"), q->picked, q->messages);
     if (n_picked == 0) return HF_BAD_CASE;
     if (varies_support(s->vary)) HF_TRY(add_supports(q, row, n_picked));
     for (int i = 0; i < n_picked && !varies_support(s->vary); i++)
         HF_TRY(add_cable(q, row, q->picked[i]));
-    if (q->m->n_gene == before)
+    if (q->m->n_variable == before)
         return hf_error(q->messages, HF_BAD_CASE, "%s: set %s has %d cables, but no %s: there is nothing to vary",
                         where_in(q, row, "set"), s->set, n_picked,
                         varies_support(s->vary) ? "support at their ends that holds a free node"
@@ -198,18 +198,18 @@ static hf_status keep(const maker *q)
     hf_model *m = q->m;
     hf_arena arena = {0};
     int *label;
-    size_t n = (size_t)m->n_gene;
-    HF_TRY(HF_ARENA_MAKE(&arena, (m->gene_cable = hf_arena_take(&arena, n, sizeof(int)),
-                                  m->gene_group = hf_arena_take(&arena, n, sizeof(int)),
-                                  m->gene_leader = hf_arena_take(&arena, n, sizeof(int)),
+    size_t n = (size_t)m->n_variable;
+    HF_TRY(HF_ARENA_MAKE(&arena, (m->variable_cable = hf_arena_take(&arena, n, sizeof(int)),
+                                  m->variable_group = hf_arena_take(&arena, n, sizeof(int)),
+                                  m->variable_leader = hf_arena_take(&arena, n, sizeof(int)),
                                   label = hf_arena_take(&arena, n, sizeof(int)),
-                                  m->gene = hf_arena_take(&arena, n, sizeof(hf_gene)))));
-    m->gene_block = arena.block;
-    memcpy(m->gene_cable, q->cable, n * sizeof(int));
-    memcpy(m->gene, q->gene, n * sizeof(hf_gene));
+                                  m->variable = hf_arena_take(&arena, n, sizeof(hf_variable)))));
+    m->variable_block = arena.block;
+    memcpy(m->variable_cable, q->cable, n * sizeof(int));
+    memcpy(m->variable, q->variable, n * sizeof(hf_variable));
     for (size_t k = 0; k < n; k++)
-        m->moves_supports |= m->gene[k].support_row >= 0;
-    HF_TRY(hf_model_group_genes(m));
+        m->moves_supports |= m->variable[k].support_row >= 0;
+    HF_TRY(hf_model_group_variables(m));
     link_sets(q);
     join_groups(m, label);
     return HF_OK;
@@ -220,16 +220,16 @@ hf_status hf_variables_apply(const hf_scene *scene, const hf_optimize_settings *
 {
     maker q = {.scene = scene, .settings = settings, .surface = surface, .m = m, .messages = messages};
     hf_arena arena = {0};
-    if (settings->n_variable == 0) return HF_OK;
+    if (settings->n_variable_row == 0) return HF_OK;
     if (HF_ARENA_MAKE(&arena, lay_out(&arena, &q)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "optimize.variables: out of memory");
     for (int i = 0; i < m->n_cable + m->n_node; i++)
         q.taken[i] = -1;
-    m->n_gene = 0;
+    m->n_variable = 0;
     hf_status status = HF_OK;
-    for (int row = 0; row < settings->n_variable; row++) /* reports the faults of all rows */
+    for (int row = 0; row < settings->n_variable_row; row++) /* reports the faults of all rows */
         if (make_row(&q, row) != HF_OK) status = HF_BAD_CASE;
-    if (status != HF_OK) m->n_gene = 0;
+    if (status != HF_OK) m->n_variable = 0;
     if (status == HF_OK && keep(&q) != HF_OK)
         status = hf_error(messages, HF_NO_MEMORY, "optimize.variables: out of memory");
     m->has_newton = !m->has_strut; /* a design may need Newton's method although the laws of the scene do not iterate */
@@ -242,8 +242,8 @@ hf_status hf_variables_apply(const hf_scene *scene, const hf_optimize_settings *
 void hf_variables_read(const hf_model *m, const double *q_N_per_m, const double *tension_N, const double *length_m,
                        double *value)
 {
-    for (int k = 0; k < m->n_gene; k++) {
-        int e = m->gene_cable[k];
+    for (int k = 0; k < m->n_variable; k++) {
+        int e = m->variable_cable[k];
         switch (hf_model_vary(m, k)) {
         case HF_VARY_PRETENSION:
         case HF_VARY_TENSION:
@@ -281,7 +281,7 @@ void hf_variables_bound(const hf_optimize_settings *s, const hf_model *m, int k,
         *upper = within(base + s->range_N, s->min_tension_N, s->max_tension_N);
         return;
     }
-    const hf_variable_settings *row = &s->variable[m->gene[k].setting];
+    const hf_variable_settings *row = &s->variable_row[m->variable[k].setting];
     double range = isnan(row->range_ratio) ? row->range : row->range_ratio * fabs(base);
     bool is_ranged = !isnan(range);
     double low = is_ranged ? base - range : row->lower, high = is_ranged ? base + range : row->upper;

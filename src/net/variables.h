@@ -16,14 +16,14 @@
 hf_status hf_variables_apply(const hf_scene *scene, const hf_optimize_settings *settings,
                              const hf_surface_settings *surface, hf_model *model, hf_messages *messages);
 
-/* Writes the values of the design variables into value [n_gene], from force densities (N/m), tensions (N) and lengths
- * (m) of the cables, all [n_cable]. Displacements of supports are 0. */
+/* Writes the values of the design variables into value [n_variable], from force densities (N/m), tensions (N) and
+ * lengths (m) of the cables, all [n_cable]. Displacements of supports are 0. */
 void hf_variables_read(const hf_model *model, const double *q_N_per_m, const double *tension_N, const double *length_m,
                        double *value);
 
-/* Writes the bounds of design variable i_gene around its initial value `base`. *reach is the distance from it over
+/* Writes the bounds of design variable i_variable around its initial value `base`. *reach is the distance from it over
  * which the first designs are spread. */
-void hf_variables_bound(const hf_optimize_settings *settings, const hf_model *model, int i_gene, double base,
+void hf_variables_bound(const hf_optimize_settings *settings, const hf_model *model, int i_variable, double base,
                         double *lower, double *upper, double *reach);
 
 #endif

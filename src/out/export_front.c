@@ -16,8 +16,8 @@
 typedef struct {
     hf_summary summary;
     hf_front front;
-    char *gene;
-    size_t gene_size;
+    char *variable;
+    size_t variable_size;
 } view;
 
 /* Writes a number, "inf", or an empty cell for NaN, with a comma before it. */
@@ -38,9 +38,9 @@ static void write_front(const void *context, FILE *f)
         fprintf(f, ",%s", v->summary.goals.name[k]);
     for (int k = 0; k < front->n_objective; k++)
         if (front->minimised >= 0 && k != front->minimised) fprintf(f, ",slope_%s", v->summary.goals.name[k]);
-    for (int k = 0; k < front->n_gene; k++) {
+    for (int k = 0; k < front->n_variable; k++) {
         fputc(',', f);
-        hf_csv_write_id(v->gene + (size_t)k * v->gene_size, f);
+        hf_csv_write_id(v->variable + (size_t)k * v->variable_size, f);
     }
     fputc('\n', f);
     for (int i = 0; i < front->n_point; i++) {
@@ -52,8 +52,8 @@ static void write_front(const void *context, FILE *f)
         for (int k = 0; k < front->n_objective; k++)
             if (front->minimised >= 0 && k != front->minimised)
                 write_number(p->multiplier[k] > 0 ? -p->multiplier[k] : p->multiplier[k], f);
-        for (int k = 0; k < front->n_gene; k++)
-            write_number(front->design[(size_t)i * (size_t)front->n_gene + (size_t)k], f);
+        for (int k = 0; k < front->n_variable; k++)
+            write_number(front->design[(size_t)i * (size_t)front->n_variable + (size_t)k], f);
         fputc('\n', f);
     }
 }
@@ -67,13 +67,13 @@ static hf_status export_front(const hf_export_request *o, char *said, size_t siz
     if (!v.summary.has_front)
         return hf_error(messages, HF_BAD_USAGE, "%s: this run has no front: its case has no optimize.objectives",
                         o->file);
-    hf_status status = hf_store_read_front(o->file, &v.front, &v.gene, &v.gene_size, messages);
+    hf_status status = hf_store_read_front(o->file, &v.front, &v.variable, &v.variable_size, messages);
     if (status == HF_OK) status = hf_file_out_set_write(o->files, o->output, write_front, &v, messages);
     if (status == HF_OK)
         snprintf(said, size, "%s: %d points of the front of %d objectives in %s", o->file, v.front.n_point,
                  v.front.n_objective, o->output);
     hf_front_free(&v.front);
-    free(v.gene);
+    free(v.variable);
     return status;
 }
 

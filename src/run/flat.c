@@ -37,7 +37,7 @@ struct hf_flat {
     hf_form_result result;  /* result of the same call */
     int n_room;
     hf_form_result *room; /* [n_room] results of designs */
-    char text[HF_GENE_NAME_SIZE];
+    char text[HF_VARIABLE_NAME_SIZE];
     hf_summary summary;
     char *summary_text;
     volatile sig_atomic_t stop;
@@ -232,12 +232,12 @@ static const char *result_text(hf_flat *f, int i, int column)
     return f->text;
 }
 
-static const char *gene_text(hf_flat *f, int i, int column)
+static const char *variable_text(hf_flat *f, int i, int column)
 {
     const hf_model *m = &f->problem.model;
-    if (i >= m->n_gene) return NULL;
-    if (column == COLUMN_UNIT) return hf_model_gene_unit(m, i);
-    hf_model_gene_name(m, &f->problem.scene, i, f->text, sizeof f->text);
+    if (i >= m->n_variable) return NULL;
+    if (column == COLUMN_UNIT) return hf_model_variable_unit(m, i);
+    hf_model_variable_name(m, &f->problem.scene, i, f->text, sizeof f->text);
     return f->text;
 }
 
@@ -247,7 +247,7 @@ const char *hf_flat_text(hf_flat *f, const char *list, int i)
         const char *list;
         const char *(*text)(hf_flat *, int i, int column);
         int column;
-    } made[] = {{"gene", gene_text, COLUMN_NAME},          {"gene_unit", gene_text, COLUMN_UNIT},
+    } made[] = {{"gene", variable_text, COLUMN_NAME},      {"gene_unit", variable_text, COLUMN_UNIT},
                 {"figure", figure_text, COLUMN_NAME},      {"figure_unit", figure_text, COLUMN_UNIT},
                 {"figure_help", figure_text, COLUMN_HELP}, {"result", result_text, COLUMN_NAME},
                 {"result_unit", result_text, COLUMN_UNIT}, {"result_help", result_text, COLUMN_HELP},
@@ -291,8 +291,8 @@ int hf_flat_ints(const hf_flat *f, const char *name, int *to)
     if (!strcmp(name, "role")) return copy_bytes(s->role, s->n_node, to);
     if (!strcmp(name, "group")) return copy_bytes(s->group, s->n_cable, to);
     if (!strcmp(name, "law")) return copy_bytes(s->law, s->n_cable, to);
-    if (!strcmp(name, "gene_cable")) return copy_ints(m->gene_cable, m->n_gene, to);
-    if (!strcmp(name, "gene_leader")) return copy_ints(m->gene_leader, m->n_gene, to);
+    if (!strcmp(name, "gene_cable")) return copy_ints(m->variable_cable, m->n_variable, to);
+    if (!strcmp(name, "gene_leader")) return copy_ints(m->variable_leader, m->n_variable, to);
     if (!strcmp(name, "set_start")) return copy_ints(s->set_start, s->n_set + 1, to);
     if (!strcmp(name, "set_cable")) return copy_ints(s->set_cable, s->n_set ? s->set_start[s->n_set] : 0, to);
     return -1;
@@ -354,12 +354,12 @@ static int copy_result(const hf_flat *f, double *to)
 static int copy_bounds(const hf_flat *f, bool is_upper, double *to)
 {
     const hf_problem *p = &f->problem;
-    for (int k = 0; to && k < p->model.n_gene; k++) {
+    for (int k = 0; to && k < p->model.n_variable; k++) {
         double lower, upper, reach;
         hf_variables_bound(&p->settings.optimize, &p->model, k, p->base_N[k], &lower, &upper, &reach);
         to[k] = is_upper ? upper : lower;
     }
-    return p->model.n_gene;
+    return p->model.n_variable;
 }
 
 int hf_flat_reals(const hf_flat *f, const char *name, double *to)
@@ -371,7 +371,7 @@ int hf_flat_reals(const hf_flat *f, const char *name, double *to)
     if (!strcmp(name, "load_N")) return copy_reals(s->load_N, 3 * s->n_node, to);
     if (!strcmp(name, "target")) return copy_reals(s->target, s->n_cable, to);
     if (!strcmp(name, "EA_N")) return copy_reals(s->EA_N, s->n_cable, to);
-    if (!strcmp(name, "base")) return f->is_ready ? copy_reals(f->problem.base_N, f->problem.model.n_gene, to) : 0;
+    if (!strcmp(name, "base")) return f->is_ready ? copy_reals(f->problem.base_N, f->problem.model.n_variable, to) : 0;
     if (!strcmp(name, "lower")) return f->is_ready ? copy_bounds(f, false, to) : 0;
     if (!strcmp(name, "upper")) return f->is_ready ? copy_bounds(f, true, to) : 0;
     if (!strcmp(name, "position_m")) return copy_reals(f->shape, 3 * s->n_node, to);
@@ -425,11 +425,12 @@ static hf_status check_designs(hf_flat *f, int n, const double *design)
 {
     const hf_model *m = &f->problem.model;
     for (int i = 0; i < n; i++)
-        for (int k = 0; k < m->n_gene; k++) {
-            double value = design[(size_t)i * (size_t)m->n_gene + (size_t)k];
-            bool is_cable = m->gene_cable[k] >= 0;
+        for (int k = 0; k < m->n_variable; k++) {
+            double value = design[(size_t)i * (size_t)m->n_variable + (size_t)k];
+            bool is_cable = m->variable_cable[k] >= 0;
             if (isfinite(value) && (value > 0 || !is_cable)) continue;
-            return hf_error(&f->said, HF_BAD_CASE, "design %d: %s must be %s, not %g", i, gene_text(f, k, COLUMN_NAME),
+            return hf_error(&f->said, HF_BAD_CASE, "design %d: %s must be %s, not %g", i,
+                            variable_text(f, k, COLUMN_NAME),
                             is_cable ? "a finite number above zero" : "a finite number", value);
         }
     return HF_OK;
@@ -476,7 +477,7 @@ int hf_flat_slopes(hf_flat *f, int n, const double *design, double *slope)
     hf_problem *p = &f->problem;
     TRY(evaluate(f, n, design));
     TRY(hf_problem_slopes(p, n, design, f->room, slope, &f->said));
-    size_t size = (size_t)hf_problem_n_slope(p) * (size_t)p->model.n_gene, n_feasible = 0;
+    size_t size = (size_t)hf_problem_n_slope(p) * (size_t)p->model.n_variable, n_feasible = 0;
     for (int i = 0; i < n; i++)
         n_feasible += f->room[i].status == HF_OK;
     for (int i = n - 1; i >= 0; i--) { /* slopes of feasible designs are contiguous; each moves to its design */

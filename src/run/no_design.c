@@ -36,7 +36,7 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, hf_messag
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     long above = of->n_evaluation_above_cap, shapeless = of->n_evaluation_infeasible - above;
-    const char *wider = p->model.gene ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
+    const char *wider = p->model.variable ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
     hf_form_result base;
     char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE];
     const hf_workspace *w = hf_batch_run_one(&p->batch, of->base_N, &base);

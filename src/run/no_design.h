@@ -11,8 +11,8 @@
 /* Reports that no individual of any generation was feasible. Returns HF_NO_FEASIBLE, with a message. */
 hf_status hf_no_design_evolved(hf_problem *problem, const hf_population *population, hf_messages *messages);
 
-/* Writes why Levenberg-Marquardt refused to start from this design [n_gene] with this status. Overwrites the shape in
- * the problem's workspace. Returns text. */
+/* Writes why Levenberg-Marquardt refused to start from this design [n_variable] with this status. Overwrites the shape
+ * in the problem's workspace. Returns text. */
 const char *hf_no_design_to_polish(hf_problem *problem, const double *design, hf_status status,
                                    char text[HF_NO_DESIGN_SIZE]);
 

@@ -8,7 +8,7 @@
 
 #define HF_POLISH_STAGE_TEXT 160
 
-/* Refines `design` [n_gene], which becomes the best design, within the bounds of the population. The problem's
+/* Refines `design` [n_variable], which becomes the best design, within the bounds of the population. The problem's
  * workspace is scratch. *wall_s becomes the time of all sessions, s. Returns HF_INTERRUPTED if *request->stop_requested
  * was set: the next publication has the steps so far, and stopped_at says where it stopped. Otherwise returns the
  * status of hf_polish_run, or an error of the store. */

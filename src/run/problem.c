@@ -69,14 +69,14 @@ hf_status hf_problem_slopes(hf_problem *p, int n, const double *design_N, const 
     hf_jacobian jacobian;
     hf_form_result r;
     double *all = NULL; /* derivatives of all figures; the merit is last */
-    size_t n_gene = (size_t)p->model.n_gene, size = (size_t)hf_problem_n_slope(p) * n_gene;
+    size_t n_variable = (size_t)p->model.n_variable, size = (size_t)hf_problem_n_slope(p) * n_variable;
     HF_TRY(hf_problem_has_slopes(p, messages));
     hf_status status = hf_jacobian_create(&p->evaluator, &jacobian);
-    if (status == HF_OK) all = malloc(((size_t)jacobian.n_figure * n_gene + 1) * sizeof *all);
+    if (status == HF_OK) all = malloc(((size_t)jacobian.n_figure * n_variable + 1) * sizeof *all);
     if (!all) status = HF_NO_MEMORY;
     for (int i = 0; i < n && status == HF_OK; i++) {
         if (result[i].status != HF_OK) continue;
-        hf_status found = hf_evaluate(&p->evaluator, design_N + (size_t)i * n_gene, &p->workspace, &r);
+        hf_status found = hf_evaluate(&p->evaluator, design_N + (size_t)i * n_variable, &p->workspace, &r);
         if (found == HF_OK) found = hf_jacobian_find(&jacobian, &p->workspace, all);
         if (found == HF_NO_MEMORY) status = HF_NO_MEMORY;
         for (size_t k = 0; k < size; k++)
@@ -86,7 +86,7 @@ hf_status hf_problem_slopes(hf_problem *p, int n, const double *design_N, const 
     free(all);
     hf_jacobian_free(&jacobian);
     return status == HF_OK ? HF_OK
-                           : hf_error(messages, status, "out of memory for derivatives by %zu variables", n_gene);
+                           : hf_error(messages, status, "out of memory for derivatives by %zu variables", n_variable);
 }
 
 void hf_problem_free(hf_problem *p)

@@ -204,7 +204,7 @@ hf_status hf_problem_allocate(hf_problem *p, hf_messages *messages)
 {
     HF_TRY(hf_lapack_load(messages));
     p->start_q_N_per_m = malloc((size_t)p->model.n_cable * sizeof(double));
-    p->base_N = malloc(((size_t)p->model.n_gene + 1) * sizeof(double));
+    p->base_N = malloc(((size_t)p->model.n_variable + 1) * sizeof(double));
     if (!p->start_q_N_per_m || !p->base_N || hf_workspace_create(&p->model, &p->workspace) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", p->model.n_node);
     return HF_OK;
@@ -230,7 +230,7 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->n_node = model->n_node;
     s->n_free = model->n_free;
     s->n_cable = model->n_cable;
-    s->n_gene = model->n_gene;
+    s->n_gene = model->n_variable;
     s->n_leader = model->n_leader;
     s->half_bandwidth = model->half_bandwidth;
     s->planes = p->planes;
@@ -284,13 +284,13 @@ hf_evaluator hf_problem_evaluator(const hf_problem *p)
 
 /* Checks that design variable k has an initial value and bounds that allow values; those of cables must be above zero.
  * Returns HF_OK, or HF_NO_FEASIBLE or HF_BAD_CASE with a message. */
-static hf_status check_gene(const hf_problem *p, int k, hf_messages *messages)
+static hf_status check_variable(const hf_problem *p, int k, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     double base = p->base_N[k], lower, upper, reach;
-    char name[HF_GENE_NAME_SIZE], where[HF_PLACE_SIZE];
-    hf_model_gene_name(&p->model, &p->scene, k, name, sizeof name);
-    bool is_row = p->model.gene, is_cable = p->model.gene_cable[k] >= 0;
+    char name[HF_VARIABLE_NAME_SIZE], where[HF_PLACE_SIZE];
+    hf_model_variable_name(&p->model, &p->scene, k, name, sizeof name);
+    bool is_row = p->model.variable, is_cable = p->model.variable_cable[k] >= 0;
     if (is_cable && !(base > 0))
         return hf_error(
             messages, HF_NO_FEASIBLE,
@@ -298,7 +298,7 @@ static hf_status check_gene(const hf_problem *p, int k, hf_messages *messages)
             "a law that holds it taut",
             is_row ? "cable" : "boundary cable", name);
     if (is_row)
-        hf_messages_place(messages, where, "optimize.variables.%d", p->model.gene[k].setting);
+        hf_messages_place(messages, where, "optimize.variables.%d", p->model.variable[k].setting);
     else
         hf_messages_place(messages, where, "optimize.range_N");
     if (!is_row && (base + o->range_N < o->min_tension_N || base - o->range_N > o->max_tension_N))
@@ -310,11 +310,11 @@ static hf_status check_gene(const hf_problem *p, int k, hf_messages *messages)
     if (is_row && is_cable && !(upper > 0))
         return hf_error(messages, HF_BAD_CASE,
                         "%s: bounds leave '%s' nothing above 0 %s: a cable has a tension and a length", where, name,
-                        hf_model_gene_unit(&p->model, k));
+                        hf_model_variable_unit(&p->model, k));
     if (is_row && (base + reach < lower || base - reach > upper))
         return hf_error(messages, HF_BAD_CASE,
                         "%s: '%s' has %g %s after form-finding; its range around that does not reach its bounds", where,
-                        name, base, hf_model_gene_unit(&p->model, k));
+                        name, base, hf_model_variable_unit(&p->model, k));
     if (hf_optimiser_plan_of(o).kind && !isfinite(upper - lower))
         return hf_error(messages, HF_BAD_CASE,
                         "%s: '%s' is open on one side; the genetic algorithm needs a range, or both bounds (method: lm "
@@ -354,8 +354,8 @@ void hf_problem_warn_of_front(const hf_problem *p, hf_messages *messages)
 
 static hf_status check_base(const hf_problem *p, hf_messages *messages)
 {
-    for (int k = 0; k < p->model.n_gene; k++)
-        HF_TRY(check_gene(p, k, messages));
+    for (int k = 0; k < p->model.n_variable; k++)
+        HF_TRY(check_variable(p, k, messages));
     if (!hf_optimiser_plan_of(&p->settings.optimize).kind && !hf_polish_applies(&p->evaluator))
         return hf_error(messages, HF_BAD_CASE, HF_PROBLEM_POLISH_NEEDS, hf_problem_no_slopes(p));
     return HF_OK;
@@ -371,7 +371,7 @@ hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
     if (hf_evaluate_attend(&p->evaluator, &p->workspace) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
     hf_problem_give_places(p, messages);
-    hf_status status = p->settings.has_optimize && m->n_gene > 0 ? check_base(p, messages) : HF_OK;
+    hf_status status = p->settings.has_optimize && m->n_variable > 0 ? check_base(p, messages) : HF_OK;
     hf_problem_give_places(NULL, messages);
     HF_TRY(status);
     hf_symmetry_average(m, p->base_N);
@@ -390,10 +390,10 @@ hf_status hf_problem_batch(hf_problem *p, int n_thread)
 hf_status hf_problem_share(hf_problem *p, hf_messages *messages)
 {
     int n_taut = 0;
-    while (n_taut < p->model.n_gene && (p->model.gene_cable[n_taut] < 0 || p->base_N[n_taut] > 0))
+    while (n_taut < p->model.n_variable && (p->model.variable_cable[n_taut] < 0 || p->base_N[n_taut] > 0))
         n_taut++;
     p->solver = HF_SOLVER_AUTO;
-    if (n_taut > 0 && n_taut == p->model.n_gene) p->solver = hf_batch_share(&p->batch, p->base_N);
+    if (n_taut > 0 && n_taut == p->model.n_variable) p->solver = hf_batch_share(&p->batch, p->base_N);
     if (!p->batch.lacks_memory) return HF_OK;
     return hf_error(messages, HF_NO_MEMORY, "out of memory for what designs of a net of %d nodes share",
                     p->model.n_node);

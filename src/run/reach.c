@@ -31,7 +31,7 @@
 /* What no variable has been seen to change, and rows of variables that have been seen to change nothing. */
 typedef struct {
     bool psi; /* of a case with inner nodes and without objectives */
-    bool goal[HF_DESIGN_ROWS_MAX], limit[HF_DESIGN_ROWS_MAX], variable[HF_DESIGN_ROWS_MAX];
+    bool goal[HF_DESIGN_ROWS_MAX], limit[HF_DESIGN_ROWS_MAX], variable_row[HF_DESIGN_ROWS_MAX];
 } unchanged;
 
 typedef struct {
@@ -40,8 +40,8 @@ typedef struct {
     hf_evaluator v; /* the evaluator of the problem for this model, without limits */
     hf_sensitivity slopes;
     hf_workspace w;
-    int *leader;             /* [n_gene] first variable of the class */
-    double *design;          /* [n_gene] values of the design variables */
+    int *leader;             /* [n_variable] first variable of the class */
+    double *design;          /* [n_variable] values of the design variables */
     double *move_m, *rate_N; /* [3][n_node], [n_cable] changes by a class */
     double most_m, most_N;   /* maximum changes */
     unchanged now;
@@ -50,16 +50,16 @@ typedef struct {
 
 /* ---- classes of variables ---- */
 
-static int row_of_gene(const hf_model *m, int k)
+static int row_of_variable(const hf_model *m, int k)
 {
-    return m->gene ? m->gene[k].setting : 0;
+    return m->variable ? m->variable[k].setting : 0;
 }
 
 /* Returns the class of a leading variable, chosen by a hash among the classes of its row. */
 static int class_of(const reach *q, int k)
 {
-    int n_row = q->p->settings.optimize.n_variable, n = n_row > 1 ? CLASSES / n_row : CLASSES;
-    return row_of_gene(&q->model, k) * n + (int)(hf_random_mix((uint64_t)k) % (uint64_t)n);
+    int n_row = q->p->settings.optimize.n_variable_row, n = n_row > 1 ? CLASSES / n_row : CLASSES;
+    return row_of_variable(&q->model, k) * n + (int)(hf_random_mix((uint64_t)k) % (uint64_t)n);
 }
 
 static void link_classes(reach *q)
@@ -69,20 +69,20 @@ static void link_classes(reach *q)
     for (int i = 0; i < CLASSES; i++)
         first[i] = -1;
     q->model.n_leader = 0;
-    for (int k = 0; k < m->n_gene; k++) {
-        int i = class_of(q, m->gene_leader[k]);
+    for (int k = 0; k < m->n_variable; k++) {
+        int i = class_of(q, m->variable_leader[k]);
         if (first[i] < 0) first[i] = k;
         q->leader[k] = first[i];
         q->model.n_leader += first[i] == k;
     }
-    q->model.gene_leader = q->leader;
+    q->model.variable_leader = q->leader;
 }
 
 static void lay_out(hf_arena *a, reach *q)
 {
     const hf_model *m = &q->model;
-    q->leader = hf_arena_take(a, (size_t)m->n_gene, sizeof(int));
-    q->design = hf_arena_take(a, (size_t)m->n_gene, sizeof(double));
+    q->leader = hf_arena_take(a, (size_t)m->n_variable, sizeof(int));
+    q->design = hf_arena_take(a, (size_t)m->n_variable, sizeof(double));
     q->move_m = hf_arena_take(a, 3 * (size_t)m->n_node, sizeof(double));
     q->rate_N = hf_arena_take(a, (size_t)m->n_cable, sizeof(double));
 }
@@ -202,12 +202,12 @@ static bool changes_limit(const reach *q, const hf_limit *row)
 static void strike(reach *q)
 {
     const hf_optimize_settings *o = &q->p->settings.optimize;
-    const int *of_gene = q->slopes.variable_of_gene;
-    for (int k = 0; k < q->model.n_gene; k++) {
+    const int *of_variable = q->slopes.class_of_variable;
+    for (int k = 0; k < q->model.n_variable; k++) {
         if (q->leader[k] != k) continue;
-        measure_class(q, of_gene[k]);
+        measure_class(q, of_variable[k]);
         if (!(q->most_m > 0) && !(q->most_N > 0)) continue;
-        q->now.variable[row_of_gene(&q->model, k)] = false;
+        q->now.variable_row[row_of_variable(&q->model, k)] = false;
         if (q->now.psi) q->now.psi = !any_row(q, q->model.n_inner_node, q->model.inner_row);
         for (int i = 0; i < q->p->goals.n_goal; i++)
             if (q->now.goal[i]) q->now.goal[i] = !changes_goal(q, &q->p->goals.goal[i]);
@@ -221,10 +221,10 @@ static void choose_design(reach *q, bool is_beside)
 {
     const hf_problem *p = q->p;
     hf_random random = hf_random_stream(1, 0, 0);
-    for (int k = 0; k < q->model.n_gene; k++) {
+    for (int k = 0; k < q->model.n_variable; k++) {
         double lower, upper, range, base = p->base_N[k];
         hf_variables_bound(&p->settings.optimize, &q->model, k, base, &lower, &upper, &range);
-        if (q->model.gene_cable[k] >= 0) range = fmin(range, base); /* values of cables stay above zero */
+        if (q->model.variable_cable[k] >= 0) range = fmin(range, base); /* values of cables stay above zero */
         double part = hf_random_uniform(&random);
         q->design[k] = is_beside && isfinite(range) ? base + BESIDE * (2 * part - 1) * range : base;
     }
@@ -278,8 +278,8 @@ static hf_status tell(const reach *q, hf_messages *messages)
 {
     const hf_optimize_settings *o = &q->p->settings.optimize;
     char place[HF_PLACE_SIZE];
-    for (int i = 0; i < o->n_variable; i++)
-        if (q->now.variable[i])
+    for (int i = 0; i < o->n_variable_row; i++)
+        if (q->now.variable_row[i])
             hf_warning(messages,
                        "%s: changes nothing at the base design: its cables, or those at its supports, are slack",
                        hf_messages_place(messages, place, "optimize.variables.%d", i));
@@ -293,7 +293,7 @@ static hf_status tell(const reach *q, hf_messages *messages)
     if (!q->now.psi) return HF_OK;
     return hf_error(messages, HF_BAD_CASE,
                     "%s: no variable of this case changes psi: %s; vary what does, or name goals",
-                    hf_messages_place(messages, place, o->n_variable ? "optimize.variables.0" : "optimize.range_N"),
+                    hf_messages_place(messages, place, o->n_variable_row ? "optimize.variables.0" : "optimize.range_N"),
                     why_goal(HF_GOAL_PSI));
 }
 
@@ -304,7 +304,7 @@ static bool is_open(const reach *q)
     bool is = q->now.psi;
     for (int i = 0; i < HF_DESIGN_ROWS_MAX; i++)
         is |= (i < q->p->goals.n_goal && q->now.goal[i]) || (i < o->n_limit && q->now.limit[i]) ||
-              (i < o->n_variable && q->now.variable[i]);
+              (i < o->n_variable_row && q->now.variable_row[i]);
     return is;
 }
 
@@ -329,11 +329,11 @@ static void doubt_ranges(const hf_problem *p, hf_messages *messages)
 {
     const hf_model *m = &p->model;
     char place[HF_PLACE_SIZE];
-    for (int i = 0; i < p->settings.optimize.n_variable; i++) {
-        const hf_variable_settings *row = &p->settings.optimize.variable[i];
+    for (int i = 0; i < p->settings.optimize.n_variable_row; i++) {
+        const hf_variable_settings *row = &p->settings.optimize.variable_row[i];
         double most = 0;
-        for (int k = 0; k < m->n_gene; k++)
-            if (row_of_gene(m, k) == i && m->gene_cable[k] >= 0) most = fmax(most, fabs(p->base_N[k]));
+        for (int k = 0; k < m->n_variable; k++)
+            if (row_of_variable(m, k) == i && m->variable_cable[k] >= 0) most = fmax(most, fabs(p->base_N[k]));
         if (!(most > 0) || !isinf(row->upper) || !(row->range > FAR_RANGE * most)) continue;
         hf_warning(messages, "%s: %g is %.2g times the largest value of this row, %.3g: is a part meant, as in %g %%?",
                    hf_messages_place(messages, place, "optimize.variables.%d.range", i), row->range, row->range / most,
@@ -349,7 +349,7 @@ hf_status hf_reach_check(const hf_problem *p, hf_messages *messages)
     doubt_ranges(p, messages);
     hf_problem_give_places(NULL, messages);
     if (!hf_polish_applies(&p->evaluator)) return HF_OK;
-    if (!o->n_variable && !o->n_limit && !p->goals.n_goal) return HF_OK;
+    if (!o->n_variable_row && !o->n_limit && !p->goals.n_goal) return HF_OK;
     hf_status status = create(p, &q);
     if (status == HF_OK) status = look(&q);
     if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the derivatives of the goals");

@@ -180,23 +180,23 @@ static hf_status prepare_optimize(run *r, hf_summary *s, hf_messages *messages)
     hf_goals_point *point = p->workspace.goals;
     if (goals->n_goal && hf_goals_measure(goals, &p->workspace, point, s->form.goal, &s->form.merit) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
-    HF_TRY(hf_store_restore_base(r->store, p->model.n_gene, p->base_N, messages));
+    HF_TRY(hf_store_restore_base(r->store, p->model.n_variable, p->base_N, messages));
     if (hf_problem_batch(p, r->request->threads) != HF_OK ||
         hf_optimiser_create(r->plan.kind, &p->settings.optimize, &p->model, p->base_N, &r->optimiser) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for %d individuals of %d genes on %d threads",
-                        p->settings.optimize.population, p->model.n_gene, p->batch.n_thread);
+                        p->settings.optimize.population, p->model.n_variable, p->batch.n_thread);
     return HF_OK;
 }
 
 static double *best_design(const hf_population *p)
 {
-    return p->design_N + (size_t)p->best * (size_t)p->n_gene;
+    return p->design_N + (size_t)p->best * (size_t)p->n_variable;
 }
 
 static void count_at_bounds(const hf_population *p, const double *design, int *at_lower, int *at_upper)
 {
     *at_lower = *at_upper = 0; /* a resumed run has the counts of the session before */
-    for (int k = 0; k < p->n_gene; k++) {
+    for (int k = 0; k < p->n_variable; k++) {
         *at_lower += design[k] <= p->lower_N[k];
         *at_upper += design[k] >= p->upper_N[k];
     }
@@ -282,7 +282,7 @@ static void keep(void *context)
 static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
 {
     const hf_population *p = &r->optimiser.population;
-    HF_TRY(hf_store_genes(r->store, &r->problem.model, p, messages));
+    HF_TRY(hf_store_variables(r->store, &r->problem.model, p, messages));
     HF_TRY(hf_store_restore(r->store, &r->optimiser, s, messages));
     if (hf_store_generations(r->store) == 0) return hf_store_publish(r->store, s, true, messages);
     hf_optimiser_tell(&r->optimiser);
@@ -370,7 +370,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     hf_polish_result outcome;
     double *design = r->problem.base_N;
     if (s->has_optimize && p->best >= 0) design = best_design(p);
-    for (int k = 0; k < p->n_gene; k++) /* the initial design may violate the bounds */
+    for (int k = 0; k < p->n_variable; k++) /* the initial design may violate the bounds */
         design[k] = hf_population_clamp(p, k, design[k]);
     observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});
     hf_status status = hf_polish_stage_run(r->request, &r->problem, p, s, r->store, design, &outcome, &s->polish_wall_s,
@@ -466,7 +466,7 @@ static hf_status stages(run *r, hf_summary *s, hf_messages *messages)
 {
     HF_TRY(find_form(r, s, messages));
     if (must_stop(r)) return HF_INTERRUPTED;
-    if (r->problem.settings.has_optimize && r->problem.model.n_gene == 0)
+    if (r->problem.settings.has_optimize && r->problem.model.n_variable == 0)
         hf_warning(messages, "optimize: skipped, no boundary cable has a free end");
     else if (r->problem.settings.has_optimize)
         return optimize(r, s, messages);

@@ -65,18 +65,18 @@ static const char *explain(const hf_problem *p, hf_status status, int end, char 
     return text;
 }
 
-/* Returns the designs of the earlier front within the bounds, or else the initial design: [n][n_gene], n at least 1.
- * The caller frees them. Returns NULL if there is no memory. */
+/* Returns the designs of the earlier front within the bounds, or else the initial design: [n][n_variable], n at least
+ * 1. The caller frees them. Returns NULL if there is no memory. */
 static double *make_starts(const hf_problem *p, const hf_population *bounds, const hf_front *earlier, int *n)
 {
-    int n_gene = p->model.n_gene;
-    double *start = malloc((size_t)(earlier->n_point + 1) * (size_t)n_gene * sizeof *start);
+    int n_variable = p->model.n_variable;
+    double *start = malloc((size_t)(earlier->n_point + 1) * (size_t)n_variable * sizeof *start);
     *n = 0;
     for (int i = 0; i <= earlier->n_point && start; i++) {
-        const double *design = i < earlier->n_point ? earlier->design + (size_t)i * (size_t)n_gene : p->base_N;
+        const double *design = i < earlier->n_point ? earlier->design + (size_t)i * (size_t)n_variable : p->base_N;
         bool is_wanted = i < earlier->n_point ? earlier->point[i].mark == HF_FRONT_ON : *n == 0;
-        for (int k = 0; k < n_gene && is_wanted; k++)
-            start[(size_t)*n * (size_t)n_gene + (size_t)k] = hf_population_clamp(bounds, k, design[k]);
+        for (int k = 0; k < n_variable && is_wanted; k++)
+            start[(size_t)*n * (size_t)n_variable + (size_t)k] = hf_population_clamp(bounds, k, design[k]);
         *n += is_wanted;
     }
     return start;

@@ -32,8 +32,8 @@ enum { DIFFERENCES_SIZE = 640 };
 typedef struct {
     hf_summary *summary;
     hf_front front;
-    char *gene;
-    size_t gene_size;
+    char *variable;
+    size_t variable_size;
 } stored_front;
 
 /* ---- the point ---- */
@@ -96,11 +96,11 @@ static bool has_objectives(const hf_problem *p, const hf_summary *s)
 
 static bool has_variables(const hf_problem *p, const stored_front *f)
 {
-    char name[HF_GENE_NAME_SIZE];
-    bool is_same = p->model.n_gene == f->front.n_gene;
-    for (int k = 0; k < f->front.n_gene && is_same; k++) {
-        hf_model_gene_name(&p->model, &p->scene, k, name, sizeof name);
-        is_same = !strcmp(name, f->gene + (size_t)k * f->gene_size);
+    char name[HF_VARIABLE_NAME_SIZE];
+    bool is_same = p->model.n_variable == f->front.n_variable;
+    for (int k = 0; k < f->front.n_variable && is_same; k++) {
+        hf_model_variable_name(&p->model, &p->scene, k, name, sizeof name);
+        is_same = !strcmp(name, f->variable + (size_t)k * f->variable_size);
     }
     return is_same;
 }
@@ -129,7 +129,7 @@ static hf_status check_point(const hf_problem *p, const stored_front *f, const h
 
 static hf_status take(const hf_front *front, hf_front_origin *origin, hf_taken_point *taken, hf_messages *messages)
 {
-    size_t i = (size_t)origin->point - 1, n = (size_t)front->n_gene, bytes = n * sizeof(double);
+    size_t i = (size_t)origin->point - 1, n = (size_t)front->n_variable, bytes = n * sizeof(double);
     taken->design = malloc(bytes);
     if (!taken->design) return hf_error(messages, HF_NO_MEMORY, "out of memory for a design of %zu variables", n);
     memcpy(taken->design, front->design + i * n, bytes);
@@ -154,11 +154,11 @@ hf_status hf_take_point_read(const char *point, hf_problem *p, hf_taken_point *t
         status = hf_error(messages, HF_BAD_USAGE,
                           "%s: has no front, so no points: a run of a case with optimize.objectives makes one",
                           origin->path);
-    if (status == HF_OK) status = hf_store_read_front(origin->path, &f.front, &f.gene, &f.gene_size, messages);
+    if (status == HF_OK) status = hf_store_read_front(origin->path, &f.front, &f.variable, &f.variable_size, messages);
     if (status == HF_OK) status = check_point(p, &f, origin, messages);
     if (status == HF_OK) status = take(&f.front, origin, taken, messages);
     hf_front_free(&f.front);
-    free(f.gene);
+    free(f.variable);
     free(f.summary);
     return status;
 }
@@ -169,12 +169,12 @@ static hf_status check_bounds(const hf_problem *p, const hf_taken_point *taken, 
                               hf_messages *messages)
 {
     const hf_front_origin *origin = &p->settings.taken;
-    char name[HF_GENE_NAME_SIZE], words[DIFFERENCES_SIZE];
-    for (int k = 0; k < bounds->n_gene; k++) {
+    char name[HF_VARIABLE_NAME_SIZE], words[DIFFERENCES_SIZE];
+    for (int k = 0; k < bounds->n_variable; k++) {
         double value = taken->design[k], low = bounds->lower_N[k], high = bounds->upper_N[k],
                room = SAME * (high - low);
         if (!(value < low - room) && !(value > high + room)) continue;
-        hf_model_gene_name(&p->model, &p->scene, k, name, sizeof name);
+        hf_model_variable_name(&p->model, &p->scene, k, name, sizeof name);
         return hf_error(messages, HF_BAD_CASE,
                         "%s: point %d of its front has %.6g for '%s', which %s keeps from %.6g to %.6g: " MADE_OF,
                         origin->path, origin->point, value, name, p->settings.path, low, high, tell_keys(p, words));

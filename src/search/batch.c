@@ -1,7 +1,7 @@
 /* batch - evaluates many designs on all cores. <hifdm/batch.h> describes the interface.
  *
  *     hf_batch_share   chooses the solver and makes its engine: chord, swarm or none
- *     hf_batch_run     designs [n][n_gene] -> results [n]
+ *     hf_batch_run     designs [n][n_variable] -> results [n]
  *     hf_batch_next    the optimiser proposes individuals -> results of the next generation
  *
  *     each thread: take the next index -> load the design into a lane -> solve -> store result[i] -> take ...
@@ -95,8 +95,9 @@ static hf_status create_lanes(hf_batch *batch, struct hf_batch_engine *e)
     return HF_OK;
 }
 
-/* Makes the engine of this solver; base_N [n_gene] is the initial design. Returns false and leaves the batch without an
- * engine if memory runs out, or if the initial design is unsuitable. lacks_memory is true in the first case. */
+/* Makes the engine of this solver; base_N [n_variable] is the initial design. Returns false and leaves the batch
+ * without an engine if memory runs out, or if the initial design is unsuitable. lacks_memory is true in the first
+ * case. */
 static bool set_engine(hf_batch *batch, hf_solver solver, const double *base_N)
 {
     hf_status status = HF_NO_MEMORY;
@@ -125,7 +126,7 @@ hf_solver hf_batch_solver(const hf_evaluator *v, bool *has_lanes)
     if (each_by_newton(v)) return HF_SOLVER_NEWTON;
     /* The lanes of swarm support neither LAPACK, struts, a truss, optimize.variables, limits nor objectives, and only
      * some laws. Such designs are solved one after the other. */
-    *has_lanes = !v->model->by_lapack && !v->model->has_strut && !v->model->n_attachment && !v->model->gene &&
+    *has_lanes = !v->model->by_lapack && !v->model->has_strut && !v->model->n_attachment && !v->model->variable &&
                  !v->limits && !v->goals;
     for (int e = 0; e < v->model->n_cable && *has_lanes; e++)
         *has_lanes = hf_law_is_served(v->model->law[e], HF_SWARM_LAWS);
@@ -153,8 +154,8 @@ static bool has_room(hf_batch *batch, int room)
     return true;
 }
 
-/* Evaluates designs in the calling thread until `next` returns -1. design_N: [][n_gene]; r: [], written at the indices
- * that `next` returns. If keeps_shape is true, the workspace of the room holds the last shape afterwards. */
+/* Evaluates designs in the calling thread until `next` returns -1. design_N: [][n_variable]; r: [], written at the
+ * indices that `next` returns. If keeps_shape is true, the workspace of the room holds the last shape afterwards. */
 static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *context, bool keeps_shape,
                      const double *design_N, hf_form_result *r)
 {
@@ -167,7 +168,7 @@ static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *contex
         hf_swarm_run(v, &e->plan, &e->lanes[room], w, next, context, design_N, r);
     else
         for (int i = next(context); i >= 0; i = next(context))
-            hf_evaluate(v, design_N + (size_t)i * (size_t)v->model->n_gene, w, &r[i]);
+            hf_evaluate(v, design_N + (size_t)i * (size_t)v->model->n_variable, w, &r[i]);
 }
 
 /* ---- the parallel run ---- */

@@ -18,30 +18,30 @@
 bool hf_breeding_leads(const hf_breeding *g, int k)
 {
     const hf_model *m = g->model;
-    return m->n_leader >= m->n_gene || !m->gene_leader || m->gene_leader[k] == k;
+    return m->n_leader >= m->n_variable || !m->variable_leader || m->variable_leader[k] == k;
 }
 
 int hf_breeding_n_leader(const hf_breeding *g)
 {
     const hf_model *m = g->model;
-    return m->n_leader < m->n_gene && m->gene_leader ? m->n_leader : m->n_gene;
+    return m->n_leader < m->n_variable && m->variable_leader ? m->n_leader : m->n_variable;
 }
 
 double *hf_breeding_draws(const hf_breeding *g, int i)
 {
-    return g->draw + (size_t)i * (size_t)g->model->n_gene_group;
+    return g->draw + (size_t)i * (size_t)g->model->n_variable_group;
 }
 
 void hf_breeding_first(const hf_breeding *g, uint64_t seed, hf_population *p)
 {
     for (int i = 0; i < p->n_individual; i++) {
-        double *design_N = p->design_N + (size_t)i * (size_t)p->n_gene;
+        double *design_N = p->design_N + (size_t)i * (size_t)p->n_variable;
         double *draw = hf_breeding_draws(g, i);
         hf_random random = hf_random_stream(seed, 0, i);
-        for (int j = 0; j < g->model->n_gene_group; j++)
+        for (int j = 0; j < g->model->n_variable_group; j++)
             draw[j] = i == 0 ? 0 : 2 * hf_random_uniform(&random) - 1;
-        for (int k = 0; k < p->n_gene; k++) {
-            double step = p->reach[k] * draw[g->model->gene_group[k]];
+        for (int k = 0; k < p->n_variable; k++) {
+            double step = p->reach[k] * draw[g->model->variable_group[k]];
             design_N[k] = hf_population_clamp(p, k, p->base_N[k] + step);
         }
         hf_population_link(p, g->model, design_N);
@@ -58,10 +58,10 @@ void hf_breeding_move_along(const hf_breeding *g, const hf_population *p, const 
     double step = move->step_max * hf_random_uniform(random);
     double share = hf_power_of_two(-move->share_octaves * hf_random_uniform(random));
     bool by_chain = hf_random_uniform(random) < move->by_chain;
-    for (int j = 0; j < g->model->n_gene_group && by_chain; j++)
+    for (int j = 0; j < g->model->n_variable_group && by_chain; j++)
         draw[j] = hf_random_uniform(random);
-    for (int k = 0; k < p->n_gene; k++) {
-        double drawn = by_chain ? draw[g->model->gene_group[k]] : hf_random_uniform(random);
+    for (int k = 0; k < p->n_variable; k++) {
+        double drawn = by_chain ? draw[g->model->variable_group[k]] : hf_random_uniform(random);
         if (drawn < share) child[k] = hf_population_clamp(p, k, child[k] + step * (to[k] - from[k]));
     }
 }
@@ -83,11 +83,11 @@ void hf_breeding_mutate(const hf_breeding *g, const hf_population *p, double rat
 {
     double *draw = hf_breeding_draws(g, i);
     single /= hf_breeding_n_leader(g);
-    for (int j = 0; j < g->model->n_gene_group; j++)
+    for (int j = 0; j < g->model->n_variable_group; j++)
         draw[j] = mutation_step(rate, random);
-    for (int k = 0; k < p->n_gene; k++) {
+    for (int k = 0; k < p->n_variable; k++) {
         if (!hf_breeding_leads(g, k)) continue;
-        double step = draw[g->model->gene_group[k]] + mutation_step(single, random);
+        double step = draw[g->model->variable_group[k]] + mutation_step(single, random);
         child[k] = hf_population_clamp(p, k, child[k] + step * (p->upper_N[k] - p->lower_N[k]));
     }
 }

@@ -14,7 +14,7 @@
 
 typedef struct {
     const hf_model *model; /* borrowed */
-    double *draw; /* [n_individual][n_gene_group] scratch of each child; threads make several children at a time */
+    double *draw; /* [n_individual][n_variable_group] scratch of each child; threads make several children at a time */
 } hf_breeding;
 
 /* How a crossover moves a design along the difference of two others. */
@@ -26,23 +26,23 @@ typedef struct {
 
 /* hf_breeding_leads returns true if the gene follows no other gene. hf_breeding_n_leader returns the number of genes
  * that follow no other gene. */
-bool hf_breeding_leads(const hf_breeding *breeding, int i_gene);
+bool hf_breeding_leads(const hf_breeding *breeding, int i_variable);
 int hf_breeding_n_leader(const hf_breeding *breeding);
 
-/* Returns the scratch of individual i, [n_gene_group]: one number for each chain. */
+/* Returns the scratch of individual i, [n_variable_group]: one number for each chain. */
 double *hf_breeding_draws(const hf_breeding *breeding, int i);
 
 /* Writes the first generation: Eq. 13 around the initial design, with one random number per chain. Individual 0 is the
  * initial design itself, so the best individual is never worse than the initial design. */
 void hf_breeding_first(const hf_breeding *breeding, uint64_t seed, hf_population *population);
 
-/* Moves child [n_gene] of individual i along the difference from design `from` to design `to`, both [n_gene]. A random
- * share of its chains or genes moves, by a random number of differences from 0 to step_max. */
+/* Moves child [n_variable] of individual i along the difference from design `from` to design `to`, both [n_variable]. A
+ * random share of its chains or genes moves, by a random number of differences from 0 to step_max. */
 void hf_breeding_move_along(const hf_breeding *breeding, const hf_population *population, const hf_breeding_move *move,
                             const double *from, const double *to, int i, double *child, hf_random *random);
 
-/* Mutates child [n_gene] of individual i. Each chain takes a step with probability `rate`. In addition, `single` genes
- * on average take a step of their own. */
+/* Mutates child [n_variable] of individual i. Each chain takes a step with probability `rate`. In addition, `single`
+ * genes on average take a step of their own. */
 void hf_breeding_mutate(const hf_breeding *breeding, const hf_population *population, double rate, double single, int i,
                         double *child, hf_random *random);
 

@@ -65,16 +65,16 @@ static bool is_served(const hf_model *m, int e)
 bool hf_chord_applies(const hf_evaluator *v)
 {
     const hf_model *m = v->model;
-    if (!m->has_newton || m->n_gene == 0 || m->by_lapack) return false;
-    for (int k = 0; k < m->n_gene; k++) {
-        hf_gene_sets sets = hf_evaluate_sets(v, k);
+    if (!m->has_newton || m->n_variable == 0 || m->by_lapack) return false;
+    for (int k = 0; k < m->n_variable; k++) {
+        hf_variable_sets sets = hf_evaluate_sets(v, k);
         if (sets != HF_SETS_TENSION && sets != HF_SETS_DENSITY) return false;
     }
     int n_other = 0; /* cables whose laws the kernels do not support */
     for (int e = 0; e < m->n_cable; e++)
         n_other += !is_served(m, e);
-    for (int k = 0; k < m->n_gene; k++) /* a design replaces the law of a cable that it varies */
-        n_other -= !is_served(m, m->gene_cable[k]);
+    for (int k = 0; k < m->n_variable; k++) /* a design replaces the law of a cable that it varies */
+        n_other -= !is_served(m, m->variable_cable[k]);
     for (int e = 0; e < m->n_cable; e++) /* a cable between two supports pulls on no free node */
         n_other -= !is_served(m, e) && is_between_supports(m, e);
     for (int k = 0; k < m->n_tie; k++) /* a cable between supports counts if it pulls on the truss */
@@ -88,8 +88,8 @@ static void lay_out(hf_arena *a, hf_chord *c)
     size_t n_cable = (size_t)m->n_cable, n_pull = (size_t)c->n_pull;
     hf_packed_band_lay_out(a, &c->matrix);
     c->base_m = hf_arena_take(a, 3 * (size_t)m->n_node, sizeof(double));
-    c->gene_of_cable = hf_arena_take(a, n_cable, sizeof(int));
-    c->gene_divisor = hf_arena_take(a, (size_t)m->n_gene, sizeof(double));
+    c->variable_of_cable = hf_arena_take(a, n_cable, sizeof(int));
+    c->variable_divisor = hf_arena_take(a, (size_t)m->n_variable, sizeof(double));
     c->inverse_length = hf_arena_take(a, n_cable, sizeof(double));
     c->slot_of_cable = hf_arena_take(a, n_cable, sizeof(int));
     c->pulled = hf_arena_take(a, n_cable, sizeof(int));
@@ -146,23 +146,23 @@ static hf_status allocate(hf_chord *chord)
     return HF_OK;
 }
 
-/* Lists for each cable its design variable, the row of its force density in `gene`, and whether its tension is
+/* Lists for each cable its design variable, the row of its force density in `variable`, and whether its tension is
  * given. */
 static void list_cables(const hf_evaluator *v, hf_chord *c)
 {
     const hf_model *m = v->model;
     for (int e = 0; e < m->n_cable; e++)
-        c->gene_of_cable[e] = -1;
-    for (int k = 0; k < m->n_gene; k++) {
-        c->gene_of_cable[m->gene_cable[k]] = k;
-        c->gene_divisor[k] = hf_evaluate_sets(v, k) == HF_SETS_TENSION ? 1 : hf_evaluate_divisor(v, k);
+        c->variable_of_cable[e] = -1;
+    for (int k = 0; k < m->n_variable; k++) {
+        c->variable_of_cable[m->variable_cable[k]] = k;
+        c->variable_divisor[k] = hf_evaluate_sets(v, k) == HF_SETS_TENSION ? 1 : hf_evaluate_divisor(v, k);
     }
     c->serves_all = true;
     for (int e = 0; e < m->n_cable; e++) {
-        int k = c->gene_of_cable[e];
+        int k = c->variable_of_cable[e];
         bool gives_tension = k >= 0 && hf_evaluate_sets(v, k) == HF_SETS_TENSION;
         c->inverse_length[e] = 1 / m->length_m[e];
-        c->slot_of_cable[e] = k >= 0 && !gives_tension ? k : m->n_gene + e;
+        c->slot_of_cable[e] = k >= 0 && !gives_tension ? k : m->n_variable + e;
         c->is_pulled[e] = k >= 0 ? gives_tension : hf_law_has(m->law[e], HF_LAW_GIVES_TENSION);
         if (c->is_pulled[e]) c->pulled[c->n_pulled++] = e;
         if (k < 0 && !is_served(m, e)) c->serves_all = false;
@@ -229,7 +229,7 @@ static void lay_out_lanes(hf_arena *a, const hf_chord *c, hf_chord_lanes *l)
     const hf_model *m = c->evaluator->model;
     l->x_m = hf_arena_take(a, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
     l->force_N = hf_arena_take(a, hf_packed_band_rows(&c->matrix) * HF_LANES, sizeof(double));
-    l->gene = hf_arena_take(a, ((size_t)m->n_gene + (size_t)m->n_cable) * HF_LANES, sizeof(double));
+    l->variable = hf_arena_take(a, ((size_t)m->n_variable + (size_t)m->n_cable) * HF_LANES, sizeof(double));
     l->pull_N = hf_arena_take(a, (size_t)c->n_pull * HF_LANES, sizeof(double));
     l->displacement_m = hf_arena_take(a, (size_t)c->n_pull_pad * HF_LANES, sizeof(double));
     l->move_m = hf_arena_take(a, (size_t)c->n_pull_pad * HF_LANES, sizeof(double));
@@ -253,7 +253,7 @@ hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes)
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_lanes(&arena, chord, lanes)));
     lanes->block = arena.block;
     const hf_model *m = chord->evaluator->model;
-    double *q_N_per_m = lanes->gene + (size_t)m->n_gene * HF_LANES;
+    double *q_N_per_m = lanes->variable + (size_t)m->n_variable * HF_LANES;
     for (size_t i = 0; i < 3 * (size_t)m->n_node * HF_LANES; i++)
         lanes->x_m[i] = chord->base_m[i / HF_LANES];
     /* The target of law force_density is the force density. The kernels overwrite those of cables with a given
@@ -300,7 +300,7 @@ static void load(void *solver, int lane, int i_design)
     chord_run *s = solver;
     const hf_chord *c = s->chord;
     const hf_model *m = c->evaluator->model;
-    const double *design_N = s->design_N + (size_t)i_design * (size_t)m->n_gene;
+    const double *design_N = s->design_N + (size_t)i_design * (size_t)m->n_variable;
     const hf_chord_lanes *l = s->lanes;
     for (int d = 0; d < 3; d++) {
         double *x = l->x_m + (ptrdiff_t)d * m->n_node * HF_LANES + lane;
@@ -312,8 +312,8 @@ static void load(void *solver, int lane, int i_design)
     }
     for (int i = 0; i < c->n_pull; i++)
         l->displacement_m[i * HF_LANES + lane] = c->base_displacement_m[i];
-    for (int k = 0; k < m->n_gene; k++)
-        l->gene[k * HF_LANES + lane] = design_N[k] / c->gene_divisor[k];
+    for (int k = 0; k < m->n_variable; k++)
+        l->variable[k * HF_LANES + lane] = design_N[k] / c->variable_divisor[k];
     s->steps[lane] = 0;
     s->excess_before_N[lane] = INFINITY;
 }
@@ -412,7 +412,7 @@ static bool settle(void *solver, int lane, int i_design)
 {
     chord_run *s = solver;
     const hf_evaluator *v = s->chord->evaluator;
-    const double *design_N = s->design_N + (size_t)i_design * (size_t)v->model->n_gene;
+    const double *design_N = s->design_N + (size_t)i_design * (size_t)v->model->n_variable;
     double excess_N = s->at[lane].excess_N;
     if (excess_N <= v->form->residual_tolerance * v->model->reference_N) {
         finish(s, lane, design_N, s->result + i_design);

@@ -51,10 +51,10 @@ static void find_densities(const hf_chord *chord, const hf_chord_lanes *l, int p
     const hf_model *m = chord->evaluator->model;
     vec d[3];
     for (int i = 0; i < chord->n_pulled; i++) {
-        int e = chord->pulled[i], k = chord->gene_of_cable[e];
+        int e = chord->pulled[i], k = chord->variable_of_cable[e];
         difference(l->x_m, m->n_node, m->end_row[2 * e], m->end_row[2 * e + 1], p, d);
-        vec tension = k >= 0 ? *lanes_of(l->gene, k, p) : splat(m->target[e]);
-        *lanes_of(l->gene, chord->slot_of_cable[e], p) = tension / root(norm_squared(d[0], d[1], d[2]));
+        vec tension = k >= 0 ? *lanes_of(l->variable, k, p) : splat(m->target[e]);
+        *lanes_of(l->variable, chord->slot_of_cable[e], p) = tension / root(norm_squared(d[0], d[1], d[2]));
     }
 }
 
@@ -69,7 +69,7 @@ INLINE void sum_force(const hf_chord *chord, const hf_chord_lanes *l, int place,
     foreach (c, 3)
         f[c] = splat(m->load_N ? m->load_N[c * m->n_node + row] : 0);
     for (; i < end; i++) {
-        vec q = *lanes_of(l->gene, i->slot, p);
+        vec q = *lanes_of(l->variable, i->slot, p);
         difference(l->x_m, m->n_node, row, i->other, p, d);
         foreach (c, 3)
             f[c] = plus_product(f[c], q, d[c]);
@@ -224,10 +224,10 @@ static void measure(const hf_chord *chord, const hf_chord_lanes *l, int p, hf_ch
     vec most = splat(INFINITY), none = splat(0), error = none, d[3];
     vec low[2] = {most, most}, high[2] = {-most, -most}, short_pulled = most, short_other = most, longest = none;
     for (int e = 0; e < m->n_cable; e++) {
-        int k = chord->gene_of_cable[e], slot = chord->slot_of_cable[e];
+        int k = chord->variable_of_cable[e], slot = chord->slot_of_cable[e];
         difference(l->x_m, m->n_node, m->end_row[2 * e], m->end_row[2 * e + 1], p, d);
         vec length = root(norm_squared(d[0], d[1], d[2])), part = length * chord->inverse_length[e];
-        vec q = *lanes_of(l->gene, slot, p), tension = q * length;
+        vec q = *lanes_of(l->variable, slot, p), tension = q * length;
         longest = larger(part, longest);
         if (m->group[e] == HF_GROUP_INNER) {
             low[HF_GROUP_INNER] = smaller(tension, low[HF_GROUP_INNER]);
@@ -237,7 +237,7 @@ static void measure(const hf_chord *chord, const hf_chord_lanes *l, int p, hf_ch
             high[HF_GROUP_BOUNDARY] = larger(tension, high[HF_GROUP_BOUNDARY]);
         }
         if (chord->is_pulled[e]) {
-            vec target = k >= 0 ? *lanes_of(l->gene, k, p) : splat(m->target[e]);
+            vec target = k >= 0 ? *lanes_of(l->variable, k, p) : splat(m->target[e]);
             error = larger(magnitude(tension / target - 1), error);
             short_pulled = smaller(part, short_pulled);
         } else {

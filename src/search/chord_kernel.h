@@ -19,7 +19,7 @@ typedef struct hf_chord_kernels hf_chord_kernels;
 
 /* A cable seen from one of its nodes. */
 typedef struct {
-    int slot;  /* row of its force density in `gene` */
+    int slot;  /* row of its force density in `variable` */
     int other; /* model row of its other end */
 } hf_chord_incidence;
 
@@ -27,16 +27,16 @@ typedef struct {
 typedef struct hf_chord {
     const hf_evaluator *evaluator;
     const hf_chord_kernels *kernels;
-    hf_packed_band matrix;         /* factored Newton matrix of the initial design, 3 rows per free node */
-    double *base_m;                /* [3][n_node], shape from which the lanes start */
-    int *gene_of_cable;            /* [n_cable], design variable of the cable, or -1 */
-    double *gene_divisor;          /* [n_gene], divisor of the design variable: a length (m) or 1 */
-    double *inverse_length;        /* [n_cable], 1 / length between target positions, 1/m */
-    int *slot_of_cable;            /* [n_cable], row of its q in `gene`: its design variable or n_gene + cable */
-    int n_pulled, *pulled;         /* [n_pulled], cables with a given tension */
-    unsigned char *is_pulled;      /* [n_cable], 1 for cables with a given tension */
-    int *place_of_row;             /* [n_node], free node, or n_free + attachment, or -1 */
-    int *incidence_start;          /* [n_free + n_attachment + 1], first incidence of each node, by place_of_row */
+    hf_packed_band matrix;    /* factored Newton matrix of the initial design, 3 rows per free node */
+    double *base_m;           /* [3][n_node], shape from which the lanes start */
+    int *variable_of_cable;   /* [n_cable], design variable of the cable, or -1 */
+    double *variable_divisor; /* [n_variable], divisor of the design variable: a length (m) or 1 */
+    double *inverse_length;   /* [n_cable], 1 / length between target positions, 1/m */
+    int *slot_of_cable;       /* [n_cable], row of its q in `variable`: its design variable or n_variable + cable */
+    int n_pulled, *pulled;    /* [n_pulled], cables with a given tension */
+    unsigned char *is_pulled; /* [n_cable], 1 for cables with a given tension */
+    int *place_of_row;        /* [n_node], free node, or n_free + attachment, or -1 */
+    int *incidence_start;     /* [n_free + n_attachment + 1], first incidence of each node, by place_of_row */
     hf_chord_incidence *incidence; /* [incidence_start[n_free + n_attachment]], of each node by rising cable */
     bool serves_all;               /* true if all cables without a design variable have laws of HF_CHORD_LAWS */
 
@@ -54,8 +54,9 @@ typedef struct hf_chord {
 typedef struct {
     double *x_m;     /* [3][n_node][HF_LANES], positions */
     double *force_N; /* [hf_packed_band_rows][HF_LANES], forces on free nodes; after the solve the step, m */
-    double *gene;    /* [n_gene + n_cable][HF_LANES], q (N/m) or T (N) of design variables, then q of other cables */
-    double *pull_N;  /* [n_pull][HF_LANES], forces of the net on the attachments */
+    double
+        *variable;  /* [n_variable + n_cable][HF_LANES], q (N/m) or T (N) of design variables, then q of other cables */
+    double *pull_N; /* [n_pull][HF_LANES], forces of the net on the attachments */
     double *displacement_m, *move_m; /* [n_pull_pad][HF_LANES], displacements of attachments; their next change */
     void *block;
 } hf_chord_lanes;
@@ -89,7 +90,7 @@ struct hf_chord_kernels {
     void hf_chord_measure_##isa(const hf_chord *chord, const hf_chord_lanes *l, hf_chord_measures *measures);
 
 /* forces:  computes the nodal forces of every lane into force_N, the forces on the attachments into pull_N and the
- *          force densities into `gene`. residual_squared receives, per lane, the square of the maximum nodal force
+ *          force densities into `variable`. residual_squared receives, per lane, the square of the maximum nodal force
  *          divided by the reference tension.
  * couple:  computes the change of r that closes the gap F f - r of the truss into move_m. gap_squared receives, per
  *          lane, the square of the maximum gap, m^2.

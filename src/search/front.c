@@ -20,15 +20,16 @@ const char *const hf_front_mark_word[HF_FRONT_N_MARK + 1] = {HF_FRONT_MARKS(WORD
 static void lay_out(hf_arena *a, hf_front *f)
 {
     f->point = hf_arena_take(a, (size_t)f->n_point, sizeof *f->point);
-    f->design = hf_arena_take(a, (size_t)f->n_point * (size_t)f->n_gene, sizeof(double));
+    f->design = hf_arena_take(a, (size_t)f->n_point * (size_t)f->n_variable, sizeof(double));
 }
 
-hf_status hf_front_create(int n_objective, int n_gene, int n_point, hf_front *f)
+hf_status hf_front_create(int n_objective, int n_variable, int n_point, hf_front *f)
 {
     hf_arena arena = {0};
-    *f = (hf_front){.n_objective = n_objective, .n_gene = n_gene, .n_point = n_point, .minimised = -1, .knee = -1};
+    *f = (hf_front){
+        .n_objective = n_objective, .n_variable = n_variable, .n_point = n_point, .minimised = -1, .knee = -1};
     if (HF_ARENA_MAKE(&arena, lay_out(&arena, f)) != HF_OK) {
-        *f = (hf_front){.n_objective = n_objective, .n_gene = n_gene, .minimised = -1, .knee = -1};
+        *f = (hf_front){.n_objective = n_objective, .n_variable = n_variable, .minimised = -1, .knee = -1};
         return HF_NO_MEMORY;
     }
     f->block = arena.block;
@@ -81,11 +82,12 @@ static void swap(void *a, void *b, size_t size)
 /* Sorts the points by insertion: equal points keep their order, and a front has few points. */
 static void sort(hf_front *f)
 {
-    size_t n_gene = (size_t)f->n_gene;
+    size_t n_variable = (size_t)f->n_variable;
     for (int i = 1; i < f->n_point; i++)
         for (int k = i; k > 0 && comes_before(f, &f->point[k], &f->point[k - 1]); k--) {
             swap(&f->point[k], &f->point[k - 1], sizeof *f->point);
-            swap(f->design + (size_t)k * n_gene, f->design + (size_t)(k - 1) * n_gene, n_gene * sizeof(double));
+            swap(f->design + (size_t)k * n_variable, f->design + (size_t)(k - 1) * n_variable,
+                 n_variable * sizeof(double));
         }
 }
 

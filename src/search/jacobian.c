@@ -11,9 +11,9 @@
 static void lay_out(hf_arena *a, hf_jacobian *j)
 {
     const hf_model *m = &j->model;
-    j->leader = hf_arena_take(a, (size_t)m->n_gene, sizeof(int));
-    j->rate = hf_arena_take(a, (size_t)m->n_gene * (size_t)j->residuals.n_row, sizeof(double));
-    j->gradient = hf_arena_take(a, (size_t)m->n_gene, sizeof(double));
+    j->leader = hf_arena_take(a, (size_t)m->n_variable, sizeof(int));
+    j->rate = hf_arena_take(a, (size_t)m->n_variable * (size_t)j->residuals.n_row, sizeof(double));
+    j->gradient = hf_arena_take(a, (size_t)m->n_variable, sizeof(double));
 }
 
 hf_status hf_jacobian_create(const hf_evaluator *evaluator, hf_jacobian *j)
@@ -25,10 +25,10 @@ hf_status hf_jacobian_create(const hf_evaluator *evaluator, hf_jacobian *j)
     HF_TRY(hf_residuals_create(&j->v, &j->residuals));
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, j)));
     j->block = arena.block;
-    for (int k = 0; k < j->model.n_gene; k++)
+    for (int k = 0; k < j->model.n_variable; k++)
         j->leader[k] = k;
-    j->model.gene_leader = j->leader;
-    j->model.n_leader = j->model.n_gene;
+    j->model.variable_leader = j->leader;
+    j->model.n_leader = j->model.n_variable;
     return hf_sensitivity_create(&j->v, &j->slopes);
 }
 
@@ -52,7 +52,7 @@ hf_status hf_jacobian_find(hf_jacobian *j, hf_workspace *w, double *derivative)
 {
     const hf_goals *goals = j->v.goals;
     const double *value = j->residuals.value;
-    int n = j->model.n_gene;
+    int n = j->model.n_variable;
     for (int i = 0; i < j->n_figure * n; i++)
         derivative[i] = (double)NAN;
     HF_TRY(hf_sensitivity_find(&j->slopes, w));

@@ -15,9 +15,9 @@ typedef struct {
     int n_figure;   /* 1 for psi_m; with objectives: each of them, then the merit */
     hf_sensitivity slopes;
     hf_residuals residuals;
-    int *leader;      /* [n_gene], gene_leader of the model */
-    double *rate;     /* [n_gene][residuals.n_row], derivatives of the residuals */
-    double *gradient; /* [n_gene], scratch */
+    int *leader;      /* [n_variable], variable_leader of the model */
+    double *rate;     /* [n_variable][residuals.n_row], derivatives of the residuals */
+    double *gradient; /* [n_variable], scratch */
     void *block;
 } hf_jacobian;
 
@@ -27,7 +27,7 @@ typedef struct {
 hf_status hf_jacobian_create(const hf_evaluator *evaluator, hf_jacobian *jacobian);
 void hf_jacobian_free(hf_jacobian *jacobian);
 
-/* Computes derivative [n_figure][n_gene] at the shape in the workspace, in the unit of the figure per unit of the
+/* Computes derivative [n_figure][n_variable] at the shape in the workspace, in the unit of the figure per unit of the
  * design variable. The shape must be that of a feasible design that hf_evaluate has found. The derivative of a figure
  * that is 0 there is NaN. Returns HF_OK, HF_SINGULAR, HF_NOT_FINITE or HF_NO_MEMORY; all derivatives are NaN unless it
  * is HF_OK. */

@@ -4,8 +4,8 @@
  *     individuals and evaluated children -> survivors -> next generation
  *
  * Both variations select parents by roulette with the fitness psi_worst - psi. Both have the multi-scale mutation of
- * the breeder GA (Muehlenbein & Schlierkamp-Voosen 1993), which changes chains of boundary cables (model->gene_group)
- * and single cables. Their rates are those of Srinivas & Patnaik (1994) for minimisation.
+ * the breeder GA (Muehlenbein & Schlierkamp-Voosen 1993), which changes chains of boundary cables
+ * (model->variable_group) and single cables. Their rates are those of Srinivas & Patnaik (1994) for minimisation.
  *
  * Variation `difference`: a crossover moves an elite along the difference of two parents, as in differential evolution
  * (Storn & Price 1997). A child replaces the individual of the same index unless the child is worse
@@ -54,7 +54,7 @@ static breeder *lay_out(hf_arena *a, breeder *g)
 {
     breeder *itself = hf_arena_take(a, 1, sizeof *itself);
     size_t n = (size_t)g->settings->population;
-    g->breeding.draw = hf_arena_take(a, n * (size_t)g->breeding.model->n_gene_group, sizeof(double));
+    g->breeding.draw = hf_arena_take(a, n * (size_t)g->breeding.model->n_variable_group, sizeof(double));
     g->fitness = hf_arena_take(a, n, sizeof(double));
     g->taken = hf_arena_take(a, n, 1);
     g->elite = hf_arena_take(a, (size_t)g->settings->elites, sizeof(int));
@@ -140,23 +140,23 @@ static int spin_roulette(const breeder *g, hf_random *random)
 
 /* ---- variation ---- */
 
-/* Makes child [n_gene] = a + share (b - a) from designs a and b, with one random share per chain (`draw`). */
+/* Makes child [n_variable] = a + share (b - a) from designs a and b, with one random share per chain (`draw`). */
 static void recombine(const breeder *g, const hf_population *p, const double *a, const double *b, double *draw,
                       double *child, hf_random *random)
 {
-    for (int j = 0; j < g->breeding.model->n_gene_group; j++)
+    for (int j = 0; j < g->breeding.model->n_variable_group; j++)
         draw[j] = hf_random_uniform(random) * (1 + 2 * RECOMBINATION_REACH) - RECOMBINATION_REACH;
-    for (int k = 0; k < p->n_gene; k++) {
-        double share = draw[g->breeding.model->gene_group[k]];
+    for (int k = 0; k < p->n_variable; k++) {
+        double share = draw[g->breeding.model->variable_group[k]];
         child[k] = hf_population_clamp(p, k, a[k] + share * (b[k] - a[k]));
     }
 }
 
-/* Makes child [n_gene] of individual i: an elite, moved along the difference from the worse of the parents a and b to
- * the better one. */
+/* Makes child [n_variable] of individual i: an elite, moved along the difference from the worse of the parents a and b
+ * to the better one. */
 static void move_elite(const breeder *g, const hf_population *p, int a, int b, int i, double *child, hf_random *random)
 {
-    size_t n = (size_t)p->n_gene;
+    size_t n = (size_t)p->n_variable;
     int better = hf_population_is_better(p, a, b) ? a : b, worse = a + b - better;
     const double *to = p->design_N + (size_t)better * n, *from = p->design_N + (size_t)worse * n;
     int leader = g->elite[(int)(hf_random_uniform(random) * g->settings->elites)];
@@ -170,7 +170,7 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
 {
     const hf_optimize_settings *s = g->settings;
     bool by_chain = s->variation == HF_VARIATION_CHAIN;
-    size_t n = (size_t)now->n_gene;
+    size_t n = (size_t)now->n_variable;
     hf_random random = hf_random_stream(s->seed, now->generation + 1, i);
     int a = spin_roulette(g, &random);
     int b = spin_roulette(g, &random);
@@ -217,7 +217,7 @@ static void list_elites(const breeder *g, const hf_population *p)
 /* Copies elite e to individual e of the next generation. */
 static void keep_elite(const breeder *g, const hf_population *now, hf_population *next, int e)
 {
-    size_t n = (size_t)now->n_gene;
+    size_t n = (size_t)now->n_variable;
     int i = g->elite[e];
     memcpy(next->design_N + (size_t)e * n, now->design_N + (size_t)i * n, n * sizeof(double));
     next->result[e] = now->result[i];

@@ -49,7 +49,7 @@ static front_breeder *lay_out_breeder(hf_arena *a, front_breeder *g)
     front_breeder *itself = hf_arena_take(a, 1, sizeof *itself);
     size_t n = (size_t)g->settings->population;
     hf_pareto_lay_out(a, &g->both);
-    g->breeding.draw = hf_arena_take(a, n * (size_t)g->breeding.model->n_gene_group, sizeof(double));
+    g->breeding.draw = hf_arena_take(a, n * (size_t)g->breeding.model->n_variable_group, sizeof(double));
     g->rank = hf_arena_take(a, 2 * n, sizeof(int));
     g->member = hf_arena_take(a, 2 * n, sizeof(int));
     return itself;
@@ -157,7 +157,7 @@ static void propose_child(void *state, const hf_population *now, hf_population *
 {
     const front_breeder *g = state;
     const hf_optimize_settings *s = g->settings;
-    size_t n = (size_t)now->n_gene;
+    size_t n = (size_t)now->n_variable;
     hf_random random = hf_random_stream(s->seed, now->generation + 1, i);
     weights w = draw_weights(g->both.n_objective, &random);
     int leader = g->member[pick(g->n_leader, &random)];

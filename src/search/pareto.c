@@ -212,7 +212,7 @@ void hf_pareto_keep(const hf_pareto *p, int n_member, int *member, int n_keep)
 
 static void copy_point(const hf_population *population, int i, hf_front *f, int place)
 {
-    size_t n = (size_t)population->n_gene;
+    size_t n = (size_t)population->n_variable;
     hf_front_point *point = &f->point[place];
     *point = (hf_front_point){.status = HF_OK, .mark = HF_FRONT_ON};
     for (int j = 0; j < HF_OBJECTIVES_MAX; j++) {
@@ -245,7 +245,7 @@ hf_status hf_pareto_front(const hf_population *population, hf_front *front)
         if (rank[i] > 0 || !is_feasible(&p, i) || (last >= 0 && are_equal(&p, last, i))) continue;
         order[n_on++] = last = i;
     }
-    hf_status status = hf_front_create(p.n_objective, population->n_gene, n_on, front);
+    hf_status status = hf_front_create(p.n_objective, population->n_variable, n_on, front);
     for (int k = 0; status == HF_OK && k < n_on; k++)
         copy_point(population, order[k], front, k);
     if (status == HF_OK) hf_front_settle(front);

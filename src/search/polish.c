@@ -54,20 +54,20 @@ static bool worst_limit(void *context, const double *x, hf_quadratic_limit *limi
 {
     hf_polish_problem *p = context;
     double worst = LIMIT_ROUNDING, sign = 0;
-    int variable = -1;
+    int only = -1;
     for (int i = 0; i < p->n; i++) {
         double below = (p->down[i] - x[i]) / p->unit[i], above = (x[i] - p->up[i]) / p->unit[i];
         if (!(fmax(below, above) > worst)) continue;
         worst = fmax(below, above);
         sign = below > above ? 1 : -1;
-        variable = i;
+        only = i;
     }
     if (hf_watch_worst(&p->watch, x, worst, limit)) return true;
-    if (variable < 0) return false;
+    if (only < 0) return false;
     limit->kind = 0;
-    limit->only = variable;
-    limit->normal[variable] = sign;
-    limit->bound = sign * (sign > 0 ? p->down : p->up)[variable];
+    limit->only = only;
+    limit->normal[only] = sign;
+    limit->bound = sign * (sign > 0 ? p->down : p->up)[only];
     return true;
 }
 
@@ -346,8 +346,8 @@ static hf_status minimise(hf_polish_problem *p, int max_iterations, hf_polish_re
 static void count_limits(const hf_polish_problem *p, const double *design, hf_polish_result *r)
 {
     hf_limit_held held[HF_LIMITS_HELD];
-    for (int k = 0; k < p->v.model->n_gene; k++) {
-        int i = p->slopes.variable_of_gene[k];
+    for (int k = 0; k < p->v.model->n_variable; k++) {
+        int i = p->slopes.class_of_variable[k];
         double inside = hf_polish_is_tension(p, k) ? LIMIT_INSIDE * design[k] : LIMIT_ROUNDING * p->unit[i];
         r->n_at_lower += design[k] <= p->lower[k] + inside;
         r->n_at_upper += design[k] >= p->upper[k] - inside;
@@ -368,7 +368,7 @@ static hf_status hand_over(const hf_polish_problem *p, const hf_form_result *sta
                      !hf_watch_breaks(p->trade, p->v.goals, HF_LIMITS_AT, end.goal) &&
                      (start->status != HF_OK || hf_polish_merit(p, &end) <= hf_polish_merit(p, start));
     if (!is_better && start->status != HF_OK) return start->status;
-    if (is_better) memcpy(design, p->best, (size_t)p->v.model->n_gene * sizeof(double));
+    if (is_better) memcpy(design, p->best, (size_t)p->v.model->n_variable * sizeof(double));
     if (!is_better) {
         r->stop = HF_POLISH_STALLED;
         forget_multipliers(r);

@@ -58,9 +58,9 @@ double hf_polish_operations(const hf_evaluator *evaluator);
  * not depend on the machine. */
 bool hf_polish_is_cheap(const hf_evaluator *evaluator, long n_evaluation);
 
-/* Refines the design [n_gene], which has a shape and is within lower and upper [n_gene]. It is replaced by the best
- * design found, which is feasible and never worse. A start outside the limits is first moved into them. Linked design
- * variables keep their differences. watcher: NULL for none. workspace is scratch. Returns HF_OK, HF_NO_MEMORY,
+/* Refines the design [n_variable], which has a shape and is within lower and upper [n_variable]. It is replaced by the
+ * best design found, which is feasible and never worse. A start outside the limits is first moved into them. Linked
+ * design variables keep their differences. watcher: NULL for none. workspace is scratch. Returns HF_OK, HF_NO_MEMORY,
  * HF_INTERRUPTED, the status that the watcher returned, or the status of the start if no feasible design was found. */
 hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
                         const hf_polish_watcher *watcher, double *design, hf_workspace *workspace,

@@ -14,11 +14,11 @@
 
 bool hf_polish_applies(const hf_evaluator *v)
 {
-    for (int k = 0; k < v->model->n_gene; k++)
+    for (int k = 0; k < v->model->n_variable; k++)
         if (hf_evaluate_sets(v, k) == HF_SETS_START) return false;
     for (int k = 0; v->goals && k < v->goals->n_goal; k++)
         if (!hf_goals_is_smooth(&v->goals->goal[k].wanted)) return false;
-    return v->model->has_newton && v->model->n_gene > 0;
+    return v->model->has_newton && v->model->n_variable > 0;
 }
 
 /* Returns the operations of one step. *evaluation_of_ga receives those of one evaluation of the genetic algorithm. */

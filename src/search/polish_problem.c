@@ -1,6 +1,6 @@
 /* Sets up the problem that Levenberg-Marquardt solves. polish_problem.h describes the interface.
  *
- *     variables x [n] -> design [n_gene] -> hf_evaluate -> shape -> sensitivities -> f, J', J'J, J'f, limits
+ *     variables x [n] -> design [n_variable] -> hf_evaluate -> shape -> sensitivities -> f, J', J'J, J'f, limits
  *
  * Contents: the problem - evaluation - stored state */
 #include "search/polish_problem.h"
@@ -20,7 +20,7 @@
 /* ---- the problem ---- */
 
 /* The scalars of a stored state. Behind them are the arrays `at` [n], `scale` [n], the sides of the bounds that held
- * the last step [n], and `best` [n_gene]. */
+ * the last step [n], and `best` [n_variable]. */
 enum {
     STATE_FORMAT,
     STATE_ITERATIONS,
@@ -43,8 +43,8 @@ enum {
 static void lay_out(hf_arena *a, hf_polish_problem *p)
 {
     const hf_model *m = p->v.model;
-    size_t n = (size_t)p->n, n_row = (size_t)p->residuals.n_row, n_gene = (size_t)m->n_gene;
-    p->start = hf_arena_take(a, n_gene, sizeof(double));
+    size_t n = (size_t)p->n, n_row = (size_t)p->residuals.n_row, n_variable = (size_t)m->n_variable;
+    p->start = hf_arena_take(a, n_variable, sizeof(double));
     p->low = hf_arena_take(a, n, sizeof(double));
     p->high = hf_arena_take(a, n, sizeof(double));
     p->down = hf_arena_take(a, n + 1, sizeof(double));
@@ -52,8 +52,8 @@ static void lay_out(hf_arena *a, hf_polish_problem *p)
     p->unit = hf_arena_take(a, n, sizeof(double));
     p->at = hf_arena_take(a, n, sizeof(double));
     p->trial = hf_arena_take(a, n, sizeof(double));
-    p->design = hf_arena_take(a, n_gene, sizeof(double));
-    p->best = hf_arena_take(a, n_gene, sizeof(double));
+    p->design = hf_arena_take(a, n_variable, sizeof(double));
+    p->best = hf_arena_take(a, n_variable, sizeof(double));
     p->step_taken = hf_arena_take(a, n, sizeof(double));
     p->pull = hf_arena_take(a, n, sizeof(double));
     p->scale = hf_arena_take(a, n, sizeof(double));
@@ -61,7 +61,7 @@ static void lay_out(hf_arena *a, hf_polish_problem *p)
     p->gram = hf_arena_take(a, n * n, sizeof(double));
     p->hessian = hf_arena_take(a, (n + 1) * (n + 1), sizeof(double));
     p->gradient = hf_arena_take(a, n + 1, sizeof(double));
-    p->n_state = N_SCALAR + 3 * n + n_gene;
+    p->n_state = N_SCALAR + 3 * n + n_variable;
     p->state = hf_arena_take(a, p->trade ? 0 : p->n_state, sizeof(double));
     p->goal_rate = hf_arena_take(a, p->trade ? n * (size_t)p->v.goals->n_goal : 0, sizeof(double));
 }
@@ -77,7 +77,7 @@ static double unit_of(const hf_polish_problem *p, int k, double start)
 {
     const hf_model *m = p->v.model;
     double unit = p->upper[k] - p->lower[k];
-    if (m->gene_cable[k] >= 0) return start;
+    if (m->variable_cable[k] >= 0) return start;
     if (isfinite(unit) && unit > 0) return unit;
     unit = 0;
     for (int e = 0; e < m->n_cable; e++)
@@ -92,8 +92,8 @@ void hf_polish_begin(hf_polish_problem *p, const double *design)
         p->low[i] = -INFINITY;
         p->high[i] = INFINITY;
     }
-    for (int k = 0; k < m->n_gene; k++) {
-        int i = p->slopes.variable_of_gene[k], e = m->gene_cable[k];
+    for (int k = 0; k < m->n_variable; k++) {
+        int i = p->slopes.class_of_variable[k], e = m->variable_cable[k];
         double start = design[k], lower = p->lower[k], upper = p->upper[k];
         double unit = unit_of(p, k, start);
         if (hf_polish_is_tension(p, k)) {
@@ -107,8 +107,8 @@ void hf_polish_begin(hf_polish_problem *p, const double *design)
         p->high[i] = fmin(p->high[i], fmax(upper - start, 0));
         p->unit[i] = fmax(p->unit[i], unit);
     }
-    memcpy(p->best, design, (size_t)m->n_gene * sizeof(double));
-    memcpy(p->design, p->start, (size_t)m->n_gene * sizeof(double));
+    memcpy(p->best, design, (size_t)m->n_variable * sizeof(double));
+    memcpy(p->design, p->start, (size_t)m->n_variable * sizeof(double));
 }
 
 /* Selects the residuals to minimise: all of them, or those of one objective. */
@@ -155,11 +155,11 @@ double hf_polish_merit(const hf_polish_problem *p, const hf_form_result *r)
     return p->v.goals->goal[p->trade->least].wanted.goal == HF_GOAL_RATIO ? log(value) : value;
 }
 
-hf_status hf_polish_evaluate(hf_polish_problem *p, const double *variable)
+hf_status hf_polish_evaluate(hf_polish_problem *p, const double *step)
 {
     const hf_model *m = p->v.model;
-    for (int k = 0; k < m->n_gene; k++) {
-        double value = p->start[k] + variable[p->slopes.variable_of_gene[k]];
+    for (int k = 0; k < m->n_variable; k++) {
+        double value = p->start[k] + step[p->slopes.class_of_variable[k]];
         p->design[k] = hf_polish_is_tension(p, k) ? value : fmax(p->lower[k], fmin(p->upper[k], value));
     }
     p->evaluations++;
@@ -171,8 +171,8 @@ void hf_polish_keep(hf_polish_problem *p)
     const hf_model *m = p->v.model;
     memcpy(p->at, p->trial, (size_t)p->n * sizeof(double));
     p->best_psi_m = p->result.psi_m;
-    for (int k = 0; k < m->n_gene; k++)
-        p->best[k] = hf_polish_is_tension(p, k) ? p->w->tension_N[m->gene_cable[k]] : p->design[k];
+    for (int k = 0; k < m->n_variable; k++)
+        p->best[k] = hf_polish_is_tension(p, k) ? p->w->tension_N[m->variable_cable[k]] : p->design[k];
 }
 
 /* Returns the part of the merit that the tolerance of the form-finding leaves open. Forces out of balance by
@@ -254,7 +254,7 @@ hf_status hf_polish_linearise(hf_polish_problem *p)
 void hf_polish_pack(hf_polish_problem *p, const hf_polish_result *r)
 {
     double *s = p->state, *array = s + N_SCALAR;
-    size_t n = (size_t)p->n, n_gene = (size_t)p->v.model->n_gene;
+    size_t n = (size_t)p->n, n_variable = (size_t)p->v.model->n_variable;
     s[STATE_FORMAT] = FORMAT;
     s[STATE_ITERATIONS] = r->iterations;
     s[STATE_EVALUATIONS] = p->evaluations;
@@ -273,7 +273,7 @@ void hf_polish_pack(hf_polish_problem *p, const hf_polish_result *r)
     memcpy(array + n, p->scale, n * sizeof(double));
     for (size_t i = 0; i < n; i++)
         array[2 * n + i] = p->step.side[i];
-    memcpy(array + 3 * n, p->best, n_gene * sizeof(double));
+    memcpy(array + 3 * n, p->best, n_variable * sizeof(double));
 }
 
 /* Returns true if s [n_state] is a state of this problem. The file from which it comes may be damaged. */
@@ -312,6 +312,6 @@ bool hf_polish_go_on(hf_polish_problem *p, size_t n_state, const double *s, hf_p
         p->largest_scale = fmax(p->largest_scale, p->scale[i]);
         p->step.side[i] = (array[2 * n + i] > 0) - (array[2 * n + i] < 0);
     }
-    memcpy(p->best, array + 3 * n, (size_t)p->v.model->n_gene * sizeof(double));
+    memcpy(p->best, array + 3 * n, (size_t)p->v.model->n_variable * sizeof(double));
     return true;
 }

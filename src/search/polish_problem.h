@@ -30,13 +30,13 @@ typedef struct {
     int evaluations;
     bool is_outside;       /* true while no shape within the limits is known */
     hf_form_result result; /* result of the last evaluation */
-    double *start;         /* [n_gene], first values; those of tensions are pretensions q L* */
+    double *start;         /* [n_variable], first values; those of tensions are pretensions q L* */
     double *low, *high;    /* [n], bounds of the variables */
     double *down, *up;     /* [n], bounds of a step */
     double *unit;          /* [n], magnitude of the values; violations are relative to it */
     double *at, *trial;    /* [n], best variables; variables at the end of the last step */
-    double *design;        /* [n_gene], design of the last evaluation; tensions as pretensions q L* */
-    double *best;          /* [n_gene], best design in terms of `caller` */
+    double *design;        /* [n_variable], design of the last evaluation; tensions as pretensions q L* */
+    double *best;          /* [n_variable], best design in terms of `caller` */
     double *step_taken;    /* [n], the step that led to `trial` while it is corrected */
     double *pull;          /* [n], gradient of a correction */
     double *scale;         /* [n], maximum norm so far of each column of J */
@@ -63,7 +63,7 @@ typedef struct {
 hf_status hf_polish_create(hf_polish_problem *problem, hf_arena *arena);
 void hf_polish_destroy(hf_polish_problem *problem, hf_arena *arena);
 
-/* Begins at the design [n_gene] whose shape is in the workspace. */
+/* Begins at the design [n_variable] whose shape is in the workspace. */
 void hf_polish_begin(hf_polish_problem *problem, const double *design);
 
 /* Returns true if design variable k sets a tension for the caller, and therefore a force density here. */
@@ -73,9 +73,9 @@ bool hf_polish_is_tension(const hf_polish_problem *problem, int k);
  * logarithm). */
 double hf_polish_merit(const hf_polish_problem *problem, const hf_form_result *result);
 
-/* Evaluates the design of these variables [n]; its shape is in the workspace afterwards. Returns the status of
+/* Evaluates the design at these steps [n] from `start`; its shape is in the workspace afterwards. Returns the status of
  * hf_evaluate. */
-hf_status hf_polish_evaluate(hf_polish_problem *problem, const double *variable);
+hf_status hf_polish_evaluate(hf_polish_problem *problem, const double *step);
 
 /* Makes `trial`, whose shape is in the workspace, the best design. */
 void hf_polish_keep(hf_polish_problem *problem);

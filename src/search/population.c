@@ -25,7 +25,7 @@ const char *const hf_population_stop_word[4] = {"running", "stagnation", "genera
 
 static void lay_out_generation(hf_arena *a, hf_population *p)
 {
-    size_t n = (size_t)p->n_individual, k = (size_t)p->n_gene;
+    size_t n = (size_t)p->n_individual, k = (size_t)p->n_variable;
     p->design_N = hf_arena_take(a, n * k, sizeof(double));
     p->result = hf_arena_take(a, n, sizeof(hf_form_result));
     p->pending = hf_arena_take(a, n, 1);
@@ -38,7 +38,7 @@ static void lay_out_generation(hf_arena *a, hf_population *p)
 
 static void lay_out_both(hf_arena *a, hf_population *p, hf_population *next)
 {
-    size_t k = (size_t)p->n_gene;
+    size_t k = (size_t)p->n_variable;
     p->base_N = hf_arena_take(a, k, sizeof(double));
     p->lower_N = hf_arena_take(a, k, sizeof(double));
     p->upper_N = hf_arena_take(a, k, sizeof(double));
@@ -55,23 +55,23 @@ static void lay_out_both(hf_arena *a, hf_population *p, hf_population *next)
 
 static bool has_links(const hf_model *m)
 {
-    return m->n_leader < m->n_gene && m->gene_leader;
+    return m->n_leader < m->n_variable && m->variable_leader;
 }
 
 /* Restricts the bounds of a class of linked design variables to the steps that all of its members can take. If there is
  * no such step, each member keeps its own bounds, to which hf_population_link clamps it. */
 static void link_bounds(const hf_model *m, hf_population *p)
 {
-    const int *leader_of = m->gene_leader;
-    for (int leader = 0; leader < p->n_gene; leader++) {
+    const int *leader_of = m->variable_leader;
+    for (int leader = 0; leader < p->n_variable; leader++) {
         double low = -INFINITY, high = INFINITY;
         if (leader_of[leader] != leader) continue;
-        for (int k = leader; k < p->n_gene; k++) {
+        for (int k = leader; k < p->n_variable; k++) {
             if (leader_of[k] != leader) continue;
             low = fmax(low, p->lower_N[k] - p->base_N[k]);
             high = fmin(high, p->upper_N[k] - p->base_N[k]);
         }
-        for (int k = leader; low < high && k < p->n_gene; k++) {
+        for (int k = leader; low < high && k < p->n_variable; k++) {
             if (leader_of[k] != leader) continue;
             p->lower_N[k] = fmax(p->lower_N[k], p->base_N[k] + low);
             p->upper_N[k] = fmin(p->upper_N[k], p->base_N[k] + high);
@@ -82,8 +82,8 @@ static void link_bounds(const hf_model *m, hf_population *p)
 void hf_population_link(const hf_population *population, const hf_model *m, double *design_N)
 {
     if (!has_links(m)) return;
-    hf_symmetry_follow(population->n_gene, m->gene_leader, population->base_N, design_N);
-    for (int k = 0; k < population->n_gene; k++)
+    hf_symmetry_follow(population->n_variable, m->variable_leader, population->base_N, design_N);
+    for (int k = 0; k < population->n_variable; k++)
         design_N[k] = hf_population_clamp(population, k, design_N[k]);
 }
 
@@ -94,16 +94,16 @@ hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m,
 {
     hf_population *p = population;
     hf_arena arena = {0};
-    *p = (hf_population){.n_gene = m->n_gene,
-                         .has_rows = m->gene,
+    *p = (hf_population){.n_variable = m->n_variable,
+                         .has_rows = m->variable,
                          .n_individual = s->population,
                          .n_objective = s->n_objective,
                          .generation_limit = s->generations,
                          .best = -1};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_both(&arena, p, next)));
     p->block = next->block = arena.block;
-    memcpy(p->base_N, base_N, (size_t)p->n_gene * sizeof *base_N);
-    for (int k = 0; k < p->n_gene; k++) {
+    memcpy(p->base_N, base_N, (size_t)p->n_variable * sizeof *base_N);
+    for (int k = 0; k < p->n_variable; k++) {
         hf_variables_bound(s, m, k, base_N[k], &p->lower_N[k], &p->upper_N[k], &p->reach[k]);
     }
     if (has_links(m)) link_bounds(m, p);
@@ -178,7 +178,7 @@ void hf_population_note_trials(hf_population *population)
 
 void hf_population_take_over(const hf_population *before, int k, hf_population *population, int i)
 {
-    size_t n = (size_t)population->n_gene;
+    size_t n = (size_t)population->n_variable;
     memcpy(population->design_N + (size_t)i * n, before->design_N + (size_t)k * n, n * sizeof(double));
     population->result[i] = before->result[k];
     population->parent[2 * i] = k;

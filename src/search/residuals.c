@@ -88,17 +88,17 @@ hf_status hf_residuals_find(hf_residuals *r, hf_workspace *w)
 
 /* Computes rate [n_row] by one variable, without the rows of objectives over as-built nets. */
 static void find_rate(const hf_residuals *r, const hf_sensitivity *slopes, const hf_workspace *w, int i_room,
-                      int i_variable, double *rate)
+                      int i_class, double *rate)
 {
     const hf_model *m = r->v->model;
     if (r->v->goals) {
         const hf_residuals_room *room = &r->room[i_room];
-        const hf_goals_rate by = {room->move_m, room->tension_rate, hf_sensitivity_displacement(slopes, i_variable, 0)};
-        hf_sensitivity_spread(slopes, i_variable, room->move_m, room->tension_rate);
+        const hf_goals_rate by = {room->move_m, room->tension_rate, hf_sensitivity_displacement(slopes, i_class, 0)};
+        hf_sensitivity_spread(slopes, i_class, room->move_m, room->tension_rate);
         hf_goals_push(r->v->goals, w, room->point, &by, rate);
         return;
     }
-    const double *move = slopes->move + (size_t)i_variable * slopes->n_dof;
+    const double *move = slopes->move + (size_t)i_class * slopes->n_dof;
     double part = 1 / sqrt(m->n_inner_node);
     for (int i = 0; i < r->n_row; i++)
         rate[i] = part * move[3 * m->inner_row[i / 3] + i % 3];
@@ -111,15 +111,15 @@ typedef struct {
     double *rate, *gradient;
 } all_rates;
 
-static double *rate_of(const all_rates *q, int i_variable)
+static double *rate_of(const all_rates *q, int i_class)
 {
-    return q->rate + (size_t)i_variable * (size_t)q->r->n_row;
+    return q->rate + (size_t)i_class * (size_t)q->r->n_row;
 }
 
-static void rate_one(void *context, int i_room, int i_variable)
+static void rate_one(void *context, int i_room, int i_class)
 {
     const all_rates *q = context;
-    find_rate(q->r, q->slopes, q->w, i_room, i_variable, rate_of(q, i_variable));
+    find_rate(q->r, q->slopes, q->w, i_room, i_class, rate_of(q, i_class));
 }
 
 /* Cuts the as-built nets of the design in room i. */
@@ -157,16 +157,16 @@ static void rate_net(void *context, int i_room, int i_net)
 }
 
 /* Completes the rows of one variable, and computes its gradient. */
-static void close_rate(void *context, int i_room, int i_variable)
+static void close_rate(void *context, int i_room, int i_class)
 {
     const all_rates *q = context;
     const hf_residuals *r = q->r;
-    double *rate = rate_of(q, i_variable);
+    double *rate = rate_of(q, i_class);
     (void)i_room;
     if (r->n_room && r->v->goals->nets) hf_goals_nets_close(r->v->goals, r->room[0].point, r->value, rate);
-    q->gradient[i_variable] = 0;
+    q->gradient[i_class] = 0;
     for (int i = 0; i < r->n_row; i++)
-        q->gradient[i_variable] += rate[i] * r->value[i];
+        q->gradient[i_class] += rate[i] * r->value[i];
 }
 
 hf_status hf_residuals_rates(const hf_residuals *r, const hf_sensitivity *slopes, const hf_workspace *w, double *rate,

@@ -20,8 +20,8 @@
 /* A cable at the shape in the workspace. */
 typedef struct hf_strained {
     double unit[3], stiffness_N_per_m;
-    double direct;       /* dT/dv by its own design variable at fixed nodes, or 0 */
-    int rigid, variable; /* index in `rigid`, and variable of the cable; -1: none */
+    double direct;    /* dT/dv by its own design variable at fixed nodes, or 0 */
+    int rigid, class; /* index in `rigid`, and class of the cable; -1: none */
 } strained;
 
 /* Returns the number of rooms (parallel.h) of a solve. */
@@ -36,8 +36,8 @@ static void lay_out(hf_arena *a, hf_sensitivity *s)
     size_t n = (size_t)s->n;
     hf_packed_band_lay_out(a, &s->matrix);
     s->lanes = hf_arena_take(a, (size_t)n_room(s) * s->n_lane, sizeof *s->lanes);
-    s->variable_of_gene = hf_arena_take(a, (size_t)m->n_gene, sizeof(int));
-    s->gene_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
+    s->class_of_variable = hf_arena_take(a, (size_t)m->n_variable, sizeof(int));
+    s->variable_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
     s->strained = hf_arena_take(a, (size_t)m->n_cable, sizeof(strained));
     s->place_of_row = hf_arena_take(a, (size_t)m->n_node, sizeof(int));
     s->base_of_row = hf_arena_take(a, (size_t)m->n_node, sizeof(int));
@@ -50,13 +50,13 @@ static void lay_out(hf_arena *a, hf_sensitivity *s)
     s->multiplier = hf_arena_take(a, n * (size_t)s->n_rigid, sizeof(double));
 }
 
-/* Returns true if cable e has law length in the designs of this evaluator. `gene` is its design variable, or -1. A
+/* Returns true if cable e has law length in the designs of this evaluator. `variable` is its design variable, or -1. A
  * cable between two supports does not count, because it moves no node. */
-static bool is_rigid(const hf_evaluator *v, int e, int gene)
+static bool is_rigid(const hf_evaluator *v, int e, int variable)
 {
     const hf_model *m = v->model;
     if (m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free) return false;
-    hf_gene_sets sets = gene >= 0 ? hf_evaluate_sets(v, gene) : HF_SETS_START;
+    hf_variable_sets sets = variable >= 0 ? hf_evaluate_sets(v, variable) : HF_SETS_START;
     return sets == HF_SETS_LENGTH || (sets == HF_SETS_START && hf_law_has((hf_law)m->law[e], HF_LAW_IS_RIGID));
 }
 
@@ -67,8 +67,9 @@ static int count_rigid(const hf_evaluator *v)
     int n = 0;
     for (int e = 0; e < m->n_cable; e++)
         n += is_rigid(v, e, -1);
-    for (int k = 0; k < m->n_gene; k++)
-        if (m->gene_cable[k] >= 0) n += is_rigid(v, m->gene_cable[k], k) - is_rigid(v, m->gene_cable[k], -1);
+    for (int k = 0; k < m->n_variable; k++)
+        if (m->variable_cable[k] >= 0)
+            n += is_rigid(v, m->variable_cable[k], k) - is_rigid(v, m->variable_cable[k], -1);
     return n;
 }
 
@@ -81,8 +82,8 @@ static int place_supports(const hf_model *m, int *place_of_row)
         place_of_row[row] = -1;
     for (int row = m->n_free; m->moves_supports && row < m->n_node; row++) {
         bool moves = false;
-        for (int k = 0; k < m->n_gene; k++)
-            moves |= m->gene[k].support_row == row;
+        for (int k = 0; k < m->n_variable; k++)
+            moves |= m->variable[k].support_row == row;
         if (moves && place_of_row) place_of_row[row] = 3 * (m->n_free + m->n_attachment + n);
         n += moves;
     }
@@ -95,14 +96,14 @@ static void number(hf_sensitivity *s)
 {
     const hf_model *m = s->v->model;
     int n = 0;
-    for (int k = 0; k < m->n_gene; k++)
-        s->variable_of_gene[k] = m->gene_leader[k] == k ? n++ : s->variable_of_gene[m->gene_leader[k]];
+    for (int k = 0; k < m->n_variable; k++)
+        s->class_of_variable[k] = m->variable_leader[k] == k ? n++ : s->class_of_variable[m->variable_leader[k]];
     for (int e = 0; e < m->n_cable; e++)
-        s->gene_of_cable[e] = -1;
-    for (int k = 0; k < m->n_gene; k++)
-        if (m->gene_cable[k] >= 0) s->gene_of_cable[m->gene_cable[k]] = k;
+        s->variable_of_cable[e] = -1;
+    for (int k = 0; k < m->n_variable; k++)
+        if (m->variable_cable[k] >= 0) s->variable_of_cable[m->variable_cable[k]] = k;
     for (int e = n = 0; e < m->n_cable; e++) {
-        s->rigid_of_cable[e] = is_rigid(s->v, e, s->gene_of_cable[e]) ? n : -1;
+        s->rigid_of_cable[e] = is_rigid(s->v, e, s->variable_of_cable[e]) ? n : -1;
         if (s->rigid_of_cable[e] >= 0) s->rigid[n++] = e;
     }
     for (int row = 0; row < m->n_node; row++)
@@ -152,7 +153,7 @@ static void add_pull(const hf_model *m, int e, const double pull[3], double *for
 /* Returns the change of the tension of its cable per unit of design variable k, at fixed nodes. */
 static double direct_tension(const hf_sensitivity *s, const hf_workspace *w, int k, double length)
 {
-    int e = s->v->model->gene_cable[k];
+    int e = s->v->model->variable_cable[k];
     hf_law_cable cable = hf_workspace_cable(s->v->model, w, e);
     switch (hf_evaluate_sets(s->v, k)) {
     case HF_SETS_DENSITY:
@@ -170,7 +171,7 @@ static double direct_tension(const hf_sensitivity *s, const hf_workspace *w, int
 static void add_force_of_support(const hf_sensitivity *s, const hf_workspace *w, int k, double *force, double *on_truss)
 {
     const hf_model *m = s->v->model;
-    const hf_gene *g = &m->gene[k];
+    const hf_variable *g = &m->variable[k];
     for (int end = 0; end < 2 * m->n_cable; end++) {
         double block[3][3], pull[3];
         if (m->end_row[end] != g->support_row) continue;
@@ -185,16 +186,17 @@ static void add_force_of_support(const hf_sensitivity *s, const hf_workspace *w,
 
 /* Adds -dg/dv of design variable k at the shape in the workspace (M11): the change of the forces on nodes and truss per
  * unit of its value. */
-static void add_force_of_gene(const hf_sensitivity *s, const hf_workspace *w, int k, double *force, double *on_truss)
+static void add_force_of_variable(const hf_sensitivity *s, const hf_workspace *w, int k, double *force,
+                                  double *on_truss)
 {
     const hf_model *m = s->v->model;
-    int e = m->gene_cable[k];
+    int e = m->variable_cable[k];
     double pull[3];
     if (e < 0) {
         add_force_of_support(s, w, k, force, on_truss);
         return;
     }
-    hf_gene_sets sets = hf_evaluate_sets(s->v, k);
+    hf_variable_sets sets = hf_evaluate_sets(s->v, k);
     double length = sets == HF_SETS_DENSITY ? hf_evaluate_divisor(s->v, k) : w->length_m[e], rate = 1;
     if (sets == HF_SETS_LENGTH || sets == HF_SETS_CUT) rate = direct_tension(s, w, k, length);
     for (int c = 0; c < 3; c++) {
@@ -282,9 +284,9 @@ static void add_forces(hf_sensitivity *s, const hf_workspace *w)
     const hf_model *m = s->v->model;
     memset(s->pull, 0, 3 * (size_t)s->n * (size_t)m->n_attachment * sizeof(double));
     memset(s->move, 0, (size_t)s->n * s->n_dof * sizeof(double));
-    for (int k = 0; k < m->n_gene; k++) {
-        size_t i = (size_t)s->variable_of_gene[k];
-        add_force_of_gene(s, w, k, s->move + i * s->n_dof, s->pull + 3 * i * (size_t)m->n_attachment);
+    for (int k = 0; k < m->n_variable; k++) {
+        size_t i = (size_t)s->class_of_variable[k];
+        add_force_of_variable(s, w, k, s->move + i * s->n_dof, s->pull + 3 * i * (size_t)m->n_attachment);
     }
 }
 
@@ -292,11 +294,12 @@ static void add_forces(hf_sensitivity *s, const hf_workspace *w)
 static void move_supports(hf_sensitivity *s)
 {
     const hf_model *m = s->v->model;
-    for (int k = 0; k < m->n_gene && m->moves_supports; k++) {
-        if (m->gene[k].support_row < 0) continue;
-        double *move = s->move + (size_t)s->variable_of_gene[k] * s->n_dof + s->base_of_row[m->gene[k].support_row];
+    for (int k = 0; k < m->n_variable && m->moves_supports; k++) {
+        if (m->variable[k].support_row < 0) continue;
+        double *move =
+            s->move + (size_t)s->class_of_variable[k] * s->n_dof + s->base_of_row[m->variable[k].support_row];
         for (int c = 0; c < 3; c++)
-            move[c] += m->gene[k].direction[c];
+            move[c] += m->variable[k].direction[c];
     }
 }
 
@@ -321,13 +324,13 @@ static void relative_move(const hf_sensitivity *s, int e, const double *move, do
 static strained look_at(const hf_sensitivity *s, const hf_workspace *w, int e)
 {
     const hf_model *m = s->v->model;
-    strained q = {.variable = -1, .rigid = s->rigid_of_cable[e]};
-    int gene = s->gene_of_cable[e];
+    strained q = {.class = -1, .rigid = s->rigid_of_cable[e]};
+    int variable = s->variable_of_cable[e];
     double length = hf_newton_matrix_direction(m, w->position_m, e, q.unit);
     q.stiffness_N_per_m = hf_newton_matrix_stiffness(hf_workspace_cable(m, w, e), length, w->tension_N[e]);
-    if (gene < 0) return q;
-    q.direct = direct_tension(s, w, gene, length);
-    q.variable = s->variable_of_gene[gene];
+    if (variable < 0) return q;
+    q.direct = direct_tension(s, w, variable, length);
+    q.class = s->class_of_variable[variable];
     return q;
 }
 
@@ -339,7 +342,7 @@ static double tension_rate(const hf_sensitivity *s, int e, int i)
     relative_move(s, e, s->move + (size_t)i * s->n_dof, relative);
     double rate =
         q->stiffness_N_per_m * (q->unit[0] * relative[0] + q->unit[1] * relative[1] + q->unit[2] * relative[2]);
-    if (q->variable == i) rate += q->direct;
+    if (q->class == i) rate += q->direct;
     if (q->rigid >= 0) rate += s->multiplier[(size_t)i * (size_t)s->n_rigid + (size_t)q->rigid];
     return rate;
 }
@@ -440,13 +443,13 @@ void hf_sensitivity_tension(const hf_sensitivity *s, int e, double *rate)
         rate[i] = tension_rate(s, e, i);
 }
 
-void hf_sensitivity_spread(const hf_sensitivity *s, int i_variable, double *move, double *rate)
+void hf_sensitivity_spread(const hf_sensitivity *s, int i_class, double *move, double *rate)
 {
     const hf_model *m = s->v->model;
-    const double *of = s->move + (size_t)i_variable * s->n_dof;
+    const double *of = s->move + (size_t)i_class * s->n_dof;
     for (int row = 0; row < m->n_node; row++)
         for (int c = 0; c < 3; c++)
             move[c * m->n_node + row] = move_of_row(s, of, row, c);
     for (int e = 0; e < m->n_cable; e++)
-        rate[e] = tension_rate(s, e, i_variable);
+        rate[e] = tension_rate(s, e, i_class);
 }

@@ -13,16 +13,16 @@
 
 typedef struct {
     const hf_evaluator *v;
-    int n;                 /* number of variables */
-    size_t n_dof;          /* coordinates: 3*row + c of free nodes, 3*attachment + c, supports that are varied */
-    int *variable_of_gene; /* [n_gene], variable of each design variable */
-    int *gene_of_cable;    /* [n_cable], design variable, or -1 */
-    int *place_of_row;     /* [n_node], first coordinate of a free node or attachment; -1: fixed */
-    int *base_of_row;      /* [n_node], first coordinate of a support that is varied; the truss may also move it */
-    double *move;          /* [n][n_dof], dx/dv, m per unit of the variable */
-    int n_rigid, *rigid;   /* [n_rigid], cables of law length */
-    int *rigid_of_cable;   /* [n_cable], index in `rigid`, or -1 */
-    double *multiplier;    /* [n][n_rigid], dT/dv of these cables beyond what the stiff spring gives */
+    int n;                  /* number of classes of linked design variables; v is the step of a class */
+    size_t n_dof;           /* coordinates: 3*row + c of free nodes, 3*attachment + c, supports that are varied */
+    int *class_of_variable; /* [n_variable], class of each design variable */
+    int *variable_of_cable; /* [n_cable], design variable, or -1 */
+    int *place_of_row;      /* [n_node], first coordinate of a free node or attachment; -1: fixed */
+    int *base_of_row;       /* [n_node], first coordinate of a support that is varied; the truss may also move it */
+    double *move;           /* [n][n_dof], dx/dv, m per unit of v */
+    int n_rigid, *rigid;    /* [n_rigid], cables of law length */
+    int *rigid_of_cable;    /* [n_cable], index in `rigid`, or -1 */
+    double *multiplier;     /* [n][n_rigid], dT/dv of these cables beyond what the stiff spring gives */
     struct hf_strained *strained; /* [n_cable], scratch: the cables at the shape of `move` */
     double *answer;               /* [n][3 n_free], scratch: change of `move` by truss or refinement */
     double *gap;                  /* [3 n_attachment], scratch */
@@ -42,18 +42,19 @@ void hf_sensitivity_free(hf_sensitivity *sensitivity);
 /* Computes `move` at the shape in the workspace, which hf_evaluate must have found. Returns HF_OK or HF_SINGULAR. */
 hf_status hf_sensitivity_find(hf_sensitivity *sensitivity, hf_workspace *workspace);
 
-/* Computes rate [n], dT/dv of cable i_cable in N per unit of each variable. */
+/* Computes rate [n], dT/dv of cable i_cable in N per unit of the step of each class. */
 void hf_sensitivity_tension(const hf_sensitivity *sensitivity, int i_cable, double *rate);
 
-/* Returns the displacement [3] of an attachment by the truss, per unit of variable i_variable. */
-static inline const double *hf_sensitivity_displacement(const hf_sensitivity *sensitivity, int i_variable,
+/* Returns the displacement [3] of an attachment by the truss, per unit of the step of a class. */
+static inline const double *hf_sensitivity_displacement(const hf_sensitivity *sensitivity, int i_class,
                                                         int i_attachment)
 {
-    return sensitivity->move + (size_t)i_variable * sensitivity->n_dof +
+    return sensitivity->move + (size_t)i_class * sensitivity->n_dof +
            3 * ((size_t)sensitivity->v->model->n_free + (size_t)i_attachment);
 }
 
-/* Computes the derivatives by one variable: `move` [3][n_node] of the positions by row, and tension_rate [n_cable]. */
-void hf_sensitivity_spread(const hf_sensitivity *sensitivity, int i_variable, double *move, double *tension_rate);
+/* Computes the derivatives by the step of one class: `move` [3][n_node] of the positions by row, and tension_rate
+ * [n_cable]. */
+void hf_sensitivity_spread(const hf_sensitivity *sensitivity, int i_class, double *move, double *tension_rate);
 
 #endif

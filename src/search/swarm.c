@@ -31,7 +31,7 @@ static void load(void *solver, int lane, int i_design)
 {
     swarm *s = solver;
     const hf_model *m = s->v->model;
-    hf_evaluate_prepare(s->v, s->design_N + (size_t)i_design * (size_t)m->n_gene, s->w);
+    hf_evaluate_prepare(s->v, s->design_N + (size_t)i_design * (size_t)m->n_variable, s->w);
     /* hf_swarm_put reads the positions of the supports only. */
     memcpy(s->w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double));
     hf_swarm_put(s->plan, s->w, lane, s->lanes);
@@ -81,7 +81,7 @@ static bool settle(void *solver, int lane, int i_design)
 {
     swarm *s = solver;
     hf_form_result *r = s->result + i_design;
-    const double *design_N = s->design_N + (size_t)i_design * (size_t)s->v->model->n_gene;
+    const double *design_N = s->design_N + (size_t)i_design * (size_t)s->v->model->n_variable;
     s->iterations[lane]++;
     hf_status status = health(s, &s->now, lane);
     hf_stop_reason reason = status == HF_OK ? stop_reason(s, &s->now, lane) : HF_STOPPED_ILL_POSED;

@@ -40,10 +40,10 @@ enum { MAIN, OTHER, THIRD }; /* roles of the objectives, see search.role */
 typedef struct {
     int least;                      /* the objective to minimise */
     double most[HF_OBJECTIVES_MAX]; /* limits on the others; INFINITY: none */
-    /* [n_gene], the designs to begin from. The second one (or NULL) is used if the first one does not succeed. */
+    /* [n_variable], the designs to begin from. The second one (or NULL) is used if the first one does not succeed. */
     const double *from[2];
     int met;        /* objective that is 0 at from[0]; equal to `least`: all may be 0; -1: none */
-    double *design; /* [n_gene], the design found */
+    double *design; /* [n_variable], the design found */
     hf_front_point found;
     bool is_point;      /* true if it is a point of the front, even if it fails */
     const void *closed; /* the next point of the line, if no point is to be sought between them */
@@ -64,7 +64,7 @@ typedef struct {
 
 typedef struct {
     const hf_trade *t;
-    size_t n_gene;
+    size_t n_variable;
     int n_objective, role[HF_OBJECTIVES_MAX]; /* the objectives that are MAIN, OTHER and THIRD */
     double range[HF_OBJECTIVES_MAX];          /* range of each objective between the ends */
     double largest[HF_OBJECTIVES_MAX];        /* maximum of each objective at the designs to begin from */
@@ -112,13 +112,13 @@ static bool is_doubtful(const search *s, const job *j)
  * the better point. */
 static hf_status find(const search *s, job *j, hf_workspace *w)
 {
-    size_t size = s->n_gene * sizeof(double);
+    size_t size = s->n_variable * sizeof(double);
     hf_front_point again;
     memcpy(j->design, j->from[0], size);
     if (j->met >= 0) HF_TRY(hf_trade_meet(s->t, j->met, j->least, s->range, j->design, w));
     HF_TRY(polish(s, j, j->design, w, &j->found));
     if (!j->from[1] || !is_doubtful(s, j)) return HF_OK;
-    double *design = j->design + s->n_gene; /* the second half of its memory */
+    double *design = j->design + s->n_variable; /* the second half of its memory */
     memcpy(design, j->from[1], size);
     HF_TRY(polish(s, j, design, w, &again));
     again.iterations += j->found.iterations;
@@ -580,7 +580,7 @@ static void lay_out(hf_arena *a, search *s)
         s->line_room[i].length = length;
     }
     for (size_t i = 0; i < n; i++) {
-        double *design = hf_arena_take(a, 2 * s->n_gene, sizeof(double));
+        double *design = hf_arena_take(a, 2 * s->n_variable, sizeof(double));
         if (a->block) s->job[i].design = design;
     }
 }
@@ -588,13 +588,13 @@ static void lay_out(hf_arena *a, search *s)
 /* Creates the front from the points found. */
 static hf_status hand_over(const search *s, hf_front *front)
 {
-    HF_TRY(hf_front_create(s->n_objective, (int)s->n_gene, s->n_point, front));
+    HF_TRY(hf_front_create(s->n_objective, (int)s->n_variable, s->n_point, front));
     front->minimised = s->role[MAIN];
     for (int i = 0; i < s->n_point; i++) {
         const job *j = s->point[i];
-        double *design = front->design + (size_t)i * s->n_gene;
+        double *design = front->design + (size_t)i * s->n_variable;
         front->point[i] = j->found;
-        for (size_t k = 0; k < s->n_gene; k++)
+        for (size_t k = 0; k < s->n_variable; k++)
             design[k] = j->found.status == HF_OK ? j->design[k] : (double)NAN;
     }
     hf_front_settle(front);
@@ -608,7 +608,7 @@ hf_status hf_trade_find(const hf_trade *trade, hf_front *front, int *failed_end)
     hf_evaluator alone = *trade->evaluator;
     hf_arena arena = {0};
     if (t.n_thread <= 0) t.n_thread = hf_parallel_cores();
-    search s = {.t = &t, .failed_end = -1, .n_gene = (size_t)t.evaluator->model->n_gene};
+    search s = {.t = &t, .failed_end = -1, .n_variable = (size_t)t.evaluator->model->n_variable};
     alone.n_thread = 1;
     t.evaluator = &alone;
     *front = (hf_front){.minimised = -1, .knee = -1};

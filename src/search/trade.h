@@ -22,13 +22,13 @@ typedef struct {
 
 typedef struct {
     const hf_evaluator *evaluator; /* its objectives span the front */
-    const double *lower, *upper;   /* [n_gene], bounds */
+    const double *lower, *upper;   /* [n_variable], bounds */
     /* The number of points with the ends, from 3 (with three objectives 4) to HF_FRONT_POINTS_MAX, and the maximum
      * number of iterations for each point. */
     int n_point, max_iterations;
     int n_thread; /* 0: all cores; the front does not depend on it */
     int n_start;
-    const double *start; /* [n_start][n_gene], designs to begin from */
+    const double *start; /* [n_start][n_variable], designs to begin from */
     const volatile sig_atomic_t *stop;
     hf_trade_watcher *watcher; /* NULL: no watcher */
 } hf_trade;

@@ -36,7 +36,7 @@ hf_status hf_trade_start(const hf_trade *t, int k, hf_workspace *w, double *larg
     double least = INFINITY;
     *start = t->start;
     for (int i = 0; i < t->n_start; i++) {
-        const double *design = t->start + (size_t)i * (size_t)t->evaluator->model->n_gene;
+        const double *design = t->start + (size_t)i * (size_t)t->evaluator->model->n_variable;
         hf_form_result r;
         hf_status status = hf_evaluate(t->evaluator, design, w, &r);
         if (status == HF_NO_MEMORY) return status;

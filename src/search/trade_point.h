@@ -25,12 +25,12 @@ void hf_trade_count(const hf_trade *trade);
 /* Returns the distance of two points, in parts of the ranges [n_objective] of the objectives. */
 double hf_trade_distance(int n_objective, const double *range, const hf_front_point *a, const hf_front_point *b);
 
-/* Finds one point by Levenberg-Marquardt from the design [n_gene], which is replaced. The point receives the status of
- * the design, its objectives and multipliers. Returns HF_OK, HF_NO_MEMORY or HF_INTERRUPTED. */
+/* Finds one point by Levenberg-Marquardt from the design [n_variable], which is replaced. The point receives the status
+ * of the design, its objectives and multipliers. Returns HF_OK, HF_NO_MEMORY or HF_INTERRUPTED. */
 hf_status hf_trade_point(const hf_trade *trade, const hf_watch_trade *limits, double *design, hf_workspace *w,
                          hf_front_point *point);
 
-/* Replaces the design [n_gene] by one that minimises the objective `least` while the objective `met` rises by about
+/* Replaces the design [n_variable] by one that minimises the objective `least` while the objective `met` rises by about
  * 1e-8 of its range. It minimises the sum of their squares, with a decreasing weight of `least`. If met == least, it
  * minimises the sum of the squares of all objectives. range [n_objective] scales them. Returns HF_OK, also if the
  * design does not change, HF_NO_MEMORY or HF_INTERRUPTED. */

@@ -100,18 +100,18 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
     q->has_cap = isfinite(v->boundary_ratio_cap);
     int cap = q->has_cap ? add_cap(q, v->boundary_ratio_cap) : -1;
     for (int e = 0; e < m->n_cable; e++) {
-        int gene = s->gene_of_cable[e];
+        int variable = s->variable_of_cable[e];
         bool is_in_ratio = cap >= 0 && m->group[e] == HF_GROUP_BOUNDARY;
-        if (gene >= 0 && hf_evaluate_sets(v, gene) != HF_SETS_TENSION) gene = -1;
-        if (gene < 0 && !is_in_ratio) continue;
+        if (variable >= 0 && hf_evaluate_sets(v, variable) != HF_SETS_TENSION) variable = -1;
+        if (variable < 0 && !is_in_ratio) continue;
         add(q, (hf_watched){.cable = e,
                             .attachment = -1,
                             .support = -1,
                             .goal = -1,
                             .kind = HF_WATCH_BOUND,
                             .ratio = is_in_ratio ? cap : -1,
-                            .lower = gene >= 0 ? lower[gene] : -INFINITY,
-                            .upper = gene >= 0 ? upper[gene] : INFINITY});
+                            .lower = variable >= 0 ? lower[variable] : -INFINITY,
+                            .upper = variable >= 0 ? upper[variable] : INFINITY});
     }
     for (int i = 0; v->limits && i < v->limits->n; i++)
         add_row(v, &v->limits->row[i], q);
@@ -123,7 +123,7 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
 static void lay_out(hf_arena *a, hf_watch *q)
 {
     q->item = hf_arena_take(a, (size_t)q->n, sizeof *q->item);
-    size_t n_column = 1 + (size_t)q->n_variable, ld = (size_t)(q->ld = (q->n + HF_LANES - 1) / HF_LANES * HF_LANES);
+    size_t n_column = 1 + (size_t)q->n_class, ld = (size_t)(q->ld = (q->n + HF_LANES - 1) / HF_LANES * HF_LANES);
     q->rate = hf_arena_take(a, n_column * ld, sizeof(double));
     q->weight = hf_arena_take(a, n_column, sizeof(double));
     q->predicted = hf_arena_take(a, ld, sizeof(double));
@@ -142,7 +142,7 @@ hf_status hf_watch_create(const hf_evaluator *v, const hf_sensitivity *s, const 
                           const hf_watch_trade *trade, hf_watch *q)
 {
     hf_arena arena = {0};
-    *q = (hf_watch){.v = v, .n_variable = s->n, .trade = trade};
+    *q = (hf_watch){.v = v, .n_class = s->n, .trade = trade};
     list(v, s, lower, upper, q);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, q)));
     q->block = arena.block;
@@ -262,8 +262,8 @@ void hf_watch_linearise(hf_watch *q, const hf_sensitivity *s, hf_workspace *w)
         else if (t->attachment >= 0)
             displacement_rates(t, s, w, q->by_item);
         else if (t->support < 0)
-            rate = q->goal_rate + (size_t)t->goal * (size_t)q->n_variable;
-        for (int j = 0; j < q->n_variable && t->support < 0; j++)
+            rate = q->goal_rate + (size_t)t->goal * (size_t)q->n_class;
+        for (int j = 0; j < q->n_class && t->support < 0; j++)
             *rate_at(q, i, j) = rate[j];
         has_pull |= t->support >= 0;
     }
@@ -302,10 +302,10 @@ void hf_watch_forget(hf_watch *q)
 static void predict(hf_watch *q, const double *x)
 {
     q->weight[0] = 1;
-    memcpy(q->weight + 1, x, (size_t)q->n_variable * sizeof *x);
+    memcpy(q->weight + 1, x, (size_t)q->n_class * sizeof *x);
     for (int i = 0; i < q->n; i++)
         q->rate[i] = q->item[i].value + q->item[i].bend;
-    hf_quadratic_combine(q->ld, 1 + q->n_variable, q->weight, q->rate, q->predicted);
+    hf_quadratic_combine(q->ld, 1 + q->n_class, q->weight, q->rate, q->predicted);
     for (int i = 0; i < q->n; i++)
         q->item[i].predicted = q->predicted[i];
 }
@@ -353,7 +353,7 @@ static bool breaks_cap(const hf_watch *q, int k, double *worst, hf_quadratic_lim
     double excess = (high->predicted - cap * low->predicted) / fabs(high->predicted);
     if (!(excess > *worst)) return false;
     *worst = excess;
-    for (int j = 0; j < q->n_variable; j++)
+    for (int j = 0; j < q->n_class; j++)
         limit->normal[j] = cap * rate_of(q, low, j) - rate_of(q, high, j);
     limit->bound = high->value + high->bend - cap * (low->value + low->bend);
     limit->kind = q->has_cap && k == 0 ? HF_WATCH_CAP : high->goal < 0 ? HF_WATCH_ROW : kind_of_goal(q, low);
@@ -380,15 +380,15 @@ static bool breaks_level(const hf_watch *q, const double *x, double *worst, hf_q
     }
     if (!high) return false;
     double excess =
-        size_of(high, high->predicted) - (low ? size_of(low, low->predicted) : 0) - q->level - x[q->n_variable];
+        size_of(high, high->predicted) - (low ? size_of(low, low->predicted) : 0) - q->level - x[q->n_class];
     excess /= low ? 1 : high->unit;
     if (!(excess > *worst)) return false;
     *worst = excess;
-    for (int j = 0; j < q->n_variable; j++) {
+    for (int j = 0; j < q->n_class; j++) {
         double up = rate_of(q, high, j);
         limit->normal[j] = low ? rate_of(q, low, j) / (low->value + low->bend) - up / (high->value + high->bend) : -up;
     }
-    limit->normal[q->n_variable] = 1;
+    limit->normal[q->n_class] = 1;
     limit->bound =
         size_of(high, high->value + high->bend) - (low ? size_of(low, low->value + low->bend) : 0) - q->level;
     limit->kind = HF_WATCH_LEVEL;
@@ -415,7 +415,7 @@ bool hf_watch_worst(hf_watch *q, const double *x, double worst, hf_quadratic_lim
     if (q->trade && breaks_level(q, x, &worst, limit)) is_broken = true;
     if (is_broken || !held) return is_broken;
     double inside = LIMIT_INSIDE * held->unit, bound = sign > 0 ? held->from : held->to;
-    for (int j = 0; j < q->n_variable; j++)
+    for (int j = 0; j < q->n_class; j++)
         limit->normal[j] = sign * rate_of(q, held, j);
     limit->bound = sign * (bound - held->value - held->bend) + inside;
     limit->kind = held->kind == HF_WATCH_GOAL ? kind_of_goal(q, held) : held->kind;

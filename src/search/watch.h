@@ -35,27 +35,27 @@ typedef struct {
     const hf_evaluator *v; /* borrowed; its limits are watched */
     /* The first n_cap_of_limits caps are those of the boundary and of optimize.limits, the others those of
      * objectives. */
-    int n, n_variable, n_cap, n_cap_of_limits;
+    int n, n_class, n_cap, n_cap_of_limits;
     bool has_cap;                /* true if the first cap is that of the boundary tension ratio */
     hf_watched *item;            /* [n] */
     int ld;                      /* n, rounded up to whole vectors */
-    double *rate;                /* [1 + n_variable][ld], values with `bend`, then rates by each variable */
-    double *weight;              /* [1 + n_variable], weights of the columns of `rate`: 1, then a step */
+    double *rate;                /* [1 + n_class][ld], values with `bend`, then rates by each variable */
+    double *weight;              /* [1 + n_class], weights of the columns of `rate`: 1, then a step */
     double *predicted;           /* [ld], values after a step by the linear model */
-    double *by_item;             /* [n_variable], scratch */
+    double *by_item;             /* [n_class], scratch */
     double *cap;                 /* [n_cap], limit on the ratio of maximum to minimum of its items */
     double *ratio;               /* [n_cap], ratio of maximum to minimum at the best variables */
     double *aim;                 /* [n_cap], limit on the ratio in the next step */
     const hf_watch_trade *trade; /* NULL: no objective is limited */
     const double *goal;      /* [n_goal], objectives of the shape that is measured; borrowed; NULL without `trade` */
-    const double *goal_rate; /* [n_goal][n_variable], rates of objectives without corners, borrowed */
+    const double *goal_rate; /* [n_goal][n_class], rates of objectives without corners, borrowed */
     double level;            /* value of a minimised objective with corners, or the logarithm of a ratio */
     double *move_m, *tension_rate, *pull_rate; /* scratch for forces on supports: [3][n_node], [n_cable], [n_support] */
     void *block;
 } hf_watch;
 
-/* Watches the cap and the limits of the evaluator, and the bounds lower and upper [n_gene] of design variables that set
- * a tension. If `trade` is not NULL, it also watches the objectives, after the caller has set goal and goal_rate.
+/* Watches the cap and the limits of the evaluator, and the bounds lower and upper [n_variable] of design variables that
+ * set a tension. If `trade` is not NULL, it also watches the objectives, after the caller has set goal and goal_rate.
  * Returns HF_OK or HF_NO_MEMORY; call hf_watch_free in either case. */
 hf_status hf_watch_create(const hf_evaluator *evaluator, const hf_sensitivity *slopes, const double *lower,
                           const double *upper, const hf_watch_trade *trade, hf_watch *watch);

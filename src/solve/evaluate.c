@@ -92,7 +92,7 @@ double hf_evaluate_design_length_m(const hf_model *m, int i_cable)
     return hf_law_has(m->law[i_cable], HF_LAW_IS_RIGID) ? m->target[i_cable] : m->length_m[i_cable];
 }
 
-hf_gene_sets hf_evaluate_sets(const hf_evaluator *v, int k)
+hf_variable_sets hf_evaluate_sets(const hf_evaluator *v, int k)
 {
     hf_vary vary = hf_model_vary(v->model, k);
     if (vary == HF_VARY_PRETENSION && v->rule == HF_RULE_SEEDED) return HF_SETS_START;
@@ -114,16 +114,16 @@ hf_gene_sets hf_evaluate_sets(const hf_evaluator *v, int k)
 double hf_evaluate_divisor(const hf_evaluator *v, int k)
 {
     if (hf_model_vary(v->model, k) == HF_VARY_FORCE_DENSITY) return 1;
-    return hf_evaluate_design_length_m(v->model, v->model->gene_cable[k]);
+    return hf_evaluate_design_length_m(v->model, v->model->variable_cable[k]);
 }
 
 /* Sets law, target and first force density of a cable from the value of design variable k, or the displacement of a
  * support (METHOD section 7). */
-static void apply_gene(const hf_evaluator *v, int k, double value, hf_workspace *w)
+static void apply_variable(const hf_evaluator *v, int k, double value, hf_workspace *w)
 {
     const hf_model *m = v->model;
-    int e = m->gene_cable[k];
-    hf_gene_sets sets = hf_evaluate_sets(v, k);
+    int e = m->variable_cable[k];
+    hf_variable_sets sets = hf_evaluate_sets(v, k);
     if (sets == HF_SETS_START || sets == HF_SETS_TENSION || sets == HF_SETS_DENSITY)
         w->q_N_per_m[e] = value / hf_evaluate_divisor(v, k);
     switch (sets) {
@@ -146,7 +146,7 @@ static void apply_gene(const hf_evaluator *v, int k, double value, hf_workspace 
         break;
     case HF_SETS_SUPPORT:
         for (int c = 0; c < 3; c++)
-            w->support_move_m[c * m->n_node + m->gene[k].support_row] += value * m->gene[k].direction[c];
+            w->support_move_m[c * m->n_node + m->variable[k].support_row] += value * m->variable[k].direction[c];
         break;
     }
 }
@@ -178,8 +178,8 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_works
     for (int e = 0; e < m->n_cable && hf_evaluate_is_unique(v); e++)
         if (hf_law_has(m->law[e], HF_LAW_ITERATES))
             w->q_N_per_m[e] = fmax(v->start_q_N_per_m[e], HF_LAW_LEAST_Q_N_PER_M);
-    for (int k = 0; k < m->n_gene; k++)
-        apply_gene(v, k, design_N[k], w);
+    for (int k = 0; k < m->n_variable; k++)
+        apply_variable(v, k, design_N[k], w);
 }
 
 /* Measures the objectives of a shape, feasible or not. */
@@ -209,7 +209,7 @@ hf_status hf_evaluate_judge(const hf_evaluator *v, hf_workspace *w, hf_form_resu
 
 bool hf_evaluate_is_unique(const hf_evaluator *v)
 {
-    return v->rule != HF_RULE_SEEDED || v->model->gene;
+    return v->rule != HF_RULE_SEEDED || v->model->variable;
 }
 
 hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspace *w, hf_form_result *r)

@@ -49,7 +49,7 @@ static void lay_out(hf_arena *arena, hf_generations *g)
 
 bool hf_generations_are_of(const hf_generations *g, const hf_population *population)
 {
-    return g->n_individual == population->n_individual && g->n_gene == population->n_gene &&
+    return g->n_individual == population->n_individual && g->n_variable == population->n_variable &&
            g->n_objective == population->n_objective && g->limit == population->generation_limit;
 }
 
@@ -71,11 +71,12 @@ static void measure_rows(const hf_generations *g, int n_individual, size_t bytes
     }
 }
 
-hf_status hf_generations_create(int n_individual, int n_gene, int n_objective, int limit, int every, hf_generations *g)
+hf_status hf_generations_create(int n_individual, int n_variable, int n_objective, int limit, int every,
+                                hf_generations *g)
 {
     hf_arena arena = {0};
     *g = (hf_generations){.n_individual = n_individual,
-                          .n_gene = n_gene,
+                          .n_variable = n_variable,
                           .n_objective = n_objective,
                           .limit = limit,
                           .every = every,
@@ -130,7 +131,7 @@ static uint64_t hash_designs(const hf_population *population)
     enum { CHAINS = 4 };
     const uint64_t factor = 0x9e3779b97f4a7c15u; /* odd, so that multiplication by it is a bijection */
     uint64_t chain[CHAINS] = {1, 2, 3, 4}, bits, all = 0;
-    for (size_t i = 0; i < (size_t)population->n_individual * (size_t)population->n_gene; i++) {
+    for (size_t i = 0; i < (size_t)population->n_individual * (size_t)population->n_variable; i++) {
         uint64_t *h = &chain[i % CHAINS];
         memcpy(&bits, &population->design_N[i], sizeof bits);
         *h = (*h ^ bits) * factor;
@@ -150,7 +151,7 @@ static hf_population best_alone(const hf_population *p)
     for (int i = 1; p->best < 0 && i < p->n_individual; i++)
         if (hf_population_is_better(p, i, (int)best)) best = (size_t)i;
     one.n_individual = 1;
-    one.design_N += best * (size_t)p->n_gene;
+    one.design_N += best * (size_t)p->n_variable;
     one.result += best;
     one.pending += best;
     one.crossover_rate += best;
@@ -255,8 +256,8 @@ bool hf_generations_are_sound(const hf_population *p)
             if (r->status == HF_OK && !isfinite(r->goal[k])) return false;
         for (int k = 0; k < 2; k++)
             if (p->parent[2 * i + k] < -1 || p->parent[2 * i + k] >= p->n_individual) return false;
-        for (int k = 0; k < p->n_gene; k++)
-            if (!is_within(p->design_N[(size_t)i * (size_t)p->n_gene + (size_t)k], p->lower_N[k], p->upper_N[k]))
+        for (int k = 0; k < p->n_variable; k++)
+            if (!is_within(p->design_N[(size_t)i * (size_t)p->n_variable + (size_t)k], p->lower_N[k], p->upper_N[k]))
                 return false;
     }
     return true;

@@ -32,7 +32,7 @@ enum { HF_GENERATIONS_COUNTS = 3 };
 
 typedef struct {
     bool has_rows; /* as in hf_population; the caller sets it after creation */
-    int n_individual, n_gene, n_objective;
+    int n_individual, n_variable, n_objective;
     int limit;                                 /* maximum number of generations */
     int every;                                 /* individuals have rows in generations 0, every, 2 every, ... */
     int n_stored;                              /* generations in the file */
@@ -56,7 +56,8 @@ typedef struct {
 /* Creates the waiting rows, which are empty. every: 1: the individuals of each generation have rows; n > 1: those of
  * each n-th generation; HF_GENERATIONS_BEST: the best one of each generation. Returns HF_OK or HF_NO_MEMORY. The caller
  * calls hf_generations_free in any case. */
-hf_status hf_generations_create(int n_individual, int n_gene, int n_objective, int limit, int every, hf_generations *g);
+hf_status hf_generations_create(int n_individual, int n_variable, int n_objective, int limit, int every,
+                                hf_generations *g);
 void hf_generations_free(hf_generations *g);
 
 /* hf_generations_are_full returns true if hf_generations_make_room must be called before the next generation is added.

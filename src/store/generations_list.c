@@ -22,11 +22,11 @@ static void list_objectives(const hf_population *now, hf_generations_row *row)
 
 void hf_generations_list(const hf_population *now, hf_generations_row row[HF_GENERATIONS_PIECES])
 {
-    const hsize_t p = (hsize_t)now->n_individual, k = (hsize_t)now->n_gene;
+    const hsize_t p = (hsize_t)now->n_individual, k = (hsize_t)now->n_variable;
 #define ARRAY(member) now->member, sizeof *now->member, sizeof *now->member
 #define SINGLE(value) &(value), 0, sizeof(value)
     const hf_generations_row before[] = {
-        {hf_layout_of_genes("design_N", now->has_rows, 3, (const hsize_t[3]){1, p, k}), ARRAY(design_N)},
+        {hf_layout_of_variables("design_N", now->has_rows, 3, (const hsize_t[3]){1, p, k}), ARRAY(design_N)},
         {{"evaluated",
           HF_KIND_FLAG,
           2,
@@ -80,7 +80,7 @@ void hf_generations_list_empty(const hf_generations *g, int n_individual, hf_gen
     hf_form_result nothing = {0};
     double none = 0;
     const hf_population empty = {.n_individual = n_individual,
-                                 .n_gene = g->n_gene,
+                                 .n_variable = g->n_variable,
                                  .n_objective = g->n_objective,
                                  .has_rows = g->has_rows,
                                  .result = &nothing,

@@ -218,7 +218,7 @@ void hf_layout_get_summary(hf_hdf5 *io, hf_layout_part part, hf_summary *summary
     hf_hdf5_get_members(io, hf_layout_summary[part].member, hf_layout_summary[part].n, summary);
 }
 
-hf_hdf5_array hf_layout_of_genes(const char *name, bool has_rows, int rank, const hsize_t *dims)
+hf_hdf5_array hf_layout_of_variables(const char *name, bool has_rows, int rank, const hsize_t *dims)
 {
     static const struct {
         const char *in_N, *by_row, *meaning;

@@ -172,12 +172,12 @@ void hf_layout_get_goals(hf_hdf5 *io, hf_summary *summary);
 
 /* layout_front: the group /front of optimize.objectives; the goals of the summary name its objectives.
  * hf_layout_get_front reads the front without its designs and tabulates it in the summary. hf_layout_read_front reads
- * the whole front and *gene, the names of the design variables, [n_gene] of *gene_size bytes each. The caller frees
- * both in any case. has_rows: the design variables are those of optimize.variables. */
+ * the whole front and *variable, the names of the design variables, [n_variable] of *variable_size bytes each. The
+ * caller frees both in any case. has_rows: the design variables are those of optimize.variables. */
 void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *model, const hf_summary *summary,
                            const hf_front *front);
 void hf_layout_get_front(hf_hdf5 *io, hf_summary *summary);
-void hf_layout_read_front(hf_hdf5 *io, bool has_rows, hf_front *front, char **gene, size_t *gene_size);
+void hf_layout_read_front(hf_hdf5 *io, bool has_rows, hf_front *front, char **variable, size_t *variable_size);
 
 /* Writes or reads the point of a front that is the result of this run, as attributes of /case. If there are no such
  * attributes, reading changes nothing. */
@@ -199,6 +199,6 @@ void hf_layout_read_truss_state(hf_hdf5 *io, hid_t group, const hf_truss *truss,
 /* Describes the data set with one value per design variable. name: design_N, base_N, lower_N or upper_N, in N. With
  * has_rows each design variable of optimize.variables has its own unit, and the data set has the name without "_N".
  * dims [rank]: the dimensions. */
-hf_hdf5_array hf_layout_of_genes(const char *name, bool has_rows, int rank, const hsize_t *dims);
+hf_hdf5_array hf_layout_of_variables(const char *name, bool has_rows, int rank, const hsize_t *dims);
 
 #endif

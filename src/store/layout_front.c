@@ -8,7 +8,7 @@
 #include <string.h>
 
 #define POINTS_MAX 100000 /* maximum number of points in a file, that of optimize.population */
-#define GENES_MAX 10000000
+#define VARIABLES_MAX 10000000
 
 static const hf_hdf5_kind kind_of_mark = {HF_HDF5_ENUM, HF_FRONT_N_MARK, hf_front_mark_word, NULL};
 
@@ -112,17 +112,17 @@ static void *value_of(const rows *r, int i)
 
 /* ---- writing ---- */
 
-static void write_genes(hf_hdf5 *io, hid_t group, const hf_scene *scene, const hf_model *m)
+static void write_variables(hf_hdf5 *io, hid_t group, const hf_scene *scene, const hf_model *m)
 {
-    size_t n = (size_t)m->n_gene;
-    char *text = malloc(n * HF_GENE_NAME_SIZE);
+    size_t n = (size_t)m->n_variable;
+    char *text = malloc(n * HF_VARIABLE_NAME_SIZE);
     const char **name = malloc(n * sizeof *name);
     if (!text || !name) hf_hdf5_no_memory(io);
     for (size_t k = 0; text && name && k < n; k++) {
-        name[k] = text + k * HF_GENE_NAME_SIZE;
-        hf_model_gene_name(m, scene, (int)k, text + k * HF_GENE_NAME_SIZE, HF_GENE_NAME_SIZE);
+        name[k] = text + k * HF_VARIABLE_NAME_SIZE;
+        hf_model_variable_name(m, scene, (int)k, text + k * HF_VARIABLE_NAME_SIZE, HF_VARIABLE_NAME_SIZE);
     }
-    if (text && name) hf_hdf5_write_ids(io, group, "gene", name, m->n_gene, "name of each gene of a design");
+    if (text && name) hf_hdf5_write_ids(io, group, "gene", name, m->n_variable, "name of each gene of a design");
     free(name);
     free(text);
 }
@@ -142,8 +142,9 @@ void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *m
 {
     rows r;
     int n = front->n_point, k = front->n_objective;
-    const hsize_t dims[2] = {(hsize_t)n, (hsize_t)front->n_gene};
-    const hf_hdf5_array name = names(k), base = base_of(k), design = hf_layout_of_genes("design_N", m->gene, 2, dims);
+    const hsize_t dims[2] = {(hsize_t)n, (hsize_t)front->n_variable};
+    const hf_hdf5_array name = names(k), base = base_of(k),
+                        design = hf_layout_of_variables("design_N", m->variable, 2, dims);
     bool is_made = make_rows(&r, n, k);
     hf_layout_renew(io, "/front");
     hid_t group = hf_hdf5_make_group(io, "/front");
@@ -156,7 +157,7 @@ void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *m
         hf_hdf5_write_array(io, group, &array, value_of(&r, i));
     }
     hf_hdf5_write_array(io, group, &design, front->design);
-    write_genes(io, group, scene, m);
+    write_variables(io, group, scene, m);
     put_attributes(io, group, front, &s->front);
     hf_hdf5_close(io, group);
     free_rows(&r);
@@ -182,13 +183,13 @@ static bool is_index(int value, int n)
     return value >= -1 && value < n;
 }
 
-/* Reads a front of n_gene design variables without its designs. The caller frees it. */
-static void read_front(hf_hdf5 *io, hid_t group, int n_gene, hf_front *front)
+/* Reads a front of n_variable design variables without its designs. The caller frees it. */
+static void read_front(hf_hdf5 *io, hid_t group, int n_variable, hf_front *front)
 {
     int n_objective = hf_hdf5_length(io, group, "base", HF_OBJECTIVES_MAX);
     int n_point = hf_hdf5_length(io, group, "status", POINTS_MAX);
     const hf_hdf5_array base = base_of(n_objective);
-    if (io->status == HF_OK && hf_front_create(n_objective, n_gene, n_point, front) != HF_OK) hf_hdf5_no_memory(io);
+    if (io->status == HF_OK && hf_front_create(n_objective, n_variable, n_point, front) != HF_OK) hf_hdf5_no_memory(io);
     hf_hdf5_get(io, group, ".", "minimised", HF_KIND_INT, &front->minimised, 0);
     hf_hdf5_get(io, group, ".", "knee", HF_KIND_INT, &front->knee, 0);
     hf_hdf5_read_array(io, group, &base, front->base);
@@ -213,29 +214,29 @@ void hf_layout_get_front(hf_hdf5 *io, hf_summary *s)
 }
 
 /* Reads the names of n design variables, each of *size bytes. They are printed, so each one ends with a NUL. */
-static char *read_genes(hf_hdf5 *io, hid_t group, int n, size_t *size)
+static char *read_variables(hf_hdf5 *io, hid_t group, int n, size_t *size)
 {
     size_t length = hf_hdf5_chars_length(io, group, "gene");
-    char *stored = malloc((size_t)n * length + 1), *gene = calloc((size_t)n, length + 1);
+    char *stored = malloc((size_t)n * length + 1), *variable = calloc((size_t)n, length + 1);
     const hf_hdf5_array array = {"gene", HF_KIND_CHARS, 1, {(hsize_t)n, length}, "", ""};
-    if (!stored || !gene) hf_hdf5_no_memory(io);
-    if (stored && gene) hf_hdf5_read_array(io, group, &array, stored);
+    if (!stored || !variable) hf_hdf5_no_memory(io);
+    if (stored && variable) hf_hdf5_read_array(io, group, &array, stored);
     for (size_t k = 0; io->status == HF_OK && k < (size_t)n; k++)
-        memcpy(gene + k * (length + 1), stored + k * length, length);
+        memcpy(variable + k * (length + 1), stored + k * length, length);
     free(stored);
     *size = length + 1;
-    return gene;
+    return variable;
 }
 
-void hf_layout_read_front(hf_hdf5 *io, bool has_rows, hf_front *front, char **gene, size_t *gene_size)
+void hf_layout_read_front(hf_hdf5 *io, bool has_rows, hf_front *front, char **variable, size_t *variable_size)
 {
     hid_t group = hf_hdf5_open_group(io, "/front");
-    int n_gene = hf_hdf5_length(io, group, "gene", GENES_MAX);
-    read_front(io, group, n_gene, front);
-    const hsize_t dims[2] = {(hsize_t)front->n_point, (hsize_t)n_gene};
-    const hf_hdf5_array design = hf_layout_of_genes("design_N", has_rows, 2, dims);
+    int n_variable = hf_hdf5_length(io, group, "gene", VARIABLES_MAX);
+    read_front(io, group, n_variable, front);
+    const hsize_t dims[2] = {(hsize_t)front->n_point, (hsize_t)n_variable};
+    const hf_hdf5_array design = hf_layout_of_variables("design_N", has_rows, 2, dims);
     if (io->status == HF_OK) hf_hdf5_read_array(io, group, &design, front->design);
-    if (io->status == HF_OK) *gene = read_genes(io, group, n_gene, gene_size);
+    if (io->status == HF_OK) *variable = read_variables(io, group, n_variable, variable_size);
     hf_hdf5_close(io, group);
 }
 

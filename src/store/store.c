@@ -282,7 +282,8 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
 
 static void write_design(hf_store *s, hid_t group, const hf_model *m, const double *design_N)
 {
-    hf_hdf5_array design = hf_layout_of_genes("design_N", m->gene, 1, (const hsize_t[1]){(hsize_t)m->n_gene});
+    hf_hdf5_array design =
+        hf_layout_of_variables("design_N", m->variable, 1, (const hsize_t[1]){(hsize_t)m->n_variable});
     hf_hdf5_write_array(&s->f.io, group, &design, design_N);
 }
 
@@ -371,17 +372,17 @@ hf_status hf_store_pattern(hf_store *s, hf_stage stage, const hf_pattern_table *
  * the direction. */
 static void write_rows(hf_hdf5 *io, hid_t group, const hf_model *m)
 {
-    const hsize_t k[1] = {(hsize_t)m->n_gene};
+    const hsize_t k[1] = {(hsize_t)m->n_variable};
     const hf_hdf5_array row = {"gene_variable", HF_KIND_INT, 1, {k[0]}, "", "row of optimize.variables"};
     const hf_hdf5_array node = {"gene_node", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/node; -1: varies a cable"};
     const hf_hdf5_array along = {"gene_direction", HF_KIND_REAL, 2, {k[0], 3}, "", "in which this support moves"};
     int *of = malloc(2 * k[0] * sizeof *of), *support = of + k[0];
     double *direction = malloc(3 * k[0] * sizeof *direction);
     if (!of || !direction) hf_hdf5_no_memory(io);
-    for (int i = 0; of && direction && i < m->n_gene; i++) {
-        of[i] = m->gene[i].setting;
-        support[i] = m->gene[i].support_row < 0 ? -1 : m->node_of_row[m->gene[i].support_row];
-        memcpy(direction + 3 * i, m->gene[i].direction, 3 * sizeof *direction);
+    for (int i = 0; of && direction && i < m->n_variable; i++) {
+        of[i] = m->variable[i].setting;
+        support[i] = m->variable[i].support_row < 0 ? -1 : m->node_of_row[m->variable[i].support_row];
+        memcpy(direction + 3 * i, m->variable[i].direction, 3 * sizeof *direction);
     }
     hf_hdf5_write_array(io, group, &row, of);
     hf_hdf5_write_array(io, group, &node, support);
@@ -390,38 +391,38 @@ static void write_rows(hf_hdf5 *io, hid_t group, const hf_model *m)
     free(direction);
 }
 
-hf_status hf_store_genes(hf_store *s, const hf_model *m, const hf_population *population, hf_messages *messages)
+hf_status hf_store_variables(hf_store *s, const hf_model *m, const hf_population *population, hf_messages *messages)
 {
     if (!s) return HF_OK;
-    const hsize_t k[3] = {(hsize_t)population->n_gene};
+    const hsize_t k[3] = {(hsize_t)population->n_variable};
     const hf_hdf5_array cable = {"gene_cable", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/cable of each gene"};
     const hf_hdf5_array group_of = {"gene_group", HF_KIND_INT, 1, {k[0]}, "", "genes that were varied together"};
     const hf_hdf5_array leader = {"gene_leader", HF_KIND_INT, 1, {k[0]}, "", "gene whose step each takes, by symmetry"};
-    const hf_hdf5_array base = hf_layout_of_genes("base_N", m->gene, 1, k);
-    const hf_hdf5_array lower = hf_layout_of_genes("lower_N", m->gene, 1, k);
-    const hf_hdf5_array upper = hf_layout_of_genes("upper_N", m->gene, 1, k);
+    const hf_hdf5_array base = hf_layout_of_variables("base_N", m->variable, 1, k);
+    const hf_hdf5_array lower = hf_layout_of_variables("lower_N", m->variable, 1, k);
+    const hf_hdf5_array upper = hf_layout_of_variables("upper_N", m->variable, 1, k);
     hf_hdf5 *io = &s->f.io;
     if (s->rows.block) return s->f.io.status; /* another session has written them */
     hf_hdf5_lock();
     io->messages = messages;
     hf_store_file_open(&s->f);
     hid_t group = hf_hdf5_make_group(io, "/ga");
-    hf_hdf5_write_array(io, group, &cable, m->gene_cable);
-    hf_hdf5_write_array(io, group, &group_of, m->gene_group);
-    if (m->gene_leader && m->n_leader < m->n_gene) hf_hdf5_write_array(io, group, &leader, m->gene_leader);
-    if (m->gene) write_rows(io, group, m);
+    hf_hdf5_write_array(io, group, &cable, m->variable_cable);
+    hf_hdf5_write_array(io, group, &group_of, m->variable_group);
+    if (m->variable_leader && m->n_leader < m->n_variable) hf_hdf5_write_array(io, group, &leader, m->variable_leader);
+    if (m->variable) write_rows(io, group, m);
     hf_hdf5_write_array(io, group, &base, population->base_N);
     hf_hdf5_write_array(io, group, &lower, population->lower_N);
     hf_hdf5_write_array(io, group, &upper, population->upper_N);
     hf_hdf5_put(io, group, ".", "n_individual", HF_KIND_INT, 0, &population->n_individual);
-    hf_hdf5_put(io, group, ".", "n_variable", HF_KIND_INT, 0, &population->n_gene);
+    hf_hdf5_put(io, group, ".", "n_variable", HF_KIND_INT, 0, &population->n_variable);
     hf_hdf5_put(io, group, ".", "generations_limit", HF_KIND_INT, 0, &population->generation_limit);
     hf_hdf5_put(io, group, ".", "store_every", HF_KIND_INT, 0, &s->every);
     if (population->n_objective) hf_hdf5_put(io, group, ".", "n_objective", HF_KIND_INT, 0, &population->n_objective);
     hf_hdf5_close(io, group);
     if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, messages);
     if (io->status == HF_OK &&
-        hf_generations_create(population->n_individual, population->n_gene, population->n_objective,
+        hf_generations_create(population->n_individual, population->n_variable, population->n_objective,
                               population->generation_limit, s->every, &s->rows) != HF_OK)
         io->status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
     s->rows.has_rows = population->has_rows;
@@ -435,7 +436,7 @@ hf_status hf_store_generation(hf_store *s, const hf_model *m, const hf_populatio
     hf_generations *g = &s->rows;
     s->f.io.messages = messages;
     HF_TRY(s->f.io.status);
-    HF_TRY(hf_store_genes(s, m, population, messages)); /* a run has written them already */
+    HF_TRY(hf_store_variables(s, m, population, messages)); /* a run has written them already */
     int generation = g->n_stored + g->n_waiting;
     hf_generations_add(g, population, piece);
     s->f.io.status = hf_journal_append(&s->f.journal, generation, piece, HF_GENERATIONS_PIECES, messages);

@@ -125,21 +125,22 @@ hf_status hf_store_read_finished(const char *path, hf_summary *summary, hf_messa
     return status == HF_IO && is_damaged ? hf_store_fail_damaged(path, messages) : status;
 }
 
-hf_status hf_store_read_front(const char *path, hf_front *front, char **gene, size_t *gene_size, hf_messages *messages)
+hf_status hf_store_read_front(const char *path, hf_front *front, char **variable, size_t *variable_size,
+                              hf_messages *messages)
 {
     *front = (hf_front){.minimised = -1, .knee = -1};
-    *gene = NULL;
+    *variable = NULL;
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/front"))
         io.status = hf_error(messages, HF_IO, "%s: this run has no front: its case has no optimize.objectives", path);
     bool has_rows = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/front/design");
-    if (io.status == HF_OK) hf_layout_read_front(&io, has_rows, front, gene, gene_size);
+    if (io.status == HF_OK) hf_layout_read_front(&io, has_rows, front, variable, variable_size);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) {
         hf_front_free(front);
-        free(*gene);
-        *gene = NULL;
+        free(*variable);
+        *variable = NULL;
     }
     return hf_hdf5_unlock(io.status);
 }

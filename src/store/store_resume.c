@@ -51,10 +51,10 @@ static hf_status count_record(void *context, int generation, const void *payload
 #define GENERATIONS_MAX 1000000
 
 /* Reads the sizes of the population, the limit of generations, and which of their individuals the file holds. */
-static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_gene, int *n_objective, int *limit, int *every)
+static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_variable, int *n_objective, int *limit, int *every)
 {
     hf_hdf5_get(io, io->file, "/ga", "n_individual", HF_KIND_INT, n_individual, sizeof *n_individual);
-    hf_hdf5_get(io, io->file, "/ga", "n_variable", HF_KIND_INT, n_gene, sizeof *n_gene);
+    hf_hdf5_get(io, io->file, "/ga", "n_variable", HF_KIND_INT, n_variable, sizeof *n_variable);
     hf_hdf5_get(io, io->file, "/ga", "generations_limit", HF_KIND_INT, limit, sizeof *limit);
     /* Files of earlier versions do not have this attribute. */
     if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "store_every", H5P_DEFAULT) > 0)
@@ -62,9 +62,10 @@ static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_gene, int *n_objec
     /* Only populations of a front have this attribute. */
     if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "n_objective", H5P_DEFAULT) > 0)
         hf_hdf5_get(io, io->file, "/ga", "n_objective", HF_KIND_INT, n_objective, sizeof *n_objective);
-    int n_stored =
-        io->status == HF_OK && *n_gene == 0 ? 0 : hf_hdf5_length(io, io->file, "/ga/gene_group", HF_LAYOUT_COUNT_MAX);
-    if (io->status == HF_OK && (*n_individual < 1 || *n_individual > INDIVIDUALS_MAX || *n_gene != n_stored ||
+    int n_stored = io->status == HF_OK && *n_variable == 0
+                       ? 0
+                       : hf_hdf5_length(io, io->file, "/ga/gene_group", HF_LAYOUT_COUNT_MAX);
+    if (io->status == HF_OK && (*n_individual < 1 || *n_individual > INDIVIDUALS_MAX || *n_variable != n_stored ||
                                 *n_objective < 0 || *n_objective > HF_OBJECTIVES_MAX || *limit < 1 ||
                                 *limit > GENERATIONS_MAX || *every < 0 || *every > GENERATIONS_MAX))
         hf_hdf5_damaged(io, io->file, "/ga", "has impossible sizes");
@@ -100,7 +101,7 @@ static void read_state(hf_store *s)
 {
     hf_hdf5 *io = &s->f.io;
     signed char finished = 0;
-    int n_individual = 1, n_gene = 0, n_objective = 0, limit = 1, every = 1;
+    int n_individual = 1, n_variable = 0, n_objective = 0, limit = 1, every = 1;
     hf_hdf5_walk(io, demand_plain, io);
     hf_hdf5_get(io, io->file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     hf_hdf5_get(io, io->file, "/", "identity", HF_KIND_CHARS, s->identity, sizeof s->identity);
@@ -112,10 +113,10 @@ static void read_state(hf_store *s)
         if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, io->messages);
         return;
     }
-    read_sizes(io, &n_individual, &n_gene, &n_objective, &limit, &every);
+    read_sizes(io, &n_individual, &n_variable, &n_objective, &limit, &every);
     bool has_rows = hf_hdf5_has(io, io->file, "/ga/gene_variable");
     if (io->status == HF_OK &&
-        hf_generations_create(n_individual, n_gene, n_objective, limit, every, &s->rows) != HF_OK)
+        hf_generations_create(n_individual, n_variable, n_objective, limit, every, &s->rows) != HF_OK)
         io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
     s->rows.has_rows = has_rows;
     if (io->status == HF_OK) hf_generations_count(io, &s->rows);
@@ -140,16 +141,16 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     return hf_store_hand_over(s, store);
 }
 
-static void check_base(hf_hdf5 *io, int n_gene, const double *base_N)
+static void check_base(hf_hdf5 *io, int n_variable, const double *base_N)
 {
-    for (int k = 0; k < n_gene && io->status == HF_OK; k++)
+    for (int k = 0; k < n_variable && io->status == HF_OK; k++)
         if (!(base_N[k] >= 0 && isfinite(base_N[k])))
             hf_hdf5_damaged(io, io->file, "/ga", "has a base that is no design");
 }
 
-hf_status hf_store_restore_base(hf_store *s, int n_gene, double *base_N, hf_messages *messages)
+hf_status hf_store_restore_base(hf_store *s, int n_variable, double *base_N, hf_messages *messages)
 {
-    hf_hdf5_array base = {.name = "/ga/base_N", .kind = HF_KIND_REAL, .rank = 1, .dims = {(hsize_t)n_gene}};
+    hf_hdf5_array base = {.name = "/ga/base_N", .kind = HF_KIND_REAL, .rank = 1, .dims = {(hsize_t)n_variable}};
     if (s && s->rows.has_rows) base.name = "/ga/base";
     if (!s || !s->rows.block) return HF_OK;
     hf_hdf5_lock();
@@ -157,7 +158,7 @@ hf_status hf_store_restore_base(hf_store *s, int n_gene, double *base_N, hf_mess
     hf_store_file_open(&s->f);
     if (hf_hdf5_has(&s->f.io, s->f.io.file, base.name)) { /* earlier versions stored none */
         hf_hdf5_read_array(&s->f.io, s->f.io.file, &base, base_N);
-        check_base(&s->f.io, n_gene, base_N);
+        check_base(&s->f.io, n_variable, base_N);
     }
     return hf_hdf5_unlock(hf_store_judge(s));
 }
@@ -324,32 +325,33 @@ void hf_store_put_polish(hf_store *s, bool finished)
 typedef struct {
     hf_case settings;
     hf_model model;
-    int *group, *leader; /* [n_gene] */
-    double *base_N;      /* [n_gene] */
-    hf_gene *rows;       /* [n_gene] with optimize.variables, else NULL */
+    int *group, *leader; /* [n_variable] */
+    double *base_N;      /* [n_variable] */
+    hf_variable *rows;   /* [n_variable] with optimize.variables, else NULL */
     hf_optimiser optimiser;
 } stored_search;
 
 /* Reads the rows of optimize.variables that the design variables belong to. */
-static void read_variables(hf_hdf5 *io, hid_t group, stored_search *a)
+static void read_rows(hf_hdf5 *io, hid_t group, stored_search *a)
 {
     const hf_optimize_settings *o = &a->settings.optimize;
-    hf_hdf5_array row = {.name = "gene_variable", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)a->model.n_gene}};
-    int *of = malloc((size_t)a->model.n_gene * sizeof *of);
+    hf_hdf5_array row = {
+        .name = "gene_variable", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)a->model.n_variable}};
+    int *of = malloc((size_t)a->model.n_variable * sizeof *of);
     if (!of) hf_hdf5_no_memory(io);
     hf_hdf5_read_array(io, group, &row, of);
-    for (int k = 0; io->status == HF_OK && k < a->model.n_gene; k++) {
-        if (of[k] < 0 || of[k] >= o->n_variable)
+    for (int k = 0; io->status == HF_OK && k < a->model.n_variable; k++) {
+        if (of[k] < 0 || of[k] >= o->n_variable_row)
             hf_hdf5_damaged(io, io->file, "/ga", "has genes of other variables than the case");
         else
-            a->rows[k] = (hf_gene){.vary = o->variable[of[k]].vary, .setting = of[k], .support_row = -1};
+            a->rows[k] = (hf_variable){.vary = o->variable_row[of[k]].vary, .setting = of[k], .support_row = -1};
     }
     free(of);
 }
 
-static void read_genes(hf_hdf5 *io, stored_search *a)
+static void read_variables(hf_hdf5 *io, stored_search *a)
 {
-    hf_hdf5_array row = {.name = "gene_group", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)a->model.n_gene}};
+    hf_hdf5_array row = {.name = "gene_group", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)a->model.n_variable}};
     hid_t group = hf_hdf5_open_group(io, "/ga");
     hf_hdf5_read_array(io, group, &row, a->group);
     row.name = "gene_leader";
@@ -358,24 +360,24 @@ static void read_genes(hf_hdf5 *io, stored_search *a)
     row.name = a->rows ? "base" : "base_N";
     row.kind = HF_KIND_REAL;
     hf_hdf5_read_array(io, group, &row, a->base_N);
-    check_base(io, a->model.n_gene, a->base_N);
-    if (a->rows) read_variables(io, group, a);
+    check_base(io, a->model.n_variable, a->base_N);
+    if (a->rows) read_rows(io, group, a);
     hf_hdf5_close(io, group);
-    for (int k = 0; io->status == HF_OK && k < a->model.n_gene; k++) {
+    for (int k = 0; io->status == HF_OK && k < a->model.n_variable; k++) {
         if (!has_leader) a->leader[k] = k;
-        if (a->group[k] < 0 || a->group[k] >= a->model.n_gene || a->leader[k] < 0 || a->leader[k] > k ||
+        if (a->group[k] < 0 || a->group[k] >= a->model.n_variable || a->leader[k] < 0 || a->leader[k] > k ||
             a->leader[a->leader[k]] != a->leader[k])
             hf_hdf5_damaged(io, io->file, "/ga", "has impossible genes");
         a->model.n_leader += a->leader[k] == k;
-        if (a->group[k] >= a->model.n_gene_group) a->model.n_gene_group = a->group[k] + 1;
+        if (a->group[k] >= a->model.n_variable_group) a->model.n_variable_group = a->group[k] + 1;
     }
 }
 
 static void open_stored_search(hf_store *s, stored_search *a)
 {
     hf_hdf5 *io = &s->f.io;
-    size_t n = (size_t)s->rows.n_gene;
-    a->model.n_gene = s->rows.n_gene;
+    size_t n = (size_t)s->rows.n_variable;
+    a->model.n_variable = s->rows.n_variable;
     a->group = malloc(n * sizeof *a->group);
     a->leader = malloc(n * sizeof *a->leader);
     a->base_N = malloc(n * sizeof *a->base_N);
@@ -385,10 +387,10 @@ static void open_stored_search(hf_store *s, stored_search *a)
         return;
     }
     hf_store_read_case(io, &a->settings);
-    read_genes(io, a);
-    a->model.gene_group = a->group;
-    a->model.gene_leader = a->leader;
-    a->model.gene = a->rows;
+    read_variables(io, a);
+    a->model.variable_group = a->group;
+    a->model.variable_leader = a->leader;
+    a->model.variable = a->rows;
     const hf_optimize_settings *o = &a->settings.optimize;
     if (io->status == HF_OK && (o->population != s->rows.n_individual || o->generations != s->rows.limit ||
                                 o->n_objective != s->rows.n_objective))

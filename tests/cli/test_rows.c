@@ -124,8 +124,8 @@ START_TEST(derivatives_come_beside_the_results)
         "optimize.variables=[{set: edge, vary: force_density, range: 50 %, link: set}, {set: stay, vary: support_xyz, "
         "range: 0.5}]",
         "--set", GOALS, "--set", "form.residual_tolerance=1e-13");
-#define SLOPE(figure, up, down, gene)                                                                                  \
-    "near(float(next(r for r in b if r['id'] == 'at' and r['figure'] == '" figure "')['" gene "']), (lambda of: "      \
+#define SLOPE(figure, up, down, variable)                                                                              \
+    "near(float(next(r for r in b if r['id'] == 'at' and r['figure'] == '" figure "')['" variable "']), (lambda of: "  \
     "(float(of['" up "']['" figure "']) - float(of['" down "']['" figure                                               \
     "'])) / 2e-4)({r['id']: r for r in a}), 1e-7)"
     EXPECT(table, slopes, out_as("r.json"), "--", "list(b[0]) == ['id', 'figure', 'c1', 'c,2', 'c.x', 'c.y', 'c.z']",

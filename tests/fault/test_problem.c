@@ -20,8 +20,8 @@ static const char *write_case(int with_truss)
 static void evaluate_one(hf_problem *p, hf_form_result *r)
 {
     double design_N[64];
-    ck_assert_int_le(p->model.n_gene, 64);
-    for (int k = 0; k < p->model.n_gene; k++)
+    ck_assert_int_le(p->model.n_variable, 64);
+    for (int k = 0; k < p->model.n_variable; k++)
         design_N[k] = p->base_N[k] * (1 + 0.03 * (k % 3));
     hf_batch_run(&p->batch, 1, design_N, NULL, r);
 }

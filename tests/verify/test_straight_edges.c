@@ -89,10 +89,10 @@ START_TEST(search_comes_near_the_optimum)
     ck_assert_int_eq(find_shape(&net), HF_OK);
     const hf_model *m = &net.model;
     double start_q[220], base_N[120];
-    ck_assert(m->n_cable == 220 && m->n_gene == 120);
+    ck_assert(m->n_cable == 220 && m->n_variable == 120);
     memcpy(start_q, net.work.q_N_per_m, sizeof start_q);
-    for (int k = 0; k < m->n_gene; k++)
-        base_N[k] = net.work.tension_N[m->gene_cable[k]];
+    for (int k = 0; k < m->n_variable; k++)
+        base_N[k] = net.work.tension_N[m->variable_cable[k]];
     const hf_optimize_settings *o = &net.settings.optimize;
     hf_evaluator evaluator = {.model = m,
                               .form = &net.form,

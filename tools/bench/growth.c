@@ -112,15 +112,15 @@ static void evaluations(net *n)
 {
     const hf_model *m = &n->model;
     hf_batch batch;
-    double *base_N = bench_alloc((size_t)m->n_gene, sizeof(double));
+    double *base_N = bench_alloc((size_t)m->n_variable, sizeof(double));
     double *start_q = bench_alloc((size_t)m->n_cable, sizeof(double));
-    double *design_N = bench_alloc((size_t)m->n_gene * POPULATION, sizeof(double));
+    double *design_N = bench_alloc((size_t)m->n_variable * POPULATION, sizeof(double));
     memcpy(start_q, n->workspace.q_N_per_m, (size_t)m->n_cable * sizeof(double));
-    for (int k = 0; k < m->n_gene; k++)
-        base_N[k] = n->workspace.tension_N[m->gene_cable[k]];
+    for (int k = 0; k < m->n_variable; k++)
+        base_N[k] = n->workspace.tension_N[m->variable_cable[k]];
     for (int i = 0; i < POPULATION; i++) /* a chain moves together, by up to 1 N */
-        for (int k = 0; k < m->n_gene; k++)
-            design_N[i * m->n_gene + k] = base_N[k] + (double)((i * 7 + m->gene_group[k] * 5) % 17 - 8) / 8;
+        for (int k = 0; k < m->n_variable; k++)
+            design_N[i * m->n_variable + k] = base_N[k] + (double)((i * 7 + m->variable_group[k] * 5) % 17 - 8) / 8;
     hf_evaluator evaluator = {.model = m,
                               .form = &n->settings.form,
                               .start_q_N_per_m = start_q,

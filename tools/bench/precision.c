@@ -28,13 +28,13 @@
 /* Number of designs that the slow fixed point solves. */
 static int n_true(const bench_scene *b)
 {
-    if (b->model.n_gene == 0) return 1;
+    if (b->model.n_variable == 0) return 1;
     return b->model.n_free > 700 ? 1 : BENCH_TRUE;
 }
 
 static const double *design(const bench_scene *b, int i)
 {
-    return b->design_N + (size_t)i * (size_t)b->model.n_gene;
+    return b->design_N + (size_t)i * (size_t)b->model.n_variable;
 }
 
 static size_t shape_size(const bench_scene *b)
@@ -186,7 +186,7 @@ static int share_matrix(bench_scene *b, hf_batch *batch)
     b->evaluator.solver = HF_SOLVER_AUTO;
     b->form.residual_tolerance = TOLERANCE_TIGHTEST;
     if (hf_batch_create(&b->evaluator, 1, batch) != HF_OK) bench_fail(b->name, "out of memory");
-    if (b->model.n_gene == 0) return 0;
+    if (b->model.n_variable == 0) return 0;
     double start_s = bench_clock_s();
     hf_solver by = hf_batch_share(batch, b->base_N);
     bench_emit("precision", b->name, "chord", 0, "setup_s", bench_clock_s() - start_s);
@@ -336,7 +336,7 @@ void bench_single(const char *name, const char *folder)
     bench_scene_named(name, folder, &b);
     single_form_finding(&b);
     /* without genes the base shape is the one to be found: start from the theoretical shape */
-    if (b.model.n_gene == 0) b.evaluator.start_q_N_per_m = b.model.start_q_N_per_m;
+    if (b.model.n_variable == 0) b.evaluator.start_q_N_per_m = b.model.start_q_N_per_m;
     double *reference_m = make_references(&b);
     int has_chord = share_matrix(&b, &batch);
     hf_evaluate_prepare(&b.evaluator, b.design_N, &b.workspace);

@@ -6,14 +6,14 @@
 #include "search/polish.h"
 #include "net/symmetry.h"
 
-enum { N_GENE = 120, N_CABLE = 220, N_GENERATION = 15 };
+enum { N_VARIABLE = 120, N_CABLE = 220, N_GENERATION = 15 };
 
 struct search {
     struct net net;
     hf_evaluator evaluator;
     hf_batch batch;
     hf_optimiser ga;
-    double start_q[N_CABLE], base_N[N_GENE];
+    double start_q[N_CABLE], base_N[N_VARIABLE];
 };
 
 /* The tolerance is tight so that what is seen of the shape is symmetry and not where the solver stopped. */
@@ -24,13 +24,13 @@ static void open_search(struct search *s)
     OPEN_CASE(&s->net, "configs/straight-edges.yaml", "optimize.symmetry=xy", "optimize.population=16",
               "optimize.generations=15", "form.residual_tolerance=1e-12");
     hf_model *m = &s->net.model;
-    ck_assert(m->n_gene == N_GENE && m->n_cable == N_CABLE);
+    ck_assert(m->n_variable == N_VARIABLE && m->n_cable == N_CABLE);
     ck_assert_int_eq(hf_symmetry_apply(&s->net.scene, &s->net.settings.optimize, m, &planes, &messages), HF_OK);
     ck_assert_int_eq(m->n_leader, 30);
     ck_assert_int_eq(find_shape(&s->net), HF_OK);
     memcpy(s->start_q, s->net.work.q_N_per_m, sizeof s->start_q);
-    for (int k = 0; k < m->n_gene; k++)
-        s->base_N[k] = s->net.work.tension_N[m->gene_cable[k]];
+    for (int k = 0; k < m->n_variable; k++)
+        s->base_N[k] = s->net.work.tension_N[m->variable_cable[k]];
     hf_symmetry_average(m, s->base_N);
     s->evaluator = (hf_evaluator){.model = m,
                                   .form = &s->net.form,
@@ -52,8 +52,8 @@ static void close_search(struct search *s)
 /* To the bit. */
 static void demand_symmetric_design(const struct search *s, const double *design_N)
 {
-    for (int k = 0; k < N_GENE; k++)
-        ck_assert_double_eq(design_N[k], design_N[s->net.model.gene_leader[k]]);
+    for (int k = 0; k < N_VARIABLE; k++)
+        ck_assert_double_eq(design_N[k], design_N[s->net.model.variable_leader[k]]);
 }
 
 /* The generator numbers nodes j * 11 + i, so the mirror images are known. The largest difference of a position from
@@ -81,9 +81,9 @@ static void evolve(struct search *s)
                      s->ga.population.result);
         hf_optimiser_tell(&s->ga);
         for (int i = 0; i < s->ga.population.n_individual; i++) {
-            const double *design = s->ga.population.design_N + i * N_GENE;
+            const double *design = s->ga.population.design_N + i * N_VARIABLE;
             demand_symmetric_design(s, design);
-            for (int k = 0; k < N_GENE; k++)
+            for (int k = 0; k < N_VARIABLE; k++)
                 ck_assert(design[k] >= s->ga.population.lower_N[k] && design[k] <= s->ga.population.upper_N[k]);
         }
     } while (hf_optimiser_next(&s->ga));
@@ -95,14 +95,14 @@ START_TEST(what_a_symmetric_search_finds_is_symmetric)
     struct search s;
     hf_form_result found;
     hf_polish_result polished;
-    double design_N[N_GENE];
+    double design_N[N_VARIABLE];
     open_search(&s);
     demand_symmetric_design(&s, s.base_N);
     ck_assert_int_eq(hf_batch_share(&s.batch, s.base_N), HF_SOLVER_CHORD);
     evolve(&s);
     ck_assert_double_lt(s.ga.population.best_psi_m[s.ga.population.generation],
                         s.ga.population.best_psi_m[0]); /* it moved */
-    memcpy(design_N, s.ga.population.design_N + s.ga.population.best * N_GENE, sizeof design_N);
+    memcpy(design_N, s.ga.population.design_N + s.ga.population.best * N_VARIABLE, sizeof design_N);
     ck_assert_int_eq(hf_evaluate(&s.evaluator, design_N, &s.net.work, &found), HF_OK);
     ck_assert_double_lt(asymmetry_m(&s.net.model, &s.net.work), 1e-9);
     ck_assert_int_eq(hf_polish_run(&s.evaluator, s.ga.population.lower_N, s.ga.population.upper_N, 20, NULL, design_N,
@@ -118,7 +118,7 @@ END_TEST
 
 /* The optimum of a symmetric, well-posed net is symmetric: with 22 variables Levenberg-Marquardt ends where it ends
  * with all 88, only sooner. 1e-7: both stop at a relative change of psi^2 of 1e-14 or when no step helps any more. */
-START_TEST(polishing_linked_genes_reaches_the_free_optimum)
+START_TEST(polishing_linked_variables_reaches_the_free_optimum)
 {
     double psi_m[2];
     for (int linked = 0; linked < 2; linked++) {
@@ -128,17 +128,17 @@ START_TEST(polishing_linked_genes_reaches_the_free_optimum)
         int planes;
         double start_q[1000], design_N[200], lower_N[200], upper_N[200];
         OPEN_CASE(&net, SMALL_REFLECTOR);
-        ck_assert(net.model.n_gene <= 200 && net.model.n_cable <= 1000);
+        ck_assert(net.model.n_variable <= 200 && net.model.n_cable <= 1000);
         int wanted = linked ? HF_SYMMETRY_XY : HF_SYMMETRY_NONE;
         ck_assert_int_eq(hf_symmetry_apply(&net.scene, &(hf_optimize_settings){.symmetry = (hf_symmetry)wanted},
                                            &net.model, &planes, &messages),
                          HF_OK);
         ck_assert_int_eq(find_shape(&net), HF_OK);
         memcpy(start_q, net.work.q_N_per_m, (size_t)net.model.n_cable * sizeof(double));
-        for (int k = 0; k < net.model.n_gene; k++)
-            design_N[k] = net.work.tension_N[net.model.gene_cable[k]];
+        for (int k = 0; k < net.model.n_variable; k++)
+            design_N[k] = net.work.tension_N[net.model.variable_cable[k]];
         hf_symmetry_average(&net.model, design_N);
-        for (int k = 0; k < net.model.n_gene; k++)
+        for (int k = 0; k < net.model.n_variable; k++)
             lower_N[k] = design_N[k] - 1, upper_N[k] = design_N[k] + 1;
         hf_evaluator v = {.model = &net.model,
                           .form = &net.form,
@@ -161,6 +161,6 @@ Suite *suite_property_symmetry(void)
     TCase *tests = tcase_create("symmetry");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, what_a_symmetric_search_finds_is_symmetric);
-    tcase_add_test(tests, polishing_linked_genes_reaches_the_free_optimum);
+    tcase_add_test(tests, polishing_linked_variables_reaches_the_free_optimum);
     return suite;
 }

@@ -5,13 +5,13 @@
 #include <hifdm/batch.h>
 #include <hifdm/optimiser.h>
 
-enum { MAX_GENE = 200, MAX_CABLE = 400, N_GENERATION = 12, MAX_POPULATION = 30 };
+enum { MAX_VARIABLE = 200, MAX_CABLE = 400, N_GENERATION = 12, MAX_POPULATION = 30 };
 
 struct search {
     struct net net;
     hf_optimize_settings settings;
     hf_evaluator evaluator;
-    double start_q[MAX_CABLE], base_N[MAX_GENE];
+    double start_q[MAX_CABLE], base_N[MAX_VARIABLE];
     hf_form_result base; /* of the design base_N */
 };
 
@@ -28,12 +28,12 @@ static void open_search(struct search *s)
     OPEN_CASE(&s->net, "configs/straight-edges.yaml", "scene.parabolic_cylinder.modules=[3, 3]",
               "optimize.population=16", "optimize.generations=12");
     const hf_model *m = &s->net.model;
-    ck_assert(m->n_gene <= MAX_GENE && m->n_cable <= MAX_CABLE);
+    ck_assert(m->n_variable <= MAX_VARIABLE && m->n_cable <= MAX_CABLE);
     ck_assert_int_eq(find_shape(&s->net), HF_OK);
     s->settings = s->net.settings.optimize;
     memcpy(s->start_q, s->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
-    for (int k = 0; k < m->n_gene; k++)
-        s->base_N[k] = s->net.work.tension_N[m->gene_cable[k]];
+    for (int k = 0; k < m->n_variable; k++)
+        s->base_N[k] = s->net.work.tension_N[m->variable_cable[k]];
     s->evaluator = (hf_evaluator){.model = m,
                                   .form = &s->net.form,
                                   .start_q_N_per_m = s->start_q,
@@ -52,13 +52,13 @@ static struct trace run(struct search *s, int n_thread)
     ck_assert_int_eq(hf_batch_create(&s->evaluator, n_thread, &batch), HF_OK);
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &s->settings, &s->net.model, s->base_N, &ga), HF_OK);
     for (int i = 0; i < ga.population.n_individual && i < MAX_POPULATION; i++)
-        t.first_design_N[i] = ga.population.design_N[i * ga.population.n_gene + 1];
+        t.first_design_N[i] = ga.population.design_N[i * ga.population.n_variable + 1];
     do {
         hf_batch_run(&batch, ga.population.n_individual, ga.population.design_N, ga.population.pending,
                      ga.population.result);
         hf_optimiser_tell(&ga);
         t.best_psi_m[t.n] = ga.population.best_psi_m[ga.population.generation];
-        for (int k = 0; k < ga.population.n_individual * ga.population.n_gene; k++)
+        for (int k = 0; k < ga.population.n_individual * ga.population.n_variable; k++)
             t.sum_N[t.n] += ga.population.design_N[k];
         t.n++;
         for (int i = 0; i < ga.population.n_individual; i++) {

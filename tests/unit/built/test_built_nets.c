@@ -76,8 +76,8 @@ static void residuals_at(struct differed *d, int i, double step, double *residua
 {
     const hf_model *m = &d->p.model;
     hf_form_result result;
-    for (int k = 0; k < m->n_gene; k++)
-        d->design[k] = d->p.base_N[k] + (d->slopes.variable_of_gene[k] == i ? step : 0);
+    for (int k = 0; k < m->n_variable; k++)
+        d->design[k] = d->p.base_N[k] + (d->slopes.class_of_variable[k] == i ? step : 0);
     ck_assert_int_eq(hf_evaluate(&d->p.evaluator, d->design, &d->p.workspace, &result), HF_OK);
     ck_assert_int_eq(hf_goals_linearise(&d->p.goals, &d->p.workspace, d->p.workspace.goals, residual), HF_OK);
 }
@@ -117,9 +117,9 @@ static void open_differed(struct differed *d, bool on_truss, const char *variabl
     ck_assert_int_eq(hf_sensitivity_create(&d->p.evaluator, &d->slopes), HF_OK);
     ck_assert_int_eq(hf_residuals_create(&d->p.evaluator, &d->residuals), HF_OK);
     size_t n = (size_t)d->slopes.n, n_row = (size_t)d->residuals.n_row;
-    d->design = calloc((size_t)d->p.model.n_gene + n + n * n_row + 4 * n_row, sizeof *d->design);
+    d->design = calloc((size_t)d->p.model.n_variable + n + n * n_row + 4 * n_row, sizeof *d->design);
     ck_assert_ptr_nonnull(d->design);
-    d->gradient = d->design + d->p.model.n_gene;
+    d->gradient = d->design + d->p.model.n_variable;
     d->exact = d->gradient + n;
     for (size_t k = 0; k < 4; k++)
         d->found[k] = d->exact + n * n_row + k * n_row;
@@ -309,9 +309,9 @@ START_TEST(values_do_not_depend_on_earlier_designs)
     hf_form_result first, other, again;
     open_problem(&p, _i, NULL, value_goals);
     evaluate_base(&p, &first);
-    double *design = malloc((size_t)p.model.n_gene * sizeof *design);
+    double *design = malloc((size_t)p.model.n_variable * sizeof *design);
     ck_assert_ptr_nonnull(design);
-    for (int k = 0; k < p.model.n_gene; k++)
+    for (int k = 0; k < p.model.n_variable; k++)
         design[k] = p.base_N[k] * (1 + 0.02 * (k % 5));
     ck_assert_int_eq(hf_evaluate(&p.evaluator, design, &p.workspace, &other), HF_OK);
     evaluate_base(&p, &again);

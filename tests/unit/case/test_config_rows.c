@@ -45,8 +45,8 @@ START_TEST(variables_reach_their_place)
 {
     hf_case c;
     accept_rows(ROWS, NULL, 0, &c);
-    const hf_variable_settings *v = c.optimize.variable;
-    ck_assert_int_eq(c.optimize.n_variable, 3);
+    const hf_variable_settings *v = c.optimize.variable_row;
+    ck_assert_int_eq(c.optimize.n_variable_row, 3);
     ck_assert_str_eq(v[0].set, "boundary");
     ck_assert_int_eq(v[0].vary, HF_VARY_FORCE_DENSITY);
     ck_assert(isnan(v[0].range) && v[0].lower == -INFINITY && v[0].upper == INFINITY);
@@ -60,7 +60,7 @@ START_TEST(variables_reach_their_place)
     static const char *const all[] = {"optimize.variables.1.set=all"};
     hf_case every;
     accept_rows(ROWS, all, 1, &every);
-    ck_assert_str_eq(every.optimize.variable[1].set, "all");
+    ck_assert_str_eq(every.optimize.variable_row[1].set, "all");
     hf_case_free(&every);
     ck_assert_int_eq(v[2].vary, HF_VARY_SUPPORT_Z);
     ck_assert_double_eq(v[2].range, 0.02);
@@ -112,8 +112,8 @@ START_TEST(overrides_set_keys_of_rows_and_whole_lists)
                                       "optimize.limits=[]"};
     hf_case c;
     accept_rows(ROWS, set, 5, &c);
-    ck_assert(c.optimize.variable[0].range == 5 && isnan(c.optimize.variable[0].range_ratio));
-    ck_assert(c.optimize.variable[2].lower == -1 && c.optimize.variable[2].upper == 1);
+    ck_assert(c.optimize.variable_row[0].range == 5 && isnan(c.optimize.variable_row[0].range_ratio));
+    ck_assert(c.optimize.variable_row[2].lower == -1 && c.optimize.variable_row[2].upper == 1);
     ck_assert_int_eq(c.optimize.n_goal, 1);
     ck_assert(c.optimize.goal[0].goal == HF_GOAL_PULL && c.optimize.goal[0].weight == 3);
     ck_assert_int_eq(c.optimize.n_limit, 0);
@@ -370,7 +370,7 @@ START_TEST(rows_are_counted)
     for (int i = 0; i < HF_DESIGN_ROWS_MAX; i++)
         strcat(text, "    - " ROW "\n");
     accept_rows(text, NULL, 0, &c);
-    ck_assert_int_eq(c.optimize.n_variable, HF_DESIGN_ROWS_MAX);
+    ck_assert_int_eq(c.optimize.n_variable_row, HF_DESIGN_ROWS_MAX);
     hf_case_free(&c);
     strcat(text, "    - " ROW "\n    - " ROW "\n");
     ck_assert_int_eq(load_rows(text, NULL, 0, &c, said, sizeof said), HF_BAD_CASE);

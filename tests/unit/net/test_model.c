@@ -78,8 +78,8 @@ START_TEST(model_mirrors_the_scene)
         ck_assert_double_eq(m->length_m[e], hf_scene_theoretical_length(&net.scene, e));
     }
     ck_assert_int_eq(m->inner_row[0], m->row_of_node[1]);
-    ck_assert_int_eq(m->n_gene, 1); /* cable 3 is boundary, but between supports */
-    ck_assert_int_eq(m->gene_cable[0], 1);
+    ck_assert_int_eq(m->n_variable, 1); /* cable 3 is boundary, but between supports */
+    ck_assert_int_eq(m->variable_cable[0], 1);
     close_net(&net);
 }
 END_TEST
@@ -211,7 +211,7 @@ START_TEST(chains_of_the_papers_net)
     OPEN_CASE(&net, "configs/straight-edges.yaml");
     /* 6 straight generatrix lines of 5 module edges; those along the directrix are polygons and not straight */
     ck_assert_int_eq(net.model.n_chain, 30);
-    ck_assert_int_eq(net.model.n_gene, 120); /* 2 x 6 lines x 10 cables, all with a free end */
+    ck_assert_int_eq(net.model.n_variable, 120); /* 2 x 6 lines x 10 cables, all with a free end */
     close_net(&net);
     OPEN_CASE(&net, "configs/reflector.yaml");
     ck_assert_int_eq(net.model.n_chain, 0); /* scalloped */
@@ -235,9 +235,9 @@ START_TEST(genes_of_a_chain_are_one_group)
     static const int group[] = {0, 0, 0, 1, 2};
     struct net net;
     OPEN_HAND(&net, row, link, HF_METHOD_HIFDM);
-    ck_assert_int_eq(net.model.n_gene, 5);
-    ck_assert_int_eq(net.model.n_gene_group, 3);
-    ck_assert_mem_eq(net.model.gene_group, group, sizeof group);
+    ck_assert_int_eq(net.model.n_variable, 5);
+    ck_assert_int_eq(net.model.n_variable_group, 3);
+    ck_assert_mem_eq(net.model.variable_group, group, sizeof group);
     close_net(&net);
 }
 END_TEST
@@ -246,12 +246,12 @@ START_TEST(groups_of_the_papers_net_are_module_edges)
 {
     struct net net;
     OPEN_CASE(&net, "configs/straight-edges.yaml");
-    int n_gene_of[120] = {0};
-    ck_assert_int_eq(net.model.n_gene_group, 60);
-    for (int k = 0; k < net.model.n_gene; k++)
-        n_gene_of[net.model.gene_group[k]]++;
+    int n_variable_of[120] = {0};
+    ck_assert_int_eq(net.model.n_variable_group, 60);
+    for (int k = 0; k < net.model.n_variable; k++)
+        n_variable_of[net.model.variable_group[k]]++;
     for (int j = 0; j < 60; j++)
-        ck_assert_int_eq(n_gene_of[j], 2);
+        ck_assert_int_eq(n_variable_of[j], 2);
     close_net(&net);
 }
 END_TEST

@@ -19,7 +19,7 @@ static hf_status apply(struct net *net, int wanted, int *planes, char *said, siz
 static bool touches(const struct net *net, int k, double x_m, double y_m)
 {
     for (int side = 0; side < 2; side++) {
-        const double *p = net->scene.position_m + 3 * net->scene.end[2 * net->model.gene_cable[k] + side];
+        const double *p = net->scene.position_m + 3 * net->scene.end[2 * net->model.variable_cable[k] + side];
         if (hypot(p[0] - x_m, p[1] - y_m) < 1e-9) return true;
     }
     return false;
@@ -31,7 +31,7 @@ static bool are_images(const struct net *net, int a, int b, int planes)
     for (int mirror = 0; mirror < 4; mirror++) {
         bool all = !(mirror & ~planes);
         for (int side = 0; all && side < 2; side++) {
-            const double *p = net->scene.position_m + 3 * net->scene.end[2 * net->model.gene_cable[a] + side];
+            const double *p = net->scene.position_m + 3 * net->scene.end[2 * net->model.variable_cable[a] + side];
             all = touches(net, b, mirror & HF_PLANE_X ? -p[0] : p[0], mirror & HF_PLANE_Y ? 12 - p[1] : p[1]);
         }
         if (all) return true;
@@ -60,13 +60,13 @@ START_TEST(classes_of_the_papers_net)
     ck_assert_int_eq(apply(&net, expected[_i].wanted, &planes, said, sizeof said), HF_OK);
     ck_assert_int_eq(planes, expected[_i].planes);
     ck_assert_int_eq(m->n_leader, expected[_i].n_leader);
-    ck_assert_int_eq(m->n_gene_group, expected[_i].n_group);
+    ck_assert_int_eq(m->n_variable_group, expected[_i].n_group);
     ck_assert(hf_model_is_valid(m));
-    for (int a = 0; a < m->n_gene; a++)
-        for (int b = 0; b < m->n_gene; b++) {
-            bool linked = m->gene_leader[a] == m->gene_leader[b];
+    for (int a = 0; a < m->n_variable; a++)
+        for (int b = 0; b < m->n_variable; b++) {
+            bool linked = m->variable_leader[a] == m->variable_leader[b];
             ck_assert_msg(linked == are_images(&net, a, b, planes), "genes %d and %d", a, b);
-            if (linked) ck_assert_int_eq(m->gene_group[a], m->gene_group[b]);
+            if (linked) ck_assert_int_eq(m->variable_group[a], m->variable_group[b]);
         }
     close_net(&net);
 }
@@ -94,8 +94,8 @@ START_TEST(a_net_by_hand)
     OPEN_HAND(&net, nodes, cables, HF_METHOD_HIFDM);
     ck_assert_msg(apply(&net, HF_SYMMETRY_XY, &planes, said, sizeof said) == HF_OK, "%s", said);
     static const int leader[] = {0, 0, 0, 0, 4, 5}; /* genes: c0 .. c3, c5, c6 */
-    ck_assert_int_eq(net.model.n_gene, 6);
-    ck_assert_mem_eq(net.model.gene_leader, leader, sizeof leader);
+    ck_assert_int_eq(net.model.n_variable, 6);
+    ck_assert_mem_eq(net.model.variable_leader, leader, sizeof leader);
     ck_assert_int_eq(net.model.n_leader, 3);
     close_net(&net);
 }
@@ -190,7 +190,7 @@ END_TEST
 START_TEST(linked_genes_share_the_step)
 {
     int leader[] = {0, 0, 2, 2};
-    hf_model m = {.n_gene = 4, .n_leader = 2, .gene_leader = leader};
+    hf_model m = {.n_variable = 4, .n_leader = 2, .variable_leader = leader};
     double base_N[] = {10, 10 * (1 + 5e-7), 3, 4}, design_N[] = {10.75, 0, 3.5, 0};
     hf_symmetry_average(&m, base_N);
     ck_assert_double_eq(base_N[0], base_N[1]); /* alike: their mean */

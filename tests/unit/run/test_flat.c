@@ -21,12 +21,12 @@ static const char *const set_name[] = {"x", "y"};
 static const int set_start[] = {0, 2, 4}, set_cable[] = {4, 5, 6, 7};
 static const char text[] =
     "scene: {import: {nodes: nodes.csv, cables: cables.csv}}\nform: {pretension_N: 10, residual_tolerance: 1e-12}\n";
-enum { N_DESIGN = 3, N_GENE = 4 };
+enum { N_DESIGN = 3, N_VARIABLE = 4 };
 
 /* Everything once; the first status that is not HF_OK. psi_m: of the last design. */
 static int work(hf_flat *flat, double *psi_m)
 {
-    double design[N_DESIGN * N_GENE], figure[16 * N_DESIGN], slope[N_DESIGN * N_GENE];
+    double design[N_DESIGN * N_VARIABLE], figure[16 * N_DESIGN], slope[N_DESIGN * N_VARIABLE];
     hf_flat_nodes(flat, 9, position_m[0], role, load_N[0], node_id);
     hf_flat_cables(flat, 8, end[0], group, law, NULL, NULL, NULL);
     hf_flat_sets(flat, 2, set_name, set_start, set_cable);
@@ -34,8 +34,8 @@ static int work(hf_flat *flat, double *psi_m)
     if (status == HF_OK) status = hf_flat_form(flat);
     if (status != HF_OK) return status;
     hf_flat_reals(flat, "base", design);
-    for (int i = N_GENE; i < N_DESIGN * N_GENE; i++)
-        design[i] = design[i - N_GENE] * 1.01;
+    for (int i = N_VARIABLE; i < N_DESIGN * N_VARIABLE; i++)
+        design[i] = design[i - N_VARIABLE] * 1.01;
     status = hf_flat_evaluate(flat, N_DESIGN, design, figure);
     if (status == HF_OK) status = hf_flat_slopes(flat, N_DESIGN, design, slope);
     if (status == HF_OK) status = hf_flat_shape(flat, design);
@@ -82,7 +82,7 @@ START_TEST(what_is_read_has_its_size)
     ck_assert_int_eq(hf_flat_reals(flat, "base", NULL), 0);
     ck_assert_msg(work(flat, &psi_m) == HF_OK, "%s", hf_flat_said(flat));
     ck_assert_int_eq(hf_flat_reals(flat, "position_m", NULL), 27);
-    ck_assert_int_eq(hf_flat_reals(flat, "base", NULL), N_GENE);
+    ck_assert_int_eq(hf_flat_reals(flat, "base", NULL), N_VARIABLE);
     ck_assert_int_eq(hf_flat_reals(flat, "EA_N", NULL), 0);
     ck_assert_int_eq(hf_flat_reals(flat, "nothing", NULL), -1);
     ck_assert_int_eq(hf_flat_ints(flat, "set_start", NULL), 3);
@@ -90,7 +90,7 @@ START_TEST(what_is_read_has_its_size)
     ck_assert_str_eq(hf_flat_text(flat, "gene", 3), "3");
     ck_assert_str_eq(hf_flat_text(flat, "node_id", 8), "i");
     ck_assert_ptr_null(hf_flat_text(flat, "node_id", 9));
-    ck_assert_ptr_null(hf_flat_text(flat, "gene", N_GENE));
+    ck_assert_ptr_null(hf_flat_text(flat, "gene", N_VARIABLE));
     ck_assert_str_eq(hf_flat_text(flat, "slope", 0), "psi_m");
     ck_assert_int_eq(hf_flat_open(flat, "again.yaml", 0, NULL, 1), HF_BAD_USAGE);
     hf_flat_free(flat);
@@ -107,12 +107,13 @@ END_TEST
 /* Other designs between a shape and its reading; a stop that comes when no run goes on. */
 START_TEST(calls_leave_no_trace)
 {
-    double psi_m, base[N_GENE], other[2 * N_GENE], before[2][27], result[128], figure[16 * 2], slope[2 * N_GENE];
+    double psi_m, base[N_VARIABLE], other[2 * N_VARIABLE], before[2][27], result[128], figure[16 * 2],
+        slope[2 * N_VARIABLE];
     hf_flat *flat = hf_flat_create();
     ck_assert_msg(work(flat, &psi_m) == HF_OK, "%s", hf_flat_said(flat));
     hf_flat_reals(flat, "base", base);
-    for (int i = 0; i < 2 * N_GENE; i++)
-        other[i] = base[i % N_GENE] * (i % 2 ? 1.2 : 0.7);
+    for (int i = 0; i < 2 * N_VARIABLE; i++)
+        other[i] = base[i % N_VARIABLE] * (i % 2 ? 1.2 : 0.7);
     ck_assert_int_eq(hf_flat_form(flat), HF_OK);
     hf_flat_reals(flat, "position_m", before[0]);
     hf_flat_reals(flat, "tension_N", before[1]);

@@ -17,11 +17,11 @@ struct outcome {
 static void evaluate_designs(hf_problem *p, struct outcome *outcome)
 {
     hf_form_result result[N_DESIGN];
-    size_t n_gene = (size_t)p->model.n_gene;
-    double *design = malloc((N_DESIGN * n_gene + 1) * sizeof *design);
+    size_t n_variable = (size_t)p->model.n_variable;
+    double *design = malloc((N_DESIGN * n_variable + 1) * sizeof *design);
     for (size_t i = 0; i < N_DESIGN; i++)
-        for (size_t k = 0; k < n_gene; k++)
-            design[i * n_gene + k] = p->base_N[k] * (1 + 0.01 * (double)i);
+        for (size_t k = 0; k < n_variable; k++)
+            design[i * n_variable + k] = p->base_N[k] * (1 + 0.01 * (double)i);
     hf_batch_run(&p->batch, N_DESIGN, design, NULL, result);
     for (int i = 0; i < N_DESIGN; i++)
         outcome->psi_m[i] = result[i].psi_m;
@@ -61,9 +61,9 @@ START_TEST(opening_gives_what_a_run_finds)
     ck_assert_msg(hf_problem_open(source_path(cases[_i]), set, 2, 2, &p, &said) == HF_OK, "%s", said.text);
     ck_assert_mem_eq(&p.form.psi_m, &s.form.psi_m, sizeof(double));
     ck_assert_int_eq(p.form.iterations, s.form.iterations);
-    ck_assert_int_eq(p.model.n_gene, s.n_gene);
+    ck_assert_int_eq(p.model.n_variable, s.n_gene);
     ck_assert_int_eq(p.batch.n_thread, 2);
-    for (int k = 0; k < p.model.n_gene; k++)
+    for (int k = 0; k < p.model.n_variable; k++)
         ck_assert_double_gt(p.base_N[k], 0);
     if (s.has_optimize) { /* the base design is individual 0 */
         hf_form_result base;
@@ -95,7 +95,7 @@ START_TEST(a_net_without_genes_is_opened)
     write_file(path, "scene: {parabolic_cylinder: {aperture_m: 2, length_m: 2, focal_length_m: 2, modules: [1, 1], "
                      "cells_per_module: [3, 3], supports: perimeter}}\n");
     ck_assert_msg(hf_problem_open(path, NULL, 0, 2, &p, &said) == HF_OK, "%s", said.text);
-    ck_assert_int_eq(p.model.n_gene, 0);
+    ck_assert_int_eq(p.model.n_variable, 0);
     ck_assert_int_eq(p.solver, HF_SOLVER_AUTO);
     ck_assert_double_gt(p.form.psi_m, 0);
     hf_problem_free(&p);

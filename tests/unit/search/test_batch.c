@@ -24,8 +24,8 @@ static void evaluate(struct run *r, int n_thread, int n_at_once, hf_form_result 
     for (int i = 0; i < batch.n_thread; i++)
         hf_workspace_poison(&r->net.model, &batch.workspace[i]);
     for (int i = 0; i < N_DESIGN; i += n_at_once)
-        hf_batch_run(&batch, i + n_at_once < N_DESIGN ? n_at_once : N_DESIGN - i, r->design_N + i * r->net.model.n_gene,
-                     NULL, result + i);
+        hf_batch_run(&batch, i + n_at_once < N_DESIGN ? n_at_once : N_DESIGN - i,
+                     r->design_N + i * r->net.model.n_variable, NULL, result + i);
     ck_assert_double_gt(batch.cpu_s, 0);
     hf_batch_free(&batch);
 }
@@ -49,7 +49,7 @@ START_TEST(threads_and_grouping_do_not_change_a_bit)
     evaluate(&r, 1, 1, alone);
     for (int i = 0; i < N_DESIGN; i++) { /* the same as without a batch */
         hf_form_result direct;
-        hf_evaluate(&r.evaluator, r.design_N + i * r.net.model.n_gene, &r.net.work, &direct);
+        hf_evaluate(&r.evaluator, r.design_N + i * r.net.model.n_variable, &r.net.work, &direct);
         ck_assert_mem_eq(&direct.psi_m, &alone[i].psi_m, sizeof(double));
     }
     static const int n_thread[] = {1, 2, 3, 7};
@@ -91,12 +91,12 @@ START_TEST(one_failure_stays_alone)
     struct run r;
     hf_form_result good[N_DESIGN], mixed[N_DESIGN];
     open_designs(&r, HF_RULE_TENSION);
-    for (int k = 0; k < N_DESIGN * r.net.model.n_gene; k++) /* nearly the found tensions: equilibrium exists */
-        r.design_N[k] = r.net.work.tension_N[r.net.model.gene_cable[k % r.net.model.n_gene]] + 1e-3 * (k % 7);
+    for (int k = 0; k < N_DESIGN * r.net.model.n_variable; k++) /* nearly the found tensions: equilibrium exists */
+        r.design_N[k] = r.net.work.tension_N[r.net.model.variable_cable[k % r.net.model.n_variable]] + 1e-3 * (k % 7);
     evaluate(&r, 2, N_DESIGN, good);
     for (int i = 0; i < N_DESIGN; i++)
         ck_assert_int_eq(good[i].status, HF_OK);
-    r.design_N[11 * r.net.model.n_gene] *= 50;
+    r.design_N[11 * r.net.model.n_variable] *= 50;
     evaluate(&r, 2, N_DESIGN, mixed);
     ck_assert_int_eq(mixed[11].status, HF_COLLAPSED);
     mixed[11] = good[11];
@@ -186,7 +186,7 @@ static void breed_and_count(void *state, const hf_population *now, hf_population
 struct reader {
     hf_optimiser ga;
     bool is_beside; /* breeding goes on in another thread */
-    double design_N[N_INDIVIDUAL * MAX_GENE], rate[N_INDIVIDUAL];
+    double design_N[N_INDIVIDUAL * MAX_VARIABLE], rate[N_INDIVIDUAL];
     int parent[2 * N_INDIVIDUAL], n_call, is_same;
 };
 
@@ -194,7 +194,7 @@ static void note(struct reader *r, const hf_optimiser *ga)
 {
     r->ga = *ga;
     r->is_same = 1;
-    memcpy(r->design_N, ga->population.design_N, N_INDIVIDUAL * (size_t)ga->population.n_gene * sizeof(double));
+    memcpy(r->design_N, ga->population.design_N, N_INDIVIDUAL * (size_t)ga->population.n_variable * sizeof(double));
     memcpy(r->rate, ga->population.mutation_rate, sizeof r->rate);
     memcpy(r->parent, ga->population.parent, sizeof r->parent);
 }
@@ -208,7 +208,7 @@ static void read_late(void *context)
         sched_yield();
     r->n_call++;
     r->is_same = memcmp(r->design_N, r->ga.population.design_N,
-                        N_INDIVIDUAL * (size_t)r->ga.population.n_gene * sizeof(double)) == 0 &&
+                        N_INDIVIDUAL * (size_t)r->ga.population.n_variable * sizeof(double)) == 0 &&
                  memcmp(r->rate, r->ga.population.mutation_rate, sizeof r->rate) == 0 &&
                  memcmp(r->parent, r->ga.population.parent, sizeof r->parent) == 0;
 }

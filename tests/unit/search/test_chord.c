@@ -51,8 +51,8 @@ static void assert_answers(struct run *r)
         hf_form_result by_chord, by_newton;
         hf_workspace *w = hf_batch_run_one(&batch, design(r, i), &by_chord);
         ck_assert_int_eq(by_chord.status, HF_OK);
-        for (int k = 0; k < m->n_gene; k++) {
-            int e = m->gene_cable[k], by_density = r->evaluator.rule == HF_RULE_FORCE_DENSITY;
+        for (int k = 0; k < m->n_variable; k++) {
+            int e = m->variable_cable[k], by_density = r->evaluator.rule == HF_RULE_FORCE_DENSITY;
             law[e] = by_density ? HF_LAW_FORCE_DENSITY : HF_LAW_TENSION;
             target[e] = design(r, i)[k] / (by_density ? hf_evaluate_design_length_m(m, e) : 1);
         }
@@ -221,10 +221,10 @@ START_TEST(order_does_not_change_a_bit)
     struct run r;
     hf_form_result forward[N_DESIGN], backward[N_DESIGN];
     open_run(&r, _i);
-    size_t bytes = (size_t)r.net.model.n_gene * sizeof(double);
+    size_t bytes = (size_t)r.net.model.n_variable * sizeof(double);
     evaluate(&r, 1, N_DESIGN, forward);
     for (int i = 0; i < N_DESIGN / 2; i++) {
-        double kept[MAX_GENE];
+        double kept[MAX_VARIABLE];
         memcpy(kept, design(&r, i), bytes);
         memcpy(design(&r, i), design(&r, N_DESIGN - 1 - i), bytes);
         memcpy(design(&r, N_DESIGN - 1 - i), kept, bytes);

@@ -54,11 +54,11 @@ static void open_kernel(struct kernel_run *r, int trial, int rule)
     if (trial % 2) attach_all(&r->net, &rng, 3e-5); /* the others stand on fixed supports */
     r->net.form.coupling = (hf_coupling_settings){1e-9, HF_COUPLING_ACCELERATED, 200};
     const hf_model *m = &r->net.model;
-    ck_assert(m->n_cable <= 600 && m->n_gene <= 100);
+    ck_assert(m->n_cable <= 600 && m->n_variable <= 100);
     ck_assert_int_eq(find_shape(&r->net), HF_OK);
     memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
-    for (int k = 0; k < m->n_gene; k++)
-        r->base_N[k] = r->net.work.tension_N[m->gene_cable[k]];
+    for (int k = 0; k < m->n_variable; k++)
+        r->base_N[k] = r->net.work.tension_N[m->variable_cable[k]];
     r->evaluator = (hf_evaluator){.model = m,
                                   .form = &r->net.form,
                                   .start_q_N_per_m = r->start_q,
@@ -76,8 +76,8 @@ static void fill_lanes(struct kernel_run *r, uint64_t stream)
     struct rng rng = rng_start(stream);
     for (size_t i = 0; i < r->n_x; i++)
         r->lanes.x_m[i] = r->chord.base_m[i / HF_LANES] + rng_uniform(&rng, -0.01, 0.01);
-    for (int i = 0; i < r->net.model.n_gene * HF_LANES; i++)
-        r->lanes.gene[i] = r->base_N[i / HF_LANES] * rng_uniform(&rng, 0.9, 1.1);
+    for (int i = 0; i < r->net.model.n_variable * HF_LANES; i++)
+        r->lanes.variable[i] = r->base_N[i / HF_LANES] * rng_uniform(&rng, 0.9, 1.1);
     for (int i = 0; i < r->chord.n_pull * HF_LANES; i++)
         r->lanes.displacement_m[i] = r->chord.base_displacement_m[i / HF_LANES] + rng_uniform(&rng, -1e-4, 1e-4);
 }

@@ -136,7 +136,7 @@ static void sensitivity(struct run *r, int k, hf_schur *schur, double *dx, doubl
     hf_workspace *w = &r->net.work;
     hf_form_result at;
     double *more = schur->column, pull[3 * MAX_ATTACHMENT] = {0};
-    int e = m->gene_cable[k], n = 3 * m->n_free, band = 3 * m->half_bandwidth + 2;
+    int e = m->variable_cable[k], n = 3 * m->n_free, band = 3 * m->half_bandwidth + 2;
     const int *end = m->end_row + 2 * e;
     ck_assert_int_eq(hf_evaluate(&r->evaluator, r->base_N, w, &at), HF_OK);
     ck_assert_int_eq(hf_newton_matrix_factor(m, w, NULL), HF_OK);
@@ -176,7 +176,7 @@ START_TEST(sensitivities_are_finite_differences)
     double *dx = malloc(3 * n * sizeof *dx), *up = dx + n, *down = up + n, dr[3 * MAX_ATTACHMENT], largest_dx = 0;
     ck_assert_ptr_nonnull(dx);
     ck_assert_int_eq(hf_schur_create(m, &schur), HF_OK);
-    for (int k = 0; k < m->n_gene; k += 5) {
+    for (int k = 0; k < m->n_variable; k += 5) {
         hf_form_result at;
         sensitivity(&r, k, &schur, dx, dr);
         kept = r.base_N[k];
@@ -210,10 +210,10 @@ START_TEST(polished_design_has_no_coupled_slope_left)
 {
     struct run r;
     hf_polish_result result;
-    double lower_N[MAX_GENE], upper_N[MAX_GENE], slope[2][MAX_GENE], step = 1e-5;
+    double lower_N[MAX_VARIABLE], upper_N[MAX_VARIABLE], slope[2][MAX_VARIABLE], step = 1e-5;
     open_designs(&r, _i, 1e-4);
     double range_N = _i == HF_RULE_TENSION ? 0.02 : 1;
-    int n = r.net.model.n_gene, n_free = 0;
+    int n = r.net.model.n_variable, n_free = 0;
     r.net.form.coupling.tof_m = 1e-12;
     r.net.form.residual_tolerance = 1e-11;
     for (int k = 0; k < n; k++) {

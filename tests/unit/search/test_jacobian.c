@@ -105,19 +105,19 @@ START_TEST(derivatives_are_those_of_differences)
     open_problem(&p, _i);
     ck_assert(hf_polish_applies(&p.evaluator));
     ck_assert_int_eq(hf_jacobian_create(&p.evaluator, &j), HF_OK);
-    int n = p.model.n_gene, n_figure = p.goals.n_goal + 1;
+    int n = p.model.n_variable, n_figure = p.goals.n_goal + 1;
     ck_assert_int_eq(j.n_figure, n_figure);
     double *derivative = malloc(sizeof *derivative * (size_t)(n_figure * n)), *design = p.base_N;
     ck_assert(derivative && n > 0);
     for (int k = 0; k < n; k++)
-        design[k] =
-            p.model.gene_cable[k] < 0 ? rng_uniform(&rng, -0.01, 0.01) : design[k] * rng_uniform(&rng, 0.999, 1.001);
+        design[k] = p.model.variable_cable[k] < 0 ? rng_uniform(&rng, -0.01, 0.01)
+                                                  : design[k] * rng_uniform(&rng, 0.999, 1.001);
     measure(&p, design, figure);
     ck_assert_int_eq(hf_jacobian_find(&j, &p.workspace, derivative), HF_OK);
     for (int i = 0; i < n_figure * n; i++)
         largest[i / n] = fmax(largest[i / n], fabs(derivative[i]));
     for (int k = 0; k < n; k++) {
-        difference(&p, design, k, p.model.gene_cable[k] < 0 ? of[_i].step : of[_i].step * design[k], slope);
+        difference(&p, design, k, p.model.variable_cable[k] < 0 ? of[_i].step : of[_i].step * design[k], slope);
         for (int i = 0; i < n_figure; i++) {
             if (is_smooth(&p, i))
                 ck_assert_double_eq_tol(derivative[i * n + k], slope[i], of[_i].tolerance * largest[i]);
@@ -141,7 +141,7 @@ START_TEST(a_goal_that_is_met_has_no_derivative)
     ck_assert_msg(status == HF_OK, "%s", messages.text);
     ck_assert_int_eq(hf_jacobian_create(&p.evaluator, &j), HF_OK);
     double derivative[3 * 64];
-    int n = p.model.n_gene;
+    int n = p.model.n_variable;
     ck_assert_int_le(n, 64);
     ck_assert_int_eq(hf_evaluate(&p.evaluator, p.base_N, &p.workspace, &r), HF_OK);
     ck_assert_int_eq(hf_jacobian_find(&j, &p.workspace, derivative), HF_OK);

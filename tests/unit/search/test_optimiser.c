@@ -5,10 +5,10 @@
 #include <hifdm/optimiser.h>
 #include <string.h>
 
-enum { N_GENE = 2, N = 3, N_GENERATION = 4 };
+enum { N_VARIABLE = 2, N = 3, N_GENERATION = 4 };
 
-static const hf_model model = {.n_gene = N_GENE, .n_leader = N_GENE};
-static const double base_N[N_GENE] = {10, 20};
+static const hf_model model = {.n_variable = N_VARIABLE, .n_leader = N_VARIABLE};
+static const double base_N[N_VARIABLE] = {10, 20};
 static const hf_optimize_settings settings = {
     .population = N, .generations = N_GENERATION, .range_N = 100, .max_tension_N = 100, .stagnation_generations = 100};
 
@@ -30,7 +30,7 @@ static void propose_first(void *state, hf_population *p)
     ck_assert_ptr_eq(state, &calls);
     calls.n_first++;
     for (int i = 0; i < N; i++) {
-        memcpy(p->design_N + i * N_GENE, base_N, sizeof base_N);
+        memcpy(p->design_N + i * N_VARIABLE, base_N, sizeof base_N);
         p->pending[i] = 1;
     }
 }
@@ -46,7 +46,7 @@ static void propose(void *state, const hf_population *now, hf_population *next, 
 {
     ck_assert_ptr_eq(state, &calls);
     ck_assert(now->design_N != next->design_N);
-    for (int k = i * N_GENE; k < (i + 1) * N_GENE; k++)
+    for (int k = i * N_VARIABLE; k < (i + 1) * N_VARIABLE; k++)
         next->design_N[k] = now->design_N[k] - 1;
     next->pending[i] = 1;
 }
@@ -70,9 +70,9 @@ START_TEST(generations_are_asked_for_and_told)
         ck_assert_int_eq(p->generation, n_told);
         for (int i = 0; i < N; i++) {
             ck_assert_int_eq(p->pending[i], 1);
-            ck_assert_double_eq(p->design_N[i * N_GENE], base_N[0] - n_told);
-            p->result[i] =
-                (hf_form_result){.status = HF_OK, .psi_m = p->design_N[i * N_GENE], .merit = p->design_N[i * N_GENE]};
+            ck_assert_double_eq(p->design_N[i * N_VARIABLE], base_N[0] - n_told);
+            p->result[i] = (hf_form_result){
+                .status = HF_OK, .psi_m = p->design_N[i * N_VARIABLE], .merit = p->design_N[i * N_VARIABLE]};
         }
         hf_optimiser_tell(&o);
         n_told++;

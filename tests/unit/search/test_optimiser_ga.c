@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { N_GENE = 6, N_GROUP = 3, N = 20 };
+enum { N_VARIABLE = 6, N_GROUP = 3, N = 20 };
 
-static int group_of[N_GENE] = {0, 0, 1, 1, 2, 2};
-static const hf_model model = {.n_gene = N_GENE, .n_gene_group = N_GROUP, .gene_group = group_of};
-static const double base_N[N_GENE] = {10, 12, 14, 0.4, 20, 29.7};
+static int group_of[N_VARIABLE] = {0, 0, 1, 1, 2, 2};
+static const hf_model model = {.n_variable = N_VARIABLE, .n_variable_group = N_GROUP, .variable_group = group_of};
+static const double base_N[N_VARIABLE] = {10, 12, 14, 0.4, 20, 29.7};
 
 /* METHOD section 7; bounds that cut the ranges of the genes 3 (0.4 - 1 is below 0.1) and 5 (29.7 + 1 is above 30). */
 static const hf_optimize_settings plain = {.population = N,
@@ -41,7 +41,7 @@ static double distance_m(const double *design_N)
 {
     static const double step[N_GROUP] = {0.5, -0.3, 0.2};
     double sum = 0;
-    for (int k = 0; k < N_GENE; k++) {
+    for (int k = 0; k < N_VARIABLE; k++) {
         double d = design_N[k] - (base_N[k] + step[group_of[k]]);
         sum += d * d;
     }
@@ -53,24 +53,24 @@ static void evaluate_pending(hf_optimiser *ga)
     for (int i = 0; i < ga->population.n_individual; i++)
         if (ga->population.pending[i])
             ga->population.result[i] = (hf_form_result){.status = HF_OK,
-                                                        .psi_m = distance_m(ga->population.design_N + i * N_GENE),
-                                                        .merit = distance_m(ga->population.design_N + i * N_GENE)};
+                                                        .psi_m = distance_m(ga->population.design_N + i * N_VARIABLE),
+                                                        .merit = distance_m(ga->population.design_N + i * N_VARIABLE)};
 }
 
 START_TEST(first_generation_surrounds_the_base)
 {
     hf_optimiser ga = create(&plain);
-    double lowest[N_GENE], highest[N_GENE];
+    double lowest[N_VARIABLE], highest[N_VARIABLE];
     ck_assert_mem_eq(ga.population.design_N, base_N, sizeof base_N); /* individual 0 */
-    for (int k = 0; k < N_GENE; k++)
+    for (int k = 0; k < N_VARIABLE; k++)
         lowest[k] = INFINITY, highest[k] = -INFINITY;
     for (int i = 0; i < N; i++) {
-        const double *d = ga.population.design_N + i * N_GENE;
+        const double *d = ga.population.design_N + i * N_VARIABLE;
         ck_assert_int_eq(ga.population.pending[i], 1);
         ck_assert_double_nan(ga.population.crossover_rate[i]);
         ck_assert_int_eq(ga.population.parent[2 * i], -1);
         ck_assert_double_eq_tol(d[0] - base_N[0], d[1] - base_N[1], 1e-14); /* one number for the group (Eq. 13) */
-        for (int k = 0; k < N_GENE; k++) {
+        for (int k = 0; k < N_VARIABLE; k++) {
             ck_assert(d[k] >= fmax(base_N[k] - 1, 0.1) && d[k] <= fmin(base_N[k] + 1, 30));
             lowest[k] = fmin(lowest[k], d[k]), highest[k] = fmax(highest[k], d[k]);
         }
@@ -156,7 +156,7 @@ END_TEST
 START_TEST(every_generation_obeys_the_rules)
 {
     hf_optimiser ga = create(&plain);
-    double *parents = malloc(N * N_GENE * sizeof *parents), best = INFINITY;
+    double *parents = malloc(N * N_VARIABLE * sizeof *parents), best = INFINITY;
     hf_form_result told[N];
     ck_assert_ptr_nonnull(parents);
     for (;;) {
@@ -164,19 +164,19 @@ START_TEST(every_generation_obeys_the_rules)
         hf_optimiser_tell(&ga);
         ck_assert_double_le(ga.population.best_psi_m[ga.population.generation], best); /* elites: never worse */
         best = ga.population.best_psi_m[ga.population.generation];
-        memcpy(parents, ga.population.design_N, N * N_GENE * sizeof *parents);
+        memcpy(parents, ga.population.design_N, N * N_VARIABLE * sizeof *parents);
         memcpy(told, ga.population.result, sizeof told);
         int best_parent = ga.population.best;
         if (!hf_optimiser_next(&ga)) break;
         ck_assert_int_eq(ga.population.parent[0], best_parent);
         for (int i = 0; i < N; i++) {
-            const double *child = ga.population.design_N + i * N_GENE,
-                         *mother = parents + ga.population.parent[2 * i] * N_GENE;
-            int is_equal = !memcmp(child, mother, N_GENE * sizeof *child);
+            const double *child = ga.population.design_N + i * N_VARIABLE,
+                         *mother = parents + ga.population.parent[2 * i] * N_VARIABLE;
+            int is_equal = !memcmp(child, mother, N_VARIABLE * sizeof *child);
             if (i < plain.elites) ck_assert(is_equal);
             ck_assert_int_eq(ga.population.pending[i], !is_equal);
             if (is_equal) ck_assert_double_eq(ga.population.result[i].psi_m, told[ga.population.parent[2 * i]].psi_m);
-            for (int k = 0; k < N_GENE; k++)
+            for (int k = 0; k < N_VARIABLE; k++)
                 ck_assert(child[k] >= fmax(base_N[k] - 1, 0.1) && child[k] <= fmin(base_N[k] + 1, 30));
         }
         ck_assert_double_le(told[ga.population.parent[0]].psi_m,
@@ -196,7 +196,7 @@ END_TEST
 START_TEST(mutations_go_both_ways)
 {
     hf_optimize_settings s = plain;
-    double parents[N * N_GENE];
+    double parents[N * N_VARIABLE];
     int n_up = 0, n_down = 0;
     s.crossover_high = s.crossover_low = 0;
     s.mutation_high = s.mutation_low = 0.3;
@@ -206,9 +206,9 @@ START_TEST(mutations_go_both_ways)
         hf_optimiser_tell(&ga);
         memcpy(parents, ga.population.design_N, sizeof parents);
         if (!hf_optimiser_next(&ga)) break;
-        for (int i = 0; i < N * N_GENE; i++) {
-            int k = i % N_GENE;
-            double was_N = parents[ga.population.parent[2 * (i / N_GENE)] * N_GENE + k];
+        for (int i = 0; i < N * N_VARIABLE; i++) {
+            int k = i % N_VARIABLE;
+            double was_N = parents[ga.population.parent[2 * (i / N_VARIABLE)] * N_VARIABLE + k];
             if (k == 3 || k == 5 || fabs(was_N - base_N[k]) > 0.5) continue; /* a step may be cut at a bound */
             n_up += ga.population.design_N[i] > was_N;
             n_down += ga.population.design_N[i] < was_N;
@@ -299,7 +299,7 @@ START_TEST(nobody_gives_way_to_a_worse_child)
     hf_optimize_settings s = by_difference();
     hf_optimiser ga = create(&s);
     const hf_population *p = &ga.population;
-    double before[N * N_GENE], trial[N];
+    double before[N * N_VARIABLE], trial[N];
     hf_form_result was[N];
     int n_kept = 0, n_new = 0;
     evaluate_pending(&ga);
@@ -311,17 +311,18 @@ START_TEST(nobody_gives_way_to_a_worse_child)
         evaluate_pending(&ga);
         for (int i = 0; i < N; i++) {
             trial[i] = p->result[i].psi_m;
-            ck_assert_double_eq(p->result[i].psi_m, distance_m(p->design_N + i * N_GENE)); /* also where not pending */
+            ck_assert_double_eq(p->result[i].psi_m,
+                                distance_m(p->design_N + i * N_VARIABLE)); /* also where not pending */
         }
         hf_optimiser_tell(&ga);
         for (int i = 0; i < N; i++) {
             bool is_kept = p->parent[2 * i] == i && p->parent[2 * i + 1] == -1;
-            const double *design = p->design_N + i * N_GENE;
+            const double *design = p->design_N + i * N_VARIABLE;
             ck_assert_double_eq(p->trial_psi_m[i], trial[i]);
             ck_assert_double_eq(p->result[i].psi_m, fmin(trial[i], was[i].psi_m));
             ck_assert_int_eq(is_kept, !p->pending[i] || trial[i] > was[i].psi_m);
-            if (is_kept) ck_assert_mem_eq(design, before + i * N_GENE, N_GENE * sizeof *design);
-            for (int k = 0; k < N_GENE; k++)
+            if (is_kept) ck_assert_mem_eq(design, before + i * N_VARIABLE, N_VARIABLE * sizeof *design);
+            for (int k = 0; k < N_VARIABLE; k++)
                 ck_assert(design[k] >= p->lower_N[k] && design[k] <= p->upper_N[k]);
             n_kept += is_kept;
             n_new += !is_kept;
@@ -356,7 +357,7 @@ START_TEST(a_population_outside_its_limits_finds_the_way_in)
     double least = INFINITY;
     do {
         for (int i = 0; i < N; i++) {
-            double far_m = distance_m(p->design_N + i * N_GENE);
+            double far_m = distance_m(p->design_N + i * N_VARIABLE);
             if (!p->pending[i]) continue;
             p->result[i] = (hf_form_result){.status = HF_OK, .psi_m = 1 + far_m, .merit = 1 + far_m};
             if (far_m > 0.05)

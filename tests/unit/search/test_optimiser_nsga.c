@@ -8,14 +8,18 @@
 #include <math.h>
 #include <string.h>
 
-enum { N_GENE = 6, N_GROUP = 3, N = 40 };
+enum { N_VARIABLE = 6, N_GROUP = 3, N = 40 };
 
-static int group_of[N_GENE] = {0, 0, 1, 1, 2, 2};
-static int leader_of[N_GENE] = {0, 1, 2, 3, 0, 5};
-static const hf_model free_genes = {.n_gene = N_GENE, .n_gene_group = N_GROUP, .gene_group = group_of};
-static const hf_model linked_genes = {
-    .n_gene = N_GENE, .n_gene_group = N_GROUP, .gene_group = group_of, .gene_leader = leader_of, .n_leader = 5};
-static const double base_N[N_GENE] = {10, 12, 14, 10, 20, 15};
+static int group_of[N_VARIABLE] = {0, 0, 1, 1, 2, 2};
+static int leader_of[N_VARIABLE] = {0, 1, 2, 3, 0, 5};
+static const hf_model free_variables = {
+    .n_variable = N_VARIABLE, .n_variable_group = N_GROUP, .variable_group = group_of};
+static const hf_model linked_genes = {.n_variable = N_VARIABLE,
+                                      .n_variable_group = N_GROUP,
+                                      .variable_group = group_of,
+                                      .variable_leader = leader_of,
+                                      .n_leader = 5};
+static const double base_N[N_VARIABLE] = {10, 12, 14, 10, 20, 15};
 static const hf_optimize_settings plain = {.population = N,
                                            .generations = 100,
                                            .range_N = 1,
@@ -40,8 +44,8 @@ static hf_optimiser create(const hf_optimize_settings *settings, const hf_model 
 static double square(const double *design_N, double step)
 {
     double sum = 0;
-    for (int k = 0; k < N_GENE; k++)
-        sum += (design_N[k] - base_N[k] - step) * (design_N[k] - base_N[k] - step) / N_GENE;
+    for (int k = 0; k < N_VARIABLE; k++)
+        sum += (design_N[k] - base_N[k] - step) * (design_N[k] - base_N[k] - step) / N_VARIABLE;
     return sum;
 }
 
@@ -68,7 +72,7 @@ static void evaluate(hf_optimiser *o, objectives *f)
         hf_form_result *r = &o->population.result[i];
         if (!o->population.pending[i]) continue;
         *r = (hf_form_result){.status = HF_OK, .psi_m = 1, .merit = 1};
-        f(o->population.design_N + i * N_GENE, r);
+        f(o->population.design_N + i * N_VARIABLE, r);
     }
 }
 
@@ -109,7 +113,7 @@ START_TEST(known_fronts_are_covered)
     for (int seed = 1; seed <= 3; seed++) {
         hf_optimize_settings s = plain;
         s.seed = (uint64_t)seed;
-        hf_optimiser in = create(&s, &free_genes), out = create(&s, &free_genes);
+        hf_optimiser in = create(&s, &free_variables), out = create(&s, &free_variables);
         ck_assert_double_ge(evolve(&in, inwards, one), 0.98 * 5 / 6);
         ck_assert_double_le(volume_of(&in.population, one), 5.0 / 6);
         ck_assert_double_ge(evolve(&out, outwards, one), 0.95 * bent);
@@ -126,7 +130,7 @@ static void triangle(const double *design_N, hf_form_result *r)
 {
     for (int j = 0; j < 3; j++) {
         r->goal[j] = 0;
-        for (int k = 0; k < N_GENE; k++)
+        for (int k = 0; k < N_VARIABLE; k++)
             r->goal[j] += pow(design_N[k] - base_N[k] - (group_of[k] == j ? 0.5 : 0), 2);
     }
 }
@@ -151,7 +155,7 @@ START_TEST(fronts_of_three_objectives_are_surfaces)
     static const double reference[3] = {1.1, 1.1, 1.1};
     hf_optimize_settings s = plain;
     s.n_objective = 3;
-    hf_optimiser o = create(&s, &free_genes);
+    hf_optimiser o = create(&s, &free_variables);
     ck_assert_double_ge(evolve(&o, triangle, reference), 0.83 * volume_of_triangle(reference));
     hf_optimiser_free(&o);
 }
@@ -159,13 +163,13 @@ END_TEST
 
 static bool is_same_design(const hf_population *a, int i, const hf_population *b, int k)
 {
-    return !memcmp(a->design_N + i * N_GENE, b->design_N + k * N_GENE, N_GENE * sizeof(double));
+    return !memcmp(a->design_N + i * N_VARIABLE, b->design_N + k * N_VARIABLE, N_VARIABLE * sizeof(double));
 }
 
 /* Nobody lives on twice, all who live on are at a place of their own, and the ends of the front are never lost. */
 START_TEST(every_generation_keeps_the_rules)
 {
-    const hf_model *const models[] = {&free_genes, &linked_genes};
+    const hf_model *const models[] = {&free_variables, &linked_genes};
     hf_optimiser o = create(&plain, models[_i]);
     hf_population *p = &o.population, *before = &o.next;
     double least[2] = {INFINITY, INFINITY};
@@ -176,9 +180,10 @@ START_TEST(every_generation_keeps_the_rules)
         for (int i = 0; i < N; i++) {
             for (int k = 0; k < i && p->generation > 0; k++)
                 ck_assert(!is_same_design(p, i, p, k));
-            for (int k = 0; k < N_GENE; k++)
-                ck_assert(fabs(p->design_N[i * N_GENE + k] - base_N[k]) <= 1 + 1e-12);
-            if (_i) ck_assert_double_eq_tol(p->design_N[i * N_GENE + 4] - 20, p->design_N[i * N_GENE] - 10, 1e-12);
+            for (int k = 0; k < N_VARIABLE; k++)
+                ck_assert(fabs(p->design_N[i * N_VARIABLE + k] - base_N[k]) <= 1 + 1e-12);
+            if (_i)
+                ck_assert_double_eq_tol(p->design_N[i * N_VARIABLE + 4] - 20, p->design_N[i * N_VARIABLE] - 10, 1e-12);
             for (int j = 0; j < 2; j++)
                 now[j] = fmin(now[j], p->result[i].goal[j]);
             int kept = p->parent[2 * i];
@@ -200,7 +205,7 @@ END_TEST
 /* As after a kill: another optimiser with a copy of the population, asked in another order. */
 START_TEST(proposals_depend_on_the_population_alone)
 {
-    hf_optimiser a = create(&plain, &free_genes), b = create(&plain, &free_genes);
+    hf_optimiser a = create(&plain, &free_variables), b = create(&plain, &free_variables);
     for (int g = 0; g < 5; g++) {
         evaluate(&a, inwards);
         hf_optimiser_tell(&a);
@@ -208,7 +213,7 @@ START_TEST(proposals_depend_on_the_population_alone)
     }
     evaluate(&a, inwards);
     hf_optimiser_tell(&a);
-    memcpy(b.population.design_N, a.population.design_N, N * N_GENE * sizeof(double));
+    memcpy(b.population.design_N, a.population.design_N, N * N_VARIABLE * sizeof(double));
     memcpy(b.population.result, a.population.result, N * sizeof(hf_form_result));
     b.population.generation = a.population.generation;
     b.is_fresh = false;
@@ -217,7 +222,7 @@ START_TEST(proposals_depend_on_the_population_alone)
     for (int i = N - 1; i >= 0; i--)
         hf_optimiser_propose(&b, i);
     hf_optimiser_end(&b);
-    ck_assert_mem_eq(a.population.design_N, b.population.design_N, N * N_GENE * sizeof(double));
+    ck_assert_mem_eq(a.population.design_N, b.population.design_N, N * N_VARIABLE * sizeof(double));
     ck_assert_mem_eq(a.population.pending, b.population.pending, N);
     hf_optimiser_free(&a);
     hf_optimiser_free(&b);
@@ -237,7 +242,7 @@ static void far_away(const double *design_N, hf_form_result *r)
 START_TEST(a_population_outside_its_limits_finds_its_way_in)
 {
     static const double reference[3] = {4, 1, 1};
-    hf_optimiser o = create(&plain, &free_genes);
+    hf_optimiser o = create(&plain, &free_variables);
     evaluate(&o, far_away);
     hf_optimiser_tell(&o);
     ck_assert_int_eq(o.population.best, -1);
@@ -252,13 +257,13 @@ END_TEST
 /* Without a shape anywhere, and with an objective that is not a number although the status is ok. */
 START_TEST(nothing_to_begin_from_is_no_fault)
 {
-    hf_optimiser o = create(&plain, &free_genes);
+    hf_optimiser o = create(&plain, &free_variables);
     for (int i = 0; i < N; i++)
         o.population.result[i] = (hf_form_result){.status = HF_COLLAPSED, .psi_m = NAN, .merit = NAN};
     hf_optimiser_tell(&o);
     ck_assert_int_eq(o.population.stop_reason, HF_POPULATION_ALL_INFEASIBLE);
     hf_optimiser_free(&o);
-    o = create(&plain, &free_genes);
+    o = create(&plain, &free_variables);
     evaluate(&o, inwards);
     for (int i = 1; i < N; i++)
         o.population.result[i].goal[i % 2] = NAN;

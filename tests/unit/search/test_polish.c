@@ -10,12 +10,12 @@
 
 struct polish_run {
     struct run r;
-    double lower_N[MAX_GENE], upper_N[MAX_GENE];
+    double lower_N[MAX_VARIABLE], upper_N[MAX_VARIABLE];
 };
 
 static void set_bounds(struct polish_run *p, double range_N)
 {
-    for (int k = 0; k < p->r.net.model.n_gene; k++) {
+    for (int k = 0; k < p->r.net.model.n_variable; k++) {
         p->lower_N[k] = fmax(p->r.base_N[k] - range_N, 1e-3);
         p->upper_N[k] = p->r.base_N[k] + range_N;
     }
@@ -51,7 +51,7 @@ static double psi_of(struct polish_run *p, const double *design_N)
 
 static void assert_within_bounds(const struct polish_run *p, const double *design_N)
 {
-    for (int k = 0; k < p->r.net.model.n_gene; k++) {
+    for (int k = 0; k < p->r.net.model.n_variable; k++) {
         ck_assert_double_ge(design_N[k], p->lower_N[k]);
         ck_assert_double_le(design_N[k], p->upper_N[k]);
     }
@@ -107,8 +107,8 @@ START_TEST(optimum_has_no_slope_left)
         open_small(&p, _i, 0.02);
     else
         open_chen(&p, 1);
-    int n = p.r.net.model.n_gene, n_free = 0;
-    double slope[2][MAX_GENE], step = 1e-5, *design_N = p.r.base_N;
+    int n = p.r.net.model.n_variable, n_free = 0;
+    double slope[2][MAX_VARIABLE], step = 1e-5, *design_N = p.r.base_N;
     for (int when = 0; when < 2; when++) {
         if (when) ck_assert_int_eq(polish(&p, 300, design_N, &result), HF_OK);
         for (int k = 0; k < n; k++) {
@@ -167,7 +167,7 @@ START_TEST(ratio_cap_is_kept)
     struct polish_run p;
     hf_polish_result open, capped;
     hf_form_result end;
-    double design_N[MAX_GENE];
+    double design_N[MAX_VARIABLE];
     open_chen(&p, 400);
     for (int has_cap = 0; has_cap < 2; has_cap++) {
         p.r.evaluator.boundary_ratio_cap = has_cap ? 5 : 1e9;
@@ -189,19 +189,19 @@ START_TEST(infeasible_start_is_told)
 {
     struct polish_run p;
     hf_polish_result result;
-    double kept[MAX_GENE];
+    double kept[MAX_VARIABLE];
     open_small(&p, HF_RULE_TENSION, 1);
     p.r.base_N[0] *= 50;
     memcpy(kept, p.r.base_N, sizeof kept);
     ck_assert_int_eq(polish(&p, 20, p.r.base_N, &result), HF_COLLAPSED);
-    ck_assert_mem_eq(kept, p.r.base_N, (size_t)p.r.net.model.n_gene * sizeof *kept); /* untouched */
+    ck_assert_mem_eq(kept, p.r.base_N, (size_t)p.r.net.model.n_variable * sizeof *kept); /* untouched */
     ck_assert_int_eq(result.iterations, 0);
     p.r.evaluator.boundary_ratio_cap = 1 + 1e-9;
     memcpy(p.r.base_N, design(&p.r, 0), sizeof kept);
     ck_assert_int_eq(
         hf_polish_run(&p.r.evaluator, design(&p.r, 0), design(&p.r, 0), 20, NULL, p.r.base_N, &p.r.net.work, &result),
         HF_RATIO_CAP);
-    ck_assert_mem_eq(p.r.base_N, design(&p.r, 0), (size_t)p.r.net.model.n_gene * sizeof *kept); /* no way in */
+    ck_assert_mem_eq(p.r.base_N, design(&p.r, 0), (size_t)p.r.net.model.n_variable * sizeof *kept); /* no way in */
     close_net(&p.r.net);
 }
 END_TEST
@@ -240,7 +240,7 @@ START_TEST(after_the_ga_the_same_optimum)
                      ga.population.result);
         hf_optimiser_tell(&ga);
     } while (hf_optimiser_next(&ga));
-    double *best_N = ga.population.design_N + ga.population.best * ga.population.n_gene,
+    double *best_N = ga.population.design_N + ga.population.best * ga.population.n_variable,
            best_m = ga.population.result[ga.population.best].psi_m;
     ck_assert_int_eq(polish(&p, 200, best_N, &from_ga), HF_OK);
     ck_assert_int_eq(polish(&p, 200, p.r.base_N, &from_base), HF_OK);
@@ -292,7 +292,7 @@ static hf_polish_result watch_polish(struct polish_run *p, const double *start, 
                                      double *end)
 {
     hf_polish_result result;
-    memcpy(end, start, (size_t)p->r.net.model.n_gene * sizeof *end);
+    memcpy(end, start, (size_t)p->r.net.model.n_variable * sizeof *end);
     ck_assert_int_eq(hf_polish_run(&p->r.evaluator, p->lower_N, p->upper_N, 40, watcher, end, &p->r.net.work, &result),
                      HF_OK);
     return result;
@@ -302,7 +302,7 @@ static void open_for_steps(struct polish_run *p, int i)
 {
     if (i == 2) {
         open_small(p, HF_RULE_TENSION, 1);
-        memcpy(p->r.base_N, design(&p->r, 0), (size_t)p->r.net.model.n_gene * sizeof(double));
+        memcpy(p->r.base_N, design(&p->r, 0), (size_t)p->r.net.model.n_variable * sizeof(double));
         p->r.evaluator.boundary_ratio_cap = 1 + 1e-9; /* far off */
     } else {
         open_chen(p, i == 1 ? 400 : 1);
@@ -315,11 +315,11 @@ static void open_for_steps(struct polish_run *p, int i)
 START_TEST(goes_on_from_any_step_to_the_same_bits)
 {
     struct polish_run p;
-    double end_N[MAX_GENE], again_N[MAX_GENE];
+    double end_N[MAX_VARIABLE], again_N[MAX_VARIABLE];
     struct trace trace = {0};
     const hf_polish_watcher watcher = {.after = note_state, .context = &trace};
     open_for_steps(&p, _i);
-    size_t size = (size_t)p.r.net.model.n_gene * sizeof(double);
+    size_t size = (size_t)p.r.net.model.n_variable * sizeof(double);
     const hf_polish_result whole = watch_polish(&p, p.r.base_N, &watcher, end_N);
     ck_assert_int_eq(trace.n, whole.iterations + 1);
     ck_assert_int_ge(trace.n, 4);
@@ -350,10 +350,10 @@ START_TEST(its_watcher_ends_it)
     struct polish_run p;
     hf_polish_result result;
     int iterations = 0;
-    double start_N[MAX_GENE];
+    double start_N[MAX_VARIABLE];
     const hf_polish_watcher watcher = {.after = end_at_two, .context = &iterations};
     open_chen(&p, 1);
-    size_t size = (size_t)p.r.net.model.n_gene * sizeof(double);
+    size_t size = (size_t)p.r.net.model.n_variable * sizeof(double);
     memcpy(start_N, p.r.base_N, size);
     ck_assert_int_eq(
         hf_polish_run(&p.r.evaluator, p.lower_N, p.upper_N, 40, &watcher, p.r.base_N, &p.r.net.work, &result), HF_IO);
@@ -380,14 +380,14 @@ START_TEST(the_start_stays_when_the_end_is_worse)
     struct polish_run p;
     hf_polish_result result;
     hf_form_result start;
-    double start_N[MAX_GENE];
+    double start_N[MAX_VARIABLE];
     open_chen(&p, 1);
     const hf_model *m = &p.r.net.model;
     const hf_polish_watcher watcher = {.after = shift_target, .context = &p.r.net.model};
-    memcpy(start_N, p.r.base_N, (size_t)m->n_gene * sizeof(double));
+    memcpy(start_N, p.r.base_N, (size_t)m->n_variable * sizeof(double));
     ck_assert_int_eq(
         hf_polish_run(&p.r.evaluator, p.lower_N, p.upper_N, 3, &watcher, p.r.base_N, &p.r.net.work, &result), HF_OK);
-    ck_assert_mem_eq(start_N, p.r.base_N, (size_t)m->n_gene * sizeof(double));
+    ck_assert_mem_eq(start_N, p.r.base_N, (size_t)m->n_variable * sizeof(double));
     ck_assert_int_eq(result.stop, HF_POLISH_STALLED);
     double *end_m = malloc(3 * (size_t)m->n_node * sizeof *end_m);
     ck_assert_ptr_nonnull(end_m);

@@ -5,12 +5,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { N_GENE = 3, N = 4, N_GENERATION = 5 };
+enum { N_VARIABLE = 3, N = 4, N_GENERATION = 5 };
 
-static int leader[N_GENE] = {0, 1, 0};
-static const hf_model free_model = {.n_gene = N_GENE, .n_leader = N_GENE};
-static const hf_model linked_model = {.n_gene = N_GENE, .n_leader = 2, .gene_leader = leader};
-static const double base_N[N_GENE] = {10, 20, 1.5};
+static int leader[N_VARIABLE] = {0, 1, 0};
+static const hf_model free_model = {.n_variable = N_VARIABLE, .n_leader = N_VARIABLE};
+static const hf_model linked_model = {.n_variable = N_VARIABLE, .n_leader = 2, .variable_leader = leader};
+static const double base_N[N_VARIABLE] = {10, 20, 1.5};
 static const hf_optimize_settings settings = {.population = N,
                                               .generations = N_GENERATION,
                                               .range_N = 1,
@@ -28,8 +28,8 @@ START_TEST(bounds_are_the_range_within_the_limits)
 {
     hf_population p, next;
     open_population(&free_model, &p, &next);
-    static const double lower[N_GENE] = {9, 19, 1}, upper[N_GENE] = {11, 20.25, 2.5};
-    for (int k = 0; k < N_GENE; k++) {
+    static const double lower[N_VARIABLE] = {9, 19, 1}, upper[N_VARIABLE] = {11, 20.25, 2.5};
+    for (int k = 0; k < N_VARIABLE; k++) {
         ck_assert_double_eq(p.base_N[k], base_N[k]);
         ck_assert_double_eq(p.lower_N[k], lower[k]);
         ck_assert_double_eq(p.upper_N[k], upper[k]);
@@ -37,7 +37,7 @@ START_TEST(bounds_are_the_range_within_the_limits)
         ck_assert_double_eq(hf_population_clamp(&p, k, 100), upper[k]);
         ck_assert_double_eq(hf_population_clamp(&p, k, base_N[k]), base_N[k]);
     }
-    for (int i = 0; i < N * N_GENE; i++)
+    for (int i = 0; i < N * N_VARIABLE; i++)
         ck_assert_double_eq(p.design_N[i], 0);
     ck_assert_int_eq(p.generation, 0);
     ck_assert_int_eq(p.best, -1);
@@ -58,7 +58,7 @@ START_TEST(linked_genes_share_step_and_bounds)
     ck_assert_double_eq(p.upper_N[0], 11);
     ck_assert_double_eq(p.upper_N[2], 2.5);
     ck_assert_double_eq(p.lower_N[1], 19);
-    double design_N[N_GENE] = {10.75, 19.5, 7};
+    double design_N[N_VARIABLE] = {10.75, 19.5, 7};
     hf_population_link(&p, &linked_model, design_N);
     ck_assert_double_eq(design_N[0], 10.75);
     ck_assert_double_eq(design_N[1], 19.5);

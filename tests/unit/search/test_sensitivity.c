@@ -6,7 +6,7 @@
 #include "net/variables.h"
 #include "search/residuals.h"
 
-enum { N_VARY = HF_VARY_SUPPORT_XYZ + 1, MAX_CABLE = 80, MAX_GENE = 80, MAX_ROW = 2400, MAX_TRIED = 8 };
+enum { N_VARY = HF_VARY_SUPPORT_XYZ + 1, MAX_CABLE = 80, MAX_VARIABLE = 80, MAX_ROW = 2400, MAX_TRIED = 8 };
 #define STIFFNESS_N 2e4
 #define MOVE_M 3e-4 /* of the node that a step moves most: differences of order 4 are off by some (MOVE_M/l)^4 */
 #define AGREEMENT 1e-7
@@ -18,7 +18,7 @@ struct designed {
     hf_goals goals;
     hf_evaluator evaluator;
     hf_sensitivity slopes;
-    double EA[MAX_CABLE], start_q[MAX_CABLE], base[MAX_GENE];
+    double EA[MAX_CABLE], start_q[MAX_CABLE], base[MAX_VARIABLE];
 };
 
 /* What each kind of variable is tried on: a small double net has ties of law length, rear cables of law elastic, a
@@ -89,7 +89,7 @@ static void open_designed(struct designed *d, hf_vary vary, hf_link link, bool o
     hf_messages messages = {0};
     struct rng rng = rng_start(5);
     struct net *net = &d->net;
-    hf_optimize_settings s = {.n_variable = 1, .n_goal = N_WANTED};
+    hf_optimize_settings s = {.n_variable_row = 1, .n_goal = N_WANTED};
     OPEN_CASE(net, "configs/paraboloid-6m.yaml", "scene.paraboloid.rings=2", "surface.frequencies_Hz=[0.3e9]",
               "surface.pattern.n_theta=3");
     net->form = tight_form(HF_METHOD_NEWTON);
@@ -98,8 +98,8 @@ static void open_designed(struct designed *d, hf_vary vary, hf_link link, bool o
     ck_assert_int_eq(hf_config_surface(&net->settings, &net->scene, &d->surface, &messages), HF_OK);
     ck_assert_int_eq(hf_facets_find(&net->scene, &d->surface, &d->facets), HF_OK);
     mix_laws(d);
-    s.variable[0] = (hf_variable_settings){.vary = vary, .range = 1, .range_ratio = NAN, .link = link};
-    snprintf(s.variable[0].set, sizeof s.variable[0].set, "%s", set_of[vary]);
+    s.variable_row[0] = (hf_variable_settings){.vary = vary, .range = 1, .range_ratio = NAN, .link = link};
+    snprintf(s.variable_row[0].set, sizeof s.variable_row[0].set, "%s", set_of[vary]);
     _Static_assert(N_WANTED <= HF_DESIGN_ROWS_MAX, "all goals at once");
     memcpy(s.goal, wanted + on_truss, N_WANTED * sizeof *wanted);
     hf_status status = hf_variables_apply(&net->scene, &s, &d->surface, &net->model, &messages);
@@ -126,11 +126,11 @@ static void start(struct designed *d, bool by_density)
                                   .goals = &d->goals,
                                   .by_density = by_density};
     ck_assert_int_eq(hf_evaluate_form(m, &d->net.form, w, NULL, &d->net.result), HF_OK);
-    ck_assert(m->n_gene > 0 && m->n_gene <= MAX_GENE);
+    ck_assert(m->n_variable > 0 && m->n_variable <= MAX_VARIABLE);
     memcpy(d->start_q, w->q_N_per_m, (size_t)m->n_cable * sizeof(double));
     hf_variables_read(m, w->q_N_per_m, w->tension_N, w->length_m, d->base);
-    for (int k = 0; k < m->n_gene && by_density && hf_model_vary(m, k) == HF_VARY_TENSION; k++)
-        d->base[k] *= hf_evaluate_divisor(&d->evaluator, k) / w->length_m[m->gene_cable[k]];
+    for (int k = 0; k < m->n_variable && by_density && hf_model_vary(m, k) == HF_VARY_TENSION; k++)
+        d->base[k] *= hf_evaluate_divisor(&d->evaluator, k) / w->length_m[m->variable_cable[k]];
     ck_assert_int_eq(hf_evaluate_attend(&d->evaluator, w), HF_OK);
     ck_assert_int_eq(hf_sensitivity_create(&d->evaluator, &d->slopes), HF_OK);
 }
@@ -150,9 +150,9 @@ static void residuals_at(struct designed *d, int i, double step, double *residua
 {
     const hf_model *m = &d->net.model;
     hf_form_result result;
-    double design[MAX_GENE];
-    for (int k = 0; k < m->n_gene; k++)
-        design[k] = d->base[k] + (d->slopes.variable_of_gene[k] == i ? step : 0);
+    double design[MAX_VARIABLE];
+    for (int k = 0; k < m->n_variable; k++)
+        design[k] = d->base[k] + (d->slopes.class_of_variable[k] == i ? step : 0);
     ck_assert_int_eq(hf_evaluate(&d->evaluator, design, &d->net.work, &result), HF_OK);
     ck_assert_int_eq(hf_goals_linearise(&d->goals, &d->net.work, d->net.work.goals, residual), HF_OK);
 }
@@ -225,8 +225,8 @@ START_TEST(every_pair_agrees_with_differences)
              on_truss ? ", truss" : "", by_density ? ", as densities" : "");
     open_designed(&d, vary, by_set ? HF_LINK_SET : HF_LINK_EACH, on_truss);
     start(&d, by_density);
-    ck_assert_int_eq(d.slopes.n, !by_set ? d.net.model.n_gene : vary == HF_VARY_SUPPORT_XYZ ? 3 : 1);
-    ck_assert_int_gt(d.net.model.n_gene, 3);
+    ck_assert_int_eq(d.slopes.n, !by_set ? d.net.model.n_variable : vary == HF_VARY_SUPPORT_XYZ ? 3 : 1);
+    ck_assert_int_gt(d.net.model.n_variable, 3);
     assert_derivatives(&d, what);
     close_designed(&d);
 }

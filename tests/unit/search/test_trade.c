@@ -7,14 +7,14 @@
 #include "search/trade.h"
 #include <hifdm/problem.h>
 
-enum { MAX_CABLE = 8, MAX_GENE = 4, MAX_GENE_OF_CASE = 200 };
+enum { MAX_CABLE = 8, MAX_VARIABLE = 4, MAX_VARIABLE_OF_CASE = 200 };
 static int failed_end;
 
 struct traded {
     struct net net;
     hf_goals goals;
     hf_evaluator evaluator;
-    double start_q[MAX_CABLE], base[MAX_GENE], lower[MAX_GENE], upper[MAX_GENE];
+    double start_q[MAX_CABLE], base[MAX_VARIABLE], lower[MAX_VARIABLE], upper[MAX_VARIABLE];
     hf_front front;
 };
 
@@ -36,14 +36,14 @@ static void follow(struct traded *t, int n_objective, const hf_goal_settings *ob
                    double upper, int n_point)
 {
     hf_messages messages = {0};
-    hf_optimize_settings s = {.n_objective = n_objective, .n_variable = 1};
+    hf_optimize_settings s = {.n_objective = n_objective, .n_variable_row = 1};
     for (int k = 0; k < n_objective; k++)
         s.objective[k] = objective[k];
     hf_workspace *w = &t->net.work;
     hf_model *m = &t->net.model;
-    s.variable[0] = (hf_variable_settings){
+    s.variable_row[0] = (hf_variable_settings){
         .vary = HF_VARY_FORCE_DENSITY, .range = NAN, .range_ratio = NAN, .lower = lower, .upper = upper};
-    snprintf(s.variable[0].set, sizeof s.variable[0].set, "%s", set);
+    snprintf(s.variable_row[0].set, sizeof s.variable_row[0].set, "%s", set);
     t->net.form.residual_tolerance = t->net.form.length_tolerance = 1e-13;
     ck_assert_int_eq(hf_variables_apply(&t->net.scene, &s, NULL, m, &messages), HF_OK);
     hf_model_want_newton(m);
@@ -54,7 +54,7 @@ static void follow(struct traded *t, int n_objective, const hf_goal_settings *ob
     ck_assert_int_eq(find_shape(&t->net), HF_OK);
     memcpy(t->start_q, w->q_N_per_m, (size_t)m->n_cable * sizeof(double));
     hf_variables_read(m, w->q_N_per_m, w->tension_N, w->length_m, t->base);
-    for (int k = 0; k < m->n_gene; k++) {
+    for (int k = 0; k < m->n_variable; k++) {
         t->lower[k] = lower;
         t->upper[k] = upper;
     }
@@ -375,7 +375,7 @@ START_TEST(without_memory_there_is_no_front)
             ck_assert_int_eq(front.n_point, 0);
         else
             ck_assert_mem_eq(front.design, t.front.design,
-                             (size_t)front.n_point * (size_t)front.n_gene * sizeof(double));
+                             (size_t)front.n_point * (size_t)front.n_variable * sizeof(double));
         hf_front_free(&front);
         n_failed += has_failed;
     }
@@ -395,7 +395,7 @@ static void open_chen(hf_problem *p, const char *objectives)
 
 static void bound(const hf_problem *p, double *lower, double *upper)
 {
-    for (int k = 0; k < p->model.n_gene; k++) {
+    for (int k = 0; k < p->model.n_variable; k++) {
         lower[k] = fmax(p->base_N[k] - 1, 0.1);
         upper[k] = p->base_N[k] + 1;
     }
@@ -412,7 +412,7 @@ static void follow_problem(hf_problem *p, int n_point, int n_thread, hf_front *f
 {
     int told = 0;
     hf_trade_watcher watcher = {.tell = note_points, .context = &told, .is_telling = ATOMIC_FLAG_INIT};
-    double lower[MAX_GENE_OF_CASE], upper[MAX_GENE_OF_CASE];
+    double lower[MAX_VARIABLE_OF_CASE], upper[MAX_VARIABLE_OF_CASE];
     bound(p, lower, upper);
     const hf_trade trade = {.evaluator = &p->evaluator,
                             .lower = lower,
@@ -430,11 +430,11 @@ static void follow_problem(hf_problem *p, int n_point, int n_thread, hf_front *f
 /* The least of objective 0 where the others are at most this, from that design. */
 static double least_beside(hf_problem *p, const double most[HF_OBJECTIVES_MAX], const double *from)
 {
-    double design[MAX_GENE_OF_CASE], lower[MAX_GENE_OF_CASE], upper[MAX_GENE_OF_CASE];
+    double design[MAX_VARIABLE_OF_CASE], lower[MAX_VARIABLE_OF_CASE], upper[MAX_VARIABLE_OF_CASE];
     bound(p, lower, upper);
     const hf_watch_trade trade = {0, most};
     hf_polish_result r;
-    memcpy(design, from, (size_t)p->model.n_gene * sizeof *design);
+    memcpy(design, from, (size_t)p->model.n_variable * sizeof *design);
     ck_assert_int_eq(hf_polish_trade(&p->evaluator, lower, upper, 200, &trade, NULL, design, &p->workspace, &r), HF_OK);
     return r.merit;
 }
@@ -454,7 +454,7 @@ START_TEST(points_are_even_and_slopes_those_of_differences)
     hf_front front;
     double longest = 0, shortest = INFINITY;
     open_chen(&p, traded[_i]);
-    ck_assert_int_le(p.model.n_gene, MAX_GENE_OF_CASE);
+    ck_assert_int_le(p.model.n_variable, MAX_VARIABLE_OF_CASE);
     follow_problem(&p, N_POINT, 1, &front);
     ck_assert_int_eq(front.n_point, N_POINT);
     const hf_front_point *a = front.point, *z = a + N_POINT - 1;
@@ -469,8 +469,8 @@ START_TEST(points_are_even_and_slopes_those_of_differences)
     ck_assert_double_lt(longest, 6 * shortest);
     for (int i = 1; i < N_POINT - 1; i += 3) {
         double step = 1e-5 * (a->objective[1] - z->objective[1]), at = a[i].objective[1];
-        const double *design = front.design + (size_t)i * (size_t)front.n_gene;
-        const double *last = front.design + (size_t)(N_POINT - 1) * (size_t)front.n_gene;
+        const double *design = front.design + (size_t)i * (size_t)front.n_variable;
+        const double *last = front.design + (size_t)(N_POINT - 1) * (size_t)front.n_variable;
         double more = least_beside(&p, (const double[]){INFINITY, at + step, INFINITY}, design);
         double less = least_beside(&p, (const double[]){INFINITY, at - step, INFINITY}, last);
         double slope = (less - more) / (2 * step);
@@ -521,7 +521,7 @@ START_TEST(slopes_of_three_are_those_of_differences)
             for (int side = 0; side < 2; side++) {
                 double most[] = {INFINITY, a->objective[1], a->objective[2]};
                 most[k] += side ? step : -step;
-                least[side] = least_beside(&p, most, front.design + (size_t)i * (size_t)front.n_gene);
+                least[side] = least_beside(&p, most, front.design + (size_t)i * (size_t)front.n_variable);
             }
             double slope = (least[0] - least[1]) / (2 * step);
             ck_assert_msg(fabs(a->multiplier[k] - slope) < 1e-2 * slope, "point %d: %g, by differences %g", i,
@@ -542,7 +542,7 @@ START_TEST(threads_do_not_change_a_bit)
     follow_problem(&p, _i ? 12 : 9, 1, &one);
     follow_problem(&p, _i ? 12 : 9, 2, &two);
     ck_assert_int_eq(one.n_point, two.n_point);
-    ck_assert_mem_eq(one.design, two.design, (size_t)one.n_point * (size_t)one.n_gene * sizeof(double));
+    ck_assert_mem_eq(one.design, two.design, (size_t)one.n_point * (size_t)one.n_variable * sizeof(double));
     for (int i = 0; i < one.n_point; i++) {
         ck_assert_mem_eq(one.point[i].objective, two.point[i].objective, sizeof one.point[i].objective);
         ck_assert_mem_eq(&one.point[i].multiplier[1], &two.point[i].multiplier[1], (size_t)(_i + 1) * sizeof(double));

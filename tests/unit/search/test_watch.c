@@ -4,7 +4,7 @@
 #include "search/polish_problem.h"
 #include <hifdm/problem.h>
 
-enum { MAX_GENE = 200, MAX_VARIABLE = MAX_GENE + 1 };
+enum { MAX_VARIABLE = 200, MAX_COLUMN = MAX_VARIABLE + 1 };
 
 static const struct {
     const char *file, *key, *goal; /* what stands under optimize beside it */
@@ -33,7 +33,7 @@ enum { N_KIND = sizeof kind / sizeof *kind };
 
 struct watched {
     hf_problem problem;
-    double lower[MAX_GENE], upper[MAX_GENE];
+    double lower[MAX_VARIABLE], upper[MAX_VARIABLE];
     hf_watch_trade trade;
     hf_polish_problem polish;
     hf_arena arena;
@@ -48,8 +48,8 @@ static void open_watched(struct watched *t, int i)
     ck_assert_msg(hf_problem_open(source_path(kind[i].file), set, 4, 1, &t->problem, &messages) == HF_OK, "%s",
                   messages.text);
     hf_problem *p = &t->problem;
-    ck_assert_int_le(p->model.n_gene, MAX_GENE);
-    for (int k = 0; k < p->model.n_gene; k++) {
+    ck_assert_int_le(p->model.n_variable, MAX_VARIABLE);
+    for (int k = 0; k < p->model.n_variable; k++) {
         t->lower[k] = p->base_N[k] - 0.5;
         t->upper[k] = p->base_N[k] + 0.5;
     }
@@ -76,17 +76,17 @@ static void close_watched(struct watched *t)
 }
 
 /* A step of about this size, relative to the values of the variables. */
-static void draw_step(const hf_polish_problem *p, struct rng *rng, double size, double x[MAX_VARIABLE])
+static void draw_step(const hf_polish_problem *p, struct rng *rng, double size, double x[MAX_COLUMN])
 {
     for (int j = 0; j < p->n; j++)
         x[j] = rng_uniform(rng, -size, size) * p->unit[j];
     x[p->n] = 0;
 }
 
-static bool worst_of(hf_polish_problem *p, const double *x, double worst, double normal[MAX_VARIABLE],
+static bool worst_of(hf_polish_problem *p, const double *x, double worst, double normal[MAX_COLUMN],
                      hf_quadratic_limit *limit)
 {
-    memset(normal, 0, MAX_VARIABLE * sizeof *normal);
+    memset(normal, 0, MAX_COLUMN * sizeof *normal);
     *limit = (hf_quadratic_limit){.normal = normal, .only = -1};
     return hf_watch_worst(&p->watch, x, worst, limit);
 }
@@ -95,7 +95,7 @@ static bool worst_of(hf_polish_problem *p, const double *x, double worst, double
 START_TEST(predictions_are_of_first_order)
 {
     static struct watched t;
-    double x[MAX_VARIABLE], off[2], unused[MAX_VARIABLE];
+    double x[MAX_COLUMN], off[2], unused[MAX_COLUMN];
     hf_quadratic_limit limit;
     open_watched(&t, _i);
     hf_polish_problem *p = &t.polish;
@@ -128,7 +128,7 @@ END_TEST
 START_TEST(the_edge_of_a_limit_is_where_it_holds)
 {
     static struct watched t;
-    double x[MAX_VARIABLE], y[MAX_VARIABLE], normal[MAX_VARIABLE], other[MAX_VARIABLE];
+    double x[MAX_COLUMN], y[MAX_COLUMN], normal[MAX_COLUMN], other[MAX_COLUMN];
     hf_quadratic_limit limit, again;
     int n_violated = 0;
     open_watched(&t, _i);

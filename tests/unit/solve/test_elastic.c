@@ -218,14 +218,14 @@ START_TEST(populations_fall_back)
     struct net net;
     open_mixed(&net, 0, 2000, EA);
     hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &net.result);
-    int n_gene = net.model.n_gene;
-    ck_assert_int_gt(n_gene, 0);
-    double *base = malloc(3 * (size_t)n_gene * sizeof *base),
+    int n_variable = net.model.n_variable;
+    ck_assert_int_gt(n_variable, 0);
+    double *base = malloc(3 * (size_t)n_variable * sizeof *base),
            *start = malloc((size_t)net.model.n_cable * sizeof *start);
     ck_assert(base && start);
     memcpy(start, net.work.q_N_per_m, (size_t)net.model.n_cable * sizeof *start);
-    for (int k = 0; k < 3 * n_gene; k++)
-        base[k] = net.work.tension_N[net.model.gene_cable[k % n_gene]] * (1 + 0.01 * (k / n_gene));
+    for (int k = 0; k < 3 * n_variable; k++)
+        base[k] = net.work.tension_N[net.model.variable_cable[k % n_variable]] * (1 + 0.01 * (k / n_variable));
     static const int solver[] = {HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_FIXED_POINT};
     static const int used[] = {HF_SOLVER_NEWTON, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT};
     hf_evaluator v = {.model = &net.model,
@@ -242,7 +242,7 @@ START_TEST(populations_fall_back)
     net.form.max_iterations = 3000;
     hf_batch_run(&batch, 3, base, NULL, together);
     for (int i = 0; i < 3; i++) {
-        hf_evaluate(&v, base + i * n_gene, &net.work, &alone);
+        hf_evaluate(&v, base + i * n_variable, &net.work, &alone);
         ck_assert_int_eq(together[i].status, alone.status);
         ck_assert_mem_eq(&together[i].residual_N, &alone.residual_N, sizeof alone.residual_N);
         if (_i < 2) ck_assert_int_eq(alone.status, HF_OK);

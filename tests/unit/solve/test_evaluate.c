@@ -13,7 +13,7 @@ static void open_design(struct run *r, int rule)
 static void disturb(struct run *r, double range_N)
 {
     struct rng rng = rng_start(17);
-    for (int k = 0; k < r->net.model.n_gene; k++)
+    for (int k = 0; k < r->net.model.n_variable; k++)
         r->design_N[k] = r->base_N[k] + rng_uniform(&rng, -range_N, range_N);
 }
 
@@ -47,8 +47,8 @@ START_TEST(force_density_rule_holds_q)
     disturb(&r, 1);
     ck_assert_int_eq(evaluate(&r, &result), HF_OK);
     const hf_model *m = &r.net.model;
-    for (int k = 0; k < m->n_gene; k++) {
-        int e = m->gene_cable[k];
+    for (int k = 0; k < m->n_variable; k++) {
+        int e = m->variable_cable[k];
         ck_assert_double_eq(r.net.work.q_N_per_m[e], r.design_N[k] / m->target[e]); /* T'/L*, held: no roundoff */
     }
     for (int e = 0; e < m->n_cable; e++)
@@ -65,11 +65,11 @@ START_TEST(prescribed_lengths_count)
     hf_form_result result;
     open_design(&r, HF_RULE_FORCE_DENSITY);
     const hf_model *m = &r.net.model;
-    for (int k = 0; k < m->n_gene; k++)
-        m->target[m->gene_cable[k]] *= 1.0625;
+    for (int k = 0; k < m->n_variable; k++)
+        m->target[m->variable_cable[k]] *= 1.0625;
     ck_assert_int_eq(evaluate(&r, &result), HF_OK);
-    for (int k = 0; k < m->n_gene; k++) {
-        int e = m->gene_cable[k];
+    for (int k = 0; k < m->n_variable; k++) {
+        int e = m->variable_cable[k];
         ck_assert_double_eq(r.net.work.q_N_per_m[e], r.design_N[k] / (1.0625 * m->length_m[e]));
     }
     close_net(&r.net);
@@ -84,8 +84,8 @@ START_TEST(tension_rule_holds_tensions)
     disturb(&r, 0.01); /* small: equilibrium must exist */
     ck_assert_int_eq(evaluate(&r, &result), HF_OK);
     const hf_model *m = &r.net.model; /* residual 1e-10 of 10 N: the tensions are far closer than 1e-6 */
-    for (int k = 0; k < m->n_gene; k++)
-        ck_assert_double_eq_tol(r.net.work.tension_N[m->gene_cable[k]], r.design_N[k], 1e-6);
+    for (int k = 0; k < m->n_variable; k++)
+        ck_assert_double_eq_tol(r.net.work.tension_N[m->variable_cable[k]], r.design_N[k], 1e-6);
     close_net(&r.net);
 }
 END_TEST
@@ -101,8 +101,8 @@ START_TEST(seeded_rule_is_the_papers_iteration)
     ck_assert_int_eq(evaluate(&r, &result), HF_OK);
     const hf_model *m = &r.net.model;
     hf_form_prepare(m, &r.net.work);
-    for (int k = 0; k < m->n_gene; k++)
-        r.net.work.q_N_per_m[m->gene_cable[k]] = r.design_N[k] / m->target[m->gene_cable[k]];
+    for (int k = 0; k < m->n_variable; k++)
+        r.net.work.q_N_per_m[m->variable_cable[k]] = r.design_N[k] / m->target[m->variable_cable[k]];
     ck_assert_int_eq(hf_form_find(m, &r.net.form, HF_STOP_RMS_CHANGE, &r.net.work, NULL, &expected), HF_OK);
     ck_assert_int_eq(result.stop_reason, HF_STOPPED_RMS_CHANGE);
     ck_assert_int_eq(result.iterations, expected.iterations);

@@ -145,7 +145,7 @@ START_TEST(design_with_a_loose_node_is_infeasible)
                       .rule = HF_RULE_FORCE_DENSITY,
                       .solver = HF_SOLVER_NEWTON,
                       .boundary_ratio_cap = 1e9};
-    ck_assert_int_eq(net.model.n_gene, 0);
+    ck_assert_int_eq(net.model.n_variable, 0);
     ck_assert_int_eq(hf_evaluate(&v, design_N, &net.work, &net.result), HF_SINGULAR);
     ck_assert_int_eq(net.model.node_of_row[net.result.culprit], 2);
     ck_assert_double_nan(net.result.psi_m);

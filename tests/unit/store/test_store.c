@@ -288,7 +288,7 @@ START_TEST(shapes_come_back_in_the_order_of_the_scene)
     hf_history history = {4, 2, psi_m, other, other + 2, other + 4, other + 6, {0}};
     OPEN_CASE(&net, SMALL_REFLECTOR);
     const hf_model *m = &net.model;
-    double *design_N = calloc((size_t)m->n_gene, sizeof *design_N);
+    double *design_N = calloc((size_t)m->n_variable, sizeof *design_N);
     hf_store *store = begin(temp_path("a.h5"), 1, &net.scene);
     find_shape(&net);
     ck_assert_int_eq(hf_store_form(store, m, &net.work, &history, &messages), HF_OK);
@@ -373,7 +373,7 @@ END_TEST
 
 /* Sizes of a generation: usual; a row beyond one chunk; a single gene beyond one chunk; nothing to vary. */
 static const struct {
-    int n_individual, n_gene;
+    int n_individual, n_variable;
 } sizes[] = {{4, 3}, {3, 70000}, {2, 140000}, {2, 0}};
 
 /* An hf_optimiser in which every number shows by its value at which place it belongs. */
@@ -381,8 +381,8 @@ static void fill_generation(hf_population *g, int generation)
 {
     g->generation = generation;
     for (int i = 0; i < g->n_individual; i++) {
-        for (int k = 0; k < g->n_gene; k++)
-            g->design_N[(size_t)i * (size_t)g->n_gene + (size_t)k] = generation * 1e7 + i * 1e6 + k;
+        for (int k = 0; k < g->n_variable; k++)
+            g->design_N[(size_t)i * (size_t)g->n_variable + (size_t)k] = generation * 1e7 + i * 1e6 + k;
         g->result[i] = (hf_form_result){.status = i == 1 ? HF_RATIO_CAP : HF_OK,
                                         .iterations = 10 * generation + i,
                                         .psi_m = i == 1 ? (double)NAN : generation + 0.1 * i,
@@ -403,20 +403,20 @@ static void fill_generation(hf_population *g, int generation)
 
 START_TEST(generations_are_appended)
 {
-    int p = sizes[_i].n_individual, k = sizes[_i].n_gene;
+    int p = sizes[_i].n_individual, k = sizes[_i].n_variable;
     struct net net;
     hf_messages messages = {0};
     hf_optimiser ga;
     hf_optimize_settings settings = small_ga(p, 5);
     open_bow(&net);
     double *base_N = malloc(((size_t)k + 1) * sizeof *base_N);
-    int *gene = malloc((2 * (size_t)k + 1) * sizeof *gene), *group = gene + k;
+    int *variable = malloc((2 * (size_t)k + 1) * sizeof *variable), *group = variable + k;
     for (int i = 0; i < k; i++) {
         base_N[i] = i + 1;
-        gene[i] = 2 * i;
+        variable[i] = 2 * i;
         group[i] = i / 2;
     }
-    hf_model m = {.n_gene = k, .n_gene_group = k, .gene_cable = gene, .gene_group = group};
+    hf_model m = {.n_variable = k, .n_variable_group = k, .variable_cable = variable, .variable_group = group};
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &settings, &m, base_N, &ga), HF_OK);
     hf_store *store = begin(temp_path("a.h5"), 1, &net.scene);
     for (int g = 0; g < 5; g++) {
@@ -451,7 +451,7 @@ START_TEST(generations_are_appended)
         p, k);
     python("r", temp_path("a.h5"), script);
     free(base_N);
-    free(gene);
+    free(variable);
     close_net(&net);
 }
 END_TEST

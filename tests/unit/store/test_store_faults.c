@@ -284,8 +284,8 @@ START_TEST(a_full_disk_is_told)
     open_bow(&net);
     hf_optimize_settings settings = small_ga(50, 40);
     double base_N[40] = {0};
-    int gene[40] = {0};
-    hf_model m = {.n_gene = 40, .n_gene_group = 1, .gene_cable = gene, .gene_group = gene};
+    int variable[40] = {0};
+    hf_model m = {.n_variable = 40, .n_variable_group = 1, .variable_cable = variable, .variable_group = variable};
     hf_optimiser ga;
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &settings, &m, base_N, &ga), HF_OK);
 
