@@ -14,7 +14,7 @@ struct run {
     hf_model model;
     hf_optimize_settings settings;
     hf_optimiser ga;
-    double base_N[N_VARIABLE];
+    double initial[N_VARIABLE];
     int variable[N_VARIABLE];
 };
 
@@ -26,7 +26,7 @@ static inline void open_run(struct run *r)
     r->settings = small_ga(N_INDIVIDUAL, N_GENERATION);
     r->model = (hf_model){
         .n_variable = N_VARIABLE, .n_variable_group = 1, .variable_cable = r->variable, .variable_group = r->variable};
-    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &r->model, r->base_N, &r->ga), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &r->model, r->initial, &r->ga), HF_OK);
 }
 
 static inline void close_run(struct run *r)
@@ -42,7 +42,7 @@ static inline void fill(hf_optimiser *o)
     for (int i = 0; i < N_INDIVIDUAL; i++) {
         double psi_m = 0;
         for (int k = 0; k < N_VARIABLE; k++)
-            psi_m += fabs(g->design_N[i * N_VARIABLE + k] - 0.1 * k);
+            psi_m += fabs(g->design[i * N_VARIABLE + k] - 0.1 * k);
         if (g->pending[i])
             g->result[i] =
                 (hf_form_result){.status = i == N_INDIVIDUAL - 1 ? HF_NOT_CONVERGED : HF_OK, /* not all have a shape */

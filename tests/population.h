@@ -12,7 +12,7 @@ enum { MAX_VARIABLE = 200, MAX_CABLE = 600, N_DESIGN = 29 }; /* N_DESIGN is no m
 struct run {
     struct net net;
     hf_evaluator evaluator;
-    double start_q[MAX_CABLE], base_N[MAX_VARIABLE], design_N[N_DESIGN * MAX_VARIABLE];
+    double start_q[MAX_CABLE], initial[MAX_VARIABLE], design[N_DESIGN * MAX_VARIABLE];
 };
 
 /* Finds the shape of net->scene, and draws designs up to range_N around its boundary tensions. */
@@ -24,9 +24,9 @@ static inline void draw_designs(struct run *r, uint64_t seed, double range_N)
     ck_assert_int_eq(find_shape(&r->net), HF_OK);
     memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
     for (int k = 0; k < m->n_variable; k++)
-        r->base_N[k] = r->net.work.tension_N[m->variable_cable[k]];
+        r->initial[k] = r->net.work.tension_N[m->variable_cable[k]];
     for (int i = 0; i < N_DESIGN * m->n_variable; i++)
-        r->design_N[i] = r->base_N[i % m->n_variable] + rng_uniform(&rng, -range_N, range_N);
+        r->design[i] = r->initial[i % m->n_variable] + rng_uniform(&rng, -range_N, range_N);
 }
 
 static inline void evaluate_by(struct run *r, int rule, hf_solver solver)
@@ -57,7 +57,7 @@ static inline void open_run(struct run *r, int rule)
 
 static inline double *design(struct run *r, int i)
 {
-    return r->design_N + i * r->net.model.n_variable;
+    return r->design + i * r->net.model.n_variable;
 }
 
 #endif

@@ -127,11 +127,11 @@ static inline void write_result(const char *path, struct net *net)
     hf_messages messages = {0};
     hf_summary summary = {.has_optimize = 1};
     hf_store *store = begin(path, 1, &net->scene);
-    double design_N[1000] = {0};
+    double design[1000] = {0};
     ck_assert_int_le(net->model.n_variable, 1000);
     find_shape(net);
     ck_assert_int_eq(hf_store_form(store, &net->model, &net->work, NULL, &messages), HF_OK);
-    ck_assert_int_eq(hf_store_best(store, HF_STAGE_OPTIMIZE, &net->model, &net->work, design_N, &messages), HF_OK);
+    ck_assert_int_eq(hf_store_best(store, HF_STAGE_OPTIMIZE, &net->model, &net->work, design, &messages), HF_OK);
     end(store, &summary);
 }
 

@@ -19,8 +19,8 @@
 typedef struct {
     hf_messages said; /* errors and warnings, in words */
     hf_problem p;
-    double *best_N, *design_N; /* [n_variable], [N_DESIGN][n_variable] */
-    double *step;              /* [n_variable_group] */
+    double *best_N, *design; /* [n_variable], [N_DESIGN][n_variable] */
+    double *step;            /* [n_variable_group] */
 } thing;
 
 /* -1 to 1: splitmix64 */
@@ -40,10 +40,10 @@ static hf_status search(const char *path, thing *t)
     size_t n = (size_t)m->n_variable; /* gene k is the pretension of the cable p.scene.cable_id[m->variable_cable[k]] */
 
     t->best_N = calloc(n + 1, sizeof(double));
-    t->design_N = calloc(N_DESIGN * n + 1, sizeof(double));
+    t->design = calloc(N_DESIGN * n + 1, sizeof(double));
     t->step = calloc((size_t)m->n_variable_group + 1, sizeof(double));
-    if (!t->best_N || !t->design_N || !t->step) return HF_NO_MEMORY;
-    memcpy(t->best_N, t->p.base_N, n * sizeof(double)); /* the pretensions of the shape that was found */
+    if (!t->best_N || !t->design || !t->step) return HF_NO_MEMORY;
+    memcpy(t->best_N, t->p.initial, n * sizeof(double)); /* the pretensions of the shape that was found */
 
     uint64_t state = 1;
     double size = 0.2, best_m = INFINITY;
@@ -52,15 +52,15 @@ static hf_status search(const char *path, thing *t)
             for (int g = 0; g < m->n_variable_group; g++) /* the first design of a round is the best so far */
                 t->step[g] = i ? size * uniform(&state) : 0;
             for (size_t k = 0; k < n; k++) /* cables of a chain change alike, else they drag its nodes along it */
-                t->design_N[(size_t)i * n + k] = t->best_N[k] * (1 + t->step[m->variable_group[k]]);
+                t->design[(size_t)i * n + k] = t->best_N[k] * (1 + t->step[m->variable_group[k]]);
         }
-        hf_batch_run(&t->p.batch, N_DESIGN, t->design_N, NULL, result); /* -> result[i].psi_m, .status, ... */
+        hf_batch_run(&t->p.batch, N_DESIGN, t->design, NULL, result); /* -> result[i].psi_m, .status, ... */
         int best = 0;
         for (int i = 1; i < N_DESIGN; i++)
             if (result[i].status == HF_OK && !(result[i].psi_m >= result[best].psi_m)) best = i;
         if (best == 0 && round > 0) size /= 2;
         for (size_t k = 0; k < n; k++)
-            t->best_N[k] = t->design_N[(size_t)best * n + k];
+            t->best_N[k] = t->design[(size_t)best * n + k];
         best_m = result[best].psi_m;
         if (round % 10 == 0) printf("round %2d: psi %.4f mm\n", round, best_m * 1e3);
     }
@@ -80,7 +80,7 @@ int main(int argc, char **argv)
     hf_status status = search(argv[1], &t);
     if (t.said.text) fputs(t.said.text, stderr);
     if (status != HF_OK) fprintf(stderr, "%s: %s\n", argv[1], hf_status_text(status));
-    free(t.design_N);
+    free(t.design);
     free(t.best_N);
     free(t.step);
     hf_problem_free(&t.p);

@@ -35,14 +35,14 @@ typedef struct {
  * hf_batch_free. Returns HF_OK or HF_NO_MEMORY. Call hf_batch_free in either case. */
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch);
 
-/* Evaluates the designs i = 0 ... n-1 with pending[i] != 0, or all of them if pending is NULL. design_N has the shape
+/* Evaluates the designs i = 0 ... n-1 with pending[i] != 0, or all of them if pending is NULL. `design` has the shape
  * [n][n_variable] and holds the values of the design variables, in N for boundary pretensions. The values of cables are
  * above 0. result [n] receives the results of the evaluated designs.
  *
  * Each design is one whole form-finding in one thread. A result depends neither on the number of threads nor on the
  * other designs of the call. If a design has no shape or breaks a constraint, its result contains the status, and psi_m
  * is NaN. Without a shape the tension ratios are NaN, too. */
-void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result);
+void hf_batch_run(hf_batch *batch, int n, const double *design, const unsigned char *pending, hf_form_result *result);
 
 /* Proposes the next generation of the optimiser and evaluates its pending designs, both with all threads. The result is
  * the same as that of hf_optimiser_next and hf_batch_run. The calling thread first calls beside(context) once, unless
@@ -51,18 +51,18 @@ void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned
  * called. */
 bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
 
-/* Selects the solver of all later evaluations and creates the data that its threads share. base_N [n_variable] is the
- * design at which the shared Newton matrix is factored; the values of cables are above 0. If the solver is the paper's
- * iteration in vector lanes, the shared data are its plan. If each design is solved alone by hf_evaluate, nothing is
- * shared.
+/* Selects the solver of all later evaluations and creates the data that its threads share. `initial` [n_variable] is
+ * the design at which the shared Newton matrix is factored; the values of cables are above 0. If the solver is the
+ * paper's iteration in vector lanes, the shared data are its plan. If each design is solved alone by hf_evaluate,
+ * nothing is shared.
  *
- * Returns the solver that will be used. If no matrix can be factored at base_N or memory runs out, nothing is shared,
- * and another solver may be returned. Its results differ in the last bits, so batch->lacks_memory is true after a lack
- * of memory. */
-hf_solver hf_batch_share(hf_batch *batch, const double *base_N);
+ * Returns the solver that will be used. If no matrix can be factored at `initial` or memory runs out, nothing is
+ * shared, and another solver may be returned. Its results differ in the last bits, so batch->lacks_memory is true after
+ * a lack of memory. */
+hf_solver hf_batch_share(hf_batch *batch, const double *initial);
 
-/* Returns the solver that hf_batch_share selects if base_N is suitable and memory suffices. Sets *has_lanes to true if
- * this solver works on eight designs at once, one in each lane of the vector registers. @52- */
+/* Returns the solver that hf_batch_share selects if `initial` is suitable and memory suffices. Sets *has_lanes to true
+ * if this solver works on eight designs at once, one in each lane of the vector registers. @52- */
 hf_solver hf_batch_solver(const hf_evaluator *evaluator, bool *has_lanes);
 
 /* Returns the number of cores that are available to this process. */
@@ -80,10 +80,10 @@ int hf_batch_default_threads(void); /* available cores */
  * library at run time, such as an interpreter, sets the two variables before it loads the library. */
 void hf_batch_wait_quietly(char *const *argv);
 
-/* Evaluates design_N [n_variable] in the calling thread; the result has the same bits as that of hf_batch_run. Returns
- * the workspace that holds the shape of the design until the next call with this batch. The batch owns the
+/* Evaluates the design [n_variable] in the calling thread; the result has the same bits as that of hf_batch_run.
+ * Returns the workspace that holds the shape of the design until the next call with this batch. The batch owns the
  * workspace. */
-hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *result);
+hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design, hf_form_result *result);
 
 /* Frees the workspaces and the shared data of the solver, but not the evaluator. */
 void hf_batch_free(hf_batch *batch);

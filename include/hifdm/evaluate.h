@@ -91,16 +91,17 @@ double hf_evaluate_divisor(const hf_evaluator *evaluator, int i_variable);
  * HF_OK or HF_NO_MEMORY. */
 hf_status hf_evaluate_attend(const hf_evaluator *evaluator, hf_workspace *workspace);
 
-/* Finds the shape of design_N [model->n_variable], the values of the design variables, and leaves it in the workspace.
- * Values of cables are above 0. Returns result->status. If it is not HF_OK, the design is infeasible, and psi_m and
- * merit are NaN. Without a shape (hf_status_has_shape) the tension ratios and the violation are NaN, too. A design with
- * a node that no taut cable holds is HF_SINGULAR. A design for which an objective has no value is HF_NOT_FINITE. */
-hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace,
+/* Finds the shape of the design [model->n_variable], the values of the design variables, and leaves it in the
+ * workspace. Values of cables are above 0. Returns result->status. If it is not HF_OK, the design is infeasible, and
+ * psi_m and merit are NaN. Without a shape (hf_status_has_shape) the tension ratios and the violation are NaN, too. A
+ * design with a node that no taut cable holds is HF_SINGULAR. A design for which an objective has no value is
+ * HF_NOT_FINITE. */
+hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design, hf_workspace *workspace,
                       hf_form_result *result);
 
-/* Writes laws, target values and first force densities of design_N [n_variable] into the workspace: the part of
+/* Writes laws, target values and first force densities of the design [n_variable] into the workspace: the part of
  * hf_evaluate before the solver. */
-void hf_evaluate_prepare(const hf_evaluator *evaluator, const double *design_N, hf_workspace *workspace);
+void hf_evaluate_prepare(const hf_evaluator *evaluator, const double *design, hf_workspace *workspace);
 /* Returns true if hf_evaluate_judge will read the shape in the workspace: for limits, for objectives, or because the
  * boundary tension ratio exceeds its maximum. */
 bool hf_evaluate_needs_shape(const hf_evaluator *evaluator, const hf_form_result *result);

@@ -6,7 +6,7 @@
  *     hf_optimiser_create(...);               // proposes generation 0; its individual 0 is the initial design
  *     hf_population *p = &optimiser.population;
  *     do {
- *         evaluate every individual with p->pending[i] != 0: design p->design_N + i*n_variable into p->result[i];
+ *         evaluate every individual with p->pending[i] != 0: design p->design + i*n_variable into p->result[i];
  *         hf_optimiser_tell(&optimiser);      // ranks; p->stop_reason says whether this was the last generation
  *     } while (hf_optimiser_next(&optimiser)); // proposes the next one
  *
@@ -55,11 +55,11 @@ typedef struct {
     bool is_fresh; /* internal: the generation has been proposed, but hf_optimiser_tell has not been called for it */
 } hf_optimiser;
 
-/* Creates an optimiser and proposes generation 0. base_N [n_variable] is the initial design: the values of the design
+/* Creates an optimiser and proposes generation 0. initial [n_variable] is the initial design: the values of the design
  * variables after form-finding. Settings and model are borrowed until hf_optimiser_free. If kind is NULL, the
  * population has its bounds, but no designs. Returns HF_OK or HF_NO_MEMORY. Call hf_optimiser_free in either case. */
 hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *settings,
-                              const hf_model *model, const double *base_N, hf_optimiser *optimiser);
+                              const hf_model *model, const double *initial, hf_optimiser *optimiser);
 
 /* Reads the results that the caller has written into population.result, selects the survivors and ranks them
  * (hf_population_rank). */

@@ -29,14 +29,14 @@ typedef struct {
     int n_variable, n_individual; /* number of design variables and of individuals */
     int n_objective;              /* number of rows of optimize.objectives; 0: there are none */
     bool has_rows; /* design variables are those of optimize.variables, each in its own unit; false: pretensions in N */
-    int generation;            /* index of the present generation, from 0 */
-    int generation_limit;      /* maximum number of generations */
-    double *base_N;            /* [n_variable] initial design: values after form-finding (tensions T of Eq. 13) */
-    double *lower_N, *upper_N; /* [n_variable] bounds on the values of a design (T' of Eq. 13) */
-    double *reach;             /* [n_variable] maximum distance of the first designs from base_N */
+    int generation;        /* index of the present generation, from 0 */
+    int generation_limit;  /* maximum number of generations */
+    double *initial;       /* [n_variable] initial design: values after form-finding (tensions T of Eq. 13) */
+    double *lower, *upper; /* [n_variable] bounds on the values of a design (T' of Eq. 13) */
+    double *reach;         /* [n_variable] maximum distance of the first designs from `initial` */
 
     /* The optimiser writes these arrays. The batch writes the results of pending designs. */
-    double *design_N;                       /* [n_individual][n_variable] values of the design variables */
+    double *design;                         /* [n_individual][n_variable] values of the design variables */
     hf_form_result *result;                 /* [n_individual]; where pending is 0 it is valid from the start */
     unsigned char *pending;                 /* [n_individual] 1: the design must be evaluated */
     double *crossover_rate, *mutation_rate; /* [n_individual] rates by which the trial was made; NaN: none */
@@ -62,12 +62,12 @@ typedef struct {
     void *block; /* owned memory behind the arrays */
 } hf_population;
 
-/* Creates a population whose designs are all zero. base_N [n_variable] is the initial design; it is copied. The bounds
- * are base_N -+ range_N within [min_tension_N, max_tension_N], or as the row of optimize.variables says. Design
+/* Creates a population whose designs are all zero. initial [n_variable] is the initial design; it is copied. The bounds
+ * are `initial` -+ range_N within [min_tension_N, max_tension_N], or as the row of optimize.variables says. Design
  * variables with the same leader change by the same step, so they share the bounds on that step. `next` gets its own
  * arrays for a second generation; it shares the other arrays and the block with `population`. Returns HF_OK or
  * HF_NO_MEMORY. Free `population`, but not `next`, in either case. */
-hf_status hf_population_create(const hf_optimize_settings *settings, const hf_model *model, const double *base_N,
+hf_status hf_population_create(const hf_optimize_settings *settings, const hf_model *model, const double *initial,
                                hf_population *population, hf_population *next);
 /* Frees the arrays of the population and those of `next`. */
 void hf_population_free(hf_population *population);
@@ -103,13 +103,13 @@ bool hf_population_is_better(const hf_population *population, int a, int b);
 /* Returns the value within the bounds of design variable i_variable that is nearest to value_N. */
 static inline double hf_population_clamp(const hf_population *population, int i_variable, double value_N)
 {
-    double low = population->lower_N[i_variable], high = population->upper_N[i_variable];
+    double low = population->lower[i_variable], high = population->upper[i_variable];
     return value_N < low ? low : value_N > high ? high : value_N;
 }
 
-/* Changes the design variables of design_N [n_variable] that follow a leader: each is moved from base_N by the step of
+/* Changes the design variables of design [n_variable] that follow a leader: each is moved from `initial` by the step of
  * its leader, within its own bounds. */
-void hf_population_link(const hf_population *population, const hf_model *model, double *design_N);
+void hf_population_link(const hf_population *population, const hf_model *model, double *design);
 
 HF_API_END
 #endif

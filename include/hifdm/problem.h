@@ -30,7 +30,7 @@ typedef struct {
     hf_workspace workspace;       /* holds the shape of the form-finding until another one is computed in it */
     hf_form_result form;          /* result of the form-finding */
     double *start_q_N_per_m;      /* [n_cable] force densities of the form-finding */
-    double *base_N;               /* [n_variable] initial design, averaged over linked design variables */
+    double *initial;              /* [n_variable] initial design, averaged over linked design variables */
     hf_limits limits;             /* rows of optimize.limits; none without rows */
     struct hf_problem_nets *nets; /* as-built nets of objectives over load cases or samples; NULL: there are none */
     hf_goals goals;               /* rows of optimize.goals or optimize.objectives; none without rows: psi */
@@ -46,8 +46,8 @@ typedef struct {
 } hf_problem_source;
 
 /* Opens the case file `path` under n_set overrides "key=value" (NULL and 0: none). It builds the model with truss and
- * symmetry, finds the shape, and creates the batch of n_thread threads (0: all cores), which shares data made at base_N
- * (hf_batch_share). A section sweep is ignored. model.n_variable may be 0: then there is nothing to design.
+ * symmetry, finds the shape, and creates the batch of n_thread threads (0: all cores), which shares data made at
+ * `initial` (hf_batch_share). A section sweep is ignored. model.n_variable may be 0: then there is nothing to design.
  *
  * Returns HF_OK; HF_BAD_CASE with messages about all faults; HF_NOT_CONVERGED or the status of an ill-posed net, with
  * the names of cables or nodes; HF_MECHANISM; HF_NO_MEMORY; HF_NO_LAPACK. Every failure adds an error message. If the
@@ -70,13 +70,13 @@ int hf_problem_n_slope(const hf_problem *problem);
  * text. */
 const char *hf_problem_slope_name(const hf_problem *problem, int i_slope, char text[HF_GOAL_NAME_SIZE]);
 
-/* Computes the exact derivatives of the hf_problem_n_slope figures (METHOD section 7). design_N [n][n_variable] has n
+/* Computes the exact derivatives of the hf_problem_n_slope figures (METHOD section 7). design [n][n_variable] has n
  * designs, and result [n] their results of hf_batch_run. slope [feasible designs][n_slope][n_variable] receives the
  * derivatives by each design variable alone, in the unit of the figure per unit of the variable. They do not contain
  * the weights of objectives. For an objective that is a maximum of several sizes they are those of its smooth maximum.
  * The derivatives of a figure that is 0 are NaN. Overwrites problem->workspace. Returns HF_OK; HF_BAD_CASE with a
  * message if there are no derivatives (hf_problem_has_slopes); HF_NO_MEMORY. */
-hf_status hf_problem_slopes(hf_problem *problem, int n, const double *design_N, const hf_form_result *result,
+hf_status hf_problem_slopes(hf_problem *problem, int n, const double *design, const hf_form_result *result,
                             double *slope, hf_messages *messages);
 /* Returns HF_OK if designs of this problem have derivatives. Returns HF_BAD_CASE with a message if not: for nets with
  * struts, under rule seeded, and for quantiles. */

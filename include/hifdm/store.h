@@ -164,9 +164,9 @@ hf_status hf_store_variables(hf_store *store, const hf_model *model, const hf_po
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_population *population,
                               hf_messages *messages);
 
-/* Reads the initial design base_N [n_variable] with which the genetic algorithm of a resumed store started. The values
- * that this machine computes may differ in the last bits. base_N is unchanged if the store has none. */
-hf_status hf_store_restore_base(hf_store *store, int n_variable, double *base_N, hf_messages *messages);
+/* Reads the initial design [n_variable] with which the genetic algorithm of a resumed store started. The values
+ * that this machine computes may differ in the last bits. `initial` is unchanged if the store has none. */
+hf_status hf_store_restore_base(hf_store *store, int n_variable, double *initial, hf_messages *messages);
 
 /* Restores an optimiser that was just created from the design of hf_store_restore_base: its state before
  * hf_optimiser_tell of the last generation in the store. The figures of the best individual so far go into the summary.
@@ -187,10 +187,10 @@ hf_status hf_store_restore_polish(hf_store *store, double *wall_s, size_t *n, co
  * then. Publishing thus takes less than 2 % of the time. Call it after every generation. */
 hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_once, hf_messages *messages);
 
-/* Writes the shape in the workspace as that of stage HF_STAGE_OPTIMIZE or HF_STAGE_POLISH, with its design design_N
+/* Writes the shape in the workspace as that of stage HF_STAGE_OPTIMIZE or HF_STAGE_POLISH, with its design
  * [model->n_variable]. Call it once per stage. */
 hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
-                        const double *design_N, hf_messages *messages);
+                        const double *design, hf_messages *messages);
 
 /* Writes the front and replaces an earlier one. The names of its objectives are those in the summary. */
 hf_status hf_store_front(hf_store *store, const hf_scene *scene, const hf_model *model, const hf_summary *summary,

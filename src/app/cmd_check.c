@@ -402,9 +402,9 @@ static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int t
     hf_status status = hf_batch_create(v, 1, &batch);
     if (status == HF_OK) {
         char one[32], all[32];
-        hf_solver solver = hf_batch_share(&batch, p->base_N);
+        hf_solver solver = hf_batch_share(&batch, p->initial);
         double begin_s = hf_clock_s();
-        hf_batch_run(&batch, ga->n_individual, ga->design_N, ga->pending, ga->result);
+        hf_batch_run(&batch, ga->n_individual, ga->design, ga->pending, ga->result);
         double each_s = (hf_clock_s() - begin_s) / ga->n_individual;
         hf_print_duration(each_s, one, sizeof one);
         double all_s = hf_check_together_s(each_s, o->population, &threads) * o->generations;
@@ -448,7 +448,7 @@ static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const h
         *most_s += foretold_s * n_step;
         return HF_OK;
     }
-    hf_status status = hf_polish_run(v, ga->lower_N, ga->upper_N, 2, NULL, p->base_N, &p->workspace, &r);
+    hf_status status = hf_polish_run(v, ga->lower, ga->upper, 2, NULL, p->initial, &p->workspace, &r);
     if (status == HF_NO_MEMORY) return status;
     if (status != HF_OK || r.iterations == 0) return HF_OK;
     double each_s = (hf_clock_s() - begin_s) / r.iterations;
@@ -464,7 +464,7 @@ static hf_status print_optimize_time(hf_problem *p, const hf_evaluator *v, int t
 {
     const hf_optimiser_kind *kind = hf_optimiser_plan_of(&p->settings.optimize).kind;
     hf_optimiser o = {0};
-    hf_status status = hf_optimiser_create(kind, &p->settings.optimize, &p->model, p->base_N, &o);
+    hf_status status = hf_optimiser_create(kind, &p->settings.optimize, &p->model, p->initial, &o);
     if (status == HF_OK && kind) status = print_ga_time(p, v, threads, &o.population, most_s, f);
     if (status == HF_OK && polishes(p, v)) status = print_polish_time(p, v, &o.population, most_s, f);
     hf_optimiser_free(&o);

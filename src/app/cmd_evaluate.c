@@ -43,7 +43,7 @@ typedef struct {
     char (*variable)[HF_VARIABLE_NAME_SIZE]; /* [n_variable], names of the design variables */
     const char **name;      /* [n_variable + 1], names of the columns: those of the design variables, then "id" */
     int *where;             /* [n_variable + 1], their columns in the table, or -1 */
-    double *design_N;       /* [n_row][n_variable] */
+    double *design;         /* [n_row][n_variable] */
     hf_form_result *result; /* [n_row] */
     double *derivative;     /* [n_feasible][n_slope][n_variable]; NULL without --jacobian */
     int n_feasible, best;   /* best: row of the minimum merit, or -1; -1 with objectives */
@@ -56,7 +56,7 @@ static void job_free(job *j)
     free(j->variable);
     free(j->name);
     free(j->where);
-    free(j->design_N);
+    free(j->design);
     free(j->derivative);
     free(j->result);
     hf_problem_free(&j->problem);
@@ -109,7 +109,7 @@ static const char *row_id(const job *j, int row)
 static void read_row(job *j, int row)
 {
     hf_csv *t = &j->table;
-    double *design = j->design_N + (size_t)row * (size_t)j->problem.model.n_variable;
+    double *design = j->design + (size_t)row * (size_t)j->problem.model.n_variable;
     for (int k = 0; k < j->problem.model.n_variable; k++) {
         if (j->where[k] < 0) continue;
         design[k] = hf_csv_number(t, row, j->where[k], row_id(j, row), j->name[k]);
@@ -133,9 +133,9 @@ static hf_status read_table(job *j, const char *path, hf_messages *messages)
     status = hf_csv_find_columns(t, j->name, n_variable + 1, n_variable, j->where);
     if (t->n_fault > HF_FAULT_MAX) return status;
     size_t n = (size_t)t->n_row;
-    j->design_N = malloc(n * (size_t)n_variable * sizeof *j->design_N);
+    j->design = malloc(n * (size_t)n_variable * sizeof *j->design);
     j->result = calloc(n, sizeof *j->result);
-    if (!j->design_N || !j->result) return no_memory(j, messages);
+    if (!j->design || !j->result) return no_memory(j, messages);
     for (int row = 0; row < t->n_row; row++)
         read_row(j, row);
     return hf_csv_close_faults(t);
@@ -162,7 +162,7 @@ static hf_status evaluate(job *j, int threads, hf_messages *messages)
     double start_s = hf_clock_s();
     if (hf_problem_batch(&j->problem, threads) != HF_OK) return no_memory(j, messages);
     HF_TRY(hf_problem_share(&j->problem, messages));
-    hf_batch_run(&j->problem.batch, j->table.n_row, j->design_N, NULL, j->result);
+    hf_batch_run(&j->problem.batch, j->table.n_row, j->design, NULL, j->result);
     j->wall_s = hf_clock_s() - start_s;
     for (int i = 0; i < j->table.n_row; i++) {
         if (j->result[i].status != HF_OK) continue;
@@ -180,7 +180,7 @@ static hf_status differentiate(job *j, hf_messages *messages)
     size_t n = (size_t)hf_problem_n_slope(&j->problem) * (size_t)j->problem.model.n_variable;
     j->derivative = calloc((size_t)j->n_feasible + 1, n * sizeof *j->derivative);
     if (!j->derivative) return no_memory(j, messages);
-    return hf_problem_slopes(&j->problem, j->table.n_row, j->design_N, j->result, j->derivative, messages);
+    return hf_problem_slopes(&j->problem, j->table.n_row, j->design, j->result, j->derivative, messages);
 }
 
 /* ---- writing ---- */
@@ -278,7 +278,7 @@ static void write_template(const void *context, FILE *f)
     write_variable_names(j, f);
     fputs("base", f);
     for (int k = 0; k < j->problem.model.n_variable; k++)
-        write_number(j->problem.base_N[k], f);
+        write_number(j->problem.initial[k], f);
     fputc('\n', f);
 }
 

@@ -325,30 +325,30 @@ const char *hf_symmetry_planes_text(int planes)
 
 /* ---- steps ---- */
 
-void hf_symmetry_average(const hf_model *m, double *base_N)
+void hf_symmetry_average(const hf_model *m, double *initial)
 {
     for (int leader = 0; leader < m->n_variable && m->n_leader < m->n_variable; leader++) {
-        double low = base_N[leader], high = low, sum = 0;
+        double low = initial[leader], high = low, sum = 0;
         int n = 0;
         if (m->variable_leader[leader] != leader) continue;
         for (int k = leader; k < m->n_variable; k++) {
             if (m->variable_leader[k] != leader) continue;
-            low = fmin(low, base_N[k]);
-            high = fmax(high, base_N[k]);
-            sum += base_N[k];
+            low = fmin(low, initial[k]);
+            high = fmax(high, initial[k]);
+            sum += initial[k];
             n++;
         }
         if (!(high - low <= BASE_AGREEMENT * fabs(high))) continue;
         for (int k = leader; k < m->n_variable; k++)
-            if (m->variable_leader[k] == leader) base_N[k] = sum / n;
+            if (m->variable_leader[k] == leader) initial[k] = sum / n;
     }
 }
 
-void hf_symmetry_follow(int n_variable, const int *leader, const double *base_N, double *design_N)
+void hf_symmetry_follow(int n_variable, const int *leader, const double *initial, double *design)
 {
     for (int k = 0; k < n_variable; k++)
-        if (base_N[k] == base_N[leader[k]]) /* equal in every bit: the copy stays exactly symmetric */
-            design_N[k] = design_N[leader[k]];
+        if (initial[k] == initial[leader[k]]) /* equal in every bit: the copy stays exactly symmetric */
+            design[k] = design[leader[k]];
         else
-            design_N[k] = base_N[k] + (design_N[leader[k]] - base_N[leader[k]]);
+            design[k] = initial[k] + (design[leader[k]] - initial[leader[k]]);
 }

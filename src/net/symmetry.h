@@ -22,12 +22,12 @@ hf_status hf_symmetry_apply(const hf_scene *scene, const hf_optimize_settings *s
 /* Returns "planes x and y", "plane x", "plane y" or "no plane". */
 const char *hf_symmetry_planes_text(int planes);
 
-/* Replaces the initial values base_N [n_variable] of each class by their mean if they agree to 1e-6. Other
+/* Replaces the initial values [n_variable] of each class by their mean if they agree to 1e-6. Other
  * classes are unchanged. */
-void hf_symmetry_average(const hf_model *model, double *base_N);
+void hf_symmetry_average(const hf_model *model, double *initial);
 
 /* Changes every design variable by the step of its leader from the initial design: T'_k = T_k + (T'_leader - T_leader).
- * leader, base_N (T) and design_N (T') are [n_variable]. */
-void hf_symmetry_follow(int n_variable, const int *leader, const double *base_N, double *design_N);
+ * leader, `initial` (T) and `design` (T') are [n_variable]. */
+void hf_symmetry_follow(int n_variable, const int *leader, const double *initial, double *design);
 
 #endif

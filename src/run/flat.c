@@ -356,7 +356,7 @@ static int copy_bounds(const hf_flat *f, bool is_upper, double *to)
     const hf_problem *p = &f->problem;
     for (int k = 0; to && k < p->model.n_variable; k++) {
         double lower, upper, reach;
-        hf_variables_bound(&p->settings.optimize, &p->model, k, p->base_N[k], &lower, &upper, &reach);
+        hf_variables_bound(&p->settings.optimize, &p->model, k, p->initial[k], &lower, &upper, &reach);
         to[k] = is_upper ? upper : lower;
     }
     return p->model.n_variable;
@@ -371,7 +371,7 @@ int hf_flat_reals(const hf_flat *f, const char *name, double *to)
     if (!strcmp(name, "load_N")) return copy_reals(s->load_N, 3 * s->n_node, to);
     if (!strcmp(name, "target")) return copy_reals(s->target, s->n_cable, to);
     if (!strcmp(name, "EA_N")) return copy_reals(s->EA_N, s->n_cable, to);
-    if (!strcmp(name, "base")) return f->is_ready ? copy_reals(f->problem.base_N, f->problem.model.n_variable, to) : 0;
+    if (!strcmp(name, "base")) return f->is_ready ? copy_reals(f->problem.initial, f->problem.model.n_variable, to) : 0;
     if (!strcmp(name, "lower")) return f->is_ready ? copy_bounds(f, false, to) : 0;
     if (!strcmp(name, "upper")) return f->is_ready ? copy_bounds(f, true, to) : 0;
     if (!strcmp(name, "position_m")) return copy_reals(f->shape, 3 * s->n_node, to);

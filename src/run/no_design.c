@@ -39,7 +39,7 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, hf_messag
     const char *wider = p->model.variable ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
     hf_form_result base;
     char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE];
-    const hf_workspace *w = hf_batch_run_one(&p->batch, of->base_N, &base);
+    const hf_workspace *w = hf_batch_run_one(&p->batch, of->initial, &base);
     name_broken(p, w, &base, broken);
     if (above > 0 && o->n_limit > 0)
         return hf_error(messages, HF_NO_FEASIBLE,

@@ -103,7 +103,7 @@ hf_status hf_polish_stage_run(const hf_run_request *q, hf_problem *p, const hf_p
         .request = q, .problem = p, .summary = summary, .store = store, .messages = messages, .begin_s = hf_clock_s()};
     hf_polish_watcher watcher = {.after = between_steps, .context = &j};
     HF_TRY(hf_store_restore_polish(store, &j.earlier_s, &watcher.n_state, &watcher.state, messages));
-    hf_status status = hf_polish_run(&p->evaluator, bounds->lower_N, bounds->upper_N,
+    hf_status status = hf_polish_run(&p->evaluator, bounds->lower, bounds->upper,
                                      p->settings.optimize.polish_iterations, &watcher, design, &p->workspace, result);
     *wall_s = j.earlier_s + hf_clock_s() - j.begin_s;
     tell_stop(&j, stopped_at);

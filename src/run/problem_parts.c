@@ -204,8 +204,8 @@ hf_status hf_problem_allocate(hf_problem *p, hf_messages *messages)
 {
     HF_TRY(hf_lapack_load(messages));
     p->start_q_N_per_m = malloc((size_t)p->model.n_cable * sizeof(double));
-    p->base_N = malloc(((size_t)p->model.n_variable + 1) * sizeof(double));
-    if (!p->start_q_N_per_m || !p->base_N || hf_workspace_create(&p->model, &p->workspace) != HF_OK)
+    p->initial = malloc(((size_t)p->model.n_variable + 1) * sizeof(double));
+    if (!p->start_q_N_per_m || !p->initial || hf_workspace_create(&p->model, &p->workspace) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", p->model.n_node);
     return HF_OK;
 }
@@ -287,7 +287,7 @@ hf_evaluator hf_problem_evaluator(const hf_problem *p)
 static hf_status check_variable(const hf_problem *p, int k, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
-    double base = p->base_N[k], lower, upper, reach;
+    double base = p->initial[k], lower, upper, reach;
     char name[HF_VARIABLE_NAME_SIZE], where[HF_PLACE_SIZE];
     hf_model_variable_name(&p->model, &p->scene, k, name, sizeof name);
     bool is_row = p->model.variable, is_cable = p->model.variable_cable[k] >= 0;
@@ -366,7 +366,7 @@ hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
     const hf_model *m = &p->model;
     memcpy(p->start_q_N_per_m, p->workspace.q_N_per_m, (size_t)m->n_cable * sizeof(double));
     const hf_workspace *w = &p->workspace;
-    hf_variables_read(m, w->q_N_per_m, w->tension_N, w->length_m, p->base_N);
+    hf_variables_read(m, w->q_N_per_m, w->tension_N, w->length_m, p->initial);
     p->evaluator = hf_problem_evaluator(p);
     if (hf_evaluate_attend(&p->evaluator, &p->workspace) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
@@ -374,7 +374,7 @@ hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
     hf_status status = p->settings.has_optimize && m->n_variable > 0 ? check_base(p, messages) : HF_OK;
     hf_problem_give_places(NULL, messages);
     HF_TRY(status);
-    hf_symmetry_average(m, p->base_N);
+    hf_symmetry_average(m, p->initial);
     return HF_OK;
 }
 
@@ -390,10 +390,10 @@ hf_status hf_problem_batch(hf_problem *p, int n_thread)
 hf_status hf_problem_share(hf_problem *p, hf_messages *messages)
 {
     int n_taut = 0;
-    while (n_taut < p->model.n_variable && (p->model.variable_cable[n_taut] < 0 || p->base_N[n_taut] > 0))
+    while (n_taut < p->model.n_variable && (p->model.variable_cable[n_taut] < 0 || p->initial[n_taut] > 0))
         n_taut++;
     p->solver = HF_SOLVER_AUTO;
-    if (n_taut > 0 && n_taut == p->model.n_variable) p->solver = hf_batch_share(&p->batch, p->base_N);
+    if (n_taut > 0 && n_taut == p->model.n_variable) p->solver = hf_batch_share(&p->batch, p->initial);
     if (!p->batch.lacks_memory) return HF_OK;
     return hf_error(messages, HF_NO_MEMORY, "out of memory for what designs of a net of %d nodes share",
                     p->model.n_node);

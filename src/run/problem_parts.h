@@ -30,7 +30,7 @@ hf_status hf_problem_spare_inputs(const hf_problem *problem, const char *table, 
  * HF_NO_LAPACK. */
 hf_status hf_problem_allocate(hf_problem *problem, hf_messages *messages);
 
-/* Sets base_N and start_q_N_per_m from the shape in the workspace, and the evaluator. Returns HF_OK or HF_NO_MEMORY.
+/* Sets `initial` and start_q_N_per_m from the shape in the workspace, and the evaluator. Returns HF_OK or HF_NO_MEMORY.
  * With a section optimize it returns HF_NO_FEASIBLE for a cable without tension, and HF_BAD_CASE for bounds out of
  * reach or a method that the net does not allow. */
 hf_status hf_problem_base(hf_problem *problem, hf_messages *messages);
@@ -54,7 +54,7 @@ hf_evaluator hf_problem_evaluator(const hf_problem *problem);
 /* Creates the batch of n_thread threads (0: all cores). Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_problem_batch(hf_problem *problem, int n_thread);
 
-/* Prepares the factorisation that the threads of the batch share (hf_batch_share), if all values of cables in base_N
+/* Prepares the factorisation that the threads of the batch share (hf_batch_share), if all values of cables in `initial`
  * are above 0, and sets problem->solver. Returns HF_OK or HF_NO_MEMORY; without this memory the results would have
  * other bits. */
 hf_status hf_problem_share(hf_problem *problem, hf_messages *messages);

@@ -222,7 +222,7 @@ static void choose_design(reach *q, bool is_beside)
     const hf_problem *p = q->p;
     hf_random random = hf_random_stream(1, 0, 0);
     for (int k = 0; k < q->model.n_variable; k++) {
-        double lower, upper, range, base = p->base_N[k];
+        double lower, upper, range, base = p->initial[k];
         hf_variables_bound(&p->settings.optimize, &q->model, k, base, &lower, &upper, &range);
         if (q->model.variable_cable[k] >= 0) range = fmin(range, base); /* values of cables stay above zero */
         double part = hf_random_uniform(&random);
@@ -333,7 +333,7 @@ static void doubt_ranges(const hf_problem *p, hf_messages *messages)
         const hf_variable_settings *row = &p->settings.optimize.variable_row[i];
         double most = 0;
         for (int k = 0; k < m->n_variable; k++)
-            if (row_of_variable(m, k) == i && m->variable_cable[k] >= 0) most = fmax(most, fabs(p->base_N[k]));
+            if (row_of_variable(m, k) == i && m->variable_cable[k] >= 0) most = fmax(most, fabs(p->initial[k]));
         if (!(most > 0) || !isinf(row->upper) || !(row->range > FAR_RANGE * most)) continue;
         hf_warning(messages, "%s: %g is %.2g times the largest value of this row, %.3g: is a part meant, as in %g %%?",
                    hf_messages_place(messages, place, "optimize.variables.%d.range", i), row->range, row->range / most,

@@ -180,9 +180,9 @@ static hf_status prepare_optimize(run *r, hf_summary *s, hf_messages *messages)
     hf_goals_point *point = p->workspace.goals;
     if (goals->n_goal && hf_goals_measure(goals, &p->workspace, point, s->form.goal, &s->form.merit) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
-    HF_TRY(hf_store_restore_base(r->store, p->model.n_variable, p->base_N, messages));
+    HF_TRY(hf_store_restore_base(r->store, p->model.n_variable, p->initial, messages));
     if (hf_problem_batch(p, r->request->threads) != HF_OK ||
-        hf_optimiser_create(r->plan.kind, &p->settings.optimize, &p->model, p->base_N, &r->optimiser) != HF_OK)
+        hf_optimiser_create(r->plan.kind, &p->settings.optimize, &p->model, p->initial, &r->optimiser) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for %d individuals of %d genes on %d threads",
                         p->settings.optimize.population, p->model.n_variable, p->batch.n_thread);
     return HF_OK;
@@ -190,15 +190,15 @@ static hf_status prepare_optimize(run *r, hf_summary *s, hf_messages *messages)
 
 static double *best_design(const hf_population *p)
 {
-    return p->design_N + (size_t)p->best * (size_t)p->n_variable;
+    return p->design + (size_t)p->best * (size_t)p->n_variable;
 }
 
 static void count_at_bounds(const hf_population *p, const double *design, int *at_lower, int *at_upper)
 {
     *at_lower = *at_upper = 0; /* a resumed run has the counts of the session before */
     for (int k = 0; k < p->n_variable; k++) {
-        *at_lower += design[k] <= p->lower_N[k];
-        *at_upper += design[k] >= p->upper_N[k];
+        *at_lower += design[k] <= p->lower[k];
+        *at_upper += design[k] >= p->upper[k];
     }
 }
 
@@ -299,7 +299,7 @@ static bool evaluate_first(run *r)
 {
     const hf_population *p = &r->optimiser.population;
     if (r->first_generation > 0) return hf_batch_next(&r->problem.batch, &r->optimiser, NULL, NULL);
-    hf_batch_run(&r->problem.batch, p->n_individual, p->design_N, p->pending, p->result);
+    hf_batch_run(&r->problem.batch, p->n_individual, p->design, p->pending, p->result);
     return true;
 }
 
@@ -368,7 +368,7 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     hf_workspace *w = &r->problem.workspace;
     const hf_population *p = &r->optimiser.population;
     hf_polish_result outcome;
-    double *design = r->problem.base_N;
+    double *design = r->problem.initial;
     if (s->has_optimize && p->best >= 0) design = best_design(p);
     for (int k = 0; k < p->n_variable; k++) /* the initial design may violate the bounds */
         design[k] = hf_population_clamp(p, k, design[k]);

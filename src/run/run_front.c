@@ -73,7 +73,7 @@ static double *make_starts(const hf_problem *p, const hf_population *bounds, con
     double *start = malloc((size_t)(earlier->n_point + 1) * (size_t)n_variable * sizeof *start);
     *n = 0;
     for (int i = 0; i <= earlier->n_point && start; i++) {
-        const double *design = i < earlier->n_point ? earlier->design + (size_t)i * (size_t)n_variable : p->base_N;
+        const double *design = i < earlier->n_point ? earlier->design + (size_t)i * (size_t)n_variable : p->initial;
         bool is_wanted = i < earlier->n_point ? earlier->point[i].mark == HF_FRONT_ON : *n == 0;
         for (int k = 0; k < n_variable && is_wanted; k++)
             start[(size_t)*n * (size_t)n_variable + (size_t)k] = hf_population_clamp(bounds, k, design[k]);
@@ -115,8 +115,8 @@ hf_status hf_run_front(const hf_run_request *q, hf_problem *p, const hf_populati
     progress told = {q, hf_clock_s(), o->front_points};
     hf_trade_watcher watcher = {.tell = tell_step, .context = &told, .is_telling = ATOMIC_FLAG_INIT};
     hf_trade trade = {.evaluator = &p->evaluator,
-                      .lower = bounds->lower_N,
-                      .upper = bounds->upper_N,
+                      .lower = bounds->lower,
+                      .upper = bounds->upper,
                       .n_point = o->front_points,
                       .max_iterations = o->polish_iterations,
                       .n_thread = p->batch.n_thread,

@@ -171,8 +171,7 @@ static hf_status check_bounds(const hf_problem *p, const hf_taken_point *taken, 
     const hf_front_origin *origin = &p->settings.taken;
     char name[HF_VARIABLE_NAME_SIZE], words[DIFFERENCES_SIZE];
     for (int k = 0; k < bounds->n_variable; k++) {
-        double value = taken->design[k], low = bounds->lower_N[k], high = bounds->upper_N[k],
-               room = SAME * (high - low);
+        double value = taken->design[k], low = bounds->lower[k], high = bounds->upper[k], room = SAME * (high - low);
         if (!(value < low - room) && !(value > high + room)) continue;
         hf_model_variable_name(&p->model, &p->scene, k, name, sizeof name);
         return hf_error(messages, HF_BAD_CASE,

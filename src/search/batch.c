@@ -75,9 +75,9 @@ static void free_engine(hf_batch *batch)
     batch->engine = NULL;
 }
 
-static hf_status create_chord(hf_batch *batch, struct hf_batch_engine *e, const double *base_N)
+static hf_status create_chord(hf_batch *batch, struct hf_batch_engine *e, const double *initial)
 {
-    HF_TRY(hf_chord_create(batch->evaluator, base_N, &batch->workspace[0], &e->shared));
+    HF_TRY(hf_chord_create(batch->evaluator, initial, &batch->workspace[0], &e->shared));
     e->chord = calloc((size_t)batch->n_thread, sizeof *e->chord);
     if (!e->chord) return HF_NO_MEMORY;
     for (int i = 0; i < n_room_at_once(batch); i++)
@@ -95,16 +95,16 @@ static hf_status create_lanes(hf_batch *batch, struct hf_batch_engine *e)
     return HF_OK;
 }
 
-/* Makes the engine of this solver; base_N [n_variable] is the initial design. Returns false and leaves the batch
+/* Makes the engine of this solver; initial [n_variable] is the initial design. Returns false and leaves the batch
  * without an engine if memory runs out, or if the initial design is unsuitable. lacks_memory is true in the first
  * case. */
-static bool set_engine(hf_batch *batch, hf_solver solver, const double *base_N)
+static bool set_engine(hf_batch *batch, hf_solver solver, const double *initial)
 {
     hf_status status = HF_NO_MEMORY;
     struct hf_batch_engine *e = batch->engine = calloc(1, sizeof *e);
     if (e) {
         e->solver = solver;
-        status = solver == HF_SOLVER_CHORD ? create_chord(batch, e, base_N) : create_lanes(batch, e);
+        status = solver == HF_SOLVER_CHORD ? create_chord(batch, e, initial) : create_lanes(batch, e);
     }
     batch->lacks_memory = status == HF_NO_MEMORY;
     if (status != HF_OK) free_engine(batch);
@@ -133,13 +133,13 @@ hf_solver hf_batch_solver(const hf_evaluator *v, bool *has_lanes)
     return HF_SOLVER_FIXED_POINT;
 }
 
-hf_solver hf_batch_share(hf_batch *batch, const double *base_N)
+hf_solver hf_batch_share(hf_batch *batch, const double *initial)
 {
     bool has_lanes;
     hf_solver solver = hf_batch_solver(batch->evaluator, &has_lanes);
     free_engine(batch); /* made for an earlier initial design */
     batch->lacks_memory = false;
-    if (!has_lanes || set_engine(batch, solver, base_N) || solver == HF_SOLVER_FIXED_POINT) return solver;
+    if (!has_lanes || set_engine(batch, solver, initial) || solver == HF_SOLVER_FIXED_POINT) return solver;
     return each_by_newton(batch->evaluator) ? HF_SOLVER_NEWTON : HF_SOLVER_FIXED_POINT;
 }
 
@@ -154,21 +154,21 @@ static bool has_room(hf_batch *batch, int room)
     return true;
 }
 
-/* Evaluates designs in the calling thread until `next` returns -1. design_N: [][n_variable]; r: [], written at the
+/* Evaluates designs in the calling thread until `next` returns -1. design: [][n_variable]; r: [], written at the
  * indices that `next` returns. If keeps_shape is true, the workspace of the room holds the last shape afterwards. */
 static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *context, bool keeps_shape,
-                     const double *design_N, hf_form_result *r)
+                     const double *design, hf_form_result *r)
 {
     const hf_evaluator *v = batch->evaluator;
     const struct hf_batch_engine *e = batch->engine;
     hf_workspace *w = &batch->workspace[room];
     if (e && e->solver == HF_SOLVER_CHORD)
-        hf_chord_run(&e->shared, &e->chord[room], w, next, context, keeps_shape, design_N, r);
+        hf_chord_run(&e->shared, &e->chord[room], w, next, context, keeps_shape, design, r);
     else if (e)
-        hf_swarm_run(v, &e->plan, &e->lanes[room], w, next, context, design_N, r);
+        hf_swarm_run(v, &e->plan, &e->lanes[room], w, next, context, design, r);
     else
         for (int i = next(context); i >= 0; i = next(context))
-            hf_evaluate(v, design_N + (size_t)i * (size_t)v->model->n_variable, w, &r[i]);
+            hf_evaluate(v, design + (size_t)i * (size_t)v->model->n_variable, w, &r[i]);
 }
 
 /* ---- the parallel run ---- */
@@ -177,7 +177,7 @@ static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *contex
 typedef struct {
     hf_batch *batch;
     hf_parallel_queue queue;
-    const double *design_N;
+    const double *design;
     hf_form_result *result;
 } batch_job;
 
@@ -188,14 +188,14 @@ static void work_on_job(void *context, int room)
     batch_job *j = context;
     if (hf_parallel_is_empty(&j->queue) || !has_room(j->batch, room)) return;
     double start_s = hf_clock_thread_cpu_s();
-    work_off(j->batch, room, hf_parallel_take, &j->queue, false, j->design_N, j->result);
+    work_off(j->batch, room, hf_parallel_take, &j->queue, false, j->design, j->result);
     /* Only the processor time of this thread counts. Its wait for other threads is not included. */
     hf_parallel_add(&j->batch->cpu_s, hf_clock_thread_cpu_s() - start_s);
 }
 
-void hf_batch_run(hf_batch *batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *r)
+void hf_batch_run(hf_batch *batch, int n, const double *design, const unsigned char *pending, hf_form_result *r)
 {
-    batch_job job = {batch, {n, 0, pending}, design_N, r};
+    batch_job job = {batch, {n, 0, pending}, design, r};
     if (n > 0) hf_parallel_run(batch->n_thread, work_on_job, &job);
 }
 
@@ -230,7 +230,7 @@ static void work_on_generation(void *context, int room)
     if (room == 0 && g->beside) g->beside(g->context);
     if (hf_parallel_is_empty(&g->place) || !has_room(g->batch, room)) return;
     double start_s = hf_clock_thread_cpu_s();
-    work_off(g->batch, room, propose_one, g, false, next->design_N, next->result);
+    work_off(g->batch, room, propose_one, g, false, next->design, next->result);
     hf_parallel_add(&g->batch->cpu_s, hf_clock_thread_cpu_s() - start_s);
 }
 
@@ -246,10 +246,10 @@ bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void
     return true;
 }
 
-hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design_N, hf_form_result *r)
+hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design, hf_form_result *r)
 {
     hf_parallel_queue one = {1, 0, NULL};
-    work_off(batch, 0, hf_parallel_take, &one, true, design_N, r);
+    work_off(batch, 0, hf_parallel_take, &one, true, design, r);
     return &batch->workspace[0];
 }
 

@@ -35,16 +35,16 @@ double *hf_breeding_draws(const hf_breeding *g, int i)
 void hf_breeding_first(const hf_breeding *g, uint64_t seed, hf_population *p)
 {
     for (int i = 0; i < p->n_individual; i++) {
-        double *design_N = p->design_N + (size_t)i * (size_t)p->n_variable;
+        double *design = p->design + (size_t)i * (size_t)p->n_variable;
         double *draw = hf_breeding_draws(g, i);
         hf_random random = hf_random_stream(seed, 0, i);
         for (int j = 0; j < g->model->n_variable_group; j++)
             draw[j] = i == 0 ? 0 : 2 * hf_random_uniform(&random) - 1;
         for (int k = 0; k < p->n_variable; k++) {
             double step = p->reach[k] * draw[g->model->variable_group[k]];
-            design_N[k] = hf_population_clamp(p, k, p->base_N[k] + step);
+            design[k] = hf_population_clamp(p, k, p->initial[k] + step);
         }
-        hf_population_link(p, g->model, design_N);
+        hf_population_link(p, g->model, design);
         p->pending[i] = 1;
         p->crossover_rate[i] = p->mutation_rate[i] = (double)NAN;
         p->parent[2 * i] = p->parent[2 * i + 1] = -1;
@@ -88,6 +88,6 @@ void hf_breeding_mutate(const hf_breeding *g, const hf_population *p, double rat
     for (int k = 0; k < p->n_variable; k++) {
         if (!hf_breeding_leads(g, k)) continue;
         double step = draw[g->model->variable_group[k]] + mutation_step(single, random);
-        child[k] = hf_population_clamp(p, k, child[k] + step * (p->upper_N[k] - p->lower_N[k]));
+        child[k] = hf_population_clamp(p, k, child[k] + step * (p->upper[k] - p->lower[k]));
     }
 }

@@ -207,11 +207,11 @@ hf_status hf_chord_create_here(const hf_evaluator *v, hf_workspace *w, hf_chord 
     return chord->n_pull ? pack_truss(m, w, chord) : HF_OK;
 }
 
-hf_status hf_chord_create(const hf_evaluator *v, const double *base_N, hf_workspace *w, hf_chord *chord)
+hf_status hf_chord_create(const hf_evaluator *v, const double *initial, hf_workspace *w, hf_chord *chord)
 {
     hf_form_result base;
     *chord = (hf_chord){0};
-    hf_status status = hf_evaluate(v, base_N, w, &base);
+    hf_status status = hf_evaluate(v, initial, w, &base);
     if (!hf_status_has_shape(status)) return status; /* a design that only breaks a limit has a shape, too */
     return hf_chord_create_here(v, w, chord);
 }
@@ -284,7 +284,7 @@ typedef struct {
     hf_chord_lanes *lanes;
     hf_workspace *w;
     bool keeps_shape;
-    const double *design_N;
+    const double *design;
     hf_form_result *result;
     int steps[HF_LANES];
     double excess_before_N[HF_LANES];
@@ -300,7 +300,7 @@ static void load(void *solver, int lane, int i_design)
     chord_run *s = solver;
     const hf_chord *c = s->chord;
     const hf_model *m = c->evaluator->model;
-    const double *design_N = s->design_N + (size_t)i_design * (size_t)m->n_variable;
+    const double *design = s->design + (size_t)i_design * (size_t)m->n_variable;
     const hf_chord_lanes *l = s->lanes;
     for (int d = 0; d < 3; d++) {
         double *x = l->x_m + (ptrdiff_t)d * m->n_node * HF_LANES + lane;
@@ -313,19 +313,19 @@ static void load(void *solver, int lane, int i_design)
     for (int i = 0; i < c->n_pull; i++)
         l->displacement_m[i * HF_LANES + lane] = c->base_displacement_m[i];
     for (int k = 0; k < m->n_variable; k++)
-        l->variable[k * HF_LANES + lane] = design_N[k] / c->variable_divisor[k];
+        l->variable[k * HF_LANES + lane] = design[k] / c->variable_divisor[k];
     s->steps[lane] = 0;
     s->excess_before_N[lane] = INFINITY;
 }
 
 /* Copies the shape of the lane into the workspace. The scalar code measures it there and writes the result. */
-static void unload(const chord_run *s, int lane, const double *design_N, hf_form_result *r)
+static void unload(const chord_run *s, int lane, const double *design, hf_form_result *r)
 {
     const hf_chord *c = s->chord;
     const hf_chord_lanes *l = s->lanes;
     const hf_model *m = c->evaluator->model;
     hf_workspace *w = s->w;
-    hf_evaluate_prepare(c->evaluator, design_N, w);
+    hf_evaluate_prepare(c->evaluator, design, w);
     for (int i = 0; i < 3 * m->n_node; i++)
         w->position_m[i] = l->x_m[i * HF_LANES + lane];
     hf_form_measure(m, c->evaluator->form, w, r);
@@ -365,7 +365,7 @@ static void report(const chord_run *s, int lane, hf_form_result *r)
 
 /* Stores the result of a lane that has converged. The kernel measures all lanes at once. If the shape is not ordinary,
  * the scalar code measures it again. */
-static void finish(chord_run *s, int lane, const double *design_N, hf_form_result *r)
+static void finish(chord_run *s, int lane, const double *design, hf_form_result *r)
 {
     const hf_chord *c = s->chord;
     if (!s->is_measured) c->kernels->measure(c, s->lanes, &s->now);
@@ -373,7 +373,7 @@ static void finish(chord_run *s, int lane, const double *design_N, hf_form_resul
     bool ordinary = is_ordinary(s, lane);
     if (ordinary) report(s, lane, r);
     hf_form_result alone = *r;
-    if (s->keeps_shape || !ordinary || hf_evaluate_needs_shape(c->evaluator, r)) unload(s, lane, design_N, &alone);
+    if (s->keeps_shape || !ordinary || hf_evaluate_needs_shape(c->evaluator, r)) unload(s, lane, design, &alone);
     if (!ordinary) *r = alone;
     r->iterations = s->steps[lane];
     for (int i = 0; i < c->n_pull; i++)
@@ -412,10 +412,10 @@ static bool settle(void *solver, int lane, int i_design)
 {
     chord_run *s = solver;
     const hf_evaluator *v = s->chord->evaluator;
-    const double *design_N = s->design_N + (size_t)i_design * (size_t)v->model->n_variable;
+    const double *design = s->design + (size_t)i_design * (size_t)v->model->n_variable;
     double excess_N = s->at[lane].excess_N;
     if (excess_N <= v->form->residual_tolerance * v->model->reference_N) {
-        finish(s, lane, design_N, s->result + i_design);
+        finish(s, lane, design, s->result + i_design);
         return true;
     }
     bool contracts = s->steps[lane] < PATIENCE || excess_N < CONTRACTION * s->excess_before_N[lane];
@@ -424,7 +424,7 @@ static bool settle(void *solver, int lane, int i_design)
         s->steps[lane]++;
         return false;
     }
-    hf_evaluate(v, design_N, s->w, s->result + i_design);
+    hf_evaluate(v, design, s->w, s->result + i_design);
     return true;
 }
 
@@ -439,10 +439,9 @@ static void step(void *solver)
 }
 
 void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *w, hf_lane_next *next, void *context,
-                  bool keeps_shape, const double *design_N, hf_form_result *r)
+                  bool keeps_shape, const double *design, hf_form_result *r)
 {
     static const hf_lane_solver work = {load, look, settle, step};
-    chord_run s = {
-        .chord = chord, .lanes = lanes, .w = w, .keeps_shape = keeps_shape, .design_N = design_N, .result = r};
+    chord_run s = {.chord = chord, .lanes = lanes, .w = w, .keeps_shape = keeps_shape, .design = design, .result = r};
     hf_lane_schedule_run(&work, &s, next, context);
 }

@@ -17,10 +17,10 @@
  * have a Newton matrix (a convex energy), and form.factor must not be `lapack`. */
 bool hf_chord_applies(const hf_evaluator *evaluator);
 
-/* Evaluates the initial design base_N [n_variable], factors its Newton matrix and packs it for the lanes. workspace is
+/* Evaluates the initial design [n_variable], factors its Newton matrix and packs it for the lanes. workspace is
  * scratch. Returns HF_OK, HF_NO_MEMORY, or another status if the initial design has no shape or no positive definite
  * matrix. Call hf_chord_free in any case. */
-hf_status hf_chord_create(const hf_evaluator *evaluator, const double *base_N, hf_workspace *workspace,
+hf_status hf_chord_create(const hf_evaluator *evaluator, const double *initial, hf_workspace *workspace,
                           hf_chord *chord);
 
 /* Makes the shared matrix at the shape that the workspace holds, whatever the laws of its cables. This serves nets
@@ -37,9 +37,9 @@ size_t hf_chord_bytes(const hf_evaluator *evaluator, size_t *lanes_bytes);
 hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes);
 void hf_chord_lanes_free(hf_chord_lanes *lanes);
 
-/* Evaluates the designs whose indices next(context) returns, until it returns -1. design_N: [][n_variable]; result: [].
+/* Evaluates the designs whose indices next(context) returns, until it returns -1. design: [][n_variable]; result: [].
  * If keeps_shape is true, the workspace holds the last shape afterwards; otherwise it is scratch. */
 void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, hf_lane_next *next,
-                  void *context, bool keeps_shape, const double *design_N, hf_form_result *result);
+                  void *context, bool keeps_shape, const double *design, hf_form_result *result);
 
 #endif

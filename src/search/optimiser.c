@@ -14,11 +14,11 @@ const char *const hf_polish_stop_word[5] = {"converged", "stalled", "max_iterati
 /* ---- ask and tell ---- */
 
 hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *s, const hf_model *m,
-                              const double *base_N, hf_optimiser *optimiser)
+                              const double *initial, hf_optimiser *optimiser)
 {
     hf_optimiser *o = optimiser;
     *o = (hf_optimiser){.settings = s};
-    HF_TRY(hf_population_create(s, m, base_N, &o->population, &o->next));
+    HF_TRY(hf_population_create(s, m, initial, &o->population, &o->next));
     if (!kind) return HF_OK;
     o->kind = kind;
     HF_TRY(kind->create(s, m, &o->state));

@@ -158,9 +158,9 @@ static void move_elite(const breeder *g, const hf_population *p, int a, int b, i
 {
     size_t n = (size_t)p->n_variable;
     int better = hf_population_is_better(p, a, b) ? a : b, worse = a + b - better;
-    const double *to = p->design_N + (size_t)better * n, *from = p->design_N + (size_t)worse * n;
+    const double *to = p->design + (size_t)better * n, *from = p->design + (size_t)worse * n;
     int leader = g->elite[(int)(hf_random_uniform(random) * g->settings->elites)];
-    memcpy(child, p->design_N + (size_t)leader * n, n * sizeof *child);
+    memcpy(child, p->design + (size_t)leader * n, n * sizeof *child);
     hf_breeding_move_along(&g->breeding, p, &crossover, from, to, i, child, random);
 }
 
@@ -177,9 +177,9 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
     /* The child without crossover is a copy of this individual. In the variation `difference`, it is the best
      * individual instead of an infeasible one, because the best one is nearest to the limits. */
     int itself = by_chain ? a : now->result[i].status == HF_OK ? i : g->elite[0];
-    const double *mother = now->design_N + (size_t)a * n, *father = now->design_N + (size_t)b * n;
-    const double *same = now->design_N + (size_t)itself * n;
-    double *child = next->design_N + (size_t)i * n;
+    const double *mother = now->design + (size_t)a * n, *father = now->design + (size_t)b * n;
+    const double *same = now->design + (size_t)itself * n;
+    double *child = next->design + (size_t)i * n;
     double merit = fmin(merit_of(now, a), merit_of(now, b)); /* fmin ignores the NaN of an infeasible parent */
     double pc = adaptive(g, s->crossover_high, s->crossover_low, merit);
     double pm = adaptive(g, s->mutation_high, s->mutation_low, merit);
@@ -219,7 +219,7 @@ static void keep_elite(const breeder *g, const hf_population *now, hf_population
 {
     size_t n = (size_t)now->n_variable;
     int i = g->elite[e];
-    memcpy(next->design_N + (size_t)e * n, now->design_N + (size_t)i * n, n * sizeof(double));
+    memcpy(next->design + (size_t)e * n, now->design + (size_t)i * n, n * sizeof(double));
     next->result[e] = now->result[i];
     next->crossover_rate[e] = next->mutation_rate[e] = 0;
     next->parent[2 * e] = next->parent[2 * e + 1] = i;

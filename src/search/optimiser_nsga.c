@@ -167,12 +167,12 @@ static void propose_child(void *state, const hf_population *now, hf_population *
     int to = is_better_by(g, &w, a, b) ? a : b, from = a + b - to;
     bool approaches = hf_random_uniform(&random) < BY_APPROACH;
     if (approaches) to = a, from = leader;
-    const double *same = now->design_N + (size_t)leader * n;
-    double *child = next->design_N + (size_t)i * n;
+    const double *same = now->design + (size_t)leader * n;
+    double *child = next->design + (size_t)i * n;
     memcpy(child, same, n * sizeof *child);
     if (hf_random_uniform(&random) < s->crossover_high && to != from)
-        hf_breeding_move_along(&g->breeding, now, &crossover, now->design_N + (size_t)from * n,
-                               now->design_N + (size_t)to * n, i, child, &random);
+        hf_breeding_move_along(&g->breeding, now, &crossover, now->design + (size_t)from * n,
+                               now->design + (size_t)to * n, i, child, &random);
     double rate = RATE * s->mutation_high;
     hf_breeding_mutate(&g->breeding, now, rate, SINGLES * rate, i, child, &random);
     hf_population_link(now, g->breeding.model, child);

@@ -219,7 +219,7 @@ static void copy_point(const hf_population *population, int i, hf_front *f, int 
         point->objective[j] = j < f->n_objective ? population->result[i].goal[j] : (double)NAN;
         point->multiplier[j] = (double)NAN;
     }
-    memcpy(f->design + (size_t)place * n, population->design_N + (size_t)i * n, n * sizeof(double));
+    memcpy(f->design + (size_t)place * n, population->design + (size_t)i * n, n * sizeof(double));
 }
 
 static bool are_equal(const hf_pareto *p, int a, int b)

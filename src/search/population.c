@@ -26,7 +26,7 @@ const char *const hf_population_stop_word[4] = {"running", "stagnation", "genera
 static void lay_out_generation(hf_arena *a, hf_population *p)
 {
     size_t n = (size_t)p->n_individual, k = (size_t)p->n_variable;
-    p->design_N = hf_arena_take(a, n * k, sizeof(double));
+    p->design = hf_arena_take(a, n * k, sizeof(double));
     p->result = hf_arena_take(a, n, sizeof(hf_form_result));
     p->pending = hf_arena_take(a, n, 1);
     p->crossover_rate = hf_arena_take(a, n, sizeof(double));
@@ -39,9 +39,9 @@ static void lay_out_generation(hf_arena *a, hf_population *p)
 static void lay_out_both(hf_arena *a, hf_population *p, hf_population *next)
 {
     size_t k = (size_t)p->n_variable;
-    p->base_N = hf_arena_take(a, k, sizeof(double));
-    p->lower_N = hf_arena_take(a, k, sizeof(double));
-    p->upper_N = hf_arena_take(a, k, sizeof(double));
+    p->initial = hf_arena_take(a, k, sizeof(double));
+    p->lower = hf_arena_take(a, k, sizeof(double));
+    p->upper = hf_arena_take(a, k, sizeof(double));
     p->reach = hf_arena_take(a, k, sizeof(double));
     p->best_merit = hf_arena_take(a, (size_t)p->generation_limit, sizeof(double));
     p->best_psi_m = hf_arena_take(a, (size_t)p->generation_limit, sizeof(double));
@@ -68,28 +68,28 @@ static void link_bounds(const hf_model *m, hf_population *p)
         if (leader_of[leader] != leader) continue;
         for (int k = leader; k < p->n_variable; k++) {
             if (leader_of[k] != leader) continue;
-            low = fmax(low, p->lower_N[k] - p->base_N[k]);
-            high = fmin(high, p->upper_N[k] - p->base_N[k]);
+            low = fmax(low, p->lower[k] - p->initial[k]);
+            high = fmin(high, p->upper[k] - p->initial[k]);
         }
         for (int k = leader; low < high && k < p->n_variable; k++) {
             if (leader_of[k] != leader) continue;
-            p->lower_N[k] = fmax(p->lower_N[k], p->base_N[k] + low);
-            p->upper_N[k] = fmin(p->upper_N[k], p->base_N[k] + high);
+            p->lower[k] = fmax(p->lower[k], p->initial[k] + low);
+            p->upper[k] = fmin(p->upper[k], p->initial[k] + high);
         }
     }
 }
 
-void hf_population_link(const hf_population *population, const hf_model *m, double *design_N)
+void hf_population_link(const hf_population *population, const hf_model *m, double *design)
 {
     if (!has_links(m)) return;
-    hf_symmetry_follow(population->n_variable, m->variable_leader, population->base_N, design_N);
+    hf_symmetry_follow(population->n_variable, m->variable_leader, population->initial, design);
     for (int k = 0; k < population->n_variable; k++)
-        design_N[k] = hf_population_clamp(population, k, design_N[k]);
+        design[k] = hf_population_clamp(population, k, design[k]);
 }
 
 /* ---- two generations ---- */
 
-hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m, const double *base_N,
+hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m, const double *initial,
                                hf_population *population, hf_population *next)
 {
     hf_population *p = population;
@@ -102,9 +102,9 @@ hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m,
                          .best = -1};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_both(&arena, p, next)));
     p->block = next->block = arena.block;
-    memcpy(p->base_N, base_N, (size_t)p->n_variable * sizeof *base_N);
+    memcpy(p->initial, initial, (size_t)p->n_variable * sizeof *initial);
     for (int k = 0; k < p->n_variable; k++) {
-        hf_variables_bound(s, m, k, base_N[k], &p->lower_N[k], &p->upper_N[k], &p->reach[k]);
+        hf_variables_bound(s, m, k, initial[k], &p->lower[k], &p->upper[k], &p->reach[k]);
     }
     if (has_links(m)) link_bounds(m, p);
     return HF_OK;
@@ -124,7 +124,7 @@ void hf_population_advance(hf_population *population, hf_population *next)
         population->member = next->member;                                                                             \
         next->member = now;                                                                                            \
     } while (0)
-    EXCHANGE(double, design_N);
+    EXCHANGE(double, design);
     EXCHANGE(double, crossover_rate);
     EXCHANGE(double, mutation_rate);
     EXCHANGE(hf_form_result, result);
@@ -179,7 +179,7 @@ void hf_population_note_trials(hf_population *population)
 void hf_population_take_over(const hf_population *before, int k, hf_population *population, int i)
 {
     size_t n = (size_t)population->n_variable;
-    memcpy(population->design_N + (size_t)i * n, before->design_N + (size_t)k * n, n * sizeof(double));
+    memcpy(population->design + (size_t)i * n, before->design + (size_t)k * n, n * sizeof(double));
     population->result[i] = before->result[k];
     population->parent[2 * i] = k;
     population->parent[2 * i + 1] = -1;

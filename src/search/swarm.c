@@ -19,7 +19,7 @@ typedef struct {
     const hf_swarm_plan *plan;
     hf_swarm_lanes *lanes;
     hf_workspace *w;
-    const double *design_N;
+    const double *design;
     hf_form_result *result;
     hf_stop_rule stop;
     int iterations[HF_LANES];
@@ -31,7 +31,7 @@ static void load(void *solver, int lane, int i_design)
 {
     swarm *s = solver;
     const hf_model *m = s->v->model;
-    hf_evaluate_prepare(s->v, s->design_N + (size_t)i_design * (size_t)m->n_variable, s->w);
+    hf_evaluate_prepare(s->v, s->design + (size_t)i_design * (size_t)m->n_variable, s->w);
     /* hf_swarm_put reads the positions of the supports only. */
     memcpy(s->w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double));
     hf_swarm_put(s->plan, s->w, lane, s->lanes);
@@ -81,19 +81,19 @@ static bool settle(void *solver, int lane, int i_design)
 {
     swarm *s = solver;
     hf_form_result *r = s->result + i_design;
-    const double *design_N = s->design_N + (size_t)i_design * (size_t)s->v->model->n_variable;
+    const double *design = s->design + (size_t)i_design * (size_t)s->v->model->n_variable;
     s->iterations[lane]++;
     hf_status status = health(s, &s->now, lane);
     hf_stop_reason reason = status == HF_OK ? stop_reason(s, &s->now, lane) : HF_STOPPED_ILL_POSED;
     if (reason == HF_STOPPED_NONE) return false;
     if (status == HF_OK) {
-        hf_evaluate_prepare(s->v, design_N, s->w);
+        hf_evaluate_prepare(s->v, design, s->w);
         hf_swarm_get(s->plan, s->lanes, lane, s->w);
         hf_form_accept(s->v->model, s->v->form, reason, s->iterations[lane], s->w, r);
         if (s->stop == HF_STOP_RESIDUAL) hf_equilibrium_judge_open(s->v->model, s->v->form, s->w, r);
         hf_loose_refuse(s->v->model, s->v->form, s->w, r);
     } else if (s->v->model->has_newton) { /* hf_evaluate finds out whether the net has a shape all the same */
-        hf_evaluate(s->v, design_N, s->w, r);
+        hf_evaluate(s->v, design, s->w, r);
         return true;
     } else {
         hf_form_refuse(status, s->iterations[lane], r);
@@ -109,17 +109,17 @@ static void step(void *solver)
 }
 
 void hf_swarm_run(const hf_evaluator *evaluator, const hf_swarm_plan *plan, hf_swarm_lanes *lanes, hf_workspace *w,
-                  hf_lane_next *next, void *context, const double *design_N, hf_form_result *r)
+                  hf_lane_next *next, void *context, const double *design, hf_form_result *r)
 {
     static const hf_lane_solver work = {load, look, settle, step};
     swarm s = {.v = evaluator,
                .plan = plan,
                .lanes = lanes,
                .w = w,
-               .design_N = design_N,
+               .design = design,
                .result = r,
                .stop = evaluator->rule == HF_RULE_SEEDED ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
-    hf_evaluate_prepare(evaluator, design_N, w);
+    hf_evaluate_prepare(evaluator, design, w);
     memcpy(lanes->law, w->law, (size_t)evaluator->model->n_cable); /* all designs have the same laws */
     hf_lane_schedule_run(&work, &s, next, context);
 }

@@ -8,11 +8,11 @@
 #include "search/swarm_lane.h"
 #include <hifdm/evaluate.h>
 
-/* Evaluates the designs whose indices next(context) returns, until it returns -1. design_N: [][n_variable]; result: [].
+/* Evaluates the designs whose indices next(context) returns, until it returns -1. design: [][n_variable]; result: [].
  * A design without a shape has its status in the result. If its lane fails and the model has no Newton matrix, the
  * result does not identify the cable or node at fault. */
 void hf_swarm_run(const hf_evaluator *evaluator, const hf_swarm_plan *plan, hf_swarm_lanes *lanes,
-                  hf_workspace *workspace, hf_lane_next *next, void *context, const double *design_N,
+                  hf_workspace *workspace, hf_lane_next *next, void *context, const double *design,
                   hf_form_result *result);
 
 #endif

@@ -169,7 +169,7 @@ hf_status hf_evaluate_attend(const hf_evaluator *v, hf_workspace *w)
     return hf_goals_point_create(v->goals, w->goals);
 }
 
-void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_workspace *w)
+void hf_evaluate_prepare(const hf_evaluator *v, const double *design, hf_workspace *w)
 {
     const hf_model *m = v->model;
     hf_form_prepare(m, w);
@@ -179,7 +179,7 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design_N, hf_works
         if (hf_law_has(m->law[e], HF_LAW_ITERATES))
             w->q_N_per_m[e] = fmax(v->start_q_N_per_m[e], HF_LAW_LEAST_Q_N_PER_M);
     for (int k = 0; k < m->n_variable; k++)
-        apply_variable(v, k, design_N[k], w);
+        apply_variable(v, k, design[k], w);
 }
 
 /* Measures the objectives of a shape, feasible or not. */
@@ -212,12 +212,12 @@ bool hf_evaluate_is_unique(const hf_evaluator *v)
     return v->rule != HF_RULE_SEEDED || v->model->variable;
 }
 
-hf_status hf_evaluate(const hf_evaluator *v, const double *design_N, hf_workspace *w, hf_form_result *r)
+hf_status hf_evaluate(const hf_evaluator *v, const double *design, hf_workspace *w, hf_form_result *r)
 {
     bool seeded = !hf_evaluate_is_unique(v);
     net_problem problem = {v->model, v->form, !seeded && v->solver != HF_SOLVER_FIXED_POINT && v->model->has_newton,
                            seeded ? HF_STOP_RMS_CHANGE : HF_STOP_RESIDUAL};
-    hf_evaluate_prepare(v, design_N, w);
+    hf_evaluate_prepare(v, design, w);
     find_net(&problem, w, NULL, r);
     hf_loose_refuse(v->model, v->form, w, r);
     return hf_evaluate_judge(v, w, r);

@@ -133,7 +133,7 @@ static uint64_t hash_designs(const hf_population *population)
     uint64_t chain[CHAINS] = {1, 2, 3, 4}, bits, all = 0;
     for (size_t i = 0; i < (size_t)population->n_individual * (size_t)population->n_variable; i++) {
         uint64_t *h = &chain[i % CHAINS];
-        memcpy(&bits, &population->design_N[i], sizeof bits);
+        memcpy(&bits, &population->design[i], sizeof bits);
         *h = (*h ^ bits) * factor;
         *h ^= *h >> 32;
     }
@@ -151,7 +151,7 @@ static hf_population best_alone(const hf_population *p)
     for (int i = 1; p->best < 0 && i < p->n_individual; i++)
         if (hf_population_is_better(p, i, (int)best)) best = (size_t)i;
     one.n_individual = 1;
-    one.design_N += best * (size_t)p->n_variable;
+    one.design += best * (size_t)p->n_variable;
     one.result += best;
     one.pending += best;
     one.crossover_rate += best;
@@ -257,7 +257,7 @@ bool hf_generations_are_sound(const hf_population *p)
         for (int k = 0; k < 2; k++)
             if (p->parent[2 * i + k] < -1 || p->parent[2 * i + k] >= p->n_individual) return false;
         for (int k = 0; k < p->n_variable; k++)
-            if (!is_within(p->design_N[(size_t)i * (size_t)p->n_variable + (size_t)k], p->lower_N[k], p->upper_N[k]))
+            if (!is_within(p->design[(size_t)i * (size_t)p->n_variable + (size_t)k], p->lower[k], p->upper[k]))
                 return false;
     }
     return true;

@@ -26,7 +26,7 @@ void hf_generations_list(const hf_population *now, hf_generations_row row[HF_GEN
 #define ARRAY(member) now->member, sizeof *now->member, sizeof *now->member
 #define SINGLE(value) &(value), 0, sizeof(value)
     const hf_generations_row before[] = {
-        {hf_layout_of_variables("design_N", now->has_rows, 3, (const hsize_t[3]){1, p, k}), ARRAY(design_N)},
+        {hf_layout_of_variables("design_N", now->has_rows, 3, (const hsize_t[3]){1, p, k}), ARRAY(design)},
         {{"evaluated",
           HF_KIND_FLAG,
           2,

@@ -280,14 +280,14 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
     return hf_hdf5_unlock(s->f.io.status);
 }
 
-static void write_design(hf_store *s, hid_t group, const hf_model *m, const double *design_N)
+static void write_design(hf_store *s, hid_t group, const hf_model *m, const double *design)
 {
-    hf_hdf5_array design =
+    hf_hdf5_array array =
         hf_layout_of_variables("design_N", m->variable, 1, (const hsize_t[1]){(hsize_t)m->n_variable});
-    hf_hdf5_write_array(&s->f.io, group, &design, design_N);
+    hf_hdf5_write_array(&s->f.io, group, &array, design);
 }
 
-hf_status hf_store_best(hf_store *s, hf_stage stage, const hf_model *m, const hf_workspace *w, const double *design_N,
+hf_status hf_store_best(hf_store *s, hf_stage stage, const hf_model *m, const hf_workspace *w, const double *design,
                         hf_messages *messages)
 {
     if (!s) return HF_OK;
@@ -300,7 +300,7 @@ hf_status hf_store_best(hf_store *s, hf_stage stage, const hf_model *m, const hf
         hf_hdf5_fail(&s->f.io, "replace", s->f.io.file, hf_stage_group[stage]);
     hid_t group = hf_hdf5_make_group(&s->f.io, hf_stage_group[stage]);
     write_shape(s, group, m, w);
-    write_design(s, group, m, design_N);
+    write_design(s, group, m, design);
     hf_hdf5_close(&s->f.io, group);
     return hf_hdf5_unlock(s->f.io.status);
 }
@@ -411,9 +411,9 @@ hf_status hf_store_variables(hf_store *s, const hf_model *m, const hf_population
     hf_hdf5_write_array(io, group, &group_of, m->variable_group);
     if (m->variable_leader && m->n_leader < m->n_variable) hf_hdf5_write_array(io, group, &leader, m->variable_leader);
     if (m->variable) write_rows(io, group, m);
-    hf_hdf5_write_array(io, group, &base, population->base_N);
-    hf_hdf5_write_array(io, group, &lower, population->lower_N);
-    hf_hdf5_write_array(io, group, &upper, population->upper_N);
+    hf_hdf5_write_array(io, group, &base, population->initial);
+    hf_hdf5_write_array(io, group, &lower, population->lower);
+    hf_hdf5_write_array(io, group, &upper, population->upper);
     hf_hdf5_put(io, group, ".", "n_individual", HF_KIND_INT, 0, &population->n_individual);
     hf_hdf5_put(io, group, ".", "n_variable", HF_KIND_INT, 0, &population->n_variable);
     hf_hdf5_put(io, group, ".", "generations_limit", HF_KIND_INT, 0, &population->generation_limit);

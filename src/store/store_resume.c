@@ -141,14 +141,14 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     return hf_store_hand_over(s, store);
 }
 
-static void check_base(hf_hdf5 *io, int n_variable, const double *base_N)
+static void check_base(hf_hdf5 *io, int n_variable, const double *initial)
 {
     for (int k = 0; k < n_variable && io->status == HF_OK; k++)
-        if (!(base_N[k] >= 0 && isfinite(base_N[k])))
+        if (!(initial[k] >= 0 && isfinite(initial[k])))
             hf_hdf5_damaged(io, io->file, "/ga", "has a base that is no design");
 }
 
-hf_status hf_store_restore_base(hf_store *s, int n_variable, double *base_N, hf_messages *messages)
+hf_status hf_store_restore_base(hf_store *s, int n_variable, double *initial, hf_messages *messages)
 {
     hf_hdf5_array base = {.name = "/ga/base_N", .kind = HF_KIND_REAL, .rank = 1, .dims = {(hsize_t)n_variable}};
     if (s && s->rows.has_rows) base.name = "/ga/base";
@@ -157,8 +157,8 @@ hf_status hf_store_restore_base(hf_store *s, int n_variable, double *base_N, hf_
     s->f.io.messages = messages;
     hf_store_file_open(&s->f);
     if (hf_hdf5_has(&s->f.io, s->f.io.file, base.name)) { /* earlier versions stored none */
-        hf_hdf5_read_array(&s->f.io, s->f.io.file, &base, base_N);
-        check_base(&s->f.io, n_variable, base_N);
+        hf_hdf5_read_array(&s->f.io, s->f.io.file, &base, initial);
+        check_base(&s->f.io, n_variable, initial);
     }
     return hf_hdf5_unlock(hf_store_judge(s));
 }
@@ -326,7 +326,7 @@ typedef struct {
     hf_case settings;
     hf_model model;
     int *group, *leader; /* [n_variable] */
-    double *base_N;      /* [n_variable] */
+    double *initial;     /* [n_variable] */
     hf_variable *rows;   /* [n_variable] with optimize.variables, else NULL */
     hf_optimiser optimiser;
 } stored_search;
@@ -359,8 +359,8 @@ static void read_variables(hf_hdf5 *io, stored_search *a)
     if (has_leader) hf_hdf5_read_array(io, group, &row, a->leader);
     row.name = a->rows ? "base" : "base_N";
     row.kind = HF_KIND_REAL;
-    hf_hdf5_read_array(io, group, &row, a->base_N);
-    check_base(io, a->model.n_variable, a->base_N);
+    hf_hdf5_read_array(io, group, &row, a->initial);
+    check_base(io, a->model.n_variable, a->initial);
     if (a->rows) read_rows(io, group, a);
     hf_hdf5_close(io, group);
     for (int k = 0; io->status == HF_OK && k < a->model.n_variable; k++) {
@@ -380,9 +380,9 @@ static void open_stored_search(hf_store *s, stored_search *a)
     a->model.n_variable = s->rows.n_variable;
     a->group = malloc(n * sizeof *a->group);
     a->leader = malloc(n * sizeof *a->leader);
-    a->base_N = malloc(n * sizeof *a->base_N);
+    a->initial = malloc(n * sizeof *a->initial);
     if (s->rows.has_rows) a->rows = malloc(n * sizeof *a->rows);
-    if (!a->group || !a->leader || !a->base_N || (s->rows.has_rows && !a->rows)) {
+    if (!a->group || !a->leader || !a->initial || (s->rows.has_rows && !a->rows)) {
         hf_hdf5_no_memory(io);
         return;
     }
@@ -397,7 +397,7 @@ static void open_stored_search(hf_store *s, stored_search *a)
         hf_hdf5_damaged(io, io->file, "/ga", "has other sizes than the case");
     const hf_optimiser_kind *kind = hf_optimiser_plan_of(o).kind;
     if (io->status == HF_OK && !kind) hf_hdf5_damaged(io, io->file, "/case", "has no generations");
-    if (io->status == HF_OK && hf_optimiser_create(kind, o, &a->model, a->base_N, &a->optimiser) != HF_OK)
+    if (io->status == HF_OK && hf_optimiser_create(kind, o, &a->model, a->initial, &a->optimiser) != HF_OK)
         hf_hdf5_no_memory(io);
 }
 
@@ -407,7 +407,7 @@ static void close_stored_search(stored_search *a)
     hf_case_free(&a->settings);
     free(a->group);
     free(a->leader);
-    free(a->base_N);
+    free(a->initial);
     free(a->rows);
 }
 

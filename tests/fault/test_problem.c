@@ -19,11 +19,11 @@ static const char *write_case(int with_truss)
 /* A design beside the base, which each solver finds by other steps. */
 static void evaluate_one(hf_problem *p, hf_form_result *r)
 {
-    double design_N[64];
+    double design[64];
     ck_assert_int_le(p->model.n_variable, 64);
     for (int k = 0; k < p->model.n_variable; k++)
-        design_N[k] = p->base_N[k] * (1 + 0.03 * (k % 3));
-    hf_batch_run(&p->batch, 1, design_N, NULL, r);
+        design[k] = p->initial[k] * (1 + 0.03 * (k % 3));
+    hf_batch_run(&p->batch, 1, design, NULL, r);
 }
 
 START_TEST(opening_a_problem)

@@ -20,7 +20,7 @@
 enum { N_GENERATION = 4, N_INDIVIDUAL = 3, N_VARIABLE = 2, HEADER_BYTES = 8 + HF_JOURNAL_IDENTITY, HEAD_BYTES = 16 };
 
 static int variable[N_VARIABLE];
-static double base_N[N_VARIABLE] = {10, 12};
+static double initial[N_VARIABLE] = {10, 12};
 static const hf_model model = {
     .n_variable = N_VARIABLE, .n_variable_group = 1, .variable_cable = variable, .variable_group = variable};
 
@@ -34,7 +34,7 @@ typedef struct {
 static void open_run(run *r)
 {
     *r = (run){.settings = small_ga(N_INDIVIDUAL, N_GENERATION + 2)};
-    FUZZ_REQUIRE(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &model, base_N, &r->optimiser) == HF_OK);
+    FUZZ_REQUIRE(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &model, initial, &r->optimiser) == HF_OK);
     FUZZ_REQUIRE(hf_generations_create(N_INDIVIDUAL, N_VARIABLE, 0, r->settings.generations, 1, &r->rows) == HF_OK);
 }
 
@@ -67,8 +67,8 @@ static void make_real(int file)
         if (g > 0) FUZZ_REQUIRE(hf_optimiser_next(&r.optimiser));
         for (int i = 0; i < N_INDIVIDUAL; i++)
             p->result[i] = (hf_form_result){.status = HF_OK,
-                                            .psi_m = fabs(p->design_N[i * N_VARIABLE] - 10),
-                                            .merit = fabs(p->design_N[i * N_VARIABLE] - 10),
+                                            .psi_m = fabs(p->design[i * N_VARIABLE] - 10),
+                                            .merit = fabs(p->design[i * N_VARIABLE] - 10),
                                             .iterations = g};
         hf_optimiser_tell(&r.optimiser);
         hf_generations_add(&r.rows, p, piece);

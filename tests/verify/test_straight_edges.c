@@ -88,11 +88,11 @@ START_TEST(search_comes_near_the_optimum)
     OPEN_CASE(&net, "configs/straight-edges.yaml", "optimize.population=16", "optimize.generations=60");
     ck_assert_int_eq(find_shape(&net), HF_OK);
     const hf_model *m = &net.model;
-    double start_q[220], base_N[120];
+    double start_q[220], initial[120];
     ck_assert(m->n_cable == 220 && m->n_variable == 120);
     memcpy(start_q, net.work.q_N_per_m, sizeof start_q);
     for (int k = 0; k < m->n_variable; k++)
-        base_N[k] = net.work.tension_N[m->variable_cable[k]];
+        initial[k] = net.work.tension_N[m->variable_cable[k]];
     const hf_optimize_settings *o = &net.settings.optimize;
     hf_evaluator evaluator = {.model = m,
                               .form = &net.form,
@@ -101,9 +101,9 @@ START_TEST(search_comes_near_the_optimum)
                               .solver = o->solver,
                               .boundary_ratio_cap = o->boundary_ratio_cap};
     ck_assert_int_eq(hf_batch_create(&evaluator, 2, &batch), HF_OK);
-    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, o, m, base_N, &ga), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, o, m, initial, &ga), HF_OK);
     do {
-        hf_batch_run(&batch, ga.population.n_individual, ga.population.design_N, ga.population.pending,
+        hf_batch_run(&batch, ga.population.n_individual, ga.population.design, ga.population.pending,
                      ga.population.result);
         hf_optimiser_tell(&ga);
     } while (hf_optimiser_next(&ga));

@@ -24,8 +24,8 @@ typedef struct {
     hf_form_result found; /* of the case's own form-finding */
     hf_evaluator evaluator;
     double *start_q_N_per_m; /* [n_cable] of the found shape */
-    double *base_N;          /* [n_variable] */
-    double *design_N; /* [BENCH_POPULATION][n_variable] base +- range_N, a chain of boundary cables moves together */
+    double *initial;         /* [n_variable] */
+    double *design; /* [BENCH_POPULATION][n_variable] base +- range_N, a chain of boundary cables moves together */
 } bench_scene;
 
 /* Load, find the shape, draw the designs; ends the program with a message when that fails. To be freed. */

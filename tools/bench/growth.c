@@ -98,29 +98,29 @@ static void one_solve(net *n)
 
 typedef struct {
     hf_batch *batch;
-    const double *design_N;
+    const double *design;
     hf_form_result result[POPULATION];
 } population;
 
 static void evaluate_population(void *context)
 {
     population *p = context;
-    hf_batch_run(p->batch, POPULATION, p->design_N, NULL, p->result);
+    hf_batch_run(p->batch, POPULATION, p->design, NULL, p->result);
 }
 
 static void evaluations(net *n)
 {
     const hf_model *m = &n->model;
     hf_batch batch;
-    double *base_N = bench_alloc((size_t)m->n_variable, sizeof(double));
+    double *initial = bench_alloc((size_t)m->n_variable, sizeof(double));
     double *start_q = bench_alloc((size_t)m->n_cable, sizeof(double));
-    double *design_N = bench_alloc((size_t)m->n_variable * POPULATION, sizeof(double));
+    double *design = bench_alloc((size_t)m->n_variable * POPULATION, sizeof(double));
     memcpy(start_q, n->workspace.q_N_per_m, (size_t)m->n_cable * sizeof(double));
     for (int k = 0; k < m->n_variable; k++)
-        base_N[k] = n->workspace.tension_N[m->variable_cable[k]];
+        initial[k] = n->workspace.tension_N[m->variable_cable[k]];
     for (int i = 0; i < POPULATION; i++) /* a chain moves together, by up to 1 N */
         for (int k = 0; k < m->n_variable; k++)
-            design_N[i * m->n_variable + k] = base_N[k] + (double)((i * 7 + m->variable_group[k] * 5) % 17 - 8) / 8;
+            design[i * m->n_variable + k] = initial[k] + (double)((i * 7 + m->variable_group[k] * 5) % 17 - 8) / 8;
     hf_evaluator evaluator = {.model = m,
                               .form = &n->settings.form,
                               .start_q_N_per_m = start_q,
@@ -129,9 +129,9 @@ static void evaluations(net *n)
                               .boundary_ratio_cap = 1e6};
     if (hf_batch_create(&evaluator, 1, &batch) != HF_OK) bench_fail(n->name, "out of memory");
     double start_s = bench_clock_s();
-    if (hf_batch_share(&batch, base_N) == HF_SOLVER_CHORD) {
+    if (hf_batch_share(&batch, initial) == HF_SOLVER_CHORD) {
         bench_emit("growth", n->name, "chord set-up", m->n_node, "time_s", bench_clock_s() - start_s);
-        population p = {.batch = &batch, .design_N = design_N};
+        population p = {.batch = &batch, .design = design};
         double time_s = bench_time_s(evaluate_population, &p, ENOUGH_S) / POPULATION, steps = 0;
         for (int i = 0; i < POPULATION; i++)
             steps += p.result[i].iterations;
@@ -141,9 +141,9 @@ static void evaluations(net *n)
                    2.0 * 8 * 3 * m->n_free * ((3 * m->half_bandwidth + 2 + 3) / 4 * 4));
     }
     hf_batch_free(&batch);
-    free(base_N);
+    free(initial);
     free(start_q);
-    free(design_N);
+    free(design);
 }
 
 void bench_growth(const char *scale, const char *folder)

@@ -17,11 +17,11 @@ static void run_lanes(bench_scene *b, hf_solver solver)
     b->evaluator.solver = solver;
     solver = hf_batch_solver(&b->evaluator, &has_lanes);
     if (!has_lanes) bench_fail(b->name, "has no lanes");
-    if (hf_batch_create(&b->evaluator, 1, &batch) != HF_OK || hf_batch_share(&batch, b->base_N) != solver)
+    if (hf_batch_create(&b->evaluator, 1, &batch) != HF_OK || hf_batch_share(&batch, b->initial) != solver)
         bench_fail(b->name, "out of memory");
     double begin_s = hf_clock_thread_cpu_s(), taken_s = 0, iterations = 0;
     for (; taken_s < ENOUGH_S; taken_s = hf_clock_thread_cpu_s() - begin_s, n++)
-        hf_batch_run(&batch, BENCH_POPULATION, b->design_N, NULL, result);
+        hf_batch_run(&batch, BENCH_POPULATION, b->design, NULL, result);
     for (int i = 0; i < BENCH_POPULATION; i++) {
         if (result[i].status != HF_OK) bench_fail(b->name, hf_status_text(result[i].status));
         iterations += result[i].iterations;

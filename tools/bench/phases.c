@@ -66,7 +66,7 @@ static void fixed_point_phases(bench_scene *b)
 {
     int n = 0;
     memset(spent_s, 0, sizeof spent_s);
-    hf_evaluate_prepare(&b->evaluator, b->design_N, &b->workspace);
+    hf_evaluate_prepare(&b->evaluator, b->design, &b->workspace);
     memcpy(b->workspace.position_m, b->model.position_m, 3 * (size_t)b->model.n_node * sizeof(double));
     for (double start_s = bench_clock_s(); bench_clock_s() - start_s < ENOUGH_S; n++)
         fixed_point_step(b);
@@ -136,7 +136,7 @@ static void timed_swarm_residual(const hf_swarm_plan *plan, const hf_swarm_lanes
 
 static void run_swarm(bench_scene *b, int (*next)(void *context), void *context, hf_form_result *result)
 {
-    hf_swarm_run(&b->evaluator, &swarm_plan, &swarm_lanes, &b->workspace, next, context, b->design_N, result);
+    hf_swarm_run(&b->evaluator, &swarm_plan, &swarm_lanes, &b->workspace, next, context, b->design, result);
 }
 
 static void swarm_phases(bench_scene *b)
@@ -196,7 +196,7 @@ static void timed_chord_measure(const hf_chord *c, const hf_chord_lanes *l, hf_c
 
 static void run_chord(bench_scene *b, int (*next)(void *context), void *context, hf_form_result *result)
 {
-    hf_chord_run(&chord, &chord_lanes, &b->workspace, next, context, false, b->design_N, result);
+    hf_chord_run(&chord, &chord_lanes, &b->workspace, next, context, false, b->design, result);
 }
 
 static void chord_phases(bench_scene *b)
@@ -205,7 +205,7 @@ static void chord_phases(bench_scene *b)
     if (!hf_chord_applies(&b->evaluator)) return;
     b->evaluator.solver = HF_SOLVER_NEWTON;
     b->form.residual_tolerance = 1e-7;
-    if (hf_chord_create(&b->evaluator, b->base_N, &b->workspace, &chord) != HF_OK ||
+    if (hf_chord_create(&b->evaluator, b->initial, &b->workspace, &chord) != HF_OK ||
         hf_chord_lanes_create(&chord, &chord_lanes) != HF_OK)
         bench_fail(b->name, "no matrix to share");
     chord_kernels = chord.kernels;

@@ -43,7 +43,7 @@ static void keep(void *context)
 static double evolve(const hf_model *m, hf_batch *batch, hf_store *store, hf_optimiser *ga, double *store_s)
 {
     told now = {m, store, ga->population, 0, 0, 0};
-    hf_batch_run(batch, ga->population.n_individual, ga->population.design_N, ga->population.pending,
+    hf_batch_run(batch, ga->population.n_individual, ga->population.design, ga->population.pending,
                  ga->population.result);
     do {
         hf_optimiser_tell(ga);
@@ -95,9 +95,9 @@ static void once(bench_scene *b, int threads, const char *path)
     const char *name = b->name, *mode = path ? "stored" : "not stored";
     struct stat file = {0};
     if (hf_batch_create(&b->evaluator, threads, &p.batch) != HF_OK ||
-        hf_optimiser_create(&hf_optimiser_ga, &b->settings.optimize, &b->model, b->base_N, &p.ga) != HF_OK)
+        hf_optimiser_create(&hf_optimiser_ga, &b->settings.optimize, &b->model, b->initial, &p.ga) != HF_OK)
         bench_fail(name, "out of memory");
-    hf_batch_share(&p.batch, b->base_N);
+    hf_batch_share(&p.batch, b->initial);
     double written = written_bytes(), start_s = bench_clock_s(), store_s;
     open_store(&p);
     double open_s = bench_clock_s();

@@ -34,7 +34,7 @@ static int n_true(const bench_scene *b)
 
 static const double *design(const bench_scene *b, int i)
 {
-    return b->design_N + (size_t)i * (size_t)b->model.n_variable;
+    return b->design + (size_t)i * (size_t)b->model.n_variable;
 }
 
 static size_t shape_size(const bench_scene *b)
@@ -136,7 +136,7 @@ static void by_paper_stop(void *context)
 static void by_chord(void *context)
 {
     run *r = context;
-    hf_batch_run(r->batch, r->n, r->scene->design_N, NULL, r->result);
+    hf_batch_run(r->batch, r->n, r->scene->design, NULL, r->result);
 }
 
 static double iterations(const run *r)
@@ -188,7 +188,7 @@ static int share_matrix(bench_scene *b, hf_batch *batch)
     if (hf_batch_create(&b->evaluator, 1, batch) != HF_OK) bench_fail(b->name, "out of memory");
     if (b->model.n_variable == 0) return 0;
     double start_s = bench_clock_s();
-    hf_solver by = hf_batch_share(batch, b->base_N);
+    hf_solver by = hf_batch_share(batch, b->initial);
     bench_emit("precision", b->name, "chord", 0, "setup_s", bench_clock_s() - start_s);
     return by == HF_SOLVER_CHORD;
 }
@@ -203,7 +203,7 @@ static void trace_cholmod(bench_scene *b, const double *reference_m)
     bench_cholmod *peer = bench_cholmod_create(m);
     double passed_s = 0, wanted_m = INFINITY;
     if (!peer) return;
-    hf_evaluate_prepare(&b->evaluator, b->design_N, w);
+    hf_evaluate_prepare(&b->evaluator, b->design, w);
     for (int k = 1; passed_s < TRACE_S && wanted_m > TRACE_LEAST; k++) {
         double start_s = bench_clock_s();
         if (bench_cholmod_step(peer, m, w)) bench_fail(b->name, "CHOLMOD");
@@ -231,7 +231,7 @@ void bench_precision(const char *name, const char *folder)
     hf_batch batch;
     bench_scene_named(name, folder, &b);
     double *reference_m = make_references(&b);
-    hf_evaluate_prepare(&b.evaluator, b.design_N, &b.workspace);
+    hf_evaluate_prepare(&b.evaluator, b.design, &b.workspace);
     bench_write_net(&b, &b.workspace, reference_m, folder, name);
     int has_chord = share_matrix(&b, &batch), n = n_true(&b);
     run way[] = {{&b, reference_m, NULL, "fixed point", by_fixed_point, n, 0, {{0}}},
@@ -262,7 +262,7 @@ static int count_fixed_point(bench_scene *b, const double *reference_m)
     const hf_model *m = &b->model;
     hf_workspace *w = &b->workspace;
     memcpy(w->position_m, m->position_m, shape_size(b) * sizeof(double));
-    hf_evaluate_prepare(&b->evaluator, b->design_N, w);
+    hf_evaluate_prepare(&b->evaluator, b->design, w);
     for (int k = 1; k < COUNT_MAX; k++) {
         bench_fdm_step(m, &b->form, w);
         if (bench_distance_m(m, w->position_m, reference_m) <= WANTED_M) return k;
@@ -339,7 +339,7 @@ void bench_single(const char *name, const char *folder)
     if (b.model.n_variable == 0) b.evaluator.start_q_N_per_m = b.model.start_q_N_per_m;
     double *reference_m = make_references(&b);
     int has_chord = share_matrix(&b, &batch);
-    hf_evaluate_prepare(&b.evaluator, b.design_N, &b.workspace);
+    hf_evaluate_prepare(&b.evaluator, b.design, &b.workspace);
     bench_write_net(&b, &b.workspace, reference_m, folder, name);
     run fixed = {&b, reference_m, NULL, "fixed point", by_fixed_point, 1, 0, {{0}}};
     run newton = {&b, reference_m, NULL, "newton", by_newton, n_true(&b), 0, {{0}}};

@@ -72,12 +72,12 @@ static void draw_designs(bench_scene *b)
     const hf_optimize_settings *o = &b->settings.optimize;
     unsigned state = 2022;
     double *change = bench_alloc((size_t)m->n_variable_group + 1, sizeof *change);
-    b->design_N = bench_alloc((size_t)BENCH_POPULATION * (size_t)m->n_variable + 1, sizeof *b->design_N);
+    b->design = bench_alloc((size_t)BENCH_POPULATION * (size_t)m->n_variable + 1, sizeof *b->design);
     for (int i = 0; i < BENCH_POPULATION; i++) {
         for (int g = 0; g < m->n_variable_group; g++)
             change[g] = o->range_N * uniform(&state);
         for (int k = 0; k < m->n_variable; k++)
-            b->design_N[i * m->n_variable + k] = fmax(b->base_N[k] + change[m->variable_group[k]], o->min_tension_N);
+            b->design[i * m->n_variable + k] = fmax(b->initial[k] + change[m->variable_group[k]], o->min_tension_N);
     }
     free(change);
 }
@@ -106,10 +106,10 @@ void bench_scene_open(const char *name, const char *path, const char *const *ove
     if (b->found.status != HF_OK) bench_fail(name, hf_status_text(b->found.status));
     size_t n_cable = (size_t)b->model.n_cable;
     b->start_q_N_per_m = bench_alloc(n_cable, sizeof(double));
-    b->base_N = bench_alloc((size_t)b->model.n_variable + 1, sizeof(double));
+    b->initial = bench_alloc((size_t)b->model.n_variable + 1, sizeof(double));
     memcpy(b->start_q_N_per_m, b->workspace.q_N_per_m, n_cable * sizeof(double));
     for (int k = 0; k < b->model.n_variable; k++)
-        b->base_N[k] = b->workspace.tension_N[b->model.variable_cable[k]];
+        b->initial[k] = b->workspace.tension_N[b->model.variable_cable[k]];
     b->evaluator = (hf_evaluator){.model = &b->model,
                                   .form = &b->form,
                                   .start_q_N_per_m = b->start_q_N_per_m,
@@ -121,8 +121,8 @@ void bench_scene_open(const char *name, const char *path, const char *const *ove
 
 void bench_scene_free(bench_scene *b)
 {
-    free(b->design_N);
-    free(b->base_N);
+    free(b->design);
+    free(b->initial);
     free(b->start_q_N_per_m);
     hf_workspace_free(&b->workspace);
     hf_model_free(&b->model);

@@ -93,23 +93,23 @@ WATCH(FORM, hf_status, hf_evaluate_form,
       (model, form, w, history, r))
 WATCH(SETUP, hf_status, hf_batch_create, (const hf_evaluator *evaluator, int n_thread, hf_batch *batch),
       (evaluator, n_thread, batch))
-WATCH(SETUP, hf_solver, hf_batch_share, (hf_batch * batch, const double *base_N), (batch, base_N))
+WATCH(SETUP, hf_solver, hf_batch_share, (hf_batch * batch, const double *initial), (batch, initial))
 WATCH(SETUP, hf_status, hf_optimiser_create,
-      (const hf_optimiser_kind *kind, const hf_optimize_settings *settings, const hf_model *model, const double *base_N,
-       hf_optimiser *optimiser),
-      (kind, settings, model, base_N, optimiser))
+      (const hf_optimiser_kind *kind, const hf_optimize_settings *settings, const hf_model *model,
+       const double *initial, hf_optimiser *optimiser),
+      (kind, settings, model, initial, optimiser))
 WATCH_VOID(EVALUATE, hf_batch_run,
-           (hf_batch * batch, int n, const double *design_N, const unsigned char *pending, hf_form_result *result),
-           (batch, n, design_N, pending, result))
+           (hf_batch * batch, int n, const double *design, const unsigned char *pending, hf_form_result *result),
+           (batch, n, design, pending, result))
 WATCH(EVALUATE, bool, hf_batch_next, (hf_batch * batch, hf_optimiser *ga, void (*beside)(void *), void *context),
       (batch, ga, beside, context))
-WATCH(EVALUATE, hf_workspace *, hf_batch_run_one, (hf_batch * batch, const double *design_N, hf_form_result *result),
-      (batch, design_N, result))
+WATCH(EVALUATE, hf_workspace *, hf_batch_run_one, (hf_batch * batch, const double *design, hf_form_result *result),
+      (batch, design, result))
 WATCH_VOID(RANK, hf_optimiser_tell, (hf_optimiser * ga), (ga))
 WATCH(POLISH, hf_status, hf_polish_run,
-      (const hf_evaluator *evaluator, const double *lower_N, const double *upper_N, int max_iterations,
-       const hf_polish_watcher *watcher, double *design_N, hf_workspace *workspace, hf_polish_result *result),
-      (evaluator, lower_N, upper_N, max_iterations, watcher, design_N, workspace, result))
+      (const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
+       const hf_polish_watcher *watcher, double *design, hf_workspace *workspace, hf_polish_result *result),
+      (evaluator, lower, upper, max_iterations, watcher, design, workspace, result))
 WATCH(STORE, hf_status, hf_store_create,
       (const char *path, bool force, const hf_case *settings, const hf_scene *scene, const hf_truss *truss, int argc,
        char *const *argv, hf_store **store, hf_messages *messages),
@@ -125,9 +125,9 @@ WATCH(STORE, hf_status, hf_store_publish,
       (hf_store * store, const hf_summary *summary, bool at_once, hf_messages *messages),
       (store, summary, at_once, messages))
 WATCH(STORE, hf_status, hf_store_best,
-      (hf_store * store, hf_stage stage, const hf_model *model, const hf_workspace *workspace, const double *design_N,
+      (hf_store * store, hf_stage stage, const hf_model *model, const hf_workspace *workspace, const double *design,
        hf_messages *messages),
-      (store, stage, model, workspace, design_N, messages))
+      (store, stage, model, workspace, design, messages))
 WATCH(STORE, hf_status, hf_store_complete, (hf_store * store, const hf_summary *summary, hf_messages *messages),
       (store, summary, messages))
 WATCH(STORE, hf_status, hf_store_settle, (hf_store * store, hf_messages *messages), (store, messages))

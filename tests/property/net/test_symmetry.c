@@ -13,7 +13,7 @@ struct search {
     hf_evaluator evaluator;
     hf_batch batch;
     hf_optimiser ga;
-    double start_q[N_CABLE], base_N[N_VARIABLE];
+    double start_q[N_CABLE], initial[N_VARIABLE];
 };
 
 /* The tolerance is tight so that what is seen of the shape is symmetry and not where the solver stopped. */
@@ -30,8 +30,8 @@ static void open_search(struct search *s)
     ck_assert_int_eq(find_shape(&s->net), HF_OK);
     memcpy(s->start_q, s->net.work.q_N_per_m, sizeof s->start_q);
     for (int k = 0; k < m->n_variable; k++)
-        s->base_N[k] = s->net.work.tension_N[m->variable_cable[k]];
-    hf_symmetry_average(m, s->base_N);
+        s->initial[k] = s->net.work.tension_N[m->variable_cable[k]];
+    hf_symmetry_average(m, s->initial);
     s->evaluator = (hf_evaluator){.model = m,
                                   .form = &s->net.form,
                                   .start_q_N_per_m = s->start_q,
@@ -39,7 +39,7 @@ static void open_search(struct search *s)
                                   .solver = HF_SOLVER_AUTO,
                                   .boundary_ratio_cap = 100};
     ck_assert_int_eq(hf_batch_create(&s->evaluator, 2, &s->batch), HF_OK);
-    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &s->net.settings.optimize, m, s->base_N, &s->ga), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &s->net.settings.optimize, m, s->initial, &s->ga), HF_OK);
 }
 
 static void close_search(struct search *s)
@@ -50,10 +50,10 @@ static void close_search(struct search *s)
 }
 
 /* To the bit. */
-static void demand_symmetric_design(const struct search *s, const double *design_N)
+static void demand_symmetric_design(const struct search *s, const double *design)
 {
     for (int k = 0; k < N_VARIABLE; k++)
-        ck_assert_double_eq(design_N[k], design_N[s->net.model.variable_leader[k]]);
+        ck_assert_double_eq(design[k], design[s->net.model.variable_leader[k]]);
 }
 
 /* The generator numbers nodes j * 11 + i, so the mirror images are known. The largest difference of a position from
@@ -77,14 +77,14 @@ static double asymmetry_m(const hf_model *m, const hf_workspace *w)
 static void evolve(struct search *s)
 {
     do {
-        hf_batch_run(&s->batch, s->ga.population.n_individual, s->ga.population.design_N, s->ga.population.pending,
+        hf_batch_run(&s->batch, s->ga.population.n_individual, s->ga.population.design, s->ga.population.pending,
                      s->ga.population.result);
         hf_optimiser_tell(&s->ga);
         for (int i = 0; i < s->ga.population.n_individual; i++) {
-            const double *design = s->ga.population.design_N + i * N_VARIABLE;
+            const double *design = s->ga.population.design + i * N_VARIABLE;
             demand_symmetric_design(s, design);
             for (int k = 0; k < N_VARIABLE; k++)
-                ck_assert(design[k] >= s->ga.population.lower_N[k] && design[k] <= s->ga.population.upper_N[k]);
+                ck_assert(design[k] >= s->ga.population.lower[k] && design[k] <= s->ga.population.upper[k]);
         }
     } while (hf_optimiser_next(&s->ga));
 }
@@ -95,22 +95,22 @@ START_TEST(what_a_symmetric_search_finds_is_symmetric)
     struct search s;
     hf_form_result found;
     hf_polish_result polished;
-    double design_N[N_VARIABLE];
+    double design[N_VARIABLE];
     open_search(&s);
-    demand_symmetric_design(&s, s.base_N);
-    ck_assert_int_eq(hf_batch_share(&s.batch, s.base_N), HF_SOLVER_CHORD);
+    demand_symmetric_design(&s, s.initial);
+    ck_assert_int_eq(hf_batch_share(&s.batch, s.initial), HF_SOLVER_CHORD);
     evolve(&s);
     ck_assert_double_lt(s.ga.population.best_psi_m[s.ga.population.generation],
                         s.ga.population.best_psi_m[0]); /* it moved */
-    memcpy(design_N, s.ga.population.design_N + s.ga.population.best * N_VARIABLE, sizeof design_N);
-    ck_assert_int_eq(hf_evaluate(&s.evaluator, design_N, &s.net.work, &found), HF_OK);
+    memcpy(design, s.ga.population.design + s.ga.population.best * N_VARIABLE, sizeof design);
+    ck_assert_int_eq(hf_evaluate(&s.evaluator, design, &s.net.work, &found), HF_OK);
     ck_assert_double_lt(asymmetry_m(&s.net.model, &s.net.work), 1e-9);
-    ck_assert_int_eq(hf_polish_run(&s.evaluator, s.ga.population.lower_N, s.ga.population.upper_N, 20, NULL, design_N,
+    ck_assert_int_eq(hf_polish_run(&s.evaluator, s.ga.population.lower, s.ga.population.upper, 20, NULL, design,
                                    &s.net.work, &polished),
                      HF_OK);
     ck_assert_double_lt(polished.merit, found.psi_m);
-    demand_symmetric_design(&s, design_N);
-    ck_assert_int_eq(hf_evaluate(&s.evaluator, design_N, &s.net.work, &found), HF_OK);
+    demand_symmetric_design(&s, design);
+    ck_assert_int_eq(hf_evaluate(&s.evaluator, design, &s.net.work, &found), HF_OK);
     ck_assert_double_lt(asymmetry_m(&s.net.model, &s.net.work), 1e-9);
     close_search(&s);
 }
@@ -126,7 +126,7 @@ START_TEST(polishing_linked_variables_reaches_the_free_optimum)
         hf_messages messages = {0};
         hf_polish_result polished;
         int planes;
-        double start_q[1000], design_N[200], lower_N[200], upper_N[200];
+        double start_q[1000], design[200], lower[200], upper[200];
         OPEN_CASE(&net, SMALL_REFLECTOR);
         ck_assert(net.model.n_variable <= 200 && net.model.n_cable <= 1000);
         int wanted = linked ? HF_SYMMETRY_XY : HF_SYMMETRY_NONE;
@@ -136,17 +136,17 @@ START_TEST(polishing_linked_variables_reaches_the_free_optimum)
         ck_assert_int_eq(find_shape(&net), HF_OK);
         memcpy(start_q, net.work.q_N_per_m, (size_t)net.model.n_cable * sizeof(double));
         for (int k = 0; k < net.model.n_variable; k++)
-            design_N[k] = net.work.tension_N[net.model.variable_cable[k]];
-        hf_symmetry_average(&net.model, design_N);
+            design[k] = net.work.tension_N[net.model.variable_cable[k]];
+        hf_symmetry_average(&net.model, design);
         for (int k = 0; k < net.model.n_variable; k++)
-            lower_N[k] = design_N[k] - 1, upper_N[k] = design_N[k] + 1;
+            lower[k] = design[k] - 1, upper[k] = design[k] + 1;
         hf_evaluator v = {.model = &net.model,
                           .form = &net.form,
                           .start_q_N_per_m = start_q,
                           .rule = HF_RULE_FORCE_DENSITY,
                           .solver = HF_SOLVER_NEWTON,
                           .boundary_ratio_cap = 100};
-        ck_assert_int_eq(hf_polish_run(&v, lower_N, upper_N, 200, NULL, design_N, &net.work, &polished), HF_OK);
+        ck_assert_int_eq(hf_polish_run(&v, lower, upper, 200, NULL, design, &net.work, &polished), HF_OK);
         psi_m[linked] = polished.merit;
         ck_assert_double_lt(polished.merit, polished.start_merit);
         close_net(&net);

@@ -11,8 +11,8 @@ struct search {
     struct net net;
     hf_optimize_settings settings;
     hf_evaluator evaluator;
-    double start_q[MAX_CABLE], base_N[MAX_VARIABLE];
-    hf_form_result base; /* of the design base_N */
+    double start_q[MAX_CABLE], initial[MAX_VARIABLE];
+    hf_form_result base; /* of the initial design */
 };
 
 struct trace {
@@ -33,14 +33,14 @@ static void open_search(struct search *s)
     s->settings = s->net.settings.optimize;
     memcpy(s->start_q, s->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
     for (int k = 0; k < m->n_variable; k++)
-        s->base_N[k] = s->net.work.tension_N[m->variable_cable[k]];
+        s->initial[k] = s->net.work.tension_N[m->variable_cable[k]];
     s->evaluator = (hf_evaluator){.model = m,
                                   .form = &s->net.form,
                                   .start_q_N_per_m = s->start_q,
                                   .rule = HF_RULE_FORCE_DENSITY,
                                   .solver = HF_SOLVER_AUTO,
                                   .boundary_ratio_cap = 1e9};
-    ck_assert_int_eq(hf_evaluate(&s->evaluator, s->base_N, &s->net.work, &s->base), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&s->evaluator, s->initial, &s->net.work, &s->base), HF_OK);
     s->evaluator.boundary_ratio_cap = 1.05 * s->base.boundary_tension_ratio;
 }
 
@@ -50,16 +50,16 @@ static struct trace run(struct search *s, int n_thread)
     hf_batch batch;
     hf_optimiser ga;
     ck_assert_int_eq(hf_batch_create(&s->evaluator, n_thread, &batch), HF_OK);
-    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &s->settings, &s->net.model, s->base_N, &ga), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &s->settings, &s->net.model, s->initial, &ga), HF_OK);
     for (int i = 0; i < ga.population.n_individual && i < MAX_POPULATION; i++)
-        t.first_design_N[i] = ga.population.design_N[i * ga.population.n_variable + 1];
+        t.first_design_N[i] = ga.population.design[i * ga.population.n_variable + 1];
     do {
-        hf_batch_run(&batch, ga.population.n_individual, ga.population.design_N, ga.population.pending,
+        hf_batch_run(&batch, ga.population.n_individual, ga.population.design, ga.population.pending,
                      ga.population.result);
         hf_optimiser_tell(&ga);
         t.best_psi_m[t.n] = ga.population.best_psi_m[ga.population.generation];
         for (int k = 0; k < ga.population.n_individual * ga.population.n_variable; k++)
-            t.sum_N[t.n] += ga.population.design_N[k];
+            t.sum_N[t.n] += ga.population.design[k];
         t.n++;
         for (int i = 0; i < ga.population.n_individual; i++) {
             ck_assert(ga.population.result[i].status == HF_OK || ga.population.result[i].status == HF_RATIO_CAP);

@@ -91,7 +91,7 @@ START_TEST(chord_agrees)
     attach_all(&r.net, &rng, random_scale(&rng));
     r.net.form.coupling = (hf_coupling_settings){1e-11, HF_COUPLING_ACCELERATED, 200};
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 1, &batch), HF_OK);
-    ck_assert_int_eq(hf_batch_share(&batch, r.base_N), HF_SOLVER_CHORD);
+    ck_assert_int_eq(hf_batch_share(&batch, r.initial), HF_SOLVER_CHORD);
     for (int i = 0; i < 8; i++) {
         hf_form_result chord, alone;
         hf_workspace *w = hf_batch_run_one(&batch, design(&r, i), &chord);

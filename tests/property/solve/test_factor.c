@@ -171,20 +171,20 @@ START_TEST(designs_are_solved_one_by_one)
     ck_assert(!has_lanes);
     ck_assert_int_eq(p.solver, used[_i]);
     size_t n_variable = (size_t)p.model.n_variable;
-    double *design_N = malloc(N * n_variable * sizeof *design_N);
+    double *design = malloc(N * n_variable * sizeof *design);
     hf_form_result r[N], alone;
     struct rng rng = rng_start(5);
-    ck_assert_ptr_nonnull(design_N);
+    ck_assert_ptr_nonnull(design);
     for (size_t i = 0; i < N * n_variable; i++)
-        design_N[i] = p.base_N[i % n_variable] * rng_uniform(&rng, 0.95, 1.05);
-    hf_batch_run(&p.batch, N, design_N, NULL, r);
+        design[i] = p.initial[i % n_variable] * rng_uniform(&rng, 0.95, 1.05);
+    hf_batch_run(&p.batch, N, design, NULL, r);
     for (int i = 0; i < N; i++) {
-        hf_evaluate(&p.evaluator, design_N + (size_t)i * n_variable, &p.workspace, &alone);
+        hf_evaluate(&p.evaluator, design + (size_t)i * n_variable, &p.workspace, &alone);
         ck_assert_int_eq(r[i].status, alone.status);
         ck_assert_msg(!memcmp(&r[i].psi_m, &alone.psi_m, sizeof(double)), "design %d: %a, alone %a", i, r[i].psi_m,
                       alone.psi_m);
     }
-    free(design_N);
+    free(design);
     hf_problem_free(&p);
     hf_messages_free(&messages);
 }

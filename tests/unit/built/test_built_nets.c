@@ -77,7 +77,7 @@ static void residuals_at(struct differed *d, int i, double step, double *residua
     const hf_model *m = &d->p.model;
     hf_form_result result;
     for (int k = 0; k < m->n_variable; k++)
-        d->design[k] = d->p.base_N[k] + (d->slopes.class_of_variable[k] == i ? step : 0);
+        d->design[k] = d->p.initial[k] + (d->slopes.class_of_variable[k] == i ? step : 0);
     ck_assert_int_eq(hf_evaluate(&d->p.evaluator, d->design, &d->p.workspace, &result), HF_OK);
     ck_assert_int_eq(hf_goals_linearise(&d->p.goals, &d->p.workspace, d->p.workspace.goals, residual), HF_OK);
 }
@@ -123,7 +123,7 @@ static void open_differed(struct differed *d, bool on_truss, const char *variabl
     d->exact = d->gradient + n;
     for (size_t k = 0; k < 4; k++)
         d->found[k] = d->exact + n * n_row + k * n_row;
-    ck_assert_int_eq(hf_evaluate(&d->p.evaluator, d->p.base_N, &d->p.workspace, &result), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&d->p.evaluator, d->p.initial, &d->p.workspace, &result), HF_OK);
     ck_assert_int_eq(hf_sensitivity_find(&d->slopes, &d->p.workspace), HF_OK);
     ck_assert_int_eq(hf_residuals_find(&d->residuals, &d->p.workspace), HF_OK);
     ck_assert_int_eq(hf_residuals_rates(&d->residuals, &d->slopes, &d->p.workspace, d->exact, d->gradient), HF_OK);
@@ -159,7 +159,7 @@ START_TEST(a_net_without_memory_is_told)
     const hf_workspace *shape;
     open_problem(&p, false, NULL, "optimize.goals=[{goal: psi, over: samples}]");
     const hf_goals_nets *nets = p.goals.nets;
-    ck_assert_int_eq(hf_evaluate(&p.evaluator, p.base_N, &p.workspace, &result), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &result), HF_OK);
     ck_assert_int_eq(nets->cut(p.workspace.goals->nets, &p.workspace), HF_OK);
     fail_allocation_at(1);
     hf_status status = hf_goals_nets_linearise(&p.goals, nets->n_state, p.workspace.goals, &shape);
@@ -203,7 +203,7 @@ static const char value_goals[] =
 
 static void evaluate_base(hf_problem *p, hf_form_result *r)
 {
-    ck_assert_int_eq(hf_evaluate(&p->evaluator, p->base_N, &p->workspace, r), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&p->evaluator, p->initial, &p->workspace, r), HF_OK);
 }
 
 static void assert_near(double value, double wanted)
@@ -312,7 +312,7 @@ START_TEST(values_do_not_depend_on_earlier_designs)
     double *design = malloc((size_t)p.model.n_variable * sizeof *design);
     ck_assert_ptr_nonnull(design);
     for (int k = 0; k < p.model.n_variable; k++)
-        design[k] = p.base_N[k] * (1 + 0.02 * (k % 5));
+        design[k] = p.initial[k] * (1 + 0.02 * (k % 5));
     ck_assert_int_eq(hf_evaluate(&p.evaluator, design, &p.workspace, &other), HF_OK);
     evaluate_base(&p, &again);
     ck_assert_mem_eq(first.goal, again.goal, sizeof first.goal);

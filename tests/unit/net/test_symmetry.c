@@ -191,14 +191,14 @@ START_TEST(linked_genes_share_the_step)
 {
     int leader[] = {0, 0, 2, 2};
     hf_model m = {.n_variable = 4, .n_leader = 2, .variable_leader = leader};
-    double base_N[] = {10, 10 * (1 + 5e-7), 3, 4}, design_N[] = {10.75, 0, 3.5, 0};
-    hf_symmetry_average(&m, base_N);
-    ck_assert_double_eq(base_N[0], base_N[1]); /* alike: their mean */
-    ck_assert_double_eq_tol(base_N[0], 10 * (1 + 2.5e-7), 1e-12);
-    ck_assert(base_N[2] == 3 && base_N[3] == 4); /* not alike: each keeps its own */
-    hf_symmetry_follow(4, leader, base_N, design_N);
-    ck_assert(design_N[0] == 10.75 && design_N[1] == 10.75);
-    ck_assert(design_N[2] == 3.5 && design_N[3] == 4.5);
+    double initial[] = {10, 10 * (1 + 5e-7), 3, 4}, design[] = {10.75, 0, 3.5, 0};
+    hf_symmetry_average(&m, initial);
+    ck_assert_double_eq(initial[0], initial[1]); /* alike: their mean */
+    ck_assert_double_eq_tol(initial[0], 10 * (1 + 2.5e-7), 1e-12);
+    ck_assert(initial[2] == 3 && initial[3] == 4); /* not alike: each keeps its own */
+    hf_symmetry_follow(4, leader, initial, design);
+    ck_assert(design[0] == 10.75 && design[1] == 10.75);
+    ck_assert(design[2] == 3.5 && design[3] == 4.5);
 }
 END_TEST
 

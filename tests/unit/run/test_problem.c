@@ -21,7 +21,7 @@ static void evaluate_designs(hf_problem *p, struct outcome *outcome)
     double *design = malloc((N_DESIGN * n_variable + 1) * sizeof *design);
     for (size_t i = 0; i < N_DESIGN; i++)
         for (size_t k = 0; k < n_variable; k++)
-            design[i * n_variable + k] = p->base_N[k] * (1 + 0.01 * (double)i);
+            design[i * n_variable + k] = p->initial[k] * (1 + 0.01 * (double)i);
     hf_batch_run(&p->batch, N_DESIGN, design, NULL, result);
     for (int i = 0; i < N_DESIGN; i++)
         outcome->psi_m[i] = result[i].psi_m;
@@ -64,10 +64,10 @@ START_TEST(opening_gives_what_a_run_finds)
     ck_assert_int_eq(p.model.n_variable, s.n_gene);
     ck_assert_int_eq(p.batch.n_thread, 2);
     for (int k = 0; k < p.model.n_variable; k++)
-        ck_assert_double_gt(p.base_N[k], 0);
+        ck_assert_double_gt(p.initial[k], 0);
     if (s.has_optimize) { /* the base design is individual 0 */
         hf_form_result base;
-        hf_batch_run(&p.batch, 1, p.base_N, NULL, &base);
+        hf_batch_run(&p.batch, 1, p.initial, NULL, &base);
         ck_assert_mem_eq(&base.psi_m, &s.base_psi_m, sizeof(double));
         ck_assert_int_eq(p.solver, s.solver);
     }

@@ -25,7 +25,7 @@ static void evaluate(struct run *r, int n_thread, int n_at_once, hf_form_result 
         hf_workspace_poison(&r->net.model, &batch.workspace[i]);
     for (int i = 0; i < N_DESIGN; i += n_at_once)
         hf_batch_run(&batch, i + n_at_once < N_DESIGN ? n_at_once : N_DESIGN - i,
-                     r->design_N + i * r->net.model.n_variable, NULL, result + i);
+                     r->design + i * r->net.model.n_variable, NULL, result + i);
     ck_assert_double_gt(batch.cpu_s, 0);
     hf_batch_free(&batch);
 }
@@ -49,7 +49,7 @@ START_TEST(threads_and_grouping_do_not_change_a_bit)
     evaluate(&r, 1, 1, alone);
     for (int i = 0; i < N_DESIGN; i++) { /* the same as without a batch */
         hf_form_result direct;
-        hf_evaluate(&r.evaluator, r.design_N + i * r.net.model.n_variable, &r.net.work, &direct);
+        hf_evaluate(&r.evaluator, r.design + i * r.net.model.n_variable, &r.net.work, &direct);
         ck_assert_mem_eq(&direct.psi_m, &alone[i].psi_m, sizeof(double));
     }
     static const int n_thread[] = {1, 2, 3, 7};
@@ -75,7 +75,7 @@ START_TEST(only_pending_designs_are_evaluated)
         pending[i] = i % 3 == 0;
     }
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
-    hf_batch_run(&batch, N_DESIGN, r.design_N, pending, result);
+    hf_batch_run(&batch, N_DESIGN, r.design, pending, result);
     for (int i = 0; i < N_DESIGN; i++) {
         ck_assert_int_eq(result[i].status, pending[i] ? HF_OK : HF_NOT_EVALUATED);
         ck_assert_int_eq(result[i].iterations == -7, !pending[i]);
@@ -92,11 +92,11 @@ START_TEST(one_failure_stays_alone)
     hf_form_result good[N_DESIGN], mixed[N_DESIGN];
     open_designs(&r, HF_RULE_TENSION);
     for (int k = 0; k < N_DESIGN * r.net.model.n_variable; k++) /* nearly the found tensions: equilibrium exists */
-        r.design_N[k] = r.net.work.tension_N[r.net.model.variable_cable[k % r.net.model.n_variable]] + 1e-3 * (k % 7);
+        r.design[k] = r.net.work.tension_N[r.net.model.variable_cable[k % r.net.model.n_variable]] + 1e-3 * (k % 7);
     evaluate(&r, 2, N_DESIGN, good);
     for (int i = 0; i < N_DESIGN; i++)
         ck_assert_int_eq(good[i].status, HF_OK);
-    r.design_N[11 * r.net.model.n_variable] *= 50;
+    r.design[11 * r.net.model.n_variable] *= 50;
     evaluate(&r, 2, N_DESIGN, mixed);
     ck_assert_int_eq(mixed[11].status, HF_COLLAPSED);
     mixed[11] = good[11];
@@ -138,9 +138,9 @@ static void work_on_item(void *context, int i)
     w->n_call[i]++;
     w->status[i] = hf_batch_create(&w->run->evaluator, w->n_thread, &batch);
     if (w->status[i] == HF_OK) {
-        hf_batch_share(&batch, w->run->design_N);
-        hf_batch_run(&batch, i % 2 ? N_DESIGN : 5, w->run->design_N, NULL, w->result[i]);
-        hf_batch_run(&batch, N_DESIGN, w->run->design_N, NULL, w->result[i]); /* reuses the first call's workspaces */
+        hf_batch_share(&batch, w->run->design);
+        hf_batch_run(&batch, i % 2 ? N_DESIGN : 5, w->run->design, NULL, w->result[i]);
+        hf_batch_run(&batch, N_DESIGN, w->run->design, NULL, w->result[i]); /* reuses the first call's workspaces */
     }
     hf_batch_free(&batch);
 }
@@ -153,8 +153,8 @@ START_TEST(batches_that_share_threads_do_not_change_a_bit)
     static struct item_work w;
     open_designs(&r, HF_RULE_FORCE_DENSITY);
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 1, &batch), HF_OK);
-    hf_batch_share(&batch, r.design_N);
-    hf_batch_run(&batch, N_DESIGN, r.design_N, NULL, alone);
+    hf_batch_share(&batch, r.design);
+    hf_batch_run(&batch, N_DESIGN, r.design, NULL, alone);
     hf_batch_free(&batch);
     for (int n_thread = 1; n_thread <= 4; n_thread++) {
         memset(&w, 0, sizeof w);
@@ -186,7 +186,7 @@ static void breed_and_count(void *state, const hf_population *now, hf_population
 struct reader {
     hf_optimiser ga;
     bool is_beside; /* breeding goes on in another thread */
-    double design_N[N_INDIVIDUAL * MAX_VARIABLE], rate[N_INDIVIDUAL];
+    double design[N_INDIVIDUAL * MAX_VARIABLE], rate[N_INDIVIDUAL];
     int parent[2 * N_INDIVIDUAL], n_call, is_same;
 };
 
@@ -194,7 +194,7 @@ static void note(struct reader *r, const hf_optimiser *ga)
 {
     r->ga = *ga;
     r->is_same = 1;
-    memcpy(r->design_N, ga->population.design_N, N_INDIVIDUAL * (size_t)ga->population.n_variable * sizeof(double));
+    memcpy(r->design, ga->population.design, N_INDIVIDUAL * (size_t)ga->population.n_variable * sizeof(double));
     memcpy(r->rate, ga->population.mutation_rate, sizeof r->rate);
     memcpy(r->parent, ga->population.parent, sizeof r->parent);
 }
@@ -207,7 +207,7 @@ static void read_late(void *context)
            __atomic_load_n(&n_bred, __ATOMIC_SEQ_CST) < (r->ga.population.generation + 1) * N_INDIVIDUAL)
         sched_yield();
     r->n_call++;
-    r->is_same = memcmp(r->design_N, r->ga.population.design_N,
+    r->is_same = memcmp(r->design, r->ga.population.design,
                         N_INDIVIDUAL * (size_t)r->ga.population.n_variable * sizeof(double)) == 0 &&
                  memcmp(r->rate, r->ga.population.mutation_rate, sizeof r->rate) == 0 &&
                  memcmp(r->parent, r->ga.population.parent, sizeof r->parent) == 0;
@@ -231,9 +231,9 @@ START_TEST(a_generation_can_be_read_while_the_next_is_bred)
         reader.n_call = 0;
         reader.is_beside = n_thread > 1;
         ck_assert_int_eq(hf_batch_create(&r.evaluator, n_thread ? n_thread : 1, &batch), HF_OK);
-        ck_assert_int_eq(hf_optimiser_create(&counting, &settings, &r.net.model, r.design_N, &ga), HF_OK);
-        hf_batch_share(&batch, r.design_N);
-        hf_batch_run(&batch, N_INDIVIDUAL, ga.population.design_N, ga.population.pending, ga.population.result);
+        ck_assert_int_eq(hf_optimiser_create(&counting, &settings, &r.net.model, r.design, &ga), HF_OK);
+        hf_batch_share(&batch, r.design);
+        hf_batch_run(&batch, N_INDIVIDUAL, ga.population.design, ga.population.pending, ga.population.result);
         do {
             hf_optimiser_tell(&ga);
             note(&reader, &ga);
@@ -261,7 +261,7 @@ START_TEST(nothing_is_allocated)
     open_designs(&r, HF_RULE_FORCE_DENSITY);
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
     long before = allocation_count();
-    hf_batch_run(&batch, N_DESIGN, r.design_N, NULL, result);
+    hf_batch_run(&batch, N_DESIGN, r.design, NULL, result);
     ck_assert_int_eq(allocation_count(), before);
     hf_batch_free(&batch);
     close_net(&r.net);

@@ -18,7 +18,7 @@ static void evaluate(struct run *r, int n_thread, int n_at_once, hf_form_result 
     hf_batch batch;
     memset(result, 0, N_DESIGN * sizeof *result); /* padding included: results are compared as bytes */
     ck_assert_int_eq(hf_batch_create(&r->evaluator, n_thread, &batch), HF_OK);
-    ck_assert_int_eq(hf_batch_share(&batch, r->base_N), HF_SOLVER_CHORD);
+    ck_assert_int_eq(hf_batch_share(&batch, r->initial), HF_SOLVER_CHORD);
     for (int i = 0; i < batch.n_thread; i++)
         hf_workspace_poison(&r->net.model, &batch.workspace[i]);
     for (int i = 0; i < N_DESIGN; i += n_at_once)
@@ -44,7 +44,7 @@ static void assert_answers(struct run *r)
     unsigned char law[MAX_CABLE];
     double target[MAX_CABLE];
     ck_assert_int_eq(hf_batch_create(&r->evaluator, 1, &batch), HF_OK);
-    ck_assert_int_eq(hf_batch_share(&batch, r->base_N), HF_SOLVER_CHORD);
+    ck_assert_int_eq(hf_batch_share(&batch, r->initial), HF_SOLVER_CHORD);
     memcpy(law, m->law, (size_t)m->n_cable);
     memcpy(target, m->target, (size_t)m->n_cable * sizeof *target);
     for (int i = 0; i < N_DESIGN; i++) {
@@ -95,13 +95,13 @@ START_TEST(figures_are_those_of_the_scalar_code)
     hf_chord_lanes lanes;
     hf_form_result result[2][N_DESIGN];
     open_run(&r, _i);
-    ck_assert_int_eq(hf_chord_create(&r.evaluator, r.base_N, &r.net.work, &chord), HF_OK);
+    ck_assert_int_eq(hf_chord_create(&r.evaluator, r.initial, &r.net.work, &chord), HF_OK);
     ck_assert_int_eq(hf_chord_lanes_create(&chord, &lanes), HF_OK);
     ck_assert(chord.serves_all);
     for (int k = 0; k < 2; k++) {
         int n_left = N_DESIGN;
         chord.serves_all = k == 0;
-        hf_chord_run(&chord, &lanes, &r.net.work, count_down, &n_left, false, r.design_N, result[k]);
+        hf_chord_run(&chord, &lanes, &r.net.work, count_down, &n_left, false, r.design, result[k]);
     }
     for (int i = 0; i < N_DESIGN; i++) {
         const hf_form_result *a = &result[0][i], *b = &result[1][i];
@@ -132,9 +132,9 @@ START_TEST(faults_are_named)
     while (r.net.model.law[first] != HF_LAW_TENSION)
         first++;
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
-    ck_assert_int_eq(hf_batch_share(&batch, r.base_N), HF_SOLVER_CHORD);
+    ck_assert_int_eq(hf_batch_share(&batch, r.initial), HF_SOLVER_CHORD);
     r.net.form.collapse_ratio = 10;
-    hf_batch_run(&batch, N_DESIGN, r.design_N, NULL, result);
+    hf_batch_run(&batch, N_DESIGN, r.design, NULL, result);
     for (int i = 0; i < N_DESIGN; i++) {
         ck_assert_int_eq(result[i].status, HF_COLLAPSED);
         ck_assert_int_eq(result[i].culprit, first);
@@ -171,7 +171,7 @@ START_TEST(many_right_hand_sides)
     double *b = malloc((size_t)n_rhs * ld * sizeof *b), *x = malloc((size_t)n_rhs * ld * sizeof *x), largest = 0;
     for (size_t i = 0; i < (size_t)n_rhs * ld; i++)
         b[i] = x[i] = rng_uniform(&rng, -1, 1);
-    ck_assert_int_eq(hf_evaluate(&r.evaluator, r.design_N, &r.net.work, &(hf_form_result){0}), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&r.evaluator, r.design, &r.net.work, &(hf_form_result){0}), HF_OK);
     ck_assert_int_eq(hf_newton_matrix_factor(m, &r.net.work, NULL), HF_OK);
     hf_packed_band packed = hf_newton_matrix_packed(m);
     hf_arena arena = {0};
@@ -312,7 +312,7 @@ START_TEST(applies_where_it_can_serve)
     for (int k = 0; k < 4; k++) {
         r.evaluator.solver = (hf_solver)solver[k];
         ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
-        ck_assert_int_eq(hf_batch_share(&batch, r.base_N), shared[k]);
+        ck_assert_int_eq(hf_batch_share(&batch, r.initial), shared[k]);
         hf_batch_free(&batch);
     }
     ck_assert(hf_chord_applies(&r.evaluator));
@@ -337,12 +337,12 @@ START_TEST(nothing_to_share)
     hf_batch batch;
     open_run(&r, HF_RULE_TENSION);
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
-    r.base_N[0] *= 50;
-    ck_assert_int_eq(hf_batch_share(&batch, r.base_N), HF_SOLVER_NEWTON);
-    r.base_N[0] /= 50;
+    r.initial[0] *= 50;
+    ck_assert_int_eq(hf_batch_share(&batch, r.initial), HF_SOLVER_NEWTON);
+    r.initial[0] /= 50;
     for (long n = 1;; n++) {
         fail_allocation_at(n);
-        hf_solver solver = hf_batch_share(&batch, r.base_N);
+        hf_solver solver = hf_batch_share(&batch, r.initial);
         if (!end_allocation_failure()) {
             ck_assert_int_eq(solver, HF_SOLVER_CHORD);
             ck_assert_int_gt(n, 3);
@@ -350,8 +350,8 @@ START_TEST(nothing_to_share)
         }
         hf_form_result direct, result;
         ck_assert_int_eq(solver, HF_SOLVER_NEWTON);
-        hf_batch_run(&batch, 1, r.design_N, NULL, &result);
-        ck_assert_int_eq(hf_evaluate(&r.evaluator, r.design_N, &r.net.work, &direct), HF_OK);
+        hf_batch_run(&batch, 1, r.design, NULL, &result);
+        ck_assert_int_eq(hf_evaluate(&r.evaluator, r.design, &r.net.work, &direct), HF_OK);
         ck_assert_double_eq(result.psi_m, direct.psi_m);
     }
     hf_batch_free(&batch);
@@ -366,9 +366,9 @@ START_TEST(nothing_is_allocated)
     hf_form_result result[N_DESIGN];
     open_run(&r, HF_RULE_FORCE_DENSITY);
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
-    hf_batch_share(&batch, r.base_N);
+    hf_batch_share(&batch, r.initial);
     long before = allocation_count();
-    hf_batch_run(&batch, N_DESIGN, r.design_N, NULL, result);
+    hf_batch_run(&batch, N_DESIGN, r.design, NULL, result);
     ck_assert_int_eq(allocation_count(), before);
     hf_batch_free(&batch);
     close_net(&r.net);

@@ -38,7 +38,7 @@ static int has_isa(int i)
 struct kernel_run {
     struct net net;
     hf_evaluator evaluator;
-    double start_q[600], base_N[100];
+    double start_q[600], initial[100];
     hf_chord chord;
     hf_chord_lanes lanes;
     size_t n_x, n_force; /* doubles */
@@ -58,14 +58,14 @@ static void open_kernel(struct kernel_run *r, int trial, int rule)
     ck_assert_int_eq(find_shape(&r->net), HF_OK);
     memcpy(r->start_q, r->net.work.q_N_per_m, (size_t)m->n_cable * sizeof(double));
     for (int k = 0; k < m->n_variable; k++)
-        r->base_N[k] = r->net.work.tension_N[m->variable_cable[k]];
+        r->initial[k] = r->net.work.tension_N[m->variable_cable[k]];
     r->evaluator = (hf_evaluator){.model = m,
                                   .form = &r->net.form,
                                   .start_q_N_per_m = r->start_q,
                                   .rule = (hf_rule)rule,
                                   .solver = HF_SOLVER_CHORD,
                                   .boundary_ratio_cap = 1e9};
-    ck_assert_int_eq(hf_chord_create(&r->evaluator, r->base_N, &r->net.work, &r->chord), HF_OK);
+    ck_assert_int_eq(hf_chord_create(&r->evaluator, r->initial, &r->net.work, &r->chord), HF_OK);
     ck_assert_int_eq(hf_chord_lanes_create(&r->chord, &r->lanes), HF_OK);
     r->n_x = 3 * (size_t)m->n_node * HF_LANES;
     r->n_force = hf_packed_band_rows(&r->chord.matrix) * HF_LANES;
@@ -77,7 +77,7 @@ static void fill_lanes(struct kernel_run *r, uint64_t stream)
     for (size_t i = 0; i < r->n_x; i++)
         r->lanes.x_m[i] = r->chord.base_m[i / HF_LANES] + rng_uniform(&rng, -0.01, 0.01);
     for (int i = 0; i < r->net.model.n_variable * HF_LANES; i++)
-        r->lanes.variable[i] = r->base_N[i / HF_LANES] * rng_uniform(&rng, 0.9, 1.1);
+        r->lanes.variable[i] = r->initial[i / HF_LANES] * rng_uniform(&rng, 0.9, 1.1);
     for (int i = 0; i < r->chord.n_pull * HF_LANES; i++)
         r->lanes.displacement_m[i] = r->chord.base_displacement_m[i / HF_LANES] + rng_uniform(&rng, -1e-4, 1e-4);
 }

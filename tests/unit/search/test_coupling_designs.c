@@ -27,7 +27,7 @@ START_TEST(chord_gives_what_evaluate_gives)
     hf_batch batch;
     open_designs(&r, _i / 3, scale_m_per_N[_i % 3]);
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 1, &batch), HF_OK);
-    ck_assert_int_eq(hf_batch_share(&batch, r.base_N), HF_SOLVER_CHORD);
+    ck_assert_int_eq(hf_batch_share(&batch, r.initial), HF_SOLVER_CHORD);
     for (int i = 0; i < N_DESIGN; i++) {
         hf_form_result chord, alone;
         const hf_model *m = &r.net.model;
@@ -66,7 +66,7 @@ START_TEST(threads_and_grouping_do_not_change_a_bit)
         hf_batch batch;
         int n_at_once = k == 1 ? 5 : N_DESIGN;
         ck_assert_int_eq(hf_batch_create(&r.evaluator, n_thread[k], &batch), HF_OK);
-        hf_batch_share(&batch, r.base_N);
+        hf_batch_share(&batch, r.initial);
         for (int i = 0; i < N_DESIGN; i += n_at_once)
             hf_batch_run(&batch, N_DESIGN - i < n_at_once ? N_DESIGN - i : n_at_once, design(&r, i), NULL,
                          result[k] + i);
@@ -93,7 +93,7 @@ START_TEST(a_rigid_truss_changes_no_bit_of_a_design)
     struct run *run[] = {&fixed, &rigid};
     for (int k = 0; k < 2; k++) {
         ck_assert_int_eq(hf_batch_create(&run[k]->evaluator, 1, &batch[k]), HF_OK);
-        ck_assert_int_eq(hf_batch_share(&batch[k], run[k]->base_N), HF_SOLVER_CHORD);
+        ck_assert_int_eq(hf_batch_share(&batch[k], run[k]->initial), HF_SOLVER_CHORD);
     }
     for (int i = 0; i < N_DESIGN; i++) {
         hf_workspace *w[2];
@@ -118,8 +118,8 @@ START_TEST(strangers_are_evaluated_alone)
     open_designs(&r, HF_RULE_TENSION, 1e-5);
     design(&r, 3)[0] *= 50;
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
-    ck_assert_int_eq(hf_batch_share(&batch, r.base_N), HF_SOLVER_CHORD);
-    hf_batch_run(&batch, N_DESIGN, r.design_N, NULL, result);
+    ck_assert_int_eq(hf_batch_share(&batch, r.initial), HF_SOLVER_CHORD);
+    hf_batch_run(&batch, N_DESIGN, r.design, NULL, result);
     hf_evaluate(&r.evaluator, design(&r, 3), &r.net.work, &alone);
     for (int i = 0; i < N_DESIGN; i++)
         ck_assert_int_eq(result[i].status, i == 3 ? alone.status : HF_OK);
@@ -138,7 +138,7 @@ static void sensitivity(struct run *r, int k, hf_schur *schur, double *dx, doubl
     double *more = schur->column, pull[3 * MAX_ATTACHMENT] = {0};
     int e = m->variable_cable[k], n = 3 * m->n_free, band = 3 * m->half_bandwidth + 2;
     const int *end = m->end_row + 2 * e;
-    ck_assert_int_eq(hf_evaluate(&r->evaluator, r->base_N, w, &at), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&r->evaluator, r->initial, w, &at), HF_OK);
     ck_assert_int_eq(hf_newton_matrix_factor(m, w, NULL), HF_OK);
     ck_assert_int_eq(hf_schur_factor(m, w, hf_newton_matrix_block, schur), HF_OK);
     memset(dx, 0, (size_t)n * sizeof *dx);
@@ -179,13 +179,13 @@ START_TEST(sensitivities_are_finite_differences)
     for (int k = 0; k < m->n_variable; k += 5) {
         hf_form_result at;
         sensitivity(&r, k, &schur, dx, dr);
-        kept = r.base_N[k];
+        kept = r.initial[k];
         for (int side = 0; side < 2; side++) {
-            r.base_N[k] = kept + (side ? -step_N : step_N);
-            ck_assert_int_eq(hf_evaluate(&r.evaluator, r.base_N, &r.net.work, &at), HF_OK);
+            r.initial[k] = kept + (side ? -step_N : step_N);
+            ck_assert_int_eq(hf_evaluate(&r.evaluator, r.initial, &r.net.work, &at), HF_OK);
             memcpy(side ? down : up, r.net.work.position_m, n * sizeof *dx);
         }
-        r.base_N[k] = kept;
+        r.initial[k] = kept;
         for (int i = 0; i < 3 * m->n_free; i++)
             largest_dx = fmax(largest_dx, fabs(dx[i]));
         for (int i = 0; i < 3 * m->n_node; i++) {
@@ -210,29 +210,29 @@ START_TEST(polished_design_has_no_coupled_slope_left)
 {
     struct run r;
     hf_polish_result result;
-    double lower_N[MAX_VARIABLE], upper_N[MAX_VARIABLE], slope[2][MAX_VARIABLE], step = 1e-5;
+    double lower[MAX_VARIABLE], upper[MAX_VARIABLE], slope[2][MAX_VARIABLE], step = 1e-5;
     open_designs(&r, _i, 1e-4);
     double range_N = _i == HF_RULE_TENSION ? 0.02 : 1;
     int n = r.net.model.n_variable, n_free = 0;
     r.net.form.coupling.tof_m = 1e-12;
     r.net.form.residual_tolerance = 1e-11;
     for (int k = 0; k < n; k++) {
-        lower_N[k] = r.base_N[k] - range_N;
-        upper_N[k] = r.base_N[k] + range_N;
+        lower[k] = r.initial[k] - range_N;
+        upper[k] = r.initial[k] + range_N;
     }
     for (int when = 0; when < 2; when++) {
         if (when)
-            ck_assert_int_eq(hf_polish_run(&r.evaluator, lower_N, upper_N, 300, NULL, r.base_N, &r.net.work, &result),
+            ck_assert_int_eq(hf_polish_run(&r.evaluator, lower, upper, 300, NULL, r.initial, &r.net.work, &result),
                              HF_OK);
         for (int k = 0; k < n; k++) {
-            double kept = r.base_N[k], psi_m[2];
+            double kept = r.initial[k], psi_m[2];
             for (int side = 0; side < 2; side++) {
                 hf_form_result at;
-                r.base_N[k] = kept + (side ? step : -step);
-                ck_assert_int_eq(hf_evaluate(&r.evaluator, r.base_N, &r.net.work, &at), HF_OK);
+                r.initial[k] = kept + (side ? step : -step);
+                ck_assert_int_eq(hf_evaluate(&r.evaluator, r.initial, &r.net.work, &at), HF_OK);
                 psi_m[side] = at.psi_m;
             }
-            r.base_N[k] = kept;
+            r.initial[k] = kept;
             slope[when][k] = (psi_m[1] - psi_m[0]) / (2 * step);
         }
     }
@@ -240,7 +240,7 @@ START_TEST(polished_design_has_no_coupled_slope_left)
     for (int k = 0; k < n; k++)
         scale = fmax(scale, fabs(slope[0][k]));
     for (int k = 0; k < n; k++) {
-        double half = (upper_N[k] - lower_N[k]) / 2, at = (r.base_N[k] - lower_N[k]) / half - 1;
+        double half = (upper[k] - lower[k]) / 2, at = (r.initial[k] - lower[k]) / half - 1;
         int is_free = fabs(at) < 0.999;
         n_free += is_free;
         ck_assert_msg((is_free ? fabs(slope[1][k]) : slope[1][k] * at) < 1e-3 * scale, "gene %d at %g: %g of %g m/N", k,

@@ -107,7 +107,7 @@ START_TEST(derivatives_are_those_of_differences)
     ck_assert_int_eq(hf_jacobian_create(&p.evaluator, &j), HF_OK);
     int n = p.model.n_variable, n_figure = p.goals.n_goal + 1;
     ck_assert_int_eq(j.n_figure, n_figure);
-    double *derivative = malloc(sizeof *derivative * (size_t)(n_figure * n)), *design = p.base_N;
+    double *derivative = malloc(sizeof *derivative * (size_t)(n_figure * n)), *design = p.initial;
     ck_assert(derivative && n > 0);
     for (int k = 0; k < n; k++)
         design[k] = p.model.variable_cable[k] < 0 ? rng_uniform(&rng, -0.01, 0.01)
@@ -143,7 +143,7 @@ START_TEST(a_goal_that_is_met_has_no_derivative)
     double derivative[3 * 64];
     int n = p.model.n_variable;
     ck_assert_int_le(n, 64);
-    ck_assert_int_eq(hf_evaluate(&p.evaluator, p.base_N, &p.workspace, &r), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &r), HF_OK);
     ck_assert_int_eq(hf_jacobian_find(&j, &p.workspace, derivative), HF_OK);
     for (int k = 0; k < n; k++) {
         ck_assert(isfinite(derivative[k]) && isnan(derivative[n + k]));

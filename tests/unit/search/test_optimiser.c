@@ -8,7 +8,7 @@
 enum { N_VARIABLE = 2, N = 3, N_GENERATION = 4 };
 
 static const hf_model model = {.n_variable = N_VARIABLE, .n_leader = N_VARIABLE};
-static const double base_N[N_VARIABLE] = {10, 20};
+static const double initial[N_VARIABLE] = {10, 20};
 static const hf_optimize_settings settings = {
     .population = N, .generations = N_GENERATION, .range_N = 100, .max_tension_N = 100, .stagnation_generations = 100};
 
@@ -30,7 +30,7 @@ static void propose_first(void *state, hf_population *p)
     ck_assert_ptr_eq(state, &calls);
     calls.n_first++;
     for (int i = 0; i < N; i++) {
-        memcpy(p->design_N + i * N_VARIABLE, base_N, sizeof base_N);
+        memcpy(p->design + i * N_VARIABLE, initial, sizeof initial);
         p->pending[i] = 1;
     }
 }
@@ -45,9 +45,9 @@ static void begin_next(void *state, const hf_population *now)
 static void propose(void *state, const hf_population *now, hf_population *next, int i)
 {
     ck_assert_ptr_eq(state, &calls);
-    ck_assert(now->design_N != next->design_N);
+    ck_assert(now->design != next->design);
     for (int k = i * N_VARIABLE; k < (i + 1) * N_VARIABLE; k++)
-        next->design_N[k] = now->design_N[k] - 1;
+        next->design[k] = now->design[k] - 1;
     next->pending[i] = 1;
 }
 
@@ -64,19 +64,19 @@ START_TEST(generations_are_asked_for_and_told)
     hf_optimiser o;
     hf_population *p = &o.population;
     calls = (struct calls){0};
-    ck_assert_int_eq(hf_optimiser_create(&counting, &settings, &model, base_N, &o), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&counting, &settings, &model, initial, &o), HF_OK);
     int n_told = 0;
     do {
         ck_assert_int_eq(p->generation, n_told);
         for (int i = 0; i < N; i++) {
             ck_assert_int_eq(p->pending[i], 1);
-            ck_assert_double_eq(p->design_N[i * N_VARIABLE], base_N[0] - n_told);
+            ck_assert_double_eq(p->design[i * N_VARIABLE], initial[0] - n_told);
             p->result[i] = (hf_form_result){
-                .status = HF_OK, .psi_m = p->design_N[i * N_VARIABLE], .merit = p->design_N[i * N_VARIABLE]};
+                .status = HF_OK, .psi_m = p->design[i * N_VARIABLE], .merit = p->design[i * N_VARIABLE]};
         }
         hf_optimiser_tell(&o);
         n_told++;
-        ck_assert_double_eq(p->best_psi_m[p->generation], base_N[0] - p->generation);
+        ck_assert_double_eq(p->best_psi_m[p->generation], initial[0] - p->generation);
     } while (hf_optimiser_next(&o));
     ck_assert_int_eq(n_told, N_GENERATION);
     ck_assert_int_eq(p->stop_reason, HF_POPULATION_GENERATIONS);
@@ -93,13 +93,13 @@ START_TEST(a_told_generation_stays_while_the_next_is_proposed)
 {
     hf_optimiser o;
     calls = (struct calls){0};
-    ck_assert_int_eq(hf_optimiser_create(&counting, &settings, &model, base_N, &o), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&counting, &settings, &model, initial, &o), HF_OK);
     for (int i = 0; i < N; i++)
         o.population.result[i] = (hf_form_result){.status = HF_OK, .psi_m = 5, .merit = 5};
     hf_optimiser_tell(&o);
     hf_population before = o.population;
     ck_assert(hf_optimiser_next(&o));
-    ck_assert_double_eq(before.design_N[0], base_N[0]);
+    ck_assert_double_eq(before.design[0], initial[0]);
     ck_assert_double_eq(before.result[0].psi_m, 5);
     ck_assert_int_eq(before.generation, 0);
     hf_optimiser_free(&o);
@@ -110,7 +110,7 @@ START_TEST(a_failing_optimiser_is_freed)
 {
     hf_optimiser o;
     calls = (struct calls){.answer = HF_NO_MEMORY};
-    ck_assert_int_eq(hf_optimiser_create(&counting, &settings, &model, base_N, &o), HF_NO_MEMORY);
+    ck_assert_int_eq(hf_optimiser_create(&counting, &settings, &model, initial, &o), HF_NO_MEMORY);
     ck_assert_int_eq(calls.n_first, 0);
     hf_optimiser_free(&o);
     ck_assert_int_eq(calls.n_free, 1);
@@ -121,10 +121,10 @@ END_TEST
 START_TEST(without_an_optimiser_there_are_only_bounds)
 {
     hf_optimiser o;
-    ck_assert_int_eq(hf_optimiser_create(NULL, &settings, &model, base_N, &o), HF_OK);
-    ck_assert_double_eq(o.population.lower_N[0], 0);
-    ck_assert_double_eq(o.population.upper_N[1], 100);
-    ck_assert_double_eq(o.population.design_N[0], 0);
+    ck_assert_int_eq(hf_optimiser_create(NULL, &settings, &model, initial, &o), HF_OK);
+    ck_assert_double_eq(o.population.lower[0], 0);
+    ck_assert_double_eq(o.population.upper[1], 100);
+    ck_assert_double_eq(o.population.design[0], 0);
     hf_optimiser_free(&o);
 }
 END_TEST

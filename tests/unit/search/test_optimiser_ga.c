@@ -11,7 +11,7 @@ enum { N_VARIABLE = 6, N_GROUP = 3, N = 20 };
 
 static int group_of[N_VARIABLE] = {0, 0, 1, 1, 2, 2};
 static const hf_model model = {.n_variable = N_VARIABLE, .n_variable_group = N_GROUP, .variable_group = group_of};
-static const double base_N[N_VARIABLE] = {10, 12, 14, 0.4, 20, 29.7};
+static const double initial[N_VARIABLE] = {10, 12, 14, 0.4, 20, 29.7};
 
 /* METHOD section 7; bounds that cut the ranges of the genes 3 (0.4 - 1 is below 0.1) and 5 (29.7 + 1 is above 30). */
 static const hf_optimize_settings plain = {.population = N,
@@ -32,17 +32,17 @@ static const hf_optimize_settings plain = {.population = N,
 static hf_optimiser create(const hf_optimize_settings *settings)
 {
     hf_optimiser ga;
-    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, settings, &model, base_N, &ga), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, settings, &model, initial, &ga), HF_OK);
     return ga;
 }
 
 /* Distance to a point inside the bounds, made of group steps 0.5, -0.3 and 0.2 from the base. */
-static double distance_m(const double *design_N)
+static double distance_m(const double *design)
 {
     static const double step[N_GROUP] = {0.5, -0.3, 0.2};
     double sum = 0;
     for (int k = 0; k < N_VARIABLE; k++) {
-        double d = design_N[k] - (base_N[k] + step[group_of[k]]);
+        double d = design[k] - (initial[k] + step[group_of[k]]);
         sum += d * d;
     }
     return sqrt(sum);
@@ -53,30 +53,30 @@ static void evaluate_pending(hf_optimiser *ga)
     for (int i = 0; i < ga->population.n_individual; i++)
         if (ga->population.pending[i])
             ga->population.result[i] = (hf_form_result){.status = HF_OK,
-                                                        .psi_m = distance_m(ga->population.design_N + i * N_VARIABLE),
-                                                        .merit = distance_m(ga->population.design_N + i * N_VARIABLE)};
+                                                        .psi_m = distance_m(ga->population.design + i * N_VARIABLE),
+                                                        .merit = distance_m(ga->population.design + i * N_VARIABLE)};
 }
 
 START_TEST(first_generation_surrounds_the_base)
 {
     hf_optimiser ga = create(&plain);
     double lowest[N_VARIABLE], highest[N_VARIABLE];
-    ck_assert_mem_eq(ga.population.design_N, base_N, sizeof base_N); /* individual 0 */
+    ck_assert_mem_eq(ga.population.design, initial, sizeof initial); /* individual 0 */
     for (int k = 0; k < N_VARIABLE; k++)
         lowest[k] = INFINITY, highest[k] = -INFINITY;
     for (int i = 0; i < N; i++) {
-        const double *d = ga.population.design_N + i * N_VARIABLE;
+        const double *d = ga.population.design + i * N_VARIABLE;
         ck_assert_int_eq(ga.population.pending[i], 1);
         ck_assert_double_nan(ga.population.crossover_rate[i]);
         ck_assert_int_eq(ga.population.parent[2 * i], -1);
-        ck_assert_double_eq_tol(d[0] - base_N[0], d[1] - base_N[1], 1e-14); /* one number for the group (Eq. 13) */
+        ck_assert_double_eq_tol(d[0] - initial[0], d[1] - initial[1], 1e-14); /* one number for the group (Eq. 13) */
         for (int k = 0; k < N_VARIABLE; k++) {
-            ck_assert(d[k] >= fmax(base_N[k] - 1, 0.1) && d[k] <= fmin(base_N[k] + 1, 30));
+            ck_assert(d[k] >= fmax(initial[k] - 1, 0.1) && d[k] <= fmin(initial[k] + 1, 30));
             lowest[k] = fmin(lowest[k], d[k]), highest[k] = fmax(highest[k], d[k]);
         }
     }
     for (int k = 0; k < 3; k++) /* 20 uniform numbers in (-1, 1): all on one side with probability 1e-6 */
-        ck_assert(lowest[k] < base_N[k] - 0.3 && highest[k] > base_N[k] + 0.3);
+        ck_assert(lowest[k] < initial[k] - 0.3 && highest[k] > initial[k] + 0.3);
     hf_optimiser_free(&ga);
 }
 END_TEST
@@ -164,20 +164,20 @@ START_TEST(every_generation_obeys_the_rules)
         hf_optimiser_tell(&ga);
         ck_assert_double_le(ga.population.best_psi_m[ga.population.generation], best); /* elites: never worse */
         best = ga.population.best_psi_m[ga.population.generation];
-        memcpy(parents, ga.population.design_N, N * N_VARIABLE * sizeof *parents);
+        memcpy(parents, ga.population.design, N * N_VARIABLE * sizeof *parents);
         memcpy(told, ga.population.result, sizeof told);
         int best_parent = ga.population.best;
         if (!hf_optimiser_next(&ga)) break;
         ck_assert_int_eq(ga.population.parent[0], best_parent);
         for (int i = 0; i < N; i++) {
-            const double *child = ga.population.design_N + i * N_VARIABLE,
+            const double *child = ga.population.design + i * N_VARIABLE,
                          *mother = parents + ga.population.parent[2 * i] * N_VARIABLE;
             int is_equal = !memcmp(child, mother, N_VARIABLE * sizeof *child);
             if (i < plain.elites) ck_assert(is_equal);
             ck_assert_int_eq(ga.population.pending[i], !is_equal);
             if (is_equal) ck_assert_double_eq(ga.population.result[i].psi_m, told[ga.population.parent[2 * i]].psi_m);
             for (int k = 0; k < N_VARIABLE; k++)
-                ck_assert(child[k] >= fmax(base_N[k] - 1, 0.1) && child[k] <= fmin(base_N[k] + 1, 30));
+                ck_assert(child[k] >= fmax(initial[k] - 1, 0.1) && child[k] <= fmin(initial[k] + 1, 30));
         }
         ck_assert_double_le(told[ga.population.parent[0]].psi_m,
                             told[ga.population.parent[2]].psi_m); /* elites in order, and not one of them twice */
@@ -185,7 +185,7 @@ START_TEST(every_generation_obeys_the_rules)
     }
     ck_assert_int_eq(ga.population.stop_reason, HF_POPULATION_GENERATIONS);
     ck_assert_int_eq(ga.population.generation, 59);
-    ck_assert_double_lt(best, 0.5 * distance_m(base_N)); /* it searches: measured 0.1 of the base's distance */
+    ck_assert_double_lt(best, 0.5 * distance_m(initial)); /* it searches: measured 0.1 of the base's distance */
     free(parents);
     hf_optimiser_free(&ga);
 }
@@ -204,14 +204,14 @@ START_TEST(mutations_go_both_ways)
     for (;;) {
         evaluate_pending(&ga);
         hf_optimiser_tell(&ga);
-        memcpy(parents, ga.population.design_N, sizeof parents);
+        memcpy(parents, ga.population.design, sizeof parents);
         if (!hf_optimiser_next(&ga)) break;
         for (int i = 0; i < N * N_VARIABLE; i++) {
             int k = i % N_VARIABLE;
             double was_N = parents[ga.population.parent[2 * (i / N_VARIABLE)] * N_VARIABLE + k];
-            if (k == 3 || k == 5 || fabs(was_N - base_N[k]) > 0.5) continue; /* a step may be cut at a bound */
-            n_up += ga.population.design_N[i] > was_N;
-            n_down += ga.population.design_N[i] < was_N;
+            if (k == 3 || k == 5 || fabs(was_N - initial[k]) > 0.5) continue; /* a step may be cut at a bound */
+            n_up += ga.population.design[i] > was_N;
+            n_down += ga.population.design[i] < was_N;
         }
     }
     ck_assert_int_gt(n_up + n_down, 500);
@@ -305,25 +305,25 @@ START_TEST(nobody_gives_way_to_a_worse_child)
     evaluate_pending(&ga);
     hf_optimiser_tell(&ga);
     for (;;) {
-        memcpy(before, p->design_N, sizeof before);
+        memcpy(before, p->design, sizeof before);
         memcpy(was, p->result, sizeof was);
         if (!hf_optimiser_next(&ga)) break;
         evaluate_pending(&ga);
         for (int i = 0; i < N; i++) {
             trial[i] = p->result[i].psi_m;
             ck_assert_double_eq(p->result[i].psi_m,
-                                distance_m(p->design_N + i * N_VARIABLE)); /* also where not pending */
+                                distance_m(p->design + i * N_VARIABLE)); /* also where not pending */
         }
         hf_optimiser_tell(&ga);
         for (int i = 0; i < N; i++) {
             bool is_kept = p->parent[2 * i] == i && p->parent[2 * i + 1] == -1;
-            const double *design = p->design_N + i * N_VARIABLE;
+            const double *design = p->design + i * N_VARIABLE;
             ck_assert_double_eq(p->trial_psi_m[i], trial[i]);
             ck_assert_double_eq(p->result[i].psi_m, fmin(trial[i], was[i].psi_m));
             ck_assert_int_eq(is_kept, !p->pending[i] || trial[i] > was[i].psi_m);
             if (is_kept) ck_assert_mem_eq(design, before + i * N_VARIABLE, N_VARIABLE * sizeof *design);
             for (int k = 0; k < N_VARIABLE; k++)
-                ck_assert(design[k] >= p->lower_N[k] && design[k] <= p->upper_N[k]);
+                ck_assert(design[k] >= p->lower[k] && design[k] <= p->upper[k]);
             n_kept += is_kept;
             n_new += !is_kept;
         }
@@ -357,7 +357,7 @@ START_TEST(a_population_outside_its_limits_finds_the_way_in)
     double least = INFINITY;
     do {
         for (int i = 0; i < N; i++) {
-            double far_m = distance_m(p->design_N + i * N_VARIABLE);
+            double far_m = distance_m(p->design + i * N_VARIABLE);
             if (!p->pending[i]) continue;
             p->result[i] = (hf_form_result){.status = HF_OK, .psi_m = 1 + far_m, .merit = 1 + far_m};
             if (far_m > 0.05)

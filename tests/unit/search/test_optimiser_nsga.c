@@ -19,7 +19,7 @@ static const hf_model linked_genes = {.n_variable = N_VARIABLE,
                                       .variable_group = group_of,
                                       .variable_leader = leader_of,
                                       .n_leader = 5};
-static const double base_N[N_VARIABLE] = {10, 12, 14, 10, 20, 15};
+static const double initial[N_VARIABLE] = {10, 12, 14, 10, 20, 15};
 static const hf_optimize_settings plain = {.population = N,
                                            .generations = 100,
                                            .range_N = 1,
@@ -36,34 +36,34 @@ static const hf_optimize_settings plain = {.population = N,
 static hf_optimiser create(const hf_optimize_settings *settings, const hf_model *model)
 {
     hf_optimiser o;
-    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_nsga, settings, model, base_N, &o), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_nsga, settings, model, initial, &o), HF_OK);
     return o;
 }
 
 /* Square of the distance to base + step in all genes, over that of 1 in each. */
-static double square(const double *design_N, double step)
+static double square(const double *design, double step)
 {
     double sum = 0;
     for (int k = 0; k < N_VARIABLE; k++)
-        sum += (design_N[k] - base_N[k] - step) * (design_N[k] - base_N[k] - step) / N_VARIABLE;
+        sum += (design[k] - initial[k] - step) * (design[k] - initial[k] - step) / N_VARIABLE;
     return sum;
 }
 
 /* A problem: objectives of a design. */
-typedef void objectives(const double *design_N, hf_form_result *r);
+typedef void objectives(const double *design, hf_form_result *r);
 
 /* The front is the way from base - 0.5 to base + 0.5, at t of it {t^2, (1 - t)^2}: bent inwards. */
-static void inwards(const double *design_N, hf_form_result *r)
+static void inwards(const double *design, hf_form_result *r)
 {
-    r->goal[0] = square(design_N, -0.5);
-    r->goal[1] = square(design_N, 0.5);
+    r->goal[0] = square(design, -0.5);
+    r->goal[1] = square(design, 0.5);
 }
 
 /* The same front, bent outwards (Fonseca & Fleming 1995). */
-static void outwards(const double *design_N, hf_form_result *r)
+static void outwards(const double *design, hf_form_result *r)
 {
-    r->goal[0] = 1 - exp(-4 * square(design_N, -0.5));
-    r->goal[1] = 1 - exp(-4 * square(design_N, 0.5));
+    r->goal[0] = 1 - exp(-4 * square(design, -0.5));
+    r->goal[1] = 1 - exp(-4 * square(design, 0.5));
 }
 
 static void evaluate(hf_optimiser *o, objectives *f)
@@ -72,7 +72,7 @@ static void evaluate(hf_optimiser *o, objectives *f)
         hf_form_result *r = &o->population.result[i];
         if (!o->population.pending[i]) continue;
         *r = (hf_form_result){.status = HF_OK, .psi_m = 1, .merit = 1};
-        f(o->population.design_N + i * N_VARIABLE, r);
+        f(o->population.design + i * N_VARIABLE, r);
     }
 }
 
@@ -126,12 +126,12 @@ START_TEST(known_fronts_are_covered)
 END_TEST
 
 /* Distances to three points: the front is the triangle between them. */
-static void triangle(const double *design_N, hf_form_result *r)
+static void triangle(const double *design, hf_form_result *r)
 {
     for (int j = 0; j < 3; j++) {
         r->goal[j] = 0;
         for (int k = 0; k < N_VARIABLE; k++)
-            r->goal[j] += pow(design_N[k] - base_N[k] - (group_of[k] == j ? 0.5 : 0), 2);
+            r->goal[j] += pow(design[k] - initial[k] - (group_of[k] == j ? 0.5 : 0), 2);
     }
 }
 
@@ -163,7 +163,7 @@ END_TEST
 
 static bool is_same_design(const hf_population *a, int i, const hf_population *b, int k)
 {
-    return !memcmp(a->design_N + i * N_VARIABLE, b->design_N + k * N_VARIABLE, N_VARIABLE * sizeof(double));
+    return !memcmp(a->design + i * N_VARIABLE, b->design + k * N_VARIABLE, N_VARIABLE * sizeof(double));
 }
 
 /* Nobody lives on twice, all who live on are at a place of their own, and the ends of the front are never lost. */
@@ -181,9 +181,8 @@ START_TEST(every_generation_keeps_the_rules)
             for (int k = 0; k < i && p->generation > 0; k++)
                 ck_assert(!is_same_design(p, i, p, k));
             for (int k = 0; k < N_VARIABLE; k++)
-                ck_assert(fabs(p->design_N[i * N_VARIABLE + k] - base_N[k]) <= 1 + 1e-12);
-            if (_i)
-                ck_assert_double_eq_tol(p->design_N[i * N_VARIABLE + 4] - 20, p->design_N[i * N_VARIABLE] - 10, 1e-12);
+                ck_assert(fabs(p->design[i * N_VARIABLE + k] - initial[k]) <= 1 + 1e-12);
+            if (_i) ck_assert_double_eq_tol(p->design[i * N_VARIABLE + 4] - 20, p->design[i * N_VARIABLE] - 10, 1e-12);
             for (int j = 0; j < 2; j++)
                 now[j] = fmin(now[j], p->result[i].goal[j]);
             int kept = p->parent[2 * i];
@@ -213,7 +212,7 @@ START_TEST(proposals_depend_on_the_population_alone)
     }
     evaluate(&a, inwards);
     hf_optimiser_tell(&a);
-    memcpy(b.population.design_N, a.population.design_N, N * N_VARIABLE * sizeof(double));
+    memcpy(b.population.design, a.population.design, N * N_VARIABLE * sizeof(double));
     memcpy(b.population.result, a.population.result, N * sizeof(hf_form_result));
     b.population.generation = a.population.generation;
     b.is_fresh = false;
@@ -222,7 +221,7 @@ START_TEST(proposals_depend_on_the_population_alone)
     for (int i = N - 1; i >= 0; i--)
         hf_optimiser_propose(&b, i);
     hf_optimiser_end(&b);
-    ck_assert_mem_eq(a.population.design_N, b.population.design_N, N * N_VARIABLE * sizeof(double));
+    ck_assert_mem_eq(a.population.design, b.population.design, N * N_VARIABLE * sizeof(double));
     ck_assert_mem_eq(a.population.pending, b.population.pending, N);
     hf_optimiser_free(&a);
     hf_optimiser_free(&b);
@@ -230,10 +229,10 @@ START_TEST(proposals_depend_on_the_population_alone)
 END_TEST
 
 /* Only near base + 0.9 in all genes, where no design of the first generation is; goals are not numbers elsewhere. */
-static void far_away(const double *design_N, hf_form_result *r)
+static void far_away(const double *design, hf_form_result *r)
 {
-    double beyond = square(design_N, 0.9) - 0.01;
-    inwards(design_N, r);
+    double beyond = square(design, 0.9) - 0.01;
+    inwards(design, r);
     if (!(beyond > 0)) return;
     *r = (hf_form_result){.status = HF_OUT_OF_LIMITS, .violation = beyond, .psi_m = NAN, .merit = NAN};
     r->goal[0] = r->goal[1] = NAN;

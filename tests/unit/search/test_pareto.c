@@ -234,7 +234,7 @@ START_TEST(a_population_gives_its_front)
                            {.goal = {3, 3}},
                            {.goal = {0, 0}, .status = HF_RATIO_CAP, .violation = 1},
                            {.goal = {9, 0}}};
-    const hf_population p = {.n_variable = 1, .n_individual = N, .n_objective = 2, .design_N = design, .result = r};
+    const hf_population p = {.n_variable = 1, .n_individual = N, .n_objective = 2, .design = design, .result = r};
     hf_front f;
     ck_assert_int_eq(hf_pareto_front(&p, &f), HF_OK);
     ck_assert_int_eq(f.n_point, 3);

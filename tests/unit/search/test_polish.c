@@ -10,14 +10,14 @@
 
 struct polish_run {
     struct run r;
-    double lower_N[MAX_VARIABLE], upper_N[MAX_VARIABLE];
+    double lower[MAX_VARIABLE], upper[MAX_VARIABLE];
 };
 
 static void set_bounds(struct polish_run *p, double range_N)
 {
     for (int k = 0; k < p->r.net.model.n_variable; k++) {
-        p->lower_N[k] = fmax(p->r.base_N[k] - range_N, 1e-3);
-        p->upper_N[k] = p->r.base_N[k] + range_N;
+        p->lower[k] = fmax(p->r.initial[k] - range_N, 1e-3);
+        p->upper[k] = p->r.initial[k] + range_N;
     }
 }
 
@@ -36,24 +36,23 @@ static void open_small(struct polish_run *p, int rule, double range_N)
     set_bounds(p, range_N);
 }
 
-static hf_status polish(struct polish_run *p, int max_iterations, double *design_N, hf_polish_result *result)
+static hf_status polish(struct polish_run *p, int max_iterations, double *design, hf_polish_result *result)
 {
-    return hf_polish_run(&p->r.evaluator, p->lower_N, p->upper_N, max_iterations, NULL, design_N, &p->r.net.work,
-                         result);
+    return hf_polish_run(&p->r.evaluator, p->lower, p->upper, max_iterations, NULL, design, &p->r.net.work, result);
 }
 
-static double psi_of(struct polish_run *p, const double *design_N)
+static double psi_of(struct polish_run *p, const double *design)
 {
     hf_form_result result;
-    ck_assert_int_eq(hf_evaluate(&p->r.evaluator, design_N, &p->r.net.work, &result), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&p->r.evaluator, design, &p->r.net.work, &result), HF_OK);
     return result.merit;
 }
 
-static void assert_within_bounds(const struct polish_run *p, const double *design_N)
+static void assert_within_bounds(const struct polish_run *p, const double *design)
 {
     for (int k = 0; k < p->r.net.model.n_variable; k++) {
-        ck_assert_double_ge(design_N[k], p->lower_N[k]);
-        ck_assert_double_le(design_N[k], p->upper_N[k]);
+        ck_assert_double_ge(design[k], p->lower[k]);
+        ck_assert_double_le(design[k], p->upper[k]);
     }
 }
 
@@ -63,19 +62,19 @@ START_TEST(reaches_the_known_optimum)
     struct polish_run p;
     hf_polish_result result;
     open_chen(&p, 1);
-    double *design_N = p.r.base_N, start_m = psi_of(&p, design_N);
-    ck_assert_int_eq(polish(&p, 200, design_N, &result), HF_OK);
+    double *design = p.r.initial, start_m = psi_of(&p, design);
+    ck_assert_int_eq(polish(&p, 200, design, &result), HF_OK);
     ck_assert_double_eq_tol(1e3 * result.merit, 6.345, 1e-3);
     ck_assert_double_eq_tol(result.start_merit, start_m, 1e-12);
-    ck_assert_double_eq_tol(psi_of(&p, design_N), result.merit, 1e-12);
+    ck_assert_double_eq_tol(psi_of(&p, design), result.merit, 1e-12);
     ck_assert_int_eq(result.stop, HF_POLISH_CONVERGED);
     ck_assert_int_le(result.iterations, 60); /* observed: 30; without exact derivatives or scaling far more */
-    assert_within_bounds(&p, design_N);
+    assert_within_bounds(&p, design);
     /* once more for one step: it starts by leaving the bounds, which is uphill, and must not end there */
     double optimum_m = result.merit;
-    ck_assert_int_eq(polish(&p, 1, design_N, &result), HF_OK);
+    ck_assert_int_eq(polish(&p, 1, design, &result), HF_OK);
     ck_assert_double_le(result.merit, optimum_m);
-    ck_assert_double_le(psi_of(&p, design_N), optimum_m);
+    ck_assert_double_le(psi_of(&p, design), optimum_m);
     close_net(&p.r.net);
 }
 END_TEST
@@ -88,7 +87,7 @@ START_TEST(approaches_the_free_optimum)
     hf_polish_result result;
     open_chen(&p, 1000);
     p.r.evaluator.boundary_ratio_cap = 1e9;
-    ck_assert_int_eq(polish(&p, 500, p.r.base_N, &result), HF_OK);
+    ck_assert_int_eq(polish(&p, 500, p.r.initial, &result), HF_OK);
     ck_assert_double_ge(1e3 * result.merit, 3.535);
     ck_assert_double_le(1e3 * result.merit, 3.59);
     close_net(&p.r.net);
@@ -108,22 +107,22 @@ START_TEST(optimum_has_no_slope_left)
     else
         open_chen(&p, 1);
     int n = p.r.net.model.n_variable, n_free = 0;
-    double slope[2][MAX_VARIABLE], step = 1e-5, *design_N = p.r.base_N;
+    double slope[2][MAX_VARIABLE], step = 1e-5, *design = p.r.initial;
     for (int when = 0; when < 2; when++) {
-        if (when) ck_assert_int_eq(polish(&p, 300, design_N, &result), HF_OK);
+        if (when) ck_assert_int_eq(polish(&p, 300, design, &result), HF_OK);
         for (int k = 0; k < n; k++) {
-            double kept = design_N[k], up, down;
-            design_N[k] = kept + step;
-            up = psi_of(&p, design_N);
-            design_N[k] = kept - step;
-            down = psi_of(&p, design_N);
-            design_N[k] = kept;
+            double kept = design[k], up, down;
+            design[k] = kept + step;
+            up = psi_of(&p, design);
+            design[k] = kept - step;
+            down = psi_of(&p, design);
+            design[k] = kept;
             slope[when][k] = (up - down) / (2 * step);
         }
     }
     double scale = largest(slope[0], n);
     for (int k = 0; k < n; k++) {
-        double half = (p.upper_N[k] - p.lower_N[k]) / 2, at = (design_N[k] - p.lower_N[k]) / half - 1;
+        double half = (p.upper[k] - p.lower[k]) / 2, at = (design[k] - p.lower[k]) / half - 1;
         if (fabs(at) < 0.999) {
             n_free++;
             ck_assert_msg(fabs(slope[1][k]) < 1e-4 * scale, "gene %d: %g m/N left of %g", k, slope[1][k], scale);
@@ -144,14 +143,14 @@ START_TEST(never_worse_than_its_start)
     hf_polish_result result;
     open_small(&p, HF_RULE_FORCE_DENSITY, 0.5);
     for (int i = 0; i < 6; i++) {
-        double *design_N = design(&p.r, i), before_m = psi_of(&p, design_N);
+        double *x = design(&p.r, i), before_m = psi_of(&p, x);
         for (int again = 0; again < 2; again++) {
-            ck_assert_int_eq(polish(&p, again ? 300 : 1 + i, design_N, &result), HF_OK);
+            ck_assert_int_eq(polish(&p, again ? 300 : 1 + i, x, &result), HF_OK);
             ck_assert_double_eq(result.start_merit, before_m);
             ck_assert_double_le(result.merit, before_m);
-            before_m = psi_of(&p, design_N);
+            before_m = psi_of(&p, x);
             ck_assert_double_eq(before_m, result.merit);
-            assert_within_bounds(&p, design_N);
+            assert_within_bounds(&p, x);
             ck_assert_int_gt(result.evaluations, 0);
             if (!again) ck_assert_int_le(result.iterations, 1 + i);
         }
@@ -167,13 +166,13 @@ START_TEST(ratio_cap_is_kept)
     struct polish_run p;
     hf_polish_result open, capped;
     hf_form_result end;
-    double design_N[MAX_VARIABLE];
+    double design[MAX_VARIABLE];
     open_chen(&p, 400);
     for (int has_cap = 0; has_cap < 2; has_cap++) {
         p.r.evaluator.boundary_ratio_cap = has_cap ? 5 : 1e9;
-        memcpy(design_N, p.r.base_N, sizeof design_N);
-        ck_assert_int_eq(polish(&p, 300, design_N, has_cap ? &capped : &open), HF_OK);
-        ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design_N, &p.r.net.work, &end), HF_OK);
+        memcpy(design, p.r.initial, sizeof design);
+        ck_assert_int_eq(polish(&p, 300, design, has_cap ? &capped : &open), HF_OK);
+        ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design, &p.r.net.work, &end), HF_OK);
         if (has_cap)
             ck_assert_double_le(end.boundary_tension_ratio, 5);
         else
@@ -191,17 +190,17 @@ START_TEST(infeasible_start_is_told)
     hf_polish_result result;
     double kept[MAX_VARIABLE];
     open_small(&p, HF_RULE_TENSION, 1);
-    p.r.base_N[0] *= 50;
-    memcpy(kept, p.r.base_N, sizeof kept);
-    ck_assert_int_eq(polish(&p, 20, p.r.base_N, &result), HF_COLLAPSED);
-    ck_assert_mem_eq(kept, p.r.base_N, (size_t)p.r.net.model.n_variable * sizeof *kept); /* untouched */
+    p.r.initial[0] *= 50;
+    memcpy(kept, p.r.initial, sizeof kept);
+    ck_assert_int_eq(polish(&p, 20, p.r.initial, &result), HF_COLLAPSED);
+    ck_assert_mem_eq(kept, p.r.initial, (size_t)p.r.net.model.n_variable * sizeof *kept); /* untouched */
     ck_assert_int_eq(result.iterations, 0);
     p.r.evaluator.boundary_ratio_cap = 1 + 1e-9;
-    memcpy(p.r.base_N, design(&p.r, 0), sizeof kept);
+    memcpy(p.r.initial, design(&p.r, 0), sizeof kept);
     ck_assert_int_eq(
-        hf_polish_run(&p.r.evaluator, design(&p.r, 0), design(&p.r, 0), 20, NULL, p.r.base_N, &p.r.net.work, &result),
+        hf_polish_run(&p.r.evaluator, design(&p.r, 0), design(&p.r, 0), 20, NULL, p.r.initial, &p.r.net.work, &result),
         HF_RATIO_CAP);
-    ck_assert_mem_eq(p.r.base_N, design(&p.r, 0), (size_t)p.r.net.model.n_variable * sizeof *kept); /* no way in */
+    ck_assert_mem_eq(p.r.initial, design(&p.r, 0), (size_t)p.r.net.model.n_variable * sizeof *kept); /* no way in */
     close_net(&p.r.net);
 }
 END_TEST
@@ -232,18 +231,18 @@ START_TEST(after_the_ga_the_same_optimum)
     open_chen(&p, 1);
     p.r.net.settings.optimize.generations = 30;
     ck_assert_int_eq(hf_batch_create(&p.r.evaluator, 2, &batch), HF_OK);
-    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &p.r.net.settings.optimize, &p.r.net.model, p.r.base_N, &ga),
-                     HF_OK);
-    hf_batch_share(&batch, p.r.base_N);
+    ck_assert_int_eq(
+        hf_optimiser_create(&hf_optimiser_ga, &p.r.net.settings.optimize, &p.r.net.model, p.r.initial, &ga), HF_OK);
+    hf_batch_share(&batch, p.r.initial);
     do {
-        hf_batch_run(&batch, ga.population.n_individual, ga.population.design_N, ga.population.pending,
+        hf_batch_run(&batch, ga.population.n_individual, ga.population.design, ga.population.pending,
                      ga.population.result);
         hf_optimiser_tell(&ga);
     } while (hf_optimiser_next(&ga));
-    double *best_N = ga.population.design_N + ga.population.best * ga.population.n_variable,
+    double *best_N = ga.population.design + ga.population.best * ga.population.n_variable,
            best_m = ga.population.result[ga.population.best].psi_m;
     ck_assert_int_eq(polish(&p, 200, best_N, &from_ga), HF_OK);
-    ck_assert_int_eq(polish(&p, 200, p.r.base_N, &from_base), HF_OK);
+    ck_assert_int_eq(polish(&p, 200, p.r.initial, &from_base), HF_OK);
     ck_assert_double_eq_tol(from_ga.merit, from_base.merit, 1e-6);
     ck_assert_double_le(from_ga.merit, best_m);
     hf_optimiser_free(&ga);
@@ -293,7 +292,7 @@ static hf_polish_result watch_polish(struct polish_run *p, const double *start, 
 {
     hf_polish_result result;
     memcpy(end, start, (size_t)p->r.net.model.n_variable * sizeof *end);
-    ck_assert_int_eq(hf_polish_run(&p->r.evaluator, p->lower_N, p->upper_N, 40, watcher, end, &p->r.net.work, &result),
+    ck_assert_int_eq(hf_polish_run(&p->r.evaluator, p->lower, p->upper, 40, watcher, end, &p->r.net.work, &result),
                      HF_OK);
     return result;
 }
@@ -302,7 +301,7 @@ static void open_for_steps(struct polish_run *p, int i)
 {
     if (i == 2) {
         open_small(p, HF_RULE_TENSION, 1);
-        memcpy(p->r.base_N, design(&p->r, 0), (size_t)p->r.net.model.n_variable * sizeof(double));
+        memcpy(p->r.initial, design(&p->r, 0), (size_t)p->r.net.model.n_variable * sizeof(double));
         p->r.evaluator.boundary_ratio_cap = 1 + 1e-9; /* far off */
     } else {
         open_chen(p, i == 1 ? 400 : 1);
@@ -320,14 +319,14 @@ START_TEST(goes_on_from_any_step_to_the_same_bits)
     const hf_polish_watcher watcher = {.after = note_state, .context = &trace};
     open_for_steps(&p, _i);
     size_t size = (size_t)p.r.net.model.n_variable * sizeof(double);
-    const hf_polish_result whole = watch_polish(&p, p.r.base_N, &watcher, end_N);
+    const hf_polish_result whole = watch_polish(&p, p.r.initial, &watcher, end_N);
     ck_assert_int_eq(trace.n, whole.iterations + 1);
     ck_assert_int_ge(trace.n, 4);
     for (int k = 0; k <= trace.n; k++) {
         const hf_polish_watcher from = {.n_state = trace.n_state,
                                         .state = trace.state + (size_t)(k % trace.n) * trace.n_state};
         if (k == trace.n) trace.state[trace.n_state - 1] = (double)NAN; /* damaged: it begins anew */
-        const hf_polish_result again = watch_polish(&p, p.r.base_N, &from, again_N);
+        const hf_polish_result again = watch_polish(&p, p.r.initial, &from, again_N);
         ck_assert_mem_eq(again_N, end_N, size);
         ck_assert(again.iterations == whole.iterations && again.evaluations == whole.evaluations);
         ck_assert(again.stop == whole.stop && again.merit == whole.merit);
@@ -354,11 +353,11 @@ START_TEST(its_watcher_ends_it)
     const hf_polish_watcher watcher = {.after = end_at_two, .context = &iterations};
     open_chen(&p, 1);
     size_t size = (size_t)p.r.net.model.n_variable * sizeof(double);
-    memcpy(start_N, p.r.base_N, size);
-    ck_assert_int_eq(
-        hf_polish_run(&p.r.evaluator, p.lower_N, p.upper_N, 40, &watcher, p.r.base_N, &p.r.net.work, &result), HF_IO);
+    memcpy(start_N, p.r.initial, size);
+    ck_assert_int_eq(hf_polish_run(&p.r.evaluator, p.lower, p.upper, 40, &watcher, p.r.initial, &p.r.net.work, &result),
+                     HF_IO);
     ck_assert_int_eq(iterations, 2);
-    ck_assert_mem_eq(start_N, p.r.base_N, size);
+    ck_assert_mem_eq(start_N, p.r.initial, size);
     close_net(&p.r.net);
 }
 END_TEST
@@ -384,10 +383,10 @@ START_TEST(the_start_stays_when_the_end_is_worse)
     open_chen(&p, 1);
     const hf_model *m = &p.r.net.model;
     const hf_polish_watcher watcher = {.after = shift_target, .context = &p.r.net.model};
-    memcpy(start_N, p.r.base_N, (size_t)m->n_variable * sizeof(double));
-    ck_assert_int_eq(
-        hf_polish_run(&p.r.evaluator, p.lower_N, p.upper_N, 3, &watcher, p.r.base_N, &p.r.net.work, &result), HF_OK);
-    ck_assert_mem_eq(start_N, p.r.base_N, (size_t)m->n_variable * sizeof(double));
+    memcpy(start_N, p.r.initial, (size_t)m->n_variable * sizeof(double));
+    ck_assert_int_eq(hf_polish_run(&p.r.evaluator, p.lower, p.upper, 3, &watcher, p.r.initial, &p.r.net.work, &result),
+                     HF_OK);
+    ck_assert_mem_eq(start_N, p.r.initial, (size_t)m->n_variable * sizeof(double));
     ck_assert_int_eq(result.stop, HF_POLISH_STALLED);
     double *end_m = malloc(3 * (size_t)m->n_node * sizeof *end_m);
     ck_assert_ptr_nonnull(end_m);

@@ -10,7 +10,7 @@ enum { N_VARIABLE = 3, N = 4, N_GENERATION = 5 };
 static int leader[N_VARIABLE] = {0, 1, 0};
 static const hf_model free_model = {.n_variable = N_VARIABLE, .n_leader = N_VARIABLE};
 static const hf_model linked_model = {.n_variable = N_VARIABLE, .n_leader = 2, .variable_leader = leader};
-static const double base_N[N_VARIABLE] = {10, 20, 1.5};
+static const double initial[N_VARIABLE] = {10, 20, 1.5};
 static const hf_optimize_settings settings = {.population = N,
                                               .generations = N_GENERATION,
                                               .range_N = 1,
@@ -21,7 +21,7 @@ static const hf_optimize_settings settings = {.population = N,
 
 static void open_population(const hf_model *model, hf_population *p, hf_population *next)
 {
-    ck_assert_int_eq(hf_population_create(&settings, model, base_N, p, next), HF_OK);
+    ck_assert_int_eq(hf_population_create(&settings, model, initial, p, next), HF_OK);
 }
 
 START_TEST(bounds_are_the_range_within_the_limits)
@@ -30,15 +30,15 @@ START_TEST(bounds_are_the_range_within_the_limits)
     open_population(&free_model, &p, &next);
     static const double lower[N_VARIABLE] = {9, 19, 1}, upper[N_VARIABLE] = {11, 20.25, 2.5};
     for (int k = 0; k < N_VARIABLE; k++) {
-        ck_assert_double_eq(p.base_N[k], base_N[k]);
-        ck_assert_double_eq(p.lower_N[k], lower[k]);
-        ck_assert_double_eq(p.upper_N[k], upper[k]);
+        ck_assert_double_eq(p.initial[k], initial[k]);
+        ck_assert_double_eq(p.lower[k], lower[k]);
+        ck_assert_double_eq(p.upper[k], upper[k]);
         ck_assert_double_eq(hf_population_clamp(&p, k, 0), lower[k]);
         ck_assert_double_eq(hf_population_clamp(&p, k, 100), upper[k]);
-        ck_assert_double_eq(hf_population_clamp(&p, k, base_N[k]), base_N[k]);
+        ck_assert_double_eq(hf_population_clamp(&p, k, initial[k]), initial[k]);
     }
     for (int i = 0; i < N * N_VARIABLE; i++)
-        ck_assert_double_eq(p.design_N[i], 0);
+        ck_assert_double_eq(p.design[i], 0);
     ck_assert_int_eq(p.generation, 0);
     ck_assert_int_eq(p.best, -1);
     ck_assert_int_eq(p.stop_reason, HF_POPULATION_RUNNING);
@@ -53,24 +53,24 @@ START_TEST(linked_genes_share_step_and_bounds)
 {
     hf_population p, next;
     open_population(&linked_model, &p, &next);
-    ck_assert_double_eq(p.lower_N[0], 9.5);
-    ck_assert_double_eq(p.lower_N[2], 1);
-    ck_assert_double_eq(p.upper_N[0], 11);
-    ck_assert_double_eq(p.upper_N[2], 2.5);
-    ck_assert_double_eq(p.lower_N[1], 19);
-    double design_N[N_VARIABLE] = {10.75, 19.5, 7};
-    hf_population_link(&p, &linked_model, design_N);
-    ck_assert_double_eq(design_N[0], 10.75);
-    ck_assert_double_eq(design_N[1], 19.5);
-    ck_assert_double_eq(design_N[2], 2.25);
-    hf_population_link(&p, &free_model, memcpy(design_N, (double[]){1, 2, 3}, sizeof design_N));
-    ck_assert_double_eq(design_N[2], 3); /* not linked in this model */
+    ck_assert_double_eq(p.lower[0], 9.5);
+    ck_assert_double_eq(p.lower[2], 1);
+    ck_assert_double_eq(p.upper[0], 11);
+    ck_assert_double_eq(p.upper[2], 2.5);
+    ck_assert_double_eq(p.lower[1], 19);
+    double design[N_VARIABLE] = {10.75, 19.5, 7};
+    hf_population_link(&p, &linked_model, design);
+    ck_assert_double_eq(design[0], 10.75);
+    ck_assert_double_eq(design[1], 19.5);
+    ck_assert_double_eq(design[2], 2.25);
+    hf_population_link(&p, &free_model, memcpy(design, (double[]){1, 2, 3}, sizeof design));
+    ck_assert_double_eq(design[2], 3); /* not linked in this model */
     hf_population_free(&p);
     hf_optimize_settings tight = settings;
     tight.max_tension_N = 10.75;
-    ck_assert_int_eq(hf_population_create(&tight, &linked_model, base_N, &p, &next), HF_OK);
-    ck_assert_double_eq(p.upper_N[0], 10.75);
-    ck_assert_double_eq(p.upper_N[2], 2.25);
+    ck_assert_int_eq(hf_population_create(&tight, &linked_model, initial, &p, &next), HF_OK);
+    ck_assert_double_eq(p.upper[0], 10.75);
+    ck_assert_double_eq(p.upper[2], 2.25);
     hf_population_free(&p);
 }
 END_TEST
@@ -83,13 +83,13 @@ START_TEST(advancing_exchanges_the_generations)
     ck_assert_ptr_eq(p.best_psi_m, next.best_psi_m); /* both generations share one history */
     hf_population_advance(&p, &next);
     ck_assert_int_eq(p.generation, 1);
-    ck_assert(p.design_N == after.design_N && next.design_N == before.design_N);
+    ck_assert(p.design == after.design && next.design == before.design);
     ck_assert(p.result == after.result && next.result == before.result);
     ck_assert(p.pending == after.pending && next.pending == before.pending);
     ck_assert(p.parent == after.parent && next.parent == before.parent);
     ck_assert(p.crossover_rate == after.crossover_rate && next.crossover_rate == before.crossover_rate);
     ck_assert(p.mutation_rate == after.mutation_rate && next.mutation_rate == before.mutation_rate);
-    ck_assert(p.lower_N == before.lower_N && p.block == before.block);
+    ck_assert(p.lower == before.lower && p.block == before.block);
     hf_population_free(&p);
 }
 END_TEST

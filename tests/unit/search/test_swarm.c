@@ -8,7 +8,7 @@ static void open_designs(struct run *r, int rule, double range_N)
     OPEN_CASE(&r->net, SMALL_REFLECTOR);
     draw_designs(r, 7, range_N);
     for (int i = 0; i < N_DESIGN * r->net.model.n_variable; i++)
-        r->design_N[i] = fmax(0.05, r->design_N[i]);
+        r->design[i] = fmax(0.05, r->design[i]);
     evaluate_by(r, rule, HF_SOLVER_FIXED_POINT);
 }
 
@@ -17,12 +17,12 @@ static void evaluate(struct run *r, int n_thread, int backwards, hf_form_result 
     hf_batch batch;
     unsigned char pending[N_DESIGN];
     ck_assert_int_eq(hf_batch_create(&r->evaluator, n_thread, &batch), HF_OK);
-    ck_assert_int_eq(hf_batch_share(&batch, r->design_N), HF_SOLVER_FIXED_POINT);
-    if (!backwards) hf_batch_run(&batch, N_DESIGN, r->design_N, NULL, result);
+    ck_assert_int_eq(hf_batch_share(&batch, r->design), HF_SOLVER_FIXED_POINT);
+    if (!backwards) hf_batch_run(&batch, N_DESIGN, r->design, NULL, result);
     for (int i = N_DESIGN - 1; backwards && i >= 0; i--) { /* one by one, the last first */
         memset(pending, 0, sizeof pending);
         pending[i] = 1;
-        hf_batch_run(&batch, N_DESIGN, r->design_N, pending, result);
+        hf_batch_run(&batch, N_DESIGN, r->design, pending, result);
     }
     hf_batch_free(&batch);
 }
@@ -38,7 +38,7 @@ START_TEST(results_are_those_of_the_scalar_code)
     r.net.form.max_iterations = 3000;
     evaluate(&r, 2, 0, result);
     for (int i = 0; i < N_DESIGN; i++) {
-        hf_evaluate(&r.evaluator, r.design_N + i * r.net.model.n_variable, &r.net.work, &alone);
+        hf_evaluate(&r.evaluator, r.design + i * r.net.model.n_variable, &r.net.work, &alone);
         ck_assert_int_eq(result[i].status, alone.status);
         ck_assert_int_eq(result[i].stop_reason, alone.stop_reason);
         ck_assert_int_le(abs(result[i].iterations - alone.iterations), 1);
@@ -67,7 +67,7 @@ START_TEST(designs_without_a_shape_are_named_before_they_get_there)
     r.net.form.max_iterations = 20;
     evaluate(&r, 2, 0, result);
     for (int i = 0; i < N_DESIGN; i++) {
-        hf_evaluate(&r.evaluator, r.design_N + i * r.net.model.n_variable, &r.net.work, &alone);
+        hf_evaluate(&r.evaluator, r.design + i * r.net.model.n_variable, &r.net.work, &alone);
         ck_assert_int_eq(result[i].status, alone.status);
         ck_assert_int_eq(result[i].stop_reason, alone.stop_reason);
         ck_assert_int_eq(result[i].iterations, alone.iterations);
@@ -107,10 +107,10 @@ START_TEST(a_batch_may_share_again_and_be_empty)
     open_designs(&r, HF_RULE_FORCE_DENSITY, 0.5);
     r.evaluator.solver = HF_SOLVER_AUTO;
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
-    ck_assert_int_eq(hf_batch_share(&batch, r.design_N), HF_SOLVER_CHORD);
-    ck_assert_int_eq(hf_batch_share(&batch, r.design_N + r.net.model.n_variable), HF_SOLVER_CHORD);
+    ck_assert_int_eq(hf_batch_share(&batch, r.design), HF_SOLVER_CHORD);
+    ck_assert_int_eq(hf_batch_share(&batch, r.design + r.net.model.n_variable), HF_SOLVER_CHORD);
     hf_batch_run(&batch, 0, NULL, NULL, NULL);
-    hf_batch_run(&batch, 1, r.design_N, NULL, &result);
+    hf_batch_run(&batch, 1, r.design, NULL, &result);
     ck_assert_int_eq(result.status, HF_OK);
     hf_batch_free(&batch);
     close_net(&r.net);

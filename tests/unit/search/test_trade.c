@@ -396,8 +396,8 @@ static void open_chen(hf_problem *p, const char *objectives)
 static void bound(const hf_problem *p, double *lower, double *upper)
 {
     for (int k = 0; k < p->model.n_variable; k++) {
-        lower[k] = fmax(p->base_N[k] - 1, 0.1);
-        upper[k] = p->base_N[k] + 1;
+        lower[k] = fmax(p->initial[k] - 1, 0.1);
+        upper[k] = p->initial[k] + 1;
     }
 }
 
@@ -421,7 +421,7 @@ static void follow_problem(hf_problem *p, int n_point, int n_thread, hf_front *f
                             .max_iterations = 200,
                             .n_thread = n_thread,
                             .n_start = 1,
-                            .start = p->base_N,
+                            .start = p->initial,
                             .watcher = &watcher};
     ck_assert_int_eq(hf_trade_find(&trade, front, &failed_end), HF_OK);
     ck_assert(watcher.n_point == front->n_point && told > front->n_point / 2);
@@ -562,13 +562,13 @@ START_TEST(a_stop_ends_the_search)
     hf_front front;
     open_chen(&p, traded[0]);
     const hf_trade trade = {.evaluator = &p.evaluator,
-                            .lower = p.base_N,
-                            .upper = p.base_N,
+                            .lower = p.initial,
+                            .upper = p.initial,
                             .n_point = 5,
                             .max_iterations = 200,
                             .n_thread = 2,
                             .n_start = 1,
-                            .start = p.base_N,
+                            .start = p.initial,
                             .stop = &stop};
     ck_assert_int_eq(hf_trade_find(&trade, &front, &failed_end), HF_INTERRUPTED);
     ck_assert_int_eq(front.n_point, 0);

@@ -50,8 +50,8 @@ static void open_watched(struct watched *t, int i)
     hf_problem *p = &t->problem;
     ck_assert_int_le(p->model.n_variable, MAX_VARIABLE);
     for (int k = 0; k < p->model.n_variable; k++) {
-        t->lower[k] = p->base_N[k] - 0.5;
-        t->upper[k] = p->base_N[k] + 0.5;
+        t->lower[k] = p->initial[k] - 0.5;
+        t->upper[k] = p->initial[k] + 0.5;
     }
     hf_polish_problem *q = &t->polish;
     *q = (hf_polish_problem){.v = p->evaluator,
@@ -64,7 +64,7 @@ static void open_watched(struct watched *t, int i)
     q->v.boundary_ratio_cap = INFINITY;
     q->v.limits = NULL;
     ck_assert_int_eq(hf_polish_create(q, &t->arena), HF_OK);
-    hf_polish_begin(q, p->base_N);
+    hf_polish_begin(q, p->initial);
     ck_assert_int_eq(hf_polish_evaluate(q, q->at), HF_OK);
     ck_assert_int_eq(hf_polish_linearise(q), HF_OK);
 }

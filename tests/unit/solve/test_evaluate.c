@@ -14,12 +14,12 @@ static void disturb(struct run *r, double range_N)
 {
     struct rng rng = rng_start(17);
     for (int k = 0; k < r->net.model.n_variable; k++)
-        r->design_N[k] = r->base_N[k] + rng_uniform(&rng, -range_N, range_N);
+        r->design[k] = r->initial[k] + rng_uniform(&rng, -range_N, range_N);
 }
 
 static hf_status evaluate(struct run *r, hf_form_result *result)
 {
-    return hf_evaluate(&r->evaluator, r->design_N, &r->net.work, result);
+    return hf_evaluate(&r->evaluator, r->design, &r->net.work, result);
 }
 
 /* The converged HIFDM shape is the equilibrium of its own tensions, whatever holds them: q T/l is the same in all
@@ -49,7 +49,7 @@ START_TEST(force_density_rule_holds_q)
     const hf_model *m = &r.net.model;
     for (int k = 0; k < m->n_variable; k++) {
         int e = m->variable_cable[k];
-        ck_assert_double_eq(r.net.work.q_N_per_m[e], r.design_N[k] / m->target[e]); /* T'/L*, held: no roundoff */
+        ck_assert_double_eq(r.net.work.q_N_per_m[e], r.design[k] / m->target[e]); /* T'/L*, held: no roundoff */
     }
     for (int e = 0; e < m->n_cable; e++)
         if (m->group[e] == HF_GROUP_INNER) ck_assert_double_eq_tol(r.net.work.tension_N[e], 10, 1e-7);
@@ -70,7 +70,7 @@ START_TEST(prescribed_lengths_count)
     ck_assert_int_eq(evaluate(&r, &result), HF_OK);
     for (int k = 0; k < m->n_variable; k++) {
         int e = m->variable_cable[k];
-        ck_assert_double_eq(r.net.work.q_N_per_m[e], r.design_N[k] / (1.0625 * m->length_m[e]));
+        ck_assert_double_eq(r.net.work.q_N_per_m[e], r.design[k] / (1.0625 * m->length_m[e]));
     }
     close_net(&r.net);
 }
@@ -85,7 +85,7 @@ START_TEST(tension_rule_holds_tensions)
     ck_assert_int_eq(evaluate(&r, &result), HF_OK);
     const hf_model *m = &r.net.model; /* residual 1e-10 of 10 N: the tensions are far closer than 1e-6 */
     for (int k = 0; k < m->n_variable; k++)
-        ck_assert_double_eq_tol(r.net.work.tension_N[m->variable_cable[k]], r.design_N[k], 1e-6);
+        ck_assert_double_eq_tol(r.net.work.tension_N[m->variable_cable[k]], r.design[k], 1e-6);
     close_net(&r.net);
 }
 END_TEST
@@ -102,7 +102,7 @@ START_TEST(seeded_rule_is_the_papers_iteration)
     const hf_model *m = &r.net.model;
     hf_form_prepare(m, &r.net.work);
     for (int k = 0; k < m->n_variable; k++)
-        r.net.work.q_N_per_m[m->variable_cable[k]] = r.design_N[k] / m->target[m->variable_cable[k]];
+        r.net.work.q_N_per_m[m->variable_cable[k]] = r.design[k] / m->target[m->variable_cable[k]];
     ck_assert_int_eq(hf_form_find(m, &r.net.form, HF_STOP_RMS_CHANGE, &r.net.work, NULL, &expected), HF_OK);
     ck_assert_int_eq(result.stop_reason, HF_STOPPED_RMS_CHANGE);
     ck_assert_int_eq(result.iterations, expected.iterations);
@@ -158,7 +158,7 @@ START_TEST(impossible_designs_are_a_status_not_a_number)
     struct run r;
     hf_form_result result;
     open_design(&r, HF_RULE_TENSION);
-    r.design_N[0] = 50 * r.base_N[0];
+    r.design[0] = 50 * r.initial[0];
     ck_assert_int_eq(evaluate(&r, &result), HF_COLLAPSED);
     ck_assert_double_nan(result.psi_m);
     close_net(&r.net);
@@ -188,12 +188,12 @@ START_TEST(stale_workspace_gives_the_same_bits)
     hf_workspace_poison(&r.net.model, &r.net.work);
     evaluate(&r, &first);
     size_t bytes = 3 * (size_t)r.net.model.n_node * sizeof(double);
-    double *shape = malloc(bytes), kept = r.design_N[0];
+    double *shape = malloc(bytes), kept = r.design[0];
     ck_assert_ptr_nonnull(shape);
     memcpy(shape, r.net.work.position_m, bytes);
-    r.design_N[0] *= 50;
+    r.design[0] *= 50;
     evaluate(&r, &second);
-    r.design_N[0] = kept;
+    r.design[0] = kept;
     evaluate(&r, &second);
     ck_assert_int_eq(first.iterations, second.iterations);
     ck_assert_double_eq(first.psi_m, second.psi_m);

@@ -288,7 +288,7 @@ START_TEST(shapes_come_back_in_the_order_of_the_scene)
     hf_history history = {4, 2, psi_m, other, other + 2, other + 4, other + 6, {0}};
     OPEN_CASE(&net, SMALL_REFLECTOR);
     const hf_model *m = &net.model;
-    double *design_N = calloc((size_t)m->n_variable, sizeof *design_N);
+    double *design = calloc((size_t)m->n_variable, sizeof *design);
     hf_store *store = begin(temp_path("a.h5"), 1, &net.scene);
     find_shape(&net);
     ck_assert_int_eq(hf_store_form(store, m, &net.work, &history, &messages), HF_OK);
@@ -296,7 +296,7 @@ START_TEST(shapes_come_back_in_the_order_of_the_scene)
     net.work.q_N_per_m[3] *= 2; /* another shape */
     hf_form_find(m, &net.form, net.form.stop, &net.work, NULL, &net.result);
     net.work.law[2] = HF_LAW_FORCE_DENSITY;
-    ck_assert_int_eq(hf_store_best(store, HF_STAGE_OPTIMIZE, m, &net.work, design_N, &messages), HF_OK);
+    ck_assert_int_eq(hf_store_best(store, HF_STAGE_OPTIMIZE, m, &net.work, design, &messages), HF_OK);
     end(store, &(hf_summary){0});
 
     ck_assert_int_eq(hf_store_read_shape(temp_path("a.h5"), HF_STAGE_FORM, &shape, &messages), HF_OK);
@@ -316,7 +316,7 @@ START_TEST(shapes_come_back_in_the_order_of_the_scene)
            "assert list(h['psi_m']) == [2.385, 1.125] and list(h['length_error']) == [11, 12]\n"
            "assert h5py.check_enum_dtype(f['form/law'].dtype) == {'tension': 0, 'length': 1, 'force_density': 2, "
            "'elastic': 3}");
-    free(design_N);
+    free(design);
     close_net(&net);
 }
 END_TEST
@@ -382,7 +382,7 @@ static void fill_generation(hf_population *g, int generation)
     g->generation = generation;
     for (int i = 0; i < g->n_individual; i++) {
         for (int k = 0; k < g->n_variable; k++)
-            g->design_N[(size_t)i * (size_t)g->n_variable + (size_t)k] = generation * 1e7 + i * 1e6 + k;
+            g->design[(size_t)i * (size_t)g->n_variable + (size_t)k] = generation * 1e7 + i * 1e6 + k;
         g->result[i] = (hf_form_result){.status = i == 1 ? HF_RATIO_CAP : HF_OK,
                                         .iterations = 10 * generation + i,
                                         .psi_m = i == 1 ? (double)NAN : generation + 0.1 * i,
@@ -409,15 +409,15 @@ START_TEST(generations_are_appended)
     hf_optimiser ga;
     hf_optimize_settings settings = small_ga(p, 5);
     open_bow(&net);
-    double *base_N = malloc(((size_t)k + 1) * sizeof *base_N);
+    double *initial = malloc(((size_t)k + 1) * sizeof *initial);
     int *variable = malloc((2 * (size_t)k + 1) * sizeof *variable), *group = variable + k;
     for (int i = 0; i < k; i++) {
-        base_N[i] = i + 1;
+        initial[i] = i + 1;
         variable[i] = 2 * i;
         group[i] = i / 2;
     }
     hf_model m = {.n_variable = k, .n_variable_group = k, .variable_cable = variable, .variable_group = group};
-    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &settings, &m, base_N, &ga), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &settings, &m, initial, &ga), HF_OK);
     hf_store *store = begin(temp_path("a.h5"), 1, &net.scene);
     for (int g = 0; g < 5; g++) {
         fill_generation(&ga.population, g);
@@ -450,7 +450,7 @@ START_TEST(generations_are_appended)
         "assert f.attrs['status'] == b'no_feasible'\n",
         p, k);
     python("r", temp_path("a.h5"), script);
-    free(base_N);
+    free(initial);
     free(variable);
     close_net(&net);
 }

@@ -283,11 +283,11 @@ START_TEST(a_full_disk_is_told)
     allow_leaks();
     open_bow(&net);
     hf_optimize_settings settings = small_ga(50, 40);
-    double base_N[40] = {0};
+    double initial[40] = {0};
     int variable[40] = {0};
     hf_model m = {.n_variable = 40, .n_variable_group = 1, .variable_cable = variable, .variable_group = variable};
     hf_optimiser ga;
-    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &settings, &m, base_N, &ga), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &settings, &m, initial, &ga), HF_OK);
 
     getrlimit(RLIMIT_FSIZE, &before);
     limit = before;

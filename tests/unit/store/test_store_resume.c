@@ -22,9 +22,9 @@ static void resume(const char *path, struct run *r, hf_store **s, hf_messages *m
     hf_summary summary = {0};
     ck_assert_int_eq(hf_store_resume(path, s, messages), HF_OK);
     ck_assert_int_eq(hf_store_generations(*s), 4);
-    ck_assert_int_eq(hf_store_restore_base(*s, N_VARIABLE, r->base_N, messages), HF_OK);
+    ck_assert_int_eq(hf_store_restore_base(*s, N_VARIABLE, r->initial, messages), HF_OK);
     hf_optimiser_free(&r->ga);
-    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &r->model, r->base_N, &r->ga), HF_OK);
+    ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &r->model, r->initial, &r->ga), HF_OK);
     ck_assert_int_eq(hf_store_restore(*s, &r->ga, &summary, messages), HF_OK);
     ck_assert_int_eq(summary.generations, hf_store_generations(*s));
 }
@@ -40,7 +40,7 @@ START_TEST(designs_are_bred_again)
     leave_unfinished(path);
     open_run(&r);
     for (int k = 0; k < N_VARIABLE; k++)
-        r.base_N[k] = 1e-9; /* another machine may find another base; the one in the file must be used */
+        r.initial[k] = 1e-9; /* another machine may find another base; the one in the file must be used */
     resume(path, &r, &s, &messages);
     ck_assert_int_eq(messages.n_warning, 0);
     ck_assert_int_eq(hf_store_generations(s), 4);
@@ -52,8 +52,7 @@ START_TEST(designs_are_bred_again)
     hf_optimiser_tell(&r.ga);
     ck_assert_int_eq(r.ga.population.generation, 3);
     ck_assert_int_eq(r.ga.population.n_evaluation, whole.ga.population.n_evaluation);
-    ck_assert_mem_eq(r.ga.population.design_N, whole.ga.population.design_N,
-                     N_INDIVIDUAL * N_VARIABLE * sizeof(double));
+    ck_assert_mem_eq(r.ga.population.design, whole.ga.population.design, N_INDIVIDUAL * N_VARIABLE * sizeof(double));
     ck_assert_mem_eq(r.ga.population.best_psi_m, whole.ga.population.best_psi_m, 4 * sizeof(double));
     for (int i = 0; i < N_INDIVIDUAL; i++) {
         const hf_form_result *a = &r.ga.population.result[i], *b = &whole.ga.population.result[i];
@@ -120,7 +119,7 @@ START_TEST(other_designs_are_told_apart)
         memcpy(payload + used, piece[i].iov_base, piece[i].iov_len);
     ck_assert_uint_eq(used, g.payload_bytes);
     ck_assert(hf_generations_take_payload(&g, payload, NULL, &r.ga.population));
-    double *d = r.ga.population.design_N, one[N_VARIABLE];
+    double *d = r.ga.population.design, one[N_VARIABLE];
     for (int k = 0; k < N_INDIVIDUAL * N_VARIABLE; k++) {
         int other = (k + 5) % (N_INDIVIDUAL * N_VARIABLE);
         double a = d[k], b = d[other];
@@ -192,7 +191,7 @@ START_TEST(a_damaged_file_is_refused)
     python("a", path, spoilt[_i].deed);
     open_run(&r);
     hf_status status = hf_store_resume(path, &s, &messages);
-    if (status == HF_OK) status = hf_store_restore_base(s, N_VARIABLE, r.base_N, &messages);
+    if (status == HF_OK) status = hf_store_restore_base(s, N_VARIABLE, r.initial, &messages);
     if (status == HF_OK) status = hf_store_restore(s, &r.ga, &summary, &messages);
     ck_assert_int_eq(status, HF_EXISTS); /* in the way, also of the next attempt */
     ck_assert_msg(strstr(messages.text, path) && strstr(messages.text, spoilt[_i].why), "%s", messages.text);
@@ -218,7 +217,7 @@ START_TEST(without_memory_nothing_is_restored)
         open_run(&r);
         fail_allocation_at(n);
         hf_status status = hf_store_resume(path, &s, &messages);
-        if (status == HF_OK) status = hf_store_restore_base(s, N_VARIABLE, r.base_N, &messages);
+        if (status == HF_OK) status = hf_store_restore_base(s, N_VARIABLE, r.initial, &messages);
         if (status == HF_OK) status = hf_store_restore(s, &r.ga, &summary, &messages);
         bool has_failed = end_allocation_failure();
         ck_assert_msg(status == (has_failed ? HF_NO_MEMORY : HF_OK), "allocation %ld: %d: %s", n, status,
