@@ -122,8 +122,8 @@ FUZZ_WRAP := hf_config_load hf_scene_parabolic_cylinder hf_scene_paraboloid hf_t
 # The benchmark of a run measures the time of these calls: tools/bench/stages.c.
 BENCH_WRAP := hf_config_load hf_config_scene hf_model_build hf_symmetry_apply hf_workspace_create hf_evaluate_form \
               hf_batch_create hf_batch_share hf_optimiser_create hf_batch_run hf_batch_next hf_batch_run_one \
-              hf_optimiser_tell hf_polish_run hf_store_create hf_store_form hf_store_generation \
-              hf_store_publish hf_store_best hf_store_complete hf_store_settle
+              hf_optimiser_tell hf_refine_run hf_store_create hf_store_form hf_store_generation \
+              hf_store_publish hf_store_shape hf_store_complete hf_store_settle
 
 # ---- Output of make, and how it calls itself -------------------------------------------------------------------------
 # Lines are short, and there are none if all is up to date. V=1 shows the full commands.

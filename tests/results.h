@@ -92,7 +92,7 @@ static inline int read_all(const char *path, char *text, size_t size)
     hf_status status[4] = {hf_store_read_summary(path, &summary, &messages),
                            hf_store_read_scene(path, &scene, &messages),
                            hf_store_read_shape(path, HF_STAGE_FORM, &form, &messages),
-                           hf_store_read_shape(path, HF_STAGE_OPTIMIZE, &best, &messages)};
+                           hf_store_read_shape(path, HF_STAGE_SEARCH, &best, &messages)};
     int n_failed = 0;
     for (int i = 0; i < 4; i++) {
         ck_assert_msg(status[i] == HF_OK || status[i] == HF_IO, "status %d", status[i]);
@@ -131,7 +131,7 @@ static inline void write_result(const char *path, struct net *net)
     ck_assert_int_le(net->model.n_variable, 1000);
     find_shape(net);
     ck_assert_int_eq(hf_store_form(store, &net->model, &net->work, NULL, &messages), HF_OK);
-    ck_assert_int_eq(hf_store_best(store, HF_STAGE_OPTIMIZE, &net->model, &net->work, design, &messages), HF_OK);
+    ck_assert_int_eq(hf_store_shape(store, HF_STAGE_SEARCH, &net->model, &net->work, design, &messages), HF_OK);
     end(store, &summary);
 }
 

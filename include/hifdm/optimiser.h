@@ -93,27 +93,27 @@ void hf_optimiser_free(hf_optimiser *optimiser);
  *                    weight x value, by 1e-5 of the merit
  *   TAKEN            it did not run: the design is a point of a front */
 typedef enum {
-    HF_POLISH_CONVERGED,
-    HF_POLISH_STALLED,
-    HF_POLISH_MAX_ITERATIONS,
-    HF_POLISH_SETTLED,
-    HF_POLISH_TAKEN
-} hf_polish_stop;
-extern const char *const hf_polish_stop_word[5]; /* "converged", "stalled", "max_iterations", "settled", "taken" */
+    HF_REFINE_CONVERGED,
+    HF_REFINE_STALLED,
+    HF_REFINE_MAX_ITERATIONS,
+    HF_REFINE_SETTLED,
+    HF_REFINE_TAKEN
+} hf_refine_stop;
+extern const char *const hf_refine_stop_word[5]; /* "converged", "stalled", "max_iterations", "settled", "taken" */
 
-/* One row for each hf_optimize_method: X(method, optimiser of its generations or `none`, ends_with_polish). */
+/* One row for each hf_optimize_method: X(method, optimiser of its generations or `none`, ends_with_refine). */
 #define HF_OPTIMISER_LIST(X) X(GA, ga, false) X(LM, none, true) X(GA_LM, ga, true)
 
 /* Which algorithms a method uses. */
 typedef struct {
     const hf_optimiser_kind *kind; /* optimiser of the generations; NULL: there are none */
-    bool ends_with_polish;         /* the refinement is the result; false: it is run for comparison only */
+    bool ends_with_refine;         /* the refinement is the result; false: it is run for comparison only */
 } hf_optimiser_plan;
 
 /* Returns the algorithms of settings->method. With optimize.objectives, hf_optimiser_nsga replaces hf_optimiser_ga. */
 hf_optimiser_plan hf_optimiser_plan_of(const hf_optimize_settings *settings);
 
-#define HF_OPTIMISER_DECLARE(method, optimiser, ends_with_polish)                                                      \
+#define HF_OPTIMISER_DECLARE(method, optimiser, ends_with_refine)                                                      \
     extern const hf_optimiser_kind hf_optimiser_##optimiser;
 HF_OPTIMISER_LIST(HF_OPTIMISER_DECLARE)
 extern const hf_optimiser_kind hf_optimiser_nsga; /* NSGA-II, for optimize.objectives */

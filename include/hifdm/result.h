@@ -177,9 +177,9 @@ typedef enum {
     HF_RESULT_LONG,
     HF_RESULT_FLAG,
     HF_RESULT_TRUTH,
-    HF_RESULT_POLISH_STOP,
+    HF_RESULT_REFINE_STOP,
     HF_RESULT_SOLVER,
-    HF_RESULT_GA_STOP
+    HF_RESULT_SEARCH_STOP
 } hf_result_kind;
 
 /* A row of a list at run time. */

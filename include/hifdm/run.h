@@ -23,7 +23,7 @@ HF_API_BEGIN
 #define HF_OUTPUT_SIZE 4096 /* bytes of the path of a result file */
 
 /* The phases of a run: form-finding, genetic algorithm, Levenberg-Marquardt, samples of as-built nets. */
-typedef enum { HF_RUN_FORM, HF_RUN_EVOLVE, HF_RUN_POLISH, HF_RUN_TOLERANCE } hf_run_phase;
+typedef enum { HF_RUN_FORM, HF_RUN_SEARCH, HF_RUN_REFINE, HF_RUN_TOLERANCE } hf_run_phase;
 extern const char *const hf_run_phase_word[4]; /* "form", "optimize", "polish", "tolerance" */
 
 /* The progress of a run. Members that do not belong to the phase are 0. */

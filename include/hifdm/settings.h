@@ -35,8 +35,8 @@ typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
 /* The scheme that couples net and truss (coupling.scheme, METHOD section 8). */
 typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN, HF_COUPLING_AUTO } hf_coupling_scheme;
-/* Whether Levenberg-Marquardt follows method ga for comparison (optimize.compare_lm). */
-typedef enum { HF_COMPARE_AUTO, HF_COMPARE_TRUE, HF_COMPARE_FALSE } hf_compare;
+/* Whether Levenberg-Marquardt follows method ga for comparison (optimize.refine). */
+typedef enum { HF_REFINE_AUTO, HF_REFINE_TRUE, HF_REFINE_FALSE } hf_refine_choice;
 /* How the genetic algorithm makes children (optimize.variation). */
 typedef enum { HF_VARIATION_DIFFERENCE, HF_VARIATION_CHAIN } hf_variation;
 /* Which individuals a result file keeps (optimize.store). */
@@ -102,7 +102,7 @@ extern const char *const hf_factor_word[3];
 extern const char *const hf_rule_word[4];
 extern const char *const hf_solver_word[5];
 extern const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1];
-extern const char *const hf_compare_word[4];
+extern const char *const hf_refine_choice_word[4];
 extern const char *const hf_variation_word[3];
 extern const char *const hf_keep_word[4];
 extern const char *const hf_symmetry_word[6];
@@ -216,8 +216,8 @@ typedef struct {
     int elites; /* number of best individuals; chain: survive unchanged, difference: are moved by crossovers */
     double stagnation_tolerance_m;       /* the generations end if the best merit improves by less than this */
     int stagnation_generations;          /* number of generations over which the improvement is measured */
-    int polish_iterations;               /* maximum number of steps of Levenberg-Marquardt */
-    hf_compare compare_lm;               /* whether Levenberg-Marquardt follows method ga for comparison */
+    int refine_steps;                    /* maximum number of steps of Levenberg-Marquardt */
+    hf_refine_choice refine;             /* whether Levenberg-Marquardt follows method ga for comparison */
     hf_symmetry symmetry;                /* mirror planes that link design variables */
     hf_keep store;                       /* which individuals a result file keeps */
     int store_every;                     /* HF_KEEP_EVERY: generations 0, n, 2n, ... are kept */

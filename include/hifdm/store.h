@@ -7,7 +7,7 @@
  *   hf_store_create or hf_store_resume     provenance, case, scene
  *   hf_store_form                          shape of the form-finding
  *   hf_store_variables, hf_store_generation  generations, first into the journal; hf_store_publish between them
- *   hf_store_best, hf_store_front, ...     shapes and results of the later stages
+ *   hf_store_shape, hf_store_front, ...     shapes and results of the later stages
  *   hf_store_finish                        summary; the file gets its name
  *
  * Layout of the file: n nodes, m cables, i iterations, g generations, p individuals, k design variables. Every data set
@@ -44,15 +44,16 @@
  *                are those of generations 0, n, 2n, ...; both have /ga/last, the same of the last generation [1][p],
  *                with attributes n_evaluation, n_evaluation_infeasible, n_evaluation_above_cap of all generations;
  *                gene_cable (index into /scene/cable), gene_group, base_N, lower_N, upper_N [k]; gene_leader [k] under
- *                a symmetry; attributes: HF_SUMMARY_GA_LIST, the figures of hf_summary.best as best_...; n_individual,
- *                n_variable, n_objective, generations_limit, store_every (0: best), from which a run is resumed;
+ *                a symmetry; attributes: HF_SUMMARY_SEARCH_LIST, the figures of hf_summary.best as best_...;
+ *                n_individual, n_variable, n_objective, generations_limit, store_every (0: best), from which a run is
+ *                resumed;
  *                with optimize.variables design, base, lower and upper have no unit in their names, because each
  *                variable has its own, and gene_variable (row of optimize.variables), gene_node, gene_direction [k][3]
  *                exist
  *   /ga/best     as /form, and design_N [k]
- *   /polish      the same for Levenberg-Marquardt; attributes: HF_SUMMARY_POLISH_LIST, the figures of
+ *   /polish      the same for Levenberg-Marquardt; attributes: HF_SUMMARY_REFINE_LIST, the figures of
  *                hf_summary.polish
- *   /polish_state  of a run that was interrupted in Levenberg-Marquardt: its time and its state, opaque numbers
+ *   /refine_state  of a run that was interrupted in Levenberg-Marquardt: its time and its state, opaque numbers
  *   /surface     with a section surface: attributes kind, focal_length_m, strip_width_m, mesh_tension_N_per_m;
  *                frequency_Hz [f]
  *   /surface/form, /surface/optimize, /surface/polish   attributes: HF_SURFACE_LIST, HF_SURFACE_FIT_LIST as fit_...;
@@ -103,7 +104,7 @@ typedef struct hf_store hf_store;
  * that read may be called freely. The calls wait for each other, because HDF5 works for one thread at a time. */
 
 /* The stages of a run that produce a shape. */
-typedef enum { HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, HF_STAGE_NONE } hf_stage;
+typedef enum { HF_STAGE_FORM, HF_STAGE_SEARCH, HF_STAGE_REFINE, HF_N_STAGE } hf_stage;
 extern const char *const hf_stage_word[4];  /* "form", "optimize", "polish", "none" */
 extern const char *const hf_stage_group[4]; /* group of the shape in a file: "/form", "/ga/best", "/polish", "/" */
 
@@ -166,9 +167,9 @@ hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_p
 
 /* Reads the initial design [n_variable] with which the genetic algorithm of a resumed store started. The values
  * that this machine computes may differ in the last bits. `initial` is unchanged if the store has none. */
-hf_status hf_store_restore_base(hf_store *store, int n_variable, double *initial, hf_messages *messages);
+hf_status hf_store_restore_initial(hf_store *store, int n_variable, double *initial, hf_messages *messages);
 
-/* Restores an optimiser that was just created from the design of hf_store_restore_base: its state before
+/* Restores an optimiser that was just created from the design of hf_store_restore_initial: its state before
  * hf_optimiser_tell of the last generation in the store. The figures of the best individual so far go into the summary.
  * The designs of generations in the journal are proposed again; if this build proposes others, these generations are
  * left out with a warning. Does nothing if the store has no generation. */
@@ -176,10 +177,10 @@ hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary 
 
 /* Copies the state of Levenberg-Marquardt, state [n], and its time so far, wall_s in s, for later publications. A
  * finished file does not contain them. */
-hf_status hf_store_polish(hf_store *store, double wall_s, size_t n, const double *state, hf_messages *messages);
+hf_status hf_store_refine(hf_store *store, double wall_s, size_t n, const double *state, hf_messages *messages);
 /* Reads the state of Levenberg-Marquardt in a resumed store: *wall_s, s, and *state [*n]. *n is 0 if there is none.
- * *state is borrowed until the next hf_store_polish. */
-hf_status hf_store_restore_polish(hf_store *store, double *wall_s, size_t *n, const double **state,
+ * *state is borrowed until the next hf_store_refine. */
+hf_status hf_store_restore_refine(hf_store *store, double *wall_s, size_t *n, const double **state,
                                   hf_messages *messages);
 
 /* Publishes everything so far: a file that is marked as unfinished gets the visible name. With at_once this is done
@@ -187,10 +188,10 @@ hf_status hf_store_restore_polish(hf_store *store, double *wall_s, size_t *n, co
  * then. Publishing thus takes less than 2 % of the time. Call it after every generation. */
 hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_once, hf_messages *messages);
 
-/* Writes the shape in the workspace as that of stage HF_STAGE_OPTIMIZE or HF_STAGE_POLISH, with its design
+/* Writes the shape in the workspace as that of stage HF_STAGE_SEARCH or HF_STAGE_REFINE, with its design
  * [model->n_variable]. Call it once per stage. */
-hf_status hf_store_best(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
-                        const double *design, hf_messages *messages);
+hf_status hf_store_shape(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
+                         const double *design, hf_messages *messages);
 
 /* Writes the front and replaces an earlier one. The names of its objectives are those in the summary. */
 hf_status hf_store_front(hf_store *store, const hf_scene *scene, const hf_model *model, const hf_summary *summary,

@@ -43,7 +43,7 @@ HF_API_BEGIN
     X(double, form_wall_s, REAL, 1, "wall_s", "of the form-finding")
 
 /* The genetic algorithm. */
-#define HF_SUMMARY_GA_LIST(X)                                                                                          \
+#define HF_SUMMARY_SEARCH_LIST(X)                                                                                      \
     X(hf_solver, solver, SOLVER, 6, "solver", "of the individuals")                                                    \
     X(double, base_psi_m, REAL, 2, "base_psi_m",                                                                       \
       "of individual 0 of generation 0, the tensions found under the rule; NaN if infeasible")                         \
@@ -56,17 +56,17 @@ HF_API_BEGIN
     X(long, infeasible, LONG, 1, "infeasible", "those without a feasible shape among them")                            \
     X(int, best_n_at_lower, INT, 3, "at_lower_bound", "genes of the best at their lower bounds")                       \
     X(int, best_n_at_upper, INT, 3, "at_upper_bound", "genes of the best at their upper bounds")                       \
-    X(hf_population_stop, optimize_stop, GA_STOP, 7, "stop_reason", "why it ended")                                    \
+    X(hf_population_stop, optimize_stop, SEARCH_STOP, 7, "stop_reason", "why it ended")                                \
     X(double, optimize_wall_s, REAL, 4, "wall_s", "wall-clock time")                                                   \
     X(double, optimize_cpu_s, REAL, 4, "cpu_s", "breeding, evaluating and storing, over all threads; without waiting") \
     X(double, store_cpu_s, REAL, 4, "store_cpu_s", "storing alone")
 
 /* Levenberg-Marquardt. */
-#define HF_SUMMARY_POLISH_LIST(X)                                                                                      \
+#define HF_SUMMARY_REFINE_LIST(X)                                                                                      \
     X(bool, polish_is_result, FLAG, 2, "is_result", "its design is the result, not only a comparison")                 \
     X(int, polish_iterations, INT, 1, "lm_iterations", "steps of Levenberg-Marquardt")                                 \
     X(int, polish_evaluations, INT, 1, "evaluations", "form-findings")                                                 \
-    X(hf_polish_stop, polish_stop, POLISH_STOP, 4, "stop_reason", "why it ended")                                      \
+    X(hf_refine_stop, polish_stop, REFINE_STOP, 4, "stop_reason", "why it ended")                                      \
     X(int, polish_n_at_lower, INT, 5, "at_lower_bound", "genes at their lower bounds")                                 \
     X(int, polish_n_at_upper, INT, 5, "at_upper_bound", "genes at their upper bounds")                                 \
     X(bool, polish_is_at_cap, FLAG, 5, "at_ratio_cap", "the cap on the boundary tension ratio holds it")               \
@@ -164,7 +164,7 @@ typedef struct {
 
     bool has_polish;       /* Levenberg-Marquardt ran, or a point of a front was taken */
     hf_form_result polish; /* result of Levenberg-Marquardt */
-    HF_SUMMARY_POLISH_LIST(HF_SUMMARY_MEMBER)
+    HF_SUMMARY_REFINE_LIST(HF_SUMMARY_MEMBER)
 
     bool has_front;       /* `front` is set; its objectives are those of `goals` */
     hf_front_table front; /* the front of optimize.objectives */
@@ -177,7 +177,7 @@ typedef struct {
 
     bool has_optimize;   /* the genetic algorithm ran; all following members are about it */
     hf_form_result best; /* result of the best individual; status HF_NO_FEASIBLE: none is feasible */
-    HF_SUMMARY_GA_LIST(HF_SUMMARY_MEMBER)
+    HF_SUMMARY_SEARCH_LIST(HF_SUMMARY_MEMBER)
 } hf_summary;
 
 /* Writes one JSON object, grouped by stage, to `file`. A stage that did not run is absent, and NaN is null. `messages`

@@ -13,7 +13,7 @@
 #include "run/reach.h"
 #include "run/tolerance_stage.h"
 #include "search/chord.h"
-#include "search/polish.h"
+#include "search/refine.h"
 #include "search/swarm_lane.h"
 #include "solve/prestress.h"
 #include <hifdm/batch.h>
@@ -23,7 +23,7 @@
 #include <limits.h>
 #include <math.h>
 
-#define OPERATIONS_PER_S 2e9 /* speed of one core, as in search/polish_cost.c */
+#define OPERATIONS_PER_S 2e9 /* speed of one core, as in search/refine_cost.c */
 #define LONG_S 3600.0        /* above this time, or above LARGE_BYTES, advice is printed */
 #define LARGE_BYTES 2e9
 #define TRIAL_S 1.0 /* approximate wall-clock time of the trial of form-finding */
@@ -132,12 +132,12 @@ static hf_status print_truss(const hf_problem *p, FILE *f, hf_messages *messages
 }
 
 /* Returns true if Levenberg-Marquardt runs, or may run. */
-static bool polishes(const hf_problem *p, const hf_evaluator *v)
+static bool refines(const hf_problem *p, const hf_evaluator *v)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
-    bool is_result = hf_optimiser_plan_of(o).ends_with_polish;
-    bool is_wanted = is_result || o->compare_lm != HF_COMPARE_FALSE;
-    return v && is_wanted && (is_result || !o->n_objective) && hf_polish_applies(v);
+    bool is_result = hf_optimiser_plan_of(o).ends_with_refine;
+    bool is_wanted = is_result || o->refine != HF_REFINE_FALSE;
+    return v && is_wanted && (is_result || !o->n_objective) && hf_refine_applies(v);
 }
 
 /* Prints the objectives of a front by name. */
@@ -147,7 +147,7 @@ static void print_objectives(const hf_problem *p, FILE *f)
     fprintf(f, "                front of");
     for (int k = 0; k < p->goals.n_goal; k++)
         fprintf(f, "%s %s", k == 0 ? "" : k + 1 < p->goals.n_goal ? "," : " and", hf_goals_name(&p->goals, k, name));
-    if (hf_optimiser_plan_of(&p->settings.optimize).ends_with_polish)
+    if (hf_optimiser_plan_of(&p->settings.optimize).ends_with_refine)
         fprintf(f, ": %d points, each by Levenberg-Marquardt\n", p->settings.optimize.front_points);
     else
         fprintf(f, ": that of the last generation\n");
@@ -298,18 +298,18 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
         fprintf(f,
                 "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
                 hf_rule_word[o->rule], p->model.n_variable, o->population, o->generations, (unsigned long long)o->seed);
-    bool is_result = hf_optimiser_plan_of(o).ends_with_polish;
+    bool is_result = hf_optimiser_plan_of(o).ends_with_refine;
     bool is_front = optimizes && o->n_objective > 0;
     if (is_front) print_objectives(p, f);
     if (optimizes) print_variables(p, f);
     if (optimizes) print_wishes(p, f);
-    if (polishes(p, v))
+    if (refines(p, v))
         fprintf(f, "                Levenberg-Marquardt: rule %s, at most %d iterations, %s\n", hf_rule_word[o->rule],
-                o->polish_iterations,
-                is_front                           ? "for each point"
-                : is_result                        ? "the result"
-                : o->compare_lm == HF_COMPARE_AUTO ? "for comparison, where it is cheap"
-                                                   : "for comparison");
+                o->refine_steps,
+                is_front                      ? "for each point"
+                : is_result                   ? "the result"
+                : o->refine == HF_REFINE_AUTO ? "for comparison, where it is cheap"
+                                              : "for comparison");
     if (optimizes && o->symmetry != HF_SYMMETRY_NONE)
         fprintf(f, "                symmetry: %s, %s; %d independent genes of %d\n", hf_symmetry_word[o->symmetry],
                 hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_variable);
@@ -334,11 +334,11 @@ static void print_allocation(const char *title, const char *what, double bytes, 
 
 /* Returns the bytes that Levenberg-Marquardt needs: sensitivities (twice as many with a truss), residuals of the inner
  * nodes, matrices of its steps, and the packed Newton matrix. */
-static double polish_bytes(const hf_problem *p, const hf_evaluator *v)
+static double refine_bytes(const hf_problem *p, const hf_evaluator *v)
 {
     const hf_model *m = &p->model;
     size_t lanes, matrix;
-    if (!polishes(p, v)) return 0;
+    if (!refines(p, v)) return 0;
     matrix = hf_chord_bytes(v, &lanes);
     double n = m->n_leader, column = 3.0 * m->n_free * (m->n_attachment ? 2 : 1) + 3.0 * m->n_inner_node;
     return 8 * n * (column + 4 * n) + (double)(matrix + lanes);
@@ -385,7 +385,7 @@ static hf_status print_memory(const hf_problem *p, const hf_evaluator *v, int th
     print_allocation("", "matrix shared by all threads", (double)shared, evolves ? "none" : without_ga, f);
     print_allocation("", "lanes of designs", (double)lanes * threads, evolves ? "none" : without_ga, f);
     print_allocation("", "population", 2 * population * (variables + (double)sizeof(hf_form_result)), "none", f);
-    print_allocation("", "sensitivities of Levenberg-Marquardt", polish_bytes(p, v), "none", f);
+    print_allocation("", "sensitivities of Levenberg-Marquardt", refine_bytes(p, v), "none", f);
     if (evolves)
         print_allocation("result file", "generations, at most",
                          population * (variables + 70) * p->settings.optimize.generations, "", f);
@@ -420,7 +420,7 @@ static hf_status print_ga_time(const hf_problem *p, const hf_evaluator *v, int t
 /* Prints advice if a refinement takes long, or much memory. */
 static void print_fewer(const hf_problem *p, const hf_evaluator *v, double all_s, FILE *f)
 {
-    if (all_s > LONG_S || polish_bytes(p, v) > LARGE_BYTES)
+    if (all_s > LONG_S || refine_bytes(p, v) > LARGE_BYTES)
         fprintf(f,
                 "                %d variables: its time grows with their cube, its memory with their square; fewer of "
                 "them by link: symmetry or set, or by sets (optimize.variables)\n",
@@ -429,14 +429,14 @@ static void print_fewer(const hf_problem *p, const hf_evaluator *v, double all_s
 
 /* Runs two steps of Levenberg-Marquardt from the initial design and prints the time of one. If counted operations
  * predict more time than that of a trial, nothing is run, and the prediction is printed. */
-static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const hf_population *ga, double *most_s,
+static hf_status print_refine_time(hf_problem *p, const hf_evaluator *v, const hf_population *ga, double *most_s,
                                    FILE *f)
 {
-    hf_polish_result r;
+    hf_refine_result r;
     char one[32], all[32];
     int n_point = p->settings.optimize.n_objective > 0 ? p->settings.optimize.front_points : 1;
-    double n_step = (double)p->settings.optimize.polish_iterations * n_point;
-    double begin_s = hf_clock_s(), foretold_s = hf_polish_operations(v) / OPERATIONS_PER_S;
+    double n_step = (double)p->settings.optimize.refine_steps * n_point;
+    double begin_s = hf_clock_s(), foretold_s = hf_refine_operations(v) / OPERATIONS_PER_S;
     if (foretold_s > TRIAL_S) {
         hf_print_duration(foretold_s, one, sizeof one);
         hf_print_duration(foretold_s * n_step, all, sizeof all);
@@ -448,7 +448,7 @@ static hf_status print_polish_time(hf_problem *p, const hf_evaluator *v, const h
         *most_s += foretold_s * n_step;
         return HF_OK;
     }
-    hf_status status = hf_polish_run(v, ga->lower, ga->upper, 2, NULL, p->initial, &p->workspace, &r);
+    hf_status status = hf_refine_run(v, ga->lower, ga->upper, 2, NULL, p->initial, &p->workspace, &r);
     if (status == HF_NO_MEMORY) return status;
     if (status != HF_OK || r.iterations == 0) return HF_OK;
     double each_s = (hf_clock_s() - begin_s) / r.iterations;
@@ -466,7 +466,7 @@ static hf_status print_optimize_time(hf_problem *p, const hf_evaluator *v, int t
     hf_optimiser o = {0};
     hf_status status = hf_optimiser_create(kind, &p->settings.optimize, &p->model, p->initial, &o);
     if (status == HF_OK && kind) status = print_ga_time(p, v, threads, &o.population, most_s, f);
-    if (status == HF_OK && polishes(p, v)) status = print_polish_time(p, v, &o.population, most_s, f);
+    if (status == HF_OK && refines(p, v)) status = print_refine_time(p, v, &o.population, most_s, f);
     hf_optimiser_free(&o);
     return status;
 }
@@ -537,7 +537,7 @@ static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, d
     if (!v) return HF_OK;
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_reach_check(p, messages));
-    hf_problem_warn_of_polish(p, messages);
+    hf_problem_warn_of_refine(p, messages);
     hf_problem_warn_of_front(p, messages);
     if (print_optimize_time(p, v, threads, most_s, f) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory");

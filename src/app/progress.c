@@ -29,7 +29,7 @@ static double rate_per_s(const hf_run_progress *now)
  * earlier process do not count, because the elapsed time does not contain them. */
 static double left_s(const hf_run_progress *now)
 {
-    bool steps = now->phase == HF_RUN_POLISH;
+    bool steps = now->phase == HF_RUN_REFINE;
     int at = steps ? now->iteration : now->generation,
         done = at - (steps ? now->first_iteration : now->first_generation);
     return done > 0 ? now->elapsed_s * ((steps ? now->iterations : now->generations) - at) / done : 0;
@@ -111,7 +111,7 @@ static void show_json(const hf_progress *p, const hf_run_progress *now)
         hf_json_integer(&j, "steps", now->steps);
         hf_json_number(&j, "elapsed_s", now->elapsed_s);
     }
-    if (now->phase == HF_RUN_POLISH && now->iterations > 0) {
+    if (now->phase == HF_RUN_REFINE && now->iterations > 0) {
         hf_json_integer(&j, "iteration", now->iteration);
         hf_json_integer(&j, "iterations", now->iterations);
         hf_json_integer(&j, "evaluations", now->evaluations);
@@ -137,7 +137,7 @@ static void show_json(const hf_progress *p, const hf_run_progress *now)
 void hf_progress_show(void *progress, const hf_run_progress *now)
 {
     hf_progress *p = progress;
-    bool samples = now->phase == HF_RUN_TOLERANCE, steps = now->phase == HF_RUN_POLISH, front = now->points_all > 0;
+    bool samples = now->phase == HF_RUN_TOLERANCE, steps = now->phase == HF_RUN_REFINE, front = now->points_all > 0;
     bool is_first = samples ? now->evaluations == 0
                     : front ? now->steps == 0
                     : steps ? now->iteration <= now->first_iteration
@@ -145,7 +145,7 @@ void hf_progress_show(void *progress, const hf_run_progress *now)
     bool is_last = (samples || steps || now->generation > 0) && now->is_last;
     bool has_line = samples ? now->evaluations > 0 || p->mode == HF_PROGRESS_LINE
                     : steps ? now->iterations > 0 || front
-                            : now->phase == HF_RUN_EVOLVE;
+                            : now->phase == HF_RUN_SEARCH;
     if (is_first) p->last_s = p->mode == HF_PROGRESS_LOG ? 0 : -interval_s[p->mode];
     if (p->mode == HF_PROGRESS_NONE || (!has_line && p->mode != HF_PROGRESS_JSONL)) return;
     if (now->elapsed_s - p->last_s < interval_s[p->mode] && !(is_last && p->mode == HF_PROGRESS_JSONL)) return;

@@ -305,7 +305,7 @@ static void check_objectives(const hf_optimize_settings *o, hf_config_faults *f)
                            "cannot be with optimize.objectives, which takes the place of goals; keep one of them");
     if (o->n_objective > 2 && o->front_points < 4)
         hf_config_fault_of(f, "optimize.front_points", "must be at least 4 with three objectives, for the ends alone");
-    if (o->n_objective > 1 && o->compare_lm == HF_COMPARE_TRUE)
+    if (o->n_objective > 1 && o->refine == HF_REFINE_TRUE)
         hf_config_fault_of(f, "optimize.compare_lm", "compares one design; it has no meaning for optimize.objectives");
     if (o->n_objective > 1) check_use_of_front(o, f);
     for (int i = 1; i < o->n_objective; i++)
@@ -354,7 +354,7 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
     if (!c->has_optimize || f->failed) return; /* rejected values are not compared */
     if (o->min_tension_N >= o->max_tension_N)
         hf_config_fault_of(f, "optimize.min_tension_N", "must be below optimize.max_tension_N");
-    if (o->compare_lm == HF_COMPARE_TRUE && o->rule == HF_RULE_SEEDED)
+    if (o->refine == HF_REFINE_TRUE && o->rule == HF_RULE_SEEDED)
         hf_config_fault_of(
             f, "optimize.compare_lm",
             "cannot be true with optimize.rule seeded, under which Levenberg-Marquardt has no derivatives");

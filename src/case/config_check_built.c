@@ -244,7 +244,7 @@ static void check_quantile(const hf_optimize_settings *o, const char *list, int 
         hf_config_fault_in_row(f, list, row, "quantile",
                                "has no derivatives, which Levenberg-Marquardt needs: use method: ga, or take: mean or "
                                "worst");
-    if (o->method == HF_OPTIMIZE_GA && o->compare_lm == HF_COMPARE_TRUE)
+    if (o->method == HF_OPTIMIZE_GA && o->refine == HF_REFINE_TRUE)
         hf_config_fault_in_row(f, list, row, "quantile",
                                "has no derivatives, which optimize.compare_lm: true needs; remove one of them");
 }

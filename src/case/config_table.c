@@ -163,7 +163,7 @@ const hf_field hf_field_table[] = {
      "genetic algorithm, Levenberg-Marquardt from the form-finding's tensions, or both. After the genetic algorithm "
      "the "
      "optimum that Levenberg-Marquardt reaches from it is reported (compare_lm); with ga+lm it is the result"},
-    {"optimize.compare_lm", HF_FIELD_WORD, AT(optimize.compare_lm), 0, 0, "auto", "", hf_compare_word,
+    {"optimize.compare_lm", HF_FIELD_WORD, AT(optimize.refine), 0, 0, "auto", "", hf_refine_choice_word,
      "the optimum that Levenberg-Marquardt reaches from the genetic algorithm's design, for comparison. auto: unless "
      "it would cost noticeable time and more than a tenth of the genetic algorithm's"},
     {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", hf_rule_word,
@@ -209,7 +209,7 @@ const hf_field hf_field_table[] = {
      "whole generations store_every apart. The last one is there in any case"},
     {"optimize.store_every", HF_FIELD_INT, AT(optimize.store_every), 2, 1000000, "100", "", NULL,
      "with store every: generations 0, n, 2n, ... are stored"},
-    {"optimize.polish_iterations", HF_FIELD_INT, AT(optimize.polish_iterations), 1, 100000, "200", "", NULL,
+    {"optimize.polish_iterations", HF_FIELD_INT, AT(optimize.refine_steps), 1, 100000, "200", "", NULL,
      "largest number of Levenberg-Marquardt iterations"},
     {"optimize.samples", HF_FIELD_INT, AT(optimize.samples), 2, 100000, "64", "", NULL,
      "of goals over samples: nets with errors that each design is judged by, the same numbers for all; the first so "

@@ -18,7 +18,7 @@ const char *const hf_polarisation_word[3] = {"x", "y", NULL};
 const char *const hf_surface_kind_word[4] = {"auto", "parabolic_cylinder", "paraboloid", NULL};
 const char *const hf_variation_word[3] = {"difference", "chain", NULL};
 const char *const hf_keep_word[4] = {"all", "best", "every", NULL};
-const char *const hf_compare_word[4] = {"auto", "true", "false", NULL};
+const char *const hf_refine_choice_word[4] = {"auto", "true", "false", NULL};
 const char *const hf_vary_word[8] = {"tension",   "force_density",  "length",      "unstressed_length",
                                      "support_z", "support_normal", "support_xyz", NULL};
 const char *const hf_link_word[4] = {"each", "set", "symmetry", NULL};

@@ -67,7 +67,7 @@ hf_status hf_export_read(const hf_export_request *o, hf_export_stored *stored, h
     if (o->state) return read_state(o, stored, messages);
     bool has[3] = {true, hf_summary_has_best_shape(summary), summary->has_polish};
     hf_stage result = hf_store_result_stage(summary), stage = result;
-    for (int i = 0; o->stage && i < HF_STAGE_NONE; i++)
+    for (int i = 0; o->stage && i < HF_N_STAGE; i++)
         if (!strcmp(o->stage, hf_stage_word[i])) stage = (hf_stage)i;
     stored->word = shape_word[stage];
     if (!has[stage])

@@ -254,12 +254,12 @@ static hf_status write_found(const hf_export_request *o, const hf_shape *found, 
     return t->facets.n_facet ? write_facets(o, facets_path, &g, found, summary, t, messages) : HF_OK;
 }
 
-/* Writes the shape of a stage; HF_STAGE_NONE stands for the target positions. */
+/* Writes the shape of a stage; HF_N_STAGE stands for the target positions. */
 static hf_status write_stage(const hf_export_request *o, int stage, const char *path, const char *facets_path,
                              const hf_scene *scene, const hf_summary *summary, scratch *t, hf_messages *messages)
 {
     hf_shape shape = {0};
-    const hf_shape *found = stage == HF_STAGE_NONE ? NULL : &shape;
+    const hf_shape *found = stage == HF_N_STAGE ? NULL : &shape;
     if (found) HF_TRY(hf_store_read_shape(o->file, (hf_stage)stage, &shape, messages));
     hf_status status = write_found(o, found, path, facets_path, scene, summary, t, messages);
     hf_shape_free(&shape);
@@ -426,7 +426,7 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
     HF_TRY(claim_states(o, summary, t, messages));
     HF_TRY(hf_file_out_folder(o->output, messages));
     int used = snprintf(said, size, "%s: for ParaView, in %s:", o->file, o->output);
-    static const int order[5] = {HF_STAGE_NONE, HF_STAGE_FORM, HF_STAGE_OPTIMIZE, HF_STAGE_POLISH, 4};
+    static const int order[5] = {HF_N_STAGE, HF_STAGE_FORM, HF_STAGE_SEARCH, HF_STAGE_REFINE, 4};
     for (int k = 0; k < 5; k++) {
         int i = order[k];
         if (!has[i]) continue;

@@ -231,12 +231,12 @@ static hf_status choose_main(hf_merged *m, hf_messages *messages)
 {
     hf_series is_result = {0};
     HF_TRY(hf_store_read_series(m->path, "/points/polish/polish_is_result", 1, &is_result, messages));
-    bool is_polish = false, has_ga = hf_merged_find(m, HF_MERGED_OPTIMIZE, "psi_m") != NULL;
+    bool is_refine = false, has_ga = hf_merged_find(m, HF_MERGED_SEARCH, "psi_m") != NULL;
     for (int i = 0; i < is_result.n; i++)
-        is_polish |= is_result.value[i] == 1;
+        is_refine |= is_result.value[i] == 1;
     hf_series_free(&is_result);
-    if (!has_ga) is_polish = hf_merged_find(m, HF_MERGED_POLISH, "psi_m") != NULL;
-    m->main = is_polish ? HF_MERGED_POLISH : has_ga ? HF_MERGED_OPTIMIZE : HF_MERGED_FORM;
+    if (!has_ga) is_refine = hf_merged_find(m, HF_MERGED_REFINE, "psi_m") != NULL;
+    m->main = is_refine ? HF_MERGED_REFINE : has_ga ? HF_MERGED_SEARCH : HF_MERGED_FORM;
     return HF_OK;
 }
 

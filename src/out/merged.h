@@ -9,8 +9,8 @@
 /* The stages of a run, the as-built net (`tolerance`) and its load cases (`cases`). */
 typedef enum {
     HF_MERGED_FORM,
-    HF_MERGED_OPTIMIZE,
-    HF_MERGED_POLISH,
+    HF_MERGED_SEARCH,
+    HF_MERGED_REFINE,
     HF_MERGED_BUILT,
     HF_MERGED_CASES,
     HF_MERGED_N_STAGE

@@ -194,7 +194,7 @@ static void print_optimize(const hf_summary *s, FILE *f)
 
 /* ---- refinement ---- */
 
-static void print_polish(const hf_summary *s, FILE *f)
+static void print_refine(const hf_summary *s, FILE *f)
 {
     static const char *const end[] = {"", " (stalled: shorter steps gain nothing)", " (not converged)",
                                       " (settled: ten steps gain less than 1e-6)", ""};
@@ -233,5 +233,5 @@ void hf_print_details(const hf_summary *s, FILE *f)
     print_certificate(&s->form, f);
     print_surface(s, 0, f);
     if (s->has_optimize) print_optimize(s, f);
-    if (s->has_polish) print_polish(s, f);
+    if (s->has_polish) print_refine(s, f);
 }

@@ -18,7 +18,7 @@
 
 static const hf_form_result *result_of(const hf_summary *s, hf_stage stage)
 {
-    return stage == HF_STAGE_POLISH ? &s->polish : stage == HF_STAGE_OPTIMIZE ? &s->best : &s->form;
+    return stage == HF_STAGE_REFINE ? &s->polish : stage == HF_STAGE_SEARCH ? &s->best : &s->form;
 }
 
 static bool has_merit(const hf_summary *s)
@@ -83,7 +83,7 @@ void hf_print_gained(const hf_summary *s, double psi_m, double base_psi_m, FILE 
 static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_form_result *r = result_of(s, stage);
-    double base_psi_m = stage == HF_STAGE_OPTIMIZE ? s->base_psi_m : s->form.psi_m;
+    double base_psi_m = stage == HF_STAGE_SEARCH ? s->base_psi_m : s->form.psi_m;
     if (stage == HF_STAGE_FORM || s->goals.are_objectives) return;
     hf_print_gained(s, r->psi_m, base_psi_m, f);
 }
@@ -280,10 +280,10 @@ static void print_stages(const hf_summary *s, hf_stage result, FILE *f)
     print_figures(s, "form-finding", &s->form, -1, f);
     fprintf(f, "  %d iteration%s, stopped by %s, %s\n", s->form.iterations, s->form.iterations == 1 ? "" : "s",
             hf_stop_reason_word((int)s->form.stop_reason), wall);
-    if (s->has_optimize) print_ga(s, result == HF_STAGE_OPTIMIZE, f);
-    if (s->has_optimize) hf_print_held(&s->held[HF_STAGE_OPTIMIZE], f);
-    if (s->has_polish) print_lm(s, result == HF_STAGE_POLISH, f);
-    if (s->has_polish) hf_print_held(&s->held[HF_STAGE_POLISH], f);
+    if (s->has_optimize) print_ga(s, result == HF_STAGE_SEARCH, f);
+    if (s->has_optimize) hf_print_held(&s->held[HF_STAGE_SEARCH], f);
+    if (s->has_polish) print_lm(s, result == HF_STAGE_REFINE, f);
+    if (s->has_polish) hf_print_held(&s->held[HF_STAGE_REFINE], f);
     if (s->goals.n > 0) hf_print_goals(s, result_of(s, result), f);
 }
 
@@ -307,7 +307,7 @@ static void print_losses(const hf_summary *s, double rms_m, const double *loss_d
 void hf_print_gain_loss(const hf_summary *s, FILE *f)
 {
     hf_stage stage = hf_store_result_stage(s);
-    if (stage == HF_STAGE_NONE || !s->measures[stage].is_measured || s->surface.frequencies_Hz.n == 0) return;
+    if (stage == HF_N_STAGE || !s->measures[stage].is_measured || s->surface.frequencies_Hz.n == 0) return;
     const hf_surface_measures *m = &s->measures[stage];
     fputs("loss of gain at ", f);
     for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
@@ -597,7 +597,7 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
     if (style.verbose) hf_print_details(s, f);
     if (s->has_front) print_front(s, path, f);
     if (s->has_front) print_form_parts(s, result, f);
-    if (result != HF_STAGE_NONE) print_pattern(&s->pattern[result], f);
+    if (result != HF_N_STAGE) print_pattern(&s->pattern[result], f);
     print_states(s, f);
     if (s->has_tolerance) hf_print_tolerance(&s->tolerance, style.verbose, f);
     print_end(s, path, style, f);

@@ -46,7 +46,7 @@ static const struct {
 };
 enum { N_SERIES = sizeof series_table / sizeof *series_table };
 
-enum { N_SHAPE = HF_STAGE_NONE + HF_STATES_MAX }; /* shapes of the stages, then of the load cases */
+enum { N_SHAPE = HF_N_STAGE + HF_STATES_MAX }; /* shapes of the stages, then of the load cases */
 
 /* Holds everything that a page shows. */
 typedef struct page {
@@ -60,7 +60,7 @@ typedef struct page {
     hf_facets facets;                     /* empty when the case does not measure the surface */
     hf_facet_errors facet_error[N_SHAPE]; /* errors of each shape, in facet_block */
     void *facet_block;
-    hf_pattern_table pattern[HF_STAGE_NONE];                   /* without angles: empty */
+    hf_pattern_table pattern[HF_N_STAGE];                      /* without angles: empty */
     hf_series psi_by_cut;                                      /* [n_cable] of the as-built net; may be empty */
     hf_series cable_share;                                     /* [n_cable] shares in its error; may be empty */
     hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or empty, [m][2] */
@@ -174,12 +174,12 @@ static void write_cuts(const page *p, const hf_shape *shape, FILE *f)
 static void write_shape(const page *p, int stage, FILE *f)
 {
     const hf_shape *shape = &p->shape[stage];
-    if (stage < HF_STAGE_NONE) {
+    if (stage < HF_N_STAGE) {
         fprintf(f, "{\"stage\":\"%s\"", hf_stage_word[stage]);
     } else { /* names consist of letters, digits, _ and - */
-        const char *name = p->summary.state[stage - HF_STAGE_NONE].name;
+        const char *name = p->summary.state[stage - HF_N_STAGE].name;
         fprintf(f, "{\"stage\":\"case %s\",\"case\":\"%s\"", name, name);
-        write_displacement("truss_displacement_m", &p->state_displacement[stage - HF_STAGE_NONE], f);
+        write_displacement("truss_displacement_m", &p->state_displacement[stage - HF_N_STAGE], f);
     }
     hf_json_packed packed = hf_json_pack("displacement_m", "f32", f);
     for (int i = 0; i < 3 * p->scene.n_node; i++)
@@ -188,7 +188,7 @@ static void write_shape(const page *p, int stage, FILE *f)
     hf_json_pack_values("length_m", "f32", shape->length_m, p->scene.n_cable, f);
     hf_json_pack_values("tension_N", "f32", shape->tension_N, p->scene.n_cable, f);
     write_codes("law", shape->law, p->scene.n_cable, f);
-    if (stage < HF_STAGE_NONE) write_cuts(p, shape, f);
+    if (stage < HF_N_STAGE) write_cuts(p, shape, f);
     if (p->facets.n_facet) {
         const hf_facet_errors *e = &p->facet_error[stage];
         hf_json_pack_values("facet_normal_mean_m", "f32", e->normal_mean_m, p->facets.n_facet, f);
@@ -298,7 +298,7 @@ static void write_series(const page *p, FILE *f)
 static void write_patterns(const page *p, FILE *f)
 {
     int n = 0;
-    for (int i = 0; i < HF_STAGE_NONE; i++) {
+    for (int i = 0; i < HF_N_STAGE; i++) {
         if (!p->pattern[i].n_theta) continue;
         fputs(n++ ? ",\n" : ",\n\"pattern\":[", f);
         hf_report_pattern_write(hf_stage_word[i], &p->summary.pattern[i], &p->pattern[i], f);
@@ -329,7 +329,7 @@ static void write_other(const page *p, const page *other, FILE *f)
     write_goal_units(&other->summary, f);
     fputs(",\"summary\":", f);
     hf_summary_write_json(&other->summary, hf_summary_status(&other->summary), other->summary.warnings, other->path, f);
-    if (!hf_scene_difference(&p->scene, &other->scene)) write_shapes(other, HF_STAGE_NONE, f);
+    if (!hf_scene_difference(&p->scene, &other->scene)) write_shapes(other, HF_N_STAGE, f);
     write_patterns(other, f);
     fputc('}', f);
 }
@@ -396,9 +396,9 @@ static hf_status read_shapes(page *p, hf_messages *messages)
     HF_TRY(hf_store_read_series(p->path, "/form/tension_N", 1, &there, messages));
     p->has_shape[HF_STAGE_FORM] = there.n > 0; /* a failed form-finding stores no shape */
     hf_series_free(&there);
-    p->has_shape[HF_STAGE_OPTIMIZE] = hf_summary_has_best_shape(&p->summary);
-    p->has_shape[HF_STAGE_POLISH] = p->summary.has_polish;
-    for (int i = 0; i < HF_STAGE_NONE; i++)
+    p->has_shape[HF_STAGE_SEARCH] = hf_summary_has_best_shape(&p->summary);
+    p->has_shape[HF_STAGE_REFINE] = p->summary.has_polish;
+    for (int i = 0; i < HF_N_STAGE; i++)
         if (p->has_shape[i]) HF_TRY(hf_store_read_shape(p->path, (hf_stage)i, &p->shape[i], messages));
     return HF_OK;
 }
@@ -409,8 +409,8 @@ static hf_status read_states(page *p, hf_messages *messages)
     for (int k = 0; k < p->summary.n_state; k++) {
         const hf_state_summary *s = &p->summary.state[k];
         if (s->result.status != HF_OK) continue;
-        HF_TRY(hf_store_read_state(p->path, s->name, &p->shape[HF_STAGE_NONE + k], messages));
-        p->has_shape[HF_STAGE_NONE + k] = true;
+        HF_TRY(hf_store_read_state(p->path, s->name, &p->shape[HF_N_STAGE + k], messages));
+        p->has_shape[HF_N_STAGE + k] = true;
         snprintf(of_truss, sizeof of_truss, "/cases/%s/truss/node/displacement", s->name);
         HF_TRY(hf_store_read_series(p->path, of_truss, 6, &p->state_displacement[k], messages));
         if (p->state_displacement[k].n != p->truss_position_m.n) p->state_displacement[k].n = 0;
@@ -420,7 +420,7 @@ static hf_status read_states(page *p, hf_messages *messages)
 
 static hf_status read_patterns(page *p, hf_messages *messages)
 {
-    for (int i = 0; i < HF_STAGE_NONE; i++)
+    for (int i = 0; i < HF_N_STAGE; i++)
         if (p->summary.pattern[i].n_frequency)
             HF_TRY(hf_store_read_pattern(p->path, (hf_stage)i, &p->pattern[i], messages));
     return HF_OK;
@@ -481,7 +481,7 @@ static void free_page(page *p)
         hf_shape_free(&p->shape[i]);
     for (int k = 0; k < HF_STATES_MAX; k++)
         hf_series_free(&p->state_displacement[k]);
-    for (int i = 0; i < HF_STAGE_NONE; i++)
+    for (int i = 0; i < HF_N_STAGE; i++)
         hf_pattern_table_free(&p->pattern[i]);
     for (int i = 0; i < N_SERIES; i++)
         hf_series_free(&p->series[i]);

@@ -19,7 +19,7 @@
     {json ? key : #member, "figure of form", "", description, NULL},
 #define GA(type, member, kind, json, key, description)                                                                 \
     {json ? key : #member, "figure of optimize", "", description, NULL},
-#define POLISH(type, member, kind, json, key, description) {key, "figure of polish", "", description, NULL},
+#define REFINE(type, member, kind, json, key, description) {key, "figure of polish", "", description, NULL},
 #define STATE(type, member, kind, json, key, description) {key, "figure of cases", "", description, NULL},
 #define TRUSS(type, member, kind, json, key, description) {key, "figure of truss", "", description, NULL},
 #define TOLERANCE(type, member, kind, json, key, description) {key, "figure of tolerance", "", description, NULL},
@@ -30,10 +30,11 @@
 #define STATUS(name, value, code, word, text) {word, "status; exit status " #code, "", text, NULL},
 #define PROOF(name, value, word, meaning) {word, "bound_reason", "", meaning, NULL},
 
-static const hf_word listed[] = {HF_STATUS_LIST(STATUS) HF_BOUND_REASON_LIST(PROOF) HF_RESULT_LIST(
-    RESULT) HF_COUPLING_LIST(COUPLING) HF_SUMMARY_FORM_LIST(FORM) HF_SUMMARY_GA_LIST(GA) HF_SUMMARY_POLISH_LIST(POLISH)
-                                     HF_STATE_LIST(STATE) HF_SUMMARY_TRUSS_LIST(TRUSS) HF_TOLERANCE_LIST(TOLERANCE)
-                                         HF_SURFACE_LIST(SURFACE) HF_SURFACE_FIT_LIST(FIT) HF_SURFACE_LOSS_LIST(LOSS)};
+static const hf_word listed[] = {
+    HF_STATUS_LIST(STATUS) HF_BOUND_REASON_LIST(PROOF) HF_RESULT_LIST(RESULT) HF_COUPLING_LIST(COUPLING)
+        HF_SUMMARY_FORM_LIST(FORM) HF_SUMMARY_SEARCH_LIST(GA) HF_SUMMARY_REFINE_LIST(REFINE) HF_STATE_LIST(STATE)
+            HF_SUMMARY_TRUSS_LIST(TRUSS) HF_TOLERANCE_LIST(TOLERANCE) HF_SURFACE_LIST(SURFACE) HF_SURFACE_FIT_LIST(FIT)
+                HF_SURFACE_LOSS_LIST(LOSS)};
 enum { N_LISTED = sizeof listed / sizeof *listed };
 
 /* ---- other entries ---- */

@@ -64,7 +64,7 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, hf_messag
                     hf_no_design_cap(p, INFINITY, hint));
 }
 
-const char *hf_no_design_to_polish(hf_problem *p, const double *design, hf_status status, char text[HF_NO_DESIGN_SIZE])
+const char *hf_no_design_to_refine(hf_problem *p, const double *design, hf_status status, char text[HF_NO_DESIGN_SIZE])
 {
     hf_form_result start;
     char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE];

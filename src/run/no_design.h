@@ -13,7 +13,7 @@ hf_status hf_no_design_evolved(hf_problem *problem, const hf_population *populat
 
 /* Writes why Levenberg-Marquardt refused to start from this design [n_variable] with this status. Overwrites the shape
  * in the problem's workspace. Returns text. */
-const char *hf_no_design_to_polish(hf_problem *problem, const double *design, hf_status status,
+const char *hf_no_design_to_refine(hf_problem *problem, const double *design, hf_status status,
                                    char text[HF_NO_DESIGN_SIZE]);
 
 /* Writes "; 10 is the default of ..." if the ratio exceeds a cap that the case does not set, because its author may not

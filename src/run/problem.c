@@ -5,7 +5,7 @@
 #include "run/problem_explain.h"
 #include "run/problem_parts.h"
 #include "search/jacobian.h"
-#include "search/polish.h"
+#include "search/refine.h"
 #include "solve/limits.h"
 
 #include <math.h>
@@ -54,7 +54,7 @@ hf_status hf_problem_has_slopes(const hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *s = &p->settings.optimize;
     char place[HF_PLACE_SIZE];
-    if (hf_polish_applies(&p->evaluator)) return HF_OK;
+    if (hf_refine_applies(&p->evaluator)) return HF_OK;
     for (int k = 0; k < p->goals.n_goal; k++)
         if (!hf_goals_is_smooth(&p->goals.goal[k].wanted))
             return hf_error(messages, HF_BAD_CASE, "%s: there are no derivatives of quantiles: use take: mean or worst",

@@ -17,7 +17,7 @@
 #include "net/symmetry.h"
 #include "net/variables.h"
 #include "run/problem_nets.h"
-#include "search/polish.h"
+#include "search/refine.h"
 #include "surface/facet_rms.h"
 #include "solve/limits.h"
 #include "solve/prestress.h"
@@ -332,13 +332,13 @@ const char *hf_problem_no_slopes(const hf_problem *p)
            "form.prestress exact; give optimize.variables, as [{set: boundary, vary: force_density, range: 10 %}]";
 }
 
-void hf_problem_warn_of_polish(const hf_problem *p, hf_messages *messages)
+void hf_problem_warn_of_refine(const hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     hf_optimiser_plan plan = hf_optimiser_plan_of(o);
-    if (!plan.kind || o->n_objective > 0 || hf_polish_applies(&p->evaluator)) return;
-    if (plan.ends_with_polish || o->compare_lm == HF_COMPARE_TRUE)
-        hf_warning(messages, HF_PROBLEM_POLISH_NEEDS, hf_problem_no_slopes(p));
+    if (!plan.kind || o->n_objective > 0 || hf_refine_applies(&p->evaluator)) return;
+    if (plan.ends_with_refine || o->refine == HF_REFINE_TRUE)
+        hf_warning(messages, HF_PROBLEM_REFINE_NEEDS, hf_problem_no_slopes(p));
 }
 
 void hf_problem_warn_of_front(const hf_problem *p, hf_messages *messages)
@@ -356,8 +356,8 @@ static hf_status check_base(const hf_problem *p, hf_messages *messages)
 {
     for (int k = 0; k < p->model.n_variable; k++)
         HF_TRY(check_variable(p, k, messages));
-    if (!hf_optimiser_plan_of(&p->settings.optimize).kind && !hf_polish_applies(&p->evaluator))
-        return hf_error(messages, HF_BAD_CASE, HF_PROBLEM_POLISH_NEEDS, hf_problem_no_slopes(p));
+    if (!hf_optimiser_plan_of(&p->settings.optimize).kind && !hf_refine_applies(&p->evaluator))
+        return hf_error(messages, HF_BAD_CASE, HF_PROBLEM_REFINE_NEEDS, hf_problem_no_slopes(p));
     return HF_OK;
 }
 

@@ -35,15 +35,15 @@ hf_status hf_problem_allocate(hf_problem *problem, hf_messages *messages);
  * reach or a method that the net does not allow. */
 hf_status hf_problem_base(hf_problem *problem, hf_messages *messages);
 
-/* Returns why the designs of the problem have no derivatives (hf_polish_applies). If the default variables are the
+/* Returns why the designs of the problem have no derivatives (hf_refine_applies). If the default variables are the
  * reason, the text proposes others. */
 const char *hf_problem_no_slopes(const hf_problem *problem);
 
 /* Format of a message with that reason. */
-#define HF_PROBLEM_POLISH_NEEDS "optimize: Levenberg-Marquardt needs derivatives; %s"
+#define HF_PROBLEM_REFINE_NEEDS "optimize: Levenberg-Marquardt needs derivatives; %s"
 
 /* Warns with that reason if a search by generations is followed by a refinement that cannot be done. */
-void hf_problem_warn_of_polish(const hf_problem *problem, hf_messages *messages);
+void hf_problem_warn_of_refine(const hf_problem *problem, hf_messages *messages);
 
 /* Warns that load cases and tolerances are not those of designs of the front, if no point of the front is taken. */
 void hf_problem_warn_of_front(const hf_problem *problem, hf_messages *messages);

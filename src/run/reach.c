@@ -16,7 +16,7 @@
 #include "base/random.h"
 #include "net/variables.h"
 #include "run/problem_parts.h"
-#include "search/polish.h"
+#include "search/refine.h"
 #include "search/sensitivity.h"
 #include "solve/limits.h"
 
@@ -348,7 +348,7 @@ hf_status hf_reach_check(const hf_problem *p, hf_messages *messages)
     hf_problem_give_places(p, messages);
     doubt_ranges(p, messages);
     hf_problem_give_places(NULL, messages);
-    if (!hf_polish_applies(&p->evaluator)) return HF_OK;
+    if (!hf_refine_applies(&p->evaluator)) return HF_OK;
     if (!o->n_variable_row && !o->n_limit && !p->goals.n_goal) return HF_OK;
     hf_status status = create(p, &q);
     if (status == HF_OK) status = look(&q);

@@ -59,7 +59,7 @@ typedef struct {
     hf_optimiser_plan plan; /* the stages and algorithms of optimize.method */
     int first_generation;   /* of this session */
     long first_evaluation;
-    char stopped_at[HF_POLISH_STAGE_TEXT];                 /* how far an interrupted stage came, for the message */
+    char stopped_at[HF_REFINE_STAGE_TEXT];                 /* how far an interrupted stage came, for the message */
     double store_cpu_s;                                    /* processor time for storing generations */
     double earlier_wall_s, earlier_cpu_s, earlier_store_s; /* of earlier sessions, as published */
 } run;
@@ -180,7 +180,7 @@ static hf_status prepare_optimize(run *r, hf_summary *s, hf_messages *messages)
     hf_goals_point *point = p->workspace.goals;
     if (goals->n_goal && hf_goals_measure(goals, &p->workspace, point, s->form.goal, &s->form.merit) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
-    HF_TRY(hf_store_restore_base(r->store, p->model.n_variable, p->initial, messages));
+    HF_TRY(hf_store_restore_initial(r->store, p->model.n_variable, p->initial, messages));
     if (hf_problem_batch(p, r->request->threads) != HF_OK ||
         hf_optimiser_create(r->plan.kind, &p->settings.optimize, &p->model, p->initial, &r->optimiser) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for %d individuals of %d genes on %d threads",
@@ -223,10 +223,10 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     s->best = again; /* the same bits, with the figures that individuals do not store */
     count_at_bounds(&r->optimiser.population, design, &s->best_n_at_lower, &s->best_n_at_upper);
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
-    hf_measure_limits(&r->problem, HF_STAGE_OPTIMIZE, w, s);
-    HF_TRY(measure_shape(r, HF_STAGE_OPTIMIZE, w, s, messages));
+    hf_measure_limits(&r->problem, HF_STAGE_SEARCH, w, s);
+    HF_TRY(measure_shape(r, HF_STAGE_SEARCH, w, s, messages));
     if (r->problem.settings.optimize.n_objective == 0) HF_TRY(take_result(r, w, messages)); /* a front has no result */
-    return hf_store_best(r->store, HF_STAGE_OPTIMIZE, &r->problem.model, w, design, messages);
+    return hf_store_shape(r->store, HF_STAGE_SEARCH, &r->problem.model, w, design, messages);
 }
 
 /* Writes the state of the generations into the summary, which files published between generations contain as well. */
@@ -255,7 +255,7 @@ typedef struct {
 static void observe_generation(const told *t)
 {
     const hf_population *p = &t->population;
-    observe(t->r, (hf_run_progress){.phase = HF_RUN_EVOLVE,
+    observe(t->r, (hf_run_progress){.phase = HF_RUN_SEARCH,
                                     .generation = p->generation + 1,
                                     .generations = p->generation_limit,
                                     .first_generation = t->r->first_generation,
@@ -333,14 +333,14 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
 }
 
 /* Completes and stores the refinement: s->polish is the result of this design, and the workspace holds its shape. */
-static hf_status keep_polish(run *r, hf_workspace *w, const double *design, hf_summary *s, hf_messages *messages)
+static hf_status keep_refine(run *r, hf_workspace *w, const double *design, hf_summary *s, hf_messages *messages)
 {
     hf_certify(&r->problem.model, w, &s->polish);
     s->has_polish = true;
-    hf_measure_limits(&r->problem, HF_STAGE_POLISH, w, s);
-    HF_TRY(measure_shape(r, HF_STAGE_POLISH, w, s, messages));
+    hf_measure_limits(&r->problem, HF_STAGE_REFINE, w, s);
+    HF_TRY(measure_shape(r, HF_STAGE_REFINE, w, s, messages));
     if (s->polish_is_result) HF_TRY(take_result(r, w, messages));
-    return hf_store_best(r->store, HF_STAGE_POLISH, &r->problem.model, w, design, messages);
+    return hf_store_shape(r->store, HF_STAGE_REFINE, &r->problem.model, w, design, messages);
 }
 
 /* Takes a point of an earlier front as the design. */
@@ -357,37 +357,37 @@ static hf_status take_point(run *r, hf_summary *s, hf_messages *messages)
     s->polish_wall_s = hf_clock_s() - start_s;
     s->polish_is_result = true;
     s->polish_evaluations = 1;
-    s->polish_stop = HF_POLISH_TAKEN;
+    s->polish_stop = HF_REFINE_TAKEN;
     count_at_bounds(p, design, &s->polish_n_at_lower, &s->polish_n_at_upper);
-    return keep_polish(r, w, design, s, messages);
+    return keep_refine(r, w, design, s, messages);
 }
 
 /* Refines the best individual, or the initial design if no search was run. */
-static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
+static hf_status refine(run *r, hf_summary *s, hf_messages *messages)
 {
     hf_workspace *w = &r->problem.workspace;
     const hf_population *p = &r->optimiser.population;
-    hf_polish_result outcome;
+    hf_refine_result outcome;
     double *design = r->problem.initial;
     if (s->has_optimize && p->best >= 0) design = best_design(p);
     for (int k = 0; k < p->n_variable; k++) /* the initial design may violate the bounds */
         design[k] = hf_population_clamp(p, k, design[k]);
-    observe(r, (hf_run_progress){.phase = HF_RUN_POLISH});
-    hf_status status = hf_polish_stage_run(r->request, &r->problem, p, s, r->store, design, &outcome, &s->polish_wall_s,
+    observe(r, (hf_run_progress){.phase = HF_RUN_REFINE});
+    hf_status status = hf_refine_stage_run(r->request, &r->problem, p, s, r->store, design, &outcome, &s->polish_wall_s,
                                            r->stopped_at, messages);
     if (must_stop(r)) return stop_here(r, s, messages);
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
     if (status == HF_IO || status == HF_EXISTS) return status;
     if (status != HF_OK) {
         char why[HF_NO_DESIGN_SIZE];
-        hf_no_design_to_polish(&r->problem, design, status, why);
+        hf_no_design_to_refine(&r->problem, design, status, why);
         if (!r->plan.kind) return hf_error(messages, HF_NO_FEASIBLE, "%s", why);
         hf_warning(messages, "%s", why);
         return HF_OK;
     }
     hf_evaluate(&r->problem.evaluator, design, w, &s->polish);
     if (must_stop(r)) return stop_here(r, s, messages); /* the evaluation may have been interrupted */
-    s->polish_is_result = r->plan.ends_with_polish;
+    s->polish_is_result = r->plan.ends_with_refine;
     s->polish_iterations = outcome.iterations;
     s->polish_evaluations = outcome.evaluations;
     s->polish_stop = outcome.stop;
@@ -395,15 +395,15 @@ static hf_status polish(run *r, hf_summary *s, hf_messages *messages)
     s->polish_n_at_upper = outcome.n_at_upper;
     s->polish_n_at_limit = outcome.n_at_limit;
     s->polish_is_at_cap = outcome.is_at_cap;
-    return keep_polish(r, w, design, s, messages);
+    return keep_refine(r, w, design, s, messages);
 }
 
 /* Returns true if a refinement is to be run: as the result, on request, or by default if it is cheap. */
-static bool wants_polish(const run *r, const hf_summary *s)
+static bool wants_refine(const run *r, const hf_summary *s)
 {
-    hf_compare compare = r->problem.settings.optimize.compare_lm;
-    if (r->plan.ends_with_polish || compare == HF_COMPARE_TRUE) return true;
-    return compare == HF_COMPARE_AUTO && hf_polish_is_cheap(&r->problem.evaluator, s->evaluations);
+    hf_refine_choice compare = r->problem.settings.optimize.refine;
+    if (r->plan.ends_with_refine || compare == HF_REFINE_TRUE) return true;
+    return compare == HF_REFINE_AUTO && hf_refine_is_cheap(&r->problem.evaluator, s->evaluations);
 }
 
 /* Finds the front by Levenberg-Marquardt and stores it. */
@@ -430,7 +430,7 @@ static hf_status find_front(run *r, hf_summary *s, hf_messages *messages)
     if (must_stop(r)) return stop_here(r, s, messages);
     if (hf_pareto_front(&r->optimiser.population, &r->front) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the front");
-    if (r->plan.ends_with_polish) return follow_front(r, s, messages);
+    if (r->plan.ends_with_refine) return follow_front(r, s, messages);
     memcpy(r->front.base, s->form.goal, sizeof r->front.base);
     hf_run_front_tell(&r->front, s->optimize_wall_s, s, messages);
     return hf_store_front(r->store, &r->problem.scene, &r->problem.model, s, &r->front, messages);
@@ -445,8 +445,8 @@ static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
     if (r->problem.settings.optimize.n_objective > 0) return find_front(r, s, messages);
     if (r->plan.kind) HF_TRY(evolve(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
-    if (hf_polish_applies(&r->problem.evaluator)) return wants_polish(r, s) ? polish(r, s, messages) : HF_OK;
-    hf_problem_warn_of_polish(&r->problem, messages);
+    if (hf_refine_applies(&r->problem.evaluator)) return wants_refine(r, s) ? refine(r, s, messages) : HF_OK;
+    hf_problem_warn_of_refine(&r->problem, messages);
     return HF_OK;
 }
 

@@ -1,7 +1,7 @@
 /* Finds the front of the objectives by Levenberg-Marquardt (METHOD section 7, fronts).
  *
  *     designs of an earlier front within the bounds, or the initial design
- *         | hf_trade_find: points between the ends, with progress to the observer
+ *         | hf_front_refine_find: points between the ends, with progress to the observer
  *         v
  *     front -> summary; if it fails, the earlier front stays, with a warning */
 #include "run/run_front.h"
@@ -9,7 +9,7 @@
 #include "base/clock.h"
 #include "run/no_design.h"
 #include "run/problem_parts.h"
-#include "search/trade.h"
+#include "search/front_refine.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -92,7 +92,7 @@ typedef struct {
 static void tell(const progress *p, int n_point, long n_step, bool is_last)
 {
     const hf_run_request *q = p->request;
-    const hf_run_progress now = {.phase = HF_RUN_POLISH,
+    const hf_run_progress now = {.phase = HF_RUN_REFINE,
                                  .is_last = is_last,
                                  .best_psi_m = (double)NAN,
                                  .elapsed_s = hf_clock_s() - p->start_s,
@@ -113,23 +113,23 @@ hf_status hf_run_front(const hf_run_request *q, hf_problem *p, const hf_populati
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     progress told = {q, hf_clock_s(), o->front_points};
-    hf_trade_watcher watcher = {.tell = tell_step, .context = &told, .is_telling = ATOMIC_FLAG_INIT};
-    hf_trade trade = {.evaluator = &p->evaluator,
-                      .lower = bounds->lower,
-                      .upper = bounds->upper,
-                      .n_point = o->front_points,
-                      .max_iterations = o->polish_iterations,
-                      .n_thread = p->batch.n_thread,
-                      .stop = q->stop_requested,
-                      .watcher = q->observer ? &watcher : NULL};
+    hf_front_refine_watcher watcher = {.tell = tell_step, .context = &told, .is_telling = ATOMIC_FLAG_INIT};
+    hf_front_refine task = {.evaluator = &p->evaluator,
+                            .lower = bounds->lower,
+                            .upper = bounds->upper,
+                            .n_point = o->front_points,
+                            .max_iterations = o->refine_steps,
+                            .n_thread = p->batch.n_thread,
+                            .stop = q->stop_requested,
+                            .watcher = q->observer ? &watcher : NULL};
     char text[HF_NO_DESIGN_SIZE];
     int end = -1, has_earlier = front->n_point > 0;
-    double *start = make_starts(p, bounds, front, &trade.n_start);
+    double *start = make_starts(p, bounds, front, &task.n_start);
     hf_front found = {0};
-    trade.start = start;
+    task.start = start;
     tell(&told, 0, 0, false);
-    bool applies = hf_trade_applies(&p->evaluator);
-    hf_status status = !start ? HF_NO_MEMORY : applies ? hf_trade_find(&trade, &found, &end) : HF_BAD_CASE;
+    bool applies = hf_front_refine_applies(&p->evaluator);
+    hf_status status = !start ? HF_NO_MEMORY : applies ? hf_front_refine_find(&task, &found, &end) : HF_BAD_CASE;
     free(start);
     if (status != HF_OK) hf_front_free(&found);
     if (status == HF_INTERRUPTED || (q->stop_requested && *q->stop_requested)) {
@@ -143,7 +143,7 @@ hf_status hf_run_front(const hf_run_request *q, hf_problem *p, const hf_populati
         if (applies)
             why = explain(p, status, end, text, sizeof text);
         else
-            snprintf(text, sizeof text, HF_PROBLEM_POLISH_NEEDS, hf_problem_no_slopes(p));
+            snprintf(text, sizeof text, HF_PROBLEM_REFINE_NEEDS, hf_problem_no_slopes(p));
         if (!has_earlier) return hf_error(messages, applies ? HF_NO_FEASIBLE : HF_BAD_CASE, "%s", why);
         hf_warning(messages, "%s; the front is that of the last generation", why);
         hf_run_front_tell(front, s->optimize_wall_s, s, messages);
@@ -153,6 +153,6 @@ hf_status hf_run_front(const hf_run_request *q, hf_problem *p, const hf_populati
     *front = found;
     tell(&told, front->n_point, watcher.n_step, true);
     hf_run_front_tell(front, hf_clock_s() - told.start_s, s, messages);
-    warn_of_steps(front, o->polish_iterations, messages);
+    warn_of_steps(front, o->refine_steps, messages);
     return HF_OK;
 }

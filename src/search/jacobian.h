@@ -21,7 +21,7 @@ typedef struct {
     void *block;
 } hf_jacobian;
 
-/* Prepares derivatives of designs of an evaluator to which hf_polish_applies; the evaluator is borrowed. A jacobian
+/* Prepares derivatives of designs of an evaluator to which hf_refine_applies; the evaluator is borrowed. A jacobian
  * must not be moved or copied, because it points into itself. Returns HF_OK or HF_NO_MEMORY; call hf_jacobian_free in
  * either case. */
 hf_status hf_jacobian_create(const hf_evaluator *evaluator, hf_jacobian *jacobian);

@@ -9,7 +9,7 @@
 #include <assert.h>
 #include <stddef.h>
 
-const char *const hf_polish_stop_word[5] = {"converged", "stalled", "max_iterations", "settled", "taken"};
+const char *const hf_refine_stop_word[5] = {"converged", "stalled", "max_iterations", "settled", "taken"};
 
 /* ---- ask and tell ---- */
 
@@ -79,7 +79,7 @@ const hf_optimiser_kind hf_optimiser_none = {0};
 
 hf_optimiser_plan hf_optimiser_plan_of(const hf_optimize_settings *settings)
 {
-#define ROW(name, optimiser, ends_with_polish) [HF_OPTIMIZE_##name] = {&hf_optimiser_##optimiser, ends_with_polish},
+#define ROW(name, optimiser, ends_with_refine) [HF_OPTIMIZE_##name] = {&hf_optimiser_##optimiser, ends_with_refine},
     static const hf_optimiser_plan plan[] = {HF_OPTIMISER_LIST(ROW)};
 #undef ROW
     hf_optimiser_plan it = plan[settings->method];

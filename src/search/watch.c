@@ -64,12 +64,12 @@ static void add_row(const hf_evaluator *v, const hf_limit *row, hf_watch *q)
 }
 
 /* Adds the items of objective k: those of its limit or, if it is minimised and has corners, those of its level. */
-static void add_goal(const hf_evaluator *v, const hf_watch_trade *trade, int k, hf_watch *q)
+static void add_goal(const hf_evaluator *v, const hf_watch_front *front, int k, hf_watch *q)
 {
     const hf_goal *g = &v->goals->goal[k];
     const hf_model *m = v->model;
-    bool is_least = k == trade->least, is_ratio = g->wanted.goal == HF_GOAL_RATIO;
-    double most = is_least ? INFINITY : trade->most[k];
+    bool is_least = k == front->least, is_ratio = g->wanted.goal == HF_GOAL_RATIO;
+    double most = is_least ? INFINITY : front->most[k];
     bool has_corners = hf_goals_is_largest(g->wanted.goal);
     if (is_least ? !has_corners : !isfinite(most)) return;
     hf_watched item = {-1, -1, -1, k, -1, .kind = is_least ? HF_WATCH_LEVEL : HF_WATCH_GOAL, -INFINITY, most};
@@ -116,8 +116,8 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
     for (int i = 0; v->limits && i < v->limits->n; i++)
         add_row(v, &v->limits->row[i], q);
     q->n_cap_of_limits = q->n_cap;
-    for (int k = 0; q->trade && k < v->goals->n_goal; k++)
-        add_goal(v, q->trade, k, q);
+    for (int k = 0; q->front && k < v->goals->n_goal; k++)
+        add_goal(v, q->front, k, q);
 }
 
 static void lay_out(hf_arena *a, hf_watch *q)
@@ -132,17 +132,17 @@ static void lay_out(hf_arena *a, hf_watch *q)
     q->ratio = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
     q->aim = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
     const hf_model *m = q->v->model;
-    size_t has_pull = q->trade ? 1 : 0;
+    size_t has_pull = q->front ? 1 : 0;
     q->move_m = hf_arena_take(a, has_pull * 3 * (size_t)m->n_node, sizeof(double));
     q->tension_rate = hf_arena_take(a, has_pull * (size_t)m->n_cable, sizeof(double));
     q->pull_rate = hf_arena_take(a, has_pull * (size_t)(m->n_node - m->n_free), sizeof(double));
 }
 
 hf_status hf_watch_create(const hf_evaluator *v, const hf_sensitivity *s, const double *lower, const double *upper,
-                          const hf_watch_trade *trade, hf_watch *q)
+                          const hf_watch_front *front, hf_watch *q)
 {
     hf_arena arena = {0};
-    *q = (hf_watch){.v = v, .n_class = s->n, .trade = trade};
+    *q = (hf_watch){.v = v, .n_class = s->n, .front = front};
     list(v, s, lower, upper, q);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, q)));
     q->block = arena.block;
@@ -156,10 +156,10 @@ void hf_watch_free(hf_watch *q)
     *q = (hf_watch){0};
 }
 
-bool hf_watch_breaks(const hf_watch_trade *trade, const hf_goals *goals, double part, const double *goal)
+bool hf_watch_breaks(const hf_watch_front *front, const hf_goals *goals, double part, const double *goal)
 {
-    for (int k = 0; trade && k < goals->n_goal; k++)
-        if (k != trade->least && goal[k] > (1 + part) * trade->most[k]) return true;
+    for (int k = 0; front && k < goals->n_goal; k++)
+        if (k != front->least && goal[k] > (1 + part) * front->most[k]) return true;
     return false;
 }
 
@@ -168,7 +168,7 @@ bool hf_watch_breaks(const hf_watch_trade *trade, const hf_goals *goals, double 
 /* Measures the items at the shape in the workspace. */
 static void look(hf_watch *q, hf_workspace *w)
 {
-    if (q->trade) hf_goals_pulls(q->v->model, w, w->goals);
+    if (q->front) hf_goals_pulls(q->v->model, w, w->goals);
     for (int i = 0; i < q->n; i++) {
         hf_watched *t = &q->item[i];
         const double *d = w->displacement_m + 3 * (ptrdiff_t)(t->attachment < 0 ? 0 : t->attachment);
@@ -412,7 +412,7 @@ bool hf_watch_worst(hf_watch *q, const double *x, double worst, hf_quadratic_lim
     }
     for (int k = 0; k < q->n_cap; k++)
         if (breaks_cap(q, k, &worst, limit)) is_broken = true;
-    if (q->trade && breaks_level(q, x, &worst, limit)) is_broken = true;
+    if (q->front && breaks_level(q, x, &worst, limit)) is_broken = true;
     if (is_broken || !held) return is_broken;
     double inside = LIMIT_INSIDE * held->unit, bound = sign > 0 ? held->from : held->to;
     for (int j = 0; j < q->n_class; j++)

@@ -12,10 +12,10 @@
 typedef struct {
     int least;
     const double *most; /* [n_goal], limits above 0; INFINITY: none */
-} hf_watch_trade;
+} hf_watch_front;
 
-/* Returns true if an objective exceeds its limit by more than `part` of it. Returns false if trade is NULL. */
-bool hf_watch_breaks(const hf_watch_trade *trade, const hf_goals *goals, double part, const double *goal);
+/* Returns true if an objective exceeds its limit by more than `part` of it. Returns false if front is NULL. */
+bool hf_watch_breaks(const hf_watch_front *front, const hf_goals *goals, double part, const double *goal);
 
 typedef struct {
     /* An item is the tension of a cable, the deflection of an attachment, the force on a support, or an objective. The
@@ -46,8 +46,8 @@ typedef struct {
     double *cap;                 /* [n_cap], limit on the ratio of maximum to minimum of its items */
     double *ratio;               /* [n_cap], ratio of maximum to minimum at the best variables */
     double *aim;                 /* [n_cap], limit on the ratio in the next step */
-    const hf_watch_trade *trade; /* NULL: no objective is limited */
-    const double *goal;      /* [n_goal], objectives of the shape that is measured; borrowed; NULL without `trade` */
+    const hf_watch_front *front; /* NULL: no objective is limited */
+    const double *goal;      /* [n_goal], objectives of the shape that is measured; borrowed; NULL without `front` */
     const double *goal_rate; /* [n_goal][n_class], rates of objectives without corners, borrowed */
     double level;            /* value of a minimised objective with corners, or the logarithm of a ratio */
     double *move_m, *tension_rate, *pull_rate; /* scratch for forces on supports: [3][n_node], [n_cable], [n_support] */
@@ -55,10 +55,10 @@ typedef struct {
 } hf_watch;
 
 /* Watches the cap and the limits of the evaluator, and the bounds lower and upper [n_variable] of design variables that
- * set a tension. If `trade` is not NULL, it also watches the objectives, after the caller has set goal and goal_rate.
+ * set a tension. If `front` is not NULL, it also watches the objectives, after the caller has set goal and goal_rate.
  * Returns HF_OK or HF_NO_MEMORY; call hf_watch_free in either case. */
 hf_status hf_watch_create(const hf_evaluator *evaluator, const hf_sensitivity *slopes, const double *lower,
-                          const double *upper, const hf_watch_trade *trade, hf_watch *watch);
+                          const double *upper, const hf_watch_front *front, hf_watch *watch);
 void hf_watch_free(hf_watch *watch);
 
 /* Returns true if the shape in the workspace keeps all limits. */

@@ -17,7 +17,7 @@
 
 #define PLACE_MAX 100         /* maximum factorisations for the positions of loose nodes */
 #define PLACE_TOLERANCE 1e-10 /* relative errors at which that path ends */
-#define POLISH_MAX 10         /* maximum Newton steps after the tensions of loose cables are removed */
+#define REFINE_MAX 10         /* maximum Newton steps after the tensions of loose cables are removed */
 
 /* ---- which nodes ---- */
 
@@ -134,13 +134,13 @@ static hf_status find_places(const hf_model *m, const hf_form_settings *s, hf_wo
 }
 
 /* Balances the held nodes again with the attachments fixed. If Newton's method fails, restores the positions. */
-static void polish(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int *n_step)
+static void refine(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int *n_step)
 {
     size_t places = 3 * (size_t)m->n_node * sizeof(double);
     int n_moving = w->n_moving;
     memcpy(w->place_before_m, w->position_m, places);
     w->n_moving = m->n_free;
-    if (!hf_newton_run(m, s, w, POLISH_MAX, n_step)) memcpy(w->position_m, w->place_before_m, places);
+    if (!hf_newton_run(m, s, w, REFINE_MAX, n_step)) memcpy(w->position_m, w->place_before_m, places);
     w->n_moving = n_moving;
 }
 
@@ -155,7 +155,7 @@ void hf_loose_settle(const hf_model *m, const hf_form_settings *s, hf_workspace 
     for (int e = 0; e < m->n_cable; e++)
         if (is_loose_cable(m, w, e)) w->q_N_per_m[e] = w->tension_N[e] = 0;
     if (hf_form_residual_N(m, w) > nothing_N(m, s)) /* the paper's iteration leaves some tension in slack cables */
-        polish(m, s, w, &before.iterations);
+        refine(m, s, w, &before.iterations);
     hf_status status = find_places(m, s, w, &before.iterations);
     hf_form_measure(m, s, w, r);
     if (status == HF_INTERRUPTED) r->status = status;

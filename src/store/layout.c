@@ -33,8 +33,8 @@ static const signed char bound_value[] = {HF_BOUND_REASON_LIST(BOUND_VALUE)};
 const hf_hdf5_kind hf_layout_role = {WORDS(hf_role_word)};
 const hf_hdf5_kind hf_layout_group = {WORDS(hf_group_word)};
 const hf_hdf5_kind hf_layout_law = {WORDS(hf_law_word)};
-const hf_hdf5_kind hf_layout_ga_stop = {WORDS(hf_population_stop_word)};
-const hf_hdf5_kind hf_layout_polish_stop = {WORDS(hf_polish_stop_word)};
+const hf_hdf5_kind hf_layout_search_stop = {WORDS(hf_population_stop_word)};
+const hf_hdf5_kind hf_layout_refine_stop = {WORDS(hf_refine_stop_word)};
 const hf_hdf5_kind hf_layout_joint = {ENDED_WORDS(hf_joint_word)};
 const hf_hdf5_kind hf_layout_surface_kind = {ENDED_WORDS(hf_surface_kind_word)};
 const hf_hdf5_kind hf_layout_unit = {WORDS(hf_unit_word)};
@@ -158,13 +158,13 @@ void hf_layout_renew(hf_hdf5 *io, const char *path)
 /* The figures of the results, by stage; <hifdm/result.h> lists them. */
 #define FORM_FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/form", #member, form.member, kind)
 #define BEST_FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/ga", "best_" #member, best.member, kind)
-#define POLISH_FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/polish", #member, polish.member, kind)
+#define REFINE_FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/polish", #member, polish.member, kind)
 /* The figures of a coupling. Those of the search and of the refinement are beside the results of these stages. */
 #define FORM_COUPLING(type, member, kind, ...)                                                                         \
     HF_HDF5_MEMBER(hf_summary, "/coupling", #member, form.coupling.member, kind)
 #define BEST_COUPLING(type, member, kind, ...)                                                                         \
     HF_HDF5_MEMBER(hf_summary, "/ga", "best_coupling_" #member, best.coupling.member, kind)
-#define POLISH_COUPLING(type, member, kind, ...)                                                                       \
+#define REFINE_COUPLING(type, member, kind, ...)                                                                       \
     HF_HDF5_MEMBER(hf_summary, "/polish", "coupling_" #member, polish.coupling.member, kind)
 
 /* The members of the summary about the run itself. Rows: X(struct, object, attribute, member, kind) */
@@ -181,19 +181,19 @@ void hf_layout_renew(hf_hdf5 *io, const char *path)
 
 #define FORM_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/form", #member, member, kind)
 #define GA_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/ga", #member, member, kind)
-#define POLISH_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/polish", #member, member, kind)
+#define REFINE_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/polish", #member, member, kind)
 #define TOLERANCE_MEMBER(type, member, kind, ...)                                                                      \
     HF_HDF5_MEMBER(hf_summary, "/tolerance", #member, tolerance.member, kind)
 #define TRUSS_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/truss", #member, truss.member, kind)
 
 static const hf_hdf5_member form[] = {RUN_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_FORM_LIST(FORM_MEMBER)
                                           HF_RESULT_LIST(FORM_FIGURE)};
-static const hf_hdf5_member ga[] = {HF_SUMMARY_GA_LIST(GA_MEMBER) HF_RESULT_LIST(BEST_FIGURE)};
-static const hf_hdf5_member polish[] = {HF_SUMMARY_POLISH_LIST(POLISH_MEMBER) HF_RESULT_LIST(POLISH_FIGURE)};
+static const hf_hdf5_member ga[] = {HF_SUMMARY_SEARCH_LIST(GA_MEMBER) HF_RESULT_LIST(BEST_FIGURE)};
+static const hf_hdf5_member refine[] = {HF_SUMMARY_REFINE_LIST(REFINE_MEMBER) HF_RESULT_LIST(REFINE_FIGURE)};
 static const hf_hdf5_member truss[] = {HF_SUMMARY_TRUSS_LIST(TRUSS_MEMBER)};
 static const hf_hdf5_member coupling[] = {HF_COUPLING_LIST(FORM_COUPLING)};
 static const hf_hdf5_member coupling_ga[] = {HF_COUPLING_LIST(BEST_COUPLING)};
-static const hf_hdf5_member coupling_polish[] = {HF_COUPLING_LIST(POLISH_COUPLING)};
+static const hf_hdf5_member coupling_refine[] = {HF_COUPLING_LIST(REFINE_COUPLING)};
 static const hf_hdf5_member tolerance[] = {
     HF_TOLERANCE_LIST(TOLERANCE_MEMBER)
         HF_HDF5_MEMBER(hf_summary, "/tolerance", "histogram_low_m", tolerance.bin_low_m, REAL)
@@ -201,11 +201,11 @@ static const hf_hdf5_member tolerance[] = {
 #define PART(table) table, HF_HDF5_COUNT(table)
 const hf_layout_members hf_layout_summary[HF_LAYOUT_N_PART] = {[HF_LAYOUT_FORM] = {PART(form)},
                                                                [HF_LAYOUT_GA] = {PART(ga)},
-                                                               [HF_LAYOUT_POLISH] = {PART(polish)},
+                                                               [HF_LAYOUT_REFINE] = {PART(refine)},
                                                                [HF_LAYOUT_TRUSS] = {PART(truss)},
                                                                [HF_LAYOUT_COUPLING] = {PART(coupling)},
                                                                [HF_LAYOUT_COUPLING_GA] = {PART(coupling_ga)},
-                                                               [HF_LAYOUT_COUPLING_POLISH] = {PART(coupling_polish)},
+                                                               [HF_LAYOUT_COUPLING_REFINE] = {PART(coupling_refine)},
                                                                [HF_LAYOUT_TOLERANCE] = {PART(tolerance)}};
 
 void hf_layout_put_summary(hf_hdf5 *io, hf_layout_part part, const hf_summary *summary)

@@ -27,15 +27,15 @@
 /* ---- Enumerations: words and values from the engine's own lists ---- */
 
 extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_layout_status, hf_layout_stop_reason,
-    hf_layout_ga_stop, hf_layout_polish_stop, hf_layout_joint, hf_layout_unit, hf_layout_coupling_stop,
+    hf_layout_search_stop, hf_layout_refine_stop, hf_layout_joint, hf_layout_unit, hf_layout_coupling_stop,
     hf_layout_bound_reason, hf_layout_surface_kind;
 #define HF_KIND_ROLE (&hf_layout_role)
 #define HF_KIND_GROUP (&hf_layout_group)
 #define HF_KIND_LAW (&hf_layout_law)
 #define HF_KIND_STATUS (&hf_layout_status)
 #define HF_KIND_STOP_REASON (&hf_layout_stop_reason)
-#define HF_KIND_GA_STOP (&hf_layout_ga_stop)
-#define HF_KIND_POLISH_STOP (&hf_layout_polish_stop)
+#define HF_KIND_SEARCH_STOP (&hf_layout_search_stop)
+#define HF_KIND_REFINE_STOP (&hf_layout_refine_stop)
 #define HF_KIND_JOINT (&hf_layout_joint)
 #define HF_KIND_UNIT (&hf_layout_unit)
 #define HF_KIND_COUPLING_STOP (&hf_layout_coupling_stop)
@@ -91,11 +91,11 @@ void hf_layout_renew(hf_hdf5 *io, const char *path);
 typedef enum {
     HF_LAYOUT_FORM,            /* always */
     HF_LAYOUT_GA,              /* if the search has begun */
-    HF_LAYOUT_POLISH,          /* if has_polish */
+    HF_LAYOUT_REFINE,          /* if has_polish */
     HF_LAYOUT_TRUSS,           /* if has_truss; the group /truss exists then */
     HF_LAYOUT_COUPLING,        /* if has_coupling */
     HF_LAYOUT_COUPLING_GA,     /* if has_coupling and has_optimize; attributes of /ga */
-    HF_LAYOUT_COUPLING_POLISH, /* if has_coupling and has_polish; attributes of /polish */
+    HF_LAYOUT_COUPLING_REFINE, /* if has_coupling and has_polish; attributes of /polish */
     HF_LAYOUT_TOLERANCE,       /* if has_tolerance */
     HF_LAYOUT_N_PART
 } hf_layout_part;

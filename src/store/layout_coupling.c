@@ -45,12 +45,12 @@ void hf_layout_put_coupling(hf_hdf5 *io, const hf_summary *summary)
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/coupling"));
     hf_layout_put_summary(io, HF_LAYOUT_COUPLING, summary);
     if (summary->has_optimize) hf_layout_put_summary(io, HF_LAYOUT_COUPLING_GA, summary);
-    if (summary->has_polish) hf_layout_put_summary(io, HF_LAYOUT_COUPLING_POLISH, summary);
+    if (summary->has_polish) hf_layout_put_summary(io, HF_LAYOUT_COUPLING_REFINE, summary);
 }
 
 void hf_layout_get_coupling(hf_hdf5 *io, hf_summary *summary)
 {
     hf_layout_get_summary(io, HF_LAYOUT_COUPLING, summary);
     if (summary->has_optimize) hf_layout_get_summary(io, HF_LAYOUT_COUPLING_GA, summary);
-    if (summary->has_polish) hf_layout_get_summary(io, HF_LAYOUT_COUPLING_POLISH, summary);
+    if (summary->has_polish) hf_layout_get_summary(io, HF_LAYOUT_COUPLING_REFINE, summary);
 }

@@ -287,14 +287,14 @@ static void write_design(hf_store *s, hid_t group, const hf_model *m, const doub
     hf_hdf5_write_array(&s->f.io, group, &array, design);
 }
 
-hf_status hf_store_best(hf_store *s, hf_stage stage, const hf_model *m, const hf_workspace *w, const double *design,
-                        hf_messages *messages)
+hf_status hf_store_shape(hf_store *s, hf_stage stage, const hf_model *m, const hf_workspace *w, const double *design,
+                         hf_messages *messages)
 {
     if (!s) return HF_OK;
     hf_hdf5_lock();
     s->f.io.messages = messages;
     hf_store_file_open(&s->f);
-    if (stage == HF_STAGE_OPTIMIZE) hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/ga"));
+    if (stage == HF_STAGE_SEARCH) hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/ga"));
     if (hf_hdf5_has(&s->f.io, s->f.io.file, hf_stage_group[stage]) && /* an interrupted session has left it */
         H5Ldelete(s->f.io.file, hf_stage_group[stage], H5P_DEFAULT) < 0)
         hf_hdf5_fail(&s->f.io, "replace", s->f.io.file, hf_stage_group[stage]);
@@ -478,7 +478,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
     }
     if (summary->has_polish) {
         hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/polish"));
-        hf_layout_put_summary(&s->f.io, HF_LAYOUT_POLISH, summary);
+        hf_layout_put_summary(&s->f.io, HF_LAYOUT_REFINE, summary);
     }
     if (summary->has_truss) {
         hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/truss"));
@@ -504,7 +504,7 @@ static void complete(hf_store *s, const hf_summary *summary, bool finished)
     hf_store_file_open(&s->f);
     hf_generations_write(&s->f.io, &s->rows);
     put_summary(s, summary, finished);
-    hf_store_put_polish(s, finished);
+    hf_store_put_refine(s, finished);
     hf_store_file_close(&s->f);
 }
 

@@ -8,7 +8,7 @@ void hf_store_free(hf_store *s, hf_messages *messages)
 {
     hf_store_file_end(&s->f, messages);
     hf_generations_free(&s->rows);
-    free(s->polish);
+    free(s->refine);
     free(s->scratch);
     free(s);
 }

@@ -15,9 +15,9 @@ struct hf_store {
     bool is_resumed;
     char identity[65];
     double publish_s, published_at_s; /* duration of the last publication, and when it ended */
-    /* [n_polish] Wall-clock time and state of hf_store_polish, for the next publication; NULL: none. */
-    double *polish;
-    size_t n_polish;
+    /* [n_refine] Wall-clock time and state of hf_store_refine, for the next publication; NULL: none. */
+    double *refine;
+    size_t n_refine;
     void *scratch;
     size_t scratch_bytes;
 };
@@ -50,8 +50,8 @@ void hf_store_free(hf_store *s, hf_messages *messages);
  * memory runs out. */
 void *hf_store_scratch(hf_store *s, size_t bytes);
 
-/* Writes the state of hf_store_polish to a file that is published, and removes it from a finished file. */
-void hf_store_put_polish(hf_store *s, bool finished);
+/* Writes the state of hf_store_refine to a file that is published, and removes it from a finished file. */
+void hf_store_put_refine(hf_store *s, bool finished);
 
 /* hf_store_put_time writes the present time in UTC as an attribute of the root. hf_store_put_job writes the ids of the
  * Slurm job, by which its logs can be found. */

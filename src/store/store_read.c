@@ -90,7 +90,7 @@ static hf_status read_summary(const char *path, hf_summary *summary, bool *is_da
     hf_layout_get_summary(&io, HF_LAYOUT_FORM, summary);
     summary->has_coupling = io.status == HF_OK && hf_hdf5_has(&io, io.file, "coupling");
     if (summary->has_coupling) hf_layout_get_coupling(&io, summary);
-    if (summary->has_polish) hf_layout_get_summary(&io, HF_LAYOUT_POLISH, summary);
+    if (summary->has_polish) hf_layout_get_summary(&io, HF_LAYOUT_REFINE, summary);
     if (summary->has_optimize) hf_layout_get_summary(&io, HF_LAYOUT_GA, summary);
     get_status(&io, summary);
     hf_layout_get_taken(&io, &summary->taken);
@@ -276,8 +276,8 @@ static void read_shape(hf_hdf5 *io, const char *path, hf_shape *shape)
 
 hf_stage hf_store_result_stage(const hf_summary *s)
 {
-    if (s->has_polish && s->polish_is_result) return HF_STAGE_POLISH;
-    return hf_summary_has_best_shape(s) ? HF_STAGE_OPTIMIZE : HF_STAGE_FORM;
+    if (s->has_polish && s->polish_is_result) return HF_STAGE_REFINE;
+    return hf_summary_has_best_shape(s) ? HF_STAGE_SEARCH : HF_STAGE_FORM;
 }
 
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages)
@@ -285,7 +285,7 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *shape = (hf_shape){0};
-    bool is_there = stage != HF_STAGE_NONE && (stage != HF_STAGE_OPTIMIZE || hf_hdf5_has(&io, io.file, "/ga")) &&
+    bool is_there = stage != HF_N_STAGE && (stage != HF_STAGE_SEARCH || hf_hdf5_has(&io, io.file, "/ga")) &&
                     hf_hdf5_has(&io, io.file, hf_stage_group[stage]);
     if (!is_there && io.status == HF_OK) /* hf_hdf5_has has reported a failure already */
         io.status =

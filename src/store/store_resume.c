@@ -1,10 +1,10 @@
 /* Resumes an unfinished result:
  *
  *     hf_store_resume            copies the visible file and counts the records of the journal
- *     hf_store_restore_base      reads the initial design of the search
+ *     hf_store_restore_initial      reads the initial design of the search
  *     hf_store_restore           puts the optimiser into the state of the last generation of the file; then, for each
  *                                record, proposes its designs again, compares their hash and takes its results
- *     hf_store_restore_polish    reads the state of the refinement
+ *     hf_store_restore_refine    reads the state of the refinement
  *
  * hf_store_recover does the same without a run: it makes the optimiser from the file alone and publishes the result.
  * Sections: state of the file, proposing again, refinement, recovery. */
@@ -148,7 +148,7 @@ static void check_base(hf_hdf5 *io, int n_variable, const double *initial)
             hf_hdf5_damaged(io, io->file, "/ga", "has a base that is no design");
 }
 
-hf_status hf_store_restore_base(hf_store *s, int n_variable, double *initial, hf_messages *messages)
+hf_status hf_store_restore_initial(hf_store *s, int n_variable, double *initial, hf_messages *messages)
 {
     hf_hdf5_array base = {.name = "/ga/base_N", .kind = HF_KIND_REAL, .rank = 1, .dims = {(hsize_t)n_variable}};
     if (s && s->rows.has_rows) base.name = "/ga/base";
@@ -258,36 +258,36 @@ hf_status hf_store_restore(hf_store *s, hf_optimiser *optimiser, hf_summary *sum
 
 /* ---- refinement ---- */
 
-#define POLISH_STATE "/polish_state"
+#define REFINE_STATE "/polish_state"
 
-static hf_hdf5_array polish_array(size_t n)
+static hf_hdf5_array refine_array(size_t n)
 {
-    return (hf_hdf5_array){POLISH_STATE, HF_KIND_REAL, 1,
+    return (hf_hdf5_array){REFINE_STATE, HF_KIND_REAL, 1,
                            {(hsize_t)n}, "",           "where Levenberg-Marquardt was told to stop"};
 }
 
-static hf_status make_polish(hf_store *s, size_t n)
+static hf_status make_refine(hf_store *s, size_t n)
 {
-    if (n == s->n_polish) return HF_OK;
-    free(s->polish);
-    s->polish = malloc(n * sizeof *s->polish);
-    s->n_polish = s->polish ? n : 0;
-    if (s->polish) return HF_OK;
+    if (n == s->n_refine) return HF_OK;
+    free(s->refine);
+    s->refine = malloc(n * sizeof *s->refine);
+    s->n_refine = s->refine ? n : 0;
+    if (s->refine) return HF_OK;
     return s->f.io.status = hf_error(s->f.io.messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
 }
 
-hf_status hf_store_polish(hf_store *s, double wall_s, size_t n, const double *state, hf_messages *messages)
+hf_status hf_store_refine(hf_store *s, double wall_s, size_t n, const double *state, hf_messages *messages)
 {
     if (!s) return HF_OK;
     s->f.io.messages = messages;
     HF_TRY(s->f.io.status);
-    HF_TRY(make_polish(s, n + 1));
-    s->polish[0] = wall_s;
-    memcpy(s->polish + 1, state, n * sizeof *state);
+    HF_TRY(make_refine(s, n + 1));
+    s->refine[0] = wall_s;
+    memcpy(s->refine + 1, state, n * sizeof *state);
     return HF_OK;
 }
 
-hf_status hf_store_restore_polish(hf_store *s, double *wall_s, size_t *n, const double **state, hf_messages *messages)
+hf_status hf_store_restore_refine(hf_store *s, double *wall_s, size_t *n, const double **state, hf_messages *messages)
 {
     *wall_s = 0;
     *n = 0;
@@ -297,26 +297,26 @@ hf_status hf_store_restore_polish(hf_store *s, double *wall_s, size_t *n, const 
     hf_hdf5 *io = &s->f.io;
     io->messages = messages;
     hf_store_file_open(&s->f);
-    if (hf_hdf5_has(io, io->file, POLISH_STATE)) {
-        int n_value = hf_hdf5_length(io, io->file, POLISH_STATE, HF_LAYOUT_COUNT_MAX);
-        if (io->status == HF_OK && make_polish(s, (size_t)n_value) == HF_OK) {
-            const hf_hdf5_array array = polish_array(s->n_polish);
-            hf_hdf5_read_array(io, io->file, &array, s->polish);
+    if (hf_hdf5_has(io, io->file, REFINE_STATE)) {
+        int n_value = hf_hdf5_length(io, io->file, REFINE_STATE, HF_LAYOUT_COUNT_MAX);
+        if (io->status == HF_OK && make_refine(s, (size_t)n_value) == HF_OK) {
+            const hf_hdf5_array array = refine_array(s->n_refine);
+            hf_hdf5_read_array(io, io->file, &array, s->refine);
         }
         if (io->status == HF_OK) {
-            *wall_s = s->polish[0];
-            *n = s->n_polish - 1;
-            *state = s->polish + 1;
+            *wall_s = s->refine[0];
+            *n = s->n_refine - 1;
+            *state = s->refine + 1;
         }
     }
     return hf_hdf5_unlock(io->status);
 }
 
-void hf_store_put_polish(hf_store *s, bool finished)
+void hf_store_put_refine(hf_store *s, bool finished)
 {
-    const hf_hdf5_array array = polish_array(s->n_polish);
-    if (finished || s->polish) hf_layout_renew(&s->f.io, POLISH_STATE);
-    if (!finished && s->polish) hf_hdf5_write_array(&s->f.io, s->f.io.file, &array, s->polish);
+    const hf_hdf5_array array = refine_array(s->n_refine);
+    if (finished || s->refine) hf_layout_renew(&s->f.io, REFINE_STATE);
+    if (!finished && s->refine) hf_hdf5_write_array(&s->f.io, s->f.io.file, &array, s->refine);
 }
 
 /* ---- recovery ---- */

@@ -30,8 +30,8 @@ double hf_summary_utilisation(const hf_summary *s)
     {#member,     "fit_" #member, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_surface_fit, member),        \
      sizeof(type)},
 static const hf_result_field form_field[] = {HF_SUMMARY_FORM_LIST(FIELD)};
-static const hf_result_field ga_field[] = {HF_SUMMARY_GA_LIST(FIELD)};
-static const hf_result_field polish_field[] = {HF_SUMMARY_POLISH_LIST(FIELD)};
+static const hf_result_field ga_field[] = {HF_SUMMARY_SEARCH_LIST(FIELD)};
+static const hf_result_field refine_field[] = {HF_SUMMARY_REFINE_LIST(FIELD)};
 #define TOLERANCE(type, member, kind, json, key, description)                                                          \
     {#member, key, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_tolerance_summary, member), sizeof(type)},
 static const hf_result_field tolerance_field[] = {HF_TOLERANCE_LIST(TOLERANCE)};
@@ -62,8 +62,8 @@ static void write_field(const hf_result_field *field, const void *owner, hf_json
     case HF_RESULT_TRUTH:
         hf_json_bool(j, field->key, *(const bool *)value);
         break;
-    case HF_RESULT_POLISH_STOP:
-        hf_json_text(j, field->key, hf_polish_stop_word[number]);
+    case HF_RESULT_REFINE_STOP:
+        hf_json_text(j, field->key, hf_refine_stop_word[number]);
         break;
     case HF_RESULT_STATUS:
         hf_json_text(j, field->key, hf_status_word((hf_status)number));
@@ -80,7 +80,7 @@ static void write_field(const hf_result_field *field, const void *owner, hf_json
     case HF_RESULT_SOLVER:
         hf_json_text(j, field->key, hf_solver_word[number]);
         break;
-    case HF_RESULT_GA_STOP:
+    case HF_RESULT_SEARCH_STOP:
         hf_json_text(j, field->key, hf_population_stop_word[number]);
         break;
     }
@@ -242,11 +242,11 @@ static void write_optimize(const hf_summary *s, hf_json *j)
     hf_json_close(j, '}');
 }
 
-static void write_polish(const hf_summary *s, hf_json *j)
+static void write_refine(const hf_summary *s, hf_json *j)
 {
     open_stage("polish", j);
     write_result(&s->polish, j);
-    write_fields(ALL(polish_field), 1, LAST_PLACE, s, j);
+    write_fields(ALL(refine_field), 1, LAST_PLACE, s, j);
     if (s->taken.point) {
         hf_json_text(j, "front_file", s->taken.path);
         hf_json_integer(j, "front_point", s->taken.point);
@@ -395,7 +395,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
     if (s->form.status != HF_NOT_EVALUATED) write_form(s, j);
     if (s->has_coupling && s->form.coupling.iterations > 0) write_coupling(&s->form.coupling, j);
     if (s->has_optimize) write_optimize(s, j);
-    if (s->has_polish) write_polish(s, j);
+    if (s->has_polish) write_refine(s, j);
     if (s->has_front) write_front(s, j);
     write_states(s, j);
     if (s->has_tolerance) write_tolerance(&s->tolerance, j);

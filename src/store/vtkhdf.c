@@ -138,7 +138,7 @@ static void link_all(hf_hdf5 *io, const char *result, const char *position, cons
     char folder[HF_LAYOUT_STATE_SIZE], prefix[HF_LAYOUT_STATE_SIZE];
     link_to(io, position, "/VTKHDF/Points");
     link_forces(io, result, "");
-    for (int i = 0; i < HF_STAGE_NONE; i++) {
+    for (int i = 0; i < HF_N_STAGE; i++) {
         snprintf(prefix, sizeof prefix, "%s_", hf_stage_word[i]);
         link_shape(io, hf_stage_group[i], prefix);
     }

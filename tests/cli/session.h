@@ -240,7 +240,7 @@ static inline bool says_form(const char *err)
     return says(err, "\"phase\": \"form\"");
 }
 
-static inline bool says_polish(const char *err)
+static inline bool says_refine(const char *err)
 {
     return says(err, "\"phase\": \"polish\"");
 }

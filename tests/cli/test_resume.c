@@ -263,7 +263,7 @@ START_TEST(stops_are_heard_between_generations_too)
                                 "--progress",
                                 "jsonl",
                                 NULL};
-    const char *const polish[] = {hifdm_program(),
+    const char *const refine[] = {hifdm_program(),
                                   "run",
                                   REFLECTOR,
                                   "-o",
@@ -277,8 +277,8 @@ START_TEST(stops_are_heard_between_generations_too)
                                   "--progress",
                                   "jsonl",
                                   NULL};
-    const char *const *const argv[] = {form, polish};
-    bool (*const has_begun[])(const char *) = {says_form, says_polish};
+    const char *const *const argv[] = {form, refine};
+    bool (*const has_begun[])(const char *) = {says_form, says_refine};
     for (int i = 0; i < 2; i++) {
         session s = start_program(argv[i]);
         ck_assert(wait_until(&s, has_begun[i], temp("err")));
@@ -291,7 +291,7 @@ START_TEST(stops_are_heard_between_generations_too)
 END_TEST
 
 /* Seconds of Levenberg-Marquardt: variables enough. */
-#define LONG_POLISH                                                                                                    \
+#define LONG_REFINE                                                                                                    \
     "scene:\n  paraboloid: {aperture_m: 9, focal_length_m: 6, offset_m: 5.5, rings: 4, rear_distance_m: 2.4}\n"        \
     "surface: {frequencies_Hz: [6e9]}\n"                                                                               \
     "form: {pretension_N: 10, prestress: exact}\n"                                                                     \
@@ -312,9 +312,9 @@ static bool says_step(const char *err)
 }
 
 /* Levenberg-Marquardt says how far it is, and neither a signal nor a kill undoes its steps. */
-START_TEST(a_stopped_polish_goes_on_to_the_same_bits)
+START_TEST(a_stopped_refinement_goes_on_to_the_same_bits)
 {
-    const char *c = file_with("c.yaml", LONG_POLISH), *path = temp("run.h5"), *whole = temp("whole.h5");
+    const char *c = file_with("c.yaml", LONG_REFINE), *path = temp("run.h5"), *whole = temp("whole.h5");
     const char *const argv[] = {hifdm_program(), "run", c, "-o", path, "--threads", "2", "--progress", "jsonl", NULL};
     session s = start_program(argv);
     ck_assert(wait_until(&s, says_step, temp("err")));
@@ -472,7 +472,7 @@ Suite *suite_cli_resume(void)
     tcase_add_test(tcase, a_torn_journal_gives_what_is_whole);
     tcase_add_test(tcase, seed_and_symmetry_are_recovered);
     tcase_add_loop_test(tcase, stopped_runs_publish_and_go_on, 0, sizeof stops / sizeof *stops);
-    tcase_add_test(tcase, a_stopped_polish_goes_on_to_the_same_bits);
+    tcase_add_test(tcase, a_stopped_refinement_goes_on_to_the_same_bits);
     tcase_add_test(tcase, a_stopped_point_goes_on_to_the_same_bits);
     tcase_add_test(tcase, stops_are_heard_between_generations_too);
     tcase_add_test(tcase, another_case_is_told_key_by_key);

@@ -45,13 +45,13 @@ START_TEST(killed_runs_go_on_to_the_same_bits)
     const struct {
         const char *threads, *at;
         bool (*is_so)(const char *at);
-    } kill_when[] = {{"2", path, has_generations}, {"3", temp("err"), says_polish}, {"1", samples, has_generations}};
+    } kill_when[] = {{"2", path, has_generations}, {"3", temp("err"), says_refine}, {"1", samples, has_generations}};
     HIFDM(0, "run", c, "-o", whole, "--quiet", "--threads", "1", "--set", longer, "--set", more);
     for (int k = 0; k < 3; k++) {
         const char *const argv[] = {
             hifdm_program(), "run",   c,       "-o",   path,    "--threads", kill_when[k].threads,
             "--progress",    "jsonl", "--set", longer, "--set", more,        NULL};
-        if (kill_when[k].is_so == says_polish && !strcmp(seek[_i].method, "ga")) continue;
+        if (kill_when[k].is_so == says_refine && !strcmp(seek[_i].method, "ga")) continue;
         session s = start_program(argv);
         ck_assert_msg(freeze_when(&s, kill_when[k].is_so, kill_when[k].at), "kill %d: the run has ended before", k);
         ck_assert_int_eq(end_by(&s, SIGKILL), 128 + SIGKILL);

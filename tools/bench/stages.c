@@ -5,7 +5,7 @@
  * stages of a generation come one after the other. */
 #include "bench.h"
 
-#include "search/polish.h"
+#include "search/refine.h"
 #include <hifdm/run.h>
 #include "net/symmetry.h"
 #include <hifdm/store.h>
@@ -14,7 +14,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { READ, SCENE, MODEL, FORM, SETUP, EVALUATE, RANK, POLISH, STORE, N_STAGE };
+enum { READ, SCENE, MODEL, FORM, SETUP, EVALUATE, RANK, REFINE, STORE, N_STAGE };
 static const char *const stage_word[N_STAGE] = {"read case", "scene",          "model",      "form-finding",
                                                 "GA set-up", "GA evaluations", "GA ranking", "Levenberg-Marquardt",
                                                 "storing"};
@@ -106,9 +106,9 @@ WATCH(EVALUATE, bool, hf_batch_next, (hf_batch * batch, hf_optimiser *ga, void (
 WATCH(EVALUATE, hf_workspace *, hf_batch_run_one, (hf_batch * batch, const double *design, hf_form_result *result),
       (batch, design, result))
 WATCH_VOID(RANK, hf_optimiser_tell, (hf_optimiser * ga), (ga))
-WATCH(POLISH, hf_status, hf_polish_run,
+WATCH(REFINE, hf_status, hf_refine_run,
       (const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-       const hf_polish_watcher *watcher, double *design, hf_workspace *workspace, hf_polish_result *result),
+       const hf_refine_watcher *watcher, double *design, hf_workspace *workspace, hf_refine_result *result),
       (evaluator, lower, upper, max_iterations, watcher, design, workspace, result))
 WATCH(STORE, hf_status, hf_store_create,
       (const char *path, bool force, const hf_case *settings, const hf_scene *scene, const hf_truss *truss, int argc,
@@ -124,7 +124,7 @@ WATCH(STORE, hf_status, hf_store_generation,
 WATCH(STORE, hf_status, hf_store_publish,
       (hf_store * store, const hf_summary *summary, bool at_once, hf_messages *messages),
       (store, summary, at_once, messages))
-WATCH(STORE, hf_status, hf_store_best,
+WATCH(STORE, hf_status, hf_store_shape,
       (hf_store * store, hf_stage stage, const hf_model *model, const hf_workspace *workspace, const double *design,
        hf_messages *messages),
       (store, stage, model, workspace, design, messages))

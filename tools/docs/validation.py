@@ -6,7 +6,7 @@ import subprocess
 from reference import plain as escaped
 from split import Page
 
-SUITES = "verify cli/reflectors cli/tolerance cli/limits cli/trade"
+SUITES = "verify cli/reflectors cli/tolerance cli/limits cli/workshop"
 
 
 def run_suites(make, file):

@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 TICKS = os.sysconf("SC_CLK_TCK")
+INSTALL_S = 60  # s of processor time; the installation runs the program, and an edit may have made an endless loop
 ASLEEP_S = 60  # s; a suite that uses no processor time for so long hangs
 FLAGS = ["WERROR=-Werror=incompatible-pointer-types -Werror=int-conversion -Werror=implicit-function-declaration "
          "-Werror=return-type", "CFLAGS=-O1"]
@@ -172,7 +173,7 @@ class Tree:
         self.forget_links()
         if not self.make(*self.linked()[:2], log=log):
             return "does not compile"
-        return "built" if self.make(*self.linked(), log=log) else "does not install"
+        return "built" if self.make(*self.linked(), log=log, cpu_limit_s=INSTALL_S) else "does not install"
 
     def revert(self):
         source, text, time_ns = self.kept

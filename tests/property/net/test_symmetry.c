@@ -1,9 +1,9 @@
-/* A search with linked genes: every design, the shape found and the polished optimum are symmetric. */
+/* A search with linked genes: every design, the shape found and the refined optimum are symmetric. */
 #include "nets.h"
 
 #include <hifdm/batch.h>
 #include <hifdm/optimiser.h>
-#include "search/polish.h"
+#include "search/refine.h"
 #include "net/symmetry.h"
 
 enum { N_VARIABLE = 120, N_CABLE = 220, N_GENERATION = 15 };
@@ -94,7 +94,7 @@ START_TEST(what_a_symmetric_search_finds_is_symmetric)
 {
     struct search s;
     hf_form_result found;
-    hf_polish_result polished;
+    hf_refine_result refined;
     double design[N_VARIABLE];
     open_search(&s);
     demand_symmetric_design(&s, s.initial);
@@ -105,10 +105,10 @@ START_TEST(what_a_symmetric_search_finds_is_symmetric)
     memcpy(design, s.ga.population.design + s.ga.population.best * N_VARIABLE, sizeof design);
     ck_assert_int_eq(hf_evaluate(&s.evaluator, design, &s.net.work, &found), HF_OK);
     ck_assert_double_lt(asymmetry_m(&s.net.model, &s.net.work), 1e-9);
-    ck_assert_int_eq(hf_polish_run(&s.evaluator, s.ga.population.lower, s.ga.population.upper, 20, NULL, design,
-                                   &s.net.work, &polished),
+    ck_assert_int_eq(hf_refine_run(&s.evaluator, s.ga.population.lower, s.ga.population.upper, 20, NULL, design,
+                                   &s.net.work, &refined),
                      HF_OK);
-    ck_assert_double_lt(polished.merit, found.psi_m);
+    ck_assert_double_lt(refined.merit, found.psi_m);
     demand_symmetric_design(&s, design);
     ck_assert_int_eq(hf_evaluate(&s.evaluator, design, &s.net.work, &found), HF_OK);
     ck_assert_double_lt(asymmetry_m(&s.net.model, &s.net.work), 1e-9);
@@ -118,13 +118,13 @@ END_TEST
 
 /* The optimum of a symmetric, well-posed net is symmetric: with 22 variables Levenberg-Marquardt ends where it ends
  * with all 88, only sooner. 1e-7: both stop at a relative change of psi^2 of 1e-14 or when no step helps any more. */
-START_TEST(polishing_linked_variables_reaches_the_free_optimum)
+START_TEST(refining_linked_variables_reaches_the_free_optimum)
 {
     double psi_m[2];
     for (int linked = 0; linked < 2; linked++) {
         struct net net;
         hf_messages messages = {0};
-        hf_polish_result polished;
+        hf_refine_result refined;
         int planes;
         double start_q[1000], design[200], lower[200], upper[200];
         OPEN_CASE(&net, SMALL_REFLECTOR);
@@ -146,9 +146,9 @@ START_TEST(polishing_linked_variables_reaches_the_free_optimum)
                           .rule = HF_RULE_FORCE_DENSITY,
                           .solver = HF_SOLVER_NEWTON,
                           .boundary_ratio_cap = 100};
-        ck_assert_int_eq(hf_polish_run(&v, lower, upper, 200, NULL, design, &net.work, &polished), HF_OK);
-        psi_m[linked] = polished.merit;
-        ck_assert_double_lt(polished.merit, polished.start_merit);
+        ck_assert_int_eq(hf_refine_run(&v, lower, upper, 200, NULL, design, &net.work, &refined), HF_OK);
+        psi_m[linked] = refined.merit;
+        ck_assert_double_lt(refined.merit, refined.start_merit);
         close_net(&net);
     }
     ck_assert_double_eq_tol(psi_m[1] / psi_m[0], 1, 1e-7);
@@ -161,6 +161,6 @@ Suite *suite_property_symmetry(void)
     TCase *tests = tcase_create("symmetry");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, what_a_symmetric_search_finds_is_symmetric);
-    tcase_add_test(tests, polishing_linked_variables_reaches_the_free_optimum);
+    tcase_add_test(tests, refining_linked_variables_reaches_the_free_optimum);
     return suite;
 }

@@ -59,7 +59,7 @@ static hf_summary *run_bowl(const char *rows, const char *more)
                               .threads = 1};
     ck_assert_msg(hf_run_case(&request, &s, output, &said) == HF_OK, "%s", said.text);
     hf_messages_free(&said);
-    ck_assert_int_eq(s.polish_stop, HF_POLISH_CONVERGED);
+    ck_assert_int_eq(s.polish_stop, HF_REFINE_CONVERGED);
     return &s;
 }
 

@@ -6,7 +6,7 @@
 #include "solve/coupling.h"
 #include "solve/schur.h"
 #include "solve/newton_matrix.h"
-#include "search/polish.h"
+#include "search/refine.h"
 #include <hifdm/batch.h>
 
 static const double scale_m_per_N[] = {1e-6, 1e-5, 1e-4}; /* the last one needs the modes of (I + F S)^-1 */
@@ -204,12 +204,12 @@ START_TEST(sensitivities_are_finite_differences)
 }
 END_TEST
 
-/* Karush, Kuhn, Tucker by central differences of the coupled psi, as unit/polish has it for fixed supports: a
+/* Karush, Kuhn, Tucker by central differences of the coupled psi, as unit/refine has it for fixed supports: a
  * sensitivity that forgets the truss leaves some per cent of the start's slope; 1e-3 is asked for. */
-START_TEST(polished_design_has_no_coupled_slope_left)
+START_TEST(refined_design_has_no_coupled_slope_left)
 {
     struct run r;
-    hf_polish_result result;
+    hf_refine_result result;
     double lower[MAX_VARIABLE], upper[MAX_VARIABLE], slope[2][MAX_VARIABLE], step = 1e-5;
     open_designs(&r, _i, 1e-4);
     double range_N = _i == HF_RULE_TENSION ? 0.02 : 1;
@@ -222,7 +222,7 @@ START_TEST(polished_design_has_no_coupled_slope_left)
     }
     for (int when = 0; when < 2; when++) {
         if (when)
-            ck_assert_int_eq(hf_polish_run(&r.evaluator, lower, upper, 300, NULL, r.initial, &r.net.work, &result),
+            ck_assert_int_eq(hf_refine_run(&r.evaluator, lower, upper, 300, NULL, r.initial, &r.net.work, &result),
                              HF_OK);
         for (int k = 0; k < n; k++) {
             double kept = r.initial[k], psi_m[2];
@@ -262,6 +262,6 @@ Suite *suite_unit_coupling_designs(void)
     tcase_add_test(tests, a_rigid_truss_changes_no_bit_of_a_design);
     tcase_add_test(tests, strangers_are_evaluated_alone);
     tcase_add_test(tests, sensitivities_are_finite_differences);
-    tcase_add_loop_test(tests, polished_design_has_no_coupled_slope_left, 0, 2);
+    tcase_add_loop_test(tests, refined_design_has_no_coupled_slope_left, 0, 2);
     return suite;
 }

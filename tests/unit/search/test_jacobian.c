@@ -2,7 +2,7 @@
 #include "support.h"
 
 #include "search/jacobian.h"
-#include "search/polish.h"
+#include "search/refine.h"
 #include <hifdm/problem.h>
 #include <stdlib.h>
 
@@ -103,7 +103,7 @@ START_TEST(derivatives_are_those_of_differences)
     struct rng rng = rng_start((uint64_t)_i);
     double slope[HF_DESIGN_ROWS_MAX + 1], figure[HF_DESIGN_ROWS_MAX + 1], largest[HF_DESIGN_ROWS_MAX + 1] = {0};
     open_problem(&p, _i);
-    ck_assert(hf_polish_applies(&p.evaluator));
+    ck_assert(hf_refine_applies(&p.evaluator));
     ck_assert_int_eq(hf_jacobian_create(&p.evaluator, &j), HF_OK);
     int n = p.model.n_variable, n_figure = p.goals.n_goal + 1;
     ck_assert_int_eq(j.n_figure, n_figure);

@@ -136,7 +136,7 @@ START_TEST(every_method_has_its_plan)
         const char *word;
         hf_optimize_method method;
         const hf_optimiser_kind *kind;
-        bool ends_with_polish;
+        bool ends_with_refine;
     } expected[] = {{"ga", HF_OPTIMIZE_GA, &hf_optimiser_ga, false},
                     {"lm", HF_OPTIMIZE_LM, NULL, true},
                     {"ga+lm", HF_OPTIMIZE_GA_LM, &hf_optimiser_ga, true}};
@@ -146,7 +146,7 @@ START_TEST(every_method_has_its_plan)
         hf_optimiser_plan plan = hf_optimiser_plan_of(&s);
         ck_assert_str_eq(hf_optimize_method_word[expected[i].method], expected[i].word);
         ck_assert(plan.kind == expected[i].kind);
-        ck_assert_int_eq(plan.ends_with_polish, expected[i].ends_with_polish);
+        ck_assert_int_eq(plan.ends_with_refine, expected[i].ends_with_refine);
         s.n_objective = 2;
         ck_assert(hf_optimiser_plan_of(&s).kind == (expected[i].kind ? &hf_optimiser_nsga : NULL));
     }

@@ -1,7 +1,7 @@
 /* What limits a step: rates by differences of shapes, and half-spaces whose edge is where the linear model says. */
 #include "nets.h"
 
-#include "search/polish_problem.h"
+#include "search/refine_problem.h"
 #include <hifdm/problem.h>
 
 enum { MAX_VARIABLE = 200, MAX_COLUMN = MAX_VARIABLE + 1 };
@@ -34,8 +34,8 @@ enum { N_KIND = sizeof kind / sizeof *kind };
 struct watched {
     hf_problem problem;
     double lower[MAX_VARIABLE], upper[MAX_VARIABLE];
-    hf_watch_trade trade;
-    hf_polish_problem polish;
+    hf_watch_front front;
+    hf_refine_problem refine;
     hf_arena arena;
 };
 
@@ -44,7 +44,7 @@ static void open_watched(struct watched *t, int i)
 {
     const char *const set[] = {kind[i].key, kind[i].goal, "optimize.method=lm", "surface.focal_length_m=15.95"};
     hf_messages messages = {0};
-    *t = (struct watched){.trade = {0, kind[i].most}};
+    *t = (struct watched){.front = {0, kind[i].most}};
     ck_assert_msg(hf_problem_open(source_path(kind[i].file), set, 4, 1, &t->problem, &messages) == HF_OK, "%s",
                   messages.text);
     hf_problem *p = &t->problem;
@@ -53,37 +53,37 @@ static void open_watched(struct watched *t, int i)
         t->lower[k] = p->initial[k] - 0.5;
         t->upper[k] = p->initial[k] + 0.5;
     }
-    hf_polish_problem *q = &t->polish;
-    *q = (hf_polish_problem){.v = p->evaluator,
+    hf_refine_problem *q = &t->refine;
+    *q = (hf_refine_problem){.v = p->evaluator,
                              .caller = &p->evaluator,
                              .lower = t->lower,
                              .upper = t->upper,
                              .w = &p->workspace,
-                             .trade = kind[i].most[0] > 0 ? &t->trade : NULL};
+                             .front = kind[i].most[0] > 0 ? &t->front : NULL};
     q->v.by_density = true;
     q->v.boundary_ratio_cap = INFINITY;
     q->v.limits = NULL;
-    ck_assert_int_eq(hf_polish_create(q, &t->arena), HF_OK);
-    hf_polish_begin(q, p->initial);
-    ck_assert_int_eq(hf_polish_evaluate(q, q->at), HF_OK);
-    ck_assert_int_eq(hf_polish_linearise(q), HF_OK);
+    ck_assert_int_eq(hf_refine_create(q, &t->arena), HF_OK);
+    hf_refine_begin(q, p->initial);
+    ck_assert_int_eq(hf_refine_evaluate(q, q->at), HF_OK);
+    ck_assert_int_eq(hf_refine_linearise(q), HF_OK);
 }
 
 static void close_watched(struct watched *t)
 {
-    hf_polish_destroy(&t->polish, &t->arena);
+    hf_refine_destroy(&t->refine, &t->arena);
     hf_problem_free(&t->problem);
 }
 
 /* A step of about this size, relative to the values of the variables. */
-static void draw_step(const hf_polish_problem *p, struct rng *rng, double size, double x[MAX_COLUMN])
+static void draw_step(const hf_refine_problem *p, struct rng *rng, double size, double x[MAX_COLUMN])
 {
     for (int j = 0; j < p->n; j++)
         x[j] = rng_uniform(rng, -size, size) * p->unit[j];
     x[p->n] = 0;
 }
 
-static bool worst_of(hf_polish_problem *p, const double *x, double worst, double normal[MAX_COLUMN],
+static bool worst_of(hf_refine_problem *p, const double *x, double worst, double normal[MAX_COLUMN],
                      hf_quadratic_limit *limit)
 {
     memset(normal, 0, MAX_COLUMN * sizeof *normal);
@@ -98,7 +98,7 @@ START_TEST(predictions_are_of_first_order)
     double x[MAX_COLUMN], off[2], unused[MAX_COLUMN];
     hf_quadratic_limit limit;
     open_watched(&t, _i);
-    hf_polish_problem *p = &t.polish;
+    hf_refine_problem *p = &t.refine;
     ck_assert_int_gt(p->watch.n, 0);
     for (int trial = 0; trial < 3; trial++) {
         for (int half = 0; half < 2; half++) {
@@ -106,7 +106,7 @@ START_TEST(predictions_are_of_first_order)
             draw_step(p, &rng, half ? 1e-4 : 2e-4, x);
             for (int j = 0; j < p->n; j++)
                 p->trial[j] = p->at[j] + x[j];
-            ck_assert_int_eq(hf_polish_evaluate(p, p->trial), HF_OK);
+            ck_assert_int_eq(hf_refine_evaluate(p, p->trial), HF_OK);
             hf_watch_keeps(&p->watch, p->w);
             worst_of(p, x, INFINITY, unused, &limit);
             off[half] = 0;
@@ -132,7 +132,7 @@ START_TEST(the_edge_of_a_limit_is_where_it_holds)
     hf_quadratic_limit limit, again;
     int n_violated = 0;
     open_watched(&t, _i);
-    hf_polish_problem *p = &t.polish;
+    hf_refine_problem *p = &t.refine;
     int n = p->n + p->has_corners;
     for (int trial = 0; trial < 40; trial++) {
         struct rng rng = rng_start(7200 + (uint64_t)trial);

@@ -138,7 +138,7 @@ START_TEST(goals_come_back)
     write_point(&s, 2, HF_OK, "", &(hf_summary){0}); /* no goals */
     hf_points points = read_points(&s);
     char *const *goals = points.point[1].field + hf_ledger_n_column(), name[HF_GOAL_NAME_SIZE];
-    const char *form = goals[0], *polish = goals[2];
+    const char *form = goals[0], *refine = goals[2];
     double value;
     ck_assert_str_eq(goals[1], ""); /* there was no such stage */
     ck_assert_str_eq(points.point[2].field[hf_ledger_n_column()], "");
@@ -146,9 +146,9 @@ START_TEST(goals_come_back)
     ck_assert(hf_ledger_next_value(0, &form, name, &value) && value == 0.1 + 0.2 &&
               !strcmp(name, "goal_1_tension_edge"));
     ck_assert(!hf_ledger_next_value(0, &form, name, &value));
-    ck_assert(hf_ledger_next_value(2, &polish, name, &value) && value == 5e-324);
-    ck_assert(hf_ledger_next_value(2, &polish, name, &value) && value == INFINITY);
-    ck_assert(!hf_ledger_next_value(2, &polish, name, &value));
+    ck_assert(hf_ledger_next_value(2, &refine, name, &value) && value == 5e-324);
+    ck_assert(hf_ledger_next_value(2, &refine, name, &value) && value == INFINITY);
+    ck_assert(!hf_ledger_next_value(2, &refine, name, &value));
     hf_points_free(&points);
     hf_study_free(&s);
 }

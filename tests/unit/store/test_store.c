@@ -296,13 +296,13 @@ START_TEST(shapes_come_back_in_the_order_of_the_scene)
     net.work.q_N_per_m[3] *= 2; /* another shape */
     hf_form_find(m, &net.form, net.form.stop, &net.work, NULL, &net.result);
     net.work.law[2] = HF_LAW_FORCE_DENSITY;
-    ck_assert_int_eq(hf_store_best(store, HF_STAGE_OPTIMIZE, m, &net.work, design, &messages), HF_OK);
+    ck_assert_int_eq(hf_store_shape(store, HF_STAGE_SEARCH, m, &net.work, design, &messages), HF_OK);
     end(store, &(hf_summary){0});
 
     ck_assert_int_eq(hf_store_read_shape(temp_path("a.h5"), HF_STAGE_FORM, &shape, &messages), HF_OK);
     ck_assert_double_eq(shape.position_m[3 * 12 + 2], first_m);
     hf_shape_free(&shape);
-    ck_assert_int_eq(hf_store_read_shape(temp_path("a.h5"), HF_STAGE_OPTIMIZE, &shape, &messages), HF_OK);
+    ck_assert_int_eq(hf_store_read_shape(temp_path("a.h5"), HF_STAGE_SEARCH, &shape, &messages), HF_OK);
     for (int i = 0; i < 3 * m->n_node; i++)
         ck_assert_double_eq(shape.position_m[i], found_m(&net, i / 3, i % 3));
     ck_assert_mem_eq(shape.length_m, net.work.length_m, (size_t)m->n_cable * sizeof(double));
@@ -362,7 +362,7 @@ START_TEST(a_run_without_a_best_says_so)
     hf_shape shape;
     open_bow(&net);
     end(begin(temp_path("a.h5"), 1, &net.scene), &(hf_summary){0});
-    ck_assert_int_eq(hf_store_read_shape(temp_path("a.h5"), HF_STAGE_OPTIMIZE, &shape, &messages), HF_IO);
+    ck_assert_int_eq(hf_store_read_shape(temp_path("a.h5"), HF_STAGE_SEARCH, &shape, &messages), HF_IO);
     ck_assert_ptr_nonnull(strstr(messages.text, "has no optimize shape"));
     hf_messages_free(&messages);
     close_net(&net);

@@ -22,7 +22,7 @@ static void resume(const char *path, struct run *r, hf_store **s, hf_messages *m
     hf_summary summary = {0};
     ck_assert_int_eq(hf_store_resume(path, s, messages), HF_OK);
     ck_assert_int_eq(hf_store_generations(*s), 4);
-    ck_assert_int_eq(hf_store_restore_base(*s, N_VARIABLE, r->initial, messages), HF_OK);
+    ck_assert_int_eq(hf_store_restore_initial(*s, N_VARIABLE, r->initial, messages), HF_OK);
     hf_optimiser_free(&r->ga);
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &r->model, r->initial, &r->ga), HF_OK);
     ck_assert_int_eq(hf_store_restore(*s, &r->ga, &summary, messages), HF_OK);
@@ -191,7 +191,7 @@ START_TEST(a_damaged_file_is_refused)
     python("a", path, spoilt[_i].deed);
     open_run(&r);
     hf_status status = hf_store_resume(path, &s, &messages);
-    if (status == HF_OK) status = hf_store_restore_base(s, N_VARIABLE, r.initial, &messages);
+    if (status == HF_OK) status = hf_store_restore_initial(s, N_VARIABLE, r.initial, &messages);
     if (status == HF_OK) status = hf_store_restore(s, &r.ga, &summary, &messages);
     ck_assert_int_eq(status, HF_EXISTS); /* in the way, also of the next attempt */
     ck_assert_msg(strstr(messages.text, path) && strstr(messages.text, spoilt[_i].why), "%s", messages.text);
@@ -217,7 +217,7 @@ START_TEST(without_memory_nothing_is_restored)
         open_run(&r);
         fail_allocation_at(n);
         hf_status status = hf_store_resume(path, &s, &messages);
-        if (status == HF_OK) status = hf_store_restore_base(s, N_VARIABLE, r.initial, &messages);
+        if (status == HF_OK) status = hf_store_restore_initial(s, N_VARIABLE, r.initial, &messages);
         if (status == HF_OK) status = hf_store_restore(s, &r.ga, &summary, &messages);
         bool has_failed = end_allocation_failure();
         ck_assert_msg(status == (has_failed ? HF_NO_MEMORY : HF_OK), "allocation %ld: %d: %s", n, status,

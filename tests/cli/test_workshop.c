@@ -17,7 +17,7 @@ static void demand_vtk(const char *result, const char *folder, const char *stage
 {
     const char *const argv[] = {python_program(), source_path("tests/cli/vtk_reads.py"), result, folder, NULL};
     demand_exit(run_command(HANG_S, argv), 0, "vtk_reads.py", __LINE__);
-    if (strstr(said.out, "no VTK here")) skip_for_tool("cli/trade: files read by VTK", "no Python module vtk");
+    if (strstr(said.out, "no VTK here")) skip_for_tool("cli/workshop: files read by VTK", "no Python module vtk");
     OUT(stages);
 }
 
@@ -59,7 +59,7 @@ START_TEST(paraview_opens_the_result)
     HIFDM(0, "run", of[0] ? keep(source_path(of[0])) : samples, "-o", out, "--quiet", "--set", of[1], "--set", of[2]);
     const char *const argv[] = {python_program(), source_path("tests/cli/vtk_reads.py"), out, NULL};
     demand_exit(run_command(HANG_S, argv), 0, "vtk_reads.py", __LINE__);
-    if (strstr(said.out, "no VTK here")) skip_for_tool("cli/trade: results read by VTK", "no Python module vtk");
+    if (strstr(said.out, "no VTK here")) skip_for_tool("cli/workshop: results read by VTK", "no Python module vtk");
     OUT(of[3]);
     HIFDM(0, "show", out);
 }
@@ -401,9 +401,9 @@ START_TEST(surface_is_measured_only_when_asked_for)
 }
 END_TEST
 
-Suite *suite_cli_trade(void)
+Suite *suite_cli_workshop(void)
 {
-    Suite *suite = suite_create("cli/trade");
+    Suite *suite = suite_create("cli/workshop");
     TCase *tests = tcase_create("trade");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, paraview_files_hold_the_stored_numbers);

@@ -1,6 +1,6 @@
-/* Determines whether Levenberg-Marquardt applies to an evaluator, and what it costs. polish.h describes the
+/* Determines whether Levenberg-Marquardt applies to an evaluator, and what it costs. refine.h describes the
  * interface. */
-#include "search/polish.h"
+#include "search/refine.h"
 
 #include <math.h>
 
@@ -12,7 +12,7 @@
 #define CHORD_STEPS 4
 #define UNNOTICED 2e8
 
-bool hf_polish_applies(const hf_evaluator *v)
+bool hf_refine_applies(const hf_evaluator *v)
 {
     for (int k = 0; k < v->model->n_variable; k++)
         if (hf_evaluate_sets(v, k) == HF_SETS_START) return false;
@@ -39,13 +39,13 @@ static double count_step(const hf_evaluator *v, double *evaluation_of_ga)
     return step;
 }
 
-double hf_polish_operations(const hf_evaluator *v)
+double hf_refine_operations(const hf_evaluator *v)
 {
     double evaluation;
     return count_step(v, &evaluation);
 }
 
-bool hf_polish_is_cheap(const hf_evaluator *v, long n_evaluation)
+bool hf_refine_is_cheap(const hf_evaluator *v, long n_evaluation)
 {
     double evaluation, step = count_step(v, &evaluation);
     return STEPS_EXPECTED * step <= fmax(UNNOTICED, (double)n_evaluation * evaluation / 10);

@@ -1,11 +1,11 @@
-/* polish_problem - sets up the problem that Levenberg-Marquardt solves: the variables and their bounds, the shape of
- * the last design and its derivatives. polish.c takes the steps. */
-#ifndef HIFDM_POLISH_PROBLEM_H
-#define HIFDM_POLISH_PROBLEM_H
+/* refine_problem - sets up the problem that Levenberg-Marquardt solves: the variables and their bounds, the shape of
+ * the last design and its derivatives. refine.c takes the steps. */
+#ifndef HIFDM_REFINE_PROBLEM_H
+#define HIFDM_REFINE_PROBLEM_H
 
 #include "base/arena.h"
 #include "linalg/quadratic.h"
-#include "search/polish.h"
+#include "search/refine.h"
 #include "search/residuals.h"
 #include "search/watch.h"
 
@@ -21,8 +21,8 @@ typedef struct {
     hf_residuals residuals;
     hf_watch watch;
     hf_quadratic step;
-    const hf_watch_trade *trade;      /* the objective to minimise and the limits on the others, or NULL */
-    const hf_polish_watcher *watcher; /* NULL: no watcher */
+    const hf_watch_front *front;      /* the objective to minimise and the limits on the others, or NULL */
+    const hf_refine_watcher *watcher; /* NULL: no watcher */
     hf_status told;                   /* the last status of the watcher */
     int first_row, n_row;             /* residuals to minimise */
     bool has_corners;                 /* true if the minimised objective has corners: a step then has its level, too */
@@ -54,39 +54,39 @@ typedef struct {
     int settled_steps;                   /* steps since the merit or an objective last changed noticeably */
     double settled_merit, settled_goal[HF_DESIGN_ROWS_MAX]; /* merit and objectives at that change */
     size_t n_state;
-    double *state; /* [n_state], the state of the run for hf_polish_watcher */
+    double *state; /* [n_state], the state of the run for hf_refine_watcher */
     double noise;  /* part of the merit that the tolerance of the form-finding leaves open */
-} hf_polish_problem;
+} hf_refine_problem;
 
-/* Allocates the problem, in which the caller has set v, caller, lower, upper, w and trade. Returns HF_OK or
- * HF_NO_MEMORY; call hf_polish_destroy in either case. */
-hf_status hf_polish_create(hf_polish_problem *problem, hf_arena *arena);
-void hf_polish_destroy(hf_polish_problem *problem, hf_arena *arena);
+/* Allocates the problem, in which the caller has set v, caller, lower, upper, w and front. Returns HF_OK or
+ * HF_NO_MEMORY; call hf_refine_destroy in either case. */
+hf_status hf_refine_create(hf_refine_problem *problem, hf_arena *arena);
+void hf_refine_destroy(hf_refine_problem *problem, hf_arena *arena);
 
 /* Begins at the design [n_variable] whose shape is in the workspace. */
-void hf_polish_begin(hf_polish_problem *problem, const double *design);
+void hf_refine_begin(hf_refine_problem *problem, const double *design);
 
 /* Returns true if design variable k sets a tension for the caller, and therefore a force density here. */
-bool hf_polish_is_tension(const hf_polish_problem *problem, int k);
+bool hf_refine_is_tension(const hf_refine_problem *problem, int k);
 
 /* Returns the merit of a result, or for a point of a front the value of the minimised objective (of a ratio its
  * logarithm). */
-double hf_polish_merit(const hf_polish_problem *problem, const hf_form_result *result);
+double hf_refine_merit(const hf_refine_problem *problem, const hf_form_result *result);
 
 /* Evaluates the design at these steps [n] from `start`; its shape is in the workspace afterwards. Returns the status of
  * hf_evaluate. */
-hf_status hf_polish_evaluate(hf_polish_problem *problem, const double *step);
+hf_status hf_refine_evaluate(hf_refine_problem *problem, const double *step);
 
 /* Makes `trial`, whose shape is in the workspace, the best design. */
-void hf_polish_keep(hf_polish_problem *problem);
+void hf_refine_keep(hf_refine_problem *problem);
 
 /* Computes the residuals, J', J'J, the gradient, and the limits with their rates at the shape in the workspace. Returns
  * HF_OK or the status of the failure. */
-hf_status hf_polish_linearise(hf_polish_problem *problem);
+hf_status hf_refine_linearise(hf_refine_problem *problem);
 
-/* Writes the state between two iterations into `state`. hf_polish_go_on resumes from a state, after hf_polish_begin of
+/* Writes the state between two iterations into `state`. hf_refine_resume resumes from a state, after hf_refine_begin of
  * the same design, with the same bits. It returns false and changes nothing if the state belongs to another problem. */
-void hf_polish_pack(hf_polish_problem *problem, const hf_polish_result *result);
-bool hf_polish_go_on(hf_polish_problem *problem, size_t n_state, const double *state, hf_polish_result *result);
+void hf_refine_pack(hf_refine_problem *problem, const hf_refine_result *result);
+bool hf_refine_resume(hf_refine_problem *problem, size_t n_state, const double *state, hf_refine_result *result);
 
 #endif

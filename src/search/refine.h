@@ -1,4 +1,4 @@
-/* polish - refines a design by Levenberg-Marquardt, with exact sensitivities and within limits (METHOD section 7). It
+/* refine - refines a design by Levenberg-Marquardt, with exact sensitivities and within limits (METHOD section 7). It
  * shows how far a design of the genetic algorithm is from an optimum, and can improve it.
  *
  * Each step is the minimum of the damped quadratic model of merit^2 within linear limits. The limits are the bounds,
@@ -7,8 +7,8 @@
  *
  * An objective with corners is the maximum of several sizes, such as forces on supports, or a ratio of tensions. It has
  * no derivative where two sizes are equal. */
-#ifndef HIFDM_POLISH_H
-#define HIFDM_POLISH_H
+#ifndef HIFDM_REFINE_H
+#define HIFDM_REFINE_H
 
 #include "search/watch.h"
 #include <hifdm/optimiser.h>
@@ -16,17 +16,17 @@
 
 typedef struct {
     int iterations, evaluations;
-    /* The merits of start and result: psi (m) if there are no objectives. In hf_polish_run, start_merit is NaN if the
+    /* The merits of start and result: psi (m) if there are no objectives. In hf_refine_run, start_merit is NaN if the
      * start is infeasible. */
     double start_merit, merit;
-    hf_polish_stop stop;
+    hf_refine_stop stop;
     int n_at_lower, n_at_upper; /* design variables at their lower and upper bounds */
     int n_at_limit;             /* cables and attachments at limits of optimize.limits; a ratio counts once */
     bool is_at_cap;             /* the design is at the cap on the boundary tension ratio */
-    /* Set by hf_polish_trade: the decrease of the minimised objective per unit of the limit on each other objective, in
+    /* Set by hf_refine_front: the decrease of the minimised objective per unit of the limit on each other objective, in
      * their units, to first order. It is NaN for the minimised objective, and where it is not known. */
     double multiplier[HF_DESIGN_ROWS_MAX];
-} hf_polish_result;
+} hf_refine_result;
 
 /* The state of a run between two iterations. */
 typedef struct {
@@ -35,43 +35,43 @@ typedef struct {
     double merit, psi_m; /* values of the best design so far, or of the nearest one while none is feasible */
     size_t n_state;
     const double *state; /* [n_state], to resume the run with the same bits; NULL for a point of a front */
-} hf_polish_progress;
+} hf_refine_progress;
 
 typedef struct {
     /* Called before the first iteration and after each iteration, in the thread of the run. If it returns anything but
      * HF_OK, the run ends with that status. */
-    hf_status (*after)(void *context, const hf_polish_progress *now);
+    hf_status (*after)(void *context, const hf_refine_progress *now);
     void *context;
     size_t n_state;
     const double *state; /* state of an earlier run with the same arguments, ignored if it does not fit; NULL: none */
-} hf_polish_watcher;
+} hf_refine_watcher;
 
 /* Returns true if designs of this evaluator can be refined. The net must have a Newton matrix, there must be design
  * variables, the rule must not be `seeded`, and no objective may be a quantile. */
-bool hf_polish_applies(const hf_evaluator *evaluator);
+bool hf_refine_applies(const hf_evaluator *evaluator);
 
 /* Returns the counted floating-point operations of one step. A core performs about 2e9 of them per second. */
-double hf_polish_operations(const hf_evaluator *evaluator);
+double hf_refine_operations(const hf_evaluator *evaluator);
 
 /* Returns true if a run from a design of the genetic algorithm is cheap. It then takes at most a tenth of the
  * operations of the n_evaluation evaluations, or too few to be noticed. The operations are counted, so the result does
  * not depend on the machine. */
-bool hf_polish_is_cheap(const hf_evaluator *evaluator, long n_evaluation);
+bool hf_refine_is_cheap(const hf_evaluator *evaluator, long n_evaluation);
 
 /* Refines the design [n_variable], which has a shape and is within lower and upper [n_variable]. It is replaced by the
  * best design found, which is feasible and never worse. A start outside the limits is first moved into them. Linked
  * design variables keep their differences. watcher: NULL for none. workspace is scratch. Returns HF_OK, HF_NO_MEMORY,
  * HF_INTERRUPTED, the status that the watcher returned, or the status of the start if no feasible design was found. */
-hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                        const hf_polish_watcher *watcher, double *design, hf_workspace *workspace,
-                        hf_polish_result *result);
+hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
+                        const hf_refine_watcher *watcher, double *design, hf_workspace *workspace,
+                        hf_refine_result *result);
 
-/* Finds a point of a Pareto front: minimises one objective of the evaluator, `trade->least`, under limits on the
+/* Finds a point of a Pareto front: minimises one objective of the evaluator, `front->least`, under limits on the
  * others. All merits are values of this objective; for a ratio, they are its logarithm. The minimum of an objective
- * with corners is a point at which no linear model of its sizes promises a lower value. Otherwise like hf_polish_run;
+ * with corners is a point at which no linear model of its sizes promises a lower value. Otherwise like hf_refine_run;
  * returns HF_OUT_OF_LIMITS if the limits on objectives cannot be met. */
-hf_status hf_polish_trade(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                          const hf_watch_trade *trade, const hf_polish_watcher *watcher, double *design,
-                          hf_workspace *workspace, hf_polish_result *result);
+hf_status hf_refine_front(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
+                          const hf_watch_front *front, const hf_refine_watcher *watcher, double *design,
+                          hf_workspace *workspace, hf_refine_result *result);
 
 #endif

@@ -3,8 +3,8 @@
 #include "nets.h"
 
 #include "net/variables.h"
-#include "search/polish.h"
-#include "search/trade.h"
+#include "search/refine.h"
+#include "search/front_refine.h"
 #include <hifdm/problem.h>
 
 enum { MAX_CABLE = 8, MAX_VARIABLE = 4, MAX_VARIABLE_OF_CASE = 200 };
@@ -19,16 +19,16 @@ struct traded {
 };
 
 /* The same search again. */
-static hf_trade trade_of(const struct traded *t, int n_point)
+static hf_front_refine trade_of(const struct traded *t, int n_point)
 {
-    return (hf_trade){.evaluator = &t->evaluator,
-                      .lower = t->lower,
-                      .upper = t->upper,
-                      .n_point = n_point,
-                      .max_iterations = 200,
-                      .n_thread = 1,
-                      .n_start = 1,
-                      .start = t->base};
+    return (hf_front_refine){.evaluator = &t->evaluator,
+                             .lower = t->lower,
+                             .upper = t->upper,
+                             .n_point = n_point,
+                             .max_iterations = 200,
+                             .n_thread = 1,
+                             .n_start = 1,
+                             .start = t->base};
 }
 
 /* Follow the front of the objectives; the cables of a set vary their force densities between these bounds. */
@@ -64,9 +64,9 @@ static void follow(struct traded *t, int n_objective, const hf_goal_settings *ob
                                   .solver = HF_SOLVER_NEWTON,
                                   .boundary_ratio_cap = INFINITY,
                                   .goals = &t->goals};
-    const hf_trade trade = trade_of(t, n_point);
-    ck_assert(hf_trade_applies(&t->evaluator));
-    ck_assert_int_eq(hf_trade_find(&trade, &t->front, &failed_end), HF_OK);
+    const hf_front_refine trade = trade_of(t, n_point);
+    ck_assert(hf_front_refine_applies(&t->evaluator));
+    ck_assert_int_eq(hf_front_refine_find(&trade, &t->front, &failed_end), HF_OK);
 }
 
 static void close_traded(struct traded *t)
@@ -274,14 +274,14 @@ END_TEST
 /* What one step from a start makes of objective k alone. */
 static double after_a_step(struct traded *t, const double *start, int k)
 {
-    const hf_watch_trade alone = {k, (const double[]){INFINITY, INFINITY, INFINITY}};
+    const hf_watch_front alone = {k, (const double[]){INFINITY, INFINITY, INFINITY}};
     double design[2] = {start[0], start[1]};
-    hf_polish_result polished;
+    hf_refine_result refined;
     hf_form_result r;
     hf_workspace *w = &t->net.work;
-    hf_status status = hf_polish_trade(&t->evaluator, t->lower, t->upper, 1, &alone, NULL, design, w, &polished);
+    hf_status status = hf_refine_front(&t->evaluator, t->lower, t->upper, 1, &alone, NULL, design, w, &refined);
     ck_assert_int_eq(status, HF_OK);
-    ck_assert_int_ne(polished.stop, HF_POLISH_CONVERGED);
+    ck_assert_int_ne(refined.stop, HF_REFINE_CONVERGED);
     ck_assert_int_eq(hf_evaluate(&t->evaluator, design, w, &r), HF_OK);
     return r.goal[k];
 }
@@ -299,7 +299,7 @@ START_TEST(a_search_that_does_not_end_is_tried_from_another_start)
         double start[4];
         hf_form_result at[2];
         hf_front front;
-        hf_trade trade = trade_of(&t, 4);
+        hf_front_refine trade = trade_of(&t, 4);
         trade.max_iterations = 1;
         trade.n_start = 2;
         trade.start = start;
@@ -307,7 +307,7 @@ START_TEST(a_search_that_does_not_end_is_tried_from_another_start)
             start[i] = rng_uniform(&rng, 1, MOST_Q);
         for (int i = 0; i < 2; i++)
             ck_assert_int_eq(hf_evaluate(&t.evaluator, start + 2 * i, &t.net.work, &at[i]), HF_OK);
-        ck_assert_int_eq(hf_trade_find(&trade, &front, &failed_end), HF_OK);
+        ck_assert_int_eq(hf_front_refine_find(&trade, &front, &failed_end), HF_OK);
         for (int k = 0; k < 3; k++) {
             int l = (k + 1) % 3, first = at[1].goal[k] < at[0].goal[k], second = at[1].goal[l] < at[0].goal[l];
             double by_first = after_a_step(&t, start + 2 * first, k),
@@ -364,11 +364,11 @@ START_TEST(without_memory_there_is_no_front)
         open_triangle(&t, n_point);
     else
         open_line(&t, n_point);
-    const hf_trade trade = trade_of(&t, n_point);
+    const hf_front_refine trade = trade_of(&t, n_point);
     for (bool has_failed = true; has_failed;) {
         hf_front front;
         fail_allocation_at(n_failed + 1);
-        hf_status status = hf_trade_find(&trade, &front, &failed_end);
+        hf_status status = hf_front_refine_find(&trade, &front, &failed_end);
         has_failed = end_allocation_failure();
         ck_assert_int_eq(status, has_failed ? HF_NO_MEMORY : HF_OK);
         if (has_failed)
@@ -411,19 +411,19 @@ static void note_points(void *told, int n_point, long n_step)
 static void follow_problem(hf_problem *p, int n_point, int n_thread, hf_front *front)
 {
     int told = 0;
-    hf_trade_watcher watcher = {.tell = note_points, .context = &told, .is_telling = ATOMIC_FLAG_INIT};
+    hf_front_refine_watcher watcher = {.tell = note_points, .context = &told, .is_telling = ATOMIC_FLAG_INIT};
     double lower[MAX_VARIABLE_OF_CASE], upper[MAX_VARIABLE_OF_CASE];
     bound(p, lower, upper);
-    const hf_trade trade = {.evaluator = &p->evaluator,
-                            .lower = lower,
-                            .upper = upper,
-                            .n_point = n_point,
-                            .max_iterations = 200,
-                            .n_thread = n_thread,
-                            .n_start = 1,
-                            .start = p->initial,
-                            .watcher = &watcher};
-    ck_assert_int_eq(hf_trade_find(&trade, front, &failed_end), HF_OK);
+    const hf_front_refine trade = {.evaluator = &p->evaluator,
+                                   .lower = lower,
+                                   .upper = upper,
+                                   .n_point = n_point,
+                                   .max_iterations = 200,
+                                   .n_thread = n_thread,
+                                   .n_start = 1,
+                                   .start = p->initial,
+                                   .watcher = &watcher};
+    ck_assert_int_eq(hf_front_refine_find(&trade, front, &failed_end), HF_OK);
     ck_assert(watcher.n_point == front->n_point && told > front->n_point / 2);
 }
 
@@ -432,10 +432,10 @@ static double least_beside(hf_problem *p, const double most[HF_OBJECTIVES_MAX], 
 {
     double design[MAX_VARIABLE_OF_CASE], lower[MAX_VARIABLE_OF_CASE], upper[MAX_VARIABLE_OF_CASE];
     bound(p, lower, upper);
-    const hf_watch_trade trade = {0, most};
-    hf_polish_result r;
+    const hf_watch_front trade = {0, most};
+    hf_refine_result r;
     memcpy(design, from, (size_t)p->model.n_variable * sizeof *design);
-    ck_assert_int_eq(hf_polish_trade(&p->evaluator, lower, upper, 200, &trade, NULL, design, &p->workspace, &r), HF_OK);
+    ck_assert_int_eq(hf_refine_front(&p->evaluator, lower, upper, 200, &trade, NULL, design, &p->workspace, &r), HF_OK);
     return r.merit;
 }
 
@@ -561,23 +561,23 @@ START_TEST(a_stop_ends_the_search)
     hf_problem p;
     hf_front front;
     open_chen(&p, traded[0]);
-    const hf_trade trade = {.evaluator = &p.evaluator,
-                            .lower = p.initial,
-                            .upper = p.initial,
-                            .n_point = 5,
-                            .max_iterations = 200,
-                            .n_thread = 2,
-                            .n_start = 1,
-                            .start = p.initial,
-                            .stop = &stop};
-    ck_assert_int_eq(hf_trade_find(&trade, &front, &failed_end), HF_INTERRUPTED);
+    const hf_front_refine trade = {.evaluator = &p.evaluator,
+                                   .lower = p.initial,
+                                   .upper = p.initial,
+                                   .n_point = 5,
+                                   .max_iterations = 200,
+                                   .n_thread = 2,
+                                   .n_start = 1,
+                                   .start = p.initial,
+                                   .stop = &stop};
+    ck_assert_int_eq(hf_front_refine_find(&trade, &front, &failed_end), HF_INTERRUPTED);
     ck_assert_int_eq(front.n_point, 0);
     hf_front_free(&front);
     hf_problem_free(&p);
 }
 END_TEST
 
-Suite *suite_unit_trade(void)
+Suite *suite_unit_front_refine(void)
 {
     Suite *suite = suite_create("unit/trade");
     TCase *tests = tcase_create("trade");

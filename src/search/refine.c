@@ -1,4 +1,4 @@
-/* Implements Levenberg-Marquardt with linear limits on each step. polish.h describes the interface, polish_problem.c
+/* Implements Levenberg-Marquardt with linear limits on each step. refine.h describes the interface, refine_problem.c
  * the variables and derivatives, watch.c the limits on tensions, deflections and objectives.
  *
  *     design -> evaluate -> linearise: residuals f, J'J, J'f, limits
@@ -10,10 +10,10 @@
  *
  * A start outside the limits is first moved into them (enter).
  * Contents: one step - the run */
-#include "search/polish.h"
+#include "search/refine.h"
 
 #include "linalg/dot.h"
-#include "search/polish_problem.h"
+#include "search/refine_problem.h"
 #include "solve/limits.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@
 
 /* Brackets contain the range in which no test of this module and of cli/limits fails, as far as it was tried. */
 #define GAIN_CONVERGED 1e-12  /* converged: a step promises less than this part of merit^2 [1e-15 to 1e-8] */
-#define TRADE_CONVERGED 1e-20 /* converged, for a point of a front: its multipliers must be accurate */
+#define FRONT_CONVERGED 1e-20 /* converged, for a point of a front: its multipliers must be accurate */
 #define DAMPING_FIRST 1e-3    /* first damping, relative to the squared columns of J [1e-6 to 1] */
 /* The multipliers are found with this damping, which is nearly none. */
 #define DAMPING_OF_MULTIPLIERS 1e-9
@@ -52,7 +52,7 @@
  * rounding. */
 static bool worst_limit(void *context, const double *x, hf_quadratic_limit *limit)
 {
-    hf_polish_problem *p = context;
+    hf_refine_problem *p = context;
     double worst = LIMIT_ROUNDING, sign = 0;
     int only = -1;
     for (int i = 0; i < p->n; i++) {
@@ -71,8 +71,8 @@ static bool worst_limit(void *context, const double *x, hf_quadratic_limit *limi
     return true;
 }
 
-/* Adds the level of an objective with corners (polish.h) as the last variable of a step: level^2/2 is minimised. */
-static void begin_level(hf_polish_problem *p)
+/* Adds the level of an objective with corners (refine.h) as the last variable of a step: level^2/2 is minimised. */
+static void begin_level(hf_refine_problem *p)
 {
     int n = p->n, n_step = p->step.n;
     memset(p->hessian + n * n_step, 0, (size_t)n * sizeof(double));
@@ -83,16 +83,16 @@ static void begin_level(hf_polish_problem *p)
 }
 
 /* Evaluates the design at the end of the step, which becomes `trial`. Returns the status of hf_evaluate. */
-static hf_status take_step(hf_polish_problem *p)
+static hf_status take_step(hf_refine_problem *p)
 {
     for (int r = 0; r < p->n; r++)
         p->trial[r] = fmax(p->low[r], fmin(p->high[r], p->at[r] + p->step.x[r]));
-    return hf_polish_evaluate(p, p->trial);
+    return hf_refine_evaluate(p, p->trial);
 }
 
 /* Returns the scale by which variable r is damped: the norm of its column of J, or the maximum scale if that norm is
  * nearly 0. Without damping of such a variable, the minimum of the model would not be unique. */
-static double damped_scale(const hf_polish_problem *p, int r)
+static double damped_scale(const hf_refine_problem *p, int r)
 {
     if (p->scale[r] > SCALE_LEAST * p->largest_scale) return p->scale[r];
     return p->largest_scale > 0 ? p->largest_scale : 1;
@@ -100,7 +100,7 @@ static double damped_scale(const hf_polish_problem *p, int r)
 
 /* Finds step.x, the minimum of the model |f + J x|^2/2 + damping |scale x|^2/2 within the limits. *gain receives the
  * decrease of merit^2/2 that the model promises. Returns the status of hf_quadratic_solve. */
-static hf_status solve_step(hf_polish_problem *p, double damping, double *gain)
+static hf_status solve_step(hf_refine_problem *p, double damping, double *gain)
 {
     const double *x = p->step.x;
     int n = p->n, n_step = p->step.n;
@@ -125,7 +125,7 @@ static hf_status solve_step(hf_polish_problem *p, double damping, double *gain)
 /* Solves a step and evaluates its end. Tensions are not linear in the variables, so the step may break a limit on them.
  * It is then solved again with the tensions that were found at its end. Returns HF_OK, HF_RATIO_CAP if a limit is still
  * broken after CORRECTIONS_MAX corrections, or the status of the failure. */
-static hf_status try_step(hf_polish_problem *p, double damping, double *gain)
+static hf_status try_step(hf_refine_problem *p, double damping, double *gain)
 {
     hf_watch_forget(&p->watch);
     for (int again = 0; again <= CORRECTIONS_MAX; again++) {
@@ -140,7 +140,7 @@ static hf_status try_step(hf_polish_problem *p, double damping, double *gain)
 
 /* Computes `pull` = J'(f(x) - J x), where x is the step taken and f(x) are the residuals found at its end. It is the
  * gradient at a step of zero of the linear model that has these residuals at x. */
-static void find_pull(hf_polish_problem *p)
+static void find_pull(hf_refine_problem *p)
 {
     const double *x = p->step_taken;
     size_t n_row = (size_t)p->residuals.n_row;
@@ -158,7 +158,7 @@ static void find_pull(hf_polish_problem *p)
  * residuals found there, the same matrices lead back to the floor. This is repeated as long as it at least halves the
  * merit (BEND_WORTH). `before` is merit^2/2 before the step, `gain` its promised decrease. `trial` and the shape in the
  * workspace become the best ones. Returns HF_OK, HF_NO_MEMORY, HF_INTERRUPTED or the status of the last evaluation. */
-static hf_status bend_step(hf_polish_problem *p, double before, double gain)
+static hf_status bend_step(hf_refine_problem *p, double before, double gain)
 {
     size_t size = (size_t)p->n * sizeof(double);
     for (int again = 0; again < BENDS_MAX; again++) {
@@ -182,19 +182,19 @@ static hf_status bend_step(hf_polish_problem *p, double before, double gain)
 /* ---- the run ---- */
 
 /* Calls the watcher between two iterations, if there is one. Returns its status. */
-static hf_status tell_watcher(hf_polish_problem *p, const hf_polish_result *r, int max_iterations)
+static hf_status tell_watcher(hf_refine_problem *p, const hf_refine_result *r, int max_iterations)
 {
-    const hf_polish_watcher *watcher = p->watcher;
+    const hf_refine_watcher *watcher = p->watcher;
     if (!watcher || !watcher->after) return HF_OK;
-    if (!p->trade) hf_polish_pack(p, r);
-    const hf_polish_progress now = {.iterations = r->iterations,
+    if (!p->front) hf_refine_pack(p, r);
+    const hf_refine_progress now = {.iterations = r->iterations,
                                     .max_iterations = max_iterations,
                                     .evaluations = p->evaluations,
-                                    .is_last = r->stop != HF_POLISH_MAX_ITERATIONS || r->iterations == max_iterations,
+                                    .is_last = r->stop != HF_REFINE_MAX_ITERATIONS || r->iterations == max_iterations,
                                     .merit = r->merit,
                                     .psi_m = p->best_psi_m,
-                                    .n_state = p->trade ? 0 : p->n_state,
-                                    .state = p->trade ? NULL : p->state};
+                                    .n_state = p->front ? 0 : p->n_state,
+                                    .state = p->front ? NULL : p->state};
     return p->told = watcher->after(watcher->context, &now);
 }
 
@@ -203,7 +203,7 @@ static hf_status tell_watcher(hf_polish_problem *p, const hf_polish_result *r, i
  * a curved limit, the part of a step that lowers the merit leads away from the limit. If small parts of the way do not
  * succeed, more damping therefore reduces that part of the step. Returns HF_OK, also if it stays outside, or the status
  * of the failure. */
-static hf_status enter(hf_polish_problem *p, int max_iterations, hf_polish_result *r)
+static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_result *r)
 {
     double gain;
     hf_watch_forget(&p->watch);
@@ -223,11 +223,11 @@ static hf_status enter(hf_polish_problem *p, int max_iterations, hf_polish_resul
         p->way = is_nearer ? fmin(1, 2 * p->way) : p->way / 2;
         if (is_nearer) {
             p->violation = after;
-            hf_polish_keep(p);
+            hf_refine_keep(p);
             p->is_outside = !is_inside;
             if (is_inside) p->damping = DAMPING_FIRST;
-            r->merit = hf_polish_merit(p, &p->result);
-            HF_TRY(hf_polish_linearise(p));
+            r->merit = hf_refine_merit(p, &p->result);
+            HF_TRY(hf_refine_linearise(p));
         }
         HF_TRY(tell_watcher(p, r, max_iterations));
     }
@@ -235,7 +235,7 @@ static hf_status enter(hf_polish_problem *p, int max_iterations, hf_polish_resul
 }
 
 /* Stores the multipliers of the last step for each objective. */
-static void learn_pressure(hf_polish_problem *p)
+static void learn_pressure(hf_refine_problem *p)
 {
     int goal;
     memset(p->pressure, 0, sizeof p->pressure);
@@ -247,7 +247,7 @@ static void learn_pressure(hf_polish_problem *p)
     }
 }
 
-static void forget_multipliers(hf_polish_result *r)
+static void forget_multipliers(hf_refine_result *r)
 {
     for (int k = 0; k < HF_DESIGN_ROWS_MAX; k++)
         r->multiplier[k] = NAN;
@@ -255,30 +255,30 @@ static void forget_multipliers(hf_polish_result *r)
 
 /* Computes the multipliers of the linear model at the best design, nearly without damping. They are NaN if the model
  * has no solution. Returns HF_OK, HF_NO_MEMORY or HF_INTERRUPTED. */
-static hf_status find_multipliers(hf_polish_problem *p, hf_polish_result *r)
+static hf_status find_multipliers(hf_refine_problem *p, hf_refine_result *r)
 {
     double gain, merit;
     forget_multipliers(r);
-    hf_status status = hf_polish_evaluate(p, p->at);
-    if (status == HF_OK) status = hf_polish_linearise(p);
+    hf_status status = hf_refine_evaluate(p, p->at);
+    if (status == HF_OK) status = hf_refine_linearise(p);
     hf_watch_forget(&p->watch);
     if (status == HF_OK) status = solve_step(p, DAMPING_OF_MULTIPLIERS, &gain);
     if (status != HF_OK) return status == HF_NO_MEMORY || status == HF_INTERRUPTED ? status : HF_OK;
     learn_pressure(p);
-    merit = hf_polish_merit(p, &p->result);
+    merit = hf_refine_merit(p, &p->result);
     merit = sqrt(fmax(0, merit * merit - 2 * gain)); /* merit at the minimum of the linear model, a small step away */
     for (int k = 0; k < p->v.goals->n_goal; k++) {
         r->multiplier[k] = p->pressure[k] > 0 ? p->pressure[k] / merit : 0;
-        if (p->v.goals->goal[p->trade->least].wanted.goal == HF_GOAL_RATIO) r->multiplier[k] *= exp(merit);
+        if (p->v.goals->goal[p->front->least].wanted.goal == HF_GOAL_RATIO) r->multiplier[k] *= exp(merit);
     }
-    r->multiplier[p->trade->least] = NAN;
+    r->multiplier[p->front->least] = NAN;
     return HF_OK;
 }
 
 /* Returns true if the last SETTLED_STEPS steps changed neither the merit nor an objective noticeably. It is called
  * after each step that is kept. In a flat curved valley, each step promises far more than the next one gains, so the
  * promised gain alone would not end the run. */
-static bool is_settled(hf_polish_problem *p, double merit)
+static bool is_settled(hf_refine_problem *p, double merit)
 {
     const hf_goals *goals = p->v.goals;
     bool changes = merit < (1 - SETTLED_MERIT) * p->settled_merit;
@@ -295,60 +295,60 @@ static bool is_settled(hf_polish_problem *p, double merit)
  * needs accurate multipliers, so its steps must promise far less, and it never settles. The damping follows Nielsen
  * (Madsen, Nielsen, Tingleff, Methods for non-linear least squares problems, DTU 2004). Returns HF_OK, HF_NO_MEMORY,
  * HF_INTERRUPTED or the status of the watcher. */
-static hf_status minimise(hf_polish_problem *p, int max_iterations, hf_polish_result *r)
+static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_result *r)
 {
-    double gain = 0, converged = p->trade ? TRADE_CONVERGED : GAIN_CONVERGED;
-    hf_status status = hf_polish_evaluate(p, p->at);
-    if (status == HF_OK) status = hf_polish_linearise(p);
-    if (status == HF_OK && p->trade) {
-        r->merit = hf_polish_merit(p, &p->result);
+    double gain = 0, converged = p->front ? FRONT_CONVERGED : GAIN_CONVERGED;
+    hf_status status = hf_refine_evaluate(p, p->at);
+    if (status == HF_OK) status = hf_refine_linearise(p);
+    if (status == HF_OK && p->front) {
+        r->merit = hf_refine_merit(p, &p->result);
         p->is_outside = !hf_watch_keeps(&p->watch, p->w);
     }
     if (status == HF_OK && p->is_outside && r->iterations == 0) p->violation = hf_watch_violation(&p->watch, p->w);
     if (status == HF_OK) HF_TRY(tell_watcher(p, r, max_iterations));
     if (status == HF_OK && p->is_outside) status = enter(p, max_iterations, r);
-    while (status == HF_OK && !p->is_outside && r->stop == HF_POLISH_MAX_ITERATIONS && r->iterations < max_iterations) {
+    while (status == HF_OK && !p->is_outside && r->stop == HF_REFINE_MAX_ITERATIONS && r->iterations < max_iterations) {
         double before = r->merit * r->merit / 2;
         r->iterations++;
         p->settled_steps++;
         status = try_step(p, p->damping, &gain);
-        if (status == HF_OK && !p->trade) status = bend_step(p, before, gain);
+        if (status == HF_OK && !p->front) status = bend_step(p, before, gain);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-        double merit = hf_polish_merit(p, &p->result), after = status == HF_OK ? merit * merit / 2 : (double)INFINITY;
+        double merit = hf_refine_merit(p, &p->result), after = status == HF_OK ? merit * merit / 2 : (double)INFINITY;
         /* Limits on objectives may be so curved that a corrected step leads back. The promise is then that of the first
          * solve. */
-        double promise = p->trade ? p->promise : gain;
+        double promise = p->front ? p->promise : gain;
         bool promises = promise > converged * before && 2 * promise > p->noise * p->noise;
-        if ((status == HF_OK || status == HF_RATIO_CAP) && !promises) r->stop = HF_POLISH_CONVERGED;
+        if ((status == HF_OK || status == HF_RATIO_CAP) && !promises) r->stop = HF_REFINE_CONVERGED;
         status = HF_OK;
         if (after < before) {
-            hf_polish_keep(p);
+            hf_refine_keep(p);
             r->merit = merit;
             learn_pressure(p);
             double share = 2 * (before - after) / gain - 1;
             if (gain > 0) p->damping = fmax(DAMPING_LEAST, p->damping * fmax(0.1, 1 - share * share * share));
             p->growth = 2;
-            if (!p->trade && r->stop == HF_POLISH_MAX_ITERATIONS && is_settled(p, merit)) r->stop = HF_POLISH_SETTLED;
-            if (r->stop == HF_POLISH_MAX_ITERATIONS) status = hf_polish_linearise(p);
+            if (!p->front && r->stop == HF_REFINE_MAX_ITERATIONS && is_settled(p, merit)) r->stop = HF_REFINE_SETTLED;
+            if (r->stop == HF_REFINE_MAX_ITERATIONS) status = hf_refine_linearise(p);
         } else {
             p->damping *= p->growth;
             p->growth *= 2;
-            if (p->damping > DAMPING_MOST) r->stop = HF_POLISH_STALLED;
+            if (p->damping > DAMPING_MOST) r->stop = HF_REFINE_STALLED;
         }
         if (status == HF_OK) HF_TRY(tell_watcher(p, r, max_iterations));
     }
     if (status == HF_NO_MEMORY || status == HF_INTERRUPTED || status == p->told) return status;
-    if (status != HF_OK) r->stop = HF_POLISH_STALLED;
+    if (status != HF_OK) r->stop = HF_REFINE_STALLED;
     return HF_OK;
 }
 
 /* Counts the bounds and limits that are active at the design, whose shape is in the workspace. */
-static void count_limits(const hf_polish_problem *p, const double *design, hf_polish_result *r)
+static void count_limits(const hf_refine_problem *p, const double *design, hf_refine_result *r)
 {
     hf_limit_held held[HF_LIMITS_HELD];
     for (int k = 0; k < p->v.model->n_variable; k++) {
         int i = p->slopes.class_of_variable[k];
-        double inside = hf_polish_is_tension(p, k) ? LIMIT_INSIDE * design[k] : LIMIT_ROUNDING * p->unit[i];
+        double inside = hf_refine_is_tension(p, k) ? LIMIT_INSIDE * design[k] : LIMIT_ROUNDING * p->unit[i];
         r->n_at_lower += design[k] <= p->lower[k] + inside;
         r->n_at_upper += design[k] >= p->upper[k] - inside;
     }
@@ -361,77 +361,77 @@ static void count_limits(const hf_polish_problem *p, const double *design, hf_po
 /* Replaces `design` by the best design if the caller's evaluator finds that it keeps all limits and is not worse than
  * the start. Otherwise the start remains, without multipliers, which belong to another design. Returns HF_OK, or the
  * status of a start outside the limits if nothing feasible was found. */
-static hf_status hand_over(const hf_polish_problem *p, const hf_form_result *start, double *design, hf_polish_result *r)
+static hf_status hand_over(const hf_refine_problem *p, const hf_form_result *start, double *design, hf_refine_result *r)
 {
     hf_form_result end;
     bool is_better = hf_evaluate(p->caller, p->best, p->w, &end) == HF_OK &&
-                     !hf_watch_breaks(p->trade, p->v.goals, HF_LIMITS_AT, end.goal) &&
-                     (start->status != HF_OK || hf_polish_merit(p, &end) <= hf_polish_merit(p, start));
+                     !hf_watch_breaks(p->front, p->v.goals, HF_LIMITS_AT, end.goal) &&
+                     (start->status != HF_OK || hf_refine_merit(p, &end) <= hf_refine_merit(p, start));
     if (!is_better && start->status != HF_OK) return start->status;
     if (is_better) memcpy(design, p->best, (size_t)p->v.model->n_variable * sizeof(double));
     if (!is_better) {
-        r->stop = HF_POLISH_STALLED;
+        r->stop = HF_REFINE_STALLED;
         forget_multipliers(r);
         HF_TRY(hf_evaluate(p->caller, design, p->w, &end));
     }
-    r->merit = hf_polish_merit(p, &end);
+    r->merit = hf_refine_merit(p, &end);
     count_limits(p, design, r);
     return HF_OK;
 }
 
-static hf_status run_problem(hf_polish_problem p, int max_iterations, double *design, hf_polish_result *result)
+static hf_status run_problem(hf_refine_problem p, int max_iterations, double *design, hf_refine_result *result)
 {
     const hf_evaluator *evaluator = p.caller;
-    const hf_watch_trade *trade = p.trade;
+    const hf_watch_front *front = p.front;
     hf_form_result start;
     hf_arena arena = {0};
-    *result = (hf_polish_result){.stop = HF_POLISH_MAX_ITERATIONS};
+    *result = (hf_refine_result){.stop = HF_REFINE_MAX_ITERATIONS};
     p.v.by_density = true;
     p.v.boundary_ratio_cap = INFINITY;
     p.v.limits = NULL;
     hf_evaluate(evaluator, design, p.w, &start);
     if (!hf_status_has_shape(start.status)) return start.status;
     p.is_outside = start.status != HF_OK;
-    result->merit = result->start_merit = hf_polish_merit(&p, &start);
+    result->merit = result->start_merit = hf_refine_merit(&p, &start);
     p.damping = DAMPING_FIRST;
     p.growth = 2;
     p.way = 1;
     p.best_psi_m = start.psi_m;
     p.settled_merit = INFINITY;
-    hf_status status = hf_polish_create(&p, &arena);
+    hf_status status = hf_refine_create(&p, &arena);
     if (status == HF_OK) {
-        hf_polish_begin(&p, design);
-        if (p.watcher && p.watcher->state) hf_polish_go_on(&p, p.watcher->n_state, p.watcher->state, result);
-        if (start.status == HF_OK && hf_watch_breaks(trade, evaluator->goals, 0, start.goal))
+        hf_refine_begin(&p, design);
+        if (p.watcher && p.watcher->state) hf_refine_resume(&p, p.watcher->n_state, p.watcher->state, result);
+        if (start.status == HF_OK && hf_watch_breaks(front, evaluator->goals, 0, start.goal))
             start.status = HF_OUT_OF_LIMITS;
         status = minimise(&p, max_iterations, result);
         if (status == HF_OK && p.is_outside) status = start.status == HF_OK ? HF_OUT_OF_LIMITS : start.status;
-        if (status == HF_OK && trade) status = find_multipliers(&p, result);
+        if (status == HF_OK && front) status = find_multipliers(&p, result);
         result->evaluations = p.evaluations;
         if (status == HF_OK) status = hand_over(&p, &start, design, result);
     }
-    hf_polish_destroy(&p, &arena);
+    hf_refine_destroy(&p, &arena);
     return status;
 }
 
-hf_status hf_polish_trade(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                          const hf_watch_trade *trade, const hf_polish_watcher *watcher, double *design,
-                          hf_workspace *w, hf_polish_result *result)
+hf_status hf_refine_front(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
+                          const hf_watch_front *front, const hf_refine_watcher *watcher, double *design,
+                          hf_workspace *w, hf_refine_result *result)
 {
-    const hf_polish_problem p = {.v = *evaluator,
+    const hf_refine_problem p = {.v = *evaluator,
                                  .caller = evaluator,
                                  .lower = lower,
                                  .upper = upper,
                                  .w = w,
-                                 .trade = trade,
+                                 .front = front,
                                  .watcher = watcher};
     return run_problem(p, max_iterations, design, result);
 }
 
-hf_status hf_polish_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                        const hf_polish_watcher *watcher, double *design, hf_workspace *w, hf_polish_result *result)
+hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
+                        const hf_refine_watcher *watcher, double *design, hf_workspace *w, hf_refine_result *result)
 {
-    const hf_polish_problem p = {
+    const hf_refine_problem p = {
         .v = *evaluator, .caller = evaluator, .lower = lower, .upper = upper, .w = w, .watcher = watcher};
     return run_problem(p, max_iterations, design, result);
 }

@@ -1,9 +1,9 @@
-/* trade - finds a Pareto front of two or three objectives by Levenberg-Marquardt (METHOD section 7). At an end of the
- * front, one objective has its minimum. At the points between the ends, one objective is minimised under limits on the
- * others, and the search begins at a neighbour. Each new limit halves one of the longest gaps, so the points are about
- * evenly spaced. */
-#ifndef HIFDM_TRADE_H
-#define HIFDM_TRADE_H
+/* front_refine - finds a Pareto front of two or three objectives by Levenberg-Marquardt (METHOD section 7). At an end
+ * of the front, one objective has its minimum. At the points between the ends, one objective is minimised under limits
+ * on the others, and the search begins at a neighbour. Each new limit halves one of the longest gaps, so the points are
+ * about evenly spaced. */
+#ifndef HIFDM_FRONT_REFINE_H
+#define HIFDM_FRONT_REFINE_H
 
 #include <hifdm/evaluate.h>
 #include <hifdm/front.h>
@@ -18,7 +18,7 @@ typedef struct {
     atomic_int n_point; /* counted by the search; 0 on entry, like n_step */
     atomic_long n_step;
     atomic_flag is_telling; /* ATOMIC_FLAG_INIT on entry */
-} hf_trade_watcher;
+} hf_front_refine_watcher;
 
 typedef struct {
     const hf_evaluator *evaluator; /* its objectives span the front */
@@ -30,16 +30,16 @@ typedef struct {
     int n_start;
     const double *start; /* [n_start][n_variable], designs to begin from */
     const volatile sig_atomic_t *stop;
-    hf_trade_watcher *watcher; /* NULL: no watcher */
-} hf_trade;
+    hf_front_refine_watcher *watcher; /* NULL: no watcher */
+} hf_front_refine;
 
-/* Returns true if hf_trade_find can find the front of these objectives: there must be two or three, and
- * hf_polish_applies must be true. */
-bool hf_trade_applies(const hf_evaluator *evaluator);
+/* Returns true if hf_front_refine_find can find the front of these objectives: there must be two or three, and
+ * hf_refine_applies must be true. */
+bool hf_front_refine_applies(const hf_evaluator *evaluator);
 
 /* Finds the front and creates *front, without `base`; free it in any case. Returns HF_OK, also if some points failed,
  * which are then marked. Otherwise returns HF_NO_MEMORY, HF_INTERRUPTED, or the status of the last attempt if no start
  * leads to a feasible design at an end. *failed_end is then the objective of that end, else -1. */
-hf_status hf_trade_find(const hf_trade *trade, hf_front *front, int *failed_end);
+hf_status hf_front_refine_find(const hf_front_refine *task, hf_front *front, int *failed_end);
 
 #endif

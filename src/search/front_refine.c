@@ -1,4 +1,4 @@
-/* Finds the points of a Pareto front. trade.h describes the interface, trade_point.c one point.
+/* Finds the points of a Pareto front. front_refine.h describes the interface, front_refine_point.c one point.
  *
  *     minimum of each objective alone -> ends, ranges -> first lines: without a limit on THIRD, and at its minimum
  *     longest gap on a line      -> mean limit on OTHER -> one more point
@@ -9,12 +9,12 @@
  * order of the limit on OTHER. With three, they form several lines. Each line has its own limit on THIRD, from its
  * minimum to no limit.
  * Contents: one point - many points at once - lines - the ends - gaps - the front */
-#include "search/trade.h"
+#include "search/front_refine.h"
 
 #include "base/arena.h"
 #include "search/parallel.h"
-#include "search/polish.h"
-#include "search/trade_point.h"
+#include "search/refine.h"
+#include "search/front_refine_point.h"
 
 #include <math.h>
 #include <string.h>
@@ -63,7 +63,7 @@ typedef struct {
 } line;
 
 typedef struct {
-    const hf_trade *t;
+    const hf_front_refine *t;
     size_t n_variable;
     int n_objective, role[HF_OBJECTIVES_MAX]; /* the objectives that are MAIN, OTHER and THIRD */
     double range[HF_OBJECTIVES_MAX];          /* range of each objective between the ends */
@@ -79,19 +79,19 @@ typedef struct {
     hf_status *of_room; /* [n_thread], status of each thread */
 } search;
 
-bool hf_trade_applies(const hf_evaluator *v)
+bool hf_front_refine_applies(const hf_evaluator *v)
 {
-    return v->goals && v->goals->n_goal >= 2 && v->goals->n_goal <= HF_OBJECTIVES_MAX && hf_polish_applies(v);
+    return v->goals && v->goals->n_goal >= 2 && v->goals->n_goal <= HF_OBJECTIVES_MAX && hf_refine_applies(v);
 }
 
 /* ---- one point ---- */
 
 /* Refines the design of a job by Levenberg-Marquardt. Multipliers are slopes of MAIN, so they are NaN if another
  * objective is minimised. Returns HF_OK, or a status that ends the whole search. */
-static hf_status polish(const search *s, const job *j, double *design, hf_workspace *w, hf_front_point *point)
+static hf_status refine(const search *s, const job *j, double *design, hf_workspace *w, hf_front_point *point)
 {
-    const hf_watch_trade limits = {j->least, j->most};
-    HF_TRY(hf_trade_point(s->t, &limits, design, w, point));
+    const hf_watch_front limits = {j->least, j->most};
+    HF_TRY(hf_front_refine_point(s->t, &limits, design, w, point));
     for (int k = 0; k < s->n_objective && j->least != s->role[MAIN]; k++)
         point->multiplier[k] = NAN;
     return HF_OK;
@@ -115,12 +115,12 @@ static hf_status find(const search *s, job *j, hf_workspace *w)
     size_t size = s->n_variable * sizeof(double);
     hf_front_point again;
     memcpy(j->design, j->from[0], size);
-    if (j->met >= 0) HF_TRY(hf_trade_meet(s->t, j->met, j->least, s->range, j->design, w));
-    HF_TRY(polish(s, j, j->design, w, &j->found));
+    if (j->met >= 0) HF_TRY(hf_front_refine_meet(s->t, j->met, j->least, s->range, j->design, w));
+    HF_TRY(refine(s, j, j->design, w, &j->found));
     if (!j->from[1] || !is_doubtful(s, j)) return HF_OK;
     double *design = j->design + s->n_variable; /* the second half of its memory */
     memcpy(design, j->from[1], size);
-    HF_TRY(polish(s, j, design, w, &again));
+    HF_TRY(refine(s, j, design, w, &again));
     again.iterations += j->found.iterations;
     bool is_better =
         again.status == HF_OK && (j->found.status != HF_OK || again.objective[j->least] < j->found.objective[j->least]);
@@ -146,7 +146,7 @@ static void work(void *context, int room)
         int i = hf_parallel_take(&s->queue);
         if (i < 0) break;
         status = find(s, &s->job[s->n_run + i], &w);
-        if (s->job[s->n_run + i].is_point) hf_trade_count(s->t);
+        if (s->job[s->n_run + i].is_point) hf_front_refine_count(s->t);
     }
     hf_workspace_free(&w);
     s->of_room[room] = status;
@@ -209,7 +209,7 @@ static job *begin_beside(search *s, int role, double third_most, const job *end,
 /* Returns the distance of two points in parts of the ranges. */
 static double distance(const search *s, const job *a, const job *b)
 {
-    return hf_trade_distance(s->n_objective, s->range, &a->found, &b->found);
+    return hf_front_refine_distance(s->n_objective, s->range, &a->found, &b->found);
 }
 
 /* ---- lines ---- */
@@ -278,7 +278,7 @@ static void close_line(search *s, line *l)
     for (int e = 0; e < 2; e++) {
         if (l->is_new[e]) {
             s->point[s->n_point++] = l->end[e];
-            hf_trade_count(s->t);
+            hf_front_refine_count(s->t);
         }
         join(s, l, l->end[e]);
     }
@@ -324,7 +324,7 @@ static hf_status find_alone(search *s, job *alone[])
     hf_status status = hf_workspace_create(s->t->evaluator->model, &w);
     if (status == HF_OK) status = hf_evaluate_attend(s->t->evaluator, &w);
     for (int r = 0; r < n && status == HF_OK; r++)
-        status = hf_trade_start(s->t, s->role[r], &w, s->largest, &start[r]);
+        status = hf_front_refine_start(s->t, s->role[r], &w, s->largest, &start[r]);
     hf_workspace_free(&w);
     HF_TRY(status);
     for (int r = 0; r < n; r++)
@@ -357,7 +357,7 @@ static bool take_common(search *s)
     const hf_front_point *found[ENDS_MAX];
     for (int i = 0; i < s->n; i++)
         found[i] = &s->job[i].found;
-    int common = hf_trade_common(s->n_objective, s->n, found, s->largest, AGREE);
+    int common = hf_front_refine_common(s->n_objective, s->n, found, s->largest, AGREE);
     if (common < 0) return false;
     s->point[0] = &s->job[common];
     s->n_point = 1;
@@ -601,11 +601,11 @@ static hf_status hand_over(const search *s, hf_front *front)
     return HF_OK;
 }
 
-hf_status hf_trade_find(const hf_trade *trade, hf_front *front, int *failed_end)
+hf_status hf_front_refine_find(const hf_front_refine *task, hf_front *front, int *failed_end)
 {
-    hf_trade t = *trade;
+    hf_front_refine t = *task;
     /* Each point is found in one thread, so this copy of the evaluator has one. */
-    hf_evaluator alone = *trade->evaluator;
+    hf_evaluator alone = *task->evaluator;
     hf_arena arena = {0};
     if (t.n_thread <= 0) t.n_thread = hf_parallel_cores();
     search s = {.t = &t, .failed_end = -1, .n_variable = (size_t)t.evaluator->model->n_variable};
@@ -615,7 +615,7 @@ hf_status hf_trade_find(const hf_trade *trade, hf_front *front, int *failed_end)
     *failed_end = -1;
     s.n_objective = t.evaluator->goals->n_goal;
     s.n_job = s.n_objective > 2 ? 2 * t.n_point + 8 : t.n_point + 4;
-    hf_trade_roles(t.evaluator->goals, s.role);
+    hf_front_refine_roles(t.evaluator->goals, s.role);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &s)));
     hf_status status = find_ends(&s);
     if (status == HF_OK) status = fill(&s);

@@ -1,9 +1,9 @@
-/* Sets up the problem that Levenberg-Marquardt solves. polish_problem.h describes the interface.
+/* Sets up the problem that Levenberg-Marquardt solves. refine_problem.h describes the interface.
  *
  *     variables x [n] -> design [n_variable] -> hf_evaluate -> shape -> sensitivities -> f, J', J'J, J'f, limits
  *
  * Contents: the problem - evaluation - stored state */
-#include "search/polish_problem.h"
+#include "search/refine_problem.h"
 
 #include "linalg/band.h"
 #include "linalg/dot.h"
@@ -40,7 +40,7 @@ enum {
 };
 #define FORMAT 2
 
-static void lay_out(hf_arena *a, hf_polish_problem *p)
+static void lay_out(hf_arena *a, hf_refine_problem *p)
 {
     const hf_model *m = p->v.model;
     size_t n = (size_t)p->n, n_row = (size_t)p->residuals.n_row, n_variable = (size_t)m->n_variable;
@@ -62,18 +62,18 @@ static void lay_out(hf_arena *a, hf_polish_problem *p)
     p->hessian = hf_arena_take(a, (n + 1) * (n + 1), sizeof(double));
     p->gradient = hf_arena_take(a, n + 1, sizeof(double));
     p->n_state = N_SCALAR + 3 * n + n_variable;
-    p->state = hf_arena_take(a, p->trade ? 0 : p->n_state, sizeof(double));
-    p->goal_rate = hf_arena_take(a, p->trade ? n * (size_t)p->v.goals->n_goal : 0, sizeof(double));
+    p->state = hf_arena_take(a, p->front ? 0 : p->n_state, sizeof(double));
+    p->goal_rate = hf_arena_take(a, p->front ? n * (size_t)p->v.goals->n_goal : 0, sizeof(double));
 }
 
-bool hf_polish_is_tension(const hf_polish_problem *p, int k)
+bool hf_refine_is_tension(const hf_refine_problem *p, int k)
 {
     return hf_evaluate_sets(p->caller, k) == HF_SETS_TENSION;
 }
 
 /* Returns the magnitude of design variable k, which starts at `start`. A support starts at 0: its magnitude is the
  * width of its bounds or, if that is not finite, the maximum length of a cable. */
-static double unit_of(const hf_polish_problem *p, int k, double start)
+static double unit_of(const hf_refine_problem *p, int k, double start)
 {
     const hf_model *m = p->v.model;
     double unit = p->upper[k] - p->lower[k];
@@ -85,7 +85,7 @@ static double unit_of(const hf_polish_problem *p, int k, double start)
     return unit;
 }
 
-void hf_polish_begin(hf_polish_problem *p, const double *design)
+void hf_refine_begin(hf_refine_problem *p, const double *design)
 {
     const hf_model *m = p->v.model;
     for (int i = 0; i < p->n; i++) {
@@ -96,7 +96,7 @@ void hf_polish_begin(hf_polish_problem *p, const double *design)
         int i = p->slopes.class_of_variable[k], e = m->variable_cable[k];
         double start = design[k], lower = p->lower[k], upper = p->upper[k];
         double unit = unit_of(p, k, start);
-        if (hf_polish_is_tension(p, k)) {
+        if (hf_refine_is_tension(p, k)) {
             start = hf_evaluate_design_length_m(m, e) * p->w->tension_N[e] / p->w->length_m[e];
             lower = DENSITY_LEFT * start;
             upper = INFINITY;
@@ -112,11 +112,11 @@ void hf_polish_begin(hf_polish_problem *p, const double *design)
 }
 
 /* Selects the residuals to minimise: all of them, or those of one objective. */
-static void aim(hf_polish_problem *p)
+static void aim(hf_refine_problem *p)
 {
     p->n_row = p->residuals.n_row;
-    if (!p->trade) return;
-    const hf_goal *goal = p->v.goals->goal, *least = goal + p->trade->least;
+    if (!p->front) return;
+    const hf_goal *goal = p->v.goals->goal, *least = goal + p->front->least;
     for (; goal < least; goal++)
         p->first_row += goal->n_row;
     p->n_row = least->n_row;
@@ -125,19 +125,19 @@ static void aim(hf_polish_problem *p)
     p->watch.goal_rate = p->goal_rate;
 }
 
-hf_status hf_polish_create(hf_polish_problem *p, hf_arena *arena)
+hf_status hf_refine_create(hf_refine_problem *p, hf_arena *arena)
 {
     const hf_model *m = p->v.model;
     p->n = m->n_leader;
     HF_TRY(hf_sensitivity_create(&p->v, &p->slopes));
     HF_TRY(hf_residuals_create(&p->v, &p->residuals));
-    HF_TRY(hf_watch_create(p->caller, &p->slopes, p->lower, p->upper, p->trade, &p->watch));
+    HF_TRY(hf_watch_create(p->caller, &p->slopes, p->lower, p->upper, p->front, &p->watch));
     HF_TRY(HF_ARENA_MAKE(arena, lay_out(arena, p)));
     aim(p);
     return hf_quadratic_create(p->n + p->has_corners, &p->step);
 }
 
-void hf_polish_destroy(hf_polish_problem *p, hf_arena *arena)
+void hf_refine_destroy(hf_refine_problem *p, hf_arena *arena)
 {
     hf_quadratic_free(&p->step);
     hf_watch_free(&p->watch);
@@ -148,37 +148,37 @@ void hf_polish_destroy(hf_polish_problem *p, hf_arena *arena)
 
 /* ---- evaluation ---- */
 
-double hf_polish_merit(const hf_polish_problem *p, const hf_form_result *r)
+double hf_refine_merit(const hf_refine_problem *p, const hf_form_result *r)
 {
-    if (!p->trade) return r->merit;
-    double value = r->goal[p->trade->least];
-    return p->v.goals->goal[p->trade->least].wanted.goal == HF_GOAL_RATIO ? log(value) : value;
+    if (!p->front) return r->merit;
+    double value = r->goal[p->front->least];
+    return p->v.goals->goal[p->front->least].wanted.goal == HF_GOAL_RATIO ? log(value) : value;
 }
 
-hf_status hf_polish_evaluate(hf_polish_problem *p, const double *step)
+hf_status hf_refine_evaluate(hf_refine_problem *p, const double *step)
 {
     const hf_model *m = p->v.model;
     for (int k = 0; k < m->n_variable; k++) {
         double value = p->start[k] + step[p->slopes.class_of_variable[k]];
-        p->design[k] = hf_polish_is_tension(p, k) ? value : fmax(p->lower[k], fmin(p->upper[k], value));
+        p->design[k] = hf_refine_is_tension(p, k) ? value : fmax(p->lower[k], fmin(p->upper[k], value));
     }
     p->evaluations++;
     return hf_evaluate(&p->v, p->design, p->w, &p->result);
 }
 
-void hf_polish_keep(hf_polish_problem *p)
+void hf_refine_keep(hf_refine_problem *p)
 {
     const hf_model *m = p->v.model;
     memcpy(p->at, p->trial, (size_t)p->n * sizeof(double));
     p->best_psi_m = p->result.psi_m;
     for (int k = 0; k < m->n_variable; k++)
-        p->best[k] = hf_polish_is_tension(p, k) ? p->w->tension_N[m->variable_cable[k]] : p->design[k];
+        p->best[k] = hf_refine_is_tension(p, k) ? p->w->tension_N[m->variable_cable[k]] : p->design[k];
 }
 
 /* Returns the part of the merit that the tolerance of the form-finding leaves open. Forces out of balance by
  * residual_tolerance of the tensions act like an error of this part in each variable. A merit below the resulting
  * change is zero as far as shapes are known. */
-static double find_noise(const hf_polish_problem *p)
+static double find_noise(const hf_refine_problem *p)
 {
     double square = 0;
     for (int k = 0; k < p->n; k++)
@@ -189,7 +189,7 @@ static double find_noise(const hf_polish_problem *p)
 /* Computes some rows of J'J. */
 static void multiply_rows(void *context, int room, int i_block)
 {
-    hf_polish_problem *p = context;
+    hf_refine_problem *p = context;
     int first = GRAM_ROWS * i_block, end = first + GRAM_ROWS < p->n ? first + GRAM_ROWS : p->n;
     (void)room;
     hf_band_gram(first, end, p->n_row, p->row + p->first_row, p->residuals.n_row, p->gram, p->n);
@@ -197,7 +197,7 @@ static void multiply_rows(void *context, int room, int i_block)
 
 /* Computes the gradient g = J'f/|f| of an objective |f|. Adds the curvature of its limit to the matrix: m (J'J - g
  * g')/|f|, where m is the multiplier of the last step. */
-static void press(hf_polish_problem *p, int i_goal, int first_row, int n_row)
+static void press(hf_refine_problem *p, int i_goal, int first_row, int n_row)
 {
     const double *f = p->residuals.value + first_row;
     double *rate = p->goal_rate + (size_t)i_goal * (size_t)p->n, norm = p->result.goal[i_goal];
@@ -215,27 +215,27 @@ static void press(hf_polish_problem *p, int i_goal, int first_row, int n_row)
 
 /* Changes the model for a point of a front. Objectives without corners become curved limits. If the minimised objective
  * has corners, its level is minimised in place of its residuals. */
-static void linearise_trade(hf_polish_problem *p)
+static void linearise_front(hf_refine_problem *p)
 {
     const hf_goals *g = p->v.goals;
     size_t n = (size_t)p->n;
     if (p->has_corners) {
-        double value = p->result.goal[p->trade->least];
-        p->watch.level = hf_polish_merit(p, &p->result);
-        if (g->goal[p->trade->least].wanted.goal == HF_GOAL_RATIO) p->noise /= value;
+        double value = p->result.goal[p->front->least];
+        p->watch.level = hf_refine_merit(p, &p->result);
+        if (g->goal[p->front->least].wanted.goal == HF_GOAL_RATIO) p->noise /= value;
         memset(p->gram, 0, n * n * sizeof(double));
         memset(p->gradient, 0, n * sizeof(double));
     }
     for (int k = 0, first = 0; k < g->n_goal; first += g->goal[k++].n_row)
-        if (k != p->trade->least && !hf_goals_is_largest(g->goal[k].wanted.goal)) press(p, k, first, g->goal[k].n_row);
+        if (k != p->front->least && !hf_goals_is_largest(g->goal[k].wanted.goal)) press(p, k, first, g->goal[k].n_row);
 }
 
-hf_status hf_polish_linearise(hf_polish_problem *p)
+hf_status hf_refine_linearise(hf_refine_problem *p)
 {
     HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
     HF_TRY(hf_residuals_find(&p->residuals, p->w));
     HF_TRY(hf_residuals_rates(&p->residuals, &p->slopes, p->w, p->row, p->gradient));
-    if (p->trade) /* the gradient of the residuals to minimise, not of all */
+    if (p->front) /* the gradient of the residuals to minimise, not of all */
         hf_dots((size_t)p->n, (size_t)p->n_row, p->row + p->first_row, (size_t)p->residuals.n_row,
                 p->residuals.value + p->first_row, p->gradient);
     hf_parallel_each(p->v.n_thread, (p->n + GRAM_ROWS - 1) / GRAM_ROWS, multiply_rows, p);
@@ -244,14 +244,14 @@ hf_status hf_polish_linearise(hf_polish_problem *p)
         p->largest_scale = fmax(p->largest_scale, p->scale[k]);
     }
     p->noise = find_noise(p);
-    if (p->trade) linearise_trade(p);
+    if (p->front) linearise_front(p);
     hf_watch_linearise(&p->watch, &p->slopes, p->w);
     return HF_OK;
 }
 
 /* ---- stored state ---- */
 
-void hf_polish_pack(hf_polish_problem *p, const hf_polish_result *r)
+void hf_refine_pack(hf_refine_problem *p, const hf_refine_result *r)
 {
     double *s = p->state, *array = s + N_SCALAR;
     size_t n = (size_t)p->n, n_variable = (size_t)p->v.model->n_variable;
@@ -277,25 +277,25 @@ void hf_polish_pack(hf_polish_problem *p, const hf_polish_result *r)
 }
 
 /* Returns true if s [n_state] is a state of this problem. The file from which it comes may be damaged. */
-static bool is_state(const hf_polish_problem *p, size_t n_state, const double *s)
+static bool is_state(const hf_refine_problem *p, size_t n_state, const double *s)
 {
     if (n_state != p->n_state || s[STATE_FORMAT] != FORMAT) return false;
     for (size_t i = N_SCALAR; i < n_state; i++)
         if (!isfinite(s[i])) return false;
     return s[STATE_ITERATIONS] >= 0 && s[STATE_ITERATIONS] < INT_MAX && s[STATE_EVALUATIONS] >= 1 &&
-           s[STATE_EVALUATIONS] < INT_MAX && s[STATE_STOP] >= 0 && s[STATE_STOP] <= HF_POLISH_SETTLED &&
+           s[STATE_EVALUATIONS] < INT_MAX && s[STATE_STOP] >= 0 && s[STATE_STOP] <= HF_REFINE_SETTLED &&
            s[STATE_DAMPING] > 0 && s[STATE_GROWTH] > 0 && s[STATE_WAY] > 0 && s[STATE_SETTLED_STEPS] >= 0 &&
            s[STATE_SETTLED_STEPS] < INT_MAX;
 }
 
-bool hf_polish_go_on(hf_polish_problem *p, size_t n_state, const double *s, hf_polish_result *r)
+bool hf_refine_resume(hf_refine_problem *p, size_t n_state, const double *s, hf_refine_result *r)
 {
     const double *array = s + N_SCALAR;
     size_t n = (size_t)p->n;
     if (!is_state(p, n_state, s)) return false;
     r->iterations = (int)s[STATE_ITERATIONS];
     p->evaluations = (int)s[STATE_EVALUATIONS] - 1; /* the best design is evaluated once more */
-    r->stop = (hf_polish_stop)s[STATE_STOP];
+    r->stop = (hf_refine_stop)s[STATE_STOP];
     p->is_outside = s[STATE_IS_OUTSIDE] != 0;
     r->merit = s[STATE_MERIT];
     p->best_psi_m = s[STATE_PSI];

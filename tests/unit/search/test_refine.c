@@ -4,16 +4,16 @@
 #include "laws.h"
 #include "population.h"
 
-#include "search/polish.h"
+#include "search/refine.h"
 #include <hifdm/batch.h>
 #include <hifdm/optimiser.h>
 
-struct polish_run {
+struct refine_run {
     struct run r;
     double lower[MAX_VARIABLE], upper[MAX_VARIABLE];
 };
 
-static void set_bounds(struct polish_run *p, double range_N)
+static void set_bounds(struct refine_run *p, double range_N)
 {
     for (int k = 0; k < p->r.net.model.n_variable; k++) {
         p->lower[k] = fmax(p->r.initial[k] - range_N, 1e-3);
@@ -22,7 +22,7 @@ static void set_bounds(struct polish_run *p, double range_N)
 }
 
 /* As `hifdm run configs/straight-edges.yaml` starts, but each evaluation to 1e-10. */
-static void open_chen(struct polish_run *p, double range_N)
+static void open_chen(struct refine_run *p, double range_N)
 {
     OPEN_CASE(&p->r.net, "configs/straight-edges.yaml");
     start_run(&p->r, HF_RULE_FORCE_DENSITY);
@@ -30,25 +30,25 @@ static void open_chen(struct polish_run *p, double range_N)
     set_bounds(p, range_N);
 }
 
-static void open_small(struct polish_run *p, int rule, double range_N)
+static void open_small(struct refine_run *p, int rule, double range_N)
 {
     open_run(&p->r, rule);
     set_bounds(p, range_N);
 }
 
-static hf_status polish(struct polish_run *p, int max_iterations, double *design, hf_polish_result *result)
+static hf_status refine(struct refine_run *p, int max_iterations, double *design, hf_refine_result *result)
 {
-    return hf_polish_run(&p->r.evaluator, p->lower, p->upper, max_iterations, NULL, design, &p->r.net.work, result);
+    return hf_refine_run(&p->r.evaluator, p->lower, p->upper, max_iterations, NULL, design, &p->r.net.work, result);
 }
 
-static double psi_of(struct polish_run *p, const double *design)
+static double psi_of(struct refine_run *p, const double *design)
 {
     hf_form_result result;
     ck_assert_int_eq(hf_evaluate(&p->r.evaluator, design, &p->r.net.work, &result), HF_OK);
     return result.merit;
 }
 
-static void assert_within_bounds(const struct polish_run *p, const double *design)
+static void assert_within_bounds(const struct refine_run *p, const double *design)
 {
     for (int k = 0; k < p->r.net.model.n_variable; k++) {
         ck_assert_double_ge(design[k], p->lower[k]);
@@ -59,20 +59,20 @@ static void assert_within_bounds(const struct polish_run *p, const double *desig
 /* Known to a micrometre: the optimum is flat, so a descent that stops early or points astray ends above it. */
 START_TEST(reaches_the_known_optimum)
 {
-    struct polish_run p;
-    hf_polish_result result;
+    struct refine_run p;
+    hf_refine_result result;
     open_chen(&p, 1);
     double *design = p.r.initial, start_m = psi_of(&p, design);
-    ck_assert_int_eq(polish(&p, 200, design, &result), HF_OK);
+    ck_assert_int_eq(refine(&p, 200, design, &result), HF_OK);
     ck_assert_double_eq_tol(1e3 * result.merit, 6.345, 1e-3);
     ck_assert_double_eq_tol(result.start_merit, start_m, 1e-12);
     ck_assert_double_eq_tol(psi_of(&p, design), result.merit, 1e-12);
-    ck_assert_int_eq(result.stop, HF_POLISH_CONVERGED);
+    ck_assert_int_eq(result.stop, HF_REFINE_CONVERGED);
     ck_assert_int_le(result.iterations, 60); /* observed: 30; without exact derivatives or scaling far more */
     assert_within_bounds(&p, design);
     /* once more for one step: it starts by leaving the bounds, which is uphill, and must not end there */
     double optimum_m = result.merit;
-    ck_assert_int_eq(polish(&p, 1, design, &result), HF_OK);
+    ck_assert_int_eq(refine(&p, 1, design, &result), HF_OK);
     ck_assert_double_le(result.merit, optimum_m);
     ck_assert_double_le(psi_of(&p, design), optimum_m);
     close_net(&p.r.net);
@@ -83,11 +83,11 @@ END_TEST
  * steps come within 0.05 mm of it (observed: 3.577), and nothing goes below. */
 START_TEST(approaches_the_free_optimum)
 {
-    struct polish_run p;
-    hf_polish_result result;
+    struct refine_run p;
+    hf_refine_result result;
     open_chen(&p, 1000);
     p.r.evaluator.boundary_ratio_cap = 1e9;
-    ck_assert_int_eq(polish(&p, 500, p.r.initial, &result), HF_OK);
+    ck_assert_int_eq(refine(&p, 500, p.r.initial, &result), HF_OK);
     ck_assert_double_ge(1e3 * result.merit, 3.535);
     ck_assert_double_le(1e3 * result.merit, 3.59);
     close_net(&p.r.net);
@@ -100,8 +100,8 @@ END_TEST
  * is asked for. */
 START_TEST(optimum_has_no_slope_left)
 {
-    struct polish_run p;
-    hf_polish_result result;
+    struct refine_run p;
+    hf_refine_result result;
     if (_i == HF_RULE_TENSION)
         open_small(&p, _i, 0.02);
     else
@@ -109,7 +109,7 @@ START_TEST(optimum_has_no_slope_left)
     int n = p.r.net.model.n_variable, n_free = 0;
     double slope[2][MAX_VARIABLE], step = 1e-5, *design = p.r.initial;
     for (int when = 0; when < 2; when++) {
-        if (when) ck_assert_int_eq(polish(&p, 300, design, &result), HF_OK);
+        if (when) ck_assert_int_eq(refine(&p, 300, design, &result), HF_OK);
         for (int k = 0; k < n; k++) {
             double kept = design[k], up, down;
             design[k] = kept + step;
@@ -139,13 +139,13 @@ END_TEST
 /* For every iteration limit and every start, also at an optimum, psi does not rise and the bounds hold. */
 START_TEST(never_worse_than_its_start)
 {
-    struct polish_run p;
-    hf_polish_result result;
+    struct refine_run p;
+    hf_refine_result result;
     open_small(&p, HF_RULE_FORCE_DENSITY, 0.5);
     for (int i = 0; i < 6; i++) {
         double *x = design(&p.r, i), before_m = psi_of(&p, x);
         for (int again = 0; again < 2; again++) {
-            ck_assert_int_eq(polish(&p, again ? 300 : 1 + i, x, &result), HF_OK);
+            ck_assert_int_eq(refine(&p, again ? 300 : 1 + i, x, &result), HF_OK);
             ck_assert_double_eq(result.start_merit, before_m);
             ck_assert_double_le(result.merit, before_m);
             before_m = psi_of(&p, x);
@@ -163,15 +163,15 @@ END_TEST
  * psi is flat there. */
 START_TEST(ratio_cap_is_kept)
 {
-    struct polish_run p;
-    hf_polish_result open, capped;
+    struct refine_run p;
+    hf_refine_result open, capped;
     hf_form_result end;
     double design[MAX_VARIABLE];
     open_chen(&p, 400);
     for (int has_cap = 0; has_cap < 2; has_cap++) {
         p.r.evaluator.boundary_ratio_cap = has_cap ? 5 : 1e9;
         memcpy(design, p.r.initial, sizeof design);
-        ck_assert_int_eq(polish(&p, 300, design, has_cap ? &capped : &open), HF_OK);
+        ck_assert_int_eq(refine(&p, 300, design, has_cap ? &capped : &open), HF_OK);
         ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design, &p.r.net.work, &end), HF_OK);
         if (has_cap)
             ck_assert_double_le(end.boundary_tension_ratio, 5);
@@ -186,19 +186,19 @@ END_TEST
 
 START_TEST(infeasible_start_is_told)
 {
-    struct polish_run p;
-    hf_polish_result result;
+    struct refine_run p;
+    hf_refine_result result;
     double kept[MAX_VARIABLE];
     open_small(&p, HF_RULE_TENSION, 1);
     p.r.initial[0] *= 50;
     memcpy(kept, p.r.initial, sizeof kept);
-    ck_assert_int_eq(polish(&p, 20, p.r.initial, &result), HF_COLLAPSED);
+    ck_assert_int_eq(refine(&p, 20, p.r.initial, &result), HF_COLLAPSED);
     ck_assert_mem_eq(kept, p.r.initial, (size_t)p.r.net.model.n_variable * sizeof *kept); /* untouched */
     ck_assert_int_eq(result.iterations, 0);
     p.r.evaluator.boundary_ratio_cap = 1 + 1e-9;
     memcpy(p.r.initial, design(&p.r, 0), sizeof kept);
     ck_assert_int_eq(
-        hf_polish_run(&p.r.evaluator, design(&p.r, 0), design(&p.r, 0), 20, NULL, p.r.initial, &p.r.net.work, &result),
+        hf_refine_run(&p.r.evaluator, design(&p.r, 0), design(&p.r, 0), 20, NULL, p.r.initial, &p.r.net.work, &result),
         HF_RATIO_CAP);
     ck_assert_mem_eq(p.r.initial, design(&p.r, 0), (size_t)p.r.net.model.n_variable * sizeof *kept); /* no way in */
     close_net(&p.r.net);
@@ -208,13 +208,13 @@ END_TEST
 /* A start above the cap is led below it, and counts as infeasible whatever its psi. */
 START_TEST(start_outside_the_limits_is_led_in)
 {
-    struct polish_run p;
-    hf_polish_result result;
+    struct refine_run p;
+    hf_refine_result result;
     hf_form_result end;
     open_small(&p, HF_RULE_TENSION, 1);
     p.r.evaluator.boundary_ratio_cap = 1 + 1e-9;
     ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design(&p.r, 0), &p.r.net.work, &end), HF_RATIO_CAP);
-    ck_assert_int_eq(polish(&p, 20, design(&p.r, 0), &result), HF_OK);
+    ck_assert_int_eq(refine(&p, 20, design(&p.r, 0), &result), HF_OK);
     ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design(&p.r, 0), &p.r.net.work, &end), HF_OK);
     ck_assert_double_eq(end.merit, result.merit);
     close_net(&p.r.net);
@@ -224,8 +224,8 @@ END_TEST
 /* A short GA, then LM, ends where LM ends from the base: 1e-6 m, of an optimum 0.25 mm below the base. */
 START_TEST(after_the_ga_the_same_optimum)
 {
-    struct polish_run p;
-    hf_polish_result from_base, from_ga;
+    struct refine_run p;
+    hf_refine_result from_base, from_ga;
     hf_optimiser ga;
     hf_batch batch;
     open_chen(&p, 1);
@@ -241,8 +241,8 @@ START_TEST(after_the_ga_the_same_optimum)
     } while (hf_optimiser_next(&ga));
     double *best_N = ga.population.design + ga.population.best * ga.population.n_variable,
            best_m = ga.population.result[ga.population.best].psi_m;
-    ck_assert_int_eq(polish(&p, 200, best_N, &from_ga), HF_OK);
-    ck_assert_int_eq(polish(&p, 200, p.r.initial, &from_base), HF_OK);
+    ck_assert_int_eq(refine(&p, 200, best_N, &from_ga), HF_OK);
+    ck_assert_int_eq(refine(&p, 200, p.r.initial, &from_base), HF_OK);
     ck_assert_double_eq_tol(from_ga.merit, from_base.merit, 1e-6);
     ck_assert_double_le(from_ga.merit, best_m);
     hf_optimiser_free(&ga);
@@ -253,15 +253,15 @@ END_TEST
 
 START_TEST(applies_to_convex_nets_and_rules_only)
 {
-    struct polish_run p;
+    struct refine_run p;
     open_small(&p, HF_RULE_FORCE_DENSITY, 1);
-    ck_assert(hf_polish_applies(&p.r.evaluator));
+    ck_assert(hf_refine_applies(&p.r.evaluator));
     p.r.evaluator.rule = HF_RULE_SEEDED;
-    ck_assert(!hf_polish_applies(&p.r.evaluator));
+    ck_assert(!hf_refine_applies(&p.r.evaluator));
     p.r.evaluator.rule = HF_RULE_TENSION;
-    ck_assert(hf_polish_applies(&p.r.evaluator));
+    ck_assert(hf_refine_applies(&p.r.evaluator));
     p.r.net.model.has_newton = 0;
-    ck_assert(!hf_polish_applies(&p.r.evaluator));
+    ck_assert(!hf_refine_applies(&p.r.evaluator));
     p.r.net.model.has_newton = 1;
     close_net(&p.r.net);
 }
@@ -276,7 +276,7 @@ struct trace {
     double *state;
 };
 
-static hf_status note_state(void *context, const hf_polish_progress *now)
+static hf_status note_state(void *context, const hf_refine_progress *now)
 {
     struct trace *t = context;
     t->n_state = now->n_state;
@@ -287,17 +287,17 @@ static hf_status note_state(void *context, const hf_polish_progress *now)
 }
 
 /* From `start`; the watcher may be NULL. */
-static hf_polish_result watch_polish(struct polish_run *p, const double *start, const hf_polish_watcher *watcher,
+static hf_refine_result watch_refine(struct refine_run *p, const double *start, const hf_refine_watcher *watcher,
                                      double *end)
 {
-    hf_polish_result result;
+    hf_refine_result result;
     memcpy(end, start, (size_t)p->r.net.model.n_variable * sizeof *end);
-    ck_assert_int_eq(hf_polish_run(&p->r.evaluator, p->lower, p->upper, 40, watcher, end, &p->r.net.work, &result),
+    ck_assert_int_eq(hf_refine_run(&p->r.evaluator, p->lower, p->upper, 40, watcher, end, &p->r.net.work, &result),
                      HF_OK);
     return result;
 }
 
-static void open_for_steps(struct polish_run *p, int i)
+static void open_for_steps(struct refine_run *p, int i)
 {
     if (i == 2) {
         open_small(p, HF_RULE_TENSION, 1);
@@ -313,20 +313,20 @@ static void open_for_steps(struct polish_run *p, int i)
  * no state of it is ignored. */
 START_TEST(goes_on_from_any_step_to_the_same_bits)
 {
-    struct polish_run p;
+    struct refine_run p;
     double end_N[MAX_VARIABLE], again_N[MAX_VARIABLE];
     struct trace trace = {0};
-    const hf_polish_watcher watcher = {.after = note_state, .context = &trace};
+    const hf_refine_watcher watcher = {.after = note_state, .context = &trace};
     open_for_steps(&p, _i);
     size_t size = (size_t)p.r.net.model.n_variable * sizeof(double);
-    const hf_polish_result whole = watch_polish(&p, p.r.initial, &watcher, end_N);
+    const hf_refine_result whole = watch_refine(&p, p.r.initial, &watcher, end_N);
     ck_assert_int_eq(trace.n, whole.iterations + 1);
     ck_assert_int_ge(trace.n, 4);
     for (int k = 0; k <= trace.n; k++) {
-        const hf_polish_watcher from = {.n_state = trace.n_state,
+        const hf_refine_watcher from = {.n_state = trace.n_state,
                                         .state = trace.state + (size_t)(k % trace.n) * trace.n_state};
         if (k == trace.n) trace.state[trace.n_state - 1] = (double)NAN; /* damaged: it begins anew */
-        const hf_polish_result again = watch_polish(&p, p.r.initial, &from, again_N);
+        const hf_refine_result again = watch_refine(&p, p.r.initial, &from, again_N);
         ck_assert_mem_eq(again_N, end_N, size);
         ck_assert(again.iterations == whole.iterations && again.evaluations == whole.evaluations);
         ck_assert(again.stop == whole.stop && again.merit == whole.merit);
@@ -337,7 +337,7 @@ START_TEST(goes_on_from_any_step_to_the_same_bits)
 }
 END_TEST
 
-static hf_status end_at_two(void *context, const hf_polish_progress *now)
+static hf_status end_at_two(void *context, const hf_refine_progress *now)
 {
     *(int *)context = now->iterations;
     return now->iterations == 2 ? HF_IO : HF_OK;
@@ -346,15 +346,15 @@ static hf_status end_at_two(void *context, const hf_polish_progress *now)
 /* What its watcher returns ends it, and the design is as it was. */
 START_TEST(its_watcher_ends_it)
 {
-    struct polish_run p;
-    hf_polish_result result;
+    struct refine_run p;
+    hf_refine_result result;
     int iterations = 0;
     double start_N[MAX_VARIABLE];
-    const hf_polish_watcher watcher = {.after = end_at_two, .context = &iterations};
+    const hf_refine_watcher watcher = {.after = end_at_two, .context = &iterations};
     open_chen(&p, 1);
     size_t size = (size_t)p.r.net.model.n_variable * sizeof(double);
     memcpy(start_N, p.r.initial, size);
-    ck_assert_int_eq(hf_polish_run(&p.r.evaluator, p.lower, p.upper, 40, &watcher, p.r.initial, &p.r.net.work, &result),
+    ck_assert_int_eq(hf_refine_run(&p.r.evaluator, p.lower, p.upper, 40, &watcher, p.r.initial, &p.r.net.work, &result),
                      HF_IO);
     ck_assert_int_eq(iterations, 2);
     ck_assert_mem_eq(start_N, p.r.initial, size);
@@ -364,7 +364,7 @@ END_TEST
 
 /* Behind the last step the inner nodes' theoretical positions are elsewhere, so the best design is worse than its start
  * was. */
-static hf_status shift_target(void *context, const hf_polish_progress *now)
+static hf_status shift_target(void *context, const hf_refine_progress *now)
 {
     hf_model *m = context;
     for (int i = 0; i < m->n_free && now->iterations == 3; i++)
@@ -376,18 +376,18 @@ static hf_status shift_target(void *context, const hf_polish_progress *now)
  * workspace. */
 START_TEST(the_start_stays_when_the_end_is_worse)
 {
-    struct polish_run p;
-    hf_polish_result result;
+    struct refine_run p;
+    hf_refine_result result;
     hf_form_result start;
     double start_N[MAX_VARIABLE];
     open_chen(&p, 1);
     const hf_model *m = &p.r.net.model;
-    const hf_polish_watcher watcher = {.after = shift_target, .context = &p.r.net.model};
+    const hf_refine_watcher watcher = {.after = shift_target, .context = &p.r.net.model};
     memcpy(start_N, p.r.initial, (size_t)m->n_variable * sizeof(double));
-    ck_assert_int_eq(hf_polish_run(&p.r.evaluator, p.lower, p.upper, 3, &watcher, p.r.initial, &p.r.net.work, &result),
+    ck_assert_int_eq(hf_refine_run(&p.r.evaluator, p.lower, p.upper, 3, &watcher, p.r.initial, &p.r.net.work, &result),
                      HF_OK);
     ck_assert_mem_eq(start_N, p.r.initial, (size_t)m->n_variable * sizeof(double));
-    ck_assert_int_eq(result.stop, HF_POLISH_STALLED);
+    ck_assert_int_eq(result.stop, HF_REFINE_STALLED);
     double *end_m = malloc(3 * (size_t)m->n_node * sizeof *end_m);
     ck_assert_ptr_nonnull(end_m);
     memcpy(end_m, p.r.net.work.position_m, 3 * (size_t)m->n_node * sizeof *end_m);
@@ -400,7 +400,7 @@ START_TEST(the_start_stays_when_the_end_is_worse)
 }
 END_TEST
 
-Suite *suite_unit_polish(void)
+Suite *suite_unit_refine(void)
 {
     Suite *suite = suite_create("unit/polish");
     TCase *tests = tcase_create("polish");

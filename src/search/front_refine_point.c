@@ -1,12 +1,12 @@
-/* Finds one point of a Pareto front. trade_point.h describes the interface.
+/* Finds one point of a Pareto front. front_refine_point.h describes the interface.
  *
- *     hf_trade_start    best start for an objective
- *     hf_trade_meet     sums of squares, if the minimum of an objective is 0 -> a design to begin from
- *     hf_trade_point    Levenberg-Marquardt under limits on the other objectives -> objectives, multipliers
- *     hf_trade_common   points at the ends -> one that is best in all objectives */
-#include "search/trade_point.h"
+ *     hf_front_refine_start    best start for an objective
+ *     hf_front_refine_meet     sums of squares, if the minimum of an objective is 0 -> a design to begin from
+ *     hf_front_refine_point    Levenberg-Marquardt under limits on the other objectives -> objectives, multipliers
+ *     hf_front_refine_common   points at the ends -> one that is best in all objectives */
+#include "search/front_refine_point.h"
 
-#include "search/polish.h"
+#include "search/refine.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -19,7 +19,7 @@ enum { N_WEIGHT = sizeof weight / sizeof *weight };
 
 #define SAME 1e-9 /* a range below this part of an objective counts as none */
 
-void hf_trade_roles(const hf_goals *goals, int *role)
+void hf_front_refine_roles(const hf_goals *goals, int *role)
 {
     int main = 0, n = 0;
     while (main < goals->n_goal && hf_goals_is_largest(goals->goal[main].wanted.goal))
@@ -30,7 +30,7 @@ void hf_trade_roles(const hf_goals *goals, int *role)
         if (k != main) role[n++] = k;
 }
 
-hf_status hf_trade_start(const hf_trade *t, int k, hf_workspace *w, double *largest, const double **start)
+hf_status hf_front_refine_start(const hf_front_refine *t, int k, hf_workspace *w, double *largest, const double **start)
 {
     int best_rank = -1;
     double least = INFINITY;
@@ -52,12 +52,12 @@ hf_status hf_trade_start(const hf_trade *t, int k, hf_workspace *w, double *larg
     return HF_OK;
 }
 
-void hf_trade_count(const hf_trade *t)
+void hf_front_refine_count(const hf_front_refine *t)
 {
     if (t->watcher) atomic_fetch_add(&t->watcher->n_point, 1);
 }
 
-double hf_trade_distance(int n_objective, const double *range, const hf_front_point *a, const hf_front_point *b)
+double hf_front_refine_distance(int n_objective, const double *range, const hf_front_point *a, const hf_front_point *b)
 {
     double square = 0;
     for (int k = 0; k < n_objective; k++) {
@@ -68,9 +68,9 @@ double hf_trade_distance(int n_objective, const double *range, const hf_front_po
 }
 
 /* Counts a step of the search, and reports the progress unless another thread is reporting. */
-static hf_status tell_step(void *context, const hf_polish_progress *now)
+static hf_status tell_step(void *context, const hf_refine_progress *now)
 {
-    hf_trade_watcher *w = context;
+    hf_front_refine_watcher *w = context;
     if (now->iterations == 0) return HF_OK;
     atomic_fetch_add(&w->n_step, 1);
     if (atomic_flag_test_and_set(&w->is_telling)) return HF_OK;
@@ -79,21 +79,21 @@ static hf_status tell_step(void *context, const hf_polish_progress *now)
     return HF_OK;
 }
 
-hf_status hf_trade_point(const hf_trade *t, const hf_watch_trade *limits, double *design, hf_workspace *w,
-                         hf_front_point *point)
+hf_status hf_front_refine_point(const hf_front_refine *t, const hf_watch_front *limits, double *design, hf_workspace *w,
+                                hf_front_point *point)
 {
-    hf_polish_result r;
+    hf_refine_result r;
     hf_form_result result;
-    const hf_polish_watcher watcher = {.after = tell_step, .context = t->watcher};
+    const hf_refine_watcher watcher = {.after = tell_step, .context = t->watcher};
     *point = (hf_front_point){.objective = {NAN, NAN, NAN}, .multiplier = {NAN, NAN, NAN}};
-    hf_status status = hf_polish_trade(t->evaluator, t->lower, t->upper, t->max_iterations, limits,
+    hf_status status = hf_refine_front(t->evaluator, t->lower, t->upper, t->max_iterations, limits,
                                        t->watcher ? &watcher : NULL, design, w, &r);
     if (status == HF_OK) status = hf_evaluate(t->evaluator, design, w, &result);
     if (t->stop && *t->stop) return HF_INTERRUPTED;
     if (status == HF_NO_MEMORY) return status;
     point->status = status;
     point->iterations = r.iterations;
-    point->is_converged = status == HF_OK && r.stop == HF_POLISH_CONVERGED;
+    point->is_converged = status == HF_OK && r.stop == HF_REFINE_CONVERGED;
     for (int k = 0; k < t->evaluator->goals->n_goal && status == HF_OK; k++) {
         point->objective[k] = result.goal[k];
         if (point->is_converged) point->multiplier[k] = r.multiplier[k];
@@ -101,26 +101,28 @@ hf_status hf_trade_point(const hf_trade *t, const hf_watch_trade *limits, double
     return HF_OK;
 }
 
-hf_status hf_trade_meet(const hf_trade *t, int met, int least, const double *range, double *design, hf_workspace *w)
+hf_status hf_front_refine_meet(const hf_front_refine *t, int met, int least, const double *range, double *design,
+                               hf_workspace *w)
 {
     hf_evaluator evaluator = *t->evaluator;
     hf_goals goals = *evaluator.goals;
-    hf_polish_result result;
-    const hf_polish_watcher watcher = {.after = tell_step, .context = t->watcher};
+    hf_refine_result result;
+    const hf_refine_watcher watcher = {.after = tell_step, .context = t->watcher};
     evaluator.goals = &goals;
     for (int i = met == least ? N_WEIGHT - 1 : 0; i < N_WEIGHT; i++) {
         for (int k = 0; k < goals.n_goal; k++) {
             double part = k == met || met == least ? 1 : k == least ? weight[i] : 0;
             goals.goal[k].wanted.weight = range[k] > 0 ? part / range[k] : 0;
         }
-        hf_status status = hf_polish_run(&evaluator, t->lower, t->upper, t->max_iterations,
+        hf_status status = hf_refine_run(&evaluator, t->lower, t->upper, t->max_iterations,
                                          t->watcher ? &watcher : NULL, design, w, &result);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
     }
     return HF_OK;
 }
 
-int hf_trade_common(int n_objective, int n, const hf_front_point *const *point, const double *largest, double part)
+int hf_front_refine_common(int n_objective, int n, const hf_front_point *const *point, const double *largest,
+                           double part)
 {
     int common = -1;
     double least[HF_OBJECTIVES_MAX], most[HF_OBJECTIVES_MAX];
