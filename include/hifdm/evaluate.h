@@ -13,7 +13,7 @@
 
 #include <hifdm/api.h>
 #include <hifdm/formfind.h>
-#include <hifdm/goals.h>
+#include <hifdm/objectives.h>
 
 HF_API_BEGIN
 
@@ -59,9 +59,9 @@ typedef struct {
     hf_solver solver; /* solver of the designs (optimize.solver) */
     /* maximum boundary tension ratio; a larger one gives HF_RATIO_CAP; INFINITY: no maximum */
     double boundary_ratio_cap;
-    const hf_limits *limits; /* a shape beyond one of them gives HF_OUT_OF_LIMITS; NULL: there are none */
-    const hf_goals *goals;   /* objectives that make up the merit of a shape; NULL: the merit is psi_m */
-    int n_thread;            /* number of threads for the derivatives of one design; 0: the calling thread alone */
+    const hf_limits *limits;         /* a shape beyond one of them gives HF_OUT_OF_LIMITS; NULL: there are none */
+    const hf_objectives *objectives; /* objectives that make up the merit of a shape; NULL: the merit is psi_m */
+    int n_thread; /* number of threads for the derivatives of one design; 0: the calling thread alone */
     /* Levenberg-Marquardt: a design variable that sets a tension T sets the force density T/L* instead. */
     bool by_density;
 } hf_evaluator;

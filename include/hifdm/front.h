@@ -29,10 +29,10 @@ extern const char *const hf_front_mark_word[HF_FRONT_N_MARK + 1]; /* the last en
 
 /* A point of a front. */
 typedef struct {
-    double objective[HF_OBJECTIVES_MAX]; /* values of the objectives; NaN for a failed point */
+    double objective[HF_FRONT_OBJECTIVES_MAX]; /* values of the objectives; NaN for a failed point */
     /* The slope of the front, >= 0: the decrease of objective `minimised` for an increase of each other objective by
      * one unit, in their units. NaN for `minimised` itself, and where the method computes no slope. */
-    double multiplier[HF_OBJECTIVES_MAX];
+    double multiplier[HF_FRONT_OBJECTIVES_MAX];
     hf_status status;   /* status of its design */
     hf_front_mark mark; /* what the point is */
     int iterations;     /* steps of Levenberg-Marquardt; 0 for the genetic algorithm */
@@ -44,7 +44,7 @@ typedef struct {
     int n_objective, n_variable, n_point; /* numbers of objectives, design variables and points */
     int minimised;                        /* objective that is minimised under limits on the others; -1: all are */
     int knee;                             /* point farthest below the line of the ends (hf_front_settle); -1: none */
-    double base[HF_OBJECTIVES_MAX];       /* objectives of the initial design; NaN: no value */
+    double base[HF_FRONT_OBJECTIVES_MAX]; /* objectives of the initial design; NaN: no value */
     hf_front_point *point;                /* [n_point] by objective 0, then 1, then 2, ascending; failed ones last */
     double *design;                       /* [n_point][n_variable] designs as of hf_evaluate; NaN for a failed point */
     void *block;                          /* owned memory behind point and design */
@@ -55,8 +55,8 @@ typedef struct {
 typedef struct {
     /* Counts of the front, and `minimised` as in hf_front. */
     int n_objective, n_point, n_row, n_on, n_dominated, n_failed, minimised;
-    int knee, end[HF_OBJECTIVES_MAX];        /* rows of the knee and of the first minimum of each objective; -1: none */
-    double base[HF_OBJECTIVES_MAX];          /* objectives of the initial design */
+    int knee, end[HF_FRONT_OBJECTIVES_MAX];  /* rows of the knee and of the first minimum of each objective; -1: none */
+    double base[HF_FRONT_OBJECTIVES_MAX];    /* objectives of the initial design */
     int n_unconverged;                       /* Levenberg-Marquardt: points with a design that has not converged */
     double wall_s;                           /* time of the computation */
     int place[HF_FRONT_POINTS_MAX];          /* index of each row in the front, from 0, ascending */

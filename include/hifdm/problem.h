@@ -33,7 +33,7 @@ typedef struct {
     double *initial;              /* [n_variable] initial design, averaged over linked design variables */
     hf_limits limits;             /* rows of optimize.limits; none without rows */
     struct hf_problem_nets *nets; /* as-built nets of objectives over load cases or samples; NULL: there are none */
-    hf_goals goals;               /* rows of optimize.goals or optimize.objectives; none without rows: psi */
+    hf_objectives objectives;     /* rows of optimize.goals or optimize.objectives; none without rows: psi */
     hf_evaluator evaluator;       /* common data of the designs */
     hf_batch batch;               /* evaluates designs; borrows the evaluator */
     hf_solver solver;             /* solver that the batch uses */
@@ -68,7 +68,7 @@ int hf_problem_list_figures(const hf_problem *problem, const hf_result_field *fi
 int hf_problem_n_slope(const hf_problem *problem);
 /* Writes the name of figure i_slope with derivatives into text: that of its objective, "merit" or "psi_m". Returns
  * text. */
-const char *hf_problem_slope_name(const hf_problem *problem, int i_slope, char text[HF_GOAL_NAME_SIZE]);
+const char *hf_problem_slope_name(const hf_problem *problem, int i_slope, char text[HF_OBJECTIVE_NAME_SIZE]);
 
 /* Computes the exact derivatives of the hf_problem_n_slope figures (METHOD section 7). design [n][n_variable] has n
  * designs, and result [n] their results of hf_batch_run. slope [feasible designs][n_slope][n_variable] receives the

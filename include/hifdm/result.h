@@ -156,8 +156,8 @@ typedef struct {
 /* The figures of a form-finding or of a design. */
 typedef struct {
     HF_RESULT_LIST(HF_RESULT_MEMBER)
-    hf_coupling_result coupling;     /* figures of the coupling with the truss */
-    double goal[HF_DESIGN_ROWS_MAX]; /* objectives of a design in the order of their rows, each in its unit */
+    hf_coupling_result coupling;          /* figures of the coupling with the truss */
+    double objective[HF_DESIGN_ROWS_MAX]; /* objectives of a design in the order of their rows, each in its unit */
 } hf_form_result;
 
 /* Sets every REAL member of HF_RESULT_LIST to NaN. */

@@ -64,18 +64,18 @@ typedef enum { HF_LINK_EACH, HF_LINK_SET, HF_LINK_SYMMETRY } hf_link;
 /* The figure that a row of optimize.goals or optimize.objectives measures. A figure is zero or more, and it is
  * minimised. */
 typedef enum {
-    HF_GOAL_PSI,          /* psi: RMS distance of the inner nodes from their target positions, m */
-    HF_GOAL_SURFACE,      /* RMS distance of the inner nodes from the target surface, m */
-    HF_GOAL_FACETS,       /* RMS distance of the facets from the target surface, m */
-    HF_GOAL_TENSION,      /* RMS difference of tensions from `target` over the set, N */
-    HF_GOAL_LENGTH,       /* RMS difference of lengths from `target` over the set, m */
-    HF_GOAL_EVENNESS,     /* standard deviation of the tensions of the set over their mean */
-    HF_GOAL_PULL,         /* maximum force of the net on a support, N */
-    HF_GOAL_DISPLACEMENT, /* maximum deflection of the truss at an attachment, m */
-    HF_GOAL_MASS,         /* mass of the cables of the set at mass_kg_per_m, kg */
-    HF_GOAL_RATIO,        /* maximum over minimum tension of the set */
-    HF_GOAL_GAIN          /* square root of the lost part of the gain in the direction of the beam */
-} hf_goal_kind;
+    HF_FIGURE_PSI,        /* psi: RMS distance of the inner nodes from their target positions, m */
+    HF_FIGURE_SURFACE,    /* RMS distance of the inner nodes from the target surface, m */
+    HF_FIGURE_FACETS,     /* RMS distance of the facets from the target surface, m */
+    HF_FIGURE_TENSION,    /* RMS difference of tensions from `target` over the set, N */
+    HF_FIGURE_LENGTH,     /* RMS difference of lengths from `target` over the set, m */
+    HF_FIGURE_EVENNESS,   /* standard deviation of the tensions of the set over their mean */
+    HF_FIGURE_PULL,       /* maximum force of the net on a support, N */
+    HF_FIGURE_DEFLECTION, /* maximum deflection of the truss at an attachment, m */
+    HF_FIGURE_MASS,       /* mass of the cables of the set at mass_kg_per_m, kg */
+    HF_FIGURE_RATIO,      /* maximum over minimum tension of the set */
+    HF_FIGURE_GAIN        /* square root of the lost part of the gain in the direction of the beam */
+} hf_figure_kind;
 /* The direction in which the distance to a surface is measured. */
 typedef enum { HF_ALONG_NORMAL, HF_ALONG_HALF_PATH } hf_along;
 /* The surface to which the distance is measured: the target surface, or its best fit to the shape. */
@@ -89,9 +89,9 @@ typedef enum { HF_TAKE_MEAN, HF_TAKE_WORST } hf_take;
 
 /* The quantity that a row of optimize.limits bounds. */
 typedef enum {
-    HF_LIMIT_TENSION,     /* tension of each cable of the set, N */
-    HF_LIMIT_RATIO,       /* maximum over minimum tension of the set */
-    HF_LIMIT_DISPLACEMENT /* deflection of each attachment, m */
+    HF_LIMIT_TENSION,   /* tension of each cable of the set, N */
+    HF_LIMIT_RATIO,     /* maximum over minimum tension of the set */
+    HF_LIMIT_DEFLECTION /* deflection of each attachment, m */
 } hf_limit_kind;
 
 /* The words of the choices in a case file, indexed by the enumerations of this header. The last entry is NULL. */
@@ -114,14 +114,14 @@ extern const char *const hf_polarisation_word[3];
 extern const char *const hf_coupling_scheme_word[4];
 extern const char *const hf_vary_word[8];
 extern const char *const hf_link_word[4];
-extern const char *const hf_goal_word[12];
-extern const char *const hf_goal_unit[11]; /* units of the figures; "": no dimension */
+extern const char *const hf_figure_kind_word[12];
+extern const char *const hf_figure_kind_unit[11]; /* units of the figures; "": no dimension */
 extern const char *const hf_along_word[3];
 extern const char *const hf_fit_word[3];
 extern const char *const hf_over_word[4];
 extern const char *const hf_take_word[3];
 extern const char *const hf_limit_word[4];
-extern const char *const hf_figure_word[4]; /* words of adjust.figure, HF_GOAL_PSI to HF_GOAL_FACETS */
+extern const char *const hf_adjust_figure_word[4]; /* words of adjust.figure, HF_FIGURE_PSI to HF_FIGURE_FACETS */
 
 /* Size of the path of a case, a study or a table of a net or truss, bytes. A longer path is refused. */
 #define HF_PATH_SIZE 1024
@@ -152,7 +152,7 @@ typedef struct {
 
 /* A row of optimize.goals or optimize.objectives. Objectives of the latter have no weight. */
 typedef struct {
-    hf_goal_kind goal;          /* figure that is measured */
+    hf_figure_kind figure;      /* figure that is measured */
     char set[HF_SET_NAME_SIZE]; /* cables of tension, length, evenness, mass, ratio; "": all */
     double target;        /* target value of tension or length; NaN for length: the lengths at the target positions */
     double weight;        /* weight of the objective: merit = sqrt(sum (weight * value)^2) */
@@ -164,19 +164,19 @@ typedef struct {
     hf_take take;                 /* figure of several load cases or samples */
     double quantile;     /* replaces `take` for samples: this part of them has no larger value; 0 or NaN: none */
     double frequency_Hz; /* frequency, for gain; 0 or NaN: the highest of the surface */
-} hf_goal_settings;
+} hf_objective_settings;
 
 /* A row of optimize.limits. */
 typedef struct {
-    hf_limit_kind limit;        /* quantity that is bounded */
+    hf_limit_kind figure;       /* quantity that is bounded */
     char set[HF_SET_NAME_SIZE]; /* cables of tension and ratio; "": all */
     double lower, upper;        /* bounds on the quantity (`bounds`); infinite where none are given */
 } hf_limit_settings;
 
-#define HF_DESIGN_ROWS_MAX 16   /* maximum number of rows of optimize.variables, goals and limits */
-#define HF_OBJECTIVES_MAX 3     /* maximum number of rows of optimize.objectives */
-#define HF_FRONT_POINTS_MAX 512 /* maximum of optimize.front_points */
-#define HF_GOAL_NAME_SIZE 112   /* bytes of the name of an objective: "goal_15_displacement_" and a set */
+#define HF_DESIGN_ROWS_MAX 16      /* maximum number of rows of optimize.variables, goals and limits */
+#define HF_FRONT_OBJECTIVES_MAX 3  /* maximum number of rows of optimize.objectives */
+#define HF_FRONT_POINTS_MAX 512    /* maximum of optimize.front_points */
+#define HF_OBJECTIVE_NAME_SIZE 112 /* bytes of the name of an objective: "goal_15_displacement_" and a set */
 
 /* The coupling of the net with an elastic truss (section coupling). Without a truss it is not used. */
 typedef struct {
@@ -221,14 +221,14 @@ typedef struct {
     hf_symmetry symmetry;                /* mirror planes that link design variables */
     hf_keep store;                       /* which individuals a result file keeps */
     int store_every;                     /* HF_KEEP_EVERY: generations 0, n, 2n, ... are kept */
-    int n_variable_row, n_goal, n_limit; /* numbers of rows; without rows: boundary pretensions, psi, no limits */
+    int n_variable_row, n_term, n_limit; /* numbers of rows; without rows: boundary pretensions, psi, no limits */
     hf_variable_settings variable_row[HF_DESIGN_ROWS_MAX]; /* [n_variable_row] rows of optimize.variables */
-    hf_goal_settings goal[HF_DESIGN_ROWS_MAX];             /* [n_goal] rows of optimize.goals */
+    hf_objective_settings term[HF_DESIGN_ROWS_MAX];        /* [n_term] rows of optimize.goals */
     hf_limit_settings limit[HF_DESIGN_ROWS_MAX];           /* [n_limit] rows of optimize.limits */
-    int n_objective;                               /* number of rows of optimize.objectives: 0, or 2 or 3 for a front */
-    hf_goal_settings objective[HF_OBJECTIVES_MAX]; /* [n_objective] rows of optimize.objectives */
-    int front_points;                              /* number of points of a front that Levenberg-Marquardt finds */
-    int samples; /* number of random samples for objectives that are measured on samples */
+    int n_front; /* number of rows of optimize.objectives: 0, or 2 or 3 for a front */
+    hf_objective_settings front[HF_FRONT_OBJECTIVES_MAX]; /* [n_front] rows of optimize.objectives */
+    int front_points; /* number of points of a front that Levenberg-Marquardt finds */
+    int samples;      /* number of random samples for objectives that are measured on samples */
 } hf_optimize_settings;
 
 /* Returns true if an objective is measured on samples of as-built nets. */
@@ -293,7 +293,7 @@ typedef struct {
     double range_m, step_m;     /* maximum change of the cut length either way; step */
     int moves;                  /* maximum number of cables that are adjusted */
     double target_m;            /* no further cable is adjusted once the figure is below this */
-    hf_goal_kind figure;        /* HF_GOAL_PSI, HF_GOAL_SURFACE or HF_GOAL_FACETS */
+    hf_figure_kind figure;      /* HF_FIGURE_PSI, HF_FIGURE_SURFACE or HF_FIGURE_FACETS */
     hf_aim aim;                 /* positions from which psi is measured */
     double sigma_m;             /* standard deviation of measured coordinates without their own; 0: not given */
 } hf_adjust_settings;

@@ -115,12 +115,12 @@ typedef struct {
 /* The rows of optimize.goals or optimize.objectives. The latter have neither weights nor a merit. The values, with the
  * merit, are in the results of the stages. */
 typedef struct {
-    int n;                                            /* number of objectives; 0: psi is minimised */
-    char name[HF_DESIGN_ROWS_MAX][HF_GOAL_NAME_SIZE]; /* [n] goal_1_tension_edge: number, figure, set */
-    double weight[HF_DESIGN_ROWS_MAX];                /* [n] weights */
+    int n;                                                 /* number of objectives; 0: psi is minimised */
+    char name[HF_DESIGN_ROWS_MAX][HF_OBJECTIVE_NAME_SIZE]; /* [n] goal_1_tension_edge: number, figure, set */
+    double weight[HF_DESIGN_ROWS_MAX];                     /* [n] weights */
     int after_fit[HF_DESIGN_ROWS_MAX]; /* [n] surface figures: 1 after the best fit, 0 without; -1: other figures */
-    bool are_objectives;               /* the rows are those of optimize.objectives */
-} hf_goal_list;
+    bool is_front;                     /* the rows are those of optimize.objectives */
+} hf_objective_list;
 
 #define HF_SUMMARY_MEMBER(type, member, kind, json, key, description) type member;
 
@@ -152,8 +152,8 @@ typedef struct {
     hf_set_tensions sets[3];         /* [hf_stage] tensions of sets; n is 0 without sets or without the shape */
     hf_held_limits held[3];          /* [hf_stage] constraints that hold the shapes */
 
-    hf_goal_list goals;    /* objectives of the run */
-    hf_front_origin taken; /* the point of another run's front that is the result, as the shape of `polish` */
+    hf_objective_list objectives; /* objectives of the run */
+    hf_front_origin taken;        /* the point of another run's front that is the result, as the shape of `polish` */
 
     int n_state;                           /* number of load cases of the as-built net */
     hf_state_summary state[HF_STATES_MAX]; /* [n_state] the load cases */

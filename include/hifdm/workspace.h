@@ -98,11 +98,11 @@ typedef struct {
     /* Number of rows that Newton's matrix moves: n_free, or with the attachments if net and truss are solved
      * together. */
     int n_moving;
-    bool starts_near;                  /* q_N_per_m is that of a shape on supports in other positions */
-    int n_joint_step;                  /* number of steps of net and truss together in the current solve */
-    hf_history *history;               /* history of the current form-finding, or NULL */
-    struct hf_goals_point *goals;      /* scratch of the objectives (hf_evaluate_attend), owned; else NULL */
-    const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 makes hf_form_find return HF_INTERRUPTED */
+    bool starts_near;                       /* q_N_per_m is that of a shape on supports in other positions */
+    int n_joint_step;                       /* number of steps of net and truss together in the current solve */
+    hf_history *history;                    /* history of the current form-finding, or NULL */
+    struct hf_objectives_point *objectives; /* scratch of the objectives (hf_evaluate_attend), owned; else NULL */
+    const volatile sig_atomic_t *stop;      /* NULL, or a flag: *stop != 0 makes hf_form_find return HF_INTERRUPTED */
 } hf_workspace;
 
 /* Returns cable i_cable with the law and the target value in force in the workspace. */

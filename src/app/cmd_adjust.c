@@ -36,7 +36,7 @@ static void job_free(job *j)
     hf_arena arena = {.block = j->block};
     hf_adjust_free(&j->adjustment);
     hf_prior_free(&j->prior);
-    hf_goals_free(&j->goals);
+    hf_objectives_free(&j->objectives);
     hf_estimate_free(&j->estimate);
     hf_measured_free(&j->measured);
     hf_built_free(&j->built);
@@ -115,9 +115,9 @@ static hf_status check_sections(const hf_case *c, const char *path, hf_messages 
         hf_error(messages, HF_BAD_CASE,
                  "%s: has no section tolerance: add tolerance: {sigma_cut_m: 0.0001}, how well cables are cut", path);
     hf_config_place(c, "adjust.figure", place, sizeof place);
-    if (c->has_adjust && c->adjust.figure != HF_GOAL_PSI && !c->has_surface)
+    if (c->has_adjust && c->adjust.figure != HF_FIGURE_PSI && !c->has_surface)
         hf_error(messages, HF_BAD_CASE, "%s: %s needs the wanted surface: add a section surface", place,
-                 hf_figure_word[c->adjust.figure]);
+                 hf_adjust_figure_word[c->adjust.figure]);
     return messages->n_error ? HF_BAD_CASE : HF_OK;
 }
 
@@ -127,7 +127,7 @@ static hf_status pick_cables(job *j, hf_messages *messages)
     const hf_case *c = &j->problem.settings;
     hf_config_place(c, "adjust.set", place, sizeof place);
     int n = hf_cable_pick_some(&j->problem.scene, c->adjust.set, place, j->cable, messages);
-    j->task = (hf_adjust_task){&c->adjust, &j->goals, n, j->cable, j->least_N, j->threads};
+    j->task = (hf_adjust_task){&c->adjust, &j->objectives, n, j->cable, j->least_N, j->threads};
     return n > 0 ? HF_OK : HF_BAD_CASE;
 }
 
@@ -155,9 +155,9 @@ static hf_status find_least(job *j, hf_messages *messages)
 static hf_status find_figure(job *j, hf_messages *messages)
 {
     const hf_problem *p = &j->problem;
-    if (p->settings.adjust.figure == HF_GOAL_FACETS && p->facets.n_facet == 0)
+    if (p->settings.adjust.figure == HF_FIGURE_FACETS && p->facets.n_facet == 0)
         return hf_error(messages, HF_BAD_CASE, "%s: adjust.figure: facets: this net has no facets", p->settings.path);
-    return hf_adjust_make_goals(j, p->settings.adjust.figure, &j->goals, messages);
+    return hf_adjust_make_objectives(j, p->settings.adjust.figure, &j->objectives, messages);
 }
 
 /* Makes the as-built net. psi is then measured from the positions that are the aim of the adjustments. */
@@ -254,7 +254,7 @@ static double measured_psi_m(const job *j)
         }
         n++;
     }
-    return n > 0 && j->problem.settings.adjust.figure == HF_GOAL_PSI ? sqrt(square / n) : (double)NAN;
+    return n > 0 && j->problem.settings.adjust.figure == HF_FIGURE_PSI ? sqrt(square / n) : (double)NAN;
 }
 
 /* ---- the command ---- */

@@ -99,12 +99,14 @@ hf_status hf_adjust_find_outliers(hf_adjust_job *j)
 
 /* ---- other aims ---- */
 
-hf_status hf_adjust_make_goals(const hf_adjust_job *j, hf_goal_kind figure, hf_goals *goals, hf_messages *messages)
+hf_status hf_adjust_make_objectives(const hf_adjust_job *j, hf_figure_kind figure, hf_objectives *objectives,
+                                    hf_messages *messages)
 {
     const hf_problem *p = &j->problem;
-    hf_optimize_settings wanted = {.n_goal = 1};
-    wanted.goal[0] = (hf_goal_settings){.goal = figure, .weight = 1};
-    return hf_goals_create(&j->built.scene, &j->built.model, &wanted, &p->surface, &p->facets, NULL, goals, messages);
+    hf_optimize_settings wanted = {.n_term = 1};
+    wanted.term[0] = (hf_objective_settings){.figure = figure, .weight = 1};
+    return hf_objectives_create(&j->built.scene, &j->built.model, &wanted, &p->surface, &p->facets, NULL, objectives,
+                                messages);
 }
 
 void hf_adjust_take_aim(hf_adjust_job *j, hf_aim aim)
@@ -142,27 +144,27 @@ static void find_psi_of_design(hf_adjust_job *j)
 }
 
 /* Finds the adjustments for another figure and aim, and stores what they would reach. */
-static hf_status try_instead(hf_adjust_job *j, hf_goal_kind figure, hf_aim aim)
+static hf_status try_instead(hf_adjust_job *j, hf_figure_kind figure, hf_aim aim)
 {
     hf_messages unwanted = {0};
     hf_adjust_settings settings = *j->task.settings;
     hf_adjust_task task = j->task;
-    hf_goals goals = {0};
+    hf_objectives objectives = {0};
     hf_adjustment found = {0};
     settings.figure = figure;
     settings.aim = aim;
     settings.target_m = 0;
     task.settings = &settings;
-    task.goals = &goals;
+    task.objectives = &objectives;
     hf_adjust_take_aim(j, aim);
-    hf_status status = hf_adjust_make_goals(j, figure, &goals, &unwanted);
+    hf_status status = hf_adjust_make_objectives(j, figure, &objectives, &unwanted);
     hf_messages_free(&unwanted);
     if (status == HF_OK) status = hf_adjust_find(&j->estimate, &task, &found);
     if (status == HF_OK)
         j->instead[j->n_instead++] = (hf_adjust_instead){
             figure, aim, found.estimated_m, found.adjusted_m, found.n_move, hf_adjust_at_range(&found, &settings)};
     hf_adjust_free(&found);
-    hf_goals_free(&goals);
+    hf_objectives_free(&objectives);
     hf_adjust_take_aim(j, j->task.settings->aim);
     /* An aim without a shape is not offered. */
     return status == HF_INTERRUPTED || status == HF_NO_MEMORY ? status : HF_OK;
@@ -174,11 +176,11 @@ hf_status hf_adjust_find_instead(hf_adjust_job *j)
     find_psi_of_design(j);
     j->n_at_range = hf_adjust_at_range(&j->adjustment, s);
     bool has_own_psi = j->design_psi_m > j->error_psi_m, is_far = 2 * j->n_at_range > j->adjustment.n_move;
-    bool is_psi = s->figure == HF_GOAL_PSI;
+    bool is_psi = s->figure == HF_FIGURE_PSI;
     if (!is_far && !(has_own_psi && is_psi)) return HF_OK;
-    if (!is_psi || s->aim != HF_AIM_DESIGN) HF_TRY(try_instead(j, HF_GOAL_PSI, HF_AIM_DESIGN));
-    if (has_own_psi && !(is_psi && s->aim == HF_AIM_THEORY)) HF_TRY(try_instead(j, HF_GOAL_PSI, HF_AIM_THEORY));
+    if (!is_psi || s->aim != HF_AIM_DESIGN) HF_TRY(try_instead(j, HF_FIGURE_PSI, HF_AIM_DESIGN));
+    if (has_own_psi && !(is_psi && s->aim == HF_AIM_THEORY)) HF_TRY(try_instead(j, HF_FIGURE_PSI, HF_AIM_THEORY));
     if (!is_psi || !j->problem.settings.has_surface) return HF_OK;
-    hf_goal_kind figure = j->problem.facets.n_facet > 0 ? HF_GOAL_FACETS : HF_GOAL_SURFACE;
+    hf_figure_kind figure = j->problem.facets.n_facet > 0 ? HF_FIGURE_FACETS : HF_FIGURE_SURFACE;
     return try_instead(j, figure, HF_AIM_THEORY);
 }

@@ -10,7 +10,8 @@ hf_status hf_adjust_find_outliers(hf_adjust_job *job);
 
 /* Makes the objective of one figure of the as-built net. Returns HF_OK, HF_BAD_CASE or HF_NO_MEMORY; free goals in any
  * case. */
-hf_status hf_adjust_make_goals(const hf_adjust_job *job, hf_goal_kind figure, hf_goals *goals, hf_messages *messages);
+hf_status hf_adjust_make_objectives(const hf_adjust_job *job, hf_figure_kind figure, hf_objectives *objectives,
+                                    hf_messages *messages);
 
 /* Copies the positions from which psi is measured into the model of the as-built net: those of the design, or the
  * target positions. */

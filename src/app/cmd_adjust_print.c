@@ -47,18 +47,18 @@ void hf_adjust_print_table(const void *context, FILE *f)
 /* ---- for people ---- */
 
 /* Returns the word of an aim. Figures other than psi aim at the target surface. */
-static const char *aim_word(hf_goal_kind figure, hf_aim aim)
+static const char *aim_word(hf_figure_kind figure, hf_aim aim)
 {
-    return hf_aim_word[figure == HF_GOAL_PSI ? aim : HF_AIM_THEORY];
+    return hf_aim_word[figure == HF_FIGURE_PSI ? aim : HF_AIM_THEORY];
 }
 
 /* Prints the surface or positions from which the figure is measured. */
 static void print_aim(const hf_adjust_job *j, FILE *f)
 {
     const hf_adjust_settings *s = j->task.settings;
-    if (s->figure != HF_GOAL_PSI)
+    if (s->figure != HF_FIGURE_PSI)
         hf_print_line(f, "%s: RMS along the normal of the wanted surface (the loss of gain is by the half path)",
-                      hf_figure_word[s->figure]);
+                      hf_adjust_figure_word[s->figure]);
     else if (s->aim == HF_AIM_DESIGN)
         hf_print_line(f, "psi is measured from the shape of the design (adjust.aim), which is %.4f mm from theory",
                       j->design_psi_m * 1e3);
@@ -81,10 +81,10 @@ static void print_instead(const hf_adjust_job *j, FILE *f)
     for (int k = 0; k < j->n_instead; k++) {
         const hf_adjust_instead *other = &j->instead[k];
         char name[64];
-        snprintf(name, sizeof name, other->figure == HF_GOAL_PSI ? "figure: psi, aim: %s" : "figure: %s",
-                 other->figure == HF_GOAL_PSI ? hf_aim_word[other->aim] : hf_figure_word[other->figure]);
+        snprintf(name, sizeof name, other->figure == HF_FIGURE_PSI ? "figure: psi, aim: %s" : "figure: %s",
+                 other->figure == HF_FIGURE_PSI ? hf_aim_word[other->aim] : hf_adjust_figure_word[other->figure]);
         hf_print_line(f, "  adjust: {%s} brings %s from %.4f to %.4f mm by %d move%s, %d at range_m", name,
-                      hf_figure_word[other->figure], other->before_m * 1e3, other->after_m * 1e3, other->n_move,
+                      hf_adjust_figure_word[other->figure], other->before_m * 1e3, other->after_m * 1e3, other->n_move,
                       other->n_move == 1 ? "" : "s", other->n_at_range);
     }
 }
@@ -226,7 +226,7 @@ void hf_adjust_print_summary(const hf_adjust_job *j, const hf_options *o, FILE *
 {
     const hf_adjustment *a = &j->adjustment;
     const hf_tolerance_settings *t = &j->problem.settings.tolerance;
-    const char *figure = hf_figure_word[j->task.settings->figure];
+    const char *figure = hf_adjust_figure_word[j->task.settings->figure];
     if (!hf_adjust_fits(j))
         hf_print_line(f, "the measurement does not fit this net: the moves below are not to be trusted");
     hf_print_line(f, "%d of %d nodes measured, chi^2 %.3g per coordinate; supports %s", j->measured.n_node,
@@ -315,7 +315,7 @@ static void print_json_instead(const hf_adjust_job *from, hf_json *j)
         const hf_adjust_instead *other = &from->instead[k];
         hf_json_line(j, "  ");
         hf_json_open(j, NULL, '{');
-        hf_json_text(j, "figure", hf_figure_word[other->figure]);
+        hf_json_text(j, "figure", hf_adjust_figure_word[other->figure]);
         hf_json_text(j, "aim", aim_word(other->figure, other->aim));
         hf_json_number(j, "before_m", other->before_m);
         hf_json_number(j, "after_m", other->after_m);
@@ -330,7 +330,7 @@ static void print_json_figures(const hf_adjust_job *from, hf_json *j)
 {
     const hf_adjustment *a = &from->adjustment;
     hf_json_line(j, " ");
-    hf_json_text(j, "figure", hf_figure_word[from->task.settings->figure]);
+    hf_json_text(j, "figure", hf_adjust_figure_word[from->task.settings->figure]);
     hf_json_text(j, "aim", aim_word(from->task.settings->figure, from->task.settings->aim));
     hf_json_integer(j, "measured_nodes", from->measured.n_node);
     hf_json_number(j, "chi_square", hf_adjust_chi_square(from));

@@ -17,7 +17,7 @@ enum { HF_ADJUST_INSTEAD = 3 };
 
 /* What adjustments with another figure or aim would reach. */
 typedef struct {
-    hf_goal_kind figure;
+    hf_figure_kind figure;
     hf_aim aim;
     double before_m, after_m; /* value of the figure at the estimated shape, and after the adjustments */
     int n_move, n_at_range;
@@ -31,7 +31,7 @@ typedef struct {
     const char *measured_path;
     int threads;
     hf_estimate estimate;
-    hf_goals goals;
+    hf_objectives objectives;
     hf_adjustment adjustment;
     hf_adjust_task task;
     int *cable; /* [n_cable], cables of the task */

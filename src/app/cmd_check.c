@@ -137,16 +137,20 @@ static bool refines(const hf_problem *p, const hf_evaluator *v)
     const hf_optimize_settings *o = &p->settings.optimize;
     bool is_result = hf_optimiser_plan_of(o).ends_with_refine;
     bool is_wanted = is_result || o->refine != HF_REFINE_FALSE;
-    return v && is_wanted && (is_result || !o->n_objective) && hf_refine_applies(v);
+    return v && is_wanted && (is_result || !o->n_front) && hf_refine_applies(v);
 }
 
 /* Prints the objectives of a front by name. */
-static void print_objectives(const hf_problem *p, FILE *f)
+static void print_front(const hf_problem *p, FILE *f)
 {
-    char name[HF_GOAL_NAME_SIZE];
+    char name[HF_OBJECTIVE_NAME_SIZE];
     fprintf(f, "                front of");
-    for (int k = 0; k < p->goals.n_goal; k++)
-        fprintf(f, "%s %s", k == 0 ? "" : k + 1 < p->goals.n_goal ? "," : " and", hf_goals_name(&p->goals, k, name));
+    for (int k = 0; k < p->objectives.n_objective; k++)
+        fprintf(f, "%s %s",
+                k == 0                              ? ""
+                : k + 1 < p->objectives.n_objective ? ","
+                                                    : " and",
+                hf_objectives_name(&p->objectives, k, name));
     if (hf_optimiser_plan_of(&p->settings.optimize).ends_with_refine)
         fprintf(f, ": %d points, each by Levenberg-Marquardt\n", p->settings.optimize.front_points);
     else
@@ -187,7 +191,7 @@ static void print_variables(const hf_problem *p, FILE *f)
 }
 
 /* Prints the as-built nets over which an objective is taken. */
-static void print_nets(const hf_goal_settings *s, FILE *f)
+static void print_nets(const hf_objective_settings *s, FILE *f)
 {
     if (*s->state) fprintf(f, ", in state %s", s->state);
     if (s->over != HF_OVER_DESIGN) fprintf(f, " over %s, ", hf_over_word[s->over]);
@@ -200,10 +204,10 @@ static void print_nets(const hf_goal_settings *s, FILE *f)
 /* Prints how many as-built nets are solved for each design. */
 static void print_cost_of_nets(const hf_problem *p, FILE *f)
 {
-    const hf_goals_nets *nets = p->goals.nets;
+    const hf_objectives_nets *nets = p->objectives.nets;
     int n = 0, n_sample = 0;
     for (int i = 0; nets && i < nets->n_state + nets->n_sample; i++) {
-        n += hf_goals_are_over(&p->goals, i);
+        n += hf_objectives_are_over(&p->objectives, i);
         n_sample += i >= nets->n_state;
     }
     if (!nets) return;
@@ -218,12 +222,12 @@ static void print_wishes(const hf_problem *p, FILE *f)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     char place[PATH_MAX];
-    for (int k = 0; k < o->n_goal && !o->n_objective; k++) {
-        const hf_goal_settings *s = &o->goal[k];
-        fprintf(f, "                goals.%d: %s", k, hf_goal_word[s->goal]);
-        if (p->goals.goal[k].cable) fprintf(f, " of %s", set_or_all(s->set));
+    for (int k = 0; k < o->n_term && !o->n_front; k++) {
+        const hf_objective_settings *s = &o->term[k];
+        fprintf(f, "                goals.%d: %s", k, hf_figure_kind_word[s->figure]);
+        if (p->objectives.objective[k].cable) fprintf(f, " of %s", set_or_all(s->set));
         if (!isnan(s->target)) fprintf(f, ", target %g", s->target);
-        if (s->goal == HF_GOAL_GAIN)
+        if (s->figure == HF_FIGURE_GAIN)
             fprintf(f, " at %g GHz",
                     (s->frequency_Hz > 0 ? s->frequency_Hz : hf_surface_highest_Hz(&p->surface)) / 1e9);
         print_nets(s, f);
@@ -232,8 +236,8 @@ static void print_wishes(const hf_problem *p, FILE *f)
     print_cost_of_nets(p, f);
     for (int k = 0; k < o->n_limit; k++) {
         const hf_limit_settings *s = &o->limit[k];
-        fprintf(f, "                limits.%d: %s", k, hf_limit_word[s->limit]);
-        if (s->limit != HF_LIMIT_DISPLACEMENT) fprintf(f, " of %s", set_or_all(s->set));
+        fprintf(f, "                limits.%d: %s", k, hf_limit_word[s->figure]);
+        if (s->figure != HF_LIMIT_DEFLECTION) fprintf(f, " of %s", set_or_all(s->set));
         print_bounds(s->lower, s->upper, f);
         fputc('\n', f);
     }
@@ -299,8 +303,8 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
                 "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
                 hf_rule_word[o->rule], p->model.n_variable, o->population, o->generations, (unsigned long long)o->seed);
     bool is_result = hf_optimiser_plan_of(o).ends_with_refine;
-    bool is_front = optimizes && o->n_objective > 0;
-    if (is_front) print_objectives(p, f);
+    bool is_front = optimizes && o->n_front > 0;
+    if (is_front) print_front(p, f);
     if (optimizes) print_variables(p, f);
     if (optimizes) print_wishes(p, f);
     if (refines(p, v))
@@ -434,7 +438,7 @@ static hf_status print_refine_time(hf_problem *p, const hf_evaluator *v, const h
 {
     hf_refine_result r;
     char one[32], all[32];
-    int n_point = p->settings.optimize.n_objective > 0 ? p->settings.optimize.front_points : 1;
+    int n_point = p->settings.optimize.n_front > 0 ? p->settings.optimize.front_points : 1;
     double n_step = (double)p->settings.optimize.refine_steps * n_point;
     double begin_s = hf_clock_s(), foretold_s = hf_refine_operations(v) / OPERATIONS_PER_S;
     if (foretold_s > TRIAL_S) {

@@ -4,7 +4,7 @@
  *      optimize.variables, there is a column for each boundary cable with a free end: its id, with its pretension
  *      in N. The columns may be in any order. An optional column `id` names the rows.
  * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation,merit, and one
- *      column per row of optimize.goals or optimize.objectives (hf_goals_name). With objectives, there is no merit.
+ *      column per row of optimize.goals or optimize.objectives (hf_objectives_name). A front has no merit.
  *      One row per design, in the order of the input, with 17 significant digits. A missing value is nan. Without a
  *      column `id`, the rows are numbered from 1.
  * --jacobian: id,figure and a column per design variable. For every feasible design, the table has the derivatives
@@ -213,31 +213,31 @@ static void write_figure(const hf_result_field *field, const hf_form_result *r, 
 }
 
 /* Writes the objectives of a design. A design that only breaks a limit has a shape, and therefore objectives. */
-static void write_goals(const hf_goals *goals, const hf_form_result *r, FILE *f)
+static void write_objectives(const hf_objectives *objectives, const hf_form_result *r, FILE *f)
 {
-    for (int k = 0; k < goals->n_goal; k++)
-        write_number(hf_status_has_shape(r->status) ? r->goal[k] : (double)NAN, f);
+    for (int k = 0; k < objectives->n_objective; k++)
+        write_number(hf_status_has_shape(r->status) ? r->objective[k] : (double)NAN, f);
 }
 
 static void write_results(const void *context, FILE *f)
 {
     const job *j = context;
-    const hf_goals *goals = &j->problem.goals;
+    const hf_objectives *objectives = &j->problem.objectives;
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
     int n_field = hf_problem_list_figures(&j->problem, field);
     fputs("id", f);
     for (int k = 0; k < n_field; k++)
         fprintf(f, ",%s", field[k]->name);
-    for (int k = 0; k < goals->n_goal; k++) {
-        char name[HF_GOAL_NAME_SIZE];
-        fprintf(f, ",%s", hf_goals_name(goals, k, name));
+    for (int k = 0; k < objectives->n_objective; k++) {
+        char name[HF_OBJECTIVE_NAME_SIZE];
+        fprintf(f, ",%s", hf_objectives_name(objectives, k, name));
     }
     fputc('\n', f);
     for (int i = 0; i < j->table.n_row; i++) {
         write_row_id(j, i, f);
         for (int k = 0; k < n_field; k++)
             write_figure(field[k], &j->result[i], f);
-        write_goals(goals, &j->result[i], f);
+        write_objectives(objectives, &j->result[i], f);
         fputc('\n', f);
     }
 }
@@ -261,7 +261,7 @@ static void write_jacobian(const void *context, FILE *f)
     for (int i = 0; i < j->table.n_row; i++) {
         if (j->result[i].status != HF_OK) continue;
         for (int k = 0; k < hf_problem_n_slope(&j->problem); k++) {
-            char name[HF_GOAL_NAME_SIZE];
+            char name[HF_OBJECTIVE_NAME_SIZE];
             write_row_id(j, i, f);
             fprintf(f, ",%s", hf_problem_slope_name(&j->problem, k, name));
             for (int variable = 0; variable < n_variable; variable++)
@@ -288,7 +288,7 @@ static void print_summary(const job *j, const char *path, FILE *f)
     hf_print_duration(j->wall_s, wall, sizeof wall);
     snprintf(row, sizeof row, "%d", j->best + 1);
     const char *id = j->best >= 0 && row_id(j, j->best) ? row_id(j, j->best) : row;
-    if (j->best >= 0 && j->problem.goals.n_goal)
+    if (j->best >= 0 && j->problem.objectives.n_objective)
         snprintf(best, sizeof best, "; best merit %.6g, %s", j->result[j->best].merit, id);
     else if (j->best >= 0)
         snprintf(best, sizeof best, "; best psi %.4f mm, %s", j->result[j->best].psi_m * 1e3, id);
@@ -301,16 +301,16 @@ static void print_summary(const job *j, const char *path, FILE *f)
 /* Prints the best design, and with optimize.goals its objectives. */
 static void print_best(const job *from, hf_json *j)
 {
-    const hf_goals *goals = &from->problem.goals;
+    const hf_objectives *objectives = &from->problem.objectives;
     const hf_form_result *best = from->best < 0 ? NULL : &from->result[from->best];
     hf_json_number(j, "best_psi_m", best ? best->psi_m : (double)NAN);
     hf_json_integer(j, "best_row", from->best + 1);
-    if (goals->n_goal == 0) return;
+    if (objectives->n_objective == 0) return;
     hf_json_number(j, "best_merit", best ? best->merit : (double)NAN);
     hf_json_open(j, "best_goals", '{');
-    for (int k = 0; k < goals->n_goal; k++) {
-        char name[HF_GOAL_NAME_SIZE];
-        hf_json_number(j, hf_goals_name(goals, k, name), best ? best->goal[k] : (double)NAN);
+    for (int k = 0; k < objectives->n_objective; k++) {
+        char name[HF_OBJECTIVE_NAME_SIZE];
+        hf_json_number(j, hf_objectives_name(objectives, k, name), best ? best->objective[k] : (double)NAN);
     }
     hf_json_close(j, '}');
 }

@@ -39,11 +39,11 @@
 
 /* Holds what one thread needs to compute the effects of cables on the figure. */
 typedef struct {
-    hf_goals_point point;
+    hf_objectives_point point;
     double *lanes; /* scratch for solves with the packed matrix */
     /* [PANEL][...] strains, displacements and scratch of hf_built_linear_apply_by. */
     double *strain_N, *answer_m, *scratch;
-    /* Arguments of hf_goals_push. The figure depends on positions alone, so the last two stay 0. */
+    /* Arguments of hf_objectives_push. The figure depends on positions alone, so the last two stay 0. */
     double *rate_m, *rate_N, *displacement_m;
 } adjust_room;
 
@@ -151,7 +151,8 @@ static void find_rates(void *context, int i, double *rate_N_per_m)
 static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, adjustment *a)
 {
     hf_arena arena = {0};
-    *a = (adjustment){.estimate = p, .task = task, .n = (size_t)task->n_cable, .n_row = (size_t)task->goals->n_row};
+    *a =
+        (adjustment){.estimate = p, .task = task, .n = (size_t)task->n_cable, .n_row = (size_t)task->objectives->n_row};
     a->n_dof = p->linear.n_dof;
     a->n_room = task->n_thread > 0 ? task->n_thread : hf_parallel_cores();
     a->matrix = hf_newton_matrix_packed(&p->built->model);
@@ -160,7 +161,7 @@ static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, a
     a->left_open = a->column + a->n * a->n_row;
     a->at_zero = a->left_open + HF_ESTIMATE_SAMPLES * a->n_row;
     for (int i = 0; i < a->n_room; i++)
-        HF_TRY(hf_goals_point_create(task->goals, &a->room[i].point));
+        HF_TRY(hf_objectives_point_create(task->objectives, &a->room[i].point));
     const hf_adjust_settings *s = task->settings;
     a->problem = (hf_moves_problem){.n = task->n_cable,
                                     .gram = a->gram,
@@ -183,7 +184,7 @@ static void free_adjustment(adjustment *a)
     hf_arena arena = {.block = a->block};
     hf_workspace_free(&a->work);
     for (int i = 0; i < a->n_room && a->block; i++)
-        hf_goals_point_free(&a->room[i].point);
+        hf_objectives_point_free(&a->room[i].point);
     hf_arena_free(&arena);
 }
 
@@ -192,7 +193,7 @@ static void free_adjustment(adjustment *a)
 static hf_status measure_work(adjustment *a, double *figure_m)
 {
     double merit;
-    return hf_goals_measure(a->task->goals, &a->work, &a->room[0].point, figure_m, &merit);
+    return hf_objectives_measure(a->task->objectives, &a->work, &a->room[0].point, figure_m, &merit);
 }
 
 /* Solves the net with the estimated errors and the adjustments in turn_m, and measures its figure. */
@@ -248,8 +249,8 @@ static void push_move(const adjustment *a, adjust_room *r, const double *move_m,
     for (int row = 0; row < m->n_node; row++)
         for (int c = 0; c < 3; c++)
             r->rate_m[c * m->n_node + row] = move_m[3 * row + c];
-    hf_goals_rate by = {r->rate_m, r->rate_N, r->displacement_m};
-    hf_goals_push(a->task->goals, &a->work, &r->point, &by, rate);
+    hf_objectives_rate by = {r->rate_m, r->rate_N, r->displacement_m};
+    hf_objectives_push(a->task->objectives, &a->work, &r->point, &by, rate);
 }
 
 static void find_panel(void *context, int room, int i_panel)
@@ -324,7 +325,7 @@ static void take_turns_off(adjustment *a)
 /* Renews the residuals at a shape near that of the last linear model and keeps the derivatives of that model. */
 static hf_status look_again(adjustment *a)
 {
-    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[0].point, a->residual));
+    HF_TRY(hf_objectives_linearise(a->task->objectives, &a->work, &a->room[0].point, a->residual));
     take_turns_off(a);
     for (size_t i = 0; i < a->n; i++)
         a->slope[i] = hf_dot(a->n_row, a->column + i * a->n_row, a->at_zero);
@@ -338,7 +339,7 @@ static hf_status linearise(adjustment *a)
 {
     size_t n = a->n, n_row = a->n_row;
     for (int i = 0; i < a->n_room; i++)
-        HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &a->room[i].point, a->residual));
+        HF_TRY(hf_objectives_linearise(a->task->objectives, &a->work, &a->room[i].point, a->residual));
     HF_TRY(hf_built_linear_take(&a->estimate->linear, &a->work));
     hf_packed_band_pack(&a->matrix, a->estimate->linear.work.newton_band);
     hf_parallel_each(a->n_room, (int)((n + PANEL - 1) / PANEL), find_panel, a);
@@ -472,7 +473,7 @@ static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_E
 {
     adjust_room *r = &a->room[0];
     const hf_turned t = turned_of(a);
-    HF_TRY(hf_goals_linearise(a->task->goals, &a->work, &r->point, a->residual));
+    HF_TRY(hf_objectives_linearise(a->task->objectives, &a->work, &r->point, a->residual));
     HF_TRY(hf_turned_answer(&t, &a->work, a->answer_m));
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
         double *move_m = a->answer_m + s * a->n_dof;

@@ -9,13 +9,13 @@
 
 #include "built/estimate.h"
 #include "built/moves.h"
-#include <hifdm/goals.h>
+#include <hifdm/objectives.h>
 
 /* Specifies which turnbuckles can be adjusted, and for which figure. All pointers are borrowed. */
 typedef struct {
     const hf_adjust_settings *settings;
     /* The figure: exactly one objective, made for the model of the as-built net. */
-    const hf_goals *goals;
+    const hf_objectives *objectives;
     int n_cable, *cable; /* [n_cable] cables that have a turnbuckle */
     /* [n_cable of the net] minimum tensions that adjustments must keep, N; NULL: only HF_ADJUST_TAUT limits them. */
     const double *least_N;

@@ -23,7 +23,7 @@ typedef struct {
     hf_built_linear linear;      /* the net linearised last; not factored before the first one */
     hf_built_errors errors;      /* made only with samples */
     hf_workspace design, of_net; /* views of a shape; other objects own the arrays */
-    hf_goals_take *take;
+    hf_objectives_take *take;
     void *context;
     double *cut_m, *EA_N, *move_m, *load_N; /* [n_cable] or [3][n_node] by row, of one net */
     double *z;                              /* [hf_built_errors_count] numbers of a sample */
@@ -33,10 +33,10 @@ typedef struct {
     bool has_weight;
     double *length_m;     /* [n_cable] lengths in one shape */
     unsigned char *loose; /* [n_node] all 0: each node counts at the position that it has */
-    /* [HF_GOALS_AT_ONCE][...] arguments of hf_built_linear_apply_by. */
+    /* [HF_OBJECTIVES_AT_ONCE][...] arguments of hf_built_linear_apply_by. */
     double *strain_N, *dof_load_N, *dof_move_m, *scratch;
     double *cut_rate;                              /* [n_cable] derivatives of the cut lengths of the design */
-    double *rate_m, *rate_N, *rate_displacement_m; /* [HF_GOALS_AT_ONCE] derivatives of the shape of a net */
+    double *rate_m, *rate_N, *rate_displacement_m; /* [HF_OBJECTIVES_AT_ONCE] derivatives of the shape of a net */
     void *block, *more;
 } nets_room;
 
@@ -49,7 +49,7 @@ static size_t scratch_of(const hf_model *m)
 static void lay_out_room(hf_arena *arena, const hf_built_nets *nets, nets_room **room)
 {
     const hf_model *m = nets->model;
-    size_t n = (size_t)m->n_cable, places = 3 * (size_t)m->n_node, many = HF_GOALS_AT_ONCE;
+    size_t n = (size_t)m->n_cable, places = 3 * (size_t)m->n_node, many = HF_OBJECTIVES_AT_ONCE;
     nets_room *r = hf_arena_take(arena, 1, sizeof *r), unmade = {0}, *to = arena->block ? r : &unmade;
     *room = r;
     to->cut_m = hf_arena_take(arena, n, sizeof(double));
@@ -70,7 +70,7 @@ static void lay_out_room(hf_arena *arena, const hf_built_nets *nets, nets_room *
     to->rate_displacement_m = hf_arena_take(arena, many * 3 * (size_t)m->n_attachment, sizeof(double));
 }
 
-static hf_status open_room(const hf_goals_nets *as, void **room)
+static hf_status open_room(const hf_objectives_nets *as, void **room)
 {
     const hf_built_nets *nets = (const void *)as;
     hf_arena arena = {0};
@@ -122,7 +122,7 @@ static hf_status make_room_for(nets_room *r, const hf_workspace *w)
     return HF_OK;
 }
 
-/* Cuts the nets for the design in the workspace, as hf_goals_nets.cut. */
+/* Cuts the nets for the design in the workspace, as hf_objectives_nets.cut. */
 static hf_status cut_for(void *room, const hf_workspace *w)
 {
     nets_room *r = room;
@@ -171,8 +171,8 @@ static void make_net(nets_room *r, int i_net, hf_built_net *net)
 
 /* ---- shapes ---- */
 
-/* Returns a view of a shape for goals.h. All nodes of a net count, loose ones at the positions that they were given, as
- * in the samples of `tolerance`. */
+/* Returns a view of a shape for objectives.h. All nodes of a net count, loose ones at the positions that they were
+ * given, as in the samples of `tolerance`. */
 static const hf_workspace *view(nets_room *r, const double *position_m, const double *tension_N,
                                 const double *displacement_m)
 {
@@ -219,7 +219,7 @@ static const hf_workspace *find_one(nets_room *r, int i_net, const hf_workspace 
     return result.status == HF_OK ? view(r, w->position_m, w->tension_N, w->displacement_m) : NULL;
 }
 
-static void solve_nets(void *room, int first, int n, hf_goals_take *take, void *context)
+static void solve_nets(void *room, int first, int n, hf_objectives_take *take, void *context)
 {
     nets_room *r = room;
     const hf_workspace *whole;
@@ -263,8 +263,8 @@ static void find_stretch(nets_room *r, int i_net)
         r->stretch[e] -= r->cut_rate[e];
 }
 
-/* Solves one net and factors its Hessian, as hf_goals_nets.linearise. A net without a shape or without stiffness gives
- * HF_NOT_FINITE. */
+/* Solves one net and factors its Hessian, as hf_objectives_nets.linearise. A net without a shape or without stiffness
+ * gives HF_NOT_FINITE. */
 static hf_status linearise_net(void *room, int i_net, const hf_workspace **shape)
 {
     nets_room *r = room;
@@ -282,7 +282,7 @@ static hf_status linearise_net(void *room, int i_net, const hf_workspace **shape
 }
 
 /* Sets cut_rate for a change of the design, the derivative of l0 = l/(1 + T/EA) (M32). */
-static void follow_cut(nets_room *r, const hf_goals_rate *by)
+static void follow_cut(nets_room *r, const hf_objectives_rate *by)
 {
     const hf_model *m = r->nets->model;
     const double *x = r->built.place_m, *v = by->position_m;
@@ -297,7 +297,7 @@ static void follow_cut(nets_room *r, const hf_goals_rate *by)
 
 /* Sets the displacements of the supports where they rest. They follow the design, at attachments less the change of the
  * displacement of the truss. */
-static void follow_rest(const nets_room *r, const hf_goals_rate *by, double *dof_move)
+static void follow_rest(const nets_room *r, const hf_objectives_rate *by, double *dof_move)
 {
     const hf_model *m = r->nets->model;
     for (int row = m->n_free; row < m->n_node; row++)
@@ -319,7 +319,8 @@ static void follow_weight(const nets_room *r, double *dof_load)
     }
 }
 
-/* Rearranges the solution by coordinate for goals.h, and sets the displacements of the attachments by the truss. */
+/* Rearranges the solution by coordinate for objectives.h, and sets the displacements of the attachments by the
+ * truss. */
 static void spread_net(const nets_room *r, int k, double *displacement_m)
 {
     const hf_model *m = r->nets->model;
@@ -333,8 +334,8 @@ static void spread_net(const nets_room *r, int k, double *displacement_m)
         displacement_m[i] = dof_move[3 * m->attachment_row[i / 3] + i % 3] - displacement_m[i];
 }
 
-/* Turns n changes of the design into those of the net linearised last, as hf_goals_nets.follow. */
-static void follow_net(void *room, int n, const hf_goals_rate *by, hf_goals_rate *by_net)
+/* Turns n changes of the design into those of the net linearised last, as hf_objectives_nets.follow. */
+static void follow_net(void *room, int n, const hf_objectives_rate *by, hf_objectives_rate *by_net)
 {
     nets_room *r = room;
     const hf_model *m = r->nets->model;
@@ -355,7 +356,7 @@ static void follow_net(void *room, int n, const hf_goals_rate *by, hf_goals_rate
         double *tension = r->rate_N + k * n_cable, *displacement = r->rate_displacement_m + k * n_attachment;
         hf_built_linear_tension(&r->linear, r->strain_N + k * n_cable, r->dof_move_m + k * n_dof, tension);
         spread_net(r, (int)k, displacement);
-        by_net[k] = (hf_goals_rate){r->rate_m + k * n_dof, tension, displacement};
+        by_net[k] = (hf_objectives_rate){r->rate_m + k * n_dof, tension, displacement};
     }
 }
 

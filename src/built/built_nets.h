@@ -1,9 +1,9 @@
 /* built_nets - the as-built nets of a design over which objectives are taken (METHOD section 7).
  *
- * It implements the interface hf_goals_nets of goals.h. The nets are the load cases of the case file, followed by
- * samples of the errors of its section `tolerance`. Samples use random numbers even where `tolerance` uses Sobol's
- * sequence. The directions of that sequence depend on the design, whereas all designs must be judged by the same
- * errors.
+ * It implements the interface hf_objectives_nets of objectives.h. The nets are the load cases of the case file,
+ * followed by samples of the errors of its section `tolerance`. Samples use random numbers even where `tolerance` uses
+ * Sobol's sequence. The directions of that sequence depend on the design, whereas all designs must be judged by the
+ * same errors.
  *
  * Each net is cut for the shape of the design and solved from that shape. built_batch solves samples eight at a time;
  * load cases are solved one by one. An hf_built_nets does not change after it is made. Each thread has its own working
@@ -13,10 +13,10 @@
 
 #include "built/errors.h"
 #include <hifdm/built_batch.h>
-#include <hifdm/goals.h>
+#include <hifdm/objectives.h>
 
 typedef struct {
-    hf_goals_nets as; /* the first member: the interface that goals.h uses */
+    hf_objectives_nets as; /* the first member: the interface that objectives.h uses */
     const hf_scene *scene;
     const hf_model *model; /* the model of the design */
     const hf_form_settings *form;

@@ -247,35 +247,36 @@ static void check_variables(const hf_optimize_settings *o, hf_config_faults *f)
 }
 
 /* Checks the rows of optimize.goals or optimize.objectives. */
-static void check_goals(const char *list, int n_goal, const hf_goal_settings *goal, hf_config_faults *f)
+static void check_objectives(const char *list, int n_objective, const hf_objective_settings *objective,
+                             hf_config_faults *f)
 {
     enum {
-        SETS = 1u << HF_GOAL_TENSION | 1u << HF_GOAL_LENGTH | 1u << HF_GOAL_EVENNESS | 1u << HF_GOAL_MASS |
-               1u << HF_GOAL_RATIO,
-        SURFACES = 1u << HF_GOAL_SURFACE | 1u << HF_GOAL_FACETS
+        SETS = 1u << HF_FIGURE_TENSION | 1u << HF_FIGURE_LENGTH | 1u << HF_FIGURE_EVENNESS | 1u << HF_FIGURE_MASS |
+               1u << HF_FIGURE_RATIO,
+        SURFACES = 1u << HF_FIGURE_SURFACE | 1u << HF_FIGURE_FACETS
     };
     static const struct {
         const char *key;
         unsigned users;
     } use[] = {{"set", SETS},
-               {"target", 1u << HF_GOAL_TENSION | 1u << HF_GOAL_LENGTH},
-               {"mass_kg_per_m", 1u << HF_GOAL_MASS},
+               {"target", 1u << HF_FIGURE_TENSION | 1u << HF_FIGURE_LENGTH},
+               {"mass_kg_per_m", 1u << HF_FIGURE_MASS},
                {"along", SURFACES},
                {"fit", SURFACES},
-               {"frequency_Hz", 1u << HF_GOAL_GAIN}};
+               {"frequency_Hz", 1u << HF_FIGURE_GAIN}};
     char what[WHAT_SIZE];
-    for (int i = 0; i < n_goal; i++) {
-        const hf_goal_settings *g = &goal[i];
+    for (int i = 0; i < n_objective; i++) {
+        const hf_objective_settings *g = &objective[i];
         for (size_t k = 0; k < sizeof use / sizeof *use; k++)
-            check_use(f, list, i, use[k].key, (int)g->goal, hf_goal_word, use[k].users);
+            check_use(f, list, i, use[k].key, (int)g->figure, hf_figure_kind_word, use[k].users);
         hf_config_check_set(f, list, i, g->set);
-        if (g->goal == HF_GOAL_TENSION && isnan(g->target))
+        if (g->figure == HF_FIGURE_TENSION && isnan(g->target))
             hf_config_fault_in_row(f, list, i, "target", "is missing: the tension that is wanted, in N");
-        if (g->goal == HF_GOAL_LENGTH && g->target <= 0)
+        if (g->figure == HF_FIGURE_LENGTH && g->target <= 0)
             hf_config_fault_in_row(f, list, i, "target", "of length must be above 0");
-        if (g->goal == HF_GOAL_MASS && isnan(g->mass_kg_per_m))
+        if (g->figure == HF_FIGURE_MASS && isnan(g->mass_kg_per_m))
             hf_config_fault_in_row(f, list, i, "mass_kg_per_m", "is missing: the mass of the cables");
-        if (g->goal == HF_GOAL_GAIN && frequency_fault(g->frequency_Hz, what))
+        if (g->figure == HF_FIGURE_GAIN && frequency_fault(g->frequency_Hz, what))
             hf_config_fault_in_row(f, list, i, "frequency_Hz", what);
     }
 }
@@ -293,24 +294,24 @@ static void check_use_of_front(const hf_optimize_settings *o, hf_config_faults *
             "cannot be chain with optimize.objectives, whose children move along differences; remove it");
 }
 
-static void check_objectives(const hf_optimize_settings *o, hf_config_faults *f)
+static void check_front(const hf_optimize_settings *o, hf_config_faults *f)
 {
     static const char list[] = "optimize.objectives";
-    check_goals(list, o->n_objective, o->objective, f);
-    if (o->n_objective == 1)
+    check_objectives(list, o->n_front, o->front, f);
+    if (o->n_front == 1)
         hf_config_fault_of(f, "optimize.objectives.0",
                            "is the only row; a front is of two or three objectives. For one use optimize.goals");
-    if (o->n_objective > 0 && o->n_goal > 0)
+    if (o->n_front > 0 && o->n_term > 0)
         hf_config_fault_of(f, "optimize.goals.0",
                            "cannot be with optimize.objectives, which takes the place of goals; keep one of them");
-    if (o->n_objective > 2 && o->front_points < 4)
+    if (o->n_front > 2 && o->front_points < 4)
         hf_config_fault_of(f, "optimize.front_points", "must be at least 4 with three objectives, for the ends alone");
-    if (o->n_objective > 1 && o->refine == HF_REFINE_TRUE)
+    if (o->n_front > 1 && o->refine == HF_REFINE_TRUE)
         hf_config_fault_of(f, "optimize.compare_lm", "compares one design; it has no meaning for optimize.objectives");
-    if (o->n_objective > 1) check_use_of_front(o, f);
-    for (int i = 1; i < o->n_objective; i++)
+    if (o->n_front > 1) check_use_of_front(o, f);
+    for (int i = 1; i < o->n_front; i++)
         for (int k = 0; k < i; k++)
-            if (!memcmp(&o->objective[i], &o->objective[k], sizeof o->objective[i]))
+            if (!memcmp(&o->front[i], &o->front[k], sizeof o->front[i]))
                 hf_config_fault_in_row(f, list, i, "goal",
                                        "is the objective of an earlier row; a front needs different ones");
 }
@@ -320,12 +321,12 @@ static void check_limits(const hf_optimize_settings *o, hf_config_faults *f)
     static const char list[] = "optimize.limits";
     for (int i = 0; i < o->n_limit; i++) {
         const hf_limit_settings *l = &o->limit[i];
-        check_use(f, list, i, "set", (int)l->limit, hf_limit_word, 1u << HF_LIMIT_TENSION | 1u << HF_LIMIT_RATIO);
+        check_use(f, list, i, "set", (int)l->figure, hf_limit_word, 1u << HF_LIMIT_TENSION | 1u << HF_LIMIT_RATIO);
         hf_config_check_set(f, list, i, l->set);
-        double least = l->limit == HF_LIMIT_RATIO ? 1 : 0; /* smallest possible value */
-        if (l->limit != HF_LIMIT_TENSION && (l->lower > least || l->upper <= least || isinf(l->upper)))
+        double least = l->figure == HF_LIMIT_RATIO ? 1 : 0; /* smallest possible value */
+        if (l->figure != HF_LIMIT_TENSION && (l->lower > least || l->upper <= least || isinf(l->upper)))
             hf_config_fault_in_row(f, list, i, "bounds",
-                                   l->limit == HF_LIMIT_RATIO
+                                   l->figure == HF_LIMIT_RATIO
                                        ? "must end above 1, and not begin above it: even tensions have 1"
                                        : "must end above 0, and not begin above it");
     }
@@ -368,11 +369,11 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
     if (o->mutation_low > o->mutation_high)
         hf_config_fault_of(f, "optimize.mutation_low", "must not be above optimize.mutation_high");
     check_variables(o, f);
-    check_goals("optimize.goals", o->n_goal, o->goal, f);
-    check_objectives(o, f);
+    check_objectives("optimize.goals", o->n_term, o->term, f);
+    check_front(o, f);
     check_limits(o, f);
-    hf_config_check_nets(c, "optimize.goals", o->n_goal, o->goal, f);
-    hf_config_check_nets(c, "optimize.objectives", o->n_objective, o->objective, f);
+    hf_config_check_nets(c, "optimize.goals", o->n_term, o->term, f);
+    hf_config_check_nets(c, "optimize.objectives", o->n_front, o->front, f);
 }
 
 void hf_config_complete(hf_case *c)

@@ -10,9 +10,9 @@ void hf_config_check(const hf_case *settings, hf_config_faults *faults);
 /* Reports faults in the keys of the as-built net: `adjust`, `cables`, `cases` and `tolerance`. */
 void hf_config_check_built(const hf_case *settings, hf_config_faults *faults);
 
-/* Reports faults in the keys `state`, `over`, `take` and `quantile` of the n_goal rows of a list of objectives. */
-void hf_config_check_nets(const hf_case *settings, const char *list, int n_goal, const hf_goal_settings *goal,
-                          hf_config_faults *faults);
+/* Reports faults in the keys `state`, `over`, `take` and `quantile` of the n_objective rows of a list of objectives. */
+void hf_config_check_nets(const hf_case *settings, const char *list, int n_objective,
+                          const hf_objective_settings *objective, hf_config_faults *faults);
 
 /* Reports a set name in a row that no set can have. */
 void hf_config_check_set(hf_config_faults *faults, const char *list, int row, const char *set);

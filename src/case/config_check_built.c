@@ -23,7 +23,7 @@ static void check_adjust(const hf_adjust_settings *a, hf_config_faults *f)
     if (fault) hf_config_fault_of(f, "adjust.set", fault);
     if (a->range_m * (1 + 1e-12) < a->step_m)
         hf_config_fault_of(f, "adjust.range_m", "is smaller than adjust.step_m, which allows no move at all");
-    if (a->aim == HF_AIM_DESIGN && a->figure != HF_GOAL_PSI && hf_config_is_given(f, "adjust.aim"))
+    if (a->aim == HF_AIM_DESIGN && a->figure != HF_FIGURE_PSI && hf_config_is_given(f, "adjust.aim"))
         hf_config_fault_of(f, "adjust.aim", "design goes with adjust.figure: psi alone; the others are of the surface");
 }
 
@@ -209,7 +209,8 @@ void hf_config_check_built(const hf_case *c, hf_config_faults *f)
 
 /* ---- objectives over load cases and samples ---- */
 
-static void check_state(const hf_case *c, const char *list, int row, const hf_goal_settings *g, hf_config_faults *f)
+static void check_state(const hf_case *c, const char *list, int row, const hf_objective_settings *g,
+                        hf_config_faults *f)
 {
     const hf_built_settings *b = &c->built;
     const char *name[HF_STATE_ROWS_MAX];
@@ -232,7 +233,7 @@ static void check_state(const hf_case *c, const char *list, int row, const hf_go
     hf_config_fault_in_row(f, list, row, "state", what);
 }
 
-static void check_quantile(const hf_optimize_settings *o, const char *list, int row, const hf_goal_settings *g,
+static void check_quantile(const hf_optimize_settings *o, const char *list, int row, const hf_objective_settings *g,
                            hf_config_faults *f)
 {
     if (!(g->quantile > 0)) return;
@@ -251,24 +252,24 @@ static void check_quantile(const hf_optimize_settings *o, const char *list, int 
 
 /* Reports objectives that cannot be part of a front with Levenberg-Marquardt. Such a front keeps limits on the norm of
  * residuals, or on figures of the design itself. */
-static void check_objective(const hf_optimize_settings *o, const char *list, int row, const hf_goal_settings *g,
+static void check_objective(const hf_optimize_settings *o, const char *list, int row, const hf_objective_settings *g,
                             hf_config_faults *f)
 {
-    bool is_largest = g->goal == HF_GOAL_PULL || g->goal == HF_GOAL_DISPLACEMENT || g->goal == HF_GOAL_RATIO;
+    bool is_largest = g->figure == HF_FIGURE_PULL || g->figure == HF_FIGURE_DEFLECTION || g->figure == HF_FIGURE_RATIO;
     bool is_worst = g->over != HF_OVER_DESIGN && g->take == HF_TAKE_WORST && !(g->quantile > 0);
     bool is_of_nets = *g->state || g->over != HF_OVER_DESIGN;
-    if (o->n_objective > 0 && o->method != HF_OPTIMIZE_GA && (is_worst || (is_of_nets && is_largest)))
+    if (o->n_front > 0 && o->method != HF_OPTIMIZE_GA && (is_worst || (is_of_nets && is_largest)))
         hf_config_fault_in_row(f, list, row, is_worst ? "take" : "goal",
                                is_worst ? "worst needs method: ga in optimize.objectives"
                                         : "as the largest of several sizes of nets as built needs method: ga in "
                                           "optimize.objectives");
 }
 
-void hf_config_check_nets(const hf_case *c, const char *list, int n_goal, const hf_goal_settings *goal,
+void hf_config_check_nets(const hf_case *c, const char *list, int n_objective, const hf_objective_settings *objective,
                           hf_config_faults *f)
 {
-    for (int i = 0; i < n_goal; i++) {
-        const hf_goal_settings *g = &goal[i];
+    for (int i = 0; i < n_objective; i++) {
+        const hf_objective_settings *g = &objective[i];
         if (*g->state) check_state(c, list, i, g, f);
         if (g->over == HF_OVER_STATES && c->built.n_state == 0)
             hf_config_fault_in_row(f, list, i, "over", "states needs rows of `cases`, which say what they are");

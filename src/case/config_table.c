@@ -150,7 +150,7 @@ const hf_field hf_field_table[] = {
     {"adjust.moves", HF_FIELD_INT, AT(adjust.moves), 1, 1000000, "10", "", NULL, "cables that are turned at most"},
     {"adjust.target_m", HF_FIELD_DOUBLE, AT(adjust.target_m), 0, BIG, "0", "m", NULL,
      "no further move is made once the figure is below it"},
-    {"adjust.figure", HF_FIELD_WORD, AT(adjust.figure), 0, 0, "psi", "", hf_figure_word,
+    {"adjust.figure", HF_FIELD_WORD, AT(adjust.figure), 0, 0, "psi", "", hf_adjust_figure_word,
      "what the moves make small, RMS: psi: distance of the inner nodes to where they should be, see adjust.aim; "
      "surface: of the inner nodes to the wanted surface, along its normal; facets: of the facets to it"},
     {"adjust.aim", HF_FIELD_WORD, AT(adjust.aim), 0, 0, "design", "", hf_aim_word,
@@ -312,9 +312,9 @@ static const hf_field variable_field[] = {
 };
 #undef IN
 
-#define IN(member) offsetof(hf_goal_settings, member)
-static const hf_field goal_field[] = {
-    {"goal", HF_FIELD_WORD, IN(goal), 0, 0, NULL, "", hf_goal_word,
+#define IN(member) offsetof(hf_objective_settings, member)
+static const hf_field objective_field[] = {
+    {"goal", HF_FIELD_WORD, IN(figure), 0, 0, NULL, "", hf_figure_kind_word,
      "psi: distance of the inner nodes to their theoretical places, RMS (m); surface: to the wanted surface (m); "
      "facets: distance of the facets to it, RMS (m); tension, length: difference to target, RMS over the set (N, m); "
      "evenness: standard deviation of the tensions of the set over their mean; pull: largest force of the net on a "
@@ -345,13 +345,13 @@ static const hf_field goal_field[] = {
      "of this goal in the merit of a design, the root of the sum of (weight * value)^2"},
 };
 /* A row of optimize.objectives has the keys of a row of optimize.goals without the last one, weight. */
-enum { N_GOAL_FIELD = sizeof goal_field / sizeof *goal_field, N_OBJECTIVE_FIELD = N_GOAL_FIELD - 1 };
+enum { N_OBJECTIVE_FIELD = sizeof objective_field / sizeof *objective_field, N_FRONT_FIELD = N_OBJECTIVE_FIELD - 1 };
 #undef IN
 
 #define IN(member) offsetof(hf_limit_settings, member)
 _Static_assert(IN(upper) == IN(lower) + sizeof(double), "bounds are bounds");
 static const hf_field limit_field[] = {
-    {"limit", HF_FIELD_WORD, IN(limit), 0, 0, NULL, "", hf_limit_word,
+    {"limit", HF_FIELD_WORD, IN(figure), 0, 0, NULL, "", hf_limit_word,
      "tension of each cable of the set (N); ratio: its largest over its smallest tension; displacement of each "
      "attachment by the truss (m)"},
     {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL, "cables of tension, ratio; default: all"},
@@ -438,9 +438,9 @@ static const hf_field truss_heat_field[] = {
 const hf_list hf_list_table[] = {
     LIST("variables", n_variable_row, variable_row, HF_DESIGN_ROWS_MAX, variable_field, N_VARIABLE_FIELD,
          "What a design varies; without rows the pretensions of the boundary, within range_N by rule"),
-    LIST("goals", n_goal, goal, HF_DESIGN_ROWS_MAX, goal_field, N_GOAL_FIELD,
+    LIST("goals", n_term, term, HF_DESIGN_ROWS_MAX, objective_field, N_OBJECTIVE_FIELD,
          "What a design should reach; without rows psi"),
-    LIST("objectives", n_objective, objective, HF_OBJECTIVES_MAX, goal_field, N_OBJECTIVE_FIELD,
+    LIST("objectives", n_front, front, HF_FRONT_OBJECTIVES_MAX, objective_field, N_FRONT_FIELD,
          "Two or three goals to be weighed against each other: instead of one design the run finds their front, the "
          "designs than which none is better in all of them"),
     LIST("limits", n_limit, limit, HF_DESIGN_ROWS_MAX, limit_field, N_LIMIT_FIELD,

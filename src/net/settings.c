@@ -22,13 +22,13 @@ const char *const hf_refine_choice_word[4] = {"auto", "true", "false", NULL};
 const char *const hf_vary_word[8] = {"tension",   "force_density",  "length",      "unstressed_length",
                                      "support_z", "support_normal", "support_xyz", NULL};
 const char *const hf_link_word[4] = {"each", "set", "symmetry", NULL};
-const char *const hf_goal_word[12] = {"psi",  "surface",      "facets", "tension", "length", "evenness",
-                                      "pull", "displacement", "mass",   "ratio",   "gain",   NULL};
-const char *const hf_goal_unit[11] = {"m", "m", "m", "N", "m", "", "N", "m", "kg", "", ""};
+const char *const hf_figure_kind_word[12] = {"psi",  "surface",      "facets", "tension", "length", "evenness",
+                                             "pull", "displacement", "mass",   "ratio",   "gain",   NULL};
+const char *const hf_figure_kind_unit[11] = {"m", "m", "m", "N", "m", "", "N", "m", "kg", "", ""};
 const char *const hf_along_word[3] = {"normal", "half_path", NULL};
 const char *const hf_fit_word[3] = {"none", "best", NULL};
 const char *const hf_aim_word[3] = {"theory", "design", NULL};
-const char *const hf_figure_word[4] = {"psi", "surface", "facets", NULL};
+const char *const hf_adjust_figure_word[4] = {"psi", "surface", "facets", NULL};
 const char *const hf_distribution_word[3] = {"normal", "uniform", NULL};
 const char *const hf_sampling_word[3] = {"random", "sobol", NULL};
 #define WORD(name, word, unit, condition, description) word,
@@ -45,9 +45,9 @@ const char *const hf_symmetry_word[6] = {"none", "x", "y", "xy", "auto", NULL};
 bool hf_optimize_takes_samples(const hf_optimize_settings *s)
 {
     bool takes = false;
-    for (int k = 0; k < s->n_goal; k++)
-        takes |= s->goal[k].over == HF_OVER_SAMPLES;
-    for (int k = 0; k < s->n_objective; k++)
-        takes |= s->objective[k].over == HF_OVER_SAMPLES;
+    for (int k = 0; k < s->n_term; k++)
+        takes |= s->term[k].over == HF_OVER_SAMPLES;
+    for (int k = 0; k < s->n_front; k++)
+        takes |= s->front[k].over == HF_OVER_SAMPLES;
     return takes;
 }

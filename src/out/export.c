@@ -94,7 +94,7 @@ void hf_export_warn_of_front(const char *file, const hf_summary *s, bool is_stat
                "%s: no point of its front is taken: the shape is %s%s; `hifdm run %s --point %s:%d -o point%d.h5`, "
                "with the --set of the front, makes point %d a result",
                file, is_end ? "the end of the front with the least " : "the form-finding's, before any optimisation",
-               is_end ? s->goals.name[0] : "", s->case_path, file, point, point, point);
+               is_end ? s->objectives.name[0] : "", s->case_path, file, point, point, point);
 }
 
 void hf_export_free(hf_export_stored *stored)

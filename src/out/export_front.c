@@ -35,9 +35,9 @@ static void write_front(const void *context, FILE *f)
     const hf_front *front = &v->front;
     fputs(front->minimised >= 0 ? "id,mark,status,iterations,converged" : "id,mark,status,iterations", f);
     for (int k = 0; k < front->n_objective; k++)
-        fprintf(f, ",%s", v->summary.goals.name[k]);
+        fprintf(f, ",%s", v->summary.objectives.name[k]);
     for (int k = 0; k < front->n_objective; k++)
-        if (front->minimised >= 0 && k != front->minimised) fprintf(f, ",slope_%s", v->summary.goals.name[k]);
+        if (front->minimised >= 0 && k != front->minimised) fprintf(f, ",slope_%s", v->summary.objectives.name[k]);
     for (int k = 0; k < front->n_variable; k++) {
         fputc(',', f);
         hf_csv_write_id(v->variable + (size_t)k * v->variable_size, f);

@@ -49,8 +49,8 @@ bool hf_merged_is(const char *path)
 static hf_status read_figure(hf_merged *m, hf_merged_stage stage, const char *group, const char *prefix,
                              const char *key, hf_messages *messages)
 {
-    char path[64 + HF_SET_NAME_SIZE + HF_GOAL_NAME_SIZE];
-    if (m->n_figure == HF_MERGED_FIGURE_MAX || strlen(key) >= HF_GOAL_NAME_SIZE) return HF_OK;
+    char path[64 + HF_SET_NAME_SIZE + HF_OBJECTIVE_NAME_SIZE];
+    if (m->n_figure == HF_MERGED_FIGURE_MAX || strlen(key) >= HF_OBJECTIVE_NAME_SIZE) return HF_OK;
     hf_merged_figure *f = &m->figure[m->n_figure];
     *f = (hf_merged_figure){.stage = stage};
     strcpy(f->key, key);
@@ -255,9 +255,9 @@ static void try_lead(const hf_merged *m, hf_merged_stage stage, const char *key,
 }
 
 /* Returns the rounding of an objective. Values below it do not rank points. */
-static double rounding_of(const hf_merged *m, const char *goal)
+static double rounding_of(const hf_merged *m, const char *objective)
 {
-    const hf_merged_figure *f = hf_merged_find(m, HF_MERGED_FORM, goal);
+    const hf_merged_figure *f = hf_merged_find(m, HF_MERGED_FORM, objective);
     double size = 0;
     for (int i = 0; f && m->main != HF_MERGED_FORM && i < m->n; i++)
         if (hf_merged_is_done(m, i)) size = fmax(size, fabs(f->value.value[i]));
@@ -282,17 +282,17 @@ static void choose_best(hf_merged *m)
 {
     static const char *const error[] = {"facet_half_path_rms_m", "half_path_rms_m", "facet_fit_half_path_rms_m",
                                         "fit_half_path_rms_m"};
-    const char *goal = NULL;
+    const char *objective = NULL;
     bool has_other = false;
     double rounding = 0;
     leads by = {.n = 0};
     for (int k = 0; k < m->n_figure; k++) {
         if (m->figure[k].stage != m->main || strncmp(m->figure[k].key, "goal_", 5) != 0) continue;
-        goal = goal ? "merit" : m->figure[k].key;
+        objective = objective ? "merit" : m->figure[k].key;
         has_other |= !m->figure[k].is_psi;
     }
-    if (has_other) try_lead(m, m->main, goal, &by);
-    if (by.n) rounding = rounding_of(m, goal);
+    if (has_other) try_lead(m, m->main, objective, &by);
+    if (by.n) rounding = rounding_of(m, objective);
     try_lead(m, HF_MERGED_BUILT, "psi_95_m", &by);
     try_lead(m, m->main, "psi_m", &by);
     for (size_t k = 0; k < sizeof error / sizeof *error; k++)

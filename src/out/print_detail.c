@@ -48,27 +48,29 @@ void hf_print_held(const hf_held_limits *h, FILE *f)
 void hf_print_objective(const char *before, const char *name, double value, FILE *f)
 {
     const char *unit;
-    double scale = hf_print_scale(hf_ledger_goal_unit(name), &unit);
+    double scale = hf_print_scale(hf_ledger_objective_unit(name), &unit);
     fprintf(f, "%s%s %.6g%s%s", before, name, scale * value, *unit ? " " : "", unit);
 }
 
 /* Prints an objective in SI units, as in merit and weights. */
-static void print_goal(const char *before, const char *name, double value, FILE *f)
+static void print_objective(const char *before, const char *name, double value, FILE *f)
 {
-    const char *unit = hf_ledger_goal_unit(name);
+    const char *unit = hf_ledger_objective_unit(name);
     fprintf(f, "%s%s %.6g%s%s", before, name, value, *unit ? " " : "", unit);
 }
 
-void hf_print_goals(const hf_summary *s, const hf_form_result *r, FILE *f)
+void hf_print_objectives(const hf_summary *s, const hf_form_result *r, FILE *f)
 {
-    if (s->goals.n == 0 || !isfinite(r->merit)) return; /* a run that ended before its initial design has no merit */
-    if (s->goals.are_objectives)
+    if (s->objectives.n == 0 || !isfinite(r->merit))
+        return; /* a run that ended before its initial design has no merit */
+    if (s->objectives.is_front)
         fputs("                objectives", f);
     else
         fprintf(f, "                merit %.6g of", r->merit);
-    for (int k = 0; k < s->goals.n; k++) {
-        (s->goals.are_objectives ? hf_print_objective : print_goal)(k ? ", " : " ", s->goals.name[k], r->goal[k], f);
-        if (!s->goals.are_objectives) fprintf(f, " (weight %g)", s->goals.weight[k]);
+    for (int k = 0; k < s->objectives.n; k++) {
+        (s->objectives.is_front ? hf_print_objective : print_objective)(k ? ", " : " ", s->objectives.name[k],
+                                                                        r->objective[k], f);
+        if (!s->objectives.is_front) fprintf(f, " (weight %g)", s->objectives.weight[k]);
     }
     fputc('\n', f);
 }
@@ -161,8 +163,8 @@ static void print_optimize(const hf_summary *s, FILE *f)
     }
     fprintf(f, "  optimisation  psi %.4f mm", s->best.psi_m * 1e3);
     if (s->has_front)
-        fprintf(f, ": the end of the front with the least %s", s->goals.name[0]);
-    else if (s->goals.n > 0 && !s->goals.are_objectives && s->form.merit > 0) /* psi is not the objective */
+        fprintf(f, ": the end of the front with the least %s", s->objectives.name[0]);
+    else if (s->objectives.n > 0 && !s->objectives.is_front && s->form.merit > 0) /* psi is not the objective */
         fprintf(f, ", merit %.6g, %s that of the form-finding", s->best.merit,
                 hf_print_change(s->best.merit, s->form.merit, change));
     else /* base_psi_m is evaluated under the same rule, so only the tensions differ */
@@ -174,7 +176,7 @@ static void print_optimize(const hf_summary *s, FILE *f)
                 s->best_n_at_lower, s->n_gene, s->best_n_at_upper);
     hf_print_held(&s->held[1], f);
     print_sets(&s->sets[1], f);
-    hf_print_goals(s, &s->best, f);
+    hf_print_objectives(s, &s->best, f);
     print_certificate(&s->best, f);
     print_surface(s, 1, f);
     if (s->planes)
@@ -216,7 +218,7 @@ static void print_refine(const hf_summary *s, FILE *f)
             limits, s->polish_is_at_cap ? " and the cap on the boundary ratio" : "");
     hf_print_held(&s->held[2], f);
     print_sets(&s->sets[2], f);
-    hf_print_goals(s, &s->polish, f);
+    hf_print_objectives(s, &s->polish, f);
     print_surface(s, 2, f);
 }
 
@@ -229,7 +231,7 @@ void hf_print_details(const hf_summary *s, FILE *f)
             hf_stop_reason_word((int)s->form.stop_reason), wall, s->half_bandwidth);
     print_result(&s->form, f);
     print_sets(&s->sets[0], f);
-    hf_print_goals(s, &s->form, f);
+    hf_print_objectives(s, &s->form, f);
     print_certificate(&s->form, f);
     print_surface(s, 0, f);
     if (s->has_optimize) print_optimize(s, f);

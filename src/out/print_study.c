@@ -83,9 +83,9 @@ static column axis_column(const hf_merged *m, int a)
     return c;
 }
 
-const char *hf_print_goal_words(const char *key, char words[HF_AXIS_NAME_SIZE])
+const char *hf_print_objective_words(const char *key, char words[HF_AXIS_NAME_SIZE])
 {
-    snprintf(words, HF_AXIS_NAME_SIZE, "%s", hf_ledger_goal(key));
+    snprintf(words, HF_AXIS_NAME_SIZE, "%s", hf_ledger_objective(key));
     show_name(words);
     return words;
 }
@@ -122,7 +122,7 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
         snprintf(name, HF_AXIS_NAME_SIZE, m->main == HF_MERGED_FORM || *f->state ? "psi" : "psi %s", stage[f->stage]);
     } else if (!strncmp(f->key, "goal_", 5)) {
         char words[HF_AXIS_NAME_SIZE];
-        snprintf(name, HF_AXIS_NAME_SIZE, "goal %.*s", HF_AXIS_NAME_SIZE - 6, hf_print_goal_words(f->key, words));
+        snprintf(name, HF_AXIS_NAME_SIZE, "goal %.*s", HF_AXIS_NAME_SIZE - 6, hf_print_objective_words(f->key, words));
     } else if (!strcmp(rest, "half_path_rms_m")) {
         snprintf(name, HF_AXIS_NAME_SIZE, "%s%s", fitted, of_facets ? "facets" : "half path");
     } else if (!strcmp(rest, "good_to_Hz")) {

@@ -19,6 +19,6 @@ void hf_print_study_json(const hf_merged *merged, FILE *file);
 const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE]);
 
 /* Formats the name of an objective: "tension edge" for goal_1_tension_edge. Returns words. */
-const char *hf_print_goal_words(const char *key, char words[HF_AXIS_NAME_SIZE]);
+const char *hf_print_objective_words(const char *key, char words[HF_AXIS_NAME_SIZE]);
 
 #endif

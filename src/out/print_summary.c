@@ -11,7 +11,7 @@
 
 /* ---- the answer ---- */
 
-#define GOALS_TOLD 4           /* objectives in the first line */
+#define OBJECTIVES_TOLD 4      /* objectives in the first line */
 #define FREQUENCY_MOST_HZ 1e12 /* higher frequencies come from errors that are only rounding */
 #define BETTER_FIT 1.01        /* ratio of surface errors that is worth a line */
 #define TOLD_MM 5e-5           /* smaller lengths, in mm, print as 0.0000, so they have no relative change */
@@ -23,7 +23,7 @@ static const hf_form_result *result_of(const hf_summary *s, hf_stage stage)
 
 static bool has_merit(const hf_summary *s)
 {
-    return s->goals.n > 0 && !s->goals.are_objectives;
+    return s->objectives.n > 0 && !s->objectives.is_front;
 }
 
 /* Returns whether the case judges the surface only after its best fit, in all its requirements and objectives. */
@@ -37,9 +37,9 @@ static bool wants_fit(const hf_summary *s)
         n_fit += is_fit;
         n_raw += !is_fit;
     }
-    for (int k = 0; k < s->goals.n; k++) {
-        n_fit += s->goals.after_fit[k] == 1;
-        n_raw += s->goals.after_fit[k] == 0;
+    for (int k = 0; k < s->objectives.n; k++) {
+        n_fit += s->objectives.after_fit[k] == 1;
+        n_raw += s->objectives.after_fit[k] == 0;
     }
     return n_fit > 0 && n_raw == 0;
 }
@@ -84,12 +84,12 @@ static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_form_result *r = result_of(s, stage);
     double base_psi_m = stage == HF_STAGE_SEARCH ? s->base_psi_m : s->form.psi_m;
-    if (stage == HF_STAGE_FORM || s->goals.are_objectives) return;
+    if (stage == HF_STAGE_FORM || s->objectives.is_front) return;
     hf_print_gained(s, r->psi_m, base_psi_m, f);
 }
 
 /* Prints the value of an objective, lengths in mm. */
-static void print_goal_value(double value, const char *unit, FILE *f)
+static void print_objective_value(double value, const char *unit, FILE *f)
 {
     char text[32];
     if (!isfinite(value))
@@ -100,7 +100,7 @@ static void print_goal_value(double value, const char *unit, FILE *f)
         fprintf(f, "%.4g", value);
 }
 
-static void print_goal_unit(const char *unit, FILE *f)
+static void print_objective_unit(const char *unit, FILE *f)
 {
     if (*unit) fprintf(f, " %s", !strcmp(unit, "m") ? "mm" : unit);
 }
@@ -108,33 +108,33 @@ static void print_goal_unit(const char *unit, FILE *f)
 /* Returns whether psi of the design itself is an objective. */
 static bool wants_psi(const hf_summary *s)
 {
-    for (int k = 0; k < s->goals.n; k++)
-        if (!strcmp(hf_ledger_goal(s->goals.name[k]), hf_goal_word[HF_GOAL_PSI])) return true;
+    for (int k = 0; k < s->objectives.n; k++)
+        if (!strcmp(hf_ledger_objective(s->objectives.name[k]), hf_figure_kind_word[HF_FIGURE_PSI])) return true;
     return false;
 }
 
 static bool is_psi_all(const hf_summary *s)
 {
-    return s->goals.n == 1 && wants_psi(s);
+    return s->objectives.n == 1 && wants_psi(s);
 }
 
 /* Prints the objectives before and after, in their units: "facets 1.7436 -> 1.4720 mm". */
-static void print_goals_gained(const hf_summary *s, const hf_form_result *r, FILE *f)
+static void print_objectives_gained(const hf_summary *s, const hf_form_result *r, FILE *f)
 {
-    for (int k = 0; k < s->goals.n && k < GOALS_TOLD; k++) {
-        const char *unit = hf_ledger_goal_unit(s->goals.name[k]);
-        fprintf(f, "%s%s ", k ? ", " : "", hf_ledger_goal(s->goals.name[k]));
-        print_goal_value(s->form.goal[k], unit, f);
+    for (int k = 0; k < s->objectives.n && k < OBJECTIVES_TOLD; k++) {
+        const char *unit = hf_ledger_objective_unit(s->objectives.name[k]);
+        fprintf(f, "%s%s ", k ? ", " : "", hf_ledger_objective(s->objectives.name[k]));
+        print_objective_value(s->form.objective[k], unit, f);
         fputs(" -> ", f);
-        print_goal_value(r->goal[k], unit, f);
-        print_goal_unit(unit, f);
+        print_objective_value(r->objective[k], unit, f);
+        print_objective_unit(unit, f);
     }
-    if (s->goals.n > GOALS_TOLD) fprintf(f, " and %d more", s->goals.n - GOALS_TOLD);
+    if (s->objectives.n > OBJECTIVES_TOLD) fprintf(f, " and %d more", s->objectives.n - OBJECTIVES_TOLD);
     if (wants_psi(s)) return;
     fputs("; psi ", f);
-    print_goal_value(s->form.psi_m, "m", f);
+    print_objective_value(s->form.psi_m, "m", f);
     fputs(" -> ", f);
-    print_goal_value(r->psi_m, "m", f);
+    print_objective_value(r->psi_m, "m", f);
     fputs(" mm, which counts drift within the surface, too", f);
 }
 
@@ -148,11 +148,11 @@ static void print_front_answer(const hf_summary *s, FILE *f)
     else
         fprintf(f, "front of %d points:", s->front.n_point);
     for (int k = 0; k < s->front.n_objective; k++) {
-        const char *unit = hf_ledger_goal_unit(s->goals.name[k]);
+        const char *unit = hf_ledger_objective_unit(s->objectives.name[k]);
         if (s->front.end[k] < 0) continue;
-        fprintf(f, "%s%s %s ", before, is_one ? "" : " least", hf_ledger_goal(s->goals.name[k]));
-        print_goal_value(s->front.row[s->front.end[k]].objective[k], unit, f);
-        print_goal_unit(unit, f);
+        fprintf(f, "%s%s %s ", before, is_one ? "" : " least", hf_ledger_objective(s->objectives.name[k]));
+        print_objective_value(s->front.row[s->front.end[k]].objective[k], unit, f);
+        print_objective_unit(unit, f);
         before = ",";
     }
 }
@@ -193,7 +193,7 @@ void hf_print_answer(const hf_summary *s, FILE *f)
         return;
     }
     if ((has_merit(s) || s->taken.point) && stage != HF_STAGE_FORM && !is_psi_all(s)) {
-        print_goals_gained(s, r, f);
+        print_objectives_gained(s, r, f);
     } else if (r->status == HF_OK && !isfinite(r->psi_m)) { /* loose nodes have no psi: their positions were assigned */
         fputs("no psi: no taut cable holds an inner node", f);
         return;
@@ -284,7 +284,7 @@ static void print_stages(const hf_summary *s, hf_stage result, FILE *f)
     if (s->has_optimize) hf_print_held(&s->held[HF_STAGE_SEARCH], f);
     if (s->has_polish) print_lm(s, result == HF_STAGE_REFINE, f);
     if (s->has_polish) hf_print_held(&s->held[HF_STAGE_REFINE], f);
-    if (s->goals.n > 0) hf_print_goals(s, result_of(s, result), f);
+    if (s->objectives.n > 0) hf_print_objectives(s, result_of(s, result), f);
 }
 
 /* ---- surface ---- */
@@ -363,7 +363,7 @@ static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
 /* Returns the factor of objective k for display and sets *unit, "unit" when it has none. */
 static double front_unit(const hf_summary *s, int k, const char **unit)
 {
-    double scale = hf_print_scale(hf_ledger_goal_unit(s->goals.name[k]), unit);
+    double scale = hf_print_scale(hf_ledger_objective_unit(s->objectives.name[k]), unit);
     if (!**unit) *unit = "unit";
     return scale;
 }
@@ -380,8 +380,8 @@ static void print_slope_head(const hf_summary *s, int k, FILE *f)
     const char *of, *per;
     bool is_plain = front_unit(s, s->front.minimised, &of) == 1;
     front_unit(s, k, &per);
-    fprintf(f, "; slope of %s%s%s per %s of %s", s->goals.name[s->front.minimised], is_plain ? "" : " in ",
-            is_plain ? "" : of, per, s->goals.name[k]);
+    fprintf(f, "; slope of %s%s%s per %s of %s", s->objectives.name[s->front.minimised], is_plain ? "" : " in ",
+            is_plain ? "" : of, per, s->objectives.name[k]);
 }
 
 /* Prints one line of the front: the values of a point and, where known, the changes of the minimised objective per unit
@@ -394,7 +394,7 @@ static void print_front_values(const hf_summary *s, const char *name, int number
     snprintf(what, sizeof what, number ? "%s, point %d" : "%s", name, number);
     fprintf(f, "                %-15s", what);
     for (int k = 0; k < t->n_objective; k++)
-        hf_print_objective(k ? ", " : " ", s->goals.name[k], objective[k], f);
+        hf_print_objective(k ? ", " : " ", s->objectives.name[k], objective[k], f);
     for (int k = 0; k < t->n_objective && multiplier && t->minimised >= 0; k++)
         if (k != t->minimised && isfinite(multiplier[k]))
             fprintf(f, "; slope %.4g", multiplier[k] > 0 ? -multiplier[k] * slope_scale(s, k) : 0.0);

@@ -23,7 +23,7 @@ void hf_print_held(const hf_held_limits *held, FILE *file);
 void hf_print_objective(const char *before, const char *name, double value, FILE *file);
 
 /* Prints a line with the merit of a result and the values of its objectives, or the objectives of a front. */
-void hf_print_goals(const hf_summary *summary, const hf_form_result *result, FILE *file);
+void hf_print_objectives(const hf_summary *summary, const hf_form_result *result, FILE *file);
 
 /* Prints ", 56.90 % below the 19.7793 mm of ...", the change of psi from the initial design. That is the shape of the
  * form-finding, unless optimize.rule gives another shape for the same tensions. Prints nothing without an initial

@@ -251,13 +251,13 @@ static void write_figures(FILE *f)
 }
 
 /* Writes the units of objectives by their names. */
-static void write_goal_units(const hf_summary *s, FILE *f)
+static void write_objective_units(const hf_summary *s, FILE *f)
 {
     hf_json j = {.file = f, .is_due = true};
     hf_json_line(&j, "");
     hf_json_open(&j, "goal_unit", '{');
-    for (int k = 0; k < s->goals.n; k++)
-        hf_json_text(&j, s->goals.name[k], hf_ledger_goal_unit(s->goals.name[k]));
+    for (int k = 0; k < s->objectives.n; k++)
+        hf_json_text(&j, s->objectives.name[k], hf_ledger_objective_unit(s->objectives.name[k]));
     hf_json_close(&j, '}');
 }
 
@@ -326,7 +326,7 @@ static void write_other(const page *p, const page *other, FILE *f)
     fputs(",\n\"other\":{", f);
     hf_json_text(&j, "name", hf_path_name(other->path));
     write_case(other, f);
-    write_goal_units(&other->summary, f);
+    write_objective_units(&other->summary, f);
     fputs(",\"summary\":", f);
     hf_summary_write_json(&other->summary, hf_summary_status(&other->summary), other->summary.warnings, other->path, f);
     if (!hf_scene_difference(&p->scene, &other->scene)) write_shapes(other, HF_N_STAGE, f);
@@ -353,7 +353,7 @@ static void write_data(const void *context, FILE *f)
     fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, has_variables ? s->n_gene : 0);
     hf_json_value(s->has_own_tensions ? (double)NAN : s->pretension_N, 17, f);
     write_figures(f);
-    write_goal_units(s, f);
+    write_objective_units(s, f);
     write_words(f);
     write_net(p, f);
     write_shapes(p, N_SHAPE, f);

@@ -137,7 +137,7 @@ static void write_figures(const hf_merged *m, FILE *f)
         hf_json_text(&j, "key", figure->key);
         hf_json_text(&j, "unit", hf_ledger_unit(figure->key));
         char words[HF_AXIS_NAME_SIZE];
-        if (!strncmp(figure->key, "goal_", 5)) hf_json_text(&j, "goal", hf_print_goal_words(figure->key, words));
+        if (!strncmp(figure->key, "goal_", 5)) hf_json_text(&j, "goal", hf_print_objective_words(figure->key, words));
         if (figure->is_same) hf_json_bool(&j, "same", true);
         if (figure->is_psi) hf_json_bool(&j, "psi", true);
         if (k == m->lead) hf_json_bool(&j, "lead", true);

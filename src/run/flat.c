@@ -199,11 +199,11 @@ static const char *of_field(const hf_result_field *field, int column)
     return column == COLUMN_KIND ? kind_word(field->kind) : field->name;
 }
 
-static const char *of_goal(hf_flat *f, int i, int column)
+static const char *of_objective(hf_flat *f, int i, int column)
 {
-    if (i >= f->problem.goals.n_goal) return NULL;
-    if (column == COLUMN_NAME) return hf_goals_name(&f->problem.goals, i, f->text);
-    if (column == COLUMN_UNIT) return hf_goal_unit[f->problem.goals.goal[i].wanted.goal];
+    if (i >= f->problem.objectives.n_objective) return NULL;
+    if (column == COLUMN_NAME) return hf_objectives_name(&f->problem.objectives, i, f->text);
+    if (column == COLUMN_UNIT) return hf_figure_kind_unit[f->problem.objectives.objective[i].settings.figure];
     return column == COLUMN_KIND ? "real" : "value of the goal, without its weight";
 }
 
@@ -212,7 +212,7 @@ static const char *figure_text(hf_flat *f, int i, int column)
 {
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
     int n = hf_problem_list_figures(&f->problem, field);
-    return i < n ? of_field(field[i], column) : of_goal(f, i - n, column);
+    return i < n ? of_field(field[i], column) : of_objective(f, i - n, column);
 }
 
 static int n_coupling(const hf_flat *f)
@@ -226,7 +226,7 @@ static const char *result_text(hf_flat *f, int i, int column)
 {
     if (i < HF_RESULT_N) return of_field(&hf_result_field_of[i], column);
     i -= HF_RESULT_N;
-    if (i >= n_coupling(f)) return of_goal(f, i - n_coupling(f), column);
+    if (i >= n_coupling(f)) return of_objective(f, i - n_coupling(f), column);
     if (column != COLUMN_NAME) return of_field(&hf_coupling_field_of[i], column);
     snprintf(f->text, sizeof f->text, "coupling_%s", hf_coupling_field_of[i].name);
     return f->text;
@@ -335,20 +335,20 @@ static double field_value(const hf_result_field *field, const void *owner)
 }
 
 /* A design that breaks a limit has a shape, and with it values of the objectives. */
-static double goal_value(const hf_form_result *r, int i)
+static double objective_value(const hf_form_result *r, int i)
 {
-    return hf_status_has_shape(r->status) ? r->goal[i] : (double)NAN;
+    return hf_status_has_shape(r->status) ? r->objective[i] : (double)NAN;
 }
 
 static int copy_result(const hf_flat *f, double *to)
 {
-    int n = HF_RESULT_N + n_coupling(f), n_goal = f->problem.goals.n_goal;
+    int n = HF_RESULT_N + n_coupling(f), n_objective = f->problem.objectives.n_objective;
     for (int i = 0; to && i < n; i++)
         to[i] = i < HF_RESULT_N ? field_value(&hf_result_field_of[i], &f->result)
                                 : field_value(&hf_coupling_field_of[i - HF_RESULT_N], &f->result.coupling);
-    for (int i = 0; to && i < n_goal; i++)
-        to[n + i] = goal_value(&f->result, i);
-    return n + n_goal;
+    for (int i = 0; to && i < n_objective; i++)
+        to[n + i] = objective_value(&f->result, i);
+    return n + n_objective;
 }
 
 static int copy_bounds(const hf_flat *f, bool is_upper, double *to)
@@ -410,7 +410,8 @@ static hf_status find_form(hf_flat *f)
     *r = p->form;
     HF_TRY(hf_problem_explain(p, &f->said));
     if (!f->is_ready) HF_TRY(make_batch(f));
-    if (p->goals.n_goal && hf_goals_measure(&p->goals, &p->workspace, p->workspace.goals, r->goal, &r->merit) != HF_OK)
+    if (p->objectives.n_objective &&
+        hf_objectives_measure(&p->objectives, &p->workspace, p->workspace.objectives, r->objective, &r->merit) != HF_OK)
         return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the goals");
     return HF_OK;
 }
@@ -459,9 +460,9 @@ int hf_flat_evaluate(hf_flat *f, int n, const double *design, double *figure)
     for (int k = 0; k < n_field; k++)
         for (int i = 0; i < n; i++)
             *figure++ = field_value(field[k], &f->room[i]);
-    for (int k = 0; k < f->problem.goals.n_goal; k++)
+    for (int k = 0; k < f->problem.objectives.n_objective; k++)
         for (int i = 0; i < n; i++)
-            *figure++ = goal_value(&f->room[i], k);
+            *figure++ = objective_value(&f->room[i], k);
     return HF_OK;
 }
 

@@ -45,7 +45,7 @@ static void tell_step(const refine_job *j)
                                       .is_last = now->is_last,
                                       .evaluations = now->evaluations - j->n_evaluation,
                                       .best_psi_m = now->psi_m,
-                                      .merit = j->problem->goals.n_goal ? now->merit : (double)NAN,
+                                      .merit = j->problem->objectives.n_objective ? now->merit : (double)NAN,
                                       .elapsed_s = hf_clock_s() - j->begin_s};
     q->observer(q->observer_context, &progress);
 }
@@ -73,7 +73,7 @@ static void warn_of_steps(const refine_job *j, const hf_refine_result *r)
 {
     int n = r->iterations - j->first_iteration < LATELY ? r->iterations - j->first_iteration : LATELY;
     double before = j->merit[(r->iterations - n) % (LATELY + 1)];
-    const char *what = j->problem->goals.n_goal ? "the merit" : "psi";
+    const char *what = j->problem->objectives.n_objective ? "the merit" : "psi";
     if (r->stop != HF_REFINE_MAX_ITERATIONS) return;
     if (n > 0 && before > 0)
         hf_warning(j->messages,
@@ -91,7 +91,7 @@ static void tell_stop(const refine_job *j, char stopped_at[HF_REFINE_STAGE_TEXT]
     int n = snprintf(stopped_at, HF_REFINE_STAGE_TEXT, " after %d steps of Levenberg-Marquardt", j->now.iterations);
     if (j->now.iterations == 0) return;
     n += snprintf(stopped_at + n, HF_REFINE_STAGE_TEXT - (size_t)n, ", at psi %.4f mm", j->now.psi_m * 1e3);
-    if (j->problem->goals.n_goal && isfinite(j->now.merit))
+    if (j->problem->objectives.n_objective && isfinite(j->now.merit))
         snprintf(stopped_at + n, HF_REFINE_STAGE_TEXT - (size_t)n, " and a merit of %.6g", j->now.merit);
 }
 

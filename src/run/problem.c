@@ -26,7 +26,7 @@ hf_status hf_problem_open(const char *path, const char *const *set, int n_set, i
 
 bool hf_problem_has_merit(const hf_problem *p)
 {
-    return p->settings.optimize.n_objective == 0;
+    return p->settings.optimize.n_front == 0;
 }
 
 int hf_problem_list_figures(const hf_problem *p, const hf_result_field *field[HF_RESULT_N_INDIVIDUAL])
@@ -40,13 +40,13 @@ int hf_problem_list_figures(const hf_problem *p, const hf_result_field *field[HF
 
 int hf_problem_n_slope(const hf_problem *p)
 {
-    return p->goals.n_goal + hf_problem_has_merit(p);
+    return p->objectives.n_objective + hf_problem_has_merit(p);
 }
 
-const char *hf_problem_slope_name(const hf_problem *p, int i_slope, char text[HF_GOAL_NAME_SIZE])
+const char *hf_problem_slope_name(const hf_problem *p, int i_slope, char text[HF_OBJECTIVE_NAME_SIZE])
 {
-    if (i_slope < p->goals.n_goal) return hf_goals_name(&p->goals, i_slope, text);
-    snprintf(text, HF_GOAL_NAME_SIZE, "%s", p->goals.n_goal ? "merit" : "psi_m");
+    if (i_slope < p->objectives.n_objective) return hf_objectives_name(&p->objectives, i_slope, text);
+    snprintf(text, HF_OBJECTIVE_NAME_SIZE, "%s", p->objectives.n_objective ? "merit" : "psi_m");
     return text;
 }
 
@@ -55,11 +55,11 @@ hf_status hf_problem_has_slopes(const hf_problem *p, hf_messages *messages)
     const hf_optimize_settings *s = &p->settings.optimize;
     char place[HF_PLACE_SIZE];
     if (hf_refine_applies(&p->evaluator)) return HF_OK;
-    for (int k = 0; k < p->goals.n_goal; k++)
-        if (!hf_goals_is_smooth(&p->goals.goal[k].wanted))
+    for (int k = 0; k < p->objectives.n_objective; k++)
+        if (!hf_objectives_is_smooth(&p->objectives.objective[k].settings))
             return hf_error(messages, HF_BAD_CASE, "%s: there are no derivatives of quantiles: use take: mean or worst",
                             hf_messages_place(messages, place, "optimize.%s.%d.quantile",
-                                              s->n_objective > 0 ? "objectives" : "goals", k));
+                                              s->n_front > 0 ? "objectives" : "goals", k));
     return hf_error(messages, HF_BAD_CASE, "%s", hf_problem_no_slopes(p));
 }
 
@@ -98,7 +98,7 @@ void hf_problem_free(hf_problem *p)
     hf_model_free(&p->model);
     hf_carrier_free(&p->carrier);
     hf_limits_free(&p->limits);
-    hf_goals_free(&p->goals);
+    hf_objectives_free(&p->objectives);
     hf_problem_nets_free(p);
     hf_states_free(&p->states);
     hf_facets_free(&p->facets);

@@ -14,7 +14,7 @@ struct hf_problem_nets {
     double *truss_move_m_per_K; /* [n_truss][3 n_attachment] m/K, of samples */
 };
 
-static bool is_over_states(const hf_goal_settings *g, int n)
+static bool is_over_states(const hf_objective_settings *g, int n)
 {
     bool is_over = false;
     for (int k = 0; k < n; k++)
@@ -54,7 +54,7 @@ static hf_status make_nets(hf_problem *p, bool has_states, int n_sample, hf_mess
 hf_status hf_problem_nets_make(hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
-    bool has_states = is_over_states(o->goal, o->n_goal) || is_over_states(o->objective, o->n_objective);
+    bool has_states = is_over_states(o->term, o->n_term) || is_over_states(o->front, o->n_front);
     int n_sample = hf_optimize_takes_samples(o) ? o->samples : 0;
     hf_arena arena = {0};
     double *move_m = NULL, *by_heat = NULL;
@@ -74,7 +74,7 @@ void hf_problem_nets_free(hf_problem *p)
     p->nets = NULL;
 }
 
-const hf_goals_nets *hf_problem_nets_of(const hf_problem *p)
+const hf_objectives_nets *hf_problem_nets_of(const hf_problem *p)
 {
     return p->nets ? &p->nets->nets.as : NULL;
 }

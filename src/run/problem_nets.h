@@ -9,7 +9,7 @@
 hf_status hf_problem_nets_make(hf_problem *problem, hf_messages *messages);
 void hf_problem_nets_free(hf_problem *problem);
 
-/* Returns the nets for hf_goals_create, or NULL if no objective is over nets. */
-const hf_goals_nets *hf_problem_nets_of(const hf_problem *problem);
+/* Returns the nets for hf_objectives_create, or NULL if no objective is over nets. */
+const hf_objectives_nets *hf_problem_nets_of(const hf_problem *problem);
 
 #endif

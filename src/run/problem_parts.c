@@ -128,20 +128,20 @@ void hf_problem_give_places(const hf_problem *p, hf_messages *messages)
     messages->place_context = p ? &p->settings : NULL;
 }
 
-static hf_status find_goals(hf_problem *p, hf_messages *messages)
+static hf_status find_objectives(hf_problem *p, hf_messages *messages)
 {
     HF_TRY(hf_problem_nets_make(p, messages));
-    return hf_goals_create(&p->scene, &p->model, &p->settings.optimize, &p->surface, &p->facets, hf_problem_nets_of(p),
-                           &p->goals, messages);
+    return hf_objectives_create(&p->scene, &p->model, &p->settings.optimize, &p->surface, &p->facets,
+                                hf_problem_nets_of(p), &p->objectives, messages);
 }
 
 /* Creates limits and objectives from their rows, and reports the faults of both. */
 static hf_status judge_by_rows(hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
-    hf_status limits = hf_limits_create(&p->scene, &p->model, o, &p->limits, messages), goals = HF_OK;
-    if (o->n_goal || o->n_objective) goals = find_goals(p, messages);
-    return limits != HF_OK ? limits : goals;
+    hf_status limits = hf_limits_create(&p->scene, &p->model, o, &p->limits, messages), objectives = HF_OK;
+    if (o->n_term || o->n_front) objectives = find_objectives(p, messages);
+    return limits != HF_OK ? limits : objectives;
 }
 
 static hf_status make_scene(const hf_problem_source *source, hf_problem *p, hf_messages *messages)
@@ -238,14 +238,14 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->pretension_N = model->pretension_N;
     s->has_own_tensions = has_own_tensions(p);
     s->surface = p->surface;
-    s->goals.n = p->goals.n_goal;
-    s->goals.are_objectives = settings->optimize.n_objective > 0;
-    for (int k = 0; k < s->goals.n; k++) {
-        const hf_goal_settings *wanted = &p->goals.goal[k].wanted;
-        hf_goals_name(&p->goals, k, s->goals.name[k]);
-        s->goals.weight[k] = wanted->weight;
-        bool of_surface = wanted->goal == HF_GOAL_SURFACE || wanted->goal == HF_GOAL_FACETS;
-        s->goals.after_fit[k] = !of_surface ? -1 : wanted->fit == HF_FIT_BEST;
+    s->objectives.n = p->objectives.n_objective;
+    s->objectives.is_front = settings->optimize.n_front > 0;
+    for (int k = 0; k < s->objectives.n; k++) {
+        const hf_objective_settings *wanted = &p->objectives.objective[k].settings;
+        hf_objectives_name(&p->objectives, k, s->objectives.name[k]);
+        s->objectives.weight[k] = wanted->weight;
+        bool of_surface = wanted->figure == HF_FIGURE_SURFACE || wanted->figure == HF_FIGURE_FACETS;
+        s->objectives.after_fit[k] = !of_surface ? -1 : wanted->fit == HF_FIT_BEST;
     }
     s->taken = settings->taken;
     s->has_truss = settings->has_truss;
@@ -279,7 +279,7 @@ hf_evaluator hf_problem_evaluator(const hf_problem *p)
                           .solver = o->solver,
                           .boundary_ratio_cap = p->settings.has_optimize ? o->boundary_ratio_cap : INFINITY,
                           .limits = p->limits.n ? &p->limits : NULL,
-                          .goals = p->goals.n_goal ? &p->goals : NULL};
+                          .objectives = p->objectives.n_objective ? &p->objectives : NULL};
 }
 
 /* Checks that design variable k has an initial value and bounds that allow values; those of cables must be above zero.
@@ -336,7 +336,7 @@ void hf_problem_warn_of_refine(const hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     hf_optimiser_plan plan = hf_optimiser_plan_of(o);
-    if (!plan.kind || o->n_objective > 0 || hf_refine_applies(&p->evaluator)) return;
+    if (!plan.kind || o->n_front > 0 || hf_refine_applies(&p->evaluator)) return;
     if (plan.ends_with_refine || o->refine == HF_REFINE_TRUE)
         hf_warning(messages, HF_PROBLEM_REFINE_NEEDS, hf_problem_no_slopes(p));
 }
@@ -344,7 +344,7 @@ void hf_problem_warn_of_refine(const hf_problem *p, hf_messages *messages)
 void hf_problem_warn_of_front(const hf_problem *p, hf_messages *messages)
 {
     const hf_case *c = &p->settings;
-    if (c->optimize.n_objective == 0 || (p->states.n == 0 && !c->has_tolerance)) return;
+    if (c->optimize.n_front == 0 || (p->states.n == 0 && !c->has_tolerance)) return;
     hf_warning(messages,
                "optimize.objectives: a front is no single design, so %s%s%s are of the form-finding's net, before "
                "any optimisation; `hifdm run %s --point FRONT.h5:N -o point.h5` has point N of the front there",

@@ -31,7 +31,7 @@
 /* What no variable has been seen to change, and rows of variables that have been seen to change nothing. */
 typedef struct {
     bool psi; /* of a case with inner nodes and without objectives */
-    bool goal[HF_DESIGN_ROWS_MAX], limit[HF_DESIGN_ROWS_MAX], variable_row[HF_DESIGN_ROWS_MAX];
+    bool objective[HF_DESIGN_ROWS_MAX], limit[HF_DESIGN_ROWS_MAX], variable_row[HF_DESIGN_ROWS_MAX];
 } unchanged;
 
 typedef struct {
@@ -94,10 +94,10 @@ static hf_status create(const hf_problem *p, reach *q)
     q->v.model = &q->model;
     q->v.boundary_ratio_cap = INFINITY;
     q->v.limits = NULL;
-    q->v.goals = NULL;
+    q->v.objectives = NULL;
     q->v.n_thread = 1;
     memset(&q->now, true, sizeof q->now);
-    q->now.psi = p->goals.n_goal == 0 && p->model.n_inner_node > 0;
+    q->now.psi = p->objectives.n_objective == 0 && p->model.n_inner_node > 0;
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, q)));
     q->block = arena.block;
     link_classes(q);
@@ -168,26 +168,26 @@ static bool any_row(const reach *q, int n, const int *row)
     return false;
 }
 
-static bool changes_goal(const reach *q, const hf_goal *g)
+static bool changes_objective(const reach *q, const hf_objective *g)
 {
-    const hf_goals *goals = &q->p->goals;
+    const hf_objectives *objectives = &q->p->objectives;
     if (g->n_net) return true; /* another cut changes the tensions and the shape of an as-built net */
-    switch (g->wanted.goal) {
-    case HF_GOAL_PSI:
-    case HF_GOAL_SURFACE:
+    switch (g->settings.figure) {
+    case HF_FIGURE_PSI:
+    case HF_FIGURE_SURFACE:
         return any_row(q, q->model.n_inner_node, q->model.inner_row);
-    case HF_GOAL_FACETS:
-    case HF_GOAL_GAIN:
-        return any_row(q, 4 * goals->n_facet, goals->corner_row);
-    case HF_GOAL_TENSION:
-    case HF_GOAL_EVENNESS:
-    case HF_GOAL_RATIO:
+    case HF_FIGURE_FACETS:
+    case HF_FIGURE_GAIN:
+        return any_row(q, 4 * objectives->n_facet, objectives->corner_row);
+    case HF_FIGURE_TENSION:
+    case HF_FIGURE_EVENNESS:
+    case HF_FIGURE_RATIO:
         return any_cable(q, g->n_cable, g->cable, pulls_otherwise);
-    case HF_GOAL_LENGTH:
-    case HF_GOAL_MASS:
+    case HF_FIGURE_LENGTH:
+    case HF_FIGURE_MASS:
         return any_cable(q, g->n_cable, g->cable, lengthens);
-    case HF_GOAL_PULL:
-    case HF_GOAL_DISPLACEMENT:
+    case HF_FIGURE_PULL:
+    case HF_FIGURE_DEFLECTION:
         return true; /* any change of the shape changes the pull on supports */
     }
     return true;
@@ -195,7 +195,7 @@ static bool changes_goal(const reach *q, const hf_goal *g)
 
 static bool changes_limit(const reach *q, const hf_limit *row)
 {
-    return row->kind == HF_LIMIT_DISPLACEMENT || any_cable(q, row->n_cable, row->cable, pulls_otherwise);
+    return row->kind == HF_LIMIT_DEFLECTION || any_cable(q, row->n_cable, row->cable, pulls_otherwise);
 }
 
 /* Strikes out the rows that the variables change at the design in the workspace. */
@@ -209,8 +209,8 @@ static void strike(reach *q)
         if (!(q->most_m > 0) && !(q->most_N > 0)) continue;
         q->now.variable_row[row_of_variable(&q->model, k)] = false;
         if (q->now.psi) q->now.psi = !any_row(q, q->model.n_inner_node, q->model.inner_row);
-        for (int i = 0; i < q->p->goals.n_goal; i++)
-            if (q->now.goal[i]) q->now.goal[i] = !changes_goal(q, &q->p->goals.goal[i]);
+        for (int i = 0; i < q->p->objectives.n_objective; i++)
+            if (q->now.objective[i]) q->now.objective[i] = !changes_objective(q, &q->p->objectives.objective[i]);
         for (int i = 0; i < o->n_limit; i++)
             if (q->now.limit[i]) q->now.limit[i] = !changes_limit(q, &q->p->limits.row[i]);
     }
@@ -232,38 +232,38 @@ static void choose_design(reach *q, bool is_beside)
 
 /* ---- messages ---- */
 
-static const char *why_goal(hf_goal_kind kind)
+static const char *why_objective(hf_figure_kind kind)
 {
     switch (kind) {
-    case HF_GOAL_PSI:
-    case HF_GOAL_SURFACE:
-    case HF_GOAL_FACETS:
-    case HF_GOAL_GAIN:
+    case HF_FIGURE_PSI:
+    case HF_FIGURE_SURFACE:
+    case HF_FIGURE_FACETS:
+    case HF_FIGURE_GAIN:
         return "none of the nodes that it looks at moves";
-    case HF_GOAL_TENSION:
-    case HF_GOAL_EVENNESS:
-    case HF_GOAL_RATIO:
+    case HF_FIGURE_TENSION:
+    case HF_FIGURE_EVENNESS:
+    case HF_FIGURE_RATIO:
         return "all cables that it looks at keep their tensions";
-    case HF_GOAL_LENGTH:
-    case HF_GOAL_MASS:
+    case HF_FIGURE_LENGTH:
+    case HF_FIGURE_MASS:
         return "all cables that it looks at keep their lengths";
     default:
         return "the pull on the supports stays as it is";
     }
 }
 
-static hf_status tell_goals(const reach *q, hf_messages *messages)
+static hf_status tell_objectives(const reach *q, hf_messages *messages)
 {
-    const hf_goals *goals = &q->p->goals;
-    bool is_front = q->p->settings.optimize.n_objective > 0, is_reached = false, has_fault = false;
-    char place[HF_PLACE_SIZE], name[HF_GOAL_NAME_SIZE];
-    for (int i = 0; i < goals->n_goal; i++)
-        is_reached |= !q->now.goal[i];
-    for (int i = 0; i < goals->n_goal; i++) {
-        if (!q->now.goal[i]) continue;
+    const hf_objectives *objectives = &q->p->objectives;
+    bool is_front = q->p->settings.optimize.n_front > 0, is_reached = false, has_fault = false;
+    char place[HF_PLACE_SIZE], name[HF_OBJECTIVE_NAME_SIZE];
+    for (int i = 0; i < objectives->n_objective; i++)
+        is_reached |= !q->now.objective[i];
+    for (int i = 0; i < objectives->n_objective; i++) {
+        if (!q->now.objective[i]) continue;
         hf_messages_place(messages, place, "optimize.%s.%d", is_front ? "objectives" : "goals", i);
-        hf_goals_name(goals, i, name);
-        const char *why = why_goal(goals->goal[i].wanted.goal);
+        hf_objectives_name(objectives, i, name);
+        const char *why = why_objective(objectives->objective[i].settings.figure);
         has_fault |= is_front || !is_reached;
         if (is_front || !is_reached)
             hf_error(messages, HF_BAD_CASE,
@@ -287,14 +287,14 @@ static hf_status tell(const reach *q, hf_messages *messages)
         if (q->now.limit[i])
             hf_warning(messages, "%s: no variable of this case changes what it limits: %s",
                        hf_messages_place(messages, place, "optimize.limits.%d", i),
-                       o->limit[i].limit == HF_LIMIT_DISPLACEMENT ? why_goal(HF_GOAL_DISPLACEMENT)
-                                                                  : why_goal(HF_GOAL_TENSION));
-    if (q->p->goals.n_goal > 0) return tell_goals(q, messages);
+                       o->limit[i].figure == HF_LIMIT_DEFLECTION ? why_objective(HF_FIGURE_DEFLECTION)
+                                                                 : why_objective(HF_FIGURE_TENSION));
+    if (q->p->objectives.n_objective > 0) return tell_objectives(q, messages);
     if (!q->now.psi) return HF_OK;
     return hf_error(messages, HF_BAD_CASE,
                     "%s: no variable of this case changes psi: %s; vary what does, or name goals",
                     hf_messages_place(messages, place, o->n_variable_row ? "optimize.variables.0" : "optimize.range_N"),
-                    why_goal(HF_GOAL_PSI));
+                    why_objective(HF_FIGURE_PSI));
 }
 
 /* Returns true if a row remains that no variable has been seen to change, or that has changed nothing. */
@@ -303,7 +303,7 @@ static bool is_open(const reach *q)
     const hf_optimize_settings *o = &q->p->settings.optimize;
     bool is = q->now.psi;
     for (int i = 0; i < HF_DESIGN_ROWS_MAX; i++)
-        is |= (i < q->p->goals.n_goal && q->now.goal[i]) || (i < o->n_limit && q->now.limit[i]) ||
+        is |= (i < q->p->objectives.n_objective && q->now.objective[i]) || (i < o->n_limit && q->now.limit[i]) ||
               (i < o->n_variable_row && q->now.variable_row[i]);
     return is;
 }
@@ -349,7 +349,7 @@ hf_status hf_reach_check(const hf_problem *p, hf_messages *messages)
     doubt_ranges(p, messages);
     hf_problem_give_places(NULL, messages);
     if (!hf_refine_applies(&p->evaluator)) return HF_OK;
-    if (!o->n_variable_row && !o->n_limit && !p->goals.n_goal) return HF_OK;
+    if (!o->n_variable_row && !o->n_limit && !p->objectives.n_objective) return HF_OK;
     hf_status status = create(p, &q);
     if (status == HF_OK) status = look(&q);
     if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the derivatives of the goals");

@@ -85,19 +85,20 @@ static void count_rows(hf_places *to, const int *row, int n, hf_counted how)
         if (to->counted[row[i]] < how) to->counted[row[i]] = (unsigned char)how;
 }
 
-static void count_goal(const hf_problem *p, const hf_goal *g, hf_places *to)
+static void count_objective(const hf_problem *p, const hf_objective *g, hf_places *to)
 {
     const hf_model *m = &p->model;
-    switch (g->wanted.goal) {
-    case HF_GOAL_PSI:
-    case HF_GOAL_SURFACE:
-        count_rows(to, m->inner_row, m->n_inner_node, g->wanted.goal == HF_GOAL_PSI ? HF_COUNTED : HF_COUNTED_ACROSS);
+    switch (g->settings.figure) {
+    case HF_FIGURE_PSI:
+    case HF_FIGURE_SURFACE:
+        count_rows(to, m->inner_row, m->n_inner_node,
+                   g->settings.figure == HF_FIGURE_PSI ? HF_COUNTED : HF_COUNTED_ACROSS);
         break;
-    case HF_GOAL_FACETS:
-    case HF_GOAL_GAIN:
-        count_rows(to, p->goals.corner_row, 4 * p->goals.n_facet, HF_COUNTED_ACROSS);
+    case HF_FIGURE_FACETS:
+    case HF_FIGURE_GAIN:
+        count_rows(to, p->objectives.corner_row, 4 * p->objectives.n_facet, HF_COUNTED_ACROSS);
         break;
-    case HF_GOAL_LENGTH:
+    case HF_FIGURE_LENGTH:
         for (int i = 0; i < g->n_cable; i++)
             count_rows(to, m->end_row + 2 * (ptrdiff_t)g->cable[i], 2, HF_COUNTED);
         break;
@@ -119,16 +120,16 @@ static void find_cables(const hf_model *m, hf_places *to)
 hf_status hf_places_keep(const hf_problem *p, hf_places *to)
 {
     const hf_model *m = &p->model;
-    const hf_goal psi = {.wanted = {.goal = HF_GOAL_PSI}};
+    const hf_objective psi = {.settings = {.figure = HF_FIGURE_PSI}};
     hf_arena arena = {0};
     *to = (hf_places){0};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_places(&arena, m, to)));
     to->block = arena.block;
     memcpy(to->position_m, p->workspace.position_m, 3 * (size_t)m->n_node * sizeof(double));
     find_cables(m, to);
-    if (p->goals.n_goal == 0) count_goal(p, &psi, to);
-    for (int k = 0; k < p->goals.n_goal; k++)
-        count_goal(p, &p->goals.goal[k], to);
+    if (p->objectives.n_objective == 0) count_objective(p, &psi, to);
+    for (int k = 0; k < p->objectives.n_objective; k++)
+        count_objective(p, &p->objectives.objective[k], to);
     return HF_OK;
 }
 
@@ -201,7 +202,8 @@ static void tell_far(const hf_problem *p, const hf_places *form, const far_nodes
                    "mm long, and no goal counts that: vary fewer sets of cables, or add {goal: length, set: %s, "
                    "weight: 0.1} to optimize.goals%s",
                    p->scene.node_id[p->model.node_of_row[open->row]], and_more(open, more), open->move_m * 1e3,
-                   form->cable_m[open->row] * 1e3, set_at(p, open->row), p->goals.n_goal ? "" : " beside {goal: psi}");
+                   form->cable_m[open->row] * 1e3, set_at(p, open->row),
+                   p->objectives.n_objective ? "" : " beside {goal: psi}");
     if (within->n)
         hf_warning(
             messages,

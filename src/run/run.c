@@ -155,7 +155,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     s->form_wall_s = hf_clock_s() - start_s;
     s->form = p->form;
     for (int k = 0; k < HF_DESIGN_ROWS_MAX; k++) /* measured in prepare_optimize, with the initial design */
-        s->form.goal[k] = (double)NAN;
+        s->form.objective[k] = (double)NAN;
     hf_status status = hf_problem_explain(p, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
     hf_status measured = measure_shape(r, HF_STAGE_FORM, &p->workspace, s, messages);
@@ -176,9 +176,10 @@ static hf_status prepare_optimize(run *r, hf_summary *s, hf_messages *messages)
     if (hf_places_keep(p, &r->places) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory for places");
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_reach_check(p, messages));
-    const hf_goals *goals = &p->goals;
-    hf_goals_point *point = p->workspace.goals;
-    if (goals->n_goal && hf_goals_measure(goals, &p->workspace, point, s->form.goal, &s->form.merit) != HF_OK)
+    const hf_objectives *objectives = &p->objectives;
+    hf_objectives_point *point = p->workspace.objectives;
+    if (objectives->n_objective &&
+        hf_objectives_measure(objectives, &p->workspace, point, s->form.objective, &s->form.merit) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
     HF_TRY(hf_store_restore_initial(r->store, p->model.n_variable, p->initial, messages));
     if (hf_problem_batch(p, r->request->threads) != HF_OK ||
@@ -225,7 +226,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
     hf_measure_limits(&r->problem, HF_STAGE_SEARCH, w, s);
     HF_TRY(measure_shape(r, HF_STAGE_SEARCH, w, s, messages));
-    if (r->problem.settings.optimize.n_objective == 0) HF_TRY(take_result(r, w, messages)); /* a front has no result */
+    if (r->problem.settings.optimize.n_front == 0) HF_TRY(take_result(r, w, messages)); /* a front has no result */
     return hf_store_shape(r->store, HF_STAGE_SEARCH, &r->problem.model, w, design, messages);
 }
 
@@ -431,7 +432,7 @@ static hf_status find_front(run *r, hf_summary *s, hf_messages *messages)
     if (hf_pareto_front(&r->optimiser.population, &r->front) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the front");
     if (r->plan.ends_with_refine) return follow_front(r, s, messages);
-    memcpy(r->front.base, s->form.goal, sizeof r->front.base);
+    memcpy(r->front.base, s->form.objective, sizeof r->front.base);
     hf_run_front_tell(&r->front, s->optimize_wall_s, s, messages);
     return hf_store_front(r->store, &r->problem.scene, &r->problem.model, s, &r->front, messages);
 }
@@ -442,7 +443,7 @@ static hf_status optimize(run *r, hf_summary *s, hf_messages *messages)
     HF_TRY(prepare_optimize(r, s, messages));
     s->threads = r->problem.batch.n_thread;
     if (r->taken.design) return take_point(r, s, messages);
-    if (r->problem.settings.optimize.n_objective > 0) return find_front(r, s, messages);
+    if (r->problem.settings.optimize.n_front > 0) return find_front(r, s, messages);
     if (r->plan.kind) HF_TRY(evolve(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
     if (hf_refine_applies(&r->problem.evaluator)) return wants_refine(r, s) ? refine(r, s, messages) : HF_OK;

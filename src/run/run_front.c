@@ -48,7 +48,7 @@ static void warn_of_steps(const hf_front *front, int max_iterations, hf_messages
 /* Writes why Levenberg-Marquardt has found no front. Returns text. */
 static const char *explain(const hf_problem *p, hf_status status, int end, char *text, size_t size)
 {
-    char name[HF_GOAL_NAME_SIZE];
+    char name[HF_OBJECTIVE_NAME_SIZE];
     const char *why = hf_status_text(status);
     char hint[HF_NO_DESIGN_HINT_SIZE];
     hf_no_design_cap(p, p->form.boundary_tension_ratio, hint);
@@ -59,7 +59,7 @@ static const char *explain(const hf_problem *p, hf_status status, int end, char 
         snprintf(text, size,
                  "optimize.objectives.%d: Levenberg-Marquardt has found no design with the least %s, an end of the "
                  "front: %s%s",
-                 end, hf_goals_name(p->evaluator.goals, end, name), why, hint);
+                 end, hf_objectives_name(p->evaluator.objectives, end, name), why, hint);
     else
         snprintf(text, size, "optimize.objectives: Levenberg-Marquardt has found no front: %s%s", why, hint);
     return text;
@@ -137,7 +137,7 @@ hf_status hf_run_front(const hf_run_request *q, hf_problem *p, const hf_populati
         return HF_INTERRUPTED;
     }
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the front");
-    memcpy((status == HF_OK ? &found : front)->base, s->form.goal, sizeof front->base);
+    memcpy((status == HF_OK ? &found : front)->base, s->form.objective, sizeof front->base);
     if (status != HF_OK) {
         const char *why = text;
         if (applies)

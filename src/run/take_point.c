@@ -11,7 +11,7 @@
 
 #include "base/sha256.h"
 #include "base/text.h"
-#include <hifdm/goals.h>
+#include <hifdm/objectives.h>
 #include <hifdm/store.h>
 
 #include <limits.h>
@@ -60,7 +60,7 @@ static hf_status read_words(const char *point, hf_front_origin *taken, hf_messag
 static bool is_beside(const hf_problem *p, const char *key)
 {
     static const char *const section[] = {"cases", "tolerance", "adjust", "sweep"};
-    for (size_t i = 0; i < sizeof section / sizeof *section && !p->goals.nets; i++)
+    for (size_t i = 0; i < sizeof section / sizeof *section && !p->objectives.nets; i++)
         if (!strncmp(key, section[i], strlen(section[i]))) return true;
     return false;
 }
@@ -87,10 +87,10 @@ static const char *tell_keys(const hf_problem *p, char words[DIFFERENCES_SIZE])
 
 static bool has_objectives(const hf_problem *p, const hf_summary *s)
 {
-    char name[HF_GOAL_NAME_SIZE];
-    bool is_same = p->goals.n_goal == s->goals.n;
-    for (int k = 0; k < s->goals.n && is_same; k++)
-        is_same = !strcmp(hf_goals_name(&p->goals, k, name), s->goals.name[k]);
+    char name[HF_OBJECTIVE_NAME_SIZE];
+    bool is_same = p->objectives.n_objective == s->objectives.n;
+    for (int k = 0; k < s->objectives.n && is_same; k++)
+        is_same = !strcmp(hf_objectives_name(&p->objectives, k, name), s->objectives.name[k]);
     return is_same;
 }
 
@@ -185,16 +185,16 @@ hf_status hf_take_point_check(const hf_problem *p, const hf_taken_point *taken, 
                               const hf_form_result *found, hf_messages *messages)
 {
     const hf_front_origin *origin = &p->settings.taken;
-    char name[HF_GOAL_NAME_SIZE], words[DIFFERENCES_SIZE];
+    char name[HF_OBJECTIVE_NAME_SIZE], words[DIFFERENCES_SIZE];
     if (found->status == HF_NO_MEMORY) return hf_error(messages, HF_NO_MEMORY, "out of memory for a design");
     if (found->status != HF_OK)
         return hf_error(messages, HF_BAD_CASE, "%s: point %d of its front is no design of %s, %s: " MADE_OF,
                         origin->path, origin->point, p->settings.path, hf_status_text(found->status),
                         tell_keys(p, words));
-    for (int k = 0; k < p->goals.n_goal; k++)
-        if (!(fabs(found->goal[k] - taken->objective[k]) <= SAME * taken->largest[k]))
+    for (int k = 0; k < p->objectives.n_objective; k++)
+        if (!(fabs(found->objective[k] - taken->objective[k]) <= SAME * taken->largest[k]))
             return hf_error(messages, HF_BAD_CASE, "%s: point %d of its front has %s %.6g, and in %s %.6g: " MADE_OF,
-                            origin->path, origin->point, hf_goals_name(&p->goals, k, name), taken->objective[k],
-                            p->settings.path, found->goal[k], tell_keys(p, words));
+                            origin->path, origin->point, hf_objectives_name(&p->objectives, k, name),
+                            taken->objective[k], p->settings.path, found->objective[k], tell_keys(p, words));
     return check_bounds(p, taken, bounds, messages);
 }

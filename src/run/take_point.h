@@ -7,9 +7,9 @@
 #include <hifdm/result.h>
 
 typedef struct {
-    double *design;                      /* [n_variable]; NULL: no point is taken. The caller frees it. */
-    double objective[HF_OBJECTIVES_MAX]; /* values of the objectives in the front */
-    double largest[HF_OBJECTIVES_MAX];   /* maximum size of each objective over the front and its initial design */
+    double *design;                            /* [n_variable]; NULL: no point is taken. The caller frees it. */
+    double objective[HF_FRONT_OBJECTIVES_MAX]; /* values of the objectives in the front */
+    double largest[HF_FRONT_OBJECTIVES_MAX]; /* maximum size of each objective over the front and its initial design */
 } hf_taken_point;
 
 /* Reads "FILE:N": point N of the front in the result FILE, which must have the objectives and variables of the problem.

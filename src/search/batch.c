@@ -127,7 +127,7 @@ hf_solver hf_batch_solver(const hf_evaluator *v, bool *has_lanes)
     /* The lanes of swarm support neither LAPACK, struts, a truss, optimize.variables, limits nor objectives, and only
      * some laws. Such designs are solved one after the other. */
     *has_lanes = !v->model->by_lapack && !v->model->has_strut && !v->model->n_attachment && !v->model->variable &&
-                 !v->limits && !v->goals;
+                 !v->limits && !v->objectives;
     for (int e = 0; e < v->model->n_cable && *has_lanes; e++)
         *has_lanes = hf_law_is_served(v->model->law[e], HF_SWARM_LAWS);
     return HF_SOLVER_FIXED_POINT;

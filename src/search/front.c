@@ -113,7 +113,8 @@ static void mark(hf_front *f)
  * objectives. Returns -1 if no sum is below 1, as for a straight front, or if an objective has no range. */
 static int find_knee(const hf_front *f)
 {
-    double low[HF_OBJECTIVES_MAX], high[HF_OBJECTIVES_MAX], least = 1 - 1e-9; /* sums of 1 differ by rounding */
+    double low[HF_FRONT_OBJECTIVES_MAX], high[HF_FRONT_OBJECTIVES_MAX],
+        least = 1 - 1e-9; /* sums of 1 differ by rounding */
     int knee = -1;
     for (int k = 0; k < f->n_objective; k++) {
         low[k] = INFINITY;
@@ -157,7 +158,7 @@ static int find_end(const hf_front *f, int k)
 }
 
 /* Returns true if point i is the knee or an end of the front. */
-static bool has_a_name(const hf_front *f, const int end[HF_OBJECTIVES_MAX], int i)
+static bool has_a_name(const hf_front *f, const int end[HF_FRONT_OBJECTIVES_MAX], int i)
 {
     bool is_named = i == f->knee;
     for (int k = 0; k < f->n_objective; k++)
@@ -166,7 +167,7 @@ static bool has_a_name(const hf_front *f, const int end[HF_OBJECTIVES_MAX], int 
 }
 
 /* Chooses the rows of the table: all ends and the knee, and n_kept evenly spaced ones of the n_other other points. */
-static void choose_rows(const hf_front *f, const int end[HF_OBJECTIVES_MAX], hf_front_table *t)
+static void choose_rows(const hf_front *f, const int end[HF_FRONT_OBJECTIVES_MAX], hf_front_table *t)
 {
     long n_named = 0, n_other, n_kept, other = 0;
     for (int i = 0; i < f->n_point; i++)
@@ -208,7 +209,7 @@ static int row_of(const hf_front_table *t, int place)
 
 void hf_front_tabulate(const hf_front *f, hf_front_table *t)
 {
-    int count[HF_FRONT_N_MARK] = {0}, end[HF_OBJECTIVES_MAX] = {-1, -1, -1};
+    int count[HF_FRONT_N_MARK] = {0}, end[HF_FRONT_OBJECTIVES_MAX] = {-1, -1, -1};
     for (int i = 0; i < f->n_point; i++)
         count[f->point[i].mark]++;
     for (int k = 0; k < f->n_objective; k++)
@@ -225,6 +226,6 @@ void hf_front_tabulate(const hf_front *f, hf_front_table *t)
     memcpy(t->base, f->base, sizeof t->base);
     choose_rows(f, end, t);
     t->knee = row_of(t, f->knee);
-    for (int k = 0; k < HF_OBJECTIVES_MAX; k++)
+    for (int k = 0; k < HF_FRONT_OBJECTIVES_MAX; k++)
         t->end[k] = row_of(t, end[k]);
 }

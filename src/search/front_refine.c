@@ -38,8 +38,8 @@ enum { MAIN, OTHER, THIRD }; /* roles of the objectives, see search.role */
 
 /* A point to find, and what was found. */
 typedef struct {
-    int least;                      /* the objective to minimise */
-    double most[HF_OBJECTIVES_MAX]; /* limits on the others; INFINITY: none */
+    int least;                            /* the objective to minimise */
+    double most[HF_FRONT_OBJECTIVES_MAX]; /* limits on the others; INFINITY: none */
     /* [n_variable], the designs to begin from. The second one (or NULL) is used if the first one does not succeed. */
     const double *from[2];
     int met;        /* objective that is 0 at from[0]; equal to `least`: all may be 0; -1: none */
@@ -65,11 +65,11 @@ typedef struct {
 typedef struct {
     const hf_front_refine *t;
     size_t n_variable;
-    int n_objective, role[HF_OBJECTIVES_MAX]; /* the objectives that are MAIN, OTHER and THIRD */
-    double range[HF_OBJECTIVES_MAX];          /* range of each objective between the ends */
-    double largest[HF_OBJECTIVES_MAX];        /* maximum of each objective at the designs to begin from */
-    int failed_end;                           /* the objective whose end has no design, or -1 */
-    int n, n_run, n_job;                      /* jobs, jobs that have run, and maximum of jobs */
+    int n_objective, role[HF_FRONT_OBJECTIVES_MAX]; /* the objectives that are MAIN, OTHER and THIRD */
+    double range[HF_FRONT_OBJECTIVES_MAX];          /* range of each objective between the ends */
+    double largest[HF_FRONT_OBJECTIVES_MAX];        /* maximum of each objective at the designs to begin from */
+    int failed_end;                                 /* the objective whose end has no design, or -1 */
+    int n, n_run, n_job;                            /* jobs, jobs that have run, and maximum of jobs */
     job *job;
     int n_point;
     job **point;             /* [n_job], points of the front, without those that only led to others */
@@ -81,7 +81,8 @@ typedef struct {
 
 bool hf_front_refine_applies(const hf_evaluator *v)
 {
-    return v->goals && v->goals->n_goal >= 2 && v->goals->n_goal <= HF_OBJECTIVES_MAX && hf_refine_applies(v);
+    return v->objectives && v->objectives->n_objective >= 2 && v->objectives->n_objective <= HF_FRONT_OBJECTIVES_MAX &&
+           hf_refine_applies(v);
 }
 
 /* ---- one point ---- */
@@ -318,7 +319,7 @@ static void choose_main(search *s, job *end[])
  * objective of an end without a design. */
 static hf_status find_alone(search *s, job *alone[])
 {
-    const double *start[HF_OBJECTIVES_MAX];
+    const double *start[HF_FRONT_OBJECTIVES_MAX];
     hf_workspace w = {0};
     int n = s->n_objective;
     hf_status status = hf_workspace_create(s->t->evaluator->model, &w);
@@ -370,7 +371,7 @@ static bool take_common(search *s)
 /* Finds the line without a limit on THIRD, and the line at the minimum of THIRD. */
 static hf_status find_ends(search *s)
 {
-    job *end[HF_OBJECTIVES_MAX];
+    job *end[HF_FRONT_OBJECTIVES_MAX];
     HF_TRY(find_alone(s, end));
     measure_ranges(s, end);
     choose_main(s, end);
@@ -613,9 +614,9 @@ hf_status hf_front_refine_find(const hf_front_refine *task, hf_front *front, int
     t.evaluator = &alone;
     *front = (hf_front){.minimised = -1, .knee = -1};
     *failed_end = -1;
-    s.n_objective = t.evaluator->goals->n_goal;
+    s.n_objective = t.evaluator->objectives->n_objective;
     s.n_job = s.n_objective > 2 ? 2 * t.n_point + 8 : t.n_point + 4;
-    hf_front_refine_roles(t.evaluator->goals, s.role);
+    hf_front_refine_roles(t.evaluator->objectives, s.role);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &s)));
     hf_status status = find_ends(&s);
     if (status == HF_OK) status = fill(&s);

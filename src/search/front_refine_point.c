@@ -19,14 +19,14 @@ enum { N_WEIGHT = sizeof weight / sizeof *weight };
 
 #define SAME 1e-9 /* a range below this part of an objective counts as none */
 
-void hf_front_refine_roles(const hf_goals *goals, int *role)
+void hf_front_refine_roles(const hf_objectives *objectives, int *role)
 {
     int main = 0, n = 0;
-    while (main < goals->n_goal && hf_goals_is_largest(goals->goal[main].wanted.goal))
+    while (main < objectives->n_objective && hf_objectives_is_maximum(objectives->objective[main].settings.figure))
         main++;
-    if (main == goals->n_goal) main = 0;
+    if (main == objectives->n_objective) main = 0;
     role[n++] = main;
-    for (int k = 0; k < goals->n_goal; k++)
+    for (int k = 0; k < objectives->n_objective; k++)
         if (k != main) role[n++] = k;
 }
 
@@ -40,10 +40,10 @@ hf_status hf_front_refine_start(const hf_front_refine *t, int k, hf_workspace *w
         hf_form_result r;
         hf_status status = hf_evaluate(t->evaluator, design, w, &r);
         if (status == HF_NO_MEMORY) return status;
-        for (int g = 0; g < t->evaluator->goals->n_goal && status == HF_OK; g++)
-            largest[g] = fmax(largest[g], r.goal[g]);
+        for (int g = 0; g < t->evaluator->objectives->n_objective && status == HF_OK; g++)
+            largest[g] = fmax(largest[g], r.objective[g]);
         int rank = status == HF_OK ? 2 : hf_status_has_shape(status);
-        double value = status == HF_OK ? r.goal[k] : i;
+        double value = status == HF_OK ? r.objective[k] : i;
         if (rank < best_rank || (rank == best_rank && !(value < least))) continue;
         best_rank = rank;
         least = value;
@@ -94,8 +94,8 @@ hf_status hf_front_refine_point(const hf_front_refine *t, const hf_watch_front *
     point->status = status;
     point->iterations = r.iterations;
     point->is_converged = status == HF_OK && r.stop == HF_REFINE_CONVERGED;
-    for (int k = 0; k < t->evaluator->goals->n_goal && status == HF_OK; k++) {
-        point->objective[k] = result.goal[k];
+    for (int k = 0; k < t->evaluator->objectives->n_objective && status == HF_OK; k++) {
+        point->objective[k] = result.objective[k];
         if (point->is_converged) point->multiplier[k] = r.multiplier[k];
     }
     return HF_OK;
@@ -105,14 +105,14 @@ hf_status hf_front_refine_meet(const hf_front_refine *t, int met, int least, con
                                hf_workspace *w)
 {
     hf_evaluator evaluator = *t->evaluator;
-    hf_goals goals = *evaluator.goals;
+    hf_objectives objectives = *evaluator.objectives;
     hf_refine_result result;
     const hf_refine_watcher watcher = {.after = tell_step, .context = t->watcher};
-    evaluator.goals = &goals;
+    evaluator.objectives = &objectives;
     for (int i = met == least ? N_WEIGHT - 1 : 0; i < N_WEIGHT; i++) {
-        for (int k = 0; k < goals.n_goal; k++) {
+        for (int k = 0; k < objectives.n_objective; k++) {
             double part = k == met || met == least ? 1 : k == least ? weight[i] : 0;
-            goals.goal[k].wanted.weight = range[k] > 0 ? part / range[k] : 0;
+            objectives.objective[k].settings.weight = range[k] > 0 ? part / range[k] : 0;
         }
         hf_status status = hf_refine_run(&evaluator, t->lower, t->upper, t->max_iterations,
                                          t->watcher ? &watcher : NULL, design, w, &result);
@@ -125,7 +125,7 @@ int hf_front_refine_common(int n_objective, int n, const hf_front_point *const *
                            double part)
 {
     int common = -1;
-    double least[HF_OBJECTIVES_MAX], most[HF_OBJECTIVES_MAX];
+    double least[HF_FRONT_OBJECTIVES_MAX], most[HF_FRONT_OBJECTIVES_MAX];
     for (int k = 0; k < n_objective; k++) {
         least[k] = INFINITY;
         most[k] = largest[k];

@@ -10,9 +10,9 @@
 #include "search/front_refine.h"
 #include "search/watch.h"
 
-/* Sets role [n_goal]: first the objective to minimise, which is the first one without corners if there is one, then the
- * others in their order. */
-void hf_front_refine_roles(const hf_goals *goals, int *role);
+/* Sets role [n_objective]: first the objective to minimise, which is the first one without corners if there is one,
+ * then the others in their order. */
+void hf_front_refine_roles(const hf_objectives *objectives, int *role);
 
 /* Finds the start with the minimum of objective k among the feasible starts. If none is feasible, *start is the first
  * one with a shape, or the first of all. largest [n_objective] rises to the maxima of the feasible starts. Returns

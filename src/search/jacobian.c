@@ -21,7 +21,7 @@ hf_status hf_jacobian_create(const hf_evaluator *evaluator, hf_jacobian *j)
     hf_arena arena = {0};
     *j = (hf_jacobian){.model = *evaluator->model, .v = *evaluator};
     j->v.model = &j->model;
-    j->n_figure = j->v.goals ? j->v.goals->n_goal + 1 : 1;
+    j->n_figure = j->v.objectives ? j->v.objectives->n_objective + 1 : 1;
     HF_TRY(hf_residuals_create(&j->v, &j->residuals));
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, j)));
     j->block = arena.block;
@@ -50,7 +50,7 @@ static double norm_rate(int n, const double *residual, const double *rate)
 
 hf_status hf_jacobian_find(hf_jacobian *j, hf_workspace *w, double *derivative)
 {
-    const hf_goals *goals = j->v.goals;
+    const hf_objectives *objectives = j->v.objectives;
     const double *value = j->residuals.value;
     int n = j->model.n_variable;
     for (int i = 0; i < j->n_figure * n; i++)
@@ -60,9 +60,9 @@ hf_status hf_jacobian_find(hf_jacobian *j, hf_workspace *w, double *derivative)
     HF_TRY(hf_residuals_rates(&j->residuals, &j->slopes, w, j->rate, j->gradient));
     for (int k = 0; k < n; k++) {
         const double *rate = j->rate + (size_t)k * (size_t)j->residuals.n_row;
-        for (int i = 0, row = 0; i < j->n_figure - 1; row += goals->goal[i++].n_row)
-            derivative[i * n + k] =
-                norm_rate(goals->goal[i].n_row, value + row, rate + row) / goals->goal[i].wanted.weight;
+        for (int i = 0, row = 0; i < j->n_figure - 1; row += objectives->objective[i++].n_row)
+            derivative[i * n + k] = norm_rate(objectives->objective[i].n_row, value + row, rate + row) /
+                                    objectives->objective[i].settings.weight;
         derivative[(j->n_figure - 1) * n + k] = norm_rate(j->residuals.n_row, value, rate);
     }
     return HF_OK;

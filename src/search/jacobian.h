@@ -1,7 +1,7 @@
 /* jacobian - computes exact derivatives of the figures of a design with respect to each design variable, for optimisers
  * outside this program. The figures are psi, or each objective and the merit (the value of the weighted objectives).
  *
- * The derivative of an objective is that of the norm of its residuals (goals.h), without its weight. For pull and
+ * The derivative of an objective is that of the norm of its residuals (objectives.h), without its weight. For pull and
  * displacement, this norm is a smooth maximum, which the merit contains, and not the maximum itself. Linked design
  * variables are varied one by one. */
 #ifndef HIFDM_JACOBIAN_H

@@ -85,6 +85,6 @@ hf_optimiser_plan hf_optimiser_plan_of(const hf_optimize_settings *settings)
     hf_optimiser_plan it = plan[settings->method];
     assert(it.kind); /* every method has a row in HF_OPTIMISER_LIST */
     if (it.kind == &hf_optimiser_none) it.kind = NULL;
-    if (it.kind && settings->n_objective) it.kind = &hf_optimiser_nsga;
+    if (it.kind && settings->n_front) it.kind = &hf_optimiser_nsga;
     return it;
 }

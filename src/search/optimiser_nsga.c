@@ -39,7 +39,7 @@ typedef struct {
     int *member;    /* [2 N], in a generation the first front, later the survivors */
     int n_leader;   /* number of members of the first front */
     /* The minimum and the range of each objective on the first front. */
-    double least[HF_OBJECTIVES_MAX], range[HF_OBJECTIVES_MAX];
+    double least[HF_FRONT_OBJECTIVES_MAX], range[HF_FRONT_OBJECTIVES_MAX];
 } front_breeder;
 
 /* Lays out the arrays of the state. The struct itself comes first: its address is then that of the block, and
@@ -58,7 +58,7 @@ static front_breeder *lay_out_breeder(hf_arena *a, front_breeder *g)
 static hf_status create_breeder(const hf_optimize_settings *s, const hf_model *m, void **state)
 {
     front_breeder g = {
-        .settings = s, .breeding = {.model = m}, .both = {.n = 2 * s->population, .n_objective = s->n_objective}};
+        .settings = s, .breeding = {.model = m}, .both = {.n = 2 * s->population, .n_objective = s->n_front}};
     hf_arena arena = {0};
     front_breeder *itself;
     HF_TRY(HF_ARENA_MAKE(&arena, itself = lay_out_breeder(&arena, &g)));
@@ -79,7 +79,7 @@ static void first_front(void *state, hf_population *p)
 static void take_values(front_breeder *g, const hf_population *p, int at)
 {
     for (int i = 0; i < p->n_individual; i++)
-        hf_pareto_set(&g->both, at + i, p->result[i].goal, hf_population_violation(&p->result[i]));
+        hf_pareto_set(&g->both, at + i, p->result[i].objective, hf_population_violation(&p->result[i]));
 }
 
 /* Finds the first front of the present generation, and the range of each objective on it. */
@@ -108,8 +108,8 @@ static void begin_front(void *state, const hf_population *now)
 /* ---- weights ---- */
 
 typedef struct {
-    double of[HF_OBJECTIVES_MAX]; /* weight of each objective; their sum is 1 */
-    bool by_sum;                  /* true: weigh the sum of the objectives; false: weigh their maximum */
+    double of[HF_FRONT_OBJECTIVES_MAX]; /* weight of each objective; their sum is 1 */
+    bool by_sum;                        /* true: weigh the sum of the objectives; false: weigh their maximum */
 } weights;
 
 /* Draws weights with the sum 1, all of which are equally likely. */

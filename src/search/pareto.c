@@ -14,7 +14,7 @@
 void hf_pareto_lay_out(hf_arena *a, hf_pareto *p)
 {
     size_t n = (size_t)p->n;
-    p->value = hf_arena_take(a, n * HF_OBJECTIVES_MAX, sizeof(double));
+    p->value = hf_arena_take(a, n * HF_FRONT_OBJECTIVES_MAX, sizeof(double));
     p->violation = hf_arena_take(a, n, sizeof(double));
     p->room = hf_arena_take(a, n, sizeof(double));
     p->scratch = hf_arena_take(a, n * HF_PARETO_SCRATCH, sizeof(int));
@@ -24,7 +24,7 @@ void hf_pareto_set(hf_pareto *p, int i, const double *objective, double violatio
 {
     bool has_values = true;
     for (int j = 0; j < p->n_objective; j++) {
-        p->value[(size_t)i * HF_OBJECTIVES_MAX + (size_t)j] = objective[j];
+        p->value[(size_t)i * HF_FRONT_OBJECTIVES_MAX + (size_t)j] = objective[j];
         has_values &= isfinite(objective[j]) != 0;
     }
     p->violation[i] = isnan(violation) || (violation <= 0 && !has_values) ? INFINITY : violation;
@@ -131,7 +131,7 @@ int hf_pareto_rank(const hf_pareto *p, int *rank)
 /* The neighbours of each design in the order of each objective; -1 at the ends. */
 typedef struct {
     int *before, *after; /* [n_objective][n] */
-    double range[HF_OBJECTIVES_MAX];
+    double range[HF_FRONT_OBJECTIVES_MAX];
 } neighbours;
 
 /* Returns the room between the neighbours of design i, or INFINITY at an end. With two objectives, it is the area that
@@ -139,7 +139,7 @@ typedef struct {
  * neighbours in each objective, in parts of the ranges. */
 static double room_of(const hf_pareto *p, const neighbours *list, int i)
 {
-    double sum = 0, side[HF_OBJECTIVES_MAX];
+    double sum = 0, side[HF_FRONT_OBJECTIVES_MAX];
     for (int j = 0; j < p->n_objective; j++) {
         int a = list->before[j * p->n + i], b = list->after[j * p->n + i];
         if (a < 0 || b < 0) return INFINITY;
@@ -215,8 +215,8 @@ static void copy_point(const hf_population *population, int i, hf_front *f, int 
     size_t n = (size_t)population->n_variable;
     hf_front_point *point = &f->point[place];
     *point = (hf_front_point){.status = HF_OK, .mark = HF_FRONT_ON};
-    for (int j = 0; j < HF_OBJECTIVES_MAX; j++) {
-        point->objective[j] = j < f->n_objective ? population->result[i].goal[j] : (double)NAN;
+    for (int j = 0; j < HF_FRONT_OBJECTIVES_MAX; j++) {
+        point->objective[j] = j < f->n_objective ? population->result[i].objective[j] : (double)NAN;
         point->multiplier[j] = (double)NAN;
     }
     memcpy(f->design + (size_t)place * n, population->design + (size_t)i * n, n * sizeof(double));
@@ -236,7 +236,7 @@ hf_status hf_pareto_front(const hf_population *population, hf_front *front)
     HF_TRY(HF_ARENA_MAKE(&arena,
                          (hf_pareto_lay_out(&arena, &p), rank = hf_arena_take(&arena, (size_t)p.n, sizeof *rank))));
     for (int i = 0; i < p.n; i++)
-        hf_pareto_set(&p, i, population->result[i].goal, hf_population_violation(&population->result[i]));
+        hf_pareto_set(&p, i, population->result[i].objective, hf_population_violation(&population->result[i]));
     hf_pareto_rank(&p, rank);
     int *order = p.scratch;
     /* hf_pareto_rank leaves this order: by the objectives in turn, so that equal designs are neighbours. */

@@ -14,13 +14,13 @@
 
 typedef struct {
     int n, n_objective;
-    double *value;     /* [n][HF_OBJECTIVES_MAX], objectives of each design */
+    double *value;     /* [n][HF_FRONT_OBJECTIVES_MAX], objectives of each design */
     double *violation; /* [n], 0: feasible; INFINITY: without a shape */
     double *room;      /* [n], scratch */
     int *scratch;      /* [n][HF_PARETO_SCRATCH] */
 } hf_pareto;
 
-enum { HF_PARETO_SCRATCH = 2 * HF_OBJECTIVES_MAX + 1 };
+enum { HF_PARETO_SCRATCH = 2 * HF_FRONT_OBJECTIVES_MAX + 1 };
 
 /* Takes the arrays of *pareto from an arena; its n and n_objective are set. */
 void hf_pareto_lay_out(hf_arena *arena, hf_pareto *pareto);
@@ -31,7 +31,7 @@ void hf_pareto_set(hf_pareto *pareto, int i, const double *objective, double vio
 /* Returns the objectives of design i. */
 static inline const double *hf_pareto_value(const hf_pareto *pareto, int i)
 {
-    return pareto->value + (size_t)i * HF_OBJECTIVES_MAX;
+    return pareto->value + (size_t)i * HF_FRONT_OBJECTIVES_MAX;
 }
 
 /* Returns true if design a dominates design b: it is as good in all objectives and better in one, or its violation is

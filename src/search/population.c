@@ -97,7 +97,7 @@ hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m,
     *p = (hf_population){.n_variable = m->n_variable,
                          .has_rows = m->variable,
                          .n_individual = s->population,
-                         .n_objective = s->n_objective,
+                         .n_objective = s->n_front,
                          .generation_limit = s->generations,
                          .best = -1};
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_both(&arena, p, next)));
@@ -146,7 +146,7 @@ double hf_population_violation(const hf_form_result *r)
 
 double hf_population_merit(const hf_population *p, const hf_form_result *r)
 {
-    return p->n_objective ? r->goal[0] : r->merit;
+    return p->n_objective ? r->objective[0] : r->merit;
 }
 
 /* Returns a number below zero if result a is better than b, above zero if it is worse, and 0 if they are equal. */
@@ -156,8 +156,8 @@ static int rank_of_two(const hf_population *p, const hf_form_result *a, const hf
     double x = are_ok ? hf_population_merit(p, a) : hf_population_violation(a);
     double y = are_ok ? hf_population_merit(p, b) : hf_population_violation(b);
     for (int k = 1; are_ok && x == y && k < p->n_objective; k++) {
-        x = a->goal[k];
-        y = b->goal[k];
+        x = a->objective[k];
+        y = b->objective[k];
     }
     return (x > y) - (x < y);
 }

@@ -39,11 +39,11 @@
 /* A step that gains more than this part of what it promises needs no such correction [0.65 to 0.75; 0.5 fails]. */
 #define BEND_BELOW 0.65
 /* A run has settled if two conditions hold over SETTLED_STEPS steps. The merit falls by less than SETTLED_MERIT of it,
- * and no weight x objective changes by more than SETTLED_GOAL of the merit. The merit is reported to six digits. An
- * objective of little weight may still improve when the merit hardly changes. */
+ * and no weight x objective changes by more than SETTLED_OBJECTIVE of the merit. The merit is reported to six digits.
+ * An objective of little weight may still improve when the merit hardly changes. */
 #define SETTLED_STEPS 10
 #define SETTLED_MERIT 1e-6
-#define SETTLED_GOAL 1e-5
+#define SETTLED_OBJECTIVE 1e-5
 #define BEND_WORTH 0.5 /* a correction is the last one if it leaves more than this part of the merit [0.5 to 0.9] */
 
 /* ---- one step ---- */
@@ -237,13 +237,13 @@ static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_resul
 /* Stores the multipliers of the last step for each objective. */
 static void learn_pressure(hf_refine_problem *p)
 {
-    int goal;
+    int objective;
     memset(p->pressure, 0, sizeof p->pressure);
     for (int i = 0; i < p->step.n_active; i++) {
         const hf_quadratic_active *a = &p->step.active[i];
-        if (a->kind < HF_WATCH_GOAL) continue;
-        double relief = hf_watch_relief(&p->watch, a->kind, &goal);
-        p->pressure[goal] += relief * a->multiplier;
+        if (a->kind < HF_WATCH_OBJECTIVE) continue;
+        double relief = hf_watch_relief(&p->watch, a->kind, &objective);
+        p->pressure[objective] += relief * a->multiplier;
     }
 }
 
@@ -267,9 +267,10 @@ static hf_status find_multipliers(hf_refine_problem *p, hf_refine_result *r)
     learn_pressure(p);
     merit = hf_refine_merit(p, &p->result);
     merit = sqrt(fmax(0, merit * merit - 2 * gain)); /* merit at the minimum of the linear model, a small step away */
-    for (int k = 0; k < p->v.goals->n_goal; k++) {
+    for (int k = 0; k < p->v.objectives->n_objective; k++) {
         r->multiplier[k] = p->pressure[k] > 0 ? p->pressure[k] / merit : 0;
-        if (p->v.goals->goal[p->front->least].wanted.goal == HF_GOAL_RATIO) r->multiplier[k] *= exp(merit);
+        if (p->v.objectives->objective[p->front->least].settings.figure == HF_FIGURE_RATIO)
+            r->multiplier[k] *= exp(merit);
     }
     r->multiplier[p->front->least] = NAN;
     return HF_OK;
@@ -280,13 +281,14 @@ static hf_status find_multipliers(hf_refine_problem *p, hf_refine_result *r)
  * promised gain alone would not end the run. */
 static bool is_settled(hf_refine_problem *p, double merit)
 {
-    const hf_goals *goals = p->v.goals;
+    const hf_objectives *objectives = p->v.objectives;
     bool changes = merit < (1 - SETTLED_MERIT) * p->settled_merit;
-    for (int k = 0; goals && k < goals->n_goal; k++)
-        changes |= goals->goal[k].wanted.weight * fabs(p->result.goal[k] - p->settled_goal[k]) > SETTLED_GOAL * merit;
+    for (int k = 0; objectives && k < objectives->n_objective; k++)
+        changes |= objectives->objective[k].settings.weight * fabs(p->result.objective[k] - p->settled_objective[k]) >
+                   SETTLED_OBJECTIVE * merit;
     if (!changes) return p->settled_steps >= SETTLED_STEPS;
     p->settled_merit = merit;
-    memcpy(p->settled_goal, p->result.goal, sizeof p->settled_goal);
+    memcpy(p->settled_objective, p->result.objective, sizeof p->settled_objective);
     p->settled_steps = 0;
     return false;
 }
@@ -365,7 +367,7 @@ static hf_status hand_over(const hf_refine_problem *p, const hf_form_result *sta
 {
     hf_form_result end;
     bool is_better = hf_evaluate(p->caller, p->best, p->w, &end) == HF_OK &&
-                     !hf_watch_breaks(p->front, p->v.goals, HF_LIMITS_AT, end.goal) &&
+                     !hf_watch_breaks(p->front, p->v.objectives, HF_LIMITS_AT, end.objective) &&
                      (start->status != HF_OK || hf_refine_merit(p, &end) <= hf_refine_merit(p, start));
     if (!is_better && start->status != HF_OK) return start->status;
     if (is_better) memcpy(design, p->best, (size_t)p->v.model->n_variable * sizeof(double));
@@ -402,7 +404,7 @@ static hf_status run_problem(hf_refine_problem p, int max_iterations, double *de
     if (status == HF_OK) {
         hf_refine_begin(&p, design);
         if (p.watcher && p.watcher->state) hf_refine_resume(&p, p.watcher->n_state, p.watcher->state, result);
-        if (start.status == HF_OK && hf_watch_breaks(front, evaluator->goals, 0, start.goal))
+        if (start.status == HF_OK && hf_watch_breaks(front, evaluator->objectives, 0, start.objective))
             start.status = HF_OUT_OF_LIMITS;
         status = minimise(&p, max_iterations, result);
         if (status == HF_OK && p.is_outside) status = start.status == HF_OK ? HF_OUT_OF_LIMITS : start.status;

@@ -16,8 +16,8 @@ bool hf_refine_applies(const hf_evaluator *v)
 {
     for (int k = 0; k < v->model->n_variable; k++)
         if (hf_evaluate_sets(v, k) == HF_SETS_START) return false;
-    for (int k = 0; v->goals && k < v->goals->n_goal; k++)
-        if (!hf_goals_is_smooth(&v->goals->goal[k].wanted)) return false;
+    for (int k = 0; v->objectives && k < v->objectives->n_objective; k++)
+        if (!hf_objectives_is_smooth(&v->objectives->objective[k].settings)) return false;
     return v->model->has_newton && v->model->n_variable > 0;
 }
 
@@ -28,10 +28,12 @@ static double count_step(const hf_evaluator *v, double *evaluation_of_ga)
     double n_dof = 3.0 * m->n_free, width = 3.0 * m->half_bandwidth + 3, n = m->n_leader;
     double factor = n_dof * width * width, solve = 4 * n_dof * width, newton = NEWTON_STEPS * (factor + solve);
     double evaluation = v->solver == HF_SOLVER_CHORD ? CHORD_STEPS * solve : newton;
-    double n_row = v->goals && v->goals->nets ? v->goals->n_row : 3.0 * m->n_inner_node;
+    double n_row = v->objectives && v->objectives->nets ? v->objectives->n_row : 3.0 * m->n_inner_node;
     double step = STEP_EVALUATIONS * newton + factor + n * solve + n * n * (n_row + 2 * n);
-    for (int i = 0; v->goals && v->goals->nets && i < v->goals->nets->n_state + v->goals->nets->n_sample; i++) {
-        if (!hf_goals_are_over(v->goals, i)) continue;
+    for (int i = 0;
+         v->objectives && v->objectives->nets && i < v->objectives->nets->n_state + v->objectives->nets->n_sample;
+         i++) {
+        if (!hf_objectives_are_over(v->objectives, i)) continue;
         evaluation += newton;
         step += STEP_EVALUATIONS * newton + newton + factor + n * solve;
     }

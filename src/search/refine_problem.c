@@ -35,8 +35,8 @@ enum {
     STATE_VIOLATION,
     STATE_SETTLED_STEPS,
     STATE_SETTLED_MERIT,
-    STATE_SETTLED_GOAL,
-    N_SCALAR = STATE_SETTLED_GOAL + HF_DESIGN_ROWS_MAX
+    STATE_SETTLED_OBJECTIVE,
+    N_SCALAR = STATE_SETTLED_OBJECTIVE + HF_DESIGN_ROWS_MAX
 };
 #define FORMAT 2
 
@@ -63,7 +63,7 @@ static void lay_out(hf_arena *a, hf_refine_problem *p)
     p->gradient = hf_arena_take(a, n + 1, sizeof(double));
     p->n_state = N_SCALAR + 3 * n + n_variable;
     p->state = hf_arena_take(a, p->front ? 0 : p->n_state, sizeof(double));
-    p->goal_rate = hf_arena_take(a, p->front ? n * (size_t)p->v.goals->n_goal : 0, sizeof(double));
+    p->objective_rate = hf_arena_take(a, p->front ? n * (size_t)p->v.objectives->n_objective : 0, sizeof(double));
 }
 
 bool hf_refine_is_tension(const hf_refine_problem *p, int k)
@@ -116,13 +116,13 @@ static void aim(hf_refine_problem *p)
 {
     p->n_row = p->residuals.n_row;
     if (!p->front) return;
-    const hf_goal *goal = p->v.goals->goal, *least = goal + p->front->least;
-    for (; goal < least; goal++)
-        p->first_row += goal->n_row;
+    const hf_objective *objective = p->v.objectives->objective, *least = objective + p->front->least;
+    for (; objective < least; objective++)
+        p->first_row += objective->n_row;
     p->n_row = least->n_row;
-    p->has_corners = hf_goals_is_largest(least->wanted.goal);
-    p->watch.goal = p->result.goal;
-    p->watch.goal_rate = p->goal_rate;
+    p->has_corners = hf_objectives_is_maximum(least->settings.figure);
+    p->watch.objective = p->result.objective;
+    p->watch.objective_rate = p->objective_rate;
 }
 
 hf_status hf_refine_create(hf_refine_problem *p, hf_arena *arena)
@@ -151,8 +151,8 @@ void hf_refine_destroy(hf_refine_problem *p, hf_arena *arena)
 double hf_refine_merit(const hf_refine_problem *p, const hf_form_result *r)
 {
     if (!p->front) return r->merit;
-    double value = r->goal[p->front->least];
-    return p->v.goals->goal[p->front->least].wanted.goal == HF_GOAL_RATIO ? log(value) : value;
+    double value = r->objective[p->front->least];
+    return p->v.objectives->objective[p->front->least].settings.figure == HF_FIGURE_RATIO ? log(value) : value;
 }
 
 hf_status hf_refine_evaluate(hf_refine_problem *p, const double *step)
@@ -197,11 +197,11 @@ static void multiply_rows(void *context, int room, int i_block)
 
 /* Computes the gradient g = J'f/|f| of an objective |f|. Adds the curvature of its limit to the matrix: m (J'J - g
  * g')/|f|, where m is the multiplier of the last step. */
-static void press(hf_refine_problem *p, int i_goal, int first_row, int n_row)
+static void press(hf_refine_problem *p, int i_objective, int first_row, int n_row)
 {
     const double *f = p->residuals.value + first_row;
-    double *rate = p->goal_rate + (size_t)i_goal * (size_t)p->n, norm = p->result.goal[i_goal];
-    double part = norm > 0 ? 1 / norm : 0, pressure = p->pressure[i_goal] * part;
+    double *rate = p->objective_rate + (size_t)i_objective * (size_t)p->n, norm = p->result.objective[i_objective];
+    double part = norm > 0 ? 1 / norm : 0, pressure = p->pressure[i_objective] * part;
     int n_all = p->residuals.n_row;
     hf_dots((size_t)p->n, (size_t)n_row, p->row + first_row, (size_t)n_all, f, rate);
     for (int k = 0; k < p->n; k++)
@@ -217,17 +217,18 @@ static void press(hf_refine_problem *p, int i_goal, int first_row, int n_row)
  * has corners, its level is minimised in place of its residuals. */
 static void linearise_front(hf_refine_problem *p)
 {
-    const hf_goals *g = p->v.goals;
+    const hf_objectives *g = p->v.objectives;
     size_t n = (size_t)p->n;
     if (p->has_corners) {
-        double value = p->result.goal[p->front->least];
+        double value = p->result.objective[p->front->least];
         p->watch.level = hf_refine_merit(p, &p->result);
-        if (g->goal[p->front->least].wanted.goal == HF_GOAL_RATIO) p->noise /= value;
+        if (g->objective[p->front->least].settings.figure == HF_FIGURE_RATIO) p->noise /= value;
         memset(p->gram, 0, n * n * sizeof(double));
         memset(p->gradient, 0, n * sizeof(double));
     }
-    for (int k = 0, first = 0; k < g->n_goal; first += g->goal[k++].n_row)
-        if (k != p->front->least && !hf_goals_is_largest(g->goal[k].wanted.goal)) press(p, k, first, g->goal[k].n_row);
+    for (int k = 0, first = 0; k < g->n_objective; first += g->objective[k++].n_row)
+        if (k != p->front->least && !hf_objectives_is_maximum(g->objective[k].settings.figure))
+            press(p, k, first, g->objective[k].n_row);
 }
 
 hf_status hf_refine_linearise(hf_refine_problem *p)
@@ -268,7 +269,7 @@ void hf_refine_pack(hf_refine_problem *p, const hf_refine_result *r)
     s[STATE_VIOLATION] = p->violation;
     s[STATE_SETTLED_STEPS] = p->settled_steps;
     s[STATE_SETTLED_MERIT] = p->settled_merit;
-    memcpy(s + STATE_SETTLED_GOAL, p->settled_goal, sizeof p->settled_goal);
+    memcpy(s + STATE_SETTLED_OBJECTIVE, p->settled_objective, sizeof p->settled_objective);
     memcpy(array, p->at, n * sizeof(double));
     memcpy(array + n, p->scale, n * sizeof(double));
     for (size_t i = 0; i < n; i++)
@@ -305,7 +306,7 @@ bool hf_refine_resume(hf_refine_problem *p, size_t n_state, const double *s, hf_
     p->violation = s[STATE_VIOLATION];
     p->settled_steps = (int)s[STATE_SETTLED_STEPS];
     p->settled_merit = s[STATE_SETTLED_MERIT];
-    memcpy(p->settled_goal, s + STATE_SETTLED_GOAL, sizeof p->settled_goal);
+    memcpy(p->settled_objective, s + STATE_SETTLED_OBJECTIVE, sizeof p->settled_objective);
     memcpy(p->at, array, n * sizeof(double));
     memcpy(p->scale, array + n, n * sizeof(double));
     for (size_t i = 0; i < n; i++) {

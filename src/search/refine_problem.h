@@ -28,31 +28,31 @@ typedef struct {
     bool has_corners;                 /* true if the minimised objective has corners: a step then has its level, too */
     int n; /* number of variables: steps from `start` of each class of linked design variables */
     int evaluations;
-    bool is_outside;       /* true while no shape within the limits is known */
-    hf_form_result result; /* result of the last evaluation */
-    double *start;         /* [n_variable], first values; those of tensions are pretensions q L* */
-    double *low, *high;    /* [n], bounds of the variables */
-    double *down, *up;     /* [n], bounds of a step */
-    double *unit;          /* [n], magnitude of the values; violations are relative to it */
-    double *at, *trial;    /* [n], best variables; variables at the end of the last step */
-    double *design;        /* [n_variable], design of the last evaluation; tensions as pretensions q L* */
-    double *best;          /* [n_variable], best design in terms of `caller` */
-    double *step_taken;    /* [n], the step that led to `trial` while it is corrected */
-    double *pull;          /* [n], gradient of a correction */
-    double *scale;         /* [n], maximum norm so far of each column of J */
-    double largest_scale;  /* maximum of `scale` */
-    double *row;           /* [n][rows of the residuals], J' */
-    double *gram;          /* [n][n], J'J; lower triangle by rows, like `hessian` */
-    double *hessian;       /* [n][n], J'J with damping */
-    double *gradient;      /* [n], J'f */
-    double *goal_rate;     /* [n_goal][n], gradients of objectives without corners, for a point of a front */
+    bool is_outside;        /* true while no shape within the limits is known */
+    hf_form_result result;  /* result of the last evaluation */
+    double *start;          /* [n_variable], first values; those of tensions are pretensions q L* */
+    double *low, *high;     /* [n], bounds of the variables */
+    double *down, *up;      /* [n], bounds of a step */
+    double *unit;           /* [n], magnitude of the values; violations are relative to it */
+    double *at, *trial;     /* [n], best variables; variables at the end of the last step */
+    double *design;         /* [n_variable], design of the last evaluation; tensions as pretensions q L* */
+    double *best;           /* [n_variable], best design in terms of `caller` */
+    double *step_taken;     /* [n], the step that led to `trial` while it is corrected */
+    double *pull;           /* [n], gradient of a correction */
+    double *scale;          /* [n], maximum norm so far of each column of J */
+    double largest_scale;   /* maximum of `scale` */
+    double *row;            /* [n][rows of the residuals], J' */
+    double *gram;           /* [n][n], J'J; lower triangle by rows, like `hessian` */
+    double *hessian;        /* [n][n], J'J with damping */
+    double *gradient;       /* [n], J'f */
+    double *objective_rate; /* [n_objective][n], gradients of objectives without corners, for a point of a front */
     double pressure[HF_DESIGN_ROWS_MAX]; /* multipliers of the last step for merit^2/2, for a point of a front */
     double promise;                      /* gain that the linear model promised before the step was corrected */
     double damping, growth;              /* damping of the next step, and its factor if that step fails */
     double way, violation;               /* outside the limits: part of the way for the next step, and the violation */
     double best_psi_m;                   /* psi of the best design */
     int settled_steps;                   /* steps since the merit or an objective last changed noticeably */
-    double settled_merit, settled_goal[HF_DESIGN_ROWS_MAX]; /* merit and objectives at that change */
+    double settled_merit, settled_objective[HF_DESIGN_ROWS_MAX]; /* merit and objectives at that change */
     size_t n_state;
     double *state; /* [n_state], the state of the run for hf_refine_watcher */
     double noise;  /* part of the merit that the tolerance of the form-finding leaves open */

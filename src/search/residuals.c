@@ -14,7 +14,7 @@
 static void lay_out(hf_arena *a, hf_residuals *r)
 {
     const hf_model *m = r->v->model;
-    size_t n_at_once = r->v->goals && r->v->goals->nets ? HF_GOALS_AT_ONCE : 1;
+    size_t n_at_once = r->v->objectives && r->v->objectives->nets ? HF_OBJECTIVES_AT_ONCE : 1;
     r->value = hf_arena_take(a, (size_t)r->n_row, sizeof(double));
     r->room = hf_arena_take(a, (size_t)r->n_room, sizeof *r->room);
     for (int i = 0; i < r->n_room; i++) {
@@ -29,13 +29,13 @@ static void lay_out(hf_arena *a, hf_residuals *r)
 hf_status hf_residuals_create(const hf_evaluator *v, hf_residuals *r)
 {
     hf_arena arena = {0};
-    *r = (hf_residuals){.v = v, .n_row = v->goals ? v->goals->n_row : 3 * v->model->n_inner_node};
-    r->n_room = !v->goals ? 0 : v->n_thread > 1 ? v->n_thread : 1;
+    *r = (hf_residuals){.v = v, .n_row = v->objectives ? v->objectives->n_row : 3 * v->model->n_inner_node};
+    r->n_room = !v->objectives ? 0 : v->n_thread > 1 ? v->n_thread : 1;
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, r)));
     r->block = arena.block;
     for (int i = 1; i < r->n_room; i++) {
         r->room[i].point = &r->room[i].own;
-        HF_TRY(hf_goals_point_create(v->goals, &r->room[i].own));
+        HF_TRY(hf_objectives_point_create(v->objectives, &r->room[i].own));
     }
     return HF_OK;
 }
@@ -44,7 +44,7 @@ void hf_residuals_free(hf_residuals *r)
 {
     hf_arena arena = {.block = r->block};
     for (int i = 1; r->block && i < r->n_room; i++)
-        hf_goals_point_free(&r->room[i].own);
+        hf_objectives_point_free(&r->room[i].own);
     hf_arena_free(&arena);
     *r = (hf_residuals){0};
 }
@@ -61,9 +61,9 @@ static void enter_room(void *context, int any_room, int i)
     hf_residuals_room *room = &q->r->room[i];
     (void)any_room;
     if (i)
-        room->status = hf_goals_linearise_design(q->r->v->goals, q->w, room->point, room->value);
+        room->status = hf_objectives_linearise_design(q->r->v->objectives, q->w, room->point, room->value);
     else
-        room->status = hf_goals_linearise(q->r->v->goals, q->w, room->point, q->r->value);
+        room->status = hf_objectives_linearise(q->r->v->objectives, q->w, room->point, q->r->value);
 }
 
 /* A feasible design has no loose nodes, so psi counts all inner nodes. */
@@ -72,7 +72,7 @@ hf_status hf_residuals_find(hf_residuals *r, hf_workspace *w)
     const hf_model *m = r->v->model;
     if (r->n_room) {
         entered q = {r, w};
-        r->room[0].point = w->goals;
+        r->room[0].point = w->objectives;
         hf_parallel_each(r->v->n_thread, r->n_room, enter_room, &q);
         for (int i = 0; i < r->n_room; i++)
             HF_TRY(r->room[i].status);
@@ -91,11 +91,12 @@ static void find_rate(const hf_residuals *r, const hf_sensitivity *slopes, const
                       int i_class, double *rate)
 {
     const hf_model *m = r->v->model;
-    if (r->v->goals) {
+    if (r->v->objectives) {
         const hf_residuals_room *room = &r->room[i_room];
-        const hf_goals_rate by = {room->move_m, room->tension_rate, hf_sensitivity_displacement(slopes, i_class, 0)};
+        const hf_objectives_rate by = {room->move_m, room->tension_rate,
+                                       hf_sensitivity_displacement(slopes, i_class, 0)};
         hf_sensitivity_spread(slopes, i_class, room->move_m, room->tension_rate);
-        hf_goals_push(r->v->goals, w, room->point, &by, rate);
+        hf_objectives_push(r->v->objectives, w, room->point, &by, rate);
         return;
     }
     const double *move = slopes->move + (size_t)i_class * slopes->n_dof;
@@ -128,31 +129,31 @@ static void cut_nets(void *context, int any_room, int i)
     const all_rates *q = context;
     hf_residuals_room *room = &q->r->room[i];
     (void)any_room;
-    room->status = q->r->v->goals->nets->cut(room->point->nets, q->w);
+    room->status = q->r->v->objectives->nets->cut(room->point->nets, q->w);
 }
 
 /* Computes the rows of all objectives over one as-built net, by all variables. */
 static void rate_net(void *context, int i_room, int i_net)
 {
     const all_rates *q = context;
-    const hf_goals *goals = q->r->v->goals;
+    const hf_objectives *objectives = q->r->v->objectives;
     const hf_model *m = q->r->v->model;
     hf_residuals_room *room = &q->r->room[i_room];
     const hf_workspace *shape;
-    hf_goals_rate by[HF_GOALS_AT_ONCE], by_net[HF_GOALS_AT_ONCE];
-    if (room->status != HF_OK || !hf_goals_are_over(goals, i_net)) return;
-    room->status = hf_goals_nets_linearise(goals, i_net, room->point, &shape);
-    for (int first = 0; first < q->slopes->n && room->status == HF_OK; first += HF_GOALS_AT_ONCE) {
-        int n = q->slopes->n - first < HF_GOALS_AT_ONCE ? q->slopes->n - first : HF_GOALS_AT_ONCE;
+    hf_objectives_rate by[HF_OBJECTIVES_AT_ONCE], by_net[HF_OBJECTIVES_AT_ONCE];
+    if (room->status != HF_OK || !hf_objectives_are_over(objectives, i_net)) return;
+    room->status = hf_objectives_nets_linearise(objectives, i_net, room->point, &shape);
+    for (int first = 0; first < q->slopes->n && room->status == HF_OK; first += HF_OBJECTIVES_AT_ONCE) {
+        int n = q->slopes->n - first < HF_OBJECTIVES_AT_ONCE ? q->slopes->n - first : HF_OBJECTIVES_AT_ONCE;
         for (int k = 0; k < n; k++) {
             double *move = room->move_m + 3 * (size_t)k * (size_t)m->n_node;
             double *tension = room->tension_rate + (size_t)k * (size_t)m->n_cable;
             hf_sensitivity_spread(q->slopes, first + k, move, tension);
-            by[k] = (hf_goals_rate){move, tension, hf_sensitivity_displacement(q->slopes, first + k, 0)};
+            by[k] = (hf_objectives_rate){move, tension, hf_sensitivity_displacement(q->slopes, first + k, 0)};
         }
-        goals->nets->follow(room->point->nets, n, by, by_net);
+        objectives->nets->follow(room->point->nets, n, by, by_net);
         for (int k = 0; k < n; k++)
-            hf_goals_nets_push(goals, i_net, shape, room->point, &by_net[k], rate_of(q, first + k));
+            hf_objectives_nets_push(objectives, i_net, shape, room->point, &by_net[k], rate_of(q, first + k));
     }
 }
 
@@ -163,7 +164,8 @@ static void close_rate(void *context, int i_room, int i_class)
     const hf_residuals *r = q->r;
     double *rate = rate_of(q, i_class);
     (void)i_room;
-    if (r->n_room && r->v->goals->nets) hf_goals_nets_close(r->v->goals, r->room[0].point, r->value, rate);
+    if (r->n_room && r->v->objectives->nets)
+        hf_objectives_nets_close(r->v->objectives, r->room[0].point, r->value, rate);
     q->gradient[i_class] = 0;
     for (int i = 0; i < r->n_row; i++)
         q->gradient[i_class] += rate[i] * r->value[i];
@@ -173,7 +175,7 @@ hf_status hf_residuals_rates(const hf_residuals *r, const hf_sensitivity *slopes
                              double *gradient)
 {
     all_rates q = {r, slopes, w, rate, gradient};
-    const hf_goals_nets *nets = r->v->goals ? r->v->goals->nets : NULL;
+    const hf_objectives_nets *nets = r->v->objectives ? r->v->objectives->nets : NULL;
     hf_parallel_each(r->v->n_thread, slopes->n, rate_one, &q);
     if (nets) {
         hf_parallel_each(r->v->n_thread, r->n_room, cut_nets, &q);

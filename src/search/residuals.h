@@ -8,9 +8,9 @@
 
 /* The working memory of a thread, if there are objectives. The point of the first room is that of the workspace. */
 typedef struct {
-    hf_goals_point own, *point;
+    hf_objectives_point own, *point;
     hf_status status;
-    double *move_m, *tension_rate; /* [HF_GOALS_AT_ONCE][3][n_node], [HF_GOALS_AT_ONCE][n_cable], scratch */
+    double *move_m, *tension_rate; /* [HF_OBJECTIVES_AT_ONCE][3][n_node], [HF_OBJECTIVES_AT_ONCE][n_cable], scratch */
     double *value;                 /* [n_row], scratch; not in the first room */
 } hf_residuals_room;
 

@@ -47,16 +47,16 @@ static void add_row(const hf_evaluator *v, const hf_limit *row, hf_watch *q)
         add(q, (hf_watched){.cable = row->cable[i],
                             .attachment = -1,
                             .support = -1,
-                            .goal = -1,
+                            .objective = -1,
                             .kind = HF_WATCH_ROW,
                             .ratio = cap,
                             .lower = is_ratio ? -INFINITY : row->lower,
                             .upper = is_ratio ? INFINITY : row->upper});
-    for (int i = 0; row->kind == HF_LIMIT_DISPLACEMENT && i < v->model->n_attachment; i++)
+    for (int i = 0; row->kind == HF_LIMIT_DEFLECTION && i < v->model->n_attachment; i++)
         add(q, (hf_watched){.cable = -1,
                             .attachment = i,
                             .support = -1,
-                            .goal = -1,
+                            .objective = -1,
                             .ratio = -1,
                             .kind = HF_WATCH_ROW,
                             .lower = -INFINITY, /* the derivative vanishes at 0, and no size is below 0 */
@@ -64,15 +64,15 @@ static void add_row(const hf_evaluator *v, const hf_limit *row, hf_watch *q)
 }
 
 /* Adds the items of objective k: those of its limit or, if it is minimised and has corners, those of its level. */
-static void add_goal(const hf_evaluator *v, const hf_watch_front *front, int k, hf_watch *q)
+static void add_objective(const hf_evaluator *v, const hf_watch_front *front, int k, hf_watch *q)
 {
-    const hf_goal *g = &v->goals->goal[k];
+    const hf_objective *g = &v->objectives->objective[k];
     const hf_model *m = v->model;
-    bool is_least = k == front->least, is_ratio = g->wanted.goal == HF_GOAL_RATIO;
+    bool is_least = k == front->least, is_ratio = g->settings.figure == HF_FIGURE_RATIO;
     double most = is_least ? INFINITY : front->most[k];
-    bool has_corners = hf_goals_is_largest(g->wanted.goal);
+    bool has_corners = hf_objectives_is_maximum(g->settings.figure);
     if (is_least ? !has_corners : !isfinite(most)) return;
-    hf_watched item = {-1, -1, -1, k, -1, .kind = is_least ? HF_WATCH_LEVEL : HF_WATCH_GOAL, -INFINITY, most};
+    hf_watched item = {-1, -1, -1, k, -1, .kind = is_least ? HF_WATCH_LEVEL : HF_WATCH_OBJECTIVE, -INFINITY, most};
     if (is_ratio) {
         item.ratio = add_cap(q, most);
         item.upper = INFINITY;
@@ -81,11 +81,11 @@ static void add_goal(const hf_evaluator *v, const hf_watch_front *front, int k, 
         item.cable = g->cable[i];
         add(q, item);
     }
-    for (int i = 0; g->wanted.goal == HF_GOAL_PULL && i < m->n_node - m->n_free; i++) {
+    for (int i = 0; g->settings.figure == HF_FIGURE_PULL && i < m->n_node - m->n_free; i++) {
         item.support = i;
         add(q, item);
     }
-    for (int i = 0; g->wanted.goal == HF_GOAL_DISPLACEMENT && i < m->n_attachment; i++) {
+    for (int i = 0; g->settings.figure == HF_FIGURE_DEFLECTION && i < m->n_attachment; i++) {
         item.attachment = i;
         add(q, item);
     }
@@ -107,7 +107,7 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
         add(q, (hf_watched){.cable = e,
                             .attachment = -1,
                             .support = -1,
-                            .goal = -1,
+                            .objective = -1,
                             .kind = HF_WATCH_BOUND,
                             .ratio = is_in_ratio ? cap : -1,
                             .lower = variable >= 0 ? lower[variable] : -INFINITY,
@@ -116,8 +116,8 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
     for (int i = 0; v->limits && i < v->limits->n; i++)
         add_row(v, &v->limits->row[i], q);
     q->n_cap_of_limits = q->n_cap;
-    for (int k = 0; q->front && k < v->goals->n_goal; k++)
-        add_goal(v, q->front, k, q);
+    for (int k = 0; q->front && k < v->objectives->n_objective; k++)
+        add_objective(v, q->front, k, q);
 }
 
 static void lay_out(hf_arena *a, hf_watch *q)
@@ -156,10 +156,10 @@ void hf_watch_free(hf_watch *q)
     *q = (hf_watch){0};
 }
 
-bool hf_watch_breaks(const hf_watch_front *front, const hf_goals *goals, double part, const double *goal)
+bool hf_watch_breaks(const hf_watch_front *front, const hf_objectives *objectives, double part, const double *objective)
 {
-    for (int k = 0; front && k < goals->n_goal; k++)
-        if (k != front->least && goal[k] > (1 + part) * front->most[k]) return true;
+    for (int k = 0; front && k < objectives->n_objective; k++)
+        if (k != front->least && objective[k] > (1 + part) * front->most[k]) return true;
     return false;
 }
 
@@ -168,7 +168,7 @@ bool hf_watch_breaks(const hf_watch_front *front, const hf_goals *goals, double 
 /* Measures the items at the shape in the workspace. */
 static void look(hf_watch *q, hf_workspace *w)
 {
-    if (q->front) hf_goals_pulls(q->v->model, w, w->goals);
+    if (q->front) hf_objectives_pulls(q->v->model, w, w->objectives);
     for (int i = 0; i < q->n; i++) {
         hf_watched *t = &q->item[i];
         const double *d = w->displacement_m + 3 * (ptrdiff_t)(t->attachment < 0 ? 0 : t->attachment);
@@ -177,7 +177,7 @@ static void look(hf_watch *q, hf_workspace *w)
         else if (t->attachment >= 0)
             t->now = hf_norm(d[0], d[1], d[2]);
         else
-            t->now = t->support >= 0 ? w->goals->size[t->support] : q->goal[t->goal];
+            t->now = t->support >= 0 ? w->objectives->size[t->support] : q->objective[t->objective];
     }
 }
 
@@ -214,7 +214,7 @@ double hf_watch_violation(hf_watch *q, hf_workspace *w)
         const hf_watched *t = &q->item[i];
         if (t->kind == HF_WATCH_BOUND)
             sum += hf_limits_tension_violation(q->v->model, w->tension_N[t->cable], t->lower, t->upper);
-        if (t->kind == HF_WATCH_GOAL) sum += fmax(0, t->now - t->upper) / t->unit;
+        if (t->kind == HF_WATCH_OBJECTIVE) sum += fmax(0, t->now - t->upper) / t->unit;
     }
     return sum;
 }
@@ -239,9 +239,9 @@ static void displacement_rates(const hf_watched *t, const hf_sensitivity *s, con
 static void pull_rates(hf_watch *q, const hf_sensitivity *s, hf_workspace *w)
 {
     for (int j = 0; j < s->n; j++) {
-        const hf_goals_rate by = {q->move_m, q->tension_rate, hf_sensitivity_displacement(s, j, 0)};
+        const hf_objectives_rate by = {q->move_m, q->tension_rate, hf_sensitivity_displacement(s, j, 0)};
         hf_sensitivity_spread(s, j, q->move_m, q->tension_rate);
-        hf_goals_pull_rates(q->v->model, w, w->goals, &by, q->pull_rate);
+        hf_objectives_pull_rates(q->v->model, w, w->objectives, &by, q->pull_rate);
         for (int i = 0; i < q->n; i++)
             if (q->item[i].support >= 0) *rate_at(q, i, j) = q->pull_rate[q->item[i].support];
     }
@@ -262,7 +262,7 @@ void hf_watch_linearise(hf_watch *q, const hf_sensitivity *s, hf_workspace *w)
         else if (t->attachment >= 0)
             displacement_rates(t, s, w, q->by_item);
         else if (t->support < 0)
-            rate = q->goal_rate + (size_t)t->goal * (size_t)q->n_class;
+            rate = q->objective_rate + (size_t)t->objective * (size_t)q->n_class;
         for (int j = 0; j < q->n_class && t->support < 0; j++)
             *rate_at(q, i, j) = rate[j];
         has_pull |= t->support >= 0;
@@ -324,16 +324,16 @@ static double rate_of(const hf_watch *q, const hf_watched *t, int j)
     return *rate_at(q, t - q->item, j);
 }
 
-/* Returns HF_WATCH_GOAL plus the index of the item, by which hf_watch_relief finds it again. */
-static int kind_of_goal(const hf_watch *q, const hf_watched *t)
+/* Returns HF_WATCH_OBJECTIVE plus the index of the item, by which hf_watch_relief finds it again. */
+static int kind_of_objective(const hf_watch *q, const hf_watched *t)
 {
-    return HF_WATCH_GOAL + (int)(t - q->item);
+    return HF_WATCH_OBJECTIVE + (int)(t - q->item);
 }
 
-double hf_watch_relief(const hf_watch *q, int kind, int *goal)
+double hf_watch_relief(const hf_watch *q, int kind, int *objective)
 {
-    const hf_watched *t = &q->item[kind - HF_WATCH_GOAL];
-    *goal = t->goal;
+    const hf_watched *t = &q->item[kind - HF_WATCH_OBJECTIVE];
+    *objective = t->objective;
     return t->ratio >= 0 ? t->value : 1; /* the limit is high <= cap low */
 }
 
@@ -356,7 +356,7 @@ static bool breaks_cap(const hf_watch *q, int k, double *worst, hf_quadratic_lim
     for (int j = 0; j < q->n_class; j++)
         limit->normal[j] = cap * rate_of(q, low, j) - rate_of(q, high, j);
     limit->bound = high->value + high->bend - cap * (low->value + low->bend);
-    limit->kind = q->has_cap && k == 0 ? HF_WATCH_CAP : high->goal < 0 ? HF_WATCH_ROW : kind_of_goal(q, low);
+    limit->kind = q->has_cap && k == 0 ? HF_WATCH_CAP : high->objective < 0 ? HF_WATCH_ROW : kind_of_objective(q, low);
     return true;
 }
 
@@ -418,6 +418,6 @@ bool hf_watch_worst(hf_watch *q, const double *x, double worst, hf_quadratic_lim
     for (int j = 0; j < q->n_class; j++)
         limit->normal[j] = sign * rate_of(q, held, j);
     limit->bound = sign * (bound - held->value - held->bend) + inside;
-    limit->kind = held->kind == HF_WATCH_GOAL ? kind_of_goal(q, held) : held->kind;
+    limit->kind = held->kind == HF_WATCH_OBJECTIVE ? kind_of_objective(q, held) : held->kind;
     return true;
 }

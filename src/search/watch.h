@@ -11,19 +11,20 @@
 /* A point of a Pareto front: one objective of the evaluator is minimised under limits on the others. */
 typedef struct {
     int least;
-    const double *most; /* [n_goal], limits above 0; INFINITY: none */
+    const double *most; /* [n_objective], limits above 0; INFINITY: none */
 } hf_watch_front;
 
 /* Returns true if an objective exceeds its limit by more than `part` of it. Returns false if front is NULL. */
-bool hf_watch_breaks(const hf_watch_front *front, const hf_goals *goals, double part, const double *goal);
+bool hf_watch_breaks(const hf_watch_front *front, const hf_objectives *objectives, double part,
+                     const double *objective);
 
 typedef struct {
     /* An item is the tension of a cable, the deflection of an attachment, the force on a support, or an objective. The
      * indices that it does not need are -1. */
     int cable, attachment;
-    int support, goal;      /* goal: objective that the item limits; with no other index, the item itself */
+    int support, objective; /* goal: objective that the item limits; with no other index, the item itself */
     int ratio;              /* index of the cap to which the item belongs, or -1 */
-    int kind;               /* HF_WATCH_BOUND, HF_WATCH_ROW, HF_WATCH_LEVEL or HF_WATCH_GOAL */
+    int kind;               /* HF_WATCH_BOUND, HF_WATCH_ROW, HF_WATCH_LEVEL or HF_WATCH_OBJECTIVE */
     double lower, upper;    /* bounds; infinite if only a cap limits the item */
     double from, to;        /* bounds of the next step, see hf_watch_aim */
     double value, bend;     /* value at the best variables; its excess over the linear model at the last trial */
@@ -47,16 +48,17 @@ typedef struct {
     double *ratio;               /* [n_cap], ratio of maximum to minimum at the best variables */
     double *aim;                 /* [n_cap], limit on the ratio in the next step */
     const hf_watch_front *front; /* NULL: no objective is limited */
-    const double *goal;      /* [n_goal], objectives of the shape that is measured; borrowed; NULL without `front` */
-    const double *goal_rate; /* [n_goal][n_class], rates of objectives without corners, borrowed */
-    double level;            /* value of a minimised objective with corners, or the logarithm of a ratio */
+    const double
+        *objective; /* [n_objective], objectives of the shape that is measured; borrowed; NULL without `front` */
+    const double *objective_rate; /* [n_objective][n_class], rates of objectives without corners, borrowed */
+    double level;                 /* value of a minimised objective with corners, or the logarithm of a ratio */
     double *move_m, *tension_rate, *pull_rate; /* scratch for forces on supports: [3][n_node], [n_cable], [n_support] */
     void *block;
 } hf_watch;
 
 /* Watches the cap and the limits of the evaluator, and the bounds lower and upper [n_variable] of design variables that
- * set a tension. If `front` is not NULL, it also watches the objectives, after the caller has set goal and goal_rate.
- * Returns HF_OK or HF_NO_MEMORY; call hf_watch_free in either case. */
+ * set a tension. If `front` is not NULL, it also watches the objectives, after the caller has set goal and
+ * objective_rate. Returns HF_OK or HF_NO_MEMORY; call hf_watch_free in either case. */
 hf_status hf_watch_create(const hf_evaluator *evaluator, const hf_sensitivity *slopes, const double *lower,
                           const double *upper, const hf_watch_front *front, hf_watch *watch);
 void hf_watch_free(hf_watch *watch);
@@ -88,12 +90,12 @@ void hf_watch_learn(hf_watch *watch, const double *x, hf_workspace *workspace);
  *     HF_WATCH_CAP               for the cap on the boundary tension ratio,
  *     HF_WATCH_ROW               for a row of optimize.limits,
  *     HF_WATCH_LEVEL             for the level of an objective,
- *     HF_WATCH_GOAL or above     for the limit on an objective. */
-enum { HF_WATCH_BOUND = 1, HF_WATCH_CAP, HF_WATCH_ROW, HF_WATCH_LEVEL, HF_WATCH_GOAL };
+ *     HF_WATCH_OBJECTIVE or above     for the limit on an objective. */
+enum { HF_WATCH_BOUND = 1, HF_WATCH_CAP, HF_WATCH_ROW, HF_WATCH_LEVEL, HF_WATCH_OBJECTIVE };
 bool hf_watch_worst(hf_watch *watch, const double *x, double worst, hf_quadratic_limit *limit);
 
-/* Returns by how much a limit of kind HF_WATCH_GOAL or above is relaxed per unit of the limit on objective *goal, to
- * which it belongs. */
-double hf_watch_relief(const hf_watch *watch, int kind, int *goal);
+/* Returns by how much a limit of kind HF_WATCH_OBJECTIVE or above is relaxed per unit of the limit on objective *goal,
+ * to which it belongs. */
+double hf_watch_relief(const hf_watch *watch, int kind, int *objective);
 
 #endif

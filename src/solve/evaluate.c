@@ -158,15 +158,15 @@ static bool is_above_cap(const hf_evaluator *v, const hf_form_result *r)
 
 bool hf_evaluate_needs_shape(const hf_evaluator *v, const hf_form_result *r)
 {
-    return is_above_cap(v, r) || v->limits || v->goals;
+    return is_above_cap(v, r) || v->limits || v->objectives;
 }
 
 hf_status hf_evaluate_attend(const hf_evaluator *v, hf_workspace *w)
 {
     hf_arena arena = {0};
-    if (!v->goals || w->goals) return HF_OK;
-    HF_TRY(HF_ARENA_MAKE(&arena, w->goals = hf_arena_take(&arena, 1, sizeof *w->goals)));
-    return hf_goals_point_create(v->goals, w->goals);
+    if (!v->objectives || w->objectives) return HF_OK;
+    HF_TRY(HF_ARENA_MAKE(&arena, w->objectives = hf_arena_take(&arena, 1, sizeof *w->objectives)));
+    return hf_objectives_point_create(v->objectives, w->objectives);
 }
 
 void hf_evaluate_prepare(const hf_evaluator *v, const double *design, hf_workspace *w)
@@ -183,10 +183,11 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design, hf_workspa
 }
 
 /* Measures the objectives of a shape, feasible or not. */
-static void measure_goals(const hf_evaluator *v, hf_workspace *w, hf_form_result *r)
+static void measure_objectives(const hf_evaluator *v, hf_workspace *w, hf_form_result *r)
 {
-    if (!v->goals) return;
-    if (hf_goals_measure(v->goals, w, w->goals, r->goal, &r->merit) != HF_OK) r->status = HF_NO_MEMORY;
+    if (!v->objectives) return;
+    if (hf_objectives_measure(v->objectives, w, w->objectives, r->objective, &r->merit) != HF_OK)
+        r->status = HF_NO_MEMORY;
 }
 
 hf_status hf_evaluate_judge(const hf_evaluator *v, hf_workspace *w, hf_form_result *r)
@@ -196,9 +197,9 @@ hf_status hf_evaluate_judge(const hf_evaluator *v, hf_workspace *w, hf_form_resu
     if (has_shape && (v->limits || breaks_cap)) r->violation = hf_limits_violation(v, w);
     if (has_shape && r->violation > 0) r->status = HF_OUT_OF_LIMITS;
     if (breaks_cap) r->status = HF_RATIO_CAP;
-    if (has_shape) measure_goals(v, w, r);
-    if (!v->goals) r->merit = r->psi_m;
-    if (v->goals && r->status == HF_OK && !isfinite(r->merit)) { /* an objective has no value for this shape */
+    if (has_shape) measure_objectives(v, w, r);
+    if (!v->objectives) r->merit = r->psi_m;
+    if (v->objectives && r->status == HF_OK && !isfinite(r->merit)) { /* an objective has no value for this shape */
         r->status = HF_NOT_FINITE;
         r->violation = (double)NAN;
     }

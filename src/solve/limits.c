@@ -22,10 +22,10 @@ static hf_status read_row(const hf_scene *scene, const hf_model *m, const hf_lim
                           hf_messages *messages)
 {
     char where[HF_PLACE_SIZE];
-    to->kind = s->limit;
+    to->kind = s->figure;
     to->lower = s->lower;
     to->upper = s->upper;
-    if (s->limit == HF_LIMIT_DISPLACEMENT) {
+    if (s->figure == HF_LIMIT_DEFLECTION) {
         if (m->n_attachment > 0) return HF_OK;
         return hf_error(messages, HF_BAD_CASE, "%s: displacement needs a truss, whose attachments it limits",
                         hf_messages_place(messages, where, "optimize.limits.%d.limit", row));
@@ -116,7 +116,7 @@ static double row_violation(const hf_limit *row, const hf_model *m, const hf_wor
         break;
     case HF_LIMIT_RATIO:
         return hf_limits_ratio_violation(row->n_cable, row->cable, w->tension_N, row->upper, slack_N);
-    case HF_LIMIT_DISPLACEMENT:
+    case HF_LIMIT_DEFLECTION:
         for (int i = 0; i < m->n_attachment; i++)
             sum += outside(row->lower, row->upper, displacement_of(w, i), row->upper);
         break;
@@ -179,7 +179,7 @@ static void count_row(const hf_limit *row, const hf_model *m, const hf_workspace
     case HF_LIMIT_RATIO:
         if (sign > 0) count_ratio(m, w, row->n_cable, row->cable, bound, h);
         break;
-    case HF_LIMIT_DISPLACEMENT: /* displacements are not below zero, so they have no lower side */
+    case HF_LIMIT_DEFLECTION: /* displacements are not below zero, so they have no lower side */
         for (int i = 0; i < m->n_attachment && sign > 0; i++)
             count(h, -1, i, displacement_of(w, i), bound, beyond(displacement_of(w, i), bound, 1, 1));
         break;

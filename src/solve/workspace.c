@@ -1,5 +1,5 @@
 /* Allocates all memory that one solver thread writes to, from the list HF_WORKSPACE_FIELDS. */
-#include <hifdm/goals.h>
+#include <hifdm/objectives.h>
 #include <hifdm/workspace.h>
 
 #include "base/arena.h"
@@ -36,8 +36,8 @@ hf_status hf_workspace_create(const hf_model *m, hf_workspace *w)
 
 void hf_workspace_free(hf_workspace *w)
 {
-    if (w->goals) hf_goals_point_free(w->goals);
-    free(w->goals);
+    if (w->objectives) hf_objectives_point_free(w->objectives);
+    free(w->objectives);
     hf_arena_free_block(w->block);
     *w = (hf_workspace){0};
 }

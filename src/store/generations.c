@@ -253,7 +253,7 @@ bool hf_generations_are_sound(const hf_population *p)
         const hf_form_result *r = &p->result[i];
         if (r->status == HF_OK && !(isfinite(r->psi_m) && isfinite(r->merit))) return false;
         for (int k = 0; k < p->n_objective; k++)
-            if (r->status == HF_OK && !isfinite(r->goal[k])) return false;
+            if (r->status == HF_OK && !isfinite(r->objective[k])) return false;
         for (int k = 0; k < 2; k++)
             if (p->parent[2 * i + k] < -1 || p->parent[2 * i + k] >= p->n_individual) return false;
         for (int k = 0; k < p->n_variable; k++)
@@ -268,7 +268,7 @@ bool hf_generations_are_sound(const hf_population *p)
 /* Returns false for an objective that the case does not have. */
 static bool is_stored(const hf_generations *g, int i)
 {
-    return i < HF_ROW_OBJECTIVE + g->n_objective || i >= HF_ROW_OBJECTIVE + HF_OBJECTIVES_MAX;
+    return i < HF_ROW_OBJECTIVE + g->n_objective || i >= HF_ROW_OBJECTIVE + HF_FRONT_OBJECTIVES_MAX;
 }
 
 /* Chooses as many rows per chunk as fit, but no more than are written at a time. A row larger than CHUNK_BYTES is
@@ -436,9 +436,9 @@ static void note_best(hf_hdf5 *io, hid_t group, const hf_generations *g, const d
     for (int i = 0; i < HF_RESULT_N_INDIVIDUAL; i++)
         read_of_best(io, from, &row[HF_ROW_RESULT + i], field[i], at, individual, s);
     for (int k = 0; k < g->n_objective; k++) {
-        const hf_result_field goal = {.offset = offsetof(hf_form_result, goal) + (size_t)k * sizeof(double),
-                                      .size = sizeof(double)};
-        read_of_best(io, from, &row[HF_ROW_OBJECTIVE + k], &goal, at, individual, s);
+        const hf_result_field objective = {.offset = offsetof(hf_form_result, objective) + (size_t)k * sizeof(double),
+                                           .size = sizeof(double)};
+        read_of_best(io, from, &row[HF_ROW_OBJECTIVE + k], &objective, at, individual, s);
     }
     hf_hdf5_close(io, from);
 }

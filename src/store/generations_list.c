@@ -9,12 +9,12 @@
 static void list_objectives(const hf_population *now, hf_generations_row *row)
 {
     static const char *const name[] = {"objective_0", "objective_1", "objective_2"};
-    _Static_assert(sizeof name / sizeof *name == HF_OBJECTIVES_MAX, "a name for each objective");
-    for (int k = 0; k < HF_OBJECTIVES_MAX; k++) {
+    _Static_assert(sizeof name / sizeof *name == HF_FRONT_OBJECTIVES_MAX, "a name for each objective");
+    for (int k = 0; k < HF_FRONT_OBJECTIVES_MAX; k++) {
         hsize_t n = k < now->n_objective ? (hsize_t)now->n_individual : 0;
         row[k] =
             (hf_generations_row){{name[k], HF_KIND_REAL, 2, {1, n}, "", "of optimize.objectives, each in its own unit"},
-                                 &now->result->goal[k],
+                                 &now->result->objective[k],
                                  sizeof *now->result,
                                  sizeof(double)};
     }

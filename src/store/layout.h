@@ -162,13 +162,13 @@ void hf_layout_get_sets(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_put_held(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_held(hf_hdf5 *io, hf_summary *summary);
 
-/* layout_goals: the group /goals with the rows of optimize.goals, or of optimize.objectives, and their values in the
- * result of each stage. Without rows there is no such group. */
-enum { HF_LAYOUT_N_GOALS_STAGE = 3 }; /* form, optimize, polish */
+/* layout_objectives: the group /goals with the rows of optimize.goals, or of optimize.objectives, and their values in
+ * the result of each stage. Without rows there is no such group. */
+enum { HF_LAYOUT_N_OBJECTIVES_STAGE = 3 }; /* form, optimize, polish */
 /* Returns the values of the rows in the result of a stage, [goals.n], or NULL if there are none. */
-const double *hf_layout_goals(const hf_summary *summary, int stage);
-void hf_layout_put_goals(hf_hdf5 *io, const hf_summary *summary);
-void hf_layout_get_goals(hf_hdf5 *io, hf_summary *summary);
+const double *hf_layout_objectives(const hf_summary *summary, int stage);
+void hf_layout_put_objectives(hf_hdf5 *io, const hf_summary *summary);
+void hf_layout_get_objectives(hf_hdf5 *io, hf_summary *summary);
 
 /* layout_front: the group /front of optimize.objectives; the goals of the summary name its objectives.
  * hf_layout_get_front reads the front without its designs and tabulates it in the summary. hf_layout_read_front reads

@@ -35,7 +35,7 @@ static hf_hdf5_array column(int i, int n_point, int n_objective)
 
 static hf_hdf5_array names(int n)
 {
-    return (hf_hdf5_array){"name", HF_KIND_CHARS, 1, {(hsize_t)n, HF_GOAL_NAME_SIZE}, "", "number, goal and set"};
+    return (hf_hdf5_array){"name", HF_KIND_CHARS, 1, {(hsize_t)n, HF_OBJECTIVE_NAME_SIZE}, "", "number, goal and set"};
 }
 
 static hf_hdf5_array base_of(int n)
@@ -150,7 +150,7 @@ void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *m
     hid_t group = hf_hdf5_make_group(io, "/front");
     if (!is_made) hf_hdf5_no_memory(io);
     if (is_made) pack(&r, n, k, front->point);
-    hf_hdf5_write_array(io, group, &name, s->goals.name);
+    hf_hdf5_write_array(io, group, &name, s->objectives.name);
     hf_hdf5_write_array(io, group, &base, front->base);
     for (int i = 0; i < N_COLUMN; i++) {
         const hf_hdf5_array array = column(i, n, k);
@@ -186,7 +186,7 @@ static bool is_index(int value, int n)
 /* Reads a front of n_variable design variables without its designs. The caller frees it. */
 static void read_front(hf_hdf5 *io, hid_t group, int n_variable, hf_front *front)
 {
-    int n_objective = hf_hdf5_length(io, group, "base", HF_OBJECTIVES_MAX);
+    int n_objective = hf_hdf5_length(io, group, "base", HF_FRONT_OBJECTIVES_MAX);
     int n_point = hf_hdf5_length(io, group, "status", POINTS_MAX);
     const hf_hdf5_array base = base_of(n_objective);
     if (io->status == HF_OK && hf_front_create(n_objective, n_variable, n_point, front) != HF_OK) hf_hdf5_no_memory(io);
@@ -207,7 +207,7 @@ void hf_layout_get_front(hf_hdf5 *io, hf_summary *s)
     read_front(io, group, 0, &front);
     hf_hdf5_get(io, group, ".", "wall_s", HF_KIND_REAL, &s->front.wall_s, 0);
     if (io->status == HF_OK) hf_front_tabulate(&front, &s->front);
-    if (io->status == HF_OK && s->goals.n != front.n_objective)
+    if (io->status == HF_OK && s->objectives.n != front.n_objective)
         hf_hdf5_damaged(io, group, "base", "has not as many objectives as /goals");
     hf_hdf5_close(io, group);
     hf_front_free(&front);

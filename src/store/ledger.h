@@ -33,7 +33,7 @@ bool hf_ledger_is_circumstance(const hf_hdf5_member *column);
 /* The lists of a row, each a text "name=value name=value": the objectives of each stage, the surface errors of each
  * stage, and the figures of the load cases. The surface errors are those of the facets if there are any, else those of
  * the nodes. The names of the last list are CASE.FIGURE here and CASE/FIGURE in a merge. */
-enum { HF_LEDGER_LIST_CASES = 2 * HF_LAYOUT_N_GOALS_STAGE, HF_LEDGER_N_LIST };
+enum { HF_LEDGER_LIST_CASES = 2 * HF_LAYOUT_N_OBJECTIVES_STAGE, HF_LEDGER_N_LIST };
 #define HF_LEDGER_CASES "/cases"
 typedef struct {
     const char *field;          /* name of the list in a header, after group and prefix */
@@ -51,10 +51,10 @@ int hf_ledger_print_field(int i, const hf_summary *summary, char *text, size_t s
 
 /* Takes the next value from the text of a list and moves *text behind it. Returns false at the end of the list, or if
  * the list is damaged. */
-bool hf_ledger_next_value(int list, const char **text, char name[HF_GOAL_NAME_SIZE], double *value);
-const char *hf_ledger_goal(const char *name);      /* returns "tension_edge" for goal_1_tension_edge */
-const char *hf_ledger_goal_unit(const char *name); /* returns the unit of such a name, here "N" */
-const char *hf_ledger_unit(const char *name);      /* returns the unit of any name in a list */
+bool hf_ledger_next_value(int list, const char **text, char name[HF_OBJECTIVE_NAME_SIZE], double *value);
+const char *hf_ledger_objective(const char *name);      /* returns "tension_edge" for goal_1_tension_edge */
+const char *hf_ledger_objective_unit(const char *name); /* returns the unit of such a name, here "N" */
+const char *hf_ledger_unit(const char *name);           /* returns the unit of any name in a list */
 
 /* ---- Writing ---- */
 

@@ -70,12 +70,13 @@ const hf_ledger_list hf_ledger_list_of[HF_LEDGER_N_LIST] = {
     {"figures", HF_LEDGER_CASES, "", ""}};
 
 /* Writes the objectives of a stage: "goal_0_psi=0.001 goal_1_tension_edge=3". Returns the length. */
-static int print_goals(const hf_summary *s, int stage, char *text, size_t size)
+static int print_objectives(const hf_summary *s, int stage, char *text, size_t size)
 {
-    const double *goal = hf_layout_goals(s, stage);
+    const double *objective = hf_layout_objectives(s, stage);
     size_t used = 0;
-    for (int k = 0; goal && k < s->goals.n && used < size; k++)
-        used += (size_t)snprintf(text + used, size - used, "%s%s=%.17g", k ? " " : "", s->goals.name[k], goal[k]);
+    for (int k = 0; objective && k < s->objectives.n && used < size; k++)
+        used +=
+            (size_t)snprintf(text + used, size - used, "%s%s=%.17g", k ? " " : "", s->objectives.name[k], objective[k]);
     return (int)used;
 }
 
@@ -145,22 +146,22 @@ int hf_ledger_print_field(int i, const hf_summary *s, char *text, size_t size)
 {
     const hf_hdf5_member *column = hf_ledger_column(i);
     if (column) return applies(column, s) ? print_number(column, s, text, size) : 0;
-    int list = i - hf_ledger_n_column(), stage = list % HF_LAYOUT_N_GOALS_STAGE;
+    int list = i - hf_ledger_n_column(), stage = list % HF_LAYOUT_N_OBJECTIVES_STAGE;
     if (s->form.status == HF_NOT_EVALUATED) return 0;
     if (list == HF_LEDGER_LIST_CASES) return print_states(s, text, size);
-    if (list == stage) return print_goals(s, stage, text, size);
+    if (list == stage) return print_objectives(s, stage, text, size);
     return print_errors(&s->surface.frequencies_Hz, &s->measures[stage], "", text, size);
 }
 
 /* ---- reading lists ---- */
 
-bool hf_ledger_next_value(int list, const char **text, char name[HF_GOAL_NAME_SIZE], double *value)
+bool hf_ledger_next_value(int list, const char **text, char name[HF_OBJECTIVE_NAME_SIZE], double *value)
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.+";
     const char *p = *text + (**text == ' '), *begin = hf_ledger_list_of[list].begin;
     size_t n = strspn(p, letters);
     char *end;
-    if (n == 0 || n >= HF_GOAL_NAME_SIZE || p[n] != '=' || *p == '.' || strncmp(p, begin, strlen(begin)) != 0)
+    if (n == 0 || n >= HF_OBJECTIVE_NAME_SIZE || p[n] != '=' || *p == '.' || strncmp(p, begin, strlen(begin)) != 0)
         return false;
     memcpy(name, p, n);
     name[n] = '\0';
@@ -174,24 +175,25 @@ const char *hf_ledger_unit(const char *name)
     static const char *const unit[][2] = {{"_N_per_m", "N/m"}, {"_kg", "kg"}, {"_N", "N"},
                                           {"_m", "m"},         {"_Hz", "Hz"}, {"_dB", "dB"}};
     size_t n = strlen(name);
-    if (!strncmp(name, "goal_", 5)) return hf_ledger_goal_unit(name);
+    if (!strncmp(name, "goal_", 5)) return hf_ledger_objective_unit(name);
     for (int i = 0; i < HF_HDF5_COUNT(unit); i++)
         if (n > strlen(unit[i][0]) && !strcmp(name + n - strlen(unit[i][0]), unit[i][0])) return unit[i][1];
     return "";
 }
 
-const char *hf_ledger_goal(const char *name)
+const char *hf_ledger_objective(const char *name)
 {
     name += strcspn(name, "0123456789");
     return name + strspn(name, "0123456789_");
 }
 
-const char *hf_ledger_goal_unit(const char *name)
+const char *hf_ledger_objective_unit(const char *name)
 {
-    const char *word = hf_ledger_goal(name);
-    for (int kind = 0; hf_goal_word[kind]; kind++) {
-        size_t n = strlen(hf_goal_word[kind]);
-        if (!strncmp(word, hf_goal_word[kind], n) && (!word[n] || word[n] == '_')) return hf_goal_unit[kind];
+    const char *word = hf_ledger_objective(name);
+    for (int kind = 0; hf_figure_kind_word[kind]; kind++) {
+        size_t n = strlen(hf_figure_kind_word[kind]);
+        if (!strncmp(word, hf_figure_kind_word[kind], n) && (!word[n] || word[n] == '_'))
+            return hf_figure_kind_unit[kind];
     }
     return "";
 }

@@ -155,7 +155,7 @@ static void write_output(merger *m, hid_t group, int column)
 /* Returns the value of this name in the list of a point, or NaN if there is none. */
 static double value_in(const hf_point *p, int list, const char *wanted)
 {
-    char name[HF_GOAL_NAME_SIZE];
+    char name[HF_OBJECTIVE_NAME_SIZE];
     double value;
     const char *text = p->field ? p->field[hf_ledger_n_column() + list] : "";
     while (hf_ledger_next_value(list, &text, name, &value))
@@ -165,7 +165,7 @@ static double value_in(const hf_point *p, int list, const char *wanted)
 
 static void write_value(merger *m, hid_t group, int list, const char *value)
 {
-    char name[HF_GOAL_NAME_SIZE + 8], path[HF_GOAL_NAME_SIZE + 16];
+    char name[HF_OBJECTIVE_NAME_SIZE + 8], path[HF_OBJECTIVE_NAME_SIZE + 16];
     const char *key = value, *dot = list == HF_LEDGER_LIST_CASES ? strchr(value, '.') : NULL;
     snprintf(name, sizeof name, "%s%s", hf_ledger_list_of[list].prefix, value);
     if (dot) {
@@ -195,7 +195,7 @@ static hid_t make_nested_group(merger *m, const char *path)
  * figures of objectives and frequencies can be axes. */
 static void write_list(merger *m, int list)
 {
-    char(*done)[HF_GOAL_NAME_SIZE] = NULL, path[32], name[HF_GOAL_NAME_SIZE];
+    char(*done)[HF_OBJECTIVE_NAME_SIZE] = NULL, path[32], name[HF_OBJECTIVE_NAME_SIZE];
     int n_done = 0;
     double value;
     hid_t group = -1;

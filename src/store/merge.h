@@ -7,7 +7,7 @@
  *   /points/GROUP    the numbers of hf_summary that any point has [n], in the group of their attributes: form, ga,
  *                    polish, coupling, truss, tolerance; those of the root are in /points. A point without the number
  *                    has NaN, 0 or not_evaluated. Times and threads are not merged.
- *   /points/form, ga, polish   goal_0_psi, best_goal_0_psi, ...: values of the objectives, by name [n]
+ *   /points/form, ga, polish   goal_0_psi, best_objective_0_psi, ...: values of the objectives, by name [n]
  *   /points/surface/form, optimize, polish   surface errors of the facets if there are any, else of the nodes, as
  *                    computed and after the best fit: facet_half_path_rms_m, facet_good_to_Hz (1 dB),
  *                    facet_gain_loss_at_10_GHz_dB, facet_fit_... [n]

@@ -488,7 +488,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
     if (finished) hf_layout_put_surface(&s->f.io, summary);
     if (finished) hf_layout_put_sets(&s->f.io, summary);
     if (finished) hf_layout_put_held(&s->f.io, summary);
-    if (finished || summary->has_front) hf_layout_put_goals(&s->f.io, summary); /* they name the objectives */
+    if (finished || summary->has_front) hf_layout_put_objectives(&s->f.io, summary); /* they name the objectives */
     if (finished) hf_layout_put_cases(&s->f.io, summary);
     if (finished) hf_layout_put_tolerance(&s->f.io, summary);
     if (finished) hf_vtkhdf_put_result(&s->f.io, summary);

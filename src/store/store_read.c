@@ -98,7 +98,7 @@ static hf_status read_summary(const char *path, hf_summary *summary, bool *is_da
     hf_layout_get_pattern(&io, summary);
     hf_layout_get_sets(&io, summary);
     hf_layout_get_held(&io, summary);
-    hf_layout_get_goals(&io, summary);
+    hf_layout_get_objectives(&io, summary);
     hf_layout_get_front(&io, summary);
     hf_layout_get_cases(&io, summary);
     hf_layout_get_tolerance(&io, summary);

@@ -66,7 +66,7 @@ static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_variable, int *n_o
                        ? 0
                        : hf_hdf5_length(io, io->file, "/ga/gene_group", HF_LAYOUT_COUNT_MAX);
     if (io->status == HF_OK && (*n_individual < 1 || *n_individual > INDIVIDUALS_MAX || *n_variable != n_stored ||
-                                *n_objective < 0 || *n_objective > HF_OBJECTIVES_MAX || *limit < 1 ||
+                                *n_objective < 0 || *n_objective > HF_FRONT_OBJECTIVES_MAX || *limit < 1 ||
                                 *limit > GENERATIONS_MAX || *every < 0 || *every > GENERATIONS_MAX))
         hf_hdf5_damaged(io, io->file, "/ga", "has impossible sizes");
 }
@@ -392,8 +392,8 @@ static void open_stored_search(hf_store *s, stored_search *a)
     a->model.variable_leader = a->leader;
     a->model.variable = a->rows;
     const hf_optimize_settings *o = &a->settings.optimize;
-    if (io->status == HF_OK && (o->population != s->rows.n_individual || o->generations != s->rows.limit ||
-                                o->n_objective != s->rows.n_objective))
+    if (io->status == HF_OK &&
+        (o->population != s->rows.n_individual || o->generations != s->rows.limit || o->n_front != s->rows.n_objective))
         hf_hdf5_damaged(io, io->file, "/ga", "has other sizes than the case");
     const hf_optimiser_kind *kind = hf_optimiser_plan_of(o).kind;
     if (io->status == HF_OK && !kind) hf_hdf5_damaged(io, io->file, "/case", "has no generations");

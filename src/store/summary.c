@@ -181,16 +181,16 @@ static void write_held(const hf_held_limits *h, hf_json *j)
 
 /* Writes the members "merit" and "goals" of a stage: value and weight of each term of the objective. Objectives of a
  * front have only values. */
-static void write_goals(const hf_summary *s, const hf_form_result *r, hf_json *j)
+static void write_objectives(const hf_summary *s, const hf_form_result *r, hf_json *j)
 {
-    if (s->goals.n == 0) return;
+    if (s->objectives.n == 0) return;
     hf_json_line(j, "  ");
-    if (!s->goals.are_objectives) hf_json_number(j, "merit", r->merit);
+    if (!s->objectives.is_front) hf_json_number(j, "merit", r->merit);
     hf_json_open(j, "goals", '{');
-    for (int k = 0; k < s->goals.n; k++) {
-        hf_json_open(j, s->goals.name[k], '{');
-        hf_json_number(j, "value", r->status == HF_OK ? r->goal[k] : (double)NAN);
-        if (!s->goals.are_objectives) hf_json_number(j, "weight", s->goals.weight[k]);
+    for (int k = 0; k < s->objectives.n; k++) {
+        hf_json_open(j, s->objectives.name[k], '{');
+        hf_json_number(j, "value", r->status == HF_OK ? r->objective[k] : (double)NAN);
+        if (!s->objectives.is_front) hf_json_number(j, "weight", s->objectives.weight[k]);
         hf_json_close(j, '}');
     }
     hf_json_close(j, '}');
@@ -218,7 +218,7 @@ static void write_form(const hf_summary *s, hf_json *j)
     write_surface(s, &s->measures[0], j);
     write_pattern(&s->pattern[0], j);
     write_sets(&s->sets[0], j);
-    write_goals(s, &s->form, j);
+    write_objectives(s, &s->form, j);
     hf_json_close(j, '}');
 }
 
@@ -238,7 +238,7 @@ static void write_optimize(const hf_summary *s, hf_json *j)
     write_pattern(&s->pattern[1], j);
     write_sets(&s->sets[1], j);
     write_held(&s->held[1], j);
-    write_goals(s, &s->best, j);
+    write_objectives(s, &s->best, j);
     hf_json_close(j, '}');
 }
 
@@ -255,16 +255,16 @@ static void write_refine(const hf_summary *s, hf_json *j)
     write_pattern(&s->pattern[2], j);
     write_sets(&s->sets[2], j);
     write_held(&s->held[2], j);
-    write_goals(s, &s->polish, j);
+    write_objectives(s, &s->polish, j);
     hf_json_close(j, '}');
 }
 
 /* Writes the values of all objectives of a front by their names. */
-static void write_objectives(const hf_summary *s, const char *key, const double *value, hf_json *j)
+static void write_front_values(const hf_summary *s, const char *key, const double *value, hf_json *j)
 {
     hf_json_open(j, key, '{');
     for (int k = 0; k < s->front.n_objective; k++)
-        hf_json_number(j, s->goals.name[k], value[k]);
+        hf_json_number(j, s->objectives.name[k], value[k]);
     hf_json_close(j, '}');
 }
 
@@ -277,11 +277,11 @@ static void write_front(const hf_summary *s, hf_json *j)
     hf_json_integer(j, "n_dominated", t->n_dominated);
     hf_json_integer(j, "n_failed", t->n_failed);
     if (t->minimised >= 0) hf_json_integer(j, "n_not_converged", t->n_unconverged);
-    if (t->minimised >= 0) hf_json_text(j, "minimised", s->goals.name[t->minimised]);
+    if (t->minimised >= 0) hf_json_text(j, "minimised", s->objectives.name[t->minimised]);
     if (t->knee >= 0) hf_json_integer(j, "knee", t->knee);
     hf_json_number(j, "wall_s", t->wall_s);
     hf_json_line(j, "  ");
-    write_objectives(s, "base", t->base, j);
+    write_front_values(s, "base", t->base, j);
     hf_json_line(j, "  ");
     hf_json_open(j, "points", '[');
     for (int i = 0; i < t->n_row; i++) {
@@ -289,8 +289,8 @@ static void write_front(const hf_summary *s, hf_json *j)
         hf_json_line(j, "   ");
         hf_json_open(j, NULL, '{');
         hf_json_integer(j, "id", t->place[i] + 1); /* as in the table of hifdm export --front */
-        write_objectives(s, "objective", p->objective, j);
-        if (t->minimised >= 0) write_objectives(s, "multiplier", p->multiplier, j);
+        write_front_values(s, "objective", p->objective, j);
+        if (t->minimised >= 0) write_front_values(s, "multiplier", p->multiplier, j);
         hf_json_text(j, "status", hf_status_word(p->status));
         hf_json_text(j, "mark", hf_front_mark_word[p->mark]);
         hf_json_integer(j, "iterations", p->iterations);

@@ -57,7 +57,7 @@ END_TEST
 
 /* The goal that a new case has costs what is left after the best fit, and the summary says so by Ruze's formula; the
  * other goal that its comment names does not. */
-START_TEST(a_goal_that_costs_the_best_fit_is_told)
+START_TEST(a_objective_that_costs_the_best_fit_is_told)
 {
     static const char better[] = "after the best fit the form-finding's net was better";
     const char *out = temp("d.h5"), *path = temp("dish.yaml");
@@ -345,7 +345,7 @@ Suite *suite_cli_begin(void)
     TCase *tcase = tcase_create("begin");
     tcase_add_loop_test(tcase, every_new_case_runs_without_a_warning, 0, sizeof begun / sizeof *begun);
     tcase_add_test(tcase, what_a_new_case_suggests_is_good);
-    tcase_add_test(tcase, a_goal_that_costs_the_best_fit_is_told);
+    tcase_add_test(tcase, a_objective_that_costs_the_best_fit_is_told);
     tcase_add_test(tcase, the_gain_is_over_what_it_says);
     tcase_add_test(tcase, nothing_is_replaced);
     tcase_add_test(tcase, every_word_is_explained);

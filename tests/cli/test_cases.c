@@ -84,7 +84,7 @@ START_TEST(a_state_is_exported)
 END_TEST
 
 /* Goals over states of a net on a truss are the errors that the states have in the same file. */
-START_TEST(goals_over_states_are_those_of_the_states)
+START_TEST(objectives_over_states_are_those_of_the_states)
 {
     HIFDM(
         0, "run", keep(source_path("configs/paraboloid-cases.yaml")), "-o", temp("goals.h5"), "--quiet", "--set",
@@ -209,7 +209,7 @@ Suite *suite_cli_cases(void)
     tcase_add_test(tcase, states_are_printed_stored_and_shown);
     tcase_add_test(tcase, a_state_is_exported);
     tcase_add_test(tcase, another_table_is_another_run);
-    tcase_add_test(tcase, goals_over_states_are_those_of_the_states);
+    tcase_add_test(tcase, objectives_over_states_are_those_of_the_states);
     tcase_add_test(tcase, the_optimised_design_is_built);
     tcase_add_test(tcase, a_truss_may_bend_by_its_weight);
     tcase_add_test(tcase, a_state_without_a_shape_does_not_stop_the_others);

@@ -124,16 +124,16 @@ END_TEST
 
 /* The same with goals: tensions near a target under a limit on their ratio, and the displacement of a truss whose
  * stiffness the script makes itself, with the tensions between bounds. */
-START_TEST(scipy_gains_nothing_on_goals)
+START_TEST(scipy_gains_nothing_on_objectives)
 {
     const char *const argv[] = {python_program(),
-                                keep(source_path("tests/verify/goals_slsqp.py")),
+                                keep(source_path("tests/verify/objectives_slsqp.py")),
                                 hifdm_program(),
                                 temp("."),
                                 keep(formatted("%" PRIu64, test_seed())),
                                 "3",
                                 NULL};
-    demand_exit(run_command(200.0, argv), 0, "goals_slsqp.py", __LINE__);
+    demand_exit(run_command(200.0, argv), 0, "objectives_slsqp.py", __LINE__);
     ck_assert_int_eq(count_of(said.out, " nets, 0 wrong, "), 2);
 }
 END_TEST
@@ -253,7 +253,7 @@ Suite *suite_cli_limits(void)
     tcase_add_loop_test(tests, a_start_beyond_its_displacements_is_led_in, 0, 4);
     tcase_add_test(tests, a_merit_without_a_value_is_no_merit);
     tcase_add_test(tests, scipy_gains_nothing_on_capped_nets);
-    tcase_add_test(tests, scipy_gains_nothing_on_goals);
+    tcase_add_test(tests, scipy_gains_nothing_on_objectives);
     tcase_add_test(tests, a_run_that_gains_nothing_more_has_settled);
     tcase_add_test(tests, the_comparison_can_be_switched_off);
     tcase_add_test(tests, nothing_is_a_part_of_a_psi_of_zero);

@@ -118,7 +118,7 @@ END_TEST
 
 /* The goal facets leaves the rear net open, and where nodes of the front are within their surface. Both are told, with
  * the node that moved farthest by the shapes in the file; what counts them, or leaves them alone, is silent. */
-START_TEST(nodes_that_no_goal_counts_are_told)
+START_TEST(nodes_that_no_objective_counts_are_told)
 {
     static const char *const silent[] = {
         "optimize.variables.0.set=tie",
@@ -203,7 +203,7 @@ Suite *suite_cli_reflectors(void)
     tcase_add_loop_test(tcase, what_cannot_be_is_named, 0, N_IMPOSSIBLE);
     tcase_add_test(tcase, designs_move_net_and_ring_in_lanes);
     tcase_add_loop_test(tcase, a_double_layer_is_designed, 0, 2);
-    tcase_add_test(tcase, nodes_that_no_goal_counts_are_told);
+    tcase_add_test(tcase, nodes_that_no_objective_counts_are_told);
     tcase_add_test(tcase, cables_stretched_too_far_are_told);
     tcase_add_test(tcase, rings_under_quad_nets);
     tcase_add_test(tcase, nothing_is_below_rounding);

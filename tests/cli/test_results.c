@@ -37,16 +37,16 @@ START_TEST(a_change_has_the_word_of_its_sign)
                               "    a['best_psi_m'] = a['base_psi_m'] * float(sys.argv[2])\n"
                               "    if 'merit' in form:\n"
                               "        a['best_merit'] = form['merit'] * float(sys.argv[2])\n";
-    const char *out = temp("c.h5"), *goals = temp("g.h5");
+    const char *out = temp("c.h5"), *objectives = temp("g.h5");
     const char *path =
         file_with("c.yaml", SMALL_SCENE "optimize: {population: 4, generations: 1, compare_lm: false}\n");
     HIFDM(0, "run", path, "-o", out, "--quiet");
-    HIFDM(0, "run", path, "-o", goals, "--quiet", "--set", "optimize.goals=[{goal: psi}]");
+    HIFDM(0, "run", path, "-o", objectives, "--quiet", "--set", "optimize.goals=[{goal: psi}]");
     for (size_t i = 0; i < sizeof change / sizeof *change; i++) {
         SHELL(0, "\"$1\" -c \"$2\" \"$3\" $4 && \"$0\" show \"$3\"", python_program(), set, out, change[i].part);
         OUT(formatted(", %s", change[i].words));
         ck_assert_ptr_null(strstr(said.out, "-38"));
-        SHELL(0, "\"$1\" -c \"$2\" \"$3\" $4 && \"$0\" show --verbose \"$3\"", python_program(), set, goals,
+        SHELL(0, "\"$1\" -c \"$2\" \"$3\" $4 && \"$0\" show --verbose \"$3\"", python_program(), set, objectives,
               change[i].part);
         OUT(formatted("%.*sthat of the form-finding; ", (int)strlen(change[i].words) - 4, change[i].words));
     }

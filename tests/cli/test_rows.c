@@ -11,7 +11,7 @@ static const char cables[] = "id,i,j,group,law,value,set\nc1,a,m,boundary,tensio
 
 #define VARIABLES                                                                                                      \
     "optimize.variables=[{set: edge, vary: force_density, range: 50 %}, {set: stay, vary: support_xyz, range: 0.5}]"
-#define GOALS "optimize.goals=[{goal: psi}, {goal: tension, set: edge, target: 9, weight: 0.1}]"
+#define OBJECTIVES "optimize.goals=[{goal: psi}, {goal: tension, set: edge, target: 9, weight: 0.1}]"
 
 /* ---- hifdm evaluate ---- */
 
@@ -30,7 +30,7 @@ START_TEST(a_template_has_a_column_for_each_variable)
 END_TEST
 
 /* The node is the mean of its three neighbours, weighted by the force densities. */
-START_TEST(variables_and_goals_of_any_kind_are_evaluated)
+START_TEST(variables_and_objectives_of_any_kind_are_evaluated)
 {
     const char *net = net_with(nodes, cables), *table = temp("r.csv");
     const char *designs = file_with("d.csv", "c.z,c1,\"c,2\",c.y,id,c.x,c3\n-.5,4,5,-1e-1,low,0,3\n.25,4,4,0,,.1,3\n");
@@ -38,7 +38,7 @@ START_TEST(variables_and_goals_of_any_kind_are_evaluated)
         0, "evaluate", net, "--designs", designs, "-o", table, "--set",
         "optimize.variables=[{set: edge, vary: force_density, range: 50 %}, {set: stay, vary: support_xyz, range: 1}, "
         "{set: stay, vary: force_density, range: 90 %}]",
-        "--set", GOALS);
+        "--set", OBJECTIVES);
     OUT("2 designs, 2 feasible; best merit ");
 #define HELD "held(q, [[0, 0, 0], [4, 0, 0], c])"
 #define EACH "for r, q, c in zip(a, ([4, 5, 3], [4, 4, 3]), ([2, 2.9, .5], [2.1, 3, 1.25])))"
@@ -76,13 +76,13 @@ START_TEST(objectives_are_evaluated_without_a_merit)
     const char *edge = "optimize.variables=[{set: edge, vary: force_density, range: 50 %}]";
     HIFDM(0, "evaluate", net, "--designs", designs, "-o", table, "--jacobian", slopes, "--json", "--set", edge, "--set",
           "optimize.objectives=[{goal: psi}, {goal: tension, set: edge, target: 12}]", "--set", "optimize.method=lm");
-    const char *json = out_as("r.json"), *goals = temp("g.csv"), *goal_slopes = temp("gj.csv");
-    HIFDM(0, "evaluate", net, "--designs", designs, "-o", goals, "--jacobian", goal_slopes, "--set", edge, "--set",
-          "optimize.goals=[{goal: psi}, {goal: tension, set: edge, target: 12}]");
-    EXPECT(table, goals, json, "--", "list(a[0])[-3:] == ['violation', 'goal_0_psi', 'goal_1_tension_edge']",
+    const char *json = out_as("r.json"), *objectives = temp("g.csv"), *objective_slopes = temp("gj.csv");
+    HIFDM(0, "evaluate", net, "--designs", designs, "-o", objectives, "--jacobian", objective_slopes, "--set", edge,
+          "--set", "optimize.goals=[{goal: psi}, {goal: tension, set: edge, target: 12}]");
+    EXPECT(table, objectives, json, "--", "list(a[0])[-3:] == ['violation', 'goal_0_psi', 'goal_1_tension_edge']",
            "'merit' not in a[0] and [{k: r[k] for k in a[0]} for r in b] == a and 'merit' in b[0]",
            "c['feasible'] == 2 and not [k for k in c if k.startswith('best')]");
-    EXPECT(slopes, goal_slopes, "--", "[r['figure'] for r in a] == ['goal_0_psi', 'goal_1_tension_edge'] * 2",
+    EXPECT(slopes, objective_slopes, "--", "[r['figure'] for r in a] == ['goal_0_psi', 'goal_1_tension_edge'] * 2",
            "a == [r for r in b if r['figure'] != 'merit'] and len(b) == 6");
     HIFDM(0, "evaluate", net, "--designs", designs, "-o", table, "--force", "--set", edge, "--set",
           "optimize.objectives=[{goal: psi}, {goal: tension, set: edge, target: 12}]", "--set", "optimize.method=lm");
@@ -123,7 +123,7 @@ START_TEST(derivatives_come_beside_the_results)
         0, "evaluate", net, "--designs", designs, "-o", table, "--jacobian", slopes, "--json", "--set",
         "optimize.variables=[{set: edge, vary: force_density, range: 50 %, link: set}, {set: stay, vary: support_xyz, "
         "range: 0.5}]",
-        "--set", GOALS, "--set", "form.residual_tolerance=1e-13");
+        "--set", OBJECTIVES, "--set", "form.residual_tolerance=1e-13");
 #define SLOPE(figure, up, down, variable)                                                                              \
     "near(float(next(r for r in b if r['id'] == 'at' and r['figure'] == '" figure "')['" variable "']), (lambda of: "  \
     "(float(of['" up "']['" figure "']) - float(of['" down "']['" figure                                               \
@@ -166,10 +166,10 @@ END_TEST
 
 /* ---- hifdm run and show ---- */
 
-START_TEST(runs_tell_what_became_of_each_goal)
+START_TEST(runs_tell_what_became_of_each_objective)
 {
     const char *net = net_with(nodes, cables), *out = temp("r.h5");
-    HIFDM(0, "run", net, "-o", out, "--json", "--set", VARIABLES, "--set", GOALS, "--set", "optimize.method=ga+lm",
+    HIFDM(0, "run", net, "-o", out, "--json", "--set", VARIABLES, "--set", OBJECTIVES, "--set", "optimize.method=ga+lm",
           "--set", "optimize.generations=4", "--set", "optimize.population=8", "--set", "optimize.elites=2");
     const char *json = out_as("r.json");
     EXPECT(
@@ -208,14 +208,14 @@ START_TEST(runs_tell_what_became_of_each_goal)
 }
 END_TEST
 
-START_TEST(goals_of_damaged_files_are_not_shown)
+START_TEST(objectives_of_damaged_files_are_not_shown)
 {
     static const char *const deed[] = {"f['goals/name'][0] = b'\\x1b[1m'", "del f['goals/polish']",
                                        "del f['goals/weight']; f['goals/weight'] = np.ones(17)"};
     static const char *const why[] = {"/goals/name does not name goals", "/goals/polish is not there",
                                       "/goals/weight is empty or too large"};
     const char *out = temp("r.h5");
-    HIFDM(0, "run", net_with(nodes, cables), "-o", out, "--set", VARIABLES, "--set", GOALS, "--set",
+    HIFDM(0, "run", net_with(nodes, cables), "-o", out, "--set", VARIABLES, "--set", OBJECTIVES, "--set",
           "optimize.method=lm");
     const char *script =
         keep(formatted("import h5py, sys, numpy as np\nf = h5py.File(sys.argv[1], 'a')\n%s", deed[_i]));
@@ -354,7 +354,7 @@ START_TEST(nothing_is_sought_that_no_variable_reaches)
 END_TEST
 
 /* At a flat net no height of a support changes a length, to first order; a little beside it does. */
-START_TEST(a_goal_that_stands_still_at_one_point_is_no_fault)
+START_TEST(a_objective_that_stands_still_at_one_point_is_no_fault)
 {
     const char *flat = net_with("id,x_m,y_m,z_m,role\na,-1,0,0,support\nb,1,0,0,support\nc,0,1,0,support\n"
                                 "d,0,-1,0,support\nm,0,0,0,inner\n",
@@ -422,7 +422,7 @@ START_TEST(a_cap_that_the_case_does_not_give_is_told_as_the_default)
 }
 END_TEST
 
-START_TEST(check_names_variables_goals_and_limits)
+START_TEST(check_names_variables_objectives_and_limits)
 {
     const char *net = net_with(nodes, cables);
     HIFDM(0, "check", net, "--set", EDGE("1 %"), "--set", PULLED, "--set",
@@ -440,16 +440,16 @@ END_TEST
 
 /* Two bands. What the goals lose the far field, which is summed otherwise, has less, but for 2e-4 dB that the optimum
  * changes of the area. */
-START_TEST(the_gain_is_a_goal)
+START_TEST(the_gain_is_a_objective)
 {
 #define BANDS                                                                                                          \
     "--set", "surface.frequencies_Hz=[1e9, 2e9]", "--set", "surface.pattern.theta_deg=[-2, 2]", "--set",               \
         "optimize.goals=[{goal: gain}, {goal: gain, frequency_Hz: 1e9, weight: 0.5}]"
-#define LOST(stage, goal) "(1 - a['" stage "']['goals']['" goal "']['value']**2)"
+#define LOST(stage, objective) "(1 - a['" stage "']['goals']['" objective "']['value']**2)"
 #define GAIN(stage, cut) "a['" stage "']['pattern'][" cut "]['gain_dBi']"
-#define SAME(goal, cut)                                                                                                \
-    "near(" GAIN("polish", cut) " - " GAIN("form", cut) ", 10 * np.log10(" LOST("polish", goal) " / " LOST(            \
-        "form", goal) "), 3e-4)"
+#define SAME(objective, cut)                                                                                           \
+    "near(" GAIN("polish", cut) " - " GAIN("form", cut) ", 10 * np.log10(" LOST("polish", objective) " / " LOST(       \
+        "form", objective) "), 3e-4)"
     const char *designs = temp("d.csv"), *table = temp("r.csv"), *slopes = temp("j.csv");
     HIFDM(0, "run", CHEN, "-o", temp("g.h5"), "--json", "--set", "optimize.method=lm", BANDS);
     EXPECT(out_as("run.json"), "--", SAME("goal_0_gain", "2"), SAME("goal_1_gain", "0"),
@@ -477,21 +477,21 @@ Suite *suite_cli_rows(void)
     TCase *tests = tcase_create("rows");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, a_template_has_a_column_for_each_variable);
-    tcase_add_test(tests, variables_and_goals_of_any_kind_are_evaluated);
+    tcase_add_test(tests, variables_and_objectives_of_any_kind_are_evaluated);
     tcase_add_test(tests, the_best_is_that_of_the_merit);
     tcase_add_test(tests, objectives_are_evaluated_without_a_merit);
     tcase_add_test(tests, values_of_cables_are_above_zero);
     tcase_add_test(tests, a_cable_called_like_a_variable_of_a_support_is_refused);
     tcase_add_test(tests, derivatives_come_beside_the_results);
     tcase_add_test(tests, derivatives_are_refused_where_there_are_none);
-    tcase_add_test(tests, runs_tell_what_became_of_each_goal);
-    tcase_add_loop_test(tests, goals_of_damaged_files_are_not_shown, 0, 3);
+    tcase_add_test(tests, runs_tell_what_became_of_each_objective);
+    tcase_add_loop_test(tests, objectives_of_damaged_files_are_not_shown, 0, 3);
     tcase_add_test(tests, what_holds_a_design_has_names);
-    tcase_add_test(tests, check_names_variables_goals_and_limits);
-    tcase_add_test(tests, the_gain_is_a_goal);
+    tcase_add_test(tests, check_names_variables_objectives_and_limits);
+    tcase_add_test(tests, the_gain_is_a_objective);
     tcase_add_test(tests, rows_that_no_variable_reaches_are_named);
     tcase_add_loop_test(tests, nothing_is_sought_that_no_variable_reaches, 0, 3);
-    tcase_add_test(tests, a_goal_that_stands_still_at_one_point_is_no_fault);
+    tcase_add_test(tests, a_objective_that_stands_still_at_one_point_is_no_fault);
     tcase_add_test(tests, a_move_along_z_counts);
     tcase_add_test(tests, ends_that_move_apart_lengthen_a_cable);
     tcase_add_loop_test(tests, a_cap_that_the_case_does_not_give_is_told_as_the_default, 0, 4);

@@ -147,7 +147,7 @@ START_TEST(points_say_whether_they_have_the_yield)
 END_TEST
 
 /* Goals that no point reaches: their merit says which is best, however small psi's part in it is. */
-START_TEST(goals_say_which_point_is_best)
+START_TEST(objectives_say_which_point_is_best)
 {
     sweep_and_merge(file_with("s.yaml",
                               "title: How hard\n" NET "optimize: {method: lm, variables: [{set: tie, vary: "
@@ -391,7 +391,7 @@ Suite *suite_cli_study(void)
     tcase_add_test(tcase, states_are_columns_of_a_merge);
     tcase_add_test(tcase, a_merged_study_is_shown_as_a_table);
     tcase_add_test(tcase, points_say_whether_they_have_the_yield);
-    tcase_add_test(tcase, goals_say_which_point_is_best);
+    tcase_add_test(tcase, objectives_say_which_point_is_best);
     tcase_add_test(tcase, a_best_point_at_the_end_of_an_axis_is_told);
     tcase_add_test(tcase, failed_points_are_told_and_never_the_best);
     tcase_add_test(tcase, odd_names_are_shown_escaped);

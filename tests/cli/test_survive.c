@@ -8,19 +8,20 @@
                 "optimize: {method: %s, range_N: 4, population: 12, generations: 8, compare_lm: false, samples: 64, "  \
                 "%s: [%s]}\n"
 
-static const char *survive_case(const char *name, const char *method, const char *goals)
+static const char *survive_case(const char *name, const char *method, const char *objectives)
 {
-    return file_with(name, formatted(SURVIVE, method, "goals", goals));
+    return file_with(name, formatted(SURVIVE, method, "goals", objectives));
 }
 
 /* By one thread and by three, and as a run that goes on from an earlier one. */
 START_TEST(threads_change_nothing)
 {
     static const char *const method[] = {"lm", "ga", "ga+lm"},
-                             *const goals[] = {"{goal: psi, over: samples}, {goal: psi, state: pushed, weight: 0.1}",
-                                               "{goal: psi, over: samples, quantile: 0.95}",
-                                               "{goal: psi, over: samples, take: worst}"};
-    const char *c = survive_case("c.yaml", method[_i], goals[_i]), *one = temp("a.h5"), *many = temp("b.h5");
+                             *const objectives[] = {
+                                 "{goal: psi, over: samples}, {goal: psi, state: pushed, weight: 0.1}",
+                                 "{goal: psi, over: samples, quantile: 0.95}",
+                                 "{goal: psi, over: samples, take: worst}"};
+    const char *c = survive_case("c.yaml", method[_i], objectives[_i]), *one = temp("a.h5"), *many = temp("b.h5");
     HIFDM(0, "run", c, "-o", one, "--quiet", "--threads", "1");
     HIFDM(0, "run", c, "-o", many, "--quiet", "--threads", "3");
     HIFDM(0, "diff", one, many);
@@ -68,12 +69,12 @@ END_TEST
 /* The goal over the samples of `tolerance` is its figure, and its optimum is better in it than that of psi. */
 START_TEST(what_is_sought_is_found)
 {
-    static const char *const goal[] = {"{goal: psi, over: samples}", "{goal: psi, over: samples, quantile: 0.95}"},
+    static const char *const objective[] = {"{goal: psi, over: samples}", "{goal: psi, over: samples, quantile: 0.95}"},
                              *const method[] = {"lm", "ga"}, *const stage[] = {"polish", "optimize"},
                              *const figure[] = {"rms_psi_m", "psi_95_m"};
     const char *psi = temp("a.h5"), *survives = temp("b.h5");
     HIFDM(0, "run", survive_case("p.yaml", method[_i], "{goal: psi}"), "-o", psi, "--quiet");
-    HIFDM(0, "run", survive_case("s.yaml", method[_i], goal[_i]), "-o", survives, "--quiet");
+    HIFDM(0, "run", survive_case("s.yaml", method[_i], objective[_i]), "-o", survives, "--quiet");
     EXPECT(survives, psi, "--",
            formatted("near(a['goals/%s'][0], a['tolerance'].attrs['%s'], 1e-7)", stage[_i], figure[_i]),
            formatted("a['tolerance'].attrs['%s'] < b['tolerance'].attrs['%s']", figure[_i], figure[_i]));

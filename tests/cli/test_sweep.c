@@ -120,7 +120,7 @@ END_TEST
 
 /* A weight that is an axis can be drawn against what it does to each goal: the merge has a column for each, in each
  * stage, with what the files of the points have. */
-START_TEST(goals_are_columns_of_a_merge)
+START_TEST(objectives_are_columns_of_a_merge)
 {
     const char *path = file_with("study.yaml", SMALL_SCENE "optimize:\n"
                                                            "  population: 6\n"
@@ -424,7 +424,7 @@ Suite *suite_cli_sweep(void)
     tcase_add_test(tcase, sweep_status_and_merge);
     tcase_add_test(tcase, keys_of_rows_are_swept_and_merged);
     tcase_add_test(tcase, a_point_is_a_run);
-    tcase_add_test(tcase, goals_are_columns_of_a_merge);
+    tcase_add_test(tcase, objectives_are_columns_of_a_merge);
     tcase_add_test(tcase, shards_and_threads_make_the_same_whole);
     tcase_add_test(tcase, tasks_that_would_leave_points_out_are_refused);
     tcase_add_test(tcase, a_failed_point_stops_no_other);

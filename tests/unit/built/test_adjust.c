@@ -4,7 +4,7 @@
 #include "built/adjust.h"
 
 typedef struct {
-    hf_goals goals;
+    hf_objectives objectives;
     hf_adjust_settings settings;
     hf_adjust_task task;
     int cable[TWIN_CABLES];
@@ -15,12 +15,13 @@ static void make_job(const twin *t, job *j, double range_m, double step_m, int m
 {
     hf_messages messages = {0};
     hf_optimize_settings psi = {0};
-    ck_assert_int_eq(hf_goals_create(&t->built.scene, &t->built.model, &psi, NULL, NULL, NULL, &j->goals, &messages),
-                     HF_OK);
-    j->settings = (hf_adjust_settings){.range_m = range_m, .step_m = step_m, .moves = moves, .figure = HF_GOAL_PSI};
+    ck_assert_int_eq(
+        hf_objectives_create(&t->built.scene, &t->built.model, &psi, NULL, NULL, NULL, &j->objectives, &messages),
+        HF_OK);
+    j->settings = (hf_adjust_settings){.range_m = range_m, .step_m = step_m, .moves = moves, .figure = HF_FIGURE_PSI};
     for (int e = 0; e < t->built.model.n_cable; e++)
         j->cable[e] = e;
-    j->task = (hf_adjust_task){&j->settings, &j->goals, t->built.model.n_cable, j->cable, NULL, 1};
+    j->task = (hf_adjust_task){&j->settings, &j->objectives, t->built.model.n_cable, j->cable, NULL, 1};
 }
 
 static void find_moves(const twin *t, const job *j, hf_estimate *p, hf_adjustment *found)
@@ -103,7 +104,7 @@ static double run_twin(twin *t, int n, const char *what, double range_m, double 
     *missed = missed_gains(t, &found) / found.n_move;
     hf_adjust_free(&found);
     hf_adjust_free(&known);
-    hf_goals_free(&j.goals);
+    hf_objectives_free(&j.objectives);
     hf_estimate_free(&p);
     return ratio;
 }
@@ -198,7 +199,7 @@ START_TEST(least_tensions_are_kept)
     }
     ck_assert_double_gt(lacks[0], 0.1); /* else there would be nothing to keep */
     ck_assert_double_lt(lacks[1], 0.05);
-    hf_goals_free(&j.goals);
+    hf_objectives_free(&j.objectives);
     close_twin(&t);
 }
 END_TEST
@@ -226,7 +227,7 @@ START_TEST(least_tensions_are_kept_far_away)
     ck_assert_double_lt(lacks, 0.1 + 1e-6); /* shapes on the way are found to tolerances */
     hf_adjust_free(&found);
     hf_estimate_free(&p);
-    hf_goals_free(&j.goals);
+    hf_objectives_free(&j.objectives);
     close_twin(&t);
 }
 END_TEST
@@ -251,7 +252,7 @@ START_TEST(moves_repeat)
         ck_assert(memcmp(&found[0].move[k], &found[1].move[k], sizeof *found[0].move) == 0);
     hf_adjust_free(&found[0]);
     hf_adjust_free(&found[1]);
-    hf_goals_free(&j.goals);
+    hf_objectives_free(&j.objectives);
     close_twin(&t);
 }
 END_TEST

@@ -44,7 +44,7 @@ static const char *const on_a_truss[] = {
     "truss.expansion_per_K=1e-6",
     "tolerance.truss=[{part: bud, sigma_temperature_K: 5}, {part: truss, sigma_temperature_K: 3}]"};
 
-static void open_problem(hf_problem *p, bool on_truss, const char *variables, const char *goals)
+static void open_problem(hf_problem *p, bool on_truss, const char *variables, const char *objectives)
 {
     const char *set[MAX_SET];
     int n = 0;
@@ -55,7 +55,7 @@ static void open_problem(hf_problem *p, bool on_truss, const char *variables, co
         set[n++] = rigid[i];
     for (size_t i = 0; i < sizeof on_a_truss / sizeof *on_a_truss && on_truss; i++)
         set[n++] = on_a_truss[i];
-    set[n++] = goals;
+    set[n++] = objectives;
     if (variables) set[n++] = variables;
     if (variables) set[n++] = "optimize.symmetry=none";
     hf_status status = hf_problem_open(source_path(on_truss ? truss_path : rigid_path), set, n, 1, p, &messages);
@@ -79,7 +79,8 @@ static void residuals_at(struct differed *d, int i, double step, double *residua
     for (int k = 0; k < m->n_variable; k++)
         d->design[k] = d->p.initial[k] + (d->slopes.class_of_variable[k] == i ? step : 0);
     ck_assert_int_eq(hf_evaluate(&d->p.evaluator, d->design, &d->p.workspace, &result), HF_OK);
-    ck_assert_int_eq(hf_goals_linearise(&d->p.goals, &d->p.workspace, d->p.workspace.goals, residual), HF_OK);
+    ck_assert_int_eq(hf_objectives_linearise(&d->p.objectives, &d->p.workspace, d->p.workspace.objectives, residual),
+                     HF_OK);
 }
 
 static double largest_move(const struct differed *d, int i)
@@ -92,7 +93,7 @@ static double largest_move(const struct differed *d, int i)
 }
 
 /* |x - y| of the rows of a goal; y: NULL for zero. */
-static double distance(const hf_goal *g, const double *x, const double *y)
+static double distance(const hf_objective *g, const double *x, const double *y)
 {
     double square = 0;
     for (int r = g->first_row; r < g->first_row + g->n_row; r++)
@@ -109,10 +110,10 @@ static void differ(struct differed *d, int i, double step)
         d->found[0][r] = (8 * (d->found[0][r] - d->found[1][r]) - (d->found[2][r] - d->found[3][r])) / (12 * step);
 }
 
-static void open_differed(struct differed *d, bool on_truss, const char *variables, const char *goals)
+static void open_differed(struct differed *d, bool on_truss, const char *variables, const char *objectives)
 {
     hf_form_result result;
-    open_problem(&d->p, on_truss, variables, goals);
+    open_problem(&d->p, on_truss, variables, objectives);
     d->p.evaluator.solver = HF_SOLVER_NEWTON;
     ck_assert_int_eq(hf_sensitivity_create(&d->p.evaluator, &d->slopes), HF_OK);
     ck_assert_int_eq(hf_residuals_create(&d->p.evaluator, &d->residuals), HF_OK);
@@ -143,7 +144,7 @@ static const char *const varied[] = {
     "optimize.variables=[{set: edge_tie, vary: length, range: 0.01}]",
     "optimize.variables=[{set: edge_tie, vary: support_z, range: 0.01, link: each}]",
 };
-static const char all_goals[] =
+static const char all_objectives[] =
     "optimize.goals=[{goal: psi}, {goal: psi, state: cold}, {goal: psi, state: up, weight: 2}, "
     "{goal: psi, over: states}, {goal: psi, over: states, take: worst}, {goal: psi, over: samples, weight: 3}, "
     "{goal: psi, over: samples, take: worst, weight: 2}, {goal: tension, set: directrix, target: 12, state: moved}, "
@@ -158,11 +159,11 @@ START_TEST(a_net_without_memory_is_told)
     hf_form_result result;
     const hf_workspace *shape;
     open_problem(&p, false, NULL, "optimize.goals=[{goal: psi, over: samples}]");
-    const hf_goals_nets *nets = p.goals.nets;
+    const hf_objectives_nets *nets = p.objectives.nets;
     ck_assert_int_eq(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &result), HF_OK);
-    ck_assert_int_eq(nets->cut(p.workspace.goals->nets, &p.workspace), HF_OK);
+    ck_assert_int_eq(nets->cut(p.workspace.objectives->nets, &p.workspace), HF_OK);
     fail_allocation_at(1);
-    hf_status status = hf_goals_nets_linearise(&p.goals, nets->n_state, p.workspace.goals, &shape);
+    hf_status status = hf_objectives_nets_linearise(&p.objectives, nets->n_state, p.workspace.objectives, &shape);
     ck_assert(end_allocation_failure());
     ck_assert_int_eq(status, HF_NO_MEMORY);
     hf_problem_free(&p);
@@ -173,17 +174,17 @@ START_TEST(derivatives_are_those_of_differences)
 {
     struct differed d = {0};
     bool on_truss = _i % 2;
-    open_differed(&d, on_truss, varied[_i / 2], all_goals);
-    const hf_goals *goals = &d.p.goals;
+    open_differed(&d, on_truss, varied[_i / 2], all_objectives);
+    const hf_objectives *objectives = &d.p.objectives;
     int n_row = d.residuals.n_row, stride = 1 + d.slopes.n / MAX_TRIED;
     double largest[HF_DESIGN_ROWS_MAX] = {0};
-    for (int k = 0; k < goals->n_goal; k++)
+    for (int k = 0; k < objectives->n_objective; k++)
         for (int i = 0; i < d.slopes.n; i += stride)
-            largest[k] = fmax(largest[k], distance(&goals->goal[k], d.exact + (ptrdiff_t)i * n_row, NULL));
+            largest[k] = fmax(largest[k], distance(&objectives->objective[k], d.exact + (ptrdiff_t)i * n_row, NULL));
     for (int i = 0; i < d.slopes.n; i += stride) {
         differ(&d, i, MOVE_M / largest_move(&d, i));
-        for (int k = 0; k < goals->n_goal; k++) {
-            double off = distance(&goals->goal[k], d.exact + (ptrdiff_t)i * n_row, d.found[0]);
+        for (int k = 0; k < objectives->n_objective; k++) {
+            double off = distance(&objectives->objective[k], d.exact + (ptrdiff_t)i * n_row, d.found[0]);
             ck_assert_msg(off <= AGREEMENT * largest[k], "%s%s, variable %d, goal %d: off by %g of %g",
                           varied[_i / 2] ? varied[_i / 2] : "pretensions", on_truss ? ", truss" : "", i, k, off,
                           largest[k]);
@@ -195,7 +196,7 @@ END_TEST
 
 /* ---- values ---- */
 
-static const char value_goals[] =
+static const char value_objectives[] =
     "optimize.goals=[{goal: psi}, {goal: psi, over: samples}, {goal: psi, over: samples, take: worst}, "
     "{goal: psi, over: samples, quantile: 0.5}, {goal: psi, state: cold}, {goal: psi, state: up}, "
     "{goal: psi, state: moved}, {goal: psi, over: states}, {goal: psi, over: states, take: worst}, "
@@ -220,7 +221,7 @@ START_TEST(values_over_samples_are_those_of_tolerances)
     hf_montecarlo t;
     hf_messages messages = {0};
     double square = 0, psi[6], by_heat[2 * 3 * 100];
-    open_problem(&p, _i, NULL, value_goals);
+    open_problem(&p, _i, NULL, value_objectives);
     ck_assert_int_le(p.model.n_attachment, 100);
     ck_assert_int_eq(hf_cases_rest_by_heat(&p, by_heat), HF_OK);
     const hf_built_heat heat = {NULL, by_heat};
@@ -237,9 +238,9 @@ START_TEST(values_over_samples_are_those_of_tolerances)
         psi[at] = value;
         square += value * value / 6;
     }
-    assert_near(r.goal[1], sqrt(square));
-    assert_near(r.goal[2], psi[5]);
-    assert_near(r.goal[3], psi[2]);
+    assert_near(r.objective[1], sqrt(square));
+    assert_near(r.objective[2], psi[5]);
+    assert_near(r.objective[3], psi[2]);
     ck_assert_double_gt(psi[5], 1.00001 * psi[0]);
     hf_montecarlo_free(&t);
     hf_built_free(&built);
@@ -256,7 +257,7 @@ START_TEST(values_of_states_are_those_of_cases)
     hf_built_net net;
     hf_messages messages = {0};
     double square = 0, worst = 0, rest_m[3 * 3 * 100] = {0};
-    open_problem(&p, _i, NULL, value_goals);
+    open_problem(&p, _i, NULL, value_objectives);
     size_t n = 3 * (size_t)p.model.n_attachment;
     ck_assert_uint_le(3 * n, sizeof rest_m / sizeof *rest_m);
     if (n) ck_assert_int_eq(hf_cases_rest(&p, rest_m), HF_OK);
@@ -266,13 +267,13 @@ START_TEST(values_of_states_are_those_of_cases)
         hf_built_state(&cases.built, &p.states.material, &p.states.state[k], n ? rest_m + (size_t)k * n : NULL,
                        cases.cut_m, cases.move_m, cases.load_N, &net);
         ck_assert_int_eq(hf_built_solve(&cases.built, &net, &cases.workspace, &of_state), HF_OK);
-        assert_near(r.goal[4 + k], of_state.psi_m);
-        ck_assert_double_gt(fabs(of_state.psi_m - r.goal[0]), 1e-6);
+        assert_near(r.objective[4 + k], of_state.psi_m);
+        ck_assert_double_gt(fabs(of_state.psi_m - r.objective[0]), 1e-6);
         square += of_state.psi_m * of_state.psi_m / 3;
         worst = fmax(worst, of_state.psi_m);
     }
-    assert_near(r.goal[7], sqrt(square));
-    assert_near(r.goal[8], worst);
+    assert_near(r.objective[7], sqrt(square));
+    assert_near(r.objective[8], worst);
     hf_cases_free(&cases);
     hf_problem_free(&p);
 }
@@ -283,7 +284,7 @@ START_TEST(nets_that_do_not_differ_are_the_design)
 {
     hf_problem p;
     hf_form_result r;
-    open_problem(&p, _i, NULL, value_goals);
+    open_problem(&p, _i, NULL, value_objectives);
     hf_tolerance_settings *t = &p.settings.tolerance;
     t->sigma_cut_m = t->sigma_cut_ratio = t->sigma_EA_ratio = t->sigma_support_m = 0;
     t->n_truss = 0;
@@ -296,8 +297,8 @@ START_TEST(nets_that_do_not_differ_are_the_design)
     }
     evaluate_base(&p, &r);
     for (int k = 1; k < 9; k++) /* on a truss its own weight has moved the attachments of state `up` before */
-        if (k < 4 || p.model.n_attachment == 0) assert_near(r.goal[k], r.goal[0]);
-    assert_near(r.goal[9], r.goal[10]);
+        if (k < 4 || p.model.n_attachment == 0) assert_near(r.objective[k], r.objective[0]);
+    assert_near(r.objective[9], r.objective[10]);
     hf_problem_free(&p);
 }
 END_TEST
@@ -307,7 +308,7 @@ START_TEST(values_do_not_depend_on_earlier_designs)
 {
     hf_problem p;
     hf_form_result first, other, again;
-    open_problem(&p, _i, NULL, value_goals);
+    open_problem(&p, _i, NULL, value_objectives);
     evaluate_base(&p, &first);
     double *design = malloc((size_t)p.model.n_variable * sizeof *design);
     ck_assert_ptr_nonnull(design);
@@ -315,11 +316,11 @@ START_TEST(values_do_not_depend_on_earlier_designs)
         design[k] = p.initial[k] * (1 + 0.02 * (k % 5));
     ck_assert_int_eq(hf_evaluate(&p.evaluator, design, &p.workspace, &other), HF_OK);
     evaluate_base(&p, &again);
-    ck_assert_mem_eq(first.goal, again.goal, sizeof first.goal);
+    ck_assert_mem_eq(first.objective, again.objective, sizeof first.objective);
     hf_batch_run_one(&p.batch, design, &again); /* by chord, in another workspace */
-    for (int k = 0; k < p.goals.n_goal; k++)
-        ck_assert_msg(fabs(again.goal[k] - other.goal[k]) <= 1e-8 * other.goal[k], "goal %d: %g and %g", k,
-                      again.goal[k], other.goal[k]);
+    for (int k = 0; k < p.objectives.n_objective; k++)
+        ck_assert_msg(fabs(again.objective[k] - other.objective[k]) <= 1e-8 * other.objective[k], "goal %d: %g and %g",
+                      k, again.objective[k], other.objective[k]);
     free(design);
     hf_problem_free(&p);
 }

@@ -69,22 +69,22 @@ START_TEST(variables_reach_their_place)
 }
 END_TEST
 
-START_TEST(goals_and_limits_reach_their_place)
+START_TEST(objectives_and_limits_reach_their_place)
 {
     hf_case c;
     accept_rows(ROWS, NULL, 0, &c);
-    const hf_goal_settings *g = c.optimize.goal;
+    const hf_objective_settings *g = c.optimize.term;
     const hf_limit_settings *l = c.optimize.limit;
-    ck_assert_int_eq(c.optimize.n_goal, 4);
-    ck_assert(g[0].goal == HF_GOAL_PSI && g[0].weight == 1 && isnan(g[0].target) && !*g[0].set);
+    ck_assert_int_eq(c.optimize.n_term, 4);
+    ck_assert(g[0].figure == HF_FIGURE_PSI && g[0].weight == 1 && isnan(g[0].target) && !*g[0].set);
     ck_assert(g[0].along == HF_ALONG_NORMAL && g[0].fit == HF_FIT_NONE && isnan(g[0].mass_kg_per_m));
-    ck_assert(g[1].goal == HF_GOAL_TENSION && g[1].target == 20000 && g[1].weight == 1e-3);
+    ck_assert(g[1].figure == HF_FIGURE_TENSION && g[1].target == 20000 && g[1].weight == 1e-3);
     ck_assert_str_eq(g[1].set, "edge");
-    ck_assert(g[2].goal == HF_GOAL_FACETS && g[2].along == HF_ALONG_HALF_PATH && g[2].fit == HF_FIT_BEST);
-    ck_assert(g[3].goal == HF_GOAL_MASS && g[3].mass_kg_per_m == 0.004 && !*g[3].set);
+    ck_assert(g[2].figure == HF_FIGURE_FACETS && g[2].along == HF_ALONG_HALF_PATH && g[2].fit == HF_FIT_BEST);
+    ck_assert(g[3].figure == HF_FIGURE_MASS && g[3].mass_kg_per_m == 0.004 && !*g[3].set);
     ck_assert_int_eq(c.optimize.n_limit, 2);
-    ck_assert(l[0].limit == HF_LIMIT_TENSION && l[0].lower == 1 && l[0].upper == INFINITY);
-    ck_assert(l[1].limit == HF_LIMIT_RATIO && l[1].lower == -INFINITY && l[1].upper == 1.5);
+    ck_assert(l[0].figure == HF_LIMIT_TENSION && l[0].lower == 1 && l[0].upper == INFINITY);
+    ck_assert(l[1].figure == HF_LIMIT_RATIO && l[1].lower == -INFINITY && l[1].upper == 1.5);
     ck_assert_str_eq(l[1].set, "inner");
     hf_case_free(&c);
 }
@@ -96,10 +96,10 @@ START_TEST(objectives_reach_their_place)
                                       "optimize.objectives=[{goal: psi}, {goal: ratio, set: edge}]"};
     hf_case c;
     accept_rows(ROWS, set, 3, &c);
-    const hf_goal_settings *g = c.optimize.objective;
-    ck_assert_int_eq(c.optimize.n_objective, 2);
+    const hf_objective_settings *g = c.optimize.front;
+    ck_assert_int_eq(c.optimize.n_front, 2);
     ck_assert_int_eq(c.optimize.front_points, 21);
-    ck_assert(g[0].goal == HF_GOAL_PSI && isnan(g[0].target) && !*g[0].set && g[1].goal == HF_GOAL_RATIO);
+    ck_assert(g[0].figure == HF_FIGURE_PSI && isnan(g[0].target) && !*g[0].set && g[1].figure == HF_FIGURE_RATIO);
     ck_assert_str_eq(g[1].set, "edge");
     hf_case_free(&c);
 }
@@ -114,12 +114,12 @@ START_TEST(overrides_set_keys_of_rows_and_whole_lists)
     accept_rows(ROWS, set, 5, &c);
     ck_assert(c.optimize.variable_row[0].range == 5 && isnan(c.optimize.variable_row[0].range_ratio));
     ck_assert(c.optimize.variable_row[2].lower == -1 && c.optimize.variable_row[2].upper == 1);
-    ck_assert_int_eq(c.optimize.n_goal, 1);
-    ck_assert(c.optimize.goal[0].goal == HF_GOAL_PULL && c.optimize.goal[0].weight == 3);
+    ck_assert_int_eq(c.optimize.n_term, 1);
+    ck_assert(c.optimize.term[0].figure == HF_FIGURE_PULL && c.optimize.term[0].weight == 3);
     ck_assert_int_eq(c.optimize.n_limit, 0);
     hf_case_free(&c);
     accept_rows(CYLINDER, set + 2, 2, &c);
-    ck_assert(c.has_optimize && c.optimize.n_goal == 1);
+    ck_assert(c.has_optimize && c.optimize.n_term == 1);
     hf_case_free(&c);
 }
 END_TEST
@@ -179,8 +179,8 @@ END_TEST
 /* ---- what is refused ---- */
 
 #define VARIABLE OPTIMIZE "  variables:\n    - "
-#define GOAL OPTIMIZE "  goals: ["
-#define OBJECTIVE OPTIMIZE "  method: lm\n  objectives: ["
+#define OBJECTIVE OPTIMIZE "  goals: ["
+#define FRONT OPTIMIZE "  method: lm\n  objectives: ["
 #define LIMIT OPTIMIZE "  limits: ["
 #define ROW "{set: a, vary: length, range: 1}"
 
@@ -203,7 +203,7 @@ static const struct {
      "error: c.yaml:5:7: optimize.variables.0.set: is missing and has no default\n"},
     {VARIABLE "{set: a, range: 1}\n", NULL,
      "error: c.yaml:5:7: optimize.variables.0.vary: is missing and has no default\n"},
-    {GOAL "{goal: psi}, {weight: 2}]\n", NULL,
+    {OBJECTIVE "{goal: psi}, {weight: 2}]\n", NULL,
      "error: c.yaml:4:24: optimize.goals.1.goal: is missing and has no default\n"},
     {LIMIT "{bounds: [1, 2]}]\n", NULL, "error: c.yaml:4:12: optimize.limits.0.limit: is missing and has no default\n"},
     {LIMIT "{limit: tension}]\n", NULL,
@@ -211,7 +211,7 @@ static const struct {
     {VARIABLE "{set: a, vary: tensions, range: 1}\n", NULL,
      "error: c.yaml:5:22: optimize.variables.0.vary: must be one of tension force_density length unstressed_length "
      "support_z support_normal support_xyz, not tensions; did you mean 'tension'?\n"},
-    {GOAL "{goal: rms}]\n", NULL,
+    {OBJECTIVE "{goal: rms}]\n", NULL,
      "error: c.yaml:4:18: optimize.goals.0.goal: must be one of psi surface facets tension length evenness pull "
      "displacement mass ratio gain, not rms\n"},
     {LIMIT "{limit: length, bounds: [1, 2]}]\n", NULL,
@@ -247,7 +247,8 @@ static const struct {
      "error: c.yaml:5:39: optimize.variables.0.bounds: leaves both sides open; give one bound at least\n"},
     {VARIABLE "{set: front edge, vary: tension, range: 1}\n", NULL,
      "error: c.yaml:5:13: optimize.variables.0.set: must be made of letters, digits, _ and -\n"},
-    {GOAL "{goal: evenness, set: -a}]\n", NULL, "error: c.yaml:4:33: optimize.goals.0.set: must not begin with -\n"},
+    {OBJECTIVE "{goal: evenness, set: -a}]\n", NULL,
+     "error: c.yaml:4:33: optimize.goals.0.set: must not begin with -\n"},
     {LIMIT "{limit: ratio, set: \"a;b\", bounds: [1, 2]}]\n", NULL,
      "error: c.yaml:4:32: optimize.limits.0.set: must be made of letters, digits, _ and -\n"},
     {VARIABLE "{set: \"\", vary: tension, range: 1}\n", NULL,
@@ -259,58 +260,59 @@ static const struct {
     {OPTIMIZE "  symmetry: x\n  variables: [{set: a, vary: support_xyz, range: 1, link: symmetry}]\n", NULL,
      "error: c.yaml:5:59: optimize.variables.0.link: cannot be symmetry with support_xyz: mirrored supports move apart "
      "along x or y\n"},
-    {GOAL "{goal: psi, set: a}]\n", NULL,
+    {OBJECTIVE "{goal: psi, set: a}]\n", NULL,
      "error: c.yaml:4:28: optimize.goals.0.set: has no meaning for psi, only for tension, length, evenness, mass, "
      "ratio\n"},
-    {OBJECTIVE "{goal: psi}]\n", NULL,
+    {FRONT "{goal: psi}]\n", NULL,
      "error: c.yaml:5:16: optimize.objectives.0: is the only row; a front is of two or three objectives. For one use "
      "optimize.goals\n"},
-    {OBJECTIVE "{goal: psi}, {goal: pull}]\n  goals: [{goal: psi}]\n", NULL,
+    {FRONT "{goal: psi}, {goal: pull}]\n  goals: [{goal: psi}]\n", NULL,
      "error: c.yaml:6:11: optimize.goals.0: cannot be with optimize.objectives, which takes the place of goals; keep "
      "one of them\n"},
-    {OBJECTIVE "{goal: psi}, {goal: psi}]\n", NULL,
+    {FRONT "{goal: psi}, {goal: psi}]\n", NULL,
      "error: c.yaml:5:36: optimize.objectives.1.goal: is the objective of an earlier row; a front needs different "
      "ones\n"},
-    {OBJECTIVE "{goal: psi}, {goal: pull}, {goal: mass}, {goal: ratio}]\n", NULL,
+    {FRONT "{goal: psi}, {goal: pull}, {goal: mass}, {goal: ratio}]\n", NULL,
      "error: c.yaml:5:57: optimize.objectives: there are more than 3 rows\n"},
-    {OBJECTIVE "{goal: psi}, {goal: pull}, {goal: evenness}]\n  front_points: 3\n", NULL,
+    {FRONT "{goal: psi}, {goal: pull}, {goal: evenness}]\n  front_points: 3\n", NULL,
      "error: c.yaml:6:17: optimize.front_points: must be at least 4 with three objectives, for the ends alone\n"},
-    {OBJECTIVE "{goal: psi}, {goal: pull}]\n  compare_lm: true\n", NULL,
+    {FRONT "{goal: psi}, {goal: pull}]\n  compare_lm: true\n", NULL,
      "error: c.yaml:6:15: optimize.compare_lm: compares one design; it has no meaning for optimize.objectives\n"},
-    {OBJECTIVE "{goal: psi}, {goal: pull}]\n  variation: chain\n", NULL,
+    {FRONT "{goal: psi}, {goal: pull}]\n  variation: chain\n", NULL,
      "error: c.yaml:6:14: optimize.variation: cannot be chain with optimize.objectives, whose children move along "
      "differences; remove it\n"},
-    {OBJECTIVE "{goal: psi}, {goal: pull}]\n  elites: 2\n", NULL,
+    {FRONT "{goal: psi}, {goal: pull}]\n  elites: 2\n", NULL,
      "error: c.yaml:6:11: optimize.elites: has no meaning for optimize.objectives; remove it\n"},
-    {OBJECTIVE "{goal: psi}, {goal: pull}]\n  crossover_low: 0.5\n", NULL,
+    {FRONT "{goal: psi}, {goal: pull}]\n  crossover_low: 0.5\n", NULL,
      "error: c.yaml:6:18: optimize.crossover_low: has no meaning for optimize.objectives; remove it\n"},
-    {OBJECTIVE "{goal: psi}, {goal: pull}]\n", "optimize.mutation_low=0.01",
+    {FRONT "{goal: psi}, {goal: pull}]\n", "optimize.mutation_low=0.01",
      "error: --set optimize.mutation_low: has no meaning for optimize.objectives; remove it\n"},
-    {OBJECTIVE "{goal: psi, weight: 2}, {goal: pull}]\n", NULL,
+    {FRONT "{goal: psi, weight: 2}, {goal: pull}]\n", NULL,
      "error: c.yaml:5:28: weight: unknown key (hifdm schema lists all keys)\n"},
-    {OBJECTIVE "{goal: psi}, {goal: ratio, target: 2}]\n", NULL,
+    {FRONT "{goal: psi}, {goal: ratio, target: 2}]\n", NULL,
      "error: c.yaml:5:51: optimize.objectives.1.target: has no meaning for ratio, only for tension, length\n"},
-    {GOAL "{goal: psi, target: 1}]\n", NULL,
+    {OBJECTIVE "{goal: psi, target: 1}]\n", NULL,
      "error: c.yaml:4:31: optimize.goals.0.target: has no meaning for psi, only for tension, length\n"},
-    {GOAL "{goal: facets, frequency_Hz: 1e9}]\n", NULL,
+    {OBJECTIVE "{goal: facets, frequency_Hz: 1e9}]\n", NULL,
      "error: c.yaml:4:40: optimize.goals.0.frequency_Hz: has no meaning for facets, only for gain\n"},
-    {GOAL "{goal: tension, target: 1, along: normal}]\n", NULL,
+    {OBJECTIVE "{goal: tension, target: 1, along: normal}]\n", NULL,
      "error: c.yaml:4:45: optimize.goals.0.along: has no meaning for tension, only for surface, facets\n"},
-    {GOAL "{goal: pull, fit: best}]\n", NULL,
+    {OBJECTIVE "{goal: pull, fit: best}]\n", NULL,
      "error: c.yaml:4:29: optimize.goals.0.fit: has no meaning for pull, only for surface, facets\n"},
-    {GOAL "{goal: length, mass_kg_per_m: 1}]\n", NULL,
+    {OBJECTIVE "{goal: length, mass_kg_per_m: 1}]\n", NULL,
      "error: c.yaml:4:41: optimize.goals.0.mass_kg_per_m: has no meaning for length, only for mass\n"},
     {LIMIT "{limit: displacement, set: a, bounds: [0, 1]}]\n", NULL,
      "error: c.yaml:4:39: optimize.limits.0.set: has no meaning for displacement, only for tension, ratio\n"},
-    {GOAL "{goal: tension}]\n", NULL,
+    {OBJECTIVE "{goal: tension}]\n", NULL,
      "error: c.yaml:4:11: optimize.goals.0.target: is missing: the tension that is wanted, in N\n"},
-    {GOAL "{goal: length, target: 0}]\n", NULL,
+    {OBJECTIVE "{goal: length, target: 0}]\n", NULL,
      "error: c.yaml:4:34: optimize.goals.0.target: of length must be above 0\n"},
-    {GOAL "{goal: mass}]\n", NULL,
+    {OBJECTIVE "{goal: mass}]\n", NULL,
      "error: c.yaml:4:11: optimize.goals.0.mass_kg_per_m: is missing: the mass of the cables\n"},
-    {GOAL "{goal: mass, mass_kg_per_m: 0}]\n", NULL,
+    {OBJECTIVE "{goal: mass, mass_kg_per_m: 0}]\n", NULL,
      "error: c.yaml:4:39: optimize.goals.0.mass_kg_per_m: must be above 0, not 0\n"},
-    {GOAL "{goal: psi, weight: 0}]\n", NULL, "error: c.yaml:4:31: optimize.goals.0.weight: must be above 0, not 0\n"},
+    {OBJECTIVE "{goal: psi, weight: 0}]\n", NULL,
+     "error: c.yaml:4:31: optimize.goals.0.weight: must be above 0, not 0\n"},
     {LIMIT "{limit: ratio, bounds: [0, 1]}]\n", NULL,
      "error: c.yaml:4:35: optimize.limits.0.bounds: must end above 1, and not begin above it: even tensions have 1\n"},
     {LIMIT "{limit: ratio, bounds: [1, null]}]\n", NULL,
@@ -424,7 +426,7 @@ Suite *suite_unit_config_rows(void)
     TCase *tests = tcase_create("config_rows");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, variables_reach_their_place);
-    tcase_add_test(tests, goals_and_limits_reach_their_place);
+    tcase_add_test(tests, objectives_and_limits_reach_their_place);
     tcase_add_test(tests, objectives_reach_their_place);
     tcase_add_test(tests, overrides_set_keys_of_rows_and_whole_lists);
     tcase_add_test(tests, a_difference_in_a_row_is_named);

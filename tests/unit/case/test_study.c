@@ -407,7 +407,7 @@ START_TEST(keys_of_rows_are_swept)
     ck_assert_msg(hf_config_load(s.base, o.set, o.n_set, &c, &m) == HF_OK, "%s", m.text);
     const hf_variable_settings *v = c.optimize.variable_row;
     ck_assert(v[0].range_ratio == 0.3 && isnan(v[0].range) && v[1].range == 2);
-    ck_assert(v[1].lower == -INFINITY && v[1].upper == 3 && c.optimize.goal[0].weight == 3);
+    ck_assert(v[1].lower == -INFINITY && v[1].upper == 3 && c.optimize.term[0].weight == 3);
     hf_case_free(&c);
     hf_study_free(&s);
 }

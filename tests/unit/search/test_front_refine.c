@@ -12,7 +12,7 @@ static int failed_end;
 
 struct traded {
     struct net net;
-    hf_goals goals;
+    hf_objectives objectives;
     hf_evaluator evaluator;
     double start_q[MAX_CABLE], base[MAX_VARIABLE], lower[MAX_VARIABLE], upper[MAX_VARIABLE];
     hf_front front;
@@ -32,13 +32,13 @@ static hf_front_refine trade_of(const struct traded *t, int n_point)
 }
 
 /* Follow the front of the objectives; the cables of a set vary their force densities between these bounds. */
-static void follow(struct traded *t, int n_objective, const hf_goal_settings *objective, const char *set, double lower,
-                   double upper, int n_point)
+static void follow(struct traded *t, int n_objective, const hf_objective_settings *objective, const char *set,
+                   double lower, double upper, int n_point)
 {
     hf_messages messages = {0};
-    hf_optimize_settings s = {.n_objective = n_objective, .n_variable_row = 1};
+    hf_optimize_settings s = {.n_front = n_objective, .n_variable_row = 1};
     for (int k = 0; k < n_objective; k++)
-        s.objective[k] = objective[k];
+        s.front[k] = objective[k];
     hf_workspace *w = &t->net.work;
     hf_model *m = &t->net.model;
     s.variable_row[0] = (hf_variable_settings){
@@ -49,8 +49,8 @@ static void follow(struct traded *t, int n_objective, const hf_goal_settings *ob
     hf_model_want_newton(m);
     hf_workspace_free(w);
     ck_assert_int_eq(hf_workspace_create(m, w), HF_OK);
-    ck_assert_msg(hf_goals_create(&t->net.scene, m, &s, NULL, NULL, NULL, &t->goals, &messages) == HF_OK, "%s",
-                  messages.text);
+    ck_assert_msg(hf_objectives_create(&t->net.scene, m, &s, NULL, NULL, NULL, &t->objectives, &messages) == HF_OK,
+                  "%s", messages.text);
     ck_assert_int_eq(find_shape(&t->net), HF_OK);
     memcpy(t->start_q, w->q_N_per_m, (size_t)m->n_cable * sizeof(double));
     hf_variables_read(m, w->q_N_per_m, w->tension_N, w->length_m, t->base);
@@ -63,7 +63,7 @@ static void follow(struct traded *t, int n_objective, const hf_goal_settings *ob
                                   .start_q_N_per_m = t->start_q,
                                   .solver = HF_SOLVER_NEWTON,
                                   .boundary_ratio_cap = INFINITY,
-                                  .goals = &t->goals};
+                                  .objectives = &t->objectives};
     const hf_front_refine trade = trade_of(t, n_point);
     ck_assert(hf_front_refine_applies(&t->evaluator));
     ck_assert_int_eq(hf_front_refine_find(&trade, &t->front, &failed_end), HF_OK);
@@ -72,13 +72,13 @@ static void follow(struct traded *t, int n_objective, const hf_goal_settings *ob
 static void close_traded(struct traded *t)
 {
     hf_front_free(&t->front);
-    hf_goals_free(&t->goals);
+    hf_objectives_free(&t->objectives);
     close_net(&t->net);
 }
 
-static hf_goal_settings objective(hf_goal_kind kind, const char *set, double target)
+static hf_objective_settings objective(hf_figure_kind kind, const char *set, double target)
 {
-    hf_goal_settings s = {.goal = kind, .target = target, .mass_kg_per_m = NAN};
+    hf_objective_settings s = {.figure = kind, .target = target, .mass_kg_per_m = NAN};
     snprintf(s.set, sizeof s.set, "%s", set);
     return s;
 }
@@ -101,10 +101,10 @@ static const struct hand_cable along_line[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LA
 START_TEST(a_node_on_a_line_has_a_front_in_closed_form)
 {
     struct traded t = {0};
-    hf_goal_settings wanted[2] = {objective(HF_GOAL_PSI, "", NAN), objective(HF_GOAL_LENGTH, "", 0.8)};
+    hf_objective_settings wanted[2] = {objective(HF_FIGURE_PSI, "", NAN), objective(HF_FIGURE_LENGTH, "", 0.8)};
     bool is_turned = _i % 2; /* the order of the objectives says which one is least under limits on the other */
     OPEN_HAND(&t.net, on_line, along_line, HF_METHOD_FDM);
-    const hf_goal_settings turned[2] = {wanted[is_turned], wanted[!is_turned]};
+    const hf_objective_settings turned[2] = {wanted[is_turned], wanted[!is_turned]};
     follow(&t, 2, turned, "boundary", 1, 100, 11);
     ck_assert_int_eq(t.front.n_point, 11);
     ck_assert_int_eq(t.front.minimised, 0);
@@ -130,7 +130,7 @@ START_TEST(objectives_that_agree_are_one_design)
 {
     struct traded t = {0};
     hf_front_table table;
-    const hf_goal_settings wanted[2] = {objective(HF_GOAL_PSI, "", NAN), objective(HF_GOAL_LENGTH, "", NAN)};
+    const hf_objective_settings wanted[2] = {objective(HF_FIGURE_PSI, "", NAN), objective(HF_FIGURE_LENGTH, "", NAN)};
     OPEN_HAND(&t.net, on_line, along_line, HF_METHOD_FDM);
     follow(&t, 2, wanted, "boundary", 1, 100, 11);
     ck_assert_int_eq(t.front.n_point, 1);
@@ -167,7 +167,8 @@ START_TEST(a_ratio_has_a_front_in_closed_form)
                                               {{1, 3}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 5},
                                               {{1, 4}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 5}};
     struct traded t = {0};
-    const hf_goal_settings wanted[2] = {objective(HF_GOAL_RATIO, "boundary", NAN), objective(HF_GOAL_PSI, "", NAN)};
+    const hf_objective_settings wanted[2] = {objective(HF_FIGURE_RATIO, "boundary", NAN),
+                                             objective(HF_FIGURE_PSI, "", NAN)};
     struct hand_node placed[5];
     memcpy(placed, node, sizeof node);
     placed[3].position_m[0] = placed[4].position_m[0] = 0; /* the cables along y pull the node to x = 0 */
@@ -203,8 +204,9 @@ static void open_triangle(struct traded *t, int n_point)
         {{-1, 0, 0}, HF_ROLE_SUPPORT, {0}}, {{0, 1, 0}, HF_ROLE_INNER, {0, 10, 0}}, {{1, 0, 0}, HF_ROLE_SUPPORT, {0}}};
     static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 6},
                                               {{1, 2}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 7}};
-    const hf_goal_settings wanted[3] = {objective(HF_GOAL_PSI, "", NAN), objective(HF_GOAL_LENGTH, "boundary", SHORT),
-                                        objective(HF_GOAL_LENGTH, "inner", SHORT)};
+    const hf_objective_settings wanted[3] = {objective(HF_FIGURE_PSI, "", NAN),
+                                             objective(HF_FIGURE_LENGTH, "boundary", SHORT),
+                                             objective(HF_FIGURE_LENGTH, "inner", SHORT)};
     OPEN_HAND(&t->net, node, cable, HF_METHOD_FDM);
     follow(t, 3, wanted, "all", 0.1, MOST_Q, n_point);
 }
@@ -283,7 +285,7 @@ static double after_a_step(struct traded *t, const double *start, int k)
     ck_assert_int_eq(status, HF_OK);
     ck_assert_int_ne(refined.stop, HF_REFINE_CONVERGED);
     ck_assert_int_eq(hf_evaluate(&t->evaluator, design, w, &r), HF_OK);
-    return r.goal[k];
+    return r.objective[k];
 }
 
 /* Each end is begun from the start that is best in its objective; where that does not come to an end from the start
@@ -309,7 +311,8 @@ START_TEST(a_search_that_does_not_end_is_tried_from_another_start)
             ck_assert_int_eq(hf_evaluate(&t.evaluator, start + 2 * i, &t.net.work, &at[i]), HF_OK);
         ck_assert_int_eq(hf_front_refine_find(&trade, &front, &failed_end), HF_OK);
         for (int k = 0; k < 3; k++) {
-            int l = (k + 1) % 3, first = at[1].goal[k] < at[0].goal[k], second = at[1].goal[l] < at[0].goal[l];
+            int l = (k + 1) % 3, first = at[1].objective[k] < at[0].objective[k],
+                second = at[1].objective[l] < at[0].objective[l];
             double by_first = after_a_step(&t, start + 2 * first, k),
                    by_second = after_a_step(&t, start + 2 * second, k);
             double least = INFINITY;
@@ -329,7 +332,7 @@ END_TEST
 
 static void open_line(struct traded *t, int n_point)
 {
-    const hf_goal_settings wanted[2] = {objective(HF_GOAL_PSI, "", NAN), objective(HF_GOAL_LENGTH, "", 0.8)};
+    const hf_objective_settings wanted[2] = {objective(HF_FIGURE_PSI, "", NAN), objective(HF_FIGURE_LENGTH, "", 0.8)};
     OPEN_HAND(&t->net, on_line, along_line, HF_METHOD_FDM);
     follow(t, 2, wanted, "boundary", 1, 100, n_point);
 }
@@ -342,8 +345,9 @@ START_TEST(an_objective_without_a_range_leaves_the_others_to_be_traded)
     static const struct hand_cable cable[] = {{{0, 1}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 10},
                                               {{1, 2}, HF_GROUP_BOUNDARY, HF_LAW_FORCE_DENSITY, 12},
                                               {{0, 2}, HF_GROUP_INNER, HF_LAW_FORCE_DENSITY, 5}};
-    const hf_goal_settings wanted[3] = {objective(HF_GOAL_LENGTH, "inner", 0.7), objective(HF_GOAL_PSI, "", NAN),
-                                        objective(HF_GOAL_LENGTH, "boundary", 0.8)};
+    const hf_objective_settings wanted[3] = {objective(HF_FIGURE_LENGTH, "inner", 0.7),
+                                             objective(HF_FIGURE_PSI, "", NAN),
+                                             objective(HF_FIGURE_LENGTH, "boundary", 0.8)};
     struct traded t = {0};
     OPEN_HAND(&t.net, node, cable, HF_METHOD_FDM);
     follow(&t, 3, wanted, "boundary", 1, 100, 8);
@@ -428,7 +432,7 @@ static void follow_problem(hf_problem *p, int n_point, int n_thread, hf_front *f
 }
 
 /* The least of objective 0 where the others are at most this, from that design. */
-static double least_beside(hf_problem *p, const double most[HF_OBJECTIVES_MAX], const double *from)
+static double least_beside(hf_problem *p, const double most[HF_FRONT_OBJECTIVES_MAX], const double *from)
 {
     double design[MAX_VARIABLE_OF_CASE], lower[MAX_VARIABLE_OF_CASE], upper[MAX_VARIABLE_OF_CASE];
     bound(p, lower, upper);

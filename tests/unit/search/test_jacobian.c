@@ -67,17 +67,17 @@ static void open_problem(hf_problem *p, int i)
 static void measure(hf_problem *p, const double *design, double *figure)
 {
     hf_form_result r;
-    int n_goal = p->goals.n_goal;
+    int n_objective = p->objectives.n_objective;
     ck_assert_int_eq(hf_evaluate(&p->evaluator, design, &p->workspace, &r), HF_OK);
-    for (int k = 0; k < n_goal; k++)
-        figure[k] = r.goal[k];
-    figure[n_goal] = r.merit;
+    for (int k = 0; k < n_objective; k++)
+        figure[k] = r.objective[k];
+    figure[n_objective] = r.merit;
 }
 
 static bool is_smooth(const hf_problem *p, int i)
 {
-    hf_goal_kind kind = i < p->goals.n_goal ? p->goals.goal[i].wanted.goal : HF_GOAL_PSI;
-    return kind != HF_GOAL_PULL && kind != HF_GOAL_DISPLACEMENT;
+    hf_figure_kind kind = i < p->objectives.n_objective ? p->objectives.objective[i].settings.figure : HF_FIGURE_PSI;
+    return kind != HF_FIGURE_PULL && kind != HF_FIGURE_DEFLECTION;
 }
 
 /* Central differences of fourth order. */
@@ -85,12 +85,12 @@ static void difference(hf_problem *p, double *design, int k, double step, double
 {
     static const double at[4] = {-2, -1, 1, 2}, weight[4] = {1, -8, 8, -1};
     double kept = design[k], figure[HF_DESIGN_ROWS_MAX + 1];
-    for (int i = 0; i <= p->goals.n_goal; i++)
+    for (int i = 0; i <= p->objectives.n_objective; i++)
         slope[i] = 0;
     for (int q = 0; q < 4; q++) {
         design[k] = kept + at[q] * step;
         measure(p, design, figure);
-        for (int i = 0; i <= p->goals.n_goal; i++)
+        for (int i = 0; i <= p->objectives.n_objective; i++)
             slope[i] += weight[q] * figure[i] / (12 * step);
     }
     design[k] = kept;
@@ -105,7 +105,7 @@ START_TEST(derivatives_are_those_of_differences)
     open_problem(&p, _i);
     ck_assert(hf_refine_applies(&p.evaluator));
     ck_assert_int_eq(hf_jacobian_create(&p.evaluator, &j), HF_OK);
-    int n = p.model.n_variable, n_figure = p.goals.n_goal + 1;
+    int n = p.model.n_variable, n_figure = p.objectives.n_objective + 1;
     ck_assert_int_eq(j.n_figure, n_figure);
     double *derivative = malloc(sizeof *derivative * (size_t)(n_figure * n)), *design = p.initial;
     ck_assert(derivative && n > 0);
@@ -130,7 +130,7 @@ START_TEST(derivatives_are_those_of_differences)
 END_TEST
 
 /* At a value of 0 a norm has no derivative. */
-START_TEST(a_goal_that_is_met_has_no_derivative)
+START_TEST(a_objective_that_is_met_has_no_derivative)
 {
     hf_problem p;
     hf_jacobian j;
@@ -160,6 +160,6 @@ Suite *suite_unit_jacobian(void)
     TCase *tests = tcase_create("jacobian");
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, derivatives_are_those_of_differences, 0, N_OF);
-    tcase_add_test(tests, a_goal_that_is_met_has_no_derivative);
+    tcase_add_test(tests, a_objective_that_is_met_has_no_derivative);
     return suite;
 }

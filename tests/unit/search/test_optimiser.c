@@ -147,7 +147,7 @@ START_TEST(every_method_has_its_plan)
         ck_assert_str_eq(hf_optimize_method_word[expected[i].method], expected[i].word);
         ck_assert(plan.kind == expected[i].kind);
         ck_assert_int_eq(plan.ends_with_refine, expected[i].ends_with_refine);
-        s.n_objective = 2;
+        s.n_front = 2;
         ck_assert(hf_optimiser_plan_of(&s).kind == (expected[i].kind ? &hf_optimiser_nsga : NULL));
     }
     ck_assert_ptr_null(hf_optimize_method_word[HF_OPTIMIZE_N_METHOD]); /* any other word is refused by the case file */

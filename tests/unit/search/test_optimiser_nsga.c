@@ -31,7 +31,7 @@ static const hf_optimize_settings plain = {.population = N,
                                            .elites = 2,
                                            .stagnation_tolerance_m = 1,
                                            .stagnation_generations = 3,
-                                           .n_objective = 2};
+                                           .n_front = 2};
 
 static hf_optimiser create(const hf_optimize_settings *settings, const hf_model *model)
 {
@@ -55,15 +55,15 @@ typedef void objectives(const double *design, hf_form_result *r);
 /* The front is the way from base - 0.5 to base + 0.5, at t of it {t^2, (1 - t)^2}: bent inwards. */
 static void inwards(const double *design, hf_form_result *r)
 {
-    r->goal[0] = square(design, -0.5);
-    r->goal[1] = square(design, 0.5);
+    r->objective[0] = square(design, -0.5);
+    r->objective[1] = square(design, 0.5);
 }
 
 /* The same front, bent outwards (Fonseca & Fleming 1995). */
 static void outwards(const double *design, hf_form_result *r)
 {
-    r->goal[0] = 1 - exp(-4 * square(design, -0.5));
-    r->goal[1] = 1 - exp(-4 * square(design, 0.5));
+    r->objective[0] = 1 - exp(-4 * square(design, -0.5));
+    r->objective[1] = 1 - exp(-4 * square(design, 0.5));
 }
 
 static void evaluate(hf_optimiser *o, objectives *f)
@@ -82,7 +82,7 @@ static double volume_of(const hf_population *p, const double reference[3])
     int n = 0;
     for (int i = 0; i < p->n_individual; i++) {
         if (p->result[i].status != HF_OK) continue;
-        memcpy(point[n], p->result[i].goal, sizeof point[n]);
+        memcpy(point[n], p->result[i].objective, sizeof point[n]);
         if (p->n_objective == 2) point[n][2] = 0;
         n++;
     }
@@ -129,9 +129,9 @@ END_TEST
 static void triangle(const double *design, hf_form_result *r)
 {
     for (int j = 0; j < 3; j++) {
-        r->goal[j] = 0;
+        r->objective[j] = 0;
         for (int k = 0; k < N_VARIABLE; k++)
-            r->goal[j] += pow(design[k] - initial[k] - (group_of[k] == j ? 0.5 : 0), 2);
+            r->objective[j] += pow(design[k] - initial[k] - (group_of[k] == j ? 0.5 : 0), 2);
     }
 }
 
@@ -154,7 +154,7 @@ START_TEST(fronts_of_three_objectives_are_surfaces)
 {
     static const double reference[3] = {1.1, 1.1, 1.1};
     hf_optimize_settings s = plain;
-    s.n_objective = 3;
+    s.n_front = 3;
     hf_optimiser o = create(&s, &free_variables);
     ck_assert_double_ge(evolve(&o, triangle, reference), 0.83 * volume_of_triangle(reference));
     hf_optimiser_free(&o);
@@ -184,17 +184,17 @@ START_TEST(every_generation_keeps_the_rules)
                 ck_assert(fabs(p->design[i * N_VARIABLE + k] - initial[k]) <= 1 + 1e-12);
             if (_i) ck_assert_double_eq_tol(p->design[i * N_VARIABLE + 4] - 20, p->design[i * N_VARIABLE] - 10, 1e-12);
             for (int j = 0; j < 2; j++)
-                now[j] = fmin(now[j], p->result[i].goal[j]);
+                now[j] = fmin(now[j], p->result[i].objective[j]);
             int kept = p->parent[2 * i];
             if (p->generation == 0 || p->parent[2 * i + 1] >= 0) continue;
             ck_assert(kept >= 0 && kept < N && is_same_design(p, i, before, kept));
-            ck_assert_mem_eq(p->result[i].goal, before->result[kept].goal, 2 * sizeof(double));
+            ck_assert_mem_eq(p->result[i].objective, before->result[kept].objective, 2 * sizeof(double));
         }
         for (int j = 0; j < 2; j++) {
             ck_assert_double_le(now[j], least[j]);
             least[j] = now[j];
         }
-        ck_assert_double_eq(p->result[p->best].goal[0], now[0]); /* the best is the end of the first objective */
+        ck_assert_double_eq(p->result[p->best].objective[0], now[0]); /* the best is the end of the first objective */
         ck_assert_double_eq(p->best_merit[p->generation], now[0]);
     } while (hf_optimiser_next(&o));
     hf_optimiser_free(&o);
@@ -235,7 +235,7 @@ static void far_away(const double *design, hf_form_result *r)
     inwards(design, r);
     if (!(beyond > 0)) return;
     *r = (hf_form_result){.status = HF_OUT_OF_LIMITS, .violation = beyond, .psi_m = NAN, .merit = NAN};
-    r->goal[0] = r->goal[1] = NAN;
+    r->objective[0] = r->objective[1] = NAN;
 }
 
 START_TEST(a_population_outside_its_limits_finds_its_way_in)
@@ -248,7 +248,7 @@ START_TEST(a_population_outside_its_limits_finds_its_way_in)
     ck_assert(hf_optimiser_next(&o));
     ck_assert_double_gt(evolve(&o, far_away, reference), 0);
     ck_assert_int_eq(o.population.n_infeasible, 0);
-    ck_assert_double_eq_tol(o.population.result[o.population.best].goal[0], 1.3 * 1.3, 0.02); /* at base + 0.8 */
+    ck_assert_double_eq_tol(o.population.result[o.population.best].objective[0], 1.3 * 1.3, 0.02); /* at base + 0.8 */
     hf_optimiser_free(&o);
 }
 END_TEST
@@ -265,14 +265,14 @@ START_TEST(nothing_to_begin_from_is_no_fault)
     o = create(&plain, &free_variables);
     evaluate(&o, inwards);
     for (int i = 1; i < N; i++)
-        o.population.result[i].goal[i % 2] = NAN;
+        o.population.result[i].objective[i % 2] = NAN;
     hf_optimiser_tell(&o);
     ck_assert(hf_optimiser_next(&o));
     evaluate(&o, inwards);
     hf_optimiser_tell(&o);
     int n_number = 0;
     for (int i = 0; i < N; i++)
-        n_number += isfinite(o.population.result[i].goal[0]) && isfinite(o.population.result[i].goal[1]);
+        n_number += isfinite(o.population.result[i].objective[0]) && isfinite(o.population.result[i].objective[1]);
     ck_assert_int_ge(n_number, N / 2); /* all children that are not the base again, and the base */
     hf_optimiser_free(&o);
 }

@@ -27,7 +27,7 @@ static void draw_values(struct set *s, struct rng *rng)
     static const double odd[2] = {NAN, INFINITY};
     int n_level = rng_int(rng, 1, 30);
     for (int i = 0; i < s->pareto.n; i++) {
-        double objective[HF_OBJECTIVES_MAX], violation = 0;
+        double objective[HF_FRONT_OBJECTIVES_MAX], violation = 0;
         for (int j = 0; j < s->pareto.n_objective; j++)
             objective[j] = rng_int(rng, 0, 40) ? (double)rng_int(rng, -2, n_level) : odd[rng_int(rng, 0, 1)];
         if (!rng_int(rng, 0, 3)) violation = rng_int(rng, 0, 9) ? (double)rng_int(rng, 1, 5) : odd[rng_int(rng, 0, 1)];
@@ -228,12 +228,12 @@ START_TEST(a_population_gives_its_front)
 {
     enum { N = 6 };
     double design[N] = {0, 1, 2, 3, 4, 5};
-    hf_form_result r[N] = {{.goal = {2, 2}},
-                           {.goal = {1, 3}},
-                           {.goal = {2, 2}},
-                           {.goal = {3, 3}},
-                           {.goal = {0, 0}, .status = HF_RATIO_CAP, .violation = 1},
-                           {.goal = {9, 0}}};
+    hf_form_result r[N] = {{.objective = {2, 2}},
+                           {.objective = {1, 3}},
+                           {.objective = {2, 2}},
+                           {.objective = {3, 3}},
+                           {.objective = {0, 0}, .status = HF_RATIO_CAP, .violation = 1},
+                           {.objective = {9, 0}}};
     const hf_population p = {.n_variable = 1, .n_individual = N, .n_objective = 2, .design = design, .result = r};
     hf_front f;
     ck_assert_int_eq(hf_pareto_front(&p, &f), HF_OK);

@@ -1,7 +1,7 @@
 /* Derivatives of every goal by everything that a design may vary, against differences of solved shapes: on fixed
  * supports and on a truss, cable by cable and set by set, as hf_evaluate takes a design and as Levenberg-Marquardt
  * does. */
-#include "goals.h"
+#include "objectives.h"
 
 #include "net/variables.h"
 #include "search/residuals.h"
@@ -15,7 +15,7 @@ struct designed {
     struct net net;
     hf_surface_settings surface;
     hf_facets facets;
-    hf_goals goals;
+    hf_objectives objectives;
     hf_evaluator evaluator;
     hf_sensitivity slopes;
     double EA[MAX_CABLE], start_q[MAX_CABLE], base[MAX_VARIABLE];
@@ -29,7 +29,7 @@ static const char *const set_of[N_VARY] = {
     [HF_VARY_SUPPORT_XYZ] = "front_edge",
 };
 
-static const hf_goal_settings wanted[] = {
+static const hf_objective_settings wanted[] = {
     WANT_ERROR(SURFACE, NORMAL, NONE, 1), /* the first: without a truss */
     WANT(PSI, "", NAN, 1),
     WANT_ERROR(SURFACE, NORMAL, BEST, 1),
@@ -43,7 +43,7 @@ static const hf_goal_settings wanted[] = {
     WANT(PULL, "", NAN, 1),
     WANT(GAIN, "", NAN, 1),
     WANT_MASS("", 0.01),
-    WANT(DISPLACEMENT, "", NAN, 1), /* the last: only with a truss */
+    WANT(DEFLECTION, "", NAN, 1), /* the last: only with a truss */
 };
 enum { N_WANTED = sizeof wanted / sizeof *wanted - 1 };
 
@@ -89,7 +89,7 @@ static void open_designed(struct designed *d, hf_vary vary, hf_link link, bool o
     hf_messages messages = {0};
     struct rng rng = rng_start(5);
     struct net *net = &d->net;
-    hf_optimize_settings s = {.n_variable_row = 1, .n_goal = N_WANTED};
+    hf_optimize_settings s = {.n_variable_row = 1, .n_term = N_WANTED};
     OPEN_CASE(net, "configs/paraboloid-6m.yaml", "scene.paraboloid.rings=2", "surface.frequencies_Hz=[0.3e9]",
               "surface.pattern.n_theta=3");
     net->form = tight_form(HF_METHOD_NEWTON);
@@ -101,15 +101,16 @@ static void open_designed(struct designed *d, hf_vary vary, hf_link link, bool o
     s.variable_row[0] = (hf_variable_settings){.vary = vary, .range = 1, .range_ratio = NAN, .link = link};
     snprintf(s.variable_row[0].set, sizeof s.variable_row[0].set, "%s", set_of[vary]);
     _Static_assert(N_WANTED <= HF_DESIGN_ROWS_MAX, "all goals at once");
-    memcpy(s.goal, wanted + on_truss, N_WANTED * sizeof *wanted);
+    memcpy(s.term, wanted + on_truss, N_WANTED * sizeof *wanted);
     hf_status status = hf_variables_apply(&net->scene, &s, &d->surface, &net->model, &messages);
     ck_assert_msg(status == HF_OK, "%s", messages.text);
     hf_workspace_free(&net->work);
     ck_assert_int_eq(hf_workspace_create(&net->model, &net->work), HF_OK);
     if (on_truss) attach_all(net, &rng, 1e-4);
-    status = hf_goals_create(&net->scene, &net->model, &s, &d->surface, &d->facets, NULL, &d->goals, &messages);
+    status =
+        hf_objectives_create(&net->scene, &net->model, &s, &d->surface, &d->facets, NULL, &d->objectives, &messages);
     ck_assert_msg(status == HF_OK, "%s", messages.text);
-    ck_assert_int_le(d->goals.n_row, MAX_ROW);
+    ck_assert_int_le(d->objectives.n_row, MAX_ROW);
 }
 
 /* The base design, in the meaning that the evaluator gives it. */
@@ -123,7 +124,7 @@ static void start(struct designed *d, bool by_density)
                                   .rule = HF_RULE_TENSION,
                                   .solver = HF_SOLVER_NEWTON,
                                   .boundary_ratio_cap = INFINITY,
-                                  .goals = &d->goals,
+                                  .objectives = &d->objectives,
                                   .by_density = by_density};
     ck_assert_int_eq(hf_evaluate_form(m, &d->net.form, w, NULL, &d->net.result), HF_OK);
     ck_assert(m->n_variable > 0 && m->n_variable <= MAX_VARIABLE);
@@ -138,7 +139,7 @@ static void start(struct designed *d, bool by_density)
 static void close_designed(struct designed *d)
 {
     hf_sensitivity_free(&d->slopes);
-    hf_goals_free(&d->goals);
+    hf_objectives_free(&d->objectives);
     hf_facets_free(&d->facets);
     close_net(&d->net);
 }
@@ -154,7 +155,7 @@ static void residuals_at(struct designed *d, int i, double step, double *residua
     for (int k = 0; k < m->n_variable; k++)
         design[k] = d->base[k] + (d->slopes.class_of_variable[k] == i ? step : 0);
     ck_assert_int_eq(hf_evaluate(&d->evaluator, design, &d->net.work, &result), HF_OK);
-    ck_assert_int_eq(hf_goals_linearise(&d->goals, &d->net.work, d->net.work.goals, residual), HF_OK);
+    ck_assert_int_eq(hf_objectives_linearise(&d->objectives, &d->net.work, d->net.work.objectives, residual), HF_OK);
 }
 
 /* Central differences over `step` and twice that, together of order 4. */
@@ -163,7 +164,7 @@ static void differ(struct designed *d, int i, double step, double *rate)
     double at[4][MAX_ROW];
     for (int k = 0; k < 4; k++)
         residuals_at(d, i, step * (k < 2 ? 1 : 2) * (k % 2 ? -1 : 1), at[k]);
-    for (int r = 0; r < d->goals.n_row; r++)
+    for (int r = 0; r < d->objectives.n_row; r++)
         rate[r] = (8 * (at[0][r] - at[1][r]) - (at[2][r] - at[3][r])) / (12 * step);
 }
 
@@ -177,7 +178,8 @@ static double derive(struct designed *d, int i, double *rate)
     ck_assert_int_eq(hf_sensitivity_find(&d->slopes, &d->net.work), HF_OK);
     hf_sensitivity_spread(&d->slopes, i, move, tension);
     const double *displacement = m->n_attachment ? hf_sensitivity_displacement(&d->slopes, i, 0) : NULL;
-    hf_goals_push(&d->goals, &d->net.work, d->net.work.goals, &(hf_goals_rate){move, tension, displacement}, rate);
+    hf_objectives_push(&d->objectives, &d->net.work, d->net.work.objectives,
+                       &(hf_objectives_rate){move, tension, displacement}, rate);
     for (int k = 0; k < 3 * m->n_node; k++)
         most = fmax(most, fabs(move[k]));
     free(move);
@@ -201,9 +203,9 @@ static void assert_derivatives(struct designed *d, const char *what)
     int n_tried = 0, stride = 1 + d->slopes.n / MAX_TRIED;
     for (int i = 0; i < d->slopes.n; i += stride, n_tried++)
         differ(d, i, derive(d, i, exact[n_tried]), found[n_tried]);
-    for (int k = 0, first = 0; k < d->goals.n_goal; first += d->goals.goal[k++].n_row) {
+    for (int k = 0, first = 0; k < d->objectives.n_objective; first += d->objectives.objective[k++].n_row) {
         double largest = 0;
-        int n = d->goals.goal[k].n_row;
+        int n = d->objectives.objective[k].n_row;
         for (int i = 0; i < n_tried; i++)
             largest = fmax(largest, distance(n, exact[i] + first, NULL));
         for (int i = 0; i < n_tried; i++) {
@@ -237,7 +239,7 @@ static double *rates_by(struct designed *d, int n_thread)
 {
     hf_residuals residuals;
     hf_form_result result;
-    size_t n = (size_t)d->slopes.n, n_row = (size_t)d->goals.n_row;
+    size_t n = (size_t)d->slopes.n, n_row = (size_t)d->objectives.n_row;
     double *all = malloc((n_row + n + n * n_row) * sizeof *all);
     ck_assert_ptr_nonnull(all);
     hf_sensitivity_free(&d->slopes);
@@ -262,7 +264,7 @@ START_TEST(any_number_of_threads_gives_the_same_bits)
     double *by_one = rates_by(&d, 0);
     for (int n_thread = 1; n_thread <= 3; n_thread++) {
         double *by_many = rates_by(&d, n_thread);
-        size_t n = (size_t)d.slopes.n, n_row = (size_t)d.goals.n_row;
+        size_t n = (size_t)d.slopes.n, n_row = (size_t)d.objectives.n_row;
         ck_assert_mem_eq(by_many, by_one, (n_row + n + n * n_row) * sizeof *by_one);
         free(by_many);
     }

@@ -7,8 +7,8 @@
 enum { MAX_VARIABLE = 200, MAX_COLUMN = MAX_VARIABLE + 1 };
 
 static const struct {
-    const char *file, *key, *goal; /* what stands under optimize beside it */
-    double most[HF_OBJECTIVES_MAX];
+    const char *file, *key, *objective; /* what stands under optimize beside it */
+    double most[HF_FRONT_OBJECTIVES_MAX];
 } kind[] = {
     {"configs/chen2022.yaml",
      "optimize.limits=[{limit: tension, set: boundary, bounds: [35, 60]}]",
@@ -42,7 +42,7 @@ struct watched {
 /* At the shape of the form-finding. */
 static void open_watched(struct watched *t, int i)
 {
-    const char *const set[] = {kind[i].key, kind[i].goal, "optimize.method=lm", "surface.focal_length_m=15.95"};
+    const char *const set[] = {kind[i].key, kind[i].objective, "optimize.method=lm", "surface.focal_length_m=15.95"};
     hf_messages messages = {0};
     *t = (struct watched){.front = {0, kind[i].most}};
     ck_assert_msg(hf_problem_open(source_path(kind[i].file), set, 4, 1, &t->problem, &messages) == HF_OK, "%s",

@@ -106,7 +106,7 @@ START_TEST(all_states_come_back)
     hf_points points = read_points(&s);
     ck_assert_int_eq(points.point[1].state, HF_POINT_DONE);
     const char *text = points.point[1].field[hf_ledger_n_column() + HF_LEDGER_LIST_CASES];
-    char name[HF_GOAL_NAME_SIZE];
+    char name[HF_OBJECTIVE_NAME_SIZE];
     double value;
     int n = 0, n_psi = 0, n_none = 0;
     while (hf_ledger_next_value(HF_LEDGER_LIST_CASES, &text, name, &value)) {
@@ -125,22 +125,22 @@ START_TEST(all_states_come_back)
 END_TEST
 
 /* The goals of each stage that the run reached, by name, to the last bit. */
-START_TEST(goals_come_back)
+START_TEST(objectives_come_back)
 {
     hf_study s;
-    hf_summary summary = {.has_polish = true, .goals = {.n = 2, .name = {"goal_0_psi", "goal_1_tension_edge"}}};
-    summary.form.goal[0] = (double)NAN;
-    summary.form.goal[1] = 0.1 + 0.2;
-    summary.polish.goal[0] = 5e-324;
-    summary.polish.goal[1] = INFINITY;
+    hf_summary summary = {.has_polish = true, .objectives = {.n = 2, .name = {"goal_0_psi", "goal_1_tension_edge"}}};
+    summary.form.objective[0] = (double)NAN;
+    summary.form.objective[1] = 0.1 + 0.2;
+    summary.polish.objective[0] = 5e-324;
+    summary.polish.objective[1] = INFINITY;
     open_study(&s);
     write_point(&s, 1, HF_OK, "", &summary);
     write_point(&s, 2, HF_OK, "", &(hf_summary){0}); /* no goals */
     hf_points points = read_points(&s);
-    char *const *goals = points.point[1].field + hf_ledger_n_column(), name[HF_GOAL_NAME_SIZE];
-    const char *form = goals[0], *refine = goals[2];
+    char *const *objectives = points.point[1].field + hf_ledger_n_column(), name[HF_OBJECTIVE_NAME_SIZE];
+    const char *form = objectives[0], *refine = objectives[2];
     double value;
-    ck_assert_str_eq(goals[1], ""); /* there was no such stage */
+    ck_assert_str_eq(objectives[1], ""); /* there was no such stage */
     ck_assert_str_eq(points.point[2].field[hf_ledger_n_column()], "");
     ck_assert(hf_ledger_next_value(0, &form, name, &value) && isnan(value) && !strcmp(name, "goal_0_psi"));
     ck_assert(hf_ledger_next_value(0, &form, name, &value) && value == 0.1 + 0.2 &&
@@ -155,19 +155,19 @@ START_TEST(goals_come_back)
 END_TEST
 
 /* Names become those of data sets. */
-START_TEST(damaged_goals_are_none)
+START_TEST(damaged_objectives_are_none)
 {
     static const char *const damaged[] = {"psi=1", "goal_0/x=1", "goal_0_psi", "goal_0_psi=", "goal_0_psi=x", "=1", ""};
-    char name[HF_GOAL_NAME_SIZE], longest[2 * HF_GOAL_NAME_SIZE];
+    char name[HF_OBJECTIVE_NAME_SIZE], longest[2 * HF_OBJECTIVE_NAME_SIZE];
     double value;
     for (size_t i = 0; i < sizeof damaged / sizeof *damaged; i++)
         ck_assert(!hf_ledger_next_value(1, &(const char *){damaged[i]}, name, &value));
-    snprintf(longest, sizeof longest, "goal_0_%0*d=1", HF_GOAL_NAME_SIZE, 0);
+    snprintf(longest, sizeof longest, "goal_0_%0*d=1", HF_OBJECTIVE_NAME_SIZE, 0);
     ck_assert(!hf_ledger_next_value(1, &(const char *){longest}, name, &value));
-    ck_assert_str_eq(hf_ledger_goal_unit("goal_1_tension_mass"), "N");
-    ck_assert_str_eq(hf_ledger_goal_unit("goal_15_mass"), "kg");
-    ck_assert_str_eq(hf_ledger_goal_unit("goal_0_ratio_edge"), "");
-    ck_assert_str_eq(hf_ledger_goal_unit("goal_0_ratios"), "");
+    ck_assert_str_eq(hf_ledger_objective_unit("goal_1_tension_mass"), "N");
+    ck_assert_str_eq(hf_ledger_objective_unit("goal_15_mass"), "kg");
+    ck_assert_str_eq(hf_ledger_objective_unit("goal_0_ratio_edge"), "");
+    ck_assert_str_eq(hf_ledger_objective_unit("goal_0_ratios"), "");
 }
 END_TEST
 
@@ -471,9 +471,9 @@ Suite *suite_unit_ledger(void)
     TCase *tests = tcase_create("ledger");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, numbers_come_back_bit_by_bit);
-    tcase_add_test(tests, goals_come_back);
+    tcase_add_test(tests, objectives_come_back);
     tcase_add_test(tests, all_states_come_back);
-    tcase_add_test(tests, damaged_goals_are_none);
+    tcase_add_test(tests, damaged_objectives_are_none);
     tcase_add_test(tests, a_success_counts_more_than_a_failure);
     tcase_add_loop_test(tests, the_same_row_counts_in_any_order_of_files, 0, 2);
     tcase_add_test(tests, what_others_finish_is_noticed);

@@ -1,26 +1,26 @@
 /* goals - rows of optimize.goals for tests, and a net with the target surface of these rows. Header only, like
  * nets.h. */
-#ifndef HIFDM_TESTS_GOALS_H
-#define HIFDM_TESTS_GOALS_H
+#ifndef HIFDM_TESTS_OBJECTIVES_H
+#define HIFDM_TESTS_OBJECTIVES_H
 
 #include "flexible.h"
 
-#include <hifdm/goals.h>
+#include <hifdm/objectives.h>
 #include <hifdm/surface.h>
 
 /* ---- rows ---- */
 
 #define WANT(kind, of_set, to, weighed)                                                                                \
     {                                                                                                                  \
-        .goal = HF_GOAL_##kind, .set = of_set, .target = to, .weight = weighed, .mass_kg_per_m = NAN                   \
+        .figure = HF_FIGURE_##kind, .set = of_set, .target = to, .weight = weighed, .mass_kg_per_m = NAN               \
     }
 #define WANT_MASS(of_set, kg_per_m)                                                                                    \
     {                                                                                                                  \
-        .goal = HF_GOAL_MASS, .set = of_set, .target = NAN, .weight = 1, .mass_kg_per_m = kg_per_m                     \
+        .figure = HF_FIGURE_MASS, .set = of_set, .target = NAN, .weight = 1, .mass_kg_per_m = kg_per_m                 \
     }
 #define WANT_ERROR(kind, by, of_fit, weighed)                                                                          \
     {                                                                                                                  \
-        .goal = HF_GOAL_##kind, .target = NAN, .weight = weighed, .mass_kg_per_m = NAN, .along = HF_ALONG_##by,        \
+        .figure = HF_FIGURE_##kind, .target = NAN, .weight = weighed, .mass_kg_per_m = NAN, .along = HF_ALONG_##by,    \
         .fit = HF_FIT_##of_fit                                                                                         \
     }
 #define WANT_ERRORS(kind, weighed)                                                                                     \
@@ -29,9 +29,9 @@
 /* Eight rows: four for nodes, then four for facets. */
 #define WANT_SURFACES(weighed) WANT_ERRORS(SURFACE, weighed), WANT_ERRORS(FACETS, weighed)
 
-static inline hf_goal_settings goal_of(hf_goal_kind kind)
+static inline hf_objective_settings objective_of(hf_figure_kind kind)
 {
-    return (hf_goal_settings){.goal = kind, .target = NAN, .weight = 1, .mass_kg_per_m = NAN};
+    return (hf_objective_settings){.figure = kind, .target = NAN, .weight = 1, .mass_kg_per_m = NAN};
 }
 
 /* ---- a net ---- */
@@ -44,8 +44,8 @@ struct wanting {
     struct net net;
     hf_surface_settings surface;
     hf_facets facets;
-    hf_goals goals;
-    hf_goals_point point;
+    hf_objectives objectives;
+    hf_objectives_point point;
 };
 
 static inline void open_wanting(struct wanting *t, bool is_round, bool with_truss, struct rng *rng)
@@ -67,24 +67,24 @@ static inline void open_wanting(struct wanting *t, bool is_round, bool with_trus
 
 static inline void close_wanting(struct wanting *t)
 {
-    hf_goals_point_free(&t->point);
-    hf_goals_free(&t->goals);
+    hf_objectives_point_free(&t->point);
+    hf_objectives_free(&t->objectives);
     hf_facets_free(&t->facets);
     close_net(&t->net);
 }
 
-static inline void want(struct wanting *t, int n_goal, const hf_goal_settings *goal)
+static inline void want(struct wanting *t, int n_objective, const hf_objective_settings *objective)
 {
-    hf_optimize_settings s = {.n_goal = n_goal};
+    hf_optimize_settings s = {.n_term = n_objective};
     hf_messages messages = {0};
-    ck_assert_int_le(n_goal, HF_DESIGN_ROWS_MAX);
-    for (int k = 0; k < n_goal; k++)
-        s.goal[k] = goal[k];
-    hf_status status =
-        hf_goals_create(&t->net.scene, &t->net.model, &s, &t->surface, &t->facets, NULL, &t->goals, &messages);
+    ck_assert_int_le(n_objective, HF_DESIGN_ROWS_MAX);
+    for (int k = 0; k < n_objective; k++)
+        s.term[k] = objective[k];
+    hf_status status = hf_objectives_create(&t->net.scene, &t->net.model, &s, &t->surface, &t->facets, NULL,
+                                            &t->objectives, &messages);
     ck_assert_msg(status == HF_OK, "%s", messages.text);
     hf_messages_free(&messages); /* warns of a feed without a beam */
-    ck_assert_int_eq(hf_goals_point_create(&t->goals, &t->point), HF_OK);
+    ck_assert_int_eq(hf_objectives_point_create(&t->objectives, &t->point), HF_OK);
 }
 
 #endif

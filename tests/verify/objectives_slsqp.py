@@ -1,10 +1,10 @@
-"""goals_slsqp.py HIFDM FOLDER SEED N: N random nets, or more until a limit holds one, with objectives beside psi. The
-second objective is the tension of a set under a limit on its ratio, or the deflection of a truss with tensions between
-bounds. The result of `hifdm run` with Levenberg-Marquardt is the start of SLSQP of scipy. Equilibria, truss and
-derivatives are this script's own.
+"""objectives_slsqp.py HIFDM FOLDER SEED N: N random nets, or more until a limit holds one, with objectives beside psi.
+The second objective is the tension of a set under a limit on its ratio, or the deflection of a truss with tensions
+between bounds. The result of `hifdm run` with Levenberg-Marquardt is the start of SLSQP of scipy. Equilibria, truss
+and derivatives are this script's own.
 
-The script fails if merit or objectives differ, if a limit is broken, if SLSQP lowers the merit by more than 1e-6 of it,
-or if hifdm ended neither converged nor settled."""
+The script fails if merit or objectives differ, if a limit is broken, if SLSQP lowers the merit by more than 1e-6 of
+it, or if hifdm ended neither converged nor settled."""
 import os
 import subprocess
 import sys

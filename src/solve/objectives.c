@@ -9,8 +9,8 @@
  *         v
  *     derivative [n_row] by that variable
  *
- * goals_make.c creates the objectives, and goals_nets.c handles those over as-built nets. */
-#include <hifdm/goals.h>
+ * objectives_make.c creates the objectives, and objectives_nets.c handles those over as-built nets. */
+#include <hifdm/objectives.h>
 
 #include "base/arena.h"
 #include "linalg/dot.h"
@@ -24,81 +24,83 @@
 
 /* ---- points ---- */
 
-static void lay_out_cloud(hf_arena *a, const hf_goals *goals, int k, hf_cloud *cloud)
+static void lay_out_cloud(hf_arena *a, const hf_objectives *objectives, int k, hf_cloud *cloud)
 {
-    const hf_goal_settings *is = &goals->goal[k].wanted;
-    bool has_facets = is->goal == HF_GOAL_FACETS;
-    *cloud = (hf_cloud){.kind = goals->kind,
-                        .focal_length_m = goals->focal_length_m,
+    const hf_objective_settings *is = &objectives->objective[k].settings;
+    bool has_facets = is->figure == HF_FIGURE_FACETS;
+    *cloud = (hf_cloud){.kind = objectives->kind,
+                        .focal_length_m = objectives->focal_length_m,
                         .along = is->along,
                         .fit = is->fit,
-                        .n_node = goals->model->n_node,
-                        .n = goals->goal[k].n_shape_row,
-                        .n_facet = has_facets ? goals->n_facet : 0,
-                        .row = has_facets ? goals->corner_row : goals->model->inner_row};
+                        .n_node = objectives->model->n_node,
+                        .n = objectives->objective[k].n_shape_row,
+                        .n_facet = has_facets ? objectives->n_facet : 0,
+                        .row = has_facets ? objectives->corner_row : objectives->model->inner_row};
     hf_cloud_lay_out(a, cloud);
 }
 
-static void lay_out_gain(hf_arena *a, const hf_goals *goals, int k, hf_gain *gain)
+static void lay_out_gain(hf_arena *a, const hf_objectives *objectives, int k, hf_gain *gain)
 {
-    *gain = (hf_gain){.beam = &goals->beam[k],
-                      .n_node = goals->model->n_node,
-                      .n = goals->goal[k].n_shape_row / 2,
-                      .n_facet = goals->n_facet,
-                      .row = goals->corner_row};
+    *gain = (hf_gain){.beam = &objectives->beam[k],
+                      .n_node = objectives->model->n_node,
+                      .n = objectives->objective[k].n_shape_row / 2,
+                      .n_facet = objectives->n_facet,
+                      .row = objectives->corner_row};
     hf_gain_lay_out(a, gain);
 }
 
-static void lay_out_point(hf_arena *a, const hf_goals *goals, hf_goals_point *p)
+static void lay_out_point(hf_arena *a, const hf_objectives *objectives, hf_objectives_point *p)
 {
-    const hf_model *m = goals->model;
+    const hf_model *m = objectives->model;
     size_t n_support = (size_t)(m->n_node - m->n_free), n_size = n_support; /* attachments are supports */
-    for (int k = 0; k < goals->n_goal; k++)
-        if (goals->goal[k].wanted.goal == HF_GOAL_RATIO && n_size < (size_t)goals->goal[k].n_shape_row)
-            n_size = (size_t)goals->goal[k].n_shape_row;
+    for (int k = 0; k < objectives->n_objective; k++)
+        if (objectives->objective[k].settings.figure == HF_FIGURE_RATIO &&
+            n_size < (size_t)objectives->objective[k].n_shape_row)
+            n_size = (size_t)objectives->objective[k].n_shape_row;
     p->psi_per_m = hf_arena_take(a, (size_t)m->n_inner_node, sizeof(double));
     p->force_N = hf_arena_take(a, 3 * n_support, sizeof(double));
     p->rate_N = hf_arena_take(a, 3 * n_support, sizeof(double));
     p->size = hf_arena_take(a, n_size, sizeof(double));
-    p->row = hf_arena_take(a, (size_t)goals->n_row, sizeof(double));
-    size_t n_net = goals->nets ? (size_t)goals->nets->n_state + (size_t)goals->nets->n_sample : 0;
-    p->net_value = hf_arena_take(a, (size_t)goals->n_goal * n_net, sizeof(double));
-    p->net_norm = hf_arena_take(a, (size_t)goals->n_goal * n_net, sizeof(double));
-    p->net_part = hf_arena_take(a, (size_t)goals->n_goal * n_net, sizeof(double));
-    p->cloud = hf_arena_take(a, (size_t)goals->n_goal, sizeof *p->cloud);
-    p->gain = hf_arena_take(a, (size_t)goals->n_goal, sizeof *p->gain);
-    for (int k = 0; k < goals->n_goal; k++) {
+    p->row = hf_arena_take(a, (size_t)objectives->n_row, sizeof(double));
+    size_t n_net = objectives->nets ? (size_t)objectives->nets->n_state + (size_t)objectives->nets->n_sample : 0;
+    p->net_value = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
+    p->net_norm = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
+    p->net_part = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
+    p->cloud = hf_arena_take(a, (size_t)objectives->n_objective, sizeof *p->cloud);
+    p->gain = hf_arena_take(a, (size_t)objectives->n_objective, sizeof *p->gain);
+    for (int k = 0; k < objectives->n_objective; k++) {
         hf_cloud cloud = {0};
-        if (hf_goals_is_on_surface(goals->goal[k].wanted.goal)) lay_out_cloud(a, goals, k, &cloud);
+        if (hf_objectives_is_on_surface(objectives->objective[k].settings.figure))
+            lay_out_cloud(a, objectives, k, &cloud);
         if (a->block) p->cloud[k] = cloud;
         hf_gain gain = {0};
-        if (goals->goal[k].wanted.goal == HF_GOAL_GAIN) lay_out_gain(a, goals, k, &gain);
+        if (objectives->objective[k].settings.figure == HF_FIGURE_GAIN) lay_out_gain(a, objectives, k, &gain);
         if (a->block) p->gain[k] = gain;
     }
 }
 
-hf_status hf_goals_point_create(const hf_goals *goals, hf_goals_point *point)
+hf_status hf_objectives_point_create(const hf_objectives *objectives, hf_objectives_point *point)
 {
     hf_arena arena = {0};
-    *point = (hf_goals_point){0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_point(&arena, goals, point)));
+    *point = (hf_objectives_point){0};
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_point(&arena, objectives, point)));
     point->block = arena.block;
-    point->free_nets = goals->nets ? goals->nets->close : NULL;
-    return goals->nets ? goals->nets->open(goals->nets, &point->nets) : HF_OK;
+    point->free_nets = objectives->nets ? objectives->nets->close : NULL;
+    return objectives->nets ? objectives->nets->open(objectives->nets, &point->nets) : HF_OK;
 }
 
-void hf_goals_point_free(hf_goals_point *point)
+void hf_objectives_point_free(hf_objectives_point *point)
 {
     hf_arena arena = {.block = point->block};
     if (point->nets) point->free_nets(point->nets);
     hf_arena_free(&arena);
-    *point = (hf_goals_point){0};
+    *point = (hf_objectives_point){0};
 }
 
 /* ---- sizes of which the maximum counts ---- */
 
 /* The smooth maximum of n sizes is P = (sum s^16)^(1/16), and the residuals s^8/P^7 have the norm P. */
-double hf_goals_smooth_largest(int n, double *size, double *norm)
+double hf_objectives_smooth_maximum(int n, double *size, double *norm)
 {
     double largest = 0, sum = 0;
     for (int i = 0; i < n; i++)
@@ -119,9 +121,9 @@ static double push_smooth(int n, const double *size, double *rate)
 {
     double norm_rate = 0;
     for (int i = 0; i < n; i++)
-        norm_rate += hf_goals_seventh(size[i]) * hf_goals_seventh(size[i]) * size[i] * rate[i];
+        norm_rate += hf_objectives_seventh(size[i]) * hf_objectives_seventh(size[i]) * size[i] * rate[i];
     for (int i = 0; i < n; i++)
-        rate[i] = hf_goals_seventh(size[i]) * (8 * rate[i] - 7 * size[i] * norm_rate);
+        rate[i] = hf_objectives_seventh(size[i]) * (8 * rate[i] - 7 * size[i] * norm_rate);
     return norm_rate;
 }
 
@@ -145,7 +147,7 @@ static bool is_at_support(const hf_model *m, int e)
     return m->end_row[2 * e] >= m->n_free || m->end_row[2 * e + 1] >= m->n_free;
 }
 
-void hf_goals_pulls(const hf_model *m, const hf_workspace *w, hf_goals_point *p)
+void hf_objectives_pulls(const hf_model *m, const hf_workspace *w, hf_objectives_point *p)
 {
     int n = m->n_node - m->n_free;
     memset(p->force_N, 0, 3 * (size_t)n * sizeof(double));
@@ -164,7 +166,7 @@ void hf_goals_pulls(const hf_model *m, const hf_workspace *w, hf_goals_point *p)
 /* ---- residuals ---- */
 
 /* Sets the residuals f [3 n_inner_node] of psi. Returns psi, m. Loose nodes are left out, as in hf_metrics_psi_m. */
-static double measure_psi(const hf_model *m, const hf_workspace *w, hf_goals_point *p, double *f)
+static double measure_psi(const hf_model *m, const hf_workspace *w, hf_objectives_point *p, double *f)
 {
     int n = 0;
     for (int k = 0; k < m->n_inner_node; k++)
@@ -178,7 +180,7 @@ static double measure_psi(const hf_model *m, const hf_workspace *w, hf_goals_poi
     return hf_metrics_psi_m(m, w);
 }
 
-static double mean_tension_N(const hf_goal *g, const hf_workspace *w)
+static double mean_tension_N(const hf_objective *g, const hf_workspace *w)
 {
     double sum = 0;
     for (int i = 0; i < g->n_cable; i++)
@@ -187,20 +189,20 @@ static double mean_tension_N(const hf_goal *g, const hf_workspace *w)
 }
 
 /* Sets the residuals f of an objective of tension, length or evenness [n_cable], or of mass [1]. */
-static void measure_cables(const hf_goal *g, const hf_model *m, const hf_workspace *w, double *f)
+static void measure_cables(const hf_objective *g, const hf_model *m, const hf_workspace *w, double *f)
 {
-    const hf_goal_settings *s = &g->wanted;
-    double root = sqrt(g->n_cable), mean_N = s->goal == HF_GOAL_EVENNESS ? mean_tension_N(g, w) : 0, mass_kg = 0;
+    const hf_objective_settings *s = &g->settings;
+    double root = sqrt(g->n_cable), mean_N = s->figure == HF_FIGURE_EVENNESS ? mean_tension_N(g, w) : 0, mass_kg = 0;
     for (int i = 0; i < g->n_cable; i++) {
         int e = g->cable[i];
-        switch (s->goal) {
-        case HF_GOAL_TENSION:
+        switch (s->figure) {
+        case HF_FIGURE_TENSION:
             f[i] = (w->tension_N[e] - s->target) / root;
             break;
-        case HF_GOAL_LENGTH:
+        case HF_FIGURE_LENGTH:
             f[i] = (w->length_m[e] - (isnan(s->target) ? m->length_m[e] : s->target)) / root;
             break;
-        case HF_GOAL_EVENNESS:
+        case HF_FIGURE_EVENNESS:
             f[i] = (w->tension_N[e] / mean_N - 1) / root;
             break;
         default:
@@ -208,20 +210,20 @@ static void measure_cables(const hf_goal *g, const hf_model *m, const hf_workspa
             break;
         }
     }
-    if (s->goal == HF_GOAL_MASS) f[0] = mass_kg;
+    if (s->figure == HF_FIGURE_MASS) f[0] = mass_kg;
 }
 
 /* Sets the residuals f [n] of the n sizes in the point, which become parts of their smooth maximum. Returns the true
  * maximum. */
-static double measure_largest(int n, hf_goals_point *p, double *f)
+static double measure_largest(int n, hf_objectives_point *p, double *f)
 {
-    double norm, largest = hf_goals_smooth_largest(n, p->size, &norm);
+    double norm, largest = hf_objectives_smooth_maximum(n, p->size, &norm);
     for (int i = 0; i < n; i++)
-        f[i] = norm * hf_goals_seventh(p->size[i]) * p->size[i];
+        f[i] = norm * hf_objectives_seventh(p->size[i]) * p->size[i];
     return largest;
 }
 
-static void take_displacements(const hf_model *m, const hf_workspace *w, hf_goals_point *p)
+static void take_displacements(const hf_model *m, const hf_workspace *w, hf_objectives_point *p)
 {
     for (int i = 0; i < m->n_attachment; i++)
         p->size[i] = norm3(w->displacement_m + 3 * (size_t)i);
@@ -229,22 +231,22 @@ static void take_displacements(const hf_model *m, const hf_workspace *w, hf_goal
 
 /* Returns A B, the smooth ratio of the maximum to the minimum of n tensions. It is the product of the smooth maximum A
  * of T and B of 1/T, which *high and *low become. size [2n] becomes T/A and 1/(T B). */
-static double smooth_ratio(const hf_goal *g, const hf_workspace *w, double *size, double *high, double *low)
+static double smooth_ratio(const hf_objective *g, const hf_workspace *w, double *size, double *high, double *low)
 {
     int n = g->n_cable;
     for (int i = 0; i < n; i++) {
         size[i] = w->tension_N[g->cable[i]];
         size[n + i] = 1 / size[i];
     }
-    hf_goals_smooth_largest(n, size, high);
-    hf_goals_smooth_largest(n, size + n, low);
+    hf_objectives_smooth_maximum(n, size, high);
+    hf_objectives_smooth_maximum(n, size + n, low);
     return *high * *low;
 }
 
 /* Sets the residuals f [2n] of a ratio, whose norm *norm is A B. With a slack cable or a strut there is no ratio, and f
  * is 0. Returns the true ratio. */
-static double measure_ratio(const hf_goal *g, const hf_model *m, const hf_workspace *w, hf_goals_point *p, double *f,
-                            double *norm)
+static double measure_ratio(const hf_objective *g, const hf_model *m, const hf_workspace *w, hf_objectives_point *p,
+                            double *f, double *norm)
 {
     double high, low, ratio = hf_metrics_set_ratio(m, w, g->n_cable, g->cable);
     *norm = ratio;
@@ -252,39 +254,39 @@ static double measure_ratio(const hf_goal *g, const hf_model *m, const hf_worksp
     if (!isfinite(ratio)) return ratio;
     *norm = smooth_ratio(g, w, p->size, &high, &low);
     for (int i = 0; i < g->n_shape_row; i++)
-        f[i] = sqrt(0.5) * *norm * hf_goals_seventh(p->size[i]) * p->size[i];
+        f[i] = sqrt(0.5) * *norm * hf_objectives_seventh(p->size[i]) * p->size[i];
     return ratio;
 }
 
 /* The value and the norm differ for a maximum of several sizes and for a ratio. The value is then the true one, and the
  * norm the smooth one. */
-hf_status hf_goals_measure_shape(const hf_goals *goals, int k, const hf_workspace *w, hf_goals_point *p, double *f,
-                                 double *value, double *norm)
+hf_status hf_objectives_measure_shape(const hf_objectives *objectives, int k, const hf_workspace *w,
+                                      hf_objectives_point *p, double *f, double *value, double *norm)
 {
-    const hf_model *m = goals->model;
-    const hf_goal *g = &goals->goal[k];
+    const hf_model *m = objectives->model;
+    const hf_objective *g = &objectives->objective[k];
     bool has_own_value = true;
-    switch (g->wanted.goal) {
-    case HF_GOAL_PSI:
+    switch (g->settings.figure) {
+    case HF_FIGURE_PSI:
         *value = *norm = measure_psi(m, w, p, f);
         return HF_OK;
-    case HF_GOAL_PULL:
-        hf_goals_pulls(m, w, p);
+    case HF_FIGURE_PULL:
+        hf_objectives_pulls(m, w, p);
         *value = measure_largest(g->n_shape_row, p, f);
         break;
-    case HF_GOAL_DISPLACEMENT:
+    case HF_FIGURE_DEFLECTION:
         take_displacements(m, w, p);
         *value = measure_largest(g->n_shape_row, p, f);
         break;
-    case HF_GOAL_RATIO:
+    case HF_FIGURE_RATIO:
         *value = measure_ratio(g, m, w, p, f, norm);
         return HF_OK;
-    case HF_GOAL_SURFACE:
-    case HF_GOAL_FACETS:
+    case HF_FIGURE_SURFACE:
+    case HF_FIGURE_FACETS:
         HF_TRY(hf_cloud_measure(&p->cloud[k], w->position_m, f));
         has_own_value = false;
         break;
-    case HF_GOAL_GAIN:
+    case HF_FIGURE_GAIN:
         hf_gain_measure(&p->gain[k], w->position_m, f);
         has_own_value = false;
         break;
@@ -297,66 +299,70 @@ hf_status hf_goals_measure_shape(const hf_goals *goals, int k, const hf_workspac
     return HF_OK;
 }
 
-/* Sets f [n_row] to the weighted residuals, `value` [n_goal] (may be NULL) and *merit. with_nets: of all objectives,
- * else of those of the design itself alone. Returns HF_OK or HF_NO_MEMORY. */
-static hf_status measure_all(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, bool with_nets, double *f,
-                             double *value, double *merit)
+/* Sets f [n_row] to the weighted residuals, `value` [n_objective] (may be NULL) and *merit. with_nets: of all
+ * objectives, else of those of the design itself alone. Returns HF_OK or HF_NO_MEMORY. */
+static hf_status measure_all(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,
+                             bool with_nets, double *f, double *value, double *merit)
 {
     double square = 0, norm = 0;
-    if (goals->nets && with_nets) HF_TRY(hf_goals_nets_measure(goals, w, p, f));
-    for (int k = 0; k < goals->n_goal; k++) {
-        const hf_goal *g = &goals->goal[k];
-        double one, *of_goal = f + g->first_row;
+    if (objectives->nets && with_nets) HF_TRY(hf_objectives_nets_measure(objectives, w, p, f));
+    for (int k = 0; k < objectives->n_objective; k++) {
+        const hf_objective *g = &objectives->objective[k];
+        double one, *of_objective = f + g->first_row;
         if (g->n_net && !with_nets) continue;
         if (g->n_net)
-            hf_goals_nets_gather(goals, k, p, of_goal, value ? &value[k] : &one, &norm);
+            hf_objectives_nets_gather(objectives, k, p, of_objective, value ? &value[k] : &one, &norm);
         else
-            HF_TRY(hf_goals_measure_shape(goals, k, w, p, of_goal, value ? &value[k] : &one, &norm));
+            HF_TRY(hf_objectives_measure_shape(objectives, k, w, p, of_objective, value ? &value[k] : &one, &norm));
         for (int i = 0; i < g->n_row; i++)
-            of_goal[i] *= g->wanted.weight;
-        norm *= g->wanted.weight;
+            of_objective[i] *= g->settings.weight;
+        norm *= g->settings.weight;
         square += norm * norm;
     }
-    *merit = goals->n_goal == 1 ? norm : sqrt(square);
+    *merit = objectives->n_objective == 1 ? norm : sqrt(square);
     return HF_OK;
 }
 
-hf_status hf_goals_measure(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, double *value,
-                           double *merit)
+hf_status hf_objectives_measure(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,
+                                double *value, double *merit)
 {
-    return measure_all(goals, w, p, true, p->row, value, merit);
+    return measure_all(objectives, w, p, true, p->row, value, merit);
 }
 
-hf_status hf_goals_linearise_shape(const hf_goals *goals, int k, const hf_workspace *w, hf_goals_point *p)
+hf_status hf_objectives_linearise_shape(const hf_objectives *objectives, int k, const hf_workspace *w,
+                                        hf_objectives_point *p)
 {
-    if (goals->goal[k].wanted.goal == HF_GOAL_GAIN) hf_gain_linearise(&p->gain[k], w->position_m);
-    return hf_goals_is_on_surface(goals->goal[k].wanted.goal) ? hf_cloud_linearise(&p->cloud[k]) : HF_OK;
+    if (objectives->objective[k].settings.figure == HF_FIGURE_GAIN) hf_gain_linearise(&p->gain[k], w->position_m);
+    return hf_objectives_is_on_surface(objectives->objective[k].settings.figure) ? hf_cloud_linearise(&p->cloud[k])
+                                                                                 : HF_OK;
 }
 
-static hf_status linearise_all(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, bool with_nets,
-                               double *residual)
+static hf_status linearise_all(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,
+                               bool with_nets, double *residual)
 {
     double merit;
-    HF_TRY(measure_all(goals, w, p, with_nets, residual, NULL, &merit));
+    HF_TRY(measure_all(objectives, w, p, with_nets, residual, NULL, &merit));
     if (!isfinite(merit)) return HF_NOT_FINITE;
-    for (int k = 0; k < goals->n_goal; k++)
-        if (!goals->goal[k].n_net) HF_TRY(hf_goals_linearise_shape(goals, k, w, p));
+    for (int k = 0; k < objectives->n_objective; k++)
+        if (!objectives->objective[k].n_net) HF_TRY(hf_objectives_linearise_shape(objectives, k, w, p));
     return HF_OK;
 }
 
-hf_status hf_goals_linearise(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, double *residual)
+hf_status hf_objectives_linearise(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,
+                                  double *residual)
 {
-    return linearise_all(goals, w, p, true, residual);
+    return linearise_all(objectives, w, p, true, residual);
 }
 
-hf_status hf_goals_linearise_design(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, double *residual)
+hf_status hf_objectives_linearise_design(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,
+                                         double *residual)
 {
-    return linearise_all(goals, w, p, false, residual);
+    return linearise_all(objectives, w, p, false, residual);
 }
 
 /* ---- derivatives ---- */
 
-static void push_psi(const hf_model *m, const hf_goals_point *p, const double *move, double *rate)
+static void push_psi(const hf_model *m, const hf_objectives_point *p, const double *move, double *rate)
 {
     for (int k = 0; k < m->n_inner_node; k++)
         for (int c = 0; c < 3; c++)
@@ -378,25 +384,25 @@ static double length_rate(const hf_model *m, const hf_workspace *w, int e, const
     return u[0] * relative[0] + u[1] * relative[1] + u[2] * relative[2];
 }
 
-static void push_cables(const hf_goal *g, const hf_model *m, const hf_workspace *w, const hf_goals_rate *by,
+static void push_cables(const hf_objective *g, const hf_model *m, const hf_workspace *w, const hf_objectives_rate *by,
                         double *rate)
 {
     double root = sqrt(g->n_cable), mean_N = 0, mean_rate_N = 0, sum_m = 0;
-    if (g->wanted.goal == HF_GOAL_EVENNESS) {
+    if (g->settings.figure == HF_FIGURE_EVENNESS) {
         mean_N = mean_tension_N(g, w);
         for (int i = 0; i < g->n_cable; i++)
             mean_rate_N += by->tension_N[g->cable[i]] / g->n_cable;
     }
     for (int i = 0; i < g->n_cable; i++) {
         int e = g->cable[i];
-        switch (g->wanted.goal) {
-        case HF_GOAL_TENSION:
+        switch (g->settings.figure) {
+        case HF_FIGURE_TENSION:
             rate[i] = by->tension_N[e] / root;
             break;
-        case HF_GOAL_LENGTH:
+        case HF_FIGURE_LENGTH:
             rate[i] = length_rate(m, w, e, by->position_m) / root;
             break;
-        case HF_GOAL_EVENNESS:
+        case HF_FIGURE_EVENNESS:
             rate[i] = (by->tension_N[e] - w->tension_N[e] * (mean_rate_N / mean_N)) / (mean_N * root);
             break;
         default:
@@ -404,7 +410,7 @@ static void push_cables(const hf_goal *g, const hf_model *m, const hf_workspace 
             break;
         }
     }
-    if (g->wanted.goal == HF_GOAL_MASS) rate[0] = g->wanted.mass_kg_per_m * sum_m;
+    if (g->settings.figure == HF_FIGURE_MASS) rate[0] = g->settings.mass_kg_per_m * sum_m;
 }
 
 /* Returns the change of the length of the vector v when it changes by `rate`; 0 for v = 0. */
@@ -414,12 +420,12 @@ static double size_rate(const double v[3], const double rate[3])
     return size > 0 ? (v[0] * rate[0] + v[1] * rate[1] + v[2] * rate[2]) / size : 0;
 }
 
-void hf_goals_pull_rates(const hf_model *m, const hf_workspace *w, hf_goals_point *p, const hf_goals_rate *by,
-                         double *rate)
+void hf_objectives_pull_rates(const hf_model *m, const hf_workspace *w, hf_objectives_point *p,
+                              const hf_objectives_rate *by, double *rate)
 {
     int n = m->n_node - m->n_free;
     memset(p->rate_N, 0, 3 * (size_t)n * sizeof(double));
-    hf_goals_pulls(m, w, p);
+    hf_objectives_pulls(m, w, p);
     for (int e = 0; e < m->n_cable; e++) {
         double u[3], pull[3];
         if (!is_at_support(m, e)) continue;
@@ -434,29 +440,29 @@ void hf_goals_pull_rates(const hf_model *m, const hf_workspace *w, hf_goals_poin
         rate[i] = size_rate(p->force_N + 3 * (size_t)i, p->rate_N + 3 * (size_t)i);
 }
 
-static void push_pulls(const hf_model *m, const hf_workspace *w, hf_goals_point *p, const hf_goals_rate *by,
+static void push_pulls(const hf_model *m, const hf_workspace *w, hf_objectives_point *p, const hf_objectives_rate *by,
                        double *rate)
 {
     int n = m->n_node - m->n_free;
     double norm;
-    hf_goals_pull_rates(m, w, p, by, rate);
-    hf_goals_smooth_largest(n, p->size, &norm);
+    hf_objectives_pull_rates(m, w, p, by, rate);
+    hf_objectives_smooth_maximum(n, p->size, &norm);
     push_smooth(n, p->size, rate);
 }
 
-static void push_displacements(const hf_model *m, const hf_workspace *w, hf_goals_point *p, const hf_goals_rate *by,
-                               double *rate)
+static void push_displacements(const hf_model *m, const hf_workspace *w, hf_objectives_point *p,
+                               const hf_objectives_rate *by, double *rate)
 {
     double norm;
     take_displacements(m, w, p);
-    hf_goals_smooth_largest(m->n_attachment, p->size, &norm);
+    hf_objectives_smooth_maximum(m->n_attachment, p->size, &norm);
     for (int i = 0; i < m->n_attachment; i++)
         rate[i] = size_rate(w->displacement_m + 3 * (size_t)i, by->displacement_m + 3 * (size_t)i);
     push_smooth(m->n_attachment, p->size, rate);
 }
 
-static void push_ratio(const hf_goal *g, const hf_workspace *w, hf_goals_point *p, const hf_goals_rate *by,
-                       double *rate)
+static void push_ratio(const hf_objective *g, const hf_workspace *w, hf_objectives_point *p,
+                       const hf_objectives_rate *by, double *rate)
 {
     int n = g->n_cable;
     double high, low;
@@ -469,34 +475,35 @@ static void push_ratio(const hf_goal *g, const hf_workspace *w, hf_goals_point *
     double high_rate = push_smooth(n, p->size, rate), low_rate = push_smooth(n, p->size + n, rate + n);
     for (int i = 0; i < n; i++) {
         double *of_high = &rate[i], *of_low = &rate[n + i];
-        *of_high = sqrt(0.5) * (low * *of_high + high * low_rate * hf_goals_seventh(p->size[i]) * p->size[i]);
-        *of_low = sqrt(0.5) * (high * *of_low + low * high_rate * hf_goals_seventh(p->size[n + i]) * p->size[n + i]);
+        *of_high = sqrt(0.5) * (low * *of_high + high * low_rate * hf_objectives_seventh(p->size[i]) * p->size[i]);
+        *of_low =
+            sqrt(0.5) * (high * *of_low + low * high_rate * hf_objectives_seventh(p->size[n + i]) * p->size[n + i]);
     }
 }
 
-void hf_goals_push_shape(const hf_goals *goals, int k, const hf_workspace *w, hf_goals_point *p,
-                         const hf_goals_rate *by, double *rate)
+void hf_objectives_push_shape(const hf_objectives *objectives, int k, const hf_workspace *w, hf_objectives_point *p,
+                              const hf_objectives_rate *by, double *rate)
 {
-    const hf_model *m = goals->model;
-    const hf_goal *g = &goals->goal[k];
-    switch (g->wanted.goal) {
-    case HF_GOAL_PSI:
+    const hf_model *m = objectives->model;
+    const hf_objective *g = &objectives->objective[k];
+    switch (g->settings.figure) {
+    case HF_FIGURE_PSI:
         push_psi(m, p, by->position_m, rate);
         break;
-    case HF_GOAL_PULL:
+    case HF_FIGURE_PULL:
         push_pulls(m, w, p, by, rate);
         break;
-    case HF_GOAL_DISPLACEMENT:
+    case HF_FIGURE_DEFLECTION:
         push_displacements(m, w, p, by, rate);
         break;
-    case HF_GOAL_RATIO:
+    case HF_FIGURE_RATIO:
         push_ratio(g, w, p, by, rate);
         break;
-    case HF_GOAL_SURFACE:
-    case HF_GOAL_FACETS:
+    case HF_FIGURE_SURFACE:
+    case HF_FIGURE_FACETS:
         hf_cloud_push(&p->cloud[k], by->position_m, rate);
         break;
-    case HF_GOAL_GAIN:
+    case HF_FIGURE_GAIN:
         hf_gain_push(&p->gain[k], by->position_m, rate);
         break;
     default:
@@ -504,14 +511,14 @@ void hf_goals_push_shape(const hf_goals *goals, int k, const hf_workspace *w, hf
     }
 }
 
-void hf_goals_push(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, const hf_goals_rate *by,
-                   double *rate)
+void hf_objectives_push(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,
+                        const hf_objectives_rate *by, double *rate)
 {
-    for (int k = 0; k < goals->n_goal; k++) {
-        const hf_goal *g = &goals->goal[k];
+    for (int k = 0; k < objectives->n_objective; k++) {
+        const hf_objective *g = &objectives->objective[k];
         if (g->n_net) continue;
-        hf_goals_push_shape(goals, k, w, p, by, rate + g->first_row);
+        hf_objectives_push_shape(objectives, k, w, p, by, rate + g->first_row);
         for (int i = 0; i < g->n_row; i++)
-            rate[g->first_row + i] *= g->wanted.weight;
+            rate[g->first_row + i] *= g->settings.weight;
     }
 }

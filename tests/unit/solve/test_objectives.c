@@ -1,20 +1,20 @@
 /* Goals of a design: values by hand and by the measures of a result, residuals against values, and what is refused. */
-#include "goals.h"
+#include "objectives.h"
 
 #include "surface/gain.h"
 
 /* ---- values ---- */
 
-START_TEST(without_rows_the_goal_is_psi)
+START_TEST(without_rows_the_objective_is_psi)
 {
     struct wanting t = {0};
     struct rng rng = rng_start((uint64_t)_i);
     double value, merit;
     open_wanting(&t, _i / 2, _i % 2, &rng);
     want(&t, 0, NULL);
-    ck_assert_int_eq(t.goals.n_goal, 1);
+    ck_assert_int_eq(t.objectives.n_objective, 1);
     long before = allocation_count();
-    hf_status status = hf_goals_measure(&t.goals, &t.net.work, &t.point, &value, &merit);
+    hf_status status = hf_objectives_measure(&t.objectives, &t.net.work, &t.point, &value, &merit);
     long after = allocation_count();
     ck_assert_int_eq(status, HF_OK);
     ck_assert_int_eq(after, before);
@@ -49,18 +49,18 @@ static void open_line(struct wanting *t)
     }
 }
 
-static double value_of(struct wanting *t, hf_goal_settings goal, double *merit)
+static double value_of(struct wanting *t, hf_objective_settings objective, double *merit)
 {
     double value;
-    want(t, 1, &goal);
-    ck_assert_int_eq(hf_goals_measure(&t->goals, &t->net.work, &t->point, &value, merit), HF_OK);
-    hf_goals_point_free(&t->point);
-    hf_goals_free(&t->goals);
+    want(t, 1, &objective);
+    ck_assert_int_eq(hf_objectives_measure(&t->objectives, &t->net.work, &t->point, &value, merit), HF_OK);
+    hf_objectives_point_free(&t->point);
+    hf_objectives_free(&t->objectives);
     return value;
 }
 
 static const struct {
-    hf_goal_settings goal;
+    hf_objective_settings objective;
     double value, merit;
 } by_hand[] = {
     {WANT(PSI, "", NAN, 1), 0.5, 0.5}, /* one of two nodes is sqrt(1/2) away */
@@ -81,7 +81,7 @@ START_TEST(values_are_those_by_hand)
     double merit;
     open_line(&t);
     if (_i == 0) t.net.work.position_m[2 * 4 + t.net.model.row_of_node[1]] += sqrt(0.5);
-    double value = value_of(&t, by_hand[_i].goal, &merit);
+    double value = value_of(&t, by_hand[_i].objective, &merit);
     ck_assert_double_eq_tol(value, by_hand[_i].value, 1e-15);
     ck_assert_double_eq_tol(merit, by_hand[_i].merit, 2e-15 * (1 + by_hand[_i].merit));
     close_wanting(&t);
@@ -93,12 +93,12 @@ START_TEST(a_slack_cable_has_no_ratio)
 {
     struct wanting t;
     double merit, residual[6];
-    hf_goal_settings ratio = goal_of(HF_GOAL_RATIO);
+    hf_objective_settings ratio = objective_of(HF_FIGURE_RATIO);
     open_line(&t);
     t.net.work.tension_N[1] = 0;
     ck_assert(isinf(value_of(&t, ratio, &merit)) && isinf(merit));
     want(&t, 1, &ratio);
-    ck_assert_int_eq(hf_goals_linearise(&t.goals, &t.net.work, &t.point, residual), HF_NOT_FINITE);
+    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, &t.net.work, &t.point, residual), HF_NOT_FINITE);
     close_wanting(&t);
 }
 END_TEST
@@ -108,7 +108,7 @@ START_TEST(loose_nodes_do_not_count)
 {
     struct wanting t;
     double merit, residual[6], rate[6];
-    const hf_goal_settings psi = goal_of(HF_GOAL_PSI);
+    const hf_objective_settings psi = objective_of(HF_FIGURE_PSI);
     open_line(&t);
     const hf_model *m = &t.net.model;
     hf_workspace *w = &t.net.work;
@@ -117,11 +117,11 @@ START_TEST(loose_nodes_do_not_count)
     w->loose[m->row_of_node[2]] = 1;
     ck_assert_double_eq(value_of(&t, psi, &merit), 0.5);
     want(&t, 1, &psi);
-    ck_assert_int_eq(hf_goals_linearise(&t.goals, w, &t.point, residual), HF_OK);
+    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, w, &t.point, residual), HF_OK);
     double square = 0, move[12], turn = 0;
     for (int i = 0; i < 12; i++)
         move[i] = 1;
-    hf_goals_push(&t.goals, w, &t.point, &(hf_goals_rate){move, NULL, NULL}, rate);
+    hf_objectives_push(&t.objectives, w, &t.point, &(hf_objectives_rate){move, NULL, NULL}, rate);
     for (int i = 0; i < 6; i++) {
         square += residual[i] * residual[i];
         turn += residual[i] * rate[i];
@@ -129,34 +129,34 @@ START_TEST(loose_nodes_do_not_count)
     ck_assert_double_eq(square, 0.25);
     ck_assert_double_eq(turn, 0.5);
     w->loose[m->row_of_node[1]] = 1;
-    ck_assert_int_eq(hf_goals_linearise(&t.goals, w, &t.point, residual), HF_NOT_FINITE);
+    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, w, &t.point, residual), HF_NOT_FINITE);
     double value = 0;
-    ck_assert_int_eq(hf_goals_measure(&t.goals, w, &t.point, &value, &merit), HF_OK);
+    ck_assert_int_eq(hf_objectives_measure(&t.objectives, w, &t.point, &value, &merit), HF_OK);
     ck_assert(isnan(value) && isnan(merit));
     close_wanting(&t);
 }
 END_TEST
 
 /* The merit is that of the weighted values; the residuals have it as their norm. */
-START_TEST(goals_are_weighed_together)
+START_TEST(objectives_are_weighed_together)
 {
     struct wanting t = {0};
     struct rng rng = rng_start(0);
-    hf_goal_settings goal[4] = {goal_of(HF_GOAL_PSI), goal_of(HF_GOAL_EVENNESS), goal_of(HF_GOAL_FACETS),
-                                goal_of(HF_GOAL_LENGTH)};
+    hf_objective_settings objective[4] = {objective_of(HF_FIGURE_PSI), objective_of(HF_FIGURE_EVENNESS),
+                                          objective_of(HF_FIGURE_FACETS), objective_of(HF_FIGURE_LENGTH)};
     double value[4], merit, square = 0, sum = 0;
-    goal[0].weight = 3;
-    goal[1].weight = 0.5;
-    goal[2].fit = HF_FIT_BEST;
-    goal[3].weight = 0;
+    objective[0].weight = 3;
+    objective[1].weight = 0.5;
+    objective[2].fit = HF_FIT_BEST;
+    objective[3].weight = 0;
     open_wanting(&t, false, false, &rng);
-    want(&t, 4, goal);
-    double *residual = malloc((size_t)t.goals.n_row * sizeof *residual);
-    ck_assert_int_eq(hf_goals_measure(&t.goals, &t.net.work, &t.point, value, &merit), HF_OK);
-    ck_assert_int_eq(hf_goals_linearise(&t.goals, &t.net.work, &t.point, residual), HF_OK);
+    want(&t, 4, objective);
+    double *residual = malloc((size_t)t.objectives.n_row * sizeof *residual);
+    ck_assert_int_eq(hf_objectives_measure(&t.objectives, &t.net.work, &t.point, value, &merit), HF_OK);
+    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, &t.net.work, &t.point, residual), HF_OK);
     for (int k = 0; k < 4; k++)
-        square += goal[k].weight * value[k] * goal[k].weight * value[k];
-    for (int i = 0; i < t.goals.n_row; i++)
+        square += objective[k].weight * value[k] * objective[k].weight * value[k];
+    for (int i = 0; i < t.objectives.n_row; i++)
         sum += residual[i] * residual[i];
     ck_assert_double_gt(value[3], 0);
     ck_assert_double_eq_tol(merit, sqrt(square), 1e-14 * merit);
@@ -173,20 +173,20 @@ START_TEST(errors_of_the_surface_are_those_of_a_result)
     struct rng rng = rng_start((uint64_t)_i);
     hf_surface_measures is;
     double value[8], merit;
-    const hf_goal_settings goal[8] = {WANT_SURFACES(1)};
+    const hf_objective_settings objective[8] = {WANT_SURFACES(1)};
     open_wanting(&t, _i, false, &rng);
     for (int i = 0; i < 3 * t.net.model.n_node; i++)
         t.net.work.position_m[i] += rng_uniform(&rng, -1e-2, 1e-2);
-    want(&t, 8, goal);
+    want(&t, 8, objective);
     ck_assert_int_eq(
         hf_surface_measure(&t.surface, &t.facets, &t.net.model, t.net.work.position_m, t.net.work.tension_N, &is),
         HF_OK);
-    ck_assert_int_eq(hf_goals_measure(&t.goals, &t.net.work, &t.point, value, &merit), HF_OK);
+    ck_assert_int_eq(hf_objectives_measure(&t.objectives, &t.net.work, &t.point, value, &merit), HF_OK);
     const double wanted[8] = {is.normal_rms_m,          is.fit.normal_rms_m,         is.half_path_rms_m,
                               is.fit.half_path_rms_m,   is.facet_normal_rms_m,       is.facet_fit_normal_rms_m,
                               is.facet_half_path_rms_m, is.facet_fit_half_path_rms_m};
     for (int k = 0; k < 8; k++) { /* the reported fit has half of the digits of its parameters (cloud_fit.c) */
-        double within = goal[k].fit == HF_FIT_BEST && goal[k].along == HF_ALONG_NORMAL ? 1e-7 : 1e-13;
+        double within = objective[k].fit == HF_FIT_BEST && objective[k].along == HF_ALONG_NORMAL ? 1e-7 : 1e-13;
         ck_assert_double_eq_tol(value[k], wanted[k], within * wanted[k]);
     }
     close_wanting(&t);
@@ -201,23 +201,23 @@ START_TEST(the_gain_is_what_the_field_loses)
     struct rng rng = rng_start((uint64_t)_i);
     double value, merit, residual[20000];
     hf_gain_beam beam;
-    hf_goal_settings gain = goal_of(HF_GOAL_GAIN);
+    hf_objective_settings gain = objective_of(HF_FIGURE_GAIN);
     if (_i % 2) gain.frequency_Hz = 0.2e9;
     open_wanting(&t, _i / 2, false, &rng);
     want(&t, 1, &gain);
-    ck_assert_int_le(t.goals.n_row, 20000);
+    ck_assert_int_le(t.objectives.n_row, 20000);
     const hf_model *m = &t.net.model;
     double *place = calloc(3 * (size_t)m->n_node, sizeof *place);
     hf_model_positions(m, t.net.work.position_m, place);
     hf_gain_beam_make(&t.surface, &t.facets, t.net.scene.position_m, _i % 2 ? 0.2e9 : 0.3e9, &beam);
     double loss_dB = hf_gain_loss_dB(&beam, &(hf_pattern_surface){&t.facets, place, NULL});
-    ck_assert_int_eq(hf_goals_measure(&t.goals, &t.net.work, &t.point, &value, &merit), HF_OK);
+    ck_assert_int_eq(hf_objectives_measure(&t.objectives, &t.net.work, &t.point, &value, &merit), HF_OK);
     ck_assert_double_eq(value, merit);
     ck_assert_double_gt(value, 1e-3);
     ck_assert_double_eq_tol(-10 * log10(1 - value * value), loss_dB, 1e-12);
     for (int i = 0; i < m->n_node; i++) /* turned over */
         t.net.work.position_m[i] = -t.net.work.position_m[i];
-    ck_assert_int_eq(hf_goals_linearise(&t.goals, &t.net.work, &t.point, residual), HF_NOT_FINITE);
+    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, &t.net.work, &t.point, residual), HF_NOT_FINITE);
     free(place);
     close_wanting(&t);
 }
@@ -226,7 +226,7 @@ END_TEST
 /* ---- what is refused ---- */
 
 static const struct {
-    hf_goal_settings goal;
+    hf_objective_settings objective;
     const char *said;
 } faulty[] = {
     {WANT(TENSION, "bounday", 4, 1), ".set: there is no set of cables 'bounday'; did you mean 'boundary'?"},
@@ -240,20 +240,20 @@ static const struct {
     {WANT(FACETS, "", NAN, 1),
      ": facets: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
     {WANT(GAIN, "", NAN, 1), ": gain: needs a section surface.pattern, which says what illuminates the reflector"},
-    {WANT(DISPLACEMENT, "", NAN, 1), ": displacement: needs a truss that gives way: this net has none"},
+    {WANT(DEFLECTION, "", NAN, 1), ": displacement: needs a truss that gives way: this net has none"},
 };
 enum { N_FAULTY = sizeof faulty / sizeof *faulty };
 
 /* All rows are read: the first and the third here have the same fault, the second has none. */
-START_TEST(a_goal_without_meaning_is_refused)
+START_TEST(a_objective_without_meaning_is_refused)
 {
     struct wanting t;
     hf_messages messages = {0};
     char said[512];
-    hf_optimize_settings s = {.n_goal = 3,
-                              .goal = {faulty[_i].goal, {.goal = HF_GOAL_PSI, .weight = 1}, faulty[_i].goal}};
+    hf_optimize_settings s = {
+        .n_term = 3, .term = {faulty[_i].objective, {.figure = HF_FIGURE_PSI, .weight = 1}, faulty[_i].objective}};
     open_line(&t);
-    ck_assert_int_eq(hf_goals_create(&t.net.scene, &t.net.model, &s, NULL, NULL, NULL, &t.goals, &messages),
+    ck_assert_int_eq(hf_objectives_create(&t.net.scene, &t.net.model, &s, NULL, NULL, NULL, &t.objectives, &messages),
                      HF_BAD_CASE);
     snprintf(said, sizeof said, "error: optimize.goals.0%s\nerror: optimize.goals.2%s\n", faulty[_i].said,
              faulty[_i].said);
@@ -268,12 +268,13 @@ START_TEST(a_surface_may_lack_facets_and_nodes)
     struct wanting t;
     hf_messages messages = {0};
     const hf_surface_settings surface = {.focal_length_m = 2, .kind = HF_SURFACE_PARABOLIC_CYLINDER};
-    hf_optimize_settings s = {.n_goal = 2, .goal = {goal_of(HF_GOAL_FACETS), goal_of(HF_GOAL_SURFACE)}};
-    s.goal[1].fit = HF_FIT_BEST;
+    hf_optimize_settings s = {.n_term = 2, .term = {objective_of(HF_FIGURE_FACETS), objective_of(HF_FIGURE_SURFACE)}};
+    s.term[1].fit = HF_FIT_BEST;
     open_line(&t);
     ck_assert_int_eq(hf_facets_find(&t.net.scene, &surface, &t.facets), HF_OK);
-    ck_assert_int_eq(hf_goals_create(&t.net.scene, &t.net.model, &s, &surface, &t.facets, NULL, &t.goals, &messages),
-                     HF_BAD_CASE);
+    ck_assert_int_eq(
+        hf_objectives_create(&t.net.scene, &t.net.model, &s, &surface, &t.facets, NULL, &t.objectives, &messages),
+        HF_BAD_CASE);
     ck_assert_str_eq(messages.text, "error: optimize.goals.0: facets: this net has no facets\n"
                                     "error: optimize.goals.1: surface: a best fit needs at least six inner nodes\n");
     hf_messages_free(&messages);
@@ -281,23 +282,23 @@ START_TEST(a_surface_may_lack_facets_and_nodes)
 }
 END_TEST
 
-START_TEST(without_memory_there_are_no_goals)
+START_TEST(without_memory_there_are_no_objectives)
 {
     struct wanting t;
-    const hf_goal_settings goal = goal_of(HF_GOAL_EVENNESS);
-    hf_optimize_settings s = {.n_goal = 1, .goal = {goal}};
+    const hf_objective_settings objective = objective_of(HF_FIGURE_EVENNESS);
+    hf_optimize_settings s = {.n_term = 1, .term = {objective}};
     hf_messages messages = {0};
     open_line(&t);
     fail_allocation_at(1);
-    hf_status status = hf_goals_create(&t.net.scene, &t.net.model, &s, NULL, NULL, NULL, &t.goals, &messages);
+    hf_status status = hf_objectives_create(&t.net.scene, &t.net.model, &s, NULL, NULL, NULL, &t.objectives, &messages);
     ck_assert(end_allocation_failure());
     ck_assert_int_eq(status, HF_NO_MEMORY);
-    hf_goals_free(&t.goals);
+    hf_objectives_free(&t.objectives);
     hf_messages_free(&messages);
-    want(&t, 1, &goal);
-    hf_goals_point_free(&t.point);
+    want(&t, 1, &objective);
+    hf_objectives_point_free(&t.point);
     fail_allocation_at(1);
-    status = hf_goals_point_create(&t.goals, &t.point);
+    status = hf_objectives_point_create(&t.objectives, &t.point);
     ck_assert(end_allocation_failure());
     ck_assert_int_eq(status, HF_NO_MEMORY);
     close_wanting(&t);
@@ -308,65 +309,65 @@ END_TEST
 START_TEST(too_many_residuals_are_refused)
 {
     struct wanting t;
-    hf_goal_settings goal = goal_of(HF_GOAL_PSI);
-    const hf_goals_nets nets = {.n_sample = 1 << 30};
+    hf_objective_settings objective = objective_of(HF_FIGURE_PSI);
+    const hf_objectives_nets nets = {.n_sample = 1 << 30};
     hf_messages messages = {0};
     open_line(&t);
-    goal.over = HF_OVER_SAMPLES;
-    hf_optimize_settings s = {.n_goal = 3, .goal = {goal, goal, goal}};
-    ck_assert_int_eq(hf_goals_create(&t.net.scene, &t.net.model, &s, NULL, NULL, &nets, &t.goals, &messages),
+    objective.over = HF_OVER_SAMPLES;
+    hf_optimize_settings s = {.n_term = 3, .term = {objective, objective, objective}};
+    ck_assert_int_eq(hf_objectives_create(&t.net.scene, &t.net.model, &s, NULL, NULL, &nets, &t.objectives, &messages),
                      HF_BAD_CASE);
     ck_assert_ptr_nonnull(strstr(messages.text, "optimize.samples"));
     hf_messages_free(&messages);
-    hf_goals_free(&t.goals);
-    goal.over = HF_OVER_DESIGN;
-    want(&t, 1, &goal);
+    hf_objectives_free(&t.objectives);
+    objective.over = HF_OVER_DESIGN;
+    want(&t, 1, &objective);
     close_wanting(&t);
 }
 END_TEST
 
 /* The name under which files, tables and JSON have a goal tells it from every other. */
-START_TEST(names_tell_goals_apart)
+START_TEST(names_tell_objectives_apart)
 {
     static const struct {
-        hf_goal_settings wanted;
+        hf_objective_settings wanted;
         const char *name;
     } row[] = {
-        {{.goal = HF_GOAL_PSI}, "goal_%d_psi"},
-        {{.goal = HF_GOAL_TENSION, .set = "edge"}, "goal_%d_tension_edge"},
-        {{.goal = HF_GOAL_PSI, .state = "hot"}, "goal_%d_psi_hot"},
-        {{.goal = HF_GOAL_RATIO, .set = "edge", .state = "hot", .over = HF_OVER_STATES}, "goal_%d_ratio_edge_hot"},
-        {{.goal = HF_GOAL_PSI, .state = "a_name_of_a_state_of_31_letters"}, "goal_%d_psi_a_name_of_a_state_of_31_"},
-        {{.goal = HF_GOAL_PSI, .over = HF_OVER_STATES, .take = HF_TAKE_MEAN}, "goal_%d_psi_states_mean"},
-        {{.goal = HF_GOAL_PSI, .over = HF_OVER_STATES, .take = HF_TAKE_WORST}, "goal_%d_psi_states_worst"},
-        {{.goal = HF_GOAL_PSI, .over = HF_OVER_SAMPLES, .take = HF_TAKE_MEAN}, "goal_%d_psi_samples_mean"},
-        {{.goal = HF_GOAL_PSI, .over = HF_OVER_SAMPLES, .quantile = 0.9}, "goal_%d_psi_samples_quantile"}};
+        {{.figure = HF_FIGURE_PSI}, "goal_%d_psi"},
+        {{.figure = HF_FIGURE_TENSION, .set = "edge"}, "goal_%d_tension_edge"},
+        {{.figure = HF_FIGURE_PSI, .state = "hot"}, "goal_%d_psi_hot"},
+        {{.figure = HF_FIGURE_RATIO, .set = "edge", .state = "hot", .over = HF_OVER_STATES}, "goal_%d_ratio_edge_hot"},
+        {{.figure = HF_FIGURE_PSI, .state = "a_name_of_a_state_of_31_letters"}, "goal_%d_psi_a_name_of_a_state_of_31_"},
+        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_STATES, .take = HF_TAKE_MEAN}, "goal_%d_psi_states_mean"},
+        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_STATES, .take = HF_TAKE_WORST}, "goal_%d_psi_states_worst"},
+        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .take = HF_TAKE_MEAN}, "goal_%d_psi_samples_mean"},
+        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .quantile = 0.9}, "goal_%d_psi_samples_quantile"}};
     for (int k = 0; k < (int)(sizeof row / sizeof *row); k++) {
-        hf_goals goals = {.n_goal = 1};
-        char name[HF_GOAL_NAME_SIZE], expected[HF_GOAL_NAME_SIZE];
-        goals.goal[k].wanted = row[k].wanted;
+        hf_objectives objectives = {.n_objective = 1};
+        char name[HF_OBJECTIVE_NAME_SIZE], expected[HF_OBJECTIVE_NAME_SIZE];
+        objectives.objective[k].settings = row[k].wanted;
         snprintf(expected, sizeof expected, row[k].name, k);
-        ck_assert_str_eq(hf_goals_name(&goals, k, name), expected);
+        ck_assert_str_eq(hf_objectives_name(&objectives, k, name), expected);
     }
 }
 END_TEST
 
-Suite *suite_unit_goals(void)
+Suite *suite_unit_objectives(void)
 {
     Suite *suite = suite_create("unit/goals");
     TCase *tests = tcase_create("goals");
     suite_add_tcase(suite, tests);
-    tcase_add_loop_test(tests, without_rows_the_goal_is_psi, 0, 4);
+    tcase_add_loop_test(tests, without_rows_the_objective_is_psi, 0, 4);
     tcase_add_loop_test(tests, values_are_those_by_hand, 0, N_BY_HAND);
-    tcase_add_test(tests, names_tell_goals_apart);
+    tcase_add_test(tests, names_tell_objectives_apart);
     tcase_add_test(tests, loose_nodes_do_not_count);
     tcase_add_test(tests, a_slack_cable_has_no_ratio);
-    tcase_add_test(tests, goals_are_weighed_together);
+    tcase_add_test(tests, objectives_are_weighed_together);
     tcase_add_loop_test(tests, errors_of_the_surface_are_those_of_a_result, 0, 2);
     tcase_add_loop_test(tests, the_gain_is_what_the_field_loses, 0, 4);
-    tcase_add_loop_test(tests, a_goal_without_meaning_is_refused, 0, N_FAULTY);
+    tcase_add_loop_test(tests, a_objective_without_meaning_is_refused, 0, N_FAULTY);
     tcase_add_test(tests, a_surface_may_lack_facets_and_nodes);
-    tcase_add_test(tests, without_memory_there_are_no_goals);
+    tcase_add_test(tests, without_memory_there_are_no_objectives);
     tcase_add_test(tests, too_many_residuals_are_refused);
     return suite;
 }

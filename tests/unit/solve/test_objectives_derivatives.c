@@ -1,5 +1,5 @@
 /* Derivatives of the goals of a design by its shape against differences, for every goal, fit and feed. */
-#include "goals.h"
+#include "objectives.h"
 
 #include "surface/cloud.h"
 
@@ -64,12 +64,12 @@ static void put(struct net *net, const struct shape *from, const struct shape *b
     }
 }
 
-static const hf_goal_settings differed[] = {
+static const hf_objective_settings differed[] = {
     WANT(PSI, "", NAN, 0.3),          WANT_SURFACES(2),
     WANT(TENSION, "boundary", 10, 3), WANT(LENGTH, "all", NAN, 1),
     WANT(LENGTH, "inner", 0.3, 1),    WANT(EVENNESS, "inner", NAN, 1),
     WANT(PULL, "", NAN, 0.1),         WANT_MASS("", 0.002),
-    WANT(DISPLACEMENT, "", NAN, 1), /* the last: only with a truss */
+    WANT(DEFLECTION, "", NAN, 1), /* the last: only with a truss */
 };
 enum { N_DIFFERED = sizeof differed / sizeof *differed };
 
@@ -77,24 +77,24 @@ enum { N_DIFFERED = sizeof differed / sizeof *differed };
  * over the largest entry; by goal. */
 static void differ(struct wanting *t, const struct shape *at, const struct shape *by, double *worst)
 {
-    const hf_goals *g = &t->goals;
+    const hf_objectives *g = &t->objectives;
     const double place[4] = {-2, -1, 1, 2}, factor[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12}, step = 3e-5;
     double *f = malloc((size_t)g->n_row * sizeof *f), *rate = malloc((size_t)g->n_row * sizeof *rate);
     double *difference = calloc((size_t)g->n_row, sizeof *difference);
-    const hf_goals_rate changes = {by->position_m, by->tension_N, by->displacement_m};
+    const hf_objectives_rate changes = {by->position_m, by->tension_N, by->displacement_m};
     for (int k = 0; k < 4; k++) {
         put(&t->net, at, by, step * place[k]);
-        ck_assert_int_eq(hf_goals_linearise(g, &t->net.work, &t->point, f), HF_OK);
+        ck_assert_int_eq(hf_objectives_linearise(g, &t->net.work, &t->point, f), HF_OK);
         for (int i = 0; i < g->n_row; i++)
             difference[i] += factor[k] / step * f[i];
     }
     put(&t->net, at, by, 0);
-    ck_assert_int_eq(hf_goals_linearise(g, &t->net.work, &t->point, f), HF_OK);
-    hf_goals_push(g, &t->net.work, &t->point, &changes, rate);
-    for (int k = 0, row = 0; k < g->n_goal; k++) {
+    ck_assert_int_eq(hf_objectives_linearise(g, &t->net.work, &t->point, f), HF_OK);
+    hf_objectives_push(g, &t->net.work, &t->point, &changes, rate);
+    for (int k = 0, row = 0; k < g->n_objective; k++) {
         double most = 0;
         worst[k] = 0;
-        for (int i = 0; i < g->goal[k].n_row; i++, row++) {
+        for (int i = 0; i < g->objective[k].n_row; i++, row++) {
             most = fmax(most, fabs(rate[row]));
             worst[k] = fmax(worst[k], fabs(rate[row] - difference[row]));
         }
@@ -113,7 +113,7 @@ static void demand_derivatives(struct wanting *t, struct shape *found, struct sh
     put(&t->net, found, rough, 1);
     struct shape at = shape_of(&t->net), by = random_change(&t->net.model, rng, 1, 10);
     differ(t, &at, &by, worst);
-    for (int k = 0; k < t->goals.n_goal; k++)
+    for (int k = 0; k < t->objectives.n_objective; k++)
         ck_assert_msg(worst[k] < 1e-7, "goal %d: %g", k, worst[k]);
     free_shape(found);
     free_shape(rough);
@@ -139,7 +139,7 @@ START_TEST(the_ratio_has_derivatives)
 {
     struct wanting t = {0};
     struct rng rng = rng_start((uint64_t)_i);
-    hf_goal_settings ratio[2] = {WANT(RATIO, "inner", NAN, 1), WANT(RATIO, "boundary", NAN, 0.4)};
+    hf_objective_settings ratio[2] = {WANT(RATIO, "inner", NAN, 1), WANT(RATIO, "boundary", NAN, 0.4)};
     open_wanting(&t, _i / 2, _i % 2, &rng);
     want(&t, 2, ratio);
     struct shape found = shape_of(&t.net), rough = random_change(&t.net.model, &rng, 1e-3, 0.1);
@@ -158,15 +158,15 @@ START_TEST(lesser_fits_follow_their_centre)
     struct wanting t = {0};
     bool is_round = _i % 2, is_aside = _i / 2;
     struct rng rng = rng_start((uint64_t)_i);
-    hf_goal_settings goal[4];
+    hf_objective_settings objective[4];
     for (int k = 0; k < 4; k++) {
-        goal[k] = goal_of(k / 2 ? HF_GOAL_FACETS : HF_GOAL_SURFACE);
-        goal[k].along = (hf_along)(k % 2);
-        goal[k].fit = HF_FIT_BEST;
+        objective[k] = objective_of(k / 2 ? HF_FIGURE_FACETS : HF_FIGURE_SURFACE);
+        objective[k].along = (hf_along)(k % 2);
+        objective[k].fit = HF_FIT_BEST;
     }
     open_wanting(&t, is_round, false, &rng);
     if (!is_aside) t.surface.focal_length_m *= 0.3;
-    want(&t, 4, goal);
+    want(&t, 4, objective);
     struct shape found = shape_of(&t.net), rough = random_change(&t.net.model, &rng, 1e-3, 2);
     for (int row = 0; row < t.net.model.n_node && is_aside; row++)
         found.position_m[row] += 1;
@@ -182,7 +182,7 @@ START_TEST(the_gain_has_derivatives_under_every_feed)
 {
     struct wanting t = {0};
     struct rng rng = rng_start((uint64_t)_i);
-    hf_goal_settings gain[2] = {goal_of(HF_GOAL_GAIN), goal_of(HF_GOAL_GAIN)};
+    hf_objective_settings gain[2] = {objective_of(HF_FIGURE_GAIN), objective_of(HF_FIGURE_GAIN)};
     hf_feed_kind kind = (hf_feed_kind)(HF_FEED_POINT + _i / 2 % 3);
     gain[0].weight = 2;
     gain[1].frequency_Hz = 0.7e9;
@@ -199,7 +199,7 @@ START_TEST(the_gain_has_derivatives_under_every_feed)
 }
 END_TEST
 
-Suite *suite_unit_goals_derivatives(void)
+Suite *suite_unit_objectives_derivatives(void)
 {
     Suite *suite = suite_create("unit/goals_derivatives");
     TCase *tests = tcase_create("derivatives");

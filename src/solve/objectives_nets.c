@@ -1,7 +1,7 @@
 /* Measures objectives over nets made of the design: its load cases, and samples of its errors (METHOD section 7).
  *
  *     shape of the design
- *         | cut its pieces, solve the nets (functions of hf_goals_nets)
+ *         | cut its pieces, solve the nets (functions of hf_objectives_nets)
  *         v
  *     residuals, value and norm of each net
  *         | gather: mean (root of the mean of squares), worst (smooth maximum P), or a quantile
@@ -10,7 +10,7 @@
  *         | linearise and push net by net, then close: the chain rule of mean and worst
  *         v
  *     change of these residuals by a variable */
-#include <hifdm/goals.h>
+#include <hifdm/objectives.h>
 
 #include "base/elementary.h"
 #include "linalg/dot.h"
@@ -21,39 +21,39 @@
 
 /* ---- which nets ---- */
 
-bool hf_goals_is_smooth(const hf_goal_settings *goal)
+bool hf_objectives_is_smooth(const hf_objective_settings *objective)
 {
-    return !(goal->quantile > 0);
+    return !(objective->quantile > 0);
 }
 
-static bool is_over(const hf_goal *g, int i_net)
+static bool is_over(const hf_objective *g, int i_net)
 {
     return i_net >= g->first_net && i_net < g->first_net + g->n_net;
 }
 
-bool hf_goals_are_over(const hf_goals *goals, int i_net)
+bool hf_objectives_are_over(const hf_objectives *objectives, int i_net)
 {
-    for (int k = 0; k < goals->n_goal; k++)
-        if (is_over(&goals->goal[k], i_net)) return true;
+    for (int k = 0; k < objectives->n_objective; k++)
+        if (is_over(&objectives->objective[k], i_net)) return true;
     return false;
 }
 
 /* Returns the row at which the residuals of net i_net begin. */
-static int row_of_net(const hf_goal *g, int i_net)
+static int row_of_net(const hf_objective *g, int i_net)
 {
     return g->first_row + (i_net - g->first_net) * g->n_shape_row;
 }
 
-static size_t place_of_net(const hf_goals *goals, int k, int i_net)
+static size_t place_of_net(const hf_objectives *objectives, int k, int i_net)
 {
-    return (size_t)k * ((size_t)goals->nets->n_state + (size_t)goals->nets->n_sample) + (size_t)i_net;
+    return (size_t)k * ((size_t)objectives->nets->n_state + (size_t)objectives->nets->n_sample) + (size_t)i_net;
 }
 
 /* ---- residuals ---- */
 
 typedef struct {
-    const hf_goals *goals;
-    hf_goals_point *point;
+    const hf_objectives *objectives;
+    hf_objectives_point *point;
     double *residual;
     hf_status status;
 } measured_nets;
@@ -63,30 +63,31 @@ typedef struct {
 static void measure_net(void *context, int i_net, const hf_workspace *shape)
 {
     measured_nets *q = context;
-    for (int k = 0; k < q->goals->n_goal; k++) {
-        const hf_goal *g = &q->goals->goal[k];
+    for (int k = 0; k < q->objectives->n_objective; k++) {
+        const hf_objective *g = &q->objectives->objective[k];
         double *f = q->residual + row_of_net(g, i_net), value = INFINITY, norm = INFINITY;
         if (!is_over(g, i_net)) continue;
         memset(f, 0, (size_t)g->n_shape_row * sizeof *f);
-        if (shape && hf_goals_measure_shape(q->goals, k, shape, q->point, f, &value, &norm) != HF_OK)
+        if (shape && hf_objectives_measure_shape(q->objectives, k, shape, q->point, f, &value, &norm) != HF_OK)
             q->status = HF_NO_MEMORY;
-        q->point->net_value[place_of_net(q->goals, k, i_net)] = isnan(value) ? (double)INFINITY : value;
-        q->point->net_norm[place_of_net(q->goals, k, i_net)] = isnan(norm) ? (double)INFINITY : norm;
+        q->point->net_value[place_of_net(q->objectives, k, i_net)] = isnan(value) ? (double)INFINITY : value;
+        q->point->net_norm[place_of_net(q->objectives, k, i_net)] = isnan(norm) ? (double)INFINITY : norm;
     }
 }
 
-hf_status hf_goals_nets_measure(const hf_goals *goals, const hf_workspace *w, hf_goals_point *p, double *residual)
+hf_status hf_objectives_nets_measure(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,
+                                     double *residual)
 {
-    const hf_goals_nets *nets = goals->nets;
-    measured_nets q = {goals, p, residual, HF_OK};
+    const hf_objectives_nets *nets = objectives->nets;
+    measured_nets q = {objectives, p, residual, HF_OK};
     int n_state = nets->n_state, n_sample = nets->n_sample;
-    bool has_samples = n_sample > 0 && hf_goals_are_over(goals, n_state);
+    bool has_samples = n_sample > 0 && hf_objectives_are_over(objectives, n_state);
     hf_status status = nets->cut(p->nets, w);
     if (status == HF_NO_MEMORY) return status;
     for (int i = 0; i < n_state + n_sample && status != HF_OK; i++)
         measure_net(&q, i, NULL);
     for (int i = 0; i < n_state && status == HF_OK; i++)
-        if (hf_goals_are_over(goals, i)) nets->solve(p->nets, i, 1, measure_net, &q);
+        if (hf_objectives_are_over(objectives, i)) nets->solve(p->nets, i, 1, measure_net, &q);
     if (has_samples && status == HF_OK) nets->solve(p->nets, n_state, n_sample, measure_net, &q);
     return q.status;
 }
@@ -103,14 +104,14 @@ static double quantile_of(int n, const double *value, double part, double *order
 
 /* Multiplies the residuals f of each net by (S/P)^7 and returns their norm P. S is the norm of a net and P the smooth
  * maximum of all S. part [n_net] becomes S/P. */
-static double scale_worst(const hf_goal *g, const double *norm, double *part, double *f)
+static double scale_worst(const hf_objective *g, const double *norm, double *part, double *f)
 {
     double smooth;
     memcpy(part, norm, (size_t)g->n_net * sizeof *part);
-    hf_goals_smooth_largest(g->n_net, part, &smooth);
+    hf_objectives_smooth_maximum(g->n_net, part, &smooth);
     for (int s = 0; s < g->n_net; s++)
         for (int i = 0; i < g->n_shape_row; i++)
-            f[s * g->n_shape_row + i] *= hf_goals_seventh(part[s]);
+            f[s * g->n_shape_row + i] *= hf_objectives_seventh(part[s]);
     return smooth;
 }
 
@@ -122,20 +123,21 @@ static double largest_of(int n, const double *value)
     return largest;
 }
 
-void hf_goals_nets_gather(const hf_goals *goals, int k, hf_goals_point *p, double *f, double *value, double *norm)
+void hf_objectives_nets_gather(const hf_objectives *objectives, int k, hf_objectives_point *p, double *f, double *value,
+                               double *norm)
 {
-    const hf_goal *g = &goals->goal[k];
-    const double *of_net = p->net_value + place_of_net(goals, k, g->first_net);
-    const double *norm_of_net = p->net_norm + place_of_net(goals, k, g->first_net);
-    double *part = p->net_part + place_of_net(goals, k, g->first_net);
+    const hf_objective *g = &objectives->objective[k];
+    const double *of_net = p->net_value + place_of_net(objectives, k, g->first_net);
+    const double *norm_of_net = p->net_norm + place_of_net(objectives, k, g->first_net);
+    double *part = p->net_part + place_of_net(objectives, k, g->first_net);
     size_t n = (size_t)g->n_net;
     *value = largest_of(g->n_net, of_net);
     *norm = largest_of(g->n_net, norm_of_net);
     if (g->n_net == 1) return;
-    if (g->wanted.quantile > 0) {
-        *value = quantile_of(g->n_net, of_net, g->wanted.quantile, part);
-        *norm = quantile_of(g->n_net, norm_of_net, g->wanted.quantile, part);
-    } else if (isfinite(*norm) && g->wanted.take == HF_TAKE_WORST) {
+    if (g->settings.quantile > 0) {
+        *value = quantile_of(g->n_net, of_net, g->settings.quantile, part);
+        *norm = quantile_of(g->n_net, norm_of_net, g->settings.quantile, part);
+    } else if (isfinite(*norm) && g->settings.take == HF_TAKE_WORST) {
         *norm = scale_worst(g, norm_of_net, part, f);
     } else if (isfinite(*norm)) {
         *value = sqrt(hf_dot(n, of_net, of_net) / g->n_net);
@@ -147,31 +149,32 @@ void hf_goals_nets_gather(const hf_goals *goals, int k, hf_goals_point *p, doubl
 
 /* ---- derivatives ---- */
 
-hf_status hf_goals_nets_linearise(const hf_goals *goals, int i_net, hf_goals_point *p, const hf_workspace **shape)
+hf_status hf_objectives_nets_linearise(const hf_objectives *objectives, int i_net, hf_objectives_point *p,
+                                       const hf_workspace **shape)
 {
-    HF_TRY(goals->nets->linearise(p->nets, i_net, shape));
-    for (int k = 0; k < goals->n_goal; k++) {
+    HF_TRY(objectives->nets->linearise(p->nets, i_net, shape));
+    for (int k = 0; k < objectives->n_objective; k++) {
         double value, norm;
-        if (!is_over(&goals->goal[k], i_net)) continue;
-        HF_TRY(hf_goals_measure_shape(goals, k, *shape, p, p->row, &value, &norm));
+        if (!is_over(&objectives->objective[k], i_net)) continue;
+        HF_TRY(hf_objectives_measure_shape(objectives, k, *shape, p, p->row, &value, &norm));
         if (!isfinite(norm)) return HF_NOT_FINITE;
-        HF_TRY(hf_goals_linearise_shape(goals, k, *shape, p));
+        HF_TRY(hf_objectives_linearise_shape(objectives, k, *shape, p));
     }
     return HF_OK;
 }
 
-void hf_goals_nets_push(const hf_goals *goals, int i_net, const hf_workspace *shape, hf_goals_point *p,
-                        const hf_goals_rate *by, double *rate)
+void hf_objectives_nets_push(const hf_objectives *objectives, int i_net, const hf_workspace *shape,
+                             hf_objectives_point *p, const hf_objectives_rate *by, double *rate)
 {
-    for (int k = 0; k < goals->n_goal; k++)
-        if (is_over(&goals->goal[k], i_net))
-            hf_goals_push_shape(goals, k, shape, p, by, rate + row_of_net(&goals->goal[k], i_net));
+    for (int k = 0; k < objectives->n_objective; k++)
+        if (is_over(&objectives->objective[k], i_net))
+            hf_objectives_push_shape(objectives, k, shape, p, by, rate + row_of_net(&objectives->objective[k], i_net));
 }
 
 /* Replaces rate, the changes dg of the residuals g of each net alone, by the changes of f = weight (S/P)^7 g, the
  * residuals of the objective. They are df = weight (S/P)^7 dg + 7 f (dS/S - dP/P) with dP = sum (S/P)^15 dS. dS is the
  * component of dg along g. norm [n_net] has S and part [n_net] has S/P. */
-static void close_worst(const hf_goal *g, const double *norm, const double *part, const double *f, double *rate)
+static void close_worst(const hf_objective *g, const double *norm, const double *part, const double *f, double *rate)
 {
     double smooth = 0, smooth_rate = 0;
     size_t n = (size_t)g->n_shape_row;
@@ -181,7 +184,7 @@ static void close_worst(const hf_goal *g, const double *norm, const double *part
         for (int s = 0; s < g->n_net; s++) {
             const double *of_net = f + (size_t)s * n;
             double *by_net = rate + (size_t)s * n, length = sqrt(hf_dot(n, of_net, of_net));
-            double seventh = hf_goals_seventh(part[s]), turn = 0;
+            double seventh = hf_objectives_seventh(part[s]), turn = 0;
             double norm_rate = length > 0 ? hf_dot(n, of_net, by_net) / length : 0;
             if (pass == 0) {
                 smooth_rate += seventh * seventh * part[s] * norm_rate;
@@ -189,22 +192,23 @@ static void close_worst(const hf_goal *g, const double *norm, const double *part
             }
             if (length > 0) turn = 7 * (norm_rate / norm[s] - smooth_rate / smooth);
             for (size_t i = 0; i < n; i++)
-                by_net[i] = g->wanted.weight * seventh * by_net[i] + turn * of_net[i];
+                by_net[i] = g->settings.weight * seventh * by_net[i] + turn * of_net[i];
         }
 }
 
-void hf_goals_nets_close(const hf_goals *goals, const hf_goals_point *p, const double *residual, double *rate)
+void hf_objectives_nets_close(const hf_objectives *objectives, const hf_objectives_point *p, const double *residual,
+                              double *rate)
 {
-    for (int k = 0; k < goals->n_goal; k++) {
-        const hf_goal *g = &goals->goal[k];
-        double *of_goal = rate + g->first_row;
+    for (int k = 0; k < objectives->n_objective; k++) {
+        const hf_objective *g = &objectives->objective[k];
+        double *of_objective = rate + g->first_row;
         if (g->n_net == 0) continue;
-        if (g->wanted.take == HF_TAKE_WORST && g->n_net > 1) {
-            size_t at = place_of_net(goals, k, g->first_net);
-            close_worst(g, p->net_norm + at, p->net_part + at, residual + g->first_row, of_goal);
+        if (g->settings.take == HF_TAKE_WORST && g->n_net > 1) {
+            size_t at = place_of_net(objectives, k, g->first_net);
+            close_worst(g, p->net_norm + at, p->net_part + at, residual + g->first_row, of_objective);
             continue;
         }
         for (int i = 0; i < g->n_row; i++)
-            of_goal[i] *= g->wanted.weight / sqrt(g->n_net);
+            of_objective[i] *= g->settings.weight / sqrt(g->n_net);
     }
 }
