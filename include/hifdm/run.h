@@ -26,14 +26,14 @@ HF_API_BEGIN
 typedef enum { HF_RUN_FORM, HF_RUN_SEARCH, HF_RUN_REFINE, HF_RUN_TOLERANCE } hf_run_phase;
 extern const char *const hf_run_phase_word[4]; /* "form", "optimize", "polish", "tolerance" */
 
-/* The progress of a run. Members that do not belong to the phase are 0. */
+/* The progress of a run. Members that do not belong to the phase are 0; best_psi_m and merit are NaN then. */
 typedef struct {
     hf_run_phase phase;          /* phase of the run */
     int generation, generations; /* search: number of finished generations, and maximum */
     int first_generation;        /* search: first generation that this process evaluates */
     bool is_last;                /* no generation, step or sample will follow */
     long evaluations;            /* evaluations of designs or samples in this phase and process */
-    double best_psi_m;           /* psi of the best design; NaN: none is feasible */
+    double best_psi_m;           /* psi of the best design; NaN: no feasible one is known */
     double elapsed_s;            /* time in this phase and process */
     long samples, samples_all;   /* tolerance: numbers of finished samples, and of all */
     double sigma_scale; /* tolerance, after all samples: factor of the errors whose yield is determined; else 0 */

@@ -149,7 +149,7 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     p->workspace.stop = r->request->stop_requested;
     if (create_history(form, p->model.n_attachment > 0, &r->history) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", p->model.n_node);
-    observe(r, (hf_run_progress){.phase = HF_RUN_FORM});
+    observe(r, (hf_run_progress){.phase = HF_RUN_FORM, .best_psi_m = NAN, .merit = NAN});
     double start_s = hf_clock_s();
     hf_evaluate_form(&p->model, form, &p->workspace, &r->history, &p->form);
     s->form_wall_s = hf_clock_s() - start_s;
@@ -263,6 +263,7 @@ static void observe_generation(const told *t)
                                     .is_last = p->stop_reason != HF_POPULATION_RUNNING,
                                     .evaluations = p->n_evaluation - t->r->first_evaluation,
                                     .best_psi_m = p->best_psi_m[p->generation],
+                                    .merit = NAN,
                                     .elapsed_s = t->summary->optimize_wall_s - t->r->earlier_wall_s});
 }
 
@@ -373,7 +374,7 @@ static hf_status refine(run *r, hf_summary *s, hf_messages *messages)
     if (s->has_optimize && p->best >= 0) design = best_design(p);
     for (int k = 0; k < p->n_variable; k++) /* the initial design may violate the bounds */
         design[k] = hf_population_clamp(p, k, design[k]);
-    observe(r, (hf_run_progress){.phase = HF_RUN_REFINE});
+    observe(r, (hf_run_progress){.phase = HF_RUN_REFINE, .best_psi_m = NAN, .merit = NAN});
     hf_status status = hf_refine_stage_run(r->request, &r->problem, p, s, r->store, design, &outcome, &s->polish_wall_s,
                                            r->stopped_at, messages);
     if (must_stop(r)) return stop_here(r, s, messages);

@@ -244,6 +244,8 @@ static void tell(const job *j, long n_new, bool is_last)
     long done = (long)j->samples.n_have * j->samples.n_chunk;
     if (!q->observer) return;
     hf_run_progress now = {.phase = HF_RUN_TOLERANCE,
+                           .best_psi_m = NAN,
+                           .merit = NAN,
                            .samples = done < j->samples.n ? done : j->samples.n,
                            .samples_all = j->samples.n,
                            .evaluations = n_new,
@@ -256,7 +258,10 @@ static void tell(const job *j, long n_new, bool is_last)
 static void tell_first_order(const job *j)
 {
     const hf_run_request *q = j->stage->request;
-    hf_run_progress now = {.phase = HF_RUN_TOLERANCE, .samples_all = j->stage->problem->settings.tolerance.samples};
+    hf_run_progress now = {.phase = HF_RUN_TOLERANCE,
+                           .samples_all = j->stage->problem->settings.tolerance.samples,
+                           .best_psi_m = NAN,
+                           .merit = NAN};
     if (q->observer) q->observer(q->observer_context, &now);
 }
 
@@ -266,6 +271,8 @@ static void tell_scale(void *context, double scale)
     const job *j = context;
     const hf_run_request *q = j->stage->request;
     hf_run_progress now = {.phase = HF_RUN_TOLERANCE,
+                           .best_psi_m = NAN,
+                           .merit = NAN,
                            .samples = j->samples.n,
                            .samples_all = j->samples.n,
                            .evaluations = j->samples.n,

@@ -277,6 +277,11 @@ START_TEST(merged_study_is_a_page_of_points)
           "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); del f['points/id'], f['points/input/x']", merged);
     HIFDM(5, "report", merged, "-o", page, "--force");
     ERR("s.h5: is damaged: /points/id does not name every point");
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(), make_study, merged);
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
+          "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); f['points/status'][1] = -1", merged);
+    HIFDM(5, "report", merged, "-o", page, "--force");
+    ERR("s.h5: is damaged: /points/status");
 }
 END_TEST
 

@@ -26,6 +26,7 @@ RELATIONS = {"<": ">=", "<=": ">", ">": "<=", ">=": "<", "==": "!=", "!=": "=="}
 ARITHMETIC = {"+": "-", "-": "+", "*": "/", "/": "*", "%": "*", "+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=",
               "++": "--", "--": "++", "&": "|", "|": "&", "<<": ">>", ">>": "<<", "|=": "&=", "&=": "|="}
 LOGIC = {"&&": "||", "||": "&&"}
+SYMMETRIC = ("fmax", "fmin", "hypot")
 CLOSING = {"(": ")", "[": "]", "{": "}"}
 
 
@@ -155,11 +156,21 @@ class Source:
         return spans
 
     def _swapped(self, i):
+        if self._is_symmetric(i):
+            return
         spans = self._arguments(i)
         for a, b in zip(spans, spans[1:]):
             one, two = self.text[a[0]:a[1]], self.text[b[0]:b[1]]
             if one != two and type_of(one) == type_of(two):
                 yield "swapped arguments", a[0], b[1], two + self.text[a[1]:b[0]] + one
+
+    def _is_symmetric(self, i):
+        """Returns whether the arguments of the call may be swapped: those of fmax and fmin, and of a strcmp of which
+        only the sign 0 matters."""
+        before = self.tokens[i - 2].text if i > 1 else ""
+        after = self.tokens[self.partner[i] + 1].text if self.partner[i] + 1 < len(self.tokens) else ""
+        name = self.tokens[i - 1].text
+        return name in SYMMETRIC or name == "strcmp" and (before == "!" or after in ("==", "!="))
 
     def _begins_statement(self, i):
         t, before = self.tokens[i], self.tokens[i - 1] if i else None

@@ -50,25 +50,62 @@ START_TEST(evaluate_after_a_table_with_faults)
 }
 END_TEST
 
+/* Writes the positions of a result to a table, those of every fourth node 0.2 mm higher. */
+static void measure(const hf_options *result, const char *table)
+{
+    static char printed[4096];
+    char *folder = strdup(temp_path("shape")), name[4096], id[64];
+    hf_options options = {.command = &hf_cmd_export, .file = result->output, .force = true};
+    options.export_to[0] = folder; /* --csv is the first exporter */
+    run(&options, HF_OK, printed, sizeof printed);
+    snprintf(name, sizeof name, "%s/nodes.csv", folder);
+    char *text = read_file(name, NULL), *line = strchr(text, '\n');
+    double x[3];
+    FILE *file = fopen(table, "w");
+    ck_assert_ptr_nonnull(file);
+    fputs("id,x_m,y_m,z_m\n", file);
+    for (int i = 0; line && sscanf(line + 1, "%63[^,],%lf,%lf,%lf", id, &x[0], &x[1], &x[2]) == 4; i++) {
+        fprintf(file, "%s,%.17g,%.17g,%.17g\n", id, x[0], x[1], x[2] + (i % 4 ? 0 : 2e-4));
+        line = strchr(line + 1, '\n');
+    }
+    fclose(file);
+    free(text);
+    free(folder);
+}
+
 START_TEST(adjust_after_a_table_with_faults)
 {
     static const char sections[] = "tolerance: {sigma_cut_m: 0.0001}\n"
                                    "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 3, sigma_m: 0.0001}\n";
-    static char none[4096];
+    static char printed[4096], first[4096];
     char *path = strdup(temp_path("built.yaml")), *table = strdup(temp_path("measured.csv"));
-    char *bare = strdup(temp_path("case.yaml")), text[sizeof case_text + sizeof sections + 100];
+    char *bare = strdup(temp_path("case.yaml")), *bad = strdup(temp_path("bad.csv"));
+    char *output = strdup(temp_path("built.h5")), text[sizeof case_text + sizeof sections + 100];
     const char *inside = strstr(case_text, "}}");
     write_file(bare, case_text);
+    write_file(bad, "id,x_m,y_m,z_m\nnowhere,1,2,3\n");
     sprintf(text, "%.*s}, EA_inner_N: 47000, EA_boundary_N: 47000%s%s", (int)(inside - case_text), case_text,
             inside + 1, sections);
     write_file(path, text);
-    write_file(table, "id,x_m,y_m,z_m\nnowhere,1,2,3\n");
+    hf_options result = {
+        .command = &hf_cmd_run, .file = path, .output = output, .threads = 1, .task = -1, .quiet = true};
+    run(&result, HF_OK, printed, sizeof printed);
+    measure(&result, table);
     hf_options options = {.command = &hf_cmd_adjust, .file = path, .measured = table, .threads = 1};
+    run(&options, HF_OK, first, sizeof first);
+    ck_assert_ptr_nonnull(strstr(first, "psi"));
     for (int i = 0; i < 4; i++) {
         options.file = i % 2 ? bare : path; /* without the sections, the command ends before it allocates */
-        const char *said = run(&options, HF_BAD_CASE, none, sizeof none);
+        options.measured = bad;
+        const char *said = run(&options, HF_BAD_CASE, printed, sizeof printed);
         ck_assert_ptr_nonnull(strstr(said, i % 2 ? "tolerance" : "nowhere"));
     }
+    options.file = path;
+    options.measured = table;
+    run(&options, HF_OK, printed, sizeof printed);
+    ck_assert_str_eq(printed, first);
+    free(output);
+    free(bad);
     free(bare);
     free(table);
     free(path);

@@ -5,6 +5,7 @@
 #include <hifdm/evaluate.h>
 
 #include "solve/certificate.h"
+#include "solve/flexibility.h"
 
 /* The bounds of the shape in the workspace. */
 static void prove(struct net *net)
@@ -311,6 +312,32 @@ START_TEST(drift_on_a_truss_has_no_position_error)
 }
 END_TEST
 
+/* What rounding may do is counted once more, in another order: an inner product of t terms is wrong by (t + 2) u of the
+ * diagonal entries, for each entry of a row. The bounds are above this count, by a tenth and what follows from it. */
+START_TEST(rounding_counts_every_operation)
+{
+    static const struct {
+        int has_newton, half_bandwidth, n_free, n;
+    } of[] = {{0, 3, 40, 6}, {1, 3, 40, 6}, {1, 140, 3000, 60}, {0, 1, 2, 3}};
+    const double u = 0x1p-53, stiffness = 5e4, n_cable = 6, trace = 3e-6;
+    for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
+        hf_model model = {.n_free = of[i].n_free, .half_bandwidth = of[i].half_bandwidth};
+        model.has_newton = of[i].has_newton;
+        const hf_flexibility f = {.n = of[i].n, .trace = trace};
+        hf_flexibility_rounding r = hf_flexibility_rounding_of(&model, &f, stiffness, n_cable);
+        double n = of[i].n, band = of[i].has_newton ? 3 * (of[i].half_bandwidth + 1) - 1 : of[i].half_bandwidth;
+        double free = (band + 3) * (band + 1 + n) * u, own = (n + 3) * (n + 1) * u;
+        double between = (3.0 * of[i].n_free + n + 3) * (n + 1) * u + 2 * n * sqrt(n) * u;
+        double blocks = (400 + 20 * n_cable) * u; /* of the entries themselves */
+        ck_assert(r.free > free + blocks / 2 && r.free < 2 * (free + blocks));
+        ck_assert(r.own > own && r.own < 2 * own);
+        ck_assert_double_eq_tol(r.free_N_per_m / (2 * stiffness * r.free), 1, 1e-12);
+        double own_1 = r.own_1 / (2 * stiffness * trace) - r.free;
+        ck_assert(own_1 > between && own_1 < 4 * between);
+    }
+}
+END_TEST
+
 Suite *suite_unit_bound(void)
 {
     Suite *suite = suite_create("unit/solve/bound");
@@ -327,5 +354,6 @@ Suite *suite_unit_bound(void)
     tcase_add_loop_test(tests, a_truss_that_gives_energy_is_not_proven, 0, 2);
     tcase_add_loop_test(tests, a_truss_proves_nothing_more, 0, 5);
     tcase_add_test(tests, drift_on_a_truss_has_no_position_error);
+    tcase_add_test(tests, rounding_counts_every_operation);
     return suite;
 }
