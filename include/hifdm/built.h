@@ -5,14 +5,14 @@
  * lengths, stiffness, supports and loads. Pipeline:
  *
  *   hf_built_make    shape and tensions of a design -> unstressed lengths (M32) -> nominal as-built net
- *   hf_built_state   load case -> changed lengths, supports and loads
+ *   hf_built_load_case   load case -> changed lengths, supports and loads
  *   hf_built_solve   one net, which differs from the nominal one -> its shape and tensions */
 #ifndef HIFDM_BUILT_H
 #define HIFDM_BUILT_H
 
 #include <hifdm/api.h>
 #include <hifdm/evaluate.h>
-#include <hifdm/states.h>
+#include <hifdm/load_cases.h>
 
 HF_API_BEGIN
 
@@ -66,8 +66,9 @@ hf_status hf_built_solve(const hf_built *built, const hf_built_net *net, hf_work
  * of a cable. attachment_move_m [3 n_attachment] has the displacements of the attachments by the truss alone, m; it may
  * be NULL. The results are written to cut_m [n_cable], move_m and load_N, both [3][n_node] by row; *net points to
  * them. */
-void hf_built_state(const hf_built *built, const hf_material *material, const hf_state *state,
-                    const double *attachment_move_m, double *cut_m, double *move_m, double *load_N, hf_built_net *net);
+void hf_built_load_case(const hf_built *built, const hf_material *material, const hf_load_case *load_case,
+                        const double *attachment_move_m, double *cut_m, double *move_m, double *load_N,
+                        hf_built_net *net);
 
 HF_API_END
 #endif

@@ -5,7 +5,7 @@
  *
  *   hf_config_load       case file and overrides -> hf_case, with every default filled in
  *   hf_config_scene      hf_case -> scene
- *   hf_config_surface, hf_config_material, hf_config_states   hf_case and scene -> target surface, material, load cases
+ *   hf_config_surface, _material, _load_cases   hf_case and scene -> target surface, material, load cases
  *   hf_config_truss, hf_config_carrier                        hf_case and scene -> truss, condensed to the supports
  *
  * One table (src/case/config_table.c) holds every key with its type, range, default, unit and help; the rows of
@@ -20,7 +20,7 @@
 #include <hifdm/material.h>
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
-#include <hifdm/states.h>
+#include <hifdm/load_cases.h>
 #include <hifdm/status.h>
 #include <hifdm/truss.h>
 
@@ -107,9 +107,9 @@ hf_status hf_config_demand_expansion(const hf_case *settings, const hf_truss *tr
  * none. A case without rows has no load cases. Returns HF_OK; HF_NO_MEMORY; HF_BAD_CASE for rows that match nothing in
  * this net or truss, for cables without EA, and for a table that cannot be read. A temperature of a part with unknown
  * expansion and gravity on cables with unknown mass are also HF_BAD_CASE. The names are borrowed from the case. Call
- * hf_states_free in any case. */
-hf_status hf_config_states(const hf_case *settings, const hf_scene *scene, const hf_truss *truss, hf_states *states,
-                           hf_messages *messages);
+ * hf_load_cases_free in any case. */
+hf_status hf_config_load_cases(const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
+                               hf_load_cases *states, hf_messages *messages);
 
 /* Makes the truss of a case that has one and checks it (hf_truss_check). Returns HF_OK; HF_BAD_CASE, also if a file
  * cannot be read; HF_NO_MEMORY. Call hf_truss_free in any case. */

@@ -58,7 +58,7 @@
 #include <hifdm/scene.h>
 #include <hifdm/scene_arrays.h>
 #include <hifdm/settings.h>
-#include <hifdm/states.h>
+#include <hifdm/load_cases.h>
 #include <hifdm/status.h>
 #include <hifdm/store.h>
 #include <hifdm/summary.h>

@@ -51,8 +51,8 @@ typedef void hf_objectives_take(void *context, int i_net, const hf_workspace *sh
  * room that makes these nets (built/built_nets.h) is above this one, so it supplies the functions. Shapes depend on the
  * design and on the number of the net alone. */
 typedef struct hf_objectives_nets {
-    int n_state, n_sample;         /* numbers of load cases and of samples */
-    const char *const *state_name; /* [n_state] names of the load cases */
+    int n_load_case, n_sample;         /* numbers of load cases and of samples */
+    const char *const *load_case_name; /* [n_load_case] names of the load cases */
     /* Allocates the scratch of one thread, *room. Returns HF_OK or HF_NO_MEMORY. Call close in either case. */
     hf_status (*open)(const struct hf_objectives_nets *nets, void **room);
     /* Frees the scratch of a thread. */
@@ -98,10 +98,10 @@ typedef struct hf_objectives_point {
     struct hf_cloud *cloud;        /* [n_objective] of surface and facets: points, errors, best fit */
     void *nets;                    /* scratch of goals->nets; NULL without nets */
     void (*free_nets)(void *room); /* frees `nets` */
-    double *net_value;             /* [n_objective][n_state + n_sample] value in each net; infinite without a shape */
-    double *net_norm;              /* [n_objective][n_state + n_sample] norm of the residuals in each net */
-    double *net_part;              /* [n_objective][n_state + n_sample] norm over the smooth maximum; or scratch */
-    void *block;                   /* owned memory behind the arrays */
+    double *net_value; /* [n_objective][n_load_case + n_sample] value in each net; infinite without a shape */
+    double *net_norm;  /* [n_objective][n_load_case + n_sample] norm of the residuals in each net */
+    double *net_part;  /* [n_objective][n_load_case + n_sample] norm over the smooth maximum; or scratch */
+    void *block;       /* owned memory behind the arrays */
 } hf_objectives_point;
 
 /* Creates the objectives of a case: the rows of optimize.objectives or optimize.goals, or psi if there are none. The

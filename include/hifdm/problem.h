@@ -23,7 +23,7 @@ typedef struct {
     hf_scene scene;               /* the net as described */
     hf_carrier carrier;           /* the truss; all zero without one */
     hf_model model;               /* the net prepared for solving */
-    hf_states states;             /* load cases of the as-built net; none without `cases` */
+    hf_load_cases load_cases;     /* load cases of the as-built net; none without `cases` */
     hf_surface_settings surface;  /* target surface with its kind; all zero without a section surface */
     hf_facets facets;             /* facets of the target surface; none without a section surface */
     int planes;                   /* mirror planes that link design variables: flags 1 (x) and 2 (y) */

@@ -83,7 +83,7 @@ typedef enum { HF_FIT_NONE, HF_FIT_BEST } hf_fit;
 
 /* The shapes that an objective is measured on: the design, all load cases of the as-built net, or samples of its
  * errors. */
-typedef enum { HF_OVER_DESIGN, HF_OVER_STATES, HF_OVER_SAMPLES } hf_over;
+typedef enum { HF_OVER_DESIGN, HF_OVER_LOAD_CASES, HF_OVER_SAMPLES } hf_over;
 /* The figure of several shapes: the root of the mean of squares, or the maximum. */
 typedef enum { HF_TAKE_MEAN, HF_TAKE_WORST } hf_take;
 
@@ -159,9 +159,9 @@ typedef struct {
     double mass_kg_per_m; /* mass of the cables per length, for mass */
     hf_along along;       /* direction of the distance, for surface and facets */
     hf_fit fit;           /* surface of the distance, for surface and facets */
-    char state[HF_SET_NAME_SIZE]; /* name of a load case of `cases`; "": none */
-    hf_over over;                 /* shapes on which it is measured, without a load case */
-    hf_take take;                 /* figure of several load cases or samples */
+    char load_case[HF_SET_NAME_SIZE]; /* name of a load case of `cases`; "": none */
+    hf_over over;                     /* shapes on which it is measured, without a load case */
+    hf_take take;                     /* figure of several load cases or samples */
     double quantile;     /* replaces `take` for samples: this part of them has no larger value; 0 or NaN: none */
     double frequency_Hz; /* frequency, for gain; 0 or NaN: the highest of the surface */
 } hf_objective_settings;
@@ -268,17 +268,17 @@ typedef struct {
     double force_N[3];             /* force on each of these nodes */
     double move_m[3];              /* displacement of all supports */
     char nodes_path[HF_PATH_SIZE]; /* table of forces and displacements by node; "": none */
-} hf_state_settings;
+} hf_load_case_settings;
 
-#define HF_STATE_ROWS_MAX 32 /* maximum number of rows of `cases` */
-#define HF_STATES_MAX 16     /* maximum number of load cases */
+#define HF_LOAD_CASE_ROWS_MAX 32 /* maximum number of rows of `cases` */
+#define HF_LOAD_CASES_MAX 16     /* maximum number of load cases */
 
 /* Material and load cases of the as-built net. */
 typedef struct {
-    int n_cable, n_node, n_state;                  /* numbers of rows */
-    hf_cable_settings cable[HF_MATERIAL_ROWS_MAX]; /* [n_cable] rows of `cables` */
-    hf_node_settings node[HF_MATERIAL_ROWS_MAX];   /* [n_node] rows of `nodes` */
-    hf_state_settings state[HF_STATE_ROWS_MAX];    /* [n_state] rows of `cases` */
+    int n_cable, n_node, n_load_case;                       /* numbers of rows */
+    hf_cable_settings cable[HF_MATERIAL_ROWS_MAX];          /* [n_cable] rows of `cables` */
+    hf_node_settings node[HF_MATERIAL_ROWS_MAX];            /* [n_node] rows of `nodes` */
+    hf_load_case_settings load_case[HF_LOAD_CASE_ROWS_MAX]; /* [n_load_case] rows of `cases` */
 } hf_built_settings;
 
 /* The positions from which psi is measured when an as-built net is adjusted: the target positions, or those of the

@@ -73,8 +73,9 @@
  *                knee (index into p, -1: none), wall_s
  *   /cases       load cases of the as-built net, if there are any: name [c] in the order of the case
  *   /cases/NAME  as /form, unless it has no shape; attributes: the figures of its result, those of its coupling as
- *                coupling_..., HF_STATE_LIST; /cases/NAME/surface as /surface/form; with a truss /cases/NAME/truss/node
- *                with displacement, reaction [a][6], /cases/NAME/truss/member with end_force [b][12]
+ *                coupling_..., HF_LOAD_CASE_LIST; /cases/NAME/surface as /surface/form; with a truss
+ *                /cases/NAME/truss/node with displacement, reaction [a][6], /cases/NAME/truss/member with end_force
+ *                [b][12]
  *   /tolerance   with a section tolerance: attributes HF_TOLERANCE_LIST; figures [m] of the measures named in `measure`
  *                (mean, deviation, ..., quantile [m][3]); require_... of the rows of tolerance.require; ranked_cable,
  *                ranked_share; error_kind, kind_share; histogram; cable_share of each cable, node_deviation_m of each
@@ -249,7 +250,7 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
  * hf_shape_free in any case. */
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
 /* Reads the shape of load case `name`, as hf_store_read_shape does. */
-hf_status hf_store_read_state(const char *path, const char *name, hf_shape *shape, hf_messages *messages);
+hf_status hf_store_read_load_case(const char *path, const char *name, hf_shape *shape, hf_messages *messages);
 /* Frees the arrays of a shape. */
 void hf_shape_free(hf_shape *shape);
 
@@ -274,8 +275,8 @@ hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_stat
 
 /* Reads displacements and forces of the truss in load case `name`; `truss` is that of hf_store_read_truss. Returns
  * HF_IO also if the load case has no shape. Call hf_carrier_state_free in any case. */
-hf_status hf_store_read_state_truss(const char *path, const char *name, const hf_truss *truss, hf_carrier_state *state,
-                                    hf_messages *messages);
+hf_status hf_store_read_load_case_truss(const char *path, const char *name, const hf_truss *truss,
+                                        hf_carrier_state *state, hf_messages *messages);
 
 /* Returns "VERSION (git describe)" of this library, a constant string. */
 const char *hf_store_version(void);

@@ -74,7 +74,7 @@ HF_API_BEGIN
     X(double, polish_wall_s, REAL, 3, "wall_s", "wall-clock time")
 
 /* A load case of the as-built net (`cases`), besides the figures of its result. */
-#define HF_STATE_LIST(X)                                                                                               \
+#define HF_LOAD_CASE_LIST(X)                                                                                           \
     X(double, least_tension_N, REAL, 1, "least_tension_N", "least tension of all cables")                              \
     X(double, largest_tension_N, REAL, 1, "largest_tension_N", "largest tension of all cables")                        \
     X(double, move_rms_m, REAL, 2, "move_rms_m", "RMS of how far the inner nodes are from their places in the design") \
@@ -133,9 +133,9 @@ typedef struct {
 typedef struct {
     char name[HF_SET_NAME_SIZE]; /* name of the load case */
     hf_form_result result;       /* result of its form-finding */
-    HF_STATE_LIST(HF_SUMMARY_MEMBER)
+    HF_LOAD_CASE_LIST(HF_SUMMARY_MEMBER)
     hf_surface_measures measures; /* surface of its shape */
-} hf_state_summary;
+} hf_load_case_summary;
 
 /* The figures of a run. */
 typedef struct {
@@ -155,8 +155,8 @@ typedef struct {
     hf_objective_list objectives; /* objectives of the run */
     hf_front_origin taken;        /* the point of another run's front that is the result, as the shape of `polish` */
 
-    int n_state;                           /* number of load cases of the as-built net */
-    hf_state_summary state[HF_STATES_MAX]; /* [n_state] the load cases */
+    int n_load_case;                                   /* number of load cases of the as-built net */
+    hf_load_case_summary load_case[HF_LOAD_CASES_MAX]; /* [n_load_case] the load cases */
 
     HF_SUMMARY_FORM_LIST(HF_SUMMARY_MEMBER)
     hf_form_result form; /* result of the form-finding */

@@ -105,11 +105,11 @@ static void print_scene(const hf_problem *p, FILE *f)
 }
 
 /* Prints the names of the load cases of the as-built net. */
-static void print_states(const hf_states *s, FILE *f)
+static void print_load_cases(const hf_load_cases *s, FILE *f)
 {
     fprintf(f, "                %d case%s of the net as built:", s->n, s->n == 1 ? "" : "s");
     for (int k = 0; k < s->n; k++)
-        fprintf(f, "%s %s", k ? "," : "", s->state[k].name);
+        fprintf(f, "%s %s", k ? "," : "", s->load_case[k].name);
     fputc('\n', f);
 }
 
@@ -193,7 +193,7 @@ static void print_variables(const hf_problem *p, FILE *f)
 /* Prints the as-built nets over which an objective is taken. */
 static void print_nets(const hf_objective_settings *s, FILE *f)
 {
-    if (*s->state) fprintf(f, ", in state %s", s->state);
+    if (*s->load_case) fprintf(f, ", in state %s", s->load_case);
     if (s->over != HF_OVER_DESIGN) fprintf(f, " over %s, ", hf_over_word[s->over]);
     if (s->over != HF_OVER_DESIGN && s->quantile > 0)
         fprintf(f, "quantile %g", s->quantile);
@@ -206,9 +206,9 @@ static void print_cost_of_nets(const hf_problem *p, FILE *f)
 {
     const hf_objectives_nets *nets = p->objectives.nets;
     int n = 0, n_sample = 0;
-    for (int i = 0; nets && i < nets->n_state + nets->n_sample; i++) {
+    for (int i = 0; nets && i < nets->n_load_case + nets->n_sample; i++) {
         n += hf_objectives_are_over(&p->objectives, i);
-        n_sample += i >= nets->n_state;
+        n_sample += i >= nets->n_load_case;
     }
     if (!nets) return;
     fprintf(f, "                each design is cut and solved as %d net%s as built", n, n == 1 ? "" : "s");
@@ -317,7 +317,7 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
     if (optimizes && o->symmetry != HF_SYMMETRY_NONE)
         fprintf(f, "                symmetry: %s, %s; %d independent genes of %d\n", hf_symmetry_word[o->symmetry],
                 hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_variable);
-    if (p->states.n) print_states(&p->states, f);
+    if (p->load_cases.n) print_load_cases(&p->load_cases, f);
     print_tolerance(c, f);
     print_pattern(p, f);
     fprintf(f, "  skipped       %s%s%s%s%s\n",
@@ -325,7 +325,7 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
             : optimizes       ? "genetic algorithm (method: lm); "
             : c->has_optimize ? "optimisation (no boundary cable has a free end); "
                               : "optimisation (no optimize section); ",
-            p->states.n ? "" : "cases (none given); ", c->has_truss ? "" : "truss (no truss section); ",
+            p->load_cases.n ? "" : "cases (none given); ", c->has_truss ? "" : "truss (no truss section); ",
             p->model.load_N ? "" : "loads (none given); ", p->model.has_strut ? "" : "general band matrix (no struts)");
 }
 

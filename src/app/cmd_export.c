@@ -35,9 +35,9 @@ static hf_status check_request(const hf_options *o, hf_messages *messages)
     }
     list_exporters(list, sizeof list);
     if (n_asked == 0) return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs %s", list);
-    if (o->stage && o->state) return hf_error(messages, HF_BAD_USAGE, "--stage and --case exclude each other");
+    if (o->stage && o->load_case) return hf_error(messages, HF_BAD_USAGE, "--stage and --case exclude each other");
     for (int i = 0; i < HF_N_EXPORTER; i++)
-        if (o->state && o->export_to[i] && !hf_exporter_table[i]->takes_case)
+        if (o->load_case && o->export_to[i] && !hf_exporter_table[i]->takes_case)
             return hf_error(messages, HF_BAD_USAGE, "--case does not go with %s, %s", hf_exporter_table[i]->option,
                             hf_exporter_table[i]->takes_stage ? "which is of the design that all cases are made of"
                                                               : "which writes every shape");
@@ -58,7 +58,7 @@ static void warn_of_front(const hf_options *o, hf_messages *messages)
         has_one_shape |= o->export_to[i] && hf_exporter_table[i]->takes_stage;
     if (!has_one_shape || o->stage) return;
     if (hf_store_read_summary(o->file, &summary, &unwanted) == HF_OK)
-        hf_export_warn_of_front(o->file, &summary, o->state, messages);
+        hf_export_warn_of_front(o->file, &summary, o->load_case, messages);
     hf_messages_free(&unwanted);
 }
 
@@ -72,7 +72,7 @@ static hf_status command_export(const hf_options *o, FILE *file, hf_messages *me
     for (int i = 0; i < HF_N_EXPORTER; i++)
         is_new[i] = o->export_to[i] && access(o->export_to[i], F_OK) != 0;
     for (int i = 0; i < HF_N_EXPORTER && status == HF_OK; i++) {
-        const hf_export_request request = {o->file, o->export_to[i], o->stage, o->state, o->force, &files};
+        const hf_export_request request = {o->file, o->export_to[i], o->stage, o->load_case, o->force, &files};
         if (o->export_to[i]) status = hf_exporter_table[i]->write(&request, said[i], sizeof said[i], messages);
     }
     status = hf_file_out_set_end(&files, status, messages);

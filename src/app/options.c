@@ -235,8 +235,8 @@ static const hf_option option_table[] = {
 #undef EXPORTER
         {"--stage", NULL, "form|optimize|polish", "which shape (default: the result of the run)", "export adjust",
          read_stage, 0, NULL},
-    {"--case", NULL, "NAME", "the shape of this state of the net as built (`cases`)", "export", read_text, AT(state),
-     NULL},
+    {"--case", NULL, "NAME", "the shape of this state of the net as built (`cases`)", "export", read_text,
+     AT(load_case), NULL},
     {"--paraboloid", NULL, NULL, "a round reflector: two nets that are tied to each other (the default)", "new",
      read_new, 0, NULL},
     {"--cylinder", NULL, NULL, "a parabolic cylinder: one net, optimised", "new", read_new, 0, NULL},

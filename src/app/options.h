@@ -27,7 +27,7 @@ struct hf_options {
     const char *result;                   /* argument of --result */
     const char *report;                   /* argument of --report */
     const char *stage;                    /* argument of --stage */
-    const char *state;                    /* argument of --case */
+    const char *load_case;                /* argument of --case */
     const char **set;                     /* [n_set], "key=value" of each --set, owned */
     int n_set;
     const char *folder; /* argument of --dir */

@@ -140,13 +140,13 @@ static void make_sample_of(nets_room *r, long i, double *cut_m, double *EA_N, do
     hf_built_errors_apply(&r->errors, 1, r->z, cut_m, EA_N, move_m);
 }
 
-static void make_state(nets_room *r, int i, hf_built_net *net)
+static void make_load_case(nets_room *r, int i, hf_built_net *net)
 {
     const hf_built_nets *nets = r->nets;
     const double *move_m = nets->attachment_move_m;
     if (move_m) move_m += 3 * (size_t)i * (size_t)nets->model->n_attachment;
-    hf_built_state(&r->built, &nets->states->material, &nets->states->state[i], move_m, r->cut_m, r->move_m, r->load_N,
-                   net);
+    hf_built_load_case(&r->built, &nets->load_cases->material, &nets->load_cases->load_case[i], move_m, r->cut_m,
+                       r->move_m, r->load_N, net);
 }
 
 /* Sets *net to a load case or a sample, in the arrays of the room. */
@@ -154,8 +154,8 @@ static void make_net(nets_room *r, int i_net, hf_built_net *net)
 {
     const hf_model *m = &r->built.model;
     size_t n = (size_t)m->n_cable * sizeof(double);
-    if (i_net < r->nets->as.n_state) {
-        make_state(r, i_net, net);
+    if (i_net < r->nets->as.n_load_case) {
+        make_load_case(r, i_net, net);
         return;
     }
     unsigned varies = hf_built_errors_vary(&r->errors);
@@ -165,7 +165,7 @@ static void make_net(nets_room *r, int i_net, hf_built_net *net)
     memcpy(r->cut_m, m->target, n);
     memcpy(r->EA_N, m->EA_N, n);
     memset(r->move_m, 0, 3 * (size_t)m->n_node * sizeof(double));
-    make_sample_of(r, i_net - r->nets->as.n_state, r->cut_m, net->EA_N ? r->EA_N : NULL,
+    make_sample_of(r, i_net - r->nets->as.n_load_case, r->cut_m, net->EA_N ? r->EA_N : NULL,
                    net->support_move_m ? r->move_m : NULL);
 }
 
@@ -204,7 +204,7 @@ static void take_from_lane(void *context, long i, int place, const hf_built_shap
     nets_room *r = context;
     bool has_shape = result->status == HF_OK;
     (void)place;
-    r->take(r->context, r->nets->as.n_state + (int)i,
+    r->take(r->context, r->nets->as.n_load_case + (int)i,
             has_shape ? view(r, s->position_m, s->tension_N, s->displacement_m) : NULL);
 }
 
@@ -223,13 +223,13 @@ static void solve_nets(void *room, int first, int n, hf_objectives_take *take, v
 {
     nets_room *r = room;
     const hf_workspace *whole;
-    int i = first, n_state = r->nets->as.n_state;
-    for (; i < n_state && i < first + n; i++)
+    int i = first, n_load_case = r->nets->as.n_load_case;
+    for (; i < n_load_case && i < first + n; i++)
         take(context, i, find_one(r, i, &whole));
     r->take = take;
     r->context = context;
     if (i < first + n)
-        hf_built_batch_run(r->batch, hf_built_errors_vary(&r->errors), i - n_state, first + n - i, make_in_lane,
+        hf_built_batch_run(r->batch, hf_built_errors_vary(&r->errors), i - n_load_case, first + n - i, make_in_lane,
                            take_from_lane, r);
 }
 
@@ -242,15 +242,15 @@ static void find_stretch(nets_room *r, int i_net)
     const hf_built_nets *nets = r->nets;
     const hf_model *m = &r->built.model;
     r->has_weight = false;
-    if (i_net < nets->as.n_state) {
-        const hf_state *state = &nets->states->state[i_net];
-        const hf_material *t = &nets->states->material;
+    if (i_net < nets->as.n_load_case) {
+        const hf_load_case *load_case = &nets->load_cases->load_case[i_net];
+        const hf_material *t = &nets->load_cases->material;
         for (int e = 0; e < m->n_cable; e++)
-            r->stretch[e] = state->rise_K[e] != 0 ? 1 + t->expansion_per_K[e] * state->rise_K[e] : 1;
+            r->stretch[e] = load_case->rise_K[e] != 0 ? 1 + t->expansion_per_K[e] * load_case->rise_K[e] : 1;
         for (int c = 0; c < 3; c++)
-            r->has_weight |= state->gravity_m_per_s2[c] != 0;
+            r->has_weight |= load_case->gravity_m_per_s2[c] != 0;
         for (int e = 0; e < 3 * m->n_cable && r->has_weight; e++)
-            r->weight_N_per_m[e] = t->mass_kg_per_m[e / 3] * state->gravity_m_per_s2[e % 3];
+            r->weight_N_per_m[e] = t->mass_kg_per_m[e / 3] * load_case->gravity_m_per_s2[e % 3];
         return;
     }
     for (int e = 0; e < m->n_cable; e++) {
@@ -363,14 +363,14 @@ static void follow_net(void *room, int n, const hf_objectives_rate *by, hf_objec
 /* ---- all nets ---- */
 
 void hf_built_nets_make(const hf_scene *scene, const hf_model *model, const hf_form_settings *form,
-                        const hf_states *states, const double *attachment_move_m,
+                        const hf_load_cases *load_cases, const double *attachment_move_m,
                         const hf_tolerance_settings *tolerance, const hf_built_heat *heat, int n_sample,
                         hf_built_nets *nets)
 {
-    int n_state = states ? states->n : 0;
-    *nets = (hf_built_nets){.as = {.n_state = n_state,
+    int n_load_case = load_cases ? load_cases->n : 0;
+    *nets = (hf_built_nets){.as = {.n_load_case = n_load_case,
                                    .n_sample = n_sample,
-                                   .state_name = nets->name,
+                                   .load_case_name = nets->name,
                                    .open = open_room,
                                    .close = close_room,
                                    .cut = cut_for,
@@ -380,10 +380,10 @@ void hf_built_nets_make(const hf_scene *scene, const hf_model *model, const hf_f
                             .scene = scene,
                             .model = model,
                             .form = form,
-                            .states = states,
+                            .load_cases = load_cases,
                             .tolerance = tolerance,
                             .attachment_move_m = attachment_move_m,
                             .heat = *heat};
-    for (int i = 0; i < n_state; i++)
-        nets->name[i] = states->state[i].name;
+    for (int i = 0; i < n_load_case; i++)
+        nets->name[i] = load_cases->load_case[i].name;
 }

@@ -40,30 +40,30 @@ static void check_cables(const hf_built_settings *b, hf_config_faults *f)
 
 /* ---- load cases ---- */
 
-static const char states_list[] = "cases";
+static const char load_case_list[] = "cases";
 
 static bool is_there(const double vector[3])
 {
     return !isnan(vector[0]);
 }
 
-static bool has_temperature(const hf_state_settings *s)
+static bool has_temperature(const hf_load_case_settings *s)
 {
     return !isnan(s->temperature_K) || is_there(s->gradient_K_per_m);
 }
 
-static void check_name(const hf_state_settings *s, int row, hf_config_faults *f)
+static void check_name(const hf_load_case_settings *s, int row, hf_config_faults *f)
 {
     static const char *const letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
     if (s->name[strspn(s->name, letters)] || *s->name == '-')
-        hf_config_fault_in_row(f, states_list, row, "name",
+        hf_config_fault_in_row(f, load_case_list, row, "name",
                                "must be made of letters, digits, _ and -, and not begin with -");
     if (!strcmp(s->name, "name")) /* the result file has the names in /cases/name */
-        hf_config_fault_in_row(f, states_list, row, "name", "must be another word than name");
+        hf_config_fault_in_row(f, load_case_list, row, "name", "must be another word than name");
 }
 
 /* Reports keys that have a meaning only together with another key. */
-static void check_company(const hf_state_settings *s, int row, hf_config_faults *f)
+static void check_company(const hf_load_case_settings *s, int row, hf_config_faults *f)
 {
     const struct {
         const char *key;
@@ -74,15 +74,15 @@ static void check_company(const hf_state_settings *s, int row, hf_config_faults 
                {"direction", !isnan(s->gravity_m_per_s2), "has no meaning without gravity_m_per_s2"},
                {"role", is_there(s->force_N), "has no meaning without force_N"}};
     for (size_t k = 0; k < sizeof use / sizeof *use; k++)
-        if (!use[k].has_company && hf_config_is_given_in_row(f, states_list, row, use[k].key))
-            hf_config_fault_in_row(f, states_list, row, use[k].key, use[k].what);
+        if (!use[k].has_company && hf_config_is_given_in_row(f, load_case_list, row, use[k].key))
+            hf_config_fault_in_row(f, load_case_list, row, use[k].key, use[k].what);
     if (*s->set && s->part != HF_PART_ALL)
-        hf_config_fault_in_row(f, states_list, row, "part", "does not go with set: a row names cables or members");
+        hf_config_fault_in_row(f, load_case_list, row, "part", "does not go with set: a row names cables or members");
     if (is_there(s->direction) && s->direction[0] == 0 && s->direction[1] == 0 && s->direction[2] == 0)
-        hf_config_fault_in_row(f, states_list, row, "direction", "must not be zero");
+        hf_config_fault_in_row(f, load_case_list, row, "direction", "must not be zero");
     if (!has_temperature(s) && isnan(s->gravity_m_per_s2) && !is_there(s->force_N) && !is_there(s->move_m) &&
         !*s->nodes_path)
-        hf_config_fault_in_row(f, states_list, row, "name",
+        hf_config_fault_in_row(f, load_case_list, row, "name",
                                "this row says nothing; give temperature_K, gradient_K_per_m, gravity_m_per_s2, "
                                "force_N, move_m or nodes");
 }
@@ -90,33 +90,33 @@ static void check_company(const hf_state_settings *s, int row, hf_config_faults 
 /* Reports a quantity that two rows of the same load case set. Forces and displacements add up instead. */
 static void check_twice(const hf_built_settings *b, int row, hf_config_faults *f)
 {
-    const hf_state_settings *s = &b->state[row];
+    const hf_load_case_settings *s = &b->load_case[row];
     char what[96];
     for (int i = 0; i < row; i++) {
-        const hf_state_settings *before = &b->state[i];
+        const hf_load_case_settings *before = &b->load_case[i];
         if (strcmp(before->name, s->name) != 0) continue;
         snprintf(what, sizeof what, "row %d has it for this state already", i);
         if (!isnan(s->gravity_m_per_s2) && !isnan(before->gravity_m_per_s2))
-            hf_config_fault_in_row(f, states_list, row, "gravity_m_per_s2", what);
+            hf_config_fault_in_row(f, load_case_list, row, "gravity_m_per_s2", what);
         if (has_temperature(s) && has_temperature(before) && s->part == before->part && !strcmp(s->set, before->set))
-            hf_config_fault_in_row(f, states_list, row, isnan(s->temperature_K) ? "gradient_K_per_m" : "temperature_K",
-                                   what);
+            hf_config_fault_in_row(f, load_case_list, row,
+                                   isnan(s->temperature_K) ? "gradient_K_per_m" : "temperature_K", what);
     }
 }
 
-static void check_states(const hf_built_settings *b, hf_config_faults *f)
+static void check_load_cases(const hf_built_settings *b, hf_config_faults *f)
 {
     int n_name = 0;
-    for (int i = 0; i < b->n_state; i++) {
+    for (int i = 0; i < b->n_load_case; i++) {
         int same = 0;
-        while (strcmp(b->state[same].name, b->state[i].name) != 0)
+        while (strcmp(b->load_case[same].name, b->load_case[i].name) != 0)
             same++;
         n_name += same == i;
-        if (n_name > HF_STATES_MAX && same == i)
-            hf_config_fault_in_row(f, states_list, i, "name", "there are more than 16 states");
-        check_name(&b->state[i], i, f);
-        hf_config_check_set(f, states_list, i, b->state[i].set);
-        check_company(&b->state[i], i, f);
+        if (n_name > HF_LOAD_CASES_MAX && same == i)
+            hf_config_fault_in_row(f, load_case_list, i, "name", "there are more than 16 states");
+        check_name(&b->load_case[i], i, f);
+        hf_config_check_set(f, load_case_list, i, b->load_case[i].set);
+        check_company(&b->load_case[i], i, f);
         check_twice(b, i, f);
     }
 }
@@ -126,8 +126,8 @@ static void check_expansions(const hf_case *c, hf_config_faults *f)
 {
     const hf_built_settings *b = &c->built;
     if (c->has_tolerance && c->tolerance.sigma_temperature_K > 0) return;
-    for (int i = 0; i < b->n_state; i++)
-        if (has_temperature(&b->state[i])) return;
+    for (int i = 0; i < b->n_load_case; i++)
+        if (has_temperature(&b->load_case[i])) return;
     for (int i = 0; i < b->n_cable; i++)
         if (!isnan(b->cable[i].expansion_per_K))
             hf_config_fault_in_row(f, "cables", i, "expansion_per_K",
@@ -202,29 +202,29 @@ void hf_config_check_built(const hf_case *c, hf_config_faults *f)
 {
     if (c->has_adjust) check_adjust(&c->adjust, f);
     check_cables(&c->built, f);
-    check_states(&c->built, f);
+    check_load_cases(&c->built, f);
     check_expansions(c, f);
     if (c->has_tolerance) check_tolerance(c, f);
 }
 
 /* ---- objectives over load cases and samples ---- */
 
-static void check_state(const hf_case *c, const char *list, int row, const hf_objective_settings *g,
-                        hf_config_faults *f)
+static void check_load_case(const hf_case *c, const char *list, int row, const hf_objective_settings *g,
+                            hf_config_faults *f)
 {
     const hf_built_settings *b = &c->built;
-    const char *name[HF_STATE_ROWS_MAX];
+    const char *name[HF_LOAD_CASE_ROWS_MAX];
     char what[2 * HF_KEY_SIZE];
     bool is_known = false;
-    for (int i = 0; i < b->n_state; i++) {
-        name[i] = b->state[i].name;
-        is_known |= !strcmp(name[i], g->state);
+    for (int i = 0; i < b->n_load_case; i++) {
+        name[i] = b->load_case[i].name;
+        is_known |= !strcmp(name[i], g->load_case);
     }
     if (g->over != HF_OVER_DESIGN)
         hf_config_fault_in_row(f, list, row, "state", "is one net and `over` speaks of many; remove one of them");
     if (is_known) return;
-    const char *near = hf_text_nearest(g->state, name, b->n_state);
-    if (b->n_state == 0)
+    const char *near = hf_text_nearest(g->load_case, name, b->n_load_case);
+    if (b->n_load_case == 0)
         snprintf(what, sizeof what, "needs rows of `cases`, which name the states of the net as built");
     else if (near)
         snprintf(what, sizeof what, "is no state of `cases`; did you mean '%s'?", near);
@@ -257,7 +257,7 @@ static void check_objective(const hf_optimize_settings *o, const char *list, int
 {
     bool is_largest = g->figure == HF_FIGURE_PULL || g->figure == HF_FIGURE_DEFLECTION || g->figure == HF_FIGURE_RATIO;
     bool is_worst = g->over != HF_OVER_DESIGN && g->take == HF_TAKE_WORST && !(g->quantile > 0);
-    bool is_of_nets = *g->state || g->over != HF_OVER_DESIGN;
+    bool is_of_nets = *g->load_case || g->over != HF_OVER_DESIGN;
     if (o->n_front > 0 && o->method != HF_OPTIMIZE_GA && (is_worst || (is_of_nets && is_largest)))
         hf_config_fault_in_row(f, list, row, is_worst ? "take" : "goal",
                                is_worst ? "worst needs method: ga in optimize.objectives"
@@ -270,8 +270,8 @@ void hf_config_check_nets(const hf_case *c, const char *list, int n_objective, c
 {
     for (int i = 0; i < n_objective; i++) {
         const hf_objective_settings *g = &objective[i];
-        if (*g->state) check_state(c, list, i, g, f);
-        if (g->over == HF_OVER_STATES && c->built.n_state == 0)
+        if (*g->load_case) check_load_case(c, list, i, g, f);
+        if (g->over == HF_OVER_LOAD_CASES && c->built.n_load_case == 0)
             hf_config_fault_in_row(f, list, i, "over", "states needs rows of `cases`, which say what they are");
         if (g->over == HF_OVER_SAMPLES && !c->has_tolerance)
             hf_config_fault_in_row(f, list, i, "over",

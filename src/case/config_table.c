@@ -333,7 +333,7 @@ static const hf_field objective_field[] = {
      "of surface and facets: distance to the wanted surface, or to its best fit to the shape"},
     {"frequency_Hz", HF_FIELD_DOUBLE, IN(frequency_Hz), HF_ABOVE_ZERO, 1e15, "", "Hz", NULL,
      "of gain; default: the highest of surface.frequencies_Hz"},
-    {"state", HF_FIELD_TEXT, IN(state), 1, HF_SET_NAME_SIZE, "", "", NULL,
+    {"state", HF_FIELD_TEXT, IN(load_case), 1, HF_SET_NAME_SIZE, "", "", NULL,
      "of `cases`: the goal is that of the net that is cut for the design, in this state"},
     {"over", HF_FIELD_WORD, IN(over), 0, 0, "design", "", hf_over_word,
      "of what the goal is: the design itself; all states of `cases`; samples of the errors of `tolerance`"},
@@ -377,8 +377,8 @@ static const hf_field node_field[] = {
 };
 #undef IN
 
-#define IN(member) offsetof(hf_state_settings, member)
-static const hf_field state_field[] = {
+#define IN(member) offsetof(hf_load_case_settings, member)
+static const hf_field load_case_field[] = {
     {"name", HF_FIELD_TEXT, IN(name), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
      "of the state: letters, digits, _ and -; rows with the same name are one state"},
     {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL,
@@ -449,7 +449,7 @@ const hf_list hf_list_table[] = {
                "What cables are made of, for the net as built; a later row replaces what an earlier one says"),
     BUILT_LIST("nodes", n_node, node, HF_MATERIAL_ROWS_MAX, node_field,
                "What joints weigh, for the net as built; a later row replaces an earlier one"),
-    BUILT_LIST("cases", n_state, state, HF_STATE_ROWS_MAX, state_field,
+    BUILT_LIST("cases", n_load_case, load_case, HF_LOAD_CASE_ROWS_MAX, load_case_field,
                "States of the net as built, of up to 16 names: temperatures, gravity, forces, moves of supports; "
                "without rows none is computed"),
     {"tolerance.require", AT(tolerance.n_require), AT(tolerance.require), sizeof(hf_require_settings),

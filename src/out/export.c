@@ -44,27 +44,27 @@ hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messag
 static const char *const shape_word[3] = {"form-finding", "optimised", "polished"};
 
 /* Reads a load case of the as-built net. Messages call the shape by the name of the load case. */
-static hf_status read_state(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
+static hf_status read_load_case(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
 {
     const hf_summary *s = &stored->summary;
     char known[512] = "";
     int k = 0, used = 0;
-    for (; k < s->n_state && strcmp(o->state, s->state[k].name) != 0; k++)
+    for (; k < s->n_load_case && strcmp(o->load_case, s->load_case[k].name) != 0; k++)
         if (used < (int)sizeof known)
-            used += snprintf(known + used, sizeof known - (size_t)used, "%s%s", k ? ", " : "", s->state[k].name);
-    if (s->n_state == 0) return hf_error(messages, HF_BAD_USAGE, "%s: this run has no cases", o->file);
-    if (k == s->n_state)
-        return hf_error(messages, HF_BAD_USAGE, "%s: has no case '%s'; it has %s", o->file, o->state, known);
-    stored->word = s->state[k].name;
+            used += snprintf(known + used, sizeof known - (size_t)used, "%s%s", k ? ", " : "", s->load_case[k].name);
+    if (s->n_load_case == 0) return hf_error(messages, HF_BAD_USAGE, "%s: this run has no cases", o->file);
+    if (k == s->n_load_case)
+        return hf_error(messages, HF_BAD_USAGE, "%s: has no case '%s'; it has %s", o->file, o->load_case, known);
+    stored->word = s->load_case[k].name;
     HF_TRY(hf_store_read_scene(o->file, &stored->scene, messages));
-    return hf_store_read_state(o->file, o->state, &stored->shape, messages);
+    return hf_store_read_load_case(o->file, o->load_case, &stored->shape, messages);
 }
 
 hf_status hf_export_read(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
 {
     hf_summary *summary = &stored->summary;
     HF_TRY(hf_store_read_summary(o->file, summary, messages));
-    if (o->state) return read_state(o, stored, messages);
+    if (o->load_case) return read_load_case(o, stored, messages);
     bool has[3] = {true, hf_summary_has_best_shape(summary), summary->has_polish};
     hf_stage result = hf_store_result_stage(summary), stage = result;
     for (int i = 0; o->stage && i < HF_N_STAGE; i++)
@@ -85,10 +85,10 @@ bool hf_export_has_truss(const hf_export_request *o, const hf_summary *s, hf_mes
     return s->has_truss && s->finished;
 }
 
-void hf_export_warn_of_front(const char *file, const hf_summary *s, bool is_state, hf_messages *messages)
+void hf_export_warn_of_front(const char *file, const hf_summary *s, bool is_load_case, hf_messages *messages)
 {
     int point = s->has_front ? hf_front_suggested(&s->front) : 0;
-    bool is_end = !is_state && hf_store_result_stage(s) != HF_STAGE_FORM;
+    bool is_end = !is_load_case && hf_store_result_stage(s) != HF_STAGE_FORM;
     if (!point) return;
     hf_warning(messages,
                "%s: no point of its front is taken: the shape is %s%s; `hifdm run %s --point %s:%d -o point%d.h5`, "

@@ -19,7 +19,7 @@ typedef struct {
     const char *file;       /* path of the result */
     const char *output;     /* file or folder to write, as hf_exporter.argument says */
     const char *stage;      /* a word of hf_stage_word; NULL: the stage that is the result */
-    const char *state;      /* name of a load case of the as-built net; NULL: a stage */
+    const char *load_case;  /* name of a load case of the as-built net; NULL: a stage */
     bool force;             /* replace existing files */
     hf_file_out_set *files; /* collects the files; the caller renames them all at once */
 } hf_export_request;
@@ -75,7 +75,7 @@ bool hf_export_has_truss(const hf_export_request *request, const hf_summary *sum
 
 /* Warns when the result `file` has a Pareto front from which no point was taken. The exported shape is then an end of
  * the front, or belongs to the form-finding. Load cases always belong to the form-finding. */
-void hf_export_warn_of_front(const char *file, const hf_summary *summary, bool is_state, hf_messages *messages);
+void hf_export_warn_of_front(const char *file, const hf_summary *summary, bool is_load_case, hf_messages *messages);
 
 /* Reads a shape by hf_export_read and calls `write` with it, for exporters that take a stage. */
 hf_status hf_export_shape(const hf_export_request *request, hf_export_write_shape *write, char *said, size_t size,

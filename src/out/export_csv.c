@@ -151,9 +151,9 @@ static hf_status export_truss(const hf_export_request *o, hf_truss *truss, hf_ca
     HF_TRY(hf_export_claim_in_folder(o, "truss_nodes.csv", nodes, messages));
     HF_TRY(hf_export_claim_in_folder(o, "members.csv", members, messages));
     HF_TRY(hf_store_read_truss(o->file, truss, state, messages));
-    if (o->state) {
+    if (o->load_case) {
         hf_carrier_state_free(state);
-        HF_TRY(hf_store_read_state_truss(o->file, o->state, truss, state, messages));
+        HF_TRY(hf_store_read_load_case_truss(o->file, o->load_case, truss, state, messages));
     }
     HF_TRY(hf_file_out_set_write(o->files, nodes, write_truss_nodes, &both, messages));
     HF_TRY(hf_file_out_set_write(o->files, members, write_members, &both, messages));

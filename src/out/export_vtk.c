@@ -287,7 +287,7 @@ static void lay_out_truss(hf_arena *a, const hf_truss *truss, truss_scratch *t)
     t->axial_force_N = hf_arena_take(a, m, sizeof(double));
 }
 
-static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *state, truss_scratch *t)
+static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *at, truss_scratch *t)
 {
     grid g = {.n_point = truss->n_node,
               .n_cell = truss->n_member,
@@ -295,19 +295,19 @@ static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *state, 
               .corner = truss->end,
               .offset = t->offset,
               .type = t->type};
-    int *n = &g.n_point_field, *m = &g.n_cell_field, has_state = state->displacement && state->end_force;
+    int *n = &g.n_point_field, *m = &g.n_cell_field, has_state = at->displacement && at->end_force;
     set_lines(truss->n_member, t->offset, t->type);
     for (int i = 0; i < truss->n_node; i++) {
         t->fixed[i] = truss->fixed[i];
         for (int c = 0; c < 3 && has_state; c++) {
-            t->displacement_m[3 * i + c] = state->displacement[HF_TRUSS_DOF * i + c];
-            t->rotation_rad[3 * i + c] = state->displacement[HF_TRUSS_DOF * i + 3 + c];
+            t->displacement_m[3 * i + c] = at->displacement[HF_TRUSS_DOF * i + c];
+            t->rotation_rad[3 * i + c] = at->displacement[HF_TRUSS_DOF * i + 3 + c];
         }
     }
     for (int e = 0; e < truss->n_member; e++) {
         t->unit[e] = truss->unit[e];
         t->joint[e] = truss->joint[e];
-        if (has_state) t->axial_force_N[e] = state->end_force[12 * (size_t)e + HF_TRUSS_DOF]; /* axial force at end j */
+        if (has_state) t->axial_force_N[e] = at->end_force[12 * (size_t)e + HF_TRUSS_DOF]; /* axial force at end j */
     }
     add(g.point, n, "fixed", "", HF_KIND_INT, 1, t->fixed);
     add(g.point, n, "mass_kg", "kg", HF_KIND_REAL, 1, truss->mass_kg);
@@ -321,27 +321,28 @@ static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *state, 
 }
 
 /* Writes the truss under the result of the run, or in a load case of the as-built net. */
-static hf_status write_truss(const hf_export_request *o, const char *of_state, const char *path, hf_messages *messages)
+static hf_status write_truss(const hf_export_request *o, const char *of_load_case, const char *path,
+                             hf_messages *messages)
 {
     hf_truss truss = {0};
-    hf_carrier_state state = {0};
+    hf_carrier_state at = {0};
     hf_arena arena = {0};
     truss_scratch t;
-    hf_status status = hf_store_read_truss(o->file, &truss, &state, messages);
-    if (status == HF_OK && of_state) {
-        hf_carrier_state_free(&state);
-        status = hf_store_read_state_truss(o->file, of_state, &truss, &state, messages);
+    hf_status status = hf_store_read_truss(o->file, &truss, &at, messages);
+    if (status == HF_OK && of_load_case) {
+        hf_carrier_state_free(&at);
+        status = hf_store_read_load_case_truss(o->file, of_load_case, &truss, &at, messages);
     }
     if (status == HF_OK) {
         status = HF_ARENA_MAKE(&arena, lay_out_truss(&arena, &truss, &t));
         if (status != HF_OK) hf_error(messages, status, "%s: out of memory", o->file);
     }
     if (status == HF_OK) {
-        const grid g = grid_of_truss(&truss, &state, &t);
+        const grid g = grid_of_truss(&truss, &at, &t);
         status = write_grid(o, path, &g, messages);
     }
     hf_arena_free(&arena);
-    hf_carrier_state_free(&state);
+    hf_carrier_state_free(&at);
     hf_truss_free(&truss);
     return status;
 }
@@ -349,57 +350,60 @@ static hf_status write_truss(const hf_export_request *o, const char *of_state, c
 /* ---- load cases of the as-built net ---- */
 
 /* Names of the files of load case k, from 1. ParaView opens files that differ only in a number as steps in time. */
-enum { STATE_NET, STATE_FACETS, STATE_TRUSS, N_STATE_FILE };
-static const char *const state_file[N_STATE_FILE] = {"case", "case_facets", "case_truss"};
+enum { LOAD_CASE_NET, LOAD_CASE_FACETS, LOAD_CASE_TRUSS, N_LOAD_CASE_FILE };
+static const char *const load_case_file[N_LOAD_CASE_FILE] = {"case", "case_facets", "case_truss"};
 
-static hf_status path_of_state(const hf_export_request *o, int kind, int k, char path[PATH_MAX], hf_messages *messages)
+static hf_status path_of_load_case(const hf_export_request *o, int kind, int k, char path[PATH_MAX],
+                                   hf_messages *messages)
 {
-    if (snprintf(path, PATH_MAX, "%s/%s_%d.hdf", o->output, state_file[kind], k + 1) < PATH_MAX) return HF_OK;
+    if (snprintf(path, PATH_MAX, "%s/%s_%d.hdf", o->output, load_case_file[kind], k + 1) < PATH_MAX) return HF_OK;
     return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
 }
 
 /* Returns whether a load case that has a shape has this file. */
-static bool has_state_file(const hf_summary *s, const scratch *t, int kind)
+static bool has_load_case_file(const hf_summary *s, const scratch *t, int kind)
 {
-    return kind == STATE_NET || (kind == STATE_FACETS ? t->facets.n_facet > 0 : s->has_truss);
+    return kind == LOAD_CASE_NET || (kind == LOAD_CASE_FACETS ? t->facets.n_facet > 0 : s->has_truss);
 }
 
 /* Checks the names of the files of all load cases. */
-static hf_status claim_states(const hf_export_request *o, const hf_summary *s, const scratch *t, hf_messages *messages)
+static hf_status claim_load_cases(const hf_export_request *o, const hf_summary *s, const scratch *t,
+                                  hf_messages *messages)
 {
     char path[PATH_MAX];
-    for (int i = 0; i < N_STATE_FILE * s->n_state; i++) {
-        int k = i / N_STATE_FILE, kind = i % N_STATE_FILE;
-        if (s->state[k].result.status != HF_OK || !has_state_file(s, t, kind)) continue;
-        HF_TRY(path_of_state(o, kind, k, path, messages));
+    for (int i = 0; i < N_LOAD_CASE_FILE * s->n_load_case; i++) {
+        int k = i / N_LOAD_CASE_FILE, kind = i % N_LOAD_CASE_FILE;
+        if (s->load_case[k].result.status != HF_OK || !has_load_case_file(s, t, kind)) continue;
+        HF_TRY(path_of_load_case(o, kind, k, path, messages));
         HF_TRY(hf_export_claim(o, path, messages));
     }
     return HF_OK;
 }
 
-static hf_status write_state(const hf_export_request *o, int k, const hf_scene *scene, const hf_summary *summary,
-                             scratch *t, hf_messages *messages)
+static hf_status write_load_case(const hf_export_request *o, int k, const hf_scene *scene, const hf_summary *summary,
+                                 scratch *t, hf_messages *messages)
 {
-    static char path[N_STATE_FILE][PATH_MAX];
-    const char *name = summary->state[k].name;
+    static char path[N_LOAD_CASE_FILE][PATH_MAX];
+    const char *name = summary->load_case[k].name;
     hf_shape shape = {0};
-    for (int i = 0; i < N_STATE_FILE; i++)
-        HF_TRY(path_of_state(o, i, k, path[i], messages));
-    HF_TRY(hf_store_read_state(o->file, name, &shape, messages));
-    hf_status status = write_found(o, &shape, path[STATE_NET], path[STATE_FACETS], scene, summary, t, messages);
+    for (int i = 0; i < N_LOAD_CASE_FILE; i++)
+        HF_TRY(path_of_load_case(o, i, k, path[i], messages));
+    HF_TRY(hf_store_read_load_case(o->file, name, &shape, messages));
+    hf_status status = write_found(o, &shape, path[LOAD_CASE_NET], path[LOAD_CASE_FACETS], scene, summary, t, messages);
     hf_shape_free(&shape);
-    if (status == HF_OK && summary->has_truss) status = write_truss(o, name, path[STATE_TRUSS], messages);
+    if (status == HF_OK && summary->has_truss) status = write_truss(o, name, path[LOAD_CASE_TRUSS], messages);
     return status;
 }
 
-static hf_status write_states(const hf_export_request *o, const hf_scene *scene, const hf_summary *summary, scratch *t,
-                              char *said, size_t size, hf_messages *messages)
+static hf_status write_load_cases(const hf_export_request *o, const hf_scene *scene, const hf_summary *summary,
+                                  scratch *t, char *said, size_t size, hf_messages *messages)
 {
-    for (int k = 0; k < summary->n_state; k++) {
-        if (summary->state[k].result.status != HF_OK) continue;
-        HF_TRY(write_state(o, k, scene, summary, t, messages));
+    for (int k = 0; k < summary->n_load_case; k++) {
+        if (summary->load_case[k].result.status != HF_OK) continue;
+        HF_TRY(write_load_case(o, k, scene, summary, t, messages));
         size_t used = strlen(said);
-        snprintf(said + used, size - used, " %s_%d.hdf (%s)", state_file[STATE_NET], k + 1, summary->state[k].name);
+        snprintf(said + used, size - used, " %s_%d.hdf (%s)", load_case_file[LOAD_CASE_NET], k + 1,
+                 summary->load_case[k].name);
     }
     return HF_OK;
 }
@@ -423,7 +427,7 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
             return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
         if (has[i]) HF_TRY(hf_export_claim(o, path[i], messages));
     }
-    HF_TRY(claim_states(o, summary, t, messages));
+    HF_TRY(claim_load_cases(o, summary, t, messages));
     HF_TRY(hf_file_out_folder(o->output, messages));
     int used = snprintf(said, size, "%s: for ParaView, in %s:", o->file, o->output);
     static const int order[5] = {HF_N_STAGE, HF_STAGE_FORM, HF_STAGE_SEARCH, HF_STAGE_REFINE, 4};
@@ -435,7 +439,7 @@ static hf_status write_all(const hf_export_request *o, const hf_scene *scene, co
         for (int j = i; j < N_FILE; j += FACETS)
             if (has[j] && (size_t)used < size) used += snprintf(said + used, size - (size_t)used, " %s.hdf", name[j]);
     }
-    return write_states(o, scene, summary, t, said, size, messages);
+    return write_load_cases(o, scene, summary, t, said, size, messages);
 }
 
 static hf_status export_vtk(const hf_export_request *request, char *said, size_t size, hf_messages *messages)

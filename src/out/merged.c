@@ -81,7 +81,7 @@ static hf_status read_group(hf_merged *m, hf_merged_stage stage, const char *gro
 
 /* Reads the figures of each load case from the group of its name. Names that are too long for a load case are
  * skipped. */
-static hf_status read_states(hf_merged *m, hf_messages *messages)
+static hf_status read_load_cases(hf_merged *m, hf_messages *messages)
 {
     static const char *const key[] = {"psi_m", "n_slack", "n_loose", "largest_tension_N"};
     static const char *const error[] = {"half_path", "good_to", "gain_loss", "fit_", "facet_"};
@@ -98,7 +98,7 @@ static hf_status read_states(hf_merged *m, hf_messages *messages)
         for (size_t k = 0; k < sizeof error / sizeof *error && status == HF_OK; k++)
             status = read_group(m, HF_MERGED_CASES, group, "", error[k], messages);
         for (int k = from; k < m->n_figure; k++)
-            strcpy(m->figure[k].state, name);
+            strcpy(m->figure[k].load_case, name);
     }
     hf_texts_free(&names);
     return status;
@@ -117,7 +117,7 @@ static hf_status read_figures(hf_merged *m, hf_messages *messages)
     }
     for (int k = 0; k < N_BUILT; k++)
         HF_TRY(read_figure(m, HF_MERGED_BUILT, source[HF_MERGED_BUILT].group, "", key_as_built[k], messages));
-    return read_states(m, messages);
+    return read_load_cases(m, messages);
 }
 
 static hf_status read_axes(hf_merged *m, hf_messages *messages)
@@ -188,7 +188,7 @@ bool hf_merged_is_beyond(const hf_merged *m, const hf_merged_figure *loss, int i
     size_t kind = (size_t)(strstr(loss->key, "gain_loss_at_") - loss->key);
     for (int k = 0; k < m->n_figure; k++) {
         const hf_merged_figure *f = &m->figure[k];
-        if (f->stage == loss->stage && !strcmp(f->state, loss->state) && !strncmp(f->key, loss->key, kind) &&
+        if (f->stage == loss->stage && !strcmp(f->load_case, loss->load_case) && !strncmp(f->key, loss->key, kind) &&
             !strcmp(f->key + kind, "half_path_rms_m"))
             return !isnan(f->value.value[i]);
     }

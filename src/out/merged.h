@@ -24,7 +24,7 @@ extern const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER]; /* "", "no",
 
 typedef struct {
     hf_merged_stage stage;
-    char state[HF_SET_NAME_SIZE];     /* load case of HF_MERGED_CASES; "" for other stages */
+    char load_case[HF_SET_NAME_SIZE]; /* load case of HF_MERGED_CASES; "" for other stages */
     char key[HF_OBJECTIVE_NAME_SIZE]; /* such as psi_m, goal_1_tension_edge or facet_half_path_rms_m */
     hf_series value;                  /* [n]; NaN where a point has no value */
     bool is_same; /* equal at all completed points up to rounding, or without a value at all of them */

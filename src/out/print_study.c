@@ -92,13 +92,13 @@ const char *hf_print_objective_words(const char *key, char words[HF_AXIS_NAME_SI
 
 /* Prepends the load case to the name of its figure. The slack cables of the design get the word "design" when load
  * cases have slack cables, too. */
-static void name_state(const hf_merged *m, const hf_merged_figure *f, char name[HF_AXIS_NAME_SIZE])
+static void name_load_case(const hf_merged *m, const hf_merged_figure *f, char name[HF_AXIS_NAME_SIZE])
 {
     char plain[HF_AXIS_NAME_SIZE];
-    bool is_design = hf_merged_find(m, HF_MERGED_CASES, f->key) && !strcmp(f->key, "n_slack") && !*f->state;
-    if (!*f->state && !is_design) return;
+    bool is_design = hf_merged_find(m, HF_MERGED_CASES, f->key) && !strcmp(f->key, "n_slack") && !*f->load_case;
+    if (!*f->load_case && !is_design) return;
     strcpy(plain, name);
-    snprintf(name, HF_AXIS_NAME_SIZE, "%.31s %.31s", is_design ? "design" : f->state, plain);
+    snprintf(name, HF_AXIS_NAME_SIZE, "%.31s %.31s", is_design ? "design" : f->load_case, plain);
 }
 
 /* Formats the name of a figure: "goal tension edge" for goal_1_tension_edge, "fitted loss 10 GHz" for
@@ -119,7 +119,8 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
     snprintf(name, HF_AXIS_NAME_SIZE, "%s", f->key);
     if (!strcmp(f->key, "psi_m")) {
         static const char *const stage[] = {"found", "GA", "LM", "", ""};
-        snprintf(name, HF_AXIS_NAME_SIZE, m->main == HF_MERGED_FORM || *f->state ? "psi" : "psi %s", stage[f->stage]);
+        snprintf(name, HF_AXIS_NAME_SIZE, m->main == HF_MERGED_FORM || *f->load_case ? "psi" : "psi %s",
+                 stage[f->stage]);
     } else if (!strncmp(f->key, "goal_", 5)) {
         char words[HF_AXIS_NAME_SIZE];
         snprintf(name, HF_AXIS_NAME_SIZE, "goal %.*s", HF_AXIS_NAME_SIZE - 6, hf_print_objective_words(f->key, words));
@@ -132,7 +133,7 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
     }
     for (size_t k = 0; k < sizeof word / sizeof *word; k++)
         if (!strcmp(f->key, word[k][0])) strcpy(name, word[k][1]);
-    name_state(m, f, name);
+    name_load_case(m, f, name);
     show_name(name);
 }
 
@@ -153,12 +154,12 @@ static column figure_column(const hf_merged *m, int k)
 
 /* Returns whether the table has this figure of a load case. Of the surface it has the gain losses or, without
  * frequencies, the errors. */
-static bool is_told_of_state(const hf_merged *m, const hf_merged_figure *f)
+static bool is_told_of_load_case(const hf_merged *m, const hf_merged_figure *f)
 {
     if (strstr(f->key, "good_to_Hz")) return false;
     if (!strstr(f->key, "half_path_rms_m")) return true;
     for (int k = 0; k < m->n_figure; k++)
-        if (!strcmp(m->figure[k].state, f->state) && strstr(m->figure[k].key, "gain_loss_at_")) return false;
+        if (!strcmp(m->figure[k].load_case, f->load_case) && strstr(m->figure[k].key, "gain_loss_at_")) return false;
     return true;
 }
 
@@ -167,20 +168,20 @@ static bool is_told_of_state(const hf_merged *m, const hf_merged_figure *f)
 static bool is_told(const hf_merged *m, const hf_merged_figure *f)
 {
     if (f->is_psi || !strcmp(f->key, "residual_N")) return false;
-    if (f->stage == HF_MERGED_CASES) return is_told_of_state(m, f);
+    if (f->stage == HF_MERGED_CASES) return is_told_of_load_case(m, f);
     if (f->stage == HF_MERGED_BUILT) return !strcmp(f->key, "psi_95_m") || !strcmp(f->key, "yield");
     return f->stage == m->main || !strcmp(f->key, "psi_m");
 }
 
 /* Returns the rank of a figure in the table: the ranking figure, psi, the as-built net, the surface, objectives, other
  * figures, load cases. */
-enum { RANK_REST = 10, RANK_STATES, N_RANK };
+enum { RANK_REST = 10, RANK_LOAD_CASES, N_RANK };
 static int rank_of(const hf_merged *m, int k)
 {
     const hf_merged_figure *f = &m->figure[k];
     bool is_fit = !strncmp(f->key, "facet_fit_", 10) || !strncmp(f->key, "fit_", 4);
     if (k == m->lead) return 0;
-    if (*f->state) return RANK_STATES;
+    if (*f->load_case) return RANK_LOAD_CASES;
     if (!strcmp(f->key, "psi_m")) return 1;
     if (f->stage == HF_MERGED_BUILT) return 2;
     if (strstr(f->key, "half_path_rms_m")) return is_fit ? 4 : 3;
@@ -381,7 +382,7 @@ static void print_same(const hf_merged *m, FILE *f)
     for (int k = 0; k < m->n_figure && hf_merged_is_done(m, i); k++) {
         column c = figure_column(m, k);
         const hf_merged_figure *figure = &m->figure[k];
-        if (*figure->state && strcmp(figure->key, "psi_m") != 0 && strcmp(figure->key, "n_slack") != 0) continue;
+        if (*figure->load_case && strcmp(figure->key, "psi_m") != 0 && strcmp(figure->key, "n_slack") != 0) continue;
         if (figure->is_same && is_told(m, figure) && !(isnan(figure->value.value[i]) && !strcmp(c.unit, "%")))
             print_item(m, &c, i, &t);
     }
@@ -531,9 +532,9 @@ static void write_stages(const hf_merged *m, int i, hf_json *j)
         const hf_merged_figure *f = &m->figure[k];
         bool is_last = k + 1 == m->n_figure;
         if (k == 0 || f[-1].stage != f->stage) hf_json_open(j, hf_merged_stage_word[f->stage], '{');
-        if (*f->state && (k == 0 || strcmp(f[-1].state, f->state) != 0)) hf_json_open(j, f->state, '{');
+        if (*f->load_case && (k == 0 || strcmp(f[-1].load_case, f->load_case) != 0)) hf_json_open(j, f->load_case, '{');
         hf_json_number(j, f->key, hf_merged_is_done(m, i) ? f->value.value[i] : (double)NAN);
-        if (*f->state && (is_last || strcmp(f[1].state, f->state) != 0)) hf_json_close(j, '}');
+        if (*f->load_case && (is_last || strcmp(f[1].load_case, f->load_case) != 0)) hf_json_close(j, '}');
         if (is_last || f[1].stage != f->stage) hf_json_close(j, '}');
     }
 }

@@ -452,7 +452,7 @@ static void print_form_parts(const hf_summary *s, hf_stage result, FILE *f)
         const char *name;
     } part[] = {{is_form && s->measures[HF_STAGE_FORM].is_measured, "surface"},
                 {is_form && s->pattern[HF_STAGE_FORM].n_frequency > 0, "pattern"},
-                {s->n_state > 0, "cases"},
+                {s->n_load_case > 0, "cases"},
                 {s->has_tolerance, "as built"}};
     const char *before = "                ";
     for (int i = 0; i < (int)(sizeof part / sizeof *part); i++) {
@@ -475,7 +475,7 @@ static void print_if_finite(const char *format, double value, int width, FILE *f
 
 /* Prints the surface errors of a load case or, with frequencies, the gain losses at the highest one, both without and
  * with best fit. */
-static void print_state_surface(const hf_summary *s, const hf_surface_measures *m, FILE *f)
+static void print_load_case_surface(const hf_summary *s, const hf_surface_measures *m, FILE *f)
 {
     const hf_double_list *at = &s->surface.frequencies_Hz;
     double highest_Hz = hf_surface_highest_Hz(&s->surface);
@@ -499,30 +499,31 @@ static void print_state_surface(const hf_summary *s, const hf_surface_measures *
 }
 
 /* Prints a line for each load case of the as-built net. */
-static void print_states(const hf_summary *s, FILE *f)
+static void print_load_cases(const hf_summary *s, FILE *f)
 {
     bool has_surface = s->surface.focal_length_m > 0, has_truss = s->has_truss, has_loose = false;
     bool has_loss = has_surface && s->surface.frequencies_Hz.n > 0;
-    if (s->n_state == 0) return;
+    if (s->n_load_case == 0) return;
     fprintf(f, "  cases         %-16s %9s %9s%s %8s %9s %5s %5s%s\n", "the net as built", "psi mm", "moved mm",
             has_loss      ? "   loss dB    fitted"
             : has_surface ? " half-path  best fit"
                           : "",
             "least N", "largest N", "slack", "loose", has_truss ? " member N" : "");
-    for (int k = 0; k < s->n_state; k++) {
-        const hf_state_summary *state = &s->state[k];
-        const hf_form_result *r = &state->result;
+    for (int k = 0; k < s->n_load_case; k++) {
+        const hf_load_case_summary *load_case = &s->load_case[k];
+        const hf_form_result *r = &load_case->result;
         if (r->status != HF_OK) {
-            fprintf(f, "                %-16s no shape: %s\n", state->name, hf_status_text(r->status));
+            fprintf(f, "                %-16s no shape: %s\n", load_case->name, hf_status_text(r->status));
             continue;
         }
         has_loose |= r->n_loose > 0;
-        fprintf(f, "                %-16s", state->name);
+        fprintf(f, "                %-16s", load_case->name);
         print_if_finite(" %9.4f", r->psi_m * 1e3, 10, f);
-        fprintf(f, " %9.4f", state->move_rms_m * 1e3);
-        if (has_surface) print_state_surface(s, &state->measures, f);
-        fprintf(f, " %8.4f %9.4f %5d %5d", state->least_tension_N, state->largest_tension_N, r->n_slack, r->n_loose);
-        if (has_truss) fprintf(f, " %8.4g", state->largest_member_N);
+        fprintf(f, " %9.4f", load_case->move_rms_m * 1e3);
+        if (has_surface) print_load_case_surface(s, &load_case->measures, f);
+        fprintf(f, " %8.4f %9.4f %5d %5d", load_case->least_tension_N, load_case->largest_tension_N, r->n_slack,
+                r->n_loose);
+        if (has_truss) fprintf(f, " %8.4g", load_case->largest_member_N);
         fputc('\n', f);
     }
     if (has_loss)
@@ -598,7 +599,7 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
     if (s->has_front) print_front(s, path, f);
     if (s->has_front) print_form_parts(s, result, f);
     if (result != HF_N_STAGE) print_pattern(&s->pattern[result], f);
-    print_states(s, f);
+    print_load_cases(s, f);
     if (s->has_tolerance) hf_print_tolerance(&s->tolerance, style.verbose, f);
     print_end(s, path, style, f);
 }

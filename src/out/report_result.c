@@ -46,7 +46,7 @@ static const struct {
 };
 enum { N_SERIES = sizeof series_table / sizeof *series_table };
 
-enum { N_SHAPE = HF_N_STAGE + HF_STATES_MAX }; /* shapes of the stages, then of the load cases */
+enum { N_SHAPE = HF_N_STAGE + HF_LOAD_CASES_MAX }; /* shapes of the stages, then of the load cases */
 
 /* Holds everything that a page shows. */
 typedef struct page {
@@ -55,7 +55,7 @@ typedef struct page {
     hf_scene scene;
     bool has_shape[N_SHAPE];
     hf_shape shape[N_SHAPE];
-    hf_series state_displacement[HF_STATES_MAX]; /* [n][6] of the truss in a load case; may be empty */
+    hf_series load_case_displacement[HF_LOAD_CASES_MAX]; /* [n][6] of the truss in a load case; may be empty */
     hf_series series[N_SERIES];
     hf_facets facets;                     /* empty when the case does not measure the surface */
     hf_facet_errors facet_error[N_SHAPE]; /* errors of each shape, in facet_block */
@@ -177,9 +177,9 @@ static void write_shape(const page *p, int stage, FILE *f)
     if (stage < HF_N_STAGE) {
         fprintf(f, "{\"stage\":\"%s\"", hf_stage_word[stage]);
     } else { /* names consist of letters, digits, _ and - */
-        const char *name = p->summary.state[stage - HF_N_STAGE].name;
+        const char *name = p->summary.load_case[stage - HF_N_STAGE].name;
         fprintf(f, "{\"stage\":\"case %s\",\"case\":\"%s\"", name, name);
-        write_displacement("truss_displacement_m", &p->state_displacement[stage - HF_N_STAGE], f);
+        write_displacement("truss_displacement_m", &p->load_case_displacement[stage - HF_N_STAGE], f);
     }
     hf_json_packed packed = hf_json_pack("displacement_m", "f32", f);
     for (int i = 0; i < 3 * p->scene.n_node; i++)
@@ -403,17 +403,17 @@ static hf_status read_shapes(page *p, hf_messages *messages)
     return HF_OK;
 }
 
-static hf_status read_states(page *p, hf_messages *messages)
+static hf_status read_load_cases(page *p, hf_messages *messages)
 {
     char of_truss[HF_SET_NAME_SIZE + 48];
-    for (int k = 0; k < p->summary.n_state; k++) {
-        const hf_state_summary *s = &p->summary.state[k];
+    for (int k = 0; k < p->summary.n_load_case; k++) {
+        const hf_load_case_summary *s = &p->summary.load_case[k];
         if (s->result.status != HF_OK) continue;
-        HF_TRY(hf_store_read_state(p->path, s->name, &p->shape[HF_N_STAGE + k], messages));
+        HF_TRY(hf_store_read_load_case(p->path, s->name, &p->shape[HF_N_STAGE + k], messages));
         p->has_shape[HF_N_STAGE + k] = true;
         snprintf(of_truss, sizeof of_truss, "/cases/%s/truss/node/displacement", s->name);
-        HF_TRY(hf_store_read_series(p->path, of_truss, 6, &p->state_displacement[k], messages));
-        if (p->state_displacement[k].n != p->truss_position_m.n) p->state_displacement[k].n = 0;
+        HF_TRY(hf_store_read_series(p->path, of_truss, 6, &p->load_case_displacement[k], messages));
+        if (p->load_case_displacement[k].n != p->truss_position_m.n) p->load_case_displacement[k].n = 0;
     }
     return HF_OK;
 }
@@ -462,7 +462,7 @@ static hf_status read_page(page *p, hf_messages *messages)
     HF_TRY(hf_store_read_texts(p->path, "/case/text", &p->case_text, messages));
     HF_TRY(hf_store_read_texts(p->path, "/case/overrides", &p->overrides, messages));
     HF_TRY(read_shapes(p, messages));
-    HF_TRY(read_states(p, messages));
+    HF_TRY(read_load_cases(p, messages));
     HF_TRY(read_patterns(p, messages));
     if (map_facets(p) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", p->path);
     for (int i = 0; i < N_SERIES; i++)
@@ -479,8 +479,8 @@ static void free_page(page *p)
     hf_scene_free(&p->scene);
     for (int i = 0; i < N_SHAPE; i++)
         hf_shape_free(&p->shape[i]);
-    for (int k = 0; k < HF_STATES_MAX; k++)
-        hf_series_free(&p->state_displacement[k]);
+    for (int k = 0; k < HF_LOAD_CASES_MAX; k++)
+        hf_series_free(&p->load_case_displacement[k]);
     for (int i = 0; i < HF_N_STAGE; i++)
         hf_pattern_table_free(&p->pattern[i]);
     for (int i = 0; i < N_SERIES; i++)

@@ -91,14 +91,14 @@ static void write_inputs(const hf_merged *m, FILE *f)
 /* Returns the stage of a figure on the page, where each load case is a stage of its own. */
 static const char *stage_word(const hf_merged_figure *figure, char word[HF_SET_NAME_SIZE + 8])
 {
-    if (!*figure->state) return hf_merged_stage_word[figure->stage];
-    snprintf(word, HF_SET_NAME_SIZE + 8, "case %s", figure->state);
+    if (!*figure->load_case) return hf_merged_stage_word[figure->stage];
+    snprintf(word, HF_SET_NAME_SIZE + 8, "case %s", figure->load_case);
     return word;
 }
 
 static bool is_of_one_stage(const hf_merged_figure *a, const hf_merged_figure *b)
 {
-    return a->stage == b->stage && !strcmp(a->state, b->state);
+    return a->stage == b->stage && !strcmp(a->load_case, b->load_case);
 }
 
 /* Writes the figures of each stage that has psi, of the as-built net, and of its load cases. */

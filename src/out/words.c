@@ -20,7 +20,7 @@
 #define GA(type, member, kind, json, key, description)                                                                 \
     {json ? key : #member, "figure of optimize", "", description, NULL},
 #define REFINE(type, member, kind, json, key, description) {key, "figure of polish", "", description, NULL},
-#define STATE(type, member, kind, json, key, description) {key, "figure of cases", "", description, NULL},
+#define LOAD_CASE(type, member, kind, json, key, description) {key, "figure of cases", "", description, NULL},
 #define TRUSS(type, member, kind, json, key, description) {key, "figure of truss", "", description, NULL},
 #define TOLERANCE(type, member, kind, json, key, description) {key, "figure of tolerance", "", description, NULL},
 #define SURFACE(type, member, kind, json, description) {#member, "figure of surface", "", description, NULL},
@@ -32,9 +32,9 @@
 
 static const hf_word listed[] = {
     HF_STATUS_LIST(STATUS) HF_BOUND_REASON_LIST(PROOF) HF_RESULT_LIST(RESULT) HF_COUPLING_LIST(COUPLING)
-        HF_SUMMARY_FORM_LIST(FORM) HF_SUMMARY_SEARCH_LIST(GA) HF_SUMMARY_REFINE_LIST(REFINE) HF_STATE_LIST(STATE)
-            HF_SUMMARY_TRUSS_LIST(TRUSS) HF_TOLERANCE_LIST(TOLERANCE) HF_SURFACE_LIST(SURFACE) HF_SURFACE_FIT_LIST(FIT)
-                HF_SURFACE_LOSS_LIST(LOSS)};
+        HF_SUMMARY_FORM_LIST(FORM) HF_SUMMARY_SEARCH_LIST(GA) HF_SUMMARY_REFINE_LIST(REFINE)
+            HF_LOAD_CASE_LIST(LOAD_CASE) HF_SUMMARY_TRUSS_LIST(TRUSS) HF_TOLERANCE_LIST(TOLERANCE)
+                HF_SURFACE_LIST(SURFACE) HF_SURFACE_FIT_LIST(FIT) HF_SURFACE_LOSS_LIST(LOSS)};
 enum { N_LISTED = sizeof listed / sizeof *listed };
 
 /* ---- other entries ---- */

@@ -100,7 +100,7 @@ void hf_problem_free(hf_problem *p)
     hf_limits_free(&p->limits);
     hf_objectives_free(&p->objectives);
     hf_problem_nets_free(p);
-    hf_states_free(&p->states);
+    hf_load_cases_free(&p->load_cases);
     hf_facets_free(&p->facets);
     hf_scene_free(&p->scene);
     hf_case_free(&p->settings);

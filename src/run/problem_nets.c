@@ -4,7 +4,7 @@
 
 #include "base/arena.h"
 #include "built/built_nets.h"
-#include "run/cases.h"
+#include "run/load_case_stage.h"
 #include "run/tolerance_stage.h"
 
 struct hf_problem_nets {
@@ -14,11 +14,11 @@ struct hf_problem_nets {
     double *truss_move_m_per_K; /* [n_truss][3 n_attachment] m/K, of samples */
 };
 
-static bool is_over_states(const hf_objective_settings *g, int n)
+static bool is_over_load_cases(const hf_objective_settings *g, int n)
 {
     bool is_over = false;
     for (int k = 0; k < n; k++)
-        is_over |= *g[k].state || g[k].over == HF_OVER_STATES;
+        is_over |= *g[k].load_case || g[k].over == HF_OVER_LOAD_CASES;
     return is_over;
 }
 
@@ -27,25 +27,25 @@ static void lay_out_nets(hf_arena *arena, const hf_problem *p, struct hf_problem
 {
     size_t n = 3 * (size_t)p->model.n_attachment;
     *nets = hf_arena_take(arena, 1, sizeof **nets);
-    *move_m = hf_arena_take(arena, (size_t)p->states.n * n, sizeof(double));
+    *move_m = hf_arena_take(arena, (size_t)p->load_cases.n * n, sizeof(double));
     *by_heat = hf_arena_take(arena, (size_t)p->settings.tolerance.n_truss * n, sizeof(double));
 }
 
-static hf_status make_nets(hf_problem *p, bool has_states, int n_sample, hf_messages *messages)
+static hf_status make_nets(hf_problem *p, bool has_load_cases, int n_sample, hf_messages *messages)
 {
     struct hf_problem_nets *q = p->nets;
     const hf_case *c = &p->settings;
-    bool is_on_truss = has_states && p->model.n_attachment > 0, is_warm = c->tolerance.sigma_temperature_K > 0;
+    bool is_on_truss = has_load_cases && p->model.n_attachment > 0, is_warm = c->tolerance.sigma_temperature_K > 0;
     if (n_sample > 0) HF_TRY(hf_tolerance_stage_check(p, false, messages));
     if (n_sample > 0 && is_warm) HF_TRY(hf_config_material(c, &p->scene, &q->material, messages));
     hf_built_heat heat = {is_warm ? q->material.expansion_per_K : NULL,
                           c->tolerance.n_truss ? q->truss_move_m_per_K : NULL};
-    hf_status status = is_on_truss ? hf_cases_rest(p, q->attachment_move_m) : HF_OK;
+    hf_status status = is_on_truss ? hf_load_case_stage_rest(p, q->attachment_move_m) : HF_OK;
     if (status == HF_OK && n_sample > 0 && c->tolerance.n_truss > 0)
-        status = hf_cases_rest_by_heat(p, q->truss_move_m_per_K);
+        status = hf_load_case_stage_rest_by_heat(p, q->truss_move_m_per_K);
     if (status != HF_OK)
         return hf_error(messages, status, "the truss of the nets that goals are over: %s", hf_status_text(status));
-    hf_built_nets_make(&p->scene, &p->model, &c->form, has_states ? &p->states : NULL,
+    hf_built_nets_make(&p->scene, &p->model, &c->form, has_load_cases ? &p->load_cases : NULL,
                        is_on_truss ? q->attachment_move_m : NULL, n_sample > 0 ? &c->tolerance : NULL, &heat, n_sample,
                        &q->nets);
     return HF_OK;
@@ -54,16 +54,16 @@ static hf_status make_nets(hf_problem *p, bool has_states, int n_sample, hf_mess
 hf_status hf_problem_nets_make(hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
-    bool has_states = is_over_states(o->term, o->n_term) || is_over_states(o->front, o->n_front);
+    bool has_load_cases = is_over_load_cases(o->term, o->n_term) || is_over_load_cases(o->front, o->n_front);
     int n_sample = hf_optimize_takes_samples(o) ? o->samples : 0;
     hf_arena arena = {0};
     double *move_m = NULL, *by_heat = NULL;
-    if (!has_states && n_sample == 0) return HF_OK;
+    if (!has_load_cases && n_sample == 0) return HF_OK;
     if (HF_ARENA_MAKE(&arena, lay_out_nets(&arena, p, &p->nets, &move_m, &by_heat)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the nets that goals are over");
     p->nets->attachment_move_m = move_m;
     p->nets->truss_move_m_per_K = by_heat;
-    return make_nets(p, has_states, n_sample, messages);
+    return make_nets(p, has_load_cases, n_sample, messages);
 }
 
 void hf_problem_nets_free(hf_problem *p)

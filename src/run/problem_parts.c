@@ -180,9 +180,9 @@ static hf_status load_parts(const char *path, const hf_problem_source *source, c
         HF_TRY(hf_model_attach(&p->model, c->n_attachment, c->scene_node, c->flexibility_m_per_N, messages));
         if (p->settings.has_optimize) hf_model_want_newton(&p->model);
     }
-    if (p->settings.built.n_state) {
+    if (p->settings.built.n_load_case) {
         const hf_truss *truss = p->settings.has_truss ? &p->carrier.truss : NULL;
-        HF_TRY(hf_config_states(&p->settings, &p->scene, truss, &p->states, messages));
+        HF_TRY(hf_config_load_cases(&p->settings, &p->scene, truss, &p->load_cases, messages));
     }
     if (!p->settings.has_optimize) return HF_OK;
     hf_status aims = judge_by_rows(p, messages);
@@ -262,8 +262,8 @@ hf_status hf_problem_spare_inputs(const hf_problem *p, const char *table, const 
     };
     for (size_t i = 0; i < sizeof input / sizeof *input; i++)
         HF_TRY(hf_file_out_spare(input[i], "an input of this run", output, messages));
-    for (int i = 0; i < c->built.n_state; i++)
-        HF_TRY(hf_file_out_spare(c->built.state[i].nodes_path, "an input of this run", output, messages));
+    for (int i = 0; i < c->built.n_load_case; i++)
+        HF_TRY(hf_file_out_spare(c->built.load_case[i].nodes_path, "an input of this run", output, messages));
     return HF_OK;
 }
 
@@ -344,11 +344,11 @@ void hf_problem_warn_of_refine(const hf_problem *p, hf_messages *messages)
 void hf_problem_warn_of_front(const hf_problem *p, hf_messages *messages)
 {
     const hf_case *c = &p->settings;
-    if (c->optimize.n_front == 0 || (p->states.n == 0 && !c->has_tolerance)) return;
+    if (c->optimize.n_front == 0 || (p->load_cases.n == 0 && !c->has_tolerance)) return;
     hf_warning(messages,
                "optimize.objectives: a front is no single design, so %s%s%s are of the form-finding's net, before "
                "any optimisation; `hifdm run %s --point FRONT.h5:N -o point.h5` has point N of the front there",
-               p->states.n ? "cases" : "", p->states.n && c->has_tolerance ? " and " : "",
+               p->load_cases.n ? "cases" : "", p->load_cases.n && c->has_tolerance ? " and " : "",
                c->has_tolerance ? "tolerance" : "", c->path);
 }
 

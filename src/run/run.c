@@ -4,7 +4,7 @@
  *         | form-finding: shape, certificate, measures
  *         | search: generations, each stored when it is evaluated
  *         | refinement by Levenberg-Marquardt; or a front; or a point taken from an earlier front
- *         | load cases of the as-built net (cases.c)
+ *         | load cases of the as-built net (load_case_stage.c)
  *         | tolerance: samples of the as-built net (tolerance_stage.c)
  *         v
  *     doubts about the result, summary, finished file
@@ -17,7 +17,7 @@
 #include "base/path.h"
 #include "base/text.h"
 #include "linalg/lapack.h"
-#include "run/cases.h"
+#include "run/load_case_stage.h"
 #include "run/measure_stage.h"
 #include "run/no_design.h"
 #include "run/polish_stage.h"
@@ -50,7 +50,7 @@ typedef struct {
     hf_carrier_state truss;    /* of the truss, under the shape of the result */
     const hf_workspace *shape; /* workspace that holds that shape */
     hf_places places;          /* after form-finding, if an optimisation follows */
-    hf_cases cases;            /* as-built net of the design, if there are load cases */
+    hf_load_case_stage cases;  /* as-built net of the design, if there are load cases */
     hf_history history;
     hf_store *store;
     hf_optimiser optimiser;
@@ -73,7 +73,7 @@ static void run_free(run *r, hf_messages *messages)
     free(r->history.psi_m);
     hf_carrier_state_free(&r->truss);
     hf_places_free(&r->places);
-    hf_cases_free(&r->cases);
+    hf_load_case_stage_free(&r->cases);
     hf_problem_free(&r->problem);
 }
 
@@ -120,7 +120,7 @@ static hf_status take_result(run *r, hf_workspace *w, hf_messages *messages)
 {
     HF_TRY(load_truss(r, w, messages));
     r->shape = w;
-    return r->problem.states.n ? hf_cases_take(&r->problem, w, &r->cases, messages) : HF_OK;
+    return r->problem.load_cases.n ? hf_load_case_stage_take(&r->problem, w, &r->cases, messages) : HF_OK;
 }
 
 /* ---- form-finding ---- */
@@ -573,8 +573,8 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     if (state == HF_STORE_FINISHED) return repeat_finished(q, output, s, messages);
     hf_status status = stages(r, s, messages);
     bool has_design = status == HF_OK;
-    if (status == HF_OK && r->problem.states.n)
-        status = hf_cases_run(&r->problem, &r->cases, r->store, q->stop_requested, s, messages);
+    if (status == HF_OK && r->problem.load_cases.n)
+        status = hf_load_case_stage_run(&r->problem, &r->cases, r->store, q->stop_requested, s, messages);
     const hf_tolerance_stage stage = {q, &r->problem, r->shape, output, r->store};
     bool keeps_design = false;
     if (status == HF_OK && settings->has_tolerance) {

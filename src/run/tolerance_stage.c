@@ -16,7 +16,7 @@
 #include "base/clock.h"
 #include "base/sha256.h"
 #include "net/cable_pick.h"
-#include "run/cases.h"
+#include "run/load_case_stage.h"
 #include "store/samples.h"
 #include "store/store_tolerance.h"
 #include <hifdm/metrics.h>
@@ -329,7 +329,7 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
     hf_status status = make_material(p, &material, messages);
     if (status == HF_OK) {
         status = HF_ARENA_MAKE(&arena, by_heat = hf_arena_take(&arena, n_move, sizeof *by_heat));
-        if (status == HF_OK) status = hf_cases_rest_by_heat(p, by_heat);
+        if (status == HF_OK) status = hf_load_case_stage_rest_by_heat(p, by_heat);
         hf_built_heat heat = {t->sigma_temperature_K > 0 ? material.expansion_per_K : NULL,
                               t->n_truss ? by_heat : NULL};
         if (status == HF_OK)

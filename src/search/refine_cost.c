@@ -31,7 +31,7 @@ static double count_step(const hf_evaluator *v, double *evaluation_of_ga)
     double n_row = v->objectives && v->objectives->nets ? v->objectives->n_row : 3.0 * m->n_inner_node;
     double step = STEP_EVALUATIONS * newton + factor + n * solve + n * n * (n_row + 2 * n);
     for (int i = 0;
-         v->objectives && v->objectives->nets && i < v->objectives->nets->n_state + v->objectives->nets->n_sample;
+         v->objectives && v->objectives->nets && i < v->objectives->nets->n_load_case + v->objectives->nets->n_sample;
          i++) {
         if (!hf_objectives_are_over(v->objectives, i)) continue;
         evaluation += newton;

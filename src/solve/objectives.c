@@ -62,7 +62,7 @@ static void lay_out_point(hf_arena *a, const hf_objectives *objectives, hf_objec
     p->rate_N = hf_arena_take(a, 3 * n_support, sizeof(double));
     p->size = hf_arena_take(a, n_size, sizeof(double));
     p->row = hf_arena_take(a, (size_t)objectives->n_row, sizeof(double));
-    size_t n_net = objectives->nets ? (size_t)objectives->nets->n_state + (size_t)objectives->nets->n_sample : 0;
+    size_t n_net = objectives->nets ? (size_t)objectives->nets->n_load_case + (size_t)objectives->nets->n_sample : 0;
     p->net_value = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
     p->net_norm = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
     p->net_part = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));

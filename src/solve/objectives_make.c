@@ -140,10 +140,10 @@ static void lay_out(hf_arena *a, const hf_model *m, hf_objectives *objectives)
 static void choose_nets(const hf_objectives_nets *nets, hf_objective *g)
 {
     const hf_objective_settings *s = &g->settings;
-    for (int k = 0; nets && *s->state && k < nets->n_state; k++)
-        if (!strcmp(nets->state_name[k], s->state)) g->first_net = k, g->n_net = 1;
-    if (nets && s->over == HF_OVER_STATES) g->n_net = nets->n_state;
-    if (nets && s->over == HF_OVER_SAMPLES) g->first_net = nets->n_state, g->n_net = nets->n_sample;
+    for (int k = 0; nets && *s->load_case && k < nets->n_load_case; k++)
+        if (!strcmp(nets->load_case_name[k], s->load_case)) g->first_net = k, g->n_net = 1;
+    if (nets && s->over == HF_OVER_LOAD_CASES) g->n_net = nets->n_load_case;
+    if (nets && s->over == HF_OVER_SAMPLES) g->first_net = nets->n_load_case, g->n_net = nets->n_sample;
 }
 
 /* Makes the beam of objective k, if it is a gain. Without a frequency in the row it uses the highest one of the
@@ -226,8 +226,8 @@ const char *hf_objectives_name(const hf_objectives *objectives, int i_objective,
     int n = snprintf(text, HF_OBJECTIVE_NAME_SIZE, "goal_%d_%s%s%s", i_objective, hf_figure_kind_word[s->figure],
                      *s->set ? "_" : "", s->set);
     const char *of_many = s->quantile > 0 ? "quantile" : hf_take_word[s->take];
-    if (*s->state) /* as much of the name as fits */
-        snprintf(text + n, HF_OBJECTIVE_NAME_SIZE - (size_t)n, "_%.24s", s->state);
+    if (*s->load_case) /* as much of the name as fits */
+        snprintf(text + n, HF_OBJECTIVE_NAME_SIZE - (size_t)n, "_%.24s", s->load_case);
     else if (s->over != HF_OVER_DESIGN)
         snprintf(text + n, HF_OBJECTIVE_NAME_SIZE - (size_t)n, "_%s_%s", hf_over_word[s->over], of_many);
     return text;

@@ -46,7 +46,7 @@ static int row_of_net(const hf_objective *g, int i_net)
 
 static size_t place_of_net(const hf_objectives *objectives, int k, int i_net)
 {
-    return (size_t)k * ((size_t)objectives->nets->n_state + (size_t)objectives->nets->n_sample) + (size_t)i_net;
+    return (size_t)k * ((size_t)objectives->nets->n_load_case + (size_t)objectives->nets->n_sample) + (size_t)i_net;
 }
 
 /* ---- residuals ---- */
@@ -80,15 +80,15 @@ hf_status hf_objectives_nets_measure(const hf_objectives *objectives, const hf_w
 {
     const hf_objectives_nets *nets = objectives->nets;
     measured_nets q = {objectives, p, residual, HF_OK};
-    int n_state = nets->n_state, n_sample = nets->n_sample;
-    bool has_samples = n_sample > 0 && hf_objectives_are_over(objectives, n_state);
+    int n_load_case = nets->n_load_case, n_sample = nets->n_sample;
+    bool has_samples = n_sample > 0 && hf_objectives_are_over(objectives, n_load_case);
     hf_status status = nets->cut(p->nets, w);
     if (status == HF_NO_MEMORY) return status;
-    for (int i = 0; i < n_state + n_sample && status != HF_OK; i++)
+    for (int i = 0; i < n_load_case + n_sample && status != HF_OK; i++)
         measure_net(&q, i, NULL);
-    for (int i = 0; i < n_state && status == HF_OK; i++)
+    for (int i = 0; i < n_load_case && status == HF_OK; i++)
         if (hf_objectives_are_over(objectives, i)) nets->solve(p->nets, i, 1, measure_net, &q);
-    if (has_samples && status == HF_OK) nets->solve(p->nets, n_state, n_sample, measure_net, &q);
+    if (has_samples && status == HF_OK) nets->solve(p->nets, n_load_case, n_sample, measure_net, &q);
     return q.status;
 }
 

@@ -145,10 +145,11 @@ void hf_layout_read_pattern(hf_hdf5 *io, int stage, hf_pattern_table *table);
 
 /* layout_cases: the figures of the load cases of the as-built net.
  *   /cases             name [n] of the load cases, in the order of the case
- *   /cases/NAME        attributes: the figures of HF_RESULT_LIST, those of the coupling as coupling_..., HF_STATE_LIST
+ *   /cases/NAME        attributes: the figures of HF_RESULT_LIST, those of the coupling as coupling_...,
+ *                      HF_LOAD_CASE_LIST
  *   /cases/NAME/surface    as /surface/STAGE
  * hf_store_built has written the shapes and the truss before. Without load cases nothing is written. */
-#define HF_LAYOUT_STATE_SIZE (HF_SET_NAME_SIZE + 32) /* bytes of the path of a group */
+#define HF_LAYOUT_LOAD_CASE_SIZE (HF_SET_NAME_SIZE + 32) /* bytes of the path of a group */
 void hf_layout_put_cases(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_cases(hf_hdf5 *io, hf_summary *summary);
 

@@ -106,23 +106,24 @@ static int print_errors(const hf_double_list *at, const hf_surface_measures *m, 
 
 /* Writes the load cases: "cold.psi_m=0.001 cold.n_slack=3 ... sun.psi_m=...". Figures of a load case without a shape
  * are NaN. Returns the length. */
-static int print_states(const hf_summary *s, char *text, size_t size)
+static int print_load_cases(const hf_summary *s, char *text, size_t size)
 {
     size_t used = 0;
-    for (int k = 0; k < s->n_state && used < size; k++) {
-        const hf_state_summary *state = &s->state[k];
-        const hf_form_result *r = &state->result;
+    for (int k = 0; k < s->n_load_case && used < size; k++) {
+        const hf_load_case_summary *load_case = &s->load_case[k];
+        const hf_form_result *r = &load_case->result;
         const double none = (double)NAN;
         bool has = r->status == HF_OK;
         char before[HF_SET_NAME_SIZE + 1];
-        snprintf(before, sizeof before, "%s.", state->name);
+        snprintf(before, sizeof before, "%s.", load_case->name);
         used += (size_t)snprintf(text + used, size - used,
                                  "%s%spsi_m=%.17g %sn_slack=%g %sn_loose=%g %slargest_tension_N=%.17g", k ? " " : "",
                                  before, has ? r->psi_m : none, before, has ? r->n_slack : none, before,
-                                 has ? r->n_loose : none, before, state->largest_tension_N);
-        if (!state->measures.is_measured || used + 1 >= size) continue;
+                                 has ? r->n_loose : none, before, load_case->largest_tension_N);
+        if (!load_case->measures.is_measured || used + 1 >= size) continue;
         text[used++] = ' ';
-        used += (size_t)print_errors(&s->surface.frequencies_Hz, &state->measures, before, text + used, size - used);
+        used +=
+            (size_t)print_errors(&s->surface.frequencies_Hz, &load_case->measures, before, text + used, size - used);
     }
     return (int)used;
 }
@@ -148,7 +149,7 @@ int hf_ledger_print_field(int i, const hf_summary *s, char *text, size_t size)
     if (column) return applies(column, s) ? print_number(column, s, text, size) : 0;
     int list = i - hf_ledger_n_column(), stage = list % HF_LAYOUT_N_OBJECTIVES_STAGE;
     if (s->form.status == HF_NOT_EVALUATED) return 0;
-    if (list == HF_LEDGER_LIST_CASES) return print_states(s, text, size);
+    if (list == HF_LEDGER_LIST_CASES) return print_load_cases(s, text, size);
     if (list == stage) return print_objectives(s, stage, text, size);
     return print_errors(&s->surface.frequencies_Hz, &s->measures[stage], "", text, size);
 }

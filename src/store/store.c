@@ -308,7 +308,7 @@ hf_status hf_store_shape(hf_store *s, hf_stage stage, const hf_model *m, const h
 hf_status hf_store_built(hf_store *s, const char *name, const hf_model *m, const hf_workspace *w,
                          const hf_carrier *carrier, const hf_carrier_state *truss, hf_messages *messages)
 {
-    char path[HF_LAYOUT_STATE_SIZE];
+    char path[HF_LAYOUT_LOAD_CASE_SIZE];
     if (!s) return HF_OK;
     hf_hdf5_lock();
     s->f.io.messages = messages;

@@ -62,12 +62,12 @@ static hf_status extend_ids(char identity[65], int n, const char *const *id)
  * read now is left out. */
 static hf_status extend_tables(char identity[65], const hf_case *c)
 {
-    for (int i = 0; i < c->built.n_state; i++) {
+    for (int i = 0; i < c->built.n_load_case; i++) {
         hf_messages unwanted = {0};
         char *text = NULL;
         size_t n = 0;
-        if (!*c->built.state[i].nodes_path) continue;
-        hf_status status = hf_text_read_file(c->built.state[i].nodes_path, HF_BAD_CASE, &text, &n, &unwanted);
+        if (!*c->built.load_case[i].nodes_path) continue;
+        hf_status status = hf_text_read_file(c->built.load_case[i].nodes_path, HF_BAD_CASE, &text, &n, &unwanted);
         hf_messages_free(&unwanted);
         if (status == HF_OK) extend(identity, text, n);
         free(text);

@@ -36,7 +36,7 @@ static void note_version(hf_hdf5 *io)
     hf_hdf5_get(io, io->file, "/", "git_describe", HF_KIND_CHARS, git, sizeof git);
     snprintf(both, sizeof both, "%s (%s)", version, git);
     if (io->status == HF_OK && strcmp(both, hf_store_version()) != 0)
-        snprintf(io->made_by, sizeof io->made_by, "%s", both);
+        memcpy(io->made_by, both, sizeof both);
 }
 
 hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
@@ -299,10 +299,10 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
 
 /* Returns true if this part of a load case exists; if not, io has the error. Writes the path of the load case into
  * `group`. */
-static bool has_state(hf_hdf5 *io, const char *name, const char *part, char group[HF_LAYOUT_STATE_SIZE])
+static bool has_state(hf_hdf5 *io, const char *name, const char *part, char group[HF_LAYOUT_LOAD_CASE_SIZE])
 {
-    char object[HF_LAYOUT_STATE_SIZE];
-    snprintf(group, HF_LAYOUT_STATE_SIZE, "/cases/%s", name);
+    char object[HF_LAYOUT_LOAD_CASE_SIZE];
+    snprintf(group, HF_LAYOUT_LOAD_CASE_SIZE, "/cases/%s", name);
     snprintf(object, sizeof object, "/cases/%s/%s", name, part);
     bool is_there =
         hf_hdf5_has(io, io->file, "/cases") && hf_hdf5_has(io, io->file, group) && hf_hdf5_has(io, io->file, object);
@@ -311,9 +311,9 @@ static bool has_state(hf_hdf5 *io, const char *name, const char *part, char grou
     return is_there;
 }
 
-hf_status hf_store_read_state(const char *path, const char *name, hf_shape *shape, hf_messages *messages)
+hf_status hf_store_read_load_case(const char *path, const char *name, hf_shape *shape, hf_messages *messages)
 {
-    char group[HF_LAYOUT_STATE_SIZE];
+    char group[HF_LAYOUT_LOAD_CASE_SIZE];
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *shape = (hf_shape){0};
@@ -352,10 +352,10 @@ hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_stat
     return hf_hdf5_unlock(io.status);
 }
 
-hf_status hf_store_read_state_truss(const char *path, const char *name, const hf_truss *truss, hf_carrier_state *state,
-                                    hf_messages *messages)
+hf_status hf_store_read_load_case_truss(const char *path, const char *name, const hf_truss *truss,
+                                        hf_carrier_state *state, hf_messages *messages)
 {
-    char group[HF_LAYOUT_STATE_SIZE];
+    char group[HF_LAYOUT_LOAD_CASE_SIZE];
     *state = (hf_carrier_state){0};
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);

@@ -36,9 +36,9 @@ static const hf_result_field refine_field[] = {HF_SUMMARY_REFINE_LIST(FIELD)};
     {#member, key, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_tolerance_summary, member), sizeof(type)},
 static const hf_result_field tolerance_field[] = {HF_TOLERANCE_LIST(TOLERANCE)};
 static const hf_result_field truss_field[] = {HF_SUMMARY_TRUSS_LIST(TRUSS_FIELD)};
-#define STATE_FIELD(type, member, kind, json, key, description)                                                        \
-    {#member, key, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_state_summary, member), sizeof(type)},
-static const hf_result_field state_field[] = {HF_STATE_LIST(STATE_FIELD)};
+#define LOAD_CASE_FIELD(type, member, kind, json, key, description)                                                    \
+    {#member, key, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_load_case_summary, member), sizeof(type)},
+static const hf_result_field load_case_field[] = {HF_LOAD_CASE_LIST(LOAD_CASE_FIELD)};
 static const hf_result_field measure_field[] = {HF_SURFACE_LIST(MEASURE)};
 static const hf_result_field fit_field[] = {HF_SURFACE_FIT_LIST(FIT)};
 #define ALL(table) table, (int)(sizeof(table) / sizeof(table)[0])
@@ -302,17 +302,17 @@ static void write_front(const hf_summary *s, hf_json *j)
 }
 
 /* Writes the member "cases": an object for each load case of the as-built net. */
-static void write_states(const hf_summary *s, hf_json *j)
+static void write_load_cases(const hf_summary *s, hf_json *j)
 {
-    if (s->n_state == 0) return;
+    if (s->n_load_case == 0) return;
     open_stage("cases", j);
-    for (int k = 0; k < s->n_state; k++) {
-        const hf_state_summary *state = &s->state[k];
+    for (int k = 0; k < s->n_load_case; k++) {
+        const hf_load_case_summary *load_case = &s->load_case[k];
         hf_json_line(j, "  ");
-        hf_json_open(j, state->name, '{');
-        write_result(&state->result, j);
-        write_fields(ALL(state_field), 1, LAST_PLACE, state, j);
-        write_surface(s, &state->measures, j);
+        hf_json_open(j, load_case->name, '{');
+        write_result(&load_case->result, j);
+        write_fields(ALL(load_case_field), 1, LAST_PLACE, load_case, j);
+        write_surface(s, &load_case->measures, j);
         hf_json_close(j, '}');
     }
     hf_json_close(j, '}');
@@ -397,7 +397,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
     if (s->has_optimize) write_optimize(s, j);
     if (s->has_polish) write_refine(s, j);
     if (s->has_front) write_front(s, j);
-    write_states(s, j);
+    write_load_cases(s, j);
     if (s->has_tolerance) write_tolerance(&s->tolerance, j);
     hf_json_line(j, " ");
     hf_json_integer(j, "threads", s->threads);

@@ -11,7 +11,7 @@
 #define POINT_DATA "/VTKHDF/PointData"
 #define CELL_DATA "/VTKHDF/CellData"
 #define PACKED_MIN 4096 /* bytes from which data sets are compressed; the tables of a chunk take 2 KiB */
-#define LINKS_MAX 1000  /* in a group: 3 for each of HF_STATES_MAX load cases and 5 shapes, and a few more */
+#define LINKS_MAX 1000  /* in a group: 3 for each of HF_LOAD_CASES_MAX load cases and 5 shapes, and a few more */
 
 /* ---- cells ---- */
 
@@ -113,7 +113,7 @@ static void link_to(hf_hdf5 *io, const char *from, const char *to)
 
 static void link_as(hf_hdf5 *io, const char *folder, const char *name, const char *group, const char *prefix)
 {
-    char from[HF_LAYOUT_STATE_SIZE + 32], to[HF_LAYOUT_STATE_SIZE + 64];
+    char from[HF_LAYOUT_LOAD_CASE_SIZE + 32], to[HF_LAYOUT_LOAD_CASE_SIZE + 64];
     snprintf(from, sizeof from, "%s/%s", folder, name);
     snprintf(to, sizeof to, "%s/%s%s", group, prefix, name);
     link_to(io, from, to);
@@ -135,16 +135,16 @@ static void link_shape(hf_hdf5 *io, const char *folder, const char *prefix)
 
 static void link_all(hf_hdf5 *io, const char *result, const char *position, const hf_summary *summary)
 {
-    char folder[HF_LAYOUT_STATE_SIZE], prefix[HF_LAYOUT_STATE_SIZE];
+    char folder[HF_LAYOUT_LOAD_CASE_SIZE], prefix[HF_LAYOUT_LOAD_CASE_SIZE];
     link_to(io, position, "/VTKHDF/Points");
     link_forces(io, result, "");
     for (int i = 0; i < HF_N_STAGE; i++) {
         snprintf(prefix, sizeof prefix, "%s_", hf_stage_word[i]);
         link_shape(io, hf_stage_group[i], prefix);
     }
-    for (int k = 0; k < summary->n_state; k++) {
-        snprintf(folder, sizeof folder, "/cases/%s", summary->state[k].name);
-        snprintf(prefix, sizeof prefix, "case_%s_", summary->state[k].name);
+    for (int k = 0; k < summary->n_load_case; k++) {
+        snprintf(folder, sizeof folder, "/cases/%s", summary->load_case[k].name);
+        snprintf(prefix, sizeof prefix, "case_%s_", summary->load_case[k].name);
         link_shape(io, folder, prefix);
     }
     link_as(io, "/scene/node", "position_m", POINT_DATA, "theoretical_");

@@ -318,7 +318,7 @@ END_TEST
 
 /* One sigma of a part of the truss is a state of `cases`: what it moves is the deviation to first order, by differences
  * of two states; and the samples are the states of their temperatures. */
-START_TEST(a_warm_truss_is_that_of_states)
+START_TEST(a_warm_truss_is_that_of_load_cases)
 {
     static const char scene[] = "scene:\n"
                                 "  paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 5, rear_distance_m: 1.8}\n"
@@ -438,7 +438,7 @@ Suite *suite_cli_tolerance(void)
     tcase_add_test(tests, a_report_has_the_samples);
     tcase_add_test(tests, slack_nets_are_warned_of);
     tcase_add_loop_test(tests, what_errors_may_be_is_told_in_words, 0, 4);
-    tcase_add_loop_test(tests, a_warm_truss_is_that_of_states, 0, 3);
+    tcase_add_loop_test(tests, a_warm_truss_is_that_of_load_cases, 0, 3);
     tcase_add_test(tests, faults_are_named);
     tcase_add_test(tests, samples_are_those_of_another_solver);
     return suite;

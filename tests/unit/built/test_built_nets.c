@@ -3,7 +3,7 @@
 #include "nets.h"
 
 #include "built/montecarlo.h"
-#include "run/cases.h"
+#include "run/load_case_stage.h"
 #include "run/problem_parts.h"
 #include "search/residuals.h"
 #include <hifdm/problem.h>
@@ -163,7 +163,7 @@ START_TEST(a_net_without_memory_is_told)
     ck_assert_int_eq(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &result), HF_OK);
     ck_assert_int_eq(nets->cut(p.workspace.objectives->nets, &p.workspace), HF_OK);
     fail_allocation_at(1);
-    hf_status status = hf_objectives_nets_linearise(&p.objectives, nets->n_state, p.workspace.objectives, &shape);
+    hf_status status = hf_objectives_nets_linearise(&p.objectives, nets->n_load_case, p.workspace.objectives, &shape);
     ck_assert(end_allocation_failure());
     ck_assert_int_eq(status, HF_NO_MEMORY);
     hf_problem_free(&p);
@@ -223,7 +223,7 @@ START_TEST(values_over_samples_are_those_of_tolerances)
     double square = 0, psi[6], by_heat[2 * 3 * 100];
     open_problem(&p, _i, NULL, value_objectives);
     ck_assert_int_le(p.model.n_attachment, 100);
-    ck_assert_int_eq(hf_cases_rest_by_heat(&p, by_heat), HF_OK);
+    ck_assert_int_eq(hf_load_case_stage_rest_by_heat(&p, by_heat), HF_OK);
     const hf_built_heat heat = {NULL, by_heat};
     evaluate_base(&p, &r);
     ck_assert_int_eq(hf_built_make("x.yaml", &p.scene, &p.model, &p.settings.form, &p.workspace, &built, &messages),
@@ -249,32 +249,32 @@ START_TEST(values_over_samples_are_those_of_tolerances)
 END_TEST
 
 /* The same states by the reference, hf_built_solve. */
-START_TEST(values_of_states_are_those_of_cases)
+START_TEST(values_of_load_cases_are_those_of_cases)
 {
     hf_problem p;
-    hf_form_result r, of_state;
-    hf_cases cases = {0};
+    hf_form_result r, of_load_case;
+    hf_load_case_stage cases = {0};
     hf_built_net net;
     hf_messages messages = {0};
     double square = 0, worst = 0, rest_m[3 * 3 * 100] = {0};
     open_problem(&p, _i, NULL, value_objectives);
     size_t n = 3 * (size_t)p.model.n_attachment;
     ck_assert_uint_le(3 * n, sizeof rest_m / sizeof *rest_m);
-    if (n) ck_assert_int_eq(hf_cases_rest(&p, rest_m), HF_OK);
+    if (n) ck_assert_int_eq(hf_load_case_stage_rest(&p, rest_m), HF_OK);
     evaluate_base(&p, &r);
-    ck_assert_int_eq(hf_cases_take(&p, &p.workspace, &cases, &messages), HF_OK);
+    ck_assert_int_eq(hf_load_case_stage_take(&p, &p.workspace, &cases, &messages), HF_OK);
     for (int k = 0; k < 3; k++) {
-        hf_built_state(&cases.built, &p.states.material, &p.states.state[k], n ? rest_m + (size_t)k * n : NULL,
-                       cases.cut_m, cases.move_m, cases.load_N, &net);
-        ck_assert_int_eq(hf_built_solve(&cases.built, &net, &cases.workspace, &of_state), HF_OK);
-        assert_near(r.objective[4 + k], of_state.psi_m);
-        ck_assert_double_gt(fabs(of_state.psi_m - r.objective[0]), 1e-6);
-        square += of_state.psi_m * of_state.psi_m / 3;
-        worst = fmax(worst, of_state.psi_m);
+        hf_built_load_case(&cases.built, &p.load_cases.material, &p.load_cases.load_case[k],
+                           n ? rest_m + (size_t)k * n : NULL, cases.cut_m, cases.move_m, cases.load_N, &net);
+        ck_assert_int_eq(hf_built_solve(&cases.built, &net, &cases.workspace, &of_load_case), HF_OK);
+        assert_near(r.objective[4 + k], of_load_case.psi_m);
+        ck_assert_double_gt(fabs(of_load_case.psi_m - r.objective[0]), 1e-6);
+        square += of_load_case.psi_m * of_load_case.psi_m / 3;
+        worst = fmax(worst, of_load_case.psi_m);
     }
     assert_near(r.objective[7], sqrt(square));
     assert_near(r.objective[8], worst);
-    hf_cases_free(&cases);
+    hf_load_case_stage_free(&cases);
     hf_problem_free(&p);
 }
 END_TEST
@@ -288,8 +288,8 @@ START_TEST(nets_that_do_not_differ_are_the_design)
     hf_tolerance_settings *t = &p.settings.tolerance;
     t->sigma_cut_m = t->sigma_cut_ratio = t->sigma_EA_ratio = t->sigma_support_m = 0;
     t->n_truss = 0;
-    for (int k = 0; k < p.states.n; k++) {
-        hf_state *s = &p.states.state[k];
+    for (int k = 0; k < p.load_cases.n; k++) {
+        hf_load_case *s = &p.load_cases.load_case[k];
         memset(s->rise_K, 0, (size_t)p.model.n_cable * sizeof(double));
         memset(s->force_N, 0, 3 * (size_t)p.model.n_node * sizeof(double));
         memset(s->move_m, 0, 3 * (size_t)p.model.n_node * sizeof(double));
@@ -334,7 +334,7 @@ Suite *suite_unit_built_nets(void)
     tcase_add_loop_test(tcase, derivatives_are_those_of_differences, 0, 2 * (int)(sizeof varied / sizeof *varied));
     tcase_add_test(tcase, a_net_without_memory_is_told);
     tcase_add_loop_test(tcase, values_over_samples_are_those_of_tolerances, 0, 2);
-    tcase_add_loop_test(tcase, values_of_states_are_those_of_cases, 0, 2);
+    tcase_add_loop_test(tcase, values_of_load_cases_are_those_of_cases, 0, 2);
     tcase_add_loop_test(tcase, nets_that_do_not_differ_are_the_design, 0, 2);
     tcase_add_loop_test(tcase, values_do_not_depend_on_earlier_designs, 0, 2);
     suite_add_tcase(suite, tcase);

@@ -335,11 +335,13 @@ START_TEST(names_tell_objectives_apart)
     } row[] = {
         {{.figure = HF_FIGURE_PSI}, "goal_%d_psi"},
         {{.figure = HF_FIGURE_TENSION, .set = "edge"}, "goal_%d_tension_edge"},
-        {{.figure = HF_FIGURE_PSI, .state = "hot"}, "goal_%d_psi_hot"},
-        {{.figure = HF_FIGURE_RATIO, .set = "edge", .state = "hot", .over = HF_OVER_STATES}, "goal_%d_ratio_edge_hot"},
-        {{.figure = HF_FIGURE_PSI, .state = "a_name_of_a_state_of_31_letters"}, "goal_%d_psi_a_name_of_a_state_of_31_"},
-        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_STATES, .take = HF_TAKE_MEAN}, "goal_%d_psi_states_mean"},
-        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_STATES, .take = HF_TAKE_WORST}, "goal_%d_psi_states_worst"},
+        {{.figure = HF_FIGURE_PSI, .load_case = "hot"}, "goal_%d_psi_hot"},
+        {{.figure = HF_FIGURE_RATIO, .set = "edge", .load_case = "hot", .over = HF_OVER_LOAD_CASES},
+         "goal_%d_ratio_edge_hot"},
+        {{.figure = HF_FIGURE_PSI, .load_case = "a_name_of_a_state_of_31_letters"},
+         "goal_%d_psi_a_name_of_a_state_of_31_"},
+        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_LOAD_CASES, .take = HF_TAKE_MEAN}, "goal_%d_psi_states_mean"},
+        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_LOAD_CASES, .take = HF_TAKE_WORST}, "goal_%d_psi_states_worst"},
         {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .take = HF_TAKE_MEAN}, "goal_%d_psi_samples_mean"},
         {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .quantile = 0.9}, "goal_%d_psi_samples_quantile"}};
     for (int k = 0; k < (int)(sizeof row / sizeof *row); k++) {

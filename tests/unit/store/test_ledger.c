@@ -87,12 +87,12 @@ START_TEST(all_states_come_back)
 {
     hf_study s;
     hf_summary *summary = calloc(1, sizeof *summary);
-    summary->n_state = HF_STATES_MAX;
+    summary->n_load_case = HF_LOAD_CASES_MAX;
     summary->surface.frequencies_Hz.n = HF_LIST_MAX;
     for (int k = 0; k < HF_LIST_MAX; k++)
         summary->surface.frequencies_Hz.value[k] = 1.23456789e-8 * (k + 1);
-    for (int k = 0; k < HF_STATES_MAX; k++) {
-        hf_state_summary *state = &summary->state[k];
+    for (int k = 0; k < HF_LOAD_CASES_MAX; k++) {
+        hf_load_case_summary *state = &summary->load_case[k];
         memset(state->name, 'a' + k, sizeof state->name - 1);
         state->result.psi_m = -1.2345678901234567e-300;
         state->measures.is_measured = true;
@@ -100,7 +100,7 @@ START_TEST(all_states_come_back)
         for (int i = 0; i < HF_LIST_MAX; i++)
             state->measures.facet_gain_loss_dB[i] = state->measures.facet_fit_gain_loss_dB[i] = -0.1 / 3 * 1e-300;
     }
-    summary->state[3].result.status = HF_COLLAPSED;
+    summary->load_case[3].result.status = HF_COLLAPSED;
     open_study(&s);
     write_point(&s, 1, HF_OK, "", summary);
     hf_points points = read_points(&s);
@@ -115,9 +115,9 @@ START_TEST(all_states_come_back)
         n_none += is_psi && isnan(value);
         n_psi += is_psi && value == -1.2345678901234567e-300;
     }
-    ck_assert_int_eq(n_psi, HF_STATES_MAX - 1);
+    ck_assert_int_eq(n_psi, HF_LOAD_CASES_MAX - 1);
     ck_assert_int_eq(n_none, 1); /* without a shape */
-    ck_assert_int_eq(n, HF_STATES_MAX * (4 + 2 * (2 + HF_LIST_MAX)));
+    ck_assert_int_eq(n, HF_LOAD_CASES_MAX * (4 + 2 * (2 + HF_LIST_MAX)));
     hf_points_free(&points);
     hf_study_free(&s);
     free(summary);

@@ -59,16 +59,16 @@ static void fill_summary(struct rng *rng, hf_summary *s)
     fill_text(rng, s->warnings, sizeof s->warnings);
     fill_result(rng, &s->form);
     fill_result(rng, &s->best);
-    s->n_state = rng_int(rng, 0, 3);
-    for (int k = 0; k < s->n_state; k++) { /* in the order of the case, which is not that of the alphabet */
-        snprintf(s->state[k].name, sizeof s->state[k].name, "state-%d", 9 - k);
-        fill_result(rng, &s->state[k].result);
-        s->state[k].least_tension_N = rng_uniform(rng, -1, 1);
-        s->state[k].largest_tension_N = INFINITY;
-        s->state[k].move_rms_m = rng_uniform(rng, 0, 1);
-        s->state[k].largest_member_N = (double)NAN;
-        s->state[k].measures.is_measured = rng_int(rng, 0, 1);
-        if (s->state[k].measures.is_measured) s->state[k].measures.fit.center_x_m = rng_uniform(rng, 0, 1);
+    s->n_load_case = rng_int(rng, 0, 3);
+    for (int k = 0; k < s->n_load_case; k++) { /* in the order of the case, which is not that of the alphabet */
+        snprintf(s->load_case[k].name, sizeof s->load_case[k].name, "state-%d", 9 - k);
+        fill_result(rng, &s->load_case[k].result);
+        s->load_case[k].least_tension_N = rng_uniform(rng, -1, 1);
+        s->load_case[k].largest_tension_N = INFINITY;
+        s->load_case[k].move_rms_m = rng_uniform(rng, 0, 1);
+        s->load_case[k].largest_member_N = (double)NAN;
+        s->load_case[k].measures.is_measured = rng_int(rng, 0, 1);
+        if (s->load_case[k].measures.is_measured) s->load_case[k].measures.fit.center_x_m = rng_uniform(rng, 0, 1);
     }
 }
 
@@ -104,9 +104,9 @@ static void same_summary(const hf_summary *a, const hf_summary *b)
 #undef MEMBER
     same_result(&a->form, &b->form);
     same_result(&a->best, &b->best);
-    ck_assert_int_eq(a->n_state, b->n_state);
-    for (int k = 0; k < a->n_state; k++) {
-        const hf_state_summary *s = &a->state[k], *t = &b->state[k];
+    ck_assert_int_eq(a->n_load_case, b->n_load_case);
+    for (int k = 0; k < a->n_load_case; k++) {
+        const hf_load_case_summary *s = &a->load_case[k], *t = &b->load_case[k];
         ck_assert_str_eq(s->name, t->name);
         same_result(&s->result, &t->result);
         ck_assert(!memcmp(&s->least_tension_N, &t->least_tension_N, sizeof(double)) &&

@@ -1,6 +1,6 @@
-/* cases - the load cases of the as-built net that a case describes, once its design is known. */
-#ifndef HIFDM_CASES_H
-#define HIFDM_CASES_H
+/* load_case_stage - the load cases of the as-built net that a case describes, once its design is known. */
+#ifndef HIFDM_LOAD_CASE_STAGE_H
+#define HIFDM_LOAD_CASE_STAGE_H
 
 #include <hifdm/built.h>
 #include <hifdm/problem.h>
@@ -13,31 +13,31 @@
 typedef struct {
     hf_built built;
     hf_workspace workspace;
-    double *cut_m, *move_m, *load_N; /* of one load case, as for hf_built_state */
+    double *cut_m, *move_m, *load_N; /* of one load case, as for hf_built_load_case */
     double *attachment_move_m;       /* [3 n_attachment] m, by the truss alone */
     double *truss_force;             /* [n_truss_node][6] N, N m */
     void *block;
-} hf_cases;
+} hf_load_case_stage;
 
 /* Makes the as-built net of the design whose shape `workspace` holds, and replaces an earlier one. Returns HF_OK;
  * HF_BAD_CASE for a design that cannot be made; HF_NO_MEMORY; both with a message. */
-hf_status hf_cases_take(const hf_problem *problem, const hf_workspace *workspace, hf_cases *cases,
-                        hf_messages *messages);
+hf_status hf_load_case_stage_take(const hf_problem *problem, const hf_workspace *workspace, hf_load_case_stage *cases,
+                                  hf_messages *messages);
 
 /* Sets move_m [n_load_case][3 n_attachment] to the displacements of the attachments in each load case by the truss
  * without the net, m. Returns HF_OK or HF_NO_MEMORY. */
-hf_status hf_cases_rest(const hf_problem *problem, double *move_m);
+hf_status hf_load_case_stage_rest(const hf_problem *problem, double *move_m);
 
 /* Sets move_m_per_K [n_truss][3 n_attachment] to the same displacements for each row of tolerance.truss, caused by a
  * rise of its part by 1 K, m/K. Returns HF_OK or HF_NO_MEMORY. */
-hf_status hf_cases_rest_by_heat(const hf_problem *problem, double *move_m_per_K);
+hf_status hf_load_case_stage_rest_by_heat(const hf_problem *problem, double *move_m_per_K);
 
 /* Finds, measures and stores all load cases of problem->states. If a load case has no shape, the summary gets its
  * status and the user a warning, and the run continues. Returns HF_OK; HF_INTERRUPTED if *stop is set (stop may be
  * NULL); HF_NO_MEMORY; or an error of the store, which may be NULL. */
-hf_status hf_cases_run(const hf_problem *problem, hf_cases *cases, hf_store *store, const volatile sig_atomic_t *stop,
-                       hf_summary *summary, hf_messages *messages);
+hf_status hf_load_case_stage_run(const hf_problem *problem, hf_load_case_stage *cases, hf_store *store,
+                                 const volatile sig_atomic_t *stop, hf_summary *summary, hf_messages *messages);
 
-void hf_cases_free(hf_cases *cases);
+void hf_load_case_stage_free(hf_load_case_stage *cases);
 
 #endif

@@ -1,7 +1,7 @@
 /* Makes the load cases of the as-built net from the rows of `cases`:
  *
  *     rows -> names in order of appearance -> materials -> for each row: temperatures, gravity, forces, displacements,
- *     table of nodes -> hf_states
+ *     table of nodes -> hf_load_cases
  *
  * Contents: names - temperatures - gravity - forces and displacements - a table of nodes - together */
 #include <hifdm/config.h>
@@ -24,7 +24,7 @@ typedef struct {
     const hf_case *c;
     const hf_scene *scene;
     const hf_truss *truss; /* NULL: no truss */
-    hf_states *states;
+    hf_load_cases *load_cases;
     int *cable; /* [n_cable], scratch: the cables of a row */
     hf_messages *messages;
 } maker;
@@ -40,29 +40,29 @@ static const char *place_in_row(const maker *q, int row, const char *key, char w
 /* ---- names ---- */
 
 /* Lists the names of the load cases in the order of their first appearance. Returns their number. */
-static int count_names(const hf_built_settings *b, const char *name[HF_STATES_MAX])
+static int count_names(const hf_built_settings *b, const char *name[HF_LOAD_CASES_MAX])
 {
     int n = 0;
-    for (int i = 0; i < b->n_state; i++) {
+    for (int i = 0; i < b->n_load_case; i++) {
         int k = 0;
-        while (k < n && strcmp(name[k], b->state[i].name) != 0)
+        while (k < n && strcmp(name[k], b->load_case[i].name) != 0)
             k++;
-        if (k == n) name[n++] = b->state[i].name; /* the case has been checked, so all names fit */
+        if (k == n) name[n++] = b->load_case[i].name; /* the case has been checked, so all names fit */
     }
     return n;
 }
 
-static hf_state *state_of_row(const maker *q, int row)
+static hf_load_case *load_case_of_row(const maker *q, int row)
 {
-    hf_state *state = q->states->state;
-    while (strcmp(state->name, q->c->built.state[row].name) != 0)
-        state++;
-    return state;
+    hf_load_case *load_case = q->load_cases->load_case;
+    while (strcmp(load_case->name, q->c->built.load_case[row].name) != 0)
+        load_case++;
+    return load_case;
 }
 
 /* ---- temperatures ---- */
 
-static double rise_at(const hf_state_settings *s, const double *a, const double *b)
+static double rise_at(const hf_load_case_settings *s, const double *a, const double *b)
 {
     double rise = isnan(s->temperature_K) ? 0 : s->temperature_K;
     for (int c = 0; c < 3 && !isnan(s->gradient_K_per_m[0]); c++)
@@ -70,26 +70,26 @@ static double rise_at(const hf_state_settings *s, const double *a, const double 
     return rise;
 }
 
-static const char *temperature_key(const hf_state_settings *s)
+static const char *temperature_key(const hf_load_case_settings *s)
 {
     return isnan(s->temperature_K) ? "gradient_K_per_m" : "temperature_K";
 }
 
 static hf_status heat_cables(const maker *q, int row)
 {
-    const hf_state_settings *s = &q->c->built.state[row];
+    const hf_load_case_settings *s = &q->c->built.load_case[row];
     const hf_scene *scene = q->scene;
-    hf_state *state = state_of_row(q, row);
+    hf_load_case *load_case = load_case_of_row(q, row);
     char where[WHERE_SIZE];
     int n_unknown = 0, unknown = 0, n_wild = 0, wild = 0;
     int n = hf_cable_pick_some(scene, s->set, place_in_row(q, row, "set", where), q->cable, q->messages);
     for (int k = 0; k < n; k++) {
         int e = q->cable[k];
-        double expansion = q->states->material.expansion_per_K[e];
-        state->rise_K[e] = rise_at(s, scene->position_m + 3 * (size_t)scene->end[2 * e],
-                                   scene->position_m + 3 * (size_t)scene->end[2 * e + 1]);
+        double expansion = q->load_cases->material.expansion_per_K[e];
+        load_case->rise_K[e] = rise_at(s, scene->position_m + 3 * (size_t)scene->end[2 * e],
+                                       scene->position_m + 3 * (size_t)scene->end[2 * e + 1]);
         if (isnan(expansion) && n_unknown++ == 0) unknown = e;
-        if (fabs(expansion * state->rise_K[e]) > LARGEST_STRAIN && n_wild++ == 0) wild = e;
+        if (fabs(expansion * load_case->rise_K[e]) > LARGEST_STRAIN && n_wild++ == 0) wild = e;
     }
     if (n == 0) return HF_BAD_CASE;
     if (n_wild)
@@ -97,7 +97,7 @@ static hf_status heat_cables(const maker *q, int row)
                  "%s: %d cables would change by more than %g of their lengths, like '%s' by %.3g at %.6g K: is this "
                  "temperature wrong, or its expansion_per_K?",
                  place_in_row(q, row, temperature_key(s), where), n_wild, LARGEST_STRAIN, scene->cable_id[wild],
-                 q->states->material.expansion_per_K[wild] * state->rise_K[wild], state->rise_K[wild]);
+                 q->load_cases->material.expansion_per_K[wild] * load_case->rise_K[wild], load_case->rise_K[wild]);
     if (n_unknown == 0) return n_wild ? HF_BAD_CASE : HF_OK;
     return hf_error(q->messages, HF_BAD_CASE,
                     "%s: the expansion of %d cables is not known, like '%s': give expansion_per_K of their sets in "
@@ -128,16 +128,16 @@ hf_status hf_config_demand_expansion(const hf_case *c, const hf_truss *t, hf_par
 
 static hf_status heat_truss(const maker *q, int row)
 {
-    const hf_state_settings *s = &q->c->built.state[row];
+    const hf_load_case_settings *s = &q->c->built.load_case[row];
     const hf_truss *t = q->truss;
-    hf_state *state = state_of_row(q, row);
+    hf_load_case *load_case = load_case_of_row(q, row);
     char where[WHERE_SIZE];
     if (!t && s->part == HF_PART_ALL) return HF_OK;
     place_in_row(q, row, s->part == HF_PART_ALL ? temperature_key(s) : "part", where);
     if (!t) return hf_error(q->messages, HF_BAD_CASE, "%s: the case has no truss", where);
     for (int e = 0; e < t->n_member; e++)
         if (hf_truss_is_of(t, e, s->part))
-            state->member_rise_K[e] =
+            load_case->member_rise_K[e] =
                 rise_at(s, t->position_m + 3 * (size_t)t->end[2 * e], t->position_m + 3 * (size_t)t->end[2 * e + 1]);
     return hf_config_demand_expansion(q->c, t, s->part, where, ", or part: net for a temperature of the cables alone",
                                       q->messages);
@@ -145,7 +145,7 @@ static hf_status heat_truss(const maker *q, int row)
 
 static hf_status heat(const maker *q, int row)
 {
-    const hf_state_settings *s = &q->c->built.state[row];
+    const hf_load_case_settings *s = &q->c->built.load_case[row];
     bool of_net = *s->set || s->part == HF_PART_ALL || s->part == HF_PART_NET;
     if (isnan(s->temperature_K) && isnan(s->gradient_K_per_m[0])) return HF_OK;
     if (of_net) HF_TRY(heat_cables(q, row));
@@ -157,16 +157,16 @@ static hf_status heat(const maker *q, int row)
 static hf_status weigh(const maker *q, int row)
 {
     static const double down[3] = {0, 0, -1};
-    const hf_state_settings *s = &q->c->built.state[row];
+    const hf_load_case_settings *s = &q->c->built.load_case[row];
     const double *along = isnan(s->direction[0]) ? down : s->direction;
     char where[WHERE_SIZE];
     int n_unknown = 0, unknown = 0;
     if (isnan(s->gravity_m_per_s2)) return HF_OK;
     double length = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
     for (int c = 0; c < 3; c++)
-        state_of_row(q, row)->gravity_m_per_s2[c] = s->gravity_m_per_s2 * along[c] / length;
+        load_case_of_row(q, row)->gravity_m_per_s2[c] = s->gravity_m_per_s2 * along[c] / length;
     for (int e = 0; e < q->scene->n_cable; e++)
-        if (isnan(q->states->material.mass_kg_per_m[e]) && n_unknown++ == 0) unknown = e;
+        if (isnan(q->load_cases->material.mass_kg_per_m[e]) && n_unknown++ == 0) unknown = e;
     if (n_unknown == 0) return HF_OK;
     return hf_error(
         q->messages, HF_BAD_CASE,
@@ -179,16 +179,16 @@ static hf_status weigh(const maker *q, int row)
 
 static hf_status push(const maker *q, int row)
 {
-    const hf_state_settings *s = &q->c->built.state[row];
-    hf_state *state = state_of_row(q, row);
+    const hf_load_case_settings *s = &q->c->built.load_case[row];
+    hf_load_case *load_case = load_case_of_row(q, row);
     char where[WHERE_SIZE];
     int n = 0;
     for (int i = 0; i < q->scene->n_node; i++) {
         bool is_support = q->scene->role[i] == HF_ROLE_SUPPORT;
         bool is_pushed = !isnan(s->force_N[0]) && hf_material_names(s->role, q->scene->role[i]);
         for (int c = 0; c < 3; c++) {
-            if (is_pushed) state->force_N[3 * i + c] += s->force_N[c];
-            if (is_support && !isnan(s->move_m[0])) state->move_m[3 * i + c] += s->move_m[c];
+            if (is_pushed) load_case->force_N[3 * i + c] += s->force_N[c];
+            if (is_support && !isnan(s->move_m[0])) load_case->move_m[3 * i + c] += s->move_m[c];
         }
         n += is_pushed;
     }
@@ -203,7 +203,8 @@ enum { ROW_ID, ROW_FORCE, ROW_MOVE = ROW_FORCE + 3, N_ROW_COLUMN = ROW_MOVE + 3 
 static const char *const row_column[N_ROW_COLUMN] = {"id", "Fx_N", "Fy_N", "Fz_N", "dx_m", "dy_m", "dz_m"};
 
 /* Adds a row of the table to the load case. Empty cells are 0. */
-static void add_node(hf_csv *t, const int *where, int r, const hf_csv_named *node, const hf_scene *s, hf_state *state)
+static void add_node(hf_csv *t, const int *where, int r, const hf_csv_named *node, const hf_scene *s,
+                     hf_load_case *load_case)
 {
     const char *id = hf_csv_cell(t, r, where[ROW_ID]);
     int i = hf_csv_row_of(node, s->n_node, id);
@@ -214,14 +215,15 @@ static void add_node(hf_csv *t, const int *where, int r, const hf_csv_named *nod
     for (int k = ROW_FORCE; k < N_ROW_COLUMN; k++) {
         if (where[k] < 0 || !*hf_csv_cell(t, r, where[k])) continue;
         double value = hf_csv_number(t, r, where[k], id, row_column[k]);
-        double *to = k < ROW_MOVE ? state->force_N + 3 * i + (k - ROW_FORCE) : state->move_m + 3 * i + (k - ROW_MOVE);
+        double *to =
+            k < ROW_MOVE ? load_case->force_N + 3 * i + (k - ROW_FORCE) : load_case->move_m + 3 * i + (k - ROW_MOVE);
         if (k >= ROW_MOVE && value != 0 && s->role[i] != HF_ROLE_SUPPORT)
             hf_csv_fault(t, t->line[r], id, "is no support, so it has no place to be moved to: ", row_column[k]);
         *to += value;
     }
 }
 
-static hf_status read_table(hf_csv *t, const hf_scene *s, hf_state *state)
+static hf_status read_table(hf_csv *t, const hf_scene *s, hf_load_case *load_case)
 {
     int where[N_ROW_COLUMN] = {0}, n_known = 0;
     HF_TRY(hf_csv_read(t->path, COLUMN_MAX, t, t->messages));
@@ -236,7 +238,7 @@ static hf_status read_table(hf_csv *t, const hf_scene *s, hf_state *state)
     bool has_room = id && node;
     if (has_room) {
         for (int r = 0; r < t->n_row; r++)
-            add_node(t, where, r, node, s, state);
+            add_node(t, where, r, node, s, load_case);
     }
     free(id);
     free(node);
@@ -245,9 +247,9 @@ static hf_status read_table(hf_csv *t, const hf_scene *s, hf_state *state)
 
 static hf_status read_nodes(const maker *q, int row)
 {
-    hf_csv table = {.path = q->c->built.state[row].nodes_path, .messages = q->messages};
+    hf_csv table = {.path = q->c->built.load_case[row].nodes_path, .messages = q->messages};
     if (!*table.path) return HF_OK;
-    hf_status status = read_table(&table, q->scene, state_of_row(q, row));
+    hf_status status = read_table(&table, q->scene, load_case_of_row(q, row));
     hf_csv_free(&table);
     return status;
 }
@@ -271,11 +273,11 @@ static hf_status check_EA(const maker *q)
 typedef hf_status row_step(const maker *, int);
 
 /* Reads all rows, so that one run reports the faults of all. */
-static hf_status read_rows_of_states(const maker *q)
+static hf_status read_rows_of_load_cases(const maker *q)
 {
     static row_step *const step[] = {heat, weigh, push, read_nodes};
     hf_status worst = check_EA(q);
-    for (int row = 0; row < q->c->built.n_state; row++) {
+    for (int row = 0; row < q->c->built.n_load_case; row++) {
         for (size_t k = 0; k < sizeof step / sizeof *step; k++) {
             hf_status status = step[k](q, row);
             if (status != HF_OK) worst = status;
@@ -285,24 +287,24 @@ static hf_status read_rows_of_states(const maker *q)
     return worst;
 }
 
-hf_status hf_config_states(const hf_case *c, const hf_scene *s, const hf_truss *truss, hf_states *states,
-                           hf_messages *messages)
+hf_status hf_config_load_cases(const hf_case *c, const hf_scene *s, const hf_truss *truss, hf_load_cases *load_cases,
+                               hf_messages *messages)
 {
-    const char *name[HF_STATES_MAX];
+    const char *name[HF_LOAD_CASES_MAX];
     int n = count_names(&c->built, name);
-    *states = (hf_states){0};
+    *load_cases = (hf_load_cases){0};
     if (n == 0) return HF_OK;
-    maker q = {c, s, truss, states, NULL, messages};
-    hf_status status = hf_states_allocate(s, truss ? truss->n_member : 0, n, states);
+    maker q = {c, s, truss, load_cases, NULL, messages};
+    hf_status status = hf_load_cases_allocate(s, truss ? truss->n_member : 0, n, load_cases);
     q.cable = malloc((size_t)s->n_cable * sizeof *q.cable);
     if (status == HF_OK && !q.cable) status = HF_NO_MEMORY;
     for (int k = 0; k < n; k++)
-        states->state[k].name = name[k];
+        load_cases->load_case[k].name = name[k];
     if (status == HF_OK)
-        status = hf_config_material(c, s, &states->material, messages);
+        status = hf_config_material(c, s, &load_cases->material, messages);
     else
         hf_error(messages, status, "%s: out of memory for %d states", c->path, n);
-    if (status == HF_OK) status = read_rows_of_states(&q);
+    if (status == HF_OK) status = read_rows_of_load_cases(&q);
     free(q.cable);
     return status;
 }

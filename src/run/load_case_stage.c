@@ -3,11 +3,11 @@
  *     design -> cut pieces of its cables (hf_built_make)
  *     each load case
  *         | truss alone, under its temperature and weight: displacements of the attachments
- *         | lengths at the temperature, displacements of supports, loads (hf_built_state)
+ *         | lengths at the temperature, displacements of supports, loads (hf_built_load_case)
  *         | shape (hf_built_solve), forces in the truss under the pull of the net
  *         v
  *     measures of the shape -> summary and store */
-#include "run/cases.h"
+#include "run/load_case_stage.h"
 
 #include "base/arena.h"
 #include "solve/coupling.h"
@@ -18,7 +18,7 @@
 
 /* ---- the design ---- */
 
-static void lay_out(hf_arena *arena, const hf_problem *p, hf_cases *c)
+static void lay_out(hf_arena *arena, const hf_problem *p, hf_load_case_stage *c)
 {
     size_t n = (size_t)p->model.n_node;
     c->cut_m = hf_arena_take(arena, (size_t)p->model.n_cable, sizeof(double));
@@ -28,11 +28,12 @@ static void lay_out(hf_arena *arena, const hf_problem *p, hf_cases *c)
     c->truss_force = hf_arena_take(arena, HF_TRUSS_DOF * (size_t)p->carrier.truss.n_node, sizeof(double));
 }
 
-hf_status hf_cases_take(const hf_problem *p, const hf_workspace *w, hf_cases *c, hf_messages *messages)
+hf_status hf_load_case_stage_take(const hf_problem *p, const hf_workspace *w, hf_load_case_stage *c,
+                                  hf_messages *messages)
 {
     char where[HF_PATH_SIZE + 96];
     hf_arena arena = {0};
-    hf_cases_free(c);
+    hf_load_case_stage_free(c);
     hf_config_place(&p->settings, "cases.0.name", where, sizeof where);
     HF_TRY(hf_built_make(where, &p->scene, &p->model, &p->settings.form, w, &c->built, messages));
     if (HF_ARENA_MAKE(&arena, lay_out(&arena, p, c)) != HF_OK ||
@@ -44,23 +45,23 @@ hf_status hf_cases_take(const hf_problem *p, const hf_workspace *w, hf_cases *c,
     return HF_OK;
 }
 
-void hf_cases_free(hf_cases *c)
+void hf_load_case_stage_free(hf_load_case_stage *c)
 {
     hf_workspace_free(&c->workspace);
     hf_built_free(&c->built);
     hf_arena_free(&(hf_arena){.block = c->block});
-    *c = (hf_cases){0};
+    *c = (hf_load_case_stage){0};
 }
 
 /* ---- one load case ---- */
 
 /* Returns the loads of the truss itself, its temperature and its weight. force [n_truss_node][6] receives the
  * weight. */
-static hf_frame_load load_of_truss(const hf_carrier *carrier, const hf_state *state, double *force)
+static hf_frame_load load_of_truss(const hf_carrier *carrier, const hf_load_case *load_case, double *force)
 {
     memset(force, 0, HF_TRUSS_DOF * (size_t)carrier->truss.n_node * sizeof *force);
-    hf_carrier_add_weight(carrier, state->gravity_m_per_s2, force);
-    return (hf_frame_load){.force = force, .temperature_K = state->member_rise_K};
+    hf_carrier_add_weight(carrier, load_case->gravity_m_per_s2, force);
+    return (hf_frame_load){.force = force, .temperature_K = load_case->member_rise_K};
 }
 
 /* Sets move_m [3 n_attachment] to the displacements of the attachments by the truss without the net, m. */
@@ -76,7 +77,7 @@ static hf_status move_attachments(const hf_carrier *carrier, const hf_frame_load
 }
 
 static void measure(const hf_built *b, const hf_carrier_state *truss, int n_member, const hf_workspace *w,
-                    hf_state_summary *s)
+                    hf_load_case_summary *s)
 {
     const hf_model *m = &b->model;
     double square = 0;
@@ -99,8 +100,8 @@ static void measure(const hf_built *b, const hf_carrier_state *truss, int n_memb
 
 /* Measures and stores a shape that was found. `truss` is the state of the truss in this load case, NULL without a
  * truss. */
-static hf_status keep_shape(const hf_problem *p, hf_cases *c, hf_store *store, const hf_carrier_state *truss,
-                            hf_state_summary *s, hf_messages *messages)
+static hf_status keep_shape(const hf_problem *p, hf_load_case_stage *c, hf_store *store, const hf_carrier_state *truss,
+                            hf_load_case_summary *s, hf_messages *messages)
 {
     const hf_model *m = &c->built.model;
     measure(&c->built, truss, truss ? p->carrier.truss.n_member : 0, &c->workspace, s);
@@ -111,22 +112,22 @@ static hf_status keep_shape(const hf_problem *p, hf_cases *c, hf_store *store, c
     return hf_store_built(store, s->name, m, &c->workspace, &p->carrier, truss, messages);
 }
 
-hf_status hf_cases_rest(const hf_problem *p, double *move_m)
+hf_status hf_load_case_stage_rest(const hf_problem *p, double *move_m)
 {
     size_t n_force = HF_TRUSS_DOF * (size_t)p->carrier.truss.n_node;
     hf_arena arena = {0};
     double *force = NULL;
     HF_TRY(HF_ARENA_MAKE(&arena, force = hf_arena_take(&arena, n_force, sizeof *force)));
     hf_status status = HF_OK;
-    for (int k = 0; k < p->states.n && status == HF_OK; k++) {
-        const hf_frame_load own = load_of_truss(&p->carrier, &p->states.state[k], force);
+    for (int k = 0; k < p->load_cases.n && status == HF_OK; k++) {
+        const hf_frame_load own = load_of_truss(&p->carrier, &p->load_cases.load_case[k], force);
         status = move_attachments(&p->carrier, &own, move_m + 3 * (size_t)k * (size_t)p->carrier.n_attachment);
     }
     hf_arena_free(&arena);
     return status;
 }
 
-hf_status hf_cases_rest_by_heat(const hf_problem *p, double *move_m_per_K)
+hf_status hf_load_case_stage_rest_by_heat(const hf_problem *p, double *move_m_per_K)
 {
     const hf_tolerance_settings *s = &p->settings.tolerance;
     const hf_truss *t = &p->carrier.truss;
@@ -144,8 +145,8 @@ hf_status hf_cases_rest_by_heat(const hf_problem *p, double *move_m_per_K)
     return status;
 }
 
-static hf_status run_state(const hf_problem *p, const hf_state *state, hf_cases *c, hf_store *store,
-                           hf_state_summary *s, hf_messages *messages)
+static hf_status run_load_case(const hf_problem *p, const hf_load_case *load_case, hf_load_case_stage *c,
+                               hf_store *store, hf_load_case_summary *s, hf_messages *messages)
 {
     bool has_truss = p->settings.has_truss;
     hf_frame_load own = {0};
@@ -153,12 +154,12 @@ static hf_status run_state(const hf_problem *p, const hf_state *state, hf_cases 
     hf_carrier_state truss = {0};
     hf_status status = HF_OK;
     if (has_truss) {
-        own = load_of_truss(&p->carrier, state, c->truss_force);
+        own = load_of_truss(&p->carrier, load_case, c->truss_force);
         status = move_attachments(&p->carrier, &own, c->attachment_move_m);
     }
     if (status != HF_OK) return hf_error(messages, status, "out of memory for the truss");
-    hf_built_state(&c->built, &p->states.material, state, has_truss ? c->attachment_move_m : NULL, c->cut_m, c->move_m,
-                   c->load_N, &net);
+    hf_built_load_case(&c->built, &p->load_cases.material, load_case, has_truss ? c->attachment_move_m : NULL, c->cut_m,
+                       c->move_m, c->load_N, &net);
     hf_built_solve(&c->built, &net, &c->workspace, &s->result);
     if (s->result.status != HF_OK) return HF_OK;
     if (has_truss) {
@@ -175,14 +176,14 @@ static hf_status run_state(const hf_problem *p, const hf_state *state, hf_cases 
 
 /* ---- all load cases ---- */
 
-static void blank(const char *name, hf_state_summary *s)
+static void blank(const char *name, hf_load_case_summary *s)
 {
-    *s = (hf_state_summary){.result.status = HF_NOT_EVALUATED};
+    *s = (hf_load_case_summary){.result.status = HF_NOT_EVALUATED};
     snprintf(s->name, sizeof s->name, "%s", name);
     s->least_tension_N = s->largest_tension_N = s->move_rms_m = s->largest_member_N = (double)NAN;
 }
 
-static void warn(const hf_state_summary *s, hf_messages *messages)
+static void warn(const hf_load_case_summary *s, hf_messages *messages)
 {
     const hf_form_result *r = &s->result;
     if (r->status != HF_OK)
@@ -192,16 +193,16 @@ static void warn(const hf_state_summary *s, hf_messages *messages)
                    r->n_slack == 1 ? " is" : "s are", r->n_loose, r->n_loose == 1 ? " is" : "s are");
 }
 
-hf_status hf_cases_run(const hf_problem *p, hf_cases *c, hf_store *store, const volatile sig_atomic_t *stop,
-                       hf_summary *summary, hf_messages *messages)
+hf_status hf_load_case_stage_run(const hf_problem *p, hf_load_case_stage *c, hf_store *store,
+                                 const volatile sig_atomic_t *stop, hf_summary *summary, hf_messages *messages)
 {
     c->workspace.stop = stop;
-    for (int k = 0; k < p->states.n; k++) {
-        hf_state_summary *s = &summary->state[k];
-        blank(p->states.state[k].name, s);
-        HF_TRY(run_state(p, &p->states.state[k], c, store, s, messages));
+    for (int k = 0; k < p->load_cases.n; k++) {
+        hf_load_case_summary *s = &summary->load_case[k];
+        blank(p->load_cases.load_case[k].name, s);
+        HF_TRY(run_load_case(p, &p->load_cases.load_case[k], c, store, s, messages));
         if (stop && *stop) return HF_INTERRUPTED;
-        summary->n_state = k + 1;
+        summary->n_load_case = k + 1;
         warn(s, messages);
     }
     return HF_OK;

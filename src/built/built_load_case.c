@@ -18,15 +18,16 @@ static void add_weight(const hf_built *b, const hf_material *t, const double g[3
     }
 }
 
-void hf_built_state(const hf_built *b, const hf_material *t, const hf_state *state, const double *attachment_move_m,
-                    double *cut_m, double *move_m, double *load_N, hf_built_net *net)
+void hf_built_load_case(const hf_built *b, const hf_material *t, const hf_load_case *load_case,
+                        const double *attachment_move_m, double *cut_m, double *move_m, double *load_N,
+                        hf_built_net *net)
 {
     const hf_model *m = &b->model;
-    const double *g = state->gravity_m_per_s2;
+    const double *g = load_case->gravity_m_per_s2;
     size_t n = (size_t)m->n_node;
     for (int e = 0; e < m->n_cable; e++) {
         cut_m[e] = b->scene.target[e];
-        if (state->rise_K[e] != 0) cut_m[e] *= 1 + t->expansion_per_K[e] * state->rise_K[e];
+        if (load_case->rise_K[e] != 0) cut_m[e] *= 1 + t->expansion_per_K[e] * load_case->rise_K[e];
     }
     if (m->load_N)
         memcpy(load_N, m->load_N, 3 * n * sizeof *load_N);
@@ -35,8 +36,8 @@ void hf_built_state(const hf_built *b, const hf_material *t, const hf_state *sta
     for (size_t row = 0; row < n; row++)
         for (size_t c = 0; c < 3; c++) {
             size_t at = 3 * (size_t)m->node_of_row[row] + c;
-            load_N[c * n + row] += state->force_N[at];
-            move_m[c * n + row] = state->move_m[at];
+            load_N[c * n + row] += load_case->force_N[at];
+            move_m[c * n + row] = load_case->move_m[at];
         }
     for (int k = 0; attachment_move_m && k < m->n_attachment; k++)
         for (size_t c = 0; c < 3; c++)

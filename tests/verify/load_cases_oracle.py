@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Oracle for load cases of the as-built net, independent of the program: dense numpy, its own bar truss.
 
-    states_oracle.py make N FOLDER       writes random cases FOLDER/1 ... FOLDER/N: net, truss (odd ones), load cases
-    states_oracle.py check N FOLDER      checks the results FOLDER/1.h5 ... FOLDER/N.h5
+    load_cases_oracle.py make N FOLDER       writes random cases FOLDER/1 to FOLDER/N: net, truss (odd ones), load cases
+    load_cases_oracle.py check N FOLDER      checks the results FOLDER/1.h5 ... FOLDER/N.h5
 
 `check` draws the same random numbers again. It takes only the design from the result (lengths and tensions of /form)
 and cuts the cables. It finds each load case by damped Newton steps, which minimise an energy. The energy is that of

@@ -1,5 +1,6 @@
 /* `cases`: named states of the net as built, from the case file to the summary, JSON, the result file, the exports and
- * the report. tests/unit/case/test_config_states.c has the faults of rows, tests/verify/test_states.c the figures. */
+ * the report. tests/unit/case/test_config_load_cases.c has the faults of rows, tests/verify/test_load_cases.c the
+ * figures. */
 #include "cli.h"
 
 #define EXAMPLE keep(source_path("configs/paraboloid-cases.yaml"))
@@ -11,7 +12,7 @@ static const char *run_example(void)
     return out;
 }
 
-START_TEST(states_are_printed_stored_and_shown)
+START_TEST(load_cases_are_printed_stored_and_shown)
 {
     const char *out = run_example(), *again = temp("again.h5");
     OUT("  cases         the net as built    psi mm  moved mm   loss dB    fitted  least N largest N slack loose "
@@ -53,7 +54,7 @@ START_TEST(states_are_printed_stored_and_shown)
 }
 END_TEST
 
-START_TEST(a_state_is_exported)
+START_TEST(a_load_case_is_exported)
 {
     const char *out = run_example(), *csv = temp("csv"), *vtk = temp("vtk");
     HIFDM(0, "export", out, "--csv", csv, "--case", "sun");
@@ -84,7 +85,7 @@ START_TEST(a_state_is_exported)
 END_TEST
 
 /* Goals over states of a net on a truss are the errors that the states have in the same file. */
-START_TEST(objectives_over_states_are_those_of_the_states)
+START_TEST(objectives_over_load_cases_are_those_of_the_load_cases)
 {
     HIFDM(
         0, "run", keep(source_path("configs/paraboloid-cases.yaml")), "-o", temp("goals.h5"), "--quiet", "--set",
@@ -156,7 +157,7 @@ START_TEST(a_truss_may_bend_by_its_weight)
 END_TEST
 
 /* A state without a shape is a warning: others have one. */
-START_TEST(a_state_without_a_shape_does_not_stop_the_others)
+START_TEST(a_load_case_without_a_shape_does_not_stop_the_others)
 {
     const char *c = file_with("c.yaml", SMALL_SCENE
                               "  EA_inner_N: 1e5\n  EA_boundary_N: 1e5\nform: {method: fdm, "
@@ -202,17 +203,17 @@ START_TEST(without_cases_there_is_nothing)
 }
 END_TEST
 
-Suite *suite_cli_cases(void)
+Suite *suite_cli_load_cases(void)
 {
-    Suite *suite = suite_create("cli/cases");
+    Suite *suite = suite_create("cli/load_cases");
     TCase *tcase = tcase_create("cases");
-    tcase_add_test(tcase, states_are_printed_stored_and_shown);
-    tcase_add_test(tcase, a_state_is_exported);
+    tcase_add_test(tcase, load_cases_are_printed_stored_and_shown);
+    tcase_add_test(tcase, a_load_case_is_exported);
     tcase_add_test(tcase, another_table_is_another_run);
-    tcase_add_test(tcase, objectives_over_states_are_those_of_the_states);
+    tcase_add_test(tcase, objectives_over_load_cases_are_those_of_the_load_cases);
     tcase_add_test(tcase, the_optimised_design_is_built);
     tcase_add_test(tcase, a_truss_may_bend_by_its_weight);
-    tcase_add_test(tcase, a_state_without_a_shape_does_not_stop_the_others);
+    tcase_add_test(tcase, a_load_case_without_a_shape_does_not_stop_the_others);
     tcase_add_test(tcase, a_net_that_hangs_loose_has_no_surface);
     tcase_add_test(tcase, without_cases_there_is_nothing);
     suite_add_tcase(suite, tcase);

@@ -16,11 +16,11 @@ struct read {
     hf_case c;
     hf_scene scene;
     hf_truss truss;
-    hf_states states;
+    hf_load_cases load_cases;
     char said[4000];
 };
 
-static hf_status read_states(const char *text, const char *table, struct read *r)
+static hf_status read_load_cases(const char *text, const char *table, struct read *r)
 {
     hf_messages messages = {0};
     char path[512], folder[512];
@@ -33,7 +33,7 @@ static hf_status read_states(const char *text, const char *table, struct read *r
     if (status == HF_OK) status = hf_config_scene(&r->c, &r->scene, &messages);
     if (status == HF_OK && r->c.has_truss) status = hf_config_truss(&r->c, &r->truss, &messages);
     if (status == HF_OK)
-        status = hf_config_states(&r->c, &r->scene, r->c.has_truss ? &r->truss : NULL, &r->states, &messages);
+        status = hf_config_load_cases(&r->c, &r->scene, r->c.has_truss ? &r->truss : NULL, &r->load_cases, &messages);
     copy_without_folder(messages.text ? messages.text : "", r->said, sizeof r->said);
     hf_messages_free(&messages);
     return status;
@@ -41,7 +41,7 @@ static hf_status read_states(const char *text, const char *table, struct read *r
 
 static void free_read(struct read *r)
 {
-    hf_states_free(&r->states);
+    hf_load_cases_free(&r->load_cases);
     hf_truss_free(&r->truss);
     hf_scene_free(&r->scene);
     hf_case_free(&r->c);
@@ -56,18 +56,18 @@ static bool is_in_set(const hf_scene *s, const char *set, int e)
 START_TEST(temperatures_by_set_and_part)
 {
     struct read r;
-    ck_assert_msg(read_states(TRUSS
-                              "cases:\n"
-                              "  - {name: cold, temperature_K: -100}\n"
-                              "  - {name: sun, gradient_K_per_m: [10, 0, 0], part: net}\n"
-                              "  - {name: cold, set: front, temperature_K: -120}\n"
-                              "  - {name: cold, part: truss, temperature_K: -60}\n"
-                              "  - {name: cold, part: vertical, temperature_K: -50, gradient_K_per_m: [0, 0, 2]}\n",
-                              "", &r) == HF_OK,
+    ck_assert_msg(read_load_cases(TRUSS
+                                  "cases:\n"
+                                  "  - {name: cold, temperature_K: -100}\n"
+                                  "  - {name: sun, gradient_K_per_m: [10, 0, 0], part: net}\n"
+                                  "  - {name: cold, set: front, temperature_K: -120}\n"
+                                  "  - {name: cold, part: truss, temperature_K: -60}\n"
+                                  "  - {name: cold, part: vertical, temperature_K: -50, gradient_K_per_m: [0, 0, 2]}\n",
+                                  "", &r) == HF_OK,
                   "%s", r.said);
     ck_assert_str_eq(r.said, "");
-    ck_assert_int_eq(r.states.n, 2);
-    const hf_state *cold = &r.states.state[0], *sun = &r.states.state[1];
+    ck_assert_int_eq(r.load_cases.n, 2);
+    const hf_load_case *cold = &r.load_cases.load_case[0], *sun = &r.load_cases.load_case[1];
     ck_assert_str_eq(cold->name, "cold");
     ck_assert_str_eq(sun->name, "sun");
     for (int e = 0; e < r.scene.n_cable; e++) {
@@ -89,18 +89,19 @@ END_TEST
 START_TEST(gravity_forces_and_moves_add_up)
 {
     struct read r;
-    ck_assert_msg(read_states(CABLES "cases:\n"
-                                     "  - {name: a, gravity_m_per_s2: 10, direction: [0, 3, -4]}\n"
-                                     "  - {name: a, force_N: [1, 0, 0], role: inner}\n"
-                                     "  - {name: a, force_N: [0, 2, 0], move_m: [0, 0, 0.1]}\n"
-                                     "  - {name: a, nodes: nodes.csv}\n"
-                                     "  - {name: b, gravity_m_per_s2: 2, temperature_K: 0}\n",
-                              "id,Fz_N,dz_m\nf0_0,5,\nf3_0,,0.25\n", &r) == HF_OK,
+    ck_assert_msg(read_load_cases(CABLES "cases:\n"
+                                         "  - {name: a, gravity_m_per_s2: 10, direction: [0, 3, -4]}\n"
+                                         "  - {name: a, force_N: [1, 0, 0], role: inner}\n"
+                                         "  - {name: a, force_N: [0, 2, 0], move_m: [0, 0, 0.1]}\n"
+                                         "  - {name: a, nodes: nodes.csv}\n"
+                                         "  - {name: b, gravity_m_per_s2: 2, temperature_K: 0}\n",
+                                  "id,Fz_N,dz_m\nf0_0,5,\nf3_0,,0.25\n", &r) == HF_OK,
                   "%s", r.said);
-    const hf_state *a = &r.states.state[0];
+    const hf_load_case *a = &r.load_cases.load_case[0];
     ck_assert_double_eq_tol(a->gravity_m_per_s2[1], 6, 1e-14);
     ck_assert_double_eq_tol(a->gravity_m_per_s2[2], -8, 1e-14);
-    ck_assert(r.states.state[1].gravity_m_per_s2[2] == -2 && r.states.state[1].gravity_m_per_s2[0] == 0);
+    ck_assert(r.load_cases.load_case[1].gravity_m_per_s2[2] == -2 &&
+              r.load_cases.load_case[1].gravity_m_per_s2[0] == 0);
     for (int i = 0; i < r.scene.n_node; i++) {
         bool is_support = r.scene.role[i] == HF_ROLE_SUPPORT;
         ck_assert(a->force_N[3 * i] == (r.scene.role[i] == HF_ROLE_INNER) && a->force_N[3 * i + 1] == 2);
@@ -115,8 +116,8 @@ END_TEST
 START_TEST(without_rows_there_is_nothing)
 {
     struct read r;
-    ck_assert_int_eq(read_states(NET, "", &r), HF_OK);
-    ck_assert(r.states.n == 0 && !r.states.block && !r.states.material.block);
+    ck_assert_int_eq(read_load_cases(NET, "", &r), HF_OK);
+    ck_assert(r.load_cases.n == 0 && !r.load_cases.block && !r.load_cases.material.block);
     free_read(&r);
 }
 END_TEST
@@ -186,25 +187,25 @@ static const struct {
 START_TEST(faults_have_their_place)
 {
     struct read r;
-    ck_assert_int_eq(read_states(fault[_i].text, fault[_i].table, &r), HF_BAD_CASE);
+    ck_assert_int_eq(read_load_cases(fault[_i].text, fault[_i].table, &r), HF_BAD_CASE);
     ck_assert_str_eq(r.said, fault[_i].said);
     free_read(&r);
 }
 END_TEST
 
-START_TEST(there_are_at_most_sixteen_states)
+START_TEST(there_are_at_most_sixteen_load_cases)
 {
     struct read r;
     char text[4000] = CABLES "cases:\n";
     for (int k = 0; k < 17; k++)
         snprintf(text + strlen(text), sizeof text - strlen(text), "  - {name: s%d, temperature_K: 1}\n", k);
-    ck_assert_int_eq(read_states(text, "", &r), HF_BAD_CASE);
+    ck_assert_int_eq(read_load_cases(text, "", &r), HF_BAD_CASE);
     ck_assert_str_eq(r.said, "error: c.yaml:24:12: cases.16.name: there are more than 16 states\n");
     free_read(&r);
 }
 END_TEST
 
-Suite *suite_unit_config_states(void)
+Suite *suite_unit_config_load_cases(void)
 {
     Suite *suite = suite_create("unit/config_states");
     TCase *tcase = tcase_create("config_states");
@@ -212,7 +213,7 @@ Suite *suite_unit_config_states(void)
     tcase_add_test(tcase, gravity_forces_and_moves_add_up);
     tcase_add_test(tcase, without_rows_there_is_nothing);
     tcase_add_loop_test(tcase, faults_have_their_place, 0, (int)(sizeof fault / sizeof *fault));
-    tcase_add_test(tcase, there_are_at_most_sixteen_states);
+    tcase_add_test(tcase, there_are_at_most_sixteen_load_cases);
     suite_add_tcase(suite, tcase);
     return suite;
 }

@@ -5,11 +5,12 @@
 #include <string.h>
 
 /* The object is NULL here; figures_of sets it for each load case. */
-#define FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_state_summary, NULL, #member, result.member, kind)
+#define FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_load_case_summary, NULL, #member, result.member, kind)
 #define COUPLING(type, member, kind, ...)                                                                              \
-    HF_HDF5_MEMBER(hf_state_summary, NULL, "coupling_" #member, result.coupling.member, kind)
-#define STATE(type, member, kind, ...) HF_HDF5_MEMBER(hf_state_summary, NULL, #member, member, kind)
-static const hf_hdf5_member figure_table[] = {HF_RESULT_LIST(FIGURE) HF_STATE_LIST(STATE) HF_COUPLING_LIST(COUPLING)};
+    HF_HDF5_MEMBER(hf_load_case_summary, NULL, "coupling_" #member, result.coupling.member, kind)
+#define LOAD_CASE(type, member, kind, ...) HF_HDF5_MEMBER(hf_load_case_summary, NULL, #member, member, kind)
+static const hf_hdf5_member figure_table[] = {HF_RESULT_LIST(FIGURE) HF_LOAD_CASE_LIST(LOAD_CASE)
+                                                  HF_COUPLING_LIST(COUPLING)};
 enum { N_FIGURE = HF_HDF5_COUNT(figure_table) };
 
 static hf_hdf5_array name_array(int n)
@@ -26,17 +27,17 @@ static void figures_of(const char *group, hf_hdf5_member table[N_FIGURE])
 
 void hf_layout_put_cases(hf_hdf5 *io, const hf_summary *summary)
 {
-    if (summary->n_state == 0) return;
-    const hf_hdf5_array array = name_array(summary->n_state);
-    char name[HF_STATES_MAX][HF_SET_NAME_SIZE] = {{0}}, path[HF_LAYOUT_STATE_SIZE];
+    if (summary->n_load_case == 0) return;
+    const hf_hdf5_array array = name_array(summary->n_load_case);
+    char name[HF_LOAD_CASES_MAX][HF_SET_NAME_SIZE] = {{0}}, path[HF_LAYOUT_LOAD_CASE_SIZE];
     hid_t group = hf_hdf5_make_group(io, "/cases");
-    for (int k = 0; k < summary->n_state; k++)
-        memcpy(name[k], summary->state[k].name, sizeof name[k]);
+    for (int k = 0; k < summary->n_load_case; k++)
+        memcpy(name[k], summary->load_case[k].name, sizeof name[k]);
     hf_layout_renew(io, "/cases/name");
     hf_hdf5_write_array(io, group, &array, name);
     hf_hdf5_close(io, group);
-    for (int k = 0; k < summary->n_state; k++) {
-        const hf_state_summary *s = &summary->state[k];
+    for (int k = 0; k < summary->n_load_case; k++) {
+        const hf_load_case_summary *s = &summary->load_case[k];
         hf_hdf5_member table[N_FIGURE];
         snprintf(path, sizeof path, "/cases/%s", s->name);
         figures_of(path, table);
@@ -56,16 +57,16 @@ static bool is_name_right(const char *name)
 
 void hf_layout_get_cases(hf_hdf5 *io, hf_summary *summary)
 {
-    char name[HF_STATES_MAX][HF_SET_NAME_SIZE] = {{0}}, path[HF_LAYOUT_STATE_SIZE];
+    char name[HF_LOAD_CASES_MAX][HF_SET_NAME_SIZE] = {{0}}, path[HF_LAYOUT_LOAD_CASE_SIZE];
     /* An unfinished result has shapes of load cases, but no list of their names yet. */
     if (!hf_hdf5_has(io, io->file, "/cases") || !hf_hdf5_has(io, io->file, "/cases/name")) return;
     hid_t group = hf_hdf5_open_group(io, "/cases");
-    int n = hf_hdf5_length(io, group, "name", HF_STATES_MAX);
+    int n = hf_hdf5_length(io, group, "name", HF_LOAD_CASES_MAX);
     const hf_hdf5_array array = name_array(n);
     hf_hdf5_read_array(io, group, &array, name);
     hf_hdf5_close(io, group);
     for (int k = 0; k < n && io->status == HF_OK; k++) {
-        hf_state_summary *s = &summary->state[k];
+        hf_load_case_summary *s = &summary->load_case[k];
         hf_hdf5_member table[N_FIGURE];
         name[k][HF_SET_NAME_SIZE - 1] = '\0';
         if (!is_name_right(name[k])) {
@@ -79,5 +80,5 @@ void hf_layout_get_cases(hf_hdf5 *io, hf_summary *summary)
         snprintf(path, sizeof path, "/cases/%s/surface", s->name);
         hf_layout_get_measures(io, path, summary->surface.frequencies_Hz.n, &s->measures);
     }
-    summary->n_state = n;
+    summary->n_load_case = n;
 }

@@ -10,8 +10,8 @@ struct built_net {
     double EA[400];
     hf_built built;
     hf_workspace work;
-    hf_states states;
-    hf_state *state;
+    hf_load_cases load_cases;
+    hf_load_case *load_case;
     double *cut_m, *move_m, *load_N, *attachment_move_m;
 };
 
@@ -26,9 +26,9 @@ static void build_design(struct built_net *b)
                   "%s", messages.text);
     ck_assert_int_eq(hf_workspace_create(&b->built.model, &b->work), HF_OK);
     hf_workspace_poison(&b->built.model, &b->work);
-    ck_assert_int_eq(hf_states_allocate(&net->scene, 0, 1, &b->states), HF_OK);
-    ck_assert_int_eq(hf_material_allocate(&net->scene, &b->states.material), HF_OK);
-    b->state = b->states.state;
+    ck_assert_int_eq(hf_load_cases_allocate(&net->scene, 0, 1, &b->load_cases), HF_OK);
+    ck_assert_int_eq(hf_material_allocate(&net->scene, &b->load_cases.material), HF_OK);
+    b->load_case = b->load_cases.load_case;
     size_t n = (size_t)net->model.n_node;
     b->cut_m = calloc((size_t)net->model.n_cable + 9 * n, sizeof *b->cut_m);
     ck_assert_ptr_nonnull(b->cut_m);
@@ -37,12 +37,13 @@ static void build_design(struct built_net *b)
     b->attachment_move_m = b->load_N + 3 * n;
 }
 
-static void find_state(struct built_net *b)
+static void find_load_case(struct built_net *b)
 {
     hf_built_net net;
     hf_form_result r;
-    hf_built_state(&b->built, &b->states.material, b->state, b->design.model.n_attachment ? b->attachment_move_m : NULL,
-                   b->cut_m, b->move_m, b->load_N, &net);
+    hf_built_load_case(&b->built, &b->load_cases.material, b->load_case,
+                       b->design.model.n_attachment ? b->attachment_move_m : NULL, b->cut_m, b->move_m, b->load_N,
+                       &net);
     ck_assert_int_eq(hf_built_solve(&b->built, &net, &b->work, &r), HF_OK);
 }
 
@@ -54,7 +55,7 @@ static double place_m(const struct built_net *b, int i_node, int c)
 static void close_built(struct built_net *b)
 {
     free(b->cut_m);
-    hf_states_free(&b->states);
+    hf_load_cases_free(&b->load_cases);
     hf_workspace_free(&b->work);
     hf_built_free(&b->built);
     b->design.scene.EA_N = NULL;
@@ -76,11 +77,11 @@ START_TEST(two_cables_in_line_under_temperature)
     build_design(&b);
     double l[2];
     for (int e = 0; e < 2; e++) {
-        b.states.material.expansion_per_K[e] = e ? 2e-5 : -1e-6;
-        b.state->rise_K[e] = -50 * (1 + e);
+        b.load_cases.material.expansion_per_K[e] = e ? 2e-5 : -1e-6;
+        b.load_case->rise_K[e] = -50 * (1 + e);
         l[e] = b.built.scene.target[e] * (1 + (e ? 2e-5 * -100 : -1e-6 * -50));
     }
-    find_state(&b);
+    find_load_case(&b);
     double T = (3 - l[0] - l[1]) / (l[0] / 2000 + l[1] / 5000);
     for (int e = 0; e < 2; e++)
         ck_assert_double_eq_tol(b.work.tension_N[e], T, 1e-9);
@@ -97,15 +98,15 @@ START_TEST(a_node_hangs_by_its_weight)
     OPEN_HAND(&b.design, line_node, line_cable, HF_METHOD_NEWTON);
     build_design(&b);
     const double *l0 = b.built.scene.target, g = 9.81;
-    hf_material *t = &b.states.material;
+    hf_material *t = &b.load_cases.material;
     t->node_mass_kg[1] = 0.5;
     t->node_mass_kg[0] = t->node_mass_kg[2] = 100; /* on supports */
     t->mass_kg_per_m[0] = 0.1;
     t->mass_kg_per_m[1] = 0.3;
-    b.state->gravity_m_per_s2[2] = -g;
-    b.state->force_N[3 * 1 + 2] = -1.5;
-    b.state->move_m[3 * 2 + 2] = -0.001;
-    find_state(&b);
+    b.load_case->gravity_m_per_s2[2] = -g;
+    b.load_case->force_N[3 * 1 + 2] = -1.5;
+    b.load_case->move_m[3 * 2 + 2] = -0.001;
+    find_load_case(&b);
     double weight = 1.5 + g * (0.5 + 0.1 * l0[0] / 2 + 0.3 * l0[1] / 2), k1 = 2000 / l0[0], k2 = 5000 / l0[1];
     double u = (weight + (k2 * (2.001 - l0[1]) - k1 * (1 - l0[0]))) / (k1 + k2);
     ck_assert_double_eq_tol(place_m(&b, 1, 2), -1 - u, 1e-13);
@@ -128,11 +129,11 @@ START_TEST(three_cables_hold_a_node)
     OPEN_HAND(&b.design, node, cable, HF_METHOD_NEWTON);
     build_design(&b);
     for (int e = 0; e < 3; e++) {
-        b.states.material.expansion_per_K[e] = 1e-5;
-        b.state->rise_K[e] = 150;
+        b.load_cases.material.expansion_per_K[e] = 1e-5;
+        b.load_case->rise_K[e] = 150;
     }
-    b.state->force_N[2] = -2;
-    find_state(&b);
+    b.load_case->force_N[2] = -2;
+    find_load_case(&b);
     double l0 = 1 / (1 + 8.0 / 3000) * (1 + 1e-5 * 150), low = 0, high = 1;
     for (int i = 0; i < 60; i++) {
         double z = (low + high) / 2, l = sqrt(1 + z * z);
@@ -169,15 +170,15 @@ START_TEST(uniform_heat_is_a_scaling)
     build_design(&b);
     const hf_model *m = &b.design.model;
     for (int e = 0; e < m->n_cable; e++) {
-        b.states.material.expansion_per_K[e] = 2.5e-5;
-        b.state->rise_K[e] = strain / 2.5e-5;
+        b.load_cases.material.expansion_per_K[e] = 2.5e-5;
+        b.load_case->rise_K[e] = strain / 2.5e-5;
     }
     const double *rest = b.built.scene.position_m;
     for (int i = 0; i < 3 * m->n_node; i++)
-        if (b.design.scene.role[i / 3] == HF_ROLE_SUPPORT) b.state->move_m[i] = strain * rest[i];
+        if (b.design.scene.role[i / 3] == HF_ROLE_SUPPORT) b.load_case->move_m[i] = strain * rest[i];
     for (int k = 0; k < 3 * m->n_attachment; k++)
         b.attachment_move_m[k] = strain * b.design.work.displacement_m[k];
-    find_state(&b);
+    find_load_case(&b);
     double largest_N = b.built.model.reference_N;
     for (int i = 0; i < 3 * m->n_node; i++)
         ck_assert_double_eq_tol(b.work.position_m[i], (1 + strain) * b.built.place_m[i], 1e-12 * 12);
@@ -213,14 +214,14 @@ START_TEST(gravity_upside_down_mirrors_a_flat_net)
     open_hand(&b.design, N, node, n_cable, cable, HF_METHOD_NEWTON);
     build_design(&b);
     for (int e = 0; e < n_cable; e++)
-        b.states.material.mass_kg_per_m[e] = rng_uniform(&rng, 0, 0.5);
+        b.load_cases.material.mass_kg_per_m[e] = rng_uniform(&rng, 0, 0.5);
     for (int i = 0; i < N; i++)
-        b.states.material.node_mass_kg[i] = rng_uniform(&rng, 0, 1);
-    b.state->gravity_m_per_s2[2] = -9.81;
-    find_state(&b);
+        b.load_cases.material.node_mass_kg[i] = rng_uniform(&rng, 0, 1);
+    b.load_case->gravity_m_per_s2[2] = -9.81;
+    find_load_case(&b);
     memcpy(below, b.work.position_m, sizeof below);
-    b.state->gravity_m_per_s2[2] = 9.81;
-    find_state(&b);
+    b.load_case->gravity_m_per_s2[2] = 9.81;
+    find_load_case(&b);
     double deepest = 0;
     for (int i = 0; i < N; i++) {
         ck_assert_double_eq_tol(b.work.position_m[i], below[i], 1e-10);
@@ -233,7 +234,7 @@ START_TEST(gravity_upside_down_mirrors_a_flat_net)
 }
 END_TEST
 
-Suite *suite_unit_built_state(void)
+Suite *suite_unit_built_load_case(void)
 {
     Suite *suite = suite_create("unit/built_state");
     TCase *tcase = tcase_create("built_state");
