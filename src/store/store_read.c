@@ -35,8 +35,7 @@ static void note_version(hf_hdf5 *io)
     hf_hdf5_get(io, io->file, "/", "version", HF_KIND_CHARS, version, sizeof version);
     hf_hdf5_get(io, io->file, "/", "git_describe", HF_KIND_CHARS, git, sizeof git);
     snprintf(both, sizeof both, "%s (%s)", version, git);
-    if (io->status == HF_OK && strcmp(both, hf_store_version()) != 0)
-        memcpy(io->made_by, both, sizeof both);
+    if (io->status == HF_OK && strcmp(both, hf_store_version()) != 0) memcpy(io->made_by, both, sizeof both);
 }
 
 hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
