@@ -60,7 +60,7 @@ struct run {
     double best_m = INFINITY;
     std::vector<double> best_at{};
     /* of one that asks for a design at a time */
-    std::vector<double> design_N{}, stack{};
+    std::vector<double> design{}, stack{};
     hf_form_result result{};
     ucontext_t here{};
     bool has_ended = false;
@@ -90,8 +90,8 @@ run *now; /* whose stack is in use */
 
 double run::ask(const double *v)
 {
-    design_N.resize(genes());
-    make_design(v, by_chain, design_N.data());
+    design.resize(genes());
+    make_design(v, by_chain, design.data());
     swapcontext(&here, &scheduler);
     note(cost_m(result));
     return cost_m(result);
@@ -130,7 +130,7 @@ void evaluate(std::vector<std::unique_ptr<run>> &active)
     std::vector<double> design;
     std::vector<hf_form_result> result(active.size());
     for (auto &r : active)
-        design.insert(design.end(), r->design_N.begin(), r->design_N.end());
+        design.insert(design.end(), r->design.begin(), r->design.end());
     hf_batch_run(&problem.batch, (int)active.size(), design.data(), nullptr, result.data());
     for (size_t i = 0; i < active.size(); i++)
         active[i]->result = result[i];
@@ -167,7 +167,7 @@ struct ours { /* with its own memory */
         settings.population = population;
         settings.generations = settings.stagnation_generations = 100000;
         settings.variation = variation;
-        if (hf_optimiser_create(&hf_optimiser_ga, &settings, &problem.model, problem.base_N, &o) != HF_OK) std::exit(5);
+        if (hf_optimiser_create(&hf_optimiser_ga, &settings, &problem.model, problem.initial, &o) != HF_OK) std::exit(5);
     }
     ours(const ours &) = delete;
     ~ours() { hf_optimiser_free(&o); }
@@ -180,7 +180,7 @@ void evolve(const char *name, hf_variation variation, unsigned seed, long limit)
     hf_population *p = &ga.o.population;
     try {
         do {
-            hf_batch_run(&problem.batch, p->n_individual, p->design_N, p->pending, p->result);
+            hf_batch_run(&problem.batch, p->n_individual, p->design, p->pending, p->result);
             for (int i = 0; i < p->n_individual; i++)
                 if (p->pending[i]) r.note(cost_m(p->result[i]));
             hf_optimiser_tell(&ga.o);
@@ -205,7 +205,7 @@ void evolve_pagmo(run &r, pagmo::algorithm algorithm)
     algorithm.set_seed(r.seed);
     pagmo::population p{pagmo::problem{function{r.by_chain}}, 0, r.seed};
     for (int i = 0; i < population; i++)
-        p.push_back(make_variables(start.o.population.design_N + (size_t)i * genes(), r.by_chain));
+        p.push_back(make_variables(start.o.population.design + (size_t)i * genes(), r.by_chain));
     for (long before = -1; before != r.used;) { /* it may have converged */
         before = r.used;
         p = algorithm.evolve(p);
@@ -226,7 +226,7 @@ void run_bobyqa(run &r)
     o.set_min_objective(ask_of, &r);
     o.set_initial_step(0.1);
     o.set_maxeval((int)r.limit - 1);
-    std::vector<double> v = make_variables(problem.base_N, r.by_chain);
+    std::vector<double> v = make_variables(problem.initial, r.by_chain);
     double least;
     o.optimize(v, least);
 }
@@ -287,7 +287,7 @@ void serve()
             ours start((unsigned)-head[1]);
             answer.push_back((double)n_variable);
             for (size_t i = 0; i < n; i++) {
-                auto one = make_variables(start.o.population.design_N + i * (size_t)genes(), by_chain);
+                auto one = make_variables(start.o.population.design + i * (size_t)genes(), by_chain);
                 answer.insert(answer.end(), one.begin(), one.end());
             }
         } else if (read_all(v.data(), v.size() * sizeof(double))) {
@@ -321,7 +321,7 @@ int main(int argc, char **argv)
         std::fprintf(stderr, "%s%s: %s\n", said.text ? said.text : "", argv[1], hf_status_text(status));
         return hf_status_exit_code(status);
     }
-    hf_batch_share(&problem.batch, problem.base_N);
+    hf_batch_share(&problem.batch, problem.initial);
     take_bounds(ours(1).o.population);
     if (serves) {
         serve();
