@@ -131,19 +131,20 @@ END_TEST
 
 /* ---- C++ ---- */
 
-static const char cpp_program[] = "#include <hifdm/hifdm.h>\n"
-                                  "#include <cstdio>\n"
-                                  "int main(int, char **argv)\n"
-                                  "{\n"
-                                  "    hf_messages said = {};\n"
-                                  "    hf_problem p = {};\n"
-                                  "    hf_status status = hf_problem_open(argv[1], nullptr, 0, 0, &p, &said);\n"
-                                  "    std::printf(\"%d variables, psi %.4f mm\\n\", p.model.n_variable, p.form.psi_m * 1e3);\n"
-                                  "    if (p.settings.form.method != HF_METHOD_HIFDM) std::puts(\"another method\");\n"
-                                  "    hf_problem_free(&p);\n"
-                                  "    hf_messages_free(&said);\n"
-                                  "    return hf_status_exit_code(status);\n"
-                                  "}\n";
+static const char cpp_program[] =
+    "#include <hifdm/hifdm.h>\n"
+    "#include <cstdio>\n"
+    "int main(int, char **argv)\n"
+    "{\n"
+    "    hf_messages said = {};\n"
+    "    hf_problem p = {};\n"
+    "    hf_status status = hf_problem_open(argv[1], nullptr, 0, 0, &p, &said);\n"
+    "    std::printf(\"%d variables, psi %.4f mm\\n\", p.model.n_variable, p.form.psi_m * 1e3);\n"
+    "    if (p.settings.form.method != HF_METHOD_HIFDM) std::puts(\"another method\");\n"
+    "    hf_problem_free(&p);\n"
+    "    hf_messages_free(&said);\n"
+    "    return hf_status_exit_code(status);\n"
+    "}\n";
 
 #define BUILD_CPP                                                                                                      \
     "PKG_CONFIG_PATH=\"$1/lib/pkgconfig\"; export PKG_CONFIG_PATH; $2 -std=c++11 -Wall -Wextra -Wpedantic -Werror "    \

@@ -33,12 +33,12 @@ std::vector<long> budgets;
 
 size_t objectives()
 {
-    return (size_t)problem.settings.optimize.n_objective;
+    return (size_t)problem.settings.optimize.n_front;
 }
 
 double cost(const hf_form_result &r, size_t j)
 {
-    return r.status == HF_OK ? r.goal[j] : hf_status_has_shape(r.status) ? 1e6 * (1 + r.violation) : 1e12;
+    return r.status == HF_OK ? r.objective[j] : hf_status_has_shape(r.status) ? 1e6 * (1 + r.violation) : 1e12;
 }
 
 void report(const char *name, bool by_chain, unsigned seed, long evaluations, const std::vector<std::vector<double>> &f)
@@ -62,7 +62,7 @@ struct ours { /* with its own memory */
         settings.seed = seed;
         settings.population = population;
         settings.generations = 100000;
-        if (hf_optimiser_create(&hf_optimiser_nsga, &settings, &problem.model, problem.base_N, &o) != HF_OK)
+        if (hf_optimiser_create(&hf_optimiser_nsga, &settings, &problem.model, problem.initial, &o) != HF_OK)
             std::exit(5);
     }
     ours(const ours &) = delete;
@@ -85,7 +85,7 @@ void evolve(unsigned seed)
     hf_population *p = &mine.o.population;
     size_t next = 0;
     for (;;) {
-        hf_batch_run(&problem.batch, p->n_individual, p->design_N, p->pending, p->result);
+        hf_batch_run(&problem.batch, p->n_individual, p->design, p->pending, p->result);
         hf_optimiser_tell(&mine.o);
         if (p->generation == 0) report("ours", false, seed, 0, values_of(p));
         for (; next < budgets.size() && p->n_evaluation + population > budgets[next]; next++)
@@ -125,7 +125,7 @@ void evolve_pagmo(bool by_chain, unsigned seed)
     ours start(seed);
     pagmo::population p{pagmo::problem{function{by_chain}}, 0, seed};
     for (int i = 0; i < population; i++)
-        p.push_back(make_variables(start.o.population.design_N + (size_t)i * genes(), by_chain));
+        p.push_back(make_variables(start.o.population.design + (size_t)i * genes(), by_chain));
     long used = population;
     for (size_t b = 0; b < budgets.size(); b++) {
         long n = (budgets[b] - used) / population; /* generations; it goes on with the population it is given */
@@ -161,7 +161,7 @@ int main(int argc, char **argv)
                      status != HF_OK ? hf_status_text(status) : "has no optimize.objectives");
         return status != HF_OK ? hf_status_exit_code(status) : 2;
     }
-    hf_batch_share(&problem.batch, problem.base_N);
+    hf_batch_share(&problem.batch, problem.initial);
     take_bounds(ours(1).o.population);
     for (unsigned seed = 1; seed <= (unsigned)std::atoi(argv[2]); seed++) {
         evolve(seed);
