@@ -238,47 +238,34 @@ static bool is_mine(const hf_run_request *q, int chunk)
     return q->task < 0 || q->tasks <= 0 || chunk % q->tasks == q->task;
 }
 
-static void tell(const job *j, long n_new, bool is_last)
+/* Passes the progress of this phase to the observer, if there is one. No design is evaluated here. */
+static void report(const job *j, hf_run_progress now)
 {
     const hf_run_request *q = j->stage->request;
-    long done = (long)j->samples.n_have * j->samples.n_chunk;
-    if (!q->observer) return;
-    hf_run_progress now = {.phase = HF_RUN_TOLERANCE,
-                           .best_psi_m = NAN,
-                           .merit = NAN,
-                           .samples = done < j->samples.n ? done : j->samples.n,
-                           .samples_all = j->samples.n,
-                           .evaluations = n_new,
-                           .is_last = is_last,
-                           .elapsed_s = hf_clock_s() - j->begin_s};
-    q->observer(q->observer_context, &now);
+    now.phase = HF_RUN_TOLERANCE;
+    now.best_psi_m = now.merit = NAN;
+    if (q->observer) q->observer(q->observer_context, &now);
 }
 
-/* Reports the phase without samples, because the first order takes a while in large nets. */
-static void tell_first_order(const job *j)
+static void report_samples(const job *j, long n_new, bool is_last)
 {
-    const hf_run_request *q = j->stage->request;
-    hf_run_progress now = {.phase = HF_RUN_TOLERANCE,
-                           .samples_all = j->stage->problem->settings.tolerance.samples,
-                           .best_psi_m = NAN,
-                           .merit = NAN};
-    if (q->observer) q->observer(q->observer_context, &now);
+    long done = (long)j->samples.n_have * j->samples.n_chunk;
+    report(j, (hf_run_progress){.samples = done < j->samples.n ? done : j->samples.n,
+                                .samples_all = j->samples.n,
+                                .evaluations = n_new,
+                                .is_last = is_last,
+                                .elapsed_s = hf_clock_s() - j->begin_s});
 }
 
 /* Reports the search for the scale: all samples exist, and some are solved again with scaled errors. */
-static void tell_scale(void *context, double scale)
+static void report_scale(void *context, double scale)
 {
     const job *j = context;
-    const hf_run_request *q = j->stage->request;
-    hf_run_progress now = {.phase = HF_RUN_TOLERANCE,
-                           .best_psi_m = NAN,
-                           .merit = NAN,
-                           .samples = j->samples.n,
-                           .samples_all = j->samples.n,
-                           .evaluations = j->samples.n,
-                           .sigma_scale = scale,
-                           .elapsed_s = hf_clock_s() - j->begin_s};
-    if (q->observer) q->observer(q->observer_context, &now);
+    report(j, (hf_run_progress){.samples = j->samples.n,
+                                .samples_all = j->samples.n,
+                                .evaluations = j->samples.n,
+                                .sigma_scale = scale,
+                                .elapsed_s = hf_clock_s() - j->begin_s});
 }
 
 static hf_status find_samples(job *j, hf_messages *messages)
@@ -286,7 +273,7 @@ static hf_status find_samples(job *j, hf_messages *messages)
     const hf_run_request *q = j->stage->request;
     hf_samples *s = &j->samples;
     long n_new = 0;
-    tell(j, 0, false);
+    report_samples(j, 0, false);
     for (int chunk = 0; chunk < s->n_all; chunk++) {
         int n;
         long first = hf_samples_first(s, chunk, &n);
@@ -296,7 +283,7 @@ static hf_status find_samples(job *j, hf_messages *messages)
         HF_TRY(status);
         HF_TRY(hf_samples_add(s, chunk, j->montecarlo.row));
         n_new += n;
-        tell(j, n_new, s->n_have == s->n_all);
+        report_samples(j, n_new, s->n_have == s->n_all);
     }
     return HF_OK;
 }
@@ -420,7 +407,7 @@ static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
     hf_status status = hf_statistics_sum_up(&j->montecarlo, &rows, to);
     if (status == HF_OK && t->yield > 0) {
         to->scale_samples = scale_samples(t);
-        j->montecarlo.tell = tell_scale;
+        j->montecarlo.tell = report_scale;
         j->montecarlo.tell_context = j;
         status = hf_montecarlo_find_scale(&j->montecarlo, to->scale_samples, &to->sigma_scale, &to->scale_bound);
     }
@@ -525,7 +512,8 @@ static hf_status work_off_stage(job *j, hf_summary *summary, hf_messages *messag
     place_section(&p->settings, place, sizeof place);
     HF_TRY(hf_built_make(place, &p->scene, &p->model, &p->settings.form, j->stage->shape, &j->built, messages));
     j->built.stop = j->stage->request->stop_requested;
-    tell_first_order(j);
+    /* before the first sample: the first order takes a while in large nets */
+    report(j, (hf_run_progress){.samples_all = p->settings.tolerance.samples});
     HF_TRY(open_montecarlo(j, messages));
     aim_beam(j, messages);
     HF_TRY(open_samples(j, messages));
