@@ -401,7 +401,7 @@ START_TEST(bad_tables_are_named)
 }
 END_TEST
 
-/* On a truss the places of a result are those after the truss has deflected, which must not be counted twice. */
+/* On a truss the positions of a result are those after the truss has deflected, which must not be counted twice. */
 START_TEST(the_design_on_a_truss_is_that_of_a_result)
 {
     assert_nothing_is_wrong(file_with("case.yaml", ON_TRUSS "coupling: {tof_m: 1e-13}\n" SECTIONS DESIGN), temp("r.h5"),

@@ -165,8 +165,8 @@ class Source:
                 yield "swapped arguments", a[0], b[1], two + self.text[a[1]:b[0]] + one
 
     def _is_symmetric(self, i):
-        """Returns whether the arguments of the call may be swapped: those of fmax and fmin, and of a strcmp of which
-        only the sign 0 matters."""
+        """Returns whether swapped arguments give the same result: those of SYMMETRIC, and of a strcmp that only tells
+        whether two texts are equal."""
         before = self.tokens[i - 2].text if i > 1 else ""
         after = self.tokens[self.partner[i] + 1].text if self.partner[i] + 1 < len(self.tokens) else ""
         name = self.tokens[i - 1].text

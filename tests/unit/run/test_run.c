@@ -1,4 +1,4 @@
-/* What an observer is told of a run, phase by phase: numbers that only grow, and that end where the summary ends. */
+/* What an observer of a run receives, phase by phase: numbers that never fall and end at those of the summary. */
 #include "support.h"
 
 #include <hifdm/run.h>
