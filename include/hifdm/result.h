@@ -78,14 +78,15 @@ typedef enum {
 const char *hf_bound_reason_word(int reason);
 const char *hf_bound_reason_meaning(int reason);
 
-/* ---- The list: X(type, member, kind, json, individual, key, units, description) ----
+/* ---- The list: X(type, member, kind, ...), where ... are members of hf_result_field by their names ----
  *
- *   kind         of the stored value: REAL, INT, or an enumeration of the store
- *   json         place in the JSON object of a stage; equal places keep the order of the list; 0: not there
- *   individual   place among the figures of one individual, which are data sets of /ga and columns of
- *                `hifdm evaluate`; 0: not there
- *   key          name in JSON; the HDF5 attribute has the name of the member
- *   description  description of the data set, if there is one
+ *   kind          of the stored value: REAL, INT, or an enumeration of the store
+ *   .json         place in the JSON object of a stage; equal places keep the order of the list; left out: not there
+ *   .individual   place among the figures of one individual, which are data sets of /ga and columns of
+ *                 `hifdm evaluate`; left out: not there
+ *   .key          name in JSON, if it differs from that of the member, which the HDF5 attribute has
+ *   .units        left out: none
+ *   .description  description of the data set, if there is one
  *
  * Attributes and columns of the ledger are in the order of the list. JSON has the figures of a coupling between places
  * 4 and 5. The REAL figures are NaN unless the status is HF_OK, HF_NOT_CONVERGED or that of a broken limit. In the
@@ -112,41 +113,50 @@ const char *hf_bound_reason_meaning(int reason);
  *   position_bound_m     for laws, loads and supports exactly as their doubles; NaN unless bound_reason is
  *                        HF_BOUND_PROVEN */
 #define HF_RESULT_LIST(X)                                                                                              \
-    X(hf_status, status, STATUS, 1, 1, "status", "", "ok = feasible; under any other psi is NaN")                      \
-    X(hf_stop_reason, stop_reason, STOP_REASON, 0, 0, "stop_reason", "", "why the iteration stopped")                  \
-    X(int, iterations, INT, 5, 2, "iterations", "", "linear solves")                                                   \
-    X(int, culprit, INT, 0, 0, "culprit", "", "what the status is about, see above, or -1")                            \
-    X(double, psi_m, REAL, 2, 1, "psi_m", "m", "RMS distance of the inner nodes")                                      \
-    X(double, residual_N, REAL, 4, 1, "residual_N", "N", "largest nodal force out of balance")                         \
-    X(double, tension_error, REAL, 4, 0, "tension_error", "", "max |T/T*-1| over cables of law tension; 0: none")      \
-    X(double, length_error, REAL, 4, 0, "length_error", "", "max |l/L*-1| over taut cables of law length or elastic")  \
-    X(double, inner_tension_ratio, REAL, 3, 1, "inner_tension_ratio", "", "largest over smallest")                     \
-    X(double, boundary_tension_ratio, REAL, 3, 1, "boundary_tension_ratio", "", "largest over smallest")               \
-    X(double, violation, REAL, 0, 3, "violation", "", "of the limits, summed over cables; 0: none")                    \
-    X(double, merit, REAL, 0, 3, "merit", "", "root of the sum of (weight x goal)^2; psi_m, in m, without goals")      \
-    X(double, shortest_length_ratio, REAL, 4, 0, "shortest_length_ratio", "", "min l / theoretical l over all cables") \
-    X(double, position_error_m, REAL, 4, 0, "position_error_m", "m", "estimate: largest move in one more Newton step") \
-    X(double, position_bound_m, REAL, 4, 0, "position_bound_m", "m", "no node is farther from equilibrium: proven")    \
-    X(double, psi_bound_m, REAL, 4, 0, "psi_bound_m", "m", "psi at equilibrium differs by no more: proven")            \
-    X(hf_bound_reason, bound_reason, BOUND_REASON, 4, 0, "bound_reason", "", "proven, or why the bounds are NaN")      \
-    X(double, condition, REAL, 4, 0, "condition", "", "estimate, of the Newton matrix, or D where there is none")      \
-    X(double, backward_error, REAL, 4, 0, "backward_error", "",                                                        \
-      "residual_N over the largest sum of tensions at a node")                                                         \
-    X(int, n_slack, INT, 5, 0, "slack_cables", "", "cables under HF_SLACK_RATIO of the reference tension")             \
-    X(int, n_loose, INT, 5, 0, "loose_nodes", "", "free nodes that no taut cable holds; psi is without them")          \
-    X(int, n_drifting, INT, 5, 0, "drifting_nodes", "", "free nodes that can move without a force: not unique")        \
-    X(int, n_loaded_chain, INT, 5, 0, "loaded_straight_chains", "",                                                    \
-      "chains under lateral load: their tensions mean nothing")
+    X(hf_status, status, STATUS, .json = 1, .individual = 1,                                                           \
+      .description = "ok = feasible; under any other psi is NaN")                                                      \
+    X(hf_stop_reason, stop_reason, STOP_REASON, .description = "why the iteration stopped")                            \
+    X(int, iterations, INT, .json = 5, .individual = 2, .description = "linear solves")                                \
+    X(int, culprit, INT, .description = "what the status is about, see above, or -1")                                  \
+    X(double, psi_m, REAL, .json = 2, .individual = 1, .units = "m", .description = "RMS distance of the inner nodes") \
+    X(double, residual_N, REAL, .json = 4, .individual = 1, .units = "N",                                              \
+      .description = "largest nodal force out of balance")                                                             \
+    X(double, tension_error, REAL, .json = 4, .description = "max |T/T*-1| over cables of law tension; 0: none")       \
+    X(double, length_error, REAL, .json = 4, .description = "max |l/L*-1| over taut cables of law length or elastic")  \
+    X(double, inner_tension_ratio, REAL, .json = 3, .individual = 1, .description = "largest over smallest")           \
+    X(double, boundary_tension_ratio, REAL, .json = 3, .individual = 1, .description = "largest over smallest")        \
+    X(double, violation, REAL, .individual = 3, .description = "of the limits, summed over cables; 0: none")           \
+    X(double, merit, REAL, .individual = 3,                                                                            \
+      .description = "root of the sum of (weight x goal)^2; psi_m, in m, without goals")                               \
+    X(double, shortest_length_ratio, REAL, .json = 4, .description = "min l / theoretical l over all cables")          \
+    X(double, position_error_m, REAL, .json = 4, .units = "m",                                                         \
+      .description = "estimate: largest move in one more Newton step")                                                 \
+    X(double, position_bound_m, REAL, .json = 4, .units = "m",                                                         \
+      .description = "no node is farther from equilibrium: proven")                                                    \
+    X(double, psi_bound_m, REAL, .json = 4, .units = "m",                                                              \
+      .description = "psi at equilibrium differs by no more: proven")                                                  \
+    X(hf_bound_reason, bound_reason, BOUND_REASON, .json = 4, .description = "proven, or why the bounds are NaN")      \
+    X(double, condition, REAL, .json = 4, .description = "estimate, of the Newton matrix, or D where there is none")   \
+    X(double, backward_error, REAL, .json = 4, .description = "residual_N over the largest sum of tensions at a node") \
+    X(int, n_slack, INT, .json = 5, .key = "slack_cables",                                                             \
+      .description = "cables under HF_SLACK_RATIO of the reference tension")                                           \
+    X(int, n_loose, INT, .json = 5, .key = "loose_nodes",                                                              \
+      .description = "free nodes that no taut cable holds; psi is without them")                                       \
+    X(int, n_drifting, INT, .json = 5, .key = "drifting_nodes",                                                        \
+      .description = "free nodes that can move without a force: not unique")                                           \
+    X(int, n_loaded_chain, INT, .json = 5, .key = "loaded_straight_chains",                                            \
+      .description = "chains under lateral load: their tensions mean nothing")
 
 /* The same list for the figures of the coupling of the net with its truss. */
 #define HF_COUPLING_LIST(X)                                                                                            \
-    X(hf_coupling_stop, stop_reason, COUPLING_STOP, 4, 0, "stop_reason", "", "how the coupling ended")                 \
-    X(int, iterations, INT, 1, 0, "iterations", "", "form-findings of the loop, or steps in one matrix")               \
-    X(double, step_m, REAL, 3, 0, "step_m", "m", "largest |F f - r| of an attachment: its move in the next iteration") \
-    X(double, ratio, REAL, 3, 0, "ratio", "", "of the last two steps; NaN before there are two")                       \
-    X(double, max_displacement_m, REAL, 2, 0, "max_displacement_m", "m", "largest displacement of an attachment")
+    X(hf_coupling_stop, stop_reason, COUPLING_STOP, .json = 4, .description = "how the coupling ended")                \
+    X(int, iterations, INT, .json = 1, .description = "form-findings of the loop, or steps in one matrix")             \
+    X(double, step_m, REAL, .json = 3, .units = "m",                                                                   \
+      .description = "largest |F f - r| of an attachment: its move in the next iteration")                             \
+    X(double, ratio, REAL, .json = 3, .description = "of the last two steps; NaN before there are two")                \
+    X(double, max_displacement_m, REAL, .json = 2, .units = "m", .description = "largest displacement of an attachment")
 
-#define HF_RESULT_MEMBER(type, member, kind, json, individual, key, units, description) type member;
+#define HF_RESULT_MEMBER(type, member, ...) type member;
 
 /* The figures of a coupling; all zero without a truss. */
 typedef struct {
@@ -184,24 +194,34 @@ typedef enum {
 
 /* A row of a list at run time. */
 typedef struct {
-    const char *name, *key, *units, *description; /* texts of the row */
+    const char *name, *key, *units, *description; /* texts of the row; key NULL: the name; units NULL: none */
     hf_result_kind kind;                          /* type of the stored value */
     int json, individual; /* places in JSON and among the figures of an individual; 0: not there */
     size_t offset, size;  /* offset and size of the member in its struct, bytes */
 } hf_result_field;
 
-#define HF_RESULT_COUNT(type, member, kind, json, individual, key, units, description) +1
-#define HF_RESULT_COUNT_INDIVIDUAL(type, member, kind, json, individual, key, units, description) +(individual > 0)
+/* Initialises an hf_result_field from a row about a member of `owner`. */
+#define HF_RESULT_FIELD(owner, type, member_, kind_, ...)                                                              \
+    {.name = #member_,                                                                                                 \
+     .kind = HF_RESULT_##kind_,                                                                                        \
+     .offset = offsetof(owner, member_),                                                                               \
+     .size = sizeof(type),                                                                                             \
+     __VA_ARGS__},
+
+#define HF_RESULT_COUNT(...) +1
 /* Numbers of rows of the two lists, and of those with a place among the figures of one individual. */
 enum {
     HF_RESULT_N = 0 HF_RESULT_LIST(HF_RESULT_COUNT),
     HF_COUPLING_N = 0 HF_COUPLING_LIST(HF_RESULT_COUNT),
-    HF_RESULT_N_INDIVIDUAL = 0 HF_RESULT_LIST(HF_RESULT_COUNT_INDIVIDUAL)
+    HF_RESULT_N_INDIVIDUAL = 8
 };
 enum { HF_RESULT_JSON_COUNTS = 5 }; /* first JSON place of the counts, which follow the figures of a coupling */
 
 extern const hf_result_field hf_result_field_of[HF_RESULT_N];     /* rows of HF_RESULT_LIST, for hf_form_result */
 extern const hf_result_field hf_coupling_field_of[HF_COUPLING_N]; /* rows of HF_COUPLING_LIST, for hf_coupling_result */
+
+/* Returns the name of a figure in JSON. */
+const char *hf_result_key(const hf_result_field *field);
 
 /* Writes the rows with a place among the figures of one individual into `field`, in the order of their places. The rows
  * are constants of the library. */

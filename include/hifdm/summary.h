@@ -21,70 +21,74 @@ HF_API_BEGIN
 
 #define HF_WARNINGS_SIZE 4096 /* bytes of the text of warnings */
 
-/* ---- The lists: X(type, member, kind, json, key, description) ----
+/* ---- The lists: rows as in HF_RESULT_LIST, without .individual and .units ----
  *
- *   kind   of the stored value, see HF_RESULT_LIST
- *   json   place in the JSON object of the stage, after the figures of its result; equal places keep the order of the
- *          list; 0: not there
- *   key    name in JSON; the attribute in HDF5 has the name of the member
+ *   .json   place in the JSON object of the stage, after the figures of its result
  *
  * The lists define the members of hf_summary and the JSON objects. In their own order they define the attributes in
  * HDF5 and the columns of a sweep's ledger. A new figure of a run is a row here and the code that computes it. */
 
 /* The net and the form-finding. */
 #define HF_SUMMARY_FORM_LIST(X)                                                                                        \
-    X(int, n_node, INT, 0, "", "nodes")                                                                                \
-    X(int, n_free, INT, 0, "", "nodes that are no supports")                                                           \
-    X(int, n_cable, INT, 0, "", "cables")                                                                              \
-    X(int, n_gene, INT, 0, "", "variables: pretensions of boundary cables, or what optimize.variables says")           \
-    X(int, half_bandwidth, INT, 0, "", "of the force density matrix")                                                  \
-    X(double, pretension_N, REAL, 0, "", "of the case, N")                                                             \
-    X(bool, has_own_tensions, TRUTH, 0, "", "1: no cable takes pretension_N, by the laws of all")                      \
-    X(double, form_wall_s, REAL, 1, "wall_s", "of the form-finding")
+    X(int, n_node, INT, .description = "nodes")                                                                        \
+    X(int, n_free, INT, .description = "nodes that are no supports")                                                   \
+    X(int, n_cable, INT, .description = "cables")                                                                      \
+    X(int, n_gene, INT, .description = "variables: pretensions of boundary cables, or what optimize.variables says")   \
+    X(int, half_bandwidth, INT, .description = "of the force density matrix")                                          \
+    X(double, pretension_N, REAL, .description = "of the case, N")                                                     \
+    X(bool, has_own_tensions, TRUTH, .description = "1: no cable takes pretension_N, by the laws of all")              \
+    X(double, form_wall_s, REAL, .json = 1, .key = "wall_s", .description = "of the form-finding")
 
 /* The genetic algorithm. */
 #define HF_SUMMARY_SEARCH_LIST(X)                                                                                      \
-    X(hf_solver, solver, SOLVER, 6, "solver", "of the individuals")                                                    \
-    X(double, base_psi_m, REAL, 2, "base_psi_m",                                                                       \
-      "of individual 0 of generation 0, the tensions found under the rule; NaN if infeasible")                         \
-    X(int, n_leader, INT, 5, "independent_genes", "independent genes")                                                 \
-    X(int, planes, INT, 0, "", "HF_PLANE_ bits of the symmetry (1 = x, 2 = y) that links the others")                  \
-    X(int, best_generation, INT, 3, "best_generation", "where the best was found, counted from 0")                     \
-    X(int, best_individual, INT, 3, "best_individual", "which individual of that generation, counted from 0")          \
-    X(int, generations, INT, 1, "generations", "number finished")                                                      \
-    X(long, evaluations, LONG, 1, "evaluations", "form-findings")                                                      \
-    X(long, infeasible, LONG, 1, "infeasible", "those without a feasible shape among them")                            \
-    X(int, best_n_at_lower, INT, 3, "at_lower_bound", "genes of the best at their lower bounds")                       \
-    X(int, best_n_at_upper, INT, 3, "at_upper_bound", "genes of the best at their upper bounds")                       \
-    X(hf_population_stop, optimize_stop, SEARCH_STOP, 7, "stop_reason", "why it ended")                                \
-    X(double, optimize_wall_s, REAL, 4, "wall_s", "wall-clock time")                                                   \
-    X(double, optimize_cpu_s, REAL, 4, "cpu_s", "breeding, evaluating and storing, over all threads; without waiting") \
-    X(double, store_cpu_s, REAL, 4, "store_cpu_s", "storing alone")
+    X(hf_solver, solver, SOLVER, .json = 6, .description = "of the individuals")                                       \
+    X(double, base_psi_m, REAL, .json = 2,                                                                             \
+      .description = "of individual 0 of generation 0, the tensions found under the rule; NaN if infeasible")          \
+    X(int, n_leader, INT, .json = 5, .key = "independent_genes", .description = "independent genes")                   \
+    X(int, planes, INT, .description = "HF_PLANE_ bits of the symmetry (1 = x, 2 = y) that links the others")          \
+    X(int, best_generation, INT, .json = 3, .description = "where the best was found, counted from 0")                 \
+    X(int, best_individual, INT, .json = 3, .description = "which individual of that generation, counted from 0")      \
+    X(int, generations, INT, .json = 1, .description = "number finished")                                              \
+    X(long, evaluations, LONG, .json = 1, .description = "form-findings")                                              \
+    X(long, infeasible, LONG, .json = 1, .description = "those without a feasible shape among them")                   \
+    X(int, best_n_at_lower, INT, .json = 3, .key = "at_lower_bound",                                                   \
+      .description = "genes of the best at their lower bounds")                                                        \
+    X(int, best_n_at_upper, INT, .json = 3, .key = "at_upper_bound",                                                   \
+      .description = "genes of the best at their upper bounds")                                                        \
+    X(hf_population_stop, optimize_stop, SEARCH_STOP, .json = 7, .key = "stop_reason", .description = "why it ended")  \
+    X(double, optimize_wall_s, REAL, .json = 4, .key = "wall_s", .description = "wall-clock time")                     \
+    X(double, optimize_cpu_s, REAL, .json = 4, .key = "cpu_s",                                                         \
+      .description = "breeding, evaluating and storing, over all threads; without waiting")                            \
+    X(double, store_cpu_s, REAL, .json = 4, .description = "storing alone")
 
 /* Levenberg-Marquardt. */
 #define HF_SUMMARY_REFINE_LIST(X)                                                                                      \
-    X(bool, polish_is_result, FLAG, 2, "is_result", "its design is the result, not only a comparison")                 \
-    X(int, polish_iterations, INT, 1, "lm_iterations", "steps of Levenberg-Marquardt")                                 \
-    X(int, polish_evaluations, INT, 1, "evaluations", "form-findings")                                                 \
-    X(hf_refine_stop, polish_stop, REFINE_STOP, 4, "stop_reason", "why it ended")                                      \
-    X(int, polish_n_at_lower, INT, 5, "at_lower_bound", "genes at their lower bounds")                                 \
-    X(int, polish_n_at_upper, INT, 5, "at_upper_bound", "genes at their upper bounds")                                 \
-    X(bool, polish_is_at_cap, FLAG, 5, "at_ratio_cap", "the cap on the boundary tension ratio holds it")               \
-    X(int, polish_n_at_limit, INT, 5, "at_limit", "limits of optimize.limits that hold it, cable by cable")            \
-    X(double, polish_wall_s, REAL, 3, "wall_s", "wall-clock time")
+    X(bool, polish_is_result, FLAG, .json = 2, .key = "is_result",                                                     \
+      .description = "its design is the result, not only a comparison")                                                \
+    X(int, polish_iterations, INT, .json = 1, .key = "lm_iterations", .description = "steps of Levenberg-Marquardt")   \
+    X(int, polish_evaluations, INT, .json = 1, .key = "evaluations", .description = "form-findings")                   \
+    X(hf_refine_stop, polish_stop, REFINE_STOP, .json = 4, .key = "stop_reason", .description = "why it ended")        \
+    X(int, polish_n_at_lower, INT, .json = 5, .key = "at_lower_bound", .description = "genes at their lower bounds")   \
+    X(int, polish_n_at_upper, INT, .json = 5, .key = "at_upper_bound", .description = "genes at their upper bounds")   \
+    X(bool, polish_is_at_cap, FLAG, .json = 5, .key = "at_ratio_cap",                                                  \
+      .description = "the cap on the boundary tension ratio holds it")                                                 \
+    X(int, polish_n_at_limit, INT, .json = 5, .key = "at_limit",                                                       \
+      .description = "limits of optimize.limits that hold it, cable by cable")                                         \
+    X(double, polish_wall_s, REAL, .json = 3, .key = "wall_s", .description = "wall-clock time")
 
 /* A load case of the as-built net (`cases`), besides the figures of its result. */
 #define HF_LOAD_CASE_LIST(X)                                                                                           \
-    X(double, least_tension_N, REAL, 1, "least_tension_N", "least tension of all cables")                              \
-    X(double, largest_tension_N, REAL, 1, "largest_tension_N", "largest tension of all cables")                        \
-    X(double, move_rms_m, REAL, 2, "move_rms_m", "RMS of how far the inner nodes are from their places in the design") \
-    X(double, largest_member_N, REAL, 3, "largest_member_N", "largest axial force of a truss member; NaN: no truss")
+    X(double, least_tension_N, REAL, .json = 1, .description = "least tension of all cables")                          \
+    X(double, largest_tension_N, REAL, .json = 1, .description = "largest tension of all cables")                      \
+    X(double, move_rms_m, REAL, .json = 2,                                                                             \
+      .description = "RMS of how far the inner nodes are from their places in the design")                             \
+    X(double, largest_member_N, REAL, .json = 3, .description = "largest axial force of a truss member; NaN: no truss")
 
 /* The truss. */
 #define HF_SUMMARY_TRUSS_LIST(X)                                                                                       \
-    X(double, mass_kg, REAL, 1, "mass_kg", "mass of members and hinges")                                               \
-    X(int, n_node, INT, 1, "nodes", "nodes of the truss")                                                              \
-    X(int, n_member, INT, 1, "members", "members of the truss")
+    X(double, mass_kg, REAL, .json = 1, .description = "mass of members and hinges")                                   \
+    X(int, n_node, INT, .json = 1, .key = "nodes", .description = "nodes of the truss")                                \
+    X(int, n_member, INT, .json = 1, .key = "members", .description = "members of the truss")
 
 /* Maximum number of sets in hf_set_tensions, for which a page has room. */
 #define HF_SUMMARY_SETS 16
@@ -122,7 +126,7 @@ typedef struct {
     bool is_front;                     /* the rows are those of optimize.objectives */
 } hf_objective_list;
 
-#define HF_SUMMARY_MEMBER(type, member, kind, json, key, description) type member;
+#define HF_SUMMARY_MEMBER(type, member, ...) type member;
 
 /* The figures of the truss. */
 typedef struct {

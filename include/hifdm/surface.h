@@ -20,55 +20,66 @@
 
 HF_API_BEGIN
 
-/* ---- The lists: X(type, member, kind, json, description) ----
+/* ---- The lists: rows as in HF_RESULT_LIST, without .individual, .key and .units ----
  *
- *   kind   of the stored value, see HF_RESULT_LIST; TRUTH is a bool stored as a number
- *   json   place in the JSON object `surface` of a stage, where the figures of the fit have the prefix fit_; equal
- *          places keep the order of the list, measures before the fit; 0: not there
+ *   kind    of the stored value; TRUTH is a bool stored as a number
+ *   .json   place in the JSON object `surface` of a stage, where the figures of the fit have the prefix fit_; equal
+ *           places keep the order of the list, measures before the fit; left out: not there
  *
  * Attributes in HDF5 (/surface/STAGE, those of the fit with the prefix fit_) are in the order of the lists. A new
  * figure is a row here and the code that computes it. */
 #define HF_SURFACE_LIST(X)                                                                                             \
-    X(double, z_rms_m, REAL, 1, "of the nodes' heights above their theoretical heights")                               \
-    X(double, normal_rms_m, REAL, 1, "RMS error along the normal at the inner nodes, raw")                             \
-    X(double, half_path_rms_m, REAL, 1, "RMS error of the half path length at the inner nodes, raw")                   \
-    X(double, faceting_rms_m, REAL, 4, "error of flat strips of width w, w^2/(24 sqrt(5) f); NaN without a width")     \
-    X(double, deviation_p50_m, REAL, 4, "of the distances in psi, as the next four: half of them are not above it")    \
-    X(double, deviation_p90_m, REAL, 4, "90 % of these distances are not above it")                                    \
-    X(double, deviation_p95_m, REAL, 4, "95 % of these distances are not above it")                                    \
-    X(double, deviation_p99_m, REAL, 4, "99 % of these distances are not above it")                                    \
-    X(double, deviation_max_m, REAL, 4, "largest of these distances")                                                  \
-    X(double, facet_half_path_rms_m, REAL, 7, "RMS over the facets, by projected area; NaN without facets")            \
-    X(double, facet_normal_rms_m, REAL, 7, "RMS over the facets along the normal")                                     \
-    X(double, facet_fit_half_path_rms_m, REAL, 7, "RMS over the facets after the best fit to them")                    \
-    X(double, facet_fit_normal_rms_m, REAL, 7, "RMS over the facets along the normal after that fit")                  \
-    X(double, facet_fit_focal_length_m, REAL, 7, "focal length of that best fit")                                      \
-    X(double, facet_area_m2, REAL, 7, "of the facets, projected along z")                                              \
-    X(double, pillow_rms_m, REAL, 7, "of how far the mesh is from flat facets; NaN without a mesh tension")            \
-    X(double, mesh_pull_ratio, REAL, 7, "largest N l / T of cables between facets; above 1 facets have no errors")     \
-    X(int, n_facet, INT, 7, "triangles and quadrilaterals of the net, seen along z")                                   \
-    X(int, n_open_face, INT, 7, "faces left out: of more than four sides, or not convex")                              \
-    X(double, ruze_limit_Hz, REAL, 6,                                                                                  \
-      "above it Ruze's formula does not hold: gain_loss_dB is NaN; INFINITY: no error")                                \
-    X(double, facet_ruze_limit_Hz, REAL, 8, "above it facet_gain_loss_dB is NaN; NaN without facets")                  \
-    X(double, facet_fit_ruze_limit_Hz, REAL, 8, "above it facet_fit_gain_loss_dB is NaN")
+    X(double, z_rms_m, REAL, .json = 1, .description = "of the nodes' heights above their theoretical heights")        \
+    X(double, normal_rms_m, REAL, .json = 1, .description = "RMS error along the normal at the inner nodes, raw")      \
+    X(double, half_path_rms_m, REAL, .json = 1,                                                                        \
+      .description = "RMS error of the half path length at the inner nodes, raw")                                      \
+    X(double, faceting_rms_m, REAL, .json = 4,                                                                         \
+      .description = "error of flat strips of width w, w^2/(24 sqrt(5) f); NaN without a width")                       \
+    X(double, deviation_p50_m, REAL, .json = 4,                                                                        \
+      .description = "of the distances in psi, as the next four: half of them are not above it")                       \
+    X(double, deviation_p90_m, REAL, .json = 4, .description = "90 % of these distances are not above it")             \
+    X(double, deviation_p95_m, REAL, .json = 4, .description = "95 % of these distances are not above it")             \
+    X(double, deviation_p99_m, REAL, .json = 4, .description = "99 % of these distances are not above it")             \
+    X(double, deviation_max_m, REAL, .json = 4, .description = "largest of these distances")                           \
+    X(double, facet_half_path_rms_m, REAL, .json = 7,                                                                  \
+      .description = "RMS over the facets, by projected area; NaN without facets")                                     \
+    X(double, facet_normal_rms_m, REAL, .json = 7, .description = "RMS over the facets along the normal")              \
+    X(double, facet_fit_half_path_rms_m, REAL, .json = 7,                                                              \
+      .description = "RMS over the facets after the best fit to them")                                                 \
+    X(double, facet_fit_normal_rms_m, REAL, .json = 7,                                                                 \
+      .description = "RMS over the facets along the normal after that fit")                                            \
+    X(double, facet_fit_focal_length_m, REAL, .json = 7, .description = "focal length of that best fit")               \
+    X(double, facet_area_m2, REAL, .json = 7, .description = "of the facets, projected along z")                       \
+    X(double, pillow_rms_m, REAL, .json = 7,                                                                           \
+      .description = "of how far the mesh is from flat facets; NaN without a mesh tension")                            \
+    X(double, mesh_pull_ratio, REAL, .json = 7,                                                                        \
+      .description = "largest N l / T of cables between facets; above 1 facets have no errors")                        \
+    X(int, n_facet, INT, .json = 7, .description = "triangles and quadrilaterals of the net, seen along z")            \
+    X(int, n_open_face, INT, .json = 7, .description = "faces left out: of more than four sides, or not convex")       \
+    X(double, ruze_limit_Hz, REAL, .json = 6,                                                                          \
+      .description = "above it Ruze's formula does not hold: gain_loss_dB is NaN; INFINITY: no error")                 \
+    X(double, facet_ruze_limit_Hz, REAL, .json = 8,                                                                    \
+      .description = "above it facet_gain_loss_dB is NaN; NaN without facets")                                         \
+    X(double, facet_fit_ruze_limit_Hz, REAL, .json = 8, .description = "above it facet_fit_gain_loss_dB is NaN")
 
 #define HF_SURFACE_FIT_LIST(X)                                                                                         \
-    X(double, half_path_rms_m, REAL, 3, "RMS of the nodes' errors against the fitted surface")                         \
-    X(double, normal_rms_m, REAL, 2, "RMS of the nodes' errors along the normal of the fitted surface")                \
-    X(double, focal_length_m, REAL, 3, "of the fitted surface")                                                        \
-    X(double, shift_x_m, REAL, 3, "shift of the fitted surface along x")                                               \
-    X(double, shift_y_m, REAL, 3, "shift of the fitted surface along y; 0 of a cylinder")                              \
-    X(double, shift_z_m, REAL, 3, "shift of the fitted surface along z")                                               \
-    X(double, rotation_x_rad, REAL, 3, "turn of the fitted surface about x")                                           \
-    X(double, rotation_y_rad, REAL, 3, "turn of the fitted surface about y")                                           \
-    X(double, rotation_z_rad, REAL, 3, "turn of the fitted surface about z; 0 of a paraboloid")                        \
-    X(double, ruze_limit_Hz, REAL, 6, "of hf_surface_measure: above it fit_gain_loss_dB is NaN")                       \
-    X(double, center_x_m, REAL, 0, "of the nodes")                                                                     \
-    X(double, center_y_m, REAL, 0, "of the nodes")                                                                     \
-    X(double, center_z_m, REAL, 0, "of the nodes")                                                                     \
-    X(int, iterations, INT, 0, "of the last fit")                                                                      \
-    X(bool, converged, TRUTH, 5, "false: all but the centre and iterations is NaN")
+    X(double, half_path_rms_m, REAL, .json = 3, .description = "RMS of the nodes' errors against the fitted surface")  \
+    X(double, normal_rms_m, REAL, .json = 2,                                                                           \
+      .description = "RMS of the nodes' errors along the normal of the fitted surface")                                \
+    X(double, focal_length_m, REAL, .json = 3, .description = "of the fitted surface")                                 \
+    X(double, shift_x_m, REAL, .json = 3, .description = "shift of the fitted surface along x")                        \
+    X(double, shift_y_m, REAL, .json = 3, .description = "shift of the fitted surface along y; 0 of a cylinder")       \
+    X(double, shift_z_m, REAL, .json = 3, .description = "shift of the fitted surface along z")                        \
+    X(double, rotation_x_rad, REAL, .json = 3, .description = "turn of the fitted surface about x")                    \
+    X(double, rotation_y_rad, REAL, .json = 3, .description = "turn of the fitted surface about y")                    \
+    X(double, rotation_z_rad, REAL, .json = 3, .description = "turn of the fitted surface about z; 0 of a paraboloid") \
+    X(double, ruze_limit_Hz, REAL, .json = 6,                                                                          \
+      .description = "of hf_surface_measure: above it fit_gain_loss_dB is NaN")                                        \
+    X(double, center_x_m, REAL, .description = "of the nodes")                                                         \
+    X(double, center_y_m, REAL, .description = "of the nodes")                                                         \
+    X(double, center_z_m, REAL, .description = "of the nodes")                                                         \
+    X(int, iterations, INT, .description = "of the last fit")                                                          \
+    X(bool, converged, TRUTH, .json = 5, .description = "false: all but the centre and iterations is NaN")
 
 /* Losses of gain by frequency (M17), dB: X(member, description). They are lists in JSON and data sets in HDF5. */
 #define HF_SURFACE_LOSS_LIST(X)                                                                                        \
@@ -77,7 +88,7 @@ HF_API_BEGIN
     X(facet_gain_loss_dB, "of the facets; NaN without facets")                                                         \
     X(facet_fit_gain_loss_dB, "of the facets after their best fit")
 
-#define HF_SURFACE_MEMBER(type, member, kind, json, description) type member;
+#define HF_SURFACE_MEMBER(type, member, ...) type member;
 
 /* The best fit of a surface to a set of points: the surface of the target kind with the minimum half-path RMS (METHOD
  * section 9). It is the target surface with another focal length, turned about the centre of the points by Rx(a) Ry(b)

@@ -50,34 +50,42 @@ typedef struct {
 #define HF_TOLERANCE_KINDS 8                                         /* number of kinds of errors */
 extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS]; /* words of the kinds of errors */
 
-/* X(type, member, kind, json, key, description): the figures of the samples, as the lists of summary.h. */
+/* The figures of the samples: rows as in the lists of summary.h. */
 #define HF_TOLERANCE_LIST(X)                                                                                           \
-    X(int, samples, INT, 1, "samples", "nets as built")                                                                \
-    X(int, n_failed, INT, 1, "failed", "those of them without a shape")                                                \
-    X(int, n_with_slack, INT, 1, "with_slack_cables", "those with slack cables")                                       \
-    X(int, n_with_loose, INT, 1, "with_loose_nodes", "those with nodes that no taut cable holds")                      \
-    X(double, nominal_psi_m, REAL, 2, "nominal_psi_m", "of the net without errors")                                    \
-    X(double, first_order_rms_psi_m, REAL, 2, "first_order_rms_psi_m", "root of the mean of psi^2, to first order")    \
-    X(double, psi_95_m, REAL, 2, "psi_95_m", "95 % of all nets do not exceed it; infinite: fewer have a shape")        \
-    X(double, rms_psi_m, REAL, 2, "rms_psi_m", "root of the mean of psi^2 of the samples with a shape")                \
-    X(double, rms_psi_low_m, REAL, 2, "rms_psi_low_m", "95 % interval of rms_psi_m: its lower end")                    \
-    X(double, rms_psi_high_m, REAL, 2, "rms_psi_high_m", "95 % interval of rms_psi_m: its upper end")                  \
-    X(double, controlled_rms_psi_m, REAL, 3, "controlled_rms_psi_m",                                                   \
-      "rms_psi_m with first order as a control variate")                                                               \
-    X(double, controlled_low_m, REAL, 3, "controlled_low_m", "95 % interval of controlled_rms_psi_m: its lower end")   \
-    X(double, controlled_high_m, REAL, 3, "controlled_high_m", "95 % interval of controlled_rms_psi_m: its upper end") \
-    X(double, correlation, REAL, 3, "correlation", "of psi^2 with psi^2 to first order; 1: first order holds")         \
-    X(double, variance_saved, REAL, 3, "variance_saved", "part of the variance of the mean of psi^2 that it takes")    \
-    X(double, yield, REAL, 4, "yield", "part of the samples that meets all rows of tolerance.require; NaN: no rows")   \
-    X(double, yield_low, REAL, 4, "yield_low", "95 % interval of the yield (Clopper and Pearson): its lower end")      \
-    X(double, yield_high, REAL, 4, "yield_high", "95 % interval of the yield: its upper end")                          \
-    X(double, wanted_yield, REAL, 4, "wanted_yield", "tolerance.yield of the case; NaN: none")                         \
-    X(double, sigma_scale, REAL, 4, "sigma_scale", "all errors times this give the wanted yield; NaN: not asked for")  \
-    X(int, scale_bound, INT, 4, "scale_bound", "1: sigma_scale is at least that, -1: below that; 0: just that")        \
-    X(int, scale_samples, INT, 4, "scale_samples", "of each yield on the way to it")                                   \
-    X(double, tolerance_wall_s, REAL, 5, "wall_s", "wall-clock time")
+    X(int, samples, INT, .json = 1, .description = "nets as built")                                                    \
+    X(int, n_failed, INT, .json = 1, .key = "failed", .description = "those of them without a shape")                  \
+    X(int, n_with_slack, INT, .json = 1, .key = "with_slack_cables", .description = "those with slack cables")         \
+    X(int, n_with_loose, INT, .json = 1, .key = "with_loose_nodes",                                                    \
+      .description = "those with nodes that no taut cable holds")                                                      \
+    X(double, nominal_psi_m, REAL, .json = 2, .description = "of the net without errors")                              \
+    X(double, first_order_rms_psi_m, REAL, .json = 2, .description = "root of the mean of psi^2, to first order")      \
+    X(double, psi_95_m, REAL, .json = 2,                                                                               \
+      .description = "95 % of all nets do not exceed it; infinite: fewer have a shape")                                \
+    X(double, rms_psi_m, REAL, .json = 2, .description = "root of the mean of psi^2 of the samples with a shape")      \
+    X(double, rms_psi_low_m, REAL, .json = 2, .description = "95 % interval of rms_psi_m: its lower end")              \
+    X(double, rms_psi_high_m, REAL, .json = 2, .description = "95 % interval of rms_psi_m: its upper end")             \
+    X(double, controlled_rms_psi_m, REAL, .json = 3, .description = "rms_psi_m with first order as a control variate") \
+    X(double, controlled_low_m, REAL, .json = 3,                                                                       \
+      .description = "95 % interval of controlled_rms_psi_m: its lower end")                                           \
+    X(double, controlled_high_m, REAL, .json = 3,                                                                      \
+      .description = "95 % interval of controlled_rms_psi_m: its upper end")                                           \
+    X(double, correlation, REAL, .json = 3, .description = "of psi^2 with psi^2 to first order; 1: first order holds") \
+    X(double, variance_saved, REAL, .json = 3,                                                                         \
+      .description = "part of the variance of the mean of psi^2 that it takes")                                        \
+    X(double, yield, REAL, .json = 4,                                                                                  \
+      .description = "part of the samples that meets all rows of tolerance.require; NaN: no rows")                     \
+    X(double, yield_low, REAL, .json = 4,                                                                              \
+      .description = "95 % interval of the yield (Clopper and Pearson): its lower end")                                \
+    X(double, yield_high, REAL, .json = 4, .description = "95 % interval of the yield: its upper end")                 \
+    X(double, wanted_yield, REAL, .json = 4, .description = "tolerance.yield of the case; NaN: none")                  \
+    X(double, sigma_scale, REAL, .json = 4,                                                                            \
+      .description = "all errors times this give the wanted yield; NaN: not asked for")                                \
+    X(int, scale_bound, INT, .json = 4,                                                                                \
+      .description = "1: sigma_scale is at least that, -1: below that; 0: just that")                                  \
+    X(int, scale_samples, INT, .json = 4, .description = "of each yield on the way to it")                             \
+    X(double, tolerance_wall_s, REAL, .json = 5, .key = "wall_s", .description = "wall-clock time")
 
-#define HF_TOLERANCE_MEMBER(type, member, kind, json, key, description) type member;
+#define HF_TOLERANCE_MEMBER(type, member, ...) type member;
 /* The result of the tolerance analysis. */
 typedef struct {
     HF_TOLERANCE_LIST(HF_TOLERANCE_MEMBER)

@@ -53,14 +53,15 @@ const char *hf_bound_reason_meaning(int reason)
 
 /* ---- the lists of fields ---- */
 
-#define RESULT_FIELD(type, member, kind, json, individual, key, units, description)                                    \
-    {#member,     key, units, description, HF_RESULT_##kind, json, individual, offsetof(hf_form_result, member),       \
-     sizeof(type)},
-#define COUPLING_FIELD(type, member, kind, json, individual, key, units, description)                                  \
-    {#member,     key, units, description, HF_RESULT_##kind, json, individual, offsetof(hf_coupling_result, member),   \
-     sizeof(type)},
+#define RESULT_FIELD(...) HF_RESULT_FIELD(hf_form_result, __VA_ARGS__)
+#define COUPLING_FIELD(...) HF_RESULT_FIELD(hf_coupling_result, __VA_ARGS__)
 const hf_result_field hf_result_field_of[HF_RESULT_N] = {HF_RESULT_LIST(RESULT_FIELD)};
 const hf_result_field hf_coupling_field_of[HF_COUPLING_N] = {HF_COUPLING_LIST(COUPLING_FIELD)};
+
+const char *hf_result_key(const hf_result_field *f)
+{
+    return f->key ? f->key : f->name;
+}
 
 void hf_result_blank(hf_form_result *r)
 {

@@ -228,23 +228,15 @@ static void write_truss(const page *p, FILE *f)
  * for. */
 static void write_figures(FILE *f)
 {
-    static const struct {
-        const char *key, *units, *description;
-        int json; /* 0: not in JSON */
-    } figure[] = {
-#define FIGURE(type, member, kind, json, individual, key, units, description) {key, units, description, json},
-        HF_RESULT_LIST(FIGURE)
-#undef FIGURE
-    };
     hf_json j = {.file = f};
     fputs(",\n", f);
     hf_json_open(&j, "figures", '[');
-    for (size_t i = 0; i < sizeof figure / sizeof *figure; i++) {
-        if (!figure[i].json) continue;
+    for (const hf_result_field *figure = hf_result_field_of; figure < hf_result_field_of + HF_RESULT_N; figure++) {
+        if (!figure->json) continue;
         hf_json_open(&j, NULL, '{');
-        hf_json_text(&j, "key", figure[i].key);
-        hf_json_text(&j, "units", figure[i].units);
-        hf_json_text(&j, "description", figure[i].description);
+        hf_json_text(&j, "key", hf_result_key(figure));
+        hf_json_text(&j, "units", figure->units ? figure->units : "");
+        hf_json_text(&j, "description", figure->description);
         hf_json_close(&j, '}');
     }
     hf_json_close(&j, ']');

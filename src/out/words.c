@@ -11,31 +11,33 @@
 
 /* ---- entries from the lists of figures and statuses ---- */
 
-#define SHAPE "figure of form, optimize, polish, cases"
-#define RESULT(type, member, kind, json, individual, key, units, description) {key, SHAPE, units, description, NULL},
-#define COUPLING(type, member, kind, json, individual, key, units, description)                                        \
-    {key, "figure of coupling", units, description, NULL},
-#define FORM(type, member, kind, json, key, description)                                                               \
-    {json ? key : #member, "figure of form", "", description, NULL},
-#define GA(type, member, kind, json, key, description)                                                                 \
-    {json ? key : #member, "figure of optimize", "", description, NULL},
-#define REFINE(type, member, kind, json, key, description) {key, "figure of polish", "", description, NULL},
-#define LOAD_CASE(type, member, kind, json, key, description) {key, "figure of cases", "", description, NULL},
-#define TRUSS(type, member, kind, json, key, description) {key, "figure of truss", "", description, NULL},
-#define TOLERANCE(type, member, kind, json, key, description) {key, "figure of tolerance", "", description, NULL},
-#define SURFACE(type, member, kind, json, description) {#member, "figure of surface", "", description, NULL},
-#define FIT(type, member, kind, json, description)                                                                     \
-    {"fit_" #member, "figure of surface, best fit", "", description, NULL},
-#define LOSS(member, description) {#member, "figure of surface", "dB", description, NULL},
+#define ROW(kind, owner, ...) {kind, HF_RESULT_FIELD(owner, __VA_ARGS__)},
+#define RESULT(...) ROW("figure of form, optimize, polish, cases", hf_form_result, __VA_ARGS__)
+#define COUPLING(...) ROW("figure of coupling", hf_coupling_result, __VA_ARGS__)
+#define FORM(...) ROW("figure of form", hf_summary, __VA_ARGS__)
+#define SEARCH(...) ROW("figure of optimize", hf_summary, __VA_ARGS__)
+#define REFINE(...) ROW("figure of polish", hf_summary, __VA_ARGS__)
+#define LOAD_CASE(...) ROW("figure of cases", hf_load_case_summary, __VA_ARGS__)
+#define TRUSS(...) ROW("figure of truss", hf_truss_summary, __VA_ARGS__)
+#define TOLERANCE(...) ROW("figure of tolerance", hf_tolerance_summary, __VA_ARGS__)
+#define SURFACE(...) ROW("figure of surface", hf_surface_measures, __VA_ARGS__)
+#define FIT(type, member, ...)                                                                                         \
+    ROW("figure of surface, best fit", hf_surface_fit, type, member, __VA_ARGS__, .key = "fit_" #member)
+static const struct {
+    const char *kind;
+    hf_result_field field;
+} figure[] = {HF_RESULT_LIST(RESULT) HF_COUPLING_LIST(COUPLING) HF_SUMMARY_FORM_LIST(FORM)
+                  HF_SUMMARY_SEARCH_LIST(SEARCH) HF_SUMMARY_REFINE_LIST(REFINE) HF_LOAD_CASE_LIST(LOAD_CASE)
+                      HF_SUMMARY_TRUSS_LIST(TRUSS) HF_TOLERANCE_LIST(TOLERANCE) HF_SURFACE_LIST(SURFACE)
+                          HF_SURFACE_FIT_LIST(FIT)};
+enum { N_FIGURE = sizeof figure / sizeof *figure };
+
 #define STATUS(name, value, code, word, text) {word, "status; exit status " #code, "", text, NULL},
 #define PROOF(name, value, word, meaning) {word, "bound_reason", "", meaning, NULL},
-
-static const hf_word listed[] = {
-    HF_STATUS_LIST(STATUS) HF_BOUND_REASON_LIST(PROOF) HF_RESULT_LIST(RESULT) HF_COUPLING_LIST(COUPLING)
-        HF_SUMMARY_FORM_LIST(FORM) HF_SUMMARY_SEARCH_LIST(GA) HF_SUMMARY_REFINE_LIST(REFINE)
-            HF_LOAD_CASE_LIST(LOAD_CASE) HF_SUMMARY_TRUSS_LIST(TRUSS) HF_TOLERANCE_LIST(TOLERANCE)
-                HF_SURFACE_LIST(SURFACE) HF_SURFACE_FIT_LIST(FIT) HF_SURFACE_LOSS_LIST(LOSS)};
-enum { N_LISTED = sizeof listed / sizeof *listed };
+#define LOSS(member, description) {#member, "figure of surface", "dB", description, NULL},
+static const hf_word listed[] = {HF_STATUS_LIST(STATUS) HF_BOUND_REASON_LIST(PROOF)};
+static const hf_word loss[] = {HF_SURFACE_LOSS_LIST(LOSS)};
+enum { N_LISTED = sizeof listed / sizeof *listed, N_LOSS = sizeof loss / sizeof *loss };
 
 /* ---- other entries ---- */
 
@@ -394,13 +396,18 @@ enum { N_TOLD = sizeof told / sizeof *told };
 
 int hf_word_count(void)
 {
-    return N_LISTED + N_TOLD + hf_n_words_warning + hf_n_words_case + hf_n_words_adjust;
+    return N_LISTED + N_FIGURE + N_LOSS + N_TOLD + hf_n_words_warning + hf_n_words_case + hf_n_words_adjust;
 }
 
 hf_word hf_word_at(int i)
 {
     if (i < N_LISTED) return listed[i];
-    if ((i -= N_LISTED) < N_TOLD) return told[i];
+    if ((i -= N_LISTED) < N_FIGURE) {
+        const hf_result_field *f = &figure[i].field;
+        return (hf_word){hf_result_key(f), figure[i].kind, f->units ? f->units : "", f->description, NULL};
+    }
+    if ((i -= N_FIGURE) < N_LOSS) return loss[i];
+    if ((i -= N_LOSS) < N_TOLD) return told[i];
     if ((i -= N_TOLD) < hf_n_words_warning) return hf_words_warning[i];
     return (i -= hf_n_words_warning) < hf_n_words_case ? hf_words_case[i] : hf_words_adjust[i - hf_n_words_case];
 }

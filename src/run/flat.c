@@ -194,7 +194,7 @@ static const char *kind_word(hf_result_kind kind)
 
 static const char *of_field(const hf_result_field *field, int column)
 {
-    if (column == COLUMN_UNIT) return field->units;
+    if (column == COLUMN_UNIT) return field->units ? field->units : "";
     if (column == COLUMN_HELP) return field->description;
     return column == COLUMN_KIND ? kind_word(field->kind) : field->name;
 }

@@ -20,25 +20,20 @@ double hf_summary_utilisation(const hf_summary *s)
 
 /* ---- figures by the lists ---- */
 
-#define FIELD(type, member, kind, json, key, description)                                                              \
-    {#member, key, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_summary, member), sizeof(type)},
-#define TRUSS_FIELD(type, member, kind, json, key, description)                                                        \
-    {#member, key, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_truss_summary, member), sizeof(type)},
-#define MEASURE(type, member, kind, json, description)                                                                 \
-    {#member, #member, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_surface_measures, member), sizeof(type)},
-#define FIT(type, member, kind, json, description)                                                                     \
-    {#member,     "fit_" #member, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_surface_fit, member),        \
-     sizeof(type)},
-static const hf_result_field form_field[] = {HF_SUMMARY_FORM_LIST(FIELD)};
-static const hf_result_field ga_field[] = {HF_SUMMARY_SEARCH_LIST(FIELD)};
-static const hf_result_field refine_field[] = {HF_SUMMARY_REFINE_LIST(FIELD)};
-#define TOLERANCE(type, member, kind, json, key, description)                                                          \
-    {#member, key, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_tolerance_summary, member), sizeof(type)},
+#define FORM(...) HF_RESULT_FIELD(hf_summary, __VA_ARGS__)
+#define SEARCH(...) HF_RESULT_FIELD(hf_summary, __VA_ARGS__)
+#define REFINE(...) HF_RESULT_FIELD(hf_summary, __VA_ARGS__)
+#define TRUSS(...) HF_RESULT_FIELD(hf_truss_summary, __VA_ARGS__)
+#define TOLERANCE(...) HF_RESULT_FIELD(hf_tolerance_summary, __VA_ARGS__)
+#define LOAD_CASE(...) HF_RESULT_FIELD(hf_load_case_summary, __VA_ARGS__)
+#define MEASURE(...) HF_RESULT_FIELD(hf_surface_measures, __VA_ARGS__)
+#define FIT(type, member, ...) HF_RESULT_FIELD(hf_surface_fit, type, member, __VA_ARGS__, .key = "fit_" #member)
+static const hf_result_field form_field[] = {HF_SUMMARY_FORM_LIST(FORM)};
+static const hf_result_field search_field[] = {HF_SUMMARY_SEARCH_LIST(SEARCH)};
+static const hf_result_field refine_field[] = {HF_SUMMARY_REFINE_LIST(REFINE)};
 static const hf_result_field tolerance_field[] = {HF_TOLERANCE_LIST(TOLERANCE)};
-static const hf_result_field truss_field[] = {HF_SUMMARY_TRUSS_LIST(TRUSS_FIELD)};
-#define LOAD_CASE_FIELD(type, member, kind, json, key, description)                                                    \
-    {#member, key, "", description, HF_RESULT_##kind, json, 0, offsetof(hf_load_case_summary, member), sizeof(type)},
-static const hf_result_field load_case_field[] = {HF_LOAD_CASE_LIST(LOAD_CASE_FIELD)};
+static const hf_result_field truss_field[] = {HF_SUMMARY_TRUSS_LIST(TRUSS)};
+static const hf_result_field load_case_field[] = {HF_LOAD_CASE_LIST(LOAD_CASE)};
 static const hf_result_field measure_field[] = {HF_SURFACE_LIST(MEASURE)};
 static const hf_result_field fit_field[] = {HF_SURFACE_FIT_LIST(FIT)};
 #define ALL(table) table, (int)(sizeof(table) / sizeof(table)[0])
@@ -46,42 +41,43 @@ static const hf_result_field fit_field[] = {HF_SURFACE_FIT_LIST(FIT)};
 static void write_field(const hf_result_field *field, const void *owner, hf_json *j)
 {
     const void *value = (const char *)owner + field->offset;
+    const char *key = hf_result_key(field);
     int number = 0;
     if (field->size == sizeof number) memcpy(&number, value, sizeof number); /* enumerations have the size of an int */
     switch (field->kind) {
     case HF_RESULT_REAL:
-        hf_json_number(j, field->key, *(const double *)value);
+        hf_json_number(j, key, *(const double *)value);
         break;
     case HF_RESULT_INT:
-        hf_json_integer(j, field->key, number);
+        hf_json_integer(j, key, number);
         break;
     case HF_RESULT_LONG:
-        hf_json_integer(j, field->key, *(const long *)value);
+        hf_json_integer(j, key, *(const long *)value);
         break;
     case HF_RESULT_FLAG:
     case HF_RESULT_TRUTH:
-        hf_json_bool(j, field->key, *(const bool *)value);
+        hf_json_bool(j, key, *(const bool *)value);
         break;
     case HF_RESULT_REFINE_STOP:
-        hf_json_text(j, field->key, hf_refine_stop_word[number]);
+        hf_json_text(j, key, hf_refine_stop_word[number]);
         break;
     case HF_RESULT_STATUS:
-        hf_json_text(j, field->key, hf_status_word((hf_status)number));
+        hf_json_text(j, key, hf_status_word((hf_status)number));
         break;
     case HF_RESULT_STOP_REASON:
-        hf_json_text(j, field->key, hf_stop_reason_word(number));
+        hf_json_text(j, key, hf_stop_reason_word(number));
         break;
     case HF_RESULT_COUPLING_STOP:
-        hf_json_text(j, field->key, hf_coupling_stop_word(number));
+        hf_json_text(j, key, hf_coupling_stop_word(number));
         break;
     case HF_RESULT_BOUND_REASON:
-        hf_json_text(j, field->key, hf_bound_reason_word(number));
+        hf_json_text(j, key, hf_bound_reason_word(number));
         break;
     case HF_RESULT_SOLVER:
-        hf_json_text(j, field->key, hf_solver_word[number]);
+        hf_json_text(j, key, hf_solver_word[number]);
         break;
     case HF_RESULT_SEARCH_STOP:
-        hf_json_text(j, field->key, hf_population_stop_word[number]);
+        hf_json_text(j, key, hf_population_stop_word[number]);
         break;
     }
 }
@@ -233,7 +229,7 @@ static void write_optimize(const hf_summary *s, hf_json *j)
 {
     open_stage("optimize", j);
     write_result(&s->best, j);
-    write_fields(ALL(ga_field), 1, LAST_PLACE, s, j);
+    write_fields(ALL(search_field), 1, LAST_PLACE, s, j);
     write_surface(s, &s->measures[1], j);
     write_pattern(&s->pattern[1], j);
     write_sets(&s->sets[1], j);

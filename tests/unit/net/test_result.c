@@ -29,7 +29,10 @@ START_TEST(individuals_have_their_figures_in_this_order)
     static const char *const name[] = {
         "status", "psi_m", "residual_N", "inner_tension_ratio", "boundary_tension_ratio", "iterations"};
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
-    ck_assert_int_ge(HF_RESULT_N_INDIVIDUAL, 6);
+    int n = 0;
+    for (int i = 0; i < HF_RESULT_N; i++)
+        n += hf_result_field_of[i].individual > 0;
+    ck_assert_int_eq(n, HF_RESULT_N_INDIVIDUAL);
     hf_result_list_individual(field);
     ck_assert_str_eq(field[0]->name, "status");
     for (int i = 0, k = 0; k < 6; i++) { /* new ones may stand between them */
@@ -48,7 +51,7 @@ static void check_keys(const hf_result_field *field, int n)
         ck_assert_int_ge(field[i].json, 0);
         ck_assert_int_le(field[i].json, 9);
         for (int k = 0; k < i; k++) {
-            ck_assert_str_ne(field[i].key, field[k].key);
+            ck_assert_str_ne(hf_result_key(&field[i]), hf_result_key(&field[k]));
             ck_assert_str_ne(field[i].name, field[k].name);
         }
     }
