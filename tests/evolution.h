@@ -63,7 +63,7 @@ static inline hf_status store_some(hf_store *s, struct run *r, int first, int n,
         fill(&r->ga);
         HF_TRY(hf_store_generation(s, &r->model, &r->ga.population, messages));
         *acknowledged = g + 1;
-        HF_TRY(hf_store_publish(s, &(hf_summary){.has_optimize = 1}, g % 3 == 1, messages));
+        HF_TRY(hf_store_publish(s, &(hf_summary){.stage[HF_STAGE_SEARCH].exists = 1}, g % 3 == 1, messages));
     }
     return HF_OK;
 }

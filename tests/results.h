@@ -125,7 +125,7 @@ static inline void python(const char *mode, const char *path, const char *script
 static inline void write_result(const char *path, struct net *net)
 {
     hf_messages messages = {0};
-    hf_summary summary = {.has_optimize = 1};
+    hf_summary summary = {.stage[HF_STAGE_SEARCH].exists = 1};
     hf_store *store = begin(path, 1, &net->scene);
     double design[1000] = {0};
     ck_assert_int_le(net->model.n_variable, 1000);

@@ -41,7 +41,7 @@ hf_status hf_form_find(const hf_model *model, const hf_form_settings *settings, 
 
 /* Measures the shape that the workspace holds, without solving a system; result->iterations is 0. It reads position_m,
  * law and target, and q_N_per_m except for cables of law tension. Sets lengths, tensions, residual and all other
- * figures of the result. The stop reason is HF_STOPPED_RESIDUAL if residual and lengths are within their tolerances.
+ * figures of the result. The stop reason is HF_STOPPED_CONVERGED if residual and lengths are within their tolerances.
  * Otherwise the status is HF_NOT_CONVERGED, and the stop reason is HF_STOPPED_MAX_ITERATIONS. A shape with a collapsed
  * cable is HF_COLLAPSED. Returns result->status. */
 hf_status hf_form_measure(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,

@@ -35,19 +35,19 @@ typedef struct {
     double multiplier[HF_FRONT_OBJECTIVES_MAX];
     hf_status status;   /* status of its design */
     hf_front_mark mark; /* what the point is */
-    int iterations;     /* steps of Levenberg-Marquardt; 0 for the genetic algorithm */
+    int steps;          /* steps of Levenberg-Marquardt; 0 for the genetic algorithm */
     bool is_converged;  /* Levenberg-Marquardt has converged; otherwise there is no multiplier */
 } hf_front_point;
 
 /* A front with its designs. */
 typedef struct {
-    int n_objective, n_variable, n_point; /* numbers of objectives, design variables and points */
-    int minimised;                        /* objective that is minimised under limits on the others; -1: all are */
-    int knee;                             /* point farthest below the line of the ends (hf_front_settle); -1: none */
-    double base[HF_FRONT_OBJECTIVES_MAX]; /* objectives of the initial design; NaN: no value */
-    hf_front_point *point;                /* [n_point] by objective 0, then 1, then 2, ascending; failed ones last */
-    double *design;                       /* [n_point][n_variable] designs as of hf_evaluate; NaN for a failed point */
-    void *block;                          /* owned memory behind point and design */
+    int n_objective, n_variable, n_point;    /* numbers of objectives, design variables and points */
+    int minimised;                           /* objective that is minimised under limits on the others; -1: all are */
+    int knee;                                /* point farthest below the line of the ends (hf_front_settle); -1: none */
+    double initial[HF_FRONT_OBJECTIVES_MAX]; /* objectives of the initial design; NaN: no value */
+    hf_front_point *point;                   /* [n_point] by objective 0, then 1, then 2, ascending; failed ones last */
+    double *design; /* [n_point][n_variable] designs as of hf_evaluate; NaN for a failed point */
+    void *block;    /* owned memory behind point and design */
 } hf_front;
 
 /* A front without its designs, as in a summary: n_row of n_point points. If there are more than HF_FRONT_POINTS_MAX
@@ -56,10 +56,10 @@ typedef struct {
     /* Counts of the front, and `minimised` as in hf_front. */
     int n_objective, n_point, n_row, n_on, n_dominated, n_failed, minimised;
     int knee, end[HF_FRONT_OBJECTIVES_MAX];  /* rows of the knee and of the first minimum of each objective; -1: none */
-    double base[HF_FRONT_OBJECTIVES_MAX];    /* objectives of the initial design */
+    double initial[HF_FRONT_OBJECTIVES_MAX]; /* objectives of the initial design */
     int n_unconverged;                       /* Levenberg-Marquardt: points with a design that has not converged */
     double wall_s;                           /* time of the computation */
-    int place[HF_FRONT_POINTS_MAX];          /* index of each row in the front, from 0, ascending */
+    int index[HF_FRONT_POINTS_MAX];          /* index of each row in the front, from 0, ascending */
     hf_front_point row[HF_FRONT_POINTS_MAX]; /* [n_row] the points */
 } hf_front_table;
 

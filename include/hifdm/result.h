@@ -2,7 +2,7 @@
  * Stability: stable.
  *
  * HF_RESULT_LIST is the one list of the figures of a result. It defines the members of hf_form_result, the attributes
- * of /form, those of /ga with the prefix best_, and those of /polish. It also defines the data sets of /ga with a value
+ * of the group of each stage. It also defines the data sets of /search/population with a value
  * per individual and the JSON objects of the stages. The columns of `hifdm evaluate`, of a sweep's ledger and of the
  * merged study follow from it, too. A new figure is a row of the list and the code that computes it. */
 #ifndef HIFDM_RESULT_H
@@ -19,7 +19,7 @@ HF_API_BEGIN
 #define HF_STOP_REASON_LIST(X)                                                                                         \
     X(NONE, 0, "none")                                                                                                 \
     X(DIRECT, 1, "direct")                 /* no law changes a force density, so one solve is exact */                 \
-    X(RESIDUAL, 2, "residual")             /* converged: residual and lengths are within their tolerances */           \
+    X(CONVERGED, 2, "converged")           /* residual and lengths are within their tolerances */                      \
     X(RMS_CHANGE, 3, "rms_change")         /* the paper's rule: psi changed by less than its tolerance */              \
     X(MAX_ITERATIONS, 4, "max_iterations") /* the limit on the iterations was reached without convergence */           \
     X(ILL_POSED, 5, "ill_posed")           /* the net has no shape, see the status */
@@ -38,7 +38,7 @@ const char *hf_stop_reason_word(int reason);
  * values; never renumber them. */
 #define HF_COUPLING_STOP_LIST(X)                                                                                       \
     X(NONE, 0, "none")                     /* there is no truss */                                                     \
-    X(TOF, 1, "tof")                       /* converged: no attachment moves farther than coupling.tof_m */            \
+    X(CONVERGED, 1, "converged")           /* no attachment moves farther than coupling.tof_m */                       \
     X(MAX_ITERATIONS, 2, "max_iterations") /* the limit on the iterations was reached without convergence */           \
     X(DIVERGED, 3, "diverged")             /* the steps grow, because the truss is too soft */                         \
     X(NET, 4, "net")                       /* the net has no shape, see the status */
@@ -57,7 +57,7 @@ const char *hf_coupling_stop_word(int stop);
  * why not (METHOD section 3). Files contain the values; never renumber them. */
 #define HF_BOUND_REASON_LIST(X)                                                                                        \
     X(NONE, 0, "none", "no proof was tried")                                                                           \
-    X(PROVEN, 1, "proven", "no equilibrium is farther away")                                                           \
+    X(CERTIFIED, 1, "certified", "no equilibrium is farther away")                                                     \
     X(STRUTS, 2, "struts", "the net has struts: its energy is not convex")                                             \
     X(TRUSS, 3, "truss", "the flexibility of the truss has an eigenvalue below zero")                                  \
     X(NO_MATRIX, 4, "no_matrix", "the method has no Newton matrix for these laws")                                     \
@@ -82,7 +82,7 @@ const char *hf_bound_reason_meaning(int reason);
  *
  *   kind          of the stored value: REAL, INT, or an enumeration of the store
  *   .json         place in the JSON object of a stage; equal places keep the order of the list; left out: not there
- *   .individual   place among the figures of one individual, which are data sets of /ga and columns of
+ *   .individual   place among the figures of one individual, which are data sets of /search/population and columns of
  *                 `hifdm evaluate`; left out: not there
  *   .key          name in JSON, if it differs from that of the member, which the HDF5 attribute has
  *   .units        left out: none
@@ -111,7 +111,7 @@ const char *hf_bound_reason_meaning(int reason);
  *   n_drifting           does not include the nodes of n_loose; if it is above 0, position_error_m is NaN
  *   position_error_m     NaN without hf_certify, as are the bounds, condition (INFINITY: singular) and backward_error
  *   position_bound_m     for laws, loads and supports exactly as their doubles; NaN unless bound_reason is
- *                        HF_BOUND_PROVEN */
+ *                        HF_BOUND_CERTIFIED */
 #define HF_RESULT_LIST(X)                                                                                              \
     X(hf_status, status, STATUS, .json = 1, .individual = 1,                                                           \
       .description = "ok = feasible; under any other psi is NaN")                                                      \
@@ -120,24 +120,25 @@ const char *hf_bound_reason_meaning(int reason);
     X(int, culprit, INT, .description = "what the status is about, see above, or -1")                                  \
     X(double, psi_m, REAL, .json = 2, .individual = 1, .units = "m", .description = "RMS distance of the inner nodes") \
     X(double, residual_N, REAL, .json = 4, .individual = 1, .units = "N",                                              \
-      .description = "largest nodal force out of balance")                                                             \
+      .description = "maximum nodal force out of balance")                                                             \
     X(double, tension_error, REAL, .json = 4, .description = "max |T/T*-1| over cables of law tension; 0: none")       \
     X(double, length_error, REAL, .json = 4, .description = "max |l/L*-1| over taut cables of law length or elastic")  \
-    X(double, inner_tension_ratio, REAL, .json = 3, .individual = 1, .description = "largest over smallest")           \
-    X(double, boundary_tension_ratio, REAL, .json = 3, .individual = 1, .description = "largest over smallest")        \
+    X(double, inner_tension_ratio, REAL, .json = 3, .individual = 1, .description = "maximum over minimum")            \
+    X(double, boundary_tension_ratio, REAL, .json = 3, .individual = 1, .description = "maximum over minimum")         \
     X(double, violation, REAL, .individual = 3, .description = "of the limits, summed over cables; 0: none")           \
     X(double, merit, REAL, .individual = 3,                                                                            \
-      .description = "root of the sum of (weight x goal)^2; psi_m, in m, without goals")                               \
-    X(double, shortest_length_ratio, REAL, .json = 4, .description = "min l / theoretical l over all cables")          \
+      .description = "root of the sum of (weight x figure)^2; psi_m, in m, without an objective")                      \
+    X(double, shortest_length_ratio, REAL, .json = 4,                                                                  \
+      .description = "minimum of length over length at the target positions, all cables")                              \
     X(double, position_error_m, REAL, .json = 4, .units = "m",                                                         \
-      .description = "estimate: largest move in one more Newton step")                                                 \
+      .description = "estimate: maximum displacement in one more Newton step")                                         \
     X(double, position_bound_m, REAL, .json = 4, .units = "m",                                                         \
-      .description = "no node is farther from equilibrium: proven")                                                    \
+      .description = "no node is farther from equilibrium: certified")                                                 \
     X(double, psi_bound_m, REAL, .json = 4, .units = "m",                                                              \
-      .description = "psi at equilibrium differs by no more: proven")                                                  \
-    X(hf_bound_reason, bound_reason, BOUND_REASON, .json = 4, .description = "proven, or why the bounds are NaN")      \
+      .description = "psi at equilibrium differs by no more: certified")                                               \
+    X(hf_bound_reason, bound_reason, BOUND_REASON, .json = 4, .description = "certified, or why the bounds are NaN")   \
     X(double, condition, REAL, .json = 4, .description = "estimate, of the Newton matrix, or D where there is none")   \
-    X(double, backward_error, REAL, .json = 4, .description = "residual_N over the largest sum of tensions at a node") \
+    X(double, backward_error, REAL, .json = 4, .description = "residual_N over the maximum sum of tensions at a node") \
     X(int, n_slack, INT, .json = 5, .key = "slack_cables",                                                             \
       .description = "cables under HF_SLACK_RATIO of the reference tension")                                           \
     X(int, n_loose, INT, .json = 5, .key = "loose_nodes",                                                              \
@@ -152,9 +153,10 @@ const char *hf_bound_reason_meaning(int reason);
     X(hf_coupling_stop, stop_reason, COUPLING_STOP, .json = 4, .description = "how the coupling ended")                \
     X(int, iterations, INT, .json = 1, .description = "form-findings of the loop, or steps in one matrix")             \
     X(double, step_m, REAL, .json = 3, .units = "m",                                                                   \
-      .description = "largest |F f - r| of an attachment: its move in the next iteration")                             \
+      .description = "maximum |F f - r| of an attachment: its displacement in the next iteration")                     \
     X(double, ratio, REAL, .json = 3, .description = "of the last two steps; NaN before there are two")                \
-    X(double, max_displacement_m, REAL, .json = 2, .units = "m", .description = "largest displacement of an attachment")
+    X(double, deflection_max_m, REAL, .json = 2, .units = "m",                                                         \
+      .description = "maximum deflection of the truss at an attachment")
 
 #define HF_RESULT_MEMBER(type, member, ...) type member;
 
@@ -234,7 +236,7 @@ void hf_result_list_individual(const hf_result_field *field[HF_RESULT_N_INDIVIDU
 typedef struct {
     int capacity, n; /* room in the arrays, and number of iterations recorded */
     /* [capacity] step |F f - r|, psi and maximum deflection of the attachments, m */
-    double *step_m, *psi_m, *max_displacement_m;
+    double *step_m, *psi_m, *deflection_max_m;
 } hf_coupling_history;
 
 /* Figures of each iteration of a form-finding. The caller owns the arrays of `capacity` items. Iterations beyond

@@ -104,10 +104,8 @@ typedef struct hf_store hf_store;
 /* Several threads may call the functions of this header at once. A store is used by one of them at a time; functions
  * that read may be called freely. The calls wait for each other, because HDF5 works for one thread at a time. */
 
-/* The stages of a run that produce a shape. */
-typedef enum { HF_STAGE_FORM, HF_STAGE_SEARCH, HF_STAGE_REFINE, HF_N_STAGE } hf_stage;
-extern const char *const hf_stage_word[4];  /* "form", "optimize", "polish", "none" */
-extern const char *const hf_stage_group[4]; /* group of the shape in a file: "/form", "/ga/best", "/polish", "/" */
+/* Groups of the shapes in a file: "/form", "/search", "/refine", "/". */
+extern const char *const hf_stage_group[HF_N_STAGE + 1];
 
 /* Returns the stage whose shape is the result of a finished run. */
 hf_stage hf_store_result_stage(const hf_summary *summary);

@@ -28,61 +28,63 @@ HF_API_BEGIN
  * The lists define the members of hf_summary and the JSON objects. In their own order they define the attributes in
  * HDF5 and the columns of a sweep's ledger. A new figure of a run is a row here and the code that computes it. */
 
-/* The net and the form-finding. */
+/* The net. */
 #define HF_SUMMARY_FORM_LIST(X)                                                                                        \
     X(int, n_node, INT, .description = "nodes")                                                                        \
     X(int, n_free, INT, .description = "nodes that are no supports")                                                   \
     X(int, n_cable, INT, .description = "cables")                                                                      \
-    X(int, n_gene, INT, .description = "variables: pretensions of boundary cables, or what optimize.variables says")   \
+    X(int, n_variable, INT, .description = "design variables")                                                         \
     X(int, half_bandwidth, INT, .description = "of the force density matrix")                                          \
     X(double, pretension_N, REAL, .description = "of the case, N")                                                     \
-    X(bool, has_own_tensions, TRUTH, .description = "1: no cable takes pretension_N, by the laws of all")              \
-    X(double, form_wall_s, REAL, .json = 1, .key = "wall_s", .description = "of the form-finding")
+    X(bool, has_own_tensions, TRUTH, .description = "1: no cable takes pretension_N, by the laws of all")
 
-/* The genetic algorithm. */
+/* What only the search has: the genetic algorithm. */
 #define HF_SUMMARY_SEARCH_LIST(X)                                                                                      \
-    X(hf_solver, solver, SOLVER, .json = 6, .description = "of the individuals")                                       \
-    X(double, base_psi_m, REAL, .json = 2,                                                                             \
-      .description = "of individual 0 of generation 0, the tensions found under the rule; NaN if infeasible")          \
-    X(int, n_leader, INT, .json = 5, .key = "independent_genes", .description = "independent genes")                   \
+    X(hf_solver, solver, SOLVER, .json = 6, .description = "solver of the individuals")                                \
+    X(double, initial_psi_m, REAL, .json = 2,                                                                          \
+      .description = "psi of the initial design under the rule; NaN if it is infeasible")                              \
+    X(int, n_leader, INT, .json = 5, .key = "independent_variables",                                                   \
+      .description = "design variables that no symmetry links to another one")                                         \
     X(int, planes, INT, .description = "HF_PLANE_ bits of the symmetry (1 = x, 2 = y) that links the others")          \
-    X(int, best_generation, INT, .json = 3, .description = "where the best was found, counted from 0")                 \
-    X(int, best_individual, INT, .json = 3, .description = "which individual of that generation, counted from 0")      \
-    X(int, generations, INT, .json = 1, .description = "number finished")                                              \
+    X(int, best_generation, INT, .json = 3, .description = "generation of the best individual, counted from 0")        \
+    X(int, best_individual, INT, .json = 3, .description = "number of the best individual in it, counted from 0")      \
+    X(int, generations, INT, .json = 1, .description = "number of generations that were finished")                     \
     X(long, evaluations, LONG, .json = 1, .description = "form-findings")                                              \
-    X(long, infeasible, LONG, .json = 1, .description = "those without a feasible shape among them")                   \
-    X(int, best_n_at_lower, INT, .json = 3, .key = "at_lower_bound",                                                   \
-      .description = "genes of the best at their lower bounds")                                                        \
-    X(int, best_n_at_upper, INT, .json = 3, .key = "at_upper_bound",                                                   \
-      .description = "genes of the best at their upper bounds")                                                        \
-    X(hf_population_stop, optimize_stop, SEARCH_STOP, .json = 7, .key = "stop_reason", .description = "why it ended")  \
-    X(double, optimize_wall_s, REAL, .json = 4, .key = "wall_s", .description = "wall-clock time")                     \
-    X(double, optimize_cpu_s, REAL, .json = 4, .key = "cpu_s",                                                         \
-      .description = "breeding, evaluating and storing, over all threads; without waiting")                            \
-    X(double, store_cpu_s, REAL, .json = 4, .description = "storing alone")
+    X(long, infeasible, LONG, .json = 1, .description = "form-findings without a feasible shape")                      \
+    X(int, n_at_lower, INT, .json = 3, .key = "at_lower_bound",                                                        \
+      .description = "design variables of the best individual at their lower bounds")                                  \
+    X(int, n_at_upper, INT, .json = 3, .key = "at_upper_bound",                                                        \
+      .description = "design variables of the best individual at their upper bounds")                                  \
+    X(hf_population_stop, algorithm_stop, SEARCH_STOP, .json = 7, .key = "stop_reason",                                \
+      .description = "why the algorithm ended")                                                                        \
+    X(double, cpu_s, REAL, .json = 4,                                                                                  \
+      .description = "processor time of breeding, evaluating and storing, over all threads; without waiting")          \
+    X(double, store_cpu_s, REAL, .json = 4, .description = "processor time of storing alone")
 
-/* Levenberg-Marquardt. */
+/* What only the refinement has: Levenberg-Marquardt. */
 #define HF_SUMMARY_REFINE_LIST(X)                                                                                      \
-    X(bool, polish_is_result, FLAG, .json = 2, .key = "is_result",                                                     \
-      .description = "its design is the result, not only a comparison")                                                \
-    X(int, polish_iterations, INT, .json = 1, .key = "lm_iterations", .description = "steps of Levenberg-Marquardt")   \
-    X(int, polish_evaluations, INT, .json = 1, .key = "evaluations", .description = "form-findings")                   \
-    X(hf_refine_stop, polish_stop, REFINE_STOP, .json = 4, .key = "stop_reason", .description = "why it ended")        \
-    X(int, polish_n_at_lower, INT, .json = 5, .key = "at_lower_bound", .description = "genes at their lower bounds")   \
-    X(int, polish_n_at_upper, INT, .json = 5, .key = "at_upper_bound", .description = "genes at their upper bounds")   \
-    X(bool, polish_is_at_cap, FLAG, .json = 5, .key = "at_ratio_cap",                                                  \
-      .description = "the cap on the boundary tension ratio holds it")                                                 \
-    X(int, polish_n_at_limit, INT, .json = 5, .key = "at_limit",                                                       \
-      .description = "limits of optimize.limits that hold it, cable by cable")                                         \
-    X(double, polish_wall_s, REAL, .json = 3, .key = "wall_s", .description = "wall-clock time")
+    X(bool, is_result, FLAG, .json = 2, .description = "its design is the result, not only a comparison")              \
+    X(int, steps, INT, .json = 1, .description = "steps of Levenberg-Marquardt")                                       \
+    X(int, evaluations, INT, .json = 1, .description = "form-findings")                                                \
+    X(hf_refine_stop, algorithm_stop, REFINE_STOP, .json = 4, .key = "stop_reason",                                    \
+      .description = "why the algorithm ended")                                                                        \
+    X(int, n_at_lower, INT, .json = 5, .key = "at_lower_bound",                                                        \
+      .description = "design variables at their lower bounds")                                                         \
+    X(int, n_at_upper, INT, .json = 5, .key = "at_upper_bound",                                                        \
+      .description = "design variables at their upper bounds")                                                         \
+    X(bool, is_at_cap, FLAG, .json = 5, .key = "at_ratio_cap",                                                         \
+      .description = "the design is at the cap on the boundary tension ratio")                                         \
+    X(int, n_at_limit, INT, .json = 5, .key = "at_limit",                                                              \
+      .description = "limits of optimize.limits that the design is at, cable by cable")
 
-/* A load case of the as-built net (`cases`), besides the figures of its result. */
+/* A load case of the as-built net (`load_cases`), besides the figures of its result. */
 #define HF_LOAD_CASE_LIST(X)                                                                                           \
-    X(double, least_tension_N, REAL, .json = 1, .description = "least tension of all cables")                          \
-    X(double, largest_tension_N, REAL, .json = 1, .description = "largest tension of all cables")                      \
-    X(double, move_rms_m, REAL, .json = 2,                                                                             \
-      .description = "RMS of how far the inner nodes are from their places in the design")                             \
-    X(double, largest_member_N, REAL, .json = 3, .description = "largest axial force of a truss member; NaN: no truss")
+    X(double, tension_min_N, REAL, .json = 1, .description = "minimum tension of all cables")                          \
+    X(double, tension_max_N, REAL, .json = 1, .description = "maximum tension of all cables")                          \
+    X(double, displacement_rms_m, REAL, .json = 2,                                                                     \
+      .description = "RMS displacement of the inner nodes from their positions in the design")                         \
+    X(double, member_force_max_N, REAL, .json = 3,                                                                     \
+      .description = "maximum axial force of a truss member; NaN: no truss")
 
 /* The truss. */
 #define HF_SUMMARY_TRUSS_LIST(X)                                                                                       \
@@ -99,7 +101,7 @@ typedef struct {
     int n;                                              /* number of sets */
     char name[HF_SUMMARY_SETS][HF_CABLE_SET_NAME_SIZE]; /* [n] names of the sets */
     /* [n] minimum, maximum and ratio of the tensions */
-    double least_N[HF_SUMMARY_SETS], largest_N[HF_SUMMARY_SETS], ratio[HF_SUMMARY_SETS];
+    double min_N[HF_SUMMARY_SETS], max_N[HF_SUMMARY_SETS], ratio[HF_SUMMARY_SETS];
 } hf_set_tensions;
 
 /* Maximum number of constraints in hf_held_limits, and bytes of the name of one. */
@@ -116,14 +118,14 @@ typedef struct {
     double value[HF_SUMMARY_HELD], bound[HF_SUMMARY_HELD]; /* [n] value and bound of this one, N, m or a ratio */
 } hf_held_limits;
 
-/* The rows of optimize.goals or optimize.objectives. The latter have neither weights nor a merit. The values, with the
+/* The rows of optimize.objective or optimize.front. The latter have neither weights nor a merit. The values, with the
  * merit, are in the results of the stages. */
 typedef struct {
     int n;                                                 /* number of objectives; 0: psi is minimised */
-    char name[HF_DESIGN_ROWS_MAX][HF_OBJECTIVE_NAME_SIZE]; /* [n] goal_1_tension_edge: number, figure, set */
+    char name[HF_DESIGN_ROWS_MAX][HF_OBJECTIVE_NAME_SIZE]; /* [n] objective_1_tension_edge: number, figure, set */
     double weight[HF_DESIGN_ROWS_MAX];                     /* [n] weights */
     int after_fit[HF_DESIGN_ROWS_MAX]; /* [n] surface figures: 1 after the best fit, 0 without; -1: other figures */
-    bool is_front;                     /* the rows are those of optimize.objectives */
+    bool is_front;                     /* the rows are those of optimize.front */
 } hf_objective_list;
 
 #define HF_SUMMARY_MEMBER(type, member, ...) type member;
@@ -138,10 +140,35 @@ typedef struct {
     char name[HF_SET_NAME_SIZE]; /* name of the load case */
     hf_form_result result;       /* result of its form-finding */
     HF_LOAD_CASE_LIST(HF_SUMMARY_MEMBER)
-    hf_surface_measures measures; /* surface of its shape */
+    hf_surface_measures surface; /* surface of its shape */
 } hf_load_case_summary;
 
-/* The figures of a run. */
+/* The stages of a run that produce a shape. */
+typedef enum { HF_STAGE_FORM, HF_STAGE_SEARCH, HF_STAGE_REFINE, HF_N_STAGE } hf_stage;
+extern const char *const hf_stage_word[HF_N_STAGE + 1]; /* "form", "search", "refine", "none" */
+
+/* What every stage has. The summary owns what the pointers point to, each from calloc; NULL: there is none. */
+typedef struct {
+    bool exists;                 /* the stage ran; of HF_STAGE_REFINE also: a point of a front was taken */
+    hf_form_result result;       /* result of its shape; of the search that of the best individual, with the status
+                                    HF_NO_FEASIBLE if none is feasible */
+    double wall_s;               /* wall-clock time */
+    hf_surface_measures surface; /* surface of its shape */
+    hf_pattern_summary *pattern; /* far field of its shape */
+    hf_set_tensions *sets;       /* tensions of the named sets of cables */
+    hf_held_limits *held;        /* constraints that hold its shape */
+} hf_stage_summary;
+
+/* What only the search, and what only the refinement has. */
+typedef struct {
+    HF_SUMMARY_SEARCH_LIST(HF_SUMMARY_MEMBER)
+} hf_search_summary;
+typedef struct {
+    HF_SUMMARY_REFINE_LIST(HF_SUMMARY_MEMBER)
+} hf_refine_summary;
+
+/* The figures of a run. All zero is an empty summary. hf_summary_free frees what it owns: a copy by assignment shares
+ * this memory. */
 typedef struct {
     char version[64], title[256], case_path[HF_PATH_SIZE]; /* version of the program; title and path of the case */
     bool finished;                                         /* false: the run can be resumed */
@@ -150,39 +177,27 @@ typedef struct {
     uint64_t seed;                   /* seed of the genetic algorithm */
     char warnings[HF_WARNINGS_SIZE]; /* lines "error: ...", then lines "warning: ..." */
 
-    hf_surface_settings surface;     /* target surface; focal_length_m is 0 without a section surface */
-    hf_pattern_summary pattern[3];   /* [hf_stage] far fields of the shapes; none without surface.pattern */
-    hf_surface_measures measures[3]; /* [hf_stage] surfaces of the shapes of form, optimize, polish */
-    hf_set_tensions sets[3];         /* [hf_stage] tensions of sets; n is 0 without sets or without the shape */
-    hf_held_limits held[3];          /* [hf_stage] constraints that hold the shapes */
-
-    hf_objective_list objectives; /* objectives of the run */
-    hf_front_origin taken;        /* the point of another run's front that is the result, as the shape of `polish` */
-
-    int n_load_case;                                   /* number of load cases of the as-built net */
-    hf_load_case_summary load_case[HF_LOAD_CASES_MAX]; /* [n_load_case] the load cases */
-
     HF_SUMMARY_FORM_LIST(HF_SUMMARY_MEMBER)
-    hf_form_result form; /* result of the form-finding */
-    bool has_coupling;   /* the net is on an elastic truss; false: `coupling` of all results is zero */
+    hf_surface_settings surface;  /* target surface; focal_length_m is 0 without a section surface */
+    hf_objective_list objectives; /* objectives of the run */
+    bool has_coupling;            /* the net is on an elastic truss; false: `coupling` of all results is zero */
+    bool has_truss;               /* `truss` is set */
+    hf_truss_summary truss;       /* figures of the truss */
 
-    bool has_polish;       /* Levenberg-Marquardt ran, or a point of a front was taken */
-    hf_form_result polish; /* result of Levenberg-Marquardt */
-    HF_SUMMARY_REFINE_LIST(HF_SUMMARY_MEMBER)
+    hf_stage_summary stage[HF_N_STAGE]; /* figures of each stage */
+    hf_search_summary search;           /* set if the search exists */
+    hf_refine_summary refine;           /* set if the refinement exists */
+    hf_front_origin taken;              /* the point of another run's front that is the result, as the shape of the
+                                           refinement */
 
-    bool has_front;       /* `front` is set; its objectives are those of `goals` */
-    hf_front_table front; /* the front of optimize.objectives */
-
-    bool has_truss;         /* `truss` is set */
-    hf_truss_summary truss; /* figures of the truss */
-
-    bool has_tolerance;             /* `tolerance` is set: samples of the as-built net were computed */
-    hf_tolerance_summary tolerance; /* result of the tolerance analysis */
-
-    bool has_optimize;   /* the genetic algorithm ran; all following members are about it */
-    hf_form_result best; /* result of the best individual; status HF_NO_FEASIBLE: none is feasible */
-    HF_SUMMARY_SEARCH_LIST(HF_SUMMARY_MEMBER)
+    hf_front_table *front;           /* the front of optimize.front; NULL: none; owned */
+    int n_load_case;                 /* number of load cases of the as-built net */
+    hf_load_case_summary *load_case; /* [n_load_case] the load cases; owned */
+    hf_tolerance_summary *tolerance; /* result of the tolerance analysis; NULL: none; owned */
 } hf_summary;
+
+/* Frees what the summary owns and empties it. */
+void hf_summary_free(hf_summary *summary);
 
 /* Writes one JSON object, grouped by stage, to `file`. A stage that did not run is absent, and NaN is null. `messages`
  * has lines as hf_messages, or is NULL. `path` is that of the result file; NULL: none was written. Write errors can be
@@ -194,9 +209,12 @@ void hf_summary_write_json(const hf_summary *summary, hf_status status, const ch
  * while the run has not ended. */
 hf_status hf_summary_status(const hf_summary *summary);
 
-/* Returns true if the file contains the shape of the best individual: the run is finished, and its genetic algorithm
- * found a feasible design. */
-bool hf_summary_has_best_shape(const hf_summary *summary);
+/* Returns the word of the algorithm of a stage: "ga" or "nsga2" of the search, "lm" of the refinement, else "". */
+const char *hf_summary_algorithm(const hf_summary *summary, hf_stage stage);
+
+/* Returns true if the result contains a shape of the stage. Of the search: the run is finished, and its best individual
+ * is feasible. */
+bool hf_summary_has_shape(const hf_summary *summary, hf_stage stage);
 
 /* Returns the share of the time of all threads that was spent in breeding, evaluating and storing, 0 to 1; NaN if no
  * time was measured. */

@@ -39,7 +39,7 @@ bool hf_tolerance_more_is_better(hf_tolerance_measure measure);
 typedef struct {
     bool is_measured; /* false: the other members have no meaning */
     /* mean with its interval, standard deviation, minimum, maximum */
-    double mean, mean_low, mean_high, deviation, least, largest;
+    double mean, mean_low, mean_high, deviation, min, max;
     /* quantiles with their intervals */
     double value[HF_TOLERANCE_QUANTILES], low[HF_TOLERANCE_QUANTILES], high[HF_TOLERANCE_QUANTILES];
 } hf_tolerance_figures;
@@ -77,9 +77,9 @@ extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS]; /* words of
     X(double, yield_low, REAL, .json = 4,                                                                              \
       .description = "95 % interval of the yield (Clopper and Pearson): its lower end")                                \
     X(double, yield_high, REAL, .json = 4, .description = "95 % interval of the yield: its upper end")                 \
-    X(double, wanted_yield, REAL, .json = 4, .description = "tolerance.yield of the case; NaN: none")                  \
+    X(double, required_yield, REAL, .json = 4, .description = "tolerance.yield of the case; NaN: none")                \
     X(double, sigma_scale, REAL, .json = 4,                                                                            \
-      .description = "all errors times this give the wanted yield; NaN: not asked for")                                \
+      .description = "all errors times this give the required yield; NaN: not asked for")                              \
     X(int, scale_bound, INT, .json = 4,                                                                                \
       .description = "1: sigma_scale is at least that, -1: below that; 0: just that")                                  \
     X(int, scale_samples, INT, .json = 4, .description = "of each yield on the way to it")                             \

@@ -535,7 +535,7 @@ static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, d
             r->iterations == 1 ? "" : "s", hf_stop_reason_word((int)r->stop_reason));
     if (r->coupling.iterations > 0)
         fprintf(f, "                on its truss: attachments give way by up to %.4f mm under the net\n",
-                r->coupling.max_displacement_m * 1e3);
+                r->coupling.deflection_max_m * 1e3);
     HF_TRY(hf_problem_explain(p, messages));
     print_tolerance_time(p, threads, f);
     if (!v) return HF_OK;

@@ -59,6 +59,7 @@ static void warn_of_front(const hf_options *o, hf_messages *messages)
     if (!has_one_shape || o->stage) return;
     if (hf_store_read_summary(o->file, &summary, &unwanted) == HF_OK)
         hf_export_warn_of_front(o->file, &summary, o->load_case, messages);
+    hf_summary_free(&summary);
     hf_messages_free(&unwanted);
 }
 

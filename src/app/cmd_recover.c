@@ -9,6 +9,7 @@ static hf_status command_recover(const hf_options *o, FILE *file, hf_messages *m
 {
     static hf_summary summary;
     HF_TRY(hf_store_recover(o->file, &summary, messages));
+    hf_summary_free(&summary);
     return hf_cmd_show.run(o, file, messages);
 }
 

@@ -49,6 +49,7 @@ hf_status hf_cmd_run_case(const hf_options *o, FILE *file, hf_messages *messages
         hf_summary_write_json(&summary, status, messages->text, path, file);
     else if (path && !o->quiet)
         hf_print_summary(&summary, path, (hf_print_style){o->verbose, hf_output_has_colour(STDOUT_FILENO)}, file);
+    hf_summary_free(&summary);
     return status;
 }
 

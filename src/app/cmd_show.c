@@ -47,6 +47,7 @@ static hf_status command_show(const hf_options *o, FILE *file, hf_messages *mess
         hf_print_summary(&summary, o->file, (hf_print_style){o->verbose, hf_output_has_colour(STDOUT_FILENO)}, file);
         hf_print_lines(summary.warnings, file);
     }
+    hf_summary_free(&summary);
     return HF_OK;
 }
 

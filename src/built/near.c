@@ -288,7 +288,7 @@ static double ratio_of(const hf_near_lanes *l, hf_group group, int lane)
 static void report(const hf_near *near, const hf_near_lanes *l, int lane, hf_workspace *w, hf_form_result *r)
 {
     const hf_model *m = &near->model;
-    *r = (hf_form_result){.status = HF_OK, .stop_reason = HF_STOPPED_RESIDUAL, .culprit = -1};
+    *r = (hf_form_result){.status = HF_OK, .stop_reason = HF_STOPPED_CONVERGED, .culprit = -1};
     hf_result_blank(r);
     r->psi_m = m->n_inner_node ? l->now.psi_m[lane] : (double)NAN;
     r->residual_N = l->residual_N[lane];

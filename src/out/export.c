@@ -41,7 +41,7 @@ hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messag
     return force ? HF_OK : hf_error(messages, HF_EXISTS, "%s exists; use --force to replace it", path);
 }
 
-static const char *const shape_word[3] = {"form-finding", "optimised", "polished"};
+static const char *const shape_word[3] = {"form-finding", "search", "refined"};
 
 /* Reads a load case of the as-built net. Messages call the shape by the name of the load case. */
 static hf_status read_load_case(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
@@ -65,12 +65,11 @@ hf_status hf_export_read(const hf_export_request *o, hf_export_stored *stored, h
     hf_summary *summary = &stored->summary;
     HF_TRY(hf_store_read_summary(o->file, summary, messages));
     if (o->load_case) return read_load_case(o, stored, messages);
-    bool has[3] = {true, hf_summary_has_best_shape(summary), summary->has_polish};
     hf_stage result = hf_store_result_stage(summary), stage = result;
     for (int i = 0; o->stage && i < HF_N_STAGE; i++)
         if (!strcmp(o->stage, hf_stage_word[i])) stage = (hf_stage)i;
     stored->word = shape_word[stage];
-    if (!has[stage])
+    if (!hf_summary_has_shape(summary, stage))
         return hf_error(messages, HF_BAD_USAGE, "%s: this run has no %s shape; use --stage %s", o->file, stored->word,
                         hf_stage_word[result]);
     HF_TRY(hf_store_read_scene(o->file, &stored->scene, messages));
@@ -87,7 +86,7 @@ bool hf_export_has_truss(const hf_export_request *o, const hf_summary *s, hf_mes
 
 void hf_export_warn_of_front(const char *file, const hf_summary *s, bool is_load_case, hf_messages *messages)
 {
-    int point = s->has_front ? hf_front_suggested(&s->front) : 0;
+    int point = s->front ? hf_front_suggested(s->front) : 0;
     bool is_end = !is_load_case && hf_store_result_stage(s) != HF_STAGE_FORM;
     if (!point) return;
     hf_warning(messages,
@@ -101,6 +100,7 @@ void hf_export_free(hf_export_stored *stored)
 {
     hf_shape_free(&stored->shape);
     hf_scene_free(&stored->scene);
+    hf_summary_free(&stored->summary);
 }
 
 hf_status hf_export_shape(const hf_export_request *o, hf_export_write_shape *write, char *said, size_t size,

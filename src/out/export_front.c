@@ -1,6 +1,6 @@
 /* Writes a stored Pareto front as one CSV file:
  *
- *   id,mark,status,iterations[,converged],NAME...,slope_NAME...,GENE...
+ *   id,mark,status,steps[,converged],NAME...,slope_NAME...,VARIABLE...
  *
  * converged (1 or 0) exists only for fronts by Levenberg-Marquardt. slope_NAME is the change of the minimised objective
  * per unit of objective NAME; it is empty where it is unknown. Points are numbered from 1 in the order of the front.
@@ -33,7 +33,7 @@ static void write_front(const void *context, FILE *f)
 {
     const view *v = context;
     const hf_front *front = &v->front;
-    fputs(front->minimised >= 0 ? "id,mark,status,iterations,converged" : "id,mark,status,iterations", f);
+    fputs(front->minimised >= 0 ? "id,mark,status,steps,converged" : "id,mark,status,steps", f);
     for (int k = 0; k < front->n_objective; k++)
         fprintf(f, ",%s", v->summary.objectives.name[k]);
     for (int k = 0; k < front->n_objective; k++)
@@ -45,7 +45,7 @@ static void write_front(const void *context, FILE *f)
     fputc('\n', f);
     for (int i = 0; i < front->n_point; i++) {
         const hf_front_point *p = &front->point[i];
-        fprintf(f, "%d,%s,%s,%d", i + 1, hf_front_mark_word[p->mark], hf_status_word(p->status), p->iterations);
+        fprintf(f, "%d,%s,%s,%d", i + 1, hf_front_mark_word[p->mark], hf_status_word(p->status), p->steps);
         if (front->minimised >= 0) fprintf(f, ",%d", p->is_converged);
         for (int k = 0; k < front->n_objective; k++)
             write_number(p->objective[k], f);
@@ -64,7 +64,7 @@ static hf_status export_front(const hf_export_request *o, char *said, size_t siz
     v = (view){0};
     HF_TRY(hf_export_claim(o, o->output, messages));
     HF_TRY(hf_store_read_summary(o->file, &v.summary, messages));
-    if (!v.summary.has_front)
+    if (!v.summary.front)
         return hf_error(messages, HF_BAD_USAGE, "%s: this run has no front: its case has no optimize.objectives",
                         o->file);
     hf_status status = hf_store_read_front(o->file, &v.front, &v.variable, &v.variable_size, messages);

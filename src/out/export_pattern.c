@@ -22,7 +22,7 @@ static void write_pattern(const void *context, FILE *f)
 /* Reports why this shape has no far field. Returns HF_BAD_USAGE. */
 static hf_status refuse(const char *file, const hf_summary *s, hf_stage stage, hf_messages *messages)
 {
-    double pull_ratio = stage == HF_N_STAGE ? 0 : s->measures[stage].mesh_pull_ratio;
+    double pull_ratio = stage == HF_N_STAGE ? 0 : s->stage[stage].surface.mesh_pull_ratio;
     char words[64];
     if (pull_ratio > HF_FACET_PULL_MOST)
         return hf_error(
@@ -44,10 +44,12 @@ static hf_status export_pattern(const hf_export_request *o, char *said, size_t s
     hf_stage stage = hf_store_result_stage(&summary);
     for (int i = 0; o->stage && i < HF_N_STAGE; i++)
         if (!strcmp(o->stage, hf_stage_word[i])) stage = (hf_stage)i;
-    if (stage == HF_N_STAGE || summary.pattern[stage].n_frequency == 0)
-        return refuse(o->file, &summary, stage, messages);
+    hf_status status =
+        stage == HF_N_STAGE || !summary.stage[stage].pattern ? refuse(o->file, &summary, stage, messages) : HF_OK;
+    hf_summary_free(&summary);
+    HF_TRY(status);
     HF_TRY(hf_store_read_pattern(o->file, stage, &table, messages));
-    hf_status status = hf_file_out_set_write(o->files, o->output, write_pattern, &table, messages);
+    status = hf_file_out_set_write(o->files, o->output, write_pattern, &table, messages);
     snprintf(said, size, "%s: far field at %d frequenc%s in %d cut%s of %d angles in %s", o->file, table.n_frequency,
              table.n_frequency == 1 ? "y" : "ies", table.n_cut, table.n_cut == 1 ? "" : "s", table.n_theta, o->output);
     hf_pattern_table_free(&table);

@@ -4,7 +4,7 @@
  *   theoretical.hdf, form.hdf, optimize.hdf, polish.hdf    cables as lines, at the target positions and of each stage
  *   form_facets.hdf and so on                              facets as cells over the same points
  *   truss.hdf                                              members as lines
- *   case_1.hdf, case_facets_1.hdf, case_truss_1.hdf, ...   load cases of the as-built net, in the order of the case
+ *   load_case_1.hdf, load_case_facets_1.hdf, load_case_truss_1.hdf, ...   load cases of the as-built net, in the order of the case
  *
  * ParaView opens files that differ only in a number as steps in time.
  *
@@ -351,7 +351,7 @@ static hf_status write_truss(const hf_export_request *o, const char *of_load_cas
 
 /* Names of the files of load case k, from 1. ParaView opens files that differ only in a number as steps in time. */
 enum { LOAD_CASE_NET, LOAD_CASE_FACETS, LOAD_CASE_TRUSS, N_LOAD_CASE_FILE };
-static const char *const load_case_file[N_LOAD_CASE_FILE] = {"case", "case_facets", "case_truss"};
+static const char *const load_case_file[N_LOAD_CASE_FILE] = {"load_case", "load_case_facets", "load_case_truss"};
 
 static hf_status path_of_load_case(const hf_export_request *o, int kind, int k, char path[PATH_MAX],
                                    hf_messages *messages)
@@ -415,10 +415,11 @@ enum { N_FILE = 9, FACETS = 5 }; /* the facets of stage i are file FACETS + i */
 static hf_status write_all(const hf_export_request *o, const hf_scene *scene, const hf_summary *summary, scratch *t,
                            char *said, size_t size, hf_messages *messages)
 {
-    static const char *const name[N_FILE] = {"form",        "optimize",        "polish",        "theoretical",
+    static const char *const name[N_FILE] = {"form",        "search",        "refine",        "target",
                                              "truss", /* the first four are in the order of hf_stage */
-                                             "form_facets", "optimize_facets", "polish_facets", "theoretical_facets"};
-    bool has[N_FILE] = {true, hf_summary_has_best_shape(summary), summary->has_polish, true,
+                                             "form_facets", "search_facets", "refine_facets", "target_facets"};
+    bool has[N_FILE] = {true, hf_summary_has_shape(summary, HF_STAGE_SEARCH),
+                        hf_summary_has_shape(summary, HF_STAGE_REFINE), true,
                         hf_export_has_truss(o, summary, messages)};
     static char path[N_FILE][PATH_MAX];
     for (int i = 0; i < N_FILE; i++) { /* all names are checked before a file is written */
@@ -463,6 +464,7 @@ static hf_status export_vtk(const hf_export_request *request, char *said, size_t
     hf_arena_free(&arena);
     hf_facets_free(&t.facets);
     hf_scene_free(&scene);
+    hf_summary_free(&summary);
     return status;
 }
 

@@ -20,6 +20,7 @@ static void print_result(const hf_form_result *r, FILE *f)
 
 static void print_sets(const hf_set_tensions *s, FILE *f)
 {
+    if (!s) return;
     char ratio[32];
     if (s->n == 0) return;
     fputs("                tension ratio of sets:", f);
@@ -37,6 +38,7 @@ static const char *limit_of(const hf_held_limits *h, int i, char text[32])
 
 void hf_print_held(const hf_held_limits *h, FILE *f)
 {
+    if (!h) return;
     char limit[32], more[40];
     for (int i = 0; i < h->n; i++) {
         snprintf(more, sizeof more, " and %d more", h->count[i] - 1);
@@ -80,7 +82,7 @@ static void print_certificate(const hf_form_result *r, FILE *f)
     if (isfinite(r->position_error_m) && isfinite(r->condition))
         fprintf(f, "                estimated position error %.1e m; condition %.1e; backward error %.1e\n",
                 r->position_error_m, r->condition, r->backward_error);
-    if (r->bound_reason == HF_BOUND_PROVEN)
+    if (r->bound_reason == HF_BOUND_CERTIFIED)
         fprintf(f, "                proven: no node is farther than %.1e m from equilibrium, psi is right to %.1e m\n",
                 r->position_bound_m, r->psi_bound_m);
     else if (r->bound_reason != HF_BOUND_NONE)
@@ -115,7 +117,7 @@ static void print_gain(double loss_dB, double limit_Hz, FILE *f)
 /* Prints the measures of the surface of a stage, if the case measures the surface. */
 static void print_surface(const hf_summary *s, int stage, FILE *f)
 {
-    const hf_surface_measures *m = &s->measures[stage];
+    const hf_surface_measures *m = &s->stage[stage].surface;
     if (!m->is_measured) return;
     fprintf(f, "                surface, %s: half-path RMS %.4f mm, normal %.4f mm; ",
             s->surface.kind == HF_SURFACE_PARABOLOID ? "paraboloid" : "parabolic cylinder", m->half_path_rms_m * 1e3,
@@ -155,42 +157,45 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
 
 static void print_optimize(const hf_summary *s, FILE *f)
 {
+    const hf_stage_summary *stage = &s->stage[HF_STAGE_SEARCH];
     char wall[32], change[HF_PRINT_CHANGE_SIZE];
-    hf_print_duration(s->optimize_wall_s, wall, sizeof wall);
-    if (s->best.status != HF_OK) {
-        fprintf(f, "  optimisation  no feasible design in %ld evaluations, %s\n", s->evaluations, wall);
+    hf_print_duration(stage->wall_s, wall, sizeof wall);
+    if (stage->result.status != HF_OK) {
+        fprintf(f, "  optimisation  no feasible design in %ld evaluations, %s\n", s->search.evaluations, wall);
         return;
     }
-    fprintf(f, "  optimisation  psi %.4f mm", s->best.psi_m * 1e3);
-    if (s->has_front)
+    fprintf(f, "  optimisation  psi %.4f mm", stage->result.psi_m * 1e3);
+    if (s->front)
         fprintf(f, ": the end of the front with the least %s", s->objectives.name[0]);
-    else if (s->objectives.n > 0 && !s->objectives.is_front && s->form.merit > 0) /* psi is not the objective */
-        fprintf(f, ", merit %.6g, %s that of the form-finding", s->best.merit,
-                hf_print_change(s->best.merit, s->form.merit, change));
-    else /* base_psi_m is evaluated under the same rule, so only the tensions differ */
-        hf_print_gained(s, s->best.psi_m, s->base_psi_m, f);
-    fprintf(f, "; found in generation %d\n", s->best_generation);
-    print_result(&s->best, f);
-    if (s->best_n_at_lower + s->best_n_at_upper > 0)
+    else if (s->objectives.n > 0 && !s->objectives.is_front &&
+             s->stage[HF_STAGE_FORM].result.merit > 0) /* psi is not the objective */
+        fprintf(f, ", merit %.6g, %s that of the form-finding", stage->result.merit,
+                hf_print_change(stage->result.merit, s->stage[HF_STAGE_FORM].result.merit, change));
+    else /* initial_psi_m is evaluated under the same rule, so only the tensions differ */
+        hf_print_gained(s, stage->result.psi_m, s->search.initial_psi_m, f);
+    fprintf(f, "; found in generation %d\n", s->search.best_generation);
+    print_result(&stage->result, f);
+    if (s->search.n_at_lower + s->search.n_at_upper > 0)
         fprintf(f, "                %d of %d variables at their lower and %d at their upper bounds\n",
-                s->best_n_at_lower, s->n_gene, s->best_n_at_upper);
-    hf_print_held(&s->held[1], f);
-    print_sets(&s->sets[1], f);
-    hf_print_objectives(s, &s->best, f);
-    print_certificate(&s->best, f);
-    print_surface(s, 1, f);
-    if (s->planes)
-        fprintf(f, "                symmetry: %s; %d independent genes of %d\n", hf_symmetry_planes_text(s->planes),
-                s->n_leader, s->n_gene);
-    fprintf(f, "                %d generations, %ld evaluations (%ld infeasible)", s->generations, s->evaluations,
-            s->infeasible);
+                s->search.n_at_lower, s->n_variable, s->search.n_at_upper);
+    hf_print_held(stage->held, f);
+    print_sets(stage->sets, f);
+    hf_print_objectives(s, &stage->result, f);
+    print_certificate(&stage->result, f);
+    print_surface(s, HF_STAGE_SEARCH, f);
+    if (s->search.planes)
+        fprintf(f, "                symmetry: %s; %d independent genes of %d\n",
+                hf_symmetry_planes_text(s->search.planes), s->search.n_leader, s->n_variable);
+    fprintf(f, "                %d generations, %ld evaluations (%ld infeasible)", s->search.generations,
+            s->search.evaluations, s->search.infeasible);
     if (!s->finished) { /* other figures are those of the last publication, which may be before the first generation */
         fputs(" so far\n", f);
         return;
     }
-    fprintf(f, " by %s, stopped by %s\n", hf_solver_word[s->solver], hf_population_stop_word[s->optimize_stop]);
+    fprintf(f, " by %s, stopped by %s\n", hf_solver_word[s->search.solver],
+            hf_population_stop_word[s->search.algorithm_stop]);
     fprintf(f, "                %s, %.0f evaluations/s; cpu_s / (wall_s * threads) = %.3f on %d thread%s\n", wall,
-            (double)s->evaluations / s->optimize_wall_s, hf_summary_utilisation(s), s->threads,
+            (double)s->search.evaluations / stage->wall_s, hf_summary_utilisation(s), s->threads,
             s->threads == 1 ? "" : "s");
 }
 
@@ -198,42 +203,45 @@ static void print_optimize(const hf_summary *s, FILE *f)
 
 static void print_refine(const hf_summary *s, FILE *f)
 {
+    const hf_stage_summary *stage = &s->stage[HF_STAGE_REFINE];
     static const char *const end[] = {"", " (stalled: shorter steps gain nothing)", " (not converged)",
                                       " (settled: ten steps gain less than 1e-6)", ""};
     char wall[32], boundary[32];
     char limits[40] = "";
-    hf_print_duration(s->polish_wall_s, wall, sizeof wall);
+    hf_print_duration(stage->wall_s, wall, sizeof wall);
     if (s->taken.point)
         hf_print_line(f, "  point         psi %.4f mm, boundary ratio %s: point %d of the front in %s",
-                      s->polish.psi_m * 1e3, hf_print_decimals(s->polish.boundary_tension_ratio, boundary),
+                      stage->result.psi_m * 1e3, hf_print_decimals(stage->result.boundary_tension_ratio, boundary),
                       s->taken.point, s->taken.path);
     else
         fprintf(f, "  LM optimum    psi %.4f mm from %s, %s; boundary ratio %s; %d iteration%s%s, %s\n",
-                s->polish.psi_m * 1e3, s->has_optimize ? "there" : "the form-finding's tensions",
-                s->polish_is_result ? "the result" : "for comparison",
-                hf_print_decimals(s->polish.boundary_tension_ratio, boundary), s->polish_iterations,
-                s->polish_iterations == 1 ? "" : "s", end[s->polish_stop], wall);
-    if (s->polish_n_at_limit) snprintf(limits, sizeof limits, " and %d limits", s->polish_n_at_limit);
-    fprintf(f, "                held by %d lower and %d upper bounds%s%s\n", s->polish_n_at_lower, s->polish_n_at_upper,
-            limits, s->polish_is_at_cap ? " and the cap on the boundary ratio" : "");
-    hf_print_held(&s->held[2], f);
-    print_sets(&s->sets[2], f);
-    hf_print_objectives(s, &s->polish, f);
-    print_surface(s, 2, f);
+                stage->result.psi_m * 1e3, s->stage[HF_STAGE_SEARCH].exists ? "there" : "the form-finding's tensions",
+                s->refine.is_result ? "the result" : "for comparison",
+                hf_print_decimals(stage->result.boundary_tension_ratio, boundary), s->refine.steps,
+                s->refine.steps == 1 ? "" : "s", end[s->refine.algorithm_stop], wall);
+    if (s->refine.n_at_limit) snprintf(limits, sizeof limits, " and %d limits", s->refine.n_at_limit);
+    fprintf(f, "                held by %d lower and %d upper bounds%s%s\n", s->refine.n_at_lower, s->refine.n_at_upper,
+            limits, s->refine.is_at_cap ? " and the cap on the boundary ratio" : "");
+    hf_print_held(stage->held, f);
+    print_sets(stage->sets, f);
+    hf_print_objectives(s, &stage->result, f);
+    print_surface(s, HF_STAGE_REFINE, f);
 }
 
 void hf_print_details(const hf_summary *s, FILE *f)
 {
+    const hf_stage_summary *stage = &s->stage[HF_STAGE_FORM];
     char wall[32], psi[32];
-    hf_print_duration(s->form_wall_s, wall, sizeof wall);
+    hf_print_duration(stage->wall_s, wall, sizeof wall);
     fprintf(f, "  form-finding  psi %s mm after %d iteration%s, stopped by %s, %s; half-bandwidth %d\n",
-            hf_print_decimals(s->form.psi_m * 1e3, psi), s->form.iterations, s->form.iterations == 1 ? "" : "s",
-            hf_stop_reason_word((int)s->form.stop_reason), wall, s->half_bandwidth);
-    print_result(&s->form, f);
-    print_sets(&s->sets[0], f);
-    hf_print_objectives(s, &s->form, f);
-    print_certificate(&s->form, f);
-    print_surface(s, 0, f);
-    if (s->has_optimize) print_optimize(s, f);
-    if (s->has_polish) print_refine(s, f);
+            hf_print_decimals(stage->result.psi_m * 1e3, psi), stage->result.iterations,
+            stage->result.iterations == 1 ? "" : "s", hf_stop_reason_word((int)stage->result.stop_reason), wall,
+            s->half_bandwidth);
+    print_result(&stage->result, f);
+    print_sets(stage->sets, f);
+    hf_print_objectives(s, &stage->result, f);
+    print_certificate(&stage->result, f);
+    print_surface(s, HF_STAGE_FORM, f);
+    if (s->stage[HF_STAGE_SEARCH].exists) print_optimize(s, f);
+    if (s->stage[HF_STAGE_REFINE].exists) print_refine(s, f);
 }

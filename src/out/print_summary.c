@@ -18,7 +18,9 @@
 
 static const hf_form_result *result_of(const hf_summary *s, hf_stage stage)
 {
-    return stage == HF_STAGE_REFINE ? &s->polish : stage == HF_STAGE_SEARCH ? &s->best : &s->form;
+    return stage == HF_STAGE_REFINE   ? &s->stage[HF_STAGE_REFINE].result
+           : stage == HF_STAGE_SEARCH ? &s->stage[HF_STAGE_SEARCH].result
+                                      : &s->stage[HF_STAGE_FORM].result;
 }
 
 static bool has_merit(const hf_summary *s)
@@ -30,8 +32,8 @@ static bool has_merit(const hf_summary *s)
 static bool wants_fit(const hf_summary *s)
 {
     int n_raw = 0, n_fit = 0;
-    for (int k = 0; k < s->tolerance.n_require; k++) {
-        hf_tolerance_measure measure = s->tolerance.require[k].measure;
+    for (int k = 0; s->tolerance && k < s->tolerance->n_require; k++) {
+        hf_tolerance_measure measure = s->tolerance->require[k].measure;
         if (measure <= HF_TOLERANCE_PSI || measure >= HF_TOLERANCE_PATTERN_LOSS) continue;
         bool is_fit = strstr(hf_tolerance_measure_word[measure], "fit_") != NULL;
         n_fit += is_fit;
@@ -49,7 +51,7 @@ static bool wants_fit(const hf_summary *s)
  * section 9). The frequency after the best fit comes first where the case judges the surface only after it. */
 static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, FILE *f)
 {
-    const hf_surface_measures *m = &s->measures[stage];
+    const hf_surface_measures *m = &s->stage[stage].surface;
     bool has_facets = m->is_measured && m->n_facet > 0 && isfinite(m->facet_half_path_rms_m);
     hf_surface_errors e = {.half_path_rms_m = psi_m, .fit_half_path_rms_m = (double)NAN};
     if (m->is_measured) e = hf_surface_errors_of(m, has_facets);
@@ -73,7 +75,8 @@ void hf_print_gained(const hf_summary *s, double psi_m, double base_psi_m, FILE 
 {
     char base[32], form[32], change[HF_PRINT_CHANGE_SIZE];
     if (!(base_psi_m * 1e3 >= TOLD_MM) || !isfinite(base_psi_m)) return;
-    bool is_same = !strcmp(hf_print_decimals(base_psi_m * 1e3, base), hf_print_decimals(s->form.psi_m * 1e3, form));
+    bool is_same = !strcmp(hf_print_decimals(base_psi_m * 1e3, base),
+                           hf_print_decimals(s->stage[HF_STAGE_FORM].result.psi_m * 1e3, form));
     fprintf(f, ", %s the %s mm of %s", hf_print_change(psi_m, base_psi_m, change), base,
             is_same ? "the form-finding's tensions" : "the base design");
 }
@@ -83,7 +86,7 @@ void hf_print_gained(const hf_summary *s, double psi_m, double base_psi_m, FILE 
 static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_form_result *r = result_of(s, stage);
-    double base_psi_m = stage == HF_STAGE_SEARCH ? s->base_psi_m : s->form.psi_m;
+    double base_psi_m = stage == HF_STAGE_SEARCH ? s->search.initial_psi_m : s->stage[HF_STAGE_FORM].result.psi_m;
     if (stage == HF_STAGE_FORM || s->objectives.is_front) return;
     hf_print_gained(s, r->psi_m, base_psi_m, f);
 }
@@ -124,7 +127,7 @@ static void print_objectives_gained(const hf_summary *s, const hf_form_result *r
     for (int k = 0; k < s->objectives.n && k < OBJECTIVES_TOLD; k++) {
         const char *unit = hf_ledger_objective_unit(s->objectives.name[k]);
         fprintf(f, "%s%s ", k ? ", " : "", hf_ledger_objective(s->objectives.name[k]));
-        print_objective_value(s->form.objective[k], unit, f);
+        print_objective_value(s->stage[HF_STAGE_FORM].result.objective[k], unit, f);
         fputs(" -> ", f);
         print_objective_value(r->objective[k], unit, f);
         print_objective_unit(unit, f);
@@ -132,7 +135,7 @@ static void print_objectives_gained(const hf_summary *s, const hf_form_result *r
     if (s->objectives.n > OBJECTIVES_TOLD) fprintf(f, " and %d more", s->objectives.n - OBJECTIVES_TOLD);
     if (wants_psi(s)) return;
     fputs("; psi ", f);
-    print_objective_value(s->form.psi_m, "m", f);
+    print_objective_value(s->stage[HF_STAGE_FORM].result.psi_m, "m", f);
     fputs(" -> ", f);
     print_objective_value(r->psi_m, "m", f);
     fputs(" mm, which counts drift within the surface, too", f);
@@ -142,16 +145,16 @@ static void print_objectives_gained(const hf_summary *s, const hf_form_result *r
 static void print_front_answer(const hf_summary *s, FILE *f)
 {
     const char *before = "";
-    bool is_one = hf_front_agrees(&s->front);
+    bool is_one = hf_front_agrees(s->front);
     if (is_one)
         fputs("one design is best in all objectives:", f);
     else
-        fprintf(f, "front of %d points:", s->front.n_point);
-    for (int k = 0; k < s->front.n_objective; k++) {
+        fprintf(f, "front of %d points:", s->front->n_point);
+    for (int k = 0; k < s->front->n_objective; k++) {
         const char *unit = hf_ledger_objective_unit(s->objectives.name[k]);
-        if (s->front.end[k] < 0) continue;
+        if (s->front->end[k] < 0) continue;
         fprintf(f, "%s%s %s ", before, is_one ? "" : " least", hf_ledger_objective(s->objectives.name[k]));
-        print_objective_value(s->front.row[s->front.end[k]].objective[k], unit, f);
+        print_objective_value(s->front->row[s->front->end[k]].objective[k], unit, f);
         print_objective_unit(unit, f);
         before = ",";
     }
@@ -164,7 +167,7 @@ static void print_failure(const hf_summary *s, hf_stage stage, FILE *f)
     static const char begin[] = "error: ";
     char why[HF_WARNINGS_SIZE], shown[HF_WARNINGS_SIZE];
     const char *line = s->warnings;
-    if (!s->finished || s->status == HF_OK || s->form.status != HF_OK) return;
+    if (!s->finished || s->status == HF_OK || s->stage[HF_STAGE_FORM].result.status != HF_OK) return;
     while (*line && strncmp(line, begin, strlen(begin)) != 0) {
         line += strcspn(line, "\n");
         line += *line == '\n';
@@ -173,7 +176,7 @@ static void print_failure(const hf_summary *s, hf_stage stage, FILE *f)
     snprintf(why, sizeof why, "%.*s", (int)strcspn(line, "\n"), line);
     hf_text_escape(*why ? why : hf_status_text(s->status), shown, sizeof shown);
     fprintf(f, "failed: %s; ", shown);
-    if (!s->has_front) fputs(stage == HF_STAGE_FORM ? "of the form-finding: " : "of the design: ", f);
+    if (!s->front) fputs(stage == HF_STAGE_FORM ? "of the form-finding: " : "of the design: ", f);
 }
 
 void hf_print_answer(const hf_summary *s, FILE *f)
@@ -188,7 +191,7 @@ void hf_print_answer(const hf_summary *s, FILE *f)
         fprintf(f, "no shape: %s", hf_status_text(r->status));
         return;
     }
-    if (s->has_front) {
+    if (s->front) {
         print_front_answer(s, f);
         return;
     }
@@ -215,7 +218,7 @@ static void print_table_head(const hf_summary *s, FILE *f)
 static void print_proof(const hf_form_result *r, FILE *f)
 {
     char text[32] = "-";
-    if (r->bound_reason == HF_BOUND_PROVEN)
+    if (r->bound_reason == HF_BOUND_CERTIFIED)
         snprintf(text, sizeof text, "%.1e m", r->position_bound_m);
     else if (r->bound_reason != HF_BOUND_NONE)
         snprintf(text, sizeof text, "no: %s", hf_bound_reason_word((int)r->bound_reason));
@@ -227,7 +230,7 @@ static void print_proof(const hf_form_result *r, FILE *f)
 static void print_figures(const hf_summary *s, const char *name, const hf_form_result *r, int at_bounds, FILE *f)
 {
     char psi[32], boundary[32], inside[32], bounds[40] = "-";
-    if (at_bounds >= 0) snprintf(bounds, sizeof bounds, "%d of %d", at_bounds, s->n_gene);
+    if (at_bounds >= 0) snprintf(bounds, sizeof bounds, "%d of %d", at_bounds, s->n_variable);
     fprintf(f, "  %-13s %9s  %14s  %12s", name, hf_print_decimals(r->psi_m * 1e3, psi),
             hf_print_decimals(r->boundary_tension_ratio, boundary), hf_print_decimals(r->inner_tension_ratio, inside));
     if (has_merit(s)) fprintf(f, "  %12.6g", r->merit);
@@ -240,20 +243,21 @@ static void print_figures(const hf_summary *s, const char *name, const hf_form_r
 static void print_ga(const hf_summary *s, bool is_result, FILE *f)
 {
     char wall[32];
-    if (s->best.status != HF_OK) {
-        fprintf(f, "  GA            no feasible design in %ld evaluations%s\n", s->evaluations,
+    if (s->stage[HF_STAGE_SEARCH].result.status != HF_OK) {
+        fprintf(f, "  GA            no feasible design in %ld evaluations%s\n", s->search.evaluations,
                 s->finished ? "" : " so far");
         return;
     }
-    print_figures(s, "GA", &s->best, s->best_n_at_lower + s->best_n_at_upper, f);
-    fprintf(f, "  %s%d generations", is_result ? "the result: " : "", s->generations);
-    if (s->infeasible) fprintf(f, ", %ld of %ld designs infeasible", s->infeasible, s->evaluations);
+    print_figures(s, "GA", &s->stage[HF_STAGE_SEARCH].result, s->search.n_at_lower + s->search.n_at_upper, f);
+    fprintf(f, "  %s%d generations", is_result ? "the result: " : "", s->search.generations);
+    if (s->search.infeasible)
+        fprintf(f, ", %ld of %ld designs infeasible", s->search.infeasible, s->search.evaluations);
     if (!s->finished) {
         fputs(" so far\n", f);
         return;
     }
-    hf_print_duration(s->optimize_wall_s, wall, sizeof wall);
-    fprintf(f, ", stopped by %s, %s\n", hf_population_stop_word[s->optimize_stop], wall);
+    hf_print_duration(s->stage[HF_STAGE_SEARCH].wall_s, wall, sizeof wall);
+    fprintf(f, ", stopped by %s, %s\n", hf_population_stop_word[s->search.algorithm_stop], wall);
 }
 
 static void print_lm(const hf_summary *s, bool is_result, FILE *f)
@@ -262,28 +266,29 @@ static void print_lm(const hf_summary *s, bool is_result, FILE *f)
                                       ", settled: ten steps gain less than 1e-6", ""};
     char wall[32];
     if (s->taken.point) {
-        print_figures(s, "point", &s->polish, s->polish_n_at_lower + s->polish_n_at_upper, f);
+        print_figures(s, "point", &s->stage[HF_STAGE_REFINE].result, s->refine.n_at_lower + s->refine.n_at_upper, f);
         hf_print_line(f, "  the result: point %d of the front in %s", s->taken.point, s->taken.path);
         return;
     }
-    hf_print_duration(s->polish_wall_s, wall, sizeof wall);
-    print_figures(s, "LM", &s->polish, s->polish_n_at_lower + s->polish_n_at_upper, f);
-    fprintf(f, "  %s: %d iteration%s%s, %s\n", is_result ? "the result" : "for comparison", s->polish_iterations,
-            s->polish_iterations == 1 ? "" : "s", end[s->polish_stop], wall);
+    hf_print_duration(s->stage[HF_STAGE_REFINE].wall_s, wall, sizeof wall);
+    print_figures(s, "LM", &s->stage[HF_STAGE_REFINE].result, s->refine.n_at_lower + s->refine.n_at_upper, f);
+    fprintf(f, "  %s: %d iteration%s%s, %s\n", is_result ? "the result" : "for comparison", s->refine.steps,
+            s->refine.steps == 1 ? "" : "s", end[s->refine.algorithm_stop], wall);
 }
 
 static void print_stages(const hf_summary *s, hf_stage result, FILE *f)
 {
     char wall[32];
-    hf_print_duration(s->form_wall_s, wall, sizeof wall);
+    hf_print_duration(s->stage[HF_STAGE_FORM].wall_s, wall, sizeof wall);
     print_table_head(s, f);
-    print_figures(s, "form-finding", &s->form, -1, f);
-    fprintf(f, "  %d iteration%s, stopped by %s, %s\n", s->form.iterations, s->form.iterations == 1 ? "" : "s",
-            hf_stop_reason_word((int)s->form.stop_reason), wall);
-    if (s->has_optimize) print_ga(s, result == HF_STAGE_SEARCH, f);
-    if (s->has_optimize) hf_print_held(&s->held[HF_STAGE_SEARCH], f);
-    if (s->has_polish) print_lm(s, result == HF_STAGE_REFINE, f);
-    if (s->has_polish) hf_print_held(&s->held[HF_STAGE_REFINE], f);
+    print_figures(s, "form-finding", &s->stage[HF_STAGE_FORM].result, -1, f);
+    fprintf(f, "  %d iteration%s, stopped by %s, %s\n", s->stage[HF_STAGE_FORM].result.iterations,
+            s->stage[HF_STAGE_FORM].result.iterations == 1 ? "" : "s",
+            hf_stop_reason_word((int)s->stage[HF_STAGE_FORM].result.stop_reason), wall);
+    if (s->stage[HF_STAGE_SEARCH].exists) print_ga(s, result == HF_STAGE_SEARCH, f);
+    if (s->stage[HF_STAGE_SEARCH].exists) hf_print_held(s->stage[HF_STAGE_SEARCH].held, f);
+    if (s->stage[HF_STAGE_REFINE].exists) print_lm(s, result == HF_STAGE_REFINE, f);
+    if (s->stage[HF_STAGE_REFINE].exists) hf_print_held(s->stage[HF_STAGE_REFINE].held, f);
     if (s->objectives.n > 0) hf_print_objectives(s, result_of(s, result), f);
 }
 
@@ -307,8 +312,8 @@ static void print_losses(const hf_summary *s, double rms_m, const double *loss_d
 void hf_print_gain_loss(const hf_summary *s, FILE *f)
 {
     hf_stage stage = hf_store_result_stage(s);
-    if (stage == HF_N_STAGE || !s->measures[stage].is_measured || s->surface.frequencies_Hz.n == 0) return;
-    const hf_surface_measures *m = &s->measures[stage];
+    if (stage == HF_N_STAGE || !s->stage[stage].surface.is_measured || s->surface.frequencies_Hz.n == 0) return;
+    const hf_surface_measures *m = &s->stage[stage].surface;
     fputs("loss of gain at ", f);
     for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
         fprintf(f, "%s%g", k ? "/" : "", s->surface.frequencies_Hz.value[k] / 1e9);
@@ -324,8 +329,9 @@ void hf_print_gain_loss(const hf_summary *s, FILE *f)
  * measure the reflector as it stands, not repointed and refocused. */
 static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
 {
-    const hf_surface_measures *before = &s->measures[HF_STAGE_FORM], *m = &s->measures[stage];
-    if (stage == HF_STAGE_FORM || s->has_front || s->form.status != HF_OK || !before->is_measured) return;
+    const hf_surface_measures *before = &s->stage[HF_STAGE_FORM].surface, *m = &s->stage[stage].surface;
+    if (stage == HF_STAGE_FORM || s->front || s->stage[HF_STAGE_FORM].result.status != HF_OK || !before->is_measured)
+        return;
     bool has_facets = m->n_facet > 0;
     double rms_m = hf_surface_errors_of(m, has_facets).fit_half_path_rms_m,
            before_m = hf_surface_errors_of(before, has_facets).fit_half_path_rms_m;
@@ -340,7 +346,7 @@ static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
 /* Prints the surface errors of the nodes of the result and of its facets, if there are any, and the gain losses. */
 static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
 {
-    const hf_surface_measures *m = &s->measures[stage];
+    const hf_surface_measures *m = &s->stage[stage].surface;
     char node[32], fit[32], facet[32], facet_fit[32];
     if (!m->is_measured) return;
     fprintf(f, "  surface       half-path RMS %s mm", hf_print_decimals(m->half_path_rms_m * 1e3, node));
@@ -372,15 +378,15 @@ static double front_unit(const hf_summary *s, int k, const char **unit)
 static double slope_scale(const hf_summary *s, int k)
 {
     const char *unit;
-    return front_unit(s, s->front.minimised, &unit) / front_unit(s, k, &unit);
+    return front_unit(s, s->front->minimised, &unit) / front_unit(s, k, &unit);
 }
 
 static void print_slope_head(const hf_summary *s, int k, FILE *f)
 {
     const char *of, *per;
-    bool is_plain = front_unit(s, s->front.minimised, &of) == 1;
+    bool is_plain = front_unit(s, s->front->minimised, &of) == 1;
     front_unit(s, k, &per);
-    fprintf(f, "; slope of %s%s%s per %s of %s", s->objectives.name[s->front.minimised], is_plain ? "" : " in ",
+    fprintf(f, "; slope of %s%s%s per %s of %s", s->objectives.name[s->front->minimised], is_plain ? "" : " in ",
             is_plain ? "" : of, per, s->objectives.name[k]);
 }
 
@@ -389,7 +395,7 @@ static void print_slope_head(const hf_summary *s, int k, FILE *f)
 static void print_front_values(const hf_summary *s, const char *name, int number, const double *objective,
                                const double *multiplier, FILE *f)
 {
-    const hf_front_table *t = &s->front;
+    const hf_front_table *t = s->front;
     char what[32];
     snprintf(what, sizeof what, number ? "%s, point %d" : "%s", name, number);
     fprintf(f, "                %-15s", what);
@@ -403,14 +409,14 @@ static void print_front_values(const hf_summary *s, const char *name, int number
 
 static void print_front_point(const hf_summary *s, const char *name, int row, FILE *f)
 {
-    const hf_front_point *p = &s->front.row[row];
-    print_front_values(s, name, s->front.place[row] + 1, p->objective, p->multiplier, f);
+    const hf_front_point *p = &s->front->row[row];
+    print_front_values(s, name, s->front->index[row] + 1, p->objective, p->multiplier, f);
 }
 
 /* Prints the numbers of points of the front and the units of the slopes. */
 static void print_front_counts(const hf_summary *s, FILE *f)
 {
-    const hf_front_table *t = &s->front;
+    const hf_front_table *t = s->front;
     char wall[32], rough[40] = "";
     if (t->n_unconverged > 0) snprintf(rough, sizeof rough, ", %d not converged", t->n_unconverged);
     hf_print_duration(t->wall_s, wall, sizeof wall);
@@ -426,15 +432,15 @@ static void print_front_counts(const hf_summary *s, FILE *f)
 
 static void print_front(const hf_summary *s, const char *path, FILE *f)
 {
-    const hf_front_table *t = &s->front;
+    const hf_front_table *t = s->front;
     bool is_one = hf_front_agrees(t);
     int point = hf_front_suggested(t);
     if (is_one)
         fputs("  front         the objectives do not conflict: one design is best in all of them\n", f);
     else
         print_front_counts(s, f);
-    if (isfinite(t->base[0])) print_front_values(s, "base", 0, t->base, NULL, f);
-    if (is_one) print_front_values(s, "best", t->place[t->end[0]] + 1, t->row[t->end[0]].objective, NULL, f);
+    if (isfinite(t->initial[0])) print_front_values(s, "base", 0, t->initial, NULL, f);
+    if (is_one) print_front_values(s, "best", t->index[t->end[0]] + 1, t->row[t->end[0]].objective, NULL, f);
     for (int k = 0; k < t->n_objective && !is_one; k++)
         if (t->end[k] >= 0) print_front_point(s, "end", t->end[k], f);
     if (t->knee >= 0) print_front_point(s, "knee", t->knee, f);
@@ -450,10 +456,10 @@ static void print_form_parts(const hf_summary *s, hf_stage result, FILE *f)
     const struct {
         bool is_there;
         const char *name;
-    } part[] = {{is_form && s->measures[HF_STAGE_FORM].is_measured, "surface"},
-                {is_form && s->pattern[HF_STAGE_FORM].n_frequency > 0, "pattern"},
+    } part[] = {{is_form && s->stage[HF_STAGE_FORM].surface.is_measured, "surface"},
+                {is_form && s->stage[HF_STAGE_FORM].pattern != NULL, "pattern"},
                 {s->n_load_case > 0, "cases"},
-                {s->has_tolerance, "as built"}};
+                {s->tolerance != NULL, "as built"}};
     const char *before = "                ";
     for (int i = 0; i < (int)(sizeof part / sizeof *part); i++) {
         if (!part[i].is_there) continue;
@@ -519,11 +525,10 @@ static void print_load_cases(const hf_summary *s, FILE *f)
         has_loose |= r->n_loose > 0;
         fprintf(f, "                %-16s", load_case->name);
         print_if_finite(" %9.4f", r->psi_m * 1e3, 10, f);
-        fprintf(f, " %9.4f", load_case->move_rms_m * 1e3);
-        if (has_surface) print_load_case_surface(s, &load_case->measures, f);
-        fprintf(f, " %8.4f %9.4f %5d %5d", load_case->least_tension_N, load_case->largest_tension_N, r->n_slack,
-                r->n_loose);
-        if (has_truss) fprintf(f, " %8.4g", load_case->largest_member_N);
+        fprintf(f, " %9.4f", load_case->displacement_rms_m * 1e3);
+        if (has_surface) print_load_case_surface(s, &load_case->surface, f);
+        fprintf(f, " %8.4f %9.4f %5d %5d", load_case->tension_min_N, load_case->tension_max_N, r->n_slack, r->n_loose);
+        if (has_truss) fprintf(f, " %8.4g", load_case->member_force_max_N);
         fputc('\n', f);
     }
     if (has_loss)
@@ -536,6 +541,7 @@ static void print_load_cases(const hf_summary *s, FILE *f)
 /* Prints the far field of the result, one line for each frequency and cut. */
 static void print_pattern(const hf_pattern_summary *s, FILE *f)
 {
+    if (!s) return;
     static const char *const of_feed[] = {"", "a point", "a line", "a plane wave"};
     if (s->n_frequency == 0) return;
     fprintf(f, "  pattern       %7s %7s %9s %10s %13s %15s %8s   by physical optics, fed by %s", "GHz", "phi deg",
@@ -556,9 +562,9 @@ static void print_pattern(const hf_pattern_summary *s, FILE *f)
 /* Prints the deflections of the truss and the convergence of the coupling in the form-finding. */
 static void print_coupling(const hf_summary *s, hf_stage result, FILE *f)
 {
-    const hf_coupling_result *r = &s->form.coupling, *end = &result_of(s, result)->coupling;
-    fprintf(f, "  on its truss  attachments give way by up to %.4f mm", r->max_displacement_m * 1e3);
-    if (end != r && end->iterations > 0) fprintf(f, ", in the result by %.4f mm", end->max_displacement_m * 1e3);
+    const hf_coupling_result *r = &s->stage[HF_STAGE_FORM].result.coupling, *end = &result_of(s, result)->coupling;
+    fprintf(f, "  on its truss  attachments give way by up to %.4f mm", r->deflection_max_m * 1e3);
+    if (end != r && end->iterations > 0) fprintf(f, ", in the result by %.4f mm", end->deflection_max_m * 1e3);
     fprintf(f, "; %d round%s, the last step %.1e m, stopped by %s\n", r->iterations, r->iterations == 1 ? "" : "s",
             r->step_m, hf_coupling_stop_word((int)r->stop_reason));
 }
@@ -584,7 +590,8 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
     fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
     hf_print_line(f, "  case          %s", *s->title ? s->title : s->case_path);
     fprintf(f, "  net           %d nodes (%d free), %d cables", s->n_node, s->n_free, s->n_cable);
-    if (s->has_optimize || s->has_polish || s->has_front) fprintf(f, ", %d variables", s->n_gene);
+    if (s->stage[HF_STAGE_SEARCH].exists || s->stage[HF_STAGE_REFINE].exists || s->front)
+        fprintf(f, ", %d variables", s->n_variable);
     if (s->has_own_tensions)
         fputs("; tensions by their own laws\n", f);
     else
@@ -596,10 +603,10 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
     if (s->has_coupling) print_coupling(s, result, f);
     print_errors(s, result, f);
     if (style.verbose) hf_print_details(s, f);
-    if (s->has_front) print_front(s, path, f);
-    if (s->has_front) print_form_parts(s, result, f);
-    if (result != HF_N_STAGE) print_pattern(&s->pattern[result], f);
+    if (s->front) print_front(s, path, f);
+    if (s->front) print_form_parts(s, result, f);
+    if (result != HF_N_STAGE) print_pattern(s->stage[result].pattern, f);
     print_load_cases(s, f);
-    if (s->has_tolerance) hf_print_tolerance(&s->tolerance, style.verbose, f);
+    if (s->tolerance) hf_print_tolerance(s->tolerance, style.verbose, f);
     print_end(s, path, style, f);
 }

@@ -83,8 +83,8 @@ static void print_yield(const hf_tolerance_summary *t, FILE *f)
         fprintf(f, " in %.2f %%", 100 * t->require_yield[k]);
     }
     fputc('\n', f);
-    if (isnan(t->wanted_yield)) return;
-    fprintf(f, "                a yield of %g %% ", 100 * t->wanted_yield);
+    if (isnan(t->required_yield)) return;
+    fprintf(f, "                a yield of %g %% ", 100 * t->required_yield);
     if (t->sigma_scale == 0)
         fputs("is out of reach: the net without errors does not meet it\n", f);
     else

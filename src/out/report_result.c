@@ -293,7 +293,7 @@ static void write_patterns(const page *p, FILE *f)
     for (int i = 0; i < HF_N_STAGE; i++) {
         if (!p->pattern[i].n_theta) continue;
         fputs(n++ ? ",\n" : ",\n\"pattern\":[", f);
-        hf_report_pattern_write(hf_stage_word[i], &p->summary.pattern[i], &p->pattern[i], f);
+        hf_report_pattern_write(hf_stage_word[i], p->summary.stage[i].pattern, &p->pattern[i], f);
     }
     if (n) fputc(']', f);
 }
@@ -341,8 +341,8 @@ static void write_data(const void *context, FILE *f)
     fputs(",\n\"summary\":", f);
     hf_summary_write_json(s, hf_summary_status(s), s->warnings, p->path, f);
     fprintf(f, ",\"seed\":\"%llu\"", (unsigned long long)s->seed); /* a JSON number would lose its last digits */
-    bool has_variables = s->has_optimize || s->has_polish || s->has_front;
-    fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, has_variables ? s->n_gene : 0);
+    bool has_variables = s->stage[HF_STAGE_SEARCH].exists || s->stage[HF_STAGE_REFINE].exists || s->front;
+    fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, has_variables ? s->n_variable : 0);
     hf_json_value(s->has_own_tensions ? (double)NAN : s->pretension_N, 17, f);
     write_figures(f);
     write_objective_units(s, f);
@@ -353,7 +353,7 @@ static void write_data(const void *context, FILE *f)
     write_series(p, f);
     write_patterns(p, f);
     if (p->other) write_other(p, p->other, f);
-    if (!p->other && s->has_front) write_overrides(p, f);
+    if (!p->other && s->front) write_overrides(p, f);
     if (p->part) {
         hf_json_line(&j, "");
         hf_json_open(&j, p->part->key, '{');
@@ -388,8 +388,8 @@ static hf_status read_shapes(page *p, hf_messages *messages)
     HF_TRY(hf_store_read_series(p->path, "/form/tension_N", 1, &there, messages));
     p->has_shape[HF_STAGE_FORM] = there.n > 0; /* a failed form-finding stores no shape */
     hf_series_free(&there);
-    p->has_shape[HF_STAGE_SEARCH] = hf_summary_has_best_shape(&p->summary);
-    p->has_shape[HF_STAGE_REFINE] = p->summary.has_polish;
+    p->has_shape[HF_STAGE_SEARCH] = hf_summary_has_shape(&p->summary, HF_STAGE_SEARCH);
+    p->has_shape[HF_STAGE_REFINE] = p->summary.stage[HF_STAGE_REFINE].exists;
     for (int i = 0; i < HF_N_STAGE; i++)
         if (p->has_shape[i]) HF_TRY(hf_store_read_shape(p->path, (hf_stage)i, &p->shape[i], messages));
     return HF_OK;
@@ -413,8 +413,7 @@ static hf_status read_load_cases(page *p, hf_messages *messages)
 static hf_status read_patterns(page *p, hf_messages *messages)
 {
     for (int i = 0; i < HF_N_STAGE; i++)
-        if (p->summary.pattern[i].n_frequency)
-            HF_TRY(hf_store_read_pattern(p->path, (hf_stage)i, &p->pattern[i], messages));
+        if (p->summary.stage[i].pattern) HF_TRY(hf_store_read_pattern(p->path, (hf_stage)i, &p->pattern[i], messages));
     return HF_OK;
 }
 

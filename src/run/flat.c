@@ -101,6 +101,7 @@ void hf_flat_free(hf_flat *f)
 {
     if (!f) return;
     hf_problem_free(&f->problem);
+    hf_summary_free(&f->summary);
     hf_messages_free(&f->said);
     free(f->shape);
     free(f->room);
@@ -545,6 +546,7 @@ int hf_flat_run(hf_flat *f, const char *output, int restart, hf_flat_observer *o
                               .stop_requested = &f->stop,
                               .observer = pass_on,
                               .observer_context = &beside};
+    hf_summary_free(&f->summary);
     hf_status status = hf_run_case(&request, &f->summary, written, &f->said);
     return (int)tell_summary(f, status, written);
 }

@@ -14,6 +14,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- the design ---- */
@@ -81,21 +82,21 @@ static void measure(const hf_built *b, const hf_carrier_state *truss, int n_memb
 {
     const hf_model *m = &b->model;
     double square = 0;
-    s->least_tension_N = INFINITY;
-    s->largest_tension_N = -INFINITY;
+    s->tension_min_N = INFINITY;
+    s->tension_max_N = -INFINITY;
     for (int e = 0; e < m->n_cable; e++) {
-        s->least_tension_N = fmin(s->least_tension_N, w->tension_N[e]);
-        s->largest_tension_N = fmax(s->largest_tension_N, w->tension_N[e]);
+        s->tension_min_N = fmin(s->tension_min_N, w->tension_N[e]);
+        s->tension_max_N = fmax(s->tension_max_N, w->tension_N[e]);
     }
     for (int i = 0; i < m->n_inner_node; i++)
         for (int c = 0; c < 3; c++) {
             double d = w->position_m[c * m->n_node + m->inner_row[i]] - b->place_m[c * m->n_node + m->inner_row[i]];
             square += d * d;
         }
-    s->move_rms_m = sqrt(square / m->n_inner_node);
-    s->largest_member_N = n_member ? 0 : (double)NAN;
+    s->displacement_rms_m = sqrt(square / m->n_inner_node);
+    s->member_force_max_N = n_member ? 0 : (double)NAN;
     for (int e = 0; e < n_member; e++)
-        s->largest_member_N = fmax(s->largest_member_N, fabs(truss->end_force[12 * e]));
+        s->member_force_max_N = fmax(s->member_force_max_N, fabs(truss->end_force[12 * e]));
 }
 
 /* Measures and stores a shape that was found. `truss` is the state of the truss in this load case, NULL without a
@@ -106,9 +107,9 @@ static hf_status keep_shape(const hf_problem *p, hf_load_case_stage *c, hf_store
     const hf_model *m = &c->built.model;
     measure(&c->built, truss, truss ? p->carrier.truss.n_member : 0, &c->workspace, s);
     if (p->settings.has_surface && hf_surface_measure(&p->surface, &p->facets, m, c->workspace.position_m,
-                                                      c->workspace.tension_N, &s->measures) != HF_OK)
+                                                      c->workspace.tension_N, &s->surface) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
-    if (isnan(s->result.psi_m)) hf_surface_blank(&s->measures);
+    if (isnan(s->result.psi_m)) hf_surface_blank(&s->surface);
     return hf_store_built(store, s->name, m, &c->workspace, &p->carrier, truss, messages);
 }
 
@@ -180,7 +181,7 @@ static void blank(const char *name, hf_load_case_summary *s)
 {
     *s = (hf_load_case_summary){.result.status = HF_NOT_EVALUATED};
     snprintf(s->name, sizeof s->name, "%s", name);
-    s->least_tension_N = s->largest_tension_N = s->move_rms_m = s->largest_member_N = (double)NAN;
+    s->tension_min_N = s->tension_max_N = s->displacement_rms_m = s->member_force_max_N = (double)NAN;
 }
 
 static void warn(const hf_load_case_summary *s, hf_messages *messages)
@@ -197,6 +198,8 @@ hf_status hf_load_case_stage_run(const hf_problem *p, hf_load_case_stage *c, hf_
                                  const volatile sig_atomic_t *stop, hf_summary *summary, hf_messages *messages)
 {
     c->workspace.stop = stop;
+    if (!summary->load_case) summary->load_case = calloc((size_t)p->load_cases.n, sizeof *summary->load_case);
+    if (!summary->load_case) return hf_error(messages, HF_NO_MEMORY, "out of memory for the load cases");
     for (int k = 0; k < p->load_cases.n; k++) {
         hf_load_case_summary *s = &summary->load_case[k];
         blank(p->load_cases.load_case[k].name, s);

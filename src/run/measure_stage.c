@@ -14,34 +14,45 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #define MESH_PULL_DOUBT 0.3 /* N l / T above which the figures of the facets cause a warning */
 
 /* Sets the minimum and maximum tension and their ratio for the named sets of cables, up to HF_SUMMARY_SETS of them. */
-static void measure_sets(const hf_problem *p, hf_stage stage, const hf_workspace *w, hf_summary *s)
+static hf_status measure_sets(const hf_problem *p, const hf_workspace *w, hf_stage_summary *s)
 {
     const hf_scene *scene = &p->scene;
-    hf_set_tensions *to = &s->sets[stage];
+    if (scene->n_set == 0) return HF_OK;
+    if (!s->sets) s->sets = calloc(1, sizeof *s->sets);
+    hf_set_tensions *to = s->sets;
+    if (!to) return HF_NO_MEMORY;
     to->n = scene->n_set < HF_SUMMARY_SETS ? scene->n_set : HF_SUMMARY_SETS;
     for (int k = 0; k < to->n; k++) {
         const int *cable = scene->set_cable + scene->set_start[k];
         int n = scene->set_start[k + 1] - scene->set_start[k];
         snprintf(to->name[k], sizeof to->name[k], "%s", scene->set_name[k]);
-        to->least_N[k] = INFINITY;
-        to->largest_N[k] = -INFINITY;
+        to->min_N[k] = INFINITY;
+        to->max_N[k] = -INFINITY;
         for (int i = 0; i < n; i++) {
-            to->least_N[k] = fmin(to->least_N[k], w->tension_N[cable[i]]);
-            to->largest_N[k] = fmax(to->largest_N[k], w->tension_N[cable[i]]);
+            to->min_N[k] = fmin(to->min_N[k], w->tension_N[cable[i]]);
+            to->max_N[k] = fmax(to->max_N[k], w->tension_N[cable[i]]);
         }
         to->ratio[k] = hf_metrics_set_ratio(&p->model, w, n, cable);
     }
+    return HF_OK;
 }
 
-void hf_measure_limits(const hf_problem *p, hf_stage stage, const hf_workspace *w, hf_summary *s)
+/* Notes which limits a design reaches. */
+static hf_status measure_limits(const hf_problem *p, const hf_workspace *w, hf_stage_summary *s)
 {
     hf_limit_held held[HF_LIMITS_HELD];
-    hf_held_limits *to = &s->held[stage];
-    to->n = hf_limits_held(&p->evaluator, w, held);
+    int n = hf_limits_held(&p->evaluator, w, held);
+    if (s->held) s->held->n = 0;
+    if (n == 0) return HF_OK;
+    if (!s->held) s->held = calloc(1, sizeof *s->held);
+    hf_held_limits *to = s->held;
+    if (!to) return HF_NO_MEMORY;
+    to->n = n;
     for (int i = 0; i < to->n; i++) {
         to->row[i] = held[i].row;
         to->count[i] = held[i].n;
@@ -49,26 +60,29 @@ void hf_measure_limits(const hf_problem *p, hf_stage stage, const hf_workspace *
         to->bound[i] = held[i].bound;
         hf_limits_name(&p->scene, &p->model, &held[i], to->name[i], sizeof to->name[i]);
     }
+    return HF_OK;
 }
 
 hf_status hf_measure_stage(const hf_problem *p, hf_stage stage, const hf_workspace *w, int n_thread,
                            const volatile sig_atomic_t *stop, hf_store *store, hf_summary *s, hf_messages *messages)
 {
     char words[64];
-    measure_sets(p, stage, w, s);
+    hf_surface_measures *measures = &s->stage[stage].surface;
+    if (measure_sets(p, w, &s->stage[stage]) != HF_OK ||
+        (stage != HF_STAGE_FORM && measure_limits(p, w, &s->stage[stage]) != HF_OK))
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of a shape");
     if (!p->settings.has_surface) return HF_OK;
-    if (hf_surface_measure(&p->surface, &p->facets, &p->model, w->position_m, w->tension_N, &s->measures[stage]) !=
-        HF_OK)
+    if (hf_surface_measure(&p->surface, &p->facets, &p->model, w->position_m, w->tension_N, measures) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
-    if (isnan(hf_metrics_psi_m(&p->model, w))) hf_surface_blank(&s->measures[stage]);
-    const hf_surface_fit *fit = &s->measures[stage].fit;
-    if (s->measures[stage].mesh_pull_ratio > MESH_PULL_DOUBT)
+    if (isnan(hf_metrics_psi_m(&p->model, w))) hf_surface_blank(measures);
+    const hf_surface_fit *fit = &measures->fit;
+    if (measures->mesh_pull_ratio > MESH_PULL_DOUBT)
         hf_warning(messages,
                    "surface: in the shape of stage %s the mesh pulls on %s; the pillow is of first order in "
                    "N l over the tension%s. Raise the tension of the cables, or lower "
                    "surface.mesh_tension_N_per_m",
-                   hf_stage_word[stage], hf_facet_mesh_pull_words(s->measures[stage].mesh_pull_ratio, words),
-                   s->measures[stage].mesh_pull_ratio <= HF_FACET_PULL_MOST ? ""
+                   hf_stage_word[stage], hf_facet_mesh_pull_words(measures->mesh_pull_ratio, words),
+                   measures->mesh_pull_ratio <= HF_FACET_PULL_MOST ? ""
                    : p->surface.has_pattern ? ", and facets have neither errors nor a far field here"
                                             : ", and facets have no errors here");
     if (!fit->converged)

@@ -12,6 +12,7 @@
 #include "surface/facet_mesh.h"
 #include <hifdm/pattern.h>
 
+#include <stdlib.h>
 #include <string.h>
 
 /* The threads and the stop flag of a far field. */
@@ -98,10 +99,12 @@ hf_status hf_pattern_stage(const hf_problem *p, hf_stage stage, const hf_workspa
     hf_arena arena = {0}, sags = {0};
     hf_facet_shape shape;
     hf_pattern_table table = {0};
-    hf_pattern_summary *to = &summary->pattern[stage];
+    hf_pattern_summary *to = summary->stage[stage].pattern;
     double pull_ratio = 0, mesh_N_per_m = p->surface.mesh_tension_N_per_m, *sag_m = NULL;
     if (!p->surface.has_pattern) return HF_OK;
     if (n_thread <= 0) n_thread = hf_parallel_cores();
+    if (!to) to = summary->stage[stage].pattern = calloc(1, sizeof *to);
+    if (!to) return hf_error(messages, HF_NO_MEMORY, "out of memory for the far field");
     hf_status status = hf_facet_shape_take(&p->model, w->position_m, w->tension_N, &shape, &arena);
     if (status == HF_OK && mesh_N_per_m > 0)
         status = hf_facet_mesh_make_sags(mesh_N_per_m, &p->facets, &shape, &sags, &sag_m, &pull_ratio);

@@ -103,7 +103,7 @@ void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, co
             "stop: rms_change ended before equilibrium of the %s shape: nodal residual %.2e N, cable lengths off "
             "by up to %.2e; stop: residual iterates until they vanish",
             stage, r->residual_N, r->length_error);
-    if (r->stop_reason == HF_STOPPED_RESIDUAL && is_off_by_law(p, r))
+    if (r->stop_reason == HF_STOPPED_CONVERGED && is_off_by_law(p, r))
         hf_warning(messages,
                    "by the laws of the elastic cables forces of up to %.2e N are out of balance, though those of the "
                    "iteration are within form.residual_tolerance: lengths are off by up to %.2e of themselves; lower "

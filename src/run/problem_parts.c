@@ -230,10 +230,10 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->n_node = model->n_node;
     s->n_free = model->n_free;
     s->n_cable = model->n_cable;
-    s->n_gene = model->n_variable;
-    s->n_leader = model->n_leader;
+    s->n_variable = model->n_variable;
+    s->search.n_leader = model->n_leader;
     s->half_bandwidth = model->half_bandwidth;
-    s->planes = p->planes;
+    s->search.planes = p->planes;
     s->has_coupling = model->n_attachment > 0;
     s->pretension_N = model->pretension_N;
     s->has_own_tensions = has_own_tensions(p);

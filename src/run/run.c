@@ -39,7 +39,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const hf_run_phase_word[4] = {"form", "optimize", "polish", "tolerance"};
+const char *const hf_run_phase_word[4] = {"form", "search", "refine", "tolerance"};
 
 #define HISTORY_MAX 1000000 /* maximum number of iterations in the history */
 
@@ -152,10 +152,10 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
     observe(r, (hf_run_progress){.phase = HF_RUN_FORM, .best_psi_m = NAN, .merit = NAN});
     double start_s = hf_clock_s();
     hf_evaluate_form(&p->model, form, &p->workspace, &r->history, &p->form);
-    s->form_wall_s = hf_clock_s() - start_s;
-    s->form = p->form;
+    s->stage[HF_STAGE_FORM].wall_s = hf_clock_s() - start_s;
+    s->stage[HF_STAGE_FORM].result = p->form;
     for (int k = 0; k < HF_DESIGN_ROWS_MAX; k++) /* measured in prepare_optimize, with the initial design */
-        s->form.objective[k] = (double)NAN;
+        s->stage[HF_STAGE_FORM].result.objective[k] = (double)NAN;
     hf_status status = hf_problem_explain(p, messages);
     if (status != HF_OK && status != HF_NOT_CONVERGED) return status;
     hf_status measured = measure_shape(r, HF_STAGE_FORM, &p->workspace, s, messages);
@@ -179,7 +179,8 @@ static hf_status prepare_optimize(run *r, hf_summary *s, hf_messages *messages)
     const hf_objectives *objectives = &p->objectives;
     hf_objectives_point *point = p->workspace.objectives;
     if (objectives->n_objective &&
-        hf_objectives_measure(objectives, &p->workspace, point, s->form.objective, &s->form.merit) != HF_OK)
+        hf_objectives_measure(objectives, &p->workspace, point, s->stage[HF_STAGE_FORM].result.objective,
+                              &s->stage[HF_STAGE_FORM].result.merit) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
     HF_TRY(hf_store_restore_initial(r->store, p->model.n_variable, p->initial, messages));
     if (hf_problem_batch(p, r->request->threads) != HF_OK ||
@@ -206,11 +207,12 @@ static void count_at_bounds(const hf_population *p, const double *design, int *a
 static void note_best(const hf_population *p, hf_summary *s)
 {
     if (p->best < 0) return;
-    if (s->best.status == HF_OK && !(hf_population_merit(p, &p->result[p->best]) < hf_population_merit(p, &s->best)))
+    if (s->stage[HF_STAGE_SEARCH].result.status == HF_OK &&
+        !(hf_population_merit(p, &p->result[p->best]) < hf_population_merit(p, &s->stage[HF_STAGE_SEARCH].result)))
         return;
-    s->best = p->result[p->best];
-    s->best_generation = p->generation;
-    s->best_individual = p->best;
+    s->stage[HF_STAGE_SEARCH].result = p->result[p->best];
+    s->search.best_generation = p->generation;
+    s->search.best_individual = p->best;
 }
 
 /* Stores the shape of the best individual. That is in the last generation (elitism), and evaluating it again for its
@@ -221,10 +223,9 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     hf_form_result again;
     hf_workspace *w = hf_batch_run_one(&r->problem.batch, design, &again);
     hf_certify(&r->problem.model, w, &again);
-    s->best = again; /* the same bits, with the figures that individuals do not store */
-    count_at_bounds(&r->optimiser.population, design, &s->best_n_at_lower, &s->best_n_at_upper);
-    hf_problem_warn(&r->problem, "optimised", w, &s->best, messages);
-    hf_measure_limits(&r->problem, HF_STAGE_SEARCH, w, s);
+    s->stage[HF_STAGE_SEARCH].result = again; /* the same bits, with the figures that individuals do not store */
+    count_at_bounds(&r->optimiser.population, design, &s->search.n_at_lower, &s->search.n_at_upper);
+    hf_problem_warn(&r->problem, "optimised", w, &s->stage[HF_STAGE_SEARCH].result, messages);
     HF_TRY(measure_shape(r, HF_STAGE_SEARCH, w, s, messages));
     if (r->problem.settings.optimize.n_front == 0) HF_TRY(take_result(r, w, messages)); /* a front has no result */
     return hf_store_shape(r->store, HF_STAGE_SEARCH, &r->problem.model, w, design, messages);
@@ -234,14 +235,14 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
 static void sum_up(const run *r, double start_s, hf_summary *s)
 {
     const hf_population *p = &r->optimiser.population;
-    s->has_optimize = true;
-    s->optimize_wall_s = r->earlier_wall_s + hf_clock_s() - start_s;
-    s->optimize_cpu_s = r->earlier_cpu_s + r->problem.batch.cpu_s + r->store_cpu_s;
-    s->store_cpu_s = r->earlier_store_s + r->store_cpu_s;
-    s->generations = p->generation + 1;
-    s->evaluations = p->n_evaluation;
-    s->infeasible = p->n_evaluation_infeasible;
-    s->optimize_stop = p->stop_reason;
+    s->stage[HF_STAGE_SEARCH].exists = true;
+    s->stage[HF_STAGE_SEARCH].wall_s = r->earlier_wall_s + hf_clock_s() - start_s;
+    s->search.cpu_s = r->earlier_cpu_s + r->problem.batch.cpu_s + r->store_cpu_s;
+    s->search.store_cpu_s = r->earlier_store_s + r->store_cpu_s;
+    s->search.generations = p->generation + 1;
+    s->search.evaluations = p->n_evaluation;
+    s->search.infeasible = p->n_evaluation_infeasible;
+    s->search.algorithm_stop = p->stop_reason;
 }
 
 /* A generation that is stored while the next one is bred and evaluated. */
@@ -264,7 +265,7 @@ static void observe_generation(const told *t)
                                     .evaluations = p->n_evaluation - t->r->first_evaluation,
                                     .best_psi_m = p->best_psi_m[p->generation],
                                     .merit = NAN,
-                                    .elapsed_s = t->summary->optimize_wall_s - t->r->earlier_wall_s});
+                                    .elapsed_s = t->summary->stage[HF_STAGE_SEARCH].wall_s - t->r->earlier_wall_s});
 }
 
 /* Stores a generation, publishes it when due, then notifies the observer, which thus hears of stored generations
@@ -288,9 +289,9 @@ static hf_status begin_generations(run *r, hf_summary *s, hf_messages *messages)
     HF_TRY(hf_store_restore(r->store, &r->optimiser, s, messages));
     if (hf_store_generations(r->store) == 0) return hf_store_publish(r->store, s, true, messages);
     hf_optimiser_tell(&r->optimiser);
-    r->earlier_wall_s = s->optimize_wall_s;
-    r->earlier_cpu_s = s->optimize_cpu_s;
-    r->earlier_store_s = s->store_cpu_s;
+    r->earlier_wall_s = s->stage[HF_STAGE_SEARCH].wall_s;
+    r->earlier_cpu_s = s->search.cpu_s;
+    r->earlier_store_s = s->search.store_cpu_s;
     r->first_generation = p->generation + 1;
     r->first_evaluation = p->n_evaluation;
     return HF_OK;
@@ -308,16 +309,16 @@ static bool evaluate_first(run *r)
 static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
 {
     const hf_population *p = &r->optimiser.population;
-    s->best.status = HF_NO_FEASIBLE;
+    s->stage[HF_STAGE_SEARCH].result.status = HF_NO_FEASIBLE;
     HF_TRY(hf_problem_share(&r->problem, messages));
-    s->solver = r->problem.solver;
+    s->search.solver = r->problem.solver;
     HF_TRY(begin_generations(r, s, messages));
     if (must_stop(r)) return stop_here(r, s, messages);
     double start_s = hf_clock_s();
     bool more = evaluate_first(r);
     while (more) {
         hf_optimiser_tell(&r->optimiser);
-        if (p->generation == 0) s->base_psi_m = p->result[0].psi_m;
+        if (p->generation == 0) s->search.initial_psi_m = p->result[0].psi_m;
         note_best(p, s);
         sum_up(r, start_s, s);
         told now = {r, *p, s, messages, HF_OK};
@@ -334,14 +335,13 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
     return hf_no_design_evolved(&r->problem, p, messages);
 }
 
-/* Completes and stores the refinement: s->polish is the result of this design, and the workspace holds its shape. */
+/* Completes and stores the refinement: the result of the stage is that of this design, and the workspace holds its shape. */
 static hf_status keep_refine(run *r, hf_workspace *w, const double *design, hf_summary *s, hf_messages *messages)
 {
-    hf_certify(&r->problem.model, w, &s->polish);
-    s->has_polish = true;
-    hf_measure_limits(&r->problem, HF_STAGE_REFINE, w, s);
+    hf_certify(&r->problem.model, w, &s->stage[HF_STAGE_REFINE].result);
+    s->stage[HF_STAGE_REFINE].exists = true;
     HF_TRY(measure_shape(r, HF_STAGE_REFINE, w, s, messages));
-    if (s->polish_is_result) HF_TRY(take_result(r, w, messages));
+    if (s->refine.is_result) HF_TRY(take_result(r, w, messages));
     return hf_store_shape(r->store, HF_STAGE_REFINE, &r->problem.model, w, design, messages);
 }
 
@@ -352,15 +352,15 @@ static hf_status take_point(run *r, hf_summary *s, hf_messages *messages)
     const hf_population *p = &r->optimiser.population;
     const double *design = r->taken.design;
     double start_s = hf_clock_s();
-    hf_evaluate(&r->problem.evaluator, design, w, &s->polish);
+    hf_evaluate(&r->problem.evaluator, design, w, &s->stage[HF_STAGE_REFINE].result);
     if (must_stop(r)) return stop_here(r, s, messages);
-    HF_TRY(hf_take_point_check(&r->problem, &r->taken, p, &s->polish, messages));
-    hf_problem_warn(&r->problem, "taken", w, &s->polish, messages);
-    s->polish_wall_s = hf_clock_s() - start_s;
-    s->polish_is_result = true;
-    s->polish_evaluations = 1;
-    s->polish_stop = HF_REFINE_TAKEN;
-    count_at_bounds(p, design, &s->polish_n_at_lower, &s->polish_n_at_upper);
+    HF_TRY(hf_take_point_check(&r->problem, &r->taken, p, &s->stage[HF_STAGE_REFINE].result, messages));
+    hf_problem_warn(&r->problem, "taken", w, &s->stage[HF_STAGE_REFINE].result, messages);
+    s->stage[HF_STAGE_REFINE].wall_s = hf_clock_s() - start_s;
+    s->refine.is_result = true;
+    s->refine.evaluations = 1;
+    s->refine.algorithm_stop = HF_REFINE_TAKEN;
+    count_at_bounds(p, design, &s->refine.n_at_lower, &s->refine.n_at_upper);
     return keep_refine(r, w, design, s, messages);
 }
 
@@ -371,12 +371,12 @@ static hf_status refine(run *r, hf_summary *s, hf_messages *messages)
     const hf_population *p = &r->optimiser.population;
     hf_refine_result outcome;
     double *design = r->problem.initial;
-    if (s->has_optimize && p->best >= 0) design = best_design(p);
+    if (s->stage[HF_STAGE_SEARCH].exists && p->best >= 0) design = best_design(p);
     for (int k = 0; k < p->n_variable; k++) /* the initial design may violate the bounds */
         design[k] = hf_population_clamp(p, k, design[k]);
     observe(r, (hf_run_progress){.phase = HF_RUN_REFINE, .best_psi_m = NAN, .merit = NAN});
-    hf_status status = hf_refine_stage_run(r->request, &r->problem, p, s, r->store, design, &outcome, &s->polish_wall_s,
-                                           r->stopped_at, messages);
+    hf_status status = hf_refine_stage_run(r->request, &r->problem, p, s, r->store, design, &outcome,
+                                           &s->stage[HF_STAGE_REFINE].wall_s, r->stopped_at, messages);
     if (must_stop(r)) return stop_here(r, s, messages);
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
     if (status == HF_IO || status == HF_EXISTS) return status;
@@ -387,16 +387,16 @@ static hf_status refine(run *r, hf_summary *s, hf_messages *messages)
         hf_warning(messages, "%s", why);
         return HF_OK;
     }
-    hf_evaluate(&r->problem.evaluator, design, w, &s->polish);
+    hf_evaluate(&r->problem.evaluator, design, w, &s->stage[HF_STAGE_REFINE].result);
     if (must_stop(r)) return stop_here(r, s, messages); /* the evaluation may have been interrupted */
-    s->polish_is_result = r->plan.ends_with_refine;
-    s->polish_iterations = outcome.iterations;
-    s->polish_evaluations = outcome.evaluations;
-    s->polish_stop = outcome.stop;
-    s->polish_n_at_lower = outcome.n_at_lower;
-    s->polish_n_at_upper = outcome.n_at_upper;
-    s->polish_n_at_limit = outcome.n_at_limit;
-    s->polish_is_at_cap = outcome.is_at_cap;
+    s->refine.is_result = r->plan.ends_with_refine;
+    s->refine.steps = outcome.iterations;
+    s->refine.evaluations = outcome.evaluations;
+    s->refine.algorithm_stop = outcome.stop;
+    s->refine.n_at_lower = outcome.n_at_lower;
+    s->refine.n_at_upper = outcome.n_at_upper;
+    s->refine.n_at_limit = outcome.n_at_limit;
+    s->refine.is_at_cap = outcome.is_at_cap;
     return keep_refine(r, w, design, s, messages);
 }
 
@@ -405,7 +405,7 @@ static bool wants_refine(const run *r, const hf_summary *s)
 {
     hf_refine_choice compare = r->problem.settings.optimize.refine;
     if (r->plan.ends_with_refine || compare == HF_REFINE_TRUE) return true;
-    return compare == HF_REFINE_AUTO && hf_refine_is_cheap(&r->problem.evaluator, s->evaluations);
+    return compare == HF_REFINE_AUTO && hf_refine_is_cheap(&r->problem.evaluator, s->search.evaluations);
 }
 
 /* Finds the front by Levenberg-Marquardt and stores it. */
@@ -433,8 +433,8 @@ static hf_status find_front(run *r, hf_summary *s, hf_messages *messages)
     if (hf_pareto_front(&r->optimiser.population, &r->front) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the front");
     if (r->plan.ends_with_refine) return follow_front(r, s, messages);
-    memcpy(r->front.base, s->form.objective, sizeof r->front.base);
-    hf_run_front_tell(&r->front, s->optimize_wall_s, s, messages);
+    memcpy(r->front.initial, s->stage[HF_STAGE_FORM].result.objective, sizeof r->front.initial);
+    HF_TRY(hf_run_front_tell(&r->front, s->stage[HF_STAGE_SEARCH].wall_s, s, messages));
     return hf_store_front(r->store, &r->problem.scene, &r->problem.model, s, &r->front, messages);
 }
 
@@ -513,7 +513,7 @@ static void keep_unfinished(const run *r, const hf_summary *s, hf_status status,
 static hf_status repeat_finished(const hf_run_request *q, const char *output, hf_summary *s, hf_messages *messages)
 {
     HF_TRY(hf_store_read_finished(output, s, messages));
-    if (s->has_tolerance) hf_tolerance_stage_end(q, output);
+    if (s->tolerance) hf_tolerance_stage_end(q, output);
     hf_warning(messages, "%s: is the finished result of this case; --restart computes it again", output);
     for (const char *line = s->warnings; *line; line += strcspn(line, "\n"), line += *line == '\n')
         if (!strncmp(line, "error: ", 7)) hf_error(messages, s->status, "%.*s", (int)strcspn(line + 7, "\n"), line + 7);
@@ -601,7 +601,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
         *q->unsettled = store;
     else
         finish = hf_store_settle(store, messages);
-    if (finish == HF_OK && s->has_tolerance) hf_tolerance_stage_end(q, output);
+    if (finish == HF_OK && s->tolerance) hf_tolerance_stage_end(q, output);
     return finish != HF_OK ? finish : status;
 }
 
@@ -610,7 +610,7 @@ hf_status hf_run_case(const hf_run_request *request, hf_summary *summary, char o
 {
     run *r = calloc(1, sizeof *r);
     if (request->unsettled) *request->unsettled = NULL;
-    *summary = (hf_summary){.form.status = HF_NOT_EVALUATED, .threads = 1};
+    *summary = (hf_summary){.stage[HF_STAGE_FORM].result.status = HF_NOT_EVALUATED, .threads = 1};
     snprintf(summary->version, sizeof summary->version, "%s", hf_store_version());
     output[0] = '\0';
     if (!r) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", request->case_path);

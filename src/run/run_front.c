@@ -16,17 +16,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-void hf_run_front_tell(const hf_front *front, double wall_s, hf_summary *s, hf_messages *messages)
+hf_status hf_run_front_tell(const hf_front *front, double wall_s, hf_summary *s, hf_messages *messages)
 {
-    hf_front_tabulate(front, &s->front);
-    s->front.wall_s = wall_s;
-    s->has_front = true;
-    if (s->front.n_failed > 0) {
-        hf_status first = front->point[front->n_point - s->front.n_failed].status;
+    if (!s->front) s->front = calloc(1, sizeof *s->front);
+    if (!s->front) return hf_error(messages, HF_NO_MEMORY, "out of memory for the front");
+    hf_front_tabulate(front, s->front);
+    s->front->wall_s = wall_s;
+    if (s->front->n_failed > 0) {
+        hf_status first = front->point[front->n_point - s->front->n_failed].status;
         hf_warning(messages, "optimize.objectives: %d of %d points of the front failed: the first with %s",
-                   s->front.n_failed, front->n_point,
+                   s->front->n_failed, front->n_point,
                    first == HF_OUT_OF_LIMITS ? "no way from its neighbours into its limits" : hf_status_text(first));
     }
+    return HF_OK;
 }
 
 /* Warns about points that stopped at the maximum number of steps. Points that stalled would gain nothing from more
@@ -36,7 +38,7 @@ static void warn_of_steps(const hf_front *front, int max_iterations, hf_messages
     int n = 0;
     for (int i = 0; i < front->n_point; i++) {
         const hf_front_point *p = &front->point[i];
-        n += p->status == HF_OK && !p->is_converged && p->iterations >= max_iterations;
+        n += p->status == HF_OK && !p->is_converged && p->steps >= max_iterations;
     }
     if (n > 0)
         hf_warning(messages,
@@ -137,7 +139,8 @@ hf_status hf_run_front(const hf_run_request *q, hf_problem *p, const hf_populati
         return HF_INTERRUPTED;
     }
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the front");
-    memcpy((status == HF_OK ? &found : front)->base, s->form.objective, sizeof front->base);
+    memcpy((status == HF_OK ? &found : front)->initial, s->stage[HF_STAGE_FORM].result.objective,
+           sizeof front->initial);
     if (status != HF_OK) {
         const char *why = text;
         if (applies)
@@ -146,13 +149,12 @@ hf_status hf_run_front(const hf_run_request *q, hf_problem *p, const hf_populati
             snprintf(text, sizeof text, HF_PROBLEM_REFINE_NEEDS, hf_problem_no_slopes(p));
         if (!has_earlier) return hf_error(messages, applies ? HF_NO_FEASIBLE : HF_BAD_CASE, "%s", why);
         hf_warning(messages, "%s; the front is that of the last generation", why);
-        hf_run_front_tell(front, s->optimize_wall_s, s, messages);
-        return HF_OK;
+        return hf_run_front_tell(front, s->stage[HF_STAGE_SEARCH].wall_s, s, messages);
     }
     hf_front_free(front);
     *front = found;
     tell(&told, front->n_point, watcher.n_step, true);
-    hf_run_front_tell(front, hf_clock_s() - told.start_s, s, messages);
+    HF_TRY(hf_run_front_tell(front, hf_clock_s() - told.start_s, s, messages));
     warn_of_steps(front, o->refine_steps, messages);
     return HF_OK;
 }

@@ -17,6 +17,6 @@ hf_status hf_run_front(const hf_run_request *request, hf_problem *problem, const
 
 /* Writes the table of a front into the summary, and warns about points that failed. wall_s is the time that it took,
  * s. */
-void hf_run_front_tell(const hf_front *front, double wall_s, hf_summary *summary, hf_messages *messages);
+hf_status hf_run_front_tell(const hf_front *front, double wall_s, hf_summary *summary, hf_messages *messages);
 
 #endif

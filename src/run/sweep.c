@@ -158,6 +158,7 @@ static void settle_point(void *context)
     if (p->status != HF_INTERRUPTED) finish_point(p->w, p->i, p->status, &p->said, &p->summary);
     hf_ledger_release(&p->w->ledger, p->w->request->study->id[p->i]);
     hf_messages_free(&p->said);
+    hf_summary_free(&p->summary);
     free(p);
 }
 

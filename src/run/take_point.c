@@ -136,7 +136,7 @@ static hf_status take(const hf_front *front, hf_front_origin *origin, hf_taken_p
     hf_sha256(taken->design, bytes, origin->sha256);
     for (int k = 0; k < front->n_objective; k++) {
         taken->objective[k] = front->point[i].objective[k];
-        taken->largest[k] = fmax(0, fabs(front->base[k]));
+        taken->largest[k] = fmax(0, fabs(front->initial[k]));
         for (int j = 0; j < front->n_point; j++)
             taken->largest[k] = fmax(taken->largest[k], fabs(front->point[j].objective[k]));
     }
@@ -150,7 +150,7 @@ hf_status hf_take_point_read(const char *point, hf_problem *p, hf_taken_point *t
     stored_front f = {.summary = malloc(sizeof *f.summary)};
     if (!f.summary) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", origin->path);
     hf_status status = hf_store_read_summary(origin->path, f.summary, messages);
-    if (status == HF_OK && !f.summary->has_front)
+    if (status == HF_OK && !f.summary->front)
         status = hf_error(messages, HF_BAD_USAGE,
                           "%s: has no front, so no points: a run of a case with optimize.objectives makes one",
                           origin->path);

@@ -399,11 +399,18 @@ static int scale_samples(const hf_tolerance_settings *t)
     return t->samples < SCALE_SAMPLES ? t->samples : SCALE_SAMPLES;
 }
 
+static void drop_tolerance(hf_summary *summary)
+{
+    free(summary->tolerance);
+    summary->tolerance = NULL;
+}
+
 static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
 {
     const hf_tolerance_settings *t = &j->stage->problem->settings.tolerance;
     const hf_statistics_rows rows = {j->samples.n, hf_samples_read, &j->samples};
-    hf_tolerance_summary *to = &summary->tolerance;
+    hf_tolerance_summary *to = summary->tolerance = calloc(1, sizeof *to);
+    if (!to) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
     hf_status status = hf_statistics_sum_up(&j->montecarlo, &rows, to);
     if (status == HF_OK && t->yield > 0) {
         to->scale_samples = scale_samples(t);
@@ -411,9 +418,9 @@ static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
         j->montecarlo.tell_context = j;
         status = hf_montecarlo_find_scale(&j->montecarlo, to->scale_samples, &to->sigma_scale, &to->scale_bound);
     }
+    if (status != HF_OK) drop_tolerance(summary); /* the summary then says nothing about samples */
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "tolerance: out of memory");
     HF_TRY(status);
-    summary->has_tolerance = true;
     warn_of_slack(j, to, messages);
     to->tolerance_wall_s = hf_clock_s() - j->begin_s;
     return hf_store_tolerance(j->stage->store, &j->montecarlo, &rows, messages);

@@ -352,7 +352,7 @@ static double tension_ratio(const hf_chord_measures *now, hf_group group, int la
 static void report(const chord_run *s, int lane, hf_form_result *r)
 {
     const hf_chord_measures *now = &s->now;
-    *r = (hf_form_result){.status = HF_OK, .stop_reason = HF_STOPPED_RESIDUAL, .culprit = -1};
+    *r = (hf_form_result){.status = HF_OK, .stop_reason = HF_STOPPED_CONVERGED, .culprit = -1};
     hf_result_blank(r);
     r->psi_m = s->chord->evaluator->model->n_inner_node ? now->psi_m[lane] : (double)NAN;
     r->residual_N = s->at[lane].residual_N;

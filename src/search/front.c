@@ -182,7 +182,7 @@ static void choose_rows(const hf_front *f, const int end[HF_FRONT_OBJECTIVES_MAX
             other++;
         }
         if (!is_row) continue;
-        t->place[t->n_row] = i;
+        t->index[t->n_row] = i;
         t->row[t->n_row++] = f->point[i];
     }
 }
@@ -195,14 +195,14 @@ bool hf_front_agrees(const hf_front_table *t)
 int hf_front_suggested(const hf_front_table *t)
 {
     int row = t->knee >= 0 ? t->knee : t->end[0];
-    return row < 0 ? 0 : t->place[row] + 1;
+    return row < 0 ? 0 : t->index[row] + 1;
 }
 
-/* Returns the row of the table that holds point `place` of the front, or -1. */
-static int row_of(const hf_front_table *t, int place)
+/* Returns the row of the table that holds point `index` of the front, or -1. */
+static int row_of(const hf_front_table *t, int index)
 {
-    int row = place < 0 ? -1 : t->n_row - 1;
-    while (row >= 0 && t->place[row] != place)
+    int row = index < 0 ? -1 : t->n_row - 1;
+    while (row >= 0 && t->index[row] != index)
         row--;
     return row;
 }
@@ -223,7 +223,7 @@ void hf_front_tabulate(const hf_front *f, hf_front_table *t)
     for (int i = 0; i < f->n_point && f->minimised >= 0; i++)
         t->n_unconverged += f->point[i].status == HF_OK && !f->point[i].is_converged;
     t->minimised = f->minimised;
-    memcpy(t->base, f->base, sizeof t->base);
+    memcpy(t->initial, f->initial, sizeof t->initial);
     choose_rows(f, end, t);
     t->knee = row_of(t, f->knee);
     for (int k = 0; k < HF_FRONT_OBJECTIVES_MAX; k++)

@@ -122,14 +122,14 @@ static hf_status find(const search *s, job *j, hf_workspace *w)
     double *design = j->design + s->n_variable; /* the second half of its memory */
     memcpy(design, j->from[1], size);
     HF_TRY(refine(s, j, design, w, &again));
-    again.iterations += j->found.iterations;
+    again.steps += j->found.steps;
     bool is_better =
         again.status == HF_OK && (j->found.status != HF_OK || again.objective[j->least] < j->found.objective[j->least]);
     if (is_better) {
         j->found = again;
         memcpy(j->design, design, size);
     }
-    j->found.iterations = again.iterations;
+    j->found.steps = again.steps;
     return HF_OK;
 }
 

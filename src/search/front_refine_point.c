@@ -92,7 +92,7 @@ hf_status hf_front_refine_point(const hf_front_refine *t, const hf_watch_front *
     if (t->stop && *t->stop) return HF_INTERRUPTED;
     if (status == HF_NO_MEMORY) return status;
     point->status = status;
-    point->iterations = r.iterations;
+    point->steps = r.iterations;
     point->is_converged = status == HF_OK && r.stop == HF_REFINE_CONVERGED;
     for (int k = 0; k < t->evaluator->objectives->n_objective && status == HF_OK; k++) {
         point->objective[k] = result.objective[k];

@@ -71,7 +71,7 @@ static hf_stop_reason stop_reason(swarm *s, const hf_swarm_measures *now, int la
     } else if (now->residual_N[lane] <= form->residual_tolerance * s->v->model->reference_N &&
                now->tension_error[lane] <= form->residual_tolerance &&
                now->length_gap[lane] <= form->length_tolerance) {
-        return HF_STOPPED_RESIDUAL;
+        return HF_STOPPED_CONVERGED;
     }
     return s->iterations[lane] < form->max_iterations ? HF_STOPPED_NONE : HF_STOPPED_MAX_ITERATIONS;
 }

@@ -303,7 +303,7 @@ static double lengths_radius(const hf_precise *p)
     return least > 0 && 2.3 * sqrt(bend) * radius <= least / 2 ? radius : -1;
 }
 
-/* Returns HF_BOUND_PROVEN if every cable stays slack or taut within the radius (m), else HF_BOUND_SLACK_OR_TAUT.
+/* Returns HF_BOUND_CERTIFIED if every cable stays slack or taut within the radius (m), else HF_BOUND_SLACK_OR_TAUT.
  * Returns HF_BOUND_NOT_DEFINITE if the radius is not small compared with a length. The net is then so soft that
  * rounding errors of the forces alone move it that far. */
 static hf_bound_reason stays_apart(const hf_precise *p, double radius)
@@ -321,7 +321,7 @@ static hf_bound_reason stays_apart(const hf_precise *p, double radius)
         if (c->is_taut > 0 && is_rigid && !(c->T.hi > least)) return HF_BOUND_SLACK_OR_TAUT;
         if (c->is_taut > 0 && !is_rigid && !(longest > move + 4 * HF_UNIT * c->length)) return HF_BOUND_SLACK_OR_TAUT;
     }
-    return HF_BOUND_PROVEN;
+    return HF_BOUND_CERTIFIED;
 }
 
 /* Returns a bound of the errors of the gradient from rounding at twice the precision on a truss, N. They arise in the
@@ -342,7 +342,7 @@ static double rounding_of_truss(const hf_precise *p)
 }
 
 /* Sets *radius to rho + R of (M23), m: the ball around the precise shape that contains every equilibrium. `least` is a
- * lower bound of the minimum eigenvalue at that shape, N/m. Returns HF_BOUND_PROVEN, or the reason why the radius is
+ * lower bound of the minimum eigenvalue at that shape, N/m. Returns HF_BOUND_CERTIFIED, or the reason why the radius is
  * not certified. */
 static hf_bound_reason find_radius(hf_precise *p, double least, double *radius)
 {
@@ -373,8 +373,8 @@ static hf_bound_reason prove_radius(hf_precise *p, double least_N_per_m, double 
 {
     if (least_N_per_m > 0 && p->is_first_matrix) {
         double least = carried_over(p, least_N_per_m);
-        if (least > 0 && find_radius(p, least, radius) == HF_BOUND_PROVEN && *radius <= SMALL * moved_m)
-            return HF_BOUND_PROVEN;
+        if (least > 0 && find_radius(p, least, radius) == HF_BOUND_CERTIFIED && *radius <= SMALL * moved_m)
+            return HF_BOUND_CERTIFIED;
     }
     double guess = hf_precise_guess(p);
     set_proof_stiffness(p);
@@ -425,12 +425,12 @@ void hf_bound_prove(const hf_model *m, bool has_factor, double least_N_per_m, hf
     w->n_moving = m->n_free + m->n_attachment;
     r->bound_reason = HF_BOUND_TRUSS;
     if (hf_precise_open(m, w, r->condition, &p)) r->bound_reason = hf_precise_approach(&p, has_factor);
-    if (r->bound_reason == HF_BOUND_PROVEN) {
+    if (r->bound_reason == HF_BOUND_CERTIFIED) {
         moved_m = largest_move(&p);
         r->bound_reason = prove_radius(&p, least_N_per_m, moved_m, &radius);
     }
     w->n_moving = n_moving;
-    if (r->bound_reason != HF_BOUND_PROVEN) return;
+    if (r->bound_reason != HF_BOUND_CERTIFIED) return;
     hf_twofold psi = hf_twofold_subtract(precise_psi(&p), hf_twofold_of(r->psi_m));
     r->position_bound_m = moved_m + radius;
     /* the radius bounds the 2-norm over all coordinates, so psi changes by at most radius / sqrt(n_inner_node) */

@@ -72,15 +72,16 @@ double hf_coupling_measure(const hf_model *m, hf_workspace *w, hf_form_result *r
     hf_coupling_forces(m, w);
     hf_schur_flex(m, w->attachment_force_N, next);
     r->coupling.step_m = largest_distance(m->n_attachment, next, w->displacement_m);
-    r->coupling.max_displacement_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
+    r->coupling.deflection_max_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
     return r->coupling.step_m;
 }
 
 void hf_coupling_accept(const hf_model *m, const hf_workspace *w, int iterations, double step_m, hf_form_result *r)
 {
-    r->coupling = (hf_coupling_result){.stop_reason = HF_COUPLING_TOF, .iterations = iterations, .step_m = step_m};
+    r->coupling =
+        (hf_coupling_result){.stop_reason = HF_COUPLING_CONVERGED, .iterations = iterations, .step_m = step_m};
     r->coupling.ratio = (double)NAN;
-    r->coupling.max_displacement_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
+    r->coupling.deflection_max_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
 }
 
 /* ---- Anderson's method: combines past displacements so that their step is smallest ---- */
@@ -238,7 +239,7 @@ static bool is_over(const hf_model *m, const hf_coupling_settings *s, accelerato
     r->coupling.ratio = p->ratio;
     /* The first step is measured from the start and not from an iterate, so it ends the loop only if it is zero. */
     if (step_m <= s->tof_m && (a->n_seen > 0 || step_m == 0)) {
-        r->coupling.stop_reason = HF_COUPLING_TOF;
+        r->coupling.stop_reason = HF_COUPLING_CONVERGED;
         return true;
     }
     /* The tolerance of the net limits the accuracy of its forces, so the steps may stay above tof_m. */
@@ -274,7 +275,7 @@ hf_status hf_coupling_find(const hf_model *m, const hf_coupling_settings *s, hf_
         }
         double psi_m = r->psi_m; /* is_over may refuse the result and blank its psi */
         bool over = is_over(m, s, &a, &p, w, r);
-        hf_history_add_coupling(history, r->coupling.step_m, psi_m, r->coupling.max_displacement_m);
+        hf_history_add_coupling(history, r->coupling.step_m, psi_m, r->coupling.deflection_max_m);
         if (over) break;
         if (start_counts)
             memcpy(w->q_N_per_m, w->coupling_q_N_per_m, q_bytes);
@@ -310,7 +311,7 @@ hf_status hf_coupling_find_at_once(const hf_model *m, const hf_coupling_settings
     if (r->status == HF_OK || r->status == HF_NOT_CONVERGED) {
         hf_joint_set_displacement(m, w);
         bool is_there = hf_coupling_measure(m, w, r) <= s->tof_m && r->status == HF_OK;
-        if (is_there) r->coupling.stop_reason = HF_COUPLING_TOF;
+        if (is_there) r->coupling.stop_reason = HF_COUPLING_CONVERGED;
         r->status = is_there ? HF_OK : HF_NOT_CONVERGED;
     } else if (r->status != HF_INTERRUPTED) {
         hf_status alone = status_alone(m, solve, context, w);

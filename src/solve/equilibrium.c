@@ -56,7 +56,7 @@ static bool try_near(const hf_model *m, const hf_form_settings *s, hf_workspace 
     bool is_near = hf_newton_run(m, s, w, smaller(NEWTON_MAX, s->max_iterations - n_step), &n_step);
     /* No further solve with D follows: it would add rounding errors in proportion to the condition of D. */
     is_near = is_near && hf_form_measure(m, s, w, r) == HF_OK && is_on_truss(m, s, w);
-    if (is_near) hf_form_accept(m, s, HF_STOPPED_RESIDUAL, n_step, w, r);
+    if (is_near) hf_form_accept(m, s, HF_STOPPED_CONVERGED, n_step, w, r);
     r->iterations = n_step;
     return is_near || n_step >= s->max_iterations;
 }
@@ -122,7 +122,7 @@ static hf_status find_on_path(const hf_model *m, const hf_form_settings *s, int 
     int culprit = -1;
     hf_status status = hf_interior_run(m, s, w, smaller(PATH_MAX, s->max_iterations - n_step), &n_step, &culprit);
     if (status == HF_OK && hf_form_measure(m, s, w, r) == HF_OK)
-        return hf_form_accept(m, s, HF_STOPPED_RESIDUAL, n_step, w, r);
+        return hf_form_accept(m, s, HF_STOPPED_CONVERGED, n_step, w, r);
     if (status == HF_OK || status == HF_STRAIGHT_CHAIN || status == HF_NOT_CONVERGED)
         return name_reason(m, s, n_step, w, history, r);
     hf_form_refuse(status, n_step, r);

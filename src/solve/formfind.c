@@ -409,7 +409,7 @@ static bool is_last(const hf_model *m, const hf_form_settings *s, hf_workspace *
         /* The residual has cables at the tensions of their laws, so the tensions of the last solve are checked, too. */
         if (r->residual_N <= s->residual_tolerance * m->reference_N && r->tension_error <= s->residual_tolerance &&
             length_gap <= s->length_tolerance)
-            r->stop_reason = HF_STOPPED_RESIDUAL;
+            r->stop_reason = HF_STOPPED_CONVERGED;
         if (looks && r->stop_reason == HF_STOPPED_NONE) {
             double load = look_at_chains(m, w, r, &worst);
             p->next_chain_look *= 2;
@@ -510,7 +510,7 @@ hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_works
     hf_form_measure_cables(m, s, w, r, &length_gap);
     if (r->status != HF_OK) return finish_result(m, w, r);
     r->residual_N = hf_form_residual_N(m, w);
-    r->stop_reason = HF_STOPPED_RESIDUAL;
+    r->stop_reason = HF_STOPPED_CONVERGED;
     if (!(r->residual_N <= s->residual_tolerance * m->reference_N && length_gap <= s->length_tolerance)) {
         r->status = HF_NOT_CONVERGED;
         r->stop_reason = HF_STOPPED_MAX_ITERATIONS;

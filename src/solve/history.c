@@ -21,7 +21,7 @@ void hf_history_add_coupling(hf_history *history, double step_m, double psi_m, d
     if (!h || h->n == h->capacity) return;
     h->step_m[h->n] = step_m;
     h->psi_m[h->n] = psi_m;
-    h->max_displacement_m[h->n++] = max_displacement_m;
+    h->deflection_max_m[h->n++] = max_displacement_m;
 }
 
 /* Returns the maximum distance of an attachment from its target position, m. */

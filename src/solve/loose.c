@@ -148,7 +148,7 @@ static void refine(const hf_model *m, const hf_form_settings *s, hf_workspace *w
 
 void hf_loose_settle(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r)
 {
-    if (!m->has_newton || r->status != HF_OK || r->stop_reason != HF_STOPPED_RESIDUAL) return;
+    if (!m->has_newton || r->status != HF_OK || r->stop_reason != HF_STOPPED_CONVERGED) return;
     int n_loose = mark(m, s, w);
     if (n_loose == 0) return;
     hf_form_result before = *r;
@@ -167,7 +167,7 @@ void hf_loose_settle(const hf_model *m, const hf_form_settings *s, hf_workspace 
 
 void hf_loose_refuse(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r)
 {
-    if (!m->has_newton || r->status != HF_OK || r->stop_reason != HF_STOPPED_RESIDUAL || mark(m, s, w) == 0) return;
+    if (!m->has_newton || r->status != HF_OK || r->stop_reason != HF_STOPPED_CONVERGED || mark(m, s, w) == 0) return;
     int row = 0;
     while (!w->loose[row])
         row++;

@@ -11,7 +11,7 @@
  *     move = sum of the steps, added at twice the precision  ---------------+
  *         | the errors are small enough, or no move halves them any more
  *         v
- *     HF_BOUND_PROVEN; else factor the matrix again at the precise shape and repeat */
+ *     HF_BOUND_CERTIFIED; else factor the matrix again at the precise shape and repeat */
 #include "solve/precise.h"
 
 #include "linalg/band.h"
@@ -512,9 +512,9 @@ hf_bound_reason hf_precise_approach(hf_precise *p, bool has_factor)
         if (k > 0 && !factor_anew(p)) return k == 1 && !has_factor ? HF_BOUND_NOT_DEFINITE : reason;
         double error = correct(p);
         reason = !(error < CONTRACTED) ? HF_BOUND_NOT_CONTRACTING
-                 : is_told_apart(p)    ? HF_BOUND_PROVEN
+                 : is_told_apart(p)    ? HF_BOUND_CERTIFIED
                                        : HF_BOUND_SLACK_OR_TAUT;
-        if (reason == HF_BOUND_PROVEN && error <= p->wanted) break;
+        if (reason == HF_BOUND_CERTIFIED && error <= p->wanted) break;
     }
     return reason;
 }

@@ -4,10 +4,13 @@
  *                            a data set of file a alone: report it
  *     walk through file b    a data set of file b alone: report it
  *
+ * A result of version 0.2 has other names (renamed.h). Beside one of this version it is the file that is walked through
+ * second, and the names under which its data sets were found in the first walk are kept in a list.
  * The comparison of a data set ends at its first difference. Sections: one value, one data set, both files. */
 #include "store/compare.h"
 
 #include "store/hdf5.h"
+#include "store/renamed.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,6 +25,9 @@ typedef struct {
     hf_compare_tell *tell;
     void *context;
     bool are_results;
+    hf_hdf5 *first, *second; /* a and b, in the order of the walks */
+    char **found; /* [n_found] names of data sets in `second` that are in `first`, too; of version 0.2 alone */
+    int n_found;
 } comparing;
 
 /* An open data set of one file, with the type and the block of memory of its values. */
@@ -212,8 +218,9 @@ static bool compare_data_set(comparing *q, const char *name)
 
 static bool has_data_set(hf_hdf5 *io, const char *path)
 {
+    char name[HF_HDF5_NAME_SIZE];
     if (!hf_hdf5_has(io, io->file, path)) return false;
-    hid_t object = H5Oopen(io->file, path, H5P_DEFAULT);
+    hid_t object = H5Oopen(io->file, hf_hdf5_name(io, io->file, path, name), H5P_DEFAULT);
     bool is = object >= 0 && H5Iget_type(object) == H5I_DATASET;
     if (object < 0) hf_hdf5_fail(io, "read", io->file, path);
     hf_hdf5_close(io, object);
@@ -235,27 +242,51 @@ static bool is_second(const comparing *q, const char *path)
     return q->are_results && !strncmp(path, "/VTKHDF/", 8);
 }
 
-static void visit_a(void *context, const char *path, hid_t object, H5I_type_t type)
+/* Notes the name of a data set in the second file if that has names of version 0.2. */
+static void note_found(comparing *q, const char *path)
+{
+    char name[HF_HDF5_NAME_SIZE];
+    if (!q->second->alias || q->first->alias) return;
+    char **more = realloc(q->found, ((size_t)q->n_found + 1) * sizeof *more);
+    if (more) q->found = more;
+    if (!more || !(q->found[q->n_found] = strdup(hf_hdf5_name(q->second, q->second->file, path, name))))
+        hf_hdf5_no_memory(q->second);
+    else
+        q->n_found++;
+}
+
+static bool is_found(const comparing *q, const char *path)
+{
+    for (int i = 0; i < q->n_found; i++)
+        if (!strcmp(q->found[i], path)) return true;
+    return false;
+}
+
+static void visit_first(void *context, const char *path, hid_t object, H5I_type_t type)
 {
     comparing *q = context;
     (void)object;
     if (type != H5I_DATASET || is_second(q, path)) return;
     q->c->n_data_set++;
-    if (has_data_set(&q->b, path))
+    if (has_data_set(q->second, path)) {
+        note_found(q, path);
         q->c->n_different += compare_data_set(q, path);
-    else if (q->b.status == HF_OK)
-        tell_absent(q, path, &q->b);
-    if (q->a.status == HF_OK) q->a.status = q->b.status; /* a failure in file b ends the walk through file a */
+    } else if (q->second->status == HF_OK) {
+        tell_absent(q, path, q->second);
+    }
+    if (q->first->status == HF_OK) q->first->status = q->second->status; /* a failure there ends this walk */
 }
 
-static void visit_b(void *context, const char *path, hid_t object, H5I_type_t type)
+static void visit_second(void *context, const char *path, hid_t object, H5I_type_t type)
 {
     comparing *q = context;
     (void)object;
-    if (type != H5I_DATASET || is_second(q, path) || has_data_set(&q->a, path)) return;
+    if (type != H5I_DATASET || is_second(q, path) || is_found(q, path)) return;
+    bool is_old = q->second->alias && !q->first->alias; /* `first` has links of these names */
+    if (!is_old && has_data_set(q->first, path)) return;
     q->c->n_data_set++;
-    tell_absent(q, path, &q->a);
-    if (q->b.status == HF_OK) q->b.status = q->a.status;
+    tell_absent(q, path, q->first);
+    if (q->second->status == HF_OK) q->second->status = q->first->status;
 }
 
 hf_status hf_compare_files(const char *a, const char *b, hf_comparison *comparison, hf_compare_tell *tell,
@@ -266,14 +297,24 @@ hf_status hf_compare_files(const char *a, const char *b, hf_comparison *comparis
                    comparison,
                    tell,
                    context,
-                   false};
+                   .first = &q.a,
+                   .second = &q.b};
     comparison->n_data_set = comparison->n_different = 0;
     hf_hdf5_lock();
     hf_hdf5_open_file(&q.a, a);
     if (q.a.status == HF_OK) hf_hdf5_open_file(&q.b, b);
+    hf_renamed_note(&q.a);
+    hf_renamed_note(&q.b);
+    if (q.a.alias && !q.b.alias) {
+        q.first = &q.b;
+        q.second = &q.a;
+    }
     q.are_results = hf_hdf5_has(&q.a, q.a.file, "/scene") && hf_hdf5_has(&q.b, q.b.file, "/scene");
-    if (q.b.status == HF_OK) hf_hdf5_walk(&q.a, visit_a, &q);
-    if (q.a.status == HF_OK) hf_hdf5_walk(&q.b, visit_b, &q);
+    if (q.b.status == HF_OK) hf_hdf5_walk(q.first, visit_first, &q);
+    if (q.a.status == HF_OK) hf_hdf5_walk(q.second, visit_second, &q);
+    for (int i = 0; i < q.n_found; i++)
+        free(q.found[i]);
+    free(q.found);
     hf_status status = q.a.status != HF_OK ? q.a.status : q.b.status;
     if (status == HF_OK && comparison->n_different) status = HF_DIFFERENT;
     hf_hdf5_close_file(&q.a);

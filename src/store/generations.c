@@ -294,7 +294,7 @@ static void make_array(hf_hdf5 *io, hid_t group, const hf_generations_row *row, 
 static hid_t open_arrays(hf_hdf5 *io, const hf_generations *g, hf_generations_row row[HF_GENERATIONS_PIECES])
 {
     hf_generations_list_empty(g, n_in_row(g), row);
-    hid_t group = hf_hdf5_make_group(io, "/ga");
+    hid_t group = hf_hdf5_make_group(io, HF_GENERATIONS_GROUP);
     if (g->n_stored > 0 || hf_hdf5_has(io, group, row[HF_ROW_DESIGN].array.name)) return group;
     for (int i = 0; i < HF_GENERATIONS_PIECES; i++)
         if (is_stored(g, i)) make_array(io, group, &row[i], g->row_bytes[i], g->capacity);
@@ -315,7 +315,7 @@ static void write_last(hf_hdf5 *io, const hf_generations *g)
 {
     hf_generations_row row[HF_GENERATIONS_PIECES];
     hf_generations_list_empty(g, g->n_individual, row);
-    hid_t group = hf_hdf5_make_group(io, "/ga/last");
+    hid_t group = hf_hdf5_make_group(io, HF_GENERATIONS_GROUP "/last");
     bool is_new = !hf_hdf5_has(io, group, row[HF_ROW_DESIGN].array.name);
     for (int i = 0; !hf_generations_is_series(i); i++) {
         if (!is_stored(g, i)) continue;
@@ -361,11 +361,12 @@ void hf_generations_write(hf_hdf5 *io, hf_generations *g)
 int hf_generations_count(hf_hdf5 *io, hf_generations *g)
 {
     g->n_stored = 0;
-    if (hf_hdf5_has(io, io->file, "/ga") && hf_hdf5_has(io, io->file, "/ga/n_infeasible"))
-        g->n_stored = hf_hdf5_length(io, io->file, "/ga/n_infeasible", g->limit);
+    if (hf_hdf5_has(io, io->file, HF_GENERATIONS_GROUP) &&
+        hf_hdf5_has(io, io->file, HF_GENERATIONS_GROUP "/n_infeasible"))
+        g->n_stored = hf_hdf5_length(io, io->file, HF_GENERATIONS_GROUP "/n_infeasible", g->limit);
     for (int i = 0; hf_generations_has_last(g) && g->n_stored > 0 && i < HF_GENERATIONS_COUNTS; i++)
-        hf_hdf5_get(io, io->file, "/ga/last", hf_generations_count_name[i], HF_KIND_LONG, &g->count[i],
-                    sizeof g->count[i]);
+        hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP "/last", hf_generations_count_name[i], HF_KIND_LONG,
+                    &g->count[i], sizeof g->count[i]);
     return g->n_stored;
 }
 
@@ -402,7 +403,7 @@ static void read_of_best(hf_hdf5 *io, hid_t group, const hf_generations_row *row
                          hsize_t at, int individual, hf_summary *s)
 {
     size_t n = (size_t)row->array.dims[1], each = hf_hdf5_kind_bytes(row->array.kind);
-    char *values = malloc(n * each), *to = (char *)&s->best + field->offset;
+    char *values = malloc(n * each), *to = (char *)&s->stage[HF_STAGE_SEARCH].result + field->offset;
     if (!values) hf_hdf5_no_memory(io);
     hf_hdf5_read_rows(io, group, &row->array, at, values);
     if (io->status == HF_OK && individual >= 0 && (size_t)individual < n)
@@ -412,7 +413,7 @@ static void read_of_best(hf_hdf5 *io, hid_t group, const hf_generations_row *row
 }
 
 /* Sets the best design of the summary: that of the first generation with the minimum merit. The best design stays in
- * the population, so /ga/last has its figures. Figures that are not stored are NaN. */
+ * the population, so /search/population/last has its figures. Figures that are not stored are NaN. */
 static void note_best(hf_hdf5 *io, hid_t group, const hf_generations *g, const double *best_merit, hf_summary *s)
 {
     hf_generations_row row[HF_GENERATIONS_PIECES];
@@ -422,15 +423,17 @@ static void note_best(hf_hdf5 *io, hid_t group, const hf_generations *g, const d
         if (!isnan(best_merit[i]) && (best < 0 || best_merit[i] < best_merit[best])) best = i;
     if (best < 0) return;
     hf_generations_list_empty(g, g->n_individual, row);
-    s->best_generation = best;
-    s->best = (hf_form_result){.status = HF_OK, .culprit = -1};
-    hf_result_blank(&s->best);
-    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_PSI].array, (hsize_t)best, &s->best.psi_m);
-    s->best.merit = best_merit[best];
-    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_INDIVIDUAL].array, (hsize_t)best, &s->best_individual);
+    s->search.best_generation = best;
+    hf_form_result *result = &s->stage[HF_STAGE_SEARCH].result;
+    *result = (hf_form_result){.status = HF_OK, .culprit = -1};
+    hf_result_blank(result);
+    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_PSI].array, (hsize_t)best, &result->psi_m);
+    result->merit = best_merit[best];
+    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_INDIVIDUAL].array, (hsize_t)best, &s->search.best_individual);
     hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_INDIVIDUAL].array,
                       (hsize_t)(hf_generations_has_last(g) ? last : best), &individual);
-    hid_t from = hf_hdf5_open_group(io, hf_generations_has_last(g) ? "/ga/last" : "/ga");
+    hid_t from =
+        hf_hdf5_open_group(io, hf_generations_has_last(g) ? HF_GENERATIONS_GROUP "/last" : HF_GENERATIONS_GROUP);
     hf_result_list_individual(field);
     hsize_t at = hf_generations_has_last(g) ? 0 : (hsize_t)best;
     for (int i = 0; i < HF_RESULT_N_INDIVIDUAL; i++)
@@ -468,8 +471,9 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population 
         hf_hdf5_no_memory(io);
         return;
     }
-    hid_t group = hf_hdf5_open_group(io, "/ga"),
-          whole = hf_hdf5_open_group(io, hf_generations_has_last(g) ? "/ga/last" : "/ga");
+    hid_t group = hf_hdf5_open_group(io, HF_GENERATIONS_GROUP),
+          whole =
+              hf_hdf5_open_group(io, hf_generations_has_last(g) ? HF_GENERATIONS_GROUP "/last" : HF_GENERATIONS_GROUP);
     population->generation = last;
     hf_generations_list(population, row);
     for (int i = 0; i < HF_GENERATIONS_PIECES && io->status == HF_OK; i++) {
@@ -503,22 +507,22 @@ void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
         return;
     }
     long count[HF_GENERATIONS_COUNTS];
-    hid_t group = hf_hdf5_open_group(io, "/ga");
+    hid_t group = hf_hdf5_open_group(io, HF_GENERATIONS_GROUP);
     hf_generations_list_empty(g, g->n_individual, row);
-    if (isfinite(g->base_psi_m)) s->base_psi_m = g->base_psi_m;
+    if (isfinite(g->base_psi_m)) s->search.initial_psi_m = g->base_psi_m;
     if (g->every != HF_GENERATIONS_BEST) {
         hf_hdf5_read_rows(io, group, &row[HF_ROW_PSI].array, 0, values); /* the first generation */
-        if (io->status == HF_OK) s->base_psi_m = values[0];
+        if (io->status == HF_OK) s->search.initial_psi_m = values[0];
     }
     row[HF_ROW_BEST_MERIT].array.dims[0] = (hsize_t)g->n_stored;
     hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_MERIT].array, 0, values);
     if (io->status == HF_OK) note_best(io, group, g, values, s);
     memcpy(count, g->count, sizeof count);
     if (!hf_generations_has_last(g)) count_evaluations(io, group, g, g->n_stored, count);
-    s->evaluations = count[0];
-    s->infeasible = count[1];
-    s->has_optimize = true;
-    s->generations = g->n_stored;
+    s->search.evaluations = count[0];
+    s->search.infeasible = count[1];
+    s->stage[HF_STAGE_SEARCH].exists = true;
+    s->search.generations = g->n_stored;
     free(values);
     hf_hdf5_close(io, group);
 }

@@ -25,6 +25,7 @@
 #include <hifdm/summary.h>
 #include <sys/uio.h>
 
+#define HF_GENERATIONS_GROUP "/search/population"           /* group of all rows */
 #define HF_GENERATIONS_PIECES (17 + HF_RESULT_N_INDIVIDUAL) /* number of data sets, and of pieces of a payload */
 #define HF_GENERATIONS_BEST 0                               /* value of `every`: only the best individual has rows */
 /* Number of counts of evaluations in hf_generations.count. */

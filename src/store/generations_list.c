@@ -12,11 +12,10 @@ static void list_objectives(const hf_population *now, hf_generations_row *row)
     _Static_assert(sizeof name / sizeof *name == HF_FRONT_OBJECTIVES_MAX, "a name for each objective");
     for (int k = 0; k < HF_FRONT_OBJECTIVES_MAX; k++) {
         hsize_t n = k < now->n_objective ? (hsize_t)now->n_individual : 0;
-        row[k] =
-            (hf_generations_row){{name[k], HF_KIND_REAL, 2, {1, n}, "", "of optimize.objectives, each in its own unit"},
-                                 &now->result->objective[k],
-                                 sizeof *now->result,
-                                 sizeof(double)};
+        row[k] = (hf_generations_row){{name[k], HF_KIND_REAL, 2, {1, n}, "", "of optimize.front, each in its own unit"},
+                                      &now->result->objective[k],
+                                      sizeof *now->result,
+                                      sizeof(double)};
     }
 }
 
@@ -26,16 +25,17 @@ void hf_generations_list(const hf_population *now, hf_generations_row row[HF_GEN
 #define ARRAY(member) now->member, sizeof *now->member, sizeof *now->member
 #define SINGLE(value) &(value), 0, sizeof(value)
     const hf_generations_row before[] = {
-        {hf_layout_of_variables("design_N", now->has_rows, 3, (const hsize_t[3]){1, p, k}), ARRAY(design)},
+        {hf_layout_of_variables("design", now->has_rows, 3, (const hsize_t[3]){1, p, k}), ARRAY(design)},
         {{"evaluated",
           HF_KIND_FLAG,
           2,
           {1, p},
           "",
-          "TRUE = a trial was evaluated for this place; FALSE: its result was known"},
+          "TRUE = a trial was evaluated for this individual; FALSE: its result was known"},
          ARRAY(pending)}};
     const hf_generations_row behind[] = {
-        {{"trial_status", HF_KIND_STATUS, 2, {1, p}, "", "of what was proposed for this place"}, ARRAY(trial_status)},
+        {{"trial_status", HF_KIND_STATUS, 2, {1, p}, "", "of what was proposed for this individual"},
+         ARRAY(trial_status)},
         {{"trial_psi_m", HF_KIND_REAL, 2, {1, p}, "m", "the same; kept when it was not worse"}, ARRAY(trial_psi_m)},
         {{"crossover_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(crossover_rate)},
         {{"mutation_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(mutation_rate)},
@@ -43,9 +43,14 @@ void hf_generations_list(const hf_population *now, hf_generations_row row[HF_GEN
          ARRAY(parent)},
         {{"best_individual", HF_KIND_INT, 1, {1}, "", "-1 while none is feasible"}, SINGLE(now->best)},
         {{"best_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the generation"}, SINGLE(now->best_psi_m[now->generation])},
-        {{"best_merit", HF_KIND_REAL, 1, {1}, "", "of the generation: psi, m, without goals; the first of objectives"},
+        {{"best_merit",
+          HF_KIND_REAL,
+          1,
+          {1},
+          "",
+          "of the generation: psi, m, without an objective; the first one of a front"},
          SINGLE(now->best_merit[now->generation])},
-        {{"least_violation", HF_KIND_REAL, 1, {1}, "", "0: a design is feasible; inf: none has a shape"},
+        {{"violation_min", HF_KIND_REAL, 1, {1}, "", "0: a design is feasible; inf: none has a shape"},
          SINGLE(now->least_violation[now->generation])},
         {{"mean_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(now->mean_psi_m)},
         {{"worst_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(now->worst_psi_m)},
@@ -72,7 +77,7 @@ void hf_generations_list(const hf_population *now, hf_generations_row row[HF_GEN
            !strcmp(row[HF_ROW_BEST_PSI].array.name, "best_psi_m") &&
            !strcmp(row[HF_ROW_BEST_MERIT].array.name, "best_merit") &&
            !strcmp(row[HF_ROW_TRIAL_STATUS].array.name, "trial_status") &&
-           !strcmp(row[HF_ROW_VIOLATION].array.name, "least_violation"));
+           !strcmp(row[HF_ROW_VIOLATION].array.name, "violation_min"));
 }
 
 void hf_generations_list_empty(const hf_generations *g, int n_individual, hf_generations_row row[HF_GENERATIONS_PIECES])

@@ -186,11 +186,18 @@ hid_t hf_hdf5_array_type(const hf_hdf5_array *a)
     return make_type(a->kind, a->kind == HF_KIND_CHARS ? a->dims[a->rank] : 0);
 }
 
-/* Returns true if values of this stored type can be read as `kind`. HDF5 itself matches the words of enumerations. */
+/* Makes the type by which values of this kind are read. Enumerations are read by their numbers, which never change;
+ * their words may be those of another version. */
+static hid_t make_read_type(const hf_hdf5_kind *kind, hsize_t length)
+{
+    return is_enum(kind) ? H5Tcopy(H5T_NATIVE_SCHAR) : make_type(kind, length);
+}
+
+/* Returns true if values of this stored type can be read as `kind`. */
 static bool is_of_kind(hid_t stored, const hf_hdf5_kind *kind)
 {
     H5T_class_t class = H5Tget_class(stored);
-    if (is_enum(kind)) return class == H5T_ENUM;
+    if (is_enum(kind)) return class == H5T_ENUM && H5Tget_size(stored) == 1;
     if (kind == HF_KIND_CHARS) return class == H5T_STRING && H5Tis_variable_str(stored) == 0;
     assert(kind != HF_KIND_TEXT);
     return class == (kind == HF_KIND_REAL ? H5T_FLOAT : H5T_INTEGER);
@@ -205,6 +212,42 @@ bool hf_hdf5_are_known(const hf_hdf5_kind *kind, const void *values, hsize_t n)
     for (hsize_t i = 0; i < n; i++)
         if (!known[bytes[i]]) return false;
     return true;
+}
+
+/* ---- names in files of another version ---- */
+
+/* Writes the path of an object from the root into path[]. */
+static void absolute_path(hid_t place, const char *name, char path[HF_HDF5_NAME_SIZE])
+{
+    char group[HF_HDF5_NAME_SIZE] = "";
+    if (*name != '/' && H5Iget_name(place, group, sizeof group) < 0) group[0] = '\0';
+    if (!strcmp(group, "/")) group[0] = '\0';
+    bool is_place = !strcmp(name, ".");
+    snprintf(path, HF_HDF5_NAME_SIZE, "%.500s%s%.500s", group, is_place || *name == '/' ? "" : "/",
+             is_place && *group ? ""
+             : is_place         ? "/"
+                                : name);
+}
+
+/* Returns true if there is an object at this path. A link in it is not followed, but counts. */
+static bool is_there(hf_hdf5 *io, const char *path)
+{
+    const char *alias_path = path;
+    hf_hdf5_alias *alias = io->alias;
+    io->alias = NULL;
+    bool is = hf_hdf5_has(io, io->file, alias_path);
+    io->alias = alias;
+    return is;
+}
+
+const char *hf_hdf5_name(hf_hdf5 *io, hid_t place, const char *name, char found[HF_HDF5_NAME_SIZE])
+{
+    char path[HF_HDF5_NAME_SIZE];
+    if (!io->alias || io->status != HF_OK) return name;
+    absolute_path(place, name, path);
+    for (int k = 0; io->alias(path, NULL, k, found, NULL); k++)
+        if (is_there(io, found)) return found;
+    return name;
 }
 
 /* ---- files and groups ---- */
@@ -419,8 +462,8 @@ void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, void *
     if (io->status != HF_OK) return;
     hid_t data_set = hf_hdf5_open(io, group, a->name, H5I_DATASET);
     hf_hdf5_check_array(io, group, a, data_set, 0, true);
-    if (io->status == HF_OK &&
-        ((type = hf_hdf5_array_type(a)) < 0 || H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0))
+    if (io->status == HF_OK && ((type = make_read_type(a->kind, a->kind == HF_KIND_CHARS ? a->dims[a->rank] : 0)) < 0 ||
+                                H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0))
         hf_hdf5_fail(io, "read", group, a->name);
     hf_hdf5_check_values(io, group, a, values);
     hf_hdf5_close(io, type);
@@ -477,6 +520,23 @@ static void put_typed(hf_hdf5 *io, hid_t place, const char *name, const char *at
     hf_hdf5_close(io, type);
 }
 
+void hf_hdf5_copy_attribute(hf_hdf5 *io, const char *from, const char *from_name, const char *to, const char *to_name)
+{
+    hid_t id = -1, type = -1, space = -1;
+    hssize_t n = 0;
+    void *values = NULL;
+    if (io->status != HF_OK) return;
+    if ((id = H5Aopen_by_name(io->file, from, from_name, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
+        (type = H5Aget_type(id)) < 0 || (space = H5Aget_space(id)) < 0 ||
+        (n = H5Sget_simple_extent_npoints(space)) < 1 || !(values = malloc((size_t)n * H5Tget_size(type))) ||
+        H5Aread(id, type, values) < 0)
+        fail_at(io, "read", io->file, from, from_name);
+    hf_hdf5_close(io, space);
+    hf_hdf5_close(io, id);
+    if (io->status == HF_OK) put_typed(io, io->file, to, to_name, type, n > 1 ? (hsize_t)n : 0, values);
+    free(values);
+}
+
 void hf_hdf5_put(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const hf_hdf5_kind *kind, hsize_t n,
                  const void *values)
 {
@@ -494,9 +554,26 @@ void hf_hdf5_put_chars(hf_hdf5 *io, hid_t place, const char *name, const char *a
     if (io->status == HF_OK) put_typed(io, place, name, attribute, make_string(length), 0, text);
 }
 
-/* Returns false also if the object itself is missing, and after a failure. */
-static bool has_attribute(hf_hdf5 *io, hid_t place, const char *name, const char *attribute)
+/* Replaces place, name and attribute by those that the file has, written into object[] and known[]. Returns false if
+ * the alias knows none. */
+static bool find_attribute(hf_hdf5 *io, hid_t *place, const char **name, const char **attribute,
+                           char object[HF_HDF5_NAME_SIZE], char known[HF_HDF5_NAME_SIZE])
 {
+    char path[HF_HDF5_NAME_SIZE];
+    if (!io->alias || io->status != HF_OK) return true;
+    absolute_path(*place, *name, path);
+    if (!io->alias(path, *attribute, 0, object, known)) return false;
+    *place = io->file;
+    *name = object;
+    *attribute = known;
+    return true;
+}
+
+/* Returns false also if the object itself is missing, and after a failure. */
+bool hf_hdf5_has_attribute(hf_hdf5 *io, hid_t place, const char *name, const char *attribute)
+{
+    char object[HF_HDF5_NAME_SIZE], known[HF_HDF5_NAME_SIZE];
+    if (!find_attribute(io, &place, &name, &attribute, object, known)) return false;
     if (!hf_hdf5_has(io, place, name)) return false;
     htri_t has = H5Aexists_by_name(place, name, attribute, H5P_DEFAULT);
     if (has < 0) fail_at(io, "read", place, name, attribute);
@@ -508,13 +585,15 @@ void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribu
 {
     hid_t id = -1, stored = -1, space = -1, type = -1;
     size_t length = 0;
-    if (!has_attribute(io, place, name, attribute)) {
+    char object[HF_HDF5_NAME_SIZE], known[HF_HDF5_NAME_SIZE];
+    if (!hf_hdf5_has_attribute(io, place, name, attribute)) {
         hf_hdf5_missing(io, place, name, attribute);
         return;
     }
+    find_attribute(io, &place, &name, &attribute, object, known);
     if ((id = H5Aopen_by_name(place, name, attribute, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
         (stored = H5Aget_type(id)) < 0 || (space = H5Aget_space(id)) < 0 || (length = H5Tget_size(stored)) == 0 ||
-        (type = make_type(kind, length)) < 0)
+        (type = make_read_type(kind, length)) < 0)
         fail_at(io, "read", place, name, attribute);
     else if (H5Sget_simple_extent_npoints(space) != 1 || !is_of_kind(stored, kind))
         damaged_at(io, place, name, attribute, "is of another type");
@@ -536,7 +615,9 @@ bool hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *a
 {
     hid_t id = -1, stored = -1;
     bool has = false;
-    if (!has_attribute(io, place, name, attribute)) return false;
+    char object[HF_HDF5_NAME_SIZE], known[HF_HDF5_NAME_SIZE];
+    if (!hf_hdf5_has_attribute(io, place, name, attribute)) return false;
+    find_attribute(io, &place, &name, &attribute, object, known);
     if ((id = H5Aopen_by_name(place, name, attribute, H5P_DEFAULT, H5P_DEFAULT)) < 0 || (stored = H5Aget_type(id)) < 0)
         fail_at(io, "read", place, name, attribute);
     else

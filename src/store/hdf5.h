@@ -17,6 +17,14 @@
 #define H5_USE_110_API
 #include <hdf5.h>
 
+#define HF_HDF5_NAME_SIZE 1024 /* bytes of the path of an object */
+
+/* Writes the k-th name that an object of today may have in a file of another version into object[]; k = 0, 1, ...
+ * path: from the root. With `attribute` also the name of this attribute into name[]. Returns false if there is no k-th
+ * name. A path of the other version stays as it is. */
+typedef bool hf_hdf5_alias(const char *path, const char *attribute, int k, char object[HF_HDF5_NAME_SIZE],
+                           char name[HF_HDF5_NAME_SIZE]);
+
 typedef struct {
     const char *path; /* name of the file in messages; borrowed */
     hf_messages *messages;
@@ -24,6 +32,8 @@ typedef struct {
     bool is_damaged;  /* the failure lies in the content of the file and will recur; else in the machine */
     hid_t file;
     char made_by[132]; /* the version of hifdm that made the file; "" = this one, or unknown */
+    hf_hdf5_alias
+        *alias; /* the names in a file of another version, by which all calls read it; NULL: they are the same */
 } hf_hdf5;
 
 /* Kinds of stored values. Each comment gives the C type in arrays and attributes. */
@@ -130,6 +140,9 @@ void hf_hdf5_close_file(hf_hdf5 *io);
  * would wait for a process that writes into a pipe. */
 bool hf_hdf5_look_at_file(hf_hdf5 *io, const char *name);
 
+/* Returns the name of an object below `place` in this file: `name`, or what the alias says, written into found[]. */
+const char *hf_hdf5_name(hf_hdf5 *io, hid_t place, const char *name, char found[HF_HDF5_NAME_SIZE]);
+
 /* Closes an id of any type; also after a failure. A negative id is ignored. */
 void hf_hdf5_close(hf_hdf5 *io, hid_t id);
 
@@ -208,6 +221,12 @@ void hf_hdf5_put_chars(hf_hdf5 *io, hid_t place, const char *name, const char *a
 void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const hf_hdf5_kind *kind,
                  void *value, size_t size);
 
+/* Copies an attribute to another object or name; replaces one of the same name. */
+void hf_hdf5_copy_attribute(hf_hdf5 *io, const char *from, const char *from_name, const char *to, const char *to_name);
+
+/* Returns true if the attribute exists. */
+bool hf_hdf5_has_attribute(hf_hdf5 *io, hid_t place, const char *name, const char *attribute);
+
 /* Returns true if the attribute exists and is a text of fixed length. */
 bool hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute);
 
@@ -221,13 +240,14 @@ typedef struct {
     size_t offset, size;
 } hf_hdf5_member;
 
-/* Returns the value of a member of HF_HDF5_ENUM or HF_HDF5_INT. */
+/* Returns or sets the value of a member of HF_HDF5_ENUM or HF_HDF5_INT. */
 int hf_hdf5_int_value(const hf_hdf5_member *member, const void *owner);
+void hf_hdf5_set_int_value(const hf_hdf5_member *member, int value, void *owner);
 
-/* Writes or reads all members of a table as attributes. If a file of another version (io->made_by) has the object but
- * not the attribute, reading sets the member to NaN, 0 or "". */
-void hf_hdf5_put_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, const void *owner);
-void hf_hdf5_get_members(hf_hdf5 *io, const hf_hdf5_member *table, int n, void *owner);
+/* Writes or reads all members of a table as attributes. Members without an object are attributes of `object`. If a file
+ * of another version (io->made_by) has the object but not the attribute, reading sets the member to NaN, 0 or "". */
+void hf_hdf5_put_members(hf_hdf5 *io, const char *object, const hf_hdf5_member *table, int n, const void *owner);
+void hf_hdf5_get_members(hf_hdf5 *io, const char *object, const hf_hdf5_member *table, int n, void *owner);
 
 #define HF_HDF5_MEMBER(type, object, name, member, kind)                                                               \
     {object, name, HF_KIND_##kind, offsetof(type, member), sizeof(((type *)0)->member)},

@@ -64,8 +64,9 @@ static bool is_group(hf_hdf5 *io, hid_t place, const char *name)
 
 bool hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name)
 {
-    char part[1024];
+    char part[HF_HDF5_NAME_SIZE], found[HF_HDF5_NAME_SIZE];
     if (io->status != HF_OK) return false;
+    name = hf_hdf5_name(io, place, name, found);
     if (!strcmp(name, ".") || !strcmp(name, "/")) return true;
     for (const char *end = name; *end;) {
         end += *end == '/';
@@ -157,7 +158,9 @@ hf_status hf_hdf5_try(hf_child_work *work, const char *path, char *how, size_t s
 
 hid_t hf_hdf5_open(hf_hdf5 *io, hid_t place, const char *name, H5I_type_t wanted)
 {
+    char found[HF_HDF5_NAME_SIZE];
     hf_hdf5_note(io);
+    name = hf_hdf5_name(io, place, name, found);
     if (!hf_hdf5_has(io, place, name)) {
         hf_hdf5_missing(io, place, name, NULL);
         return -1;

@@ -7,6 +7,7 @@
 #include <hifdm/scene.h>
 #include <hifdm/store.h>
 
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- enumerations ---- */
@@ -65,7 +66,7 @@ const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind)
 
 /* Rows of the lists below: X(struct, name, member, kind, per_cable, columns, units, description) */
 #define SCENE_COLUMNS(X)                                                                                               \
-    X(hf_scene, "node/position_m", position_m, REAL, 0, 3, "m", "theoretical position; of supports also the real one") \
+    X(hf_scene, "node/position_m", position_m, REAL, 0, 3, "m", "target position; of supports also the real one")      \
     X(hf_scene, "node/load_N", load_N, REAL, 0, 3, "N", "load")                                                        \
     X(hf_scene, "node/role", role, ROLE, 0, 1, "", "support, inner (counted by psi) or edge")                          \
     X(hf_scene, "cable/end", end, INT, 1, 2, "", "the two nodes, as indices from 0 into /scene/node")                  \
@@ -153,19 +154,63 @@ void hf_layout_renew(hf_hdf5 *io, const char *path)
         hf_hdf5_fail(io, "replace", io->file, path);
 }
 
-/* ---- summary ---- */
+/* ---- fields ---- */
 
-/* The figures of the results, by stage; <hifdm/result.h> lists them. */
-#define FORM_FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/form", #member, form.member, kind)
-#define BEST_FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/ga", "best_" #member, best.member, kind)
-#define REFINE_FIGURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/polish", #member, polish.member, kind)
-/* The figures of a coupling. Those of the search and of the refinement are beside the results of these stages. */
-#define FORM_COUPLING(type, member, kind, ...)                                                                         \
-    HF_HDF5_MEMBER(hf_summary, "/coupling", #member, form.coupling.member, kind)
-#define BEST_COUPLING(type, member, kind, ...)                                                                         \
-    HF_HDF5_MEMBER(hf_summary, "/ga", "best_coupling_" #member, best.coupling.member, kind)
-#define REFINE_COUPLING(type, member, kind, ...)                                                                       \
-    HF_HDF5_MEMBER(hf_summary, "/polish", "coupling_" #member, polish.coupling.member, kind)
+/* Returns the bytes of a row in the file. */
+static size_t row_bytes(const hf_layout_field *f)
+{
+    size_t bytes = f->kind == HF_KIND_CHARS ? f->size : hf_hdf5_kind_bytes(f->kind);
+    return f->columns ? bytes * (size_t)f->columns : bytes;
+}
+
+/* Copies n rows between the structs of the owner and packed values: to the packed ones with `packs`, else back. */
+static void copy_field(const hf_layout_field *f, int n, bool packs, char *packed, char *owner)
+{
+    const hf_hdf5_member number = {.kind = f->kind, .size = f->size};
+    size_t bytes = row_bytes(f);
+    for (int i = 0; i < n; i++, packed += bytes) {
+        char *member = owner + f->offset + (size_t)i * f->stride;
+        if (f->kind->class != HF_HDF5_ENUM && f->size != sizeof(bool))
+            memcpy(packs ? packed : member, packs ? member : packed, bytes);
+        else if (packs)
+            *(signed char *)packed = (signed char)hf_hdf5_int_value(&number, member);
+        else
+            hf_hdf5_set_int_value(&number, *(signed char *)packed, member);
+    }
+}
+
+static void pass_fields(hf_hdf5 *io, hid_t group, const hf_layout_field *table, int n_field, int n, int columns,
+                        bool writes, char *owner)
+{
+    for (const hf_layout_field *f = table; f < table + n_field && n > 0 && io->status == HF_OK; f++) {
+        int per_row = f->columns ? f->columns : columns;
+        hf_hdf5_array array = {f->name, f->kind, per_row ? 2 : 1, {(hsize_t)n}, f->units, f->description};
+        char *packed = malloc((size_t)n * row_bytes(f));
+        if (per_row) array.dims[1] = (hsize_t)per_row;
+        if (columns) array.dims[0] = (hsize_t)(n / columns);
+        if (f->kind == HF_KIND_CHARS) array.dims[array.rank] = f->size;
+        if (!packed) hf_hdf5_no_memory(io);
+        if (packed && writes) copy_field(f, n, true, packed, owner);
+        if (packed && writes) hf_hdf5_write_array(io, group, &array, packed);
+        if (packed && !writes) hf_hdf5_read_array(io, group, &array, packed);
+        if (packed && !writes && io->status == HF_OK) copy_field(f, n, false, packed, owner);
+        free(packed);
+    }
+}
+
+void hf_layout_put_fields(hf_hdf5 *io, hid_t group, const hf_layout_field *table, int n_field, int n, int columns,
+                          const void *owner)
+{
+    pass_fields(io, group, table, n_field, n, columns, true, (char *)owner);
+}
+
+void hf_layout_get_fields(hf_hdf5 *io, hid_t group, const hf_layout_field *table, int n_field, int n, int columns,
+                          void *owner)
+{
+    pass_fields(io, group, table, n_field, n, columns, false, owner);
+}
+
+/* ---- summary ---- */
 
 /* The members of the summary about the run itself. Rows: X(struct, object, attribute, member, kind) */
 #define RUN_MEMBERS(X)                                                                                                 \
@@ -174,67 +219,121 @@ void hf_layout_renew(hf_hdf5 *io, const char *path)
     X(hf_summary, "/", "seed", seed, UINT64)                                                                           \
     X(hf_summary, "/", "warnings", warnings, CHARS)                                                                    \
     X(hf_summary, "/", "finished", finished, FLAG)                                                                     \
-    X(hf_summary, "/", "has_polish", has_polish, FLAG)                                                                 \
-    X(hf_summary, "/", "has_optimize", has_optimize, FLAG)                                                             \
+    X(hf_summary, "/", "has_search", stage[HF_STAGE_SEARCH].exists, FLAG)                                              \
+    X(hf_summary, "/", "has_refine", stage[HF_STAGE_REFINE].exists, FLAG)                                              \
     X(hf_summary, "/case", "case_path", case_path, CHARS)                                                              \
     X(hf_summary, "/form", "version", version, CHARS)
 
-#define FORM_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/form", #member, member, kind)
-#define GA_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/ga", #member, member, kind)
-#define REFINE_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/polish", #member, member, kind)
-#define TOLERANCE_MEMBER(type, member, kind, ...)                                                                      \
-    HF_HDF5_MEMBER(hf_summary, "/tolerance", #member, tolerance.member, kind)
-#define TRUSS_MEMBER(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, "/truss", #member, truss.member, kind)
-
-static const hf_hdf5_member form[] = {RUN_MEMBERS(HF_HDF5_MEMBER) HF_SUMMARY_FORM_LIST(FORM_MEMBER)
-                                          HF_RESULT_LIST(FORM_FIGURE)};
-static const hf_hdf5_member ga[] = {HF_SUMMARY_SEARCH_LIST(GA_MEMBER) HF_RESULT_LIST(BEST_FIGURE)};
-static const hf_hdf5_member refine[] = {HF_SUMMARY_REFINE_LIST(REFINE_MEMBER) HF_RESULT_LIST(REFINE_FIGURE)};
-static const hf_hdf5_member truss[] = {HF_SUMMARY_TRUSS_LIST(TRUSS_MEMBER)};
-static const hf_hdf5_member coupling[] = {HF_COUPLING_LIST(FORM_COUPLING)};
-static const hf_hdf5_member coupling_ga[] = {HF_COUPLING_LIST(BEST_COUPLING)};
-static const hf_hdf5_member coupling_refine[] = {HF_COUPLING_LIST(REFINE_COUPLING)};
+#define FORM(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, NULL, #member, member, kind)
+#define SEARCH(type, member, kind, ...) HF_HDF5_MEMBER(hf_search_summary, NULL, #member, member, kind)
+#define REFINE(type, member, kind, ...) HF_HDF5_MEMBER(hf_refine_summary, NULL, #member, member, kind)
+#define RESULT(type, member, kind, ...) HF_HDF5_MEMBER(hf_stage_summary, NULL, #member, result.member, kind)
+#define COUPLING(type, member, kind, ...) HF_HDF5_MEMBER(hf_coupling_result, NULL, #member, member, kind)
+#define OTHER_COUPLING(type, member, kind, ...)                                                                        \
+    HF_HDF5_MEMBER(hf_coupling_result, NULL, "coupling_" #member, member, kind)
+#define TRUSS(type, member, kind, ...) HF_HDF5_MEMBER(hf_truss_summary, NULL, #member, member, kind)
+#define TOLERANCE(type, member, kind, ...) HF_HDF5_MEMBER(hf_tolerance_summary, NULL, #member, member, kind)
+static const hf_hdf5_member run[] = {RUN_MEMBERS(HF_HDF5_MEMBER)};
+static const hf_hdf5_member form[] = {HF_SUMMARY_FORM_LIST(FORM)};
+static const hf_hdf5_member search[] = {HF_SUMMARY_SEARCH_LIST(SEARCH)};
+static const hf_hdf5_member refine[] = {HF_SUMMARY_REFINE_LIST(REFINE)};
+static const hf_hdf5_member stage[] = {HF_RESULT_LIST(RESULT)
+                                           HF_HDF5_MEMBER(hf_stage_summary, NULL, "wall_s", wall_s, REAL)};
+static const hf_hdf5_member coupling[] = {HF_COUPLING_LIST(COUPLING)};
+static const hf_hdf5_member other_coupling[] = {HF_COUPLING_LIST(OTHER_COUPLING)};
+static const hf_hdf5_member truss[] = {HF_SUMMARY_TRUSS_LIST(TRUSS)};
 static const hf_hdf5_member tolerance[] = {
-    HF_TOLERANCE_LIST(TOLERANCE_MEMBER)
-        HF_HDF5_MEMBER(hf_summary, "/tolerance", "histogram_low_m", tolerance.bin_low_m, REAL)
-            HF_HDF5_MEMBER(hf_summary, "/tolerance", "histogram_high_m", tolerance.bin_high_m, REAL)};
-#define PART(table) table, HF_HDF5_COUNT(table)
-const hf_layout_members hf_layout_summary[HF_LAYOUT_N_PART] = {[HF_LAYOUT_FORM] = {PART(form)},
-                                                               [HF_LAYOUT_GA] = {PART(ga)},
-                                                               [HF_LAYOUT_REFINE] = {PART(refine)},
-                                                               [HF_LAYOUT_TRUSS] = {PART(truss)},
-                                                               [HF_LAYOUT_COUPLING] = {PART(coupling)},
-                                                               [HF_LAYOUT_COUPLING_GA] = {PART(coupling_ga)},
-                                                               [HF_LAYOUT_COUPLING_REFINE] = {PART(coupling_refine)},
-                                                               [HF_LAYOUT_TOLERANCE] = {PART(tolerance)}};
+    HF_TOLERANCE_LIST(TOLERANCE) HF_HDF5_MEMBER(hf_tolerance_summary, NULL, "histogram_low_m", bin_low_m, REAL)
+        HF_HDF5_MEMBER(hf_tolerance_summary, NULL, "histogram_high_m", bin_high_m, REAL)};
+const hf_layout_members hf_layout_summary[HF_LAYOUT_N_PART] = {
+    [HF_LAYOUT_RUN] = {NULL, HF_LAYOUT_TABLE(run)},
+    [HF_LAYOUT_FORM] = {"/form", HF_LAYOUT_TABLE(form)},
+    [HF_LAYOUT_SEARCH] = {"/search", HF_LAYOUT_TABLE(search)},
+    [HF_LAYOUT_REFINE] = {"/refine", HF_LAYOUT_TABLE(refine)},
+    [HF_LAYOUT_FORM_STAGE] = {"/form", HF_LAYOUT_TABLE(stage)},
+    [HF_LAYOUT_SEARCH_STAGE] = {"/search", HF_LAYOUT_TABLE(stage)},
+    [HF_LAYOUT_REFINE_STAGE] = {"/refine", HF_LAYOUT_TABLE(stage)},
+    [HF_LAYOUT_FORM_COUPLING] = {"/coupling", HF_LAYOUT_TABLE(coupling)},
+    [HF_LAYOUT_SEARCH_COUPLING] = {"/search", HF_LAYOUT_TABLE(other_coupling)},
+    [HF_LAYOUT_REFINE_COUPLING] = {"/refine", HF_LAYOUT_TABLE(other_coupling)},
+    [HF_LAYOUT_TRUSS] = {"/truss", HF_LAYOUT_TABLE(truss)},
+    [HF_LAYOUT_TOLERANCE] = {"/tolerance", HF_LAYOUT_TABLE(tolerance)}};
 
-void hf_layout_put_summary(hf_hdf5 *io, hf_layout_part part, const hf_summary *summary)
+bool hf_layout_has(const hf_summary *s, hf_layout_part part)
 {
-    hf_hdf5_put_members(io, hf_layout_summary[part].member, hf_layout_summary[part].n, summary);
+    switch (part) {
+    case HF_LAYOUT_SEARCH:
+    case HF_LAYOUT_SEARCH_STAGE:
+        return s->stage[HF_STAGE_SEARCH].exists;
+    case HF_LAYOUT_REFINE:
+    case HF_LAYOUT_REFINE_STAGE:
+        return s->stage[HF_STAGE_REFINE].exists;
+    case HF_LAYOUT_FORM_COUPLING:
+    case HF_LAYOUT_SEARCH_COUPLING:
+    case HF_LAYOUT_REFINE_COUPLING:
+        return s->has_coupling && (part == HF_LAYOUT_FORM_COUPLING || s->stage[part - HF_LAYOUT_FORM_COUPLING].exists);
+    case HF_LAYOUT_TRUSS:
+        return s->has_truss;
+    case HF_LAYOUT_TOLERANCE:
+        return s->tolerance != NULL;
+    default:
+        return true;
+    }
 }
 
-void hf_layout_get_summary(hf_hdf5 *io, hf_layout_part part, hf_summary *summary)
+void *hf_layout_owner(const hf_summary *summary, hf_layout_part part)
 {
-    hf_hdf5_get_members(io, hf_layout_summary[part].member, hf_layout_summary[part].n, summary);
+    hf_summary *s = (hf_summary *)summary;
+    switch (part) {
+    case HF_LAYOUT_SEARCH:
+        return &s->search;
+    case HF_LAYOUT_REFINE:
+        return &s->refine;
+    case HF_LAYOUT_FORM_STAGE:
+    case HF_LAYOUT_SEARCH_STAGE:
+    case HF_LAYOUT_REFINE_STAGE:
+        return &s->stage[part - HF_LAYOUT_FORM_STAGE];
+    case HF_LAYOUT_FORM_COUPLING:
+    case HF_LAYOUT_SEARCH_COUPLING:
+    case HF_LAYOUT_REFINE_COUPLING:
+        return &s->stage[part - HF_LAYOUT_FORM_COUPLING].result.coupling;
+    case HF_LAYOUT_TRUSS:
+        return &s->truss;
+    case HF_LAYOUT_TOLERANCE:
+        return s->tolerance;
+    default:
+        return s;
+    }
+}
+
+void hf_layout_put_part(hf_hdf5 *io, hf_layout_part part, const hf_summary *summary)
+{
+    const hf_layout_members *p = &hf_layout_summary[part];
+    if (p->object) hf_hdf5_close(io, hf_hdf5_make_group(io, p->object));
+    hf_hdf5_put_members(io, p->object, p->member, p->n, hf_layout_owner(summary, part));
+}
+
+void hf_layout_get_part(hf_hdf5 *io, hf_layout_part part, hf_summary *summary)
+{
+    const hf_layout_members *p = &hf_layout_summary[part];
+    hf_hdf5_get_members(io, p->object, p->member, p->n, hf_layout_owner(summary, part));
 }
 
 hf_hdf5_array hf_layout_of_variables(const char *name, bool has_rows, int rank, const hsize_t *dims)
 {
-    static const struct {
-        const char *in_N, *by_row, *meaning;
-    } list[] = {{"design_N", "design", "boundary pretension T' of each gene"},
-                {"base_N", "base", "pretension T of each gene, after form-finding"},
-                {"lower_N", "lower", "least T' of each gene"},
-                {"upper_N", "upper", "largest T' of each gene"}};
+    static const char *const meaning[][2] = {{"design", "pretension of each design variable"},
+                                             {"initial", "pretension of each design variable in the initial design"},
+                                             {"lower", "lower bound of each design variable"},
+                                             {"upper", "upper bound of each design variable"}};
     size_t i = 0;
-    while (strcmp(list[i].in_N, name))
+    while (strcmp(meaning[i][0], name))
         i++;
-    hf_hdf5_array array = {.name = has_rows ? list[i].by_row : list[i].in_N,
+    hf_hdf5_array array = {.name = name,
                            .kind = HF_KIND_REAL,
                            .rank = rank,
                            .units = has_rows ? "" : "N",
                            .description =
-                               has_rows ? "of each gene, in the unit of what its variable varies" : list[i].meaning};
+                               has_rows ? "of each design variable, in the unit of what it varies" : meaning[i][1]};
     for (int d = 0; d < rank; d++)
         array.dims[d] = dims[d];
     return array;

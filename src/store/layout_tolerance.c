@@ -2,6 +2,7 @@
  * put_values they write, with get_values they read. */
 #include "store/layout.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define GROUP "/tolerance"
@@ -20,10 +21,10 @@ static const char *const plain_name[N_PLAIN][2] = {{"is_measured", "1: of the sa
                                                    {"mean_low", "95 % interval of the mean"},
                                                    {"mean_high", "the same"},
                                                    {"deviation", "standard deviation"},
-                                                   {"least", "smallest value"},
-                                                   {"largest", "largest value"}};
+                                                   {"min", "minimum"},
+                                                   {"max", "maximum"}};
 static const char *const quantile_name[N_QUANTILE][2] = {
-    {"quantile", "what 50, 95 and 99 % of all samples do not exceed (of least_tension_N: do not fall below); infinite: "
+    {"quantile", "what 50, 95 and 99 % of all samples do not exceed (of tension_min_N: do not fall below); infinite: "
                  "fewer have a "
                  "value"},
     {"quantile_low", "95 % interval of each, by order statistics; NaN: too few samples"},
@@ -34,8 +35,8 @@ static void gather(const hf_tolerance_summary *s, figures *f)
     memset(f, 0, sizeof *f);
     for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++) {
         const hf_tolerance_figures *of = &s->figure[k];
-        const double value[N_PLAIN] = {of->is_measured, of->mean,  of->mean_low, of->mean_high,
-                                       of->deviation,   of->least, of->largest};
+        const double value[N_PLAIN] = {of->is_measured, of->mean, of->mean_low, of->mean_high,
+                                       of->deviation,   of->min,  of->max};
         strncpy(f->measure[k], hf_tolerance_measure_word[k], WORD_SIZE - 1);
         for (int i = 0; i < N_PLAIN; i++)
             f->plain[i][k] = value[i];
@@ -69,8 +70,8 @@ static void scatter(int n, const figures *f, hf_tolerance_summary *s)
         if (k < 0) continue;
         bool is_old = measure == HF_TOLERANCE_GAIN_LOSS && !has_losses;
         hf_tolerance_figures *of = &s->figure[is_old ? loss_of_before(n, f) : measure];
-        double *const value[N_PLAIN] = {NULL,           &of->mean,  &of->mean_low, &of->mean_high,
-                                        &of->deviation, &of->least, &of->largest};
+        double *const value[N_PLAIN] = {NULL,           &of->mean, &of->mean_low, &of->mean_high,
+                                        &of->deviation, &of->min,  &of->max};
         of->is_measured = f->plain[0][k] == 1;
         for (int i = 1; i < N_PLAIN; i++)
             *value[i] = f->plain[i][k];
@@ -151,8 +152,8 @@ static void pass_shares(hf_hdf5 *io, hid_t group, pass *with, int n_kind, hf_tol
 
 void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary)
 {
-    if (!summary->has_tolerance) return;
-    hf_tolerance_summary s = summary->tolerance;
+    if (!summary->tolerance) return;
+    hf_tolerance_summary s = *summary->tolerance;
     char kind[HF_TOLERANCE_KINDS][WORD_SIZE] = {{0}};
     requirements r = {0};
     figures f;
@@ -171,7 +172,7 @@ void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary)
     hf_hdf5_write_array(io, group, &array, kind);
     pass_shares(io, group, put_values, HF_TOLERANCE_KINDS, &s);
     hf_hdf5_close(io, group);
-    hf_layout_put_summary(io, HF_LAYOUT_TOLERANCE, summary);
+    hf_layout_put_part(io, HF_LAYOUT_TOLERANCE, summary);
 }
 
 static void find_measures(hf_hdf5 *io, hid_t group, const requirements *r, hf_tolerance_summary *s)
@@ -189,10 +190,12 @@ static void find_measures(hf_hdf5 *io, hid_t group, const requirements *r, hf_to
 
 void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
 {
-    hf_tolerance_summary *s = &summary->tolerance;
-    summary->has_tolerance = io->status == HF_OK && hf_hdf5_has(io, io->file, GROUP) &&
-                             hf_hdf5_has(io, io->file, GROUP "/histogram"); /* the last data set that is written */
-    if (!summary->has_tolerance) return;
+    if (io->status != HF_OK || !hf_hdf5_has(io, io->file, GROUP) ||
+        !hf_hdf5_has(io, io->file, GROUP "/histogram")) /* the last data set that is written */
+        return;
+    hf_tolerance_summary *s = summary->tolerance = calloc(1, sizeof *s);
+    if (!s) hf_hdf5_no_memory(io);
+    if (!s) return;
     requirements r = {0};
     figures f;
     hid_t group = hf_hdf5_open_group(io, GROUP);
@@ -210,5 +213,5 @@ void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
     for (int k = 0; k < s->n_ranked; k++)
         s->ranked_id[k][HF_TOLERANCE_ID_SIZE - 1] = '\0';
     hf_hdf5_close(io, group);
-    hf_layout_get_summary(io, HF_LAYOUT_TOLERANCE, summary);
+    hf_layout_get_part(io, HF_LAYOUT_TOLERANCE, summary);
 }

@@ -19,8 +19,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define HEADER "#hifdm-points-1"
-#define SYNC_S 5.0 /* s; a power cut may lose the points that finished since the last sync */
+#define HEADER "#hifdm-points-2"
+#define HEADER_0_2 "#hifdm-points-1" /* of version 0.2, with the names of that version */
+#define SYNC_S 5.0                   /* s; a power cut may lose the points that finished since the last sync */
 /* Maximum bytes of one row: the reason, 25 for each number, the lists with their names. An objective takes 138, a
  * surface error 70. Each of 16 load cases has four figures and 68 surface errors of up to 135. */
 #define LINE_SIZE 200000
@@ -239,20 +240,32 @@ static void take_row(reading *r, char **field, char **number)
 /* Maximum number of fields that are read from a row; this version writes about 120. */
 enum { FIELD_MAX = 512 };
 
+/* Replaces the name of a field, "/group/name", by that in version 0.2. */
+static void name_then(char *field, size_t size)
+{
+    char group[HF_HDF5_NAME_SIZE], object[HF_HDF5_NAME_SIZE], name[HF_HDF5_NAME_SIZE] = "";
+    size_t n = (size_t)hf_path_prefix_length(field);
+    snprintf(group, sizeof group, "%.*s", (int)(n > 1 ? n - 1 : n), field);
+    if (hf_renamed(group, field + n, 0, object, name))
+        snprintf(field, size, "%s%s%s", object, object[1] ? "/" : "", name);
+}
+
 /* Sets from[i] to the field of the file's rows that holds our field i, or -1, because files of other versions have
  * other fields. Returns the number of fields, 0 if the line is no header. */
 static int read_header(char *line, int *from, int n_ours)
 {
     char *name[FIELD_MAX];
     int n = split(line, name, FIELD_MAX);
+    bool is_old = !strcmp(name[0], HEADER_0_2);
     for (int i = 0; i < n_ours; i++) {
-        char wanted[128];
+        char wanted[2 * HF_HDF5_NAME_SIZE];
         hf_ledger_field_name(i, wanted, sizeof wanted);
+        if (is_old) name_then(wanted, sizeof wanted);
         from[i] = -1;
         for (int k = N_FIXED; k < n; k++)
             if (!strcmp(name[k], wanted)) from[i] = k;
     }
-    return strcmp(name[0], HEADER) ? 0 : n;
+    return is_old || !strcmp(name[0], HEADER) ? n : 0;
 }
 
 /* Takes the rows of one file. Returns false if memory runs out. */

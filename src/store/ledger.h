@@ -20,25 +20,32 @@
 
 /* ---- The numbers of a point ---- */
 
-/* hf_ledger_n_column returns the number of columns. hf_ledger_column returns column i, a member of hf_summary but never
- * one of HF_KIND_CHARS, or NULL after the last one. */
+/* A number of the summary: member of the owner of its part (hf_layout_owner), and the object that has it in a file. */
+typedef struct {
+    const char *object;
+    hf_layout_part part;
+    const hf_hdf5_member *member; /* never one of HF_KIND_CHARS */
+} hf_ledger_number;
+
+/* hf_ledger_n_column returns the number of columns. hf_ledger_column sets *number to that of column i, and returns
+ * false after the last one. */
 int hf_ledger_n_column(void);
-const hf_hdf5_member *hf_ledger_column(int i);
+bool hf_ledger_column(int i, hf_ledger_number *number);
 
 /* Returns true if the column depends on the machine and its load. These are the times and the number of threads. */
-bool hf_ledger_is_circumstance(const hf_hdf5_member *column);
+bool hf_ledger_is_circumstance(const hf_ledger_number *number);
 
 /* ---- The fields of a row: the numbers, then lists as texts (ledger_fields.c) ---- */
 
 /* The lists of a row, each a text "name=value name=value": the objectives of each stage, the surface errors of each
  * stage, and the figures of the load cases. The surface errors are those of the facets if there are any, else those of
- * the nodes. The names of the last list are CASE.FIGURE here and CASE/FIGURE in a merge. */
-enum { HF_LEDGER_LIST_CASES = 2 * HF_LAYOUT_N_OBJECTIVES_STAGE, HF_LEDGER_N_LIST };
-#define HF_LEDGER_CASES "/cases"
+ * the nodes. The names of the last list are NAME.FIGURE here and NAME/FIGURE in a merge. */
+enum { HF_LEDGER_LIST_CASES = 2 * HF_N_STAGE, HF_LEDGER_N_LIST };
+#define HF_LEDGER_LOAD_CASES "/load_cases"
 typedef struct {
-    const char *field;          /* name of the list in a header, after group and prefix */
-    const char *group, *prefix; /* in a merge: group of its values below /points, and prefix of their data sets */
-    const char *begin;          /* prefix of the names of its values */
+    const char *field; /* name of the list in a header, after its group */
+    const char *group; /* in a merge: group of its values below /points */
+    const char *begin; /* prefix of the names of its values */
 } hf_ledger_list;
 extern const hf_ledger_list hf_ledger_list_of[HF_LEDGER_N_LIST];
 
@@ -52,7 +59,7 @@ int hf_ledger_print_field(int i, const hf_summary *summary, char *text, size_t s
 /* Takes the next value from the text of a list and moves *text behind it. Returns false at the end of the list, or if
  * the list is damaged. */
 bool hf_ledger_next_value(int list, const char **text, char name[HF_OBJECTIVE_NAME_SIZE], double *value);
-const char *hf_ledger_objective(const char *name);      /* returns "tension_edge" for goal_1_tension_edge */
+const char *hf_ledger_objective(const char *name);      /* returns "tension_edge" for objective_1_tension_edge */
 const char *hf_ledger_objective_unit(const char *name); /* returns the unit of such a name, here "N" */
 const char *hf_ledger_unit(const char *name);           /* returns the unit of any name in a list */
 

@@ -11,13 +11,17 @@
 
 /* ---- numbers ---- */
 
-const hf_hdf5_member *hf_ledger_column(int i)
+bool hf_ledger_column(int i, hf_ledger_number *number)
 {
-    for (int part = 0; part < HF_LAYOUT_N_PART; part++)
-        for (int k = 0; k < hf_layout_summary[part].n; k++)
-            if (hf_layout_summary[part].member[k].kind != HF_KIND_CHARS && i-- == 0)
-                return &hf_layout_summary[part].member[k];
-    return NULL;
+    for (hf_layout_part part = 0; part < HF_LAYOUT_N_PART; part++) {
+        const hf_layout_members *p = &hf_layout_summary[part];
+        for (int k = 0; k < p->n; k++)
+            if (p->member[k].kind != HF_KIND_CHARS && i-- == 0) {
+                *number = (hf_ledger_number){p->object ? p->object : p->member[k].object, part, &p->member[k]};
+                return true;
+            }
+    }
+    return false;
 }
 
 int hf_ledger_n_column(void)
@@ -29,28 +33,18 @@ int hf_ledger_n_column(void)
     return n;
 }
 
-bool hf_ledger_is_circumstance(const hf_hdf5_member *column)
+bool hf_ledger_is_circumstance(const hf_ledger_number *number)
 {
-    size_t n = strlen(column->name);
-    return !strcmp(column->name, "threads") || (n > 2 && !strcmp(column->name + n - 2, "_s"));
+    const char *name = number->member->name;
+    size_t n = strlen(name);
+    return !strcmp(name, "threads") || (n > 2 && !strcmp(name + n - 2, "_s"));
 }
 
-/* Returns true if the run reached the stage to which this number belongs. */
-static bool applies(const hf_hdf5_member *column, const hf_summary *s)
+static int print_number(const hf_ledger_number *number, const hf_summary *s, char *text, size_t size)
 {
-    if (s->form.status == HF_NOT_EVALUATED) return false;
-    if (!strcmp(column->object, "/truss")) return s->has_truss;
-    if ((!strcmp(column->object, "/coupling") || strstr(column->name, "coupling_")) && !s->has_coupling) return false;
-    if (!strcmp(column->object, "/ga")) return s->has_optimize;
-    if (!strcmp(column->object, "/polish")) return s->has_polish;
-    if (!strcmp(column->object, "/tolerance")) return s->has_tolerance;
-    return true;
-}
-
-static int print_number(const hf_hdf5_member *column, const hf_summary *s, char *text, size_t size)
-{
-    const void *from = (const char *)s + column->offset;
-    switch (column->kind->class) {
+    const char *owner = hf_layout_owner(s, number->part);
+    const void *from = owner + number->member->offset;
+    switch (number->member->kind->class) {
     case HF_HDF5_REAL:
         return snprintf(text, size, "%.17g", *(const double *)from);
     case HF_HDF5_LONG:
@@ -58,18 +52,19 @@ static int print_number(const hf_hdf5_member *column, const hf_summary *s, char 
     case HF_HDF5_UINT64:
         return snprintf(text, size, "%" PRIu64, *(const uint64_t *)from);
     default:
-        return snprintf(text, size, "%d", hf_hdf5_int_value(column, s));
+        return snprintf(text, size, "%d", hf_hdf5_int_value(number->member, owner));
     }
 }
 
 /* ---- lists ---- */
 
 const hf_ledger_list hf_ledger_list_of[HF_LEDGER_N_LIST] = {
-    {"goals", "/form", "", "goal_"},     {"goals", "/ga", "best_", "goal_"},      {"goals", "/polish", "", "goal_"},
-    {"errors", "/surface/form", "", ""}, {"errors", "/surface/optimize", "", ""}, {"errors", "/surface/polish", "", ""},
-    {"figures", HF_LEDGER_CASES, "", ""}};
+    {"objectives", "/form", "objective_"},   {"objectives", "/search", "objective_"},
+    {"objectives", "/refine", "objective_"}, {"errors", "/surface/form", ""},
+    {"errors", "/surface/search", ""},       {"errors", "/surface/refine", ""},
+    {"figures", HF_LEDGER_LOAD_CASES, ""}};
 
-/* Writes the objectives of a stage: "goal_0_psi=0.001 goal_1_tension_edge=3". Returns the length. */
+/* Writes the objectives of a stage: "objective_0_psi=0.001 objective_1_tension_edge=3". Returns the length. */
 static int print_objectives(const hf_summary *s, int stage, char *text, size_t size)
 {
     const double *objective = hf_layout_objectives(s, stage);
@@ -80,7 +75,7 @@ static int print_objectives(const hf_summary *s, int stage, char *text, size_t s
     return (int)used;
 }
 
-/* Writes the surface errors of a shape: "facet_half_path_rms_m=0.001 facet_good_to_Hz=3e9
+/* Writes the surface errors of a shape: "facet_half_path_rms_m=0.001 facet_gain_loss_1dB_Hz=3e9
  * facet_gain_loss_at_2.5_GHz_dB=0.1 facet_fit_half_path_rms_m=...". before: prefix of each name, of a load case its
  * name and a dot. Returns the length. */
 static int print_errors(const hf_double_list *at, const hf_surface_measures *m, const char *before, char *text,
@@ -94,7 +89,7 @@ static int print_errors(const hf_double_list *at, const hf_surface_measures *m, 
         const double *loss_dB = is_fit ? e.fit_gain_loss_dB : e.gain_loss_dB;
         char kind[HF_SET_NAME_SIZE + 16];
         snprintf(kind, sizeof kind, "%s%s%s", before, m->n_facet > 0 ? "facet_" : "", is_fit ? "fit_" : "");
-        used += (size_t)snprintf(text + used, size - used, "%s%shalf_path_rms_m=%.17g %sgood_to_Hz=%.17g",
+        used += (size_t)snprintf(text + used, size - used, "%s%shalf_path_rms_m=%.17g %sgain_loss_1dB_Hz=%.17g",
                                  is_fit ? " " : "", kind, rms_m, kind,
                                  hf_surface_frequency_of_loss_Hz(rms_m, HF_SURFACE_GOOD_TO_DB));
         for (int k = 0; k < at->n && used < size; k++)
@@ -117,13 +112,12 @@ static int print_load_cases(const hf_summary *s, char *text, size_t size)
         char before[HF_SET_NAME_SIZE + 1];
         snprintf(before, sizeof before, "%s.", load_case->name);
         used += (size_t)snprintf(text + used, size - used,
-                                 "%s%spsi_m=%.17g %sn_slack=%g %sn_loose=%g %slargest_tension_N=%.17g", k ? " " : "",
+                                 "%s%spsi_m=%.17g %sn_slack=%g %sn_loose=%g %stension_max_N=%.17g", k ? " " : "",
                                  before, has ? r->psi_m : none, before, has ? r->n_slack : none, before,
-                                 has ? r->n_loose : none, before, load_case->largest_tension_N);
-        if (!load_case->measures.is_measured || used + 1 >= size) continue;
+                                 has ? r->n_loose : none, before, load_case->tension_max_N);
+        if (!load_case->surface.is_measured || used + 1 >= size) continue;
         text[used++] = ' ';
-        used +=
-            (size_t)print_errors(&s->surface.frequencies_Hz, &load_case->measures, before, text + used, size - used);
+        used += (size_t)print_errors(&s->surface.frequencies_Hz, &load_case->surface, before, text + used, size - used);
     }
     return (int)used;
 }
@@ -137,21 +131,21 @@ int hf_ledger_n_field(void)
 
 int hf_ledger_field_name(int i, char *text, size_t size)
 {
-    const hf_hdf5_member *column = hf_ledger_column(i);
-    if (column) return snprintf(text, size, "%s/%s", column->object, column->name);
+    hf_ledger_number number;
+    if (hf_ledger_column(i, &number)) return snprintf(text, size, "%s/%s", number.object, number.member->name);
     const hf_ledger_list *list = &hf_ledger_list_of[i - hf_ledger_n_column()];
-    return snprintf(text, size, "%s/%s%s", list->group, list->prefix, list->field);
+    return snprintf(text, size, "%s/%s", list->group, list->field);
 }
 
 int hf_ledger_print_field(int i, const hf_summary *s, char *text, size_t size)
 {
-    const hf_hdf5_member *column = hf_ledger_column(i);
-    if (column) return applies(column, s) ? print_number(column, s, text, size) : 0;
-    int list = i - hf_ledger_n_column(), stage = list % HF_LAYOUT_N_OBJECTIVES_STAGE;
-    if (s->form.status == HF_NOT_EVALUATED) return 0;
+    hf_ledger_number number;
+    int list = i - hf_ledger_n_column(), stage = list % HF_N_STAGE;
+    if (s->stage[HF_STAGE_FORM].result.status == HF_NOT_EVALUATED) return 0;
+    if (hf_ledger_column(i, &number)) return hf_layout_has(s, number.part) ? print_number(&number, s, text, size) : 0;
     if (list == HF_LEDGER_LIST_CASES) return print_load_cases(s, text, size);
     if (list == stage) return print_objectives(s, stage, text, size);
-    return print_errors(&s->surface.frequencies_Hz, &s->measures[stage], "", text, size);
+    return print_errors(&s->surface.frequencies_Hz, &s->stage[stage].surface, "", text, size);
 }
 
 /* ---- reading lists ---- */
@@ -160,12 +154,13 @@ bool hf_ledger_next_value(int list, const char **text, char name[HF_OBJECTIVE_NA
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.+";
     const char *p = *text + (**text == ' '), *begin = hf_ledger_list_of[list].begin;
+    char then[HF_OBJECTIVE_NAME_SIZE], now[2 * HF_OBJECTIVE_NAME_SIZE];
     size_t n = strspn(p, letters);
     char *end;
-    if (n == 0 || n >= HF_OBJECTIVE_NAME_SIZE || p[n] != '=' || *p == '.' || strncmp(p, begin, strlen(begin)) != 0)
-        return false;
-    memcpy(name, p, n);
-    name[n] = '\0';
+    if (n == 0 || n >= HF_OBJECTIVE_NAME_SIZE || p[n] != '=' || *p == '.') return false;
+    snprintf(then, sizeof then, "%.*s", (int)n, p);
+    snprintf(name, HF_OBJECTIVE_NAME_SIZE, "%s", hf_renamed_figure(then, now, sizeof now));
+    if (strncmp(name, begin, strlen(begin)) != 0) return false;
     *value = strtod(p + n + 1, &end);
     *text = end;
     return end > p + n + 1;
@@ -176,7 +171,7 @@ const char *hf_ledger_unit(const char *name)
     static const char *const unit[][2] = {{"_N_per_m", "N/m"}, {"_kg", "kg"}, {"_N", "N"},
                                           {"_m", "m"},         {"_Hz", "Hz"}, {"_dB", "dB"}};
     size_t n = strlen(name);
-    if (!strncmp(name, "goal_", 5)) return hf_ledger_objective_unit(name);
+    if (!strncmp(name, "objective_", 10)) return hf_ledger_objective_unit(name);
     for (int i = 0; i < HF_HDF5_COUNT(unit); i++)
         if (n > strlen(unit[i][0]) && !strcmp(name + n - strlen(unit[i][0]), unit[i][0])) return unit[i][1];
     return "";

@@ -133,10 +133,11 @@ static void set_number(void *room, int i, const hf_hdf5_kind *kind, const char *
 /* Writes one number of hf_summary for all points. A number that no point has is left out. */
 static void write_output(merger *m, hid_t group, int column)
 {
-    const hf_hdf5_member *c = hf_ledger_column(column);
+    hf_ledger_number number;
     char name[128], stage[96];
     int n_given = 0;
-    if (hf_ledger_is_circumstance(c)) return;
+    if (!hf_ledger_column(column, &number) || hf_ledger_is_circumstance(&number)) return;
+    const hf_hdf5_member *c = number.member;
     for (int i = 0; i < m->points->n_point; i++) {
         const hf_point *p = &m->points->point[i];
         const char *text = p->field ? p->field[column] : "";
@@ -144,9 +145,9 @@ static void write_output(merger *m, hid_t group, int column)
         set_number(m->room, i, c->kind, text);
     }
     if (!n_given) return;
-    snprintf(name, sizeof name, "%s%s%s", c->object + 1, c->object[1] ? "/" : "", c->name);
-    snprintf(stage, sizeof stage, "/points%s", c->object);
-    if (c->object[1]) hf_hdf5_close(&m->io, hf_hdf5_make_group(&m->io, stage));
+    snprintf(name, sizeof name, "%s%s%s", number.object + 1, number.object[1] ? "/" : "", c->name);
+    snprintf(stage, sizeof stage, "/points%s", number.object);
+    if (number.object[1]) hf_hdf5_close(&m->io, hf_hdf5_make_group(&m->io, stage));
     write_column(m, group, name, c->kind, 1, hf_ledger_unit(c->name), "as in the runs");
 }
 
@@ -167,18 +168,18 @@ static void write_value(merger *m, hid_t group, int list, const char *value)
 {
     char name[HF_OBJECTIVE_NAME_SIZE + 8], path[HF_OBJECTIVE_NAME_SIZE + 16];
     const char *key = value, *dot = list == HF_LEDGER_LIST_CASES ? strchr(value, '.') : NULL;
-    snprintf(name, sizeof name, "%s%s", hf_ledger_list_of[list].prefix, value);
+    snprintf(name, sizeof name, "%s", value);
     if (dot) {
         key = dot + 1;
         name[dot - value] = '/';
-        snprintf(path, sizeof path, "/points" HF_LEDGER_CASES "/%.*s", (int)(dot - value), value);
+        snprintf(path, sizeof path, "/points" HF_LEDGER_LOAD_CASES "/%.*s", (int)(dot - value), value);
         hf_hdf5_close(&m->io, hf_hdf5_make_group(&m->io, path));
     }
     for (int i = 0; i < m->points->n_point; i++)
         ((double *)m->room)[i] = value_in(&m->points->point[i], list, value);
     write_column(m, group, name, HF_KIND_REAL, 1, hf_ledger_unit(key),
-                 dot                              ? "of the state of the net as built"
-                 : *hf_ledger_list_of[list].begin ? "value of the goal"
+                 dot                              ? "of the load case of the as-built net"
+                 : *hf_ledger_list_of[list].begin ? "value of the objective"
                                                   : "of the surface");
 }
 
@@ -334,6 +335,7 @@ static void write_all(merger *m, const char *folder)
     hf_hdf5_close(&m->io, group);
     write_points(m);
     write_links(m, folder);
+    hf_renamed_link(&m->io, false);
     /* HDF5 1.10 crashes in a close that cannot write. The file is flushed first, and stays open if that fails. */
     if (H5Fflush(m->io.file, H5F_SCOPE_GLOBAL) < 0)
         hf_hdf5_fail(&m->io, "write", -1, NULL);

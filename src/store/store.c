@@ -50,8 +50,7 @@
  * interrupting pass from 1e-9 to 1e-4; with 1e-2 one fails. */
 #define SAME_SHAPE 1e-5
 
-const char *const hf_stage_word[4] = {"form", "optimize", "polish", "none"};
-const char *const hf_stage_group[4] = {"/form", "/ga/best", "/polish", "/"};
+const char *const hf_stage_group[HF_N_STAGE + 1] = {"/form", "/search", "/refine", "/"};
 
 const char *hf_store_version(void)
 {
@@ -142,7 +141,7 @@ static void write_scene(hf_store *s, const hf_scene *scene)
 {
     const hf_hdf5_array length = {
         "cable/length_m",          HF_KIND_REAL, 1,
-        {(hsize_t)scene->n_cable}, "m",          "theoretical: distance of the two nodes' positions"};
+        {(hsize_t)scene->n_cable}, "m",          "length between the target positions of the two nodes"};
     hid_t group = hf_hdf5_make_group(&s->f.io, "/scene");
     hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/scene/node"));
     hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/scene/cable"));
@@ -254,11 +253,11 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
 #member, HF_KIND_REAL, 0, 1, units, description, offsetof(hf_history, member)                                  \
     }
     static const hf_layout_column history_column[] = {
-        HISTORY(psi_m, "m", "RMS distance of the inner nodes to their theoretical positions, after each linear solve"),
-        HISTORY(residual_N, "N", "largest nodal force out of balance"),
-        HISTORY(inner_tension_ratio, "", "largest over smallest tension of the inner cables"),
-        HISTORY(boundary_tension_ratio, "", "largest over smallest tension of the boundary cables"),
-        HISTORY(length_error, "", "largest |l/L*-1| over taut cables of law length")};
+        HISTORY(psi_m, "m", "RMS distance of the inner nodes to their target positions, after each linear solve"),
+        HISTORY(residual_N, "N", "maximum nodal force out of balance"),
+        HISTORY(inner_tension_ratio, "", "maximum over minimum tension of the inner cables"),
+        HISTORY(boundary_tension_ratio, "", "maximum over minimum tension of the boundary cables"),
+        HISTORY(length_error, "", "maximum |l/L*-1| over taut cables of law length")};
 #undef HISTORY
     static const hf_layout_columns columns = {HF_LAYOUT_COLUMNS(history_column)};
     hf_hdf5_lock();
@@ -282,9 +281,19 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
 
 static void write_design(hf_store *s, hid_t group, const hf_model *m, const double *design)
 {
-    hf_hdf5_array array =
-        hf_layout_of_variables("design_N", m->variable, 1, (const hsize_t[1]){(hsize_t)m->n_variable});
+    hf_hdf5_array array = hf_layout_of_variables("design", m->variable, 1, (const hsize_t[1]){(hsize_t)m->n_variable});
     hf_hdf5_write_array(&s->f.io, group, &array, design);
+}
+
+/* Removes the shape and the design in the group of a stage. */
+static void renew_shape(hf_store *s, hid_t group)
+{
+    hf_hdf5 *io = &s->f.io;
+    for (int i = 0; i <= hf_layout_shape.n; i++) {
+        const char *name = i < hf_layout_shape.n ? hf_layout_shape.column[i].name : "design";
+        if (hf_hdf5_has(io, group, name) && H5Ldelete(group, name, H5P_DEFAULT) < 0)
+            hf_hdf5_fail(io, "replace", group, name);
+    }
 }
 
 hf_status hf_store_shape(hf_store *s, hf_stage stage, const hf_model *m, const hf_workspace *w, const double *design,
@@ -294,11 +303,8 @@ hf_status hf_store_shape(hf_store *s, hf_stage stage, const hf_model *m, const h
     hf_hdf5_lock();
     s->f.io.messages = messages;
     hf_store_file_open(&s->f);
-    if (stage == HF_STAGE_SEARCH) hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/ga"));
-    if (hf_hdf5_has(&s->f.io, s->f.io.file, hf_stage_group[stage]) && /* an interrupted session has left it */
-        H5Ldelete(s->f.io.file, hf_stage_group[stage], H5P_DEFAULT) < 0)
-        hf_hdf5_fail(&s->f.io, "replace", s->f.io.file, hf_stage_group[stage]);
     hid_t group = hf_hdf5_make_group(&s->f.io, hf_stage_group[stage]);
+    renew_shape(s, group); /* an interrupted session may have left one */
     write_shape(s, group, m, w);
     write_design(s, group, m, design);
     hf_hdf5_close(&s->f.io, group);
@@ -313,8 +319,8 @@ hf_status hf_store_built(hf_store *s, const char *name, const hf_model *m, const
     hf_hdf5_lock();
     s->f.io.messages = messages;
     hf_store_file_open(&s->f);
-    hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/cases"));
-    snprintf(path, sizeof path, "/cases/%s", name);
+    hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/load_cases"));
+    snprintf(path, sizeof path, "/load_cases/%s", name);
     hf_layout_renew(&s->f.io, path);
     hid_t group = hf_hdf5_make_group(&s->f.io, path);
     write_shape(s, group, m, w);
@@ -322,10 +328,10 @@ hf_status hf_store_built(hf_store *s, const char *name, const hf_model *m, const
     if (truss) {
         static const char *const part[] = {"/truss", "/truss/node", "/truss/member"};
         for (int i = 0; i < HF_HDF5_COUNT(part); i++) {
-            snprintf(path, sizeof path, "/cases/%s%s", name, part[i]);
+            snprintf(path, sizeof path, "/load_cases/%s%s", name, part[i]);
             hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, path));
         }
-        snprintf(path, sizeof path, "/cases/%s/truss", name);
+        snprintf(path, sizeof path, "/load_cases/%s/truss", name);
         group = hf_hdf5_open_group(&s->f.io, path);
         hf_layout_write_columns(&s->f.io, group, &hf_layout_truss_state, carrier->truss.n_node, carrier->truss.n_member,
                                 truss);
@@ -373,9 +379,10 @@ hf_status hf_store_pattern(hf_store *s, hf_stage stage, const hf_pattern_table *
 static void write_rows(hf_hdf5 *io, hid_t group, const hf_model *m)
 {
     const hsize_t k[1] = {(hsize_t)m->n_variable};
-    const hf_hdf5_array row = {"gene_variable", HF_KIND_INT, 1, {k[0]}, "", "row of optimize.variables"};
-    const hf_hdf5_array node = {"gene_node", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/node; -1: varies a cable"};
-    const hf_hdf5_array along = {"gene_direction", HF_KIND_REAL, 2, {k[0], 3}, "", "in which this support moves"};
+    const hf_hdf5_array row = {"row", HF_KIND_INT, 1, {k[0]}, "", "row of optimize.variables"};
+    const hf_hdf5_array node = {"node", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/node; -1: varies a cable"};
+    const hf_hdf5_array along = {"direction", HF_KIND_REAL, 2,
+                                 {k[0], 3},   "",           "direction in which this support is displaced"};
     int *of = malloc(2 * k[0] * sizeof *of), *support = of + k[0];
     double *direction = malloc(3 * k[0] * sizeof *direction);
     if (!of || !direction) hf_hdf5_no_memory(io);
@@ -395,18 +402,19 @@ hf_status hf_store_variables(hf_store *s, const hf_model *m, const hf_population
 {
     if (!s) return HF_OK;
     const hsize_t k[3] = {(hsize_t)population->n_variable};
-    const hf_hdf5_array cable = {"gene_cable", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/cable of each gene"};
-    const hf_hdf5_array group_of = {"gene_group", HF_KIND_INT, 1, {k[0]}, "", "genes that were varied together"};
-    const hf_hdf5_array leader = {"gene_leader", HF_KIND_INT, 1, {k[0]}, "", "gene whose step each takes, by symmetry"};
-    const hf_hdf5_array base = hf_layout_of_variables("base_N", m->variable, 1, k);
-    const hf_hdf5_array lower = hf_layout_of_variables("lower_N", m->variable, 1, k);
-    const hf_hdf5_array upper = hf_layout_of_variables("upper_N", m->variable, 1, k);
+    const hf_hdf5_array cable = {"cable", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/cable"};
+    const hf_hdf5_array group_of = {"group", HF_KIND_INT, 1, {k[0]}, "", "number of the group that is varied together"};
+    const hf_hdf5_array leader = {"leader", HF_KIND_INT, 1,
+                                  {k[0]},   "",          "design variable whose step each takes, by symmetry"};
+    const hf_hdf5_array base = hf_layout_of_variables("initial", m->variable, 1, k);
+    const hf_hdf5_array lower = hf_layout_of_variables("lower", m->variable, 1, k);
+    const hf_hdf5_array upper = hf_layout_of_variables("upper", m->variable, 1, k);
     hf_hdf5 *io = &s->f.io;
     if (s->rows.block) return s->f.io.status; /* another session has written them */
     hf_hdf5_lock();
     io->messages = messages;
     hf_store_file_open(&s->f);
-    hid_t group = hf_hdf5_make_group(io, "/ga");
+    hid_t group = hf_hdf5_make_group(io, "/variable");
     hf_hdf5_write_array(io, group, &cable, m->variable_cable);
     hf_hdf5_write_array(io, group, &group_of, m->variable_group);
     if (m->variable_leader && m->n_leader < m->n_variable) hf_hdf5_write_array(io, group, &leader, m->variable_leader);
@@ -414,6 +422,9 @@ hf_status hf_store_variables(hf_store *s, const hf_model *m, const hf_population
     hf_hdf5_write_array(io, group, &base, population->initial);
     hf_hdf5_write_array(io, group, &lower, population->lower);
     hf_hdf5_write_array(io, group, &upper, population->upper);
+    hf_hdf5_close(io, group);
+    hf_hdf5_close(io, hf_hdf5_make_group(io, "/search"));
+    group = hf_hdf5_make_group(io, HF_GENERATIONS_GROUP);
     hf_hdf5_put(io, group, ".", "n_individual", HF_KIND_INT, 0, &population->n_individual);
     hf_hdf5_put(io, group, ".", "n_variable", HF_KIND_INT, 0, &population->n_variable);
     hf_hdf5_put(io, group, ".", "generations_limit", HF_KIND_INT, 0, &population->generation_limit);
@@ -458,41 +469,34 @@ hf_status hf_store_generation(hf_store *s, const hf_model *m, const hf_populatio
 
 /* ---- summary ---- */
 
+/* Writes the algorithm of each stage beside its figures. */
+static void put_algorithms(hf_hdf5 *io, const hf_summary *summary)
+{
+    for (int i = HF_STAGE_SEARCH; i < HF_N_STAGE; i++)
+        if (summary->stage[i].exists)
+            hf_hdf5_put_chars(io, io->file, hf_stage_group[i], "algorithm", hf_summary_algorithm(summary, (hf_stage)i));
+}
+
 static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
 {
-    hf_summary *state = malloc(sizeof *state);
-    if (!state) {
-        hf_hdf5_no_memory(&s->f.io);
-        return;
+    hf_hdf5 *io = &s->f.io;
+    signed char is_finished = finished;
+    for (hf_layout_part part = HF_LAYOUT_N_PART; part-- > 0;) {
+        /* The search is written before its first generation, too, as far as it is known. */
+        bool has_begun = s->rows.block && (part == HF_LAYOUT_SEARCH || part == HF_LAYOUT_SEARCH_STAGE);
+        if (part != HF_LAYOUT_TOLERANCE && (has_begun || hf_layout_has(summary, part)))
+            hf_layout_put_part(io, part, summary);
     }
-    *state = *summary;
-    /* These groups exist already, unless the run had no shape or no generation to store. */
-    hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/form"));
-    state->finished = finished;
-    hf_layout_put_summary(&s->f.io, HF_LAYOUT_FORM, state);
-    free(state);
-    /* The search is written before its first generation, too, as far as it is known. */
-    if (summary->has_optimize || s->rows.block) {
-        hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/ga"));
-        hf_layout_put_summary(&s->f.io, HF_LAYOUT_GA, summary);
-    }
-    if (summary->has_polish) {
-        hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/polish"));
-        hf_layout_put_summary(&s->f.io, HF_LAYOUT_REFINE, summary);
-    }
-    if (summary->has_truss) {
-        hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/truss"));
-        hf_layout_put_summary(&s->f.io, HF_LAYOUT_TRUSS, summary);
-    }
-    if (summary->has_coupling) hf_layout_put_coupling(&s->f.io, summary);
-    if (finished) hf_layout_put_surface(&s->f.io, summary);
-    if (finished) hf_layout_put_sets(&s->f.io, summary);
-    if (finished) hf_layout_put_held(&s->f.io, summary);
-    if (finished || summary->has_front) hf_layout_put_objectives(&s->f.io, summary); /* they name the objectives */
-    if (finished) hf_layout_put_cases(&s->f.io, summary);
-    if (finished) hf_layout_put_tolerance(&s->f.io, summary);
-    if (finished) hf_vtkhdf_put_result(&s->f.io, summary);
-    hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "status", finished ? hf_status_word(summary->status) : "unfinished");
+    hf_hdf5_put(io, io->file, "/", "finished", HF_KIND_FLAG, 0, &is_finished);
+    put_algorithms(io, summary);
+    if (finished)
+        hf_layout_put_stages(io, summary);
+    else if (summary->front)
+        hf_layout_put_objectives(io, summary); /* they name the objectives of the front */
+    if (finished) hf_layout_put_tolerance(io, summary);
+    if (finished) hf_vtkhdf_put_result(io, summary);
+    if (finished) hf_renamed_link(io, s->rows.has_rows || hf_hdf5_has(io, io->file, "/variable/row"));
+    hf_hdf5_put_chars(io, io->file, "/", "status", finished ? hf_status_word(summary->status) : "unfinished");
     hf_store_put_time(s, finished ? "finished_utc" : "published_utc");
 }
 

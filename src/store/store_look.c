@@ -167,12 +167,13 @@ static void ignore_difference(void *context, const char *name, const char *how)
 static void read_like_a_run(const char *path)
 {
     hf_messages unwanted = {0};
-    hf_summary *summary = malloc(sizeof *summary);
+    hf_summary *summary = calloc(1, sizeof *summary);
     hf_comparison comparison = {0};
     hf_hdf5_limit();
     hf_status status = summary ? hf_store_read_summary(path, summary, &unwanted) : HF_NO_MEMORY;
     if (status == HF_OK && !summary->finished)
         hf_compare_files(path, path, &comparison, ignore_difference, NULL, &unwanted);
+    if (summary) hf_summary_free(summary);
     free(summary);
 }
 

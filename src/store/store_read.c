@@ -47,7 +47,8 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
     if (!is_ours(&io, &io.is_damaged))
         io.status = hf_error(messages, HF_IO, "%s: is an HDF5 file, but no result of hifdm or a damaged one", path);
     hf_hdf5_get(&io, io.file, "/", "format_version", HF_KIND_INT, &version, sizeof version);
-    if (io.status == HF_OK && version != HF_FORMAT_VERSION) {
+    hf_renamed_note(&io);
+    if (io.status == HF_OK && version != HF_FORMAT_VERSION && version != HF_FORMAT_0_2) {
         io.is_damaged = true;
         io.status = hf_error(messages, HF_IO, "%s: is of format version %d, this program reads version %d", path,
                              version, HF_FORMAT_VERSION);
@@ -63,7 +64,8 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
 static void get_status(hf_hdf5 *io, hf_summary *s)
 {
     char word[32] = "";
-    s->status = s->form.status == HF_OK && s->has_optimize ? s->best.status : s->form.status;
+    const hf_stage_summary *form = &s->stage[HF_STAGE_FORM], *search = &s->stage[HF_STAGE_SEARCH];
+    s->status = form->result.status == HF_OK && search->exists ? search->result.status : form->result.status;
     if (hf_hdf5_has_chars(io, io->file, "/", "status")) {
         hf_hdf5_get(io, io->file, "/", "status", HF_KIND_CHARS, word, sizeof word);
         s->status = hf_status_of_word(word);
@@ -86,28 +88,21 @@ static hf_status read_summary(const char *path, hf_summary *summary, bool *is_da
     *summary = (hf_summary){0};
     if (io.status == HF_OK && hf_hdf5_has(&io, io.file, "points"))
         io.status = hf_error(messages, HF_IO, "%s: is the merged table of a sweep; `hifdm report` reads it", path);
-    hf_layout_get_summary(&io, HF_LAYOUT_FORM, summary);
+    hf_layout_get_part(&io, HF_LAYOUT_RUN, summary);
     summary->has_coupling = io.status == HF_OK && hf_hdf5_has(&io, io.file, "coupling");
-    if (summary->has_coupling) hf_layout_get_coupling(&io, summary);
-    if (summary->has_polish) hf_layout_get_summary(&io, HF_LAYOUT_REFINE, summary);
-    if (summary->has_optimize) hf_layout_get_summary(&io, HF_LAYOUT_GA, summary);
+    summary->has_truss = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/truss");
+    for (hf_layout_part part = HF_LAYOUT_FORM; part < HF_LAYOUT_TOLERANCE; part++)
+        if (hf_layout_has(summary, part)) hf_layout_get_part(&io, part, summary);
     get_status(&io, summary);
     hf_layout_get_taken(&io, &summary->taken);
-    hf_layout_get_surface(&io, summary);
-    hf_layout_get_pattern(&io, summary);
-    hf_layout_get_sets(&io, summary);
-    hf_layout_get_held(&io, summary);
-    hf_layout_get_objectives(&io, summary);
+    hf_layout_get_stages(&io, summary);
     hf_layout_get_front(&io, summary);
-    hf_layout_get_cases(&io, summary);
     hf_layout_get_tolerance(&io, summary);
-    if (io.status == HF_OK && ((int)summary->solver < 0 || summary->solver > HF_SOLVER_FIXED_POINT))
-        hf_hdf5_damaged(&io, io.file, "/ga", "names a solver that there is not");
-    summary->has_truss = hf_hdf5_has(&io, io.file, "/truss");
-    if (summary->has_truss) hf_layout_get_summary(&io, HF_LAYOUT_TRUSS, summary);
+    if (io.status == HF_OK && ((int)summary->search.solver < 0 || summary->search.solver > HF_SOLVER_FIXED_POINT))
+        hf_hdf5_damaged(&io, io.file, "/search", "names a solver that there is not");
     hf_hdf5_close_file(&io);
     *is_damaged = io.is_damaged;
-    if (io.status != HF_OK) *summary = (hf_summary){0};
+    if (io.status != HF_OK) hf_summary_free(summary);
     return hf_hdf5_unlock(io.status);
 }
 
@@ -132,9 +127,8 @@ hf_status hf_store_read_front(const char *path, hf_front *front, char **variable
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/front"))
-        io.status = hf_error(messages, HF_IO, "%s: this run has no front: its case has no optimize.objectives", path);
-    bool has_rows = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/front/design");
-    if (io.status == HF_OK) hf_layout_read_front(&io, has_rows, front, variable, variable_size);
+        io.status = hf_error(messages, HF_IO, "%s: this run has no front: its case has no optimize.front", path);
+    if (io.status == HF_OK) hf_layout_read_front(&io, front, variable, variable_size);
     hf_hdf5_close_file(&io);
     if (io.status != HF_OK) {
         hf_front_free(front);
@@ -275,8 +269,8 @@ static void read_shape(hf_hdf5 *io, const char *path, hf_shape *shape)
 
 hf_stage hf_store_result_stage(const hf_summary *s)
 {
-    if (s->has_polish && s->polish_is_result) return HF_STAGE_REFINE;
-    return hf_summary_has_best_shape(s) ? HF_STAGE_SEARCH : HF_STAGE_FORM;
+    if (s->stage[HF_STAGE_REFINE].exists && s->refine.is_result) return HF_STAGE_REFINE;
+    return hf_summary_has_shape(s, HF_STAGE_SEARCH) ? HF_STAGE_SEARCH : HF_STAGE_FORM;
 }
 
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages)
@@ -284,8 +278,10 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
     hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *shape = (hf_shape){0};
-    bool is_there = stage != HF_N_STAGE && (stage != HF_STAGE_SEARCH || hf_hdf5_has(&io, io.file, "/ga")) &&
-                    hf_hdf5_has(&io, io.file, hf_stage_group[stage]);
+    char position[32] = "";
+    if (stage != HF_N_STAGE) snprintf(position, sizeof position, "%s/position_m", hf_stage_group[stage]);
+    bool is_there =
+        *position && hf_hdf5_has(&io, io.file, hf_stage_group[stage]) && hf_hdf5_has(&io, io.file, position);
     if (!is_there && io.status == HF_OK) /* hf_hdf5_has has reported a failure already */
         io.status =
             hf_error(messages, HF_IO, "%s: has no %s shape: that stage did not run, or found no feasible design", path,
@@ -301,12 +297,12 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
 static bool has_state(hf_hdf5 *io, const char *name, const char *part, char group[HF_LAYOUT_LOAD_CASE_SIZE])
 {
     char object[HF_LAYOUT_LOAD_CASE_SIZE];
-    snprintf(group, HF_LAYOUT_LOAD_CASE_SIZE, "/cases/%s", name);
-    snprintf(object, sizeof object, "/cases/%s/%s", name, part);
-    bool is_there =
-        hf_hdf5_has(io, io->file, "/cases") && hf_hdf5_has(io, io->file, group) && hf_hdf5_has(io, io->file, object);
+    snprintf(group, HF_LAYOUT_LOAD_CASE_SIZE, "/load_cases/%s", name);
+    snprintf(object, sizeof object, "/load_cases/%s/%s", name, part);
+    bool is_there = hf_hdf5_has(io, io->file, "/load_cases") && hf_hdf5_has(io, io->file, group) &&
+                    hf_hdf5_has(io, io->file, object);
     if (!is_there && io->status == HF_OK)
-        io->status = hf_error(io->messages, HF_IO, "%s: has no shape of a case '%s'", io->path, name);
+        io->status = hf_error(io->messages, HF_IO, "%s: has no shape of a load case '%s'", io->path, name);
     return is_there;
 }
 

@@ -53,22 +53,22 @@ static hf_status count_record(void *context, int generation, const void *payload
 /* Reads the sizes of the population, the limit of generations, and which of their individuals the file holds. */
 static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_variable, int *n_objective, int *limit, int *every)
 {
-    hf_hdf5_get(io, io->file, "/ga", "n_individual", HF_KIND_INT, n_individual, sizeof *n_individual);
-    hf_hdf5_get(io, io->file, "/ga", "n_variable", HF_KIND_INT, n_variable, sizeof *n_variable);
-    hf_hdf5_get(io, io->file, "/ga", "generations_limit", HF_KIND_INT, limit, sizeof *limit);
+    hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "n_individual", HF_KIND_INT, n_individual, sizeof *n_individual);
+    hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "n_variable", HF_KIND_INT, n_variable, sizeof *n_variable);
+    hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "generations_limit", HF_KIND_INT, limit, sizeof *limit);
     /* Files of earlier versions do not have this attribute. */
-    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "store_every", H5P_DEFAULT) > 0)
-        hf_hdf5_get(io, io->file, "/ga", "store_every", HF_KIND_INT, every, sizeof *every);
+    if (io->status == HF_OK && H5Aexists_by_name(io->file, HF_GENERATIONS_GROUP, "store_every", H5P_DEFAULT) > 0)
+        hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "store_every", HF_KIND_INT, every, sizeof *every);
     /* Only populations of a front have this attribute. */
-    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "n_objective", H5P_DEFAULT) > 0)
-        hf_hdf5_get(io, io->file, "/ga", "n_objective", HF_KIND_INT, n_objective, sizeof *n_objective);
+    if (io->status == HF_OK && H5Aexists_by_name(io->file, HF_GENERATIONS_GROUP, "n_objective", H5P_DEFAULT) > 0)
+        hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "n_objective", HF_KIND_INT, n_objective, sizeof *n_objective);
     int n_stored = io->status == HF_OK && *n_variable == 0
                        ? 0
-                       : hf_hdf5_length(io, io->file, "/ga/gene_group", HF_LAYOUT_COUNT_MAX);
+                       : hf_hdf5_length(io, io->file, "/variable/group", HF_LAYOUT_COUNT_MAX);
     if (io->status == HF_OK && (*n_individual < 1 || *n_individual > INDIVIDUALS_MAX || *n_variable != n_stored ||
                                 *n_objective < 0 || *n_objective > HF_FRONT_OBJECTIVES_MAX || *limit < 1 ||
                                 *limit > GENERATIONS_MAX || *every < 0 || *every > GENERATIONS_MAX))
-        hf_hdf5_damaged(io, io->file, "/ga", "has impossible sizes");
+        hf_hdf5_damaged(io, io->file, HF_GENERATIONS_GROUP, "has impossible sizes");
 }
 
 static void note_session(hf_store *s)
@@ -109,12 +109,12 @@ static void read_state(hf_store *s)
     if (io->status == HF_OK && finished)
         io->status =
             hf_error(io->messages, HF_EXISTS, "%s: is finished, there is nothing to go on with", s->f.out.path);
-    if (!hf_hdf5_has(io, io->file, "/ga")) { /* the run stopped before its search, or has none */
+    if (!hf_hdf5_has(io, io->file, "/variable")) { /* the run stopped before its search, or has none */
         if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, io->messages);
         return;
     }
     read_sizes(io, &n_individual, &n_variable, &n_objective, &limit, &every);
-    bool has_rows = hf_hdf5_has(io, io->file, "/ga/gene_variable");
+    bool has_rows = hf_hdf5_has(io, io->file, "/variable/row");
     if (io->status == HF_OK &&
         hf_generations_create(n_individual, n_variable, n_objective, limit, every, &s->rows) != HF_OK)
         io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
@@ -145,13 +145,12 @@ static void check_base(hf_hdf5 *io, int n_variable, const double *initial)
 {
     for (int k = 0; k < n_variable && io->status == HF_OK; k++)
         if (!(initial[k] >= 0 && isfinite(initial[k])))
-            hf_hdf5_damaged(io, io->file, "/ga", "has a base that is no design");
+            hf_hdf5_damaged(io, io->file, "/variable", "has an initial design that is none");
 }
 
 hf_status hf_store_restore_initial(hf_store *s, int n_variable, double *initial, hf_messages *messages)
 {
-    hf_hdf5_array base = {.name = "/ga/base_N", .kind = HF_KIND_REAL, .rank = 1, .dims = {(hsize_t)n_variable}};
-    if (s && s->rows.has_rows) base.name = "/ga/base";
+    hf_hdf5_array base = {.name = "/variable/initial", .kind = HF_KIND_REAL, .rank = 1, .dims = {(hsize_t)n_variable}};
     if (!s || !s->rows.block) return HF_OK;
     hf_hdf5_lock();
     s->f.io.messages = messages;
@@ -228,8 +227,10 @@ static void breed_journal(hf_store *s, hf_optimiser *optimiser, int drops)
  * generation. */
 static void read_known(hf_hdf5 *io, hf_summary *summary)
 {
-    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/ga", "solver", H5P_DEFAULT) > 0)
-        hf_layout_get_summary(io, HF_LAYOUT_GA, summary);
+    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/search", "solver", H5P_DEFAULT) > 0) {
+        hf_layout_get_part(io, HF_LAYOUT_SEARCH, summary);
+        hf_layout_get_part(io, HF_LAYOUT_SEARCH_STAGE, summary);
+    }
 }
 
 static hf_status restore(hf_store *s, hf_optimiser *optimiser, int drops, hf_summary *summary, hf_messages *messages)
@@ -240,7 +241,7 @@ static hf_status restore(hf_store *s, hf_optimiser *optimiser, int drops, hf_sum
     io->messages = messages;
     hf_store_file_open(&s->f);
     if (!hf_generations_are_of(&s->rows, &optimiser->population))
-        hf_hdf5_damaged(io, io->file, "/ga", "has other sizes than the case");
+        hf_hdf5_damaged(io, io->file, HF_GENERATIONS_GROUP, "has other sizes than the case");
     read_known(io, summary);
     if (s->rows.n_stored && io->status == HF_OK) {
         hf_generations_restore(io, &s->rows, &optimiser->population);
@@ -258,7 +259,7 @@ hf_status hf_store_restore(hf_store *s, hf_optimiser *optimiser, hf_summary *sum
 
 /* ---- refinement ---- */
 
-#define REFINE_STATE "/polish_state"
+#define REFINE_STATE "/refine_state"
 
 static hf_hdf5_array refine_array(size_t n)
 {
@@ -335,14 +336,13 @@ typedef struct {
 static void read_rows(hf_hdf5 *io, hid_t group, stored_search *a)
 {
     const hf_optimize_settings *o = &a->settings.optimize;
-    hf_hdf5_array row = {
-        .name = "gene_variable", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)a->model.n_variable}};
+    hf_hdf5_array row = {.name = "row", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)a->model.n_variable}};
     int *of = malloc((size_t)a->model.n_variable * sizeof *of);
     if (!of) hf_hdf5_no_memory(io);
     hf_hdf5_read_array(io, group, &row, of);
     for (int k = 0; io->status == HF_OK && k < a->model.n_variable; k++) {
         if (of[k] < 0 || of[k] >= o->n_variable_row)
-            hf_hdf5_damaged(io, io->file, "/ga", "has genes of other variables than the case");
+            hf_hdf5_damaged(io, io->file, "/variable", "has design variables of other rows than the case");
         else
             a->rows[k] = (hf_variable){.vary = o->variable_row[of[k]].vary, .setting = of[k], .support_row = -1};
     }
@@ -351,13 +351,13 @@ static void read_rows(hf_hdf5 *io, hid_t group, stored_search *a)
 
 static void read_variables(hf_hdf5 *io, stored_search *a)
 {
-    hf_hdf5_array row = {.name = "gene_group", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)a->model.n_variable}};
-    hid_t group = hf_hdf5_open_group(io, "/ga");
+    hf_hdf5_array row = {.name = "group", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)a->model.n_variable}};
+    hid_t group = hf_hdf5_open_group(io, "/variable");
     hf_hdf5_read_array(io, group, &row, a->group);
-    row.name = "gene_leader";
+    row.name = "leader";
     bool has_leader = hf_hdf5_has(io, group, row.name);
     if (has_leader) hf_hdf5_read_array(io, group, &row, a->leader);
-    row.name = a->rows ? "base" : "base_N";
+    row.name = "initial";
     row.kind = HF_KIND_REAL;
     hf_hdf5_read_array(io, group, &row, a->initial);
     check_base(io, a->model.n_variable, a->initial);
@@ -367,7 +367,7 @@ static void read_variables(hf_hdf5 *io, stored_search *a)
         if (!has_leader) a->leader[k] = k;
         if (a->group[k] < 0 || a->group[k] >= a->model.n_variable || a->leader[k] < 0 || a->leader[k] > k ||
             a->leader[a->leader[k]] != a->leader[k])
-            hf_hdf5_damaged(io, io->file, "/ga", "has impossible genes");
+            hf_hdf5_damaged(io, io->file, "/variable", "has impossible design variables");
         a->model.n_leader += a->leader[k] == k;
         if (a->group[k] >= a->model.n_variable_group) a->model.n_variable_group = a->group[k] + 1;
     }
@@ -394,7 +394,7 @@ static void open_stored_search(hf_store *s, stored_search *a)
     const hf_optimize_settings *o = &a->settings.optimize;
     if (io->status == HF_OK &&
         (o->population != s->rows.n_individual || o->generations != s->rows.limit || o->n_front != s->rows.n_objective))
-        hf_hdf5_damaged(io, io->file, "/ga", "has other sizes than the case");
+        hf_hdf5_damaged(io, io->file, HF_GENERATIONS_GROUP, "has other sizes than the case");
     const hf_optimiser_kind *kind = hf_optimiser_plan_of(o).kind;
     if (io->status == HF_OK && !kind) hf_hdf5_damaged(io, io->file, "/case", "has no generations");
     if (io->status == HF_OK && hf_optimiser_create(kind, o, &a->model, a->initial, &a->optimiser) != HF_OK)

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #define NAMES_MAX 1000 /* names in a group; more than there are keys, and so more than a study has axes */
+#define LONGER 16      /* bytes by which a name may be longer than that of version 0.2 */
 #define FILE_MAX 1024  /* bytes of the file name of a link; a longer name becomes "", and a page shows no link */
 
 /* ---- numbers ---- */
@@ -187,10 +188,22 @@ static void read_names(hf_hdf5 *io, const char *name, hid_t group, hf_texts *nam
         if (used >= FILE_MAX) hf_hdf5_damaged(io, io->file, name, "holds a name that is too long");
         if (used > 0 && (size_t)used > longest) longest = (size_t)used;
     }
-    if (!allocate(io, (int)info.nlinks, longest + 1, names)) return;
-    for (hsize_t i = 0; i < info.nlinks; i++)
-        H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, names->text + i * names->length, names->length,
-                           H5P_DEFAULT);
+    if (!allocate(io, (int)info.nlinks, longest + LONGER + 1, names)) return;
+    names->n = 0;
+    for (hsize_t i = 0; i < info.nlinks; i++) {
+        char *to = names->text + (size_t)names->n * names->length;
+        H5L_info_t link;
+        H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, to, names->length, H5P_DEFAULT);
+        /* Soft links are old names of other objects. */
+        names->n += H5Lget_info_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, &link, H5P_DEFAULT) >= 0 &&
+                    link.type != H5L_TYPE_SOFT;
+    }
+    for (int i = 0; io->alias && i < names->n; i++) { /* names of version 0.2 */
+        char then[FILE_MAX], now[FILE_MAX + 32];
+        char *to = names->text + (size_t)i * names->length;
+        snprintf(then, sizeof then, "%s", to + (strncmp(to, "best_", 5) ? 0 : 5));
+        snprintf(to, names->length, "%s", hf_renamed_figure(then, now, sizeof now));
+    }
 }
 
 hf_status hf_store_read_names(const char *path, const char *group, hf_texts *names, hf_messages *messages)

@@ -5,30 +5,52 @@
 #include "base/json.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-bool hf_summary_has_best_shape(const hf_summary *s)
+const char *const hf_stage_word[HF_N_STAGE + 1] = {"form", "search", "refine", "none"};
+
+void hf_summary_free(hf_summary *s)
 {
-    return s->has_optimize && s->best.status == HF_OK && s->finished;
+    for (int i = 0; i < HF_N_STAGE; i++) {
+        free(s->stage[i].pattern);
+        free(s->stage[i].sets);
+        free(s->stage[i].held);
+    }
+    free(s->front);
+    free(s->load_case);
+    free(s->tolerance);
+    *s = (hf_summary){0};
+}
+
+const char *hf_summary_algorithm(const hf_summary *s, hf_stage stage)
+{
+    if (stage == HF_STAGE_SEARCH) return s->objectives.is_front ? "nsga2" : "ga";
+    return stage == HF_STAGE_REFINE ? "lm" : "";
+}
+
+bool hf_summary_has_shape(const hf_summary *s, hf_stage stage)
+{
+    const hf_stage_summary *of = &s->stage[stage];
+    if (stage == HF_STAGE_FORM) return true;
+    return of->exists && (stage == HF_STAGE_REFINE || (of->result.status == HF_OK && s->finished));
 }
 
 double hf_summary_utilisation(const hf_summary *s)
 {
-    double available_s = s->optimize_wall_s * s->threads;
-    return available_s > 0 ? s->optimize_cpu_s / available_s : (double)NAN;
+    double available_s = s->stage[HF_STAGE_SEARCH].wall_s * s->threads;
+    return available_s > 0 ? s->search.cpu_s / available_s : (double)NAN;
 }
 
 /* ---- figures by the lists ---- */
 
-#define FORM(...) HF_RESULT_FIELD(hf_summary, __VA_ARGS__)
-#define SEARCH(...) HF_RESULT_FIELD(hf_summary, __VA_ARGS__)
-#define REFINE(...) HF_RESULT_FIELD(hf_summary, __VA_ARGS__)
+#define SEARCH(...) HF_RESULT_FIELD(hf_search_summary, __VA_ARGS__)
+#define REFINE(...) HF_RESULT_FIELD(hf_refine_summary, __VA_ARGS__)
 #define TRUSS(...) HF_RESULT_FIELD(hf_truss_summary, __VA_ARGS__)
 #define TOLERANCE(...) HF_RESULT_FIELD(hf_tolerance_summary, __VA_ARGS__)
 #define LOAD_CASE(...) HF_RESULT_FIELD(hf_load_case_summary, __VA_ARGS__)
 #define MEASURE(...) HF_RESULT_FIELD(hf_surface_measures, __VA_ARGS__)
 #define FIT(type, member, ...) HF_RESULT_FIELD(hf_surface_fit, type, member, __VA_ARGS__, .key = "fit_" #member)
-static const hf_result_field form_field[] = {HF_SUMMARY_FORM_LIST(FORM)};
 static const hf_result_field search_field[] = {HF_SUMMARY_SEARCH_LIST(SEARCH)};
 static const hf_result_field refine_field[] = {HF_SUMMARY_REFINE_LIST(REFINE)};
 static const hf_result_field tolerance_field[] = {HF_TOLERANCE_LIST(TOLERANCE)};
@@ -97,7 +119,7 @@ enum { LAST_PLACE = 9 };
 static void write_result(const hf_form_result *r, hf_json *j)
 {
     write_fields(hf_result_field_of, HF_RESULT_N, 1, HF_RESULT_JSON_COUNTS - 1, r, j);
-    if (r->coupling.iterations > 0) hf_json_number(j, "max_displacement_m", r->coupling.max_displacement_m);
+    if (r->coupling.iterations > 0) hf_json_number(j, "deflection_max_m", r->coupling.deflection_max_m);
     write_fields(hf_result_field_of, HF_RESULT_N, HF_RESULT_JSON_COUNTS, LAST_PLACE, r, j);
 }
 
@@ -122,7 +144,7 @@ static void write_surface(const hf_summary *s, const hf_surface_measures *m, hf_
  * surface.pattern. */
 static void write_pattern(const hf_pattern_summary *s, hf_json *j)
 {
-    if (s->n_frequency == 0) return;
+    if (!s) return;
     hf_json_line(j, "  ");
     hf_json_open(j, "pattern", '[');
     for (int k = 0; k < s->n_frequency * s->n_cut; k++) {
@@ -144,13 +166,13 @@ static void write_pattern(const hf_pattern_summary *s, hf_json *j)
 /* Writes the member "sets" of a stage: an object for each named set of cables. */
 static void write_sets(const hf_set_tensions *s, hf_json *j)
 {
-    if (s->n == 0) return;
+    if (!s || s->n == 0) return;
     hf_json_line(j, "  ");
     hf_json_open(j, "sets", '{');
     for (int k = 0; k < s->n; k++) {
         hf_json_open(j, s->name[k], '{');
-        hf_json_number(j, "least_N", s->least_N[k]);
-        hf_json_number(j, "largest_N", s->largest_N[k]);
+        hf_json_number(j, "min_N", s->min_N[k]);
+        hf_json_number(j, "max_N", s->max_N[k]);
         hf_json_number(j, "tension_ratio", s->ratio[k]);
         hf_json_close(j, '}');
     }
@@ -160,7 +182,7 @@ static void write_sets(const hf_set_tensions *s, hf_json *j)
 /* Writes the member "at_limits" of a stage: the limits that its shape is at. */
 static void write_held(const hf_held_limits *h, hf_json *j)
 {
-    if (h->n == 0) return;
+    if (!h || h->n == 0) return;
     hf_json_line(j, "  ");
     hf_json_open(j, "at_limits", '[');
     for (int i = 0; i < h->n; i++) {
@@ -175,14 +197,14 @@ static void write_held(const hf_held_limits *h, hf_json *j)
     hf_json_close(j, ']');
 }
 
-/* Writes the members "merit" and "goals" of a stage: value and weight of each term of the objective. Objectives of a
+/* Writes the members "merit" and "objectives" of a stage: value and weight of each term of the objective. Objectives of a
  * front have only values. */
 static void write_objectives(const hf_summary *s, const hf_form_result *r, hf_json *j)
 {
     if (s->objectives.n == 0) return;
     hf_json_line(j, "  ");
     if (!s->objectives.is_front) hf_json_number(j, "merit", r->merit);
-    hf_json_open(j, "goals", '{');
+    hf_json_open(j, "objectives", '{');
     for (int k = 0; k < s->objectives.n; k++) {
         hf_json_open(j, s->objectives.name[k], '{');
         hf_json_number(j, "value", r->status == HF_OK ? r->objective[k] : (double)NAN);
@@ -205,16 +227,28 @@ static void write_truss(const hf_summary *s, hf_json *j)
     hf_json_close(j, '}');
 }
 
-static void write_form(const hf_summary *s, hf_json *j)
+/* Writes a stage: its result, what only this stage has, and the measures of its shape. */
+static void write_stage(const hf_summary *s, hf_stage stage, hf_json *j)
 {
-    open_stage("form", j);
-    write_result(&s->form, j);
-    hf_json_text(j, "stop_reason", hf_stop_reason_word((int)s->form.stop_reason));
-    write_fields(ALL(form_field), 1, LAST_PLACE, s, j);
-    write_surface(s, &s->measures[0], j);
-    write_pattern(&s->pattern[0], j);
-    write_sets(&s->sets[0], j);
-    write_objectives(s, &s->form, j);
+    const hf_stage_summary *of = &s->stage[stage];
+    open_stage(hf_stage_word[stage], j);
+    write_result(&of->result, j);
+    if (stage == HF_STAGE_FORM)
+        hf_json_text(j, "stop_reason", hf_stop_reason_word((int)of->result.stop_reason));
+    else
+        hf_json_text(j, "algorithm", hf_summary_algorithm(s, stage));
+    if (stage == HF_STAGE_SEARCH) write_fields(ALL(search_field), 1, LAST_PLACE, &s->search, j);
+    if (stage == HF_STAGE_REFINE) write_fields(ALL(refine_field), 1, LAST_PLACE, &s->refine, j);
+    hf_json_number(j, "wall_s", of->wall_s);
+    if (stage == HF_STAGE_REFINE && s->taken.point) {
+        hf_json_text(j, "front_file", s->taken.path);
+        hf_json_integer(j, "front_point", s->taken.point);
+    }
+    write_surface(s, &of->surface, j);
+    write_pattern(of->pattern, j);
+    write_sets(of->sets, j);
+    write_held(of->held, j);
+    write_objectives(s, &of->result, j);
     hf_json_close(j, '}');
 }
 
@@ -225,48 +259,18 @@ static void write_coupling(const hf_coupling_result *r, hf_json *j)
     hf_json_close(j, '}');
 }
 
-static void write_optimize(const hf_summary *s, hf_json *j)
-{
-    open_stage("optimize", j);
-    write_result(&s->best, j);
-    write_fields(ALL(search_field), 1, LAST_PLACE, s, j);
-    write_surface(s, &s->measures[1], j);
-    write_pattern(&s->pattern[1], j);
-    write_sets(&s->sets[1], j);
-    write_held(&s->held[1], j);
-    write_objectives(s, &s->best, j);
-    hf_json_close(j, '}');
-}
-
-static void write_refine(const hf_summary *s, hf_json *j)
-{
-    open_stage("polish", j);
-    write_result(&s->polish, j);
-    write_fields(ALL(refine_field), 1, LAST_PLACE, s, j);
-    if (s->taken.point) {
-        hf_json_text(j, "front_file", s->taken.path);
-        hf_json_integer(j, "front_point", s->taken.point);
-    }
-    write_surface(s, &s->measures[2], j);
-    write_pattern(&s->pattern[2], j);
-    write_sets(&s->sets[2], j);
-    write_held(&s->held[2], j);
-    write_objectives(s, &s->polish, j);
-    hf_json_close(j, '}');
-}
-
 /* Writes the values of all objectives of a front by their names. */
 static void write_front_values(const hf_summary *s, const char *key, const double *value, hf_json *j)
 {
     hf_json_open(j, key, '{');
-    for (int k = 0; k < s->front.n_objective; k++)
+    for (int k = 0; k < s->front->n_objective; k++)
         hf_json_number(j, s->objectives.name[k], value[k]);
     hf_json_close(j, '}');
 }
 
 static void write_front(const hf_summary *s, hf_json *j)
 {
-    const hf_front_table *t = &s->front;
+    const hf_front_table *t = s->front;
     open_stage("front", j);
     hf_json_integer(j, "n_point", t->n_point);
     hf_json_integer(j, "n_listed", t->n_row);
@@ -277,19 +281,19 @@ static void write_front(const hf_summary *s, hf_json *j)
     if (t->knee >= 0) hf_json_integer(j, "knee", t->knee);
     hf_json_number(j, "wall_s", t->wall_s);
     hf_json_line(j, "  ");
-    write_front_values(s, "base", t->base, j);
+    write_front_values(s, "initial", t->initial, j);
     hf_json_line(j, "  ");
     hf_json_open(j, "points", '[');
     for (int i = 0; i < t->n_row; i++) {
         const hf_front_point *p = &t->row[i];
         hf_json_line(j, "   ");
         hf_json_open(j, NULL, '{');
-        hf_json_integer(j, "id", t->place[i] + 1); /* as in the table of hifdm export --front */
+        hf_json_integer(j, "id", t->index[i] + 1); /* as in the table of hifdm export --front */
         write_front_values(s, "objective", p->objective, j);
         if (t->minimised >= 0) write_front_values(s, "multiplier", p->multiplier, j);
         hf_json_text(j, "status", hf_status_word(p->status));
         hf_json_text(j, "mark", hf_front_mark_word[p->mark]);
-        hf_json_integer(j, "iterations", p->iterations);
+        hf_json_integer(j, "steps", p->steps);
         if (t->minimised >= 0) hf_json_bool(j, "converged", p->is_converged);
         hf_json_close(j, '}');
     }
@@ -297,18 +301,18 @@ static void write_front(const hf_summary *s, hf_json *j)
     hf_json_close(j, '}');
 }
 
-/* Writes the member "cases": an object for each load case of the as-built net. */
+/* Writes the member "load_cases": an object for each load case of the as-built net. */
 static void write_load_cases(const hf_summary *s, hf_json *j)
 {
     if (s->n_load_case == 0) return;
-    open_stage("cases", j);
+    open_stage("load_cases", j);
     for (int k = 0; k < s->n_load_case; k++) {
         const hf_load_case_summary *load_case = &s->load_case[k];
         hf_json_line(j, "  ");
         hf_json_open(j, load_case->name, '{');
         write_result(&load_case->result, j);
         write_fields(ALL(load_case_field), 1, LAST_PLACE, load_case, j);
-        write_surface(s, &load_case->measures, j);
+        write_surface(s, &load_case->surface, j);
         hf_json_close(j, '}');
     }
     hf_json_close(j, '}');
@@ -322,8 +326,8 @@ static void write_figures(const hf_tolerance_figures *f, const char *measure, hf
     hf_json_number(j, "mean_low", f->mean_low);
     hf_json_number(j, "mean_high", f->mean_high);
     hf_json_number(j, "deviation", f->deviation);
-    hf_json_number(j, "least", f->least);
-    hf_json_number(j, "largest", f->largest);
+    hf_json_number(j, "min", f->min);
+    hf_json_number(j, "max", f->max);
     hf_json_list(j, "quantile", f->value, HF_TOLERANCE_QUANTILES);
     hf_json_list(j, "quantile_low", f->low, HF_TOLERANCE_QUANTILES);
     hf_json_list(j, "quantile_high", f->high, HF_TOLERANCE_QUANTILES);
@@ -379,22 +383,23 @@ static void write_tolerance(const hf_tolerance_summary *t, hf_json *j)
 
 hf_status hf_summary_status(const hf_summary *s)
 {
-    return s->finished ? s->status : s->form.status;
+    return s->finished ? s->status : s->stage[HF_STAGE_FORM].result.status;
 }
 
 void hf_summary_write_json(const hf_summary *s, hf_status status, const char *messages, const char *path, FILE *f)
 {
+    const hf_form_result *form = &s->stage[HF_STAGE_FORM].result;
     hf_json writer = {.file = f}, *j = &writer;
     hf_json_open(j, NULL, '{');
     hf_json_text(j, "status", hf_status_word(status));
     if (s->has_truss) write_truss(s, j);
-    if (s->form.status != HF_NOT_EVALUATED) write_form(s, j);
-    if (s->has_coupling && s->form.coupling.iterations > 0) write_coupling(&s->form.coupling, j);
-    if (s->has_optimize) write_optimize(s, j);
-    if (s->has_polish) write_refine(s, j);
-    if (s->has_front) write_front(s, j);
+    if (form->status != HF_NOT_EVALUATED) write_stage(s, HF_STAGE_FORM, j);
+    if (s->has_coupling && form->coupling.iterations > 0) write_coupling(&form->coupling, j);
+    for (hf_stage stage = HF_STAGE_SEARCH; stage < HF_N_STAGE; stage++)
+        if (s->stage[stage].exists) write_stage(s, stage, j);
+    if (s->front) write_front(s, j);
     write_load_cases(s, j);
-    if (s->has_tolerance) write_tolerance(&s->tolerance, j);
+    if (s->tolerance) write_tolerance(s->tolerance, j);
     hf_json_line(j, " ");
     hf_json_integer(j, "threads", s->threads);
     hf_json_unsigned(j, "seed", s->seed);

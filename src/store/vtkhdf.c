@@ -143,13 +143,13 @@ static void link_all(hf_hdf5 *io, const char *result, const char *position, cons
         link_shape(io, hf_stage_group[i], prefix);
     }
     for (int k = 0; k < summary->n_load_case; k++) {
-        snprintf(folder, sizeof folder, "/cases/%s", summary->load_case[k].name);
-        snprintf(prefix, sizeof prefix, "case_%s_", summary->load_case[k].name);
+        snprintf(folder, sizeof folder, "/load_cases/%s", summary->load_case[k].name);
+        snprintf(prefix, sizeof prefix, "load_case_%s_", summary->load_case[k].name);
         link_shape(io, folder, prefix);
     }
-    link_as(io, "/scene/node", "position_m", POINT_DATA, "theoretical_");
+    link_as(io, "/scene/node", "position_m", POINT_DATA, "target_");
     link_as(io, "/scene/node", "load_N", POINT_DATA, "");
-    link_as(io, "/scene/cable", "length_m", CELL_DATA, "theoretical_");
+    link_to(io, "/scene/cable/length_m", CELL_DATA "/length_at_target_m");
     link_as(io, "/scene/cable", "EA_N", CELL_DATA, "");
     link_as(io, "/tolerance", "node_deviation_m", POINT_DATA, "tolerance_");
     link_as(io, "/tolerance", "cable_share", CELL_DATA, "tolerance_");

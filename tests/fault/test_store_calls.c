@@ -51,7 +51,7 @@ static hf_status run_it(const char *path, struct run *r, int *acknowledged, hf_m
         }
     }
     if (status == HF_OK) status = store_some(s, r, first, N_GENERATION, acknowledged, messages);
-    if (status == HF_OK) return hf_store_finish(s, &(hf_summary){.has_optimize = 1}, messages);
+    if (status == HF_OK) return hf_store_finish(s, &(hf_summary){.stage[HF_STAGE_SEARCH].exists = 1}, messages);
     hf_store_end(s);
     return status;
 }
@@ -262,7 +262,7 @@ START_TEST(a_finished_result_is_on_the_disk)
     ck_assert_int_eq(begin_new(path, &r, &s, &messages), HF_OK);
     ck_assert_int_eq(store_some(s, &r, 0, N_GENERATION, &n, &messages), HF_OK);
     fail_call_at("fsync", 1 + _i, EIO, false);
-    ck_assert_int_eq(hf_store_finish(s, &(hf_summary){.has_optimize = 1}, &messages), HF_IO);
+    ck_assert_int_eq(hf_store_finish(s, &(hf_summary){.stage[HF_STAGE_SEARCH].exists = 1}, &messages), HF_IO);
     ck_assert(end_call_failure());
     close_run(&r);
     hf_messages_free(&messages);

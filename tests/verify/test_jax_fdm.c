@@ -91,7 +91,7 @@ START_TEST(it_ends_no_later_than_the_page)
     double loss = s.polish.merit * s.polish.merit;
     ck_assert_double_le(loss, _i ? 0.000712 : 0.000804);
     VERIFY_AT_MOST(loss, 0.000804, "loss after the optimisation, %s", _i ? "converged" : "19 steps");
-    if (_i) ck_assert_int_eq(s.polish_stop, HF_REFINE_CONVERGED);
+    if (_i) ck_assert_int_eq(s.refine.algorithm_stop, HF_REFINE_CONVERGED);
     hf_messages_free(&said);
 }
 END_TEST

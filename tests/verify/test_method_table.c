@@ -53,7 +53,7 @@ START_TEST(converged)
     struct net net;
     open_scene(&net, s, "form.stop=residual");
     ck_assert_int_eq(find_shape(&net), HF_OK);
-    ck_assert_int_eq(net.result.stop_reason, HF_STOPPED_RESIDUAL);
+    ck_assert_int_eq(net.result.stop_reason, HF_STOPPED_CONVERGED);
     VERIFY(1e3 * net.result.psi_m, s->converged_psi_mm, converged_digit_mm[_i], CONVERGED "psi, mm", OF_SCENE);
     VERIFY(net.result.boundary_tension_ratio, s->converged_boundary, 0.5e-5, CONVERGED "boundary ratio", OF_SCENE);
     VERIFY(net.result.inner_tension_ratio, 1, 1e-6, CONVERGED "ratio inside", OF_SCENE);

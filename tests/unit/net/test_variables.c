@@ -59,7 +59,7 @@ static hf_summary *run_bowl(const char *rows, const char *more)
                               .threads = 1};
     ck_assert_msg(hf_run_case(&request, &s, output, &said) == HF_OK, "%s", said.text);
     hf_messages_free(&said);
-    ck_assert_int_eq(s.polish_stop, HF_REFINE_CONVERGED);
+    ck_assert_int_eq(s.refine.algorithm_stop, HF_REFINE_CONVERGED);
     return &s;
 }
 
@@ -97,8 +97,8 @@ START_TEST(a_limit_on_displacements_is_met)
     char limits[96];
     snprintf(limits, sizeof limits, "optimize.limits=%s", limit[_i]);
     const hf_summary *s = run_bowl(ALL, limits);
-    ck_assert_double_gt(s->form.coupling.max_displacement_m, 1e-3);
-    ck_assert_double_le(s->polish.coupling.max_displacement_m, _i ? 1.03e-3 : 1.2e-3);
+    ck_assert_double_gt(s->form.coupling.deflection_max_m, 1e-3);
+    ck_assert_double_le(s->polish.coupling.deflection_max_m, _i ? 1.03e-3 : 1.2e-3);
 }
 END_TEST
 

@@ -65,10 +65,10 @@ START_TEST(opening_gives_what_a_run_finds)
     ck_assert_int_eq(p.batch.n_thread, 2);
     for (int k = 0; k < p.model.n_variable; k++)
         ck_assert_double_gt(p.initial[k], 0);
-    if (s.has_optimize) { /* the base design is individual 0 */
+    if (s.stage[HF_STAGE_SEARCH].exists) { /* the base design is individual 0 */
         hf_form_result base;
         hf_batch_run(&p.batch, 1, p.initial, NULL, &base);
-        ck_assert_mem_eq(&base.psi_m, &s.base_psi_m, sizeof(double));
+        ck_assert_mem_eq(&base.psi_m, &s.search.initial_psi_m, sizeof(double));
         ck_assert_int_eq(p.solver, s.solver);
     }
     hf_problem_free(&p);

@@ -66,7 +66,7 @@ static void assert_answers(struct run *r)
         ck_assert_double_eq_tol(by_chord.shortest_length_ratio, by_newton.shortest_length_ratio, 1e-7);
         ck_assert_double_le(largest_move_m(m, w->position_m, r->net.work.position_m), 1e-8);
         ck_assert_int_eq(by_chord.n_slack, by_newton.n_slack);
-        ck_assert_int_eq(by_chord.stop_reason, HF_STOPPED_RESIDUAL);
+        ck_assert_int_eq(by_chord.stop_reason, HF_STOPPED_CONVERGED);
     }
     hf_batch_free(&batch);
 }

@@ -25,14 +25,14 @@ START_TEST(a_known_move_is_the_bound)
     struct net net;
     OPEN_CASE(&net, SMALL_REFLECTOR);
     evaluate(&net);
-    ck_assert_int_eq(net.result.bound_reason, HF_BOUND_PROVEN);
+    ck_assert_int_eq(net.result.bound_reason, HF_BOUND_CERTIFIED);
     double own_m = net.result.position_bound_m, move_m = pow(10, -1 - 2 * _i), psi_m = net.result.psi_m;
     ck_assert_double_le(own_m, 1e-12);
     net.work.position_m[net.model.n_node + 5] += 0.6 * move_m;
     net.work.position_m[2 * net.model.n_node + 5] -= 0.8 * move_m;
     prove(&net);
     if (_i > 0) { /* 0.1 m is too far for steps that are not damped */
-        ck_assert_int_eq(net.result.bound_reason, HF_BOUND_PROVEN);
+        ck_assert_int_eq(net.result.bound_reason, HF_BOUND_CERTIFIED);
         ck_assert_double_ge(net.result.position_bound_m, move_m - own_m);
         ck_assert_double_le(net.result.position_bound_m, 1.000001 * move_m + 2 * own_m);
         double error_m = fabs(net.result.psi_m - psi_m);
@@ -59,7 +59,7 @@ START_TEST(lengths_are_met_exactly)
     struct net net;
     OPEN_HAND(&net, triangle, cable, HF_METHOD_AUTO);
     evaluate(&net);
-    ck_assert_int_eq(net.result.bound_reason, HF_BOUND_PROVEN);
+    ck_assert_int_eq(net.result.bound_reason, HF_BOUND_CERTIFIED);
     double off = hypot(hypot(found_m(&net, 2, 0) - 2, found_m(&net, 2, 1)), found_m(&net, 2, 2) + 1.5);
     ck_assert_double_ge(net.result.position_bound_m, off);
     ck_assert_double_le(net.result.position_bound_m, fmax(1.0001 * off, 1e-20));
@@ -81,7 +81,7 @@ START_TEST(dependent_lengths_are_not_proven)
     struct net net;
     OPEN_HAND(&net, triangle, cable, HF_METHOD_AUTO);
     evaluate(&net);
-    ck_assert_int_eq(net.result.bound_reason, _i ? HF_BOUND_PROVEN : HF_BOUND_DEPENDENT_LENGTHS);
+    ck_assert_int_eq(net.result.bound_reason, _i ? HF_BOUND_CERTIFIED : HF_BOUND_DEPENDENT_LENGTHS);
     ck_assert(_i ? net.result.position_bound_m < 1e-15 : isnan(net.result.position_bound_m));
     close_net(&net);
 }
@@ -98,7 +98,7 @@ START_TEST(a_cable_at_the_brink_is_not_proven)
     struct net net;
     OPEN_HAND(&net, node, cable, HF_METHOD_AUTO);
     evaluate(&net);
-    ck_assert_int_eq(net.result.bound_reason, _i ? HF_BOUND_PROVEN : HF_BOUND_SLACK_OR_TAUT);
+    ck_assert_int_eq(net.result.bound_reason, _i ? HF_BOUND_CERTIFIED : HF_BOUND_SLACK_OR_TAUT);
     close_net(&net);
 }
 END_TEST
@@ -113,7 +113,7 @@ START_TEST(force_densities_are_proven_and_struts_are_not)
     struct net net;
     OPEN_HAND(&net, node, cable, HF_METHOD_FDM);
     evaluate(&net);
-    ck_assert_int_eq(net.result.bound_reason, _i ? HF_BOUND_STRUTS : HF_BOUND_PROVEN);
+    ck_assert_int_eq(net.result.bound_reason, _i ? HF_BOUND_STRUTS : HF_BOUND_CERTIFIED);
     if (!_i) {
         double off = hypot(found_m(&net, 2, 0) - 12.0 / 7, found_m(&net, 2, 2) - 1.0 / 7);
         ck_assert_double_ge(net.result.position_bound_m, off);
@@ -141,7 +141,7 @@ START_TEST(what_drowns_in_rounding_is_not_proven)
     struct net net;
     OPEN_HAND(&net, node, cable, HF_METHOD_FDM);
     evaluate(&net);
-    ck_assert_int_eq(net.result.bound_reason, _i < 2 ? HF_BOUND_PROVEN : HF_BOUND_NOT_DEFINITE);
+    ck_assert_int_eq(net.result.bound_reason, _i < 2 ? HF_BOUND_CERTIFIED : HF_BOUND_NOT_DEFINITE);
     close_net(&net);
 }
 END_TEST
@@ -154,13 +154,13 @@ START_TEST(bounds_hold_on_the_way_to_a_small_tension)
     OPEN_CASE(&answer, "tests/verify/data/mixed/case.yaml", "form.residual_tolerance=1e-12",
               "form.length_tolerance=1e-12");
     evaluate(&answer);
-    ck_assert_int_eq(answer.result.bound_reason, HF_BOUND_PROVEN);
+    ck_assert_int_eq(answer.result.bound_reason, HF_BOUND_CERTIFIED);
     OPEN_CASE(&net, "tests/verify/data/mixed/case.yaml", "form.method=hifdm", "form.residual_tolerance=1e-13");
     net.form.length_tolerance = 1e-13;
     int n_proven = 0;
     for (net.form.max_iterations = 1; net.form.max_iterations <= 4096; net.form.max_iterations *= 2) {
         evaluate(&net);
-        if (net.result.bound_reason != HF_BOUND_PROVEN) continue;
+        if (net.result.bound_reason != HF_BOUND_CERTIFIED) continue;
         double far_m = 0;
         for (int i = 0; i < net.model.n_free; i++) {
             double square = 0;
@@ -223,7 +223,7 @@ START_TEST(the_truss_counts_in_the_bound)
     if (_i % 2) net.form.coupling = (hf_coupling_settings){1, HF_COUPLING_PLAIN, 500};
     evaluate(&net);
     ck_assert_int_eq(net.result.status, HF_OK);
-    ck_assert_int_eq(net.result.bound_reason, HF_BOUND_PROVEN);
+    ck_assert_int_eq(net.result.bound_reason, HF_BOUND_CERTIFIED);
     for (int i = 0; i < 3; i++) {
         double square = 0;
         for (int c = 0; c < 3; c++) {
@@ -255,7 +255,7 @@ START_TEST(a_truss_that_gives_energy_is_not_proven)
     attach(&net, 2, flexibility);
     evaluate(&net);
     ck_assert_int_eq(net.result.status, HF_OK);
-    ck_assert_int_eq(net.result.bound_reason, _i ? HF_BOUND_TRUSS : HF_BOUND_PROVEN);
+    ck_assert_int_eq(net.result.bound_reason, _i ? HF_BOUND_TRUSS : HF_BOUND_CERTIFIED);
     ck_assert(_i ? isnan(net.result.position_bound_m) : net.result.position_bound_m < 1e-10);
     close_net(&net);
 }
@@ -264,7 +264,7 @@ END_TEST
 /* Struts, dependent lengths, a cable at the brink and a loose node have no bound on a truss either. */
 START_TEST(a_truss_proves_nothing_more)
 {
-    static const hf_bound_reason reason[] = {HF_BOUND_PROVEN, HF_BOUND_STRUTS, HF_BOUND_DEPENDENT_LENGTHS,
+    static const hf_bound_reason reason[] = {HF_BOUND_CERTIFIED, HF_BOUND_STRUTS, HF_BOUND_DEPENDENT_LENGTHS,
                                              HF_BOUND_SLACK_OR_TAUT, HF_BOUND_LOOSE};
     struct hand_node node[] = {{{0, 0, 0}, HF_ROLE_SUPPORT, {0}},
                                {{4, 0, 0}, HF_ROLE_SUPPORT, {0}},

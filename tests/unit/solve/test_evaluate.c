@@ -53,7 +53,7 @@ START_TEST(force_density_rule_holds_q)
     }
     for (int e = 0; e < m->n_cable; e++)
         if (m->group[e] == HF_GROUP_INNER) ck_assert_double_eq_tol(r.net.work.tension_N[e], 10, 1e-7);
-    ck_assert_int_eq(result.stop_reason, HF_STOPPED_RESIDUAL);
+    ck_assert_int_eq(result.stop_reason, HF_STOPPED_CONVERGED);
     close_net(&r.net);
 }
 END_TEST

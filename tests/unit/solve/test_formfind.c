@@ -110,7 +110,7 @@ START_TEST(length_law_by_hand)
     struct net net;
     OPEN_HAND(&net, node, cable, HF_METHOD_HIFDM);
     ck_assert_int_eq(find_shape(&net), HF_OK);
-    ck_assert_int_eq(net.result.stop_reason, HF_STOPPED_RESIDUAL);
+    ck_assert_int_eq(net.result.stop_reason, HF_STOPPED_CONVERGED);
     assert_at(&net, 2, 1.2, 0, -0.5, 1e-10);
     for (int e = 0; e < 2; e++)
         ck_assert_double_eq_tol(net.work.tension_N[e], 5.2, 1e-9);

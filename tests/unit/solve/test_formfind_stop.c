@@ -22,7 +22,7 @@ START_TEST(residual_rule_holds_both_tolerances)
     struct net net;
     OPEN_CASE(&net, SMALL_REFLECTOR);
     ck_assert_int_eq(find_shape(&net), HF_OK);
-    ck_assert_int_eq(net.result.stop_reason, HF_STOPPED_RESIDUAL);
+    ck_assert_int_eq(net.result.stop_reason, HF_STOPPED_CONVERGED);
     ck_assert_double_le(net.result.residual_N, 1e-7 * 10);
     ck_assert_double_le(net.result.length_error, 1e-7);
     ck_assert_double_le(net.result.tension_error,

@@ -54,7 +54,7 @@ static void write_point(const hf_study *s, int i, hf_status status, const char *
 START_TEST(numbers_come_back_bit_by_bit)
 {
     hf_study s;
-    hf_summary summary = {.seed = 18446744073709551615u, .has_optimize = 1, .evaluations = 5000000000};
+    hf_summary summary = {.seed = 18446744073709551615u, .stage[HF_STAGE_SEARCH].exists = 1, .evaluations = 5000000000};
     open_study(&s);
     hf_points points = read_points(&s); /* the folder is not there yet */
     ck_assert_int_eq(points.count[HF_POINT_MISSING], 5);
@@ -128,7 +128,8 @@ END_TEST
 START_TEST(objectives_come_back)
 {
     hf_study s;
-    hf_summary summary = {.has_polish = true, .objectives = {.n = 2, .name = {"goal_0_psi", "goal_1_tension_edge"}}};
+    hf_summary summary = {.stage[HF_STAGE_REFINE].exists = true,
+                          .objectives = {.n = 2, .name = {"goal_0_psi", "goal_1_tension_edge"}}};
     summary.form.objective[0] = (double)NAN;
     summary.form.objective[1] = 0.1 + 0.2;
     summary.polish.objective[0] = 5e-324;

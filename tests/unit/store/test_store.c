@@ -40,19 +40,19 @@ static void fill_summary(struct rng *rng, hf_summary *s)
                       .finished = 1,
                       .status = HF_NO_FEASIBLE,
                       .pretension_N = rng_uniform(rng, 0, 1),
-                      .form_wall_s = rng_uniform(rng, 0, 1),
-                      .has_optimize = 1,
+                      .stage[HF_STAGE_FORM].wall_s = rng_uniform(rng, 0, 1),
+                      .stage[HF_STAGE_SEARCH].exists = 1,
                       .has_coupling = 1,
-                      .best_generation = rng_int(rng, -1, 1 << 30),
+                      .search.best_generation = rng_int(rng, -1, 1 << 30),
                       .best_individual = -1,
                       .n_leader = rng_int(rng, 1, 1 << 30),
                       .planes = 3,
                       .generations = rng_int(rng, 1, 1 << 30),
                       .evaluations = (long)(rng_next(rng) >> 1),
                       .infeasible = (long)(rng_next(rng) >> 1),
-                      .optimize_stop = HF_POPULATION_ALL_INFEASIBLE,
-                      .optimize_wall_s = rng_uniform(rng, 0, 1),
-                      .optimize_cpu_s = -0.0};
+                      .search.algorithm_stop = HF_POPULATION_ALL_INFEASIBLE,
+                      .stage[HF_STAGE_SEARCH].wall_s = rng_uniform(rng, 0, 1),
+                      .search.cpu_s = -0.0};
     fill_text(rng, s->version, sizeof s->version);
     fill_text(rng, s->title, sizeof s->title);
     fill_text(rng, s->case_path, sizeof s->case_path);
@@ -65,8 +65,8 @@ static void fill_summary(struct rng *rng, hf_summary *s)
         fill_result(rng, &s->load_case[k].result);
         s->load_case[k].least_tension_N = rng_uniform(rng, -1, 1);
         s->load_case[k].largest_tension_N = INFINITY;
-        s->load_case[k].move_rms_m = rng_uniform(rng, 0, 1);
-        s->load_case[k].largest_member_N = (double)NAN;
+        s->load_case[k].displacement_rms_m = rng_uniform(rng, 0, 1);
+        s->load_case[k].member_force_max_N = (double)NAN;
         s->load_case[k].measures.is_measured = rng_int(rng, 0, 1);
         if (s->load_case[k].measures.is_measured) s->load_case[k].measures.fit.center_x_m = rng_uniform(rng, 0, 1);
     }
@@ -111,7 +111,8 @@ static void same_summary(const hf_summary *a, const hf_summary *b)
         same_result(&s->result, &t->result);
         ck_assert(!memcmp(&s->least_tension_N, &t->least_tension_N, sizeof(double)) &&
                   !memcmp(&s->largest_tension_N, &t->largest_tension_N, sizeof(double)) &&
-                  !memcmp(&s->move_rms_m, &t->move_rms_m, sizeof(double)) && isnan(t->largest_member_N));
+                  !memcmp(&s->displacement_rms_m, &t->displacement_rms_m, sizeof(double)) &&
+                  isnan(t->member_force_max_N));
         ck_assert(s->measures.is_measured == t->measures.is_measured &&
                   s->measures.fit.center_x_m == t->measures.fit.center_x_m);
     }
@@ -139,13 +140,13 @@ START_TEST(summary_comes_back_bit_by_bit)
     same_summary(&written, &read);
 
     /* without optimize only the members before has_optimize are there */
-    written.has_optimize = 0;
+    written.stage[HF_STAGE_SEARCH].exists = 0;
     end(begin(temp_path("b.h5"), 1, &net.scene), &written);
     ck_assert_int_eq(hf_store_read_summary(temp_path("b.h5"), &read, &messages), HF_OK);
     memset(&written.best, 0, sizeof written.best);
-    written.best_generation = written.best_individual = written.generations = written.optimize_stop = 0;
+    written.search.best_generation = written.best_individual = written.generations = written.search.algorithm_stop = 0;
     written.evaluations = written.infeasible = written.n_leader = written.planes = 0;
-    written.optimize_wall_s = written.optimize_cpu_s = 0;
+    written.stage[HF_STAGE_SEARCH].wall_s = written.search.cpu_s = 0;
     same_summary(&written, &read);
 
     /* without a truss nothing of the coupling */
@@ -423,7 +424,8 @@ START_TEST(generations_are_appended)
         fill_generation(&ga.population, g);
         ck_assert_msg(hf_store_generation(store, &m, &ga.population, &messages) == HF_OK, "%s", messages.text);
     }
-    end(store, &(hf_summary){.has_optimize = 1, .best.status = HF_NOT_EVALUATED, .status = HF_NO_FEASIBLE});
+    end(store,
+        &(hf_summary){.stage[HF_STAGE_SEARCH].exists = 1, .best.status = HF_NOT_EVALUATED, .status = HF_NO_FEASIBLE});
     hf_optimiser_free(&ga);
 
     char script[2048];

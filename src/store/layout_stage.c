@@ -1,0 +1,488 @@
+/* Writes and reads what the stages have besides their shapes, by tables of fields:
+ *
+ *     /surface        settings, frequency_Hz; /surface/STAGE: measures and losses; also of load cases
+ *     /pattern/STAGE  the far field, its figures and the feed
+ *     /set_tension/STAGE, /at_limit/STAGE    lists of sets and of limits
+ *     /objective      rows of the objective or of the front, and their values in the result of each stage
+ *     /coupling       attachments, history of the coupling
+ *     /load_cases     names and figures of the load cases
+ *
+ * Sections: groups of stages, surface, far field, sets and limits, objectives, coupling, load cases. */
+#include "store/layout.h"
+
+#include "base/text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- groups of stages ---- */
+
+enum { PATH_SIZE = 64 };
+
+/* Writes the path "/group/STAGE". */
+static const char *path_of(const char *group, int stage, char path[PATH_SIZE])
+{
+    snprintf(path, PATH_SIZE, "%s/%s", group, hf_stage_word[stage]);
+    return path;
+}
+
+static bool has_group(hf_hdf5 *io, const char *path)
+{
+    return io->status == HF_OK && hf_hdf5_has(io, io->file, path);
+}
+
+/* Names are printed and name groups, so they must have only these characters. */
+static bool is_name_right(const char *name)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    return *name && !name[strspn(name, letters)];
+}
+
+/* ---- surface ---- */
+
+#define MEASURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_surface_measures, NULL, #member, member, kind)
+#define FIT(type, member, kind, ...) HF_HDF5_MEMBER(hf_surface_measures, NULL, "fit_" #member, fit.member, kind)
+static const hf_hdf5_member measures[] = {HF_SURFACE_LIST(MEASURE) HF_SURFACE_FIT_LIST(FIT)};
+static const hf_hdf5_member settings[] = {
+    HF_HDF5_MEMBER(hf_surface_settings, NULL, "kind", kind, SURFACE)
+        HF_HDF5_MEMBER(hf_surface_settings, NULL, "focal_length_m", focal_length_m, REAL)
+            HF_HDF5_MEMBER(hf_surface_settings, NULL, "strip_width_m", strip_width_m, REAL)
+                HF_HDF5_MEMBER(hf_surface_settings, NULL, "mesh_tension_N_per_m", mesh_tension_N_per_m, REAL)};
+#define LOSS(member, description) HF_LAYOUT_FIELD(hf_surface_measures, #member, member, REAL, "dB", description)
+static const hf_layout_field losses[] = {HF_SURFACE_LOSS_LIST(LOSS)};
+static const hf_layout_field frequency[] = {
+    HF_LAYOUT_FIELD(hf_double_list, "frequency_Hz", value, REAL, "Hz", "frequencies of the gain losses")};
+
+static void put_measures(hf_hdf5 *io, const char *path, int n_frequency, const hf_surface_measures *s)
+{
+    if (!s->is_measured) return;
+    hid_t group = hf_hdf5_make_group(io, path);
+    hf_hdf5_put_members(io, path, measures, HF_HDF5_COUNT(measures), s);
+    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(losses), n_frequency, 0, s);
+    hf_hdf5_close(io, group);
+}
+
+static void get_measures(hf_hdf5 *io, const char *path, int n_frequency, hf_surface_measures *s)
+{
+    if (!has_group(io, path)) return;
+    s->is_measured = true;
+    hid_t group = hf_hdf5_open_group(io, path);
+    hf_hdf5_get_members(io, path, measures, HF_HDF5_COUNT(measures), s);
+    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(losses), n_frequency, 0, s);
+    hf_hdf5_close(io, group);
+}
+
+static void put_surface(hf_hdf5 *io, const hf_summary *s)
+{
+    char path[PATH_SIZE];
+    const hf_double_list *at = &s->surface.frequencies_Hz;
+    if (!(s->surface.focal_length_m > 0)) return;
+    hf_layout_renew(io, "/surface");
+    hid_t group = hf_hdf5_make_group(io, "/surface");
+    hf_hdf5_put_members(io, "/surface", settings, HF_HDF5_COUNT(settings), &s->surface);
+    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(frequency), at->n, 0, at);
+    hf_hdf5_close(io, group);
+    for (int i = 0; i < HF_N_STAGE; i++)
+        put_measures(io, path_of("/surface", i, path), at->n, &s->stage[i].surface);
+}
+
+static void get_surface(hf_hdf5 *io, hf_summary *s)
+{
+    char path[PATH_SIZE];
+    hf_double_list *at = &s->surface.frequencies_Hz;
+    if (!has_group(io, "/surface")) return;
+    hid_t group = hf_hdf5_open_group(io, "/surface");
+    hf_hdf5_get_members(io, "/surface", settings, HF_HDF5_COUNT(settings), &s->surface);
+    at->n = hf_hdf5_has(io, group, "frequency_Hz") ? hf_hdf5_length(io, group, "frequency_Hz", HF_LIST_MAX) : 0;
+    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(frequency), at->n, 0, at);
+    hf_hdf5_close(io, group);
+    for (int i = 0; i < HF_N_STAGE; i++)
+        get_measures(io, path_of("/surface", i, path), at->n, &s->stage[i].surface);
+}
+
+/* ---- far field ---- */
+
+#define ANGLES_MAX 1000000 /* maximum number of angles in a file */
+
+enum { FREQUENCY, PHI, THETA, CO, CROSS, N_ARRAY };
+static hf_hdf5_array array_of(int i, int n_frequency, int n_cut, int n_theta)
+{
+    const hsize_t f = (hsize_t)n_frequency, c = (hsize_t)n_cut, t = (hsize_t)n_theta;
+    const hf_hdf5_array all[N_ARRAY] = {
+        {"frequency_Hz", HF_KIND_REAL, 1, {f}, "Hz", ""},
+        {"phi_deg", HF_KIND_REAL, 1, {c}, "deg", "of each cut, from +x towards +y"},
+        {"theta_deg", HF_KIND_REAL, 1, {t}, "deg", "from +z; below 0 on the other side of +z"},
+        {"co_dBi", HF_KIND_REAL, 3, {f, c, t}, "dBi", "gain in the polarisation of the feed (Ludwig 3)"},
+        {"cross_dBi", HF_KIND_REAL, 3, {f, c, t}, "dBi", "gain in the polarisation across it"},
+    };
+    return all[i];
+}
+
+static void *values_of(const hf_pattern_table *t, int i)
+{
+    double *const values[N_ARRAY] = {t->frequency_Hz, t->phi_deg, t->theta_deg, t->co_dBi, t->cross_dBi};
+    return values[i];
+}
+
+#define FIGURE(member, units, description) HF_LAYOUT_MEMBER(hf_cut_figures, #member, member, REAL, units, description)
+static const hf_layout_field cut_figures[] = {
+    FIGURE(gain_dBi, "dBi", "maximum gain of the cut") FIGURE(beam_deg, "deg", "theta of the maximum gain")
+        FIGURE(half_power_width_deg, "deg", "of the beam; NaN where the angles do not reach it, as the next two")
+            FIGURE(first_sidelobe_dB, "dB", "the higher one beside the beam, below the beam")
+                FIGURE(highest_sidelobe_dB, "dB", "of all in the cut, below the beam")};
+
+static const hf_hdf5_kind kind_of_feed = {HF_HDF5_ENUM, 4, hf_feed_word, NULL};
+#define FEED(name, member)                                                                                             \
+    {                                                                                                                  \
+        NULL, name, HF_KIND_REAL, offsetof(hf_feed, member), sizeof(double)                                            \
+    }
+static const hf_hdf5_member feed[] = {
+    {NULL, "feed", &kind_of_feed, offsetof(hf_feed, kind), sizeof(hf_feed_kind)},
+    FEED("feed_x_m", position_m[0]),
+    FEED("feed_y_m", position_m[1]),
+    FEED("feed_z_m", position_m[2]),
+    FEED("axis_x", axis[0]),
+    FEED("axis_y", axis[1]),
+    FEED("axis_z", axis[2]),
+    FEED("polarisation_x", co[0]),
+    FEED("polarisation_y", co[1]),
+    FEED("polarisation_z", co[2]),
+    FEED("cos_power", cos_power),
+    FEED("scale", scale),
+};
+
+void hf_layout_write_pattern(hf_hdf5 *io, int stage, const hf_pattern_table *t, const hf_pattern_summary *s)
+{
+    char path[PATH_SIZE];
+    hf_hdf5_close(io, hf_hdf5_make_group(io, "/pattern"));
+    hf_layout_renew(io, path_of("/pattern", stage, path));
+    hid_t group = hf_hdf5_make_group(io, path);
+    hf_hdf5_put_members(io, path, feed, HF_HDF5_COUNT(feed), &s->feed);
+    for (int i = 0; i < N_ARRAY; i++) {
+        const hf_hdf5_array array = array_of(i, t->n_frequency, t->n_cut, t->n_theta);
+        hf_hdf5_write_array(io, group, &array, values_of(t, i));
+    }
+    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(cut_figures), t->n_frequency * t->n_cut, t->n_cut, s->figure);
+    hf_hdf5_close(io, group);
+}
+
+/* Reads all but the gain at each angle. */
+static void get_pattern(hf_hdf5 *io, hf_summary *summary, int stage)
+{
+    char path[PATH_SIZE];
+    if (!has_group(io, "/pattern") || !has_group(io, path_of("/pattern", stage, path))) return;
+    hf_pattern_summary *s = summary->stage[stage].pattern = calloc(1, sizeof *s);
+    if (!s) hf_hdf5_no_memory(io);
+    if (!s) return;
+    hid_t group = hf_hdf5_open_group(io, path);
+    int f = hf_hdf5_length(io, group, "frequency_Hz", HF_LIST_MAX);
+    int c = hf_hdf5_length(io, group, "phi_deg", HF_PATTERN_CUTS);
+    const hf_hdf5_array at = array_of(FREQUENCY, f, c, 1), phi = array_of(PHI, f, c, 1);
+    s->n_frequency = f;
+    s->n_cut = c;
+    hf_hdf5_read_array(io, group, &at, s->frequency_Hz);
+    hf_hdf5_read_array(io, group, &phi, s->phi_deg);
+    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(cut_figures), f * c, c, s->figure);
+    hf_hdf5_get_members(io, path, feed, HF_HDF5_COUNT(feed), &s->feed);
+    hf_hdf5_close(io, group);
+}
+
+void hf_layout_read_pattern(hf_hdf5 *io, int stage, hf_pattern_table *t)
+{
+    char path[PATH_SIZE];
+    hid_t group = hf_hdf5_open_group(io, path_of("/pattern", stage, path));
+    int f = hf_hdf5_length(io, group, "frequency_Hz", HF_LIST_MAX);
+    int c = hf_hdf5_length(io, group, "phi_deg", HF_PATTERN_CUTS);
+    int n = hf_hdf5_length(io, group, "theta_deg", ANGLES_MAX);
+    if (io->status == HF_OK && hf_pattern_table_create(f, c, n, t) != HF_OK) hf_hdf5_no_memory(io);
+    for (int i = 0; i < N_ARRAY && io->status == HF_OK; i++) {
+        const hf_hdf5_array array = array_of(i, f, c, n);
+        hf_hdf5_read_array(io, group, &array, values_of(t, i));
+    }
+    hf_hdf5_close(io, group);
+}
+
+/* ---- sets and limits ---- */
+
+/* Of hf_set_tensions and hf_held_limits. The first field has the length of the list. */
+#define SET(name, member, kind, units, description)                                                                    \
+    HF_LAYOUT_FIELD(hf_set_tensions, name, member, kind, units, description)
+static const hf_layout_field sets[] = {
+    SET("ratio", ratio, REAL, "", "the maximum over the minimum; infinite with a slack cable, NaN with a strut")
+        SET("name", name, CHARS, "", "name of the set") SET("min_N", min_N, REAL, "N", "minimum tension of each set")
+            SET("max_N", max_N, REAL, "N", "maximum tension of each set")};
+
+#define LIMIT(name, member, kind, description) HF_LAYOUT_FIELD(hf_held_limits, name, member, kind, "", description)
+static const hf_layout_field limits[] = {
+    LIMIT("bound", bound, REAL, "bound of the named one: N, m, or a ratio")
+        LIMIT("row", row, INT, "row of optimize.limits; -1: boundary_ratio_cap")
+            LIMIT("count", count, INT, "number of cables or attachments of the row at this bound")
+                LIMIT("name", name, CHARS, "name of one of them")
+                    LIMIT("value", value, REAL, "value of the named one, in the unit of the bound")};
+
+/* Returns true if the names are valid and in ascending order. They are printed as they are. */
+static bool are_sets_right(hf_set_tensions *s)
+{
+    for (int k = 0; k < s->n; k++) {
+        s->name[k][HF_CABLE_SET_NAME_SIZE - 1] = '\0';
+        if (hf_cable_set_name_fault(s->name[k]) || (k > 0 && strcmp(s->name[k - 1], s->name[k]) >= 0)) return false;
+    }
+    return true;
+}
+
+/* Returns true if names and indices are valid. Names are printed as they are, so they are trimmed to whole UTF-8
+ * characters. */
+static bool are_limits_right(hf_held_limits *h)
+{
+    bool is_right = true;
+    for (int i = 0; i < h->n; i++) {
+        h->name[i][HF_HELD_NAME_SIZE - 1] = '\0';
+        hf_text_trim_utf8(h->name[i]);
+        is_right &= *h->name[i] && h->row[i] >= -1 && h->row[i] < HF_DESIGN_ROWS_MAX && h->count[i] > 0;
+    }
+    return is_right;
+}
+
+static void put_list(hf_hdf5 *io, const char *outer, int stage, const hf_layout_field *table, int n_field, int n,
+                     const void *owner)
+{
+    char path[PATH_SIZE];
+    if (n == 0) return;
+    hf_hdf5_close(io, hf_hdf5_make_group(io, outer));
+    hid_t group = hf_hdf5_make_group(io, path_of(outer, stage, path));
+    hf_layout_put_fields(io, group, table, n_field, n, 0, owner);
+    hf_hdf5_close(io, group);
+}
+
+/* Reads a list of at most `max` items into *owner, a new object of `size` bytes. Returns the length; 0: there is no
+ * such list. */
+static int get_list(hf_hdf5 *io, const char *outer, int stage, const hf_layout_field *table, int n_field, int max,
+                    void **owner, size_t size)
+{
+    char path[PATH_SIZE];
+    if (!has_group(io, outer) || !has_group(io, path_of(outer, stage, path))) return 0;
+    if (!(*owner = calloc(1, size))) hf_hdf5_no_memory(io);
+    hid_t group = hf_hdf5_open_group(io, path);
+    int n = hf_hdf5_length(io, group, table[0].name, max);
+    hf_layout_get_fields(io, group, table, n_field, n, 0, *owner);
+    hf_hdf5_close(io, group);
+    return io->status == HF_OK ? n : 0;
+}
+
+static void get_sets(hf_hdf5 *io, hf_stage_summary *s, int stage)
+{
+    void *owner = NULL;
+    int n = get_list(io, "/set_tension", stage, HF_LAYOUT_TABLE(sets), HF_SUMMARY_SETS, &owner, sizeof *s->sets);
+    if ((s->sets = owner)) s->sets->n = n;
+    if (s->sets && io->status == HF_OK && !are_sets_right(s->sets))
+        hf_hdf5_damaged(io, io->file, "/set_tension", "does not name sets of cables");
+}
+
+static void get_limits(hf_hdf5 *io, hf_stage_summary *s, int stage)
+{
+    void *owner = NULL;
+    int n = get_list(io, "/at_limit", stage, HF_LAYOUT_TABLE(limits), HF_SUMMARY_HELD, &owner, sizeof *s->held);
+    if ((s->held = owner)) s->held->n = n;
+    if (s->held && io->status == HF_OK && !are_limits_right(s->held))
+        hf_hdf5_damaged(io, io->file, "/at_limit", "does not name limits");
+}
+
+/* ---- objectives ---- */
+
+#define OBJECTIVE(name, member, kind, description)                                                                     \
+    HF_LAYOUT_FIELD(hf_objective_list, name, member, kind, "", description)
+static const hf_layout_field objective_names[] = {OBJECTIVE("name", name, CHARS, "number, figure and set")};
+static const hf_layout_field objective_fits[] = {
+    OBJECTIVE("after_fit", after_fit, INT, "1: of the surface after its best fit, 0: as it stands, -1: other figures")};
+static const hf_layout_field objective_weights[] = {OBJECTIVE("weight", weight, REAL, "of the value in the merit")};
+
+const double *hf_layout_objectives(const hf_summary *s, int stage)
+{
+    return s->objectives.n > 0 && hf_summary_has_shape(s, (hf_stage)stage) ? s->stage[stage].result.objective : NULL;
+}
+
+/* Describes the values of all rows in the result of a stage. */
+static hf_layout_field objective_values(int stage)
+{
+    return (hf_layout_field){.name = hf_stage_word[stage],
+                             .kind = HF_KIND_REAL,
+                             .units = "",
+                             .description = "value of each objective, in its own unit",
+                             .stride = sizeof(double),
+                             .size = sizeof(double)};
+}
+
+static void put_objectives(hf_hdf5 *io, const hf_summary *s)
+{
+    const hf_objective_list *g = &s->objectives;
+    if (g->n == 0) return;
+    hf_layout_renew(io, "/objective");
+    hid_t group = hf_hdf5_make_group(io, "/objective");
+    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(objective_names), g->n, 0, g);
+    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(objective_fits), g->n, 0, g);
+    if (!g->is_front) hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(objective_weights), g->n, 0, g);
+    for (int i = 0; i < HF_N_STAGE; i++) {
+        const hf_layout_field values = objective_values(i);
+        if (hf_layout_objectives(s, i))
+            hf_layout_put_fields(io, group, &values, 1, g->n, 0, hf_layout_objectives(s, i));
+    }
+    hf_hdf5_close(io, group);
+}
+
+static void get_objectives(hf_hdf5 *io, hf_summary *s)
+{
+    hf_objective_list *g = &s->objectives;
+    bool is_right = true;
+    if (!has_group(io, "/objective")) return;
+    hid_t group = hf_hdf5_open_group(io, "/objective");
+    g->is_front = !hf_hdf5_has(io, group, "weight");
+    g->n = hf_hdf5_length(io, group, "name", HF_DESIGN_ROWS_MAX);
+    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(objective_names), g->n, 0, g);
+    for (int k = 0; k < g->n; k++)
+        g->after_fit[k] = -1; /* files of version 0.1 have no such values */
+    if (hf_hdf5_has(io, group, "after_fit"))
+        hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(objective_fits), g->n, 0, g);
+    if (!g->is_front) hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(objective_weights), g->n, 0, g);
+    for (int i = 0; i < HF_N_STAGE; i++) {
+        const hf_layout_field values = objective_values(i);
+        if (hf_layout_objectives(s, i))
+            hf_layout_get_fields(io, group, &values, 1, g->n, 0, s->stage[i].result.objective);
+    }
+    for (int k = 0; k < g->n; k++) {
+        char then[HF_OBJECTIVE_NAME_SIZE], now[2 * HF_OBJECTIVE_NAME_SIZE];
+        g->name[k][HF_OBJECTIVE_NAME_SIZE - 1] = '\0';
+        memcpy(then, g->name[k], sizeof then);
+        snprintf(g->name[k], sizeof g->name[k], "%s", hf_renamed_figure(then, now, sizeof now));
+        is_right = is_right && is_name_right(g->name[k]);
+    }
+    if (io->status == HF_OK && !is_right) hf_hdf5_damaged(io, group, "name", "does not name objectives");
+    hf_hdf5_close(io, group);
+}
+
+/* ---- coupling ---- */
+
+static void write_attachments(hf_hdf5 *io, hid_t group, const hf_model *m)
+{
+    const hf_hdf5_array array = {
+        "node", HF_KIND_INT, 1, {(hsize_t)m->n_attachment}, "", "each attachment, as an index into /scene/node"};
+    int *index = io->status == HF_OK ? malloc((size_t)m->n_attachment * sizeof *index) : NULL;
+    if (!index) hf_hdf5_no_memory(io);
+    if (!index) return;
+    for (int i = 0; i < m->n_attachment; i++)
+        index[i] = m->node_of_row[m->attachment_row[i]];
+    hf_hdf5_write_array(io, group, &array, index);
+    free(index);
+}
+
+void hf_layout_write_coupling(hf_hdf5 *io, const hf_model *m, const hf_workspace *w, const hf_coupling_history *h)
+{
+    static const hf_layout_column history_column[] = {
+        {"step_m", HF_KIND_REAL, 0, 1, "m", "maximum displacement of an attachment by the next form-finding",
+         offsetof(hf_coupling_history, step_m)},
+        {"psi_m", HF_KIND_REAL, 0, 1, "m", "RMS distance of the inner nodes", offsetof(hf_coupling_history, psi_m)},
+        {"deflection_max_m", HF_KIND_REAL, 0, 1, "m", "maximum deflection of the truss at an attachment",
+         offsetof(hf_coupling_history, deflection_max_m)}};
+    static const hf_layout_column attachment_column[] = {
+        {"displacement_m", HF_KIND_REAL, 0, 3, "m", "of each attachment", offsetof(hf_workspace, displacement_m)},
+        {"force_N", HF_KIND_REAL, 0, 3, "N", "pull of the net and its loads on each attachment",
+         offsetof(hf_workspace, attachment_force_N)}};
+    static const hf_layout_columns history = {HF_LAYOUT_COLUMNS(history_column)};
+    static const hf_layout_columns attachment = {HF_LAYOUT_COLUMNS(attachment_column)};
+    hid_t group = hf_hdf5_make_group(io, "/coupling");
+    write_attachments(io, group, m);
+    hf_layout_write_columns(io, group, &attachment, m->n_attachment, 0, w);
+    hf_hdf5_close(io, group);
+    if (!h) return;
+    group = hf_hdf5_make_group(io, "/coupling/history");
+    hf_layout_write_columns(io, group, &history, h->n, 0, h);
+    hf_hdf5_close(io, group);
+}
+
+/* ---- load cases ---- */
+
+#define RESULT(type, member, kind, ...) HF_HDF5_MEMBER(hf_load_case_summary, NULL, #member, result.member, kind)
+#define COUPLING(type, member, kind, ...)                                                                              \
+    HF_HDF5_MEMBER(hf_load_case_summary, NULL, "coupling_" #member, result.coupling.member, kind)
+#define LOAD_CASE(type, member, kind, ...) HF_HDF5_MEMBER(hf_load_case_summary, NULL, #member, member, kind)
+static const hf_hdf5_member load_case[] = {HF_RESULT_LIST(RESULT) HF_LOAD_CASE_LIST(LOAD_CASE)
+                                               HF_COUPLING_LIST(COUPLING)};
+static const hf_layout_field load_case_names[] = {
+    HF_LAYOUT_MEMBER(hf_load_case_summary, "name", name, CHARS, "", "load cases of the as-built net")};
+
+static void put_load_cases(hf_hdf5 *io, const hf_summary *s)
+{
+    char path[HF_LAYOUT_LOAD_CASE_SIZE], surface[HF_LAYOUT_LOAD_CASE_SIZE + 16];
+    if (s->n_load_case == 0) return;
+    hid_t group = hf_hdf5_make_group(io, "/load_cases");
+    hf_layout_renew(io, "/load_cases/name");
+    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(load_case_names), s->n_load_case, 0, s->load_case);
+    hf_hdf5_close(io, group);
+    for (int k = 0; k < s->n_load_case; k++) {
+        snprintf(path, sizeof path, "/load_cases/%s", s->load_case[k].name);
+        snprintf(surface, sizeof surface, "%s/surface", path);
+        hf_hdf5_close(io, hf_hdf5_make_group(io, path));
+        hf_hdf5_put_members(io, path, load_case, HF_HDF5_COUNT(load_case), &s->load_case[k]);
+        put_measures(io, surface, s->surface.frequencies_Hz.n, &s->load_case[k].surface);
+    }
+}
+
+static void get_load_cases(hf_hdf5 *io, hf_summary *s)
+{
+    char path[HF_LAYOUT_LOAD_CASE_SIZE];
+    /* An unfinished result has shapes of load cases, but no list of their names yet. */
+    if (!has_group(io, "/load_cases") || !has_group(io, "/load_cases/name")) return;
+    hid_t group = hf_hdf5_open_group(io, "/load_cases");
+    int n = hf_hdf5_length(io, group, "name", HF_LOAD_CASES_MAX);
+    if (n > 0 && !(s->load_case = calloc((size_t)n, sizeof *s->load_case))) hf_hdf5_no_memory(io);
+    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(load_case_names), n, 0, s->load_case);
+    hf_hdf5_close(io, group);
+    if (io->status == HF_OK) s->n_load_case = n;
+    for (int k = 0; k < n && io->status == HF_OK; k++) {
+        hf_load_case_summary *of = &s->load_case[k];
+        of->name[HF_SET_NAME_SIZE - 1] = '\0';
+        if (!is_name_right(of->name)) {
+            hf_hdf5_damaged(io, io->file, "/load_cases/name", "does not name load cases");
+            return;
+        }
+        snprintf(path, sizeof path, "/load_cases/%s", of->name);
+        hf_hdf5_get_members(io, path, load_case, HF_HDF5_COUNT(load_case), of);
+        strncat(path, "/surface", sizeof path - strlen(path) - 1);
+        get_measures(io, path, s->surface.frequencies_Hz.n, &of->surface);
+    }
+}
+
+/* ---- all ---- */
+
+void hf_layout_put_stages(hf_hdf5 *io, const hf_summary *s)
+{
+    put_surface(io, s);
+    hf_layout_renew(io, "/set_tension");
+    hf_layout_renew(io, "/at_limit");
+    for (int i = 0; i < HF_N_STAGE; i++) {
+        const hf_set_tensions *of = s->stage[i].sets;
+        const hf_held_limits *held = s->stage[i].held;
+        if (of) put_list(io, "/set_tension", i, HF_LAYOUT_TABLE(sets), of->n, of);
+        if (held) put_list(io, "/at_limit", i, HF_LAYOUT_TABLE(limits), held->n, held);
+    }
+    put_objectives(io, s);
+    put_load_cases(io, s);
+}
+
+void hf_layout_put_objectives(hf_hdf5 *io, const hf_summary *s)
+{
+    put_objectives(io, s);
+}
+
+void hf_layout_get_stages(hf_hdf5 *io, hf_summary *s)
+{
+    get_surface(io, s);
+    for (int i = 0; i < HF_N_STAGE; i++) {
+        get_pattern(io, s, i);
+        get_sets(io, &s->stage[i], i);
+        get_limits(io, &s->stage[i], i);
+    }
+    get_objectives(io, s);
+    get_load_cases(io, s);
+}
