@@ -97,11 +97,25 @@ static void demand_plain(void *context, const char *path, hid_t object, H5I_type
         hf_hdf5_damaged(io, io->file, path, type == H5I_BADID ? "is a link to another place" : "is no data set");
 }
 
+/* The names in an unfinished file must be those of this version, because the run goes on writing into it. */
+static void refuse_other_format(hf_store *s)
+{
+    hf_hdf5 *io = &s->f.io;
+    int version = 0;
+    hf_hdf5_get(io, io->file, "/", "format_version", HF_KIND_INT, &version, sizeof version);
+    if (io->status == HF_OK && version != HF_FORMAT_VERSION)
+        io->status = hf_error(io->messages, HF_EXISTS,
+                              "%s: is an unfinished result of hifdm 0.2, which this version does not go on with; "
+                              "--restart (of a sweep: --retry failed) begins anew, or finish it with hifdm 0.2",
+                              s->f.out.path);
+}
+
 static void read_state(hf_store *s)
 {
     hf_hdf5 *io = &s->f.io;
     signed char finished = 0;
     int n_individual = 1, n_variable = 0, n_objective = 0, limit = 1, every = 1;
+    refuse_other_format(s);
     hf_hdf5_walk(io, demand_plain, io);
     hf_hdf5_get(io, io->file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     hf_hdf5_get(io, io->file, "/", "identity", HF_KIND_CHARS, s->identity, sizeof s->identity);
