@@ -47,14 +47,39 @@ def refuse(word):
 
 
 def data_sets(file):
-    """Returns {path: data set} of all data sets, without the links in the grid for ParaView."""
+    """Returns {path: data set} of all data sets, without old names and without the links in the grid for ParaView."""
+    import h5py
+
     found = {}
     for name, item in file.items():
+        if isinstance(file.get(name, getlink=True), h5py.SoftLink):
+            continue
         if hasattr(item, "dtype"):
             found[name] = item
         elif name != "VTKHDF":
             found.update({f"{name}/{below}": of for below, of in data_sets(item).items()})
     return found
+
+
+def missing_names(old, new):
+    """Returns the paths and attributes of a file that another one does not have, not even as links."""
+    missing = []
+
+    def look(name, item):
+        if name.startswith("VTKHDF"):
+            return
+        if name not in new:
+            missing.append(name)
+        else:
+            missing.extend(f"{name}@{key}" for key in item.attrs if key not in new[name].attrs)
+
+    look("/", old)
+    old.visititems(look)
+    return missing
+
+
+def close(a, b):
+    return abs(a - b) <= 1e-9 * abs(b)
 
 
 def contents(file):

@@ -1,17 +1,22 @@
 /* Result files of earlier versions are read: by show, export, report and diff. old_result.py makes them from text. */
 #include "cli.h"
 
-static const char *old_result(const char *name)
+static const char *result_of(const char *version, const char *name)
 {
     const char *path = temp(name);
     const char *const argv[] = {python_program(),
                                 keep(source_path("tests/cli/old_result.py")),
                                 "file",
-                                keep(source_path("tests/cli/data/result-0.1.0.json")),
+                                keep(source_path(keep(formatted("tests/cli/data/result-%s.json", version)))),
                                 path,
                                 NULL};
     demand_exit(run_command(HANG_S, argv), 0, "old_result.py", __LINE__);
     return path;
+}
+
+static const char *old_result(const char *name)
+{
+    return result_of("0.1.0", name);
 }
 
 START_TEST(results_of_0_1_0_are_shown_and_exported)
@@ -61,6 +66,59 @@ START_TEST(results_of_0_1_0_are_compared)
 }
 END_TEST
 
+/* Writes the case that a result contains. */
+static const char *case_of(const char *result)
+{
+    const char *path = temp("stored.yaml");
+    SHELL(0,
+          "\"$1\" -c 'import h5py, sys; open(sys.argv[2], \"wb\").write(h5py.File(sys.argv[1])[\"case/text\"][()])' "
+          "\"$2\" \"$3\"",
+          python_program(), result, path);
+    return path;
+}
+
+/* The names differ in all parts of the file: variables, search, refinement, load cases, objectives, samples. */
+START_TEST(results_of_0_2_0_are_read_by_their_own_names)
+{
+    const char *old = result_of("0.2.0", "old.h5"), *now = temp("now.h5"), *a = temp("a.json"), *b = temp("b.json");
+    HIFDM(0, "run", case_of(old), "-o", now, "--quiet");
+    struct command command = run_hifdm("diff", now, old, "--rtol", "1e-6", "--atol", "1e-9");
+    ck_assert_msg(command.exit_code == 0 && strstr(command.out, "209 data sets, 0 differ"), "%s%s", command.out,
+                  command.err);
+    free_command(&command);
+    HIFDM(0, "show", old, "--json");
+    out_as(a);
+    HIFDM(0, "show", now, "--json");
+    out_as(b);
+    EXPECT(a, b, "--", "set(a) == set(b) and all(set(a[k]) == set(b[k]) for k in a if isinstance(a[k], dict))",
+           "close(a['search']['psi_m'], b['search']['psi_m']) and a['search']['generations'] == 3",
+           "close(a['refine']['objectives']['objective_1_tension_front_edge']['value'], "
+           "b['refine']['objectives']['objective_1_tension_front_edge']['value'])",
+           "a['refine']['steps'] == b['refine']['steps'] == 2 and a['refine']['is_result']",
+           "close(a['load_cases']['cold']['member_force_max_N'], b['load_cases']['cold']['member_force_max_N'])",
+           "close(a['refine']['sets']['tie']['min_N'], b['refine']['sets']['tie']['min_N'])",
+           "a['tolerance']['required_yield'] == 0.5 and a['coupling']['stop_reason'] == 'converged'");
+    HIFDM(0, "report", old, "-o", temp("old.html"));
+    HIFDM(0, "export", old, "--csv", temp("csv"), "--stage", "search");
+}
+END_TEST
+
+/* Programs for files of 0.2 find every data set and attribute that they read, by links and copies. */
+START_TEST(new_results_hold_the_names_of_0_2)
+{
+    const char *old = result_of("0.2.0", "old.h5"), *now = temp("now.h5");
+    HIFDM(0, "run", case_of(old), "-o", now, "--quiet");
+    EXPECT(old, now, "--", "not missing_names(a, b)",
+           "b.get('ga/best/position_m', getlink=True).path == '/search/position_m'",
+           "(b['ga/best/position_m'][:] == b['search/position_m'][:]).all()",
+           "b['ga'].attrs['best_psi_m'] == b['search'].attrs['psi_m']",
+           "b['ga'].attrs['optimize_stop'] == b['search'].attrs['algorithm_stop']",
+           "b['polish'].attrs['polish_iterations'] == b['refine'].attrs['steps'] == 2",
+           "(b['cases/cold/tension_N'][:] == b['load_cases/cold/tension_N'][:]).all()",
+           "b['search'].attrs['algorithm'] == b'ga' and b['refine'].attrs['algorithm'] == b'lm'");
+}
+END_TEST
+
 Suite *suite_cli_versions(void)
 {
     Suite *suite = suite_create("cli/versions");
@@ -68,5 +126,7 @@ Suite *suite_cli_versions(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, results_of_0_1_0_are_shown_and_exported);
     tcase_add_test(tests, results_of_0_1_0_are_compared);
+    tcase_add_test(tests, results_of_0_2_0_are_read_by_their_own_names);
+    tcase_add_test(tests, new_results_hold_the_names_of_0_2);
     return suite;
 }
