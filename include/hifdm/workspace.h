@@ -29,7 +29,7 @@ HF_API_BEGIN
 #define HF_SCHUR_COLUMNS(m) (3 * ((size_t)(m)->n_attachment + HF_SCHUR_PANEL * 3 * (size_t)(m)->n_free))
 #define HF_SCHUR_ITEMS(m) (27 * (size_t)(m)->n_attachment * (size_t)(m)->n_attachment + HF_SCHUR_COLUMNS(m))
 
-/* Doubles of the primal-dual path (src/solve/path_cable.h): HF_INTERIOR_BLOCK for each block of eight cables. */
+/* Doubles of the primal-dual path (src/solve/path_kernel.h): HF_INTERIOR_BLOCK for each block of eight cables. */
 #define HF_INTERIOR_BLOCK 416
 #define HF_INTERIOR_ITEMS(m) (HF_INTERIOR_BLOCK * (((size_t)(m)->n_cable + 7) / 8))
 

@@ -14,7 +14,7 @@
 #include "run/tolerance_stage.h"
 #include "search/chord.h"
 #include "search/refine.h"
-#include "search/swarm_lane.h"
+#include "search/swarm.h"
 #include "solve/prestress.h"
 #include <hifdm/batch.h>
 #include <hifdm/pattern.h>
@@ -23,7 +23,7 @@
 #include <limits.h>
 #include <math.h>
 
-#define OPERATIONS_PER_S 2e9 /* speed of one core, as in search/refine_cost.c */
+#define OPERATIONS_PER_S 2e9 /* speed of one core, as in search/refine.c */
 #define LONG_S 3600.0        /* above this time, or above LARGE_BYTES, advice is printed */
 #define LARGE_BYTES 2e9
 #define TRIAL_S 1.0 /* approximate wall-clock time of the trial of form-finding */

@@ -35,6 +35,11 @@ hf_status hf_arena_allocate(hf_arena *arena);
 
 void hf_arena_free(hf_arena *arena);
 
+/* The arrays of a struct are listed once, in rows X(type, name, count, meaning). These make the members of the struct, and
+ * take the arrays in a layout function with an `arena` and the struct `to`. */
+#define HF_ARENA_MEMBER(type, name, ...) type *name;
+#define HF_ARENA_TAKE(type, name, count, ...) to->name = hf_arena_take(arena, (size_t)(count), sizeof(type));
+
 static inline void hf_arena_free_block(void *block)
 {
     hf_arena_free(&(hf_arena){.block = block});

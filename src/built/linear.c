@@ -72,7 +72,7 @@ static hf_status factor_shape(hf_built_linear *l)
     for (int e = 0; e < m->n_cable; e++)
         look_at_cable(l, e);
     const double *spring = spring_loose(m, &l->work) ? l->work.spring_N_per_m : NULL;
-    HF_TRY(hf_newton_matrix_factor_blocks(m, &l->work, hf_newton_matrix_block, spring, &condition));
+    HF_TRY(hf_newton_matrix_factor_blocks(m, &l->work, hf_newton_matrix_block, spring, NULL, &condition));
     if (isinf(condition)) return HF_SINGULAR;
     if (m->n_attachment) HF_TRY(hf_schur_factor(m, &l->work, hf_newton_matrix_block, &l->schur));
     l->is_factored = true;

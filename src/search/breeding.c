@@ -32,12 +32,13 @@ double *hf_breeding_draws(const hf_breeding *g, int i)
     return g->draw + (size_t)i * (size_t)g->model->n_variable_group;
 }
 
-void hf_breeding_first(const hf_breeding *g, uint64_t seed, hf_population *p)
+void hf_breeding_first(void *breeding, hf_population *p)
 {
+    const hf_breeding *g = breeding;
     for (int i = 0; i < p->n_individual; i++) {
         double *design = p->design + (size_t)i * (size_t)p->n_variable;
         double *draw = hf_breeding_draws(g, i);
-        hf_random random = hf_random_stream(seed, 0, i);
+        hf_random random = hf_random_stream(g->settings->seed, 0, i);
         for (int j = 0; j < g->model->n_variable_group; j++)
             draw[j] = i == 0 ? 0 : 2 * hf_random_uniform(&random) - 1;
         for (int k = 0; k < p->n_variable; k++) {

@@ -12,8 +12,10 @@
 #include <hifdm/population.h>
 #include <stdbool.h>
 
+/* The state of an optimiser begins with it. */
 typedef struct {
-    const hf_model *model; /* borrowed */
+    const hf_optimize_settings *settings; /* borrowed, like the model */
+    const hf_model *model;
     double *draw; /* [n_individual][n_variable_group] scratch of each child; threads make several children at a time */
 } hf_breeding;
 
@@ -33,8 +35,9 @@ int hf_breeding_n_leader(const hf_breeding *breeding);
 double *hf_breeding_draws(const hf_breeding *breeding, int i);
 
 /* Writes the first generation: Eq. 13 around the initial design, with one random number per chain. Individual 0 is the
- * initial design itself, so the best individual is never worse than the initial design. */
-void hf_breeding_first(const hf_breeding *breeding, uint64_t seed, hf_population *population);
+ * initial design itself, so the best individual is never worse than the initial design. `breeding` points to an
+ * hf_breeding. This is `first` of hf_optimiser_kind. */
+void hf_breeding_first(void *breeding, hf_population *population);
 
 /* Moves child [n_variable] of individual i along the difference from design `from` to design `to`, both [n_variable]. A
  * random share of its chains or genes moves, by a random number of differences from 0 to step_max. */

@@ -10,9 +10,9 @@
  * The order of the operations in a lane is always the same. Products are fused with sums only where the source says so
  * (lane.h). All instruction sets therefore give the same bits.
  *
- * Contents: vectors - forces - the truss - the step - measures */
+ * Contents: vectors - forces - the truss - the step - measures - table */
 #define HF_LANE_VECTORS
-#include "search/chord_kernel.h"
+#include "search/chord.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -78,7 +78,7 @@ INLINE void sum_force(const hf_chord *chord, const hf_chord_lanes *l, int place,
 
 /* Computes the forces on the free nodes and attachments, and the square of the maximum nodal force over the reference
  * tension. */
-static void forces(const hf_chord *chord, const hf_chord_lanes *l, int p, double *residual_squared)
+static void forces_part(const hf_chord *chord, const hf_chord_lanes *l, int p, double *residual_squared)
 {
     const hf_model *m = chord->evaluator->model;
     const double *force = l->force_N + chord->matrix.width * HF_LANES;
@@ -102,10 +102,10 @@ static void forces(const hf_chord *chord, const hf_chord_lanes *l, int p, double
     put(residual_squared, largest, p);
 }
 
-void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES])
+static void forces(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES])
 {
     for (int p = 0; p < HF_LANES; p += WIDTH)
-        forces(chord, l, p, residual_squared);
+        forces_part(chord, l, p, residual_squared);
 }
 
 /* ---- the truss ---- */
@@ -129,7 +129,7 @@ static void find_gap(const hf_chord *chord, const hf_chord_lanes *l, int p)
 }
 
 /* Finds the maximum gap and multiplies the gaps by (I + F S)^-1 = I + sum of left right' over the modes. */
-static void couple(const hf_chord *chord, const hf_chord_lanes *l, int p, double *gap_squared)
+static void couple_part(const hf_chord *chord, const hf_chord_lanes *l, int p, double *gap_squared)
 {
     vec share[HF_CHORD_MODES_MAX], largest = splat(0);
     find_gap(chord, l, p);
@@ -154,15 +154,15 @@ static void couple(const hf_chord *chord, const hf_chord_lanes *l, int p, double
     }
 }
 
-void HF_KERNEL(hf_chord_couple)(const hf_chord *chord, const hf_chord_lanes *l, double gap_squared[HF_LANES])
+static void couple(const hf_chord *chord, const hf_chord_lanes *l, double gap_squared[HF_LANES])
 {
     for (int p = 0; p < HF_LANES; p += WIDTH)
-        couple(chord, l, p, gap_squared);
+        couple_part(chord, l, p, gap_squared);
 }
 
 /* Moves the attachments by move_m, and adds the stiffness of their cables times this step to the forces on free
  * nodes. */
-static void move(const hf_chord *chord, const hf_chord_lanes *l, int p)
+static void move_part(const hf_chord *chord, const hf_chord_lanes *l, int p)
 {
     const hf_model *m = chord->evaluator->model;
     const double *force = l->force_N + chord->matrix.width * HF_LANES;
@@ -184,15 +184,15 @@ static void move(const hf_chord *chord, const hf_chord_lanes *l, int p)
     }
 }
 
-void HF_KERNEL(hf_chord_move)(const hf_chord *chord, const hf_chord_lanes *l)
+static void move(const hf_chord *chord, const hf_chord_lanes *l)
 {
     for (int p = 0; p < HF_LANES; p += WIDTH)
-        move(chord, l, p);
+        move_part(chord, l, p);
 }
 
 /* ---- the step ---- */
 
-void HF_KERNEL(hf_chord_step)(const hf_chord *chord, const hf_chord_lanes *l)
+static void step(const hf_chord *chord, const hf_chord_lanes *l)
 {
     const hf_model *m = chord->evaluator->model;
     const double *step = l->force_N + chord->matrix.width * HF_LANES;
@@ -218,7 +218,7 @@ static vec psi(const hf_model *m, const double *x_m, int p)
 }
 
 /* Finds the extreme tensions of each group, the extreme length ratios, the error against given tensions, and psi. */
-static void measure(const hf_chord *chord, const hf_chord_lanes *l, int p, hf_chord_measures *out)
+static void measure_part(const hf_chord *chord, const hf_chord_lanes *l, int p, hf_chord_measures *out)
 {
     const hf_model *m = chord->evaluator->model;
     vec most = splat(INFINITY), none = splat(0), error = none, d[3];
@@ -255,8 +255,12 @@ static void measure(const hf_chord *chord, const hf_chord_lanes *l, int p, hf_ch
     *lanes_of(out->longest, 0, p) = longest;
 }
 
-void HF_KERNEL(hf_chord_measure)(const hf_chord *chord, const hf_chord_lanes *l, hf_chord_measures *measures)
+static void measure(const hf_chord *chord, const hf_chord_lanes *l, hf_chord_measures *measures)
 {
     for (int p = 0; p < HF_LANES; p += WIDTH)
-        measure(chord, l, p, measures);
+        measure_part(chord, l, p, measures);
 }
+
+/* ---- table ---- */
+
+const hf_chord_kernels HF_KERNEL(hf_chord_kernels) = {forces, step, couple, move, measure};

@@ -25,7 +25,7 @@
  *
  * Contents: vectors - tiles - factor - substitution - assembly - solve - measures - table */
 #define HF_LANE_VECTORS
-#include "search/swarm_kernel.h"
+#include "search/swarm.h"
 
 #include <hifdm/metrics.h>
 

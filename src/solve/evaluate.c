@@ -182,14 +182,6 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design, hf_workspa
         apply_variable(v, k, design[k], w);
 }
 
-/* Measures the objectives of a shape, feasible or not. */
-static void measure_objectives(const hf_evaluator *v, hf_workspace *w, hf_form_result *r)
-{
-    if (!v->objectives) return;
-    if (hf_objectives_measure(v->objectives, w, w->objectives, r->objective, &r->merit) != HF_OK)
-        r->status = HF_NO_MEMORY;
-}
-
 hf_status hf_evaluate_judge(const hf_evaluator *v, hf_workspace *w, hf_form_result *r)
 {
     bool has_shape = r->status == HF_OK, breaks_cap = is_above_cap(v, r);
@@ -197,7 +189,9 @@ hf_status hf_evaluate_judge(const hf_evaluator *v, hf_workspace *w, hf_form_resu
     if (has_shape && (v->limits || breaks_cap)) r->violation = hf_limits_violation(v, w);
     if (has_shape && r->violation > 0) r->status = HF_OUT_OF_LIMITS;
     if (breaks_cap) r->status = HF_RATIO_CAP;
-    if (has_shape) measure_objectives(v, w, r);
+    if (has_shape && v->objectives && /* feasible or not */
+        hf_objectives_measure(v->objectives, w, w->objectives, r->objective, &r->merit) != HF_OK)
+        r->status = HF_NO_MEMORY;
     if (!v->objectives) r->merit = r->psi_m;
     if (v->objectives && r->status == HF_OK && !isfinite(r->merit)) { /* an objective has no value for this shape */
         r->status = HF_NOT_FINITE;

@@ -30,7 +30,7 @@
 #include "solve/history.h"
 #include "solve/joint.h"
 #include "solve/newton.h"
-#include "solve/path_cable.h"
+#include "solve/path_kernel.h"
 
 #include <assert.h>
 #include <math.h>
@@ -58,6 +58,12 @@
 /* ---- state and start ---- */
 
 static_assert(sizeof(hf_path_cables) == HF_INTERIOR_BLOCK * sizeof(double), "HF_INTERIOR_BLOCK");
+
+static const hf_path_kernels *kernels_here(void)
+{
+    static const hf_path_kernels *const of_isa[] = {HF_LANE_EACH(&hf_path_kernels)};
+    return of_isa[hf_lane_best_isa()];
+}
 
 static int n_block(const hf_model *m)
 {
@@ -185,13 +191,7 @@ typedef struct {
 
 static double largest_force_N(const hf_model *m, const double *force)
 {
-    double largest = 0, scale_N = 1 / m->reference_N;
-    for (int i = 0; i < m->n_free; i++) {
-        double f[3] = {scale_N * force[3 * i], scale_N * force[3 * i + 1], scale_N * force[3 * i + 2]};
-        double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
-        if (!(square <= largest)) largest = square; /* a NaN stays */
-    }
-    return sqrt(largest) * m->reference_N;
+    return hf_joint_largest(m->n_free, 1 / m->reference_N, force, NULL) * m->reference_N;
 }
 
 /* Adds the pull of the springs at the rows to newton_force_N. A fixed row is in balance. */
@@ -212,7 +212,7 @@ static path_error measure_path(const hf_model *m, hf_workspace *w, const hf_newt
     double sum = 0, all = 0;
     for (int e = 0; e < m->n_cable; e++)
         if (!is_fixed(m, w, e)) set_vector(m, w, e);
-    error.length = hf_path_measure(n_block(m), blocks(w));
+    error.length = kernels_here()->measure(n_block(m), blocks(w));
     hf_newton_matrix_set_loads(m, w, w->newton_force_N);
     for (int e = 0; e < m->n_cable; e++) {
         int k;
@@ -258,7 +258,7 @@ static void set_vector_step(const hf_model *m, const hf_workspace *w, int e)
  * HF_SINGULAR. */
 static hf_status factor(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, const double *spring_N_per_m)
 {
-    if (held) return hf_newton_matrix_factor_rows(m, w, path_block, spring_N_per_m, held);
+    if (held) return hf_newton_matrix_factor_blocks(m, w, path_block, spring_N_per_m, held, NULL);
     return hf_joint_factor(m, w, path_block, spring_N_per_m, NULL);
 }
 
@@ -279,7 +279,7 @@ static double find_path_direction(const hf_model *m, hf_workspace *w, const hf_n
 {
     double *rhs = w->newton_step;
     memcpy(rhs, w->newton_force_N, 3 * (size_t)w->n_moving * sizeof *rhs);
-    hf_path_set_side(n_block(m), blocks(w), target, corrected);
+    kernels_here()->set_side(n_block(m), blocks(w), target, corrected);
     for (int e = 0; e < m->n_cable; e++) {
         int k;
         const hf_path_cables *p = block_of(w, e, &k);
@@ -290,7 +290,7 @@ static double find_path_direction(const hf_model *m, hf_workspace *w, const hf_n
     solve_step(m, w, held);
     for (int e = 0; e < m->n_cable; e++)
         if (!is_fixed(m, w, e)) set_vector_step(m, w, e);
-    double inverse = hf_path_set_direction(n_block(m), blocks(w), corrects);
+    double inverse = kernels_here()->set_direction(n_block(m), blocks(w), corrects);
     return inverse > 0 ? 1 / inverse : INFINITY;
 }
 
@@ -301,12 +301,6 @@ static void move_nodes(const hf_model *m, hf_workspace *w, double part)
     for (int i = 0; i < w->n_moving; i++)
         for (int c = 0; c < 3; c++)
             w->position_m[c * m->n_node + i] += part * w->newton_step[3 * i + c];
-}
-
-static void move(const hf_model *m, hf_workspace *w, double part)
-{
-    move_nodes(m, w, part);
-    hf_path_move(n_block(m), blocks(w), part);
 }
 
 /* ---- the path ---- */
@@ -345,12 +339,13 @@ static bool is_told_to_stop(const hf_workspace *w)
 /* Takes one step of the path. Returns false if it does not move. */
 static bool take_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double mu)
 {
-    hf_path_set_scaling(n_block(m), blocks(w));
+    kernels_here()->set_scaling(n_block(m), blocks(w));
     if (factor(m, w, held, held ? w->spring_N_per_m : NULL) != HF_OK) return false;
     double part = fmin(1, find_path_direction(m, w, held, 0, false, true)), left = 1 - part;
     part = fmin(1, STEP_KEPT * find_path_direction(m, w, held, left * left * left * mu, true, false));
     if (!(part > STALLED)) return false;
-    move(m, w, part);
+    move_nodes(m, w, part);
+    kernels_here()->move(n_block(m), blocks(w), part);
     return true;
 }
 
@@ -486,19 +481,6 @@ static void begin_end(const hf_model *m, hf_workspace *w, double fall)
     }
 }
 
-static void set_force_densities(const hf_model *m, hf_workspace *w)
-{
-    double u[3];
-    for (int e = 0; e < m->n_cable; e++) {
-        hf_law_cable cable = hf_workspace_cable(m, w, e);
-        double length = hf_newton_matrix_direction(m, w->position_m, e, u);
-        double T = hf_newton_matrix_tension_N(cable, length, w->tension_N[e]);
-        bool is_nothing = has_multiplier(w, e) && T < HF_NEWTON_NOTHING * m->reference_N;
-        w->q_N_per_m[e] = is_nothing ? 0 : is_spring(w, e) ? hf_law_tension_N(cable, 1) : T / length;
-        w->length_m[e] = length;
-    }
-}
-
 static void keep_point(const hf_model *m, const hf_workspace *w, double *position_m, double *tension_N)
 {
     memcpy(position_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
@@ -581,7 +563,7 @@ static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_works
         else
             begin_end(m, w, fall);
         bool is_found = finish(m, s, w, held, goes_on, last, n_step);
-        set_force_densities(m, w);
+        hf_newton_set_force_densities(m, HF_LAW_HAS_MULTIPLIER, w);
         if (is_found) return HF_OK;
         if (!held && !goes_on && has_loaded_chain(m, w)) return HF_STRAIGHT_CHAIN;
         if (goes_on) take_point(m, w, w->interior_position_m, w->interior_tension_N);
