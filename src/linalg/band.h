@@ -13,9 +13,10 @@
 #include <signal.h>
 #include <stdbool.h>
 
-/* Solves D X = B by band Cholesky, with our kernels or LAPACK. band [n][half_bandwidth+1] is the lower band; its factor replaces it. b [3][ldb]:
- * the solutions replace rows 0 to n-1 of each column. Returns HF_OK, and *bad_row is -1. Returns HF_SINGULAR if the
- * matrix is not positive definite. b is then unchanged, and *bad_row is the row at which the factorisation failed. */
+/* Solves D X = B by band Cholesky, with our kernels or with LAPACK. band [n][half_bandwidth+1] is the lower band; its
+ * factor replaces it. b [3][ldb]: the solutions replace rows 0 to n-1 of each column. Returns HF_OK, and *bad_row is
+ * -1. Returns HF_SINGULAR if the matrix is not positive definite. b is then unchanged, and *bad_row is the row at which
+ * the factorisation failed. */
 hf_status hf_band_solve(bool by_lapack, int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row);
 
 /* Solves D X = B like hf_band_solve, but for an indefinite matrix (negative force densities), by LU with pivoting

@@ -26,11 +26,6 @@ typedef struct {
     double by_chain;      /* probability that whole chains move, instead of single genes */
 } hf_breeding_move;
 
-/* hf_breeding_leads returns true if the gene follows no other gene. hf_breeding_n_leader returns the number of genes
- * that follow no other gene. */
-bool hf_breeding_leads(const hf_breeding *breeding, int i_variable);
-int hf_breeding_n_leader(const hf_breeding *breeding);
-
 /* Returns the scratch of individual i, [n_variable_group]: one number for each chain. */
 double *hf_breeding_draws(const hf_breeding *breeding, int i);
 
@@ -48,5 +43,10 @@ void hf_breeding_move_along(const hf_breeding *breeding, const hf_population *po
  * genes on average take a step of their own. */
 void hf_breeding_mutate(const hf_breeding *breeding, const hf_population *population, double rate, double single, int i,
                         double *child, hf_random *random);
+
+/* Completes child i of the next generation, which began as individual `origin`: linked genes follow their leaders. A child
+ * that equals its origin needs no evaluation, because it has the result of the origin. Sets rates and parents. */
+void hf_breeding_finish(const hf_breeding *breeding, const hf_population *now, hf_population *next, int i, int origin,
+                        double crossover_rate, double mutation_rate, int mother, int father);
 
 #endif

@@ -274,6 +274,13 @@ static hf_status find(const search *s, job *j, hf_workspace *w)
 
 /* ---- many points at once ---- */
 
+/* Forgets multipliers that are not slopes of the front. */
+static void forget_multipliers(job *j)
+{
+    for (int k = 0; k < HF_FRONT_OBJECTIVES_MAX; k++)
+        j->found.multiplier[k] = NAN;
+}
+
 /* Runs jobs in one thread until none is left. */
 static void work(void *context, int room)
 {
@@ -411,8 +418,7 @@ static hf_status finish_lines(search *s, int first)
             double gain = value_of(s, l->end[e], 1 - e) - value_of(s, beside, 1 - e);
             if (!(gain > END_GAINS * s->range[s->role[1 - e]])) continue;
             l->end[e] = beside;
-            for (int k = 0; k < s->n_objective; k++) /* multipliers of the limit of END_GIVES, not of the front */
-                beside->found.multiplier[k] = NAN;
+            forget_multipliers(beside); /* of the limit of END_GIVES */
         }
     return HF_OK;
 }
@@ -455,8 +461,7 @@ static void choose_main(search *s, job *end[])
     }
     s->role[THIRD] = role;
     end[THIRD] = first;
-    for (int k = 0; k < s->n_objective; k++) /* the multipliers were slopes of the old MAIN */
-        first->found.multiplier[k] = NAN;
+    forget_multipliers(first); /* slopes of the old MAIN */
 }
 
 /* Minimises each objective alone, by its role. Returns HF_OK or the status of the failure; failed_end is then the
@@ -507,8 +512,7 @@ static bool take_common(search *s)
     s->point[0] = &s->job[common];
     s->n_point = 1;
     s->n_line = 0;
-    for (int k = 0; k < s->n_objective; k++)
-        s->point[0]->found.multiplier[k] = NAN;
+    forget_multipliers(s->point[0]);
     return true;
 }
 

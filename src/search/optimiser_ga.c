@@ -157,8 +157,7 @@ static void move_elite(const breeder *g, const hf_population *p, int a, int b, i
     hf_breeding_move_along(&g->breeding, p, &crossover, from, to, i, child, random);
 }
 
-/* Makes one child with random numbers of its own stream. A child that equals the design from which it began (`same`)
- * needs no evaluation, because it has the result of that design. */
+/* Makes one child with random numbers of its own stream. */
 static void breed(const breeder *g, const hf_population *now, hf_population *next, int i)
 {
     const hf_optimize_settings *s = g->breeding.settings;
@@ -183,13 +182,7 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
     else
         move_elite(g, now, a, b, i, child, &random);
     hf_breeding_mutate(&g->breeding, now, pm, by_chain ? pm : SINGLES * pm, i, child, &random);
-    hf_population_link(now, g->breeding.model, child);
-    next->pending[i] = memcmp(child, same, n * sizeof *child) != 0;
-    next->result[i] = now->result[itself];
-    next->crossover_rate[i] = pc;
-    next->mutation_rate[i] = pm;
-    next->parent[2 * i] = a;
-    next->parent[2 * i + 1] = b;
+    hf_breeding_finish(&g->breeding, now, next, i, itself, pc, pm, a, b);
 }
 
 /* ---- the next generation ---- */

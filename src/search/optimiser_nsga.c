@@ -160,21 +160,14 @@ static void propose_child(void *state, const hf_population *now, hf_population *
     int to = is_better_by(g, &w, a, b) ? a : b, from = a + b - to;
     bool approaches = hf_random_uniform(&random) < BY_APPROACH;
     if (approaches) to = a, from = leader;
-    const double *same = now->design + (size_t)leader * n;
     double *child = next->design + (size_t)i * n;
-    memcpy(child, same, n * sizeof *child);
+    memcpy(child, now->design + (size_t)leader * n, n * sizeof *child);
     if (hf_random_uniform(&random) < s->crossover_high && to != from)
         hf_breeding_move_along(&g->breeding, now, &crossover, now->design + (size_t)from * n,
                                now->design + (size_t)to * n, i, child, &random);
     double rate = RATE * s->mutation_high;
     hf_breeding_mutate(&g->breeding, now, rate, SINGLES * rate, i, child, &random);
-    hf_population_link(now, g->breeding.model, child);
-    next->pending[i] = memcmp(child, same, n * sizeof *child) != 0;
-    next->result[i] = now->result[leader];
-    next->crossover_rate[i] = s->crossover_high;
-    next->mutation_rate[i] = rate;
-    next->parent[2 * i] = leader;
-    next->parent[2 * i + 1] = to;
+    hf_breeding_finish(&g->breeding, now, next, i, leader, s->crossover_high, rate, leader, to);
 }
 
 /* ---- survival ---- */

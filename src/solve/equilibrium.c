@@ -79,20 +79,26 @@ static void set_first_force_densities(const hf_model *m, hf_workspace *w)
     }
 }
 
+/* Copies force densities and positions. */
+static void copy_shape(const hf_model *m, const double *from_N_per_m, const double *from_m, double *to_N_per_m,
+                       double *to_m)
+{
+    memcpy(to_N_per_m, from_N_per_m, (size_t)m->n_cable * sizeof(double));
+    memcpy(to_m, from_m, 3 * (size_t)m->n_node * sizeof(double));
+}
+
 /* Finds the reason why the path has not solved the net: a straight chain, the cable whose rounding prevents
  * convergence, or none (culprit -1). Iterations from the end of the path reduce the errors to rounding. If they fail,
  * iterations from the first force densities may still find a chain. Returns result->status. */
 static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n_step, hf_workspace *w,
                              hf_history *history, hf_form_result *r)
 {
-    size_t q = (size_t)m->n_cable * sizeof(double), places = 3 * (size_t)m->n_node * sizeof(double);
     hf_form_settings part = *s;
     hf_form_accept(m, s, HF_STOPPED_MAX_ITERATIONS, n_step, w, r);
     bool is_finite = r->status != HF_NOT_FINITE;
     int cable = r->culprit; /* with a tension that is not finite */
     if (is_finite && (r->status != HF_NOT_CONVERGED || r->culprit >= 0)) return r->status;
-    memcpy(w->interior_tension_N, w->q_N_per_m, q);
-    memcpy(w->interior_position_m, w->position_m, places);
+    copy_shape(m, w->q_N_per_m, w->position_m, w->interior_tension_N, w->interior_position_m);
     for (int start = is_finite ? 0 : 1; start < 2; start++) {
         part.max_iterations = smaller(LAST_BLOCK, s->max_iterations - n_step);
         if (part.max_iterations < 1) break;
@@ -110,8 +116,7 @@ static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n
         r->culprit = cable;
     }
     if (!is_finite || r->status == HF_COLLAPSED) return r->status; /* both starts have failed */
-    memcpy(w->q_N_per_m, w->interior_tension_N, q);
-    memcpy(w->position_m, w->interior_position_m, places);
+    copy_shape(m, w->interior_tension_N, w->interior_position_m, w->q_N_per_m, w->position_m);
     return hf_form_accept(m, s, HF_STOPPED_MAX_ITERATIONS, n_step, w, r);
 }
 
@@ -149,14 +154,11 @@ hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_w
 /* Runs the path and writes its result into *said. Keeps q_N_per_m and position_m. Returns said->status. */
 static hf_status ask_path(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *said)
 {
-    size_t q = (size_t)m->n_cable * sizeof(double), places = 3 * (size_t)m->n_node * sizeof(double);
     hf_form_settings whole = *s;
     whole.max_iterations = VERDICT_MAX;
-    memcpy(w->place_q_N_per_m, w->q_N_per_m, q);
-    memcpy(w->place_before_m, w->position_m, places);
+    copy_shape(m, w->q_N_per_m, w->position_m, w->place_q_N_per_m, w->place_before_m);
     find_on_path(m, &whole, 0, w, NULL, said);
-    memcpy(w->q_N_per_m, w->place_q_N_per_m, q);
-    memcpy(w->position_m, w->place_before_m, places);
+    copy_shape(m, w->place_q_N_per_m, w->place_before_m, w->q_N_per_m, w->position_m);
     return said->status;
 }
 

@@ -481,16 +481,11 @@ static void begin_end(const hf_model *m, hf_workspace *w, double fall)
     }
 }
 
-static void keep_point(const hf_model *m, const hf_workspace *w, double *position_m, double *tension_N)
+/* Copies positions and tensions, those of a point. */
+static void copy_point(const hf_model *m, const double *from_m, const double *from_N, double *to_m, double *to_N)
 {
-    memcpy(position_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
-    memcpy(tension_N, w->tension_N, (size_t)m->n_cable * sizeof(double));
-}
-
-static void take_point(const hf_model *m, hf_workspace *w, const double *position_m, const double *tension_N)
-{
-    memcpy(w->position_m, position_m, 3 * (size_t)m->n_node * sizeof(double));
-    memcpy(w->tension_N, tension_N, (size_t)m->n_cable * sizeof(double));
+    memcpy(to_m, from_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(to_N, from_N, (size_t)m->n_cable * sizeof(double));
 }
 
 /* Takes Newton steps from the present point of the path, in position_m and tension_N alone, until the errors are a
@@ -506,11 +501,11 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
     path_error now = measure_end(m, w, held);
     double first = largest_error(m, &now);
     bool damps = !impatient;
-    keep_point(m, w, w->interior_position_m, w->interior_tension_N);
+    copy_point(m, w->position_m, w->tension_N, w->interior_position_m, w->interior_tension_N);
     for (int k = 0; k < (impatient ? FINAL_MAX : LAST_MAX) && *n_step < max_steps && !is_within(&now, s, 0.1); k++) {
         bool was_within = is_within(&now, s, 1);
         double before = largest_error(m, &now);
-        keep_point(m, w, w->newton_trial_m, w->newton_trial_tension_N);
+        copy_point(m, w->position_m, w->tension_N, w->newton_trial_m, w->newton_trial_tension_N);
         ++*n_step;
         if (!take_last_step(m, w, held, damps ? before : 0)) break;
         now = measure_end(m, w, held);
@@ -518,14 +513,15 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         double after = largest_error(m, &now);
         damps = damps || after > before;
         if (was_within && !(after < before)) {
-            take_point(m, w, w->newton_trial_m, w->newton_trial_tension_N);
+            copy_point(m, w->newton_trial_m, w->newton_trial_tension_N, w->position_m, w->tension_N);
             return true;
         }
         bool is_worth_it = after < (k > 0 ? CLEARLY * before : FAR) || is_within(&now, s, 1);
         if (impatient && !is_worth_it) break;
     }
     if (is_within(&now, s, 1)) return true;
-    if (!(largest_error(m, &now) < fmin(first, NEAR))) take_point(m, w, w->interior_position_m, w->interior_tension_N);
+    if (!(largest_error(m, &now) < fmin(first, NEAR)))
+        copy_point(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->tension_N);
     return false;
 }
 
@@ -559,14 +555,14 @@ static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_works
         if (is_there && (*culprit = find_collapsed(m, s, w)) >= 0) return HF_COLLAPSED;
         bool is_rounding = k > 0 && !has_places(m, w), goes_on = is_there && k < TRIES_MAX - 1 && !is_rounding;
         if (is_rounding) /* use the point before this part of the path */
-            take_point(m, w, w->interior_position_m, w->interior_tension_N);
+            copy_point(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->tension_N);
         else
             begin_end(m, w, fall);
         bool is_found = finish(m, s, w, held, goes_on, last, n_step);
         hf_newton_set_force_densities(m, HF_LAW_HAS_MULTIPLIER, w);
         if (is_found) return HF_OK;
         if (!held && !goes_on && has_loaded_chain(m, w)) return HF_STRAIGHT_CHAIN;
-        if (goes_on) take_point(m, w, w->interior_position_m, w->interior_tension_N);
+        if (goes_on) copy_point(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->tension_N);
     }
     return HF_NOT_CONVERGED;
 }

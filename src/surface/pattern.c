@@ -17,7 +17,6 @@
 #include "surface/pattern_kernel.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { GAUSS_MOST = 64, GAUSS_MORE = 2, LOOKS = 16, PIECES_MOST = 100000 };
 #define GAUSS_LN (-21.0)      /* logarithm of the accepted quadrature error */
