@@ -5,7 +5,9 @@
  *
  *     hf_arena arena = {0};
  *     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, object)));
- *     object->block = arena.block; // the owner frees it with hf_arena_free_block */
+ *     object->block = arena.block; // the owner frees it with hf_arena_free_block
+ *
+ * A struct may also contain its arena. Its owner then frees it with hf_arena_free(&object.arena). */
 #ifndef HIFDM_ARENA_H
 #define HIFDM_ARENA_H
 

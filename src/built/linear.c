@@ -118,7 +118,7 @@ void hf_built_linear_free(hf_built_linear *l)
 {
     hf_arena arena = {.block = l->block};
     hf_workspace_free(&l->work);
-    hf_schur_free(&l->schur);
+    hf_arena_free(&l->schur.arena);
     hf_arena_free(&arena);
     *l = (hf_built_linear){0};
 }

@@ -93,7 +93,7 @@ static hf_status find_answer(hf_workspace *w, hf_near *near)
         for (size_t i = 0; i < n; i++)
             near->answer[(i / HF_PULL_ROWS * n + j) * HF_PULL_ROWS + i % HF_PULL_ROWS] = column[i];
     }
-    hf_schur_free(&schur);
+    hf_arena_free(&schur.arena);
     near->chord.n_mode = 0;
     return status;
 }
@@ -118,7 +118,7 @@ hf_status hf_near_create(const hf_built *b, hf_workspace *w, hf_near *near)
 
 void hf_near_free(hf_near *near)
 {
-    hf_chord_free(&near->chord);
+    hf_arena_free(&near->chord.arena);
     hf_arena_free_block(near->block);
     near->block = NULL;
 }
@@ -146,7 +146,7 @@ hf_status hf_near_lanes_create(const hf_near *near, hf_near_lanes *l)
 
 void hf_near_lanes_free(hf_near_lanes *l)
 {
-    hf_chord_lanes_free(&l->lanes);
+    hf_arena_free(&l->lanes.arena);
     hf_arena_free_block(l->block);
     l->block = NULL;
 }

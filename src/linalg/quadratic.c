@@ -51,12 +51,6 @@ hf_status hf_quadratic_create(int n, hf_quadratic *q)
     return HF_ARENA_MAKE(&q->arena, lay_out(&q->arena, q));
 }
 
-void hf_quadratic_free(hf_quadratic *q)
-{
-    hf_arena_free(&q->arena);
-    *q = (hf_quadratic){0};
-}
-
 /* ---- matrices ---- */
 
 /* Computes J = L^-T for L as a band whose columns begin with the diagonal. L L' is H in the order of `order`. Eight

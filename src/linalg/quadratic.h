@@ -46,9 +46,8 @@ typedef struct {
     hf_arena arena;
 } hf_quadratic;
 
-/* Allocates the arrays for n variables. Returns HF_OK or HF_NO_MEMORY. Call hf_quadratic_free in either case. */
+/* Allocates the arrays for n variables. Returns HF_OK or HF_NO_MEMORY. The caller frees its arena. */
 hf_status hf_quadratic_create(int n, hf_quadratic *quadratic);
-void hf_quadratic_free(hf_quadratic *quadratic);
 
 /* Solves a programme. hessian [n][n]: the lower triangle is read, by rows. gradient [n]. low, high [n]: bounds of x.
  * `worst` must report these bounds like any other limit, with kind 0. The bounds that were active in the last solution

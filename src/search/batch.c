@@ -67,13 +67,13 @@ static void free_engine(hf_batch *batch)
     struct hf_batch_engine *e = batch->engine;
     if (!e) return;
     for (int i = 0; e->chord && i < batch->n_thread; i++)
-        hf_chord_lanes_free(&e->chord[i]);
+        hf_arena_free(&e->chord[i].arena);
     for (int i = 0; e->lanes && i < batch->n_thread; i++)
-        hf_swarm_lanes_free(&e->lanes[i]);
+        hf_arena_free(&e->lanes[i].arena);
     free(e->chord);
     free(e->lanes);
-    hf_chord_free(&e->shared);
-    hf_swarm_plan_free(&e->plan);
+    hf_arena_free(&e->shared.arena);
+    hf_arena_free(&e->plan.arena);
     free(e);
     batch->engine = NULL;
 }

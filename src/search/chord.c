@@ -100,7 +100,7 @@ static hf_status pack_truss(const hf_model *m, hf_workspace *w, hf_chord *c)
     hf_status status = hf_schur_create(m, &schur);
     if (status == HF_OK) status = hf_schur_factor(m, w, hf_newton_matrix_block, &schur);
     if (status == HF_OK) c->n_mode = hf_schur_modes(&schur, MODES_LEFT, HF_CHORD_MODES_MAX, c->mode);
-    hf_schur_free(&schur);
+    hf_arena_free(&schur.arena);
     return status;
 }
 
@@ -175,12 +175,6 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *initial, hf_works
     return hf_chord_create_here(v, w, chord);
 }
 
-void hf_chord_free(hf_chord *chord)
-{
-    hf_arena_free(&chord->arena);
-    *chord = (hf_chord){0};
-}
-
 /* ---- lanes ---- */
 
 static void lay_out_lanes(hf_arena *arena, const hf_chord *c, hf_chord_lanes *to)
@@ -213,12 +207,6 @@ hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes)
     for (size_t i = 0; i < (size_t)m->n_cable * HF_LANES; i++)
         q_N_per_m[i] = m->target[i / HF_LANES];
     return HF_OK;
-}
-
-void hf_chord_lanes_free(hf_chord_lanes *lanes)
-{
-    hf_arena_free(&lanes->arena);
-    *lanes = (hf_chord_lanes){0};
 }
 
 /* ---- the run ---- */

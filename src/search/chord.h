@@ -118,23 +118,21 @@ bool hf_chord_applies(const hf_evaluator *evaluator);
 
 /* Evaluates the initial design [n_variable], factors its Newton matrix and packs it for the lanes. workspace is
  * scratch. Returns HF_OK, HF_NO_MEMORY, or another status if the initial design has no shape or no positive definite
- * matrix. Call hf_chord_free in any case. */
+ * matrix. The caller frees its arena in any case. */
 hf_status hf_chord_create(const hf_evaluator *evaluator, const double *initial, hf_workspace *workspace,
                           hf_chord *chord);
 
 /* Makes the shared matrix at the shape that the workspace holds, whatever the laws of its cables. This serves nets
  * without design variables: the caller writes the force density of cable e into row n_variable + e of `variable` of the
- * lanes. Returns HF_OK, HF_NO_MEMORY or HF_SINGULAR. Call hf_chord_free in any case. */
+ * lanes. Returns HF_OK, HF_NO_MEMORY or HF_SINGULAR. The caller frees its arena in any case. */
 hf_status hf_chord_create_here(const hf_evaluator *evaluator, hf_workspace *workspace, hf_chord *chord);
-void hf_chord_free(hf_chord *chord);
 
 /* Returns the size in bytes of the shared matrix for this evaluator. *lanes_bytes is set to the size of the lanes of
  * one thread. */
 size_t hf_chord_bytes(const hf_evaluator *evaluator, size_t *lanes_bytes);
 
-/* Allocates the lanes of one thread. Returns HF_OK or HF_NO_MEMORY; call hf_chord_lanes_free in either case. */
+/* Allocates the lanes of one thread. Returns HF_OK or HF_NO_MEMORY; the caller frees its arena. */
 hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes);
-void hf_chord_lanes_free(hf_chord_lanes *lanes);
 
 /* Evaluates the designs whose indices next(context) returns, until it returns -1. design: [][n_variable]; result: [].
  * If keeps_shape is true, the workspace holds the last shape afterwards; otherwise it is scratch. */

@@ -177,7 +177,7 @@ static hf_status meet(const hf_front_refine *t, int met, int least, const double
             double part = k == met || met == least ? 1 : k == least ? weight[i] : 0;
             objectives.objective[k].settings.weight = range[k] > 0 ? part / range[k] : 0;
         }
-        hf_status status = hf_refine_run(&evaluator, t->lower, t->upper, t->max_iterations,
+        hf_status status = hf_refine_run(&evaluator, t->lower, t->upper, t->max_iterations, NULL,
                                          t->watcher ? &watcher : NULL, design, w, &result);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
     }
@@ -222,8 +222,8 @@ static hf_status refine(const search *s, const job *j, double *design, hf_worksp
     hf_form_result result;
     const hf_refine_watcher watcher = {.after = tell_step, .context = t->watcher};
     *point = (hf_front_point){.objective = {NAN, NAN, NAN}, .multiplier = {NAN, NAN, NAN}};
-    hf_status status = hf_refine_front(t->evaluator, t->lower, t->upper, t->max_iterations, &limits,
-                                       t->watcher ? &watcher : NULL, design, w, &r);
+    hf_status status = hf_refine_run(t->evaluator, t->lower, t->upper, t->max_iterations, &limits,
+                                     t->watcher ? &watcher : NULL, design, w, &r);
     if (status == HF_OK) status = hf_evaluate(t->evaluator, design, w, &result);
     if (t->stop && *t->stop) return HF_INTERRUPTED;
     if (status == HF_NO_MEMORY) return status;

@@ -432,9 +432,9 @@ static hf_status hand_over(const hf_refine_problem *p, const hf_form_result *sta
     return HF_OK;
 }
 
-hf_status hf_refine_front(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                          const hf_watch_front *front, const hf_refine_watcher *watcher, double *design,
-                          hf_workspace *w, hf_refine_result *result)
+hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
+                        const hf_watch_front *front, const hf_refine_watcher *watcher, double *design, hf_workspace *w,
+                        hf_refine_result *result)
 {
     hf_refine_problem p = {.v = *evaluator,
                            .caller = evaluator,
@@ -472,10 +472,4 @@ hf_status hf_refine_front(const hf_evaluator *evaluator, const double *lower, co
     }
     hf_refine_destroy(&p, &arena);
     return status;
-}
-
-hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                        const hf_refine_watcher *watcher, double *design, hf_workspace *w, hf_refine_result *result)
-{
-    return hf_refine_front(evaluator, lower, upper, max_iterations, NULL, watcher, design, w, result);
 }

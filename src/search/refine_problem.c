@@ -124,8 +124,8 @@ hf_status hf_refine_create(hf_refine_problem *p, hf_arena *arena)
 
 void hf_refine_destroy(hf_refine_problem *p, hf_arena *arena)
 {
-    hf_quadratic_free(&p->step);
-    hf_watch_free(&p->watch);
+    hf_arena_free(&p->step.arena);
+    hf_arena_free(&p->watch.arena);
     hf_residuals_free(&p->residuals);
     hf_sensitivity_free(&p->slopes);
     hf_arena_free(arena);

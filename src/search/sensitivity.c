@@ -101,7 +101,7 @@ hf_status hf_sensitivity_create(const hf_evaluator *v, hf_sensitivity *s)
 
 void hf_sensitivity_free(hf_sensitivity *s)
 {
-    hf_schur_free(&s->schur);
+    hf_arena_free(&s->schur.arena);
     hf_arena_free(&s->arena);
     *s = (hf_sensitivity){0};
 }

@@ -99,12 +99,6 @@ hf_status hf_swarm_plan_create(const hf_model *m, hf_lane_isa isa, hf_swarm_plan
     return HF_OK;
 }
 
-void hf_swarm_plan_free(hf_swarm_plan *plan)
-{
-    hf_arena_free(&plan->arena);
-    *plan = (hf_swarm_plan){0};
-}
-
 /* ---- lanes ---- */
 
 static void lay_out_lanes(hf_arena *arena, const hf_swarm_plan *plan, hf_swarm_lanes *to)
@@ -125,12 +119,6 @@ hf_status hf_swarm_lanes_create(const hf_swarm_plan *plan, hf_swarm_lanes *lanes
 {
     *lanes = (hf_swarm_lanes){0};
     return HF_ARENA_MAKE(&lanes->arena, lay_out_lanes(&lanes->arena, plan, lanes));
-}
-
-void hf_swarm_lanes_free(hf_swarm_lanes *lanes)
-{
-    hf_arena_free(&lanes->arena);
-    *lanes = (hf_swarm_lanes){0};
 }
 
 /* ---- one lane in and out ---- */

@@ -133,15 +133,13 @@ extern const hf_swarm_kernels HF_LANE_EACH(hf_swarm_kernels);
 /* ---- the iteration in the lanes ---- */
 
 /* Makes the plan of a model without struts, with the kernels of an instruction set that this machine has. Returns HF_OK
- * or HF_NO_MEMORY; call hf_swarm_plan_free in either case. */
+ * or HF_NO_MEMORY; the caller frees its arena. */
 hf_status hf_swarm_plan_create(const hf_model *model, hf_lane_isa isa, hf_swarm_plan *plan);
-void hf_swarm_plan_free(hf_swarm_plan *plan);
 
-/* hf_swarm_lanes_create allocates the fields in one block, and returns HF_OK or HF_NO_MEMORY; call hf_swarm_lanes_free in
- * either case. hf_swarm_lanes_bytes returns the size of the block. The same lanes serve all plans of one model. */
+/* hf_swarm_lanes_create allocates the fields in one block, and returns HF_OK or HF_NO_MEMORY; the caller frees its
+ * arena. hf_swarm_lanes_bytes returns the size of the block. The same lanes serve all plans of one model. */
 size_t hf_swarm_lanes_bytes(const hf_swarm_plan *plan);
 hf_status hf_swarm_lanes_create(const hf_swarm_plan *plan, hf_swarm_lanes *lanes);
-void hf_swarm_lanes_free(hf_swarm_lanes *lanes);
 
 /* Copies the force densities, targets and support positions of one design from a workspace into a lane. The caller sets
  * the laws. */

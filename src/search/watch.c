@@ -135,12 +135,6 @@ hf_status hf_watch_create(const hf_evaluator *v, const hf_sensitivity *s, const 
     return HF_OK;
 }
 
-void hf_watch_free(hf_watch *q)
-{
-    hf_arena_free(&q->arena);
-    *q = (hf_watch){0};
-}
-
 bool hf_watch_breaks(const hf_watch_front *front, const hf_objectives *objectives, double part, const double *objective)
 {
     for (int k = 0; front && k < objectives->n_objective; k++)

@@ -62,10 +62,9 @@ typedef struct {
 
 /* Watches the cap and the limits of the evaluator, and the bounds lower and upper [n_variable] of design variables that
  * set a tension. If `front` is not NULL, it also watches the objectives, after the caller has set goal and
- * objective_rate. Returns HF_OK or HF_NO_MEMORY; call hf_watch_free in either case. */
+ * objective_rate. Returns HF_OK or HF_NO_MEMORY; the caller frees its arena. */
 hf_status hf_watch_create(const hf_evaluator *evaluator, const hf_sensitivity *slopes, const double *lower,
                           const double *upper, const hf_watch_front *front, hf_watch *watch);
-void hf_watch_free(hf_watch *watch);
 
 /* Returns true if the shape in the workspace keeps all limits. */
 bool hf_watch_keeps(hf_watch *watch, hf_workspace *workspace);

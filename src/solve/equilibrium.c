@@ -125,7 +125,8 @@ static hf_status find_on_path(const hf_model *m, const hf_form_settings *s, int 
                               hf_history *history, hf_form_result *r)
 {
     int culprit = -1;
-    hf_status status = hf_interior_run(m, s, w, smaller(PATH_MAX, s->max_iterations - n_step), &n_step, &culprit);
+    hf_status status =
+        hf_interior_run(m, s, w, false, smaller(PATH_MAX, s->max_iterations - n_step), &n_step, &culprit);
     if (status == HF_OK && hf_form_measure(m, s, w, r) == HF_OK)
         return hf_form_accept(m, s, HF_STOPPED_RESIDUAL, n_step, w, r);
     if (status == HF_OK || status == HF_STRAIGHT_CHAIN || status == HF_NOT_CONVERGED)

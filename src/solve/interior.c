@@ -137,7 +137,7 @@ static double first_tension_N(const hf_model *m, hf_law_cable cable, double flex
     return fmin(fmax(T, reference / FIRST_RANGE), reference * FIRST_RANGE);
 }
 
-/* In the functions below, `held` are the moving rows among fixed ones (hf_interior_run_held), else NULL. */
+/* In the functions below, `held` are the moving rows among fixed ones, NULL without springs to the ground. */
 
 /* Sets a centred point for MU_FIRST at the target positions, or at spring_place_m with `held`. The path then reduces
  * its errors of length and balance. */
@@ -539,13 +539,14 @@ static bool has_loaded_chain(const hf_model *m, hf_workspace *w)
     return false;
 }
 
-/* Does the work of hf_interior_run, and with `held` that of hf_interior_run_held. */
-static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_workspace *w, const hf_newton_rows *held,
-                          int max_steps, int *n_step, int *culprit)
+hf_status hf_interior_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w, bool is_held, int max_steps,
+                          int *n_step, int *culprit)
 {
     double wanted = NEAR, fall = 1;
     int last = *n_step + max_steps;
     bool is_there = true;
+    hf_newton_rows rows, *held = is_held ? &rows : NULL;
+    if (held) rows = hf_newton_matrix_find_rows(m, w->spring_N_per_m, w->newton_integer_work);
     *culprit = -1;
     set_start(m, w, held);
     for (int k = 0; k < TRIES_MAX && is_there; k++, wanted /= NEARER) {
@@ -565,17 +566,4 @@ static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_works
         if (goes_on) copy_point(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->tension_N);
     }
     return HF_NOT_CONVERGED;
-}
-
-hf_status hf_interior_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int max_steps, int *n_step,
-                          int *culprit)
-{
-    return run_path(m, s, w, NULL, max_steps, n_step, culprit);
-}
-
-hf_status hf_interior_run_held(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int max_steps,
-                               int *n_step, int *culprit)
-{
-    hf_newton_rows rows = hf_newton_matrix_find_rows(m, w->spring_N_per_m, w->newton_integer_work);
-    return run_path(m, s, w, &rows, max_steps, n_step, culprit);
 }

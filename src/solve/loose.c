@@ -124,7 +124,7 @@ static hf_status find_places(const hf_model *m, const hf_form_settings *s, hf_wo
     hf_form_settings tight = *s;
     tight.residual_tolerance = PLACE_TOLERANCE;
     tight.length_tolerance = fmin(s->length_tolerance, PLACE_TOLERANCE);
-    hf_status status = hf_interior_run_held(m, &tight, w, PLACE_MAX, n_step, &culprit);
+    hf_status status = hf_interior_run(m, &tight, w, true, PLACE_MAX, n_step, &culprit);
     w->n_moving = n_moving;
     memcpy(w->law, w->place_law, n);
     memcpy(w->target, w->place_target, bytes);

@@ -28,7 +28,6 @@ typedef struct {
 
 /* Allocates the matrices. Returns HF_OK or HF_NO_MEMORY. The caller frees it in either case. */
 hf_status hf_schur_create(const hf_model *model, hf_schur *schur);
-void hf_schur_free(hf_schur *schur);
 
 /* Returns the matrices in the memory of a workspace that has a Newton matrix. There is nothing to free. The last factor
  * in the workspace is kept. */

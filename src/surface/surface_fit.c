@@ -46,22 +46,12 @@
 
 /* ---- the fitted surface ---- */
 
-enum {
-    SHIFT_Z = HF_FIT_SHIFT_Z,
-    TURN_X = HF_FIT_TURN_X,
-    TURN_Y = HF_FIT_TURN_Y,
-    TURN_Z = HF_FIT_TURN_Z,
-    CURVE = HF_FIT_CURVE,
-    SHIFT_X = HF_FIT_SHIFT_X,
-    SHIFT_Y = HF_FIT_SHIFT_Y,
-    N_QUANTITY = HF_FIT_N_QUANTITY,
-    N_PARAMETER = HF_FIT_N_PARAMETER
-};
-
 /* Quantity of each parameter, and the number of parameters of the three fits. Each fit starts from the one before. A
  * shift of a cylinder along y changes nothing, and neither does a turn of a paraboloid about its axis. */
-static const int cylinder_parameter[N_PARAMETER] = {SHIFT_Z, TURN_X, TURN_Y, TURN_Z, CURVE, SHIFT_X};
-static const int paraboloid_parameter[N_PARAMETER] = {SHIFT_Z, TURN_X, TURN_Y, CURVE, SHIFT_X, SHIFT_Y};
+static const int cylinder_parameter[HF_FIT_N_PARAMETER] = {HF_FIT_SHIFT_Z, HF_FIT_TURN_X, HF_FIT_TURN_Y,
+                                                           HF_FIT_TURN_Z,  HF_FIT_CURVE,  HF_FIT_SHIFT_X};
+static const int paraboloid_parameter[HF_FIT_N_PARAMETER] = {HF_FIT_SHIFT_Z, HF_FIT_TURN_X,  HF_FIT_TURN_Y,
+                                                             HF_FIT_CURVE,   HF_FIT_SHIFT_X, HF_FIT_SHIFT_Y};
 static const int cylinder_fit[3] = {4, 5, 6}, paraboloid_fit[3] = {3, 4, 6};
 
 /* Points [3][n], and the kind of surface to fit to them. */
@@ -109,7 +99,7 @@ static hf_fit_frame frame_at(const fit_problem *p, const gsl_vector *v, hf_fit_p
         at->value[at->quantity[k]] = gsl_vector_get(v, k);
     hf_fit_frame f = hf_fit_frame_of(p->kind, 1 / (4 * p->curvature), p->n, p->position_m, p->root_weight, at);
     f.wanted_per_m = p->curvature;
-    f.curvature_per_m = p->curvature * (1 + at->value[CURVE]);
+    f.curvature_per_m = p->curvature * (1 + at->value[HF_FIT_CURVE]);
     return f;
 }
 
@@ -168,7 +158,7 @@ static int jacobian(const gsl_vector *v, void *context, gsl_matrix *J)
  * [n] if there is one. */
 static bool find_fall(int n, const double *H, double *x)
 {
-    double L[N_PARAMETER][N_PARAMETER] = {{0}}, D[N_PARAMETER];
+    double L[HF_FIT_N_PARAMETER][HF_FIT_N_PARAMETER] = {{0}}, D[HF_FIT_N_PARAMETER];
     for (int k = 0; k < n; k++) {
         for (int j = 0; j <= k; j++) {
             double left = H[k * n + j];
@@ -193,7 +183,7 @@ static bool find_fall(int n, const double *H, double *x)
 /* Returns true if the sum of squares has no direction of negative curvature. */
 static bool is_least(const hf_fit_frame *f)
 {
-    double G[N_PARAMETER], H[N_PARAMETER * N_PARAMETER], x[N_PARAMETER];
+    double G[HF_FIT_N_PARAMETER], H[HF_FIT_N_PARAMETER * HF_FIT_N_PARAMETER], x[HF_FIT_N_PARAMETER];
     hf_fit_hessian(f, G, H);
     return !find_fall(f->found->n, H, x);
 }
@@ -216,8 +206,8 @@ static void move(hf_fit_parameters *at, const double *step)
  * is too long. */
 static bool find_step(int n, const double *H, const double *G, double damping, double *step)
 {
-    double A[N_PARAMETER * N_PARAMETER], x[N_PARAMETER];
-    int pivot[N_PARAMETER];
+    double A[HF_FIT_N_PARAMETER * HF_FIT_N_PARAMETER], x[HF_FIT_N_PARAMETER];
+    int pivot[HF_FIT_N_PARAMETER];
     memcpy(A, H, (size_t)(n * n) * sizeof *A);
     for (int k = 0; k < n; k++) {
         A[k * n + k] += damping * fabs(H[k * n + k]);
@@ -250,7 +240,7 @@ static bool take_step(const hf_fit_frame *f, hf_fit_parameters *at, const double
                       double *G, double *H)
 {
     hf_fit_parameters to = *at;
-    double back[N_PARAMETER], to_G[N_PARAMETER], to_H[N_PARAMETER * N_PARAMETER];
+    double back[HF_FIT_N_PARAMETER], to_G[HF_FIT_N_PARAMETER], to_H[HF_FIT_N_PARAMETER * HF_FIT_N_PARAMETER];
     move(&to, step);
     double next = look(f, &to, to_G, to_H);
     if (!(next <= *sum) && find_step(to.n, to_H, to_G, damping, back)) {
@@ -269,7 +259,8 @@ static bool take_step(const hf_fit_frame *f, hf_fit_parameters *at, const double
  * false if a shift across exceeds across_most, in units of the size, or if the steps do not converge. */
 static bool descend(const hf_fit_frame *f, hf_fit_parameters *at, double across_most, int *iterations)
 {
-    double G[N_PARAMETER], H[N_PARAMETER * N_PARAMETER], step[N_PARAMETER], damping = 0, sum = look(f, at, G, H);
+    double G[HF_FIT_N_PARAMETER], H[HF_FIT_N_PARAMETER * HF_FIT_N_PARAMETER], step[HF_FIT_N_PARAMETER],
+        damping = 0, sum = look(f, at, G, H);
     if (find_fall(at->n, H, step)) {
         double by = FALL_STEP / largest(at->n, step);
         for (int k = 0; k < at->n; k++)
@@ -329,9 +320,9 @@ static void report(const fit_problem *p, const gsl_vector *v, hf_surface_fit *fi
     fit->shift_x_m = f.shift_m[0];
     fit->shift_y_m = f.shift_m[1];
     fit->shift_z_m = f.shift_m[2];
-    fit->rotation_x_rad = now.value[TURN_X];
-    fit->rotation_y_rad = now.value[TURN_Y];
-    fit->rotation_z_rad = now.value[TURN_Z];
+    fit->rotation_x_rad = now.value[HF_FIT_TURN_X];
+    fit->rotation_y_rad = now.value[HF_FIT_TURN_Y];
+    fit->rotation_z_rad = now.value[HF_FIT_TURN_Z];
 }
 
 /* Iterates until the steps vanish, or until rounding keeps every step from lowering the sum of squares. Returns false
@@ -340,7 +331,7 @@ static bool iterate(gsl_multifit_nlinear_workspace *solver, int *iterations)
 {
     const gsl_vector *at = gsl_multifit_nlinear_position(solver);
     for (int n = 1; n <= FIT_STEPS_MAX; n++) {
-        double before[N_PARAMETER], step = 0;
+        double before[HF_FIT_N_PARAMETER], step = 0;
         for (size_t k = 0; k < at->size; k++)
             before[k] = gsl_vector_get(at, k);
         ++*iterations;
@@ -355,9 +346,9 @@ static bool iterate(gsl_multifit_nlinear_workspace *solver, int *iterations)
 
 /* Fits the first n_parameter parameters, starting from `parameter`, which it overwrites. Sets fit->converged. Returns
  * HF_OK or HF_NO_MEMORY. */
-static hf_status fit_some(fit_problem *p, size_t n_parameter, double parameter[N_PARAMETER], hf_surface_fit *fit)
+static hf_status fit_some(fit_problem *p, size_t n_parameter, double parameter[HF_FIT_N_PARAMETER], hf_surface_fit *fit)
 {
-    size_t n_row = p->n < N_PARAMETER ? N_PARAMETER : (size_t)p->n;
+    size_t n_row = p->n < HF_FIT_N_PARAMETER ? HF_FIT_N_PARAMETER : (size_t)p->n;
     gsl_multifit_nlinear_parameters settings = gsl_multifit_nlinear_default_parameters();
     gsl_multifit_nlinear_fdf fdf = {.f = residuals, .df = jacobian, .n = n_row, .p = n_parameter, .params = p};
     gsl_multifit_nlinear_workspace *solver =
@@ -376,7 +367,7 @@ static hf_status fit_some(fit_problem *p, size_t n_parameter, double parameter[N
 /* Calls fit_some, and continues to a minimum if that is not one. The steps of fit_some become very short along
  * valleys. In a net that is its own mirror image they stay on a ridge (METHOD section 9). If no minimum is found,
  * fit->converged is false. */
-static hf_status fit_least(fit_problem *p, int n_parameter, double parameter[N_PARAMETER], hf_surface_fit *fit)
+static hf_status fit_least(fit_problem *p, int n_parameter, double parameter[HF_FIT_N_PARAMETER], hf_surface_fit *fit)
 {
     HF_TRY(fit_some(p, (size_t)n_parameter, parameter, fit));
     if (!isfinite(fit->half_path_rms_m)) return HF_OK;
@@ -406,7 +397,7 @@ hf_status hf_surface_fit_find(hf_surface_kind kind, double focal_length_m, int n
 {
     bool is_round = kind == HF_SURFACE_PARABOLOID;
     fit_problem p = {kind, n, position_m, root_weight, 1 / (4 * focal_length_m), {0}};
-    double parameter[N_PARAMETER] = {0};
+    double parameter[HF_FIT_N_PARAMETER] = {0};
     *fit = (hf_surface_fit){0};
     memcpy(p.at.quantity, is_round ? paraboloid_parameter : cylinder_parameter, sizeof p.at.quantity);
     center(&p);
@@ -444,12 +435,12 @@ hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int
 void hf_surface_fit_errors(hf_surface_kind kind, const hf_surface_fit *fit, int n, const double *position_m,
                            double *error_m)
 {
-    const hf_fit_parameters at = {.value = {[SHIFT_X] = fit->shift_x_m,
-                                            [SHIFT_Y] = fit->shift_y_m,
-                                            [SHIFT_Z] = fit->shift_z_m,
-                                            [TURN_X] = fit->rotation_x_rad,
-                                            [TURN_Y] = fit->rotation_y_rad,
-                                            [TURN_Z] = fit->rotation_z_rad},
+    const hf_fit_parameters at = {.value = {[HF_FIT_SHIFT_X] = fit->shift_x_m,
+                                            [HF_FIT_SHIFT_Y] = fit->shift_y_m,
+                                            [HF_FIT_SHIFT_Z] = fit->shift_z_m,
+                                            [HF_FIT_TURN_X] = fit->rotation_x_rad,
+                                            [HF_FIT_TURN_Y] = fit->rotation_y_rad,
+                                            [HF_FIT_TURN_Z] = fit->rotation_z_rad},
                                   .center_m = {fit->center_x_m, fit->center_y_m, fit->center_z_m},
                                   .size_m = 1};
     hf_fit_frame f = hf_fit_frame_of(kind, fit->focal_length_m, n, position_m, NULL, &at);

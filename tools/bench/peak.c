@@ -135,8 +135,8 @@ static void open_net(const char *name, hf_lane_isa isa, net *n)
 
 static void close_net(net *n)
 {
-    hf_swarm_lanes_free(&n->lanes);
-    hf_swarm_plan_free(&n->plan);
+    hf_arena_free(&n->lanes.arena);
+    hf_arena_free(&n->plan.arena);
     bench_scene_free(&n->scene);
 }
 

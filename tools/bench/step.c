@@ -180,8 +180,8 @@ void bench_step(const char *what, const char *folder)
                            bench_distance_m(&b.model, first, b.workspace.position_m));
         }
     bench_emit("step", b.name, "net", b.model.n_free, "half_bandwidth", b.model.half_bandwidth);
-    hf_swarm_lanes_free(&c.lanes);
-    hf_swarm_plan_free(&c.plan);
+    hf_arena_free(&c.lanes.arena);
+    hf_arena_free(&c.plan.arena);
     bench_cholmod_free(c.cholmod);
     free(first);
     bench_scene_free(&b);

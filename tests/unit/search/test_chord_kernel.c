@@ -68,8 +68,8 @@ static void fill_lanes(struct kernel_run *r, uint64_t stream)
 
 static void close_kernel(struct kernel_run *r)
 {
-    hf_chord_lanes_free(&r->lanes);
-    hf_chord_free(&r->chord);
+    hf_arena_free(&r->lanes.arena);
+    hf_arena_free(&r->chord.arena);
     close_net(&r->net);
 }
 

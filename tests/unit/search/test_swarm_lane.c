@@ -45,8 +45,8 @@ static void open_band_net(struct band_net *net, int n, int k, int (*is_left_out)
 
 static void close_band_net(struct band_net *net)
 {
-    hf_swarm_plan_free(&net->plan);
-    hf_swarm_lanes_free(&net->work);
+    hf_arena_free(&net->plan.arena);
+    hf_arena_free(&net->work.arena);
     free(net->model.end_row);
     free(net->model.length_m);
     free(net->model.load_N);
@@ -289,8 +289,8 @@ static void copy_band_net(struct band_net *copy, const struct band_net *net, hf_
 
 static void close_copy(struct band_net *copy)
 {
-    hf_swarm_plan_free(&copy->plan);
-    hf_swarm_lanes_free(&copy->work);
+    hf_arena_free(&copy->plan.arena);
+    hf_arena_free(&copy->work.arena);
 }
 
 /* Makes lane 2 indefinite and lane 4 not finite: these must also give equal results on every instruction set. */
@@ -475,8 +475,8 @@ static void compare_with_formfind(struct net *net, int isa)
             compare_lane(net, &plan, &w, &measures, l, step, STEP_TOLERANCE);
         hf_swarm_update(&w);
     }
-    hf_swarm_lanes_free(&w);
-    hf_swarm_plan_free(&plan);
+    hf_arena_free(&w.arena);
+    hf_arena_free(&plan.arena);
 }
 
 START_TEST(iterations_like_formfind_on_the_papers_net)
@@ -558,8 +558,8 @@ START_TEST(measures_by_hand)
     plan.kernels->measure(&plan, &w, &m);
     for (int l = 0; l < HF_LANES; l++)
         ck_assert_int_eq(m.is_finite[l], l != 4);
-    hf_swarm_lanes_free(&w);
-    hf_swarm_plan_free(&plan);
+    hf_arena_free(&w.arena);
+    hf_arena_free(&plan.arena);
     close_net(&net);
 }
 END_TEST
