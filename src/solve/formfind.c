@@ -48,16 +48,16 @@ void hf_form_prepare(const hf_model *m, hf_workspace *w)
     memcpy(w->q_N_per_m, m->start_q_N_per_m, n * sizeof(double));
     if (m->EA_N) memcpy(w->EA_N, m->EA_N, n * sizeof(double));
     memset(w->loose, 0, (size_t)m->n_node);
-    if (m->moves_supports) memset(w->support_move_m, 0, 3 * (size_t)m->n_node * sizeof(double));
+    if (m->moves_supports) memset(w->support_displacement_m, 0, 3 * (size_t)m->n_node * sizeof(double));
     memset(w->displacement_m, 0, 3 * (size_t)m->n_attachment * sizeof(double));
     w->n_moving = m->n_free;
 }
 
-void hf_form_place_supports(const hf_model *m, hf_workspace *w)
+void hf_form_set_supports(const hf_model *m, hf_workspace *w)
 {
     memcpy(w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double));
     for (int i = 0; m->moves_supports && i < 3 * m->n_node; i++)
-        w->position_m[i] += w->support_move_m[i];
+        w->position_m[i] += w->support_displacement_m[i];
     for (int i = 0; i < m->n_attachment; i++)
         for (int c = 0; c < 3; c++)
             w->position_m[c * m->n_node + m->attachment_row[i]] += w->displacement_m[3 * i + c];
@@ -159,7 +159,7 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
         if (gives_tension) {
             r->tension_error = larger(r->tension_error, fabs(tension / cable.target - 1));
         } else if (may_vanish) {
-            double strain = length / hf_law_wanted_length_m(cable, tension) - 1;
+            double strain = length / hf_law_required_length_m(cable, tension) - 1;
             double pull = smaller(tension / m->reference_N, 1);
             double error = fabs(strain);
             bool is_taut = pull >= HF_SLACK_RATIO;
@@ -470,7 +470,7 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, hf_stop_rul
     bool need_residual = history || stop == HF_STOP_RESIDUAL || !p.iterates;
     double length_gap;
     open_result(r);
-    hf_form_place_supports(m, w);
+    hf_form_set_supports(m, w);
     for (;;) {
         r->iterations++;
         r->status = w->stop && *w->stop ? HF_INTERRUPTED : solve_positions(m, w, &r->culprit);

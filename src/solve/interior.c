@@ -132,22 +132,22 @@ static double first_tension_N(const hf_model *m, hf_law_cable cable, double flex
     if (hf_law_has(cable.law, HF_LAW_GIVES_TENSION)) return cable.target;
     double reference = m->reference_N;
     if (!(flex > 0)) return reference;
-    double over = length - hf_law_wanted_length_m(cable, 0), mu = MU_FIRST * reference * cable.theoretical_m;
+    double over = length - hf_law_required_length_m(cable, 0), mu = MU_FIRST * reference * cable.theoretical_m;
     double T = (over + sqrt(over * over + 4 * flex * mu)) / (2 * flex);
     return fmin(fmax(T, reference / FIRST_RANGE), reference * FIRST_RANGE);
 }
 
 /* In the functions below, `held` are the moving rows among fixed ones, NULL without springs to the ground. */
 
-/* Sets a centred point for MU_FIRST at the target positions, or at spring_place_m with `held`. The path then reduces
+/* Sets a centred point for MU_FIRST at the target positions, or at spring_anchor_m with `held`. The path then reduces
  * its errors of length and balance. */
 static void set_start(const hf_model *m, hf_workspace *w, const hf_newton_rows *held)
 {
     double mean_m = hf_joint_mean_length_m(m);
     if (held)
-        memcpy(w->position_m, w->spring_place_m, 3 * (size_t)m->n_node * sizeof(double));
+        memcpy(w->position_m, w->spring_anchor_m, 3 * (size_t)m->n_node * sizeof(double));
     else
-        hf_form_place_supports(m, w);
+        hf_form_set_supports(m, w);
     memset(blocks(w), 0, (size_t)n_block(m) * sizeof *blocks(w));
     for (int e = 0; e < m->n_cable; e++) {
         int k;
@@ -165,7 +165,7 @@ static void set_start(const hf_model *m, hf_workspace *w, const hf_newton_rows *
             p->along[k] = p->across[k] = hf_law_tension_N(cable, 1);
             p->T[k] = p->along[k] * length;
         } else if (is_fixed(m, w, e)) {
-            double over = has_multiplier(w, e) ? length - hf_law_wanted_length_m(cable, 0) : 0;
+            double over = has_multiplier(w, e) ? length - hf_law_required_length_m(cable, 0) : 0;
             p->T[k] = p->flex[k] > 0 ? fmax(over, 0) / p->flex[k]
                                      : hf_law_held_q_N_per_m(cable, length, w->q_N_per_m[e]) * length;
             p->v[k] = length;
@@ -200,7 +200,7 @@ static void add_springs_pull(const hf_model *m, hf_workspace *w)
     for (int k = 0; k < hf_newton_matrix_dofs(m); k++) {
         double spring = w->spring_N_per_m[k / 3], *force = w->newton_force_N + k;
         int at = k % 3 * m->n_node + k / 3;
-        *force = isinf(spring) ? 0 : *force + spring * (w->spring_place_m[at] - w->position_m[at]);
+        *force = isinf(spring) ? 0 : *force + spring * (w->spring_anchor_m[at] - w->position_m[at]);
     }
 }
 
@@ -400,7 +400,7 @@ static path_error measure_end(const hf_model *m, hf_workspace *w, const hf_newto
         double T = hf_newton_matrix_tension_N(cable, length, w->tension_N[e]);
         p->along[at] = has_multiplier(w, e) ? 0 : hf_law_stiffness_N_per_m(cable, length);
         if (has_multiplier(w, e)) {
-            double over = length - hf_law_wanted_length_m(cable, T);
+            double over = length - hf_law_required_length_m(cable, T);
             bool is_taut = T / reference + over / m->length_m[e] > 0;
             double k = p->flex[at] > 0 ? 1 / p->flex[at] : hf_newton_matrix_rigid_stiffness(m, e, T);
             p->along[at] = is_taut ? k : 0;

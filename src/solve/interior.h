@@ -7,11 +7,11 @@
 #include <hifdm/formfind.h>
 #include <stdbool.h>
 
-/* Finds the shape of minimum energy from the target positions, with supports where hf_form_place_supports puts them. It
+/* Finds the shape of minimum energy from the target positions, with supports where hf_form_set_supports puts them. It
  * takes at most max_steps factorisations and increases *n_step by their number. The workspace must be of a model with
  * has_newton. Does not allocate.
  *
- * is_held: starts from the shape spring_place_m instead, with the laws and targets of the workspace. Springs of
+ * is_held: starts from the shape spring_anchor_m instead, with the laws and targets of the workspace. Springs of
  * spring_N_per_m [n_free] pull the rows to that shape; INFINITY fixes a row. It then records no history and does not
  * look for straight chains.
  *

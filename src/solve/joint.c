@@ -20,7 +20,7 @@ static bool has_truss(const hf_model *m, const hf_workspace *w)
 
 double hf_joint_resting_m(const hf_model *m, const hf_workspace *w, int at)
 {
-    return m->moves_supports ? m->position_m[at] + w->support_move_m[at] : m->position_m[at];
+    return m->moves_supports ? m->position_m[at] + w->support_displacement_m[at] : m->position_m[at];
 }
 
 static double displacement_m(const hf_model *m, const hf_workspace *w, const double *position_m, int i_dof)

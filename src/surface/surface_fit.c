@@ -14,7 +14,7 @@
 #include "surface/surface_fit.h"
 
 #include "base/elementary.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "linalg/dense.h"
 #include "surface/fit_point.h"
 
@@ -108,7 +108,7 @@ static hf_fit_frame frame_at(const fit_problem *p, const gsl_vector *v, hf_fit_p
 static double height(const hf_fit_frame *f, int i, double arm[3], double at[3], double slope[2])
 {
     hf_fit_locate(f, i, arm, at);
-    return hf_wanted_height_above(f->kind, f->curvature_per_m, at, slope);
+    return hf_target_surface_height_above(f->kind, f->curvature_per_m, at, slope);
 }
 
 static double root_weight(const fit_problem *p, int i)
