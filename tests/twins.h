@@ -105,7 +105,7 @@ static inline void measure_twin(twin *t, double cut_m, double support_m, double 
             off[c * m->n_node + row] = t->rest_m[3 * row + c];
         }
     t->prior.support_sigma_m = support_m;
-    hf_built_net net = {.cut_m = length, .support_move_m = off};
+    hf_built_net net = {.cut_m = length, .support_displacement_m = off};
     ck_assert_int_eq(hf_built_solve(&t->built, &net, &t->work, &r), HF_OK);
     for (int row = 0; row < m->n_node; row++) {
         bool is_there = row < m->n_free + m->n_attachment && (!missing || rng_int(&t->rng, 1, missing) > 1);

@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 # may call malloc and related functions: set-up, never the hot path
 heap_files="base/status base/arena base/text base/csv linalg/lapack net/scene net/generate_[a-z_]*
             net/cable_set net/scene_arrays net/facet_import case/config_load_cases net/scene_import net/numbering
-            net/model truss/truss truss/generate_[a-z_]* truss/truss_import truss/frame search/swarm_lane search/batch
+            net/model truss/truss truss/generate_[a-z_]* truss/truss_import truss/frame search/batch
             case/config case/study case/study_read store/hdf5 store/hdf5_rows store/journal store/generations
             store/store_file store/store_internal store/store store/store_read store/store_resume store/compare
             store/store_look store/layout_truss store/layout_coupling store/layout_front store/ledger store/merge

@@ -49,10 +49,11 @@ hf_status hf_built_renew(const hf_model *model, const hf_workspace *workspace, h
 
 /* The differences of one net from the nominal net. A member that is NULL stands for no difference of this kind. */
 typedef struct {
-    const double *cut_m;          /* [n_cable] unstressed lengths, at the temperature of the net */
-    const double *EA_N;           /* [n_cable] axial stiffness */
-    const double *support_move_m; /* [3][n_node] displacements of supports by row, of attachments without forces */
-    const double *load_N;         /* [3][n_node] loads by row, which replace those of the design */
+    const double *cut_m; /* [n_cable] unstressed lengths, at the temperature of the net */
+    const double *EA_N;  /* [n_cable] axial stiffness */
+    const double
+        *support_displacement_m; /* [3][n_node] displacements of supports by row, of attachments without forces */
+    const double *load_N;        /* [3][n_node] loads by row, which replace those of the design */
 } hf_built_net;
 
 /* Finds the shape of one net from its unstressed lengths alone, whatever the nominal shape is. It is the reference for

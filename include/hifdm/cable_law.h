@@ -105,7 +105,7 @@ const char *hf_law_target_fault(hf_law law, double target, double theoretical_m,
 
 /* Returns the length that a law with a multiplier requires at this tension, m; NaN for other laws. This form needs no
  * special case for stiff cables: in the limit of infinite EA the law elastic is the law length (METHOD M3). */
-static inline double hf_law_wanted_length_m(hf_law_cable c, double tension_N)
+static inline double hf_law_required_length_m(hf_law_cable c, double tension_N)
 {
     switch (c.law) {
     case HF_LAW_LENGTH:
@@ -141,7 +141,7 @@ static inline double hf_law_tension_N(hf_law_cable c, double length_m)
  * law. */
 static inline double hf_law_cut_m(hf_law_cable c, double length_m, double tension_N, bool is_slack)
 {
-    if (is_slack && hf_law_has(c.law, HF_LAW_HAS_MULTIPLIER)) return hf_law_wanted_length_m(c, 0);
+    if (is_slack && hf_law_has(c.law, HF_LAW_HAS_MULTIPLIER)) return hf_law_required_length_m(c, 0);
     return length_m / (1 + tension_N / c.EA_N);
 }
 
@@ -192,7 +192,7 @@ static inline double hf_law_held_q_N_per_m(hf_law_cable c, double length_m, doub
 /* Minimum force density that Eq. 8 gives a slack cable, N/m. It is far below all forces, also in nets with pretensions
  * of 1e-300 N, for which 1e-100 would be too much. It is enough to give a position to a node that only slack cables
  * hold. */
-#define HF_LAW_LEAST_Q_N_PER_M 1e-305
+#define HF_LAW_MIN_Q_N_PER_M 1e-305
 
 /* Returns the next force density of the fixed-point iteration, N/m. Eq. 7 multiplies q by the required over the present
  * tension; with T = q l the result is the required tension over l. Eq. 8 multiplies q by the present over the required
@@ -201,8 +201,8 @@ static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, doub
 {
     if (hf_law_has(c.law, HF_LAW_GIVES_TENSION)) return c.target / length_m;
     if (!hf_law_has(c.law, HF_LAW_HAS_MULTIPLIER)) return q_N_per_m;
-    double next = q_N_per_m * (length_m / hf_law_wanted_length_m(c, tension_N));
-    return next < HF_LAW_LEAST_Q_N_PER_M ? HF_LAW_LEAST_Q_N_PER_M : next; /* a NaN remains */
+    double next = q_N_per_m * (length_m / hf_law_required_length_m(c, tension_N));
+    return next < HF_LAW_MIN_Q_N_PER_M ? HF_LAW_MIN_Q_N_PER_M : next; /* a NaN remains */
 }
 
 /* Returns the tension with which an iteration begins, N: otherwise_N, unless the cable can go slack and is taut at its
@@ -212,7 +212,7 @@ static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, doub
 #define HF_LAW_FIRST_RANGE 10.0
 static inline double hf_law_first_tension_N(hf_law_cable c, double otherwise_N)
 {
-    bool is_taut = hf_law_has(c.law, HF_LAW_GOES_SLACK) && c.theoretical_m > hf_law_wanted_length_m(c, 0);
+    bool is_taut = hf_law_has(c.law, HF_LAW_GOES_SLACK) && c.theoretical_m > hf_law_required_length_m(c, 0);
     if (!is_taut) return otherwise_N;
     double tension_N = hf_law_tension_N(c, c.theoretical_m);
     return fmin(fmax(tension_N, otherwise_N / HF_LAW_FIRST_RANGE), otherwise_N * HF_LAW_FIRST_RANGE);

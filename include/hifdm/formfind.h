@@ -22,12 +22,12 @@
 HF_API_BEGIN
 
 /* Prepares the workspace for the case of the model: copies laws, target values, EA and first force densities; sets
- * displacement_m, support_move_m and loose to zero, and n_moving to n_free. */
+ * displacement_m, support_displacement_m and loose to zero, and n_moving to n_free. */
 void hf_form_prepare(const hf_model *model, hf_workspace *workspace);
 
 /* Writes the positions from which a solve starts into position_m: the target positions. Supports that a design moves
- * are displaced by support_move_m, attachments by displacement_m. */
-void hf_form_place_supports(const hf_model *model, hf_workspace *workspace);
+ * are displaced by support_displacement_m, attachments by displacement_m. */
+void hf_form_set_supports(const hf_model *model, hf_workspace *workspace);
 
 /* Finds a shape by iteration from the workspace's q_N_per_m under its laws and target values. The attachments are
  * displaced by displacement_m. The iteration ends when the rule `stop` holds, at max_iterations, or when the net is

@@ -131,14 +131,10 @@ hf_status hf_objectives_measure(const hf_objectives *objectives, const hf_worksp
                                 hf_objectives_point *point, double *value, double *merit);
 
 /* Computes the weighted residuals residual [n_row] of the shape in the workspace, whose norm is the merit, and the data
- * for hf_objectives_push. Returns HF_OK; HF_NOT_FINITE if an objective has no value; HF_NO_MEMORY. */
-hf_status hf_objectives_linearise(const hf_objectives *objectives, const hf_workspace *workspace,
+ * for hf_objectives_push. Without with_nets, only the objectives that are measured on the design itself are computed, and
+ * the rows of the others do not change. Returns HF_OK; HF_NOT_FINITE if an objective has no value; HF_NO_MEMORY. */
+hf_status hf_objectives_linearise(const hf_objectives *objectives, bool with_nets, const hf_workspace *workspace,
                                   hf_objectives_point *point, double *residual);
-
-/* Computes the same as hf_objectives_linearise, but only for the objectives that are measured on the design itself. The
- * rows of the other objectives are not changed. */
-hf_status hf_objectives_linearise_design(const hf_objectives *objectives, const hf_workspace *workspace,
-                                         hf_objectives_point *point, double *residual);
 
 /* Computes the rates rate [n_row] of the residuals of hf_objectives_linearise by a design variable, from the rates `by`
  * of the shape. The rows of objectives over as-built nets are not changed. The workspace holds the same shape. */
@@ -153,17 +149,6 @@ bool hf_objectives_is_smooth(const hf_objective_settings *objective);
 /* Returns true if an objective is measured on net i_net. */
 bool hf_objectives_are_over(const hf_objectives *objectives, int i_net);
 
-/* Finds the as-built nets of the design in the workspace. residual [n_row] receives the residuals of the objectives
- * over nets, without weights; net_value and net_norm of the point are set. Returns HF_OK, also if nets have no shape;
- * HF_NO_MEMORY. */
-hf_status hf_objectives_nets_measure(const hf_objectives *objectives, const hf_workspace *workspace,
-                                     hf_objectives_point *point, double *residual);
-
-/* Combines the nets of objective i_objective: sets *value and *norm. Except for a quantile, its residuals [n_row of the
- * objective] are scaled so that they have this norm. */
-void hf_objectives_nets_gather(const hf_objectives *objectives, int i_objective, hf_objectives_point *point,
-                               double *residual, double *value, double *norm);
-
 /* Finds net i_net of the design that was cut last and prepares its derivatives. *shape is set to the workspace with its
  * shape. Returns HF_OK; HF_NOT_FINITE if the net has no shape or an objective no value there; HF_NO_MEMORY. */
 hf_status hf_objectives_nets_linearise(const hf_objectives *objectives, int i_net, hf_objectives_point *point,
@@ -177,20 +162,8 @@ void hf_objectives_nets_push(const hf_objectives *objectives, int i_net, const h
 void hf_objectives_nets_close(const hf_objectives *objectives, const hf_objectives_point *point, const double *residual,
                               double *rate);
 
-/* ---- parts, for objectives_nets.c ---- */
+/* ---- parts ---- */
 
-/* Computes the residuals of objective i_objective for one shape, without its weight, their norm and the value. Returns
- * HF_OK or HF_NO_MEMORY. */
-hf_status hf_objectives_measure_shape(const hf_objectives *objectives, int i_objective, const hf_workspace *shape,
-                                      hf_objectives_point *point, double *residual, double *value, double *norm);
-/* Computes the rates of the residuals of objective i_objective for one shape, without its weight, from the rates `by`
- * of the shape. */
-void hf_objectives_push_shape(const hf_objectives *objectives, int i_objective, const hf_workspace *shape,
-                              hf_objectives_point *point, const hf_objectives_rate *by, double *rate);
-/* Prepares hf_objectives_push_shape for objective i_objective and the shape that was measured last. Returns HF_OK,
- * HF_NOT_FINITE or HF_NO_MEMORY. */
-hf_status hf_objectives_linearise_shape(const hf_objectives *objectives, int i_objective, const hf_workspace *shape,
-                                        hf_objectives_point *point);
 /* Returns true for the objectives surface and facets. */
 bool hf_objectives_is_on_surface(hf_figure_kind kind);
 

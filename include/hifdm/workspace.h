@@ -29,7 +29,7 @@ HF_API_BEGIN
 #define HF_SCHUR_COLUMNS(m) (3 * ((size_t)(m)->n_attachment + HF_SCHUR_PANEL * 3 * (size_t)(m)->n_free))
 #define HF_SCHUR_ITEMS(m) (27 * (size_t)(m)->n_attachment * (size_t)(m)->n_attachment + HF_SCHUR_COLUMNS(m))
 
-/* Doubles of the primal-dual path (src/solve/path_cable.h): HF_INTERIOR_BLOCK for each block of eight cables. */
+/* Doubles of the primal-dual path (src/solve/path_kernel.h): HF_INTERIOR_BLOCK for each block of eight cables. */
 #define HF_INTERIOR_BLOCK 416
 #define HF_INTERIOR_ITEMS(m) (HF_INTERIOR_BLOCK * (((size_t)(m)->n_cable + 7) / 8))
 
@@ -71,11 +71,11 @@ HF_API_BEGIN
     X(double, interior_tension_N, m->has_newton ? m->n_cable : 0, "N", "[n_cable] tensions there")                     \
     X(unsigned char, loose, m->n_node, "", "[n_node] 1: no taut cable holds this row")                                 \
     X(double, spring_N_per_m, m->has_newton ? (size_t)m->n_free : 0, "N/m", "[n_free] springs of the path")            \
-    X(double, spring_place_m, m->has_newton ? 3 * (size_t)m->n_node : 0, "m", "[3][n_node] to where they pull")        \
-    X(unsigned char, place_law, m->has_newton ? m->n_cable : 0, "", "kept while loose nodes are placed")               \
-    X(double, place_target, m->has_newton ? m->n_cable : 0, "by law", "the same")                                      \
-    X(double, place_q_N_per_m, m->has_newton ? m->n_cable : 0, "N/m", "the same")                                      \
-    X(double, place_before_m, m->has_newton ? 3 * (size_t)m->n_node : 0, "m", "the same")                              \
+    X(double, spring_anchor_m, m->has_newton ? 3 * (size_t)m->n_node : 0, "m", "[3][n_node] to where they pull")       \
+    X(unsigned char, loose_law, m->has_newton ? m->n_cable : 0, "", "kept while loose nodes are placed")               \
+    X(double, loose_target, m->has_newton ? m->n_cable : 0, "by law", "the same")                                      \
+    X(double, loose_q_N_per_m, m->has_newton ? m->n_cable : 0, "N/m", "the same")                                      \
+    X(double, loose_before_m, m->has_newton ? 3 * (size_t)m->n_node : 0, "m", "the same")                              \
     X(double, certificate_work, m->has_newton ? 0 : 3 * (size_t)m->n_node, "", "without a Newton matrix")              \
     X(int, certificate_integer_work, m->has_newton ? 0 : (size_t)m->n_free, "", "the same")                            \
     X(double, displacement_m, 3 * (size_t)m->n_attachment, "m", "[3 n_attachment] displacements by the truss")         \
@@ -85,7 +85,7 @@ HF_API_BEGIN
     X(int, schur_pivot, m->has_newton ? 3 * (size_t)m->n_attachment : 0, "", "the same")                               \
     X(double, coupling_q_N_per_m, m->n_attachment ? (size_t)m->n_cable : 0, "N/m",                                     \
       "[n_cable] from which the next form-finding starts")                                                             \
-    X(double, support_move_m, m->moves_supports ? 3 * (size_t)m->n_node : 0, "m",                                      \
+    X(double, support_displacement_m, m->moves_supports ? 3 * (size_t)m->n_node : 0, "m",                              \
       "[3][n_node] of a design's supports")                                                                            \
     X(int, pivot, m->has_strut ? (size_t)m->n_free : 0, "", "struts")
 

@@ -14,7 +14,7 @@
 #include "run/tolerance_stage.h"
 #include "search/chord.h"
 #include "search/refine.h"
-#include "search/swarm_lane.h"
+#include "search/swarm.h"
 #include "solve/prestress.h"
 #include <hifdm/batch.h>
 #include <hifdm/pattern.h>
@@ -23,7 +23,7 @@
 #include <limits.h>
 #include <math.h>
 
-#define OPERATIONS_PER_S 2e9 /* speed of one core, as in search/refine_cost.c */
+#define OPERATIONS_PER_S 2e9 /* speed of one core, as in search/refine.c */
 #define LONG_S 3600.0        /* above this time, or above LARGE_BYTES, advice is printed */
 #define LARGE_BYTES 2e9
 #define TRIAL_S 1.0 /* approximate wall-clock time of the trial of form-finding */
@@ -361,7 +361,7 @@ static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lan
         hf_swarm_plan plan;
         HF_TRY(hf_swarm_plan_create(v->model, hf_lane_best_isa(), &plan));
         *lanes = hf_swarm_lanes_bytes(&plan);
-        hf_swarm_plan_free(&plan);
+        hf_arena_free(&plan.arena);
     }
     return HF_OK;
 }
@@ -452,7 +452,7 @@ static hf_status print_refine_time(hf_problem *p, const hf_evaluator *v, const h
         *most_s += foretold_s * n_step;
         return HF_OK;
     }
-    hf_status status = hf_refine_run(v, ga->lower, ga->upper, 2, NULL, p->initial, &p->workspace, &r);
+    hf_status status = hf_refine_run(v, ga->lower, ga->upper, 2, NULL, NULL, p->initial, &p->workspace, &r);
     if (status == HF_NO_MEMORY) return status;
     if (status != HF_OK || r.iterations == 0) return HF_OK;
     double each_s = (hf_clock_s() - begin_s) / r.iterations;

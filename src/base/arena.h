@@ -5,7 +5,9 @@
  *
  *     hf_arena arena = {0};
  *     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, object)));
- *     object->block = arena.block; // the owner frees it with hf_arena_free_block */
+ *     object->block = arena.block; // the owner frees it with hf_arena_free_block
+ *
+ * A struct may also contain its arena. Its owner then frees it with hf_arena_free(&object.arena). */
 #ifndef HIFDM_ARENA_H
 #define HIFDM_ARENA_H
 
@@ -34,6 +36,11 @@ hf_status hf_arena_allocate(hf_arena *arena);
     ((void)(lay_out), hf_arena_allocate(arena) != HF_OK ? HF_NO_MEMORY : ((void)(lay_out), HF_OK))
 
 void hf_arena_free(hf_arena *arena);
+
+/* The arrays of a struct are listed once, in rows X(type, name, count, meaning). These make the members of the struct, and
+ * take the arrays in a layout function with an `arena` and the struct `to`. */
+#define HF_ARENA_MEMBER(type, name, ...) type *name;
+#define HF_ARENA_TAKE(type, name, count, ...) to->name = hf_arena_take(arena, (size_t)(count), sizeof(type));
 
 static inline void hf_arena_free_block(void *block)
 {

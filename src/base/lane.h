@@ -25,6 +25,10 @@ const char *hf_lane_isa_name(hf_lane_isa isa);
 #define HF_JOIN(a, b) HF_JOIN_(a, b)
 #define HF_KERNEL(name) HF_JOIN(name, HF_ISA) /* name with the instruction set as suffix */
 
+/* Lists the objects of all instruction sets in the order of hf_lane_isa: what a *_kernel.c defines as HF_KERNEL(name),
+ * usually a table of its functions. A caller takes entry hf_lane_best_isa() of such a list. */
+#define HF_LANE_EACH(name) name##_portable, name##_avx2, name##_avx512
+
 #define INLINE static inline __attribute__((always_inline))
 
 /* ---- vectors of the width of the processor ---- */

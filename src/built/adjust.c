@@ -325,7 +325,7 @@ static void take_turns_off(adjustment *a)
 /* Renews the residuals at a shape near that of the last linear model and keeps the derivatives of that model. */
 static hf_status look_again(adjustment *a)
 {
-    HF_TRY(hf_objectives_linearise(a->task->objectives, &a->work, &a->room[0].point, a->residual));
+    HF_TRY(hf_objectives_linearise(a->task->objectives, true, &a->work, &a->room[0].point, a->residual));
     take_turns_off(a);
     for (size_t i = 0; i < a->n; i++)
         a->slope[i] = hf_dot(a->n_row, a->column + i * a->n_row, a->at_zero);
@@ -339,7 +339,7 @@ static hf_status linearise(adjustment *a)
 {
     size_t n = a->n, n_row = a->n_row;
     for (int i = 0; i < a->n_room; i++)
-        HF_TRY(hf_objectives_linearise(a->task->objectives, &a->work, &a->room[i].point, a->residual));
+        HF_TRY(hf_objectives_linearise(a->task->objectives, true, &a->work, &a->room[i].point, a->residual));
     HF_TRY(hf_built_linear_take(&a->estimate->linear, &a->work));
     hf_packed_band_pack(&a->matrix, a->estimate->linear.work.newton_band);
     hf_parallel_each(a->n_room, (int)((n + PANEL - 1) / PANEL), find_panel, a);
@@ -473,7 +473,7 @@ static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_E
 {
     adjust_room *r = &a->room[0];
     const hf_turned t = turned_of(a);
-    HF_TRY(hf_objectives_linearise(a->task->objectives, &a->work, &r->point, a->residual));
+    HF_TRY(hf_objectives_linearise(a->task->objectives, true, &a->work, &r->point, a->residual));
     HF_TRY(hf_turned_answer(&t, &a->work, a->answer_m));
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
         double *move_m = a->answer_m + s * a->n_dof;

@@ -161,6 +161,7 @@ hf_status hf_built_solve(const hf_built *b, const hf_built_net *net, hf_workspac
     hf_form_prepare(&loaded, w);
     if (net->cut_m) memcpy(w->target, net->cut_m, n);
     if (net->EA_N) memcpy(w->EA_N, net->EA_N, n);
-    if (net->support_move_m) memcpy(w->support_move_m, net->support_move_m, 3 * (size_t)loaded.n_node * sizeof(double));
+    if (net->support_displacement_m)
+        memcpy(w->support_displacement_m, net->support_displacement_m, 3 * (size_t)loaded.n_node * sizeof(double));
     return hf_evaluate_prepared(&loaded, &b->form, w, NULL, r);
 }

@@ -29,8 +29,8 @@
 typedef struct {
     hf_workspace work;
     hf_near_lanes near;
-    double *cut_m, *EA_N;   /* [HF_LANES][n_cable] of the samples in the lanes */
-    double *support_move_m; /* [HF_LANES][3][n_node] by row */
+    double *cut_m, *EA_N;           /* [HF_LANES][n_cable] of the samples in the lanes */
+    double *support_displacement_m; /* [HF_LANES][3][n_node] by row */
     void *block;
 } batch_room;
 
@@ -47,7 +47,7 @@ static void lay_out_room(hf_arena *arena, const hf_model *m, batch_room *room)
 {
     room->cut_m = hf_arena_take(arena, (size_t)m->n_cable * HF_LANES, sizeof(double));
     room->EA_N = hf_arena_take(arena, (size_t)m->n_cable * HF_LANES, sizeof(double));
-    room->support_move_m = hf_arena_take(arena, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
+    room->support_displacement_m = hf_arena_take(arena, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
 }
 
 /* Makes a room unless it exists. Returns HF_OK or HF_NO_MEMORY. Only one thread at a time has the number of a room, so
@@ -161,7 +161,7 @@ static void make_sample(batch_work *work, int lane, int i)
     size_t n = (size_t)b->model.n_cable, places = 3 * (size_t)b->model.n_node;
     bool has_EA = j->varies & HF_BUILT_VARIES_EA, has_supports = j->varies & HF_BUILT_VARIES_SUPPORTS;
     double *cut_m = work->room->cut_m + (size_t)lane * n, *EA_N = work->room->EA_N + (size_t)lane * n;
-    double *move_m = has_supports ? work->room->support_move_m + (size_t)lane * places : NULL;
+    double *move_m = has_supports ? work->room->support_displacement_m + (size_t)lane * places : NULL;
     memcpy(cut_m, b->model.target, n * sizeof(double));
     memcpy(EA_N, b->model.EA_N, n * sizeof(double));
     if (has_supports) memset(move_m, 0, places * sizeof(double));

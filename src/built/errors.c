@@ -176,7 +176,7 @@ static double truss_move_of(const hf_built_errors *e, int i_move, const double *
 }
 
 void hf_built_errors_apply(const hf_built_errors *e, double scale, const double *z, double *cut_m, double *EA_N,
-                           double *support_move_m)
+                           double *support_displacement_m)
 {
     const hf_model *m = &e->linear->built->model;
     double warmer_K = scale * error_of(e, HF_ERROR_TEMPERATURE, 0, z);
@@ -186,11 +186,11 @@ void hf_built_errors_apply(const hf_built_errors *e, double scale, const double 
         cut_m[i] *= 1 + e->expansion_per_K[i] * warmer_K;
         if (EA_N) EA_N[i] *= 1 + scale * ratio_of(e, HF_ERROR_EA, HF_ERROR_EA_BATCH, i, z);
     }
-    for (int k = 0; k < 3 * e->n_support && support_move_m && e->sigma[HF_ERROR_SUPPORT] > 0; k++)
-        support_move_m[k % 3 * m->n_node + m->row_of_node[e->support[k / 3]]] +=
+    for (int k = 0; k < 3 * e->n_support && support_displacement_m && e->sigma[HF_ERROR_SUPPORT] > 0; k++)
+        support_displacement_m[k % 3 * m->n_node + m->row_of_node[e->support[k / 3]]] +=
             scale * error_of(e, HF_ERROR_SUPPORT, k, z);
-    for (int k = 0; k < 3 * m->n_attachment && support_move_m && e->n_truss > 0; k++)
-        support_move_m[k % 3 * m->n_node + m->attachment_row[k / 3]] += scale * truss_move_of(e, k, z);
+    for (int k = 0; k < 3 * m->n_attachment && support_displacement_m && e->n_truss > 0; k++)
+        support_displacement_m[k % 3 * m->n_node + m->attachment_row[k / 3]] += scale * truss_move_of(e, k, z);
 }
 
 /* ---- first order ---- */

@@ -139,7 +139,7 @@ static hf_status solve_net(const hf_estimate *p, const double *cut_m, const doub
     for (int row = 0; row < m->n_node; row++)
         for (int c = 0; c < 3; c++)
             s.support_m[c * m->n_node + row] = row < m->n_free ? 0 : rest_m[3 * row + c];
-    return solve_from_last(p, &(hf_built_net){.cut_m = s.length_m, .support_move_m = s.support_m}, w, r);
+    return solve_from_last(p, &(hf_built_net){.cut_m = s.length_m, .support_displacement_m = s.support_m}, w, r);
 }
 
 hf_status hf_estimate_shape(const hf_estimate *p, const double *turn_m, hf_workspace *w, hf_form_result *r)

@@ -72,7 +72,7 @@ static hf_status factor_shape(hf_built_linear *l)
     for (int e = 0; e < m->n_cable; e++)
         look_at_cable(l, e);
     const double *spring = spring_loose(m, &l->work) ? l->work.spring_N_per_m : NULL;
-    HF_TRY(hf_newton_matrix_factor_blocks(m, &l->work, hf_newton_matrix_block, spring, &condition));
+    HF_TRY(hf_newton_matrix_factor_blocks(m, &l->work, hf_newton_matrix_block, spring, NULL, &condition));
     if (isinf(condition)) return HF_SINGULAR;
     if (m->n_attachment) HF_TRY(hf_schur_factor(m, &l->work, hf_newton_matrix_block, &l->schur));
     l->is_factored = true;
@@ -118,7 +118,7 @@ void hf_built_linear_free(hf_built_linear *l)
 {
     hf_arena arena = {.block = l->block};
     hf_workspace_free(&l->work);
-    hf_schur_free(&l->schur);
+    hf_arena_free(&l->schur.arena);
     hf_arena_free(&arena);
     *l = (hf_built_linear){0};
 }

@@ -89,7 +89,7 @@ void hf_montecarlo_free(hf_montecarlo *t)
 /* ---- errors of a sample ---- */
 
 /* Makes the errors of sample i, as an hf_built_sample. */
-static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_move_m)
+static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
 {
     hf_montecarlo *t = context;
     size_t k = (size_t)(i - t->first);
@@ -98,7 +98,7 @@ static void make_sample(void *context, long i, double *cut_m, double *EA_N, doub
         hf_directions_draw(&t->directions, i, t->point + k * (size_t)t->directions.n, z);
     else
         hf_built_errors_draw(&t->errors, i, z);
-    hf_built_errors_apply(&t->errors, t->scale, z, cut_m, EA_N, support_move_m);
+    hf_built_errors_apply(&t->errors, t->scale, z, cut_m, EA_N, support_displacement_m);
 }
 
 /* ---- measures ---- */

@@ -207,7 +207,7 @@ static hf_status fit_list(const hf_moves_problem *p, int n, const int *list, con
         status = hf_quadratic_solve(&q, hessian, gradient, gradient + n, gradient + 2 * n, worst_bound, &b);
     for (int i = 0; i < n && status == HF_OK; i++)
         move_m[i] = fmin(fmax(q.x[i], -b.most_m), b.most_m);
-    hf_quadratic_free(&q);
+    hf_arena_free(&q.arena);
     hf_arena_free(&arena);
     return status == HF_NO_MEMORY ? status : HF_OK; /* other failures are rounding: move_m stays 0 */
 }

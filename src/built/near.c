@@ -57,13 +57,13 @@ void hf_near_prepare(const hf_near *near, const hf_built_net *net, hf_workspace 
     hf_form_prepare(m, w);
     if (net->cut_m) memcpy(w->target, net->cut_m, cables);
     if (net->EA_N) memcpy(w->EA_N, net->EA_N, cables);
-    if (net->support_move_m) memcpy(w->support_move_m, net->support_move_m, places);
+    if (net->support_displacement_m) memcpy(w->support_displacement_m, net->support_displacement_m, places);
     memcpy(w->position_m, b->place_m, places);
     memcpy(w->tension_N, b->tension_N, cables);
     w->n_moving = m->n_free + m->n_attachment;
     for (int c = 0; c < 3; c++)
         for (int at = c * m->n_node + m->n_free; at < (c + 1) * m->n_node; at++)
-            w->position_m[at] += w->support_move_m[at];
+            w->position_m[at] += w->support_displacement_m[at];
     hf_joint_set_displacement(m, w);
 }
 
@@ -93,7 +93,7 @@ static hf_status find_answer(hf_workspace *w, hf_near *near)
         for (size_t i = 0; i < n; i++)
             near->answer[(i / HF_PULL_ROWS * n + j) * HF_PULL_ROWS + i % HF_PULL_ROWS] = column[i];
     }
-    hf_schur_free(&schur);
+    hf_arena_free(&schur.arena);
     near->chord.n_mode = 0;
     return status;
 }
@@ -118,7 +118,7 @@ hf_status hf_near_create(const hf_built *b, hf_workspace *w, hf_near *near)
 
 void hf_near_free(hf_near *near)
 {
-    hf_chord_free(&near->chord);
+    hf_arena_free(&near->chord.arena);
     hf_arena_free_block(near->block);
     near->block = NULL;
 }
@@ -146,7 +146,7 @@ hf_status hf_near_lanes_create(const hf_near *near, hf_near_lanes *l)
 
 void hf_near_lanes_free(hf_near_lanes *l)
 {
-    hf_chord_lanes_free(&l->lanes);
+    hf_arena_free(&l->lanes.arena);
     hf_arena_free_block(l->block);
     l->block = NULL;
 }
@@ -157,9 +157,9 @@ void hf_near_load(const hf_near *near, hf_near_lanes *l, int lane, const hf_buil
     const hf_chord *c = &near->chord;
     for (int at = 0; at < 3 * m->n_node; at++)
         l->lanes.x_m[at * HF_LANES + lane] = near->built->place_m[at];
-    for (int d = 0; d < 3 && net->support_move_m; d++)
+    for (int d = 0; d < 3 && net->support_displacement_m; d++)
         for (int at = d * m->n_node + m->n_free; at < (d + 1) * m->n_node; at++)
-            l->lanes.x_m[at * HF_LANES + lane] += net->support_move_m[at];
+            l->lanes.x_m[at * HF_LANES + lane] += net->support_displacement_m[at];
     for (int e = 0; e < m->n_cable; e++) {
         l->cut_m[e * HF_LANES + lane] = net->cut_m[e];
         l->stiffness_N_per_m[e * HF_LANES + lane] = net->EA_N[e] / net->cut_m[e];

@@ -253,7 +253,7 @@ static bool solve(const hf_near *near, int k, double floor_N, hf_workspace *w)
     const double *factor = k == 0 ? near->band : w->newton_band;
     int n = hf_newton_matrix_dofs(m);
     if (k > 0 || m->n_attachment) set_stiffness(m, w, floor_N);
-    if (k > 0 && hf_newton_matrix_factor_blocks(m, w, block_of, NULL, NULL) != HF_OK) return false;
+    if (k > 0 && hf_newton_matrix_factor_blocks(m, w, block_of, NULL, NULL, NULL) != HF_OK) return false;
     hf_band_back_solve(n, 3 * m->half_bandwidth + 2, 1, factor, w->newton_step, n);
     if (m->n_attachment) follow_truss(near, k == 0, factor, w);
     return true;

@@ -30,7 +30,7 @@ typedef struct {
 } turned_samples;
 
 /* Makes sample i: the estimated errors, its posterior errors and the adjustments. */
-static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_move_m)
+static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
 {
     const turned_samples *t = context;
     const hf_estimate *p = t->turned->estimate;
@@ -42,7 +42,7 @@ static void make_sample(void *context, long i, double *cut_m, double *EA_N, doub
         cut_m[e] += p->cut_m[e] + own_m[e] + t->turn_m[e];
     for (int row = m->n_free; row < m->n_node; row++)
         for (int c = 0; c < 3; c++)
-            support_move_m[c * m->n_node + row] = p->rest_m[3 * row + c] + rest_m[3 * row + c];
+            support_displacement_m[c * m->n_node + row] = p->rest_m[3 * row + c] + rest_m[3 * row + c];
 }
 
 /* Stores the displacements of sample i minus the linear ones. */

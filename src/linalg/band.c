@@ -6,8 +6,8 @@
  * Contents: kernels - LAPACK */
 #include "linalg/band.h"
 
-#include "base/lane.h"
 #include "linalg/band_kernel.h"
+#include "linalg/dot.h"
 #include "linalg/lapack.h"
 
 #include <float.h>
@@ -18,21 +18,10 @@
 
 /* ---- kernels ---- */
 
-typedef struct {
-    int (*factor)(int n, int half_bandwidth, double *band, int first, int end);
-    void (*back_solve)(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
-    void (*gram)(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg);
-} kernels;
-
-#define KERNELS(isa)                                                                                                   \
-    {                                                                                                                  \
-        hf_band_factor_##isa, hf_band_back_solve_##isa, hf_band_gram_##isa                                             \
-    }
-static const kernels kernels_of_isa[HF_LANE_N_ISA] = {KERNELS(portable), KERNELS(avx2), KERNELS(avx512)};
-
-static const kernels *kernels_here(void)
+static const hf_band_kernels *kernels_here(void)
 {
-    return &kernels_of_isa[hf_lane_best_isa()];
+    static const hf_band_kernels *const of_isa[] = {HF_LANE_EACH(&hf_band_kernels)};
+    return of_isa[hf_lane_best_isa()];
 }
 
 int hf_band_factor(int n, int half_bandwidth, double *band)
@@ -42,7 +31,7 @@ int hf_band_factor(int n, int half_bandwidth, double *band)
 
 hf_status hf_band_factor_until(const volatile sig_atomic_t *stop, int n, int half_bandwidth, double *band)
 {
-    const kernels *here = kernels_here();
+    const hf_band_kernels *here = kernels_here();
     for (int first = 0; first < n; first += AT_A_TIME) {
         if (stop && *stop) return HF_INTERRUPTED;
         int end = n - first > AT_A_TIME ? first + AT_A_TIME : n;
@@ -56,12 +45,11 @@ void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *fact
     kernels_here()->back_solve(n, half_bandwidth, n_rhs, factor, b, ldb);
 }
 
-hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row)
+hf_status hf_band_solve(bool by_lapack, int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row)
 {
-    const kernels *here = kernels_here();
-    *bad_row = here->factor(n, half_bandwidth, band, 0, n) - 1;
+    *bad_row = (by_lapack ? hf_band_factor_lapack : hf_band_factor)(n, half_bandwidth, band) - 1;
     if (*bad_row >= 0) return HF_SINGULAR;
-    here->back_solve(n, half_bandwidth, 3, band, b, ldb);
+    (by_lapack ? hf_band_back_solve_lapack : hf_band_back_solve)(n, half_bandwidth, 3, band, b, ldb);
     return HF_OK;
 }
 
@@ -93,14 +81,6 @@ void hf_band_back_solve_lapack(int n, int half_bandwidth, int n_rhs, const doubl
     CALL(dpbtrs, "L", &n, &half_bandwidth, &n_rhs, factor, &ldab, b, &ldb, &info);
 }
 
-hf_status hf_band_solve_lapack(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row)
-{
-    *bad_row = hf_band_factor_lapack(n, half_bandwidth, band) - 1;
-    if (*bad_row >= 0) return HF_SINGULAR;
-    hf_band_back_solve_lapack(n, half_bandwidth, 3, band, b, ldb);
-    return HF_OK;
-}
-
 double hf_band_norm(int n, int half_bandwidth, const double *band, double *work)
 {
     int ldab = half_bandwidth + 1;
@@ -128,13 +108,6 @@ int hf_band_factor_general(int n, int half_bandwidth, double *general, int *pivo
 
 #define GENERAL_PANEL 8 /* right-hand sides that share one pass over the factor */
 
-/* Computes to -= factor * from. */
-static void subtract(int n, double factor, const double *restrict from, double *restrict to)
-{
-    for (int i = 0; i < n; i++)
-        to[i] -= factor * from[i];
-}
-
 /* Solves like dgbtrs, with one pass over the factor for all right-hand sides b [n_rhs][ldb]. LAPACK reads the upper
  * triangle once for each right-hand side. */
 static void back_solve_panel(int n, int k, int n_rhs, const double *general, const int *pivot, double *b, int ldb)
@@ -145,7 +118,8 @@ static void back_solve_panel(int n, int k, int n_rhs, const double *general, con
             double *x = b + (ptrdiff_t)c * ldb, top = x[pivot[j] - 1];
             x[pivot[j] - 1] = x[j];
             x[j] = top;
-            if (top != 0) subtract(k < n - 1 - j ? k : n - 1 - j, top, general + j * ldab + 2 * k + 1, x + j + 1);
+            if (top != 0)
+                hf_subtract((size_t)(k < n - 1 - j ? k : n - 1 - j), top, general + j * ldab + 2 * k + 1, x + j + 1);
         }
     for (int j = n - 1; j >= 0; j--)
         for (int c = 0; c < n_rhs; c++) {
@@ -153,7 +127,7 @@ static void back_solve_panel(int n, int k, int n_rhs, const double *general, con
             int above = j < 2 * k ? j : 2 * k;
             if (x[j] == 0) continue;
             x[j] /= general[j * ldab + 2 * k];
-            subtract(above, x[j], general + j * ldab + 2 * k - above, x + j - above);
+            hf_subtract((size_t)above, x[j], general + j * ldab + 2 * k - above, x + j - above);
         }
 }
 

@@ -13,10 +13,11 @@
 #include <signal.h>
 #include <stdbool.h>
 
-/* Solves D X = B by band Cholesky. band [n][half_bandwidth+1] is the lower band; its factor replaces it. b [3][ldb]:
- * the solutions replace rows 0 to n-1 of each column. Returns HF_OK, and *bad_row is -1. Returns HF_SINGULAR if the
- * matrix is not positive definite. b is then unchanged, and *bad_row is the row at which the factorisation failed. */
-hf_status hf_band_solve(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row);
+/* Solves D X = B by band Cholesky, with our kernels or with LAPACK. band [n][half_bandwidth+1] is the lower band; its
+ * factor replaces it. b [3][ldb]: the solutions replace rows 0 to n-1 of each column. Returns HF_OK, and *bad_row is
+ * -1. Returns HF_SINGULAR if the matrix is not positive definite. b is then unchanged, and *bad_row is the row at which
+ * the factorisation failed. */
+hf_status hf_band_solve(bool by_lapack, int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row);
 
 /* Solves D X = B like hf_band_solve, but for an indefinite matrix (negative force densities), by LU with pivoting
  * (dgbtrf, dgbtrs). `band` is only read. general [n][3*half_bandwidth+1] and pivot [n] are scratch; they contain
@@ -41,9 +42,8 @@ int hf_band_factor_general(int n, int half_bandwidth, double *general, int *pivo
 void hf_band_back_solve_general(int n, int half_bandwidth, int n_rhs, const double *general, const int *pivot,
                                 double *b, int ldb);
 
-/* hf_band_solve, hf_band_factor and hf_band_back_solve with LAPACK (dpbtrf, dpbtrs) instead of our kernels. The factors
+/* hf_band_factor and hf_band_back_solve with LAPACK (dpbtrf, dpbtrs) instead of our kernels. The factors
  * have the same layout. */
-hf_status hf_band_solve_lapack(int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row);
 int hf_band_factor_lapack(int n, int half_bandwidth, double *band);
 void hf_band_back_solve_lapack(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
 

@@ -5,15 +5,13 @@
  *     back_solve   L, b -> forward and backward substitution, 4 columns at a time, for 1 to 3 right-hand sides -> x
  *     gram         A -> tiles of 4 x 4 inner products of rows -> lower triangle of A A'
  *
- * Contents: strips - factor - substitution - products of rows
+ * Contents: strips - factor - substitution - products of rows - table
  *
  * In LAPACK's lower band, entry (i,j) is at band[i - j + j (k + 1)] = band[i + j k]. The entries of a row are k apart
  * in memory, and the entries of a column are adjacent. The factorisation is left-looking by blocks of four columns. It
  * keeps the entries of eight or sixteen rows in registers while it reads the finished columns. */
 #define HF_LANE_VECTORS
 #include "linalg/band_kernel.h"
-
-#include "base/lane.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -220,7 +218,7 @@ INLINE int factor_block(block *b, int n_column)
     return 0;
 }
 
-int HF_KERNEL(hf_band_factor)(int n, int half_bandwidth, double *band, int first, int end)
+static int factor(int n, int half_bandwidth, double *band, int first, int end)
 {
     block b = {.band = band, .k = half_bandwidth, .n = n};
     for (b.j = first; b.j < end; b.j += COLUMNS) {
@@ -308,7 +306,7 @@ INLINE void back_solve(int n, int half_bandwidth, int n_rhs, double *factor, dou
         backward(&b, COLUMNS, n_rhs, x, ld);
 }
 
-void HF_KERNEL(hf_band_back_solve)(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb)
+static void back_solve_all(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb)
 {
     double *f = (double *)factor; /* only read */
     for (; n_rhs >= 3; n_rhs -= 3, b += 3 * (ptrdiff_t)ldb)
@@ -344,7 +342,7 @@ INLINE void gram_tile(int n_row, int n_column, int n, const double *row, const d
 
 /* Computes the requested rows tile by tile. The few requested rows stay in the cache while all earlier rows
  * are read once. */
-void HF_KERNEL(hf_band_gram)(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg)
+static void gram_rows(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg)
 {
     for (int j = 0; j < end; j += COLUMNS)
         for (int i = first > j ? first : j; i < end; i += COLUMNS) {
@@ -360,3 +358,7 @@ void HF_KERNEL(hf_band_gram)(int first, int end, int n_column, const double *a, 
                               to + r * (ptrdiff_t)ldg + c, ldg);
         }
 }
+
+/* ---- table ---- */
+
+const hf_band_kernels HF_KERNEL(hf_band_kernels) = {factor, back_solve_all, gram_rows};

@@ -8,16 +8,16 @@
 #ifndef HIFDM_BAND_KERNEL_H
 #define HIFDM_BAND_KERNEL_H
 
-/* The Makefile compiles band_kernel.c with -DHF_ISA=avx512 and so on. The names end in the instruction set. */
-#define HF_BAND_KERNELS(isa)                                                                                           \
-    int hf_band_factor_##isa(int n, int half_bandwidth, double *band, int first, int end);                             \
-    void hf_band_back_solve_##isa(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);     \
-    void hf_band_gram_##isa(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg);
+#include "base/lane.h"
 
-/* band.h describes the functions. hf_band_factor processes columns `first` to end-1 and expects that all earlier
- * columns are finished. `first` must be a multiple of 4. */
-HF_BAND_KERNELS(portable)
-HF_BAND_KERNELS(avx2)
-HF_BAND_KERNELS(avx512)
+/* The kernels of one instruction set. band.h describes the functions. `factor` processes columns `first` to end-1 and
+ * expects that all earlier columns are finished. `first` must be a multiple of 4. */
+typedef struct {
+    int (*factor)(int n, int half_bandwidth, double *band, int first, int end);
+    void (*back_solve)(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
+    void (*gram)(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg);
+} hf_band_kernels;
+
+extern const hf_band_kernels HF_LANE_EACH(hf_band_kernels);
 
 #endif

@@ -1,14 +1,9 @@
 #include "linalg/dense.h"
 
+#include "linalg/dot.h"
+
 #include <math.h>
 #include <string.h>
-
-/* Computes y -= x a. */
-static void subtract(int n, double x, const double *a, double *y)
-{
-    for (int i = 0; i < n; i++)
-        y[i] -= x * a[i];
-}
 
 static void swap(double *a, double *b)
 {
@@ -22,7 +17,7 @@ void hf_dense_multiply(int n, const double *a, const double *b, double *c)
     memset(c, 0, (size_t)n * (size_t)n * sizeof *c);
     for (int j = 0; j < n; j++)
         for (int k = 0; k < n; k++)
-            subtract(n, -b[j * n + k], a + k * n, c + j * n);
+            hf_subtract((size_t)n, -b[j * n + k], a + k * n, c + j * n);
 }
 
 int hf_dense_factor(int n, double *a, int *pivot)
@@ -40,7 +35,7 @@ int hf_dense_factor(int n, double *a, int *pivot)
         for (int i = k + 1; i < n; i++)
             column[i] *= inverse;
         for (int j = k + 1; j < n; j++)
-            subtract(n - k - 1, a[j * n + k], column + k + 1, a + j * n + k + 1);
+            hf_subtract((size_t)(n - k - 1), a[j * n + k], column + k + 1, a + j * n + k + 1);
     }
     return 0;
 }
@@ -51,10 +46,10 @@ void hf_dense_solve(int n, const double *factor, const int *pivot, int n_rhs, do
         for (int k = 0; k < n; k++)
             swap(b + k, b + pivot[k]);
         for (int k = 0; k < n; k++)
-            subtract(n - k - 1, b[k], factor + k * n + k + 1, b + k + 1);
+            hf_subtract((size_t)(n - k - 1), b[k], factor + k * n + k + 1, b + k + 1);
         for (int k = n - 1; k >= 0; k--) {
             b[k] /= factor[k * n + k];
-            subtract(k, b[k], factor + k * n, b);
+            hf_subtract((size_t)k, b[k], factor + k * n, b);
         }
     }
 }

@@ -1,4 +1,4 @@
-/* dot - inner products of vectors, summed in the order of the entries. */
+/* dot - inner products of vectors, summed in the order of the entries, and sums of multiples of vectors. */
 #ifndef HIFDM_DOT_H
 #define HIFDM_DOT_H
 
@@ -8,5 +8,12 @@ double hf_dot(size_t n, const double *a, const double *b);
 
 /* Computes dot [n_row]: the inner product of each row of a [n_row][lda] with b [n], with the bits of hf_dot. */
 void hf_dots(size_t n_row, size_t n, const double *a, size_t lda, const double *b, double *dot);
+
+/* Computes y -= factor x for vectors [n]. */
+static inline void hf_subtract(size_t n, double factor, const double *restrict x, double *restrict y)
+{
+    for (size_t i = 0; i < n; i++)
+        y[i] -= factor * x[i];
+}
 
 #endif

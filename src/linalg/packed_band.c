@@ -11,8 +11,7 @@
 
 /* ---- the matrix ---- */
 
-static hf_packed_band_solve *const solve_of_isa[HF_LANE_N_ISA] = {
-    hf_packed_band_solve_portable, hf_packed_band_solve_avx2, hf_packed_band_solve_avx512};
+static hf_packed_band_solve *const solve_of_isa[] = {HF_LANE_EACH(hf_packed_band_solve)};
 
 hf_packed_band hf_packed_band_of(int n, int half_bandwidth)
 {

@@ -11,11 +11,18 @@
 
 #include "base/arena.h"
 #include "base/lane.h"
-#include "linalg/packed_band_kernel.h"
 
 #include <stddef.h>
 
 #define HF_PACKED_ROWS 8 /* rows that are processed together */
+
+struct hf_packed_band;
+
+/* Solves in place for eight right-hand sides, one in each lane. lanes [hf_packed_band_rows][HF_LANES]; the rows before
+ * and after the right-hand sides must be zero. packed_band_kernel.c is compiled once for each instruction set. All give
+ * the same bits (base/lane.h). */
+typedef void hf_packed_band_solve(const struct hf_packed_band *band, double *lanes);
+hf_packed_band_solve HF_LANE_EACH(hf_packed_band_solve);
 
 typedef struct hf_packed_band {
     int n, n_block, width;       /* rows, blocks of rows, half-bandwidth */

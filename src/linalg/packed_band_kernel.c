@@ -12,9 +12,6 @@
  * always the same. Products are fused with the sums that they are added to (lane.h). So all instruction sets
  * give the same bits. */
 #define HF_LANE_VECTORS
-#include "linalg/packed_band_kernel.h"
-
-#include "base/lane.h"
 #include "linalg/packed_band.h"
 
 #include <stddef.h>

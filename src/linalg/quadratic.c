@@ -12,8 +12,6 @@
  * Contents: kernels - layout - matrices - the start */
 #include "linalg/quadratic.h"
 
-#include "base/arena.h"
-#include "base/lane.h"
 #include "linalg/band.h"
 #include "linalg/dot.h"
 #include "linalg/quadratic_kernel.h"
@@ -28,57 +26,29 @@
 
 /* ---- kernels ---- */
 
-typedef struct {
-    void (*invert)(int n, int first, const double *triangle, double *strip);
-    void (*turn)(int ld, int first, int last, const double *cosine, const double *sine, double *J);
-    void (*combine)(int ld, int first, int end, const double *weight, const double *J, double *sum);
-} loops;
-
-#define LOOPS(isa)                                                                                                     \
-    {                                                                                                                  \
-        hf_quadratic_invert_##isa, hf_quadratic_turn_##isa, hf_quadratic_combine_##isa                                 \
-    }
-static const loops loops_of_isa[HF_LANE_N_ISA] = {LOOPS(portable), LOOPS(avx2), LOOPS(avx512)};
-
-static const loops *loops_here(void)
+static const hf_quadratic_kernels *kernels_here(void)
 {
-    return &loops_of_isa[hf_lane_best_isa()];
+    static const hf_quadratic_kernels *const of_isa[] = {HF_LANE_EACH(&hf_quadratic_kernels)};
+    return of_isa[hf_lane_best_isa()];
 }
 
 void hf_quadratic_combine(int ld, int n, const double *weight, const double *J, double *sum)
 {
-    loops_here()->combine(ld, 0, n, weight, J, sum);
+    kernels_here()->combine(ld, 0, n, weight, J, sum);
 }
 
 /* ---- layout ---- */
 
-static void lay_out(hf_arena *a, hf_quadratic *q)
+static void lay_out(hf_arena *arena, hf_quadratic *to)
 {
-    size_t n = (size_t)q->n, ld = (size_t)q->ld;
-    q->inverse = hf_arena_take(a, n * ld, sizeof(double));
-    q->triangle = hf_arena_take(a, n * n, sizeof(double));
-    q->x = hf_arena_take(a, ld, sizeof(double));
-    q->active = hf_arena_take(a, n, sizeof *q->active);
-    q->side = hf_arena_take(a, n, sizeof(int));
-    q->order = hf_arena_take(a, n, sizeof(int));
-    q->scratch = hf_arena_take(a, 6 * ld, sizeof(double));
-    q->strip = hf_arena_take(a, n * HF_LANES, sizeof(double));
+    size_t n = (size_t)to->n, ld = (size_t)to->ld;
+    HF_QUADRATIC_FIELDS(HF_ARENA_TAKE)
 }
 
 hf_status hf_quadratic_create(int n, hf_quadratic *q)
 {
-    hf_arena arena = {0};
     *q = (hf_quadratic){.n = n, .ld = (n + HF_LANES - 1) / HF_LANES * HF_LANES};
-    hf_status status = HF_ARENA_MAKE(&arena, lay_out(&arena, q));
-    q->block = arena.block;
-    return status;
-}
-
-void hf_quadratic_free(hf_quadratic *q)
-{
-    hf_arena arena = {.block = q->block};
-    hf_arena_free(&arena);
-    *q = (hf_quadratic){0};
+    return HF_ARENA_MAKE(&q->arena, lay_out(&q->arena, q));
 }
 
 /* ---- matrices ---- */
@@ -95,7 +65,7 @@ static void invert_transposed(hf_quadratic *q)
         memset(q->strip, 0, (size_t)n * HF_LANES * sizeof(double));
         for (int lane = 0; lane < n_lane; lane++)
             q->strip[HF_LANES * (first + lane) + lane] = 1;
-        loops_here()->invert(n, first, q->triangle, q->strip);
+        kernels_here()->invert(n, first, q->triangle, q->strip);
         for (int r = 0; r < n; r++)
             for (int lane = 0; lane < n_lane; lane++)
                 q->inverse[(n - 1 - r) * q->ld + q->order[first + lane]] = q->strip[HF_LANES * r + lane];
@@ -135,7 +105,7 @@ static void take_in(hf_quadratic *q, double *d, hf_quadratic_active limit)
     double *cosine = q->scratch + 4 * q->ld, *sine = cosine + q->ld;
     for (int i = n - 2; i >= m; i--)
         rotate(d + i, d + i + 1, cosine + i, sine + i);
-    loops_here()->turn(q->ld, m, n - 2, cosine, sine, q->inverse);
+    kernels_here()->turn(q->ld, m, n - 2, cosine, sine, q->inverse);
     memcpy(q->triangle + m * n, d, (size_t)(m + 1) * sizeof(double));
     q->active[q->n_active++] = limit;
 }
@@ -152,7 +122,7 @@ static void let_go(hf_quadratic *q, int k)
     }
     for (int j = k; j < q->n_active; j++) {
         rotate(R + j * n + j, R + j * n + j + 1, &cosine, &sine);
-        loops_here()->turn(q->ld, 0, 0, &cosine, &sine, q->inverse + j * q->ld);
+        kernels_here()->turn(q->ld, 0, 0, &cosine, &sine, q->inverse + j * q->ld);
         for (int c = j + 1; c < q->n_active; c++) {
             double *f = R + c * n + j, old = f[0];
             f[0] = cosine * old + sine * f[1];
@@ -172,7 +142,7 @@ static void find_share(const hf_quadratic *q, const hf_quadratic_limit *limit, d
 /* Computes z, the sum of the columns of J from column m on, weighted with d. */
 static void find_direction(const hf_quadratic *q, int m, const double *d, double *z)
 {
-    loops_here()->combine(q->ld, m, q->n, d, q->inverse, z);
+    kernels_here()->combine(q->ld, m, q->n, d, q->inverse, z);
 }
 
 /* Moves x until `limit` holds with equality, and adds it to the active limits. An active limit whose multiplier would

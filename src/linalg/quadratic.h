@@ -5,7 +5,8 @@
 #ifndef HIFDM_QUADRATIC_H
 #define HIFDM_QUADRATIC_H
 
-#include <hifdm/status.h>
+#include "base/arena.h"
+
 #include <stdbool.h>
 
 /* One limit, normal' x >= bound. `kind` belongs to the caller. */
@@ -29,23 +30,24 @@ typedef struct {
  * rounding. On entry limit->normal is n zeros, and limit->only is -1. */
 typedef bool hf_quadratic_worst(void *context, const double *x, hf_quadratic_limit *limit);
 
+/* The arrays of a programme; ld is n rounded up to whole vectors. */
+#define HF_QUADRATIC_FIELDS(X)                                                                                         \
+    X(double, inverse, n *ld, "[n][ld] scratch: columns of J, with J J' = H^-1; 0 from row n on")                      \
+    X(double, triangle, n *n, "[n][n] scratch: the factor of H, then R, the active normals in terms of J")             \
+    X(double, x, ld, "the solution; 0 from n on")                                                                      \
+    X(hf_quadratic_active, active, n, "the first n_active are in use")                                                 \
+    X(int, side, n, "active bound in the last solution: 1 lower, -1 upper, 0 none")                                    \
+    X(int, order, n, "order of the variables in the factor; those at a bound at the start are last")                   \
+    X(double, scratch, 6 * ld, "")                                                                                     \
+    X(double, strip, n *HF_LANES, "[n][HF_LANES] scratch: columns of L^-1 that are computed together")
 typedef struct {
-    int n, ld;                   /* ld: n rounded up to whole vectors */
-    double *inverse;             /* [n][ld], scratch: columns of J, with J J' = H^-1; 0 from row n on */
-    double *triangle;            /* [n][n], scratch: the factor of H, then R, the active normals in terms of J */
-    double *x;                   /* [ld], the solution; 0 from n on */
-    int n_active;                /* limits that hold with equality */
-    hf_quadratic_active *active; /* [n], the first n_active are in use */
-    int *side;                   /* [n], active bound in the last solution: 1 lower, -1 upper, 0 none */
-    int *order;                  /* [n], order of the variables in the factor; those at a bound at the start are last */
-    double *scratch;             /* [6 ld] */
-    double *strip;               /* [n][HF_LANES], scratch: columns of L^-1 that are computed together */
-    void *block;
+    int n, ld, n_active; /* n_active: limits that hold with equality */
+    HF_QUADRATIC_FIELDS(HF_ARENA_MEMBER)
+    hf_arena arena;
 } hf_quadratic;
 
-/* Allocates the arrays for n variables. Returns HF_OK or HF_NO_MEMORY. Call hf_quadratic_free in either case. */
+/* Allocates the arrays for n variables. Returns HF_OK or HF_NO_MEMORY. The caller frees its arena. */
 hf_status hf_quadratic_create(int n, hf_quadratic *quadratic);
-void hf_quadratic_free(hf_quadratic *quadratic);
 
 /* Solves a programme. hessian [n][n]: the lower triangle is read, by rows. gradient [n]. low, high [n]: bounds of x.
  * `worst` must report these bounds like any other limit, with kind 0. The bounds that were active in the last solution

@@ -6,8 +6,6 @@
 #define HF_LANE_EIGHT
 #include "linalg/quadratic_kernel.h"
 
-#include "base/lane.h"
-
 #include <stddef.h>
 
 enum { COLUMNS = 4, BLOCKS = 4 }; /* columns of L per pass over strip; blocks of eight rows processed together */
@@ -35,7 +33,7 @@ INLINE void pass_columns(int n, int k, int n_column, const double *triangle, dou
     }
 }
 
-void HF_KERNEL(hf_quadratic_invert)(int n, int first, const double *triangle, double *strip)
+static void invert(int n, int first, const double *triangle, double *strip)
 {
     int k = first;
     for (; k + COLUMNS <= n; k += COLUMNS)
@@ -65,7 +63,7 @@ INLINE void turn_rows(int n_block, int ld, int first, int last, const double *co
         lanes_store(J + (ptrdiff_t)first * ld + HF_LANES * b, v[b]);
 }
 
-void HF_KERNEL(hf_quadratic_turn)(int ld, int first, int last, const double *cosine, const double *sine, double *J)
+static void turn(int ld, int first, int last, const double *cosine, const double *sine, double *J)
 {
     int row = 0;
     if (last < first) return;
@@ -87,7 +85,7 @@ INLINE void combine_rows(int n_block, int ld, int first, int end, const double *
         lanes_store(sum + HF_LANES * b, total[b]);
 }
 
-void HF_KERNEL(hf_quadratic_combine)(int ld, int first, int end, const double *weight, const double *J, double *sum)
+static void combine(int ld, int first, int end, const double *weight, const double *J, double *sum)
 {
     int row = 0;
     for (; row + BLOCKS * HF_LANES <= ld; row += BLOCKS * HF_LANES)
@@ -95,3 +93,5 @@ void HF_KERNEL(hf_quadratic_combine)(int ld, int first, int end, const double *w
     for (; row < ld; row += HF_LANES)
         combine_rows(1, ld, first, end, weight, J + row, sum + row);
 }
+
+const hf_quadratic_kernels HF_KERNEL(hf_quadratic_kernels) = {invert, turn, combine};

@@ -4,7 +4,9 @@
 #ifndef HIFDM_QUADRATIC_KERNEL_H
 #define HIFDM_QUADRATIC_KERNEL_H
 
-/* The Makefile compiles quadratic_kernel.c with -DHF_ISA=avx512 and so on. The names end in the instruction set.
+#include "base/lane.h"
+
+/* The kernels of one instruction set.
  *
  * invert: strip [n][HF_LANES] contains columns `first` and on of the unit matrix; the same columns of L^-1 replace
  * them. triangle [n][n] is L as a band whose columns begin with the diagonal. Rows before `first` are neither read nor
@@ -15,13 +17,12 @@
  *
  * combine: computes sum [ld] = weight[first] column `first` + ... + weight[end - 1] column end - 1 of J, added
  * in this order. */
-#define HF_QUADRATIC_KERNELS(isa)                                                                                      \
-    void hf_quadratic_invert_##isa(int n, int first, const double *triangle, double *strip);                           \
-    void hf_quadratic_turn_##isa(int ld, int first, int last, const double *cosine, const double *sine, double *J);    \
-    void hf_quadratic_combine_##isa(int ld, int first, int end, const double *weight, const double *J, double *sum);
+typedef struct {
+    void (*invert)(int n, int first, const double *triangle, double *strip);
+    void (*turn)(int ld, int first, int last, const double *cosine, const double *sine, double *J);
+    void (*combine)(int ld, int first, int end, const double *weight, const double *J, double *sum);
+} hf_quadratic_kernels;
 
-HF_QUADRATIC_KERNELS(portable)
-HF_QUADRATIC_KERNELS(avx2)
-HF_QUADRATIC_KERNELS(avx512)
+extern const hf_quadratic_kernels HF_LANE_EACH(hf_quadratic_kernels);
 
 #endif

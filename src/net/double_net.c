@@ -1,6 +1,6 @@
 #include "net/double_net.h"
 
-#include "net/wanted.h"
+#include "net/target_surface.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -31,7 +31,7 @@ static double rear_height(const hf_double_net *d, const double p[3], double slop
 {
     bool is_round = d->kind == HF_SURFACE_PARABOLOID;
     double dx = p[0] - d->middle_x_m, dy = is_round ? p[1] : 0;
-    double front_z = p[2] - hf_wanted_height_above(d->kind, front_curvature(d), p, slope);
+    double front_z = p[2] - hf_target_surface_height_above(d->kind, front_curvature(d), p, slope);
     slope[0] -= 2 * nearing(d) * dx;
     slope[1] -= 2 * nearing(d) * dy;
     return front_z + (d->half_m * d->half_m - dx * dx - dy * dy) * nearing(d) - d->distance_m;
@@ -41,7 +41,7 @@ bool hf_double_net_behind(const hf_double_net *d, bool along_z, const double fro
 {
     double slope[2], normal[3] = {0, 0, -1}, t = 0;
     bool is_found = along_z;
-    hf_wanted_height_above(d->kind, front_curvature(d), front_m, slope);
+    hf_target_surface_height_above(d->kind, front_curvature(d), front_m, slope);
     for (int c = 0; c < 3; c++)
         rear_m[c] = front_m[c];
     if (!along_z) normal[0] = slope[0], normal[1] = slope[1];

@@ -14,7 +14,7 @@
 #include "base/elementary.h"
 #include "base/union_find.h"
 #include "net/facet_import.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -83,9 +83,9 @@ static void choose_nodes(graph *g, const hf_surface_settings *surface)
 {
     const hf_scene *s = g->scene;
     double slope[2], curvature = 1 / (4 * surface->focal_length_m);
-    double near_m = NEAR_PART * hf_wanted_compare(surface->kind, surface->focal_length_m, s).depth_m;
+    double near_m = NEAR_PART * hf_target_surface_compare(surface->kind, surface->focal_length_m, s).depth_m;
     for (int i = 0; i < s->n_node; i++) {
-        g->above_m[i] = hf_wanted_height_above(surface->kind, curvature, s->position_m + 3 * (size_t)i, slope);
+        g->above_m[i] = hf_target_surface_height_above(surface->kind, curvature, s->position_m + 3 * (size_t)i, slope);
         g->is_on[i] = s->role[i] == HF_ROLE_INNER || fabs(g->above_m[i]) <= near_m;
     }
     follow_cables(g);

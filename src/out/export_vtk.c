@@ -26,7 +26,7 @@
 
 #include "base/arena.h"
 #include "base/file_out.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "surface/facet_rms.h"
 #include "store/vtkhdf.h"
 #include <hifdm/metrics.h>
@@ -162,7 +162,7 @@ static void fill(const hf_scene *s, const hf_shape *shape, const hf_summary *sum
             d[c] = p[c] - p0[c];
         t->role[i] = s->role[i];
         t->deviation_m[i] = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-        double above = hf_wanted_height_above(surface->kind, 1 / (4 * surface->focal_length_m), p, slope);
+        double above = hf_target_surface_height_above(surface->kind, 1 / (4 * surface->focal_length_m), p, slope);
         t->normal_error_m[i] = above / sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
     }
     for (int e = 0; e < s->n_cable; e++) {

@@ -104,7 +104,7 @@ hf_status hf_refine_stage_run(const hf_run_request *q, hf_problem *p, const hf_p
     hf_refine_watcher watcher = {.after = between_steps, .context = &j};
     HF_TRY(hf_store_restore_refine(store, &j.earlier_s, &watcher.n_state, &watcher.state, messages));
     hf_status status = hf_refine_run(&p->evaluator, bounds->lower, bounds->upper, p->settings.optimize.refine_steps,
-                                     &watcher, design, &p->workspace, result);
+                                     NULL, &watcher, design, &p->workspace, result);
     *wall_s = j.earlier_s + hf_clock_s() - j.begin_s;
     tell_stop(&j, stopped_at);
     if (status == HF_OK && !is_stopped(q) && hf_optimiser_plan_of(&p->settings.optimize).ends_with_refine)

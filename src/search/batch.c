@@ -7,7 +7,7 @@
  *     each thread: take the next index -> load the design into a lane -> solve -> store result[i] -> take ...
  *
  * Without an engine, each thread solves one design after the other by hf_evaluate.
- * Contents: the engine - the parallel run - the next generation */
+ * Contents: the engine - the parallel run - waiting threads */
 #include <hifdm/batch.h>
 
 #include "base/clock.h"
@@ -15,7 +15,10 @@
 #include "search/parallel.h"
 #include "search/swarm.h"
 
+#include <limits.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 int hf_batch_default_threads(void)
 {
@@ -64,13 +67,13 @@ static void free_engine(hf_batch *batch)
     struct hf_batch_engine *e = batch->engine;
     if (!e) return;
     for (int i = 0; e->chord && i < batch->n_thread; i++)
-        hf_chord_lanes_free(&e->chord[i]);
+        hf_arena_free(&e->chord[i].arena);
     for (int i = 0; e->lanes && i < batch->n_thread; i++)
-        hf_swarm_lanes_free(&e->lanes[i]);
+        hf_arena_free(&e->lanes[i].arena);
     free(e->chord);
     free(e->lanes);
-    hf_chord_free(&e->shared);
-    hf_swarm_plan_free(&e->plan);
+    hf_arena_free(&e->shared.arena);
+    hf_arena_free(&e->plan.arena);
     free(e);
     batch->engine = NULL;
 }
@@ -149,8 +152,9 @@ static bool has_room(hf_batch *batch, int room)
 {
     struct hf_batch_engine *e = batch->engine;
     if (!batch->workspace[room].block && make_room(batch->evaluator, &batch->workspace[room]) != HF_OK) return false;
-    if (e && e->chord && !e->chord[room].block) return hf_chord_lanes_create(&e->shared, &e->chord[room]) == HF_OK;
-    if (e && e->lanes && !e->lanes[room].block) return hf_swarm_lanes_create(&e->plan, &e->lanes[room]) == HF_OK;
+    if (e && e->chord && !e->chord[room].arena.block)
+        return hf_chord_lanes_create(&e->shared, &e->chord[room]) == HF_OK;
+    if (e && e->lanes && !e->lanes[room].arena.block) return hf_swarm_lanes_create(&e->plan, &e->lanes[room]) == HF_OK;
     return true;
 }
 
@@ -173,75 +177,57 @@ static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *contex
 
 /* ---- the parallel run ---- */
 
-/* The designs of one call of hf_batch_run, shared by all its threads. */
+/* The designs of one call of hf_batch_run or hf_batch_next, shared by all its threads. */
 typedef struct {
     hf_batch *batch;
-    hf_parallel_queue queue;
+    hf_parallel_queue queue; /* indices of the designs, or of the individuals that are still to be proposed */
     const double *design;
     hf_form_result *result;
+    hf_optimiser *optimiser; /* proposes the individuals of the next generation; NULL: the designs are given */
+    void (*beside)(void *context);
+    void *context;
 } batch_job;
 
-/* Does the work of one thread. If the memory for its room cannot be allocated, the thread returns, and the others
- * evaluate the remaining designs. */
+/* Returns the index of the next design, or -1 when none is left. Proposes individuals until one must be evaluated. */
+static int next_design(void *context)
+{
+    batch_job *j = context;
+    for (int i = hf_parallel_take(&j->queue);; i = hf_parallel_take(&j->queue)) {
+        if (i < 0 || !j->optimiser) return i;
+        hf_optimiser_propose(j->optimiser, i);
+        if (j->optimiser->next.pending[i]) return i;
+    }
+}
+
+/* Does the work of one thread. Room 0 first calls `beside`. If the memory for its room cannot be allocated, the thread
+ * returns, and the others evaluate the remaining designs. */
 static void work_on_job(void *context, int room)
 {
     batch_job *j = context;
+    if (room == 0 && j->beside) j->beside(j->context);
     if (hf_parallel_is_empty(&j->queue) || !has_room(j->batch, room)) return;
     double start_s = hf_clock_thread_cpu_s();
-    work_off(j->batch, room, hf_parallel_take, &j->queue, false, j->design, j->result);
+    work_off(j->batch, room, next_design, j, false, j->design, j->result);
     /* Only the processor time of this thread counts. Its wait for other threads is not included. */
     hf_parallel_add(&j->batch->cpu_s, hf_clock_thread_cpu_s() - start_s);
 }
 
 void hf_batch_run(hf_batch *batch, int n, const double *design, const unsigned char *pending, hf_form_result *r)
 {
-    batch_job job = {batch, {n, 0, pending}, design, r};
+    batch_job job = {batch, {n, 0, pending}, design, r, NULL, NULL, NULL};
     if (n > 0) hf_parallel_run(batch->n_thread, work_on_job, &job);
-}
-
-/* ---- the next generation ---- */
-
-/* The individuals of the next generation, shared by all threads. */
-typedef struct {
-    hf_batch *batch;
-    hf_optimiser *optimiser;
-    hf_parallel_queue place; /* indices of the individuals that are still to be proposed */
-    void (*beside)(void *context);
-    void *context;
-} generation_job;
-
-/* Proposes individuals until one must be evaluated, and returns its index. Returns -1 when no individual is left. */
-static int propose_one(void *context)
-{
-    generation_job *g = context;
-    int i = hf_parallel_take(&g->place);
-    for (; i >= 0; i = hf_parallel_take(&g->place)) {
-        hf_optimiser_propose(g->optimiser, i);
-        if (g->optimiser->next.pending[i]) break;
-    }
-    return i;
-}
-
-/* Does the work of one thread. Room 0 first calls `beside`. */
-static void work_on_generation(void *context, int room)
-{
-    generation_job *g = context;
-    const hf_population *next = &g->optimiser->next;
-    if (room == 0 && g->beside) g->beside(g->context);
-    if (hf_parallel_is_empty(&g->place) || !has_room(g->batch, room)) return;
-    double start_s = hf_clock_thread_cpu_s();
-    work_off(g->batch, room, propose_one, g, false, next->design, next->result);
-    hf_parallel_add(&g->batch->cpu_s, hf_clock_thread_cpu_s() - start_s);
 }
 
 bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context)
 {
-    generation_job g = {batch, optimiser, {optimiser->population.n_individual, 0, NULL}, beside, context};
+    const hf_population *next = &optimiser->next;
+    batch_job job = {
+        batch, {optimiser->population.n_individual, 0, NULL}, next->design, next->result, optimiser, beside, context};
     if (!hf_optimiser_begin(optimiser)) {
         if (beside) beside(context);
         return false;
     }
-    hf_parallel_run(batch->n_thread, work_on_generation, &g);
+    hf_parallel_run(batch->n_thread, work_on_job, &job);
     hf_optimiser_end(optimiser);
     return true;
 }
@@ -260,4 +246,21 @@ void hf_batch_free(hf_batch *batch)
         hf_workspace_free(&batch->workspace[i]);
     free(batch->workspace);
     *batch = (hf_batch){0};
+}
+
+/* ---- waiting threads ---- */
+
+/* Makes OpenMP threads sleep while they wait: sets two environment variables and starts the program again. */
+void hf_batch_wait_quietly(char *const *argv)
+{
+    char path[PATH_MAX];
+    if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT")) return;
+    ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
+    if (n <= 0 || n == sizeof path - 1) return; /* the path is unknown, or may be truncated */
+    path[n] = '\0';
+    /* The dynamic linker was started with this program as its argument, so the path is not that of the program. */
+    if (strstr(path, "/ld-") || strstr(path, "/ld.so")) return;
+    if (setenv("GOMP_SPINCOUNT", "2000", 1) != 0) return;
+    /* GOMP_SPINCOUNT is read by libgomp, OMP_WAIT_POLICY by other OpenMP libraries. */
+    if (setenv("OMP_WAIT_POLICY", "passive", 1) == 0) execv(path, argv);
 }

@@ -10,18 +10,21 @@
 #include "base/elementary.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Mutation steps are between 2^-MUTATION_OCTAVES and 1 times the width of the bounds, and their logarithm is uniformly
  * distributed. The proposed designs depend on this value. The test test_optimiser_ga passes with 5 and with 48. */
 #define MUTATION_OCTAVES 16
 
-bool hf_breeding_leads(const hf_breeding *g, int k)
+/* Returns true if the gene follows no other gene. */
+static bool leads(const hf_breeding *g, int k)
 {
     const hf_model *m = g->model;
     return m->n_leader >= m->n_variable || !m->variable_leader || m->variable_leader[k] == k;
 }
 
-int hf_breeding_n_leader(const hf_breeding *g)
+/* Returns the number of genes that follow no other gene. */
+static int n_leader(const hf_breeding *g)
 {
     const hf_model *m = g->model;
     return m->n_leader < m->n_variable && m->variable_leader ? m->n_leader : m->n_variable;
@@ -32,12 +35,13 @@ double *hf_breeding_draws(const hf_breeding *g, int i)
     return g->draw + (size_t)i * (size_t)g->model->n_variable_group;
 }
 
-void hf_breeding_first(const hf_breeding *g, uint64_t seed, hf_population *p)
+void hf_breeding_first(void *breeding, hf_population *p)
 {
+    const hf_breeding *g = breeding;
     for (int i = 0; i < p->n_individual; i++) {
         double *design = p->design + (size_t)i * (size_t)p->n_variable;
         double *draw = hf_breeding_draws(g, i);
-        hf_random random = hf_random_stream(seed, 0, i);
+        hf_random random = hf_random_stream(g->settings->seed, 0, i);
         for (int j = 0; j < g->model->n_variable_group; j++)
             draw[j] = i == 0 ? 0 : 2 * hf_random_uniform(&random) - 1;
         for (int k = 0; k < p->n_variable; k++) {
@@ -82,12 +86,26 @@ void hf_breeding_mutate(const hf_breeding *g, const hf_population *p, double rat
                         hf_random *random)
 {
     double *draw = hf_breeding_draws(g, i);
-    single /= hf_breeding_n_leader(g);
+    single /= n_leader(g);
     for (int j = 0; j < g->model->n_variable_group; j++)
         draw[j] = mutation_step(rate, random);
     for (int k = 0; k < p->n_variable; k++) {
-        if (!hf_breeding_leads(g, k)) continue;
+        if (!leads(g, k)) continue;
         double step = draw[g->model->variable_group[k]] + mutation_step(single, random);
         child[k] = hf_population_clamp(p, k, child[k] + step * (p->upper[k] - p->lower[k]));
     }
+}
+
+void hf_breeding_finish(const hf_breeding *g, const hf_population *now, hf_population *next, int i, int origin,
+                        double crossover_rate, double mutation_rate, int mother, int father)
+{
+    size_t n = (size_t)now->n_variable;
+    double *child = next->design + (size_t)i * n;
+    hf_population_link(now, g->model, child);
+    next->pending[i] = memcmp(child, now->design + (size_t)origin * n, n * sizeof *child) != 0;
+    next->result[i] = now->result[origin];
+    next->crossover_rate[i] = crossover_rate;
+    next->mutation_rate[i] = mutation_rate;
+    next->parent[2 * i] = mother;
+    next->parent[2 * i + 1] = father;
 }

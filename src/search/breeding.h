@@ -12,8 +12,10 @@
 #include <hifdm/population.h>
 #include <stdbool.h>
 
+/* The state of an optimiser begins with it. */
 typedef struct {
-    const hf_model *model; /* borrowed */
+    const hf_optimize_settings *settings; /* borrowed, like the model */
+    const hf_model *model;
     double *draw; /* [n_individual][n_variable_group] scratch of each child; threads make several children at a time */
 } hf_breeding;
 
@@ -24,17 +26,13 @@ typedef struct {
     double by_chain;      /* probability that whole chains move, instead of single genes */
 } hf_breeding_move;
 
-/* hf_breeding_leads returns true if the gene follows no other gene. hf_breeding_n_leader returns the number of genes
- * that follow no other gene. */
-bool hf_breeding_leads(const hf_breeding *breeding, int i_variable);
-int hf_breeding_n_leader(const hf_breeding *breeding);
-
 /* Returns the scratch of individual i, [n_variable_group]: one number for each chain. */
 double *hf_breeding_draws(const hf_breeding *breeding, int i);
 
 /* Writes the first generation: Eq. 13 around the initial design, with one random number per chain. Individual 0 is the
- * initial design itself, so the best individual is never worse than the initial design. */
-void hf_breeding_first(const hf_breeding *breeding, uint64_t seed, hf_population *population);
+ * initial design itself, so the best individual is never worse than the initial design. `breeding` points to an
+ * hf_breeding. This is `first` of hf_optimiser_kind. */
+void hf_breeding_first(void *breeding, hf_population *population);
 
 /* Moves child [n_variable] of individual i along the difference from design `from` to design `to`, both [n_variable]. A
  * random share of its chains or genes moves, by a random number of differences from 0 to step_max. */
@@ -45,5 +43,10 @@ void hf_breeding_move_along(const hf_breeding *breeding, const hf_population *po
  * genes on average take a step of their own. */
 void hf_breeding_mutate(const hf_breeding *breeding, const hf_population *population, double rate, double single, int i,
                         double *child, hf_random *random);
+
+/* Completes child i of the next generation, which began as individual `origin`: linked genes follow their leaders. A child
+ * that equals its origin needs no evaluation, because it has the result of the origin. Sets rates and parents. */
+void hf_breeding_finish(const hf_breeding *breeding, const hf_population *now, hf_population *next, int i, int origin,
+                        double crossover_rate, double mutation_rate, int mother, int father);
 
 #endif

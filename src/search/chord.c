@@ -8,10 +8,9 @@
  *     settle   converged: measure and store the result; too slow: hf_evaluate; otherwise one more step
  *     step     r <- r + (I + F S)^-1 (F f - r),  x <- x + H0^-1 f                                    (M9)
  *
- * Contents: choice of instruction set - shared matrix - lanes - the run */
+ * Contents: shared matrix - lanes - the run */
 #include "search/chord.h"
 
-#include "base/arena.h"
 #include "solve/coupling.h"
 #include "solve/newton_matrix.h"
 #include "solve/schur.h"
@@ -30,25 +29,7 @@
 #define MODES_LEFT 0.05 /* tolerance of the truncated inverse of I + F S (hf_schur_modes) */
 #define CONTRACTION 0.7 /* after PATIENCE steps, a step must reduce the residual to less than this part */
 
-/* ---- choice of instruction set ---- */
-
-static const hf_chord_kernels *choose_kernels(void)
-{
-#define TABLE(isa)                                                                                                     \
-    {                                                                                                                  \
-        hf_chord_forces_##isa, hf_chord_step_##isa, hf_chord_couple_##isa, hf_chord_move_##isa, hf_chord_measure_##isa \
-    }
-    static const hf_chord_kernels portable = TABLE(portable), avx2 = TABLE(avx2), avx512 = TABLE(avx512);
-#undef TABLE
-    switch (hf_lane_best_isa()) {
-    case HF_LANE_AVX512:
-        return &avx512;
-    case HF_LANE_AVX2:
-        return &avx2;
-    default:
-        return &portable;
-    }
-}
+static const hf_chord_kernels *const kernels_of_isa[] = {HF_LANE_EACH(&hf_chord_kernels)};
 
 /* ---- shared matrix ---- */
 
@@ -82,26 +63,12 @@ bool hf_chord_applies(const hf_evaluator *v)
     return n_other == 0;
 }
 
-static void lay_out(hf_arena *a, hf_chord *c)
+static void lay_out(hf_arena *arena, hf_chord *to)
 {
-    const hf_model *m = c->evaluator->model;
-    size_t n_cable = (size_t)m->n_cable, n_pull = (size_t)c->n_pull;
-    hf_packed_band_lay_out(a, &c->matrix);
-    c->base_m = hf_arena_take(a, 3 * (size_t)m->n_node, sizeof(double));
-    c->variable_of_cable = hf_arena_take(a, n_cable, sizeof(int));
-    c->variable_divisor = hf_arena_take(a, (size_t)m->n_variable, sizeof(double));
-    c->inverse_length = hf_arena_take(a, n_cable, sizeof(double));
-    c->slot_of_cable = hf_arena_take(a, n_cable, sizeof(int));
-    c->pulled = hf_arena_take(a, n_cable, sizeof(int));
-    c->is_pulled = hf_arena_take(a, n_cable, 1);
-    c->incidence_start = hf_arena_take(a, (size_t)m->n_free + (size_t)m->n_attachment + 1, sizeof(int));
-    c->place_of_row = hf_arena_take(a, (size_t)m->n_node, sizeof(int));
-    c->incidence = hf_arena_take(a, 2 * n_cable, sizeof(hf_chord_incidence));
-    if (n_pull == 0) return;
-    c->flexibility = hf_arena_take(a, n_pull * (size_t)c->n_pull_pad, sizeof(double));
-    c->mode = hf_arena_take(a, 2 * n_pull * HF_CHORD_MODES_MAX, sizeof(double));
-    c->tie_block = hf_arena_take(a, 9 * (size_t)m->n_tie, sizeof(double));
-    c->base_displacement_m = hf_arena_take(a, n_pull, sizeof(double));
+    const hf_model *m = to->evaluator->model;
+    size_t n_pull = (size_t)to->n_pull;
+    hf_packed_band_lay_out(arena, &to->matrix);
+    HF_CHORD_FIELDS(HF_ARENA_TAKE)
 }
 
 /* Returns a shared matrix with its sizes, without memory. */
@@ -133,17 +100,8 @@ static hf_status pack_truss(const hf_model *m, hf_workspace *w, hf_chord *c)
     hf_status status = hf_schur_create(m, &schur);
     if (status == HF_OK) status = hf_schur_factor(m, w, hf_newton_matrix_block, &schur);
     if (status == HF_OK) c->n_mode = hf_schur_modes(&schur, MODES_LEFT, HF_CHORD_MODES_MAX, c->mode);
-    hf_schur_free(&schur);
+    hf_arena_free(&schur.arena);
     return status;
-}
-
-static hf_status allocate(hf_chord *chord)
-{
-    hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, chord)));
-    chord->block = arena.block;
-    chord->kernels = choose_kernels();
-    return HF_OK;
 }
 
 /* Lists for each cable its design variable, the row of its force density in `variable`, and whether its tension is
@@ -199,7 +157,8 @@ hf_status hf_chord_create_here(const hf_evaluator *v, hf_workspace *w, hf_chord 
     const hf_model *m = v->model;
     *chord = dimensions(v);
     HF_TRY(hf_newton_matrix_factor(m, w, NULL));
-    HF_TRY(allocate(chord));
+    HF_TRY(HF_ARENA_MAKE(&chord->arena, lay_out(&chord->arena, chord)));
+    chord->kernels = kernels_of_isa[hf_lane_best_isa()];
     hf_packed_band_pack(&chord->matrix, w->newton_band);
     memcpy(chord->base_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
     list_cables(v, chord);
@@ -216,23 +175,12 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *initial, hf_works
     return hf_chord_create_here(v, w, chord);
 }
 
-void hf_chord_free(hf_chord *chord)
-{
-    hf_arena_free_block(chord->block);
-    *chord = (hf_chord){0};
-}
-
 /* ---- lanes ---- */
 
-static void lay_out_lanes(hf_arena *a, const hf_chord *c, hf_chord_lanes *l)
+static void lay_out_lanes(hf_arena *arena, const hf_chord *c, hf_chord_lanes *to)
 {
     const hf_model *m = c->evaluator->model;
-    l->x_m = hf_arena_take(a, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
-    l->force_N = hf_arena_take(a, hf_packed_band_rows(&c->matrix) * HF_LANES, sizeof(double));
-    l->variable = hf_arena_take(a, ((size_t)m->n_variable + (size_t)m->n_cable) * HF_LANES, sizeof(double));
-    l->pull_N = hf_arena_take(a, (size_t)c->n_pull * HF_LANES, sizeof(double));
-    l->displacement_m = hf_arena_take(a, (size_t)c->n_pull_pad * HF_LANES, sizeof(double));
-    l->move_m = hf_arena_take(a, (size_t)c->n_pull_pad * HF_LANES, sizeof(double));
+    HF_CHORD_LANES_FIELDS(HF_ARENA_TAKE)
 }
 
 size_t hf_chord_bytes(const hf_evaluator *evaluator, size_t *lanes_bytes)
@@ -249,9 +197,7 @@ size_t hf_chord_bytes(const hf_evaluator *evaluator, size_t *lanes_bytes)
 hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes)
 {
     *lanes = (hf_chord_lanes){0};
-    hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_lanes(&arena, chord, lanes)));
-    lanes->block = arena.block;
+    HF_TRY(HF_ARENA_MAKE(&lanes->arena, lay_out_lanes(&lanes->arena, chord, lanes)));
     const hf_model *m = chord->evaluator->model;
     double *q_N_per_m = lanes->variable + (size_t)m->n_variable * HF_LANES;
     for (size_t i = 0; i < 3 * (size_t)m->n_node * HF_LANES; i++)
@@ -261,12 +207,6 @@ hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes)
     for (size_t i = 0; i < (size_t)m->n_cable * HF_LANES; i++)
         q_N_per_m[i] = m->target[i / HF_LANES];
     return HF_OK;
-}
-
-void hf_chord_lanes_free(hf_chord_lanes *lanes)
-{
-    hf_arena_free_block(lanes->block);
-    *lanes = (hf_chord_lanes){0};
 }
 
 /* ---- the run ---- */

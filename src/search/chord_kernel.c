@@ -10,9 +10,9 @@
  * The order of the operations in a lane is always the same. Products are fused with sums only where the source says so
  * (lane.h). All instruction sets therefore give the same bits.
  *
- * Contents: vectors - forces - the truss - the step - measures */
+ * Contents: vectors - forces - the truss - the step - measures - table */
 #define HF_LANE_VECTORS
-#include "search/chord_kernel.h"
+#include "search/chord.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -78,34 +78,30 @@ INLINE void sum_force(const hf_chord *chord, const hf_chord_lanes *l, int place,
 
 /* Computes the forces on the free nodes and attachments, and the square of the maximum nodal force over the reference
  * tension. */
-static void forces(const hf_chord *chord, const hf_chord_lanes *l, int p, double *residual_squared)
+static void forces(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES])
 {
-    const hf_model *m = chord->evaluator->model;
-    const double *force = l->force_N + chord->matrix.width * HF_LANES;
-    /* The forces are scaled by the reference tension, because the squares of tiny forces would vanish. */
-    vec f[3], largest = splat(0), scale = splat(1 / m->reference_N);
-    find_densities(chord, l, p);
-    for (int i = 0; i < m->n_free; i++) {
-        sum_force(chord, l, i, i, p, f);
-        foreach (c, 3)
-            *lanes_of(force, 3 * i + c, p) = f[c];
-        largest = larger_or_nan(largest, norm_squared(scale * f[0], scale * f[1], scale * f[2]));
+    for (int p = 0; p < HF_LANES; p += WIDTH) {
+        const hf_model *m = chord->evaluator->model;
+        const double *force = l->force_N + chord->matrix.width * HF_LANES;
+        /* The forces are scaled by the reference tension, because the squares of tiny forces would vanish. */
+        vec f[3], largest = splat(0), scale = splat(1 / m->reference_N);
+        find_densities(chord, l, p);
+        for (int i = 0; i < m->n_free; i++) {
+            sum_force(chord, l, i, i, p, f);
+            foreach (c, 3)
+                *lanes_of(force, 3 * i + c, p) = f[c];
+            largest = larger_or_nan(largest, norm_squared(scale * f[0], scale * f[1], scale * f[2]));
+        }
+        /* Clear the rows after the last one: a lane that failed may have left NaNs there. */
+        for (int i = chord->matrix.n; i < chord->matrix.n + chord->matrix.width + HF_PACKED_ROWS; i++)
+            *lanes_of(force, i, p) = splat(0);
+        for (int i = 0; 3 * i < chord->n_pull; i++) {
+            sum_force(chord, l, m->n_free + i, m->attachment_row[i], p, f);
+            foreach (c, 3)
+                *lanes_of(l->pull_N, 3 * i + c, p) = f[c];
+        }
+        put(residual_squared, largest, p);
     }
-    /* Clear the rows after the last one: a lane that failed may have left NaNs there. */
-    for (int i = chord->matrix.n; i < chord->matrix.n + chord->matrix.width + HF_PACKED_ROWS; i++)
-        *lanes_of(force, i, p) = splat(0);
-    for (int i = 0; 3 * i < chord->n_pull; i++) {
-        sum_force(chord, l, m->n_free + i, m->attachment_row[i], p, f);
-        foreach (c, 3)
-            *lanes_of(l->pull_N, 3 * i + c, p) = f[c];
-    }
-    put(residual_squared, largest, p);
-}
-
-void HF_KERNEL(hf_chord_forces)(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES])
-{
-    for (int p = 0; p < HF_LANES; p += WIDTH)
-        forces(chord, l, p, residual_squared);
 }
 
 /* ---- the truss ---- */
@@ -129,70 +125,63 @@ static void find_gap(const hf_chord *chord, const hf_chord_lanes *l, int p)
 }
 
 /* Finds the maximum gap and multiplies the gaps by (I + F S)^-1 = I + sum of left right' over the modes. */
-static void couple(const hf_chord *chord, const hf_chord_lanes *l, int p, double *gap_squared)
+static void couple(const hf_chord *chord, const hf_chord_lanes *l, double gap_squared[HF_LANES])
 {
-    vec share[HF_CHORD_MODES_MAX], largest = splat(0);
-    find_gap(chord, l, p);
-    for (int i = 0; i < chord->n_pull; i += 3) {
-        const vec x = *lanes_of(l->move_m, i, p), y = *lanes_of(l->move_m, i + 1, p),
-                  z = *lanes_of(l->move_m, i + 2, p);
-        largest = larger_or_nan(largest, norm_squared(x, y, z));
-    }
-    put(gap_squared, largest, p);
-    for (int k = 0; k < chord->n_mode; k++) {
-        const double *right = chord->mode + (size_t)(2 * k + 1) * (size_t)chord->n_pull;
-        share[k] = splat(0);
-        for (int i = 0; i < chord->n_pull; i++)
-            share[k] = plus_product(share[k], splat(right[i]), *lanes_of(l->move_m, i, p));
-    }
-    for (int k = 0; k < chord->n_mode; k++) {
-        const double *left = chord->mode + (size_t)(2 * k) * (size_t)chord->n_pull;
-        for (int i = 0; i < chord->n_pull; i++) {
-            vec *at = lanes_of(l->move_m, i, p);
-            *at = plus_product(*at, splat(left[i]), share[k]);
+    for (int p = 0; p < HF_LANES; p += WIDTH) {
+        vec share[HF_CHORD_MODES_MAX], largest = splat(0);
+        find_gap(chord, l, p);
+        for (int i = 0; i < chord->n_pull; i += 3) {
+            const vec x = *lanes_of(l->move_m, i, p), y = *lanes_of(l->move_m, i + 1, p),
+                      z = *lanes_of(l->move_m, i + 2, p);
+            largest = larger_or_nan(largest, norm_squared(x, y, z));
+        }
+        put(gap_squared, largest, p);
+        for (int k = 0; k < chord->n_mode; k++) {
+            const double *right = chord->mode + (size_t)(2 * k + 1) * (size_t)chord->n_pull;
+            share[k] = splat(0);
+            for (int i = 0; i < chord->n_pull; i++)
+                share[k] = plus_product(share[k], splat(right[i]), *lanes_of(l->move_m, i, p));
+        }
+        for (int k = 0; k < chord->n_mode; k++) {
+            const double *left = chord->mode + (size_t)(2 * k) * (size_t)chord->n_pull;
+            for (int i = 0; i < chord->n_pull; i++) {
+                vec *at = lanes_of(l->move_m, i, p);
+                *at = plus_product(*at, splat(left[i]), share[k]);
+            }
         }
     }
-}
-
-void HF_KERNEL(hf_chord_couple)(const hf_chord *chord, const hf_chord_lanes *l, double gap_squared[HF_LANES])
-{
-    for (int p = 0; p < HF_LANES; p += WIDTH)
-        couple(chord, l, p, gap_squared);
 }
 
 /* Moves the attachments by move_m, and adds the stiffness of their cables times this step to the forces on free
  * nodes. */
-static void move(const hf_chord *chord, const hf_chord_lanes *l, int p)
+static void move(const hf_chord *chord, const hf_chord_lanes *l)
 {
-    const hf_model *m = chord->evaluator->model;
-    const double *force = l->force_N + chord->matrix.width * HF_LANES;
-    for (int i = 0; i < m->n_attachment; i++)
-        for (int c = 0; c < 3; c++) {
-            vec step = *lanes_of(l->move_m, 3 * i + c, p);
-            *lanes_of(l->displacement_m, 3 * i + c, p) += step;
-            *lanes_of(l->x_m, c * m->n_node + m->attachment_row[i], p) += step;
-        }
-    for (int k = 0; k < m->n_tie; k++) {
-        int there = m->end_row[m->tie[k] ^ 1];
-        const double *block = chord->tie_block + 9 * k;
-        if (there >= m->n_free) continue;
-        foreach (c, 3) {
-            vec *f = lanes_of(force, 3 * there + c, p);
-            foreach (d, 3)
-                *f = plus_product(*f, splat(block[3 * c + d]), *lanes_of(l->move_m, 3 * m->tie_attachment[k] + d, p));
+    for (int p = 0; p < HF_LANES; p += WIDTH) {
+        const hf_model *m = chord->evaluator->model;
+        const double *force = l->force_N + chord->matrix.width * HF_LANES;
+        for (int i = 0; i < m->n_attachment; i++)
+            for (int c = 0; c < 3; c++) {
+                vec step = *lanes_of(l->move_m, 3 * i + c, p);
+                *lanes_of(l->displacement_m, 3 * i + c, p) += step;
+                *lanes_of(l->x_m, c * m->n_node + m->attachment_row[i], p) += step;
+            }
+        for (int k = 0; k < m->n_tie; k++) {
+            int there = m->end_row[m->tie[k] ^ 1];
+            const double *block = chord->tie_block + 9 * k;
+            if (there >= m->n_free) continue;
+            foreach (c, 3) {
+                vec *f = lanes_of(force, 3 * there + c, p);
+                foreach (d, 3)
+                    *f = plus_product(*f, splat(block[3 * c + d]),
+                                      *lanes_of(l->move_m, 3 * m->tie_attachment[k] + d, p));
+            }
         }
     }
 }
 
-void HF_KERNEL(hf_chord_move)(const hf_chord *chord, const hf_chord_lanes *l)
-{
-    for (int p = 0; p < HF_LANES; p += WIDTH)
-        move(chord, l, p);
-}
-
 /* ---- the step ---- */
 
-void HF_KERNEL(hf_chord_step)(const hf_chord *chord, const hf_chord_lanes *l)
+static void step(const hf_chord *chord, const hf_chord_lanes *l)
 {
     const hf_model *m = chord->evaluator->model;
     const double *step = l->force_N + chord->matrix.width * HF_LANES;
@@ -218,45 +207,45 @@ static vec psi(const hf_model *m, const double *x_m, int p)
 }
 
 /* Finds the extreme tensions of each group, the extreme length ratios, the error against given tensions, and psi. */
-static void measure(const hf_chord *chord, const hf_chord_lanes *l, int p, hf_chord_measures *out)
+static void measure(const hf_chord *chord, const hf_chord_lanes *l, hf_chord_measures *out)
 {
-    const hf_model *m = chord->evaluator->model;
-    vec most = splat(INFINITY), none = splat(0), error = none, d[3];
-    vec low[2] = {most, most}, high[2] = {-most, -most}, short_pulled = most, short_other = most, longest = none;
-    for (int e = 0; e < m->n_cable; e++) {
-        int k = chord->variable_of_cable[e], slot = chord->slot_of_cable[e];
-        difference(l->x_m, m->n_node, m->end_row[2 * e], m->end_row[2 * e + 1], p, d);
-        vec length = root(norm_squared(d[0], d[1], d[2])), part = length * chord->inverse_length[e];
-        vec q = *lanes_of(l->variable, slot, p), tension = q * length;
-        longest = larger(part, longest);
-        if (m->group[e] == HF_GROUP_INNER) {
-            low[HF_GROUP_INNER] = smaller(tension, low[HF_GROUP_INNER]);
-            high[HF_GROUP_INNER] = larger(tension, high[HF_GROUP_INNER]);
-        } else {
-            low[HF_GROUP_BOUNDARY] = smaller(tension, low[HF_GROUP_BOUNDARY]);
-            high[HF_GROUP_BOUNDARY] = larger(tension, high[HF_GROUP_BOUNDARY]);
+    for (int p = 0; p < HF_LANES; p += WIDTH) {
+        const hf_model *m = chord->evaluator->model;
+        vec most = splat(INFINITY), none = splat(0), error = none, d[3];
+        vec low[2] = {most, most}, high[2] = {-most, -most}, short_pulled = most, short_other = most, longest = none;
+        for (int e = 0; e < m->n_cable; e++) {
+            int k = chord->variable_of_cable[e], slot = chord->slot_of_cable[e];
+            difference(l->x_m, m->n_node, m->end_row[2 * e], m->end_row[2 * e + 1], p, d);
+            vec length = root(norm_squared(d[0], d[1], d[2])), part = length * chord->inverse_length[e];
+            vec q = *lanes_of(l->variable, slot, p), tension = q * length;
+            longest = larger(part, longest);
+            if (m->group[e] == HF_GROUP_INNER) {
+                low[HF_GROUP_INNER] = smaller(tension, low[HF_GROUP_INNER]);
+                high[HF_GROUP_INNER] = larger(tension, high[HF_GROUP_INNER]);
+            } else {
+                low[HF_GROUP_BOUNDARY] = smaller(tension, low[HF_GROUP_BOUNDARY]);
+                high[HF_GROUP_BOUNDARY] = larger(tension, high[HF_GROUP_BOUNDARY]);
+            }
+            if (chord->is_pulled[e]) {
+                vec target = k >= 0 ? *lanes_of(l->variable, k, p) : splat(m->target[e]);
+                error = larger(magnitude(tension / target - 1), error);
+                short_pulled = smaller(part, short_pulled);
+            } else {
+                short_other = smaller(part, short_other);
+            }
         }
-        if (chord->is_pulled[e]) {
-            vec target = k >= 0 ? *lanes_of(l->variable, k, p) : splat(m->target[e]);
-            error = larger(magnitude(tension / target - 1), error);
-            short_pulled = smaller(part, short_pulled);
-        } else {
-            short_other = smaller(part, short_other);
+        foreach (g, 2) {
+            *lanes_of(out->lowest_N[g], 0, p) = low[g];
+            *lanes_of(out->highest_N[g], 0, p) = high[g];
         }
+        *lanes_of(out->psi_m, 0, p) = psi(m, l->x_m, p);
+        *lanes_of(out->tension_error, 0, p) = error;
+        *lanes_of(out->shortest_pulled, 0, p) = short_pulled;
+        *lanes_of(out->shortest_other, 0, p) = short_other;
+        *lanes_of(out->longest, 0, p) = longest;
     }
-    foreach (g, 2) {
-        *lanes_of(out->lowest_N[g], 0, p) = low[g];
-        *lanes_of(out->highest_N[g], 0, p) = high[g];
-    }
-    *lanes_of(out->psi_m, 0, p) = psi(m, l->x_m, p);
-    *lanes_of(out->tension_error, 0, p) = error;
-    *lanes_of(out->shortest_pulled, 0, p) = short_pulled;
-    *lanes_of(out->shortest_other, 0, p) = short_other;
-    *lanes_of(out->longest, 0, p) = longest;
 }
 
-void HF_KERNEL(hf_chord_measure)(const hf_chord *chord, const hf_chord_lanes *l, hf_chord_measures *measures)
-{
-    for (int p = 0; p < HF_LANES; p += WIDTH)
-        measure(chord, l, p, measures);
-}
+/* ---- table ---- */
+
+const hf_chord_kernels HF_KERNEL(hf_chord_kernels) = {forces, step, couple, move, measure};

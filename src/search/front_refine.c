@@ -1,4 +1,4 @@
-/* Finds the points of a Pareto front. front_refine.h describes the interface, front_refine_point.c one point.
+/* Finds the points of a Pareto front. front_refine.h describes the interface.
  *
  *     minimum of each objective alone -> ends, ranges -> first lines: without a limit on THIRD, and at its minimum
  *     longest gap on a line      -> mean limit on OTHER -> one more point
@@ -7,14 +7,23 @@
  *
  * One objective, MAIN, is minimised under limits on the others. With two objectives, the points form one line, in the
  * order of the limit on OTHER. With three, they form several lines. Each line has its own limit on THIRD, from its
- * minimum to no limit.
+ * minimum to no limit. One point:
+ *
+ *     best_start      best start for an objective
+ *     meet            sums of squares, if the minimum of an objective is 0 -> a design to begin from
+ *     refine          Levenberg-Marquardt under limits on the other objectives -> objectives, multipliers
+ *     find_common     points at the ends -> one that is best in all objectives
+ *
+ * Some objectives can be 0, such as evenness of tensions. Their size has no slope there that a limit could follow, but
+ * their square has one. Such an objective is called `met`.
+ *
  * Contents: one point - many points at once - lines - the ends - gaps - the front */
 #include "search/front_refine.h"
 
 #include "base/arena.h"
 #include "search/parallel.h"
 #include "search/refine.h"
-#include "search/front_refine_point.h"
+#include "search/watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -87,14 +96,144 @@ bool hf_front_refine_applies(const hf_evaluator *v)
 
 /* ---- one point ---- */
 
+/* The weights of `least` next to an objective whose minimum is 0 (`met`), both in parts of their ranges. `met` then
+ * rises by about the square of the weight. With the last weight alone, a search that begins where `met` is 0 may find
+ * no way along a curved valley. */
+static const double weight[] = {1e-2, 1e-4};
+enum { N_WEIGHT = sizeof weight / sizeof *weight };
+
+#define SAME 1e-9 /* a range below this part of an objective counts as none */
+
+/* Sets role [n_objective]: first the objective to minimise, which is the first one without corners if there is one,
+ * then the others in their order. */
+static void choose_roles(const hf_objectives *objectives, int *role)
+{
+    int main = 0, n = 0;
+    while (main < objectives->n_objective && hf_objectives_is_maximum(objectives->objective[main].settings.figure))
+        main++;
+    if (main == objectives->n_objective) main = 0;
+    role[n++] = main;
+    for (int k = 0; k < objectives->n_objective; k++)
+        if (k != main) role[n++] = k;
+}
+
+/* Finds the start with the minimum of objective k among the feasible starts. If none is feasible, *start is the first
+ * one with a shape, or the first of all. largest [n_objective] rises to the maxima of the feasible starts. Returns
+ * HF_OK or HF_NO_MEMORY. */
+static hf_status best_start(const hf_front_refine *t, int k, hf_workspace *w, double *largest, const double **start)
+{
+    int best_rank = -1;
+    double least = INFINITY;
+    *start = t->start;
+    for (int i = 0; i < t->n_start; i++) {
+        const double *design = t->start + (size_t)i * (size_t)t->evaluator->model->n_variable;
+        hf_form_result r;
+        hf_status status = hf_evaluate(t->evaluator, design, w, &r);
+        if (status == HF_NO_MEMORY) return status;
+        for (int g = 0; g < t->evaluator->objectives->n_objective && status == HF_OK; g++)
+            largest[g] = fmax(largest[g], r.objective[g]);
+        int rank = status == HF_OK ? 2 : hf_status_has_shape(status);
+        double value = status == HF_OK ? r.objective[k] : i;
+        if (rank < best_rank || (rank == best_rank && !(value < least))) continue;
+        best_rank = rank;
+        least = value;
+        *start = design;
+    }
+    return HF_OK;
+}
+
+/* Counts one more finished point for the watcher. */
+static void count_point(const hf_front_refine *t)
+{
+    if (t->watcher) atomic_fetch_add(&t->watcher->n_point, 1);
+}
+
+/* Counts a step of the search, and reports the progress unless another thread is reporting. */
+static hf_status tell_step(void *context, const hf_refine_progress *now)
+{
+    hf_front_refine_watcher *w = context;
+    if (now->iterations == 0) return HF_OK;
+    atomic_fetch_add(&w->n_step, 1);
+    if (atomic_flag_test_and_set(&w->is_telling)) return HF_OK;
+    w->tell(w->context, atomic_load(&w->n_point), atomic_load(&w->n_step));
+    atomic_flag_clear(&w->is_telling);
+    return HF_OK;
+}
+
+/* Replaces the design [n_variable] by one that minimises the objective `least` while the objective `met` rises by about
+ * 1e-8 of its range. It minimises the sum of their squares, with a decreasing weight of `least`. If met == least, it
+ * minimises the sum of the squares of all objectives. range [n_objective] scales them. Returns HF_OK, also if the
+ * design does not change, HF_NO_MEMORY or HF_INTERRUPTED. */
+static hf_status meet(const hf_front_refine *t, int met, int least, const double *range, double *design,
+                      hf_workspace *w)
+{
+    hf_evaluator evaluator = *t->evaluator;
+    hf_objectives objectives = *evaluator.objectives;
+    hf_refine_result result;
+    const hf_refine_watcher watcher = {.after = tell_step, .context = t->watcher};
+    evaluator.objectives = &objectives;
+    for (int i = met == least ? N_WEIGHT - 1 : 0; i < N_WEIGHT; i++) {
+        for (int k = 0; k < objectives.n_objective; k++) {
+            double part = k == met || met == least ? 1 : k == least ? weight[i] : 0;
+            objectives.objective[k].settings.weight = range[k] > 0 ? part / range[k] : 0;
+        }
+        hf_status status = hf_refine_run(&evaluator, t->lower, t->upper, t->max_iterations, NULL,
+                                         t->watcher ? &watcher : NULL, design, w, &result);
+        if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+    }
+    return HF_OK;
+}
+
+/* Returns the index of the point [n] whose objectives are all within `part` of their minima over the n points, or -1.
+ * The differences are in parts of the range from the minimum to the maximum over the points and largest [n_objective].
+ * Of several such points, it is the nearest to the minima. */
+static int find_common(int n_objective, int n, const hf_front_point *const *point, const double *largest, double part)
+{
+    int common = -1;
+    double least[HF_FRONT_OBJECTIVES_MAX], most[HF_FRONT_OBJECTIVES_MAX];
+    for (int k = 0; k < n_objective; k++) {
+        least[k] = INFINITY;
+        most[k] = largest[k];
+        for (int i = 0; i < n; i++) {
+            if (point[i]->status != HF_OK) continue;
+            least[k] = fmin(least[k], point[i]->objective[k]);
+            most[k] = fmax(most[k], point[i]->objective[k]);
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        double above = point[i]->status == HF_OK ? 0 : INFINITY;
+        for (int k = 0; k < n_objective && point[i]->status == HF_OK; k++)
+            if (most[k] - least[k] > SAME * most[k])
+                above = fmax(above, (point[i]->objective[k] - least[k]) / (most[k] - least[k]));
+        if (!(above <= part) || (common >= 0 && !(above < part))) continue;
+        common = i;
+        part = above;
+    }
+    return common;
+}
+
 /* Refines the design of a job by Levenberg-Marquardt. Multipliers are slopes of MAIN, so they are NaN if another
  * objective is minimised. Returns HF_OK, or a status that ends the whole search. */
 static hf_status refine(const search *s, const job *j, double *design, hf_workspace *w, hf_front_point *point)
 {
+    const hf_front_refine *t = s->t;
     const hf_watch_front limits = {j->least, j->most};
-    HF_TRY(hf_front_refine_point(s->t, &limits, design, w, point));
-    for (int k = 0; k < s->n_objective && j->least != s->role[MAIN]; k++)
-        point->multiplier[k] = NAN;
+    hf_refine_result r;
+    hf_form_result result;
+    const hf_refine_watcher watcher = {.after = tell_step, .context = t->watcher};
+    *point = (hf_front_point){.objective = {NAN, NAN, NAN}, .multiplier = {NAN, NAN, NAN}};
+    hf_status status = hf_refine_run(t->evaluator, t->lower, t->upper, t->max_iterations, &limits,
+                                     t->watcher ? &watcher : NULL, design, w, &r);
+    if (status == HF_OK) status = hf_evaluate(t->evaluator, design, w, &result);
+    if (t->stop && *t->stop) return HF_INTERRUPTED;
+    if (status == HF_NO_MEMORY) return status;
+    point->status = status;
+    point->steps = r.iterations;
+    point->is_converged = status == HF_OK && r.stop == HF_REFINE_CONVERGED;
+    for (int k = 0; k < s->n_objective && status == HF_OK; k++) {
+        point->objective[k] = result.objective[k];
+        if (point->is_converged && j->least == s->role[MAIN]) point->multiplier[k] = r.multiplier[k];
+    }
     return HF_OK;
 }
 
@@ -116,7 +255,7 @@ static hf_status find(const search *s, job *j, hf_workspace *w)
     size_t size = s->n_variable * sizeof(double);
     hf_front_point again;
     memcpy(j->design, j->from[0], size);
-    if (j->met >= 0) HF_TRY(hf_front_refine_meet(s->t, j->met, j->least, s->range, j->design, w));
+    if (j->met >= 0) HF_TRY(meet(s->t, j->met, j->least, s->range, j->design, w));
     HF_TRY(refine(s, j, j->design, w, &j->found));
     if (!j->from[1] || !is_doubtful(s, j)) return HF_OK;
     double *design = j->design + s->n_variable; /* the second half of its memory */
@@ -135,6 +274,13 @@ static hf_status find(const search *s, job *j, hf_workspace *w)
 
 /* ---- many points at once ---- */
 
+/* Forgets multipliers that are not slopes of the front. */
+static void forget_multipliers(job *j)
+{
+    for (int k = 0; k < HF_FRONT_OBJECTIVES_MAX; k++)
+        j->found.multiplier[k] = NAN;
+}
+
 /* Runs jobs in one thread until none is left. */
 static void work(void *context, int room)
 {
@@ -147,7 +293,7 @@ static void work(void *context, int room)
         int i = hf_parallel_take(&s->queue);
         if (i < 0) break;
         status = find(s, &s->job[s->n_run + i], &w);
-        if (s->job[s->n_run + i].is_point) hf_front_refine_count(s->t);
+        if (s->job[s->n_run + i].is_point) count_point(s->t);
     }
     hf_workspace_free(&w);
     s->of_room[room] = status;
@@ -210,7 +356,12 @@ static job *begin_beside(search *s, int role, double third_most, const job *end,
 /* Returns the distance of two points in parts of the ranges. */
 static double distance(const search *s, const job *a, const job *b)
 {
-    return hf_front_refine_distance(s->n_objective, s->range, &a->found, &b->found);
+    double square = 0;
+    for (int k = 0; k < s->n_objective; k++) {
+        double part = s->range[k] > 0 ? (b->found.objective[k] - a->found.objective[k]) / s->range[k] : 0;
+        square += part * part;
+    }
+    return sqrt(square);
 }
 
 /* ---- lines ---- */
@@ -267,8 +418,7 @@ static hf_status finish_lines(search *s, int first)
             double gain = value_of(s, l->end[e], 1 - e) - value_of(s, beside, 1 - e);
             if (!(gain > END_GAINS * s->range[s->role[1 - e]])) continue;
             l->end[e] = beside;
-            for (int k = 0; k < s->n_objective; k++) /* multipliers of the limit of END_GIVES, not of the front */
-                beside->found.multiplier[k] = NAN;
+            forget_multipliers(beside); /* of the limit of END_GIVES */
         }
     return HF_OK;
 }
@@ -279,7 +429,7 @@ static void close_line(search *s, line *l)
     for (int e = 0; e < 2; e++) {
         if (l->is_new[e]) {
             s->point[s->n_point++] = l->end[e];
-            hf_front_refine_count(s->t);
+            count_point(s->t);
         }
         join(s, l, l->end[e]);
     }
@@ -311,8 +461,7 @@ static void choose_main(search *s, job *end[])
     }
     s->role[THIRD] = role;
     end[THIRD] = first;
-    for (int k = 0; k < s->n_objective; k++) /* the multipliers were slopes of the old MAIN */
-        first->found.multiplier[k] = NAN;
+    forget_multipliers(first); /* slopes of the old MAIN */
 }
 
 /* Minimises each objective alone, by its role. Returns HF_OK or the status of the failure; failed_end is then the
@@ -325,7 +474,7 @@ static hf_status find_alone(search *s, job *alone[])
     hf_status status = hf_workspace_create(s->t->evaluator->model, &w);
     if (status == HF_OK) status = hf_evaluate_attend(s->t->evaluator, &w);
     for (int r = 0; r < n && status == HF_OK; r++)
-        status = hf_front_refine_start(s->t, s->role[r], &w, s->largest, &start[r]);
+        status = best_start(s->t, s->role[r], &w, s->largest, &start[r]);
     hf_workspace_free(&w);
     HF_TRY(status);
     for (int r = 0; r < n; r++)
@@ -358,13 +507,12 @@ static bool take_common(search *s)
     const hf_front_point *found[ENDS_MAX];
     for (int i = 0; i < s->n; i++)
         found[i] = &s->job[i].found;
-    int common = hf_front_refine_common(s->n_objective, s->n, found, s->largest, AGREE);
+    int common = find_common(s->n_objective, s->n, found, s->largest, AGREE);
     if (common < 0) return false;
     s->point[0] = &s->job[common];
     s->n_point = 1;
     s->n_line = 0;
-    for (int k = 0; k < s->n_objective; k++)
-        s->point[0]->found.multiplier[k] = NAN;
+    forget_multipliers(s->point[0]);
     return true;
 }
 
@@ -616,7 +764,7 @@ hf_status hf_front_refine_find(const hf_front_refine *task, hf_front *front, int
     *failed_end = -1;
     s.n_objective = t.evaluator->objectives->n_objective;
     s.n_job = s.n_objective > 2 ? 2 * t.n_point + 8 : t.n_point + 4;
-    hf_front_refine_roles(t.evaluator->objectives, s.role);
+    choose_roles(t.evaluator->objectives, s.role);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &s)));
     hf_status status = find_ends(&s);
     if (status == HF_OK) status = fill(&s);

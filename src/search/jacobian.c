@@ -3,7 +3,6 @@
  *     shape -> sensitivities dx/dv, dT/dv -> residuals f, df/dv -> derivatives of psi, or of objectives and merit */
 #include "search/jacobian.h"
 
-#include "base/arena.h"
 #include "linalg/dot.h"
 
 #include <math.h>
@@ -18,13 +17,11 @@ static void lay_out(hf_arena *a, hf_jacobian *j)
 
 hf_status hf_jacobian_create(const hf_evaluator *evaluator, hf_jacobian *j)
 {
-    hf_arena arena = {0};
     *j = (hf_jacobian){.model = *evaluator->model, .v = *evaluator};
     j->v.model = &j->model;
     j->n_figure = j->v.objectives ? j->v.objectives->n_objective + 1 : 1;
     HF_TRY(hf_residuals_create(&j->v, &j->residuals));
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, j)));
-    j->block = arena.block;
+    HF_TRY(HF_ARENA_MAKE(&j->arena, lay_out(&j->arena, j)));
     for (int k = 0; k < j->model.n_variable; k++)
         j->leader[k] = k;
     j->model.variable_leader = j->leader;
@@ -34,10 +31,9 @@ hf_status hf_jacobian_create(const hf_evaluator *evaluator, hf_jacobian *j)
 
 void hf_jacobian_free(hf_jacobian *j)
 {
-    hf_arena arena = {.block = j->block};
     hf_sensitivity_free(&j->slopes);
     hf_residuals_free(&j->residuals);
-    hf_arena_free(&arena);
+    hf_arena_free(&j->arena);
     *j = (hf_jacobian){0};
 }
 

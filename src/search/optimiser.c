@@ -14,9 +14,8 @@ const char *const hf_refine_stop_word[5] = {"converged", "stalled", "max_iterati
 /* ---- ask and tell ---- */
 
 hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *s, const hf_model *m,
-                              const double *initial, hf_optimiser *optimiser)
+                              const double *initial, hf_optimiser *o)
 {
-    hf_optimiser *o = optimiser;
     *o = (hf_optimiser){.settings = s};
     HF_TRY(hf_population_create(s, m, initial, &o->population, &o->next));
     if (!kind) return HF_OK;
@@ -27,9 +26,8 @@ hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_s
     return HF_OK;
 }
 
-void hf_optimiser_tell(hf_optimiser *optimiser)
+void hf_optimiser_tell(hf_optimiser *o)
 {
-    hf_optimiser *o = optimiser;
     if (o->is_fresh) {
         hf_population_note_trials(&o->population);
         if (o->population.generation > 0 && o->kind->survive) o->kind->survive(o->state, &o->next, &o->population);

@@ -39,7 +39,6 @@ static const hf_breeding_move crossover = {.step_max = 2.0, .share_octaves = 2.3
 /* ---- state ---- */
 
 typedef struct {
-    const hf_optimize_settings *settings; /* borrowed, like the model */
     hf_breeding breeding;
     /* Shared by the children of a generation; `begin` computes it before the first child. */
     double *fitness; /* [n_individual] */
@@ -53,29 +52,23 @@ typedef struct {
 static breeder *lay_out(hf_arena *a, breeder *g)
 {
     breeder *itself = hf_arena_take(a, 1, sizeof *itself);
-    size_t n = (size_t)g->settings->population;
+    size_t n = (size_t)g->breeding.settings->population;
     g->breeding.draw = hf_arena_take(a, n * (size_t)g->breeding.model->n_variable_group, sizeof(double));
     g->fitness = hf_arena_take(a, n, sizeof(double));
     g->taken = hf_arena_take(a, n, 1);
-    g->elite = hf_arena_take(a, (size_t)g->settings->elites, sizeof(int));
+    g->elite = hf_arena_take(a, (size_t)g->breeding.settings->elites, sizeof(int));
     return itself;
 }
 
 static hf_status create(const hf_optimize_settings *s, const hf_model *m, void **state)
 {
-    breeder g = {.settings = s, .breeding = {.model = m}};
+    breeder g = {.breeding = {.settings = s, .model = m}};
     hf_arena arena = {0};
     breeder *itself;
     HF_TRY(HF_ARENA_MAKE(&arena, itself = lay_out(&arena, &g)));
     *itself = g;
     *state = itself;
     return HF_OK;
-}
-
-static void first(void *state, hf_population *p)
-{
-    const breeder *g = state;
-    hf_breeding_first(&g->breeding, g->settings->seed, p);
 }
 
 /* ---- adaptive rates ---- */
@@ -129,7 +122,7 @@ static int spin_roulette(const breeder *g, hf_random *random)
 {
     double left = hf_random_uniform(random) * g->total_fitness;
     int last = 0;
-    for (int i = 0; i < g->settings->population; i++) {
+    for (int i = 0; i < g->breeding.settings->population; i++) {
         if (!(g->fitness[i] > 0)) continue;
         last = i;
         left -= g->fitness[i];
@@ -159,16 +152,15 @@ static void move_elite(const breeder *g, const hf_population *p, int a, int b, i
     size_t n = (size_t)p->n_variable;
     int better = hf_population_is_better(p, a, b) ? a : b, worse = a + b - better;
     const double *to = p->design + (size_t)better * n, *from = p->design + (size_t)worse * n;
-    int leader = g->elite[(int)(hf_random_uniform(random) * g->settings->elites)];
+    int leader = g->elite[(int)(hf_random_uniform(random) * g->breeding.settings->elites)];
     memcpy(child, p->design + (size_t)leader * n, n * sizeof *child);
     hf_breeding_move_along(&g->breeding, p, &crossover, from, to, i, child, random);
 }
 
-/* Makes one child with random numbers of its own stream. A child that equals the design from which it began (`same`)
- * needs no evaluation, because it has the result of that design. */
+/* Makes one child with random numbers of its own stream. */
 static void breed(const breeder *g, const hf_population *now, hf_population *next, int i)
 {
-    const hf_optimize_settings *s = g->settings;
+    const hf_optimize_settings *s = g->breeding.settings;
     bool by_chain = s->variation == HF_VARIATION_CHAIN;
     size_t n = (size_t)now->n_variable;
     hf_random random = hf_random_stream(s->seed, now->generation + 1, i);
@@ -190,13 +182,7 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
     else
         move_elite(g, now, a, b, i, child, &random);
     hf_breeding_mutate(&g->breeding, now, pm, by_chain ? pm : SINGLES * pm, i, child, &random);
-    hf_population_link(now, g->breeding.model, child);
-    next->pending[i] = memcmp(child, same, n * sizeof *child) != 0;
-    next->result[i] = now->result[itself];
-    next->crossover_rate[i] = pc;
-    next->mutation_rate[i] = pm;
-    next->parent[2 * i] = a;
-    next->parent[2 * i + 1] = b;
+    hf_breeding_finish(&g->breeding, now, next, i, itself, pc, pm, a, b);
 }
 
 /* ---- the next generation ---- */
@@ -205,7 +191,7 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
 static void list_elites(const breeder *g, const hf_population *p)
 {
     memset(g->taken, 0, (size_t)p->n_individual);
-    for (int e = 0; e < g->settings->elites; e++) {
+    for (int e = 0; e < g->breeding.settings->elites; e++) {
         int best = -1;
         for (int i = 0; i < p->n_individual; i++)
             if (!g->taken[i] && (best < 0 || hf_population_is_better(p, i, best))) best = i;
@@ -236,7 +222,7 @@ static void begin(void *state, const hf_population *now)
 static void propose(void *state, const hf_population *now, hf_population *next, int i)
 {
     const breeder *g = state;
-    if (g->settings->variation == HF_VARIATION_CHAIN && i < g->settings->elites)
+    if (g->breeding.settings->variation == HF_VARIATION_CHAIN && i < g->breeding.settings->elites)
         keep_elite(g, now, next, i);
     else
         breed(g, now, next, i);
@@ -246,7 +232,7 @@ static void propose(void *state, const hf_population *now, hf_population *next, 
 static void survive(void *state, const hf_population *before, hf_population *now)
 {
     const breeder *g = state;
-    if (g->settings->variation == HF_VARIATION_DIFFERENCE) hf_population_keep_better(before, now);
+    if (g->breeding.settings->variation == HF_VARIATION_DIFFERENCE) hf_population_keep_better(before, now);
 }
 
-const hf_optimiser_kind hf_optimiser_ga = {create, first, begin, propose, survive, free};
+const hf_optimiser_kind hf_optimiser_ga = {create, hf_breeding_first, begin, propose, survive, free};

@@ -32,7 +32,6 @@ static const hf_breeding_move crossover = {.step_max = 3.0, .share_octaves = 4.0
 /* ---- state ---- */
 
 typedef struct {
-    const hf_optimize_settings *settings; /* borrowed, like the model */
     hf_breeding breeding;
     hf_pareto both; /* individual i, and its child at i + N; `begin` uses the first N alone */
     int *rank;      /* [2 N], number of the front */
@@ -47,7 +46,7 @@ typedef struct {
 static front_breeder *lay_out_breeder(hf_arena *a, front_breeder *g)
 {
     front_breeder *itself = hf_arena_take(a, 1, sizeof *itself);
-    size_t n = (size_t)g->settings->population;
+    size_t n = (size_t)g->breeding.settings->population;
     hf_pareto_lay_out(a, &g->both);
     g->breeding.draw = hf_arena_take(a, n * (size_t)g->breeding.model->n_variable_group, sizeof(double));
     g->rank = hf_arena_take(a, 2 * n, sizeof(int));
@@ -57,20 +56,14 @@ static front_breeder *lay_out_breeder(hf_arena *a, front_breeder *g)
 
 static hf_status create_breeder(const hf_optimize_settings *s, const hf_model *m, void **state)
 {
-    front_breeder g = {
-        .settings = s, .breeding = {.model = m}, .both = {.n = 2 * s->population, .n_objective = s->n_front}};
+    front_breeder g = {.breeding = {.settings = s, .model = m},
+                       .both = {.n = 2 * s->population, .n_objective = s->n_front}};
     hf_arena arena = {0};
     front_breeder *itself;
     HF_TRY(HF_ARENA_MAKE(&arena, itself = lay_out_breeder(&arena, &g)));
     *itself = g;
     *state = itself;
     return HF_OK;
-}
-
-static void first_front(void *state, hf_population *p)
-{
-    const front_breeder *g = state;
-    hf_breeding_first(&g->breeding, g->settings->seed, p);
 }
 
 /* ---- origins of children ---- */
@@ -156,7 +149,7 @@ static int pick(int n, hf_random *random)
 static void propose_child(void *state, const hf_population *now, hf_population *next, int i)
 {
     const front_breeder *g = state;
-    const hf_optimize_settings *s = g->settings;
+    const hf_optimize_settings *s = g->breeding.settings;
     size_t n = (size_t)now->n_variable;
     hf_random random = hf_random_stream(s->seed, now->generation + 1, i);
     weights w = draw_weights(g->both.n_objective, &random);
@@ -167,21 +160,14 @@ static void propose_child(void *state, const hf_population *now, hf_population *
     int to = is_better_by(g, &w, a, b) ? a : b, from = a + b - to;
     bool approaches = hf_random_uniform(&random) < BY_APPROACH;
     if (approaches) to = a, from = leader;
-    const double *same = now->design + (size_t)leader * n;
     double *child = next->design + (size_t)i * n;
-    memcpy(child, same, n * sizeof *child);
+    memcpy(child, now->design + (size_t)leader * n, n * sizeof *child);
     if (hf_random_uniform(&random) < s->crossover_high && to != from)
         hf_breeding_move_along(&g->breeding, now, &crossover, now->design + (size_t)from * n,
                                now->design + (size_t)to * n, i, child, &random);
     double rate = RATE * s->mutation_high;
     hf_breeding_mutate(&g->breeding, now, rate, SINGLES * rate, i, child, &random);
-    hf_population_link(now, g->breeding.model, child);
-    next->pending[i] = memcmp(child, same, n * sizeof *child) != 0;
-    next->result[i] = now->result[leader];
-    next->crossover_rate[i] = s->crossover_high;
-    next->mutation_rate[i] = rate;
-    next->parent[2 * i] = leader;
-    next->parent[2 * i + 1] = to;
+    hf_breeding_finish(&g->breeding, now, next, i, leader, s->crossover_high, rate, leader, to);
 }
 
 /* ---- survival ---- */
@@ -222,5 +208,5 @@ static void survive_front(void *state, const hf_population *before, hf_populatio
     }
 }
 
-const hf_optimiser_kind hf_optimiser_nsga = {create_breeder, first_front,   begin_front,
-                                             propose_child,  survive_front, free};
+const hf_optimiser_kind hf_optimiser_nsga = {create_breeder, hf_breeding_first, begin_front,
+                                             propose_child,  survive_front,     free};

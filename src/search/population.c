@@ -90,9 +90,8 @@ void hf_population_link(const hf_population *population, const hf_model *m, doub
 /* ---- two generations ---- */
 
 hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m, const double *initial,
-                               hf_population *population, hf_population *next)
+                               hf_population *p, hf_population *next)
 {
-    hf_population *p = population;
     hf_arena arena = {0};
     *p = (hf_population){.n_variable = m->n_variable,
                          .has_rows = m->variable,
@@ -103,9 +102,8 @@ hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m,
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_both(&arena, p, next)));
     p->block = next->block = arena.block;
     memcpy(p->initial, initial, (size_t)p->n_variable * sizeof *initial);
-    for (int k = 0; k < p->n_variable; k++) {
+    for (int k = 0; k < p->n_variable; k++)
         hf_variables_bound(s, m, k, initial[k], &p->lower[k], &p->upper[k], &p->reach[k]);
-    }
     if (has_links(m)) link_bounds(m, p);
     return HF_OK;
 }
@@ -209,9 +207,8 @@ static hf_population_stop judge(const hf_optimize_settings *s, const hf_populati
     return isnan(p->best_merit[now]) ? HF_POPULATION_ALL_INFEASIBLE : HF_POPULATION_GENERATIONS;
 }
 
-void hf_population_rank(const hf_optimize_settings *s, hf_population *population)
+void hf_population_rank(const hf_optimize_settings *s, hf_population *p)
 {
-    hf_population *p = population;
     double sum = 0;
     p->n_infeasible = 0;
     p->least_violation[p->generation] = INFINITY;

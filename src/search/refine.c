@@ -9,7 +9,7 @@
  *     end    -> converged, settled, stalled or max_iterations -> best design
  *
  * A start outside the limits is first moved into them (enter).
- * Contents: one step - the run */
+ * Contents: what it costs - one step - the run */
 #include "search/refine.h"
 
 #include "linalg/dot.h"
@@ -45,6 +45,57 @@
 #define SETTLED_MERIT 1e-6
 #define SETTLED_OBJECTIVE 1e-5
 #define BEND_WORTH 0.5 /* a correction is the last one if it leaves more than this part of the merit [0.5 to 0.9] */
+
+/* The numbers of steps were counted on the cases of configs and METHOD. UNNOTICED is the number of operations in about
+ * 0.1 s. */
+#define STEPS_EXPECTED 8
+#define STEP_EVALUATIONS 2
+#define NEWTON_STEPS 5
+#define CHORD_STEPS 4
+#define UNNOTICED 2e8
+
+/* ---- what it costs ---- */
+
+bool hf_refine_applies(const hf_evaluator *v)
+{
+    for (int k = 0; k < v->model->n_variable; k++)
+        if (hf_evaluate_sets(v, k) == HF_SETS_START) return false;
+    for (int k = 0; v->objectives && k < v->objectives->n_objective; k++)
+        if (!hf_objectives_is_smooth(&v->objectives->objective[k].settings)) return false;
+    return v->model->has_newton && v->model->n_variable > 0;
+}
+
+/* Returns the operations of one step. *evaluation_of_ga receives those of one evaluation of the genetic algorithm. */
+static double count_step(const hf_evaluator *v, double *evaluation_of_ga)
+{
+    const hf_model *m = v->model;
+    double n_dof = 3.0 * m->n_free, width = 3.0 * m->half_bandwidth + 3, n = m->n_leader;
+    double factor = n_dof * width * width, solve = 4 * n_dof * width, newton = NEWTON_STEPS * (factor + solve);
+    double evaluation = v->solver == HF_SOLVER_CHORD ? CHORD_STEPS * solve : newton;
+    double n_row = v->objectives && v->objectives->nets ? v->objectives->n_row : 3.0 * m->n_inner_node;
+    double step = STEP_EVALUATIONS * newton + factor + n * solve + n * n * (n_row + 2 * n);
+    for (int i = 0;
+         v->objectives && v->objectives->nets && i < v->objectives->nets->n_load_case + v->objectives->nets->n_sample;
+         i++) {
+        if (!hf_objectives_are_over(v->objectives, i)) continue;
+        evaluation += newton;
+        step += STEP_EVALUATIONS * newton + newton + factor + n * solve;
+    }
+    *evaluation_of_ga = evaluation;
+    return step;
+}
+
+double hf_refine_operations(const hf_evaluator *v)
+{
+    double evaluation;
+    return count_step(v, &evaluation);
+}
+
+bool hf_refine_is_cheap(const hf_evaluator *v, long n_evaluation)
+{
+    double evaluation, step = count_step(v, &evaluation);
+    return STEPS_EXPECTED * step <= fmax(UNNOTICED, (double)n_evaluation * evaluation / 10);
+}
 
 /* ---- one step ---- */
 
@@ -381,29 +432,36 @@ static hf_status hand_over(const hf_refine_problem *p, const hf_form_result *sta
     return HF_OK;
 }
 
-static hf_status run_problem(hf_refine_problem p, int max_iterations, double *design, hf_refine_result *result)
+hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
+                        const hf_watch_front *front, const hf_refine_watcher *watcher, double *design, hf_workspace *w,
+                        hf_refine_result *result)
 {
-    const hf_evaluator *evaluator = p.caller;
-    const hf_watch_front *front = p.front;
+    hf_refine_problem p = {.v = *evaluator,
+                           .caller = evaluator,
+                           .lower = lower,
+                           .upper = upper,
+                           .w = w,
+                           .front = front,
+                           .watcher = watcher,
+                           .damping = DAMPING_FIRST,
+                           .growth = 2,
+                           .way = 1,
+                           .settled_merit = INFINITY};
     hf_form_result start;
     hf_arena arena = {0};
     *result = (hf_refine_result){.stop = HF_REFINE_MAX_ITERATIONS};
     p.v.by_density = true;
     p.v.boundary_ratio_cap = INFINITY;
     p.v.limits = NULL;
-    hf_evaluate(evaluator, design, p.w, &start);
+    hf_evaluate(evaluator, design, w, &start);
     if (!hf_status_has_shape(start.status)) return start.status;
     p.is_outside = start.status != HF_OK;
-    result->merit = result->start_merit = hf_refine_merit(&p, &start);
-    p.damping = DAMPING_FIRST;
-    p.growth = 2;
-    p.way = 1;
     p.best_psi_m = start.psi_m;
-    p.settled_merit = INFINITY;
+    result->merit = result->start_merit = hf_refine_merit(&p, &start);
     hf_status status = hf_refine_create(&p, &arena);
     if (status == HF_OK) {
         hf_refine_begin(&p, design);
-        if (p.watcher && p.watcher->state) hf_refine_resume(&p, p.watcher->n_state, p.watcher->state, result);
+        if (watcher && watcher->state) hf_refine_resume(&p, watcher->n_state, watcher->state, result);
         if (start.status == HF_OK && hf_watch_breaks(front, evaluator->objectives, 0, start.objective))
             start.status = HF_OUT_OF_LIMITS;
         status = minimise(&p, max_iterations, result);
@@ -414,26 +472,4 @@ static hf_status run_problem(hf_refine_problem p, int max_iterations, double *de
     }
     hf_refine_destroy(&p, &arena);
     return status;
-}
-
-hf_status hf_refine_front(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                          const hf_watch_front *front, const hf_refine_watcher *watcher, double *design,
-                          hf_workspace *w, hf_refine_result *result)
-{
-    const hf_refine_problem p = {.v = *evaluator,
-                                 .caller = evaluator,
-                                 .lower = lower,
-                                 .upper = upper,
-                                 .w = w,
-                                 .front = front,
-                                 .watcher = watcher};
-    return run_problem(p, max_iterations, design, result);
-}
-
-hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                        const hf_refine_watcher *watcher, double *design, hf_workspace *w, hf_refine_result *result)
-{
-    const hf_refine_problem p = {
-        .v = *evaluator, .caller = evaluator, .lower = lower, .upper = upper, .w = w, .watcher = watcher};
-    return run_problem(p, max_iterations, design, result);
 }

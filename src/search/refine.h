@@ -16,14 +16,14 @@
 
 typedef struct {
     int iterations, evaluations;
-    /* The merits of start and result: psi (m) if there are no objectives. In hf_refine_run, start_merit is NaN if the
+    /* The merits of start and result: psi (m) if there are no objectives. Without a front, start_merit is NaN if the
      * start is infeasible. */
     double start_merit, merit;
     hf_refine_stop stop;
     int n_at_lower, n_at_upper; /* design variables at their lower and upper bounds */
     int n_at_limit;             /* cables and attachments at limits of optimize.limits; a ratio counts once */
     bool is_at_cap;             /* the design is at the cap on the boundary tension ratio */
-    /* Set by hf_refine_front: the decrease of the minimised objective per unit of the limit on each other objective, in
+    /* Set with a front: the decrease of the minimised objective per unit of the limit on each other objective, in
      * their units, to first order. It is NaN for the minimised objective, and where it is not known. */
     double multiplier[HF_DESIGN_ROWS_MAX];
 } hf_refine_result;
@@ -61,17 +61,14 @@ bool hf_refine_is_cheap(const hf_evaluator *evaluator, long n_evaluation);
 /* Refines the design [n_variable], which has a shape and is within lower and upper [n_variable]. It is replaced by the
  * best design found, which is feasible and never worse. A start outside the limits is first moved into them. Linked
  * design variables keep their differences. watcher: NULL for none. workspace is scratch. Returns HF_OK, HF_NO_MEMORY,
- * HF_INTERRUPTED, the status that the watcher returned, or the status of the start if no feasible design was found. */
+ * HF_INTERRUPTED, the status that the watcher returned, or the status of the start if no feasible design was found.
+ *
+ * front: NULL, or a point of a Pareto front is sought. One objective of the evaluator, `front->least`, is then
+ * minimised under limits on the others. All merits are values of this objective; for a ratio, they are its logarithm.
+ * The minimum of an objective with corners is a point at which no linear model of its sizes promises a lower value.
+ * Returns HF_OUT_OF_LIMITS if the limits on objectives cannot be met. */
 hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                        const hf_refine_watcher *watcher, double *design, hf_workspace *workspace,
-                        hf_refine_result *result);
-
-/* Finds a point of a Pareto front: minimises one objective of the evaluator, `front->least`, under limits on the
- * others. All merits are values of this objective; for a ratio, they are its logarithm. The minimum of an objective
- * with corners is a point at which no linear model of its sizes promises a lower value. Otherwise like hf_refine_run;
- * returns HF_OUT_OF_LIMITS if the limits on objectives cannot be met. */
-hf_status hf_refine_front(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-                          const hf_watch_front *front, const hf_refine_watcher *watcher, double *design,
-                          hf_workspace *workspace, hf_refine_result *result);
+                        const hf_watch_front *front, const hf_refine_watcher *watcher, double *design,
+                        hf_workspace *workspace, hf_refine_result *result);
 
 #endif

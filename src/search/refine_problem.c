@@ -19,51 +19,36 @@
 
 /* ---- the problem ---- */
 
-/* The scalars of a stored state. Behind them are the arrays `at` [n], `scale` [n], the sides of the bounds that held
- * the last step [n], and `best` [n_variable]. */
+/* The scalars of a stored state, X(name, variable, type). Behind them are settled_objective, and the arrays `at` [n],
+ * `scale` [n], the sides of the bounds that held the last step [n], and `best` [n_variable]. */
+#define STATE_SCALARS(X)                                                                                               \
+    X(ITERATIONS, r->iterations, int)                                                                                  \
+    X(EVALUATIONS, p->evaluations, int)                                                                                \
+    X(STOP, r->stop, hf_refine_stop)                                                                                   \
+    X(IS_OUTSIDE, p->is_outside, bool)                                                                                 \
+    X(MERIT, r->merit, double)                                                                                         \
+    X(PSI, p->best_psi_m, double)                                                                                      \
+    X(DAMPING, p->damping, double)                                                                                     \
+    X(GROWTH, p->growth, double)                                                                                       \
+    X(WAY, p->way, double)                                                                                             \
+    X(VIOLATION, p->violation, double)                                                                                 \
+    X(SETTLED_STEPS, p->settled_steps, int)                                                                            \
+    X(SETTLED_MERIT, p->settled_merit, double)
+#define INDEX(name, ...) STATE_##name,
+#define WRITE(name, variable, ...) s[STATE_##name] = variable;
+#define READ(name, variable, type) variable = (type)s[STATE_##name];
 enum {
     STATE_FORMAT,
-    STATE_ITERATIONS,
-    STATE_EVALUATIONS,
-    STATE_STOP,
-    STATE_IS_OUTSIDE,
-    STATE_MERIT,
-    STATE_PSI,
-    STATE_DAMPING,
-    STATE_GROWTH,
-    STATE_WAY,
-    STATE_VIOLATION,
-    STATE_SETTLED_STEPS,
-    STATE_SETTLED_MERIT,
-    STATE_SETTLED_OBJECTIVE,
+    STATE_SCALARS(INDEX) STATE_SETTLED_OBJECTIVE,
     N_SCALAR = STATE_SETTLED_OBJECTIVE + HF_DESIGN_ROWS_MAX
 };
 #define FORMAT 2
 
-static void lay_out(hf_arena *a, hf_refine_problem *p)
+static void lay_out(hf_arena *arena, hf_refine_problem *to)
 {
-    const hf_model *m = p->v.model;
-    size_t n = (size_t)p->n, n_row = (size_t)p->residuals.n_row, n_variable = (size_t)m->n_variable;
-    p->start = hf_arena_take(a, n_variable, sizeof(double));
-    p->low = hf_arena_take(a, n, sizeof(double));
-    p->high = hf_arena_take(a, n, sizeof(double));
-    p->down = hf_arena_take(a, n + 1, sizeof(double));
-    p->up = hf_arena_take(a, n + 1, sizeof(double));
-    p->unit = hf_arena_take(a, n, sizeof(double));
-    p->at = hf_arena_take(a, n, sizeof(double));
-    p->trial = hf_arena_take(a, n, sizeof(double));
-    p->design = hf_arena_take(a, n_variable, sizeof(double));
-    p->best = hf_arena_take(a, n_variable, sizeof(double));
-    p->step_taken = hf_arena_take(a, n, sizeof(double));
-    p->pull = hf_arena_take(a, n, sizeof(double));
-    p->scale = hf_arena_take(a, n, sizeof(double));
-    p->row = hf_arena_take(a, n * n_row, sizeof(double));
-    p->gram = hf_arena_take(a, n * n, sizeof(double));
-    p->hessian = hf_arena_take(a, (n + 1) * (n + 1), sizeof(double));
-    p->gradient = hf_arena_take(a, n + 1, sizeof(double));
-    p->n_state = N_SCALAR + 3 * n + n_variable;
-    p->state = hf_arena_take(a, p->front ? 0 : p->n_state, sizeof(double));
-    p->objective_rate = hf_arena_take(a, p->front ? n * (size_t)p->v.objectives->n_objective : 0, sizeof(double));
+    size_t n = (size_t)to->n, n_row = (size_t)to->residuals.n_row, n_variable = (size_t)to->v.model->n_variable;
+    to->n_state = N_SCALAR + 3 * n + n_variable;
+    HF_REFINE_FIELDS(HF_ARENA_TAKE)
 }
 
 bool hf_refine_is_tension(const hf_refine_problem *p, int k)
@@ -139,8 +124,8 @@ hf_status hf_refine_create(hf_refine_problem *p, hf_arena *arena)
 
 void hf_refine_destroy(hf_refine_problem *p, hf_arena *arena)
 {
-    hf_quadratic_free(&p->step);
-    hf_watch_free(&p->watch);
+    hf_arena_free(&p->step.arena);
+    hf_arena_free(&p->watch.arena);
     hf_residuals_free(&p->residuals);
     hf_sensitivity_free(&p->slopes);
     hf_arena_free(arena);
@@ -257,18 +242,7 @@ void hf_refine_pack(hf_refine_problem *p, const hf_refine_result *r)
     double *s = p->state, *array = s + N_SCALAR;
     size_t n = (size_t)p->n, n_variable = (size_t)p->v.model->n_variable;
     s[STATE_FORMAT] = FORMAT;
-    s[STATE_ITERATIONS] = r->iterations;
-    s[STATE_EVALUATIONS] = p->evaluations;
-    s[STATE_STOP] = r->stop;
-    s[STATE_IS_OUTSIDE] = p->is_outside;
-    s[STATE_MERIT] = r->merit;
-    s[STATE_PSI] = p->best_psi_m;
-    s[STATE_DAMPING] = p->damping;
-    s[STATE_GROWTH] = p->growth;
-    s[STATE_WAY] = p->way;
-    s[STATE_VIOLATION] = p->violation;
-    s[STATE_SETTLED_STEPS] = p->settled_steps;
-    s[STATE_SETTLED_MERIT] = p->settled_merit;
+    STATE_SCALARS(WRITE)
     memcpy(s + STATE_SETTLED_OBJECTIVE, p->settled_objective, sizeof p->settled_objective);
     memcpy(array, p->at, n * sizeof(double));
     memcpy(array + n, p->scale, n * sizeof(double));
@@ -294,18 +268,8 @@ bool hf_refine_resume(hf_refine_problem *p, size_t n_state, const double *s, hf_
     const double *array = s + N_SCALAR;
     size_t n = (size_t)p->n;
     if (!is_state(p, n_state, s)) return false;
-    r->iterations = (int)s[STATE_ITERATIONS];
-    p->evaluations = (int)s[STATE_EVALUATIONS] - 1; /* the best design is evaluated once more */
-    r->stop = (hf_refine_stop)s[STATE_STOP];
-    p->is_outside = s[STATE_IS_OUTSIDE] != 0;
-    r->merit = s[STATE_MERIT];
-    p->best_psi_m = s[STATE_PSI];
-    p->damping = s[STATE_DAMPING];
-    p->growth = s[STATE_GROWTH];
-    p->way = s[STATE_WAY];
-    p->violation = s[STATE_VIOLATION];
-    p->settled_steps = (int)s[STATE_SETTLED_STEPS];
-    p->settled_merit = s[STATE_SETTLED_MERIT];
+    STATE_SCALARS(READ)
+    p->evaluations--; /* the best design is evaluated once more */
     memcpy(p->settled_objective, s + STATE_SETTLED_OBJECTIVE, sizeof p->settled_objective);
     memcpy(p->at, array, n * sizeof(double));
     memcpy(p->scale, array + n, n * sizeof(double));

@@ -9,6 +9,29 @@
 #include "search/residuals.h"
 #include "search/watch.h"
 
+/* The arrays of the problem: n variables, n_row residuals, n_variable design variables. */
+#define HF_REFINE_FIELDS(X)                                                                                            \
+    X(double, start, n_variable, "first values; those of tensions are pretensions q L*")                               \
+    X(double, low, n, "lower bounds of the variables")                                                                 \
+    X(double, high, n, "upper bounds of the variables")                                                                \
+    X(double, down, n + 1, "[n] lower bounds of a step")                                                               \
+    X(double, up, n + 1, "[n] upper bounds of a step")                                                                 \
+    X(double, unit, n, "magnitude of the values; violations are relative to it")                                       \
+    X(double, at, n, "best variables")                                                                                 \
+    X(double, trial, n, "variables at the end of the last step")                                                       \
+    X(double, design, n_variable, "design of the last evaluation; tensions as pretensions q L*")                       \
+    X(double, best, n_variable, "best design in terms of `caller`")                                                    \
+    X(double, step_taken, n, "the step that led to `trial` while it is corrected")                                     \
+    X(double, pull, n, "gradient of a correction")                                                                     \
+    X(double, scale, n, "maximum norm so far of each column of J")                                                     \
+    X(double, row, n *n_row, "[n][n_row] J'")                                                                          \
+    X(double, gram, n *n, "[n][n] J'J; lower triangle by rows, like `hessian`")                                        \
+    X(double, hessian, (n + 1) * (n + 1), "[n][n] J'J with damping")                                                   \
+    X(double, gradient, n + 1, "[n] J'f")                                                                              \
+    X(double, objective_rate, to->front ? n *(size_t)to->v.objectives->n_objective : 0,                                \
+      "[n_objective][n] gradients of objectives without corners, for a point of a front")                              \
+    X(double, state, to->front ? 0 : to->n_state, "the state of the run for hf_refine_watcher")
+
 /* The tensions T and the force densities T/l of a shape describe the same shape. But the shape depends far more
  * linearly on the force densities, because a change of a single tension in a chain drags its nodes along. A design
  * variable that sets a tension therefore sets a force density here, and its bounds are limits on the tension. */
@@ -28,24 +51,10 @@ typedef struct {
     bool has_corners;                 /* true if the minimised objective has corners: a step then has its level, too */
     int n; /* number of variables: steps from `start` of each class of linked design variables */
     int evaluations;
-    bool is_outside;        /* true while no shape within the limits is known */
-    hf_form_result result;  /* result of the last evaluation */
-    double *start;          /* [n_variable], first values; those of tensions are pretensions q L* */
-    double *low, *high;     /* [n], bounds of the variables */
-    double *down, *up;      /* [n], bounds of a step */
-    double *unit;           /* [n], magnitude of the values; violations are relative to it */
-    double *at, *trial;     /* [n], best variables; variables at the end of the last step */
-    double *design;         /* [n_variable], design of the last evaluation; tensions as pretensions q L* */
-    double *best;           /* [n_variable], best design in terms of `caller` */
-    double *step_taken;     /* [n], the step that led to `trial` while it is corrected */
-    double *pull;           /* [n], gradient of a correction */
-    double *scale;          /* [n], maximum norm so far of each column of J */
-    double largest_scale;   /* maximum of `scale` */
-    double *row;            /* [n][rows of the residuals], J' */
-    double *gram;           /* [n][n], J'J; lower triangle by rows, like `hessian` */
-    double *hessian;        /* [n][n], J'J with damping */
-    double *gradient;       /* [n], J'f */
-    double *objective_rate; /* [n_objective][n], gradients of objectives without corners, for a point of a front */
+    bool is_outside;       /* true while no shape within the limits is known */
+    hf_form_result result; /* result of the last evaluation */
+    HF_REFINE_FIELDS(HF_ARENA_MEMBER)
+    double largest_scale;                /* maximum of `scale` */
     double pressure[HF_DESIGN_ROWS_MAX]; /* multipliers of the last step for merit^2/2, for a point of a front */
     double promise;                      /* gain that the linear model promised before the step was corrected */
     double damping, growth;              /* damping of the next step, and its factor if that step fails */
@@ -54,8 +63,7 @@ typedef struct {
     int settled_steps;                   /* steps since the merit or an objective last changed noticeably */
     double settled_merit, settled_objective[HF_DESIGN_ROWS_MAX]; /* merit and objectives at that change */
     size_t n_state;
-    double *state; /* [n_state], the state of the run for hf_refine_watcher */
-    double noise;  /* part of the merit that the tolerance of the form-finding leaves open */
+    double noise; /* part of the merit that the tolerance of the form-finding leaves open */
 } hf_refine_problem;
 
 /* Allocates the problem, in which the caller has set v, caller, lower, upper, w and front. Returns HF_OK or

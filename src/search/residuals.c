@@ -6,7 +6,6 @@
  *                           close_rate: rows over all nets -> df/dv, gradient J'f          (for each variable) */
 #include "search/residuals.h"
 
-#include "base/arena.h"
 #include "search/parallel.h"
 
 #include <math.h>
@@ -28,11 +27,9 @@ static void lay_out(hf_arena *a, hf_residuals *r)
 /* Without objectives there are no rooms, because residuals and rates follow directly from positions and their rates. */
 hf_status hf_residuals_create(const hf_evaluator *v, hf_residuals *r)
 {
-    hf_arena arena = {0};
     *r = (hf_residuals){.v = v, .n_row = v->objectives ? v->objectives->n_row : 3 * v->model->n_inner_node};
     r->n_room = !v->objectives ? 0 : v->n_thread > 1 ? v->n_thread : 1;
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, r)));
-    r->block = arena.block;
+    HF_TRY(HF_ARENA_MAKE(&r->arena, lay_out(&r->arena, r)));
     for (int i = 1; i < r->n_room; i++) {
         r->room[i].point = &r->room[i].own;
         HF_TRY(hf_objectives_point_create(v->objectives, &r->room[i].own));
@@ -42,10 +39,9 @@ hf_status hf_residuals_create(const hf_evaluator *v, hf_residuals *r)
 
 void hf_residuals_free(hf_residuals *r)
 {
-    hf_arena arena = {.block = r->block};
-    for (int i = 1; r->block && i < r->n_room; i++)
+    for (int i = 1; r->arena.block && i < r->n_room; i++)
         hf_objectives_point_free(&r->room[i].own);
-    hf_arena_free(&arena);
+    hf_arena_free(&r->arena);
     *r = (hf_residuals){0};
 }
 
@@ -60,10 +56,8 @@ static void enter_room(void *context, int any_room, int i)
     const entered *q = context;
     hf_residuals_room *room = &q->r->room[i];
     (void)any_room;
-    if (i)
-        room->status = hf_objectives_linearise_design(q->r->v->objectives, q->w, room->point, room->value);
-    else
-        room->status = hf_objectives_linearise(q->r->v->objectives, q->w, room->point, q->r->value);
+    room->status =
+        hf_objectives_linearise(q->r->v->objectives, i == 0, q->w, room->point, i ? room->value : q->r->value);
 }
 
 /* A feasible design has no loose nodes, so psi counts all inner nodes. */
@@ -86,25 +80,6 @@ hf_status hf_residuals_find(hf_residuals *r, hf_workspace *w)
     return HF_OK;
 }
 
-/* Computes rate [n_row] by one variable, without the rows of objectives over as-built nets. */
-static void find_rate(const hf_residuals *r, const hf_sensitivity *slopes, const hf_workspace *w, int i_room,
-                      int i_class, double *rate)
-{
-    const hf_model *m = r->v->model;
-    if (r->v->objectives) {
-        const hf_residuals_room *room = &r->room[i_room];
-        const hf_objectives_rate by = {room->move_m, room->tension_rate,
-                                       hf_sensitivity_displacement(slopes, i_class, 0)};
-        hf_sensitivity_spread(slopes, i_class, room->move_m, room->tension_rate);
-        hf_objectives_push(r->v->objectives, w, room->point, &by, rate);
-        return;
-    }
-    const double *move = slopes->move + (size_t)i_class * slopes->n_dof;
-    double part = 1 / sqrt(m->n_inner_node);
-    for (int i = 0; i < r->n_row; i++)
-        rate[i] = part * move[3 * m->inner_row[i / 3] + i % 3];
-}
-
 typedef struct {
     const hf_residuals *r;
     const hf_sensitivity *slopes;
@@ -117,10 +92,24 @@ static double *rate_of(const all_rates *q, int i_class)
     return q->rate + (size_t)i_class * (size_t)q->r->n_row;
 }
 
+/* Computes the rows of one variable, without those of objectives over as-built nets. */
 static void rate_one(void *context, int i_room, int i_class)
 {
     const all_rates *q = context;
-    find_rate(q->r, q->slopes, q->w, i_room, i_class, rate_of(q, i_class));
+    const hf_residuals *r = q->r;
+    const hf_model *m = r->v->model;
+    double *rate = rate_of(q, i_class), part = 1 / sqrt(m->n_inner_node);
+    if (r->v->objectives) {
+        const hf_residuals_room *room = &r->room[i_room];
+        const hf_objectives_rate by = {room->move_m, room->tension_rate,
+                                       hf_sensitivity_displacement(q->slopes, i_class, 0)};
+        hf_sensitivity_spread(q->slopes, i_class, room->move_m, room->tension_rate);
+        hf_objectives_push(r->v->objectives, q->w, room->point, &by, rate);
+        return;
+    }
+    const double *move = q->slopes->move + (size_t)i_class * q->slopes->n_dof;
+    for (int i = 0; i < r->n_row; i++)
+        rate[i] = part * move[3 * m->inner_row[i / 3] + i % 3];
 }
 
 /* Cuts the as-built nets of the design in room i. */

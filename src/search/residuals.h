@@ -20,7 +20,7 @@ typedef struct {
     double *value;           /* [n_row], f; |f| is the merit */
     int n_room;              /* number of threads */
     hf_residuals_room *room; /* [n_room] */
-    void *block;
+    hf_arena arena;
 } hf_residuals;
 
 /* Allocates the residuals of an evaluator. Returns HF_OK or HF_NO_MEMORY; call hf_residuals_free in either case. */

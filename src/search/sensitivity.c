@@ -8,7 +8,6 @@
  * Contents: layout - forces of variables - first derivatives - tensions - cables of law length - access */
 #include "search/sensitivity.h"
 
-#include "base/arena.h"
 #include "search/parallel.h"
 #include "solve/newton_matrix.h"
 
@@ -17,37 +16,12 @@
 
 /* ---- layout ---- */
 
-/* A cable at the shape in the workspace. */
-typedef struct hf_strained {
-    double unit[3], stiffness_N_per_m;
-    double direct;    /* dT/dv by its own design variable at fixed nodes, or 0 */
-    int rigid, class; /* index in `rigid`, and class of the cable; -1: none */
-} strained;
-
-/* Returns the number of rooms (parallel.h) of a solve. */
-static int n_room(const hf_sensitivity *s)
+static void lay_out(hf_arena *arena, hf_sensitivity *to)
 {
-    return s->v->n_thread > 1 ? s->v->n_thread : 1;
-}
-
-static void lay_out(hf_arena *a, hf_sensitivity *s)
-{
-    const hf_model *m = s->v->model;
-    size_t n = (size_t)s->n;
-    hf_packed_band_lay_out(a, &s->matrix);
-    s->lanes = hf_arena_take(a, (size_t)n_room(s) * s->n_lane, sizeof *s->lanes);
-    s->class_of_variable = hf_arena_take(a, (size_t)m->n_variable, sizeof(int));
-    s->variable_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
-    s->strained = hf_arena_take(a, (size_t)m->n_cable, sizeof(strained));
-    s->place_of_row = hf_arena_take(a, (size_t)m->n_node, sizeof(int));
-    s->base_of_row = hf_arena_take(a, (size_t)m->n_node, sizeof(int));
-    s->move = hf_arena_take(a, n * s->n_dof, sizeof(double));
-    s->answer = hf_arena_take(a, m->n_attachment || s->n_rigid ? n * 3 * (size_t)m->n_free : 0, sizeof(double));
-    s->pull = hf_arena_take(a, n * 3 * (size_t)m->n_attachment, sizeof(double));
-    s->gap = hf_arena_take(a, 3 * (size_t)m->n_attachment, sizeof(double));
-    s->rigid = hf_arena_take(a, (size_t)s->n_rigid, sizeof(int));
-    s->rigid_of_cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
-    s->multiplier = hf_arena_take(a, n * (size_t)s->n_rigid, sizeof(double));
+    const hf_model *m = to->v->model;
+    size_t n = (size_t)to->n, n_room = to->v->n_thread > 1 ? (size_t)to->v->n_thread : 1;
+    hf_packed_band_lay_out(arena, &to->matrix);
+    HF_SENSITIVITY_FIELDS(HF_ARENA_TAKE)
 }
 
 /* Returns true if cable e has law length in the designs of this evaluator. `variable` is its design variable, or -1. A
@@ -116,22 +90,19 @@ static void number(hf_sensitivity *s)
 hf_status hf_sensitivity_create(const hf_evaluator *v, hf_sensitivity *s)
 {
     const hf_model *m = v->model;
-    hf_arena arena = {0};
     *s = (hf_sensitivity){.v = v, .n = m->n_leader, .n_rigid = count_rigid(v)};
     s->n_dof = 3 * ((size_t)m->n_free + (size_t)m->n_attachment + (size_t)place_supports(m, NULL));
     s->matrix = hf_newton_matrix_packed(m);
     s->n_lane = hf_packed_band_rows(&s->matrix) * HF_LANES;
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, s)));
-    s->block = arena.block;
+    HF_TRY(HF_ARENA_MAKE(&s->arena, lay_out(&s->arena, s)));
     number(s);
     return m->n_attachment ? hf_schur_create(m, &s->schur) : HF_OK;
 }
 
 void hf_sensitivity_free(hf_sensitivity *s)
 {
-    hf_arena arena = {.block = s->block};
-    hf_schur_free(&s->schur);
-    hf_arena_free(&arena);
+    hf_arena_free(&s->schur.arena);
+    hf_arena_free(&s->arena);
     *s = (hf_sensitivity){0};
 }
 
@@ -261,21 +232,12 @@ static void solve_block(void *context, int room, int i_block)
     if (s->v->model->n_attachment) let_truss_answer(context, room, i_block);
 }
 
+/* Calls `work` for all blocks: solve_block to solve for dx/dv, on entry with the forces in `move` and `pull`; follow_block
+ * to add the displacements under the forces in `answer`. */
 static void do_blocks(hf_sensitivity *s, const hf_workspace *w, void (*work)(void *context, int room, int i_block))
 {
     solved q = {s, w};
     hf_parallel_each(s->v->n_thread, (s->n + HF_LANES - 1) / HF_LANES, work, &q);
-}
-
-static void follow(hf_sensitivity *s, const hf_workspace *w)
-{
-    do_blocks(s, w, follow_block);
-}
-
-/* Solves for dx/dv of all variables. On entry `move` and `pull` hold the forces. */
-static void solve(hf_sensitivity *s, const hf_workspace *w)
-{
-    do_blocks(s, w, solve_block);
 }
 
 /* Sets `move` and `pull` to the forces of all variables. */
@@ -321,10 +283,10 @@ static void relative_move(const hf_sensitivity *s, int e, const double *move, do
 }
 
 /* Returns the direction, stiffness and variable of cable e at the shape in the workspace. */
-static strained look_at(const hf_sensitivity *s, const hf_workspace *w, int e)
+static hf_strained look_at(const hf_sensitivity *s, const hf_workspace *w, int e)
 {
     const hf_model *m = s->v->model;
-    strained q = {.class = -1, .rigid = s->rigid_of_cable[e]};
+    hf_strained q = {.class = -1, .rigid = s->rigid_of_cable[e]};
     int variable = s->variable_of_cable[e];
     double length = hf_newton_matrix_direction(m, w->position_m, e, q.unit);
     q.stiffness_N_per_m = hf_newton_matrix_stiffness(hf_workspace_cable(m, w, e), length, w->tension_N[e]);
@@ -337,7 +299,7 @@ static strained look_at(const hf_sensitivity *s, const hf_workspace *w, int e)
 /* Returns dT/dv of cable e by variable i. */
 static double tension_rate(const hf_sensitivity *s, int e, int i)
 {
-    const strained *q = &s->strained[e];
+    const hf_strained *q = &s->strained[e];
     double relative[3];
     relative_move(s, e, s->move + (size_t)i * s->n_dof, relative);
     double rate =
@@ -379,7 +341,7 @@ static void refine_iteratively(hf_sensitivity *s, const hf_workspace *w)
     const hf_model *m = s->v->model;
     size_t n_free = 3 * (size_t)m->n_free, n_attachment = 3 * (size_t)m->n_attachment;
     sum_forces(s, w);
-    follow(s, w);
+    do_blocks(s, w, follow_block);
     for (size_t k = 0; k < (size_t)s->n && n_attachment; k++) {
         double *supports = s->move + k * s->n_dof + n_free, *pull = s->pull + k * n_attachment;
         hf_schur_pull(m, w, hf_newton_matrix_block, s->answer + k * n_free, pull);
@@ -392,7 +354,7 @@ static void refine_iteratively(hf_sensitivity *s, const hf_workspace *w)
         memset(s->answer + k * n_free, 0, n_free * sizeof(double));
         hf_schur_push(m, w, hf_newton_matrix_block, s->gap, s->answer + k * n_free);
     }
-    if (n_attachment) follow(s, w);
+    if (n_attachment) do_blocks(s, w, follow_block);
 }
 
 /* Solves again with the tensions that the stiff springs have found as forces (`multiplier`). The springs then carry
@@ -414,7 +376,7 @@ static void harden(hf_sensitivity *s, const hf_workspace *w)
             add_pull(m, s->rigid[r], pull, s->move + i * s->n_dof, s->pull + 3 * i * (size_t)m->n_attachment);
         }
     }
-    solve(s, w);
+    do_blocks(s, w, solve_block);
     move_supports(s);
     refine_iteratively(s, w);
 }
@@ -427,7 +389,7 @@ hf_status hf_sensitivity_find(hf_sensitivity *s, hf_workspace *w)
     memset(s->multiplier, 0, (size_t)s->n * (size_t)s->n_rigid * sizeof(double));
     add_forces(s, w);
     hf_packed_band_pack(&s->matrix, w->newton_band);
-    solve(s, w);
+    do_blocks(s, w, solve_block);
     move_supports(s);
     for (int e = 0; e < m->n_cable; e++)
         s->strained[e] = look_at(s, w, e);

@@ -11,27 +11,40 @@
 #include "solve/schur.h"
 #include <hifdm/evaluate.h>
 
+/* The arrays of hf_sensitivity for a model m. n is the number of variables, and n_room that of threads. */
+#define HF_SENSITIVITY_FIELDS(X)                                                                                       \
+    X(int, class_of_variable, m->n_variable, "class of each design variable")                                          \
+    X(int, variable_of_cable, m->n_cable, "design variable, or -1")                                                    \
+    X(int, place_of_row, m->n_node, "first coordinate of a free node or attachment; -1: fixed")                        \
+    X(int, base_of_row, m->n_node, "first coordinate of a support that is varied; the truss may also move it")         \
+    X(double, move, n * to->n_dof, "[n][n_dof] dx/dv, m per unit of v")                                                \
+    X(int, rigid, to->n_rigid, "cables of law length")                                                                 \
+    X(int, rigid_of_cable, m->n_cable, "index in `rigid`, or -1")                                                      \
+    X(double, multiplier, n *(size_t)to->n_rigid, "[n][n_rigid] dT/dv beyond what the stiff spring gives")             \
+    X(hf_strained, strained, m->n_cable, "scratch: the cables at the shape of `move`")                                 \
+    X(double, answer, m->n_attachment || to->n_rigid ? 3 * n * (size_t)m->n_free : 0,                                  \
+      "[n][3 n_free] scratch: change of `move` by truss or refinement")                                                \
+    X(double, gap, 3 * (size_t)m->n_attachment, "scratch")                                                             \
+    X(double, pull, 3 * n * (size_t)m->n_attachment, "[n][3 n_attachment] scratch: change of the forces on the truss") \
+    X(double, lanes, n_room * to->n_lane, "[n_room][n_lane] scratch of the solves")
+
+/* A cable at the shape in the workspace. */
+typedef struct {
+    double unit[3], stiffness_N_per_m;
+    double direct;    /* dT/dv by its own design variable at fixed nodes, or 0 */
+    int rigid, class; /* index in `rigid`, and class of the cable; -1: none */
+} hf_strained;
+
 typedef struct {
     const hf_evaluator *v;
-    int n;                  /* number of classes of linked design variables; v is the step of a class */
-    size_t n_dof;           /* coordinates: 3*row + c of free nodes, 3*attachment + c, supports that are varied */
-    int *class_of_variable; /* [n_variable], class of each design variable */
-    int *variable_of_cable; /* [n_cable], design variable, or -1 */
-    int *place_of_row;      /* [n_node], first coordinate of a free node or attachment; -1: fixed */
-    int *base_of_row;       /* [n_node], first coordinate of a support that is varied; the truss may also move it */
-    double *move;           /* [n][n_dof], dx/dv, m per unit of v */
-    int n_rigid, *rigid;    /* [n_rigid], cables of law length */
-    int *rigid_of_cable;    /* [n_cable], index in `rigid`, or -1 */
-    double *multiplier;     /* [n][n_rigid], dT/dv of these cables beyond what the stiff spring gives */
-    struct hf_strained *strained; /* [n_cable], scratch: the cables at the shape of `move` */
-    double *answer;               /* [n][3 n_free], scratch: change of `move` by truss or refinement */
-    double *gap;                  /* [3 n_attachment], scratch */
-    double *pull;                 /* [n][3 n_attachment], scratch: change of the forces on the truss */
-    hf_packed_band matrix;        /* Newton matrix of the net with fixed supports */
-    double *lanes;                /* [v->n_thread][n_lane], scratch of the solves */
+    int n;        /* number of classes of linked design variables; v is the step of a class */
+    int n_rigid;  /* number of cables of law length */
+    size_t n_dof; /* coordinates: 3*row + c of free nodes, 3*attachment + c, supports that are varied */
     size_t n_lane;
-    hf_schur schur; /* used with a truss only */
-    void *block;
+    HF_SENSITIVITY_FIELDS(HF_ARENA_MEMBER)
+    hf_packed_band matrix; /* Newton matrix of the net with fixed supports */
+    hf_schur schur;        /* used with a truss only */
+    hf_arena arena;
 } hf_sensitivity;
 
 /* Allocates the derivatives for an evaluator. Returns HF_OK or HF_NO_MEMORY; call hf_sensitivity_free in either

@@ -25,7 +25,7 @@
  *
  * Contents: vectors - tiles - factor - substitution - assembly - solve - measures - table */
 #define HF_LANE_VECTORS
-#include "search/swarm_kernel.h"
+#include "search/swarm.h"
 
 #include <hifdm/metrics.h>
 
@@ -184,19 +184,8 @@ static void finish_one(const hf_swarm_plan *plan, hf_swarm_lanes *w, int i_block
 {
     double *tile = tile_at(plan, w, i_block, i_block) + p;
     int i_row = i_block * BLOCK + c - plan->n_pad;
-    switch (c) { /* The columns are constants, so that the loops unroll. */
-    case 0:
-        finish_column(0, tile, i_row, w->bad_row + p);
-        break;
-    case 1:
-        finish_column(1, tile, i_row, w->bad_row + p);
-        break;
-    case 2:
-        finish_column(2, tile, i_row, w->bad_row + p);
-        break;
-    default:
-        finish_column(3, tile, i_row, w->bad_row + p);
-    }
+    foreach (k, BLOCK) /* the columns are constants, so that the loops unroll */
+        if (k == c) finish_column(k, tile, i_row, w->bad_row + p);
 }
 
 /* Finishes at most `count` columns of the diagonal tile of a block row, from column *c on. *c becomes the next
@@ -401,89 +390,81 @@ static void solve(const hf_swarm_plan *plan, hf_swarm_lanes *w)
 
 /* ---- measures ---- */
 
-static void measure_part(const hf_swarm_plan *plan, hf_swarm_lanes *w, hf_swarm_measures *out, int p)
-{
-    const hf_model *m = plan->model;
-    const double *position = w->position_m + plan->n_pad * POINT + p;
-    vec tension_error = splat(0), length_error = splat(0), gap = splat(0), finite = splat(0);
-    vec shortest[3] = {splat(INFINITY), splat(INFINITY), splat(INFINITY)}, longest = splat(0);
-    for (int e = 0; e < m->n_cable; e++) {
-        const double *a = position + m->end_row[2 * e] * POINT, *b = position + m->end_row[2 * e + 1] * POINT;
-        vec dx = load(b) - load(a), dy = load(b + HF_LANES) - load(a + HF_LANES),
-            dz = load(b + 2 * HF_LANES) - load(a + 2 * HF_LANES);
-        vec q = load(w->q_N_per_m + e * HF_LANES + p), target = load(w->target + e * HF_LANES + p);
-        vec length = root(norm_squared(dx, dy, dz)), tension = q * length;
-        vec part = length * plan->inverse_length[e];
-        finite += tension - tension; /* NaN if the tension is infinite or NaN, else 0 */
-        longest = larger(part, longest);
-        if (hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)) {
-            shortest[HF_LAW_TENSION] = smaller(part, shortest[HF_LAW_TENSION]);
-            tension_error = larger(magnitude(tension / target - 1), tension_error);
-            q = target / length; // Eq. 7
-        } else if (hf_law_has(w->law[e], HF_LAW_HAS_MULTIPLIER)) {
-            shortest[HF_LAW_LENGTH] = smaller(part, shortest[HF_LAW_LENGTH]);
-            vec ratio = length / target, strain = ratio - 1, error = magnitude(strain), none = splat(0);
-            vec pull = smaller(tension / m->reference_N, splat(1));
-            vec taut_error = if_greater(splat(HF_SLACK_RATIO), pull, none, error);
-            length_error = larger(taut_error, length_error);
-            vec weighed = if_greater(strain, none, error, if_greater(taut_error, none, error, error * pull));
-            gap = larger(weighed, gap);
-            q = larger(splat(HF_LAW_LEAST_Q_N_PER_M), q * ratio); // Eq. 8
-        } else {
-            shortest[HF_LAW_FORCE_DENSITY] = smaller(part, shortest[HF_LAW_FORCE_DENSITY]);
-        }
-        store(w->length_m + e * HF_LANES + p, length);
-        store(w->next_q_N_per_m + e * HF_LANES + p, q);
-    }
-    store(out->tension_error + p, tension_error);
-    store(out->length_error + p, length_error);
-    store(out->length_gap + p, gap);
-    store(out->shortest_length_ratio + p, smaller(shortest[0], smaller(shortest[1], shortest[2])));
-    store(out->longest_length_ratio + p, longest);
-    foreach (k, 3)
-        store(out->shortest_of_law[k] + p, shortest[k]);
-    for (int l = 0; l < WIDTH; l++)
-        out->is_finite[p + l] = finite[l] == 0;
-}
-
 static void measure(const hf_swarm_plan *plan, hf_swarm_lanes *w, hf_swarm_measures *out)
 {
-    for (int p = 0; p < HF_LANES; p += WIDTH)
-        measure_part(plan, w, out, p);
+    for (int p = 0; p < HF_LANES; p += WIDTH) {
+        const hf_model *m = plan->model;
+        const double *position = w->position_m + plan->n_pad * POINT + p;
+        vec tension_error = splat(0), length_error = splat(0), gap = splat(0), finite = splat(0);
+        vec shortest[3] = {splat(INFINITY), splat(INFINITY), splat(INFINITY)}, longest = splat(0);
+        for (int e = 0; e < m->n_cable; e++) {
+            const double *a = position + m->end_row[2 * e] * POINT, *b = position + m->end_row[2 * e + 1] * POINT;
+            vec dx = load(b) - load(a), dy = load(b + HF_LANES) - load(a + HF_LANES),
+                dz = load(b + 2 * HF_LANES) - load(a + 2 * HF_LANES);
+            vec q = load(w->q_N_per_m + e * HF_LANES + p), target = load(w->target + e * HF_LANES + p);
+            vec length = root(norm_squared(dx, dy, dz)), tension = q * length;
+            vec part = length * plan->inverse_length[e];
+            finite += tension - tension; /* NaN if the tension is infinite or NaN, else 0 */
+            longest = larger(part, longest);
+            if (hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)) {
+                shortest[HF_LAW_TENSION] = smaller(part, shortest[HF_LAW_TENSION]);
+                tension_error = larger(magnitude(tension / target - 1), tension_error);
+                q = target / length; // Eq. 7
+            } else if (hf_law_has(w->law[e], HF_LAW_HAS_MULTIPLIER)) {
+                shortest[HF_LAW_LENGTH] = smaller(part, shortest[HF_LAW_LENGTH]);
+                vec ratio = length / target, strain = ratio - 1, error = magnitude(strain), none = splat(0);
+                vec pull = smaller(tension / m->reference_N, splat(1));
+                vec taut_error = if_greater(splat(HF_SLACK_RATIO), pull, none, error);
+                length_error = larger(taut_error, length_error);
+                vec weighed = if_greater(strain, none, error, if_greater(taut_error, none, error, error * pull));
+                gap = larger(weighed, gap);
+                q = larger(splat(HF_LAW_MIN_Q_N_PER_M), q * ratio); // Eq. 8
+            } else {
+                shortest[HF_LAW_FORCE_DENSITY] = smaller(part, shortest[HF_LAW_FORCE_DENSITY]);
+            }
+            store(w->length_m + e * HF_LANES + p, length);
+            store(w->next_q_N_per_m + e * HF_LANES + p, q);
+        }
+        store(out->tension_error + p, tension_error);
+        store(out->length_error + p, length_error);
+        store(out->length_gap + p, gap);
+        store(out->shortest_length_ratio + p, smaller(shortest[0], smaller(shortest[1], shortest[2])));
+        store(out->longest_length_ratio + p, longest);
+        foreach (k, 3)
+            store(out->shortest_of_law[k] + p, shortest[k]);
+        for (int l = 0; l < WIDTH; l++)
+            out->is_finite[p + l] = finite[l] == 0;
+    }
 }
 
 /* Computes the maximum nodal force. The loop runs over the nodes, so that the forces need no array. */
-static void residual_part(const hf_swarm_plan *plan, const hf_swarm_lanes *w, hf_swarm_measures *out, int p)
-{
-    const hf_model *m = plan->model;
-    const double *q_by_law[] = {w->q_N_per_m, w->next_q_N_per_m};
-    /* The forces are scaled by the reference tension, because the squares of tiny forces would vanish. */
-    vec largest = splat(0), scale = splat(1 / m->reference_N);
-    for (int i_row = 0; i_row < m->n_free; i_row++) {
-        const double *x = w->position_m + (plan->n_pad + i_row) * POINT + p;
-        vec f[3], x_i[3];
-        foreach (c, 3) {
-            f[c] = splat(m->load_N ? m->load_N[c * m->n_node + i_row] : 0);
-            x_i[c] = load(x + c * HF_LANES);
-        }
-        for (int k = plan->incidence_start[i_row]; k < plan->incidence_start[i_row + 1]; k++) {
-            int e = plan->incidence[k].i_cable;
-            const double *other = w->position_m + plan->incidence[k].other * POINT + p;
-            vec q = load(q_by_law[hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)] + e * HF_LANES + p);
-            foreach (c, 3)
-                f[c] = plus_product(f[c], q, load(other + c * HF_LANES) - x_i[c]);
-        }
-        foreach (c, 3)
-            f[c] *= scale;
-        largest = larger(norm_squared(f[0], f[1], f[2]), largest);
-    }
-    store(out->residual_N + p, root(largest) * m->reference_N);
-}
-
 static void residual(const hf_swarm_plan *plan, const hf_swarm_lanes *w, hf_swarm_measures *out)
 {
-    for (int p = 0; p < HF_LANES; p += WIDTH)
-        residual_part(plan, w, out, p);
+    for (int p = 0; p < HF_LANES; p += WIDTH) {
+        const hf_model *m = plan->model;
+        const double *q_by_law[] = {w->q_N_per_m, w->next_q_N_per_m};
+        /* The forces are scaled by the reference tension, because the squares of tiny forces would vanish. */
+        vec largest = splat(0), scale = splat(1 / m->reference_N);
+        for (int i_row = 0; i_row < m->n_free; i_row++) {
+            const double *x = w->position_m + (plan->n_pad + i_row) * POINT + p;
+            vec f[3], x_i[3];
+            foreach (c, 3) {
+                f[c] = splat(m->load_N ? m->load_N[c * m->n_node + i_row] : 0);
+                x_i[c] = load(x + c * HF_LANES);
+            }
+            for (int k = plan->incidence_start[i_row]; k < plan->incidence_start[i_row + 1]; k++) {
+                int e = plan->incidence[k].i_cable;
+                const double *other = w->position_m + plan->incidence[k].other * POINT + p;
+                vec q = load(q_by_law[hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)] + e * HF_LANES + p);
+                foreach (c, 3)
+                    f[c] = plus_product(f[c], q, load(other + c * HF_LANES) - x_i[c]);
+            }
+            foreach (c, 3)
+                f[c] *= scale;
+            largest = larger(norm_squared(f[0], f[1], f[2]), largest);
+        }
+        store(out->residual_N + p, root(largest) * m->reference_N);
+    }
 }
 
 static void psi(const hf_swarm_plan *plan, const hf_swarm_lanes *w, hf_swarm_measures *out)

@@ -9,7 +9,6 @@
  * Contents: items - shapes - a step */
 #include "search/watch.h"
 
-#include "base/arena.h"
 #include "base/elementary.h"
 #include "base/lane.h"
 #include "solve/limits.h"
@@ -23,8 +22,10 @@
 
 /* ---- items ---- */
 
-/* Adds an item for a cable, an attachment, a support or an objective; the other indices are -1. The item is only
- * counted while there is no memory. */
+/* An item without an index and without a limit. */
+static const hf_watched no_item = {-1, -1, -1, -1, -1, .lower = -INFINITY, .upper = INFINITY};
+
+/* Adds an item. It is only counted while there is no memory. */
 static void add(hf_watch *q, hf_watched item)
 {
     if (q->item) q->item[q->n] = item;
@@ -41,26 +42,22 @@ static int add_cap(hf_watch *q, double cap)
 /* Adds the items of a row of optimize.limits. */
 static void add_row(const hf_evaluator *v, const hf_limit *row, hf_watch *q)
 {
-    bool is_ratio = row->kind == HF_LIMIT_RATIO;
-    int cap = is_ratio ? add_cap(q, row->upper) : -1;
-    for (int i = 0; i < row->n_cable; i++)
-        add(q, (hf_watched){.cable = row->cable[i],
-                            .attachment = -1,
-                            .support = -1,
-                            .objective = -1,
-                            .kind = HF_WATCH_ROW,
-                            .ratio = cap,
-                            .lower = is_ratio ? -INFINITY : row->lower,
-                            .upper = is_ratio ? INFINITY : row->upper});
-    for (int i = 0; row->kind == HF_LIMIT_DEFLECTION && i < v->model->n_attachment; i++)
-        add(q, (hf_watched){.cable = -1,
-                            .attachment = i,
-                            .support = -1,
-                            .objective = -1,
-                            .ratio = -1,
-                            .kind = HF_WATCH_ROW,
-                            .lower = -INFINITY, /* the derivative vanishes at 0, and no size is below 0 */
-                            .upper = row->upper});
+    hf_watched item = no_item;
+    item.kind = HF_WATCH_ROW;
+    if (row->kind == HF_LIMIT_RATIO)
+        item.ratio = add_cap(q, row->upper);
+    else
+        item.upper = row->upper;
+    /* A deflection has no lower bound: its derivative vanishes at 0, and no size is below 0. */
+    if (row->kind == HF_LIMIT_TENSION) item.lower = row->lower;
+    for (int i = 0; i < row->n_cable; i++) {
+        item.cable = row->cable[i];
+        add(q, item);
+    }
+    for (int i = 0; row->kind == HF_LIMIT_DEFLECTION && i < v->model->n_attachment; i++) {
+        item.attachment = i;
+        add(q, item);
+    }
 }
 
 /* Adds the items of objective k: those of its limit or, if it is minimised and has corners, those of its level. */
@@ -72,11 +69,13 @@ static void add_objective(const hf_evaluator *v, const hf_watch_front *front, in
     double most = is_least ? INFINITY : front->most[k];
     bool has_corners = hf_objectives_is_maximum(g->settings.figure);
     if (is_least ? !has_corners : !isfinite(most)) return;
-    hf_watched item = {-1, -1, -1, k, -1, .kind = is_least ? HF_WATCH_LEVEL : HF_WATCH_OBJECTIVE, -INFINITY, most};
-    if (is_ratio) {
+    hf_watched item = no_item;
+    item.objective = k;
+    item.kind = is_least ? HF_WATCH_LEVEL : HF_WATCH_OBJECTIVE;
+    if (is_ratio)
         item.ratio = add_cap(q, most);
-        item.upper = INFINITY;
-    }
+    else
+        item.upper = most;
     for (int i = 0; is_ratio && i < g->n_cable; i++) {
         item.cable = g->cable[i];
         add(q, item);
@@ -104,14 +103,12 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
         bool is_in_ratio = cap >= 0 && m->group[e] == HF_GROUP_BOUNDARY;
         if (variable >= 0 && hf_evaluate_sets(v, variable) != HF_SETS_TENSION) variable = -1;
         if (variable < 0 && !is_in_ratio) continue;
-        add(q, (hf_watched){.cable = e,
-                            .attachment = -1,
-                            .support = -1,
-                            .objective = -1,
-                            .kind = HF_WATCH_BOUND,
-                            .ratio = is_in_ratio ? cap : -1,
-                            .lower = variable >= 0 ? lower[variable] : -INFINITY,
-                            .upper = variable >= 0 ? upper[variable] : INFINITY});
+        hf_watched item = no_item;
+        item.cable = e;
+        item.kind = HF_WATCH_BOUND;
+        if (is_in_ratio) item.ratio = cap;
+        if (variable >= 0) item.lower = lower[variable], item.upper = upper[variable];
+        add(q, item);
     }
     for (int i = 0; v->limits && i < v->limits->n; i++)
         add_row(v, &v->limits->row[i], q);
@@ -120,40 +117,22 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
         add_objective(v, q->front, k, q);
 }
 
-static void lay_out(hf_arena *a, hf_watch *q)
+static void lay_out(hf_arena *arena, hf_watch *to)
 {
-    q->item = hf_arena_take(a, (size_t)q->n, sizeof *q->item);
-    size_t n_column = 1 + (size_t)q->n_class, ld = (size_t)(q->ld = (q->n + HF_LANES - 1) / HF_LANES * HF_LANES);
-    q->rate = hf_arena_take(a, n_column * ld, sizeof(double));
-    q->weight = hf_arena_take(a, n_column, sizeof(double));
-    q->predicted = hf_arena_take(a, ld, sizeof(double));
-    q->by_item = hf_arena_take(a, n_column, sizeof(double));
-    q->cap = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
-    q->ratio = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
-    q->aim = hf_arena_take(a, (size_t)q->n_cap, sizeof(double));
-    const hf_model *m = q->v->model;
-    size_t has_pull = q->front ? 1 : 0;
-    q->move_m = hf_arena_take(a, has_pull * 3 * (size_t)m->n_node, sizeof(double));
-    q->tension_rate = hf_arena_take(a, has_pull * (size_t)m->n_cable, sizeof(double));
-    q->pull_rate = hf_arena_take(a, has_pull * (size_t)(m->n_node - m->n_free), sizeof(double));
+    const hf_model *m = to->v->model;
+    size_t n_column = 1 + (size_t)to->n_class;
+    HF_WATCH_FIELDS(HF_ARENA_TAKE)
 }
 
 hf_status hf_watch_create(const hf_evaluator *v, const hf_sensitivity *s, const double *lower, const double *upper,
                           const hf_watch_front *front, hf_watch *q)
 {
-    hf_arena arena = {0};
     *q = (hf_watch){.v = v, .n_class = s->n, .front = front};
     list(v, s, lower, upper, q);
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, q)));
-    q->block = arena.block;
+    q->ld = (q->n + HF_LANES - 1) / HF_LANES * HF_LANES;
+    HF_TRY(HF_ARENA_MAKE(&q->arena, lay_out(&q->arena, q)));
     list(v, s, lower, upper, q);
     return HF_OK;
-}
-
-void hf_watch_free(hf_watch *q)
-{
-    hf_arena_free_block(q->block);
-    *q = (hf_watch){0};
 }
 
 bool hf_watch_breaks(const hf_watch_front *front, const hf_objectives *objectives, double part, const double *objective)

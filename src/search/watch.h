@@ -32,36 +32,39 @@ typedef struct {
     double predicted, unit; /* value by the linear model; unit of violations */
 } hf_watched;
 
+/* The arrays of hf_watch for a model m, with n_column = 1 + n_class. ld is n, rounded up to whole vectors. */
+#define HF_WATCH_FIELDS(X)                                                                                             \
+    X(hf_watched, item, to->n, "all items")                                                                            \
+    X(double, rate, n_column *(size_t)to->ld, "[n_column][ld] values with `bend`, then rates by each variable")        \
+    X(double, weight, n_column, "weights of the columns of `rate`: 1, then a step")                                    \
+    X(double, predicted, to->ld, "values after a step by the linear model")                                            \
+    X(double, by_item, n_column, "[n_class] scratch")                                                                  \
+    X(double, cap, to->n_cap, "limit on the ratio of maximum to minimum of its items")                                 \
+    X(double, ratio, to->n_cap, "ratio of maximum to minimum at the best variables")                                   \
+    X(double, aim, to->n_cap, "limit on the ratio in the next step")                                                   \
+    X(double, move_m, to->front ? 3 * (size_t)m->n_node : 0, "[3][n_node] scratch for forces on supports")             \
+    X(double, tension_rate, to->front ? m->n_cable : 0, "[n_cable] the same")                                          \
+    X(double, pull_rate, to->front ? m->n_node - m->n_free : 0, "[n_support] the same")
+
 typedef struct {
     const hf_evaluator *v; /* borrowed; its limits are watched */
     /* The first n_cap_of_limits caps are those of the boundary and of optimize.limits, the others those of
      * objectives. */
-    int n, n_class, n_cap, n_cap_of_limits;
-    bool has_cap;                /* true if the first cap is that of the boundary tension ratio */
-    hf_watched *item;            /* [n] */
-    int ld;                      /* n, rounded up to whole vectors */
-    double *rate;                /* [1 + n_class][ld], values with `bend`, then rates by each variable */
-    double *weight;              /* [1 + n_class], weights of the columns of `rate`: 1, then a step */
-    double *predicted;           /* [ld], values after a step by the linear model */
-    double *by_item;             /* [n_class], scratch */
-    double *cap;                 /* [n_cap], limit on the ratio of maximum to minimum of its items */
-    double *ratio;               /* [n_cap], ratio of maximum to minimum at the best variables */
-    double *aim;                 /* [n_cap], limit on the ratio in the next step */
-    const hf_watch_front *front; /* NULL: no objective is limited */
-    const double
-        *objective; /* [n_objective], objectives of the shape that is measured; borrowed; NULL without `front` */
+    int n, ld, n_class, n_cap, n_cap_of_limits;
+    bool has_cap; /* true if the first cap is that of the boundary tension ratio */
+    HF_WATCH_FIELDS(HF_ARENA_MEMBER)
+    const hf_watch_front *front;  /* NULL: no objective is limited */
+    const double *objective;      /* [n_objective], objectives of the measured shape; borrowed; NULL without `front` */
     const double *objective_rate; /* [n_objective][n_class], rates of objectives without corners, borrowed */
     double level;                 /* value of a minimised objective with corners, or the logarithm of a ratio */
-    double *move_m, *tension_rate, *pull_rate; /* scratch for forces on supports: [3][n_node], [n_cable], [n_support] */
-    void *block;
+    hf_arena arena;
 } hf_watch;
 
 /* Watches the cap and the limits of the evaluator, and the bounds lower and upper [n_variable] of design variables that
  * set a tension. If `front` is not NULL, it also watches the objectives, after the caller has set goal and
- * objective_rate. Returns HF_OK or HF_NO_MEMORY; call hf_watch_free in either case. */
+ * objective_rate. Returns HF_OK or HF_NO_MEMORY; the caller frees its arena. */
 hf_status hf_watch_create(const hf_evaluator *evaluator, const hf_sensitivity *slopes, const double *lower,
                           const double *upper, const hf_watch_front *front, hf_watch *watch);
-void hf_watch_free(hf_watch *watch);
 
 /* Returns true if the shape in the workspace keeps all limits. */
 bool hf_watch_keeps(hf_watch *watch, hf_workspace *workspace);

@@ -51,28 +51,13 @@ void hf_coupling_forces(const hf_model *m, hf_workspace *w)
     }
 }
 
-/* Returns the maximum length of the vectors a - b of the attachments, m; b may be NULL. A NaN stays. */
-static double largest_distance(int n_attachment, const double *a, const double *b)
-{
-    double largest = 0;
-    for (int i = 0; i < 3 * n_attachment; i += 3) {
-        double square = 0;
-        for (int c = i; c < i + 3; c++) {
-            double d = a[c] - (b ? b[c] : 0);
-            square += d * d;
-        }
-        if (!(square <= largest)) largest = square;
-    }
-    return sqrt(largest);
-}
-
 double hf_coupling_measure(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
     double *next = w->coupling_work;
     hf_coupling_forces(m, w);
     hf_schur_flex(m, w->attachment_force_N, next);
-    r->coupling.step_m = largest_distance(m->n_attachment, next, w->displacement_m);
-    r->coupling.deflection_max_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
+    r->coupling.step_m = hf_joint_largest(m->n_attachment, 1, next, w->displacement_m);
+    r->coupling.deflection_max_m = hf_joint_largest(m->n_attachment, 1, w->displacement_m, NULL);
     return r->coupling.step_m;
 }
 
@@ -81,7 +66,7 @@ void hf_coupling_accept(const hf_model *m, const hf_workspace *w, int iterations
     r->coupling =
         (hf_coupling_result){.stop_reason = HF_COUPLING_CONVERGED, .iterations = iterations, .step_m = step_m};
     r->coupling.ratio = (double)NAN;
-    r->coupling.deflection_max_m = largest_distance(m->n_attachment, w->displacement_m, NULL);
+    r->coupling.deflection_max_m = hf_joint_largest(m->n_attachment, 1, w->displacement_m, NULL);
 }
 
 /* ---- Anderson's method: combines past displacements so that their step is smallest ---- */

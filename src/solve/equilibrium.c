@@ -79,26 +79,32 @@ static void set_first_force_densities(const hf_model *m, hf_workspace *w)
     }
 }
 
+/* Copies force densities and positions. */
+static void copy_shape(const hf_model *m, const double *from_N_per_m, const double *from_m, double *to_N_per_m,
+                       double *to_m)
+{
+    memcpy(to_N_per_m, from_N_per_m, (size_t)m->n_cable * sizeof(double));
+    memcpy(to_m, from_m, 3 * (size_t)m->n_node * sizeof(double));
+}
+
 /* Finds the reason why the path has not solved the net: a straight chain, the cable whose rounding prevents
  * convergence, or none (culprit -1). Iterations from the end of the path reduce the errors to rounding. If they fail,
  * iterations from the first force densities may still find a chain. Returns result->status. */
 static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n_step, hf_workspace *w,
                              hf_history *history, hf_form_result *r)
 {
-    size_t q = (size_t)m->n_cable * sizeof(double), places = 3 * (size_t)m->n_node * sizeof(double);
     hf_form_settings part = *s;
     hf_form_accept(m, s, HF_STOPPED_MAX_ITERATIONS, n_step, w, r);
     bool is_finite = r->status != HF_NOT_FINITE;
     int cable = r->culprit; /* with a tension that is not finite */
     if (is_finite && (r->status != HF_NOT_CONVERGED || r->culprit >= 0)) return r->status;
-    memcpy(w->interior_tension_N, w->q_N_per_m, q);
-    memcpy(w->interior_position_m, w->position_m, places);
+    copy_shape(m, w->q_N_per_m, w->position_m, w->interior_tension_N, w->interior_position_m);
     for (int start = is_finite ? 0 : 1; start < 2; start++) {
         part.max_iterations = smaller(LAST_BLOCK, s->max_iterations - n_step);
         if (part.max_iterations < 1) break;
         if (start > 0) set_first_force_densities(m, w);
-        for (int e = 0; e < m->n_cable; e++) /* a slack cable keeps HF_LAW_LEAST_Q_N_PER_M */
-            if (w->q_N_per_m[e] == 0) w->q_N_per_m[e] = HF_LAW_LEAST_Q_N_PER_M;
+        for (int e = 0; e < m->n_cable; e++) /* a slack cable keeps HF_LAW_MIN_Q_N_PER_M */
+            if (w->q_N_per_m[e] == 0) w->q_N_per_m[e] = HF_LAW_MIN_Q_N_PER_M;
         hf_form_find(m, &part, HF_STOP_RESIDUAL, w, history, r);
         n_step += r->iterations;
         r->iterations = n_step;
@@ -110,8 +116,7 @@ static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n
         r->culprit = cable;
     }
     if (!is_finite || r->status == HF_COLLAPSED) return r->status; /* both starts have failed */
-    memcpy(w->q_N_per_m, w->interior_tension_N, q);
-    memcpy(w->position_m, w->interior_position_m, places);
+    copy_shape(m, w->interior_tension_N, w->interior_position_m, w->q_N_per_m, w->position_m);
     return hf_form_accept(m, s, HF_STOPPED_MAX_ITERATIONS, n_step, w, r);
 }
 
@@ -120,7 +125,8 @@ static hf_status find_on_path(const hf_model *m, const hf_form_settings *s, int 
                               hf_history *history, hf_form_result *r)
 {
     int culprit = -1;
-    hf_status status = hf_interior_run(m, s, w, smaller(PATH_MAX, s->max_iterations - n_step), &n_step, &culprit);
+    hf_status status =
+        hf_interior_run(m, s, w, false, smaller(PATH_MAX, s->max_iterations - n_step), &n_step, &culprit);
     if (status == HF_OK && hf_form_measure(m, s, w, r) == HF_OK)
         return hf_form_accept(m, s, HF_STOPPED_CONVERGED, n_step, w, r);
     if (status == HF_OK || status == HF_STRAIGHT_CHAIN || status == HF_NOT_CONVERGED)
@@ -149,14 +155,11 @@ hf_status hf_equilibrium_find(const hf_model *m, const hf_form_settings *s, hf_w
 /* Runs the path and writes its result into *said. Keeps q_N_per_m and position_m. Returns said->status. */
 static hf_status ask_path(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *said)
 {
-    size_t q = (size_t)m->n_cable * sizeof(double), places = 3 * (size_t)m->n_node * sizeof(double);
     hf_form_settings whole = *s;
     whole.max_iterations = VERDICT_MAX;
-    memcpy(w->place_q_N_per_m, w->q_N_per_m, q);
-    memcpy(w->place_before_m, w->position_m, places);
+    copy_shape(m, w->q_N_per_m, w->position_m, w->loose_q_N_per_m, w->loose_before_m);
     find_on_path(m, &whole, 0, w, NULL, said);
-    memcpy(w->q_N_per_m, w->place_q_N_per_m, q);
-    memcpy(w->position_m, w->place_before_m, places);
+    copy_shape(m, w->loose_q_N_per_m, w->loose_before_m, w->q_N_per_m, w->position_m);
     return said->status;
 }
 

@@ -146,7 +146,8 @@ static void apply_variable(const hf_evaluator *v, int k, double value, hf_worksp
         break;
     case HF_SETS_SUPPORT:
         for (int c = 0; c < 3; c++)
-            w->support_move_m[c * m->n_node + m->variable[k].support_row] += value * m->variable[k].direction[c];
+            w->support_displacement_m[c * m->n_node + m->variable[k].support_row] +=
+                value * m->variable[k].direction[c];
         break;
     }
 }
@@ -176,18 +177,9 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design, hf_workspa
     /* A convex problem has one answer, so a start near it saves time and changes nothing else. Under rule seeded the
      * answer depends on the start, so the start is that of the model, as in the paper. */
     for (int e = 0; e < m->n_cable && hf_evaluate_is_unique(v); e++)
-        if (hf_law_has(m->law[e], HF_LAW_ITERATES))
-            w->q_N_per_m[e] = fmax(v->start_q_N_per_m[e], HF_LAW_LEAST_Q_N_PER_M);
+        if (hf_law_has(m->law[e], HF_LAW_ITERATES)) w->q_N_per_m[e] = fmax(v->start_q_N_per_m[e], HF_LAW_MIN_Q_N_PER_M);
     for (int k = 0; k < m->n_variable; k++)
         apply_variable(v, k, design[k], w);
-}
-
-/* Measures the objectives of a shape, feasible or not. */
-static void measure_objectives(const hf_evaluator *v, hf_workspace *w, hf_form_result *r)
-{
-    if (!v->objectives) return;
-    if (hf_objectives_measure(v->objectives, w, w->objectives, r->objective, &r->merit) != HF_OK)
-        r->status = HF_NO_MEMORY;
 }
 
 hf_status hf_evaluate_judge(const hf_evaluator *v, hf_workspace *w, hf_form_result *r)
@@ -197,7 +189,9 @@ hf_status hf_evaluate_judge(const hf_evaluator *v, hf_workspace *w, hf_form_resu
     if (has_shape && (v->limits || breaks_cap)) r->violation = hf_limits_violation(v, w);
     if (has_shape && r->violation > 0) r->status = HF_OUT_OF_LIMITS;
     if (breaks_cap) r->status = HF_RATIO_CAP;
-    if (has_shape) measure_objectives(v, w, r);
+    if (has_shape && v->objectives && /* feasible or not */
+        hf_objectives_measure(v->objectives, w, w->objectives, r->objective, &r->merit) != HF_OK)
+        r->status = HF_NO_MEMORY;
     if (!v->objectives) r->merit = r->psi_m;
     if (v->objectives && r->status == HF_OK && !isfinite(r->merit)) { /* an objective has no value for this shape */
         r->status = HF_NOT_FINITE;

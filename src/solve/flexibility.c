@@ -16,13 +16,6 @@
 
 #include <string.h>
 
-/* Subtracts factor x from y [n]. */
-static void subtract(size_t n, double factor, const double *restrict x, double *restrict y)
-{
-    for (size_t i = 0; i < n; i++)
-        y[i] -= factor * x[i];
-}
-
 /* ---- the factor ---- */
 
 /* Returns the value up to which an entry of the flexibility, or of its remainder, counts as rounding, m/N. */
@@ -70,7 +63,7 @@ static bool factor_semidefinite(const hf_model *m, double nothing, hf_flexibilit
         for (size_t i = 0; i < n; i++)
             column[i] = left[pivot * n + i] / sqrt(largest);
         for (size_t i = 0; i < n; i++)
-            subtract(n, column[i], column, left + i * n);
+            hf_subtract(n, column[i], column, left + i * n);
     }
     for (size_t i = 0; i < n * n; i++)
         if (!(fabs(left[i]) <= 4 * nothing)) return false;
@@ -106,7 +99,7 @@ void hf_flexibility_displace(const hf_flexibility *f, const double *s, double *r
     memset(r, 0, n * sizeof *r);
     for (size_t k = 0; k < (size_t)f->rank; k++) {
         size_t first = first_of(f, k);
-        subtract(n - first, -s[k], f->root + k * n + first, r + first);
+        hf_subtract(n - first, -s[k], f->root + k * n + first, r + first);
     }
 }
 
@@ -212,11 +205,11 @@ static void eliminate_free(const hf_model *m, const hf_workspace *w, const free_
                 double *v = window + r * ld + (j - first);
                 if (*v == 0) continue;
                 *v /= *column;
-                subtract(free->n - 1 - j < (int)k ? (size_t)(free->n - 1 - j) : k, *v, column + 1, v + 1);
+                hf_subtract(free->n - 1 - j < (int)k ? (size_t)(free->n - 1 - j) : k, *v, column + 1, v + 1);
             }
         hf_band_gram(0, (int)n_border, end - first, window, (int)ld, gram, (int)n_border);
         for (size_t i = 0; i < n_border; i++)
-            subtract(i + 1, 1, gram + i * n_border, stiffness + i * n_border);
+            hf_subtract(i + 1, 1, gram + i * n_border, stiffness + i * n_border);
         for (size_t r = 0; r < n_border; r++) {
             memmove(window + r * ld, window + r * ld + HF_BOUND_CHUNK, k * sizeof *window);
             memset(window + r * ld + k, 0, HF_BOUND_CHUNK * sizeof *window);
@@ -239,7 +232,7 @@ static void stiffen_column(const hf_flexibility *f, const free_factor *free, con
         const double *column = f->root + k * n + c;
         memset(sum, 0, n_border * sizeof *sum);
         for (size_t j = 0; j < n_border; j++)
-            if (column[n_pass * j] != 0) subtract(n_border, -column[n_pass * j], stiffness + j * n_border, sum);
+            if (column[n_pass * j] != 0) hf_subtract(n_border, -column[n_pass * j], stiffness + j * n_border, sum);
         for (size_t i = 0; i < n_border; i++)
             product[n_pass * i + c] = sum[i];
     }

@@ -16,6 +16,7 @@
 #include "base/elementary.h"
 #include "linalg/band.h"
 #include "solve/history.h"
+#include "solve/newton_matrix.h"
 #include <hifdm/metrics.h>
 
 #include <assert.h>
@@ -47,16 +48,16 @@ void hf_form_prepare(const hf_model *m, hf_workspace *w)
     memcpy(w->q_N_per_m, m->start_q_N_per_m, n * sizeof(double));
     if (m->EA_N) memcpy(w->EA_N, m->EA_N, n * sizeof(double));
     memset(w->loose, 0, (size_t)m->n_node);
-    if (m->moves_supports) memset(w->support_move_m, 0, 3 * (size_t)m->n_node * sizeof(double));
+    if (m->moves_supports) memset(w->support_displacement_m, 0, 3 * (size_t)m->n_node * sizeof(double));
     memset(w->displacement_m, 0, 3 * (size_t)m->n_attachment * sizeof(double));
     w->n_moving = m->n_free;
 }
 
-void hf_form_place_supports(const hf_model *m, hf_workspace *w)
+void hf_form_set_supports(const hf_model *m, hf_workspace *w)
 {
     memcpy(w->position_m, m->position_m, 3 * (size_t)m->n_node * sizeof(double));
     for (int i = 0; m->moves_supports && i < 3 * m->n_node; i++)
-        w->position_m[i] += w->support_move_m[i];
+        w->position_m[i] += w->support_displacement_m[i];
     for (int i = 0; i < m->n_attachment; i++)
         for (int c = 0; c < 3; c++)
             w->position_m[c * m->n_node + m->attachment_row[i]] += w->displacement_m[3 * i + c];
@@ -104,8 +105,7 @@ static hf_status solve_positions(const hf_model *m, hf_workspace *w, int *bad_ro
     if (m->has_strut)
         return hf_band_solve_indefinite(m->n_free, m->half_bandwidth, w->band, w->general_band, w->pivot, w->position_m,
                                         m->n_node, bad_row);
-    return (m->by_lapack ? hf_band_solve_lapack : hf_band_solve)(m->n_free, m->half_bandwidth, w->band, w->position_m,
-                                                                 m->n_node, bad_row);
+    return hf_band_solve(m->by_lapack, m->n_free, m->half_bandwidth, w->band, w->position_m, m->n_node, bad_row);
 }
 
 /* ---- measuring cables ---- */
@@ -159,7 +159,7 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
         if (gives_tension) {
             r->tension_error = larger(r->tension_error, fabs(tension / cable.target - 1));
         } else if (may_vanish) {
-            double strain = length / hf_law_wanted_length_m(cable, tension) - 1;
+            double strain = length / hf_law_required_length_m(cable, tension) - 1;
             double pull = smaller(tension / m->reference_N, 1);
             double error = fabs(strain);
             bool is_taut = pull >= HF_SLACK_RATIO;
@@ -253,29 +253,31 @@ static int find_rounded_cable(const hf_model *m, const hf_form_settings *s, cons
 
 /* ---- straight chains: a chain that cannot deflect carries no lateral load at a finite tension ---- */
 
-/* Sets *from and *to to the rows of the supports at the two ends of chain i_chain. */
-static void chain_supports(const hf_model *m, int i_chain, int *from, int *to)
+/* Returns the squared distance of the supports at the two ends of chain i_chain, m^2. `span` becomes the vector between
+ * them, and *from the row of the first one. */
+static double chain_span(const hf_model *m, const hf_workspace *w, int i_chain, int *from, double span[3])
 {
     const int *first = m->end_row + 2 * m->chain_cable[m->chain_start[i_chain]];
     const int *last = m->end_row + 2 * m->chain_cable[m->chain_start[i_chain + 1] - 1];
+    int to = last[0] >= m->n_free ? last[0] : last[1];
+    double square = 0;
     *from = first[0] >= m->n_free ? first[0] : first[1];
-    *to = last[0] >= m->n_free ? last[0] : last[1];
+    for (int c = 0; c < 3; c++) {
+        span[c] = w->position_m[c * m->n_node + to] - w->position_m[c * m->n_node + *from];
+        square += span[c] * span[c];
+    }
+    return square;
 }
 
 /* Returns the maximum force perpendicular to chain i_chain at one of its nodes, N. force_N holds the forces without the
  * chains. */
 static double lateral_load_N(const hf_model *m, const hf_workspace *w, int i_chain)
 {
-    const double *x = w->position_m, *f = w->force_N;
-    int from, to;
-    chain_supports(m, i_chain, &from, &to);
+    const double *f = w->force_N;
+    int from;
+    double u[3], span = chain_span(m, w, i_chain, &from, u), largest = 0;
     const int *ends = m->end_row + 2 * m->chain_cable[m->chain_start[i_chain]];
     int row = from == ends[0] ? ends[1] : ends[0];
-    double u[3], span = 0, largest = 0;
-    for (int c = 0; c < 3; c++) {
-        u[c] = x[c * m->n_node + to] - x[c * m->n_node + from];
-        span += u[c] * u[c];
-    }
     for (int k = m->chain_start[i_chain]; k + 1 < m->chain_start[i_chain + 1]; k++) {
         double along = 0, square = 0;
         for (int c = 0; c < 3; c++)
@@ -299,16 +301,11 @@ int hf_form_n_chain(const hf_model *m)
 /* Returns the sum of the lengths of chain i_chain, m, and sets *square to the squared distance of its supports, m^2. */
 static double chain_sum(const hf_model *m, const hf_workspace *w, int i_chain, double *square)
 {
-    int from, to;
-    double sum = 0;
-    chain_supports(m, i_chain, &from, &to);
+    int from;
+    double sum = 0, span[3];
     for (int k = m->chain_start[i_chain]; k < m->chain_start[i_chain + 1]; k++)
         sum += w->target[m->chain_cable[k]];
-    *square = 0;
-    for (int c = 0; c < 3; c++) {
-        double d = w->position_m[c * m->n_node + to] - w->position_m[c * m->n_node + from];
-        *square += d * d;
-    }
+    *square = chain_span(m, w, i_chain, &from, span);
     return sum;
 }
 
@@ -473,7 +470,7 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, hf_stop_rul
     bool need_residual = history || stop == HF_STOP_RESIDUAL || !p.iterates;
     double length_gap;
     open_result(r);
-    hf_form_place_supports(m, w);
+    hf_form_set_supports(m, w);
     for (;;) {
         r->iterations++;
         r->status = w->stop && *w->stop ? HF_INTERRUPTED : solve_positions(m, w, &r->culprit);
@@ -498,14 +495,12 @@ hf_status hf_form_find(const hf_model *m, const hf_form_settings *s, hf_stop_rul
 
 hf_status hf_form_measure(const hf_model *m, const hf_form_settings *s, hf_workspace *w, hf_form_result *r)
 {
-    double length_gap;
+    double length_gap, u[3];
     open_result(r);
-    const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
     for (int e = 0; e < m->n_cable; e++) {
         if (!hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)) continue;
-        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-        double dx = x[b] - x[a], dy = y[b] - y[a], dz = z[b] - z[a], square = dx * dx + dy * dy + dz * dz;
-        w->q_N_per_m[e] = square > 0 ? w->target[e] / sqrt(square) : 0; /* without length: refused as collapsed below */
+        double length = hf_newton_matrix_direction(m, w->position_m, e, u);
+        w->q_N_per_m[e] = length > 0 ? w->target[e] / length : 0; /* without length: refused as collapsed below */
     }
     hf_form_measure_cables(m, s, w, r, &length_gap);
     if (r->status != HF_OK) return finish_result(m, w, r);

@@ -30,7 +30,7 @@
 #include "solve/history.h"
 #include "solve/joint.h"
 #include "solve/newton.h"
-#include "solve/path_cable.h"
+#include "solve/path_kernel.h"
 
 #include <assert.h>
 #include <math.h>
@@ -58,6 +58,12 @@
 /* ---- state and start ---- */
 
 static_assert(sizeof(hf_path_cables) == HF_INTERIOR_BLOCK * sizeof(double), "HF_INTERIOR_BLOCK");
+
+static const hf_path_kernels *kernels_here(void)
+{
+    static const hf_path_kernels *const of_isa[] = {HF_LANE_EACH(&hf_path_kernels)};
+    return of_isa[hf_lane_best_isa()];
+}
 
 static int n_block(const hf_model *m)
 {
@@ -126,22 +132,22 @@ static double first_tension_N(const hf_model *m, hf_law_cable cable, double flex
     if (hf_law_has(cable.law, HF_LAW_GIVES_TENSION)) return cable.target;
     double reference = m->reference_N;
     if (!(flex > 0)) return reference;
-    double over = length - hf_law_wanted_length_m(cable, 0), mu = MU_FIRST * reference * cable.theoretical_m;
+    double over = length - hf_law_required_length_m(cable, 0), mu = MU_FIRST * reference * cable.theoretical_m;
     double T = (over + sqrt(over * over + 4 * flex * mu)) / (2 * flex);
     return fmin(fmax(T, reference / FIRST_RANGE), reference * FIRST_RANGE);
 }
 
-/* In the functions below, `held` are the moving rows among fixed ones (hf_interior_run_held), else NULL. */
+/* In the functions below, `held` are the moving rows among fixed ones, NULL without springs to the ground. */
 
-/* Sets a centred point for MU_FIRST at the target positions, or at spring_place_m with `held`. The path then reduces
+/* Sets a centred point for MU_FIRST at the target positions, or at spring_anchor_m with `held`. The path then reduces
  * its errors of length and balance. */
 static void set_start(const hf_model *m, hf_workspace *w, const hf_newton_rows *held)
 {
     double mean_m = hf_joint_mean_length_m(m);
     if (held)
-        memcpy(w->position_m, w->spring_place_m, 3 * (size_t)m->n_node * sizeof(double));
+        memcpy(w->position_m, w->spring_anchor_m, 3 * (size_t)m->n_node * sizeof(double));
     else
-        hf_form_place_supports(m, w);
+        hf_form_set_supports(m, w);
     memset(blocks(w), 0, (size_t)n_block(m) * sizeof *blocks(w));
     for (int e = 0; e < m->n_cable; e++) {
         int k;
@@ -159,7 +165,7 @@ static void set_start(const hf_model *m, hf_workspace *w, const hf_newton_rows *
             p->along[k] = p->across[k] = hf_law_tension_N(cable, 1);
             p->T[k] = p->along[k] * length;
         } else if (is_fixed(m, w, e)) {
-            double over = has_multiplier(w, e) ? length - hf_law_wanted_length_m(cable, 0) : 0;
+            double over = has_multiplier(w, e) ? length - hf_law_required_length_m(cable, 0) : 0;
             p->T[k] = p->flex[k] > 0 ? fmax(over, 0) / p->flex[k]
                                      : hf_law_held_q_N_per_m(cable, length, w->q_N_per_m[e]) * length;
             p->v[k] = length;
@@ -185,13 +191,7 @@ typedef struct {
 
 static double largest_force_N(const hf_model *m, const double *force)
 {
-    double largest = 0, scale_N = 1 / m->reference_N;
-    for (int i = 0; i < m->n_free; i++) {
-        double f[3] = {scale_N * force[3 * i], scale_N * force[3 * i + 1], scale_N * force[3 * i + 2]};
-        double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
-        if (!(square <= largest)) largest = square; /* a NaN stays */
-    }
-    return sqrt(largest) * m->reference_N;
+    return hf_joint_largest(m->n_free, 1 / m->reference_N, force, NULL) * m->reference_N;
 }
 
 /* Adds the pull of the springs at the rows to newton_force_N. A fixed row is in balance. */
@@ -200,7 +200,7 @@ static void add_springs_pull(const hf_model *m, hf_workspace *w)
     for (int k = 0; k < hf_newton_matrix_dofs(m); k++) {
         double spring = w->spring_N_per_m[k / 3], *force = w->newton_force_N + k;
         int at = k % 3 * m->n_node + k / 3;
-        *force = isinf(spring) ? 0 : *force + spring * (w->spring_place_m[at] - w->position_m[at]);
+        *force = isinf(spring) ? 0 : *force + spring * (w->spring_anchor_m[at] - w->position_m[at]);
     }
 }
 
@@ -212,7 +212,7 @@ static path_error measure_path(const hf_model *m, hf_workspace *w, const hf_newt
     double sum = 0, all = 0;
     for (int e = 0; e < m->n_cable; e++)
         if (!is_fixed(m, w, e)) set_vector(m, w, e);
-    error.length = hf_path_measure(n_block(m), blocks(w));
+    error.length = kernels_here()->measure(n_block(m), blocks(w));
     hf_newton_matrix_set_loads(m, w, w->newton_force_N);
     for (int e = 0; e < m->n_cable; e++) {
         int k;
@@ -258,7 +258,7 @@ static void set_vector_step(const hf_model *m, const hf_workspace *w, int e)
  * HF_SINGULAR. */
 static hf_status factor(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, const double *spring_N_per_m)
 {
-    if (held) return hf_newton_matrix_factor_rows(m, w, path_block, spring_N_per_m, held);
+    if (held) return hf_newton_matrix_factor_blocks(m, w, path_block, spring_N_per_m, held, NULL);
     return hf_joint_factor(m, w, path_block, spring_N_per_m, NULL);
 }
 
@@ -279,7 +279,7 @@ static double find_path_direction(const hf_model *m, hf_workspace *w, const hf_n
 {
     double *rhs = w->newton_step;
     memcpy(rhs, w->newton_force_N, 3 * (size_t)w->n_moving * sizeof *rhs);
-    hf_path_set_side(n_block(m), blocks(w), target, corrected);
+    kernels_here()->set_side(n_block(m), blocks(w), target, corrected);
     for (int e = 0; e < m->n_cable; e++) {
         int k;
         const hf_path_cables *p = block_of(w, e, &k);
@@ -290,7 +290,7 @@ static double find_path_direction(const hf_model *m, hf_workspace *w, const hf_n
     solve_step(m, w, held);
     for (int e = 0; e < m->n_cable; e++)
         if (!is_fixed(m, w, e)) set_vector_step(m, w, e);
-    double inverse = hf_path_set_direction(n_block(m), blocks(w), corrects);
+    double inverse = kernels_here()->set_direction(n_block(m), blocks(w), corrects);
     return inverse > 0 ? 1 / inverse : INFINITY;
 }
 
@@ -301,12 +301,6 @@ static void move_nodes(const hf_model *m, hf_workspace *w, double part)
     for (int i = 0; i < w->n_moving; i++)
         for (int c = 0; c < 3; c++)
             w->position_m[c * m->n_node + i] += part * w->newton_step[3 * i + c];
-}
-
-static void move(const hf_model *m, hf_workspace *w, double part)
-{
-    move_nodes(m, w, part);
-    hf_path_move(n_block(m), blocks(w), part);
 }
 
 /* ---- the path ---- */
@@ -345,12 +339,13 @@ static bool is_told_to_stop(const hf_workspace *w)
 /* Takes one step of the path. Returns false if it does not move. */
 static bool take_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double mu)
 {
-    hf_path_set_scaling(n_block(m), blocks(w));
+    kernels_here()->set_scaling(n_block(m), blocks(w));
     if (factor(m, w, held, held ? w->spring_N_per_m : NULL) != HF_OK) return false;
     double part = fmin(1, find_path_direction(m, w, held, 0, false, true)), left = 1 - part;
     part = fmin(1, STEP_KEPT * find_path_direction(m, w, held, left * left * left * mu, true, false));
     if (!(part > STALLED)) return false;
-    move(m, w, part);
+    move_nodes(m, w, part);
+    kernels_here()->move(n_block(m), blocks(w), part);
     return true;
 }
 
@@ -405,7 +400,7 @@ static path_error measure_end(const hf_model *m, hf_workspace *w, const hf_newto
         double T = hf_newton_matrix_tension_N(cable, length, w->tension_N[e]);
         p->along[at] = has_multiplier(w, e) ? 0 : hf_law_stiffness_N_per_m(cable, length);
         if (has_multiplier(w, e)) {
-            double over = length - hf_law_wanted_length_m(cable, T);
+            double over = length - hf_law_required_length_m(cable, T);
             bool is_taut = T / reference + over / m->length_m[e] > 0;
             double k = p->flex[at] > 0 ? 1 / p->flex[at] : hf_newton_matrix_rigid_stiffness(m, e, T);
             p->along[at] = is_taut ? k : 0;
@@ -486,29 +481,11 @@ static void begin_end(const hf_model *m, hf_workspace *w, double fall)
     }
 }
 
-static void set_force_densities(const hf_model *m, hf_workspace *w)
+/* Copies positions and tensions, those of a point. */
+static void copy_point(const hf_model *m, const double *from_m, const double *from_N, double *to_m, double *to_N)
 {
-    double u[3];
-    for (int e = 0; e < m->n_cable; e++) {
-        hf_law_cable cable = hf_workspace_cable(m, w, e);
-        double length = hf_newton_matrix_direction(m, w->position_m, e, u);
-        double T = hf_newton_matrix_tension_N(cable, length, w->tension_N[e]);
-        bool is_nothing = has_multiplier(w, e) && T < HF_NEWTON_NOTHING * m->reference_N;
-        w->q_N_per_m[e] = is_nothing ? 0 : is_spring(w, e) ? hf_law_tension_N(cable, 1) : T / length;
-        w->length_m[e] = length;
-    }
-}
-
-static void keep_point(const hf_model *m, const hf_workspace *w, double *position_m, double *tension_N)
-{
-    memcpy(position_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
-    memcpy(tension_N, w->tension_N, (size_t)m->n_cable * sizeof(double));
-}
-
-static void take_point(const hf_model *m, hf_workspace *w, const double *position_m, const double *tension_N)
-{
-    memcpy(w->position_m, position_m, 3 * (size_t)m->n_node * sizeof(double));
-    memcpy(w->tension_N, tension_N, (size_t)m->n_cable * sizeof(double));
+    memcpy(to_m, from_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(to_N, from_N, (size_t)m->n_cable * sizeof(double));
 }
 
 /* Takes Newton steps from the present point of the path, in position_m and tension_N alone, until the errors are a
@@ -524,11 +501,11 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
     path_error now = measure_end(m, w, held);
     double first = largest_error(m, &now);
     bool damps = !impatient;
-    keep_point(m, w, w->interior_position_m, w->interior_tension_N);
+    copy_point(m, w->position_m, w->tension_N, w->interior_position_m, w->interior_tension_N);
     for (int k = 0; k < (impatient ? FINAL_MAX : LAST_MAX) && *n_step < max_steps && !is_within(&now, s, 0.1); k++) {
         bool was_within = is_within(&now, s, 1);
         double before = largest_error(m, &now);
-        keep_point(m, w, w->newton_trial_m, w->newton_trial_tension_N);
+        copy_point(m, w->position_m, w->tension_N, w->newton_trial_m, w->newton_trial_tension_N);
         ++*n_step;
         if (!take_last_step(m, w, held, damps ? before : 0)) break;
         now = measure_end(m, w, held);
@@ -536,14 +513,15 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         double after = largest_error(m, &now);
         damps = damps || after > before;
         if (was_within && !(after < before)) {
-            take_point(m, w, w->newton_trial_m, w->newton_trial_tension_N);
+            copy_point(m, w->newton_trial_m, w->newton_trial_tension_N, w->position_m, w->tension_N);
             return true;
         }
         bool is_worth_it = after < (k > 0 ? CLEARLY * before : FAR) || is_within(&now, s, 1);
         if (impatient && !is_worth_it) break;
     }
     if (is_within(&now, s, 1)) return true;
-    if (!(largest_error(m, &now) < fmin(first, NEAR))) take_point(m, w, w->interior_position_m, w->interior_tension_N);
+    if (!(largest_error(m, &now) < fmin(first, NEAR)))
+        copy_point(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->tension_N);
     return false;
 }
 
@@ -561,13 +539,14 @@ static bool has_loaded_chain(const hf_model *m, hf_workspace *w)
     return false;
 }
 
-/* Does the work of hf_interior_run, and with `held` that of hf_interior_run_held. */
-static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_workspace *w, const hf_newton_rows *held,
-                          int max_steps, int *n_step, int *culprit)
+hf_status hf_interior_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w, bool is_held, int max_steps,
+                          int *n_step, int *culprit)
 {
     double wanted = NEAR, fall = 1;
     int last = *n_step + max_steps;
     bool is_there = true;
+    hf_newton_rows rows, *held = is_held ? &rows : NULL;
+    if (held) rows = hf_newton_matrix_find_rows(m, w->spring_N_per_m, w->newton_integer_work);
     *culprit = -1;
     set_start(m, w, held);
     for (int k = 0; k < TRIES_MAX && is_there; k++, wanted /= NEARER) {
@@ -577,27 +556,14 @@ static hf_status run_path(const hf_model *m, const hf_form_settings *s, hf_works
         if (is_there && (*culprit = find_collapsed(m, s, w)) >= 0) return HF_COLLAPSED;
         bool is_rounding = k > 0 && !has_places(m, w), goes_on = is_there && k < TRIES_MAX - 1 && !is_rounding;
         if (is_rounding) /* use the point before this part of the path */
-            take_point(m, w, w->interior_position_m, w->interior_tension_N);
+            copy_point(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->tension_N);
         else
             begin_end(m, w, fall);
         bool is_found = finish(m, s, w, held, goes_on, last, n_step);
-        set_force_densities(m, w);
+        hf_newton_set_force_densities(m, HF_LAW_HAS_MULTIPLIER, w);
         if (is_found) return HF_OK;
         if (!held && !goes_on && has_loaded_chain(m, w)) return HF_STRAIGHT_CHAIN;
-        if (goes_on) take_point(m, w, w->interior_position_m, w->interior_tension_N);
+        if (goes_on) copy_point(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->tension_N);
     }
     return HF_NOT_CONVERGED;
-}
-
-hf_status hf_interior_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int max_steps, int *n_step,
-                          int *culprit)
-{
-    return run_path(m, s, w, NULL, max_steps, n_step, culprit);
-}
-
-hf_status hf_interior_run_held(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int max_steps,
-                               int *n_step, int *culprit)
-{
-    hf_newton_rows rows = hf_newton_matrix_find_rows(m, w->spring_N_per_m, w->newton_integer_work);
-    return run_path(m, s, w, &rows, max_steps, n_step, culprit);
 }

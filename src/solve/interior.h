@@ -5,10 +5,17 @@
 #define HIFDM_INTERIOR_H
 
 #include <hifdm/formfind.h>
+#include <stdbool.h>
 
-/* Finds the shape of minimum energy from the target positions, with supports where hf_form_place_supports puts them. It
+/* Finds the shape of minimum energy from the target positions, with supports where hf_form_set_supports puts them. It
  * takes at most max_steps factorisations and increases *n_step by their number. The workspace must be of a model with
- * has_newton. Does not allocate. Returns
+ * has_newton. Does not allocate.
+ *
+ * is_held: starts from the shape spring_anchor_m instead, with the laws and targets of the workspace. Springs of
+ * spring_N_per_m [n_free] pull the rows to that shape; INFINITY fixes a row. It then records no history and does not
+ * look for straight chains.
+ *
+ * Returns
  *
  *   HF_OK              forces and lengths are within the tolerances of the settings; position_m, tension_N and
  *                      q_N_per_m hold the shape, with slack cables without force
@@ -18,12 +25,6 @@
  *   HF_INTERRUPTED     the workspace's stop was set
  *   HF_NOT_CONVERGED   none of these; the workspace holds the last shape of the path, or one nearer to the answer. */
 hf_status hf_interior_run(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
-                          int max_steps, int *n_step, int *culprit);
-
-/* Does the same from the shape spring_place_m, with the laws and targets of the workspace. Springs of spring_N_per_m
- * [n_free] pull the rows to that shape; INFINITY fixes a row. It records no history and does not look for straight
- * chains. */
-hf_status hf_interior_run_held(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
-                               int max_steps, int *n_step, int *culprit);
+                          bool is_held, int max_steps, int *n_step, int *culprit);
 
 #endif

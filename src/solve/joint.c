@@ -20,7 +20,7 @@ static bool has_truss(const hf_model *m, const hf_workspace *w)
 
 double hf_joint_resting_m(const hf_model *m, const hf_workspace *w, int at)
 {
-    return m->moves_supports ? m->position_m[at] + w->support_move_m[at] : m->position_m[at];
+    return m->moves_supports ? m->position_m[at] + w->support_displacement_m[at] : m->position_m[at];
 }
 
 static double displacement_m(const hf_model *m, const hf_workspace *w, const double *position_m, int i_dof)
@@ -32,7 +32,7 @@ static double displacement_m(const hf_model *m, const hf_workspace *w, const dou
 hf_status hf_joint_factor(const hf_model *m, hf_workspace *w, hf_newton_block *block_of, const double *spring_N_per_m,
                           double *condition)
 {
-    HF_TRY(hf_newton_matrix_factor_blocks(m, w, block_of, spring_N_per_m, condition));
+    HF_TRY(hf_newton_matrix_factor_blocks(m, w, block_of, spring_N_per_m, NULL, condition));
     if (!has_truss(m, w)) return HF_OK;
     hf_schur schur = hf_schur_of(m, w);
     w->n_joint_step++;
@@ -65,6 +65,20 @@ double hf_joint_mean_length_m(const hf_model *m)
     for (int e = 0; e < m->n_cable; e++)
         sum += m->length_m[e];
     return sum / m->n_cable;
+}
+
+double hf_joint_largest(int n, double scale, const double *a, const double *b)
+{
+    double largest = 0;
+    for (int i = 0; i < 3 * n; i += 3) {
+        double square = 0;
+        for (int c = i; c < i + 3; c++) {
+            double d = scale * a[c] - (b ? b[c] : 0);
+            square += d * d;
+        }
+        if (!(square <= largest)) largest = square;
+    }
+    return sqrt(largest);
 }
 
 double hf_joint_gap_m(const hf_model *m, const hf_workspace *w, const double *position_m, const double *force,

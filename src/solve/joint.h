@@ -19,6 +19,9 @@ hf_status hf_joint_factor(const hf_model *model, hf_workspace *workspace, hf_new
  * attachments step from their displacements in position_m to those under the forces after the step. */
 void hf_joint_solve(const hf_model *model, const hf_workspace *workspace, hf_newton_block *block_of, double *rhs);
 
+/* Returns the maximum length of n vectors [3], scale a - b; b may be NULL. A NaN stays. */
+double hf_joint_largest(int n, double scale, const double *a, const double *b);
+
 /* Returns the maximum |F f - r| of an attachment for the forces [3 n_moving], N, at the shape position_m [3][n_node],
  * m; 0 without a truss. *square (may be NULL) is increased by the sum of the squares, relative to the square of the
  * mean length. */

@@ -44,7 +44,7 @@ static bool is_loaded(const hf_model *m, const hf_form_settings *s, int row)
 static bool is_taut(const hf_model *m, const hf_form_settings *s, const hf_workspace *w, int e)
 {
     if (!may_be_slack(w, e)) return true;
-    double T = w->tension_N[e], slack_m = hf_law_wanted_length_m(hf_workspace_cable(m, w, e), T) - w->length_m[e];
+    double T = w->tension_N[e], slack_m = hf_law_required_length_m(hf_workspace_cable(m, w, e), T) - w->length_m[e];
     return T > nothing_N(m, s) && T / m->reference_N > slack_m / m->length_m[e];
 }
 
@@ -76,7 +76,7 @@ double hf_loose_spring_N_per_m(const hf_model *m)
 /* Returns the maximum length of cable e without tension, m. */
 static double slack_length_m(const hf_model *m, const hf_workspace *w, int e)
 {
-    return hf_law_wanted_length_m(hf_workspace_cable(m, w, e), 0);
+    return hf_law_required_length_m(hf_workspace_cable(m, w, e), 0);
 }
 
 static bool fits(const hf_model *m, const hf_form_settings *s, const hf_workspace *w)
@@ -101,11 +101,11 @@ static void set_up_places(const hf_model *m, hf_workspace *w)
         w->law[e] = is_loose ? HF_LAW_LENGTH : HF_LAW_FORCE_DENSITY;
         w->target[e] = slack_m;
     }
-    memcpy(w->spring_place_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(w->spring_anchor_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
     for (int i = 0; i < m->n_free; i++) {
         w->spring_N_per_m[i] = w->loose[i] ? spring : INFINITY;
         for (int c = 0; c < 3 && w->loose[i]; c++)
-            w->spring_place_m[c * m->n_node + i] = m->position_m[c * m->n_node + i];
+            w->spring_anchor_m[c * m->n_node + i] = m->position_m[c * m->n_node + i];
     }
 }
 
@@ -116,20 +116,20 @@ static hf_status find_places(const hf_model *m, const hf_form_settings *s, hf_wo
     size_t n = (size_t)m->n_cable, bytes = n * sizeof(double), places = 3 * (size_t)m->n_node * sizeof(double);
     int culprit, n_moving = w->n_moving;
     w->n_moving = m->n_free;
-    memcpy(w->place_law, w->law, n);
-    memcpy(w->place_target, w->target, bytes);
-    memcpy(w->place_q_N_per_m, w->q_N_per_m, bytes);
-    memcpy(w->place_before_m, w->position_m, places);
+    memcpy(w->loose_law, w->law, n);
+    memcpy(w->loose_target, w->target, bytes);
+    memcpy(w->loose_q_N_per_m, w->q_N_per_m, bytes);
+    memcpy(w->loose_before_m, w->position_m, places);
     set_up_places(m, w);
     hf_form_settings tight = *s;
     tight.residual_tolerance = PLACE_TOLERANCE;
     tight.length_tolerance = fmin(s->length_tolerance, PLACE_TOLERANCE);
-    hf_status status = hf_interior_run_held(m, &tight, w, PLACE_MAX, n_step, &culprit);
+    hf_status status = hf_interior_run(m, &tight, w, true, PLACE_MAX, n_step, &culprit);
     w->n_moving = n_moving;
-    memcpy(w->law, w->place_law, n);
-    memcpy(w->target, w->place_target, bytes);
-    memcpy(w->q_N_per_m, w->place_q_N_per_m, bytes);
-    if (!fits(m, s, w)) memcpy(w->position_m, w->place_before_m, places);
+    memcpy(w->law, w->loose_law, n);
+    memcpy(w->target, w->loose_target, bytes);
+    memcpy(w->q_N_per_m, w->loose_q_N_per_m, bytes);
+    if (!fits(m, s, w)) memcpy(w->position_m, w->loose_before_m, places);
     return status;
 }
 
@@ -138,9 +138,9 @@ static void refine(const hf_model *m, const hf_form_settings *s, hf_workspace *w
 {
     size_t places = 3 * (size_t)m->n_node * sizeof(double);
     int n_moving = w->n_moving;
-    memcpy(w->place_before_m, w->position_m, places);
+    memcpy(w->loose_before_m, w->position_m, places);
     w->n_moving = m->n_free;
-    if (!hf_newton_run(m, s, w, REFINE_MAX, n_step)) memcpy(w->position_m, w->place_before_m, places);
+    if (!hf_newton_run(m, s, w, REFINE_MAX, n_step)) memcpy(w->position_m, w->loose_before_m, places);
     w->n_moving = n_moving;
 }
 

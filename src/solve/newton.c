@@ -67,7 +67,7 @@ static imbalance measure_imbalance(const hf_model *m, const hf_workspace *w, con
         double pull[3] = {tension * u[0], tension * u[1], tension * u[2]};
         hf_newton_matrix_add_pull(m, w, e, pull, force);
         if (!hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
-        double gap = length / hf_law_wanted_length_m(cable, tension) - 1;
+        double gap = length / hf_law_required_length_m(cable, tension) - 1;
         if (gap < 0) gap *= fmin(1, tension / m->reference_N);
         result.length_gap = fmax(result.length_gap, fabs(gap));
         result.merit += gap * gap;
@@ -104,7 +104,7 @@ static void right_hand_side(const hf_model *m, const hf_workspace *w, const doub
         hf_law_cable cable = hf_workspace_cable(m, w, e);
         if (!hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
         double length = hf_newton_matrix_direction(m, w->position_m, e, u);
-        double T = w->tension_N[e], beyond = length - hf_law_wanted_length_m(cable, T);
+        double T = w->tension_N[e], beyond = length - hf_law_required_length_m(cable, T);
         double more = tension_change(cable, length, T, 1, beyond), pull[3] = {more * u[0], more * u[1], more * u[2]};
         hf_newton_matrix_add_pull(m, w, e, pull, rhs);
     }
@@ -132,7 +132,7 @@ static void try_step(const hf_model *m, hf_workspace *w, double part)
         if (!hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         double length = hf_newton_matrix_direction(m, w->position_m, e, u), T = w->tension_N[e];
-        double beyond = length - hf_law_wanted_length_m(cable, T);
+        double beyond = length - hf_law_required_length_m(cable, T);
         for (int c = 0; c < 3; c++) {
             if (a < w->n_moving) beyond -= u[c] * step[3 * a + c];
             if (b < w->n_moving) beyond += u[c] * step[3 * b + c];
@@ -150,6 +150,19 @@ static bool is_balanced(const hf_model *m, const hf_form_settings *s, const imba
            now->truss_m <= fmax(s->coupling.tof_m, HF_JOINT_NO_GAP_M);
 }
 
+void hf_newton_set_force_densities(const hf_model *m, unsigned may_be_slack, hf_workspace *w)
+{
+    double u[3];
+    for (int e = 0; e < m->n_cable; e++) {
+        hf_law_cable cable = hf_workspace_cable(m, w, e);
+        double length = w->length_m[e] = hf_newton_matrix_direction(m, w->position_m, e, u);
+        double T = hf_newton_matrix_tension_N(cable, length, w->tension_N[e]);
+        bool is_nothing = hf_law_has(cable.law, may_be_slack) && T < HF_NEWTON_NOTHING * m->reference_N;
+        bool is_spring = hf_newton_matrix_is_spring(cable.law);
+        w->q_N_per_m[e] = is_nothing ? 0 : is_spring ? hf_law_tension_N(cable, 1) : T / length;
+    }
+}
+
 bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w, int max_steps, int *n_step)
 {
     /* A tenth of the tolerances is the aim, so that a later linear solve still meets them. */
@@ -158,7 +171,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
     tight.length_tolerance = fmax(0.1 * s->length_tolerance, 1e-14);
     tight.coupling.tof_m = 0.1 * s->coupling.tof_m;
     imbalance now = measure_imbalance(m, w, w->position_m, w->tension_N, w->newton_force_N), next = now;
-    double first_merit = now.merit, u[3];
+    double first_merit = now.merit;
     int n_trusted = 0;
     for (int k = 0; k < max_steps && !is_balanced(m, &tight, &now); k++) {
         if (hf_joint_factor(m, w, hf_newton_matrix_block, NULL, NULL) != HF_OK) break;
@@ -185,14 +198,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         hf_history_add_step(m, w, now.residual_N, now.length_gap, now.truss_m);
     }
     if (!(now.merit < first_merit)) return false;
-    for (int e = 0; e < m->n_cable; e++) {
-        hf_law_cable cable = hf_workspace_cable(m, w, e);
-        double length = hf_newton_matrix_direction(m, w->position_m, e, u);
-        double T = hf_newton_matrix_tension_N(cable, length, w->tension_N[e]);
-        bool is_nothing = hf_law_has(cable.law, HF_LAW_GOES_SLACK) && T < HF_NEWTON_NOTHING * m->reference_N;
-        bool is_spring = hf_newton_matrix_is_spring(cable.law);
-        w->q_N_per_m[e] = is_nothing ? 0 : is_spring ? hf_law_tension_N(cable, 1) : T / length;
-    }
+    hf_newton_set_force_densities(m, HF_LAW_GOES_SLACK, w);
     return true;
 }
 
@@ -258,7 +264,7 @@ static void look_for_drift(const hf_model *m, hf_workspace *w, hf_form_result *r
 
 double hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
 {
-    double largest = 0, least = 0;
+    double least = 0;
     int n_moving = w->n_moving;
     hf_status status = HF_OK;
     w->n_moving = m->n_free + m->n_attachment;
@@ -272,12 +278,7 @@ double hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
         status = hf_joint_factor(m, w, hf_newton_matrix_block, w->spring_N_per_m, &r->condition);
     }
     if (status == HF_OK) solve_step_of(m, w);
-    for (int i = 0; i < w->n_moving && status == HF_OK; i++) {
-        const double *d = w->newton_step + 3 * i;
-        double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        if (!(square <= largest)) largest = square; /* a NaN stays */
-    }
-    if (status == HF_OK && !r->n_loose) r->position_error_m = sqrt(largest);
+    if (status == HF_OK && !r->n_loose) r->position_error_m = hf_joint_largest(w->n_moving, 1, w->newton_step, NULL);
     if (status != HF_OK) r->condition = (double)NAN;
     if (r->condition > DRIFT_CONDITION) look_for_drift(m, w, r);
     w->n_moving = n_moving;

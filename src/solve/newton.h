@@ -16,6 +16,10 @@
 bool hf_newton_run(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace, int max_steps,
                    int *n_step);
 
+/* Sets q_N_per_m and length_m for position_m and the multipliers in tension_N. Cables whose law has one of the flags
+ * may_be_slack have no force below HF_NEWTON_NOTHING. */
+void hf_newton_set_force_densities(const hf_model *model, unsigned may_be_slack, hf_workspace *workspace);
+
 /* Sets condition and position_error_m of the result whose shape is in the workspace. The position error is the maximum
  * displacement of a node in the next Newton step of net and truss together. If there is no such step, condition is NaN
  * and position_error_m is unchanged; it is also unchanged with loose nodes. Sets n_drifting and culprit if the

@@ -113,9 +113,11 @@ static void back_solve(const hf_model *m, const hf_workspace *w, int n, int half
     (m->by_lapack ? hf_band_back_solve_lapack : hf_band_back_solve)(n, half_bandwidth, n_rhs, w->newton_band, rhs, n);
 }
 
-static hf_status factor_some(const hf_model *m, hf_workspace *w, hf_newton_block *block_of,
-                             const double *spring_N_per_m, const hf_newton_rows *rows, double *condition)
+hf_status hf_newton_matrix_factor_blocks(const hf_model *m, hf_workspace *w, hf_newton_block *block_of,
+                                         const double *spring_N_per_m, const hf_newton_rows *rows, double *condition)
 {
+    hf_newton_rows all = all_rows(m);
+    if (!rows) rows = &all;
     int n = 3 * rows->n, k = column_of(rows) - 1;
     double shift = DIAGONAL_GUARD;
     for (;; shift = shift < SHIFT_FIRST ? SHIFT_FIRST : 100 * shift) {
@@ -129,19 +131,6 @@ static hf_status factor_some(const hf_model *m, hf_workspace *w, hf_newton_block
         if (condition && shift > DIAGONAL_GUARD) *condition = INFINITY;
         return HF_OK;
     }
-}
-
-hf_status hf_newton_matrix_factor_blocks(const hf_model *m, hf_workspace *w, hf_newton_block *block_of,
-                                         const double *spring_N_per_m, double *condition)
-{
-    hf_newton_rows rows = all_rows(m);
-    return factor_some(m, w, block_of, spring_N_per_m, &rows, condition);
-}
-
-hf_status hf_newton_matrix_factor_rows(const hf_model *m, hf_workspace *w, hf_newton_block *block_of,
-                                       const double *spring_N_per_m, const hf_newton_rows *rows)
-{
-    return factor_some(m, w, block_of, spring_N_per_m, rows, NULL);
 }
 
 /* Returns the maximum sum of T/l of the cables at a free node, N/m. Sets *n_most to the maximum number of cables at
@@ -199,7 +188,7 @@ void hf_newton_matrix_solve_rows(const hf_model *m, const hf_workspace *w, const
 
 hf_status hf_newton_matrix_factor(const hf_model *m, hf_workspace *w, double *condition)
 {
-    return hf_newton_matrix_factor_blocks(m, w, hf_newton_matrix_block, NULL, condition);
+    return hf_newton_matrix_factor_blocks(m, w, hf_newton_matrix_block, NULL, NULL, condition);
 }
 
 void hf_newton_matrix_solve_many(const hf_model *m, const hf_workspace *w, int n_rhs, double *rhs)

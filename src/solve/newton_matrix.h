@@ -97,7 +97,7 @@ static inline double hf_newton_matrix_tension_N(hf_law_cable cable, double lengt
 static inline double hf_newton_matrix_stiffness(hf_law_cable cable, double length_m, double tension_N)
 {
     if (hf_law_has(cable.law, HF_LAW_IS_RIGID))
-        return HF_NEWTON_STIFFENING * tension_N / hf_law_wanted_length_m(cable, tension_N);
+        return HF_NEWTON_STIFFENING * tension_N / hf_law_required_length_m(cable, tension_N);
     return hf_law_stiffness_N_per_m(cable, length_m);
 }
 
@@ -140,14 +140,13 @@ hf_status hf_newton_matrix_factor(const hf_model *model, hf_workspace *workspace
 double hf_newton_matrix_assemble_blocks(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of);
 
 /* Factors the matrix of these blocks, as hf_newton_matrix_factor does. block_of is not called for cables between two
- * supports. spring_N_per_m [n_free] (may be NULL) are springs that tie the rows to the ground. */
+ * supports. spring_N_per_m [n_free] (may be NULL) are springs that tie the rows to the ground. `rows` are the moving
+ * rows; NULL: all rows move. */
 hf_status hf_newton_matrix_factor_blocks(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
-                                         const double *spring_N_per_m, double *condition);
+                                         const double *spring_N_per_m, const hf_newton_rows *rows, double *condition);
 
-/* hf_newton_matrix_factor_rows does the same for the moving rows alone. hf_newton_matrix_solve_rows solves with that
- * factor in place: rhs [3 n_free], forces in N, becomes the step in m, with 0 in the fixed rows. */
-hf_status hf_newton_matrix_factor_rows(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
-                                       const double *spring_N_per_m, const hf_newton_rows *rows);
+/* Solves with the factor of the moving rows in place: rhs [3 n_free], forces in N, becomes the step in m, with 0 in the
+ * fixed rows. */
 void hf_newton_matrix_solve_rows(const hf_model *model, const hf_workspace *workspace, const hf_newton_rows *rows,
                                  double *rhs);
 

@@ -9,10 +9,24 @@
  *         v
  *     derivative [n_row] by that variable
  *
- * objectives_make.c creates the objectives, and objectives_nets.c handles those over as-built nets. */
+ * Objectives over nets made of the design, which are its load cases and samples of its errors:
+ *
+ *     shape of the design
+ *         | cut its pieces, solve the nets (functions of hf_objectives_nets)
+ *         v
+ *     residuals, value and norm of each net
+ *         | gather: mean (root of the mean of squares), worst (smooth maximum P), or a quantile
+ *         v
+ *     residuals of the objective, with its value and norm
+ *         | linearise and push net by net, then close: the chain rule of mean and worst
+ *         v
+ *     change of these residuals by a variable
+ *
+ * objectives_make.c creates the objectives. */
 #include <hifdm/objectives.h>
 
 #include "base/arena.h"
+#include "base/elementary.h"
 #include "linalg/dot.h"
 #include "surface/cloud.h"
 #include "surface/gain.h"
@@ -20,6 +34,7 @@
 #include <hifdm/metrics.h>
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- points ---- */
@@ -91,9 +106,8 @@ hf_status hf_objectives_point_create(const hf_objectives *objectives, hf_objecti
 
 void hf_objectives_point_free(hf_objectives_point *point)
 {
-    hf_arena arena = {.block = point->block};
     if (point->nets) point->free_nets(point->nets);
-    hf_arena_free(&arena);
+    hf_arena_free_block(point->block);
     *point = (hf_objectives_point){0};
 }
 
@@ -258,10 +272,11 @@ static double measure_ratio(const hf_objective *g, const hf_model *m, const hf_w
     return ratio;
 }
 
-/* The value and the norm differ for a maximum of several sizes and for a ratio. The value is then the true one, and the
- * norm the smooth one. */
-hf_status hf_objectives_measure_shape(const hf_objectives *objectives, int k, const hf_workspace *w,
-                                      hf_objectives_point *p, double *f, double *value, double *norm)
+/* Computes the residuals of objective k for one shape, without its weight, their norm and the value. Returns
+ * HF_OK or HF_NO_MEMORY. The value and the norm differ for a maximum of several sizes and for a ratio. The value is then
+ * the true one, and the norm the smooth one. */
+static hf_status measure_shape(const hf_objectives *objectives, int k, const hf_workspace *w, hf_objectives_point *p,
+                               double *f, double *value, double *norm)
 {
     const hf_model *m = objectives->model;
     const hf_objective *g = &objectives->objective[k];
@@ -299,21 +314,156 @@ hf_status hf_objectives_measure_shape(const hf_objectives *objectives, int k, co
     return HF_OK;
 }
 
+/* ---- which nets ---- */
+
+bool hf_objectives_is_smooth(const hf_objective_settings *objective)
+{
+    return !(objective->quantile > 0);
+}
+
+static bool is_over(const hf_objective *g, int i_net)
+{
+    return i_net >= g->first_net && i_net < g->first_net + g->n_net;
+}
+
+bool hf_objectives_are_over(const hf_objectives *objectives, int i_net)
+{
+    for (int k = 0; k < objectives->n_objective; k++)
+        if (is_over(&objectives->objective[k], i_net)) return true;
+    return false;
+}
+
+/* Returns the row at which the residuals of net i_net begin. */
+static int row_of_net(const hf_objective *g, int i_net)
+{
+    return g->first_row + (i_net - g->first_net) * g->n_shape_row;
+}
+
+static size_t place_of_net(const hf_objectives *objectives, int k, int i_net)
+{
+    return (size_t)k * ((size_t)objectives->nets->n_load_case + (size_t)objectives->nets->n_sample) + (size_t)i_net;
+}
+
+/* ---- residuals over as-built nets ---- */
+
+typedef struct {
+    const hf_objectives *objectives;
+    hf_objectives_point *point;
+    double *residual;
+    hf_status status;
+} measured_nets;
+
+/* Measures the objectives over net i_net. A net without a shape, or without a value, counts as the worst: both are
+ * infinite. */
+static void measure_net(void *context, int i_net, const hf_workspace *shape)
+{
+    measured_nets *q = context;
+    for (int k = 0; k < q->objectives->n_objective; k++) {
+        const hf_objective *g = &q->objectives->objective[k];
+        double *f = q->residual + row_of_net(g, i_net), value = INFINITY, norm = INFINITY;
+        if (!is_over(g, i_net)) continue;
+        memset(f, 0, (size_t)g->n_shape_row * sizeof *f);
+        if (shape && measure_shape(q->objectives, k, shape, q->point, f, &value, &norm) != HF_OK)
+            q->status = HF_NO_MEMORY;
+        q->point->net_value[place_of_net(q->objectives, k, i_net)] = isnan(value) ? (double)INFINITY : value;
+        q->point->net_norm[place_of_net(q->objectives, k, i_net)] = isnan(norm) ? (double)INFINITY : norm;
+    }
+}
+
+/* Finds the as-built nets of the design in the workspace. residual [n_row] receives the residuals of the objectives over
+ * nets, without weights; net_value and net_norm of the point are set. Returns HF_OK, also if nets have no shape;
+ * HF_NO_MEMORY. */
+static hf_status measure_nets(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,
+                              double *residual)
+{
+    const hf_objectives_nets *nets = objectives->nets;
+    measured_nets q = {objectives, p, residual, HF_OK};
+    int n_load_case = nets->n_load_case, n_sample = nets->n_sample;
+    bool has_samples = n_sample > 0 && hf_objectives_are_over(objectives, n_load_case);
+    hf_status status = nets->cut(p->nets, w);
+    if (status == HF_NO_MEMORY) return status;
+    for (int i = 0; i < n_load_case + n_sample && status != HF_OK; i++)
+        measure_net(&q, i, NULL);
+    for (int i = 0; i < n_load_case && status == HF_OK; i++)
+        if (hf_objectives_are_over(objectives, i)) nets->solve(p->nets, i, 1, measure_net, &q);
+    if (has_samples && status == HF_OK) nets->solve(p->nets, n_load_case, n_sample, measure_net, &q);
+    return q.status;
+}
+
+/* Returns the value that the fraction `part` of n values does not exceed, an order statistic as in built/statistics.h.
+ * order [n] is scratch. */
+static double quantile_of(int n, const double *value, double part, double *order)
+{
+    int rank = (int)ceil(part * n);
+    memcpy(order, value, (size_t)n * sizeof *order);
+    qsort(order, (size_t)n, sizeof *order, hf_compare_doubles);
+    return order[rank > 0 ? rank - 1 : 0];
+}
+
+/* Multiplies the residuals f of each net by (S/P)^7 and returns their norm P. S is the norm of a net and P the smooth
+ * maximum of all S. part [n_net] becomes S/P. */
+static double scale_worst(const hf_objective *g, const double *norm, double *part, double *f)
+{
+    double smooth;
+    memcpy(part, norm, (size_t)g->n_net * sizeof *part);
+    hf_objectives_smooth_maximum(g->n_net, part, &smooth);
+    for (int s = 0; s < g->n_net; s++)
+        for (int i = 0; i < g->n_shape_row; i++)
+            f[s * g->n_shape_row + i] *= hf_objectives_seventh(part[s]);
+    return smooth;
+}
+
+static double largest_of(int n, const double *value)
+{
+    double largest = 0;
+    for (int s = 0; s < n; s++)
+        largest = fmax(largest, value[s]);
+    return largest;
+}
+
+/* Combines the nets of objective k: sets *value and *norm. Except for a quantile, its residuals f [n_row of the
+ * objective] are scaled so that they have this norm. */
+static void gather_nets(const hf_objectives *objectives, int k, hf_objectives_point *p, double *f, double *value,
+                        double *norm)
+{
+    const hf_objective *g = &objectives->objective[k];
+    const double *of_net = p->net_value + place_of_net(objectives, k, g->first_net);
+    const double *norm_of_net = p->net_norm + place_of_net(objectives, k, g->first_net);
+    double *part = p->net_part + place_of_net(objectives, k, g->first_net);
+    size_t n = (size_t)g->n_net;
+    *value = largest_of(g->n_net, of_net);
+    *norm = largest_of(g->n_net, norm_of_net);
+    if (g->n_net == 1) return;
+    if (g->settings.quantile > 0) {
+        *value = quantile_of(g->n_net, of_net, g->settings.quantile, part);
+        *norm = quantile_of(g->n_net, norm_of_net, g->settings.quantile, part);
+    } else if (isfinite(*norm) && g->settings.take == HF_TAKE_WORST) {
+        *norm = scale_worst(g, norm_of_net, part, f);
+    } else if (isfinite(*norm)) {
+        *value = sqrt(hf_dot(n, of_net, of_net) / g->n_net);
+        *norm = sqrt(hf_dot(n, norm_of_net, norm_of_net) / g->n_net);
+        for (int i = 0; i < g->n_row; i++)
+            f[i] /= sqrt(g->n_net);
+    }
+}
+
+/* ---- all residuals ---- */
+
 /* Sets f [n_row] to the weighted residuals, `value` [n_objective] (may be NULL) and *merit. with_nets: of all
  * objectives, else of those of the design itself alone. Returns HF_OK or HF_NO_MEMORY. */
 static hf_status measure_all(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,
                              bool with_nets, double *f, double *value, double *merit)
 {
     double square = 0, norm = 0;
-    if (objectives->nets && with_nets) HF_TRY(hf_objectives_nets_measure(objectives, w, p, f));
+    if (objectives->nets && with_nets) HF_TRY(measure_nets(objectives, w, p, f));
     for (int k = 0; k < objectives->n_objective; k++) {
         const hf_objective *g = &objectives->objective[k];
         double one, *of_objective = f + g->first_row;
         if (g->n_net && !with_nets) continue;
         if (g->n_net)
-            hf_objectives_nets_gather(objectives, k, p, of_objective, value ? &value[k] : &one, &norm);
+            gather_nets(objectives, k, p, of_objective, value ? &value[k] : &one, &norm);
         else
-            HF_TRY(hf_objectives_measure_shape(objectives, k, w, p, of_objective, value ? &value[k] : &one, &norm));
+            HF_TRY(measure_shape(objectives, k, w, p, of_objective, value ? &value[k] : &one, &norm));
         for (int i = 0; i < g->n_row; i++)
             of_objective[i] *= g->settings.weight;
         norm *= g->settings.weight;
@@ -329,35 +479,24 @@ hf_status hf_objectives_measure(const hf_objectives *objectives, const hf_worksp
     return measure_all(objectives, w, p, true, p->row, value, merit);
 }
 
-hf_status hf_objectives_linearise_shape(const hf_objectives *objectives, int k, const hf_workspace *w,
-                                        hf_objectives_point *p)
+/* Prepares push_shape for objective k and the shape that was measured last. Returns HF_OK,
+ * HF_NOT_FINITE or HF_NO_MEMORY. */
+static hf_status linearise_shape(const hf_objectives *objectives, int k, const hf_workspace *w, hf_objectives_point *p)
 {
     if (objectives->objective[k].settings.figure == HF_FIGURE_GAIN) hf_gain_linearise(&p->gain[k], w->position_m);
     return hf_objectives_is_on_surface(objectives->objective[k].settings.figure) ? hf_cloud_linearise(&p->cloud[k])
                                                                                  : HF_OK;
 }
 
-static hf_status linearise_all(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,
-                               bool with_nets, double *residual)
+hf_status hf_objectives_linearise(const hf_objectives *objectives, bool with_nets, const hf_workspace *w,
+                                  hf_objectives_point *p, double *residual)
 {
     double merit;
     HF_TRY(measure_all(objectives, w, p, with_nets, residual, NULL, &merit));
     if (!isfinite(merit)) return HF_NOT_FINITE;
     for (int k = 0; k < objectives->n_objective; k++)
-        if (!objectives->objective[k].n_net) HF_TRY(hf_objectives_linearise_shape(objectives, k, w, p));
+        if (!objectives->objective[k].n_net) HF_TRY(linearise_shape(objectives, k, w, p));
     return HF_OK;
-}
-
-hf_status hf_objectives_linearise(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,
-                                  double *residual)
-{
-    return linearise_all(objectives, w, p, true, residual);
-}
-
-hf_status hf_objectives_linearise_design(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,
-                                         double *residual)
-{
-    return linearise_all(objectives, w, p, false, residual);
 }
 
 /* ---- derivatives ---- */
@@ -481,8 +620,10 @@ static void push_ratio(const hf_objective *g, const hf_workspace *w, hf_objectiv
     }
 }
 
-void hf_objectives_push_shape(const hf_objectives *objectives, int k, const hf_workspace *w, hf_objectives_point *p,
-                              const hf_objectives_rate *by, double *rate)
+/* Computes the rates of the residuals of objective k for one shape, without its weight, from the rates `by`
+ * of the shape. */
+static void push_shape(const hf_objectives *objectives, int k, const hf_workspace *w, hf_objectives_point *p,
+                       const hf_objectives_rate *by, double *rate)
 {
     const hf_model *m = objectives->model;
     const hf_objective *g = &objectives->objective[k];
@@ -517,8 +658,74 @@ void hf_objectives_push(const hf_objectives *objectives, const hf_workspace *w, 
     for (int k = 0; k < objectives->n_objective; k++) {
         const hf_objective *g = &objectives->objective[k];
         if (g->n_net) continue;
-        hf_objectives_push_shape(objectives, k, w, p, by, rate + g->first_row);
+        push_shape(objectives, k, w, p, by, rate + g->first_row);
         for (int i = 0; i < g->n_row; i++)
             rate[g->first_row + i] *= g->settings.weight;
+    }
+}
+
+/* ---- derivatives over as-built nets ---- */
+
+hf_status hf_objectives_nets_linearise(const hf_objectives *objectives, int i_net, hf_objectives_point *p,
+                                       const hf_workspace **shape)
+{
+    HF_TRY(objectives->nets->linearise(p->nets, i_net, shape));
+    for (int k = 0; k < objectives->n_objective; k++) {
+        double value, norm;
+        if (!is_over(&objectives->objective[k], i_net)) continue;
+        HF_TRY(measure_shape(objectives, k, *shape, p, p->row, &value, &norm));
+        if (!isfinite(norm)) return HF_NOT_FINITE;
+        HF_TRY(linearise_shape(objectives, k, *shape, p));
+    }
+    return HF_OK;
+}
+
+void hf_objectives_nets_push(const hf_objectives *objectives, int i_net, const hf_workspace *shape,
+                             hf_objectives_point *p, const hf_objectives_rate *by, double *rate)
+{
+    for (int k = 0; k < objectives->n_objective; k++)
+        if (is_over(&objectives->objective[k], i_net))
+            push_shape(objectives, k, shape, p, by, rate + row_of_net(&objectives->objective[k], i_net));
+}
+
+/* Replaces rate, the changes dg of the residuals g of each net alone, by the changes of f = weight (S/P)^7 g, the
+ * residuals of the objective. They are df = weight (S/P)^7 dg + 7 f (dS/S - dP/P) with dP = sum (S/P)^15 dS. dS is the
+ * component of dg along g. norm [n_net] has S and part [n_net] has S/P. */
+static void close_worst(const hf_objective *g, const double *norm, const double *part, const double *f, double *rate)
+{
+    double smooth = 0, smooth_rate = 0;
+    size_t n = (size_t)g->n_shape_row;
+    for (int s = 0; s < g->n_net; s++)
+        if (norm[s] > 0) smooth = fmax(smooth, norm[s] / part[s]);
+    for (int pass = 0; pass < 2; pass++)
+        for (int s = 0; s < g->n_net; s++) {
+            const double *of_net = f + (size_t)s * n;
+            double *by_net = rate + (size_t)s * n, length = sqrt(hf_dot(n, of_net, of_net));
+            double seventh = hf_objectives_seventh(part[s]), turn = 0;
+            double norm_rate = length > 0 ? hf_dot(n, of_net, by_net) / length : 0;
+            if (pass == 0) {
+                smooth_rate += seventh * seventh * part[s] * norm_rate;
+                continue;
+            }
+            if (length > 0) turn = 7 * (norm_rate / norm[s] - smooth_rate / smooth);
+            for (size_t i = 0; i < n; i++)
+                by_net[i] = g->settings.weight * seventh * by_net[i] + turn * of_net[i];
+        }
+}
+
+void hf_objectives_nets_close(const hf_objectives *objectives, const hf_objectives_point *p, const double *residual,
+                              double *rate)
+{
+    for (int k = 0; k < objectives->n_objective; k++) {
+        const hf_objective *g = &objectives->objective[k];
+        double *of_objective = rate + g->first_row;
+        if (g->n_net == 0) continue;
+        if (g->settings.take == HF_TAKE_WORST && g->n_net > 1) {
+            size_t at = place_of_net(objectives, k, g->first_net);
+            close_worst(g, p->net_norm + at, p->net_part + at, residual + g->first_row, of_objective);
+            continue;
+        }
+        for (int i = 0; i < g->n_row; i++)
+            of_objective[i] *= g->settings.weight / sqrt(g->n_net);
     }
 }

@@ -235,7 +235,6 @@ const char *hf_objectives_name(const hf_objectives *objectives, int i_objective,
 
 void hf_objectives_free(hf_objectives *objectives)
 {
-    hf_arena arena = {.block = objectives->block};
-    hf_arena_free(&arena);
+    hf_arena_free_block(objectives->block);
     *objectives = (hf_objectives){0};
 }

@@ -1,4 +1,4 @@
-/* Computes the parts of the cables in a step of the primal-dual path (path_cable.h), eight cables at a time. The file
+/* Computes the parts of the cables in a step of the primal-dual path, eight cables at a time. The file
  * is compiled once for each instruction set.
  *
  *     measure:        v, d, T, t  -> gap = T v - t.d, short_m = L + c T - v, t of springs
@@ -71,7 +71,7 @@ INLINE bool is_empty(const hf_path_cables *p)
 
 /* ---- errors ---- */
 
-double HF_KERNEL(hf_path_measure)(int n_block, hf_path_cables *block)
+static double measure(int n_block, hf_path_cables *block)
 {
     lanes most = {0};
     for (hf_path_cables *p = block; p < block + n_block; p++) {
@@ -151,7 +151,7 @@ INLINE void set_stiffness(hf_path_cables *p, lanes eta2, vectors w1)
         lanes_store(p->unit[c], lanes_choose(cone & (length > 0), w1.x[c] / length, (lanes){0}));
 }
 
-void HF_KERNEL(hf_path_set_scaling)(int n_block, hf_path_cables *block)
+static void set_scaling(int n_block, hf_path_cables *block)
 {
     for (hf_path_cables *p = block; p < block + n_block; p++) {
         if (is_empty(p)) continue;
@@ -179,7 +179,7 @@ void HF_KERNEL(hf_path_set_scaling)(int n_block, hf_path_cables *block)
 
 /* ---- right-hand side ---- */
 
-void HF_KERNEL(hf_path_set_side)(int n_block, hf_path_cables *block, double target, bool corrected)
+static void set_side(int n_block, hf_path_cables *block, double target, bool corrected)
 {
     for (hf_path_cables *p = block; p < block + n_block; p++) {
         if (is_empty(p)) continue;
@@ -226,7 +226,7 @@ INLINE lanes inverse_room(const hf_path_cables *p, lanes a0, vectors a1)
     return (lanes_root(inner(r1, r1)) - r0) / det;
 }
 
-double HF_KERNEL(hf_path_set_direction)(int n_block, hf_path_cables *block, bool corrects)
+static double set_direction(int n_block, hf_path_cables *block, bool corrects)
 {
     lanes most = {0};
     for (hf_path_cables *p = block; p < block + n_block; p++) {
@@ -261,7 +261,7 @@ double HF_KERNEL(hf_path_set_direction)(int n_block, hf_path_cables *block, bool
 
 /* ---- move ---- */
 
-void HF_KERNEL(hf_path_move)(int n_block, hf_path_cables *block, double part)
+static void move(int n_block, hf_path_cables *block, double part)
 {
     for (hf_path_cables *p = block; p < block + n_block; p++) {
         if (is_empty(p)) continue;
@@ -276,3 +276,5 @@ void HF_KERNEL(hf_path_move)(int n_block, hf_path_cables *block, double part)
         }
     }
 }
+
+const hf_path_kernels HF_KERNEL(hf_path_kernels) = {measure, set_scaling, set_side, set_direction, move};

@@ -1,4 +1,4 @@
-/* Computes the equilibrium near a found shape at twice the precision. bound.c certifies its bounds at this precise
+/* Computes the equilibrium near a found shape at twice the precision. certificate.c certifies its bounds at this precise
  * shape.
  *
  *     shape, tensions and factored matrix in the workspace
@@ -130,12 +130,7 @@ bool hf_precise_open(const hf_model *m, hf_workspace *w, double condition, hf_pr
 
 /* ---- forces and lengths at twice the precision ---- */
 
-static hf_precise_measure *measure_here(void)
-{
-    static hf_precise_measure *const of_isa[HF_LANE_N_ISA] = {hf_precise_measure_portable, hf_precise_measure_avx2,
-                                                              hf_precise_measure_avx512};
-    return of_isa[hf_lane_best_isa()];
-}
+static hf_precise_measure *const measure_of_isa[] = {HF_LANE_EACH(hf_precise_measure)};
 
 /* Copies cable e into lane k. */
 static void put_cable(const hf_precise *p, int e, hf_precise_lanes *l, int k)
@@ -211,7 +206,7 @@ static double measure_precise(hf_precise *p, bool by_law)
             kept[n] = e;
             put_cable(p, e, &lanes, n++);
         }
-        measure_here()(&lanes, by_law);
+        measure_of_isa[hf_lane_best_isa()](&lanes, by_law);
         for (int k = 0; k < n; k++)
             largest = fmax(largest, take_cable(p, kept[k], &lanes, k));
     }
@@ -319,21 +314,13 @@ static void solve_free(const hf_precise *p, double *v)
         v[i] = b[i % 3 * m->n_node + i / 3];
 }
 
-/* Completes the factor of hf_newton_certify, or that of D, with the rows of the truss. Returns false if there is
- * none. */
-static bool factor_first_truss(hf_precise *p)
+/* Completes the factor of the matrix with the rows of the truss. With is_first it is that of hf_newton_certify, or that of
+ * D, else that at the precise shape. Returns false if there is none. */
+static bool factor_truss(hf_precise *p, bool is_first)
 {
-    p->truss.block_of = hf_newton_matrix_block;
-    if (p->m->has_newton) return hf_flexibility_factor_schur(p->m, p->w, &p->truss.flexibility);
-    return hf_flexibility_factor_net(p->m, p->w, hf_newton_matrix_block, NULL, 1, &p->truss.flexibility);
-}
-
-/* Completes the factor of the matrix at the precise shape with the rows of the truss. Returns false if there is
- * none. */
-static bool factor_truss(hf_precise *p)
-{
-    p->truss.block_of = hf_precise_block;
-    return hf_flexibility_factor_net(p->m, p->w, hf_precise_block, NULL, 1, &p->truss.flexibility);
+    hf_newton_block *block_of = p->truss.block_of = is_first ? hf_newton_matrix_block : hf_precise_block;
+    if (is_first && p->m->has_newton) return hf_flexibility_factor_schur(p->m, p->w, &p->truss.flexibility);
+    return hf_flexibility_factor_net(p->m, p->w, block_of, NULL, 1, &p->truss.flexibility);
 }
 
 /* Replaces the forces in `step` by the step. Let p be the pull on the attachments after the step of the free nodes
@@ -480,8 +467,8 @@ static bool factor_anew(hf_precise *p)
         c->along = c->is_taut > 0 ? hf_law_stiffness_N_per_m(cable, INFINITY) : 0;
         if (multiplier && isinf(c->along)) c->along = hf_newton_matrix_rigid_stiffness(m, e, c->T.hi);
     }
-    bool is_factored = hf_newton_matrix_factor_blocks(m, p->w, hf_precise_block, NULL, &p->condition) == HF_OK &&
-                       (!m->n_attachment || factor_truss(p));
+    bool is_factored = hf_newton_matrix_factor_blocks(m, p->w, hf_precise_block, NULL, NULL, &p->condition) == HF_OK &&
+                       (!m->n_attachment || factor_truss(p, false));
     for (int e = 0; e < m->n_cable; e++) /* from here on, `along` belongs to multipliers alone */
         if (!hf_law_has((hf_law)p->w->law[e], HF_LAW_HAS_MULTIPLIER)) p->cable[e].along = 0;
     return is_factored;
@@ -505,7 +492,7 @@ static bool is_told_apart(const hf_precise *p)
 hf_bound_reason hf_precise_approach(hf_precise *p, bool has_factor)
 {
     hf_bound_reason reason = HF_BOUND_NOT_CONTRACTING;
-    if (has_factor && p->m->n_attachment) has_factor = factor_first_truss(p);
+    if (has_factor && p->m->n_attachment) has_factor = factor_truss(p, true);
     if (!has_factor) measure_precise(p, false);
     for (int k = has_factor ? 0 : 1; k <= MATRICES_MAX; k++) {
         p->is_first_matrix = k == 0;

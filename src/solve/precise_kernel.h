@@ -24,6 +24,6 @@ typedef struct {
 /* Measures the cables in the lanes. With by_law, elastic cables pull with the tension that their law gives at their
  * length, else with T. */
 typedef void hf_precise_measure(hf_precise_lanes *lanes, bool by_law);
-hf_precise_measure hf_precise_measure_portable, hf_precise_measure_avx2, hf_precise_measure_avx512;
+hf_precise_measure HF_LANE_EACH(hf_precise_measure);
 
 #endif

@@ -50,47 +50,40 @@
 
 /* ---- layout ---- */
 
+/* The arrays of the programme (M27) for a model m; e is its number of cables. */
+#define PROGRAMME_FIELDS(X)                                                                                            \
+    X(double, wanted_N, e, "required tensions")                                                                        \
+    X(double, least_N, e, "minimum tensions")                                                                          \
+    X(double, weight, e, "weights of the cables")                                                                      \
+    X(double, tension_N, e, "tensions under the multipliers")                                                          \
+    X(double, unit, 3 * e, "[n_cable][3] from the first end to the second")                                            \
+    X(int, family, e, "family of the cable")                                                                           \
+    X(double, family_sum_N, to->n_family, "sum of tensions")                                                           \
+    X(int, family_count, to->n_family, "number of cables")                                                             \
+    X(bool, is_free, e, "its law gives no tension")                                                                    \
+    X(bool, is_least, e, "at its minimum tension now")                                                                 \
+    X(bool, was_least, e, "at its minimum tension in the factor")                                                      \
+    X(double, multiplier, to->n, "displacements of the free nodes, by dof")                                            \
+    X(double, trial, to->n, "multipliers at the end of a trial step")                                                  \
+    X(double, force_N, to->n, "A T + P, N")                                                                            \
+    X(double, step, to->n, "of the multipliers")                                                                       \
+    X(double, band, (size_t)to->n *((size_t)to->half_bandwidth + 1), "[n][half_bandwidth+1] the factor of A W A'")
+
 /* The programme (M27) and its dual (M28). The multipliers of the 3 n_free equations are displacements. As in a net of
  * linear springs, the tension of a cable rises by its stretch under them divided by its weight. */
 typedef struct {
     const hf_model *m;
     int n, half_bandwidth, n_family;
     double reference_N;
-    double *wanted_N, *least_N, *weight; /* [n_cable] */
-    double *tension_N;                   /* [n_cable] */
-    double *unit;                        /* [n_cable][3] from the first end to the second */
-    int *family;                         /* [n_cable] */
-    double *family_sum_N;                /* [n_family] */
-    int *family_count;                   /* [n_family] */
-    bool *is_free;                       /* [n_cable] its law gives no tension */
-    bool *is_least, *was_least;          /* [n_cable] at its minimum tension now, and in the factor */
-    double *multiplier, *trial;          /* [n] multipliers, and those at the end of a trial step */
-    double *force_N;                     /* [n] A T + P, N */
-    double *step;                        /* [n] */
-    double *band;                        /* [n][half_bandwidth+1] the factor of A W A' */
+    PROGRAMME_FIELDS(HF_ARENA_MEMBER)
     bool has_factor;
     const volatile sig_atomic_t *stop;
 } programme;
 
-static void lay_out_programme(hf_arena *a, const hf_model *m, programme *p)
+static void lay_out(hf_arena *arena, programme *to)
 {
-    size_t n = (size_t)p->n, e = (size_t)m->n_cable;
-    p->wanted_N = hf_arena_take(a, e, sizeof(double));
-    p->least_N = hf_arena_take(a, e, sizeof(double));
-    p->weight = hf_arena_take(a, e, sizeof(double));
-    p->tension_N = hf_arena_take(a, e, sizeof(double));
-    p->unit = hf_arena_take(a, 3 * e, sizeof(double));
-    p->family = hf_arena_take(a, e, sizeof(int));
-    p->family_sum_N = hf_arena_take(a, (size_t)p->n_family, sizeof(double));
-    p->family_count = hf_arena_take(a, (size_t)p->n_family, sizeof(int));
-    p->is_free = hf_arena_take(a, e, sizeof(bool));
-    p->is_least = hf_arena_take(a, e, sizeof(bool));
-    p->was_least = hf_arena_take(a, e, sizeof(bool));
-    p->multiplier = hf_arena_take(a, n, sizeof(double));
-    p->trial = hf_arena_take(a, n, sizeof(double));
-    p->force_N = hf_arena_take(a, n, sizeof(double));
-    p->step = hf_arena_take(a, n, sizeof(double));
-    p->band = hf_arena_take(a, n * ((size_t)p->half_bandwidth + 1), sizeof(double));
+    size_t e = (size_t)to->m->n_cable;
+    PROGRAMME_FIELDS(HF_ARENA_TAKE)
 }
 
 /* ---- required tensions ---- */
@@ -359,7 +352,7 @@ static hf_status hold(hf_scene *scene, const hf_model *m, const volatile sig_ato
     programme p = {.m = m, .stop = stop, .n = 3 * m->n_free, .half_bandwidth = 3 * m->half_bandwidth + 2};
     p.reference_N = m->reference_N;
     p.n_family = scene->n_set + 2;
-    if (HF_ARENA_MAKE(&arena, lay_out_programme(&arena, m, &p)) != HF_OK)
+    if (HF_ARENA_MAKE(&arena, lay_out(&arena, &p)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the tensions of a net of %d nodes", m->n_node);
     hf_status status = find_tensions(&p, scene, messages);
     for (int e = 0; e < m->n_cable && status == HF_OK; e++) {

@@ -10,12 +10,10 @@
  *     hf_schur_modes: (I + F S)^-1 as I plus a few modes, for the lanes of the population solver */
 #include "solve/schur.h"
 
-#include "base/arena.h"
 #include "linalg/dense.h"
 #include "linalg/dot.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* F is symmetric, so its columns are its rows. */
@@ -23,71 +21,52 @@ void hf_schur_flex(const hf_model *m, const double *force, double *r)
 {
     size_t n = (size_t)(3 * m->n_attachment);
     memset(r, 0, n * sizeof *r);
-    for (size_t j = 0; j < n; j++) {
-        const double *column = m->flexibility_m_per_N + j * n;
-        for (size_t i = 0; i < n; i++)
-            r[i] += column[i] * force[j];
-    }
+    for (size_t j = 0; j < n; j++)
+        hf_subtract(n, -force[j], m->flexibility_m_per_N + j * n, r);
 }
 
-static void lay_out_schur(hf_arena *arena, const hf_model *m, hf_schur *s)
-{
-    size_t n = (size_t)s->n;
-    s->stiffness = hf_arena_take(arena, n * n, sizeof(double));
-    s->flexed = hf_arena_take(arena, n * n, sizeof(double));
-    s->factor = hf_arena_take(arena, n * n, sizeof(double));
-    s->column = hf_arena_take(arena, HF_SCHUR_COLUMNS(m), sizeof(double));
-    s->pivot = hf_arena_take(arena, n, sizeof(int));
-}
+static void lay_out(hf_arena *arena, const hf_model *m, hf_schur *to){HF_SCHUR_FIELDS(HF_ARENA_TAKE)}
 
 hf_schur hf_schur_of(const hf_model *m, const hf_workspace *w)
 {
     size_t n = 3 * (size_t)m->n_attachment;
     double *at = w->schur_work;
-    return (hf_schur){(int)n, at, at + n * n, at + 2 * n * n, at + 3 * n * n, w->schur_pivot, NULL};
+    return (hf_schur){(int)n, at, at + n * n, at + 2 * n * n, at + 3 * n * n, w->schur_pivot, {0}};
 }
 
 hf_status hf_schur_create(const hf_model *m, hf_schur *schur)
 {
     *schur = (hf_schur){.n = 3 * m->n_attachment};
-    hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_schur(&arena, m, schur)));
-    schur->block = arena.block;
-    return HF_OK;
+    return HF_ARENA_MAKE(&schur->arena, lay_out(&schur->arena, m, schur));
 }
 
-void hf_schur_free(hf_schur *schur)
+/* Adds the blocks of the ties times `from` to `to`: from attachments [n] to free nodes [3 n_free], or with to_attachment
+ * the other way. */
+static void add_ties(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, bool to_attachment,
+                     const double *from, double *to)
 {
-    hf_arena_free_block(schur->block);
-    *schur = (hf_schur){0};
+    double block[3][3];
+    for (int k = 0; k < m->n_tie; k++) {
+        int here = m->tie_attachment[k], there = m->end_row[m->tie[k] ^ 1];
+        const double *d = from + 3 * (to_attachment ? there : here);
+        double *f = to + 3 * (to_attachment ? here : there);
+        if (there >= m->n_free) continue;
+        block_of(m, w, m->tie[k] / 2, block);
+        for (int c = 0; c < 3; c++)
+            f[c] += block[c][0] * d[0] + block[c][1] * d[1] + block[c][2] * d[2];
+    }
 }
 
 void hf_schur_push(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, const double *displacement_m,
                    double *force)
 {
-    double block[3][3];
-    for (int k = 0; k < m->n_tie; k++) {
-        int there = m->end_row[m->tie[k] ^ 1];
-        const double *r = displacement_m + 3 * m->tie_attachment[k];
-        if (there >= m->n_free) continue;
-        block_of(m, w, m->tie[k] / 2, block);
-        for (int c = 0; c < 3; c++)
-            force[3 * there + c] += block[c][0] * r[0] + block[c][1] * r[1] + block[c][2] * r[2];
-    }
+    add_ties(m, w, block_of, false, displacement_m, force);
 }
 
 void hf_schur_pull(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, const double *step_m,
                    double *pull)
 {
-    double block[3][3];
-    for (int k = 0; k < m->n_tie; k++) {
-        int there = m->end_row[m->tie[k] ^ 1];
-        const double *d = step_m + 3 * there;
-        if (there >= m->n_free) continue;
-        block_of(m, w, m->tie[k] / 2, block);
-        for (int c = 0; c < 3; c++)
-            pull[3 * m->tie_attachment[k] + c] += block[c][0] * d[0] + block[c][1] * d[1] + block[c][2] * d[2];
-    }
+    add_ties(m, w, block_of, true, step_m, pull);
 }
 
 /* Returns the tie at the other end of the same cable if that is an attachment, too, else -1. */
@@ -204,9 +183,8 @@ int hf_schur_modes(hf_schur *s, double tolerance, int max_mode, double *mode)
         for (size_t i = 0; i < n; i++)
             mode[i] = a[pivot * n + i] / sqrt(longest);
         for (size_t j = 0; j < n; j++) {
-            double share = mode[n + j] = hf_dot(n, mode, a + j * n);
-            for (size_t i = 0; i < n; i++)
-                a[j * n + i] -= share * mode[i];
+            mode[n + j] = hf_dot(n, mode, a + j * n);
+            hf_subtract(n, mode[n + j], mode, a + j * n);
         }
     }
     return n_mode;

@@ -14,19 +14,20 @@
 void hf_schur_flex(const hf_model *model, const double *force_N, double *displacement_m);
 
 /* The matrices at one shape, with the factor of I + F S. */
+#define HF_SCHUR_FIELDS(X)                                                                                             \
+    X(double, stiffness, (size_t)to->n *(size_t)to->n, "S, symmetric")                                                 \
+    X(double, flexed, (size_t)to->n *(size_t)to->n, "F S, column-major")                                               \
+    X(double, factor, (size_t)to->n *(size_t)to->n, "LU of I + F S, column-major")                                     \
+    X(double, column, HF_SCHUR_COLUMNS(m), "scratch")                                                                  \
+    X(int, pivot, to->n, "rows of the LU")
 typedef struct {
-    int n;             /* 3 n_attachment */
-    double *stiffness; /* [n][n] S, symmetric */
-    double *flexed;    /* [n][n] F S, column-major */
-    double *factor;    /* [n][n] LU of I + F S, column-major */
-    double *column;    /* [HF_SCHUR_COLUMNS] scratch */
-    int *pivot;        /* [n] */
-    void *block;
+    int n; /* 3 n_attachment */
+    HF_SCHUR_FIELDS(HF_ARENA_MEMBER)
+    hf_arena arena; /* owned memory, unless it is that of a workspace */
 } hf_schur;
 
 /* Allocates the matrices. Returns HF_OK or HF_NO_MEMORY. The caller frees it in either case. */
 hf_status hf_schur_create(const hf_model *model, hf_schur *schur);
-void hf_schur_free(hf_schur *schur);
 
 /* Returns the matrices in the memory of a workspace that has a Newton matrix. There is nothing to free. The last factor
  * in the workspace is kept. */

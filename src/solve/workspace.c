@@ -8,12 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void lay_out(hf_arena *arena, const hf_model *m, hf_workspace *w)
-{
-#define TAKE(type, name, count, unit, meaning) w->name = hf_arena_take(arena, (size_t)(count), sizeof(type));
-    HF_WORKSPACE_FIELDS(TAKE)
-#undef TAKE
-}
+static void lay_out(hf_arena *arena, const hf_model *m, hf_workspace *to){HF_WORKSPACE_FIELDS(HF_ARENA_TAKE)}
 
 size_t hf_workspace_bytes(const hf_model *m)
 {

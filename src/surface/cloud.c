@@ -1,19 +1,32 @@
 /* Measures the errors of a shape at the points of a cloud:
  *
  *     nodes -> points: nodes themselves, or 3 x 3 quadrature points per facet, with their areas
- *       -> best fit, if asked for (cloud_fit) -> errors -> residuals, weighted by area
+ *       -> best fit, if asked for -> errors -> residuals, weighted by area
  *     motion of the nodes -> motion of points and change of areas -> rates of the residuals
  *
- * Contents: layout - points - errors - derivatives */
+ * The best fit as a function of the points:
+ *
+ *     points -> hf_surface_fit_find -> one Newton step -> errors from the fitted surface
+ *     linearise: H factored; derivatives of G and of the errors by each point
+ *     push: motion of points -> change of G -> change of the parameters by H^-1 -> rates of the errors
+ *
+ * Contents: layout - points - errors - the best fit - residuals */
 #include "surface/cloud.h"
 
-#include "linalg/dot.h"
-#include "net/wanted.h"
-#include "surface/facet_rms.h"
+#include "linalg/dense.h"
+#include "net/target_surface.h"
+#include "surface/facet_mesh.h"
+#include "surface/fit_point.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { N_GAUSS = HF_FACET_N_FLAT, N_POINT = N_GAUSS * N_GAUSS }; /* quadrature points of a facet */
+enum { N_MOST = HF_FIT_N_PARAMETER };
+
+/* Maximum Newton step, for parameters of order one. After a longer step the fit is not yet a minimum, so the step
+ * is not taken. */
+#define STEP_MOST 1e-3
 
 /* ---- layout ---- */
 
@@ -30,7 +43,12 @@ void hf_cloud_lay_out(hf_arena *a, hf_cloud *c)
     c->move = hf_arena_take(a, 3 * n, sizeof(double));
     c->error_m = hf_arena_take(a, n, sizeof(double));
     c->slope = hf_arena_take(a, 3 * n, sizeof(double));
-    if (c->fit == HF_FIT_BEST) hf_cloud_fit_lay_out(a, c);
+    if (c->fit == HF_FIT_BEST) {
+        c->pose.slope = hf_arena_take(a, N_MOST * n, sizeof(double));
+        c->pose.slope_center = hf_arena_take(a, 3 * n, sizeof(double));
+        c->pose.pull = hf_arena_take(a, N_MOST * 3 * n, sizeof(double));
+        c->pose.pull_area = hf_arena_take(a, N_MOST * n, sizeof(double));
+    }
     c->root_m = has_facets ? hf_arena_take(a, n_area, sizeof(double)) : NULL;
     c->side_m = has_facets ? hf_arena_take(a, 4 * n_area, sizeof(double)) : NULL;
     c->grow_m2 = has_facets ? hf_arena_take(a, n_area, sizeof(double)) : NULL;
@@ -38,28 +56,24 @@ void hf_cloud_lay_out(hf_arena *a, hf_cloud *c)
 
 /* ---- points ---- */
 
-/* Computes quadrature point k of the facet with the corners `row`, bilinear in the nodes. node [3][n_node] contains
- * positions, or a motion. du, dv: derivatives by u and v. */
-static void blend(const hf_cloud *c, const double *node, const int row[4], int k, double at[3], double du[3],
+/* Computes quadrature point i, bilinear in the nodes, and its derivatives by u and v. node [3][n_node] contains positions,
+ * or a motion. *f: the facet of this point and of the last one. */
+static void blend(const hf_cloud *c, const double *node, int i, hf_facet_gathered *f, double at[3], double du[3],
                   double dv[3])
 {
-    double u = hf_facet_flat_at[k % N_GAUSS], v = hf_facet_flat_at[k / N_GAUSS];
-    for (int d = 0; d < 3; d++, node += c->n_node) {
-        double near = node[row[0]] + u * (node[row[1]] - node[row[0]]);
-        double far = node[row[3]] + u * (node[row[2]] - node[row[3]]);
-        at[d] = near + v * (far - near);
-        du[d] = (1 - v) * (node[row[1]] - node[row[0]]) + v * (node[row[2]] - node[row[3]]);
-        dv[d] = far - near;
-    }
+    int k = i % N_POINT;
+    if (k == 0) hf_facet_gather(node, c->n_node, c->row + 4 * (i / N_POINT), f);
+    hf_facet_mesh_at(&f->flat, hf_facet_flat_at[k % N_GAUSS], hf_facet_flat_at[k / N_GAUSS], at, du, dv);
 }
 
 static void take_facets(hf_cloud *c, const double *node)
 {
+    hf_facet_gathered f;
     c->area_m2 = 0;
     for (int i = 0; i < c->n; i++) {
         int k = i % N_POINT;
         double p[3], du[3], dv[3], part = hf_facet_flat_weight[k % N_GAUSS] * hf_facet_flat_weight[k / N_GAUSS];
-        blend(c, node, c->row + 4 * (i / N_POINT), k, p, du, dv);
+        blend(c, node, i, &f, p, du, dv);
         for (int d = 0; d < 3; d++)
             c->position_m[d * c->n + i] = p[d];
         double area = part * (du[0] * dv[1] - du[1] * dv[0]);
@@ -88,11 +102,12 @@ static void take_points(hf_cloud *c, const double *node)
  * the total area. */
 static double take_moves(hf_cloud *c, const double *node)
 {
+    hf_facet_gathered f;
     double all_m2 = 0;
     for (int i = 0; i < c->n; i++) {
         double p[3], du[3], dv[3];
         if (c->n_facet > 0) {
-            blend(c, node, c->row + 4 * (i / N_POINT), i % N_POINT, p, du, dv);
+            blend(c, node, i, &f, p, du, dv);
             all_m2 += c->grow_m2[i] = c->side_m[i] * du[0] + c->side_m[c->n + i] * du[1] +
                                       c->side_m[2 * c->n + i] * dv[0] + c->side_m[3 * c->n + i] * dv[1];
         } else {
@@ -109,7 +124,7 @@ static double take_moves(hf_cloud *c, const double *node)
 
 double hf_cloud_error(hf_surface_kind kind, double m, double curvature, const double p[3], double d[4])
 {
-    double t[2], u = hf_wanted_height_above(kind, curvature, p, t), square = 1 + t[0] * t[0] + t[1] * t[1];
+    double t[2], u = hf_target_surface_height_above(kind, curvature, p, t), square = 1 + t[0] * t[0] + t[1] * t[1];
     double weight = m < 1 ? 1 / sqrt(square) : 1 / square;
     double flat = p[2] - u;     /* curvature times the squared distance from the axis */
     for (int k = 0; k < 2; k++) /* d(1 + t^2) = 2 t dt, and dt/dx = 2 curvature along an axis with a slope */
@@ -117,6 +132,12 @@ double hf_cloud_error(hf_surface_kind kind, double m, double curvature, const do
     d[2] = weight;
     d[3] = -weight * (flat / curvature + 8 * m * u * flat / square);
     return u * weight;
+}
+
+/* Returns the power m of hf_cloud_error. */
+static double power_of(const hf_cloud *c)
+{
+    return c->along == HF_ALONG_NORMAL ? 0.5 : 1;
 }
 
 /* Returns the residual of point i per metre of error. */
@@ -129,17 +150,143 @@ static void take_errors(hf_cloud *c)
 {
     for (int i = 0; i < c->n; i++) {
         double d[4], p[3] = {c->position_m[i], c->position_m[c->n + i], c->position_m[2 * c->n + i]};
-        c->error_m[i] = hf_cloud_error(c->kind, hf_cloud_power(c->along), 1 / (4 * c->focal_length_m), p, d);
+        c->error_m[i] = hf_cloud_error(c->kind, power_of(c), 1 / (4 * c->focal_length_m), p, d);
         for (int k = 0; k < 3; k++)
             c->slope[k * c->n + i] = d[k];
     }
 }
 
+/* ---- the best fit ---- */
+
+static double dot4(const double a[4], const double b[4])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+}
+
+static hf_fit_frame frame_of(const hf_cloud *c)
+{
+    return hf_fit_frame_of(c->kind, c->focal_length_m, c->n, c->position_m, c->n_facet > 0 ? c->root_m : NULL,
+                           &c->pose.found);
+}
+
+/* Computes G [n], and H [n][n] factored. Returns HF_OK or HF_SINGULAR. */
+static hf_status factor(hf_cloud *c, const hf_fit_frame *f, double *G)
+{
+    hf_fit_hessian(f, G, c->pose.factor);
+    return hf_dense_factor(c->pose.found.n, c->pose.factor, c->pose.pivot) == 0 ? HF_OK : HF_SINGULAR;
+}
+
+/* Improves the fit by one Newton step. The fit ends when rounding keeps the sum of squares from falling. At that point
+ * the parameters have only half of the digits, which is not enough for differences of residuals. */
+static void polish(hf_cloud *c)
+{
+    hf_fit_parameters *found = &c->pose.found;
+    hf_fit_frame f = frame_of(c);
+    double step[N_MOST], most = 0;
+    if (factor(c, &f, step) != HF_OK) return;
+    hf_dense_solve(found->n, c->pose.factor, c->pose.pivot, 1, step);
+    for (int k = 0; k < found->n; k++)
+        most = fmax(most, fabs(step[k]));
+    if (!(most < STEP_MOST)) return;
+    for (int k = 0; k < found->n; k++)
+        found->value[found->quantity[k]] -= step[k];
+}
+
+/* Finds the best fit to position_m and the errors from it; NaN if there is no fit. Returns HF_OK or HF_NO_MEMORY. */
+static hf_status fit_measure(hf_cloud *c)
+{
+    hf_surface_fit fit;
+    HF_TRY(hf_surface_fit_find(c->kind, c->focal_length_m, c->n, c->position_m, c->n_facet > 0 ? c->root_m : NULL, &fit,
+                               &c->pose.found));
+    if (fit.converged) polish(c);
+    hf_fit_frame f = frame_of(c);
+    for (int i = 0; i < c->n; i++) {
+        double arm[3], at[3], d[4];
+        hf_fit_locate(&f, i, arm, at);
+        c->error_m[i] = fit.converged ? hf_cloud_error(c->kind, power_of(c), f.curvature_per_m, at, d) : (double)NAN;
+    }
+    return HF_OK;
+}
+
+/* Adds the contributions of point i to the derivatives of G for parameter k. */
+static void pull_of(hf_cloud *c, const hf_fit_frame *f, const hf_fit_point *p, int i, int k)
+{
+    hf_cloud_pose *q = &c->pose;
+    int angle = hf_fit_angle_of(q->found.quantity[k]);
+    double by = dot4(p->d, p->by[k]), weight = hf_fit_weight(f, i), bent[3];
+    for (int a = 0; a < 3; a++)
+        bent[a] = p->d[a] * by + p->value * dot4(p->dd[a], p->by[k]);
+    for (int d = 0; d < 3; d++) {
+        double pull = 0;
+        for (int a = 0; a < 3; a++) {
+            pull += bent[a] * f->turn[a][d];
+            if (angle >= 0) pull += p->value * p->d[a] * f->slope[angle][a][d];
+        }
+        q->pull[(3 * k + d) * c->n + i] = weight * pull;
+        q->pull_center[k][d] += weight * (bent[d] - pull); /* points are measured relative to the centre */
+    }
+    q->pull_area[k * c->n + i] = p->value * by;
+}
+
+static hf_status fit_linearise(hf_cloud *c)
+{
+    hf_cloud_pose *q = &c->pose;
+    hf_fit_frame f = frame_of(c);
+    double G[N_MOST];
+    HF_TRY(factor(c, &f, G));
+    memset(q->pull_center, 0, sizeof q->pull_center);
+    for (int i = 0; i < c->n; i++) {
+        double d[4];
+        hf_fit_point p = hf_fit_point_take(&f, i);
+        hf_cloud_error(c->kind, power_of(c), f.curvature_per_m, p.at, d);
+        for (int k = 0; k < q->found.n; k++) {
+            pull_of(c, &f, &p, i, k);
+            q->slope[k * c->n + i] = dot4(d, p.by[k]);
+        }
+        for (int k = 0; k < 3; k++) {
+            double by = d[0] * f.turn[0][k] + d[1] * f.turn[1][k] + d[2] * f.turn[2][k];
+            c->slope[k * c->n + i] = by;
+            q->slope_center[k * c->n + i] = d[k] - by;
+        }
+    }
+    return HF_OK;
+}
+
+/* Computes rate [n], the rates of the errors, for `move` and `grow_m2`. */
+static void fit_push(hf_cloud *c, double *rate)
+{
+    const hf_cloud_pose *q = &c->pose;
+    int n = q->found.n;
+    double center[3] = {0}, change[N_MOST] = {0};
+    for (int d = 0; d < 3; d++)
+        for (int i = 0; i < c->n; i++)
+            center[d] += c->move[d * c->n + i] / c->n;
+    for (int k = 0; k < n; k++) {
+        for (int d = 0; d < 3; d++) {
+            change[k] -= q->pull_center[k][d] * center[d];
+            for (int i = 0; i < c->n; i++)
+                change[k] -= q->pull[(3 * k + d) * c->n + i] * c->move[d * c->n + i];
+        }
+        for (int i = 0; i < c->n && c->n_facet > 0; i++)
+            change[k] -= q->pull_area[k * c->n + i] * c->grow_m2[i];
+    }
+    hf_dense_solve(n, q->factor, q->pivot, 1, change);
+    for (int i = 0; i < c->n; i++) {
+        rate[i] = 0;
+        for (int d = 0; d < 3; d++)
+            rate[i] += c->slope[d * c->n + i] * c->move[d * c->n + i] + q->slope_center[d * c->n + i] * center[d];
+        for (int k = 0; k < n; k++)
+            rate[i] += q->slope[k * c->n + i] * change[k];
+    }
+}
+
+/* ---- residuals ---- */
+
 hf_status hf_cloud_measure(hf_cloud *c, const double *position_m, double *residual)
 {
     take_points(c, position_m);
     if (c->fit == HF_FIT_BEST)
-        HF_TRY(hf_cloud_fit_measure(c));
+        HF_TRY(fit_measure(c));
     else
         take_errors(c);
     for (int i = 0; i < c->n; i++)
@@ -147,11 +294,9 @@ hf_status hf_cloud_measure(hf_cloud *c, const double *position_m, double *residu
     return HF_OK;
 }
 
-/* ---- derivatives ---- */
-
 hf_status hf_cloud_linearise(hf_cloud *c)
 {
-    return c->fit == HF_FIT_BEST ? hf_cloud_fit_linearise(c) : HF_OK;
+    return c->fit == HF_FIT_BEST ? fit_linearise(c) : HF_OK;
 }
 
 /* Computes rate [n], the rates of the errors. */
@@ -168,7 +313,7 @@ void hf_cloud_push(hf_cloud *c, const double *move, double *rate)
 {
     double grow_m2 = take_moves(c, move);
     if (c->fit == HF_FIT_BEST)
-        hf_cloud_fit_push(c, rate);
+        fit_push(c, rate);
     else
         push_errors(c, rate);
     for (int i = 0; i < c->n; i++) { /* a residual is error * sqrt(own area / total area) */

@@ -60,25 +60,9 @@ hf_status hf_cloud_linearise(hf_cloud *cloud);
 /* Computes rate [n], the rates of the residuals for a motion `move` [3][n_node] of the nodes. */
 void hf_cloud_push(hf_cloud *cloud, const double *move, double *rate);
 
-/* ---- parts, for cloud.c and cloud_fit.c ---- */
-
 /* Returns the error of a point p in metres, u / (1 + t^2)^m, with its height u above a surface of this
  * curvature and the slope t there (M16). m is 1 for the half path and 1/2 along the normal. d [4]: derivatives
  * by p and by the curvature. */
 double hf_cloud_error(hf_surface_kind kind, double m, double curvature, const double p[3], double d[4]);
-
-static inline double hf_cloud_power(hf_along along)
-{
-    return along == HF_ALONG_NORMAL ? 0.5 : 1;
-}
-
-void hf_cloud_fit_lay_out(hf_arena *arena, hf_cloud *cloud);
-
-/* Finds the best fit to position_m and the errors from it; NaN if there is no fit. Returns HF_OK or HF_NO_MEMORY. */
-hf_status hf_cloud_fit_measure(hf_cloud *cloud);
-hf_status hf_cloud_fit_linearise(hf_cloud *cloud);
-
-/* Computes rate [n], the rates of the errors, for `move` and `grow_m2`. */
-void hf_cloud_fit_push(hf_cloud *cloud, double *rate);
 
 #endif

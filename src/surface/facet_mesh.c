@@ -59,6 +59,15 @@ void hf_facet_mesh_take_bent(const hf_facets *f, int i, const double *position_m
     hf_facet_mesh_settle(m);
 }
 
+void hf_facet_gather(const double *node, int n_node, const int *row, hf_facet_gathered *f)
+{
+    for (int k = 0; k < 4; k++) {
+        for (int d = 0; d < 3; d++)
+            f->corner[k][d] = node[d * n_node + row[k]];
+        f->flat.corner[k] = f->corner[k];
+    }
+}
+
 void hf_facet_mesh_at(const hf_facet_mesh *m, double u, double v, double p[3], double du[3], double dv[3])
 {
     for (int d = 0; d < 3; d++) {

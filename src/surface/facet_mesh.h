@@ -23,6 +23,15 @@ void hf_facet_mesh_take(const hf_facets *facets, int i, const double *position_m
 void hf_facet_mesh_take_bent(const hf_facets *facets, int i, const double *position_m, const double *sag_m,
                              hf_facet_mesh *mesh);
 
+/* A flat facet of an array [3][n_node] by row, which contains positions or a motion. */
+typedef struct {
+    double corner[4][3];
+    hf_facet_mesh flat;
+} hf_facet_gathered;
+
+/* Gathers the corners of a facet, whose rows are row [4]. */
+void hf_facet_gather(const double *node, int n_node, const int *row, hf_facet_gathered *facet);
+
 /* Computes sag_m [n_facet][4], the sags of all sides. The pull of the mesh bends the cables between two facets.
  * *pull_ratio is the maximum N l / T of these cables, and INFINITY if one is slack. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_facet_mesh_sags(double mesh_tension_N_per_m, const hf_facets *facets, const hf_facet_shape *shape,

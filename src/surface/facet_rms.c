@@ -7,7 +7,7 @@
 #include "surface/facet_rms.h"
 
 #include "base/arena.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "surface/facet_mesh.h"
 
 #include <math.h>
@@ -30,8 +30,6 @@ hf_status hf_facet_shape_take(const hf_model *m, const double *position_m, const
 }
 
 /* ---- quadrature points ---- */
-
-enum { N_GAUSS = HF_FACET_N_FLAT, N_POINT = N_GAUSS * N_GAUSS }; /* quadrature points of a flat facet */
 
 const double hf_facet_flat_at[HF_FACET_N_FLAT] = {0.11270166537925831, 0.5, 0.88729833462074169};
 const double hf_facet_flat_weight[HF_FACET_N_FLAT] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
@@ -68,37 +66,26 @@ static double point_at(const hf_facet_mesh *m, double u, double v, double lift_m
     return fabs(du[0] * dv[1] - du[1] * dv[0]);
 }
 
-/* Computes the points of a flat facet: a bilinear surface through four corners, or a triangle if the last two
- * are equal. The squared height error has degree 4 in each parameter, and the area has degree 1. So the rule is
- * exact for it. */
-static void put_facet(const hf_facets *f, int i, const hf_facet_shape *shape, points *q)
+/* Computes the points of all facets. A flat facet is a bilinear surface through four corners, or a triangle if the last
+ * two are equal. The squared height error has degree 4 in each parameter, and the area has degree 1, so the rule is exact
+ * for it. With a mesh, a cable may be unable to carry its pull. There is then no shape, and the lifts are NaN. Returns
+ * HF_OK or HF_NO_MEMORY. */
+static hf_status put_points(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape *shape, points *q)
 {
-    hf_facet_mesh flat;
-    hf_facet_mesh_take(f, i, shape->position_m, &flat);
-    for (int k = 0; k < N_POINT; k++) {
-        double p[3], area_m2 = point_at(&flat, hf_facet_flat_at[k % N_GAUSS], hf_facet_flat_at[k / N_GAUSS], 0, p);
-        size_t at = (size_t)i * N_POINT + (size_t)k;
-        for (int d = 0; d < 3; d++)
-            q->position_m[(size_t)d * (size_t)q->n + at] = p[d];
-        q->root_m[at] = sqrt(area_m2 * hf_facet_flat_weight[k % N_GAUSS] * hf_facet_flat_weight[k / N_GAUSS]);
-    }
-}
-
-/* Computes the points of the facets with their mesh. If a cable cannot carry its pull, there is no shape, and the lifts
- * are NaN. Returns HF_OK or HF_NO_MEMORY. */
-static hf_status put_meshes(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape *shape, points *q)
-{
+    bool has_mesh = mesh_N_per_m > 0;
+    int n = has_mesh ? HF_FACET_N_GAUSS : HF_FACET_N_FLAT;
+    const double *place = has_mesh ? hf_facet_gauss_at : hf_facet_flat_at;
+    const double *weight = has_mesh ? hf_facet_gauss_weight : hf_facet_flat_weight;
     double square = 0, all = 0;
-    HF_TRY(hf_facet_mesh_sags(mesh_N_per_m, f, shape, q->sag_m, &q->pull_ratio));
-    q->has_shape = q->pull_ratio <= HF_FACET_PULL_MOST;
+    if (has_mesh) HF_TRY(hf_facet_mesh_sags(mesh_N_per_m, f, shape, q->sag_m, &q->pull_ratio));
+    q->has_shape = !has_mesh || q->pull_ratio <= HF_FACET_PULL_MOST;
     for (int i = 0, at = 0; i < f->n_facet; i++) {
         hf_facet_mesh m;
-        hf_facet_mesh_take_bent(f, i, shape->position_m, q->sag_m, &m);
-        for (int k = 0; k < q->per_facet; k++, at++) {
-            int a = k % HF_FACET_N_GAUSS, b = k / HF_FACET_N_GAUSS;
-            double u = hf_facet_gauss_at[a], v = hf_facet_gauss_at[b], p[3], slope[2];
-            double lift_m = q->has_shape ? hf_facet_mesh_lift_m(&m, u, v, slope) : (double)NAN;
-            double area_m2 = point_at(&m, u, v, lift_m, p) * hf_facet_gauss_weight[a] * hf_facet_gauss_weight[b];
+        hf_facet_mesh_take_bent(f, i, shape->position_m, has_mesh ? q->sag_m : NULL, &m);
+        for (int k = 0; k < n * n; k++, at++) {
+            double u = place[k % n], v = place[k / n], p[3], slope[2], lift_m = q->has_shape ? 0 : (double)NAN;
+            if (has_mesh && q->has_shape) lift_m = hf_facet_mesh_lift_m(&m, u, v, slope);
+            double area_m2 = point_at(&m, u, v, lift_m, p) * weight[k % n] * weight[k / n];
             for (int d = 0; d < 3; d++)
                 q->position_m[(size_t)d * (size_t)q->n + (size_t)at] = p[d];
             q->root_m[at] = sqrt(area_m2);
@@ -106,7 +93,7 @@ static hf_status put_meshes(double mesh_N_per_m, const hf_facets *f, const hf_fa
             all += area_m2;
         }
     }
-    q->pillow_rms_m = sqrt(square / all);
+    if (has_mesh) q->pillow_rms_m = sqrt(square / all);
     return HF_OK;
 }
 
@@ -114,21 +101,17 @@ static hf_status take_points(const hf_surface_settings *s, const hf_facets *f, c
                              hf_arena *arena, points *q)
 {
     bool has_mesh = s->mesh_tension_N_per_m > 0 && shape->tension_N;
-    *q = (points){.per_facet = has_mesh ? HF_FACET_N_GAUSS * HF_FACET_N_GAUSS : N_POINT};
+    *q = (points){.per_facet = has_mesh ? HF_FACET_N_GAUSS * HF_FACET_N_GAUSS : HF_FACET_N_FLAT * HF_FACET_N_FLAT};
     q->pull_ratio = q->pillow_rms_m = (double)NAN;
-    q->has_shape = true;
     HF_TRY(HF_ARENA_MAKE(arena, lay_out(arena, f->n_facet, q)));
-    if (has_mesh) return put_meshes(s->mesh_tension_N_per_m, f, shape, q);
-    for (int i = 0; i < f->n_facet; i++)
-        put_facet(f, i, shape, q);
-    return HF_OK;
+    return put_points(has_mesh ? s->mesh_tension_N_per_m : 0, f, shape, q);
 }
 
 /* Returns the height of a point above the target surface, m. *weight is 1 / (1 + t^2), with the slope t there. */
 static double height_of(const hf_surface_settings *s, const points *q, int i, double *weight)
 {
     double p[3] = {q->position_m[i], q->position_m[q->n + i], q->position_m[2 * (size_t)q->n + (size_t)i]}, slope[2];
-    double above = hf_wanted_height_above(s->kind, 1 / (4 * s->focal_length_m), p, slope);
+    double above = hf_target_surface_height_above(s->kind, 1 / (4 * s->focal_length_m), p, slope);
     *weight = 1 / (1 + slope[0] * slope[0] + slope[1] * slope[1]);
     return above;
 }

@@ -7,7 +7,7 @@
  * Contents: the frame - one point - the sum of squares */
 #include "surface/fit_point.h"
 
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "surface/cloud.h"
 
 #include <string.h>
@@ -44,13 +44,8 @@ hf_fit_frame hf_fit_frame_of(hf_surface_kind kind, double focal_length_m, int n,
     f.shift_m[1] = found->size_m * value[HF_FIT_SHIFT_Y];
     f.shift_m[2] = found->size_m * value[HF_FIT_SHIFT_Z];
     hf_fit_rotation(angle, (const int[3]){0}, f.turn);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         hf_fit_rotation(angle, (const int[3]){a == 0, a == 1, a == 2}, f.slope[a]);
-        for (int b = 0; b < 3; b++) {
-            const int order[3] = {(a == 0) + (b == 0), (a == 1) + (b == 1), (a == 2) + (b == 2)};
-            hf_fit_rotation(angle, order, f.bend[a][b]);
-        }
-    }
     return f;
 }
 
@@ -73,7 +68,7 @@ double hf_fit_weight(const hf_fit_frame *f, int i)
 /* Computes the second derivatives of the half-path error u / D, with D = 1 + t^2. */
 static void bend_error(hf_surface_kind kind, double curvature, hf_fit_point *p)
 {
-    double t[2], u = hf_wanted_height_above(kind, curvature, p->at, t), D = 1 + t[0] * t[0] + t[1] * t[1];
+    double t[2], u = hf_target_surface_height_above(kind, curvature, p->at, t), D = 1 + t[0] * t[0] + t[1] * t[1];
     double flat = p->at[2] - u, u1[4] = {-t[0], -t[1], 1, -flat / curvature}, u2[4][4] = {{0}}, D2[4][4] = {{0}};
     double D1[4] = {4 * curvature * t[0], 4 * curvature * t[1], 0, 8 * flat};
     for (int k = 0; k < (kind == HF_SURFACE_PARABOLOID ? 2 : 1); k++) {
@@ -89,32 +84,35 @@ static void bend_error(hf_surface_kind kind, double curvature, hf_fit_point *p)
                 (u2[a][b] - (u1[a] * D1[b] + u1[b] * D1[a] + u * D2[a][b] - 2 * u * D1[a] * D1[b] / D) / D) / D;
 }
 
+void hf_fit_derive(const hf_fit_frame *f, const double arm[3], int k, double by[4])
+{
+    int shift = shift_of(f->found->quantity[k]), angle = hf_fit_angle_of(f->found->quantity[k]);
+    memset(by, 0, 4 * sizeof *by);
+    for (int d = 0; d < 3 && shift >= 0; d++)
+        by[d] = -f->found->size_m * f->turn[d][shift];
+    if (angle >= 0) multiply_vector(f->slope[angle], arm, by);
+    if (shift < 0 && angle < 0) by[3] = f->wanted_per_m;
+}
+
 hf_fit_point hf_fit_point_take(const hf_fit_frame *f, int i)
 {
     hf_fit_point p = {0};
     hf_fit_locate(f, i, p.arm, p.at);
     p.value = hf_cloud_error(f->kind, 1, f->curvature_per_m, p.at, p.d);
     bend_error(f->kind, f->curvature_per_m, &p);
-    for (int k = 0; k < f->found->n; k++) {
-        int shift = shift_of(f->found->quantity[k]), angle = hf_fit_angle_of(f->found->quantity[k]);
-        if (shift >= 0)
-            for (int d = 0; d < 3; d++)
-                p.by[k][d] = -f->found->size_m * f->turn[d][shift];
-        else if (angle >= 0)
-            multiply_vector(f->slope[angle], p.arm, p.by[k]);
-        else
-            p.by[k][3] = f->wanted_per_m;
-    }
+    for (int k = 0; k < f->found->n; k++)
+        hf_fit_derive(f, p.arm, k, p.by[k]);
     return p;
 }
 
-/* Computes the second derivative of the coordinates by parameters j and k. */
-static void bend_place(const hf_fit_frame *f, const hf_fit_point *p, int j, int k, double to[4])
+/* Computes the second derivative of the coordinates by parameters j and k. bend: second derivatives of the rotation. */
+static void bend_position(const hf_fit_frame *f, double bend[3][3][3][3], const hf_fit_point *p, int j, int k,
+                          double to[4])
 {
     const int *quantity = f->found->quantity;
     int a = hf_fit_angle_of(quantity[j]), b = hf_fit_angle_of(quantity[k]), shift = shift_of(quantity[a < 0 ? j : k]);
     memset(to, 0, 4 * sizeof *to);
-    if (a >= 0 && b >= 0) multiply_vector(f->bend[a][b], p->arm, to);
+    if (a >= 0 && b >= 0) multiply_vector(bend[a][b], p->arm, to);
     if ((a >= 0) == (b >= 0) || shift < 0) return;
     for (int d = 0; d < 3; d++)
         to[d] = -f->found->size_m * f->slope[a < 0 ? b : a][d][shift];
@@ -125,7 +123,12 @@ static void bend_place(const hf_fit_frame *f, const hf_fit_point *p, int j, int 
 double hf_fit_hessian(const hf_fit_frame *f, double *G, double *H)
 {
     int n = f->found->n;
-    double sum = 0;
+    double sum = 0, turn[3][3][3][3];
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
+            const int order[3] = {(a == 0) + (b == 0), (a == 1) + (b == 1), (a == 2) + (b == 2)};
+            hf_fit_rotation(f->found->value + HF_FIT_TURN_X, order, turn[a][b]);
+        }
     memset(H, 0, (size_t)(n * n) * sizeof *H);
     memset(G, 0, (size_t)n * sizeof *G);
     for (int i = 0; i < f->n; i++) {
@@ -140,7 +143,7 @@ double hf_fit_hessian(const hf_fit_frame *f, double *G, double *H)
             for (int a = 0; a < 4; a++)
                 turned[a] = dot4(p.dd[a], p.by[k]);
             for (int j = 0; j <= k; j++) {
-                bend_place(f, &p, j, k, bend);
+                bend_position(f, turn, &p, j, k, bend);
                 H[k * n + j] += weight * (by[j] * by[k] + p.value * (dot4(turned, p.by[j]) + dot4(p.d, bend)));
             }
         }

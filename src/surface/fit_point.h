@@ -13,7 +13,6 @@ typedef struct {
     const hf_fit_parameters *found;
     double shift_m[3], turn[3][3];
     double slope[3][3][3];                /* first derivatives of the rotation, by each angle */
-    double bend[3][3][3][3];              /* second derivatives of the rotation, by two angles */
     double curvature_per_m, wanted_per_m; /* of the fitted surface; of the target surface, the unit of CURVE */
 } hf_fit_frame;
 
@@ -35,6 +34,10 @@ hf_fit_frame hf_fit_frame_of(hf_surface_kind kind, double focal_length_m, int n,
                              const double *root_weight, const hf_fit_parameters *found);
 
 void hf_fit_locate(const hf_fit_frame *frame, int i, double arm[3], double at[3]);
+
+/* Computes the derivatives of the coordinates of a point by parameter k. arm: vector from the shifted centre. */
+void hf_fit_derive(const hf_fit_frame *frame, const double arm[3], int k, double by[4]);
+
 double hf_fit_weight(const hf_fit_frame *frame, int i);
 hf_fit_point hf_fit_point_take(const hf_fit_frame *frame, int i);
 

@@ -127,28 +127,13 @@ void hf_gain_lay_out(hf_arena *a, hf_gain *g)
     g->rate = hf_arena_take(a, 2 * n, sizeof(double));
 }
 
-/* Corners of a facet, from positions or from a motion, both [3][n_node]. */
-typedef struct {
-    double corner[4][3];
-    hf_facet_mesh flat;
-} facet;
-
-static void take_facet(const hf_gain *g, const double *node, int i, facet *f)
-{
-    for (int k = 0; k < 4; k++) {
-        for (int d = 0; d < 3; d++)
-            f->corner[k][d] = node[d * g->n_node + g->row[4 * i + k]];
-        f->flat.corner[k] = f->corner[k];
-    }
-}
-
 void hf_gain_measure(hf_gain *g, const double *position_m, double *residual)
 {
     const int n = g->n, per_facet = n / g->n_facet;
     double sum[3] = {0}, phase[2];
     for (int i = 0; i < n; i++) {
-        facet f;
-        take_facet(g, position_m, i / per_facet, &f);
+        hf_facet_gathered f;
+        hf_facet_gather(position_m, g->n_node, g->row + 4 * (i / per_facet), &f);
         g->size[i] = add_point(g->beam, &f.flat, false, i % per_facet, sum, phase);
         for (int c = 0; c < 2; c++)
             g->phase[c * n + i] = phase[c];
@@ -190,9 +175,9 @@ void hf_gain_linearise(hf_gain *g, const double *position_m)
 {
     const int n = g->n, per_facet = n / g->n_facet;
     for (int i = 0; i < n; i++) {
-        facet f;
+        hf_facet_gathered f;
         double p[3], du[3], dv[3], by_place[6] = {0}, by_side[6] = {0};
-        take_facet(g, position_m, i / per_facet, &f);
+        hf_facet_gather(position_m, g->n_node, g->row + 4 * (i / per_facet), &f);
         double weight = point_of(g->beam, &f.flat, false, i % per_facet, p, du, dv);
         if (g->size[i] > 0) derive_point(g->beam, p, du, dv, by_place, by_side);
         for (int d = 0; d < 6; d++) {
@@ -210,9 +195,9 @@ static double push_points(hf_gain *g, const double *move, double mean_rate[2])
     double all_rate = 0, *phase_rate = g->rate, *size_rate = g->rate + n;
     mean_rate[0] = mean_rate[1] = 0;
     for (int i = 0; i < n; i++) {
-        facet f;
+        hf_facet_gathered f;
         double p[3], du[3], dv[3], turn = 0, grow = 0;
-        take_facet(g, move, i / per_facet, &f);
+        hf_facet_gather(move, g->n_node, g->row + 4 * (i / per_facet), &f);
         point_of(g->beam, &f.flat, false, i % per_facet, p, du, dv);
         for (int d = 0; d < 3; d++) {
             turn += g->by_place[d * n + i] * p[d];

@@ -17,23 +17,13 @@
 #include "surface/pattern_kernel.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { GAUSS_MOST = 64, GAUSS_MORE = 2, LOOKS = 16, PIECES_MOST = 100000 };
 #define GAUSS_LN (-21.0)      /* logarithm of the accepted quadrature error */
 #define NODE_LN (-22.0)       /* logarithm of the accepted error of interpolation between angles */
 #define GAUSS_PHASE_MOST 77.0 /* half phase across a piece; GAUSS_MOST - GAUSS_MORE points reach the accepted error */
 
-typedef struct {
-    hf_pattern_points *points;
-    hf_pattern_spread *spread;
-} kernels;
-
-#define KERNELS(isa)                                                                                                   \
-    {                                                                                                                  \
-        hf_pattern_points_##isa, hf_pattern_spread_##isa                                                               \
-    }
-static const kernels kernels_of_isa[HF_LANE_N_ISA] = {KERNELS(portable), KERNELS(avx2), KERNELS(avx512)};
+static const hf_pattern_kernels *const kernels_of_isa[] = {HF_LANE_EACH(&hf_pattern_kernels)};
 
 /* ---- orders ---- */
 
@@ -218,7 +208,7 @@ static int first_of(const hf_far_field *p, int i)
 static void sum_piece(const hf_far_field *p, int n_point, const double *point, const double middle[3], double path,
                       double *local, double *sum)
 {
-    const kernels *kernel = &kernels_of_isa[hf_lane_best_isa()];
+    const hf_pattern_kernels *kernel = kernels_of_isa[hf_lane_best_isa()];
     for (int c = 0; c < p->settings->phi_deg.n && !(p->stop && *p->stop); c++) {
         ptrdiff_t n = p->n_padded, n_node = p->n_node_padded;
         const double *direction = p->direction + 3 * c * n;
@@ -292,8 +282,7 @@ hf_status hf_pattern_create(const hf_pattern_settings *s, const hf_pattern_surfa
 
 void hf_pattern_free(hf_far_field *p)
 {
-    hf_arena arena = {.block = p->block};
-    hf_arena_free(&arena);
+    hf_arena_free_block(p->block);
     *p = (hf_far_field){0};
 }
 
@@ -420,7 +409,6 @@ hf_status hf_pattern_table_create(int n_frequency, int n_cut, int n_theta, hf_pa
 
 void hf_pattern_table_free(hf_pattern_table *t)
 {
-    hf_arena arena = {.block = t->block};
-    hf_arena_free(&arena);
+    hf_arena_free_block(t->block);
     *t = (hf_pattern_table){0};
 }

@@ -51,7 +51,7 @@ INLINE void turn(vec turns, vec *cosine, vec *sine)
     *cosine = less_product(splat(1), twice, half);
 }
 
-void HF_KERNEL(hf_pattern_points)(int n_point, const double *point, int n_angle, const double *direction, double *sum)
+static void points(int n_point, const double *point, int n_angle, const double *direction, double *sum)
 {
     for (ptrdiff_t a = 0; a < n_angle; a += WIDTH) {
         vec d[3], total[6];
@@ -76,8 +76,8 @@ void HF_KERNEL(hf_pattern_points)(int n_point, const double *point, int n_angle,
     }
 }
 
-void HF_KERNEL(hf_pattern_spread)(int n_node, int n_node_padded, const double *local, const double *between,
-                                  const double middle[3], double path, int n_angle, const double *direction, double *to)
+static void spread(int n_node, int n_node_padded, const double *local, const double *between, const double middle[3],
+                   double path, int n_angle, const double *direction, double *to)
 {
     for (ptrdiff_t a = 0; a < n_angle; a += WIDTH) {
         vec total[6], turns = -splat(path), cosine, sine;
@@ -100,3 +100,5 @@ void HF_KERNEL(hf_pattern_spread)(int n_node, int n_node_padded, const double *l
         }
     }
 }
+
+const hf_pattern_kernels HF_KERNEL(hf_pattern_kernels) = {points, spread};

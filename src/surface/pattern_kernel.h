@@ -9,18 +9,20 @@
  * piece of facet (3); path minus the path to the middle, in wavelengths (1); current times its area (3). */
 enum { HF_PATTERN_POINT = 7 };
 
-/* Computes sum [6][n_angle], the sum over the points of J exp(j 2 pi (direction x - path)): real x y z, then imaginary
- * x y z. direction [3][n_angle]. n_angle is a multiple of HF_LANES, and arrays are aligned to HF_ALIGNMENT. */
-typedef void hf_pattern_points(int n_point, const double *point, int n_angle, const double *direction, double *sum);
+/* The kernels of one instruction set.
+ *
+ * points: computes sum [6][n_angle], the sum over the points of J exp(j 2 pi (direction x - path)): real x y z, then
+ *         imaginary x y z. direction [3][n_angle]. n_angle is a multiple of HF_LANES, and arrays are aligned to
+ *         HF_ALIGNMENT.
+ * spread: adds exp(j 2 pi (direction middle - path)) S to the array `to` [6][n_angle]. S is the sum over the nodes of
+ *         between [n_node][n_angle] times local [6][n_node_padded]. If n_node is 0, S is local [6][n_angle] itself.
+ *         middle [3] and path are in wavelengths. */
+typedef struct {
+    void (*points)(int n_point, const double *point, int n_angle, const double *direction, double *sum);
+    void (*spread)(int n_node, int n_node_padded, const double *local, const double *between, const double middle[3],
+                   double path, int n_angle, const double *direction, double *to);
+} hf_pattern_kernels;
 
-/* Adds exp(j 2 pi (direction middle - path)) S to the array `to` [6][n_angle]. S is the sum over the nodes of between
- * [n_node][n_angle] times local [6][n_node_padded]. If n_node is 0, S is local [6][n_angle] itself. middle [3] and path
- * are in wavelengths. */
-typedef void hf_pattern_spread(int n_node, int n_node_padded, const double *local, const double *between,
-                               const double middle[3], double path, int n_angle, const double *direction, double *to);
-
-/* The Makefile compiles pattern_kernel.c with -DHF_ISA=avx512 and so on. The names end in the instruction set. */
-hf_pattern_points hf_pattern_points_portable, hf_pattern_points_avx2, hf_pattern_points_avx512;
-hf_pattern_spread hf_pattern_spread_portable, hf_pattern_spread_avx2, hf_pattern_spread_avx512;
+extern const hf_pattern_kernels HF_LANE_EACH(hf_pattern_kernels);
 
 #endif

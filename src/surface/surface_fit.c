@@ -2,15 +2,21 @@
  *
  *     points -> centre and size
  *       -> three fits, each from the one before: rigid motion; + focal length; + shifts across
- *            each fit: GSL trust region -> second derivatives -> if not a minimum: hf_fit_descend
+ *            each fit: GSL trust region -> second derivatives -> if not a minimum: descent
  *       -> keep the last fit that the points determine
  *
- * Contents: the fitted surface - the fit */
+ * The descent goes from a point with zero gradient to a minimum, by Newton's method with all second derivatives:
+ *
+ *     parameters -> gradient G, Hessian H -> if H has a negative pivot: one step along it
+ *       -> damped Newton steps, each accepted only if the sum of squares does not rise -> minimum
+ *
+ * Contents: the fitted surface - descent - the fit */
 #include "surface/surface_fit.h"
 
 #include "base/elementary.h"
-#include "net/wanted.h"
-#include "surface/fit_descend.h"
+#include "net/target_surface.h"
+#include "linalg/dense.h"
+#include "surface/fit_point.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit_nlinear.h>
@@ -29,42 +35,33 @@
 /* Maximum ratio of fitted to target focal length, or of target to fitted. A larger ratio results from the errors of
  * nodes that show almost no curvature. The tests of the surface pass with 1.1 and with 5. */
 #define FOCAL_MOST 2.0
+/* Bounds of a descent (METHOD section 9). */
+#define DESCENT_STEPS_MAX 60
+#define DESCENT_STEP_MOST 0.1 /* maximum step, for parameters of order one; keeps steps in their valley */
+#define FALL_STEP 1e-2        /* first step, down from a ridge */
+#define PIVOT_LEAST 1e-12     /* relative to the diagonal; a smaller pivot is rounding */
+#define DAMPING_LEAST 1e-12   /* relative to the diagonal */
+#define DAMPING_MOST 1e6
+#define SETTLED 1e-13 /* converged if fall_by of a Newton step is below this share of half the sum of squares */
 
 /* ---- the fitted surface ---- */
 
-enum {
-    SHIFT_Z = HF_FIT_SHIFT_Z,
-    TURN_X = HF_FIT_TURN_X,
-    TURN_Y = HF_FIT_TURN_Y,
-    TURN_Z = HF_FIT_TURN_Z,
-    CURVE = HF_FIT_CURVE,
-    SHIFT_X = HF_FIT_SHIFT_X,
-    SHIFT_Y = HF_FIT_SHIFT_Y,
-    N_QUANTITY = HF_FIT_N_QUANTITY,
-    N_PARAMETER = HF_FIT_N_PARAMETER
-};
-
 /* Quantity of each parameter, and the number of parameters of the three fits. Each fit starts from the one before. A
  * shift of a cylinder along y changes nothing, and neither does a turn of a paraboloid about its axis. */
-static const int cylinder_parameter[N_PARAMETER] = {SHIFT_Z, TURN_X, TURN_Y, TURN_Z, CURVE, SHIFT_X};
-static const int paraboloid_parameter[N_PARAMETER] = {SHIFT_Z, TURN_X, TURN_Y, CURVE, SHIFT_X, SHIFT_Y};
+static const int cylinder_parameter[HF_FIT_N_PARAMETER] = {HF_FIT_SHIFT_Z, HF_FIT_TURN_X, HF_FIT_TURN_Y,
+                                                           HF_FIT_TURN_Z,  HF_FIT_CURVE,  HF_FIT_SHIFT_X};
+static const int paraboloid_parameter[HF_FIT_N_PARAMETER] = {HF_FIT_SHIFT_Z, HF_FIT_TURN_X,  HF_FIT_TURN_Y,
+                                                             HF_FIT_CURVE,   HF_FIT_SHIFT_X, HF_FIT_SHIFT_Y};
 static const int cylinder_fit[3] = {4, 5, 6}, paraboloid_fit[3] = {3, 4, 6};
 
+/* Points [3][n], and the kind of surface to fit to them. */
 typedef struct {
-    int n;
-    const double *x, *y, *z;
-    const double *root_weight; /* [n], or NULL: all are 1 */
-    const int *parameter;      /* [N_PARAMETER], quantity of each parameter */
     hf_surface_kind kind;
-    double curvature;       /* curvature of the target surface */
-    double center[3], size; /* size: the unit of shifts */
+    int n;
+    const double *position_m, *root_weight; /* root_weight NULL: all are 1 */
+    double curvature;                       /* curvature of the target surface */
+    hf_fit_parameters at;                   /* the quantities of all parameters, centre and size */
 } fit_problem;
-
-/* Parameters as a motion. In the frame of the surface, node p is at turn (p - center - shift) + center. */
-typedef struct {
-    double shift[3], curvature;
-    double turn[3][3], slope[3][3][3]; /* rotation, and its derivatives by the three angles */
-} pose;
 
 static void multiply(double a[3][3], double b[3][3], double to[3][3])
 {
@@ -94,43 +91,24 @@ void hf_fit_rotation(const double angle[3], const int order[3], double to[3][3])
     multiply(zy, r[0], to);
 }
 
-static void quantities(const fit_problem *p, const gsl_vector *v, double value[N_QUANTITY])
+/* Returns the frame for the parameters v, which `at` receives and the frame borrows. */
+static hf_fit_frame frame_at(const fit_problem *p, const gsl_vector *v, hf_fit_parameters *at)
 {
-    memset(value, 0, N_QUANTITY * sizeof *value);
+    *at = p->at;
     for (size_t k = 0; k < v->size; k++)
-        value[p->parameter[k]] = gsl_vector_get(v, k);
-}
-
-static pose pose_at(const fit_problem *p, const double value[N_QUANTITY])
-{
-    pose q = {.shift = {p->size * value[SHIFT_X], p->size * value[SHIFT_Y], p->size * value[SHIFT_Z]},
-              .curvature = p->curvature * (1 + value[CURVE])};
-    for (int d = -1; d < 3; d++)
-        hf_fit_rotation(value + TURN_X, (const int[3]){d == 0, d == 1, d == 2}, d < 0 ? q.turn : q.slope[d]);
-    return q;
-}
-
-static pose pose_of(const fit_problem *p, const gsl_vector *v)
-{
-    double value[N_QUANTITY];
-    quantities(p, v, value);
-    return pose_at(p, value);
-}
-
-/* Returns row k of matrix m times the vector from the shifted centre to node i. */
-static double apply(const fit_problem *p, const pose *q, const double m[3][3], int k, int i)
-{
-    return m[k][0] * (p->x[i] - p->center[0] - q->shift[0]) + m[k][1] * (p->y[i] - p->center[1] - q->shift[1]) +
-           m[k][2] * (p->z[i] - p->center[2] - q->shift[2]);
+        at->value[at->quantity[k]] = gsl_vector_get(v, k);
+    hf_fit_frame f = hf_fit_frame_of(p->kind, 1 / (4 * p->curvature), p->n, p->position_m, p->root_weight, at);
+    f.wanted_per_m = p->curvature;
+    f.curvature_per_m = p->curvature * (1 + at->value[HF_FIT_CURVE]);
+    return f;
 }
 
 /* Computes point i in the frame of the surface, and the slopes of the surface there. Returns its height above
  * the surface, m. */
-static double height(const fit_problem *p, const pose *q, int i, double at[3], double slope[2])
+static double height(const hf_fit_frame *f, int i, double arm[3], double at[3], double slope[2])
 {
-    for (int k = 0; k < 3; k++)
-        at[k] = p->center[k] + apply(p, q, q->turn, k, i);
-    return hf_wanted_height_above(p->kind, q->curvature, at, slope);
+    hf_fit_locate(f, i, arm, at);
+    return hf_target_surface_height_above(f->kind, f->curvature_per_m, at, slope);
 }
 
 static double root_weight(const fit_problem *p, int i)
@@ -138,45 +116,34 @@ static double root_weight(const fit_problem *p, int i)
     return p->root_weight ? p->root_weight[i] : 1;
 }
 
-static int residuals(const gsl_vector *v, void *context, gsl_vector *f)
+static int residuals(const gsl_vector *v, void *context, gsl_vector *r)
 {
     const fit_problem *p = context;
-    pose q = pose_of(p, v);
-    gsl_vector_set_zero(f); /* GSL needs at least as many rows as parameters; the additional rows are zero */
+    hf_fit_parameters now;
+    hf_fit_frame f = frame_at(p, v, &now);
+    gsl_vector_set_zero(r); /* GSL needs at least as many rows as parameters; the additional rows are zero */
     for (int i = 0; i < p->n; i++) {
-        double at[3], s[2], u = height(p, &q, i, at, s);
-        gsl_vector_set(f, (size_t)i, root_weight(p, i) * (u / (1 + s[0] * s[0] + s[1] * s[1])));
+        double arm[3], at[3], s[2], u = height(&f, i, arm, at, s);
+        gsl_vector_set(r, (size_t)i, root_weight(p, i) * (u / (1 + s[0] * s[0] + s[1] * s[1])));
     }
     return GSL_SUCCESS;
-}
-
-/* Computes the derivatives of point i, in the frame of the surface, by all quantities. */
-static void derive(const fit_problem *p, const pose *q, int i, double d[3][N_QUANTITY])
-{
-    static const int shift[3] = {SHIFT_X, SHIFT_Y, SHIFT_Z};
-    for (int c = 0; c < 3; c++) {
-        d[c][CURVE] = 0;
-        for (int k = 0; k < 3; k++) {
-            d[c][shift[k]] = -p->size * q->turn[c][k];
-            d[c][TURN_X + k] = apply(p, q, q->slope[k], c, i);
-        }
-    }
 }
 
 static int jacobian(const gsl_vector *v, void *context, gsl_matrix *J)
 {
     const fit_problem *p = context;
-    pose q = pose_of(p, v);
+    hf_fit_parameters now;
+    hf_fit_frame f = frame_at(p, v, &now);
     gsl_matrix_set_zero(J);
     for (int i = 0; i < p->n; i++) {
-        double at[3], s[2], d[3][N_QUANTITY], u = height(p, &q, i, at, s), w = 1 / (1 + s[0] * s[0] + s[1] * s[1]);
-        derive(p, &q, i, d);
+        double arm[3], at[3], s[2], u = height(&f, i, arm, at, s), w = 1 / (1 + s[0] * s[0] + s[1] * s[1]);
         for (int k = 0; k < (int)v->size; k++) { /* derivative of u w, with u = z - c x^2 - c y^2 and s = 2 c (x, y) */
-            int by = p->parameter[k];
-            double du = d[2][by], dw = 0, dc = by == CURVE ? p->curvature : 0;
+            double d[4];
+            hf_fit_derive(&f, arm, k, d);
+            double du = d[2], dw = 0;
             for (int e = 0; e < (p->kind == HF_SURFACE_PARABOLOID ? 2 : 1); e++) {
-                double ds = 2 * (q.curvature * d[e][by] + dc * at[e]);
-                du -= s[e] * d[e][by] + dc * at[e] * at[e];
+                double ds = 2 * (f.curvature_per_m * d[e] + d[3] * at[e]);
+                du -= s[e] * d[e] + d[3] * at[e] * at[e];
                 dw -= 2 * w * w * s[e] * ds;
             }
             gsl_matrix_set(J, (size_t)i, (size_t)k, root_weight(p, i) * (w * du + u * dw));
@@ -185,45 +152,177 @@ static int jacobian(const gsl_vector *v, void *context, gsl_matrix *J)
     return GSL_SUCCESS;
 }
 
+/* ---- descent ---- */
+
+/* Factors H [n][n] as L D L'. A negative pivot of row k is the curvature along x with L' x = e_k. Returns true and x
+ * [n] if there is one. */
+static bool find_fall(int n, const double *H, double *x)
+{
+    double L[HF_FIT_N_PARAMETER][HF_FIT_N_PARAMETER] = {{0}}, D[HF_FIT_N_PARAMETER];
+    for (int k = 0; k < n; k++) {
+        for (int j = 0; j <= k; j++) {
+            double left = H[k * n + j];
+            for (int i = 0; i < j; i++)
+                left -= L[k][i] * D[i] * L[j][i];
+            if (j == k)
+                D[k] = fabs(left) > PIVOT_LEAST * fabs(H[k * n + k]) ? left : 0;
+            else
+                L[k][j] = D[j] != 0 ? left / D[j] : 0;
+        }
+        if (D[k] >= 0) continue;
+        memset(x, 0, (size_t)n * sizeof *x);
+        x[k] = 1;
+        for (int j = k - 1; j >= 0; j--)
+            for (int i = j + 1; i <= k; i++)
+                x[j] -= L[i][j] * x[i];
+        return true;
+    }
+    return false;
+}
+
+/* Returns true if the sum of squares has no direction of negative curvature. */
+static bool is_least(const hf_fit_frame *f)
+{
+    double G[HF_FIT_N_PARAMETER], H[HF_FIT_N_PARAMETER * HF_FIT_N_PARAMETER], x[HF_FIT_N_PARAMETER];
+    hf_fit_hessian(f, G, H);
+    return !find_fall(f->found->n, H, x);
+}
+
+static double largest(int n, const double *x)
+{
+    double most = 0;
+    for (int k = 0; k < n; k++)
+        most = fmax(most, fabs(x[k]));
+    return most;
+}
+
+static void move(hf_fit_parameters *at, const double *step)
+{
+    for (int k = 0; k < at->n; k++)
+        at->value[at->quantity[k]] += step[k];
+}
+
+/* Computes step [n] = -(H + damping diag H)^-1 G. Returns false if this matrix is not positive, or if the step
+ * is too long. */
+static bool find_step(int n, const double *H, const double *G, double damping, double *step)
+{
+    double A[HF_FIT_N_PARAMETER * HF_FIT_N_PARAMETER], x[HF_FIT_N_PARAMETER];
+    int pivot[HF_FIT_N_PARAMETER];
+    memcpy(A, H, (size_t)(n * n) * sizeof *A);
+    for (int k = 0; k < n; k++) {
+        A[k * n + k] += damping * fabs(H[k * n + k]);
+        step[k] = -G[k];
+    }
+    if (find_fall(n, A, x) || hf_dense_factor(n, A, pivot) != 0) return false;
+    hf_dense_solve(n, A, pivot, 1, step);
+    return largest(n, step) <= DESCENT_STEP_MOST;
+}
+
+/* Returns half the sum of squares at other parameters, with its derivatives G and H. */
+static double look(const hf_fit_frame *f, const hf_fit_parameters *at, double *G, double *H)
+{
+    hf_fit_frame here = hf_fit_frame_of(f->kind, 1 / (4 * f->wanted_per_m), f->n, f->position_m, f->root_weight, at);
+    return hf_fit_hessian(&here, G, H);
+}
+
+/* Returns twice the decrease of half the sum of squares that a Newton step predicts. */
+static double fall_by(int n, const double *G, const double *step)
+{
+    double fall = 0;
+    for (int k = 0; k < n; k++)
+        fall -= G[k] * step[k];
+    return fall;
+}
+
+/* Takes a step. A step along a curved valley ends on its side, above its start. A second step from there then leads to
+ * the floor of the valley. Returns false and changes nothing if this is not lower either. */
+static bool take_step(const hf_fit_frame *f, hf_fit_parameters *at, const double *step, double damping, double *sum,
+                      double *G, double *H)
+{
+    hf_fit_parameters to = *at;
+    double back[HF_FIT_N_PARAMETER], to_G[HF_FIT_N_PARAMETER], to_H[HF_FIT_N_PARAMETER * HF_FIT_N_PARAMETER];
+    move(&to, step);
+    double next = look(f, &to, to_G, to_H);
+    if (!(next <= *sum) && find_step(to.n, to_H, to_G, damping, back)) {
+        move(&to, back);
+        next = look(f, &to, to_G, to_H);
+    }
+    if (!(next <= *sum)) return false;
+    *at = to;
+    *sum = next;
+    memcpy(G, to_G, sizeof to_G);
+    memcpy(H, to_H, sizeof to_H);
+    return true;
+}
+
+/* Descends to the minimum below `at`, the parameters of the frame. Adds the number of steps to *iterations. Returns
+ * false if a shift across exceeds across_most, in units of the size, or if the steps do not converge. */
+static bool descend(const hf_fit_frame *f, hf_fit_parameters *at, double across_most, int *iterations)
+{
+    double G[HF_FIT_N_PARAMETER], H[HF_FIT_N_PARAMETER * HF_FIT_N_PARAMETER], step[HF_FIT_N_PARAMETER],
+        damping = 0, sum = look(f, at, G, H);
+    if (find_fall(at->n, H, step)) {
+        double by = FALL_STEP / largest(at->n, step);
+        for (int k = 0; k < at->n; k++)
+            step[k] *= by;
+        move(at, step);
+        sum = look(f, at, G, H);
+    }
+    for (int n = 0; n < DESCENT_STEPS_MAX; n++) {
+        ++*iterations;
+        if (fmax(fabs(at->value[HF_FIT_SHIFT_X]), fabs(at->value[HF_FIT_SHIFT_Y])) > across_most) return false;
+        if (find_step(at->n, H, G, 0, step) && fall_by(at->n, G, step) <= SETTLED * sum) {
+            move(at, step);
+            return true;
+        }
+        while (!find_step(at->n, H, G, damping, step) || !take_step(f, at, step, damping, &sum, G, H)) {
+            damping = fmax(10 * damping, DAMPING_LEAST);
+            if (!(damping < DAMPING_MOST)) return false;
+        }
+        damping /= 10;
+    }
+    return false;
+}
+
 /* ---- the fit ---- */
 
 static void center(fit_problem *p)
 {
-    const double *x[3] = {p->x, p->y, p->z};
     for (int c = 0; c < 3; c++) {
-        double low = x[c][0], high = x[c][0], sum = 0;
+        const double *x = p->position_m + (size_t)c * (size_t)p->n;
+        double low = x[0], high = x[0], sum = 0;
         for (int i = 0; i < p->n; i++) {
-            low = fmin(low, x[c][i]);
-            high = fmax(high, x[c][i]);
-            sum += x[c][i];
+            low = fmin(low, x[i]);
+            high = fmax(high, x[i]);
+            sum += x[i];
         }
-        p->center[c] = sum / p->n;
-        p->size = fmax(p->size, (high - low) / 2);
+        p->at.center_m[c] = sum / p->n;
+        p->at.size_m = fmax(p->at.size_m, (high - low) / 2);
     }
-    if (!(p->size > 0)) p->size = 1;
+    if (!(p->at.size_m > 0)) p->at.size_m = 1;
 }
 
 static void report(const fit_problem *p, const gsl_vector *v, hf_surface_fit *fit)
 {
-    pose q = pose_of(p, v);
-    double half_path = 0, normal = 0, sum = 0, value[N_QUANTITY];
+    hf_fit_parameters now;
+    hf_fit_frame f = frame_at(p, v, &now);
+    double half_path = 0, normal = 0, sum = 0;
     for (int i = 0; i < p->n; i++) {
-        double at[3], s[2], u = height(p, &q, i, at, s), w = 1 / (1 + s[0] * s[0] + s[1] * s[1]);
-        double g = root_weight(p, i) * root_weight(p, i);
+        double arm[3], at[3], s[2], u = height(&f, i, arm, at, s), w = 1 / (1 + s[0] * s[0] + s[1] * s[1]);
+        double g = hf_fit_weight(&f, i);
         half_path += g * u * w * u * w;
         normal += g * u * u * w;
         sum += g;
     }
-    quantities(p, v, value);
     fit->half_path_rms_m = sqrt(half_path / sum);
     fit->normal_rms_m = sqrt(normal / sum);
-    fit->focal_length_m = 1 / (4 * q.curvature);
-    fit->shift_x_m = q.shift[0];
-    fit->shift_y_m = q.shift[1];
-    fit->shift_z_m = q.shift[2];
-    fit->rotation_x_rad = value[TURN_X];
-    fit->rotation_y_rad = value[TURN_Y];
-    fit->rotation_z_rad = value[TURN_Z];
+    fit->focal_length_m = 1 / (4 * f.curvature_per_m);
+    fit->shift_x_m = f.shift_m[0];
+    fit->shift_y_m = f.shift_m[1];
+    fit->shift_z_m = f.shift_m[2];
+    fit->rotation_x_rad = now.value[HF_FIT_TURN_X];
+    fit->rotation_y_rad = now.value[HF_FIT_TURN_Y];
+    fit->rotation_z_rad = now.value[HF_FIT_TURN_Z];
 }
 
 /* Iterates until the steps vanish, or until rounding keeps every step from lowering the sum of squares. Returns false
@@ -232,7 +331,7 @@ static bool iterate(gsl_multifit_nlinear_workspace *solver, int *iterations)
 {
     const gsl_vector *at = gsl_multifit_nlinear_position(solver);
     for (int n = 1; n <= FIT_STEPS_MAX; n++) {
-        double before[N_PARAMETER], step = 0;
+        double before[HF_FIT_N_PARAMETER], step = 0;
         for (size_t k = 0; k < at->size; k++)
             before[k] = gsl_vector_get(at, k);
         ++*iterations;
@@ -247,9 +346,9 @@ static bool iterate(gsl_multifit_nlinear_workspace *solver, int *iterations)
 
 /* Fits the first n_parameter parameters, starting from `parameter`, which it overwrites. Sets fit->converged. Returns
  * HF_OK or HF_NO_MEMORY. */
-static hf_status fit_some(fit_problem *p, size_t n_parameter, double parameter[N_PARAMETER], hf_surface_fit *fit)
+static hf_status fit_some(fit_problem *p, size_t n_parameter, double parameter[HF_FIT_N_PARAMETER], hf_surface_fit *fit)
 {
-    size_t n_row = p->n < N_PARAMETER ? N_PARAMETER : (size_t)p->n;
+    size_t n_row = p->n < HF_FIT_N_PARAMETER ? HF_FIT_N_PARAMETER : (size_t)p->n;
     gsl_multifit_nlinear_parameters settings = gsl_multifit_nlinear_default_parameters();
     gsl_multifit_nlinear_fdf fdf = {.f = residuals, .df = jacobian, .n = n_row, .p = n_parameter, .params = p};
     gsl_multifit_nlinear_workspace *solver =
@@ -268,20 +367,19 @@ static hf_status fit_some(fit_problem *p, size_t n_parameter, double parameter[N
 /* Calls fit_some, and continues to a minimum if that is not one. The steps of fit_some become very short along
  * valleys. In a net that is its own mirror image they stay on a ridge (METHOD section 9). If no minimum is found,
  * fit->converged is false. */
-static hf_status fit_least(fit_problem *p, int n_parameter, double parameter[N_PARAMETER], hf_surface_fit *fit)
+static hf_status fit_least(fit_problem *p, int n_parameter, double parameter[HF_FIT_N_PARAMETER], hf_surface_fit *fit)
 {
     HF_TRY(fit_some(p, (size_t)n_parameter, parameter, fit));
     if (!isfinite(fit->half_path_rms_m)) return HF_OK;
-    hf_fit_parameters at = {.n = n_parameter, .size_m = p->size};
-    memcpy(at.center_m, p->center, sizeof at.center_m);
-    memcpy(at.quantity, p->parameter, sizeof at.quantity);
+    hf_fit_parameters at = p->at;
+    at.n = n_parameter;
     for (int k = 0; k < n_parameter; k++)
-        at.value[p->parameter[k]] = parameter[k];
-    hf_fit_frame f = hf_fit_frame_of(p->kind, 1 / (4 * p->curvature), p->n, p->x, p->root_weight, &at);
-    if (fit->converged && hf_fit_is_least(&f)) return HF_OK;
-    fit->converged = hf_fit_descend(&f, &at, 2 * SHIFT_MOST, &fit->iterations);
+        at.value[at.quantity[k]] = parameter[k];
+    hf_fit_frame f = hf_fit_frame_of(p->kind, 1 / (4 * p->curvature), p->n, p->position_m, p->root_weight, &at);
+    if (fit->converged && is_least(&f)) return HF_OK;
+    fit->converged = descend(&f, &at, 2 * SHIFT_MOST, &fit->iterations);
     for (int k = 0; k < n_parameter; k++)
-        parameter[k] = at.value[p->parameter[k]];
+        parameter[k] = at.value[at.quantity[k]];
     gsl_vector_view v = gsl_vector_view_array(parameter, (size_t)n_parameter);
     report(p, &v.vector, fit);
     return HF_OK;
@@ -298,20 +396,15 @@ hf_status hf_surface_fit_find(hf_surface_kind kind, double focal_length_m, int n
                               const double *root_weight, hf_surface_fit *fit, hf_fit_parameters *found)
 {
     bool is_round = kind == HF_SURFACE_PARABOLOID;
-    fit_problem p = {.n = n, .x = position_m, .y = position_m + n, .z = position_m + 2 * (size_t)n};
-    double parameter[N_PARAMETER] = {0};
-    p.root_weight = root_weight;
-    p.kind = kind;
-    p.parameter = is_round ? paraboloid_parameter : cylinder_parameter;
-    p.curvature = 1 / (4 * focal_length_m);
+    fit_problem p = {kind, n, position_m, root_weight, 1 / (4 * focal_length_m), {0}};
+    double parameter[HF_FIT_N_PARAMETER] = {0};
     *fit = (hf_surface_fit){0};
+    memcpy(p.at.quantity, is_round ? paraboloid_parameter : cylinder_parameter, sizeof p.at.quantity);
     center(&p);
-    *found = (hf_fit_parameters){.size_m = p.size};
-    memcpy(found->center_m, p.center, sizeof p.center);
-    memcpy(found->quantity, p.parameter, sizeof found->quantity);
-    fit->center_x_m = p.center[0];
-    fit->center_y_m = p.center[1];
-    fit->center_z_m = p.center[2];
+    *found = p.at;
+    fit->center_x_m = p.at.center_m[0];
+    fit->center_y_m = p.at.center_m[1];
+    fit->center_z_m = p.at.center_m[2];
     /* First a rigid motion, then with the focal length, then with the shifts across. Each fit starts from the one
      * before. A fit that the points do not determine ends the sequence. */
     for (int k = 0; k < 3; k++) {
@@ -320,13 +413,13 @@ hf_status hf_surface_fit_find(hf_surface_kind kind, double focal_length_m, int n
         HF_TRY(fit_least(&p, n_parameter, parameter, &next));
         double longer = next.focal_length_m / focal_length_m, across = fmax(fabs(next.shift_x_m), fabs(next.shift_y_m));
         bool is_determined =
-            next.converged && across <= SHIFT_MOST * p.size && longer <= FOCAL_MOST && longer >= 1 / FOCAL_MOST;
+            next.converged && across <= SHIFT_MOST * p.at.size_m && longer <= FOCAL_MOST && longer >= 1 / FOCAL_MOST;
         fit->iterations = next.iterations;
         if (!is_determined) break;
         *fit = next;
         found->n = n_parameter;
         for (int i = 0; i < n_parameter; i++)
-            found->value[p.parameter[i]] = parameter[i];
+            found->value[found->quantity[i]] = parameter[i];
     }
     if (!fit->converged) set_unknown(fit);
     return HF_OK;
@@ -342,20 +435,17 @@ hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int
 void hf_surface_fit_errors(hf_surface_kind kind, const hf_surface_fit *fit, int n, const double *position_m,
                            double *error_m)
 {
-    fit_problem p = {.n = n,
-                     .x = position_m,
-                     .y = position_m + n,
-                     .z = position_m + 2 * (size_t)n,
-                     .kind = kind,
-                     .curvature = 1 / (4 * fit->focal_length_m),
-                     .center = {fit->center_x_m, fit->center_y_m, fit->center_z_m},
-                     .size = 1};
-    const double value[N_QUANTITY] = {
-        [SHIFT_X] = fit->shift_x_m,     [SHIFT_Y] = fit->shift_y_m,     [SHIFT_Z] = fit->shift_z_m,
-        [TURN_X] = fit->rotation_x_rad, [TURN_Y] = fit->rotation_y_rad, [TURN_Z] = fit->rotation_z_rad};
-    pose q = pose_at(&p, value);
+    const hf_fit_parameters at = {.value = {[HF_FIT_SHIFT_X] = fit->shift_x_m,
+                                            [HF_FIT_SHIFT_Y] = fit->shift_y_m,
+                                            [HF_FIT_SHIFT_Z] = fit->shift_z_m,
+                                            [HF_FIT_TURN_X] = fit->rotation_x_rad,
+                                            [HF_FIT_TURN_Y] = fit->rotation_y_rad,
+                                            [HF_FIT_TURN_Z] = fit->rotation_z_rad},
+                                  .center_m = {fit->center_x_m, fit->center_y_m, fit->center_z_m},
+                                  .size_m = 1};
+    hf_fit_frame f = hf_fit_frame_of(kind, fit->focal_length_m, n, position_m, NULL, &at);
     for (int i = 0; i < n; i++) {
-        double at[3], slope[2], above = height(&p, &q, i, at, slope);
+        double arm[3], place[3], slope[2], above = height(&f, i, arm, place, slope);
         error_m[i] = above / sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
     }
 }

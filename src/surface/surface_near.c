@@ -10,7 +10,7 @@
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "linalg/dense.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "surface/facet_rms.h"
 
 #include <math.h>
@@ -187,16 +187,15 @@ bool hf_surface_fit_near(const hf_surface_pose *from, int n, const double *posit
 
 /* ---- a shape ---- */
 
-static void take_nodes(const hf_model *m, const double *position_m, double *inner_m)
+/* Copies the inner nodes to inner_m [3][n], in new memory of the arena. */
+static hf_status take_nodes(const hf_model *m, const double *position_m, hf_arena *arena, double **inner_m)
 {
-    for (int c = 0; c < 3; c++)
-        for (int k = 0; k < m->n_inner_node; k++)
-            inner_m[c * m->n_inner_node + k] = position_m[c * m->n_node + m->inner_row[k]];
-}
-
-static void lay_out_nodes(hf_arena *arena, int n, double **position_m)
-{
-    *position_m = hf_arena_take(arena, 3 * (size_t)n, sizeof **position_m);
+    size_t n = (size_t)m->n_inner_node;
+    HF_TRY(HF_ARENA_MAKE(arena, *inner_m = hf_arena_take(arena, 3 * n, sizeof **inner_m)));
+    for (size_t c = 0; c < 3; c++)
+        for (size_t k = 0; k < n; k++)
+            (*inner_m)[c * n + k] = position_m[(int)c * m->n_node + m->inner_row[k]];
+    return HF_OK;
 }
 
 hf_status hf_surface_design_make(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
@@ -208,8 +207,7 @@ hf_status hf_surface_design_make(const hf_surface_settings *s, const hf_facets *
     hf_fit_parameters parameters;
     double *inner_m;
     *design = (hf_surface_design){0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_nodes(&arena, m->n_inner_node, &inner_m)));
-    take_nodes(m, position_m, inner_m);
+    HF_TRY(take_nodes(m, position_m, &arena, &inner_m));
     hf_status status =
         hf_surface_fit_find(s->kind, s->focal_length_m, m->n_inner_node, inner_m, NULL, &fit, &parameters);
     hf_arena_free(&arena);
@@ -231,11 +229,10 @@ static hf_status measure_nodes(const hf_surface_design *design, const hf_surface
     hf_arena arena = {0};
     hf_surface_fit fit;
     double *inner_m, sum = 0, curvature = 1 / (4 * s->focal_length_m);
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_nodes(&arena, n, &inner_m)));
-    take_nodes(m, position_m, inner_m);
+    HF_TRY(take_nodes(m, position_m, &arena, &inner_m));
     for (int k = 0; k < n; k++) {
         double p[3] = {inner_m[k], inner_m[n + k], inner_m[2 * (size_t)n + (size_t)k]}, slope[2];
-        double above = hf_wanted_height_above(s->kind, curvature, p, slope);
+        double above = hf_target_surface_height_above(s->kind, curvature, p, slope);
         double path = above / (1 + slope[0] * slope[0] + slope[1] * slope[1]);
         sum += path * path;
     }

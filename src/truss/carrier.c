@@ -11,7 +11,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static void lay_out(hf_arena *a, hf_carrier *c, size_t n_support)
 {

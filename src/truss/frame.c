@@ -67,11 +67,6 @@ static void set_stiffness(const hf_truss *t, int e, hf_frame *f)
     }
 }
 
-static int n_deformation(const hf_truss *t, int e)
-{
-    return t->joint[e] == HF_JOINT_PINNED ? 1 : N_DEFORMATION;
-}
-
 /* Computes the deformations per displacement of the two nodes, b [N_DEFORMATION][12]. Rotations are relative to the
  * chord, so that a rigid-body motion causes no strain, to rounding. */
 static void deformation_matrix(const hf_frame *f, int e, double b[N_DEFORMATION][12])
@@ -132,6 +127,14 @@ static void deform(const hf_frame *f, int e, const double *displacement, double 
     deformation[3] = turn_j[2] - along[1] / length;
     deformation[4] = turn_i[1] + along[2] / length;
     deformation[5] = turn_j[1] + along[2] / length;
+}
+
+/* Computes the elastic deformations of a member in a load case, and the forces q of these. */
+static void strain(const hf_frame *f, const hf_frame_load *load, int e, const double *displacement, double *deformation,
+                   double *q)
+{
+    deform(f, e, displacement, load->temperature_K ? load->temperature_K[e] : 0, deformation);
+    resist(f->stiffness + N_DEFORMATION * (size_t)e, deformation, q);
 }
 
 /* Computes the local end forces s [12] from the forces q of the deformations, by equilibrium of the member. */
@@ -235,7 +238,7 @@ static void assemble(const hf_frame *f, double *band)
     memset(band, 0, (size_t)f->n_dof * width * sizeof *band);
     for (int e = 0; e < t->n_member; e++) {
         double b[N_DEFORMATION][12];
-        int n = n_deformation(t, e), row[12];
+        int n = t->joint[e] == HF_JOINT_PINNED ? 1 : N_DEFORMATION, row[12];
         rows_of_member(f, f->row_of_dof, e, row);
         deformation_matrix(f, e, b);
         for (int j = 0; j < 12; j++) {
@@ -325,33 +328,34 @@ static hf_status refuse(const hf_frame *f, int row, hf_messages *messages)
 
 /* ---- build ---- */
 
+static hf_status no_memory(const hf_truss *t, hf_messages *messages)
+{
+    return hf_error(messages, HF_NO_MEMORY, "out of memory for a truss of %d nodes", t->n_node);
+}
+
 static hf_status factor(hf_frame *f, hf_messages *messages)
 {
     size_t n = (size_t)f->n_dof;
+    double *work;
+    int *integer_work, k = f->half_bandwidth;
+    hf_arena arena = {0};
     HF_TRY(hf_lapack_load(messages));
-    double *work = malloc(3 * n * sizeof *work);
-    int *integer_work = malloc(n * sizeof *integer_work);
-    hf_status status = HF_OK;
-    if (!work || !integer_work) {
-        status = hf_error(messages, HF_NO_MEMORY, "out of memory for a truss of %d nodes", f->truss->n_node);
-    } else {
-        assemble(f, f->factor);
-        int loose = scale_to_unit_diagonal(f, f->scale, f->factor);
-        bool singular = false;
-        if (loose < 0) {
-            double norm = hf_band_norm(f->n_dof, f->half_bandwidth, f->factor, work);
-            singular = hf_band_factor(f->n_dof, f->half_bandwidth, f->factor) != 0;
-            f->condition = singular
-                               ? (double)INFINITY
-                               : hf_band_condition(f->n_dof, f->half_bandwidth, f->factor, norm, work, integer_work);
-            if (!(f->condition <= CONDITION_MAX)) loose = find_loosest_row(f, work);
-            singular = !(f->condition <= CONDITION_MAX);
-        }
-        if (loose >= 0 || singular) status = refuse(f, loose, messages);
+    if (HF_ARENA_MAKE(&arena, (work = hf_arena_take(&arena, 3 * n, sizeof *work),
+                               integer_work = hf_arena_take(&arena, n, sizeof *integer_work))) != HF_OK)
+        return no_memory(f->truss, messages);
+    assemble(f, f->factor);
+    int loose = scale_to_unit_diagonal(f, f->scale, f->factor);
+    bool is_sound = loose < 0;
+    if (is_sound) {
+        double norm = hf_band_norm(f->n_dof, k, f->factor, work);
+        f->condition = hf_band_factor(f->n_dof, k, f->factor) != 0
+                           ? (double)INFINITY
+                           : hf_band_condition(f->n_dof, k, f->factor, norm, work, integer_work);
+        is_sound = f->condition <= CONDITION_MAX;
+        if (!is_sound) loose = find_loosest_row(f, work);
     }
-    free(work);
-    free(integer_work);
-    return status;
+    hf_arena_free(&arena);
+    return is_sound ? HF_OK : refuse(f, loose, messages);
 }
 
 static hf_status build(const hf_truss *truss, int *row_of_dof, int *order, hf_frame *f, hf_messages *messages)
@@ -359,7 +363,7 @@ static hf_status build(const hf_truss *truss, int *row_of_dof, int *order, hf_fr
     int n_ordered;
     classify_dofs(truss, row_of_dof);
     hf_status status = order_nodes(truss, row_of_dof, order, &n_ordered);
-    if (status != HF_OK) return hf_error(messages, status, "out of memory for a truss of %d nodes", truss->n_node);
+    if (status != HF_OK) return no_memory(truss, messages);
     f->n_dof = give_rows(order, n_ordered, row_of_dof);
     f->half_bandwidth = find_half_bandwidth(f, row_of_dof);
     if (f->n_dof == 0) return hf_error(messages, HF_BAD_CASE, "truss: every node is supported: nothing can deform");
@@ -367,8 +371,7 @@ static hf_status build(const hf_truss *truss, int *row_of_dof, int *order, hf_fr
         return hf_error(messages, HF_NO_MEMORY, "the stiffness matrix of %d rows, half-bandwidth %d is too large",
                         f->n_dof, f->half_bandwidth);
     hf_arena arena = {0};
-    status = HF_ARENA_MAKE(&arena, lay_out(&arena, truss, f));
-    if (status != HF_OK) return hf_error(messages, status, "out of memory for a truss of %d nodes", truss->n_node);
+    if (HF_ARENA_MAKE(&arena, lay_out(&arena, truss, f)) != HF_OK) return no_memory(truss, messages);
     f->block = arena.block;
     memcpy(f->row_of_dof, row_of_dof, HF_TRUSS_DOF * (size_t)truss->n_node * sizeof *row_of_dof);
     for (int e = 0; e < truss->n_member; e++) {
@@ -383,7 +386,7 @@ hf_status hf_frame_build(const hf_truss *truss, hf_frame *frame, hf_messages *me
     *frame = (hf_frame){.truss = truss};
     size_t n = (size_t)truss->n_node;
     int *scratch = malloc((HF_TRUSS_DOF + 1) * n * sizeof *scratch);
-    if (!scratch) return hf_error(messages, HF_NO_MEMORY, "out of memory for a truss of %d nodes", truss->n_node);
+    if (!scratch) return no_memory(truss, messages);
     hf_status status = build(truss, scratch, scratch + HF_TRUSS_DOF * n, frame, messages);
     free(scratch);
     return status;
@@ -397,11 +400,6 @@ void hf_frame_free(hf_frame *frame)
 
 /* ---- load cases ---- */
 
-static double rise_of(const hf_frame_load *load, int e)
-{
-    return load->temperature_K ? load->temperature_K[e] : 0;
-}
-
 /* Subtracts the forces that displaced members need at the nodes from `force` [n_node][6]. */
 static void subtract_members(const hf_frame *f, const hf_frame_load *load, const double *displacement, double *force)
 {
@@ -409,8 +407,7 @@ static void subtract_members(const hf_frame *f, const hf_frame_load *load, const
     for (int e = 0; e < t->n_member; e++) {
         double deformation[N_DEFORMATION], q[N_DEFORMATION], s[12];
         const double *axes = f->axes + 9 * (size_t)e;
-        deform(f, e, displacement, rise_of(load, e), deformation);
-        resist(f->stiffness + N_DEFORMATION * (size_t)e, deformation, q);
+        strain(f, load, e, displacement, deformation, q);
         end_forces(q, f->length_m[e], s);
         for (int k = 0; k < 4; k++) { /* force at i, moment at i, force at j, moment at j */
             double *at = force + HF_TRUSS_DOF * (size_t)t->end[2 * e + k / 2] + 3 * (k % 2);
@@ -489,8 +486,7 @@ void hf_frame_member_forces(const hf_frame *f, const hf_frame_load *load, const 
 {
     for (int e = 0; e < f->truss->n_member; e++) {
         double deformation[N_DEFORMATION], q[N_DEFORMATION];
-        deform(f, e, displacement, rise_of(load, e), deformation);
-        resist(f->stiffness + N_DEFORMATION * (size_t)e, deformation, q);
+        strain(f, load, e, displacement, deformation, q);
         end_forces(q, f->length_m[e], end_force + 12 * (size_t)e);
     }
 }
@@ -500,8 +496,7 @@ double hf_frame_strain_energy(const hf_frame *f, const hf_frame_load *load, cons
     double twice = 0;
     for (int e = 0; e < f->truss->n_member; e++) {
         double deformation[N_DEFORMATION], q[N_DEFORMATION];
-        deform(f, e, displacement, rise_of(load, e), deformation);
-        resist(f->stiffness + N_DEFORMATION * (size_t)e, deformation, q);
+        strain(f, load, e, displacement, deformation, q);
         for (int d = 0; d < N_DEFORMATION; d++)
             twice += q[d] * deformation[d];
     }

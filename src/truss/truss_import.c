@@ -3,7 +3,6 @@
 
 #include "base/csv.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

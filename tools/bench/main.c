@@ -62,7 +62,7 @@ void bench_fdm_step(const hf_model *m, const hf_form_settings *form, hf_workspac
     int bad_row;
     hf_form_assemble(m, w);
     hf_form_assemble_loads(m, w);
-    if (hf_band_solve(m->n_free, m->half_bandwidth, w->band, w->position_m, m->n_node, &bad_row) != HF_OK)
+    if (hf_band_solve(false, m->n_free, m->half_bandwidth, w->band, w->position_m, m->n_node, &bad_row) != HF_OK)
         bench_fail("step", "singular");
     bench_measure(m, form, w);
 }

@@ -4,7 +4,7 @@
  * Contents: peaks - operations of the factorisation - nets - the section */
 #include "bench.h"
 
-#include "search/swarm_lane.h"
+#include "search/swarm.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -135,8 +135,8 @@ static void open_net(const char *name, hf_lane_isa isa, net *n)
 
 static void close_net(net *n)
 {
-    hf_swarm_lanes_free(&n->lanes);
-    hf_swarm_plan_free(&n->plan);
+    hf_arena_free(&n->lanes.arena);
+    hf_arena_free(&n->plan.arena);
     bench_scene_free(&n->scene);
 }
 
@@ -146,9 +146,9 @@ static double factor_s(net *n)
     double spent_s = 0;
     int count = 0;
     for (; spent_s < ENOUGH_FACTOR_S; count++) {
-        hf_swarm_assemble(&n->plan, &n->lanes);
+        n->plan.kernels->assemble(&n->plan, &n->lanes);
         double start_s = bench_clock_s();
-        hf_swarm_factor(&n->plan, &n->lanes);
+        n->plan.kernels->factor(&n->plan, &n->lanes);
         spent_s += bench_clock_s() - start_s;
     }
     return spent_s / count;

@@ -154,8 +154,8 @@ static void swarm_phases(bench_scene *b)
     b->form.max_iterations = ITERATIONS;
     population_phases(b, "fixed point iteration, lanes", run_swarm, 1);
     b->form = b->settings.form;
-    hf_swarm_lanes_free(&swarm_lanes);
-    hf_swarm_plan_free(&swarm_plan);
+    hf_arena_free(&swarm_lanes.arena);
+    hf_arena_free(&swarm_plan.arena);
 }
 
 /* ---- eight to a pass, chord ---- */
@@ -213,8 +213,8 @@ static void chord_phases(bench_scene *b)
     chord_solve = chord.matrix.solve;
     chord.matrix.solve = timed_chord_solve;
     population_phases(b, "chord evaluation", run_chord, 0);
-    hf_chord_lanes_free(&chord_lanes);
-    hf_chord_free(&chord);
+    hf_arena_free(&chord_lanes.arena);
+    hf_arena_free(&chord.arena);
 }
 
 void bench_phases(const char *name, const char *folder)

@@ -115,7 +115,7 @@ static void by_path(void *context)
     for (int i = 0; i < r->n; i++) {
         int n_step = 0, culprit;
         hf_evaluate_prepare(&b->evaluator, design(b, i), &b->workspace);
-        hf_status status = hf_interior_run(&b->model, &b->form, &b->workspace, PATH_STEPS, &n_step, &culprit);
+        hf_status status = hf_interior_run(&b->model, &b->form, &b->workspace, false, PATH_STEPS, &n_step, &culprit);
         if (status != HF_OK) bench_fail(b->name, hf_status_text(status));
         r->result[i].iterations = n_step;
         note_error(r, i, &b->workspace);

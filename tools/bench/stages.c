@@ -108,8 +108,9 @@ WATCH(EVALUATE, hf_workspace *, hf_batch_run_one, (hf_batch * batch, const doubl
 WATCH_VOID(RANK, hf_optimiser_tell, (hf_optimiser * ga), (ga))
 WATCH(REFINE, hf_status, hf_refine_run,
       (const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
-       const hf_refine_watcher *watcher, double *design, hf_workspace *workspace, hf_refine_result *result),
-      (evaluator, lower, upper, max_iterations, watcher, design, workspace, result))
+       const hf_watch_front *front, const hf_refine_watcher *watcher, double *design, hf_workspace *workspace,
+       hf_refine_result *result),
+      (evaluator, lower, upper, max_iterations, front, watcher, design, workspace, result))
 WATCH(STORE, hf_status, hf_store_create,
       (const char *path, bool force, const hf_case *settings, const hf_scene *scene, const hf_truss *truss, int argc,
        char *const *argv, hf_store **store, hf_messages *messages),

@@ -3,7 +3,7 @@
 
 #include "linalg/band.h"
 #include "linalg/lapack.h"
-#include "search/swarm_lane.h"
+#include "search/swarm.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -71,8 +71,8 @@ static void step_cholmod(void *context)
 static void step_lanes(void *context)
 {
     step_context *c = context;
-    hf_swarm_solve(&c->plan, &c->lanes);
-    hf_swarm_measure(&c->plan, &c->lanes, &c->measures);
+    c->plan.kernels->solve(&c->plan, &c->lanes);
+    c->plan.kernels->measure(&c->plan, &c->lanes, &c->measures);
 }
 
 static void create_lanes(step_context *c)
@@ -180,8 +180,8 @@ void bench_step(const char *what, const char *folder)
                            bench_distance_m(&b.model, first, b.workspace.position_m));
         }
     bench_emit("step", b.name, "net", b.model.n_free, "half_bandwidth", b.model.half_bandwidth);
-    hf_swarm_lanes_free(&c.lanes);
-    hf_swarm_plan_free(&c.plan);
+    hf_arena_free(&c.lanes.arena);
+    hf_arena_free(&c.plan.arena);
     bench_cholmod_free(c.cholmod);
     free(first);
     bench_scene_free(&b);

@@ -105,7 +105,7 @@ START_TEST(what_a_symmetric_search_finds_is_symmetric)
     memcpy(design, s.ga.population.design + s.ga.population.best * N_VARIABLE, sizeof design);
     ck_assert_int_eq(hf_evaluate(&s.evaluator, design, &s.net.work, &found), HF_OK);
     ck_assert_double_lt(asymmetry_m(&s.net.model, &s.net.work), 1e-9);
-    ck_assert_int_eq(hf_refine_run(&s.evaluator, s.ga.population.lower, s.ga.population.upper, 20, NULL, design,
+    ck_assert_int_eq(hf_refine_run(&s.evaluator, s.ga.population.lower, s.ga.population.upper, 20, NULL, NULL, design,
                                    &s.net.work, &refined),
                      HF_OK);
     ck_assert_double_lt(refined.merit, found.psi_m);
@@ -146,7 +146,7 @@ START_TEST(refining_linked_variables_reaches_the_free_optimum)
                           .rule = HF_RULE_FORCE_DENSITY,
                           .solver = HF_SOLVER_NEWTON,
                           .boundary_ratio_cap = 100};
-        ck_assert_int_eq(hf_refine_run(&v, lower, upper, 200, NULL, design, &net.work, &refined), HF_OK);
+        ck_assert_int_eq(hf_refine_run(&v, lower, upper, 200, NULL, NULL, design, &net.work, &refined), HF_OK);
         psi_m[linked] = refined.merit;
         ck_assert_double_lt(refined.merit, refined.start_merit);
         close_net(&net);

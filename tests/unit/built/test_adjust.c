@@ -43,7 +43,7 @@ static double true_psi_m(twin *t, const hf_adjustment *found, int n_move)
         length[found->move[k].cable] += found->move[k].move_m;
     for (int i = 0; i < 3 * m->n_node; i++)
         off[i % 3 * m->n_node + i / 3] = t->rest_m[i];
-    hf_built_net net = {.cut_m = length, .support_move_m = off};
+    hf_built_net net = {.cut_m = length, .support_displacement_m = off};
     ck_assert_int_eq(hf_built_solve(&t->built, &net, &t->work, &r), HF_OK);
     return r.psi_m;
 }

@@ -79,8 +79,8 @@ static void residuals_at(struct differed *d, int i, double step, double *residua
     for (int k = 0; k < m->n_variable; k++)
         d->design[k] = d->p.initial[k] + (d->slopes.class_of_variable[k] == i ? step : 0);
     ck_assert_int_eq(hf_evaluate(&d->p.evaluator, d->design, &d->p.workspace, &result), HF_OK);
-    ck_assert_int_eq(hf_objectives_linearise(&d->p.objectives, &d->p.workspace, d->p.workspace.objectives, residual),
-                     HF_OK);
+    ck_assert_int_eq(
+        hf_objectives_linearise(&d->p.objectives, true, &d->p.workspace, d->p.workspace.objectives, residual), HF_OK);
 }
 
 static double largest_move(const struct differed *d, int i)

@@ -121,7 +121,7 @@ START_TEST(cholesky_lu_gsl_and_dense_agree)
     struct band_system copy = s;
     memcpy(cholesky, s.b, sizeof cholesky);
     bad_row = 7;
-    ck_assert_int_eq(hf_band_solve(n, k, copy.band, cholesky, LDB, &bad_row), HF_OK);
+    ck_assert_int_eq(hf_band_solve(false, n, k, copy.band, cholesky, LDB, &bad_row), HF_OK);
     ck_assert_int_eq(bad_row, -1);
     assert_same(cholesky, other, TOLERANCE); /* the guard rows, too */
     if (k >= n) return;                      /* GSL wants no wider band than the matrix */
@@ -189,7 +189,7 @@ START_TEST(not_positive_definite_is_told_with_its_row)
             for (int d = 0; d <= k; d++)
                 if (j == row || j + d == row) copy.band[d + j * (k + 1)] = 0;
         copy.band[row * (k + 1)] = wrong[w];
-        ck_assert_int_eq(hf_band_solve(n, k, copy.band, copy.b, LDB, &bad_row), HF_SINGULAR);
+        ck_assert_int_eq(hf_band_solve(false, n, k, copy.band, copy.b, LDB, &bad_row), HF_SINGULAR);
         ck_assert_int_eq(bad_row, row);
         ck_assert_mem_eq(copy.b, s.b, sizeof s.b); /* untouched */
     }

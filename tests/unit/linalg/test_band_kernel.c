@@ -11,15 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROW(isa)                                                                                                       \
-    {                                                                                                                  \
-        hf_band_factor_##isa, hf_band_back_solve_##isa, hf_band_gram_##isa                                             \
-    }
-static const struct {
-    int (*factor)(int n, int half_bandwidth, double *band, int first, int end);
-    void (*back_solve)(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb);
-    void (*gram)(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg);
-} kernel[HF_LANE_N_ISA] = {ROW(portable), ROW(avx2), ROW(avx512)};
+static const hf_band_kernels *const kernel[HF_LANE_N_ISA] = {HF_LANE_EACH(&hf_band_kernels)};
 
 static const int sizes[] = {1, 2, 3, 4, 5, 7, 8, 9, 15, 16, 17, 31, 64, 85, 131};
 static const int widths[] = {0, 1, 2, 3, 4, 5, 7, 8, 12, 15, 16, 21, 33, 65};
@@ -73,8 +65,8 @@ static problem copy(const problem *from)
 static problem solved(const problem *from, int isa)
 {
     problem p = copy(from);
-    ck_assert_int_eq(kernel[isa].factor(p.n, p.k, p.band, 0, p.n), 0);
-    kernel[isa].back_solve(p.n, p.k, N_RHS, p.band, p.b, p.ld);
+    ck_assert_int_eq(kernel[isa]->factor(p.n, p.k, p.band, 0, p.n), 0);
+    kernel[isa]->back_solve(p.n, p.k, N_RHS, p.band, p.b, p.ld);
     return p;
 }
 
@@ -116,7 +108,7 @@ START_TEST(bad_pivot)
             if (!hf_lane_has_isa((hf_lane_isa)isa)) continue;
             problem p = draw(11, 5, 3);
             p.band[bad * 6] = _i ? (double)NAN : -1;
-            ck_assert_int_eq(kernel[isa].factor(p.n, p.k, p.band, 0, p.n), bad + 1);
+            ck_assert_int_eq(kernel[isa]->factor(p.n, p.k, p.band, 0, p.n), bad + 1);
             release(&p);
         }
 }
@@ -127,7 +119,7 @@ START_TEST(right_hand_sides_alone)
 {
     problem p = draw(37, 9, 5), together = solved(&p, HF_LANE_PORTABLE);
     for (int r = 0; r < N_RHS; r++)
-        kernel[HF_LANE_PORTABLE].back_solve(p.n, p.k, 1, together.band, p.b + r * p.ld, p.ld);
+        kernel[HF_LANE_PORTABLE]->back_solve(p.n, p.k, 1, together.band, p.b + r * p.ld, p.ld);
     ck_assert(!memcmp(p.b, together.b, p.n_b * sizeof(double)));
     release(&p);
     release(&together);
@@ -145,7 +137,7 @@ START_TEST(products_of_rows)
         for (int isa = 0; isa < HF_LANE_N_ISA; isa++) {
             if (!hf_lane_has_isa((hf_lane_isa)isa)) continue;
             for (int row = 0; row < N; row += 8) /* rows 0 to 7, then the others */
-                kernel[isa].gram(row, row ? N : 8, n_column, a, LD, gram, N);
+                kernel[isa]->gram(row, row ? N : 8, n_column, a, LD, gram, N);
             for (int i = 0; i < N; i++)
                 for (int j = 0; j <= i; j++) {
                     double sum = 0;
@@ -158,7 +150,7 @@ START_TEST(products_of_rows)
         a[i] *= 1.0 / 3;
     for (int isa = 0; isa < HF_LANE_N_ISA; isa++) {
         if (!hf_lane_has_isa((hf_lane_isa)isa)) continue;
-        kernel[isa].gram(0, N, LD, a, LD, isa ? gram : first, N);
+        kernel[isa]->gram(0, N, LD, a, LD, isa ? gram : first, N);
         for (int i = 0; i < N && isa; i++)
             ck_assert(!memcmp(gram + i * N, first + i * N, ((size_t)i + 1) * sizeof(double)));
     }

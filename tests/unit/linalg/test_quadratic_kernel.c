@@ -9,15 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-#define ROW(isa)                                                                                                       \
-    {                                                                                                                  \
-        hf_quadratic_invert_##isa, hf_quadratic_turn_##isa, hf_quadratic_combine_##isa                                 \
-    }
-static const struct {
-    void (*invert)(int n, int first, const double *triangle, double *strip);
-    void (*turn)(int ld, int first, int last, const double *cosine, const double *sine, double *J);
-    void (*combine)(int ld, int first, int end, const double *weight, const double *J, double *sum);
-} kernel[HF_LANE_N_ISA] = {ROW(portable), ROW(avx2), ROW(avx512)};
+static const hf_quadratic_kernels *const kernel[HF_LANE_N_ISA] = {HF_LANE_EACH(&hf_quadratic_kernels)};
 
 static const int sizes[] = {1, 2, 4, 5, 8, 11, 24, 37, 48};
 enum { N_SIZES = sizeof sizes / sizeof *sizes, MAX_N = 48 };
@@ -56,7 +48,7 @@ START_TEST(inverse_of_a_triangle)
             memset(strip, 0, sizeof strip);
             for (int lane = 0; lane < HF_LANES && first + lane < n; lane++)
                 strip[HF_LANES * (first + lane) + lane] = 1;
-            kernel[isa].invert(n, first, l, strip);
+            kernel[isa]->invert(n, first, l, strip);
             ck_assert_mem_eq(strip, wanted, (size_t)n * HF_LANES * sizeof(double));
             ck_assert_double_eq(strip[HF_LANES * first], 1 / l[first * n]);
         }
@@ -86,9 +78,9 @@ START_TEST(columns_turn_and_are_combined)
     for (int isa = 0; isa < HF_LANE_N_ISA; isa++) {
         if (!hf_lane_has_isa((hf_lane_isa)isa)) continue;
         memcpy(J, start, sizeof J);
-        kernel[isa].turn(ld, first, last, cosine, sine, J);
+        kernel[isa]->turn(ld, first, last, cosine, sine, J);
         ck_assert_mem_eq(J, wanted, (size_t)(n * ld) * sizeof(double));
-        kernel[isa].combine(ld, first, n, angle, J, sum);
+        kernel[isa]->combine(ld, first, n, angle, J, sum);
         for (int r = 0; r < ld; r++) {
             double total = 0;
             for (int j = first; j < n; j++)

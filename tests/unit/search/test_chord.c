@@ -115,8 +115,8 @@ START_TEST(figures_are_those_of_the_scalar_code)
         ck_assert_double_eq_tol(a->shortest_length_ratio, b->shortest_length_ratio, 1e-15);
         ck_assert(a->length_error == b->length_error && a->n_loose == 0 && isnan(a->condition));
     }
-    hf_chord_lanes_free(&lanes);
-    hf_chord_free(&chord);
+    hf_arena_free(&lanes.arena);
+    hf_arena_free(&chord.arena);
     close_net(&r.net);
 }
 END_TEST

@@ -5,32 +5,16 @@
 
 #include "linalg/band.h"
 #include "search/chord.h"
-#include "search/chord_kernel.h"
-
-typedef void (*forces_fn)(const hf_chord *, const hf_chord_lanes *, double *);
-typedef void (*move_fn)(const hf_chord *, const hf_chord_lanes *);
-typedef void (*measure_fn)(const hf_chord *, const hf_chord_lanes *, hf_chord_measures *);
 
 enum { PORTABLE, AVX2, AVX512, N_ISA };
-static const struct {
-    const char *name;
-    forces_fn forces;
-    forces_fn couple;
-    hf_packed_band_solve *solve;
-    move_fn move, step;
-    measure_fn measure;
-} isa[] = {{"portable", hf_chord_forces_portable, hf_chord_couple_portable, hf_packed_band_solve_portable,
-            hf_chord_move_portable, hf_chord_step_portable, hf_chord_measure_portable},
-           {"avx2", hf_chord_forces_avx2, hf_chord_couple_avx2, hf_packed_band_solve_avx2, hf_chord_move_avx2,
-            hf_chord_step_avx2, hf_chord_measure_avx2},
-           {"avx512f", hf_chord_forces_avx512, hf_chord_couple_avx512, hf_packed_band_solve_avx512,
-            hf_chord_move_avx512, hf_chord_step_avx512, hf_chord_measure_avx512}};
+static const hf_chord_kernels *const isa[N_ISA] = {HF_LANE_EACH(&hf_chord_kernels)};
+static hf_packed_band_solve *const solve[N_ISA] = {HF_LANE_EACH(hf_packed_band_solve)};
 
 static int has_isa(int i)
 {
     int has = hf_lane_has_isa((hf_lane_isa)i);
     char reason[64];
-    snprintf(reason, sizeof reason, "no %s in this processor", isa[i].name);
+    snprintf(reason, sizeof reason, "no %s in this processor", hf_lane_isa_name((hf_lane_isa)i));
     if (!has) skip_for_machine("unit/chord_kernel", reason);
     return has;
 }
@@ -84,8 +68,8 @@ static void fill_lanes(struct kernel_run *r, uint64_t stream)
 
 static void close_kernel(struct kernel_run *r)
 {
-    hf_chord_lanes_free(&r->lanes);
-    hf_chord_free(&r->chord);
+    hf_arena_free(&r->lanes.arena);
+    hf_arena_free(&r->chord.arena);
     close_net(&r->net);
 }
 
@@ -101,16 +85,16 @@ static double *copy(const double *a, size_t n)
 static void work(struct kernel_run *r, int i, double squared[HF_LANES])
 {
     for (int pass = 0; pass < 3; pass++) {
-        isa[i].forces(&r->chord, &r->lanes, squared);
+        isa[i]->forces(&r->chord, &r->lanes, squared);
         if (r->chord.n_pull) {
             double gap[HF_LANES];
-            isa[i].couple(&r->chord, &r->lanes, gap);
-            isa[i].move(&r->chord, &r->lanes);
+            isa[i]->couple(&r->chord, &r->lanes, gap);
+            isa[i]->move(&r->chord, &r->lanes);
             for (int k = 0; k < HF_LANES; k++)
                 squared[k] += gap[k];
         }
-        isa[i].solve(&r->chord.matrix, r->lanes.force_N);
-        isa[i].step(&r->chord, &r->lanes);
+        solve[i](&r->chord.matrix, r->lanes.force_N);
+        isa[i]->step(&r->chord, &r->lanes);
     }
 }
 
@@ -123,13 +107,13 @@ START_TEST(instruction_sets_give_the_same_bits)
         open_kernel(&r, _i, rule);
         fill_lanes(&r, 1);
         work(&r, PORTABLE, squared);
-        isa[PORTABLE].measure(&r.chord, &r.lanes, &measures);
+        isa[PORTABLE]->measure(&r.chord, &r.lanes, &measures);
         double *x = copy(r.lanes.x_m, r.n_x), *force = copy(r.lanes.force_N, r.n_force);
         for (int i = AVX2; i < N_ISA; i++) {
             if (!has_isa(i)) continue;
             fill_lanes(&r, 1);
             work(&r, i, again);
-            isa[i].measure(&r.chord, &r.lanes, &other_measures);
+            isa[i]->measure(&r.chord, &r.lanes, &other_measures);
             ck_assert_mem_eq(&measures, &other_measures, sizeof measures);
             ck_assert_mem_eq(squared, again, sizeof squared);
             ck_assert_mem_eq(x, r.lanes.x_m, r.n_x * sizeof *x);
@@ -151,7 +135,7 @@ START_TEST(solve_is_lapacks)
     open_kernel(&r, _i, HF_RULE_FORCE_DENSITY);
     int n = r.chord.matrix.n, column = 3 * r.net.model.half_bandwidth + 3;
     fill_lanes(&r, 2);
-    isa[PORTABLE].forces(&r.chord, &r.lanes, squared);
+    isa[PORTABLE]->forces(&r.chord, &r.lanes, squared);
     double *f = r.lanes.force_N + r.chord.matrix.width * HF_LANES,
            *expected = malloc((size_t)n * HF_LANES * sizeof *expected);
     ck_assert_ptr_nonnull(expected);
@@ -159,7 +143,7 @@ START_TEST(solve_is_lapacks)
         expected[k % HF_LANES * n + k / HF_LANES] = f[k];
     /* the factor is still in the workspace that hf_chord_create had */
     hf_band_back_solve(n, column - 1, HF_LANES, r.net.work.newton_band, expected, n);
-    isa[PORTABLE].solve(&r.chord.matrix, r.lanes.force_N);
+    solve[PORTABLE](&r.chord.matrix, r.lanes.force_N);
     double most = largest(expected, n * HF_LANES);
     for (int k = 0; k < n * HF_LANES; k++)
         ck_assert_double_eq_tol(f[k], expected[k % HF_LANES * n + k / HF_LANES], 1e-12 * most);
@@ -182,7 +166,7 @@ START_TEST(a_lane_recovers_from_NaN)
     double *x = copy(r.lanes.x_m, r.n_x);
     fill_lanes(&r, 3);
     r.lanes.x_m[bad] = (double)NAN; /* one coordinate of one node: no number is the largest force */
-    isa[_i % 3].forces(&r.chord, &r.lanes, again);
+    isa[_i % 3]->forces(&r.chord, &r.lanes, again);
     ck_assert_double_nan(again[bad]);
     fill_lanes(&r, 3);
     for (size_t i = (size_t)bad; i < r.n_x; i += HF_LANES)
@@ -207,7 +191,7 @@ START_TEST(residual_is_the_largest_force)
     double squared[HF_LANES];
     open_kernel(&r, _i, HF_RULE_TENSION);
     fill_lanes(&r, 4);
-    isa[PORTABLE].forces(&r.chord, &r.lanes, squared);
+    isa[PORTABLE]->forces(&r.chord, &r.lanes, squared);
     const double *f = r.lanes.force_N + r.chord.matrix.width * HF_LANES;
     for (int lane = 0; lane < HF_LANES; lane++) {
         double most = 0;

@@ -198,7 +198,7 @@ START_TEST(sensitivities_are_finite_differences)
             ck_assert_double_eq_tol((up[i] - down[i]) / (2 * step_N), dr[a], 1e-6 * largest_dx);
         }
     }
-    hf_schur_free(&schur);
+    hf_arena_free(&schur.arena);
     free(dx);
     close_net(&r.net);
 }
@@ -222,8 +222,8 @@ START_TEST(refined_design_has_no_coupled_slope_left)
     }
     for (int when = 0; when < 2; when++) {
         if (when)
-            ck_assert_int_eq(hf_refine_run(&r.evaluator, lower, upper, 300, NULL, r.initial, &r.net.work, &result),
-                             HF_OK);
+            ck_assert_int_eq(
+                hf_refine_run(&r.evaluator, lower, upper, 300, NULL, NULL, r.initial, &r.net.work, &result), HF_OK);
         for (int k = 0; k < n; k++) {
             double kept = r.initial[k], psi_m[2];
             for (int side = 0; side < 2; side++) {

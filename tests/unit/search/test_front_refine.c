@@ -281,7 +281,7 @@ static double after_a_step(struct traded *t, const double *start, int k)
     hf_refine_result refined;
     hf_form_result r;
     hf_workspace *w = &t->net.work;
-    hf_status status = hf_refine_front(&t->evaluator, t->lower, t->upper, 1, &alone, NULL, design, w, &refined);
+    hf_status status = hf_refine_run(&t->evaluator, t->lower, t->upper, 1, &alone, NULL, design, w, &refined);
     ck_assert_int_eq(status, HF_OK);
     ck_assert_int_ne(refined.stop, HF_REFINE_CONVERGED);
     ck_assert_int_eq(hf_evaluate(&t->evaluator, design, w, &r), HF_OK);
@@ -439,7 +439,7 @@ static double least_beside(hf_problem *p, const double most[HF_FRONT_OBJECTIVES_
     const hf_watch_front trade = {0, most};
     hf_refine_result r;
     memcpy(design, from, (size_t)p->model.n_variable * sizeof *design);
-    ck_assert_int_eq(hf_refine_front(&p->evaluator, lower, upper, 200, &trade, NULL, design, &p->workspace, &r), HF_OK);
+    ck_assert_int_eq(hf_refine_run(&p->evaluator, lower, upper, 200, &trade, NULL, design, &p->workspace, &r), HF_OK);
     return r.merit;
 }
 

@@ -38,7 +38,8 @@ static void open_small(struct refine_run *p, int rule, double range_N)
 
 static hf_status refine(struct refine_run *p, int max_iterations, double *design, hf_refine_result *result)
 {
-    return hf_refine_run(&p->r.evaluator, p->lower, p->upper, max_iterations, NULL, design, &p->r.net.work, result);
+    return hf_refine_run(&p->r.evaluator, p->lower, p->upper, max_iterations, NULL, NULL, design, &p->r.net.work,
+                         result);
 }
 
 static double psi_of(struct refine_run *p, const double *design)
@@ -197,9 +198,9 @@ START_TEST(infeasible_start_is_told)
     ck_assert_int_eq(result.iterations, 0);
     p.r.evaluator.boundary_ratio_cap = 1 + 1e-9;
     memcpy(p.r.initial, design(&p.r, 0), sizeof kept);
-    ck_assert_int_eq(
-        hf_refine_run(&p.r.evaluator, design(&p.r, 0), design(&p.r, 0), 20, NULL, p.r.initial, &p.r.net.work, &result),
-        HF_RATIO_CAP);
+    ck_assert_int_eq(hf_refine_run(&p.r.evaluator, design(&p.r, 0), design(&p.r, 0), 20, NULL, NULL, p.r.initial,
+                                   &p.r.net.work, &result),
+                     HF_RATIO_CAP);
     ck_assert_mem_eq(p.r.initial, design(&p.r, 0), (size_t)p.r.net.model.n_variable * sizeof *kept); /* no way in */
     close_net(&p.r.net);
 }
@@ -292,8 +293,8 @@ static hf_refine_result watch_refine(struct refine_run *p, const double *start, 
 {
     hf_refine_result result;
     memcpy(end, start, (size_t)p->r.net.model.n_variable * sizeof *end);
-    ck_assert_int_eq(hf_refine_run(&p->r.evaluator, p->lower, p->upper, 40, watcher, end, &p->r.net.work, &result),
-                     HF_OK);
+    ck_assert_int_eq(
+        hf_refine_run(&p->r.evaluator, p->lower, p->upper, 40, NULL, watcher, end, &p->r.net.work, &result), HF_OK);
     return result;
 }
 
@@ -354,8 +355,9 @@ START_TEST(its_watcher_ends_it)
     open_chen(&p, 1);
     size_t size = (size_t)p.r.net.model.n_variable * sizeof(double);
     memcpy(start_N, p.r.initial, size);
-    ck_assert_int_eq(hf_refine_run(&p.r.evaluator, p.lower, p.upper, 40, &watcher, p.r.initial, &p.r.net.work, &result),
-                     HF_IO);
+    ck_assert_int_eq(
+        hf_refine_run(&p.r.evaluator, p.lower, p.upper, 40, NULL, &watcher, p.r.initial, &p.r.net.work, &result),
+        HF_IO);
     ck_assert_int_eq(iterations, 2);
     ck_assert_mem_eq(start_N, p.r.initial, size);
     close_net(&p.r.net);
@@ -384,8 +386,8 @@ START_TEST(the_start_stays_when_the_end_is_worse)
     const hf_model *m = &p.r.net.model;
     const hf_refine_watcher watcher = {.after = shift_target, .context = &p.r.net.model};
     memcpy(start_N, p.r.initial, (size_t)m->n_variable * sizeof(double));
-    ck_assert_int_eq(hf_refine_run(&p.r.evaluator, p.lower, p.upper, 3, &watcher, p.r.initial, &p.r.net.work, &result),
-                     HF_OK);
+    ck_assert_int_eq(
+        hf_refine_run(&p.r.evaluator, p.lower, p.upper, 3, NULL, &watcher, p.r.initial, &p.r.net.work, &result), HF_OK);
     ck_assert_mem_eq(start_N, p.r.initial, (size_t)m->n_variable * sizeof(double));
     ck_assert_int_eq(result.stop, HF_REFINE_STALLED);
     double *end_m = malloc(3 * (size_t)m->n_node * sizeof *end_m);

@@ -155,7 +155,8 @@ static void residuals_at(struct designed *d, int i, double step, double *residua
     for (int k = 0; k < m->n_variable; k++)
         design[k] = d->base[k] + (d->slopes.class_of_variable[k] == i ? step : 0);
     ck_assert_int_eq(hf_evaluate(&d->evaluator, design, &d->net.work, &result), HF_OK);
-    ck_assert_int_eq(hf_objectives_linearise(&d->objectives, &d->net.work, d->net.work.objectives, residual), HF_OK);
+    ck_assert_int_eq(hf_objectives_linearise(&d->objectives, true, &d->net.work, d->net.work.objectives, residual),
+                     HF_OK);
 }
 
 /* Central differences over `step` and twice that, together of order 4. */

@@ -5,7 +5,7 @@
 #include "nets.h"
 
 #include "linalg/band.h"
-#include "search/swarm_lane.h"
+#include "search/swarm.h"
 
 #define ROUNDOFF 1e-14 /* of a few operations on numbers of size 1 */
 
@@ -45,8 +45,8 @@ static void open_band_net(struct band_net *net, int n, int k, int (*is_left_out)
 
 static void close_band_net(struct band_net *net)
 {
-    hf_swarm_plan_free(&net->plan);
-    hf_swarm_lanes_free(&net->work);
+    hf_arena_free(&net->plan.arena);
+    hf_arena_free(&net->work.arena);
     free(net->model.end_row);
     free(net->model.length_m);
     free(net->model.load_N);
@@ -55,7 +55,7 @@ static void close_band_net(struct band_net *net)
 /* Fills the workspace with NaN and other values that no kernel may read. */
 static void poison(struct band_net *net)
 {
-    memset(net->work.block, 0xff, hf_swarm_lanes_bytes(&net->plan));
+    memset(net->work.arena.block, 0xff, hf_swarm_lanes_bytes(&net->plan));
 }
 
 /* Force densities, support positions and loads. Cables between nodes get q in (-1, 1), those to supports what makes
@@ -187,12 +187,12 @@ static void check_solutions(int n, int k, int (*left_out)(int i, int j), uint64_
     double *band = malloc((size_t)(n * (k + 1)) * sizeof(double)), *b = malloc(3 * (size_t)n * sizeof(double));
     ck_assert(band && b);
     fill(&net, stream);
-    hf_swarm_solve(&net.plan, &net.work);
+    net.plan.kernels->solve(&net.plan, &net.work);
     for (int lane = 0; lane < HF_LANES; lane++) {
         int bad_row;
         ck_assert_int_eq(net.work.bad_row[lane], -1);
         assemble_plainly(&net, lane, band, b);
-        ck_assert_int_eq(hf_band_solve(n, k, band, b, n, &bad_row), HF_OK);
+        ck_assert_int_eq(hf_band_solve(false, n, k, band, b, n, &bad_row), HF_OK);
         assert_solution(&net, lane, b, SOLVE_TOLERANCE);
         assemble_plainly(&net, lane, band, b);
         solve_plainly(n, k, band, b);
@@ -231,10 +231,10 @@ static int machine_has(hf_lane_isa isa)
 static void iterate(struct band_net *net, hf_swarm_measures *measures)
 {
     memset(measures, 0, sizeof *measures); /* its padding is compared */
-    hf_swarm_solve(&net->plan, &net->work);
-    hf_swarm_measure(&net->plan, &net->work, measures);
-    hf_swarm_residual(&net->plan, &net->work, measures);
-    hf_swarm_psi(&net->plan, &net->work, measures);
+    net->plan.kernels->solve(&net->plan, &net->work);
+    net->plan.kernels->measure(&net->plan, &net->work, measures);
+    net->plan.kernels->residual(&net->plan, &net->work, measures);
+    net->plan.kernels->psi(&net->plan, &net->work, measures);
 }
 
 /* Equal bits, or both NaN. */
@@ -284,13 +284,13 @@ static void copy_band_net(struct band_net *copy, const struct band_net *net, hf_
     *copy = *net;
     open_plan(copy, isa);
     ck_assert_int_eq(hf_swarm_lanes_create(&copy->plan, &copy->work), HF_OK);
-    memcpy(copy->work.block, net->work.block, hf_swarm_lanes_bytes(&net->plan));
+    memcpy(copy->work.arena.block, net->work.arena.block, hf_swarm_lanes_bytes(&net->plan));
 }
 
 static void close_copy(struct band_net *copy)
 {
-    hf_swarm_plan_free(&copy->plan);
-    hf_swarm_lanes_free(&copy->work);
+    hf_arena_free(&copy->plan.arena);
+    hf_arena_free(&copy->work.arena);
 }
 
 /* Makes lane 2 indefinite and lane 4 not finite: these must also give equal results on every instruction set. */
@@ -336,10 +336,10 @@ START_TEST(solve_is_assemble_factor_substitute)
     memset(net.work.next_q_N_per_m, 0, (size_t)net.model.n_cable * HF_LANES * sizeof(double));
     memset(net.work.length_m, 0, (size_t)net.model.n_cable * HF_LANES * sizeof(double));
     copy_band_net(&other, &net, isas[_i]);
-    hf_swarm_assemble(&other.plan, &other.work);
-    hf_swarm_factor(&other.plan, &other.work);
-    hf_swarm_substitute(&other.plan, &other.work);
-    hf_swarm_solve(&net.plan, &net.work);
+    other.plan.kernels->assemble(&other.plan, &other.work);
+    other.plan.kernels->factor(&other.plan, &other.work);
+    other.plan.kernels->substitute(&other.plan, &other.work);
+    net.plan.kernels->solve(&net.plan, &net.work);
     assert_same_lanes(&net, &none, &other, &none, 0xff);
     close_copy(&other);
     close_band_net(&net);
@@ -386,11 +386,11 @@ START_TEST(the_first_bad_pivot_is_named)
         for (int l = 0; l < HF_LANES; l++)
             if (net.model.end_row[2 * e] + net.model.end_row[2 * e + 1] == 23 + 2 * (l + _i))
                 net.work.q_N_per_m[e * HF_LANES + l] -= 20;
-    hf_swarm_solve(&net.plan, &net.work);
+    net.plan.kernels->solve(&net.plan, &net.work);
     for (int l = 0; l < HF_LANES; l++) {
         int bad_row;
         assemble_plainly(&net, l, band, b);
-        ck_assert_int_eq(hf_band_solve(23, 5, band, b, 23, &bad_row), HF_SINGULAR);
+        ck_assert_int_eq(hf_band_solve(false, 23, 5, band, b, 23, &bad_row), HF_SINGULAR);
         ck_assert_int_eq(net.work.bad_row[l], bad_row);
         for (int row = 0; row < 23; row++)
             ck_assert_double_finite(*position(&net, row, 0, l)); /* nothing has blown up */
@@ -460,23 +460,23 @@ static void compare_with_formfind(struct net *net, int isa)
     hf_swarm_measures measures;
     ck_assert_int_eq(hf_swarm_plan_create(&net->model, isas[isa], &plan), HF_OK);
     ck_assert_int_eq(hf_swarm_lanes_create(&plan, &w), HF_OK);
-    memset(w.block, 0xff, hf_swarm_lanes_bytes(&plan));
+    memset(w.arena.block, 0xff, hf_swarm_lanes_bytes(&plan));
     for (int l = 0; l < HF_LANES; l++) {
         set_individual(net, l);
         hf_swarm_put(&plan, &net->work, l, &w);
     }
     memcpy(w.law, net->work.law, (size_t)net->model.n_cable);
     for (int step = 1; step <= 10; step++) {
-        hf_swarm_solve(&plan, &w);
-        hf_swarm_measure(&plan, &w, &measures);
-        hf_swarm_residual(&plan, &w, &measures);
-        hf_swarm_psi(&plan, &w, &measures);
+        plan.kernels->solve(&plan, &w);
+        plan.kernels->measure(&plan, &w, &measures);
+        plan.kernels->residual(&plan, &w, &measures);
+        plan.kernels->psi(&plan, &w, &measures);
         for (int l = 0; l < HF_LANES && (step == 1 || step == 10); l++)
             compare_lane(net, &plan, &w, &measures, l, step, STEP_TOLERANCE);
         hf_swarm_update(&w);
     }
-    hf_swarm_lanes_free(&w);
-    hf_swarm_plan_free(&plan);
+    hf_arena_free(&w.arena);
+    hf_arena_free(&plan.arena);
 }
 
 START_TEST(iterations_like_formfind_on_the_papers_net)
@@ -529,9 +529,9 @@ START_TEST(measures_by_hand)
         net.work.target[1] = wanted_m[l];
         hf_swarm_put(&plan, &net.work, l, &w);
     }
-    hf_swarm_solve(&plan, &w);
-    hf_swarm_measure(&plan, &w, &m);
-    hf_swarm_residual(&plan, &w, &m);
+    plan.kernels->solve(&plan, &w);
+    plan.kernels->measure(&plan, &w, &m);
+    plan.kernels->residual(&plan, &w, &m);
     ck_assert_double_eq_tol(m.tension_error[0], 0.25, ROUNDOFF); /* 10 N for 8 N */
     ck_assert_double_eq_tol(m.length_error[0], 0.25, ROUNDOFF);  /* 1 m for 0.8 m */
     ck_assert_double_eq_tol(m.length_gap[0], 0.25, ROUNDOFF);
@@ -555,11 +555,11 @@ START_TEST(measures_by_hand)
     w.q_N_per_m[4] = 1e300;
     int a = net.model.end_row[0], b = net.model.end_row[1], row = a < b ? a : b;
     w.position_m[(plan.n_pad + row) * 3 * HF_LANES + 4] = 1e10;
-    hf_swarm_measure(&plan, &w, &m);
+    plan.kernels->measure(&plan, &w, &m);
     for (int l = 0; l < HF_LANES; l++)
         ck_assert_int_eq(m.is_finite[l], l != 4);
-    hf_swarm_lanes_free(&w);
-    hf_swarm_plan_free(&plan);
+    hf_arena_free(&w.arena);
+    hf_arena_free(&plan.arena);
     close_net(&net);
 }
 END_TEST

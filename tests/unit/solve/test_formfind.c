@@ -255,8 +255,8 @@ START_TEST(the_parts_are_the_iteration)
         int bad_row;
         hf_form_assemble(&net.model, &net.work);
         hf_form_assemble_loads(&net.model, &net.work);
-        ck_assert_int_eq(hf_band_solve(net.model.n_free, net.model.half_bandwidth, net.work.band, net.work.position_m,
-                                       net.model.n_node, &bad_row),
+        ck_assert_int_eq(hf_band_solve(false, net.model.n_free, net.model.half_bandwidth, net.work.band,
+                                       net.work.position_m, net.model.n_node, &bad_row),
                          HF_OK);
         hf_form_measure_cables(&net.model, &net.form, &net.work, &now, &length_gap);
         ck_assert_int_eq(now.status, HF_OK);

@@ -137,7 +137,7 @@ START_TEST(shape_is_that_of_newton)
     hf_workspace_poison(&net.model, &net.work);
     net.work.stop = NULL;
     hf_form_prepare(&net.model, &net.work);
-    ck_assert_int_eq(hf_interior_run(&net.model, &net.form, &net.work, MOST_STEPS, &n_step, &culprit), HF_OK);
+    ck_assert_int_eq(hf_interior_run(&net.model, &net.form, &net.work, false, MOST_STEPS, &n_step, &culprit), HF_OK);
     ck_assert_int_eq(culprit, -1);
     ck_assert_int_le(n_step, 12);
     ck_assert_double_le(largest_move_m(&net.model, shape, net.work.position_m), 1e-9);
@@ -260,7 +260,7 @@ START_TEST(steps_are_bounded)
     int n_step = 2, culprit;
     OPEN_CASE(&net, SMALL_REFLECTOR, "form.method=newton", "form.residual_tolerance=1e-11");
     hf_form_prepare(&net.model, &net.work);
-    ck_assert_int_eq(hf_interior_run(&net.model, &net.form, &net.work, 3, &n_step, &culprit), HF_NOT_CONVERGED);
+    ck_assert_int_eq(hf_interior_run(&net.model, &net.form, &net.work, false, 3, &n_step, &culprit), HF_NOT_CONVERGED);
     ck_assert_int_eq(n_step, 5);
     close_net(&net);
 }
@@ -274,7 +274,8 @@ START_TEST(stop_is_obeyed)
     OPEN_CASE(&net, SMALL_REFLECTOR, "form.method=newton");
     hf_form_prepare(&net.model, &net.work);
     net.work.stop = &stop;
-    ck_assert_int_eq(hf_interior_run(&net.model, &net.form, &net.work, MOST_STEPS, &n_step, &culprit), HF_INTERRUPTED);
+    ck_assert_int_eq(hf_interior_run(&net.model, &net.form, &net.work, false, MOST_STEPS, &n_step, &culprit),
+                     HF_INTERRUPTED);
     ck_assert_int_eq(n_step, 0);
     close_net(&net);
 }

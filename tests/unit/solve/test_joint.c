@@ -61,7 +61,7 @@ START_TEST(gap_is_a_distance)
     double *force = calloc(n, sizeof *force), square = 1, mean_m = hf_joint_mean_length_m(m);
     ck_assert_ptr_nonnull(force);
     hf_form_prepare(m, &net.work);
-    hf_form_place_supports(m, &net.work);
+    hf_form_set_supports(m, &net.work);
     double *x = net.work.position_m + m->attachment_row[1];
     x[0] += 2e-3;
     x[m->n_node] -= 3e-3;

@@ -98,7 +98,7 @@ START_TEST(a_slack_cable_has_no_ratio)
     t.net.work.tension_N[1] = 0;
     ck_assert(isinf(value_of(&t, ratio, &merit)) && isinf(merit));
     want(&t, 1, &ratio);
-    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, &t.net.work, &t.point, residual), HF_NOT_FINITE);
+    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, true, &t.net.work, &t.point, residual), HF_NOT_FINITE);
     close_wanting(&t);
 }
 END_TEST
@@ -117,7 +117,7 @@ START_TEST(loose_nodes_do_not_count)
     w->loose[m->row_of_node[2]] = 1;
     ck_assert_double_eq(value_of(&t, psi, &merit), 0.5);
     want(&t, 1, &psi);
-    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, w, &t.point, residual), HF_OK);
+    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, true, w, &t.point, residual), HF_OK);
     double square = 0, move[12], turn = 0;
     for (int i = 0; i < 12; i++)
         move[i] = 1;
@@ -129,7 +129,7 @@ START_TEST(loose_nodes_do_not_count)
     ck_assert_double_eq(square, 0.25);
     ck_assert_double_eq(turn, 0.5);
     w->loose[m->row_of_node[1]] = 1;
-    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, w, &t.point, residual), HF_NOT_FINITE);
+    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, true, w, &t.point, residual), HF_NOT_FINITE);
     double value = 0;
     ck_assert_int_eq(hf_objectives_measure(&t.objectives, w, &t.point, &value, &merit), HF_OK);
     ck_assert(isnan(value) && isnan(merit));
@@ -153,7 +153,7 @@ START_TEST(objectives_are_weighed_together)
     want(&t, 4, objective);
     double *residual = malloc((size_t)t.objectives.n_row * sizeof *residual);
     ck_assert_int_eq(hf_objectives_measure(&t.objectives, &t.net.work, &t.point, value, &merit), HF_OK);
-    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, &t.net.work, &t.point, residual), HF_OK);
+    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, true, &t.net.work, &t.point, residual), HF_OK);
     for (int k = 0; k < 4; k++)
         square += objective[k].weight * value[k] * objective[k].weight * value[k];
     for (int i = 0; i < t.objectives.n_row; i++)
@@ -185,7 +185,7 @@ START_TEST(errors_of_the_surface_are_those_of_a_result)
     const double wanted[8] = {is.normal_rms_m,          is.fit.normal_rms_m,         is.half_path_rms_m,
                               is.fit.half_path_rms_m,   is.facet_normal_rms_m,       is.facet_fit_normal_rms_m,
                               is.facet_half_path_rms_m, is.facet_fit_half_path_rms_m};
-    for (int k = 0; k < 8; k++) { /* the reported fit has half of the digits of its parameters (cloud_fit.c) */
+    for (int k = 0; k < 8; k++) { /* the reported fit has half of the digits of its parameters (cloud.c) */
         double within = objective[k].fit == HF_FIT_BEST && objective[k].along == HF_ALONG_NORMAL ? 1e-7 : 1e-13;
         ck_assert_double_eq_tol(value[k], wanted[k], within * wanted[k]);
     }
@@ -217,7 +217,7 @@ START_TEST(the_gain_is_what_the_field_loses)
     ck_assert_double_eq_tol(-10 * log10(1 - value * value), loss_dB, 1e-12);
     for (int i = 0; i < m->n_node; i++) /* turned over */
         t.net.work.position_m[i] = -t.net.work.position_m[i];
-    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, &t.net.work, &t.point, residual), HF_NOT_FINITE);
+    ck_assert_int_eq(hf_objectives_linearise(&t.objectives, true, &t.net.work, &t.point, residual), HF_NOT_FINITE);
     free(place);
     close_wanting(&t);
 }

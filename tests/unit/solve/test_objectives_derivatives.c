@@ -84,12 +84,12 @@ static void differ(struct wanting *t, const struct shape *at, const struct shape
     const hf_objectives_rate changes = {by->position_m, by->tension_N, by->displacement_m};
     for (int k = 0; k < 4; k++) {
         put(&t->net, at, by, step * place[k]);
-        ck_assert_int_eq(hf_objectives_linearise(g, &t->net.work, &t->point, f), HF_OK);
+        ck_assert_int_eq(hf_objectives_linearise(g, true, &t->net.work, &t->point, f), HF_OK);
         for (int i = 0; i < g->n_row; i++)
             difference[i] += factor[k] / step * f[i];
     }
     put(&t->net, at, by, 0);
-    ck_assert_int_eq(hf_objectives_linearise(g, &t->net.work, &t->point, f), HF_OK);
+    ck_assert_int_eq(hf_objectives_linearise(g, true, &t->net.work, &t->point, f), HF_OK);
     hf_objectives_push(g, &t->net.work, &t->point, &changes, rate);
     for (int k = 0, row = 0; k < g->n_objective; k++) {
         double most = 0;

@@ -8,18 +8,7 @@
 
 enum { N_BLOCK = 9, N_CABLE = N_BLOCK * HF_LANES };
 
-#define ROW(isa)                                                                                                       \
-    {                                                                                                                  \
-        hf_path_measure_##isa, hf_path_set_scaling_##isa, hf_path_set_side_##isa, hf_path_set_direction_##isa,         \
-            hf_path_move_##isa                                                                                         \
-    }
-static const struct {
-    double (*measure)(int n_block, hf_path_cables *block);
-    void (*set_scaling)(int n_block, hf_path_cables *block);
-    void (*set_side)(int n_block, hf_path_cables *block, double target, bool corrected);
-    double (*set_direction)(int n_block, hf_path_cables *block, bool corrects);
-    void (*move)(int n_block, hf_path_cables *block, double part);
-} kernel[HF_LANE_N_ISA] = {ROW(portable), ROW(avx2), ROW(avx512)};
+static const hf_path_kernels *const kernel[HF_LANE_N_ISA] = {HF_LANE_EACH(&hf_path_kernels)};
 
 /* ---- cables ---- */
 
@@ -140,10 +129,10 @@ START_TEST(equations_hold)
 {
     hf_path_cables block[N_BLOCK];
     fill(block, _i);
-    double length_error = kernel[0].measure(N_BLOCK, block), largest = 0;
-    kernel[0].set_scaling(N_BLOCK, block);
-    kernel[0].set_side(N_BLOCK, block, 0, false);
-    kernel[0].set_direction(N_BLOCK, block, true);
+    double length_error = kernel[0]->measure(N_BLOCK, block), largest = 0;
+    kernel[0]->set_scaling(N_BLOCK, block);
+    kernel[0]->set_side(N_BLOCK, block, 0, false);
+    kernel[0]->set_direction(N_BLOCK, block, true);
     for (int e = 0; e < N_CABLE; e++) {
         const hf_path_cables *p = block + e / HF_LANES;
         int k = e % HF_LANES;
@@ -151,8 +140,8 @@ START_TEST(equations_hold)
         if (p->has_multiplier[k] != 0) largest = fmax(largest, fabs(p->short_m[k]));
     }
     ck_assert_double_eq(length_error, largest);
-    kernel[0].set_side(N_BLOCK, block, 0.1, true);
-    double room = 1 / kernel[0].set_direction(N_BLOCK, block, false), least = INFINITY;
+    kernel[0]->set_side(N_BLOCK, block, 0.1, true);
+    double room = 1 / kernel[0]->set_direction(N_BLOCK, block, false), least = INFINITY;
     for (int e = 0; e < N_CABLE; e++) {
         const hf_path_cables *p = block + e / HF_LANES;
         int k = e % HF_LANES;
@@ -169,11 +158,11 @@ START_TEST(cables_without_a_cone_stay)
     hf_path_cables block[N_BLOCK], before[N_BLOCK];
     fill(block, 0);
     memcpy(before, block, sizeof block);
-    kernel[0].measure(N_BLOCK, block);
-    kernel[0].set_scaling(N_BLOCK, block);
-    kernel[0].set_side(N_BLOCK, block, 0.1, false);
-    kernel[0].set_direction(N_BLOCK, block, true);
-    kernel[0].move(N_BLOCK, block, 0.5);
+    kernel[0]->measure(N_BLOCK, block);
+    kernel[0]->set_scaling(N_BLOCK, block);
+    kernel[0]->set_side(N_BLOCK, block, 0.1, false);
+    kernel[0]->set_direction(N_BLOCK, block, true);
+    kernel[0]->move(N_BLOCK, block, 0.5);
     for (int e = 0; e < N_CABLE; e++) {
         const hf_path_cables *p = block + e / HF_LANES, *was = before + e / HF_LANES;
         int k = e % HF_LANES;
@@ -197,13 +186,13 @@ END_TEST
 static void step(int isa, int seed, hf_path_cables block[N_BLOCK], double figure[3])
 {
     fill(block, seed);
-    figure[0] = kernel[isa].measure(N_BLOCK, block);
-    kernel[isa].set_scaling(N_BLOCK, block);
-    kernel[isa].set_side(N_BLOCK, block, 0, false);
-    figure[1] = kernel[isa].set_direction(N_BLOCK, block, true);
-    kernel[isa].set_side(N_BLOCK, block, 0.1, true);
-    figure[2] = kernel[isa].set_direction(N_BLOCK, block, false);
-    kernel[isa].move(N_BLOCK, block, 0.9 / figure[2]);
+    figure[0] = kernel[isa]->measure(N_BLOCK, block);
+    kernel[isa]->set_scaling(N_BLOCK, block);
+    kernel[isa]->set_side(N_BLOCK, block, 0, false);
+    figure[1] = kernel[isa]->set_direction(N_BLOCK, block, true);
+    kernel[isa]->set_side(N_BLOCK, block, 0.1, true);
+    figure[2] = kernel[isa]->set_direction(N_BLOCK, block, false);
+    kernel[isa]->move(N_BLOCK, block, 0.9 / figure[2]);
 }
 
 START_TEST(same_bits_on_every_instruction_set)

@@ -8,8 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-static hf_precise_measure *const measure[HF_LANE_N_ISA] = {hf_precise_measure_portable, hf_precise_measure_avx2,
-                                                           hf_precise_measure_avx512};
+static hf_precise_measure *const measure[HF_LANE_N_ISA] = {HF_LANE_EACH(hf_precise_measure)};
 
 enum { SPRING, ELASTIC, SLACK_ELASTIC, RIGID, GIVEN, N_KIND };
 

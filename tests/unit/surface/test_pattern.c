@@ -478,10 +478,7 @@ enum { POINTS = 37, DIRECTIONS = 24, NODES = 5 };
 
 START_TEST(instruction_sets_change_no_bit)
 {
-    static hf_pattern_points *const points[] = {hf_pattern_points_portable, hf_pattern_points_avx2,
-                                                hf_pattern_points_avx512};
-    static hf_pattern_spread *const spread[] = {hf_pattern_spread_portable, hf_pattern_spread_avx2,
-                                                hf_pattern_spread_avx512};
+    static const hf_pattern_kernels *const kernel[] = {HF_LANE_EACH(&hf_pattern_kernels)};
     static _Alignas(64) double point[HF_PATTERN_POINT * POINTS], direction[3 * DIRECTIONS], between[NODES * DIRECTIONS];
     static _Alignas(64) double sum[HF_LANE_N_ISA][6 * DIRECTIONS], to[HF_LANE_N_ISA][6 * DIRECTIONS];
     struct rng rng = rng_start(5);
@@ -497,9 +494,9 @@ START_TEST(instruction_sets_change_no_bit)
             continue;
         }
         const double middle[] = {31.7, -8.125, 1000.5};
-        points[isa](POINTS, point, DIRECTIONS, direction, sum[isa]);
-        spread[isa](NODES, 8, sum[isa], between, middle, 77.7, DIRECTIONS, direction, to[isa]);
-        spread[isa](0, DIRECTIONS, sum[isa], NULL, middle, 77.7, DIRECTIONS, direction, to[isa]);
+        kernel[isa]->points(POINTS, point, DIRECTIONS, direction, sum[isa]);
+        kernel[isa]->spread(NODES, 8, sum[isa], between, middle, 77.7, DIRECTIONS, direction, to[isa]);
+        kernel[isa]->spread(0, DIRECTIONS, sum[isa], NULL, middle, 77.7, DIRECTIONS, direction, to[isa]);
         ck_assert_mem_eq(sum[0], sum[isa], sizeof sum[0]);
         ck_assert_mem_eq(to[0], to[isa], sizeof to[0]);
     }

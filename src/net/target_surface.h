@@ -1,13 +1,14 @@
-/* wanted - the target surface: the parabolic cylinder z = x^2/(4f) along y, or the paraboloid z = (x^2 + y^2)/(4f). */
-#ifndef HIFDM_WANTED_H
-#define HIFDM_WANTED_H
+/* target_surface - the target surface: parabolic cylinder z = x^2/(4f) along y, or paraboloid z = (x^2 + y^2)/(4f). */
+#ifndef HIFDM_TARGET_SURFACE_H
+#define HIFDM_TARGET_SURFACE_H
 
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
 
 /* Returns the height of a point above the surface, m, and writes the slopes of the surface there. `kind` is not
  * HF_SURFACE_AUTO; curvature = 1/(4f). */
-static inline double hf_wanted_height_above(hf_surface_kind kind, double curvature, const double p[3], double slope[2])
+static inline double hf_target_surface_height_above(hf_surface_kind kind, double curvature, const double p[3],
+                                                    double slope[2])
 {
     bool is_round = kind == HF_SURFACE_PARABOLOID;
     double above = p[2] - curvature * p[0] * p[0];
@@ -21,8 +22,8 @@ typedef struct {
     double rms_m, most_m; /* most_m: maximum */
     int farthest;         /* node with the maximum distance */
     double depth_m;       /* highest minus lowest z of the surface at x and y of all nodes */
-} hf_wanted_fit;
+} hf_target_surface_fit;
 
-hf_wanted_fit hf_wanted_compare(hf_surface_kind kind, double focal_length_m, const hf_scene *scene);
+hf_target_surface_fit hf_target_surface_compare(hf_surface_kind kind, double focal_length_m, const hf_scene *scene);
 
 #endif

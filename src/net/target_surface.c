@@ -1,15 +1,15 @@
-#include "net/wanted.h"
+#include "net/target_surface.h"
 
 #include <math.h>
 
-hf_wanted_fit hf_wanted_compare(hf_surface_kind kind, double focal_length_m, const hf_scene *s)
+hf_target_surface_fit hf_target_surface_compare(hf_surface_kind kind, double focal_length_m, const hf_scene *s)
 {
-    hf_wanted_fit fit = {.farthest = -1};
+    hf_target_surface_fit fit = {.farthest = -1};
     double low = INFINITY, high = -INFINITY, square = 0, slope[2], curvature = 1 / (4 * focal_length_m);
     int n = 0;
     for (int i = 0; i < s->n_node; i++) {
         const double *p = s->position_m + 3 * (size_t)i;
-        double above = hf_wanted_height_above(kind, curvature, p, slope), wanted = p[2] - above;
+        double above = hf_target_surface_height_above(kind, curvature, p, slope), wanted = p[2] - above;
         low = fmin(low, wanted);
         high = fmax(high, wanted);
         if (s->role[i] != HF_ROLE_INNER) continue;
