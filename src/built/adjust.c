@@ -19,10 +19,10 @@
 #include "built/adjust.h"
 
 #include "base/arena.h"
-#include "built/turned.h"
 #include "linalg/band.h"
 #include "linalg/dot.h"
 #include "search/parallel.h"
+#include <hifdm/built_batch.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -45,6 +45,7 @@ typedef struct {
     double *strain_N, *answer_m, *scratch;
     /* Arguments of hf_objectives_push. The figure depends on positions alone, so the last two stay 0. */
     double *rate_m, *rate_N, *displacement_m;
+    void *block;
 } adjust_room;
 
 typedef struct {
@@ -79,7 +80,7 @@ typedef struct {
     double *room_N;
     bool is_current; /* true: the linear model belongs to the shape with `steps` */
     hf_moves_problem problem;
-    void *block;
+    void *block, *room_block, *matrix_block;
 } adjustment;
 
 static size_t rows_of(const adjustment *a)
@@ -87,46 +88,31 @@ static size_t rows_of(const adjustment *a)
     return a->n + HF_ESTIMATE_SAMPLES + 1;
 }
 
-static void lay_out_rooms(hf_arena *arena, adjustment *a)
+static hf_status open_room(const adjustment *a, adjust_room *r)
 {
     const hf_model *m = &a->estimate->built->model;
-    a->room = hf_arena_take(arena, (size_t)a->n_room, sizeof *a->room);
-    for (int i = 0; i < a->n_room; i++) {
-        adjust_room of = {0};
-        of.lanes = hf_arena_take(arena, hf_packed_band_rows(&a->matrix) * HF_LANES, sizeof(double));
-        of.strain_N = hf_arena_take(arena, PANEL * (size_t)m->n_cable, sizeof(double));
-        of.answer_m = hf_arena_take(arena, PANEL * a->n_dof, sizeof(double));
-        of.scratch = hf_arena_take(arena, PANEL * a->estimate->linear.n_scratch, sizeof(double));
-        of.rate_m = hf_arena_take(arena, a->n_dof, sizeof(double));
-        of.rate_N = hf_arena_take(arena, (size_t)m->n_cable, sizeof(double));
-        of.displacement_m = hf_arena_take(arena, 3 * (size_t)m->n_attachment, sizeof(double));
-        if (a->room) a->room[i] = of;
-    }
+    HF_TRY(HF_ARENA_ARRAYS(&r->block, HF_ARRAY(r->lanes, hf_packed_band_rows(&a->matrix) * HF_LANES),
+                           HF_ARRAY(r->strain_N, PANEL * (size_t)m->n_cable), HF_ARRAY(r->answer_m, PANEL * a->n_dof),
+                           HF_ARRAY(r->scratch, PANEL * a->estimate->linear.n_scratch), HF_ARRAY(r->rate_m, a->n_dof),
+                           HF_ARRAY(r->rate_N, m->n_cable), HF_ARRAY(r->displacement_m, 3 * (size_t)m->n_attachment)));
+    return hf_objectives_point_create(a->task->objectives, &r->point);
 }
 
-static void lay_out_adjustment(hf_arena *arena, adjustment *a)
+static hf_status allocate(adjustment *a)
 {
-    size_t n_cable = (size_t)a->estimate->built->model.n_cable, samples = HF_ESTIMATE_SAMPLES, n_all = rows_of(a);
-    a->turn_m = hf_arena_take(arena, n_cable, sizeof(double));
-    a->doubt_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
-    a->doubt_N = hf_arena_take(arena, n_cable, sizeof(double));
-    a->cause.cut_m = hf_arena_take(arena, samples * n_cable, sizeof(double));
-    a->cause.rest_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
-    a->answer_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
-    a->beyond_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
-    a->residual = hf_arena_take(arena, a->n_row, sizeof(double));
-    a->column = hf_arena_take(arena, n_all * a->n_row, sizeof(double));
-    a->product = hf_arena_take(arena, n_all * n_all, sizeof(double));
-    a->gram = hf_arena_take(arena, a->n * a->n, sizeof(double));
-    a->slope = hf_arena_take(arena, a->n, sizeof(double));
-    a->sample = hf_arena_take(arena, samples * a->n, sizeof(double));
-    a->move_m = hf_arena_take(arena, a->n, sizeof(double));
-    a->steps = hf_arena_take(arena, a->n, sizeof(int));
-    a->trial = hf_arena_take(arena, a->n, sizeof(int));
-    a->least_N = hf_arena_take(arena, n_cable, sizeof(double));
-    a->room_N = hf_arena_take(arena, n_cable, sizeof(double));
-    hf_packed_band_lay_out(arena, &a->matrix);
-    lay_out_rooms(arena, a);
+    size_t n_cable = (size_t)a->estimate->built->model.n_cable, n_all = rows_of(a), n = a->n;
+    size_t by_sample = HF_ESTIMATE_SAMPLES * a->n_dof;
+    hf_arena arena = {0};
+    HF_TRY(HF_ARENA_ARRAYS(
+        &a->block, HF_ARRAY(a->turn_m, n_cable), HF_ARRAY(a->doubt_m, by_sample), HF_ARRAY(a->doubt_N, n_cable),
+        HF_ARRAY(a->cause.cut_m, HF_ESTIMATE_SAMPLES * n_cable), HF_ARRAY(a->cause.rest_m, by_sample),
+        HF_ARRAY(a->answer_m, by_sample), HF_ARRAY(a->beyond_m, by_sample), HF_ARRAY(a->residual, a->n_row),
+        HF_ARRAY(a->column, n_all * a->n_row), HF_ARRAY(a->product, n_all * n_all), HF_ARRAY(a->gram, n * n),
+        HF_ARRAY(a->slope, n), HF_ARRAY(a->sample, HF_ESTIMATE_SAMPLES * n), HF_ARRAY(a->move_m, n),
+        HF_ARRAY(a->steps, n), HF_ARRAY(a->trial, n), HF_ARRAY(a->least_N, n_cable), HF_ARRAY(a->room_N, n_cable)));
+    HF_TRY(HF_ARENA_MAKE(&arena, hf_packed_band_lay_out(&arena, &a->matrix)));
+    a->matrix_block = arena.block;
+    return HF_ARENA_ARRAYS(&a->room_block, HF_ARRAY(a->room, a->n_room));
 }
 
 /* Computes the changes of tension [n_cable], N, that the strains in the first room cause in the linear model. */
@@ -150,18 +136,16 @@ static void find_rates(void *context, int i, double *rate_N_per_m)
 
 static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, adjustment *a)
 {
-    hf_arena arena = {0};
     *a =
         (adjustment){.estimate = p, .task = task, .n = (size_t)task->n_cable, .n_row = (size_t)task->objectives->n_row};
     a->n_dof = p->linear.n_dof;
     a->n_room = task->n_thread > 0 ? task->n_thread : hf_parallel_cores();
     a->matrix = hf_newton_matrix_packed(&p->built->model);
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_adjustment(&arena, a)));
-    a->block = arena.block;
+    HF_TRY(allocate(a));
     a->left_open = a->column + a->n * a->n_row;
     a->at_zero = a->left_open + HF_ESTIMATE_SAMPLES * a->n_row;
     for (int i = 0; i < a->n_room; i++)
-        HF_TRY(hf_objectives_point_create(task->objectives, &a->room[i].point));
+        HF_TRY(open_room(a, &a->room[i]));
     const hf_adjust_settings *s = task->settings;
     a->problem = (hf_moves_problem){.n = task->n_cable,
                                     .gram = a->gram,
@@ -181,11 +165,14 @@ static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, a
 
 static void free_adjustment(adjustment *a)
 {
-    hf_arena arena = {.block = a->block};
     hf_workspace_free(&a->work);
-    for (int i = 0; i < a->n_room && a->block; i++)
+    for (int i = 0; i < a->n_room && a->room; i++) {
         hf_objectives_point_free(&a->room[i].point);
-    hf_arena_free(&arena);
+        hf_arena_free_block(a->room[i].block);
+    }
+    hf_arena_free_block(a->room_block);
+    hf_arena_free_block(a->matrix_block);
+    hf_arena_free_block(a->block);
 }
 
 /* ---- the figure of a shape ---- */
@@ -453,18 +440,71 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
 
 /* ---- posterior samples ---- */
 
-static hf_turned turned_of(const adjustment *a)
+/* Computes answer_m, the displacements of the posterior samples by the linear model at the shape in `work`. Where that
+ * has no stiffness, they are doubt_m. */
+static hf_status answer_samples(adjustment *a)
 {
-    return (hf_turned){a->estimate, a->doubt_m, &a->cause, a->room[0].strain_N, a->room[0].scratch};
+    hf_built_linear *l = &a->estimate->linear;
+    adjust_room *r = &a->room[0];
+    size_t n_cable = (size_t)l->built->model.n_cable;
+    hf_status status = hf_built_linear_take(l, &a->work);
+    if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+    memcpy(a->answer_m, status == HF_OK ? a->cause.rest_m : a->doubt_m,
+           HF_ESTIMATE_SAMPLES * a->n_dof * sizeof *a->answer_m);
+    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES && status == HF_OK; s++) {
+        for (size_t e = 0; e < n_cable; e++)
+            r->strain_N[e] = l->cut_N_per_m[e] * a->cause.cut_m[s * n_cable + e];
+        hf_built_linear_apply(l, 1, r->strain_N, a->answer_m + s * a->n_dof, r->scratch);
+    }
+    return HF_OK;
 }
 
-/* Solves each posterior sample after all adjustments and stores its displacements minus the linear ones. */
+/* Makes sample i: the estimated errors, its posterior errors and the adjustments. */
+static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_move_m)
+{
+    const adjustment *a = context;
+    const hf_estimate *p = a->estimate;
+    const hf_model *m = &p->built->model;
+    const double *own_m = a->cause.cut_m + (size_t)i * (size_t)m->n_cable;
+    const double *rest_m = a->cause.rest_m + (size_t)i * a->n_dof;
+    (void)EA_N;
+    for (int e = 0; e < m->n_cable; e++)
+        cut_m[e] += p->cut_m[e] + own_m[e] + a->turn_m[e];
+    for (int row = m->n_free; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++)
+            support_move_m[c * m->n_node + row] = p->rest_m[3 * row + c] + rest_m[3 * row + c];
+}
+
+/* Stores the displacements of sample i minus the linear ones, 0 for a sample without a shape. */
+static void take_sample(void *context, long i, int place, const hf_built_shape *shape, const hf_form_result *result)
+{
+    const adjustment *a = context;
+    const hf_model *m = &a->estimate->built->model;
+    const double *answer_m = a->answer_m + (size_t)i * a->n_dof;
+    double *beyond_m = a->beyond_m + (size_t)i * a->n_dof;
+    bool has_shape = hf_status_has_shape(result->status);
+    (void)place;
+    for (int row = 0; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++) {
+            int at = c * m->n_node + row;
+            double move_m = shape->position_m[at] - a->work.position_m[at];
+            beyond_m[3 * row + c] = has_shape ? move_m - answer_m[3 * row + c] : 0;
+        }
+}
+
+/* Solves each posterior sample after all adjustments and stores its displacements minus the linear ones. They differ
+ * when an adjustment makes cables slack or taut, because this is beyond first order. */
 static hf_status find_beyond(adjustment *a)
 {
+    const hf_built *b = a->estimate->built;
+    hf_built_batch *batch;
     double figure_m;
-    const hf_turned t = turned_of(a);
     HF_TRY(solve_steps(a, a->steps, &figure_m));
-    return hf_turned_beyond(&t, a->turn_m, &a->work, a->task->n_thread, a->answer_m, a->beyond_m);
+    HF_TRY(answer_samples(a));
+    HF_TRY(hf_built_batch_create(b, a->task->n_thread, &batch));
+    hf_built_batch_run(batch, HF_BUILT_VARIES_SUPPORTS, 0, HF_ESTIMATE_SAMPLES, make_sample, take_sample, a);
+    hf_built_batch_free(batch);
+    return hf_built_must_stop(b) ? HF_INTERRUPTED : HF_OK;
 }
 
 /* Computes the figure of each posterior sample at the shape in `work`. `part` is the share of all adjustments made so
@@ -472,9 +512,8 @@ static hf_status find_beyond(adjustment *a)
 static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_ESTIMATE_SAMPLES])
 {
     adjust_room *r = &a->room[0];
-    const hf_turned t = turned_of(a);
     HF_TRY(hf_objectives_linearise(a->task->objectives, &a->work, &r->point, a->residual));
-    HF_TRY(hf_turned_answer(&t, &a->work, a->answer_m));
+    HF_TRY(answer_samples(a));
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
         double *move_m = a->answer_m + s * a->n_dof;
         for (size_t i = 0; i < a->n_dof && part > 0; i++)
@@ -496,18 +535,10 @@ typedef struct {
     void *block;
 } move_order;
 
-static void lay_out_order(hf_arena *arena, size_t n_move, size_t n_cable, move_order *o)
-{
-    o->change_N = hf_arena_take(arena, n_move * n_cable, sizeof(double));
-    o->fall_N = hf_arena_take(arena, n_cable, sizeof(double));
-}
-
 static hf_status make_order(adjustment *a, int n_move, move_order *o)
 {
-    hf_arena arena = {0};
     size_t n_cable = (size_t)a->problem.n_tension;
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_order(&arena, (size_t)n_move, n_cable, o)));
-    o->block = arena.block;
+    HF_TRY(HF_ARENA_ARRAYS(&o->block, HF_ARRAY(o->change_N, (size_t)n_move * n_cable), HF_ARRAY(o->fall_N, n_cable)));
     double *change_N = o->change_N;
     for (size_t i = 0; i < a->n; i++) {
         if (!a->steps[i]) continue;
@@ -560,19 +591,17 @@ static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_EST
 
 static hf_status list_moves(adjustment *a, hf_adjustment *found)
 {
-    hf_arena arena = {0};
     double figure_m, sample_m[HF_ESTIMATE_SAMPLES];
     move_order order = {0};
     for (size_t i = 0; i < a->n; i++)
         found->n_move += a->steps[i] != 0;
-    HF_TRY(HF_ARENA_MAKE(&arena, found->move = hf_arena_take(&arena, (size_t)found->n_move, sizeof *found->move)));
-    found->block = arena.block;
+    HF_TRY(HF_ARENA_ARRAYS(&found->block, HF_ARRAY(found->move, found->n_move)));
     if (!a->is_current) HF_TRY(solve_steps(a, a->steps, &figure_m));
     hf_status status = a->is_current ? HF_OK : linearise(a);
     /* Without stiffness the last linear model orders them. */
     if (status != HF_OK && status != HF_SINGULAR) return status;
     a->is_current = status == HF_OK;
-    HF_TRY(make_order(a, found->n_move, &order)); /* before hf_turned_answer changes the linear model */
+    HF_TRY(make_order(a, found->n_move, &order)); /* before answer_samples changes the linear model */
     status = found->n_move ? find_beyond(a) : HF_OK;
     memset(a->trial, 0, a->n * sizeof *a->trial);
     if (status == HF_OK) status = solve_steps(a, a->trial, &figure_m);
@@ -583,8 +612,7 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
             found->n_maybe_slack += !(a->work.tension_N[e] > a->doubt_N[e]); /* both are 0 for a slack cable */
         status = make_moves(a, &order, sample_m, found);
     }
-    arena.block = order.block;
-    hf_arena_free(&arena);
+    hf_arena_free_block(order.block);
     HF_TRY(status);
     hf_estimate_spread(sample_m, &found->doubt_m[1], &found->spread_m[1]); /* sample_m belongs to the last adjustment */
     return HF_OK;
@@ -619,7 +647,6 @@ hf_status hf_adjust_find(hf_estimate *p, const hf_adjust_task *task, hf_adjustme
 
 void hf_adjust_free(hf_adjustment *found)
 {
-    hf_arena arena = {.block = found->block};
-    hf_arena_free(&arena);
+    hf_arena_free_block(found->block);
     *found = (hf_adjustment){0};
 }

@@ -43,45 +43,30 @@ struct hf_built_batch {
     batch_room *room;
 };
 
-static void lay_out_room(hf_arena *arena, const hf_model *m, batch_room *room)
-{
-    room->cut_m = hf_arena_take(arena, (size_t)m->n_cable * HF_LANES, sizeof(double));
-    room->EA_N = hf_arena_take(arena, (size_t)m->n_cable * HF_LANES, sizeof(double));
-    room->support_move_m = hf_arena_take(arena, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
-}
-
 /* Makes a room unless it exists. Returns HF_OK or HF_NO_MEMORY. Only one thread at a time has the number of a room, so
  * no lock is needed. */
 static hf_status make_room(const hf_built_batch *batch, batch_room *room)
 {
     const hf_model *m = &batch->built->model;
-    hf_arena arena = {0};
+    size_t n = (size_t)m->n_cable * HF_LANES;
     if (room->block) return HF_OK;
     if (!room->work.block && hf_workspace_create(m, &room->work) != HF_OK) return HF_NO_MEMORY;
     if (batch->has_lanes && !room->near.block && hf_near_lanes_create(&batch->near, &room->near) != HF_OK) {
         hf_near_lanes_free(&room->near);
         return HF_NO_MEMORY;
     }
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_room(&arena, m, room)));
-    room->block = arena.block;
-    return HF_OK;
+    return HF_ARENA_ARRAYS(&room->block, HF_ARRAY(room->cut_m, n), HF_ARRAY(room->EA_N, n),
+                           HF_ARRAY(room->support_move_m, 3 * (size_t)m->n_node * HF_LANES));
 }
 
 static void free_room(batch_room *room)
 {
-    hf_arena own = {.block = room->block};
     hf_workspace_free(&room->work);
     hf_near_lanes_free(&room->near);
-    hf_arena_free(&own);
+    hf_arena_free_block(room->block);
 }
 
 /* ---- the batch ---- */
-
-static void lay_out(hf_arena *arena, int n_thread, hf_built_batch **batch, batch_room **room)
-{
-    *batch = hf_arena_take(arena, 1, sizeof **batch);
-    *room = hf_arena_take(arena, (size_t)n_thread, sizeof **room);
-}
 
 /* Makes the first room and factors the shared matrix, which needs the workspace of that room. */
 static hf_status share(hf_built_batch *batch)
@@ -95,10 +80,10 @@ static hf_status share(hf_built_batch *batch)
 
 hf_status hf_built_batch_create(const hf_built *built, int n_thread, hf_built_batch **batch)
 {
-    hf_arena arena = {0};
-    batch_room *room = NULL;
+    void *block; /* the batch is its first item */
+    batch_room *room;
     if (n_thread <= 0) n_thread = hf_parallel_cores();
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, n_thread, batch, &room)));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(*batch, 1), HF_ARRAY(room, n_thread)));
     **batch = (hf_built_batch){.built = built, .n_thread = n_thread, .room = room};
     if (share(*batch) == HF_OK) return HF_OK;
     hf_built_batch_free(*batch);
@@ -118,12 +103,11 @@ hf_status hf_built_batch_renew(hf_built_batch *batch)
 
 void hf_built_batch_free(hf_built_batch *batch)
 {
-    hf_arena arena = {.block = (unsigned char *)batch}; /* the batch is the first item of its block */
     if (!batch) return;
     for (int i = 0; i < batch->n_thread; i++)
         free_room(&batch->room[i]);
     hf_near_free(&batch->near);
-    hf_arena_free(&arena);
+    hf_arena_free_block(batch);
 }
 
 int hf_built_batch_threads(const hf_built_batch *batch)

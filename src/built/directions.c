@@ -75,11 +75,11 @@ static hf_status find_axes(const hf_built_errors *e, int n_thread, hf_directions
     const hf_built_linear *l = e->linear;
     size_t n = (size_t)hf_built_errors_count(e);
     iteration t = {.errors = e, .n = d->n};
-    hf_arena arena = {0};
+    void *block;
     if (n_thread < 1) n_thread = hf_parallel_cores();
     t.n_room = 2 * l->n_dof + (size_t)l->built->model.n_cable + l->n_scratch;
-    HF_TRY(HF_ARENA_MAKE(&arena, (t.column = hf_arena_take(&arena, (size_t)t.n * n, sizeof(double)),
-                                  t.scratch = hf_arena_take(&arena, (size_t)n_thread * t.n_room, sizeof(double)))));
+    HF_TRY(
+        HF_ARENA_ARRAYS(&block, HF_ARRAY(t.column, (size_t)t.n * n), HF_ARRAY(t.scratch, (size_t)n_thread * t.n_room)));
     for (size_t i = 0; i < (size_t)t.n * n; i++)
         t.column[i] = hf_built_errors_uniform(e->seed, (long)(i / n), STARTS, (int)(i % n)) - 0.5;
     orthonormalise(&t);
@@ -90,7 +90,7 @@ static hf_status find_axes(const hf_built_errors *e, int n_thread, hf_directions
     for (size_t i = 0; i < n; i++)
         for (int k = 0; k < t.n; k++)
             d->axis[i * (size_t)t.n + (size_t)k] = t.column[(size_t)k * n + i];
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return hf_built_must_stop(l->built) ? HF_INTERRUPTED : HF_OK;
 }
 
@@ -113,13 +113,10 @@ hf_status hf_directions_find(const hf_built_errors *e, const hf_covariance *c, i
 {
     int n_error = hf_built_errors_count(e), n_answer = 3 * e->linear->built->model.n_inner_node;
     bool turns = e->distribution == HF_DISTRIBUTION_NORMAL;
-    hf_arena arena = {0};
     *d = (hf_directions){.errors = e, .n = n_error < HF_DIRECTIONS_MAX ? n_error : HF_DIRECTIONS_MAX};
     if (turns && n_answer < d->n) d->n = n_answer;
     size_t n_axis = turns ? (size_t)n_error * (size_t)d->n : 0;
-    HF_TRY(HF_ARENA_MAKE(&arena, (d->axis = hf_arena_take(&arena, n_axis, sizeof(double)),
-                                  d->error = hf_arena_take(&arena, (size_t)d->n, sizeof(int)))));
-    d->block = arena.block;
+    HF_TRY(HF_ARENA_ARRAYS(&d->block, HF_ARRAY(d->axis, n_axis), HF_ARRAY(d->error, d->n)));
     d->sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d->n);
     if (!d->sequence) return HF_NO_MEMORY;
     for (int k = 0; k < d->n; k++)
@@ -132,9 +129,8 @@ hf_status hf_directions_find(const hf_built_errors *e, const hf_covariance *c, i
 
 void hf_directions_free(hf_directions *d)
 {
-    hf_arena arena = {.block = d->block};
     if (d->sequence) gsl_qrng_free(d->sequence);
-    hf_arena_free(&arena);
+    hf_arena_free_block(d->block);
     *d = (hf_directions){0};
 }
 

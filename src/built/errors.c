@@ -14,15 +14,6 @@
 
 /* ---- making ---- */
 
-static void lay_out_errors(hf_arena *arena, const hf_model *m, hf_built_errors *e)
-{
-    size_t n = (size_t)m->n_cable, n_attachment = (size_t)m->n_attachment;
-    e->spool = hf_arena_take(arena, n, sizeof(int));
-    e->support = hf_arena_take(arena, (size_t)(m->n_node - m->n_free), sizeof(int));
-    e->expansion_per_K = hf_arena_take(arena, n, sizeof(double));
-    e->truss_move_m = hf_arena_take(arena, 3 * (size_t)e->n_truss * n_attachment, sizeof(double));
-}
-
 static void find_spools(const hf_scene *s, hf_built_errors *e)
 {
     e->n_spool = s->n_set + 2; /* the sets, then the two groups */
@@ -56,7 +47,6 @@ hf_status hf_built_errors_make(const hf_built_linear *l, const hf_tolerance_sett
 {
     const hf_scene *s = &l->built->scene;
     const hf_model *m = &l->built->model;
-    hf_arena arena = {0};
     double own = sqrt(1 - t->batch), shared = sqrt(t->batch);
     const hf_built_heat none = {0};
     if (!heat) heat = &none;
@@ -67,8 +57,9 @@ hf_status hf_built_errors_make(const hf_built_linear *l, const hf_tolerance_sett
                            .sigma = {t->sigma_cut_m, own * t->sigma_cut_ratio, shared * t->sigma_cut_ratio,
                                      own * t->sigma_EA_ratio, shared * t->sigma_EA_ratio, t->sigma_support_m,
                                      t->sigma_temperature_K, 1}};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_errors(&arena, m, e)));
-    e->block = arena.block;
+    HF_TRY(HF_ARENA_ARRAYS(&e->block, HF_ARRAY(e->spool, m->n_cable), HF_ARRAY(e->support, m->n_node - m->n_free),
+                           HF_ARRAY(e->expansion_per_K, m->n_cable),
+                           HF_ARRAY(e->truss_move_m, 3 * (size_t)e->n_truss * (size_t)m->n_attachment)));
     find_spools(s, e);
     for (int i = 0; i < s->n_node; i++)
         if (s->role[i] == HF_ROLE_SUPPORT) e->support[e->n_support++] = i;
@@ -80,8 +71,7 @@ hf_status hf_built_errors_make(const hf_built_linear *l, const hf_tolerance_sett
 
 void hf_built_errors_free(hf_built_errors *e)
 {
-    hf_arena arena = {.block = e->block};
-    hf_arena_free(&arena);
+    hf_arena_free_block(e->block);
     *e = (hf_built_errors){0};
 }
 

@@ -8,6 +8,13 @@
 #include "built/near.h"
 #include "built/saddle.h"
 
+/* Scratch of an estimate. A step uses errors, supports, displacements, shared numbers, the differences to measured
+ * positions before and after it, and the band. A shape uses cut lengths and supports; the linear model uses the last
+ * two. Arrays that samples use have room for HF_SADDLE_DUAL_PANEL of them. */
+typedef struct {
+    double *cut_m, *rest_m, *shared, *gap_m, *trial_m, *move_m, *band, *length_m, *support_m, *strain_N, *linear;
+} hf_estimate_scratch;
+
 typedef struct {
     const hf_built *built;
     hf_saddle_prior prior;
@@ -27,7 +34,7 @@ typedef struct {
     double misfit;
     int n_step;
     bool is_settled; /* converged: the linear model predicts no further reduction of the misfit */
-    double *scratch;
+    hf_estimate_scratch scratch;
     void *block;
 } hf_estimate;
 

@@ -22,14 +22,6 @@ static const char *const ours[] = {"x0_m", "y0_m", "z0_m", "role", NULL};
 
 /* ---- the table ---- */
 
-static void lay_out_measured(hf_arena *arena, const hf_model *m, hf_measured *measured)
-{
-    size_t n = (size_t)m->n_node;
-    measured->place_m = hf_arena_take(arena, 3 * n, sizeof(double));
-    measured->weight_per_m2 = hf_arena_take(arena, 3 * n, sizeof(double));
-    measured->line = hf_arena_take(arena, n, sizeof(int));
-}
-
 /* Returns the standard deviation of the node in row r: its own, or sigma_m. */
 static double read_sigma(hf_csv *t, const int *where, int r, const char *id, double sigma_m)
 {
@@ -58,11 +50,10 @@ static void read_node(hf_csv *t, const int *where, int r, int row, double sigma_
 static hf_status read_nodes(hf_csv *t, const int *where, const hf_scene *scene, const hf_model *m, double sigma_m,
                             hf_measured *measured)
 {
-    hf_arena arena = {0};
-    bool *is_found = NULL;
+    void *block = NULL;
+    bool *is_found;
     hf_csv_named *index = hf_csv_index(t, where[ID]);
-    hf_status status =
-        index ? HF_ARENA_MAKE(&arena, is_found = hf_arena_take(&arena, (size_t)t->n_row, sizeof(bool))) : HF_NO_MEMORY;
+    hf_status status = index ? HF_ARENA_ARRAYS(&block, HF_ARRAY(is_found, t->n_row)) : HF_NO_MEMORY;
     for (int i = 0; i < m->n_node && status == HF_OK; i++) {
         int r = hf_csv_row_of(index, t->n_row, scene->node_id[i]);
         if (r < 0) continue;
@@ -75,7 +66,7 @@ static hf_status read_nodes(hf_csv *t, const int *where, const hf_scene *scene, 
         if (*id && !is_found[r] && !is_again) hf_csv_fault(t, t->line[r], id, "the net has no node of this id", "");
     }
     free(index);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 
@@ -93,15 +84,16 @@ static hf_status count_nodes(const char *path, const hf_model *m, const hf_measu
 hf_status hf_measured_read(const char *path, const hf_scene *scene, const hf_model *m, double sigma_m,
                            hf_measured *measured, hf_messages *messages)
 {
-    hf_arena arena = {0};
     hf_csv table = {0};
     int where[N_COLUMN];
+    size_t n = (size_t)m->n_node;
     *measured = (hf_measured){0};
     hf_status status = hf_csv_read(path, N_COLUMN + SPARE_COLUMNS, &table, messages);
     table.ours = ours;
     if (status == HF_OK) status = hf_csv_find_columns(&table, column_name, N_COLUMN, Z + 1, where);
-    if (status == HF_OK) status = HF_ARENA_MAKE(&arena, lay_out_measured(&arena, m, measured));
-    measured->block = arena.block;
+    if (status == HF_OK)
+        status = HF_ARENA_ARRAYS(&measured->block, HF_ARRAY(measured->place_m, 3 * n),
+                                 HF_ARRAY(measured->weight_per_m2, 3 * n), HF_ARRAY(measured->line, n));
     if (status == HF_OK) status = read_nodes(&table, where, scene, m, sigma_m, measured);
     if (status == HF_OK) status = hf_csv_close_faults(&table);
     if (status == HF_NO_MEMORY) hf_error(messages, status, "%s: out of memory", path);
@@ -111,8 +103,7 @@ hf_status hf_measured_read(const char *path, const hf_scene *scene, const hf_mod
 
 void hf_measured_free(hf_measured *measured)
 {
-    hf_arena arena = {.block = measured->block};
-    hf_arena_free(&arena);
+    hf_arena_free_block(measured->block);
     *measured = (hf_measured){0};
 }
 

@@ -34,15 +34,6 @@ static bool has_surface(const hf_montecarlo *t)
     return t->surface && t->surface->focal_length_m > 0;
 }
 
-static void lay_out_montecarlo(hf_arena *arena, int n_thread, hf_montecarlo *t)
-{
-    size_t n = (size_t)t->n_chunk;
-    t->row = hf_arena_take(arena, n * HF_TOLERANCE_COLUMNS, sizeof(double));
-    t->point = hf_arena_take(arena, n * (size_t)t->directions.n, sizeof(double));
-    t->z = hf_arena_take(arena, n * t->n_z, sizeof(double));
-    t->scratch = hf_arena_take(arena, (size_t)n_thread * t->n_room, sizeof(double));
-}
-
 static void choose_sizes(hf_montecarlo *t)
 {
     const hf_model *m = &t->built->model;
@@ -57,7 +48,6 @@ static void choose_sizes(hf_montecarlo *t)
 hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b, const hf_surface_settings *surface,
                                const hf_facets *facets, const hf_built_heat *heat, int n_thread, hf_montecarlo *t)
 {
-    hf_arena arena = {0};
     *t = (hf_montecarlo){.settings = s, .built = b, .surface = surface, .facets = facets};
     HF_TRY(hf_built_batch_create(b, n_thread, &t->batch));
     n_thread = hf_built_batch_threads(t->batch);
@@ -67,8 +57,10 @@ hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b
     if (s->sampling == HF_SAMPLING_SOBOL)
         HF_TRY(hf_directions_find(&t->errors, &t->covariance, n_thread, &t->directions));
     choose_sizes(t);
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_montecarlo(&arena, n_thread, t)));
-    t->block = arena.block;
+    size_t n = (size_t)t->n_chunk;
+    HF_TRY(HF_ARENA_ARRAYS(&t->block, HF_ARRAY(t->row, n * HF_TOLERANCE_COLUMNS),
+                           HF_ARRAY(t->point, n * (size_t)t->directions.n), HF_ARRAY(t->z, n * t->n_z),
+                           HF_ARRAY(t->scratch, (size_t)n_thread * t->n_room)));
     t->varies = hf_built_errors_vary(&t->errors);
     if (!has_surface(t)) return HF_OK;
     return hf_surface_design_make(surface, facets, &b->model, b->place_m, b->tension_N, &t->design);
@@ -76,13 +68,12 @@ hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b
 
 void hf_montecarlo_free(hf_montecarlo *t)
 {
-    hf_arena arena = {.block = t->block};
     hf_built_batch_free(t->batch);
     hf_directions_free(&t->directions);
     hf_covariance_free(&t->covariance);
     hf_built_errors_free(&t->errors);
     hf_built_linear_free(&t->linear);
-    hf_arena_free(&arena);
+    hf_arena_free_block(t->block);
     *t = (hf_montecarlo){0};
 }
 

@@ -177,38 +177,32 @@ static bool worst_bound(void *context, const double *x, hf_quadratic_limit *limi
     return true;
 }
 
-static void lay_out_box(hf_arena *arena, int n, double **hessian, double **vector)
-{
-    *hessian = hf_arena_take(arena, (size_t)n * (size_t)n, sizeof(double));
-    *vector = hf_arena_take(arena, 3 * (size_t)n, sizeof(double));
-}
-
 /* Finds the best adjustments move_m [n] of a list without rounding to steps. t is NULL without limits on tensions. */
 static hf_status fit_list(const hf_moves_problem *p, int n, const int *list, const tensions *t, double *move_m)
 {
-    hf_arena arena = {0};
+    void *block;
     hf_quadratic q;
-    double *hessian = NULL, *gradient = NULL, largest = 0;
+    double *hessian, *gradient, *lower, *upper, largest = 0;
     box b = {n, p->steps_max * p->step_m, t};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_box(&arena, n, &hessian, &gradient)));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(hessian, (size_t)n * (size_t)n), HF_ARRAY(gradient, n), HF_ARRAY(lower, n),
+                           HF_ARRAY(upper, n)));
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++)
             hessian[i * n + j] = gram_of(p, list[i], list[j]);
         largest = fmax(largest, hessian[i * n + i]);
         gradient[i] = p->slope[list[i]];
-        gradient[n + i] = -b.most_m;
-        gradient[2 * n + i] = b.most_m;
+        lower[i] = -b.most_m;
+        upper[i] = b.most_m;
         move_m[i] = 0;
     }
     for (int i = 0; i < n; i++)
         hessian[i * n + i] += largest > 0 ? RIDGE * largest : 1; /* all entries of a slack cable are 0 */
     hf_status status = hf_quadratic_create(n, &q);
-    if (status == HF_OK)
-        status = hf_quadratic_solve(&q, hessian, gradient, gradient + n, gradient + 2 * n, worst_bound, &b);
+    if (status == HF_OK) status = hf_quadratic_solve(&q, hessian, gradient, lower, upper, worst_bound, &b);
     for (int i = 0; i < n && status == HF_OK; i++)
         move_m[i] = fmin(fmax(q.x[i], -b.most_m), b.most_m);
     hf_quadratic_free(&q);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status == HF_NO_MEMORY ? status : HF_OK; /* other failures are rounding: move_m stays 0 */
 }
 
@@ -289,21 +283,17 @@ typedef struct {
     hf_status status; /* HF_NO_MEMORY: a fit could not be made, so the choice means nothing */
 } choice;
 
-static void lay_out_choice(hf_arena *arena, size_t n, choice *c)
+static hf_status allocate_choice(choice *c, void **block)
 {
-    size_t n_tension = (size_t)c->p->n_tension, n_list = n_tension ? (size_t)c->p->moves_max : 0;
+    tensions *t = &c->tensions;
+    size_t n = (size_t)c->p->n, n_tension = (size_t)c->p->n_tension, n_list = n_tension ? (size_t)c->p->moves_max : 0;
     if (n_list > n) n_list = n;
-    c->tensions.cable = hf_arena_take(arena, n_list, sizeof(int));
-    c->tensions.rate = hf_arena_take(arena, n_list * n_tension, sizeof(double));
-    c->tensions.row = hf_arena_take(arena, n_list ? n : 0, sizeof(int));
-    c->tensions.fall_N = hf_arena_take(arena, n_tension, sizeof(double));
-    for (size_t k = 0; k < n_list && c->tensions.cable; k++)
-        c->tensions.cable[k] = -1;
-    c->list = hf_arena_take(arena, n, sizeof(int));
-    c->best = hf_arena_take(arena, n, sizeof(int));
-    c->trial = hf_arena_take(arena, n, sizeof(int));
-    c->move_m = hf_arena_take(arena, n, sizeof(double));
-    c->gain = hf_arena_take(arena, n, sizeof(double));
+    HF_TRY(HF_ARENA_ARRAYS(block, HF_ARRAY(t->cable, n_list), HF_ARRAY(t->rate, n_list * n_tension),
+                           HF_ARRAY(t->row, n_list ? n : 0), HF_ARRAY(t->fall_N, n_tension), HF_ARRAY(c->list, n),
+                           HF_ARRAY(c->best, n), HF_ARRAY(c->trial, n), HF_ARRAY(c->move_m, n), HF_ARRAY(c->gain, n)));
+    for (size_t k = 0; k < n_list; k++)
+        t->cable[k] = -1;
+    return HF_OK;
 }
 
 /* Returns the gain of adjusting turnbuckle i alone, beside the present steps of turned [n_turned]. */
@@ -445,10 +435,10 @@ static void drop_idle(choice *c)
 
 hf_status hf_moves_choose(const hf_moves_problem *p, int *steps, hf_moves_end *end, bool *is_held)
 {
-    hf_arena arena = {0};
+    void *block;
     choice c = {.p = p, .least = p->square, .tensions.p = p};
     memset(steps, 0, (size_t)p->n * sizeof *steps);
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_choice(&arena, (size_t)p->n, &c)));
+    HF_TRY(allocate_choice(&c, &block));
     for (;;) {
         *end = HF_MOVES_TARGET;
         if (c.least <= p->target * p->target) break;
@@ -464,19 +454,19 @@ hf_status hf_moves_choose(const hf_moves_problem *p, int *steps, hf_moves_end *e
         drop_idle(&c);
     }
     *is_held = c.is_held;
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return c.status;
 }
 
 hf_status hf_moves_best(const hf_moves_problem *p, double *move_m)
 {
-    hf_arena arena = {0};
-    int *list = NULL;
-    HF_TRY(HF_ARENA_MAKE(&arena, list = hf_arena_take(&arena, (size_t)p->n, sizeof *list)));
+    void *block;
+    int *list;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(list, p->n)));
     for (int i = 0; i < p->n; i++)
         list[i] = i;
     hf_status status = fit_list(p, p->n, list, NULL, move_m);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 

@@ -67,15 +67,6 @@ void hf_near_prepare(const hf_near *near, const hf_built_net *net, hf_workspace 
     hf_joint_set_displacement(m, w);
 }
 
-static void lay_out_matrices(hf_arena *arena, hf_near *near)
-{
-    const hf_model *m = &near->model;
-    size_t column = 3 * (size_t)m->half_bandwidth + 3;
-    near->band = hf_arena_take(arena, HF_NEWTON_DOFS(m) * column, sizeof(double));
-    if (!m->n_attachment) return;
-    near->answer = hf_arena_take(arena, (size_t)near->chord.n_pull_pad * (size_t)near->chord.n_pull, sizeof(double));
-}
-
 /* Computes (I + F S)^-1 of the nominal net, the displacement of the attachments by a gap F f - r. The workspace holds
  * the factored matrix of that net. */
 static hf_status find_answer(hf_workspace *w, hf_near *near)
@@ -100,7 +91,7 @@ static hf_status find_answer(hf_workspace *w, hf_near *near)
 
 hf_status hf_near_create(const hf_built *b, hf_workspace *w, hf_near *near)
 {
-    hf_arena arena = {0};
+    size_t n_band = HF_NEWTON_DOFS(&b->model) * (3 * (size_t)b->model.half_bandwidth + 3);
     *near = (hf_near){.built = b, .model = b->model};
     near->model.n_variable = near->model.n_leader = near->model.n_variable_group = 0;
     near->model.variable = NULL;
@@ -109,10 +100,9 @@ hf_status hf_near_create(const hf_built *b, hf_workspace *w, hf_near *near)
     hf_near_prepare(near, &(hf_built_net){0}, w);
     w->n_moving = b->model.n_free;
     HF_TRY(hf_chord_create_here(&near->evaluator, w, &near->chord));
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_matrices(&arena, near)));
-    near->block = arena.block;
-    memcpy(near->band, w->newton_band,
-           HF_NEWTON_DOFS(&b->model) * (3 * (size_t)b->model.half_bandwidth + 3) * sizeof *near->band);
+    HF_TRY(HF_ARENA_ARRAYS(&near->block, HF_ARRAY(near->band, n_band),
+                           HF_ARRAY(near->answer, (size_t)near->chord.n_pull_pad * (size_t)near->chord.n_pull)));
+    memcpy(near->band, w->newton_band, n_band * sizeof *near->band);
     return b->model.n_attachment ? find_answer(w, near) : HF_OK;
 }
 
@@ -125,23 +115,13 @@ void hf_near_free(hf_near *near)
 
 /* ---- lanes ---- */
 
-static void lay_out(hf_arena *arena, const hf_model *m, hf_near_lanes *l)
-{
-    size_t n = (size_t)m->n_cable * HF_LANES;
-    l->gap_lanes_m = hf_arena_take(arena, 3 * (size_t)m->n_attachment * HF_LANES, sizeof(double));
-    l->cut_m = hf_arena_take(arena, n, sizeof(double));
-    l->stiffness_N_per_m = hf_arena_take(arena, n, sizeof(double));
-    l->tension_N = hf_arena_take(arena, n, sizeof(double));
-}
-
 hf_status hf_near_lanes_create(const hf_near *near, hf_near_lanes *l)
 {
-    hf_arena arena = {0};
+    size_t n = (size_t)near->model.n_cable * HF_LANES;
     *l = (hf_near_lanes){0};
     HF_TRY(hf_chord_lanes_create(&near->chord, &l->lanes));
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &near->model, l)));
-    l->block = arena.block;
-    return HF_OK;
+    return HF_ARENA_ARRAYS(&l->block, HF_ARRAY(l->gap_lanes_m, 3 * (size_t)near->model.n_attachment * HF_LANES),
+                           HF_ARRAY(l->cut_m, n), HF_ARRAY(l->stiffness_N_per_m, n), HF_ARRAY(l->tension_N, n));
 }
 
 void hf_near_lanes_free(hf_near_lanes *l)

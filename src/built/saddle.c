@@ -23,20 +23,6 @@ static int room_of_band(const hf_saddle *s)
     return 3 * s->half_bandwidth + 1;
 }
 
-static void lay_out_saddle(hf_arena *arena, hf_saddle *s)
-{
-    size_t n = (size_t)s->n_band, border = (size_t)s->n_border, attached = (size_t)s->n_attached;
-    s->general = hf_arena_take(arena, n * (size_t)room_of_band(s), sizeof(double));
-    s->pivot = hf_arena_take(arena, n, sizeof(int));
-    s->column = hf_arena_take(arena, border * n, sizeof(double));
-    s->solved = hf_arena_take(arena, border * n, sizeof(double));
-    s->corner = hf_arena_take(arena, border * border, sizeof(double));
-    s->dense = hf_arena_take(arena, border * border, sizeof(double));
-    s->flex = hf_arena_take(arena, attached * attached, sizeof(double));
-    s->work = hf_arena_take(arena, (1 + HF_SADDLE_DUAL_PANEL) * border, sizeof(double));
-    s->dense_pivot = hf_arena_take(arena, border, sizeof(int));
-}
-
 /* Returns whether the border has only shared numbers. */
 static bool may_be_dual(const hf_saddle *s)
 {
@@ -57,22 +43,24 @@ static double largest_error_m(const hf_model *m, const hf_saddle_prior *prior)
 hf_status hf_saddle_create(const hf_built_linear *l, const hf_saddle_prior *prior, hf_saddle *s)
 {
     const hf_model *m = &l->built->model;
-    hf_arena arena = {0};
     *s = (hf_saddle){.linear = l, .prior = *prior, .n_band = 6 * m->n_free, .n_attached = 3 * m->n_attachment};
     s->half_bandwidth = 6 * m->half_bandwidth + 5;
     if (prior->support_sigma_m > 0) s->n_off = 3 * (m->n_node - m->n_free - m->n_attachment);
     s->n_border = 2 * s->n_attached + s->n_off + prior->n_shared;
     s->size_m = largest_error_m(m, prior);
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_saddle(&arena, s)));
-    s->block = arena.block;
+    size_t n = (size_t)s->n_band, border = (size_t)s->n_border, attached = (size_t)s->n_attached;
+    HF_TRY(HF_ARENA_ARRAYS(&s->block, HF_ARRAY(s->general, n * (size_t)room_of_band(s)), HF_ARRAY(s->pivot, n),
+                           HF_ARRAY(s->column, border * n), HF_ARRAY(s->solved, border * n),
+                           HF_ARRAY(s->corner, border * border), HF_ARRAY(s->dense, border * border),
+                           HF_ARRAY(s->flex, attached * attached),
+                           HF_ARRAY(s->work, (1 + HF_SADDLE_DUAL_PANEL) * border), HF_ARRAY(s->dense_pivot, border)));
     return may_be_dual(s) ? hf_saddle_dual_create(l, &s->dual) : HF_OK;
 }
 
 void hf_saddle_free(hf_saddle *s)
 {
-    hf_arena arena = {.block = s->block};
     hf_saddle_dual_free(&s->dual);
-    hf_arena_free(&arena);
+    hf_arena_free_block(s->block);
     *s = (hf_saddle){0};
 }
 

@@ -22,61 +22,36 @@
 
 /* ---- making ---- */
 
-static void lay_out_dual(hf_arena *arena, hf_saddle_dual *d, size_t n_end)
-{
-    const hf_model *m = &d->linear->built->model;
-    size_t n = (size_t)d->n, n_cable = (size_t)m->n_cable, panel = HF_SADDLE_DUAL_PANEL;
-    d->start = hf_arena_take(arena, (size_t)m->n_free + 1, sizeof(int));
-    d->cable = hf_arena_take(arena, n_end, sizeof(int));
-    d->block = hf_arena_take(arena, 9 * n_cable, sizeof(double));
-    d->push = hf_arena_take(arena, n_cable, sizeof(double));
-    d->spring = hf_arena_take(arena, (size_t)m->n_free, sizeof(double));
-    d->weight = hf_arena_take(arena, n, sizeof(double));
-    d->band = hf_arena_take(arena, n * ((size_t)d->half_bandwidth + 1), sizeof(double));
-    d->right = hf_arena_take(arena, panel * n, sizeof(double));
-    d->solution = hf_arena_take(arena, panel * 2 * n, sizeof(double));
-    d->error = hf_arena_take(arena, panel * 2 * n, sizeof(double));
-    d->probe = hf_arena_take(arena, 2 * n, sizeof(double));
-}
-
-/* Lists the cables of each free row, one row after the other. */
+/* Lists the cables of each row, one row after the other. */
 static void list_cables(hf_saddle_dual *d)
 {
     const hf_model *m = &d->linear->built->model;
     for (int i = 0; i < 2 * m->n_cable; i++)
-        if (m->end_row[i] < m->n_free) d->start[m->end_row[i] + 1]++;
-    for (int row = 0; row < m->n_free; row++)
-        d->start[row + 1] += d->start[row];
-    for (int i = 2 * m->n_cable - 1; i >= 0; i--) /* start[row + 1] is where the next cable of `row` goes */
-        if (m->end_row[i] < m->n_free) d->cable[--d->start[m->end_row[i] + 1]] = i / 2;
-    int n_end = 0;
-    for (int i = 0; i < 2 * m->n_cable; i++)
-        n_end += m->end_row[i] < m->n_free;
-    for (int row = 0; row < m->n_free; row++)
-        d->start[row] = d->start[row + 1];
-    d->start[m->n_free] = n_end;
+        d->start[m->end_row[i]]++;
+    for (int row = 0; row < m->n_node; row++)
+        d->start[row + 1] += d->start[row];       /* the end of the cables of `row` */
+    for (int i = 2 * m->n_cable - 1; i >= 0; i--) /* becomes their start */
+        d->cable[--d->start[m->end_row[i]]] = i / 2;
 }
 
 hf_status hf_saddle_dual_create(const hf_built_linear *l, hf_saddle_dual *d)
 {
     const hf_model *m = &l->built->model;
-    hf_arena arena = {0};
-    size_t n_end = 0;
     *d = (hf_saddle_dual){.linear = l, .n = 3 * m->n_free, .half_bandwidth = 6 * m->half_bandwidth + 2};
     if (d->half_bandwidth > d->n - 1) d->half_bandwidth = d->n - 1;
-    for (int i = 0; i < 2 * m->n_cable; i++)
-        n_end += m->end_row[i] < m->n_free;
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_dual(&arena, d, n_end)));
-    d->memory = arena.block;
-    memset(d->start, 0, ((size_t)m->n_free + 1) * sizeof *d->start);
+    size_t n = (size_t)d->n, n_cable = (size_t)m->n_cable, panel = HF_SADDLE_DUAL_PANEL;
+    HF_TRY(HF_ARENA_ARRAYS(&d->memory, HF_ARRAY(d->start, m->n_node + 1), HF_ARRAY(d->cable, 2 * n_cable),
+                           HF_ARRAY(d->block, 9 * n_cable), HF_ARRAY(d->push, n_cable), HF_ARRAY(d->spring, m->n_free),
+                           HF_ARRAY(d->weight, n), HF_ARRAY(d->band, n * ((size_t)d->half_bandwidth + 1)),
+                           HF_ARRAY(d->right, panel * n), HF_ARRAY(d->solution, panel * 2 * n),
+                           HF_ARRAY(d->error, panel * 2 * n), HF_ARRAY(d->probe, 2 * n)));
     list_cables(d);
     return HF_OK;
 }
 
 void hf_saddle_dual_free(hf_saddle_dual *d)
 {
-    hf_arena arena = {.block = d->memory};
-    hf_arena_free(&arena);
+    hf_arena_free_block(d->memory);
     *d = (hf_saddle_dual){0};
 }
 

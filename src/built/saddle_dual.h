@@ -18,7 +18,7 @@
 typedef struct {
     const hf_built_linear *linear;
     int n, half_bandwidth; /* n: 3 n_free rows */
-    int *start, *cable;    /* [n_free + 1], [start[n_free]] cables of each free row */
+    int *start, *cable;    /* [n_node + 1], [2 n_cable] cables of each row */
     double *block;         /* [n_cable][9] stiffness blocks, scaled */
     double *push;          /* [n_cable] sigma^2 (dT/dl0)^2, scaled */
     double *spring;        /* [n_free] springs of loose nodes, scaled */

@@ -26,17 +26,16 @@
 static hf_status visit_rows(const hf_statistics_rows *rows, void (*take)(void *context, const double *row),
                             void *context)
 {
-    double *block;
-    hf_arena arena = {0};
-    hf_status status =
-        HF_ARENA_MAKE(&arena, block = hf_arena_take(&arena, BLOCK * HF_TOLERANCE_COLUMNS, sizeof *block));
+    double *row;
+    void *block;
+    hf_status status = HF_ARENA_ARRAYS(&block, HF_ARRAY(row, BLOCK * HF_TOLERANCE_COLUMNS));
     for (long first = 0; first < rows->n && status == HF_OK; first += BLOCK) {
         int n = rows->n - first < BLOCK ? (int)(rows->n - first) : BLOCK;
-        status = rows->read(rows->context, first, n, block);
+        status = rows->read(rows->context, first, n, row);
         for (int i = 0; i < n && status == HF_OK; i++)
-            take(context, block + i * HF_TOLERANCE_COLUMNS);
+            take(context, row + i * HF_TOLERANCE_COLUMNS);
     }
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 
@@ -165,8 +164,8 @@ hf_status hf_statistics_order(const hf_statistics_rows *rows, int column, double
                               double *value)
 {
     selection s = {.column = column, .n_rank = n_rank, .missing = missing};
-    hf_arena arena = {0};
-    hf_status status = HF_ARENA_MAKE(&arena, s.count = hf_arena_take(&arena, (size_t)n_rank * DIGIT, sizeof *s.count));
+    void *block;
+    hf_status status = HF_ARENA_ARRAYS(&block, HF_ARRAY(s.count, (size_t)n_rank * DIGIT));
     memcpy(s.left, rank, (size_t)n_rank * sizeof *rank);
     for (s.shift = 48; s.shift >= 0 && status == HF_OK; s.shift -= 16) {
         memset(s.count, 0, (size_t)n_rank * DIGIT * sizeof *s.count);
@@ -175,7 +174,7 @@ hf_status hf_statistics_order(const hf_statistics_rows *rows, int column, double
     }
     for (int k = 0; k < n_rank; k++)
         value[k] = value_of(s.above[k]);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 

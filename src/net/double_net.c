@@ -91,19 +91,18 @@ static double tie_target(const hf_double_net *d, double length, double EA_N)
     }
 }
 
-static void put_tie(const hf_double_net *d, double EA_N, hf_scene *s, int e, int a, int b)
+void hf_double_net_put_cable(const double EA_N[2], int e, int a, int b, hf_group group, hf_law law, hf_scene *s)
 {
     s->end[2 * e] = a;
     s->end[2 * e + 1] = b;
-    s->group[e] = HF_GROUP_INNER;
-    s->law[e] = (unsigned char)d->law;
-    s->target[e] = tie_target(d, hf_scene_theoretical_length(s, e), EA_N);
-    if (s->EA_N) s->EA_N[e] = EA_N;
+    s->group[e] = (unsigned char)group;
+    s->law[e] = (unsigned char)law;
+    s->target[e] = hf_law_default_target(law, hf_scene_theoretical_length(s, e));
+    if (s->EA_N) s->EA_N[e] = EA_N[group] > 0 ? EA_N[group] : (double)NAN;
 }
 
 void hf_double_net_fill(const hf_double_net *d, const double EA_N[2], int n_front, int m_front, hf_scene *s)
 {
-    double tie_EA_N = EA_N && EA_N[HF_GROUP_INNER] > 0 ? EA_N[HF_GROUP_INNER] : (double)NAN;
     int m = 2 * m_front;
     for (int i = 0; i < n_front; i++) {
         bool is_support = s->role[i] == HF_ROLE_SUPPORT;
@@ -112,17 +111,15 @@ void hf_double_net_fill(const hf_double_net *d, const double EA_N[2], int n_fron
                              s->position_m + 3 * (size_t)(n_front + i));
         s->role[n_front + i] = is_support ? HF_ROLE_SUPPORT : HF_ROLE_EDGE;
     }
-    for (int e = 0; e < m_front; e++) {
-        int rear = m_front + e;
-        s->end[2 * rear] = n_front + s->end[2 * e];
-        s->end[2 * rear + 1] = n_front + s->end[2 * e + 1];
-        s->group[rear] = s->group[e];
-        s->law[rear] = s->law[e];
-        s->target[rear] = hf_law_default_target(s->law[rear], hf_scene_theoretical_length(s, rear));
-        if (s->EA_N) s->EA_N[rear] = s->EA_N[e];
+    for (int e = 0; e < m_front; e++)
+        hf_double_net_put_cable(EA_N, m_front + e, n_front + s->end[2 * e], n_front + s->end[2 * e + 1], s->group[e],
+                                s->law[e], s);
+    for (int i = 0; i < n_front; i++) {
+        if (s->role[i] == HF_ROLE_SUPPORT) continue;
+        hf_double_net_put_cable(EA_N, m, i, n_front + i, HF_GROUP_INNER, d->law, s);
+        s->target[m] = tie_target(d, hf_scene_theoretical_length(s, m), s->EA_N ? s->EA_N[m] : (double)NAN);
+        m++;
     }
-    for (int i = 0; i < n_front; i++)
-        if (s->role[i] != HF_ROLE_SUPPORT) put_tie(d, tie_EA_N, s, m++, i, n_front + i);
 }
 
 int hf_double_net_join(hf_cable_set_member *member, int n_member, int m_front, int n_tie, const int *rear_set,

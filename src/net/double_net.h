@@ -38,6 +38,16 @@ const char *hf_double_net_fault(const hf_double_net *d, char *what, size_t size)
  * in the generators. */
 bool hf_double_net_lacks_EA(const hf_double_net *d, const double EA_N[2]);
 
+/* Writes cable e of a generated scene, from node a to node b, with the target value that its law has without a value
+ * from the user. EA_N is that of the generators. */
+void hf_double_net_put_cable(const double EA_N[2], int e, int a, int b, hf_group group, hf_law law, hf_scene *scene);
+
+/* Returns the law of the cables of a group in a generated net. */
+static inline hf_law hf_double_net_law(hf_group group)
+{
+    return group == HF_GROUP_BOUNDARY ? HF_LAW_LENGTH : HF_LAW_TENSION;
+}
+
 /* Fills the rear half of a scene whose first n_front nodes and m_front cables are complete. Node n_front + i is behind
  * node i, and supports are behind supports. Free rear nodes have role edge, so psi does not count them. Cable m_front +
  * e is behind cable e, and the ties follow. EA_N is that of the generators. */

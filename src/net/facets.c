@@ -38,6 +38,7 @@ typedef struct {
     int cable;
 } half;
 
+/* All arrays are zero at first. */
 typedef struct {
     const hf_scene *scene;
     double *above_m;      /* [n_node], height above the target surface */
@@ -50,20 +51,6 @@ typedef struct {
     unsigned char *seen;  /* [n_half] */
     int n_half;
 } graph;
-
-static void lay_out(hf_arena *a, const hf_scene *s, graph *g)
-{
-    size_t n = (size_t)s->n_node, m = 2 * (size_t)s->n_cable;
-    g->above_m = hf_arena_take(a, n, sizeof *g->above_m);
-    g->is_on = hf_arena_take(a, n, 1);
-    g->degree = hf_arena_take(a, n, sizeof *g->degree);
-    g->mixed = hf_arena_take(a, n, sizeof *g->mixed);
-    g->first = hf_arena_take(a, n + 1, sizeof *g->first);
-    g->parent = hf_arena_take(a, n, sizeof *g->parent);
-    g->sorted = hf_arena_take(a, m, sizeof *g->sorted);
-    g->edge = hf_arena_take(a, m, sizeof *g->edge);
-    g->seen = hf_arena_take(a, m, 1);
-}
 
 /* Adds nodes that a cable joins to an inner node along the surface. The rim of a net on a deflected truss is off by
  * millimetres, but the cables of the surface still end there. */
@@ -112,8 +99,6 @@ static bool is_rim(const graph *g, int cable, int k)
 static void drop_ends(graph *g)
 {
     const hf_scene *s = g->scene;
-    memset(g->degree, 0, (size_t)s->n_node * sizeof *g->degree);
-    memset(g->mixed, 0, (size_t)s->n_node * sizeof *g->mixed);
     for (int e = 0; e < s->n_cable; e++)
         for (int k = 0; k < 2 && in_graph(g, e); k++) {
             g->degree[s->end[2 * e + k]] += is_rim(g, e, k) ? 2 : 1;
@@ -150,7 +135,6 @@ static int by_direction(const void *a, const void *b)
 static void collect(graph *g)
 {
     const hf_scene *s = g->scene;
-    g->n_half = 0;
     for (int e = 0; e < s->n_cable; e++)
         for (int k = 0; k < 2 && in_graph(g, e); k++) {
             int from = s->end[2 * e + k], to = s->end[2 * e + 1 - k];
@@ -159,7 +143,6 @@ static void collect(graph *g)
             g->n_half++;
         }
     qsort(g->edge, (size_t)g->n_half, sizeof *g->edge, by_direction);
-    memset(g->first, 0, ((size_t)s->n_node + 1) * sizeof *g->first);
     for (int h = 0; h < g->n_half; h++) {
         g->sorted[g->edge[h].place] = h;
         g->first[g->edge[h].from + 1]++;
@@ -267,7 +250,6 @@ static void find_faces(graph *g, hf_facets *f)
         n_node += g->is_on[i];
         n_part += g->is_on[i] && g->parent[i] == i;
     }
-    memset(g->seen, 0, (size_t)g->n_half);
     for (int h = 0; h < g->n_half; h++) {
         int corner[4];
         double area;
@@ -298,12 +280,13 @@ hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surfa
 {
     *facets = (hf_facets){.is_planar = true};
     graph g = {.scene = scene};
-    hf_arena arena = {0}, kept = {0};
-    size_t n_named = (size_t)scene->n_facet;
-    size_t most = 4 * (n_named > 0 ? n_named : (size_t)scene->n_cable + 1); /* a face needs at least 3/2 cables */
-    HF_TRY(HF_ARENA_MAKE(&kept, facets->corner = hf_arena_take(&kept, most, sizeof *facets->corner)));
-    facets->block = kept.block;
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, scene, &g)));
+    void *block;
+    size_t n_named = (size_t)scene->n_facet, n = (size_t)scene->n_node, n_half = 2 * (size_t)scene->n_cable;
+    size_t n_corner = 4 * (n_named > 0 ? n_named : (size_t)scene->n_cable + 1); /* a face needs at least 3/2 cables */
+    HF_TRY(HF_ARENA_ARRAYS(&facets->block, HF_ARRAY(facets->corner, n_corner)));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(g.above_m, n), HF_ARRAY(g.is_on, n), HF_ARRAY(g.degree, n),
+                           HF_ARRAY(g.mixed, n), HF_ARRAY(g.first, n + 1), HF_ARRAY(g.parent, n),
+                           HF_ARRAY(g.sorted, n_half), HF_ARRAY(g.edge, n_half), HF_ARRAY(g.seen, n_half)));
     choose_nodes(&g, surface);
     if (n_named > 0) {
         keep_named(&g, facets);
@@ -312,7 +295,7 @@ hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surfa
         collect(&g);
         find_faces(&g, facets);
     }
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return HF_OK;
 }
 

@@ -354,19 +354,11 @@ static void join_set(grid *g, int family)
 
 static void add_cable(grid *g, int a, int b, hf_group group, int family, int second_family)
 {
-    hf_scene *s = g->s;
-    int e = g->n_cable;
     join_set(g, family);
     join_set(g, second_family);
     join_set(g, g->c->rear_distance_m > 0 ? FRONT : NO_FAMILY);
+    if (g->member) hf_double_net_put_cable(g->EA_N, g->n_cable, a, b, group, hf_double_net_law(group), g->s);
     g->n_cable++;
-    if (!g->member) return;
-    s->end[2 * e] = a;
-    s->end[2 * e + 1] = b;
-    s->group[e] = (unsigned char)group;
-    s->law[e] = group == HF_GROUP_BOUNDARY ? HF_LAW_LENGTH : HF_LAW_TENSION;
-    s->target[e] = hf_law_default_target(s->law[e], hf_scene_theoretical_length(s, e));
-    if (s->EA_N) s->EA_N[e] = g->EA_N[group] > 0 ? g->EA_N[group] : (double)NAN;
 }
 
 /* Adds the cable from node (i, j) to the next node along `axis`. The pattern diagonal has such cables only on boundary

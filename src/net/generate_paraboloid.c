@@ -7,6 +7,7 @@
  * the front net - together - the rim */
 #include <hifdm/generate.h>
 
+#include "base/arena.h"
 #include "base/elementary.h"
 #include "net/double_net.h"
 #include "net/parabola.h"
@@ -82,6 +83,8 @@ typedef struct {
     bool *is_rim;    /* [n_node], true for a support */
     int *label;      /* [n_node][2], numbers for the id */
     int *end;        /* [n_cable][2], node indices */
+    int *place;      /* [2 rings + 1][2 rings + 1], node at each place of the quad grid, by rows */
+    void *block, *place_block;
 } plane_grid;
 
 static int add_point(plane_grid *g, double x, double y, bool is_rim, int a, int b)
@@ -186,9 +189,9 @@ static double product(size_t n, const double *a, const double *b)
 static hf_status relax(const hf_paraboloid *p, plane_grid *g)
 {
     size_t n = 2 * (size_t)g->n_node;
-    double *residual = malloc(3 * n * sizeof *residual);
-    if (!residual) return HF_NO_MEMORY;
-    double *direction = residual + n, *image = direction + n;
+    double *residual, *direction, *image;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(residual, n), HF_ARRAY(direction, n), HF_ARRAY(image, n)));
     pull(g, g->plane_m, residual);
     for (size_t i = 0; i < n; i++)
         direction[i] = residual[i] = -residual[i];
@@ -204,7 +207,7 @@ static hf_status relax(const hf_paraboloid *p, plane_grid *g)
         for (size_t i = 0; i < n; i++)
             direction[i] = residual[i] + square / before * direction[i];
     }
-    free(residual);
+    hf_arena_free_block(block);
     for (int i = 0; i < g->n_node; i++) {
         double *x = g->plane_m + 2 * (size_t)i, scale = g->is_rim[i] ? 1 : spread(p, hf_norm(x[0], x[1], 0));
         x[0] *= scale;
@@ -231,10 +234,9 @@ static int rim_point(const hf_paraboloid *p, plane_grid *g, int first_support, d
     return add_point(g, x, y, true, -1, g->n_node - first_support);
 }
 
-/* Makes the quad grid. node [2 rings + 1][2 rings + 1] is scratch for the node indices, by rows. */
-static void make_quads(const hf_paraboloid *p, plane_grid *g, int *node)
+static void make_quads(const hf_paraboloid *p, plane_grid *g)
 {
-    int N = p->rings, width = 2 * N + 1;
+    int N = p->rings, width = 2 * N + 1, *node = g->place;
     double cell = radius(p) / N;
     for (int j = -N; j <= N; j++)
         for (int i = -last_in_row(p, abs(j)); i <= last_in_row(p, abs(j)); i++) {
@@ -279,14 +281,10 @@ static void place_front(const hf_paraboloid *p, const plane_grid *g, hf_scene *s
 static void put_front(const plane_grid *g, const double EA_N[2], hf_scene *s, hf_cable_set_member *member)
 {
     for (int e = 0; e < g->n_cable; e++) {
-        bool is_edge = g->is_rim[g->end[2 * e]] || g->is_rim[g->end[2 * e + 1]];
-        int group = is_edge ? HF_GROUP_BOUNDARY : HF_GROUP_INNER;
-        s->end[2 * e] = g->end[2 * e];
-        s->end[2 * e + 1] = g->end[2 * e + 1];
-        s->group[e] = (unsigned char)group;
-        s->law[e] = is_edge ? HF_LAW_LENGTH : HF_LAW_TENSION;
-        s->target[e] = hf_law_default_target(s->law[e], hf_scene_theoretical_length(s, e));
-        if (s->EA_N) s->EA_N[e] = EA_N[group] > 0 ? EA_N[group] : (double)NAN;
+        int a = g->end[2 * e], b = g->end[2 * e + 1];
+        bool is_edge = g->is_rim[a] || g->is_rim[b];
+        hf_group group = is_edge ? HF_GROUP_BOUNDARY : HF_GROUP_INNER;
+        hf_double_net_put_cable(EA_N, e, a, b, group, hf_double_net_law(group), s);
         member[e] = (hf_cable_set_member){is_edge ? FRONT_EDGE : FRONT, e};
     }
 }
@@ -311,38 +309,29 @@ static hf_status name_all(const plane_grid *g, hf_scene *s)
 
 /* ---- together ---- */
 
-/* Counts nodes and cables while the grid has no arrays, and fills it once it has them. */
-static void make_grid(const hf_paraboloid *p, plane_grid *g, int *node)
-{
-    g->n_node = g->n_cable = 0;
-    if (p->grid == HF_GRID_TRIANGLE)
-        make_triangles(p, g);
-    else
-        make_quads(p, g, node);
-}
-
-static hf_status allocate_grid(const hf_paraboloid *p, plane_grid *g, int **node)
+/* Makes the grid. Nodes and cables are only counted while it has no arrays. Call free_grid in any case. */
+static hf_status make_grid(const hf_paraboloid *p, plane_grid *g)
 {
     size_t width = 2 * (size_t)p->rings + 1;
-    *node = malloc(width * width * sizeof **node);
-    if (!*node) return HF_NO_MEMORY;
-    make_grid(p, g, *node);
-    size_t n = (size_t)g->n_node;
-    double *plane_m = malloc(n * 2 * sizeof *plane_m);
-    g->is_rim = malloc(n * sizeof *g->is_rim);
-    g->label = malloc(n * 2 * sizeof *g->label);
-    g->end = malloc((size_t)g->n_cable * 2 * sizeof *g->end);
-    g->plane_m = plane_m;
-    return plane_m && g->is_rim && g->label && g->end ? HF_OK : HF_NO_MEMORY;
+    *g = (plane_grid){0};
+    HF_TRY(HF_ARENA_ARRAYS(&g->place_block, HF_ARRAY(g->place, width * width)));
+    for (int pass = 0; pass < 2; pass++) {
+        if (pass == 1)
+            HF_TRY(HF_ARENA_ARRAYS(&g->block, HF_ARRAY(g->plane_m, 2 * g->n_node), HF_ARRAY(g->is_rim, g->n_node),
+                                   HF_ARRAY(g->label, 2 * g->n_node), HF_ARRAY(g->end, 2 * g->n_cable)));
+        g->n_node = g->n_cable = 0;
+        if (p->grid == HF_GRID_TRIANGLE)
+            make_triangles(p, g);
+        else
+            make_quads(p, g);
+    }
+    return HF_OK;
 }
 
-static void free_grid(plane_grid *g, int *node)
+static void free_grid(plane_grid *g)
 {
-    free(node);
-    free(g->plane_m);
-    free(g->is_rim);
-    free(g->label);
-    free(g->end);
+    hf_arena_free_block(g->place_block);
+    hf_arena_free_block(g->block);
 }
 
 /* Returns the number of free rear nodes that are outside the rim of the rear net. */
@@ -392,17 +381,12 @@ hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N
     const hf_double_net rear = rear_of(paraboloid);
     if (hf_double_net_lacks_EA(&rear, EA_N))
         return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.tie_law: elastic needs the stiffness of inner cables");
-    plane_grid g = {0};
-    int *node = NULL;
-    bool is_outside = false;
-    hf_status status = allocate_grid(paraboloid, &g, &node);
-    if (status == HF_OK) {
-        make_grid(paraboloid, &g, node);
-        if (!is_quad) status = relax(paraboloid, &g);
-        if (status == HF_OK) status = make_net(paraboloid, &g, EA_N, scene);
-        is_outside = status == HF_OK && n_layer > 1 && count_outside(paraboloid, &g, scene) > 0;
-    }
-    free_grid(&g, node);
+    plane_grid g;
+    hf_status status = make_grid(paraboloid, &g);
+    if (status == HF_OK && !is_quad) status = relax(paraboloid, &g);
+    if (status == HF_OK) status = make_net(paraboloid, &g, EA_N, scene);
+    bool is_outside = status == HF_OK && n_layer > 1 && count_outside(paraboloid, &g, scene) > 0;
+    free_grid(&g);
     if (is_outside) return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.tie_direction: %s", outside);
     return status == HF_OK ? HF_OK : hf_error(messages, status, "scene: out of memory for %d rings", paraboloid->rings);
 }
@@ -421,16 +405,11 @@ static int by_angle(const void *a, const void *b)
 
 hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **place_m)
 {
-    plane_grid g = {0};
-    int *node = NULL;
+    plane_grid g;
     *n = 0;
-    *place_m = NULL;
-    hf_status status = allocate_grid(paraboloid, &g, &node);
-    if (status == HF_OK) {
-        make_grid(paraboloid, &g, node);
-        *place_m = malloc(3 * (size_t)g.n_node * sizeof **place_m);
-        if (!*place_m) status = HF_NO_MEMORY;
-    }
+    hf_status status = make_grid(paraboloid, &g);
+    *place_m = status == HF_OK ? malloc(3 * (size_t)g.n_node * sizeof **place_m) : NULL;
+    if (!*place_m) status = HF_NO_MEMORY;
     for (int i = 0; i < g.n_node && status == HF_OK; i++) {
         double *p = *place_m + 3 * (size_t)*n;
         if (!g.is_rim[i]) continue;
@@ -439,7 +418,7 @@ hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **pl
         p[2] = 0;
         ++*n;
     }
-    free_grid(&g, node);
+    free_grid(&g);
     if (status != HF_OK) return status;
     qsort(*place_m, (size_t)*n, 3 * sizeof **place_m, by_angle);
     for (int i = 0; i < *n; i++) {

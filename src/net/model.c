@@ -32,31 +32,21 @@ static bool needs_EA(const hf_scene *s, hf_method method)
     return false;
 }
 
-static void lay_out(hf_arena *a, const hf_scene *s, hf_method method, hf_model *m)
+static hf_status allocate(const hf_scene *s, hf_method method, hf_model *m)
 {
     size_t n = (size_t)m->n_node, e = (size_t)m->n_cable;
-    m->row_of_node = hf_arena_take(a, n, sizeof(int));
-    m->node_of_row = hf_arena_take(a, n, sizeof(int));
-    m->end_row = hf_arena_take(a, 2 * e, sizeof(int));
-    m->diagonal_a = hf_arena_take(a, e, sizeof(int));
-    m->diagonal_b = hf_arena_take(a, e, sizeof(int));
-    m->off_diagonal = hf_arena_take(a, e, sizeof(int));
-    m->inner_row = hf_arena_take(a, n, sizeof(int));
-    m->position_m = hf_arena_take(a, 3 * n, sizeof(double));
-    m->load_N = s->load_N ? hf_arena_take(a, 3 * n, sizeof(double)) : NULL;
-    m->length_m = hf_arena_take(a, e, sizeof(double));
-    m->group = hf_arena_take(a, e, 1);
-    m->boundary_cable = hf_arena_take(a, e, sizeof(int));
-    m->law = hf_arena_take(a, e, 1);
-    m->target = hf_arena_take(a, e, sizeof(double));
-    m->EA_N = needs_EA(s, method) ? hf_arena_take(a, e, sizeof(double)) : NULL;
-    m->start_q_N_per_m = hf_arena_take(a, e, sizeof(double));
-    m->variable_cable = hf_arena_take(a, e, sizeof(int));
-    m->variable_group = hf_arena_take(a, e, sizeof(int));
-    m->variable_leader = hf_arena_take(a, e, sizeof(int));
-    m->chain_start = hf_arena_take(a, e + 1, sizeof(int));
-    m->chain_cable = hf_arena_take(a, e, sizeof(int));
-    m->chain_of_row = hf_arena_take(a, n, sizeof(int));
+    size_t n_load = s->load_N ? 3 * n : 0, n_EA = needs_EA(s, method) ? e : 0;
+    HF_TRY(HF_ARENA_ARRAYS(&m->block, HF_ARRAY(m->row_of_node, n), HF_ARRAY(m->node_of_row, n),
+                           HF_ARRAY(m->end_row, 2 * e), HF_ARRAY(m->diagonal_a, e), HF_ARRAY(m->diagonal_b, e),
+                           HF_ARRAY(m->off_diagonal, e), HF_ARRAY(m->inner_row, n), HF_ARRAY(m->position_m, 3 * n),
+                           HF_ARRAY(m->load_N, n_load), HF_ARRAY(m->length_m, e), HF_ARRAY(m->group, e),
+                           HF_ARRAY(m->boundary_cable, e), HF_ARRAY(m->law, e), HF_ARRAY(m->target, e),
+                           HF_ARRAY(m->EA_N, n_EA), HF_ARRAY(m->start_q_N_per_m, e), HF_ARRAY(m->variable_cable, e),
+                           HF_ARRAY(m->variable_group, e), HF_ARRAY(m->variable_leader, e),
+                           HF_ARRAY(m->chain_start, e + 1), HF_ARRAY(m->chain_cable, e), HF_ARRAY(m->chain_of_row, n)));
+    if (!n_load) m->load_N = NULL;
+    if (!n_EA) m->EA_N = NULL;
+    return HF_OK;
 }
 
 /* ---- numbering and band positions ---- */
@@ -270,35 +260,31 @@ static void keep_short_path(hf_model *m, path_search *s)
 
 static hf_status find_short_path(hf_model *m)
 {
-    size_t n = (size_t)m->n_node, e = (size_t)m->n_cable;
-    int *block = calloc(3 * n + 1 + 2 * e, sizeof(int));
-    double *reach_m = malloc(n * sizeof *reach_m);
-    char *is_waiting = calloc(n, 1);
-    if (block && reach_m && is_waiting) {
-        path_search s = {block, block + n + 1, block + n + 1 + 2 * e, block + 2 * n + 1 + 2 * e, is_waiting, reach_m,
-                         0};
-        for (int k = 0; k < 2 * m->n_cable; k++)
-            if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID)) s.start[m->end_row[k] + 1]++;
-        for (int row = 0; row < m->n_node; row++)
-            s.start[row + 1] += s.start[row];
-        for (int k = 0; k < 2 * m->n_cable; k++) /* `via` is a counter here; the search overwrites it later */
-            if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID))
-                s.cable[s.start[m->end_row[k]] + s.via[m->end_row[k]]++] = k / 2;
-        keep_short_path(m, &s);
-    }
-    bool has_memory = block && reach_m && is_waiting;
-    free(block);
-    free(reach_m);
-    free(is_waiting);
-    return has_memory ? HF_OK : HF_NO_MEMORY;
+    size_t n = (size_t)m->n_node;
+    path_search s;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(s.start, n + 1), HF_ARRAY(s.cable, 2 * (size_t)m->n_cable),
+                           HF_ARRAY(s.queue, n), HF_ARRAY(s.via, n), HF_ARRAY(s.is_waiting, n),
+                           HF_ARRAY(s.reach_m, n)));
+    for (int k = 0; k < 2 * m->n_cable; k++)
+        if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID)) s.start[m->end_row[k] + 1]++;
+    for (int row = 0; row < m->n_node; row++)
+        s.start[row + 1] += s.start[row];
+    for (int k = 0; k < 2 * m->n_cable; k++) /* `via` is a counter here; the search overwrites it later */
+        if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID))
+            s.cable[s.start[m->end_row[k]] + s.via[m->end_row[k]]++] = k / 2;
+    keep_short_path(m, &s);
+    hf_arena_free_block(block);
+    return HF_OK;
 }
 
 static hf_status find_chains(hf_model *m)
 {
     bool branches = false;
-    length_graph g = {.count = calloc((size_t)m->n_node * 3, sizeof(int))};
-    if (!g.count) return HF_NO_MEMORY;
-    g.cable = g.count + m->n_node;
+    length_graph g;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(g.count, m->n_node), HF_ARRAY(g.cable, 2 * m->n_node)));
+    hf_status status = HF_OK;
     for (int row = 0; row < m->n_node; row++)
         m->chain_of_row[row] = -1;
     for (int e = 0; e < m->n_cable; e++)
@@ -315,14 +301,11 @@ static hf_status find_chains(hf_model *m)
         if (!want_straight) break;
         for (int row = 0; row < m->n_free; row++)
             branches |= g.count[row] > 2;
-        if (branches && find_short_path(m) != HF_OK) {
-            free(g.count);
-            return HF_NO_MEMORY;
-        }
+        if (branches) status = find_short_path(m);
         m->n_chain = m->n_any_chain;
     }
-    free(g.count);
-    return HF_OK;
+    hf_arena_free_block(block);
+    return status;
 }
 
 void hf_model_chain_name(const hf_model *m, const hf_scene *scene, int i_chain, char *text, size_t size)
@@ -343,11 +326,10 @@ void hf_model_chain_name(const hf_model *m, const hf_scene *scene, int i_chain, 
 
 hf_status hf_model_group_variables(hf_model *m)
 {
-    int *scratch = malloc(((size_t)m->n_node * 3 + (size_t)m->n_variable * 2) * sizeof *scratch);
-    if (!scratch) return HF_NO_MEMORY;
-    int *count = scratch, *variable_at = count + m->n_node, *parent = variable_at + 2 * m->n_node,
-        *label = parent + m->n_variable;
-    memset(count, 0, (size_t)m->n_node * sizeof *count);
+    int *count, *variable_at, *parent, *label;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(count, m->n_node), HF_ARRAY(variable_at, 2 * m->n_node),
+                           HF_ARRAY(parent, m->n_variable), HF_ARRAY(label, m->n_variable)));
     m->n_variable_group = 0;
     for (int k = 0; k < m->n_variable; k++) {
         parent[k] = k;
@@ -369,7 +351,7 @@ hf_status hf_model_group_variables(hf_model *m)
         m->variable_leader[k] = k;
     }
     m->n_leader = m->n_variable;
-    free(scratch);
+    hf_arena_free_block(block);
     return HF_OK;
 }
 
@@ -377,9 +359,7 @@ hf_status hf_model_group_variables(hf_model *m)
 
 static hf_status build(const hf_scene *scene, const hf_form_settings *form, const int *order, hf_model *m)
 {
-    hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, scene, form->method, m)));
-    m->block = arena.block;
+    HF_TRY(allocate(scene, form->method, m));
     memcpy(m->node_of_row, order, (size_t)m->n_free * sizeof(int));
     number_nodes(scene, m);
     place_cables(scene, m);
@@ -457,15 +437,6 @@ static hf_status check_flexibility(int n, const double *flexibility, hf_messages
     return HF_OK;
 }
 
-static void lay_out_attachments(hf_arena *a, hf_model *m)
-{
-    size_t n = (size_t)m->n_attachment;
-    m->attachment_row = hf_arena_take(a, n, sizeof(int));
-    m->flexibility_m_per_N = hf_arena_take(a, 9 * n * n, sizeof(double));
-    m->tie = hf_arena_take(a, (size_t)m->n_tie, sizeof(int));
-    m->tie_attachment = hf_arena_take(a, (size_t)m->n_tie, sizeof(int));
-}
-
 /* Lists the cable ends at attachments. Without a list, only counts them. */
 static void find_ties(hf_model *m)
 {
@@ -526,26 +497,25 @@ static void swap_rows(hf_model *m, int a, int b)
 static hf_status attach(hf_model *m, int n, const int *node, const double *flexibility)
 {
     size_t dofs = 3 * (size_t)n;
-    hf_arena arena = {0};
     for (int i = 0; i < n; i++)
         swap_rows(m, m->n_free + i, m->row_of_node[node[i]]);
     m->n_attachment = n;
     find_ties(m);
-    hf_status status = HF_ARENA_MAKE(&arena, lay_out_attachments(&arena, m));
-    if (status == HF_OK) {
-        m->attachment_block = arena.block;
-        find_ties(m);
-        for (int i = 0; i < n; i++)
-            m->attachment_row[i] = m->n_free + i;
-        for (size_t i = 0; i < dofs; i++)
-            for (size_t j = 0; j < dofs; j++)
-                m->flexibility_m_per_N[i * dofs + j] = (flexibility[i * dofs + j] + flexibility[j * dofs + i]) / 2;
-        hold_rods(m);
-        mark_chains(m);
-    } else {
+    if (HF_ARENA_ARRAYS(&m->attachment_block, HF_ARRAY(m->attachment_row, n),
+                        HF_ARRAY(m->flexibility_m_per_N, dofs * dofs), HF_ARRAY(m->tie, m->n_tie),
+                        HF_ARRAY(m->tie_attachment, m->n_tie)) != HF_OK) {
         m->n_attachment = m->n_tie = 0;
+        return HF_NO_MEMORY;
     }
-    return status;
+    find_ties(m);
+    for (int i = 0; i < n; i++)
+        m->attachment_row[i] = m->n_free + i;
+    for (size_t i = 0; i < dofs; i++)
+        for (size_t j = 0; j < dofs; j++)
+            m->flexibility_m_per_N[i * dofs + j] = (flexibility[i * dofs + j] + flexibility[j * dofs + i]) / 2;
+    hold_rods(m);
+    mark_chains(m);
+    return HF_OK;
 }
 
 hf_status hf_model_attach(hf_model *m, int n_attachment, const int *node, const double *flexibility_m_per_N,

@@ -12,35 +12,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A node to be sorted along an axis. */
+typedef struct {
+    double key[3]; /* coordinate along the axis, then the two others to break ties */
+    int node;
+} sort_item;
+
 typedef struct {
     const hf_scene *s;
-    int n;          /* number of free nodes */
-    int *free_of;   /* [n_node], index among the free nodes, -1 for a support */
-    int *node_of;   /* [n], node of the scene */
-    int *start;     /* [n + 1], first entry of each node in `neighbour` */
-    int *neighbour; /* free neighbours; each cable between free nodes has two entries */
-    int *place;     /* [n], position in the order under test */
-    int *order;     /* [n], the order under test */
-    int *level;     /* [n], distance from the root of a search; -1 = not reached, -2 = already numbered */
-    int *queue;     /* [n], scratch */
-    int *best;      /* [n], the best order so far */
-    int *wave;      /* [n], nodes of the last search */
+    int n;           /* number of free nodes */
+    int *free_of;    /* [n_node], index among the free nodes, -1 for a support */
+    int *node_of;    /* [n], node of the scene */
+    int *start;      /* [n + 1], first entry of each node in `neighbour` */
+    int *neighbour;  /* free neighbours; each cable between free nodes has two entries */
+    int *position;   /* [n], position in the order under test */
+    int *order;      /* [n], the order under test */
+    int *level;      /* [n], distance from the root of a search; -1 = not reached, -2 = already numbered */
+    int *queue;      /* [n], scratch */
+    int *best;       /* [n], the best order so far */
+    int *wave;       /* [n], nodes of the last search */
+    sort_item *item; /* [n], scratch of sort_along */
 } graph;
-
-static void lay_out(hf_arena *a, graph *g)
-{
-    size_t n = (size_t)g->s->n_node, m = (size_t)g->s->n_cable;
-    g->free_of = hf_arena_take(a, n, sizeof(int));
-    g->node_of = hf_arena_take(a, n, sizeof(int));
-    g->start = hf_arena_take(a, n + 1, sizeof(int));
-    g->neighbour = hf_arena_take(a, 2 * m, sizeof(int));
-    g->place = hf_arena_take(a, n, sizeof(int));
-    g->order = hf_arena_take(a, n, sizeof(int));
-    g->level = hf_arena_take(a, n, sizeof(int));
-    g->queue = hf_arena_take(a, n, sizeof(int));
-    g->best = hf_arena_take(a, n, sizeof(int));
-    g->wave = hf_arena_take(a, n, sizeof(int));
-}
 
 /* ---- adjacency of the free nodes ---- */
 
@@ -136,11 +128,6 @@ static void cuthill_mckee(graph *g)
 
 /* ---- sorting along an axis ---- */
 
-typedef struct {
-    double key[3]; /* coordinate along the axis, then the two others to break ties */
-    int node;
-} sort_item;
-
 static int compare_items(const void *a, const void *b)
 {
     const sort_item *x = a, *y = b;
@@ -149,19 +136,15 @@ static int compare_items(const void *a, const void *b)
     return (x->node > y->node) - (x->node < y->node);
 }
 
-static hf_status sort_along(graph *g, int axis)
+static void sort_along(graph *g, int axis)
 {
-    sort_item *item = malloc((size_t)g->n * sizeof *item);
-    if (!item) return HF_NO_MEMORY;
     for (int i = 0; i < g->n; i++) {
         const double *p = g->s->position_m + 3 * (size_t)g->node_of[i];
-        item[i] = (sort_item){{p[axis], p[axis == 0], p[axis == 2 ? 1 : 2]}, i};
+        g->item[i] = (sort_item){{p[axis], p[axis == 0], p[axis == 2 ? 1 : 2]}, i};
     }
-    qsort(item, (size_t)g->n, sizeof *item, compare_items);
+    qsort(g->item, (size_t)g->n, sizeof *g->item, compare_items);
     for (int i = 0; i < g->n; i++)
-        g->order[i] = item[i].node;
-    free(item);
-    return HF_OK;
+        g->order[i] = g->item[i].node;
 }
 
 /* ---- choice ---- */
@@ -179,11 +162,12 @@ static double work(graph *g, int *half_bandwidth)
     double sum = 0;
     *half_bandwidth = 0;
     for (int i = 0; i < g->n; i++)
-        g->place[g->order[i]] = i;
+        g->position[g->order[i]] = i;
     for (int i = 0; i < g->n; i++) {
         int width = 0;
         for (int k = g->start[i]; k < g->start[i + 1]; k++)
-            if (g->place[i] - g->place[g->neighbour[k]] > width) width = g->place[i] - g->place[g->neighbour[k]];
+            if (g->position[i] - g->position[g->neighbour[k]] > width)
+                width = g->position[i] - g->position[g->neighbour[k]];
         sum += (double)width * width;
         if (width > *half_bandwidth) *half_bandwidth = width;
     }
@@ -216,19 +200,22 @@ static void keep_if_better(graph *g, double *best_work, int *best_half_bandwidth
 hf_status hf_numbering_find(const hf_scene *scene, int *order, int *half_bandwidth)
 {
     graph g = {.s = scene};
-    hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &g)));
+    void *block;
+    size_t n = (size_t)scene->n_node;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(g.free_of, n), HF_ARRAY(g.node_of, n), HF_ARRAY(g.start, n + 1),
+                           HF_ARRAY(g.neighbour, 2 * (size_t)scene->n_cable), HF_ARRAY(g.position, n),
+                           HF_ARRAY(g.order, n), HF_ARRAY(g.level, n), HF_ARRAY(g.queue, n), HF_ARRAY(g.best, n),
+                           HF_ARRAY(g.wave, n), HF_ARRAY(g.item, n)));
     build(&g);
     double best_work = -1;
     cuthill_mckee(&g);
     keep_if_better(&g, &best_work, half_bandwidth);
-    hf_status status = HF_OK;
-    for (int axis = 0; axis < 3 && status == HF_OK; axis++) {
-        status = sort_along(&g, axis);
-        if (status == HF_OK) keep_if_better(&g, &best_work, half_bandwidth);
+    for (int axis = 0; axis < 3; axis++) {
+        sort_along(&g, axis);
+        keep_if_better(&g, &best_work, half_bandwidth);
     }
     for (int i = 0; i < g.n; i++)
         order[i] = g.node_of[g.best[i]];
-    hf_arena_free(&arena);
-    return status;
+    hf_arena_free_block(block);
+    return HF_OK;
 }

@@ -215,24 +215,18 @@ static void doubt_plane(const hf_scene *s, hf_messages *messages)
 
 /* ---- together ---- */
 
-static void lay_out(hf_arena *a, const hf_scene *s, scratch *t)
-{
-    t->joint = hf_arena_take(a, (size_t)s->n_cable, sizeof *t->joint);
-    t->coordinate = hf_arena_take(a, (size_t)s->n_node, sizeof *t->coordinate);
-    t->from = hf_arena_take(a, (size_t)s->n_node, sizeof *t->from);
-}
-
 hf_status hf_scene_doubt(const hf_scene *s, hf_messages *messages)
 {
-    hf_arena arena = {0};
+    void *block;
     scratch t;
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, s, &t)) != HF_OK)
+    if (HF_ARENA_ARRAYS(&block, HF_ARRAY(t.joint, s->n_cable), HF_ARRAY(t.coordinate, s->n_node),
+                        HF_ARRAY(t.from, s->n_node)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "scene: out of memory");
     doubt_cables(s, t.joint, messages);
     doubt_nodes(s, &t, messages);
     doubt_size(s, messages);
     doubt_lengths(s, messages);
     doubt_plane(s, messages);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return HF_OK;
 }

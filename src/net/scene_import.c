@@ -1,6 +1,7 @@
 /* Contents: nodes - cables - sets - together */
 #include "net/scene_import.h"
 
+#include "base/arena.h"
 #include "base/csv.h"
 #include <hifdm/cable_set.h>
 
@@ -149,31 +150,27 @@ static hf_status read_sets(hf_csv *t, const int *where, hf_scene *s)
 {
     int n = count_mentions(t, where[CABLE_SET]), n_set = 0;
     if (n == 0) return HF_OK;
-    mention *all = malloc((size_t)n * sizeof *all), **sorted = malloc((size_t)n * sizeof *sorted);
-    const char **name = malloc((size_t)n * sizeof *name);
-    hf_cable_set_member *member = malloc((size_t)n * sizeof *member);
-    hf_status status = all && sorted && name && member ? HF_OK : HF_NO_MEMORY;
-    if (status == HF_OK) {
-        read_mentions(t, where, all);
-        for (int k = 0; k < n; k++)
-            sorted[k] = &all[k];
-        qsort(sorted, (size_t)n, sizeof *sorted, by_name_and_row);
-        for (int k = 0; k < n; k++) {
-            bool is_same = k > 0 && !strcmp(sorted[k]->name, sorted[k - 1]->name);
-            if (!is_same) name[n_set++] = sorted[k]->name;
-            if (is_same && sorted[k]->row == sorted[k - 1]->row)
-                hf_csv_fault(t, t->line[sorted[k]->row], s->cable_id[sorted[k]->row], "stands twice in the set ",
-                             sorted[k]->name);
-            sorted[k]->set = n_set - 1;
-        }
-        for (int k = 0; k < n; k++)
-            member[k] = (hf_cable_set_member){all[k].set, all[k].row};
-        if (t->n_fault == 0) status = hf_cable_set_make(s, n_set, name, n, member);
+    mention *all, **sorted;
+    const char **name;
+    hf_cable_set_member *member;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(all, n), HF_ARRAY(sorted, n), HF_ARRAY(name, n), HF_ARRAY(member, n)));
+    read_mentions(t, where, all);
+    for (int k = 0; k < n; k++)
+        sorted[k] = &all[k];
+    qsort(sorted, (size_t)n, sizeof *sorted, by_name_and_row);
+    for (int k = 0; k < n; k++) {
+        bool is_same = k > 0 && !strcmp(sorted[k]->name, sorted[k - 1]->name);
+        if (!is_same) name[n_set++] = sorted[k]->name;
+        if (is_same && sorted[k]->row == sorted[k - 1]->row)
+            hf_csv_fault(t, t->line[sorted[k]->row], s->cable_id[sorted[k]->row], "stands twice in the set ",
+                         sorted[k]->name);
+        sorted[k]->set = n_set - 1;
     }
-    free(all);
-    free(sorted);
-    free(name);
-    free(member);
+    for (int k = 0; k < n; k++)
+        member[k] = (hf_cable_set_member){all[k].set, all[k].row};
+    hf_status status = t->n_fault == 0 ? hf_cable_set_make(s, n_set, name, n, member) : HF_OK;
+    hf_arena_free_block(block);
     return status;
 }
 

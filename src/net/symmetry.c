@@ -50,20 +50,6 @@ typedef struct {
     int *group_parent, *group_label;            /* [n_variable_group] */
 } search;
 
-static void lay_out(hf_arena *a, search *q)
-{
-    size_t n = (size_t)q->s->n_node, e = (size_t)q->s->n_cable;
-    q->place = hf_arena_take(a, n, sizeof *q->place);
-    q->link = hf_arena_take(a, e, sizeof *q->link);
-    q->node_image = hf_arena_take(a, n, sizeof(int));
-    q->cable_image = hf_arena_take(a, e, sizeof(int));
-    q->variable_of_cable = hf_arena_take(a, e, sizeof(int));
-    q->variable_of_node = hf_arena_take(a, n, sizeof(int));
-    q->parent = hf_arena_take(a, (size_t)q->m->n_variable, sizeof(int));
-    q->group_parent = hf_arena_take(a, (size_t)q->m->n_variable_group, sizeof(int));
-    q->group_label = hf_arena_take(a, (size_t)q->m->n_variable_group, sizeof(int));
-}
-
 static double coordinate(const search *q, int node, int c)
 {
     return q->s->position_m[3 * (size_t)node + (size_t)c];
@@ -305,15 +291,20 @@ hf_status hf_symmetry_apply(const hf_scene *scene, const hf_optimize_settings *s
 {
     hf_symmetry wanted = settings->symmetry;
     search q = {.s = scene, .m = m};
-    hf_arena arena = {0};
+    void *block;
+    size_t n = (size_t)m->n_node, n_cable = (size_t)m->n_cable;
     *planes = 0;
     if (wanted == HF_SYMMETRY_NONE) return HF_OK;
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, &q)) != HF_OK)
+    if (HF_ARENA_ARRAYS(&block, HF_ARRAY(q.place, n), HF_ARRAY(q.link, n_cable), HF_ARRAY(q.node_image, n),
+                        HF_ARRAY(q.cable_image, n_cable), HF_ARRAY(q.variable_of_cable, n_cable),
+                        HF_ARRAY(q.variable_of_node, n), HF_ARRAY(q.parent, m->n_variable),
+                        HF_ARRAY(q.group_parent, m->n_variable_group),
+                        HF_ARRAY(q.group_label, m->n_variable_group)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "optimize.symmetry: out of memory");
     measure(&q);
     sort(&q, settings);
     hf_status status = link_variables(&q, wanted, m, planes, messages);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 
