@@ -161,26 +161,6 @@ static inline double hf_law_stiffness_N_per_m(hf_law_cable c, double length_m)
     return 0;
 }
 
-/* Returns the change of the potential phi from length from_m to length to_m, J; NaN for a rigid law. `square` is
- * to_m^2 - from_m^2, m^2. The caller computes it so that no digits are lost if the lengths are nearly equal. */
-static inline double hf_law_energy_change_J(hf_law_cable c, double from_m, double to_m, double square)
-{
-    double longer = square / (from_m + to_m), l0 = c.target;
-    switch (c.law) {
-    case HF_LAW_TENSION:
-        return c.target * longer;
-    case HF_LAW_FORCE_DENSITY:
-        return c.target * square / 2;
-    case HF_LAW_ELASTIC: {
-        double over = fmax(from_m - l0, 0), beyond = fmax(to_m - l0, 0);
-        return c.EA_N / (2 * l0) * (from_m > l0 && to_m > l0 ? longer : beyond - over) * (over + beyond);
-    }
-    case HF_LAW_LENGTH:
-        break;
-    }
-    return (double)NAN;
-}
-
 /* ---- what follows from the flags ---- */
 
 /* Returns the force density at this length, N/m: from the tension that the law gives, otherwise q_N_per_m. */

@@ -1,13 +1,31 @@
-/* Contents: lengths - sine and cosine - inverse hyperbolic sine - logarithm - normal distribution - power of two */
+/* Contents: comparisons - lengths - sine and cosine - inverse hyperbolic sine - logarithm - normal distribution - power of two */
 #include "base/elementary.h"
 
 #include <math.h>
-#include <stddef.h>
+
+/* ---- comparisons ---- */
 
 int hf_compare_doubles(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
+}
+
+double hf_max_magnitude(size_t n, const double *value)
+{
+    double largest = 0;
+    for (size_t i = 0; i < n; i++)
+        largest = fmax(largest, fabs(value[i]));
+    return largest;
+}
+
+int hf_list_largest(int i, const double *value, int n_max, int n, int *list)
+{
+    int at = n;
+    for (; at > 0 && value[list[at - 1]] < value[i]; at--)
+        if (at < n_max) list[at] = list[at - 1];
+    if (at < n_max) list[at] = i;
+    return n < n_max ? n + 1 : n;
 }
 
 /* ---- lengths ---- */

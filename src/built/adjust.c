@@ -19,6 +19,7 @@
 #include "built/adjust.h"
 
 #include "base/arena.h"
+#include "base/elementary.h"
 #include "linalg/band.h"
 #include "linalg/dot.h"
 #include "search/parallel.h"
@@ -291,9 +292,7 @@ static void find_room(adjustment *a)
     for (int e = 0; e < n_cable; e++)
         a->room[0].strain_N[e] = a->estimate->linear.cut_N_per_m[e] * a->turn_m[e];
     find_tensions(a, a->room_N);
-    a->problem.reference_N = 0;
-    for (int e = 0; e < n_cable; e++)
-        a->problem.reference_N = fmax(a->problem.reference_N, fabs(a->work.tension_N[e]));
+    a->problem.reference_N = hf_max_magnitude((size_t)n_cable, a->work.tension_N);
     for (int e = 0; e < n_cable; e++)
         a->room_N[e] = fmax(a->work.tension_N[e] - a->room_N[e] - a->least_N[e], 0);
 }
@@ -476,14 +475,13 @@ static void make_sample(void *context, long i, double *cut_m, double *EA_N, doub
 }
 
 /* Stores the displacements of sample i minus the linear ones, 0 for a sample without a shape. */
-static void take_sample(void *context, long i, int place, const hf_built_shape *shape, const hf_form_result *result)
+static void take_sample(void *context, long i, const hf_built_shape *shape, const hf_form_result *result)
 {
     const adjustment *a = context;
     const hf_model *m = &a->estimate->built->model;
     const double *answer_m = a->answer_m + (size_t)i * a->n_dof;
     double *beyond_m = a->beyond_m + (size_t)i * a->n_dof;
     bool has_shape = hf_status_has_shape(result->status);
-    (void)place;
     for (int row = 0; row < m->n_node; row++)
         for (int c = 0; c < 3; c++) {
             int at = c * m->n_node + row;

@@ -7,11 +7,11 @@
 #include <hifdm/built.h>
 
 #include "base/arena.h"
+#include "base/elementary.h"
 #include "net/cable_pick.h"
 #include <hifdm/metrics.h>
 
 #include <assert.h>
-#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -54,14 +54,6 @@ static void cut_cables(const hf_model *m, const hf_workspace *w, hf_built *b)
     }
 }
 
-static double largest_N(const hf_built *b)
-{
-    double largest = 0;
-    for (int e = 0; e < b->scene.n_cable; e++)
-        largest = fmax(largest, b->tension_N[e]);
-    return largest;
-}
-
 /* Puts the supports on the same truss as in the design's model. */
 static hf_status attach_truss(const hf_model *m, hf_built *b, hf_messages *messages)
 {
@@ -91,7 +83,7 @@ static void hold_design(const hf_workspace *w, hf_built *b)
     for (int row = m->n_free; row < m->n_node; row++)
         for (int c = 0; c < 3; c++)
             m->position_m[c * m->n_node + row] = b->scene.position_m[3 * m->node_of_row[row] + c];
-    m->reference_N = largest_N(b);
+    m->reference_N = hf_max_magnitude((size_t)m->n_cable, b->tension_N);
     for (int e = 0; e < m->n_cable; e++) {
         m->target[e] = b->scene.target[e];
         m->length_m[e] = hf_scene_theoretical_length(&b->scene, e);

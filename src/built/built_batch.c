@@ -20,7 +20,6 @@
 #include "search/parallel.h"
 
 #include <limits.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- working memory of a thread ---- */
@@ -132,7 +131,6 @@ typedef struct {
 typedef struct {
     const batch_job *job;
     batch_room *room;
-    int place;
     hf_built_net net[HF_LANES]; /* nets of the lanes; without lanes only the first is used */
 } batch_work;
 
@@ -160,7 +158,7 @@ static void give(const batch_work *work, int i, const hf_form_result *r)
     const hf_workspace *w = &work->room->work;
     hf_built_shape shape = {w->position_m, w->tension_N, w->loose, w->displacement_m};
     if (r->n_loose == 0) memset(w->loose, 0, (size_t)j->batch->built->model.n_node);
-    j->take(j->context, j->first + i, work->place, &shape, r);
+    j->take(j->context, j->first + i, &shape, r);
 }
 
 /* Solves one net by Newton's method from the nominal shape, or by the reference where that does not converge. */
@@ -234,11 +232,11 @@ static int take_next(void *context)
 
 /* Does the work of one thread. It returns without any work when there is no memory for its room; the other threads then
  * take all samples. */
-static void work_on_job(void *context, int place)
+static void work_on_job(void *context, int i_room)
 {
     static const hf_lane_solver in_lanes = {load, look, settle, step};
     batch_job *j = context;
-    batch_work work = {.job = j, .room = &j->batch->room[place], .place = place};
+    batch_work work = {.job = j, .room = &j->batch->room[i_room]};
     if (hf_parallel_is_empty(&j->queue) || make_room(j->batch, work.room) != HF_OK) return;
     work.room->work.stop = j->batch->built->stop;
     if (j->batch->has_lanes) {

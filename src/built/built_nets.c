@@ -107,8 +107,10 @@ static hf_status cut_for(void *room, const hf_workspace *w)
 
 /* ---- one net ---- */
 
-static void make_sample_of(nets_room *r, long i, double *cut_m, double *EA_N, double *move_m)
+/* Makes sample i, as an hf_built_sample. */
+static void make_sample(void *room, long i, double *cut_m, double *EA_N, double *move_m)
 {
+    nets_room *r = room;
     hf_built_errors_draw(&r->errors, i, r->z);
     hf_built_errors_apply(&r->errors, 1, r->z, cut_m, EA_N, move_m);
 }
@@ -138,8 +140,8 @@ static void make_net(nets_room *r, int i_net, hf_built_net *net)
     memcpy(r->cut_m, m->target, n);
     memcpy(r->EA_N, m->EA_N, n);
     memset(r->move_m, 0, 3 * (size_t)m->n_node * sizeof(double));
-    make_sample_of(r, i_net - r->nets->as.n_load_case, r->cut_m, net->EA_N ? r->EA_N : NULL,
-                   net->support_move_m ? r->move_m : NULL);
+    make_sample(r, i_net - r->nets->as.n_load_case, r->cut_m, net->EA_N ? r->EA_N : NULL,
+                net->support_move_m ? r->move_m : NULL);
 }
 
 /* ---- shapes ---- */
@@ -167,16 +169,10 @@ static const hf_workspace *view(nets_room *r, const double *position_m, const do
     return &r->of_net;
 }
 
-static void make_in_lane(void *context, long i, double *cut_m, double *EA_N, double *move_m)
-{
-    make_sample_of(context, i, cut_m, EA_N, move_m);
-}
-
-static void take_from_lane(void *context, long i, int place, const hf_built_shape *s, const hf_form_result *result)
+static void take_from_lane(void *context, long i, const hf_built_shape *s, const hf_form_result *result)
 {
     nets_room *r = context;
     bool has_shape = result->status == HF_OK;
-    (void)place;
     r->take(r->context, r->nets->as.n_load_case + (int)i,
             has_shape ? view(r, s->position_m, s->tension_N, s->displacement_m) : NULL);
 }
@@ -202,7 +198,7 @@ static void solve_nets(void *room, int first, int n, hf_objectives_take *take, v
     r->take = take;
     r->context = context;
     if (i < first + n)
-        hf_built_batch_run(r->batch, hf_built_errors_vary(&r->errors), i - n_load_case, first + n - i, make_in_lane,
+        hf_built_batch_run(r->batch, hf_built_errors_vary(&r->errors), i - n_load_case, first + n - i, make_sample,
                            take_from_lane, r);
 }
 

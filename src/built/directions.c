@@ -8,7 +8,7 @@
 #include "built/directions.h"
 
 #include "base/arena.h"
-#include "base/random.h"
+#include "base/elementary.h"
 #include "linalg/dot.h"
 #include "search/parallel.h"
 
@@ -94,21 +94,6 @@ static hf_status find_axes(const hf_built_errors *e, int n_thread, hf_directions
     return hf_built_must_stop(l->built) ? HF_INTERRUPTED : HF_OK;
 }
 
-/* Lists the errors with the largest shares, in descending order. */
-static void pick_errors(const hf_covariance *c, int n_error, hf_directions *d)
-{
-    int n = 0;
-    for (int i = 0; i < n_error; i++) {
-        int at = n < d->n ? n : d->n;
-        while (at > 0 && c->share_m2[d->error[at - 1]] < c->share_m2[i]) {
-            if (at < d->n) d->error[at] = d->error[at - 1];
-            at--;
-        }
-        if (at < d->n) d->error[at] = i;
-        if (n < d->n) n++;
-    }
-}
-
 hf_status hf_directions_find(const hf_built_errors *e, const hf_covariance *c, int n_thread, hf_directions *d)
 {
     int n_error = hf_built_errors_count(e), n_answer = 3 * e->linear->built->model.n_inner_node;
@@ -123,7 +108,8 @@ hf_status hf_directions_find(const hf_built_errors *e, const hf_covariance *c, i
         d->shift[k] = (uint32_t)(hf_built_errors_uniform(e->seed, 0, SHIFTS, k) * 0x1p30);
     if (turns) return find_axes(e, n_thread, d);
     d->axis = NULL;
-    pick_errors(c, n_error, d);
+    for (int i = 0, n = 0; i < n_error; i++)
+        n = hf_list_largest(i, c->share_m2, d->n, n, d->error);
     return HF_OK;
 }
 

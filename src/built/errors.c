@@ -5,7 +5,6 @@
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "base/random.h"
-#include <hifdm/cable_set.h>
 
 #include <math.h>
 #include <string.h>

@@ -27,8 +27,8 @@
 #define ENOUGH 1e-4        /* fraction of the predicted reduction that a step must reach */
 #define DAMPING_LEAST 0.05 /* damping up to this value is dropped instead of reduced */
 #define DAMPING_MOST 1e12
-#define PANEL HF_SADDLE_DUAL_PANEL /* samples solved together */
-#define SEED 20260000u             /* of the random signs; only statistical figures depend on it */
+#define PANEL HF_SADDLE_PANEL /* samples solved together */
+#define SEED 20260000u        /* of the random signs; only statistical figures depend on it */
 
 /* ---- making ---- */
 

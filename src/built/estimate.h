@@ -10,7 +10,7 @@
 
 /* Scratch of an estimate. A step uses errors, supports, displacements, shared numbers, the differences to measured
  * positions before and after it, and the band. A shape uses cut lengths and supports; the linear model uses the last
- * two. Arrays that samples use have room for HF_SADDLE_DUAL_PANEL of them. */
+ * two. Arrays that samples use have room for HF_SADDLE_PANEL of them. */
 typedef struct {
     double *cut_m, *rest_m, *shared, *gap_m, *trial_m, *move_m, *band, *length_m, *support_m, *strain_N, *linear;
 } hf_estimate_scratch;

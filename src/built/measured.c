@@ -10,7 +10,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { ID, X, Y, Z, SIGMA, N_COLUMN };
 static const char *const column_name[N_COLUMN] = {"id", "x_m", "y_m", "z_m", "sigma_m"};
@@ -45,29 +44,23 @@ static void read_node(hf_csv *t, const int *where, int r, int row, double sigma_
     measured->n_node++;
 }
 
-/* Reads the row of each node of the scene. Rows that belong to no node have unknown ids; repeated ids are reported by
- * hf_csv_index. */
+/* Reads all rows. hf_csv_index reports ids that are empty or repeated. */
 static hf_status read_nodes(hf_csv *t, const int *where, const hf_scene *scene, const hf_model *m, double sigma_m,
                             hf_measured *measured)
 {
-    void *block = NULL;
-    bool *is_found;
-    hf_csv_named *index = hf_csv_index(t, where[ID]);
-    hf_status status = index ? HF_ARENA_ARRAYS(&block, HF_ARRAY(is_found, t->n_row)) : HF_NO_MEMORY;
-    for (int i = 0; i < m->n_node && status == HF_OK; i++) {
-        int r = hf_csv_row_of(index, t->n_row, scene->node_id[i]);
-        if (r < 0) continue;
-        is_found[r] = true;
-        read_node(t, where, r, m->row_of_node[i], sigma_m, measured);
-    }
-    for (int r = 0; r < t->n_row && status == HF_OK; r++) {
+    hf_csv_named *rows = hf_csv_index(t, where[ID]), *nodes = hf_csv_index_of(m->n_node, scene->node_id);
+    bool has_memory = rows && nodes;
+    for (int r = 0; r < t->n_row && has_memory; r++) {
         const char *id = hf_csv_cell(t, r, where[ID]);
-        bool is_again = *id && !is_found[r] && hf_csv_row_of(index, t->n_row, id) != r;
-        if (*id && !is_found[r] && !is_again) hf_csv_fault(t, t->line[r], id, "the net has no node of this id", "");
+        int node = hf_csv_row_of(nodes, m->n_node, id);
+        if (node >= 0)
+            read_node(t, where, r, m->row_of_node[node], sigma_m, measured);
+        else if (*id)
+            hf_csv_fault(t, t->line[r], id, "the net has no node of this id", "");
     }
-    free(index);
-    hf_arena_free_block(block);
-    return status;
+    free(rows);
+    free(nodes);
+    return has_memory ? HF_OK : HF_NO_MEMORY;
 }
 
 /* Returns HF_BAD_CASE unless enough nodes that can move were measured. */

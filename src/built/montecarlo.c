@@ -18,7 +18,6 @@
 #include "surface/facet_mesh.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Limits of the number of samples in one call. Their numbers are kept in at most CHUNK_BYTES until the linear model has
  * used them, but for CHUNK_LEAST samples in any case. No limit affects the bits of a sample. */
@@ -96,26 +95,17 @@ static void make_sample(void *context, long i, double *cut_m, double *EA_N, doub
 
 bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets *facets, hf_tolerance_measure measure)
 {
-    enum { ALWAYS, SURFACE, FACETS, LOSS, FACET_LOSS, PATTERN };
+    /* What there is, and as a condition: what a measure needs besides. */
+    enum { ALWAYS = 0, SURFACE = 1, HAS_FACETS = 2, HAS_FREQUENCY = 4, HAS_PATTERN = 8 };
+    enum { FACETS = SURFACE | HAS_FACETS, LOSS = SURFACE | HAS_FREQUENCY, FACET_LOSS = FACETS | LOSS };
+    enum { PATTERN = FACETS | HAS_PATTERN };
 #define CONDITION(name, word, unit, condition, description) condition,
     static const int condition_of[HF_TOLERANCE_N_MEASURE] = {HF_TOLERANCE_MEASURES(CONDITION)};
 #undef CONDITION
-    bool has_surface = surface && surface->focal_length_m > 0, has_loss = has_surface && surface->frequencies_Hz.n > 0,
-         has_facets = has_surface && facets && facets->n_facet > 0;
-    switch (condition_of[measure]) {
-    case SURFACE:
-        return has_surface;
-    case FACETS:
-        return has_facets;
-    case LOSS:
-        return has_loss;
-    case FACET_LOSS:
-        return has_loss && has_facets;
-    case PATTERN:
-        return has_facets && surface->has_pattern;
-    default:
-        return true;
-    }
+    int has = facets && facets->n_facet > 0 ? HAS_FACETS : 0;
+    if (surface && surface->focal_length_m > 0)
+        has |= SURFACE | (surface->frequencies_Hz.n > 0 ? HAS_FREQUENCY : 0) | (surface->has_pattern ? HAS_PATTERN : 0);
+    return (condition_of[measure] & ~has) == 0;
 }
 
 /* Returns Ruze's gain loss at the highest frequency; NaN without a frequency. */
@@ -181,12 +171,11 @@ static double psi_m_of(const hf_montecarlo *t, const hf_built_shape *shape, cons
 }
 
 /* Measures the shape of sample i and writes its row, as an hf_built_take. */
-static void take_sample(void *context, long i, int place, const hf_built_shape *shape, const hf_form_result *r)
+static void take_sample(void *context, long i, const hf_built_shape *shape, const hf_form_result *r)
 {
     hf_montecarlo *t = context;
     const hf_model *m = &t->built->model;
     double *row = t->row + (i - t->first) * HF_TOLERANCE_COLUMNS, *value = row + HF_TOLERANCE_FIRST;
-    (void)place;
     row[HF_TOLERANCE_STATUS] = r->status;
     for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)
         value[k] = (double)NAN;

@@ -11,6 +11,7 @@
 #include "built/moves.h"
 
 #include "base/arena.h"
+#include "base/elementary.h"
 #include "linalg/quadratic.h"
 
 #include <math.h>
@@ -324,12 +325,7 @@ static int find_candidates(choice *c, int candidate[SHORT_LIST])
     for (int i = 0; i < c->p->n; i++) {
         if (is_on_list(c, i)) continue;
         c->gain[i] = gain_alone(c, i, n_turned, turned);
-        int at = n < SHORT_LIST ? n++ : n;
-        while (at > 0 && c->gain[i] > c->gain[candidate[at - 1]]) {
-            if (at < SHORT_LIST) candidate[at] = candidate[at - 1];
-            at--;
-        }
-        if (at < SHORT_LIST) candidate[at] = i;
+        n = hf_list_largest(i, c->gain, SHORT_LIST, n, candidate);
     }
     return n;
 }

@@ -9,6 +9,7 @@
 #include "built/statistics.h"
 
 #include "base/arena.h"
+#include "base/elementary.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -310,14 +311,9 @@ static void rank_cables(const hf_montecarlo *t, hf_tolerance_summary *to)
 {
     const hf_covariance *c = &t->covariance;
     int n_cable = t->built->scene.n_cable, ranked[HF_TOLERANCE_RANKED] = {0};
-    for (int e = 0; e < n_cable; e++) {
-        int at = to->n_ranked;
-        if (!(c->cable_m2[e] > 0)) continue;
-        for (; at > 0 && c->cable_m2[ranked[at - 1]] < c->cable_m2[e]; at--)
-            if (at < HF_TOLERANCE_RANKED) ranked[at] = ranked[at - 1];
-        if (at < HF_TOLERANCE_RANKED) ranked[at] = e;
-        if (to->n_ranked < HF_TOLERANCE_RANKED) to->n_ranked++;
-    }
+    for (int e = 0; e < n_cable; e++)
+        if (c->cable_m2[e] > 0)
+            to->n_ranked = hf_list_largest(e, c->cable_m2, HF_TOLERANCE_RANKED, to->n_ranked, ranked);
     for (int k = 0; k < to->n_ranked; k++) {
         strncpy(to->ranked_id[k], t->built->scene.cable_id[ranked[k]], HF_TOLERANCE_ID_SIZE - 1);
         to->ranked_share[k] = c->cable_m2[ranked[k]] / c->spread_m2;

@@ -15,7 +15,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define NODE_MAX 4000000   /* keeps every index and band offset far below the range of int */
 #define SUM_TOLERANCE 1e-9 /* relative; pitches are written with about ten digits at most */

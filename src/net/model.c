@@ -5,7 +5,7 @@
  *     truss flexibility -> attach: supports become attachments -> model
  *
  * Contents: layout - numbering and band positions - laws and targets - chains of length-controlled cables - groups of
- * design variables - build - attachments - checks */
+ * design variables - names and units of design variables - build - attachments - checks */
 #include <hifdm/model.h>
 
 #include "base/arena.h"
@@ -147,10 +147,35 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
 
 /* ---- chains of length-controlled cables ---- */
 
+/* The cables of law length at each row, and the state of a search from one support. */
 typedef struct {
-    int *count; /* [n_node], number of cables of law length at a row */
-    int *cable; /* [n_node][2], two of them */
+    int *start, *cable; /* [n_node + 1], [2 n_cable]: those at a row are cable[start[row] .. start[row + 1] - 1] */
+    int *queue, *via;   /* [n_node]: rows to continue from; the cable by which a row was reached */
+    char *is_waiting;   /* [n_node], true if a row is in the queue */
+    double *reach_m;    /* [n_node], minimum sum of lengths to a row, m */
+    long steps_left;
 } length_graph;
+
+static bool is_rigid(const hf_model *m, int cable)
+{
+    return hf_law_has(m->law[cable], HF_LAW_IS_RIGID);
+}
+
+/* Lists the cables of each row. */
+static void list_cables(const hf_model *m, length_graph *g)
+{
+    for (int k = 0; k < 2 * m->n_cable; k++)
+        g->start[m->end_row[k]] += is_rigid(m, k / 2);
+    for (int row = 0; row < m->n_node; row++)
+        g->start[row + 1] += g->start[row];       /* the end of the cables of `row` */
+    for (int k = 2 * m->n_cable - 1; k >= 0; k--) /* becomes their start */
+        if (is_rigid(m, k / 2)) g->cable[--g->start[m->end_row[k]]] = k / 2;
+}
+
+static int count_cables(const length_graph *g, int row)
+{
+    return g->start[row + 1] - g->start[row];
+}
 
 static double distance(const hf_model *m, int row_a, int row_b)
 {
@@ -173,8 +198,9 @@ static void follow_chain(hf_model *m, const length_graph *g, int from, int first
         m->chain_cable[start + n++] = e;
         sum += m->target[e];
         if (row >= m->n_free) break;
-        if (g->count[row] != 2 || n == m->n_cable - start) return;
-        e = g->cable[2 * row] == e ? g->cable[2 * row + 1] : g->cable[2 * row];
+        if (count_cables(g, row) != 2 || n == m->n_cable - start) return;
+        const int *at = g->cable + g->start[row];
+        e = at[0] == e ? at[1] : at[0];
     }
     bool is_straight = sum <= distance(m, from, row) * (1 + HF_STRAIGHT_EXCESS);
     if (n < 2 || e < first || is_straight != want_straight) return;
@@ -187,17 +213,8 @@ static void follow_chain(hf_model *m, const length_graph *g, int from, int first
     m->chain_start[++m->n_any_chain] = start + n;
 }
 
-/* The cables of law length at each row, and the state of a search from one support. */
-typedef struct {
-    int *start, *cable; /* [n_node + 1], [2 n_cable]: those at a row are cable[start[row] .. start[row + 1] - 1] */
-    int *queue, *via;   /* [n_node]: rows to continue from; the cable by which a row was reached */
-    char *is_waiting;   /* [n_node], true if a row is in the queue */
-    double *reach_m;    /* [n_node], minimum sum of lengths to a row, m */
-    long steps_left;
-} path_search;
-
 /* Finds the shortest path of cables from one support to every row. Paths pass only through free nodes. */
-static void search_from(const hf_model *m, path_search *s, int from)
+static void search_from(const hf_model *m, length_graph *s, int from)
 {
     int n_waiting = 1, first = 0;
     for (int row = 0; row < m->n_node; row++)
@@ -220,7 +237,7 @@ static void search_from(const hf_model *m, path_search *s, int from)
     }
 }
 
-static int row_before(const hf_model *m, const path_search *s, int row)
+static int row_before(const hf_model *m, const length_graph *s, int row)
 {
     const int *end = m->end_row + 2 * s->via[row];
     return end[0] == row ? end[1] : end[0];
@@ -228,7 +245,7 @@ static int row_before(const hf_model *m, const path_search *s, int row)
 
 /* Keeps the path from `to` back to `from` as a chain. Returns false if it has only one cable, or if one of its cables
  * is already in a chain. */
-static bool keep_path(hf_model *m, const path_search *s, int from, int to)
+static bool keep_path(hf_model *m, const length_graph *s, int from, int to)
 {
     int start = m->chain_start[m->n_any_chain], n = 0;
     if (row_before(m, s, to) == from) return false;
@@ -247,65 +264,41 @@ static bool keep_path(hf_model *m, const path_search *s, int from, int to)
  * proves that no shape satisfies the lengths, so the first one is kept as a chain. The limit PATH_STEPS is far above
  * the need of nets in which only some cables have law length. If the search reaches it, a path may stay undetected. */
 #define PATH_STEPS 4000000
-static void keep_short_path(hf_model *m, path_search *s)
+static void keep_short_path(hf_model *m, length_graph *s)
 {
     s->steps_left = PATH_STEPS;
     for (int from = m->n_free; from < m->n_node; from++) {
-        if (s->start[from] == s->start[from + 1]) continue;
+        if (count_cables(s, from) == 0) continue;
         search_from(m, s, from);
         for (int to = from + 1; to < m->n_node; to++)
             if (s->reach_m[to] * (1 + HF_STRAIGHT_EXCESS) < distance(m, from, to) && keep_path(m, s, from, to)) return;
     }
 }
 
-static hf_status find_short_path(hf_model *m)
-{
-    size_t n = (size_t)m->n_node;
-    path_search s;
-    void *block;
-    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(s.start, n + 1), HF_ARRAY(s.cable, 2 * (size_t)m->n_cable),
-                           HF_ARRAY(s.queue, n), HF_ARRAY(s.via, n), HF_ARRAY(s.is_waiting, n),
-                           HF_ARRAY(s.reach_m, n)));
-    for (int k = 0; k < 2 * m->n_cable; k++)
-        if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID)) s.start[m->end_row[k] + 1]++;
-    for (int row = 0; row < m->n_node; row++)
-        s.start[row + 1] += s.start[row];
-    for (int k = 0; k < 2 * m->n_cable; k++) /* `via` is a counter here; the search overwrites it later */
-        if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID))
-            s.cable[s.start[m->end_row[k]] + s.via[m->end_row[k]]++] = k / 2;
-    keep_short_path(m, &s);
-    hf_arena_free_block(block);
-    return HF_OK;
-}
-
 static hf_status find_chains(hf_model *m)
 {
+    size_t n = (size_t)m->n_node;
     bool branches = false;
     length_graph g;
     void *block;
-    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(g.count, m->n_node), HF_ARRAY(g.cable, 2 * m->n_node)));
-    hf_status status = HF_OK;
-    for (int row = 0; row < m->n_node; row++)
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(g.start, n + 1), HF_ARRAY(g.cable, 2 * (size_t)m->n_cable),
+                           HF_ARRAY(g.queue, n), HF_ARRAY(g.via, n), HF_ARRAY(g.is_waiting, n),
+                           HF_ARRAY(g.reach_m, n)));
+    list_cables(m, &g);
+    for (int row = 0; row < m->n_node; row++) {
         m->chain_of_row[row] = -1;
-    for (int e = 0; e < m->n_cable; e++)
-        for (int k = 0; k < 2 && hf_law_has(m->law[e], HF_LAW_IS_RIGID); k++) {
-            int row = m->end_row[2 * e + k];
-            if (g.count[row] < 2) g.cable[2 * row + g.count[row]] = e;
-            g.count[row]++;
-        }
+        branches |= row < m->n_free && count_cables(&g, row) > 2;
+    }
     for (int want_straight = 1; want_straight >= 0; want_straight--) {
-        for (int e = 0; e < m->n_cable; e++)
-            for (int k = 0; k < 2 && hf_law_has(m->law[e], HF_LAW_IS_RIGID); k++)
-                if (m->end_row[2 * e + k] >= m->n_free && m->end_row[2 * e + 1 - k] < m->n_free)
-                    follow_chain(m, &g, m->end_row[2 * e + k], e, want_straight);
+        for (int k = 0; k < 2 * m->n_cable; k++)
+            if (is_rigid(m, k / 2) && m->end_row[k] >= m->n_free && m->end_row[k ^ 1] < m->n_free)
+                follow_chain(m, &g, m->end_row[k], k / 2, want_straight);
         if (!want_straight) break;
-        for (int row = 0; row < m->n_free; row++)
-            branches |= g.count[row] > 2;
-        if (branches) status = find_short_path(m);
+        if (branches) keep_short_path(m, &g);
         m->n_chain = m->n_any_chain;
     }
     hf_arena_free_block(block);
-    return status;
+    return HF_OK;
 }
 
 void hf_model_chain_name(const hf_model *m, const hf_scene *scene, int i_chain, char *text, size_t size)
@@ -353,6 +346,36 @@ hf_status hf_model_group_variables(hf_model *m)
     m->n_leader = m->n_variable;
     hf_arena_free_block(block);
     return HF_OK;
+}
+
+/* ---- names and units of design variables ---- */
+
+static const char *direction_name(const hf_variable *g)
+{
+    if (g->vary == HF_VARY_SUPPORT_NORMAL) return "normal";
+    return g->direction[0] > 0 ? "x" : g->direction[1] > 0 ? "y" : "z";
+}
+
+void hf_model_variable_name(const hf_model *m, const hf_scene *scene, int k, char *text, size_t size)
+{
+    if (m->variable_cable[k] >= 0)
+        snprintf(text, size, "%s", scene->cable_id[m->variable_cable[k]]);
+    else
+        snprintf(text, size, "%s.%s", scene->node_id[m->node_of_row[m->variable[k].support_row]],
+                 direction_name(&m->variable[k]));
+}
+
+const char *hf_model_variable_unit(const hf_model *m, int k)
+{
+    switch (hf_model_vary(m, k)) {
+    case HF_VARY_PRETENSION:
+    case HF_VARY_TENSION:
+        return "N";
+    case HF_VARY_FORCE_DENSITY:
+        return "N/m";
+    default:
+        return "m";
+    }
 }
 
 /* ---- build ---- */

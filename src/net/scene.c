@@ -5,7 +5,6 @@
 #include "base/elementary.h"
 #include "base/text.h"
 #include "base/union_find.h"
-#include <hifdm/settings.h>
 
 #include <math.h>
 #include <stdio.h>

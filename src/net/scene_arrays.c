@@ -4,7 +4,6 @@
 #include "base/text.h"
 #include <hifdm/cable_law.h>
 #include <hifdm/cable_set.h>
-#include <hifdm/settings.h>
 
 #include <math.h>
 #include <stdio.h>

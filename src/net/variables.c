@@ -6,8 +6,6 @@
 #include "net/wanted.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Minimum of a tension, force density or length relative to its initial value, whatever its range. A cable without

@@ -102,7 +102,7 @@ END_TEST
  * another order for several. */
 START_TEST(answers_together_are_those_alone)
 {
-    enum { N = HF_SADDLE_DUAL_PANEL };
+    enum { N = HF_SADDLE_PANEL };
     static twin t;
     static double gap[N][TWIN_DOFS], work[N * 2 * TWIN_DOFS], cut[2][N][TWIN_CABLES], rest[2][N][TWIN_DOFS];
     static double move[2][N][TWIN_DOFS], shared[2][N][TWIN_SPOOLS];
