@@ -49,7 +49,7 @@ struct errors {
     double cut_m, EA_part, support_m;
 };
 
-static inline void make_errors(void *context, long i, double *cut_m, double *EA_N, double *support_move_m)
+static inline void make_errors(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
 {
     const struct errors *e = context;
     struct rng rng = rng_start(e->stream + (uint64_t)i);
@@ -57,9 +57,9 @@ static inline void make_errors(void *context, long i, double *cut_m, double *EA_
         cut_m[k] += rng_uniform(&rng, -e->cut_m, e->cut_m);
         if (EA_N) EA_N[k] *= 1 + rng_uniform(&rng, -e->EA_part, e->EA_part);
     }
-    for (int row = e->model->n_free; row < e->model->n_node && support_move_m; row++)
+    for (int row = e->model->n_free; row < e->model->n_node && support_displacement_m; row++)
         for (int c = 0; c < 3; c++)
-            support_move_m[c * e->model->n_node + row] += rng_uniform(&rng, -e->support_m, e->support_m);
+            support_displacement_m[c * e->model->n_node + row] += rng_uniform(&rng, -e->support_m, e->support_m);
 }
 
 #endif

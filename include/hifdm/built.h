@@ -22,7 +22,7 @@ typedef struct {
     hf_scene scene; /* as the design's, with its own laws, target values, EA and supports; the rest is borrowed */
     hf_model model; /* cables of law elastic with their unstressed lengths, on the truss of the design */
     hf_form_settings form;             /* settings of the form-finding */
-    double *place_m;                   /* [3][n_node] shape of the design by row, which is that of the nominal net */
+    double *position_m;                /* [3][n_node] shape of the design by row, which is that of the nominal net */
     double *tension_N;                 /* [n_cable] tensions of the design, which are those of the nominal net */
     const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 ends computations on this net early */
     void *block;                       /* owned memory behind the arrays */
@@ -49,10 +49,11 @@ hf_status hf_built_renew(const hf_model *model, const hf_workspace *workspace, h
 
 /* The differences of one net from the nominal net. A member that is NULL stands for no difference of this kind. */
 typedef struct {
-    const double *cut_m;          /* [n_cable] unstressed lengths, at the temperature of the net */
-    const double *EA_N;           /* [n_cable] axial stiffness */
-    const double *support_move_m; /* [3][n_node] displacements of supports by row, of attachments without forces */
-    const double *load_N;         /* [3][n_node] loads by row, which replace those of the design */
+    const double *cut_m; /* [n_cable] unstressed lengths, at the temperature of the net */
+    const double *EA_N;  /* [n_cable] axial stiffness */
+    const double
+        *support_displacement_m; /* [3][n_node] displacements of supports by row, of attachments without forces */
+    const double *load_N;        /* [3][n_node] loads by row, which replace those of the design */
 } hf_built_net;
 
 /* Finds the shape of one net from its unstressed lengths alone, whatever the nominal shape is. It is the reference for

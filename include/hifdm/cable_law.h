@@ -60,10 +60,10 @@ extern const char *const hf_law_target_unit[HF_N_LAW]; /* units of the target va
 
 /* The values of one cable on which its law depends. */
 typedef struct {
-    hf_law law;           /* law in force */
-    double target;        /* T* (N), L* (m), q (N/m) or l0 (m) by law */
-    double EA_N;          /* axial stiffness; NaN if the law does not need it */
-    double theoretical_m; /* length between the target positions of its ends */
+    hf_law law;                /* law in force */
+    double target;             /* T* (N), L* (m), q (N/m) or l0 (m) by law */
+    double EA_N;               /* axial stiffness; NaN if the law does not need it */
+    double length_at_target_m; /* length between the target positions of its ends */
 } hf_law_cable;
 
 /* Returns true if the law has any of these flags. */
@@ -81,13 +81,13 @@ static inline bool hf_law_is_served(hf_law law, unsigned served)
     return !hf_law_has(law, ~served);
 }
 
-/* Returns the target value of a cable without a value: its length between target positions, theoretical_m, under law
+/* Returns the target value of a cable without a value: its length between target positions, length_at_target_m, under law
  * length; NaN for the other laws, which have no default or use the pretension. */
-static inline double hf_law_default_target(hf_law law, double theoretical_m)
+static inline double hf_law_default_target(hf_law law, double length_at_target_m)
 {
     switch (law) {
     case HF_LAW_LENGTH:
-        return theoretical_m;
+        return length_at_target_m;
     case HF_LAW_TENSION:
     case HF_LAW_FORCE_DENSITY:
     case HF_LAW_ELASTIC:
@@ -99,13 +99,13 @@ static inline double hf_law_default_target(hf_law law, double theoretical_m)
 /* Size of the text of hf_law_target_fault, bytes. */
 #define HF_LAW_FAULT_SIZE 160
 
-/* Checks the target value of a cable, NaN if the user gave none. theoretical_m is the length between the target
+/* Checks the target value of a cable, NaN if the user gave none. length_at_target_m is the length between the target
  * positions of its ends, m. Returns NULL if the value is valid, otherwise `text`, into which the fault is written. */
-const char *hf_law_target_fault(hf_law law, double target, double theoretical_m, char text[HF_LAW_FAULT_SIZE]);
+const char *hf_law_target_fault(hf_law law, double target, double length_at_target_m, char text[HF_LAW_FAULT_SIZE]);
 
 /* Returns the length that a law with a multiplier requires at this tension, m; NaN for other laws. This form needs no
  * special case for stiff cables: in the limit of infinite EA the law elastic is the law length (METHOD M3). */
-static inline double hf_law_wanted_length_m(hf_law_cable c, double tension_N)
+static inline double hf_law_required_length_m(hf_law_cable c, double tension_N)
 {
     switch (c.law) {
     case HF_LAW_LENGTH:
@@ -141,7 +141,7 @@ static inline double hf_law_tension_N(hf_law_cable c, double length_m)
  * law. */
 static inline double hf_law_cut_m(hf_law_cable c, double length_m, double tension_N, bool is_slack)
 {
-    if (is_slack && hf_law_has(c.law, HF_LAW_HAS_MULTIPLIER)) return hf_law_wanted_length_m(c, 0);
+    if (is_slack && hf_law_has(c.law, HF_LAW_HAS_MULTIPLIER)) return hf_law_required_length_m(c, 0);
     return length_m / (1 + tension_N / c.EA_N);
 }
 
@@ -172,7 +172,7 @@ static inline double hf_law_held_q_N_per_m(hf_law_cable c, double length_m, doub
 /* Minimum force density that Eq. 8 gives a slack cable, N/m. It is far below all forces, also in nets with pretensions
  * of 1e-300 N, for which 1e-100 would be too much. It is enough to give a position to a node that only slack cables
  * hold. */
-#define HF_LAW_LEAST_Q_N_PER_M 1e-305
+#define HF_LAW_MIN_Q_N_PER_M 1e-305
 
 /* Returns the next force density of the fixed-point iteration, N/m. Eq. 7 multiplies q by the required over the present
  * tension; with T = q l the result is the required tension over l. Eq. 8 multiplies q by the present over the required
@@ -181,8 +181,8 @@ static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, doub
 {
     if (hf_law_has(c.law, HF_LAW_GIVES_TENSION)) return c.target / length_m;
     if (!hf_law_has(c.law, HF_LAW_HAS_MULTIPLIER)) return q_N_per_m;
-    double next = q_N_per_m * (length_m / hf_law_wanted_length_m(c, tension_N));
-    return next < HF_LAW_LEAST_Q_N_PER_M ? HF_LAW_LEAST_Q_N_PER_M : next; /* a NaN remains */
+    double next = q_N_per_m * (length_m / hf_law_required_length_m(c, tension_N));
+    return next < HF_LAW_MIN_Q_N_PER_M ? HF_LAW_MIN_Q_N_PER_M : next; /* a NaN remains */
 }
 
 /* Returns the tension with which an iteration begins, N: otherwise_N, unless the cable can go slack and is taut at its
@@ -192,9 +192,9 @@ static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, doub
 #define HF_LAW_FIRST_RANGE 10.0
 static inline double hf_law_first_tension_N(hf_law_cable c, double otherwise_N)
 {
-    bool is_taut = hf_law_has(c.law, HF_LAW_GOES_SLACK) && c.theoretical_m > hf_law_wanted_length_m(c, 0);
+    bool is_taut = hf_law_has(c.law, HF_LAW_GOES_SLACK) && c.length_at_target_m > hf_law_required_length_m(c, 0);
     if (!is_taut) return otherwise_N;
-    double tension_N = hf_law_tension_N(c, c.theoretical_m);
+    double tension_N = hf_law_tension_N(c, c.length_at_target_m);
     return fmin(fmax(tension_N, otherwise_N / HF_LAW_FIRST_RANGE), otherwise_N * HF_LAW_FIRST_RANGE);
 }
 

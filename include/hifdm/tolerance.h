@@ -39,7 +39,7 @@ bool hf_tolerance_more_is_better(hf_tolerance_measure measure);
 typedef struct {
     bool is_measured; /* false: the other members have no meaning */
     /* mean with its interval, standard deviation, minimum, maximum */
-    double mean, mean_low, mean_high, deviation, least, largest;
+    double mean, mean_low, mean_high, deviation, min, max;
     /* quantiles with their intervals */
     double value[HF_TOLERANCE_QUANTILES], low[HF_TOLERANCE_QUANTILES], high[HF_TOLERANCE_QUANTILES];
 } hf_tolerance_figures;

@@ -73,7 +73,7 @@ static void take_design(const hf_model *m, const hf_workspace *w, hf_built *b)
 {
     rest_supports(m, w, &b->scene);
     cut_cables(m, w, b);
-    memcpy(b->place_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(b->position_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
 }
 
 /* Sets those entries of the model that depend on the design. */
@@ -86,7 +86,7 @@ static void hold_design(const hf_workspace *w, hf_built *b)
     m->reference_N = hf_max_magnitude((size_t)m->n_cable, b->tension_N);
     for (int e = 0; e < m->n_cable; e++) {
         m->target[e] = b->scene.target[e];
-        m->length_m[e] = hf_scene_theoretical_length(&b->scene, e);
+        m->length_m[e] = hf_scene_length_at_target(&b->scene, e);
         m->start_q_N_per_m[e] = b->tension_N[e] / w->length_m[e];
     }
 }
@@ -98,7 +98,7 @@ hf_status hf_built_make(const char *where, const hf_scene *s, const hf_model *m,
     *b = (hf_built){.scene = *s, .form = *form};
     HF_TRY(refuse_cables(where, s, w, messages));
     if (HF_ARENA_ARRAYS(&b->block, HF_ARRAY(b->scene.law, n), HF_ARRAY(b->scene.target, n), HF_ARRAY(b->scene.EA_N, n),
-                        HF_ARRAY(b->scene.position_m, n_coordinate), HF_ARRAY(b->place_m, n_coordinate),
+                        HF_ARRAY(b->scene.position_m, n_coordinate), HF_ARRAY(b->position_m, n_coordinate),
                         HF_ARRAY(b->tension_N, n)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for the net as built", where);
     b->form.method = HF_METHOD_NEWTON;
@@ -142,6 +142,7 @@ hf_status hf_built_solve(const hf_built *b, const hf_built_net *net, hf_workspac
     hf_form_prepare(&loaded, w);
     if (net->cut_m) memcpy(w->target, net->cut_m, n);
     if (net->EA_N) memcpy(w->EA_N, net->EA_N, n);
-    if (net->support_move_m) memcpy(w->support_move_m, net->support_move_m, 3 * (size_t)loaded.n_node * sizeof(double));
+    if (net->support_displacement_m)
+        memcpy(w->support_move_m, net->support_displacement_m, 3 * (size_t)loaded.n_node * sizeof(double));
     return hf_evaluate_prepared(&loaded, &b->form, w, NULL, r);
 }

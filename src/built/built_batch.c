@@ -28,8 +28,8 @@
 typedef struct {
     hf_workspace work;
     hf_near_lanes near;
-    double *cut_m, *EA_N;   /* [HF_LANES][n_cable] of the samples in the lanes */
-    double *support_move_m; /* [HF_LANES][3][n_node] by row */
+    double *cut_m, *EA_N;           /* [HF_LANES][n_cable] of the samples in the lanes */
+    double *support_displacement_m; /* [HF_LANES][3][n_node] by row */
     void *block;
 } batch_room;
 
@@ -55,7 +55,7 @@ static hf_status make_room(const hf_built_batch *batch, batch_room *room)
         return HF_NO_MEMORY;
     }
     return HF_ARENA_ARRAYS(&room->block, HF_ARRAY(room->cut_m, n), HF_ARRAY(room->EA_N, n),
-                           HF_ARRAY(room->support_move_m, 3 * (size_t)m->n_node * HF_LANES));
+                           HF_ARRAY(room->support_displacement_m, 3 * (size_t)m->n_node * HF_LANES));
 }
 
 static void free_room(batch_room *room)
@@ -140,13 +140,13 @@ static void make_sample(batch_work *work, int lane, int i)
 {
     const batch_job *j = work->job;
     const hf_built *b = j->batch->built;
-    size_t n = (size_t)b->model.n_cable, places = 3 * (size_t)b->model.n_node;
+    size_t n = (size_t)b->model.n_cable, n_coordinate = 3 * (size_t)b->model.n_node;
     bool has_EA = j->varies & HF_BUILT_VARIES_EA, has_supports = j->varies & HF_BUILT_VARIES_SUPPORTS;
     double *cut_m = work->room->cut_m + (size_t)lane * n, *EA_N = work->room->EA_N + (size_t)lane * n;
-    double *move_m = has_supports ? work->room->support_move_m + (size_t)lane * places : NULL;
+    double *move_m = has_supports ? work->room->support_displacement_m + (size_t)lane * n_coordinate : NULL;
     memcpy(cut_m, b->model.target, n * sizeof(double));
     memcpy(EA_N, b->model.EA_N, n * sizeof(double));
-    if (has_supports) memset(move_m, 0, places * sizeof(double));
+    if (has_supports) memset(move_m, 0, n_coordinate * sizeof(double));
     j->make(j->context, j->first + i, cut_m, has_EA ? EA_N : NULL, move_m);
     work->net[lane] = (hf_built_net){cut_m, EA_N, move_m, NULL};
 }
@@ -252,9 +252,9 @@ static void work_on_job(void *context, int i_room)
 void hf_built_batch_run(hf_built_batch *batch, unsigned varies, long first, long n, hf_built_sample *make,
                         hf_built_take *take, void *context)
 {
-    const long most = INT_MAX / 2; /* samples of one queue; its counter still rises when it is empty */
-    for (; n > 0 && !hf_built_must_stop(batch->built); first += most, n -= most) {
-        batch_job job = {batch, varies, first, {(int)(n < most ? n : most), 0, NULL}, make, take, context};
+    const long n_max = INT_MAX / 2; /* samples of one queue; its counter still rises when it is empty */
+    for (; n > 0 && !hf_built_must_stop(batch->built); first += n_max, n -= n_max) {
+        batch_job job = {batch, varies, first, {(int)(n < n_max ? n : n_max), 0, NULL}, make, take, context};
         if (batch->n_thread > 1)
             hf_parallel_run(batch->n_thread, work_on_job, &job);
         else

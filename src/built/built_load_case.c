@@ -43,5 +43,5 @@ void hf_built_load_case(const hf_built *b, const hf_material *t, const hf_load_c
         for (size_t c = 0; c < 3; c++)
             move_m[c * n + (size_t)m->attachment_row[k]] += attachment_move_m[3 * k + (int)c];
     if (g[0] != 0 || g[1] != 0 || g[2] != 0) add_weight(b, t, g, load_N);
-    *net = (hf_built_net){.cut_m = cut_m, .support_move_m = move_m, .load_N = load_N};
+    *net = (hf_built_net){.cut_m = cut_m, .support_displacement_m = move_m, .load_N = load_N};
 }

@@ -136,12 +136,12 @@ static void make_net(nets_room *r, int i_net, hf_built_net *net)
     unsigned varies = hf_built_errors_vary(&r->errors);
     *net = (hf_built_net){.cut_m = r->cut_m,
                           .EA_N = varies & HF_BUILT_VARIES_EA ? r->EA_N : NULL,
-                          .support_move_m = varies & HF_BUILT_VARIES_SUPPORTS ? r->move_m : NULL};
+                          .support_displacement_m = varies & HF_BUILT_VARIES_SUPPORTS ? r->move_m : NULL};
     memcpy(r->cut_m, m->target, n);
     memcpy(r->EA_N, m->EA_N, n);
     memset(r->move_m, 0, 3 * (size_t)m->n_node * sizeof(double));
     make_sample(r, i_net - r->nets->as.n_load_case, r->cut_m, net->EA_N ? r->EA_N : NULL,
-                net->support_move_m ? r->move_m : NULL);
+                net->support_displacement_m ? r->move_m : NULL);
 }
 
 /* ---- shapes ---- */
@@ -254,7 +254,7 @@ static hf_status linearise_net(void *room, int i_net, const hf_workspace **shape
 static void follow_cut(nets_room *r, const hf_objectives_rate *by)
 {
     const hf_model *m = r->nets->model;
-    const double *x = r->built.place_m, *v = by->position_m;
+    const double *x = r->built.position_m, *v = by->position_m;
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         double l = r->design.length_m[e], l0 = r->built.model.target[e], longer = 0;

@@ -89,7 +89,7 @@ static void find_psi_by_cut(const hf_built_linear *l, double *room, hf_covarianc
     for (int k = 0; k < m->n_inner_node; k++)
         for (int i = 0; i < 3; i++) {
             int row = m->inner_row[k], at = i * m->n_node + row;
-            slope[3 * row + i] = (l->built->place_m[at] - m->position_m[at]) / (m->n_inner_node * c->nominal_psi_m);
+            slope[3 * row + i] = (l->built->position_m[at] - m->position_m[at]) / (m->n_inner_node * c->nominal_psi_m);
         }
     hf_built_linear_transpose(l, 1, slope, strain, scratch);
     for (int e = 0; e < m->n_cable; e++)
@@ -130,7 +130,7 @@ double hf_covariance_psi_m(const hf_built_linear *l, const double *move)
     for (int k = 0; k < m->n_inner_node; k++)
         for (int c = 0; c < 3; c++) {
             int row = m->inner_row[k], at = c * m->n_node + row;
-            double d = l->built->place_m[at] - m->position_m[at] + (move ? move[3 * row + c] : 0);
+            double d = l->built->position_m[at] - m->position_m[at] + (move ? move[3 * row + c] : 0);
             sum += d * d;
         }
     return sqrt(sum / m->n_inner_node);

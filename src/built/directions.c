@@ -97,16 +97,16 @@ static hf_status find_axes(const hf_built_errors *e, int n_thread, hf_directions
 hf_status hf_directions_find(const hf_built_errors *e, const hf_covariance *c, int n_thread, hf_directions *d)
 {
     int n_error = hf_built_errors_count(e), n_answer = 3 * e->linear->built->model.n_inner_node;
-    bool turns = e->distribution == HF_DISTRIBUTION_NORMAL;
+    bool rotates = e->distribution == HF_DISTRIBUTION_NORMAL;
     *d = (hf_directions){.errors = e, .n = n_error < HF_DIRECTIONS_MAX ? n_error : HF_DIRECTIONS_MAX};
-    if (turns && n_answer < d->n) d->n = n_answer;
-    size_t n_axis = turns ? (size_t)n_error * (size_t)d->n : 0;
+    if (rotates && n_answer < d->n) d->n = n_answer;
+    size_t n_axis = rotates ? (size_t)n_error * (size_t)d->n : 0;
     HF_TRY(HF_ARENA_ARRAYS(&d->block, HF_ARRAY(d->axis, n_axis), HF_ARRAY(d->error, d->n)));
     d->sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d->n);
     if (!d->sequence) return HF_NO_MEMORY;
     for (int k = 0; k < d->n; k++)
         d->shift[k] = (uint32_t)(hf_built_errors_uniform(e->seed, 0, SHIFTS, k) * 0x1p30);
-    if (turns) return find_axes(e, n_thread, d);
+    if (rotates) return find_axes(e, n_thread, d);
     d->axis = NULL;
     for (int i = 0, n = 0; i < n_error; i++)
         n = hf_list_largest(i, c->share_m2, d->n, n, d->error);

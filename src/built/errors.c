@@ -115,12 +115,11 @@ double hf_built_errors_largest_scale(const hf_built_errors *e)
     const hf_built *b = e->linear->built;
     const double *sigma = e->sigma;
     double largest = e->distribution == HF_DISTRIBUTION_UNIFORM ? hf_built_errors_shape(e->distribution, 1) : 6;
-    double most = sigma[HF_ERROR_EA] + sigma[HF_ERROR_EA_BATCH];
+    double max = sigma[HF_ERROR_EA] + sigma[HF_ERROR_EA_BATCH];
     for (int i = 0; i < b->model.n_cable; i++)
-        most =
-            fmax(most, sigma[HF_ERROR_RATIO] + sigma[HF_ERROR_RATIO_BATCH] + sigma[HF_ERROR_CUT] / b->model.target[i] +
-                           fabs(e->expansion_per_K[i]) * sigma[HF_ERROR_TEMPERATURE]);
-    return 0.5 / (largest * most);
+        max = fmax(max, sigma[HF_ERROR_RATIO] + sigma[HF_ERROR_RATIO_BATCH] + sigma[HF_ERROR_CUT] / b->model.target[i] +
+                            fabs(e->expansion_per_K[i]) * sigma[HF_ERROR_TEMPERATURE]);
+    return 0.5 / (largest * max);
 }
 
 /* Returns the item of error i of a kind: 3 node + component for supports, 1 + part for the truss, otherwise i. */
@@ -154,18 +153,18 @@ static double ratio_of(const hf_built_errors *e, hf_error_kind own, hf_error_kin
     return error_of(e, own, i, z) + error_of(e, batch, e->spool[i], z);
 }
 
-/* Returns the displacement by the truss of coordinate i_move = 3 attachment + component, m. */
-static double truss_move_of(const hf_built_errors *e, int i_move, const double *z)
+/* Returns the displacement by the truss of coordinate i_coordinate = 3 attachment + component, m. */
+static double truss_move_of(const hf_built_errors *e, int i_coordinate, const double *z)
 {
     int n = 3 * e->linear->built->model.n_attachment;
     double sum = 0;
     for (int k = 0; k < e->n_truss; k++)
-        sum += error_of(e, HF_ERROR_TRUSS_TEMPERATURE, k, z) * e->truss_move_m[k * n + i_move];
+        sum += error_of(e, HF_ERROR_TRUSS_TEMPERATURE, k, z) * e->truss_move_m[k * n + i_coordinate];
     return sum;
 }
 
 void hf_built_errors_apply(const hf_built_errors *e, double scale, const double *z, double *cut_m, double *EA_N,
-                           double *support_move_m)
+                           double *support_displacement_m)
 {
     const hf_model *m = &e->linear->built->model;
     double warmer_K = scale * error_of(e, HF_ERROR_TEMPERATURE, 0, z);
@@ -175,11 +174,11 @@ void hf_built_errors_apply(const hf_built_errors *e, double scale, const double 
         cut_m[i] *= 1 + e->expansion_per_K[i] * warmer_K;
         if (EA_N) EA_N[i] *= 1 + scale * ratio_of(e, HF_ERROR_EA, HF_ERROR_EA_BATCH, i, z);
     }
-    for (int k = 0; k < 3 * e->n_support && support_move_m && e->sigma[HF_ERROR_SUPPORT] > 0; k++)
-        support_move_m[k % 3 * m->n_node + m->row_of_node[e->support[k / 3]]] +=
+    for (int k = 0; k < 3 * e->n_support && support_displacement_m && e->sigma[HF_ERROR_SUPPORT] > 0; k++)
+        support_displacement_m[k % 3 * m->n_node + m->row_of_node[e->support[k / 3]]] +=
             scale * error_of(e, HF_ERROR_SUPPORT, k, z);
-    for (int k = 0; k < 3 * m->n_attachment && support_move_m && e->n_truss > 0; k++)
-        support_move_m[k % 3 * m->n_node + m->attachment_row[k / 3]] += scale * truss_move_of(e, k, z);
+    for (int k = 0; k < 3 * m->n_attachment && support_displacement_m && e->n_truss > 0; k++)
+        support_displacement_m[k % 3 * m->n_node + m->attachment_row[k / 3]] += scale * truss_move_of(e, k, z);
 }
 
 /* ---- first order ---- */

@@ -84,9 +84,9 @@ double hf_built_errors_largest_scale(const hf_built_errors *errors);
 void hf_built_errors_draw(const hf_built_errors *errors, long sample, double *z);
 
 /* Applies the numbers z, times `scale`, to the nominal values in cut_m and EA_N [n_cable], and adds them to
- * support_move_m [3][n_node] by row. EA_N and support_move_m may be NULL when they do not vary. */
+ * support_displacement_m [3][n_node] by row. EA_N and support_displacement_m may be NULL when they do not vary. */
 void hf_built_errors_apply(const hf_built_errors *errors, double scale, const double *z, double *cut_m, double *EA_N,
-                           double *support_move_m);
+                           double *support_displacement_m);
 
 /* Computes the first-order effect of the numbers z, times `scale`, as hf_built_linear_apply expects it: strain_N
  * [n_cable], move_m [n_dof]. */

@@ -22,11 +22,11 @@
 #define SETTLED 1e-10 /* predicted reduction, relative to the misfit, at which it has converged */
 /* Smaller misfits count as this one. Half of chi^2 is below it for positions without noise, such as those of a
  * design. */
-#define LEAST_MISFIT 1.0
-#define NEAR_SETTLED 1e-3  /* factor of SETTLED for damped steps; the rounding of shapes damps them */
-#define ENOUGH 1e-4        /* fraction of the predicted reduction that a step must reach */
-#define DAMPING_LEAST 0.05 /* damping up to this value is dropped instead of reduced */
-#define DAMPING_MOST 1e12
+#define MISFIT_MIN 1.0
+#define NEAR_SETTLED 1e-3 /* factor of SETTLED for damped steps; the rounding of shapes damps them */
+#define ENOUGH 1e-4       /* fraction of the predicted reduction that a step must reach */
+#define DAMPING_MIN 0.05  /* damping up to this value is dropped instead of reduced */
+#define DAMPING_MAX 1e12
 #define PANEL HF_SADDLE_PANEL /* samples solved together */
 #define SEED 20260000u        /* of the random signs; only statistical figures depend on it */
 
@@ -44,19 +44,19 @@ static hf_status allocate(hf_estimate *p)
                            HF_ARRAY(s->move_m, PANEL * n_dof), HF_ARRAY(s->band, PANEL * (size_t)p->saddle.n_band),
                            HF_ARRAY(s->length_m, n_cable), HF_ARRAY(s->support_m, n_dof),
                            HF_ARRAY(s->strain_N, PANEL * n_cable), HF_ARRAY(s->linear, PANEL * p->linear.n_scratch),
-                           HF_ARRAY(p->last.place_m, n_dof), HF_ARRAY(p->last.tension_N, n_cable));
+                           HF_ARRAY(p->last.position_m, n_dof), HF_ARRAY(p->last.tension_N, n_cable));
 }
 
-hf_status hf_estimate_create(const hf_built *b, const hf_saddle_prior *prior, const double *place_m, hf_estimate *p)
+hf_status hf_estimate_create(const hf_built *b, const hf_saddle_prior *prior, const double *position_m, hf_estimate *p)
 {
-    *p = (hf_estimate){.built = b, .prior = *prior, .place_m = place_m};
+    *p = (hf_estimate){.built = b, .prior = *prior, .position_m = position_m};
     HF_TRY(hf_built_linear_make(b, &p->linear));
     HF_TRY(hf_saddle_create(&p->linear, &p->prior, &p->saddle));
     HF_TRY(hf_workspace_create(&b->model, &p->work));
     HF_TRY(allocate(p));
-    double *last_m = p->last.place_m, *last_N = p->last.tension_N;
+    double *last_m = p->last.position_m, *last_N = p->last.tension_N;
     p->last = *b;
-    p->last.place_m = memcpy(last_m, b->place_m, p->linear.n_dof * sizeof *last_m);
+    p->last.position_m = memcpy(last_m, b->position_m, p->linear.n_dof * sizeof *last_m);
     p->last.tension_N = memcpy(last_N, b->tension_N, (size_t)b->model.n_cable * sizeof *last_N);
     if (b->model.n_attachment) return HF_OK;
     hf_status status = hf_near_create(b, &p->work, &p->near);
@@ -89,28 +89,28 @@ static hf_status solve_from_last(const hf_estimate *p, const hf_built_net *net, 
     if (!p->has_near || !hf_near_find(&from, net, w, r)) HF_TRY(hf_built_solve(p->built, net, w, r));
     /* Supports stay at their nominal positions, because displacements of a net are added to these. */
     for (int c = 0; c < 3; c++)
-        memcpy(p->last.place_m + c * m->n_node, w->position_m + c * m->n_node, (size_t)m->n_free * sizeof(double));
+        memcpy(p->last.position_m + c * m->n_node, w->position_m + c * m->n_node, (size_t)m->n_free * sizeof(double));
     memcpy(p->last.tension_N, w->tension_N, (size_t)m->n_cable * sizeof(double));
     return HF_OK;
 }
 
-/* Solves the net with errors cut_m [n_cable] and rest_m [n_dof] and with adjustments turn_m [n_cable] (NULL: none). */
-static hf_status solve_net(const hf_estimate *p, const double *cut_m, const double *rest_m, const double *turn_m,
+/* Solves the net with errors cut_m [n_cable] and rest_m [n_dof] and with adjustments adjustment_m [n_cable] (NULL: none). */
+static hf_status solve_net(const hf_estimate *p, const double *cut_m, const double *rest_m, const double *adjustment_m,
                            hf_workspace *w, hf_form_result *r)
 {
     const hf_model *m = &p->built->model;
     const hf_estimate_scratch *s = &p->scratch;
     for (int e = 0; e < m->n_cable; e++)
-        s->length_m[e] = m->target[e] + cut_m[e] + (turn_m ? turn_m[e] : 0);
+        s->length_m[e] = m->target[e] + cut_m[e] + (adjustment_m ? adjustment_m[e] : 0);
     for (int row = 0; row < m->n_node; row++)
         for (int c = 0; c < 3; c++)
             s->support_m[c * m->n_node + row] = row < m->n_free ? 0 : rest_m[3 * row + c];
-    return solve_from_last(p, &(hf_built_net){.cut_m = s->length_m, .support_move_m = s->support_m}, w, r);
+    return solve_from_last(p, &(hf_built_net){.cut_m = s->length_m, .support_displacement_m = s->support_m}, w, r);
 }
 
-hf_status hf_estimate_shape(const hf_estimate *p, const double *turn_m, hf_workspace *w, hf_form_result *r)
+hf_status hf_estimate_shape(const hf_estimate *p, const double *adjustment_m, hf_workspace *w, hf_form_result *r)
 {
-    return solve_net(p, p->cut_m, p->rest_m, turn_m, w, r);
+    return solve_net(p, p->cut_m, p->rest_m, adjustment_m, w, r);
 }
 
 /* Returns the error of the length of cable e by numbers that cables share, m. */
@@ -150,12 +150,12 @@ static void find_gap(const hf_estimate *p, double *gap_m)
         for (int c = 0; c < 3; c++) {
             int i = 3 * row + c;
             bool is_measured = p->prior.weight_per_m2[i] > 0;
-            gap_m[i] = is_measured ? p->place_m[i] - p->work.position_m[c * m->n_node + row] : 0;
+            gap_m[i] = is_measured ? p->position_m[i] - p->work.position_m[c * m->n_node + row] : 0;
         }
 }
 
 /* Returns half the sum of squares of the differences gap_m - move_m, each divided by its sigma. move_m may be NULL. */
-static double misfit_of_places(const hf_estimate *p, const double *gap_m, const double *move_m)
+static double misfit_of_positions(const hf_estimate *p, const double *gap_m, const double *move_m)
 {
     double sum = 0;
     for (size_t i = 0; i < p->linear.n_dof; i++) {
@@ -174,7 +174,7 @@ static hf_status try_errors(hf_estimate *p, const double *cut_m, const double *r
     *misfit = (double)INFINITY;
     if (status != HF_OK) return status;
     find_gap(p, gap_m);
-    *misfit = misfit_of_errors(p, cut_m, rest_m, shared) + misfit_of_places(p, gap_m, NULL);
+    *misfit = misfit_of_errors(p, cut_m, rest_m, shared) + misfit_of_positions(p, gap_m, NULL);
     return HF_OK;
 }
 
@@ -218,7 +218,7 @@ static hf_status aim(const hf_estimate *p, double damping, double *promise)
     for (int k = 0; k < p->prior.n_shared; k++)
         s->shared[k] += (1 - part) * p->shared[k];
     *promise =
-        p->misfit - misfit_of_errors(p, s->cut_m, s->rest_m, s->shared) - misfit_of_places(p, s->gap_m, s->move_m);
+        p->misfit - misfit_of_errors(p, s->cut_m, s->rest_m, s->shared) - misfit_of_positions(p, s->gap_m, s->move_m);
     return HF_OK;
 }
 
@@ -227,7 +227,7 @@ static double damp(double damping, double ratio)
 {
     if (ratio < 0.25) return fmax(1, 10 * damping);
     if (ratio < 0.75 || damping == 0) return damping;
-    return damping > DAMPING_LEAST ? damping / 10 : 0;
+    return damping > DAMPING_MIN ? damping / 10 : 0;
 }
 
 hf_status hf_estimate_find(hf_estimate *p)
@@ -237,11 +237,11 @@ hf_status hf_estimate_find(hf_estimate *p)
     double damping = 0, misfit, promise;
     bool is_new = true; /* the shape is newer than the linear model */
     HF_TRY(try_errors(p, p->cut_m, p->rest_m, p->shared, s->gap_m, &p->misfit));
-    for (p->n_step = 0; p->n_step < STEPS_MAX && damping < DAMPING_MOST; p->n_step++) {
+    for (p->n_step = 0; p->n_step < STEPS_MAX && damping < DAMPING_MAX; p->n_step++) {
         if (is_new && hf_built_linear_take(&p->linear, &p->work) != HF_OK) break;
         if (hf_saddle_factor(&p->saddle, damping) != HF_OK) break;
         if (aim(p, damping, &promise) != HF_OK) break;
-        p->is_settled = !(promise > (damping > 0 ? NEAR_SETTLED : 1) * SETTLED * fmax(p->misfit, LEAST_MISFIT));
+        p->is_settled = !(promise > (damping > 0 ? NEAR_SETTLED : 1) * SETTLED * fmax(p->misfit, MISFIT_MIN));
         if (p->is_settled) break;
         hf_status status = try_errors(p, s->cut_m, s->rest_m, s->shared, s->trial_m, &misfit);
         if (status == HF_INTERRUPTED || status == HF_NO_MEMORY) return status;
@@ -284,8 +284,8 @@ static void draw_errors(const hf_estimate *p, hf_random *random, double *own_m, 
 
 /* Computes the displacements move_m [n][n_dof] of random errors for samples from `first` on. cause receives these
  * errors; it may be NULL. Returns n, at most PANEL. */
-static int draw_moves(const hf_estimate *p, int stream, int first, hf_random random[PANEL], double *move_m,
-                      const hf_estimate_cause *cause)
+static int draw_displacements(const hf_estimate *p, int stream, int first, hf_random random[PANEL], double *move_m,
+                              const hf_estimate_cause *cause)
 {
     double *strain_N = p->scratch.strain_N;
     int n = HF_ESTIMATE_SAMPLES - first < PANEL ? HF_ESTIMATE_SAMPLES - first : PANEL;
@@ -308,7 +308,7 @@ hf_status hf_estimate_expect(hf_estimate *p, double *expected_m)
     hf_random random[PANEL];
     memset(expected_m, 0, (size_t)m->n_node * sizeof *expected_m);
     for (int first = 0; first < HF_ESTIMATE_SAMPLES; first += PANEL) {
-        int n = draw_moves(p, 0, first, random, move_m, NULL);
+        int n = draw_displacements(p, 0, first, random, move_m, NULL);
         for (int i = 0; i < n * 3 * m->n_node; i++)
             expected_m[i / 3 % m->n_node] += move_m[i] * move_m[i] / HF_ESTIMATE_SAMPLES;
     }
@@ -388,7 +388,7 @@ hf_status hf_estimate_doubt(hf_estimate *p, double *move_m, double *sigma_N, con
     HF_TRY(hf_saddle_factor(&p->saddle, 0));
     for (int first = 0; first < HF_ESTIMATE_SAMPLES; first += PANEL) {
         double *move = move_m + (size_t)first * n_dof;
-        int n = draw_moves(p, 1, first, random, move, cause);
+        int n = draw_displacements(p, 1, first, random, move, cause);
         for (int k = 0; k < n; k++)
             draw_gap(p, &random[k], move + (size_t)k * n_dof, s->gap_m + (size_t)k * n_dof);
         memset(s->cut_m, 0, (size_t)n * n_cable * sizeof *s->cut_m);

@@ -18,7 +18,7 @@ typedef struct {
 typedef struct {
     const hf_built *built;
     hf_saddle_prior prior;
-    const double *place_m; /* [n_dof] measured positions */
+    const double *position_m; /* [n_dof] measured positions */
     hf_built_linear linear;
     hf_near near;
     bool has_near; /* false on a truss, or when the nominal net has no matrix for it */
@@ -38,10 +38,10 @@ typedef struct {
     void *block;
 } hf_estimate;
 
-/* Makes an estimate that starts at the nominal net. `built`, place_m and the arrays of `prior` are borrowed. place_m
+/* Makes an estimate that starts at the nominal net. `built`, position_m and the arrays of `prior` are borrowed. position_m
  * [n_dof] are the measured positions. Returns HF_OK; HF_NO_MEMORY; or HF_SINGULAR when the nominal net has no
  * stiffness. Call hf_estimate_free in any case. */
-hf_status hf_estimate_create(const hf_built *built, const hf_saddle_prior *prior, const double *place_m,
+hf_status hf_estimate_create(const hf_built *built, const hf_saddle_prior *prior, const double *position_m,
                              hf_estimate *estimate);
 void hf_estimate_free(hf_estimate *estimate);
 
@@ -50,9 +50,9 @@ void hf_estimate_free(hf_estimate *estimate);
  * nominal net when that has no shape. */
 hf_status hf_estimate_find(hf_estimate *estimate);
 
-/* Solves the net with the estimated errors, its cut lengths increased by turn_m [n_cable], m (NULL: not increased).
+/* Solves the net with the estimated errors, its cut lengths increased by adjustment_m [n_cable], m (NULL: not increased).
  * Returns result->status. */
-hf_status hf_estimate_shape(const hf_estimate *estimate, const double *turn_m, hf_workspace *work,
+hf_status hf_estimate_shape(const hf_estimate *estimate, const double *adjustment_m, hf_workspace *work,
                             hf_form_result *result);
 
 /* Computes the RMS displacement of each node of the nominal net, expected_m [n_node] by row, under errors of the size

@@ -23,7 +23,7 @@ static void take_shape(const hf_built *b, hf_workspace *w)
 {
     const hf_model *m = &b->model;
     hf_form_prepare(m, w);
-    memcpy(w->position_m, b->place_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(w->position_m, b->position_m, 3 * (size_t)m->n_node * sizeof(double));
     memcpy(w->tension_N, b->tension_N, (size_t)m->n_cable * sizeof(double));
 }
 

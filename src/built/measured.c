@@ -17,7 +17,7 @@ static const char *const column_name[N_COLUMN] = {"id", "x_m", "y_m", "z_m", "si
 static const char *const ours[] = {"x0_m", "y0_m", "z0_m", "role", NULL};
 #define SPARE_COLUMNS 64
 /* Measured nodes that can move. Fewer do not determine a displacement and a rotation of the whole net. */
-#define NODES_LEAST 3
+#define NODES_MIN 3
 
 /* ---- the table ---- */
 
@@ -37,7 +37,7 @@ static void read_node(hf_csv *t, const int *where, int r, int row, double sigma_
     const char *id = hf_csv_cell(t, r, where[ID]);
     double sigma = read_sigma(t, where, r, id, sigma_m);
     for (int c = 0; c < 3; c++) {
-        measured->place_m[3 * row + c] = hf_csv_number(t, r, where[X + c], id, column_name[X + c]);
+        measured->position_m[3 * row + c] = hf_csv_number(t, r, where[X + c], id, column_name[X + c]);
         measured->weight_per_m2[3 * row + c] = 1 / (sigma * sigma);
     }
     measured->line[row] = t->line[r];
@@ -69,9 +69,9 @@ static hf_status count_nodes(const char *path, const hf_model *m, const hf_measu
     int n = 0;
     for (int row = 0; row < m->n_free + m->n_attachment; row++)
         n += measured->line[row] > 0;
-    if (n >= NODES_LEAST) return HF_OK;
+    if (n >= NODES_MIN) return HF_OK;
     return hf_error(messages, HF_BAD_CASE, "%s: has %d node%s of the net that can move, %d at least are needed", path,
-                    n, n == 1 ? "" : "s", NODES_LEAST);
+                    n, n == 1 ? "" : "s", NODES_MIN);
 }
 
 hf_status hf_measured_read(const char *path, const hf_scene *scene, const hf_model *m, double sigma_m,
@@ -85,7 +85,7 @@ hf_status hf_measured_read(const char *path, const hf_scene *scene, const hf_mod
     table.ours = ours;
     if (status == HF_OK) status = hf_csv_find_columns(&table, column_name, N_COLUMN, Z + 1, where);
     if (status == HF_OK)
-        status = HF_ARENA_ARRAYS(&measured->block, HF_ARRAY(measured->place_m, 3 * n),
+        status = HF_ARENA_ARRAYS(&measured->block, HF_ARRAY(measured->position_m, 3 * n),
                                  HF_ARRAY(measured->weight_per_m2, 3 * n), HF_ARRAY(measured->line, n));
     if (status == HF_OK) status = read_nodes(&table, where, scene, m, sigma_m, measured);
     if (status == HF_OK) status = hf_csv_close_faults(&table);
@@ -112,12 +112,12 @@ typedef struct {
 
 static const double *measured_at(const hf_measured *measured, int row)
 {
-    return measured->place_m + 3 * (ptrdiff_t)row;
+    return measured->position_m + 3 * (ptrdiff_t)row;
 }
 
 static double nominal_at(const hf_built *b, int row, int c)
 {
-    return b->place_m[c * b->model.n_node + row];
+    return b->position_m[c * b->model.n_node + row];
 }
 
 /* Computes the sums over the measured nodes. product [3][3] is the sum of nominal times measured coordinates about the
@@ -146,7 +146,7 @@ static void sum_up(const hf_built *b, const hf_measured *measured, rigid_fit *f,
 /* Finds the rotation by Horn's method (J. Opt. Soc. Am. A 4, 1987). Its quaternion is the eigenvector of the largest
  * eigenvalue of a symmetric 4 x 4 matrix. Repeated squaring of this matrix leaves that eigenvector. Returns the
  * eigenvalue and sets *angle, rad. */
-static double turn(double s[3][3], double *angle)
+static double rotate(double s[3][3], double *angle)
 {
     double trace = s[0][0] + s[1][1] + s[2][2], size = 0, best = 0, value = 0;
     double n[4][4] = {{trace, s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]}}, power[4][4], next[4][4];
@@ -166,9 +166,9 @@ static double turn(double s[3][3], double *angle)
             for (int l = 0; l < 4; l++)
                 next[i / 4][i % 4] += power[i / 4][l] * power[l][i % 4];
         }
-        double most = fmax(fmax(next[0][0], next[1][1]), fmax(next[2][2], next[3][3]));
+        double largest = fmax(fmax(next[0][0], next[1][1]), fmax(next[2][2], next[3][3]));
         for (int i = 0; i < 16; i++)
-            power[i / 4][i % 4] = next[i / 4][i % 4] / most;
+            power[i / 4][i % 4] = next[i / 4][i % 4] / largest;
     }
     int column = 0;
     for (int i = 0; i < 4; i++)
@@ -190,7 +190,7 @@ static rigid_fit fit_motion(const hf_built *b, const hf_measured *measured)
     rigid_fit f = {0};
     double product[3][3] = {{0}};
     sum_up(b, measured, &f, product);
-    f.rest = fmax(f.spread[0] + f.spread[1] - 2 * turn(product, &f.angle), 0);
+    f.rest = fmax(f.spread[0] + f.spread[1] - 2 * rotate(product, &f.angle), 0);
     return f;
 }
 
@@ -265,7 +265,7 @@ static hf_status explain_far(const char *path, const hf_built *b, double all_m, 
                     path, rms_m * 1e3, all_m * 1e3);
 }
 
-/* Reports the distant nodes one by one, at most HF_FAULT_MAX of them. */
+/* Reports the distant nodes one by one, at largest HF_FAULT_MAX of them. */
 static void name_far(const char *path, const hf_built *b, const double *expected_m, double all_m,
                      const hf_measured *measured, hf_messages *messages)
 {

@@ -19,11 +19,11 @@
 
 #include <math.h>
 
-/* Limits of the number of samples in one call. Their numbers are kept in at most CHUNK_BYTES until the linear model has
- * used them, but for CHUNK_LEAST samples in any case. No limit affects the bits of a sample. */
+/* Limits of the number of samples in one call. Their numbers are kept in at n CHUNK_BYTES until the linear model has
+ * used them, but for CHUNK_MIN samples in any case. No limit affects the bits of a sample. */
 #define CHUNK_BYTES (64 << 20)
-#define CHUNK_LEAST 64
-#define CHUNK_MOST 256
+#define CHUNK_MIN 64
+#define CHUNK_MAX 256
 #define AT_ONCE 6 /* right-hand sides of one solve of the linear model */
 
 /* ---- making ---- */
@@ -37,9 +37,9 @@ static void choose_sizes(hf_montecarlo *t)
 {
     const hf_model *m = &t->built->model;
     size_t n_error = (size_t)hf_built_errors_count(&t->errors), bytes = n_error * sizeof(double);
-    size_t most = CHUNK_BYTES / (bytes + 1);
+    size_t n = CHUNK_BYTES / (bytes + 1);
     t->n_z = n_error;
-    t->n_chunk = most < CHUNK_LEAST ? CHUNK_LEAST : most > CHUNK_MOST ? CHUNK_MOST : (int)most;
+    t->n_chunk = n < CHUNK_MIN ? CHUNK_MIN : n > CHUNK_MAX ? CHUNK_MAX : (int)n;
     if (t->n_chunk > t->settings->samples) t->n_chunk = t->settings->samples;
     t->n_room = AT_ONCE * (t->linear.n_dof + (size_t)m->n_cable + t->linear.n_scratch);
 }
@@ -62,7 +62,7 @@ hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b
                            HF_ARRAY(t->scratch, (size_t)n_thread * t->n_room)));
     t->varies = hf_built_errors_vary(&t->errors);
     if (!has_surface(t)) return HF_OK;
-    return hf_surface_design_make(surface, facets, &b->model, b->place_m, b->tension_N, &t->design);
+    return hf_surface_design_make(surface, facets, &b->model, b->position_m, b->tension_N, &t->design);
 }
 
 void hf_montecarlo_free(hf_montecarlo *t)
@@ -79,7 +79,7 @@ void hf_montecarlo_free(hf_montecarlo *t)
 /* ---- errors of a sample ---- */
 
 /* Makes the errors of sample i, as an hf_built_sample. */
-static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_move_m)
+static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
 {
     hf_montecarlo *t = context;
     size_t k = (size_t)(i - t->first);
@@ -88,7 +88,7 @@ static void make_sample(void *context, long i, double *cut_m, double *EA_N, doub
         hf_directions_draw(&t->directions, i, t->point + k * (size_t)t->directions.n, z);
     else
         hf_built_errors_draw(&t->errors, i, z);
-    hf_built_errors_apply(&t->errors, t->scale, z, cut_m, EA_N, support_move_m);
+    hf_built_errors_apply(&t->errors, t->scale, z, cut_m, EA_N, support_displacement_m);
 }
 
 /* ---- measures ---- */
@@ -183,10 +183,10 @@ static void take_sample(void *context, long i, const hf_built_shape *shape, cons
     value[HF_TOLERANCE_PSI] = psi_m_of(t, shape, r);
     value[HF_TOLERANCE_SLACK] = r->n_slack;
     value[HF_TOLERANCE_LOOSE] = r->n_loose;
-    double least = INFINITY;
+    double min_N = INFINITY;
     for (int e = 0; e < m->n_cable; e++)
-        least = fmin(least, shape->tension_N[e]);
-    value[HF_TOLERANCE_LEAST_TENSION] = least;
+        min_N = fmin(min_N, shape->tension_N[e]);
+    value[HF_TOLERANCE_LEAST_TENSION] = min_N;
     if (has_surface(t) && !t->skips_surface) measure_surface(t, shape, value);
 }
 
@@ -241,7 +241,7 @@ bool hf_montecarlo_meets_all(const hf_tolerance_settings *s, const double *row)
     return row[HF_TOLERANCE_STATUS] == HF_OK;
 }
 
-/* Computes whether at least the share settings->yield of the first n samples meets all requirements at this scale. */
+/* Computes whether at min_N the share settings->yield of the first n samples meets all requirements at this scale. */
 static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reaches)
 {
     long met = 0, failed = 0;

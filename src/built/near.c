@@ -55,13 +55,13 @@ static void prepare(const hf_near *near, const hf_built_net *net, hf_workspace *
 {
     const hf_built *b = near->built;
     const hf_model *m = &near->model;
-    size_t cables = (size_t)m->n_cable * sizeof(double), places = 3 * (size_t)m->n_node * sizeof(double);
+    size_t by_cable = (size_t)m->n_cable * sizeof(double), by_node = 3 * (size_t)m->n_node * sizeof(double);
     hf_form_prepare(m, w);
-    if (net->cut_m) memcpy(w->target, net->cut_m, cables);
-    if (net->EA_N) memcpy(w->EA_N, net->EA_N, cables);
-    if (net->support_move_m) memcpy(w->support_move_m, net->support_move_m, places);
-    memcpy(w->position_m, b->place_m, places);
-    memcpy(w->tension_N, b->tension_N, cables);
+    if (net->cut_m) memcpy(w->target, net->cut_m, by_cable);
+    if (net->EA_N) memcpy(w->EA_N, net->EA_N, by_cable);
+    if (net->support_displacement_m) memcpy(w->support_move_m, net->support_displacement_m, by_node);
+    memcpy(w->position_m, b->position_m, by_node);
+    memcpy(w->tension_N, b->tension_N, by_cable);
     w->n_moving = m->n_free + m->n_attachment;
     for (int c = 0; c < 3; c++)
         for (int at = c * m->n_node + m->n_free; at < (c + 1) * m->n_node; at++)
@@ -138,10 +138,10 @@ void hf_near_load(const hf_near *near, hf_near_lanes *l, int lane, const hf_buil
     const hf_model *m = &near->model;
     const hf_chord *c = &near->chord;
     for (int at = 0; at < 3 * m->n_node; at++)
-        l->lanes.x_m[at * HF_LANES + lane] = near->built->place_m[at];
-    for (int d = 0; d < 3 && net->support_move_m; d++)
+        l->lanes.x_m[at * HF_LANES + lane] = near->built->position_m[at];
+    for (int d = 0; d < 3 && net->support_displacement_m; d++)
         for (int at = d * m->n_node + m->n_free; at < (d + 1) * m->n_node; at++)
-            l->lanes.x_m[at * HF_LANES + lane] += net->support_move_m[at];
+            l->lanes.x_m[at * HF_LANES + lane] += net->support_displacement_m[at];
     for (int e = 0; e < m->n_cable; e++) {
         l->cut_m[e * HF_LANES + lane] = net->cut_m[e];
         l->stiffness_N_per_m[e * HF_LANES + lane] = net->EA_N[e] / net->cut_m[e];
@@ -225,9 +225,9 @@ Newton's method for one elastic net from the nominal shape (M34):
 
 /* The tests of near, built_batch and samples also pass with other values of the constants below. In their order
  * these are 40, 0.02, 0.01, 0.001, 1e-8 and 100, 0.1, 1, 0.1, 1e-4. With REACH 0.01, nets of 525 nodes take two steps
- * more at errors of 0.1 mm. Without REACH, most of those with errors of 0.5 mm are not found. */
+ * more at errors of 0.1 mm. Without REACH, n_max of those with errors of 0.5 mm are not found. */
 #define NEWTON_STEPS_MAX 40
-/* Maximum displacement of a node in one step, relative to the mean length of the cables. */
+/* Maximum displacement of a node in one step, relative to the mean length of the by_cable. */
 #define REACH 0.04
 /* The minimum tension in the matrix is the smaller of two values: this fraction of the maximum force out of balance,
  * and FLOOR_MAX of the reference tension. */
@@ -239,7 +239,7 @@ Newton's method for one elastic net from the nominal shape (M34):
 #define GAP_LEFT 1e-2
 enum { KRYLOV = 12 };
 
-/* Computes the stiffness block of cable e. set_stiffness has stored the stiffness along the cables in
+/* Computes the stiffness block of cable e. set_stiffness has stored the stiffness along the by_cable in
  * newton_trial_tension_N, N/m, and that across them in q_N_per_m. */
 static void block_of(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
 {
@@ -255,7 +255,7 @@ static bool holds(const hf_workspace *w, int e, double over_m)
 }
 
 /* Sets newton_force_N to the forces out of balance by the elastic law. Sets newton_step to the same with compression in
- * cables that are taut in the matrix. Returns the maximum of the former, N. */
+ * by_cable that are taut in the matrix. Returns the maximum of the former, N. */
 static double measure(const hf_model *m, hf_workspace *w)
 {
     double u[3], largest = 0;
@@ -394,23 +394,23 @@ static void extend(const hf_near *near, const double *factor, int j, hf_workspac
 
 /* Replaces the gap by the displacement of the attachments that closes it, (1 + F S)^-1 gap. It uses GMRES (Saad,
  * Schultz, SIAM J. Sci. Stat. Comput. 7, 1986) with the inverse A of the nominal net as preconditioner. A alone closes
- * only a fifth of the gap per step, because slack cables remove stiffness in a few directions.
+ * only a fifth of the gap per step, because slack by_cable remove stiffness in a few directions.
  *
  * No division by 0 occurs. F and S are positive semidefinite, so 1 + F S is regular, as is its nominal counterpart. The
  * images of the vectors are therefore independent, and a space that ends early (h[j + 1] = 0) contains the solution. If
  * rounding breaks this, the result is NaN and Newton's method stops on it. */
 static void close_gap(const hf_near *near, const double *factor, double *gap_m, hf_workspace *w)
 {
-    enum { MOST = KRYLOV };
+    enum { MAX = KRYLOV };
     size_t n = (size_t)near->chord.n_pull;
-    int most = n < MOST ? (int)n - 1 : MOST, j = 0;
-    double *v = w->schur_work, h[MOST][MOST + 1], rotation[MOST][2], rest[MOST + 1];
+    int n_max = n < MAX ? (int)n - 1 : MAX, j = 0;
+    double *v = w->schur_work, h[MAX][MAX + 1], rotation[MAX][2], rest[MAX + 1];
     answer_nominal(near, gap_m, v);
     double whole = sqrt(hf_dot(n, v, v));
     for (size_t k = 0; k < n && whole > 0; k++)
         v[k] /= whole;
     rest[0] = whole;
-    while (whole > 0 && j < most && fabs(rest[j]) > GAP_LEFT * whole) {
+    while (whole > 0 && j < n_max && fabs(rest[j]) > GAP_LEFT * whole) {
         extend(near, factor, j, w, h[j]);
         rotate(j, h[j], rotation, rest);
         j++;
@@ -553,7 +553,7 @@ static double ratio_of(const hf_near_lanes *l, hf_group group, int lane)
     return high_N > 0 ? high_N / l->now.lowest_N[group][lane] : (double)NAN;
 }
 
-/* Sets the result of a lane without slack cables. Each cable has the tension of its law, so the error of lengths is
+/* Sets the result of a lane without slack by_cable. Each cable has the tension of its law, so the error of lengths is
  * 0. */
 static void report(const hf_near *near, const hf_near_lanes *l, int lane, hf_workspace *w, hf_form_result *r)
 {
@@ -571,7 +571,7 @@ static void report(const hf_near *near, const hf_near_lanes *l, int lane, hf_wor
     if (m->n_attachment) hf_coupling_accept(m, w, l->steps[lane], l->gap_m[lane], r);
 }
 
-/* Accepts a converged lane with slack cables. The scalar code counts them and looks for loose nodes. */
+/* Accepts a converged lane with slack by_cable. The scalar code counts them and looks for loose nodes. */
 static bool accept_slack(const hf_near *near, const hf_near_lanes *l, int lane, const hf_built_net *net,
                          hf_workspace *w, hf_form_result *r)
 {

@@ -243,23 +243,23 @@ typedef struct {
 static void ask_multipliers(const hf_saddle_dual *d, refinement *r, double *p)
 {
     /* Displacements need less room than the residual, so they may overwrite it. */
-    double *right = r->error, *moved = right;
+    double *right = r->error, *displaced = right;
     for (int i = 0; i < d->n; i++)
         p[i] = -right[6 * (i / 3) + i % 3];
     for (int i = 0; i < d->n; i++)
-        moved[i] = right[6 * (i / 3) + 3 + i % 3] / weight_of(d, i);
-    add_stiffness(d, moved, p);
+        displaced[i] = right[6 * (i / 3) + 3 + i % 3] / weight_of(d, i);
+    add_stiffness(d, displaced, p);
 }
 
 /* Adds the multipliers p and the displacements that follow from them to the solution. */
 static void add_answer(const hf_saddle_dual *d, refinement *r, const double *p)
 {
-    double *moved = r->error, *pull = moved + d->n, *z = r->solution;
+    double *displaced = r->error, *pull = displaced + d->n, *z = r->solution;
     memset(pull, 0, (size_t)d->n * sizeof *pull);
     add_stiffness(d, p, pull);
     for (int i = 0; i < d->n; i++) {
         z[6 * (i / 3) + i % 3] += p[i];
-        z[6 * (i / 3) + 3 + i % 3] += moved[i] - pull[i] / weight_of(d, i);
+        z[6 * (i / 3) + 3 + i % 3] += displaced[i] - pull[i] / weight_of(d, i);
     }
 }
 
@@ -354,7 +354,7 @@ static bool factor_dual(hf_saddle *s)
 
 /* ---- assembling ---- */
 
-enum { MULTIPLIER, MOVE }; /* kinds of unknowns */
+enum { MULTIPLIER, DISPLACEMENT }; /* kinds of unknowns */
 
 /* Returns the first of three unknowns of a row, or -1 when it has none. Unknowns of the border begin at n_band. */
 static int unknown_of(const hf_saddle *s, int row, int kind)
@@ -363,7 +363,7 @@ static int unknown_of(const hf_saddle *s, int row, int kind)
     if (row < m->n_free) return 6 * row + 3 * kind;
     int i = 3 * (row - m->n_free);
     if (i < s->n_attached) return s->n_band + i + (kind == MULTIPLIER ? s->n_attached : 0);
-    return kind == MOVE && s->n_off ? s->n_band + s->n_attached + i : -1;
+    return kind == DISPLACEMENT && s->n_off ? s->n_band + s->n_attached + i : -1;
 }
 
 /* Adds a value to the band, a column of the border or the corner. Columns of the border stand for its rows, too. */
@@ -380,7 +380,7 @@ static void add_entry(hf_saddle *s, int i, int j, double value)
 
 static double unit_of(const hf_saddle *s, int kind)
 {
-    return kind == MOVE ? s->size_m : s->force_m_per_N;
+    return kind == DISPLACEMENT ? s->size_m : s->force_m_per_N;
 }
 
 /* Adds a block [3][3], times sign and units, between the unknowns of two rows. */
@@ -407,8 +407,8 @@ static void add_cable(hf_saddle *s, int e)
     for (int p = 0; p < 2; p++)
         for (int q = 0; q < 2; q++) {
             double sign = p == q ? 1 : -1;
-            add_rows(s, end[p], MULTIPLIER, end[q], MOVE, sign, block);
-            add_rows(s, end[p], MOVE, end[q], MULTIPLIER, sign, block);
+            add_rows(s, end[p], MULTIPLIER, end[q], DISPLACEMENT, sign, block);
+            add_rows(s, end[p], DISPLACEMENT, end[q], MULTIPLIER, sign, block);
             add_rows(s, end[p], MULTIPLIER, end[q], MULTIPLIER, -sign, spread);
         }
 }
@@ -423,10 +423,10 @@ static void add_row(hf_saddle *s, int row)
         if (row >= m->n_free + m->n_attachment && s->n_off) weight[c][c] += 1 / (rest * rest);
         if (row < m->n_free && s->linear->work.loose[row]) spring[c][c] = hf_loose_spring_N_per_m(m);
     }
-    add_rows(s, row, MOVE, row, MOVE, 1, weight);
+    add_rows(s, row, DISPLACEMENT, row, DISPLACEMENT, 1, weight);
     if (spring[0][0] == 0) return;
-    add_rows(s, row, MOVE, row, MULTIPLIER, 1, spring);
-    add_rows(s, row, MULTIPLIER, row, MOVE, 1, spring);
+    add_rows(s, row, DISPLACEMENT, row, MULTIPLIER, 1, spring);
+    add_rows(s, row, MULTIPLIER, row, DISPLACEMENT, 1, spring);
 }
 
 /* Adds the border of shared number k: the forces of its errors, in the rows of the multipliers. They express z =
@@ -566,7 +566,7 @@ static void ask(const hf_saddle *s, const hf_saddle_answer *a, double *band, dou
     memset(band, 0, (size_t)s->n_band * sizeof *band);
     memset(border, 0, (size_t)s->n_border * sizeof *border);
     for (int row = 0; row < m->n_node; row++) {
-        int at = unknown_of(s, row, MOVE);
+        int at = unknown_of(s, row, DISPLACEMENT);
         double *to = at < s->n_band ? band + at : border + (at - s->n_band);
         for (int c = 0; c < 3 && at >= 0; c++) {
             int i = 3 * row + c;
@@ -622,7 +622,7 @@ static void read_answer(const hf_saddle *s, hf_saddle_answer *a, const double *b
     const hf_model *m = &l->built->model;
     double rest = s->prior.support_sigma_m;
     for (int row = 0; row < m->n_node; row++)
-        read_unknown(s, row, MOVE, band, border, a->move_m + 3 * (ptrdiff_t)row);
+        read_unknown(s, row, DISPLACEMENT, band, border, a->move_m + 3 * (ptrdiff_t)row);
     for (int i = 3 * m->n_free; i < 3 * m->n_node; i++) {
         int k = i - 3 * m->n_free;
         if (k < s->n_attached)

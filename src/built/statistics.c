@@ -199,8 +199,8 @@ static void add_row(void *context, const double *row)
         hf_tolerance_figures *f = &s->to->figure[k];
         double value = row[HF_TOLERANCE_FIRST + k];
         if (isnan(value)) continue;
-        f->least = s->n[k] ? fmin(f->least, value) : value;
-        f->largest = s->n[k]++ ? fmax(f->largest, value) : value;
+        f->min = s->n[k] ? fmin(f->min, value) : value;
+        f->max = s->n[k]++ ? fmax(f->max, value) : value;
         s->sum[k] += value;
     }
     if (row[HF_TOLERANCE_STATUS] != HF_OK) s->to->n_failed++;
@@ -230,8 +230,8 @@ static void add_deviations(void *context, const double *row)
     s->xx += x * x;
     s->xy += x * y;
     s->yy += y * y;
-    double width = psi_of->largest - psi_of->least, place = width > 0 ? (psi - psi_of->least) / width : 0;
-    int bin = (int)(place * HF_TOLERANCE_BINS);
+    double width = psi_of->max - psi_of->min, part = width > 0 ? (psi - psi_of->min) / width : 0;
+    int bin = (int)(part * HF_TOLERANCE_BINS);
     s->bin[bin < HF_TOLERANCE_BINS ? bin : HF_TOLERANCE_BINS - 1]++;
 }
 
@@ -362,8 +362,8 @@ hf_status hf_statistics_sum_up(const hf_montecarlo *t, const hf_statistics_rows 
     judge_yield(&s, rows->n, to);
     rank_cables(t, to);
     to->psi_95_m = to->figure[HF_TOLERANCE_PSI].value[1]; /* index 1 is the 95 % quantile of hf_tolerance_quantile */
-    to->bin_low_m = to->figure[HF_TOLERANCE_PSI].least;
-    to->bin_high_m = to->figure[HF_TOLERANCE_PSI].largest;
+    to->bin_low_m = to->figure[HF_TOLERANCE_PSI].min;
+    to->bin_high_m = to->figure[HF_TOLERANCE_PSI].max;
     for (int k = 0; k < HF_TOLERANCE_BINS; k++)
         to->bin[k] = (double)s.bin[k] / (double)s.n_both;
     return HF_OK;

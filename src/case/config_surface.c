@@ -1,6 +1,6 @@
 /* Checks that the net lies on the target surface of the case. */
 #include "case/config_check.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,17 +14,18 @@
 
 #define PLACE_SIZE (HF_PATH_SIZE + 128)
 
-static bool is_on(const hf_wanted_fit *fit)
+static bool is_on(const hf_target_surface_fit *fit)
 {
     return fit->rms_m <= OFF_MOST * fit->depth_m;
 }
 
 static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surface_settings *surface,
-                        const hf_wanted_fit *cylinder, const hf_wanted_fit *paraboloid, hf_messages *messages)
+                        const hf_target_surface_fit *cylinder, const hf_target_surface_fit *paraboloid,
+                        hf_messages *messages)
 {
     char place[PLACE_SIZE], other[PLACE_SIZE], line[32] = "";
     bool is_round = surface->kind == HF_SURFACE_PARABOLOID;
-    const hf_wanted_fit *fit = is_round ? paraboloid : cylinder;
+    const hf_target_surface_fit *fit = is_round ? paraboloid : cylinder;
     const char *advice = "its vertex is the origin, its axis z, its focal length this one";
     if (is_on(is_round ? cylinder : paraboloid))
         advice = is_round ? "give surface.kind: parabolic_cylinder" : "give surface.kind: paraboloid";
@@ -37,7 +38,7 @@ static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surfac
                     "farthest '%s'%s, %.4g mm (above the parabolic_cylinder z = x^2/(4f) the RMS is %.4g mm, above the "
                     "paraboloid z = (x^2 + y^2)/(4f) %.4g mm); %s",
                     place, hf_surface_kind_word[surface->kind], surface->focal_length_m, fit->rms_m * 1e3,
-                    scene->node_id[fit->farthest], line, fit->most_m * 1e3, cylinder->rms_m * 1e3,
+                    scene->node_id[fit->farthest], line, fit->max_m * 1e3, cylinder->rms_m * 1e3,
                     paraboloid->rms_m * 1e3, advice);
 }
 
@@ -83,8 +84,9 @@ hf_status hf_config_surface(const hf_case *c, const hf_scene *scene, hf_surface_
     if (!c->has_surface) return HF_OK;
     *surface = c->surface;
     open_feed(c, &surface->pattern);
-    hf_wanted_fit cylinder = hf_wanted_compare(HF_SURFACE_PARABOLIC_CYLINDER, surface->focal_length_m, scene);
-    hf_wanted_fit paraboloid = hf_wanted_compare(HF_SURFACE_PARABOLOID, surface->focal_length_m, scene);
+    hf_target_surface_fit cylinder =
+        hf_target_surface_compare(HF_SURFACE_PARABOLIC_CYLINDER, surface->focal_length_m, scene);
+    hf_target_surface_fit paraboloid = hf_target_surface_compare(HF_SURFACE_PARABOLOID, surface->focal_length_m, scene);
     if (surface->kind == HF_SURFACE_AUTO)
         surface->kind = paraboloid.rms_m < cylinder.rms_m ? HF_SURFACE_PARABOLOID : HF_SURFACE_PARABOLIC_CYLINDER;
     if (is_on(surface->kind == HF_SURFACE_PARABOLOID ? &paraboloid : &cylinder)) return HF_OK;

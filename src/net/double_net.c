@@ -1,6 +1,6 @@
 #include "net/double_net.h"
 
-#include "net/wanted.h"
+#include "net/target_surface.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -31,7 +31,7 @@ static double rear_height(const hf_double_net *d, const double p[3], double slop
 {
     bool is_round = d->kind == HF_SURFACE_PARABOLOID;
     double dx = p[0] - d->middle_x_m, dy = is_round ? p[1] : 0;
-    double front_z = p[2] - hf_wanted_height_above(d->kind, front_curvature(d), p, slope);
+    double front_z = p[2] - hf_target_surface_height_above(d->kind, front_curvature(d), p, slope);
     slope[0] -= 2 * nearing(d) * dx;
     slope[1] -= 2 * nearing(d) * dy;
     return front_z + (d->half_m * d->half_m - dx * dx - dy * dy) * nearing(d) - d->distance_m;
@@ -41,7 +41,7 @@ bool hf_double_net_behind(const hf_double_net *d, bool along_z, const double fro
 {
     double slope[2], normal[3] = {0, 0, -1}, t = 0;
     bool is_found = along_z;
-    hf_wanted_height_above(d->kind, front_curvature(d), front_m, slope);
+    hf_target_surface_height_above(d->kind, front_curvature(d), front_m, slope);
     for (int c = 0; c < 3; c++)
         rear_m[c] = front_m[c];
     if (!along_z) normal[0] = slope[0], normal[1] = slope[1];
@@ -97,7 +97,7 @@ void hf_double_net_put_cable(const double EA_N[2], int e, int a, int b, hf_group
     s->end[2 * e + 1] = b;
     s->group[e] = (unsigned char)group;
     s->law[e] = (unsigned char)law;
-    s->target[e] = hf_law_default_target(law, hf_scene_theoretical_length(s, e));
+    s->target[e] = hf_law_default_target(law, hf_scene_length_at_target(s, e));
     if (s->EA_N) s->EA_N[e] = EA_N[group] > 0 ? EA_N[group] : (double)NAN;
 }
 
@@ -117,7 +117,7 @@ void hf_double_net_fill(const hf_double_net *d, const double EA_N[2], int n_fron
     for (int i = 0; i < n_front; i++) {
         if (s->role[i] == HF_ROLE_SUPPORT) continue;
         hf_double_net_put_cable(EA_N, m, i, n_front + i, HF_GROUP_INNER, d->law, s);
-        s->target[m] = tie_target(d, hf_scene_theoretical_length(s, m), s->EA_N ? s->EA_N[m] : (double)NAN);
+        s->target[m] = tie_target(d, hf_scene_length_at_target(s, m), s->EA_N ? s->EA_N[m] : (double)NAN);
         m++;
     }
 }

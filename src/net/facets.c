@@ -14,7 +14,7 @@
 #include "base/elementary.h"
 #include "base/union_find.h"
 #include "net/facet_import.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,7 +34,7 @@
 typedef struct {
     int from, to;
     double dx, dy;
-    int twin, place; /* index of the other direction of the cable; index before sorting */
+    int twin, rank; /* index of the other direction of the cable; index before sorting */
     int cable;
 } half;
 
@@ -61,8 +61,8 @@ static void follow_cables(graph *g)
         for (int k = 0; k < 2; k++) {
             int i = s->end[2 * e + k], from = s->end[2 * e + 1 - k];
             if (s->role[i] == HF_ROLE_INNER || s->role[from] != HF_ROLE_INNER) continue;
-            double most_m = NEAR_SLOPE * hf_scene_theoretical_length(s, e);
-            if (fabs(g->above_m[i] - g->above_m[from]) <= most_m) g->is_on[i] = 1;
+            double max_m = NEAR_SLOPE * hf_scene_length_at_target(s, e);
+            if (fabs(g->above_m[i] - g->above_m[from]) <= max_m) g->is_on[i] = 1;
         }
 }
 
@@ -70,9 +70,9 @@ static void choose_nodes(graph *g, const hf_surface_settings *surface)
 {
     const hf_scene *s = g->scene;
     double slope[2], curvature = 1 / (4 * surface->focal_length_m);
-    double near_m = NEAR_PART * hf_wanted_compare(surface->kind, surface->focal_length_m, s).depth_m;
+    double near_m = NEAR_PART * hf_target_surface_compare(surface->kind, surface->focal_length_m, s).depth_m;
     for (int i = 0; i < s->n_node; i++) {
-        g->above_m[i] = hf_wanted_height_above(surface->kind, curvature, s->position_m + 3 * (size_t)i, slope);
+        g->above_m[i] = hf_target_surface_height_above(surface->kind, curvature, s->position_m + 3 * (size_t)i, slope);
         g->is_on[i] = s->role[i] == HF_ROLE_INNER || fabs(g->above_m[i]) <= near_m;
     }
     follow_cables(g);
@@ -128,7 +128,7 @@ static int by_direction(const void *a, const void *b)
     double cross = p->dx * q->dy - p->dy * q->dx;
     if (cross != 0) return cross > 0 ? -1 : 1;
     if (p->to != q->to) return p->to < q->to ? -1 : 1;
-    int order = p->place < q->place ? -1 : p->place > q->place;
+    int order = p->rank < q->rank ? -1 : p->rank > q->rank;
     return p->from < p->to ? order : -order;
 }
 
@@ -144,7 +144,7 @@ static void collect(graph *g)
         }
     qsort(g->edge, (size_t)g->n_half, sizeof *g->edge, by_direction);
     for (int h = 0; h < g->n_half; h++) {
-        g->sorted[g->edge[h].place] = h;
+        g->sorted[g->edge[h].rank] = h;
         g->first[g->edge[h].from + 1]++;
     }
     for (int i = 0; i < s->n_node; i++)
@@ -182,7 +182,7 @@ static int walk(graph *g, int h, int corner[4], double *area)
 static bool is_convex(const hf_scene *s, int n, const int corner[4], double area)
 {
     for (int k = 0; k < n; k++)
-        if (!(hf_facet_turn(s, corner[k], corner[(k + 1) % n], corner[(k + 2) % n]) > -STRAIGHT_PART * area))
+        if (!(hf_facet_double_area(s, corner[k], corner[(k + 1) % n], corner[(k + 2) % n]) > -STRAIGHT_PART * area))
             return false;
     return true;
 }
@@ -224,7 +224,7 @@ static void close_gaps(const graph *g, int h, hf_facets *f)
         if (s->role[node[0]] == HF_ROLE_SUPPORT) {
             for (; s->role[g->edge[k].to] == HF_ROLE_INNER; k = next_around(g, k), n++) {
                 if (n < 4) node[n] = g->edge[k].to;
-                area += hf_facet_turn(s, node[0], g->edge[k].to, g->edge[next_around(g, k)].to);
+                area += hf_facet_double_area(s, node[0], g->edge[k].to, g->edge[next_around(g, k)].to);
             }
             if (n < 4) node[n] = g->edge[k].to;
             bool is_gap = n > 1 && s->role[g->edge[k].to] == HF_ROLE_SUPPORT && area > 0;

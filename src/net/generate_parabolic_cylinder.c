@@ -83,7 +83,7 @@ static double y_of(const hf_cylinder *c, int half_index)
     return from + (to - from) * (half_index % n) / n;
 }
 
-static double place_along(const hf_cylinder *c, int axis, int half_index)
+static double position_along(const hf_cylinder *c, int axis, int half_index)
 {
     return axis == 0 ? x_of(c, half_index) : y_of(c, half_index);
 }
@@ -94,18 +94,18 @@ static const char *fault_of_pitches(const hf_cylinder *c, int axis, char *what, 
 {
     static const char *const key[] = {"pitches_x_m", "pitches_y_m"}, *const whole[] = {"aperture_m", "length_m"};
     const hf_double_list *pitches = axis == 0 ? &c->pitches_x_m : &c->pitches_y_m;
-    double wanted = axis == 0 ? c->aperture_m : c->length_m, sum = 0;
+    double required = axis == 0 ? c->aperture_m : c->length_m, sum = 0;
     for (int i = 0; i < pitches->n; i++)
         sum += pitches->value[i];
     if (pitches->n == 0) return NULL;
     bool are_ascending = true;
     for (int k = 0, n = 2 * c->cells_per_module[axis]; k < pitches->n && pitches->n == c->modules[axis]; k++)
-        are_ascending &= place_along(c, axis, k * n) < place_along(c, axis, (k + 1) * n);
+        are_ascending &= position_along(c, axis, k * n) < position_along(c, axis, (k + 1) * n);
     if (pitches->n != c->modules[axis])
         snprintf(what, size, "must have a value for each of the %d modules along %c, and has %d", c->modules[axis],
                  "xy"[axis], pitches -> n);
-    else if (fabs(sum - wanted) > SUM_TOLERANCE * wanted)
-        snprintf(what, size, "must add up to %s, %.12g m, and do to %.12g m", whole[axis], wanted, sum);
+    else if (fabs(sum - required) > SUM_TOLERANCE * required)
+        snprintf(what, size, "must add up to %s, %.12g m, and do to %.12g m", whole[axis], required, sum);
     else if (!are_ascending)
         snprintf(what, size, "must not differ so much that a module vanishes beside the others");
     else
@@ -119,7 +119,7 @@ static double smallest_pitch(const hf_cylinder *c, int axis)
     double smallest = INFINITY;
     for (int k = 0; k < c->modules[axis]; k++) {
         int n = 2 * c->cells_per_module[axis];
-        smallest = fmin(smallest, place_along(c, axis, (k + 1) * n) - place_along(c, axis, k * n));
+        smallest = fmin(smallest, position_along(c, axis, (k + 1) * n) - position_along(c, axis, k * n));
     }
     return smallest;
 }
@@ -140,7 +140,7 @@ static double largest_sag(const hf_cylinder *c, int axis)
     double largest = 0, t = (double)(n / 2) / n;
     bool is_held = c->supports == HF_SUPPORTS_PERIMETER || (c->supports == HF_SUPPORTS_RIBS && axis == 0);
     for (int k = 0; k < c->modules[axis] && !is_held; k++) {
-        double a = place_along(c, axis, 2 * n * k), b = place_along(c, axis, 2 * n * (k + 1));
+        double a = position_along(c, axis, 2 * n * k), b = position_along(c, axis, 2 * n * (k + 1));
         double dz = axis == 0 ? z_on_parabola(c, b) - z_on_parabola(c, a) : 0;
         largest = fmax(largest, 4 * c->scallop * hf_norm(b - a, dz, 0) * t * (1 - t));
     }
@@ -154,8 +154,8 @@ static const char *fault_of_scallops(const hf_cylinder *c, char *what, size_t si
     for (int axis = 0; axis < 2; axis++) {
         int across = 1 - axis, last = 2 * c->cells_per_module[across] * c->modules[across];
         int next = c->pattern == HF_PATTERN_DIAGONAL ? 1 : 2;
-        double room = fmin(place_along(c, across, next) - place_along(c, across, 0),
-                           place_along(c, across, last) - place_along(c, across, last - next));
+        double room = fmin(position_along(c, across, next) - position_along(c, across, 0),
+                           position_along(c, across, last) - position_along(c, across, last - next));
         double sag = largest_sag(c, axis);
         if (last == 2 && next == 2) room /= 2;
         if (sag < room) continue;
@@ -269,7 +269,7 @@ static void put_node(const grid *g, int node, double x, double y, hf_role role)
     g->s->role[node] = (unsigned char)role;
 }
 
-static void place_nodes(const grid *g)
+static void put_nodes(const grid *g)
 {
     bool with_middles = g->c->pattern == HF_PATTERN_DIAGONAL;
     for (int i = 0; i < g->nx; i++) {
@@ -458,7 +458,7 @@ static hf_status fill(grid *g, int n_between)
 {
     hf_scene *s = g->s;
     int n_edge_tie;
-    place_nodes(g);
+    put_nodes(g);
     scallop_edges(g);
     connect(g, &n_edge_tie);
     if (g->c->rear_distance_m > 0) {

@@ -17,7 +17,7 @@
 #include <stdlib.h>
 
 #define NODE_MAX 4000000  /* keeps every index and band offset far below the range of int */
-#define LEAST_EDGE 0.25   /* minimum distance of a node of the quad grid from the rim, in cells */
+#define EDGE_MIN 0.25     /* minimum distance of a node of the quad grid from the rim, in cells */
 #define SAME_SUPPORT 1e-9 /* relative to the radius; nearer ends of rows and columns are one support */
 #define RELAXED 1e-16     /* relative to the first residual */
 #define RELAX_STEPS 40    /* maximum, per ring; about 4 are needed */
@@ -54,7 +54,7 @@ static const char *const outside =
 static bool leaves_rim(const hf_paraboloid *p)
 {
     hf_double_net d = rear_of(p);
-    double R = radius(p), r = R * (p->rings - (p->grid == HF_GRID_QUAD ? LEAST_EDGE : 1)) / p->rings;
+    double R = radius(p), r = R * (p->rings - (p->grid == HF_GRID_QUAD ? EDGE_MIN : 1)) / p->rings;
     for (int k = 0; k < 24; k++) {
         double angle = HF_PI / 12 * k, rear[3], front[3] = {p->offset_m + r * hf_cosine(angle), r * hf_sine(angle), 0};
         front[2] = front_height(p, front[0], front[1]);
@@ -83,8 +83,8 @@ typedef struct {
     bool *is_rim;    /* [n_node], true for a support */
     int *label;      /* [n_node][2], numbers for the id */
     int *end;        /* [n_cable][2], node indices */
-    int *place;      /* [2 rings + 1][2 rings + 1], node at each place of the quad grid, by rows */
-    void *block, *place_block;
+    int *node_at;    /* [2 rings + 1][2 rings + 1], nodes of the quad grid, by rows */
+    void *block, *node_at_block;
 } plane_grid;
 
 static int add_point(plane_grid *g, double x, double y, bool is_rim, int a, int b)
@@ -123,7 +123,7 @@ static int first_of_ring(int ring)
 
 /* Adds ring k with 6k nodes, k on each side. The nodes of the last ring are evenly spaced on the rim. Those of the
  * other rings start on circles and are relaxed later. */
-static void place_ring(const hf_paraboloid *p, plane_grid *g, int ring)
+static void add_ring(const hf_paraboloid *p, plane_grid *g, int ring)
 {
     double r = radius(p) * ring / p->rings;
     for (int i = 0; i < 6 * ring; i++) {
@@ -149,7 +149,7 @@ static void make_triangles(const hf_paraboloid *p, plane_grid *g)
 {
     add_point(g, 0, 0, false, 0, 0);
     for (int ring = 1; ring <= p->rings; ring++)
-        place_ring(p, g, ring);
+        add_ring(p, g, ring);
     for (int i = 0; i < 6; i++)
         add_line(g, 0, 1 + i);
     for (int ring = 1; ring < p->rings; ring++)
@@ -161,16 +161,16 @@ static void make_triangles(const hf_paraboloid *p, plane_grid *g)
  * densities that is held at its rim. For any number of rings, the facet error (RMS after a best fit) is then 1.07 times
  * that of equilateral facets with the same mean side. The tensions that hold the net are nearly even. */
 
-/* Computes the forces of the cables on the free nodes at the positions `place` [n_node][2], with the sign changed.
+/* Computes the forces of the cables on the free nodes at the positions `at_m` [n_node][2], with the sign changed.
  * Writes them to minus_force [n_node][2]. */
-static void pull(const plane_grid *g, const double *place, double *minus_force)
+static void pull(const plane_grid *g, const double *at_m, double *minus_force)
 {
     for (int i = 0; i < 2 * g->n_node; i++)
         minus_force[i] = 0;
     for (int e = 0; e < g->n_cable; e++)
         for (int c = 0, a = 2 * g->end[2 * e], b = 2 * g->end[2 * e + 1]; c < 2; c++) {
-            minus_force[a + c] += place[a + c] - place[b + c];
-            minus_force[b + c] -= place[a + c] - place[b + c];
+            minus_force[a + c] += at_m[a + c] - at_m[b + c];
+            minus_force[b + c] -= at_m[a + c] - at_m[b + c];
         }
     for (int i = 0; i < g->n_node; i++)
         if (g->is_rim[i]) minus_force[2 * i] = minus_force[2 * i + 1] = 0;
@@ -222,7 +222,7 @@ static hf_status relax(const hf_paraboloid *p, plane_grid *g)
  * -1 if there is none. */
 static int last_in_row(const hf_paraboloid *p, int k)
 {
-    double n = p->rings - LEAST_EDGE;
+    double n = p->rings - EDGE_MIN;
     return k > n ? -1 : (int)sqrt(n * n - (double)k * k);
 }
 
@@ -236,7 +236,7 @@ static int rim_point(const hf_paraboloid *p, plane_grid *g, int first_support, d
 
 static void make_quads(const hf_paraboloid *p, plane_grid *g)
 {
-    int N = p->rings, width = 2 * N + 1, *node = g->place;
+    int N = p->rings, width = 2 * N + 1, *node = g->node_at;
     double cell = radius(p) / N;
     for (int j = -N; j <= N; j++)
         for (int i = -last_in_row(p, abs(j)); i <= last_in_row(p, abs(j)); i++) {
@@ -266,7 +266,7 @@ enum { FRONT, FRONT_EDGE, REAR, REAR_EDGE, TIE, N_FAMILY };
 static const char *const family_name[N_FAMILY] = {"front", "front_edge", "rear", "rear_edge", "tie"};
 static const int rear_family[N_FAMILY] = {REAR, REAR_EDGE};
 
-static void place_front(const hf_paraboloid *p, const plane_grid *g, hf_scene *s)
+static void put_nodes(const hf_paraboloid *p, const plane_grid *g, hf_scene *s)
 {
     for (int i = 0; i < g->n_node; i++) {
         double *front = s->position_m + 3 * (size_t)i;
@@ -278,7 +278,7 @@ static void place_front(const hf_paraboloid *p, const plane_grid *g, hf_scene *s
 }
 
 /* Writes the cables of the front net. member [g->n_cable] receives their sets. */
-static void put_front(const plane_grid *g, const double EA_N[2], hf_scene *s, hf_cable_set_member *member)
+static void put_cables(const plane_grid *g, const double EA_N[2], hf_scene *s, hf_cable_set_member *member)
 {
     for (int e = 0; e < g->n_cable; e++) {
         int a = g->end[2 * e], b = g->end[2 * e + 1];
@@ -314,7 +314,7 @@ static hf_status make_grid(const hf_paraboloid *p, plane_grid *g)
 {
     size_t width = 2 * (size_t)p->rings + 1;
     *g = (plane_grid){0};
-    HF_TRY(HF_ARENA_ARRAYS(&g->place_block, HF_ARRAY(g->place, width * width)));
+    HF_TRY(HF_ARENA_ARRAYS(&g->node_at_block, HF_ARRAY(g->node_at, width * width)));
     for (int pass = 0; pass < 2; pass++) {
         if (pass == 1)
             HF_TRY(HF_ARENA_ARRAYS(&g->block, HF_ARRAY(g->plane_m, 2 * g->n_node), HF_ARRAY(g->is_rim, g->n_node),
@@ -330,7 +330,7 @@ static hf_status make_grid(const hf_paraboloid *p, plane_grid *g)
 
 static void free_grid(plane_grid *g)
 {
-    hf_arena_free_block(g->place_block);
+    hf_arena_free_block(g->node_at_block);
     hf_arena_free_block(g->block);
 }
 
@@ -354,8 +354,8 @@ static hf_status make_net(const hf_paraboloid *p, const plane_grid *g, const dou
     HF_TRY(hf_scene_allocate(s, is_double ? 2 * n : n, is_double ? 2 * m + n_tie : m, false, with_EA, false));
     hf_cable_set_member *member = malloc((size_t)s->n_cable * sizeof *member);
     if (!member) return HF_NO_MEMORY;
-    place_front(p, g, s);
-    put_front(g, EA_N, s, member);
+    put_nodes(p, g, s);
+    put_cables(g, EA_N, s, member);
     if (is_double) {
         hf_double_net d = rear_of(p);
         hf_double_net_fill(&d, EA_N, n, m, s);
@@ -403,15 +403,15 @@ static int by_angle(const void *a, const void *b)
     return cross > 0 ? -1 : cross < 0;
 }
 
-hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **place_m)
+hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **position_m)
 {
     plane_grid g;
     *n = 0;
     hf_status status = make_grid(paraboloid, &g);
-    *place_m = status == HF_OK ? malloc(3 * (size_t)g.n_node * sizeof **place_m) : NULL;
-    if (!*place_m) status = HF_NO_MEMORY;
+    *position_m = status == HF_OK ? malloc(3 * (size_t)g.n_node * sizeof **position_m) : NULL;
+    if (!*position_m) status = HF_NO_MEMORY;
     for (int i = 0; i < g.n_node && status == HF_OK; i++) {
-        double *p = *place_m + 3 * (size_t)*n;
+        double *p = *position_m + 3 * (size_t)*n;
         if (!g.is_rim[i]) continue;
         p[0] = g.plane_m[2 * i];
         p[1] = fabs(g.plane_m[2 * i + 1]) < SAME_SUPPORT * radius(paraboloid) ? 0 : g.plane_m[2 * i + 1];
@@ -420,9 +420,9 @@ hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **pl
     }
     free_grid(&g);
     if (status != HF_OK) return status;
-    qsort(*place_m, (size_t)*n, 3 * sizeof **place_m, by_angle);
+    qsort(*position_m, (size_t)*n, 3 * sizeof **position_m, by_angle);
     for (int i = 0; i < *n; i++) {
-        double *p = *place_m + 3 * (size_t)i;
+        double *p = *position_m + 3 * (size_t)i;
         p[0] += paraboloid->offset_m;
         p[2] = front_height(paraboloid, p[0], p[1]);
     }

@@ -67,7 +67,7 @@ static void number_nodes(const hf_scene *s, hf_model *m)
     }
 }
 
-static void place_cables(const hf_scene *s, hf_model *m)
+static void find_band_entries(const hf_scene *s, hf_model *m)
 {
     int column = m->half_bandwidth + 1;
     for (int e = 0; e < m->n_cable; e++) {
@@ -88,7 +88,7 @@ static void place_cables(const hf_scene *s, hf_model *m)
 static double given_tension(const hf_scene *s, double pretension_N, int e)
 {
     if (hf_law_has(s->law[e], HF_LAW_HAS_MULTIPLIER)) return 0;
-    if (!hf_law_has(s->law[e], HF_LAW_GIVES_TENSION)) return fabs(s->target[e]) * hf_scene_theoretical_length(s, e);
+    if (!hf_law_has(s->law[e], HF_LAW_GIVES_TENSION)) return fabs(s->target[e]) * hf_scene_length_at_target(s, e);
     return isnan(s->target[e]) ? pretension_N : s->target[e];
 }
 
@@ -111,7 +111,7 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
     m->reference_N = hf_model_reference_N(s, form->pretension_N);
     for (int e = 0; e < m->n_cable; e++) {
         int law = s->law[e];
-        double length = hf_scene_theoretical_length(s, e), target = s->target[e];
+        double length = hf_scene_length_at_target(s, e), target = s->target[e];
         double given = given_tension(s, form->pretension_N, e), tension = given > 0 ? given : m->reference_N;
         hf_law_cable cable = {(hf_law)law, target, s->EA_N ? s->EA_N[e] : (double)NAN, length};
         tension = hf_law_first_tension_N(cable, tension);
@@ -385,7 +385,7 @@ static hf_status build(const hf_scene *scene, const hf_form_settings *form, cons
     HF_TRY(allocate(scene, form->method, m));
     memcpy(m->node_of_row, order, (size_t)m->n_free * sizeof(int));
     number_nodes(scene, m);
-    place_cables(scene, m);
+    find_band_entries(scene, m);
     set_laws(scene, form, m);
     HF_TRY(hf_model_group_variables(m));
     return find_chains(m);

@@ -61,7 +61,7 @@ void hf_result_blank(hf_form_result *r)
 void hf_result_list_individual(const hf_result_field *field[HF_RESULT_N_INDIVIDUAL])
 {
     int n = 0;
-    for (int place = 1; n < HF_RESULT_N_INDIVIDUAL; place++)
+    for (int position = 1; n < HF_RESULT_N_INDIVIDUAL; position++)
         for (int i = 0; i < HF_RESULT_N; i++)
-            if (hf_result_field_of[i].individual == place) field[n++] = &hf_result_field_of[i];
+            if (hf_result_field_of[i].individual == position) field[n++] = &hf_result_field_of[i];
 }

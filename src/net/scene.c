@@ -44,7 +44,7 @@ void hf_scene_free(hf_scene *scene)
     *scene = (hf_scene){0};
 }
 
-double hf_scene_theoretical_length(const hf_scene *scene, int i_cable)
+double hf_scene_length_at_target(const hf_scene *scene, int i_cable)
 {
     const double *a = scene->position_m + 3 * (size_t)scene->end[2 * i_cable];
     const double *b = scene->position_m + 3 * (size_t)scene->end[2 * i_cable + 1];
@@ -101,7 +101,7 @@ static void check_cables(const hf_scene *s, int *n_fault, hf_messages *messages)
         int a = s->end[2 * e], b = s->end[2 * e + 1];
         if (a == b)
             hf_scene_fault(s, true, e, n_fault, "joins a node to itself", messages);
-        else if (!(hf_scene_theoretical_length(s, e) > 0))
+        else if (!(hf_scene_length_at_target(s, e) > 0))
             hf_scene_fault(s, true, e, n_fault, "has zero length: its two nodes are at the same position", messages);
         if (hf_law_has(s->law[e], HF_LAW_NEEDS_EA)) check_elastic(s, e, n_fault, messages);
     }

@@ -60,12 +60,12 @@ static bool has_values(const hf_csv *t)
 static void read_target(hf_csv *t, const int *where, int r, const char *id, hf_scene *s)
 {
     hf_law law = s->law[r];
-    double theoretical_m = hf_scene_theoretical_length(s, r), given = NAN;
+    double length_at_target_m = hf_scene_length_at_target(s, r), given = NAN;
     bool is_given = *hf_csv_cell(t, r, where[CABLE_VALUE]);
     if (is_given) given = hf_csv_number(t, r, where[CABLE_VALUE], id, "value");
-    s->target[r] = is_given ? given : hf_law_default_target(law, theoretical_m);
+    s->target[r] = is_given ? given : hf_law_default_target(law, length_at_target_m);
     char text[HF_LAW_FAULT_SIZE];
-    const char *fault = is_given && isnan(given) ? NULL : hf_law_target_fault(law, given, theoretical_m, text);
+    const char *fault = is_given && isnan(given) ? NULL : hf_law_target_fault(law, given, length_at_target_m, text);
     if (fault) hf_csv_fault(t, t->line[r], id, fault, "");
 }
 

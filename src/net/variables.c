@@ -3,7 +3,7 @@
 
 #include "base/arena.h"
 #include "net/cable_pick.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 
 #include <math.h>
 #include <string.h>
@@ -79,7 +79,7 @@ static void find_normal(const maker *q, int support_row, double normal[3])
     double p[3], slope[2];
     for (int c = 0; c < 3; c++)
         p[c] = q->m->position_m[c * q->m->n_node + support_row];
-    hf_wanted_height_above(q->surface->kind, 1 / (4 * q->surface->focal_length_m), p, slope);
+    hf_target_surface_height_above(q->surface->kind, 1 / (4 * q->surface->focal_length_m), p, slope);
     double length = sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
     normal[0] = -slope[0] / length;
     normal[1] = -slope[1] / length;

@@ -17,7 +17,7 @@
 
 #include "base/arena.h"
 #include "base/elementary.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "surface/facet_mesh.h"
 
 #include <math.h>
@@ -142,7 +142,7 @@ static void fill_grid(view *v)
     double slope[2];
     for (int k = 0; k < v->n[0] * v->n[1]; k++) {
         const double p[3] = {place_of(v, 0, k % v->n[0]), place_of(v, 1, k / v->n[0]), 0};
-        v->z_m[k] = -hf_wanted_height_above(s->kind, 1 / (4 * s->focal_length_m), p, slope);
+        v->z_m[k] = -hf_target_surface_height_above(s->kind, 1 / (4 * s->focal_length_m), p, slope);
     }
     for (int i = 0; i < v->facets.n_facet; i++)
         put_facet(v, i);

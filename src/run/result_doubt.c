@@ -6,7 +6,7 @@
 #include "run/result_doubt.h"
 
 #include "base/arena.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "solve/prestress.h"
 #include <hifdm/metrics.h>
 
@@ -154,7 +154,7 @@ static void split_move(const hf_problem *p, const hf_places *form, const hf_work
     }
     if (form->counted[row] == HF_COUNTED) across = sqrt(square);
     if (form->counted[row] == HF_COUNTED_ACROSS) {
-        hf_wanted_height_above(p->surface.kind, 1 / (4 * p->surface.focal_length_m), at, slope);
+        hf_target_surface_height_above(p->surface.kind, 1 / (4 * p->surface.focal_length_m), at, slope);
         across = fabs(move[2] - slope[0] * move[0] - slope[1] * move[1]) /
                  sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
     }

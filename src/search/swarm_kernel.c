@@ -428,7 +428,7 @@ static void measure_part(const hf_swarm_plan *plan, hf_swarm_lanes *w, hf_swarm_
             length_error = larger(taut_error, length_error);
             vec weighed = if_greater(strain, none, error, if_greater(taut_error, none, error, error * pull));
             gap = larger(weighed, gap);
-            q = larger(splat(HF_LAW_LEAST_Q_N_PER_M), q * ratio); // Eq. 8
+            q = larger(splat(HF_LAW_MIN_Q_N_PER_M), q * ratio); // Eq. 8
         } else {
             shortest[HF_LAW_FORCE_DENSITY] = smaller(part, shortest[HF_LAW_FORCE_DENSITY]);
         }

@@ -97,8 +97,8 @@ static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n
         part.max_iterations = smaller(LAST_BLOCK, s->max_iterations - n_step);
         if (part.max_iterations < 1) break;
         if (start > 0) set_first_force_densities(m, w);
-        for (int e = 0; e < m->n_cable; e++) /* a slack cable keeps HF_LAW_LEAST_Q_N_PER_M */
-            if (w->q_N_per_m[e] == 0) w->q_N_per_m[e] = HF_LAW_LEAST_Q_N_PER_M;
+        for (int e = 0; e < m->n_cable; e++) /* a slack cable keeps HF_LAW_MIN_Q_N_PER_M */
+            if (w->q_N_per_m[e] == 0) w->q_N_per_m[e] = HF_LAW_MIN_Q_N_PER_M;
         hf_form_find(m, &part, HF_STOP_RESIDUAL, w, history, r);
         n_step += r->iterations;
         r->iterations = n_step;

@@ -176,8 +176,7 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design, hf_workspa
     /* A convex problem has one answer, so a start near it saves time and changes nothing else. Under rule seeded the
      * answer depends on the start, so the start is that of the model, as in the paper. */
     for (int e = 0; e < m->n_cable && hf_evaluate_is_unique(v); e++)
-        if (hf_law_has(m->law[e], HF_LAW_ITERATES))
-            w->q_N_per_m[e] = fmax(v->start_q_N_per_m[e], HF_LAW_LEAST_Q_N_PER_M);
+        if (hf_law_has(m->law[e], HF_LAW_ITERATES)) w->q_N_per_m[e] = fmax(v->start_q_N_per_m[e], HF_LAW_MIN_Q_N_PER_M);
     for (int k = 0; k < m->n_variable; k++)
         apply_variable(v, k, design[k], w);
 }

@@ -159,7 +159,7 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
         if (gives_tension) {
             r->tension_error = larger(r->tension_error, fabs(tension / cable.target - 1));
         } else if (may_vanish) {
-            double strain = length / hf_law_wanted_length_m(cable, tension) - 1;
+            double strain = length / hf_law_required_length_m(cable, tension) - 1;
             double pull = smaller(tension / m->reference_N, 1);
             double error = fabs(strain);
             bool is_taut = pull >= HF_SLACK_RATIO;

@@ -126,7 +126,7 @@ static double first_tension_N(const hf_model *m, hf_law_cable cable, double flex
     if (hf_law_has(cable.law, HF_LAW_GIVES_TENSION)) return cable.target;
     double reference = m->reference_N;
     if (!(flex > 0)) return reference;
-    double over = length - hf_law_wanted_length_m(cable, 0), mu = MU_FIRST * reference * cable.theoretical_m;
+    double over = length - hf_law_required_length_m(cable, 0), mu = MU_FIRST * reference * cable.length_at_target_m;
     double T = (over + sqrt(over * over + 4 * flex * mu)) / (2 * flex);
     return fmin(fmax(T, reference / FIRST_RANGE), reference * FIRST_RANGE);
 }
@@ -153,13 +153,13 @@ static void set_start(const hf_model *m, hf_workspace *w, const hf_newton_rows *
         p->has_multiplier[k] = p->has_cone[k] != 0 && has_multiplier(w, e);
         p->target[k] = cable.target;
         p->EA[k] = hf_law_has(cable.law, HF_LAW_NEEDS_EA) ? cable.EA_N : INFINITY;
-        p->theoretical[k] = cable.theoretical_m;
+        p->theoretical[k] = cable.length_at_target_m;
         p->flex[k] = has_multiplier(w, e) ? 1 / hf_law_stiffness_N_per_m(cable, INFINITY) : 0;
         if (is_spring(w, e)) {
             p->along[k] = p->across[k] = hf_law_tension_N(cable, 1);
             p->T[k] = p->along[k] * length;
         } else if (is_fixed(m, w, e)) {
-            double over = has_multiplier(w, e) ? length - hf_law_wanted_length_m(cable, 0) : 0;
+            double over = has_multiplier(w, e) ? length - hf_law_required_length_m(cable, 0) : 0;
             p->T[k] = p->flex[k] > 0 ? fmax(over, 0) / p->flex[k]
                                      : hf_law_held_q_N_per_m(cable, length, w->q_N_per_m[e]) * length;
             p->v[k] = length;
@@ -405,7 +405,7 @@ static path_error measure_end(const hf_model *m, hf_workspace *w, const hf_newto
         double T = hf_newton_matrix_tension_N(cable, length, w->tension_N[e]);
         p->along[at] = has_multiplier(w, e) ? 0 : hf_law_stiffness_N_per_m(cable, length);
         if (has_multiplier(w, e)) {
-            double over = length - hf_law_wanted_length_m(cable, T);
+            double over = length - hf_law_required_length_m(cable, T);
             bool is_taut = T / reference + over / m->length_m[e] > 0;
             double k = p->flex[at] > 0 ? 1 / p->flex[at] : hf_newton_matrix_rigid_stiffness(m, e, T);
             p->along[at] = is_taut ? k : 0;

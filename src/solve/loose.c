@@ -44,7 +44,7 @@ static bool is_loaded(const hf_model *m, const hf_form_settings *s, int row)
 static bool is_taut(const hf_model *m, const hf_form_settings *s, const hf_workspace *w, int e)
 {
     if (!may_be_slack(w, e)) return true;
-    double T = w->tension_N[e], slack_m = hf_law_wanted_length_m(hf_workspace_cable(m, w, e), T) - w->length_m[e];
+    double T = w->tension_N[e], slack_m = hf_law_required_length_m(hf_workspace_cable(m, w, e), T) - w->length_m[e];
     return T > nothing_N(m, s) && T / m->reference_N > slack_m / m->length_m[e];
 }
 
@@ -76,7 +76,7 @@ double hf_loose_spring_N_per_m(const hf_model *m)
 /* Returns the maximum length of cable e without tension, m. */
 static double slack_length_m(const hf_model *m, const hf_workspace *w, int e)
 {
-    return hf_law_wanted_length_m(hf_workspace_cable(m, w, e), 0);
+    return hf_law_required_length_m(hf_workspace_cable(m, w, e), 0);
 }
 
 static bool fits(const hf_model *m, const hf_form_settings *s, const hf_workspace *w)

@@ -67,7 +67,7 @@ static imbalance measure_imbalance(const hf_model *m, const hf_workspace *w, con
         double pull[3] = {tension * u[0], tension * u[1], tension * u[2]};
         hf_newton_matrix_add_pull(m, w, e, pull, force);
         if (!hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
-        double gap = length / hf_law_wanted_length_m(cable, tension) - 1;
+        double gap = length / hf_law_required_length_m(cable, tension) - 1;
         if (gap < 0) gap *= fmin(1, tension / m->reference_N);
         result.length_gap = fmax(result.length_gap, fabs(gap));
         result.merit += gap * gap;
@@ -104,7 +104,7 @@ static void right_hand_side(const hf_model *m, const hf_workspace *w, const doub
         hf_law_cable cable = hf_workspace_cable(m, w, e);
         if (!hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
         double length = hf_newton_matrix_direction(m, w->position_m, e, u);
-        double T = w->tension_N[e], beyond = length - hf_law_wanted_length_m(cable, T);
+        double T = w->tension_N[e], beyond = length - hf_law_required_length_m(cable, T);
         double more = tension_change(cable, length, T, 1, beyond), pull[3] = {more * u[0], more * u[1], more * u[2]};
         hf_newton_matrix_add_pull(m, w, e, pull, rhs);
     }
@@ -132,7 +132,7 @@ static void try_step(const hf_model *m, hf_workspace *w, double part)
         if (!hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         double length = hf_newton_matrix_direction(m, w->position_m, e, u), T = w->tension_N[e];
-        double beyond = length - hf_law_wanted_length_m(cable, T);
+        double beyond = length - hf_law_required_length_m(cable, T);
         for (int c = 0; c < 3; c++) {
             if (a < w->n_moving) beyond -= u[c] * step[3 * a + c];
             if (b < w->n_moving) beyond += u[c] * step[3 * b + c];

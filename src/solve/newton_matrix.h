@@ -97,7 +97,7 @@ static inline double hf_newton_matrix_tension_N(hf_law_cable cable, double lengt
 static inline double hf_newton_matrix_stiffness(hf_law_cable cable, double length_m, double tension_N)
 {
     if (hf_law_has(cable.law, HF_LAW_IS_RIGID))
-        return HF_NEWTON_STIFFENING * tension_N / hf_law_wanted_length_m(cable, tension_N);
+        return HF_NEWTON_STIFFENING * tension_N / hf_law_required_length_m(cable, tension_N);
     return hf_law_stiffness_N_per_m(cable, length_m);
 }
 

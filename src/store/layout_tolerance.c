@@ -34,8 +34,8 @@ static void gather(const hf_tolerance_summary *s, figures *f)
     memset(f, 0, sizeof *f);
     for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++) {
         const hf_tolerance_figures *of = &s->figure[k];
-        const double value[N_PLAIN] = {of->is_measured, of->mean,  of->mean_low, of->mean_high,
-                                       of->deviation,   of->least, of->largest};
+        const double value[N_PLAIN] = {of->is_measured, of->mean, of->mean_low, of->mean_high,
+                                       of->deviation,   of->min,  of->max};
         strncpy(f->measure[k], hf_tolerance_measure_word[k], WORD_SIZE - 1);
         for (int i = 0; i < N_PLAIN; i++)
             f->plain[i][k] = value[i];
@@ -69,8 +69,8 @@ static void scatter(int n, const figures *f, hf_tolerance_summary *s)
         if (k < 0) continue;
         bool is_old = measure == HF_TOLERANCE_GAIN_LOSS && !has_losses;
         hf_tolerance_figures *of = &s->figure[is_old ? loss_of_before(n, f) : measure];
-        double *const value[N_PLAIN] = {NULL,           &of->mean,  &of->mean_low, &of->mean_high,
-                                        &of->deviation, &of->least, &of->largest};
+        double *const value[N_PLAIN] = {NULL,           &of->mean, &of->mean_low, &of->mean_high,
+                                        &of->deviation, &of->min,  &of->max};
         of->is_measured = f->plain[0][k] == 1;
         for (int i = 1; i < N_PLAIN; i++)
             *value[i] = f->plain[i][k];

@@ -326,8 +326,8 @@ static void write_figures(const hf_tolerance_figures *f, const char *measure, hf
     hf_json_number(j, "mean_low", f->mean_low);
     hf_json_number(j, "mean_high", f->mean_high);
     hf_json_number(j, "deviation", f->deviation);
-    hf_json_number(j, "least", f->least);
-    hf_json_number(j, "largest", f->largest);
+    hf_json_number(j, "least", f->min);
+    hf_json_number(j, "largest", f->max);
     hf_json_list(j, "quantile", f->value, HF_TOLERANCE_QUANTILES);
     hf_json_list(j, "quantile_low", f->low, HF_TOLERANCE_QUANTILES);
     hf_json_list(j, "quantile_high", f->high, HF_TOLERANCE_QUANTILES);

@@ -8,7 +8,7 @@
 #include "surface/cloud.h"
 
 #include "linalg/dot.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "surface/facet_rms.h"
 
 #include <math.h>
@@ -109,7 +109,7 @@ static double take_moves(hf_cloud *c, const double *node)
 
 double hf_cloud_error(hf_surface_kind kind, double m, double curvature, const double p[3], double d[4])
 {
-    double t[2], u = hf_wanted_height_above(kind, curvature, p, t), square = 1 + t[0] * t[0] + t[1] * t[1];
+    double t[2], u = hf_target_surface_height_above(kind, curvature, p, t), square = 1 + t[0] * t[0] + t[1] * t[1];
     double weight = m < 1 ? 1 / sqrt(square) : 1 / square;
     double flat = p[2] - u;     /* curvature times the squared distance from the axis */
     for (int k = 0; k < 2; k++) /* d(1 + t^2) = 2 t dt, and dt/dx = 2 curvature along an axis with a slope */

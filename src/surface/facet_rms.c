@@ -7,7 +7,7 @@
 #include "surface/facet_rms.h"
 
 #include "base/arena.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "surface/facet_mesh.h"
 
 #include <math.h>
@@ -128,7 +128,7 @@ static hf_status take_points(const hf_surface_settings *s, const hf_facets *f, c
 static double height_of(const hf_surface_settings *s, const points *q, int i, double *weight)
 {
     double p[3] = {q->position_m[i], q->position_m[q->n + i], q->position_m[2 * (size_t)q->n + (size_t)i]}, slope[2];
-    double above = hf_wanted_height_above(s->kind, 1 / (4 * s->focal_length_m), p, slope);
+    double above = hf_target_surface_height_above(s->kind, 1 / (4 * s->focal_length_m), p, slope);
     *weight = 1 / (1 + slope[0] * slope[0] + slope[1] * slope[1]);
     return above;
 }

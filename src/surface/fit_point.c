@@ -7,7 +7,7 @@
  * Contents: the frame - one point - the sum of squares */
 #include "surface/fit_point.h"
 
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "surface/cloud.h"
 
 #include <string.h>
@@ -73,7 +73,7 @@ double hf_fit_weight(const hf_fit_frame *f, int i)
 /* Computes the second derivatives of the half-path error u / D, with D = 1 + t^2. */
 static void bend_error(hf_surface_kind kind, double curvature, hf_fit_point *p)
 {
-    double t[2], u = hf_wanted_height_above(kind, curvature, p->at, t), D = 1 + t[0] * t[0] + t[1] * t[1];
+    double t[2], u = hf_target_surface_height_above(kind, curvature, p->at, t), D = 1 + t[0] * t[0] + t[1] * t[1];
     double flat = p->at[2] - u, u1[4] = {-t[0], -t[1], 1, -flat / curvature}, u2[4][4] = {{0}}, D2[4][4] = {{0}};
     double D1[4] = {4 * curvature * t[0], 4 * curvature * t[1], 0, 8 * flat};
     for (int k = 0; k < (kind == HF_SURFACE_PARABOLOID ? 2 : 1); k++) {

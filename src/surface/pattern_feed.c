@@ -7,7 +7,7 @@
 #include "surface/pattern_feed.h"
 
 #include "base/elementary.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "surface/facet_mesh.h"
 
 #include <math.h>
@@ -175,7 +175,7 @@ static double scale_of(const hf_feed *f, const hf_facets *facets, const double *
 static void send_beam(const hf_surface_settings *s, const double aim_m[3], hf_feed *f)
 {
     double p[3] = {aim_m[0], aim_m[1], 0}, toward[3], field[3], slope[2];
-    p[2] = -hf_wanted_height_above(s->kind, 1 / (4 * s->focal_length_m), p, slope);
+    p[2] = -hf_target_surface_height_above(s->kind, 1 / (4 * s->focal_length_m), p, slope);
     hf_feed_light(f, p, toward, field);
     const double up[3] = {-slope[0], -slope[1], 1};
     double part = 2 * hf_dot3(toward, up) / hf_dot3(up, up);
@@ -208,7 +208,7 @@ int hf_feed_make(const hf_surface_settings *s, const hf_facets *facets, const do
     for (int d = 0; d < 2; d++)
         aim_m[d] = (low[d] + high[d]) / 2;
     aim_m[2] = 0;
-    aim_m[2] = -hf_wanted_height_above(s->kind, curvature, aim_m, slope);
+    aim_m[2] = -hf_target_surface_height_above(s->kind, curvature, aim_m, slope);
     if (is_cylinder) feed->position_m[1] = aim_m[1];
     if (!isnan(want->position_m[0])) memcpy(feed->position_m, want->position_m, sizeof feed->position_m);
     if (!isnan(want->aim_m[0])) memcpy(aim_m, want->aim_m, sizeof aim_m);

@@ -7,7 +7,7 @@
 
 #include "base/arena.h"
 #include "base/elementary.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "surface/facet_rms.h"
 
 #include <math.h>
@@ -94,7 +94,7 @@ static void collect(const hf_surface_settings *s, const hf_model *m, const doubl
         }
         deviation_m[k] = sqrt(square);
         up += d * d; /* d is the z component here */
-        double dz = hf_wanted_height_above(s->kind, curvature, p, slope);
+        double dz = hf_target_surface_height_above(s->kind, curvature, p, slope);
         double weight = 1 / (1 + slope[0] * slope[0] + slope[1] * slope[1]);
         normal += dz * dz * weight;
         half_path += dz * dz * weight * weight;

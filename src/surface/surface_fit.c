@@ -9,7 +9,7 @@
 #include "surface/surface_fit.h"
 
 #include "base/elementary.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "surface/fit_descend.h"
 
 #include <gsl/gsl_errno.h>
@@ -130,7 +130,7 @@ static double height(const fit_problem *p, const pose *q, int i, double at[3], d
 {
     for (int k = 0; k < 3; k++)
         at[k] = p->center[k] + apply(p, q, q->turn, k, i);
-    return hf_wanted_height_above(p->kind, q->curvature, at, slope);
+    return hf_target_surface_height_above(p->kind, q->curvature, at, slope);
 }
 
 static double root_weight(const fit_problem *p, int i)

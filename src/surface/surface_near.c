@@ -10,7 +10,7 @@
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "linalg/dense.h"
-#include "net/wanted.h"
+#include "net/target_surface.h"
 #include "surface/facet_rms.h"
 
 #include <math.h>
@@ -235,7 +235,7 @@ static hf_status measure_nodes(const hf_surface_design *design, const hf_surface
     take_nodes(m, position_m, inner_m);
     for (int k = 0; k < n; k++) {
         double p[3] = {inner_m[k], inner_m[n + k], inner_m[2 * (size_t)n + (size_t)k]}, slope[2];
-        double above = hf_wanted_height_above(s->kind, curvature, p, slope);
+        double above = hf_target_surface_height_above(s->kind, curvature, p, slope);
         double path = above / (1 + slope[0] * slope[0] + slope[1] * slope[1]);
         sum += path * path;
     }

@@ -83,11 +83,11 @@ static void close_built(built_bench *b)
     hf_problem_free(&b->problem);
 }
 
-static void make(void *context, long i, double *cut_m, double *EA_N, double *support_move_m)
+static void make(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
 {
     const built_bench *b = context;
     int n = b->built.model.n_cable;
-    (void)EA_N, (void)support_move_m;
+    (void)EA_N, (void)support_displacement_m;
     for (int e = 0; e < n; e++)
         cut_m[e] += b->error_m[i % N_SAMPLE * n + e];
 }
@@ -224,7 +224,7 @@ static void write_samples(built_bench *b, const char *folder)
     FILE *file = bench_open_file(folder, name);
     write_array(file, size, sizeof *size, 4);
     write_array(file, m->end_row, sizeof *m->end_row, 2 * n);
-    write_array(file, b->built.place_m, sizeof(double), places);
+    write_array(file, b->built.position_m, sizeof(double), places);
     write_array(file, m->target, sizeof(double), n);
     write_array(file, m->EA_N, sizeof(double), n);
     write_array(file, b->built.tension_N, sizeof(double), n);

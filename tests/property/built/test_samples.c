@@ -19,9 +19,9 @@ struct sampling {
     int n_done, n_slack, n_loose;
 };
 
-static void make(void *context, long i, double *cut_m, double *EA_N, double *support_move_m)
+static void make(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
 {
-    make_errors(&((struct sampling *)context)->errors, i, cut_m, EA_N, support_move_m);
+    make_errors(&((struct sampling *)context)->errors, i, cut_m, EA_N, support_displacement_m);
 }
 
 /* The same sample by the reference. */

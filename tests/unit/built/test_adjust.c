@@ -26,7 +26,7 @@ static void make_job(const twin *t, job *j, double range_m, double step_m, int m
 
 static void find_moves(const twin *t, const job *j, hf_estimate *p, hf_adjustment *found)
 {
-    ck_assert_int_eq(hf_estimate_create(&t->built, &t->prior, t->place_m, p), HF_OK);
+    ck_assert_int_eq(hf_estimate_create(&t->built, &t->prior, t->position_m, p), HF_OK);
     ck_assert_int_eq(hf_estimate_find(p), HF_OK);
     ck_assert_int_eq(hf_adjust_find(p, &j->task, found), HF_OK);
 }
@@ -43,7 +43,7 @@ static double true_psi_m(twin *t, const hf_adjustment *found, int n_move)
         length[found->move[k].cable] += found->move[k].move_m;
     for (int i = 0; i < 3 * m->n_node; i++)
         off[i % 3 * m->n_node + i / 3] = t->rest_m[i];
-    hf_built_net net = {.cut_m = length, .support_move_m = off};
+    hf_built_net net = {.cut_m = length, .support_displacement_m = off};
     ck_assert_int_eq(hf_built_solve(&t->built, &net, &t->work, &r), HF_OK);
     return r.psi_m;
 }
@@ -54,7 +54,7 @@ static void check_moves(const job *j, const hf_adjustment *found)
     ck_assert_double_le(found->best_m, found->adjusted_m);
     ck_assert_double_le(found->adjusted_m, found->estimated_m);
     for (int k = 0; k < found->n_move; k++) {
-        const hf_adjust_move *move = &found->move[k];
+        const hf_adjust_turnbuckle *move = &found->move[k];
         ck_assert(move->move_m == move->steps * j->settings.step_m && move->steps != 0);
         ck_assert_double_le(fabs(move->move_m), j->settings.range_m);
         for (int l = 0; l < k; l++)
@@ -69,7 +69,7 @@ static double missed_gains(twin *t, const hf_adjustment *found)
 {
     double sum = 0, true_m = true_psi_m(t, found, 0);
     for (int k = 0; k < found->n_move; k++) {
-        const hf_adjust_move *move = &found->move[k];
+        const hf_adjust_turnbuckle *move = &found->move[k];
         double now_m = true_psi_m(t, found, k + 1), off = (true_m - now_m - move->gain_m) / move->gain_sigma_m;
         true_m = now_m;
         sum += off * off;

@@ -15,7 +15,7 @@ START_TEST(a_net_cut_at_its_shape_has_this_shape)
     ck_assert_int_eq(hf_built_solve(&built, &(hf_built_net){0}, &w, &r), HF_OK);
     for (int i = 0; i < 3 * net.model.n_node; i++) {
         ck_assert_double_eq_tol(w.position_m[i], net.work.position_m[i], 1e-9);
-        ck_assert(built.place_m[i] == net.work.position_m[i]);
+        ck_assert(built.position_m[i] == net.work.position_m[i]);
     }
     for (int e = 0; e < net.model.n_cable; e++)
         ck_assert_double_eq_tol(w.tension_N[e], net.work.tension_N[e], 1e-6 * built.model.reference_N);
@@ -46,7 +46,8 @@ START_TEST(two_cables_in_line)
         cut[e] = built.scene.target[e] - 0.001 * (1 + e);
     }
     move[net.model.row_of_node[2]] = 0.004;
-    ck_assert_int_eq(hf_built_solve(&built, &(hf_built_net){.cut_m = cut, .support_move_m = move}, &w, &r), HF_OK);
+    ck_assert_int_eq(hf_built_solve(&built, &(hf_built_net){.cut_m = cut, .support_displacement_m = move}, &w, &r),
+                     HF_OK);
     double T = (3.004 - cut[0] - cut[1]) / (cut[0] / EA[0] + cut[1] / EA[1]);
     ck_assert_double_eq_tol(w.tension_N[0], T, 1e-8); /* rounding of lengths of 3 m, 1e-15, times EA/l0 */
     ck_assert_double_eq_tol(w.tension_N[1], T, 1e-8);

@@ -15,9 +15,9 @@ struct taken {
     int n_take[N_SAMPLE];
 };
 
-static void make(void *context, long i, double *cut_m, double *EA_N, double *support_move_m)
+static void make(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
 {
-    make_errors(&((struct taken *)context)->errors, i, cut_m, EA_N, support_move_m);
+    make_errors(&((struct taken *)context)->errors, i, cut_m, EA_N, support_displacement_m);
 }
 
 static void take(void *context, long i, const hf_built_shape *shape, const hf_form_result *result)

@@ -59,7 +59,7 @@ static void solve_with(bench *b, double scale, const double *cut, const double *
     }
     for (int i = 0; i < 3 * m->n_node; i++)
         off[i % 3 * m->n_node + i / 3] = scale * move[i];
-    hf_built_net net = {.cut_m = cut_m, .EA_N = EA_N, .support_move_m = off};
+    hf_built_net net = {.cut_m = cut_m, .EA_N = EA_N, .support_displacement_m = off};
     ck_assert_int_eq(hf_built_solve(&b->built, &net, &b->work, &r), HF_OK);
     for (int i = 0; i < 3 * m->n_node; i++)
         place[i] = b->work.position_m[i % 3 * m->n_node + i / 3];

@@ -40,8 +40,8 @@ START_TEST(tensions_and_stiffnesses_are_those_of_the_potentials)
     ck_assert_double_eq(hf_law_stiffness_N_per_m(sample(HF_LAW_FORCE_DENSITY), 1.2), 1);
     ck_assert_double_eq(hf_law_stiffness_N_per_m(sample(HF_LAW_ELASTIC), 1.2), 250);
     ck_assert_double_eq(hf_law_stiffness_N_per_m(sample(HF_LAW_ELASTIC), 0.9), 0);
-    ck_assert_double_eq(hf_law_wanted_length_m(sample(HF_LAW_LENGTH), 50), 1);
-    ck_assert_double_eq_tol(hf_law_wanted_length_m(sample(HF_LAW_ELASTIC), 50), 1.2, 1e-15);
+    ck_assert_double_eq(hf_law_required_length_m(sample(HF_LAW_LENGTH), 50), 1);
+    ck_assert_double_eq_tol(hf_law_required_length_m(sample(HF_LAW_ELASTIC), 50), 1.2, 1e-15);
     ck_assert_double_eq_tol(energy_change_J(sample(HF_LAW_TENSION), 0.9, 1.2), 0.3, 1e-15);
     ck_assert_double_eq_tol(energy_change_J(sample(HF_LAW_FORCE_DENSITY), 0.9, 1.2), 0.315, 1e-15);
     ck_assert_double_eq_tol(energy_change_J(sample(HF_LAW_ELASTIC), 0.9, 1.2), 5, 1e-13);
@@ -75,14 +75,14 @@ START_TEST(the_iteration_rests_where_the_law_is_met)
     hf_law_cable c = sample((hf_law)_i);
     for (int k = 0; k < N_LENGTH; k++) {
         double length = length_m[k], T = hf_law_tension_N(c, length);
-        if (hf_law_has(c.law, HF_LAW_IS_RIGID)) T = 3, length = hf_law_wanted_length_m(c, T);
+        if (hf_law_has(c.law, HF_LAW_IS_RIGID)) T = 3, length = hf_law_required_length_m(c, T);
         if (!(T > 0)) continue;
         ck_assert_double_eq_tol(hf_law_next_q_N_per_m(c, length, T, T / length), T / length, 1e-13 * T / length);
         ck_assert_double_eq_tol(hf_law_held_q_N_per_m(c, length, T / length), T / length, 1e-13 * T / length);
         if (hf_law_has(c.law, HF_LAW_HAS_MULTIPLIER))
-            ck_assert_double_eq_tol(hf_law_wanted_length_m(c, T), length, 1e-14 * length);
+            ck_assert_double_eq_tol(hf_law_required_length_m(c, T), length, 1e-14 * length);
         else
-            ck_assert_double_nan(hf_law_wanted_length_m(c, T));
+            ck_assert_double_nan(hf_law_required_length_m(c, T));
     }
 }
 END_TEST
