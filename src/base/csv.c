@@ -196,19 +196,14 @@ static void note_uneven(hf_csv *t, int n_field, int line, uneven_lines *u)
 /* Adds one line that is not a comment to the table. Returns false if memory runs out. */
 static bool take_line(hf_csv *t, char *line, int n_line, char **field, int column_max, uneven_lines *uneven)
 {
-    if (strchr(line, '\r')) {
-        hf_csv_fault(t, n_line, NULL, "a carriage return within the line; lines end with LF or CRLF", "");
-        return true;
-    }
-    if (!hf_text_is_utf8(line)) {
-        hf_csv_fault(t, n_line, NULL, "not UTF-8 text, or a control character; save the file as UTF-8", "");
-        return true;
-    }
-    int n = split(line, field, column_max);
-    if (n < 0)
-        hf_csv_fault(t, n_line, NULL, "a quoted field does not end on this line", "");
-    else if (n > column_max)
-        hf_csv_fault(t, n_line, NULL, "too many columns", "");
+    const char *fault = strchr(line, '\r')       ? "a carriage return within the line; lines end with LF or CRLF"
+                        : !hf_text_is_utf8(line) ? "not UTF-8 text, or a control character; save the file as UTF-8"
+                                                 : NULL;
+    int n = fault ? 0 : split(line, field, column_max);
+    if (n < 0) fault = "a quoted field does not end on this line";
+    if (n > column_max) fault = "too many columns";
+    if (fault)
+        hf_csv_fault(t, n_line, NULL, fault, "");
     else if (t->n_column == 0) {
         memcpy(t->header, field, (size_t)(t->n_column = n) * sizeof *field);
         t->header_line = n_line;

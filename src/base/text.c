@@ -199,6 +199,14 @@ size_t hf_text_escape(const char *text, char *escaped, size_t size)
     return used;
 }
 
+bool hf_text_append(char *text, size_t size, const char *between, const char *item, const char *more)
+{
+    size_t used = strlen(text);
+    bool fits = used + strlen(between) + strlen(item) + strlen(more) < size;
+    snprintf(text + used, size - used, "%s%s", fits && used ? between : "", fits ? item : more);
+    return fits;
+}
+
 void hf_text_trim_utf8(char *text)
 {
     size_t n = strlen(text), back = 0;

@@ -81,7 +81,7 @@ typedef struct {
     double *room_N;
     bool is_current; /* true: the linear model belongs to the shape with `steps` */
     hf_turnbuckles_problem problem;
-    void *block, *room_block, *matrix_block;
+    void *block, *matrix_block;
 } adjustment;
 
 static size_t rows_of(const adjustment *a)
@@ -105,15 +105,16 @@ static hf_status allocate(adjustment *a)
     size_t by_sample = HF_ESTIMATE_SAMPLES * a->n_dof;
     hf_arena arena = {0};
     HF_TRY(HF_ARENA_ARRAYS(
-        &a->block, HF_ARRAY(a->adjustment_m, n_cable), HF_ARRAY(a->doubt_m, by_sample), HF_ARRAY(a->doubt_N, n_cable),
-        HF_ARRAY(a->cause.cut_m, HF_ESTIMATE_SAMPLES * n_cable), HF_ARRAY(a->cause.rest_m, by_sample),
-        HF_ARRAY(a->answer_m, by_sample), HF_ARRAY(a->beyond_m, by_sample), HF_ARRAY(a->residual, a->n_row),
-        HF_ARRAY(a->column, n_all * a->n_row), HF_ARRAY(a->product, n_all * n_all), HF_ARRAY(a->gram, n * n),
-        HF_ARRAY(a->slope, n), HF_ARRAY(a->sample, HF_ESTIMATE_SAMPLES * n), HF_ARRAY(a->continuous_m, n),
-        HF_ARRAY(a->steps, n), HF_ARRAY(a->trial, n), HF_ARRAY(a->min_N, n_cable), HF_ARRAY(a->room_N, n_cable)));
+        &a->block, HF_ARRAY(a->room, a->n_room), HF_ARRAY(a->adjustment_m, n_cable), HF_ARRAY(a->doubt_m, by_sample),
+        HF_ARRAY(a->doubt_N, n_cable), HF_ARRAY(a->cause.cut_m, HF_ESTIMATE_SAMPLES * n_cable),
+        HF_ARRAY(a->cause.rest_m, by_sample), HF_ARRAY(a->answer_m, by_sample), HF_ARRAY(a->beyond_m, by_sample),
+        HF_ARRAY(a->residual, a->n_row), HF_ARRAY(a->column, n_all * a->n_row), HF_ARRAY(a->product, n_all * n_all),
+        HF_ARRAY(a->gram, n * n), HF_ARRAY(a->slope, n), HF_ARRAY(a->sample, HF_ESTIMATE_SAMPLES * n),
+        HF_ARRAY(a->continuous_m, n), HF_ARRAY(a->steps, n), HF_ARRAY(a->trial, n), HF_ARRAY(a->min_N, n_cable),
+        HF_ARRAY(a->room_N, n_cable)));
     HF_TRY(HF_ARENA_MAKE(&arena, hf_packed_band_lay_out(&arena, &a->matrix)));
     a->matrix_block = arena.block;
-    return HF_ARENA_ARRAYS(&a->room_block, HF_ARRAY(a->room, a->n_room));
+    return HF_OK;
 }
 
 /* Computes the changes of tension [n_cable], N, that the strains in the first room cause in the linear model. */
@@ -171,7 +172,6 @@ static void free_adjustment(adjustment *a)
         hf_objectives_point_free(&a->room[i].point);
         hf_arena_free_block(a->room[i].block);
     }
-    hf_arena_free_block(a->room_block);
     hf_arena_free_block(a->matrix_block);
     hf_arena_free_block(a->block);
 }
@@ -197,12 +197,6 @@ static hf_status solve_steps(adjustment *a, const int *steps, double *figure_m)
     for (size_t i = 0; i < a->n; i++)
         a->adjustment_m[a->task->cable[i]] = steps[i] * a->problem.step_m;
     return solve_adjusted(a, figure_m);
-}
-
-static hf_status solve_nominal(adjustment *a, double *figure_m)
-{
-    HF_TRY(hf_built_solve(a->estimate->built, &(hf_built_net){0}, &a->work, &a->form));
-    return measure_work(a, figure_m);
 }
 
 /* Sets the tension that each cable must keep, from the shape without adjustments in `work`. Counts the cables below
@@ -628,7 +622,8 @@ int hf_adjust_steps(const hf_adjust_settings *s)
 
 static hf_status find_all(adjustment *a, hf_adjustment *found)
 {
-    HF_TRY(solve_nominal(a, &found->nominal_m));
+    HF_TRY(hf_built_solve(a->estimate->built, &(hf_built_net){0}, &a->work, &a->form));
+    HF_TRY(measure_work(a, &found->nominal_m));
     HF_TRY(hf_estimate_doubt(a->estimate, a->doubt_m, a->doubt_N, &a->cause));
     HF_TRY(choose(a, found));
     HF_TRY(list_adjustments(a, found));

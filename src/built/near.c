@@ -542,11 +542,6 @@ static void unload(const hf_near *near, const hf_near_lanes *l, int lane, hf_wor
         w->displacement_m[i] = l->lanes.displacement_m[i * HF_LANES + lane];
 }
 
-static double lowest_N(const hf_near_lanes *l, int lane)
-{
-    return fmin(l->now.lowest_N[HF_GROUP_INNER][lane], l->now.lowest_N[HF_GROUP_BOUNDARY][lane]);
-}
-
 static double ratio_of(const hf_near_lanes *l, hf_group group, int lane)
 {
     double high_N = l->now.highest_N[group][lane];
@@ -591,7 +586,8 @@ hf_near_verdict hf_near_settle(const hf_near *near, hf_near_lanes *l, int lane, 
     if (excess_N <= near->built->form.residual_tolerance * m->reference_N) {
         if (!l->is_measured) near->chord.kernels->measure(&near->chord, &l->lanes, &l->now);
         l->is_measured = true;
-        if (!(lowest_N(l, lane) >= HF_SLACK_RATIO * m->reference_N))
+        double lowest_N = fmin(l->now.lowest_N[HF_GROUP_INNER][lane], l->now.lowest_N[HF_GROUP_BOUNDARY][lane]);
+        if (!(lowest_N >= HF_SLACK_RATIO * m->reference_N))
             return accept_slack(near, l, lane, net, w, r) ? HF_NEAR_FOUND : HF_NEAR_LOST;
         unload(near, l, lane, w);
         report(near, l, lane, w, r);

@@ -130,11 +130,6 @@ static void add_push(hf_saddle_dual *d, int e)
             if (end[p] < m->n_free && end[q] < m->n_free) add_block(d, end[p], end[q], p == q ? 1 : -1, block);
 }
 
-static int other_end(const hf_model *m, int e, int row)
-{
-    return m->end_row[2 * e] == row ? m->end_row[2 * e + 1] : m->end_row[2 * e];
-}
-
 /* Computes block k of the row of H at `row`: its diagonal block for k = 0, otherwise that of one of its cables. Returns
  * the column, or -1 when it is not a free node. */
 static int part_of_row(const hf_saddle_dual *d, int row, int k, double block[3][3])
@@ -149,7 +144,8 @@ static int part_of_row(const hf_saddle_dual *d, int row, int k, double block[3][
             block[c][c] += d->spring[row];
         return row;
     }
-    int e = d->cable[d->start[row] + k - 1], other = other_end(m, e, row);
+    int e = d->cable[d->start[row] + k - 1];
+    int other = m->end_row[2 * e] == row ? m->end_row[2 * e + 1] : m->end_row[2 * e];
     for (int c = 0; c < 9; c++)
         block[c / 3][c % 3] = -d->block[9 * (ptrdiff_t)e + c];
     return other < m->n_free ? other : -1;

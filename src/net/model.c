@@ -10,6 +10,7 @@
 
 #include "base/arena.h"
 #include "base/elementary.h"
+#include "base/text.h"
 #include "base/union_find.h"
 #include "net/numbering.h"
 
@@ -303,16 +304,9 @@ static hf_status find_chains(hf_model *m)
 
 void hf_model_chain_name(const hf_model *m, const hf_scene *scene, int i_chain, char *text, size_t size)
 {
-    size_t used = 0;
     text[0] = '\0';
-    for (int k = m->chain_start[i_chain]; k < m->chain_start[i_chain + 1]; k++) {
-        const char *id = scene->cable_id[m->chain_cable[k]];
-        if (used + strlen(id) + 8 > size) {
-            snprintf(text + used, size - used, " ...");
-            return;
-        }
-        used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " + " : "", id);
-    }
+    for (int k = m->chain_start[i_chain]; k < m->chain_start[i_chain + 1]; k++)
+        if (!hf_text_append(text, size, " + ", scene->cable_id[m->chain_cable[k]], " ...")) return;
 }
 
 /* ---- groups of design variables ---- */

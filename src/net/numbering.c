@@ -43,22 +43,15 @@ static void build(graph *g)
         g->free_of[i] = s->role[i] == HF_ROLE_SUPPORT ? -1 : g->n;
         if (g->free_of[i] >= 0) g->node_of[g->n++] = i;
     }
-    for (int pass = 0; pass < 2; pass++) {
-        for (int e = 0; e < s->n_cable; e++) {
-            int a = g->free_of[s->end[2 * e]], b = g->free_of[s->end[2 * e + 1]];
-            if (a < 0 || b < 0) continue;
-            if (pass == 0) {
-                g->start[a + 1]++;
-                g->start[b + 1]++;
-            } else {
-                g->neighbour[g->queue[a]++] = b;
-                g->neighbour[g->queue[b]++] = a;
-            }
-        }
-        if (pass == 1) break;
-        for (int i = 0; i < g->n; i++)
-            g->start[i + 1] += g->start[i];
-        memcpy(g->queue, g->start, (size_t)g->n * sizeof(int)); /* next free entry of each node */
+    for (int k = 0; k < 2 * s->n_cable; k++) {
+        int node = g->free_of[s->end[k]], other = g->free_of[s->end[k ^ 1]];
+        if (node >= 0 && other >= 0) g->start[node]++;
+    }
+    for (int i = 0; i < g->n; i++)
+        g->start[i + 1] += g->start[i];             /* the end of the neighbours of node i */
+    for (int k = 2 * s->n_cable - 1; k >= 0; k--) { /* becomes their start */
+        int node = g->free_of[s->end[k]], other = g->free_of[s->end[k ^ 1]];
+        if (node >= 0 && other >= 0) g->neighbour[--g->start[node]] = other;
     }
 }
 
@@ -91,12 +84,6 @@ static int search(graph *g, int root, int *wave)
     return n;
 }
 
-static void forget(graph *g, const int *wave, int n)
-{
-    for (int i = 0; i < n; i++)
-        g->level[wave[i]] = -1;
-}
-
 /* Returns a node at the far end of the component of `root` (George & Liu 1979). */
 static int peripheral(graph *g, int root)
 {
@@ -104,7 +91,8 @@ static int peripheral(graph *g, int root)
         int n = search(g, root, g->wave), last = g->level[g->wave[n - 1]], far = g->wave[n - 1];
         for (int i = n - 1; i >= 0 && g->level[g->wave[i]] == last; i--)
             if (degree(g, g->wave[i]) < degree(g, far)) far = g->wave[i];
-        forget(g, g->wave, n);
+        for (int i = 0; i < n; i++)
+            g->level[g->wave[i]] = -1;
         if (last <= depth) return root;
         depth = last;
         root = far;

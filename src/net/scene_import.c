@@ -107,7 +107,7 @@ static void read_cables(hf_csv *t, const int *where, const hf_csv *nodes, const 
 
 typedef struct {
     const char *name; /* points into the text of the table */
-    int row, set;
+    int row;
 } mention;
 
 static int count_mentions(const hf_csv *t, int column)
@@ -121,7 +121,7 @@ static int count_mentions(const hf_csv *t, int column)
 
 static int by_name_and_row(const void *a, const void *b)
 {
-    const mention *p = *(mention *const *)a, *q = *(mention *const *)b;
+    const mention *p = a, *q = b;
     int order = strcmp(p->name, q->name);
     return order ? order : (p->row > q->row) - (p->row < q->row);
 }
@@ -135,7 +135,7 @@ static void read_mentions(hf_csv *t, const int *where, mention *all)
             char *end = p + strcspn(p, BETWEEN_NAMES);
             bool is_last = *end == '\0';
             *end = '\0';
-            all[n] = (mention){p, r, 0};
+            all[n] = (mention){p, r};
             const char *fault = hf_cable_set_name_fault(p);
             if (fault) {
                 char what[HF_CABLE_SET_NAME_SIZE + 16];
@@ -150,25 +150,21 @@ static hf_status read_sets(hf_csv *t, const int *where, hf_scene *s)
 {
     int n = count_mentions(t, where[CABLE_SET]), n_set = 0;
     if (n == 0) return HF_OK;
-    mention *all, **sorted;
+    mention *all;
     const char **name;
     hf_cable_set_member *member;
     void *block;
-    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(all, n), HF_ARRAY(sorted, n), HF_ARRAY(name, n), HF_ARRAY(member, n)));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(all, n), HF_ARRAY(name, n), HF_ARRAY(member, n)));
     read_mentions(t, where, all);
-    for (int k = 0; k < n; k++)
-        sorted[k] = &all[k];
-    qsort(sorted, (size_t)n, sizeof *sorted, by_name_and_row);
+    qsort(all, (size_t)n, sizeof *all, by_name_and_row);
     for (int k = 0; k < n; k++) {
-        bool is_same = k > 0 && !strcmp(sorted[k]->name, sorted[k - 1]->name);
-        if (!is_same) name[n_set++] = sorted[k]->name;
-        if (is_same && sorted[k]->row == sorted[k - 1]->row)
-            hf_csv_fault(t, t->line[sorted[k]->row], s->cable_id[sorted[k]->row], "stands twice in the set ",
-                         sorted[k]->name);
-        sorted[k]->set = n_set - 1;
+        bool is_same = k > 0 && !strcmp(all[k].name, all[k - 1].name);
+        int row = all[k].row;
+        if (!is_same) name[n_set++] = all[k].name;
+        if (is_same && row == all[k - 1].row)
+            hf_csv_fault(t, t->line[row], s->cable_id[row], "stands twice in the set ", all[k].name);
+        member[k] = (hf_cable_set_member){n_set - 1, row};
     }
-    for (int k = 0; k < n; k++)
-        member[k] = (hf_cable_set_member){all[k].set, all[k].row};
     hf_status status = t->n_fault == 0 ? hf_cable_set_make(s, n_set, name, n, member) : HF_OK;
     hf_arena_free_block(block);
     return status;

@@ -9,6 +9,7 @@
 #include "net/symmetry.h"
 
 #include "base/arena.h"
+#include "base/text.h"
 #include "base/union_find.h"
 
 #include <math.h>
@@ -179,11 +180,10 @@ static int reflect(search *q, int axis)
 static hf_status refuse(const search *q, int axis, int n_missing, hf_messages *messages)
 {
     char names[NAMED_MAX * 260] = "", more[32] = "";
-    size_t used = 0;
-    for (int e = 0, n = 0; e < q->s->n_cable && n < NAMED_MAX && used < sizeof names; e++) {
+    for (int e = 0, n = 0; e < q->s->n_cable && n < NAMED_MAX; e++) {
         int image = q->cable_image[e];
         if (image >= 0 && q->cable_image[image] == e) continue;
-        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", n++ ? ", " : "", q->s->cable_id[e]);
+        n += hf_text_append(names, sizeof names, ", ", q->s->cable_id[e], "");
     }
     if (n_missing > NAMED_MAX) snprintf(more, sizeof more, " and %d more", n_missing - NAMED_MAX);
     char where[HF_PLACE_SIZE];

@@ -186,7 +186,7 @@ START_TEST(least_tensions_are_kept)
     for (int asked = 0; asked < 2; asked++) {
         hf_estimate p;
         hf_adjustment found;
-        j.task.least_N = asked ? least_N : NULL;
+        j.task.min_N = asked ? least_N : NULL;
         find_moves(&t, &j, &p, &found);
         lacks[asked] = shortfall(&t, &p, &found, least_N);
         printf("%s: psi %.3f -> %.3f mm by %d moves, %.3f of a least tension is not there\n",
@@ -220,7 +220,7 @@ START_TEST(least_tensions_are_kept_far_away)
     make_job(&t, &j, 0.3, 1e-3, 6);
     for (int e = 0; e < t.built.model.n_cable; e++)
         least_N[e] = t.built.tension_N[e] / 2;
-    j.task.least_N = least_N;
+    j.task.min_N = least_N;
     find_moves(&t, &j, &p, &found);
     double lacks = shortfall(&t, &p, &found, least_N);
     printf("net %d: %d moves, %.3f of a least tension is not there\n", _i, found.n_move, lacks);
