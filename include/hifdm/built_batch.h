@@ -33,9 +33,9 @@ typedef struct {
 } hf_built_shape;
 
 /* Makes sample i. The callback changes the nominal values in cut_m [n_cable] and EA_N [n_cable], and the zeros in
- * support_displacement_m [3][n_node] by row; hf_built_net describes them. EA_N and support_displacement_m are NULL if they do not vary.
- * It is called in any thread, for several samples at a time, and more than once for some. What it writes depends on i
- * alone. */
+ * support_displacement_m [3][n_node] by row; hf_built_net describes them. EA_N and support_displacement_m are NULL if
+ * they do not vary. It is called in any thread, for several samples at a time, and more than once for some. What it
+ * writes depends on i alone. */
 typedef void hf_built_sample(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m);
 
 /* Receives the shape and the result of sample i. The callback is called in any thread, in any order and for several

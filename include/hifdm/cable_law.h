@@ -81,8 +81,8 @@ static inline bool hf_law_is_served(hf_law law, unsigned served)
     return !hf_law_has(law, ~served);
 }
 
-/* Returns the target value of a cable without a value: its length between target positions, length_at_target_m, under law
- * length; NaN for the other laws, which have no default or use the pretension. */
+/* Returns the target value of a cable without a value: its length between target positions, length_at_target_m, under
+ * law length; NaN for the other laws, which have no default or use the pretension. */
 static inline double hf_law_default_target(hf_law law, double length_at_target_m)
 {
     switch (law) {

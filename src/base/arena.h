@@ -5,8 +5,8 @@
  *     HF_TRY(HF_ARENA_ARRAYS(&object->block, HF_ARRAY(object->length_m, n_cable), HF_ARRAY(object->row, n_node)));
  *     hf_arena_free_block(object->block);
  *
- * Where arrays cannot be listed, because their number varies, layout code runs twice. The first run uses an arena without a block and only counts bytes. The second run
- * uses the allocated block.
+ * Where arrays cannot be listed, because their number varies, layout code runs twice. The first run uses an arena
+ * without a block and only counts bytes. The second run uses the allocated block.
  *
  *     hf_arena arena = {0};
  *     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, object)));

@@ -1,4 +1,5 @@
-/* Contents: comparisons - lengths - sine and cosine - inverse hyperbolic sine - logarithm - normal distribution - power of two */
+/* Contents: comparisons - lengths - sine and cosine - inverse hyperbolic sine - logarithm - normal distribution - power
+ * of two */
 #include "base/elementary.h"
 
 #include <math.h>

@@ -380,8 +380,8 @@ static hf_status choose(adjustment *a, hf_adjustment *found)
 
 /* ---- continuous optimum ---- */
 
-/* Takes a step from the present adjustments towards a->continuous_m, without limits on tensions, and halves it until the
- * figure falls by more than LITTLE. *gains is false when no step does; the adjustments and the shape are then as
+/* Takes a step from the present adjustments towards a->continuous_m, without limits on tensions, and halves it until
+ * the figure falls by more than LITTLE. *gains is false when no step does; the adjustments and the shape are then as
  * before. */
 static hf_status go_on(adjustment *a, double *best_m, bool *gains)
 {

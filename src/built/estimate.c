@@ -94,7 +94,8 @@ static hf_status solve_from_last(const hf_estimate *p, const hf_built_net *net, 
     return HF_OK;
 }
 
-/* Solves the net with errors cut_m [n_cable] and rest_m [n_dof] and with adjustments adjustment_m [n_cable] (NULL: none). */
+/* Solves the net with errors cut_m [n_cable] and rest_m [n_dof] and with adjustments adjustment_m [n_cable] (NULL:
+ * none). */
 static hf_status solve_net(const hf_estimate *p, const double *cut_m, const double *rest_m, const double *adjustment_m,
                            hf_workspace *w, hf_form_result *r)
 {

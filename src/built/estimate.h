@@ -38,9 +38,9 @@ typedef struct {
     void *block;
 } hf_estimate;
 
-/* Makes an estimate that starts at the nominal net. `built`, position_m and the arrays of `prior` are borrowed. position_m
- * [n_dof] are the measured positions. Returns HF_OK; HF_NO_MEMORY; or HF_SINGULAR when the nominal net has no
- * stiffness. Call hf_estimate_free in any case. */
+/* Makes an estimate that starts at the nominal net. `built`, position_m and the arrays of `prior` are borrowed.
+ * position_m [n_dof] are the measured positions. Returns HF_OK; HF_NO_MEMORY; or HF_SINGULAR when the nominal net has
+ * no stiffness. Call hf_estimate_free in any case. */
 hf_status hf_estimate_create(const hf_built *built, const hf_saddle_prior *prior, const double *position_m,
                              hf_estimate *estimate);
 void hf_estimate_free(hf_estimate *estimate);
@@ -50,8 +50,8 @@ void hf_estimate_free(hf_estimate *estimate);
  * nominal net when that has no shape. */
 hf_status hf_estimate_find(hf_estimate *estimate);
 
-/* Solves the net with the estimated errors, its cut lengths increased by adjustment_m [n_cable], m (NULL: not increased).
- * Returns result->status. */
+/* Solves the net with the estimated errors, its cut lengths increased by adjustment_m [n_cable], m (NULL: not
+ * increased). Returns result->status. */
 hf_status hf_estimate_shape(const hf_estimate *estimate, const double *adjustment_m, hf_workspace *work,
                             hf_form_result *result);
 

@@ -178,7 +178,8 @@ static bool worst_bound(void *context, const double *x, hf_quadratic_limit *limi
     return true;
 }
 
-/* Finds the best adjustments adjustment_m [n] of a list without rounding to steps. t is NULL without limits on tensions. */
+/* Finds the best adjustments adjustment_m [n] of a list without rounding to steps. t is NULL without limits on
+ * tensions. */
 static hf_status fit_list(const hf_turnbuckles_problem *p, int n, const int *list, const tensions *t,
                           double *adjustment_m)
 {

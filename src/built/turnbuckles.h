@@ -1,4 +1,5 @@
-/* moves - selects a few turnbuckles and whole numbers of steps that minimise a sum of squares (METHOD section 12).
+/* turnbuckles - selects a few turnbuckles and whole numbers of steps that minimise a sum of squares (METHOD section
+ * 12).
  *
  * The residuals are r + J a for adjustments a = step * whole number; the functions read only J'J, J'r and r'r.
  * Turnbuckles are added greedily, with refits and exchanges. Tensions are linear in the adjustments, too, and none may
@@ -54,8 +55,8 @@ double hf_turnbuckles_square(const hf_turnbuckles_problem *problem, const int *s
 int hf_turnbuckles_next(const hf_turnbuckles_problem *problem, const int *steps, const double *change_N, int *done,
                         double *fall_N);
 
-/* Computes the best adjustments adjustment_m [n] without rounding to steps and without limits on tensions, within steps_max *
- * step_m. Returns HF_OK or HF_NO_MEMORY. */
+/* Computes the best adjustments adjustment_m [n] without rounding to steps and without limits on tensions, within
+ * steps_max * step_m. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_turnbuckles_best(const hf_turnbuckles_problem *problem, double *adjustment_m);
 
 #endif

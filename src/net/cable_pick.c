@@ -44,7 +44,7 @@ int hf_cable_pick_some(const hf_scene *s, const char *set, const char *where, in
 {
     int n = hf_cable_pick(s, set, cable);
     if (n > 0) return n;
-    char sets[512] = "all, inner, boundary";
+    char sets[532] = "all, inner, boundary";
     const char *near = nearest_set(s, set);
     for (int k = 0; k < s->n_set && hf_text_append(sets, sizeof sets, ", ", s->set_name[k], ", ..."); k++)
         continue;

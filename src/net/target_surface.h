@@ -1,4 +1,5 @@
-/* target_surface - the target surface: the parabolic cylinder z = x^2/(4f) along y, or the paraboloid z = (x^2 + y^2)/(4f). */
+/* target_surface - the target surface: the parabolic cylinder z = x^2/(4f) along y, or the paraboloid z = (x^2 +
+ * y^2)/(4f). */
 #ifndef HIFDM_TARGET_SURFACE_H
 #define HIFDM_TARGET_SURFACE_H
 

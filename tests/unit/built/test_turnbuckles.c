@@ -30,7 +30,7 @@ static void make_example(example *x, struct rng *rng, int n, int n_row, int move
                 x->gram[i * n + j] += x->column[i][r] * x->column[j][r];
         }
     x->p = (hf_turnbuckles_problem){
-        .n = n, .gram = x->gram, .slope = x->slope, .step_m = 0.1, .steps_max = steps, .moves_max = moves};
+        .n = n, .gram = x->gram, .slope = x->slope, .step_m = 0.1, .steps_max = steps, .n_max = moves};
     for (int r = 0; r < n_row; r++)
         x->p.square += x->residual[r] * x->residual[r];
 }
@@ -62,14 +62,14 @@ START_TEST(choices_are_nearly_the_best)
         hf_turnbuckles_end end;
         bool is_held;
         make_example(&x, &rng, 8, 12, 3, 4);
-        double least = search_all(&x.p, 0, x.p.moves_max, none);
+        double least = search_all(&x.p, 0, x.p.n_max, none);
         ck_assert_int_eq(hf_turnbuckles_choose(&x.p, steps, &end, &is_held), HF_OK);
         double square = hf_turnbuckles_square(&x.p, steps);
         for (int i = 0; i < x.p.n; i++) {
             n_turned += steps[i] != 0;
             ck_assert_int_le(abs(steps[i]), x.p.steps_max);
         }
-        ck_assert_int_le(n_turned, x.p.moves_max);
+        ck_assert_int_le(n_turned, x.p.n_max);
         ck_assert_double_ge(square, least - 1e-9);
         n_best += square < least + 1e-9;
         worst = fmax(worst, sqrt(square / least));
@@ -126,8 +126,7 @@ START_TEST(the_most_promising_are_tried)
     hf_turnbuckles_end end;
     bool is_held;
     x = (example){
-        .p = {
-            .n = MAX_CABLES, .gram = x.gram, .slope = x.slope, .step_m = 0.01, .steps_max = 1000, .moves_max = TURNED}};
+        .p = {.n = MAX_CABLES, .gram = x.gram, .slope = x.slope, .step_m = 0.01, .steps_max = 1000, .n_max = TURNED}};
     for (int i = 0; i < MAX_CABLES; i++) {
         x.gram[i * MAX_CABLES + i] = 1;
         x.slope[i] = 1 + i * 7 % MAX_CABLES; /* each size once */
@@ -204,7 +203,7 @@ START_TEST(tensions_are_kept)
         ck_assert(!breaks(&h, steps));
         if (breaks(&h, free_steps)) ck_assert(is_held);
         n_broken += breaks(&h, free_steps);
-        double least = search_allowed(&h, 0, h.x.p.moves_max, none), square = hf_turnbuckles_square(&h.x.p, steps);
+        double least = search_allowed(&h, 0, h.x.p.n_max, none), square = hf_turnbuckles_square(&h.x.p, steps);
         ck_assert_double_ge(square, least - 1e-9);
         n_best += square < least + 1e-9;
         worst = fmax(worst, sqrt(square / least));
