@@ -15,7 +15,7 @@ typedef struct {
     hf_workspace work; /* the last shape; at first the true one */
     double EA[TWIN_CABLES];
     double sigma_m[TWIN_CABLES], cut_m[TWIN_CABLES]; /* prior deviations, true errors */
-    double place_m[TWIN_DOFS], weight_per_m2[TWIN_DOFS], rest_m[TWIN_DOFS];
+    double position_m[TWIN_DOFS], weight_per_m2[TWIN_DOFS], rest_m[TWIN_DOFS];
     double shared[TWIN_SPOOLS], shared_m[TWIN_SPOOLS * TWIN_CABLES]; /* true values; their part of the lengths, m */
     hf_saddle_prior prior;
     struct rng rng;
@@ -49,7 +49,7 @@ static inline void open_random_twin(twin *t, int trial, bool on_truss)
     if (on_truss) attach_all(&t->net, &t->rng, 1e-3);
     make_twin(t);
     for (int c = 0; c < 3; c++) /* the target positions are those of the design */
-        memcpy(t->built.model.position_m + c * t->built.model.n_node, t->built.place_m + c * t->built.model.n_node,
+        memcpy(t->built.model.position_m + c * t->built.model.n_node, t->built.position_m + c * t->built.model.n_node,
                sizeof(double) * (size_t)t->built.model.n_free);
 }
 
@@ -111,7 +111,7 @@ static inline void measure_twin(twin *t, double cut_m, double support_m, double 
         bool is_there = row < m->n_free + m->n_attachment && (!missing || rng_int(&t->rng, 1, missing) > 1);
         for (int c = 0; c < 3; c++) {
             t->weight_per_m2[3 * row + c] = is_there ? 1 / (noise_m * noise_m) : 0;
-            t->place_m[3 * row + c] = t->work.position_m[c * m->n_node + row] + noise_m * rng_normal(&t->rng);
+            t->position_m[3 * row + c] = t->work.position_m[c * m->n_node + row] + noise_m * rng_normal(&t->rng);
         }
     }
 }

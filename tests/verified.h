@@ -104,7 +104,7 @@ static inline void mix_laws(struct rng *rng, hf_scene *scene)
     for (int e = 0; e < s.n_cable; e++)
         if (s.law[e] == HF_LAW_TENSION && rng_int(rng, 0, 3) == 0) {
             s.law[e] = HF_LAW_FORCE_DENSITY;
-            s.target[e] = rng_uniform(rng, 8, 12) / hf_scene_theoretical_length(&s, e);
+            s.target[e] = rng_uniform(rng, 8, 12) / hf_scene_length_at_target(&s, e);
         }
     for (int k = 0; k < 3 * s.n_node; k++)
         s.load_N[k] = s.role[k / 3] == HF_ROLE_INNER ? rng_uniform(rng, -0.3, 0.3) : 0;

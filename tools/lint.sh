@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 # ---- Lists for the rules; change them here when the house changes ----------------------------------------------------
 # may call malloc and related functions: set-up, never the hot path
 heap_files="base/status base/arena base/text base/csv linalg/lapack net/scene net/generate_[a-z_]*
-            net/cable_set net/scene_arrays net/facet_import case/config_load_cases net/scene_import net/numbering
+            net/cable_set net/scene_arrays net/facet_import case/config_load_cases net/scene_import net/front_net
             net/model truss/truss truss/generate_[a-z_]* truss/truss_import truss/frame search/batch
             case/config case/study case/study_read store/hdf5 store/hdf5_rows store/journal store/generations
             store/store_file store/store_internal store/store store/store_read store/store_resume store/compare

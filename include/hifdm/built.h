@@ -22,7 +22,7 @@ typedef struct {
     hf_scene scene; /* as the design's, with its own laws, target values, EA and supports; the rest is borrowed */
     hf_model model; /* cables of law elastic with their unstressed lengths, on the truss of the design */
     hf_form_settings form;             /* settings of the form-finding */
-    double *place_m;                   /* [3][n_node] shape of the design by row, which is that of the nominal net */
+    double *position_m;                /* [3][n_node] shape of the design by row, which is that of the nominal net */
     double *tension_N;                 /* [n_cable] tensions of the design, which are those of the nominal net */
     const volatile sig_atomic_t *stop; /* NULL, or a flag: *stop != 0 ends computations on this net early */
     void *block;                       /* owned memory behind the arrays */

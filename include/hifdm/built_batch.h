@@ -39,8 +39,8 @@ typedef struct {
 typedef void hf_built_sample(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m);
 
 /* Receives the shape and the result of sample i. The callback is called in any thread, in any order and for several
- * samples at a time. `place` is from 0 to n_thread - 1, and never two calls have the same one at once. */
-typedef void hf_built_take(void *context, long i, int place, const hf_built_shape *shape, const hf_form_result *result);
+ * samples at a time. */
+typedef void hf_built_take(void *context, long i, const hf_built_shape *shape, const hf_form_result *result);
 
 /* The memory of the threads and the matrix that they share. */
 typedef struct hf_built_batch hf_built_batch;

@@ -60,10 +60,10 @@ extern const char *const hf_law_target_unit[HF_N_LAW]; /* units of the target va
 
 /* The values of one cable on which its law depends. */
 typedef struct {
-    hf_law law;           /* law in force */
-    double target;        /* T* (N), L* (m), q (N/m) or l0 (m) by law */
-    double EA_N;          /* axial stiffness; NaN if the law does not need it */
-    double theoretical_m; /* length between the target positions of its ends */
+    hf_law law;                /* law in force */
+    double target;             /* T* (N), L* (m), q (N/m) or l0 (m) by law */
+    double EA_N;               /* axial stiffness; NaN if the law does not need it */
+    double length_at_target_m; /* length between the target positions of its ends */
 } hf_law_cable;
 
 /* Returns true if the law has any of these flags. */
@@ -81,13 +81,13 @@ static inline bool hf_law_is_served(hf_law law, unsigned served)
     return !hf_law_has(law, ~served);
 }
 
-/* Returns the target value of a cable without a value: its length between target positions, theoretical_m, under law
- * length; NaN for the other laws, which have no default or use the pretension. */
-static inline double hf_law_default_target(hf_law law, double theoretical_m)
+/* Returns the target value of a cable without a value: its length between target positions, length_at_target_m, under
+ * law length; NaN for the other laws, which have no default or use the pretension. */
+static inline double hf_law_default_target(hf_law law, double length_at_target_m)
 {
     switch (law) {
     case HF_LAW_LENGTH:
-        return theoretical_m;
+        return length_at_target_m;
     case HF_LAW_TENSION:
     case HF_LAW_FORCE_DENSITY:
     case HF_LAW_ELASTIC:
@@ -99,9 +99,9 @@ static inline double hf_law_default_target(hf_law law, double theoretical_m)
 /* Size of the text of hf_law_target_fault, bytes. */
 #define HF_LAW_FAULT_SIZE 160
 
-/* Checks the target value of a cable, NaN if the user gave none. theoretical_m is the length between the target
+/* Checks the target value of a cable, NaN if the user gave none. length_at_target_m is the length between the target
  * positions of its ends, m. Returns NULL if the value is valid, otherwise `text`, into which the fault is written. */
-const char *hf_law_target_fault(hf_law law, double target, double theoretical_m, char text[HF_LAW_FAULT_SIZE]);
+const char *hf_law_target_fault(hf_law law, double target, double length_at_target_m, char text[HF_LAW_FAULT_SIZE]);
 
 /* Returns the length that a law with a multiplier requires at this tension, m; NaN for other laws. This form needs no
  * special case for stiff cables: in the limit of infinite EA the law elastic is the law length (METHOD M3). */
@@ -161,26 +161,6 @@ static inline double hf_law_stiffness_N_per_m(hf_law_cable c, double length_m)
     return 0;
 }
 
-/* Returns the change of the potential phi from length from_m to length to_m, J; NaN for a rigid law. `square` is
- * to_m^2 - from_m^2, m^2. The caller computes it so that no digits are lost if the lengths are nearly equal. */
-static inline double hf_law_energy_change_J(hf_law_cable c, double from_m, double to_m, double square)
-{
-    double longer = square / (from_m + to_m), l0 = c.target;
-    switch (c.law) {
-    case HF_LAW_TENSION:
-        return c.target * longer;
-    case HF_LAW_FORCE_DENSITY:
-        return c.target * square / 2;
-    case HF_LAW_ELASTIC: {
-        double over = fmax(from_m - l0, 0), beyond = fmax(to_m - l0, 0);
-        return c.EA_N / (2 * l0) * (from_m > l0 && to_m > l0 ? longer : beyond - over) * (over + beyond);
-    }
-    case HF_LAW_LENGTH:
-        break;
-    }
-    return (double)NAN;
-}
-
 /* ---- what follows from the flags ---- */
 
 /* Returns the force density at this length, N/m: from the tension that the law gives, otherwise q_N_per_m. */
@@ -212,9 +192,9 @@ static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, doub
 #define HF_LAW_FIRST_RANGE 10.0
 static inline double hf_law_first_tension_N(hf_law_cable c, double otherwise_N)
 {
-    bool is_taut = hf_law_has(c.law, HF_LAW_GOES_SLACK) && c.theoretical_m > hf_law_required_length_m(c, 0);
+    bool is_taut = hf_law_has(c.law, HF_LAW_GOES_SLACK) && c.length_at_target_m > hf_law_required_length_m(c, 0);
     if (!is_taut) return otherwise_N;
-    double tension_N = hf_law_tension_N(c, c.theoretical_m);
+    double tension_N = hf_law_tension_N(c, c.length_at_target_m);
     return fmin(fmax(tension_N, otherwise_N / HF_LAW_FIRST_RANGE), otherwise_N * HF_LAW_FIRST_RANGE);
 }
 

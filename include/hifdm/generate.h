@@ -205,9 +205,9 @@ typedef struct {
 hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N[2], hf_scene *scene,
                               hf_messages *messages);
 /* Finds the supports of the front net, in the order of their angle from x towards y. *n is set to their number and
- * *place_m to their positions [n][3], m, from malloc; the caller frees it in any case. Returns HF_OK or
+ * *position_m to their positions [n][3], m, from malloc; the caller frees it in any case. Returns HF_OK or
  * HF_NO_MEMORY. */
-hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **place_m);
+hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **position_m);
 /* Returns the member whose value cannot be realised and writes the reason into what[size], or returns NULL. */
 const char *hf_scene_paraboloid_fault(const hf_paraboloid *paraboloid, char *what, size_t size);
 /* Sets kind and focal length in *surface, which is all zero. */

@@ -67,7 +67,7 @@ void hf_scene_fault(const hf_scene *scene, bool is_cable, int index, int *n_faul
                     hf_messages *messages);
 
 /* Returns the length of cable i_cable between the target positions of its ends, m. */
-double hf_scene_theoretical_length(const hf_scene *scene, int i_cable);
+double hf_scene_length_at_target(const hf_scene *scene, int i_cable);
 
 /* Returns in what two nets differ, as a constant string: nodes, their roles or target positions, cables, or their ends.
  * Returns NULL if they agree in all of these. */

@@ -112,7 +112,7 @@ static inline hf_law_cable hf_workspace_cable(const hf_model *model, const hf_wo
     cable.law = (hf_law)workspace->law[i_cable];
     cable.target = workspace->target[i_cable];
     cable.EA_N = hf_law_has(cable.law, HF_LAW_NEEDS_EA) ? workspace->EA_N[i_cable] : (double)NAN;
-    cable.theoretical_m = model->length_m[i_cable];
+    cable.length_at_target_m = model->length_m[i_cable];
     return cable;
 }
 

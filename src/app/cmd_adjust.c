@@ -225,7 +225,7 @@ static hf_status estimate_errors(job *j, const hf_options *o, hf_messages *messa
     hf_saddle_prior prior = {j->prior.own_m, t->sigma_support_m, j->measured.weight_per_m2, j->prior.n_shared,
                              j->prior.shared_m};
     hf_estimate *p = &j->estimate;
-    HF_TRY(explain_failure(hf_estimate_create(&j->built, &prior, j->measured.place_m, p), "the nominal net", o->file,
+    HF_TRY(explain_failure(hf_estimate_create(&j->built, &prior, j->measured.position_m, p), "the nominal net", o->file,
                            messages));
     HF_TRY(hf_estimate_expect(p, j->expected_m));
     HF_TRY(hf_measured_check(o->measured, &j->built, j->expected_m, &j->measured, messages));
@@ -249,7 +249,7 @@ static double measured_psi_m(const job *j)
         int row = m->inner_row[k];
         if (!j->measured.line[row]) continue;
         for (int c = 0; c < 3; c++) {
-            double d = j->measured.place_m[3 * row + c] - m->position_m[c * m->n_node + row];
+            double d = j->measured.position_m[3 * row + c] - m->position_m[c * m->n_node + row];
             square += d * d;
         }
         n++;

@@ -68,7 +68,7 @@ double hf_adjust_off_m(const hf_adjust_job *j, int row)
 {
     double square = 0;
     for (int c = 0; c < 3; c++) {
-        double d = j->measured.place_m[3 * row + c] - j->estimate.work.position_m[c * j->built.model.n_node + row];
+        double d = j->measured.position_m[3 * row + c] - j->estimate.work.position_m[c * j->built.model.n_node + row];
         square += d * d;
     }
     return sqrt(square);
@@ -112,7 +112,7 @@ hf_status hf_adjust_make_objectives(const hf_adjust_job *j, hf_figure_kind figur
 void hf_adjust_take_aim(hf_adjust_job *j, hf_aim aim)
 {
     hf_model *m = &j->built.model;
-    const double *from = aim == HF_AIM_DESIGN ? j->built.place_m : j->problem.model.position_m;
+    const double *from = aim == HF_AIM_DESIGN ? j->built.position_m : j->problem.model.position_m;
     for (int c = 0; c < 3; c++)
         memcpy(m->position_m + c * m->n_node, from + c * m->n_node, (size_t)m->n_free * sizeof(double));
 }
@@ -134,7 +134,7 @@ static void find_psi_of_design(hf_adjust_job *j)
     for (int k = 0; k < m->n_inner_node; k++) {
         int row = m->inner_row[k];
         for (int c = 0; c < 3; c++) {
-            double d = j->built.place_m[c * m->n_node + row] - j->problem.model.position_m[c * m->n_node + row];
+            double d = j->built.position_m[c * m->n_node + row] - j->problem.model.position_m[c * m->n_node + row];
             design += d * d;
         }
         errors += j->expected_m[row] * j->expected_m[row];

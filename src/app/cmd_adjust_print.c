@@ -36,7 +36,7 @@ void hf_adjust_print_table(const void *context, FILE *f)
     const hf_adjustment *a = &j->adjustment;
     fputs("order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm\n", f);
     for (int k = 0; k < a->n_move; k++) {
-        const hf_adjust_move *move = &a->move[k];
+        const hf_adjust_turnbuckle *move = &a->move[k];
         fprintf(f, "%d,", k + 1);
         hf_csv_write_id(j->built.scene.cable_id[move->cable], f);
         fprintf(f, ",%s,%.10g,%.6g,%.6g,%.6g,%.6g\n", j->task.settings->set, move->move_m * 1e3, move->before_N,
@@ -96,20 +96,20 @@ static void print_end(const hf_adjust_job *j, FILE *f)
 {
     const hf_adjust_settings *s = j->task.settings;
     switch (j->adjustment.end) {
-    case HF_MOVES_TARGET:
+    case HF_TURNBUCKLES_TARGET:
         if (j->adjustment.doubt_m[1] > s->target_m)
             hf_print_line(f, "no further move: the most probable net meets target_m, but %.4f mm are to be expected",
                           j->adjustment.doubt_m[1] * 1e3);
         else
             hf_print_line(f, "no further move: target_m is met");
         break;
-    case HF_MOVES_ALL:
+    case HF_TURNBUCKLES_ALL:
         hf_print_line(f, "no further move: all %d are made (adjust.moves)", s->moves);
         break;
-    case HF_MOVES_DOUBT:
+    case HF_TURNBUCKLES_DOUBT:
         hf_print_line(f, "no further move: the next one would gain less than these measurements can tell");
         break;
-    case HF_MOVES_NONE:
+    case HF_TURNBUCKLES_NONE:
         hf_print_line(f, "no further move: none%s gains anything",
                       j->adjustment.is_held_taut ? " that tensions allow" : "");
         break;
@@ -192,7 +192,7 @@ static void print_numbers(const hf_adjust_job *j, FILE *f)
         hf_print_line(f, "and %d more numbers that cables share beyond %g sigma", n_off - NAMED_MAX, SEEMS_OFF);
 }
 
-static bool is_doubtful(const hf_adjust_move *move)
+static bool is_doubtful(const hf_adjust_turnbuckle *move)
 {
     return move->gain_m < move->gain_sigma_m;
 }
@@ -205,7 +205,7 @@ static void print_moves(const hf_adjust_job *j, FILE *f)
         hf_print_line(f, "%5s  %-20s %9s  %10s %10s  %10s %10s", "order", "cable", "move mm", "N before", "N after",
                       "RMS mm", "to expect");
     for (int k = 0; k < a->n_move; k++) {
-        const hf_adjust_move *move = &a->move[k];
+        const hf_adjust_turnbuckle *move = &a->move[k];
         char slack[32] = "", gain[64] = "";
         if (move->n_slack) snprintf(slack, sizeof slack, "  %d slack", move->n_slack);
         if (is_doubtful(move))
@@ -266,7 +266,7 @@ static void print_json_moves(const hf_adjust_job *from, hf_json *j)
     hf_json_line(j, " ");
     hf_json_open(j, "moves", '[');
     for (int k = 0; k < a->n_move; k++) {
-        const hf_adjust_move *move = &a->move[k];
+        const hf_adjust_turnbuckle *move = &a->move[k];
         hf_json_line(j, "  ");
         hf_json_open(j, NULL, '{');
         hf_json_text(j, "cable", from->built.scene.cable_id[move->cable]);

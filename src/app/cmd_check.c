@@ -63,7 +63,7 @@ static void print_sets(const hf_scene *s, FILE *f)
 
 static void widen(const hf_scene *s, int e, double range[2])
 {
-    double T = s->target[e] * hf_scene_theoretical_length(s, e);
+    double T = s->target[e] * hf_scene_length_at_target(s, e);
     range[0] = fmin(range[0], T);
     range[1] = fmax(range[1], T);
 }

@@ -1,7 +1,12 @@
 /* arena - one zeroed, 64-byte aligned block of memory for each owner. Code on the hot path allocates nothing else.
  *
- * The same layout code runs twice. The first run uses an arena without a block and only counts bytes. The second run
- * uses the allocated block.
+ * An owner lists its arrays:
+ *
+ *     HF_TRY(HF_ARENA_ARRAYS(&object->block, HF_ARRAY(object->length_m, n_cable), HF_ARRAY(object->row, n_node)));
+ *     hf_arena_free_block(object->block);
+ *
+ * Where arrays cannot be listed, because their number varies, layout code runs twice. The first run uses an arena
+ * without a block and only counts bytes. The second run uses the allocated block.
  *
  *     hf_arena arena = {0};
  *     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, object)));
@@ -34,6 +39,24 @@ hf_status hf_arena_allocate(hf_arena *arena);
  * `lay_out` set are NULL. */
 #define HF_ARENA_MAKE(arena, lay_out)                                                                                  \
     ((void)(lay_out), hf_arena_allocate(arena) != HF_OK ? HF_NO_MEMORY : ((void)(lay_out), HF_OK))
+
+/* Describes an array of `count` items. `pointer` is the pointer that will point to it; the items have its type. */
+typedef struct {
+    void *pointer; /* address of that pointer */
+    size_t count, item_bytes;
+} hf_arena_array;
+#define HF_ARRAY(pointer, count)                                                                                       \
+    {                                                                                                                  \
+        &(pointer), (size_t)(count), sizeof *(pointer)                                                                 \
+    }
+
+/* Allocates a zeroed block for arrays HF_ARRAY(pointer, count), each aligned to 64 bytes, and sets their pointers and
+ * *block. The owner frees the block with hf_arena_free_block. Returns HF_OK or HF_NO_MEMORY. After HF_NO_MEMORY all
+ * pointers and *block are NULL. */
+#define HF_ARENA_ARRAYS(block, ...)                                                                                    \
+    hf_arena_arrays(block, sizeof((const hf_arena_array[]){__VA_ARGS__}) / sizeof(hf_arena_array),                     \
+                    (const hf_arena_array[]){__VA_ARGS__})
+hf_status hf_arena_arrays(void **block, size_t n, const hf_arena_array *array);
 
 void hf_arena_free(hf_arena *arena);
 

@@ -2,7 +2,8 @@
 /* Contents: children - the server */
 #include "base/child.h"
 
-#include <errno.h>
+#include "base/file_io.h"
+
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -53,9 +54,7 @@ hf_child_end hf_child_wait(pid_t child)
     int status;
     pid_t ended;
     struct rusage used;
-    do
-        ended = wait4(child, &status, 0, &used);
-    while (ended < 0 && errno == EINTR);
+    HF_UNINTERRUPTED(ended, wait4(child, &status, 0, &used));
     if (ended != child) return (hf_child_end){.is_known = false};
     if (!WIFSIGNALED(status)) return (hf_child_end){.is_known = true, .exit_status = WEXITSTATUS(status)};
     int number = WTERMSIG(status);
@@ -122,8 +121,8 @@ static void serve_orders(int by)
         signal(to_others[i], SIG_IGN);
     signal(SIGCHLD, SIG_DFL); /* where it is ignored, nobody learns how a child ended */
     for (;;) {
-        ssize_t n = recv(by, &o, sizeof o, 0);
-        if (n < 0 && errno == EINTR) continue;
+        ssize_t n;
+        HF_UNINTERRUPTED(n, recv(by, &o, sizeof o, 0));
         if (n <= (ssize_t)offsetof(order, text)) _exit(0);
         hf_child_end end = obey(&o);
         if (send(by, &end, sizeof end, MSG_NOSIGNAL) != (ssize_t)sizeof end) _exit(0);
@@ -169,13 +168,9 @@ void hf_child_server_end(void)
 static bool exchange(const order *o, size_t size, hf_child_end *end)
 {
     ssize_t n;
-    do
-        n = send(server_socket, o, size, MSG_NOSIGNAL);
-    while (n < 0 && errno == EINTR);
+    HF_UNINTERRUPTED(n, send(server_socket, o, size, MSG_NOSIGNAL));
     if (n != (ssize_t)size) return false;
-    do
-        n = recv(server_socket, end, sizeof *end, 0);
-    while (n < 0 && errno == EINTR);
+    HF_UNINTERRUPTED(n, recv(server_socket, end, sizeof *end, 0));
     return n == (ssize_t)sizeof *end;
 }
 

@@ -31,14 +31,6 @@ void hf_csv_fault(hf_csv *t, int line, const char *id, const char *what, const c
         hf_error(t->messages, HF_BAD_CASE, "%s:%d: %s%s", t->path, line, what, detail);
 }
 
-void hf_csv_fault_unknown(hf_csv *t, int line, const char *id, const char *what, const char *name, const hf_csv *of)
-{
-    for (int k = 0; of->has_doubles && k < t->n_unknown; k++)
-        if (!strcmp(t->unknown[k], name)) return;
-    if (of->has_doubles && t->n_unknown < HF_CSV_UNKNOWN_MAX) t->unknown[t->n_unknown++] = name;
-    hf_csv_fault(t, line, id, what, *name ? name : "(empty)");
-}
-
 hf_status hf_csv_close_faults(hf_csv *t)
 {
     if (t->n_comma > 1)
@@ -204,19 +196,14 @@ static void note_uneven(hf_csv *t, int n_field, int line, uneven_lines *u)
 /* Adds one line that is not a comment to the table. Returns false if memory runs out. */
 static bool take_line(hf_csv *t, char *line, int n_line, char **field, int column_max, uneven_lines *uneven)
 {
-    if (strchr(line, '\r')) {
-        hf_csv_fault(t, n_line, NULL, "a carriage return within the line; lines end with LF or CRLF", "");
-        return true;
-    }
-    if (!hf_text_is_utf8(line)) {
-        hf_csv_fault(t, n_line, NULL, "not UTF-8 text, or a control character; save the file as UTF-8", "");
-        return true;
-    }
-    int n = split(line, field, column_max);
-    if (n < 0)
-        hf_csv_fault(t, n_line, NULL, "a quoted field does not end on this line", "");
-    else if (n > column_max)
-        hf_csv_fault(t, n_line, NULL, "too many columns", "");
+    const char *fault = strchr(line, '\r')       ? "a carriage return within the line; lines end with LF or CRLF"
+                        : !hf_text_is_utf8(line) ? "not UTF-8 text, or a control character; save the file as UTF-8"
+                                                 : NULL;
+    int n = fault ? 0 : split(line, field, column_max);
+    if (n < 0) fault = "a quoted field does not end on this line";
+    if (n > column_max) fault = "too many columns";
+    if (fault)
+        hf_csv_fault(t, n_line, NULL, fault, "");
     else if (t->n_column == 0) {
         memcpy(t->header, field, (size_t)(t->n_column = n) * sizeof *field);
         t->header_line = n_line;
@@ -477,13 +464,25 @@ int hf_csv_row_of(const hf_csv_named *index, int n_row, const char *id)
     return hit ? hit->row : -1;
 }
 
+/* Returns true if this unknown name was reported before. Records it otherwise, while there is room. */
+static bool is_reported(hf_csv *t, const char *name)
+{
+    for (int k = 0; k < t->n_unknown; k++)
+        if (!strcmp(t->unknown[k], name)) return true;
+    if (t->n_unknown < HF_CSV_UNKNOWN_MAX) t->unknown[t->n_unknown++] = name;
+    return false;
+}
+
+/* If `of` has duplicate ids, one of those may be the misspelt id. Each unknown name is then reported once, although
+ * several rows may contain it. */
 int hf_csv_reference(hf_csv *t, int row, int column, const char *id, const char *what, const hf_csv *of,
                      const hf_csv_named *index)
 {
     const char *name = hf_csv_cell(t, row, column);
     int at = hf_csv_row_of(index, of->n_row, name);
-    if (at < 0) hf_csv_fault_unknown(t, t->line[row], id, what, name, of);
-    return at < 0 ? 0 : at;
+    if (at >= 0) return at;
+    if (!of->has_doubles || !is_reported(t, name)) hf_csv_fault(t, t->line[row], id, what, *name ? name : "(empty)");
+    return 0;
 }
 
 char *hf_csv_keep(int n_list, const hf_csv_texts *list)

@@ -46,11 +46,6 @@ char *hf_csv_cell(const hf_csv *table, int row, int column);
  * are only counted. */
 void hf_csv_fault(hf_csv *table, int line, const char *id, const char *what, const char *detail);
 
-/* Reports that the row `id` refers to a `name` that table `of` does not contain. If `of` has duplicate ids, one of
- * those may be the misspelt id. Each unknown name is then reported once, although several rows may contain it. */
-void hf_csv_fault_unknown(hf_csv *table, int line, const char *id, const char *what, const char *name,
-                          const hf_csv *of);
-
 /* Returns HF_BAD_CASE if there were faults, else HF_OK. Reports how many faults were only counted. */
 hf_status hf_csv_close_faults(hf_csv *table);
 

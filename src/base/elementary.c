@@ -1,13 +1,32 @@
-/* Contents: lengths - sine and cosine - inverse hyperbolic sine - logarithm - normal distribution - power of two */
+/* Contents: comparisons - lengths - sine and cosine - inverse hyperbolic sine - logarithm - normal distribution - power
+ * of two */
 #include "base/elementary.h"
 
 #include <math.h>
-#include <stddef.h>
+
+/* ---- comparisons ---- */
 
 int hf_compare_doubles(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
+}
+
+double hf_max_magnitude(size_t n, const double *value)
+{
+    double largest = 0;
+    for (size_t i = 0; i < n; i++)
+        largest = fmax(largest, fabs(value[i]));
+    return largest;
+}
+
+int hf_list_largest(int i, const double *value, int n_max, int n, int *list)
+{
+    int at = n;
+    for (; at > 0 && value[list[at - 1]] < value[i]; at--)
+        if (at < n_max) list[at] = list[at - 1];
+    if (at < n_max) list[at] = i;
+    return n < n_max ? n + 1 : n;
 }
 
 /* ---- lengths ---- */
@@ -44,12 +63,12 @@ void hf_cross(const double *a, const double *b, double *c)
 /* ---- sine and cosine ---- */
 
 /* pi/2 in three parts (Cody and Waite). The first part has 27 bits, so its product with a count of up to 2^26 is exact;
- * ANGLE_MOST needs less. The second part has 30 bits; its products are exact up to a count of 2^23. Beyond that they
+ * ANGLE_MAX needs less. The second part has 30 bits; its products are exact up to a count of 2^23. Beyond that they
  * have a rounding error below 1e-17. */
 #define HALF_PI_1 0x1.921fb54p+0
 #define HALF_PI_2 0x1.10b46118p-30
 #define HALF_PI_3 0x1.313198a2e0370p-61
-#define ANGLE_MOST 1e8
+#define ANGLE_MAX 1e8
 #define TERMS 9 /* the first omitted term is below 1e-18 at pi/4 */
 
 /* Returns first (1 - s/((n+1)(n+2)) (1 - s/((n+3)(n+4)) (...))) with s = r^2. This is the series of the sine for n = 1,
@@ -65,10 +84,10 @@ static double alternating_series(double r, int n, double first)
 }
 
 /* Returns the sine of angle_rad + quarters pi/2. */
-static double turned_sine(double angle_rad, int quarters)
+static double shifted_sine(double angle_rad, int quarters)
 {
     if (!isfinite(angle_rad)) return (double)NAN;
-    if (fabs(angle_rad) > ANGLE_MOST) angle_rad = remainder(angle_rad, 4 * (HALF_PI_1 + HALF_PI_2)); /* exact */
+    if (fabs(angle_rad) > ANGLE_MAX) angle_rad = remainder(angle_rad, 4 * (HALF_PI_1 + HALF_PI_2)); /* exact */
     double count = nearbyint(angle_rad / HALF_PI_1);
     double r = ((angle_rad - count * HALF_PI_1) - count * HALF_PI_2) - count * HALF_PI_3;
     int quadrant = (int)(count - 4 * floor(count / 4)) + quarters;
@@ -78,12 +97,12 @@ static double turned_sine(double angle_rad, int quarters)
 
 double hf_sine(double angle_rad)
 {
-    return turned_sine(angle_rad, 0);
+    return shifted_sine(angle_rad, 0);
 }
 
 double hf_cosine(double angle_rad)
 {
-    return turned_sine(angle_rad, 1);
+    return shifted_sine(angle_rad, 1);
 }
 
 /* ---- inverse hyperbolic sine ---- */

@@ -5,6 +5,8 @@
 #ifndef HIFDM_ELEMENTARY_H
 #define HIFDM_ELEMENTARY_H
 
+#include <stddef.h>
+
 #define HF_PI 3.14159265358979323846
 #define HF_RAD_PER_DEG (HF_PI / 180)
 #define HF_LN_2 0.69314718055994530942
@@ -13,6 +15,13 @@
 
 /* Compares two doubles for qsort(3), ascending. */
 int hf_compare_doubles(const void *a, const void *b);
+
+/* Returns the maximum absolute value of n numbers; NaN does not count. Returns 0 without numbers. */
+double hf_max_magnitude(size_t n, const double *value);
+
+/* Inserts item i into a list of the items with the largest values, in descending order. n is the number of items in the
+ * list, at most n_max. An item with the same value as others goes behind them. Returns the new number of items. */
+int hf_list_largest(int i, const double *value, int n_max, int n, int *list);
 
 /* Returns sqrt(x^2 + y^2 + z^2) without overflow or underflow. The error is below 2 units in the last place. The result
  * is infinite if a component is infinite, else NaN if a component is NaN. */

@@ -3,7 +3,6 @@
 
 #include "base/signals.h"
 
-#include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/file.h>
@@ -12,16 +11,10 @@
 
 #define AWAIT_MS 200 /* poll(2) misses a request that arrives just before it; this bounds the delay */
 
-/* Repeats a system call while a signal interrupts it. */
-#define UNINTERRUPTED(result, call)                                                                                    \
-    do                                                                                                                 \
-        (result) = (call);                                                                                             \
-    while ((result) < 0 && errno == EINTR)
-
 int hf_file_io_open(const char *name, int flags)
 {
     int file;
-    UNINTERRUPTED(file, open(name, flags, 0666));
+    HF_UNINTERRUPTED(file, open(name, flags, 0666));
     return file;
 }
 
@@ -41,6 +34,8 @@ int hf_file_io_open_ordinary(const char *name, off_t *size)
 
 /* ---- whole transfers ---- */
 
+enum { HERE = -1 };
+
 /* Returns true if a write failed or wrote nothing. A write of 0 bytes becomes ENOSPC, because its repetition
  * would never end. */
 static bool is_stuck(ssize_t done)
@@ -49,26 +44,27 @@ static bool is_stuck(ssize_t done)
     return done <= 0;
 }
 
-int hf_file_io_write(int file, const void *from, size_t n)
+/* Writes to the present position of the file for at = HERE, otherwise to `at`. */
+static int write_whole(int file, const char *from, size_t n, off_t at)
 {
     for (size_t done = 0; done < n;) {
         ssize_t now;
-        UNINTERRUPTED(now, write(file, (const char *)from + done, n - done));
+        HF_UNINTERRUPTED(now, at == HERE ? write(file, from + done, n - done)
+                                         : pwrite(file, from + done, n - done, at + (off_t)done));
         if (is_stuck(now)) return -1;
         done += (size_t)now;
     }
     return 0;
 }
 
+int hf_file_io_write(int file, const void *from, size_t n)
+{
+    return write_whole(file, from, n, HERE);
+}
+
 int hf_file_io_write_at(int file, const void *from, size_t n, off_t at)
 {
-    for (size_t done = 0; done < n;) {
-        ssize_t now;
-        UNINTERRUPTED(now, pwrite(file, (const char *)from + done, n - done, at + (off_t)done));
-        if (is_stuck(now)) return -1;
-        done += (size_t)now;
-    }
-    return 0;
+    return write_whole(file, from, n, at);
 }
 
 int hf_file_io_write_pieces(int file, struct iovec *piece, int n)
@@ -79,7 +75,7 @@ int hf_file_io_write_pieces(int file, struct iovec *piece, int n)
             continue;
         }
         ssize_t now;
-        UNINTERRUPTED(now, writev(file, piece, n));
+        HF_UNINTERRUPTED(now, writev(file, piece, n));
         if (is_stuck(now)) return -1;
         for (size_t left = (size_t)now; left > 0;) {
             size_t taken = left < piece->iov_len ? left : piece->iov_len;
@@ -92,12 +88,14 @@ int hf_file_io_write_pieces(int file, struct iovec *piece, int n)
     return 0;
 }
 
-ssize_t hf_file_io_read(int file, void *to, size_t n)
+/* Reads from the present position of the file for at = HERE, otherwise from `at`. */
+static ssize_t read_whole(int file, char *to, size_t n, off_t at)
 {
     size_t done = 0;
     while (done < n) {
         ssize_t now;
-        UNINTERRUPTED(now, read(file, (char *)to + done, n - done));
+        HF_UNINTERRUPTED(now, at == HERE ? read(file, to + done, n - done)
+                                         : pread(file, to + done, n - done, at + (off_t)done));
         if (now < 0) return -1;
         if (now == 0) break;
         done += (size_t)now;
@@ -105,23 +103,20 @@ ssize_t hf_file_io_read(int file, void *to, size_t n)
     return (ssize_t)done;
 }
 
+ssize_t hf_file_io_read(int file, void *to, size_t n)
+{
+    return read_whole(file, to, n, HERE);
+}
+
 ssize_t hf_file_io_read_at(int file, void *to, size_t n, off_t at)
 {
-    size_t done = 0;
-    while (done < n) {
-        ssize_t now;
-        UNINTERRUPTED(now, pread(file, (char *)to + done, n - done, at + (off_t)done));
-        if (now < 0) return -1;
-        if (now == 0) break;
-        done += (size_t)now;
-    }
-    return (ssize_t)done;
+    return read_whole(file, to, n, at);
 }
 
 int hf_file_io_cut(int file, off_t size)
 {
     int result;
-    UNINTERRUPTED(result, ftruncate(file, size));
+    HF_UNINTERRUPTED(result, ftruncate(file, size));
     return result;
 }
 
@@ -130,7 +125,7 @@ int hf_file_io_cut(int file, off_t size)
 int hf_file_io_sync(int file, bool content_alone)
 {
     int result;
-    UNINTERRUPTED(result, content_alone ? fdatasync(file) : fsync(file));
+    HF_UNINTERRUPTED(result, content_alone ? fdatasync(file) : fsync(file));
     return result == 0 || errno == EINVAL || errno == ENOSYS || errno == ENOTSUP ? 0 : -1;
 }
 
@@ -151,7 +146,7 @@ static hf_lock lock_of_result(int result)
 hf_lock hf_file_io_lock(int file)
 {
     int result;
-    UNINTERRUPTED(result, flock(file, LOCK_EX | LOCK_NB));
+    HF_UNINTERRUPTED(result, flock(file, LOCK_EX | LOCK_NB));
     return lock_of_result(result);
 }
 
@@ -159,7 +154,7 @@ static int set_byte(int file, off_t at, short type)
 {
     struct flock lock = {.l_type = type, .l_whence = SEEK_SET, .l_start = at, .l_len = 1};
     int result;
-    UNINTERRUPTED(result, fcntl(file, F_SETLK, &lock));
+    HF_UNINTERRUPTED(result, fcntl(file, F_SETLK, &lock));
     return result;
 }
 

@@ -6,10 +6,17 @@
 #ifndef HIFDM_FILE_IO_H
 #define HIFDM_FILE_IO_H
 
+#include <errno.h>
 #include <hifdm/status.h>
 #include <stdbool.h>
 #include <sys/types.h>
 #include <sys/uio.h>
+
+/* Repeats a system call while a signal interrupts it. */
+#define HF_UNINTERRUPTED(result, call)                                                                                 \
+    do                                                                                                                 \
+        (result) = (call);                                                                                             \
+    while ((result) < 0 && errno == EINTR)
 
 int hf_file_io_open(const char *name, int flags); /* open(2), mode 0666 for new files; returns the descriptor */
 

@@ -8,15 +8,8 @@
 
 bool hf_lane_has_isa(hf_lane_isa isa)
 {
-    switch (isa) {
-    case HF_LANE_PORTABLE:
-        return true;
-    case HF_LANE_AVX2:
-        return CPU_HAS("avx2") && CPU_HAS("fma");
-    case HF_LANE_AVX512:
-        return CPU_HAS("avx512f");
-    }
-    return false;
+    return isa == HF_LANE_PORTABLE || (isa == HF_LANE_AVX2 && CPU_HAS("avx2") && CPU_HAS("fma")) ||
+           (isa == HF_LANE_AVX512 && CPU_HAS("avx512f"));
 }
 
 hf_lane_isa hf_lane_best_isa(void)
@@ -27,13 +20,6 @@ hf_lane_isa hf_lane_best_isa(void)
 
 const char *hf_lane_isa_name(hf_lane_isa isa)
 {
-    switch (isa) {
-    case HF_LANE_PORTABLE:
-        return "portable";
-    case HF_LANE_AVX2:
-        return "avx2";
-    case HF_LANE_AVX512:
-        return "avx512";
-    }
-    return "unknown";
+    static const char *const name[HF_LANE_N_ISA] = {"portable", "avx2", "avx512"};
+    return name[isa];
 }

@@ -29,8 +29,8 @@ inline uint64_t hf_random_next(hf_random *random)
 /* Returns the stream of one individual of one generation. It depends neither on earlier draws nor on the thread. */
 inline hf_random hf_random_stream(uint64_t seed, int generation, int individual)
 {
-    uint64_t place = (uint64_t)(uint32_t)generation << 32 | (uint32_t)individual;
-    return (hf_random){hf_random_mix(hf_random_mix(seed + HF_RANDOM_STEP) ^ hf_random_mix(place + 2 * HF_RANDOM_STEP))};
+    uint64_t index = (uint64_t)(uint32_t)generation << 32 | (uint32_t)individual;
+    return (hf_random){hf_random_mix(hf_random_mix(seed + HF_RANDOM_STEP) ^ hf_random_mix(index + 2 * HF_RANDOM_STEP))};
 }
 
 /* Returns a uniformly distributed multiple of 2^-53 in [0, 1). */

@@ -3,54 +3,47 @@
 #include "base/text.h"
 
 #include <stdarg.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#define ROW(name, value, exit_code, word, text) {HF_##name, exit_code, word, text},
+typedef struct {
+    hf_status status;
+    int exit_code;
+    const char *word, *text;
+} status_row;
+static const status_row listed[] = {HF_STATUS_LIST(ROW)};
+static const status_row unlisted = {HF_IO, 5, "unknown", "unknown status"};
+enum { N_STATUS = sizeof listed / sizeof *listed };
+
+static const status_row *row_of(hf_status status)
+{
+    for (int i = 0; i < N_STATUS; i++)
+        if (listed[i].status == status) return &listed[i];
+    return &unlisted;
+}
+
 const char *hf_status_word(hf_status status)
 {
-    switch (status) {
-#define WORD(name, value, exit_code, word, text)                                                                       \
-    case HF_##name:                                                                                                    \
-        return word;
-        HF_STATUS_LIST(WORD)
-#undef WORD
-    }
-    return "unknown";
+    return row_of(status)->word;
 }
 
 hf_status hf_status_of_word(const char *word)
 {
-#define IS(name, value, exit_code, text, sentence)                                                                     \
-    if (!strcmp(word, text)) return HF_##name;
-    HF_STATUS_LIST(IS)
-#undef IS
-    return HF_IO;
+    for (int i = 0; i < N_STATUS; i++)
+        if (!strcmp(listed[i].word, word)) return listed[i].status;
+    return unlisted.status;
 }
 
 const char *hf_status_text(hf_status status)
 {
-    switch (status) {
-#define TEXT(name, value, exit_code, word, text)                                                                       \
-    case HF_##name:                                                                                                    \
-        return text;
-        HF_STATUS_LIST(TEXT)
-#undef TEXT
-    }
-    return "unknown status";
+    return row_of(status)->text;
 }
 
 int hf_status_exit_code(hf_status status)
 {
-    switch (status) {
-#define EXIT(name, value, exit_code, word, text)                                                                       \
-    case HF_##name:                                                                                                    \
-        return exit_code;
-        HF_STATUS_LIST(EXIT)
-#undef EXIT
-    }
-    return 5;
+    return row_of(status)->exit_code;
 }
 
 /* Reserves room for `extra` more bytes and the final NUL. Returns false if memory runs out. */

@@ -96,13 +96,13 @@ bool hf_text_double(const char *text, double *value)
     return hf_text_decimal(text, 0, value);
 }
 
-#define DIGITS_MOST 400    /* maximum length of a number that hf_text_decimal scales */
-#define EXPONENT_MOST 9999 /* with so few digits, larger exponents give 0 or an overflow in any case */
+#define DIGITS_MAX 400    /* maximum length of a number that hf_text_decimal scales */
+#define EXPONENT_MAX 9999 /* with so few digits, larger exponents give 0 or an overflow in any case */
 
 bool hf_text_decimal(const char *text, int decimals, double *value)
 {
     const char *p = text, *whole, *fraction;
-    char moved[DIGITS_MOST + 32];
+    char scaled[DIGITS_MAX + 32];
     if (*p == '+' || *p == '-') p++;
     whole = p;
     p = skip_digits(p);
@@ -123,10 +123,10 @@ bool hf_text_decimal(const char *text, int decimals, double *value)
     if (*p) return false;
     if (decimals != 0) {
         long exponent = text[n] ? strtol(text + n + 1, NULL, 10) : 0;
-        if (n > DIGITS_MOST) return false;
-        exponent = exponent > EXPONENT_MOST ? EXPONENT_MOST : exponent < -EXPONENT_MOST ? -EXPONENT_MOST : exponent;
-        snprintf(moved, sizeof moved, "%.*se%ld", n, text, exponent + decimals);
-        text = moved;
+        if (n > DIGITS_MAX) return false;
+        exponent = exponent > EXPONENT_MAX ? EXPONENT_MAX : exponent < -EXPONENT_MAX ? -EXPONENT_MAX : exponent;
+        snprintf(scaled, sizeof scaled, "%.*se%ld", n, text, exponent + decimals);
+        text = scaled;
     }
     *value = number_of(text);
     return isfinite(*value);
@@ -197,6 +197,14 @@ size_t hf_text_escape(const char *text, char *escaped, size_t size)
         text += n ? n : 1;
     }
     return used;
+}
+
+bool hf_text_append(char *text, size_t size, const char *between, const char *item, const char *more)
+{
+    size_t used = strlen(text);
+    bool fits = used + strlen(between) + strlen(item) + strlen(more) < size;
+    snprintf(text + used, size - used, "%s%s", fits && used ? between : "", fits ? item : more);
+    return fits;
 }
 
 void hf_text_trim_utf8(char *text)

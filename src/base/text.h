@@ -44,6 +44,10 @@ bool hf_text_is_hidden(uint32_t code);
  * nothing. Writes whole characters, at most `size` bytes with the final NUL. Returns the length without this limit. */
 size_t hf_text_escape(const char *text, char *escaped, size_t size);
 
+/* Appends an item to a list in text[size], with `between` in front unless the list is empty. Appends `more` instead and
+ * returns false if the item, and `more` behind it, do not fit. */
+bool hf_text_append(char *text, size_t size, const char *between, const char *item, const char *more);
+
 /* Removes an incomplete UTF-8 sequence from the end of a text that snprintf(3) has truncated. */
 void hf_text_trim_utf8(char *text);
 

@@ -6,7 +6,7 @@
  *                   linearise: J = d(residuals of the figure) / d(cut lengths), J'J, J'r       <---+
  *                     |                                                                            |
  *                     v                                                                            |
- *                   choose whole steps of few turnbuckles (built/moves) within the tension limits  |
+ *                   choose whole steps of few turnbuckles (built/turnbuckles) within the tension limits  |
  *                     |                                                                            |
  *                     v                                                                            |
  *                   solve the adjusted shape: better? ---------------------------------------yes---+
@@ -19,10 +19,11 @@
 #include "built/adjust.h"
 
 #include "base/arena.h"
-#include "built/turned.h"
+#include "base/elementary.h"
 #include "linalg/band.h"
 #include "linalg/dot.h"
 #include "search/parallel.h"
+#include <hifdm/built_batch.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -45,6 +46,7 @@ typedef struct {
     double *strain_N, *answer_m, *scratch;
     /* Arguments of hf_objectives_push. The figure depends on positions alone, so the last two stay 0. */
     double *rate_m, *rate_N, *displacement_m;
+    void *block;
 } adjust_room;
 
 typedef struct {
@@ -56,7 +58,7 @@ typedef struct {
     size_t n, n_row, n_dof; /* numbers of turnbuckles, of residuals of the figure, of coordinates */
     hf_workspace work;      /* the shape solved last */
     hf_form_result form;
-    double *turn_m;          /* [n_cable of the model] adjustments of that shape */
+    double *adjustment_m;    /* [n_cable of the model] adjustments of that shape */
     double *doubt_m;         /* [HF_ESTIMATE_SAMPLES][n_dof] posterior displacements */
     double *doubt_N;         /* [n_cable of the model] standard deviations of the estimated tensions */
     hf_estimate_cause cause; /* posterior errors that cause doubt_m */
@@ -71,15 +73,15 @@ typedef struct {
      * adjustments by the linear model. */
     double *left_open, *at_zero;
     double *product; /* products of these n + HF_ESTIMATE_SAMPLES + 1 rows with each other */
-    /* [n][n] J'J; [n] J'r; [HF_ESTIMATE_SAMPLES][n] J'dr; [n] for continuous adjustments, m. */
-    double *gram, *slope, *sample, *move_m;
+    /* [n][n] J'J; [n] J'r; [HF_ESTIMATE_SAMPLES][n] J'dr; [n] continuous adjustments, m. */
+    double *gram, *slope, *sample, *continuous_m;
     int *steps, *trial; /* [n] steps of the accepted and of the tried choice */
-    double *least_N;    /* [n_cable of the model] tensions that adjustments must keep */
+    double *min_N;      /* [n_cable of the model] tensions that adjustments must keep */
     /* [n_cable of the model] how far each tension may fall below its value without adjustments. */
     double *room_N;
     bool is_current; /* true: the linear model belongs to the shape with `steps` */
-    hf_moves_problem problem;
-    void *block;
+    hf_turnbuckles_problem problem;
+    void *block, *matrix_block;
 } adjustment;
 
 static size_t rows_of(const adjustment *a)
@@ -87,46 +89,32 @@ static size_t rows_of(const adjustment *a)
     return a->n + HF_ESTIMATE_SAMPLES + 1;
 }
 
-static void lay_out_rooms(hf_arena *arena, adjustment *a)
+static hf_status open_room(const adjustment *a, adjust_room *r)
 {
     const hf_model *m = &a->estimate->built->model;
-    a->room = hf_arena_take(arena, (size_t)a->n_room, sizeof *a->room);
-    for (int i = 0; i < a->n_room; i++) {
-        adjust_room of = {0};
-        of.lanes = hf_arena_take(arena, hf_packed_band_rows(&a->matrix) * HF_LANES, sizeof(double));
-        of.strain_N = hf_arena_take(arena, PANEL * (size_t)m->n_cable, sizeof(double));
-        of.answer_m = hf_arena_take(arena, PANEL * a->n_dof, sizeof(double));
-        of.scratch = hf_arena_take(arena, PANEL * a->estimate->linear.n_scratch, sizeof(double));
-        of.rate_m = hf_arena_take(arena, a->n_dof, sizeof(double));
-        of.rate_N = hf_arena_take(arena, (size_t)m->n_cable, sizeof(double));
-        of.displacement_m = hf_arena_take(arena, 3 * (size_t)m->n_attachment, sizeof(double));
-        if (a->room) a->room[i] = of;
-    }
+    HF_TRY(HF_ARENA_ARRAYS(&r->block, HF_ARRAY(r->lanes, hf_packed_band_rows(&a->matrix) * HF_LANES),
+                           HF_ARRAY(r->strain_N, PANEL * (size_t)m->n_cable), HF_ARRAY(r->answer_m, PANEL * a->n_dof),
+                           HF_ARRAY(r->scratch, PANEL * a->estimate->linear.n_scratch), HF_ARRAY(r->rate_m, a->n_dof),
+                           HF_ARRAY(r->rate_N, m->n_cable), HF_ARRAY(r->displacement_m, 3 * (size_t)m->n_attachment)));
+    return hf_objectives_point_create(a->task->objectives, &r->point);
 }
 
-static void lay_out_adjustment(hf_arena *arena, adjustment *a)
+static hf_status allocate(adjustment *a)
 {
-    size_t n_cable = (size_t)a->estimate->built->model.n_cable, samples = HF_ESTIMATE_SAMPLES, n_all = rows_of(a);
-    a->turn_m = hf_arena_take(arena, n_cable, sizeof(double));
-    a->doubt_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
-    a->doubt_N = hf_arena_take(arena, n_cable, sizeof(double));
-    a->cause.cut_m = hf_arena_take(arena, samples * n_cable, sizeof(double));
-    a->cause.rest_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
-    a->answer_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
-    a->beyond_m = hf_arena_take(arena, samples * a->n_dof, sizeof(double));
-    a->residual = hf_arena_take(arena, a->n_row, sizeof(double));
-    a->column = hf_arena_take(arena, n_all * a->n_row, sizeof(double));
-    a->product = hf_arena_take(arena, n_all * n_all, sizeof(double));
-    a->gram = hf_arena_take(arena, a->n * a->n, sizeof(double));
-    a->slope = hf_arena_take(arena, a->n, sizeof(double));
-    a->sample = hf_arena_take(arena, samples * a->n, sizeof(double));
-    a->move_m = hf_arena_take(arena, a->n, sizeof(double));
-    a->steps = hf_arena_take(arena, a->n, sizeof(int));
-    a->trial = hf_arena_take(arena, a->n, sizeof(int));
-    a->least_N = hf_arena_take(arena, n_cable, sizeof(double));
-    a->room_N = hf_arena_take(arena, n_cable, sizeof(double));
-    hf_packed_band_lay_out(arena, &a->matrix);
-    lay_out_rooms(arena, a);
+    size_t n_cable = (size_t)a->estimate->built->model.n_cable, n_all = rows_of(a), n = a->n;
+    size_t by_sample = HF_ESTIMATE_SAMPLES * a->n_dof;
+    hf_arena arena = {0};
+    HF_TRY(HF_ARENA_ARRAYS(
+        &a->block, HF_ARRAY(a->room, a->n_room), HF_ARRAY(a->adjustment_m, n_cable), HF_ARRAY(a->doubt_m, by_sample),
+        HF_ARRAY(a->doubt_N, n_cable), HF_ARRAY(a->cause.cut_m, HF_ESTIMATE_SAMPLES * n_cable),
+        HF_ARRAY(a->cause.rest_m, by_sample), HF_ARRAY(a->answer_m, by_sample), HF_ARRAY(a->beyond_m, by_sample),
+        HF_ARRAY(a->residual, a->n_row), HF_ARRAY(a->column, n_all * a->n_row), HF_ARRAY(a->product, n_all * n_all),
+        HF_ARRAY(a->gram, n * n), HF_ARRAY(a->slope, n), HF_ARRAY(a->sample, HF_ESTIMATE_SAMPLES * n),
+        HF_ARRAY(a->continuous_m, n), HF_ARRAY(a->steps, n), HF_ARRAY(a->trial, n), HF_ARRAY(a->min_N, n_cable),
+        HF_ARRAY(a->room_N, n_cable)));
+    HF_TRY(HF_ARENA_MAKE(&arena, hf_packed_band_lay_out(&arena, &a->matrix)));
+    a->matrix_block = arena.block;
+    return HF_OK;
 }
 
 /* Computes the changes of tension [n_cable], N, that the strains in the first room cause in the linear model. */
@@ -138,7 +126,7 @@ static void find_tensions(const adjustment *a, double *change_N)
     hf_built_linear_tension(&a->estimate->linear, r->strain_N, r->answer_m, change_N);
 }
 
-/* Computes the changes of tension per metre of turnbuckle i, for hf_moves_choose. */
+/* Computes the changes of tension per metre of turnbuckle i, for hf_turnbuckles_choose. */
 static void find_rates(void *context, int i, double *rate_N_per_m)
 {
     adjustment *a = context;
@@ -150,42 +138,42 @@ static void find_rates(void *context, int i, double *rate_N_per_m)
 
 static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, adjustment *a)
 {
-    hf_arena arena = {0};
     *a =
         (adjustment){.estimate = p, .task = task, .n = (size_t)task->n_cable, .n_row = (size_t)task->objectives->n_row};
     a->n_dof = p->linear.n_dof;
     a->n_room = task->n_thread > 0 ? task->n_thread : hf_parallel_cores();
     a->matrix = hf_newton_matrix_packed(&p->built->model);
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_adjustment(&arena, a)));
-    a->block = arena.block;
+    HF_TRY(allocate(a));
     a->left_open = a->column + a->n * a->n_row;
     a->at_zero = a->left_open + HF_ESTIMATE_SAMPLES * a->n_row;
     for (int i = 0; i < a->n_room; i++)
-        HF_TRY(hf_objectives_point_create(task->objectives, &a->room[i].point));
+        HF_TRY(open_room(a, &a->room[i]));
     const hf_adjust_settings *s = task->settings;
-    a->problem = (hf_moves_problem){.n = task->n_cable,
-                                    .gram = a->gram,
-                                    .slope = a->slope,
-                                    .step_m = s->step_m,
-                                    .steps_max = hf_adjust_steps(s),
-                                    .moves_max = s->moves,
-                                    .target = s->target_m,
-                                    .n_sample = HF_ESTIMATE_SAMPLES,
-                                    .sample = a->sample,
-                                    .n_tension = p->built->model.n_cable,
-                                    .room_N = a->room_N,
-                                    .rates = find_rates,
-                                    .context = a};
+    a->problem = (hf_turnbuckles_problem){.n = task->n_cable,
+                                          .gram = a->gram,
+                                          .slope = a->slope,
+                                          .step_m = s->step_m,
+                                          .steps_max = hf_adjust_steps(s),
+                                          .n_max = s->moves,
+                                          .target = s->target_m,
+                                          .n_sample = HF_ESTIMATE_SAMPLES,
+                                          .sample = a->sample,
+                                          .n_tension = p->built->model.n_cable,
+                                          .room_N = a->room_N,
+                                          .rates = find_rates,
+                                          .context = a};
     return hf_workspace_create(&p->built->model, &a->work);
 }
 
 static void free_adjustment(adjustment *a)
 {
-    hf_arena arena = {.block = a->block};
     hf_workspace_free(&a->work);
-    for (int i = 0; i < a->n_room && a->block; i++)
+    for (int i = 0; i < a->n_room && a->room; i++) {
         hf_objectives_point_free(&a->room[i].point);
-    hf_arena_free(&arena);
+        hf_arena_free_block(a->room[i].block);
+    }
+    hf_arena_free_block(a->matrix_block);
+    hf_arena_free_block(a->block);
 }
 
 /* ---- the figure of a shape ---- */
@@ -196,54 +184,48 @@ static hf_status measure_work(adjustment *a, double *figure_m)
     return hf_objectives_measure(a->task->objectives, &a->work, &a->room[0].point, figure_m, &merit);
 }
 
-/* Solves the net with the estimated errors and the adjustments in turn_m, and measures its figure. */
-static hf_status solve_turned(adjustment *a, double *figure_m)
+/* Solves the net with the estimated errors and the adjustments in adjustment_m, and measures its figure. */
+static hf_status solve_adjusted(adjustment *a, double *figure_m)
 {
     *figure_m = (double)NAN;
-    HF_TRY(hf_estimate_shape(a->estimate, a->turn_m, &a->work, &a->form));
+    HF_TRY(hf_estimate_shape(a->estimate, a->adjustment_m, &a->work, &a->form));
     return measure_work(a, figure_m);
 }
 
 static hf_status solve_steps(adjustment *a, const int *steps, double *figure_m)
 {
     for (size_t i = 0; i < a->n; i++)
-        a->turn_m[a->task->cable[i]] = steps[i] * a->problem.step_m;
-    return solve_turned(a, figure_m);
-}
-
-static hf_status solve_nominal(adjustment *a, double *figure_m)
-{
-    HF_TRY(hf_built_solve(a->estimate->built, &(hf_built_net){0}, &a->work, &a->form));
-    return measure_work(a, figure_m);
+        a->adjustment_m[a->task->cable[i]] = steps[i] * a->problem.step_m;
+    return solve_adjusted(a, figure_m);
 }
 
 /* Sets the tension that each cable must keep, from the shape without adjustments in `work`. Counts the cables below
  * their required minimum. */
-static void find_least(adjustment *a, hf_adjustment *found)
+static void find_min_tensions(adjustment *a, hf_adjustment *found)
 {
     const hf_built *b = a->estimate->built;
     for (int e = 0; e < b->model.n_cable; e++) {
-        double least = HF_ADJUST_TAUT * b->tension_N[e];
-        if (a->task->least_N && a->work.tension_N[e] < a->task->least_N[e]) {
+        double min_tension_N = HF_ADJUST_TAUT * b->tension_N[e];
+        if (a->task->min_N && a->work.tension_N[e] < a->task->min_N[e]) {
             found->n_low++;
-            found->low_N = fmax(found->low_N, a->task->least_N[e]);
+            found->low_N = fmax(found->low_N, a->task->min_N[e]);
         }
-        if (a->task->least_N) least = fmax(least, a->task->least_N[e]);
-        a->least_N[e] = fmin(least, a->work.tension_N[e]);
+        if (a->task->min_N) min_tension_N = fmax(min_tension_N, a->task->min_N[e]);
+        a->min_N[e] = fmin(min_tension_N, a->work.tension_N[e]);
     }
 }
 
-static bool keeps_least(const adjustment *a)
+static bool keeps_min_tensions(const adjustment *a)
 {
     for (int e = 0; e < a->problem.n_tension; e++)
-        if (a->work.tension_N[e] < KEPT * a->least_N[e]) return false;
+        if (a->work.tension_N[e] < KEPT * a->min_N[e]) return false;
     return true;
 }
 
 /* ---- the linear model ---- */
 
 /* Computes the derivative of the residuals, rate [n_row], along the displacements move_m [n_dof]. */
-static void push_move(const adjustment *a, adjust_room *r, const double *move_m, double *rate)
+static void push_displacement(const adjustment *a, adjust_room *r, const double *move_m, double *rate)
 {
     const hf_model *m = &a->estimate->built->model;
     for (int row = 0; row < m->n_node; row++)
@@ -269,7 +251,7 @@ static void find_panel(void *context, int room, int i_panel)
     const hf_built_lanes by = {&a->matrix, r->lanes};
     hf_built_linear_apply_by(l, &by, (int)n, r->strain_N, NULL, r->answer_m, r->scratch);
     for (size_t k = 0; k < n; k++)
-        push_move(a, r, r->answer_m + k * a->n_dof, a->column + (first + k) * a->n_row);
+        push_displacement(a, r, r->answer_m + k * a->n_dof, a->column + (first + k) * a->n_row);
 }
 
 static void multiply_rows(void *context, int room, int i_block)
@@ -282,7 +264,7 @@ static void multiply_rows(void *context, int room, int i_block)
 }
 
 /* Multiplies all rows with each other and copies J'J, J'r, r'r and the products with the samples to where
- * hf_moves_choose reads them. */
+ * hf_turnbuckles_choose reads them. */
 static void find_products(adjustment *a)
 {
     size_t n = a->n, n_all = rows_of(a), last = n_all - 1;
@@ -302,23 +284,21 @@ static void find_room(adjustment *a)
 {
     int n_cable = a->problem.n_tension;
     for (int e = 0; e < n_cable; e++)
-        a->room[0].strain_N[e] = a->estimate->linear.cut_N_per_m[e] * a->turn_m[e];
+        a->room[0].strain_N[e] = a->estimate->linear.cut_N_per_m[e] * a->adjustment_m[e];
     find_tensions(a, a->room_N);
-    a->problem.reference_N = 0;
+    a->problem.reference_N = hf_max_magnitude((size_t)n_cable, a->work.tension_N);
     for (int e = 0; e < n_cable; e++)
-        a->problem.reference_N = fmax(a->problem.reference_N, fabs(a->work.tension_N[e]));
-    for (int e = 0; e < n_cable; e++)
-        a->room_N[e] = fmax(a->work.tension_N[e] - a->room_N[e] - a->least_N[e], 0);
+        a->room_N[e] = fmax(a->work.tension_N[e] - a->room_N[e] - a->min_N[e], 0);
 }
 
 /* Sets at_zero to the residuals without adjustments: r(0) = r(a) - J a. */
-static void take_turns_off(adjustment *a)
+static void take_adjustments_off(adjustment *a)
 {
     memcpy(a->at_zero, a->residual, a->n_row * sizeof *a->at_zero);
     for (size_t i = 0; i < a->n; i++) {
-        double turn_m = a->turn_m[a->task->cable[i]];
-        for (size_t r = 0; r < a->n_row && turn_m != 0; r++)
-            a->at_zero[r] -= turn_m * a->column[i * a->n_row + r];
+        double adjustment_m = a->adjustment_m[a->task->cable[i]];
+        for (size_t r = 0; r < a->n_row && adjustment_m != 0; r++)
+            a->at_zero[r] -= adjustment_m * a->column[i * a->n_row + r];
     }
 }
 
@@ -326,7 +306,7 @@ static void take_turns_off(adjustment *a)
 static hf_status look_again(adjustment *a)
 {
     HF_TRY(hf_objectives_linearise(a->task->objectives, true, &a->work, &a->room[0].point, a->residual));
-    take_turns_off(a);
+    take_adjustments_off(a);
     for (size_t i = 0; i < a->n; i++)
         a->slope[i] = hf_dot(a->n_row, a->column + i * a->n_row, a->at_zero);
     a->problem.square = hf_dot(a->n_row, a->at_zero, a->at_zero);
@@ -343,9 +323,9 @@ static hf_status linearise(adjustment *a)
     HF_TRY(hf_built_linear_take(&a->estimate->linear, &a->work));
     hf_packed_band_pack(&a->matrix, a->estimate->linear.work.newton_band);
     hf_parallel_each(a->n_room, (int)((n + PANEL - 1) / PANEL), find_panel, a);
-    take_turns_off(a);
+    take_adjustments_off(a);
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++)
-        push_move(a, &a->room[0], a->doubt_m + s * a->n_dof, a->left_open + s * n_row);
+        push_displacement(a, &a->room[0], a->doubt_m + s * a->n_dof, a->left_open + s * n_row);
     find_products(a);
     find_room(a);
     return HF_OK;
@@ -363,24 +343,24 @@ static hf_status choose(adjustment *a, hf_adjustment *found)
     double figure_m;
     HF_TRY(solve_steps(a, a->steps, &figure_m));
     found->adjusted_m = found->estimated_m = figure_m;
-    found->end = HF_MOVES_NONE;
-    find_least(a, found);
+    found->end = HF_TURNBUCKLES_NONE;
+    find_min_tensions(a, found);
     while (found->n_round < ROUNDS_MAX && !found->is_settled) {
-        hf_moves_end end;
+        hf_turnbuckles_end end;
         bool is_held;
         hf_status status = a->is_current ? HF_OK : linearise(a);
         if (status == HF_SINGULAR) return HF_OK; /* without stiffness there is no linear model to improve on */
         HF_TRY(status);
         found->n_round += !a->is_current;
         a->is_current = true;
-        HF_TRY(hf_moves_choose(&a->problem, a->trial, &end, &is_held));
+        HF_TRY(hf_turnbuckles_choose(&a->problem, a->trial, &end, &is_held));
         found->is_held_taut |= is_held;
         found->is_settled = memcmp(a->trial, a->steps, a->n * sizeof *a->trial) == 0;
         if (found->is_settled) found->end = end;
         if (found->is_settled) return HF_OK;
         status = solve_steps(a, a->trial, &figure_m);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-        bool is_low = status == HF_OK && !keeps_least(a), is_better = figure_m < found->adjusted_m;
+        bool is_low = status == HF_OK && !keeps_min_tensions(a), is_better = figure_m < found->adjusted_m;
         bool is_first = found->adjusted_m == found->estimated_m;
         found->is_held_taut |= is_low;
         if (status != HF_OK || is_low || (is_first && !is_better)) {
@@ -400,20 +380,20 @@ static hf_status choose(adjustment *a, hf_adjustment *found)
 
 /* ---- continuous optimum ---- */
 
-/* Takes a step from the present adjustments towards a->move_m, without limits on tensions, and halves it until the
- * figure falls by more than LITTLE. *gains is false when no step does; the adjustments and the shape are then as
+/* Takes a step from the present adjustments towards a->continuous_m, without limits on tensions, and halves it until
+ * the figure falls by more than LITTLE. *gains is false when no step does; the adjustments and the shape are then as
  * before. */
 static hf_status go_on(adjustment *a, double *best_m, bool *gains)
 {
     double length = 1, at = 0, figure_m = (double)NAN;
     for (size_t i = 0; i < a->n; i++)
-        a->move_m[i] -= a->turn_m[a->task->cable[i]];
+        a->continuous_m[i] -= a->adjustment_m[a->task->cable[i]];
     for (int k = 0; k <= HALVINGS_MAX + 1; k++, length /= 2) {
         double to = k > HALVINGS_MAX ? 0 : length;
         for (size_t i = 0; i < a->n; i++)
-            a->turn_m[a->task->cable[i]] += (to - at) * a->move_m[i];
+            a->adjustment_m[a->task->cable[i]] += (to - at) * a->continuous_m[i];
         at = to;
-        hf_status status = solve_turned(a, &figure_m);
+        hf_status status = solve_adjusted(a, &figure_m);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         *gains = status == HF_OK && figure_m < *best_m * (1 - LITTLE);
         if (!*gains) continue;
@@ -423,12 +403,12 @@ static hf_status go_on(adjustment *a, double *best_m, bool *gains)
     return HF_OK;
 }
 
-/* Returns whether the linear model predicts a figure below figure_m after the adjustments a->move_m. */
+/* Returns whether the linear model predicts a figure below figure_m after the adjustments a->continuous_m. */
 static bool promises(const adjustment *a, double figure_m)
 {
     double square = a->problem.square;
     for (size_t i = 0; i < a->n; i++)
-        square += a->move_m[i] * (2 * a->slope[i] + hf_dot(a->n, a->gram + i * a->n, a->move_m));
+        square += a->continuous_m[i] * (2 * a->slope[i] + hf_dot(a->n, a->gram + i * a->n, a->continuous_m));
     return !(square >= figure_m * figure_m * (1 - LITTLE) * (1 - LITTLE));
 }
 
@@ -444,7 +424,7 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
         hf_status status = !is_new ? look_again(a) : round_ == 0 && a->is_current ? HF_OK : linearise(a);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         if (status != HF_OK) return HF_OK; /* the shape has no stiffness, perhaps because cables are slack */
-        HF_TRY(hf_moves_best(&a->problem, a->move_m));
+        HF_TRY(hf_turnbuckles_best(&a->problem, a->continuous_m));
         if (!promises(a, found->best_m)) return HF_OK;
         HF_TRY(go_on(a, &found->best_m, &gains));
     }
@@ -453,18 +433,70 @@ static hf_status find_best(adjustment *a, hf_adjustment *found)
 
 /* ---- posterior samples ---- */
 
-static hf_turned turned_of(const adjustment *a)
+/* Computes answer_m, the displacements of the posterior samples by the linear model at the shape in `work`. Where that
+ * has no stiffness, they are doubt_m. */
+static hf_status answer_samples(adjustment *a)
 {
-    return (hf_turned){a->estimate, a->doubt_m, &a->cause, a->room[0].strain_N, a->room[0].scratch};
+    hf_built_linear *l = &a->estimate->linear;
+    adjust_room *r = &a->room[0];
+    size_t n_cable = (size_t)l->built->model.n_cable;
+    hf_status status = hf_built_linear_take(l, &a->work);
+    if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+    memcpy(a->answer_m, status == HF_OK ? a->cause.rest_m : a->doubt_m,
+           HF_ESTIMATE_SAMPLES * a->n_dof * sizeof *a->answer_m);
+    for (size_t s = 0; s < HF_ESTIMATE_SAMPLES && status == HF_OK; s++) {
+        for (size_t e = 0; e < n_cable; e++)
+            r->strain_N[e] = l->cut_N_per_m[e] * a->cause.cut_m[s * n_cable + e];
+        hf_built_linear_apply(l, 1, r->strain_N, a->answer_m + s * a->n_dof, r->scratch);
+    }
+    return HF_OK;
 }
 
-/* Solves each posterior sample after all adjustments and stores its displacements minus the linear ones. */
+/* Makes sample i: the estimated errors, its posterior errors and the adjustments. */
+static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
+{
+    const adjustment *a = context;
+    const hf_estimate *p = a->estimate;
+    const hf_model *m = &p->built->model;
+    const double *own_m = a->cause.cut_m + (size_t)i * (size_t)m->n_cable;
+    const double *rest_m = a->cause.rest_m + (size_t)i * a->n_dof;
+    (void)EA_N;
+    for (int e = 0; e < m->n_cable; e++)
+        cut_m[e] += p->cut_m[e] + own_m[e] + a->adjustment_m[e];
+    for (int row = m->n_free; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++)
+            support_displacement_m[c * m->n_node + row] = p->rest_m[3 * row + c] + rest_m[3 * row + c];
+}
+
+/* Stores the displacements of sample i minus the linear ones, 0 for a sample without a shape. */
+static void take_sample(void *context, long i, const hf_built_shape *shape, const hf_form_result *result)
+{
+    const adjustment *a = context;
+    const hf_model *m = &a->estimate->built->model;
+    const double *answer_m = a->answer_m + (size_t)i * a->n_dof;
+    double *beyond_m = a->beyond_m + (size_t)i * a->n_dof;
+    bool has_shape = hf_status_has_shape(result->status);
+    for (int row = 0; row < m->n_node; row++)
+        for (int c = 0; c < 3; c++) {
+            int at = c * m->n_node + row;
+            double move_m = shape->position_m[at] - a->work.position_m[at];
+            beyond_m[3 * row + c] = has_shape ? move_m - answer_m[3 * row + c] : 0;
+        }
+}
+
+/* Solves each posterior sample after all adjustments and stores its displacements minus the linear ones. They differ
+ * when an adjustment makes cables slack or taut, because this is beyond first order. */
 static hf_status find_beyond(adjustment *a)
 {
+    const hf_built *b = a->estimate->built;
+    hf_built_batch *batch;
     double figure_m;
-    const hf_turned t = turned_of(a);
     HF_TRY(solve_steps(a, a->steps, &figure_m));
-    return hf_turned_beyond(&t, a->turn_m, &a->work, a->task->n_thread, a->answer_m, a->beyond_m);
+    HF_TRY(answer_samples(a));
+    HF_TRY(hf_built_batch_create(b, a->task->n_thread, &batch));
+    hf_built_batch_run(batch, HF_BUILT_VARIES_SUPPORTS, 0, HF_ESTIMATE_SAMPLES, make_sample, take_sample, a);
+    hf_built_batch_free(batch);
+    return hf_built_must_stop(b) ? HF_INTERRUPTED : HF_OK;
 }
 
 /* Computes the figure of each posterior sample at the shape in `work`. `part` is the share of all adjustments made so
@@ -472,14 +504,13 @@ static hf_status find_beyond(adjustment *a)
 static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_ESTIMATE_SAMPLES])
 {
     adjust_room *r = &a->room[0];
-    const hf_turned t = turned_of(a);
     HF_TRY(hf_objectives_linearise(a->task->objectives, true, &a->work, &r->point, a->residual));
-    HF_TRY(hf_turned_answer(&t, &a->work, a->answer_m));
+    HF_TRY(answer_samples(a));
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
         double *move_m = a->answer_m + s * a->n_dof;
         for (size_t i = 0; i < a->n_dof && part > 0; i++)
             move_m[i] += part * a->beyond_m[s * a->n_dof + i];
-        push_move(a, r, move_m, a->at_zero); /* at_zero is free at this point */
+        push_displacement(a, r, move_m, a->at_zero); /* at_zero is free at this point */
         for (size_t i = 0; i < a->n_row; i++)
             a->at_zero[i] += a->residual[i];
         figure_m[s] = sqrt(hf_dot(a->n_row, a->at_zero, a->at_zero));
@@ -494,20 +525,12 @@ typedef struct {
     double *change_N; /* [n_move][n_cable] changes by each adjustment, in the order of a->steps */
     double *fall_N;   /* [n_cable] fall of each tension after the adjustments in a->trial */
     void *block;
-} move_order;
+} adjustment_order;
 
-static void lay_out_order(hf_arena *arena, size_t n_move, size_t n_cable, move_order *o)
+static hf_status make_order(adjustment *a, int n_move, adjustment_order *o)
 {
-    o->change_N = hf_arena_take(arena, n_move * n_cable, sizeof(double));
-    o->fall_N = hf_arena_take(arena, n_cable, sizeof(double));
-}
-
-static hf_status make_order(adjustment *a, int n_move, move_order *o)
-{
-    hf_arena arena = {0};
     size_t n_cable = (size_t)a->problem.n_tension;
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_order(&arena, (size_t)n_move, n_cable, o)));
-    o->block = arena.block;
+    HF_TRY(HF_ARENA_ARRAYS(&o->block, HF_ARRAY(o->change_N, (size_t)n_move * n_cable), HF_ARRAY(o->fall_N, n_cable)));
     double *change_N = o->change_N;
     for (size_t i = 0; i < a->n; i++) {
         if (!a->steps[i]) continue;
@@ -521,58 +544,58 @@ static hf_status make_order(adjustment *a, int n_move, move_order *o)
 
 /* Computes mean and standard deviation of the reduction of the figure over the posterior samples. before_m holds the
  * figures of the samples before this adjustment, and those after it on return. */
-static hf_status judge_move(adjustment *a, double part, double before_m[HF_ESTIMATE_SAMPLES], hf_adjust_move *move)
+static hf_status judge_adjustment(adjustment *a, double part, double before_m[HF_ESTIMATE_SAMPLES],
+                                  hf_adjust_turnbuckle *move)
 {
-    double gain_m[HF_ESTIMATE_SAMPLES], unwanted;
+    double gain_m[HF_ESTIMATE_SAMPLES], unused;
     memcpy(gain_m, before_m, sizeof gain_m);
     HF_TRY(sample_figures(a, part, before_m));
-    hf_estimate_spread(before_m, &move->expected_m, &unwanted);
+    hf_estimate_spread(before_m, &move->expected_m, &unused);
     for (int s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
         gain_m[s] -= before_m[s];
         move->gain_m += gain_m[s] / HF_ESTIMATE_SAMPLES;
     }
-    hf_estimate_spread(gain_m, &unwanted, &move->gain_sigma_m);
+    hf_estimate_spread(gain_m, &unused, &move->gain_sigma_m);
     return HF_OK;
 }
 
 /* Makes the adjustments one by one and judges each of them. On entry a->trial is 0 and `work` holds the shape without
  * adjustments. sample_m holds the figures of the samples without adjustments, and those after all of them on return. */
-static hf_status make_moves(adjustment *a, move_order *o, double sample_m[HF_ESTIMATE_SAMPLES], hf_adjustment *found)
+static hf_status make_adjustments(adjustment *a, adjustment_order *o, double sample_m[HF_ESTIMATE_SAMPLES],
+                                  hf_adjustment *found)
 {
     double made = 0, all = 0;
     for (size_t i = 0; i < a->n; i++)
         all += abs(a->steps[i]);
     for (int k = 0; k < found->n_move; k++) {
-        int i = hf_moves_next(&a->problem, a->steps, o->change_N, a->trial, o->fall_N);
+        int i = hf_turnbuckles_next(&a->problem, a->steps, o->change_N, a->trial, o->fall_N);
         int e = a->task->cable[i];
-        hf_adjust_move *move = &found->move[k];
-        *move = (hf_adjust_move){.cable = e, .steps = a->steps[i], .move_m = a->steps[i] * a->problem.step_m};
+        hf_adjust_turnbuckle *move = &found->move[k];
+        *move = (hf_adjust_turnbuckle){.cable = e, .steps = a->steps[i], .move_m = a->steps[i] * a->problem.step_m};
         move->before_N = a->work.tension_N[e];
         hf_status status = solve_steps(a, a->trial, &move->figure_m);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         move->after_N = status == HF_OK ? a->work.tension_N[e] : (double)NAN;
         move->n_slack = a->form.n_slack;
         made += abs(move->steps);
-        HF_TRY(judge_move(a, made / all, sample_m, move));
+        HF_TRY(judge_adjustment(a, made / all, sample_m, move));
     }
     return HF_OK;
 }
 
-static hf_status list_moves(adjustment *a, hf_adjustment *found)
+static hf_status list_adjustments(adjustment *a, hf_adjustment *found)
 {
-    hf_arena arena = {0};
     double figure_m, sample_m[HF_ESTIMATE_SAMPLES];
-    move_order order = {0};
+    adjustment_order order = {0};
     for (size_t i = 0; i < a->n; i++)
         found->n_move += a->steps[i] != 0;
-    HF_TRY(HF_ARENA_MAKE(&arena, found->move = hf_arena_take(&arena, (size_t)found->n_move, sizeof *found->move)));
-    found->block = arena.block;
+    HF_TRY(HF_ARENA_ARRAYS(&found->block, HF_ARRAY(found->move, found->n_move)));
     if (!a->is_current) HF_TRY(solve_steps(a, a->steps, &figure_m));
     hf_status status = a->is_current ? HF_OK : linearise(a);
     /* Without stiffness the last linear model orders them. */
     if (status != HF_OK && status != HF_SINGULAR) return status;
     a->is_current = status == HF_OK;
-    HF_TRY(make_order(a, found->n_move, &order)); /* before hf_turned_answer changes the linear model */
+    HF_TRY(make_order(a, found->n_move, &order)); /* before answer_samples changes the linear model */
     status = found->n_move ? find_beyond(a) : HF_OK;
     memset(a->trial, 0, a->n * sizeof *a->trial);
     if (status == HF_OK) status = solve_steps(a, a->trial, &figure_m);
@@ -581,10 +604,9 @@ static hf_status list_moves(adjustment *a, hf_adjustment *found)
         hf_estimate_spread(sample_m, &found->doubt_m[0], &found->spread_m[0]);
         for (int e = 0; e < a->problem.n_tension; e++)
             found->n_maybe_slack += !(a->work.tension_N[e] > a->doubt_N[e]); /* both are 0 for a slack cable */
-        status = make_moves(a, &order, sample_m, found);
+        status = make_adjustments(a, &order, sample_m, found);
     }
-    arena.block = order.block;
-    hf_arena_free(&arena);
+    hf_arena_free_block(order.block);
     HF_TRY(status);
     hf_estimate_spread(sample_m, &found->doubt_m[1], &found->spread_m[1]); /* sample_m belongs to the last adjustment */
     return HF_OK;
@@ -600,10 +622,11 @@ int hf_adjust_steps(const hf_adjust_settings *s)
 
 static hf_status find_all(adjustment *a, hf_adjustment *found)
 {
-    HF_TRY(solve_nominal(a, &found->nominal_m));
+    HF_TRY(hf_built_solve(a->estimate->built, &(hf_built_net){0}, &a->work, &a->form));
+    HF_TRY(measure_work(a, &found->nominal_m));
     HF_TRY(hf_estimate_doubt(a->estimate, a->doubt_m, a->doubt_N, &a->cause));
     HF_TRY(choose(a, found));
-    HF_TRY(list_moves(a, found));
+    HF_TRY(list_adjustments(a, found));
     return find_best(a, found);
 }
 
@@ -619,7 +642,6 @@ hf_status hf_adjust_find(hf_estimate *p, const hf_adjust_task *task, hf_adjustme
 
 void hf_adjust_free(hf_adjustment *found)
 {
-    hf_arena arena = {.block = found->block};
-    hf_arena_free(&arena);
+    hf_arena_free_block(found->block);
     *found = (hf_adjustment){0};
 }

@@ -8,7 +8,7 @@
 #define HIFDM_ADJUST_H
 
 #include "built/estimate.h"
-#include "built/moves.h"
+#include "built/turnbuckles.h"
 #include <hifdm/objectives.h>
 
 /* Specifies which turnbuckles can be adjusted, and for which figure. All pointers are borrowed. */
@@ -18,7 +18,7 @@ typedef struct {
     const hf_objectives *objectives;
     int n_cable, *cable; /* [n_cable] cables that have a turnbuckle */
     /* [n_cable of the net] minimum tensions that adjustments must keep, N; NULL: only HF_ADJUST_TAUT limits them. */
-    const double *least_N;
+    const double *min_N;
     int n_thread; /* number of threads; 0: all cores */
 } hf_adjust_task;
 
@@ -35,7 +35,7 @@ typedef struct {
     double gain_m;
     double gain_sigma_m; /* standard deviation of that reduction over the samples */
     int n_slack;         /* slack cables after this adjustment */
-} hf_adjust_move;
+} hf_adjust_turnbuckle;
 
 typedef struct {
     double nominal_m;   /* figure of the nominal net */
@@ -55,9 +55,9 @@ typedef struct {
      * figure. */
     bool is_held_taut;
     bool is_settled; /* the choice has converged: the last linear model leads to no better one */
-    hf_moves_end end;
+    hf_turnbuckles_end end;
     int n_move;
-    hf_adjust_move *move; /* [n_move] the adjustments in their order */
+    hf_adjust_turnbuckle *move; /* [n_move] the adjustments in their order */
     void *block;
 } hf_adjustment;
 

@@ -7,26 +7,15 @@
 #include <hifdm/built.h>
 
 #include "base/arena.h"
+#include "base/elementary.h"
 #include "net/cable_pick.h"
 #include <hifdm/metrics.h>
 
 #include <assert.h>
-#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
 /* ---- the nominal net ---- */
-
-static void lay_out(hf_arena *arena, const hf_scene *s, hf_built *b)
-{
-    size_t n = (size_t)s->n_cable, places = 3 * (size_t)s->n_node;
-    b->scene.law = hf_arena_take(arena, n, 1);
-    b->scene.target = hf_arena_take(arena, n, sizeof(double));
-    b->scene.EA_N = hf_arena_take(arena, n, sizeof(double));
-    b->scene.position_m = hf_arena_take(arena, places, sizeof(double));
-    b->place_m = hf_arena_take(arena, places, sizeof(double));
-    b->tension_N = hf_arena_take(arena, n, sizeof(double));
-}
 
 /* Returns HF_BAD_CASE with a message for each kind of cable that cannot be cut. These are cables without EA, listed by
  * group, and struts. */
@@ -65,25 +54,17 @@ static void cut_cables(const hf_model *m, const hf_workspace *w, hf_built *b)
     }
 }
 
-static double largest_N(const hf_built *b)
-{
-    double largest = 0;
-    for (int e = 0; e < b->scene.n_cable; e++)
-        largest = fmax(largest, b->tension_N[e]);
-    return largest;
-}
-
 /* Puts the supports on the same truss as in the design's model. */
 static hf_status attach_truss(const hf_model *m, hf_built *b, hf_messages *messages)
 {
-    hf_arena arena = {0};
-    int *node = NULL;
+    void *block;
+    int *node;
     if (!m->n_attachment) return HF_OK;
-    HF_TRY(HF_ARENA_MAKE(&arena, node = hf_arena_take(&arena, (size_t)m->n_attachment, sizeof *node)));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(node, m->n_attachment)));
     for (int k = 0; k < m->n_attachment; k++)
         node[k] = m->node_of_row[m->attachment_row[k]];
     hf_status status = hf_model_attach(&b->model, m->n_attachment, node, m->flexibility_m_per_N, messages);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 
@@ -92,7 +73,7 @@ static void take_design(const hf_model *m, const hf_workspace *w, hf_built *b)
 {
     rest_supports(m, w, &b->scene);
     cut_cables(m, w, b);
-    memcpy(b->place_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(b->position_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
 }
 
 /* Sets those entries of the model that depend on the design. */
@@ -102,10 +83,10 @@ static void hold_design(const hf_workspace *w, hf_built *b)
     for (int row = m->n_free; row < m->n_node; row++)
         for (int c = 0; c < 3; c++)
             m->position_m[c * m->n_node + row] = b->scene.position_m[3 * m->node_of_row[row] + c];
-    m->reference_N = largest_N(b);
+    m->reference_N = hf_max_magnitude((size_t)m->n_cable, b->tension_N);
     for (int e = 0; e < m->n_cable; e++) {
         m->target[e] = b->scene.target[e];
-        m->length_m[e] = hf_scene_theoretical_length(&b->scene, e);
+        m->length_m[e] = hf_scene_length_at_target(&b->scene, e);
         m->start_q_N_per_m[e] = b->tension_N[e] / w->length_m[e];
     }
 }
@@ -113,18 +94,19 @@ static void hold_design(const hf_workspace *w, hf_built *b)
 hf_status hf_built_make(const char *where, const hf_scene *s, const hf_model *m, const hf_form_settings *form,
                         const hf_workspace *w, hf_built *b, hf_messages *messages)
 {
-    hf_arena arena = {0};
+    size_t n = (size_t)s->n_cable, n_coordinate = 3 * (size_t)s->n_node;
     *b = (hf_built){.scene = *s, .form = *form};
     HF_TRY(refuse_cables(where, s, w, messages));
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, s, b)) != HF_OK)
+    if (HF_ARENA_ARRAYS(&b->block, HF_ARRAY(b->scene.law, n), HF_ARRAY(b->scene.target, n), HF_ARRAY(b->scene.EA_N, n),
+                        HF_ARRAY(b->scene.position_m, n_coordinate), HF_ARRAY(b->position_m, n_coordinate),
+                        HF_ARRAY(b->tension_N, n)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for the net as built", where);
-    b->block = arena.block;
     b->form.method = HF_METHOD_NEWTON;
     b->form.stop = HF_STOP_RESIDUAL;
     b->form.factor = HF_FACTOR_OWN; /* samples share a factor of hf_band_factor */
-    memcpy(b->scene.position_m, s->position_m, 3 * (size_t)s->n_node * sizeof(double));
-    memcpy(b->scene.EA_N, s->EA_N, (size_t)s->n_cable * sizeof(double));
-    memset(b->scene.law, HF_LAW_ELASTIC, (size_t)s->n_cable);
+    memcpy(b->scene.position_m, s->position_m, n_coordinate * sizeof(double));
+    memcpy(b->scene.EA_N, s->EA_N, n * sizeof(double));
+    memset(b->scene.law, HF_LAW_ELASTIC, n);
     take_design(m, w, b);
     HF_TRY(hf_model_build(&b->scene, &b->form, &b->model, messages));
     HF_TRY(attach_truss(m, b, messages));
@@ -145,9 +127,8 @@ hf_status hf_built_renew(const hf_model *m, const hf_workspace *w, hf_built *b)
 
 void hf_built_free(hf_built *b)
 {
-    hf_arena arena = {.block = b->block};
     hf_model_free(&b->model);
-    hf_arena_free(&arena);
+    hf_arena_free_block(b->block);
     b->block = NULL;
 }
 

@@ -20,7 +20,6 @@
 #include "search/parallel.h"
 
 #include <limits.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- working memory of a thread ---- */
@@ -43,45 +42,30 @@ struct hf_built_batch {
     batch_room *room;
 };
 
-static void lay_out_room(hf_arena *arena, const hf_model *m, batch_room *room)
-{
-    room->cut_m = hf_arena_take(arena, (size_t)m->n_cable * HF_LANES, sizeof(double));
-    room->EA_N = hf_arena_take(arena, (size_t)m->n_cable * HF_LANES, sizeof(double));
-    room->support_displacement_m = hf_arena_take(arena, 3 * (size_t)m->n_node * HF_LANES, sizeof(double));
-}
-
 /* Makes a room unless it exists. Returns HF_OK or HF_NO_MEMORY. Only one thread at a time has the number of a room, so
  * no lock is needed. */
 static hf_status make_room(const hf_built_batch *batch, batch_room *room)
 {
     const hf_model *m = &batch->built->model;
-    hf_arena arena = {0};
+    size_t n = (size_t)m->n_cable * HF_LANES;
     if (room->block) return HF_OK;
     if (!room->work.block && hf_workspace_create(m, &room->work) != HF_OK) return HF_NO_MEMORY;
     if (batch->has_lanes && !room->near.block && hf_near_lanes_create(&batch->near, &room->near) != HF_OK) {
         hf_near_lanes_free(&room->near);
         return HF_NO_MEMORY;
     }
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_room(&arena, m, room)));
-    room->block = arena.block;
-    return HF_OK;
+    return HF_ARENA_ARRAYS(&room->block, HF_ARRAY(room->cut_m, n), HF_ARRAY(room->EA_N, n),
+                           HF_ARRAY(room->support_displacement_m, 3 * (size_t)m->n_node * HF_LANES));
 }
 
 static void free_room(batch_room *room)
 {
-    hf_arena own = {.block = room->block};
     hf_workspace_free(&room->work);
     hf_near_lanes_free(&room->near);
-    hf_arena_free(&own);
+    hf_arena_free_block(room->block);
 }
 
 /* ---- the batch ---- */
-
-static void lay_out(hf_arena *arena, int n_thread, hf_built_batch **batch, batch_room **room)
-{
-    *batch = hf_arena_take(arena, 1, sizeof **batch);
-    *room = hf_arena_take(arena, (size_t)n_thread, sizeof **room);
-}
 
 /* Makes the first room and factors the shared matrix, which needs the workspace of that room. */
 static hf_status share(hf_built_batch *batch)
@@ -95,10 +79,10 @@ static hf_status share(hf_built_batch *batch)
 
 hf_status hf_built_batch_create(const hf_built *built, int n_thread, hf_built_batch **batch)
 {
-    hf_arena arena = {0};
-    batch_room *room = NULL;
+    void *block; /* the batch is its first item */
+    batch_room *room;
     if (n_thread <= 0) n_thread = hf_parallel_cores();
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, n_thread, batch, &room)));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(*batch, 1), HF_ARRAY(room, n_thread)));
     **batch = (hf_built_batch){.built = built, .n_thread = n_thread, .room = room};
     if (share(*batch) == HF_OK) return HF_OK;
     hf_built_batch_free(*batch);
@@ -118,12 +102,11 @@ hf_status hf_built_batch_renew(hf_built_batch *batch)
 
 void hf_built_batch_free(hf_built_batch *batch)
 {
-    hf_arena arena = {.block = (unsigned char *)batch}; /* the batch is the first item of its block */
     if (!batch) return;
     for (int i = 0; i < batch->n_thread; i++)
         free_room(&batch->room[i]);
     hf_near_free(&batch->near);
-    hf_arena_free(&arena);
+    hf_arena_free_block(batch);
 }
 
 int hf_built_batch_threads(const hf_built_batch *batch)
@@ -148,7 +131,6 @@ typedef struct {
 typedef struct {
     const batch_job *job;
     batch_room *room;
-    int place;
     hf_built_net net[HF_LANES]; /* nets of the lanes; without lanes only the first is used */
 } batch_work;
 
@@ -158,13 +140,13 @@ static void make_sample(batch_work *work, int lane, int i)
 {
     const batch_job *j = work->job;
     const hf_built *b = j->batch->built;
-    size_t n = (size_t)b->model.n_cable, places = 3 * (size_t)b->model.n_node;
+    size_t n = (size_t)b->model.n_cable, n_coordinate = 3 * (size_t)b->model.n_node;
     bool has_EA = j->varies & HF_BUILT_VARIES_EA, has_supports = j->varies & HF_BUILT_VARIES_SUPPORTS;
     double *cut_m = work->room->cut_m + (size_t)lane * n, *EA_N = work->room->EA_N + (size_t)lane * n;
-    double *move_m = has_supports ? work->room->support_displacement_m + (size_t)lane * places : NULL;
+    double *move_m = has_supports ? work->room->support_displacement_m + (size_t)lane * n_coordinate : NULL;
     memcpy(cut_m, b->model.target, n * sizeof(double));
     memcpy(EA_N, b->model.EA_N, n * sizeof(double));
-    if (has_supports) memset(move_m, 0, places * sizeof(double));
+    if (has_supports) memset(move_m, 0, n_coordinate * sizeof(double));
     j->make(j->context, j->first + i, cut_m, has_EA ? EA_N : NULL, move_m);
     work->net[lane] = (hf_built_net){cut_m, EA_N, move_m, NULL};
 }
@@ -176,7 +158,7 @@ static void give(const batch_work *work, int i, const hf_form_result *r)
     const hf_workspace *w = &work->room->work;
     hf_built_shape shape = {w->position_m, w->tension_N, w->loose, w->displacement_m};
     if (r->n_loose == 0) memset(w->loose, 0, (size_t)j->batch->built->model.n_node);
-    j->take(j->context, j->first + i, work->place, &shape, r);
+    j->take(j->context, j->first + i, &shape, r);
 }
 
 /* Solves one net by Newton's method from the nominal shape, or by the reference where that does not converge. */
@@ -250,11 +232,11 @@ static int take_next(void *context)
 
 /* Does the work of one thread. It returns without any work when there is no memory for its room; the other threads then
  * take all samples. */
-static void work_on_job(void *context, int place)
+static void work_on_job(void *context, int i_room)
 {
     static const hf_lane_solver in_lanes = {load, look, settle, step};
     batch_job *j = context;
-    batch_work work = {.job = j, .room = &j->batch->room[place], .place = place};
+    batch_work work = {.job = j, .room = &j->batch->room[i_room]};
     if (hf_parallel_is_empty(&j->queue) || make_room(j->batch, work.room) != HF_OK) return;
     work.room->work.stop = j->batch->built->stop;
     if (j->batch->has_lanes) {
@@ -270,9 +252,9 @@ static void work_on_job(void *context, int place)
 void hf_built_batch_run(hf_built_batch *batch, unsigned varies, long first, long n, hf_built_sample *make,
                         hf_built_take *take, void *context)
 {
-    const long most = INT_MAX / 2; /* samples of one queue; its counter still rises when it is empty */
-    for (; n > 0 && !hf_built_must_stop(batch->built); first += most, n -= most) {
-        batch_job job = {batch, varies, first, {(int)(n < most ? n : most), 0, NULL}, make, take, context};
+    const long n_max = INT_MAX / 2; /* samples of one queue; its counter still rises when it is empty */
+    for (; n > 0 && !hf_built_must_stop(batch->built); first += n_max, n -= n_max) {
+        batch_job job = {batch, varies, first, {(int)(n < n_max ? n : n_max), 0, NULL}, make, take, context};
         if (batch->n_thread > 1)
             hf_parallel_run(batch->n_thread, work_on_job, &job);
         else

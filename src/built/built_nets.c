@@ -46,59 +46,34 @@ static size_t scratch_of(const hf_model *m)
     return 3 * (size_t)m->n_node + (m->n_attachment ? 3 * (size_t)(m->n_free + m->n_attachment) : 0);
 }
 
-static void lay_out_room(hf_arena *arena, const hf_built_nets *nets, nets_room **room)
-{
-    const hf_model *m = nets->model;
-    size_t n = (size_t)m->n_cable, places = 3 * (size_t)m->n_node, many = HF_OBJECTIVES_AT_ONCE;
-    nets_room *r = hf_arena_take(arena, 1, sizeof *r), unmade = {0}, *to = arena->block ? r : &unmade;
-    *room = r;
-    to->cut_m = hf_arena_take(arena, n, sizeof(double));
-    to->EA_N = hf_arena_take(arena, n, sizeof(double));
-    to->move_m = hf_arena_take(arena, places, sizeof(double));
-    to->load_N = hf_arena_take(arena, places, sizeof(double));
-    to->stretch = hf_arena_take(arena, n, sizeof(double));
-    to->weight_N_per_m = hf_arena_take(arena, 3 * n, sizeof(double));
-    to->length_m = hf_arena_take(arena, n, sizeof(double));
-    to->loose = hf_arena_take(arena, (size_t)m->n_node, 1);
-    to->strain_N = hf_arena_take(arena, many * n, sizeof(double));
-    to->dof_load_N = hf_arena_take(arena, many * places, sizeof(double));
-    to->dof_move_m = hf_arena_take(arena, many * places, sizeof(double));
-    to->scratch = hf_arena_take(arena, many * scratch_of(m), sizeof(double));
-    to->cut_rate = hf_arena_take(arena, n, sizeof(double));
-    to->rate_m = hf_arena_take(arena, many * places, sizeof(double));
-    to->rate_N = hf_arena_take(arena, many * n, sizeof(double));
-    to->rate_displacement_m = hf_arena_take(arena, many * 3 * (size_t)m->n_attachment, sizeof(double));
-}
-
 static hf_status open_room(const hf_objectives_nets *as, void **room)
 {
     const hf_built_nets *nets = (const void *)as;
-    hf_arena arena = {0};
-    nets_room *r = NULL;
-    *room = NULL;
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_room(&arena, nets, &r)));
-    r->nets = nets;
-    r->block = arena.block;
-    *room = r;
-    return HF_OK;
+    const hf_model *m = nets->model;
+    size_t n = (size_t)m->n_cable, n_dof = 3 * (size_t)m->n_node, many = HF_OBJECTIVES_AT_ONCE;
+    nets_room r = {.nets = nets}, *kept;
+    hf_status status = HF_ARENA_ARRAYS(
+        &r.block, HF_ARRAY(kept, 1), HF_ARRAY(r.cut_m, n), HF_ARRAY(r.EA_N, n), HF_ARRAY(r.move_m, n_dof),
+        HF_ARRAY(r.load_N, n_dof), HF_ARRAY(r.stretch, n), HF_ARRAY(r.weight_N_per_m, 3 * n), HF_ARRAY(r.length_m, n),
+        HF_ARRAY(r.loose, m->n_node), HF_ARRAY(r.strain_N, many * n), HF_ARRAY(r.dof_load_N, many * n_dof),
+        HF_ARRAY(r.dof_move_m, many * n_dof), HF_ARRAY(r.scratch, many * scratch_of(m)), HF_ARRAY(r.cut_rate, n),
+        HF_ARRAY(r.rate_m, many * n_dof), HF_ARRAY(r.rate_N, many * n),
+        HF_ARRAY(r.rate_displacement_m, many * 3 * (size_t)m->n_attachment));
+    *room = kept;
+    if (status == HF_OK) *kept = r;
+    return status;
 }
 
 static void close_room(void *room)
 {
     nets_room *r = room;
     if (!r) return;
-    hf_arena arena = {.block = r->block}, more = {.block = r->more};
     hf_built_batch_free(r->batch);
     hf_built_linear_free(&r->linear);
     hf_built_errors_free(&r->errors);
     hf_built_free(&r->built);
-    hf_arena_free(&more);
-    hf_arena_free(&arena);
-}
-
-static void lay_out_numbers(hf_arena *arena, nets_room *r)
-{
-    r->z = hf_arena_take(arena, (size_t)hf_built_errors_count(&r->errors), sizeof(double));
+    hf_arena_free_block(r->more);
+    hf_arena_free_block(r->block);
 }
 
 /* Makes the as-built net, the batch and the errors for the first design. Later designs only renew the net. */
@@ -106,7 +81,6 @@ static hf_status make_room_for(nets_room *r, const hf_workspace *w)
 {
     const hf_built_nets *nets = r->nets;
     hf_messages messages = {0};
-    hf_arena arena = {0};
     hf_built_free(&r->built); /* left by an earlier design that could not be cut */
     hf_status status = hf_built_make("", nets->scene, nets->model, nets->form, w, &r->built, &messages);
     hf_messages_free(&messages);
@@ -115,8 +89,7 @@ static hf_status make_room_for(nets_room *r, const hf_workspace *w)
     r->linear.built = &r->built;
     if (nets->as.n_sample > 0) {
         HF_TRY(hf_built_errors_make(&r->linear, nets->tolerance, &nets->heat, &r->errors));
-        HF_TRY(HF_ARENA_MAKE(&arena, lay_out_numbers(&arena, r)));
-        r->more = arena.block;
+        HF_TRY(HF_ARENA_ARRAYS(&r->more, HF_ARRAY(r->z, hf_built_errors_count(&r->errors))));
     }
     r->is_made = true;
     return HF_OK;
@@ -134,8 +107,10 @@ static hf_status cut_for(void *room, const hf_workspace *w)
 
 /* ---- one net ---- */
 
-static void make_sample_of(nets_room *r, long i, double *cut_m, double *EA_N, double *move_m)
+/* Makes sample i, as an hf_built_sample. */
+static void make_sample(void *room, long i, double *cut_m, double *EA_N, double *move_m)
 {
+    nets_room *r = room;
     hf_built_errors_draw(&r->errors, i, r->z);
     hf_built_errors_apply(&r->errors, 1, r->z, cut_m, EA_N, move_m);
 }
@@ -165,8 +140,8 @@ static void make_net(nets_room *r, int i_net, hf_built_net *net)
     memcpy(r->cut_m, m->target, n);
     memcpy(r->EA_N, m->EA_N, n);
     memset(r->move_m, 0, 3 * (size_t)m->n_node * sizeof(double));
-    make_sample_of(r, i_net - r->nets->as.n_load_case, r->cut_m, net->EA_N ? r->EA_N : NULL,
-                   net->support_displacement_m ? r->move_m : NULL);
+    make_sample(r, i_net - r->nets->as.n_load_case, r->cut_m, net->EA_N ? r->EA_N : NULL,
+                net->support_displacement_m ? r->move_m : NULL);
 }
 
 /* ---- shapes ---- */
@@ -194,16 +169,10 @@ static const hf_workspace *view(nets_room *r, const double *position_m, const do
     return &r->of_net;
 }
 
-static void make_in_lane(void *context, long i, double *cut_m, double *EA_N, double *move_m)
-{
-    make_sample_of(context, i, cut_m, EA_N, move_m);
-}
-
-static void take_from_lane(void *context, long i, int place, const hf_built_shape *s, const hf_form_result *result)
+static void take_from_lane(void *context, long i, const hf_built_shape *s, const hf_form_result *result)
 {
     nets_room *r = context;
     bool has_shape = result->status == HF_OK;
-    (void)place;
     r->take(r->context, r->nets->as.n_load_case + (int)i,
             has_shape ? view(r, s->position_m, s->tension_N, s->displacement_m) : NULL);
 }
@@ -229,7 +198,7 @@ static void solve_nets(void *room, int first, int n, hf_objectives_take *take, v
     r->take = take;
     r->context = context;
     if (i < first + n)
-        hf_built_batch_run(r->batch, hf_built_errors_vary(&r->errors), i - n_load_case, first + n - i, make_in_lane,
+        hf_built_batch_run(r->batch, hf_built_errors_vary(&r->errors), i - n_load_case, first + n - i, make_sample,
                            take_from_lane, r);
 }
 
@@ -285,7 +254,7 @@ static hf_status linearise_net(void *room, int i_net, const hf_workspace **shape
 static void follow_cut(nets_room *r, const hf_objectives_rate *by)
 {
     const hf_model *m = r->nets->model;
-    const double *x = r->built.place_m, *v = by->position_m;
+    const double *x = r->built.position_m, *v = by->position_m;
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         double l = r->design.length_m[e], l0 = r->built.model.target[e], longer = 0;

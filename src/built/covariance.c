@@ -24,16 +24,6 @@ typedef struct {
     size_t n_room;   /* doubles of scratch for one thread */
 } strips;
 
-static void lay_out_strips(hf_arena *arena, size_t n_thread, size_t n_inner, strips *s)
-{
-    const hf_built_linear *l = s->errors->linear;
-    size_t n = (size_t)hf_built_errors_count(s->errors), n_cable = (size_t)l->built->model.n_cable;
-    s->n_room = AT_ONCE * (l->n_dof + n_cable + l->n_scratch) + n;
-    s->share = hf_arena_take(arena, STRIPS * n, sizeof(double));
-    s->square = hf_arena_take(arena, 3 * n_inner, sizeof(double));
-    s->scratch = hf_arena_take(arena, n_thread * s->n_room, sizeof(double));
-}
-
 /* Adds the squares for the coordinates first to first + count - 1 of the inner nodes. */
 static void add_coordinates(strips *s, int i_strip, int first, int count, double *room)
 {
@@ -99,44 +89,37 @@ static void find_psi_by_cut(const hf_built_linear *l, double *room, hf_covarianc
     for (int k = 0; k < m->n_inner_node; k++)
         for (int i = 0; i < 3; i++) {
             int row = m->inner_row[k], at = i * m->n_node + row;
-            slope[3 * row + i] = (l->built->place_m[at] - m->position_m[at]) / (m->n_inner_node * c->nominal_psi_m);
+            slope[3 * row + i] = (l->built->position_m[at] - m->position_m[at]) / (m->n_inner_node * c->nominal_psi_m);
         }
     hf_built_linear_transpose(l, 1, slope, strain, scratch);
     for (int e = 0; e < m->n_cable; e++)
         c->psi_by_cut[e] = c->nominal_psi_m > NO_PSI * sqrt(c->spread_m2) ? strain[e] * l->cut_N_per_m[e] : (double)NAN;
 }
 
-static void lay_out_covariance(hf_arena *arena, const hf_built_errors *e, hf_covariance *c)
-{
-    const hf_model *m = &e->linear->built->model;
-    c->share_m2 = hf_arena_take(arena, (size_t)hf_built_errors_count(e), sizeof(double));
-    c->cable_m2 = hf_arena_take(arena, (size_t)m->n_cable, sizeof(double));
-    c->psi_by_cut = hf_arena_take(arena, (size_t)m->n_cable, sizeof(double));
-    c->deviation_m = hf_arena_take(arena, (size_t)m->n_inner_node, sizeof(double));
-}
-
 hf_status hf_covariance_find(const hf_built_errors *e, int n_thread, hf_covariance *c)
 {
-    strips s = {.errors = e};
-    hf_arena arena = {0}, scratch = {0};
+    const hf_built_linear *l = e->linear;
+    const hf_model *m = &l->built->model;
+    size_t n = (size_t)hf_built_errors_count(e);
+    strips s = {.errors = e, .n_room = AT_ONCE * (l->n_dof + (size_t)m->n_cable + l->n_scratch) + n};
+    void *scratch;
     if (n_thread < 1) n_thread = hf_parallel_cores();
     *c = (hf_covariance){0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_covariance(&arena, e, c)));
-    c->block = arena.block;
-    HF_TRY(HF_ARENA_MAKE(&scratch,
-                         lay_out_strips(&scratch, (size_t)n_thread, (size_t)e->linear->built->model.n_inner_node, &s)));
+    HF_TRY(HF_ARENA_ARRAYS(&c->block, HF_ARRAY(c->share_m2, n), HF_ARRAY(c->cable_m2, m->n_cable),
+                           HF_ARRAY(c->psi_by_cut, m->n_cable), HF_ARRAY(c->deviation_m, m->n_inner_node)));
+    HF_TRY(HF_ARENA_ARRAYS(&scratch, HF_ARRAY(s.share, STRIPS * n), HF_ARRAY(s.square, 3 * (size_t)m->n_inner_node),
+                           HF_ARRAY(s.scratch, (size_t)n_thread * s.n_room)));
     hf_parallel_each(n_thread, STRIPS, work_on_strip, &s);
     sum_up(&s, c);
-    c->nominal_psi_m = hf_covariance_psi_m(e->linear, NULL);
-    find_psi_by_cut(e->linear, s.scratch, c);
-    hf_arena_free(&scratch);
-    return hf_built_must_stop(e->linear->built) ? HF_INTERRUPTED : HF_OK;
+    c->nominal_psi_m = hf_covariance_psi_m(l, NULL);
+    find_psi_by_cut(l, s.scratch, c);
+    hf_arena_free_block(scratch);
+    return hf_built_must_stop(l->built) ? HF_INTERRUPTED : HF_OK;
 }
 
 void hf_covariance_free(hf_covariance *c)
 {
-    hf_arena arena = {.block = c->block};
-    hf_arena_free(&arena);
+    hf_arena_free_block(c->block);
     *c = (hf_covariance){0};
 }
 
@@ -147,7 +130,7 @@ double hf_covariance_psi_m(const hf_built_linear *l, const double *move)
     for (int k = 0; k < m->n_inner_node; k++)
         for (int c = 0; c < 3; c++) {
             int row = m->inner_row[k], at = c * m->n_node + row;
-            double d = l->built->place_m[at] - m->position_m[at] + (move ? move[3 * row + c] : 0);
+            double d = l->built->position_m[at] - m->position_m[at] + (move ? move[3 * row + c] : 0);
             sum += d * d;
         }
     return sqrt(sum / m->n_inner_node);

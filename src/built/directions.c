@@ -8,7 +8,7 @@
 #include "built/directions.h"
 
 #include "base/arena.h"
-#include "base/random.h"
+#include "base/elementary.h"
 #include "linalg/dot.h"
 #include "search/parallel.h"
 
@@ -75,11 +75,11 @@ static hf_status find_axes(const hf_built_errors *e, int n_thread, hf_directions
     const hf_built_linear *l = e->linear;
     size_t n = (size_t)hf_built_errors_count(e);
     iteration t = {.errors = e, .n = d->n};
-    hf_arena arena = {0};
+    void *block;
     if (n_thread < 1) n_thread = hf_parallel_cores();
     t.n_room = 2 * l->n_dof + (size_t)l->built->model.n_cable + l->n_scratch;
-    HF_TRY(HF_ARENA_MAKE(&arena, (t.column = hf_arena_take(&arena, (size_t)t.n * n, sizeof(double)),
-                                  t.scratch = hf_arena_take(&arena, (size_t)n_thread * t.n_room, sizeof(double)))));
+    HF_TRY(
+        HF_ARENA_ARRAYS(&block, HF_ARRAY(t.column, (size_t)t.n * n), HF_ARRAY(t.scratch, (size_t)n_thread * t.n_room)));
     for (size_t i = 0; i < (size_t)t.n * n; i++)
         t.column[i] = hf_built_errors_uniform(e->seed, (long)(i / n), STARTS, (int)(i % n)) - 0.5;
     orthonormalise(&t);
@@ -90,51 +90,33 @@ static hf_status find_axes(const hf_built_errors *e, int n_thread, hf_directions
     for (size_t i = 0; i < n; i++)
         for (int k = 0; k < t.n; k++)
             d->axis[i * (size_t)t.n + (size_t)k] = t.column[(size_t)k * n + i];
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return hf_built_must_stop(l->built) ? HF_INTERRUPTED : HF_OK;
-}
-
-/* Lists the errors with the largest shares, in descending order. */
-static void pick_errors(const hf_covariance *c, int n_error, hf_directions *d)
-{
-    int n = 0;
-    for (int i = 0; i < n_error; i++) {
-        int at = n < d->n ? n : d->n;
-        while (at > 0 && c->share_m2[d->error[at - 1]] < c->share_m2[i]) {
-            if (at < d->n) d->error[at] = d->error[at - 1];
-            at--;
-        }
-        if (at < d->n) d->error[at] = i;
-        if (n < d->n) n++;
-    }
 }
 
 hf_status hf_directions_find(const hf_built_errors *e, const hf_covariance *c, int n_thread, hf_directions *d)
 {
     int n_error = hf_built_errors_count(e), n_answer = 3 * e->linear->built->model.n_inner_node;
-    bool turns = e->distribution == HF_DISTRIBUTION_NORMAL;
-    hf_arena arena = {0};
+    bool rotates = e->distribution == HF_DISTRIBUTION_NORMAL;
     *d = (hf_directions){.errors = e, .n = n_error < HF_DIRECTIONS_MAX ? n_error : HF_DIRECTIONS_MAX};
-    if (turns && n_answer < d->n) d->n = n_answer;
-    size_t n_axis = turns ? (size_t)n_error * (size_t)d->n : 0;
-    HF_TRY(HF_ARENA_MAKE(&arena, (d->axis = hf_arena_take(&arena, n_axis, sizeof(double)),
-                                  d->error = hf_arena_take(&arena, (size_t)d->n, sizeof(int)))));
-    d->block = arena.block;
+    if (rotates && n_answer < d->n) d->n = n_answer;
+    size_t n_axis = rotates ? (size_t)n_error * (size_t)d->n : 0;
+    HF_TRY(HF_ARENA_ARRAYS(&d->block, HF_ARRAY(d->axis, n_axis), HF_ARRAY(d->error, d->n)));
     d->sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)d->n);
     if (!d->sequence) return HF_NO_MEMORY;
     for (int k = 0; k < d->n; k++)
         d->shift[k] = (uint32_t)(hf_built_errors_uniform(e->seed, 0, SHIFTS, k) * 0x1p30);
-    if (turns) return find_axes(e, n_thread, d);
+    if (rotates) return find_axes(e, n_thread, d);
     d->axis = NULL;
-    pick_errors(c, n_error, d);
+    for (int i = 0, n = 0; i < n_error; i++)
+        n = hf_list_largest(i, c->share_m2, d->n, n, d->error);
     return HF_OK;
 }
 
 void hf_directions_free(hf_directions *d)
 {
-    hf_arena arena = {.block = d->block};
     if (d->sequence) gsl_qrng_free(d->sequence);
-    hf_arena_free(&arena);
+    hf_arena_free_block(d->block);
     *d = (hf_directions){0};
 }
 

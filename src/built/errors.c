@@ -5,7 +5,6 @@
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "base/random.h"
-#include <hifdm/cable_set.h>
 
 #include <math.h>
 #include <string.h>
@@ -13,15 +12,6 @@
 #define KIND_SHIFT 27 /* bits of an item; enough for three coordinates of each node */
 
 /* ---- making ---- */
-
-static void lay_out_errors(hf_arena *arena, const hf_model *m, hf_built_errors *e)
-{
-    size_t n = (size_t)m->n_cable, n_attachment = (size_t)m->n_attachment;
-    e->spool = hf_arena_take(arena, n, sizeof(int));
-    e->support = hf_arena_take(arena, (size_t)(m->n_node - m->n_free), sizeof(int));
-    e->expansion_per_K = hf_arena_take(arena, n, sizeof(double));
-    e->truss_move_m = hf_arena_take(arena, 3 * (size_t)e->n_truss * n_attachment, sizeof(double));
-}
 
 static void find_spools(const hf_scene *s, hf_built_errors *e)
 {
@@ -56,7 +46,6 @@ hf_status hf_built_errors_make(const hf_built_linear *l, const hf_tolerance_sett
 {
     const hf_scene *s = &l->built->scene;
     const hf_model *m = &l->built->model;
-    hf_arena arena = {0};
     double own = sqrt(1 - t->batch), shared = sqrt(t->batch);
     const hf_built_heat none = {0};
     if (!heat) heat = &none;
@@ -67,8 +56,9 @@ hf_status hf_built_errors_make(const hf_built_linear *l, const hf_tolerance_sett
                            .sigma = {t->sigma_cut_m, own * t->sigma_cut_ratio, shared * t->sigma_cut_ratio,
                                      own * t->sigma_EA_ratio, shared * t->sigma_EA_ratio, t->sigma_support_m,
                                      t->sigma_temperature_K, 1}};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_errors(&arena, m, e)));
-    e->block = arena.block;
+    HF_TRY(HF_ARENA_ARRAYS(&e->block, HF_ARRAY(e->spool, m->n_cable), HF_ARRAY(e->support, m->n_node - m->n_free),
+                           HF_ARRAY(e->expansion_per_K, m->n_cable),
+                           HF_ARRAY(e->truss_move_m, 3 * (size_t)e->n_truss * (size_t)m->n_attachment)));
     find_spools(s, e);
     for (int i = 0; i < s->n_node; i++)
         if (s->role[i] == HF_ROLE_SUPPORT) e->support[e->n_support++] = i;
@@ -80,8 +70,7 @@ hf_status hf_built_errors_make(const hf_built_linear *l, const hf_tolerance_sett
 
 void hf_built_errors_free(hf_built_errors *e)
 {
-    hf_arena arena = {.block = e->block};
-    hf_arena_free(&arena);
+    hf_arena_free_block(e->block);
     *e = (hf_built_errors){0};
 }
 
@@ -126,12 +115,11 @@ double hf_built_errors_largest_scale(const hf_built_errors *e)
     const hf_built *b = e->linear->built;
     const double *sigma = e->sigma;
     double largest = e->distribution == HF_DISTRIBUTION_UNIFORM ? hf_built_errors_shape(e->distribution, 1) : 6;
-    double most = sigma[HF_ERROR_EA] + sigma[HF_ERROR_EA_BATCH];
+    double max = sigma[HF_ERROR_EA] + sigma[HF_ERROR_EA_BATCH];
     for (int i = 0; i < b->model.n_cable; i++)
-        most =
-            fmax(most, sigma[HF_ERROR_RATIO] + sigma[HF_ERROR_RATIO_BATCH] + sigma[HF_ERROR_CUT] / b->model.target[i] +
-                           fabs(e->expansion_per_K[i]) * sigma[HF_ERROR_TEMPERATURE]);
-    return 0.5 / (largest * most);
+        max = fmax(max, sigma[HF_ERROR_RATIO] + sigma[HF_ERROR_RATIO_BATCH] + sigma[HF_ERROR_CUT] / b->model.target[i] +
+                            fabs(e->expansion_per_K[i]) * sigma[HF_ERROR_TEMPERATURE]);
+    return 0.5 / (largest * max);
 }
 
 /* Returns the item of error i of a kind: 3 node + component for supports, 1 + part for the truss, otherwise i. */
@@ -165,13 +153,13 @@ static double ratio_of(const hf_built_errors *e, hf_error_kind own, hf_error_kin
     return error_of(e, own, i, z) + error_of(e, batch, e->spool[i], z);
 }
 
-/* Returns the displacement by the truss of coordinate i_move = 3 attachment + component, m. */
-static double truss_move_of(const hf_built_errors *e, int i_move, const double *z)
+/* Returns the displacement by the truss of coordinate i_coordinate = 3 attachment + component, m. */
+static double truss_move_of(const hf_built_errors *e, int i_coordinate, const double *z)
 {
     int n = 3 * e->linear->built->model.n_attachment;
     double sum = 0;
     for (int k = 0; k < e->n_truss; k++)
-        sum += error_of(e, HF_ERROR_TRUSS_TEMPERATURE, k, z) * e->truss_move_m[k * n + i_move];
+        sum += error_of(e, HF_ERROR_TRUSS_TEMPERATURE, k, z) * e->truss_move_m[k * n + i_coordinate];
     return sum;
 }
 

@@ -8,10 +8,17 @@
 #include "built/near.h"
 #include "built/saddle.h"
 
+/* Scratch of an estimate. A step uses errors, supports, displacements, shared numbers, the differences to measured
+ * positions before and after it, and the band. A shape uses cut lengths and supports; the linear model uses the last
+ * two. Arrays that samples use have room for HF_SADDLE_PANEL of them. */
+typedef struct {
+    double *cut_m, *rest_m, *shared, *gap_m, *trial_m, *move_m, *band, *length_m, *support_m, *strain_N, *linear;
+} hf_estimate_scratch;
+
 typedef struct {
     const hf_built *built;
     hf_saddle_prior prior;
-    const double *place_m; /* [n_dof] measured positions */
+    const double *position_m; /* [n_dof] measured positions */
     hf_built_linear linear;
     hf_near near;
     bool has_near; /* false on a truss, or when the nominal net has no matrix for it */
@@ -27,14 +34,14 @@ typedef struct {
     double misfit;
     int n_step;
     bool is_settled; /* converged: the linear model predicts no further reduction of the misfit */
-    double *scratch;
+    hf_estimate_scratch scratch;
     void *block;
 } hf_estimate;
 
-/* Makes an estimate that starts at the nominal net. `built`, place_m and the arrays of `prior` are borrowed. place_m
- * [n_dof] are the measured positions. Returns HF_OK; HF_NO_MEMORY; or HF_SINGULAR when the nominal net has no
- * stiffness. Call hf_estimate_free in any case. */
-hf_status hf_estimate_create(const hf_built *built, const hf_saddle_prior *prior, const double *place_m,
+/* Makes an estimate that starts at the nominal net. `built`, position_m and the arrays of `prior` are borrowed.
+ * position_m [n_dof] are the measured positions. Returns HF_OK; HF_NO_MEMORY; or HF_SINGULAR when the nominal net has
+ * no stiffness. Call hf_estimate_free in any case. */
+hf_status hf_estimate_create(const hf_built *built, const hf_saddle_prior *prior, const double *position_m,
                              hf_estimate *estimate);
 void hf_estimate_free(hf_estimate *estimate);
 
@@ -43,9 +50,9 @@ void hf_estimate_free(hf_estimate *estimate);
  * nominal net when that has no shape. */
 hf_status hf_estimate_find(hf_estimate *estimate);
 
-/* Solves the net with the estimated errors, its cut lengths increased by turn_m [n_cable], m (NULL: not increased).
- * Returns result->status. */
-hf_status hf_estimate_shape(const hf_estimate *estimate, const double *turn_m, hf_workspace *work,
+/* Solves the net with the estimated errors, its cut lengths increased by adjustment_m [n_cable], m (NULL: not
+ * increased). Returns result->status. */
+hf_status hf_estimate_shape(const hf_estimate *estimate, const double *adjustment_m, hf_workspace *work,
                             hf_form_result *result);
 
 /* Computes the RMS displacement of each node of the nominal net, expected_m [n_node] by row, under errors of the size

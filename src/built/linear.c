@@ -18,22 +18,12 @@
 
 /* ---- making ---- */
 
-static void lay_out_linear(hf_arena *arena, const hf_model *m, hf_built_linear *l)
-{
-    size_t n = (size_t)m->n_cable;
-    l->unit = hf_arena_take(arena, 3 * n, sizeof(double));
-    l->stiffness_N_per_m = hf_arena_take(arena, n, sizeof(double));
-    l->cut_N_per_m = hf_arena_take(arena, n, sizeof(double));
-    l->ratio_N = hf_arena_take(arena, n, sizeof(double));
-    l->block_N_per_m = hf_arena_take(arena, 9 * n, sizeof(double));
-}
-
 /* Puts the nominal net into the workspace. */
 static void take_shape(const hf_built *b, hf_workspace *w)
 {
     const hf_model *m = &b->model;
     hf_form_prepare(m, w);
-    memcpy(w->position_m, b->place_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(w->position_m, b->position_m, 3 * (size_t)m->n_node * sizeof(double));
     memcpy(w->tension_N, b->tension_N, (size_t)m->n_cable * sizeof(double));
 }
 
@@ -82,11 +72,11 @@ static hf_status factor_shape(hf_built_linear *l)
 hf_status hf_built_linear_make(const hf_built *b, hf_built_linear *l)
 {
     const hf_model *m = &b->model;
-    hf_arena arena = {0};
+    size_t n = (size_t)m->n_cable;
     *l = (hf_built_linear){.built = b, .n_dof = 3 * (size_t)m->n_node};
     l->n_scratch = l->n_dof + (m->n_attachment ? 3 * (size_t)(m->n_free + m->n_attachment) : 0);
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_linear(&arena, m, l)));
-    l->block = arena.block;
+    HF_TRY(HF_ARENA_ARRAYS(&l->block, HF_ARRAY(l->unit, 3 * n), HF_ARRAY(l->stiffness_N_per_m, n),
+                           HF_ARRAY(l->cut_N_per_m, n), HF_ARRAY(l->ratio_N, n), HF_ARRAY(l->block_N_per_m, 9 * n)));
     HF_TRY(hf_workspace_create(m, &l->work));
     if (m->n_attachment) HF_TRY(hf_schur_create(m, &l->schur));
     take_shape(b, &l->work);
@@ -116,10 +106,9 @@ hf_status hf_built_linear_take(hf_built_linear *l, const hf_workspace *shape)
 
 void hf_built_linear_free(hf_built_linear *l)
 {
-    hf_arena arena = {.block = l->block};
     hf_workspace_free(&l->work);
     hf_arena_free(&l->schur.arena);
-    hf_arena_free(&arena);
+    hf_arena_free_block(l->block);
     *l = (hf_built_linear){0};
 }
 

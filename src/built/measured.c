@@ -10,7 +10,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { ID, X, Y, Z, SIGMA, N_COLUMN };
 static const char *const column_name[N_COLUMN] = {"id", "x_m", "y_m", "z_m", "sigma_m"};
@@ -18,17 +17,9 @@ static const char *const column_name[N_COLUMN] = {"id", "x_m", "y_m", "z_m", "si
 static const char *const ours[] = {"x0_m", "y0_m", "z0_m", "role", NULL};
 #define SPARE_COLUMNS 64
 /* Measured nodes that can move. Fewer do not determine a displacement and a rotation of the whole net. */
-#define NODES_LEAST 3
+#define NODES_MIN 3
 
 /* ---- the table ---- */
-
-static void lay_out_measured(hf_arena *arena, const hf_model *m, hf_measured *measured)
-{
-    size_t n = (size_t)m->n_node;
-    measured->place_m = hf_arena_take(arena, 3 * n, sizeof(double));
-    measured->weight_per_m2 = hf_arena_take(arena, 3 * n, sizeof(double));
-    measured->line = hf_arena_take(arena, n, sizeof(int));
-}
 
 /* Returns the standard deviation of the node in row r: its own, or sigma_m. */
 static double read_sigma(hf_csv *t, const int *where, int r, const char *id, double sigma_m)
@@ -46,37 +37,30 @@ static void read_node(hf_csv *t, const int *where, int r, int row, double sigma_
     const char *id = hf_csv_cell(t, r, where[ID]);
     double sigma = read_sigma(t, where, r, id, sigma_m);
     for (int c = 0; c < 3; c++) {
-        measured->place_m[3 * row + c] = hf_csv_number(t, r, where[X + c], id, column_name[X + c]);
+        measured->position_m[3 * row + c] = hf_csv_number(t, r, where[X + c], id, column_name[X + c]);
         measured->weight_per_m2[3 * row + c] = 1 / (sigma * sigma);
     }
     measured->line[row] = t->line[r];
     measured->n_node++;
 }
 
-/* Reads the row of each node of the scene. Rows that belong to no node have unknown ids; repeated ids are reported by
- * hf_csv_index. */
+/* Reads all rows. hf_csv_index reports ids that are empty or repeated. */
 static hf_status read_nodes(hf_csv *t, const int *where, const hf_scene *scene, const hf_model *m, double sigma_m,
                             hf_measured *measured)
 {
-    hf_arena arena = {0};
-    bool *is_found = NULL;
-    hf_csv_named *index = hf_csv_index(t, where[ID]);
-    hf_status status =
-        index ? HF_ARENA_MAKE(&arena, is_found = hf_arena_take(&arena, (size_t)t->n_row, sizeof(bool))) : HF_NO_MEMORY;
-    for (int i = 0; i < m->n_node && status == HF_OK; i++) {
-        int r = hf_csv_row_of(index, t->n_row, scene->node_id[i]);
-        if (r < 0) continue;
-        is_found[r] = true;
-        read_node(t, where, r, m->row_of_node[i], sigma_m, measured);
-    }
-    for (int r = 0; r < t->n_row && status == HF_OK; r++) {
+    hf_csv_named *rows = hf_csv_index(t, where[ID]), *nodes = hf_csv_index_of(m->n_node, scene->node_id);
+    bool has_memory = rows && nodes;
+    for (int r = 0; r < t->n_row && has_memory; r++) {
         const char *id = hf_csv_cell(t, r, where[ID]);
-        bool is_again = *id && !is_found[r] && hf_csv_row_of(index, t->n_row, id) != r;
-        if (*id && !is_found[r] && !is_again) hf_csv_fault(t, t->line[r], id, "the net has no node of this id", "");
+        int node = hf_csv_row_of(nodes, m->n_node, id);
+        if (node >= 0)
+            read_node(t, where, r, m->row_of_node[node], sigma_m, measured);
+        else if (*id)
+            hf_csv_fault(t, t->line[r], id, "the net has no node of this id", "");
     }
-    free(index);
-    hf_arena_free(&arena);
-    return status;
+    free(rows);
+    free(nodes);
+    return has_memory ? HF_OK : HF_NO_MEMORY;
 }
 
 /* Returns HF_BAD_CASE unless enough nodes that can move were measured. */
@@ -85,23 +69,24 @@ static hf_status count_nodes(const char *path, const hf_model *m, const hf_measu
     int n = 0;
     for (int row = 0; row < m->n_free + m->n_attachment; row++)
         n += measured->line[row] > 0;
-    if (n >= NODES_LEAST) return HF_OK;
+    if (n >= NODES_MIN) return HF_OK;
     return hf_error(messages, HF_BAD_CASE, "%s: has %d node%s of the net that can move, %d at least are needed", path,
-                    n, n == 1 ? "" : "s", NODES_LEAST);
+                    n, n == 1 ? "" : "s", NODES_MIN);
 }
 
 hf_status hf_measured_read(const char *path, const hf_scene *scene, const hf_model *m, double sigma_m,
                            hf_measured *measured, hf_messages *messages)
 {
-    hf_arena arena = {0};
     hf_csv table = {0};
     int where[N_COLUMN];
+    size_t n = (size_t)m->n_node;
     *measured = (hf_measured){0};
     hf_status status = hf_csv_read(path, N_COLUMN + SPARE_COLUMNS, &table, messages);
     table.ours = ours;
     if (status == HF_OK) status = hf_csv_find_columns(&table, column_name, N_COLUMN, Z + 1, where);
-    if (status == HF_OK) status = HF_ARENA_MAKE(&arena, lay_out_measured(&arena, m, measured));
-    measured->block = arena.block;
+    if (status == HF_OK)
+        status = HF_ARENA_ARRAYS(&measured->block, HF_ARRAY(measured->position_m, 3 * n),
+                                 HF_ARRAY(measured->weight_per_m2, 3 * n), HF_ARRAY(measured->line, n));
     if (status == HF_OK) status = read_nodes(&table, where, scene, m, sigma_m, measured);
     if (status == HF_OK) status = hf_csv_close_faults(&table);
     if (status == HF_NO_MEMORY) hf_error(messages, status, "%s: out of memory", path);
@@ -111,8 +96,7 @@ hf_status hf_measured_read(const char *path, const hf_scene *scene, const hf_mod
 
 void hf_measured_free(hf_measured *measured)
 {
-    hf_arena arena = {.block = measured->block};
-    hf_arena_free(&arena);
+    hf_arena_free_block(measured->block);
     *measured = (hf_measured){0};
 }
 
@@ -128,12 +112,12 @@ typedef struct {
 
 static const double *measured_at(const hf_measured *measured, int row)
 {
-    return measured->place_m + 3 * (ptrdiff_t)row;
+    return measured->position_m + 3 * (ptrdiff_t)row;
 }
 
 static double nominal_at(const hf_built *b, int row, int c)
 {
-    return b->place_m[c * b->model.n_node + row];
+    return b->position_m[c * b->model.n_node + row];
 }
 
 /* Computes the sums over the measured nodes. product [3][3] is the sum of nominal times measured coordinates about the
@@ -162,7 +146,7 @@ static void sum_up(const hf_built *b, const hf_measured *measured, rigid_fit *f,
 /* Finds the rotation by Horn's method (J. Opt. Soc. Am. A 4, 1987). Its quaternion is the eigenvector of the largest
  * eigenvalue of a symmetric 4 x 4 matrix. Repeated squaring of this matrix leaves that eigenvector. Returns the
  * eigenvalue and sets *angle, rad. */
-static double turn(double s[3][3], double *angle)
+static double rotate(double s[3][3], double *angle)
 {
     double trace = s[0][0] + s[1][1] + s[2][2], size = 0, best = 0, value = 0;
     double n[4][4] = {{trace, s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]}}, power[4][4], next[4][4];
@@ -182,9 +166,9 @@ static double turn(double s[3][3], double *angle)
             for (int l = 0; l < 4; l++)
                 next[i / 4][i % 4] += power[i / 4][l] * power[l][i % 4];
         }
-        double most = fmax(fmax(next[0][0], next[1][1]), fmax(next[2][2], next[3][3]));
+        double largest = fmax(fmax(next[0][0], next[1][1]), fmax(next[2][2], next[3][3]));
         for (int i = 0; i < 16; i++)
-            power[i / 4][i % 4] = next[i / 4][i % 4] / most;
+            power[i / 4][i % 4] = next[i / 4][i % 4] / largest;
     }
     int column = 0;
     for (int i = 0; i < 4; i++)
@@ -206,7 +190,7 @@ static rigid_fit fit_motion(const hf_built *b, const hf_measured *measured)
     rigid_fit f = {0};
     double product[3][3] = {{0}};
     sum_up(b, measured, &f, product);
-    f.rest = fmax(f.spread[0] + f.spread[1] - 2 * turn(product, &f.angle), 0);
+    f.rest = fmax(f.spread[0] + f.spread[1] - 2 * rotate(product, &f.angle), 0);
     return f;
 }
 
@@ -281,7 +265,7 @@ static hf_status explain_far(const char *path, const hf_built *b, double all_m, 
                     path, rms_m * 1e3, all_m * 1e3);
 }
 
-/* Reports the distant nodes one by one, at most HF_FAULT_MAX of them. */
+/* Reports the distant nodes one by one, at largest HF_FAULT_MAX of them. */
 static void name_far(const char *path, const hf_built *b, const double *expected_m, double all_m,
                      const hf_measured *measured, hf_messages *messages)
 {

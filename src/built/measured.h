@@ -10,7 +10,7 @@
 /* Holds the measured positions. Arrays [n_dof] have the entry 3*row + c for coordinate c of a node of the model. */
 typedef struct {
     int n_node;            /* number of measured nodes */
-    double *place_m;       /* [n_dof] measured positions */
+    double *position_m;    /* [n_dof] measured positions */
     double *weight_per_m2; /* [n_dof] 1/sigma^2; 0: not measured */
     int *line;             /* [n_node of the model] line of the table by row; 0: not in the table */
     void *block;

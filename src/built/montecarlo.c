@@ -18,13 +18,12 @@
 #include "surface/facet_mesh.h"
 
 #include <math.h>
-#include <string.h>
 
-/* Limits of the number of samples in one call. Their numbers are kept in at most CHUNK_BYTES until the linear model has
- * used them, but for CHUNK_LEAST samples in any case. No limit affects the bits of a sample. */
+/* Limits of the number of samples in one call. Their numbers are kept in at n CHUNK_BYTES until the linear model has
+ * used them, but for CHUNK_MIN samples in any case. No limit affects the bits of a sample. */
 #define CHUNK_BYTES (64 << 20)
-#define CHUNK_LEAST 64
-#define CHUNK_MOST 256
+#define CHUNK_MIN 64
+#define CHUNK_MAX 256
 #define AT_ONCE 6 /* right-hand sides of one solve of the linear model */
 
 /* ---- making ---- */
@@ -34,22 +33,13 @@ static bool has_surface(const hf_montecarlo *t)
     return t->surface && t->surface->focal_length_m > 0;
 }
 
-static void lay_out_montecarlo(hf_arena *arena, int n_thread, hf_montecarlo *t)
-{
-    size_t n = (size_t)t->n_chunk;
-    t->row = hf_arena_take(arena, n * HF_TOLERANCE_COLUMNS, sizeof(double));
-    t->point = hf_arena_take(arena, n * (size_t)t->directions.n, sizeof(double));
-    t->z = hf_arena_take(arena, n * t->n_z, sizeof(double));
-    t->scratch = hf_arena_take(arena, (size_t)n_thread * t->n_room, sizeof(double));
-}
-
 static void choose_sizes(hf_montecarlo *t)
 {
     const hf_model *m = &t->built->model;
     size_t n_error = (size_t)hf_built_errors_count(&t->errors), bytes = n_error * sizeof(double);
-    size_t most = CHUNK_BYTES / (bytes + 1);
+    size_t n = CHUNK_BYTES / (bytes + 1);
     t->n_z = n_error;
-    t->n_chunk = most < CHUNK_LEAST ? CHUNK_LEAST : most > CHUNK_MOST ? CHUNK_MOST : (int)most;
+    t->n_chunk = n < CHUNK_MIN ? CHUNK_MIN : n > CHUNK_MAX ? CHUNK_MAX : (int)n;
     if (t->n_chunk > t->settings->samples) t->n_chunk = t->settings->samples;
     t->n_room = AT_ONCE * (t->linear.n_dof + (size_t)m->n_cable + t->linear.n_scratch);
 }
@@ -57,7 +47,6 @@ static void choose_sizes(hf_montecarlo *t)
 hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b, const hf_surface_settings *surface,
                                const hf_facets *facets, const hf_built_heat *heat, int n_thread, hf_montecarlo *t)
 {
-    hf_arena arena = {0};
     *t = (hf_montecarlo){.settings = s, .built = b, .surface = surface, .facets = facets};
     HF_TRY(hf_built_batch_create(b, n_thread, &t->batch));
     n_thread = hf_built_batch_threads(t->batch);
@@ -67,22 +56,23 @@ hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b
     if (s->sampling == HF_SAMPLING_SOBOL)
         HF_TRY(hf_directions_find(&t->errors, &t->covariance, n_thread, &t->directions));
     choose_sizes(t);
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_montecarlo(&arena, n_thread, t)));
-    t->block = arena.block;
+    size_t n = (size_t)t->n_chunk;
+    HF_TRY(HF_ARENA_ARRAYS(&t->block, HF_ARRAY(t->row, n * HF_TOLERANCE_COLUMNS),
+                           HF_ARRAY(t->point, n * (size_t)t->directions.n), HF_ARRAY(t->z, n * t->n_z),
+                           HF_ARRAY(t->scratch, (size_t)n_thread * t->n_room)));
     t->varies = hf_built_errors_vary(&t->errors);
     if (!has_surface(t)) return HF_OK;
-    return hf_surface_design_make(surface, facets, &b->model, b->place_m, b->tension_N, &t->design);
+    return hf_surface_design_make(surface, facets, &b->model, b->position_m, b->tension_N, &t->design);
 }
 
 void hf_montecarlo_free(hf_montecarlo *t)
 {
-    hf_arena arena = {.block = t->block};
     hf_built_batch_free(t->batch);
     hf_directions_free(&t->directions);
     hf_covariance_free(&t->covariance);
     hf_built_errors_free(&t->errors);
     hf_built_linear_free(&t->linear);
-    hf_arena_free(&arena);
+    hf_arena_free_block(t->block);
     *t = (hf_montecarlo){0};
 }
 
@@ -105,26 +95,17 @@ static void make_sample(void *context, long i, double *cut_m, double *EA_N, doub
 
 bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets *facets, hf_tolerance_measure measure)
 {
-    enum { ALWAYS, SURFACE, FACETS, LOSS, FACET_LOSS, PATTERN };
+    /* What there is, and as a condition: what a measure needs besides. */
+    enum { ALWAYS = 0, SURFACE = 1, HAS_FACETS = 2, HAS_FREQUENCY = 4, HAS_PATTERN = 8 };
+    enum { FACETS = SURFACE | HAS_FACETS, LOSS = SURFACE | HAS_FREQUENCY, FACET_LOSS = FACETS | LOSS };
+    enum { PATTERN = FACETS | HAS_PATTERN };
 #define CONDITION(name, word, unit, condition, description) condition,
     static const int condition_of[HF_TOLERANCE_N_MEASURE] = {HF_TOLERANCE_MEASURES(CONDITION)};
 #undef CONDITION
-    bool has_surface = surface && surface->focal_length_m > 0, has_loss = has_surface && surface->frequencies_Hz.n > 0,
-         has_facets = has_surface && facets && facets->n_facet > 0;
-    switch (condition_of[measure]) {
-    case SURFACE:
-        return has_surface;
-    case FACETS:
-        return has_facets;
-    case LOSS:
-        return has_loss;
-    case FACET_LOSS:
-        return has_loss && has_facets;
-    case PATTERN:
-        return has_facets && surface->has_pattern;
-    default:
-        return true;
-    }
+    int has = facets && facets->n_facet > 0 ? HAS_FACETS : 0;
+    if (surface && surface->focal_length_m > 0)
+        has |= SURFACE | (surface->frequencies_Hz.n > 0 ? HAS_FREQUENCY : 0) | (surface->has_pattern ? HAS_PATTERN : 0);
+    return (condition_of[measure] & ~has) == 0;
 }
 
 /* Returns Ruze's gain loss at the highest frequency; NaN without a frequency. */
@@ -190,12 +171,11 @@ static double psi_m_of(const hf_montecarlo *t, const hf_built_shape *shape, cons
 }
 
 /* Measures the shape of sample i and writes its row, as an hf_built_take. */
-static void take_sample(void *context, long i, int place, const hf_built_shape *shape, const hf_form_result *r)
+static void take_sample(void *context, long i, const hf_built_shape *shape, const hf_form_result *r)
 {
     hf_montecarlo *t = context;
     const hf_model *m = &t->built->model;
     double *row = t->row + (i - t->first) * HF_TOLERANCE_COLUMNS, *value = row + HF_TOLERANCE_FIRST;
-    (void)place;
     row[HF_TOLERANCE_STATUS] = r->status;
     for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)
         value[k] = (double)NAN;
@@ -203,10 +183,10 @@ static void take_sample(void *context, long i, int place, const hf_built_shape *
     value[HF_TOLERANCE_PSI] = psi_m_of(t, shape, r);
     value[HF_TOLERANCE_SLACK] = r->n_slack;
     value[HF_TOLERANCE_LOOSE] = r->n_loose;
-    double least = INFINITY;
+    double min_N = INFINITY;
     for (int e = 0; e < m->n_cable; e++)
-        least = fmin(least, shape->tension_N[e]);
-    value[HF_TOLERANCE_LEAST_TENSION] = least;
+        min_N = fmin(min_N, shape->tension_N[e]);
+    value[HF_TOLERANCE_LEAST_TENSION] = min_N;
     if (has_surface(t) && !t->skips_surface) measure_surface(t, shape, value);
 }
 
@@ -261,7 +241,7 @@ bool hf_montecarlo_meets_all(const hf_tolerance_settings *s, const double *row)
     return row[HF_TOLERANCE_STATUS] == HF_OK;
 }
 
-/* Computes whether at least the share settings->yield of the first n samples meets all requirements at this scale. */
+/* Computes whether at min_N the share settings->yield of the first n samples meets all requirements at this scale. */
 static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reaches)
 {
     long met = 0, failed = 0;

@@ -49,7 +49,7 @@ typedef struct {
 hf_status hf_near_lanes_create(const hf_near *near, hf_near_lanes *lanes);
 void hf_near_lanes_free(hf_near_lanes *lanes);
 
-/* Puts a net into a lane, at the nominal shape. net->cut_m and net->EA_N must be given; net->support_displacement_m may
+/* Puts a net into a lane, at the nominal shape. net->cut_m and net->EA_N must be given, net->support_displacement_m may
  * be NULL. */
 void hf_near_load(const hf_near *near, hf_near_lanes *lanes, int lane, const hf_built_net *net);
 
@@ -69,14 +69,5 @@ hf_near_verdict hf_near_settle(const hf_near *near, hf_near_lanes *lanes, int la
  * hf_built_solve. Returns false when it does not converge. Otherwise the status is HF_OK and the workspace holds the
  * shape. */
 bool hf_near_find(const hf_near *near, const hf_built_net *net, hf_workspace *w, hf_form_result *result);
-
-/* ---- parts of hf_near_find ---- */
-
-/* Prepares the workspace for a net: nominal shape and tensions, with supports displaced and attachments as unknowns. */
-void hf_near_prepare(const hf_near *near, const hf_built_net *net, hf_workspace *w);
-
-/* Runs Newton's method from position_m and tension_N of the workspace and adds its steps to *n_step. Returns false when
- * it does not converge. Otherwise tension_N and q_N_per_m belong to the shape, which the caller measures. */
-bool hf_near_newton(const hf_near *near, hf_workspace *w, int *n_step);
 
 #endif

@@ -6,14 +6,6 @@
 
 #include <math.h>
 
-static void lay_out_prior(hf_arena *arena, size_t n_cable, size_t n_shared, hf_prior *p)
-{
-    p->own_m = hf_arena_take(arena, n_cable, sizeof(double));
-    p->sigma_m = hf_arena_take(arena, n_cable, sizeof(double));
-    p->number = hf_arena_take(arena, n_shared, sizeof *p->number);
-    p->shared_m = hf_arena_take(arena, n_shared * n_cable, sizeof(double));
-}
-
 /* Returns the error of the length of cable i by an error of 1 of this kind. */
 static double effect_of(const hf_built_errors *errors, hf_error_kind kind, int i)
 {
@@ -85,36 +77,33 @@ static void fill_prior(const hf_built_errors *errors, hf_prior *p)
     }
 }
 
-/* Returns an upper limit of the shared numbers. */
-static size_t numbers_at_most(const hf_built_errors *e)
+/* Allocates the prior, with room for all shared numbers that there can be. */
+static hf_status allocate_prior(const hf_built_errors *e, hf_prior *p)
 {
     size_t n = e->sigma[HF_ERROR_TEMPERATURE] > 0, per_spool = e->sigma[HF_ERROR_RATIO_BATCH] > 0;
+    size_t n_cable = (size_t)e->linear->built->scene.n_cable;
     per_spool += e->sigma[HF_ERROR_EA_BATCH] > 0;
     for (int spool = 0; spool < e->n_spool && per_spool; spool++)
         n += count_cables(e, spool) > 1 ? per_spool : 0;
-    return n + 1; /* one spare: add_number forms the address of a column for a spool of one cable, too */
+    n++; /* one spare: add_number forms the address of a column for a spool of one cable, too */
+    return HF_ARENA_ARRAYS(&p->block, HF_ARRAY(p->own_m, n_cable), HF_ARRAY(p->sigma_m, n_cable),
+                           HF_ARRAY(p->number, n), HF_ARRAY(p->shared_m, n * n_cable));
 }
 
 hf_status hf_prior_make(const hf_built *b, const hf_tolerance_settings *t, const double *expansion_per_K, hf_prior *p)
 {
     const hf_built_linear of = {.built = b}; /* making errors reads only the net */
-    hf_arena arena = {0};
     hf_built_errors errors;
     *p = (hf_prior){0};
     hf_status status = hf_built_errors_make(&of, t, &(hf_built_heat){expansion_per_K, NULL}, &errors);
-    if (status == HF_OK)
-        status = HF_ARENA_MAKE(&arena, lay_out_prior(&arena, (size_t)b->scene.n_cable, numbers_at_most(&errors), p));
-    if (status == HF_OK) {
-        p->block = arena.block;
-        fill_prior(&errors, p);
-    }
+    if (status == HF_OK) status = allocate_prior(&errors, p);
+    if (status == HF_OK) fill_prior(&errors, p);
     hf_built_errors_free(&errors);
     return status;
 }
 
 void hf_prior_free(hf_prior *p)
 {
-    hf_arena arena = {.block = p->block};
-    hf_arena_free(&arena);
+    hf_arena_free_block(p->block);
     *p = (hf_prior){0};
 }

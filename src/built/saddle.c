@@ -1,20 +1,33 @@
 /* Assembles and solves the saddle-point system (M41) of an estimate:
  *
  *     cables, nodes, shared numbers ---> band, border columns, corner   (factor_parts)
- *     band ---> saddle_dual where it applies, otherwise LU with pivoting
+ *     band ---> Cholesky where it applies (factor_dual), otherwise LU with pivoting
  *     corner - columns' band^-1 columns, with the truss ---> dense LU   (factor_border)
  *     right-hand side ---> band ---> border ---> band again             (hf_saddle_solve)
  *
- * Contents: making, assembling, factor, solution. */
+ * Cholesky with iterative refinement, for a band without a border or with shared numbers alone:
+ *
+ *     factor   P + H (W + R)^-1 H ---> Cholesky ---> solve a probe of known solution; accepted to REFINED
+ *     solve    residual ---> multipliers p (Cholesky) ---> displacements x ---> add both ---> residual with R = 0
+ *                ^                                                                               |
+ *                +---------------------- not small enough, still shrinking ----------------------+
+ *
+ * Contents: making, the band by Cholesky (matrix, products, refinement, factor), assembling, factor, solution. */
 #include "built/saddle.h"
 
 #include "base/arena.h"
+#include "base/elementary.h"
 #include "linalg/band.h"
 #include "linalg/dense.h"
 #include "solve/loose.h"
 
 #include <math.h>
 #include <string.h>
+
+#define WEAK 2.5e-7        /* weight R of displacements of 2000 times the maximum error of a length */
+#define REFINEMENTS_MAX 20 /* refinement steps; a probe that takes more shows that LU is needed */
+#define REFINED 1e-12      /* required residual of a solution, relative to the right-hand side */
+#define ENOUGH 1e-13       /* relative residual at which refinement stops */
 
 /* ---- making ---- */
 
@@ -23,62 +36,321 @@ static int room_of_band(const hf_saddle *s)
     return 3 * s->half_bandwidth + 1;
 }
 
-static void lay_out_saddle(hf_arena *arena, hf_saddle *s)
-{
-    size_t n = (size_t)s->n_band, border = (size_t)s->n_border, attached = (size_t)s->n_attached;
-    s->general = hf_arena_take(arena, n * (size_t)room_of_band(s), sizeof(double));
-    s->pivot = hf_arena_take(arena, n, sizeof(int));
-    s->column = hf_arena_take(arena, border * n, sizeof(double));
-    s->solved = hf_arena_take(arena, border * n, sizeof(double));
-    s->corner = hf_arena_take(arena, border * border, sizeof(double));
-    s->dense = hf_arena_take(arena, border * border, sizeof(double));
-    s->flex = hf_arena_take(arena, attached * attached, sizeof(double));
-    s->work = hf_arena_take(arena, (1 + HF_SADDLE_DUAL_PANEL) * border, sizeof(double));
-    s->dense_pivot = hf_arena_take(arena, border, sizeof(int));
-}
-
 /* Returns whether the border has only shared numbers. */
 static bool may_be_dual(const hf_saddle *s)
 {
     return s->n_border == s->prior.n_shared;
 }
 
-/* Returns the maximum error of a length by one standard deviation of an own error or of a shared number. */
-static double largest_error_m(const hf_model *m, const hf_saddle_prior *prior)
+/* Lists the cables of each row, one row after the other. */
+static void list_cables(hf_saddle_dual *d)
 {
-    double largest = 0;
-    for (int e = 0; e < m->n_cable; e++)
-        largest = fmax(largest, prior->sigma_m[e]);
-    for (size_t i = 0; i < (size_t)prior->n_shared * (size_t)m->n_cable; i++)
-        largest = fmax(largest, fabs(prior->shared_m[i]));
-    return largest;
+    const hf_model *m = &d->linear->built->model;
+    for (int i = 0; i < 2 * m->n_cable; i++)
+        d->start[m->end_row[i]]++;
+    for (int row = 0; row < m->n_node; row++)
+        d->start[row + 1] += d->start[row];       /* the end of the cables of `row` */
+    for (int i = 2 * m->n_cable - 1; i >= 0; i--) /* becomes their start */
+        d->cable[--d->start[m->end_row[i]]] = i / 2;
+}
+
+static hf_status create_dual(const hf_built_linear *l, hf_saddle_dual *d)
+{
+    const hf_model *m = &l->built->model;
+    size_t n = 3 * (size_t)m->n_free, n_cable = (size_t)m->n_cable, panel = HF_SADDLE_PANEL;
+    *d = (hf_saddle_dual){.linear = l, .n = (int)n, .half_bandwidth = 6 * m->half_bandwidth + 2};
+    if (d->half_bandwidth > d->n - 1) d->half_bandwidth = d->n - 1;
+    HF_TRY(HF_ARENA_ARRAYS(&d->memory, HF_ARRAY(d->start, m->n_node + 1), HF_ARRAY(d->cable, 2 * n_cable),
+                           HF_ARRAY(d->block, 9 * n_cable), HF_ARRAY(d->push, n_cable), HF_ARRAY(d->spring, m->n_free),
+                           HF_ARRAY(d->weight, n), HF_ARRAY(d->band, n * ((size_t)d->half_bandwidth + 1)),
+                           HF_ARRAY(d->right, panel * n), HF_ARRAY(d->solution, panel * 2 * n),
+                           HF_ARRAY(d->error, panel * 2 * n), HF_ARRAY(d->probe, 2 * n)));
+    list_cables(d);
+    return HF_OK;
 }
 
 hf_status hf_saddle_create(const hf_built_linear *l, const hf_saddle_prior *prior, hf_saddle *s)
 {
     const hf_model *m = &l->built->model;
-    hf_arena arena = {0};
     *s = (hf_saddle){.linear = l, .prior = *prior, .n_band = 6 * m->n_free, .n_attached = 3 * m->n_attachment};
     s->half_bandwidth = 6 * m->half_bandwidth + 5;
     if (prior->support_sigma_m > 0) s->n_off = 3 * (m->n_node - m->n_free - m->n_attachment);
     s->n_border = 2 * s->n_attached + s->n_off + prior->n_shared;
-    s->size_m = largest_error_m(m, prior);
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_saddle(&arena, s)));
-    s->block = arena.block;
-    return may_be_dual(s) ? hf_saddle_dual_create(l, &s->dual) : HF_OK;
+    size_t n_cable = (size_t)m->n_cable; /* size_m: maximum error by one standard deviation of one number */
+    s->size_m = fmax(hf_max_magnitude(n_cable, prior->sigma_m),
+                     hf_max_magnitude((size_t)prior->n_shared * n_cable, prior->shared_m));
+    size_t n = (size_t)s->n_band, border = (size_t)s->n_border, attached = (size_t)s->n_attached;
+    HF_TRY(HF_ARENA_ARRAYS(&s->block, HF_ARRAY(s->general, n * (size_t)room_of_band(s)), HF_ARRAY(s->pivot, n),
+                           HF_ARRAY(s->column, border * n), HF_ARRAY(s->solved, border * n),
+                           HF_ARRAY(s->corner, border * border), HF_ARRAY(s->dense, border * border),
+                           HF_ARRAY(s->flex, attached * attached), HF_ARRAY(s->work, (1 + HF_SADDLE_PANEL) * border),
+                           HF_ARRAY(s->dense_pivot, border)));
+    return may_be_dual(s) ? create_dual(l, &s->dual) : HF_OK;
 }
 
 void hf_saddle_free(hf_saddle *s)
 {
-    hf_arena arena = {.block = s->block};
-    hf_saddle_dual_free(&s->dual);
-    hf_arena_free(&arena);
+    hf_arena_free_block(s->dual.memory);
+    hf_arena_free_block(s->block);
     *s = (hf_saddle){0};
+}
+
+/* ---- the band by Cholesky: the matrix ---- */
+
+/* Returns the weight of coordinate i including R. */
+static double weight_of(const hf_saddle_dual *d, int i)
+{
+    return fmax(d->weight[i], WEAK);
+}
+
+/* Adds sign times block to the rows of node i and the columns of node j, within the lower triangle. */
+static void add_block(hf_saddle_dual *d, int i, int j, double sign, double block[3][3])
+{
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            int row = 3 * i + r, column = 3 * j + c;
+            if (row >= column)
+                d->band[(size_t)column * ((size_t)d->half_bandwidth + 1) + (size_t)(row - column)] +=
+                    sign * block[r][c];
+        }
+}
+
+/* Adds the part of P by the errors of cable e. */
+static void add_push(hf_saddle_dual *d, int e)
+{
+    const hf_model *m = &d->linear->built->model;
+    const int *end = m->end_row + 2 * (ptrdiff_t)e;
+    const double *u = d->linear->unit + 3 * (ptrdiff_t)e;
+    double block[3][3];
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            block[r][c] = d->push[e] * u[r] * u[c];
+    for (int p = 0; p < 2; p++)
+        for (int q = 0; q < 2; q++)
+            if (end[p] < m->n_free && end[q] < m->n_free) add_block(d, end[p], end[q], p == q ? 1 : -1, block);
+}
+
+/* Computes block k of the row of H at `row`: its diagonal block for k = 0, otherwise that of one of its cables. Returns
+ * the column, or -1 when it is not a free node. */
+static int part_of_row(const hf_saddle_dual *d, int row, int k, double block[3][3])
+{
+    const hf_model *m = &d->linear->built->model;
+    memset(block, 0, 9 * sizeof(double));
+    if (k == 0) {
+        for (int i = d->start[row]; i < d->start[row + 1]; i++)
+            for (int c = 0; c < 9; c++)
+                block[c / 3][c % 3] += d->block[9 * (ptrdiff_t)d->cable[i] + c];
+        for (int c = 0; c < 3; c++)
+            block[c][c] += d->spring[row];
+        return row;
+    }
+    int e = d->cable[d->start[row] + k - 1];
+    int other = m->end_row[2 * e] == row ? m->end_row[2 * e + 1] : m->end_row[2 * e];
+    for (int c = 0; c < 9; c++)
+        block[c / 3][c % 3] = -d->block[9 * (ptrdiff_t)e + c];
+    return other < m->n_free ? other : -1;
+}
+
+/* Adds the part of H (W + R)^-1 H by the displacements of one node. */
+static void add_node(hf_saddle_dual *d, int row)
+{
+    double left[3][3], right[3][3], product[3][3];
+    int n_part = d->start[row + 1] - d->start[row] + 1;
+    for (int k = 0; k < n_part; k++) {
+        int i = part_of_row(d, row, k, left);
+        for (int l = 0; l < n_part && i >= 0; l++) {
+            int j = part_of_row(d, row, l, right);
+            if (j < 0 || j > i) continue;
+            for (int r = 0; r < 3; r++)
+                for (int c = 0; c < 3; c++) {
+                    product[r][c] = 0;
+                    for (int t = 0; t < 3; t++)
+                        product[r][c] += left[t][r] * right[t][c] / weight_of(d, 3 * row + t);
+                }
+            add_block(d, i, j, 1, product);
+        }
+    }
+}
+
+/* ---- the band by Cholesky: products ---- */
+
+/* Subtracts M z from `left`, where M is the matrix of the saddle-point system. */
+static void take_off_product(const hf_saddle_dual *d, const double *z, double *left)
+{
+    const hf_model *m = &d->linear->built->model;
+    for (int e = 0; e < m->n_cable; e++) {
+        const int *end = m->end_row + 2 * (ptrdiff_t)e;
+        const double *u = d->linear->unit + 3 * (ptrdiff_t)e, *h = d->block + 9 * (ptrdiff_t)e;
+        double difference[6] = {0}, along = 0, force[6];
+        for (int p = 0; p < 2; p++)
+            for (int c = 0; c < 6 && end[p] < m->n_free; c++)
+                difference[c] += (p ? -1 : 1) * z[6 * (ptrdiff_t)end[p] + c];
+        for (int c = 0; c < 3; c++)
+            along += u[c] * difference[c];
+        for (int r = 0; r < 3; r++) {
+            force[r] = -d->push[e] * along * u[r];
+            force[3 + r] = 0;
+            for (int c = 0; c < 3; c++) {
+                force[r] += h[3 * r + c] * difference[3 + c];
+                force[3 + r] += h[3 * r + c] * difference[c];
+            }
+        }
+        for (int p = 0; p < 2; p++)
+            for (int c = 0; c < 6 && end[p] < m->n_free; c++)
+                left[6 * (ptrdiff_t)end[p] + c] -= (p ? -1 : 1) * force[c];
+    }
+    for (int i = 0; i < d->n; i++) {
+        int p = 6 * (i / 3) + i % 3, x = p + 3;
+        left[p] -= d->spring[i / 3] * z[x];
+        left[x] -= d->spring[i / 3] * z[p] + d->weight[i] * z[x];
+    }
+}
+
+/* Adds H v to `sum`, both [n]. */
+static void add_stiffness(const hf_saddle_dual *d, const double *v, double *sum)
+{
+    const hf_model *m = &d->linear->built->model;
+    for (int e = 0; e < m->n_cable; e++) {
+        const int *end = m->end_row + 2 * (ptrdiff_t)e;
+        const double *h = d->block + 9 * (ptrdiff_t)e;
+        double difference[3] = {0};
+        for (int p = 0; p < 2; p++)
+            for (int c = 0; c < 3 && end[p] < m->n_free; c++)
+                difference[c] += (p ? -1 : 1) * v[3 * (ptrdiff_t)end[p] + c];
+        for (int r = 0; r < 3; r++) {
+            double force = h[3 * r] * difference[0] + h[3 * r + 1] * difference[1] + h[3 * r + 2] * difference[2];
+            if (end[0] < m->n_free) sum[3 * (ptrdiff_t)end[0] + r] += force;
+            if (end[1] < m->n_free) sum[3 * (ptrdiff_t)end[1] + r] -= force;
+        }
+    }
+    for (int i = 0; i < d->n; i++)
+        sum[i] += d->spring[i / 3] * v[i];
+}
+
+/* ---- the band by Cholesky: refinement ---- */
+
+/* Holds one of the right-hand sides that are refined together. */
+typedef struct {
+    double *band, *solution, *error; /* [2 n] right-hand side, its solution, its residual */
+    double size, last, largest;      /* maximum entries: of the right-hand side, of the last two residuals */
+} refinement;
+
+/* Computes the right-hand side p of the multipliers from the residual in r->error, which it overwrites. */
+static void ask_multipliers(const hf_saddle_dual *d, refinement *r, double *p)
+{
+    /* Displacements need less room than the residual, so they may overwrite it. */
+    double *right = r->error, *displaced = right;
+    for (int i = 0; i < d->n; i++)
+        p[i] = -right[6 * (i / 3) + i % 3];
+    for (int i = 0; i < d->n; i++)
+        displaced[i] = right[6 * (i / 3) + 3 + i % 3] / weight_of(d, i);
+    add_stiffness(d, displaced, p);
+}
+
+/* Adds the multipliers p and the displacements that follow from them to the solution. */
+static void add_answer(const hf_saddle_dual *d, refinement *r, const double *p)
+{
+    double *displaced = r->error, *pull = displaced + d->n, *z = r->solution;
+    memset(pull, 0, (size_t)d->n * sizeof *pull);
+    add_stiffness(d, p, pull);
+    for (int i = 0; i < d->n; i++) {
+        z[6 * (i / 3) + i % 3] += p[i];
+        z[6 * (i / 3) + 3 + i % 3] += displaced[i] - pull[i] / weight_of(d, i);
+    }
+}
+
+/* Adds corrections to n solutions: the solutions of the matrix with R for their residuals. */
+static void correct(const hf_saddle_dual *d, int n, refinement *const *open)
+{
+    for (int k = 0; k < n; k++)
+        ask_multipliers(d, open[k], d->right + (ptrdiff_t)k * d->n);
+    hf_band_back_solve(d->n, d->half_bandwidth, n, d->band, d->right, d->n);
+    for (int k = 0; k < n; k++)
+        add_answer(d, open[k], d->right + (ptrdiff_t)k * d->n);
+}
+
+/* Computes the residual. Returns whether a further step is useful. */
+static bool goes_on(const hf_saddle_dual *d, refinement *r)
+{
+    memcpy(r->error, r->band, 2 * (size_t)d->n * sizeof(double));
+    take_off_product(d, r->solution, r->error);
+    r->last = r->largest;
+    r->largest = hf_max_magnitude(2 * (size_t)d->n, r->error);
+    return r->largest > ENOUGH * r->size && !(r->largest <= REFINED * r->size && r->largest > r->last / 2);
+}
+
+/* Solves at most HF_SADDLE_PANEL right-hand sides in place. Returns whether all residuals are small. */
+static bool refine_iteratively(const hf_saddle_dual *d, int n, double *band)
+{
+    refinement all[HF_SADDLE_PANEL], *open[HF_SADDLE_PANEL];
+    size_t length = 2 * (size_t)d->n;
+    bool is_found = true;
+    int n_open = 0;
+    for (int k = 0; k < n; k++) {
+        size_t at = (size_t)k * length;
+        all[k] = (refinement){.band = band + at, .solution = d->solution + at, .error = d->error + at};
+        all[k].size = hf_max_magnitude(length, all[k].band);
+        all[k].largest = all[k].size > 0 ? (double)INFINITY : 0;
+        if (all[k].size > 0) open[n_open++] = &all[k];
+    }
+    memset(d->solution, 0, (size_t)n * length * sizeof(double));
+    for (int step = 0; step <= REFINEMENTS_MAX && n_open > 0; step++) {
+        int n_left = 0;
+        for (int k = 0; k < n_open; k++)
+            if (goes_on(d, open[k])) open[n_left++] = open[k];
+        n_open = n_left;
+        if (step < REFINEMENTS_MAX) correct(d, n_open, open);
+    }
+    memcpy(band, d->solution, (size_t)n * length * sizeof(double));
+    for (int k = 0; k < n; k++)
+        is_found = is_found && (all[k].size == 0 || all[k].largest / all[k].size < REFINED);
+    return is_found;
+}
+
+/* Solves n right-hand sides band [n][6 n_free] in place. Returns false when refinement fails for one of them. No
+ * solution depends on the others. */
+static bool solve_dual(const hf_saddle_dual *d, int n, double *band)
+{
+    for (int first = 0; first < n; first += HF_SADDLE_PANEL) {
+        int n_now = n - first < HF_SADDLE_PANEL ? n - first : HF_SADDLE_PANEL;
+        if (!refine_iteratively(d, n_now, band + 2 * (ptrdiff_t)first * d->n)) return false;
+    }
+    return true;
+}
+
+/* Factors the matrix. Returns false when it has no factor, or when refinement does not solve a probe; another method is
+ * then needed. */
+static bool factor_dual(hf_saddle *s)
+{
+    hf_saddle_dual *d = &s->dual;
+    const hf_built_linear *l = s->linear;
+    const hf_model *m = &l->built->model;
+    for (int e = 0; e < m->n_cable; e++) {
+        double push = l->cut_N_per_m[e] * s->prior.sigma_m[e] * s->force_m_per_N;
+        d->push[e] = push * push;
+    }
+    for (int i = 0; i < 9 * m->n_cable; i++)
+        d->block[i] = s->size_m * s->force_m_per_N * l->block_N_per_m[i];
+    for (int row = 0; row < m->n_free; row++)
+        d->spring[row] = l->work.loose[row] ? hf_loose_spring_N_per_m(m) * s->size_m * s->force_m_per_N : 0;
+    for (int i = 0; i < d->n; i++)
+        d->weight[i] = s->part * s->prior.weight_per_m2[i] * s->size_m * s->size_m;
+    memset(d->band, 0, (size_t)d->n * ((size_t)d->half_bandwidth + 1) * sizeof *d->band);
+    for (int e = 0; e < m->n_cable; e++)
+        add_push(d, e);
+    for (int row = 0; row < m->n_free; row++)
+        add_node(d, row);
+    if (hf_band_factor(d->n, d->half_bandwidth, d->band) != 0) return false;
+    for (int i = 0; i < 2 * d->n; i++)
+        d->solution[i] = i % 7 < 3 ? 1 : -1; /* the known solution of the probe */
+    memset(d->probe, 0, 2 * (size_t)d->n * sizeof *d->probe);
+    take_off_product(d, d->solution, d->probe);
+    return refine_iteratively(d, 1, d->probe);
 }
 
 /* ---- assembling ---- */
 
-enum { MULTIPLIER, MOVE }; /* kinds of unknowns */
+enum { MULTIPLIER, DISPLACEMENT }; /* kinds of unknowns */
 
 /* Returns the first of three unknowns of a row, or -1 when it has none. Unknowns of the border begin at n_band. */
 static int unknown_of(const hf_saddle *s, int row, int kind)
@@ -87,7 +359,7 @@ static int unknown_of(const hf_saddle *s, int row, int kind)
     if (row < m->n_free) return 6 * row + 3 * kind;
     int i = 3 * (row - m->n_free);
     if (i < s->n_attached) return s->n_band + i + (kind == MULTIPLIER ? s->n_attached : 0);
-    return kind == MOVE && s->n_off ? s->n_band + s->n_attached + i : -1;
+    return kind == DISPLACEMENT && s->n_off ? s->n_band + s->n_attached + i : -1;
 }
 
 /* Adds a value to the band, a column of the border or the corner. Columns of the border stand for its rows, too. */
@@ -104,7 +376,7 @@ static void add_entry(hf_saddle *s, int i, int j, double value)
 
 static double unit_of(const hf_saddle *s, int kind)
 {
-    return kind == MOVE ? s->size_m : s->force_m_per_N;
+    return kind == DISPLACEMENT ? s->size_m : s->force_m_per_N;
 }
 
 /* Adds a block [3][3], times sign and units, between the unknowns of two rows. */
@@ -131,8 +403,8 @@ static void add_cable(hf_saddle *s, int e)
     for (int p = 0; p < 2; p++)
         for (int q = 0; q < 2; q++) {
             double sign = p == q ? 1 : -1;
-            add_rows(s, end[p], MULTIPLIER, end[q], MOVE, sign, block);
-            add_rows(s, end[p], MOVE, end[q], MULTIPLIER, sign, block);
+            add_rows(s, end[p], MULTIPLIER, end[q], DISPLACEMENT, sign, block);
+            add_rows(s, end[p], DISPLACEMENT, end[q], MULTIPLIER, sign, block);
             add_rows(s, end[p], MULTIPLIER, end[q], MULTIPLIER, -sign, spread);
         }
 }
@@ -147,10 +419,10 @@ static void add_row(hf_saddle *s, int row)
         if (row >= m->n_free + m->n_attachment && s->n_off) weight[c][c] += 1 / (rest * rest);
         if (row < m->n_free && s->linear->work.loose[row]) spring[c][c] = hf_loose_spring_N_per_m(m);
     }
-    add_rows(s, row, MOVE, row, MOVE, 1, weight);
+    add_rows(s, row, DISPLACEMENT, row, DISPLACEMENT, 1, weight);
     if (spring[0][0] == 0) return;
-    add_rows(s, row, MOVE, row, MULTIPLIER, 1, spring);
-    add_rows(s, row, MULTIPLIER, row, MOVE, 1, spring);
+    add_rows(s, row, DISPLACEMENT, row, MULTIPLIER, 1, spring);
+    add_rows(s, row, MULTIPLIER, row, DISPLACEMENT, 1, spring);
 }
 
 /* Adds the border of shared number k: the forces of its errors, in the rows of the multipliers. They express z =
@@ -208,7 +480,7 @@ static void fill_border(hf_saddle *s)
  * solution. */
 static hf_status solve_band(const hf_saddle *s, int n, double *b)
 {
-    if (s->is_dual) return hf_saddle_dual_solve(&s->dual, n, b) ? HF_OK : HF_SINGULAR;
+    if (s->is_dual) return solve_dual(&s->dual, n, b) ? HF_OK : HF_SINGULAR;
     hf_band_back_solve_general(s->n_band, s->half_bandwidth, n, s->general, s->pivot, b, s->n_band);
     return HF_OK;
 }
@@ -235,9 +507,7 @@ static void choose_units(hf_saddle *s)
 {
     const hf_built_linear *l = s->linear;
     const hf_model *m = &l->built->model;
-    double stiffest = 0;
-    for (int e = 0; e < m->n_cable; e++)
-        stiffest = fmax(stiffest, l->stiffness_N_per_m[e]);
+    double stiffest = hf_max_magnitude((size_t)m->n_cable, l->stiffness_N_per_m);
     s->force_m_per_N = 1 / (stiffest * s->size_m);
     for (int i = 0; i < s->n_attached * s->n_attached; i++)
         s->flex[i] = stiffest * m->flexibility_m_per_N[i];
@@ -251,14 +521,13 @@ static void clear_border(hf_saddle *s)
         add_number(s, k);
 }
 
-/* Factors by saddle_dual where it applies and succeeds, otherwise by LU. */
+/* Factors by Cholesky where it applies and succeeds, otherwise by LU. */
 static hf_status factor_parts(hf_saddle *s)
 {
     const hf_model *m = &s->linear->built->model;
     choose_units(s);
     clear_border(s);
-    s->is_dual = may_be_dual(s) && hf_saddle_dual_factor(&s->dual, s->prior.sigma_m, s->prior.weight_per_m2, s->part,
-                                                         s->size_m, s->force_m_per_N);
+    s->is_dual = may_be_dual(s) && factor_dual(s);
     if (s->is_dual && factor_border(s) == HF_OK) return HF_OK;
     s->is_dual = false;
     clear_border(s);
@@ -293,7 +562,7 @@ static void ask(const hf_saddle *s, const hf_saddle_answer *a, double *band, dou
     memset(band, 0, (size_t)s->n_band * sizeof *band);
     memset(border, 0, (size_t)s->n_border * sizeof *border);
     for (int row = 0; row < m->n_node; row++) {
-        int at = unknown_of(s, row, MOVE);
+        int at = unknown_of(s, row, DISPLACEMENT);
         double *to = at < s->n_band ? band + at : border + (at - s->n_band);
         for (int c = 0; c < 3 && at >= 0; c++) {
             int i = 3 * row + c;
@@ -349,7 +618,7 @@ static void read_answer(const hf_saddle *s, hf_saddle_answer *a, const double *b
     const hf_model *m = &l->built->model;
     double rest = s->prior.support_sigma_m;
     for (int row = 0; row < m->n_node; row++)
-        read_unknown(s, row, MOVE, band, border, a->move_m + 3 * (ptrdiff_t)row);
+        read_unknown(s, row, DISPLACEMENT, band, border, a->move_m + 3 * (ptrdiff_t)row);
     for (int i = 3 * m->n_free; i < 3 * m->n_node; i++) {
         int k = i - 3 * m->n_free;
         if (k < s->n_attached)

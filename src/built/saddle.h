@@ -13,7 +13,7 @@
 #ifndef HIFDM_SADDLE_H
 #define HIFDM_SADDLE_H
 
-#include "built/saddle_dual.h"
+#include "built/linear.h"
 
 /* Describes the prior and the measurement. All pointers are borrowed. */
 typedef struct {
@@ -25,6 +25,32 @@ typedef struct {
     int n_shared;                /* numbers of standard deviation 1 that cables share */
     const double *shared_m;      /* [n_shared][n_cable] error of each length by each number */
 } hf_saddle_prior;
+
+#define HF_SADDLE_PANEL 3 /* right-hand sides for which the band kernel reads the factor once */
+
+/* The band as a problem of multipliers alone. Cholesky solves it several times as fast as LU.
+ *
+ * The weights are W + R, where a small R > 0 stands for coordinates that were not measured. Displacements x then follow
+ * from the multipliers p. With P = B sigma^2 B', the system -P p + H x = a, H p + W x = b becomes
+ *
+ *     (P + H (W + R)^-1 H) p = H (W + R)^-1 b - a.
+ *
+ * This matrix is symmetric and positive definite, with twice the bandwidth of H. Iterative refinement with the original
+ * matrix removes the errors of R and of rounding. */
+typedef struct {
+    const hf_built_linear *linear;
+    int n, half_bandwidth; /* n: 3 n_free rows */
+    int *start, *cable;    /* [n_node + 1], [2 n_cable] cables of each row */
+    double *block;         /* [n_cable][9] stiffness blocks, scaled */
+    double *push;          /* [n_cable] sigma^2 (dT/dl0)^2, scaled */
+    double *spring;        /* [n_free] springs of loose nodes, scaled */
+    double *weight;        /* [n] W, scaled */
+    double *band, *right;  /* the matrix, then its factor; [HF_SADDLE_PANEL][n] */
+    /* [HF_SADDLE_PANEL][2 n], three multipliers and three displacements of each row. */
+    double *solution, *error;
+    double *probe; /* [2 n] right-hand side of the probe */
+    void *memory;
+} hf_saddle_dual;
 
 typedef struct {
     const hf_built_linear *linear;
@@ -44,7 +70,7 @@ typedef struct {
     double *column, *solved;      /* [n_border][n_band] columns of the border, and the solutions of the band for them */
     /* [n_border][n_border] corner; [n_border][n_border] its factor; [n_attached][n_attached] scaled flexibility. */
     double *corner, *dense, *flex;
-    double *work;     /* [1 + HF_SADDLE_DUAL_PANEL][n_border] scratch, then right-hand sides */
+    double *work;     /* [1 + HF_SADDLE_PANEL][n_border] scratch, then right-hand sides */
     int *dense_pivot; /* [n_border] row exchanges of the corner */
     void *block;
 } hf_saddle;
@@ -67,7 +93,7 @@ typedef struct {
     double *shared;      /* out: [n_shared] numbers; cut_m includes them */
 } hf_saddle_answer;
 
-/* Solves n <= HF_SADDLE_DUAL_PANEL independent right-hand sides; work is [n][n_band]. Returns HF_OK; or HF_SINGULAR
+/* Solves n <= HF_SADDLE_PANEL independent right-hand sides; work is [n][n_band]. Returns HF_OK; or HF_SINGULAR
  * when rounding prevents a solution, in which case no solution is written. */
 hf_status hf_saddle_solve(const hf_saddle *saddle, int n, hf_saddle_answer *answer, double *work);
 

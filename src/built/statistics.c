@@ -9,6 +9,7 @@
 #include "built/statistics.h"
 
 #include "base/arena.h"
+#include "base/elementary.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -26,17 +27,16 @@
 static hf_status visit_rows(const hf_statistics_rows *rows, void (*take)(void *context, const double *row),
                             void *context)
 {
-    double *block;
-    hf_arena arena = {0};
-    hf_status status =
-        HF_ARENA_MAKE(&arena, block = hf_arena_take(&arena, BLOCK * HF_TOLERANCE_COLUMNS, sizeof *block));
+    double *row;
+    void *block;
+    hf_status status = HF_ARENA_ARRAYS(&block, HF_ARRAY(row, BLOCK * HF_TOLERANCE_COLUMNS));
     for (long first = 0; first < rows->n && status == HF_OK; first += BLOCK) {
         int n = rows->n - first < BLOCK ? (int)(rows->n - first) : BLOCK;
-        status = rows->read(rows->context, first, n, block);
+        status = rows->read(rows->context, first, n, row);
         for (int i = 0; i < n && status == HF_OK; i++)
-            take(context, block + i * HF_TOLERANCE_COLUMNS);
+            take(context, row + i * HF_TOLERANCE_COLUMNS);
     }
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 
@@ -165,8 +165,8 @@ hf_status hf_statistics_order(const hf_statistics_rows *rows, int column, double
                               double *value)
 {
     selection s = {.column = column, .n_rank = n_rank, .missing = missing};
-    hf_arena arena = {0};
-    hf_status status = HF_ARENA_MAKE(&arena, s.count = hf_arena_take(&arena, (size_t)n_rank * DIGIT, sizeof *s.count));
+    void *block;
+    hf_status status = HF_ARENA_ARRAYS(&block, HF_ARRAY(s.count, (size_t)n_rank * DIGIT));
     memcpy(s.left, rank, (size_t)n_rank * sizeof *rank);
     for (s.shift = 48; s.shift >= 0 && status == HF_OK; s.shift -= 16) {
         memset(s.count, 0, (size_t)n_rank * DIGIT * sizeof *s.count);
@@ -175,7 +175,7 @@ hf_status hf_statistics_order(const hf_statistics_rows *rows, int column, double
     }
     for (int k = 0; k < n_rank; k++)
         value[k] = value_of(s.above[k]);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 
@@ -230,8 +230,8 @@ static void add_deviations(void *context, const double *row)
     s->xx += x * x;
     s->xy += x * y;
     s->yy += y * y;
-    double width = psi_of->max - psi_of->min, place = width > 0 ? (psi - psi_of->min) / width : 0;
-    int bin = (int)(place * HF_TOLERANCE_BINS);
+    double width = psi_of->max - psi_of->min, part = width > 0 ? (psi - psi_of->min) / width : 0;
+    int bin = (int)(part * HF_TOLERANCE_BINS);
     s->bin[bin < HF_TOLERANCE_BINS ? bin : HF_TOLERANCE_BINS - 1]++;
 }
 
@@ -311,14 +311,9 @@ static void rank_cables(const hf_montecarlo *t, hf_tolerance_summary *to)
 {
     const hf_covariance *c = &t->covariance;
     int n_cable = t->built->scene.n_cable, ranked[HF_TOLERANCE_RANKED] = {0};
-    for (int e = 0; e < n_cable; e++) {
-        int at = to->n_ranked;
-        if (!(c->cable_m2[e] > 0)) continue;
-        for (; at > 0 && c->cable_m2[ranked[at - 1]] < c->cable_m2[e]; at--)
-            if (at < HF_TOLERANCE_RANKED) ranked[at] = ranked[at - 1];
-        if (at < HF_TOLERANCE_RANKED) ranked[at] = e;
-        if (to->n_ranked < HF_TOLERANCE_RANKED) to->n_ranked++;
-    }
+    for (int e = 0; e < n_cable; e++)
+        if (c->cable_m2[e] > 0)
+            to->n_ranked = hf_list_largest(e, c->cable_m2, HF_TOLERANCE_RANKED, to->n_ranked, ranked);
     for (int k = 0; k < to->n_ranked; k++) {
         strncpy(to->ranked_id[k], t->built->scene.cable_id[ranked[k]], HF_TOLERANCE_ID_SIZE - 1);
         to->ranked_share[k] = c->cable_m2[ranked[k]] / c->spread_m2;

@@ -38,7 +38,7 @@ static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surfac
                     "farthest '%s'%s, %.4g mm (above the parabolic_cylinder z = x^2/(4f) the RMS is %.4g mm, above the "
                     "paraboloid z = (x^2 + y^2)/(4f) %.4g mm); %s",
                     place, hf_surface_kind_word[surface->kind], surface->focal_length_m, fit->rms_m * 1e3,
-                    scene->node_id[fit->farthest], line, fit->most_m * 1e3, cylinder->rms_m * 1e3,
+                    scene->node_id[fit->farthest], line, fit->max_m * 1e3, cylinder->rms_m * 1e3,
                     paraboloid->rms_m * 1e3, advice);
 }
 

@@ -40,34 +40,20 @@ static const char *nearest_set(const hf_scene *s, const char *set)
     return pair[0];
 }
 
-/* Writes the names of all sets, such as ", front, rear". A list that is too long ends with ", ...". */
-static void list_sets(const hf_scene *s, char *text, size_t size)
-{
-    size_t at = 0;
-    *text = '\0';
-    for (int k = 0; k < s->n_set; k++) {
-        if (at + strlen(s->set_name[k]) + sizeof ", , ..." > size) {
-            snprintf(text + at, size - at, ", ...");
-            return;
-        }
-        at += (size_t)snprintf(text + at, size - at, ", %s", s->set_name[k]);
-    }
-}
-
 int hf_cable_pick_some(const hf_scene *s, const char *set, const char *where, int *cable, hf_messages *messages)
 {
     int n = hf_cable_pick(s, set, cable);
     if (n > 0) return n;
-    char sets[512];
+    char sets[532] = "all, inner, boundary";
     const char *near = nearest_set(s, set);
-    list_sets(s, sets, sizeof sets);
+    for (int k = 0; k < s->n_set && hf_text_append(sets, sizeof sets, ", ", s->set_name[k], ", ..."); k++)
+        continue;
     if (n == 0)
         hf_error(messages, HF_BAD_CASE, "%s: this net has no %s cables", where, set);
     else if (near)
         hf_error(messages, HF_BAD_CASE, "%s: there is no set of cables '%s'; did you mean '%s'?", where, set, near);
     else
-        hf_error(messages, HF_BAD_CASE, "%s: there is no set of cables '%s'; this net has all, inner, boundary%s",
-                 where, set, sets);
+        hf_error(messages, HF_BAD_CASE, "%s: there is no set of cables '%s'; this net has %s", where, set, sets);
     return 0;
 }
 

@@ -19,22 +19,14 @@ const char *hf_cable_set_name_fault(const char *name)
     return NULL;
 }
 
-static void lay_out(hf_arena *arena, hf_scene *s, int n_set, int n_member)
+hf_status hf_cable_set_allocate(hf_scene *s, int n_set, int n_member)
 {
-    char *text = hf_arena_take(arena, (size_t)n_set, HF_CABLE_SET_NAME_SIZE);
-    s->set_name = hf_arena_take(arena, (size_t)n_set, sizeof *s->set_name);
-    s->set_start = hf_arena_take(arena, (size_t)n_set + 1, sizeof *s->set_start);
-    s->set_cable = hf_arena_take(arena, (size_t)n_member, sizeof *s->set_cable);
-    for (int k = 0; arena->block && k < n_set; k++)
-        s->set_name[k] = text + (size_t)k * HF_CABLE_SET_NAME_SIZE;
-}
-
-hf_status hf_cable_set_allocate(hf_scene *scene, int n_set, int n_member)
-{
-    hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, scene, n_set, n_member)));
-    scene->set_block = arena.block;
-    scene->n_set = n_set;
+    char(*name)[HF_CABLE_SET_NAME_SIZE];
+    HF_TRY(HF_ARENA_ARRAYS(&s->set_block, HF_ARRAY(name, n_set), HF_ARRAY(s->set_name, n_set),
+                           HF_ARRAY(s->set_start, n_set + 1), HF_ARRAY(s->set_cable, n_member)));
+    for (int k = 0; k < n_set; k++)
+        s->set_name[k] = name[k];
+    s->n_set = n_set;
     return HF_OK;
 }
 

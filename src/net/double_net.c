@@ -12,8 +12,6 @@ const char *const hf_tie_direction_word[3] = {"z", "normal", NULL};
 const char *const hf_tie_law_word[HF_N_LAW + 1] = {HF_LAW_LIST(LAW_WORD) NULL};
 #undef LAW_WORD
 
-/* ---- positions ---- */
-
 static double front_curvature(const hf_double_net *d)
 {
     return 1 / (4 * d->focal_length_m);
@@ -71,83 +69,4 @@ const char *hf_double_net_fault(const hf_double_net *d, char *what, size_t size)
 bool hf_double_net_lacks_EA(const hf_double_net *d, const double EA_N[2])
 {
     return d->distance_m > 0 && d->law == HF_LAW_ELASTIC && !(EA_N && EA_N[HF_GROUP_INNER] > 0);
-}
-
-/* ---- cables ---- */
-
-/* Returns the target value of a tie by its law. With the laws tension, force_density and elastic, its tension at this
- * length is tension_N. */
-static double tie_target(const hf_double_net *d, double length, double EA_N)
-{
-    switch (d->law) {
-    case HF_LAW_TENSION:
-        return d->tension_N;
-    case HF_LAW_FORCE_DENSITY:
-        return d->tension_N / length;
-    case HF_LAW_ELASTIC:
-        return length / (1 + d->tension_N / EA_N);
-    default:
-        return length;
-    }
-}
-
-static void put_tie(const hf_double_net *d, double EA_N, hf_scene *s, int e, int a, int b)
-{
-    s->end[2 * e] = a;
-    s->end[2 * e + 1] = b;
-    s->group[e] = HF_GROUP_INNER;
-    s->law[e] = (unsigned char)d->law;
-    s->target[e] = tie_target(d, hf_scene_theoretical_length(s, e), EA_N);
-    if (s->EA_N) s->EA_N[e] = EA_N;
-}
-
-void hf_double_net_fill(const hf_double_net *d, const double EA_N[2], int n_front, int m_front, hf_scene *s)
-{
-    double tie_EA_N = EA_N && EA_N[HF_GROUP_INNER] > 0 ? EA_N[HF_GROUP_INNER] : (double)NAN;
-    int m = 2 * m_front;
-    for (int i = 0; i < n_front; i++) {
-        bool is_support = s->role[i] == HF_ROLE_SUPPORT;
-        const double *front = s->position_m + 3 * (size_t)i;
-        hf_double_net_behind(d, d->direction == HF_TIES_ALONG_Z || (is_support && d->supports_along_z), front,
-                             s->position_m + 3 * (size_t)(n_front + i));
-        s->role[n_front + i] = is_support ? HF_ROLE_SUPPORT : HF_ROLE_EDGE;
-    }
-    for (int e = 0; e < m_front; e++) {
-        int rear = m_front + e;
-        s->end[2 * rear] = n_front + s->end[2 * e];
-        s->end[2 * rear + 1] = n_front + s->end[2 * e + 1];
-        s->group[rear] = s->group[e];
-        s->law[rear] = s->law[e];
-        s->target[rear] = hf_law_default_target(s->law[rear], hf_scene_theoretical_length(s, rear));
-        if (s->EA_N) s->EA_N[rear] = s->EA_N[e];
-    }
-    for (int i = 0; i < n_front; i++)
-        if (s->role[i] != HF_ROLE_SUPPORT) put_tie(d, tie_EA_N, s, m++, i, n_front + i);
-}
-
-int hf_double_net_join(hf_cable_set_member *member, int n_member, int m_front, int n_tie, const int *rear_set,
-                       int tie_set)
-{
-    int n = n_member;
-    for (int k = 0; k < n_member; k++, n++)
-        if (member) member[n] = (hf_cable_set_member){rear_set[member[k].set], m_front + member[k].cable};
-    for (int k = 0; k < n_tie; k++, n++)
-        if (member) member[n] = (hf_cable_set_member){tie_set, 2 * m_front + k};
-    return n;
-}
-
-/* ---- names ---- */
-
-void hf_double_net_name(hf_scene *s, int n_front, char *text, const char *end)
-{
-    for (int i = n_front; i < s->n_node; i++) {
-        const char *front = s->node_id[i - n_front];
-        s->node_id[i] = text;
-        text += snprintf(text, (size_t)(end - text), "r%s", front + (*front == 'f' || *front == 'n')) + 1;
-    }
-    for (int e = 0; e < s->n_cable; e++) {
-        s->cable_id[e] = text;
-        text +=
-            snprintf(text, (size_t)(end - text), "%s-%s", s->node_id[s->end[2 * e]], s->node_id[s->end[2 * e + 1]]) + 1;
-    }
 }

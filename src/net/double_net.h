@@ -1,4 +1,4 @@
-/* double_net - a rear net behind a front net, and the ties between them. The generators of such nets share this module.
+/* double_net - where a rear net is behind a front net. The generators of such nets share this module.
  *
  * The front net lies on z = x^2/(4f) or z = (x^2 + y^2)/(4f). Let s be the distance from its middle, measured along x
  * or in the plane of x and y. Its rim is at s = half_m. The rear surface is z_front + (half^2 - s^2) (1/(4f) +
@@ -6,7 +6,6 @@
 #ifndef HIFDM_DOUBLE_NET_H
 #define HIFDM_DOUBLE_NET_H
 
-#include <hifdm/cable_set.h>
 #include <hifdm/generate.h>
 
 typedef struct {
@@ -37,21 +36,5 @@ const char *hf_double_net_fault(const hf_double_net *d, char *what, size_t size)
 /* Returns true if the ties are elastic and EA_N contains no stiffness for them. EA_N [2] is by hf_group, as
  * in the generators. */
 bool hf_double_net_lacks_EA(const hf_double_net *d, const double EA_N[2]);
-
-/* Fills the rear half of a scene whose first n_front nodes and m_front cables are complete. Node n_front + i is behind
- * node i, and supports are behind supports. Free rear nodes have role edge, so psi does not count them. Cable m_front +
- * e is behind cable e, and the ties follow. EA_N is that of the generators. */
-void hf_double_net_fill(const hf_double_net *d, const double EA_N[2], int n_front, int m_front, hf_scene *scene);
-
-/* Appends members of sets to member [n_member], which contains those of the front net. A rear cable joins rear_set[set
- * of its front cable], and the ties join tie_set. Returns the number of members, at most 2 n_member + n_tie. If
- * `member` is NULL, the members are only counted. */
-int hf_double_net_join(hf_cable_set_member *member, int n_member, int m_front, int n_tie, const int *rear_set,
-                       int tie_set);
-
-/* Writes the ids that follow from those of the n_front front nodes into `text`, up to `end`. A rear node is called r,
- * followed by the id of its front node without a leading f or n. A cable is called <node>-<node>. For a single net
- * n_front is scene->n_node. */
-void hf_double_net_name(hf_scene *scene, int n_front, char *text, const char *end);
 
 #endif

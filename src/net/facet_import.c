@@ -16,7 +16,7 @@ static const char *const facet_column[N_FACET_COLUMN] = {"id", "a", "b", "c", "d
 
 /* ---- nodes ---- */
 
-double hf_facet_turn(const hf_scene *s, int a, int b, int c)
+double hf_facet_double_area(const hf_scene *s, int a, int b, int c)
 {
     const double *p = s->position_m + 3 * (size_t)a, *q = s->position_m + 3 * (size_t)b;
     const double *r = s->position_m + 3 * (size_t)c;
@@ -26,11 +26,11 @@ double hf_facet_turn(const hf_scene *s, int a, int b, int c)
 /* Makes the n nodes of a facet go counter-clockwise. Returns what is wrong with their shape, or NULL. */
 static const char *fault_of_shape(const hf_scene *s, int n, int corner[4])
 {
-    double area = 0, span = 0, least = INFINITY;
+    double area = 0, span = 0, min_area = INFINITY;
     for (int k = 1; k < n; k++) {
         const double *p = s->position_m + 3 * (size_t)corner[0], *q = s->position_m + 3 * (size_t)corner[k];
         span = fmax(span, (q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]));
-        if (k + 1 < n) area += hf_facet_turn(s, corner[0], corner[k], corner[k + 1]);
+        if (k + 1 < n) area += hf_facet_double_area(s, corner[0], corner[k], corner[k + 1]);
     }
     if (area < 0) {
         int second = corner[1];
@@ -38,9 +38,9 @@ static const char *fault_of_shape(const hf_scene *s, int n, int corner[4])
         corner[n - 1] = second;
     }
     for (int k = 0; k < n; k++)
-        least = fmin(least, hf_facet_turn(s, corner[k], corner[(k + 1) % n], corner[(k + 2) % n]));
-    if (n == 3) return least > NARROW_PART * span ? NULL : "its nodes are in a line, seen along z";
-    return fabs(area) > NARROW_PART * span && least > -NARROW_PART * span
+        min_area = fmin(min_area, hf_facet_double_area(s, corner[k], corner[(k + 1) % n], corner[(k + 2) % n]));
+    if (n == 3) return min_area > NARROW_PART * span ? NULL : "its nodes are in a line, seen along z";
+    return fabs(area) > NARROW_PART * span && min_area > -NARROW_PART * span
                ? NULL
                : "its nodes, in this order, do not go around a convex quadrilateral, seen along z";
 }
@@ -102,11 +102,11 @@ static void check_sides(hf_csv *t, const int *where, const hf_scene *s, side *of
     for (int r = 0; r < s->n_facet; r++)
         for (int k = 0; k < 4; k++) {
             int i = s->facet[4 * r + k], j = s->facet[4 * r + (k + 1) % 4];
-            side wanted = {i < j ? i : j, i < j ? j : i, 0};
+            side key = {i < j ? i : j, i < j ? j : i, 0};
             if (i == j) continue; /* the fourth side of a triangle, or any side of a facet with a fault */
             of_facet[n++] = (side){i, j, r};
             bool is_rim = s->role[i] == HF_ROLE_SUPPORT && s->role[j] == HF_ROLE_SUPPORT;
-            if (is_rim || bsearch(&wanted, of_cable, (size_t)s->n_cable, sizeof *of_cable, by_nodes)) continue;
+            if (is_rim || bsearch(&key, of_cable, (size_t)s->n_cable, sizeof *of_cable, by_nodes)) continue;
             char nodes[640];
             snprintf(nodes, sizeof nodes, "'%s' and '%s'", s->node_id[i], s->node_id[j]);
             hf_csv_fault(t, t->line[r], hf_csv_cell(t, r, where[FACET_ID]), "no cable joins its nodes ", nodes);

@@ -14,6 +14,6 @@ hf_status hf_facet_import(const char *path, hf_scene *scene, hf_messages *messag
 
 /* Returns twice the area of the triangle of three nodes in m2, seen along z. It is positive if
  * they go counter-clockwise. */
-double hf_facet_turn(const hf_scene *scene, int a, int b, int c);
+double hf_facet_double_area(const hf_scene *scene, int a, int b, int c);
 
 #endif

@@ -34,10 +34,11 @@
 typedef struct {
     int from, to;
     double dx, dy;
-    int twin, place; /* index of the other direction of the cable; index before sorting */
+    int twin, rank; /* index of the other direction of the cable; index before sorting */
     int cable;
 } half;
 
+/* All arrays are zero at first. */
 typedef struct {
     const hf_scene *scene;
     double *above_m;      /* [n_node], height above the target surface */
@@ -51,20 +52,6 @@ typedef struct {
     int n_half;
 } graph;
 
-static void lay_out(hf_arena *a, const hf_scene *s, graph *g)
-{
-    size_t n = (size_t)s->n_node, m = 2 * (size_t)s->n_cable;
-    g->above_m = hf_arena_take(a, n, sizeof *g->above_m);
-    g->is_on = hf_arena_take(a, n, 1);
-    g->degree = hf_arena_take(a, n, sizeof *g->degree);
-    g->mixed = hf_arena_take(a, n, sizeof *g->mixed);
-    g->first = hf_arena_take(a, n + 1, sizeof *g->first);
-    g->parent = hf_arena_take(a, n, sizeof *g->parent);
-    g->sorted = hf_arena_take(a, m, sizeof *g->sorted);
-    g->edge = hf_arena_take(a, m, sizeof *g->edge);
-    g->seen = hf_arena_take(a, m, 1);
-}
-
 /* Adds nodes that a cable joins to an inner node along the surface. The rim of a net on a deflected truss is off by
  * millimetres, but the cables of the surface still end there. */
 static void follow_cables(graph *g)
@@ -74,8 +61,8 @@ static void follow_cables(graph *g)
         for (int k = 0; k < 2; k++) {
             int i = s->end[2 * e + k], from = s->end[2 * e + 1 - k];
             if (s->role[i] == HF_ROLE_INNER || s->role[from] != HF_ROLE_INNER) continue;
-            double most_m = NEAR_SLOPE * hf_scene_theoretical_length(s, e);
-            if (fabs(g->above_m[i] - g->above_m[from]) <= most_m) g->is_on[i] = 1;
+            double max_m = NEAR_SLOPE * hf_scene_length_at_target(s, e);
+            if (fabs(g->above_m[i] - g->above_m[from]) <= max_m) g->is_on[i] = 1;
         }
 }
 
@@ -112,8 +99,6 @@ static bool is_rim(const graph *g, int cable, int k)
 static void drop_ends(graph *g)
 {
     const hf_scene *s = g->scene;
-    memset(g->degree, 0, (size_t)s->n_node * sizeof *g->degree);
-    memset(g->mixed, 0, (size_t)s->n_node * sizeof *g->mixed);
     for (int e = 0; e < s->n_cable; e++)
         for (int k = 0; k < 2 && in_graph(g, e); k++) {
             g->degree[s->end[2 * e + k]] += is_rim(g, e, k) ? 2 : 1;
@@ -143,14 +128,13 @@ static int by_direction(const void *a, const void *b)
     double cross = p->dx * q->dy - p->dy * q->dx;
     if (cross != 0) return cross > 0 ? -1 : 1;
     if (p->to != q->to) return p->to < q->to ? -1 : 1;
-    int order = p->place < q->place ? -1 : p->place > q->place;
+    int order = p->rank < q->rank ? -1 : p->rank > q->rank;
     return p->from < p->to ? order : -order;
 }
 
 static void collect(graph *g)
 {
     const hf_scene *s = g->scene;
-    g->n_half = 0;
     for (int e = 0; e < s->n_cable; e++)
         for (int k = 0; k < 2 && in_graph(g, e); k++) {
             int from = s->end[2 * e + k], to = s->end[2 * e + 1 - k];
@@ -159,9 +143,8 @@ static void collect(graph *g)
             g->n_half++;
         }
     qsort(g->edge, (size_t)g->n_half, sizeof *g->edge, by_direction);
-    memset(g->first, 0, ((size_t)s->n_node + 1) * sizeof *g->first);
     for (int h = 0; h < g->n_half; h++) {
-        g->sorted[g->edge[h].place] = h;
+        g->sorted[g->edge[h].rank] = h;
         g->first[g->edge[h].from + 1]++;
     }
     for (int i = 0; i < s->n_node; i++)
@@ -199,7 +182,7 @@ static int walk(graph *g, int h, int corner[4], double *area)
 static bool is_convex(const hf_scene *s, int n, const int corner[4], double area)
 {
     for (int k = 0; k < n; k++)
-        if (!(hf_facet_turn(s, corner[k], corner[(k + 1) % n], corner[(k + 2) % n]) > -STRAIGHT_PART * area))
+        if (!(hf_facet_double_area(s, corner[k], corner[(k + 1) % n], corner[(k + 2) % n]) > -STRAIGHT_PART * area))
             return false;
     return true;
 }
@@ -241,7 +224,7 @@ static void close_gaps(const graph *g, int h, hf_facets *f)
         if (s->role[node[0]] == HF_ROLE_SUPPORT) {
             for (; s->role[g->edge[k].to] == HF_ROLE_INNER; k = next_around(g, k), n++) {
                 if (n < 4) node[n] = g->edge[k].to;
-                area += hf_facet_turn(s, node[0], g->edge[k].to, g->edge[next_around(g, k)].to);
+                area += hf_facet_double_area(s, node[0], g->edge[k].to, g->edge[next_around(g, k)].to);
             }
             if (n < 4) node[n] = g->edge[k].to;
             bool is_gap = n > 1 && s->role[g->edge[k].to] == HF_ROLE_SUPPORT && area > 0;
@@ -267,7 +250,6 @@ static void find_faces(graph *g, hf_facets *f)
         n_node += g->is_on[i];
         n_part += g->is_on[i] && g->parent[i] == i;
     }
-    memset(g->seen, 0, (size_t)g->n_half);
     for (int h = 0; h < g->n_half; h++) {
         int corner[4];
         double area;
@@ -298,12 +280,13 @@ hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surfa
 {
     *facets = (hf_facets){.is_planar = true};
     graph g = {.scene = scene};
-    hf_arena arena = {0}, kept = {0};
-    size_t n_named = (size_t)scene->n_facet;
-    size_t most = 4 * (n_named > 0 ? n_named : (size_t)scene->n_cable + 1); /* a face needs at least 3/2 cables */
-    HF_TRY(HF_ARENA_MAKE(&kept, facets->corner = hf_arena_take(&kept, most, sizeof *facets->corner)));
-    facets->block = kept.block;
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, scene, &g)));
+    void *block;
+    size_t n_named = (size_t)scene->n_facet, n = (size_t)scene->n_node, n_half = 2 * (size_t)scene->n_cable;
+    size_t n_corner = 4 * (n_named > 0 ? n_named : (size_t)scene->n_cable + 1); /* a face needs at least 3/2 cables */
+    HF_TRY(HF_ARENA_ARRAYS(&facets->block, HF_ARRAY(facets->corner, n_corner)));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(g.above_m, n), HF_ARRAY(g.is_on, n), HF_ARRAY(g.degree, n),
+                           HF_ARRAY(g.mixed, n), HF_ARRAY(g.first, n + 1), HF_ARRAY(g.parent, n),
+                           HF_ARRAY(g.sorted, n_half), HF_ARRAY(g.edge, n_half), HF_ARRAY(g.seen, n_half)));
     choose_nodes(&g, surface);
     if (n_named > 0) {
         keep_named(&g, facets);
@@ -312,7 +295,7 @@ hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surfa
         collect(&g);
         find_faces(&g, facets);
     }
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return HF_OK;
 }
 

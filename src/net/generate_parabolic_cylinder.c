@@ -2,20 +2,18 @@
  *
  *     settings -> count cables and ties -> nodes on a grid (x along the directrix, y along the generatrix)
  *       -> scallop the free outer edges -> cables, boundary cables, edge ties
- *       -> rear net and ties, if asked for (double_net) -> sets of cables -> ids
+ *       -> rear net and ties, if asked for, sets of cables, ids (front_net)
  *
  * Contents: the parabola - positions along the axes - what can be made - roles - nodes - scallops - cables -
- * names - together */
+ * together */
 #include <hifdm/generate.h>
 
 #include "base/elementary.h"
-#include "net/double_net.h"
+#include "net/front_net.h"
 #include "net/parabola.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define NODE_MAX 4000000   /* keeps every index and band offset far below the range of int */
 #define SUM_TOLERANCE 1e-9 /* relative; pitches are written with about ten digits at most */
@@ -84,7 +82,7 @@ static double y_of(const hf_cylinder *c, int half_index)
     return from + (to - from) * (half_index % n) / n;
 }
 
-static double place_along(const hf_cylinder *c, int axis, int half_index)
+static double position_along(const hf_cylinder *c, int axis, int half_index)
 {
     return axis == 0 ? x_of(c, half_index) : y_of(c, half_index);
 }
@@ -95,18 +93,18 @@ static const char *fault_of_pitches(const hf_cylinder *c, int axis, char *what, 
 {
     static const char *const key[] = {"pitches_x_m", "pitches_y_m"}, *const whole[] = {"aperture_m", "length_m"};
     const hf_double_list *pitches = axis == 0 ? &c->pitches_x_m : &c->pitches_y_m;
-    double wanted = axis == 0 ? c->aperture_m : c->length_m, sum = 0;
+    double required = axis == 0 ? c->aperture_m : c->length_m, sum = 0;
     for (int i = 0; i < pitches->n; i++)
         sum += pitches->value[i];
     if (pitches->n == 0) return NULL;
     bool are_ascending = true;
     for (int k = 0, n = 2 * c->cells_per_module[axis]; k < pitches->n && pitches->n == c->modules[axis]; k++)
-        are_ascending &= place_along(c, axis, k * n) < place_along(c, axis, (k + 1) * n);
+        are_ascending &= position_along(c, axis, k * n) < position_along(c, axis, (k + 1) * n);
     if (pitches->n != c->modules[axis])
         snprintf(what, size, "must have a value for each of the %d modules along %c, and has %d", c->modules[axis],
                  "xy"[axis], pitches -> n);
-    else if (fabs(sum - wanted) > SUM_TOLERANCE * wanted)
-        snprintf(what, size, "must add up to %s, %.12g m, and do to %.12g m", whole[axis], wanted, sum);
+    else if (fabs(sum - required) > SUM_TOLERANCE * required)
+        snprintf(what, size, "must add up to %s, %.12g m, and do to %.12g m", whole[axis], required, sum);
     else if (!are_ascending)
         snprintf(what, size, "must not differ so much that a module vanishes beside the others");
     else
@@ -120,7 +118,7 @@ static double smallest_pitch(const hf_cylinder *c, int axis)
     double smallest = INFINITY;
     for (int k = 0; k < c->modules[axis]; k++) {
         int n = 2 * c->cells_per_module[axis];
-        smallest = fmin(smallest, place_along(c, axis, (k + 1) * n) - place_along(c, axis, k * n));
+        smallest = fmin(smallest, position_along(c, axis, (k + 1) * n) - position_along(c, axis, k * n));
     }
     return smallest;
 }
@@ -141,7 +139,7 @@ static double largest_sag(const hf_cylinder *c, int axis)
     double largest = 0, t = (double)(n / 2) / n;
     bool is_held = c->supports == HF_SUPPORTS_PERIMETER || (c->supports == HF_SUPPORTS_RIBS && axis == 0);
     for (int k = 0; k < c->modules[axis] && !is_held; k++) {
-        double a = place_along(c, axis, 2 * n * k), b = place_along(c, axis, 2 * n * (k + 1));
+        double a = position_along(c, axis, 2 * n * k), b = position_along(c, axis, 2 * n * (k + 1));
         double dz = axis == 0 ? z_on_parabola(c, b) - z_on_parabola(c, a) : 0;
         largest = fmax(largest, 4 * c->scallop * hf_norm(b - a, dz, 0) * t * (1 - t));
     }
@@ -155,8 +153,8 @@ static const char *fault_of_scallops(const hf_cylinder *c, char *what, size_t si
     for (int axis = 0; axis < 2; axis++) {
         int across = 1 - axis, last = 2 * c->cells_per_module[across] * c->modules[across];
         int next = c->pattern == HF_PATTERN_DIAGONAL ? 1 : 2;
-        double room = fmin(place_along(c, across, next) - place_along(c, across, 0),
-                           place_along(c, across, last) - place_along(c, across, last - next));
+        double room = fmin(position_along(c, across, next) - position_along(c, across, 0),
+                           position_along(c, across, last) - position_along(c, across, last - next));
         double sag = largest_sag(c, axis);
         if (last == 2 && next == 2) room /= 2;
         if (sag < room) continue;
@@ -204,12 +202,9 @@ const char *hf_scene_parabolic_cylinder_fault(const hf_cylinder *cylinder, char 
 
 typedef struct {
     const hf_cylinder *c;
-    const double *EA_N; /* by hf_group, 0: not given */
-    hf_scene *s;
+    hf_front_net *front;
     int nx, ny;                  /* nodes along the directrix and along the generatrix */
     int first_middle, first_tie; /* first node in the middle of a cell; first support of an edge tie */
-    int n_cable, n_member;       /* counted so far; if member is NULL, they are only counted */
-    hf_cable_set_member *member;
 } grid;
 
 static int at(const grid *g, int i, int j)
@@ -261,24 +256,21 @@ static hf_role role_of(const grid *g, int i, int j)
 
 /* ---- nodes ---- */
 
-static void put_node(const grid *g, int node, double x, double y, hf_role role)
+static void put_node(const grid *g, int node, double x, double y, hf_role role, hf_front_label label)
 {
-    double *p = g->s->position_m + 3 * (size_t)node;
-    p[0] = x;
-    p[1] = y;
-    p[2] = z_on_parabola(g->c, x);
-    g->s->role[node] = (unsigned char)role;
+    hf_front_net_put(g->front, node, (double[3]){x, y, z_on_parabola(g->c, x)}, role, label);
 }
 
-static void place_nodes(const grid *g)
+static void put_nodes(const grid *g)
 {
     bool with_middles = g->c->pattern == HF_PATTERN_DIAGONAL;
     for (int i = 0; i < g->nx; i++) {
         double x = x_of(g->c, 2 * i), middle_x = with_middles && i + 1 < g->nx ? x_of(g->c, 2 * i + 1) : 0;
         for (int j = 0; j < g->ny; j++) {
-            put_node(g, at(g, i, j), x, y_of(g->c, 2 * j), role_of(g, i, j));
+            put_node(g, at(g, i, j), x, y_of(g->c, 2 * j), role_of(g, i, j), (hf_front_label){"n", i, j});
             if (with_middles && i + 1 < g->nx && j + 1 < g->ny)
-                put_node(g, g->first_middle + j * (g->nx - 1) + i, middle_x, y_of(g->c, 2 * j + 1), HF_ROLE_INNER);
+                put_node(g, g->first_middle + j * (g->nx - 1) + i, middle_x, y_of(g->c, 2 * j + 1), HF_ROLE_INNER,
+                         (hf_front_label){"m", i, j});
         }
     }
 }
@@ -297,7 +289,7 @@ static int on_line(const grid *g, int axis, int line, int k)
 static void scallop_edge(const grid *g, int axis, int line, double inward)
 {
     int n = axis == 0 ? g->nx : g->ny, from = 0;
-    double *position = g->s->position_m;
+    double *position = g->front->position_m;
     for (int k = 1; k < n; k++) {
         int here = on_line(g, axis, line, k);
         if (!(axis == 0 ? is_held(g, k, line) : is_held(g, line, k))) continue;
@@ -345,33 +337,17 @@ static const char *const family_name[N_FAMILY] = {FAMILIES(NAME)};
 #define BEHIND(family, name, rear) rear,
 static const int rear_family[N_FAMILY] = {FAMILIES(BEHIND)};
 
-static void join_set(grid *g, int family)
+static void add_cable(const grid *g, int a, int b, hf_group group, int family, int second_family)
 {
-    if (family == NO_FAMILY) return;
-    if (g->member) g->member[g->n_member] = (hf_cable_set_member){family, g->n_cable};
-    g->n_member++;
-}
-
-static void add_cable(grid *g, int a, int b, hf_group group, int family, int second_family)
-{
-    hf_scene *s = g->s;
-    int e = g->n_cable;
-    join_set(g, family);
-    join_set(g, second_family);
-    join_set(g, g->c->rear_distance_m > 0 ? FRONT : NO_FAMILY);
-    g->n_cable++;
-    if (!g->member) return;
-    s->end[2 * e] = a;
-    s->end[2 * e + 1] = b;
-    s->group[e] = (unsigned char)group;
-    s->law[e] = group == HF_GROUP_BOUNDARY ? HF_LAW_LENGTH : HF_LAW_TENSION;
-    s->target[e] = hf_law_default_target(s->law[e], hf_scene_theoretical_length(s, e));
-    if (s->EA_N) s->EA_N[e] = g->EA_N[group] > 0 ? g->EA_N[group] : (double)NAN;
+    hf_front_net_join(g->front, family);
+    hf_front_net_join(g->front, second_family);
+    hf_front_net_join(g->front, g->c->rear_distance_m > 0 ? FRONT : NO_FAMILY);
+    hf_front_net_connect(g->front, a, b, group);
 }
 
 /* Adds the cable from node (i, j) to the next node along `axis`. The pattern diagonal has such cables only on boundary
  * lines. Only the quad net has cables between two supports. */
-static void add_along(grid *g, int axis, int i, int j)
+static void add_along(const grid *g, int axis, int i, int j)
 {
     int to_i = i + (axis == 0), to_j = j + (axis == 1), line = axis == 0 ? j : i;
     bool is_boundary = is_boundary_line(g, 1 - axis, line);
@@ -385,7 +361,7 @@ static void add_along(grid *g, int axis, int i, int j)
 }
 
 /* Adds the diagonals of the cell whose first corner is (i, j). */
-static void add_across(grid *g, int i, int j)
+static void add_across(const grid *g, int i, int j)
 {
     bool falls = g->c->pattern == HF_PATTERN_ALTERNATING && (i + j) % 2 != 0;
     int a = falls ? i + 1 : i, b = falls ? i : i + 1;
@@ -406,103 +382,41 @@ static int side(int index, int n)
 
 /* Adds the edge ties. Seen along z, they run outward along x or y. At a corner of the net they extend by the same
  * distance along both. They end on the cylinder. */
-static void add_edge_ties(grid *g, int *n_tie)
+static void add_edge_ties(const grid *g)
 {
-    *n_tie = 0;
+    double edge_tie_m = g->c->edge_tie_m;
     for (int j = 0; j < g->ny; j++)
         for (int i = 0; i < g->nx; i++) {
             if (!is_tied(g, i, j)) continue;
-            int node = g->first_tie + (*n_tie)++;
-            if (g->member) {
-                const double *p = g->s->position_m + 3 * (size_t)at(g, i, j);
-                put_node(g, node, p[0] + side(i, g->nx) * g->c->edge_tie_m, p[1] + side(j, g->ny) * g->c->edge_tie_m,
-                         HF_ROLE_SUPPORT);
+            int node = g->front->n_node++;
+            if (g->front->position_m) {
+                const double *p = g->front->position_m + 3 * (size_t)at(g, i, j);
+                put_node(g, node, p[0] + side(i, g->nx) * edge_tie_m, p[1] + side(j, g->ny) * edge_tie_m,
+                         HF_ROLE_SUPPORT, (hf_front_label){"s", i, j});
             }
             add_cable(g, node, at(g, i, j), HF_GROUP_BOUNDARY, EDGE_TIE, NO_FAMILY);
         }
 }
 
-static void connect(grid *g, int *n_tie)
+/* ---- together ---- */
+
+/* Adds all nodes and cables, for hf_front_net_make. */
+static void add_all(void *context, hf_front_net *front)
 {
-    g->n_cable = g->n_member = 0;
+    grid *g = context;
+    g->front = front;
+    front->n_node = g->first_tie;
+    if (front->position_m) {
+        put_nodes(g);
+        scallop_edges(g);
+    }
     for (int j = 0; j < g->ny; j++)
         for (int i = 0; i < g->nx; i++) {
             add_along(g, 0, i, j);
             add_along(g, 1, i, j);
             add_across(g, i, j);
         }
-    add_edge_ties(g, n_tie);
-}
-
-/* ---- names ---- */
-
-/* Writes the ids: n<i>_<j> for nodes, m<i>_<j> for those in the middle of cells, and s<i>_<j> for the support that
- * holds n<i>_<j> by an edge tie. The ids of rear nodes and cables follow from them. */
-static hf_status name_all(const grid *g, int n_tie)
-{
-    hf_scene *s = g->s;
-    size_t n_digit = 18, size = (size_t)s->n_node * n_digit + (size_t)s->n_cable * 2 * n_digit;
-    char *text = s->text = malloc(size);
-    if (!text) return HF_NO_MEMORY;
-    const char *end = text + size;
-    for (int node = 0; node < g->first_tie; node++) {
-        bool is_middle = node >= g->first_middle;
-        int k = is_middle ? node - g->first_middle : node, width = is_middle ? g->nx - 1 : g->nx;
-        s->node_id[node] = text;
-        text += snprintf(text, (size_t)(end - text), "%c%d_%d", is_middle ? 'm' : 'n', k % width, k / width) + 1;
-    }
-    for (int e = g->n_cable - n_tie; e < g->n_cable; e++) { /* the edge ties are the last cables of the front net */
-        int node = s->end[2 * e + 1];
-        s->node_id[s->end[2 * e]] = text;
-        text += snprintf(text, (size_t)(end - text), "s%d_%d", node % g->nx, node / g->nx) + 1;
-    }
-    hf_double_net_name(s, g->first_tie + n_tie, text, end);
-    return HF_OK;
-}
-
-/* ---- together ---- */
-
-/* Fills an allocated scene. n_between is the number of ties between the nets. */
-static hf_status fill(grid *g, int n_between)
-{
-    hf_scene *s = g->s;
-    int n_edge_tie;
-    place_nodes(g);
-    scallop_edges(g);
-    connect(g, &n_edge_tie);
-    if (g->c->rear_distance_m > 0) {
-        hf_double_net d = rear_of(g->c);
-        hf_double_net_fill(&d, g->EA_N, g->first_tie + n_edge_tie, g->n_cable, s);
-        g->n_member = hf_double_net_join(g->member, g->n_member, g->n_cable, n_between, rear_family, TIE);
-    }
-    HF_TRY(hf_cable_set_make(s, N_FAMILY, family_name, g->n_member, g->member));
-    return name_all(g, n_edge_tie);
-}
-
-/* Returns the number of free nodes of the front net. Each of them has a tie to the rear net. */
-static int count_free(const grid *g)
-{
-    int n = g->first_tie - g->first_middle;
-    for (int j = 0; j < g->ny; j++)
-        for (int i = 0; i < g->nx; i++)
-            n += role_of(g, i, j) != HF_ROLE_SUPPORT;
-    return n;
-}
-
-static hf_status make(grid *g)
-{
-    bool is_double = g->c->rear_distance_m > 0, with_EA = g->EA_N && (g->EA_N[0] > 0 || g->EA_N[1] > 0);
-    int n_edge_tie, n_between = is_double ? count_free(g) : 0;
-    connect(g, &n_edge_tie); /* g->member is NULL: counts only */
-    int n_layer = is_double ? 2 : 1, n_node = n_layer * (g->first_tie + n_edge_tie);
-    hf_cable_set_member *member =
-        malloc(((size_t)g->n_member * (size_t)n_layer + (size_t)n_between + 1) * sizeof *member);
-    hf_status status = member ? hf_scene_allocate(g->s, n_node, n_layer * g->n_cable + n_between, false, with_EA, false)
-                              : HF_NO_MEMORY;
-    g->member = member;
-    if (status == HF_OK) status = fill(g, n_between);
-    free(member);
-    return status;
+    add_edge_ties(g);
 }
 
 hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double EA_N[2], hf_scene *scene,
@@ -523,10 +437,14 @@ hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double 
     if (hf_double_net_lacks_EA(&rear, EA_N))
         return hf_error(messages, HF_BAD_CASE,
                         "scene.parabolic_cylinder.tie_law: elastic needs the stiffness of inner cables");
-    grid g = {.c = cylinder, .EA_N = EA_N, .s = scene, .nx = (int)nx, .ny = (int)ny};
+    grid g = {.c = cylinder, .nx = (int)nx, .ny = (int)ny};
     g.first_middle = g.nx * g.ny;
     g.first_tie = g.first_middle + (with_middles ? (g.nx - 1) * (g.ny - 1) : 0);
-    hf_status status = make(&g);
+    const hf_front_families families = {N_FAMILY, family_name, rear_family, TIE};
+    hf_front_net front;
+    hf_status status = hf_front_net_make(add_all, &g, &front);
+    if (status == HF_OK) status = hf_front_net_scene(&front, &rear, EA_N, &families, scene);
+    hf_front_net_free(&front);
     if (status != HF_OK) return hf_error(messages, status, "scene: out of memory for %d nodes", g.first_tie);
     return HF_OK;
 }

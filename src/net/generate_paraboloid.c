@@ -1,14 +1,15 @@
 /* Makes the net over a paraboloid with a round aperture, alone or tied to a rear net:
  *
  *     settings -> plane grid in the aperture (triangular: rings, then relaxed; quad: rows and columns, ends on the rim)
- *       -> front net on the paraboloid -> rear net and ties, if asked for (double_net) -> sets of cables -> ids
+ *       -> front net on the paraboloid -> rear net and ties, if asked for, sets of cables, ids (front_net)
  *
  * Contents: what can be made - the plane grid - the triangular grid - relaxing the triangular grid - the quad grid -
- * the front net - together - the rim */
+ * together - the rim */
 #include <hifdm/generate.h>
 
+#include "base/arena.h"
 #include "base/elementary.h"
-#include "net/double_net.h"
+#include "net/front_net.h"
 #include "net/parabola.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@
 #include <stdlib.h>
 
 #define NODE_MAX 4000000  /* keeps every index and band offset far below the range of int */
-#define LEAST_EDGE 0.25   /* minimum distance of a node of the quad grid from the rim, in cells */
+#define EDGE_MIN 0.25     /* minimum distance of a node of the quad grid from the rim, in cells */
 #define SAME_SUPPORT 1e-9 /* relative to the radius; nearer ends of rows and columns are one support */
 #define RELAXED 1e-16     /* relative to the first residual */
 #define RELAX_STEPS 40    /* maximum, per ring; about 4 are needed */
@@ -53,7 +54,7 @@ static const char *const outside =
 static bool leaves_rim(const hf_paraboloid *p)
 {
     hf_double_net d = rear_of(p);
-    double R = radius(p), r = R * (p->rings - (p->grid == HF_GRID_QUAD ? LEAST_EDGE : 1)) / p->rings;
+    double R = radius(p), r = R * (p->rings - (p->grid == HF_GRID_QUAD ? EDGE_MIN : 1)) / p->rings;
     for (int k = 0; k < 24; k++) {
         double angle = HF_PI / 12 * k, rear[3], front[3] = {p->offset_m + r * hf_cosine(angle), r * hf_sine(angle), 0};
         front[2] = front_height(p, front[0], front[1]);
@@ -75,31 +76,36 @@ const char *hf_scene_paraboloid_fault(const hf_paraboloid *p, char *what, size_t
 
 /* ---- the plane grid ---- */
 
-/* Nodes and cables of one net in the plane of the aperture. The origin is the middle of the aperture. */
+/* The grid in the plane of the aperture is a front net at z = 0. Its origin is the middle of the aperture. */
 typedef struct {
-    int n_node, n_cable;
-    double *plane_m; /* [n_node][2]; NULL while counting */
-    bool *is_rim;    /* [n_node], true for a support */
-    int *label;      /* [n_node][2], numbers for the id */
-    int *end;        /* [n_cable][2], node indices */
+    const hf_paraboloid *p;
+    hf_front_net *front;
+    int *node_at; /* [2 rings + 1][2 rings + 1], nodes of the quad grid, by rows */
 } plane_grid;
 
-static int add_point(plane_grid *g, double x, double y, bool is_rim, int a, int b)
+/* Families of cables, sorted by name. */
+enum { FRONT, FRONT_EDGE, REAR, REAR_EDGE, TIE, N_FAMILY };
+static const char *const family_name[N_FAMILY] = {"front", "front_edge", "rear", "rear_edge", "tie"};
+static const int rear_family[N_FAMILY] = {REAR, REAR_EDGE};
+
+static int add_point(hf_front_net *f, double x, double y, bool is_rim, hf_front_label label)
 {
-    int node = g->n_node++;
-    if (!g->plane_m) return node;
-    g->plane_m[2 * node] = x;
-    g->plane_m[2 * node + 1] = y;
-    g->is_rim[node] = is_rim;
-    g->label[2 * node] = a;
-    g->label[2 * node + 1] = b;
+    int node = f->n_node++;
+    hf_front_net_put(f, node, (double[3]){x, y, 0}, is_rim ? HF_ROLE_SUPPORT : HF_ROLE_INNER, label);
     return node;
 }
 
-static void add_line(plane_grid *g, int a, int b)
+static bool is_rim(const hf_front_net *f, int node)
 {
-    if (g->end) g->end[2 * g->n_cable] = a, g->end[2 * g->n_cable + 1] = b;
-    g->n_cable++;
+    return f->role && f->role[node] == HF_ROLE_SUPPORT;
+}
+
+/* Adds a cable. Those that end on the rim are boundary cables. */
+static void add_line(hf_front_net *f, int a, int b)
+{
+    bool is_edge = is_rim(f, a) || is_rim(f, b);
+    hf_front_net_join(f, is_edge ? FRONT_EDGE : FRONT);
+    hf_front_net_connect(f, a, b, is_edge ? HF_GROUP_BOUNDARY : HF_GROUP_INNER);
 }
 
 /* Returns the factor by which a point at radius r is scaled so that radii are divided evenly in arc length. It is 1 if
@@ -120,37 +126,37 @@ static int first_of_ring(int ring)
 
 /* Adds ring k with 6k nodes, k on each side. The nodes of the last ring are evenly spaced on the rim. Those of the
  * other rings start on circles and are relaxed later. */
-static void place_ring(const hf_paraboloid *p, plane_grid *g, int ring)
+static void add_ring(const hf_paraboloid *p, hf_front_net *f, int ring)
 {
     double r = radius(p) * ring / p->rings;
     for (int i = 0; i < 6 * ring; i++) {
         double angle = HF_PI / 3 * i / ring;
-        add_point(g, r * hf_cosine(angle), r * hf_sine(angle), ring == p->rings, ring, i);
+        add_point(f, r * hf_cosine(angle), r * hf_sine(angle), ring == p->rings, (hf_front_label){"f", ring, i});
     }
 }
 
 /* Adds the cables along the ring, and those to the next ring: two from each node, three from a corner. */
-static void join_ring(const hf_paraboloid *p, plane_grid *g, int ring)
+static void join_ring(const hf_paraboloid *p, hf_front_net *f, int ring)
 {
     int here = first_of_ring(ring), out = first_of_ring(ring + 1), n = 6 * ring, n_out = 6 * (ring + 1);
     for (int i = 0; i < n && ring < p->rings; i++) {
         int side = i / ring, j = i % ring, next = side * (ring + 1) + j;
-        add_line(g, here + i, here + (i + 1) % n);
-        if (j == 0) add_line(g, here + i, out + (next + n_out - 1) % n_out);
-        add_line(g, here + i, out + next);
-        add_line(g, here + i, out + next + 1);
+        add_line(f, here + i, here + (i + 1) % n);
+        if (j == 0) add_line(f, here + i, out + (next + n_out - 1) % n_out);
+        add_line(f, here + i, out + next);
+        add_line(f, here + i, out + next + 1);
     }
 }
 
-static void make_triangles(const hf_paraboloid *p, plane_grid *g)
+static void make_triangles(const hf_paraboloid *p, hf_front_net *f)
 {
-    add_point(g, 0, 0, false, 0, 0);
+    add_point(f, 0, 0, false, (hf_front_label){"f", 0, 0});
     for (int ring = 1; ring <= p->rings; ring++)
-        place_ring(p, g, ring);
+        add_ring(p, f, ring);
     for (int i = 0; i < 6; i++)
-        add_line(g, 0, 1 + i);
+        add_line(f, 0, 1 + i);
     for (int ring = 1; ring < p->rings; ring++)
-        join_ring(p, g, ring);
+        join_ring(p, f, ring);
 }
 
 /* ---- relaxing the triangular grid ----
@@ -158,19 +164,19 @@ static void make_triangles(const hf_paraboloid *p, plane_grid *g)
  * densities that is held at its rim. For any number of rings, the facet error (RMS after a best fit) is then 1.07 times
  * that of equilateral facets with the same mean side. The tensions that hold the net are nearly even. */
 
-/* Computes the forces of the cables on the free nodes at the positions `place` [n_node][2], with the sign changed.
- * Writes them to minus_force [n_node][2]. */
-static void pull(const plane_grid *g, const double *place, double *minus_force)
+/* Computes the forces of the cables on the free nodes at the positions at_m [n_node][3], with the sign changed.
+ * Writes them to minus_force [n_node][3]. */
+static void pull(const hf_front_net *f, const double *at_m, double *minus_force)
 {
-    for (int i = 0; i < 2 * g->n_node; i++)
+    for (int i = 0; i < 3 * f->n_node; i++)
         minus_force[i] = 0;
-    for (int e = 0; e < g->n_cable; e++)
-        for (int c = 0, a = 2 * g->end[2 * e], b = 2 * g->end[2 * e + 1]; c < 2; c++) {
-            minus_force[a + c] += place[a + c] - place[b + c];
-            minus_force[b + c] -= place[a + c] - place[b + c];
+    for (int e = 0; e < f->n_cable; e++)
+        for (int c = 0, a = 3 * f->end[2 * e], b = 3 * f->end[2 * e + 1]; c < 2; c++) {
+            minus_force[a + c] += at_m[a + c] - at_m[b + c];
+            minus_force[b + c] -= at_m[a + c] - at_m[b + c];
         }
-    for (int i = 0; i < g->n_node; i++)
-        if (g->is_rim[i]) minus_force[2 * i] = minus_force[2 * i + 1] = 0;
+    for (int i = 0; i < f->n_node; i++)
+        if (is_rim(f, i)) minus_force[3 * i] = minus_force[3 * i + 1] = 0;
 }
 
 static double product(size_t n, const double *a, const double *b)
@@ -183,30 +189,30 @@ static double product(size_t n, const double *a, const double *b)
 
 /* Relaxes the grid by conjugate gradients, to rounding. The number of steps is proportional to the number of rings.
  * Finally applies `spacing` to the radii. */
-static hf_status relax(const hf_paraboloid *p, plane_grid *g)
+static hf_status relax(const hf_paraboloid *p, hf_front_net *f)
 {
-    size_t n = 2 * (size_t)g->n_node;
-    double *residual = malloc(3 * n * sizeof *residual);
-    if (!residual) return HF_NO_MEMORY;
-    double *direction = residual + n, *image = direction + n;
-    pull(g, g->plane_m, residual);
+    size_t n = 3 * (size_t)f->n_node;
+    double *residual, *direction, *image;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(residual, n), HF_ARRAY(direction, n), HF_ARRAY(image, n)));
+    pull(f, f->position_m, residual);
     for (size_t i = 0; i < n; i++)
         direction[i] = residual[i] = -residual[i];
     double square = product(n, residual, residual), enough = RELAXED * RELAXED * square;
     for (int step = 0; step < RELAX_STEPS * p->rings && square > enough; step++) {
-        pull(g, direction, image);
+        pull(f, direction, image);
         double length = square / product(n, direction, image), before = square;
         for (size_t i = 0; i < n; i++) {
-            g->plane_m[i] += length * direction[i];
+            f->position_m[i] += length * direction[i];
             residual[i] -= length * image[i];
         }
         square = product(n, residual, residual);
         for (size_t i = 0; i < n; i++)
             direction[i] = residual[i] + square / before * direction[i];
     }
-    free(residual);
-    for (int i = 0; i < g->n_node; i++) {
-        double *x = g->plane_m + 2 * (size_t)i, scale = g->is_rim[i] ? 1 : spread(p, hf_norm(x[0], x[1], 0));
+    hf_arena_free_block(block);
+    for (int i = 0; i < f->n_node; i++) {
+        double *x = f->position_m + 3 * (size_t)i, scale = is_rim(f, i) ? 1 : spread(p, hf_norm(x[0], x[1], 0));
         x[0] *= scale;
         x[1] *= scale;
     }
@@ -219,29 +225,29 @@ static hf_status relax(const hf_paraboloid *p, plane_grid *g)
  * -1 if there is none. */
 static int last_in_row(const hf_paraboloid *p, int k)
 {
-    double n = p->rings - LEAST_EDGE;
+    double n = p->rings - EDGE_MIN;
     return k > n ? -1 : (int)sqrt(n * n - (double)k * k);
 }
 
 /* Returns the support at the end of a row or column. Adds it unless another row or column ends there. */
-static int rim_point(const hf_paraboloid *p, plane_grid *g, int first_support, double x, double y)
+static int rim_point(const hf_paraboloid *p, hf_front_net *f, int first_support, double x, double y)
 {
-    for (int i = first_support; g->plane_m && i < g->n_node; i++)
-        if (hf_norm(g->plane_m[2 * i] - x, g->plane_m[2 * i + 1] - y, 0) < SAME_SUPPORT * radius(p)) return i;
-    return add_point(g, x, y, true, -1, g->n_node - first_support);
+    for (int i = first_support; f->position_m && i < f->n_node; i++)
+        if (hf_norm(f->position_m[3 * i] - x, f->position_m[3 * i + 1] - y, 0) < SAME_SUPPORT * radius(p)) return i;
+    return add_point(f, x, y, true, (hf_front_label){"fs", f->n_node - first_support, -1});
 }
 
-/* Makes the quad grid. node [2 rings + 1][2 rings + 1] is scratch for the node indices, by rows. */
-static void make_quads(const hf_paraboloid *p, plane_grid *g, int *node)
+static void make_quads(const hf_paraboloid *p, hf_front_net *f, int *node)
 {
     int N = p->rings, width = 2 * N + 1;
     double cell = radius(p) / N;
     for (int j = -N; j <= N; j++)
         for (int i = -last_in_row(p, abs(j)); i <= last_in_row(p, abs(j)); i++) {
             double scale = spread(p, cell * hf_norm(i, j, 0));
-            node[(j + N) * width + i + N] = add_point(g, scale * cell * i, scale * cell * j, false, i + N, j + N);
+            node[(j + N) * width + i + N] =
+                add_point(f, scale * cell * i, scale * cell * j, false, (hf_front_label){"f", i + N, j + N});
         }
-    int first_support = g->n_node;
+    int first_support = f->n_node;
     for (int axis = 0; axis < 2; axis++)
         for (int k = -N; k <= N; k++) {
             int last = last_in_row(p, abs(k)), step = axis == 0 ? 1 : width;
@@ -249,132 +255,57 @@ static void make_quads(const hf_paraboloid *p, plane_grid *g, int *node)
             int *line = axis == 0 ? node + (k + N) * width + N : node + N * width + k + N;
             double along = sqrt((double)N * N - (double)k * k) * cell, across = k * cell;
             for (int i = -last; i < last; i++)
-                add_line(g, line[i * step], line[(i + 1) * step]);
+                add_line(f, line[i * step], line[(i + 1) * step]);
             for (int end = -1; end <= 1; end += 2)
                 add_line(
-                    g, line[end * last * step],
-                    rim_point(p, g, first_support, axis == 0 ? end * along : across, axis == 0 ? across : end * along));
+                    f, line[end * last * step],
+                    rim_point(p, f, first_support, axis == 0 ? end * along : across, axis == 0 ? across : end * along));
         }
-}
-
-/* ---- the front net ---- */
-
-/* Families of cables, sorted by name. */
-enum { FRONT, FRONT_EDGE, REAR, REAR_EDGE, TIE, N_FAMILY };
-static const char *const family_name[N_FAMILY] = {"front", "front_edge", "rear", "rear_edge", "tie"};
-static const int rear_family[N_FAMILY] = {REAR, REAR_EDGE};
-
-static void place_front(const hf_paraboloid *p, const plane_grid *g, hf_scene *s)
-{
-    for (int i = 0; i < g->n_node; i++) {
-        double *front = s->position_m + 3 * (size_t)i;
-        front[0] = g->plane_m[2 * i] + p->offset_m;
-        front[1] = g->plane_m[2 * i + 1];
-        front[2] = front_height(p, front[0], front[1]);
-        s->role[i] = g->is_rim[i] ? HF_ROLE_SUPPORT : HF_ROLE_INNER;
-    }
-}
-
-/* Writes the cables of the front net. member [g->n_cable] receives their sets. */
-static void put_front(const plane_grid *g, const double EA_N[2], hf_scene *s, hf_cable_set_member *member)
-{
-    for (int e = 0; e < g->n_cable; e++) {
-        bool is_edge = g->is_rim[g->end[2 * e]] || g->is_rim[g->end[2 * e + 1]];
-        int group = is_edge ? HF_GROUP_BOUNDARY : HF_GROUP_INNER;
-        s->end[2 * e] = g->end[2 * e];
-        s->end[2 * e + 1] = g->end[2 * e + 1];
-        s->group[e] = (unsigned char)group;
-        s->law[e] = is_edge ? HF_LAW_LENGTH : HF_LAW_TENSION;
-        s->target[e] = hf_law_default_target(s->law[e], hf_scene_theoretical_length(s, e));
-        if (s->EA_N) s->EA_N[e] = EA_N[group] > 0 ? EA_N[group] : (double)NAN;
-        member[e] = (hf_cable_set_member){is_edge ? FRONT_EDGE : FRONT, e};
-    }
-}
-
-static hf_status name_all(const plane_grid *g, hf_scene *s)
-{
-    size_t n_digit = 24, size = (size_t)s->n_node * n_digit + (size_t)s->n_cable * 2 * n_digit;
-    char *text = s->text = malloc(size);
-    if (!text) return HF_NO_MEMORY;
-    const char *end = text + size;
-    for (int i = 0; i < g->n_node; i++) {
-        const int *label = g->label + 2 * (size_t)i;
-        s->node_id[i] = text;
-        if (label[0] < 0)
-            text += snprintf(text, (size_t)(end - text), "fs%d", label[1]) + 1;
-        else
-            text += snprintf(text, (size_t)(end - text), "f%d_%d", label[0], label[1]) + 1;
-    }
-    hf_double_net_name(s, g->n_node, text, end);
-    return HF_OK;
 }
 
 /* ---- together ---- */
 
-/* Counts nodes and cables while the grid has no arrays, and fills it once it has them. */
-static void make_grid(const hf_paraboloid *p, plane_grid *g, int *node)
+/* Adds all nodes and cables, for hf_front_net_make. */
+static void add_all(void *context, hf_front_net *f)
 {
-    g->n_node = g->n_cable = 0;
-    if (p->grid == HF_GRID_TRIANGLE)
-        make_triangles(p, g);
+    plane_grid *g = context;
+    if (g->p->grid == HF_GRID_TRIANGLE)
+        make_triangles(g->p, f);
     else
-        make_quads(p, g, node);
+        make_quads(g->p, f, g->node_at);
 }
 
-static hf_status allocate_grid(const hf_paraboloid *p, plane_grid *g, int **node)
+static hf_status make_grid(const hf_paraboloid *p, hf_front_net *f)
 {
     size_t width = 2 * (size_t)p->rings + 1;
-    *node = malloc(width * width * sizeof **node);
-    if (!*node) return HF_NO_MEMORY;
-    make_grid(p, g, *node);
-    size_t n = (size_t)g->n_node;
-    double *plane_m = malloc(n * 2 * sizeof *plane_m);
-    g->is_rim = malloc(n * sizeof *g->is_rim);
-    g->label = malloc(n * 2 * sizeof *g->label);
-    g->end = malloc((size_t)g->n_cable * 2 * sizeof *g->end);
-    g->plane_m = plane_m;
-    return plane_m && g->is_rim && g->label && g->end ? HF_OK : HF_NO_MEMORY;
+    plane_grid g = {.p = p};
+    void *block;
+    *f = (hf_front_net){0};
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(g.node_at, p->grid == HF_GRID_QUAD ? width * width : 0)));
+    hf_status status = hf_front_net_make(add_all, &g, f);
+    hf_arena_free_block(block);
+    return status;
 }
 
-static void free_grid(plane_grid *g, int *node)
+/* Puts the grid on the paraboloid. */
+static void raise(const hf_paraboloid *p, hf_front_net *f)
 {
-    free(node);
-    free(g->plane_m);
-    free(g->is_rim);
-    free(g->label);
-    free(g->end);
+    for (int i = 0; i < f->n_node; i++) {
+        double *front = f->position_m + 3 * (size_t)i;
+        front[0] += p->offset_m;
+        front[2] = front_height(p, front[0], front[1]);
+    }
 }
 
 /* Returns the number of free rear nodes that are outside the rim of the rear net. */
-static int count_outside(const hf_paraboloid *p, const plane_grid *g, const hf_scene *s)
+static int count_outside(const hf_paraboloid *p, int n_front, const hf_scene *s)
 {
     int n = 0;
-    for (int i = 0; i < g->n_node; i++) {
-        const double *rear = s->position_m + 3 * (size_t)(g->n_node + i);
-        n += !g->is_rim[i] && !(hf_norm(rear[0] - p->offset_m, rear[1], 0) < radius(p));
+    for (int i = n_front; i < s->n_node; i++) {
+        const double *rear = s->position_m + 3 * (size_t)i;
+        n += s->role[i] != HF_ROLE_SUPPORT && !(hf_norm(rear[0] - p->offset_m, rear[1], 0) < radius(p));
     }
     return n;
-}
-
-static hf_status make_net(const hf_paraboloid *p, const plane_grid *g, const double EA_N[2], hf_scene *s)
-{
-    bool with_EA = EA_N && (EA_N[0] > 0 || EA_N[1] > 0), is_double = p->rear_distance_m > 0;
-    int n = g->n_node, m = g->n_cable, n_tie = 0, n_member = m;
-    for (int i = 0; i < n && is_double; i++)
-        n_tie += !g->is_rim[i];
-    HF_TRY(hf_scene_allocate(s, is_double ? 2 * n : n, is_double ? 2 * m + n_tie : m, false, with_EA, false));
-    hf_cable_set_member *member = malloc((size_t)s->n_cable * sizeof *member);
-    if (!member) return HF_NO_MEMORY;
-    place_front(p, g, s);
-    put_front(g, EA_N, s, member);
-    if (is_double) {
-        hf_double_net d = rear_of(p);
-        hf_double_net_fill(&d, EA_N, n, m, s);
-        n_member = hf_double_net_join(member, m, m, n_tie, rear_family, TIE);
-    }
-    hf_status status = hf_cable_set_make(s, N_FAMILY, family_name, n_member, member);
-    free(member);
-    return status == HF_OK ? name_all(g, s) : status;
 }
 
 hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N[2], hf_scene *scene,
@@ -392,17 +323,16 @@ hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N
     const hf_double_net rear = rear_of(paraboloid);
     if (hf_double_net_lacks_EA(&rear, EA_N))
         return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.tie_law: elastic needs the stiffness of inner cables");
-    plane_grid g = {0};
-    int *node = NULL;
-    bool is_outside = false;
-    hf_status status = allocate_grid(paraboloid, &g, &node);
+    const hf_front_families families = {N_FAMILY, family_name, rear_family, TIE};
+    hf_front_net front;
+    hf_status status = make_grid(paraboloid, &front);
+    if (status == HF_OK && !is_quad) status = relax(paraboloid, &front);
     if (status == HF_OK) {
-        make_grid(paraboloid, &g, node);
-        if (!is_quad) status = relax(paraboloid, &g);
-        if (status == HF_OK) status = make_net(paraboloid, &g, EA_N, scene);
-        is_outside = status == HF_OK && n_layer > 1 && count_outside(paraboloid, &g, scene) > 0;
+        raise(paraboloid, &front);
+        status = hf_front_net_scene(&front, &rear, EA_N, &families, scene);
     }
-    free_grid(&g, node);
+    bool is_outside = status == HF_OK && count_outside(paraboloid, front.n_node, scene) > 0;
+    hf_front_net_free(&front);
     if (is_outside) return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.tie_direction: %s", outside);
     return status == HF_OK ? HF_OK : hf_error(messages, status, "scene: out of memory for %d rings", paraboloid->rings);
 }
@@ -419,31 +349,26 @@ static int by_angle(const void *a, const void *b)
     return cross > 0 ? -1 : cross < 0;
 }
 
-hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **place_m)
+hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **position_m)
 {
-    plane_grid g = {0};
-    int *node = NULL;
+    hf_front_net front;
     *n = 0;
-    *place_m = NULL;
-    hf_status status = allocate_grid(paraboloid, &g, &node);
-    if (status == HF_OK) {
-        make_grid(paraboloid, &g, node);
-        *place_m = malloc(3 * (size_t)g.n_node * sizeof **place_m);
-        if (!*place_m) status = HF_NO_MEMORY;
-    }
-    for (int i = 0; i < g.n_node && status == HF_OK; i++) {
-        double *p = *place_m + 3 * (size_t)*n;
-        if (!g.is_rim[i]) continue;
-        p[0] = g.plane_m[2 * i];
-        p[1] = fabs(g.plane_m[2 * i + 1]) < SAME_SUPPORT * radius(paraboloid) ? 0 : g.plane_m[2 * i + 1];
+    hf_status status = make_grid(paraboloid, &front);
+    *position_m = status == HF_OK ? malloc(3 * (size_t)front.n_node * sizeof **position_m) : NULL;
+    if (!*position_m) status = HF_NO_MEMORY;
+    for (int i = 0; i < front.n_node && status == HF_OK; i++) {
+        double *p = *position_m + 3 * (size_t)*n;
+        if (!is_rim(&front, i)) continue;
+        p[0] = front.position_m[3 * i];
+        p[1] = fabs(front.position_m[3 * i + 1]) < SAME_SUPPORT * radius(paraboloid) ? 0 : front.position_m[3 * i + 1];
         p[2] = 0;
         ++*n;
     }
-    free_grid(&g, node);
+    hf_front_net_free(&front);
     if (status != HF_OK) return status;
-    qsort(*place_m, (size_t)*n, 3 * sizeof **place_m, by_angle);
+    qsort(*position_m, (size_t)*n, 3 * sizeof **position_m, by_angle);
     for (int i = 0; i < *n; i++) {
-        double *p = *place_m + 3 * (size_t)i;
+        double *p = *position_m + 3 * (size_t)i;
         p[0] += paraboloid->offset_m;
         p[2] = front_height(paraboloid, p[0], p[1]);
     }

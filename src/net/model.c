@@ -5,11 +5,12 @@
  *     truss flexibility -> attach: supports become attachments -> model
  *
  * Contents: layout - numbering and band positions - laws and targets - chains of length-controlled cables - groups of
- * design variables - build - attachments - checks */
+ * design variables - names and units of design variables - build - attachments - checks */
 #include <hifdm/model.h>
 
 #include "base/arena.h"
 #include "base/elementary.h"
+#include "base/text.h"
 #include "base/union_find.h"
 #include "net/numbering.h"
 
@@ -32,31 +33,21 @@ static bool needs_EA(const hf_scene *s, hf_method method)
     return false;
 }
 
-static void lay_out(hf_arena *a, const hf_scene *s, hf_method method, hf_model *m)
+static hf_status allocate(const hf_scene *s, hf_method method, hf_model *m)
 {
     size_t n = (size_t)m->n_node, e = (size_t)m->n_cable;
-    m->row_of_node = hf_arena_take(a, n, sizeof(int));
-    m->node_of_row = hf_arena_take(a, n, sizeof(int));
-    m->end_row = hf_arena_take(a, 2 * e, sizeof(int));
-    m->diagonal_a = hf_arena_take(a, e, sizeof(int));
-    m->diagonal_b = hf_arena_take(a, e, sizeof(int));
-    m->off_diagonal = hf_arena_take(a, e, sizeof(int));
-    m->inner_row = hf_arena_take(a, n, sizeof(int));
-    m->position_m = hf_arena_take(a, 3 * n, sizeof(double));
-    m->load_N = s->load_N ? hf_arena_take(a, 3 * n, sizeof(double)) : NULL;
-    m->length_m = hf_arena_take(a, e, sizeof(double));
-    m->group = hf_arena_take(a, e, 1);
-    m->boundary_cable = hf_arena_take(a, e, sizeof(int));
-    m->law = hf_arena_take(a, e, 1);
-    m->target = hf_arena_take(a, e, sizeof(double));
-    m->EA_N = needs_EA(s, method) ? hf_arena_take(a, e, sizeof(double)) : NULL;
-    m->start_q_N_per_m = hf_arena_take(a, e, sizeof(double));
-    m->variable_cable = hf_arena_take(a, e, sizeof(int));
-    m->variable_group = hf_arena_take(a, e, sizeof(int));
-    m->variable_leader = hf_arena_take(a, e, sizeof(int));
-    m->chain_start = hf_arena_take(a, e + 1, sizeof(int));
-    m->chain_cable = hf_arena_take(a, e, sizeof(int));
-    m->chain_of_row = hf_arena_take(a, n, sizeof(int));
+    size_t n_load = s->load_N ? 3 * n : 0, n_EA = needs_EA(s, method) ? e : 0;
+    HF_TRY(HF_ARENA_ARRAYS(&m->block, HF_ARRAY(m->row_of_node, n), HF_ARRAY(m->node_of_row, n),
+                           HF_ARRAY(m->end_row, 2 * e), HF_ARRAY(m->diagonal_a, e), HF_ARRAY(m->diagonal_b, e),
+                           HF_ARRAY(m->off_diagonal, e), HF_ARRAY(m->inner_row, n), HF_ARRAY(m->position_m, 3 * n),
+                           HF_ARRAY(m->load_N, n_load), HF_ARRAY(m->length_m, e), HF_ARRAY(m->group, e),
+                           HF_ARRAY(m->boundary_cable, e), HF_ARRAY(m->law, e), HF_ARRAY(m->target, e),
+                           HF_ARRAY(m->EA_N, n_EA), HF_ARRAY(m->start_q_N_per_m, e), HF_ARRAY(m->variable_cable, e),
+                           HF_ARRAY(m->variable_group, e), HF_ARRAY(m->variable_leader, e),
+                           HF_ARRAY(m->chain_start, e + 1), HF_ARRAY(m->chain_cable, e), HF_ARRAY(m->chain_of_row, n)));
+    if (!n_load) m->load_N = NULL;
+    if (!n_EA) m->EA_N = NULL;
+    return HF_OK;
 }
 
 /* ---- numbering and band positions ---- */
@@ -77,7 +68,7 @@ static void number_nodes(const hf_scene *s, hf_model *m)
     }
 }
 
-static void place_cables(const hf_scene *s, hf_model *m)
+static void find_band_entries(const hf_scene *s, hf_model *m)
 {
     int column = m->half_bandwidth + 1;
     for (int e = 0; e < m->n_cable; e++) {
@@ -98,7 +89,7 @@ static void place_cables(const hf_scene *s, hf_model *m)
 static double given_tension(const hf_scene *s, double pretension_N, int e)
 {
     if (hf_law_has(s->law[e], HF_LAW_HAS_MULTIPLIER)) return 0;
-    if (!hf_law_has(s->law[e], HF_LAW_GIVES_TENSION)) return fabs(s->target[e]) * hf_scene_theoretical_length(s, e);
+    if (!hf_law_has(s->law[e], HF_LAW_GIVES_TENSION)) return fabs(s->target[e]) * hf_scene_length_at_target(s, e);
     return isnan(s->target[e]) ? pretension_N : s->target[e];
 }
 
@@ -121,7 +112,7 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
     m->reference_N = hf_model_reference_N(s, form->pretension_N);
     for (int e = 0; e < m->n_cable; e++) {
         int law = s->law[e];
-        double length = hf_scene_theoretical_length(s, e), target = s->target[e];
+        double length = hf_scene_length_at_target(s, e), target = s->target[e];
         double given = given_tension(s, form->pretension_N, e), tension = given > 0 ? given : m->reference_N;
         hf_law_cable cable = {(hf_law)law, target, s->EA_N ? s->EA_N[e] : (double)NAN, length};
         tension = hf_law_first_tension_N(cable, tension);
@@ -157,10 +148,35 @@ static void set_laws(const hf_scene *s, const hf_form_settings *form, hf_model *
 
 /* ---- chains of length-controlled cables ---- */
 
+/* The cables of law length at each row, and the state of a search from one support. */
 typedef struct {
-    int *count; /* [n_node], number of cables of law length at a row */
-    int *cable; /* [n_node][2], two of them */
+    int *start, *cable; /* [n_node + 1], [2 n_cable]: those at a row are cable[start[row] .. start[row + 1] - 1] */
+    int *queue, *via;   /* [n_node]: rows to continue from; the cable by which a row was reached */
+    char *is_waiting;   /* [n_node], true if a row is in the queue */
+    double *reach_m;    /* [n_node], minimum sum of lengths to a row, m */
+    long steps_left;
 } length_graph;
+
+static bool is_rigid(const hf_model *m, int cable)
+{
+    return hf_law_has(m->law[cable], HF_LAW_IS_RIGID);
+}
+
+/* Lists the cables of each row. */
+static void list_cables(const hf_model *m, length_graph *g)
+{
+    for (int k = 0; k < 2 * m->n_cable; k++)
+        g->start[m->end_row[k]] += is_rigid(m, k / 2);
+    for (int row = 0; row < m->n_node; row++)
+        g->start[row + 1] += g->start[row];       /* the end of the cables of `row` */
+    for (int k = 2 * m->n_cable - 1; k >= 0; k--) /* becomes their start */
+        if (is_rigid(m, k / 2)) g->cable[--g->start[m->end_row[k]]] = k / 2;
+}
+
+static int count_cables(const length_graph *g, int row)
+{
+    return g->start[row + 1] - g->start[row];
+}
 
 static double distance(const hf_model *m, int row_a, int row_b)
 {
@@ -183,8 +199,9 @@ static void follow_chain(hf_model *m, const length_graph *g, int from, int first
         m->chain_cable[start + n++] = e;
         sum += m->target[e];
         if (row >= m->n_free) break;
-        if (g->count[row] != 2 || n == m->n_cable - start) return;
-        e = g->cable[2 * row] == e ? g->cable[2 * row + 1] : g->cable[2 * row];
+        if (count_cables(g, row) != 2 || n == m->n_cable - start) return;
+        const int *at = g->cable + g->start[row];
+        e = at[0] == e ? at[1] : at[0];
     }
     bool is_straight = sum <= distance(m, from, row) * (1 + HF_STRAIGHT_EXCESS);
     if (n < 2 || e < first || is_straight != want_straight) return;
@@ -197,17 +214,8 @@ static void follow_chain(hf_model *m, const length_graph *g, int from, int first
     m->chain_start[++m->n_any_chain] = start + n;
 }
 
-/* The cables of law length at each row, and the state of a search from one support. */
-typedef struct {
-    int *start, *cable; /* [n_node + 1], [2 n_cable]: those at a row are cable[start[row] .. start[row + 1] - 1] */
-    int *queue, *via;   /* [n_node]: rows to continue from; the cable by which a row was reached */
-    char *is_waiting;   /* [n_node], true if a row is in the queue */
-    double *reach_m;    /* [n_node], minimum sum of lengths to a row, m */
-    long steps_left;
-} path_search;
-
 /* Finds the shortest path of cables from one support to every row. Paths pass only through free nodes. */
-static void search_from(const hf_model *m, path_search *s, int from)
+static void search_from(const hf_model *m, length_graph *s, int from)
 {
     int n_waiting = 1, first = 0;
     for (int row = 0; row < m->n_node; row++)
@@ -230,7 +238,7 @@ static void search_from(const hf_model *m, path_search *s, int from)
     }
 }
 
-static int row_before(const hf_model *m, const path_search *s, int row)
+static int row_before(const hf_model *m, const length_graph *s, int row)
 {
     const int *end = m->end_row + 2 * s->via[row];
     return end[0] == row ? end[1] : end[0];
@@ -238,7 +246,7 @@ static int row_before(const hf_model *m, const path_search *s, int row)
 
 /* Keeps the path from `to` back to `from` as a chain. Returns false if it has only one cable, or if one of its cables
  * is already in a chain. */
-static bool keep_path(hf_model *m, const path_search *s, int from, int to)
+static bool keep_path(hf_model *m, const length_graph *s, int from, int to)
 {
     int start = m->chain_start[m->n_any_chain], n = 0;
     if (row_before(m, s, to) == from) return false;
@@ -257,97 +265,58 @@ static bool keep_path(hf_model *m, const path_search *s, int from, int to)
  * proves that no shape satisfies the lengths, so the first one is kept as a chain. The limit PATH_STEPS is far above
  * the need of nets in which only some cables have law length. If the search reaches it, a path may stay undetected. */
 #define PATH_STEPS 4000000
-static void keep_short_path(hf_model *m, path_search *s)
+static void keep_short_path(hf_model *m, length_graph *s)
 {
     s->steps_left = PATH_STEPS;
     for (int from = m->n_free; from < m->n_node; from++) {
-        if (s->start[from] == s->start[from + 1]) continue;
+        if (count_cables(s, from) == 0) continue;
         search_from(m, s, from);
         for (int to = from + 1; to < m->n_node; to++)
             if (s->reach_m[to] * (1 + HF_STRAIGHT_EXCESS) < distance(m, from, to) && keep_path(m, s, from, to)) return;
     }
 }
 
-static hf_status find_short_path(hf_model *m)
-{
-    size_t n = (size_t)m->n_node, e = (size_t)m->n_cable;
-    int *block = calloc(3 * n + 1 + 2 * e, sizeof(int));
-    double *reach_m = malloc(n * sizeof *reach_m);
-    char *is_waiting = calloc(n, 1);
-    if (block && reach_m && is_waiting) {
-        path_search s = {block, block + n + 1, block + n + 1 + 2 * e, block + 2 * n + 1 + 2 * e, is_waiting, reach_m,
-                         0};
-        for (int k = 0; k < 2 * m->n_cable; k++)
-            if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID)) s.start[m->end_row[k] + 1]++;
-        for (int row = 0; row < m->n_node; row++)
-            s.start[row + 1] += s.start[row];
-        for (int k = 0; k < 2 * m->n_cable; k++) /* `via` is a counter here; the search overwrites it later */
-            if (hf_law_has(m->law[k / 2], HF_LAW_IS_RIGID))
-                s.cable[s.start[m->end_row[k]] + s.via[m->end_row[k]]++] = k / 2;
-        keep_short_path(m, &s);
-    }
-    bool has_memory = block && reach_m && is_waiting;
-    free(block);
-    free(reach_m);
-    free(is_waiting);
-    return has_memory ? HF_OK : HF_NO_MEMORY;
-}
-
 static hf_status find_chains(hf_model *m)
 {
+    size_t n = (size_t)m->n_node;
     bool branches = false;
-    length_graph g = {.count = calloc((size_t)m->n_node * 3, sizeof(int))};
-    if (!g.count) return HF_NO_MEMORY;
-    g.cable = g.count + m->n_node;
-    for (int row = 0; row < m->n_node; row++)
+    length_graph g;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(g.start, n + 1), HF_ARRAY(g.cable, 2 * (size_t)m->n_cable),
+                           HF_ARRAY(g.queue, n), HF_ARRAY(g.via, n), HF_ARRAY(g.is_waiting, n),
+                           HF_ARRAY(g.reach_m, n)));
+    list_cables(m, &g);
+    for (int row = 0; row < m->n_node; row++) {
         m->chain_of_row[row] = -1;
-    for (int e = 0; e < m->n_cable; e++)
-        for (int k = 0; k < 2 && hf_law_has(m->law[e], HF_LAW_IS_RIGID); k++) {
-            int row = m->end_row[2 * e + k];
-            if (g.count[row] < 2) g.cable[2 * row + g.count[row]] = e;
-            g.count[row]++;
-        }
+        branches |= row < m->n_free && count_cables(&g, row) > 2;
+    }
     for (int want_straight = 1; want_straight >= 0; want_straight--) {
-        for (int e = 0; e < m->n_cable; e++)
-            for (int k = 0; k < 2 && hf_law_has(m->law[e], HF_LAW_IS_RIGID); k++)
-                if (m->end_row[2 * e + k] >= m->n_free && m->end_row[2 * e + 1 - k] < m->n_free)
-                    follow_chain(m, &g, m->end_row[2 * e + k], e, want_straight);
+        for (int k = 0; k < 2 * m->n_cable; k++)
+            if (is_rigid(m, k / 2) && m->end_row[k] >= m->n_free && m->end_row[k ^ 1] < m->n_free)
+                follow_chain(m, &g, m->end_row[k], k / 2, want_straight);
         if (!want_straight) break;
-        for (int row = 0; row < m->n_free; row++)
-            branches |= g.count[row] > 2;
-        if (branches && find_short_path(m) != HF_OK) {
-            free(g.count);
-            return HF_NO_MEMORY;
-        }
+        if (branches) keep_short_path(m, &g);
         m->n_chain = m->n_any_chain;
     }
-    free(g.count);
+    hf_arena_free_block(block);
     return HF_OK;
 }
 
 void hf_model_chain_name(const hf_model *m, const hf_scene *scene, int i_chain, char *text, size_t size)
 {
-    size_t used = 0;
     text[0] = '\0';
-    for (int k = m->chain_start[i_chain]; k < m->chain_start[i_chain + 1]; k++) {
-        const char *id = scene->cable_id[m->chain_cable[k]];
-        if (used + strlen(id) + 8 > size) {
-            snprintf(text + used, size - used, " ...");
-            return;
-        }
-        used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " + " : "", id);
-    }
+    for (int k = m->chain_start[i_chain]; k < m->chain_start[i_chain + 1]; k++)
+        if (!hf_text_append(text, size, " + ", scene->cable_id[m->chain_cable[k]], " ...")) return;
 }
 
 /* ---- groups of design variables ---- */
 
 hf_status hf_model_group_variables(hf_model *m)
 {
-    int *scratch = malloc(((size_t)m->n_node * 3 + (size_t)m->n_variable * 2) * sizeof *scratch);
-    if (!scratch) return HF_NO_MEMORY;
-    int *count = scratch, *variable_at = count + m->n_node, *parent = variable_at + 2 * m->n_node,
-        *label = parent + m->n_variable;
-    memset(count, 0, (size_t)m->n_node * sizeof *count);
+    int *count, *variable_at, *parent, *label;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(count, m->n_node), HF_ARRAY(variable_at, 2 * m->n_node),
+                           HF_ARRAY(parent, m->n_variable), HF_ARRAY(label, m->n_variable)));
     m->n_variable_group = 0;
     for (int k = 0; k < m->n_variable; k++) {
         parent[k] = k;
@@ -369,20 +338,48 @@ hf_status hf_model_group_variables(hf_model *m)
         m->variable_leader[k] = k;
     }
     m->n_leader = m->n_variable;
-    free(scratch);
+    hf_arena_free_block(block);
     return HF_OK;
+}
+
+/* ---- names and units of design variables ---- */
+
+static const char *direction_name(const hf_variable *g)
+{
+    if (g->vary == HF_VARY_SUPPORT_NORMAL) return "normal";
+    return g->direction[0] > 0 ? "x" : g->direction[1] > 0 ? "y" : "z";
+}
+
+void hf_model_variable_name(const hf_model *m, const hf_scene *scene, int k, char *text, size_t size)
+{
+    if (m->variable_cable[k] >= 0)
+        snprintf(text, size, "%s", scene->cable_id[m->variable_cable[k]]);
+    else
+        snprintf(text, size, "%s.%s", scene->node_id[m->node_of_row[m->variable[k].support_row]],
+                 direction_name(&m->variable[k]));
+}
+
+const char *hf_model_variable_unit(const hf_model *m, int k)
+{
+    switch (hf_model_vary(m, k)) {
+    case HF_VARY_PRETENSION:
+    case HF_VARY_TENSION:
+        return "N";
+    case HF_VARY_FORCE_DENSITY:
+        return "N/m";
+    default:
+        return "m";
+    }
 }
 
 /* ---- build ---- */
 
 static hf_status build(const hf_scene *scene, const hf_form_settings *form, const int *order, hf_model *m)
 {
-    hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, scene, form->method, m)));
-    m->block = arena.block;
+    HF_TRY(allocate(scene, form->method, m));
     memcpy(m->node_of_row, order, (size_t)m->n_free * sizeof(int));
     number_nodes(scene, m);
-    place_cables(scene, m);
+    find_band_entries(scene, m);
     set_laws(scene, form, m);
     HF_TRY(hf_model_group_variables(m));
     return find_chains(m);
@@ -457,15 +454,6 @@ static hf_status check_flexibility(int n, const double *flexibility, hf_messages
     return HF_OK;
 }
 
-static void lay_out_attachments(hf_arena *a, hf_model *m)
-{
-    size_t n = (size_t)m->n_attachment;
-    m->attachment_row = hf_arena_take(a, n, sizeof(int));
-    m->flexibility_m_per_N = hf_arena_take(a, 9 * n * n, sizeof(double));
-    m->tie = hf_arena_take(a, (size_t)m->n_tie, sizeof(int));
-    m->tie_attachment = hf_arena_take(a, (size_t)m->n_tie, sizeof(int));
-}
-
 /* Lists the cable ends at attachments. Without a list, only counts them. */
 static void find_ties(hf_model *m)
 {
@@ -526,26 +514,25 @@ static void swap_rows(hf_model *m, int a, int b)
 static hf_status attach(hf_model *m, int n, const int *node, const double *flexibility)
 {
     size_t dofs = 3 * (size_t)n;
-    hf_arena arena = {0};
     for (int i = 0; i < n; i++)
         swap_rows(m, m->n_free + i, m->row_of_node[node[i]]);
     m->n_attachment = n;
     find_ties(m);
-    hf_status status = HF_ARENA_MAKE(&arena, lay_out_attachments(&arena, m));
-    if (status == HF_OK) {
-        m->attachment_block = arena.block;
-        find_ties(m);
-        for (int i = 0; i < n; i++)
-            m->attachment_row[i] = m->n_free + i;
-        for (size_t i = 0; i < dofs; i++)
-            for (size_t j = 0; j < dofs; j++)
-                m->flexibility_m_per_N[i * dofs + j] = (flexibility[i * dofs + j] + flexibility[j * dofs + i]) / 2;
-        hold_rods(m);
-        mark_chains(m);
-    } else {
+    if (HF_ARENA_ARRAYS(&m->attachment_block, HF_ARRAY(m->attachment_row, n),
+                        HF_ARRAY(m->flexibility_m_per_N, dofs * dofs), HF_ARRAY(m->tie, m->n_tie),
+                        HF_ARRAY(m->tie_attachment, m->n_tie)) != HF_OK) {
         m->n_attachment = m->n_tie = 0;
+        return HF_NO_MEMORY;
     }
-    return status;
+    find_ties(m);
+    for (int i = 0; i < n; i++)
+        m->attachment_row[i] = m->n_free + i;
+    for (size_t i = 0; i < dofs; i++)
+        for (size_t j = 0; j < dofs; j++)
+            m->flexibility_m_per_N[i * dofs + j] = (flexibility[i * dofs + j] + flexibility[j * dofs + i]) / 2;
+    hold_rods(m);
+    mark_chains(m);
+    return HF_OK;
 }
 
 hf_status hf_model_attach(hf_model *m, int n_attachment, const int *node, const double *flexibility_m_per_N,

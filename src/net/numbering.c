@@ -12,35 +12,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A node to be sorted along an axis. */
+typedef struct {
+    double key[3]; /* coordinate along the axis, then the two others to break ties */
+    int node;
+} sort_item;
+
 typedef struct {
     const hf_scene *s;
-    int n;          /* number of free nodes */
-    int *free_of;   /* [n_node], index among the free nodes, -1 for a support */
-    int *node_of;   /* [n], node of the scene */
-    int *start;     /* [n + 1], first entry of each node in `neighbour` */
-    int *neighbour; /* free neighbours; each cable between free nodes has two entries */
-    int *place;     /* [n], position in the order under test */
-    int *order;     /* [n], the order under test */
-    int *level;     /* [n], distance from the root of a search; -1 = not reached, -2 = already numbered */
-    int *queue;     /* [n], scratch */
-    int *best;      /* [n], the best order so far */
-    int *wave;      /* [n], nodes of the last search */
+    int n;           /* number of free nodes */
+    int *free_of;    /* [n_node], index among the free nodes, -1 for a support */
+    int *node_of;    /* [n], node of the scene */
+    int *start;      /* [n + 1], first entry of each node in `neighbour` */
+    int *neighbour;  /* free neighbours; each cable between free nodes has two entries */
+    int *position;   /* [n], position in the order under test */
+    int *order;      /* [n], the order under test */
+    int *level;      /* [n], distance from the root of a search; -1 = not reached, -2 = already numbered */
+    int *queue;      /* [n], scratch */
+    int *best;       /* [n], the best order so far */
+    int *wave;       /* [n], nodes of the last search */
+    sort_item *item; /* [n], scratch of sort_along */
 } graph;
-
-static void lay_out(hf_arena *a, graph *g)
-{
-    size_t n = (size_t)g->s->n_node, m = (size_t)g->s->n_cable;
-    g->free_of = hf_arena_take(a, n, sizeof(int));
-    g->node_of = hf_arena_take(a, n, sizeof(int));
-    g->start = hf_arena_take(a, n + 1, sizeof(int));
-    g->neighbour = hf_arena_take(a, 2 * m, sizeof(int));
-    g->place = hf_arena_take(a, n, sizeof(int));
-    g->order = hf_arena_take(a, n, sizeof(int));
-    g->level = hf_arena_take(a, n, sizeof(int));
-    g->queue = hf_arena_take(a, n, sizeof(int));
-    g->best = hf_arena_take(a, n, sizeof(int));
-    g->wave = hf_arena_take(a, n, sizeof(int));
-}
 
 /* ---- adjacency of the free nodes ---- */
 
@@ -51,22 +43,15 @@ static void build(graph *g)
         g->free_of[i] = s->role[i] == HF_ROLE_SUPPORT ? -1 : g->n;
         if (g->free_of[i] >= 0) g->node_of[g->n++] = i;
     }
-    for (int pass = 0; pass < 2; pass++) {
-        for (int e = 0; e < s->n_cable; e++) {
-            int a = g->free_of[s->end[2 * e]], b = g->free_of[s->end[2 * e + 1]];
-            if (a < 0 || b < 0) continue;
-            if (pass == 0) {
-                g->start[a + 1]++;
-                g->start[b + 1]++;
-            } else {
-                g->neighbour[g->queue[a]++] = b;
-                g->neighbour[g->queue[b]++] = a;
-            }
-        }
-        if (pass == 1) break;
-        for (int i = 0; i < g->n; i++)
-            g->start[i + 1] += g->start[i];
-        memcpy(g->queue, g->start, (size_t)g->n * sizeof(int)); /* next free entry of each node */
+    for (int k = 0; k < 2 * s->n_cable; k++) {
+        int node = g->free_of[s->end[k]], other = g->free_of[s->end[k ^ 1]];
+        if (node >= 0 && other >= 0) g->start[node]++;
+    }
+    for (int i = 0; i < g->n; i++)
+        g->start[i + 1] += g->start[i];             /* the end of the neighbours of node i */
+    for (int k = 2 * s->n_cable - 1; k >= 0; k--) { /* becomes their start */
+        int node = g->free_of[s->end[k]], other = g->free_of[s->end[k ^ 1]];
+        if (node >= 0 && other >= 0) g->neighbour[--g->start[node]] = other;
     }
 }
 
@@ -99,12 +84,6 @@ static int search(graph *g, int root, int *wave)
     return n;
 }
 
-static void forget(graph *g, const int *wave, int n)
-{
-    for (int i = 0; i < n; i++)
-        g->level[wave[i]] = -1;
-}
-
 /* Returns a node at the far end of the component of `root` (George & Liu 1979). */
 static int peripheral(graph *g, int root)
 {
@@ -112,7 +91,8 @@ static int peripheral(graph *g, int root)
         int n = search(g, root, g->wave), last = g->level[g->wave[n - 1]], far = g->wave[n - 1];
         for (int i = n - 1; i >= 0 && g->level[g->wave[i]] == last; i--)
             if (degree(g, g->wave[i]) < degree(g, far)) far = g->wave[i];
-        forget(g, g->wave, n);
+        for (int i = 0; i < n; i++)
+            g->level[g->wave[i]] = -1;
         if (last <= depth) return root;
         depth = last;
         root = far;
@@ -136,11 +116,6 @@ static void cuthill_mckee(graph *g)
 
 /* ---- sorting along an axis ---- */
 
-typedef struct {
-    double key[3]; /* coordinate along the axis, then the two others to break ties */
-    int node;
-} sort_item;
-
 static int compare_items(const void *a, const void *b)
 {
     const sort_item *x = a, *y = b;
@@ -149,19 +124,15 @@ static int compare_items(const void *a, const void *b)
     return (x->node > y->node) - (x->node < y->node);
 }
 
-static hf_status sort_along(graph *g, int axis)
+static void sort_along(graph *g, int axis)
 {
-    sort_item *item = malloc((size_t)g->n * sizeof *item);
-    if (!item) return HF_NO_MEMORY;
     for (int i = 0; i < g->n; i++) {
         const double *p = g->s->position_m + 3 * (size_t)g->node_of[i];
-        item[i] = (sort_item){{p[axis], p[axis == 0], p[axis == 2 ? 1 : 2]}, i};
+        g->item[i] = (sort_item){{p[axis], p[axis == 0], p[axis == 2 ? 1 : 2]}, i};
     }
-    qsort(item, (size_t)g->n, sizeof *item, compare_items);
+    qsort(g->item, (size_t)g->n, sizeof *g->item, compare_items);
     for (int i = 0; i < g->n; i++)
-        g->order[i] = item[i].node;
-    free(item);
-    return HF_OK;
+        g->order[i] = g->item[i].node;
 }
 
 /* ---- choice ---- */
@@ -179,11 +150,12 @@ static double work(graph *g, int *half_bandwidth)
     double sum = 0;
     *half_bandwidth = 0;
     for (int i = 0; i < g->n; i++)
-        g->place[g->order[i]] = i;
+        g->position[g->order[i]] = i;
     for (int i = 0; i < g->n; i++) {
         int width = 0;
         for (int k = g->start[i]; k < g->start[i + 1]; k++)
-            if (g->place[i] - g->place[g->neighbour[k]] > width) width = g->place[i] - g->place[g->neighbour[k]];
+            if (g->position[i] - g->position[g->neighbour[k]] > width)
+                width = g->position[i] - g->position[g->neighbour[k]];
         sum += (double)width * width;
         if (width > *half_bandwidth) *half_bandwidth = width;
     }
@@ -216,19 +188,22 @@ static void keep_if_better(graph *g, double *best_work, int *best_half_bandwidth
 hf_status hf_numbering_find(const hf_scene *scene, int *order, int *half_bandwidth)
 {
     graph g = {.s = scene};
-    hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &g)));
+    void *block;
+    size_t n = (size_t)scene->n_node;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(g.free_of, n), HF_ARRAY(g.node_of, n), HF_ARRAY(g.start, n + 1),
+                           HF_ARRAY(g.neighbour, 2 * (size_t)scene->n_cable), HF_ARRAY(g.position, n),
+                           HF_ARRAY(g.order, n), HF_ARRAY(g.level, n), HF_ARRAY(g.queue, n), HF_ARRAY(g.best, n),
+                           HF_ARRAY(g.wave, n), HF_ARRAY(g.item, n)));
     build(&g);
     double best_work = -1;
     cuthill_mckee(&g);
     keep_if_better(&g, &best_work, half_bandwidth);
-    hf_status status = HF_OK;
-    for (int axis = 0; axis < 3 && status == HF_OK; axis++) {
-        status = sort_along(&g, axis);
-        if (status == HF_OK) keep_if_better(&g, &best_work, half_bandwidth);
+    for (int axis = 0; axis < 3; axis++) {
+        sort_along(&g, axis);
+        keep_if_better(&g, &best_work, half_bandwidth);
     }
     for (int i = 0; i < g.n; i++)
         order[i] = g.node_of[g.best[i]];
-    hf_arena_free(&arena);
-    return status;
+    hf_arena_free_block(block);
+    return HF_OK;
 }

@@ -3,52 +3,41 @@
 #include <math.h>
 #include <string.h>
 
+/* ---- words ---- */
+
+#define WORD(name, value, word) [value] = word,
+#define BOUND_WORD(name, value, word, meaning) [value] = word,
+#define BOUND_MEANING(name, value, word, meaning) [value] = meaning,
+static const char *const stop_reason[] = {HF_STOP_REASON_LIST(WORD)};
+static const char *const coupling_stop[] = {HF_COUPLING_STOP_LIST(WORD)};
+static const char *const bound_reason[] = {HF_BOUND_REASON_LIST(BOUND_WORD)};
+static const char *const bound_meaning[] = {HF_BOUND_REASON_LIST(BOUND_MEANING)};
+
+/* Returns the word of a value; "unknown" for a value that is not listed, as another version may have stored. */
+static const char *word_of(int value, size_t n, const char *const *word)
+{
+    return value >= 0 && (size_t)value < n && word[value] ? word[value] : "unknown";
+}
+#define WORD_OF(value, words) word_of(value, sizeof(words) / sizeof *(words), words)
+
 const char *hf_stop_reason_word(int reason)
 {
-    switch (reason) {
-#define WORD(name, value, word)                                                                                        \
-    case HF_STOPPED_##name:                                                                                            \
-        return word;
-        HF_STOP_REASON_LIST(WORD)
-#undef WORD
-    }
-    return "unknown";
+    return WORD_OF(reason, stop_reason);
 }
 
 const char *hf_coupling_stop_word(int stop)
 {
-    switch (stop) {
-#define WORD(name, value, word)                                                                                        \
-    case HF_COUPLING_##name:                                                                                           \
-        return word;
-        HF_COUPLING_STOP_LIST(WORD)
-#undef WORD
-    }
-    return "unknown";
+    return WORD_OF(stop, coupling_stop);
 }
 
 const char *hf_bound_reason_word(int reason)
 {
-    switch (reason) {
-#define WORD(name, value, word, meaning)                                                                               \
-    case HF_BOUND_##name:                                                                                              \
-        return word;
-        HF_BOUND_REASON_LIST(WORD)
-#undef WORD
-    }
-    return "unknown";
+    return WORD_OF(reason, bound_reason);
 }
 
 const char *hf_bound_reason_meaning(int reason)
 {
-    switch (reason) {
-#define MEANING(name, value, word, meaning)                                                                            \
-    case HF_BOUND_##name:                                                                                              \
-        return meaning;
-        HF_BOUND_REASON_LIST(MEANING)
-#undef MEANING
-    }
-    return "unknown";
+    return WORD_OF(reason, bound_meaning);
 }
 
 /* ---- the lists of fields ---- */
@@ -73,7 +62,7 @@ void hf_result_blank(hf_form_result *r)
 void hf_result_list_individual(const hf_result_field *field[HF_RESULT_N_INDIVIDUAL])
 {
     int n = 0;
-    for (int place = 1; n < HF_RESULT_N_INDIVIDUAL; place++)
+    for (int position = 1; n < HF_RESULT_N_INDIVIDUAL; position++)
         for (int i = 0; i < HF_RESULT_N; i++)
-            if (hf_result_field_of[i].individual == place) field[n++] = &hf_result_field_of[i];
+            if (hf_result_field_of[i].individual == position) field[n++] = &hf_result_field_of[i];
 }

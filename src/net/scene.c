@@ -5,7 +5,6 @@
 #include "base/elementary.h"
 #include "base/text.h"
 #include "base/union_find.h"
-#include <hifdm/settings.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -19,32 +18,20 @@ const char *const hf_group_word[2] = {"inner", "boundary"};
 
 /* ---- memory ---- */
 
-static void lay_out(hf_arena *arena, hf_scene *s, bool with_load, bool with_EA, bool with_line)
+hf_status hf_scene_allocate(hf_scene *s, int n_node, int n_cable, bool with_load, bool with_EA, bool with_line)
 {
-    size_t n = (size_t)s->n_node, m = (size_t)s->n_cable;
-    s->position_m = hf_arena_take(arena, 3 * n, sizeof *s->position_m);
-    s->load_N = with_load ? hf_arena_take(arena, 3 * n, sizeof *s->load_N) : NULL;
-    s->role = hf_arena_take(arena, n, sizeof *s->role);
-    s->end = hf_arena_take(arena, 2 * m, sizeof *s->end);
-    s->group = hf_arena_take(arena, m, sizeof *s->group);
-    s->law = hf_arena_take(arena, m, sizeof *s->law);
-    s->target = hf_arena_take(arena, m, sizeof *s->target);
-    s->EA_N = with_EA ? hf_arena_take(arena, m, sizeof *s->EA_N) : NULL;
-    s->node_id = hf_arena_take(arena, n, sizeof *s->node_id);
-    s->cable_id = hf_arena_take(arena, m, sizeof *s->cable_id);
-    s->node_line = with_line ? hf_arena_take(arena, n, sizeof *s->node_line) : NULL;
-    s->cable_line = with_line ? hf_arena_take(arena, m, sizeof *s->cable_line) : NULL;
-}
-
-hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, bool with_load, bool with_EA, bool with_line)
-{
-    *scene = (hf_scene){.n_node = n_node, .n_cable = n_cable};
-    hf_arena arena = {0};
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, scene, with_load, with_EA, with_line)) != HF_OK) {
-        *scene = (hf_scene){0};
-        return HF_NO_MEMORY;
-    }
-    scene->block = arena.block;
+    size_t n = (size_t)n_node, m = (size_t)n_cable;
+    *s = (hf_scene){0};
+    HF_TRY(HF_ARENA_ARRAYS(&s->block, HF_ARRAY(s->position_m, 3 * n), HF_ARRAY(s->load_N, with_load ? 3 * n : 0),
+                           HF_ARRAY(s->role, n), HF_ARRAY(s->end, 2 * m), HF_ARRAY(s->group, m), HF_ARRAY(s->law, m),
+                           HF_ARRAY(s->target, m), HF_ARRAY(s->EA_N, with_EA ? m : 0), HF_ARRAY(s->node_id, n),
+                           HF_ARRAY(s->cable_id, m), HF_ARRAY(s->node_line, with_line ? n : 0),
+                           HF_ARRAY(s->cable_line, with_line ? m : 0)));
+    s->n_node = n_node;
+    s->n_cable = n_cable;
+    if (!with_load) s->load_N = NULL;
+    if (!with_EA) s->EA_N = NULL;
+    if (!with_line) s->node_line = s->cable_line = NULL;
     return HF_OK;
 }
 
@@ -57,7 +44,7 @@ void hf_scene_free(hf_scene *scene)
     *scene = (hf_scene){0};
 }
 
-double hf_scene_theoretical_length(const hf_scene *scene, int i_cable)
+double hf_scene_length_at_target(const hf_scene *scene, int i_cable)
 {
     const double *a = scene->position_m + 3 * (size_t)scene->end[2 * i_cable];
     const double *b = scene->position_m + 3 * (size_t)scene->end[2 * i_cable + 1];
@@ -114,7 +101,7 @@ static void check_cables(const hf_scene *s, int *n_fault, hf_messages *messages)
         int a = s->end[2 * e], b = s->end[2 * e + 1];
         if (a == b)
             hf_scene_fault(s, true, e, n_fault, "joins a node to itself", messages);
-        else if (!(hf_scene_theoretical_length(s, e) > 0))
+        else if (!(hf_scene_length_at_target(s, e) > 0))
             hf_scene_fault(s, true, e, n_fault, "has zero length: its two nodes are at the same position", messages);
         if (hf_law_has(s->law[e], HF_LAW_NEEDS_EA)) check_elastic(s, e, n_fault, messages);
     }
@@ -124,22 +111,22 @@ static void check_cables(const hf_scene *s, int *n_fault, hf_messages *messages)
  * needs a support. */
 static hf_status check_anchored(const hf_scene *s, int *n_fault, hf_messages *messages)
 {
-    int *parent = malloc((size_t)s->n_node * 2 * sizeof *parent);
-    if (!parent) return hf_error(messages, HF_NO_MEMORY, "scene: out of memory");
-    int *anchored = parent + s->n_node;
-    for (int i = 0; i < s->n_node; i++) {
+    int *parent;
+    bool *is_anchored;
+    void *block;
+    if (HF_ARENA_ARRAYS(&block, HF_ARRAY(parent, s->n_node), HF_ARRAY(is_anchored, s->n_node)) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "scene: out of memory");
+    for (int i = 0; i < s->n_node; i++)
         parent[i] = i;
-        anchored[i] = 0;
-    }
     for (int e = 0; e < s->n_cable; e++)
         parent[hf_union_find_root(parent, s->end[2 * e])] = hf_union_find_root(parent, s->end[2 * e + 1]);
     for (int i = 0; i < s->n_node; i++)
-        if (s->role[i] == HF_ROLE_SUPPORT) anchored[hf_union_find_root(parent, i)] = 1;
+        if (s->role[i] == HF_ROLE_SUPPORT) is_anchored[hf_union_find_root(parent, i)] = true;
     for (int i = 0; i < s->n_node; i++)
-        if (!anchored[hf_union_find_root(parent, i)])
+        if (!is_anchored[hf_union_find_root(parent, i)])
             hf_scene_fault(s, false, i, n_fault, "has no path of cables to a support; connect it or remove it",
                            messages);
-    free(parent);
+    hf_arena_free_block(block);
     return HF_OK;
 }
 

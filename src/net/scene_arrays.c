@@ -4,7 +4,6 @@
 #include "base/text.h"
 #include <hifdm/cable_law.h>
 #include <hifdm/cable_set.h>
-#include <hifdm/settings.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -116,10 +115,10 @@ static bool take_ends(const hf_scene_arrays *a, hf_scene *s, int e, int *n_fault
 static void take_value(double given, hf_scene *s, int e, int *n_fault, hf_messages *messages)
 {
     char text[HF_LAW_FAULT_SIZE];
-    double theoretical_m = hf_scene_theoretical_length(s, e);
-    s->target[e] = isnan(given) ? hf_law_default_target(s->law[e], theoretical_m) : given;
-    const char *fault =
-        isinf(given) ? "value must be a finite number" : hf_law_target_fault(s->law[e], given, theoretical_m, text);
+    double length_at_target_m = hf_scene_length_at_target(s, e);
+    s->target[e] = isnan(given) ? hf_law_default_target(s->law[e], length_at_target_m) : given;
+    const char *fault = isinf(given) ? "value must be a finite number"
+                                     : hf_law_target_fault(s->law[e], given, length_at_target_m, text);
     char what[HF_LAW_FAULT_SIZE + 16];
     snprintf(what, sizeof what, "is refused: %s", fault ? fault : "");
     if (fault) hf_scene_fault(s, true, e, n_fault, what, messages);

@@ -123,7 +123,7 @@ static void doubt_lengths(const hf_scene *s, hf_messages *messages)
     char place[HF_SCENE_PLACE_SIZE];
     int n_said = 0;
     for (int e = 0; e < s->n_cable; e++) {
-        double theoretical_m = hf_scene_theoretical_length(s, e), ratio = s->target[e] / theoretical_m;
+        double length_at_target_m = hf_scene_length_at_target(s, e), ratio = s->target[e] / length_at_target_m;
         bool is_length = s->law[e] == HF_LAW_LENGTH || s->law[e] == HF_LAW_ELASTIC;
         if (!is_length || fabs(ratio - 1) <= LENGTH_PART || ++n_said > SAID_MAX) continue;
         hf_scene_place(s, true, e, place, sizeof place);
@@ -157,19 +157,19 @@ static double off_flat(const flat *f, const double *p, double off[3])
 }
 
 /* Returns the maximum distance of a support from the flat, m, and writes its vector. */
-static double farthest_support(const hf_scene *s, const flat *f, double most_off[3])
+static double farthest_support(const hf_scene *s, const flat *f, double max_off[3])
 {
-    double most = 0, off[3];
+    double max_m = 0, off[3];
     for (int i = 0; i < s->n_node; i++) {
         double d = s->role[i] == HF_ROLE_SUPPORT ? off_flat(f, s->position_m + 3 * (size_t)i, off) : 0;
-        if (d <= most) continue;
-        most = d;
-        memcpy(most_off, off, sizeof off);
+        if (d <= max_m) continue;
+        max_m = d;
+        memcpy(max_off, off, sizeof off);
     }
-    return most;
+    return max_m;
 }
 
-/* Computes a flat of at most two directions through all supports, to PLANE_PART of their extent. Returns false if
+/* Computes a flat of at max_m two directions through all supports, to PLANE_PART of their extent. Returns false if
  * there is none. */
 static bool span_supports(const hf_scene *s, flat *f, double *extent_m)
 {
@@ -215,24 +215,18 @@ static void doubt_plane(const hf_scene *s, hf_messages *messages)
 
 /* ---- together ---- */
 
-static void lay_out(hf_arena *a, const hf_scene *s, scratch *t)
-{
-    t->joint = hf_arena_take(a, (size_t)s->n_cable, sizeof *t->joint);
-    t->coordinate = hf_arena_take(a, (size_t)s->n_node, sizeof *t->coordinate);
-    t->from = hf_arena_take(a, (size_t)s->n_node, sizeof *t->from);
-}
-
 hf_status hf_scene_doubt(const hf_scene *s, hf_messages *messages)
 {
-    hf_arena arena = {0};
+    void *block;
     scratch t;
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, s, &t)) != HF_OK)
+    if (HF_ARENA_ARRAYS(&block, HF_ARRAY(t.joint, s->n_cable), HF_ARRAY(t.coordinate, s->n_node),
+                        HF_ARRAY(t.from, s->n_node)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "scene: out of memory");
     doubt_cables(s, t.joint, messages);
     doubt_nodes(s, &t, messages);
     doubt_size(s, messages);
     doubt_lengths(s, messages);
     doubt_plane(s, messages);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return HF_OK;
 }

@@ -1,6 +1,7 @@
 /* Contents: nodes - cables - sets - together */
 #include "net/scene_import.h"
 
+#include "base/arena.h"
 #include "base/csv.h"
 #include <hifdm/cable_set.h>
 
@@ -59,12 +60,12 @@ static bool has_values(const hf_csv *t)
 static void read_target(hf_csv *t, const int *where, int r, const char *id, hf_scene *s)
 {
     hf_law law = s->law[r];
-    double theoretical_m = hf_scene_theoretical_length(s, r), given = NAN;
+    double length_at_target_m = hf_scene_length_at_target(s, r), given = NAN;
     bool is_given = *hf_csv_cell(t, r, where[CABLE_VALUE]);
     if (is_given) given = hf_csv_number(t, r, where[CABLE_VALUE], id, "value");
-    s->target[r] = is_given ? given : hf_law_default_target(law, theoretical_m);
+    s->target[r] = is_given ? given : hf_law_default_target(law, length_at_target_m);
     char text[HF_LAW_FAULT_SIZE];
-    const char *fault = is_given && isnan(given) ? NULL : hf_law_target_fault(law, given, theoretical_m, text);
+    const char *fault = is_given && isnan(given) ? NULL : hf_law_target_fault(law, given, length_at_target_m, text);
     if (fault) hf_csv_fault(t, t->line[r], id, fault, "");
 }
 
@@ -106,7 +107,7 @@ static void read_cables(hf_csv *t, const int *where, const hf_csv *nodes, const 
 
 typedef struct {
     const char *name; /* points into the text of the table */
-    int row, set;
+    int row;
 } mention;
 
 static int count_mentions(const hf_csv *t, int column)
@@ -120,7 +121,7 @@ static int count_mentions(const hf_csv *t, int column)
 
 static int by_name_and_row(const void *a, const void *b)
 {
-    const mention *p = *(mention *const *)a, *q = *(mention *const *)b;
+    const mention *p = a, *q = b;
     int order = strcmp(p->name, q->name);
     return order ? order : (p->row > q->row) - (p->row < q->row);
 }
@@ -134,7 +135,7 @@ static void read_mentions(hf_csv *t, const int *where, mention *all)
             char *end = p + strcspn(p, BETWEEN_NAMES);
             bool is_last = *end == '\0';
             *end = '\0';
-            all[n] = (mention){p, r, 0};
+            all[n] = (mention){p, r};
             const char *fault = hf_cable_set_name_fault(p);
             if (fault) {
                 char what[HF_CABLE_SET_NAME_SIZE + 16];
@@ -149,31 +150,23 @@ static hf_status read_sets(hf_csv *t, const int *where, hf_scene *s)
 {
     int n = count_mentions(t, where[CABLE_SET]), n_set = 0;
     if (n == 0) return HF_OK;
-    mention *all = malloc((size_t)n * sizeof *all), **sorted = malloc((size_t)n * sizeof *sorted);
-    const char **name = malloc((size_t)n * sizeof *name);
-    hf_cable_set_member *member = malloc((size_t)n * sizeof *member);
-    hf_status status = all && sorted && name && member ? HF_OK : HF_NO_MEMORY;
-    if (status == HF_OK) {
-        read_mentions(t, where, all);
-        for (int k = 0; k < n; k++)
-            sorted[k] = &all[k];
-        qsort(sorted, (size_t)n, sizeof *sorted, by_name_and_row);
-        for (int k = 0; k < n; k++) {
-            bool is_same = k > 0 && !strcmp(sorted[k]->name, sorted[k - 1]->name);
-            if (!is_same) name[n_set++] = sorted[k]->name;
-            if (is_same && sorted[k]->row == sorted[k - 1]->row)
-                hf_csv_fault(t, t->line[sorted[k]->row], s->cable_id[sorted[k]->row], "stands twice in the set ",
-                             sorted[k]->name);
-            sorted[k]->set = n_set - 1;
-        }
-        for (int k = 0; k < n; k++)
-            member[k] = (hf_cable_set_member){all[k].set, all[k].row};
-        if (t->n_fault == 0) status = hf_cable_set_make(s, n_set, name, n, member);
+    mention *all;
+    const char **name;
+    hf_cable_set_member *member;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(all, n), HF_ARRAY(name, n), HF_ARRAY(member, n)));
+    read_mentions(t, where, all);
+    qsort(all, (size_t)n, sizeof *all, by_name_and_row);
+    for (int k = 0; k < n; k++) {
+        bool is_same = k > 0 && !strcmp(all[k].name, all[k - 1].name);
+        int row = all[k].row;
+        if (!is_same) name[n_set++] = all[k].name;
+        if (is_same && row == all[k - 1].row)
+            hf_csv_fault(t, t->line[row], s->cable_id[row], "stands twice in the set ", all[k].name);
+        member[k] = (hf_cable_set_member){n_set - 1, row};
     }
-    free(all);
-    free(sorted);
-    free(name);
-    free(member);
+    hf_status status = t->n_fault == 0 ? hf_cable_set_make(s, n_set, name, n, member) : HF_OK;
+    hf_arena_free_block(block);
     return status;
 }
 

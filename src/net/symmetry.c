@@ -9,6 +9,7 @@
 #include "net/symmetry.h"
 
 #include "base/arena.h"
+#include "base/text.h"
 #include "base/union_find.h"
 
 #include <math.h>
@@ -28,7 +29,7 @@
 typedef struct {
     double at_m; /* coordinate along the axis of the sweep */
     int node;
-} place;
+} sorted_node;
 
 typedef struct {
     int end[2]; /* nodes, smaller index first */
@@ -42,7 +43,7 @@ typedef struct {
     const hf_model *m;
     double low_m[3], high_m[3], size_m, load_N; /* extent; largest load component */
     int sweep;                                  /* the longest axis; nodes are sorted along it */
-    place *place;                               /* [n_node], sorted */
+    sorted_node *node;                          /* [n_node], sorted */
     link *link;                                 /* [n_cable], sorted */
     int *node_image, *cable_image;              /* [n_node], [n_cable], images under the current plane; -1: none */
     int *variable_of_cable, *variable_of_node;  /* [n_cable], [n_node], variables that may be linked; -1: none */
@@ -50,28 +51,14 @@ typedef struct {
     int *group_parent, *group_label;            /* [n_variable_group] */
 } search;
 
-static void lay_out(hf_arena *a, search *q)
-{
-    size_t n = (size_t)q->s->n_node, e = (size_t)q->s->n_cable;
-    q->place = hf_arena_take(a, n, sizeof *q->place);
-    q->link = hf_arena_take(a, e, sizeof *q->link);
-    q->node_image = hf_arena_take(a, n, sizeof(int));
-    q->cable_image = hf_arena_take(a, e, sizeof(int));
-    q->variable_of_cable = hf_arena_take(a, e, sizeof(int));
-    q->variable_of_node = hf_arena_take(a, n, sizeof(int));
-    q->parent = hf_arena_take(a, (size_t)q->m->n_variable, sizeof(int));
-    q->group_parent = hf_arena_take(a, (size_t)q->m->n_variable_group, sizeof(int));
-    q->group_label = hf_arena_take(a, (size_t)q->m->n_variable_group, sizeof(int));
-}
-
 static double coordinate(const search *q, int node, int c)
 {
     return q->s->position_m[3 * (size_t)node + (size_t)c];
 }
 
-static int compare_places(const void *a, const void *b)
+static int compare_coordinates(const void *a, const void *b)
 {
-    const place *x = a, *y = b;
+    const sorted_node *x = a, *y = b;
     return x->at_m != y->at_m ? (x->at_m > y->at_m) - (x->at_m < y->at_m) : (x->node > y->node) - (x->node < y->node);
 }
 
@@ -112,13 +99,13 @@ static int find_node_image(const search *q, int axis, int i)
     int from = 0, to = q->s->n_node;
     while (from < to) { /* finds the first node not before the target */
         int middle = from + (to - from) / 2;
-        if (q->place[middle].at_m < target[q->sweep] - slack)
+        if (q->node[middle].at_m < target[q->sweep] - slack)
             from = middle + 1;
         else
             to = middle;
     }
-    for (; from < q->s->n_node && q->place[from].at_m <= target[q->sweep] + slack; from++)
-        if (is_node_image(q, axis, i, q->place[from].node, target)) return q->place[from].node;
+    for (; from < q->s->n_node && q->node[from].at_m <= target[q->sweep] + slack; from++)
+        if (is_node_image(q, axis, i, q->node[from].node, target)) return q->node[from].node;
     return -1;
 }
 
@@ -158,18 +145,18 @@ static int find_cable_image(const search *q, int here)
     const link *own = q->link + here;
     int a = q->node_image[own->end[0]], b = q->node_image[own->end[1]], rank = 0, from = 0, to = q->s->n_cable;
     if (a < 0 || b < 0) return -1;
-    const int wanted[2] = {a < b ? a : b, a < b ? b : a};
+    const int asked[2] = {a < b ? a : b, a < b ? b : a};
     while (rank < here && !compare_ends(own->end, q->link[here - rank - 1].end))
         rank++;
     while (from < to) {
         int middle = from + (to - from) / 2;
-        if (compare_ends(q->link[middle].end, wanted) < 0)
+        if (compare_ends(q->link[middle].end, asked) < 0)
             from = middle + 1;
         else
             to = middle;
     }
     const link *image = q->link + from + rank;
-    if (from + rank >= q->s->n_cable || compare_ends(image->end, wanted) || !is_alike(q, own, image)) return -1;
+    if (from + rank >= q->s->n_cable || compare_ends(image->end, asked) || !is_alike(q, own, image)) return -1;
     return image->cable;
 }
 
@@ -193,11 +180,10 @@ static int reflect(search *q, int axis)
 static hf_status refuse(const search *q, int axis, int n_missing, hf_messages *messages)
 {
     char names[NAMED_MAX * 260] = "", more[32] = "";
-    size_t used = 0;
-    for (int e = 0, n = 0; e < q->s->n_cable && n < NAMED_MAX && used < sizeof names; e++) {
+    for (int e = 0, n = 0; e < q->s->n_cable && n < NAMED_MAX; e++) {
         int image = q->cable_image[e];
         if (image >= 0 && q->cable_image[image] == e) continue;
-        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", n++ ? ", " : "", q->s->cable_id[e]);
+        n += hf_text_append(names, sizeof names, ", ", q->s->cable_id[e], "");
     }
     if (n_missing > NAMED_MAX) snprintf(more, sizeof more, " and %d more", n_missing - NAMED_MAX);
     char where[HF_PLACE_SIZE];
@@ -252,11 +238,11 @@ static void join_images(search *q, int variable, int image)
     join(q->parent, variable, image);
 }
 
-static hf_status link_variables(search *q, hf_symmetry wanted, hf_model *m, int *planes, hf_messages *messages)
+static hf_status link_variables(search *q, hf_symmetry asked, hf_model *m, int *planes, hf_messages *messages)
 {
     for (int axis = 0; axis < 2; axis++) {
-        bool by_name = wanted == HF_SYMMETRY_XY || wanted == (axis == 0 ? HF_SYMMETRY_X : HF_SYMMETRY_Y);
-        if (!by_name && wanted != HF_SYMMETRY_AUTO) continue;
+        bool by_name = asked == HF_SYMMETRY_XY || asked == (axis == 0 ? HF_SYMMETRY_X : HF_SYMMETRY_Y);
+        if (!by_name && asked != HF_SYMMETRY_AUTO) continue;
         int n_missing = reflect(q, axis);
         if (n_missing && by_name) return refuse(q, axis, n_missing, messages);
         if (n_missing) continue;
@@ -280,7 +266,7 @@ static void sort(search *q, const hf_optimize_settings *o)
 {
     const hf_model *m = q->m;
     for (int i = 0; i < q->s->n_node; i++)
-        q->place[i] = (place){coordinate(q, i, q->sweep), i};
+        q->node[i] = (sorted_node){coordinate(q, i, q->sweep), i};
     for (int e = 0; e < q->s->n_cable; e++) {
         int a = q->s->end[2 * e], b = q->s->end[2 * e + 1];
         q->link[e] = (link){{a < b ? a : b, a < b ? b : a}, m->group[e] << 8 | m->law[e], e, m->target[e]};
@@ -296,24 +282,29 @@ static void sort(search *q, const hf_optimize_settings *o)
         else
             q->variable_of_node[m->node_of_row[m->variable[k].support_row]] = k;
     }
-    qsort(q->place, (size_t)q->s->n_node, sizeof *q->place, compare_places);
+    qsort(q->node, (size_t)q->s->n_node, sizeof *q->node, compare_coordinates);
     qsort(q->link, (size_t)q->s->n_cable, sizeof *q->link, compare_links);
 }
 
 hf_status hf_symmetry_apply(const hf_scene *scene, const hf_optimize_settings *settings, hf_model *m, int *planes,
                             hf_messages *messages)
 {
-    hf_symmetry wanted = settings->symmetry;
+    hf_symmetry asked = settings->symmetry;
     search q = {.s = scene, .m = m};
-    hf_arena arena = {0};
+    void *block;
+    size_t n = (size_t)m->n_node, n_cable = (size_t)m->n_cable;
     *planes = 0;
-    if (wanted == HF_SYMMETRY_NONE) return HF_OK;
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, &q)) != HF_OK)
+    if (asked == HF_SYMMETRY_NONE) return HF_OK;
+    if (HF_ARENA_ARRAYS(&block, HF_ARRAY(q.node, n), HF_ARRAY(q.link, n_cable), HF_ARRAY(q.node_image, n),
+                        HF_ARRAY(q.cable_image, n_cable), HF_ARRAY(q.variable_of_cable, n_cable),
+                        HF_ARRAY(q.variable_of_node, n), HF_ARRAY(q.parent, m->n_variable),
+                        HF_ARRAY(q.group_parent, m->n_variable_group),
+                        HF_ARRAY(q.group_label, m->n_variable_group)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "optimize.symmetry: out of memory");
     measure(&q);
     sort(&q, settings);
-    hf_status status = link_variables(&q, wanted, m, planes, messages);
-    hf_arena_free(&arena);
+    hf_status status = link_variables(&q, asked, m, planes, messages);
+    hf_arena_free_block(block);
     return status;
 }
 

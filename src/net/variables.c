@@ -6,8 +6,6 @@
 #include "net/target_surface.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Minimum of a tension, force density or length relative to its initial value, whatever its range. A cable without
@@ -33,15 +31,6 @@ typedef struct {
 static const char *where_in(maker *q, int row, const char *key)
 {
     return hf_messages_place(q->messages, q->place, "optimize.variables.%d.%s", row, key);
-}
-
-static void lay_out(hf_arena *a, maker *q)
-{
-    size_t e = (size_t)q->m->n_cable, n = (size_t)q->m->n_node;
-    q->picked = hf_arena_take(a, e, sizeof(int));
-    q->taken = hf_arena_take(a, e + n, sizeof(int));
-    q->cable = hf_arena_take(a, e + 3 * n, sizeof(int));
-    q->variable = hf_arena_take(a, e + 3 * n, sizeof(hf_variable));
 }
 
 static bool varies_support(hf_vary vary)
@@ -196,15 +185,10 @@ static hf_status make_row(maker *q, int row)
 static hf_status keep(const maker *q)
 {
     hf_model *m = q->m;
-    hf_arena arena = {0};
     int *label;
     size_t n = (size_t)m->n_variable;
-    HF_TRY(HF_ARENA_MAKE(&arena, (m->variable_cable = hf_arena_take(&arena, n, sizeof(int)),
-                                  m->variable_group = hf_arena_take(&arena, n, sizeof(int)),
-                                  m->variable_leader = hf_arena_take(&arena, n, sizeof(int)),
-                                  label = hf_arena_take(&arena, n, sizeof(int)),
-                                  m->variable = hf_arena_take(&arena, n, sizeof(hf_variable)))));
-    m->variable_block = arena.block;
+    HF_TRY(HF_ARENA_ARRAYS(&m->variable_block, HF_ARRAY(m->variable_cable, n), HF_ARRAY(m->variable_group, n),
+                           HF_ARRAY(m->variable_leader, n), HF_ARRAY(label, n), HF_ARRAY(m->variable, n)));
     memcpy(m->variable_cable, q->cable, n * sizeof(int));
     memcpy(m->variable, q->variable, n * sizeof(hf_variable));
     for (size_t k = 0; k < n; k++)
@@ -219,9 +203,11 @@ hf_status hf_variables_apply(const hf_scene *scene, const hf_optimize_settings *
                              const hf_surface_settings *surface, hf_model *m, hf_messages *messages)
 {
     maker q = {.scene = scene, .settings = settings, .surface = surface, .m = m, .messages = messages};
-    hf_arena arena = {0};
+    void *block;
+    size_t e = (size_t)m->n_cable, n = (size_t)m->n_node;
     if (settings->n_variable_row == 0) return HF_OK;
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, &q)) != HF_OK)
+    if (HF_ARENA_ARRAYS(&block, HF_ARRAY(q.picked, e), HF_ARRAY(q.taken, e + n), HF_ARRAY(q.cable, e + 3 * n),
+                        HF_ARRAY(q.variable, e + 3 * n)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "optimize.variables: out of memory");
     for (int i = 0; i < m->n_cable + m->n_node; i++)
         q.taken[i] = -1;
@@ -233,7 +219,7 @@ hf_status hf_variables_apply(const hf_scene *scene, const hf_optimize_settings *
     if (status == HF_OK && keep(&q) != HF_OK)
         status = hf_error(messages, HF_NO_MEMORY, "optimize.variables: out of memory");
     m->has_newton = !m->has_strut; /* a design may need Newton's method although the laws of the scene do not iterate */
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 

@@ -119,7 +119,7 @@ static void set_lines(int n, int *offset, unsigned char *type)
 typedef struct {
     int *role, *group, *law, *slack, *offset;
     unsigned char *type;
-    double *theoretical_m, *displacement_m, *deviation_m, *normal_error_m, *length_change_m;
+    double *length_at_target_m, *displacement_m, *deviation_m, *normal_error_m, *length_change_m;
     hf_facets facets; /* empty when the case does not measure the surface */
     int *facet_corner, *facet_offset;
     unsigned char *facet_type;
@@ -135,7 +135,7 @@ static void lay_out(hf_arena *a, const hf_scene *s, scratch *t)
     t->slack = hf_arena_take(a, m, sizeof(int));
     t->offset = hf_arena_take(a, m + 1, sizeof(int));
     t->type = hf_arena_take(a, m, 1);
-    t->theoretical_m = hf_arena_take(a, m, sizeof(double));
+    t->length_at_target_m = hf_arena_take(a, m, sizeof(double));
     t->displacement_m = hf_arena_take(a, 3 * n, sizeof(double));
     t->deviation_m = hf_arena_take(a, n, sizeof(double));
     t->normal_error_m = hf_arena_take(a, n, sizeof(double));
@@ -168,9 +168,9 @@ static void fill(const hf_scene *s, const hf_shape *shape, const hf_summary *sum
     for (int e = 0; e < s->n_cable; e++) {
         t->group[e] = s->group[e];
         t->law[e] = shape ? shape->law[e] : s->law[e];
-        t->theoretical_m[e] = hf_scene_theoretical_length(s, e);
+        t->length_at_target_m[e] = hf_scene_length_at_target(s, e);
         if (!shape) continue;
-        t->length_change_m[e] = shape->length_m[e] - t->theoretical_m[e];
+        t->length_change_m[e] = shape->length_m[e] - t->length_at_target_m[e];
         t->slack[e] = fabs(shape->tension_N[e]) < HF_SLACK_RATIO * reference_N;
     }
 }
@@ -186,7 +186,7 @@ static grid grid_of(const hf_scene *s, const hf_shape *shape, const hf_summary *
     if (summary->surface.focal_length_m > 0) add(g.point, n, "normal_error_m", "m", HF_KIND_REAL, 1, t->normal_error_m);
     add(g.cell, m, "group", "", HF_KIND_INT, 1, t->group);
     add(g.cell, m, "law", "", HF_KIND_INT, 1, t->law);
-    add(g.cell, m, "length_m", "m", HF_KIND_REAL, 1, shape ? shape->length_m : t->theoretical_m);
+    add(g.cell, m, "length_m", "m", HF_KIND_REAL, 1, shape ? shape->length_m : t->length_at_target_m);
     add(g.cell, m, "EA_N", "N", HF_KIND_REAL, 1, s->EA_N);
     if (!shape) return g;
     add(g.point, n, "displacement_m", "m", HF_KIND_REAL, 3, t->displacement_m);

@@ -90,7 +90,7 @@ static void measure(const hf_built *b, const hf_carrier_state *truss, int n_memb
     }
     for (int i = 0; i < m->n_inner_node; i++)
         for (int c = 0; c < 3; c++) {
-            double d = w->position_m[c * m->n_node + m->inner_row[i]] - b->place_m[c * m->n_node + m->inner_row[i]];
+            double d = w->position_m[c * m->n_node + m->inner_row[i]] - b->position_m[c * m->n_node + m->inner_row[i]];
             square += d * d;
         }
     s->displacement_rms_m = sqrt(square / m->n_inner_node);

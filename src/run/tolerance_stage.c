@@ -113,7 +113,7 @@ static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf
     double by_ratio = LARGEST_NUMBER * t->sigma_cut_ratio * (sqrt(1 - t->batch) + sqrt(t->batch));
     char place[HF_PATH_SIZE + 128];
     for (int e = 0; e < s->n_cable; e++) {
-        double length = hf_scene_theoretical_length(s, e), by_cut = LARGEST_NUMBER * t->sigma_cut_m / length;
+        double length = hf_scene_length_at_target(s, e), by_cut = LARGEST_NUMBER * t->sigma_cut_m / length;
         double by_heat = 0;
         if (t->sigma_temperature_K > 0 && !isnan(material->expansion_per_K[e])) /* check_expansion reports the others */
             by_heat = LARGEST_NUMBER * t->sigma_temperature_K * fabs(material->expansion_per_K[e]);

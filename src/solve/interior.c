@@ -132,7 +132,7 @@ static double first_tension_N(const hf_model *m, hf_law_cable cable, double flex
     if (hf_law_has(cable.law, HF_LAW_GIVES_TENSION)) return cable.target;
     double reference = m->reference_N;
     if (!(flex > 0)) return reference;
-    double over = length - hf_law_required_length_m(cable, 0), mu = MU_FIRST * reference * cable.theoretical_m;
+    double over = length - hf_law_required_length_m(cable, 0), mu = MU_FIRST * reference * cable.length_at_target_m;
     double T = (over + sqrt(over * over + 4 * flex * mu)) / (2 * flex);
     return fmin(fmax(T, reference / FIRST_RANGE), reference * FIRST_RANGE);
 }
@@ -159,7 +159,7 @@ static void set_start(const hf_model *m, hf_workspace *w, const hf_newton_rows *
         p->has_multiplier[k] = p->has_cone[k] != 0 && has_multiplier(w, e);
         p->target[k] = cable.target;
         p->EA[k] = hf_law_has(cable.law, HF_LAW_NEEDS_EA) ? cable.EA_N : INFINITY;
-        p->theoretical[k] = cable.theoretical_m;
+        p->theoretical[k] = cable.length_at_target_m;
         p->flex[k] = has_multiplier(w, e) ? 1 / hf_law_stiffness_N_per_m(cable, INFINITY) : 0;
         if (is_spring(w, e)) {
             p->along[k] = p->across[k] = hf_law_tension_N(cable, 1);

@@ -287,7 +287,7 @@ static double measure_near(hf_precise *p)
         hf_newton_matrix_add_pull(m, p->w, e, pull, p->near_N);
         if (!hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;
         c->near_over = c->over.hi + longer - c->change / hf_law_stiffness_N_per_m(cable, INFINITY);
-        largest = fmax(largest, fabs(c->near_over) / cable.theoretical_m);
+        largest = fmax(largest, fabs(c->near_over) / cable.length_at_target_m);
     }
     end_near(p);
     largest = fmax(largest, gap_error(p));
@@ -461,7 +461,7 @@ static bool factor_anew(hf_precise *p)
         if (hf_precise_is_fixed(m, e)) continue;
         bool multiplier = hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER);
         if (multiplier) {
-            c->is_taut = c->T.hi / m->reference_N + c->over.hi / cable.theoretical_m > 0;
+            c->is_taut = c->T.hi / m->reference_N + c->over.hi / cable.length_at_target_m > 0;
             if (!(c->is_taut > 0)) c->T = (hf_twofold){0, 0};
         }
         c->along = c->is_taut > 0 ? hf_law_stiffness_N_per_m(cable, INFINITY) : 0;

@@ -333,8 +333,8 @@ static void tell_lengths(const hf_scene *s, hf_messages *messages)
 {
     int n = 0, first = 0;
     for (int e = s->n_cable - 1; e >= 0; e--) {
-        double theoretical_m = hf_scene_theoretical_length(s, e);
-        bool is_own = fabs(s->target[e] - theoretical_m) > OWN_LENGTH * theoretical_m;
+        double length_at_target_m = hf_scene_length_at_target(s, e);
+        bool is_own = fabs(s->target[e] - length_at_target_m) > OWN_LENGTH * length_at_target_m;
         if (!hf_law_has(s->law[e], HF_LAW_HAS_MULTIPLIER) || !is_own) continue;
         first = e;
         n++;

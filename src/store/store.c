@@ -150,7 +150,7 @@ static void write_scene(hf_store *s, const hf_scene *scene)
     hf_layout_write_columns(&s->f.io, group, &hf_layout_scene, scene->n_node, scene->n_cable, scene);
     double *length_m = hf_store_scratch(s, (size_t)scene->n_cable * sizeof *length_m);
     for (int e = 0; length_m && e < scene->n_cable; e++)
-        length_m[e] = hf_scene_theoretical_length(scene, e);
+        length_m[e] = hf_scene_length_at_target(scene, e);
     hf_hdf5_write_array(&s->f.io, group, &length, length_m);
     write_sets(s, group, scene);
     write_facets(s, group, scene);

@@ -15,7 +15,7 @@ static void stretch(hf_scene *s, double x, double y, double z)
     map_scene(s, m, t);
     s->load_N = load_N;
     for (int e = 0; e < s->n_cable; e++)
-        if (s->law[e] == HF_LAW_LENGTH) s->target[e] = hf_scene_theoretical_length(s, e);
+        if (s->law[e] == HF_LAW_LENGTH) s->target[e] = hf_scene_length_at_target(s, e);
 }
 
 /* ---- ladders: rung 0, 1, ... ---- */
@@ -55,7 +55,7 @@ static void nearly_slack(struct rng *rng, int rung, hf_scene *s)
     more.end[2 * s->n_cable] = from;
     more.end[2 * s->n_cable + 1] = to;
     more.law[s->n_cable] = HF_LAW_LENGTH;
-    more.target[s->n_cable] = hf_scene_theoretical_length(&more, s->n_cable) * (1 + sign * pow(10, -1 - rung));
+    more.target[s->n_cable] = hf_scene_length_at_target(&more, s->n_cable) * (1 + sign * pow(10, -1 - rung));
     more.text = s->text;
     s->text = NULL;
     hf_scene_free(s);
@@ -116,7 +116,7 @@ static void near_duplicates(struct rng *rng, int rung, hf_scene *s)
             s->position_m[3 * a + c] += pow(10, -rung) * rng_uniform(rng, 0.2, 1);
         if (rng_int(rng, 0, 1)) {
             s->law[e] = HF_LAW_FORCE_DENSITY;
-            s->target[e] /= hf_scene_theoretical_length(s, e);
+            s->target[e] /= hf_scene_length_at_target(s, e);
         }
         return;
     }
@@ -130,7 +130,7 @@ static void loads_above_pretension(struct rng *rng, int rung, hf_scene *s)
         for (int e = 0; e < s->n_cable; e++)
             if (s->law[e] == HF_LAW_TENSION) {
                 s->law[e] = HF_LAW_LENGTH;
-                s->target[e] = 1.01 * hf_scene_theoretical_length(s, e);
+                s->target[e] = 1.01 * hf_scene_length_at_target(s, e);
             }
         mix_laws(rng, s);
     } else {

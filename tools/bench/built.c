@@ -92,11 +92,10 @@ static void make(void *context, long i, double *cut_m, double *EA_N, double *sup
         cut_m[e] += b->error_m[i % N_SAMPLE * n + e];
 }
 
-static void take(void *context, long i, int place, const hf_built_shape *shape, const hf_form_result *r)
+static void take(void *context, long i, const hf_built_shape *shape, const hf_form_result *r)
 {
     const built_bench *b = context;
     size_t places = 3 * (size_t)b->built.model.n_node;
-    (void)place;
     if (i >= N_SAMPLE) return;
     b->failed[i] = r->status != HF_OK;
     b->n_slack[i] = r->n_slack;
@@ -116,7 +115,7 @@ static void solve(built_bench *b, long i)
     make(b, i, cut_m, NULL, NULL);
     hf_built_solve(&b->built, &(hf_built_net){.cut_m = cut_m}, &b->work, &r);
     hf_built_shape shape = {b->work.position_m, b->work.tension_N, b->work.loose, b->work.displacement_m};
-    take(b, i, 0, &shape, &r);
+    take(b, i, &shape, &r);
     free(cut_m);
 }
 
@@ -225,7 +224,7 @@ static void write_samples(built_bench *b, const char *folder)
     FILE *file = bench_open_file(folder, name);
     write_array(file, size, sizeof *size, 4);
     write_array(file, m->end_row, sizeof *m->end_row, 2 * n);
-    write_array(file, b->built.place_m, sizeof(double), places);
+    write_array(file, b->built.position_m, sizeof(double), places);
     write_array(file, m->target, sizeof(double), n);
     write_array(file, m->EA_N, sizeof(double), n);
     write_array(file, b->built.tension_N, sizeof(double), n);

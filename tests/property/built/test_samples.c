@@ -36,12 +36,11 @@ static void solve_again(struct sampling *s, long i, hf_form_result *r)
     hf_built_solve(s->built, &(hf_built_net){s->cut_m, s->EA_N, s->move_m, NULL}, &s->reference, r);
 }
 
-static void hold_against(void *context, long i, int place, const hf_built_shape *shape, const hf_form_result *r)
+static void hold_against(void *context, long i, const hf_built_shape *shape, const hf_form_result *r)
 {
     struct sampling *s = context;
     const hf_model *m = &s->built->model;
     hf_form_result again;
-    (void)place;
     solve_again(s, i, &again);
     s->n_done++;
     ck_assert_msg(r->status == again.status, "sample %ld: %s, by the reference %s", i, hf_status_word(r->status),

@@ -53,7 +53,7 @@ START_TEST(one_matrix_serves_all)
     ck_assert_int_le(net.scene.n_cable, 256);
     int share = rng_int(&rng, 1, 4);
     for (int e = 0; e < net.scene.n_cable; e++) {
-        double length = hf_scene_theoretical_length(&net.scene, e);
+        double length = hf_scene_length_at_target(&net.scene, e);
         EA_N[e] = stiffness;
         if (rng_int(&rng, 0, 3) >= share) continue;
         net.scene.law[e] = HF_LAW_ELASTIC;

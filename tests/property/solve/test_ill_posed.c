@@ -245,7 +245,7 @@ static void damage(struct rng *rng, int what, hf_scene *s, double *EA)
         break;
     case 3: /* one that is under another law, and far too long or too short */
         s->law[e] = HF_LAW_LENGTH;
-        s->target[e] = hf_scene_theoretical_length(s, e) * (rng_int(rng, 0, 1) ? by : 1 / by);
+        s->target[e] = hf_scene_length_at_target(s, e) * (rng_int(rng, 0, 1) ? by : 1 / by);
         break;
     case 4: /* a support less */
         for (int i = 0, from = rng_int(rng, 0, s->n_node - 1); i < s->n_node; i++)
@@ -260,7 +260,7 @@ static void damage(struct rng *rng, int what, hf_scene *s, double *EA)
             EA[e] = 1e3;
             if (s->end[2 * e] != node && s->end[2 * e + 1] != node) continue;
             s->law[e] = what == 5 ? HF_LAW_LENGTH : HF_LAW_ELASTIC;
-            s->target[e] = 3 * hf_scene_theoretical_length(s, e);
+            s->target[e] = 3 * hf_scene_length_at_target(s, e);
         }
         memset(s->load_N + 3 * node, 0, (what == 5 || rng_int(rng, 0, 1) ? 3 : 0) * sizeof(double));
         s->EA_N = what == 6 ? EA : NULL;

@@ -57,7 +57,7 @@ static hf_status hold_net(struct net *net, const struct double_net *d)
 
 static double held_N(const struct net *net, int e)
 {
-    return net->scene.target[e] * hf_scene_theoretical_length(&net->scene, e);
+    return net->scene.target[e] * hf_scene_length_at_target(&net->scene, e);
 }
 
 /* No free node moves when the net is solved, and no cable is slack. */

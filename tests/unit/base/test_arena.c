@@ -107,6 +107,36 @@ START_TEST(failed_allocation_is_out_of_memory)
 }
 END_TEST
 
+START_TEST(listed_arrays_are_those_of_an_arena)
+{
+    void *block;
+    double *a, *none;
+    char *b;
+    ck_assert_int_eq(HF_ARENA_ARRAYS(&block, HF_ARRAY(a, 17), HF_ARRAY(b, 3), HF_ARRAY(none, 0)), HF_OK);
+    ck_assert_ptr_eq(a, block);
+    ck_assert_ptr_nonnull(none);
+    ck_assert((unsigned char *)b >= (unsigned char *)(a + 17) && (uintptr_t)b % HF_ALIGNMENT == 0);
+    for (int i = 0; i < 17; i++)
+        ck_assert(a[i] == 0);
+    hf_arena_free_block(block);
+}
+END_TEST
+
+START_TEST(listed_arrays_are_null_without_memory)
+{
+    void *block = &block;
+    double *a = block;
+    int *b = block;
+    fail_allocation_at(1);
+    hf_status status = HF_ARENA_ARRAYS(&block, HF_ARRAY(a, 17), HF_ARRAY(b, 3));
+    ck_assert(end_allocation_failure());
+    ck_assert_int_eq(status, HF_NO_MEMORY);
+    ck_assert(!block && !a && !b);
+    ck_assert_int_eq(HF_ARENA_ARRAYS(&block, HF_ARRAY(a, SIZE_MAX / 8), HF_ARRAY(b, 3)), HF_NO_MEMORY);
+    ck_assert(!block && !a && !b);
+}
+END_TEST
+
 Suite *suite_unit_arena(void)
 {
     Suite *suite = suite_create("unit/arena");
@@ -119,5 +149,7 @@ Suite *suite_unit_arena(void)
     tcase_add_test(tests, overflow_is_out_of_memory);
     tcase_add_test(tests, sum_of_parts_may_overflow_too);
     tcase_add_test(tests, failed_allocation_is_out_of_memory);
+    tcase_add_test(tests, listed_arrays_are_those_of_an_arena);
+    tcase_add_test(tests, listed_arrays_are_null_without_memory);
     return suite;
 }

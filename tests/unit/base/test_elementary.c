@@ -103,6 +103,38 @@ START_TEST(bits)
 }
 END_TEST
 
+/* Against a stable sort of all values, for lists that are shorter and longer than these. */
+START_TEST(lists_have_the_largest_values)
+{
+    enum { N_VALUE = 40, N_LIST = 50 };
+    struct rng rng = rng_start(12);
+    double value[N_VALUE];
+    for (int n_max = 1; n_max <= N_LIST; n_max += 7) {
+        int list[N_LIST], n = 0;
+        for (int i = 0; i < N_VALUE; i++) {
+            value[i] = floor(rng_uniform(&rng, -9, 9));
+            n = hf_list_largest(i, value, n_max, n, list);
+        }
+        ck_assert_int_eq(n, n_max < N_VALUE ? n_max : N_VALUE);
+        for (int k = 0; k < n; k++) {
+            int n_before = 0;
+            for (int i = 0; i < N_VALUE; i++)
+                n_before += value[i] > value[list[k]] || (value[i] == value[list[k]] && i < list[k]);
+            ck_assert_int_eq(n_before, k);
+        }
+    }
+}
+END_TEST
+
+START_TEST(largest_magnitude)
+{
+    const double value[] = {1, -3, 2, NAN};
+    ck_assert_double_eq(hf_max_magnitude(4, value), 3);
+    ck_assert_double_eq(hf_max_magnitude(1, value + 3), 0);
+    ck_assert_double_eq(hf_max_magnitude(0, value), 0);
+}
+END_TEST
+
 Suite *suite_unit_elementary(void)
 {
     Suite *suite = suite_create("unit/elementary");
@@ -112,5 +144,7 @@ Suite *suite_unit_elementary(void)
     tcase_add_test(tests, ends_of_the_ranges);
     tcase_add_test(tests, logarithm_and_normal_quantile);
     tcase_add_test(tests, bits);
+    tcase_add_test(tests, lists_have_the_largest_values);
+    tcase_add_test(tests, largest_magnitude);
     return suite;
 }

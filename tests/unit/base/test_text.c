@@ -239,6 +239,25 @@ START_TEST(whatever_is_escaped_can_be_shown)
 }
 END_TEST
 
+START_TEST(a_list_ends_with_more_where_it_is_full)
+{
+    static const char *const item[] = {"front", "rear", "tie", "edge"};
+    for (size_t size = 6; size < 40; size++) {
+        char text[40] = "", whole[40] = "";
+        bool fits = true;
+        for (int k = 0; k < 4; k++) {
+            if (fits) fits = hf_text_append(text, size, ", ", item[k], ", ...");
+            snprintf(whole + strlen(whole), sizeof whole - strlen(whole), "%s%s", k ? ", " : "", item[k]);
+        }
+        ck_assert_uint_lt(strlen(text), size);
+        if (fits) ck_assert_str_eq(text, whole);
+        if (!fits) ck_assert_str_eq(text + strlen(text) - 5, ", ...");
+        if (!fits) ck_assert_int_eq(strncmp(text, whole, strlen(text) - 5), 0);
+        ck_assert(fits == (size > strlen(whole) + 5));
+    }
+}
+END_TEST
+
 Suite *suite_unit_text(void)
 {
     Suite *suite = suite_create("unit/text");
@@ -252,6 +271,7 @@ Suite *suite_unit_text(void)
     tcase_add_loop_test(tests, everything_else_is_refused, 0, sizeof bad_double / sizeof *bad_double);
     tcase_add_test(tests, a_decimal_comma_changes_nothing);
     tcase_add_test(tests, whole_numbers);
+    tcase_add_test(tests, a_list_ends_with_more_where_it_is_full);
     tcase_add_test(tests, nearest_word_is_a_likely_typing_error);
     tcase_add_loop_test(tests, files_of_any_length_are_whole, 0, 8);
     tcase_add_test(tests, files_that_cannot_be_read_are_named);

@@ -26,7 +26,7 @@ static void make_job(const twin *t, job *j, double range_m, double step_m, int m
 
 static void find_moves(const twin *t, const job *j, hf_estimate *p, hf_adjustment *found)
 {
-    ck_assert_int_eq(hf_estimate_create(&t->built, &t->prior, t->place_m, p), HF_OK);
+    ck_assert_int_eq(hf_estimate_create(&t->built, &t->prior, t->position_m, p), HF_OK);
     ck_assert_int_eq(hf_estimate_find(p), HF_OK);
     ck_assert_int_eq(hf_adjust_find(p, &j->task, found), HF_OK);
 }
@@ -54,7 +54,7 @@ static void check_moves(const job *j, const hf_adjustment *found)
     ck_assert_double_le(found->best_m, found->adjusted_m);
     ck_assert_double_le(found->adjusted_m, found->estimated_m);
     for (int k = 0; k < found->n_move; k++) {
-        const hf_adjust_move *move = &found->move[k];
+        const hf_adjust_turnbuckle *move = &found->move[k];
         ck_assert(move->move_m == move->steps * j->settings.step_m && move->steps != 0);
         ck_assert_double_le(fabs(move->move_m), j->settings.range_m);
         for (int l = 0; l < k; l++)
@@ -69,7 +69,7 @@ static double missed_gains(twin *t, const hf_adjustment *found)
 {
     double sum = 0, true_m = true_psi_m(t, found, 0);
     for (int k = 0; k < found->n_move; k++) {
-        const hf_adjust_move *move = &found->move[k];
+        const hf_adjust_turnbuckle *move = &found->move[k];
         double now_m = true_psi_m(t, found, k + 1), off = (true_m - now_m - move->gain_m) / move->gain_sigma_m;
         true_m = now_m;
         sum += off * off;
@@ -186,7 +186,7 @@ START_TEST(least_tensions_are_kept)
     for (int asked = 0; asked < 2; asked++) {
         hf_estimate p;
         hf_adjustment found;
-        j.task.least_N = asked ? least_N : NULL;
+        j.task.min_N = asked ? least_N : NULL;
         find_moves(&t, &j, &p, &found);
         lacks[asked] = shortfall(&t, &p, &found, least_N);
         printf("%s: psi %.3f -> %.3f mm by %d moves, %.3f of a least tension is not there\n",
@@ -220,7 +220,7 @@ START_TEST(least_tensions_are_kept_far_away)
     make_job(&t, &j, 0.3, 1e-3, 6);
     for (int e = 0; e < t.built.model.n_cable; e++)
         least_N[e] = t.built.tension_N[e] / 2;
-    j.task.least_N = least_N;
+    j.task.min_N = least_N;
     find_moves(&t, &j, &p, &found);
     double lacks = shortfall(&t, &p, &found, least_N);
     printf("net %d: %d moves, %.3f of a least tension is not there\n", _i, found.n_move, lacks);

@@ -15,7 +15,7 @@ START_TEST(a_net_cut_at_its_shape_has_this_shape)
     ck_assert_int_eq(hf_built_solve(&built, &(hf_built_net){0}, &w, &r), HF_OK);
     for (int i = 0; i < 3 * net.model.n_node; i++) {
         ck_assert_double_eq_tol(w.position_m[i], net.work.position_m[i], 1e-9);
-        ck_assert(built.place_m[i] == net.work.position_m[i]);
+        ck_assert(built.position_m[i] == net.work.position_m[i]);
     }
     for (int e = 0; e < net.model.n_cable; e++)
         ck_assert_double_eq_tol(w.tension_N[e], net.work.tension_N[e], 1e-6 * built.model.reference_N);

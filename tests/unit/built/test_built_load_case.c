@@ -47,7 +47,7 @@ static void find_load_case(struct built_net *b)
     ck_assert_int_eq(hf_built_solve(&b->built, &net, &b->work, &r), HF_OK);
 }
 
-static double place_m(const struct built_net *b, int i_node, int c)
+static double position_m(const struct built_net *b, int i_node, int c)
 {
     return b->work.position_m[c * b->design.model.n_node + b->design.model.row_of_node[i_node]];
 }
@@ -85,7 +85,7 @@ START_TEST(two_cables_in_line_under_temperature)
     double T = (3 - l[0] - l[1]) / (l[0] / 2000 + l[1] / 5000);
     for (int e = 0; e < 2; e++)
         ck_assert_double_eq_tol(b.work.tension_N[e], T, 1e-9);
-    ck_assert_double_eq_tol(place_m(&b, 1, 2), -l[0] * (1 + T / 2000), 1e-13);
+    ck_assert_double_eq_tol(position_m(&b, 1, 2), -l[0] * (1 + T / 2000), 1e-13);
     close_built(&b);
 }
 END_TEST
@@ -109,7 +109,7 @@ START_TEST(a_node_hangs_by_its_weight)
     find_load_case(&b);
     double weight = 1.5 + g * (0.5 + 0.1 * l0[0] / 2 + 0.3 * l0[1] / 2), k1 = 2000 / l0[0], k2 = 5000 / l0[1];
     double u = (weight + (k2 * (2.001 - l0[1]) - k1 * (1 - l0[0]))) / (k1 + k2);
-    ck_assert_double_eq_tol(place_m(&b, 1, 2), -1 - u, 1e-13);
+    ck_assert_double_eq_tol(position_m(&b, 1, 2), -1 - u, 1e-13);
     ck_assert_double_eq_tol(b.work.tension_N[0] - b.work.tension_N[1], weight, 1e-9);
     ck_assert_double_eq_tol(b.work.tension_N[0], k1 * (1 + u - l0[0]), 1e-9);
     close_built(&b);
@@ -139,8 +139,8 @@ START_TEST(three_cables_hold_a_node)
         double z = (low + high) / 2, l = sqrt(1 + z * z);
         *(3 * 3000 * (l / l0 - 1) * z / l > 2 ? &high : &low) = z;
     }
-    ck_assert_double_eq_tol(place_m(&b, 0, 2), -low, 1e-11);
-    ck_assert_double_eq_tol(place_m(&b, 0, 0), 0, 1e-12);
+    ck_assert_double_eq_tol(position_m(&b, 0, 2), -low, 1e-11);
+    ck_assert_double_eq_tol(position_m(&b, 0, 0), 0, 1e-12);
     for (int e = 0; e < 3; e++)
         ck_assert_double_eq_tol(b.work.tension_N[e], 3000 * (sqrt(1 + low * low) / l0 - 1), 1e-8);
     close_built(&b);
@@ -181,7 +181,7 @@ START_TEST(uniform_heat_is_a_scaling)
     find_load_case(&b);
     double largest_N = b.built.model.reference_N;
     for (int i = 0; i < 3 * m->n_node; i++)
-        ck_assert_double_eq_tol(b.work.position_m[i], (1 + strain) * b.built.place_m[i], 1e-12 * 12);
+        ck_assert_double_eq_tol(b.work.position_m[i], (1 + strain) * b.built.position_m[i], 1e-12 * 12);
     for (int e = 0; e < m->n_cable; e++)
         ck_assert_double_eq_tol(b.work.tension_N[e], b.built.tension_N[e], 1e-11 * largest_N);
     close_built(&b);

@@ -76,7 +76,7 @@ START_TEST(the_saddle_is_least_squares)
     ck_assert_int_eq(hf_saddle_factor(&s, 0), HF_OK);
     ck_assert(s.is_dual == (_i % 4 == 0)); /* both ways are tested: this net needs no LU without a border */
     for (int i = 0; i < 3 * m->n_node; i++)
-        gap[i] = t.place_m[i] - t.built.place_m[i % 3 * m->n_node + i / 3];
+        gap[i] = t.position_m[i] - t.built.position_m[i % 3 * m->n_node + i / 3];
     memset(cut, 0, sizeof cut);
     memset(rest, 0, sizeof rest);
     ck_assert_int_eq(hf_saddle_solve(&s, 1, &(hf_saddle_answer){gap, cut[0], rest[0], move[0], shared[0]}, work),
@@ -102,7 +102,7 @@ END_TEST
  * another order for several. */
 START_TEST(answers_together_are_those_alone)
 {
-    enum { N = HF_SADDLE_DUAL_PANEL };
+    enum { N = HF_SADDLE_PANEL };
     static twin t;
     static double gap[N][TWIN_DOFS], work[N * 2 * TWIN_DOFS], cut[2][N][TWIN_CABLES], rest[2][N][TWIN_DOFS];
     static double move[2][N][TWIN_DOFS], shared[2][N][TWIN_SPOOLS];
@@ -155,7 +155,7 @@ START_TEST(the_same_shape_is_factored_once)
     hf_estimate p;
     open_random_twin(&t, 0, false);
     measure_twin(&t, 1e-3, 0, 1e-3, 3);
-    ck_assert_int_eq(hf_estimate_create(&t.built, &t.prior, t.place_m, &p), HF_OK);
+    ck_assert_int_eq(hf_estimate_create(&t.built, &t.prior, t.position_m, &p), HF_OK);
     ck_assert_int_eq(hf_estimate_find(&p), HF_OK);
     ck_assert(p.is_settled);
     int n = p.linear.n_factor;
@@ -202,7 +202,7 @@ END_TEST
 
 static void estimate_twin(twin *t, hf_estimate *p)
 {
-    ck_assert_int_eq(hf_estimate_create(&t->built, &t->prior, t->place_m, p), HF_OK);
+    ck_assert_int_eq(hf_estimate_create(&t->built, &t->prior, t->position_m, p), HF_OK);
     ck_assert_int_eq(hf_estimate_find(p), HF_OK);
     ck_assert(p->is_settled);
 }
@@ -230,7 +230,7 @@ START_TEST(what_is_measured_exactly_is_reproduced)
     measure_twin(&t, 2e-3, 0, 1e-7, 0);
     const hf_model *m = &t.built.model;
     for (int i = 0; i < 3 * m->n_node; i++)
-        t.place_m[i] = t.work.position_m[i % 3 * m->n_node + i / 3];
+        t.position_m[i] = t.work.position_m[i % 3 * m->n_node + i / 3];
     estimate_twin(&t, &p);
     ck_assert_double_lt(farthest_off(&t, &p), 1e-9);
     hf_estimate_free(&p);
@@ -274,7 +274,7 @@ START_TEST(one_wrong_cable_is_found)
         length[e] = m->target[e] + (e == wrong ? -30 * usual_m : 0);
     ck_assert_int_eq(hf_built_solve(&t.built, &(hf_built_net){.cut_m = length}, &t.work, &r), HF_OK);
     for (int i = 0; i < 3 * m->n_node; i++)
-        t.place_m[i] = t.work.position_m[i % 3 * m->n_node + i / 3] + usual_m / 2 * rng_normal(&t.rng);
+        t.position_m[i] = t.work.position_m[i % 3 * m->n_node + i / 3] + usual_m / 2 * rng_normal(&t.rng);
     estimate_twin(&t, &p);
     for (int e = 0; e < m->n_cable; e++)
         if (fabs(p.cut_m[e]) > fabs(p.cut_m[worst])) worst = e;
@@ -293,7 +293,7 @@ static double missed_m(twin *t, const hf_saddle_prior *prior)
     hf_estimate p;
     double sum = 0;
     int n = t->built.model.n_cable;
-    ck_assert_int_eq(hf_estimate_create(&t->built, prior, t->place_m, &p), HF_OK);
+    ck_assert_int_eq(hf_estimate_create(&t->built, prior, t->position_m, &p), HF_OK);
     ck_assert_int_eq(hf_estimate_find(&p), HF_OK);
     for (int e = 0; e < n; e++)
         sum += (p.cut_m[e] - t->cut_m[e]) * (p.cut_m[e] - t->cut_m[e]);
@@ -374,7 +374,7 @@ START_TEST(the_estimate_is_the_most_probable)
             for (int e = 0; e < m->n_cable; e++)
                 misfit += p.cut_m[e] * p.cut_m[e] / (t.sigma_m[e] * t.sigma_m[e]) / 2;
             for (size_t i = 0; i < n_dof; i++) {
-                double d = t.place_m[i] - p.work.position_m[i % 3 * (size_t)m->n_node + i / 3];
+                double d = t.position_m[i] - p.work.position_m[i % 3 * (size_t)m->n_node + i / 3];
                 misfit += t.weight_per_m2[i] * d * d / 2;
                 if (p.prior.support_sigma_m > 0)
                     misfit += p.rest_m[i] * p.rest_m[i] / (p.prior.support_sigma_m * p.prior.support_sigma_m) / 2;

@@ -30,7 +30,7 @@ static void forget_psi(study *s)
 {
     hf_model *m = &s->built.model;
     for (int i = 0; i < 3 * m->n_node; i++) /* supports rest where they are */
-        if (i % m->n_node < m->n_free) m->position_m[i] = s->built.place_m[i];
+        if (i % m->n_node < m->n_free) m->position_m[i] = s->built.position_m[i];
 }
 
 static void close_study(study *s)

@@ -75,7 +75,7 @@ START_TEST(model_mirrors_the_scene)
         for (int k = 0; k < 2; k++)
             ck_assert_int_eq(m->node_of_row[m->end_row[2 * e + k]], cable[e].end[k]);
         ck_assert_int_eq(m->group[e], cable[e].group);
-        ck_assert_double_eq(m->length_m[e], hf_scene_theoretical_length(&net.scene, e));
+        ck_assert_double_eq(m->length_m[e], hf_scene_length_at_target(&net.scene, e));
     }
     ck_assert_int_eq(m->inner_row[0], m->row_of_node[1]);
     ck_assert_int_eq(m->n_variable, 1); /* cable 3 is boundary, but between supports */

@@ -120,7 +120,7 @@ START_TEST(roles_and_groups_are_as_counted)
         int is_boundary = s.group[e] == HF_GROUP_BOUNDARY;
         ck_assert_int_eq(s.law[e], is_boundary ? HF_LAW_LENGTH : HF_LAW_TENSION);
         if (is_boundary)
-            ck_assert_double_eq(s.target[e], hf_scene_theoretical_length(&s, e));
+            ck_assert_double_eq(s.target[e], hf_scene_length_at_target(&s, e));
         else
             ck_assert_double_nan(s.target[e]);
     }

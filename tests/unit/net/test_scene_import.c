@@ -63,7 +63,7 @@ START_TEST(every_spelling_gives_the_same_scene)
     ck_assert(s.group[0] == HF_GROUP_INNER && s.group[1] == HF_GROUP_BOUNDARY);
     ck_assert(s.law[0] == HF_LAW_TENSION && s.law[1] == HF_LAW_LENGTH);
     ck_assert_double_eq(s.target[0], 12.5);
-    ck_assert_double_eq(s.target[1], hf_scene_theoretical_length(&s, 1)); /* empty: the theoretical length */
+    ck_assert_double_eq(s.target[1], hf_scene_length_at_target(&s, 1)); /* empty: the theoretical length */
     ck_assert_ptr_null(s.load_N);
     ck_assert_ptr_null(s.EA_N);
     hf_scene_free(&s);

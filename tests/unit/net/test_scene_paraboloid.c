@@ -261,7 +261,7 @@ START_TEST(ties_have_their_tension)
     int k = hf_cable_set_find(&s, "tie");
     for (int i = s.set_start[k]; i < s.set_start[k + 1]; i++) {
         int e = s.set_cable[i];
-        double length = hf_scene_theoretical_length(&s, e);
+        double length = hf_scene_length_at_target(&s, e);
         ck_assert_int_eq(s.law[e], _i);
         if (_i == HF_LAW_TENSION) ck_assert_double_eq(s.target[e], 7);
         if (_i == HF_LAW_LENGTH) ck_assert_double_eq(s.target[e], length);

@@ -306,7 +306,7 @@ START_TEST(rear_net_stands_behind)
         if (s.role[i] == HF_ROLE_SUPPORT) continue;
         int e = cable_between(&s, i, n + i);
         ck_assert_int_eq(e, 2 * m + n_free++);
-        ck_assert_double_eq_tol(s.target[e] * hf_scene_theoretical_length(&s, e), 4, 1e-14);
+        ck_assert_double_eq_tol(s.target[e] * hf_scene_length_at_target(&s, e), 4, 1e-14);
     }
     ck_assert_int_eq(s.n_cable, 2 * m + n_free);
     for (int e = 0; e < m; e++) {

@@ -164,7 +164,7 @@ START_TEST(elastic_cables_on_a_truss)
         EA_N[e] = 1000;
         if (e % 3) continue;
         net.scene.law[e] = HF_LAW_ELASTIC;
-        net.scene.target[e] = hf_scene_theoretical_length(&net.scene, e) / 1.01;
+        net.scene.target[e] = hf_scene_length_at_target(&net.scene, e) / 1.01;
     }
     net.scene.EA_N = EA_N;
     open_net(&net);

@@ -18,7 +18,7 @@ static void open_mixed(struct net *net, int trial, double EA_N, double *EA)
         net->scene.group[e] = e % 4 == 1 ? HF_GROUP_BOUNDARY : HF_GROUP_INNER;
         if (e % 3) continue;
         net->scene.law[e] = HF_LAW_ELASTIC;
-        net->scene.target[e] = hf_scene_theoretical_length(&net->scene, e) / (1 + net->scene.target[e] / EA_N);
+        net->scene.target[e] = hf_scene_length_at_target(&net->scene, e) / (1 + net->scene.target[e] / EA_N);
     }
     net->scene.EA_N = EA;
     open_net(net);

@@ -29,7 +29,7 @@ static void open_all_laws(struct net *net, int trial, double *EA)
         EA[e] = middle_N * pow(10, rng_uniform(&rng, -1, 1));
         if (s->group[e] == HF_GROUP_BOUNDARY || rng_uniform(&rng, 0, 1) > part) continue;
         s->law[e] = HF_LAW_ELASTIC;
-        s->target[e] = hf_scene_theoretical_length(s, e) / (1 + 10 / EA[e]) * (1 + cut * rng_uniform(&rng, -1, 1));
+        s->target[e] = hf_scene_length_at_target(s, e) / (1 + 10 / EA[e]) * (1 + cut * rng_uniform(&rng, -1, 1));
     }
     s->EA_N = EA;
     open_net(net);
@@ -156,7 +156,7 @@ START_TEST(shape_behind_a_narrow_place_is_found)
     const double wide[3][3] = {{1, 0, 0}, {0, 100, 0}, {0, 0, 1}}, none[3] = {0};
     map_scene(&net.scene, wide, none);
     for (int e = 0; e < net.scene.n_cable; e++)
-        if (net.scene.law[e] == HF_LAW_LENGTH) net.scene.target[e] = hf_scene_theoretical_length(&net.scene, e);
+        if (net.scene.law[e] == HF_LAW_LENGTH) net.scene.target[e] = hf_scene_length_at_target(&net.scene, e);
     net.form.residual_tolerance = net.form.length_tolerance = 1e-9;
     open_net(&net);
     ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &net.result), HF_OK);

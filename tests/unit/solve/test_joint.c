@@ -13,7 +13,7 @@ static double *open_elastic(struct net *net, struct rng *rng, bool is_mixed, dou
     double *stiffness = malloc((size_t)net->scene.n_cable * sizeof *stiffness);
     ck_assert_ptr_nonnull(stiffness);
     for (int e = 0; e < net->scene.n_cable; e++) {
-        double length = hf_scene_theoretical_length(&net->scene, e);
+        double length = hf_scene_length_at_target(&net->scene, e);
         bool is_spring = is_mixed && e % 3 == 1;
         stiffness[e] = EA_N;
         if (is_mixed && e % 3 == 2) continue;

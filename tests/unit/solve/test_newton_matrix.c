@@ -45,7 +45,7 @@ static void open_smooth(struct net *net, int trial)
     random_tension_scene(&rng, &net->scene);
     for (int e = 0; e < net->scene.n_cable; e += 3) {
         net->scene.law[e] = HF_LAW_FORCE_DENSITY;
-        net->scene.target[e] /= hf_scene_theoretical_length(&net->scene, e);
+        net->scene.target[e] /= hf_scene_length_at_target(&net->scene, e);
     }
     open_net(net);
     ck_assert_int_eq(hf_evaluate_form(&net->model, &net->form, &net->work, NULL, &net->result), HF_OK);

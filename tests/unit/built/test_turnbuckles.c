@@ -1,7 +1,7 @@
 /* The choice of moves: against all choices there are; steps and range; when it ends. */
 #include "support.h"
 
-#include "built/moves.h"
+#include "built/turnbuckles.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@ enum { MAX_CABLES = 40, ROWS = 30 };
 
 typedef struct {
     double column[MAX_CABLES][ROWS], residual[ROWS], gram[MAX_CABLES * MAX_CABLES], slope[MAX_CABLES];
-    hf_moves_problem p;
+    hf_turnbuckles_problem p;
 } example;
 
 /* Columns that are alike, as those of neighbouring cables are: a walk of random steps. */
@@ -29,16 +29,16 @@ static void make_example(example *x, struct rng *rng, int n, int n_row, int move
             for (int j = 0; j < n; j++)
                 x->gram[i * n + j] += x->column[i][r] * x->column[j][r];
         }
-    x->p = (hf_moves_problem){
-        .n = n, .gram = x->gram, .slope = x->slope, .step_m = 0.1, .steps_max = steps, .moves_max = moves};
+    x->p = (hf_turnbuckles_problem){
+        .n = n, .gram = x->gram, .slope = x->slope, .step_m = 0.1, .steps_max = steps, .n_max = moves};
     for (int r = 0; r < n_row; r++)
         x->p.square += x->residual[r] * x->residual[r];
 }
 
 /* The least sum of squares over all choices of at most `left` cables from `first` on. */
-static double search_all(const hf_moves_problem *p, int first, int left, int *steps)
+static double search_all(const hf_turnbuckles_problem *p, int first, int left, int *steps)
 {
-    double least = hf_moves_square(p, steps);
+    double least = hf_turnbuckles_square(p, steps);
     for (int i = first; i < p->n && left; i++)
         for (int k = -p->steps_max; k <= p->steps_max; k++) {
             if (!k) continue;
@@ -59,17 +59,17 @@ START_TEST(choices_are_nearly_the_best)
     enum { TRIALS = 60 };
     for (int trial = 0; trial < TRIALS; trial++) {
         int steps[MAX_CABLES] = {0}, none[MAX_CABLES] = {0}, n_turned = 0;
-        hf_moves_end end;
+        hf_turnbuckles_end end;
         bool is_held;
         make_example(&x, &rng, 8, 12, 3, 4);
-        double least = search_all(&x.p, 0, x.p.moves_max, none);
-        ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end, &is_held), HF_OK);
-        double square = hf_moves_square(&x.p, steps);
+        double least = search_all(&x.p, 0, x.p.n_max, none);
+        ck_assert_int_eq(hf_turnbuckles_choose(&x.p, steps, &end, &is_held), HF_OK);
+        double square = hf_turnbuckles_square(&x.p, steps);
         for (int i = 0; i < x.p.n; i++) {
             n_turned += steps[i] != 0;
             ck_assert_int_le(abs(steps[i]), x.p.steps_max);
         }
-        ck_assert_int_le(n_turned, x.p.moves_max);
+        ck_assert_int_le(n_turned, x.p.n_max);
         ck_assert_double_ge(square, least - 1e-9);
         n_best += square < least + 1e-9;
         worst = fmax(worst, sqrt(square / least));
@@ -86,34 +86,34 @@ START_TEST(it_ends_when_it_should)
     struct rng rng = rng_start(7001);
     int steps[MAX_CABLES], more[MAX_CABLES], n = 0;
     double sample[MAX_CABLES] = {0};
-    hf_moves_end end;
+    hf_turnbuckles_end end;
     bool is_held;
     make_example(&x, &rng, 20, 30, 5, 100);
-    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end, &is_held), HF_OK);
-    ck_assert_int_eq(end, HF_MOVES_ALL);
-    double reached = sqrt(hf_moves_square(&x.p, steps));
+    ck_assert_int_eq(hf_turnbuckles_choose(&x.p, steps, &end, &is_held), HF_OK);
+    ck_assert_int_eq(end, HF_TURNBUCKLES_ALL);
+    double reached = sqrt(hf_turnbuckles_square(&x.p, steps));
     x.p.target = reached * 1.2;
-    ck_assert_int_eq(hf_moves_choose(&x.p, more, &end, &is_held), HF_OK);
-    ck_assert_int_eq(end, HF_MOVES_TARGET);
-    ck_assert_double_le(sqrt(hf_moves_square(&x.p, more)), x.p.target);
+    ck_assert_int_eq(hf_turnbuckles_choose(&x.p, more, &end, &is_held), HF_OK);
+    ck_assert_int_eq(end, HF_TURNBUCKLES_TARGET);
+    ck_assert_double_le(sqrt(hf_turnbuckles_square(&x.p, more)), x.p.target);
     for (int i = 0; i < x.p.n; i++)
         n += more[i] != 0;
     ck_assert_int_lt(n, 5);
 
     x.p.target = 0;
     x.p.step_m = 100; /* every step is too large */
-    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end, &is_held), HF_OK);
-    ck_assert_int_eq(end, HF_MOVES_NONE);
-    ck_assert(hf_moves_square(&x.p, steps) == x.p.square);
+    ck_assert_int_eq(hf_turnbuckles_choose(&x.p, steps, &end, &is_held), HF_OK);
+    ck_assert_int_eq(end, HF_TURNBUCKLES_NONE);
+    ck_assert(hf_turnbuckles_square(&x.p, steps) == x.p.square);
 
     x.p.step_m = 0.1;
     x.p.n_sample = 1;
     x.p.sample = sample;
     for (int i = 0; i < x.p.n; i++)
         sample[i] = 1e3;
-    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end, &is_held), HF_OK);
-    ck_assert_int_eq(end, HF_MOVES_DOUBT);
-    ck_assert(hf_moves_square(&x.p, steps) == x.p.square);
+    ck_assert_int_eq(hf_turnbuckles_choose(&x.p, steps, &end, &is_held), HF_OK);
+    ck_assert_int_eq(end, HF_TURNBUCKLES_DOUBT);
+    ck_assert(hf_turnbuckles_square(&x.p, steps) == x.p.square);
 }
 END_TEST
 
@@ -123,17 +123,16 @@ START_TEST(the_most_promising_are_tried)
     static example x;
     enum { TURNED = 3 };
     int steps[MAX_CABLES];
-    hf_moves_end end;
+    hf_turnbuckles_end end;
     bool is_held;
     x = (example){
-        .p = {
-            .n = MAX_CABLES, .gram = x.gram, .slope = x.slope, .step_m = 0.01, .steps_max = 1000, .moves_max = TURNED}};
+        .p = {.n = MAX_CABLES, .gram = x.gram, .slope = x.slope, .step_m = 0.01, .steps_max = 1000, .n_max = TURNED}};
     for (int i = 0; i < MAX_CABLES; i++) {
         x.gram[i * MAX_CABLES + i] = 1;
         x.slope[i] = 1 + i * 7 % MAX_CABLES; /* each size once */
         x.p.square += x.slope[i] * x.slope[i];
     }
-    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end, &is_held), HF_OK);
+    ck_assert_int_eq(hf_turnbuckles_choose(&x.p, steps, &end, &is_held), HF_OK);
     for (int i = 0; i < MAX_CABLES; i++)
         ck_assert_int_eq(steps[i] != 0, x.slope[i] > MAX_CABLES - TURNED);
 }
@@ -166,7 +165,7 @@ static bool breaks(const held *h, const int *steps)
 /* search_all, of what tensions allow. */
 static double search_allowed(const held *h, int first, int left, int *steps)
 {
-    double least = breaks(h, steps) ? (double)INFINITY : hf_moves_square(&h->x.p, steps);
+    double least = breaks(h, steps) ? (double)INFINITY : hf_turnbuckles_square(&h->x.p, steps);
     for (int i = first; i < h->x.p.n && left; i++)
         for (int k = -h->x.p.steps_max; k <= h->x.p.steps_max; k++) {
             if (!k) continue;
@@ -188,10 +187,10 @@ START_TEST(tensions_are_kept)
     enum { TRIALS = 40 };
     for (int trial = 0; trial < TRIALS; trial++) {
         int free_steps[MAX_CABLES], steps[MAX_CABLES], none[MAX_CABLES] = {0};
-        hf_moves_end end;
+        hf_turnbuckles_end end;
         bool is_held, is_free_held;
         make_example(&h.x, &rng, 8, 12, 3, 4);
-        ck_assert_int_eq(hf_moves_choose(&h.x.p, free_steps, &end, &is_free_held), HF_OK);
+        ck_assert_int_eq(hf_turnbuckles_choose(&h.x.p, free_steps, &end, &is_free_held), HF_OK);
         ck_assert(!is_free_held);
         for (int t = 0; t < TENSIONS; t++) {
             h.room[t] = t == trial % (2 * TENSIONS) ? 0 : rng_uniform(&rng, 0.1, 0.6);
@@ -200,11 +199,11 @@ START_TEST(tensions_are_kept)
         }
         h.x.p.n_tension = TENSIONS, h.x.p.room_N = h.room, h.x.p.rates = give_rates, h.x.p.context = &h;
         h.x.p.reference_N = 1;
-        ck_assert_int_eq(hf_moves_choose(&h.x.p, steps, &end, &is_held), HF_OK);
+        ck_assert_int_eq(hf_turnbuckles_choose(&h.x.p, steps, &end, &is_held), HF_OK);
         ck_assert(!breaks(&h, steps));
         if (breaks(&h, free_steps)) ck_assert(is_held);
         n_broken += breaks(&h, free_steps);
-        double least = search_allowed(&h, 0, h.x.p.moves_max, none), square = hf_moves_square(&h.x.p, steps);
+        double least = search_allowed(&h, 0, h.x.p.n_max, none), square = hf_turnbuckles_square(&h.x.p, steps);
         ck_assert_double_ge(square, least - 1e-9);
         n_best += square < least + 1e-9;
         worst = fmax(worst, sqrt(square / least));
@@ -237,13 +236,13 @@ START_TEST(no_room_is_no_reason_to_fail)
         h.x.p.reference_N = 1;
         for (int k = 0; k < 2; k++) {
             int steps[MAX_CABLES];
-            hf_moves_end end;
+            hf_turnbuckles_end end;
             bool is_held;
             for (int t = 0; t < TENSIONS / 2; t++)
                 h.room[t] = k * 1e-9;
-            ck_assert_int_eq(hf_moves_choose(&h.x.p, steps, &end, &is_held), HF_OK);
+            ck_assert_int_eq(hf_turnbuckles_choose(&h.x.p, steps, &end, &is_held), HF_OK);
             ck_assert(!breaks(&h, steps));
-            square[k] = hf_moves_square(&h.x.p, steps);
+            square[k] = hf_turnbuckles_square(&h.x.p, steps);
         }
         worst = fmax(worst, square[0] / square[1]);
     }
@@ -258,13 +257,13 @@ START_TEST(without_memory_there_is_no_choice)
     static example x;
     struct rng rng = rng_start(7400);
     int wanted[MAX_CABLES], steps[MAX_CABLES], n_failed = 0;
-    hf_moves_end end;
+    hf_turnbuckles_end end;
     bool is_held;
     make_example(&x, &rng, 8, 12, 3, 4);
-    ck_assert_int_eq(hf_moves_choose(&x.p, wanted, &end, &is_held), HF_OK);
+    ck_assert_int_eq(hf_turnbuckles_choose(&x.p, wanted, &end, &is_held), HF_OK);
     for (long n = 1;; n++) {
         fail_allocation_at(n);
-        hf_status status = hf_moves_choose(&x.p, steps, &end, &is_held);
+        hf_status status = hf_turnbuckles_choose(&x.p, steps, &end, &is_held);
         if (!end_allocation_failure()) break;
         ck_assert_int_eq(status, HF_NO_MEMORY);
         n_failed++;
@@ -281,11 +280,11 @@ START_TEST(the_best_is_a_bound)
     struct rng rng = rng_start(7100 + (uint64_t)_i);
     int steps[MAX_CABLES];
     double move[MAX_CABLES], square;
-    hf_moves_end end;
+    hf_turnbuckles_end end;
     bool is_held;
     make_example(&x, &rng, 20, 30, 20, _i + 1);
-    ck_assert_int_eq(hf_moves_best(&x.p, move), HF_OK);
-    ck_assert_int_eq(hf_moves_choose(&x.p, steps, &end, &is_held), HF_OK);
+    ck_assert_int_eq(hf_turnbuckles_best(&x.p, move), HF_OK);
+    ck_assert_int_eq(hf_turnbuckles_choose(&x.p, steps, &end, &is_held), HF_OK);
     square = 0;
     for (int r = 0; r < 30; r++) {
         double sum = x.residual[r];
@@ -295,14 +294,14 @@ START_TEST(the_best_is_a_bound)
     }
     for (int i = 0; i < x.p.n; i++)
         ck_assert_double_le(fabs(move[i]), x.p.steps_max * x.p.step_m);
-    ck_assert_double_le(square, hf_moves_square(&x.p, steps));
+    ck_assert_double_le(square, hf_turnbuckles_square(&x.p, steps));
 }
 END_TEST
 
-Suite *suite_unit_moves(void)
+Suite *suite_unit_turnbuckles(void)
 {
-    Suite *suite = suite_create("unit/built/moves");
-    TCase *tcase = tcase_create("moves");
+    Suite *suite = suite_create("unit/built/turnbuckles");
+    TCase *tcase = tcase_create("turnbuckles");
     tcase_add_test(tcase, choices_are_nearly_the_best);
     tcase_add_test(tcase, it_ends_when_it_should);
     tcase_add_test(tcase, the_most_promising_are_tried);

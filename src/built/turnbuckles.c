@@ -8,9 +8,10 @@
  * A fit is first made without tension limits. Only when it is better and breaks a limit is it repeated with them.
  * Contents: sums of squares, tensions, without steps, in whole steps, which turnbuckles, all steps together, order of
  * adjustments. */
-#include "built/moves.h"
+#include "built/turnbuckles.h"
 
 #include "base/arena.h"
+#include "base/elementary.h"
 #include "linalg/quadratic.h"
 
 #include <math.h>
@@ -26,7 +27,7 @@
 
 /* ---- sums of squares ---- */
 
-double hf_moves_square(const hf_moves_problem *p, const int *steps)
+double hf_turnbuckles_square(const hf_turnbuckles_problem *p, const int *steps)
 {
     double linear = 0, quadratic = 0;
     size_t n = (size_t)p->n;
@@ -42,7 +43,7 @@ double hf_moves_square(const hf_moves_problem *p, const int *steps)
 }
 
 /* Returns half the derivative of the sum of squares with respect to adjustment i. */
-static double slope_at(const hf_moves_problem *p, const int *steps, int i)
+static double slope_at(const hf_turnbuckles_problem *p, const int *steps, int i)
 {
     double sum = 0;
     for (int j = 0; j < p->n; j++)
@@ -50,7 +51,7 @@ static double slope_at(const hf_moves_problem *p, const int *steps, int i)
     return p->slope[i] + p->step_m * sum;
 }
 
-static double gram_of(const hf_moves_problem *p, int i, int j)
+static double gram_of(const hf_turnbuckles_problem *p, int i, int j)
 {
     return p->gram[(size_t)i * (size_t)p->n + (size_t)j];
 }
@@ -59,7 +60,7 @@ static double gram_of(const hf_moves_problem *p, int i, int j)
 
 /* Holds the effects of the listed turnbuckles on tensions. */
 typedef struct {
-    const hf_moves_problem *p;
+    const hf_turnbuckles_problem *p;
     int n;          /* number of listed turnbuckles */
     int *cable;     /* [maximum length of a list] turnbuckle of each row; -1: none */
     double *rate;   /* [maximum length of a list][n_tension] changes of tension per metre */
@@ -84,26 +85,26 @@ static void take_list(tensions *t, int n, const int *list)
     }
 }
 
-/* Sets fall_N to the fall of each tension after the adjustments move_m [n] of the list. */
-static void fall_by(const tensions *t, const double *move_m)
+/* Sets fall_N to the fall of each tension after the adjustments adjustment_m [n] of the list. */
+static void fall_by(const tensions *t, const double *adjustment_m)
 {
     memset(t->fall_N, 0, (size_t)t->p->n_tension * sizeof *t->fall_N);
     for (int k = 0; k < t->n; k++) {
         const double *rate = rates_of(t, k);
-        for (int i = 0; i < t->p->n_tension && move_m[k] != 0; i++)
-            t->fall_N[i] -= move_m[k] * rate[i];
+        for (int i = 0; i < t->p->n_tension && adjustment_m[k] != 0; i++)
+            t->fall_N[i] -= adjustment_m[k] * rate[i];
     }
 }
 
-static void fall_by_steps(const tensions *t, const int *steps, double *move_m)
+static void fall_by_steps(const tensions *t, const int *steps, double *adjustment_m)
 {
     for (int k = 0; k < t->n; k++)
-        move_m[k] = steps[t->cable[k]] * t->p->step_m;
-    fall_by(t, move_m);
+        adjustment_m[k] = steps[t->cable[k]] * t->p->step_m;
+    fall_by(t, adjustment_m);
 }
 
 /* Returns how far tension k may fall, including rounding. */
-static double room_to_fall(const hf_moves_problem *p, int k)
+static double room_to_fall(const hf_turnbuckles_problem *p, int k)
 {
     return p->room_N[k] + BOUND_ROUNDING * (p->room_N[k] + p->reference_N);
 }
@@ -140,7 +141,7 @@ static bool take_steps(const tensions *t, int i, int j, int a, int b)
 
 typedef struct {
     int n;
-    double most_m;
+    double max_m;
     const tensions *t; /* NULL: no limits on tensions */
 } box;
 
@@ -156,12 +157,12 @@ static bool worst_fall(const box *b, const double *x, hf_quadratic_limit *limit)
     return at >= 0;
 }
 
-/* Writes the bound that x violates most, for hf_quadratic. When x violates none, it writes the worst limit on
+/* Writes the bound that x violates max_m, for hf_quadratic. When x violates none, it writes the worst limit on
  * tensions. */
 static bool worst_bound(void *context, const double *x, hf_quadratic_limit *limit)
 {
     const box *b = context;
-    double worst = b->most_m * (1 + BOUND_ROUNDING);
+    double worst = b->max_m * (1 + BOUND_ROUNDING);
     int at = -1;
     for (int i = 0; i < b->n; i++) {
         if (fabs(x[i]) <= worst) continue;
@@ -173,55 +174,51 @@ static bool worst_bound(void *context, const double *x, hf_quadratic_limit *limi
     limit->kind = 0;
     limit->only = at;
     limit->normal[at] = x[at] < 0 ? 1 : -1;
-    limit->bound = -b->most_m;
+    limit->bound = -b->max_m;
     return true;
 }
 
-static void lay_out_box(hf_arena *arena, int n, double **hessian, double **vector)
+/* Finds the best adjustments adjustment_m [n] of a list without rounding to steps. t is NULL without limits on
+ * tensions. */
+static hf_status fit_list(const hf_turnbuckles_problem *p, int n, const int *list, const tensions *t,
+                          double *adjustment_m)
 {
-    *hessian = hf_arena_take(arena, (size_t)n * (size_t)n, sizeof(double));
-    *vector = hf_arena_take(arena, 3 * (size_t)n, sizeof(double));
-}
-
-/* Finds the best adjustments move_m [n] of a list without rounding to steps. t is NULL without limits on tensions. */
-static hf_status fit_list(const hf_moves_problem *p, int n, const int *list, const tensions *t, double *move_m)
-{
-    hf_arena arena = {0};
+    void *block;
     hf_quadratic q;
-    double *hessian = NULL, *gradient = NULL, largest = 0;
+    double *hessian, *gradient, *lower, *upper, largest = 0;
     box b = {n, p->steps_max * p->step_m, t};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_box(&arena, n, &hessian, &gradient)));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(hessian, (size_t)n * (size_t)n), HF_ARRAY(gradient, n), HF_ARRAY(lower, n),
+                           HF_ARRAY(upper, n)));
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++)
             hessian[i * n + j] = gram_of(p, list[i], list[j]);
         largest = fmax(largest, hessian[i * n + i]);
         gradient[i] = p->slope[list[i]];
-        gradient[n + i] = -b.most_m;
-        gradient[2 * n + i] = b.most_m;
-        move_m[i] = 0;
+        lower[i] = -b.max_m;
+        upper[i] = b.max_m;
+        adjustment_m[i] = 0;
     }
     for (int i = 0; i < n; i++)
         hessian[i * n + i] += largest > 0 ? RIDGE * largest : 1; /* all entries of a slack cable are 0 */
     hf_status status = hf_quadratic_create(n, &q);
-    if (status == HF_OK)
-        status = hf_quadratic_solve(&q, hessian, gradient, gradient + n, gradient + 2 * n, worst_bound, &b);
+    if (status == HF_OK) status = hf_quadratic_solve(&q, hessian, gradient, lower, upper, worst_bound, &b);
     for (int i = 0; i < n && status == HF_OK; i++)
-        move_m[i] = fmin(fmax(q.x[i], -b.most_m), b.most_m);
+        adjustment_m[i] = fmin(fmax(q.x[i], -b.max_m), b.max_m);
     hf_arena_free(&q.arena);
-    hf_arena_free(&arena);
-    return status == HF_NO_MEMORY ? status : HF_OK; /* other failures are rounding: move_m stays 0 */
+    hf_arena_free_block(block);
+    return status == HF_NO_MEMORY ? status : HF_OK; /* other failures are rounding: adjustment_m stays 0 */
 }
 
 /* ---- in whole steps ---- */
 
-static int within(const hf_moves_problem *p, double steps)
+static int within(const hf_turnbuckles_problem *p, double steps)
 {
     return (int)fmin(fmax(round(steps), -p->steps_max), p->steps_max);
 }
 
 /* Changes two turnbuckles by a and b steps, if that lowers the sum of squares and tensions allow it. Returns whether it
  * did. */
-static bool step_both(const hf_moves_problem *p, const tensions *t, int *steps, int i, int j, int a, int b)
+static bool step_both(const hf_turnbuckles_problem *p, const tensions *t, int *steps, int i, int j, int a, int b)
 {
     if (abs(steps[i] + a) > p->steps_max || abs(steps[j] + b) > p->steps_max) return false;
     double by = 2 * (a * slope_at(p, steps, i) + b * slope_at(p, steps, j)) +
@@ -234,87 +231,84 @@ static bool step_both(const hf_moves_problem *p, const tensions *t, int *steps, 
 }
 
 /* Changes one or two turnbuckles of the list at a time until nothing lowers the sum of squares. */
-static void descend(const hf_moves_problem *p, int n, const int *list, const tensions *t, int *steps)
+static void descend(const hf_turnbuckles_problem *p, int n, const int *list, const tensions *t, int *steps)
 {
-    bool moves = true;
-    for (int round_ = 0; moves && round_ < ROUNDS_MAX; round_++) {
-        moves = false;
+    bool changes = true;
+    for (int round_ = 0; changes && round_ < ROUNDS_MAX; round_++) {
+        changes = false;
         for (int k = 0; k < n; k++) {
             int i = list[k], was = steps[i];
             double curve = gram_of(p, i, i);
             if (!(curve > 0)) continue;
-            int wanted = within(p, was - slope_at(p, steps, i) / (curve * p->step_m));
-            if (wanted != was)
-                moves |= step_both(p, t, steps, i, i == list[0] ? list[n - 1] : list[0], wanted - was, 0);
+            int target_steps = within(p, was - slope_at(p, steps, i) / (curve * p->step_m));
+            if (target_steps != was)
+                changes |= step_both(p, t, steps, i, i == list[0] ? list[n - 1] : list[0], target_steps - was, 0);
         }
         for (int k = 0; k < n; k++)
             for (int l = 0; l < k; l++)
                 for (int way = 0; way < 4; way++)
-                    moves |= step_both(p, t, steps, list[k], list[l], way % 2 ? 1 : -1, way / 2 ? 1 : -1);
+                    changes |= step_both(p, t, steps, list[k], list[l], way % 2 ? 1 : -1, way / 2 ? 1 : -1);
     }
 }
 
 /* Takes steps back until rounding to whole steps no longer breaks a limit on tensions. Each time it takes back the step
- * that costs least among those that help. After 10 of these for each turnbuckle it sets all steps to 0. */
-static void step_back(const hf_moves_problem *p, const tensions *t, int *steps, double *move_m)
+ * that costs min_square among those that help. After 10 of these for each turnbuckle it sets all steps to 0. */
+static void step_back(const hf_turnbuckles_problem *p, const tensions *t, int *steps, double *adjustment_m)
 {
-    fall_by_steps(t, steps, move_m);
+    fall_by_steps(t, steps, adjustment_m);
     for (int i = worst_tension(t), left = 10 * t->n; i >= 0; i = worst_tension(t), left--) {
         int best = -1;
-        double least = (double)INFINITY;
+        double min_square = (double)INFINITY;
         for (int k = 0; k < t->n; k++) {
             int e = t->cable[k], back = steps[e] > 0 ? -1 : 1;
             if (!steps[e] || !(back * rates_of(t, k)[i] > 0)) continue;
             double cost = 2 * back * slope_at(p, steps, e) + p->step_m * gram_of(p, e, e);
-            if (cost < least) least = cost, best = e;
+            if (cost < min_square) min_square = cost, best = e;
         }
         if (best >= 0) steps[best] += steps[best] > 0 ? -1 : 1;
         for (int k = 0; k < t->n && (best < 0 || left <= 0); k++)
             steps[t->cable[k]] = 0;
-        fall_by_steps(t, steps, move_m);
+        fall_by_steps(t, steps, adjustment_m);
     }
 }
 
 /* ---- which turnbuckles ---- */
 
 typedef struct {
-    const hf_moves_problem *p;
-    int n_list, *list; /* adjusted turnbuckles */
-    int *best, *trial; /* [n] steps */
-    double *move_m;    /* [n] scratch */
-    double *gain;      /* [n] scratch */
-    double least;      /* sum of squares of `best` */
+    const hf_turnbuckles_problem *p;
+    int n_list, *list;    /* adjusted turnbuckles */
+    int *best, *trial;    /* [n] steps */
+    double *adjustment_m; /* [n] scratch */
+    double *gain;         /* [n] scratch */
+    double min_square;    /* sum of squares of `best` */
     tensions tensions;
     bool is_held;     /* a limit on tensions ruled out a better choice */
     hf_status status; /* HF_NO_MEMORY: a fit could not be made, so the choice means nothing */
 } choice;
 
-static void lay_out_choice(hf_arena *arena, size_t n, choice *c)
+static hf_status allocate_choice(choice *c, void **block)
 {
-    size_t n_tension = (size_t)c->p->n_tension, n_list = n_tension ? (size_t)c->p->moves_max : 0;
+    tensions *t = &c->tensions;
+    size_t n = (size_t)c->p->n, n_tension = (size_t)c->p->n_tension, n_list = n_tension ? (size_t)c->p->n_max : 0;
     if (n_list > n) n_list = n;
-    c->tensions.cable = hf_arena_take(arena, n_list, sizeof(int));
-    c->tensions.rate = hf_arena_take(arena, n_list * n_tension, sizeof(double));
-    c->tensions.row = hf_arena_take(arena, n_list ? n : 0, sizeof(int));
-    c->tensions.fall_N = hf_arena_take(arena, n_tension, sizeof(double));
-    for (size_t k = 0; k < n_list && c->tensions.cable; k++)
-        c->tensions.cable[k] = -1;
-    c->list = hf_arena_take(arena, n, sizeof(int));
-    c->best = hf_arena_take(arena, n, sizeof(int));
-    c->trial = hf_arena_take(arena, n, sizeof(int));
-    c->move_m = hf_arena_take(arena, n, sizeof(double));
-    c->gain = hf_arena_take(arena, n, sizeof(double));
+    HF_TRY(HF_ARENA_ARRAYS(block, HF_ARRAY(t->cable, n_list), HF_ARRAY(t->rate, n_list * n_tension),
+                           HF_ARRAY(t->row, n_list ? n : 0), HF_ARRAY(t->fall_N, n_tension), HF_ARRAY(c->list, n),
+                           HF_ARRAY(c->best, n), HF_ARRAY(c->trial, n), HF_ARRAY(c->adjustment_m, n),
+                           HF_ARRAY(c->gain, n)));
+    for (size_t k = 0; k < n_list; k++)
+        t->cable[k] = -1;
+    return HF_OK;
 }
 
-/* Returns the gain of adjusting turnbuckle i alone, beside the present steps of turned [n_turned]. */
-static double gain_alone(const choice *c, int i, int n_turned, const int *turned)
+/* Returns the gain of adjusting turnbuckle i alone, beside the present steps of adjusted [n_adjusted]. */
+static double gain_alone(const choice *c, int i, int n_adjusted, const int *adjusted)
 {
-    double curve = gram_of(c->p, i, i), sum = 0, most = c->p->steps_max * c->p->step_m;
+    double curve = gram_of(c->p, i, i), sum = 0, max_m = c->p->steps_max * c->p->step_m;
     if (!(curve > 0)) return 0;
-    for (int k = 0; k < n_turned; k++)
-        sum += gram_of(c->p, i, turned[k]) * c->best[turned[k]];
+    for (int k = 0; k < n_adjusted; k++)
+        sum += gram_of(c->p, i, adjusted[k]) * c->best[adjusted[k]];
     double slope = c->p->slope[i] + c->p->step_m * sum;
-    double move = fmin(fmax(-slope / curve, -most), most);
+    double move = fmin(fmax(-slope / curve, -max_m), max_m);
     return -move * (2 * slope + move * curve);
 }
 
@@ -325,21 +319,16 @@ static bool is_on_list(const choice *c, int i)
     return false;
 }
 
-/* Lists the turnbuckles off the list that gain most alone, in descending order. Returns their number. */
+/* Lists the turnbuckles off the list that gain max_m alone, in descending order. Returns their number. */
 static int find_candidates(choice *c, int candidate[SHORT_LIST])
 {
-    int n = 0, n_turned = 0, *turned = c->trial; /* trial is free at this point */
+    int n = 0, n_adjusted = 0, *adjusted = c->trial; /* trial is free at this point */
     for (int i = 0; i < c->p->n; i++)
-        if (c->best[i]) turned[n_turned++] = i;
+        if (c->best[i]) adjusted[n_adjusted++] = i;
     for (int i = 0; i < c->p->n; i++) {
         if (is_on_list(c, i)) continue;
-        c->gain[i] = gain_alone(c, i, n_turned, turned);
-        int at = n < SHORT_LIST ? n++ : n;
-        while (at > 0 && c->gain[i] > c->gain[candidate[at - 1]]) {
-            if (at < SHORT_LIST) candidate[at] = candidate[at - 1];
-            at--;
-        }
-        if (at < SHORT_LIST) candidate[at] = i;
+        c->gain[i] = gain_alone(c, i, n_adjusted, adjusted);
+        n = hf_list_largest(i, c->gain, SHORT_LIST, n, candidate);
     }
     return n;
 }
@@ -348,26 +337,26 @@ static int find_candidates(choice *c, int candidate[SHORT_LIST])
  * the sum of squares, or INFINITY without memory. */
 static double fit_steps(choice *c, const tensions *t)
 {
-    const hf_moves_problem *p = c->p;
+    const hf_turnbuckles_problem *p = c->p;
     memset(c->trial, 0, (size_t)p->n * sizeof *c->trial);
-    if (fit_list(p, c->n_list, c->list, t, c->move_m) != HF_OK) {
+    if (fit_list(p, c->n_list, c->list, t, c->adjustment_m) != HF_OK) {
         c->status = HF_NO_MEMORY;
         return (double)INFINITY;
     }
     for (int i = 0; i < c->n_list; i++)
-        c->trial[c->list[i]] = within(p, c->move_m[i] / p->step_m);
-    if (t) step_back(p, t, c->trial, c->move_m);
+        c->trial[c->list[i]] = within(p, c->adjustment_m[i] / p->step_m);
+    if (t) step_back(p, t, c->trial, c->adjustment_m);
     descend(p, c->n_list, c->list, t, c->trial);
-    return hf_moves_square(p, c->trial);
+    return hf_turnbuckles_square(p, c->trial);
 }
 
 /* Fits the list within the limits on tensions, into c->trial. Returns the sum of squares. */
 static double fit_allowed(choice *c)
 {
     double square = fit_steps(c, NULL);
-    if (c->p->n_tension == 0 || !(square < c->least - GAIN_ROUNDING * c->p->square)) return square;
+    if (c->p->n_tension == 0 || !(square < c->min_square - GAIN_ROUNDING * c->p->square)) return square;
     take_list(&c->tensions, c->n_list, c->list);
-    fall_by_steps(&c->tensions, c->trial, c->move_m);
+    fall_by_steps(&c->tensions, c->trial, c->adjustment_m);
     if (worst_tension(&c->tensions) < 0) return square;
     c->is_held = true;
     return fit_steps(c, &c->tensions);
@@ -375,14 +364,14 @@ static double fit_allowed(choice *c)
 
 /* Puts the candidate that fits best with the others into entry k of the list. Returns whether `best` improved;
  * otherwise the list is unchanged. */
-static bool try_place(choice *c, int k, int n_candidate, const int *candidate)
+static bool try_entry(choice *c, int k, int n_candidate, const int *candidate)
 {
     int was = c->list[k], better = -1;
     for (int i = 0; i < n_candidate; i++) {
         c->list[k] = candidate[i];
         double square = fit_allowed(c);
-        if (!(square < c->least - GAIN_ROUNDING * c->p->square)) continue;
-        c->least = square;
+        if (!(square < c->min_square - GAIN_ROUNDING * c->p->square)) continue;
+        c->min_square = square;
         better = candidate[i];
         memcpy(c->best, c->trial, (size_t)c->p->n * sizeof *c->best);
     }
@@ -396,7 +385,7 @@ static bool add_cable(choice *c)
     int candidate[SHORT_LIST], n = find_candidates(c, candidate);
     if (n == 0) return false;
     c->n_list++;
-    if (try_place(c, c->n_list - 1, n, candidate)) return true;
+    if (try_entry(c, c->n_list - 1, n, candidate)) return true;
     c->n_list--;
     return false;
 }
@@ -413,7 +402,7 @@ static void exchange(choice *c)
             c->best[leaves] = 0;
             int n = find_candidates(c, candidate);
             c->best[leaves] = kept;
-            gains |= try_place(c, k, n, candidate);
+            gains |= try_entry(c, k, n, candidate);
         }
     }
 }
@@ -422,9 +411,9 @@ static void exchange(choice *c)
 
 /* Returns whether the gain of `steps` over `before` is below its standard deviation. The gain of a sample differs by 2
  * (J' dr)' da, with the difference dr of its residuals and the difference da of the adjustments. */
-static bool is_doubtful(const hf_moves_problem *p, const int *before, const int *steps)
+static bool is_doubtful(const hf_turnbuckles_problem *p, const int *before, const int *steps)
 {
-    double gain = hf_moves_square(p, before) - hf_moves_square(p, steps), variance = 0;
+    double gain = hf_turnbuckles_square(p, before) - hf_turnbuckles_square(p, steps), variance = 0;
     for (int s = 0; s < p->n_sample; s++) {
         double change = 0;
         for (int i = 0; i < p->n; i++)
@@ -443,56 +432,57 @@ static void drop_idle(choice *c)
     c->n_list = n;
 }
 
-hf_status hf_moves_choose(const hf_moves_problem *p, int *steps, hf_moves_end *end, bool *is_held)
+hf_status hf_turnbuckles_choose(const hf_turnbuckles_problem *p, int *steps, hf_turnbuckles_end *end, bool *is_held)
 {
-    hf_arena arena = {0};
-    choice c = {.p = p, .least = p->square, .tensions.p = p};
+    void *block;
+    choice c = {.p = p, .min_square = p->square, .tensions.p = p};
     memset(steps, 0, (size_t)p->n * sizeof *steps);
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_choice(&arena, (size_t)p->n, &c)));
+    HF_TRY(allocate_choice(&c, &block));
     for (;;) {
-        *end = HF_MOVES_TARGET;
-        if (c.least <= p->target * p->target) break;
-        *end = HF_MOVES_ALL;
-        if (c.n_list >= p->moves_max) break;
-        *end = HF_MOVES_NONE;
+        *end = HF_TURNBUCKLES_TARGET;
+        if (c.min_square <= p->target * p->target) break;
+        *end = HF_TURNBUCKLES_ALL;
+        if (c.n_list >= p->n_max) break;
+        *end = HF_TURNBUCKLES_NONE;
         if (!add_cable(&c)) break;
         exchange(&c);
         if (c.status != HF_OK) break;
-        *end = HF_MOVES_DOUBT;
+        *end = HF_TURNBUCKLES_DOUBT;
         if (is_doubtful(p, steps, c.best)) break;
         memcpy(steps, c.best, (size_t)p->n * sizeof *steps);
         drop_idle(&c);
     }
     *is_held = c.is_held;
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return c.status;
 }
 
-hf_status hf_moves_best(const hf_moves_problem *p, double *move_m)
+hf_status hf_turnbuckles_best(const hf_turnbuckles_problem *p, double *adjustment_m)
 {
-    hf_arena arena = {0};
-    int *list = NULL;
-    HF_TRY(HF_ARENA_MAKE(&arena, list = hf_arena_take(&arena, (size_t)p->n, sizeof *list)));
+    void *block;
+    int *list;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(list, p->n)));
     for (int i = 0; i < p->n; i++)
         list[i] = i;
-    hf_status status = fit_list(p, p->n, list, NULL, move_m);
-    hf_arena_free(&arena);
+    hf_status status = fit_list(p, p->n, list, NULL, adjustment_m);
+    hf_arena_free_block(block);
     return status;
 }
 
 /* ---- order of adjustments ---- */
 
 /* Returns whether all tensions stay within their room after a further adjustment. */
-static bool keeps_taut(const hf_moves_problem *p, const double *fall_N, const double *change_N)
+static bool keeps_taut(const hf_turnbuckles_problem *p, const double *fall_N, const double *change_N)
 {
     for (int k = 0; k < p->n_tension; k++)
         if (change_N[k] < 0 && fall_N[k] - change_N[k] > room_to_fall(p, k)) return false;
     return true;
 }
 
-int hf_moves_next(const hf_moves_problem *p, const int *steps, const double *change_N, int *done, double *fall_N)
+int hf_turnbuckles_next(const hf_turnbuckles_problem *p, const int *steps, const double *change_N, int *done,
+                        double *fall_N)
 {
-    double least = (double)INFINITY;
+    double min_square = (double)INFINITY;
     int next = p->n;
     const double *next_N = change_N;
     bool is_taut = false;
@@ -503,10 +493,10 @@ int hf_moves_next(const hf_moves_problem *p, const int *steps, const double *cha
         if (steps[i] == done[i]) continue;
         bool keeps = keeps_taut(p, fall_N, this_N);
         done[i] = steps[i];
-        double square = hf_moves_square(p, done);
+        double square = hf_turnbuckles_square(p, done);
         done[i] = 0;
-        if (next < p->n && (keeps == is_taut ? !(square < least) : is_taut)) continue;
-        least = square;
+        if (next < p->n && (keeps == is_taut ? !(square < min_square) : is_taut)) continue;
+        min_square = square;
         next = i;
         is_taut = keeps;
         next_N = this_N;
