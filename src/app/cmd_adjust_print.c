@@ -34,7 +34,7 @@ void hf_adjust_print_table(const void *context, FILE *f)
 {
     const hf_adjust_job *j = context;
     const hf_adjustment *a = &j->adjustment;
-    fputs("order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm\n", f);
+    fputs("order,cable,set,turnbuckle_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm\n", f);
     for (int k = 0; k < a->n_move; k++) {
         const hf_adjust_turnbuckle *move = &a->move[k];
         fprintf(f, "%d,", k + 1);
@@ -89,7 +89,7 @@ static void print_instead(const hf_adjust_job *j, FILE *f)
     }
 }
 
-static const char *const end_word[] = {"target", "moves", "doubt", "none"};
+static const char *const end_word[] = {"target", "max_adjustments", "doubt", "none"};
 
 /* Prints why there are no more adjustments. */
 static void print_end(const hf_adjust_job *j, FILE *f)
@@ -264,14 +264,14 @@ static void print_json_moves(const hf_adjust_job *from, hf_json *j)
 {
     const hf_adjustment *a = &from->adjustment;
     hf_json_line(j, " ");
-    hf_json_open(j, "moves", '[');
+    hf_json_open(j, "adjustments", '[');
     for (int k = 0; k < a->n_move; k++) {
         const hf_adjust_turnbuckle *move = &a->move[k];
         hf_json_line(j, "  ");
         hf_json_open(j, NULL, '{');
         hf_json_text(j, "cable", from->built.scene.cable_id[move->cable]);
         hf_json_integer(j, "steps", move->steps);
-        hf_json_number(j, "move_m", move->move_m);
+        hf_json_number(j, "turnbuckle_m", move->move_m);
         hf_json_number(j, "tension_before_N", move->before_N);
         hf_json_number(j, "tension_after_N", move->after_N);
         hf_json_number(j, "predicted_m", move->figure_m);
@@ -290,7 +290,7 @@ static void print_json_moves(const hf_adjust_job *from, hf_json *j)
         hf_json_text(j, "cable", from->built.scene.cable_id[from->out[k]]);
         hf_json_number(j, "error_m", from->estimate.cut_m[from->out[k]]);
         hf_json_number(j, "sigmas", fabs(hf_adjust_sigmas(from, from->out[k])));
-        hf_json_number(j, "by_places_m", from->by_places_m[k]);
+        hf_json_number(j, "by_positions_m", from->by_places_m[k]);
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
@@ -319,7 +319,7 @@ static void print_json_instead(const hf_adjust_job *from, hf_json *j)
         hf_json_text(j, "aim", aim_word(other->figure, other->aim));
         hf_json_number(j, "before_m", other->before_m);
         hf_json_number(j, "after_m", other->after_m);
-        hf_json_integer(j, "move_count", other->n_move);
+        hf_json_integer(j, "adjustment_count", other->n_move);
         hf_json_integer(j, "at_range", other->n_at_range);
         hf_json_close(j, '}');
     }

@@ -17,21 +17,19 @@
 #define SAME_RATIO 1e-6    /* relative difference up to which values count as equal */
 #define REACHED_RATIO 1e-9 /* rounding of an objective, relative to its value after form-finding */
 
-const char *const hf_merged_stage_word[HF_MERGED_N_STAGE] = {"form", "optimize", "polish", "tolerance", "cases"};
 const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER] = {"", "no", "open", "yes"};
+
+const char *hf_merged_stage_word(hf_merged_stage stage)
+{
+    return stage < HF_MERGED_BUILT ? hf_stage_word[stage] : stage == HF_MERGED_BUILT ? "tolerance" : "load_cases";
+}
 
 /* ---- reading ---- */
 
-/* Locations of the figures of each stage in a merged file: the group, and the prefix of the names of its data sets. */
-static const struct {
-    const char *group, *prefix, *surface;
-} source[HF_MERGED_CASES] = {{"/points/form", "", "/points/surface/form"},
-                             {"/points/ga", "best_", "/points/surface/optimize"},
-                             {"/points/polish", "", "/points/surface/polish"},
-                             {"/points/tolerance", "", NULL}};
+#define GROUP_SIZE (HF_SET_NAME_SIZE + 32)
 static const char *const key_of_stage[] = {"psi_m", "inner_tension_ratio", "boundary_tension_ratio", "residual_N",
                                            "n_slack"};
-static const char *const key_as_built[] = {"psi_95_m", "yield", "yield_low", "yield_high", "wanted_yield"};
+static const char *const key_as_built[] = {"psi_95_m", "yield", "yield_low", "yield_high", "required_yield"};
 enum { N_KEY = sizeof key_of_stage / sizeof *key_of_stage, N_BUILT = sizeof key_as_built / sizeof *key_as_built };
 
 bool hf_merged_is(const char *path)
@@ -46,15 +44,15 @@ bool hf_merged_is(const char *path)
 }
 
 /* Reads a figure. A data set that is missing, or that does not have one value for each point, is skipped. */
-static hf_status read_figure(hf_merged *m, hf_merged_stage stage, const char *group, const char *prefix,
-                             const char *key, hf_messages *messages)
+static hf_status read_figure(hf_merged *m, hf_merged_stage stage, const char *group, const char *key,
+                             hf_messages *messages)
 {
-    char path[64 + HF_SET_NAME_SIZE + HF_OBJECTIVE_NAME_SIZE];
+    char path[GROUP_SIZE + HF_OBJECTIVE_NAME_SIZE];
     if (m->n_figure == HF_MERGED_FIGURE_MAX || strlen(key) >= HF_OBJECTIVE_NAME_SIZE) return HF_OK;
     hf_merged_figure *f = &m->figure[m->n_figure];
     *f = (hf_merged_figure){.stage = stage};
     strcpy(f->key, key);
-    snprintf(path, sizeof path, "%s/%s%s", group, prefix, key);
+    snprintf(path, sizeof path, "%s/%s", group, key);
     HF_TRY(hf_store_read_series(m->path, path, 1, &f->value, messages));
     if (f->value.n == m->n)
         m->n_figure++;
@@ -63,17 +61,15 @@ static hf_status read_figure(hf_merged *m, hf_merged_stage stage, const char *gr
     return HF_OK;
 }
 
-/* Reads all figures of a group whose names, after the prefix, begin with `begin`. */
-static hf_status read_group(hf_merged *m, hf_merged_stage stage, const char *group, const char *prefix,
-                            const char *begin, hf_messages *messages)
+/* Reads all figures of a group whose names begin with `begin`. */
+static hf_status read_group(hf_merged *m, hf_merged_stage stage, const char *group, const char *begin,
+                            hf_messages *messages)
 {
-    size_t n_prefix = strlen(prefix), n_begin = strlen(begin);
     hf_texts names = {0};
     hf_status status = hf_store_read_names(m->path, group, &names, messages);
     for (int i = 0; i < names.n && status == HF_OK; i++) {
         const char *name = hf_texts_at(&names, i);
-        if (strncmp(name, prefix, n_prefix) != 0 || strncmp(name + n_prefix, begin, n_begin) != 0) continue;
-        status = read_figure(m, stage, group, prefix, name + n_prefix, messages);
+        if (!strncmp(name, begin, strlen(begin))) status = read_figure(m, stage, group, name, messages);
     }
     hf_texts_free(&names);
     return status;
@@ -83,20 +79,20 @@ static hf_status read_group(hf_merged *m, hf_merged_stage stage, const char *gro
  * skipped. */
 static hf_status read_load_cases(hf_merged *m, hf_messages *messages)
 {
-    static const char *const key[] = {"psi_m", "n_slack", "n_loose", "largest_tension_N"};
-    static const char *const error[] = {"half_path", "good_to", "gain_loss", "fit_", "facet_"};
-    char group[HF_SET_NAME_SIZE + 32];
+    static const char *const key[] = {"psi_m", "n_slack", "n_loose", "tension_max_N"};
+    static const char *const error[] = {"half_path", "gain_loss", "fit_", "facet_"};
+    char group[GROUP_SIZE];
     hf_texts names = {0};
-    hf_status status = hf_store_read_names(m->path, "/points/cases", &names, messages);
+    hf_status status = hf_store_read_names(m->path, "/points/load_cases", &names, messages);
     for (int i = 0; i < names.n && status == HF_OK; i++) {
         const char *name = hf_texts_at(&names, i);
         int from = m->n_figure;
         if (strlen(name) >= HF_SET_NAME_SIZE) continue;
-        snprintf(group, sizeof group, "/points/cases/%s", name);
+        snprintf(group, sizeof group, "/points/load_cases/%s", name);
         for (size_t k = 0; k < sizeof key / sizeof *key && status == HF_OK; k++)
-            status = read_figure(m, HF_MERGED_CASES, group, "", key[k], messages);
+            status = read_figure(m, HF_MERGED_LOAD_CASES, group, key[k], messages);
         for (size_t k = 0; k < sizeof error / sizeof *error && status == HF_OK; k++)
-            status = read_group(m, HF_MERGED_CASES, group, "", error[k], messages);
+            status = read_group(m, HF_MERGED_LOAD_CASES, group, error[k], messages);
         for (int k = from; k < m->n_figure; k++)
             strcpy(m->figure[k].load_case, name);
     }
@@ -104,19 +100,25 @@ static hf_status read_load_cases(hf_merged *m, hf_messages *messages)
     return status;
 }
 
+static hf_status read_stage(hf_merged *m, hf_merged_stage stage, hf_messages *messages)
+{
+    char group[GROUP_SIZE], surface[GROUP_SIZE];
+    snprintf(group, sizeof group, "/points/%s", hf_merged_stage_word(stage));
+    snprintf(surface, sizeof surface, "/points/surface/%s", hf_merged_stage_word(stage));
+    for (int k = 0; k < N_KEY; k++)
+        HF_TRY(read_figure(m, stage, group, key_of_stage[k], messages));
+    int n_before = m->n_figure;
+    HF_TRY(read_group(m, stage, group, "objective_", messages));
+    if (m->n_figure > n_before + 1) HF_TRY(read_figure(m, stage, group, "merit", messages));
+    return read_group(m, stage, surface, "", messages);
+}
+
 static hf_status read_figures(hf_merged *m, hf_messages *messages)
 {
-    for (hf_merged_stage stage = HF_MERGED_FORM; stage < HF_MERGED_BUILT; stage++) {
-        const char *group = source[stage].group, *prefix = source[stage].prefix;
-        for (int k = 0; k < N_KEY; k++)
-            HF_TRY(read_figure(m, stage, group, prefix, key_of_stage[k], messages));
-        int n_before = m->n_figure;
-        HF_TRY(read_group(m, stage, group, prefix, "goal_", messages));
-        if (m->n_figure > n_before + 1) HF_TRY(read_figure(m, stage, group, prefix, "merit", messages));
-        HF_TRY(read_group(m, stage, source[stage].surface, "", "", messages));
-    }
+    for (hf_merged_stage stage = HF_MERGED_FORM; stage < HF_MERGED_BUILT; stage++)
+        HF_TRY(read_stage(m, stage, messages));
     for (int k = 0; k < N_BUILT; k++)
-        HF_TRY(read_figure(m, HF_MERGED_BUILT, source[HF_MERGED_BUILT].group, "", key_as_built[k], messages));
+        HF_TRY(read_figure(m, HF_MERGED_BUILT, "/points/tolerance", key_as_built[k], messages));
     return read_load_cases(m, messages);
 }
 
@@ -219,7 +221,7 @@ static bool is_same(const hf_merged *m, const hf_merged_figure *f)
 static bool is_psi(const hf_merged *m, const hf_merged_figure *f)
 {
     const hf_merged_figure *psi = hf_merged_find(m, f->stage, "psi_m");
-    if (!psi || strncmp(f->key, "goal_", 5) != 0 || strcmp(hf_ledger_unit(f->key), "m") != 0) return false;
+    if (!psi || strncmp(f->key, "objective_", 10) != 0 || strcmp(hf_ledger_unit(f->key), "m") != 0) return false;
     for (int i = 0; i < m->n; i++)
         if (hf_merged_is_done(m, i) && !(f->value.value[i] == psi->value.value[i])) return false;
     return true;
@@ -230,13 +232,13 @@ static bool is_psi(const hf_merged *m, const hf_merged_figure *f)
 static hf_status choose_main(hf_merged *m, hf_messages *messages)
 {
     hf_series is_result = {0};
-    HF_TRY(hf_store_read_series(m->path, "/points/polish/polish_is_result", 1, &is_result, messages));
-    bool is_refine = false, has_ga = hf_merged_find(m, HF_MERGED_SEARCH, "psi_m") != NULL;
+    HF_TRY(hf_store_read_series(m->path, "/points/refine/is_result", 1, &is_result, messages));
+    bool is_refine = false, has_search = hf_merged_find(m, HF_MERGED_SEARCH, "psi_m") != NULL;
     for (int i = 0; i < is_result.n; i++)
         is_refine |= is_result.value[i] == 1;
     hf_series_free(&is_result);
-    if (!has_ga) is_refine = hf_merged_find(m, HF_MERGED_REFINE, "psi_m") != NULL;
-    m->main = is_refine ? HF_MERGED_REFINE : has_ga ? HF_MERGED_SEARCH : HF_MERGED_FORM;
+    if (!has_search) is_refine = hf_merged_find(m, HF_MERGED_REFINE, "psi_m") != NULL;
+    m->main = is_refine ? HF_MERGED_REFINE : has_search ? HF_MERGED_SEARCH : HF_MERGED_FORM;
     return HF_OK;
 }
 
@@ -287,7 +289,7 @@ static void choose_best(hf_merged *m)
     double rounding = 0;
     leads by = {.n = 0};
     for (int k = 0; k < m->n_figure; k++) {
-        if (m->figure[k].stage != m->main || strncmp(m->figure[k].key, "goal_", 5) != 0) continue;
+        if (m->figure[k].stage != m->main || strncmp(m->figure[k].key, "objective_", 10) != 0) continue;
         objective = objective ? "merit" : m->figure[k].key;
         has_other |= !m->figure[k].is_psi;
     }
@@ -321,9 +323,9 @@ static bool is_on_curve(const hf_merged *m, int axis, int i)
 static bool falls(const hf_merged *m, int i, int j)
 {
     const hf_merged_figure *f = &m->figure[m->lead];
-    double from = f->value.value[i], to = f->value.value[j], least = rounding_of(m, f->key);
-    if (!strcmp(hf_ledger_unit(f->key), "m")) least = fmax(least, HF_MERGED_RESOLVED_M);
-    return hf_merged_is_done(m, i) && from - to > fmax(least, SAME_RATIO * fmax(fabs(from), fabs(to)));
+    double from = f->value.value[i], to = f->value.value[j], rounding = rounding_of(m, f->key);
+    if (!strcmp(hf_ledger_unit(f->key), "m")) rounding = fmax(rounding, HF_MERGED_RESOLVED_M);
+    return hf_merged_is_done(m, i) && from - to > fmax(rounding, SAME_RATIO * fmax(fabs(from), fabs(to)));
 }
 
 int hf_merged_falls_on(const hf_merged *m, int axis)
@@ -359,19 +361,19 @@ static double built_value(const hf_merged *m, const char *key, int i)
 
 hf_merged_answer hf_merged_meets_yield(const hf_merged *m, int i)
 {
-    double wanted = built_value(m, "wanted_yield", i);
+    double required = built_value(m, "required_yield", i);
     double low = built_value(m, "yield_low", i), high = built_value(m, "yield_high", i);
-    if (!(wanted > 0) || isnan(low) || isnan(high)) return HF_MERGED_NOT_ASKED;
-    return low >= wanted ? HF_MERGED_YES : high >= wanted ? HF_MERGED_OPEN : HF_MERGED_NO;
+    if (!(required > 0) || isnan(low) || isnan(high)) return HF_MERGED_NOT_ASKED;
+    return low >= required ? HF_MERGED_YES : high >= required ? HF_MERGED_OPEN : HF_MERGED_NO;
 }
 
-double hf_merged_wanted_yield(const hf_merged *m)
+double hf_merged_required_yield(const hf_merged *m)
 {
     double same = (double)NAN;
     for (int i = 0; i < m->n; i++) {
-        double wanted = built_value(m, "wanted_yield", i);
-        if (!isnan(wanted) && !isnan(same) && wanted != same) return (double)NAN;
-        if (!isnan(wanted)) same = wanted;
+        double required = built_value(m, "required_yield", i);
+        if (!isnan(required) && !isnan(same) && required != same) return (double)NAN;
+        if (!isnan(required)) same = required;
     }
     return same;
 }

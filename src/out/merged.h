@@ -6,16 +6,18 @@
 #include "case/study.h"
 #include "store/store_series.h"
 
-/* The stages of a run, the as-built net (`tolerance`) and its load cases (`cases`). */
+/* The stages of a run, the as-built net (`tolerance`) and its load cases (`load_cases`). */
 typedef enum {
-    HF_MERGED_FORM,
-    HF_MERGED_SEARCH,
-    HF_MERGED_REFINE,
-    HF_MERGED_BUILT,
-    HF_MERGED_CASES,
+    HF_MERGED_FORM = HF_STAGE_FORM,
+    HF_MERGED_SEARCH = HF_STAGE_SEARCH,
+    HF_MERGED_REFINE = HF_STAGE_REFINE,
+    HF_MERGED_BUILT = HF_N_STAGE,
+    HF_MERGED_LOAD_CASES,
     HF_MERGED_N_STAGE
 } hf_merged_stage;
-extern const char *const hf_merged_stage_word[HF_MERGED_N_STAGE];
+
+/* Returns the word of a stage in JSON: that of hf_stage_word, "tolerance" or "load_cases". */
+const char *hf_merged_stage_word(hf_merged_stage stage);
 
 /* Whether a point meets the yield that its case requires. HF_MERGED_OPEN: the 95 % interval of its samples contains the
  * required yield. */
@@ -24,8 +26,8 @@ extern const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER]; /* "", "no",
 
 typedef struct {
     hf_merged_stage stage;
-    char load_case[HF_SET_NAME_SIZE]; /* load case of HF_MERGED_CASES; "" for other stages */
-    char key[HF_OBJECTIVE_NAME_SIZE]; /* such as psi_m, goal_1_tension_edge or facet_half_path_rms_m */
+    char load_case[HF_SET_NAME_SIZE]; /* load case of HF_MERGED_LOAD_CASES; "" for other stages */
+    char key[HF_OBJECTIVE_NAME_SIZE]; /* such as psi_m, objective_1_tension_edge or facet_half_path_rms_m */
     hf_series value;                  /* [n]; NaN where a point has no value */
     bool is_same; /* equal at all completed points up to rounding, or without a value at all of them */
     bool is_psi;  /* an objective that equals psi of this stage at all points */
@@ -78,7 +80,7 @@ int hf_merged_falls_on(const hf_merged *merged, int axis);
 /* Returns whether a point meets its required yield. */
 hf_merged_answer hf_merged_meets_yield(const hf_merged *merged, int point);
 /* Returns the required yield, or NaN when points require none or different ones. */
-double hf_merged_wanted_yield(const hf_merged *merged);
+double hf_merged_required_yield(const hf_merged *merged);
 
 /* Returns the title of the study or, without a title, the name of the merged file. */
 const char *hf_merged_heading(const hf_merged *merged);

@@ -58,7 +58,7 @@ const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE])
     const char *row = dot;
     while (row && row > key && row[-1] >= '0' && row[-1] <= '9')
         row--;
-    if (row && row < dot && row > key && row[-1] == '.') /* a key of a row, such as goals.1.weight */
+    if (row && row < dot && row > key && row[-1] == '.') /* a key of a row, such as objective.1.weight */
         for (from = row - 1; from > key && from[-1] != '.';)
             from--;
     const char *end = strstr(from, "_N_per_m");
@@ -95,13 +95,13 @@ const char *hf_print_objective_words(const char *key, char words[HF_AXIS_NAME_SI
 static void name_load_case(const hf_merged *m, const hf_merged_figure *f, char name[HF_AXIS_NAME_SIZE])
 {
     char plain[HF_AXIS_NAME_SIZE];
-    bool is_design = hf_merged_find(m, HF_MERGED_CASES, f->key) && !strcmp(f->key, "n_slack") && !*f->load_case;
+    bool is_design = hf_merged_find(m, HF_MERGED_LOAD_CASES, f->key) && !strcmp(f->key, "n_slack") && !*f->load_case;
     if (!*f->load_case && !is_design) return;
     strcpy(plain, name);
     snprintf(name, HF_AXIS_NAME_SIZE, "%.31s %.31s", is_design ? "design" : f->load_case, plain);
 }
 
-/* Formats the name of a figure: "goal tension edge" for goal_1_tension_edge, "fitted loss 10 GHz" for
+/* Formats the name of a figure: "objective tension edge" for objective_1_tension_edge, "fitted loss 10 GHz" for
  * facet_fit_gain_loss_at_10_GHz_dB. */
 static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name[HF_AXIS_NAME_SIZE])
 {
@@ -112,22 +112,22 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
                                           {"boundary_tension_ratio", "T ratio edge"},
                                           {"n_slack", "slack"},
                                           {"n_loose", "loose"},
-                                          {"largest_tension_N", "largest T"}};
+                                          {"tension_max_N", "T max"}};
     bool of_facets = !strncmp(f->key, "facet_", 6);
     const char *rest = of_facets ? f->key + 6 : f->key, *fitted = strncmp(rest, "fit_", 4) ? "" : "fitted ";
     if (*fitted) rest += 4;
     snprintf(name, HF_AXIS_NAME_SIZE, "%s", f->key);
     if (!strcmp(f->key, "psi_m")) {
-        static const char *const stage[] = {"found", "GA", "LM", "", ""};
         snprintf(name, HF_AXIS_NAME_SIZE, m->main == HF_MERGED_FORM || *f->load_case ? "psi" : "psi %s",
-                 stage[f->stage]);
-    } else if (!strncmp(f->key, "goal_", 5)) {
+                 hf_merged_stage_word(f->stage));
+    } else if (!strncmp(f->key, "objective_", 10)) {
         char words[HF_AXIS_NAME_SIZE];
-        snprintf(name, HF_AXIS_NAME_SIZE, "goal %.*s", HF_AXIS_NAME_SIZE - 6, hf_print_objective_words(f->key, words));
+        snprintf(name, HF_AXIS_NAME_SIZE, "objective %.*s", HF_AXIS_NAME_SIZE - 11,
+                 hf_print_objective_words(f->key, words));
     } else if (!strcmp(rest, "half_path_rms_m")) {
         snprintf(name, HF_AXIS_NAME_SIZE, "%s%s", fitted, of_facets ? "facets" : "half path");
-    } else if (!strcmp(rest, "good_to_Hz")) {
-        snprintf(name, HF_AXIS_NAME_SIZE, "%sgood to", fitted);
+    } else if (!strcmp(rest, "gain_loss_1dB_Hz")) {
+        snprintf(name, HF_AXIS_NAME_SIZE, "%s1 dB gain loss", fitted);
     } else if (!strncmp(rest, "gain_loss_at_", 13)) {
         snprintf(name, HF_AXIS_NAME_SIZE, "%sloss %.*s", fitted, (int)strlen(rest + 13) - 3, rest + 13);
     }
@@ -154,9 +154,9 @@ static column figure_column(const hf_merged *m, int k)
 
 /* Returns whether the table has this figure of a load case. Of the surface it has the gain losses or, without
  * frequencies, the errors. */
-static bool is_told_of_load_case(const hf_merged *m, const hf_merged_figure *f)
+static bool is_shown_of_load_case(const hf_merged *m, const hf_merged_figure *f)
 {
-    if (strstr(f->key, "good_to_Hz")) return false;
+    if (strstr(f->key, "gain_loss_1dB_Hz")) return false;
     if (!strstr(f->key, "half_path_rms_m")) return true;
     for (int k = 0; k < m->n_figure; k++)
         if (!strcmp(m->figure[k].load_case, f->load_case) && strstr(m->figure[k].key, "gain_loss_at_")) return false;
@@ -165,10 +165,10 @@ static bool is_told_of_load_case(const hf_merged *m, const hf_merged_figure *f)
 
 /* Returns whether the table has this figure. It has psi of every stage, and of the result everything but the
  * residual. */
-static bool is_told(const hf_merged *m, const hf_merged_figure *f)
+static bool is_shown(const hf_merged *m, const hf_merged_figure *f)
 {
     if (f->is_psi || !strcmp(f->key, "residual_N")) return false;
-    if (f->stage == HF_MERGED_CASES) return is_told_of_load_case(m, f);
+    if (f->stage == HF_MERGED_LOAD_CASES) return is_shown_of_load_case(m, f);
     if (f->stage == HF_MERGED_BUILT) return !strcmp(f->key, "psi_95_m") || !strcmp(f->key, "yield");
     return f->stage == m->main || !strcmp(f->key, "psi_m");
 }
@@ -185,9 +185,9 @@ static int rank_of(const hf_merged *m, int k)
     if (!strcmp(f->key, "psi_m")) return 1;
     if (f->stage == HF_MERGED_BUILT) return 2;
     if (strstr(f->key, "half_path_rms_m")) return is_fit ? 4 : 3;
-    if (strstr(f->key, "good_to_Hz")) return is_fit ? 6 : 5;
+    if (strstr(f->key, "gain_loss_1dB_Hz")) return is_fit ? 6 : 5;
     if (strstr(f->key, "gain_loss_at_")) return is_fit ? 8 : 7;
-    return strncmp(f->key, "goal_", 5) ? RANK_REST : RANK_REST - 1;
+    return strncmp(f->key, "objective_", 10) ? RANK_REST : RANK_REST - 1;
 }
 
 /* ---- cells ---- */
@@ -289,7 +289,7 @@ static void add_columns(table *t)
     if (n_asked > 0) add_column(t, (column){.kind = OF_YIELD, .head = "meets", .unit = "yield"});
     for (int rank = 0; rank < N_RANK; rank++)
         for (int k = 0; k < m->n_figure; k++)
-            if (is_told(m, &m->figure[k]) && !m->figure[k].is_same && rank_of(m, k) == rank)
+            if (is_shown(m, &m->figure[k]) && !m->figure[k].is_same && rank_of(m, k) == rank)
                 add_column(t, figure_column(m, k));
 }
 
@@ -383,7 +383,7 @@ static void print_same(const hf_merged *m, FILE *f)
         column c = figure_column(m, k);
         const hf_merged_figure *figure = &m->figure[k];
         if (*figure->load_case && strcmp(figure->key, "psi_m") != 0 && strcmp(figure->key, "n_slack") != 0) continue;
-        if (figure->is_same && is_told(m, figure) && !(isnan(figure->value.value[i]) && !strcmp(c.unit, "%")))
+        if (figure->is_same && is_shown(m, figure) && !(isnan(figure->value.value[i]) && !strcmp(c.unit, "%")))
             print_item(m, &c, i, &t);
     }
     end_items(&t);
@@ -398,7 +398,7 @@ static void print_best(const table *t, FILE *f)
     column lead = figure_column(m, m->lead);
     char text[2 * HF_AXIS_NAME_SIZE], cell[CELL_SIZE];
     print_cell(m, &lead, m->best, cell);
-    snprintf(text, sizeof text, "least %s: %s%s%s", lead.head, cell, *lead.unit ? " " : "", lead.unit);
+    snprintf(text, sizeof text, "minimum %s: %s%s%s", lead.head, cell, *lead.unit ? " " : "", lead.unit);
     add_item(&line, text);
     for (int k = 0; k < t->n_axis; k++)
         print_item(m, &t->column[k], m->best, &line);
@@ -408,34 +408,34 @@ static void print_best(const table *t, FILE *f)
         int side = hf_merged_falls_on(m, c->index);
         if (side == 0) continue;
         print_cell(m, c, m->best, cell);
-        hf_print_line(f, "  %-13s %s still falls at %s %s%s%s, the end of its axis: go on %s", "", lead.head, c->head,
-                      cell, *c->unit ? " " : "", c->unit, side > 0 ? "above" : "below");
+        hf_print_line(f, "  %-13s %s still falls at %s %s%s%s, the end of its axis: add points %s it", "", lead.head,
+                      c->head, cell, *c->unit ? " " : "", c->unit, side > 0 ? "above" : "below");
     }
 }
 
 static void print_yield(const hf_merged *m, FILE *f)
 {
     int count[HF_MERGED_N_ANSWER], n_asked = count_answers(m, count);
-    double wanted = hf_merged_wanted_yield(m);
-    char part[32] = "as each wants";
+    double required = hf_merged_required_yield(m);
+    char part[32] = "as each point requires";
     if (n_asked == 0) return;
-    if (!isnan(wanted)) snprintf(part, sizeof part, "of %.6g %%", 100 * wanted);
+    if (!isnan(required)) snprintf(part, sizeof part, "of %.6g %%", 100 * required);
     fprintf(f, "  %-13s %s: met by %d of %d points", "yield", part, count[HF_MERGED_YES], n_asked);
     if (count[HF_MERGED_OPEN])
-        fprintf(f, "; of %d so few samples leave it open (tolerance.samples)", count[HF_MERGED_OPEN]);
+        fprintf(f, "; open for %d, which need more samples (tolerance.samples)", count[HF_MERGED_OPEN]);
     fputc('\n', f);
 }
 
 /* Prints the number of failed points for each status, with the reason of the first one. */
 static void print_failures(const hf_merged *m, FILE *f)
 {
-    bool is_told[SCHAR_MAX + 1] = {[HF_OK] = true, [HF_NOT_EVALUATED] = true};
+    bool is_printed[SCHAR_MAX + 1] = {[HF_OK] = true, [HF_NOT_EVALUATED] = true};
     const char *title = "failed";
     for (int i = 0; i < m->n; i++) {
         int status = (int)m->status.value[i], n = 0;
         char shown[HF_LEDGER_REASON_MAX];
-        if (is_told[status]) continue;
-        is_told[status] = true;
+        if (is_printed[status]) continue;
+        is_printed[status] = true;
         for (int k = i; k < m->n; k++)
             n += (int)m->status.value[k] == status;
         hf_text_escape(hf_texts_at(&m->reason, i), shown, sizeof shown);
@@ -470,19 +470,19 @@ static void choose_rows(table *t, bool all)
 {
     const hf_merged *m = t->m;
     const double *value = m->lead < 0 ? NULL : m->figure[m->lead].value.value;
-    double least = -INFINITY;
+    double last_value = -INFINITY;
     t->n_row = m->n;
     t->is_all = all || m->n <= POINTS_MOST || !value;
     for (int k = 0, last = -1; k < POINTS_BEST && !t->is_all; k++) {
         int next = -1;
         for (int i = 0; i < m->n; i++) {
-            bool is_later = value[i] > least || (value[i] == least && i > last);
+            bool is_later = value[i] > last_value || (value[i] == last_value && i > last);
             if (hf_merged_is_done(m, i) && is_later && (next < 0 || value[i] < value[next])) next = i;
         }
         t->n_row = next < 0 ? k : k + 1;
         if (next < 0) break;
         t->best[k] = last = next;
-        least = value[next];
+        last_value = value[next];
     }
 }
 
@@ -531,7 +531,7 @@ static void write_stages(const hf_merged *m, int i, hf_json *j)
     for (int k = 0; k < m->n_figure; k++) {
         const hf_merged_figure *f = &m->figure[k];
         bool is_last = k + 1 == m->n_figure;
-        if (k == 0 || f[-1].stage != f->stage) hf_json_open(j, hf_merged_stage_word[f->stage], '{');
+        if (k == 0 || f[-1].stage != f->stage) hf_json_open(j, hf_merged_stage_word(f->stage), '{');
         if (*f->load_case && (k == 0 || strcmp(f[-1].load_case, f->load_case) != 0)) hf_json_open(j, f->load_case, '{');
         hf_json_number(j, f->key, hf_merged_is_done(m, i) ? f->value.value[i] : (double)NAN);
         if (*f->load_case && (is_last || strcmp(f[1].load_case, f->load_case) != 0)) hf_json_close(j, '}');
@@ -544,7 +544,7 @@ void hf_print_study_json(const hf_merged *m, FILE *file)
     hf_json writer = {.file = file}, *j = &writer;
     hf_json_open(j, NULL, '{');
     hf_json_text(j, "title", hf_merged_heading(m));
-    hf_json_text(j, "result", hf_merged_stage_word[m->main]);
+    hf_json_text(j, "result", hf_merged_stage_word(m->main));
     if (m->best >= 0) {
         hf_json_text(j, "best", hf_texts_at(&m->id, m->best));
         hf_json_text(j, "best_by", m->figure[m->lead].key);

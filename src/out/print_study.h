@@ -18,7 +18,7 @@ void hf_print_study_json(const hf_merged *merged, FILE *file);
 #define HF_AXIS_NAME_SIZE 64
 const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE]);
 
-/* Formats the name of an objective: "tension edge" for goal_1_tension_edge. Returns words. */
+/* Formats the name of an objective: "tension edge" for objective_1_tension_edge. Returns words. */
 const char *hf_print_objective_words(const char *key, char words[HF_AXIS_NAME_SIZE]);
 
 #endif

@@ -36,13 +36,13 @@ static const struct {
     {"history", "/form/history/inner_tension_ratio", "inner_tension_ratio"},
     {"history", "/form/history/boundary_tension_ratio", "boundary_tension_ratio"},
     {"history", "/form/history/residual_N", "residual_N"},
-    {"ga", "/ga/best_psi_m", "best_psi_m"},
-    {"ga", "/ga/mean_psi_m", "mean_psi_m"},
-    {"ga", "/ga/worst_psi_m", "worst_psi_m"},
-    {"ga", "/ga/n_infeasible", "n_infeasible"},
+    {"search", "/search/population/best_psi_m", "best_psi_m"},
+    {"search", "/search/population/mean_psi_m", "mean_psi_m"},
+    {"search", "/search/population/worst_psi_m", "worst_psi_m"},
+    {"search", "/search/population/n_infeasible", "n_infeasible"},
     {"coupling", "/coupling/history/step_m", "step_m"},
     {"coupling", "/coupling/history/psi_m", "psi_m"},
-    {"coupling", "/coupling/history/max_displacement_m", "max_displacement_m"},
+    {"coupling", "/coupling/history/deflection_max_m", "deflection_max_m"},
 };
 enum { N_SERIES = sizeof series_table / sizeof *series_table };
 
@@ -158,12 +158,12 @@ static void write_cuts(const page *p, const hf_shape *shape, FILE *f)
     const hf_scene *s = &p->scene;
     double reference_N = hf_model_reference_N(s, p->summary.pretension_N);
     if (!s->EA_N) return;
-    for (int is_turned = 0; is_turned < 2; is_turned++) {
-        hf_json_packed packed =
-            is_turned ? hf_json_pack("l0_minus_theory_m", "f32", f) : hf_json_pack("l0_m", "f64", f);
+    for (int is_change = 0; is_change < 2; is_change++) {
+        hf_json_packed packed = is_change ? hf_json_pack("unstressed_minus_target_m", "f32", f)
+                                          : hf_json_pack("unstressed_length_m", "f64", f);
         for (int e = 0; e < s->n_cable; e++) {
             hf_cut c = hf_cut_of(s, shape, reference_N, e);
-            hf_json_pack_value(&packed, is_turned ? c.l0_minus_theory_m : c.l0_m);
+            hf_json_pack_value(&packed, is_change ? c.l0_minus_theory_m : c.l0_m);
         }
         hf_json_pack_end(&packed);
     }
@@ -178,7 +178,7 @@ static void write_shape(const page *p, int stage, FILE *f)
         fprintf(f, "{\"stage\":\"%s\"", hf_stage_word[stage]);
     } else { /* names consist of letters, digits, _ and - */
         const char *name = p->summary.load_case[stage - HF_N_STAGE].name;
-        fprintf(f, "{\"stage\":\"case %s\",\"case\":\"%s\"", name, name);
+        fprintf(f, "{\"stage\":\"load case %s\",\"load_case\":\"%s\"", name, name);
         write_displacement("truss_displacement_m", &p->load_case_displacement[stage - HF_N_STAGE], f);
     }
     hf_json_packed packed = hf_json_pack("displacement_m", "f32", f);
@@ -247,7 +247,7 @@ static void write_objective_units(const hf_summary *s, FILE *f)
 {
     hf_json j = {.file = f, .is_due = true};
     hf_json_line(&j, "");
-    hf_json_open(&j, "goal_unit", '{');
+    hf_json_open(&j, "objective_unit", '{');
     for (int k = 0; k < s->objectives.n; k++)
         hf_json_text(&j, s->objectives.name[k], hf_ledger_objective_unit(s->objectives.name[k]));
     hf_json_close(&j, '}');
@@ -342,7 +342,7 @@ static void write_data(const void *context, FILE *f)
     hf_summary_write_json(s, hf_summary_status(s), s->warnings, p->path, f);
     fprintf(f, ",\"seed\":\"%llu\"", (unsigned long long)s->seed); /* a JSON number would lose its last digits */
     bool has_variables = s->stage[HF_STAGE_SEARCH].exists || s->stage[HF_STAGE_REFINE].exists || s->front;
-    fprintf(f, ",\"n_free\":%d,\"n_gene\":%d,\"pretension_N\":", s->n_free, has_variables ? s->n_variable : 0);
+    fprintf(f, ",\"n_free\":%d,\"n_variable\":%d,\"pretension_N\":", s->n_free, has_variables ? s->n_variable : 0);
     hf_json_value(s->has_own_tensions ? (double)NAN : s->pretension_N, 17, f);
     write_figures(f);
     write_objective_units(s, f);
@@ -403,7 +403,7 @@ static hf_status read_load_cases(page *p, hf_messages *messages)
         if (s->result.status != HF_OK) continue;
         HF_TRY(hf_store_read_load_case(p->path, s->name, &p->shape[HF_N_STAGE + k], messages));
         p->has_shape[HF_N_STAGE + k] = true;
-        snprintf(of_truss, sizeof of_truss, "/cases/%s/truss/node/displacement", s->name);
+        snprintf(of_truss, sizeof of_truss, "/load_cases/%s/truss/node/displacement", s->name);
         HF_TRY(hf_store_read_series(p->path, of_truss, 6, &p->load_case_displacement[k], messages));
         if (p->load_case_displacement[k].n != p->truss_position_m.n) p->load_case_displacement[k].n = 0;
     }
@@ -467,6 +467,7 @@ static hf_status read_page(page *p, hf_messages *messages)
 
 static void free_page(page *p)
 {
+    hf_summary_free(&p->summary);
     hf_scene_free(&p->scene);
     for (int i = 0; i < N_SHAPE; i++)
         hf_shape_free(&p->shape[i]);

@@ -81,18 +81,20 @@ static void write_inputs(const hf_merged *m, FILE *f)
             write_texts("texts", &m->input_text[a], f);
         }
         int side = hf_merged_falls_on(m, a);
-        if (side) fprintf(f, ",\"go_on\":\"%s\"", side > 0 ? "above" : "below");
+        if (side) fprintf(f, ",\"extend\":\"%s\"", side > 0 ? "above" : "below");
         fputc('}', f);
         comma = ",";
     }
     fputc(']', f);
 }
 
+#define WORD_SIZE (HF_SET_NAME_SIZE + 16)
+
 /* Returns the stage of a figure on the page, where each load case is a stage of its own. */
-static const char *stage_word(const hf_merged_figure *figure, char word[HF_SET_NAME_SIZE + 8])
+static const char *stage_word(const hf_merged_figure *figure, char word[WORD_SIZE])
 {
-    if (!*figure->load_case) return hf_merged_stage_word[figure->stage];
-    snprintf(word, HF_SET_NAME_SIZE + 8, "case %s", figure->load_case);
+    if (!*figure->load_case) return hf_merged_stage_word(figure->stage);
+    snprintf(word, WORD_SIZE, "load case %s", figure->load_case);
     return word;
 }
 
@@ -105,7 +107,7 @@ static bool is_of_one_stage(const hf_merged_figure *a, const hf_merged_figure *b
 static void write_outputs(const hf_merged *m, FILE *f)
 {
     const char *comma = "";
-    char word[HF_SET_NAME_SIZE + 8];
+    char word[WORD_SIZE];
     fputs(",\n\"output\":[", f);
     for (int k = 0, next; k < m->n_figure; k = next) {
         const hf_merged_figure *first = &m->figure[k];
@@ -127,7 +129,7 @@ static void write_outputs(const hf_merged *m, FILE *f)
 static void write_figures(const hf_merged *m, FILE *f)
 {
     hf_json j = {.file = f, .is_due = true};
-    char word[HF_SET_NAME_SIZE + 8];
+    char word[WORD_SIZE];
     hf_json_line(&j, "");
     hf_json_open(&j, "figure", '[');
     for (int k = 0; k < m->n_figure; k++) {
@@ -137,15 +139,16 @@ static void write_figures(const hf_merged *m, FILE *f)
         hf_json_text(&j, "key", figure->key);
         hf_json_text(&j, "unit", hf_ledger_unit(figure->key));
         char words[HF_AXIS_NAME_SIZE];
-        if (!strncmp(figure->key, "goal_", 5)) hf_json_text(&j, "goal", hf_print_objective_words(figure->key, words));
+        if (!strncmp(figure->key, "objective_", 10))
+            hf_json_text(&j, "objective", hf_print_objective_words(figure->key, words));
         if (figure->is_same) hf_json_bool(&j, "same", true);
         if (figure->is_psi) hf_json_bool(&j, "psi", true);
         if (k == m->lead) hf_json_bool(&j, "lead", true);
         hf_json_close(&j, '}');
     }
     hf_json_close(&j, ']');
-    hf_json_text(&j, "main", hf_merged_stage_word[m->main]);
-    hf_json_number(&j, "wanted_yield", hf_merged_wanted_yield(m));
+    hf_json_text(&j, "main", hf_merged_stage_word(m->main));
+    hf_json_number(&j, "required_yield", hf_merged_required_yield(m));
     hf_json_open(&j, "meets_yield", '[');
     for (int i = 0; i < m->n; i++)
         hf_json_text(&j, NULL, hf_merged_answer_word[hf_merged_meets_yield(m, i)]);

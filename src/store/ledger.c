@@ -247,7 +247,7 @@ static void name_then(char *field, size_t size)
     size_t n = (size_t)hf_path_prefix_length(field);
     snprintf(group, sizeof group, "%.*s", (int)(n > 1 ? n - 1 : n), field);
     if (hf_renamed(group, field + n, 0, object, name))
-        snprintf(field, size, "%s%s%s", object, object[1] ? "/" : "", name);
+        snprintf(field, size, "%s/%s", object, name); /* "//seed" of the root */
 }
 
 /* Sets from[i] to the field of the file's rows that holds our field i, or -1, because files of other versions have

@@ -4,15 +4,17 @@
  *   /study           text, base_text; title if the study has one
  *   /points          id, status (not_evaluated = not finished), reason [n]
  *   /points/input    one data set per axis, named by its key: the value of each point [n], pairs [n][2]
- *   /points/GROUP    the numbers of hf_summary that any point has [n], in the group of their attributes: form, ga,
- *                    polish, coupling, truss, tolerance; those of the root are in /points. A point without the number
+ *   /points/GROUP    the numbers of hf_summary that any point has [n], in the group of their attributes: form, search,
+ *                    refine, coupling, truss, tolerance; those of the root are in /points. A point without the number
  *                    has NaN, 0 or not_evaluated. Times and threads are not merged.
- *   /points/form, ga, polish   goal_0_psi, best_objective_0_psi, ...: values of the objectives, by name [n]
- *   /points/surface/form, optimize, polish   surface errors of the facets if there are any, else of the nodes, as
- *                    computed and after the best fit: facet_half_path_rms_m, facet_good_to_Hz (1 dB),
- *                    facet_gain_loss_at_10_GHz_dB, facet_fit_... [n]
- *   /points/cases/CASE   figures of the load cases [n]
+ *   /points/form, search, refine   objective_0_psi, ...: values of the objectives, by name [n]
+ *   /points/surface/form, search, refine   surface errors of the facets if there are any, else of the nodes, as
+ *                    computed and after the best fit: facet_half_path_rms_m, facet_gain_loss_1dB_Hz (the frequency of
+ *                    1 dB gain loss), facet_gain_loss_at_10_GHz_dB, facet_fit_... [n]
+ *   /points/load_cases/NAME   figures of the load cases [n]
  *   /runs            one external link per result file, named by the id of the point, with a path relative to this file
+ *
+ * The names of version 0.2 are soft links to these data sets (renamed.h).
  *
  * The data sets depend only on the study and the base case, not on shards, order, threads or interruptions. */
 #ifndef HIFDM_MERGE_H

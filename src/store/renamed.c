@@ -101,14 +101,15 @@ static const struct {
                        {"/load_cases/", "coupling_deflection_max_m", "coupling_max_displacement_m"},
                        {"/tolerance", "required_yield", "wanted_yield"}};
 
-/* Parts of names of figures, objectives and measures. The first two are those of objectives. */
+/* Parts of names of figures and measures. */
 static const struct {
     const char *then, *now;
-} figure_table[] = {{"goal_", "objective_"},
-                    {"_displacement", "_deflection"},
-                    {"good_to_Hz", "gain_loss_1dB_Hz"},
-                    {"least_tension_N", "tension_min_N"},
-                    {"largest_tension_N", "tension_max_N"}};
+} figure_table[] = {
+    {"good_to_Hz", "gain_loss_1dB_Hz"}, {"least_tension_N", "tension_min_N"}, {"largest_tension_N", "tension_max_N"}};
+
+/* Beginning of the name of an objective, and the word of a figure that objectives have. */
+static const char *const objective_then[] = {"goal_", "displacement"}, *const objective_now[] = {"objective_",
+                                                                                                 "deflection"};
 
 /* ---- names in a file of 0.2 ---- */
 
@@ -120,6 +121,21 @@ static void replace(char *text, size_t size, const char *from, const char *to)
     if (!at) return;
     snprintf(rest, sizeof rest, "%s", at + strlen(from));
     snprintf(at, size - (size_t)(at - text), "%s%s", to, rest);
+}
+
+/* Writes the name of an objective, such as goal_1_displacement_edge, with other words into to[size]: words[0] for its
+ * beginning, words[1] for its figure. The set at its end keeps its name. Returns false if it is no objective. */
+static bool rename_objective(const char *name, const char *const from[2], const char *const words[2], char *to,
+                             size_t size)
+{
+    size_t n = strlen(from[0]), n_figure = strlen(from[1]);
+    size_t digits = strncmp(name, from[0], n) ? 0 : strspn(name + n, "0123456789");
+    const char *figure = name + n + digits + 1;
+    if (!digits || figure[-1] != '_') return false;
+    bool is_renamed = !strncmp(figure, from[1], n_figure) && (!figure[n_figure] || figure[n_figure] == '_');
+    snprintf(to, size, "%s%.*s_%s%s", words[0], (int)digits, name + n, is_renamed ? words[1] : "",
+             is_renamed ? figure + n_figure : figure);
+    return true;
 }
 
 /* Returns the row of group_table for a path, or -1. */
@@ -162,6 +178,24 @@ static bool attribute_then(const char *path, const char *now, char *then, size_t
     return strcmp(now, "algorithm") != 0;
 }
 
+/* Returns true if the objects in a group of a merge, without "/points", are figures. In the other groups their names
+ * are those of axes and load cases. */
+static bool is_of_figures(const char *group)
+{
+    return strcmp(group, "/input") != 0 && strcmp(group, "/load_cases") != 0;
+}
+
+/* Replaces the name of a figure, measure or objective by that of 0.2. Those of /search had the prefix best_. */
+static void name_figure_then(char name[HF_HDF5_NAME_SIZE])
+{
+    char now[HF_HDF5_NAME_SIZE];
+    size_t n = strncmp(name, "best_", 5) ? 0 : 5;
+    snprintf(now, sizeof now, "%s", name + n);
+    if (rename_objective(now, objective_now, objective_then, name + n, HF_HDF5_NAME_SIZE - n)) return;
+    for (int f = 0; f < HF_HDF5_COUNT(figure_table); f++)
+        replace(name, HF_HDF5_NAME_SIZE, figure_table[f].now, figure_table[f].then);
+}
+
 /* Writes the path of an object of a merge without "/points": all numbers are data sets there, by the names of the
  * attributes. */
 static void point_then(const char *path, char *then, size_t size)
@@ -180,8 +214,7 @@ static void point_then(const char *path, char *then, size_t size)
     else
         snprintf(then, size, "%.500s", group[1] ? group : "");
     if (is_group || !attribute_then(group, leaf + 1, name, sizeof name)) return;
-    for (int f = 0; f < HF_HDF5_COUNT(figure_table); f++)
-        if (f != 1 || strstr(name, "goal_")) replace(name, sizeof name, figure_table[f].now, figure_table[f].then);
+    if (is_of_figures(group)) name_figure_then(name);
     size_t n = strlen(then);
     snprintf(then + n, size - n, "/%s", name);
 }
@@ -330,13 +363,32 @@ void hf_renamed_link(hf_hdf5 *io, bool has_rows)
     free(l);
 }
 
-/* ---- names of figures ---- */
+/* ---- names of today ---- */
 
 const char *hf_renamed_figure(const char *then, char *now, size_t size)
 {
+    if (rename_objective(then, objective_then, objective_now, now, size)) return now;
     snprintf(now, size, "%s", then);
-    bool is_objective = !strncmp(then, "goal_", 5);
-    for (int i = is_objective ? 0 : 2; i < (is_objective ? 2 : HF_HDF5_COUNT(figure_table)); i++)
+    for (int i = 0; i < HF_HDF5_COUNT(figure_table); i++)
         replace(now, size, figure_table[i].then, figure_table[i].now);
     return now;
+}
+
+const char *hf_renamed_point(const char *group, const char *then, char *now, size_t size)
+{
+    static const char points[] = "/points";
+    size_t n = sizeof points - 1;
+    const char *name = then;
+    if (strncmp(group, points, n) != 0 || !is_of_figures(group + n)) {
+        snprintf(now, size, "%s", then);
+        return now;
+    }
+    for (int i = 0; i < HF_HDF5_COUNT(attribute_table); i++)
+        if (is_in(attribute_table[i].group, group[n] ? group + n : "/", group[n] ? strlen(group + n) : 1) &&
+            !strcmp(attribute_table[i].then, then)) {
+            snprintf(now, size, "%s", attribute_table[i].now);
+            return now;
+        }
+    if (!strcmp(group + n, "/search") && !strncmp(then, "best_", 5)) name += 5;
+    return hf_renamed_figure(name, now, size);
 }

@@ -27,7 +27,11 @@ void hf_renamed_note(hf_hdf5 *io);
  * unit in their names. */
 void hf_renamed_link(hf_hdf5 *io, bool has_rows);
 
-/* Returns the name of today of a figure, measure or objective of 0.2, written into now[size] if it has changed. */
+/* Writes today's name of a figure, measure or objective of 0.2 into now[size], and returns it. */
 const char *hf_renamed_figure(const char *then, char *now, size_t size);
+
+/* Writes today's name of an object in a group of a merge of 0.2 into now[size], and returns it. group: path of today,
+ * such as "/points/search". */
+const char *hf_renamed_point(const char *group, const char *then, char *now, size_t size);
 
 #endif

@@ -6,6 +6,7 @@
 #include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define NAMES_MAX 1000 /* names in a group; more than there are keys, and so more than a study has axes */
@@ -172,6 +173,11 @@ hf_status hf_store_read_texts(const char *path, const char *name, hf_texts *text
 
 /* ---- names ---- */
 
+static int by_text(const void *a, const void *b)
+{
+    return strcmp(a, b);
+}
+
 static void read_names(hf_hdf5 *io, const char *name, hid_t group, hf_texts *names)
 {
     H5G_info_t info;
@@ -198,12 +204,14 @@ static void read_names(hf_hdf5 *io, const char *name, hid_t group, hf_texts *nam
         names->n += H5Lget_info_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, &link, H5P_DEFAULT) >= 0 &&
                     link.type != H5L_TYPE_SOFT;
     }
-    for (int i = 0; io->alias && i < names->n; i++) { /* names of version 0.2 */
+    if (!io->alias) return;
+    for (int i = 0; i < names->n; i++) { /* names of version 0.2 */
         char then[FILE_MAX], now[FILE_MAX + 32];
         char *to = names->text + (size_t)i * names->length;
-        snprintf(then, sizeof then, "%s", to + (strncmp(to, "best_", 5) ? 0 : 5));
-        snprintf(to, names->length, "%s", hf_renamed_figure(then, now, sizeof now));
+        snprintf(then, sizeof then, "%s", to);
+        snprintf(to, names->length, "%s", hf_renamed_point(name, then, now, sizeof now));
     }
+    qsort(names->text, (size_t)names->n, names->length, by_text);
 }
 
 hf_status hf_store_read_names(const char *path, const char *group, hf_texts *names, hf_messages *messages)

@@ -5,7 +5,7 @@
 //   says: texts of places, or what is in them, and nothing else is looked at
 //   warnings, slack: how many it must tell of
 //   rounding: the deviations of its result are nothing else
-//   measured: from the nodes of the result to a table of measured places, by which the net is adjusted
+//   measured: from the nodes of the result to a table of measured positions, by which the net is adjusted
 //   pattern: how many charts of its far field, of how many neighbouring angles each
 //   facets: how many, all triangles; off: families of cables whose switches are tried
 //   other: how the case of a second result differs, with which it is compared; unlike: in its figures, too
@@ -15,7 +15,7 @@
 //   study: how many points; leads: the axis that matters most, of two; along the other one nothing changes
 
 const FORM = ["net", "cables", "map", "tensions", "summary", "form-finding", "provenance"];
-const GA = ["net", "cables", "map", "tensions", "summary", "form-finding", "ga", "provenance"];
+const GA = ["net", "cables", "map", "tensions", "summary", "form-finding", "search", "provenance"];
 
 const HOSTILE = `</script><img src=x onerror="window.hit=1"><!--<b>&amp;]]>'"\u2028\u202e\u007f`;
 
@@ -82,20 +82,21 @@ export const pages = [
     says: { ".figures dd >> nth=0": "–", "#tensions p >> nth=1": "k1 has 12.748 N." },
   },
   {
-    name: "exact", // what is rounding of a net that is held in all its places is told by no figure
+    name: "exact", // no figure reports the rounding of a net that is held at all target positions
     text:
       "scene: {paraboloid: {aperture_m: 3, focal_length_m: 1.5, rings: 3, rear_distance_m: 1}, EA_inner_N: 1e4, " +
       "EA_boundary_N: 1e4}\nform: {prestress: exact}\ntolerance: {sigma_cut_m: 2e-4, samples: 50}\n" +
       "optimize: {population: 4, generations: 2}\n",
-    sections: ["net", "cables", "map", "tensions", "tolerance", "summary", "form-finding", "ga", "provenance"],
+    sections: ["net", "cables", "map", "tensions", "tolerance", "summary", "form-finding", "search", "provenance"],
     says: {
       ".figures dt >> nth=2": "tension ratio, inner cables",
-      "#cables thead tr": "CableFamilytension, found (N)tension, GA best (N)length (m)cut to (m)share of the error (%)",
+      "#cables thead tr": 
+        "CableFamilytension, form (N)tension, search (N)length (m)unstressed length (m)share of the error (%)",
       "#tolerance": /without errors < 10⁻⁶ mm/,
     },
   },
   {
-    name: "goals", // of which psi is none: it rises
+    name: "objectives", // of which psi is none: it rises
     text:
       "scene: {paraboloid: {aperture_m: 3, focal_length_m: 1.5, rings: 3, rear_distance_m: 1}}\n" +
       "form: {prestress: exact, pretension_N: 10}\nsurface: {}\n" +
@@ -172,7 +173,7 @@ export const pages = [
     says: {
       "#warnings h2": "This run failed: its figures are those of the form-finding",
       "#warnings li": /^optimize: Levenberg-Marquardt has no feasible start: /,
-      "#answer": /^Failed: optimize: Levenberg-Marquardt .*; of the form-finding: psi /,
+      "#answer": /^Failed: optimize: Levenberg-Marquardt .*; (of the form-finding:|the form-finding has) psi /,
     },
   },
   {
@@ -192,7 +193,7 @@ export const pages = [
     name: "truss",
     source: "configs/straight-edges-truss.yaml",
     sections: FORM,
-    maybe: ["coupling", "ga"],
+    maybe: ["coupling", "search"],
     truss: true,
   },
   {
@@ -245,7 +246,7 @@ export const pages = [
     sections: ["sweep", "points"],
   },
   {
-    name: "sweep-surface", // one axis; goals, of which one is psi, the surface, the net as built; wide tables on paper
+    name: "sweep-surface", // one axis; objectives, of which one is psi, the surface, the as-built net; wide tables on paper
     look: true,
     study: 3,
     text:

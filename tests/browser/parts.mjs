@@ -18,9 +18,9 @@ export async function checkRounding(tab) {
         if (part === "#net") await tab.locator(part).getByLabel("deviation", { exact: true }).check();
         return (await picture(tab, canvas)).colours;
       };
-    const one = await colours("LM optimum");
-    assert.match(await bar.innerText(), /within 1 nm of theory, .* one neutral colour\.$/);
-    const many = await colours("found");
+    const one = await colours("refine");
+    assert.match(await bar.innerText(), /within 1 nm of their target positions.* one neutral colour\.$/);
+    const many = await colours("form");
     assert.ok(!(await bar.innerText()).includes("1 nm"));
     assert.ok(many > one + 20, `${part}: ${one} colours of rounding, ${many} of deviations`);
   }
@@ -31,7 +31,7 @@ export async function checkRounding(tab) {
 // cuts has the figures of the summary.
 export async function checkPattern(tab, page, made) {
   const { charts, neighbours } = page.pattern,
-    stages = { form: "found", polish: "LM optimum" };
+    stages = { form: "form", refine: "refine" };
   assert.equal(await tab.locator("#far-field .chart").count(), charts);
   const { width } = await tab.locator("#far-field .chart").first().boundingBox();
   assert.ok(width > 900, "a pattern has the whole width");
@@ -56,7 +56,7 @@ export async function checkPattern(tab, page, made) {
   });
   const picture = tab.locator("#far-field .chart").first(),
     at = 401; // near the beam
-  assert.match(await picture.locator(".legend").innerText(), /φ 0°, found/);
+  assert.match(await picture.locator(".legend").innerText(), /φ 0°, form/);
   await picture.locator("svg[tabindex]").focus();
   for (let i = 0; i <= at; i++) await tab.keyboard.press("ArrowRight");
   await settle(tab);
@@ -75,38 +75,38 @@ export async function checkPattern(tab, page, made) {
   await tab.keyboard.press("Escape");
 }
 
-// The moves are those of the workshop's table; the chart has the figure after each, the picture their cables.
+// The adjustments are those of the workshop's table; the chart has the figure after each, the picture their cables.
 export async function checkAdjust(tab, made, changes) {
-  const moves = csv(join(made.folder, "moves.csv")),
+  const adjustments = csv(join(made.folder, "adjustments.csv")),
     rows = tab.locator("#adjust tbody tr");
-  assert.ok(moves.length > 3 && (await rows.count()) === moves.length);
+  assert.ok(adjustments.length > 3 && (await rows.count()) === adjustments.length);
   const cells = await rows.evaluateAll((all) => all.map((row) => [...row.children].map((c) => c.textContent)));
   assert.deepEqual(
     cells.map(([order, cable]) => [order, cable]),
-    moves.map(({ order, cable }) => [order, cable]),
+    adjustments.map(({ order, cable }) => [order, cable]),
   );
   for (const [column, key] of [
-    [2, "move_mm"],
+    [2, "turnbuckle_mm"],
     [4, "tension_before_N"],
     [5, "tension_after_N"],
     [6, "predicted_rms_mm"],
   ]) {
-    const wanted = moves.map((move) => Number(move[key])),
+    const wanted = adjustments.map((row) => Number(row[key])),
       most = Math.max(...wanted.map(Math.abs));
     cells.forEach((row, k) => assert.ok(Math.abs(number(row[column]) - wanted[k]) < 6e-4 * most, `${key}: ${row}`));
   }
   await tab.locator("#adjust svg[tabindex]").focus();
   await tab.keyboard.press("End");
   const said = await tab.locator("#adjust .tip").innerText(),
-    last = moves.at(-1);
-  assert.ok(said.startsWith(`move ${moves.length}: cable ${last.cable}`));
+    last = adjustments.at(-1);
+  assert.ok(said.startsWith(`adjustment ${adjustments.length}: cable ${last.cable}`));
   same(number(said.match(/predicted\s+([\d.]+)/)[1]), Number(last.predicted_rms_mm), 6);
   await tab.keyboard.press("Escape");
-  assert.match(await tab.locator("#net .bar").innerText(), new RegExp(`^${moves.length} of .* to be turned$`));
-  await changes(tab, "a name of a move", () => rows.first().getByRole("button").click());
-  assert.equal((await tip(tab, "net")).heading, `cable ${moves[0].cable}`);
-  assert.ok(Math.abs(number((await tip(tab, "net")).move) - moves[0].move_mm) < 1e-9);
-  await changes(tab, "the colour of moves", () => tab.locator("#net").getByLabel("deviation", { exact: true }).check());
+  assert.match(await tab.locator("#net .bar").innerText(), new RegExp(`^${adjustments.length} of .* have a turnbuckle adjustment$`));
+  await changes(tab, "a name of an adjustment", () => rows.first().getByRole("button").click());
+  assert.equal((await tip(tab, "net")).heading, `cable ${adjustments[0].cable}`);
+  assert.ok(Math.abs(number((await tip(tab, "net")).turnbuckle) - adjustments[0].turnbuckle_mm) < 1e-9);
+  await changes(tab, "the colour of adjustments", () => tab.locator("#net").getByLabel("deviation", { exact: true }).check());
   await tab.reload();
 }
 
@@ -133,15 +133,15 @@ export async function checkTolerance(tab, made) {
     named = legend.filter((text) => text.endsWith(" mm")).map((text) => number(text.match(/([^ ]+) mm$/)[1]));
   assert.equal(await tab.locator("#tolerance line.curve").count(), 3);
   [t.nominal_psi_m, t.psi_95_m, t.require[0].at_most].forEach((at, k) => same(named[k], 1e3 * at, 5));
-  assert.match(await tab.locator("#tolerance figcaption").textContent(), /at least 1 mm, outside of the picture/);
+  assert.match(await tab.locator("#tolerance figcaption").textContent(), /required minimum 1 mm, outside of the picture/);
   const most = t.histogram.indexOf(Math.max(...t.histogram)),
     [low, high] = t.histogram_range_m;
   await tab.locator("#tolerance svg[tabindex]").focus();
   for (let k = 0; k <= most; k++) await tab.keyboard.press("ArrowRight");
   const said = await tab.locator("#tolerance .tip").innerText();
-  same(number(said.match(/nets\s+([\d.]+)/)[1]), 100 * t.histogram[most], 6);
+  same(number(said.match(/samples\s+([\d.]+)/)[1]), 100 * t.histogram[most], 6);
   same(number(said.match(/of ([\d.]+) to/)[1]), 1e3 * (low + (most * (high - low)) / t.histogram.length), 5);
-  assert.ok((await tab.locator("#tolerance > p").first().innerText()).includes("give a yield of 90\u00a0%"));
+  assert.ok((await tab.locator("#tolerance > p").first().innerText()).match(/For a yield of 90\u00a0%, reduce all tolerances to [\d.]+\u00a0%\./));
   const rows = await tab.locator("#tolerance tbody th").allTextContents();
   assert.deepEqual(
     rows,
@@ -152,13 +152,13 @@ export async function checkTolerance(tab, made) {
 // Objectives are in units that people read, and a design before the optimisation that is far off does not flatten the
 // front but is told.
 export async function checkFront(tab, made) {
-  const { base, points } = made.summary.front,
-    [psi, ratio] = Object.keys(base),
+  const { initial, points } = made.summary.front,
+    [psi, ratio] = Object.keys(initial),
     picture = tab.locator("#front svg[tabindex]");
   assert.deepEqual(await picture.locator(".label").allTextContents(), ["ψ (mm)", "ratio boundary"]);
   const highest = number(await picture.locator("text[text-anchor=end]").last().textContent());
-  assert.ok(highest < Math.max(...points.map(({ objective }) => objective[ratio])) && base[ratio] > 1.01);
-  same(number((await tab.locator("#front figcaption").textContent()).match(/is ([\d.]+),/)[1]), base[ratio], 6);
+  assert.ok(highest < Math.max(...points.map(({ objective }) => objective[ratio])) && initial[ratio] > 1.01);
+  same(number((await tab.locator("#front figcaption").textContent()).match(/ratio boundary ([\d.]+)\./)[1]), initial[ratio], 6);
   await picture.focus();
   await tab.keyboard.press("End");
   const [, said] = (await tab.locator("#front .tip strong").textContent()).match(/: ψ ([\d.]+) mm/);
@@ -166,8 +166,8 @@ export async function checkFront(tab, made) {
   await tab.keyboard.press("Escape");
   assert.match(await tab.locator("#front code").textContent(), /^hifdm run .* --point .*\.h5:\d -o point\d\.h5$/);
   const whose = tab.locator("#answer + #whose:has(+ .figures)"); // before the first figure that is of no point
-  assert.match(await whose.textContent(), /all else on this page but the front are of the form-finding’s shape, /);
+  assert.match(await whose.textContent(), /^Except for the front, this page shows the shape of the form-finding, /);
   assert.equal(await whose.locator("code").textContent(), await tab.locator("#front code").textContent());
   const row = tab.locator("#summary tr", { hasText: psi });
-  same(number(await row.locator(".number").first().textContent()), 1e3 * base[psi], 5);
+  same(number(await row.locator(".number").first().textContent()), 1e3 * initial[psi], 5);
 }

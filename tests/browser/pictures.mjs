@@ -32,7 +32,7 @@ export async function checkHover(tab, page, made) {
       about = await hover("node", i);
     assert.equal(about && about.heading, `node ${node.id}`);
     const distance_m = Math.hypot(node.x_m - node.x0_m, node.y_m - node.y0_m, node.z_m - node.z0_m);
-    same(number(about["to theory"]), 1e3 * distance_m, 5);
+    same(number(about["to target position"]), 1e3 * distance_m, 5);
   }
   await tab.mouse.move(box.x - 5, box.y - 5);
   await tab.getByRole("button", { name: "View from above" }).click();
@@ -64,7 +64,7 @@ export async function checkNet(tab, page, made) {
   assert.equal((await tip(tab, "net")).heading, `cable ${made.cables.at(-1).id}`);
   await tab.keyboard.press("Escape");
   assert.equal(await tip(tab, "net"), null);
-  for (const label of ["tension", "slack", "none", "theoretical", "found"])
+  for (const label of ["tension", "slack", "none", "target", "form"])
     await changes(tab, label, () => tab.locator("#net").getByLabel(label, { exact: true }).check());
   if (page.truss)
     await changes(tab, "the truss", () => tab.locator("#net").getByLabel("truss", { exact: true }).uncheck());

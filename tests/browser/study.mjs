@@ -12,12 +12,12 @@ export async function checkPoints(tab, page, made) {
     const summary = JSON.parse(made.hifdm("show", file, "--json"));
     const cell = (label) => rows.nth(i).locator(`[data-label^="${label}"]`).textContent();
     assert.equal(await cell("Status"), "done");
-    same(number(await cell("ψ found")), 1e3 * summary.form.psi_m, 5);
+    same(number(await cell("ψ form")), 1e3 * summary.form.psi_m, 5);
     same(number(await cell("Tension ratio, boundary")), summary.form.boundary_tension_ratio, 5);
   }
   // the best point is on top and marked; a heading sorts; a figure with one value is a sentence and no column
-  const psi = tab.locator("#points thead button", { hasText: "ψ found" });
-  const column = (await tab.locator("#points thead th").allTextContents()).findIndex((t) => t.startsWith("ψ found"));
+  const psi = tab.locator("#points thead button", { hasText: "ψ form" });
+  const column = (await tab.locator("#points thead th").allTextContents()).findIndex((t) => t.startsWith("ψ form"));
   const shown = async () =>
     (await tab.locator(`#points tbody tr > :nth-child(${column + 1})`).allTextContents()).map(number);
   const all = await shown();
@@ -47,29 +47,29 @@ async function checkShares(tab, study) {
   }
 }
 
-// Goals have units, psi is there once, the surface and the net as built have charts and columns, the best is marked.
+// Objectives have units, psi is there once, the surface and the net as built have charts and columns, the best is marked.
 export async function checkSurfaceOfStudy(tab, study) {
   await checkCharts(tab, 6, "#sweep", /pretension [\d.]+ N/);
   const titles = await tab.locator("#sweep .chart h3").allTextContents(),
     heads = (await tab.locator("#points thead th").allTextContents()).join("; "),
     text = await tab.locator("body").innerText();
-  assert.ok(titles.includes("Surface error ψ, found"), titles.join("; ")); // the optimum's is met, and left out
-  assert.ok(titles.includes("Goal tension tie") && !titles.includes("Goal psi"), titles.join("; "));
-  assert.match(text, /The goal psi is left out: it is ψ\./);
+  assert.ok(titles.includes("Surface error ψ, form"), titles.join("; ")); // the optimum's is met, and left out
+  assert.ok(titles.includes("Objective tension tie") && !titles.includes("Objective psi"), titles.join("; "));
+  assert.match(text, /The objective psi is not listed, because it equals ψ\./);
   const ticks = await tab.locator("#sweep .chart svg[tabindex] text[text-anchor=middle]:not(.label)").allTextContents();
   assert.ok(ticks.every((t) => /^\d+$/.test(t)), `whole values, but ticks ${ticks.join("; ")}`);
-  assert.match(text, /All with EA boundary 200000 N/);
+  assert.match(text, /All points have EA boundary 200000 N/);
   assert.ok(!/Fig\.|Chen/.test(text), "a study of one's own speaks of the paper");
-  const errors = ["RMS of facets (mm)", "RMS of facets, fitted (mm)", "Good to (GHz)"],
-    wanted = ["Goal tension tie (N)", ...errors, "Yield", "Meets the yield"];
+  const errors = ["RMS of facets (mm)", "RMS of facets, fitted (mm)", "1 dB gain loss (GHz)"],
+    wanted = ["Objective tension tie (N)", ...errors, "Yield", "Meets required yield"];
   for (const head of wanted) assert.ok(heads.includes(head), `${head} is not in ${heads}`);
   const values = study.output.find(({ stage }) => stage === "tolerance").psi_95_m,
     best = tab.locator("#points tr.chosen");
   assert.equal(study.best, values.indexOf(Math.min(...values)));
   same(number(await best.locator('[data-label^="ψ of 95"]').textContent()), 1e3 * Math.min(...values), 5);
-  assert.equal(await best.locator('[data-label="Meets the yield"]').textContent(), study.meets_yield[study.best]);
+  assert.equal(await best.locator('[data-label="Meets required yield"]').textContent(), study.meets_yield[study.best]);
   assert.match(await tab.locator("dl.figures").first().innerText(), /points with a yield of 90\u00a0?\s?%/i);
-  const rms = study.output.find(({ stage }) => stage === "polish").facet_half_path_rms_m[study.best];
+  const rms = study.output.find(({ stage }) => stage === "refine").facet_half_path_rms_m[study.best];
   same(number(await best.locator('[data-label="RMS of facets (mm)"]').textContent()), 1e3 * rms, 5);
   assert.match(await tab.locator("#sweep .chart .legend").first().innerText(), /best point/);
 }

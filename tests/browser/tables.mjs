@@ -8,12 +8,12 @@ import { changes, csv, number, same, settle, tip } from "./see.mjs";
 export async function checkSummary(tab, made) {
   const said = made.hifdm("show", "result.h5").split("\n"),
     answer = await tab.locator("#answer").textContent(),
-    loss = said.find((line) => line.trim().startsWith("loss of gain at"));
+    loss = said.find((line) => /^ +(loss of gain|gain loss) at .*GHz/.test(line));
   const sentence = (text) => `${text[0].toUpperCase()}${text.slice(1)}.`;
   assert.equal(answer, sentence(said[0]) + (loss ? sentence(loss.trim()) : ""));
   const cells = await tab.locator("#summary tr", { hasText: "psi_m" }).locator("td").allTextContents();
   same(number(cells[0]), 1e3 * made.summary.form.psi_m, 5);
-  if (made.summary.optimize) same(number(cells[1]), 1e3 * made.summary.optimize.psi_m, 5);
+  if (made.summary.search) same(number(cells[1]), 1e3 * made.summary.search.psi_m, 5);
   const figure = await tab.locator(".figures dd").first().textContent();
   const digits = (text) => text.replace(/[^\d]/g, "").replace(/^0+/, "").length;
   for (const text of [cells[0], figure]) if (number(text) >= 1e-3) assert.equal(digits(text), 5, text);
@@ -118,7 +118,7 @@ export async function checkCables(tab, made) {
     const size = Math.max(...wanted.map(Math.abs));
     shown.forEach((v, k) => assert.ok(Math.abs(v - wanted[k]) < 1e-4 * size, `${v} is shown for ${wanted[k]}`));
   }
-  if (heads.some((text) => text.startsWith("cut to"))) await checkCuts(tab, made, heads);
+  if (heads.some((text) => text.startsWith("unstressed length"))) await checkCuts(tab, made, heads);
   const cable = made.cables[Math.floor(length / 2)],
     search = tab.locator("#cables input[type=search]");
   await search.fill(cable.id);
@@ -137,30 +137,34 @@ export async function checkCables(tab, made) {
   await tab.reload();
 }
 
-// Lengths and turns are those of the cut list, turns from the found net the difference of two.
+// Unstressed lengths are those of the cut list, and so are their differences, of two cut lists after a search.
 async function checkCuts(tab, made, heads) {
   const of = (stage) => {
     made.hifdm("export", "result.h5", "--cutlist", `${stage}.csv`, "--stage", stage, "--force");
     return new Map(csv(join(made.folder, `${stage}.csv`)).map((c) => [c.id, c]));
   };
   const found = of("form"),
-    result = made.summary.polish?.is_result ? of("polish") : made.summary.optimize ? of("optimize") : found;
+    result = made.summary.refine?.is_result ? of("refine") : made.summary.search ? of("search") : found;
   const cells = await tab.locator("#cables tbody tr").evaluateAll((all) =>
     all.map((row) => [...row.children].map((c) => c.textContent)),
   );
   const column = (start) => heads.findIndex((text) => text.startsWith(start));
   for (const row of cells) {
     const now = result.get(row[0]),
-      turn_m = found === result ? Number(now.l0_minus_theory_m) : Number(now.l0_m) - Number(found.get(row[0]).l0_m);
-    assert.ok(Math.abs(number(row[column("cut to")]) - Number(now.l0_m)) < 1e-4 * Number(now.l0_m));
-    const shown_mm = number(row[column("turn, ")]);
-    assert.ok(Math.abs(shown_mm - 1e3 * turn_m) < 0.06, `a turn of ${shown_mm} mm for ${1e3 * turn_m}`);
+      length_m = Number(now.unstressed_length_m),
+      change_m =
+        found === result
+          ? Number(now.unstressed_minus_target_m)
+          : length_m - Number(found.get(row[0]).unstressed_length_m);
+    assert.ok(Math.abs(number(row[column("unstressed length")]) - length_m) < 1e-4 * length_m);
+    const shown_mm = number(row[column("unstressed minus ")]);
+    assert.ok(Math.abs(shown_mm - 1e3 * change_m) < 0.06, `${shown_mm} mm is shown for ${1e3 * change_m}`);
   }
 }
 
-// A change of ψ has the word of its sign; in copies of the page with another base.
+// A change of ψ has the word of its sign; in copies of the page with another initial design.
 export async function checkChange(browser, made, folder) {
-  const psi_m = made.summary.optimize.psi_m,
+  const psi_m = made.summary.search.psi_m,
     given = readFileSync(made.html, "utf8");
   for (const [part, size, word] of [
     [0.5, "100.00", "above"],
@@ -168,7 +172,7 @@ export async function checkChange(browser, made, folder) {
     [1.00001, "0.00", "against"],
   ]) {
     const copy = join(folder, `change-${word}.html`);
-    writeFileSync(copy, given.replace(/"base_psi_m": [^,}]*/, `"base_psi_m": ${part * psi_m}`));
+    writeFileSync(copy, given.replace(/"initial_psi_m": [^,}]*/, `"initial_psi_m": ${part * psi_m}`));
     const tab = await browser.newPage();
     await tab.goto(pathToFileURL(copy).href);
     assert.match(await tab.locator(".figures dt").nth(2).textContent(), new RegExp(`^ψ ${word} that of the `));

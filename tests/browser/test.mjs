@@ -54,7 +54,7 @@ function build(page, folder) {
   }
   const start = performance.now();
   if (page.measured)
-    hifdm("adjust", source, "--measured", "measured.csv", "--result", result, "-o", "moves.csv", "--report", html);
+    hifdm("adjust", source, "--measured", "measured.csv", "--result", result, "-o", "adjustments.csv", "--report", html);
   else hifdm("report", result, ...beside, "-o", html);
   const made = { html, hifdm, folder, made_ms: performance.now() - start };
   if (page.study) return { ...made, study: JSON.parse(readFileSync(html, "utf8").match(DATA)[2]).study };
@@ -173,12 +173,12 @@ async function test(browser, page) {
     const chosen = tab.locator("#sweep input[name=axis]:checked");
     assert.equal(await chosen.getAttribute("value"), page.leads, "the axis at first is not the one that matters most");
     await tab.locator(`#sweep input[name=axis]:not([value="${page.leads}"])`).check();
-    assert.match(await tab.locator("#sweep > p.flat").innerText(), /^Along pretension these do not change: .*error ψ/);
+    assert.match(await tab.locator("#sweep > p.flat").innerText(), /^Along pretension these figures do not change: .*error ψ/);
     assert.equal(await tab.locator("#sweep .chart").count(), 0);
     await checkPoints(tab, page, made);
   } else {
     await checkSummary(tab, made);
-    const isOptimised = ["optimize", "polish", "front"].some((key) => key in made.summary);
+    const isOptimised = ["search", "refine", "front"].some((key) => key in made.summary);
     assert.equal(/ variables,/.test(await tab.locator("#subtitle").textContent()), isOptimised);
     if (page.name === "chen2022") await checkWords(tab, made);
     if (page.name === "chen2022") await checkChange(browser, made, folder);

@@ -40,18 +40,18 @@ START_TEST(page_holds_the_stored_numbers)
     OUT("c.h5: report in ");
     OUT(" kB)\n");
     demand_well_formed(page);
-    EXPECT(data_of(page, "c.json"), out, "--", "[s['stage'] for s in a['shapes']] == ['form', 'optimize', 'polish']",
+    EXPECT(data_of(page, "c.json"), out, "--", "[s['stage'] for s in a['shapes']] == ['form', 'search', 'refine']",
            "a['net']['node_id'] == texts(b['scene/node/id']) and a['net']['cable_id'] == texts(b['scene/cable/id'])",
            "a['net']['end'] == b['scene/cable/end'][:].ravel().tolist()",
            "a['net']['position_m'] == b['scene/node/position_m'][:].ravel().tolist()",
            "all(np.allclose(s['displacement_m'], (b[g]['position_m'][:] - b['scene/node/position_m'][:]).ravel(), "
-           "rtol=1e-7, atol=0) for s, g in zip(a['shapes'], ('form', 'ga/best', 'polish')))",
-           "all(np.allclose(s[n], b[g][n][:], rtol=1e-7, atol=0) for s, g in zip(a['shapes'], ('form', 'ga/best', "
-           "'polish')) for n in ('tension_N', 'length_m'))",
+           "rtol=1e-7, atol=0) for s, g in zip(a['shapes'], ('form', 'search', 'refine')))",
+           "all(np.allclose(s[n], b[g][n][:], rtol=1e-7, atol=0) for s, g in zip(a['shapes'], ('form', 'search', "
+           "'refine')) for n in ('tension_N', 'length_m'))",
            "len(a['history']['psi_m']) == a['history']['n'] == 67 and a['history']['stride'] == 1",
            "np.allclose(a['history']['psi_m'], b['form/history/psi_m'], rtol=1e-8)",
-           "np.allclose(a['ga']['best_psi_m'], b['ga/best_psi_m'], rtol=1e-8)",
-           "a['ga']['n_infeasible'] == b['ga/n_infeasible'][:].tolist()",
+           "np.allclose(a['search']['best_psi_m'], b['search/population/best_psi_m'], rtol=1e-8)",
+           "a['search']['n_infeasible'] == b['search/population/n_infeasible'][:].tolist()",
            "a['summary']['form']['psi_m'] == b['form'].attrs['psi_m']", "a['seed'] == '2022'",
            "len(a['summary']['warnings']) == 2",
            "{'host', 'compiler', 'git_describe', 'started_utc', 'sha256'} <= {p.split(': ')[0] for p in "
@@ -61,7 +61,7 @@ START_TEST(page_holds_the_stored_numbers)
 }
 END_TEST
 
-/* The answer of the page is the first line of the summary, also without scripts; then what the errors cost. */
+/* The answer of the page is the first line of the summary, also without scripts; then the gain losses. */
 START_TEST(page_begins_with_the_answer)
 {
     const char *out = temp("w.h5"), *page = temp("w.html"), *text = temp("w.txt");
@@ -70,8 +70,9 @@ START_TEST(page_begins_with_the_answer)
     HIFDM(0, "report", out, "-o", page);
     demand_well_formed(page);
     SHELL(0, "\"$0\" show \"$1\" >\"$2\"", out, text);
-    EXPECT(data_of(page, "w.json"), text, page, "--", "'psi ' in a['answer'] and 'good to ' in a['answer']",
-           "b.decode().split('\\n')[0] == a['answer']", "a['gain_loss'].startswith('loss of gain at 2/6 GHz: ')",
+    EXPECT(data_of(page, "w.json"), text, page, "--", "a['answer'].startswith('psi ') and ' GHz' in a['answer']",
+           "b.decode().split('\\n')[0] == a['answer']",
+           "' at 2/6 GHz: ' in a['gain_loss'] and 'gain' in a['gain_loss'].split(' at ')[0]",
            "16 * ' ' + a['gain_loss'] in b.decode().split('\\n')",
            "'<noscript><p>' + a['answer'] + '</p></noscript>' in c.decode()");
     HIFDM(0, "run", file_with("n.yaml", SMALL_SCENE), "-o", out, "--quiet", "--force");
@@ -94,8 +95,8 @@ START_TEST(a_failed_optimisation_says_so_first)
         demand_well_formed(page);
         SHELL(0, "\"$0\" show \"$1\" >\"$2\"", out, text);
         EXPECT(data_of(page, "f.json"), text, told, "--", "a['summary']['status'] == 'no_feasible'",
-               "len(a['summary']['errors']) == 1",
-               "a['answer'].startswith(f\"failed: {a['summary']['errors'][0]}; of the form-finding: psi \")",
+               "len(a['summary']['errors']) == 1", "a['answer'].startswith(f\"failed: {a['summary']['errors'][0]}; \")",
+               "'form-finding' in a['answer'].split('; ')[-1] and ' psi ' in a['answer'].split('; ')[-1]",
                "[t.decode().split('\\n')[0] for t in (b, c)] == [a['answer']] * 2");
     }
     const char *const argv[] = {
@@ -105,7 +106,7 @@ START_TEST(a_failed_optimisation_says_so_first)
         out, NULL};
     demand_exit(run_command(20.0, argv), 0, "h5py", __LINE__);
     HIFDM(0, "show", out);
-    ck_assert_int_eq(strncmp(said.out, "failed: no design met the constraints; of the form-finding: psi ", 64), 0);
+    ck_assert_int_eq(strncmp(said.out, "failed: no design met the constraints; ", 39), 0);
     HIFDM(3, "run", CHEN, "-o", out, "--force", "--quiet", "--set", "optimize.method=lm", "--set",
           "optimize.boundary_ratio_cap=1.0001", "--set", "optimize.range_N=1e-6");
     EXPECT(out, "--", "attribute(a, 'warnings').startswith('error: optimize: ')", /* what has no room is at the end */
@@ -122,9 +123,10 @@ START_TEST(long_histories_are_thinned)
                                           "polish_iterations: 1}\n"),
           "-o", out, "--quiet");
     HIFDM(0, "report", out, "-o", temp("l.html"));
-    EXPECT(data_of(temp("l.html"), "l.json"), out, "--", "a['ga']['n'] == 2501 and a['ga']['stride'] == 3",
-           "len(a['ga']['best_psi_m']) == 835", "near(a['ga']['best_psi_m'][-1], b['ga/best_psi_m'][-1], 1e-8)",
-           "near(a['ga']['mean_psi_m'][1], b['ga/mean_psi_m'][3], 1e-8)");
+    EXPECT(data_of(temp("l.html"), "l.json"), out, "--", "a['search']['n'] == 2501 and a['search']['stride'] == 3",
+           "len(a['search']['best_psi_m']) == 835",
+           "near(a['search']['best_psi_m'][-1], b['search/population/best_psi_m'][-1], 1e-8)",
+           "near(a['search']['mean_psi_m'][1], b['search/population/mean_psi_m'][3], 1e-8)");
 }
 END_TEST
 
@@ -164,8 +166,8 @@ START_TEST(missing_stages_are_absent)
     const char *out = temp("f.h5");
     HIFDM(0, "run", file_with("f.yaml", SMALL_SCENE), "-o", out, "--quiet");
     HIFDM(0, "report", out, "-o", temp("f.html"));
-    EXPECT(data_of(temp("f.html"), "f.json"), "--", "[s['stage'] for s in a['shapes']] == ['form']", "'ga' not in a",
-           "'optimize' not in a['summary']", "a['title'] == 'f.yaml'");
+    EXPECT(data_of(temp("f.html"), "f.json"), "--", "[s['stage'] for s in a['shapes']] == ['form']",
+           "'search' not in a", "'search' not in a['summary']", "a['title'] == 'f.yaml'");
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
           "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); del f['form/tension_N'], f['form/history']", out);
     HIFDM(0, "report", out, "-o", temp("s.html"));
@@ -173,7 +175,8 @@ START_TEST(missing_stages_are_absent)
     EXPECT(data_of(temp("s.html"), "s.json"), "--", "a['shapes'] == []", "'history' not in a");
     HIFDM(3, "run", CHEN, "-o", temp("n.h5"), "--quiet", "--set", "form.max_iterations=3");
     HIFDM(0, "report", temp("n.h5"), "-o", temp("n.html"));
-    EXPECT(data_of(temp("n.html"), "n.json"), "--", "[s['stage'] for s in a['shapes']] == ['form'] and 'ga' not in a",
+    EXPECT(data_of(temp("n.html"), "n.json"), "--",
+           "[s['stage'] for s in a['shapes']] == ['form'] and 'search' not in a",
            "'did not converge in 3 iterations' in a['summary']['errors'][0]");
 }
 END_TEST
@@ -219,12 +222,15 @@ START_TEST(truss_is_shown_when_there_is_one)
 }
 END_TEST
 
-/* A merged study as `hifdm merge` lays it out: three points, of which one failed and one is missing. */
+/* A merged study as `hifdm merge` lays it out: three points, of which one failed and one is missing. With a second
+ * argument it has the names and the format of version 0.2. */
 static const char make_study[] =
     "import h5py, numpy as np, sys\n"
     "f = h5py.File(sys.argv[1], 'w')\n"
+    "old = len(sys.argv) > 2\n"
     "f.attrs.create('program', b'hifdm', dtype=h5py.string_dtype('utf-8', 5)); f.attrs['format_version'] = "
-    "np.int32(2)\n"
+    "np.int32(2 if old else 3)\n"
+    "search, objective = ('points/ga/best_', 'goal_') if old else ('points/search/', 'objective_')\n"
     "text = lambda v: np.array([t.encode() for t in v], dtype=h5py.string_dtype('utf-8', max(map(len, v)) or 1))\n"
     "f['points/id'] = text(['a1', 'b2', 'c3'])\n"
     "f['points/reason'] = text(['', '</script><b>no', ''])\n"
@@ -236,10 +242,14 @@ static const char make_study[] =
     "f['points/input/scene.parabolic_cylinder.modules'] = np.array([[5, 5], [5, 6], [5, 7]], dtype='i4')\n"
     "f['points/form/psi_m'] = [0.006, np.nan, np.nan]\n"
     "f['points/form/n_slack'] = np.array([2, 0, 0], dtype='i4')\n"
-    "f['points/ga/best_psi_m'] = [0.005, np.nan, np.nan]\n"
-    "f['points/form/goal_0_psi'] = [0.006, np.nan, np.nan]\n"
-    "f['points/ga/best_goal_1_tension_edge'] = [3.5, np.nan, np.nan]\n"
-    "f['points/ga/best_' + 'goal_' * 50] = [1.0, 2.0, 3.0]\n" /* no goal of ours */
+    "f[search + 'psi_m'] = [0.005, np.nan, np.nan]\n"
+    "f['points/form/' + objective + '0_psi'] = [0.006, np.nan, np.nan]\n"
+    "f[search + objective + '1_tension_edge'] = [3.5, np.nan, np.nan]\n"
+    "f[search + objective * 50] = [1.0, 2.0, 3.0]\n" /* no objective of ours */
+    "f['points/surface/' + ('optimize' if old else 'search') + '/fit_' + ('good_to' if old else 'gain_loss_1dB') + "
+    "'_Hz'] = [4e9, np.nan, np.nan]\n"
+    "f['points/' + ('cases' if old else 'load_cases') + '/best_goal_1/n_slack'] = np.array([1, 0, 0], dtype='i4')\n"
+    "f['points/tolerance/' + ('wanted' if old else 'required') + '_yield'] = [0.9, 0.9, 0.9]\n"
     "f['runs/a1'] = h5py.ExternalLink('s.d/a1.h5', '/')\n"
     "f['runs/b2'] = h5py.ExternalLink('s.d/b2.h5', '/')\n";
 
@@ -260,8 +270,16 @@ START_TEST(merged_study_is_a_page_of_points)
            "'9007199254740993', "
            "'18446744073709551615'], 'scene.parabolic_cylinder.modules': [5, 5, 5, 6, 5, 7]}",
            "a['study']['output'] == [{'stage': 'form', 'psi_m': [0.006, None, None], 'n_slack': [2, 0, 0], "
-           "'goal_0_psi': [0.006, None, None]}, {'stage': 'optimize', 'psi_m': [0.005, None, None], "
-           "'goal_1_tension_edge': [3.5, None, None]}]");
+           "'objective_0_psi': [0.006, None, None]}, {'stage': 'search', 'psi_m': [0.005, None, None], "
+           "'objective_1_tension_edge': [3.5, None, None], 'fit_gain_loss_1dB_Hz': [4e9, None, None]}]",
+           "a['study']['main'] == 'search' and a['study']['required_yield'] == 0.9",
+           "[(g['stage'], g['key'], g['unit']) for g in a['study']['figure'] if g['stage'].startswith('load')] == "
+           "[('load case best_goal_1', 'n_slack', '')]");
+    /* that of version 0.2 has the same page */
+    SHELL(0, "cp \"$1\" \"$1.new\"", page);
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\" old", python_program(), make_study, merged);
+    HIFDM(0, "report", merged, "-o", page, "--force");
+    SHELL(0, "cmp \"$1\" \"$1.new\"", page);
     /* from another folder: absolute paths */
     SHELL(0, "mkdir \"$1\"", temp("elsewhere"));
     HIFDM(0, "report", merged, "-o", temp("elsewhere/s.html"));

@@ -23,8 +23,8 @@ START_TEST(errors_of_the_surface_are_columns_of_a_merge)
 {
     const char *path = file_with("s.yaml", NET SURFACE LM AXIS), *merged = temp("s.h5"), *later = temp("later.h5");
     sweep_and_merge(path, temp("s.d"), merged);
-#define RUNS "for i, k in enumerate(texts(a['points/id'])) for s in ('form', 'polish') "
-    EXPECT(merged, "--", "sorted(a['points/surface']) == ['form', 'polish']",
+#define RUNS "for i, k in enumerate(texts(a['points/id'])) for s in ('form', 'refine') "
+    EXPECT(merged, "--", "sorted(a['points/surface']) == ['form', 'refine']",
            "all(a['points/surface'][s][n][i] == a['runs'][k]['surface'][s].attrs[n] " RUNS
            "for n in ('facet_half_path_rms_m', 'facet_fit_half_path_rms_m'))",
            "all(np.array_equal(a['points/surface'][s]['facet_' + f + 'gain_loss_at_%s_GHz_dB' % ('2.5', '20')[q]][i], "
@@ -32,9 +32,9 @@ START_TEST(errors_of_the_surface_are_columns_of_a_merge)
            "for f in ('', 'fit_') for q in (0, 1))",
            /* the frequency at which Ruze's formula costs 1 dB: 4.3429 (4 pi e / lambda)^2 */
            "all(near(10 / np.log(10) * (4 * np.pi * a['points/surface'][s]['facet_' + f + 'half_path_rms_m'][i] * "
-           "a['points/surface'][s]['facet_' + f + 'good_to_Hz'][i] / 299792458)**2, 1, 1e-9) " RUNS
+           "a['points/surface'][s]['facet_' + f + 'gain_loss_1dB_Hz'][i] / 299792458)**2, 1, 1e-9) " RUNS
            "for f in ('', 'fit_'))",
-           "[attribute(a['points/surface/form/facet_' + n], 'units') for n in ('half_path_rms_m', 'good_to_Hz', "
+           "[attribute(a['points/surface/form/facet_' + n], 'units') for n in ('half_path_rms_m', 'gain_loss_1dB_Hz', "
            "'gain_loss_at_20_GHz_dB')] == ['m', 'Hz', 'dB']");
     for (int task = 0; task < 3; task++)
         HIFDM(0, "sweep", path, "--dir", temp("later.d"), "--task", keep(formatted("%d", task)), "--tasks", "3");
@@ -48,8 +48,8 @@ START_TEST(errors_of_the_surface_are_columns_of_a_merge)
 }
 END_TEST
 
-/* What becomes of a design in each state, as single runs have it, and nothing is said of all states that is of one. */
-START_TEST(states_are_columns_of_a_merge)
+/* The figures of each load case are those of single runs, and a figure of one is not printed as one of all. */
+START_TEST(load_cases_are_columns_of_a_merge)
 {
     const char *cases = keep(source_path("configs/paraboloid-cases.yaml")), *merged = temp("s.h5"),
                *page = temp("s.html");
@@ -61,16 +61,16 @@ START_TEST(states_are_columns_of_a_merge)
 #define STATES "for i, r in enumerate((b, c)) for s in ('cold', 'sun', 'cup_up', 'cup_down', 'spun') "
     EXPECT(merged, temp("one.h5"), temp("two.h5"), "--",
            "a['points/input/cases.0.temperature_K'][:].tolist() == [-120, -30]",
-           "all(a['points/cases'][s][n][i] == r['cases'][s].attrs[n] " STATES
-           "for n in ('psi_m', 'n_slack', 'n_loose', 'largest_tension_N'))",
-           "all(a['points/cases'][s][n][i] == r['cases'][s]['surface'].attrs[n] " STATES
+           "all(a['points/load_cases'][s][n][i] == r['load_cases'][s].attrs[n] " STATES
+           "for n in ('psi_m', 'n_slack', 'n_loose', 'tension_max_N'))",
+           "all(a['points/load_cases'][s][n][i] == r['load_cases'][s]['surface'].attrs[n] " STATES
            "for n in ('facet_half_path_rms_m', 'facet_fit_half_path_rms_m'))",
-           "all(np.array_equal(a['points/cases'][s]['facet_' + f + 'gain_loss_at_%d_GHz_dB' % (2, 10)[q]][i], "
-           "r['cases'][s]['surface']['facet_' + f + 'gain_loss_dB'][q], equal_nan=True) " STATES
+           "all(np.array_equal(a['points/load_cases'][s]['facet_' + f + 'gain_loss_at_%d_GHz_dB' % (2, 10)[q]][i], "
+           "r['load_cases'][s]['surface']['facet_' + f + 'gain_loss_dB'][q], equal_nan=True) " STATES
            "for f in ('', 'fit_') for q in (0, 1))",
-           "[attribute(a['points/cases/cold/' + n], 'units') for n in ('psi_m', 'largest_tension_N', 'n_slack')] == "
+           "[attribute(a['points/load_cases/cold/' + n], 'units') for n in ('psi_m', 'tension_max_N', 'n_slack')] == "
            "['m', 'N', '']",
-           "a['points/cases/cold/n_slack'][0] > a['points/cases/cold/n_slack'][1]");
+           "a['points/load_cases/cold/n_slack'][0] > a['points/load_cases/cold/n_slack'][1]");
     HIFDM(0, "show", merged);
     OUT("design slack 0");
     OUT("cold slack  cold loose");
@@ -78,18 +78,19 @@ START_TEST(states_are_columns_of_a_merge)
     HIFDM(0, "show", merged, "--json");
     const char *json = out_as("s.json");
     HIFDM(0, "report", merged, "-o", page);
-    EXPECT(
-        merged, json, data_of(page, "p.json"), "--",
-        "all([p['cases'][s][n] for p in b['points']] == a['points/cases'][s][n][:].tolist() for s in a['points/cases'] "
-        "for n in ('psi_m', 'n_slack', 'facet_half_path_rms_m'))",
-        "[o['n_slack'] for o in c['study']['output'] if o['stage'] == 'case cold'] == "
-        "[a['points/cases/cold/n_slack'][:].tolist()]",
-        "[f.get('same') for f in c['study']['figure'] if f['stage'] in ('case cold', 'case sun') and f['key'] == "
-        "'psi_m'] == [None, True]");
+    EXPECT(merged, json, data_of(page, "p.json"), "--",
+           "all([p['load_cases'][s][n] for p in b['points']] == a['points/load_cases'][s][n][:].tolist() for s in "
+           "a['points/load_cases'] "
+           "for n in ('psi_m', 'n_slack', 'facet_half_path_rms_m'))",
+           "[o['n_slack'] for o in c['study']['output'] if o['stage'] == 'load case cold'] == "
+           "[a['points/load_cases/cold/n_slack'][:].tolist()]",
+           "[f.get('same') for f in c['study']['figure'] if f['stage'] in ('load case cold', 'load case sun') and "
+           "f['key'] == "
+           "'psi_m'] == [None, True]");
 }
 END_TEST
 
-/* Every number of the table is that of the file, the best row is the least psi of 95 %, and lines fit. */
+/* Every number of the table is that of the file, the best row has the minimum psi of 95 %, and lines fit. */
 START_TEST(a_merged_study_is_shown_as_a_table)
 {
     const char *path = file_with("s.yaml", "title: How hard\n" NET SURFACE LM TOLERANCE AXIS);
@@ -98,9 +99,9 @@ START_TEST(a_merged_study_is_shown_as_a_table)
     HIFDM(0, "show", merged);
     OUT("How hard\n  points        3: 3 done, 0 failed, 0 missing\n  axes          form.pretension_N\n");
     OUT("EA boundary 200000 N");
-    OUT("good to");
-    OUT("tension tie");
-    ck_assert_msg(!strstr(said.out, " psi  psi"), "%s", said.out); /* the goal psi is psi */
+    OUT("1 dB gain loss");
+    OUT("objective tension tie");
+    ck_assert_msg(!strstr(said.out, " psi  psi"), "%s", said.out); /* the objective psi is psi */
     EXPECT(merged, out_as("s.txt"), "--",
            "max(len(line) for line in b.decode().splitlines() if 'hifdm report' not in line) <= 100",
            "[r.split()[1 if r[0] == '*' else 0] for r in b.decode().splitlines() if r[:1] in '* ' and "
@@ -108,22 +109,22 @@ START_TEST(a_merged_study_is_shown_as_a_table)
            "'20')][:3] == ['5', '10', '20']",
            "('%.4f' % (1e3 * a['points/tolerance/psi_95_m'][:].min())) in [r for r in b.decode().splitlines() if r[:1] "
            "== '*'][0].split()",
-           "all('%.4f' % (1e3 * v) in b.decode() for n in ('form', 'polish') for v in a['points'][n]['psi_m'][:])",
+           "all('%.4f' % (1e3 * v) in b.decode() for n in ('form', 'refine') for v in a['points'][n]['psi_m'][:])",
            "all('%.4f' % (1e3 * v) in b.decode() for v in "
-           "a['points/surface/polish/facet_half_path_rms_m'][:])",
+           "a['points/surface/refine/facet_half_path_rms_m'][:])",
            "all('%.1f' % (100 * v) in b.decode() for v in a['points/tolerance/yield'][:])");
     HIFDM(0, "show", merged, "--json");
     EXPECT(merged, out_as("s.json"), "--", "[p['id'] for p in b['points']] == texts(a['points/id'])",
-           "b['best_by'] == 'psi_95_m' and b['result'] == 'polish' and b['title'] == 'How hard'",
+           "b['best_by'] == 'psi_95_m' and b['result'] == 'refine' and b['title'] == 'How hard'",
            "b['best'] == texts(a['points/id'])[int(np.argmin(a['points/tolerance/psi_95_m'][:]))]",
            "[p['input']['form.pretension_N'] for p in b['points']] == [5, 10, 20]",
-           "[p['polish']['facet_good_to_Hz'] for p in b['points']] == "
-           "a['points/surface/polish/facet_good_to_Hz'][:].tolist()",
+           "[p['refine']['facet_gain_loss_1dB_Hz'] for p in b['points']] == "
+           "a['points/surface/refine/facet_gain_loss_1dB_Hz'][:].tolist()",
            "[p['tolerance']['yield'] for p in b['points']] == a['points/tolerance/yield'][:].tolist()");
 }
 END_TEST
 
-/* Which points have the yield that is wanted, by the 95 % intervals of Clopper and Pearson of their samples. */
+/* Which points have the required yield, by the 95 % intervals of Clopper and Pearson of their samples. */
 START_TEST(points_say_whether_they_have_the_yield)
 {
     const char *path = file_with("s.yaml", NET "tolerance: {sigma_cut_m: 5e-5, samples: 60, yield: 0.6, require: "
@@ -141,12 +142,12 @@ START_TEST(points_say_whether_they_have_the_yield)
     "k + 1, n - k) if k < n else 1) >= 0.6 else 'no' for k in np.rint(n * y)])(__import__('scipy.stats').stats.beta, " \
     "60, a['points/tolerance/yield'][:])"
     EXPECT(merged, shown, data_of(page, "s.json"), "--", "set(" ANSWERS ") == {'yes', 'open', 'no'}",
-           "c['study']['meets_yield'] == " ANSWERS, "c['study']['wanted_yield'] == 0.6",
+           "c['study']['meets_yield'] == " ANSWERS, "c['study']['required_yield'] == 0.6",
            "[w for w in b.decode().split() if w in ('yes', 'open', 'no')] == ['open'] + " ANSWERS);
 }
 END_TEST
 
-/* Goals that no point reaches: their merit says which is best, however small psi's part in it is. */
+/* Objectives that no point reaches: their merit decides which is best, however small psi's part in it is. */
 START_TEST(objectives_say_which_point_is_best)
 {
     sweep_and_merge(file_with("s.yaml",
@@ -156,23 +157,23 @@ START_TEST(objectives_say_which_point_is_best)
                     temp("s.d"), temp("s.h5"));
     HIFDM(0, "show", temp("s.h5"), "--json");
     EXPECT(temp("s.h5"), out_as("s.json"), "--", "b['best_by'] == 'merit'",
-           "b['best'] == texts(a['points/id'])[int(np.argmin(a['points/polish/merit'][:]))]",
-           "np.argmin(a['points/polish/merit'][:]) != np.argmin(a['points/tolerance/psi_95_m'][:])");
+           "b['best'] == texts(a['points/id'])[int(np.argmin(a['points/refine/merit'][:]))]",
+           "np.argmin(a['points/refine/merit'][:]) != np.argmin(a['points/tolerance/psi_95_m'][:])");
     HIFDM(0, "show", temp("s.h5"));
-    OUT("least merit: ");
+    OUT("minimum merit: ");
 }
 END_TEST
 
 /* Only where the figure that says which is best falls towards the end, and of what is no error. */
 START_TEST(a_best_point_at_the_end_of_an_axis_is_told)
 {
-    static const char end[] = "the end of its axis: go on ";
+    static const char end[] = "the end of its axis: add points ";
     const char *merged = temp("s.h5");
     sweep_and_merge(file_with("s.yaml", NET "sweep:\n  form.pretension_N: [20, 5, 10]\n  scene.EA_boundary_N: [2e5, "
                                             "2.0001e5]\n"),
                     temp("s.d"), merged);
-    HIFDM(0, "show", merged); /* a truss gives way less to less; the other axis means nothing to it */
-    OUT("\n                psi still falls at pretension 5 N, the end of its axis: go on below\n");
+    HIFDM(0, "show", merged); /* a truss deflects less under less pull; the other axis changes nothing */
+    OUT("\n                psi still falls at pretension 5 N, the end of its axis: add points below it\n");
     ck_assert_int_eq(count_of(said.out, end), 1);
     EXPECT(merged, "--",
            "(lambda psi, n: np.ptp([p for p, k in zip(psi, n) if k == 5]) < 1e-9 and max(psi[n == 5]) < "
@@ -180,14 +181,14 @@ START_TEST(a_best_point_at_the_end_of_an_axis_is_told)
            "a['points/input/form.pretension_N'][:])");
     HIFDM(0, "report", merged, "-o", temp("s.html"));
     EXPECT(data_of(temp("s.html"), "s.json"), "--",
-           "{i['name']: i.get('go_on') for i in a['study']['input']} == {'form.pretension_N': 'below', "
+           "{i['name']: i.get('extend') for i in a['study']['input']} == {'form.pretension_N': 'below', "
            "'scene.EA_boundary_N': None}");
     /* fewer errors are always better; a best point within */
     sweep_and_merge(file_with("t.yaml", NET "tolerance: {sigma_cut_m: 1e-5, samples: 40}\nsweep:\n  "
                                             "tolerance.sigma_cut_m: [1e-5, 3e-5, 9e-5]\n"),
                     temp("t.d"), temp("t.h5"));
     HIFDM(0, "show", temp("t.h5"));
-    OUT("best (*)      least psi of 95 %: ");
+    OUT("best (*)      minimum psi of 95 %: ");
     EXPECT(temp("t.h5"), "--", "(np.diff(a['points/tolerance/psi_95_m'][:]) > 0).all()");
     ck_assert_int_eq(count_of(said.out, end), 0);
     sweep_and_merge(file_with("u.yaml", NET TOLERANCE "sweep:\n  form.pretension_N: [1, 3, 5, 8, 12, 20, 30]\n"),
@@ -219,16 +220,16 @@ START_TEST(odd_names_are_shown_escaped)
           "import h5py, numpy as np, sys\n"
           "f = h5py.File(sys.argv[1], 'w')\n"
           "f.attrs.create('program', b'hifdm', dtype=h5py.string_dtype('utf-8', 5)); f.attrs['format_version'] = "
-          "np.int32(2)\n"
+          "np.int32(3)\n"
           "text = lambda v: np.array([t.encode() for t in v], dtype=h5py.string_dtype('utf-8', 99))\n"
           "p = f.create_group('points')\n"
           "p['id'] = text(['a', 'b']); p['reason'] = text(['', '\\x1b[31mno']); f['study/title'] = "
           "text(['\\x1b[2Jhello'])\n"
           "p['status'] = np.array([0, 1], dtype=h5py.enum_dtype({'ok': 0, 'not_converged': 1}, basetype='i1'))\n"
-          "for name in ('5.weight', 'goal_x.1psi', '_N', 'a' * 300, '\\x1b[31m_m'):\n"
+          "for name in ('5.weight', 'objective_x.1psi', '_N', 'a' * 300, '\\x1b[31m_m'):\n"
           "    p['input/' + name] = [1.0, 2.0]\n"
           "p['input/words'] = text(['\\u202eabc', 'x'])\n"
-          "p['form/psi_m'] = [0.001, np.nan]; p['form/goal_0_' + 'z' * 90] = [1.0, np.inf]\n",
+          "p['form/psi_m'] = [0.001, np.nan]; p['form/objective_0_' + 'z' * 90] = [1.0, np.inf]\n",
           temp("odd.h5"));
     HIFDM(0, "show", temp("odd.h5"));
     OUT("\\x1b[2Jhello\n");
@@ -247,7 +248,7 @@ START_TEST(a_large_study_shows_its_best)
     sweep_and_merge(path, temp("s.d"), temp("s.h5"));
     HIFDM(0, "show", temp("s.h5"));
     OUT("the 32 best of 70 points; --verbose: all");
-    OUT("best (*)      least psi: ");
+    OUT("best (*)      minimum psi: ");
     EXPECT(temp("s.h5"), out_as("s.txt"), "--",
            "[r[1:].split()[1] for r in b.decode().splitlines() if r[1:].split() and r[1:].split()[0][0].isdigit()] == "
            "['%.4f' % (1e3 * v) for v in sorted(a['points/form/psi_m'][:])[:32]]");
@@ -388,7 +389,7 @@ Suite *suite_cli_study(void)
     Suite *suite = suite_create("cli/study");
     TCase *tcase = tcase_create("study");
     tcase_add_test(tcase, errors_of_the_surface_are_columns_of_a_merge);
-    tcase_add_test(tcase, states_are_columns_of_a_merge);
+    tcase_add_test(tcase, load_cases_are_columns_of_a_merge);
     tcase_add_test(tcase, a_merged_study_is_shown_as_a_table);
     tcase_add_test(tcase, points_say_whether_they_have_the_yield);
     tcase_add_test(tcase, objectives_say_which_point_is_best);

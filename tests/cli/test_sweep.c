@@ -42,11 +42,11 @@ START_TEST(sweep_status_and_merge)
            "a['points/input/optimize.range_N'][:].tolist() == [0.5, 1, 0.5, 1]",
            "attribute(a['points/input/form.pretension_N'], 'units') == 'N'",
            "a['points/status'][:].tolist() == [0] * 4", "a['points/form/pretension_N'][:].tolist() == [8, 8, 12, 12]",
-           "len(set(a['points/seed'][:])) == 4", "attribute(a['points/ga/best_psi_m'], 'units') == 'm'",
+           "len(set(a['points/seed'][:])) == 4", "attribute(a['points/search/psi_m'], 'units') == 'm'",
            /* every row is what the run behind its link says */
            "[a['runs'][i].attrs['seed'] for i in texts(a['points/id'])] == a['points/seed'][:].tolist()",
-           "[a['runs'][i]['ga'].attrs['best_psi_m'] for i in texts(a['points/id'])] == "
-           "a['points/ga/best_psi_m'][:].tolist()",
+           "[a['runs'][i]['search'].attrs['psi_m'] for i in texts(a['points/id'])] == "
+           "a['points/search/psi_m'][:].tolist()",
            "[a['runs'].get(i, getlink=True).filename for i in a['runs']] == "
            "[f\"s.d/{i}-{attribute(a, 'fingerprint')[:8]}.h5\" for i in a['runs']]",
            /* nothing of the moment is in a data set */
@@ -87,7 +87,7 @@ START_TEST(shards_and_threads_make_the_same_whole)
     HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", shards); /* while three are missing */
     OUT("4 points, 1 of them done");
     EXPECT(shards, "--", "a['points/status'][:].tolist() == [7, 7, 0, 7]", "len(a['runs']) == 1",
-           "np.isnan(a['points/ga/best_psi_m'][:]).tolist() == [True, True, False, True]");
+           "np.isnan(a['points/search/psi_m'][:]).tolist() == [True, True, False, True]");
     SHELL(0,
           "SLURM_ARRAY_TASK_ID=10 SLURM_ARRAY_TASK_COUNT=3 SLURM_ARRAY_TASK_MIN=10 SLURM_ARRAY_TASK_MAX=14 "
           "SLURM_ARRAY_TASK_STEP=2 SLURM_CPUS_PER_TASK=3 exec \"$0\" sweep \"$1\" --dir \"$2\"",
@@ -118,7 +118,7 @@ START_TEST(tasks_that_would_leave_points_out_are_refused)
 }
 END_TEST
 
-/* A weight that is an axis can be drawn against what it does to each goal: the merge has a column for each, in each
+/* A weight that is an axis can be drawn against what it does to each objective: the merge has a column for each, in each
  * stage, with what the files of the points have. */
 START_TEST(objectives_are_columns_of_a_merge)
 {
@@ -135,20 +135,22 @@ START_TEST(objectives_are_columns_of_a_merge)
     HIFDM(0, "sweep", path, "--dir", folder);
     HIFDM(0, "merge", path, "--dir", folder, "-o", merged);
 #define COLUMN(name, stage, prefix)                                                                                    \
-    "all((lambda got, run: (got == run['goals/" stage "'][j]) if texts(run['goals/name'])[j] == '" name "' else "      \
+    "all((lambda got, run: (got == run['objective/" stage "'][j]) if texts(run['objective/name'])[j] == '" name        \
+    "' else "                                                                                                          \
     "np.isnan(got))(a['points/" prefix name "'][i], a['runs/' + k]) for i, k in enumerate(texts(a['points/id'])) for " \
-    "j in [min(1, int('" name "'[5]))])"
+    "j in [min(1, int('" name "'[10]))])"
     EXPECT(merged, "--", "a['points/input/optimize.goals.1.weight'][:].tolist() == [1e-5, 1e-3, 1e-1]",
-           COLUMN("goal_0_psi", "form", "form/"), COLUMN("goal_0_psi", "optimize", "ga/best_"),
-           COLUMN("goal_0_psi", "polish", "polish/"), COLUMN("goal_1_evenness_edge", "form", "form/"),
-           COLUMN("goal_1_evenness_edge", "optimize", "ga/best_"), COLUMN("goal_1_evenness_edge", "polish", "polish/"),
-           COLUMN("goal_1_evenness_directrix", "polish", "polish/"),
-           "np.isnan(a['points/polish/goal_1_evenness_directrix'][:]).tolist() == [True, True, False]",
-           "a['points/polish/goal_1_evenness_edge'][1] < a['points/polish/goal_1_evenness_edge'][0]",
-           "attribute(a['points/polish/goal_0_psi'], 'units') == 'm'",
-           "attribute(a['points/form/goal_1_evenness_edge'], 'units') == ''");
+           COLUMN("objective_0_psi", "form", "form/"), COLUMN("objective_0_psi", "search", "search/"),
+           COLUMN("objective_0_psi", "refine", "refine/"), COLUMN("objective_1_evenness_edge", "form", "form/"),
+           COLUMN("objective_1_evenness_edge", "search", "search/"),
+           COLUMN("objective_1_evenness_edge", "refine", "refine/"),
+           COLUMN("objective_1_evenness_directrix", "refine", "refine/"),
+           "np.isnan(a['points/refine/objective_1_evenness_directrix'][:]).tolist() == [True, True, False]",
+           "a['points/refine/objective_1_evenness_edge'][1] < a['points/refine/objective_1_evenness_edge'][0]",
+           "attribute(a['points/refine/objective_0_psi'], 'units') == 'm'",
+           "attribute(a['points/form/objective_1_evenness_edge'], 'units') == ''");
     HIFDM(0, "report", merged, "-o", page);
-    EXPECT(page, "--", "a.count(b'\"goal_1_evenness_edge\":[') == 3 and a.count(b'\"goal_0_psi\":[') == 3");
+    EXPECT(page, "--", "a.count(b'\"objective_1_evenness_edge\":[') == 3 and a.count(b'\"objective_0_psi\":[') == 3");
 }
 END_TEST
 
@@ -407,13 +409,13 @@ START_TEST(the_shipped_studies_are_valid)
     SHELL(0, "mkdir \"$1\"", temp("s.d"));
     HIFDM(0, "status", keep(source_path("configs/pretension-sweep.yaml")), "--dir", temp("s.d"));
     OUT("64 points");
-    /* the truss gives way: more displacement at each step, and a worse shape in the end */
+    /* the truss deflects: more at each step, and the shape is worse in the end */
     const char *truss = keep(source_path("configs/pretension-truss.yaml"));
     HIFDM(0, "sweep", truss, "--dir", temp("t.d"), "--quiet");
     HIFDM(0, "merge", truss, "--dir", temp("t.d"), "-o", temp("t.h5"));
-    EXPECT(temp("t.h5"), "--", "(np.diff(a['points/coupling/max_displacement_m'][:]) > 0).all()",
+    EXPECT(temp("t.h5"), "--", "(np.diff(a['points/coupling/deflection_max_m'][:]) > 0).all()",
            "(np.diff(a['points/form/psi_m'][:]) > 0).all()", "(a['points/truss/mass_kg'][:] > 0).all()",
-           "len(a['runs']) == 0", "'points/ga' not in a");
+           "len(a['runs']) == 0", "'points/search' not in a");
 }
 END_TEST
 

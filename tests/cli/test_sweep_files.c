@@ -30,8 +30,8 @@ static const char *begun_study(const char *folder)
 static void rows_are_of_their_files(const char *merged, int n)
 {
     EXPECT(merged, "--", keep(formatted("len(a['runs']) == %d", n)), "(a['points/status'][:] == 0).all()",
-           "[a['runs'][i]['ga'].attrs['best_psi_m'] for i in texts(a['points/id'])] == "
-           "a['points/ga/best_psi_m'][:].tolist()",
+           "[a['runs'][i]['search'].attrs['psi_m'] for i in texts(a['points/id'])] == "
+           "a['points/search/psi_m'][:].tolist()",
            "[texts(a['runs'][i]['case/text']) == texts(a['study/base_text']) for i in a['runs']] == "
            "[True] * len(a['runs'])");
 }

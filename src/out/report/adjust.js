@@ -3,55 +3,59 @@
 const adjust = data.adjust;
 const cableAt = adjust && new Map(net.cable_id.map((id, e) => [id, e]));
 // Adjustments by cable, for the cables that have one.
-const moveOf = new Map(adjust ? adjust.moves.map((move) => [cableAt.get(move.cable), move]) : []);
+const adjustmentOf = new Map(adjust ? adjust.adjustments.map((row) => [cableAt.get(row.cable), row]) : []);
 
 const FIGURE = { psi: "ψ", surface: "RMS along the normal", facets: "RMS of the facets along the normal" };
 const ADJUST_END = {
   target: "The target is met.",
-  moves: "All moves that the case allows are made.",
-  doubt: "The next move would gain less than these measurements can tell.",
-  none: "No further move gains anything.",
+  max_adjustments: "These are all adjustments that adjust.max_adjustments allows.",
+  doubt: "The gain of one more adjustment would be within the errors of the measurement.",
+  none: "No further adjustment improves the figure.",
 };
+const adjustments = (n) => (n === 1 ? "one turnbuckle adjustment" : `${fmtCount(n)} turnbuckle adjustments`);
+
 
 const inMm = (v, digits = 4) => `${Math.abs(1e3 * v) < RESOLVED_MM ? rounded(0, digits) : fmt(1e3 * v, digits)} mm`,
   signed = (v, digits = 5) => (v > 0 ? "+" : "") + fmt(v, digits);
 
 function adjustText(name) {
-  const open = (expected, sigma) => `${inMm(expected)} ± ${fmt(1e3 * sigma, 2)} with what is left open`;
+  const expected = (value, sigma) => `expected: ${inMm(value)} ± ${fmt(1e3 * sigma, 2)}`;
   return [
-    `${fmtCount(adjust.measured_nodes)} nodes were measured. χ² is ${fmt(adjust.chi_square, 3)} per coordinate: ` +
-      "about 1 when the tolerances and the errors of the measurement are as the case says.",
-    `The net is estimated to have a ${name} of ${inMm(adjust.estimated_m)}` +
-      ` (${open(adjust.estimated_expected_m, adjust.estimated_sigma_m)}),` +
-      ` and after ${adjust.moves.length === 1 ? "one move" : `${fmtCount(adjust.moves.length)} moves`}` +
-      ` ${inMm(adjust.adjusted_m)} (${open(adjust.adjusted_expected_m, adjust.adjusted_sigma_m)}).`,
+    `${fmtCount(adjust.measured_nodes)} nodes were measured. χ² is ${fmt(adjust.chi_square, 3)} per coordinate. ` +
+      "It is about 1 if tolerances and measurement errors are as the case states.",
+    `The most probable net has a ${name} of ${inMm(adjust.estimated_m)}` +
+      ` (${expected(adjust.estimated_expected_m, adjust.estimated_sigma_m)}).` +
+      ` After ${adjustments(adjust.adjustments.length)} it has` +
+      ` ${inMm(adjust.adjusted_m)} (${expected(adjust.adjusted_expected_m, adjust.adjusted_sigma_m)}).`,
     adjust.figure !== "psi"
       ? ""
       : adjust.aim === "design"
-        ? `ψ is measured from the shape of the design, which is ${inMm(adjust.design_psi_m)} from theory.`
-        : "ψ is measured from the theoretical places.",
+        ? "ψ is measured from the shape of the design. ψ of this shape from the target positions is " +
+          `${inMm(adjust.design_psi_m)}.`
+        : "ψ is measured from the target positions.",
     adjust.end === "target" && adjust.adjusted_expected_m > adjust.target_m
-      ? "The most probable net meets the target, but more is to be expected."
+      ? "The most probable net meets the target, but the expected figure is larger."
       : ADJUST_END[adjust.end] || "",
     adjust.maybe_slack
-      ? `${fmtCount(adjust.maybe_slack)} cables may be slack, as far as the measurement tells; how slack, places do ` +
-        "not show, and the figures after moves are less sure than ± says."
+      ? `${fmtCount(adjust.maybe_slack)} cables may be slack. Positions do not show how slack they are, so figures ` +
+        "after adjustments are less certain than ± states."
       : "",
-    adjust.held_taut ? "Moves leave each cable its least tension, and no further one slack." : "",
-    adjust.supports_estimated ? "" : "Supports are taken to be where the case has them.",
-    adjust.settled ? "" : "The estimate has not settled.",
+    adjust.held_taut ? "Adjustments keep the minimum tension of each cable and make no further cable slack." : "",
+    adjust.supports_estimated ? "" : "Supports are assumed to be at the positions of the case.",
+    adjust.settled ? "" : "The estimate has not converged.",
     adjust.fits
       ? ""
-      : "χ² is beyond what chance makes: a tolerance or an error of the measurement is larger than the case says, " +
-        "supports are off, or it is another design.",
+      : "χ² is larger than chance explains. A tolerance or a measurement error may be larger than the case states, " +
+        "supports may be displaced, or the net may have another design.",
   ]
     .filter((text) => text)
     .join(" ");
 }
 
 function adjustChart(name) {
-  const values = [adjust.estimated_m, ...adjust.moves.map((move) => move.predicted_m)],
-    expected = [adjust.estimated_expected_m, ...adjust.moves.map((move) => move.expected_m)],
+  const rows = adjust.adjustments,
+    values = [adjust.estimated_m, ...rows.map((row) => row.predicted_m)],
+    expected = [adjust.estimated_expected_m, ...rows.map((row) => row.expected_m)],
     [low, high] = range([...values, ...expected]),
     // a level that is too far away is named and not drawn
     isFar = (at) => at < low - REACH * (high - low) || at > high + REACH * (high - low),
@@ -69,43 +73,43 @@ function adjustChart(name) {
           ]
         : [];
   return chart({
-    title: `Predicted ${name} after each move`,
-    xLabel: "moves made",
+    title: `Predicted ${name} after each adjustment`,
+    xLabel: "adjustments",
     yLabel: `${name} (mm)`,
     unit: "mm",
     x: values.map((_, k) => k),
     log: false,
-    head: (k) => (k ? `move ${k}: cable ${adjust.moves[k - 1].cable}` : "before the first move"),
+    head: (k) => (k ? `adjustment ${k}: cable ${rows[k - 1].cable}` : "before the first adjustment"),
     series: [
       { name: "predicted", stored: "predicted_m", values: scaled(values, 1e3), colour: "--one" },
-      { name: "to expect", stored: "expected_m", values: scaled(expected, 1e3), colour: "--five", dash: "3 3" },
+      { name: "expected", stored: "expected_m", values: scaled(expected, 1e3), colour: "--five", dash: "3 3" },
       ...level("target", adjust.target_m, "--four", "7 3"),
-      ...level("reached by a search over all cables, without least tensions", adjust.best_m, "--three", "2 3"),
-      ...level("as designed", adjust.nominal_m, "--two", "9 3 2 3"),
+      ...level("best of all cables, without minimum tensions", adjust.best_m, "--three", "2 3"),
+      ...level("nominal design", adjust.nominal_m, "--two", "9 3 2 3"),
     ],
   });
 }
 
-function movesTable(name, choose) {
-  const { moves } = adjust,
+function adjustmentsTable(name, choose) {
+  const rows = adjust.adjustments,
     column = (heading, of, show) => ({ name: heading, number: true, of, show: (k) => show(of(k)) }),
-    real = (heading, key, digits, options) => numberColumn(heading, moves.map((move) => move[key]), digits, options);
+    real = (heading, key, digits, options) => numberColumn(heading, rows.map((row) => row[key]), digits, options);
   return sortableTable({
-    caption: "Moves in the order in which they are made",
+    caption: "Adjustments in their order",
     columns: [
       column("order", (k) => k + 1, fmtCount),
-      { name: "cable", of: (k) => moves[k].cable, show: (k) => cableLink(cableAt.get(moves[k].cable), choose) },
-      real("move (mm)", "move_m", 4, { unit: 1e3, isChange: true }),
-      column("steps", (k) => moves[k].steps, (v) => signed(v, 9)),
+      { name: "cable", of: (k) => rows[k].cable, show: (k) => cableLink(cableAt.get(rows[k].cable), choose) },
+      real("turnbuckle (mm)", "turnbuckle_m", 4, { unit: 1e3, isChange: true }),
+      column("steps", (k) => rows[k].steps, (v) => signed(v, 9)),
       real("tension before (N)", "tension_before_N", 4),
       real("tension after (N)", "tension_after_N", 4),
-      real(`${name} after it (mm)`, "predicted_m", 4, { unit: 1e3 }),
-      real("to expect (mm)", "expected_m", 4, { unit: 1e3 }),
-      real(`it gains (mm)`, "gain_m", 3, { unit: 1e3 }),
+      real(`${name} afterwards (mm)`, "predicted_m", 4, { unit: 1e3 }),
+      real("expected (mm)", "expected_m", 4, { unit: 1e3 }),
+      real("gain (mm)", "gain_m", 3, { unit: 1e3 }),
       real("± (mm)", "gain_sigma_m", 2, { unit: 1e3 }),
-      ...(moves.some(({ slack }) => slack) ? [column("slack cables", (k) => moves[k].slack, fmtCount)] : []),
+      ...(rows.some(({ slack }) => slack) ? [column("slack cables", (k) => rows[k].slack, fmtCount)] : []),
     ],
-    n: moves.length,
+    n: rows.length,
     by: -1,
   }).node;
 }
@@ -116,68 +120,68 @@ const SHARED = {
   cut_ratio: (error, set) => `lengths of spool ${set}: ${signed(100 * error, 3)} %`,
 };
 
-// Lists what adjustments with another aim would reach.
+// Lists the figures that adjustments with another aim would reach.
 function otherAims() {
   if (!adjust.instead.length) return [];
-  const items = adjust.instead.map(({ figure: of, aim, before_m, after_m, move_count, at_range }) =>
+  const items = adjust.instead.map(({ figure: of, aim, before_m, after_m, adjustment_count, at_range }) =>
     el(
       "li",
       {},
       el("code", {}, of === "psi" ? `adjust: {figure: psi, aim: ${aim}}` : `adjust: {figure: ${of}}`),
-      `: ${FIGURE[of]} from ${inMm(before_m)} to ${inMm(after_m)} by ` +
-        `${move_count === 1 ? "one move" : `${fmtCount(move_count)} moves`}, ` +
-        `${fmtCount(at_range)} at range_m`,
+      `: ${FIGURE[of]} from ${inMm(before_m)} to ${inMm(after_m)} by ${adjustments(adjustment_count)}, ` +
+        `${fmtCount(at_range)} of them at adjust.range_m`,
     ),
   );
   return [
-    el("h3", { class: "after" }, "Aimed at something else"),
+    el("h3", { class: "after" }, "Other aims"),
     el(
       "p",
       {},
-      `Of the moves above ${fmtCount(adjust.at_range)} are as far as range_m allows; the design is ` +
-        `${inMm(adjust.design_psi_m)} from the theoretical places, where errors make ${inMm(adjust.error_psi_m)}.`,
+      `${fmtCount(adjust.at_range)} of the adjustments above are at adjust.range_m. ψ of the design is ` +
+        `${inMm(adjust.design_psi_m)}, and errors alone make ${inMm(adjust.error_psi_m)}.`,
     ),
     el("ul", {}, items),
   ];
 }
 
 const NAMED_MOST = 10, // maximum number of outlying cables in the list
-  PLACES_MOST = 3, // maximum number of outlying nodes in the list
-  SEEMS_OFF = 2; // σ above which a shared number is listed
+  NODES_MOST = 3, // maximum number of outlying nodes in the list
+  OUTLYING = 2; // σ above which a shared number is listed
 function outliers(choose) {
-  const { stand_out: cables, off_shape: places } = adjust,
-    shared = adjust.shared.filter((number) => number.sigmas > SEEMS_OFF),
+  const { stand_out: cables, off_shape: nodes } = adjust,
+    shared = adjust.shared.filter((number) => number.sigmas > OUTLYING),
     left = cables.length - NAMED_MOST;
   const sigmas = (v) => `${fmt(v, 3)} σ`,
     tooWhat = (v) => `too ${v > 0 ? "long" : "short"}`,
-    byPlaces = (v, error) =>
+    byPositions = (v, error) =>
       typeof v === "number"
-        ? `; ${inMm(Math.abs(v), 3)}${error * v < 0 ? ` ${tooWhat(v)}` : ""} by the places alone`
+        ? `; ${inMm(Math.abs(v), 3)}${error * v < 0 ? ` ${tooWhat(v)}` : ""} by the positions alone`
         : "";
   const list = [
     ...shared.map(({ kind, set, error, sigmas: s }) =>
       el("li", {}, `${SHARED[kind] ? SHARED[kind](error, set) : kind}, ${sigmas(s)}`),
     ),
-    ...cables.slice(0, NAMED_MOST).map(({ cable, error_m, by_places_m, sigmas: s }) =>
+    ...cables.slice(0, NAMED_MOST).map(({ cable, error_m, by_positions_m, sigmas: s }) =>
       el(
         "li",
         {},
         cableLink(cableAt.get(cable), choose),
-        ` seems ${inMm(Math.abs(error_m), 3)} ${tooWhat(error_m)}, ${sigmas(s)}${byPlaces(by_places_m, error_m)}`,
+        ` is estimated ${inMm(Math.abs(error_m), 3)} ${tooWhat(error_m)}, ${sigmas(s)}` +
+          byPositions(by_positions_m, error_m),
       ),
     ),
-    left > 0 ? el("li", {}, `and ${fmtCount(left)} more cables beyond 3 σ: the table of cables has all errors`) : null,
-    ...places
-      .slice(0, PLACES_MOST)
+    left > 0 ? el("li", {}, `${fmtCount(left)} more cables beyond 3 σ; the table of cables has all errors`) : null,
+    ...nodes
+      .slice(0, NODES_MOST)
       .map(({ node, distance_m, sigmas: s }) =>
-        el("li", {}, `node ${node} was measured ${inMm(distance_m, 3)} off the estimated shape, ${sigmas(s)}`),
+        el("li", {}, `node ${node} was measured ${inMm(distance_m, 3)} from the estimated shape, ${sigmas(s)}`),
       ),
-    places.length > PLACES_MOST
-      ? el("li", {}, `and ${fmtCount(places.length - PLACES_MOST)} more measured nodes beyond 4 σ`)
+    nodes.length > NODES_MOST
+      ? el("li", {}, `${fmtCount(nodes.length - NODES_MOST)} more measured nodes beyond 4 σ`)
       : null,
   ];
-  if (!shared.length && !cables.length && !places.length) return [];
-  return [el("h3", { class: "after" }, "What stands out of the tolerances"), el("ul", {}, list)];
+  if (!shared.length && !cables.length && !nodes.length) return [];
+  return [el("h3", { class: "after" }, "Outliers"), el("ul", {}, list)];
 }
 
 function writeAdjust(view) {
@@ -186,23 +190,30 @@ function writeAdjust(view) {
     choose = chooserOf(view);
   const figures = [
     typeof adjust.measured_m === "number" ? figure(`${name}, measured`, roundedMm(adjust.measured_m), "mm") : null,
-    figure(`${name}, to expect now`, roundedMm(adjust.estimated_expected_m), "mm"),
-    figure(`${name}, to expect after the moves`, roundedMm(adjust.adjusted_expected_m), "mm"),
-    figure(`${name} as designed`, roundedMm(adjust.nominal_m), "mm"),
-    figure("moves", fmtCount(adjust.moves.length)),
+    figure(`${name}, expected now`, roundedMm(adjust.estimated_expected_m), "mm"),
+    figure(`${name}, expected after adjustment`, roundedMm(adjust.adjusted_expected_m), "mm"),
+    figure(`${name}, nominal design`, roundedMm(adjust.nominal_m), "mm"),
+    figure("turnbuckle adjustments", fmtCount(adjust.adjustments.length)),
     figure("χ² per coordinate", fmt(adjust.chi_square, 3)),
   ].filter((node) => node);
   section(
     "adjust",
-    "Adjustment of the net as built",
+    "Adjustment of the as-built net",
     el("p", {}, adjustText(name)),
     el("dl", { class: "figures" }, figures),
-    adjust.moves.length ? el("div", { class: "charts" }, adjustChart(name)) : null,
-    adjust.moves.length ? el("h3", { class: "after" }, "Moves in the order in which they are made") : null,
-    adjust.moves.length
-      ? el("p", {}, `Of ${familyName(adjust.set)}. A move above 0 lets the cable out; a name shows it in the picture.`)
-      : null,
-    adjust.moves.length ? movesTable(name, choose) : null,
+    ...(adjust.adjustments.length
+      ? [
+          el("div", { class: "charts" }, adjustChart(name)),
+          el("h3", { class: "after" }, "Adjustments in their order"),
+          el(
+            "p",
+            {},
+            `Set ${familyName(adjust.set)}. A turnbuckle adjustment above 0 lets the cable out. A click on a name ` +
+              "shows the cable in the picture.",
+          ),
+          adjustmentsTable(name, choose),
+        ]
+      : []),
     ...outliers(choose),
     ...otherAims(),
   );

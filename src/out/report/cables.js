@@ -26,17 +26,19 @@ const RESOLVED_RATIO = 1e-9; // relative size of rounding of tensions
 const cableColumn = (name, of, digits, options) =>
   numberColumn(name, Array.from({ length: net.n_cable }, (_, e) => of(e)), digits, options);
 
-// Returns heading and values of a column of adjustments. They turn the net of the form-finding into the result. Without
-// a search they adjust a net that was cut for the target positions.
-function turned(before, after) {
-  if (!after.l0_m || (before !== after && !before.l0_m)) return null;
-  if (before === after) return ["turn, if cut to theory (mm)", (e) => after.l0_minus_theory_m[e]];
-  return [`turn, from ${before.name} (mm)`, (e) => after.l0_m[e] - before.l0_m[e]];
+// Returns heading and values of a column of differences of unstressed lengths. They are those of the result from the
+// form-finding, and without a search those from the same net at its target positions.
+function lengthChange(before, after) {
+  const length = after.unstressed_length_m;
+  if (!length || (before !== after && !before.unstressed_length_m)) return null;
+  if (before === after) return ["unstressed minus target (mm)", (e) => after.unstressed_minus_target_m[e]];
+  return [`unstressed minus ${before.name} (mm)`, (e) => length[e] - before.unstressed_length_m[e]];
 }
 
 function cableColumns(before, after, families, choose) {
   const two = before !== after,
-    turn = turned(before, after);
+    length = after.unstressed_length_m,
+    lengthened = lengthChange(before, after);
   const family = families.map((names, e) => names.join(", ") || groupOf(e));
   const change = (e) => after.tension_N[e] - before.tension_N[e],
     rounding = RESOLVED_RATIO * Math.max(...(range(before.tension_N) || [0]).map(Math.abs));
@@ -46,20 +48,22 @@ function cableColumns(before, after, families, choose) {
     two ? cableColumn(`tension, ${before.name} (N)`, (e) => before.tension_N[e], 5) : null,
     cableColumn(`tension, ${after.name} (N)`, (e) => after.tension_N[e], 5),
     two ? cableColumn("change (N)", change, 4, { isChange: true, rounding }) : null,
-    turn ? cableColumn(turn[0], turn[1], 4, { unit: 1e3, isChange: true, rounding: RESOLVED_MM / 1e3 }) : null,
     cableColumn("length (m)", (e) => after.length_m[e], 6),
-    after.l0_m ? cableColumn("cut to (m)", (e) => after.l0_m[e], 6) : null,
-    adjust ? cableColumn("seems too long by (mm)", (e) => adjust.error_m[e], 3, { unit: 1e3, isChange: true }) : null,
+    length ? cableColumn("unstressed length (m)", (e) => length[e], 6) : null,
+    lengthened
+      ? cableColumn(lengthened[0], lengthened[1], 4, { unit: 1e3, isChange: true, rounding: RESOLVED_MM / 1e3 })
+      : null,
+    adjust ? cableColumn("length error (mm)", (e) => adjust.error_m[e], 3, { unit: 1e3, isChange: true }) : null,
     net.psi_by_cut
-      ? cableColumn("ψ by a turn (mm per mm)", (e) => net.psi_by_cut[e], 3, { isChange: true })
+      ? cableColumn("ψ per mm (mm per mm)", (e) => net.psi_by_cut[e], 3, { isChange: true })
       : null,
     net.cable_share ? cableColumn("share of the error (%)", (e) => net.cable_share[e], 3, { unit: 100 }) : null,
   ].filter((column) => column);
 }
 
 const CABLES_SAID =
-  "A click on a heading sorts, a name shows its cable in the picture, and a click on a cable there puts its row at " +
-  "the top.";
+  "A click on a heading sorts. A click on a name shows the cable in the picture, and a click on a cable there puts " +
+  "its row at the top.";
 
 // Returns the id of a cable as a button that shows the cable in the picture.
 function cableLink(e, choose) {
@@ -78,18 +82,23 @@ function writeCables(view) {
   const after = otherShape || resultShape,
     before = otherShape ? resultShape : shapeOf("form") || after;
   if (!after) return;
-  const families = allFamilies(),
+  const two = before !== after,
+    base = otherShape ? "of this result" : two ? "after form-finding" : "of the net at its target positions",
+    families = allFamilies(),
     columns = cableColumns(before, after, families, chooserOf(view)),
     change = columns.findIndex(({ size }) => size);
   const words = [
     otherShape
-      ? "Tensions of this result, and of the other."
-      : before === after
-        ? null
-        : `Tensions of the found net, and of the ${after.name}, which is the result.`,
-    columns.some(({ name }) => name.startsWith("turn,")) ? "A turn above 0 lets the cable out." : null,
-    net.psi_by_cut ? "ψ by a turn: what letting the cable out by 1 mm adds to ψ, while no cable goes slack." : null,
-    net.cable_share ? "The share is that of what all errors add to ψ², to first order: cut those cables well." : null,
+      ? "Tensions of this result and of the other."
+      : two
+        ? `Tensions after form-finding and of the result (${after.name}).`
+        : null,
+    columns.some(({ name }) => name.startsWith("unstressed minus"))
+      ? `The unstressed length is compared with that ${base}.`
+      : null,
+    adjust ? "A length error above 0 is a cable that is too long." : null,
+    net.psi_by_cut ? "ψ per mm is the change of ψ if the cable is let out by 1 mm and no cable goes slack." : null,
+    net.cable_share ? "The share is the part of ψ² from all errors that the cable causes, to first order." : null,
   ].filter((text) => text);
   const all = sortableTable({
     caption: "Cables",

@@ -32,12 +32,12 @@ function caseDifferences() {
     lines = differences(...all.map((text) => text.slice(0, LINES_OF_CASE_MAX)));
   const cut =
     left > 0
-      ? el("p", {}, `Only the first ${LINES_OF_CASE_MAX} lines are compared; up to ${fmtCount(left)} more are not.`)
+      ? el("p", {}, `Only the first ${LINES_OF_CASE_MAX} lines are compared, without up to ${fmtCount(left)} more.`)
       : null;
-  if (!lines.length) return [left > 0 ? cut : el("p", {}, "Both have the same text of the case.")];
+  if (!lines.length) return [left > 0 ? cut : el("p", {}, "The text of both cases is the same.")];
   return [
-    el("h3", { class: "after" }, "What differs in the cases"),
-    el("p", {}, `− of this one, + of ${data.other.name}.`),
+    el("h3", { class: "after" }, "Differences of the cases"),
+    el("p", {}, `− of this result, + of ${data.other.name}.`),
     cut,
     el(
       "ul",
@@ -63,7 +63,7 @@ function writeOther() {
   const each_Hz = stages.flatMap(({ surface }) => (surface && surface.frequency_Hz) || []),
     frequency_Hz = [...new Set(each_Hz)].sort((u, v) => u - v);
   const [a, b] = stages.map((stage) => stageValues(stage, frequency_Hz));
-  const rows = figureRows({ ...b, ...a, frequency_Hz, goals: { ...b.goals, ...a.goals } }).filter(
+  const rows = figureRows({ ...b, ...a, frequency_Hz, objectives: { ...b.objectives, ...a.objectives } }).filter(
     ([, , key]) => hasFigure(a[key]) || hasFigure(b[key]),
   );
   const cell = (v, key, format) => el("td", { class: "number" }, shownFigure(key, v, format));
@@ -74,14 +74,14 @@ function writeOther() {
   };
   section(
     "compare",
-    `Beside ${other.name}`,
+    `Comparison with ${other.name}`,
     el(
       "p",
       {},
       otherShape
-        ? "Both have the same net, so the shape of the other result can be chosen in the pictures, and the table of " +
+        ? "Both results have the same net. The pictures can show the shape of the other result, and the table of " +
             "cables has the tensions of both."
-        : "The nets are not the same ones, so figures are compared and shapes are not.",
+        : "The nets differ, so only figures are compared.",
     ),
     table(
       [

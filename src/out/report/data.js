@@ -87,38 +87,37 @@ function fmtDuration(s) {
     : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
 
-// Plain words for the words of the file. The page also has their descriptions from `hifdm explain`.
+// Plain words for the stop reasons of the file. The page also has their descriptions from `hifdm explain`.
 const STOP = {
-  direct: "one direct solve",
-  rms_change: "the change of ψ",
-  residual: "the residual",
-  max_iterations: "the limit of iterations",
-  ill_posed: "a net without an answer",
-  tof: "steps below the tolerance",
-  diverged: "steps that grow",
-  net: "a net without a shape on the bent truss",
-  generations: "the limit of generations",
-  stagnation: "stagnation",
-  all_infeasible: "a generation without a feasible design",
-  settled: "ten steps that gained less than 1e-6",
-  running: "an interruption",
-  converged: "convergence",
-  stalled: "steps that gain nothing",
+  direct: "solved directly",
+  rms_change: "ψ no longer changed",
+  max_iterations: "the iteration limit was reached",
+  ill_posed: "the net has no shape",
+  diverged: "the steps grew",
+  net: "the net has no shape on the deflected truss",
+  generations: "the generation limit was reached",
+  stagnation: "later generations gained nothing",
+  all_infeasible: "a generation had no feasible design",
+  settled: "ten steps gained less than 1e-6",
+  running: "interrupted",
+  stalled: "shorter steps gained nothing",
+  taken: "taken from a front",
 };
 const plainWord = (word) => String(word).replace(/_/g, " ");
-// Returns "proven", or why a shape has no certified error bound.
-const boundText = (word) => (word === "proven" ? word : `no: ${plainWord(word)}`);
+// Returns "certified", or why a shape has no certified error bound.
+const boundText = (word) => (word === "certified" ? word : `no: ${plainWord(word)}`);
 const stopText = (word) => STOP[word] || plainWord(word);
+const sentence = (text) => `${text[0].toUpperCase()}${text.slice(1)}.`;
 
 // ---- derived values ----
 
 const net = data.net;
 // Returns the number of the point of a front that is the design, or 0.
-const pointIn = (figures) => (figures.polish && figures.polish.front_point) || 0;
+const pointIn = (figures) => (figures.refine && figures.refine.front_point) || 0;
 const stageName = {
-  form: "found",
-  optimize: "GA best",
-  polish: pointIn(data.summary || {}) ? `point ${pointIn(data.summary)} of the front` : "LM optimum",
+  form: "form",
+  search: "search",
+  refine: pointIn(data.summary || {}) ? `point ${pointIn(data.summary)} of the front` : "refine",
 };
 const digit = (text, i) => text.charCodeAt(i) - 48;
 const innerCode = net && net.role_word.indexOf("inner"),
@@ -129,8 +128,8 @@ const groupOf = (e) => net.group_word[digit(net.group, e)];
 const summary = data.summary || {};
 // Returns the stage that is the result, as `hifdm export` chooses it; and its shape.
 const resultStageIn = (figures, has) =>
-  (figures.polish && figures.polish.is_result && has("polish") && "polish") ||
-  (has("optimize") && "optimize") ||
+  (figures.refine && figures.refine.is_result && has("refine") && "refine") ||
+  (has("search") && "search") ||
   "form";
 const resultIn = (figures, shapes) => {
   const of = (stage) => (shapes || []).find((shape) => shape.stage === stage);
@@ -146,7 +145,7 @@ if (otherShape) data.shapes.push(otherShape);
 for (const shape of data.shapes || []) {
   const d = shape.displacement_m,
     n = net.n_node;
-  shape.name = shape.case ? `case ${shape.case}` : stageName[shape.stage];
+  shape.name = shape.load_case ? `load case ${shape.load_case}` : stageName[shape.stage];
   if (shape === otherShape) Object.assign(shape, { stage: "other", name: `${data.other.name}: ${shape.name}` });
   shape.distance_mm = new Float64Array(n);
   shape.height_mm = new Float64Array(n);
@@ -159,7 +158,7 @@ for (const shape of data.shapes || []) {
 
 const shapeOf = (stage) => (data.shapes || []).find((shape) => shape.stage === stage);
 
-// Returns the upper end of the colours: the largest deviation of the inner nodes, which psi counts. Nodes of a free
+// Returns the upper end of the colours: the maximum deviation of the inner nodes, which psi counts. Nodes of a free
 // edge move much farther, and with them all inner nodes would have one colour.
 function innerMost(values) {
   let inner = -1,

@@ -1,26 +1,26 @@
-// The section of the Pareto front of optimize.objectives, with a chart for each pair of objectives.
+// The section of the Pareto front of optimize.front, with a chart for each pair of objectives.
 
 // Names of objectives for people: without their number, lengths in mm.
-const objectiveName = (key) => key.replace(/^goal_[0-9]+_/, "").replace(/_/g, " ").replace(/^psi\b/, "ψ");
-const goalUnit = (key) => ({ ...(data.other && data.other.goal_unit), ...data.goal_unit })[key] || "";
-const objectiveUnit = (key) => (goalUnit(key) === "m" ? "mm" : goalUnit(key));
-const objectiveScale = (key) => (goalUnit(key) === "m" ? 1e3 : 1);
+const objectiveName = (key) => key.replace(/^objective_[0-9]+_/, "").replace(/_/g, " ").replace(/^psi\b/, "ψ");
+const storedUnit = (key) => ({ ...(data.other && data.other.objective_unit), ...data.objective_unit })[key] || "";
+const objectiveUnit = (key) => (storedUnit(key) === "m" ? "mm" : storedUnit(key));
+const objectiveScale = (key) => (storedUnit(key) === "m" ? 1e3 : 1);
 const objectiveLabel = (key) => objectiveName(key) + (objectiveUnit(key) ? ` (${objectiveUnit(key)})` : "");
 const objectiveText = (key, value) => `${fmt(value, 6)} ${objectiveUnit(key)}`.trim();
 
 // Returns the points of the front in ascending order of objective a, with the initial design among them. A series
 // without a value at a point has undefined there, so its line continues.
-function frontPlaces(front, a, b) {
-  const place = (objective) => {
+function frontPositions(front, a, b) {
+  const position = (objective) => {
     const at = (key) => (typeof objective[key] === "number" ? objectiveScale(key) * objective[key] : null);
     return { x: at(a), y: at(b) };
   };
-  const places = front.points
-    .map((point, i) => ({ ...place(point.objective), point, i }))
+  const positions = front.points
+    .map((point, i) => ({ ...position(point.objective), point, i }))
     .filter(({ point }) => point.mark !== "failed");
-  const base = place(front.base);
-  if (typeof base.x === "number" && typeof base.y === "number") places.push(base);
-  return places.filter(({ x }) => typeof x === "number").sort((p, q) => p.x - q.x);
+  const initial = position(front.initial);
+  if (typeof initial.x === "number" && typeof initial.y === "number") positions.push(initial);
+  return positions.filter(({ x }) => typeof x === "number").sort((p, q) => p.x - q.x);
 }
 
 // Formats the changes of the minimised objective per unit of the others, where they are known.
@@ -37,23 +37,26 @@ function slopesOf(front, point) {
 }
 
 function frontChart(front, a, b) {
-  const places = frontPlaces(front, a, b),
-    isCurve = Object.keys(front.base).length === 2;
-  const series = (name, colour, dots, wanted) => ({
+  const positions = frontPositions(front, a, b),
+    isCurve = Object.keys(front.initial).length === 2;
+  const series = (name, colour, dots, isDrawn) => ({
     name,
     colour,
     dots,
-    values: places.map((place) => (wanted(place) ? place.y : undefined)),
+    values: positions.map((position) => (isDrawn(position) ? position.y : undefined)),
   });
-  const base = places.find((place) => !place.point),
-    [low, high] = range(places.filter((place) => place !== base).map(({ y }) => y)) || [0, 1],
-    isFar = !!base && (base.y < low - REACH * (high - low) || base.y > high + REACH * (high - low));
-  const marked = (mark) => (place) => !!place.point && place.point.mark === mark;
+  const initial = positions.find(({ point }) => !point),
+    [low, high] = range(positions.filter((position) => position !== initial).map(({ y }) => y)) || [0, 1],
+    isFar = !!initial && (initial.y < low - REACH * (high - low) || initial.y > high + REACH * (high - low));
+  const marked =
+    (mark) =>
+    ({ point }) =>
+      !!point && point.mark === mark;
   const all = [
     series("front", "--one", !isCurve, marked("on")),
     series("dominated", "--ghost", true, marked("dominated")),
-    { ...series("knee", "--three", true, (place) => !!place.point && place.i === front.knee), size: 9 },
-    { ...series("after form-finding", "--two", true, (place) => !place.point), free: isFar },
+    { ...series("knee", "--three", true, ({ point, i }) => !!point && i === front.knee), size: 9 },
+    { ...series("initial design", "--two", true, ({ point }) => !point), free: isFar },
   ];
   return chart({
     title: `${objectiveName(b)} against ${objectiveName(a)}`,
@@ -61,16 +64,16 @@ function frontChart(front, a, b) {
     yLabel: objectiveLabel(b),
     unit: objectiveUnit(b),
     caption: isFar
-      ? `After form-finding ${objectiveName(b)} is ${objectiveText(b, base.y)}, outside of the picture.`
+      ? `The initial design is outside of the picture: ${objectiveName(b)} ${objectiveText(b, initial.y)}.`
       : null,
-    x: places.map((place) => place.x),
+    x: positions.map(({ x }) => x),
     counted: false,
     log: false,
     head: (i) =>
-      places[i].point
-        ? `point ${places[i].point.id}: ${objectiveName(a)} ${objectiveText(a, places[i].x)}` +
-          slopesOf(front, places[i].point)
-        : `after form-finding: ${objectiveName(a)} ${objectiveText(a, places[i].x)}`,
+      positions[i].point
+        ? `point ${positions[i].point.id}: ${objectiveName(a)} ${objectiveText(a, positions[i].x)}` +
+          slopesOf(front, positions[i].point)
+        : `initial design: ${objectiveName(a)} ${objectiveText(a, positions[i].x)}`,
     series: all.filter((s) => s.values.some((v) => v !== undefined)),
   });
 }
@@ -89,29 +92,27 @@ const takeText = (front) =>
   el(
     "p",
     {},
-    "A point becomes a result with a shape, a cut list, and the net as built by the command of this run with " +
+    "To get a result with a shape, a cut list and the as-built net of a point, run the command of this run with " +
       "--point: ",
     el("code", {}, pointCommand(front)),
   );
 
 // Explains which shape the page shows, because a front has no shape of its own.
-function writeWhose(told) {
+function writeWhose(more) {
   const { front } = summary;
   if (!front) return;
-  const isFound = resultStage === "form",
-    asBuilt = summary.cases || summary.tolerance;
+  const isFormFinding = resultStage === "form",
+    asBuilt = summary.load_cases || summary.tolerance;
   main.append(
     el(
       "p",
       { class: "whose", id: "whose" },
-      isFound
-        ? "Figures, net, cables and all else on this page but the front are of the form-finding’s shape, which is no " +
-            "point of the front."
-        : "Figures, net and cables on this page are of the end of the front with the least " +
-            `${objectiveName(Object.keys(front.base)[0])}` +
-            `${asBuilt ? ", nets as built of the form-finding’s shape, which is no point of the front" : ""}.`,
-      told.map((text) => ` Of this shape: ${text[0].toLowerCase()}${text.slice(1)}`),
-      " A point has its own in a result, of which hifdm report makes such a page: ",
+      isFormFinding
+        ? "Except for the front, this page shows the shape of the form-finding, which is no point of the front."
+        : `This page shows the point of the front with the minimum ${objectiveName(Object.keys(front.initial)[0])}.` +
+            `${asBuilt ? " As-built nets are those of the form-finding, which is no point of the front." : ""}`,
+      more.map((text) => ` Of this shape: ${text[0].toLowerCase()}${text.slice(1)}`),
+      " To get such a page for a point, make a result of it: ",
       el("code", {}, pointCommand(front)),
     ),
   );
@@ -120,15 +121,15 @@ function writeWhose(told) {
 // Writes the section of a front whose objectives do not conflict.
 function writeOneDesign(front, names, point) {
   const valueOf = (name, value) =>
-    goalUnit(name) === "m" ? `${roundedMm(value)} mm` : objectiveText(name, value);
-  const told = names.map((name) => `${objectiveName(name)} ${valueOf(name, point.objective[name])}`);
+    storedUnit(name) === "m" ? `${roundedMm(value)} mm` : objectiveText(name, value);
+  const values = names.map((name) => `${objectiveName(name)} ${valueOf(name, point.objective[name])}`);
   section(
     "front",
     "One design for all objectives",
     el(
       "p",
       {},
-      `The objectives do not conflict: one design, point ${point.id}, is best in all of them: ${told.join(", ")}. ` +
+      `The objectives do not conflict: one design, point ${point.id}, is best in all of them: ${values.join(", ")}. ` +
         `Found in ${fmtDuration(front.wall_s)}.`,
     ),
     takeText(front),
@@ -138,7 +139,7 @@ function writeOneDesign(front, names, point) {
 function writeFront() {
   const front = summary.front;
   if (!front) return;
-  const names = Object.keys(front.base),
+  const names = Object.keys(front.initial),
     on = front.points.filter((point) => point.mark === "on"),
     charts = [];
   if (on.length === 1 && !front.n_failed) {
@@ -158,9 +159,9 @@ function writeFront() {
     el(
       "p",
       {},
-      `${fmtCount(front.n_point)} designs${left.length ? `, ${left.join(", ")}` : ""}: none of the others is better ` +
-        `in all objectives than one on the front. Found in ${fmtDuration(front.wall_s)}. The knee is farthest below ` +
-        `the straight ${names.length > 2 ? "plane through" : "line between"} the ends.`,
+      `${fmtCount(front.n_point)} designs${left.length ? `, ${left.join(", ")}` : ""}. No design is better in all ` +
+        `objectives than one on the front. Found in ${fmtDuration(front.wall_s)}. The knee is farthest below the ` +
+        `straight ${names.length > 2 ? "plane through" : "line between"} the ends.`,
     ),
     el("div", { class: "charts" }, charts),
     takeText(front),

@@ -18,8 +18,8 @@ function writeHead() {
   document.getElementById("title").textContent = shown(data.title);
   const found =
     `${fmtCount(net.n_node)} nodes (${fmtCount(data.n_free)} free), ${fmtCount(net.n_cable)} cables, ` +
-    (data.n_gene ? `${fmtCount(data.n_gene)} variables, ` : "") +
-    (data.pretension_N === null ? "tensions by their own laws" : `pretension ${fmt(data.pretension_N)} N`);
+    (data.n_variable ? `${fmtCount(data.n_variable)} design variables, ` : "") +
+    (data.pretension_N === null ? "every cable with its own law" : `pretension ${fmt(data.pretension_N)} N`);
   const truss = summary.truss
     ? `; truss of ${fmtCount(summary.truss.nodes)} nodes, ${fmtCount(summary.truss.members)} members, ` +
       `${fmt(summary.truss.mass_kg)} kg`
@@ -79,7 +79,7 @@ function chosenLine(tools) {
 }
 
 const resultStage = resultShape && resultShape.stage;
-const resultNumbers = { form: summary.form, optimize: summary.optimize, polish: summary.polish }[resultStage];
+const resultNumbers = summary[resultStage];
 
 const figure = (name, value, unit) =>
   el("div", {}, el("dt", {}, name), el("dd", {}, value, unit && value !== "–" ? el("small", {}, unit) : null));
@@ -88,7 +88,7 @@ const figure = (name, value, unit) =>
 function writeAnswer() {
   const said = [data.answer, data.gain_loss].filter((text) => text);
   if (!said.length) return;
-  const [answer, ...more] = said.map((text) => `${text[0].toUpperCase()}${text.slice(1)}.`);
+  const [answer, ...more] = said.map(sentence);
   const beside = more.length && !summary.front ? el("small", {}, more) : null;
   main.append(el("p", { class: "answer", id: "answer" }, answer, beside));
   writeWhose(more);
@@ -96,18 +96,19 @@ function writeAnswer() {
 
 function writeFigures() {
   if (!resultNumbers) return;
-  const base = summary.optimize && !summary.form.goals && summary.optimize.base_psi_m, // other objectives may raise psi
+  // Other objectives than ψ may raise ψ.
+  const initial = summary.search && !summary.form.objectives && summary.search.initial_psi_m,
     list = [];
-  list.push(figure(`surface error ψ, ${resultShape.name}`, roundedMm(resultNumbers.psi_m), "mm"));
+  list.push(figure(`surface error ψ (${resultShape.name})`, roundedMm(resultNumbers.psi_m), "mm"));
   if (resultStage !== "form") {
     list.push(figure("ψ after form-finding", roundedMm(summary.form.psi_m), "mm"));
     // The initial design of the search can have another shape than that of the form-finding.
-    const isFound = Math.abs(base - summary.form.psi_m) < 1e-6 * base;
-    const below = 100 * (1 - resultNumbers.psi_m / base),
+    const isFormFinding = Math.abs(initial - summary.form.psi_m) < 1e-6 * initial;
+    const below = 100 * (1 - resultNumbers.psi_m / initial),
       size = Math.abs(below).toFixed(2),
       side = Number(size) === 0 ? "against" : below > 0 ? "below" : "above";
-    if (1e3 * base >= RESOLVED_MM)
-      list.push(figure(`ψ ${side} that of the ${isFound ? "form-finding" : "base design"}`, size, "%"));
+    if (1e3 * initial >= RESOLVED_MM)
+      list.push(figure(`ψ ${side} that of the ${isFormFinding ? "form-finding" : "initial design"}`, size, "%"));
   }
   list.push(
     figure("tension ratio, inner cables", fmtRatio(resultNumbers.inner_tension_ratio)),
@@ -142,14 +143,14 @@ function button(text, name, act) {
   return node;
 }
 
-// Scale factors 1, 2, 5, 10, ... The first one chosen draws the largest deviation as a twentieth of the size of the
+// Scale factors 1, 2, 5, 10, ... The first one chosen draws the maximum deviation as a twentieth of the size of the
 // net.
 const SCALES = Array.from({ length: 22 }, (_, k) => [1, 2, 5][k % 3] * 10 ** Math.floor(k / 3));
 function firstScale(radius) {
-  const stages = data.shapes.filter((s) => !s.case); // nodes of a load case may move much farther
-  const largest = Math.max(0, ...stages.map((s) => range(s.distance_mm)[1])) / 1e3;
-  const wanted = 1e3 * largest > RESOLVED_MM ? (0.1 * radius) / largest : 1;
-  return Math.max(0, SCALES.filter((s) => s <= wanted).length - 1);
+  const stages = data.shapes.filter((s) => !s.load_case); // nodes of a load case may move much farther
+  const most = Math.max(0, ...stages.map((s) => range(s.distance_mm)[1])) / 1e3;
+  const scale = 1e3 * most > RESOLVED_MM ? (0.1 * radius) / most : 1;
+  return Math.max(0, SCALES.filter((s) => s <= scale).length - 1);
 }
 
 function stage(kind, name, description) {
@@ -189,13 +190,13 @@ function writeNet() {
   slider.value = firstScale(view.radius);
   set({ scale: SCALES[slider.value] });
   slider.addEventListener("input", () => set({ scale: SCALES[slider.value] }));
-  const options = [["theory", "theoretical"], ...shapes.map((s) => [s.stage, s.name])];
+  const options = [["target", "target"], ...shapes.map((s) => [s.stage, s.name])];
   const colours = [
     ["deviation", "deviation"],
     ["tension", "tension"],
     ["slack", "slack"],
     ...(net.sets.length ? [["family", "family"]] : []),
-    ...(moveOf.size ? [["moves", "moves"]] : []),
+    ...(adjustmentOf.size ? [["adjustments", "adjustments"]] : []),
     ["plain", "none"],
   ];
   const showSet = (name, on) => {
@@ -206,14 +207,14 @@ function writeNet() {
   section(
     "net",
     "The net",
-    shapes.length ? null : el("p", {}, "Form-finding ended without a shape, so this is the theoretical one."),
+    shapes.length ? null : el("p", {}, "Form-finding found no shape, so this is the net at its target positions."),
     el(
       "div",
       { class: "tools" },
       shapes.length ? choice("shape", "Shape", options, resultStage, (v) => set({ shape: shapeOf(v) })) : null,
       shapes.length ? choice("colour", "Colour", colours, view.state.colour, (v) => set({ colour: v })) : null,
       shapes.length ? el("label", {}, el("span", { class: "muted" }, "Deformation"), slider, output) : null,
-      shapes.length ? tick("theoretical shape", true, (v) => set({ theory: v })) : null,
+      shapes.length ? tick("target positions", true, (v) => set({ target: v })) : null,
       data.truss ? tick("truss", true, (v) => set({ truss: v })) : null,
       familyTicks(showSet),
       el(
@@ -239,8 +240,8 @@ function writeNet() {
         el(
           "span",
           { class: "keys", id: "net-keys" },
-          " Drag or use the arrow keys to turn, with Shift to move, the wheel or + and − to zoom, 0 to start over; " +
-            "n and c step through nodes and cables, with Shift backwards; Enter or a click marks a cable.",
+          " Drag or use the arrow keys to turn, with Shift to shift, the wheel or + and − to zoom, 0 to start over. " +
+            "n and c step through nodes and cables, with Shift backwards. Enter or a click marks a cable.",
         ),
       ),
     ),
@@ -263,8 +264,8 @@ function familyTicks(act) {
 function trussNote() {
   if (!data.truss) return "";
   return data.truss.displacement_m
-    ? ", the frame is the truss under the pull of the found net"
-    : ", the frame is the truss";
+    ? ". The frame is the truss under the pull of the net after form-finding"
+    : ". The frame is the truss";
 }
 
 function netCaption() {
@@ -272,10 +273,9 @@ function netCaption() {
   return el(
     "span",
     {},
-    "Deformation from the theoretical shape (grey) ",
+    "Deformation from the target positions (grey) ",
     el("strong", { id: "scale-note" }),
-    `; squares are supports${trussNote()}. The colours of the deviation ` +
-      "span the inner nodes, which ψ counts, where these deviate.",
+    `. Squares are supports${trussNote()}. The colours span the deviations of the inner nodes, which ψ counts.`,
   );
 }
 
@@ -325,11 +325,11 @@ function writeMap() {
       el(
         "figcaption",
         { id: "map-caption" },
-        "The net seen along z, at its theoretical place; between the nodes the value is interpolated. Height is " +
-          "positive above the theoretical surface; distance, as in ψ, includes drift within the surface." +
+        "The net at its target positions, seen along z. Values between the nodes are interpolated. The height is " +
+          "positive above the target surface. The distance includes drift within the surface, as ψ does." +
           (net.facets
-            ? " A facet has the mean of its error along the normal, positive above the wanted surface, or above the " +
-              "best fit to all facets."
+            ? " The colour of a facet is the mean of its error along the normal, positive above the target surface or " +
+              "above the best fit to all facets."
             : ""),
       ),
     ),
@@ -354,13 +354,13 @@ if (data.study) {
   writeCables(report.net);
   writeMap();
   writeTensions();
-  writeCases();
+  writeLoadCases();
   writeTolerance();
   writeFront();
   writePattern();
   writeSummary();
   writeHistory(); // sections from here on describe the iterations
-  writeGa();
+  writeSearch();
   writeCoupling();
   writeProvenance();
 }

@@ -225,9 +225,9 @@ function aperture({ canvas, tip, bar }) {
       colours(),
       limits(),
       {
-        distance: "distance to theory (mm)",
-        height: "height above theory, Δz (mm)",
-        normal: "above the wanted surface (mm)",
+        distance: "distance to target position (mm)",
+        height: "height above target, Δz (mm)",
+        normal: "above the target surface (mm)",
         fit: "above the best fit (mm)",
       }[state.quantity],
       range(ofFacets() ? values() : values().filter((_, i) => on[i])),
@@ -273,11 +273,11 @@ function aperture({ canvas, tip, bar }) {
       y = event.clientY - frame.top;
     if (ofFacets()) return tellFacet(x, y);
     let best = -1,
-      least = 24;
+      nearest = 24;
     for (let i = 0; i < n; i++) {
       if (!on[i]) continue;
       const d = Math.hypot(sx[i] - x, sy[i] - y);
-      if (d < least) [least, best] = [d, i];
+      if (d < nearest) [nearest, best] = [d, i];
     }
     if (best < 0) {
       tip.hidden = true;
@@ -288,7 +288,7 @@ function aperture({ canvas, tip, bar }) {
       sx[best],
       sy[best],
       tipContent(`node ${net.node_id[best]}`, [
-        ["to theory", `${fmt(state.shape.distance_mm[best], 5)} mm`, ""],
+        ["to target position", `${fmt(state.shape.distance_mm[best], 5)} mm`, ""],
         ["height, Δz", `${fmt(state.shape.height_mm[best], 5)} mm`, ""],
       ]),
     );

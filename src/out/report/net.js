@@ -19,28 +19,28 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   const view = { yaw: -35, pitch: 32, zoom: 1, panX: 0, panY: 0, fitted: true };
   const state = {
     shape: resultShape,
-    colour: moveOf.size ? "moves" : "deviation",
+    colour: adjustmentOf.size ? "adjustments" : "deviation",
     scale: 1,
-    theory: true,
+    target: true,
     truss: !!data.truss,
     picked: null,
     chosen: -1, // the cable selected by a click, here or in the table
     off: new Set(), // sets of cables that are hidden
   };
-  const theory = data.net.position_m,
+  const target = data.net.position_m,
     n = net.n_node,
     m = net.n_cable,
     end = net.end,
     truss = data.truss;
   // Positions in space and on the screen: of the drawn net, of the target positions, of the truss.
   const drawn = { at: new Float64Array(3 * n), x: new Float32Array(n), y: new Float32Array(n) },
-    ghost = { at: theory, x: new Float32Array(n), y: new Float32Array(n) },
+    ghost = { at: target, x: new Float32Array(n), y: new Float32Array(n) },
     beams = truss && {
       at: new Float64Array(3 * truss.n_node),
       x: new Float32Array(truss.n_node),
       y: new Float32Array(truss.n_node),
     };
-  const box = [0, 1, 2].map((k) => range(theory.filter((_, i) => i % 3 === k)));
+  const box = [0, 1, 2].map((k) => range(target.filter((_, i) => i % 3 === k)));
   const centre = box.map(([a, b]) => (a + b) / 2),
     radius = Math.hypot(...box.map(([a, b]) => b - a)) / 2 || 1;
   // A cable can belong to several sets. It is hidden when one of them is off, and has the colour of the smallest.
@@ -102,7 +102,8 @@ function netView({ canvas, tip, bar, scaleLabel }) {
         [line(ink.ghost), ...net.sets.map((_, k) => line(familyColour(k)))],
         (e) => (familyOf[e] === undefined ? 0 : 1 + familyOf[e]),
       ];
-    if (state.colour === "moves") return [[line(ink.ghost), line(ink.alarm, 3.2)], (e) => (moveOf.has(e) ? 1 : 0)];
+    if (state.colour === "adjustments")
+      return [[line(ink.ghost), line(ink.alarm, 3.2)], (e) => (adjustmentOf.has(e) ? 1 : 0)];
     if (state.colour === "slack") return [[line(ink.ghost), line(ink.alarm, 3.2)], (e) => (shape.isSlack(e) ? 1 : 0)];
     const limit = limits();
     return [
@@ -140,7 +141,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   function prepare() {
     const shape = state.shape;
     for (const name of ["ink", "soft", "ghost", "one", "four", "alarm"]) ink[name] = css(`--${name}`);
-    displace(drawn.at, theory, shape && shape.displacement_m);
+    displace(drawn.at, target, shape && shape.displacement_m);
     if (truss)
       displace(beams.at, truss.position_m, shape && (shape.truss_displacement_m || truss.displacement_m));
     sortIntoBatches();
@@ -290,7 +291,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
       project(beams);
       drawTruss(c);
     }
-    if (state.theory && state.shape && !isFast) {
+    if (state.target && state.shape && !isFast) {
       project(ghost);
       c.strokeStyle = ink.ghost;
       c.lineWidth = 0.8;
@@ -374,8 +375,10 @@ function netView({ canvas, tip, bar, scaleLabel }) {
         el("span", {}, `${k} of ${m} cables slack: tension below ${fmt(data.slack_below_N, 3)} N`),
       );
     }
-    if (state.colour === "moves")
-      return bar.replaceChildren(el("span", {}, `${fmtCount(moveOf.size)} of ${fmtCount(m)} cables are to be turned`));
+    if (state.colour === "adjustments")
+      return bar.replaceChildren(
+        el("span", {}, `${fmtCount(adjustmentOf.size)} of ${fmtCount(m)} cables have a turnbuckle adjustment`),
+      );
     if (state.colour === "family")
       return bar.replaceChildren(
         ...net.sets
@@ -389,7 +392,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
           }),
       );
     if (state.colour === "tension") drawBar(bar, sequential, limits(), "tension (N)");
-    else drawBar(bar, sequential, limits(), "distance to theory (mm)", range(state.shape.distance_mm));
+    else drawBar(bar, sequential, limits(), "distance to target position (mm)", range(state.shape.distance_mm));
     if (isRounding()) {
       if (limits()[1] < RESOLVED_MM) bar.replaceChildren();
       bar.append(roundingNote());
@@ -408,23 +411,23 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   }
   function pick(x, y) {
     let best = null,
-      least = 9;
+      nearest = 9;
     for (let i = 0; i < n; i++) {
       const d = hasVisible[i] ? Math.hypot(drawn.x[i] - x, drawn.y[i] - y) : Infinity;
-      if (d < least) [least, best] = [d, { kind: "node", index: i }];
+      if (d < nearest) [nearest, best] = [d, { kind: "node", index: i }];
     }
     if (best) return best;
-    least = 6;
+    nearest = 6;
     for (let k = 0; k < nVisible; k++) {
       const e = order[k];
       const d = segmentDistance(x, y, e);
-      if (d < least) [least, best] = [d, { kind: "cable", index: e }];
+      if (d < nearest) [nearest, best] = [d, { kind: "cable", index: e }];
     }
     return best;
   }
 
   function describeNode(i) {
-    const t = Array.from(theory.slice(3 * i, 3 * i + 3)),
+    const t = Array.from(target.slice(3 * i, 3 * i + 3)),
       shape = state.shape,
       d = shape ? shape.displacement_m : [];
     const at = t.map((v, k) => fmt(v + (shape ? d[3 * i + k] : 0), 6)).join(", ");
@@ -434,7 +437,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     ];
     if (shape)
       rows.push(
-        ["to theory", `${fmt(shape.distance_mm[i], 5)} mm`, ""],
+        ["to target position", `${fmt(shape.distance_mm[i], 5)} mm`, ""],
         ["Δx, Δy, Δz", `${[0, 1, 2].map((k) => fmt(1e3 * d[3 * i + k], 4)).join(", ")} mm`, ""],
       );
     return tipContent(`node ${net.node_id[i]}`, rows);
@@ -443,8 +446,8 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     const shape = state.shape,
       rows = [["group", groupOf(e), ""]];
     if (setsOf[e].length) rows.push(["sets", setsOf[e].map((k) => net.sets[k].name).join(", "), ""]);
-    if (adjust) rows.push(["seems too long by", `${signed(1e3 * adjust.error_m[e], 3)} mm`, ""]);
-    if (moveOf.has(e)) rows.push(["move", `${signed(1e3 * moveOf.get(e).move_m)} mm`, ""]);
+    if (adjust) rows.push(["estimated length error", `${signed(1e3 * adjust.error_m[e], 3)} mm`, ""]);
+    if (adjustmentOf.has(e)) rows.push(["turnbuckle", `${signed(1e3 * adjustmentOf.get(e).turnbuckle_m)} mm`, ""]);
     if (shape)
       rows.push(
         ["tension", `${fmt(shape.tension_N[e], 6)} N${shape.isSlack(e) ? ", slack" : ""}`, "tension_N"],

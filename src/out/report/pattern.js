@@ -101,15 +101,15 @@ function patternText(all) {
     cosine = `power ${fmt(power, 3)} of the cosine of the angle from its axis`,
     field = feed === "plane_wave" ? "" : ` whose field goes as ${cosine}`;
   return (
-    `The far field of the facets by physical optics, fed by ${FEED[feed] || feed}${field}; gain over isotropic ` +
-    "radiation, in the polarisation of the feed. θ is the angle from +z, and a cut φ the half plane at that angle " +
-    `from +x towards +y.${stride > 1 ? ` Of ${stride} neighbouring angles the highest gain is drawn.` : ""}`
+    `The far field of the facets by physical optics, fed by ${FEED[feed] || feed}${field}. The gain is relative to ` +
+    "isotropic radiation, in the polarisation of the feed. θ is the angle from +z. A cut φ is the half plane at that " +
+    `angle from +x towards +y.${stride > 1 ? ` The maximum gain of ${stride} neighbouring angles is drawn.` : ""}`
   );
 }
 
 const PATTERN_NOTE =
-  "Sidelobes and the polarisation across that of the feed are relative to the beam. – where the angles of the cut do " +
-  "not reach, or are too coarse to tell.";
+  "Sidelobes and cross-polarisation are relative to the beam. A figure is – if the angles of the cut do not reach it, " +
+  "or if they are too coarse.";
 
 function writePattern() {
   const all = patterns();

@@ -2,6 +2,8 @@
 
 // ---- histories ----
 
+const ALGORITHM = { ga: "Genetic algorithm", nsga2: "Genetic algorithm NSGA-II" };
+
 const spaced = ({ n, stride }) => {
   const at = [];
   for (let i = 0; i < n; i++) if (i % stride === 0 || i === n - 1) at.push(i);
@@ -35,7 +37,7 @@ function writeHistory() {
     "Surface error ψ",
     "psi_m",
     "ψ",
-    "RMS distance of the inner nodes to the theoretical shape.",
+    "RMS distance of the inner nodes from their target positions.",
     { yLabel: "ψ (mm)", unit: "mm", floor: RESOLVED_MM },
     1e3,
   );
@@ -43,17 +45,17 @@ function writeHistory() {
     "Tension ratio, inner cables",
     "inner_tension_ratio",
     "inner ratio",
-    "Largest over smallest tension; 1 is uniform.",
+    "Maximum over minimum tension. 1 is uniform.",
     { yLabel: "T max / T min" },
   );
   add(
     "Tension ratio, boundary cables",
     "boundary_tension_ratio",
     "boundary ratio",
-    "Largest over smallest tension of the boundary cables.",
+    "Maximum over minimum tension of the boundary cables.",
     { yLabel: "T max / T min" },
   );
-  add("Nodal force out of balance", "residual_N", "residual", "Largest residual of a free node; 0 is equilibrium.", {
+  add("Nodal force out of balance", "residual_N", "residual", "Maximum residual of a free node. 0 is equilibrium.", {
     yLabel: "residual (N)",
     log: true,
     unit: "N",
@@ -65,31 +67,31 @@ function writeHistory() {
       el(
         "p",
         {},
-        `${fmtCount(h.n)} linear solves from the first guess to the ` +
-          `found shape, stopped by ${stopText(summary.form.stop_reason)}.`,
+        `${fmtCount(h.n)} linear solves from the first guess. ${sentence(stopText(summary.form.stop_reason))}`,
       ),
       el("div", { class: "charts" }, charts),
     );
 }
 
-function writeGa() {
-  const g = data.ga;
+function writeSearch() {
+  const g = data.search;
   if (!g || !range(g.best_psi_m)) return;
   const x = spaced(g),
     xLabel = "generation",
     head = (i) => `generation ${x[i]}`,
-    o = summary.optimize;
+    o = summary.search;
   const best = scaled(g.best_psi_m, 1e3);
   const change = best.map((v, i) => (i && v !== null && best[i - 1] !== null ? Math.abs(v - best[i - 1]) : null));
   section(
-    "ga",
-    "Genetic algorithm",
+    "search",
+    "Search",
     el(
       "p",
       {},
-      `${fmtCount(o.generations)} generations, ${fmtCount(o.evaluations)} ` +
-        `form-findings of which ${fmtCount(o.infeasible)} infeasible, in ${fmtDuration(o.wall_s)}; stopped by ` +
-        `${stopText(o.stop_reason)}. The best design is of generation ${fmtCount(o.best_generation)}.`,
+      `${ALGORITHM[o.algorithm] || o.algorithm}: ${fmtCount(o.generations)} generations with ` +
+        `${fmtCount(o.evaluations)} form-findings in ${fmtDuration(o.wall_s)}. ${fmtCount(o.infeasible)} designs were ` +
+        `infeasible. ${sentence(stopText(o.stop_reason))} The best design is of generation ` +
+        `${fmtCount(o.best_generation)}.`,
     ),
     el(
       "div",
@@ -101,7 +103,7 @@ function writeGa() {
         unit: "mm",
         x,
         head,
-        caption: "Surface error of the feasible individuals; the worst may leave the picture." + thinned(g),
+        caption: "Surface error of the feasible individuals. The worst may leave the picture." + thinned(g),
         series: [
           {
             name: "worst",
@@ -128,7 +130,7 @@ function writeGa() {
         unit: "mm",
         x,
         head,
-        caption: "Generations that leave the best as it was have no mark.",
+        caption: "Generations without a better design have no mark.",
         series: [{ name: "change", values: change.map((v) => (v > 0 ? v : null)), colour: "--one", dots: true }],
       }),
     ),
@@ -140,8 +142,8 @@ function writeCoupling() {
     k = summary.coupling;
   if (!c || !range(c.step_m || [])) return;
   const x = spaced(c).map((i) => i + 1),
-    xLabel = "round",
-    head = (i) => `round ${x[i]}`;
+    xLabel = "iteration",
+    head = (i) => `iteration ${x[i]}`;
   const one = (title, key, yLabel, caption, options) =>
     c[key] &&
     chart({
@@ -157,8 +159,10 @@ function writeCoupling() {
     });
   const said =
     k &&
-    `Net and truss settled on each other in ${fmtCount(k.iterations)} rounds; the truss gives way ` +
-      `by up to ${fmt(1e3 * k.max_displacement_m)} mm. Stopped by ${stopText(k.stop_reason)}.`;
+    `The truss deflects by up to ${fmt(1e3 * k.deflection_max_m)} mm at the attachments. ` +
+      (k.stop_reason === "converged"
+        ? `Coupling converged in ${fmtCount(k.iterations)} iterations.`
+        : `Coupling did not converge in ${fmtCount(k.iterations)} iterations: ${stopText(k.stop_reason)}.`);
   section(
     "coupling",
     "Coupling of net and truss",
@@ -170,19 +174,19 @@ function writeCoupling() {
         "Change of the elastic deformation",
         "step_m",
         "change (mm)",
-        "Largest change of a support's displacement in a round.",
+        "Maximum distance that an attachment moved in an iteration.",
       ),
       one(
-        "Largest displacement",
-        "max_displacement_m",
-        "displacement (mm)",
-        "Of the supports of the net on the truss.",
+        "Maximum deflection",
+        "deflection_max_m",
+        "deflection (mm)",
+        "Of the attachments, where the truss holds the net.",
       ),
       one(
         "Surface error ψ on the truss",
         "psi_m",
         "ψ (mm)",
-        "RMS distance of the inner nodes, as the truss gives way.",
+        "RMS distance of the inner nodes from their target positions.",
         { floor: RESOLVED_MM },
       ),
     ),
@@ -195,8 +199,8 @@ function tensionChart(group) {
   const name = `${group === "inner" ? "Inner" : "Boundary"} cables`,
     of = Array.from({ length: net.n_cable }, (_, e) => e).filter((e) => groupOf(e) === group);
   if (!of.length) return null;
-  const colour = { form: "--one", optimize: "--two", polish: "--three", other: "--four" };
-  const shapes = data.shapes.filter((s) => !s.case),
+  const colour = { form: "--one", search: "--two", refine: "--three", other: "--four" };
+  const shapes = data.shapes.filter((s) => !s.load_case),
     [low, high] = range(shapes.flatMap((s) => of.map((e) => s.tension_N[e]))) || [0, 1];
   if (high - low < 1e-6 * high)
     return el(
@@ -233,7 +237,7 @@ function writeTensions() {
   section(
     "tensions",
     "Tensions",
-    el("p", {}, "One mark per cable, numbered in the order of the file within its group."),
+    el("p", {}, "One mark for each cable, numbered in the order of the file within its group."),
     el(
       "div",
       { class: "charts" },
@@ -286,11 +290,11 @@ function stageValues(stage, frequency_Hz) {
     own_Hz = surface.frequency_Hz || [],
     all_Hz = frequency_Hz || own_Hz,
     values = { ...stage, ...surface };
-  for (const [name, { value }] of Object.entries(stage.goals || {})) values[name] = value;
+  for (const [name, { value }] of Object.entries(stage.objectives || {})) values[name] = value;
   for (const [loss, rms] of Object.entries(RMS_OF_LOSS))
     (surface[loss] || []).forEach((v, k) => {
-      const place = all_Hz.indexOf(own_Hz[k]);
-      values[`${loss}[${place}]`] = v === null && surface[rms] !== null ? "beyond Ruze" : v;
+      const index = all_Hz.indexOf(own_Hz[k]);
+      values[`${loss}[${index}]`] = v === null && surface[rms] !== null ? "above 3" : v;
     });
   return values;
 }
@@ -299,14 +303,14 @@ function stageValues(stage, frequency_Hz) {
 function figureRows(first) {
   const mm = (v) => rounded(1e3 * v, 5);
   const hz = (v) => (v < 1e15 ? digitsOf(v / 1e9, 3) : `> ${power(6)}`); // higher frequencies come from rounding
-  const goals = Object.entries(first.goals || {});
+  const objectives = Object.entries(first.objectives || {});
   const loss = (v) => (typeof v === "string" ? v : rounded(v, 3));
   const frequencies = (first.frequency_Hz || []).map((v) => `${fmt(v / 1e9, 4)} GHz`);
   const rows = [
     ["surface error ψ", "mm", "psi_m", mm],
-    ["merit of all goals", "", "merit", (v) => fmt(v, 5)],
-    ...goals.map(([name, { weight }]) => [
-      weight === undefined ? `objective: ${objectiveName(name)}` : `goal: ${objectiveName(name)}, weight ${weight}`,
+    ["merit of all objectives", "", "merit", (v) => fmt(v, 5)],
+    ...objectives.map(([name, { weight }]) => [
+      `objective: ${objectiveName(name)}${weight === undefined ? "" : `, weight ${weight}`}`,
       objectiveUnit(name),
       name,
       (v) => digitsOf(objectiveScale(name) * v, 5),
@@ -321,36 +325,36 @@ function figureRows(first) {
     ["RMS of the facets along the normal", "mm", "facet_normal_rms_m", mm],
     ["RMS of the facets along the normal, best fit", "mm", "facet_fit_normal_rms_m", mm],
     ["pillow, RMS", "mm", "pillow_rms_m", mm],
-    ["largest pull of the mesh, N l / T", "", "mesh_pull_ratio", (v) => fmt(v, 3)],
+    ["maximum pull of the mesh, N l / T", "", "mesh_pull_ratio", (v) => fmt(v, 3)],
     ["facets", "", "n_facet", fmtCount],
     ["faceting error of flat strips", "mm", "faceting_rms_m", mm],
-    ["half of the deviations are below", "mm", "deviation_p50_m", mm],
-    ["90 % of them", "mm", "deviation_p90_m", mm],
-    ["95 % of them", "mm", "deviation_p95_m", mm],
-    ["99 % of them", "mm", "deviation_p99_m", mm],
-    ["largest deviation", "mm", "deviation_max_m", mm],
+    ["deviation, median", "mm", "deviation_p50_m", mm],
+    ["deviation, 90th percentile", "mm", "deviation_p90_m", mm],
+    ["deviation, 95th percentile", "mm", "deviation_p95_m", mm],
+    ["deviation, 99th percentile", "mm", "deviation_p99_m", mm],
+    ["deviation, maximum", "mm", "deviation_max_m", mm],
     ...frequencies.flatMap((at, k) => [
-      [`loss of gain at ${at}`, "dB", `gain_loss_dB[${k}]`, loss],
-      [`loss of gain at ${at}, best fit`, "dB", `fit_gain_loss_dB[${k}]`, loss],
-      [`loss of gain of the facets at ${at}`, "dB", `facet_gain_loss_dB[${k}]`, loss],
-      [`loss of gain of the facets at ${at}, best fit`, "dB", `facet_fit_gain_loss_dB[${k}]`, loss],
+      [`gain loss at ${at}`, "dB", `gain_loss_dB[${k}]`, loss],
+      [`gain loss at ${at}, best fit`, "dB", `fit_gain_loss_dB[${k}]`, loss],
+      [`gain loss of the facets at ${at}`, "dB", `facet_gain_loss_dB[${k}]`, loss],
+      [`gain loss of the facets at ${at}, best fit`, "dB", `facet_fit_gain_loss_dB[${k}]`, loss],
     ]),
-    ["Ruze’s formula of that loss (to 3 dB) ends at", "GHz", "ruze_limit_Hz", hz],
-    ["the same, best fit", "GHz", "fit_ruze_limit_Hz", hz],
-    ["the same, facets", "GHz", "facet_ruze_limit_Hz", hz],
-    ["the same, facets after their best fit", "GHz", "facet_fit_ruze_limit_Hz", hz],
+    ["limit of Ruze’s formula (3 dB gain loss)", "GHz", "ruze_limit_Hz", hz],
+    ["limit of Ruze’s formula, best fit", "GHz", "fit_ruze_limit_Hz", hz],
+    ["limit of Ruze’s formula, facets", "GHz", "facet_ruze_limit_Hz", hz],
+    ["limit of Ruze’s formula, facets, best fit", "GHz", "facet_fit_ruze_limit_Hz", hz],
     ["tension ratio, inner cables", "", "inner_tension_ratio", fmtRatio],
     ["tension ratio, boundary cables", "", "boundary_tension_ratio", fmtRatio],
     ["slack cables", "", "slack_cables", fmtCount],
-    ["largest nodal residual", "N", "residual_N", (v) => fmt(v, 3)],
-    ["largest error of a tension asked for", "relative", "tension_error", (v) => fmt(v, 3)],
-    ["largest error of a length asked for", "relative", "length_error", (v) => fmt(v, 3)],
-    ["shortest cable, of its theoretical length", "", "shortest_length_ratio", (v) => digitsOf(v, 4)],
+    ["maximum nodal residual", "N", "residual_N", (v) => fmt(v, 3)],
+    ["maximum error of a prescribed tension", "relative", "tension_error", (v) => fmt(v, 3)],
+    ["maximum error of a prescribed length", "relative", "length_error", (v) => fmt(v, 3)],
+    ["shortest cable, relative to its length at target", "", "shortest_length_ratio", (v) => digitsOf(v, 4)],
     ["straight chains under load", "", "loaded_straight_chains", fmtCount],
     ["estimated position error", "mm", "position_error_m", (v) => fmt(1e3 * v, 3)],
-    ["proven bound of the position error", "mm", "position_bound_m", (v) => fmt(1e3 * v, 3)],
-    ["proven bound of the error of psi", "mm", "psi_bound_m", (v) => fmt(1e3 * v, 3)],
-    ["proof of these bounds", "", "bound_reason", boundText],
+    ["certified bound of the position error", "mm", "position_bound_m", (v) => fmt(1e3 * v, 3)],
+    ["certified bound of the error of ψ", "mm", "psi_bound_m", (v) => fmt(1e3 * v, 3)],
+    ["certificate of these bounds", "", "bound_reason", boundText],
     ["condition of the Newton matrix", "", "condition", (v) => digitsOf(v, 3)],
     ["backward error", "", "backward_error", (v) => fmt(v, 3)],
     ["linear solves", "", "iterations", fmtCount],
@@ -359,7 +363,7 @@ function figureRows(first) {
     ["status", "", "status", plainWord],
     ["point of the front", "", "front_point", fmtCount],
     ["result with this front", "", "front_file", String],
-    ["stopped by", "", "stop_reason", stopText],
+    ["stop reason", "", "stop_reason", stopText],
     ["wall time", "", "wall_s", fmtDuration],
   ];
   // Other figures of the result have the description of the list that defines them.
@@ -371,12 +375,12 @@ function figureRows(first) {
 
 // Lists terms, figures of these keys and words of these stages with their descriptions, as `hifdm explain` prints them.
 function writtenWords(keys, stages) {
-  const wanted = new Set(keys.map((key) => key.replace(/\[.*/, ""))),
-    told = new Set();
+  const figures = new Set(keys.map((key) => key.replace(/\[.*/, ""))),
+    listed = new Set();
   const list = (data.words || []).filter(({ word, term, of }) => {
-    const isSaid = of ? stages.some((values) => values[of] === word) : term || wanted.has(word),
-      isNew = isSaid && !told.has(word);
-    if (isNew) told.add(word);
+    const isOnPage = of ? stages.some((values) => values[of] === word) : term || figures.has(word),
+      isNew = isOnPage && !listed.has(word);
+    if (isNew) listed.add(word);
     return isNew;
   });
   if (!list.length) return null;
@@ -405,9 +409,9 @@ const breakable = (key) => key.split(/(?<=_)/).flatMap((part, k) => (k ? [el("wb
 
 function writeSummary() {
   const stages = [
-    ["form", "Form-finding"],
-    ["optimize", "GA best"],
-    ["polish", pointIn(summary) ? `Point ${pointIn(summary)}` : "LM optimum"],
+    ["form", "Form"],
+    ["search", "Search"],
+    ["refine", pointIn(summary) ? `Point ${pointIn(summary)}` : "Refine"],
   ].filter(([key]) => summary[key]);
   if (!stages.length) return;
   const values = Object.fromEntries(stages.map(([stage]) => [stage, stageValues(summary[stage])]));
@@ -440,10 +444,10 @@ function writeSummary() {
 }
 
 // Writes the load cases of the as-built net, one row each.
-function writeCases() {
-  const cases = Object.entries(summary.cases || {});
-  if (!cases.length) return;
-  const values = cases.map(([, figures]) => ({ ...figures, ...figures.surface }));
+function writeLoadCases() {
+  const loadCases = Object.entries(summary.load_cases || {});
+  if (!loadCases.length) return;
+  const values = loadCases.map(([, figures]) => ({ ...figures, ...figures.surface }));
   const number = (name, key, digits, unit) =>
     numberColumn(
       name,
@@ -452,25 +456,29 @@ function writeCases() {
       { unit },
     );
   const columns = [
-    { name: "Case", of: (i) => i, show: (i) => cases[i][0] },
+    { name: "Load case", of: (i) => i, show: (i) => loadCases[i][0] },
     { name: "status", beside: true, of: (i) => values[i].status, show: (i) => plainWord(values[i].status) },
     number("ψ (mm)", "psi_m", 5, 1e3),
-    number("moved, RMS (mm)", "move_rms_m", 5, 1e3),
+    number("displacement, RMS (mm)", "displacement_rms_m", 5, 1e3),
     number("half-path RMS (mm)", "half_path_rms_m", 5, 1e3),
     number("best fit (mm)", "fit_half_path_rms_m", 5, 1e3),
     number("facets, best fit (mm)", "facet_fit_half_path_rms_m", 5, 1e3),
-    number("least tension (N)", "least_tension_N", 4),
-    number("largest tension (N)", "largest_tension_N", 4),
-    number("slack", "slack_cables", 1),
+    number("minimum tension (N)", "tension_min_N", 4),
+    number("maximum tension (N)", "tension_max_N", 4),
+    number("slack cables", "slack_cables", 1),
     number("loose nodes", "loose_nodes", 1),
-    number("largest truss member (N)", "largest_member_N", 4),
+    number("maximum member force (N)", "member_force_max_N", 4),
   ].filter((column) => column);
-  const design = summary.front ? "form-finding has the net" : "the design says";
+  const design = summary.front ? "the form-finding" : "the result";
   section(
-    "cases",
-    "Cases of the net as built",
-    el("p", {}, `Cut as ${design}, under the temperatures, loads and moves of each case.`),
-    sortableTable({ caption: "Cases of the net as built", columns, n: cases.length, by: -1 }).node,
+    "load-cases",
+    "Load cases of the as-built net",
+    el(
+      "p",
+      {},
+      `The as-built net of ${design} under the temperatures, loads and support displacements of each load case.`,
+    ),
+    sortableTable({ caption: "Load cases of the as-built net", columns, n: loadCases.length, by: -1 }).node,
   );
 }
 

@@ -19,7 +19,7 @@ function readAxes(study) {
     const columns = input.columns || 1,
       named = axisName(input.name),
       isNumber = !input.texts && columns === 1;
-    // small lengths, such as errors of the cut, in mm
+    // small lengths, such as errors of cutting lengths, in mm
     const isSmall = isNumber && named.unit === "m" && (range(input.values.map(Math.abs)) || [0, 1])[1] < 0.1,
       values = isSmall ? input.values.map((v) => Number((1e3 * v).toPrecision(12))) : input.values;
     if (isSmall) Object.assign(named, { unit: "mm", text: `${named.name} (mm)` });
@@ -32,7 +32,7 @@ function readAxes(study) {
       done = all.filter((i) => study.status[i] === "ok");
     return {
       key: input.name,
-      goOn: input.go_on, // the side on which to extend the axis, if any
+      extend: input.extend, // the side on which to extend the axis, if any
       ...named,
       label,
       isNumber,
@@ -46,37 +46,37 @@ function readAxes(study) {
 
 // ---- figures of the points ----
 
-const STAGE_STYLE = { form: ["--one", null], optimize: ["--two", "7 3"], polish: ["--three", "2 3"] };
+const STAGE_STYLE = { form: ["--one", null], search: ["--two", "7 3"], refine: ["--three", "2 3"] };
 const BUILT = "tolerance"; // the stage of the as-built net
-const isState = (stage) => stage.startsWith("case "); // a load case of the as-built net
+const isLoadCase = (stage) => stage.startsWith("load case "); // of the as-built net
 const stageWords = (stage) => stageName[stage] || stage;
-const TOLD_IN = { m: ["mm", 1e3], Hz: ["GHz", 1e-9] };
+const SHOWN_IN = { m: ["mm", 1e3], Hz: ["GHz", 1e-9] };
 
 // Returns the names of a figure: title, name of its values on an axis, rank among the figures, heading of its column.
-function figureWords({ key, goal: goalWords }) {
+function figureWords({ key, objective: objectiveWords }) {
   const [, facets, fit, rest] = key.match(/^(facet_)?(fit_)?(.*)$/),
     after = fit ? ", after best fit" : "",
     fitted = fit ? ", fitted" : "",
     of = facets ? "facets" : "nodes";
   const loss = rest.match(/^gain_loss_at_(.*)_GHz_dB$/),
-    goal = goalWords && clip(goalWords, NAME_MAX);
+    objective = objectiveWords && clip(objectiveWords, NAME_MAX);
   if (key === "psi_m") return ["Surface error ψ", "ψ", 1, "ψ"];
-  if (key === "psi_95_m") return ["ψ that 95 % of the nets as built keep", "ψ", 0, "ψ of 95 %"];
-  if (key === "merit") return ["Merit: what all goals come to by their weights", "merit", 2, "Merit"];
-  if (key === "yield") return ["Yield: nets as built that meet all requirements", "yield", 2, "Yield"];
+  if (key === "psi_95_m") return ["95th percentile of ψ of the samples", "ψ", 0, "ψ of 95 %"];
+  if (key === "merit") return ["Merit of all objectives with their weights", "merit", 2, "Merit"];
+  if (key === "yield") return ["Yield: samples that meet all requirements", "yield", 2, "Yield"];
   if (rest === "half_path_rms_m")
     return [`Half-path error of the ${of}${after}`, "RMS", fit ? 4 : 3, `RMS of ${of}${fitted}`];
-  if (rest === "good_to_Hz")
-    return [`Good to, at 1 dB of loss by the ${of}${after}`, "frequency", fit ? 6 : 5, `Good to${fitted}`];
-  if (loss) return [`Loss of gain at ${loss[1]} GHz${after}`, "loss", fit ? 8 : 7, `Loss at ${loss[1]} GHz${fitted}`];
-  if (goal) return [`Goal ${goal}`, goal, 9, `Goal ${goal}`];
+  if (rest === "gain_loss_1dB_Hz")
+    return [`Frequency of 1 dB gain loss of the ${of}${after}`, "frequency", fit ? 6 : 5, `1 dB gain loss${fitted}`];
+  if (loss) return [`Gain loss at ${loss[1]} GHz${after}`, "loss", fit ? 8 : 7, `Gain loss at ${loss[1]} GHz${fitted}`];
+  if (objective) return [`Objective ${objective}`, objective, 9, `Objective ${objective}`];
   if (key === "inner_tension_ratio")
     return ["Tension ratio, inner cables", "T max / T min", 10, "Tension ratio, inner"];
   if (key === "boundary_tension_ratio")
     return ["Tension ratio, boundary cables", "T max / T min", 11, "Tension ratio, boundary"];
   if (key === "n_slack") return ["Slack cables", "slack cables", 12, "Slack cables"];
   if (key === "n_loose") return ["Loose nodes", "loose nodes", 13, "Loose nodes"];
-  if (key === "largest_tension_N") return ["Largest tension", "T max", 14, "Largest tension"];
+  if (key === "tension_max_N") return ["Maximum tension", "T max", 14, "Maximum tension"];
   return null;
 }
 const lowered = (title) => title.replace(/^[A-Z]/, (c) => c.toLowerCase());
@@ -90,7 +90,7 @@ function readFigures(study, mainStage) {
     .map((key) => {
       const own = rows.filter((row) => row.key === key),
         [title, name, rank, column] = figureWords(own[0]),
-        [unit, scale] = key === "yield" ? ["%", 100] : TOLD_IN[own[0].unit] || [own[0].unit, 1],
+        [unit, scale] = key === "yield" ? ["%", 100] : SHOWN_IN[own[0].unit] || [own[0].unit, 1],
         main = own.some(({ stage }) => stage === BUILT) ? BUILT : mainStage;
       const values = Object.fromEntries(study.output.filter((o) => o[key]).map((o) => [o.stage, o[key]]));
       return {
@@ -102,7 +102,7 @@ function readFigures(study, mainStage) {
         main,
         yLabel: unit ? `${name} (${unit})` : name,
         isLoss: /gain_loss_at_/.test(key),
-        isError: /half_path_rms_m|good_to_Hz/.test(key),
+        isError: /half_path_rms_m|gain_loss_1dB_Hz/.test(key),
         log: /^n_/.test(key) ? false : "auto", // a count may be 0
         // a loss without a value is outside the range of the formula if the surface error has one
         isBeyond: (i, stage = main) => {
@@ -121,7 +121,7 @@ function readFigures(study, mainStage) {
     .sort((f, g) => f.rank - g.rank);
 }
 
-// Returns the text of a figure that is the same at all points. Of stages other than the result only psi is named.
+// Returns the text of a figure that is the same at all points. Of stages other than the result only psi is listed.
 function sameText(study, f, stage) {
   const i = study.status.findIndex((word, k) => word === "ok" && f.of(k, stage) !== null),
     of = f.key === "psi_m" && f.stages.length > 1 ? ` ${stageWords(stage)}` : "";
@@ -195,8 +195,8 @@ function curveChart(study, figure, axis, others, groups, stage) {
     isOne = groups.length === 1;
   const isStaged = figure.main !== BUILT,
     stages = isOne ? figure.drawn : [isStaged ? stage : BUILT],
-    states = figure.stages.filter(isState),
-    styleOf = (of) => STAGE_STYLE[of] || [SERIES[(states.indexOf(of) + 3) % SERIES.length], "1 2"];
+    loadCases = figure.stages.filter(isLoadCase),
+    styleOf = (of) => STAGE_STYLE[of] || [SERIES[(loadCases.indexOf(of) + 3) % SERIES.length], "1 2"];
   const series = groups.flatMap((group, k) =>
     stages.map((of) => ({
       name: group.name || (isStaged ? stageWords(of) : "as built"),
@@ -233,7 +233,7 @@ function markChart(study, figure, axis, others, stage) {
     xLabel: axis.text,
     x: points.map(axis.value),
     counted: isWhole(points.map(axis.value)),
-    caption: "One mark per finished point.",
+    caption: "One mark for each completed point.",
     head: (i) => pointName([axis, ...others], points[i]),
     series: [
       {
@@ -320,24 +320,24 @@ function changesAlong(figure, groups, stage) {
   });
 }
 
-function drawFigures(study, figures, axis, others, stage, place, said) {
+function drawFigures(study, figures, axis, others, stage, charts, note) {
   const groups = curves(study, axis, others),
     isMap = groups.length > CURVES_MAX && others.length === 1;
   const has = (f) => f.drawn.includes(f.main === BUILT ? BUILT : stage),
     all = figures.filter((f) => !f.isLoss && (groups.length === 1 ? f.drawn.length : has(f))),
     drawn = all.filter((f) => groups.length === 1 || isMap || changesAlong(f, groups, stage)),
     flat = all.filter((f) => !drawn.includes(f));
-  said.textContent = flat.length
-    ? `Along ${axis.name} these do not change: ${flat.map((f) => lowered(f.title)).join("; ")}.`
+  note.textContent = flat.length
+    ? `Along ${axis.name} these figures do not change: ${flat.map((f) => lowered(f.title)).join("; ")}.`
     : "";
-  const charts = drawn.map((f) =>
+  const drawings = drawn.map((f) =>
     groups.length <= CURVES_MAX
       ? curveChart(study, f, axis, others, groups, stage)
       : isMap
         ? heatMap(study, f, axis, others[0], stage)
         : markChart(study, f, axis, others, stage),
   );
-  place.replaceChildren(...charts.filter((c) => c));
+  charts.replaceChildren(...drawings.filter((c) => c));
 }
 
 const LITTLE = 0.001; // a smaller share of the variance is negligible
@@ -348,15 +348,15 @@ function whatMatters(figure, shares) {
   const part = (share) => (share < LITTLE ? "less than 0.1\u00a0%" : percent(share, 2));
   const parts = shares.map(({ axis, share }) => `${axis.name} ${part(share)}`),
     rest = 1 - shares.reduce((sum, { share }) => sum + share, 0);
-  const both = rest > 0.005 ? `; the rest, ${part(rest)}, is their interplay` : "";
+  const both = rest > 0.005 ? `; the rest, ${part(rest)}, is their interaction` : "";
   return `Of the variance of ${figure.title.replace(/^S/, "s")} over the points: ${parts.join(", ")}${both}.`;
 }
 
 function writeCurves(study, axes, figures, mainStage) {
   const varying = axes.filter((a) => a.isDrawn),
     along = varying.filter((a) => a.isNumber),
-    said = el("p", { class: "flat" }),
-    place = el("div", { class: "charts" }),
+    note = el("p", { class: "flat" }),
+    charts = el("div", { class: "charts" }),
     lead = figures.find((f) => f.isLead);
   const same = figures
     .flatMap((f) => f.stages.filter((s) => !f.drawn.includes(s)).map((s) => sameText(study, f, s)))
@@ -365,14 +365,14 @@ function writeCurves(study, axes, figures, mainStage) {
     fixed = axes.filter((a) => a.varies && !a.isDrawn && a.only);
   const notes = [
     ...along
-      .filter((a) => a.goOn)
+      .filter((a) => a.extend)
       .map((a) => {
         const end = headOf(a, a.label(study.best));
-        return `${lead.title} still falls at ${end}, the end of its axis: go on ${a.goOn}.`;
+        return `${lead.title} still falls at ${end}, the end of its axis: add points ${a.extend} it.`;
       }),
     same.length ? `At all points: ${same.join("; ")}.` : "",
-    ...psi.map(({ goal }) => `The goal ${goal} is left out: it is ψ.`),
-    ...fixed.map((a) => `All points that are done have ${headOf(a, a.only)}.`),
+    ...psi.map(({ objective }) => `The objective ${objective} is not listed, because it equals ψ.`),
+    ...fixed.map((a) => `All completed points have ${headOf(a, a.only)}.`),
   ];
   const shares = lead
     ? varying.map((axis) => ({ axis, share: shareOf(study, lead, axis) })).sort((a, b) => b.share - a.share)
@@ -383,7 +383,7 @@ function writeCurves(study, axes, figures, mainStage) {
   const others = () => varying.filter((a) => a !== state.axis);
   const redraw = (change) => {
     Object.assign(state, change);
-    drawFigures(study, figures, state.axis, others(), state.stage, place, said);
+    drawFigures(study, figures, state.axis, others(), state.stage, charts, note);
   };
   const tools = [];
   if (along.length > 1)
@@ -413,15 +413,15 @@ function writeCurves(study, axes, figures, mainStage) {
     lead ? el("p", {}, whatMatters(lead, shares)) : null,
     el("p", { class: "same" }, notes.filter((text) => text).join(" ")),
     tools.length ? el("div", { class: "tools" }, tools) : null,
-    place,
-    said,
+    charts,
+    note,
   );
   redraw({});
 }
 
 // ---- table of points ----
 
-const TOLD_MAX = 5,
+const FAILURES_SHOWN = 5,
   COLUMNS_WIDE = 11, // a table with more columns has narrow ones
   POINTS_SHOWN = 64;
 
@@ -438,7 +438,7 @@ const aligned = (v, digits) => (v === 0 ? "0" : Math.abs(v) < RESOLVED_MM ? roun
 // Returns the column of a figure of a stage.
 function figureColumn(study, f, stage) {
   const of = (i) => f.of(i, stage),
-    name = f.key === "psi_m" ? `ψ ${stageWords(stage)}` : isState(stage) ? `${f.column}, ${stage}` : f.column,
+    name = f.key === "psi_m" ? `ψ ${stageWords(stage)}` : isLoadCase(stage) ? `${f.column}, ${stage}` : f.column,
     percents = (v) => v.toFixed(1),
     isCount = /^n_/.test(f.key),
     format = /ratio$/.test(f.key) ? fmtRatio : isCount ? fmtCount : f.unit === "%" ? percents : aligned;
@@ -457,22 +457,22 @@ function writePoints(study, axes, figures, best) {
     ...varying.map((a) => ({ name: a.text, number: a.isNumber, of: a.value, show: (i) => a.label(i) })),
     { name: "Status", of: (i) => statusText(study.status[i]), show: statusCell },
     ...(study.meets_yield.some((a) => a)
-      ? [{ name: "Meets the yield", of: (i) => study.meets_yield[i], show: (i) => study.meets_yield[i] || "–" }]
+      ? [{ name: "Meets required yield", of: (i) => study.meets_yield[i], show: (i) => study.meets_yield[i] || "–" }]
       : []),
     ...figures.flatMap((f) =>
       f.drawn
-        .filter((s) => f.key === "psi_m" || s === f.main || (isState(s) && !f.isError))
+        .filter((s) => f.key === "psi_m" || s === f.main || (isLoadCase(s) && !f.isError))
         .map((s) => figureColumn(study, f, s)),
     ),
     { name: "Point", of: (i) => study.id[i], show: (i) => pointLink(study, i) },
   ];
-  const said = [];
-  if (fixed.length) said.push(`All with ${fixed.map((a) => headOf(a, a.label(0))).join(", ")}.`);
+  const notes = [];
+  if (fixed.length) notes.push(`All points have ${fixed.map((a) => headOf(a, a.label(0))).join(", ")}.`);
   if (study.meets_yield.includes("open"))
-    said.push("Open: the wanted yield is within the 95 % interval of its samples; more of them would tell.");
-  if (best >= 0) said.push("The marked row is the best one. A click on a heading sorts.");
-  if (study.page.some((p) => p)) said.push("The last column leads to the report of a point, or else to its result.");
-  else if (study.file.some((p) => p)) said.push("The last column leads to the result file of a point.");
+    notes.push("Open: the required yield is within the 95 % interval of the samples. More samples are needed.");
+  if (best >= 0) notes.push("The marked row is the best one. A click on a heading sorts.");
+  if (study.page.some((p) => p)) notes.push("The last column links to the report of a point, or else to its result.");
+  else if (study.file.some((p) => p)) notes.push("The last column links to the result file of a point.");
   const points = sortableTable({
     caption: "Points",
     columns,
@@ -486,7 +486,7 @@ function writePoints(study, axes, figures, best) {
         .join(" "),
   });
   points.first(best);
-  section("points", "Points", el("p", {}, said.join(" ")), points.node);
+  section("points", "Points", el("p", {}, notes.join(" ")), points.node);
 }
 
 // ---- the page ----
@@ -502,7 +502,7 @@ function writeStudy(study) {
     varying = axes.filter((a) => a.varies);
   const mainStage = study.main,
     figures = readFigures(study, mainStage),
-    { best, wanted_yield: wanted } = study;
+    { best, required_yield: required } = study;
   const leads = study.figure.find((f) => f.lead) || {};
   for (const f of figures) f.isLead = f.key === leads.key;
   const lead = figures.find((f) => f.isLead),
@@ -522,25 +522,28 @@ function writeStudy(study) {
     const way = reason.split(": ")[0];
     if (reason) ways.set(way, [...(ways.get(way) || []), i]);
   });
-  const told = [...ways.values()].map(
+  const failures = [...ways.values()].map(
     ([i, ...more]) =>
       `${pointName(axes, i)}${more.length ? ` and ${fmtCount(more.length)} more` : ""}: ${study.reason[i]}`,
   );
   writeWarnings(
     failed === 1 ? "One point failed" : failed ? `${fmtCount(failed)} points failed` : "Points of note",
-    told.length > TOLD_MAX
-      ? [...told.slice(0, TOLD_MAX), `and in ${told.length - TOLD_MAX} more ways; hifdm status has all reasons`]
-      : told,
+    failures.length > FAILURES_SHOWN
+      ? [
+          ...failures.slice(0, FAILURES_SHOWN),
+          `${failures.length - FAILURES_SHOWN} more kinds of failure; hifdm status lists all reasons`,
+        ]
+      : failures,
   );
   main.append(
     el(
       "dl",
       { class: "figures" },
-      best < 0 ? null : figure(`least ${lowered(lead.title)}`, value(lead.of(best), 4), lead.unit),
+      best < 0 ? null : figure(`minimum ${lowered(lead.title)}`, value(lead.of(best), 4), lead.unit),
       best < 0 ? null : varying.filter(matters).map((a) => figure(`best ${a.name}`, a.label(best), a.unit)),
       study.meets_yield.some((a) => a)
         ? figure(
-            `points with ${wanted ? `a yield of ${fmt(100 * wanted)}\u00a0%` : "the yield they want"}`,
+            `points with ${required ? `a yield of ${fmt(100 * required)}\u00a0%` : "their required yield"}`,
             `${fmtCount(study.meets_yield.filter((a) => a === "yes").length)} of ${fmtCount(study.n)}`,
           )
         : null,

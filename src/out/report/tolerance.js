@@ -1,9 +1,9 @@
 // The section of the samples of the as-built net, which are under `tolerance` in the summary.
 
 const ERROR_KIND = {
-  cut_m: "cut lengths",
-  cut_ratio: "cut lengths in parts of the length",
-  cut_ratio_batch: "cut lengths of a spool",
+  cut_m: "cutting lengths",
+  cut_ratio: "cutting lengths, in parts of the length",
+  cut_ratio_batch: "cutting lengths of a spool",
   EA_ratio: "EA",
   EA_ratio_batch: "EA of a spool",
   support_m: "supports",
@@ -18,12 +18,12 @@ function toleranceMarks(t, [low, high]) {
   const reach = REACH * (high - low);
   const all = [
     { name: "without errors", at: t.nominal_psi_m, colour: "--three", dash: "2 3" },
-    { name: "95 % of the nets are below", at: t.psi_95_m, colour: "--two" },
+    { name: "95 % of the samples are below", at: t.psi_95_m, colour: "--two" },
     ...t.require
       .filter(({ measure }) => measure === "psi_m")
       .flatMap((row) => [
-        { name: "required: at most", at: row.at_most, say: fmt, colour: "--four", dash: "7 3" },
-        { name: "required: at least", at: row.at_least, say: fmt, colour: "--four", dash: "7 3" },
+        { name: "required maximum", at: row.at_most, say: fmt, colour: "--four", dash: "7 3" },
+        { name: "required minimum", at: row.at_least, say: fmt, colour: "--four", dash: "7 3" },
       ]),
   ].filter(({ at }) => typeof at === "number" && Number.isFinite(at));
   return all.map((mark) => {
@@ -43,16 +43,16 @@ function toleranceChart(t) {
     marks = toleranceMarks(t, [low, high]);
   const far = marks.filter(({ isFar }) => isFar).map(({ name }) => name);
   return chart({
-    title: "Surface error ψ of the nets",
+    title: "Surface error ψ of the samples",
     xLabel: "ψ (mm)",
-    yLabel: "nets (%)",
+    yLabel: "samples (%)",
     unit: "%",
     x: t.histogram.map((_, i) => 1e3 * low + (i + 0.5) * width),
     counted: false,
     log: false,
-    caption: `Of the nets with a shape, those in each ${n}th of the range.${far.length ? ` ${far.join("; ")}.` : ""}`,
+    caption: `Share of the samples with a shape in each ${n}th of the range.${far.length ? ` ${far.join("; ")}.` : ""}`,
     head: (i) => `ψ of ${edge(i)} to ${edge(i + 1)} mm`,
-    series: [{ name: "nets", values: scaled(t.histogram, 100), colour: "--one", bars: width / 2 }],
+    series: [{ name: "samples", values: scaled(t.histogram, 100), colour: "--one", bars: width / 2 }],
     marks: marks.filter(({ isFar }) => !isFar),
   });
 }
@@ -60,24 +60,25 @@ function toleranceChart(t) {
 function scaleText(t) {
   if (typeof t.sigma_scale !== "number") return "";
   if (!(t.sigma_scale > 0))
-    return ` A yield of ${percent(t.wanted_yield)} is out of reach: the net without errors does not meet it.`;
-  const times = digitsOf(t.sigma_scale, 4),
-    wanted = percent(t.wanted_yield);
+    return ` No tolerances give a yield of ${percent(t.required_yield)}: the net without errors fails a requirement.`;
+  const part = percent(t.sigma_scale, 4),
+    required = percent(t.required_yield);
   if (t.scale_bound > 0)
-    return ` All errors times ${times} still keep a yield of ${wanted}; larger ones were not tried.`;
-  if (t.scale_bound < 0) return ` A yield of ${wanted} takes errors of less than ${times} times these.`;
-  return ` All errors times ${times} give a yield of ${wanted}.`;
+    return ` The yield is at least ${required} up to ${part} of these tolerances. Larger ones were not tried.`;
+  if (t.scale_bound < 0) return ` For a yield of ${required}, reduce all tolerances to less than ${part}.`;
+  if (t.sigma_scale < 1) return ` For a yield of ${required}, reduce all tolerances to ${part}.`;
+  return ` The yield is at least ${required} up to ${part} of these tolerances.`;
 }
 
 function toleranceText(t) {
   const failed = t.failed ? `, ${fmtCount(t.failed)} of them without a shape` : "";
   const yielded =
     typeof t.yield === "number"
-      ? ` Of them ${percent(t.yield)} meet all requirements (95 % interval: ${fmt(100 * t.yield_low, 3)} to ` +
+      ? ` Yield: ${percent(t.yield)} of them meet all requirements (95 % interval: ${fmt(100 * t.yield_low, 3)} to ` +
         `${percent(t.yield_high)}).`
       : "";
-  const cut = summary.front ? ", cut as form-finding has the net," : "";
-  return `${fmtCount(t.samples)} nets with the errors of the case${cut} were solved${failed}.${yielded}${scaleText(t)}`;
+  const design = summary.front ? " of the form-finding" : "";
+  return `${fmtCount(t.samples)} samples of the as-built net${design} were solved${failed}.${yielded}${scaleText(t)}`;
 }
 
 function shareTable(t) {
@@ -104,12 +105,12 @@ function writeTolerance() {
   const kinds = Object.entries(t.kind_share).map(([kind, part]) => `${ERROR_KIND[kind] || kind} ${percent(part)}`);
   section(
     "tolerance",
-    "Tolerances of the net as built",
+    "Tolerances of the as-built net",
     el("p", {}, toleranceText(t)),
     el("div", { class: "charts" }, toleranceChart(t)),
-    kinds.length ? el("h3", { class: "after" }, "Cables that must be cut well") : null,
+    kinds.length ? el("h3", { class: "after" }, "Cables with the largest part of the error") : null,
     kinds.length
-      ? el("p", {}, `Shares of what errors add to ψ², to first order. Of all errors: ${kinds.join(", ")}.`)
+      ? el("p", {}, `Shares of ψ² from all errors, to first order, are: ${kinds.join(", ")}.`)
       : null,
     shareTable(t),
   );

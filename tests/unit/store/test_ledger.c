@@ -34,8 +34,9 @@ static hf_points read_points(const hf_study *s)
 
 static int column_of(const char *object, const char *name)
 {
-    for (int i = 0; i < hf_ledger_n_column(); i++)
-        if (!strcmp(hf_ledger_column(i)->object, object) && !strcmp(hf_ledger_column(i)->name, name)) return i;
+    hf_ledger_number number;
+    for (int i = 0; hf_ledger_column(i, &number); i++)
+        if (!strcmp(number.object, object) && !strcmp(number.member->name, name)) return i;
     ck_abort_msg("no column %s/%s", object, name);
     return -1;
 }
@@ -54,14 +55,15 @@ static void write_point(const hf_study *s, int i, hf_status status, const char *
 START_TEST(numbers_come_back_bit_by_bit)
 {
     hf_study s;
-    hf_summary summary = {.seed = 18446744073709551615u, .stage[HF_STAGE_SEARCH].exists = 1, .evaluations = 5000000000};
+    hf_summary summary = {
+        .seed = 18446744073709551615u, .stage[HF_STAGE_SEARCH].exists = true, .search.evaluations = 5000000000};
     open_study(&s);
     hf_points points = read_points(&s); /* the folder is not there yet */
     ck_assert_int_eq(points.count[HF_POINT_MISSING], 5);
     hf_points_free(&points);
-    summary.form.psi_m = 0.1 + 0.2;
-    summary.form.residual_N = (double)NAN;
-    summary.best.psi_m = 5e-324;
+    summary.stage[HF_STAGE_FORM].result.psi_m = 0.1 + 0.2;
+    summary.stage[HF_STAGE_FORM].result.residual_N = (double)NAN;
+    summary.stage[HF_STAGE_SEARCH].result.psi_m = 5e-324;
     write_point(&s, 2, HF_OK, "", &summary);
     write_point(&s, 4, HF_COLLAPSED, "cable\t'a'\nfell", &summary);
     points = read_points(&s);
@@ -71,10 +73,10 @@ START_TEST(numbers_come_back_bit_by_bit)
     const hf_point *p = &points.point[2];
     ck_assert_double_eq(strtod(p->field[column_of("/form", "psi_m")], NULL), 0.1 + 0.2);
     ck_assert(isnan(strtod(p->field[column_of("/form", "residual_N")], NULL)));
-    ck_assert_double_eq(strtod(p->field[column_of("/ga", "best_psi_m")], NULL), 5e-324);
+    ck_assert_double_eq(strtod(p->field[column_of("/search", "psi_m")], NULL), 5e-324);
     ck_assert_str_eq(p->field[column_of("/", "seed")], "18446744073709551615");
-    ck_assert_str_eq(p->field[column_of("/ga", "evaluations")], "5000000000");
-    ck_assert_str_eq(p->field[column_of("/polish", "psi_m")], ""); /* there was no such stage */
+    ck_assert_str_eq(p->field[column_of("/search", "evaluations")], "5000000000");
+    ck_assert_str_eq(p->field[column_of("/refine", "psi_m")], ""); /* there was no such stage */
     ck_assert_int_eq(points.point[4].status, HF_COLLAPSED);
     ck_assert_str_eq(points.point[4].reason, "cable 'a' fell");
     hf_points_free(&points);
@@ -82,23 +84,25 @@ START_TEST(numbers_come_back_bit_by_bit)
 }
 END_TEST
 
-/* The longest row that there is: states with the longest names and all their errors, read to the last one. */
-START_TEST(all_states_come_back)
+/* The longest row that there is: load cases with the longest names and all their errors, read to the last one. */
+START_TEST(all_load_cases_come_back)
 {
     hf_study s;
     hf_summary *summary = calloc(1, sizeof *summary);
     summary->n_load_case = HF_LOAD_CASES_MAX;
+    summary->load_case = calloc(HF_LOAD_CASES_MAX, sizeof *summary->load_case);
     summary->surface.frequencies_Hz.n = HF_LIST_MAX;
     for (int k = 0; k < HF_LIST_MAX; k++)
         summary->surface.frequencies_Hz.value[k] = 1.23456789e-8 * (k + 1);
     for (int k = 0; k < HF_LOAD_CASES_MAX; k++) {
-        hf_load_case_summary *state = &summary->load_case[k];
-        memset(state->name, 'a' + k, sizeof state->name - 1);
-        state->result.psi_m = -1.2345678901234567e-300;
-        state->measures.is_measured = true;
-        state->measures.n_facet = 1;
+        hf_load_case_summary *load_case = &summary->load_case[k];
+        hf_surface_measures *m = &load_case->surface;
+        memset(load_case->name, 'a' + k, sizeof load_case->name - 1);
+        load_case->result.psi_m = -1.2345678901234567e-300;
+        m->is_measured = true;
+        m->n_facet = 1;
         for (int i = 0; i < HF_LIST_MAX; i++)
-            state->measures.facet_gain_loss_dB[i] = state->measures.facet_fit_gain_loss_dB[i] = -0.1 / 3 * 1e-300;
+            m->facet_gain_loss_dB[i] = m->facet_fit_gain_loss_dB[i] = -0.1 / 3 * 1e-300;
     }
     summary->load_case[3].result.status = HF_COLLAPSED;
     open_study(&s);
@@ -120,32 +124,101 @@ START_TEST(all_states_come_back)
     ck_assert_int_eq(n, HF_LOAD_CASES_MAX * (4 + 2 * (2 + HF_LIST_MAX)));
     hf_points_free(&points);
     hf_study_free(&s);
+    hf_summary_free(summary);
     free(summary);
 }
 END_TEST
 
-/* The goals of each stage that the run reached, by name, to the last bit. */
+/* Takes the next value of a list, which must have this name. */
+static double value_of(int list, const char **text, const char *wanted)
+{
+    char name[HF_OBJECTIVE_NAME_SIZE] = "";
+    double value = (double)NAN;
+    ck_assert_msg(hf_ledger_next_value(list, text, name, &value), "no value %s in '%s'", wanted, *text);
+    ck_assert_str_eq(name, wanted);
+    return value;
+}
+
+/* Its rows have other names of columns and of values. A set keeps its name, whatever that is. */
+START_TEST(rows_of_version_0_2_are_read)
+{
+    static const struct {
+        const char *then, *object, *name, *value;
+    } column[] = {{"//seed", "/", "seed", "7"},
+                  {"//has_polish", "/", "has_refine", "1"},
+                  {"//has_optimize", "/", "has_search", "1"},
+                  {"/form/n_gene", "/form", "n_variable", "36"},
+                  {"/form/psi_m", "/form", "psi_m", "0.25"},
+                  {"/form/form_wall_s", "/form", "wall_s", "2"},
+                  {"/ga/best_psi_m", "/search", "psi_m", "0.125"},
+                  {"/ga/best_n_slack", "/search", "n_slack", "3"},
+                  {"/ga/base_psi_m", "/search", "initial_psi_m", "0.5"},
+                  {"/ga/optimize_stop", "/search", "algorithm_stop", "2"},
+                  {"/polish/polish_iterations", "/refine", "steps", "11"},
+                  {"/polish/iterations", "/refine", "iterations", "12"},
+                  {"/polish/coupling_max_displacement_m", "/refine", "coupling_deflection_max_m", "0.75"},
+                  {"/coupling/max_displacement_m", "/coupling", "deflection_max_m", "0.0625"},
+                  {"/tolerance/wanted_yield", "/tolerance", "required_yield", "0.95"}};
+    static const char lists[] = "goal_0_psi=1 goal_1_displacement=2 goal_2_tension_displacement=3\t"
+                                "facet_half_path_rms_m=4 facet_good_to_Hz=5\tcold.largest_tension_N=6 cold.psi_m=7\n";
+    enum { N = sizeof column / sizeof *column };
+    char text[4096] = "#hifdm-points-1\tfingerprint\tstatus\treason", path[1200], command[1300];
+    hf_study s;
+    open_study(&s);
+    for (int i = 0; i < N; i++)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "\t%s", column[i].then);
+    snprintf(text + strlen(text), sizeof text - strlen(text),
+             "\t/ga/best_goals\t/surface/polish/errors\t/cases/figures\n%s\t%s\tok\t", s.id[3], s.fingerprint);
+    for (int i = 0; i < N; i++)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "\t%s", column[i].value);
+    snprintf(text + strlen(text), sizeof text - strlen(text), "\t%s", lists);
+    snprintf(command, sizeof command, "mkdir '%s'", folder);
+    ck_assert_int_eq(system(command), 0);
+    snprintf(path, sizeof path, "%s/points-old-1.tsv", folder);
+    write_file(path, text);
+    write_point(&s, 1, HF_OK, "", &(hf_summary){.seed = 8}); /* of today, beside it */
+    hf_points points = read_points(&s);
+    ck_assert_int_eq(points.count[HF_POINT_DONE], 2);
+    for (int i = 0; i < N; i++)
+        ck_assert_str_eq(points.point[3].field[column_of(column[i].object, column[i].name)], column[i].value);
+    ck_assert_str_eq(points.point[1].field[column_of("/", "seed")], "8");
+    char *const *list = points.point[3].field + hf_ledger_n_column();
+    const char *objectives = list[HF_STAGE_SEARCH], *errors = list[HF_N_STAGE + HF_STAGE_REFINE],
+               *load_cases = list[HF_LEDGER_LIST_CASES];
+    ck_assert(value_of(HF_STAGE_SEARCH, &objectives, "objective_0_psi") == 1);
+    ck_assert(value_of(HF_STAGE_SEARCH, &objectives, "objective_1_deflection") == 2);
+    ck_assert(value_of(HF_STAGE_SEARCH, &objectives, "objective_2_tension_displacement") == 3);
+    ck_assert(value_of(HF_N_STAGE + HF_STAGE_REFINE, &errors, "facet_half_path_rms_m") == 4);
+    ck_assert(value_of(HF_N_STAGE + HF_STAGE_REFINE, &errors, "facet_gain_loss_1dB_Hz") == 5);
+    ck_assert(value_of(HF_LEDGER_LIST_CASES, &load_cases, "cold.tension_max_N") == 6);
+    ck_assert(value_of(HF_LEDGER_LIST_CASES, &load_cases, "cold.psi_m") == 7);
+    hf_points_free(&points);
+    hf_study_free(&s);
+}
+END_TEST
+
+/* The objectives of each stage that the run reached, by name, to the last bit. */
 START_TEST(objectives_come_back)
 {
     hf_study s;
     hf_summary summary = {.stage[HF_STAGE_REFINE].exists = true,
-                          .objectives = {.n = 2, .name = {"goal_0_psi", "goal_1_tension_edge"}}};
-    summary.form.objective[0] = (double)NAN;
-    summary.form.objective[1] = 0.1 + 0.2;
-    summary.polish.objective[0] = 5e-324;
-    summary.polish.objective[1] = INFINITY;
+                          .objectives = {.n = 2, .name = {"objective_0_psi", "objective_1_tension_edge"}}};
+    summary.stage[HF_STAGE_FORM].result.objective[0] = (double)NAN;
+    summary.stage[HF_STAGE_FORM].result.objective[1] = 0.1 + 0.2;
+    summary.stage[HF_STAGE_REFINE].result.objective[0] = 5e-324;
+    summary.stage[HF_STAGE_REFINE].result.objective[1] = INFINITY;
     open_study(&s);
     write_point(&s, 1, HF_OK, "", &summary);
-    write_point(&s, 2, HF_OK, "", &(hf_summary){0}); /* no goals */
+    write_point(&s, 2, HF_OK, "", &(hf_summary){0}); /* no objectives */
     hf_points points = read_points(&s);
     char *const *objectives = points.point[1].field + hf_ledger_n_column(), name[HF_OBJECTIVE_NAME_SIZE];
     const char *form = objectives[0], *refine = objectives[2];
     double value;
     ck_assert_str_eq(objectives[1], ""); /* there was no such stage */
     ck_assert_str_eq(points.point[2].field[hf_ledger_n_column()], "");
-    ck_assert(hf_ledger_next_value(0, &form, name, &value) && isnan(value) && !strcmp(name, "goal_0_psi"));
+    ck_assert(hf_ledger_next_value(0, &form, name, &value) && isnan(value) && !strcmp(name, "objective_0_psi"));
     ck_assert(hf_ledger_next_value(0, &form, name, &value) && value == 0.1 + 0.2 &&
-              !strcmp(name, "goal_1_tension_edge"));
+              !strcmp(name, "objective_1_tension_edge"));
     ck_assert(!hf_ledger_next_value(0, &form, name, &value));
     ck_assert(hf_ledger_next_value(2, &refine, name, &value) && value == 5e-324);
     ck_assert(hf_ledger_next_value(2, &refine, name, &value) && value == INFINITY);
@@ -158,17 +231,18 @@ END_TEST
 /* Names become those of data sets. */
 START_TEST(damaged_objectives_are_none)
 {
-    static const char *const damaged[] = {"psi=1", "goal_0/x=1", "goal_0_psi", "goal_0_psi=", "goal_0_psi=x", "=1", ""};
+    static const char *const damaged[] = {
+        "psi=1", "objective_0/x=1", "objective_0_psi", "objective_0_psi=", "objective_0_psi=x", "=1", ""};
     char name[HF_OBJECTIVE_NAME_SIZE], longest[2 * HF_OBJECTIVE_NAME_SIZE];
     double value;
     for (size_t i = 0; i < sizeof damaged / sizeof *damaged; i++)
         ck_assert(!hf_ledger_next_value(1, &(const char *){damaged[i]}, name, &value));
-    snprintf(longest, sizeof longest, "goal_0_%0*d=1", HF_OBJECTIVE_NAME_SIZE, 0);
+    snprintf(longest, sizeof longest, "objective_0_%0*d=1", HF_OBJECTIVE_NAME_SIZE, 0);
     ck_assert(!hf_ledger_next_value(1, &(const char *){longest}, name, &value));
-    ck_assert_str_eq(hf_ledger_objective_unit("goal_1_tension_mass"), "N");
-    ck_assert_str_eq(hf_ledger_objective_unit("goal_15_mass"), "kg");
-    ck_assert_str_eq(hf_ledger_objective_unit("goal_0_ratio_edge"), "");
-    ck_assert_str_eq(hf_ledger_objective_unit("goal_0_ratios"), "");
+    ck_assert_str_eq(hf_ledger_objective_unit("objective_1_tension_mass"), "N");
+    ck_assert_str_eq(hf_ledger_objective_unit("objective_15_mass"), "kg");
+    ck_assert_str_eq(hf_ledger_objective_unit("objective_0_ratio_edge"), "");
+    ck_assert_str_eq(hf_ledger_objective_unit("objective_0_ratios"), "");
 }
 END_TEST
 
@@ -473,7 +547,8 @@ Suite *suite_unit_ledger(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, numbers_come_back_bit_by_bit);
     tcase_add_test(tests, objectives_come_back);
-    tcase_add_test(tests, all_states_come_back);
+    tcase_add_test(tests, all_load_cases_come_back);
+    tcase_add_test(tests, rows_of_version_0_2_are_read);
     tcase_add_test(tests, damaged_objectives_are_none);
     tcase_add_test(tests, a_success_counts_more_than_a_failure);
     tcase_add_loop_test(tests, the_same_row_counts_in_any_order_of_files, 0, 2);
