@@ -27,8 +27,8 @@ def print_summary(file):
         if stage not in file:
             continue
         figures, tension = file[stage].attrs, file[stage]["tension_N"][:]
-        print(f"  {name}: psi {figures['psi_m'] * 1e3:.4f} mm, cables from {tension.min():.3f} to {tension.max():.3f} N, "
-              f"residual {figures['residual_N']:.1e} N")
+        print(f"  {name}: psi {figures['psi_m'] * 1e3:.4f} mm, cables from {tension.min():.3f} "
+              f"to {tension.max():.3f} N, residual {figures['residual_N']:.1e} N")
     if "search/population/psi_m" in file:
         psi = file["search/population/psi_m"][:]  # [generation, individual], NaN if infeasible
         print(f"  {len(psi)} generations, best psi {np.nanmin(psi[0]) * 1e3:.4f} -> {np.nanmin(psi[-1]) * 1e3:.4f} mm")
