@@ -51,7 +51,7 @@ files_under src include | while read -r file; do
     name=$(basename "${file%.[ch]}")
     room=$(basename "$(dirname "$file")")
     case $file in
-    src/ARCHITECTURE.md | src/METHOD.md | src/MANUAL.md | src/manual/*.md) ;;
+    src/ARCHITECTURE.md | src/METHOD.md | src/manual/*.md) ;;
     include/hifdm/hifdm.h | include/hifdm/api.h) ;; # without a source
     src/out/report/*)
         case " $page " in *" $file "*) ;; *) echo "$file:1: no part of the page (Makefile: PAGE)" ;; esac ;;
@@ -142,7 +142,7 @@ done | report
 
 # What the documents mention must exist: hf_... and HF_... in a source, files such as search/batch.c, targets of links.
 # hf_module_verb, hf_noun and names with a part in capitals (hf_cmd_NAME) stand for several names.
-documents="README.md src/ARCHITECTURE.md src/METHOD.md src/MANUAL.md .github/CONTRIBUTING.md"
+documents="README.md src/ARCHITECTURE.md src/METHOD.md .github/CONTRIBUTING.md"
 # The table of renames has names that no longer exist, and names to come.
 documents="$documents $(files_under src/manual | grep -vx src/manual/renames.md | tr '\n' ' ')"
 grep -ohE '\b(hf|HF)_[A-Za-z0-9_]+' $source_files | sort -u >"$work/names"

@@ -21,11 +21,11 @@ static hf_status tell(const char *path, hf_scene *scene, hf_shape *shape, hf_mes
     hf_summary summary;
     HF_TRY(hf_store_read_summary(path, &summary, said));
     printf("%s\n", summary.title);
-    printf("psi %.4f mm after form-finding\n", summary.form.psi_m * 1e3);
+    printf("psi %.4f mm after form-finding\n", summary.stage[HF_STAGE_FORM].result.psi_m * 1e3);
     if (summary.stage[HF_STAGE_SEARCH].exists)
-        printf("psi %.4f mm after the genetic algorithm\n", summary.best.psi_m * 1e3);
+        printf("psi %.4f mm after the search\n", summary.stage[HF_STAGE_SEARCH].result.psi_m * 1e3);
     if (summary.stage[HF_STAGE_REFINE].exists)
-        printf("psi %.4f mm after Levenberg-Marquardt\n", summary.polish.psi_m * 1e3);
+        printf("psi %.4f mm after the refinement\n", summary.stage[HF_STAGE_REFINE].result.psi_m * 1e3);
 
     HF_TRY(hf_store_read_scene(path, scene, said));
     HF_TRY(hf_store_read_shape(path, HF_STAGE_FORM, shape, said));

@@ -148,9 +148,8 @@ void hf_help_man(FILE *f)
              "Antenna, Aerospace 2022, 9, 239: the equations that are cited by number.\n",
              f);
     fputs(".PP\n", f);
-    put_roff(
-        "In the source: src/MANUAL.md (nets of your own, trusses, sweeps, result files, the library), src/METHOD.md "
-        "(the mathematics), src/ARCHITECTURE.md. make help lists the targets there: make api for pages of the "
-        "library's interface, make literal for the paper's evaluation of an individual beside the default.\n",
-        f);
+    put_roff("In the source: src/manual (a page for each question), src/METHOD.md "
+             "(the mathematics), src/ARCHITECTURE.md. make help lists the targets there: make api for pages of the "
+             "library's interface, make literal for the paper's evaluation of an individual beside the default.\n",
+             f);
 }

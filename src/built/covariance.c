@@ -1,4 +1,4 @@
-/* Computes the exact first-order mean of psi^2 and the shares of errors in it (M31).
+/* Computes the exact first-order mean of psi^2 and the shares of errors in it (M39).
  *
  *     for each coordinate of an inner node:  unit vector ---> transposed linear model (one solve)
  *                                                        ---> derivatives of the coordinate by all errors

@@ -1,5 +1,5 @@
 /* linear - the linear model of an as-built net: displacements of nodes and changes of tensions by small errors (METHOD
- * section 12, M30).
+ * section 12, M38).
  *
  * One factor of the Hessian at a shape serves all right-hand sides. Vectors [n_dof] have the entry 3*row + c for
  * coordinate c of a node. Free nodes come first, then attachments, then supports on rigid ground. Between calls of

@@ -41,9 +41,10 @@ START_TEST(python_reads_and_draws_a_result)
     OUT("warning: stop: rms_change ended before equilibrium");
     EXPECT(out, file_with("said.txt", said.out), "--",
            "('form-finding: psi %.4f mm' % (a['form'].attrs['psi_m'] * 1e3)).encode() in b",
-           "('genetic algorithm: psi %.4f mm' % (a['ga'].attrs['best_psi_m'] * 1e3)).encode() in b",
-           "('Levenberg-Marquardt: psi %.4f mm' % (a['polish'].attrs['psi_m'] * 1e3)).encode() in b",
-           "('2 generations, best psi %.4f -> %.4f mm' % tuple(a['ga/best_psi_m'][:] * 1e3)).encode() in b");
+           "('search: psi %.4f mm' % (a['search'].attrs['psi_m'] * 1e3)).encode() in b",
+           "('refinement: psi %.4f mm' % (a['refine'].attrs['psi_m'] * 1e3)).encode() in b",
+           "('2 generations, best psi %.4f -> %.4f mm' % tuple(a['search/population/best_psi_m'][:] * 1e3)).encode() "
+           "in b");
     const char *form = temp("form.h5");
     HIFDM(0, "run", file_with("form.yaml", SMALL_SCENE), "-o", form, "--quiet");
     SHELL(0, READ_EXAMPLE_PY, temp("cache"), python_program(), example, form, temp("form.png"));
@@ -119,8 +120,8 @@ START_TEST(c_reads_a_result)
     SHELL(0, "\"$1\" \"$2\"", program, out);
     EXPECT(file_with("said.txt", said.out), out, "--",
            "('psi %.4f mm after form-finding' % (b['form'].attrs['psi_m'] * 1e3)).encode() in a",
-           "('psi %.4f mm after the genetic algorithm' % (b['ga'].attrs['best_psi_m'] * 1e3)).encode() in a",
-           "('psi %.4f mm after Levenberg-Marquardt' % (b['polish'].attrs['psi_m'] * 1e3)).encode() in a",
+           "('psi %.4f mm after the search' % (b['search'].attrs['psi_m'] * 1e3)).encode() in a",
+           "('psi %.4f mm after the refinement' % (b['refine'].attrs['psi_m'] * 1e3)).encode() in a",
            "a.count(b' is off by ') == 3",
            "('is off by %.4f mm' % (np.linalg.norm(b['form/position_m'][:] - b['scene/node/position_m'][:], axis=1)"
            "[b['scene/node/role'][:] == 1].max() * 1e3)).encode() in a.splitlines()[4]");
@@ -182,8 +183,8 @@ END_TEST
 
 /* ---- README and manual ---- */
 
-/* Every indented piece of them that imports something is run twice, in a folder with the files that it names; those
- * with our package are run by tests/python/manual.py. */
+/* Every indented piece of the README that imports something is run twice, in a folder with the files that it names;
+ * those with our package are run by tests/python/manual.py. */
 START_TEST(pieces_of_readme_in_python_run)
 {
     static const char run_pieces[] =
@@ -197,24 +198,24 @@ START_TEST(pieces_of_readme_in_python_run)
     const char *folder = temp("here"), *out = chen_result(), *script = file_with("pieces.py", run_pieces);
     SHELL(0, "mkdir -p \"$1/results\" && cp \"$2\" \"$1/results/\" && cp \"$3\" \"$1/case.yaml\"", folder, out,
           REFLECTOR);
-    SHELL(0, "cd \"$1\" && PATH=$(dirname \"$0\"):$PATH OMP_WAIT_POLICY=passive \"$2\" \"$3\" \"$4\" \"$5\"", folder,
-          python_program(), script, keep(source_path("README.md")), keep(source_path("src/MANUAL.md")));
-    OUT("\n2\n"); /* pieces */
+    SHELL(0, "cd \"$1\" && PATH=$(dirname \"$0\"):$PATH OMP_WAIT_POLICY=passive \"$2\" \"$3\" \"$4\"", folder,
+          python_program(), script, keep(source_path("README.md")));
+    OUT("\n1\n"); /* pieces */
 }
 END_TEST
 
-/* They show lines of the examples that are built above. */
-START_TEST(pieces_of_readme_in_c_are_those_of_the_examples)
+/* The pieces in C show lines of the examples that are built above. */
+START_TEST(pieces_of_the_manual_in_c_are_those_of_the_examples)
 {
     static const char compare[] =
         "import re, sys\n"
-        "readme, manual, *examples = (open(p).read() for p in sys.argv[1:])\n"
-        "pieces = [p for p in re.findall('(?:^    .*\\n)+', readme + '\\n' + manual, flags=re.M) if 'HF_TRY(' in p]\n"
+        "library, result_file, *examples = (open(p).read() for p in sys.argv[1:])\n"
+        "pieces = re.findall('^```c\\n(.*?)^```', library + '\\n' + result_file, flags=re.M | re.S)\n"
         "lines = {' '.join(line.split()) for example in examples for line in example.splitlines()}\n"
         "print(len(pieces), [line for p in pieces for line in p.splitlines() if ' '.join(line.split()) not in "
         "lines])\n";
     SHELL(0, "\"$1\" \"$2\" \"$3\" \"$4\" \"$5\" \"$6\"", python_program(), file_with("compare.py", compare),
-          keep(source_path("README.md")), keep(source_path("src/MANUAL.md")),
+          keep(source_path("src/manual/library.md")), keep(source_path("src/manual/result-file.md")),
           keep(source_path("tools/own_optimiser.c")), keep(source_path("tools/read_example.c")));
     ck_assert_str_eq(said.out, "2 []\n");
 }
@@ -284,7 +285,7 @@ START_TEST(first_case_says_what_the_readme_shows)
         "assert readme.count('\\n') <= 200, 'the README is to be short'\n"
         "pieces = [re.sub('^    ', '', p, flags=re.M) for p in re.findall('(?:^    .*\\n)+', readme, flags=re.M)]\n"
         "case, = (p for p in pieces if p.startswith('title: '))\n"
-        "shown, = (p for p in pieces if p.startswith('psi '))\n"
+        "shown, = (p for p in pieces if '\\n  case  ' in p)\n"
         "assert case.count('\\n') == 10, 'the case is to have ten lines'\n"
         "open('dish.yaml', 'w').write(case)\n"
         "said = subprocess.run([sys.argv[1], 'run', 'dish.yaml'], capture_output=True, text=True)\n"
@@ -311,7 +312,7 @@ Suite *suite_cli_examples(void)
     tcase_add_test(tcase, c_reads_a_result);
     tcase_add_test(tcase, the_library_serves_cpp);
     tcase_add_test(tcase, pieces_of_readme_in_python_run);
-    tcase_add_test(tcase, pieces_of_readme_in_c_are_those_of_the_examples);
+    tcase_add_test(tcase, pieces_of_the_manual_in_c_are_those_of_the_examples);
     tcase_add_test(tcase, recipe_for_a_net_of_ones_own_works);
     tcase_add_test(tcase, first_case_says_what_the_readme_shows);
     tcase_add_test(tcase, recipe_for_a_sweep_names_a_study_that_can_run);

@@ -1,5 +1,5 @@
 /* Every command in the pages of src/manual does what the page says: its exit status, and the figures in the text. The
- * table of faults in src/MANUAL.md has a row for each stage and command. */
+ * table of faults in src/manual/faults.md has a row for each stage and command. */
 #include "cli.h"
 
 #define BLOCKS "cd \"$1\" && exec \"$2\" tools/docs/blocks.py --program \"$0\" --work \"$3\""
@@ -45,7 +45,7 @@ END_TEST
 /* A manual without a row, one with a row too many, and a program with a command and a section that have none. */
 START_TEST(a_fault_table_that_lacks_a_row_is_named)
 {
-    const char *copy = temp("copy.md"), *program = temp("program"), *manual = keep(source_path("src/MANUAL.md"));
+    const char *copy = temp("copy.md"), *program = temp("program"), *manual = keep(source_path("src/manual/faults.md"));
     SHELL(0, "sed 's/; load cases;/;/' \"$1\" >\"$2\"", manual, copy);
     SHELL(1, TABLE " --program \"$0\" --manual \"$4\"", WHERE, copy);
     ERR(", load cases");

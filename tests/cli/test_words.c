@@ -166,7 +166,7 @@ START_TEST(formulas_are_no_formulas_in_tables)
     EXPECT(out, "--", "texts(a['scene/node/id']) == ['=1+1', '@a', '-c', '-2']",
            "texts(a['scene/cable/id']) == [\"=cmd|' /C calc'!A0\", '+b', '-2']");
     HIFDM(0, "export", out, "--csv", temp("out"));
-    EXPECT(temp("out/nodes.csv"), temp("out/cables.csv"), keep(source_path("src/MANUAL.md")), "--",
+    EXPECT(temp("out/nodes.csv"), temp("out/cables.csv"), keep(source_path("src/manual/net-tables.md")), "--",
            "[r['id'] for r in a] == [\"'=1+1\", \"'@a\", \"'-c\", '-2']",
            "[r['j'] for r in b] == [\"'@a\", \"'-c\", \"'@a\"]",
            /* the expression of the manual */

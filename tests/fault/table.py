@@ -1,4 +1,4 @@
-"""Checks faults x stages and commands: the table "What a fault leaves" in src/MANUAL.md against the program.
+"""Checks faults x stages and commands: the table of src/manual/faults.md against the program.
 
     table.py --check            checks that the table has a row for each stage, command and fault; measures nothing
     table.py --check --measure  also measures few points of each fault, which must end as in the table (3 minutes)
@@ -204,7 +204,7 @@ def tell_skipped(words):
 def main():
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--program", default="build/hifdm")
-    options.add_argument("--manual", default=str(faults.HERE.parent.parent / "src/MANUAL.md"))
+    options.add_argument("--manual", default=str(faults.HERE.parent.parent / "src/manual/faults.md"))
     options.add_argument("--out", default="build/fault-table")
     for name in ("--check", "--write", "--measure", "--full"):
         options.add_argument(name, action="store_true")

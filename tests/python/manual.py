@@ -1,4 +1,4 @@
-"""Runs the code in README.md and src/MANUAL.md that uses our package."""
+"""Runs the code in README.md and src/manual/python.md that uses our package."""
 import os
 import re
 import unittest
@@ -9,11 +9,12 @@ import hifdm
 
 
 def pieces(path):
-    """Returns the indented pieces that import hifdm."""
+    """Returns the indented and fenced pieces that import hifdm."""
     with open(source(path), encoding="utf-8") as file:
-        found = re.findall(r"(?:^    .*\n)+", file.read(), flags=re.M)
-    ours = [piece for piece in found if re.search("^    import hifdm", piece, flags=re.M)]
-    return [re.sub("^    ", "", piece, flags=re.M) for piece in ours]
+        text = file.read()
+    found = [re.sub("^    ", "", piece, flags=re.M) for piece in re.findall(r"(?:^    .*\n)+", text, flags=re.M)]
+    found += re.findall(r"^```python\n(.*?)^```", text, flags=re.M | re.S)
+    return [piece for piece in found if re.search("^import hifdm", piece, flags=re.M)]
 
 
 def run(piece):
@@ -31,14 +32,14 @@ def run(piece):
 
 class Documents(unittest.TestCase):
     def test_manual(self):
-        piece, = pieces("src/MANUAL.md")
+        piece, = pieces("src/manual/python.md")
         names = run(piece)
         case, out = names["case"], names["out"]
         self.assertEqual(out.psi_m.shape, (1000,))
         self.assertGreater(out.feasible.sum(), 900)
-        self.assertEqual(names["slopes"].shape, (1, 1, case.n_gene))
+        self.assertEqual(names["slopes"].shape, (1, 1, case.n_variable))
         self.assertIsInstance(names["run"], hifdm.Run)
-        self.assertLess(names["run"]["optimize"]["psi_m"], case.form().psi_m)
+        self.assertLess(names["run"]["search"]["psi_m"], case.form().psi_m)
 
     def test_readme(self):
         for piece in pieces("README.md"):

@@ -1,7 +1,8 @@
 """Makes the manual, `make docs`: build.py --program build/hifdm --version 0.1.0 --make make --work FOLDER --out FOLDER.
 
-The pages are those of src/manual, the sections of src/MANUAL.md, src/METHOD.md and src/ARCHITECTURE.md, the tables in
-results/chen2022, and what the program prints about itself. Sphinx makes HTML of them; its warnings are errors."""
+The pages are those of src/manual, the sections of src/METHOD.md, src/ARCHITECTURE.md, the tables in results/chen2022,
+and what the program prints about itself. src/manual/index.md lists them; a page that it does not list is an error.
+Sphinx makes HTML of them; its warnings are errors."""
 import argparse
 import glob
 import json
@@ -15,7 +16,7 @@ import blocks
 import check
 import reference
 import validation
-from split import Links, Page, coloured, split
+from split import Links, Page, split
 
 
 def read(path, name):
@@ -64,8 +65,7 @@ def draw(wanted, work, build):
     if not wanted:
         return
     if not browser():
-        said = "the manual has no pictures: no chromium, node or npm"
-        print(said)
+        print("the manual has no pictures: no chromium, node or npm")
         if os.environ.get("HIFDM_NO_SKIP"):
             sys.exit(1)
         return
@@ -76,9 +76,6 @@ def draw(wanted, work, build):
 
 
 def all_pages(program, make, work):
-    guide = list(split("src/MANUAL.md", "guide"))
-    for page in guide:
-        page.lines = coloured(page.lines)
     method = list(split("src/METHOD.md", "method"))
     ours = written(program, work)
     draw(report_parts(ours, work), work, os.path.dirname(work))
@@ -86,23 +83,20 @@ def all_pages(program, make, work):
     inside = [read("src/ARCHITECTURE.md", "inside")]
     made = [validation.page(make, f"{work}.run"), reference.schema(program), reference.commands(program)]
     made += reference.headers()
-    return guide, method, ours + paper + inside + made
+    return method, ours + paper + inside + made
 
 
-def contents(line, guide, method, program):
-    """Returns the pages that `@guide` and `@method` in a list of contents stand for; `@words` stands for all words."""
-    if line == "@words":
-        return reference.glossary(program)
-    pages = {"@guide": guide, "@method": method}.get(line)
-    return ["/" + page.name for page in pages] if pages else [line]
+def contents(line, method):
+    """Returns the pages that `@method` in a list of contents stands for, or the line itself."""
+    return ["/" + page.name for page in method] if line == "@method" else [line]
 
 
-def write(pages, guide, method, program, work):
+def write(pages, method, work):
     links = Links(pages)
     for page in pages:
         path = f"{work}/{page.name}.md"
         os.makedirs(os.path.dirname(path), exist_ok=True)
-        lines = [more for line in links.rewritten(page) for more in contents(line, guide, method, program)]
+        lines = [more for line in links.rewritten(page) for more in contents(line, method)]
         with open(path, "w", encoding="utf-8") as file:
             file.write("\n".join(lines))
         for picture in re.findall(r"!\[[^\]]*\]\(([^)\s]+)\)", "\n".join(page.lines)):
@@ -139,8 +133,8 @@ def main():
     os.makedirs(f"{a.work}/_static")
     for name in ("conf.py", "style.css"):
         shutil.copy(f"tools/docs/{name}", a.work if name == "conf.py" else f"{a.work}/_static")
-    guide, method, others = all_pages(a.program, a.make, a.work)
-    write(guide + method + others, guide, method, a.program, a.work)
+    method, others = all_pages(a.program, a.make, a.work)
+    write(method + others, method, a.work)
     sphinx = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-d", f"{a.work}/.doctrees", a.work, a.out]
     subprocess.run(sphinx, check=True, env={**os.environ, "HIFDM_VERSION": a.version})
     shutil.rmtree(f"{a.out}/.doctrees", ignore_errors=True)
@@ -148,7 +142,7 @@ def main():
     found = sorted(set(check.faults(a.out)))
     if found:
         sys.exit("\n".join(found))
-    print(f"{a.out}/index.html: {len(guide + method + others)} pages")
+    print(f"{a.out}/index.html: {len(method + others)} pages")
 
 
 if __name__ == "__main__":

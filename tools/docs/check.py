@@ -1,4 +1,4 @@
-"""Checks finished pages: links that lead nowhere, parts from other servers, and paths of this machine."""
+"""Checks finished pages: dead links, parts from other servers, and paths of this machine."""
 import glob
 import html.parser
 import os
@@ -35,9 +35,9 @@ def faults(folder):
             there = os.path.join(os.path.dirname(path), urllib.parse.unquote(parts.path)) if parts.path else path
             there = os.path.realpath(there)
             if not os.path.isfile(there):
-                yield f"{name}: a link to {link}, which is not there"
+                yield f"{name}: a link to {link}, which does not exist"
             elif there in pages and urllib.parse.unquote(parts.fragment) not in pages[there].anchors:
-                yield f"{name}: a link to {link}, a place that the page does not have"
+                yield f"{name}: a link to {link}, an anchor that the page does not have"
         text = open(path, encoding="utf-8").read()
         for word in machine:
             if word in text:

@@ -1,4 +1,4 @@
-"""Makes pages of the manual from long documents such as src/MANUAL.md, and the links between all pages."""
+"""Makes pages of the manual from long documents such as src/METHOD.md, and the links between all pages."""
 import os
 import re
 
@@ -54,36 +54,16 @@ def split(path, folder):
             yield Page(f"{folder}/{slug(part)}", path, promoted(lines[k:after], 2))
 
 
-def coloured(lines):
-    """Returns indented blocks of a document as fenced blocks with their language, if it is recognised."""
-    text = "\n".join(lines)
-
-    def fenced(match):
-        block = re.sub(r"(?m)^    ", "", match[2]).rstrip("\n")
-        language = "text"
-        if re.search(r"(?m)^import ", block):
-            language = "python"
-        elif re.match(r"hifdm |sbatch |make |export |cc ", block):
-            language = "console"
-        elif re.match(r"[a-z_]+:( |$)", block.split("\n")[0]):
-            language = "yaml"
-        elif "HF_TRY" in block:
-            language = "c"
-        return f"{match[1]}```{language}\n{block}\n```\n"
-
-    return re.sub(r"((?:^|\n)\n)((?:    .*\n|\n(?=    ))+)", fenced, text).split("\n")
-
-
 class Links:
     """Finds the target of a link of a source in the manual."""
 
     def __init__(self, pages):
-        self.place = {}  # (path in the repository, anchor) -> (page, anchor)
+        self.target = {}  # (path in the repository, anchor) -> (page, anchor)
         for page in pages:
             first = True
-            self.place.setdefault((page.source, ""), (page.name, ""))
+            self.target.setdefault((page.source, ""), (page.name, ""))
             for _, _, title in headings(page.lines):
-                self.place.setdefault((page.source, slug(title)), (page.name, "" if first else slug(title)))
+                self.target.setdefault((page.source, slug(title)), (page.name, "" if first else slug(title)))
                 first = False
 
     def rewritten(self, page):
@@ -103,10 +83,10 @@ class Links:
             path = os.path.normpath(os.path.join(os.path.dirname(page.source), path)) if path else page.source
             if path == "README.md":
                 return f"[{words}]({to('index')})"
-            if (path, anchor) in self.place:
-                return f"[{words}]({to(*self.place[path, anchor])})"
-            if (path, "") in self.place or not os.path.exists(path):
-                raise SystemExit(f"{page.source}: a link to {target}, which is not there")
+            if (path, anchor) in self.target:
+                return f"[{words}]({to(*self.target[path, anchor])})"
+            if (path, "") in self.target or not os.path.exists(path):
+                raise SystemExit(f"{page.source}: a link to {target}, which does not exist")
             return words
 
         fence = False

@@ -1,4 +1,4 @@
-"""The page of validation: every figure that a run of the suites below has compared with a source (tests/figures.h)."""
+"""Makes the page of validation: every figure that the suites below have compared with a source (tests/figures.h)."""
 import os
 import re
 import subprocess
@@ -62,7 +62,7 @@ def shown(value):
 
 
 def table(rows):
-    """Returns our figures beside those of the source; for many figures at once only the largest difference."""
+    """Returns a table of figures and those of the source; for many figures at once only the maximum difference."""
     lines = []
     for kind, figure, ours, reference, tolerance in rows:
         difference = float(ours) - float(reference)
@@ -73,8 +73,8 @@ def table(rows):
         lines.append(f"| {plain(figure)} | {shown(ours)} | {shown(reference)} | {difference:+.1e} | {limit} |")
     if all(kind == "worst" for kind, *_ in rows):
         lines = [line.replace(" | | | ", " | ") for line in lines]
-        return ["| figures | largest difference | tolerance |", "|---|---|---|", *lines, ""]
-    return ["| figure | ours | source | difference | tolerance |", "|---|---|---|---|---|", *lines, ""]
+        return ["| figures | maximum difference | tolerance |", "|---|---|---|", *lines, ""]
+    return ["| figure | hifdm | source | difference | tolerance |", "|---|---|---|---|---|", *lines, ""]
 
 
 def page(make, work):
@@ -83,11 +83,13 @@ def page(make, work):
         raise SystemExit("no figures were measured")
     worst = sum(kind == "worst" for _, _, kind, *_ in rows)
     missed = sum(kind == "not met" for _, _, kind, *_ in rows)
-    lines = ["# Figures held to a source", "",
-             f"{len(rows)} figures of the tests, measured when this page was made, with the program of this manual: "
-             f"{len(rows) - worst - missed} beside those of a source, {worst} times the largest difference of many, "
-             f"and {missed} that we do not meet. Any other that is outside of its tolerance stops `make docs`. "
-             "Tolerances are half a unit of the last digit that the source prints, or what the test says.", ""]
+    lines = ["# Figures compared with cited sources", "",
+             "This page compares figures of the tests with figures of cited sources. The tests ran when this page was "
+             "made, with the program of this manual.", "",
+             f"There are {len(rows)} comparisons. {worst} of them give only the maximum difference of many figures, "
+             f"and {missed} figures are not met. If any other figure is outside its tolerance, `make docs` stops. The "
+             "tolerance is half a unit of the last digit that the source prints, or the value that the test states.",
+             ""]
     for path in sorted({r[0] for r in rows}):
         title, paragraphs = said_on_top(path)
         lines += [f"## {plain(title)}", ""]

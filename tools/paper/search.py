@@ -179,15 +179,15 @@ def main():
     points = [scene(*x) | {"form.stop": "residual"} for x in best] + \
              [scene(net, *at) | {"form.stop": "rms_change"} for *net, f, s in KNOWN for at in [(f, s)]]
     write_study(SEARCH, NET, [point | {"optimize.seed": 2022, "optimize.compare_lm": "false"} for point in points],
-                "# The nets that meet the paper's figures best, and three that another search found.\n"
+                "# The nets whose figures are closest to the paper's, and three nets from another search.\n"
                 "# Written by `make paper-search`.\n")
     points = [point | {"truss.match_tolerance_m": f"{1.5 * x[0][5]:.3g}", "coupling.scheme": "plain",
                        "coupling.tof_m": "1e-3"} for point, x in zip(points, best)]
     tight = [point | {"coupling.scheme": "auto", "coupling.tof_m": "1e-6"} for point in points]
     points = [point | {"truss.E_Pa": e} for point, e in zip(points, soften(runs, tight)) if e]
     write_study(SEARCH_TRUSS, TRUSS, points,
-                "# On trusses of a softness that is calibrated to psi of 8.38 mm: nets that meet the paper's figures "
-                "best.\n# Written by `make paper-search`.\n")
+                "# The nets whose figures are closest to the paper's, on trusses. Young's modulus is calibrated to "
+                "psi = 8.38 mm.\n# Written by `make paper-search`.\n")
 
 
 if __name__ == "__main__":

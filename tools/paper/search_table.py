@@ -1,4 +1,4 @@
-"""Writes search.md: the nets that meet the figures of the paper best, one row each, below the figures of the paper."""
+"""Writes search.md: the nets whose figures are closest to the paper's, one row each, below the figures of the paper."""
 import os
 
 import numpy as np
@@ -9,20 +9,21 @@ from search import KEY, columns
 
 HEAD = """# The search for the paper's net
 
-`make paper-search` writes the studies `configs/chen2022-search.yaml` and `configs/chen2022-search-truss.yaml`; `make
-paper` runs them and writes this table. By hand:
+This page lists the nets whose figures are closest to the paper's. `make paper-search` writes the studies
+`configs/chen2022-search.yaml` and `configs/chen2022-search-truss.yaml`. `make paper` runs them and writes this page.
+These commands run them by hand:
 
     hifdm sweep configs/chen2022-search.yaml && hifdm merge configs/chen2022-search.yaml
     hifdm sweep configs/chen2022-search-truss.yaml && hifdm merge configs/chen2022-search-truss.yaml
 
-Focal length and scallop of each net are **calibrated** on 6.6 mm and 4.8445, and it is listed for what it gives beyond:
-psi and ratio after the GA (50 x 400, within 1 N), then depth. That ratio, and so the order, depends on the seed.
-`configs/chen2022.yaml` is of the deepest kind, 11 x 2 modules, with its tie calibrated on 4.3 mm as well.
+Focal length and scallop of each net are **calibrated** to 6.6 mm and 4.8445. The order of the rows follows from psi and
+ratio after the GA (50 x 400, within 1 N), and then from the depth. That ratio depends on the seed, and so does the
+order. `configs/chen2022.yaml` is of the deepest kind, 11 x 2 modules. Its edge tie is also calibrated, to 4.3 mm.
 
-On the truss (two panels along y, held at the rear of its central module) Young's modulus E is **calibrated** on
-8.38 mm, where that is possible; the rest is predicted. Loops: comparisons of two displacements until they change by
-less than 1 mm, in the loop of Fig. 17, whose last psi is given. The last three rows are nets that another search found,
-with its focal lengths and scallops, at the paper's stop.
+The truss has two panels along y and is held at the rear of its central module. Its Young's modulus E is **calibrated**
+to 8.38 mm if that is possible. All other figures are predictions. The column "loops" counts the comparisons of two
+displacements in the loop of Fig. 17 until they change by less than 1 mm. psi is that of the end of this loop. The last
+three rows are nets from another search, with its focal lengths and scallops, at the paper's stop.
 
 """
 COLUMNS = ["net", "f (m), f/D", "scallop", "tie (m)", "psi (mm)", "inner", "boundary", "GA: psi (mm)", "gain (%)",

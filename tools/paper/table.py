@@ -7,21 +7,29 @@ import yaml
 from figures import last_fall, moved_mm
 from runs import NET, TRUSS, USUAL_E_PA
 
-HEAD = """# Chen et al. 2022, reproduced
+HEAD = """# The figures of Chen et al. 2022
 
-Written by `make paper`, with the figures in this folder; `make paper-check` holds the program to the numbers below.
-Aerospace 2022, 9, 239 prints neither the topology of its net nor its focal length nor any dimension of its truss. The
-net is the best that a search found: [search.md](search.md). **Calibrated are four numbers**: focal length, scallop and
-edge tie on psi of Figs. 5 and 10 and the ratio of Fig. 7, Young's modulus of the truss on psi of Fig. 18. Rows of
-these say so. Every other figure of ours is a prediction. All inputs are listed at the end.
+This page compares the figures of the paper (Aerospace 2022, 9, 239) with those of hifdm. `make paper` writes it and the
+pictures in this folder. `make paper-check` compares the numbers below with the present program.
 
-- **ours**: every form-finding until the nodal forces vanish (1e-8 N), as in `configs/chen2022.yaml`.
-- **at the paper's stop**: the iteration ends when psi changes by less than 0.001 mm, in every form-finding, of the GA
-  too (`form.stop: rms_change`, `optimize.rule: seeded`).
-- **LM**: the optimum that Levenberg-Marquardt reaches from the GA's within the same bounds, with exact sensitivities.
+The paper prints neither the topology of its net nor its focal length nor any dimension of its truss. A search found the
+net with the best agreement: see [search.md](search.md). **Four numbers are calibrated:**
+
+- Focal length, scallop and edge tie are calibrated to psi of Figs. 5 and 10 and to the ratio of Fig. 7.
+- Young's modulus of the truss is calibrated to psi of Fig. 18.
+
+The rows of these figures say so. All other figures of hifdm are predictions. All inputs are at the end of this page.
+
+| column | meaning |
+|---|---|
+| **hifdm** | Every form-finding runs until the nodal forces vanish (1e-8 N), as in `configs/chen2022.yaml`. |
+| **at the paper's stop** | Every form-finding, also in the GA, ends when psi changes by less than 0.001 mm \
+(`form.stop: rms_change`, `optimize.rule: seeded`). |
+| **LM** | The optimum that Levenberg-Marquardt finds from the design of the GA, within the same bounds and with exact \
+derivatives. |
 """
 
-PAPER, ASSUMED, CHOICE = "printed in the paper", "assumed", "our choice"
+PAPER, ASSUMED, CHOICE = "printed in the paper", "assumed", "choice"
 CALIBRATED = "**calibrated**"
 CYLINDER = "scene.parabolic_cylinder."
 UNUSED = ("title", "scene.EA_inner_N", "scene.EA_boundary_N")  # cutting lengths, which no figure shows
@@ -43,14 +51,14 @@ ORIGIN = {
     "form.stop": (CHOICE, "at the paper's stop: `rms_change`"),
     "form.rms_tolerance_m": (PAPER, "0.001 mm"),
     "form.residual_tolerance": (CHOICE, ""),
-    "optimize.rule": (CHOICE, "what a pretension T' means: q = T'/L held; `seeded` for the paper's stop"),
+    "optimize.rule": (CHOICE, "a pretension T' means that q = T'/L is kept; `seeded` for the paper's stop"),
     "optimize.population": (PAPER, ""),
     "optimize.generations": (PAPER, ""),
-    "optimize.range_N": (ASSUMED, "the paper: the largest change found \"was around 1 N\""),
+    "optimize.range_N": (ASSUMED, "the paper: the maximum change \"was around 1 N\""),
     "optimize.min_tension_N": (ASSUMED, "the paper: > 0"),
     "optimize.boundary_ratio_cap": (CHOICE, "above every ratio found"),
     "optimize.seed": (CHOICE, ""),
-    "optimize.variation": (CHOICE, "crossover and survival: METHOD section 7; the paper tells neither"),
+    "optimize.variation": (CHOICE, "crossover and survival: METHOD section 7; the paper describes neither"),
     "optimize.stagnation_generations": (ASSUMED, "the paper compares \"any two generations\""),
     "optimize.crossover_high": (ASSUMED, "\"an adaptive GA proposed by Lin\", without a reference: rates of "
                                          "Srinivas and Patnaik, 1994"),
@@ -126,10 +134,10 @@ def net_rows(runs):
     depth = float(hifdm.theory_m[:, 2].max())
     return [
         ("", "f/D, depth (m)", "", f"{depth_ratio(hifdm):.2f}, {depth:.3f}", "search, calibrated", "", ""),
-        ("2", "iterative FDM, first step: largest move inside, of edge nodes (mm)",
+        ("2", "iterative FDM, first step: maximum displacement of inner nodes, of edge nodes (mm)",
          "\"slightly\", \"greatly\"", f"{moved_mm(fdm, 'form', 'inner'):.1f}, {moved_mm(fdm, 'form', 'edge'):.1f}",
          "predicted; collapses (1)", "", ""),
-        ("3", "tension ratio, inner and boundary", "tends to 1", two_ratios(fdm, "form"), "predicted; not met (1)", "",
+        ("3", "tension ratios, inner and boundary", "tends to 1", two_ratios(fdm, "form"), "predicted; not met (1)", "",
          ""),
         ("5, 9", "HIFDM: psi (mm)", "6.6", mm(hifdm.get("form", "psi_m")), "**calibrated**",
          mm(stopped.get("form", "psi_m")), ""),
@@ -162,11 +170,11 @@ def depth_ratio(result):
 def net_notes(runs):
     stopped, seeded = runs["stopped"], runs["seeded"]
     return f"""
-1. With all cables at 10 N, edge cables and ties do not hold the pull of the triangles: edge nodes fall onto fixed ones,
-   and the program refuses that net by name, as it does the others of [search.md](search.md). The figures show the first
-   step alone. The paper's net holds at equal tensions, so its edge is another.
-2. With other seeds it is 4.87 to 5.33, at the same psi, which hardly depends on it. No net of [search.md](search.md)
-   reaches 5.608 beside 4.3 mm.
+1. If all cables have 10 N, edge cables and ties do not hold the pull of the triangles. The edge nodes then move onto
+   supports, and hifdm refuses this net and the others of [search.md](search.md) as collapsed. The pictures show only
+   the first step. The paper's net holds at equal tensions, so it has another edge.
+2. With other seeds the ratio is 4.87 to 5.33 at the same psi, which hardly depends on it. No net of
+   [search.md](search.md) has both 5.608 and 4.3 mm.
 3. At the paper's stop psi still drifts: the short edge ties converge slowly, and the rule stops after
    {stopped.get("form", "iterations")} iterations at {mm(stopped.get("form", "psi_m"))} mm, where equilibrium is
    {mm(runs["hifdm"].get("form", "psi_m"))} mm. (A design of the GA is there where Eq. 8 starts: the tensions it ends
@@ -199,7 +207,7 @@ def truss_rows(runs):
         ("21", "comparisons of two displacements until below 1 mm", "4", str(loops[0] - 1), "predicted (5)",
          str(loops[1] - 1), ""),
         ("22", "psi at Td = 5, 10, 20, 40 N (mm)", "grows", ", ".join(mm(psi[t]) for t in (5, 10, 20, 40)),
-         "predicted, but for 10 N", "", ""),
+         "predicted, except at 10 N", "", ""),
     ]
 
 
@@ -208,12 +216,12 @@ def truss_notes(runs):
     steps = ", ".join(f"{1e3 * v:.2f}" for v in truss["coupling/history/step_m"])
     return f"""\
 4. The paper does not say whether Figs. 19 and 20 are before or after the optimisation that its section 4.3 mentions.
-   At equilibrium the tensions inside are equal, on a truss as elsewhere: 1.0372 is no equilibrium of Eq. 7.
-5. How the spacecraft holds the truss is assumed. Held at all corners of the central module, E is calibrated to 66 GPa
-   and the loop compares five times.
-   The loop of Fig. 17 has {truss.get("coupling", "iterations")} form-findings, the first on the truss as built.
-   Displacements change by {steps} mm; the first of these is the displacement
-   itself, the others compare two as Fig. 21 does.
+   At equilibrium the inner tensions are equal, also on a truss. So 1.0372 is not an equilibrium of Eq. 7.
+5. The supports of the truss at the spacecraft are assumed. If the truss is held at all corners of the central module,
+   E is calibrated to 66 GPa, and the loop compares five times.
+   The loop of Fig. 17 has {truss.get("coupling", "iterations")} form-findings, the first one on the undeflected truss.
+   Displacements change by {steps} mm. The first value is the displacement
+   itself. The others compare two displacements as Fig. 21 does.
 """
 
 
@@ -224,7 +232,7 @@ def links(figures):
 
 def write(runs, schema):
     """Returns the text of table.md."""
-    rows = ["| Fig. | quantity | paper | ours | | ours, at the paper's stop | LM |",
+    rows = ["| Fig. | quantity | paper | hifdm | | hifdm, at the paper's stop | LM |",
             "|---|---|---|---|---|---|---|"]
     rows += ["| " + " | ".join([links(fig)] + [cell or "-" for cell in row]) + " |"
              for fig, *row in net_rows(runs) + truss_rows(runs)]

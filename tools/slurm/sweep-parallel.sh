@@ -1,12 +1,12 @@
 #!/bin/bash
-# Runs the tasks without a cluster, or on several machines by ssh: GNU parallel takes the place of Slurm.
+# Runs the tasks of a sweep with GNU parallel instead of Slurm, on this machine or on several machines by ssh:
 #
 #     tools/slurm/sweep-parallel.sh TASKS STUDY [options of hifdm sweep]
 #
-# JOBS tasks run at a time (1), each with THREADS threads (all cores). Run the same command again after any failure, and
-# after the study has grown: all tasks run, but only their missing points. The exit status is the number of tasks that
-# failed, at most 101 (GNU parallel).
-# For several machines set PARALLEL='--sshloginfile nodes.txt --workdir .' in the environment.
+# It runs JOBS tasks at a time (default 1), each with THREADS threads (default: all cores). After a failure, or after
+# the study has grown, run it again: it runs all tasks, and these run only missing points. The exit status is the number
+# of failed tasks, at most 101 (a limit of GNU parallel). For several machines, set
+# PARALLEL='--sshloginfile nodes.txt --workdir .' in the environment.
 set -eu
 [[ $# -ge 2 && $1 =~ ^[1-9][0-9]{0,5}$ ]] || {
     echo "usage: sweep-parallel.sh TASKS STUDY [options of hifdm sweep], TASKS from 1 to 999999" >&2
@@ -17,9 +17,8 @@ shift 2
 case $program in -*) program=./$program ;; esac
 case $study in -*) study=./$study ;; esac
 
-# GNU parallel starts a shell. It quotes what it puts in the place of {}, but neither the command around it nor a word
-# at the beginning of the command, in which it also looks for {} and {= perl =}. So all words of a task come as values,
-# after exec.
+# GNU parallel starts a shell. It quotes the value of {}, but not the command around it, nor a word at its beginning.
+# It also replaces {} and {= perl =} in that command. So all words of a task are passed as values, after exec.
 words=("$program" sweep "$study" --tasks "$tasks" ${THREADS:+--threads "$THREADS"} "$@" --task)
 for ((task = 0; task < tasks; task++)); do
     printf '%s\0' "${words[@]}" "$task"
