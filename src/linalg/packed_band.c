@@ -21,15 +21,10 @@ hf_packed_band hf_packed_band_of(int n, int half_bandwidth)
                             .solve = solve_of_isa[hf_lane_best_isa()]};
 }
 
-void hf_packed_band_lay_out(hf_arena *a, hf_packed_band *b)
+void hf_packed_band_lay_out(hf_arena *arena, hf_packed_band *to)
 {
-    size_t n_block = (size_t)b->n_block, n = n_block * HF_PACKED_ROWS;
-    size_t n_packed = n * (size_t)(b->width + HF_PACKED_ROWS);
-    b->row = hf_arena_take(a, n_packed, sizeof(double));
-    b->column = hf_arena_take(a, n_packed, sizeof(double));
-    b->inverse_diagonal = hf_arena_take(a, n, sizeof(double));
-    b->row_begin = hf_arena_take(a, n_block, sizeof(int));
-    b->column_end = hf_arena_take(a, n_block, sizeof(int));
+    size_t n_block = (size_t)to->n_block, n = n_block * HF_PACKED_ROWS;
+    HF_PACKED_BAND_FIELDS(HF_ARENA_TAKE)
 }
 
 /* ---- packing ---- */

@@ -24,13 +24,19 @@ struct hf_packed_band;
 typedef void hf_packed_band_solve(const struct hf_packed_band *band, double *lanes);
 hf_packed_band_solve HF_LANE_EACH(hf_packed_band_solve);
 
+/* The arrays of a matrix `to` of n_block blocks, which have n rows together. */
+#define HF_PACKED_BAND_FIELDS(X)                                                                                       \
+    X(double, row, n *(size_t)(to->width + HF_PACKED_ROWS),                                                            \
+      "[n_block][width + HF_PACKED_ROWS][HF_PACKED_ROWS], for the forward solve")                                      \
+    X(double, column, n *(size_t)(to->width + HF_PACKED_ROWS), "the same for the backward solve")                      \
+    X(double, inverse_diagonal, n, "0 from the number of rows on")                                                     \
+    X(int, row_begin, n_block, "skyline: columns of a block before this one are zero in `row`")                        \
+    X(int, column_end, n_block, "skyline: rows of a block from this one on are zero in `column`")
+
 typedef struct hf_packed_band {
     int n, n_block, width;       /* rows, blocks of rows, half-bandwidth */
-    double *row, *column;        /* [n_block][width + HF_PACKED_ROWS][HF_PACKED_ROWS], forward and backward */
-    double *inverse_diagonal;    /* [n_block HF_PACKED_ROWS], 0 from n on */
-    int *row_begin;              /* [n_block], skyline: columns of a block before this one are zero in `row` */
-    int *column_end;             /* [n_block], skyline: rows of a block from this one on are zero in `column` */
     hf_packed_band_solve *solve; /* the kernel for this machine */
+    HF_PACKED_BAND_FIELDS(HF_ARENA_MEMBER)
 } hf_packed_band;
 
 /* hf_packed_band_of returns a matrix of n rows without arrays. hf_packed_band_lay_out takes the arrays from an arena;

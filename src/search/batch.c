@@ -78,23 +78,27 @@ static void free_engine(hf_batch *batch)
     batch->engine = NULL;
 }
 
-static hf_status create_chord(hf_batch *batch, struct hf_batch_engine *e, const double *initial)
+/* Allocates the lanes of one room, unless they are allocated already. */
+static hf_status make_lanes(struct hf_batch_engine *e, int room)
 {
-    HF_TRY(hf_chord_create(batch->evaluator, initial, &batch->workspace[0], &e->shared));
-    e->chord = calloc((size_t)batch->n_thread, sizeof *e->chord);
-    if (!e->chord) return HF_NO_MEMORY;
-    for (int i = 0; i < n_room_at_once(batch); i++)
-        HF_TRY(hf_chord_lanes_create(&e->shared, &e->chord[i]));
+    if (e->chord && !e->chord[room].arena.block) return hf_chord_lanes_create(&e->shared, &e->chord[room]);
+    if (e->lanes && !e->lanes[room].arena.block) return hf_swarm_lanes_create(&e->plan, &e->lanes[room]);
     return HF_OK;
 }
 
-static hf_status create_lanes(hf_batch *batch, struct hf_batch_engine *e)
+static hf_status fill_engine(hf_batch *batch, struct hf_batch_engine *e, const double *initial)
 {
-    HF_TRY(hf_swarm_plan_create(batch->evaluator->model, hf_lane_best_isa(), &e->plan));
-    e->lanes = calloc((size_t)batch->n_thread, sizeof *e->lanes);
-    if (!e->lanes) return HF_NO_MEMORY;
+    const hf_evaluator *v = batch->evaluator;
+    if (e->solver == HF_SOLVER_CHORD) {
+        HF_TRY(hf_chord_create(v, initial, &batch->workspace[0], &e->shared));
+        e->chord = calloc((size_t)batch->n_thread, sizeof *e->chord);
+    } else {
+        HF_TRY(hf_swarm_plan_create(v->model, hf_lane_best_isa(), &e->plan));
+        e->lanes = calloc((size_t)batch->n_thread, sizeof *e->lanes);
+    }
+    if (!e->chord && !e->lanes) return HF_NO_MEMORY;
     for (int i = 0; i < n_room_at_once(batch); i++)
-        HF_TRY(hf_swarm_lanes_create(&e->plan, &e->lanes[i]));
+        HF_TRY(make_lanes(e, i));
     return HF_OK;
 }
 
@@ -107,7 +111,7 @@ static bool set_engine(hf_batch *batch, hf_solver solver, const double *initial)
     struct hf_batch_engine *e = batch->engine = calloc(1, sizeof *e);
     if (e) {
         e->solver = solver;
-        status = solver == HF_SOLVER_CHORD ? create_chord(batch, e, initial) : create_lanes(batch, e);
+        status = fill_engine(batch, e, initial);
     }
     batch->lacks_memory = status == HF_NO_MEMORY;
     if (status != HF_OK) free_engine(batch);
@@ -150,12 +154,8 @@ hf_solver hf_batch_share(hf_batch *batch, const double *initial)
  * works in a room, so no lock is needed. */
 static bool has_room(hf_batch *batch, int room)
 {
-    struct hf_batch_engine *e = batch->engine;
     if (!batch->workspace[room].block && make_room(batch->evaluator, &batch->workspace[room]) != HF_OK) return false;
-    if (e && e->chord && !e->chord[room].arena.block)
-        return hf_chord_lanes_create(&e->shared, &e->chord[room]) == HF_OK;
-    if (e && e->lanes && !e->lanes[room].arena.block) return hf_swarm_lanes_create(&e->plan, &e->lanes[room]) == HF_OK;
-    return true;
+    return !batch->engine || make_lanes(batch->engine, room) == HF_OK;
 }
 
 /* Evaluates designs in the calling thread until `next` returns -1. design: [][n_variable]; r: [], written at the

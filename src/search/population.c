@@ -23,32 +23,33 @@ const char *const hf_population_stop_word[4] = {"running", "stagnation", "genera
 
 /* ---- memory ---- */
 
-static void lay_out_generation(hf_arena *a, hf_population *p)
+/* The arrays that each of two generations has, for n individuals of k design variables; the others are shared.
+ * <hifdm/population.h> describes them. */
+#define GENERATION_FIELDS(X)                                                                                           \
+    X(double, design, n *k)                                                                                            \
+    X(hf_form_result, result, n)                                                                                       \
+    X(unsigned char, pending, n)                                                                                       \
+    X(double, crossover_rate, n)                                                                                       \
+    X(double, mutation_rate, n)                                                                                        \
+    X(int, parent, 2 * n)                                                                                              \
+    X(hf_status, trial_status, n)                                                                                      \
+    X(double, trial_psi_m, n)
+
+static void lay_out(hf_arena *arena, hf_population *p, hf_population *next)
 {
     size_t n = (size_t)p->n_individual, k = (size_t)p->n_variable;
-    p->design = hf_arena_take(a, n * k, sizeof(double));
-    p->result = hf_arena_take(a, n, sizeof(hf_form_result));
-    p->pending = hf_arena_take(a, n, 1);
-    p->crossover_rate = hf_arena_take(a, n, sizeof(double));
-    p->mutation_rate = hf_arena_take(a, n, sizeof(double));
-    p->parent = hf_arena_take(a, 2 * n, sizeof(int));
-    p->trial_status = hf_arena_take(a, n, sizeof(hf_status));
-    p->trial_psi_m = hf_arena_take(a, n, sizeof(double));
-}
-
-static void lay_out_both(hf_arena *a, hf_population *p, hf_population *next)
-{
-    size_t k = (size_t)p->n_variable;
-    p->initial = hf_arena_take(a, k, sizeof(double));
-    p->lower = hf_arena_take(a, k, sizeof(double));
-    p->upper = hf_arena_take(a, k, sizeof(double));
-    p->reach = hf_arena_take(a, k, sizeof(double));
-    p->best_merit = hf_arena_take(a, (size_t)p->generation_limit, sizeof(double));
-    p->best_psi_m = hf_arena_take(a, (size_t)p->generation_limit, sizeof(double));
-    p->least_violation = hf_arena_take(a, (size_t)p->generation_limit, sizeof(double));
+    hf_population *to = p;
+    p->initial = hf_arena_take(arena, k, sizeof(double));
+    p->lower = hf_arena_take(arena, k, sizeof(double));
+    p->upper = hf_arena_take(arena, k, sizeof(double));
+    p->reach = hf_arena_take(arena, k, sizeof(double));
+    p->best_merit = hf_arena_take(arena, (size_t)p->generation_limit, sizeof(double));
+    p->best_psi_m = hf_arena_take(arena, (size_t)p->generation_limit, sizeof(double));
+    p->least_violation = hf_arena_take(arena, (size_t)p->generation_limit, sizeof(double));
     *next = *p;
-    lay_out_generation(a, p);
-    lay_out_generation(a, next);
+    GENERATION_FIELDS(HF_ARENA_TAKE)
+    to = next;
+    GENERATION_FIELDS(HF_ARENA_TAKE)
 }
 
 /* ---- linked design variables ---- */
@@ -99,7 +100,7 @@ hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m,
                          .n_objective = s->n_front,
                          .generation_limit = s->generations,
                          .best = -1};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_both(&arena, p, next)));
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, p, next)));
     p->block = next->block = arena.block;
     memcpy(p->initial, initial, (size_t)p->n_variable * sizeof *initial);
     for (int k = 0; k < p->n_variable; k++)
@@ -116,20 +117,11 @@ void hf_population_free(hf_population *population)
 
 void hf_population_advance(hf_population *population, hf_population *next)
 {
-#define EXCHANGE(type, member)                                                                                         \
-    do {                                                                                                               \
-        type *now = population->member;                                                                                \
-        population->member = next->member;                                                                             \
-        next->member = now;                                                                                            \
-    } while (0)
-    EXCHANGE(double, design);
-    EXCHANGE(double, crossover_rate);
-    EXCHANGE(double, mutation_rate);
-    EXCHANGE(hf_form_result, result);
-    EXCHANGE(unsigned char, pending);
-    EXCHANGE(int, parent);
-    EXCHANGE(hf_status, trial_status);
-    EXCHANGE(double, trial_psi_m);
+#define EXCHANGE(type, member, count)                                                                                  \
+    type *member = population->member;                                                                                 \
+    population->member = next->member;                                                                                 \
+    next->member = member;
+    GENERATION_FIELDS(EXCHANGE)
 #undef EXCHANGE
     population->generation++;
 }

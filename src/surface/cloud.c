@@ -35,23 +35,14 @@ int hf_cloud_facet_points(int n_facet)
     return N_POINT * n_facet;
 }
 
-void hf_cloud_lay_out(hf_arena *a, hf_cloud *c)
+void hf_cloud_lay_out(hf_arena *arena, hf_cloud *to)
 {
-    bool has_facets = c->n_facet > 0;
-    size_t n = (size_t)c->n, n_area = has_facets ? n : 0;
-    c->position_m = hf_arena_take(a, 3 * n, sizeof(double));
-    c->move = hf_arena_take(a, 3 * n, sizeof(double));
-    c->error_m = hf_arena_take(a, n, sizeof(double));
-    c->slope = hf_arena_take(a, 3 * n, sizeof(double));
-    if (c->fit == HF_FIT_BEST) {
-        c->pose.slope = hf_arena_take(a, N_MOST * n, sizeof(double));
-        c->pose.slope_center = hf_arena_take(a, 3 * n, sizeof(double));
-        c->pose.pull = hf_arena_take(a, N_MOST * 3 * n, sizeof(double));
-        c->pose.pull_area = hf_arena_take(a, N_MOST * n, sizeof(double));
-    }
-    c->root_m = has_facets ? hf_arena_take(a, n_area, sizeof(double)) : NULL;
-    c->side_m = has_facets ? hf_arena_take(a, 4 * n_area, sizeof(double)) : NULL;
-    c->grow_m2 = has_facets ? hf_arena_take(a, n_area, sizeof(double)) : NULL;
+    size_t n = (size_t)to->n, n_area = to->n_facet > 0 ? n : 0, n_fit = to->fit == HF_FIT_BEST ? n : 0;
+    HF_CLOUD_FIELDS(HF_ARENA_TAKE)
+    to->pose.slope = hf_arena_take(arena, N_MOST * n_fit, sizeof(double));
+    to->pose.slope_center = hf_arena_take(arena, 3 * n_fit, sizeof(double));
+    to->pose.pull = hf_arena_take(arena, N_MOST * 3 * n_fit, sizeof(double));
+    to->pose.pull_area = hf_arena_take(arena, N_MOST * n_fit, sizeof(double));
 }
 
 /* ---- points ---- */

@@ -23,6 +23,16 @@ typedef struct {
     double pull_center[HF_FIT_N_PARAMETER][3]; /* derivatives of G by the centre */
 } hf_cloud_pose;
 
+/* The arrays of hf_cloud for n points. n_area is n with facets, else 0. */
+#define HF_CLOUD_FIELDS(X)                                                                                             \
+    X(double, position_m, 3 * n, "[3][n]")                                                                             \
+    X(double, move, 3 * n, "[3][n], scratch: motion of the points per unit of a design variable")                      \
+    X(double, error_m, n, "")                                                                                          \
+    X(double, slope, 3 * n, "[3][n], derivatives of the error by the point; with a best fit, relative to the centre")  \
+    X(double, root_m, n_area, "root of the projected area that a point represents")                                    \
+    X(double, side_m, 4 * n_area, "[4][n], derivatives of that area by x_u, y_u, x_v and y_v")                         \
+    X(double, grow_m2, n_area, "scratch: change of that area")
+
 typedef struct hf_cloud {
     hf_surface_kind kind;
     double focal_length_m;
@@ -32,16 +42,8 @@ typedef struct hf_cloud {
     int n, n_facet;     /* points, with one residual each; facets, or 0 if the points are nodes */
     const int *row;     /* rows of the nodes [n], or of the corners [n_facet][4]; borrowed */
     hf_cloud_pose pose; /* used only with fit: best */
-    double *position_m; /* [3][n] */
-    double *move;       /* [3][n], scratch: motion of the points per unit of a design variable */
-    double *error_m;    /* [n] */
-    double *slope;      /* [3][n], derivatives of the error by the point; with a best fit, relative to the centre */
-
-    /* The members below are used only with facets. */
-    double area_m2;  /* area of all facets */
-    double *root_m;  /* [n], root of the projected area that a point represents */
-    double *side_m;  /* [4][n], derivatives of that area by x_u, y_u, x_v and y_v */
-    double *grow_m2; /* [n], scratch: change of that area */
+    double area_m2;     /* area of all facets, if there are any */
+    HF_CLOUD_FIELDS(HF_ARENA_MEMBER)
 } hf_cloud;
 
 int hf_cloud_facet_points(int n_facet); /* number of points in n_facet facets */

@@ -84,14 +84,17 @@ static void bend_error(hf_surface_kind kind, double curvature, hf_fit_point *p)
                 (u2[a][b] - (u1[a] * D1[b] + u1[b] * D1[a] + u * D2[a][b] - 2 * u * D1[a] * D1[b] / D) / D) / D;
 }
 
-void hf_fit_derive(const hf_fit_frame *f, const double arm[3], int k, double by[4])
+void hf_fit_derive(const hf_fit_frame *f, const double arm[3], double by[HF_FIT_N_PARAMETER][4])
 {
-    int shift = shift_of(f->found->quantity[k]), angle = hf_fit_angle_of(f->found->quantity[k]);
-    memset(by, 0, 4 * sizeof *by);
-    for (int d = 0; d < 3 && shift >= 0; d++)
-        by[d] = -f->found->size_m * f->turn[d][shift];
-    if (angle >= 0) multiply_vector(f->slope[angle], arm, by);
-    if (shift < 0 && angle < 0) by[3] = f->wanted_per_m;
+    for (int k = 0; k < f->found->n; k++) {
+        int shift = shift_of(f->found->quantity[k]), angle = hf_fit_angle_of(f->found->quantity[k]);
+        by[k][3] = shift < 0 && angle < 0 ? f->wanted_per_m : 0;
+        if (angle >= 0)
+            multiply_vector(f->slope[angle], arm, by[k]);
+        else
+            for (int d = 0; d < 3; d++)
+                by[k][d] = shift < 0 ? 0 : -f->found->size_m * f->turn[d][shift];
+    }
 }
 
 hf_fit_point hf_fit_point_take(const hf_fit_frame *f, int i)
@@ -100,8 +103,7 @@ hf_fit_point hf_fit_point_take(const hf_fit_frame *f, int i)
     hf_fit_locate(f, i, p.arm, p.at);
     p.value = hf_cloud_error(f->kind, 1, f->curvature_per_m, p.at, p.d);
     bend_error(f->kind, f->curvature_per_m, &p);
-    for (int k = 0; k < f->found->n; k++)
-        hf_fit_derive(f, p.arm, k, p.by[k]);
+    hf_fit_derive(f, p.arm, p.by);
     return p;
 }
 

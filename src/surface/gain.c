@@ -117,14 +117,10 @@ int hf_gain_points(const hf_gain_beam *beam, int n_facet)
     return beam->order * beam->order * n_facet;
 }
 
-void hf_gain_lay_out(hf_arena *a, hf_gain *g)
+void hf_gain_lay_out(hf_arena *arena, hf_gain *to)
 {
-    size_t n = (size_t)g->n;
-    g->size = hf_arena_take(a, n, sizeof(double));
-    g->phase = hf_arena_take(a, 2 * n, sizeof(double));
-    g->by_place = hf_arena_take(a, 6 * n, sizeof(double));
-    g->by_side = hf_arena_take(a, 6 * n, sizeof(double));
-    g->rate = hf_arena_take(a, 2 * n, sizeof(double));
+    size_t n = (size_t)to->n;
+    HF_GAIN_FIELDS(HF_ARENA_TAKE)
 }
 
 void hf_gain_measure(hf_gain *g, const double *position_m, double *residual)

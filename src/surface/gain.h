@@ -32,20 +32,24 @@ double hf_gain_loss_dB(const hf_gain_beam *beam, const hf_pattern_surface *surfa
 
 /* ---- an objective ---- */
 
+/* The arrays of hf_gain for n points. */
+#define HF_GAIN_FIELDS(X)                                                                                              \
+    X(double, size, n, "current")                                                                                      \
+    X(double, phase, 2 * n, "[2][n], phase, real and imaginary")                                                       \
+    X(double, by_place, 6 * n, "[6][n], derivatives of phase, then current, by the point")                             \
+    X(double, by_side, 6 * n, "[6][n], derivatives of the current by du, then dv, of the point")                       \
+    X(double, rate, 2 * n, "[2][n], scratch: rates of phase and current")
+
 /* Quadrature points in flat facets. Let a_i be the current of a point, e_i its phase as a complex unit number, and w_i
  * = a_i / sum a. The residuals are sqrt(w_i) (e_i - mean). The sum of their squares is 1 - |mean|^2. */
 typedef struct hf_gain {
     const hf_gain_beam *beam;
-    int n_node;       /* nodes of the model */
-    int n, n_facet;   /* points; facets */
-    const int *row;   /* [n_facet][4], rows of the corners; borrowed */
-    double all;       /* sum of all currents */
-    double mean[2];   /* mean phase, real and imaginary */
-    double *size;     /* [n], current */
-    double *phase;    /* [2][n], phase, real and imaginary */
-    double *by_place; /* [6][n], derivatives of phase, then current, by the point */
-    double *by_side;  /* [6][n], derivatives of the current by du, then dv, of the point */
-    double *rate;     /* [2][n], scratch: rates of phase and current */
+    int n_node;     /* nodes of the model */
+    int n, n_facet; /* points; facets */
+    const int *row; /* [n_facet][4], rows of the corners; borrowed */
+    double all;     /* sum of all currents */
+    double mean[2]; /* mean phase, real and imaginary */
+    HF_GAIN_FIELDS(HF_ARENA_MEMBER)
 } hf_gain;
 
 int hf_gain_points(const hf_gain_beam *beam, int n_facet); /* number of points; each has two residuals */

@@ -95,6 +95,7 @@ void hf_fit_rotation(const double angle[3], const int order[3], double to[3][3])
 static hf_fit_frame frame_at(const fit_problem *p, const gsl_vector *v, hf_fit_parameters *at)
 {
     *at = p->at;
+    at->n = (int)v->size;
     for (size_t k = 0; k < v->size; k++)
         at->value[at->quantity[k]] = gsl_vector_get(v, k);
     hf_fit_frame f = hf_fit_frame_of(p->kind, 1 / (4 * p->curvature), p->n, p->position_m, p->root_weight, at);
@@ -137,9 +138,10 @@ static int jacobian(const gsl_vector *v, void *context, gsl_matrix *J)
     gsl_matrix_set_zero(J);
     for (int i = 0; i < p->n; i++) {
         double arm[3], at[3], s[2], u = height(&f, i, arm, at, s), w = 1 / (1 + s[0] * s[0] + s[1] * s[1]);
-        for (int k = 0; k < (int)v->size; k++) { /* derivative of u w, with u = z - c x^2 - c y^2 and s = 2 c (x, y) */
-            double d[4];
-            hf_fit_derive(&f, arm, k, d);
+        double by[HF_FIT_N_PARAMETER][4];
+        hf_fit_derive(&f, arm, by);
+        for (int k = 0; k < now.n; k++) { /* derivative of u w, with u = z - c x^2 - c y^2 and s = 2 c (x, y) */
+            const double *d = by[k];
             double du = d[2], dw = 0;
             for (int e = 0; e < (p->kind == HF_SURFACE_PARABOLOID ? 2 : 1); e++) {
                 double ds = 2 * (f.curvature_per_m * d[e] + d[3] * at[e]);
