@@ -53,38 +53,20 @@ static double x_between(const hf_cylinder *c, double a, double b, double fractio
     return copysign(hf_parabola_x_at_arc_m(fabs(s), c->focal_length_m), s);
 }
 
-/* Returns x of the grid line half_index / 2. An odd half_index is in the middle of a cell. */
-static double x_of(const hf_cylinder *c, int half_index)
+/* Returns x (axis 0) or y (axis 1) of the grid line half_index / 2. An odd half_index is in the middle of a cell. */
+static double position_along(const hf_cylinder *c, int axis, int half_index)
 {
-    double half = c->aperture_m / 2;
-    int n = 2 * c->cells_per_module[0];
-    if (c->pitches_x_m.n > 0) {
-        int k = half_index / n;
-        double from = border(&c->pitches_x_m, -half, half, k);
-        if (half_index % n == 0) return from;
-        return x_between(c, from, border(&c->pitches_x_m, -half, half, k + 1), (double)(half_index % n) / n);
+    const hf_double_list *pitches = axis == 0 ? &c->pitches_x_m : &c->pitches_y_m;
+    double half = c->aperture_m / 2, from = axis == 0 ? -half : 0, to = axis == 0 ? half : c->length_m;
+    int n = 2 * c->cells_per_module[axis], last = n * c->modules[axis], k = half_index / n, i = half_index % n;
+    if (pitches->n > 0) {
+        double a = border(pitches, from, to, k), b = i > 0 ? border(pitches, from, to, k + 1) : a;
+        return axis == 0 ? x_between(c, a, b, (double)i / n) : a + (b - a) * i / n;
     }
-    int last = n * c->modules[0];
+    if (axis == 1) return c->length_m * half_index / last;
     double t = (2.0 * half_index - last) / last; /* exactly antisymmetric */
     if (c->spacing == HF_SPACING_EQUAL_PROJECTED || half_index == 0 || half_index == last) return t * half;
     return copysign(hf_parabola_x_at_arc_m(fabs(t) * hf_parabola_arc_m(half, c->focal_length_m), c->focal_length_m), t);
-}
-
-/* Returns y of the grid line half_index / 2. */
-static double y_of(const hf_cylinder *c, int half_index)
-{
-    int n = 2 * c->cells_per_module[1];
-    if (c->pitches_y_m.n == 0) return c->length_m * half_index / (n * c->modules[1]);
-    int k = half_index / n;
-    double from = border(&c->pitches_y_m, 0, c->length_m, k);
-    if (half_index % n == 0) return from;
-    double to = border(&c->pitches_y_m, 0, c->length_m, k + 1);
-    return from + (to - from) * (half_index % n) / n;
-}
-
-static double position_along(const hf_cylinder *c, int axis, int half_index)
-{
-    return axis == 0 ? x_of(c, half_index) : y_of(c, half_index);
 }
 
 /* ---- what can be made ---- */
@@ -265,12 +247,13 @@ static void put_nodes(const grid *g)
 {
     bool with_middles = g->c->pattern == HF_PATTERN_DIAGONAL;
     for (int i = 0; i < g->nx; i++) {
-        double x = x_of(g->c, 2 * i), middle_x = with_middles && i + 1 < g->nx ? x_of(g->c, 2 * i + 1) : 0;
+        double x = position_along(g->c, 0, 2 * i),
+               middle_x = with_middles && i + 1 < g->nx ? position_along(g->c, 0, 2 * i + 1) : 0;
         for (int j = 0; j < g->ny; j++) {
-            put_node(g, at(g, i, j), x, y_of(g->c, 2 * j), role_of(g, i, j), (hf_front_label){"n", i, j});
+            put_node(g, at(g, i, j), x, position_along(g->c, 1, 2 * j), role_of(g, i, j), (hf_front_label){"n", i, j});
             if (with_middles && i + 1 < g->nx && j + 1 < g->ny)
-                put_node(g, g->first_middle + j * (g->nx - 1) + i, middle_x, y_of(g->c, 2 * j + 1), HF_ROLE_INNER,
-                         (hf_front_label){"m", i, j});
+                put_node(g, g->first_middle + j * (g->nx - 1) + i, middle_x, position_along(g->c, 1, 2 * j + 1),
+                         HF_ROLE_INNER, (hf_front_label){"m", i, j});
         }
     }
 }
