@@ -26,7 +26,7 @@ static void resume(const char *path, struct run *r, hf_store **s, hf_messages *m
     hf_optimiser_free(&r->ga);
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &r->model, r->initial, &r->ga), HF_OK);
     ck_assert_int_eq(hf_store_restore(*s, &r->ga, &summary, messages), HF_OK);
-    ck_assert_int_eq(summary.generations, hf_store_generations(*s));
+    ck_assert_int_eq(summary.search.generations, hf_store_generations(*s));
 }
 
 START_TEST(designs_are_bred_again)
