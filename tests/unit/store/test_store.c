@@ -460,17 +460,17 @@ START_TEST(generations_are_appended)
         fill_generation(&ga.population, g);
         ck_assert_msg(hf_store_generation(store, &m, &ga.population, &messages) == HF_OK, "%s", messages.text);
     }
-    end(store,
-        &(hf_summary){.stage[HF_STAGE_SEARCH] = {.exists = 1, .result.status = HF_NOT_EVALUATED}, .status = HF_NO_FEASIBLE});
+    end(store, &(hf_summary){.stage[HF_STAGE_SEARCH] = {.exists = 1, .result.status = HF_NOT_EVALUATED},
+                             .status = HF_NO_FEASIBLE});
     hf_optimiser_free(&ga);
 
     char script[2048];
     snprintf(
         script, sizeof script,
-        "a = f['ga']; p = %d; k = %d; g = np.arange(5)[:, None]; i = np.arange(p)\n"
-        "assert a['design_N'].shape == (5, p, k) and a['design_N'].dtype == 'f8'\n"
-        "assert np.prod(a['design_N'].chunks) * 8 <= 1 << 20\n"
-        "assert (a['design_N'][:] == g[:, :, None] * 1e7 + i[:, None] * 1e6 + np.arange(k)).all()\n"
+        "a = f['search/population']; v = f['variable']; p = %d; k = %d; g = np.arange(5)[:, None]; i = np.arange(p)\n"
+        "assert a['design'].shape == (5, p, k) and a['design'].dtype == 'f8'\n"
+        "assert np.prod(a['design'].chunks) * 8 <= 1 << 20\n"
+        "assert (a['design'][:] == g[:, :, None] * 1e7 + i[:, None] * 1e6 + np.arange(k)).all()\n"
         "psi = g + 0.1 * i; psi[:, 1] = np.nan\n"
         "np.testing.assert_array_equal(a['psi_m'][:], psi)\n"
         "np.testing.assert_array_equal(a['status'][:], 0 * g + (i == 1) * 6)\n"
@@ -482,9 +482,9 @@ START_TEST(generations_are_appended)
         "assert (a['parent'][:, :, 0] == g - 1).all() and (a['parent'][:, :, 1] == i).all()\n"
         "for name in 'best', 'mean', 'worst': assert (a[name + '_psi_m'][:] == g[:, 0] + 0.5).all()\n"
         "assert (a['best_individual'][:] == g[:, 0] - 1).all() and (a['n_infeasible'][:] == 1).all()\n"
-        "assert (a['gene_cable'][:] == 2 * np.arange(k)).all() and (a['gene_group'][:] == np.arange(k) // 2).all()\n"
-        "assert a['lower_N'].shape == (k,)\n"
-        "assert (a['upper_N'][:] == np.arange(k) + 2).all()\n"
+        "assert (v['cable'][:] == 2 * np.arange(k)).all() and (v['group'][:] == np.arange(k) // 2).all()\n"
+        "assert v['lower'].shape == (k,)\n"
+        "assert (v['upper'][:] == np.arange(k) + 2).all()\n"
         "assert f.attrs['status'] == b'no_feasible'\n",
         p, k);
     python("r", temp_path("a.h5"), script);
@@ -494,6 +494,7 @@ START_TEST(generations_are_appended)
 }
 END_TEST
 
+/* Only vectors of design variables have no unit in their names: each variable may have its own. */
 START_TEST(provenance_and_units_are_there)
 {
     struct net net;
@@ -504,7 +505,7 @@ START_TEST(provenance_and_units_are_there)
            "for name in ('version git_describe compiler build_flags hdf5_version gsl_version lapack host rng seed "
            "threads '\n"
            "             'started_utc finished_utc status warnings title').split(): assert name in a, name\n"
-           "assert a['program'] == b'hifdm' and a['format_version'] == 2\n"
+           "assert a['program'] == b'hifdm' and a['format_version'] == 3\n"
            "assert list(a['argv']) == ['hifdm', 'run', 'a b.yaml']\n"
            "assert f['case/text'].asstr()[()] == 'title: any\\n' and f['case'].attrs['sha256'] == b'abc'\n"
            "assert f['case/overrides'].asstr()[()] == 'form.pretension_N=12\\n'\n"
@@ -516,7 +517,8 @@ START_TEST(provenance_and_units_are_there)
            "        assert not thing.id.get_create_plist().get_obj_track_times()\n"
            "        unit = thing.attrs['units']; thing.attrs['description']\n"
            "        suffix = {'m': '_m', 'N': '_N', 'N/m': '_N_per_m'}.get(unit, '')\n"
-           "        assert name.endswith(suffix), (name, unit)\n"
+           "        vector = name.split('/')[-1] in ('design', 'initial', 'lower', 'upper')\n"
+           "        assert name.endswith(suffix) or vector, (name, unit)\n"
            "f.visititems(look)\n"
            "assert len(n) > 20");
     close_net(&net);
