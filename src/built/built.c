@@ -33,13 +33,14 @@ static void lay_out(hf_arena *arena, const hf_scene *s, hf_built *b)
 static hf_status refuse_cables(const char *where, const hf_scene *s, const hf_workspace *w, hf_messages *messages)
 {
     int n = 0, first = 0;
-    hf_status status = hf_cable_demand_EA(s, where, "the net as built needs", "", messages);
+    hf_status status = hf_cable_demand_EA(s, where, "the as-built net needs", "", messages);
     for (int e = 0; e < s->n_cable; e++)
         if (w->tension_N[e] < 0 && n++ == 0) first = e;
     if (n == 0) return status;
-    return hf_error(messages, HF_BAD_CASE,
-                    "%s: %d cables push, like '%s' with %.3g N: the net as built has cables alone, no struts", where, n,
-                    s->cable_id[first], w->tension_N[first]);
+    return hf_error(
+        messages, HF_BAD_CASE,
+        "%s: %d cables are in compression, such as '%s' with %.3g N, but the as-built net cannot have struts", where, n,
+        s->cable_id[first], w->tension_N[first]);
 }
 
 /* Sets the resting positions of the supports: those of the design, less the displacement of the truss at
@@ -117,7 +118,7 @@ hf_status hf_built_make(const char *where, const hf_scene *s, const hf_model *m,
     *b = (hf_built){.scene = *s, .form = *form};
     HF_TRY(refuse_cables(where, s, w, messages));
     if (HF_ARENA_MAKE(&arena, lay_out(&arena, s, b)) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for the net as built", where);
+        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for the as-built net", where);
     b->block = arena.block;
     b->form.method = HF_METHOD_NEWTON;
     b->form.stop = HF_STOP_RESIDUAL;
