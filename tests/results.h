@@ -100,6 +100,7 @@ static inline int read_all(const char *path, char *text, size_t size)
     }
     ck_assert_int_eq(messages.n_error, n_failed);
     snprintf(text, size, "%s", messages.text ? messages.text : "");
+    hf_summary_free(&summary);
     hf_scene_free(&scene);
     hf_shape_free(&form);
     hf_shape_free(&best);

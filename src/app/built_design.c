@@ -32,7 +32,7 @@ static const char *net_difference(const hf_scene *a, const hf_scene *b)
 static const char *truss_difference(const hf_truss *a, const hf_truss *b)
 {
     size_t n = (size_t)a->n_node, n_member = (size_t)a->n_member;
-    if (a->n_node != b->n_node || a->n_member != b->n_member) return "its truss";
+    if (a->n_node != b->n_node || a->n_member != b->n_member) return "the truss";
     if (!hf_scene_numbers_agree(3 * n, a->position_m, b->position_m)) return "nodes of the truss";
     if (memcmp(a->fixed, b->fixed, n) != 0) return "supports of the truss";
     if (memcmp(a->end, b->end, 2 * n_member * sizeof *a->end) != 0) return "ends of members";
@@ -53,7 +53,7 @@ static hf_status compare(const hf_options *o, const hf_problem *p, const hf_expo
     hf_carrier_state state = {0};
     const char *what = net_difference(&p->scene, &stored->scene);
     hf_status status = HF_OK;
-    if (!what && stored->summary.has_truss != p->settings.has_truss) what = "its truss";
+    if (!what && stored->summary.has_truss != p->settings.has_truss) what = "the truss";
     if (!what && p->settings.has_truss) {
         status = hf_store_read_truss(o->result, &truss, &state, messages);
         if (status == HF_OK) what = truss_difference(&p->carrier.truss, &truss);
@@ -63,8 +63,8 @@ static hf_status compare(const hf_options *o, const hf_problem *p, const hf_expo
     HF_TRY(status);
     if (!what) return HF_OK;
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: is a result of another net than %s has, by %s: give the case that it was made of", o->result,
-                    o->file, what);
+                    "%s: is the result of another net than that of %s; they differ in %s. Use the case of this result",
+                    o->result, o->file, what);
 }
 
 /* ---- the shape of the result ---- */
@@ -121,8 +121,8 @@ hf_status hf_built_design_check(const hf_options *o, const hf_case *c, hf_messag
     if (o->stage)
         return hf_error(messages, HF_BAD_USAGE, "--stage %s needs --result FILE, a result of this case", o->stage);
     return hf_error(messages, HF_BAD_USAGE,
-                    "%s: has a section optimize: give the result that the net was cut from, --result FILE (hifdm run "
-                    "makes it), or --stage form if it was cut as form-finding has it",
+                    "%s: has a section optimize: use --result FILE with the result by which the net was cut (hifdm run "
+                    "writes it), or --stage form if it was cut by the form-finding",
                     o->file);
 }
 

@@ -54,15 +54,15 @@ static hf_status check_sigmas(const job *j, const char *path, double error_m, hf
     double least = SIGMA_LEAST * error_m, rest = j->problem.settings.tolerance.sigma_support_m;
     if (rest > 0 && rest < least * (1 - ROUNDING))
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: tolerance.sigma_support_m of %.3g m is too small beside errors of cables of %.3g m: give "
-                        "at least %.3g, or 0",
+                        "%s: tolerance.sigma_support_m of %.3g m is too small for cable errors of %.3g m: use at least "
+                        "%.3g, or 0",
                         path, rest, error_m, least * (1 + ROUNDING));
     for (int i = 0; i < m->n_node; i++) {
         int row = m->row_of_node[i];
         double sigma = 1 / sqrt(j->measured.weight_per_m2[3 * row]);
         if (!j->measured.line[row] || sigma >= least * (1 - ROUNDING)) continue;
         return hf_error(messages, HF_BAD_CASE,
-                        "%s:%d: sigma_m of %.3g m is too small beside errors of cables of %.3g m: give at least %.3g",
+                        "%s:%d: sigma_m of %.3g m is too small for cable errors of %.3g m: use at least %.3g",
                         j->measured_path, j->measured.line[row], sigma, error_m, least * (1 + ROUNDING));
     }
     return HF_OK;
@@ -88,15 +88,16 @@ static hf_status find_prior(job *j, const char *path, hf_messages *messages)
     double largest = 0;
     HF_TRY(make_prior(j, messages));
     if (j->problem.settings.tolerance.n_truss)
-        hf_warning(messages,
-                   "%s: tolerance.truss is not estimated: adjust takes the truss to be as it was made. Measure when it "
-                   "has the temperature of the workshop, or give tolerance.sigma_support_m what its temperatures move",
-                   path);
+        hf_warning(
+            messages,
+            "%s: tolerance.truss is not estimated: adjust assumes that the truss is as it was made. Measure when "
+            "it has the temperature of the workshop, or include its displacements in tolerance.sigma_support_m",
+            path);
     for (int e = 0; e < j->built.model.n_cable; e++)
         largest = fmax(largest, j->prior.sigma_m[e]);
     if (largest > 0) return check_sigmas(j, path, largest, messages);
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: tolerance: cables have no errors that could be estimated; give sigma_cut_m, sigma_cut_ratio, "
+                    "%s: tolerance: cables have no errors that could be estimated; add sigma_cut_m, sigma_cut_ratio, "
                     "sigma_EA_ratio or sigma_temperature_K",
                     path);
 }
@@ -107,16 +108,19 @@ static hf_status check_sections(const hf_case *c, const char *path, hf_messages 
 {
     char place[HF_PATH_SIZE + 64];
     if (!c->has_adjust)
-        hf_error(messages, HF_BAD_CASE,
-                 "%s: has no section adjust: add adjust: {set: NAME, range_m: 0.002, step_m: 0.0001}, the cables that "
-                 "can be turned, how far, and in which steps",
-                 path);
+        hf_error(
+            messages, HF_BAD_CASE,
+            "%s: has no section adjust: add adjust: {set: NAME, range_m: 0.002, step_m: 0.0001} with the cables that "
+            "have turnbuckles, the range of an adjustment and its step",
+            path);
     if (!c->has_tolerance)
-        hf_error(messages, HF_BAD_CASE,
-                 "%s: has no section tolerance: add tolerance: {sigma_cut_m: 0.0001}, how well cables are cut", path);
+        hf_error(
+            messages, HF_BAD_CASE,
+            "%s: has no section tolerance: add tolerance: {sigma_cut_m: 0.0001}, the standard deviation of cutting",
+            path);
     hf_config_place(c, "adjust.figure", place, sizeof place);
     if (c->has_adjust && c->adjust.figure != HF_FIGURE_PSI && !c->has_surface)
-        hf_error(messages, HF_BAD_CASE, "%s: %s needs the wanted surface: add a section surface", place,
+        hf_error(messages, HF_BAD_CASE, "%s: %s needs a target surface: add a section surface", place,
                  hf_adjust_figure_word[c->adjust.figure]);
     return messages->n_error ? HF_BAD_CASE : HF_OK;
 }
@@ -204,16 +208,18 @@ static hf_status check_misfit(const job *j, hf_messages *messages)
     if (chi > FOREIGN)
         return hf_error(
             messages, HF_BAD_CASE,
-            "%s: this measurement does not belong to this net: chi^2 is %.3g per coordinate where 1 is "
-            "expected, worst at node '%s' (line %d), %.3g mm from the nearest shape that the net can have. "
-            "Look for mixed-up ids, supports that are off (tolerance.sigma_support_m), another design or "
-            "state; if sigmas are wrong instead, of sigma_m or section tolerance, they are so by %.2g times",
+            "%s: this measurement does not belong to this net: chi^2 is %.3g per coordinate instead of 1; the worst "
+            "is node '%s' (line %d), %.3g mm from the nearest possible shape. Look for swapped ids, displaced supports "
+            "(tolerance.sigma_support_m), another design or another load case; if only sigma_m or the sigmas of "
+            "section "
+            "tolerance are wrong, they are wrong by a factor of %.2g",
             j->measured_path, chi, id, j->measured.line[row], distance_m * 1e3, sqrt(chi));
-    hf_warning(messages,
-               "%s: these places do not fit the net and its tolerances: chi^2 is %.3g per coordinate where 1 is "
-               "expected, worst at node '%s' (line %d), %.3g mm off; sigma_m or a sigma of section tolerance is too "
-               "small, supports are off (tolerance.sigma_support_m), or it is another design",
-               j->measured_path, chi, id, j->measured.line[row], distance_m * 1e3);
+    hf_warning(
+        messages,
+        "%s: these positions do not fit the net and its tolerances: chi^2 is %.3g per coordinate instead of 1; the "
+        "worst is node '%s' (line %d), %.3g mm off. Either sigma_m or a sigma of section tolerance is too small, "
+        "supports are displaced (tolerance.sigma_support_m), or it is another design",
+        j->measured_path, chi, id, j->measured.line[row], distance_m * 1e3);
     return HF_OK;
 }
 
@@ -232,7 +238,7 @@ static hf_status estimate_errors(job *j, const hf_options *o, hf_messages *messa
     HF_TRY(explain_failure(hf_estimate_find(p), "the estimated net", o->file, messages));
     HF_TRY(check_misfit(j, messages));
     if (!p->is_settled)
-        hf_warning(messages, "%s: the estimate did not settle in %d steps: the figures below are of the last one",
+        hf_warning(messages, "%s: the estimate did not converge in %d steps: the figures below belong to the last step",
                    o->measured, p->n_step);
     return HF_OK;
 }
@@ -292,12 +298,12 @@ static hf_status check_outputs(const job *j, const hf_options *o, hf_messages *m
 {
     if (o->report && !o->result)
         return hf_error(messages, HF_BAD_USAGE,
-                        "--report %s needs --result FILE, the result whose page it is (hifdm run %s makes it)",
-                        o->report, o->file);
+                        "--report %s needs --result FILE, the result of this case (hifdm run %s writes it)", o->report,
+                        o->file);
     if (o->output && o->report && !strcmp(o->output, o->report))
-        return hf_error(messages, HF_BAD_USAGE, "-o and --report both name %s: give them two names", o->output);
+        return hf_error(messages, HF_BAD_USAGE, "-o and --report both name %s: use different names", o->output);
     HF_TRY(check_output(j, o, o->output, messages));
-    HF_TRY(hf_file_out_spare(o->output, "the table of moves", o->report ? o->report : "", messages));
+    HF_TRY(hf_file_out_spare(o->output, "the table of adjustments", o->report ? o->report : "", messages));
     return check_output(j, o, o->report, messages);
 }
 
@@ -323,7 +329,7 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
     HF_TRY(explain_failure(hf_adjust_find_outliers(j), "the estimated net", o->file, messages));
     HF_TRY(
         explain_failure(hf_adjust_find(&j->estimate, &j->task, &j->adjustment), "the adjusted net", o->file, messages));
-    HF_TRY(explain_failure(hf_adjust_find_instead(j), "the net with other moves", o->file, messages));
+    HF_TRY(explain_failure(hf_adjust_find_instead(j), "the net with other adjustments", o->file, messages));
     static hf_file_out_set files; /* both table and page are written, or neither */
     hf_status status = HF_OK;
     if (o->output) status = hf_file_out_set_write(&files, o->output, hf_adjust_print_table, j, messages);

@@ -13,7 +13,7 @@
 
 #define SEEMS_OFF 2.0 /* sigmas above which a shared number is reported; there are few such numbers */
 #define NAMED_MAX 10  /* maximum number of cables, and of shared numbers, in the summary */
-#define PLACES_MAX 3  /* maximum number of nodes in the summary */
+#define NODES_MAX 3   /* maximum number of nodes in the summary */
 #define MISFIT 5.0    /* standard deviations above which a sum of squares is not due to chance */
 
 /* ---- chi^2 ---- */
@@ -57,13 +57,14 @@ static void print_aim(const hf_adjust_job *j, FILE *f)
 {
     const hf_adjust_settings *s = j->task.settings;
     if (s->figure != HF_FIGURE_PSI)
-        hf_print_line(f, "%s: RMS along the normal of the wanted surface (the loss of gain is by the half path)",
+        hf_print_line(f,
+                      "%s: RMS along the normal of the target surface (the gain loss follows from the half-path RMS)",
                       hf_adjust_figure_word[s->figure]);
     else if (s->aim == HF_AIM_DESIGN)
-        hf_print_line(f, "psi is measured from the shape of the design (adjust.aim), which is %.4f mm from theory",
+        hf_print_line(f, "psi is measured from the design (adjust.aim), which is %.4f mm RMS from the target positions",
                       j->design_psi_m * 1e3);
     else
-        hf_print_line(f, "psi is measured from the theoretical places (adjust.aim), from which the design is %.4f mm",
+        hf_print_line(f, "psi is measured from the target positions (adjust.aim); the design is %.4f mm RMS from them",
                       j->design_psi_m * 1e3);
 }
 
@@ -71,19 +72,20 @@ static void print_instead(const hf_adjust_job *j, FILE *f)
 {
     if (!j->n_instead) return;
     if (2 * j->n_at_range > j->adjustment.n_move)
-        hf_print_line(f, "%d of %d moves are as far as adjust.range_m allows. Aimed at something else:", j->n_at_range,
-                      j->adjustment.n_move);
+        hf_print_line(f,
+                      "%d of %d adjustments are as large as adjust.range_m allows. Results with another figure or aim:",
+                      j->n_at_range, j->adjustment.n_move);
     else
         hf_print_line(f,
-                      "the design is %.4f mm from the theoretical places, errors make %.4f mm. Aimed at something "
-                      "else:",
+                      "the design is %.4f mm RMS from the target positions, and errors displace the nodes by %.4f mm "
+                      "RMS. Results with another figure or aim:",
                       j->design_psi_m * 1e3, j->error_psi_m * 1e3);
     for (int k = 0; k < j->n_instead; k++) {
         const hf_adjust_instead *other = &j->instead[k];
         char name[64];
         snprintf(name, sizeof name, other->figure == HF_FIGURE_PSI ? "figure: psi, aim: %s" : "figure: %s",
                  other->figure == HF_FIGURE_PSI ? hf_aim_word[other->aim] : hf_adjust_figure_word[other->figure]);
-        hf_print_line(f, "  adjust: {%s} brings %s from %.4f to %.4f mm by %d move%s, %d at range_m", name,
+        hf_print_line(f, "  adjust: {%s} changes %s from %.4f to %.4f mm by %d adjustment%s, %d at range_m", name,
                       hf_adjust_figure_word[other->figure], other->before_m * 1e3, other->after_m * 1e3, other->n_move,
                       other->n_move == 1 ? "" : "s", other->n_at_range);
     }
@@ -98,27 +100,28 @@ static void print_end(const hf_adjust_job *j, FILE *f)
     switch (j->adjustment.end) {
     case HF_TURNBUCKLES_TARGET:
         if (j->adjustment.doubt_m[1] > s->target_m)
-            hf_print_line(f, "no further move: the most probable net meets target_m, but %.4f mm are to be expected",
-                          j->adjustment.doubt_m[1] * 1e3);
+            hf_print_line(
+                f, "no further adjustment: the most probable net meets target_m, but the expected value is %.4f mm",
+                j->adjustment.doubt_m[1] * 1e3);
         else
-            hf_print_line(f, "no further move: target_m is met");
+            hf_print_line(f, "no further adjustment: target_m is met");
         break;
     case HF_TURNBUCKLES_ALL:
-        hf_print_line(f, "no further move: all %d are made (adjust.moves)", s->moves);
+        hf_print_line(f, "no further adjustment: all %d are made (adjust.max_adjustments)", s->moves);
         break;
     case HF_TURNBUCKLES_DOUBT:
-        hf_print_line(f, "no further move: the next one would gain less than these measurements can tell");
+        hf_print_line(f, "no further adjustment: the measurement cannot resolve the gain of the next one");
         break;
     case HF_TURNBUCKLES_NONE:
-        hf_print_line(f, "no further move: none%s gains anything",
-                      j->adjustment.is_held_taut ? " that tensions allow" : "");
+        hf_print_line(f, "no further adjustment: none%s gains anything",
+                      j->adjustment.is_held_taut ? " that the tensions allow" : "");
         break;
     }
     if (j->adjustment.is_held_taut)
-        hf_print_line(f, "moves leave each cable its least tension, and no further one slack");
+        hf_print_line(f, "the adjustments leave each cable its minimum tension and make no other cable slack");
     if (j->adjustment.n_low)
-        hf_print_line(f, "%d cable%s less than the asked %.4g N already and may not lose more", j->adjustment.n_low,
-                      j->adjustment.n_low == 1 ? " has" : "s have", j->adjustment.low_N);
+        hf_print_line(f, "%d cable%s less than the required %.4g N already and may not lose tension",
+                      j->adjustment.n_low, j->adjustment.n_low == 1 ? " has" : "s have", j->adjustment.low_N);
 }
 
 static const char *too_what(double error_m)
@@ -133,17 +136,18 @@ static void print_outliers(const hf_adjust_job *j, FILE *f)
     for (int k = 0; k < j->n_out && k < NAMED_MAX; k++) {
         int e = j->out[k];
         double error = j->estimate.cut_m[e], alone = j->by_places_m[k];
-        char by_places[64] = "";
+        char by_positions[64] = "";
         if (isfinite(alone))
-            snprintf(by_places, sizeof by_places, "; %.3g mm%s by the places alone", fabs(alone) * 1e3,
+            snprintf(by_positions, sizeof by_positions, "; the positions alone indicate %.3g mm%s", fabs(alone) * 1e3,
                      error * alone < 0 ? too_what(alone) : "");
         hf_print_line(f, "cable '%s' seems %.3g mm%s, %.1f sigma%s", j->built.scene.cable_id[e], fabs(error) * 1e3,
-                      too_what(error), fabs(hf_adjust_sigmas(j, e)), by_places);
+                      too_what(error), fabs(hf_adjust_sigmas(j, e)), by_positions);
     }
     if (j->n_out > NAMED_MAX)
         hf_print_line(f, "and %d more cables beyond %g sigma", j->n_out - NAMED_MAX, HF_ADJUST_STANDS_OUT);
     if (j->n_out)
-        hf_print_line(f, "  their sigmas hold such errors back (hifdm explain outlier): measure again after the moves");
+        hf_print_line(
+            f, "  such errors are estimated too small (hifdm explain outlier): measure again after the adjustments");
 }
 
 static double off_sigmas(const hf_adjust_job *j, int k)
@@ -156,11 +160,12 @@ static double off_sigmas(const hf_adjust_job *j, int k)
 static void print_places(const hf_adjust_job *j, FILE *f)
 {
     if (!j->n_far) return;
-    hf_print_line(f,
-                  "%d of %d measured nodes %s more than %g sigma off the estimated shape, and count in full "
-                  "(hifdm explain outlier); the worst:",
-                  j->n_far, j->measured.n_node, j->n_far == 1 ? "is" : "are", HF_ADJUST_OFF);
-    for (int k = 0; k < j->n_far && k < PLACES_MAX; k++) {
+    hf_print_line(
+        f,
+        "%d of %d measured nodes %s more than %g sigma off the estimated shape and count fully (hifdm explain "
+        "outlier); the worst:",
+        j->n_far, j->measured.n_node, j->n_far == 1 ? "is" : "are", HF_ADJUST_OFF);
+    for (int k = 0; k < j->n_far && k < NODES_MAX; k++) {
         int row = j->far_row[k];
         hf_print_line(f, "node '%s' (line %d): %.3g mm, %.1f sigma",
                       j->built.scene.node_id[j->built.model.node_of_row[row]], j->measured.line[row],
@@ -185,11 +190,10 @@ static void print_numbers(const hf_adjust_job *j, FILE *f)
             hf_print_line(f, "cables seem %.3g K %s than when they were cut, %.1f sigma", fabs(error),
                           error < 0 ? "colder" : "warmer", fabs(z));
         else
-            hf_print_line(f, "spool '%s' seems off by %+.3g of its %s, %.1f sigma", n->set, error,
+            hf_print_line(f, "spool '%s' seems to have an error of %+.3g of its %s, %.1f sigma", n->set, error,
                           n->kind == HF_ERROR_EA_BATCH ? "EA" : "lengths", fabs(z));
     }
-    if (n_off > NAMED_MAX)
-        hf_print_line(f, "and %d more numbers that cables share beyond %g sigma", n_off - NAMED_MAX, SEEMS_OFF);
+    if (n_off > NAMED_MAX) hf_print_line(f, "and %d more shared errors beyond %g sigma", n_off - NAMED_MAX, SEEMS_OFF);
 }
 
 static bool is_doubtful(const hf_adjust_turnbuckle *move)
@@ -202,8 +206,8 @@ static void print_moves(const hf_adjust_job *j, FILE *f)
     const hf_adjustment *a = &j->adjustment;
     int n_doubtful = 0;
     if (a->n_move)
-        hf_print_line(f, "%5s  %-20s %9s  %10s %10s  %10s %10s", "order", "cable", "move mm", "N before", "N after",
-                      "RMS mm", "to expect");
+        hf_print_line(f, "%5s  %-20s %13s  %10s %10s  %10s %11s", "order", "cable", "turnbuckle mm", "N before",
+                      "N after", "RMS mm", "expected mm");
     for (int k = 0; k < a->n_move; k++) {
         const hf_adjust_turnbuckle *move = &a->move[k];
         char slack[32] = "", gain[64] = "";
@@ -211,15 +215,16 @@ static void print_moves(const hf_adjust_job *j, FILE *f)
         if (is_doubtful(move))
             snprintf(gain, sizeof gain, "  gains %.4f +- %.4f", move->gain_m * 1e3, move->gain_sigma_m * 1e3);
         n_doubtful += is_doubtful(move);
-        hf_print_line(f, "%5d  %-20s %+9.6g  %10.4g %10.4g  %10.4f %10.4f%s%s", k + 1,
+        hf_print_line(f, "%5d  %-20s %+13.6g  %10.4g %10.4g  %10.4f %11.4f%s%s", k + 1,
                       j->built.scene.cable_id[move->cable], move->move_m * 1e3, move->before_N, move->after_N,
                       move->figure_m * 1e3, move->expected_m * 1e3, slack, gain);
     }
     if (n_doubtful)
-        hf_print_line(f,
-                      "%d of these moves gain%s less at %s place in the order than the measurement can tell (hifdm "
-                      "explain gain_sigma_m)",
-                      n_doubtful, n_doubtful == 1 ? "s" : "", n_doubtful == 1 ? "its" : "their");
+        hf_print_line(
+            f,
+            "the measurement cannot resolve the gain of %d of these adjustments at %s position in the order (hifdm "
+            "explain gain_sigma_m)",
+            n_doubtful, n_doubtful == 1 ? "its" : "their");
 }
 
 void hf_adjust_print_summary(const hf_adjust_job *j, const hf_options *o, FILE *f)
@@ -228,34 +233,36 @@ void hf_adjust_print_summary(const hf_adjust_job *j, const hf_options *o, FILE *
     const hf_tolerance_settings *t = &j->problem.settings.tolerance;
     const char *figure = hf_adjust_figure_word[j->task.settings->figure];
     if (!hf_adjust_fits(j))
-        hf_print_line(f, "the measurement does not fit this net: the moves below are not to be trusted");
-    hf_print_line(f, "%d of %d nodes measured, chi^2 %.3g per coordinate; supports %s", j->measured.n_node,
-                  j->built.model.n_node, hf_adjust_chi_square(j),
-                  t->sigma_support_m > 0 ? "are estimated, too"
-                                         : "are taken to be where the case has them (no tolerance.sigma_support_m)");
+        hf_print_line(f, "the measurement does not fit this net: do not trust the adjustments below");
+    hf_print_line(f, "%d of %d nodes measured, chi^2 %.3g per coordinate (1 is expected); supports %s",
+                  j->measured.n_node, j->built.model.n_node, hf_adjust_chi_square(j),
+                  t->sigma_support_m > 0 ? "are estimated"
+                                         : "are assumed at their positions in the case (no tolerance.sigma_support_m)");
     print_aim(j, f);
     if (isfinite(j->measured_m)) hf_print_line(f, "%s measured    %.4f mm", figure, j->measured_m * 1e3);
-    hf_print_line(f, "%s estimated   %.4f mm; with what is left open %.4f +- %.4f mm; as designed %.4f mm", figure,
-                  a->estimated_m * 1e3, a->doubt_m[0] * 1e3, a->spread_m[0] * 1e3, a->nominal_m * 1e3);
+    hf_print_line(f,
+                  "%s estimated   %.4f mm; expected %.4f +- %.4f mm over all nets that fit the measurement; of the "
+                  "design %.4f mm",
+                  figure, a->estimated_m * 1e3, a->doubt_m[0] * 1e3, a->spread_m[0] * 1e3, a->nominal_m * 1e3);
     print_numbers(j, f);
     print_outliers(j, f);
     print_places(j, f);
     print_moves(j, f);
     hf_print_line(f,
-                  "%s after %d move%s %.4f mm; with what is left open %.4f +- %.4f mm; a search over moves of "
-                  "%d cables, without least tensions, reached %.4f mm",
+                  "%s after %d adjustment%s %.4f mm; expected %.4f +- %.4f mm; a search over adjustments of all %d "
+                  "cables, without minimum tensions, reached %.4f mm",
                   figure, a->n_move, a->n_move == 1 ? "" : "s", a->adjusted_m * 1e3, a->doubt_m[1] * 1e3,
                   a->spread_m[1] * 1e3, j->task.n_cable, a->best_m * 1e3);
     if (a->n_maybe_slack)
         hf_print_line(
             f,
-            "%d of %d cables may be slack, as far as the measurement tells: how slack, places do not show (hifdm "
-            "explain maybe_slack)",
+            "%d of %d cables may be slack; positions do not show by how much a slack cable is too long (hifdm explain "
+            "maybe_slack)",
             a->n_maybe_slack, j->built.model.n_cable);
     print_end(j, f);
     print_instead(j, f);
-    if (o->output) hf_print_line(f, "moves in %s; above 0: let the cable out", o->output);
-    if (o->report) hf_print_line(f, "a page to look at: %s", o->report);
+    if (o->output) hf_print_line(f, "adjustments in %s; above 0, the turnbuckle lets the cable out", o->output);
+    if (o->report) hf_print_line(f, "report page: %s", o->report);
 }
 
 /* ---- for programs ---- */

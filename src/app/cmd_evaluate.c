@@ -4,11 +4,11 @@
  *      optimize.variables, there is a column for each boundary cable with a free end: its id, with its pretension
  *      in N. The columns may be in any order. An optional column `id` names the rows.
  * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation,merit, and one
- *      column per row of optimize.goals or optimize.objectives (hf_objectives_name). A front has no merit.
+ *      column per row of optimize.objective or optimize.front (hf_objectives_name). A front has no merit.
  *      One row per design, in the order of the input, with 17 significant digits. A missing value is nan. Without a
  *      column `id`, the rows are numbered from 1.
  * --jacobian: id,figure and a column per design variable. For every feasible design, the table has the derivatives
- *      of psi_m, or of each goal and of the merit, or of each objective.
+ *      of psi_m, or of each objective and of the merit.
  *
  *      case -> form-finding -> table -> batch -> results, and derivatives of feasible designs
  *
@@ -65,7 +65,7 @@ static void job_free(job *j)
 /* Reports that memory ran out for the table. Returns HF_NO_MEMORY. */
 static hf_status no_memory(const job *j, hf_messages *messages)
 {
-    return hf_error(messages, HF_NO_MEMORY, "out of memory for %d designs of %d variables", j->table.n_row,
+    return hf_error(messages, HF_NO_MEMORY, "out of memory for %d designs of %d design variables", j->table.n_row,
                     j->problem.model.n_variable);
 }
 
@@ -91,9 +91,10 @@ static hf_status name_columns(job *j, hf_messages *messages)
     for (int k = 0; k < m->n_variable; k++) {
         for (int i = 0; m->variable_cable[k] < 0 && i < m->n_variable; i++)
             if (m->variable_cable[i] >= 0 && !strcmp(j->name[i], j->name[k]))
-                return hf_error(messages, HF_BAD_CASE,
-                                "optimize.variables: cable '%s' has the name of a variable of a support; rename it",
-                                j->name[i]);
+                return hf_error(
+                    messages, HF_BAD_CASE,
+                    "optimize.variables: cable '%s' has the name of a design variable of a support; rename it",
+                    j->name[i]);
     }
     return HF_OK;
 }
@@ -144,7 +145,7 @@ static hf_status read_table(job *j, const char *path, hf_messages *messages)
 /* ---- the initial design ---- */
 
 /* Runs the form-finding. The solve of each design starts from its tensions and force densities. */
-static hf_status find_base(job *j, hf_messages *messages)
+static hf_status find_initial(job *j, hf_messages *messages)
 {
     hf_problem *p = &j->problem;
     HF_TRY(hf_problem_allocate(p, messages));
@@ -276,7 +277,7 @@ static void write_template(const void *context, FILE *f)
     const job *j = context;
     fputs("id", f);
     write_variable_names(j, f);
-    fputs("base", f);
+    fputs("initial", f);
     for (int k = 0; k < j->problem.model.n_variable; k++)
         write_number(j->problem.initial[k], f);
     fputc('\n', f);
@@ -298,7 +299,7 @@ static void print_summary(const job *j, const char *path, FILE *f)
                   j->problem.batch.n_thread == 1 ? "" : "s", path);
 }
 
-/* Prints the best design, and with optimize.goals its objectives. */
+/* Prints the best design, and with optimize.objective its objectives. */
 static void print_best(const job *from, hf_json *j)
 {
     const hf_objectives *objectives = &from->problem.objectives;
@@ -307,7 +308,7 @@ static void print_best(const job *from, hf_json *j)
     hf_json_integer(j, "best_row", from->best + 1);
     if (objectives->n_objective == 0) return;
     hf_json_number(j, "best_merit", best ? best->merit : (double)NAN);
-    hf_json_open(j, "best_goals", '{');
+    hf_json_open(j, "best_objectives", '{');
     for (int k = 0; k < objectives->n_objective; k++) {
         char name[HF_OBJECTIVE_NAME_SIZE];
         hf_json_number(j, hf_objectives_name(objectives, k, name), best ? best->objective[k] : (double)NAN);
@@ -355,13 +356,14 @@ static hf_status execute(job *j, const hf_options *o, const char *path, FILE *fi
 {
     HF_TRY(hf_problem_load(o->file, NULL, o->set, o->n_set, NULL, &j->problem, messages));
     if (j->problem.model.n_variable == 0)
-        return hf_error(messages, HF_BAD_CASE, "%s: no boundary cable has a free end: there is nothing to set",
-                        o->file);
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s: no boundary cable has a free end, so there are no design variables; add optimize.variables", o->file);
     HF_TRY(check_output(j, o, path, messages));
     if (o->jacobian) HF_TRY(check_output(j, o, o->jacobian, messages));
     HF_TRY(name_columns(j, messages));
     if (o->designs) HF_TRY(read_table(j, o->designs, messages));
-    HF_TRY(find_base(j, messages));
+    HF_TRY(find_initial(j, messages));
     if (o->template_path) return hf_file_out_write(path, write_template, j, messages);
     if (o->jacobian) HF_TRY(hf_problem_has_slopes(&j->problem, messages));
     HF_TRY(evaluate(j, o->threads, messages));
@@ -380,14 +382,14 @@ static hf_status check_options(const hf_options *o, hf_messages *messages)
 {
     if (!o->designs == !o->template_path)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm evaluate' needs either --designs FILE or --template FILE");
-    if (o->template_path && o->output) return hf_error(messages, HF_BAD_USAGE, "'-o' does not go with --template");
+    if (o->template_path && o->output) return hf_error(messages, HF_BAD_USAGE, "-o cannot be combined with --template");
     if (o->template_path && o->jacobian) return hf_error(messages, HF_BAD_USAGE, "--jacobian needs --designs FILE");
     if (o->jacobian && o->output && hf_path_will_be_same(o->jacobian, o->output))
         return hf_error(messages, HF_BAD_USAGE, "--jacobian and -o must name different files");
     if (o->jacobian && o->output) HF_TRY(hf_file_out_spare(o->output, "the table of results", o->jacobian, messages));
     if (o->designs && o->json && !o->output)
         return hf_error(messages, HF_BAD_USAGE,
-                        "--json needs -o FILE here: without it the table takes standard output");
+                        "--json needs -o FILE here, because otherwise the table goes to standard output");
     return HF_OK;
 }
 

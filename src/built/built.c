@@ -22,13 +22,14 @@
 static hf_status refuse_cables(const char *where, const hf_scene *s, const hf_workspace *w, hf_messages *messages)
 {
     int n = 0, first = 0;
-    hf_status status = hf_cable_demand_EA(s, where, "the net as built needs", "", messages);
+    hf_status status = hf_cable_demand_EA(s, where, "the as-built net needs", "", messages);
     for (int e = 0; e < s->n_cable; e++)
         if (w->tension_N[e] < 0 && n++ == 0) first = e;
     if (n == 0) return status;
-    return hf_error(messages, HF_BAD_CASE,
-                    "%s: %d cables push, like '%s' with %.3g N: the net as built has cables alone, no struts", where, n,
-                    s->cable_id[first], w->tension_N[first]);
+    return hf_error(
+        messages, HF_BAD_CASE,
+        "%s: %d cables are in compression, such as '%s' with %.3g N, but the as-built net cannot have struts", where, n,
+        s->cable_id[first], w->tension_N[first]);
 }
 
 /* Sets the resting positions of the supports: those of the design, less the displacement of the truss at
@@ -100,7 +101,7 @@ hf_status hf_built_make(const char *where, const hf_scene *s, const hf_model *m,
     if (HF_ARENA_ARRAYS(&b->block, HF_ARRAY(b->scene.law, n), HF_ARRAY(b->scene.target, n), HF_ARRAY(b->scene.EA_N, n),
                         HF_ARRAY(b->scene.position_m, n_coordinate), HF_ARRAY(b->position_m, n_coordinate),
                         HF_ARRAY(b->tension_N, n)) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for the net as built", where);
+        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for the as-built net", where);
     b->form.method = HF_METHOD_NEWTON;
     b->form.stop = HF_STOP_RESIDUAL;
     b->form.factor = HF_FACTOR_OWN; /* samples share a factor of hf_band_factor */

@@ -28,7 +28,7 @@ static double read_sigma(hf_csv *t, const int *where, int r, const char *id, dou
     if (is_given) sigma_m = hf_csv_number(t, r, where[SIGMA], id, column_name[SIGMA]);
     if (is_given && sigma_m <= 0) hf_csv_fault(t, t->line[r], id, "sigma_m must be above zero", "");
     if (!is_given && !(sigma_m > 0))
-        hf_csv_fault(t, t->line[r], id, "has no sigma_m; give the column, or adjust.sigma_m for all nodes", "");
+        hf_csv_fault(t, t->line[r], id, "has no sigma_m; add the column, or adjust.sigma_m for all nodes", "");
     return sigma_m;
 }
 
@@ -56,7 +56,7 @@ static hf_status read_nodes(hf_csv *t, const int *where, const hf_scene *scene, 
         if (node >= 0)
             read_node(t, where, r, m->row_of_node[node], sigma_m, measured);
         else if (*id)
-            hf_csv_fault(t, t->line[r], id, "the net has no node of this id", "");
+            hf_csv_fault(t, t->line[r], id, "the net has no node with this id", "");
     }
     free(rows);
     free(nodes);
@@ -70,8 +70,8 @@ static hf_status count_nodes(const char *path, const hf_model *m, const hf_measu
     for (int row = 0; row < m->n_free + m->n_attachment; row++)
         n += measured->line[row] > 0;
     if (n >= NODES_MIN) return HF_OK;
-    return hf_error(messages, HF_BAD_CASE, "%s: has %d node%s of the net that can move, %d at least are needed", path,
-                    n, n == 1 ? "" : "s", NODES_MIN);
+    return hf_error(messages, HF_BAD_CASE, "%s: has %d free node%s of the net, but at least %d are needed", path, n,
+                    n == 1 ? "" : "s", NODES_MIN);
 }
 
 hf_status hf_measured_read(const char *path, const hf_scene *scene, const hf_model *m, double sigma_m,
@@ -218,7 +218,7 @@ static const char *guess_unit(double ratio)
 static void describe_motion(const rigid_fit *f, int n, char text[FRAME_SIZE])
 {
     snprintf(text, FRAME_SIZE,
-             "a shift of their centre by (%.4g, %.4g, %.4g) mm and a turn by %.4g degrees explain all but %.3g mm",
+             "a shift of their centre by (%.4g, %.4g, %.4g) mm and a rotation by %.4g degrees explain all but %.3g mm",
              (f->centre_m[1][0] - f->centre_m[0][0]) * 1e3, (f->centre_m[1][1] - f->centre_m[0][1]) * 1e3,
              (f->centre_m[1][2] - f->centre_m[0][2]) * 1e3, f->angle / HF_RAD_PER_DEG, sqrt(f->rest / n) * 1e3);
 }
@@ -252,17 +252,19 @@ static hf_status explain_far(const char *path, const hf_built *b, double all_m, 
     const char *unit = guess_unit(sqrt(f.spread[1] / f.spread[0]));
     describe_motion(&f, measured->n_node, frame);
     if (unit)
-        return hf_error(messages, HF_BAD_CASE, "%s: the places seem to be in %s; x_m, y_m and z_m are in m", path,
-                        unit);
+        return hf_error(messages, HF_BAD_CASE, "%s: the positions seem to be in %s; x_m, y_m and z_m must be in m",
+                        path, unit);
     if (f.rest < EXPLAINED * f.square)
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s: the nodes are %.4g mm from where the design has them (RMS), where section tolerance "
-                        "allows for %.3g mm; %s: bring the places into the frame of the case",
-                        path, rms_m * 1e3, all_m * 1e3, frame);
-    return hf_error(messages, HF_BAD_CASE,
-                    "%s: the nodes are %.4g mm from where the design has them (RMS), where section tolerance allows "
-                    "for %.3g mm: this is another net, or its errors are larger",
-                    path, rms_m * 1e3, all_m * 1e3);
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s: the nodes are %.4g mm RMS from their positions in the design, but section tolerance allows "
+            "for %.3g mm; %s. Transform the positions into the frame of the case",
+            path, rms_m * 1e3, all_m * 1e3, frame);
+    return hf_error(
+        messages, HF_BAD_CASE,
+        "%s: the nodes are %.4g mm RMS from their positions in the design, but section tolerance allows for "
+        "%.3g mm: this is another net, or its errors are larger",
+        path, rms_m * 1e3, all_m * 1e3);
 }
 
 /* Reports the distant nodes one by one, at largest HF_FAULT_MAX of them. */
@@ -275,10 +277,11 @@ static void name_far(const char *path, const hf_built *b, const double *expected
         if (!measured->line[row]) continue;
         double far_m = distance_of(b, measured, row), allowed = allowed_m(expected_m, all_m, measured, row);
         if (far_m <= FAR * allowed || n++ >= HF_FAULT_MAX) continue;
-        hf_error(messages, HF_BAD_CASE,
-                 "%s:%d: node '%s' is %.4g mm from where the design has it, where section tolerance and sigma_m allow "
-                 "for %.3g mm: wrong id or number? Correct the line or leave it out",
-                 path, measured->line[row], b->scene.node_id[i], far_m * 1e3, allowed * 1e3);
+        hf_error(
+            messages, HF_BAD_CASE,
+            "%s:%d: node '%s' is %.4g mm from its position in the design, but section tolerance and sigma_m allow for "
+            "%.3g mm: check the id and the numbers, and correct the line or leave it out",
+            path, measured->line[row], b->scene.node_id[i], far_m * 1e3, allowed * 1e3);
     }
 }
 
@@ -303,10 +306,11 @@ hf_status hf_measured_check(const char *path, const hf_built *b, const double *e
     }
     double tells_m = sqrt(allowed_square / measured->n_node - all_m * all_m);
     if (tells_m > VAGUE * all_m)
-        hf_warning(messages,
-                   "%s: with a sigma_m of about %.3g m these places tell next to nothing: section tolerance allows for "
-                   "%.3g m only",
-                   path, tells_m / sqrt(3), all_m);
+        hf_warning(
+            messages,
+            "%s: with a sigma_m of about %.3g m these positions are of almost no use: section tolerance allows for "
+            "%.3g m only",
+            path, tells_m / sqrt(3), all_m);
     rigid_fit f = fit_motion(b, measured);
     if (f.square > DOUBTFUL * DOUBTFUL * allowed_square && f.rest < EXPLAINED * f.square) {
         char frame[FRAME_SIZE];

@@ -44,8 +44,12 @@ static bool read_nodes(hf_csv *t, const int *where, hf_scene *s)
 enum { CABLE_ID, CABLE_I, CABLE_J, CABLE_GROUP, CABLE_LAW, CABLE_VALUE, CABLE_EA, CABLE_SET, N_CABLE_COLUMN };
 static const char *const cable_column[N_CABLE_COLUMN] = {"id", "i", "j", "group", "law", "value", "EA_N", "set"};
 
-static const char *const cable_ours[] = {"tension_N",    "length_m",          "q_N_per_m",    "l0_m",
-                                         "elongation_m", "l0_minus_theory_m", "adjustment_m", NULL};
+/* Columns of the tables that hifdm writes. The last three are in cut lists of versions before 0.3. */
+static const char *const cable_ours[] = {"tension_N",    "length_m",
+                                         "q_N_per_m",    "unstressed_length_m",
+                                         "elongation_m", "unstressed_minus_target_m",
+                                         "l0_m",         "l0_minus_theory_m",
+                                         "adjustment_m", NULL};
 
 /* Returns true if every cable has a value. Only then are the columns in cable_ours ignored silently. If a value is
  * empty, the user may expect that one of these columns replaces it. */

@@ -34,14 +34,14 @@ hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messag
     HF_TRY(hf_file_out_target(path, target, messages));
     hf_file_out_clean(target); /* temporary files of ended processes, also when the name is refused below */
     int seen = hf_path_look_at_link(target, &info);
-    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
+    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot read its status: %s", path, strerror(errno));
     if (seen == 0) return HF_OK;
     if (!S_ISREG(info.st_mode))
-        return hf_error(messages, HF_IO, "%s: is not an ordinary file; choose another name", path);
+        return hf_error(messages, HF_IO, "%s: is not a regular file; choose another name", path);
     return force ? HF_OK : hf_error(messages, HF_EXISTS, "%s exists; use --force to replace it", path);
 }
 
-static const char *const shape_word[3] = {"form-finding", "search", "refined"};
+static const char *const shape_word[3] = {"form-finding", "search", "refinement"};
 
 /* Reads a load case of the as-built net. Messages call the shape by the name of the load case. */
 static hf_status read_load_case(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
@@ -52,9 +52,9 @@ static hf_status read_load_case(const hf_export_request *o, hf_export_stored *st
     for (; k < s->n_load_case && strcmp(o->load_case, s->load_case[k].name) != 0; k++)
         if (used < (int)sizeof known)
             used += snprintf(known + used, sizeof known - (size_t)used, "%s%s", k ? ", " : "", s->load_case[k].name);
-    if (s->n_load_case == 0) return hf_error(messages, HF_BAD_USAGE, "%s: this run has no cases", o->file);
+    if (s->n_load_case == 0) return hf_error(messages, HF_BAD_USAGE, "%s: this run has no load cases", o->file);
     if (k == s->n_load_case)
-        return hf_error(messages, HF_BAD_USAGE, "%s: has no case '%s'; it has %s", o->file, o->load_case, known);
+        return hf_error(messages, HF_BAD_USAGE, "%s: has no load case '%s'; it has %s", o->file, o->load_case, known);
     stored->word = s->load_case[k].name;
     HF_TRY(hf_store_read_scene(o->file, &stored->scene, messages));
     return hf_store_read_load_case(o->file, o->load_case, &stored->shape, messages);
@@ -79,8 +79,7 @@ hf_status hf_export_read(const hf_export_request *o, hf_export_stored *stored, h
 bool hf_export_has_truss(const hf_export_request *o, const hf_summary *s, hf_messages *messages)
 {
     if (s->has_truss && !s->finished)
-        hf_warning(messages, "%s: is unfinished: the export has no truss, which is stored at the end of the run",
-                   o->file);
+        hf_warning(messages, "%s: is unfinished: the export has no truss, because a run stores it at its end", o->file);
     return s->has_truss && s->finished;
 }
 
@@ -90,10 +89,11 @@ void hf_export_warn_of_front(const char *file, const hf_summary *s, bool is_load
     bool is_end = !is_load_case && hf_store_result_stage(s) != HF_STAGE_FORM;
     if (!point) return;
     hf_warning(messages,
-               "%s: no point of its front is taken: the shape is %s%s; `hifdm run %s --point %s:%d -o point%d.h5`, "
-               "with the --set of the front, makes point %d a result",
-               file, is_end ? "the end of the front with the least " : "the form-finding's, before any optimisation",
-               is_end ? s->objectives.name[0] : "", s->case_path, file, point, point, point);
+               "%s: no point of its front is taken: the shape is %s%s. To make point %d a result, run `hifdm run %s "
+               "--point %s:%d -o point%d.h5` with the --set options of the front",
+               file,
+               is_end ? "the end of the front with the minimum " : "that of the form-finding, before optimisation",
+               is_end ? s->objectives.name[0] : "", point, s->case_path, file, point, point);
 }
 
 void hf_export_free(hf_export_stored *stored)

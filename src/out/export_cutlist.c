@@ -1,20 +1,23 @@
 /* Writes what a workshop needs to make the net of a stored shape. --cutlist NAME.csv gives four CSV files:
  *
- *   NAME.csv       : id,i,j,group,tension_N,length_m,l0_m,elongation_m,EA_N,l0_minus_theory_m,law,value[,set]
- *                    l0_m               unstressed length, length_m / (1 + T/EA); a slack cable of law length or
- *                                       elastic has the length that its law gives
- *                    elongation_m       length_m - l0_m
- *                    l0_minus_theory_m  l0_m minus the unstressed length for the same tension at the target positions:
- *                                       how much longer (> 0) a turnbuckle must make a cable cut for these positions
- *                    law, value         "elastic" and l0_m, so that NAME.csv can be imported as cables.csv of the
- *                                       as-built net
- *                    set                names of sets with blanks between them, when the net has sets
- *   NAME_mm.csv    : id,i,j,group,l0_mm,length_mm,elongation_mm,tension_N,l0_minus_theory_mm[,set]
+ *   NAME.csv       : id,i,j,group,tension_N,length_m,unstressed_length_m,elongation_m,EA_N,unstressed_minus_target_m,
+ *                    law,value[,set]
+ *                    unstressed_length_m        length_m / (1 + T/EA); a slack cable of law length or elastic has the
+ *                                               length that its law gives
+ *                    elongation_m               length_m - unstressed_length_m
+ *                    unstressed_minus_target_m  unstressed_length_m minus the unstressed length for the same tension at
+ *                                               the target positions: how much longer (> 0) a turnbuckle must make a
+ *                                               cable that was cut for these positions
+ *                    law, value                 "elastic" and unstressed_length_m, so that NAME.csv can be imported as
+ *                                               cables.csv of the as-built net
+ *                    set                        names of sets with blanks between them, when the net has sets
+ *   NAME_mm.csv    : id,i,j,group,unstressed_length_mm,length_mm,elongation_mm,tension_N,unstressed_minus_target_mm
+ *                    [,set]
  *                    the same for people, rounded to 0.001 mm and 0.01 N
  *   NAME_nodes.csv : id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]
  *                    positions of the nodes in the jig; can be imported as nodes.csv
- *   NAME_totals.csv: group,cables,l0_m,length_m,least_tension_N,largest_tension_N,least_l0_minus_theory_m,
- *                    largest_l0_minus_theory_m
+ *   NAME_totals.csv: group,cables,unstressed_length_m,length_m,tension_min_N,tension_max_N,
+ *                    unstressed_minus_target_min_m,unstressed_minus_target_max_m
  *                    one row for each group, for all cables, and for each set
  *
  * Numbers have 17 significant digits except in NAME_mm.csv, so the net imported from these files has the stored
@@ -43,8 +46,10 @@ static void write_cables(const void *context, FILE *f)
 {
     const view *v = context;
     const hf_scene *s = v->scene;
-    fprintf(f, "id,i,j,group,tension_N,length_m,l0_m,elongation_m,EA_N,l0_minus_theory_m,law,value%s\n",
-            s->n_set ? ",set" : "");
+    fprintf(
+        f,
+        "id,i,j,group,tension_N,length_m,unstressed_length_m,elongation_m,EA_N,unstressed_minus_target_m,law,value%s\n",
+        s->n_set ? ",set" : "");
     for (int e = 0; e < s->n_cable; e++) {
         hf_cut c = hf_cut_of(s, v->shape, v->reference_N, e);
         hf_export_ends_of(s, e, f);
@@ -65,7 +70,8 @@ static void write_bench(const void *context, FILE *f)
 {
     const view *v = context;
     const hf_scene *s = v->scene;
-    fprintf(f, "id,i,j,group,l0_mm,length_mm,elongation_mm,tension_N,l0_minus_theory_mm%s\n", s->n_set ? ",set" : "");
+    fprintf(f, "id,i,j,group,unstressed_length_mm,length_mm,elongation_mm,tension_N,unstressed_minus_target_mm%s\n",
+            s->n_set ? ",set" : "");
     for (int e = 0; e < s->n_cable; e++) {
         hf_cut c = hf_cut_of(s, v->shape, v->reference_N, e);
         hf_export_ends_of(s, e, f);
@@ -95,29 +101,30 @@ typedef enum { OF_GROUP, OF_SET, OF_ALL } total_kind;
 static void write_total(const view *v, const char *name, total_kind kind, int which, FILE *f)
 {
     int n = 0;
-    double l0_m = 0, length_m = 0, tension_N[2] = {INFINITY, -INFINITY}, l0_minus_theory_m[2] = {INFINITY, -INFINITY};
+    double unstressed_m = 0, length_m = 0, tension_N[2] = {INFINITY, -INFINITY},
+           difference_m[2] = {INFINITY, -INFINITY};
     for (int e = 0; e < v->scene->n_cable; e++) {
         if (kind == OF_GROUP && v->scene->group[e] != which) continue;
         if (kind == OF_SET && !hf_cable_set_has(v->scene, which, e)) continue;
         hf_cut c = hf_cut_of(v->scene, v->shape, v->reference_N, e);
         n++;
-        l0_m += c.l0_m;
+        unstressed_m += c.l0_m;
         length_m += c.length_m;
         tension_N[0] = fmin(tension_N[0], c.tension_N);
         tension_N[1] = fmax(tension_N[1], c.tension_N);
-        l0_minus_theory_m[0] = fmin(l0_minus_theory_m[0], c.l0_minus_theory_m);
-        l0_minus_theory_m[1] = fmax(l0_minus_theory_m[1], c.l0_minus_theory_m);
+        difference_m[0] = fmin(difference_m[0], c.l0_minus_theory_m);
+        difference_m[1] = fmax(difference_m[1], c.l0_minus_theory_m);
     }
     if (n)
-        fprintf(f, "%s,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", name, n, l0_m, length_m, tension_N[0], tension_N[1],
-                l0_minus_theory_m[0], l0_minus_theory_m[1]);
+        fprintf(f, "%s,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", name, n, unstressed_m, length_m, tension_N[0],
+                tension_N[1], difference_m[0], difference_m[1]);
 }
 
 static void write_totals(const void *context, FILE *f)
 {
     const view *v = context;
-    fputs("group,cables,l0_m,length_m,least_tension_N,largest_tension_N,least_l0_minus_theory_m,largest_l0_minus_"
-          "theory_m\n",
+    fputs("group,cables,unstressed_length_m,length_m,tension_min_N,tension_max_N,unstressed_minus_target_min_m,"
+          "unstressed_minus_target_max_m\n",
           f);
     for (int group = 0; group < 2; group++)
         write_total(v, hf_group_word[group], OF_GROUP, group, f);
@@ -144,17 +151,18 @@ static hf_status write_cutlist(const hf_export_request *o, const hf_export_store
 {
     const hf_scene *scene = &stored->scene;
     static char path[N_FILE][PATH_MAX];
-    HF_TRY(hf_cable_demand_EA(scene, o->file, "cut lengths need", ", and run again", messages));
+    HF_TRY(hf_cable_demand_EA(scene, o->file, "cutting lengths need", ", and run again", messages));
     HF_TRY(name_files(o, path, messages)); /* all names are checked before a file is written */
     const view v = {scene, &stored->shape, hf_model_reference_N(scene, stored->summary.pretension_N)};
     HF_TRY(hf_file_out_set_write(o->files, path[0], write_cables, &v, messages));
     HF_TRY(hf_file_out_set_write(o->files, path[1], write_bench, &v, messages));
     HF_TRY(hf_file_out_set_write(o->files, path[2], write_nodes, &v, messages));
     HF_TRY(hf_file_out_set_write(o->files, path[3], write_totals, &v, messages));
-    snprintf(said, size,
-             "%s: cut lengths of %d cables of the %s shape in %s, for the bench in %s, the jig in %s, totals "
-             "in %s",
-             o->file, scene->n_cable, stored->word, path[0], path[1], path[2], path[3]);
+    snprintf(
+        said, size,
+        "%s: cutting lengths of %d cables of the %s shape in %s, in mm for the bench in %s, node positions for the jig "
+        "in %s, totals in %s",
+        o->file, scene->n_cable, stored->word, path[0], path[1], path[2], path[3]);
     return HF_OK;
 }
 
@@ -166,7 +174,8 @@ static hf_status export_cutlist(const hf_export_request *request, char *said, si
 const hf_exporter hf_exporter_cutlist = {
     .option = "--cutlist",
     .argument = "FILE",
-    .help = "write unstressed lengths to FILE; beside it them in mm for the bench, the jig, totals",
+    .help = "write unstressed lengths to FILE, and beside it: lengths in mm for the bench, node positions for the jig, "
+            "totals",
     .takes_stage = true,
     .write = export_cutlist,
 };

@@ -63,23 +63,25 @@ static hf_status export_front(const hf_export_request *o, char *said, size_t siz
     static view v;
     v = (view){0};
     HF_TRY(hf_export_claim(o, o->output, messages));
-    HF_TRY(hf_store_read_summary(o->file, &v.summary, messages));
-    if (!v.summary.front)
-        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no front: its case has no optimize.objectives",
-                        o->file);
-    hf_status status = hf_store_read_front(o->file, &v.front, &v.variable, &v.variable_size, messages);
+    hf_status status = hf_store_read_summary(o->file, &v.summary, messages);
+    if (status == HF_OK && !v.summary.front)
+        status = hf_error(messages, HF_BAD_USAGE, "%s: this run has no front, because its case has no optimize.front",
+                          o->file);
+    if (status == HF_OK) status = hf_store_read_front(o->file, &v.front, &v.variable, &v.variable_size, messages);
     if (status == HF_OK) status = hf_file_out_set_write(o->files, o->output, write_front, &v, messages);
     if (status == HF_OK)
         snprintf(said, size, "%s: %d points of the front of %d objectives in %s", o->file, v.front.n_point,
                  v.front.n_objective, o->output);
     hf_front_free(&v.front);
     free(v.variable);
+    hf_summary_free(&v.summary);
+    hf_summary_free(&v.summary);
     return status;
 }
 
 const hf_exporter hf_exporter_front = {
     .option = "--front",
     .argument = "FILE",
-    .help = "write the front of optimize.objectives as a CSV file: objectives, slopes and design of each point",
+    .help = "write the front of optimize.front as a CSV file: objectives, slopes and design of each point",
     .write = export_front,
 };

@@ -72,9 +72,9 @@ double hf_print_loss_dB(double loss_dB)
 const char *hf_print_change(double value, double base, char text[HF_PRINT_CHANGE_SIZE])
 {
     double below = 100 * (1 - value / base);
-    int n = snprintf(text, HF_PRINT_CHANGE_SIZE, "%.2f %%", fabs(below));
-    snprintf(text + n, HF_PRINT_CHANGE_SIZE - (size_t)n, below > 0 ? " below" : " above");
-    if (!strncmp(text, "0.00 ", 5)) strcpy(text, "as large as");
+    int n = snprintf(text, HF_PRINT_CHANGE_SIZE, fabs(below) < 10 ? "%.2f %%" : "%.1f %%", fabs(below));
+    snprintf(text + n, HF_PRINT_CHANGE_SIZE - (size_t)n, below > 0 ? " lower than" : " higher than");
+    if (!strncmp(text, "0.00 ", 5)) strcpy(text, "the same as");
     return text;
 }
 

@@ -13,7 +13,7 @@ static void print_result(const hf_form_result *r, FILE *f)
 {
     char inner[32], boundary[32], slack[40] = "";
     if (r->n_slack) snprintf(slack, sizeof slack, " (%d slack cable%s)", r->n_slack, r->n_slack == 1 ? "" : "s");
-    fprintf(f, "                tension ratio %s inside, %s on the boundary%s; largest nodal residual %.1e N\n",
+    fprintf(f, "                tension ratio %s inside, %s on the boundary%s; maximum nodal residual %.1e N\n",
             hf_print_decimals(r->inner_tension_ratio, inner), hf_print_decimals(r->boundary_tension_ratio, boundary),
             slack, r->residual_N);
 }
@@ -42,7 +42,7 @@ void hf_print_held(const hf_held_limits *h, FILE *f)
     char limit[32], more[40];
     for (int i = 0; i < h->n; i++) {
         snprintf(more, sizeof more, " and %d more", h->count[i] - 1);
-        hf_print_line(f, "                at %s: %s%s at %.6g", limit_of(h, i, limit), h->name[i],
+        hf_print_line(f, "                at a limit (%s): %s%s at %.6g", limit_of(h, i, limit), h->name[i],
                       h->count[i] > 1 ? more : "", h->bound[i]);
     }
 }
@@ -68,7 +68,7 @@ void hf_print_objectives(const hf_summary *s, const hf_form_result *r, FILE *f)
     if (s->objectives.is_front)
         fputs("                objectives", f);
     else
-        fprintf(f, "                merit %.6g of", r->merit);
+        fprintf(f, "                merit %.6g from", r->merit);
     for (int k = 0; k < s->objectives.n; k++) {
         (s->objectives.is_front ? hf_print_objective : print_objective)(k ? ", " : " ", s->objectives.name[k],
                                                                         r->objective[k], f);
@@ -83,23 +83,25 @@ static void print_certificate(const hf_form_result *r, FILE *f)
         fprintf(f, "                estimated position error %.1e m; condition %.1e; backward error %.1e\n",
                 r->position_error_m, r->condition, r->backward_error);
     if (r->bound_reason == HF_BOUND_CERTIFIED)
-        fprintf(f, "                proven: no node is farther than %.1e m from equilibrium, psi is right to %.1e m\n",
-                r->position_bound_m, r->psi_bound_m);
+        fprintf(
+            f,
+            "                certified: no node is farther than %.1e m from equilibrium; psi is accurate to %.1e m\n",
+            r->position_bound_m, r->psi_bound_m);
     else if (r->bound_reason != HF_BOUND_NONE)
-        fprintf(f, "                no proven bound of the error: %s\n", hf_bound_reason_meaning((int)r->bound_reason));
+        fprintf(f, "                no certified error bound: %s\n", hf_bound_reason_meaning((int)r->bound_reason));
 }
 
 static void print_facets(const hf_surface_measures *m, FILE *f)
 {
     if (m->n_facet == 0) return;
     if (isnan(m->facet_half_path_rms_m)) {
-        fprintf(f, "                its %d facets: not known, since the mesh pulls on a slack cable\n", m->n_facet);
+        fprintf(f, "                %d facets: errors unknown, because the mesh pulls on a slack cable\n", m->n_facet);
         return;
     }
-    fprintf(f, "                its %d facets: half-path RMS %.4f mm, normal %.4f mm", m->n_facet,
+    fprintf(f, "                %d facets: half-path RMS %.4f mm, normal %.4f mm", m->n_facet,
             m->facet_half_path_rms_m * 1e3, m->facet_normal_rms_m * 1e3);
     if (isfinite(m->facet_fit_half_path_rms_m))
-        fprintf(f, "; best fit (f %.4f m) %.4f mm, %.4f mm", m->facet_fit_focal_length_m,
+        fprintf(f, "; after best fit (f %.4f m) %.4f mm, %.4f mm", m->facet_fit_focal_length_m,
                 m->facet_fit_half_path_rms_m * 1e3, m->facet_fit_normal_rms_m * 1e3);
     if (isfinite(m->pillow_rms_m)) fprintf(f, "; pillow %.4f mm RMS", m->pillow_rms_m * 1e3);
     if (m->n_open_face) fprintf(f, "; %d face%s left out", m->n_open_face, m->n_open_face == 1 ? "" : "s");
@@ -109,7 +111,7 @@ static void print_facets(const hf_surface_measures *m, FILE *f)
 static void print_gain(double loss_dB, double limit_Hz, FILE *f)
 {
     if (isnan(loss_dB))
-        fprintf(f, "beyond Ruze's formula, which ends at %g dB (%.3g GHz)", HF_RUZE_MOST_DB, limit_Hz / 1e9);
+        fprintf(f, "above %g dB, the limit of Ruze's formula (%.3g GHz)", HF_RUZE_MOST_DB, limit_Hz / 1e9);
     else
         fprintf(f, "%.3g dB", hf_print_loss_dB(loss_dB));
 }
@@ -123,30 +125,31 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
             s->surface.kind == HF_SURFACE_PARABOLOID ? "paraboloid" : "parabolic cylinder", m->half_path_rms_m * 1e3,
             m->normal_rms_m * 1e3);
     if (m->fit.converged)
-        fprintf(f, "best fit (f %.4f m) %.4f mm, %.4f mm\n", m->fit.focal_length_m, m->fit.half_path_rms_m * 1e3,
+        fprintf(f, "after best fit (f %.4f m) %.4f mm, %.4f mm\n", m->fit.focal_length_m, m->fit.half_path_rms_m * 1e3,
                 m->fit.normal_rms_m * 1e3);
     else
-        fputs("best fit not converged\n", f);
+        fputs("the best fit did not converge\n", f);
     print_facets(m, f);
-    fprintf(f, "                deviations 50/90/95/99 %%: %.3f/%.3f/%.3f/%.3f mm, largest %.3f mm",
+    fprintf(f,
+            "                deviation of 50/90/95/99 %% of the nodes at most %.3f/%.3f/%.3f/%.3f mm, maximum %.3f mm",
             m->deviation_p50_m * 1e3, m->deviation_p90_m * 1e3, m->deviation_p95_m * 1e3, m->deviation_p99_m * 1e3,
             m->deviation_max_m * 1e3);
     if (isfinite(m->faceting_rms_m)) fprintf(f, "; faceting %.4f mm", m->faceting_rms_m * 1e3);
     fputc('\n', f);
     for (int k = 0; k < s->surface.frequencies_Hz.n; k++) {
-        fprintf(f, "                loss of gain at %g GHz: ", s->surface.frequencies_Hz.value[k] / 1e9);
+        fprintf(f, "                gain loss at %g GHz: ", s->surface.frequencies_Hz.value[k] / 1e9);
         print_gain(m->gain_loss_dB[k], m->ruze_limit_Hz, f);
         if (m->fit.converged) {
-            fputs("; best fit: ", f);
+            fputs(", after best fit ", f);
             print_gain(m->fit_gain_loss_dB[k], m->fit.ruze_limit_Hz, f);
         }
         /* Facets add an error to that of the nodes, because the mesh is flat between them. */
         if (isfinite(m->facet_half_path_rms_m)) {
-            fputs("; facets: ", f);
+            fputs("; of the facets ", f);
             print_gain(m->facet_gain_loss_dB[k], m->facet_ruze_limit_Hz, f);
         }
         if (isfinite(m->facet_fit_half_path_rms_m)) {
-            fputs(", best fit ", f);
+            fputs(", after best fit ", f);
             print_gain(m->facet_fit_gain_loss_dB[k], m->facet_fit_ruze_limit_Hz, f);
         }
         fputc('\n', f);
@@ -155,28 +158,28 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
 
 /* ---- search ---- */
 
-static void print_optimize(const hf_summary *s, FILE *f)
+static void print_search(const hf_summary *s, FILE *f)
 {
     const hf_stage_summary *stage = &s->stage[HF_STAGE_SEARCH];
     char wall[32], change[HF_PRINT_CHANGE_SIZE];
     hf_print_duration(stage->wall_s, wall, sizeof wall);
     if (stage->result.status != HF_OK) {
-        fprintf(f, "  optimisation  no feasible design in %ld evaluations, %s\n", s->search.evaluations, wall);
+        fprintf(f, "  search        no feasible design in %ld evaluations, %s\n", s->search.evaluations, wall);
         return;
     }
-    fprintf(f, "  optimisation  psi %.4f mm", stage->result.psi_m * 1e3);
+    fprintf(f, "  search        psi %.4f mm", stage->result.psi_m * 1e3);
     if (s->front)
-        fprintf(f, ": the end of the front with the least %s", s->objectives.name[0]);
+        fprintf(f, ": the end of the front with the minimum %s", s->objectives.name[0]);
     else if (s->objectives.n > 0 && !s->objectives.is_front &&
              s->stage[HF_STAGE_FORM].result.merit > 0) /* psi is not the objective */
-        fprintf(f, ", merit %.6g, %s that of the form-finding", stage->result.merit,
+        fprintf(f, ", merit %.6g, %s after form-finding", stage->result.merit,
                 hf_print_change(stage->result.merit, s->stage[HF_STAGE_FORM].result.merit, change));
     else /* initial_psi_m is evaluated under the same rule, so only the tensions differ */
-        hf_print_gained(s, stage->result.psi_m, s->search.initial_psi_m, f);
+        hf_print_gained(stage->result.psi_m, s->search.initial_psi_m, f);
     fprintf(f, "; found in generation %d\n", s->search.best_generation);
     print_result(&stage->result, f);
     if (s->search.n_at_lower + s->search.n_at_upper > 0)
-        fprintf(f, "                %d of %d variables at their lower and %d at their upper bounds\n",
+        fprintf(f, "                %d of %d design variables at their lower bounds, %d at their upper bounds\n",
                 s->search.n_at_lower, s->n_variable, s->search.n_at_upper);
     hf_print_held(stage->held, f);
     print_sets(stage->sets, f);
@@ -184,16 +187,16 @@ static void print_optimize(const hf_summary *s, FILE *f)
     print_certificate(&stage->result, f);
     print_surface(s, HF_STAGE_SEARCH, f);
     if (s->search.planes)
-        fprintf(f, "                symmetry: %s; %d independent genes of %d\n",
+        fprintf(f, "                symmetry: %s; %d of %d design variables are independent\n",
                 hf_symmetry_planes_text(s->search.planes), s->search.n_leader, s->n_variable);
-    fprintf(f, "                %d generations, %ld evaluations (%ld infeasible)", s->search.generations,
-            s->search.evaluations, s->search.infeasible);
+    fputs("                ", f);
+    hf_print_generations(&s->search, f);
+    fprintf(f, ", %ld evaluations (%ld infeasible)", s->search.evaluations, s->search.infeasible);
     if (!s->finished) { /* other figures are those of the last publication, which may be before the first generation */
         fputs(" so far\n", f);
         return;
     }
-    fprintf(f, " by %s, stopped by %s\n", hf_solver_word[s->search.solver],
-            hf_population_stop_word[s->search.algorithm_stop]);
+    fprintf(f, " by %s\n", hf_solver_word[s->search.solver]);
     fprintf(f, "                %s, %.0f evaluations/s; cpu_s / (wall_s * threads) = %.3f on %d thread%s\n", wall,
             (double)s->search.evaluations / stage->wall_s, hf_summary_utilisation(s), s->threads,
             s->threads == 1 ? "" : "s");
@@ -201,27 +204,33 @@ static void print_optimize(const hf_summary *s, FILE *f)
 
 /* ---- refinement ---- */
 
+/* Prints how the refinement ended, in one line. */
+static void print_end(const hf_summary *s, const char *wall, FILE *f)
+{
+    const hf_form_result *r = &s->stage[HF_STAGE_REFINE].result;
+    char boundary[32];
+    fprintf(f, "  refine        psi %.4f mm, %s; started from the %s; boundary ratio %s; ", r->psi_m * 1e3,
+            s->refine.is_result ? "the result" : "for comparison",
+            s->stage[HF_STAGE_SEARCH].exists ? "best design of the search" : "initial design",
+            hf_print_decimals(r->boundary_tension_ratio, boundary));
+    hf_print_steps(&s->refine, f);
+    fprintf(f, ", %s\n", wall);
+}
+
 static void print_refine(const hf_summary *s, FILE *f)
 {
     const hf_stage_summary *stage = &s->stage[HF_STAGE_REFINE];
-    static const char *const end[] = {"", " (stalled: shorter steps gain nothing)", " (not converged)",
-                                      " (settled: ten steps gain less than 1e-6)", ""};
-    char wall[32], boundary[32];
-    char limits[40] = "";
+    char wall[32], boundary[32], limits[40] = "";
     hf_print_duration(stage->wall_s, wall, sizeof wall);
     if (s->taken.point)
         hf_print_line(f, "  point         psi %.4f mm, boundary ratio %s: point %d of the front in %s",
                       stage->result.psi_m * 1e3, hf_print_decimals(stage->result.boundary_tension_ratio, boundary),
                       s->taken.point, s->taken.path);
     else
-        fprintf(f, "  LM optimum    psi %.4f mm from %s, %s; boundary ratio %s; %d iteration%s%s, %s\n",
-                stage->result.psi_m * 1e3, s->stage[HF_STAGE_SEARCH].exists ? "there" : "the form-finding's tensions",
-                s->refine.is_result ? "the result" : "for comparison",
-                hf_print_decimals(stage->result.boundary_tension_ratio, boundary), s->refine.steps,
-                s->refine.steps == 1 ? "" : "s", end[s->refine.algorithm_stop], wall);
+        print_end(s, wall, f);
     if (s->refine.n_at_limit) snprintf(limits, sizeof limits, " and %d limits", s->refine.n_at_limit);
-    fprintf(f, "                held by %d lower and %d upper bounds%s%s\n", s->refine.n_at_lower, s->refine.n_at_upper,
-            limits, s->refine.is_at_cap ? " and the cap on the boundary ratio" : "");
+    fprintf(f, "                at %d lower bounds and %d upper bounds%s%s\n", s->refine.n_at_lower,
+            s->refine.n_at_upper, limits, s->refine.is_at_cap ? " and at boundary_ratio_cap" : "");
     hf_print_held(stage->held, f);
     print_sets(stage->sets, f);
     hf_print_objectives(s, &stage->result, f);
@@ -233,15 +242,14 @@ void hf_print_details(const hf_summary *s, FILE *f)
     const hf_stage_summary *stage = &s->stage[HF_STAGE_FORM];
     char wall[32], psi[32];
     hf_print_duration(stage->wall_s, wall, sizeof wall);
-    fprintf(f, "  form-finding  psi %s mm after %d iteration%s, stopped by %s, %s; half-bandwidth %d\n",
-            hf_print_decimals(stage->result.psi_m * 1e3, psi), stage->result.iterations,
-            stage->result.iterations == 1 ? "" : "s", hf_stop_reason_word((int)stage->result.stop_reason), wall,
-            s->half_bandwidth);
+    fprintf(f, "  form          psi %s mm; ", hf_print_decimals(stage->result.psi_m * 1e3, psi));
+    hf_print_iterations(&stage->result, f);
+    fprintf(f, ", %s; half-bandwidth %d\n", wall, s->half_bandwidth);
     print_result(&stage->result, f);
     print_sets(stage->sets, f);
     hf_print_objectives(s, &stage->result, f);
     print_certificate(&stage->result, f);
     print_surface(s, HF_STAGE_FORM, f);
-    if (s->stage[HF_STAGE_SEARCH].exists) print_optimize(s, f);
+    if (s->stage[HF_STAGE_SEARCH].exists) print_search(s, f);
     if (s->stage[HF_STAGE_REFINE].exists) print_refine(s, f);
 }

@@ -11,10 +11,10 @@
 
 /* ---- the answer ---- */
 
-#define OBJECTIVES_TOLD 4      /* objectives in the first line */
+#define OBJECTIVES_SHOWN 4     /* objectives in the first line */
 #define FREQUENCY_MOST_HZ 1e12 /* higher frequencies come from errors that are only rounding */
 #define BETTER_FIT 1.01        /* ratio of surface errors that is worth a line */
-#define TOLD_MM 5e-5           /* smaller lengths, in mm, print as 0.0000, so they have no relative change */
+#define SHOWN_MM 5e-5          /* smaller lengths, in mm, print as 0.0000, so they have no relative change */
 
 static const hf_form_result *result_of(const hf_summary *s, hf_stage stage)
 {
@@ -29,7 +29,7 @@ static bool has_merit(const hf_summary *s)
 }
 
 /* Returns whether the case judges the surface only after its best fit, in all its requirements and objectives. */
-static bool wants_fit(const hf_summary *s)
+static bool requires_fit(const hf_summary *s)
 {
     int n_raw = 0, n_fit = 0;
     for (int k = 0; s->tolerance && k < s->tolerance->n_require; k++) {
@@ -58,27 +58,24 @@ static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, F
     double raw_Hz = hf_surface_frequency_of_loss_Hz(e.half_path_rms_m, HF_SURFACE_GOOD_TO_DB);
     double fit_Hz = hf_surface_frequency_of_loss_Hz(e.fit_half_path_rms_m, HF_SURFACE_GOOD_TO_DB);
     if (!(raw_Hz < FREQUENCY_MOST_HZ)) return;
-    bool has_fit = fit_Hz < FREQUENCY_MOST_HZ, fit_first = has_fit && wants_fit(s);
-    fprintf(f, "; good to %.3g GHz at %g dB%s (%s", (fit_first ? fit_Hz : raw_Hz) / 1e9, HF_SURFACE_GOOD_TO_DB,
-            fit_first ? " after the best fit" : "",
-            has_facets       ? "its facets"
-            : m->is_measured ? "its nodes"
-                             : "its nodes, by psi");
+    bool has_fit = fit_Hz < FREQUENCY_MOST_HZ, fit_first = has_fit && requires_fit(s);
+    fprintf(f, "; %g dB gain loss at %.3g GHz", HF_SURFACE_GOOD_TO_DB, (fit_first ? fit_Hz : raw_Hz) / 1e9);
     if (fit_first)
-        fprintf(f, "; %.3g GHz as it stands", raw_Hz / 1e9);
+        fprintf(f, " after best fit, at %.3g GHz for a fixed feed", raw_Hz / 1e9);
     else if (has_fit)
-        fprintf(f, "; %.3g GHz after the best fit", fit_Hz / 1e9);
-    fputc(')', f);
+        fprintf(f, " for a fixed feed, at %.3g GHz after best fit", fit_Hz / 1e9);
+    fputs(has_facets       ? " (Ruze, from the facets)"
+          : m->is_measured ? " (Ruze, from the nodes)"
+                           : " (Ruze, from psi)",
+          f);
 }
 
-void hf_print_gained(const hf_summary *s, double psi_m, double base_psi_m, FILE *f)
+void hf_print_gained(double psi_m, double initial_psi_m, FILE *f)
 {
-    char base[32], form[32], change[HF_PRINT_CHANGE_SIZE];
-    if (!(base_psi_m * 1e3 >= TOLD_MM) || !isfinite(base_psi_m)) return;
-    bool is_same = !strcmp(hf_print_decimals(base_psi_m * 1e3, base),
-                           hf_print_decimals(s->stage[HF_STAGE_FORM].result.psi_m * 1e3, form));
-    fprintf(f, ", %s the %s mm of %s", hf_print_change(psi_m, base_psi_m, change), base,
-            is_same ? "the form-finding's tensions" : "the base design");
+    char initial[32], change[HF_PRINT_CHANGE_SIZE];
+    if (!(initial_psi_m * 1e3 >= SHOWN_MM) || !isfinite(initial_psi_m)) return;
+    fprintf(f, ", %s for the initial design (%s mm)", hf_print_change(psi_m, initial_psi_m, change),
+            hf_print_decimals(initial_psi_m * 1e3, initial));
 }
 
 /* Prints the reduction of psi from the initial design. An optimisation evaluates designs under its rule, so its initial
@@ -86,9 +83,9 @@ void hf_print_gained(const hf_summary *s, double psi_m, double base_psi_m, FILE 
 static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_form_result *r = result_of(s, stage);
-    double base_psi_m = stage == HF_STAGE_SEARCH ? s->search.initial_psi_m : s->stage[HF_STAGE_FORM].result.psi_m;
+    double initial_psi_m = stage == HF_STAGE_SEARCH ? s->search.initial_psi_m : s->stage[HF_STAGE_FORM].result.psi_m;
     if (stage == HF_STAGE_FORM || s->objectives.is_front) return;
-    hf_print_gained(s, r->psi_m, base_psi_m, f);
+    hf_print_gained(r->psi_m, initial_psi_m, f);
 }
 
 /* Prints the value of an objective, lengths in mm. */
@@ -109,7 +106,7 @@ static void print_objective_unit(const char *unit, FILE *f)
 }
 
 /* Returns whether psi of the design itself is an objective. */
-static bool wants_psi(const hf_summary *s)
+static bool minimises_psi(const hf_summary *s)
 {
     for (int k = 0; k < s->objectives.n; k++)
         if (!strcmp(hf_ledger_objective(s->objectives.name[k]), hf_figure_kind_word[HF_FIGURE_PSI])) return true;
@@ -118,13 +115,13 @@ static bool wants_psi(const hf_summary *s)
 
 static bool is_psi_all(const hf_summary *s)
 {
-    return s->objectives.n == 1 && wants_psi(s);
+    return s->objectives.n == 1 && minimises_psi(s);
 }
 
-/* Prints the objectives before and after, in their units: "facets 1.7436 -> 1.4720 mm". */
+/* Prints the objectives of the form-finding and of the result, in their units: "facets 1.7436 -> 1.4720 mm". */
 static void print_objectives_gained(const hf_summary *s, const hf_form_result *r, FILE *f)
 {
-    for (int k = 0; k < s->objectives.n && k < OBJECTIVES_TOLD; k++) {
+    for (int k = 0; k < s->objectives.n && k < OBJECTIVES_SHOWN; k++) {
         const char *unit = hf_ledger_objective_unit(s->objectives.name[k]);
         fprintf(f, "%s%s ", k ? ", " : "", hf_ledger_objective(s->objectives.name[k]));
         print_objective_value(s->stage[HF_STAGE_FORM].result.objective[k], unit, f);
@@ -132,16 +129,17 @@ static void print_objectives_gained(const hf_summary *s, const hf_form_result *r
         print_objective_value(r->objective[k], unit, f);
         print_objective_unit(unit, f);
     }
-    if (s->objectives.n > OBJECTIVES_TOLD) fprintf(f, " and %d more", s->objectives.n - OBJECTIVES_TOLD);
-    if (wants_psi(s)) return;
+    if (s->objectives.n > OBJECTIVES_SHOWN) fprintf(f, " and %d more", s->objectives.n - OBJECTIVES_SHOWN);
+    fputs(" (form-finding -> result)", f);
+    if (minimises_psi(s)) return;
     fputs("; psi ", f);
     print_objective_value(s->stage[HF_STAGE_FORM].result.psi_m, "m", f);
     fputs(" -> ", f);
     print_objective_value(r->psi_m, "m", f);
-    fputs(" mm, which counts drift within the surface, too", f);
+    fputs(" mm, which includes displacements within the surface", f);
 }
 
-/* Prints "front of 21 points: least psi 4.2834 mm, least ratio_boundary 4.56". */
+/* Prints "Pareto front of 21 points: minimum psi 4.2834 mm, minimum ratio_boundary 4.56". */
 static void print_front_answer(const hf_summary *s, FILE *f)
 {
     const char *before = "";
@@ -149,11 +147,11 @@ static void print_front_answer(const hf_summary *s, FILE *f)
     if (is_one)
         fputs("one design is best in all objectives:", f);
     else
-        fprintf(f, "front of %d points:", s->front->n_point);
+        fprintf(f, "Pareto front of %d points:", s->front->n_point);
     for (int k = 0; k < s->front->n_objective; k++) {
         const char *unit = hf_ledger_objective_unit(s->objectives.name[k]);
         if (s->front->end[k] < 0) continue;
-        fprintf(f, "%s%s %s ", before, is_one ? "" : " least", hf_ledger_objective(s->objectives.name[k]));
+        fprintf(f, "%s%s %s ", before, is_one ? "" : " minimum", hf_ledger_objective(s->objectives.name[k]));
         print_objective_value(s->front->row[s->front->end[k]].objective[k], unit, f);
         print_objective_unit(unit, f);
         before = ",";
@@ -176,7 +174,7 @@ static void print_failure(const hf_summary *s, hf_stage stage, FILE *f)
     snprintf(why, sizeof why, "%.*s", (int)strcspn(line, "\n"), line);
     hf_text_escape(*why ? why : hf_status_text(s->status), shown, sizeof shown);
     fprintf(f, "failed: %s; ", shown);
-    if (!s->front) fputs(stage == HF_STAGE_FORM ? "of the form-finding: " : "of the design: ", f);
+    if (!s->front) fputs(stage == HF_STAGE_FORM ? "the form-finding has " : "the design has ", f);
 }
 
 void hf_print_answer(const hf_summary *s, FILE *f)
@@ -201,7 +199,7 @@ void hf_print_answer(const hf_summary *s, FILE *f)
         fputs("no psi: no taut cable holds an inner node", f);
         return;
     } else {
-        fprintf(f, "psi %s mm", hf_print_decimals(r->psi_m * 1e3, psi));
+        fprintf(f, "psi %s mm (RMS position error of the inner nodes)", hf_print_decimals(r->psi_m * 1e3, psi));
         print_gained(s, stage, f);
     }
     if (r->status == HF_OK) print_frequency(s, stage, r->psi_m, f);
@@ -211,18 +209,18 @@ void hf_print_answer(const hf_summary *s, FILE *f)
 
 static void print_table_head(const hf_summary *s, FILE *f)
 {
-    fprintf(f, "  %-13s %9s  %14s  %12s%s  %9s  %s\n", "", "psi mm", "boundary ratio", "ratio inside",
-            has_merit(s) ? "         merit" : "", "at bounds", "proven to");
+    fprintf(f, "  %-13s %9s  %14s  %12s%s  %9s  %s\n", "stage", "psi mm", "boundary ratio", "ratio inside",
+            has_merit(s) ? "         merit" : "", "at bounds", "certified to");
 }
 
-static void print_proof(const hf_form_result *r, FILE *f)
+static void print_bound(const hf_form_result *r, FILE *f)
 {
     char text[32] = "-";
     if (r->bound_reason == HF_BOUND_CERTIFIED)
         snprintf(text, sizeof text, "%.1e m", r->position_bound_m);
     else if (r->bound_reason != HF_BOUND_NONE)
         snprintf(text, sizeof text, "no: %s", hf_bound_reason_word((int)r->bound_reason));
-    fprintf(f, "  %-11s", text);
+    fprintf(f, "  %-12s", text);
 }
 
 /* Prints the row of a stage except how it ended. at_bounds is the number of variables at their bounds, negative for a
@@ -235,21 +233,48 @@ static void print_figures(const hf_summary *s, const char *name, const hf_form_r
             hf_print_decimals(r->boundary_tension_ratio, boundary), hf_print_decimals(r->inner_tension_ratio, inside));
     if (has_merit(s)) fprintf(f, "  %12.6g", r->merit);
     fprintf(f, "  %9s", bounds);
-    print_proof(r, f);
+    print_bound(r, f);
     if (r->n_slack) fprintf(f, "  %d slack cable%s;", r->n_slack, r->n_slack == 1 ? "" : "s");
     if (r->n_loose) fprintf(f, "  %d loose node%s;", r->n_loose, r->n_loose == 1 ? "" : "s");
 }
 
-static void print_ga(const hf_summary *s, bool is_result, FILE *f)
+void hf_print_iterations(const hf_form_result *r, FILE *f)
+{
+    static const char *const before[] = {
+        "", "", "converged after ", "ended by stop: rms_change after ", "not converged after ", "no shape after "};
+    bool is_known = r->stop_reason <= HF_STOPPED_ILL_POSED;
+    bool is_direct = r->stop_reason == HF_STOPPED_DIRECT;
+    fprintf(f, "%s%d %s%s", is_known ? before[r->stop_reason] : "", r->iterations,
+            is_direct ? "linear solve" : "iteration", r->iterations == 1 ? "" : "s");
+}
+
+void hf_print_generations(const hf_search_summary *s, FILE *f)
+{
+    static const char *const before[] = {"", "stagnation after ", "", ""};
+    fprintf(f, "%s%d generation%s", before[s->algorithm_stop], s->generations, s->generations == 1 ? "" : "s");
+}
+
+void hf_print_steps(const hf_refine_summary *r, FILE *f)
+{
+    static const char *const before[] = {"converged", "stalled", "not converged", "settled", "none"};
+    static const char *const why[] = {"", ": shorter steps gain nothing", "", ": the last ten gained less than 1e-6",
+                                      ""};
+    fprintf(f, "%s after %d step%s%s", before[r->algorithm_stop], r->steps, r->steps == 1 ? "" : "s",
+            why[r->algorithm_stop]);
+}
+
+static void print_search(const hf_summary *s, bool is_result, FILE *f)
 {
     char wall[32];
     if (s->stage[HF_STAGE_SEARCH].result.status != HF_OK) {
-        fprintf(f, "  GA            no feasible design in %ld evaluations%s\n", s->search.evaluations,
+        fprintf(f, "  search        no feasible design in %ld evaluations%s\n", s->search.evaluations,
                 s->finished ? "" : " so far");
         return;
     }
-    print_figures(s, "GA", &s->stage[HF_STAGE_SEARCH].result, s->search.n_at_lower + s->search.n_at_upper, f);
-    fprintf(f, "  %s%d generations", is_result ? "the result: " : "", s->search.generations);
+    bool is_ga = !strcmp(hf_summary_algorithm(s, HF_STAGE_SEARCH), "ga");
+    print_figures(s, "search", &s->stage[HF_STAGE_SEARCH].result, s->search.n_at_lower + s->search.n_at_upper, f);
+    fprintf(f, "  %s%s: ", is_result ? "the result, " : "", is_ga ? "GA" : "NSGA-II");
+    hf_print_generations(&s->search, f);
     if (s->search.infeasible)
         fprintf(f, ", %ld of %ld designs infeasible", s->search.infeasible, s->search.evaluations);
     if (!s->finished) {
@@ -257,23 +282,23 @@ static void print_ga(const hf_summary *s, bool is_result, FILE *f)
         return;
     }
     hf_print_duration(s->stage[HF_STAGE_SEARCH].wall_s, wall, sizeof wall);
-    fprintf(f, ", stopped by %s, %s\n", hf_population_stop_word[s->search.algorithm_stop], wall);
+    fprintf(f, ", %s\n", wall);
 }
 
-static void print_lm(const hf_summary *s, bool is_result, FILE *f)
+static void print_refine(const hf_summary *s, bool is_result, FILE *f)
 {
-    static const char *const end[] = {"", ", stalled: shorter steps gain nothing", ", not converged",
-                                      ", settled: ten steps gain less than 1e-6", ""};
     char wall[32];
+    int n_at_bound = s->refine.n_at_lower + s->refine.n_at_upper;
     if (s->taken.point) {
-        print_figures(s, "point", &s->stage[HF_STAGE_REFINE].result, s->refine.n_at_lower + s->refine.n_at_upper, f);
-        hf_print_line(f, "  the result: point %d of the front in %s", s->taken.point, s->taken.path);
+        print_figures(s, "point", &s->stage[HF_STAGE_REFINE].result, n_at_bound, f);
+        hf_print_line(f, "  the result, point %d of the front in %s", s->taken.point, s->taken.path);
         return;
     }
     hf_print_duration(s->stage[HF_STAGE_REFINE].wall_s, wall, sizeof wall);
-    print_figures(s, "LM", &s->stage[HF_STAGE_REFINE].result, s->refine.n_at_lower + s->refine.n_at_upper, f);
-    fprintf(f, "  %s: %d iteration%s%s, %s\n", is_result ? "the result" : "for comparison", s->refine.steps,
-            s->refine.steps == 1 ? "" : "s", end[s->refine.algorithm_stop], wall);
+    print_figures(s, "refine", &s->stage[HF_STAGE_REFINE].result, n_at_bound, f);
+    fprintf(f, "  %s, LM: ", is_result ? "the result" : "for comparison");
+    hf_print_steps(&s->refine, f);
+    fprintf(f, ", %s\n", wall);
 }
 
 static void print_stages(const hf_summary *s, hf_stage result, FILE *f)
@@ -281,13 +306,13 @@ static void print_stages(const hf_summary *s, hf_stage result, FILE *f)
     char wall[32];
     hf_print_duration(s->stage[HF_STAGE_FORM].wall_s, wall, sizeof wall);
     print_table_head(s, f);
-    print_figures(s, "form-finding", &s->stage[HF_STAGE_FORM].result, -1, f);
-    fprintf(f, "  %d iteration%s, stopped by %s, %s\n", s->stage[HF_STAGE_FORM].result.iterations,
-            s->stage[HF_STAGE_FORM].result.iterations == 1 ? "" : "s",
-            hf_stop_reason_word((int)s->stage[HF_STAGE_FORM].result.stop_reason), wall);
-    if (s->stage[HF_STAGE_SEARCH].exists) print_ga(s, result == HF_STAGE_SEARCH, f);
+    print_figures(s, "form", &s->stage[HF_STAGE_FORM].result, -1, f);
+    fputs("  ", f);
+    hf_print_iterations(&s->stage[HF_STAGE_FORM].result, f);
+    fprintf(f, ", %s\n", wall);
+    if (s->stage[HF_STAGE_SEARCH].exists) print_search(s, result == HF_STAGE_SEARCH, f);
     if (s->stage[HF_STAGE_SEARCH].exists) hf_print_held(s->stage[HF_STAGE_SEARCH].held, f);
-    if (s->stage[HF_STAGE_REFINE].exists) print_lm(s, result == HF_STAGE_REFINE, f);
+    if (s->stage[HF_STAGE_REFINE].exists) print_refine(s, result == HF_STAGE_REFINE, f);
     if (s->stage[HF_STAGE_REFINE].exists) hf_print_held(s->stage[HF_STAGE_REFINE].held, f);
     if (s->objectives.n > 0) hf_print_objectives(s, result_of(s, result), f);
 }
@@ -314,19 +339,19 @@ void hf_print_gain_loss(const hf_summary *s, FILE *f)
     hf_stage stage = hf_store_result_stage(s);
     if (stage == HF_N_STAGE || !s->stage[stage].surface.is_measured || s->surface.frequencies_Hz.n == 0) return;
     const hf_surface_measures *m = &s->stage[stage].surface;
-    fputs("loss of gain at ", f);
+    fputs("gain loss at ", f);
     for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
         fprintf(f, "%s%g", k ? "/" : "", s->surface.frequencies_Hz.value[k] / 1e9);
     fputs(" GHz: ", f);
     hf_surface_errors e = hf_surface_errors_of(m, m->n_facet > 0);
     print_losses(s, e.half_path_rms_m, e.gain_loss_dB, f);
-    fputs(" dB, after best fit ", f);
+    fputs(" dB for a fixed feed, ", f);
     print_losses(s, e.fit_half_path_rms_m, e.fit_gain_loss_dB, f);
-    fputs(" dB", f);
+    fputs(" dB after best fit", f);
 }
 
 /* Prints a line when the error after the best fit has risen in the optimisation. This happens with objectives that
- * measure the reflector as it stands, not repointed and refocused. */
+ * measure the reflector for a fixed feed, not repointed and refocused. */
 static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_surface_measures *before = &s->stage[HF_STAGE_FORM].surface, *m = &s->stage[stage].surface;
@@ -338,8 +363,8 @@ static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
     double before_Hz = hf_surface_frequency_of_loss_Hz(before_m, HF_SURFACE_GOOD_TO_DB);
     if (!(before_Hz < FREQUENCY_MOST_HZ) || !(rms_m > BETTER_FIT * before_m)) return;
     fprintf(f,
-            "                after the best fit the form-finding's net was better, good to %.3g GHz; for that want "
-            "{goal: %s, fit: best}\n",
+            "                after best fit, the net of the form-finding is better: 1 dB gain loss at %.3g GHz. To "
+            "minimise this error, use {figure: %s, fit: best}\n",
             before_Hz / 1e9, has_facets ? "facets" : "surface");
 }
 
@@ -349,10 +374,10 @@ static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
     const hf_surface_measures *m = &s->stage[stage].surface;
     char node[32], fit[32], facet[32], facet_fit[32];
     if (!m->is_measured) return;
-    fprintf(f, "  surface       half-path RMS %s mm", hf_print_decimals(m->half_path_rms_m * 1e3, node));
-    fprintf(f, ", after best fit %s mm", hf_print_decimals(m->fit.half_path_rms_m * 1e3, fit));
+    fprintf(f, "  surface       half-path RMS of the nodes %s mm for a fixed feed, %s mm after best fit",
+            hf_print_decimals(m->half_path_rms_m * 1e3, node), hf_print_decimals(m->fit.half_path_rms_m * 1e3, fit));
     if (m->n_facet)
-        fprintf(f, "; of %d facets %s mm, after best fit %s mm", m->n_facet,
+        fprintf(f, "; of %d facets %s mm, %s mm after best fit", m->n_facet,
                 hf_print_decimals(m->facet_half_path_rms_m * 1e3, facet),
                 hf_print_decimals(m->facet_fit_half_path_rms_m * 1e3, facet_fit));
     fputc('\n', f);
@@ -386,8 +411,8 @@ static void print_slope_head(const hf_summary *s, int k, FILE *f)
     const char *of, *per;
     bool is_plain = front_unit(s, s->front->minimised, &of) == 1;
     front_unit(s, k, &per);
-    fprintf(f, "; slope of %s%s%s per %s of %s", s->objectives.name[s->front->minimised], is_plain ? "" : " in ",
-            is_plain ? "" : of, per, s->objectives.name[k]);
+    fprintf(f, "; slope: change of %s%s%s per %s of %s", s->objectives.name[s->front->minimised],
+            is_plain ? "" : " in ", is_plain ? "" : of, per, s->objectives.name[k]);
 }
 
 /* Prints one line of the front: the values of a point and, where known, the changes of the minimised objective per unit
@@ -420,14 +445,14 @@ static void print_front_counts(const hf_summary *s, FILE *f)
     char wall[32], rough[40] = "";
     if (t->n_unconverged > 0) snprintf(rough, sizeof rough, ", %d not converged", t->n_unconverged);
     hf_print_duration(t->wall_s, wall, sizeof wall);
-    fprintf(f, "  front         %d points, %d of them dominated, %d failed%s; %s", t->n_point, t->n_dominated,
-            t->n_failed, rough, wall);
+    fprintf(f, "  front         %d points, %d dominated, %d failed%s; %s", t->n_point, t->n_dominated, t->n_failed,
+            rough, wall);
     for (int k = 0; k < t->n_objective && t->minimised >= 0; k++)
         if (k != t->minimised) print_slope_head(s, k, f);
     fputc('\n', f);
     if (t->n_row < t->n_point)
-        fprintf(f, "                %d of %d shown by --json and the report; hifdm export --front has all\n", t->n_row,
-                t->n_point);
+        fprintf(f, "                --json and the report show %d of %d points; hifdm export --front writes all\n",
+                t->n_row, t->n_point);
 }
 
 static void print_front(const hf_summary *s, const char *path, FILE *f)
@@ -439,14 +464,15 @@ static void print_front(const hf_summary *s, const char *path, FILE *f)
         fputs("  front         the objectives do not conflict: one design is best in all of them\n", f);
     else
         print_front_counts(s, f);
-    if (isfinite(t->initial[0])) print_front_values(s, "base", 0, t->initial, NULL, f);
+    if (isfinite(t->initial[0])) print_front_values(s, "initial", 0, t->initial, NULL, f);
     if (is_one) print_front_values(s, "best", t->index[t->end[0]] + 1, t->row[t->end[0]].objective, NULL, f);
     for (int k = 0; k < t->n_objective && !is_one; k++)
         if (t->end[k] >= 0) print_front_point(s, "end", t->end[k], f);
     if (t->knee >= 0) print_front_point(s, "knee", t->knee, f);
     if (path && s->finished && point)
-        hf_print_line(f, "                a point becomes a result by the same run with --point %s:%d -o point%d.h5",
-                      path, point, point);
+        hf_print_line(
+            f, "                to make a point the result, run the same command with --point %s:%d -o point%d.h5",
+            path, point, point);
 }
 
 /* Prints which parts of the result belong to the shape of the form-finding and to no point of the front. */
@@ -458,7 +484,7 @@ static void print_form_parts(const hf_summary *s, hf_stage result, FILE *f)
         const char *name;
     } part[] = {{is_form && s->stage[HF_STAGE_FORM].surface.is_measured, "surface"},
                 {is_form && s->stage[HF_STAGE_FORM].pattern != NULL, "pattern"},
-                {s->n_load_case > 0, "cases"},
+                {s->n_load_case > 0, "load cases"},
                 {s->tolerance != NULL, "as built"}};
     const char *before = "                ";
     for (int i = 0; i < (int)(sizeof part / sizeof *part); i++) {
@@ -467,7 +493,7 @@ static void print_form_parts(const hf_summary *s, hf_stage result, FILE *f)
         before = ", ";
     }
     if (*before == ',')
-        fputs(": of the form-finding's shape, no point of the front; --point gives those of a point\n", f);
+        fputs(": of the form-finding, not of a point of the front; a run with --point computes them for a point\n", f);
 }
 
 /* Prints a value, or a dash of this width for NaN. */
@@ -510,11 +536,11 @@ static void print_load_cases(const hf_summary *s, FILE *f)
     bool has_surface = s->surface.focal_length_m > 0, has_truss = s->has_truss, has_loose = false;
     bool has_loss = has_surface && s->surface.frequencies_Hz.n > 0;
     if (s->n_load_case == 0) return;
-    fprintf(f, "  cases         %-16s %9s %9s%s %8s %9s %5s %5s%s\n", "the net as built", "psi mm", "moved mm",
-            has_loss      ? "   loss dB    fitted"
+    fprintf(f, "  load cases    %-16s %9s %9s%s %8s %9s %5s %5s%s\n", "of as-built net", "psi mm", "displ. mm",
+            has_loss      ? "   loss dB  best fit"
             : has_surface ? " half-path  best fit"
                           : "",
-            "least N", "largest N", "slack", "loose", has_truss ? " member N" : "");
+            "min N", "max N", "slack", "loose", has_truss ? " member N" : "");
     for (int k = 0; k < s->n_load_case; k++) {
         const hf_load_case_summary *load_case = &s->load_case[k];
         const hf_form_result *r = &load_case->result;
@@ -532,10 +558,10 @@ static void print_load_cases(const hf_summary *s, FILE *f)
         fputc('\n', f);
     }
     if (has_loss)
-        fprintf(f, "                loss of gain at %g GHz, as it stands and after the best fit\n",
+        fprintf(f, "                loss: gain loss at %g GHz for a fixed feed, then after best fit\n",
                 hf_surface_highest_Hz(&s->surface) / 1e9);
     if (has_loose)
-        fputs("                psi leaves the loose nodes out; moved and the surface have them where they hang\n", f);
+        fputs("                psi leaves out the loose nodes; the other columns include them where they hang\n", f);
 }
 
 /* Prints the far field of the result, one line for each frequency and cut. */
@@ -544,8 +570,8 @@ static void print_pattern(const hf_pattern_summary *s, FILE *f)
     if (!s) return;
     static const char *const of_feed[] = {"", "a point", "a line", "a plane wave"};
     if (s->n_frequency == 0) return;
-    fprintf(f, "  pattern       %7s %7s %9s %10s %13s %15s %8s   by physical optics, fed by %s", "GHz", "phi deg",
-            "gain dBi", "beam deg", "half power at", "first sidelobe", "highest", of_feed[s->feed.kind]);
+    fprintf(f, "  pattern       %7s %7s %9s %10s %13s %15s %8s   physical optics, feed: %s", "GHz", "phi deg",
+            "gain dBi", "beam deg", "half power", "first sidelobe", "highest", of_feed[s->feed.kind]);
     if (s->feed.kind != HF_FEED_PLANE_WAVE) fprintf(f, ", cos^%.3g", s->feed.cos_power);
     fputc('\n', f);
     for (int k = 0; k < s->n_frequency * s->n_cut; k++) {
@@ -563,10 +589,12 @@ static void print_pattern(const hf_pattern_summary *s, FILE *f)
 static void print_coupling(const hf_summary *s, hf_stage result, FILE *f)
 {
     const hf_coupling_result *r = &s->stage[HF_STAGE_FORM].result.coupling, *end = &result_of(s, result)->coupling;
-    fprintf(f, "  on its truss  attachments give way by up to %.4f mm", r->deflection_max_m * 1e3);
+    static const char *const ended[] = {"", "converged", "not converged", "diverged", "ended without a shape"};
+    fprintf(f, "  coupling      the truss deflects by up to %.4f mm at the attachments", r->deflection_max_m * 1e3);
     if (end != r && end->iterations > 0) fprintf(f, ", in the result by %.4f mm", end->deflection_max_m * 1e3);
-    fprintf(f, "; %d round%s, the last step %.1e m, stopped by %s\n", r->iterations, r->iterations == 1 ? "" : "s",
-            r->step_m, hf_coupling_stop_word((int)r->stop_reason));
+    fprintf(f, "; %s after %d iteration%s, last step %.1e m\n",
+            r->stop_reason <= HF_COUPLING_NET ? ended[r->stop_reason] : "", r->iterations,
+            r->iterations == 1 ? "" : "s", r->step_m);
 }
 
 /* ---- the whole summary ---- */
@@ -576,10 +604,11 @@ static void print_end(const hf_summary *s, const char *path, hf_print_style styl
     if (!path) return;
     hf_print_line(f, "  results       %s", path);
     if (s->finished && !style.verbose)
-        hf_print_line(f, "  more          hifdm show --verbose %s; a page to look at: hifdm report %s", path, path);
-    if (!s->finished)
-        hf_print_line(f, "  unfinished    `hifdm run %s -o %s` goes on, with the same options as before", s->case_path,
+        hf_print_line(f, "  more          details: hifdm show --verbose %s; a page with charts: hifdm report %s", path,
                       path);
+    if (!s->finished)
+        hf_print_line(f, "  unfinished    to resume, run `hifdm run %s -o %s` with the same options again",
+                      s->case_path, path);
 }
 
 void hf_print_summary(const hf_summary *s, const char *path, hf_print_style style, FILE *f)
@@ -591,9 +620,9 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
     hf_print_line(f, "  case          %s", *s->title ? s->title : s->case_path);
     fprintf(f, "  net           %d nodes (%d free), %d cables", s->n_node, s->n_free, s->n_cable);
     if (s->stage[HF_STAGE_SEARCH].exists || s->stage[HF_STAGE_REFINE].exists || s->front)
-        fprintf(f, ", %d variables", s->n_variable);
+        fprintf(f, ", %d design variables", s->n_variable);
     if (s->has_own_tensions)
-        fputs("; tensions by their own laws\n", f);
+        fputs("; each cable has a law of its own\n", f);
     else
         fprintf(f, "; pretension %g N\n", s->pretension_N);
     if (s->has_truss)

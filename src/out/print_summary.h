@@ -9,8 +9,8 @@
  * figures describe. */
 void hf_print_answer(const hf_summary *summary, FILE *file);
 
-/* Prints "loss of gain at 2/6 GHz: 0.1/0.9 dB, after best fit ..." without a newline, of the facets where there are
- * some. Prints nothing without surface.frequencies_Hz. */
+/* Prints "gain loss at 2/6 GHz: 0.1/0.9 dB for a fixed feed, ... after best fit" without a newline, of the facets where
+ * there are some. Prints nothing without surface.frequencies_Hz. */
 void hf_print_gain_loss(const hf_summary *summary, FILE *file);
 
 /* Prints a block for each stage: how it ended, tension ratios of sets, certificates, the surface, times. */
@@ -25,9 +25,18 @@ void hf_print_objective(const char *before, const char *name, double value, FILE
 /* Prints a line with the merit of a result and the values of its objectives, or the objectives of a front. */
 void hf_print_objectives(const hf_summary *summary, const hf_form_result *result, FILE *file);
 
-/* Prints ", 56.90 % below the 19.7793 mm of ...", the change of psi from the initial design. That is the shape of the
- * form-finding, unless optimize.rule gives another shape for the same tensions. Prints nothing without an initial
- * design. */
-void hf_print_gained(const hf_summary *summary, double psi_m, double base_psi_m, FILE *file);
+/* Prints ", 56.9 % lower than for the initial design (19.7793 mm)", the change of psi from the initial design. That is the
+ * shape of the form-finding, unless optimize.rule gives another shape for the same tensions. Prints nothing without an
+ * initial design. */
+void hf_print_gained(double psi_m, double initial_psi_m, FILE *file);
+
+/* Prints how an iteration ended: "converged after 13 iterations", "not converged after 400 iterations". */
+void hf_print_iterations(const hf_form_result *result, FILE *file);
+
+/* Prints how the refinement ended: "converged after 7 steps", "stalled after 12 steps: shorter steps gain nothing". */
+void hf_print_steps(const hf_refine_summary *refine, FILE *file);
+
+/* Prints how the genetic algorithm ended: "after 12 generations", "by stagnation after 9 generations". */
+void hf_print_generations(const hf_search_summary *search, FILE *file);
 
 #endif

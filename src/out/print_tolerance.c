@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#define CABLES_TOLD 3
+#define CABLES_SHOWN 3
 
 /* Returns the factor of a measure for display and sets *word to its unit. Lengths are in mm. */
 static double unit_of(int measure, const char **word)
@@ -46,11 +46,11 @@ static void print_measure(const hf_tolerance_figures *f, int measure, FILE *file
     const char *holds = hf_tolerance_more_is_better((hf_tolerance_measure)measure) ? "at least" : "at most";
     fprintf(file, "                %s: mean ", hf_tolerance_measure_word[measure]);
     print_numbers(file, 1, &f->mean, times);
-    fprintf(file, ", in 50/95/99 %% %s ", holds);
+    fprintf(file, "; 50/95/99 %% of the samples have %s ", holds);
     print_numbers(file, HF_TOLERANCE_QUANTILES, f->value, times);
     if (*unit) fprintf(file, " %s", unit);
     if (isfinite(f->low[1]) && isfinite(f->high[1]))
-        fprintf(file, " (95 %%: %.4g to %.4g)", times * f->low[1], times * f->high[1]);
+        fprintf(file, " (at 95 %%: %.4g to %.4g)", times * f->low[1], times * f->high[1]);
     fputc('\n', file);
 }
 
@@ -59,13 +59,13 @@ static void print_measure(const hf_tolerance_figures *f, int measure, FILE *file
 
 static void print_first_order(const hf_tolerance_summary *t, FILE *f)
 {
-    fputs("                root of mean psi^2: ", f);
+    fputs("                RMS of psi: ", f);
     print_mm(f, t->first_order_rms_psi_m);
     fputs(" to first order, ", f);
     print_mm(f, t->rms_psi_m);
-    fputs(t->n_failed ? " of the samples with a shape" : " of the samples", f);
+    fputs(t->n_failed ? " over the samples with a shape" : " over the samples", f);
     if (isfinite(t->controlled_high_m - t->controlled_low_m) && t->correlation >= LEAST_CORRELATION)
-        fprintf(f, ", %.4f to %.4f mm with first order as control", t->controlled_low_m * 1e3,
+        fprintf(f, ", %.4f to %.4f mm with first order as control variate", t->controlled_low_m * 1e3,
                 t->controlled_high_m * 1e3);
     if (isfinite(t->correlation)) fprintf(f, " (correlation %.3f)", t->correlation);
     fputc('\n', f);
@@ -74,7 +74,7 @@ static void print_first_order(const hf_tolerance_summary *t, FILE *f)
 static void print_yield(const hf_tolerance_summary *t, FILE *f)
 {
     if (t->n_require == 0) return;
-    fprintf(f, "                yield %.2f %% (%.2f to %.2f %%)", 100 * t->yield, 100 * t->yield_low,
+    fprintf(f, "                yield %.2f %% (95 %% interval %.2f to %.2f %%)", 100 * t->yield, 100 * t->yield_low,
             100 * t->yield_high);
     for (int k = 0; k < t->n_require; k++) {
         fprintf(f, "%s %s", k ? "," : ":", hf_tolerance_measure_word[t->require[k].measure]);
@@ -84,27 +84,28 @@ static void print_yield(const hf_tolerance_summary *t, FILE *f)
     }
     fputc('\n', f);
     if (isnan(t->required_yield)) return;
-    fprintf(f, "                a yield of %g %% ", 100 * t->required_yield);
+    const char *bound = t->scale_bound > 0 ? "at least " : t->scale_bound < 0 ? "less than " : "";
     if (t->sigma_scale == 0)
-        fputs("is out of reach: the net without errors does not meet it\n", f);
+        fprintf(f, "                no errors are small enough for a yield of %g %%: the net without errors fails\n",
+                100 * t->required_yield);
+    else if (t->sigma_scale < 1)
+        fprintf(f, "                for a yield of %g %%, reduce all errors to %s%.4g %% (from %d samples)\n",
+                100 * t->required_yield, bound, 100 * t->sigma_scale, t->scale_samples);
     else
-        fprintf(f, "%s%s%.4g times these errors (by %d samples)\n", t->sigma_scale < 1 ? "takes " : "is kept up to ",
-                t->scale_bound > 0   ? "at least "
-                : t->scale_bound < 0 ? "less than "
-                                     : "",
-                t->sigma_scale, t->scale_samples);
+        fprintf(f, "                a yield of %g %% holds up to %s%.4g times these errors (from %d samples)\n",
+                100 * t->required_yield, bound, t->sigma_scale, t->scale_samples);
 }
 
 static void print_shares(const hf_tolerance_summary *t, FILE *f)
 {
     char line[1200] = "";
-    for (int k = 0; k < t->n_ranked && k < CABLES_TOLD; k++) {
+    for (int k = 0; k < t->n_ranked && k < CABLES_SHOWN; k++) {
         size_t used = strlen(line);
         double percent = 100 * t->ranked_share[k];
         snprintf(line + used, sizeof line - used, percent < 99.5 ? "%s%s %.2g %%" : "%s%s %.0f %%", k ? ", " : "",
                  t->ranked_id[k], percent);
     }
-    if (*line) hf_print_line(f, "                cables with the largest shares in the variance of psi: %s", line);
+    if (*line) hf_print_line(f, "                cables that contribute most to the variance of psi: %s", line);
 }
 
 void hf_print_tolerance(const hf_tolerance_summary *t, bool verbose, FILE *f)
@@ -112,11 +113,11 @@ void hf_print_tolerance(const hf_tolerance_summary *t, bool verbose, FILE *f)
     char wall[32];
     hf_print_duration(t->tolerance_wall_s, wall, sizeof wall);
     if (isinf(t->psi_95_m))
-        fprintf(f, "  as built      less than 95 %% of %d nets have a shape, ", t->samples);
+        fprintf(f, "  as built      fewer than 95 %% of %d samples have a shape; psi ", t->samples);
     else {
         fputs("  as built      psi at most ", f);
         print_mm(f, t->psi_95_m);
-        fprintf(f, " in 95 %% of %d nets, ", t->samples);
+        fprintf(f, " in 95 %% of %d samples, ", t->samples);
     }
     print_mm(f, t->nominal_psi_m);
     fputs(" without errors; ", f);

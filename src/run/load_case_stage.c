@@ -40,7 +40,8 @@ hf_status hf_load_case_stage_take(const hf_problem *p, const hf_workspace *w, hf
     if (HF_ARENA_MAKE(&arena, lay_out(&arena, p, c)) != HF_OK ||
         hf_workspace_create(&c->built.model, &c->workspace) != HF_OK) {
         hf_arena_free(&arena);
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the states of a net of %d nodes", p->model.n_node);
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the load cases of a net of %d nodes",
+                        p->model.n_node);
     }
     c->block = arena.block;
     return HF_OK;
@@ -188,9 +189,10 @@ static void warn(const hf_load_case_summary *s, hf_messages *messages)
 {
     const hf_form_result *r = &s->result;
     if (r->status != HF_OK)
-        hf_warning(messages, "cases: the net has no shape in state '%s': %s", s->name, hf_status_text(r->status));
+        hf_warning(messages, "load_cases: the net has no shape in load case '%s': %s", s->name,
+                   hf_status_text(r->status));
     else if (r->n_slack)
-        hf_warning(messages, "cases: in state '%s' %d cable%s slack and %d node%s loose", s->name, r->n_slack,
+        hf_warning(messages, "load_cases: in load case '%s', %d cable%s slack and %d node%s loose", s->name, r->n_slack,
                    r->n_slack == 1 ? " is" : "s are", r->n_loose, r->n_loose == 1 ? " is" : "s are");
 }
 

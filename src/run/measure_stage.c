@@ -78,20 +78,19 @@ hf_status hf_measure_stage(const hf_problem *p, hf_stage stage, const hf_workspa
     const hf_surface_fit *fit = &measures->fit;
     if (measures->mesh_pull_ratio > MESH_PULL_DOUBT)
         hf_warning(messages,
-                   "surface: in the shape of stage %s the mesh pulls on %s; the pillow is of first order in "
-                   "N l over the tension%s. Raise the tension of the cables, or lower "
-                   "surface.mesh_tension_N_per_m",
+                   "surface: in the shape of stage %s the mesh pulls on %s; the pillows are computed to first order in "
+                   "N l / tension%s. Raise the tensions of the cables, or lower surface.mesh_tension_N_per_m",
                    hf_stage_word[stage], hf_facet_mesh_pull_words(measures->mesh_pull_ratio, words),
                    measures->mesh_pull_ratio <= HF_FACET_PULL_MOST ? ""
-                   : p->surface.has_pattern ? ", and facets have neither errors nor a far field here"
-                                            : ", and facets have no errors here");
+                   : p->surface.has_pattern ? ", so the facets have neither errors nor a far field"
+                                            : ", so the facets have no errors");
     if (!fit->converged)
         hf_warning(messages,
-                   "surface: the best fit to the shape of stage %s did not converge in %d steps; it has no value",
+                   "surface: the best fit to the shape of stage %s did not converge in %d steps, so it has no value",
                    hf_stage_word[stage], fit->iterations);
     hf_status status = hf_pattern_stage(p, stage, w, n_thread, stop, store, s, messages);
     if (status == HF_INTERRUPTED)
-        hf_warning(messages, "surface.pattern: told to stop: the shape of stage %s has no far field",
+        hf_warning(messages, "surface.pattern: interrupted: the shape of stage %s has no far field",
                    hf_stage_word[stage]);
     return status;
 }

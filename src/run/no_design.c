@@ -16,15 +16,16 @@ const char *hf_no_design_cap(const hf_problem *p, double boundary_tension_ratio,
     *text = '\0';
     if (!(boundary_tension_ratio > cap)) return text;
     if (hf_config_place(&p->settings, "optimize.boundary_ratio_cap", place, sizeof place)) return text;
-    snprintf(text, HF_NO_DESIGN_HINT_SIZE,
-             "; %g is the default of optimize.boundary_ratio_cap, which the case does not give: set it to what the net "
-             "may have",
-             cap);
+    snprintf(
+        text, HF_NO_DESIGN_HINT_SIZE,
+        "; %g is the default of optimize.boundary_ratio_cap: if the net may have a larger ratio, set this key in the "
+        "case",
+        cap);
     return text;
 }
 
-/* Writes which limit the shape in the workspace exceeds most, ": tension of cable c7 is 9 beside 50 of
- * optimize.limits.1", or "". */
+/* Writes which limit the shape in the workspace exceeds most, ": tension of cable c7 is 9, but the
+ * bound of optimize.limits.1 is 50", or "". */
 static void name_broken(const hf_problem *p, const hf_workspace *w, const hf_form_result *r,
                         char text[2 * HF_HELD_NAME_SIZE])
 {
@@ -43,25 +44,25 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, hf_messag
     name_broken(p, w, &base, broken);
     if (above > 0 && o->n_limit > 0)
         return hf_error(messages, HF_NO_FEASIBLE,
-                        "optimize: no feasible design: %ld of %ld evaluations have a shape beyond optimize.limits or "
+                        "optimize: no feasible design: %ld of %ld evaluations exceed optimize.limits or "
                         "boundary_ratio_cap%s%s; loosen the limits, or widen %s%s",
-                        above, of->n_evaluation, *broken ? "; the base design's" : "", broken + (*broken == ':'), wider,
-                        hf_no_design_cap(p, base.boundary_tension_ratio, hint));
+                        above, of->n_evaluation, *broken ? "; of the initial design, the" : "",
+                        broken + (*broken == ':'), wider, hf_no_design_cap(p, base.boundary_tension_ratio, hint));
     if (above == 0)
-        return hf_error(
-            messages, HF_NO_FEASIBLE,
-            "optimize: no feasible design: none of %ld evaluations has a shape (%s); tighten %s to keep designs "
-            "nearer to the form-finding",
-            shapeless, hf_status_text(of->trial_status[0]), wider);
-    char of_base[64] = "has no shape", others[64] = "";
+        return hf_error(messages, HF_NO_FEASIBLE,
+                        "optimize: no feasible design: none of %ld evaluations has a shape (%s); narrow %s to keep "
+                        "designs closer to "
+                        "the initial design",
+                        shapeless, hf_status_text(of->trial_status[0]), wider);
+    char of_initial[64] = "has no shape", others[64] = "";
     if (isfinite(base.boundary_tension_ratio))
-        snprintf(of_base, sizeof of_base, "has %.4g", base.boundary_tension_ratio);
+        snprintf(of_initial, sizeof of_initial, "has %.4g", base.boundary_tension_ratio);
     if (shapeless > 0) snprintf(others, sizeof others, ", %ld have no shape", shapeless);
-    return hf_error(messages, HF_NO_FEASIBLE,
-                    "optimize: no feasible design: %ld of %ld evaluations are above boundary_ratio_cap %g%s; the base "
-                    "design %s; raise optimize.boundary_ratio_cap, or widen %s%s",
-                    above, of->n_evaluation, o->boundary_ratio_cap, others, of_base, wider,
-                    hf_no_design_cap(p, INFINITY, hint));
+    return hf_error(
+        messages, HF_NO_FEASIBLE,
+        "optimize: no feasible design: %ld of %ld evaluations are above boundary_ratio_cap %g%s; the initial "
+        "design %s; raise optimize.boundary_ratio_cap, or widen %s%s",
+        above, of->n_evaluation, o->boundary_ratio_cap, others, of_initial, wider, hf_no_design_cap(p, INFINITY, hint));
 }
 
 const char *hf_no_design_to_refine(hf_problem *p, const double *design, hf_status status, char text[HF_NO_DESIGN_SIZE])

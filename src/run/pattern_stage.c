@@ -51,16 +51,16 @@ static void doubt(const hf_pattern_settings *s, const hf_pattern_summary *to, hf
     if (n == 0) return;
     double GHz = to->frequency_Hz[first / to->n_cut] / 1e9, phi_deg = to->phi_deg[first % to->n_cut];
     if (to->figure[first].doubt == HF_CUT_AT_END)
-        hf_warning(
-            messages,
-            "surface.pattern: in %d of %d cuts of stage %s, like phi %g deg at %g GHz, the gain is largest at the "
-            "end of theta_deg: the beam may lie beyond, and has no width or sidelobes; widen theta_deg",
-            n, n_all, hf_stage_word[stage], phi_deg, GHz);
+        hf_warning(messages,
+                   "surface.pattern: in %d of %d cuts of stage %s, such as phi %g deg at %g GHz, the maximum gain is "
+                   "at the end "
+                   "of theta_deg: the beam may be outside, and its width and sidelobes are unknown; widen theta_deg",
+                   n, n_all, hf_stage_word[stage], phi_deg, GHz);
     else
         hf_warning(messages,
-                   "surface.pattern: in %d of %d cuts of stage %s, like phi %g deg at %g GHz, steps of %.3g deg are "
-                   "coarse: fewer than %g of them in the width of the beam, so that its gain may be missed, and width "
-                   "and sidelobes are not told; raise n_theta, or narrow theta_deg",
+                   "surface.pattern: in %d of %d cuts of stage %s, such as phi %g deg at %g GHz, steps of %.3g deg are "
+                   "coarse: fewer than %g steps are within the width of the beam. Its maximum may be missed, and width "
+                   "and sidelobes are unknown; raise n_theta, or narrow theta_deg",
                    n, n_all, hf_stage_word[stage], phi_deg, GHz, (s->theta_deg[1] - s->theta_deg[0]) / (s->n_theta - 1),
                    HF_PATTERN_WIDTH_STEPS);
 }

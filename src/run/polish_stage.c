@@ -77,18 +77,18 @@ static void warn_of_steps(const refine_job *j, const hf_refine_result *r)
     if (r->stop != HF_REFINE_MAX_ITERATIONS) return;
     if (n > 0 && before > 0)
         hf_warning(j->messages,
-                   "Levenberg-Marquardt is not converged after %d steps, of which the last %d lowered %s by %.2g %%: "
-                   "better designs are near; raise optimize.polish_iterations",
+                   "Levenberg-Marquardt is not converged after %d steps, and the last %d lowered %s by %.2g %%: better "
+                   "designs exist near this one; raise optimize.refine_steps",
                    r->iterations, n, what, 100 * (1 - j->now.merit / before));
     else
-        hf_warning(j->messages, "Levenberg-Marquardt is not converged after %d steps; raise optimize.polish_iterations",
+        hf_warning(j->messages, "Levenberg-Marquardt is not converged after %d steps; raise optimize.refine_steps",
                    r->iterations);
 }
 
 /* Writes into stopped_at where the refinement has stopped, for the message of an interrupted run. */
 static void tell_stop(const refine_job *j, char stopped_at[HF_REFINE_STAGE_TEXT])
 {
-    int n = snprintf(stopped_at, HF_REFINE_STAGE_TEXT, " after %d steps of Levenberg-Marquardt", j->now.iterations);
+    int n = snprintf(stopped_at, HF_REFINE_STAGE_TEXT, " after %d steps of the refinement", j->now.iterations);
     if (j->now.iterations == 0) return;
     n += snprintf(stopped_at + n, HF_REFINE_STAGE_TEXT - (size_t)n, ", at psi %.4f mm", j->now.psi_m * 1e3);
     if (j->problem->objectives.n_objective && isfinite(j->now.merit))

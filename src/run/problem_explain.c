@@ -69,14 +69,14 @@ static void name_loose(const hf_problem *p, const char *stage, const hf_workspac
         if (w->loose[i]) add_name(&loose, name_node(p, i, name));
     if (r->n_loose)
         hf_warning(messages,
-                   "no taut cable holds these nodes of the %s shape, %d: %s. They are given the place nearest to the "
-                   "theoretical one that their cables allow, and psi leaves them out",
+                   "no taut cable holds these nodes of the %s shape, %d: %s. They are put where their cables allow, as "
+                   "close to their target positions as possible, and psi leaves them out",
                    stage, r->n_loose, close_names(&loose));
     if (r->n_drifting)
         hf_warning(messages,
-                   "the equilibrium is not unique: %d node%s can move without a force, farthest %s; the position error "
-                   "is unknown. Give a cable there another law, or support the node",
-                   r->n_drifting, r->n_drifting == 1 ? "" : "s", name_node(p, r->culprit, name));
+                   "the equilibrium is not unique: %d free node%s no stiffness, mainly %s, so the position error is "
+                   "unknown. Give a cable there another law, or support the node",
+                   r->n_drifting, r->n_drifting == 1 ? " has" : "s have", name_node(p, r->culprit, name));
 }
 
 /* ---- warnings ---- */
@@ -100,24 +100,24 @@ void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, co
     if (r->stop_reason == HF_STOPPED_RMS_CHANGE && r->residual_N > p->settings.form.residual_tolerance * m->reference_N)
         hf_warning(
             messages,
-            "stop: rms_change ended before equilibrium of the %s shape: nodal residual %.2e N, cable lengths off "
-            "by up to %.2e; stop: residual iterates until they vanish",
+            "stop: rms_change ended before equilibrium of the %s shape: nodal residual %.2e N, relative error of cable "
+            "lengths up to %.2e; use stop: residual to iterate to equilibrium",
             stage, r->residual_N, r->length_error);
     if (r->stop_reason == HF_STOPPED_CONVERGED && is_off_by_law(p, r))
-        hf_warning(messages,
-                   "by the laws of the elastic cables forces of up to %.2e N are out of balance, though those of the "
-                   "iteration are within form.residual_tolerance: lengths are off by up to %.2e of themselves; lower "
-                   "form.length_tolerance%s",
-                   r->residual_N, r->length_error,
-                   hf_evaluate_method(m, &p->settings.form, NULL) == HF_METHOD_NEWTON ? ""
-                                                                                      : ", or use form.method: newton");
-    if (r->n_loaded_chain) {
-        name_loaded_chains(p, w, &chains);
         hf_warning(
             messages,
-            "%d straight chains of length-controlled cables carry lateral load, which no finite tension holds: the "
-            "boundary tensions depend on where the iteration stopped: %s",
-            r->n_loaded_chain, close_names(&chains));
+            "by the laws of the elastic cables, forces of up to %.2e N are out of balance, although the residual "
+            "of the iteration is within form.residual_tolerance: the relative error of lengths is up to %.2e; "
+            "lower form.length_tolerance%s",
+            r->residual_N, r->length_error,
+            hf_evaluate_method(m, &p->settings.form, NULL) == HF_METHOD_NEWTON ? "" : ", or use form.method: newton");
+    if (r->n_loaded_chain) {
+        name_loaded_chains(p, w, &chains);
+        hf_warning(messages,
+                   "%d straight chains of length-controlled cables carry lateral load, which no finite tension can "
+                   "balance, so "
+                   "the boundary tensions depend on where the iteration stopped: %s",
+                   r->n_loaded_chain, close_names(&chains));
     }
     name_loose(p, stage, w, r, messages);
     for (int e = 0; r->n_slack && e < m->n_cable; e++)
@@ -150,9 +150,9 @@ static int furthest_off(const hf_problem *p)
  * text. */
 static const char *name_move(const hf_coupling_result *c, char text[MOVE_SIZE])
 {
-    if (!isfinite(c->step_m)) return "beyond all bounds";
+    if (!isfinite(c->step_m)) return "without bound";
     int n = snprintf(text, MOVE_SIZE, "by %.2e m", c->step_m);
-    if (isfinite(c->ratio)) snprintf(text + n, MOVE_SIZE - (size_t)n, ", %g times the step before", c->ratio);
+    if (isfinite(c->ratio)) snprintf(text + n, MOVE_SIZE - (size_t)n, ", %g times the previous step", c->ratio);
     return text;
 }
 
@@ -163,24 +163,22 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
     if (r->coupling.stop_reason == HF_COUPLING_MAX_ITERATIONS)
         return hf_error(
             messages, r->status,
-            "the net and its truss did not come to rest in %d form-findings: an attachment would still move "
-            "%s; raise coupling.max_iterations or coupling.tof_m, or "
-            "tighten form.%s, which limits how well the forces are known",
+            "the coupling of net and truss did not converge in %d form-findings: an attachment still moves %s; raise "
+            "coupling.max_iterations or coupling.tof_m, or lower form.%s, which limits the accuracy of the forces",
             r->coupling.iterations, name_move(&r->coupling, move),
             r->stop_reason == HF_STOPPED_RMS_CHANGE ? "rms_tolerance_m" : "residual_tolerance");
     if (r->culprit >= 0 && r->n_drifting == 0) /* a cable; with drifting nodes it is a row */
         return hf_error(messages, r->status,
-                        "form-finding is as exact as double precision allows, nodal residual %.2e N: cable '%s' is "
-                        "%.2e m long under %.2e N, too short or too tight for coordinates of its size; move the origin "
-                        "near it, join its nodes or loosen the tolerances",
+                        "form-finding is as accurate as double precision allows (nodal residual %.2e N): cable '%s' is "
+                        "%.2e m long at %.2e N, which is too short or too tight for its coordinates; move the origin "
+                        "closer to it, join its nodes or raise the tolerances",
                         r->residual_N, p->scene.cable_id[r->culprit], w->length_m[r->culprit],
                         w->tension_N[r->culprit]);
     int e = furthest_off(p);
     return hf_error(
         messages, r->status,
-        "form-finding did not converge in %d iteration%s: nodal residual %.2e N, cable lengths off by up to "
-        "%.2e; furthest from its law is cable '%s', %g N and %g m long; raise form.max_iterations or "
-        "loosen the tolerances",
+        "form-finding did not converge in %d iteration%s: nodal residual %.2e N, relative error of cable lengths up to "
+        "%.2e; cable '%s' is farthest from its law, at %g N and %g m; raise form.max_iterations or the tolerances",
         r->iterations, r->iterations == 1 ? "" : "s", r->residual_N, r->length_error, p->scene.cable_id[e],
         w->tension_N[e], w->length_m[e]);
 }
@@ -217,8 +215,8 @@ static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, 
                         : form->coupling.scheme == HF_COUPLING_PLAIN ? ", or try coupling.scheme: accelerated"
                                                                      : "";
     return hf_error(messages, r->status,
-                    "the truss is too soft for the loop with its net: after %d form-findings an attachment would "
-                    "still move %s; stiffen the truss (%s), %s%s",
+                    "the truss is too soft for the coupling with its net: after %d form-findings an attachment still "
+                    "moves %s; stiffen the truss (%s), %s%s",
                     c->iterations, name_move(c, move), stiffen, name_pull(p), other);
 }
 
@@ -229,16 +227,17 @@ static hf_status explain_chains(const hf_problem *p, hf_workspace *w, const hf_f
     double sum_m, span_m;
     if (hf_form_chain_is_short(&p->model, w, r->culprit, &sum_m, &span_m)) {
         hf_model_chain_name(&p->model, &p->scene, r->culprit, name, sizeof name);
-        return hf_error(messages, r->status,
-                        "ill-posed: the lengths of %s add up to %.10g m and do not span their supports, which are "
-                        "%.10g m apart: no shape has them. Give them longer L*, or another law",
-                        name, sum_m, span_m);
+        return hf_error(
+            messages, r->status,
+            "ill-posed: the lengths of %s add up to %.10g m, but their supports are %.10g m apart, so there is "
+            "no shape. Give the cables longer L*, or another law",
+            name, sum_m, span_m);
     }
     name_loaded_chains(p, w, &chains);
     return hf_error(messages, r->status,
                     "ill-posed: %d straight chains of length-controlled cables carry lateral load, which no finite "
-                    "tension holds: %s. Give them slack (scene.parabolic_cylinder.scallop, longer L*), another law, or "
-                    "support their nodes",
+                    "tension can balance: %s. Give them a sag (scene.parabolic_cylinder.scallop, longer L*) or another "
+                    "law, or support their nodes",
                     r->n_loaded_chain, close_names(&chains));
 }
 
@@ -263,8 +262,8 @@ hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
     case HF_COLLAPSED:
         return hf_error(
             messages, r->status,
-            "ill-posed: the net collapses at cable '%s', whose length fell below %g of the theoretical one: its "
-            "tension cannot hold it apart",
+            "ill-posed: the net collapses at cable '%s', whose length fell below %g of its length at the target "
+            "positions: check the tensions, lengths and supports near it",
             p->scene.cable_id[r->culprit], p->settings.form.collapse_ratio);
     case HF_NOT_FINITE:
         if (r->culprit < 0) return hf_error(messages, r->status, "ill-posed: a tension is no longer a finite number");
@@ -272,10 +271,10 @@ hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
                         p->scene.cable_id[r->culprit]);
     default:
         if (r->culprit >= 0) name_node(p, r->culprit, node);
-        return hf_error(
-            messages, r->status,
-            "ill-posed: the force density matrix is singular or not positive definite at node %s: its cables "
-            "are slack, or no match for its load, or lead to no support",
-            node);
+        return hf_error(messages, r->status,
+                        "ill-posed: the force density matrix is singular or not positive definite at node %s: its "
+                        "cables are slack, "
+                        "cannot balance its load, or do not lead to a support",
+                        node);
     }
 }

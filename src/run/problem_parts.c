@@ -52,8 +52,8 @@ static hf_status check_frequencies(const hf_problem *p, const hf_feed *feed, dou
         if (terms <= PATTERN_TERMS_MOST) continue;
         hf_config_place(&p->settings, "surface.frequencies_Hz", place, sizeof place);
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: at %g GHz the far field has %.3g points of quadrature times %d angles: %.2g terms, and %g "
-                        "is the most; lower the frequency, or narrow surface.pattern.theta_deg",
+                        "%s: at %g GHz the far field has %.3g quadrature points times %d angles: %.2g terms, but the "
+                        "maximum is %g; lower the frequency, or narrow surface.pattern.theta_deg",
                         place, at->value[k] / 1e9, (double)plan.n_point, hf_pattern_angles(&plan), terms,
                         PATTERN_TERMS_MOST);
     }
@@ -78,18 +78,20 @@ static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
     bool is_given = hf_config_place(&p->settings, "surface.pattern.feed.position_m", place, sizeof place);
     if (!is_given) hf_config_place(&p->settings, "surface.pattern", place, sizeof place);
     if (p->facets.n_facet == 0)
-        return hf_error(messages, HF_BAD_CASE, "%s: this net has no facets, of which the far field is made", place);
+        return hf_error(messages, HF_BAD_CASE, "%s: this net has no facets, from which the far field would be computed",
+                        place);
     int n_dark = hf_feed_make(&p->surface, &p->facets, p->scene.position_m, &feed);
     if (isnan(feed.axis[2])) {
         hf_config_place(&p->settings, "surface.pattern.feed.aim_m", place, sizeof place);
-        return hf_error(messages, HF_BAD_CASE, "%s: the feed, at (%g, %g, %g) m, cannot look at its own place", place,
+        return hf_error(messages, HF_BAD_CASE, "%s: the feed at (%g, %g, %g) m cannot aim at its own position", place,
                         feed.position_m[0], feed.position_m[1], feed.position_m[2]);
     }
     if (n_dark > 0)
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s: from (%g, %g, %g) m the feed sees %d of %d facets from behind or not at all; it must be "
-                        "above all of them and look at them",
-                        place, feed.position_m[0], feed.position_m[1], feed.position_m[2], n_dark, p->facets.n_facet);
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s: from (%g, %g, %g) m the feed illuminates %d of %d facets from behind or not at all; it must "
+            "be above all facets and aim at them",
+            place, feed.position_m[0], feed.position_m[1], feed.position_m[2], n_dark, p->facets.n_facet);
     if (hf_facet_measure(&p->surface, &p->facets, &theory, &m) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
     HF_TRY(check_frequencies(p, &feed, m.facet_area_m2, messages));
@@ -97,12 +99,13 @@ static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
     char loss[32] = "more than 3 dB";
     if (loss_dB <= RUZE_MOST_DB) snprintf(loss, sizeof loss, "%.2g dB", loss_dB);
     if (loss_dB > FACET_LOSS_MOST_DB)
-        hf_warning(messages,
-                   "surface.pattern: at %g GHz the facets are coarse: those of the theoretical net alone are off a "
-                   "smooth surface by %.3g mm (half path, RMS), which loses %s into lobes of their own. About %.0f "
-                   "facets instead of %d would lose %g dB",
-                   most_Hz / 1e9, m.facet_fit_half_path_rms_m * 1e3, loss,
-                   ceil(p->facets.n_facet * sqrt(loss_dB / FACET_LOSS_MOST_DB)), p->facets.n_facet, FACET_LOSS_MOST_DB);
+        hf_warning(
+            messages,
+            "surface.pattern: at %g GHz the facets are coarse: even at the target positions their half-path error "
+            "is %.3g mm RMS, which loses %s into lobes of their own. About %.0f facets instead of %d would lose "
+            "%g dB",
+            most_Hz / 1e9, m.facet_fit_half_path_rms_m * 1e3, loss,
+            ceil(p->facets.n_facet * sqrt(loss_dB / FACET_LOSS_MOST_DB)), p->facets.n_facet, FACET_LOSS_MOST_DB);
     return HF_OK;
 }
 
@@ -111,9 +114,10 @@ static hf_status find_facets(hf_problem *p, hf_messages *messages)
     if (hf_facets_find(&p->scene, &p->surface, &p->facets) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the facets of a net of %d nodes", p->scene.n_node);
     if (!p->facets.is_planar)
-        hf_warning(messages, "surface: cables on it cross without a node, seen along z: it has no facets to measure");
+        hf_warning(messages,
+                   "surface: cables on it cross without a node, as seen along z, so there are no facets to measure");
     else if (p->facets.n_facet == 0)
-        hf_warning(messages, "surface: the net has no facets: its errors and losses are those of its nodes alone");
+        hf_warning(messages, "surface: the net has no facets, so errors and losses are those of the nodes alone");
     return p->surface.has_pattern ? check_pattern(p, messages) : HF_OK;
 }
 
@@ -292,34 +296,37 @@ static hf_status check_variable(const hf_problem *p, int k, hf_messages *message
     hf_model_variable_name(&p->model, &p->scene, k, name, sizeof name);
     bool is_row = p->model.variable, is_cable = p->model.variable_cable[k] >= 0;
     if (is_cable && !(base > 0))
-        return hf_error(
-            messages, HF_NO_FEASIBLE,
-            "optimize: %s '%s' has no tension after form-finding to start from; give it a shorter length, or "
-            "a law that holds it taut",
-            is_row ? "cable" : "boundary cable", name);
+        return hf_error(messages, HF_NO_FEASIBLE,
+                        "optimize: %s '%s' has no tension after form-finding from which to start; give it a shorter "
+                        "length, or a law "
+                        "that keeps it taut",
+                        is_row ? "cable" : "boundary cable", name);
     if (is_row)
         hf_messages_place(messages, where, "optimize.variables.%d", p->model.variable[k].setting);
     else
         hf_messages_place(messages, where, "optimize.range_N");
     if (!is_row && (base + o->range_N < o->min_tension_N || base - o->range_N > o->max_tension_N))
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s: boundary cable '%s' has %g N after form-finding; range_N %g around that does not "
-                        "reach min_tension_N %g .. max_tension_N %g",
-                        where, name, base, o->range_N, o->min_tension_N, o->max_tension_N);
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s: boundary cable '%s' has %g N after form-finding; range_N %g around this value does not overlap "
+            "min_tension_N %g .. max_tension_N %g",
+            where, name, base, o->range_N, o->min_tension_N, o->max_tension_N);
     hf_variables_bound(o, &p->model, k, base, &lower, &upper, &reach);
     if (is_row && is_cable && !(upper > 0))
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: bounds leave '%s' nothing above 0 %s: a cable has a tension and a length", where, name,
-                        hf_model_variable_unit(&p->model, k));
+                        "%s: the bounds leave '%s' no value above 0 %s, but a cable needs a tension and a length",
+                        where, name, hf_model_variable_unit(&p->model, k));
     if (is_row && (base + reach < lower || base - reach > upper))
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s: '%s' has %g %s after form-finding; its range around that does not reach its bounds", where,
-                        name, base, hf_model_variable_unit(&p->model, k));
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s: '%s' has %g %s after form-finding; its range around this value does not overlap its bounds", where,
+            name, base, hf_model_variable_unit(&p->model, k));
     if (hf_optimiser_plan_of(o).kind && !isfinite(upper - lower))
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s: '%s' is open on one side; the genetic algorithm needs a range, or both bounds (method: lm "
-                        "does not)",
-                        where, name);
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s: '%s' has no bound on one side; the genetic algorithm needs a range or both bounds (method: lm "
+            "does not)",
+            where, name);
     return HF_OK;
 }
 
@@ -345,11 +352,12 @@ void hf_problem_warn_of_front(const hf_problem *p, hf_messages *messages)
 {
     const hf_case *c = &p->settings;
     if (c->optimize.n_front == 0 || (p->load_cases.n == 0 && !c->has_tolerance)) return;
-    hf_warning(messages,
-               "optimize.objectives: a front is no single design, so %s%s%s are of the form-finding's net, before "
-               "any optimisation; `hifdm run %s --point FRONT.h5:N -o point.h5` has point N of the front there",
-               p->load_cases.n ? "cases" : "", p->load_cases.n && c->has_tolerance ? " and " : "",
-               c->has_tolerance ? "tolerance" : "", c->path);
+    hf_warning(
+        messages,
+        "optimize.front: a front is no single design, so %s%s%s belong to the net of the form-finding, before "
+        "optimisation. To compute them for point N of the front, run `hifdm run %s --point FRONT.h5:N -o point.h5`",
+        p->load_cases.n ? "load_cases" : "", p->load_cases.n && c->has_tolerance ? " and " : "",
+        c->has_tolerance ? "tolerance" : "", c->path);
 }
 
 static hf_status check_base(const hf_problem *p, hf_messages *messages)
@@ -369,7 +377,7 @@ hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
     hf_variables_read(m, w->q_N_per_m, w->tension_N, w->length_m, p->initial);
     p->evaluator = hf_problem_evaluator(p);
     if (hf_evaluate_attend(&p->evaluator, &p->workspace) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the objectives");
     hf_problem_give_places(p, messages);
     hf_status status = p->settings.has_optimize && m->n_variable > 0 ? check_base(p, messages) : HF_OK;
     hf_problem_give_places(NULL, messages);

@@ -239,16 +239,16 @@ static const char *why_objective(hf_figure_kind kind)
     case HF_FIGURE_SURFACE:
     case HF_FIGURE_FACETS:
     case HF_FIGURE_GAIN:
-        return "none of the nodes that it looks at moves";
+        return "none of its nodes moves";
     case HF_FIGURE_TENSION:
     case HF_FIGURE_EVENNESS:
     case HF_FIGURE_RATIO:
-        return "all cables that it looks at keep their tensions";
+        return "all of its cables keep their tensions";
     case HF_FIGURE_LENGTH:
     case HF_FIGURE_MASS:
-        return "all cables that it looks at keep their lengths";
+        return "all of its cables keep their lengths";
     default:
-        return "the pull on the supports stays as it is";
+        return "the pull on the supports does not change";
     }
 }
 
@@ -267,9 +267,10 @@ static hf_status tell_objectives(const reach *q, hf_messages *messages)
         has_fault |= is_front || !is_reached;
         if (is_front || !is_reached)
             hf_error(messages, HF_BAD_CASE,
-                     "%s: no variable of this case changes %s: %s; vary what does, or leave it out", place, name, why);
+                     "%s: no design variable of this case changes %s: %s; add one that does, or leave the row out",
+                     place, name, why);
         else
-            hf_warning(messages, "%s: no variable of this case changes %s: %s", place, name, why);
+            hf_warning(messages, "%s: no design variable of this case changes %s: %s", place, name, why);
     }
     return has_fault ? HF_BAD_CASE : HF_OK;
 }
@@ -280,21 +281,23 @@ static hf_status tell(const reach *q, hf_messages *messages)
     char place[HF_PLACE_SIZE];
     for (int i = 0; i < o->n_variable_row; i++)
         if (q->now.variable_row[i])
-            hf_warning(messages,
-                       "%s: changes nothing at the base design: its cables, or those at its supports, are slack",
-                       hf_messages_place(messages, place, "optimize.variables.%d", i));
+            hf_warning(
+                messages,
+                "%s: changes nothing at the initial design, because its cables, or those at its supports, are slack",
+                hf_messages_place(messages, place, "optimize.variables.%d", i));
     for (int i = 0; i < o->n_limit; i++)
         if (q->now.limit[i])
-            hf_warning(messages, "%s: no variable of this case changes what it limits: %s",
+            hf_warning(messages, "%s: no design variable of this case changes the limited figure: %s",
                        hf_messages_place(messages, place, "optimize.limits.%d", i),
                        o->limit[i].figure == HF_LIMIT_DEFLECTION ? why_objective(HF_FIGURE_DEFLECTION)
                                                                  : why_objective(HF_FIGURE_TENSION));
     if (q->p->objectives.n_objective > 0) return tell_objectives(q, messages);
     if (!q->now.psi) return HF_OK;
-    return hf_error(messages, HF_BAD_CASE,
-                    "%s: no variable of this case changes psi: %s; vary what does, or name goals",
-                    hf_messages_place(messages, place, o->n_variable_row ? "optimize.variables.0" : "optimize.range_N"),
-                    why_objective(HF_FIGURE_PSI));
+    return hf_error(
+        messages, HF_BAD_CASE,
+        "%s: no design variable of this case changes psi: %s; add one that does, or use another optimize.objective",
+        hf_messages_place(messages, place, o->n_variable_row ? "optimize.variables.0" : "optimize.range_N"),
+        why_objective(HF_FIGURE_PSI));
 }
 
 /* Returns true if a row remains that no variable has been seen to change, or that has changed nothing. */
@@ -335,7 +338,8 @@ static void doubt_ranges(const hf_problem *p, hf_messages *messages)
         for (int k = 0; k < m->n_variable; k++)
             if (row_of_variable(m, k) == i && m->variable_cable[k] >= 0) most = fmax(most, fabs(p->initial[k]));
         if (!(most > 0) || !isinf(row->upper) || !(row->range > FAR_RANGE * most)) continue;
-        hf_warning(messages, "%s: %g is %.2g times the largest value of this row, %.3g: is a part meant, as in %g %%?",
+        hf_warning(messages,
+                   "%s: %g is %.2g times the maximum value of this row, %.3g; for a relative range, write %g %%",
                    hf_messages_place(messages, place, "optimize.variables.%d.range", i), row->range, row->range / most,
                    most, row->range);
     }
@@ -352,7 +356,7 @@ hf_status hf_reach_check(const hf_problem *p, hf_messages *messages)
     if (!o->n_variable_row && !o->n_limit && !p->objectives.n_objective) return HF_OK;
     hf_status status = create(p, &q);
     if (status == HF_OK) status = look(&q);
-    if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the derivatives of the goals");
+    if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the derivatives of the objectives");
     if (status == HF_OK) {
         hf_problem_give_places(p, messages);
         status = tell(&q, messages);

@@ -29,11 +29,12 @@ void hf_result_doubt_truss(const hf_problem *p, const hf_carrier_state *truss, c
     double move_m, span_m, off_m = hf_carrier_second_order_m(&p->carrier, truss, &move_m, &span_m);
     double psi_m = shape ? hf_metrics_psi_m(&p->model, shape) : 0;
     if (off_m > fmax(SECOND_ORDER_DOUBT * span_m, SECOND_ORDER_PSI * psi_m))
-        hf_warning(messages,
-                   "truss: its attachments give way so far (%.3g mm in the result) that linear theory, which it is "
-                   "computed by, may be off by some %.2g mm: stiffen it (tubes of larger diameter, more bays) or lower "
-                   "form.pretension_N",
-                   move_m * 1e3, off_m * 1e3);
+        hf_warning(
+            messages,
+            "truss: its attachments deflect so far (%.3g mm in the result) that its linear theory may have an error "
+            "of about %.2g mm: stiffen the truss (tubes of larger diameter, more bays) or lower "
+            "form.pretension_N",
+            move_m * 1e3, off_m * 1e3);
 }
 
 /* ---- strains ---- */
@@ -58,8 +59,8 @@ void hf_result_doubt_strain(const hf_problem *p, const hf_workspace *shape, hf_m
     if (n > 1) snprintf(more, sizeof more, ", and %d more", n - 1);
     hf_warning(
         messages,
-        "cable '%s'%s is stretched by %.3g %%, by %.4g N with an EA of %.4g N: cables break at a few per cent; is "
-        "EA in N?",
+        "cable '%s'%s is stretched by %.3g %% (%.4g N, EA %.4g N), but cables break at a few per cent: check that EA "
+        "is in N",
         p->scene.cable_id[worst], more, most * 100, shape->tension_N[worst], EA_N[worst]);
 }
 
@@ -197,20 +198,21 @@ static void tell_far(const hf_problem *p, const hf_places *form, const far_nodes
     const far_nodes *open = &far[HF_COUNTED_NOT], *within = &far[HF_COUNTED_ACROSS];
     char more[32];
     if (open->n)
-        hf_warning(messages,
-                   "optimize: node %s%s moved far from where form-finding has it, by %.0f mm where its cables are %.0f "
-                   "mm long, and no goal counts that: vary fewer sets of cables, or add {goal: length, set: %s, "
-                   "weight: 0.1} to optimize.goals%s",
-                   p->scene.node_id[p->model.node_of_row[open->row]], and_more(open, more), open->move_m * 1e3,
-                   form->cable_m[open->row] * 1e3, set_at(p, open->row),
-                   p->objectives.n_objective ? "" : " beside {goal: psi}");
-    if (within->n)
         hf_warning(
             messages,
-            "optimize: node %s%s moved far within the surface, by %.0f mm where its cables are %.0f mm long, and "
-            "no goal counts that: vary fewer sets of cables, or add {goal: psi, weight: 0.1} to optimize.goals",
-            p->scene.node_id[p->model.node_of_row[within->row]], and_more(within, more), within->move_m * 1e3,
-            form->cable_m[within->row] * 1e3);
+            "optimize: node %s%s moved far from its position after form-finding: by %.0f mm, and its cables are "
+            "%.0f mm long. No objective counts this: vary fewer sets of cables, or add {figure: length, set: %s, "
+            "weight: 0.1} to optimize.objective%s",
+            p->scene.node_id[p->model.node_of_row[open->row]], and_more(open, more), open->move_m * 1e3,
+            form->cable_m[open->row] * 1e3, set_at(p, open->row),
+            p->objectives.n_objective ? "" : " beside {figure: psi}");
+    if (within->n)
+        hf_warning(messages,
+                   "optimize: node %s%s moved far within the surface: by %.0f mm, and its cables are %.0f mm long. No "
+                   "objective "
+                   "counts this: vary fewer sets of cables, or add {figure: psi, weight: 0.1} to optimize.objective",
+                   p->scene.node_id[p->model.node_of_row[within->row]], and_more(within, more), within->move_m * 1e3,
+                   form->cable_m[within->row] * 1e3);
 }
 
 void hf_result_doubt_uncounted(const hf_problem *p, const hf_places *form, const hf_workspace *shape,

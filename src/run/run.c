@@ -173,7 +173,8 @@ static hf_status find_form(run *r, hf_summary *s, hf_messages *messages)
 static hf_status prepare_optimize(run *r, hf_summary *s, hf_messages *messages)
 {
     hf_problem *p = &r->problem;
-    if (hf_places_keep(p, &r->places) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory for places");
+    if (hf_places_keep(p, &r->places) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the target positions");
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_reach_check(p, messages));
     const hf_objectives *objectives = &p->objectives;
@@ -181,11 +182,11 @@ static hf_status prepare_optimize(run *r, hf_summary *s, hf_messages *messages)
     if (objectives->n_objective &&
         hf_objectives_measure(objectives, &p->workspace, point, s->stage[HF_STAGE_FORM].result.objective,
                               &s->stage[HF_STAGE_FORM].result.merit) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the objectives");
     HF_TRY(hf_store_restore_initial(r->store, p->model.n_variable, p->initial, messages));
     if (hf_problem_batch(p, r->request->threads) != HF_OK ||
         hf_optimiser_create(r->plan.kind, &p->settings.optimize, &p->model, p->initial, &r->optimiser) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for %d individuals of %d genes on %d threads",
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for %d individuals of %d design variables on %d threads",
                         p->settings.optimize.population, p->model.n_variable, p->batch.n_thread);
     return HF_OK;
 }
@@ -225,7 +226,7 @@ static hf_status store_best(run *r, hf_summary *s, hf_messages *messages)
     hf_certify(&r->problem.model, w, &again);
     s->stage[HF_STAGE_SEARCH].result = again; /* the same bits, with the figures that individuals do not store */
     count_at_bounds(&r->optimiser.population, design, &s->search.n_at_lower, &s->search.n_at_upper);
-    hf_problem_warn(&r->problem, "optimised", w, &s->stage[HF_STAGE_SEARCH].result, messages);
+    hf_problem_warn(&r->problem, "search", w, &s->stage[HF_STAGE_SEARCH].result, messages);
     HF_TRY(measure_shape(r, HF_STAGE_SEARCH, w, s, messages));
     if (r->problem.settings.optimize.n_front == 0) HF_TRY(take_result(r, w, messages)); /* a front has no result */
     return hf_store_shape(r->store, HF_STAGE_SEARCH, &r->problem.model, w, design, messages);
@@ -355,7 +356,7 @@ static hf_status take_point(run *r, hf_summary *s, hf_messages *messages)
     hf_evaluate(&r->problem.evaluator, design, w, &s->stage[HF_STAGE_REFINE].result);
     if (must_stop(r)) return stop_here(r, s, messages);
     HF_TRY(hf_take_point_check(&r->problem, &r->taken, p, &s->stage[HF_STAGE_REFINE].result, messages));
-    hf_problem_warn(&r->problem, "taken", w, &s->stage[HF_STAGE_REFINE].result, messages);
+    hf_problem_warn(&r->problem, "point's", w, &s->stage[HF_STAGE_REFINE].result, messages);
     s->stage[HF_STAGE_REFINE].wall_s = hf_clock_s() - start_s;
     s->refine.is_result = true;
     s->refine.evaluations = 1;
@@ -414,8 +415,8 @@ static hf_status follow_front(run *r, hf_summary *s, hf_messages *messages)
     double begin_s = hf_clock_s();
     hf_status status = hf_run_front(r->request, &r->problem, &r->optimiser.population, &r->front, s, messages);
     if (must_stop(r)) {
-        snprintf(r->stopped_at, sizeof r->stopped_at, " in the front by Levenberg-Marquardt, whose %.0f s begin anew",
-                 hf_clock_s() - begin_s);
+        snprintf(r->stopped_at, sizeof r->stopped_at,
+                 " in the refinement of the front, which restarts and repeats %.0f s", hf_clock_s() - begin_s);
         return stop_here(r, s, messages);
     }
     HF_TRY(status);
@@ -469,7 +470,7 @@ static hf_status stages(run *r, hf_summary *s, hf_messages *messages)
     HF_TRY(find_form(r, s, messages));
     if (must_stop(r)) return HF_INTERRUPTED;
     if (r->problem.settings.has_optimize && r->problem.model.n_variable == 0)
-        hf_warning(messages, "optimize: skipped, no boundary cable has a free end");
+        hf_warning(messages, "optimize: skipped, because no boundary cable has a free end");
     else if (r->problem.settings.has_optimize)
         return optimize(r, s, messages);
     return HF_OK;
@@ -514,7 +515,7 @@ static hf_status repeat_finished(const hf_run_request *q, const char *output, hf
 {
     HF_TRY(hf_store_read_finished(output, s, messages));
     if (s->tolerance) hf_tolerance_stage_end(q, output);
-    hf_warning(messages, "%s: is the finished result of this case; --restart computes it again", output);
+    hf_warning(messages, "%s: is the finished result of this case; use --restart to compute it again", output);
     for (const char *line = s->warnings; *line; line += strcspn(line, "\n"), line += *line == '\n')
         if (!strncmp(line, "error: ", 7)) hf_error(messages, s->status, "%.*s", (int)strcspn(line + 7, "\n"), line + 7);
     return s->status;
@@ -560,12 +561,12 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     hf_case *settings = &r->problem.settings;
     HF_TRY(hf_problem_load(q->case_path, q->source, q->set, q->n_set, q->stop_requested, &r->problem, messages));
     if (settings->has_sweep && !q->of_sweep)
-        return hf_error(messages, HF_BAD_USAGE, "%s: has a sweep section; 'hifdm sweep %s' runs it", q->case_path,
+        return hf_error(messages, HF_BAD_USAGE, "%s: has a section sweep; run it by 'hifdm sweep %s'", q->case_path,
                         q->case_path);
     HF_TRY(hf_tolerance_stage_check(&r->problem, q->of_tolerance, messages));
     if (q->has_seed) settings->optimize.seed = q->seed;
     if (q->has_seed && !settings->has_optimize)
-        hf_warning(messages, "--seed has no effect: the case has no optimize section");
+        hf_warning(messages, "--seed has no effect, because the case has no section optimize");
     if (q->point) HF_TRY(hf_take_point_read(q->point, &r->problem, &r->taken, messages));
     hf_problem_describe(&r->problem, s);
     hf_store_state state = HF_STORE_NOTHING;
@@ -585,7 +586,7 @@ static hf_status execute(run *r, hf_summary *s, char *output, hf_messages *messa
     if (has_design && (status == HF_INTERRUPTED || is_of_machine(status)))
         keep_unfinished(r, s, status, output, messages);
     if (status == HF_INTERRUPTED && (r->store || hf_tolerance_stage_is_task(q)))
-        hf_error(messages, status, "%s: told to stop%s; the same command goes on from there", output, r->stopped_at);
+        hf_error(messages, status, "%s: interrupted%s; run the same command again to resume", output, r->stopped_at);
     if ((!leaves_result(status) && !keeps_design) || hf_tolerance_stage_is_task(q)) return status;
     hf_result_doubt_truss(&r->problem, &r->truss, r->shape, messages);
     hf_result_doubt_strain(&r->problem, r->shape, messages);

@@ -24,9 +24,10 @@ hf_status hf_run_front_tell(const hf_front *front, double wall_s, hf_summary *s,
     s->front->wall_s = wall_s;
     if (s->front->n_failed > 0) {
         hf_status first = front->point[front->n_point - s->front->n_failed].status;
-        hf_warning(messages, "optimize.objectives: %d of %d points of the front failed: the first with %s",
+        hf_warning(messages, "optimize.front: %d of %d points of the front failed; the first reason: %s",
                    s->front->n_failed, front->n_point,
-                   first == HF_OUT_OF_LIMITS ? "no way from its neighbours into its limits" : hf_status_text(first));
+                   first == HF_OUT_OF_LIMITS ? "the refinement did not reach its limits from the neighbouring points"
+                                             : hf_status_text(first));
     }
     return HF_OK;
 }
@@ -41,10 +42,11 @@ static void warn_of_steps(const hf_front *front, int max_iterations, hf_messages
         n += p->status == HF_OK && !p->is_converged && p->steps >= max_iterations;
     }
     if (n > 0)
-        hf_warning(messages,
-                   "optimize.objectives: %d of %d points of the front are not converged after %d steps: they have no "
-                   "slope, and better designs are near; raise optimize.polish_iterations",
-                   n, front->n_point, max_iterations);
+        hf_warning(
+            messages,
+            "optimize.front: %d of %d points of the front are not converged after %d steps: they have no slope, and "
+            "better designs exist near them; raise optimize.refine_steps",
+            n, front->n_point, max_iterations);
 }
 
 /* Writes why Levenberg-Marquardt has found no front. Returns text. */
@@ -55,15 +57,15 @@ static const char *explain(const hf_problem *p, hf_status status, int end, char 
     char hint[HF_NO_DESIGN_HINT_SIZE];
     hf_no_design_cap(p, p->form.boundary_tension_ratio, hint);
     if (status == HF_OUT_OF_LIMITS)
-        why = p->settings.optimize.n_limit > 0 ? "no way from its start into optimize.limits"
-                                               : "no way from its start into the bounds of optimize.variables";
+        why = p->settings.optimize.n_limit > 0 ? "it did not reach optimize.limits from its start"
+                                               : "it did not reach the bounds of optimize.variables from its start";
     if (end >= 0)
         snprintf(text, size,
-                 "optimize.objectives.%d: Levenberg-Marquardt has found no design with the least %s, an end of the "
+                 "optimize.front.%d: Levenberg-Marquardt found no design with the minimum %s, which is an end of the "
                  "front: %s%s",
                  end, hf_objectives_name(p->evaluator.objectives, end, name), why, hint);
     else
-        snprintf(text, size, "optimize.objectives: Levenberg-Marquardt has found no front: %s%s", why, hint);
+        snprintf(text, size, "optimize.front: Levenberg-Marquardt found no front: %s%s", why, hint);
     return text;
 }
 

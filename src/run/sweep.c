@@ -51,10 +51,11 @@ static hf_status choose_points(sweep *w, const hf_points *points)
     for (int i = 0; i < points->n_point; i++)
         w->state[i] = points->point[i].state;
     if (points->count[HF_POINT_OUTDATED] && !(wanted & 1u << HF_POINT_OUTDATED))
-        return hf_error(w->messages, HF_EXISTS,
-                        "%s: the base case has changed since %d points were run; --retry outdated,missing runs them "
-                        "anew, --dir chooses another folder",
-                        w->ledger.folder, points->count[HF_POINT_OUTDATED]);
+        return hf_error(
+            w->messages, HF_EXISTS,
+            "%s: the base case has changed since %d points were run; use --retry outdated,missing to run them "
+            "again, or --dir for another folder",
+            w->ledger.folder, points->count[HF_POINT_OUTDATED]);
     for (int i = w->request->task; i < points->n_point; i += w->request->tasks)
         if (wanted & 1u << points->point[i].state)
             w->todo[w->count.n_todo++] = i;
@@ -180,10 +181,11 @@ static bool claim(sweep *w, int i)
     pthread_mutex_lock(&w->lock);
     w->count.n_elsewhere += !is_ours || is_finished;
     if (lock == HF_LOCK_NONE && !w->is_without_locks)
-        hf_warning(w->messages,
-                   "%s: this file system has no locks: 'hifdm status' cannot tell what is running, and only --task "
-                   "keeps several sweeps from the same points",
-                   w->ledger.folder);
+        hf_warning(
+            w->messages,
+            "%s: this file system has no locks, so 'hifdm status' cannot show running points; use --task so that "
+            "several sweeps do not run the same points",
+            w->ledger.folder);
     w->is_without_locks |= lock == HF_LOCK_NONE;
     pthread_mutex_unlock(&w->lock);
     return is_ours && !is_finished;
@@ -239,17 +241,18 @@ static hf_status run_points(sweep *w)
     int left = n->n_todo - n->n_done - n->n_failed - n->n_elsewhere;
     if (n->n_elsewhere) hf_warning(w->messages, "%d points are run by another process", n->n_elsewhere);
     if (w->fatal != HF_OK)
-        return hf_error(w->messages, w->fatal,
-                        "the sweep stops here: %d points are left, and none counts as failed for this; the same "
-                        "command goes on when the cause is gone",
-                        left);
+        return hf_error(
+            w->messages, w->fatal,
+            "the sweep stops: %d points are missing, and none of them counts as failed; remove the cause, then "
+            "run the same command again to resume",
+            left);
     if (left)
-        return hf_error(w->messages, HF_INTERRUPTED, "told to stop: %d points are left; the same command goes on",
-                        left);
+        return hf_error(w->messages, HF_INTERRUPTED,
+                        "interrupted: %d points are missing; run the same command again to resume", left);
     int n_failed = n->n_failed + n->n_failed_before;
     if (!n_failed) return HF_OK;
-    return hf_error(w->messages, HF_POINTS_FAILED, "%d points failed%s; 'hifdm status' says why", n_failed,
-                    n->n_failed ? "" : " earlier and are not run again without --retry failed");
+    return hf_error(w->messages, HF_POINTS_FAILED, "%d points failed%s; 'hifdm status' lists the reasons", n_failed,
+                    n->n_failed ? "" : " earlier and are run again only with --retry failed");
 }
 
 hf_status hf_sweep_run(const hf_sweep_request *request, hf_sweep_count *count, hf_messages *messages)

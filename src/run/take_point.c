@@ -24,7 +24,7 @@
  * (configs/chen2022-truss.yaml, 20 generations); machines differ by less. */
 #define SAME 1e-6
 
-#define MADE_OF "give the case and the --set that it was made of%s"
+#define MADE_OF "use the case file and the --set options of that front%s"
 #define KEYS_TOLD 8
 enum { DIFFERENCES_SIZE = 640 };
 
@@ -44,10 +44,11 @@ static hf_status read_words(const char *point, hf_front_origin *taken, hf_messag
     const char *colon = strrchr(point, ':');
     size_t length = colon ? (size_t)(colon - point) : 0;
     if (length == 0 || !hf_text_uint64(colon + 1, &number) || number < 1 || number > INT_MAX)
-        return hf_error(messages, HF_BAD_USAGE,
-                        "--point must be FILE:N, a result with a front and the number of a point, as night.h5:7, not "
-                        "'%s'",
-                        point);
+        return hf_error(
+            messages, HF_BAD_USAGE,
+            "--point must be FILE:N, a result with a front and the number of a point, such as night.h5:7, not "
+            "'%s'",
+            point);
     if (length >= sizeof taken->path) return hf_error(messages, HF_BAD_USAGE, "--point: the path is too long");
     snprintf(taken->path, sizeof taken->path, "%.*s", (int)length, point);
     taken->point = (int)number;
@@ -65,7 +66,7 @@ static bool is_beside(const hf_problem *p, const char *key)
     return false;
 }
 
-/* Writes "; what differs: form.pretension_N", or "" if the differences are unknown. Returns words. */
+/* Writes "; different: form.pretension_N", or "" if the differences are unknown. Returns words. */
 static const char *tell_keys(const hf_problem *p, char words[DIFFERENCES_SIZE])
 {
     char keys[4096], *next = keys;
@@ -79,7 +80,7 @@ static const char *tell_keys(const hf_problem *p, char words[DIFFERENCES_SIZE])
         if (end) *end = '\0';
         if (is_beside(p, key) || n++ >= KEYS_TOLD) continue;
         used +=
-            (size_t)snprintf(words + used, DIFFERENCES_SIZE - used, "%s%.64s", n == 1 ? "; what differs: " : ", ", key);
+            (size_t)snprintf(words + used, DIFFERENCES_SIZE - used, "%s%.64s", n == 1 ? "; different: " : ", ", key);
     }
     if (n > KEYS_TOLD) snprintf(words + used, DIFFERENCES_SIZE - used, " and %d more", n - KEYS_TOLD);
     return words;
@@ -111,7 +112,7 @@ static hf_status check_point(const hf_problem *p, const stored_front *f, const h
     char words[DIFFERENCES_SIZE];
     if (taken->point > f->front.n_point)
         return hf_error(messages, HF_BAD_USAGE,
-                        "%s: its front has points 1 to %d, and no %d; `hifdm export %s --front FILE` lists them",
+                        "%s: its front has points 1 to %d, but no point %d; `hifdm export %s --front FILE` lists them",
                         taken->path, f->front.n_point, taken->point, taken->path);
     const hf_front_point *point = &f->front.point[taken->point - 1];
     if (point->status != HF_OK)
@@ -131,7 +132,8 @@ static hf_status take(const hf_front *front, hf_front_origin *origin, hf_taken_p
 {
     size_t i = (size_t)origin->point - 1, n = (size_t)front->n_variable, bytes = n * sizeof(double);
     taken->design = malloc(bytes);
-    if (!taken->design) return hf_error(messages, HF_NO_MEMORY, "out of memory for a design of %zu variables", n);
+    if (!taken->design)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for a design of %zu design variables", n);
     memcpy(taken->design, front->design + i * n, bytes);
     hf_sha256(taken->design, bytes, origin->sha256);
     for (int k = 0; k < front->n_objective; k++) {
@@ -147,18 +149,18 @@ hf_status hf_take_point_read(const char *point, hf_problem *p, hf_taken_point *t
 {
     hf_front_origin *origin = &p->settings.taken;
     HF_TRY(read_words(point, origin, messages));
-    stored_front f = {.summary = malloc(sizeof *f.summary)};
+    stored_front f = {.summary = calloc(1, sizeof *f.summary)};
     if (!f.summary) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", origin->path);
     hf_status status = hf_store_read_summary(origin->path, f.summary, messages);
     if (status == HF_OK && !f.summary->front)
         status = hf_error(messages, HF_BAD_USAGE,
-                          "%s: has no front, so no points: a run of a case with optimize.objectives makes one",
-                          origin->path);
+                          "%s: has no front, so it has no points; run a case with optimize.front", origin->path);
     if (status == HF_OK) status = hf_store_read_front(origin->path, &f.front, &f.variable, &f.variable_size, messages);
     if (status == HF_OK) status = check_point(p, &f, origin, messages);
     if (status == HF_OK) status = take(&f.front, origin, taken, messages);
     hf_front_free(&f.front);
     free(f.variable);
+    hf_summary_free(f.summary);
     free(f.summary);
     return status;
 }
@@ -175,7 +177,7 @@ static hf_status check_bounds(const hf_problem *p, const hf_taken_point *taken, 
         if (!(value < low - room) && !(value > high + room)) continue;
         hf_model_variable_name(&p->model, &p->scene, k, name, sizeof name);
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: point %d of its front has %.6g for '%s', which %s keeps from %.6g to %.6g: " MADE_OF,
+                        "%s: point %d of its front has %.6g for '%s', but %s allows %.6g to %.6g: " MADE_OF,
                         origin->path, origin->point, value, name, p->settings.path, low, high, tell_keys(p, words));
     }
     return HF_OK;
@@ -188,13 +190,14 @@ hf_status hf_take_point_check(const hf_problem *p, const hf_taken_point *taken, 
     char name[HF_OBJECTIVE_NAME_SIZE], words[DIFFERENCES_SIZE];
     if (found->status == HF_NO_MEMORY) return hf_error(messages, HF_NO_MEMORY, "out of memory for a design");
     if (found->status != HF_OK)
-        return hf_error(messages, HF_BAD_CASE, "%s: point %d of its front is no design of %s, %s: " MADE_OF,
-                        origin->path, origin->point, p->settings.path, hf_status_text(found->status),
-                        tell_keys(p, words));
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: point %d of its front is not a feasible design of %s (%s): " MADE_OF, origin->path,
+                        origin->point, p->settings.path, hf_status_text(found->status), tell_keys(p, words));
     for (int k = 0; k < p->objectives.n_objective; k++)
         if (!(fabs(found->objective[k] - taken->objective[k]) <= SAME * taken->largest[k]))
-            return hf_error(messages, HF_BAD_CASE, "%s: point %d of its front has %s %.6g, and in %s %.6g: " MADE_OF,
-                            origin->path, origin->point, hf_objectives_name(&p->objectives, k, name),
-                            taken->objective[k], p->settings.path, found->objective[k], tell_keys(p, words));
+            return hf_error(messages, HF_BAD_CASE,
+                            "%s: point %d of its front has %s %.6g, but in %s it has %.6g: " MADE_OF, origin->path,
+                            origin->point, hf_objectives_name(&p->objectives, k, name), taken->objective[k],
+                            p->settings.path, found->objective[k], tell_keys(p, words));
     return check_bounds(p, taken, bounds, messages);
 }

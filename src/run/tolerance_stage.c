@@ -57,8 +57,8 @@ static hf_status check_measures(const hf_problem *p, hf_messages *messages)
         const char *fault = NULL, *better = loss_of_nodes(p, measure);
         if (better)
             hf_warning(messages,
-                       "tolerance.require.%d.measure: %s counts the nodes only; %s counts the facets between "
-                       "them, too",
+                       "tolerance.require.%d.measure: %s counts the nodes only; %s also counts the facets between "
+                       "them",
                        i, hf_tolerance_measure_word[measure], better);
         if (!hf_montecarlo_measures(&p->surface, &p->facets, measure))
             fault = "this net has no facets";
@@ -83,7 +83,7 @@ static hf_status check_expansion(const hf_problem *p, const hf_material *t, hf_m
     if (n == 0) return HF_OK;
     hf_config_place(&p->settings, "tolerance.sigma_temperature_K", place, sizeof place);
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: %d cables have no expansion_per_K, like '%s': give it in a row of `cables`", place, n,
+                    "%s: %d cables have no expansion_per_K, such as '%s'; add it to a row of `cables`", place, n,
                     s->cable_id[first]);
 }
 
@@ -122,10 +122,11 @@ static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf
                           : by_ratio >= by_heat                   ? "tolerance.sigma_cut_ratio"
                                                                   : "tolerance.sigma_temperature_K";
         hf_config_place(&p->settings, key, place, sizeof place);
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s: cable '%s' is %.3g m long: errors of cutting and temperature, of %d standard deviations, "
-                        "may take %.3g of it, and 0.5 is the most: give smaller ones",
-                        place, s->cable_id[e], length, LARGEST_NUMBER, by_cut + by_ratio + by_heat);
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s: cable '%s' is %.3g m long, and errors of cutting and temperature (%d standard deviations) may "
+            "change its length by a factor of %.3g, but the maximum is 0.5: use smaller errors",
+            place, s->cable_id[e], length, LARGEST_NUMBER, by_cut + by_ratio + by_heat);
     }
     return HF_OK;
 }
@@ -144,7 +145,7 @@ static hf_status check_EA(const hf_problem *p, hf_messages *messages)
 {
     char place[HF_PATH_SIZE + 128];
     place_section(&p->settings, place, sizeof place);
-    return hf_cable_demand_EA(&p->scene, place, "errors of nets as built need", "", messages);
+    return hf_cable_demand_EA(&p->scene, place, "errors of as-built nets need", "", messages);
 }
 
 /* Refuses struts that are visible in the laws. Struts that result from other laws show only after form-finding. */
@@ -158,7 +159,7 @@ static hf_status check_struts(const hf_problem *p, hf_messages *messages)
     if (n == 0) return HF_OK;
     place_section(&p->settings, place, sizeof place);
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: %d cables push, like '%s': the net as built has cables alone, no struts", place, n,
+                    "%s: %d cables are in compression, such as '%s', but the as-built net cannot have struts", place, n,
                     s->cable_id[first]);
 }
 
@@ -325,8 +326,8 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
         if (status == HF_NO_MEMORY) hf_error(messages, status, "tolerance: out of memory");
         if (status == HF_SINGULAR)
             hf_error(messages, status,
-                     "tolerance: the net of the design is not stiff without errors: some node has no "
-                     "place of its own");
+                     "tolerance: the net of the design is not stiff without errors: the position of some node is not "
+                     "unique");
     }
     hf_material_free(&material);
     hf_arena_free(&arena);
@@ -380,17 +381,18 @@ static void warn_of_slack(const job *j, const hf_tolerance_summary *t, hf_messag
     int n_slack = count_slack(j, &e);
     if (n_slack == 0) e = find_touchiest(j, &error_N, &sigma_m);
     if (n_slack)
-        snprintf(why, sizeof why, ": %d %s slack in the design already, first '%.80s'", n_slack,
+        snprintf(why, sizeof why, ": %d %s slack in the design already, such as '%.80s'", n_slack,
                  n_slack == 1 ? "is" : "are", scene->cable_id[e]);
     else if (error_N > 0)
         snprintf(
             why, sizeof why,
-            ": %.3g mm on the %.3g m of cable '%.80s' are up to %.3g N at its EA of %.3g N, and its tension is %.3g N",
-            sigma_m * 1e3, j->stage->shape->length_m[e], scene->cable_id[e], error_N, j->built.scene.EA_N[e],
-            j->stage->shape->tension_N[e]);
+            ": an error of %.3g mm in the %.3g m of cable '%.80s' (EA %.3g N) changes its tension of %.3g N by up to "
+            "%.3g N",
+            sigma_m * 1e3, j->stage->shape->length_m[e], scene->cable_id[e], j->built.scene.EA_N[e],
+            j->stage->shape->tension_N[e], error_N);
     hf_warning(messages,
-               "tolerance: slack cables in %d of %d nets as built%s. Raise the least tensions (form.pretension_N, "
-               "optimize.limits), use cables of less EA, or lower the errors (tolerance.sigma_cut_m)",
+               "tolerance: slack cables in %d of %d samples%s. Raise the minimum tensions (form.pretension_N, "
+               "optimize.limits), use cables with a lower EA, or lower the errors (tolerance.sigma_cut_m)",
                t->n_with_slack, t->samples, why);
 }
 

@@ -50,20 +50,22 @@ static const char *fault_of(const hf_objectives *objectives, int k, const hf_sur
     const hf_model *m = objectives->model;
     const hf_objective_settings *s = &g->settings;
     if (hf_objectives_is_on_surface(s->figure) && (!surface || !(surface->focal_length_m > 0)))
-        return "needs the wanted surface: add a section surface (of an imported net with focal_length_m)";
+        return "needs a target surface: add a section surface (with focal_length_m for an imported net)";
     if (s->figure == HF_FIGURE_GAIN && (!surface || !surface->has_pattern))
-        return "needs a section surface.pattern, which says what illuminates the reflector";
+        return "needs a section surface.pattern with the feed of the reflector";
     if (is_of_facets(s->figure) && (!facets || facets->n_facet == 0)) return "this net has no facets";
     if (s->figure == HF_FIGURE_GAIN && objectives->beam[k].order == HF_GAIN_ORDER_MOST) return HF_GAIN_TOO_COARSE;
     if (s->figure == HF_FIGURE_SURFACE && s->fit == HF_FIT_BEST && m->n_inner_node < HF_FIT_N_PARAMETER)
         return "a best fit needs at least six inner nodes";
     if (s->figure == HF_FIGURE_TENSION && isnan(s->target)) return "needs a target, in N";
-    if (s->figure == HF_FIGURE_MASS && !(s->mass_kg_per_m > 0)) return "needs mass_kg_per_m, of the cables of its set";
-    if (s->figure == HF_FIGURE_EVENNESS && g->n_cable == 1) return "one cable is always even; name a set of several";
-    if (s->figure == HF_FIGURE_RATIO && g->n_cable == 1) return "the ratio of one cable is 1; name a set of several";
+    if (s->figure == HF_FIGURE_MASS && !(s->mass_kg_per_m > 0)) return "needs mass_kg_per_m of the cables of its set";
+    if (s->figure == HF_FIGURE_EVENNESS && g->n_cable == 1)
+        return "the evenness of one cable is always 0; use a set of several cables";
+    if (s->figure == HF_FIGURE_RATIO && g->n_cable == 1)
+        return "the ratio of one cable is always 1; use a set of several cables";
     if (s->figure == HF_FIGURE_PULL && m->n_node == m->n_free) return "this net has no supports";
     if (s->figure == HF_FIGURE_DEFLECTION && m->n_attachment == 0)
-        return "needs a truss that gives way: this net has none";
+        return "needs a truss that deflects, but this net has none";
     return NULL;
 }
 
@@ -122,8 +124,8 @@ static hf_status refuse_rows(const hf_objectives *objectives, const char *list, 
     else
         hf_messages_place(messages, where, "optimize.%s", list);
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: the goals have %ld residuals in all nets, and at most %ld (1 GiB) are kept: take fewer %s",
-                    where, n_all, ROWS_MAX, n_sample ? "samples, or fewer goals over samples" : "goals");
+                    "%s: the objectives have %ld residuals over all nets, but the maximum is %ld (1 GiB): use fewer %s",
+                    where, n_all, ROWS_MAX, n_sample ? "samples, or fewer objectives over samples" : "objectives");
 }
 
 static void lay_out(hf_arena *a, const hf_model *m, hf_objectives *objectives)
@@ -168,12 +170,12 @@ static void warn_of_no_beam(const hf_scene *scene, const hf_facets *facets, cons
     double loss_dB =
         hf_gain_loss_dB(&objectives->beam[k], &(hf_pattern_surface){.facets = facets, .position_m = scene->position_m});
     if (loss_dB > LOSS_MOST_DB)
-        hf_warning(
-            messages,
-            "%s: gain: the theoretical shape itself loses %.3g dB in the direction of the beam: this "
-            "feed makes no beam of it. Use another surface.pattern.feed (a plane wave is focused by a paraboloid), "
-            "a lower frequency or more facets",
-            where, loss_dB);
+        hf_warning(messages,
+                   "%s: gain: the net at its target positions already loses %.3g dB in the direction of the beam, so "
+                   "there is no beam to improve. Use another surface.pattern.feed (a paraboloid focuses a plane wave), "
+                   "a lower "
+                   "frequency or more facets",
+                   where, loss_dB);
 }
 
 hf_status hf_objectives_create(const hf_scene *scene, const hf_model *m, const hf_optimize_settings *s,
@@ -197,7 +199,7 @@ hf_status hf_objectives_create(const hf_scene *scene, const hf_model *m, const h
         objectives->focal_length_m = surface->focal_length_m;
     }
     if (HF_ARENA_MAKE(&arena, lay_out(&arena, m, objectives)) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the goals");
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the objectives");
     objectives->block = arena.block;
     for (int i = 0; i < 4 * objectives->n_facet; i++)
         objectives->corner_row[i] = m->row_of_node[facets->corner[i]];
@@ -223,7 +225,7 @@ hf_status hf_objectives_create(const hf_scene *scene, const hf_model *m, const h
 const char *hf_objectives_name(const hf_objectives *objectives, int i_objective, char text[HF_OBJECTIVE_NAME_SIZE])
 {
     const hf_objective_settings *s = &objectives->objective[i_objective].settings;
-    int n = snprintf(text, HF_OBJECTIVE_NAME_SIZE, "goal_%d_%s%s%s", i_objective, hf_figure_kind_word[s->figure],
+    int n = snprintf(text, HF_OBJECTIVE_NAME_SIZE, "objective_%d_%s%s%s", i_objective, hf_figure_kind_word[s->figure],
                      *s->set ? "_" : "", s->set);
     const char *of_many = s->quantile > 0 ? "quantile" : hf_take_word[s->take];
     if (*s->load_case) /* as much of the name as fits */

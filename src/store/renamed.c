@@ -278,8 +278,13 @@ static void note_object(void *context, const char *path, hid_t object, H5I_type_
     linking *l = context;
     (void)object;
     if (l->n == OBJECTS_MAX || !strncmp(path, "/VTKHDF", 7)) return;
+    char *copy = strdup(path);
+    if (!copy) {
+        hf_hdf5_no_memory(l->io);
+        return;
+    }
     l->object[l->n].is_group = type == H5I_GROUP;
-    if (!(l->object[l->n++].path = strdup(path))) hf_hdf5_no_memory(l->io);
+    l->object[l->n++].path = copy;
 }
 
 static void link_to(hf_hdf5 *io, const char *now, const char *then)

@@ -173,7 +173,7 @@ export const pages = [
     says: {
       "#warnings h2": "This run failed: its figures are those of the form-finding",
       "#warnings li": /^optimize: Levenberg-Marquardt has no feasible start: /,
-      "#answer": /^Failed: optimize: Levenberg-Marquardt .*; (of the form-finding:|the form-finding has) psi /,
+      "#answer": /^Failed: optimize: Levenberg-Marquardt .*; the form-finding has psi /,
     },
   },
   {

@@ -141,7 +141,9 @@ export async function checkTolerance(tab, made) {
   const said = await tab.locator("#tolerance .tip").innerText();
   same(number(said.match(/samples\s+([\d.]+)/)[1]), 100 * t.histogram[most], 6);
   same(number(said.match(/of ([\d.]+) to/)[1]), 1e3 * (low + (most * (high - low)) / t.histogram.length), 5);
-  assert.ok((await tab.locator("#tolerance > p").first().innerText()).match(/For a yield of 90\u00a0%, reduce all tolerances to [\d.]+\u00a0%\./));
+  const text = await tab.locator("#tolerance > p").first().innerText(),
+    [, part] = text.match(/The yield is at least 90\u00a0% up to ([\d.]+)\u00a0% of these tolerances\.$/);
+  same(number(part), 100 * t.sigma_scale, 4);
   const rows = await tab.locator("#tolerance tbody th").allTextContents();
   assert.deepEqual(
     rows,

@@ -102,8 +102,8 @@ START_TEST(moves_are_a_table)
     OUT("all 3 are made (adjust.moves)");
     char *table = read_file(moves, NULL);
     ck_assert_int_eq(count_of(table, "\n"), 4);
-    ck_assert_ptr_nonnull(
-        strstr(table, "order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm\n1,"));
+    ck_assert_ptr_nonnull(strstr(
+        table, "order,cable,set,turnbuckle_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm\n1,"));
     HIFDM(5, "adjust", path, "--measured", measured, "-o", moves);
     ERR("exists");
     HIFDM(5, "adjust", path, "--measured", measured, "-o", measured, "--force");
@@ -136,7 +136,7 @@ START_TEST(moves_are_a_table)
           formatted("adjust.target_m=%.17g", (probable_m + expected_m) / 2));
     OUT("no further move: the most probable net meets target_m, but ");
     static const char *const column[] = {
-        "order",          "cable", "set", "move_mm", "tension_before_N", "tension_after_N", "predicted_rms_mm",
+        "order",          "cable", "set", "turnbuckle_mm", "tension_before_N", "tension_after_N", "predicted_rms_mm",
         "expected_rms_mm"};
     for (int i = 0; i < 8; i++)
         HIFDM(0, "explain", column[i]);
@@ -479,11 +479,12 @@ START_TEST(what_is_not_sure_is_told)
     OUT("\n1 of these moves gains less at its place in the order than the measurement can tell (hifdm explain "
         "gain_sigma_m)\n");
     HIFDM(0, "adjust", path, "--measured", measured, "--json");
-    EXPECT(out_as("a.json"), "--", "a['maybe_slack'] == 0",
-           "a['moves'][-1]['expected_m'] == a['adjusted_expected_m'] > a['adjusted_m']",
-           "all(m['expected_m'] > m['predicted_m'] for m in a['moves'])",
-           "sum(m['gain_m'] < m['gain_sigma_m'] for m in a['moves']) == 1",
-           "near(sum(m['gain_m'] for m in a['moves']), a['estimated_expected_m'] - a['adjusted_expected_m'], 1e-5)");
+    EXPECT(
+        out_as("a.json"), "--", "a['maybe_slack'] == 0",
+        "a['adjustments'][-1]['expected_m'] == a['adjusted_expected_m'] > a['adjusted_m']",
+        "all(m['expected_m'] > m['predicted_m'] for m in a['adjustments'])",
+        "sum(m['gain_m'] < m['gain_sigma_m'] for m in a['adjustments']) == 1",
+        "near(sum(m['gain_m'] for m in a['adjustments']), a['estimated_expected_m'] - a['adjusted_expected_m'], 1e-5)");
 }
 END_TEST
 

@@ -89,7 +89,7 @@ static double sigmas_missed(const char *scene, const char *set, const char *cut_
     TWIN("measured", shape_of("true", ""), measured, measured_m, seed);
     HIFDM(0, "adjust", path, "--measured", measured, "-o", temp("moves.csv"), "--json");
     double told = number_after("\"adjusted_expected_m\": "), sigma = number_after("\"adjusted_sigma_m\": ");
-    EXPECT(out_as("a.json"), "--", "a['moves'][-1]['expected_m'] == a['adjusted_expected_m']");
+    EXPECT(out_as("a.json"), "--", "a['adjustments'][-1]['expected_m'] == a['adjusted_expected_m']");
     return fabs(turned_m(temp("moves.csv"), design, "") - told) / sigma;
 }
 

@@ -9,15 +9,16 @@ START_TEST(differences_are_named)
     HIFDM(0, "diff", a, b);
     OUT(" data sets, 0 differ; attributes (times, machine, provenance, summary) are not compared\n");
     SHELL(0,
-          "\"$1\" -c 'import h5py, sys; f = h5py.File(sys.argv[1], \"a\"); f[\"ga/psi_m\"][2, 4] *= 1 + 1e-9; "
-          "f[\"form/law\"][3] = 2; del f[\"polish/law\"], f[\"VTKHDF\"]; "
+          "\"$1\" -c 'import h5py, sys; f = h5py.File(sys.argv[1], \"a\"); f[\"search/population/psi_m\"][2, 4] *= 1 + "
+          "1e-9; "
+          "f[\"form/law\"][3] = 2; del f[\"refine/law\"], f[\"VTKHDF\"]; "
           "f[\"more\"] = 1' \"$2\"",
           python_program(), b);
     HIFDM(1, "diff", a, b);
-    OUT("/ga/psi_m [2, 4]: 0.0");
+    OUT("/search/population/psi_m [2, 4]: 0.0");
     OUT("/form/law [3]: ");
     OUT(", force_density in ");
-    OUT(formatted("/polish/law is not in %s\n", b));
+    OUT(formatted("/refine/law is not in %s\n", b));
     OUT(formatted("/more is not in %s\n", a));
     OUT("4 differ;");
     HIFDM(1, "diff", a, b, "--rtol", "1e-8");
@@ -84,15 +85,15 @@ START_TEST(progress_for_programs)
 {
     const char *c = file_with("c.yaml", SMALL_SCENE SMALL_GA);
     HIFDM(0, "run", c, "-o", temp("a.h5"), "--progress", "jsonl");
-    ERR("{\"phase\": \"form\"}\n{\"phase\": \"optimize\", \"generation\": 1, \"generations\": 3,");
+    ERR("{\"phase\": \"form\"}\n{\"phase\": \"search\", \"generation\": 1, \"generations\": 3,");
     ERR("\"generation\": 3, \"generations\": 3, \"first_generation\": 0, \"evaluations\": ");
-    ERR("{\"phase\": \"polish\"}\n");
+    ERR("{\"phase\": \"refine\"}\n");
     HIFDM(0, "run", c, "-o", temp("a.h5"), "--restart");
     ck_assert_str_eq(said.err, ""); /* short runs are quiet where nobody watches */
     HIFDM(0, "run", c, "-o", temp("a.h5"), "--restart", "--progress", "line");
     ERR("\r\033[Kgeneration 1/3  best psi ");
     EXPECT(file_with("err.txt", said.err), temp("a.h5"), "--",
-           "('generation 1/3  best psi %.4f mm' % (b['ga/best_psi_m'][0] * 1e3)).encode() in a");
+           "('generation 1/3  best psi %.4f mm' % (b['search/population/best_psi_m'][0] * 1e3)).encode() in a");
     HIFDM(2, "run", c, "-o", temp("a.h5"), "--progress", "loud");
     ERR("--progress must be auto, none, line, log or jsonl, not 'loud'");
 }

@@ -15,8 +15,8 @@ static const char *designs_of(const char *result, int generation, const char *na
                                  "f = h5py.File(sys.argv[1])\n"
                                  "id = [i.decode() for i in f['scene/cable/id'][:]]\n"
                                  "out = csv.writer(open(sys.argv[3], 'w', newline=''))\n"
-                                 "out.writerow(['id'] + [id[e] for e in f['ga/gene_cable'][:]])\n"
-                                 "for i, row in enumerate(f['ga/design_N'][int(sys.argv[2])]):\n"
+                                 "out.writerow(['id'] + [id[e] for e in f['variable/cable'][:]])\n"
+                                 "for i, row in enumerate(f['search/population/design'][int(sys.argv[2])]):\n"
                                  "    out.writerow(['row %d' % i] + [repr(float(t)) for t in row])\n";
     const char *path = temp(name);
     const char *const argv[] = {python_program(), "-c", script, result, keep(formatted("%d", generation)), path, NULL};
@@ -37,9 +37,9 @@ START_TEST(stored_designs_give_the_stored_results)
     OUT(_i == 2 ? " by newton on 2 threads; results in " : " by chord on 2 threads; results in ");
     EXPECT(out, table, "--", "[r['id'] for r in b] == ['row %d' % i for i in range(50)]",
            "{r['status'] for r in b} == {'ok'}",
-           "all(column(b, n).tobytes() == a['ga/' + n][7].tobytes() for n in ('psi_m', 'residual_N', "
+           "all(column(b, n).tobytes() == a['search/population/' + n][7].tobytes() for n in ('psi_m', 'residual_N', "
            "'inner_tension_ratio', 'boundary_tension_ratio'))",
-           "column(b, 'iterations').tolist() == a['ga/iterations'][7].tolist()");
+           "column(b, 'iterations').tolist() == a['search/population/iterations'][7].tolist()");
     /* without -o the table, and nothing else, goes to standard output; threads change nothing */
     HIFDM(0, "evaluate", CHEN, "--designs", designs, "--set", settings[_i], "--threads", "1");
     ck_assert(file_is(table, said.out));
@@ -50,17 +50,18 @@ START_TEST(symmetric_runs_store_who_follows_whom)
 {
     const char *out = temp("s.h5"), *plain = temp("p.h5");
     HIFDM(0, "run", CHEN, "-o", out, "--json", "--set", "optimize.generations=4", "--set", "optimize.symmetry=xy");
-    EXPECT(out_as("s.json"), out, "--", "a['optimize']['independent_genes'] == 30",
-           "len(set(b['ga/gene_leader'][:].tolist())) == 30",
-           "(b['ga/design_N'][:] == b['ga/design_N'][:][:, :, b['ga/gene_leader'][:]]).all()",
-           "b['ga/design_N'].shape == (4, 50, 120)");
+    EXPECT(
+        out_as("s.json"), out, "--", "a['search']['independent_variables'] == 30",
+        "len(set(b['variable/leader'][:].tolist())) == 30",
+        "(b['search/population/design'][:] == b['search/population/design'][:][:, :, b['variable/leader'][:]]).all()",
+        "b['search/population/design'].shape == (4, 50, 120)");
     HIFDM(0, "show", out, "-v");
     OUT("symmetry: planes x and y; 30 independent genes of 120\n");
     HIFDM(0, "check", CHEN, "--set", "optimize.symmetry=auto");
     OUT("symmetry: auto, planes x and y; 30 independent genes of 120\n");
     HIFDM(0, "run", CHEN, "-o", plain, "--set", "optimize.generations=2");
     ck_assert_ptr_null(strstr(said.out, "symmetry"));
-    EXPECT(plain, "--", "'gene_leader' not in a['ga']");
+    EXPECT(plain, "--", "'leader' not in a['variable']");
 }
 END_TEST
 
@@ -131,7 +132,7 @@ START_TEST(a_template_is_a_table_of_the_base_design)
     const char *result = out_as("r.csv");
     HIFDM(0, "run", REFLECTOR, "-o", temp("r.h5"), "--json");
     /* the found shape is in equilibrium under its own tensions; 1e-6: it was found to a residual of 1e-6 N */
-    EXPECT(result, out_as("r.json"), "--", "len(a) == 1 and a[0]['id'] == 'base' and a[0]['status'] == 'ok'",
+    EXPECT(result, out_as("r.json"), "--", "len(a) == 1 and a[0]['id'] == 'initial' and a[0]['status'] == 'ok'",
            "abs(float(a[0]['psi_m']) / b['form']['psi_m'] - 1) < 1e-6");
     HIFDM(5, "evaluate", REFLECTOR, "--template", path);
     ERRS("error: %s exists; use --force to replace it\n", path);

@@ -41,7 +41,7 @@ START_TEST(csv_holds_the_stored_numbers)
     const char *out = run_once();
     HIFDM(0, "export", out, "--csv", temp("best"));
     OUT("121 nodes and 220 cables of the optimised shape in ");
-    demand_values_of(out, temp("best"), file_with("stage", "ga/best"));
+    demand_values_of(out, temp("best"), file_with("stage", "search"));
     HIFDM(0, "export", out, "--csv", temp("form"), "--stage", "form");
     OUT("form-finding shape");
     demand_values_of(out, temp("form"), file_with("stage", "form"));

@@ -11,34 +11,35 @@ START_TEST(a_front_is_printed_stored_and_told)
     HIFDM(0, "run", FRONT, "-o", file);
     ck_assert_int_eq(strncmp(said.out, "front of 7 points: least psi 4.2834 mm, least ratio_boundary 4.56\n", 66), 0);
     OUT("  front         7 points, 0 of them dominated, 0 failed, 1 not converged; ");
-    OUT("; slope of goal_0_psi in mm per unit of goal_1_ratio_boundary\n");
-    OUT("                objectives goal_0_psi 6.60003 mm, goal_1_ratio_boundary 4.84161\n");
+    OUT("; slope of objective_0_psi in mm per unit of objective_1_ratio_boundary\n");
+    OUT("                objectives objective_0_psi 6.60003 mm, objective_1_ratio_boundary 4.84161\n");
     ck_assert(!strstr(said.out, "merit") && !strstr(said.out, "weight") && !strstr(said.out, " shown "));
-    OUT("                base            goal_0_psi 6.60003 mm, goal_1_ratio_boundary 4.84161\n");
-    OUT("                end, point 1    goal_0_psi 4.28338 mm, goal_1_ratio_boundary 5.23668; slope 0\n");
-    OUT("                end, point 7    goal_0_psi 11.6996 mm, goal_1_ratio_boundary 4.55962\n");
-    OUT("                knee, point 4   goal_0_psi ");
+    OUT("                base            objective_0_psi 6.60003 mm, objective_1_ratio_boundary 4.84161\n");
+    OUT("                end, point 1    objective_0_psi 4.28338 mm, objective_1_ratio_boundary 5.23668; slope 0\n");
+    OUT("                end, point 7    objective_0_psi 11.6996 mm, objective_1_ratio_boundary 4.55962\n");
+    OUT("                knee, point 4   objective_0_psi ");
     printed = keep(said.out);
     HIFDM(0, "show", file);
     ck_assert_str_eq(said.out, printed);
     EXPECT(
         file_with("s.txt", printed), file, "--",
-        "('knee, point 4   goal_0_psi %.6g mm, goal_1_ratio_boundary %.6g; slope %.4g\\n' % (1e3 * "
+        "('knee, point 4   objective_0_psi %.6g mm, objective_1_ratio_boundary %.6g; slope %.4g\\n' % (1e3 * "
         "b['front/objective'][3, 0], b['front/objective'][3, 1], -1e3 * b['front/multiplier'][3, 1])) in a.decode()");
     HIFDM(0, "show", file, "--json");
     json = out_as("s.json");
-    EXPECT(
-        file, json, "--", "b['front']['n_point'] == 7 and b['front']['minimised'] == 'goal_0_psi'",
-        "b['front']['n_listed'] == 7 and [p['id'] for p in b['front']['points']] == [1, 2, 3, 4, 5, 6, 7]",
-        "'merit' not in b['form'] and 'weight' not in b['form']['goals']['goal_0_psi']", "'weight' not in a['goals']",
-        "[p['objective']['goal_0_psi'] for p in b['front']['points']] == list(a['front/objective'][:, 0])",
-        "[p['multiplier']['goal_1_ratio_boundary'] for p in b['front']['points']][:6] == "
-        "list(a['front/multiplier'][:6, 1])",
-        "b['front']['points'][6]['multiplier']['goal_1_ratio_boundary'] is None",
-        "all(p['mark'] == 'on' and p['status'] == 'ok' for p in b['front']['points'])",
-        "list(b['front']['base'].values()) == list(a['front/base'])", "b['front']['knee'] == a['front'].attrs['knee']",
-        "a['front/design_N'].shape == (7, 74) and a['front/design_N'].attrs['units'] == 'N'",
-        "np.all(np.diff(a['front/objective'][:, 0]) > 0) and np.all(np.diff(a['front/objective'][:, 1]) < 0)");
+    EXPECT(file, json, "--", "b['front']['n_point'] == 7 and b['front']['minimised'] == 'objective_0_psi'",
+           "b['front']['n_listed'] == 7 and [p['id'] for p in b['front']['points']] == [1, 2, 3, 4, 5, 6, 7]",
+           "'merit' not in b['form'] and 'weight' not in b['form']['objectives']['objective_0_psi']",
+           "'weight' not in a['objectives']",
+           "[p['objective']['objective_0_psi'] for p in b['front']['points']] == list(a['front/objective'][:, 0])",
+           "[p['multiplier']['objective_1_ratio_boundary'] for p in b['front']['points']][:6] == "
+           "list(a['front/multiplier'][:6, 1])",
+           "b['front']['points'][6]['multiplier']['objective_1_ratio_boundary'] is None",
+           "all(p['mark'] == 'on' and p['status'] == 'ok' for p in b['front']['points'])",
+           "list(b['front']['initial'].values()) == list(a['front/initial'])",
+           "b['front']['knee'] == a['front'].attrs['knee']",
+           "a['front/design'].shape == (7, 74) and a['front/design'].attrs['units'] == 'N'",
+           "np.all(np.diff(a['front/objective'][:, 0]) > 0) and np.all(np.diff(a['front/objective'][:, 1]) < 0)");
 }
 END_TEST
 
@@ -47,11 +48,11 @@ START_TEST(a_front_says_how_far_it_is)
 {
     const char *file = temp("f.h5");
     HIFDM(0, "run", FRONT, "-o", file, "--progress", "jsonl");
-    ERR("{\"phase\": \"form\"}\n{\"phase\": \"polish\", \"point\": 0, \"points\": 7, \"steps\": 0, \"elapsed_s\": ");
+    ERR("{\"phase\": \"form\"}\n{\"phase\": \"refine\", \"point\": 0, \"points\": 7, \"steps\": 0, \"elapsed_s\": ");
     EXPECT(
         file_with("said.txt", said.err), file, "--",
         "(lambda said: said[-1]['point'] == said[-1]['points'] == 7 and said[-1]['steps'] >= "
-        "sum(b['front/iterations'][:]) and all(p['point'] <= q['point'] and p['steps'] <= q['steps'] and "
+        "sum(b['front/steps'][:]) and all(p['point'] <= q['point'] and p['steps'] <= q['steps'] and "
         "p['elapsed_s'] <= q['elapsed_s'] for p, q in zip(said, said[1:])))([__import__('json').loads(line) for line "
         "in a.decode().splitlines() if 'points' in line and line[0] == '{'])");
     HIFDM(0, "run", FRONT, "-o", file, "--restart", "--progress", "line");
@@ -66,7 +67,7 @@ START_TEST(a_slope_says_of_what_it_is)
 {
     HIFDM(0, "run", FRONT, "--set", "optimize.objectives=[{goal: ratio, set: boundary}, {goal: psi}]", "-o",
           temp("f.h5"));
-    OUT("; slope of goal_1_psi in mm per unit of goal_0_ratio_boundary\n");
+    OUT("; slope of objective_1_psi in mm per unit of objective_0_ratio_boundary\n");
 }
 END_TEST
 
@@ -84,8 +85,8 @@ START_TEST(the_least_beside_an_objective_that_is_met)
     HIFDM(0, "run", file_with("b.yaml", MET "  goals: [{goal: psi}, {goal: evenness, set: all, weight: 1e-4}]\n"), "-o",
           both, "--quiet");
     EXPECT(front, both, "--", "a['front/objective'][0, 0] < 2e-6 * a['front/objective'][-1, 0]",
-           "near(a['front/objective'][0, 1], b['goals/polish'][1], 1e-3)",
-           "a['front/objective'][0, 1] < 0.95 * b['goals/form'][1]",
+           "near(a['front/objective'][0, 1], b['objective/refine'][1], 1e-3)",
+           "a['front/objective'][0, 1] < 0.95 * b['objective/form'][1]",
            "np.isnan(a['front/multiplier'][0]).all()"); /* its limit is none of the front */
 }
 END_TEST
@@ -104,10 +105,10 @@ START_TEST(objectives_that_do_not_conflict_are_told)
         HIFDM(0, "run", c, "--set", objectives[i], "-o", front, "--restart");
         ck_assert_int_eq(strncmp(said.out, "one design is best in all objectives: psi 0.0000 mm, ", 53), 0);
         OUT("  front         the objectives do not conflict: one design is best in all of them\n");
-        OUT("                best, point 1   goal_0_psi ");
+        OUT("                best, point 1   objective_0_psi ");
         ck_assert(!strstr(said.out, "slope") && !strstr(said.out, " end, "));
         EXPECT(front, "--", "a['front/status'].shape == (1,)",
-               "np.all(a['front/objective'][0, :2] < [1e-5 * a['front/base'][0], 1e-8])",
+               "np.all(a['front/objective'][0, :2] < [1e-5 * a['front/initial'][0], 1e-8])",
                "np.isnan(a['front/multiplier'][:]).all() and a['front'].attrs['knee'] == -1");
     }
     HIFDM(0, "report", front, "-o", page);
@@ -132,10 +133,11 @@ START_TEST(the_least_beside_a_third_objective_that_is_met)
                                       "  goals: [{goal: psi}, {goal: tension, set: tie, target: 10, weight: 1e-6}]\n"
                                     : MET "  goals: [{goal: psi}, {goal: evenness, set: all, weight: 1e-4}]\n"),
               "-o", both, "--quiet", "--restart");
-        EXPECT(front, both, "--",
-               keep(formatted("near(min(p[%d] for p in a['front/objective'][:] if p[2] < 1e-6), b['goals/polish'][1], "
-                              "1e-3)",
-                              i)));
+        EXPECT(
+            front, both, "--",
+            keep(formatted("near(min(p[%d] for p in a['front/objective'][:] if p[2] < 1e-6), b['objective/refine'][1], "
+                           "1e-3)",
+                           i)));
     }
 }
 END_TEST
@@ -156,7 +158,7 @@ START_TEST(a_front_of_many_points_is_thinned)
            "len(b['front']['points']) == b['front']['n_listed'] == 512",
            "all(list(p['objective'].values()) == a['front/objective'][p['id'] - 1].tolist() for p in "
            "b['front']['points'])",
-           "[min(p['objective'][k] for p in b['front']['points']) for k in b['front']['base']] == "
+           "[min(p['objective'][k] for p in b['front']['points']) for k in b['front']['initial']] == "
            "a['front/objective'][:].min(axis=0).tolist()",
            "b['front']['points'][b['front']['knee']]['id'] - 1 == a['front'].attrs['knee']");
     HIFDM(0, "report", file, "-o", page);
@@ -175,7 +177,7 @@ START_TEST(a_report_has_the_front)
           temp("data.json"));
     EXPECT(temp("data.json"), "--", "len(a['summary']['front']['points']) == 7", "a['summary']['front']['knee'] > 0",
            "a['overrides'][0].split('\\n')[0] == 'optimize.method=lm'",
-           "set(a['summary']['front']['base']) == {'goal_0_psi', 'goal_1_ratio_boundary'}");
+           "set(a['summary']['front']['initial']) == {'objective_0_psi', 'objective_1_ratio_boundary'}");
 }
 END_TEST
 
@@ -189,13 +191,13 @@ START_TEST(a_table_of_the_front_is_one_of_designs)
     HIFDM(0, "export", file, "--front", table);
     OUT("7 points of the front of 2 objectives in ");
     HIFDM(0, "evaluate", FRONT, "--designs", table, "-o", again);
-    EXPECT(
-        table, again, "--",
-        "list(a[0])[:8] == ['id', 'mark', 'status', 'iterations', 'converged', 'goal_0_psi', 'goal_1_ratio_boundary', "
-        "'slope_goal_1_ratio_boundary']",
-        "len(a) == 7 and a[0]['id'] == '1' and a[6]['slope_goal_1_ratio_boundary'] == ''",
-        "all(near(float(x[k]), float(y[k]), 1e-6) for x, y in zip(a, b) for k in ('goal_0_psi', "
-        "'goal_1_ratio_boundary'))");
+    EXPECT(table, again, "--",
+           "list(a[0])[:8] == ['id', 'mark', 'status', 'steps', 'converged', 'objective_0_psi', "
+           "'objective_1_ratio_boundary', "
+           "'slope_objective_1_ratio_boundary']",
+           "len(a) == 7 and a[0]['id'] == '1' and a[6]['slope_objective_1_ratio_boundary'] == ''",
+           "all(near(float(x[k]), float(y[k]), 1e-6) for x, y in zip(a, b) for k in ('objective_0_psi', "
+           "'objective_1_ratio_boundary'))");
     HIFDM(5, "export", file, "--front", table);
     ERR("exists; use --force to replace it\n");
 }
@@ -214,14 +216,15 @@ END_TEST
 START_TEST(a_check_says_what_will_be_followed)
 {
     HIFDM(0, "check", FRONT);
-    OUT("                front of goal_0_psi and goal_1_ratio_boundary: 7 points, each by Levenberg-Marquardt\n");
+    OUT("                front of objective_0_psi and objective_1_ratio_boundary: 7 points, each by "
+        "Levenberg-Marquardt\n");
     OUT("                Levenberg-Marquardt: rule force_density, at most 200 iterations, for each point\n");
     HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: ratio, set: edges}]");
     ERR("error: --set optimize.objectives.1.set: there is no set of cables 'edges'; did you mean 'edge'?\n");
     HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: displacement}]");
     ERR("error: --set optimize.objectives.1: displacement: needs a truss that gives way: this net has none\n");
     HIFDM(0, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}, {goal: evenness}]");
-    OUT("                front of goal_0_psi, goal_1_pull and goal_2_evenness: 7 points, each by "
+    OUT("                front of objective_0_psi, objective_1_pull and objective_2_evenness: 7 points, each by "
         "Levenberg-Marquardt\n");
     HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}, {goal: evenness}]", "--set",
           "optimize.front_points=3");
@@ -240,22 +243,26 @@ START_TEST(generations_end_in_a_front)
 {
     const char *file = temp("f.h5"), *table = temp("f.csv"), *again = temp("r.csv"), *json;
     HIFDM(0, "run", THREE, "-o", file, "--verbose");
-    OUT(": the end of the front with the least goal_0_psi; found in generation ");
+    OUT(": the end of the front with the least objective_0_psi; found in generation ");
     OUT(" points, 0 of them dominated, 0 failed; ");
     HIFDM(0, "show", file, "--json");
     json = out_as("s.json");
     EXPECT(
         file, json, "--", "'minimised' not in b['front'] and len(b['front']['points']) > 9",
         "all(p['mark'] == 'on' and p['iterations'] == 0 for p in b['front']['points'])",
-        "a['ga/objective_2'].shape == (5, 50) and a['ga/objective_0'].attrs['units'] == ''",
-        "a['ga'].attrs['n_objective'] == 3 and a['ga/best_merit'][-1] == min(a['front/objective'][:, 0])",
-        "all(np.all(np.isin(a['front/objective'][:, k], a['ga/objective_%d' % k][-1])) for k in range(3))",
+        "a['search/population/objective_2'].shape == (5, 50) and a['search/population/objective_0'].attrs['units'] == "
+        "''",
+        "a['search/population'].attrs['n_objective'] == 3 and a['search/population/best_merit'][-1] == "
+        "min(a['front/objective'][:, 0])",
+        "all(np.all(np.isin(a['front/objective'][:, k], a['search/population/objective_%d' % k][-1])) for k in "
+        "range(3))",
         "not any(np.all(q <= p) for p in a['front/objective'][:] for q in a['front/objective'][:] if np.any(q != p))",
-        "a['ga'].attrs['best_psi_m'] == a['front/objective'][0, 0]");
+        "a['search'].attrs['psi_m'] == a['front/objective'][0, 0]");
     HIFDM(0, "export", file, "--front", table);
     HIFDM(0, "evaluate", THREE, "--designs", table, "-o", again);
     EXPECT(table, again, "--",
-           "all(near(float(x[k]), float(y[k]), 1e-6) for x, y in zip(a, b) for k in ('goal_0_psi', 'goal_2_pull'))");
+           "all(near(float(x[k]), float(y[k]), 1e-6) for x, y in zip(a, b) for k in ('objective_0_psi', "
+           "'objective_2_pull'))");
 }
 END_TEST
 
@@ -268,8 +275,9 @@ START_TEST(three_objectives_have_a_front_with_slopes)
     const char *file = temp("f.h5"), *other = temp("g.h5"), *table = temp("f.csv"), *again = temp("r.csv"), *json;
     HIFDM(0, "run", FRONT, "--set", objectives, "--set", "optimize.front_points=12", "-o", file, "--threads", "1");
     OUT("  front         12 points, 0 of them dominated, 0 failed");
-    OUT("; slope of goal_0_psi in mm per unit of goal_1_ratio_boundary; slope of goal_0_psi in mm per unit of "
-        "goal_2_evenness_boundary\n");
+    OUT("; slope of objective_0_psi in mm per unit of objective_1_ratio_boundary; slope of objective_0_psi in mm per "
+        "unit of "
+        "objective_2_evenness_boundary\n");
     HIFDM(0, "run", FRONT, "--set", objectives, "--set", "optimize.front_points=12", "-o", other, "--threads", "2",
           "--quiet");
     HIFDM(0, "diff", file, other);
@@ -281,9 +289,10 @@ START_TEST(three_objectives_have_a_front_with_slopes)
            "np.isnan(a['front/multiplier'][:, 0]).all() and np.nanmin(a['front/multiplier'][:, 1:]) >= 0");
     HIFDM(0, "export", file, "--front", table);
     HIFDM(0, "evaluate", FRONT, "--set", objectives, "--designs", table, "-o", again);
-    EXPECT(table, again, "--",
-           "'slope_goal_1_ratio_boundary' in a[0] and 'slope_goal_2_evenness_boundary' in a[0] and len(a) == 12",
-           "all(near(float(x[k]), float(y[k]), 1e-6) for x, y in zip(a, b) for k in x if k.startswith('goal_'))");
+    EXPECT(
+        table, again, "--",
+        "'slope_objective_1_ratio_boundary' in a[0] and 'slope_objective_2_evenness_boundary' in a[0] and len(a) == 12",
+        "all(near(float(x[k]), float(y[k]), 1e-6) for x, y in zip(a, b) for k in x if k.startswith('goal_'))");
     HIFDM(0, "run", FRONT, "--set", objectives, "--set", "optimize.method=ga+lm", "--set", "optimize.generations=3",
           "-o", other, "--force");
     OUT("  front         7 points, ");
@@ -297,10 +306,10 @@ START_TEST(levenberg_marquardt_follows_generations)
     HIFDM(0, "run", FRONT, "--set", "optimize.method=ga+lm", "--set", "optimize.generations=3", "-o", file);
     OUT("  front         7 points, 0 of them dominated, 0 failed, 1 not converged; ");
     HIFDM(0, "run", FRONT, "--set", "optimize.method=ga", "--set", "optimize.generations=3", "-o", before);
-    EXPECT(file, before, "--", "np.array_equal(a['ga/design_N'], b['ga/design_N'])",
+    EXPECT(file, before, "--", "np.array_equal(a['search/population/design'], b['search/population/design'])",
            "np.all(a['front/objective'][:].min(axis=0) < b['front/objective'][:].min(axis=0))");
     HIFDM(0, "check", FRONT, "--set", "optimize.method=ga");
-    OUT("                front of goal_0_psi and goal_1_ratio_boundary: that of the last generation\n");
+    OUT("                front of objective_0_psi and objective_1_ratio_boundary: that of the last generation\n");
     ck_assert(!strstr(said.out, "Levenberg-Marquardt: rule"));
 }
 END_TEST
@@ -310,7 +319,8 @@ START_TEST(limits_that_no_design_keeps_leave_no_front)
 {
     const char *file = temp("f.h5");
     HIFDM(3, "run", FRONT, "-o", file, "--set", "optimize.limits=[{limit: tension, set: edge, bounds: [500, 600]}]");
-    ERR("error: optimize.objectives.0: Levenberg-Marquardt has found no design with the least goal_0_psi, an end of "
+    ERR("error: optimize.objectives.0: Levenberg-Marquardt has found no design with the least objective_0_psi, an end "
+        "of "
         "the "
         "front: no way from its start into optimize.limits\n");
     HIFDM(0, "show", file);
@@ -333,7 +343,7 @@ START_TEST(points_that_have_not_converged_say_so)
            "b['front']['n_not_converged'] == np.sum(a['front/converged'][:] == 0) > 0",
            "np.isnan(a['front/multiplier'][:][a['front/converged'][:] == 0]).all()");
     HIFDM(0, "export", file, "--front", table);
-    SHELL(0, "head -1 \"$1\" | grep -q ^id,mark,status,iterations,converged,goal_0_psi,", table);
+    SHELL(0, "head -1 \"$1\" | grep -q ^id,mark,status,steps,converged,objective_0_psi,", table);
     HIFDM(0, "run", FRONT, "-o", file, "--force");
     ck_assert(!strstr(said.err, "raise optimize.polish_iterations"));
 }
@@ -350,8 +360,8 @@ START_TEST(generations_keep_their_front)
     OUT("  front         ");
     HIFDM(0, "run", FRONT, "--set", "optimize.method=ga", "--set", "optimize.generations=3", "--set",
           "optimize.rule=seeded", "-o", before);
-    EXPECT(file, before, "--", "np.array_equal(a['front/design_N'], b['front/design_N'])",
-           "np.array_equal(a['front/base'], b['front/base'])");
+    EXPECT(file, before, "--", "np.array_equal(a['front/design'], b['front/design'])",
+           "np.array_equal(a['front/initial'], b['front/initial'])");
 }
 END_TEST
 

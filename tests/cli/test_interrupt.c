@@ -18,7 +18,7 @@ START_TEST(a_file_made_meanwhile_is_not_replaced)
     where += strlen("this run's result is ");
     where[strcspn(where, "\n")] = '\0';
     SHELL(0, "mv \"$1\" \"$2\"", where, temp("kept.h5"));
-    EXPECT(temp("kept.h5"), "--", "a['ga/psi_m'].shape[0] > 1");
+    EXPECT(temp("kept.h5"), "--", "a['search/population/psi_m'].shape[0] > 1");
     free(err);
 }
 END_TEST

@@ -50,7 +50,7 @@ START_TEST(a_late_stage_that_fails_is_resumed)
     HIFDM(0, "diff", undisturbed, result);
     EXPECT(result, "--", "a.attrs['finished']", "len(a['tolerance/sample/psi_m']) == 3000");
     EXPECT(result, undisturbed, "--", "attributes(a) == attributes(b)",
-           "'ga' not in a or a['ga'].attrs['best_n_at_lower'] > 0");
+           "'search' not in a or a['search'].attrs['n_at_lower'] > 0");
     SHELL(0, "test \"$(ls -A \"$1\"*)\" = \"$1\"", result);
 }
 END_TEST

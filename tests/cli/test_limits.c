@@ -34,9 +34,9 @@ START_TEST(nets_of_triangles_reach_their_optima)
           keep(formatted("optimize.method=%s", of[_i].method)));
     OUT("LM optimum");
     OUT("held by ");
-    EXPECT(out, "--", formatted("abs(a['polish'].attrs['psi_m'] * 1e3 - %.7f) < 1e-7", of[_i].psi_mm),
-           "a['polish'].attrs['polish_iterations'] <= 60", "a['polish'].attrs['polish_stop'] == 0",
-           "a['polish'].attrs['polish_n_at_lower'] + a['polish'].attrs['polish_n_at_upper'] > 0");
+    EXPECT(out, "--", formatted("abs(a['refine'].attrs['psi_m'] * 1e3 - %.7f) < 1e-7", of[_i].psi_mm),
+           "a['refine'].attrs['steps'] <= 60", "a['refine'].attrs['algorithm_stop'] == 0",
+           "a['refine'].attrs['n_at_lower'] + a['refine'].attrs['n_at_upper'] > 0");
 }
 END_TEST
 
@@ -49,9 +49,9 @@ START_TEST(a_cap_that_does_not_hold_the_optimum_does_not_move_it)
     static const char *const cap[] = {"1.2", "1.3", "1.5", "2"};
     const char *path = net_of("loaded", LOADED), *out = temp("r.h5");
     HIFDM(0, "run", path, "-o", out, "--set", keep(formatted("optimize.boundary_ratio_cap=%s", cap[_i])));
-    EXPECT(out, "--", "abs(a['polish'].attrs['psi_m'] * 1e3 - 132.52853) < 1e-5",
-           "abs(a['polish'].attrs['boundary_tension_ratio'] - 1.1635) < 1e-4", "a['polish'].attrs['polish_stop'] == 0",
-           "not a['polish'].attrs['polish_is_at_cap']");
+    EXPECT(out, "--", "abs(a['refine'].attrs['psi_m'] * 1e3 - 132.52853) < 1e-5",
+           "abs(a['refine'].attrs['boundary_tension_ratio'] - 1.1635) < 1e-4",
+           "a['refine'].attrs['algorithm_stop'] == 0", "not a['refine'].attrs['is_at_cap']");
 }
 END_TEST
 
@@ -60,8 +60,8 @@ START_TEST(a_cap_that_holds_it_is_named_and_met)
     const char *path = net_of("loaded", LOADED), *out = temp("r.h5");
     HIFDM(0, "run", path, "-o", out, "-v", "--set", "optimize.boundary_ratio_cap=1.1");
     OUT("upper bounds and the cap on the boundary ratio\n");
-    EXPECT(out, "--", "a['polish'].attrs['psi_m'] * 1e3 > 132.52853", "a['polish'].attrs['polish_is_at_cap']",
-           "0 <= 1.1 - a['polish'].attrs['boundary_tension_ratio'] < 1e-8", "a['polish'].attrs['polish_stop'] == 0");
+    EXPECT(out, "--", "a['refine'].attrs['psi_m'] * 1e3 > 132.52853", "a['refine'].attrs['is_at_cap']",
+           "0 <= 1.1 - a['refine'].attrs['boundary_tension_ratio'] < 1e-8", "a['refine'].attrs['algorithm_stop'] == 0");
 }
 END_TEST
 
@@ -73,7 +73,7 @@ START_TEST(a_displacement_of_zero_holds_nothing)
     HIFDM(0, "run", net, "-o", free_of_it, "--quiet", "--set", "optimize.method=lm");
     HIFDM(0, "run", net, "-o", within, "--quiet", "--set", "optimize.method=lm", "--set",
           "optimize.limits=[{limit: displacement, bounds: [0, 0.05]}]");
-    EXPECT(free_of_it, within, "--", "near(a['polish'].attrs['psi_m'], b['polish'].attrs['psi_m'], 1e-9)");
+    EXPECT(free_of_it, within, "--", "near(a['refine'].attrs['psi_m'], b['refine'].attrs['psi_m'], 1e-9)");
 }
 END_TEST
 
@@ -91,9 +91,9 @@ START_TEST(a_start_beyond_its_displacements_is_led_in)
                   "optimize:\n  method: lm\n  variables: [{set: all, vary: force_density, range: 40 %}]\n");
     HIFDM(0, "run", c, "-o", out, "--quiet", "--set",
           keep(formatted("optimize.limits=[{limit: displacement, bounds: [0, %s]}]", most[_i])));
-    EXPECT(out, "--", "a['coupling'].attrs['max_displacement_m'] > 1.04e-3",
-           keep(formatted("a['polish'].attrs['coupling_max_displacement_m'] <= %s", most[_i])),
-           "a['polish'].attrs['psi_m'] < 1e-8");
+    EXPECT(out, "--", "a['coupling'].attrs['deflection_max_m'] > 1.04e-3",
+           keep(formatted("a['refine'].attrs['coupling_deflection_max_m'] <= %s", most[_i])),
+           "a['refine'].attrs['psi_m'] < 1e-8");
 }
 END_TEST
 
@@ -151,8 +151,8 @@ START_TEST(a_run_that_gains_nothing_more_has_settled)
     OUT(" iterations, settled: ten steps gain less than 1e-6, ");
     HIFDM(0, "run", c, "-o", exact, "--set", "optimize.objectives=[{goal: facets}, {goal: psi}]", "--set",
           "optimize.front_points=3");
-    EXPECT(out, exact, "--", "a['polish'].attrs['polish_stop'] == 3", "a['polish'].attrs['polish_iterations'] < 20",
-           "abs(a['polish'].attrs['merit'] / b['front/objective'][0][0] - 1) < 1e-6");
+    EXPECT(out, exact, "--", "a['refine'].attrs['algorithm_stop'] == 3", "a['refine'].attrs['steps'] < 20",
+           "abs(a['refine'].attrs['merit'] / b['front/objective'][0][0] - 1) < 1e-6");
 }
 END_TEST
 
@@ -160,12 +160,12 @@ START_TEST(the_comparison_can_be_switched_off)
 {
     const char *path = file_with("c.yaml", SMALL_SCENE SMALL_GA), *out = temp("r.h5");
     HIFDM(0, "run", path, "-o", out, "--set", "optimize.compare_lm=false");
-    EXPECT(out, "--", "'polish' not in a");
+    EXPECT(out, "--", "'refine' not in a");
     HIFDM(0, "check", path, "--set", "optimize.compare_lm=false");
     ck_assert_ptr_null(strstr(said.out, "Levenberg-Marquardt: "));
     HIFDM(0, "run", path, "-o", out, "--set", "optimize.compare_lm=false", "--set", "optimize.method=ga+lm",
           "--restart"); /* the result is no comparison */
-    EXPECT(out, "--", "'polish' in a");
+    EXPECT(out, "--", "'refine' in a");
     HIFDM(2, "run", path, "-o", out, "--set", "optimize.compare_lm=maybe");
     ERR("optimize.compare_lm");
 }
@@ -179,10 +179,10 @@ START_TEST(a_comparison_nobody_asked_for_must_be_cheap)
                                            "optimize: {population: 3, generations: 2, elites: 1}\n"),
                *out = temp("r.h5");
     HIFDM(0, "run", path, "-o", out);
-    EXPECT(out, "--", "'polish' not in a");
+    EXPECT(out, "--", "'refine' not in a");
     HIFDM(0, "run", path, "-o", out, "--restart", "--set", "optimize.compare_lm=true", "--set",
           "optimize.polish_iterations=1");
-    EXPECT(out, "--", "a['polish'].attrs['polish_stop'] == 2");
+    EXPECT(out, "--", "a['refine'].attrs['algorithm_stop'] == 2");
 }
 END_TEST
 
@@ -227,8 +227,8 @@ START_TEST(a_variable_may_act_on_nothing)
                                    "target: 3}]")};
     HIFDM(0, "run", path, "-o", out, "--set", "optimize.method=lm", "--set", common[0], "--set", common[1]);
     ck_assert(!strstr(said.out, "stalled"));
-    EXPECT(out, "--", "a['polish'].attrs['polish_stop'] == 0",
-           "a['polish'].attrs['merit'] < 0.9 * a['form'].attrs['merit']");
+    EXPECT(out, "--", "a['refine'].attrs['algorithm_stop'] == 0",
+           "a['refine'].attrs['merit'] < 0.9 * a['form'].attrs['merit']");
     HIFDM(0, "run", path, "-o", out, "--force", "-v", "--set", "optimize.method=lm", "--set", common[0], "--set",
           "optimize.goals=[{goal: tension, set: A, target: 3}, {goal: psi}]", "--set",
           "optimize.limits=[{limit: tension, set: boundary, bounds: [9, 100]}]");

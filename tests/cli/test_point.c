@@ -39,25 +39,26 @@ START_TEST(a_point_becomes_a_result)
     OUT(formatted(": point 3 of the front in %s\n", front));
     HIFDM(0, "show", path, "--json");
     EXPECT(front, path, out_as("p.json"), "--", "a['front/objective'].shape == (7, 2)",
-           "near(psi_m(b, b['polish/position_m'][:]), a['front/objective'][2, 0], 1e-9)",
-           "near(ratio(b, b['polish/tension_N'][:], 1), a['front/objective'][2, 1], 1e-9)",
-           "near(psi_m(b, b['form/position_m'][:]), a['front/base'][0], 1e-9)",
-           "np.array_equal(b['goals/polish'][:], a['front/objective'][2])",
-           "np.array_equal(b['polish/design_N'][:], a['front/design_N'][2]) and 'front' not in b and 'ga' not in b",
+           "near(psi_m(b, b['refine/position_m'][:]), a['front/objective'][2, 0], 1e-9)",
+           "near(ratio(b, b['refine/tension_N'][:], 1), a['front/objective'][2, 1], 1e-9)",
+           "near(psi_m(b, b['form/position_m'][:]), a['front/initial'][0], 1e-9)",
+           "np.array_equal(b['objective/refine'][:], a['front/objective'][2])",
+           "np.array_equal(b['refine/design'][:], a['front/design'][2]) and 'front' not in b and 'search' not in b",
            "b['case'].attrs['front_point'] == 3 and attribute(b['case'], 'front_file') == a.filename",
-           "attribute(b['case'], 'front_design_sha256') == sha256(a['front/design_N'][2].tobytes())",
-           "c['polish']['front_point'] == 3 and c['polish']['front_file'] == a.filename",
-           "c['polish']['stop_reason'] == 'taken' and c['polish']['is_result'] and c['polish']['lm_iterations'] == 0",
-           "[g['value'] for g in c['polish']['goals'].values()] == a['front/objective'][2].tolist()");
+           "attribute(b['case'], 'front_design_sha256') == sha256(a['front/design'][2].tobytes())",
+           "c['refine']['front_point'] == 3 and c['refine']['front_file'] == a.filename",
+           "c['refine']['stop_reason'] == 'taken' and c['refine']['is_result'] and c['refine']['steps'] == 0",
+           "[g['value'] for g in c['refine']['objectives'].values()] == a['front/objective'][2].tolist()");
     HIFDM(0, "export", path, "--cutlist", cut, "--csv", table);
     EXPECT(path, cut, "--",
-           "np.allclose([float(x['l0_m']) for x in b], a['polish/length_m'][:] / (1 + a['polish/tension_N'][:] / "
+           "np.allclose([float(x['unstressed_length_m']) for x in b], a['refine/length_m'][:] / (1 + "
+           "a['refine/tension_N'][:] / "
            "np.where(a['scene/cable/group'][:] == 1, 52000, 47000)), rtol=1e-12, atol=0)");
     HIFDM(0, "report", path, "-o", page);
     SHELL(0, "sed -n '/<script type=\"application.json\"/,/<\\/script>/p' \"$1\" | sed '1d;$d' >\"$2\"", page,
           temp("data.json"));
-    EXPECT(temp("data.json"), "--", "a['summary']['polish']['front_point'] == 3",
-           "[s['stage'] for s in a['shapes']] == ['form', 'polish']");
+    EXPECT(temp("data.json"), "--", "a['summary']['refine']['front_point'] == 3",
+           "[s['stage'] for s in a['shapes']] == ['form', 'refine']");
 }
 END_TEST
 
@@ -70,9 +71,9 @@ START_TEST(what_is_built_is_built_for_the_point)
                *c = file_with("d.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT);
     HIFDM(0, "run", c, "--point", point(front, 7), "-o", path);
     OUT("  as built      ");
-    EXPECT(front, path, "--", "np.abs(b['cases/same/position_m'][:] - b['polish/position_m'][:]).max() < 1e-8",
-           "np.abs(b['cases/same/position_m'][:] - b['form/position_m'][:]).max() > 1e-4",
-           "near(b['cases/same'].attrs['psi_m'], a['front/objective'][6, 0], 1e-6)",
+    EXPECT(front, path, "--", "np.abs(b['load_cases/same/position_m'][:] - b['refine/position_m'][:]).max() < 1e-8",
+           "np.abs(b['load_cases/same/position_m'][:] - b['form/position_m'][:]).max() > 1e-4",
+           "near(b['load_cases/same'].attrs['psi_m'], a['front/objective'][6, 0], 1e-6)",
            "near(np.median(b['tolerance/sample/psi_m'][:]), a['front/objective'][6, 0], 0.1)");
     HIFDM(0, "tolerance", c, "--point", point(front, 7), "-o", by_tasks, "--task", "0", "--tasks", "2", "--quiet");
     HIFDM(0, "tolerance", c, "--point", point(front, 7), "-o", by_tasks, "--tasks", "2", "--quiet");
@@ -83,7 +84,7 @@ START_TEST(what_is_built_is_built_for_the_point)
           file_with("e.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT
                     "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, sigma_m: 1e-4}\n"),
           "--measured", temp("measured.csv"), "--result", path, "-o", moves);
-    EXPECT(moves, "--", "all(abs(float(x['move_m'])) < 1e-7 for x in a)");
+    EXPECT(moves, "--", "all(abs(float(x['turnbuckle_m'])) < 1e-7 for x in a)");
 }
 END_TEST
 
@@ -133,12 +134,12 @@ START_TEST(points_of_generations_are_taken)
     c, "--set", "optimize.generations=5", "--set", "optimize.objectives=[{goal: psi}, {goal: displacement}]"
     HIFDM(0, "run", GENERATIONS, "-o", front);
     HIFDM(0, "export", front, "--csv", temp("end"));
-    ERR(": no point of its front is taken: the shape is the end of the front with the least goal_0_psi; ");
+    ERR(": no point of its front is taken: the shape is the end of the front with the least objective_0_psi; ");
     HIFDM(0, "run", GENERATIONS, "--point", point(front, 2), "-o", path);
-    EXPECT(front, path, "--", "near(b['goals/polish'][0], a['front/objective'][1, 0], 1e-6)",
-           "near(b['goals/polish'][1], a['front/objective'][1, 1], 1e-6)",
-           "near(psi_m(b, b['polish/position_m'][:]), a['front/objective'][1, 0], 1e-6)",
-           "near(np.linalg.norm(b['polish/position_m'][:][b['coupling/node'][:]] - "
+    EXPECT(front, path, "--", "near(b['objective/refine'][0], a['front/objective'][1, 0], 1e-6)",
+           "near(b['objective/refine'][1], a['front/objective'][1, 1], 1e-6)",
+           "near(psi_m(b, b['refine/position_m'][:]), a['front/objective'][1, 0], 1e-6)",
+           "near(np.linalg.norm(b['refine/position_m'][:][b['coupling/node'][:]] - "
            "b['scene/node/position_m'][:][b['coupling/node'][:]], axis=1).max(), a['front/objective'][1, 1], 1e-6)");
     HIFDM(0, "show", path);
     OUT(", in the result by ");
@@ -198,7 +199,7 @@ START_TEST(a_front_of_another_case_is_refused)
           point(front, 3), "-o", other);
     ERR(": its front has other variables than ");
     HIFDM(2, "run", c, "--set", "form.pretension_N=11", "--point", point(front, 3), "-o", other);
-    ERRS("error: %s: point 3 of its front has goal_1_ratio_boundary ", front);
+    ERRS("error: %s: point 3 of its front has objective_1_ratio_boundary ", front);
     ERR(": give the case and the --set that it was made of; what differs: form.pretension_N\n");
     HIFDM(2, "run", file_with("b.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT), "--set", "form.pretension_N=11",
           "--point", point(front, 3), "-o", other);
@@ -226,11 +227,11 @@ START_TEST(a_damaged_front_is_told)
     static const struct {
         const char *damage, *told;
         int code;
-    } list[] = {{"f['front/design_N'][2] = np.nan", "is no design of ", 2},
-                {"f['front/design_N'][2] = 0", "is no design of ", 2},
-                {"f['front/objective'][2, 0] = np.nan", " has goal_0_psi nan", 2},
+    } list[] = {{"f['front/design'][2] = np.nan", "is no design of ", 2},
+                {"f['front/design'][2] = 0", "is no design of ", 2},
+                {"f['front/objective'][2, 0] = np.nan", " has objective_0_psi nan", 2},
                 {"f['front/status'][2] = 3", "failed and has no design", 2},
-                {"del f['front/gene']", "/front/gene is not there", 5},
+                {"del f['front/variable']", "/front/variable is not there", 5},
                 {"f['front/mark'][2] = 1", "warning: ", 0}};
     const char *c = file_with("c.yaml", NET OPTIMIZE PSI_AND_RATIO), *front = front_of(c, "f.h5"), *path = temp("p.h5"),
                *copy = temp("g.h5");

@@ -12,7 +12,7 @@ START_TEST(data_sets_do_not_depend_on_the_number_of_threads)
     HIFDM(0, "run", CHEN, "-o", seven, "--threads", "7", SHORT);
     EXPECT(one, two, seven, "--", "differing(a, b) == []", "differing(a, c) == []", "a.attrs['threads'] == 1",
            "c.attrs['threads'] == 7", /* and that much was compared */
-           "len(contents(a)) > 30", "a['ga/design_N'].shape == (15, 50, 120)");
+           "len(contents(a)) > 30", "a['search/population/design'].shape == (15, 50, 120)");
 }
 END_TEST
 
@@ -39,8 +39,9 @@ START_TEST(same_seed_same_data_another_seed_others)
     HIFDM(0, "run", CHEN, "-o", other, SHORT, "--seed", "2023");
     EXPECT(first, again, other, "--", "differing(a, b) == []",
            /* the search differs, what comes before it does not */
-           "{'ga/design_N', 'ga/psi_m', 'ga/parent', 'ga/best/design_N'} <= set(differing(a, c))",
-           "all(name.startswith(('ga/', 'polish/', 'set_tension/')) for name in differing(a, c))");
+           "{'search/population/design', 'search/population/psi_m', 'search/population/parent', 'search/design'} <= "
+           "set(differing(a, c))",
+           "all(name.startswith(('search/', 'refine/', 'set_tension/')) for name in differing(a, c))");
 }
 END_TEST
 

@@ -70,9 +70,9 @@ START_TEST(page_begins_with_the_answer)
     HIFDM(0, "report", out, "-o", page);
     demand_well_formed(page);
     SHELL(0, "\"$0\" show \"$1\" >\"$2\"", out, text);
-    EXPECT(data_of(page, "w.json"), text, page, "--", "a['answer'].startswith('psi ') and ' GHz' in a['answer']",
-           "b.decode().split('\\n')[0] == a['answer']",
-           "' at 2/6 GHz: ' in a['gain_loss'] and 'gain' in a['gain_loss'].split(' at ')[0]",
+    EXPECT(data_of(page, "w.json"), text, page, "--",
+           "a['answer'].startswith('psi ') and '; 1 dB gain loss at ' in a['answer']",
+           "b.decode().split('\\n')[0] == a['answer']", "a['gain_loss'].startswith('gain loss at 2/6 GHz: ')",
            "16 * ' ' + a['gain_loss'] in b.decode().split('\\n')",
            "'<noscript><p>' + a['answer'] + '</p></noscript>' in c.decode()");
     HIFDM(0, "run", file_with("n.yaml", SMALL_SCENE), "-o", out, "--quiet", "--force");
@@ -95,8 +95,8 @@ START_TEST(a_failed_optimisation_says_so_first)
         demand_well_formed(page);
         SHELL(0, "\"$0\" show \"$1\" >\"$2\"", out, text);
         EXPECT(data_of(page, "f.json"), text, told, "--", "a['summary']['status'] == 'no_feasible'",
-               "len(a['summary']['errors']) == 1", "a['answer'].startswith(f\"failed: {a['summary']['errors'][0]}; \")",
-               "'form-finding' in a['answer'].split('; ')[-1] and ' psi ' in a['answer'].split('; ')[-1]",
+               "len(a['summary']['errors']) == 1",
+               "a['answer'].startswith(f\"failed: {a['summary']['errors'][0]}; the form-finding has psi \")",
                "[t.decode().split('\\n')[0] for t in (b, c)] == [a['answer']] * 2");
     }
     const char *const argv[] = {
@@ -106,7 +106,7 @@ START_TEST(a_failed_optimisation_says_so_first)
         out, NULL};
     demand_exit(run_command(20.0, argv), 0, "h5py", __LINE__);
     HIFDM(0, "show", out);
-    ck_assert_int_eq(strncmp(said.out, "failed: no design met the constraints; ", 39), 0);
+    ck_assert_int_eq(strncmp(said.out, "failed: no design met the constraints; the form-finding has psi ", 64), 0);
     HIFDM(3, "run", CHEN, "-o", out, "--force", "--quiet", "--set", "optimize.method=lm", "--set",
           "optimize.boundary_ratio_cap=1.0001", "--set", "optimize.range_N=1e-6");
     EXPECT(out, "--", "attribute(a, 'warnings').startswith('error: optimize: ')", /* what has no room is at the end */
@@ -287,8 +287,7 @@ START_TEST(merged_study_is_a_page_of_points)
            "a['study']['file'][0].startswith('/') and a['study']['file'][0].endswith('/s.d/a1.h5')");
     /* damaged: fewer names than points, an axis that is no number, a status without a word */
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
-          "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); f['points/input/x'] = h5py.SoftLink('/nowhere')",
-          merged);
+          "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); f.create_group('points/input/x')", merged);
     HIFDM(5, "report", merged, "-o", page, "--force");
     ERR("s.h5: ");
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),

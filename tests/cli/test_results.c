@@ -33,8 +33,8 @@ START_TEST(a_change_has_the_word_of_its_sign)
                   {"1", "as large as the "}};
     static const char set[] = "import h5py, sys\n"
                               "with h5py.File(sys.argv[1], 'r+') as f:\n"
-                              "    a, form = f['ga'].attrs, f['form'].attrs\n"
-                              "    a['best_psi_m'] = a['base_psi_m'] * float(sys.argv[2])\n"
+                              "    a, form = f['search'].attrs, f['form'].attrs\n"
+                              "    a['best_psi_m'] = a['initial_psi_m'] * float(sys.argv[2])\n"
                               "    if 'merit' in form:\n"
                               "        a['best_merit'] = form['merit'] * float(sys.argv[2])\n";
     const char *out = temp("c.h5"), *objectives = temp("g.h5");
@@ -87,7 +87,7 @@ START_TEST(provenance_is_in_the_root_attributes)
     EXPECT(run_once(), "--",
            "{'program', 'format_version', 'version', 'git_describe', 'compiler', 'build_flags', 'hdf5_version', "
            "'gsl_version', 'lapack', 'rng', 'host', 'argv', 'started_utc', 'finished_utc', 'title', 'seed', 'threads', "
-           "'warnings', 'has_optimize', 'status'} <= set(a.attrs)",
+           "'warnings', 'has_search', 'status'} <= set(a.attrs)",
            "attribute(a, 'status') == 'ok'", "a.attrs['seed'] == 2022",
            "attribute(a, 'started_utc') <= attribute(a, 'finished_utc')", "attribute(a, 'argv')[1:2] == ['run']",
            "attribute(a, 'argv')[-1] == 'optimize.generations=8'", "'straight chains' in attribute(a, 'warnings')");
@@ -99,15 +99,15 @@ START_TEST(stored_shapes_belong_to_their_numbers)
 {
     EXPECT(
         run_once(), "--", "near(psi_m(a, a['form/position_m'][:]), a['form'].attrs['psi_m'], 1e-12)",
-        "near(psi_m(a, a['ga/best/position_m'][:]), a['ga'].attrs['best_psi_m'], 1e-12)",
+        "near(psi_m(a, a['search/position_m'][:]), a['search'].attrs['psi_m'], 1e-12)",
         "a['form/history/psi_m'][-1] == a['form'].attrs['psi_m']",
         "len(a['form/history/psi_m']) == a['form'].attrs['iterations'] == 67",
         "near(ratio(a, a['form/tension_N'][:], 0), a['form'].attrs['inner_tension_ratio'], 1e-12)",
         "near(ratio(a, a['form/tension_N'][:], 1), a['form'].attrs['boundary_tension_ratio'], 1e-12)",
-        "near(ratio(a, a['ga/best/tension_N'][:], 1), a['ga'].attrs['best_boundary_tension_ratio'], 1e-12)",
+        "near(ratio(a, a['search/tension_N'][:], 1), a['search'].attrs['boundary_tension_ratio'], 1e-12)",
         "np.allclose(a['form/tension_N'], a['form/q_N_per_m'][:] * a['form/length_m'][:], rtol=1e-14)",
         "all(np.allclose(a[s + '/length_m'], np.linalg.norm(np.diff(a[s + '/position_m'][:][a['scene/cable/end'][:]],"
-        " axis=1)[:, 0], axis=1), rtol=1e-14) for s in ('form', 'ga/best'))",
+        " axis=1)[:, 0], axis=1), rtol=1e-14) for s in ('form', 'search'))",
         "(a['form/position_m'][:] == a['scene/node/position_m'][:])[a['scene/node/role'][:] == 0].all()");
 }
 END_TEST
@@ -115,23 +115,30 @@ END_TEST
 START_TEST(every_generation_is_there)
 {
     EXPECT(
-        run_once(), "--", "a['ga/psi_m'].shape == a['ga/status'].shape == a['ga/evaluated'].shape == (8, 50)",
-        "a['ga/design_N'].shape == (8, 50, 120)",
-        "a['ga/crossover_rate'].shape == a['ga/mutation_rate'].shape == (8, 50)",
-        "a['ga/evaluated'][:].sum() == a['ga'].attrs['evaluations']", "a['ga/evaluated'][0].all()",
-        "not np.isnan(a['ga/psi_m'][:][a['ga/status'][:] == 0]).any()",
-        "np.isnan(a['ga/psi_m'][:][a['ga/status'][:] != 0]).all()", "(a['ga/lower_N'][:] <= a['ga/design_N'][:]).all()",
-        "(a['ga/design_N'][:] <= a['ga/upper_N'][:]).all()",
+        run_once(), "--",
+        "a['search/population/psi_m'].shape == a['search/population/status'].shape == "
+        "a['search/population/evaluated'].shape == (8, 50)",
+        "a['search/population/design'].shape == (8, 50, 120)",
+        "a['search/population/crossover_rate'].shape == a['search/population/mutation_rate'].shape == (8, 50)",
+        "a['search/population/evaluated'][:].sum() == a['search'].attrs['evaluations']",
+        "a['search/population/evaluated'][0].all()",
+        "not np.isnan(a['search/population/psi_m'][:][a['search/population/status'][:] == 0]).any()",
+        "np.isnan(a['search/population/psi_m'][:][a['search/population/status'][:] != 0]).all()",
+        "(a['variable/lower'][:] <= a['search/population/design'][:]).all()",
+        "(a['search/population/design'][:] <= a['variable/upper'][:]).all()",
         /* individual 0 is the found shape's tensions, the best one what its generation says */
-        "(a['ga/design_N'][0, 0] == a['form/tension_N'][:][a['ga/gene_cable'][:]]).all()",
-        "a['ga/best_psi_m'][:].tolist() == np.nanmin(a['ga/psi_m'][:], axis=1).tolist()",
-        "a['ga/best_individual'][:].tolist() == np.nanargmin(a['ga/psi_m'][:], axis=1).tolist()",
-        "(a['ga/best/design_N'][:] == a['ga/design_N'][-1, a['ga/best_individual'][-1]]).all()",
-        "a['ga/psi_m'][a['ga'].attrs['best_generation'], a['ga'].attrs['best_individual']] == "
-        "a['ga'].attrs['best_psi_m'] == a['ga/best_psi_m'][-1]",
+        "(a['search/population/design'][0, 0] == a['form/tension_N'][:][a['variable/cable'][:]]).all()",
+        "a['search/population/best_psi_m'][:].tolist() == np.nanmin(a['search/population/psi_m'][:], axis=1).tolist()",
+        "a['search/population/best_individual'][:].tolist() == np.nanargmin(a['search/population/psi_m'][:], "
+        "axis=1).tolist()",
+        "(a['search/design'][:] == a['search/population/design'][-1, "
+        "a['search/population/best_individual'][-1]]).all()",
+        "a['search/population/psi_m'][a['search'].attrs['best_generation'], a['search'].attrs['best_individual']] == "
+        "a['search'].attrs['psi_m'] == a['search/population/best_psi_m'][-1]",
         /* a child that was not evaluated is its parent: elite or unchanged */
-        "all((a['ga/design_N'][g, i] == a['ga/design_N'][g - 1, a['ga/parent'][g, i, 0]]).all() for g in range(1, 8) "
-        "for i in np.flatnonzero(a['ga/evaluated'][g] == 0))");
+        "all((a['search/population/design'][g, i] == a['search/population/design'][g - 1, "
+        "a['search/population/parent'][g, i, 0]]).all() for g in range(1, 8) "
+        "for i in np.flatnonzero(a['search/population/evaluated'][g] == 0))");
 }
 END_TEST
 
@@ -143,9 +150,9 @@ START_TEST(less_is_stored_where_less_is_asked_for)
     HIFDM(0, "run", CHEN, "-o", thin, "--quiet", "--set", "optimize.generations=8", "--set",
           keep(formatted("optimize.store=%s", word)), "--set", "optimize.store_every=3");
     EXPECT(thin, run_once(), "--", formatted("holds_of(a, b, '%s', 3)", word),
-           "a['ga'].attrs['evaluations'] == b['ga'].attrs['evaluations']",
-           "a['ga'].attrs['base_psi_m'] == b['ga'].attrs['base_psi_m']",
-           "all(name.startswith(('ga/', 'case/')) for name in differing(a, b))");
+           "a['search'].attrs['evaluations'] == b['search'].attrs['evaluations']",
+           "a['search'].attrs['initial_psi_m'] == b['search'].attrs['initial_psi_m']",
+           "all(name.startswith(('search/', 'case/')) for name in differing(a, b))");
     HIFDM(1, "diff", thin, run_once());
     HIFDM(0, "show", thin, "-v");
     OUT("found in generation ");

@@ -46,8 +46,8 @@ static void demand_same(const char *path, const char *whole)
 {
     HIFDM(0, "diff", path, whole);
     EXPECT(path, whole, "--",
-           "[k for k in ('evaluations', 'infeasible', 'base_psi_m', 'best_psi_m', 'best_generation', "
-           "'best_individual', 'best_iterations') if a['ga'].attrs[k] != b['ga'].attrs[k]] == []");
+           "[k for k in ('evaluations', 'infeasible', 'initial_psi_m', 'best_psi_m', 'best_generation', "
+           "'best_individual', 'best_iterations') if a['search'].attrs[k] != b['search'].attrs[k]] == []");
 }
 
 #define EVERY_7 "optimize.store_every=7"
@@ -148,7 +148,7 @@ START_TEST(a_killed_run_of_rows_goes_on_to_the_same_bits)
     ck_assert_int_ge(generations_in_file(path), 4);
     HIFDM(0, "run", c, "-o", path, "--quiet", "--threads", "1", "--set", store, "--set", EVERY_7);
     demand_same(path, whole);
-    EXPECT(path, "--", "0 < a['ga'].attrs['infeasible'] < a['ga'].attrs['evaluations']");
+    EXPECT(path, "--", "0 < a['search'].attrs['infeasible'] < a['search'].attrs['evaluations']");
 }
 END_TEST
 
@@ -202,13 +202,13 @@ START_TEST(seed_and_symmetry_are_recovered)
     }
     recover_a_copy(path, n);
     HIFDM(0, "recover", path);
-    EXPECT(
-        path, whole, "--",
-        "[a['ga'].attrs[k] == b['ga'].attrs[k] for k in ('solver', 'n_leader', 'planes', 'base_psi_m')] == [True] * 4",
-        "a['ga'].attrs['best_psi_m'] == a['ga/best_psi_m'][:].min()",
-        "a['ga'].attrs['best_iterations'] == a['ga/iterations'][a['ga'].attrs['best_generation'], "
-        "a['ga'].attrs['best_individual']]",
-        "np.isnan(a['ga'].attrs['best_shortest_length_ratio'])");
+    EXPECT(path, whole, "--",
+           "[a['search'].attrs[k] == b['search'].attrs[k] for k in ('solver', 'n_leader', 'planes', 'initial_psi_m')] "
+           "== [True] * 4",
+           "a['search'].attrs['psi_m'] == a['search/population/best_psi_m'][:].min()",
+           "a['search'].attrs['iterations'] == a['search/population/iterations'][a['search'].attrs['best_generation'], "
+           "a['search'].attrs['best_individual']]",
+           "np.isnan(a['search'].attrs['shortest_length_ratio'])");
     HIFDM(0, "run", c, "-o", path, "--quiet", "--seed", "11", "--set", "optimize.symmetry=auto");
     HIFDM(0, "diff", path, whole);
 }
@@ -238,8 +238,8 @@ START_TEST(stopped_runs_publish_and_go_on)
     HIFDM(0, "run", c, "-o", whole, "--seed", "5", "--quiet");
     HIFDM(0, "diff", path, whole);
     EXPECT(path, whole, "--", "a.attrs['finished'] and attribute(a, 'status') == 'ok'", "a.attrs['sessions'] == 2",
-           "str({k: v for k, v in a['ga'].attrs.items() if k[-2:] != '_s'}) == "
-           "str({k: v for k, v in b['ga'].attrs.items() if k[-2:] != '_s'})");
+           "str({k: v for k, v in a['search'].attrs.items() if k[-2:] != '_s'}) == "
+           "str({k: v for k, v in b['search'].attrs.items() if k[-2:] != '_s'})");
 }
 END_TEST
 
@@ -338,10 +338,10 @@ START_TEST(a_stopped_refinement_goes_on_to_the_same_bits)
     HIFDM(0, "run", c, "-o", whole, "--quiet", "--threads", "2");
     HIFDM(0, "diff", path, whole);
     /* the killed session counts where it had published before: it tells of a step first */
-    EXPECT(path, whole, "--", "'polish_state' not in a and a.attrs['sessions'] in (2, 3)",
-           "str({k: v for k, v in a['polish'].attrs.items() if k[-2:] != '_s'}) == "
-           "str({k: v for k, v in b['polish'].attrs.items() if k[-2:] != '_s'})",
-           "all(a['polish'].attrs[k] > 1 for k in a['polish'].attrs if k[-6:] == 'wall_s')");
+    EXPECT(path, whole, "--", "'refine_state' not in a and a.attrs['sessions'] in (2, 3)",
+           "str({k: v for k, v in a['refine'].attrs.items() if k[-2:] != '_s'}) == "
+           "str({k: v for k, v in b['refine'].attrs.items() if k[-2:] != '_s'})",
+           "all(a['refine'].attrs[k] > 1 for k in a['refine'].attrs if k[-6:] == 'wall_s')");
 }
 END_TEST
 
@@ -366,7 +366,7 @@ START_TEST(another_case_is_told_key_by_key)
     ERR("is finished: there is nothing to recover");
     OUT("\n  GA            ");
     HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", path, "--restart", "--quiet");
-    EXPECT(path, "--", "'ga' not in a");
+    EXPECT(path, "--", "'search' not in a");
     const char *net = net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,2,0,0,support\nc,1,1,0.5,inner\n"
                                "d,1,-1,0.5,support\n",
                                "id,i,j,group,law,value\nac,a,c,inner,tension,10\nbc,b,c,inner,tension,10\n"

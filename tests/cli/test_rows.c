@@ -42,13 +42,14 @@ START_TEST(variables_and_objectives_of_any_kind_are_evaluated)
     OUT("2 designs, 2 feasible; best merit ");
 #define HELD "held(q, [[0, 0, 0], [4, 0, 0], c])"
 #define EACH "for r, q, c in zip(a, ([4, 5, 3], [4, 4, 3]), ([2, 2.9, .5], [2.1, 3, 1.25])))"
-    EXPECT(table, "--", "list(a[0])[-4:] == ['violation', 'merit', 'goal_0_psi', 'goal_1_tension_edge']",
+    EXPECT(table, "--", "list(a[0])[-4:] == ['violation', 'merit', 'objective_0_psi', 'objective_1_tension_edge']",
            "[r['id'] for r in a] == ['low', '']",
-           "all(near(float(r['goal_0_psi']), np.linalg.norm(" HELD "[0] - [1.7, 1, .3]), 1e-14) " EACH,
-           "all(near(float(r['goal_1_tension_edge']), np.sqrt(np.mean((" HELD "[1][:2] - 9)**2)), 1e-14) " EACH,
-           "all(near(float(r['merit'])**2, float(r['goal_0_psi'])**2 + (float(r['goal_1_tension_edge']) / 10)**2, "
+           "all(near(float(r['objective_0_psi']), np.linalg.norm(" HELD "[0] - [1.7, 1, .3]), 1e-14) " EACH,
+           "all(near(float(r['objective_1_tension_edge']), np.sqrt(np.mean((" HELD "[1][:2] - 9)**2)), 1e-14) " EACH,
+           "all(near(float(r['merit'])**2, float(r['objective_0_psi'])**2 + (float(r['objective_1_tension_edge']) / "
+           "10)**2, "
            "1e-14) for r in a)",
-           "all(r['psi_m'] == r['goal_0_psi'] for r in a)");
+           "all(r['psi_m'] == r['objective_0_psi'] for r in a)");
 }
 END_TEST
 
@@ -62,9 +63,9 @@ START_TEST(the_best_is_that_of_the_merit)
           "optimize.limits=[{limit: tension, set: edge, bounds: [7, 30]}]");
     EXPECT(out_as("r.json"), table, "--", "a['best_row'] == 2 and float(b[0]['psi_m']) < float(b[1]['psi_m'])",
            "a['best_merit'] == float(b[1]['merit']) < float(b[0]['merit'])",
-           "a['best_goals'] == {k: float(b[1][k]) for k in ('goal_0_psi', 'goal_1_tension_edge')}",
+           "a['best_objectives'] == {k: float(b[1][k]) for k in ('objective_0_psi', 'objective_1_tension_edge')}",
            "a['best_psi_m'] == float(b[1]['psi_m'])", "b[2]['status'] == 'out_of_limits'",
-           "b[2]['merit'] == b[2]['psi_m'] == 'nan' and near(float(b[2]['goal_1_tension_edge']), 5.9792, 1e-4)");
+           "b[2]['merit'] == b[2]['psi_m'] == 'nan' and near(float(b[2]['objective_1_tension_edge']), 5.9792, 1e-4)");
 }
 END_TEST
 
@@ -79,10 +80,12 @@ START_TEST(objectives_are_evaluated_without_a_merit)
     const char *json = out_as("r.json"), *objectives = temp("g.csv"), *objective_slopes = temp("gj.csv");
     HIFDM(0, "evaluate", net, "--designs", designs, "-o", objectives, "--jacobian", objective_slopes, "--set", edge,
           "--set", "optimize.goals=[{goal: psi}, {goal: tension, set: edge, target: 12}]");
-    EXPECT(table, objectives, json, "--", "list(a[0])[-3:] == ['violation', 'goal_0_psi', 'goal_1_tension_edge']",
+    EXPECT(table, objectives, json, "--",
+           "list(a[0])[-3:] == ['violation', 'objective_0_psi', 'objective_1_tension_edge']",
            "'merit' not in a[0] and [{k: r[k] for k in a[0]} for r in b] == a and 'merit' in b[0]",
            "c['feasible'] == 2 and not [k for k in c if k.startswith('best')]");
-    EXPECT(slopes, objective_slopes, "--", "[r['figure'] for r in a] == ['goal_0_psi', 'goal_1_tension_edge'] * 2",
+    EXPECT(slopes, objective_slopes, "--",
+           "[r['figure'] for r in a] == ['objective_0_psi', 'objective_1_tension_edge'] * 2",
            "a == [r for r in b if r['figure'] != 'merit'] and len(b) == 6");
     HIFDM(0, "evaluate", net, "--designs", designs, "-o", table, "--force", "--set", edge, "--set",
           "optimize.objectives=[{goal: psi}, {goal: tension, set: edge, target: 12}]", "--set", "optimize.method=lm");
@@ -129,11 +132,11 @@ START_TEST(derivatives_come_beside_the_results)
     "(float(of['" up "']['" figure "']) - float(of['" down "']['" figure                                               \
     "'])) / 2e-4)({r['id']: r for r in a}), 1e-7)"
     EXPECT(table, slopes, out_as("r.json"), "--", "list(b[0]) == ['id', 'figure', 'c1', 'c,2', 'c.x', 'c.y', 'c.z']",
-           "[r['figure'] for r in b] == ['goal_0_psi', 'goal_1_tension_edge', 'merit'] * 5",
+           "[r['figure'] for r in b] == ['objective_0_psi', 'objective_1_tension_edge', 'merit'] * 5",
            "[r['id'] for r in b[::3]] == ['at', 'up', 'down', 'right', 'left'] and a[5]['status'] != 'ok'",
-           SLOPE("goal_0_psi", "up", "down", "c1"), SLOPE("goal_1_tension_edge", "up", "down", "c1"),
+           SLOPE("objective_0_psi", "up", "down", "c1"), SLOPE("objective_1_tension_edge", "up", "down", "c1"),
            SLOPE("merit", "up", "down", "c1"), SLOPE("merit", "right", "left", "c.x"),
-           SLOPE("goal_1_tension_edge", "right", "left", "c.x"), "c['jacobian'].endswith('j.csv')");
+           SLOPE("objective_1_tension_edge", "right", "left", "c.x"), "c['jacobian'].endswith('j.csv')");
     HIFDM(0, "evaluate", net, "--designs", file_with("e.csv", "c1,\"c,2\",c3\n10,10,9\n"), "--jacobian", slopes,
           "--force");
     EXPECT(slopes, "--", "[list(r.values())[:2] for r in a] == [['1', 'psi_m']]",
@@ -174,46 +177,50 @@ START_TEST(runs_tell_what_became_of_each_objective)
     const char *json = out_as("r.json");
     EXPECT(
         json, out, "--",
-        "[list(a[s]['goals']) for s in ('form', 'optimize', 'polish')] == "
-        "[['goal_0_psi', 'goal_1_tension_edge']] * 3",
-        "texts(b['goals/name']) == list(a['form']['goals']) and b['goals/weight'][:].tolist() == [1, .1]",
-        "all([g['value'] for g in a[s]['goals'].values()] == b['goals'][s][:].tolist() for s in ('form', 'optimize', "
-        "'polish'))",
-        "all(near(a[s]['merit'], np.linalg.norm([g['value'] * g['weight'] for g in a[s]['goals'].values()]), 1e-14) "
-        "for s in ('form', 'optimize', 'polish'))",
-        "a['form']['goals']['goal_0_psi']['value'] == a['form']['psi_m']", /* before: of the found shape */
-        "a['form']['merit'] > a['optimize']['merit'] >= a['polish']['merit'] > 0",
-        "a['optimize']['merit'] == b['ga/best_merit'][-1]");
+        "[list(a[s]['objectives']) for s in ('form', 'search', 'refine')] == "
+        "[['objective_0_psi', 'objective_1_tension_edge']] * 3",
+        "texts(b['objective/name']) == list(a['form']['objectives']) and b['objective/weight'][:].tolist() == [1, .1]",
+        "all([g['value'] for g in a[s]['objectives'].values()] == b['objective'][s][:].tolist() for s in ('form', "
+        "'search', "
+        "'refine'))",
+        "all(near(a[s]['merit'], np.linalg.norm([g['value'] * g['weight'] for g in a[s]['objectives'].values()]), "
+        "1e-14) "
+        "for s in ('form', 'search', 'refine'))",
+        "a['form']['objectives']['objective_0_psi']['value'] == a['form']['psi_m']", /* before: of the found shape */
+        "a['form']['merit'] > a['search']['merit'] >= a['refine']['merit'] > 0",
+        "a['search']['merit'] == b['search/population/best_merit'][-1]");
     HIFDM(0, "show", out);
     OUT("ratio inside         merit  at bounds");
     /* before and after, in their units; psi, which is wanted too, is not told once more */
     EXPECT(json, file_with("show.txt", said.out), "--",
            "b.decode().startswith('psi %.4f -> %.4f mm, tension_edge %.4g -> %.4g N; good to ' % tuple(x for g, by in "
-           "(('goal_0_psi', 1e3), ('goal_1_tension_edge', 1)) for x in (by * a['form']['goals'][g]['value'], by * "
-           "a['polish']['goals'][g]['value'])))");
+           "(('objective_0_psi', 1e3), ('objective_1_tension_edge', 1)) for x in (by * "
+           "a['form']['objectives'][g]['value'], by * "
+           "a['refine']['objectives'][g]['value'])))");
     ck_assert_int_eq(count_of(said.out, "                merit 0."), 1); /* the result's, with its goals */
     HIFDM(0, "show", out, "--verbose");
     OUT(" 4 cables, 5 variables; ");
-    OUT(" (weight 1), goal_1_tension_edge ");
+    OUT(" (weight 1), objective_1_tension_edge ");
     OUT(" (weight 0.1)\n");
     ck_assert_int_eq(count_of(said.out, "                merit 0."), 4);
     HIFDM(0, "report", out, "-o", temp("r.html")); /* its page has the object of --json */
-    EXPECT(temp("r.html"), "--", "a.count(b'\"goal_1_tension_edge\": {\"value\": ') == 3");
+    EXPECT(temp("r.html"), "--", "a.count(b'\"objective_1_tension_edge\": {\"value\": ') == 3");
     HIFDM(0, "show", out, "--json");
     EXPECT(json, out_as("s.json"), "--",
-           "all(a[s]['goals'] == b[s]['goals'] and a[s]['merit'] == b[s]['merit'] for s in "
-           "('form', 'optimize', 'polish'))");
+           "all(a[s]['objectives'] == b[s]['objectives'] and a[s]['merit'] == b[s]['merit'] for s in "
+           "('form', 'search', 'refine'))");
     HIFDM(0, "run", net, "-o", out, "--restart", "--json", "--set", VARIABLES, "--set", "optimize.method=lm");
-    EXPECT(out_as("p.json"), out, "--", "'goals' not in a['form'] and 'merit' not in a['polish'] and 'goals' not in b");
+    EXPECT(out_as("p.json"), out, "--",
+           "'objectives' not in a['form'] and 'merit' not in a['refine'] and 'objectives' not in b");
 }
 END_TEST
 
 START_TEST(objectives_of_damaged_files_are_not_shown)
 {
-    static const char *const deed[] = {"f['goals/name'][0] = b'\\x1b[1m'", "del f['goals/polish']",
-                                       "del f['goals/weight']; f['goals/weight'] = np.ones(17)"};
-    static const char *const why[] = {"/goals/name does not name goals", "/goals/polish is not there",
-                                      "/goals/weight is empty or too large"};
+    static const char *const deed[] = {"f['objective/name'][0] = b'\\x1b[1m'", "del f['objective/refine']",
+                                       "del f['objective/weight']; f['objective/weight'] = np.ones(17)"};
+    static const char *const why[] = {"/objective/name does not name goals", "/objective/refine is not there",
+                                      "/objective/weight is empty or too large"};
     const char *out = temp("r.h5");
     HIFDM(0, "run", net_with(nodes, cables), "-o", out, "--set", VARIABLES, "--set", OBJECTIVES, "--set",
           "optimize.method=lm");
@@ -238,22 +245,22 @@ START_TEST(what_holds_a_design_has_names)
           "[null, 11]}, {limit: ratio, set: edge, bounds: [1, 1.5]}]",
           "--set", "optimize.method=lm");
     const char *json = out_as("r.json");
-    EXPECT(json, out, "--", "[(h['row'], h['count'], h['bound']) for h in a['polish']['at_limits']] == [(1, 2, 11)]",
-           "a['polish']['at_limits'][0]['name'] in ('tension of cable c1', 'tension of cable c,2')",
-           "all(11 - 1e-7 < h['value'] <= 11 for h in a['polish']['at_limits'])",
-           "all([h[k] for h in a['polish']['at_limits']] == b['at_limit/polish'][k][:].tolist() for k in ('row', "
+    EXPECT(json, out, "--", "[(h['row'], h['count'], h['bound']) for h in a['refine']['at_limits']] == [(1, 2, 11)]",
+           "a['refine']['at_limits'][0]['name'] in ('tension of cable c1', 'tension of cable c,2')",
+           "all(11 - 1e-7 < h['value'] <= 11 for h in a['refine']['at_limits'])",
+           "all([h[k] for h in a['refine']['at_limits']] == b['at_limit/refine'][k][:].tolist() for k in ('row', "
            "'count', 'bound', 'value'))",
-           "texts(b['at_limit/polish/name']) == [h['name'] for h in a['polish']['at_limits']]");
+           "texts(b['at_limit/refine/name']) == [h['name'] for h in a['refine']['at_limits']]");
     HIFDM(0, "show", out);
     OUT("                at optimize.limits.1: tension of cable c");
     OUT(" and 1 more at 11\n");
     HIFDM(0, "show", out, "--json");
-    EXPECT(json, out_as("s.json"), "--", "a['polish'] == b['polish']");
+    EXPECT(json, out_as("s.json"), "--", "a['refine'] == b['refine']");
     HIFDM(0, "run", net, "-o", out, "--restart", "--json", "--set", EDGE("1 %"), "--set", PULLED, "--set",
           "optimize.generations=30");
-    EXPECT(out_as("g.json"), out, "--", "a['optimize']['at_lower_bound'] + a['optimize']['at_upper_bound'] == 2",
-           "'at_limits' not in a['optimize'] and 'at_limit' not in b",
-           "attribute(b['ga'], 'best_n_at_upper') == a['optimize']['at_upper_bound'] == 2");
+    EXPECT(out_as("g.json"), out, "--", "a['search']['at_lower_bound'] + a['search']['at_upper_bound'] == 2",
+           "'at_limits' not in a['search'] and 'at_limit' not in b",
+           "attribute(b['search'], 'best_n_at_upper') == a['search']['at_upper_bound'] == 2");
     HIFDM(0, "show", out, "-v");
     OUT("                0 of 2 variables at their lower and 2 at their upper bounds\n");
 }
@@ -306,11 +313,12 @@ START_TEST(rows_that_no_variable_reaches_are_named)
     ERRS("warning: %s:7:7: optimize.variables.1: changes nothing at the base design: its cables, or those at its "
          "supports, are slack\n",
          path);
-    ERRS(
-        "warning: %s:9:7: optimize.goals.0: no variable of this case changes goal_0_mass_far: all cables that it looks "
-        "at keep their lengths\n",
-        path);
-    ERRS("warning: %s:10:7: optimize.goals.1: no variable of this case changes goal_1_tension_stay: all cables that it "
+    ERRS("warning: %s:9:7: optimize.goals.0: no variable of this case changes objective_0_mass_far: all cables that it "
+         "looks "
+         "at keep their lengths\n",
+         path);
+    ERRS("warning: %s:10:7: optimize.goals.1: no variable of this case changes objective_1_tension_stay: all cables "
+         "that it "
          "looks at keep their tensions\n",
          path);
     ERRS("warning: %s:16:7: optimize.limits.1: no variable of this case changes what it limits: all cables that it "
@@ -318,8 +326,8 @@ START_TEST(rows_that_no_variable_reaches_are_named)
          path);
     ck_assert_int_eq(count_of(said.err, "no variable of this case"), 3);
     EXPECT(temp("two.h5"), "--", "attribute(a, 'warnings').count('no variable of this case') == 3",
-           "np.allclose(a['goals/form'][:2], a['goals/polish'][:2], rtol=1e-12)",
-           "all(a['goals/form'][i] != a['goals/polish'][i] for i in (2, 4))");
+           "np.allclose(a['objective/form'][:2], a['objective/refine'][:2], rtol=1e-12)",
+           "all(a['objective/form'][i] != a['objective/refine'][i] for i in (2, 4))");
 }
 END_TEST
 
@@ -330,12 +338,15 @@ START_TEST(nothing_is_sought_that_no_variable_reaches)
         "optimize.objectives=[{goal: psi}, {goal: mass, set: far, mass_kg_per_m: 1}]",
         "optimize.variables=[{set: far, vary: tension, range: 1}]"};
     static const char *const why[] = {
-        ("error: --set optimize.goals.0: no variable of this case changes goal_0_length_far: all cables that it looks "
+        ("error: --set optimize.goals.0: no variable of this case changes objective_0_length_far: all cables that it "
+         "looks "
          "at "
          "keep their lengths; vary what does, or leave it out\nerror: --set optimize.goals.1: no variable of this case "
-         "changes goal_1_evenness_far: all cables that it looks at keep their tensions; vary what does, or leave it "
+         "changes objective_1_evenness_far: all cables that it looks at keep their tensions; vary what does, or leave "
+         "it "
          "out\n"),
-        ("error: --set optimize.objectives.1: no variable of this case changes goal_1_mass_far: all cables that it "
+        ("error: --set optimize.objectives.1: no variable of this case changes objective_1_mass_far: all cables that "
+         "it "
          "looks "
          "at keep their lengths; vary what does, or leave it out\n"),
         ("error: --set optimize.variables.0: no variable of this case changes psi: none of the nodes that it looks at "
@@ -445,24 +456,25 @@ START_TEST(the_gain_is_a_objective)
 #define BANDS                                                                                                          \
     "--set", "surface.frequencies_Hz=[1e9, 2e9]", "--set", "surface.pattern.theta_deg=[-2, 2]", "--set",               \
         "optimize.goals=[{goal: gain}, {goal: gain, frequency_Hz: 1e9, weight: 0.5}]"
-#define LOST(stage, objective) "(1 - a['" stage "']['goals']['" objective "']['value']**2)"
+#define LOST(stage, objective) "(1 - a['" stage "']['objectives']['" objective "']['value']**2)"
 #define GAIN(stage, cut) "a['" stage "']['pattern'][" cut "]['gain_dBi']"
 #define SAME(objective, cut)                                                                                           \
     "near(" GAIN("polish", cut) " - " GAIN("form", cut) ", 10 * np.log10(" LOST("polish", objective) " / " LOST(       \
         "form", objective) "), 3e-4)"
     const char *designs = temp("d.csv"), *table = temp("r.csv"), *slopes = temp("j.csv");
     HIFDM(0, "run", CHEN, "-o", temp("g.h5"), "--json", "--set", "optimize.method=lm", BANDS);
-    EXPECT(out_as("run.json"), "--", SAME("goal_0_gain", "2"), SAME("goal_1_gain", "0"),
+    EXPECT(out_as("run.json"), "--", SAME("objective_0_gain", "2"), SAME("objective_1_gain", "0"),
            GAIN("polish", "2") " > 0.008 + " GAIN("form", "2"),
-           "near(a['polish']['merit']**2, a['polish']['goals']['goal_0_gain']['value']**2 + "
-           "a['polish']['goals']['goal_1_gain']['value']**2 / 4, 1e-15)");
+           "near(a['refine']['merit']**2, a['refine']['objectives']['objective_0_gain']['value']**2 + "
+           "a['refine']['objectives']['objective_1_gain']['value']**2 / 4, 1e-15)");
     HIFDM(0, "check", CHEN, BANDS);
     OUT("                goals.0: gain at 2 GHz, weight 1\n");
     OUT("                goals.1: gain at 1 GHz, weight 0.5\n");
     HIFDM(0, "evaluate", CHEN, "--template", designs, BANDS);
     HIFDM(0, "evaluate", CHEN, "--designs", designs, "-o", table, "--jacobian", slopes, BANDS);
-    EXPECT(table, slopes, "--", "[r['figure'] for r in b] == ['goal_0_gain', 'goal_1_gain', 'merit']",
-           "all(float(r['n0_0-n0_1']) != 0 for r in b)", "0 < float(a[0]['goal_1_gain']) < float(a[0]['goal_0_gain'])");
+    EXPECT(table, slopes, "--", "[r['figure'] for r in b] == ['objective_0_gain', 'objective_1_gain', 'merit']",
+           "all(float(r['n0_0-n0_1']) != 0 for r in b)",
+           "0 < float(a[0]['objective_1_gain']) < float(a[0]['objective_0_gain'])");
     HIFDM(2, "check", CHEN, "--set", "surface.frequencies_Hz=[1e9]", "--set", "optimize.goals=[{goal: gain}]");
     ERR("error: --set optimize.goals.0: gain: needs a section surface.pattern, which says what illuminates the "
         "reflector\n");

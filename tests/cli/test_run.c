@@ -25,13 +25,13 @@ START_TEST(json_has_the_keys_of_each_stage)
            "{'psi_m', 'inner_tension_ratio', 'boundary_tension_ratio', 'residual_N', 'iterations', 'stop_reason', "
            "'wall_s'} <= a['form'].keys()",
            "{'psi_m', 'inner_tension_ratio', 'boundary_tension_ratio', 'residual_N', 'iterations', 'stop_reason', "
-           "'generations', 'evaluations', 'infeasible', 'wall_s', 'cpu_s'} <= a['optimize'].keys()",
-           "{'form', 'optimize', 'threads', 'seed', 'version', 'warnings'} <= a.keys()",
+           "'generations', 'evaluations', 'infeasible', 'wall_s', 'cpu_s'} <= a['search'].keys()",
+           "{'form', 'search', 'threads', 'seed', 'version', 'warnings'} <= a.keys()",
            "all(isinstance(w, str) for w in a['warnings'])", "a['seed'] == 2022", "a['threads'] >= 1",
-           "a['optimize']['generations'] == 15", "0 < a['optimize']['evaluations'] <= 15 * 50",
-           "a['optimize']['stop_reason'] == 'generations'", "a['form']['wall_s'] > 0",
+           "a['search']['generations'] == 15", "0 < a['search']['evaluations'] <= 15 * 50",
+           "a['search']['stop_reason'] == 'generations'", "a['form']['wall_s'] > 0",
            /* 1.05: a thread's clock and the wall clock are not read at the same instant */
-           "0 < a['optimize']['cpu_s'] <= 1.05 * a['optimize']['wall_s'] * a['threads']");
+           "0 < a['search']['cpu_s'] <= 1.05 * a['search']['wall_s'] * a['threads']");
     /* standard output is the object alone; the warnings are for people, too */
     ck_assert_int_eq(said.out[0], '{');
     ERR("warning: stop: rms_change ended before equilibrium of the form-finding shape: ");
@@ -47,10 +47,10 @@ START_TEST(ga_lowers_psi)
 {
     const char *out = temp("c.h5");
     HIFDM(0, "run", CHEN, "-o", out, "--json", SHORT);
-    EXPECT(out_as("c.json"), out, "--", "a['optimize']['psi_m'] < a['form']['psi_m']",
-           "a['optimize']['psi_m'] < 0.99 * b['ga/psi_m'][0, 0]",
-           "(np.diff(b['ga/best_psi_m'][:]) <= 0).all()", /* elitism */
-           "a['optimize']['psi_m'] == b['ga/best_psi_m'][-1]");
+    EXPECT(out_as("c.json"), out, "--", "a['search']['psi_m'] < a['form']['psi_m']",
+           "a['search']['psi_m'] < 0.99 * b['search/population/psi_m'][0, 0]",
+           "(np.diff(b['search/population/best_psi_m'][:]) <= 0).all()", /* elitism */
+           "a['search']['psi_m'] == b['search/population/best_psi_m'][-1]");
 }
 END_TEST
 
@@ -63,7 +63,7 @@ START_TEST(straight_edges_are_ill_posed)
     ck_assert(!is_there(out));
     ck_assert_str_eq(said.out, "");
     HIFDM(4, "run", CHEN, "-o", out, "--set", "form.stop=residual", "--json");
-    EXPECT(out_as("c.json"), "--", "a['status'] == 'straight_chain'", "'optimize' not in a", "'file' not in a",
+    EXPECT(out_as("c.json"), "--", "a['status'] == 'straight_chain'", "'search' not in a", "'file' not in a",
            "a['form']['psi_m'] is None", "'n0_0-n0_1 + n0_1-n0_2' in a['errors'][0]");
     ck_assert(!is_there(out));
 }
@@ -73,9 +73,9 @@ END_TEST
 START_TEST(reflector_converges)
 {
     HIFDM(0, "run", REFLECTOR, "-o", temp("r.h5"), "--json");
-    EXPECT(out_as("r.json"), "--", "a['form']['stop_reason'] == 'residual'", "a['form']['residual_N'] <= 1e-6",
+    EXPECT(out_as("r.json"), "--", "a['form']['stop_reason'] == 'converged'", "a['form']['residual_N'] <= 1e-6",
            "a['form']['length_error'] <= 1e-7", "a['form']['tension_error'] <= 1e-6", "a['form']['slack_cables'] == 0",
-           "a['warnings'] == []", "'optimize' not in a", "near(a['form']['psi_m'], 13.67e-3, 0.01e-3)");
+           "a['warnings'] == []", "'search' not in a", "near(a['form']['psi_m'], 13.67e-3, 0.01e-3)");
     ck_assert_str_eq(said.err, "");
 }
 END_TEST
@@ -87,8 +87,8 @@ START_TEST(not_converged_is_stored_and_told)
     ERR("error: form-finding did not converge in 7 iterations");
     ERR("; furthest from its law is cable '");
     EXPECT(out_as("c.json"), out, "--", "a['status'] == 'not_converged'", "a['form']['status'] == 'not_converged'",
-           "a['form']['iterations'] == 7", "a['form']['stop_reason'] == 'max_iterations'", "'optimize' not in a",
-           "attribute(b, 'status') == 'not_converged'", "b['form/history/psi_m'].shape == (7,)", "'ga' not in b",
+           "a['form']['iterations'] == 7", "a['form']['stop_reason'] == 'max_iterations'", "'search' not in a",
+           "attribute(b, 'status') == 'not_converged'", "b['form/history/psi_m'].shape == (7,)", "'search' not in b",
            "b['form/history/psi_m'][-1] == a['form']['psi_m']");
     HIFDM(0, "show", out);
     OUT("stopped by max_iterations");
@@ -158,12 +158,12 @@ START_TEST(summary_begins_with_the_answer)
     ck_assert_int_le(count_of(said.out, "\n"), 12);
     ck_assert(!strchr(said.out, '\x1b')); /* colours are for terminals */
     const char *text = file_with("said.txt", said.out);
-    EXPECT(text, out, "--", "('psi %.4f mm, ' % (b['ga'].attrs['best_psi_m'] * 1e3)).encode() == a[:15]",
+    EXPECT(text, out, "--", "('psi %.4f mm, ' % (b['search'].attrs['psi_m'] * 1e3)).encode() == a[:15]",
            "('; good to %.3g GHz at 1 dB (its nodes, by psi)' % (np.sqrt(np.log(10) / 10) * 299792458 / (4 * np.pi * "
-           "b['ga'].attrs['best_psi_m']) / 1e9)).encode() in a.splitlines()[0]",
+           "b['search'].attrs['psi_m']) / 1e9)).encode() in a.splitlines()[0]",
            "[w.split()[:3] for w in a.decode().splitlines()[4:7]] == [[n, '%.4f' % (o.attrs[p + 'psi_m'] * 1e3), "
            "'%.4f' % o.attrs[p + 'boundary_tension_ratio']] for n, o, p in (('form-finding', b['form'], ''), "
-           "('GA', b['ga'], 'best_'), ('LM', b['polish'], ''))]");
+           "('GA', b['search'], 'best_'), ('LM', b['refine'], ''))]");
     HIFDM(0, "show", out);
     EXPECT(text, file_with("shown.txt", said.out), "--", "a == b");
 }

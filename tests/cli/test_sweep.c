@@ -184,7 +184,7 @@ START_TEST(a_failed_point_stops_no_other)
     HIFDM(3, "sweep", path, "--dir", folder);
     OUT("2 points run");
     OUT("1 of them failed");
-    ERR("error: 1 points failed; 'hifdm status' says why");
+    ERR("error: 1 points failed; 'hifdm status' lists the reasons");
     HIFDM(0, "status", path, "--dir", folder);
     OUT("failed    1");
     OUT("form.max_iterations=2, form.pretension_N=8: form-finding did not converge in 2 iterations");
@@ -276,7 +276,7 @@ START_TEST(a_case_with_a_sweep_of_its_own)
 {
     const char *path = file_with("one.yaml", SMALL_SCENE "sweep:\n  form.pretension_N: [8, 9, 10]\n  files: all\n");
     HIFDM(2, "run", path, NOWHERE);
-    ERR("has a sweep section; 'hifdm sweep");
+    ERR("has a section sweep; run it by 'hifdm sweep ");
     HIFDM(0, "check", path);
     HIFDM(0, "sweep", path, "--dir", temp("s.d"), "--quiet");
     HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", temp("s.h5"));
@@ -319,7 +319,7 @@ START_TEST(a_stopped_sweep_goes_on)
         code = end_by(&s, freeze_when(&s, is_in_the_middle, temp("s.d")) ? SIGTERM : SIGCONT);
     }
     ck_assert_int_eq(code, 75);
-    ck_assert(says(temp("err"), "points are left; the same command goes on"));
+    ck_assert(says(temp("err"), "are missing; run the same command again to resume"));
     HIFDM(0, "status", path, "--dir", temp("s.d"));
     OUT("running   0");
     HIFDM(0, "sweep", path, "--dir", temp("s.d"));

@@ -26,10 +26,9 @@ START_TEST(paraview_files_hold_the_stored_numbers)
     const char *out = run_chen(), *folder = temp("vtk");
     HIFDM(0, "export", out, "--vtk", folder);
     OUT("for ParaView, in ");
-    OUT(": theoretical.hdf theoretical_facets.hdf form.hdf form_facets.hdf optimize.hdf optimize_facets.hdf polish.hdf "
-        "polish_facets.hdf\n");
-    demand_vtk(out, folder,
-               "form form_facets optimize optimize_facets polish polish_facets theoretical theoretical_facets");
+    OUT(": target.hdf target_facets.hdf form.hdf form_facets.hdf search.hdf search_facets.hdf refine.hdf "
+        "refine_facets.hdf\n");
+    demand_vtk(out, folder, "form form_facets refine refine_facets search search_facets target target_facets");
 }
 END_TEST
 
@@ -39,8 +38,8 @@ START_TEST(paraview_file_of_the_truss)
     HIFDM(0, "run", keep(source_path("configs/straight-edges-truss.yaml")), "-o", out, "--quiet", "--set",
           "optimize.generations=1");
     HIFDM(0, "export", out, "--vtk", folder);
-    OUT(" polish.hdf truss.hdf\n");
-    demand_vtk(out, folder, "form optimize polish theoretical truss");
+    OUT(" refine.hdf truss.hdf\n");
+    demand_vtk(out, folder, "form refine search target truss");
 }
 END_TEST
 
@@ -145,7 +144,7 @@ END_TEST
  * 1e-11 m. */
 START_TEST(net_built_from_the_cut_list_has_the_found_shape)
 {
-    static const char *const stage[] = {"form", "ga/best", "polish"}, *const word[] = {"form", "optimize", "polish"};
+    static const char *const stage[] = {"form", "search", "refine"}, *const word[] = {"form", "optimize", "polish"};
     const char *out = run_chen(), *built = temp("built.h5"), *cut = temp("cut.csv");
     HIFDM(0, "export", out, "--cutlist", cut, "--csv", temp("net"), "--stage", word[_i], "--force");
     OUT("cut lengths of 220 cables of the ");
@@ -177,32 +176,36 @@ START_TEST(cut_list_holds_what_it_says)
     EXPECT(
         cut, temp("cut_mm.csv"), "--",
         "[r['id'] for r in a] == [r['id'] for r in b] and list(b[0])[:5] == ['id', 'i', "
-        "'j', 'group', 'l0_mm'] and [r['set'] for r in a] == [r['set'] for r in b]",
+        "'j', 'group', 'unstressed_length_mm'] and [r['set'] for r in a] == [r['set'] for r in b]",
         "all(abs(1e3 * float(r[k + '_m']) - float(s[k + '_mm'])) < 0.00050001 and len(s[k + '_mm'].split('.')[1]) == 3 "
         "for r, s in zip(a, b) for k in ('l0', 'length', 'elongation', 'l0_minus_theory'))",
         "all(abs(float(r['tension_N']) - float(s['tension_N'])) < 0.0050001 for r, s in zip(a, b))",
         "not any(v in ('-0.000', '-0.00') for s in b for v in s.values())");
-    EXPECT(cut, temp("cut_nodes.csv"), temp("cut_totals.csv"), out, "--", "len(a) == 220", "len(b) == 121",
-           "list(a[0]) == ['id', 'i', 'j', 'group', 'tension_N', 'length_m', 'l0_m', 'elongation_m', 'EA_N', "
-           "'l0_minus_theory_m', 'law', 'value', 'set']",
-           "[r['id'] for r in a] == texts(d['scene/cable/id'])",
-           "column(a, 'tension_N').tobytes() == d['form/tension_N'][:].tobytes()",
-           "column(a, 'length_m').tobytes() == d['form/length_m'][:].tobytes()",
-           "column(b, 'x_m', 'y_m', 'z_m').tobytes() == d['form/position_m'][:].tobytes()",
-           "(column(a, 'EA_N') == 47000).all()",
-           "np.allclose(column(a, 'l0_m') * (1 + column(a, 'tension_N') / 47000), column(a, 'length_m'), rtol=4e-16)",
-           "np.allclose(column(a, 'elongation_m'), column(a, 'length_m') - column(a, 'l0_m'), atol=1e-15)",
-           "np.allclose(column(a, 'l0_minus_theory_m'), (column(a, 'length_m') - d['scene/cable/length_m'][:]) / "
-           "(1 + column(a, 'tension_N') / 47000), atol=1e-15)",
-           "(column(a, 'l0_m') == column(a, 'value')).all()", "{r['law'] for r in a} == {'elastic'}",
-           "[r['group'] for r in c] == ['inner', 'boundary', 'all', 'directrix', 'edge', 'generatrix']",
-           "[r['cables'] for r in c] == ['100', '120', '220', '110', '40', '110']",
-           "near(sum(float(r['l0_m']) for r in a if r['group'] == 'inner'), float(c[0]['l0_m']), 1e-12)",
-           "near(sum(float(r['length_m']) for r in a), float(c[2]['length_m']), 1e-12)",
-           "min(float(r['l0_minus_theory_m']) for r in a) == float(c[2]['least_l0_minus_theory_m'])",
-           "max(float(r['l0_minus_theory_m']) for r in a) == float(c[2]['largest_l0_minus_theory_m'])",
-           "min(float(r['tension_N']) for r in a if r['group'] == 'inner') == float(c[0]['least_tension_N'])",
-           "max(float(r['tension_N']) for r in a if r['group'] == 'boundary') == float(c[1]['largest_tension_N'])");
+    EXPECT(
+        cut, temp("cut_nodes.csv"), temp("cut_totals.csv"), out, "--", "len(a) == 220", "len(b) == 121",
+        "list(a[0]) == ['id', 'i', 'j', 'group', 'tension_N', 'length_m', 'unstressed_length_m', 'elongation_m', "
+        "'EA_N', "
+        "'unstressed_minus_target_m', 'law', 'value', 'set']",
+        "[r['id'] for r in a] == texts(d['scene/cable/id'])",
+        "column(a, 'tension_N').tobytes() == d['form/tension_N'][:].tobytes()",
+        "column(a, 'length_m').tobytes() == d['form/length_m'][:].tobytes()",
+        "column(b, 'x_m', 'y_m', 'z_m').tobytes() == d['form/position_m'][:].tobytes()",
+        "(column(a, 'EA_N') == 47000).all()",
+        "np.allclose(column(a, 'unstressed_length_m') * (1 + column(a, 'tension_N') / 47000), column(a, 'length_m'), "
+        "rtol=4e-16)",
+        "np.allclose(column(a, 'elongation_m'), column(a, 'length_m') - column(a, 'unstressed_length_m'), atol=1e-15)",
+        "np.allclose(column(a, 'unstressed_minus_target_m'), (column(a, 'length_m') - d['scene/cable/length_m'][:]) / "
+        "(1 + column(a, 'tension_N') / 47000), atol=1e-15)",
+        "(column(a, 'unstressed_length_m') == column(a, 'value')).all()", "{r['law'] for r in a} == {'elastic'}",
+        "[r['group'] for r in c] == ['inner', 'boundary', 'all', 'directrix', 'edge', 'generatrix']",
+        "[r['cables'] for r in c] == ['100', '120', '220', '110', '40', '110']",
+        "near(sum(float(r['unstressed_length_m']) for r in a if r['group'] == 'inner'), "
+        "float(c[0]['unstressed_length_m']), 1e-12)",
+        "near(sum(float(r['length_m']) for r in a), float(c[2]['length_m']), 1e-12)",
+        "min(float(r['unstressed_minus_target_m']) for r in a) == float(c[2]['unstressed_minus_target_min_m'])",
+        "max(float(r['unstressed_minus_target_m']) for r in a) == float(c[2]['unstressed_minus_target_max_m'])",
+        "min(float(r['tension_N']) for r in a if r['group'] == 'inner') == float(c[0]['tension_min_N'])",
+        "max(float(r['tension_N']) for r in a if r['group'] == 'boundary') == float(c[1]['tension_max_N'])");
 }
 END_TEST
 
@@ -219,7 +222,8 @@ START_TEST(cut_list_keeps_the_families)
     EXPECT(cut, temp("cut_totals.csv"), out, "--",
            "[r['group'] for r in b] == ['inner', 'boundary', 'all', 'front', 'front_edge', 'rear', 'rear_edge', 'tie']",
            "all(int(r['cables']) == sum(c['set'] == r['group'] for c in a) > 0 for r in b[3:])",
-           "all(near(float(r['l0_m']), sum(float(c['l0_m']) for c in a if c['set'] == r['group']), 1e-12) for r in "
+           "all(near(float(r['unstressed_length_m']), sum(float(c['unstressed_length_m']) for c in a if c['set'] == "
+           "r['group']), 1e-12) for r in "
            "b[3:])");
     HIFDM(0, "run", file_with("again.yaml", "scene: {import: {nodes: cut_nodes.csv, cables: cut.csv}}\n"), "-o", again);
     ck_assert_str_eq(said.err, "");
@@ -237,8 +241,9 @@ START_TEST(slack_cables_are_cut_as_their_law_says)
                                 "be,b,e,boundary,length,2.5,4000\n");
     HIFDM(0, "run", path, "-o", temp("s.h5"), "--quiet");
     HIFDM(0, "export", temp("s.h5"), "--cutlist", temp("s.csv"));
-    EXPECT(temp("s.csv"), temp("s_nodes.csv"), "--", "[float(r['l0_m']) for r in a[2:]] == [1.5, 2.5]",
-           "near(float(a[0]['l0_m']), float(a[0]['length_m']) / 1.002, 1e-9)", "float(b[1]['Fz_N']) == -3");
+    EXPECT(temp("s.csv"), temp("s_nodes.csv"), "--", "[float(r['unstressed_length_m']) for r in a[2:]] == [1.5, 2.5]",
+           "near(float(a[0]['unstressed_length_m']), float(a[0]['length_m']) / 1.002, 1e-9)",
+           "float(b[1]['Fz_N']) == -3");
 }
 END_TEST
 
@@ -295,7 +300,7 @@ START_TEST(surface_is_measured_for_every_shape)
     const char *shown = out_as("show.json");
     for (int i = 0; i < 3; i++) {
         static const char *const stage[] = {"form", "optimize", "polish"};
-        static const char *const shape[] = {"form", "ga/best", "polish"};
+        static const char *const shape[] = {"form", "search", "refine"};
         EXPECT(out, json, shown, file_with("stage", stage[i]), file_with("shape", shape[i]), "--",
                "b[d.decode()]['surface'] == c[d.decode()]['surface']",
                "all((b[d.decode()]['surface'][k] is None if v != v else b[d.decode()]['surface'][k] == v) "
@@ -353,10 +358,10 @@ START_TEST(tension_ratio_of_each_set)
            "list(a['form']['sets']) == b['set_tension/form/name'].asstr()[:].tolist() == "
            "['directrix', 'edge', 'generatrix']",
            "[s['tension_ratio'] for s in a['form']['sets'].values()] == b['set_tension/form/ratio'][:].tolist()",
-           "[s['least_N'] for s in a['form']['sets'].values()] == b['set_tension/form/least_N'][:].tolist()",
+           "[s['min_N'] for s in a['form']['sets'].values()] == b['set_tension/form/min_N'][:].tolist()",
            "all(t.max() / t.min() == r and t.max() == m for t, r, m in zip([b['form/tension_N'][:]"
            "[b['scene/set/cable'][p:q]] for p, q in zip(b['scene/set/start'][:], b['scene/set/start'][1:])], "
-           "b['set_tension/form/ratio'][:], b['set_tension/form/largest_N'][:]))");
+           "b['set_tension/form/ratio'][:], b['set_tension/form/max_N'][:]))");
 }
 END_TEST
 

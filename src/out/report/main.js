@@ -102,13 +102,11 @@ function writeFigures() {
   list.push(figure(`surface error ψ (${resultShape.name})`, roundedMm(resultNumbers.psi_m), "mm"));
   if (resultStage !== "form") {
     list.push(figure("ψ after form-finding", roundedMm(summary.form.psi_m), "mm"));
-    // The initial design of the search can have another shape than that of the form-finding.
-    const isFormFinding = Math.abs(initial - summary.form.psi_m) < 1e-6 * initial;
     const below = 100 * (1 - resultNumbers.psi_m / initial),
       size = Math.abs(below).toFixed(2),
       side = Number(size) === 0 ? "against" : below > 0 ? "below" : "above";
     if (1e3 * initial >= RESOLVED_MM)
-      list.push(figure(`ψ ${side} that of the ${isFormFinding ? "form-finding" : "initial design"}`, size, "%"));
+      list.push(figure(`ψ ${side} that of the initial design`, size, "%"));
   }
   list.push(
     figure("tension ratio, inner cables", fmtRatio(resultNumbers.inner_tension_ratio)),

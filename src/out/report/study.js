@@ -199,7 +199,7 @@ function curveChart(study, figure, axis, others, groups, stage) {
     styleOf = (of) => STAGE_STYLE[of] || [SERIES[(loadCases.indexOf(of) + 3) % SERIES.length], "1 2"];
   const series = groups.flatMap((group, k) =>
     stages.map((of) => ({
-      name: group.name || (isStaged ? stageWords(of) : "as built"),
+      name: group.name || (isStaged ? stageWords(of) : "samples"),
       stored: figure.key,
       values: x.map((v) => (group.at.has(v) ? figure.of(group.at.get(v), of) : null)),
       colour: isOne && isStaged ? styleOf(of)[0] : SERIES[k],

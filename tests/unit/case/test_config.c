@@ -27,7 +27,7 @@ START_TEST(defaults_hold_where_nothing_is_said)
     hf_case c;
     ck_assert_int_eq(load(CYLINDER, NULL, 0, &c, said, sizeof said), HF_OK);
     ck_assert_str_eq(said, "");
-    ck_assert(c.has_parabolic_cylinder && !c.has_import && !c.stage[HF_STAGE_SEARCH].exists);
+    ck_assert(c.has_parabolic_cylinder && !c.has_import && !c.has_optimize);
     ck_assert_double_eq(c.parabolic_cylinder.aperture_m, 10);
     ck_assert_int_eq(c.parabolic_cylinder.modules[0], 2);
     ck_assert_int_eq(c.parabolic_cylinder.modules[1], 3);
@@ -71,7 +71,7 @@ START_TEST(every_value_reaches_its_place)
     ck_assert_double_eq(c.form.rms_tolerance_m, 4e-6);
     ck_assert_int_eq(c.form.max_iterations, 77);
     ck_assert_double_eq(c.form.collapse_ratio, 0.02);
-    ck_assert(c.stage[HF_STAGE_SEARCH].exists);
+    ck_assert(c.has_optimize);
     ck_assert_int_eq(c.optimize.rule, HF_RULE_SEEDED);
     ck_assert_int_eq(c.optimize.population, 12);
     ck_assert_int_eq(c.optimize.generations, 34);
@@ -99,8 +99,8 @@ START_TEST(overrides_win_and_change_the_digest)
     ck_assert_double_eq(c.form.pretension_N, 12);
     ck_assert_int_eq(c.parabolic_cylinder.modules[0], 5);
     ck_assert_int_eq(c.parabolic_cylinder.modules[1], 6);
-    ck_assert(!plain.stage[HF_STAGE_SEARCH].exists &&
-              c.stage[HF_STAGE_SEARCH].exists); /* a key brings its section along */
+    ck_assert(!plain.has_optimize &&
+              c.has_optimize); /* a key brings its section along */
     ck_assert(c.optimize.seed == 9);
     ck_assert_str_eq(c.overrides, "form.pretension_N=12\nscene.parabolic_cylinder.modules=[5, 6]\noptimize.seed=9\n");
     ck_assert_uint_eq(strlen(c.sha256), 64);

@@ -119,7 +119,7 @@ START_TEST(overrides_set_keys_of_rows_and_whole_lists)
     ck_assert_int_eq(c.optimize.n_limit, 0);
     hf_case_free(&c);
     accept_rows(CYLINDER, set + 2, 2, &c);
-    ck_assert(c.stage[HF_STAGE_SEARCH].exists && c.optimize.n_term == 1);
+    ck_assert(c.has_optimize && c.optimize.n_term == 1);
     hf_case_free(&c);
 }
 END_TEST

@@ -145,7 +145,7 @@ START_TEST(impossible_points_are_points)
     for (int k = 0; k < 2; k++) {
         open_study(k ? "  optimize.elites: [60, 1]\n" : "  optimize.elites: [1, 60]\n", &s);
         ck_assert_int_eq(s.n_point, 2);
-        ck_assert(s.stage[HF_STAGE_SEARCH].exists && s.derives_seed);
+        ck_assert(s.has_optimize && s.derives_seed);
         ck_assert_str_eq(s.title, "small");
         hf_study_free(&s);
     }

@@ -71,7 +71,7 @@ START_TEST(supports_open_on_one_side_keep_to_the_other)
     for (int k = 0; k < 2; k++) {
         char rows[128];
         snprintf(rows, sizeof rows, "[{set: front_edge, vary: support_z, bounds: %s}]", bounds[_i][k]);
-        merit[k] = run_bowl(rows, NULL)->polish.merit;
+        merit[k] = run_bowl(rows, NULL)->stage[HF_STAGE_REFINE].result.merit;
     }
     ck_assert_double_eq_tol(merit[0], merit[1], 1e-9 * merit[1]);
 }
@@ -84,8 +84,8 @@ END_TEST
 START_TEST(a_double_net_is_designed_onto_its_surface)
 {
     const hf_summary *s = run_bowl(ALL, NULL);
-    ck_assert_double_gt(s->form.psi_m, 4e-4);
-    ck_assert_double_lt(s->polish.psi_m, 1e-9);
+    ck_assert_double_gt(s->stage[HF_STAGE_FORM].result.psi_m, 4e-4);
+    ck_assert_double_lt(s->stage[HF_STAGE_REFINE].result.psi_m, 1e-9);
 }
 END_TEST
 
@@ -97,8 +97,8 @@ START_TEST(a_limit_on_displacements_is_met)
     char limits[96];
     snprintf(limits, sizeof limits, "optimize.limits=%s", limit[_i]);
     const hf_summary *s = run_bowl(ALL, limits);
-    ck_assert_double_gt(s->form.coupling.deflection_max_m, 1e-3);
-    ck_assert_double_le(s->polish.coupling.deflection_max_m, _i ? 1.03e-3 : 1.2e-3);
+    ck_assert_double_gt(s->stage[HF_STAGE_FORM].result.coupling.deflection_max_m, 1e-3);
+    ck_assert_double_le(s->stage[HF_STAGE_REFINE].result.coupling.deflection_max_m, _i ? 1.03e-3 : 1.2e-3);
 }
 END_TEST
 

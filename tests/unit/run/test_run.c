@@ -58,12 +58,12 @@ START_TEST(an_observer_is_told_each_phase)
     ck_assert(!t.is_wrong);
     ck_assert_int_gt(t.n[HF_RUN_FORM], 0);
     ck_assert(search->is_last && t.n_last[HF_RUN_SEARCH] == 1);
-    ck_assert_int_eq(search->generation, s.generations);
-    ck_assert_int_eq(search->evaluations, s.evaluations);
-    ck_assert_double_eq(search->best_psi_m, s.best.psi_m);
+    ck_assert_int_eq(search->generation, s.search.generations);
+    ck_assert_int_eq(search->evaluations, s.search.evaluations);
+    ck_assert_double_eq(search->best_psi_m, s.stage[HF_STAGE_SEARCH].result.psi_m);
     ck_assert(refine->is_last && t.n_last[HF_RUN_REFINE] == 1);
-    ck_assert_int_eq(refine->iteration, s.polish_iterations);
-    ck_assert_double_eq(refine->best_psi_m, s.polish.psi_m);
+    ck_assert_int_eq(refine->iteration, s.refine.steps);
+    ck_assert_double_eq(refine->best_psi_m, s.stage[HF_STAGE_REFINE].result.psi_m);
     ck_assert_int_eq(samples->samples, 1000);
     ck_assert_int_eq(samples->samples_all, 1000);
     ck_assert_int_eq(samples->evaluations, 1000);

@@ -5,7 +5,7 @@
 
 static void put(hf_front *f, int i, double a, double b, hf_status status)
 {
-    f->point[i] = (hf_front_point){.objective = {a, b}, .multiplier = {NAN, i}, .status = status, .iterations = i};
+    f->point[i] = (hf_front_point){.objective = {a, b}, .multiplier = {NAN, i}, .status = status, .steps = i};
     f->design[i] = i;
 }
 
@@ -28,7 +28,7 @@ START_TEST(points_are_sorted_and_marked)
     put(&f, 7, 0, 5, HF_OK);
     hf_front_settle(&f);
     for (int i = 0; i < 8; i++) {
-        ck_assert_int_eq(f.point[i].iterations, wanted[i].was);
+        ck_assert_int_eq(f.point[i].steps, wanted[i].was);
         ck_assert_double_eq(f.design[i], wanted[i].was);
         ck_assert_int_eq(f.point[i].mark, wanted[i].mark);
     }
@@ -62,7 +62,7 @@ START_TEST(a_table_of_many_points_has_the_ends_and_the_knee)
     hf_front f;
     ck_assert_int_eq(hf_front_create(2, 0, n, &f), HF_OK);
     for (int i = 0; i < n; i++) { /* as they are once settled */
-        f.point[i] = (hf_front_point){.objective = {i, i < n_on ? n_on - i : n}, .iterations = i};
+        f.point[i] = (hf_front_point){.objective = {i, i < n_on ? n_on - i : n}, .steps = i};
         f.point[i].mark = i < n_on ? HF_FRONT_ON : HF_FRONT_DOMINATED;
     }
     f.knee = n > 1 ? knee : -1;
@@ -71,16 +71,16 @@ START_TEST(a_table_of_many_points_has_the_ends_and_the_knee)
     ck_assert_int_eq(t.n_on, n_on);
     ck_assert_int_eq(t.n_row, n < HF_FRONT_POINTS_MAX ? n : HF_FRONT_POINTS_MAX);
     for (int i = 0; i < t.n_row; i++) {
-        ck_assert_int_eq(t.row[i].iterations, t.place[i]);
+        ck_assert_int_eq(t.row[i].steps, t.index[i]);
         if (i == 0) continue;
-        ck_assert_int_lt(t.place[i - 1], t.place[i]);
-        if (t.place[i] - t.place[i - 1] > widest) widest = t.place[i] - t.place[i - 1];
+        ck_assert_int_lt(t.index[i - 1], t.index[i]);
+        if (t.index[i] - t.index[i - 1] > widest) widest = t.index[i] - t.index[i - 1];
     }
     ck_assert_int_le(widest, n < HF_FRONT_POINTS_MAX ? 1 : n / (HF_FRONT_POINTS_MAX - 3) + 2);
-    ck_assert_int_eq(t.place[t.end[0]], 0);
-    ck_assert_int_eq(t.place[t.end[1]], n_on - 1);
+    ck_assert_int_eq(t.index[t.end[0]], 0);
+    ck_assert_int_eq(t.index[t.end[1]], n_on - 1);
     ck_assert_int_eq(t.end[2], -1);
-    ck_assert_int_eq(n > 1 ? t.place[t.knee] : t.knee, f.knee);
+    ck_assert_int_eq(n > 1 ? t.index[t.knee] : t.knee, f.knee);
     hf_front_free(&f);
 }
 END_TEST

@@ -550,7 +550,7 @@ START_TEST(threads_do_not_change_a_bit)
     for (int i = 0; i < one.n_point; i++) {
         ck_assert_mem_eq(one.point[i].objective, two.point[i].objective, sizeof one.point[i].objective);
         ck_assert_mem_eq(&one.point[i].multiplier[1], &two.point[i].multiplier[1], (size_t)(_i + 1) * sizeof(double));
-        ck_assert_int_eq(one.point[i].iterations, two.point[i].iterations);
+        ck_assert_int_eq(one.point[i].steps, two.point[i].steps);
     }
     hf_front_free(&one);
     hf_front_free(&two);

@@ -232,15 +232,15 @@ static const struct {
     {WANT(TENSION, "bounday", 4, 1), ".set: there is no set of cables 'bounday'; did you mean 'boundary'?"},
     {WANT_MASS("rear", 1), ".set: there is no set of cables 'rear'; this net has all, inner, boundary"},
     {WANT(TENSION, "inner", NAN, 1), ": tension: needs a target, in N"},
-    {WANT(EVENNESS, "inner", NAN, 1), ": evenness: one cable is always even; name a set of several"},
-    {WANT(RATIO, "inner", NAN, 1), ": ratio: the ratio of one cable is 1; name a set of several"},
-    {WANT(MASS, "", NAN, 1), ": mass: needs mass_kg_per_m, of the cables of its set"},
+    {WANT(EVENNESS, "inner", NAN, 1), ": evenness: the evenness of one cable is always 0; use a set of several cables"},
+    {WANT(RATIO, "inner", NAN, 1), ": ratio: the ratio of one cable is always 1; use a set of several cables"},
+    {WANT(MASS, "", NAN, 1), ": mass: needs mass_kg_per_m of the cables of its set"},
     {WANT(SURFACE, "", NAN, 1),
-     ": surface: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
+     ": surface: needs a target surface: add a section surface (with focal_length_m for an imported net)"},
     {WANT(FACETS, "", NAN, 1),
-     ": facets: needs the wanted surface: add a section surface (of an imported net with focal_length_m)"},
-    {WANT(GAIN, "", NAN, 1), ": gain: needs a section surface.pattern, which says what illuminates the reflector"},
-    {WANT(DEFLECTION, "", NAN, 1), ": displacement: needs a truss that gives way: this net has none"},
+     ": facets: needs a target surface: add a section surface (with focal_length_m for an imported net)"},
+    {WANT(GAIN, "", NAN, 1), ": gain: needs a section surface.pattern with the feed of the reflector"},
+    {WANT(DEFLECTION, "", NAN, 1), ": displacement: needs a truss that deflects, but this net has none"},
 };
 enum { N_FAULTY = sizeof faulty / sizeof *faulty };
 
@@ -333,17 +333,17 @@ START_TEST(names_tell_objectives_apart)
         hf_objective_settings wanted;
         const char *name;
     } row[] = {
-        {{.figure = HF_FIGURE_PSI}, "goal_%d_psi"},
-        {{.figure = HF_FIGURE_TENSION, .set = "edge"}, "goal_%d_tension_edge"},
-        {{.figure = HF_FIGURE_PSI, .load_case = "hot"}, "goal_%d_psi_hot"},
+        {{.figure = HF_FIGURE_PSI}, "objective_%d_psi"},
+        {{.figure = HF_FIGURE_TENSION, .set = "edge"}, "objective_%d_tension_edge"},
+        {{.figure = HF_FIGURE_PSI, .load_case = "hot"}, "objective_%d_psi_hot"},
         {{.figure = HF_FIGURE_RATIO, .set = "edge", .load_case = "hot", .over = HF_OVER_LOAD_CASES},
-         "goal_%d_ratio_edge_hot"},
+         "objective_%d_ratio_edge_hot"},
         {{.figure = HF_FIGURE_PSI, .load_case = "a_name_of_a_state_of_31_letters"},
-         "goal_%d_psi_a_name_of_a_state_of_31_"},
-        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_LOAD_CASES, .take = HF_TAKE_MEAN}, "goal_%d_psi_states_mean"},
-        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_LOAD_CASES, .take = HF_TAKE_WORST}, "goal_%d_psi_states_worst"},
-        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .take = HF_TAKE_MEAN}, "goal_%d_psi_samples_mean"},
-        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .quantile = 0.9}, "goal_%d_psi_samples_quantile"}};
+         "objective_%d_psi_a_name_of_a_state_of_31_"},
+        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_LOAD_CASES, .take = HF_TAKE_MEAN}, "objective_%d_psi_states_mean"},
+        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_LOAD_CASES, .take = HF_TAKE_WORST}, "objective_%d_psi_states_worst"},
+        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .take = HF_TAKE_MEAN}, "objective_%d_psi_samples_mean"},
+        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .quantile = 0.9}, "objective_%d_psi_samples_quantile"}};
     for (int k = 0; k < (int)(sizeof row / sizeof *row); k++) {
         hf_objectives objectives = {.n_objective = 1};
         char name[HF_OBJECTIVE_NAME_SIZE], expected[HF_OBJECTIVE_NAME_SIZE];

@@ -1,4 +1,4 @@
-/* Tensions that hold every node at its theoretical place. */
+/* Tensions that hold every node at its target position. */
 #include "nets.h"
 
 #include "solve/prestress.h"
@@ -133,7 +133,7 @@ START_TEST(node_without_a_tie_is_named)
     static const struct hand_cable cable[] = {LEG(0, HF_LAW_TENSION, 10), LEG(1, HF_LAW_TENSION, 10),
                                               LEG(2, HF_LAW_TENSION, 10)};
     struct net net;
-    ck_assert_int_eq(HOLD_HAND(&net, tripod, cable, "hold 1 of the 1 free nodes at their theoretical places: n4"),
+    ck_assert_int_eq(HOLD_HAND(&net, tripod, cable, "hold 1 of the 1 free nodes at their target positions: n4"),
                      HF_BAD_CASE);
     ck_assert_int_eq(net.scene.law[0], HF_LAW_TENSION);
     hf_scene_free(&net.scene);
@@ -164,7 +164,7 @@ START_TEST(it_is_told_to_stop)
     struct net net = {.form = tight_form(HF_METHOD_AUTO)};
     hand_scene(&net.scene, 3, node, 2, cable);
     ck_assert_int_eq(hf_prestress_hold(&net.scene, &net.form, &stop, &messages), HF_INTERRUPTED);
-    ck_assert_msg(strstr(messages.text, "told to stop before its tensions were found") != NULL, "%s", messages.text);
+    ck_assert_msg(strstr(messages.text, "interrupted before its tensions were found") != NULL, "%s", messages.text);
     ck_assert(net.scene.law[0] == HF_LAW_TENSION && net.scene.target[1] == 12);
     hf_messages_free(&messages);
     hf_scene_free(&net.scene);

@@ -156,11 +156,11 @@ END_TEST
 /* A group of tensions of two sets, of these names. */
 #define SET_TENSION(names)                                                                                             \
     "g = f.create_group('set_tension/form'); t = h5py.string_dtype('utf-8', 64); "                                     \
-    "g['name'] = np.array([" names "], t); g['least_N'] = g['largest_N'] = g['ratio'] = np.ones(2)"
+    "g['name'] = np.array([" names "], t); g['min_N'] = g['max_N'] = g['ratio'] = np.ones(2)"
 
 /* A group of one limit. */
 #define AT_LIMIT(row, name)                                                                                            \
-    "g = f.create_group('at_limit/polish'); g['name'] = np.array([" name "], h5py.string_dtype('utf-8', 160)); "       \
+    "g = f.create_group('at_limit/refine'); g['name'] = np.array([" name "], h5py.string_dtype('utf-8', 160)); "       \
     "g['row'] = np.array([" row "], 'i4'); g['count'] = np.array([1], 'i4'); g['value'] = g['bound'] = np.ones(1)"
 
 /* The file is one of another version. */
@@ -172,7 +172,7 @@ static const struct {
     int n_refused;
     const char *why;
 } damages[] = {
-    {"f.attrs.modify('format_version', 3)", 4, "format version 3"},
+    {"f.attrs.modify('format_version', 4)", 4, "format version 4"},
     {"del f.attrs['title']", 1, "attribute title of /"},
     {"del f.attrs['threads']; f.attrs['threads'] = 'many'", 1, "attribute threads of / is of another type"},
     {"del f.attrs['title']; f.attrs['title'] = np.bytes_(b'x' * 300)", 1, "too long"},
@@ -189,16 +189,17 @@ static const struct {
      "has larger dimensions than there are values"},
     {"d = f['form/tension_N'][:]; del f['form/tension_N']; f['form/tension_N'] = d[1:]", 1, "other dimensions"},
     {"d = f['form/tension_N'][:]; del f['form/tension_N']; f['form/tension_N'] = d.astype(int)", 1, "another type"},
-    {"del f['ga/best']", 1, "has no optimize shape"},
+    {"del f['search']", 2, "/search is not there"},
+    {"del f['search/position_m']", 1, "has no search shape"},
     {"del f['scene']", 3, "/scene"},
-    {"del f['form']; f['form'] = 1", 2, "/form is no group"},
+    {"del f['form']; f['form'] = 1", 2, "attribute version of /form is not there"},
     {"f.move('form', 'moved'); f['form'] = h5py.SoftLink('/moved')", 2, "/form is a link to another place"},
     {"del f['scene/node/id']; f['scene/node/id'] = h5py.ExternalLink('/etc/passwd', '/')", 1, "is a link to another"},
     {"d = f['form/q_N_per_m'].shape; del f['form/q_N_per_m']; f['form'].create_dataset('q_N_per_m', d, 'f8', "
      "external=[('/dev/zero', 0, h5py.h5f.UNLIMITED)])",
      1, "/form/q_N_per_m has its values in another file"},
-    {"f['ga'].attrs.modify('solver', 77)", 1, "/ga names a solver that there is not"},
-    {OLD "del f['form'].attrs['culprit'], f['ga'].attrs['optimize_stop'], f['form'].attrs['psi_m']", 0, ""},
+    {"f['search'].attrs.modify('solver', 77)", 1, "/search names a solver that there is not"},
+    {OLD "del f['form'].attrs['culprit'], f['search'].attrs['algorithm_stop'], f['form'].attrs['psi_m']", 0, ""},
     {OLD "del f['form/tension_N']", 1,
      "(old) and has no /form/tension_N, which this version needs: run its case again, or use that version for it"},
     {"del f['form'].attrs['culprit']", 1, "is damaged: attribute culprit of /form is not there"},
@@ -211,12 +212,12 @@ static const struct {
     {"del f['scene/set/name']; f['scene/set/name'] = np.array([b'x' * 64, b'y', b'z'])", 1, "a name that is too long"},
     {"del f['scene/set/start']", 1, "/scene/set/start is not there"},
     {SET_TENSION("b'edge', b'ends'"), 0, ""},
-    {SET_TENSION("b'edge', b'edge'"), 1, "/set_tension/form/name does not name sets of cables"},
-    {SET_TENSION("b'edge', b'\\x1b[1m'"), 1, "/set_tension/form/name does not name sets of cables"},
+    {SET_TENSION("b'edge', b'edge'"), 1, "/set_tension does not name sets of cables"},
+    {SET_TENSION("b'edge', b'\\x1b[1m'"), 1, "/set_tension does not name sets of cables"},
     {SET_TENSION("b'edge'"), 1, "other dimensions"},
     {AT_LIMIT("0", "b'tension of cable c'"), 0, ""},
-    {AT_LIMIT("16", "b'tension of cable c'"), 1, "/at_limit/polish/name does not name limits"},
-    {AT_LIMIT("0", "b''"), 1, "/at_limit/polish/name does not name limits"},
+    {AT_LIMIT("16", "b'tension of cable c'"), 1, "/at_limit does not name limits"},
+    {AT_LIMIT("0", "b''"), 1, "/at_limit does not name limits"},
     {AT_LIMIT("0", "b'x'") "; del g['bound']; g['bound'] = np.ones(34)", 1, "empty or too large"},
     {SET_TENSION("b'edge', b'ends'") "; del g['ratio']; g['ratio'] = np.ones(17)", 1, "empty or too large"},
 };

@@ -26,7 +26,7 @@ static void resume(const char *path, struct run *r, hf_store **s, hf_messages *m
     hf_optimiser_free(&r->ga);
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &r->model, r->initial, &r->ga), HF_OK);
     ck_assert_int_eq(hf_store_restore(*s, &r->ga, &summary, messages), HF_OK);
-    ck_assert_int_eq(summary.generations, hf_store_generations(*s));
+    ck_assert_int_eq(summary.search.generations, hf_store_generations(*s));
 }
 
 START_TEST(designs_are_bred_again)
@@ -147,31 +147,35 @@ END_TEST
 static const struct {
     const char *deed, *why;
 } spoilt[] = {
-    {"f['ga'].attrs.modify('n_individual', f['ga'].attrs['n_individual'] + 1); import os; os.remove(f.filename + "
+    {"f['search/population'].attrs.modify('n_individual', f['search/population'].attrs['n_individual'] + 1); import "
+     "os; os.remove(f.filename + "
      "'.journal')",
      "other sizes than the case"},
-    {"f['ga'].attrs.modify('n_individual', 2**30)", "impossible sizes"},
-    {"f['ga'].attrs.modify('n_individual', 100001)", "impossible sizes"},
-    {"f['ga'].attrs.modify('n_individual', 0)", "impossible sizes"},
-    {"f['ga'].attrs.modify('n_variable', 2**30)", "impossible sizes"},
-    {"f['ga'].attrs['n_objective'] = np.int32(-1)", "impossible sizes"},
-    {"f['ga'].attrs['n_objective'] = np.int32(4)", "impossible sizes"},
-    {"f['ga'].attrs['store_every'] = np.int32(-1)", "impossible sizes"},
-    {"f['ga'].attrs['store_every'] = np.int32(1000001)", "impossible sizes"},
-    {"f['ga'].attrs.modify('generations_limit', 0)", "impossible sizes"},
-    {"f['ga'].attrs.modify('generations_limit', 1000001)", "impossible sizes"},
-    {"f['ga'].attrs.modify('generations_limit', -1)", "impossible sizes"},
-    {"f['ga'].attrs.modify('generations_limit', f['ga'].attrs['generations_limit'] + 1)", "other sizes than the case"},
-    {"f['ga/design_N'][1, 0, 0] = np.nan", "a last generation that no run stores"},
-    {"f['ga/design_N'][1, 0, 0] = 1e9", "a last generation that no run stores"},
-    {"f['ga/psi_m'][1, 0] = np.inf", "a last generation that no run stores"},
-    {"f['ga/parent'][1, 0, 0] = 10**6", "a last generation that no run stores"},
-    {"f['ga/status'][1, 0] = 99", "/ga/status holds a value that has no word"},
-    {"f['ga/base_N'][0] = np.inf", "/ga has a base that is no design"},
-    {"f['ga/mutation_rate'].resize(1, 0)", "/ga/mutation_rate has other dimensions"},
-    {"del f['ga/psi_m']; f['ga/psi_m'] = np.zeros((2, 3), int)", "/ga/psi_m "},
-    {"f.move('ga/psi_m', 'x'); f['ga/psi_m'] = h5py.SoftLink('/x')", "/ga/psi_m is a link to another place"},
-    {"f['ga/more'] = h5py.ExternalLink('/etc/passwd', '/')", "/ga/more is a link to another place"},
+    {"f['search/population'].attrs.modify('n_individual', 2**30)", "impossible sizes"},
+    {"f['search/population'].attrs.modify('n_individual', 100001)", "impossible sizes"},
+    {"f['search/population'].attrs.modify('n_individual', 0)", "impossible sizes"},
+    {"f['search/population'].attrs.modify('n_variable', 2**30)", "impossible sizes"},
+    {"f['search/population'].attrs['n_objective'] = np.int32(-1)", "impossible sizes"},
+    {"f['search/population'].attrs['n_objective'] = np.int32(4)", "impossible sizes"},
+    {"f['search/population'].attrs['store_every'] = np.int32(-1)", "impossible sizes"},
+    {"f['search/population'].attrs['store_every'] = np.int32(1000001)", "impossible sizes"},
+    {"f['search/population'].attrs.modify('generations_limit', 0)", "impossible sizes"},
+    {"f['search/population'].attrs.modify('generations_limit', 1000001)", "impossible sizes"},
+    {"f['search/population'].attrs.modify('generations_limit', -1)", "impossible sizes"},
+    {"f['search/population'].attrs.modify('generations_limit', f['search/population'].attrs['generations_limit'] + 1)",
+     "other sizes than the case"},
+    {"f['search/population/design'][1, 0, 0] = np.nan", "a last generation that no run stores"},
+    {"f['search/population/design'][1, 0, 0] = 1e9", "a last generation that no run stores"},
+    {"f['search/population/psi_m'][1, 0] = np.inf", "a last generation that no run stores"},
+    {"f['search/population/parent'][1, 0, 0] = 10**6", "a last generation that no run stores"},
+    {"f['search/population/status'][1, 0] = 99", "/search/population/status holds a value that has no word"},
+    {"f['variable/initial'][0] = np.inf", "/variable has an initial design that is none"},
+    {"f['search/population/mutation_rate'].resize(1, 0)", "/search/population/mutation_rate has other dimensions"},
+    {"del f['search/population/psi_m']; f['search/population/psi_m'] = np.zeros((2, 3), int)",
+     "/search/population/psi_m "},
+    {"f.move('search/population/psi_m', 'x'); f['search/population/psi_m'] = h5py.SoftLink('/x')",
+     "/search/population/psi_m is a link to another place"},
+    {"f['search/more'] = h5py.ExternalLink('/etc/passwd', '/')", "/search/more is a link to another place"},
     {"f['all'] = f['/']", "one object too many, or too deep"},
     {RECORD("data[88 + 8] = 77"), "generation 2 is none that a run stores"}, /* `evaluated` of the first individual */
     {RECORD("data[84:84 + n] = struct.pack('<i', 2) + bytes(20); n = 24; struct.pack_into('<I', data, 76, n)"),
