@@ -223,7 +223,7 @@ hf_status hf_objectives_create(const hf_scene *scene, const hf_model *m, const h
 const char *hf_objectives_name(const hf_objectives *objectives, int i_objective, char text[HF_OBJECTIVE_NAME_SIZE])
 {
     const hf_objective_settings *s = &objectives->objective[i_objective].settings;
-    int n = snprintf(text, HF_OBJECTIVE_NAME_SIZE, "goal_%d_%s%s%s", i_objective, hf_figure_kind_word[s->figure],
+    int n = snprintf(text, HF_OBJECTIVE_NAME_SIZE, "objective_%d_%s%s%s", i_objective, hf_figure_kind_word[s->figure],
                      *s->set ? "_" : "", s->set);
     const char *of_many = s->quantile > 0 ? "quantile" : hf_take_word[s->take];
     if (*s->load_case) /* as much of the name as fits */

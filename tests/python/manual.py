@@ -36,9 +36,9 @@ class Documents(unittest.TestCase):
         case, out = names["case"], names["out"]
         self.assertEqual(out.psi_m.shape, (1000,))
         self.assertGreater(out.feasible.sum(), 900)
-        self.assertEqual(names["slopes"].shape, (1, 1, case.n_gene))
+        self.assertEqual(names["slopes"].shape, (1, 1, case.n_variable))
         self.assertIsInstance(names["run"], hifdm.Run)
-        self.assertLess(names["run"]["optimize"]["psi_m"], case.form().psi_m)
+        self.assertLess(names["run"]["search"]["psi_m"], case.form().psi_m)
 
     def test_readme(self):
         for piece in pieces("README.md"):
