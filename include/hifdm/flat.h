@@ -14,7 +14,7 @@
  * hf_flat_reals.
  *
  * Status: calls return hf_status as a number. 0 is ok; hf_status_word and hf_status_text (status.h) convert it to
- * words. hf_flat_said has the errors and warnings of the last call.
+ * words. hf_flat_messages has the errors and warnings of the last call.
  *
  * Memory: arguments of hf_flat_open, hf_flat_open_net, hf_flat_nodes, hf_flat_cables and hf_flat_sets are borrowed
  * until hf_flat_free; all others are copied. A text that is returned is valid until the next call with its handle.
@@ -33,7 +33,7 @@
 
 HF_API_BEGIN
 
-#define HF_FLAT_INTERFACE 1 /* raised when a function below changes what it takes, returns or means */
+#define HF_FLAT_INTERFACE 2 /* raised when a function below changes what it takes, returns or means */
 
 /* A handle with one case. */
 typedef struct hf_flat hf_flat;
@@ -54,7 +54,7 @@ hf_flat *hf_flat_create(void);
 /* Frees a handle, which may be NULL. */
 void hf_flat_free(hf_flat *flat);
 /* Returns the lines "error: ..." and "warning: ..." of the last call; "" if there are none. */
-const char *hf_flat_said(const hf_flat *flat);
+const char *hf_flat_messages(const hf_flat *flat);
 
 /* ---- A case ---- */
 
@@ -84,7 +84,8 @@ int hf_flat_open_net(hf_flat *flat, const char *name, const char *text, int n_se
  *
  *   title, solver (after hf_flat_form)      i = 0
  *   node_id, cable_id, set_name             of the net
- *   gene, gene_unit                         names and units of the design variables
+ *   variable, variable_unit                 names and units of the design variables
+ *   objective                               names of the objectives
  *   figure, figure_unit, figure_help        figures of a design: rows of hf_flat_evaluate
  *   result, result_unit, result_help        figures of a shape: the reals "result"
  *   result_kind                             "real", "int", or the list of its words ("status", "stop_reason", ...)
@@ -96,16 +97,16 @@ const char *hf_flat_text(hf_flat *flat, const char *list, int i);
  * open:
  *
  *   end [n_cable][2], role [n_node], group, law [n_cable]
- *   gene_cable [n_variable]     cable of each design variable; -1: it displaces a support
- *   gene_leader [n_variable]    design variable with which it is linked
+ *   variable_cable [n_variable]     cable of each design variable; -1: it displaces a support
+ *   variable_leader [n_variable]    design variable whose change it takes by symmetry, or itself
  *   set_start [n_set + 1], set_cable */
 int hf_flat_ints(const hf_flat *flat, const char *name, int *to);
 
 /* Copies real numbers in SI units as hf_flat_ints copies integers; returns 0 if they do not exist yet:
  *
- *   theoretical_m [n_node][3]               target positions
+ *   target_position_m [n_node][3]           target positions
  *   load_N [n_node][3] or none, target [n_cable], EA_N [n_cable] or none
- *   base, lower, upper [n_variable]         after hf_flat_form: initial design, and the bounds of optimize around it,
+ *   initial, lower, upper [n_variable]      after hf_flat_form: initial design, and the bounds of optimize around it,
  *                                           infinite where a side is open
  *   position_m [n_node][3]; length_m, tension_N, q_N_per_m [n_cable]; result [n_result]
  *                                           of the last hf_flat_form or hf_flat_shape */

@@ -25,7 +25,7 @@
     } while (0)
 
 struct hf_flat {
-    hf_messages said;
+    hf_messages messages;
     const char *path;
     const char *const *set;
     int n_set, n_thread;
@@ -102,23 +102,23 @@ void hf_flat_free(hf_flat *f)
     if (!f) return;
     hf_problem_free(&f->problem);
     hf_summary_free(&f->summary);
-    hf_messages_free(&f->said);
+    hf_messages_free(&f->messages);
     free(f->shape);
     free(f->room);
     free(f->summary_text);
     free(f);
 }
 
-const char *hf_flat_said(const hf_flat *f)
+const char *hf_flat_messages(const hf_flat *f)
 {
-    return f->said.text ? f->said.text : "";
+    return f->messages.text ? f->messages.text : "";
 }
 
 /* Clears the messages. Returns `has`; if that is false, adds the message `what`. */
 static bool begins(hf_flat *f, bool has, const char *what)
 {
-    hf_messages_free(&f->said);
-    if (!has) hf_error(&f->said, HF_BAD_USAGE, "%s", what);
+    hf_messages_free(&f->messages);
+    if (!has) hf_error(&f->messages, HF_BAD_USAGE, "%s", what);
     return has;
 }
 
@@ -130,7 +130,7 @@ int hf_flat_open(hf_flat *f, const char *path, int n_set, const char *const *set
     f->set = set;
     f->n_thread = n_thread;
     const hf_problem_source *source = f->source.text ? &f->source : NULL;
-    hf_status status = hf_problem_load(path, source, set, n_set, NULL, &f->problem, &f->said);
+    hf_status status = hf_problem_load(path, source, set, n_set, NULL, &f->problem, &f->messages);
     f->is_open = status == HF_OK;
     return (int)status;
 }
@@ -205,7 +205,7 @@ static const char *of_objective(hf_flat *f, int i, int column)
     if (i >= f->problem.objectives.n_objective) return NULL;
     if (column == COLUMN_NAME) return hf_objectives_name(&f->problem.objectives, i, f->text);
     if (column == COLUMN_UNIT) return hf_figure_kind_unit[f->problem.objectives.objective[i].settings.figure];
-    return column == COLUMN_KIND ? "real" : "value of the goal, without its weight";
+    return column == COLUMN_KIND ? "real" : "value of the objective, without its weight";
 }
 
 /* Returns a text about figure i of a design: figures of an individual first, then objectives. NULL beyond the last. */
@@ -248,11 +248,11 @@ const char *hf_flat_text(hf_flat *f, const char *list, int i)
         const char *list;
         const char *(*text)(hf_flat *, int i, int column);
         int column;
-    } made[] = {{"gene", variable_text, COLUMN_NAME},      {"gene_unit", variable_text, COLUMN_UNIT},
-                {"figure", figure_text, COLUMN_NAME},      {"figure_unit", figure_text, COLUMN_UNIT},
-                {"figure_help", figure_text, COLUMN_HELP}, {"result", result_text, COLUMN_NAME},
-                {"result_unit", result_text, COLUMN_UNIT}, {"result_help", result_text, COLUMN_HELP},
-                {"result_kind", result_text, COLUMN_KIND}};
+    } made[] = {{"variable", variable_text, COLUMN_NAME},  {"variable_unit", variable_text, COLUMN_UNIT},
+                {"objective", of_objective, COLUMN_NAME},  {"figure", figure_text, COLUMN_NAME},
+                {"figure_unit", figure_text, COLUMN_UNIT}, {"figure_help", figure_text, COLUMN_HELP},
+                {"result", result_text, COLUMN_NAME},      {"result_unit", result_text, COLUMN_UNIT},
+                {"result_help", result_text, COLUMN_HELP}, {"result_kind", result_text, COLUMN_KIND}};
     const hf_problem *p = &f->problem;
     if (!strcmp(list, "summary")) return i ? NULL : f->summary_text;
     if (!f->is_open || i < 0) return NULL;
@@ -292,8 +292,8 @@ int hf_flat_ints(const hf_flat *f, const char *name, int *to)
     if (!strcmp(name, "role")) return copy_bytes(s->role, s->n_node, to);
     if (!strcmp(name, "group")) return copy_bytes(s->group, s->n_cable, to);
     if (!strcmp(name, "law")) return copy_bytes(s->law, s->n_cable, to);
-    if (!strcmp(name, "gene_cable")) return copy_ints(m->variable_cable, m->n_variable, to);
-    if (!strcmp(name, "gene_leader")) return copy_ints(m->variable_leader, m->n_variable, to);
+    if (!strcmp(name, "variable_cable")) return copy_ints(m->variable_cable, m->n_variable, to);
+    if (!strcmp(name, "variable_leader")) return copy_ints(m->variable_leader, m->n_variable, to);
     if (!strcmp(name, "set_start")) return copy_ints(s->set_start, s->n_set + 1, to);
     if (!strcmp(name, "set_cable")) return copy_ints(s->set_cable, s->n_set ? s->set_start[s->n_set] : 0, to);
     return -1;
@@ -321,7 +321,7 @@ static hf_status keep_shape(hf_flat *f, const hf_workspace *w)
     const hf_scene *s = &f->problem.scene;
     const hf_model *m = &f->problem.model;
     if (!f->shape) f->shape = malloc(3 * ((size_t)s->n_node + (size_t)s->n_cable) * sizeof *f->shape);
-    if (!f->shape) return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the shape of %d nodes", s->n_node);
+    if (!f->shape) return hf_error(&f->messages, HF_NO_MEMORY, "out of memory for the shape of %d nodes", s->n_node);
     hf_model_positions(m, w->position_m, f->shape);
     copy_reals(w->length_m, s->n_cable, shape_part(f, SHAPE_LENGTH));
     copy_reals(w->tension_N, s->n_cable, shape_part(f, SHAPE_TENSION));
@@ -368,11 +368,12 @@ int hf_flat_reals(const hf_flat *f, const char *name, double *to)
     const hf_scene *s = &f->problem.scene;
     bool has_shape = f->shape != NULL;
     if (!f->is_open) return 0;
-    if (!strcmp(name, "theoretical_m")) return copy_reals(s->position_m, 3 * s->n_node, to);
+    if (!strcmp(name, "target_position_m")) return copy_reals(s->position_m, 3 * s->n_node, to);
     if (!strcmp(name, "load_N")) return copy_reals(s->load_N, 3 * s->n_node, to);
     if (!strcmp(name, "target")) return copy_reals(s->target, s->n_cable, to);
     if (!strcmp(name, "EA_N")) return copy_reals(s->EA_N, s->n_cable, to);
-    if (!strcmp(name, "base")) return f->is_ready ? copy_reals(f->problem.initial, f->problem.model.n_variable, to) : 0;
+    if (!strcmp(name, "initial"))
+        return f->is_ready ? copy_reals(f->problem.initial, f->problem.model.n_variable, to) : 0;
     if (!strcmp(name, "lower")) return f->is_ready ? copy_bounds(f, false, to) : 0;
     if (!strcmp(name, "upper")) return f->is_ready ? copy_bounds(f, true, to) : 0;
     if (!strcmp(name, "position_m")) return copy_reals(f->shape, 3 * s->n_node, to);
@@ -392,10 +393,11 @@ int hf_flat_reals(const hf_flat *f, const char *name, double *to)
 static hf_status make_batch(hf_flat *f)
 {
     hf_problem *p = &f->problem;
-    HF_TRY(hf_problem_base(p, &f->said));
+    HF_TRY(hf_problem_base(p, &f->messages));
     if (hf_problem_batch(p, f->n_thread) != HF_OK)
-        return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the batch of a net of %d nodes", p->model.n_node);
-    HF_TRY(hf_problem_share(p, &f->said));
+        return hf_error(&f->messages, HF_NO_MEMORY, "out of memory for the batch of a net of %d nodes",
+                        p->model.n_node);
+    HF_TRY(hf_problem_share(p, &f->messages));
     f->is_ready = true;
     return HF_OK;
 }
@@ -405,15 +407,15 @@ static hf_status find_form(hf_flat *f)
     hf_problem *p = &f->problem;
     hf_form_result *r = &f->result;
     if (!begins(f, f->is_open, NEEDS_CASE)) return HF_BAD_USAGE;
-    if (!p->workspace.block) HF_TRY(hf_problem_allocate(p, &f->said));
+    if (!p->workspace.block) HF_TRY(hf_problem_allocate(p, &f->messages));
     hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
     HF_TRY(keep_shape(f, &p->workspace));
     *r = p->form;
-    HF_TRY(hf_problem_explain(p, &f->said));
+    HF_TRY(hf_problem_explain(p, &f->messages));
     if (!f->is_ready) HF_TRY(make_batch(f));
     if (p->objectives.n_objective &&
         hf_objectives_measure(&p->objectives, &p->workspace, p->workspace.objectives, r->objective, &r->merit) != HF_OK)
-        return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the goals");
+        return hf_error(&f->messages, HF_NO_MEMORY, "out of memory for the objectives");
     return HF_OK;
 }
 
@@ -431,7 +433,7 @@ static hf_status check_designs(hf_flat *f, int n, const double *design)
             double value = design[(size_t)i * (size_t)m->n_variable + (size_t)k];
             bool is_cable = m->variable_cable[k] >= 0;
             if (isfinite(value) && (value > 0 || !is_cable)) continue;
-            return hf_error(&f->said, HF_BAD_CASE, "design %d: %s must be %s, not %g", i,
+            return hf_error(&f->messages, HF_BAD_CASE, "design %d: %s must be %s, not %g", i,
                             variable_text(f, k, COLUMN_NAME),
                             is_cable ? "a finite number above zero" : "a finite number", value);
         }
@@ -447,7 +449,7 @@ static hf_status evaluate(hf_flat *f, int n, const double *design)
         free(f->room);
         f->room = malloc((size_t)n * sizeof *f->room);
         f->n_room = f->room ? n : 0;
-        if (!f->room) return hf_error(&f->said, HF_NO_MEMORY, "out of memory for %d designs", n);
+        if (!f->room) return hf_error(&f->messages, HF_NO_MEMORY, "out of memory for %d designs", n);
     }
     hf_batch_run(&f->problem.batch, n, design, NULL, f->room);
     return HF_OK;
@@ -478,7 +480,7 @@ int hf_flat_slopes(hf_flat *f, int n, const double *design, double *slope)
 {
     hf_problem *p = &f->problem;
     TRY(evaluate(f, n, design));
-    TRY(hf_problem_slopes(p, n, design, f->room, slope, &f->said));
+    TRY(hf_problem_slopes(p, n, design, f->room, slope, &f->messages));
     size_t size = (size_t)hf_problem_n_slope(p) * (size_t)p->model.n_variable, n_feasible = 0;
     for (int i = 0; i < n; i++)
         n_feasible += f->room[i].status == HF_OK;
@@ -517,15 +519,15 @@ static void pass_on(void *context, const hf_run_progress *now)
 }
 
 /* Writes the summary as the JSON of the program into f->summary_text. Returns `status`, or HF_NO_MEMORY. */
-static hf_status tell_summary(hf_flat *f, hf_status status, const char *output)
+static hf_status write_summary(hf_flat *f, hf_status status, const char *output)
 {
     size_t size = 0;
     free(f->summary_text);
     f->summary_text = NULL;
     FILE *file = open_memstream(&f->summary_text, &size);
-    if (!file) return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the summary");
-    hf_summary_write_json(&f->summary, status, f->said.text, *output ? output : NULL, file);
-    if (fclose(file)) return hf_error(&f->said, HF_NO_MEMORY, "out of memory for the summary");
+    if (!file) return hf_error(&f->messages, HF_NO_MEMORY, "out of memory for the summary");
+    hf_summary_write_json(&f->summary, status, f->messages.text, *output ? output : NULL, file);
+    if (fclose(file)) return hf_error(&f->messages, HF_NO_MEMORY, "out of memory for the summary");
     return status;
 }
 
@@ -547,8 +549,8 @@ int hf_flat_run(hf_flat *f, const char *output, int restart, hf_flat_observer *o
                               .observer = pass_on,
                               .observer_context = &beside};
     hf_summary_free(&f->summary);
-    hf_status status = hf_run_case(&request, &f->summary, written, &f->said);
-    return (int)tell_summary(f, status, written);
+    hf_status status = hf_run_case(&request, &f->summary, written, &f->messages);
+    return (int)write_summary(f, status, written);
 }
 
 void hf_flat_stop(hf_flat *f)

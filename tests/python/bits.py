@@ -43,7 +43,7 @@ class Bits(unittest.TestCase):
     def check_designs(self, path, n, has_slopes=True):
         case = hifdm.open(path)
         designs = near(case, n)
-        designs[n // 2] *= np.where(np.arange(case.n_gene) % 2, 3, 0.3)  # mostly infeasible
+        designs[n // 2] *= np.where(np.arange(case.n_variable) % 2, 3, 0.3)  # mostly infeasible
         slopes = temp("slopes.csv")
         rows = evaluate_by_program(path, case, designs, *(["--jacobian", slopes] if has_slopes else []))
         out = case.evaluate(designs)
@@ -55,29 +55,31 @@ class Bits(unittest.TestCase):
             self.check_slopes(case, designs, slopes, out)
         shape = case.shape(designs[0])
         self.assertEqual((shape.psi_m, shape.status), (out.psi_m[0], out.status[0]))
-        self.assertEqual(list(shape.goals.values()), [out[name][0] for name in out.goal_names])
+        self.assertEqual(list(shape.objectives.values()), [out[name][0] for name in out.objective_names])
         return out
 
     def check_slopes(self, case, designs, path, out):
         with open(path, encoding="utf-8", newline="") as file:
             lines = list(csv.DictReader(file))
         jacobian = case.jacobian(designs)
-        self.assertEqual(jacobian.shape, (len(designs), len(case.slope_names), case.n_gene))
-        feasible = jacobian[out.feasible].reshape(-1, case.n_gene)
+        self.assertEqual(jacobian.shape, (len(designs), len(case.slope_names), case.n_variable))
+        feasible = jacobian[out.feasible].reshape(-1, case.n_variable)
         self.assertTrue(np.isnan(jacobian[~out.feasible]).all())
         self.assertEqual(len(lines), len(feasible))
         for k, line in enumerate(lines):
             self.assertEqual(line["figure"], case.slope_names[k % len(case.slope_names)])
-            self.assertTrue(same_bits([float(line[gene]) for gene in case.genes], feasible[k]))
+            self.assertTrue(same_bits([float(line[name]) for name in case.variables], feasible[k]))
 
     def test_designs(self):
         for path, _, has_slopes in CASES:
             self.check_designs(source(path), 20, has_slopes)
 
-    def test_designs_with_goals(self):
+    def test_designs_with_weights(self):
         out = self.check_designs(temp("goals.yaml", SMALL + GOALS), 20)
-        self.assertEqual(out.goal_names, ["goal_0_psi", "goal_1_ratio_all", "goal_2_tension_boundary"])
-        merit = np.sqrt(out.goal_0_psi**2 + (1e-3 * out.goal_1_ratio_all)**2 + out["goal_2_tension_boundary"]**2)
+        self.assertEqual(out.objective_names, ["objective_0_psi", "objective_1_ratio_all",
+                                               "objective_2_tension_boundary"])
+        merit = np.sqrt(out.objective_0_psi**2 + (1e-3 * out.objective_1_ratio_all)**2 +
+                        out["objective_2_tension_boundary"]**2)
         self.assertGreater(out.feasible.sum(), 10)
         # of ratio the merit has the smooth value, which is at most n_cable^(1/8) times this one
         self.assertTrue((np.abs(merit / out.merit - 1)[out.feasible] < 0.01).all())
@@ -86,7 +88,7 @@ class Bits(unittest.TestCase):
         objectives = GOALS.replace("goals:", "objectives:").replace(", weight: 1e-3", "")
         out = self.check_designs(temp("objectives.yaml", SMALL + objectives), 20)
         self.assertNotIn("merit", out.names)
-        self.assertEqual(len(out.goal_names), 3)
+        self.assertEqual(len(out.objective_names), 3)
 
     def test_run(self):
         text = SMALL + "optimize: {population: 6, generations: 3, seed: 7}\ncables: [{expansion_per_K: -1e-6}]\n" \
@@ -100,17 +102,17 @@ class Bits(unittest.TestCase):
         self.assertEqual(ours.file, temp("ours.h5"))
         self.assertIsNone(alone.file)
         for run in (ours, alone):
-            for stage in ("form", "optimize", "tolerance", "cases"):
+            for stage in ("form", "search", "tolerance", "load_cases"):
                 self.assertEqual(*(json.dumps(strip(figures[stage])) for figures in (run, theirs)))
         self.assertEqual([now.phase for now in seen][0], "form")
-        self.assertEqual([now.done for now in seen if now.phase == "optimize"], [1, 2, 3])
+        self.assertEqual([now.done for now in seen if now.phase == "search"], [1, 2, 3])
         self.assertEqual(seen[-1].phase, "tolerance")
         self.assertEqual((seen[-1].done, seen[-1].all), (200, 200))
         with ours.read() as result:
-            self.assertIn("cases/cold", result.stages)
+            self.assertIn("load_cases/cold", result.stages)
             self.assertEqual(result.psi_m.shape, (3, 6))
-            self.assertEqual(result.best_psi_m[-1], ours["optimize"]["psi_m"])
-            self.assertEqual(result.shape("optimize").position_m.shape, (len(result.h5["scene/node/id"]), 3))
+            self.assertEqual(result.best_psi_m[-1], ours["search"]["psi_m"])
+            self.assertEqual(result.shape("search").position_m.shape, (len(result.h5["scene/node/id"]), 3))
 
 
 def strip(item):
@@ -132,7 +134,7 @@ class Arrays(unittest.TestCase):
                                                  **sections}))
         case = hifdm.open(first)
         nodes = [dict(id=name, x_m=repr(x), y_m=repr(y), z_m=repr(z), role=role)
-                 for name, (x, y, z), role in zip(case.node_ids, case.theoretical_m.tolist(), case.role)]
+                 for name, (x, y, z), role in zip(case.node_ids, case.target_position_m.tolist(), case.role)]
         cables = [dict(id=name, i=case.node_ids[i], j=case.node_ids[j], group=group, law=law,
                        value="" if np.isnan(value) else repr(value))
                   for name, (i, j), group, law, value in
@@ -166,11 +168,11 @@ class Arrays(unittest.TestCase):
                          law=[c["law"] for c in cables], value=value, node_ids=[*number],
                          cable_ids=[c["id"] for c in cables], **more, **sections)
         theirs = hifdm.open(path)
-        for name in ("node_ids", "cable_ids", "genes"):
+        for name in ("node_ids", "cable_ids", "variables"):
             self.assertEqual(getattr(ours, name), getattr(theirs, name))
         for name in ("role", "group", "law", "end"):
             self.assertTrue(np.array_equal(getattr(ours, name), getattr(theirs, name)), name)
-        for name in ("theoretical_m", "target", "base", "lower", "upper"):
+        for name in ("target_position_m", "target", "initial", "lower", "upper"):
             self.assertTrue(same_bits(getattr(ours, name), getattr(theirs, name)), name)
         self.assertEqual([*ours.sets], [*theirs.sets])
         self.assertTrue(all(np.array_equal(ours.sets[name], theirs.sets[name]) for name in ours.sets))
@@ -183,7 +185,7 @@ class Arrays(unittest.TestCase):
         ours.run(temp("arrays.h5"), restart=True)
         theirs.run(temp("imported.h5"), restart=True)
         with hifdm.read(temp("arrays.h5")) as a, hifdm.read(temp("imported.h5")) as b:
-            for name in ("form/position_m", "ga/psi_m", "ga/best/tension_N", "scene/cable/target"):
+            for name in ("form/position_m", "search/population/psi_m", "search/tension_N", "scene/cable/target"):
                 self.assertTrue(same_bits(a.h5[name][:], b.h5[name][:]), name)
 
     def test_ids_and_words_have_defaults(self):
@@ -191,7 +193,7 @@ class Arrays(unittest.TestCase):
         end = np.array([[0, 1], [1, 2], [1, 3], [4, 1]], np.int32)
         role = np.array([0, 1, 0, 0, 0], np.uint8)
         case = hifdm.net(position, end, role=role, form={"pretension_N": 10})
-        self.assertEqual((case.node_ids[4], case.cable_ids[3], case.n_gene), ("4", "3", 0))
+        self.assertEqual((case.node_ids[4], case.cable_ids[3], case.n_variable), ("4", "3", 0))
         self.assertTrue(np.allclose(case.form().position_m[1], [1, 0, 0], atol=1e-9))  # by symmetry
         self.assertTrue(np.allclose(case.form().tension_N, 10))
 

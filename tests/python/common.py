@@ -39,16 +39,16 @@ def program(*arguments, status=0):
 
 
 def near(case, n, seed=1, part=0.02):
-    """Returns designs [n, n_gene] around the initial design."""
-    random = np.random.default_rng(seed).uniform(-1, 1, (n, case.n_gene))
-    return case.base * (1 + part * random) + np.where(case.base == 0, 1e-3 * random, 0)
+    """Returns designs [n, n_variable] around the initial design."""
+    random = np.random.default_rng(seed).uniform(-1, 1, (n, case.n_variable))
+    return case.initial * (1 + part * random) + np.where(case.initial == 0, 1e-3 * random, 0)
 
 
 def evaluate_by_program(path, case, designs, *more):
     """Returns the rows of `hifdm evaluate` as dictionaries; with `more` also its derivatives."""
     table, results = temp("designs.csv"), temp("results.csv")
     with open(table, "w", encoding="utf-8", newline="") as file:
-        csv.writer(file).writerows([case.genes, *[[repr(float(x)) for x in row] for row in designs]])
+        csv.writer(file).writerows([case.variables, *[[repr(float(x)) for x in row] for row in designs]])
     program("evaluate", path, "--designs", table, "-o", results, "--force", "--quiet", *more)
     with open(results, encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))

@@ -31,22 +31,22 @@ class Errors(unittest.TestCase):
 
     def test_arrays_of_designs(self):
         case = hifdm.open(temp("small.yaml", SMALL))
-        designs, want = near(case, 4), f"dtype float64 and shape (n, {case.n_gene}) in C order"
+        designs, want = near(case, 4), f"dtype float64 and shape (n, {case.n_variable}) in C order"
         for function, name in ((case.evaluate, "designs"), (case.jacobian, "designs")):
             self.refused(TypeError, [f"{name} has dtype float32;", want], function, designs.astype(np.float32))
             self.refused(TypeError, [f"{name} is of type list;", want], function, designs.tolist())
             self.refused(ValueError, [f"{name} has shape (4, 3);", want], function, designs[:, :3].copy())
-            self.refused(ValueError, [f"{name} has shape ({case.n_gene},);", want], function, designs[0])
+            self.refused(ValueError, [f"{name} has shape ({case.n_variable},);", want], function, designs[0])
             self.refused(ValueError, [f"{name} is not contiguous in C order", want], function,
                          np.asfortranarray(designs))
             self.refused(ValueError, f"{name} is not contiguous in C order", function, designs[::2])
-        self.refused(ValueError, f"design has shape (4, {case.n_gene});", case.shape, designs)
+        self.refused(ValueError, f"design has shape (4, {case.n_variable});", case.shape, designs)
         for bad in (0, -1, np.nan, np.inf):
             designs[2, 1] = bad
-            error = self.refused(hifdm.HifdmError, f"design 2: {case.genes[1]} must be a finite number above zero, "
+            error = self.refused(hifdm.HifdmError, f"design 2: {case.variables[1]} must be a finite number above zero, "
                                  "not ", case.evaluate, designs)
             self.assertEqual(error.status, "bad_case")
-        self.assertEqual(len(case.evaluate(np.empty((0, case.n_gene)))), 0)
+        self.assertEqual(len(case.evaluate(np.empty((0, case.n_variable)))), 0)
         self.assertEqual(case.evaluate(near(case, 2)).psi_m.shape, (2,))  # the case still works
         out = case.evaluate(near(case, 1))
         self.refused(AttributeError, "there is no psi; there are status, psi_m", lambda: out.psi)
@@ -146,7 +146,7 @@ class Errors(unittest.TestCase):
         few = hifdm.open(source("configs/chen2022.yaml"), {"form.max_iterations": 1, "form.method": "hifdm"})
         error = self.refused(hifdm.HifdmError, "did not converge in 1 iteration", few.form)
         self.assertEqual(error.status, "not_converged")
-        self.refused(hifdm.HifdmError, "did not converge", lambda: few.base)
+        self.refused(hifdm.HifdmError, "did not converge", lambda: few.initial)
         seeded = hifdm.open(source("configs/chen2022.yaml"), ["optimize.rule=seeded"])
         self.refused(hifdm.HifdmError, "no derivatives under optimize.rule seeded", seeded.jacobian, near(seeded, 1))
 
@@ -159,7 +159,7 @@ class Errors(unittest.TestCase):
             raise ValueError(f"in {now.phase}")
 
         self.refused(ValueError, "in form", case.run, progress=fail)
-        for use in (lambda now: case.base, lambda now: case.run()):  # would wait for itself
+        for use in (lambda now: case.initial, lambda now: case.run()):  # would wait for itself
             error = self.refused(hifdm.HifdmError, "progress uses the case whose run calls it", case.run, progress=use)
             self.assertEqual(error.status, "bad_usage")
         stopped = case.run(temp("stopped.h5"), progress=lambda now: now.done < 3)
@@ -168,16 +168,17 @@ class Errors(unittest.TestCase):
         whole = case.run(temp("stopped.h5"), progress=rest.append)
         self.assertEqual(whole.status, "ok")
         self.assertGreater(rest[1].done, 3)
-        self.assertEqual(whole["optimize"]["psi_m"], case.run()["optimize"]["psi_m"])
+        self.assertEqual(whole["search"]["psi_m"], case.run()["search"]["psi_m"])
         alone = case.run()
         self.refused(hifdm.HifdmError, "this run wrote no file", alone.read)
-        self.assertIn("optimize", alone.keys())
+        self.assertIn("search", alone.keys())
         self.assertEqual(dict(alone), alone.figures)
-        psi_mm = [alone[stage]["psi_m"] * 1e3 for stage in ("form", "optimize")]
-        self.assertTrue(repr(alone).startswith("<hifdm.Run ok: form psi %.4g mm, optimize psi %.4g mm" % (*psi_mm,)))
+        psi_mm = [alone[stage]["psi_m"] * 1e3 for stage in ("form", "search")]
+        self.assertTrue(repr(alone).startswith("<hifdm.Run ok: form psi %.4g mm, search psi %.4g mm" % (*psi_mm,)))
         formed = hifdm.open(temp("form.yaml", SMALL)).run()
-        self.refused(KeyError, "this run has no 'optimize'; it has form", lambda: formed["optimize"])
-        self.assertIsNone(formed.get("optimize"))
+        self.refused(KeyError, "this run has no 'search'; it has form", lambda: formed["search"])
+        self.refused(KeyError, "this run has no 'search'; it has form", lambda: formed["optimize"])
+        self.assertIsNone(formed.get("search"))
 
     def test_interrupt(self):
         """Checks that Ctrl-C ends a run that would take hours."""

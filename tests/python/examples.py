@@ -43,7 +43,7 @@ class Examples(unittest.TestCase):
         """Checks that a search gets most of the way to the optimum of Levenberg-Marquardt, which has the same bounds.
         Examples print four decimals."""
         before, after = numbers(example(name, CASE))[:2]
-        optimum = hifdm.open(CASE, {"optimize.method": "lm"}).run()["polish"]["psi_m"] * 1e3
+        optimum = hifdm.open(CASE, {"optimize.method": "lm"}).run()["refine"]["psi_m"] * 1e3
         self.assertGreaterEqual(after, optimum - 6e-5)
         self.assertLess(after - optimum, 0.1 * (before - optimum))
 
@@ -57,7 +57,7 @@ class Examples(unittest.TestCase):
         said = example("table", CASE)
         if said is not None:
             self.assertRegex(said, r"ok +1000\.0")
-            self.assertEqual(len(said.split("surest:\n")[1].splitlines()), 5)
+            self.assertEqual(len(said.split("differ most:\n")[1].splitlines()), 5)
 
     def draws(self, path):
         """Checks that a file is a whole PNG with content."""
@@ -77,7 +77,7 @@ class Examples(unittest.TestCase):
         said = numbers(example("net_of_arrays", *picture))
         self.assertEqual(said[:2], [81, 112])
         self.assertLess(said[2], 1e-9)
-        # its z balances 5 N: 4 chains of 20 N would give 5 N with slopes of 1/16, the nodes around give way as well
+        # its z balances 5 N: 4 chains of 20 N would give 5 N with slopes of 1/16, the nodes around it move as well
         self.assertLess(said[3], -30)
         for path in picture:
             self.draws(path)
@@ -88,7 +88,7 @@ class Examples(unittest.TestCase):
         program("run", CASE, "-o", temp("program.h5"), "--quiet", "--restart", "--set", "optimize.generations=40")
         program("diff", temp("read.h5"), temp("program.h5"))
         self.assertIn("generation 40 of 40", said)
-        self.assertIn("form, optimize, polish", said)
+        self.assertIn("form, search, refine", said)
         for path in picture:
             self.draws(path)
 

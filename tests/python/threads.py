@@ -14,7 +14,7 @@ import hifdm
 def work(path, overrides, n_round):
     """Returns all results of a case as one list of arrays."""
     case = hifdm.open(path, overrides)
-    found = [case.form().position_m, case.base]
+    found = [case.form().position_m, case.initial]
     for seed in range(n_round):
         designs = near(case, 40, seed)
         found += [case.evaluate(designs).table, case.jacobian(designs[:2]), case.shape(designs[3]).tension_N]

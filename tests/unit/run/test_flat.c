@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A square on four supports, its rim a boundary: one gene for each of the eight outer cables. */
+/* A square on four supports, its rim a boundary: one design variable for each of the four outer cables. */
 static const double position_m[][3] = {{-2, 0, 0.5}, {2, 0, 0.5},   {0, -2, -0.5}, {0, 2, -0.5}, {-1, 0, 0.2},
                                        {1, 0, 0.2},  {0, -1, -0.2}, {0, 1, -0.2},  {0, 0, 0}};
 static const unsigned char role[] = {0, 0, 0, 0, 1, 1, 1, 1, 1};
@@ -33,7 +33,7 @@ static int work(hf_flat *flat, double *psi_m)
     int status = hf_flat_open_net(flat, "arrays", text, 0, NULL, 1);
     if (status == HF_OK) status = hf_flat_form(flat);
     if (status != HF_OK) return status;
-    hf_flat_reals(flat, "base", design);
+    hf_flat_reals(flat, "initial", design);
     for (int i = N_VARIABLE; i < N_DESIGN * N_VARIABLE; i++)
         design[i] = design[i - N_VARIABLE] * 1.01;
     status = hf_flat_evaluate(flat, N_DESIGN, design, figure);
@@ -55,7 +55,7 @@ START_TEST(every_allocation_may_fail)
         if (flat) status = work(flat, &psi_m);
         bool failed = end_allocation_failure();
         char said[256] = "out of memory";
-        if (flat) snprintf(said, sizeof said, "%s", hf_flat_said(flat));
+        if (flat) snprintf(said, sizeof said, "%s", hf_flat_messages(flat));
         if (status == HF_OK) ck_assert_ptr_nonnull(hf_flat_text(flat, "summary", 0));
         hf_flat_free(flat);
         if (n == 0) first_m = psi_m;
@@ -77,20 +77,20 @@ START_TEST(what_is_read_has_its_size)
     hf_flat *flat = hf_flat_create();
     double psi_m;
     ck_assert_int_eq(hf_flat_form(flat), HF_BAD_USAGE);
-    ck_assert_str_eq(hf_flat_said(flat), "error: open a case first\n");
+    ck_assert_str_eq(hf_flat_messages(flat), "error: open a case first\n");
     ck_assert_ptr_null(hf_flat_text(flat, "node_id", 0));
-    ck_assert_int_eq(hf_flat_reals(flat, "base", NULL), 0);
-    ck_assert_msg(work(flat, &psi_m) == HF_OK, "%s", hf_flat_said(flat));
+    ck_assert_int_eq(hf_flat_reals(flat, "initial", NULL), 0);
+    ck_assert_msg(work(flat, &psi_m) == HF_OK, "%s", hf_flat_messages(flat));
     ck_assert_int_eq(hf_flat_reals(flat, "position_m", NULL), 27);
-    ck_assert_int_eq(hf_flat_reals(flat, "base", NULL), N_VARIABLE);
+    ck_assert_int_eq(hf_flat_reals(flat, "initial", NULL), N_VARIABLE);
     ck_assert_int_eq(hf_flat_reals(flat, "EA_N", NULL), 0);
     ck_assert_int_eq(hf_flat_reals(flat, "nothing", NULL), -1);
     ck_assert_int_eq(hf_flat_ints(flat, "set_start", NULL), 3);
     ck_assert_int_eq(hf_flat_ints(flat, "nothing", NULL), -1);
-    ck_assert_str_eq(hf_flat_text(flat, "gene", 3), "3");
+    ck_assert_str_eq(hf_flat_text(flat, "variable", 3), "3");
     ck_assert_str_eq(hf_flat_text(flat, "node_id", 8), "i");
     ck_assert_ptr_null(hf_flat_text(flat, "node_id", 9));
-    ck_assert_ptr_null(hf_flat_text(flat, "gene", N_VARIABLE));
+    ck_assert_ptr_null(hf_flat_text(flat, "variable", N_VARIABLE));
     ck_assert_str_eq(hf_flat_text(flat, "slope", 0), "psi_m");
     ck_assert_int_eq(hf_flat_open(flat, "again.yaml", 0, NULL, 1), HF_BAD_USAGE);
     hf_flat_free(flat);
@@ -104,16 +104,49 @@ START_TEST(what_is_read_has_its_size)
 }
 END_TEST
 
+/* Names of version 0.2 are unknown. A program that uses them stops at hf_flat_interface. */
+START_TEST(old_names_are_unknown)
+{
+    static const struct {
+        const char *list, *then, *now;
+    } word[] = {{"phase", "optimize", "search"},
+                {"phase", "polish", "refine"},
+                {"stop_reason", "residual", "converged"},
+                {"coupling_stop", "tof", "converged"},
+                {"bound_reason", "proven", "certified"}};
+    double psi_m;
+    hf_flat *flat = hf_flat_create();
+    ck_assert_int_eq(hf_flat_interface(), 2);
+    for (size_t i = 0; i < sizeof word / sizeof *word; i++) {
+        ck_assert_int_eq(hf_flat_code(word[i].list, word[i].then), -1);
+        ck_assert_int_ge(hf_flat_code(word[i].list, word[i].now), 0);
+    }
+    ck_assert_msg(work(flat, &psi_m) == HF_OK, "%s", hf_flat_messages(flat));
+    ck_assert_ptr_null(hf_flat_text(flat, "gene", 0));
+    ck_assert_ptr_null(hf_flat_text(flat, "gene_unit", 0));
+    ck_assert_str_eq(hf_flat_text(flat, "variable_unit", 0), "N");
+    ck_assert_ptr_null(hf_flat_text(flat, "objective", 0)); /* this case has none */
+    ck_assert_int_eq(hf_flat_ints(flat, "gene_cable", NULL), -1);
+    ck_assert_int_eq(hf_flat_ints(flat, "gene_leader", NULL), -1);
+    ck_assert_int_eq(hf_flat_ints(flat, "variable_cable", NULL), N_VARIABLE);
+    ck_assert_int_ge(hf_flat_ints(flat, "variable_leader", NULL), 0);
+    ck_assert_int_eq(hf_flat_reals(flat, "theoretical_m", NULL), -1);
+    ck_assert_int_eq(hf_flat_reals(flat, "base", NULL), -1);
+    ck_assert_int_eq(hf_flat_reals(flat, "target_position_m", NULL), 27);
+    hf_flat_free(flat);
+}
+END_TEST
+
 /* Other designs between a shape and its reading; a stop that comes when no run goes on. */
 START_TEST(calls_leave_no_trace)
 {
-    double psi_m, base[N_VARIABLE], other[2 * N_VARIABLE], before[2][27], result[128], figure[16 * 2],
+    double psi_m, initial[N_VARIABLE], other[2 * N_VARIABLE], before[2][27], result[128], figure[16 * 2],
         slope[2 * N_VARIABLE];
     hf_flat *flat = hf_flat_create();
-    ck_assert_msg(work(flat, &psi_m) == HF_OK, "%s", hf_flat_said(flat));
-    hf_flat_reals(flat, "base", base);
+    ck_assert_msg(work(flat, &psi_m) == HF_OK, "%s", hf_flat_messages(flat));
+    hf_flat_reals(flat, "initial", initial);
     for (int i = 0; i < 2 * N_VARIABLE; i++)
-        other[i] = base[i % N_VARIABLE] * (i % 2 ? 1.2 : 0.7);
+        other[i] = initial[i % N_VARIABLE] * (i % 2 ? 1.2 : 0.7);
     ck_assert_int_eq(hf_flat_form(flat), HF_OK);
     hf_flat_reals(flat, "position_m", before[0]);
     hf_flat_reals(flat, "tension_N", before[1]);
@@ -136,6 +169,7 @@ Suite *suite_unit_flat(void)
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, every_allocation_may_fail);
     tcase_add_test(tests, what_is_read_has_its_size);
+    tcase_add_test(tests, old_names_are_unknown);
     tcase_add_test(tests, calls_leave_no_trace);
     return suite;
 }

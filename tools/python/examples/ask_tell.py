@@ -12,11 +12,11 @@ import hifdm
 class Evolution:
     """The best quarter of a generation are the parents of the next one. Its spread follows theirs."""
 
-    def __init__(self, base, lower, upper, n=64, seed=1):
+    def __init__(self, initial, lower, upper, n=64, seed=1):
         self.random = np.random.default_rng(seed)
-        self.mean, self.lower, self.upper, self.n = base, lower, upper, n
-        self.spread = 0.02 * np.abs(base)
-        self.best_x, self.best_y = base, np.inf
+        self.mean, self.lower, self.upper, self.n = initial, lower, upper, n
+        self.spread = 0.02 * np.abs(initial)
+        self.best_x, self.best_y = initial, np.inf
 
     def ask(self):
         steps = self.random.standard_normal((self.n, len(self.mean)))
@@ -33,7 +33,7 @@ class Evolution:
 if len(sys.argv) < 2:
     sys.exit("usage:" + __doc__.split("\n\n")[1].rstrip())
 case = hifdm.open(sys.argv[1])
-optimiser = Evolution(case.base, case.lower, case.upper)
+optimiser = Evolution(case.initial, case.lower, case.upper)
 for generation in range(30):
     designs = optimiser.ask()
     out = case.evaluate(designs)  # uses all cores

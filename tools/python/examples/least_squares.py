@@ -23,5 +23,5 @@ def slopes(design):
     return case.jacobian(design[np.newaxis])[0] * 1e3
 
 
-found = least_squares(psi_mm, case.base, slopes, bounds=(case.lower, case.upper), max_nfev=30)
-print(f"psi {psi_mm(case.base)[0]:.4f} -> {found.fun[0]:.4f} mm in {found.nfev} evaluations")
+found = least_squares(psi_mm, case.initial, slopes, bounds=(case.lower, case.upper), max_nfev=30)
+print(f"psi {psi_mm(case.initial)[0]:.4f} -> {found.fun[0]:.4f} mm in {found.nfev} evaluations")

@@ -3,7 +3,7 @@
     import hifdm, numpy as np
     case = hifdm.open("configs/chen2022.yaml")
     shape = case.form()  # shape.psi_m, shape.position_m, shape.tension_N
-    designs = case.base + np.random.default_rng(1).uniform(-1, 1, (1000, case.n_gene))
+    designs = case.initial + np.random.default_rng(1).uniform(-1, 1, (1000, case.n_variable))
     out = case.evaluate(designs)  # out.psi_m, on all cores
 
 All units are SI, and the unit is the last part of a name. Errors are HifdmError with the message of the program and

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int, c_long, c_ubyte, c_void_p
 from pathlib import Path
 
-INTERFACE = 1  # HF_FLAT_INTERFACE that this package is written for
+INTERFACE = 2  # HF_FLAT_INTERFACE that this package is written for
 _WAITING = {"OMP_WAIT_POLICY": "passive", "GOMP_SPINCOUNT": "2000"}  # as in hf_batch_wait_quietly
 Observer = CFUNCTYPE(c_int, c_void_p, c_int, c_long, c_long, c_long, c_double, c_double)
 
@@ -23,7 +23,7 @@ PROTOTYPES = {
     "code": (c_int, [c_char_p, c_char_p]),
     "create": (c_void_p, []),
     "free": (None, [c_void_p]),
-    "said": (c_char_p, [c_void_p]),
+    "messages": (c_char_p, [c_void_p]),
     "open": (c_int, [c_void_p, c_char_p, c_int, _texts, c_int]),
     "nodes": (None, [c_void_p, c_int, _reals, _codes, _reals, _texts]),
     "cables": (None, [c_void_p, c_int, _ints, _codes, _codes, _reals, _reals, _texts]),
@@ -58,15 +58,15 @@ class HifdmError(Exception):
 def _candidates() -> list[str]:
     """Returns where the library may be: the given path, beside an installed package, in the built sources, or where the
     loader looks."""
-    told = os.environ.get("HIFDM_LIBRARY")
-    if told:
-        return [told]
+    given = os.environ.get("HIFDM_LIBRARY")
+    if given:
+        return [given]
     here = Path(__file__).resolve()
     lib = here.parents[3]  # of PREFIX/lib/pythonX/dist-packages/hifdm
-    places = [lib / "libhifdm.so.1", *lib.glob("*-linux-*/libhifdm.so.1")]
+    paths = [lib / "libhifdm.so.1", *lib.glob("*-linux-*/libhifdm.so.1")]
     if (lib / "Makefile").exists():  # tools/python/hifdm in the sources
-        places.append(lib / "build" / "libhifdm.so")
-    return [str(place) for place in places if place.exists()] + ["libhifdm.so.1"]
+        paths.append(lib / "build" / "libhifdm.so")
+    return [str(path) for path in paths if path.exists()] + ["libhifdm.so.1"]
 
 
 @contextlib.contextmanager
@@ -97,7 +97,7 @@ def _load() -> ctypes.CDLL:
         except (OSError, AttributeError) as fault:
             faults.append(str(fault))
     else:
-        raise ImportError(f"libhifdm cannot be used: {'; '.join(faults)}; install it, or name it by HIFDM_LIBRARY")
+        raise ImportError(f"libhifdm cannot be used: {'; '.join(faults)}; install it, or set HIFDM_LIBRARY to its path")
     if interface != INTERFACE:
         raise ImportError(f"{path} has the interface {interface}, this package is for {INTERFACE}: "
                           "install library and package of the same version")

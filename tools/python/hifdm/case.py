@@ -5,67 +5,75 @@ from __future__ import annotations
 import ctypes
 import json
 import os
-import sys
 import threading
 import warnings
 import weakref
-from typing import Any, Callable, Iterator, Mapping, NamedTuple, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, NamedTuple, Sequence
 
 import numpy as np
 
 from ._library import HifdmError, Observer, c_text, lib, pointer, status_word, text_list, wanted, word
+from ._renamed import ATTRIBUTES, Figures, Stage, new_key, old_attribute, user_level, warn
 
 Overrides = Mapping[str, Any] | Sequence[str]
 _process = {"pid": os.getpid(), "is_used": False}
 
 
 class HifdmWarning(UserWarning):
-    """A warning of the program, in its words."""
+    """A warning of the program, with its text."""
 
 
 class Progress(NamedTuple):
     """The progress of a run."""
 
-    phase: str  # "form", "optimize", "polish", "tolerance"
-    done: int  # number of generations, steps of "polish", or samples of "tolerance"
+    phase: str  # "form", "search", "refine" or "tolerance"
+    done: int  # generations of "search", steps of "refine", points of a front, or samples of "tolerance"
     all: int  # maximum of `done`
     evaluations: int  # in this run
     best_psi_m: float  # NaN while no design is feasible
-    elapsed_s: float  # time in this phase
+    elapsed_s: float  # time since the phase began
 
 
 class Shape:
-    """A shape: arrays, and each figure as an attribute: psi_m, residual_N, status, ... (all in `figures`)."""
+    """A shape: arrays, and each figure as an attribute: psi_m, residual_N, status, ... (all are in `figures`)."""
 
     position_m: np.ndarray  # [n_node, 3] m, supports included
     length_m: np.ndarray  # [n_cable] m
     tension_N: np.ndarray  # [n_cable] N
     q_N_per_m: np.ndarray  # [n_cable] N/m, force densities
 
-    def __init__(self, figures: dict[str, Any], goals: dict[str, float], arrays: dict[str, np.ndarray]):
-        self.figures = figures  # {name: figure}
-        self.goals = goals  # {name: value}, each in its unit
+    def __init__(self, figures: dict[str, Any], objectives: dict[str, float], arrays: dict[str, np.ndarray]):
+        self.figures = Figures(figures)  # {name: figure}
+        self.objectives = Figures(objectives)  # {name: value}, each in its own unit, without its weight
         self.__dict__.update(arrays)
 
     def __getattr__(self, name: str) -> Any:
-        if name != "figures" and name in self.figures:
-            return self.figures[name]
-        raise AttributeError(f"there is no {name}; there are {', '.join(self.__dict__.get('figures', ()))}")
+        figures = self.__dict__.get("figures", {})
+        if name in ATTRIBUTES["Shape"]:
+            return old_attribute(self, name)
+        try:
+            return figures[name]
+        except KeyError:
+            raise AttributeError(f"there is no {name}; there are {', '.join(figures)}") from None
 
     def __repr__(self) -> str:
         return f"<hifdm.Shape: {self.status}, psi {self.psi_m * 1e3:.4f} mm>"
 
 
 class Designs:
-    """Results of n designs. Each column is an attribute and an item: psi_m, merit, iterations, goal_0_psi, ..."""
+    """Results of n designs. Each column is an attribute and an item: psi_m, merit, iterations, objective_0_psi, ..."""
 
-    def __init__(self, names: list[str], n_goal: int, table: np.ndarray):
+    def __init__(self, names: list[str], n_objective: int, table: np.ndarray):
         self.names = names
-        self.goal_names = names[len(names) - n_goal:]
+        self.objective_names = names[len(names) - n_objective:]
         self.table = table  # [n_figure, n]; the status is a code
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Returns a column [n]; NaN if a design has no such figure."""
+        new = new_key(name)
+        if name not in self.names and new in self.names:
+            warn(repr(name), repr(new))
+            name = new
         if name not in self.names:
             raise KeyError(f"there is no {name}; there are {', '.join(self.names)}")
         column = self.table[self.names.index(name)]
@@ -74,9 +82,12 @@ class Designs:
         return column.astype(int) if name == "iterations" else column
 
     def __getattr__(self, name: str) -> np.ndarray:
-        if "names" in self.__dict__ and name in self.names:
+        names = self.__dict__.get("names", ())
+        if name in ATTRIBUTES["Designs"]:
+            return old_attribute(self, name)
+        if name in names or new_key(name) in names:
             return self[name]
-        raise AttributeError(f"there is no {name}; there are {', '.join(self.__dict__.get('names', ()))}")
+        raise AttributeError(f"there is no {name}; there are {', '.join(names)}")
 
     def __len__(self) -> int:
         return self.table.shape[1]
@@ -102,16 +113,17 @@ class Run(Mapping[str, Any]):
     """A finished run: its figures, as `hifdm run --json` prints them, by key as in a dict."""
 
     def __init__(self, figures: dict[str, Any]):
-        self.figures = figures
+        self.figures = Figures(figures)
         self.status: str = figures["status"]
         self.file: str | None = figures.get("file")  # the result file, if the run has written one
 
     def __getitem__(self, stage: str) -> Any:
-        """Returns the figures of a stage: "form", "optimize", "polish", "tolerance", ..."""
-        if stage not in self.figures:
-            stages = [key for key, value in self.figures.items() if isinstance(value, (dict, list))]
-            raise KeyError(f"this run has no '{stage}'; it has {', '.join(stages)}")
-        return self.figures[stage]
+        """Returns the figures of a stage ("form", "search", "refine"), "load_cases", "tolerance", "front", ..."""
+        try:
+            return self.figures[stage]
+        except KeyError:
+            parts = [key for key, value in self.figures.items() if isinstance(value, (dict, list))]
+            raise KeyError(f"this run has no '{new_key(stage) or stage}'; it has {', '.join(parts)}") from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.figures)
@@ -120,10 +132,10 @@ class Run(Mapping[str, Any]):
         return len(self.figures)
 
     def __repr__(self) -> str:
-        shapes = [(stage, self.figures[stage]["psi_m"]) for stage in ("form", "optimize", "polish")
+        shapes = [(stage, self.figures[stage]["psi_m"]) for stage in ("form", "search", "refine")
                   if (self.figures.get(stage) or {}).get("psi_m") is not None]
-        said = [f"{stage} psi {psi_m * 1e3:.4g} mm" for stage, psi_m in shapes]
-        return f"<hifdm.Run {self.status}: {', '.join(said + [self.file] if self.file else said)}>"
+        parts = [f"{stage} psi {psi_m * 1e3:.4g} mm" for stage, psi_m in shapes]
+        return f"<hifdm.Run {self.status}: {', '.join(parts + [self.file] if self.file else parts)}>"
 
     def read(self):
         """Opens the result file (hifdm.read)."""
@@ -132,14 +144,6 @@ class Run(Mapping[str, Any]):
         if self.file is None:
             raise HifdmError("io", "this run wrote no file")
         return read(self.file)
-
-
-def _user_level() -> int:
-    """Returns how many calls above its caller the first call is that is not of this package."""
-    level = 2
-    while sys._getframe(level).f_globals.get("__name__", "").startswith("hifdm.") and level < 9:
-        level += 1
-    return level
 
 
 def _lines(set: Overrides) -> list[str]:
@@ -191,13 +195,14 @@ class Case:
         self._call(open_handle, self._handle)
         self.title = self._texts("title")[0]
         self.node_ids, self.cable_ids = self._texts("node_id"), self._texts("cable_id")
-        self.genes = self._texts("gene")  # design variables: ids of cables, or of supports with .x, .y, .z
-        self.gene_units = self._texts("gene_unit")  # "N", "N/m" or "m"
-        self.gene_leader = self._numbers("gene_leader", dtype=np.int32)  # [n_gene] gene that it follows, or itself
+        self.variables = self._texts("variable")  # names: ids of cables, or of supports with .x, .y, .z
+        self.variable_units = self._texts("variable_unit")  # "N", "N/m" or "m"
+        # [n_variable] index of the variable whose change each takes by symmetry, or its own
+        self.variable_leader = self._numbers("variable_leader", dtype=np.int32)
         self.figure_names = self._texts("figure")  # columns of evaluate
         self.slope_names = self._texts("slope")  # figures of jacobian
-        self.n_node, self.n_cable, self.n_gene = len(self.node_ids), len(self.cable_ids), len(self.genes)
-        self.theoretical_m = self._numbers("theoretical_m", 3)  # [n_node, 3] target; of supports real ones
+        self.n_node, self.n_cable, self.n_variable = len(self.node_ids), len(self.cable_ids), len(self.variables)
+        self.target_position_m = self._numbers("target_position_m", 3)  # [n_node, 3] of supports the real positions
         self.role = self._words("role")  # [n_node] "support", "inner" or "edge"
         self.end = self._numbers("end", 2, dtype=np.int32)  # [n_cable, 2] indices of nodes
         self.group = self._words("group")  # [n_cable] "inner" or "boundary"
@@ -207,8 +212,13 @@ class Case:
         self.EA_N = self._numbers("EA_N")  # [n_cable], NaN if not given; [0] if no cable has one
         start, cable = (self._numbers(name, dtype=np.int32) for name in ("set_start", "set_cable"))
         self.sets = {name: cable[start[k]:start[k + 1]] for k, name in enumerate(self._texts("set_name"))}
-        self._goals = [name for name in self.figure_names if name.startswith("goal_")]
+        self._objectives = self._texts("objective")
         self._result = [self._texts(name) for name in ("result", "result_kind")]
+
+    if not TYPE_CHECKING:  # so that a type checker finds attributes that do not exist
+
+        def __getattr__(self, name: str) -> Any:
+            return old_attribute(self, name)
 
     def __reduce__(self) -> Any:
         raise TypeError("a Case belongs to its process and cannot be copied or pickled: open it in each process, "
@@ -228,12 +238,12 @@ class Case:
         self._check_process()
         _process["is_used"] = True
         status = function(*arguments)
-        said = lib.hf_flat_said(self._handle).decode()
-        for line in said.splitlines():
+        lines = lib.hf_flat_messages(self._handle).decode().splitlines()
+        for line in lines:
             if line.startswith("warning: "):
-                warnings.warn(line[len("warning: "):], HifdmWarning, stacklevel=_user_level())
+                warnings.warn(line[len("warning: "):], HifdmWarning, stacklevel=user_level())
         if status:
-            errors = [line[len("error: "):] for line in said.splitlines() if line.startswith("error: ")]
+            errors = [line[len("error: "):] for line in lines if line.startswith("error: ")]
             raise HifdmError(status_word(status), "\n".join(errors) or lib.hf_status_text(status).decode())
         return status
 
@@ -262,9 +272,9 @@ class Case:
         codes = self._numbers("result")
         figures = {name: float(code) if kind == "real" else int(code) if kind == "int" else word(kind, int(code))
                    for name, kind, code in zip(*self._result, codes)}
-        goals = {name: figures.pop(name) for name in self._goals}
+        objectives = {name: figures.pop(name) for name in self._objectives}
         arrays = {name: self._numbers(name) for name in ("length_m", "tension_N", "q_N_per_m")}
-        return Shape(figures, goals, {"position_m": self._numbers("position_m", 3), **arrays})
+        return Shape(figures, objectives, {"position_m": self._numbers("position_m", 3), **arrays})
 
     def form(self) -> Shape:
         """Finds the shape of the case. Raises HifdmError if there is none, or if the iteration does not converge."""
@@ -275,8 +285,9 @@ class Case:
             return self._shape
 
     def shape(self, design: np.ndarray) -> Shape:
-        """Returns the shape of one design [n_gene]. Its status is a figure; an infeasible design raises no error."""
-        design = wanted("design", design, float, (self.n_gene,))
+        """Returns the shape of one design [n_variable]. An infeasible design raises no error; `status` is one of the
+        figures."""
+        design = wanted("design", design, float, (self.n_variable,))
         with self._lock:
             self.form()
             self._call(lib.hf_flat_shape, self._handle, pointer(design))
@@ -288,46 +299,46 @@ class Case:
             return self._numbers(name)
 
     @property
-    def base(self) -> np.ndarray:
-        """[n_gene] The initial design, that of the shape of form-finding, in gene_units."""
-        return self._after_form("base")
+    def initial(self) -> np.ndarray:
+        """[n_variable] The initial design, whose shape is that of form(); each value has its unit of variable_units."""
+        return self._after_form("initial")
 
     @property
     def lower(self) -> np.ndarray:
-        """[n_gene] Lower bounds of the section optimize; -inf where there is none."""
+        """[n_variable] Lower bounds of the section optimize; -inf where there is none."""
         return self._after_form("lower")
 
     @property
     def upper(self) -> np.ndarray:
-        """[n_gene] Upper bounds."""
+        """[n_variable] Upper bounds; inf where there is none."""
         return self._after_form("upper")
 
     @property
     def solver(self) -> str:
-        """The solver of designs."""
+        """The name of the solver with which designs are evaluated."""
         with self._lock:
             self.form()
             return self._texts("solver")[0]
 
     def evaluate(self, designs: np.ndarray) -> Designs:
-        """Evaluates designs [n, n_gene] in gene_units on all cores. The results are those of `hifdm evaluate`, bit by
-        bit."""
-        designs = wanted("designs", designs, float, (None, self.n_gene))
+        """Evaluates designs [n, n_variable] on all cores; each column has its unit of variable_units. The results are
+        those of `hifdm evaluate`, bit by bit."""
+        designs = wanted("designs", designs, float, (None, self.n_variable))
         table = np.empty((len(self.figure_names), len(designs)))
         with self._lock:
             self.form()
             self._call(lib.hf_flat_evaluate, self._handle, len(designs), pointer(designs), pointer(table))
-        return Designs(self.figure_names, len(self._goals), table)
+        return Designs(self.figure_names, len(self._objectives), table)
 
     def jacobian(self, designs: np.ndarray) -> np.ndarray:
-        """Returns exact derivatives [n, n_slope, n_gene] of slope_names at designs [n, n_gene]; NaN for infeasible
-        designs.
+        """Returns exact derivatives [n, n_slope, n_variable] of the figures slope_names at designs [n, n_variable]; NaN
+        for infeasible designs.
 
-        The figures are psi_m, or with goals the value of each goal and the merit. The unit is that of the figure per
-        unit of the gene.
+        The figures are psi_m, or with objectives the value of each objective and the merit. Each derivative has
+        the unit of the figure per unit of the design variable.
         """
-        designs = wanted("designs", designs, float, (None, self.n_gene))
-        slopes = np.empty((len(designs), len(self.slope_names), self.n_gene))
+        designs = wanted("designs", designs, float, (None, self.n_variable))
+        slopes = np.empty((len(designs), len(self.slope_names), self.n_variable))
         with self._lock:
             self.form()
             self._call(lib.hf_flat_slopes, self._handle, len(designs), pointer(designs), pointer(slopes))
@@ -337,12 +348,12 @@ class Case:
 
     def run(self, output: str | os.PathLike | None = None, *, restart: bool = False,
             progress: Callable[[Progress], Any] | None = None) -> Run:
-        """Runs the case as `hifdm run` does: form-finding, optimisation, `cases` and `tolerance`.
+        """Runs the case as `hifdm run` does: form-finding, search, refinement, load cases and as-built samples.
 
-        output: the result file. A later run into it resumes a run that was stopped, or with `restart` begins again.
-        None: the run returns figures alone. progress: called during the run, in a thread of its own. If it returns
-        False, the run is stopped, and the status is "interrupted". If it raises an exception, the run is stopped, and
-        the exception is raised here, as is Ctrl-C. It cannot call this case, which is busy.
+        output: the result file. If it holds a run that was stopped, this run resumes it, or with `restart` begins anew.
+        None: the run writes no file. progress: a function that is called during the run, in a thread of its own. If it
+        returns False, the run is stopped, and the status is "interrupted". If it raises an exception, or the user
+        presses Ctrl-C, the run is stopped, and the exception is raised here. It cannot use this case, which is busy.
         """
         path = None if output is None else c_text(os.fsencode(output))
         raised: list[BaseException] = []
@@ -351,7 +362,7 @@ class Case:
         def observe(_: Any, phase: int, *now: Any) -> int:
             self._lock.observing = threading.get_ident()
             try:
-                return int(progress is not None and progress(Progress(word("phase", phase), *now)) is False)
+                return int(progress is not None and progress(Progress(Stage(word("phase", phase)), *now)) is False)
             except BaseException as fault:
                 raised.append(fault)
                 return 1
@@ -370,11 +381,11 @@ class Case:
                     worker.join(0.2 if raised else None)
                 except BaseException as fault:
                     raised.append(fault)
-                if raised:  # repeatedly, because a run that has just begun forgets earlier requests
+                if raised:  # repeatedly, because a run clears earlier requests when it begins
                     lib.hf_flat_stop(self._handle)
             if raised:
                 raise raised[0]
-            figures = json.loads(self._texts("summary")[0])
+            figures = json.loads(self._texts("summary")[0], object_hook=Figures)
             was_stopped = status_word(outcome[0]) == "interrupted"
             self._call(lambda: 0 if was_stopped else outcome[0])
         return Run(figures)

@@ -1,16 +1,24 @@
-"""Result files as a thin layer over h5py. `h5` is the open file; include/hifdm/store.h lists its contents."""
+"""Result files as a thin layer over h5py. `h5` is the open file; include/hifdm/store.h lists its contents.
+
+Files of version 0.2 have other names (_renamed.py). Result reads them, too, and returns the figures by their names of
+today."""
 
 from __future__ import annotations
 
 import os
+from typing import Any
 
 import numpy as np
 
 from ._library import word
+from ._renamed import Figures, Stage, new_key, new_stage, warn
 from .case import Shape
 
-_WORDS = ("status", "stop_reason", "bound_reason")  # figures that are codes in a file
-_STAGES = {"form": "form", "optimize": "ga/best", "polish": "polish"}
+_ARRAYS = ("position_m", "length_m", "tension_N", "q_N_per_m")
+_LISTS = {"status": "status", "stop_reason": "stop_reason", "bound_reason": "bound_reason",
+          "coupling_stop_reason": "coupling_stop"}  # figures that are codes in a file, and the lists of their words
+_GROUPS = {"form": ["form"], "search": ["search", "ga/best"], "refine": ["refine", "polish"]}  # of 0.3, of 0.2
+_OF_POPULATION = ("n_individual", "n_variable", "n_objective", "generations_limit", "store_every")  # in /ga of 0.2
 
 
 class Result:
@@ -30,35 +38,64 @@ class Result:
     def __exit__(self, *_) -> None:
         self.h5.close()
 
+    def _group(self, stage: str):
+        """Returns the group with the shape of a stage, or None."""
+        for path in _GROUPS.get(stage) or [stage, stage.removeprefix("load_")]:
+            if f"{path}/position_m" in self.h5:
+                return self.h5[path]
+        return None
+
     @property
     def stages(self) -> list[str]:
-        """The stages with a shape: "form", "optimize", "polish", then the load cases of `cases` as "cases/cold"."""
-        states = [f"cases/{name}" for name, item in self.h5.get("cases", {}).items() if "position_m" in item]
-        return [name for name, group in _STAGES.items() if group in self.h5] + states
+        """The stages with a shape: "form", "search", "refine", then the load cases, such as "load_cases/cold"."""
+        load_cases = self.h5.get("load_cases", self.h5.get("cases", {}))
+        names = [*_GROUPS, *(f"load_cases/{name}" for name in load_cases if name != "name")]
+        return [Stage(name) for name in names if self._group(name)]
 
     def shape(self, stage: str = "form") -> Shape:
-        """Returns the arrays of a stage as hifdm.Shape, with the attributes of its group as figures."""
-        group = self.h5[_STAGES.get(stage, stage)]
-        arrays = {name: group[name][:] for name in ("position_m", "length_m", "tension_N", "q_N_per_m")}
-        figures = {name: word(name, int(value)) if name in _WORDS else value for name, value in group.attrs.items()}
-        return Shape(figures, {}, arrays)
+        """Returns the shape of a stage, one of `stages`: its arrays, and its figures as attributes."""
+        name = new_stage(stage)
+        if name != stage:
+            warn(repr(stage), repr(name))
+        group = self._group(name)
+        if group is None:
+            raise KeyError(f"this file has no shape of '{name}'; it has {', '.join(self.stages)}")
+        arrays = {array: group[array][:] for array in _ARRAYS}
+        return Shape(self._figures(group), {}, arrays)
+
+    def _figures(self, group) -> Figures:
+        """Returns the attributes of a group by their names of today, with words in place of codes."""
+        is_search_of_0_2 = group.name == "/ga/best"
+        figures = Figures()
+        for name, value in (self.h5["ga"] if is_search_of_0_2 else group).attrs.items():
+            if is_search_of_0_2 and name in _OF_POPULATION:
+                continue
+            if is_search_of_0_2 and name not in ("best_generation", "best_individual"):
+                name = name.removeprefix("best_")
+            name = name if name == "iterations" else new_key(name) or name
+            value = value.decode() if isinstance(value, bytes) else value
+            figures[name] = word(_LISTS[name], int(value)) if name in _LISTS else value
+        return figures
 
     @property
     def end(self) -> np.ndarray:
         """[n_cable, 2] Indices of nodes."""
         return self.h5["scene/cable/end"][:]
 
+    def _series(self, name: str) -> Any:
+        return self.h5["search/population" if "search/population" in self.h5 else "ga"][name][:]
+
     @property
     def psi_m(self) -> np.ndarray:
-        """[generation, individual] psi in the genetic algorithm, m; NaN for infeasible individuals."""
-        return self.h5["ga/psi_m"][:]
+        """[generation, individual] psi in the search, m; NaN for infeasible individuals."""
+        return self._series("psi_m")
 
     @property
     def best_psi_m(self) -> np.ndarray:
-        """[generation] Best psi, m."""
-        return self.h5["ga/best_psi_m"][:]
+        """[generation] Best psi of each generation, m."""
+        return self._series("best_psi_m")
 
 
 def read(path: str | os.PathLike) -> Result:
-    """Opens a result file."""
+    """Opens a result file of this version or of version 0.2."""
     return Result(path)
