@@ -89,20 +89,18 @@ def all_pages(program, make, work):
     return guide, method, ours + paper + inside + made
 
 
-def contents(line, guide, method, program):
-    """Returns the pages that `@guide` and `@method` in a list of contents stand for; `@words` stands for all words."""
-    if line == "@words":
-        return reference.glossary(program)
+def contents(line, guide, method):
+    """Returns the pages that `@guide` and `@method` in a list of contents stand for."""
     pages = {"@guide": guide, "@method": method}.get(line)
     return ["/" + page.name for page in pages] if pages else [line]
 
 
-def write(pages, guide, method, program, work):
+def write(pages, guide, method, work):
     links = Links(pages)
     for page in pages:
         path = f"{work}/{page.name}.md"
         os.makedirs(os.path.dirname(path), exist_ok=True)
-        lines = [more for line in links.rewritten(page) for more in contents(line, guide, method, program)]
+        lines = [more for line in links.rewritten(page) for more in contents(line, guide, method)]
         with open(path, "w", encoding="utf-8") as file:
             file.write("\n".join(lines))
         for picture in re.findall(r"!\[[^\]]*\]\(([^)\s]+)\)", "\n".join(page.lines)):

@@ -92,31 +92,6 @@ def commands(program):
     return Page("reference/commands", "src/manual/index.md", lines)
 
 
-def glossary(program):
-    """Returns terms, statuses, warnings and figures of `hifdm explain`: a list by kind, then one word after the other,
-    as lines."""
-    kinds, words = {}, set()
-    for line in ask(program, "explain"):
-        kind = re.match(r"(\S[^:]*):", line)
-        words |= {word.strip() for word in (line[kind.end() :] if kind else line).split(",")} - {""}
-    for word in sorted(words):
-        for line in ask(program, "explain", word):
-            head = re.match(r"(\S.*) \(([^()]*)\)$", line)
-            if head:
-                kind, _, unit = head[2].partition(", ")
-                said = kinds.setdefault(kind, {}).setdefault((head[1], unit), [])
-            else:
-                said.append(line.strip())
-    lines = []
-    for kind in sorted(kinds, key=lambda k: (k != "term", k.startswith("figure"), k)):
-        title = {"term": "terms", "stop_reason": "why something stopped", "bound_reason": "why there is no proof"}
-        title = title.get(kind, kind)
-        lines += [f"## {plain(title[:1].upper() + title[1:])}", ""]
-        for (word, unit), said in sorted(kinds[kind].items()):
-            lines += [f"`{word}`" + (f" – {plain(unit)}" if unit else ""), f": {plain(' '.join(said))}", ""]
-    return lines
-
-
 def headers():
     """Returns a page for each public header, and one that lists the headers with their first comments."""
     lines = ["# Headers", "", "The library's interface, header by header: shapes, units and errors stand in the",
