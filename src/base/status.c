@@ -8,49 +8,46 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The rows of HF_STATUS_LIST. */
+static const struct row {
+    hf_status status;
+    const char *word, *text;
+    int exit_code;
+} table[] = {
+#define ROW(name, value, word_, ...) {.status = HF_##name, .word = word_, __VA_ARGS__},
+    HF_STATUS_LIST(ROW)
+#undef ROW
+};
+enum { N_ROW = sizeof table / sizeof *table };
+
+static const struct row *find(hf_status status)
+{
+    static const struct row unknown = {.word = "unknown", .text = "unknown status", .exit_code = 5};
+    for (int i = 0; i < N_ROW; i++)
+        if (table[i].status == status) return &table[i];
+    return &unknown;
+}
+
 const char *hf_status_word(hf_status status)
 {
-    switch (status) {
-#define WORD(name, value, exit_code, word, text)                                                                       \
-    case HF_##name:                                                                                                    \
-        return word;
-        HF_STATUS_LIST(WORD)
-#undef WORD
-    }
-    return "unknown";
+    return find(status)->word;
 }
 
 hf_status hf_status_of_word(const char *word)
 {
-#define IS(name, value, exit_code, text, sentence)                                                                     \
-    if (!strcmp(word, text)) return HF_##name;
-    HF_STATUS_LIST(IS)
-#undef IS
+    for (int i = 0; i < N_ROW; i++)
+        if (!strcmp(word, table[i].word)) return table[i].status;
     return HF_IO;
 }
 
 const char *hf_status_text(hf_status status)
 {
-    switch (status) {
-#define TEXT(name, value, exit_code, word, text)                                                                       \
-    case HF_##name:                                                                                                    \
-        return text;
-        HF_STATUS_LIST(TEXT)
-#undef TEXT
-    }
-    return "unknown status";
+    return find(status)->text;
 }
 
 int hf_status_exit_code(hf_status status)
 {
-    switch (status) {
-#define EXIT(name, value, exit_code, word, text)                                                                       \
-    case HF_##name:                                                                                                    \
-        return exit_code;
-        HF_STATUS_LIST(EXIT)
-#undef EXIT
-    }
-    return 5;
+    return find(status)->exit_code;
 }
 
 /* Reserves room for `extra` more bytes and the final NUL. Returns false if memory runs out. */

@@ -27,28 +27,32 @@ const char *hf_coupling_stop_word(int stop)
     return "unknown";
 }
 
+/* The rows of HF_BOUND_REASON_LIST. */
+static const struct bound_row {
+    int value;
+    const char *word, *meaning;
+} bound[] = {
+#define ROW(name, value_, word_, ...) {.value = value_, .word = word_, __VA_ARGS__},
+    HF_BOUND_REASON_LIST(ROW)
+#undef ROW
+};
+
+static const struct bound_row *find_bound(int reason)
+{
+    static const struct bound_row unknown = {.word = "unknown", .meaning = "unknown"};
+    for (size_t i = 0; i < sizeof bound / sizeof *bound; i++)
+        if (bound[i].value == reason) return &bound[i];
+    return &unknown;
+}
+
 const char *hf_bound_reason_word(int reason)
 {
-    switch (reason) {
-#define WORD(name, value, word, meaning)                                                                               \
-    case HF_BOUND_##name:                                                                                              \
-        return word;
-        HF_BOUND_REASON_LIST(WORD)
-#undef WORD
-    }
-    return "unknown";
+    return find_bound(reason)->word;
 }
 
 const char *hf_bound_reason_meaning(int reason)
 {
-    switch (reason) {
-#define MEANING(name, value, word, meaning)                                                                            \
-    case HF_BOUND_##name:                                                                                              \
-        return meaning;
-        HF_BOUND_REASON_LIST(MEANING)
-#undef MEANING
-    }
-    return "unknown";
+    return find_bound(reason)->meaning;
 }
 
 /* ---- the lists of fields ---- */

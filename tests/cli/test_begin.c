@@ -157,7 +157,7 @@ static const char look_up[] =
     "for key in sorted(keys): demand(key, 'figure')\n"
     "print(len(words), len(keys))\n"
     "status = open(source + '/include/hifdm/status.h').read()\n"
-    "for word in re.findall(r'X\\([A-Z_]+, \\d+, \\d+, \"(\\w+)\"', status): demand(word, 'status')\n"
+    "for word in re.findall(r'X\\([A-Z_]+, \\d+, \"(\\w+)\"', status): demand(word, 'status')\n"
     "import glob\n"
     "for file in glob.glob(source + '/src/*/*.c'):\n"
     "    text = open(file).read()\n"
