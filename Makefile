@@ -93,7 +93,8 @@ LIB_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(KERNELS),$(call sources,$(
 PAGE := $(addprefix src/out/report/,head.html page.css body.html \
           data.js scale.js chart.js table.js net_fast.js net.js net_hand.js cables.js map.js sections.js \
           front.js pattern.js adjust.js tolerance.js compare.js study.js main.js)
-APP_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(call sources,$(APP_ROOMS))) $(BUILD)/report_page_text.o
+APP_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(call sources,$(APP_ROOMS))) $(BUILD)/report_page_text.o \
+           $(BUILD)/words_text.o
 TEST_OBJ := $(patsubst %.c,$(BUILD)/%.o,tests/run_tests.c tests/support.c tests/calls.c tests/guards.c \
              $(sort $(wildcard tests/*/test_*.c tests/*/*/test_*.c)))
 PROGRAM := $(BUILD)/hifdm
@@ -476,19 +477,25 @@ $(BUILD)/%.o: %.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(Q)$(COMPILE) $(EXTRA) -MMD -MP -c $< -o $@
 
-# The page is an array of bytes and not a string, because C does not guarantee string literals of this length.
+# Embedded files are arrays of bytes and not strings, because C does not guarantee string literals of this length.
+# $(call bytes,declaration,files) prints one.
+bytes = echo "$(1)[] = {"; cat $(2) | od -An -v -tx1 | sed "s/[0-9a-f][0-9a-f]*/'\\\\x&',/g"; echo '0};'
 $(BUILD)/report_page_text.c: $(PAGE) Makefile
 	$(call say,PAGE,$@)
 	@mkdir -p $(@D)
 	$(Q){ echo '#include "out/report_page.h"'; \
-	  bytes() { echo "const char $$1[] = {"; shift; cat "$$@" | od -An -v -tx1 | \
-	      sed "s/[0-9a-f][0-9a-f]*/'\\\\x&',/g"; echo '0};'; }; \
-	  bytes hf_report_page_head $(wordlist 1,2,$(PAGE)); \
-	  bytes hf_report_page_body $(word 3,$(PAGE)); \
-	  bytes hf_report_page_script $(wordlist 4,99,$(PAGE)); } >$@.tmp
+	  $(call bytes,const char hf_report_page_head,$(wordlist 1,2,$(PAGE))); \
+	  $(call bytes,const char hf_report_page_body,$(word 3,$(PAGE))); \
+	  $(call bytes,const char hf_report_page_script,$(wordlist 4,99,$(PAGE))); } >$@.tmp
 	$(Q)mv $@.tmp $@
 
-$(BUILD)/report_page_text.o: $(BUILD)/report_page_text.c $(BUILD)/flags
+$(BUILD)/words_text.c: src/manual/glossary.md Makefile
+	$(call say,PAGE,$@)
+	@mkdir -p $(@D)
+	$(Q){ echo '#include "out/words.h"'; $(call bytes,char hf_words_text,$<); } >$@.tmp
+	$(Q)mv $@.tmp $@
+
+$(BUILD)/%_text.o: $(BUILD)/%_text.c $(BUILD)/flags
 	$(call say,CC,$<)
 	$(Q)$(COMPILE) -MMD -MP -c $< -o $@
 

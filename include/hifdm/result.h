@@ -53,23 +53,24 @@ typedef enum {
 /* Returns the word of a reason why a coupling ended, a constant string; "unknown" for other values. */
 const char *hf_coupling_stop_word(int stop);
 
-/* X(name, value, word stored in files, what it means): whether the error bounds of a result are certified, otherwise
- * why not (METHOD section 3). Files contain the values; never renumber them. */
+/* X(name, value, word stored in files, .meaning = description for the user): whether the error bounds of a result are
+ * certified, otherwise why not (METHOD section 3). Files contain the values; never renumber them. */
 #define HF_BOUND_REASON_LIST(X)                                                                                        \
-    X(NONE, 0, "none", "no proof was tried")                                                                           \
-    X(CERTIFIED, 1, "certified", "no equilibrium is farther away")                                                     \
-    X(STRUTS, 2, "struts", "the net has struts: its energy is not convex")                                             \
-    X(TRUSS, 3, "truss", "the flexibility of the truss has an eigenvalue below zero")                                  \
-    X(NO_MATRIX, 4, "no_matrix", "the method has no Newton matrix for these laws")                                     \
-    X(NOT_DEFINITE, 5, "not_definite", "the net is too soft in some direction to tell its stiffness from rounding")    \
-    X(NOT_CONTRACTING, 6, "not_contracting", "the shape is too far from an equilibrium")                               \
-    X(SLACK_OR_TAUT, 7, "slack_or_taut", "some cable is at the brink of going slack")                                  \
-    X(DEPENDENT_LENGTHS, 8, "dependent_lengths", "prescribed lengths depend on each other")                            \
-    X(LOOSE, 9, "loose", "no taut cable holds some node: its position is not unique")
+    X(NONE, 0, "none", .meaning = "no certified bound was computed")                                                   \
+    X(CERTIFIED, 1, "certified", .meaning = "no equilibrium is farther away")                                                \
+    X(STRUTS, 2, "struts", .meaning = "the net has struts: its energy is not convex")                                  \
+    X(TRUSS, 3, "truss", .meaning = "the flexibility matrix of the truss has a negative eigenvalue")                   \
+    X(NO_MATRIX, 4, "no_matrix", .meaning = "the method has no Newton matrix for these laws")                          \
+    X(NOT_DEFINITE, 5, "not_definite",                                                                                 \
+      .meaning = "the net is so soft in some direction that its stiffness cannot be distinguished from rounding")      \
+    X(NOT_CONTRACTING, 6, "not_contracting", .meaning = "the shape is too far from an equilibrium")                    \
+    X(SLACK_OR_TAUT, 7, "slack_or_taut", .meaning = "some cable is about to go slack")                                 \
+    X(DEPENDENT_LENGTHS, 8, "dependent_lengths", .meaning = "prescribed lengths depend on each other")                 \
+    X(LOOSE, 9, "loose", .meaning = "no taut cable holds some node, so its position is not unique")
 
 /* Whether the error bounds are certified, otherwise why not. */
 typedef enum {
-#define HF_BOUND_REASON_ENUM(name, value, word, meaning) HF_BOUND_##name = value,
+#define HF_BOUND_REASON_ENUM(name, value, ...) HF_BOUND_##name = value,
     HF_BOUND_REASON_LIST(HF_BOUND_REASON_ENUM)
 #undef HF_BOUND_REASON_ENUM
 } hf_bound_reason;

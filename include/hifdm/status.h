@@ -13,34 +13,44 @@
 
 HF_API_BEGIN
 
-/* X(name, value, exit code of the program, word stored in files, sentence for the user). HDF5 files contain the values;
- * never renumber them. */
+/* X(name, value, word stored in files, ...), where ... are fields by their names:
+ *
+ *   .exit_code   exit code of the program
+ *   .text        sentence for the user
+ *
+ * HDF5 files contain the values; never renumber them. The glossary explains each word. */
 #define HF_STATUS_LIST(X)                                                                                              \
-    X(OK, 0, 0, "ok", "done")                                                                                          \
-    X(NOT_CONVERGED, 1, 3, "not_converged", "the iteration limit was reached before the stopping rule held")           \
-    X(SINGULAR, 2, 4, "singular", "the force density matrix is singular or not positive definite")                     \
-    X(STRAIGHT_CHAIN, 3, 4, "straight_chain", "a straight chain of length-controlled cables carries lateral load")     \
-    X(COLLAPSED, 4, 4, "collapsed", "nodes ran together: a cable shrank to a small part of its theoretical length")    \
-    X(NOT_FINITE, 5, 4, "not_finite", "a position or force density is no longer a finite number")                      \
-    X(RATIO_CAP, 6, 4, "ratio_cap", "the boundary tension ratio exceeds optimize.boundary_ratio_cap")                  \
-    X(NOT_EVALUATED, 7, 3, "not_evaluated", "not evaluated")                                                           \
-    X(NO_FEASIBLE, 8, 3, "no_feasible", "no design met the constraints")                                               \
-    X(TRUSS_TOO_SOFT, 9, 4, "truss_too_soft", "the truss gives way to the pretension of its net without end")          \
-    X(MECHANISM, 10, 4, "mechanism", "the truss is a mechanism, or not held by enough supports")                       \
-    X(OUT_OF_LIMITS, 12, 4, "out_of_limits", "the shape breaks a row of optimize.limits")                              \
-    X(POINTS_FAILED, 11, 3, "points_failed", "some points of the sweep failed")                                        \
-    X(BAD_USAGE, 20, 2, "bad_usage", "the command line is not understood")                                             \
-    X(BAD_CASE, 21, 2, "bad_case", "the case has errors")                                                              \
-    X(NO_MEMORY, 30, 5, "no_memory", "out of memory")                                                                  \
-    X(IO, 31, 5, "io", "input/output failed")                                                                          \
-    X(EXISTS, 32, 5, "exists", "the output file exists")                                                               \
-    X(NO_LAPACK, 35, 5, "no_lapack", "LAPACK cannot be loaded")                                                        \
-    X(DIFFERENT, 34, 1, "different", "the files differ")                                                               \
-    X(INTERRUPTED, 33, 75, "interrupted", "told to stop before the end")
+    X(OK, 0, "ok", .exit_code = 0, .text = "done")                                                                     \
+    X(NOT_CONVERGED, 1, "not_converged", .exit_code = 3,                                                               \
+      .text = "the iteration reached its limit before it converged")                                                   \
+    X(SINGULAR, 2, "singular", .exit_code = 4,                                                                         \
+      .text = "the force density matrix is singular or not positive definite")                                         \
+    X(STRAIGHT_CHAIN, 3, "straight_chain", .exit_code = 4,                                                             \
+      .text = "a straight chain of cables that keep their lengths carries a lateral load")                             \
+    X(COLLAPSED, 4, "collapsed", .exit_code = 4,                                                                       \
+      .text = "nodes ran together: a cable shrank to a small part of its length at the target positions")              \
+    X(NOT_FINITE, 5, "not_finite", .exit_code = 4, .text = "a position or force density is no longer a finite number") \
+    X(RATIO_CAP, 6, "ratio_cap", .exit_code = 4,                                                                       \
+      .text = "the boundary tension ratio exceeds optimize.boundary_ratio_cap")                                        \
+    X(NOT_EVALUATED, 7, "not_evaluated", .exit_code = 3, .text = "not evaluated")                                      \
+    X(NO_FEASIBLE, 8, "no_feasible", .exit_code = 3, .text = "no design met the constraints")                          \
+    X(TRUSS_TOO_SOFT, 9, "truss_too_soft", .exit_code = 4,                                                             \
+      .text = "the truss is too soft for the pretension of its net")                                                   \
+    X(MECHANISM, 10, "mechanism", .exit_code = 4, .text = "the truss is a mechanism, or too few supports hold it")     \
+    X(OUT_OF_LIMITS, 12, "out_of_limits", .exit_code = 4, .text = "the shape breaks a row of optimize.limits")         \
+    X(POINTS_FAILED, 11, "points_failed", .exit_code = 3, .text = "some points of the sweep failed")                   \
+    X(BAD_USAGE, 20, "bad_usage", .exit_code = 2, .text = "the command line is not understood")                        \
+    X(BAD_CASE, 21, "bad_case", .exit_code = 2, .text = "the case has errors")                                         \
+    X(NO_MEMORY, 30, "no_memory", .exit_code = 5, .text = "out of memory")                                             \
+    X(IO, 31, "io", .exit_code = 5, .text = "input/output failed")                                                     \
+    X(EXISTS, 32, "exists", .exit_code = 5, .text = "the output file exists")                                          \
+    X(NO_LAPACK, 35, "no_lapack", .exit_code = 5, .text = "LAPACK cannot be loaded")                                   \
+    X(DIFFERENT, 34, "different", .exit_code = 1, .text = "the files differ")                                          \
+    X(INTERRUPTED, 33, "interrupted", .exit_code = 75, .text = "told to stop before the end")
 
 /* A result code; HF_OK is 0. */
 typedef enum {
-#define HF_STATUS_ENUM(name, value, exit_code, word, text) HF_##name = value,
+#define HF_STATUS_ENUM(name, value, ...) HF_##name = value,
     HF_STATUS_LIST(HF_STATUS_ENUM)
 #undef HF_STATUS_ENUM
 } hf_status;

@@ -13,79 +13,44 @@
 
 #include <string.h>
 
-#define SHORT 4 /* number of letters up to which a suggestion must begin with the same letter */
+#define SHORT 4 /* number of letters up to which a suggestion must begin with the same two letters */
 
-static void print_entry(const hf_word *w, const char *word, FILE *f)
+/* Prints "word (kind, unit)", earlier names, and the text. */
+static void print_entry(const hf_word *w, FILE *f)
 {
-    const char *unit = *w->units ? ", " : "";
-    hf_print_line(f, "%s (%s%s%s)", word, w->kind, unit, w->units);
+    const char *unit = *w->unit ? ", " : "", *status = *w->exit_status ? "; exit status " : "";
+    hf_print_line(f, "%s (%s%s%s%s%s)", w->word, w->kind, unit, w->unit, status, w->exit_status);
+    for (const char *p = w->formerly; *p; p = hf_word_next(p))
+        fprintf(f, "%s\"%s\"%s", p == w->formerly ? "    Formerly " : ", ", p, *hf_word_next(p) ? "" : ".\n");
     hf_help_wrap(w->text, 4, 0, f);
 }
 
-/* Returns true if entry i is the first one of its kind, or of its kind and word. */
-static bool is_first(int i, bool of_word)
-{
-    const hf_word entry = hf_word_at(i);
-    for (int k = 0; k < i; k++) {
-        const hf_word w = hf_word_at(k);
-        if (!strcmp(w.kind, entry.kind) && (!of_word || !strcmp(w.word, entry.word))) return false;
-    }
-    return true;
-}
-
-/* Prints all words, kind by kind. */
+/* Prints all words, section by section. */
 static void print_words(FILE *f)
 {
+    int column = 0;
     for (int i = 0; i < hf_word_count(); i++) {
-        const hf_word kind = hf_word_at(i);
-        if (!is_first(i, false) || !strcmp(kind.kind, "what to do")) continue;
-        int column = fprintf(f, "%s:", kind.kind);
-        for (int k = i; k < hf_word_count(); k++) {
-            const hf_word w = hf_word_at(k);
-            if (strcmp(w.kind, kind.kind) || !is_first(k, true)) continue;
-            if (k > i) column += fprintf(f, ",");
-            if (column + 2 + (int)strlen(w.word) > 98) column = fprintf(f, "\n   ") - 1;
-            column += fprintf(f, " %s", w.word);
-        }
-        fputc('\n', f);
+        const hf_word w = hf_word_at(i);
+        bool is_first = i == 0 || w.section != hf_word_at(i - 1).section;
+        if (is_first) column = fprintf(f, "%s%s:", i ? "\n" : "", w.section);
+        if (!is_first) column += fprintf(f, ",");
+        if (column + 2 + (int)strlen(w.word) > 98) column = fprintf(f, "\n   ") - 1;
+        column += fprintf(f, " %s", w.word);
     }
+    fputc('\n', f);
 }
 
-/* Returns true if an entry of `word` is also an entry of `other`. */
-static bool is_told(const char *other, const char *word)
-{
-    for (int i = 0; i < hf_word_count(); i++)
-        if (hf_word_is(i, other) && hf_word_is_like(i, word)) return true;
-    return false;
-}
-
-/* Prints the entries of a word, or of similar ones if is_like is true. Returns their number. */
-static int print_entries(const char *word, bool is_like, FILE *f)
+/* Prints the entries of a word, or of similar ones if is_like is true. Returns false if there is none. */
+static bool print_entries(const char *word, bool is_like, FILE *f)
 {
     int n = 0;
     for (int i = 0; i < hf_word_count(); i++) {
         if (!(is_like ? hf_word_is_like(i, word) : hf_word_is(i, word))) continue;
-        const hf_word entry = hf_word_at(i);
-        print_entry(&entry, entry.word, f);
+        const hf_word w = hf_word_at(i);
+        print_entry(&w, f);
         n++;
     }
-    return n;
-}
-
-/* Prints the entries to which the entries of a word refer: "See far_node; ...". */
-static void follow(const char *word, FILE *f)
-{
-    static const char *const pointer[] = {"See ", "Column of the summary: "};
-    for (int i = 0; i < hf_word_count(); i++) {
-        const hf_word entry = hf_word_at(i);
-        for (size_t k = 0; k < sizeof pointer / sizeof *pointer; k++) {
-            const char *to = entry.text + strlen(pointer[k]);
-            char other[64];
-            if (!hf_word_is_like(i, word) || strncmp(entry.text, pointer[k], strlen(pointer[k])) != 0) continue;
-            snprintf(other, sizeof other, "%.*s", (int)strcspn(to, ".,;"), to);
-            if (!is_told(other, word) && !print_entries(other, false, f)) print_entries(other, true, f);
-        }
-    }
+    return n > 0;
 }
 
 /* Prints an exit status ("75" or "exit status 75") and the statuses with this exit code. Returns false if there is
@@ -101,8 +66,7 @@ static bool print_exit_status(const char *word, FILE *f)
         hf_help_wrap(e->meaning, 4, 0, f);
         for (int i = 0; i < hf_word_count(); i++) {
             const hf_word w = hf_word_at(i);
-            const char *of = strstr(w.kind, begin);
-            if (of && !strcmp(of + strlen(begin), code)) print_entry(&w, w.word, f);
+            if (!strcmp(w.exit_status, code)) print_entry(&w, f);
         }
         return true;
     }
@@ -149,13 +113,8 @@ static const char *join_words(const hf_options *o, char *joined, size_t size)
 
 static bool explain_word(const char *word, FILE *f)
 {
-    if (print_exit_status(word, f)) return true;
-    if (!print_entries(word, false, f)) {
-        if (print_keys(word, f)) return true;
-        if (!print_entries(word, true, f)) return false;
-    }
-    follow(word, f);
-    return true;
+    return print_exit_status(word, f) || print_entries(word, false, f) || print_keys(word, f) ||
+           print_entries(word, true, f);
 }
 
 /* Explains the longest term that consists of the first words. Returns its length, or 0 if there is none. */
@@ -204,7 +163,8 @@ static hf_status command_explain(const hf_options *o, FILE *file, hf_messages *m
     for (int i = 0; i < hf_word_count() && n_name < (int)(sizeof names / sizeof *names); i++)
         names[n_name++] = hf_word_at(i).word;
     const char *near = hf_text_nearest(all, names, n_name);
-    bool is_likely = near && (strlen(word) > SHORT || hf_word_letter(*near) == hf_word_letter(*word));
+    bool is_likely = near && (strlen(word) > SHORT || (hf_word_letter(near[0]) == hf_word_letter(word[0]) &&
+                                                       hf_word_letter(near[1]) == hf_word_letter(word[1])));
     if (is_likely) return hf_error(messages, HF_BAD_USAGE, "nothing is called '%.64s'; did you mean '%s'?", all, near);
     return explain_each(all, file, messages);
 }
@@ -212,10 +172,9 @@ static hf_status command_explain(const hf_options *o, FILE *file, hf_messages *m
 const hf_command hf_cmd_explain = {
     .name = "explain",
     .argument = "[WORD...]",
-    .help = "say what a status, a warning, a figure or a term means, and what to do",
-    .about = "WORD is one of the summary, of --json or of a message, several words of a term, or a whole warning in "
-             "quotes. Without it all words "
-             "are listed.",
+    .help = "explain a status, a warning, a figure or a term, and say what to do",
+    .about = "WORD is a word of the summary, of --json or of a message, a term of several words, or a whole warning in "
+             "quotes. Without it, hifdm lists all words.",
     .examples = "hifdm explain straight_chain\n"
                 "hifdm explain position_bound_m\n"
                 "hifdm explain \"warning: slack in the form-finding shape, 1: c7\"",

@@ -55,8 +55,8 @@ static void say_where_to_read_on(const char *lines, hf_status status)
     for (int i = 0; i < hf_word_count(); i++) {
         const hf_word w = hf_word_at(i);
         bool is_status = status != HF_OK && (hf_status_exit_code(status) == 3 || hf_status_exit_code(status) == 4) &&
-                         !strcmp(w.kind, "what to do") && !strcmp(w.word, hf_status_word(status));
-        if (!is_status && !(w.says && strstr(lines, w.says))) continue;
+                         !strcmp(w.kind, "status") && !strcmp(w.word, hf_status_word(status));
+        if (!is_status && !hf_word_is_in(i, lines)) continue;
         fprintf(stderr, "%s%s", n++ ? ", " : "`hifdm explain WORD` tells more: ", w.word);
     }
     if (n) fputc('\n', stderr);

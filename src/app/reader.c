@@ -15,7 +15,7 @@
 /* Returns true for an exit status of the manual, not of a sanitizer or an abort handler. */
 static bool is_ours(int exit_status)
 {
-#define IS(name, value, exit_code, word, text) exit_status == exit_code ||
+#define IS(name, ...) exit_status == hf_status_exit_code(HF_##name) ||
     return HF_STATUS_LIST(IS) false;
 #undef IS
 }

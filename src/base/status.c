@@ -3,47 +3,51 @@
 #include "base/text.h"
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define ROW(name, value, exit_code, word, text) {HF_##name, exit_code, word, text},
-typedef struct {
+/* The rows of HF_STATUS_LIST. */
+static const struct row {
     hf_status status;
-    int exit_code;
     const char *word, *text;
-} status_row;
-static const status_row listed[] = {HF_STATUS_LIST(ROW)};
-static const status_row unlisted = {HF_IO, 5, "unknown", "unknown status"};
-enum { N_STATUS = sizeof listed / sizeof *listed };
+    int exit_code;
+} table[] = {
+#define ROW(name, value, word_, ...) {.status = HF_##name, .word = word_, __VA_ARGS__},
+    HF_STATUS_LIST(ROW)
+#undef ROW
+};
+enum { N_ROW = sizeof table / sizeof *table };
 
-static const status_row *row_of(hf_status status)
+static const struct row *find(hf_status status)
 {
-    for (int i = 0; i < N_STATUS; i++)
-        if (listed[i].status == status) return &listed[i];
-    return &unlisted;
+    static const struct row unknown = {.word = "unknown", .text = "unknown status", .exit_code = 5};
+    for (int i = 0; i < N_ROW; i++)
+        if (table[i].status == status) return &table[i];
+    return &unknown;
 }
 
 const char *hf_status_word(hf_status status)
 {
-    return row_of(status)->word;
+    return find(status)->word;
 }
 
 hf_status hf_status_of_word(const char *word)
 {
-    for (int i = 0; i < N_STATUS; i++)
-        if (!strcmp(listed[i].word, word)) return listed[i].status;
-    return unlisted.status;
+    for (int i = 0; i < N_ROW; i++)
+        if (!strcmp(word, table[i].word)) return table[i].status;
+    return HF_IO;
 }
 
 const char *hf_status_text(hf_status status)
 {
-    return row_of(status)->text;
+    return find(status)->text;
 }
 
 int hf_status_exit_code(hf_status status)
 {
-    return row_of(status)->exit_code;
+    return find(status)->exit_code;
 }
 
 /* Reserves room for `extra` more bytes and the final NUL. Returns false if memory runs out. */

@@ -6,12 +6,8 @@
 /* ---- words ---- */
 
 #define WORD(name, value, word) [value] = word,
-#define BOUND_WORD(name, value, word, meaning) [value] = word,
-#define BOUND_MEANING(name, value, word, meaning) [value] = meaning,
 static const char *const stop_reason[] = {HF_STOP_REASON_LIST(WORD)};
 static const char *const coupling_stop[] = {HF_COUPLING_STOP_LIST(WORD)};
-static const char *const bound_reason[] = {HF_BOUND_REASON_LIST(BOUND_WORD)};
-static const char *const bound_meaning[] = {HF_BOUND_REASON_LIST(BOUND_MEANING)};
 
 /* Returns the word of a value; "unknown" for a value that is not listed, as another version may have stored. */
 static const char *word_of(int value, size_t n, const char *const *word)
@@ -30,14 +26,32 @@ const char *hf_coupling_stop_word(int stop)
     return WORD_OF(stop, coupling_stop);
 }
 
+/* The rows of HF_BOUND_REASON_LIST. */
+static const struct bound_row {
+    int value;
+    const char *word, *meaning;
+} bound[] = {
+#define ROW(name, value_, word_, ...) {.value = value_, .word = word_, __VA_ARGS__},
+    HF_BOUND_REASON_LIST(ROW)
+#undef ROW
+};
+
+static const struct bound_row *find_bound(int reason)
+{
+    static const struct bound_row unknown = {.word = "unknown", .meaning = "unknown"};
+    for (size_t i = 0; i < sizeof bound / sizeof *bound; i++)
+        if (bound[i].value == reason) return &bound[i];
+    return &unknown;
+}
+
 const char *hf_bound_reason_word(int reason)
 {
-    return WORD_OF(reason, bound_reason);
+    return find_bound(reason)->word;
 }
 
 const char *hf_bound_reason_meaning(int reason)
 {
-    return WORD_OF(reason, bound_meaning);
+    return find_bound(reason)->meaning;
 }
 
 /* ---- the lists of fields ---- */

@@ -253,23 +253,30 @@ static void write_objective_units(const hf_summary *s, FILE *f)
     hf_json_close(&j, '}');
 }
 
-/* Writes terms, descriptions of figures, and the words of stop reasons and bounds, as `hifdm explain` prints them. */
+static void write_word(hf_json *j, const hf_word *w, const char *name)
+{
+    hf_json_open(j, NULL, '{');
+    hf_json_text(j, "word", name);
+    if (!strcmp(w->kind, "term")) hf_json_bool(j, "term", true);
+    if (strstr(w->kind, "_reason")) hf_json_text(j, "of", w->kind);
+    hf_json_text(j, "text", w->text);
+    hf_json_close(j, '}');
+}
+
+/* Writes terms, descriptions of figures, and the words of stop reasons and bounds, as `hifdm explain` prints them.
+ * Figures and reasons also have their earlier names. */
 static void write_words(FILE *f)
 {
     hf_json j = {.file = f, .is_due = true};
     hf_json_line(&j, "");
     hf_json_open(&j, "words", '[');
     for (int i = 0; i < hf_word_count(); i++) {
-        hf_word word = hf_word_at(i);
-        bool is_term = !strcmp(word.kind, "term"), is_figure = !strncmp(word.kind, "figure", 6);
-        bool is_reason = !strcmp(word.kind, "stop_reason") || !strcmp(word.kind, "bound_reason");
-        if (!is_term && !is_figure && !is_reason) continue;
-        hf_json_open(&j, NULL, '{');
-        hf_json_text(&j, "word", word.word);
-        if (is_term) hf_json_bool(&j, "term", true);
-        if (is_reason) hf_json_text(&j, "of", word.kind);
-        hf_json_text(&j, "text", word.text);
-        hf_json_close(&j, '}');
+        const hf_word w = hf_word_at(i);
+        bool is_term = !strcmp(w.kind, "term");
+        if (!is_term && strncmp(w.kind, "figure", 6) != 0 && !strstr(w.kind, "_reason")) continue;
+        write_word(&j, &w, w.word);
+        for (const char *p = w.formerly; !is_term && *p; p = hf_word_next(p))
+            write_word(&j, &w, p);
     }
     hf_json_close(&j, ']');
 }

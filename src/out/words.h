@@ -1,44 +1,49 @@
-/* words - one table for `hifdm explain`: the meaning of every status, warning, figure and term, and what to do about
- * it.
- *
- * Entries of figures and statuses come from the lists that define them (result.h, summary.h, surface.h, tolerance.h,
- * status.h). Entries beyond these lists are in words.c, words_warning.c, words_case.c and words_adjust.c. */
+/* words - reads the entries of `hifdm explain` from src/manual/glossary.md, which is part of the program: the meaning
+ * of every status, warning, figure and term, and what to do about it. */
 #ifndef HIFDM_WORDS_H
 #define HIFDM_WORDS_H
 
 #include <stdbool.h>
 
+/* An entry. A list is a row of strings, one behind the other, and ends with an empty string. */
 typedef struct {
     const char *word;
-    const char *kind; /* kind of word: "term", "status", "warning", "figure of form, optimize, polish", ... */
-    const char *units, *text;
-    const char *says; /* text that only messages of this entry contain; may be NULL */
+    const char *section;     /* title of the section of the page */
+    const char *kind;        /* kind of word: "term", "status", "warning", "figure of tolerance", ... */
+    const char *unit;        /* "" if there is none */
+    const char *exit_status; /* of a command that ends with this status; "" for other words */
+    const char *also;        /* list of other words for the same thing */
+    const char *formerly;    /* list of names in earlier versions */
+    const char *message;     /* list of texts; a message with one of them belongs to this entry */
+    const char *text;        /* paragraphs, separated by '\n' */
 } hf_word;
 
 /* hf_word_at returns entry i of 0 ... hf_word_count() - 1. A word may have several entries of different kinds. */
 int hf_word_count(void);
 hf_word hf_word_at(int i);
 
-/* Warnings. */
-extern const hf_word hf_words_warning[];
-extern const int hf_n_words_warning;
+/* Returns the item behind this one: for (const char *p = list; *p; p = hf_word_next(p)). */
+const char *hf_word_next(const char *item);
 
-/* Words of case files and cut lists. */
-extern const hf_word hf_words_case[];
-extern const int hf_n_words_case;
-
-/* Words of `hifdm adjust`, the last entries. */
-extern const hf_word hf_words_adjust[];
-extern const int hf_n_words_adjust;
-
-/* Returns whether entry i belongs to `word`, which may also be a whole warning. */
+/* Returns true if `word` is a word or a name of entry i, or a message that belongs to it. */
 bool hf_word_is(int i, const char *word);
+
+/* Returns true if one of these messages belongs to entry i. */
+bool hf_word_is_in(int i, const char *messages);
+
+/* Returns true if hf_word_is would be true but for capitals, separators ("-", "_" or a blank), a plural s, and the unit
+ * of a figure. Messages do not count. */
+bool hf_word_is_like(int i, const char *word);
 
 /* Returns a letter for comparison: in lower case, with a blank for "-" and "_". */
 int hf_word_letter(char letter);
 
-/* Returns whether `word` is the word of entry i, apart from capitals, separators ("-", "_" or a blank), a plural s, and
- * the unit of a figure. */
-bool hf_word_is_like(int i, const char *word);
+/* Reads a glossary by the rules at the top of glossary.md. The entries point into `text`, which is changed. Returns the
+ * number of entries, at most `size`. *fault is the number of the first line that breaks a rule, counted from 1, or 0
+ * if no line does; the other lines are read nevertheless. */
+int hf_words_read(char *text, hf_word *entry, int size, int *fault);
+
+/* The text of glossary.md, which the Makefile embeds. The first call of another function changes it. */
+extern char hf_words_text[];
 
 #endif

@@ -12,8 +12,8 @@
 
 /* ---- enumerations ---- */
 
-#define STATUS_WORD(name, value, exit_code, word, text) word,
-#define STATUS_VALUE(name, value, exit_code, word, text) value,
+#define STATUS_WORD(name, value, word, ...) word,
+#define STATUS_VALUE(name, value, ...) value,
 #define STOP_WORD(name, value, word) word,
 #define STOP_VALUE(name, value, word) value,
 static const char *const status_word[] = {HF_STATUS_LIST(STATUS_WORD)};
@@ -22,8 +22,8 @@ static const char *const stop_word[] = {HF_STOP_REASON_LIST(STOP_WORD)};
 static const signed char stop_value[] = {HF_STOP_REASON_LIST(STOP_VALUE)};
 static const char *const coupling_word[] = {HF_COUPLING_STOP_LIST(STOP_WORD)};
 static const signed char coupling_value[] = {HF_COUPLING_STOP_LIST(STOP_VALUE)};
-#define BOUND_WORD(name, value, word, meaning) word,
-#define BOUND_VALUE(name, value, word, meaning) value,
+#define BOUND_WORD(name, value, word, ...) word,
+#define BOUND_VALUE(name, value, ...) value,
 static const char *const bound_word[] = {HF_BOUND_REASON_LIST(BOUND_WORD)};
 static const signed char bound_value[] = {HF_BOUND_REASON_LIST(BOUND_VALUE)};
 

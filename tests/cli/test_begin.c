@@ -125,7 +125,8 @@ END_TEST
 
 /* ---- hifdm explain ---- */
 
-/* The words that explain lists, and what it says about them: never nothing, never "the same". */
+/* The words that explain lists, with their texts: never nothing, never "the same". Each figure of JSON, each status and
+ * each warning in the sources has an entry. Each figure of the glossary is in the sources. */
 static const char look_up[] =
     "import json, re, subprocess, sys\n"
     "program, source, *results = sys.argv[1:]\n"
@@ -156,14 +157,26 @@ static const char look_up[] =
     "for key in sorted(keys): demand(key, 'figure')\n"
     "print(len(words), len(keys))\n"
     "status = open(source + '/include/hifdm/status.h').read()\n"
-    "for word in re.findall(r'X\\([A-Z_]+, \\d+, \\d+, \"(\\w+)\"', status): demand(word, 'status')\n"
+    "for word in re.findall(r'X\\([A-Z_]+, \\d+, \"(\\w+)\"', status): demand(word, 'status')\n"
     "import glob\n"
     "for file in glob.glob(source + '/src/*/*.c'):\n"
     "    text = open(file).read()\n"
     "    for call in re.findall(r'hf_warning\\(\\s*[^,\"]+,\\s*((?:\"(?:[^\"\\\\]|\\\\.)*\"\\s*)+)', text):\n"
     "        said = ''.join(re.findall(r'\"((?:[^\"\\\\]|\\\\.)*)\"', call))\n"
     "        if said in ('%s', '%.*s'): continue\n"
-    "        if explain('warning: ' + said).returncode: print('warning', said, 'has no entry')\n";
+    "        if explain('warning: ' + said).returncode: print('warning', said, 'has no entry')\n"
+    "files = glob.glob(source + '/src/*/*.[ch]') + glob.glob(source + '/include/hifdm/*.h')\n"
+    "sources = ' '.join(open(file).read() for file in files)\n"
+    "written = ' '.join(re.findall(r'\"(?:[^\"\\\\\\n]|\\\\.)*\"|X\\([^\"\\n]*', sources))\n"
+    "kind = ''\n"
+    "for part in re.split('^(?=##)', open(source + '/src/manual/glossary.md').read(), flags=re.M):\n"
+    "    if part.startswith('## '): kind = (re.findall('^`(.*?)`', part, re.M) + [''])[0]\n"
+    "    if not part.startswith('### ') or not re.match('figure|column|object', kind): continue\n"
+    "    word, *others = part[4:].split('\\n')\n"
+    "    former = [name for line in others if line.startswith('- Formerly: ') for name in line[12:].split(', ')]\n"
+    "    names = [name.removeprefix('fit_').replace(' ', '_') for name in [word, *former]]\n"
+    "    if not any(re.search(rf'\\b{re.escape(name)}\\b', written) for name in names):\n"
+    "        print('entry', word, 'is no figure')\n";
 
 START_TEST(every_word_is_explained)
 {
@@ -246,10 +259,10 @@ START_TEST(words_of_the_summary_are_explained)
     for (size_t k = 0; k < sizeof word / sizeof *word; k++)
         HIFDM(0, "explain", word[k]);
     HIFDM(0, "explain", "give way");
-    OUT("gives way (term)");
+    OUT("deflection (term, m)\n    Formerly \"gives way\", \"give way\".\n");
     HIFDM(0, "explain", "at bounds");
-    OUT("nodes that no goal counts");
-    OUT("Force densities at 0");
+    OUT("no objective counts some nodes");
+    OUT("What to do: If a few variables are at bounds");
     HIFDM(2, "explain", "nonsenses");
 }
 END_TEST
@@ -257,17 +270,17 @@ END_TEST
 START_TEST(explain_helps_with_slips)
 {
     HIFDM(0, "explain", "straight_chain");
-    OUT("straight_chain (status; exit status 4)\n    a straight chain of length-controlled cables carries lateral "
-        "load\n");
+    OUT("straight_chain (status; exit status 4)\n    A straight chain of cables that keep their lengths");
+    OUT("\n    What to do: Let the chain sag");
     HIFDM(0, "explain", "warning: slack in the form-finding shape, 1: c7");
     OUT("slack_cables (warning)\n");
     ck_assert_int_eq(count_of(said.out, "("), 1);
     static const char *const as_said[][2] = {
         {"Straight-Chain", "straight_chain (status; exit status 4)"},
-        {"levenberg marquardt", "Levenberg-Marquardt (term)"},
+        {"levenberg marquardt", "LM (term)"},
         {"lm", "LM (term)"},
         {"ruze", "Ruze (term)"},
-        {"chi^2", "chi^2 (term)"},
+        {"chi^2", "chi_square (term)"},
         {"no: truss", "truss (bound_reason)"},
         {"ea", "EA (term, N)"},
         {"slack-cable", "slack cable (term)"},
@@ -291,14 +304,14 @@ START_TEST(explain_helps_with_slips)
     HIFDM(2, "explain", "drift gobbledygook");
     OUT("drift (term)\n");
     ERR("nothing is called 'gobbledygook'; ");
-    HIFDM(0, "explain", "good to");
-    ck_assert_int_eq(count_of(said.out, "good to (term)\n"), 1);
+    HIFDM(0, "explain", "good to"); /* names of earlier versions */
+    ck_assert_int_eq(count_of(said.out, "1 dB gain loss (term)\n"), 1);
     HIFDM(0, "explain", "good_to_Hz");
-    ck_assert_int_eq(count_of(said.out, "good to (term)\n"), 1);
-    HIFDM(0, "explain", "boundary ratio"); /* it only points to another, which follows */
-    OUT("boundary_tension_ratio (figure of form");
+    OUT("gain_loss_1dB_Hz (figure of a merged study, Hz)\n    Formerly \"good_to_Hz\".\n");
     HIFDM(0, "explain", "adjustment_m");
-    OUT("l0_minus_theory_m (column of cut lists, m)\n");
+    OUT("unstressed_minus_target_m (column of cut lists, m)\n");
+    HIFDM(0, "explain", "boundary ratio");
+    OUT("boundary_tension_ratio");
     static const char *const asked[] = {"goal",    "facets",   "evenness",   "limits",   "range", "rings",
                                         "cutlist", "cut list", "turnbuckle", "gain",     "RMS",   "sweep",
                                         "point",   "merge",    "psi_by_cut", "by a turn"};
@@ -333,7 +346,7 @@ START_TEST(messages_say_where_to_read_on)
     OUT("`hifdm explain WORD` tells more: straight_chain, loaded_chains\r\n");
     SHELL(0, "script -qec \"\\\"$0\\\" run \\\"$1\\\" -o \\\"$2\\\" --set optimize.generations=1\" /dev/null", chen,
           temp("c.h5"));
-    OUT("`hifdm explain WORD` tells more: stopped_early, loaded_chains\r\n");
+    OUT("`hifdm explain WORD` tells more: loaded_chains, stopped_early\r\n");
     HIFDM(0, "show", temp("c.h5"));
     ck_assert_ptr_null(strstr(said.err, "explain"));
 }

@@ -20,7 +20,7 @@ enum { N_KNOWN = sizeof known / sizeof *known };
 START_TEST(numbers_words_and_exit_codes_stay)
 {
     int n_listed = 0;
-#define COUNT(name, value, exit_code, word, text) n_listed++;
+#define COUNT(...) n_listed++;
     HF_STATUS_LIST(COUNT)
 #undef COUNT
     ck_assert_int_ge(n_listed, N_KNOWN);
@@ -36,7 +36,7 @@ END_TEST
 START_TEST(words_are_single_and_different)
 {
     static const char *const word[] = {
-#define WORD(name, value, exit_code, word, text) word,
+#define WORD(name, value, word, ...) word,
         HF_STATUS_LIST(WORD)
 #undef WORD
     };
