@@ -142,7 +142,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
          bench-before bench-optimisers bench-fronts bench-sampling pretension-night api docs docs-browser lint \
          asan tsan fuzz fuzz-results install uninstall dist dist-check deb workflow-check
-FRONT += python-install mutants-random attack abi bench-instructions bits transcripts deb-check release-check
+FRONT += prose python-install mutants-random attack abi bench-instructions bits transcripts deb-check release-check
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
 # `make run test` must not build twice at the same time in the same folder.
@@ -316,6 +316,9 @@ docs: ## the manual as pages to search and to read offline: build/docs/index.htm
 docs-browser: docs ## every page of the manual in headless Chromium, on a phone; needs `tools/setup.sh --ci`
 	$(Q)HIFDM=$(abspath $(PROGRAM)) BUILD=$(BUILD) DOCS=$(BUILD)/docs \
 	    tests/browser/run.sh --node tests/browser/manual.mjs
+
+prose: ## check the words of documents and program by tools/prose/terms.yml; needs npm
+	$(Q)tools/prose/run.sh
 
 lint: ## check the rules of the house
 	+$(Q)tools/lint.sh
