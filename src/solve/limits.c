@@ -69,9 +69,12 @@ void hf_limits_free(hf_limits *l)
 
 /* ---- violations ---- */
 
-double hf_limits_ratio_violation(int n, const int *cable, const double *tension_N, double cap, double slack_N)
+/* Returns the sum over the cables of 1 - T/t below t and 1 - cap t/T above cap t, where t^2 = min T max T / cap. The
+ * sum counts every cable, so it falls even if several cables share the maximum or minimum tension and no single one
+ * changes the ratio. In t, a minimum tension below slack_N counts as slack_N. */
+static double ratio_violation(const hf_model *m, int n, const int *cable, const double *tension_N, double cap)
 {
-    double low = INFINITY, high = 0, sum = 0;
+    double low = INFINITY, high = 0, sum = 0, slack_N = HF_SLACK_RATIO * m->reference_N;
     for (int i = 0; i < n; i++) {
         low = fmin(low, tension_N[cable[i]]);
         high = fmax(high, tension_N[cable[i]]);
@@ -108,14 +111,14 @@ static double displacement_of(const hf_workspace *w, int i_attachment)
 
 static double row_violation(const hf_limit *row, const hf_model *m, const hf_workspace *w)
 {
-    double sum = 0, slack_N = HF_SLACK_RATIO * m->reference_N;
+    double sum = 0;
     switch (row->kind) {
     case HF_LIMIT_TENSION:
         for (int i = 0; i < row->n_cable; i++)
             sum += hf_limits_tension_violation(m, w->tension_N[row->cable[i]], row->lower, row->upper);
         break;
     case HF_LIMIT_RATIO:
-        return hf_limits_ratio_violation(row->n_cable, row->cable, w->tension_N, row->upper, slack_N);
+        return ratio_violation(m, row->n_cable, row->cable, w->tension_N, row->upper);
     case HF_LIMIT_DEFLECTION:
         for (int i = 0; i < m->n_attachment; i++)
             sum += outside(row->lower, row->upper, displacement_of(w, i), row->upper);
@@ -131,8 +134,7 @@ double hf_limits_violation(const hf_evaluator *v, const hf_workspace *w)
     for (int i = 0; v->limits && i < v->limits->n; i++)
         sum += row_violation(&v->limits->row[i], m, w);
     if (isfinite(cap) && hf_metrics_set_ratio(m, w, m->n_boundary, m->boundary_cable) > cap)
-        sum += hf_limits_ratio_violation(m->n_boundary, m->boundary_cable, w->tension_N, cap,
-                                         HF_SLACK_RATIO * m->reference_N);
+        sum += ratio_violation(m, m->n_boundary, m->boundary_cable, w->tension_N, cap);
     return sum;
 }
 
