@@ -18,20 +18,16 @@
 
 /* ---- kernels ---- */
 
-static const hf_band_kernels *kernels_here(void)
-{
-    static const hf_band_kernels *const of_isa[] = {HF_LANE_EACH(&hf_band_kernels)};
-    return of_isa[hf_lane_best_isa()];
-}
+static const hf_band_kernels *const kernels_of_isa[] = {HF_LANE_EACH(&hf_band_kernels)};
 
 int hf_band_factor(int n, int half_bandwidth, double *band)
 {
-    return kernels_here()->factor(n, half_bandwidth, band, 0, n);
+    return kernels_of_isa[hf_lane_best_isa()]->factor(n, half_bandwidth, band, 0, n);
 }
 
 hf_status hf_band_factor_until(const volatile sig_atomic_t *stop, int n, int half_bandwidth, double *band)
 {
-    const hf_band_kernels *here = kernels_here();
+    const hf_band_kernels *here = kernels_of_isa[hf_lane_best_isa()];
     for (int first = 0; first < n; first += AT_A_TIME) {
         if (stop && *stop) return HF_INTERRUPTED;
         int end = n - first > AT_A_TIME ? first + AT_A_TIME : n;
@@ -42,7 +38,7 @@ hf_status hf_band_factor_until(const volatile sig_atomic_t *stop, int n, int hal
 
 void hf_band_back_solve(int n, int half_bandwidth, int n_rhs, const double *factor, double *b, int ldb)
 {
-    kernels_here()->back_solve(n, half_bandwidth, n_rhs, factor, b, ldb);
+    kernels_of_isa[hf_lane_best_isa()]->back_solve(n, half_bandwidth, n_rhs, factor, b, ldb);
 }
 
 hf_status hf_band_solve(bool by_lapack, int n, int half_bandwidth, double *band, double *b, int ldb, int *bad_row)
@@ -55,7 +51,7 @@ hf_status hf_band_solve(bool by_lapack, int n, int half_bandwidth, double *band,
 
 void hf_band_gram(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg)
 {
-    kernels_here()->gram(first, end, n_column, a, lda, gram, ldg);
+    kernels_of_isa[hf_lane_best_isa()]->gram(first, end, n_column, a, lda, gram, ldg);
 }
 
 /* ---- LAPACK ---- */

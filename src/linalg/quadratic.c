@@ -26,15 +26,11 @@
 
 /* ---- kernels ---- */
 
-static const hf_quadratic_kernels *kernels_here(void)
-{
-    static const hf_quadratic_kernels *const of_isa[] = {HF_LANE_EACH(&hf_quadratic_kernels)};
-    return of_isa[hf_lane_best_isa()];
-}
+static const hf_quadratic_kernels *const kernels_of_isa[] = {HF_LANE_EACH(&hf_quadratic_kernels)};
 
 void hf_quadratic_combine(int ld, int n, const double *weight, const double *J, double *sum)
 {
-    kernels_here()->combine(ld, 0, n, weight, J, sum);
+    kernels_of_isa[hf_lane_best_isa()]->combine(ld, 0, n, weight, J, sum);
 }
 
 /* ---- layout ---- */
@@ -65,7 +61,7 @@ static void invert_transposed(hf_quadratic *q)
         memset(q->strip, 0, (size_t)n * HF_LANES * sizeof(double));
         for (int lane = 0; lane < n_lane; lane++)
             q->strip[HF_LANES * (first + lane) + lane] = 1;
-        kernels_here()->invert(n, first, q->triangle, q->strip);
+        kernels_of_isa[hf_lane_best_isa()]->invert(n, first, q->triangle, q->strip);
         for (int r = 0; r < n; r++)
             for (int lane = 0; lane < n_lane; lane++)
                 q->inverse[(n - 1 - r) * q->ld + q->order[first + lane]] = q->strip[HF_LANES * r + lane];
@@ -105,7 +101,7 @@ static void take_in(hf_quadratic *q, double *d, hf_quadratic_active limit)
     double *cosine = q->scratch + 4 * q->ld, *sine = cosine + q->ld;
     for (int i = n - 2; i >= m; i--)
         rotate(d + i, d + i + 1, cosine + i, sine + i);
-    kernels_here()->turn(q->ld, m, n - 2, cosine, sine, q->inverse);
+    kernels_of_isa[hf_lane_best_isa()]->turn(q->ld, m, n - 2, cosine, sine, q->inverse);
     memcpy(q->triangle + m * n, d, (size_t)(m + 1) * sizeof(double));
     q->active[q->n_active++] = limit;
 }
@@ -122,7 +118,7 @@ static void let_go(hf_quadratic *q, int k)
     }
     for (int j = k; j < q->n_active; j++) {
         rotate(R + j * n + j, R + j * n + j + 1, &cosine, &sine);
-        kernels_here()->turn(q->ld, 0, 0, &cosine, &sine, q->inverse + j * q->ld);
+        kernels_of_isa[hf_lane_best_isa()]->turn(q->ld, 0, 0, &cosine, &sine, q->inverse + j * q->ld);
         for (int c = j + 1; c < q->n_active; c++) {
             double *f = R + c * n + j, old = f[0];
             f[0] = cosine * old + sine * f[1];
@@ -142,7 +138,7 @@ static void find_share(const hf_quadratic *q, const hf_quadratic_limit *limit, d
 /* Computes z, the sum of the columns of J from column m on, weighted with d. */
 static void find_direction(const hf_quadratic *q, int m, const double *d, double *z)
 {
-    kernels_here()->combine(q->ld, m, q->n, d, q->inverse, z);
+    kernels_of_isa[hf_lane_best_isa()]->combine(q->ld, m, q->n, d, q->inverse, z);
 }
 
 /* Moves x until `limit` holds with equality, and adds it to the active limits. An active limit whose multiplier would

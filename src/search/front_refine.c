@@ -102,8 +102,6 @@ bool hf_front_refine_applies(const hf_evaluator *v)
 static const double weight[] = {1e-2, 1e-4};
 enum { N_WEIGHT = sizeof weight / sizeof *weight };
 
-#define SAME 1e-9 /* a range below this part of an objective counts as none */
-
 /* Sets role [n_objective]: first the objective to minimise, which is the first one without corners if there is one,
  * then the others in their order. */
 static void choose_roles(const hf_objectives *objectives, int *role)
@@ -203,7 +201,7 @@ static int find_common(int n_objective, int n, const hf_front_point *const *poin
     for (int i = 0; i < n; i++) {
         double above = point[i]->status == HF_OK ? 0 : INFINITY;
         for (int k = 0; k < n_objective && point[i]->status == HF_OK; k++)
-            if (most[k] - least[k] > SAME * most[k])
+            if (most[k] - least[k] > NO_RANGE * most[k])
                 above = fmax(above, (point[i]->objective[k] - least[k]) / (most[k] - least[k]));
         if (!(above <= part) || (common >= 0 && !(above < part))) continue;
         common = i;

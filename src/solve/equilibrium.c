@@ -79,14 +79,6 @@ static void set_first_force_densities(const hf_model *m, hf_workspace *w)
     }
 }
 
-/* Copies force densities and positions. */
-static void copy_shape(const hf_model *m, const double *from_N_per_m, const double *from_m, double *to_N_per_m,
-                       double *to_m)
-{
-    memcpy(to_N_per_m, from_N_per_m, (size_t)m->n_cable * sizeof(double));
-    memcpy(to_m, from_m, 3 * (size_t)m->n_node * sizeof(double));
-}
-
 /* Finds the reason why the path has not solved the net: a straight chain, the cable whose rounding prevents
  * convergence, or none (culprit -1). Iterations from the end of the path reduce the errors to rounding. If they fail,
  * iterations from the first force densities may still find a chain. Returns result->status. */
@@ -98,7 +90,7 @@ static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n
     bool is_finite = r->status != HF_NOT_FINITE;
     int cable = r->culprit; /* with a tension that is not finite */
     if (is_finite && (r->status != HF_NOT_CONVERGED || r->culprit >= 0)) return r->status;
-    copy_shape(m, w->q_N_per_m, w->position_m, w->interior_tension_N, w->interior_position_m);
+    hf_newton_copy(m, w->position_m, w->q_N_per_m, w->interior_position_m, w->interior_tension_N);
     for (int start = is_finite ? 0 : 1; start < 2; start++) {
         part.max_iterations = smaller(LAST_BLOCK, s->max_iterations - n_step);
         if (part.max_iterations < 1) break;
@@ -116,7 +108,7 @@ static hf_status name_reason(const hf_model *m, const hf_form_settings *s, int n
         r->culprit = cable;
     }
     if (!is_finite || r->status == HF_COLLAPSED) return r->status; /* both starts have failed */
-    copy_shape(m, w->interior_tension_N, w->interior_position_m, w->q_N_per_m, w->position_m);
+    hf_newton_copy(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->q_N_per_m);
     return hf_form_accept(m, s, HF_STOPPED_MAX_ITERATIONS, n_step, w, r);
 }
 
@@ -157,9 +149,9 @@ static hf_status ask_path(const hf_model *m, const hf_form_settings *s, hf_works
 {
     hf_form_settings whole = *s;
     whole.max_iterations = VERDICT_MAX;
-    copy_shape(m, w->q_N_per_m, w->position_m, w->loose_q_N_per_m, w->loose_before_m);
+    hf_newton_copy(m, w->position_m, w->q_N_per_m, w->loose_before_m, w->loose_q_N_per_m);
     find_on_path(m, &whole, 0, w, NULL, said);
-    copy_shape(m, w->loose_q_N_per_m, w->loose_before_m, w->q_N_per_m, w->position_m);
+    hf_newton_copy(m, w->loose_before_m, w->loose_q_N_per_m, w->position_m, w->q_N_per_m);
     return said->status;
 }
 

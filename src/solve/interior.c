@@ -59,11 +59,7 @@
 
 static_assert(sizeof(hf_path_cables) == HF_INTERIOR_BLOCK * sizeof(double), "HF_INTERIOR_BLOCK");
 
-static const hf_path_kernels *kernels_here(void)
-{
-    static const hf_path_kernels *const of_isa[] = {HF_LANE_EACH(&hf_path_kernels)};
-    return of_isa[hf_lane_best_isa()];
-}
+static const hf_path_kernels *const kernels_of_isa[] = {HF_LANE_EACH(&hf_path_kernels)};
 
 static int n_block(const hf_model *m)
 {
@@ -212,7 +208,7 @@ static path_error measure_path(const hf_model *m, hf_workspace *w, const hf_newt
     double sum = 0, all = 0;
     for (int e = 0; e < m->n_cable; e++)
         if (!is_fixed(m, w, e)) set_vector(m, w, e);
-    error.length = kernels_here()->measure(n_block(m), blocks(w));
+    error.length = kernels_of_isa[hf_lane_best_isa()]->measure(n_block(m), blocks(w));
     hf_newton_matrix_set_loads(m, w, w->newton_force_N);
     for (int e = 0; e < m->n_cable; e++) {
         int k;
@@ -254,23 +250,6 @@ static void set_vector_step(const hf_model *m, const hf_workspace *w, int e)
             (j < w->n_moving ? w->newton_step[3 * j + c] : 0) - (i < w->n_moving ? w->newton_step[3 * i + c] : 0);
 }
 
-/* Factors the matrix of path_block with springs (may be NULL) that tie rows to the ground. Returns HF_OK or
- * HF_SINGULAR. */
-static hf_status factor(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, const double *spring_N_per_m)
-{
-    if (held) return hf_newton_matrix_factor_blocks(m, w, path_block, spring_N_per_m, held, NULL);
-    return hf_joint_factor(m, w, path_block, spring_N_per_m, NULL);
-}
-
-/* Replaces the right-hand side in newton_step by the step. */
-static void solve_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *held)
-{
-    if (held)
-        hf_newton_matrix_solve_rows(m, w, held, w->newton_step);
-    else
-        hf_joint_solve(m, w, path_block, w->newton_step);
-}
-
 /* Sets newton_step and the direction of all cables for mu = `target`; newton_band holds the factor. With `corrected` it
  * uses the second-order terms, with `corrects` it sets them. Returns the maximum part of the direction that stays in
  * all cones. */
@@ -279,7 +258,7 @@ static double find_path_direction(const hf_model *m, hf_workspace *w, const hf_n
 {
     double *rhs = w->newton_step;
     memcpy(rhs, w->newton_force_N, 3 * (size_t)w->n_moving * sizeof *rhs);
-    kernels_here()->set_side(n_block(m), blocks(w), target, corrected);
+    kernels_of_isa[hf_lane_best_isa()]->set_side(n_block(m), blocks(w), target, corrected);
     for (int e = 0; e < m->n_cable; e++) {
         int k;
         const hf_path_cables *p = block_of(w, e, &k);
@@ -287,10 +266,10 @@ static double find_path_direction(const hf_model *m, hf_workspace *w, const hf_n
         double pull[3] = {p->pull[0][k], p->pull[1][k], p->pull[2][k]};
         hf_newton_matrix_add_pull(m, w, e, pull, rhs);
     }
-    solve_step(m, w, held);
+    hf_joint_solve(m, w, path_block, held, w->newton_step);
     for (int e = 0; e < m->n_cable; e++)
         if (!is_fixed(m, w, e)) set_vector_step(m, w, e);
-    double inverse = kernels_here()->set_direction(n_block(m), blocks(w), corrects);
+    double inverse = kernels_of_isa[hf_lane_best_isa()]->set_direction(n_block(m), blocks(w), corrects);
     return inverse > 0 ? 1 / inverse : INFINITY;
 }
 
@@ -339,13 +318,13 @@ static bool is_told_to_stop(const hf_workspace *w)
 /* Takes one step of the path. Returns false if it does not move. */
 static bool take_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *held, double mu)
 {
-    kernels_here()->set_scaling(n_block(m), blocks(w));
-    if (factor(m, w, held, held ? w->spring_N_per_m : NULL) != HF_OK) return false;
+    kernels_of_isa[hf_lane_best_isa()]->set_scaling(n_block(m), blocks(w));
+    if (hf_joint_factor(m, w, path_block, held ? w->spring_N_per_m : NULL, held, NULL) != HF_OK) return false;
     double part = fmin(1, find_path_direction(m, w, held, 0, false, true)), left = 1 - part;
     part = fmin(1, STEP_KEPT * find_path_direction(m, w, held, left * left * left * mu, true, false));
     if (!(part > STALLED)) return false;
     move_nodes(m, w, part);
-    kernels_here()->move(n_block(m), blocks(w), part);
+    kernels_of_isa[hf_lane_best_isa()]->move(n_block(m), blocks(w), part);
     return true;
 }
 
@@ -443,7 +422,7 @@ static bool take_last_step(const hf_model *m, hf_workspace *w, const hf_newton_r
                     damping = DAMPING * fmin(error, 1) * m->reference_N / hf_joint_mean_length_m(m);
     for (int i = 0; i < m->n_free && !held; i++)
         w->spring_N_per_m[i] = damping;
-    if (factor(m, w, held, w->spring_N_per_m) != HF_OK) return false;
+    if (hf_joint_factor(m, w, path_block, w->spring_N_per_m, held, NULL) != HF_OK) return false;
     memcpy(step, w->newton_force_N, 3 * (size_t)w->n_moving * sizeof *step);
     for (int e = 0; e < m->n_cable; e++) {
         int k;
@@ -453,7 +432,7 @@ static bool take_last_step(const hf_model *m, hf_workspace *w, const hf_newton_r
             pull[c] = p->DT[k] * p->unit[c][k];
         hf_newton_matrix_add_pull(m, w, e, pull, step);
     }
-    solve_step(m, w, held);
+    hf_joint_solve(m, w, path_block, held, w->newton_step);
     for (int e = 0; e < m->n_cable; e++) {
         int k;
         const hf_path_cables *p = block_of(w, e, &k);
@@ -481,13 +460,6 @@ static void begin_end(const hf_model *m, hf_workspace *w, double fall)
     }
 }
 
-/* Copies positions and tensions, those of a point. */
-static void copy_point(const hf_model *m, const double *from_m, const double *from_N, double *to_m, double *to_N)
-{
-    memcpy(to_m, from_m, 3 * (size_t)m->n_node * sizeof(double));
-    memcpy(to_N, from_N, (size_t)m->n_cable * sizeof(double));
-}
-
 /* Takes Newton steps from the present point of the path, in position_m and tension_N alone, until the errors are a
  * tenth of the tolerances or no longer fall. Returns true if they are within the tolerances. Otherwise restores the
  * first point, or keeps the last one if it is near and has smaller errors.
@@ -501,11 +473,11 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
     path_error now = measure_end(m, w, held);
     double first = largest_error(m, &now);
     bool damps = !impatient;
-    copy_point(m, w->position_m, w->tension_N, w->interior_position_m, w->interior_tension_N);
+    hf_newton_copy(m, w->position_m, w->tension_N, w->interior_position_m, w->interior_tension_N);
     for (int k = 0; k < (impatient ? FINAL_MAX : LAST_MAX) && *n_step < max_steps && !is_within(&now, s, 0.1); k++) {
         bool was_within = is_within(&now, s, 1);
         double before = largest_error(m, &now);
-        copy_point(m, w->position_m, w->tension_N, w->newton_trial_m, w->newton_trial_tension_N);
+        hf_newton_copy(m, w->position_m, w->tension_N, w->newton_trial_m, w->newton_trial_tension_N);
         ++*n_step;
         if (!take_last_step(m, w, held, damps ? before : 0)) break;
         now = measure_end(m, w, held);
@@ -513,7 +485,7 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
         double after = largest_error(m, &now);
         damps = damps || after > before;
         if (was_within && !(after < before)) {
-            copy_point(m, w->newton_trial_m, w->newton_trial_tension_N, w->position_m, w->tension_N);
+            hf_newton_copy(m, w->newton_trial_m, w->newton_trial_tension_N, w->position_m, w->tension_N);
             return true;
         }
         bool is_worth_it = after < (k > 0 ? CLEARLY * before : FAR) || is_within(&now, s, 1);
@@ -521,7 +493,7 @@ static bool finish(const hf_model *m, const hf_form_settings *s, hf_workspace *w
     }
     if (is_within(&now, s, 1)) return true;
     if (!(largest_error(m, &now) < fmin(first, NEAR)))
-        copy_point(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->tension_N);
+        hf_newton_copy(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->tension_N);
     return false;
 }
 
@@ -556,14 +528,14 @@ hf_status hf_interior_run(const hf_model *m, const hf_form_settings *s, hf_works
         if (is_there && (*culprit = find_collapsed(m, s, w)) >= 0) return HF_COLLAPSED;
         bool is_rounding = k > 0 && !has_places(m, w), goes_on = is_there && k < TRIES_MAX - 1 && !is_rounding;
         if (is_rounding) /* use the point before this part of the path */
-            copy_point(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->tension_N);
+            hf_newton_copy(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->tension_N);
         else
             begin_end(m, w, fall);
         bool is_found = finish(m, s, w, held, goes_on, last, n_step);
         hf_newton_set_force_densities(m, HF_LAW_HAS_MULTIPLIER, w);
         if (is_found) return HF_OK;
         if (!held && !goes_on && has_loaded_chain(m, w)) return HF_STRAIGHT_CHAIN;
-        if (goes_on) copy_point(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->tension_N);
+        if (goes_on) hf_newton_copy(m, w->interior_position_m, w->interior_tension_N, w->position_m, w->tension_N);
     }
     return HF_NOT_CONVERGED;
 }

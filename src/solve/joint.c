@@ -30,18 +30,19 @@ static double displacement_m(const hf_model *m, const hf_workspace *w, const dou
 }
 
 hf_status hf_joint_factor(const hf_model *m, hf_workspace *w, hf_newton_block *block_of, const double *spring_N_per_m,
-                          double *condition)
+                          const hf_newton_rows *rows, double *condition)
 {
-    HF_TRY(hf_newton_matrix_factor_blocks(m, w, block_of, spring_N_per_m, NULL, condition));
+    HF_TRY(hf_newton_matrix_factor_blocks(m, w, block_of, spring_N_per_m, rows, condition));
     if (!has_truss(m, w)) return HF_OK;
     hf_schur schur = hf_schur_of(m, w);
     w->n_joint_step++;
     return hf_schur_factor(m, w, block_of, &schur);
 }
 
-void hf_joint_solve(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, double *rhs)
+void hf_joint_solve(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, const hf_newton_rows *rows,
+                    double *rhs)
 {
-    hf_newton_matrix_solve(m, w, rhs);
+    hf_newton_matrix_solve(m, w, rows, rhs);
     if (!has_truss(m, w)) return;
     hf_schur schur = hf_schur_of(m, w);
     int n_free = 3 * m->n_free;
@@ -53,7 +54,7 @@ void hf_joint_solve(const hf_model *m, const hf_workspace *w, hf_newton_block *b
     hf_schur_solve(&schur, move);
     memset(answer, 0, (size_t)n_free * sizeof *answer);
     hf_schur_push(m, w, block_of, move, answer);
-    hf_newton_matrix_solve(m, w, answer);
+    hf_newton_matrix_solve(m, w, NULL, answer);
     for (int i = 0; i < n_free; i++)
         rhs[i] += answer[i];
     memcpy(pull, move, (size_t)schur.n * sizeof *pull);

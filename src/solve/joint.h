@@ -11,13 +11,15 @@
 #include "solve/newton_matrix.h"
 
 /* Factors the matrix of these blocks for net and truss. spring_N_per_m [n_free] (may be NULL) are springs at free
- * nodes. condition (may be NULL) is that of the band of the free nodes. Returns HF_OK or HF_SINGULAR. */
+ * nodes. rows: NULL, or the rows of a net alone that move. condition (may be NULL) is that of the band of the free
+ * nodes. Returns HF_OK or HF_SINGULAR. */
 hf_status hf_joint_factor(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
-                          const double *spring_N_per_m, double *condition);
+                          const double *spring_N_per_m, const hf_newton_rows *rows, double *condition);
 
-/* Solves in place with that factor and the same blocks: the forces rhs [3 n_moving], N, become the step, m. The
+/* Solves in place with that factor, the same blocks and the same rows: the forces rhs [3 n_moving], N, become the step, m. The
  * attachments step from their displacements in position_m to those under the forces after the step. */
-void hf_joint_solve(const hf_model *model, const hf_workspace *workspace, hf_newton_block *block_of, double *rhs);
+void hf_joint_solve(const hf_model *model, const hf_workspace *workspace, hf_newton_block *block_of,
+                    const hf_newton_rows *rows, double *rhs);
 
 /* Returns the maximum length of n vectors [3], scale a - b; b may be NULL. A NaN stays. */
 double hf_joint_largest(int n, double scale, const double *a, const double *b);

@@ -70,9 +70,12 @@ void hf_limits_free(hf_limits *l)
 
 /* ---- violations ---- */
 
-double hf_limits_ratio_violation(int n, const int *cable, const double *tension_N, double cap, double slack_N)
+/* Returns the sum over the cables of 1 - T/t below t and 1 - cap t/T above cap t, where t^2 = min T max T / cap. The
+ * sum counts every cable, so it falls even if several cables share the maximum or minimum tension and no single one
+ * changes the ratio. In t, a minimum tension below slack_N counts as slack_N. */
+static double ratio_violation(const hf_model *m, int n, const int *cable, const double *tension_N, double cap)
 {
-    double low = INFINITY, high = 0, sum = 0;
+    double low = INFINITY, high = 0, sum = 0, slack_N = HF_SLACK_RATIO * m->reference_N;
     for (int i = 0; i < n; i++) {
         low = fmin(low, tension_N[cable[i]]);
         high = fmax(high, tension_N[cable[i]]);
@@ -101,27 +104,25 @@ double hf_limits_tension_violation(const hf_model *m, double tension_N, double l
     return outside(lower, upper, tension_N, m->reference_N);
 }
 
-static double displacement_of(const hf_workspace *w, int i_attachment)
+/* Returns the number of values of a row that limits tensions or displacements. */
+static int n_value(const hf_limit *row, const hf_model *m)
 {
-    const double *d = w->displacement_m + 3 * (ptrdiff_t)i_attachment;
+    return row->kind == HF_LIMIT_TENSION ? row->n_cable : m->n_attachment;
+}
+
+static double value_of(const hf_limit *row, const hf_workspace *w, int i)
+{
+    if (row->kind == HF_LIMIT_TENSION) return w->tension_N[row->cable[i]];
+    const double *d = w->displacement_m + 3 * (ptrdiff_t)i;
     return hf_norm(d[0], d[1], d[2]);
 }
 
 static double row_violation(const hf_limit *row, const hf_model *m, const hf_workspace *w)
 {
-    double sum = 0, slack_N = HF_SLACK_RATIO * m->reference_N;
-    switch (row->kind) {
-    case HF_LIMIT_TENSION:
-        for (int i = 0; i < row->n_cable; i++)
-            sum += hf_limits_tension_violation(m, w->tension_N[row->cable[i]], row->lower, row->upper);
-        break;
-    case HF_LIMIT_RATIO:
-        return hf_limits_ratio_violation(row->n_cable, row->cable, w->tension_N, row->upper, slack_N);
-    case HF_LIMIT_DEFLECTION:
-        for (int i = 0; i < m->n_attachment; i++)
-            sum += outside(row->lower, row->upper, displacement_of(w, i), row->upper);
-        break;
-    }
+    double sum = 0, unit = row->kind == HF_LIMIT_TENSION ? m->reference_N : row->upper;
+    if (row->kind == HF_LIMIT_RATIO) return ratio_violation(m, row->n_cable, row->cable, w->tension_N, row->upper);
+    for (int i = 0; i < n_value(row, m); i++)
+        sum += outside(row->lower, row->upper, value_of(row, w, i), unit);
     return sum;
 }
 
@@ -132,8 +133,7 @@ double hf_limits_violation(const hf_evaluator *v, const hf_workspace *w)
     for (int i = 0; v->limits && i < v->limits->n; i++)
         sum += row_violation(&v->limits->row[i], m, w);
     if (isfinite(cap) && hf_metrics_set_ratio(m, w, m->n_boundary, m->boundary_cable) > cap)
-        sum += hf_limits_ratio_violation(m->n_boundary, m->boundary_cable, w->tension_N, cap,
-                                         HF_SLACK_RATIO * m->reference_N);
+        sum += ratio_violation(m, m->n_boundary, m->boundary_cable, w->tension_N, cap);
     return sum;
 }
 
@@ -167,23 +167,19 @@ static void count_ratio(const hf_model *m, const hf_workspace *w, int n, const i
     h->other = low;
 }
 
+/* Ratios and displacements are not below zero, so they have no lower side. */
 static void count_row(const hf_limit *row, const hf_model *m, const hf_workspace *w, double sign, hf_limit_held *h)
 {
+    bool is_tension = row->kind == HF_LIMIT_TENSION;
     double bound = sign > 0 ? row->upper : row->lower;
-    switch (row->kind) {
-    case HF_LIMIT_TENSION:
-        for (int i = 0; i < row->n_cable; i++) {
-            double tension = w->tension_N[row->cable[i]];
-            count(h, row->cable[i], -1, tension, bound, beyond(tension, bound, sign, m->reference_N));
-        }
-        break;
-    case HF_LIMIT_RATIO:
-        if (sign > 0) count_ratio(m, w, row->n_cable, row->cable, bound, h);
-        break;
-    case HF_LIMIT_DEFLECTION: /* displacements are not below zero, so they have no lower side */
-        for (int i = 0; i < m->n_attachment && sign > 0; i++)
-            count(h, -1, i, displacement_of(w, i), bound, beyond(displacement_of(w, i), bound, 1, 1));
-        break;
+    if (!is_tension && sign < 0) return;
+    if (row->kind == HF_LIMIT_RATIO) {
+        count_ratio(m, w, row->n_cable, row->cable, bound, h);
+        return;
+    }
+    for (int i = 0; i < n_value(row, m); i++) {
+        double value = value_of(row, w, i), excess = beyond(value, bound, sign, is_tension ? m->reference_N : 1);
+        count(h, is_tension ? row->cable[i] : -1, is_tension ? -1 : i, value, bound, excess);
     }
 }
 

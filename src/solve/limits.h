@@ -47,9 +47,4 @@ const char *hf_limits_name(const hf_scene *scene, const hf_model *model, const h
 const char *hf_limits_name_broken(const hf_evaluator *evaluator, const hf_scene *scene, const hf_workspace *workspace,
                                   char *text, size_t size);
 
-/* Returns the sum over the cables of 1 - T/t below t and 1 - cap t/T above cap t, where t^2 = min T max T / cap. The
- * sum counts every cable, so it falls even if several cables share the maximum or minimum tension and no single one
- * changes the ratio. In t, a minimum tension below slack_N counts as slack_N. */
-double hf_limits_ratio_violation(int n_cable, const int *cable, const double *tension_N, double cap, double slack_N);
-
 #endif

@@ -86,6 +86,12 @@ static imbalance measure_imbalance(const hf_model *m, const hf_workspace *w, con
 
 /* ---- one step ---- */
 
+void hf_newton_copy(const hf_model *m, const double *from_m, const double *from_cable, double *to_m, double *to_cable)
+{
+    memcpy(to_m, from_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(to_cable, from_cable, (size_t)m->n_cable * sizeof(double));
+}
+
 /* Returns the change of the multiplier T, N, for `part` of a step. After the whole step the cable would exceed its
  * required length by `beyond`, m (M7). A cable without stiffness loses `part` of T. */
 static double tension_change(hf_law_cable cable, double length, double T, double part, double beyond)
@@ -114,7 +120,7 @@ static void right_hand_side(const hf_model *m, const hf_workspace *w, const doub
 static void solve_step_of(const hf_model *m, hf_workspace *w)
 {
     right_hand_side(m, w, w->newton_force_N, w->newton_step);
-    hf_joint_solve(m, w, hf_newton_matrix_block, w->newton_step);
+    hf_joint_solve(m, w, hf_newton_matrix_block, NULL, w->newton_step);
 }
 
 /* Sets newton_trial_m and newton_trial_tension_N to the shape and the multipliers after `part` of the step. */
@@ -122,8 +128,7 @@ static void try_step(const hf_model *m, hf_workspace *w, double part)
 {
     const double *step = w->newton_step;
     double u[3];
-    memcpy(w->newton_trial_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
-    memcpy(w->newton_trial_tension_N, w->tension_N, (size_t)m->n_cable * sizeof(double));
+    hf_newton_copy(m, w->position_m, w->tension_N, w->newton_trial_m, w->newton_trial_tension_N);
     for (int i = 0; i < w->n_moving; i++)
         for (int c = 0; c < 3; c++)
             w->newton_trial_m[c * m->n_node + i] += part * step[3 * i + c];
@@ -174,7 +179,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
     double first_merit = now.merit;
     int n_trusted = 0;
     for (int k = 0; k < max_steps && !is_balanced(m, &tight, &now); k++) {
-        if (hf_joint_factor(m, w, hf_newton_matrix_block, NULL, NULL) != HF_OK) break;
+        if (hf_joint_factor(m, w, hf_newton_matrix_block, NULL, NULL, NULL) != HF_OK) break;
         solve_step_of(m, w);
         double part = 1;
         int halvings = 0;
@@ -191,8 +196,7 @@ bool hf_newton_run(const hf_model *m, const hf_form_settings *s, hf_workspace *w
             next = measure_imbalance(m, w, w->newton_trial_m, w->newton_trial_tension_N, w->newton_force_N);
             if (!(next.merit < TRUSTED_RISE * now.merit)) break;
         }
-        memcpy(w->position_m, w->newton_trial_m, 3 * (size_t)m->n_node * sizeof(double));
-        memcpy(w->tension_N, w->newton_trial_tension_N, (size_t)m->n_cable * sizeof(double));
+        hf_newton_copy(m, w->newton_trial_m, w->newton_trial_tension_N, w->position_m, w->tension_N);
         now = next;
         if (k >= LOST_AFTER && !(now.merit < first_merit)) return false;
         hf_history_add_step(m, w, now.residual_N, now.length_gap, now.truss_m);
@@ -242,7 +246,7 @@ static void look_for_drift(const hf_model *m, hf_workspace *w, hf_form_result *r
     for (int k = 0; k < 3 * w->n_moving; k++)
         w->newton_step[k] = k < n ? 1 + k % 7 - k % 3 : 0; /* attachments stay, and the pull on them must not change */
     for (int k = 0; k < DRIFT_ROUNDS; k++) {
-        hf_newton_matrix_solve(m, w, w->newton_step);
+        hf_newton_matrix_solve(m, w, NULL, w->newton_step);
         if ((row = normalise_step(m, w)) < 0) return;
     }
     for (int side = -1; side <= 1 && r->n_drifting == 0; side += 2) {
@@ -275,7 +279,7 @@ double hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
         for (int i = 0; i < m->n_free; i++) /* a loose node has no stiffness of its own */
             w->spring_N_per_m[i] = w->loose[i] ? spring_N_per_m : 0;
         r->condition = (double)NAN;
-        status = hf_joint_factor(m, w, hf_newton_matrix_block, w->spring_N_per_m, &r->condition);
+        status = hf_joint_factor(m, w, hf_newton_matrix_block, w->spring_N_per_m, NULL, &r->condition);
     }
     if (status == HF_OK) solve_step_of(m, w);
     if (status == HF_OK && !r->n_loose) r->position_error_m = hf_joint_largest(w->n_moving, 1, w->newton_step, NULL);

@@ -16,6 +16,10 @@
 bool hf_newton_run(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace, int max_steps,
                    int *n_step);
 
+/* Copies positions [3][n_node], and tensions or force densities [n_cable]. */
+void hf_newton_copy(const hf_model *model, const double *from_m, const double *from_cable, double *to_m,
+                    double *to_cable);
+
 /* Sets q_N_per_m and length_m for position_m and the multipliers in tension_N. Cables whose law has one of the flags
  * may_be_slack have no force below HF_NEWTON_NOTHING. */
 void hf_newton_set_force_densities(const hf_model *model, unsigned may_be_slack, hf_workspace *workspace);

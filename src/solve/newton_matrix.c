@@ -174,9 +174,13 @@ double hf_newton_matrix_factor_below(const hf_model *m, hf_workspace *w, double 
     return norm / *condition > BELOW_CLEARLY * shift ? least : 0;
 }
 
-/* This works in place because the index of a row among the moving ones never exceeds its index among all. */
-void hf_newton_matrix_solve_rows(const hf_model *m, const hf_workspace *w, const hf_newton_rows *rows, double *rhs)
+/* With rows, this works in place because the index of a row among the moving ones never exceeds its index among all. */
+void hf_newton_matrix_solve(const hf_model *m, const hf_workspace *w, const hf_newton_rows *rows, double *rhs)
 {
+    if (!rows) {
+        hf_newton_matrix_solve_many(m, w, 1, rhs);
+        return;
+    }
     int n = 3 * rows->n;
     for (int i = 0; i < m->n_free; i++)
         if (rows->place[i] >= 0) memmove(rhs + 3 * rows->place[i], rhs + 3 * i, 3 * sizeof *rhs);
@@ -195,9 +199,4 @@ void hf_newton_matrix_solve_many(const hf_model *m, const hf_workspace *w, int n
 {
     int n = hf_newton_matrix_dofs(m);
     back_solve(m, w, n, 3 * m->half_bandwidth + 2, n_rhs, rhs);
-}
-
-void hf_newton_matrix_solve(const hf_model *m, const hf_workspace *w, double *rhs)
-{
-    hf_newton_matrix_solve_many(m, w, 1, rhs);
 }

@@ -145,11 +145,6 @@ double hf_newton_matrix_assemble_blocks(const hf_model *model, hf_workspace *wor
 hf_status hf_newton_matrix_factor_blocks(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
                                          const double *spring_N_per_m, const hf_newton_rows *rows, double *condition);
 
-/* Solves with the factor of the moving rows in place: rhs [3 n_free], forces in N, becomes the step in m, with 0 in the
- * fixed rows. */
-void hf_newton_matrix_solve_rows(const hf_model *model, const hf_workspace *workspace, const hf_newton_rows *rows,
-                                 double *rhs);
-
 /* Factors the matrix minus a small shift of its diagonal into newton_band. The existence of the factor certifies a
  * lower bound of the minimum eigenvalue of the matrix (METHOD section 3). Returns that bound, N/m, and sets *condition.
  * Returns 0 if there is no such factor, or if the estimated eigenvalue is not clearly above the shift; newton_band and
@@ -173,8 +168,10 @@ static inline double hf_newton_matrix_rounding(int half_bandwidth, double n_cabl
     return HF_UNIT * (1.1 * (k + 4) * (k + 1) + 400 + 20 * n_cable);
 }
 
-/* These solve in place with the factor in newton_band. rhs is [3 n_free], or [n_rhs][3 n_free]. */
-void hf_newton_matrix_solve(const hf_model *model, const hf_workspace *workspace, double *rhs);
+/* These solve in place with the factor in newton_band: rhs [3 n_free], or [n_rhs][3 n_free], forces in N, becomes the
+ * step in m. rows: NULL, or the moving rows of the factor; the step of the others is 0. */
+void hf_newton_matrix_solve(const hf_model *model, const hf_workspace *workspace, const hf_newton_rows *rows,
+                            double *rhs);
 void hf_newton_matrix_solve_many(const hf_model *model, const hf_workspace *workspace, int n_rhs, double *rhs);
 
 #endif

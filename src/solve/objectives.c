@@ -280,18 +280,18 @@ static hf_status measure_shape(const hf_objectives *objectives, int k, const hf_
 {
     const hf_model *m = objectives->model;
     const hf_objective *g = &objectives->objective[k];
-    bool has_own_value = true;
+    double largest = -1; /* of several sizes */
     switch (g->settings.figure) {
     case HF_FIGURE_PSI:
         *value = *norm = measure_psi(m, w, p, f);
         return HF_OK;
     case HF_FIGURE_PULL:
         hf_objectives_pulls(m, w, p);
-        *value = measure_largest(g->n_shape_row, p, f);
+        largest = measure_largest(g->n_shape_row, p, f);
         break;
     case HF_FIGURE_DEFLECTION:
         take_displacements(m, w, p);
-        *value = measure_largest(g->n_shape_row, p, f);
+        largest = measure_largest(g->n_shape_row, p, f);
         break;
     case HF_FIGURE_RATIO:
         *value = measure_ratio(g, m, w, p, f, norm);
@@ -299,18 +299,15 @@ static hf_status measure_shape(const hf_objectives *objectives, int k, const hf_
     case HF_FIGURE_SURFACE:
     case HF_FIGURE_FACETS:
         HF_TRY(hf_cloud_measure(&p->cloud[k], w->position_m, f));
-        has_own_value = false;
         break;
     case HF_FIGURE_GAIN:
         hf_gain_measure(&p->gain[k], w->position_m, f);
-        has_own_value = false;
         break;
     default:
         measure_cables(g, m, w, f);
-        has_own_value = false;
     }
     *norm = sqrt(hf_dot((size_t)g->n_shape_row, f, f));
-    if (!has_own_value) *value = *norm;
+    *value = largest < 0 ? *norm : largest;
     return HF_OK;
 }
 

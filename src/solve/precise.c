@@ -130,6 +130,12 @@ bool hf_precise_open(const hf_model *m, hf_workspace *w, double condition, hf_pr
 
 /* ---- forces and lengths at twice the precision ---- */
 
+/* Returns the larger of the two, or `next` if it is NaN. */
+static double larger(double now, double next)
+{
+    return next <= now ? now : next;
+}
+
 static hf_precise_measure *const measure_of_isa[] = {HF_LANE_EACH(hf_precise_measure)};
 
 /* Copies cable e into lane k. */
@@ -181,7 +187,7 @@ static double gap_error(const hf_precise *p)
     if (!p->m->n_attachment) return 0;
     hf_flexibility_displace(&p->truss.flexibility, p->truss.near_gap, r);
     for (int i = 0; i < 3 * p->m->n_attachment; i++)
-        if (!(fabs(r[i]) <= largest)) largest = fabs(r[i]); /* keeps a NaN */
+        largest = larger(largest, fabs(r[i]));
     return largest / hf_joint_mean_length_m(p->m);
 }
 
@@ -212,10 +218,8 @@ static double measure_precise(hf_precise *p, bool by_law)
     }
     measure_truss(p);
     largest = fmax(largest, gap_error(p));
-    for (int i = 0; i < 3 * m->n_free; i++) {
-        double error = fabs(p->force[i].hi) / m->reference_N;
-        if (!(error <= largest)) largest = error; /* keeps a NaN */
-    }
+    for (int i = 0; i < 3 * m->n_free; i++)
+        largest = larger(largest, fabs(p->force[i].hi) / m->reference_N);
     return largest;
 }
 
@@ -291,10 +295,8 @@ static double measure_near(hf_precise *p)
     }
     end_near(p);
     largest = fmax(largest, gap_error(p));
-    for (int i = 0; i < 3 * m->n_free; i++) {
-        double error = fabs(p->near_N[i]) / m->reference_N;
-        if (!(error <= largest)) largest = error; /* keeps a NaN */
-    }
+    for (int i = 0; i < 3 * m->n_free; i++)
+        largest = larger(largest, fabs(p->near_N[i]) / m->reference_N);
     return largest;
 }
 
@@ -303,7 +305,7 @@ static void solve_free(const hf_precise *p, double *v)
 {
     const hf_model *m = p->m;
     if (m->has_newton) {
-        hf_newton_matrix_solve(m, p->w, v);
+        hf_newton_matrix_solve(m, p->w, NULL, v);
         return;
     }
     double *b = p->w->certificate_work;

@@ -149,11 +149,6 @@ static void take_errors(hf_cloud *c)
 
 /* ---- the best fit ---- */
 
-static double dot4(const double a[4], const double b[4])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
-}
-
 static hf_fit_frame frame_of(const hf_cloud *c)
 {
     return hf_fit_frame_of(c->kind, c->focal_length_m, c->n, c->position_m, c->n_facet > 0 ? c->root_m : NULL,
@@ -204,9 +199,9 @@ static void pull_of(hf_cloud *c, const hf_fit_frame *f, const hf_fit_point *p, i
 {
     hf_cloud_pose *q = &c->pose;
     int angle = hf_fit_angle_of(q->found.quantity[k]);
-    double by = dot4(p->d, p->by[k]), weight = hf_fit_weight(f, i), bent[3];
+    double by = hf_fit_dot(p->d, p->by[k]), weight = hf_fit_weight(f, i), bent[3];
     for (int a = 0; a < 3; a++)
-        bent[a] = p->d[a] * by + p->value * dot4(p->dd[a], p->by[k]);
+        bent[a] = p->d[a] * by + p->value * hf_fit_dot(p->dd[a], p->by[k]);
     for (int d = 0; d < 3; d++) {
         double pull = 0;
         for (int a = 0; a < 3; a++) {
@@ -232,7 +227,7 @@ static hf_status fit_linearise(hf_cloud *c)
         hf_cloud_error(c->kind, power_of(c), f.curvature_per_m, p.at, d);
         for (int k = 0; k < q->found.n; k++) {
             pull_of(c, &f, &p, i, k);
-            q->slope[k * c->n + i] = dot4(d, p.by[k]);
+            q->slope[k * c->n + i] = hf_fit_dot(d, p.by[k]);
         }
         for (int k = 0; k < 3; k++) {
             double by = d[0] * f.turn[0][k] + d[1] * f.turn[1][k] + d[2] * f.turn[2][k];

@@ -51,14 +51,6 @@ void hf_facet_mesh_take(const hf_facets *f, int i, const double *position_m, hf_
     direction(origin, (double[3]){m->normal[0], m->normal[1], m->normal[2]}, m->normal);
 }
 
-void hf_facet_mesh_take_bent(const hf_facets *f, int i, const double *position_m, const double *sag_m, hf_facet_mesh *m)
-{
-    hf_facet_mesh_take(f, i, position_m, m);
-    if (!sag_m) return;
-    memcpy(m->sag_m, sag_m + 4 * (size_t)i, sizeof m->sag_m);
-    hf_facet_mesh_settle(m);
-}
-
 void hf_facet_gather(const double *node, int n_node, const int *row, hf_facet_gathered *f)
 {
     for (int k = 0; k < 4; k++) {
@@ -236,7 +228,8 @@ static double product(const double g[3], jet a, jet b)
     return g[0] * a.by_u * b.by_u + g[1] * (a.by_u * b.by_v + a.by_v * b.by_u) + g[2] * a.by_v * b.by_v;
 }
 
-void hf_facet_mesh_settle(hf_facet_mesh *m)
+/* Computes bubble_m from sag_m: the mesh has minimum area between its sides, to second order in the slopes. */
+static void settle(hf_facet_mesh *m)
 {
     double matrix[HF_FACET_N_BUBBLE * HF_FACET_N_BUBBLE] = {0}, right[HF_FACET_N_BUBBLE] = {0};
     int pivot[HF_FACET_N_BUBBLE];
@@ -259,6 +252,14 @@ void hf_facet_mesh_settle(hf_facet_mesh *m)
     if (hf_dense_factor(HF_FACET_N_BUBBLE, matrix, pivot) != 0) return; /* a facet without area has no mesh */
     hf_dense_solve(HF_FACET_N_BUBBLE, matrix, pivot, 1, right);
     memcpy(m->bubble_m, right, sizeof right);
+}
+
+void hf_facet_mesh_take_bent(const hf_facets *f, int i, const double *position_m, const double *sag_m, hf_facet_mesh *m)
+{
+    hf_facet_mesh_take(f, i, position_m, m);
+    if (!sag_m) return;
+    memcpy(m->sag_m, sag_m + 4 * (size_t)i, sizeof m->sag_m);
+    settle(m);
 }
 
 double hf_facet_mesh_lift_m(const hf_facet_mesh *m, double u, double v, double slope[2])

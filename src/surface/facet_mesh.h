@@ -41,9 +41,6 @@ hf_status hf_facet_mesh_sags(double mesh_tension_N_per_m, const hf_facets *facet
 hf_status hf_facet_mesh_make_sags(double mesh_tension_N_per_m, const hf_facets *facets, const hf_facet_shape *shape,
                                   hf_arena *arena, double **sag_m, double *pull_ratio);
 
-/* Computes bubble_m from sag_m: the mesh has minimum area between its sides, to second order in the slopes. */
-void hf_facet_mesh_settle(hf_facet_mesh *mesh);
-
 /* Returns the lift of the point u, v, m. slope [2]: its derivatives by u and v. */
 double hf_facet_mesh_lift_m(const hf_facet_mesh *mesh, double u, double v, double slope[2]);
 

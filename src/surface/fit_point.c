@@ -22,11 +22,6 @@ static void multiply_vector(const double m[3][3], const double v[3], double to[3
         to[k] = m[k][0] * v[0] + m[k][1] * v[1] + m[k][2] * v[2];
 }
 
-static double dot4(const double a[4], const double b[4])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
-}
-
 /* Returns the component that a shift stands for, or -1. */
 static int shift_of(int quantity)
 {
@@ -138,15 +133,16 @@ double hf_fit_hessian(const hf_fit_frame *f, double *G, double *H)
         hf_fit_point p = hf_fit_point_take(f, i);
         sum += weight * p.value * p.value;
         for (int k = 0; k < n; k++)
-            by[k] = dot4(p.d, p.by[k]);
+            by[k] = hf_fit_dot(p.d, p.by[k]);
         for (int k = 0; k < n; k++) {
             double turned[4]; /* dd times the derivative of the coordinates */
             G[k] += weight * p.value * by[k];
             for (int a = 0; a < 4; a++)
-                turned[a] = dot4(p.dd[a], p.by[k]);
+                turned[a] = hf_fit_dot(p.dd[a], p.by[k]);
             for (int j = 0; j <= k; j++) {
                 bend_position(f, turn, &p, j, k, bend);
-                H[k * n + j] += weight * (by[j] * by[k] + p.value * (dot4(turned, p.by[j]) + dot4(p.d, bend)));
+                H[k * n + j] +=
+                    weight * (by[j] * by[k] + p.value * (hf_fit_dot(turned, p.by[j]) + hf_fit_dot(p.d, bend)));
             }
         }
     }

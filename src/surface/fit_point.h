@@ -29,6 +29,12 @@ static inline int hf_fit_angle_of(int quantity)
     return quantity >= HF_FIT_TURN_X && quantity <= HF_FIT_TURN_Z ? quantity - HF_FIT_TURN_X : -1;
 }
 
+/* Returns the inner product of two vectors of the four coordinates. */
+static inline double hf_fit_dot(const double a[4], const double b[4])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+}
+
 /* Computes a frame. It borrows points, roots and parameters. */
 hf_fit_frame hf_fit_frame_of(hf_surface_kind kind, double focal_length_m, int n, const double *position_m,
                              const double *root_weight, const hf_fit_parameters *found);
