@@ -13,7 +13,6 @@ static void run(const char *path, const char *const *set, int n_set, hf_summary 
 {
     char output[HF_OUTPUT_SIZE];
     hf_messages said = {0};
-    hf_summary_free(s);
     hf_run_request request = {.case_path = path, .set = set, .n_set = n_set, .no_file = true, .threads = 1};
     ck_assert_msg(hf_run_case(&request, s, output, &said) == HF_OK, "%s", said.text);
     ck_assert_str_eq(s->warnings, ""); /* well-posed */
@@ -23,20 +22,21 @@ static void run(const char *path, const char *const *set, int n_set, hf_summary 
 START_TEST(the_net_gives_the_printed_figures)
 {
     static hf_summary s;
-    const hf_form_result *form = &s.stage[HF_STAGE_FORM].result, *best = &s.stage[HF_STAGE_SEARCH].result;
     run(source_path("configs/chen2022.yaml"), NULL, 0, &s);
-    ck_assert_int_eq(form->stop_reason, HF_STOPPED_CONVERGED);
-    ck_assert_int_eq(form->n_loaded_chain + form->n_slack, 0);
-    VERIFY(1e3 * form->psi_m, 6.6, 0.02, "psi after HIFDM, mm (calibrated)");
-    VERIFY(form->inner_tension_ratio, 1.0011, 0.0015, "tension ratio inside");
-    VERIFY(form->boundary_tension_ratio, 4.8445, 0.05, "tension ratio on the boundary (calibrated)");
+    ck_assert_int_eq(s.stage[HF_STAGE_FORM].result.stop_reason, HF_STOPPED_CONVERGED);
+    ck_assert_int_eq(s.stage[HF_STAGE_FORM].result.n_loaded_chain + s.stage[HF_STAGE_FORM].result.n_slack, 0);
+    VERIFY(1e3 * s.stage[HF_STAGE_FORM].result.psi_m, 6.6, 0.02, "psi after HIFDM, mm (calibrated)");
+    VERIFY(s.stage[HF_STAGE_FORM].result.inner_tension_ratio, 1.0011, 0.0015, "tension ratio inside");
+    VERIFY(s.stage[HF_STAGE_FORM].result.boundary_tension_ratio, 4.8445, 0.05,
+           "tension ratio on the boundary (calibrated)");
     ck_assert_int_eq(s.search.generations, 400);
-    VERIFY(1e3 * best->psi_m, 4.3, 0.1, "psi after the genetic algorithm, mm (calibrated)");
-    VERIFY(1 - best->psi_m / s.search.initial_psi_m, 0.348, 0.01, "reduction of psi by the genetic algorithm");
-    VERIFY(best->inner_tension_ratio, 1.001, 0.0015, "tension ratio inside then");
-    ck_assert_double_gt(best->boundary_tension_ratio, form->boundary_tension_ratio); /* as 5.608 */
-    NOT_MET(best->boundary_tension_ratio, 5.608, "tension ratio on the boundary then");
-    hf_summary_free(&s);
+    VERIFY(1e3 * s.stage[HF_STAGE_SEARCH].result.psi_m, 4.3, 0.1, "psi after the genetic algorithm, mm (calibrated)");
+    VERIFY(1 - s.stage[HF_STAGE_SEARCH].result.psi_m / s.search.initial_psi_m, 0.348, 0.01,
+           "reduction of psi by the genetic algorithm");
+    VERIFY(s.stage[HF_STAGE_SEARCH].result.inner_tension_ratio, 1.001, 0.0015, "tension ratio inside then");
+    ck_assert_double_gt(s.stage[HF_STAGE_SEARCH].result.boundary_tension_ratio,
+                        s.stage[HF_STAGE_FORM].result.boundary_tension_ratio); /* as 5.608 */
+    NOT_MET(s.stage[HF_STAGE_SEARCH].result.boundary_tension_ratio, 5.608, "tension ratio on the boundary then");
 }
 END_TEST
 
@@ -44,13 +44,12 @@ END_TEST
 START_TEST(other_seeds_find_the_same)
 {
     static hf_summary s;
-    const hf_form_result *form = &s.stage[HF_STAGE_FORM].result, *best = &s.stage[HF_STAGE_SEARCH].result;
     char seed[32];
     snprintf(seed, sizeof seed, "optimize.seed=%d", _i + 1);
     run(source_path("configs/chen2022.yaml"), (const char *const[]){seed, "optimize.compare_lm=false"}, 2, &s);
-    VERIFY(1e3 * best->psi_m, 4.3, 0.1, "psi after the genetic algorithm, mm, %s", seed);
-    ck_assert_double_gt(best->boundary_tension_ratio, form->boundary_tension_ratio); /* as 5.608 */
-    hf_summary_free(&s);
+    VERIFY(1e3 * s.stage[HF_STAGE_SEARCH].result.psi_m, 4.3, 0.1, "psi after the genetic algorithm, mm, %s", seed);
+    ck_assert_double_gt(s.stage[HF_STAGE_SEARCH].result.boundary_tension_ratio,
+                        s.stage[HF_STAGE_FORM].result.boundary_tension_ratio); /* as 5.608 */
 }
 END_TEST
 
@@ -58,17 +57,15 @@ END_TEST
 START_TEST(on_the_truss)
 {
     static hf_summary s;
-    const hf_form_result *form = &s.stage[HF_STAGE_FORM].result;
     run(source_path("configs/chen2022-truss.yaml"), NULL, 0, &s);
-    VERIFY(1e3 * form->psi_m, 8.38, 0.005, "psi on the truss, mm (calibrated)");
+    VERIFY(1e3 * s.stage[HF_STAGE_FORM].result.psi_m, 8.38, 0.005, "psi on the truss, mm (calibrated)");
     VERIFY(s.truss.mass_kg, 200, 10, "mass of the truss, kg");
     run(source_path("configs/chen2022-truss.yaml"),
         (const char *const[]){"coupling.scheme=plain", "coupling.tof_m=1e-3"}, 2, &s);
-    VERIFY(form->coupling.iterations - 1, 4, 0, "rounds of net and truss to 1 mm");
-    double psi_m = form->psi_m;
+    VERIFY(s.stage[HF_STAGE_FORM].result.coupling.iterations - 1, 4, 0, "rounds of net and truss to 1 mm");
+    double psi_m = s.stage[HF_STAGE_FORM].result.psi_m;
     run(source_path("configs/chen2022-truss.yaml"), (const char *const[]){"form.pretension_N=20"}, 1, &s);
-    ck_assert_double_gt(form->psi_m, psi_m); /* Fig. 22 */
-    hf_summary_free(&s);
+    ck_assert_double_gt(s.stage[HF_STAGE_FORM].result.psi_m, psi_m); /* Fig. 22 */
 }
 END_TEST
 
