@@ -15,7 +15,7 @@ static const char *run_example(void)
 START_TEST(load_cases_are_printed_stored_and_shown)
 {
     const char *out = run_example(), *again = temp("again.h5");
-    OUT("  cases         the net as built    psi mm  moved mm   loss dB    fitted  least N largest N slack loose "
+    OUT("  load cases    as-built net        psi mm displacement mm   loss dB  best fit    min N     max N slack loose "
         "member N\n");
     OUT("loss: gain loss at 10 GHz for a fixed feed, then after best fit\n");
     OUT("psi leaves out the loose nodes; the other columns include them where they hang\n");
@@ -68,10 +68,10 @@ START_TEST(a_load_case_is_exported)
     OUT("load_case_1.hdf (cold) load_case_2.hdf (sun) load_case_3.hdf (cup_up) load_case_4.hdf (cup_down) "
         "load_case_5.hdf (spun)\n");
     SHELL(0,
-          "cd \"$1\" && for k in 1 2 3 4 5; do mv case_$k.hdf case_$k.h5; test -e case_facets_$k.hdf || exit 1; "
-          "mv case_truss_$k.hdf case_truss_$k.h5 || exit 1; done",
+          "cd \"$1\" && for k in 1 2 3 4 5; do mv load_case_$k.hdf load_case_$k.h5; test -e load_case_facets_$k.hdf || "
+          "exit 1; mv load_case_truss_$k.hdf load_case_truss_$k.h5 || exit 1; done",
           vtk);
-    EXPECT(out, keep(formatted("%s/case_2.h5", vtk)), keep(formatted("%s/case_truss_2.h5", vtk)), "--",
+    EXPECT(out, keep(formatted("%s/load_case_2.h5", vtk)), keep(formatted("%s/load_case_truss_2.h5", vtk)), "--",
            "np.array_equal(a['load_cases/sun/position_m'], b['VTKHDF/Points'])",
            "np.array_equal(a['load_cases/sun/tension_N'], b['VTKHDF/CellData/tension_N'])",
            "np.array_equal(-a['load_cases/sun/truss/member/end_force'][:, 0], c['VTKHDF/CellData/axial_force_N'])");
@@ -177,7 +177,7 @@ START_TEST(a_load_case_without_a_shape_does_not_stop_the_others)
     EXPECT(out_as("s.json"), temp("a.h5"), "--", "a['load_cases']['far']['tension_min_N'] is None",
            "'position_m' not in b['load_cases/far']", "a['load_cases']['still']['status'] == 'ok'");
     HIFDM(5, "export", temp("a.h5"), "--csv", temp("csv"), "--case", "far");
-    ERR("has no shape of a case 'far'\n");
+    ERR("has no shape of a load case 'far'\n");
     HIFDM(0, "export", temp("a.h5"), "--vtk", temp("vtk"));
     OUT(" load_case_2.hdf (still)\n");
     HIFDM(0, "report", temp("a.h5"), "-o", temp("page.html"));

@@ -266,7 +266,7 @@ START_TEST(faults_are_named)
         {"  sigma_temperature_K: 5\n",
          "6:24: tolerance.sigma_temperature_K: needs expansion_per_K in a row of `cables`"},
         {"  sigma_temperature_K: 5\ncables: [{set: boundary, expansion_per_K: 1e-6}]\n",
-         "tolerance.sigma_temperature_K: 38 cables have no expansion_per_K, like '"},
+         "tolerance.sigma_temperature_K: 38 cables have no expansion_per_K, such as '"},
         {"  truss: [{part: longeron, sigma_temperature_K: 5}]\n",
          "6:18: tolerance.truss.0.part: the case has no truss"},
         {"  truss: [{part: net, sigma_temperature_K: 5}]\n", "6:18: tolerance.truss.0.part: "},
@@ -409,7 +409,7 @@ START_TEST(what_errors_may_be_is_told_in_words)
 {
     static const char *const least[] = {"1.5", "1.294", "1.2930888", "1.2"},
                              *const told[] = {
-                                 "a yield of 90 % holds up to at least 4 times these errors",
+                                 "a yield of 90 % holds up to at least 4",
                                  "a yield of 90 % holds up to 5.",
                                  "for a yield of 90 %, reduce all errors to less than 0.09766 %",
                                  "no errors are small enough for a yield of 90 %: the net without errors fails"};

@@ -47,11 +47,10 @@ END_TEST
 START_TEST(paraview_opens_the_result)
 {
     static const char *const argument[][5] = {
-        {"configs/straight-edges.yaml", "optimize.generations=3", "title=grid", "form optimize polish\n", "c.h5"},
-        {"configs/straight-edges-truss.yaml", "optimize.generations=1", "title=grid", "form optimize polish\n",
-         "t.hdf"},
+        {"configs/straight-edges.yaml", "optimize.generations=3", "title=grid", "form refine search\n", "c.h5"},
+        {"configs/straight-edges-truss.yaml", "optimize.generations=1", "title=grid", "form refine search\n", "t.hdf"},
         {"configs/paraboloid-cases.yaml", "title=grid", "title=grid",
-         "case_cold case_cup_down case_cup_up case_spun case_sun form\n", "e.hdf"},
+         "form load_case_cold load_case_cup_down load_case_cup_up load_case_spun load_case_sun\n", "e.hdf"},
         {NULL, "scene.EA_inner_N=1e5", "scene.EA_boundary_N=2e5", "form\n", "s.hdf"}};
     const char *samples = file_with("s.yaml", SMALL_SCENE "tolerance: {sigma_cut_m: 1e-4, samples: 20}\n");
     const char *const *of = argument[_i], *out = temp(of[4]);
@@ -74,8 +73,8 @@ START_TEST(paraview_files_of_facets)
     HIFDM(0, "run", file_with("f.yaml", text[_i]), "-o", out, "--quiet");
     HIFDM(0, "export", out, "--vtk", folder);
     OUT(": target.hdf target_facets.hdf form.hdf form_facets.hdf\n");
-    demand_vtk(out, folder, "form form_facets theoretical theoretical_facets");
-    SHELL(0, "cd \"$1\" && rm form.hdf theoretical.hdf theoretical_facets.hdf", folder);
+    demand_vtk(out, folder, "form form_facets target target_facets");
+    SHELL(0, "cd \"$1\" && rm form.hdf target.hdf target_facets.hdf", folder);
     HIFDM(5, "export", out, "--vtk", folder);
     ERR("form_facets.hdf exists; use --force to replace it");
 }
@@ -97,7 +96,7 @@ START_TEST(mesh_makes_pillows)
     const char *const argv[] = {python_program(), keep(source_path("tests/verify/mesh_oracle.py")), out,
                                 temp("vtk/form_facets.hdf"), NULL};
     demand_exit(run_command(HANG_S, argv), 0, "mesh_oracle.py", __LINE__);
-    demand_vtk(out, temp("vtk"), "form form_facets theoretical theoretical_facets");
+    demand_vtk(out, temp("vtk"), "form form_facets target target_facets");
     HIFDM(0, "run", path, "-o", out, "--force", "--json", "--set", grid[_i], "--set",
           "surface.mesh_tension_N_per_m=100");
     ERR("warning: surface: in the shape of stage form the mesh pulls on a cable with N l = ");
@@ -121,13 +120,13 @@ START_TEST(paraview_files_of_an_imported_net)
     HIFDM(0, "run", path, "-o", out, "--quiet");
     ERR("warning: slack in the form-finding shape, 1: bd\n");
     HIFDM(0, "export", out, "--vtk", folder);
-    demand_vtk(out, folder, "form theoretical");
+    demand_vtk(out, folder, "form target");
     write_file(form, "mine");
     HIFDM(5, "export", out, "--vtk", folder);
     ERRS("error: %s exists; use --force to replace it", form);
     ck_assert(file_is(form, "mine"));
     HIFDM(0, "export", out, "--vtk", folder, "--force");
-    demand_vtk(out, folder, "form theoretical");
+    demand_vtk(out, folder, "form target");
     HIFDM(2, "export", out, "--vtk", folder, "--stage", "form");
     ERR("error: --stage does not go with --vtk alone, which writes every shape\n");
     HIFDM(5, "export", out, "--vtk", temp("no/such/folder"));
