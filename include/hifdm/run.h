@@ -39,7 +39,7 @@ typedef struct {
     double sigma_scale; /* tolerance, after all samples: factor of the errors whose yield is determined; else 0 */
     /* Refinement: number of steps done, and maximum; first step of this process; merit of the best design, NaN if the
      * merit is psi. best_psi_m is that of the same design. */
-    int iteration, iterations, first_iteration;
+    int step, max_steps, first_step;
     double merit;
     /* Refinement of a front, else 0: numbers of its points that are done, and of all; steps of the searches for
      * them. */

@@ -30,9 +30,9 @@ static double rate_per_s(const hf_run_progress *now)
 static double left_s(const hf_run_progress *now)
 {
     bool steps = now->phase == HF_RUN_REFINE;
-    int at = steps ? now->iteration : now->generation,
-        done = at - (steps ? now->first_iteration : now->first_generation);
-    return done > 0 ? now->elapsed_s * ((steps ? now->iterations : now->generations) - at) / done : 0;
+    int at = steps ? now->step : now->generation,
+        done = at - (steps ? now->first_step : now->first_generation);
+    return done > 0 ? now->elapsed_s * ((steps ? now->max_steps : now->generations) - at) / done : 0;
 }
 
 static void show_samples(hf_progress *p, const hf_run_progress *now)
@@ -72,11 +72,11 @@ static void show_step(hf_progress *p, const hf_run_progress *now)
 {
     char left[32] = "";
     bool is_line = p->mode == HF_PROGRESS_LINE;
-    fprintf(p->file, "%sLevenberg-Marquardt: step %d/%d  psi %.4f mm", is_line ? "\r\033[K" : "", now->iteration,
-            now->iterations, now->best_psi_m * 1e3);
+    fprintf(p->file, "%sLevenberg-Marquardt: step %d/%d  psi %.4f mm", is_line ? "\r\033[K" : "", now->step,
+            now->max_steps, now->best_psi_m * 1e3);
     if (isfinite(now->merit)) fprintf(p->file, ", merit %.6g", now->merit);
     hf_print_duration(left_s(now), left, sizeof left);
-    if (now->iteration > now->first_iteration) fprintf(p->file, "  at most %s left", left);
+    if (now->step > now->first_step) fprintf(p->file, "  at most %s left", left);
     if (!is_line) fputc('\n', p->file);
     p->is_shown = is_line;
 }
@@ -111,9 +111,9 @@ static void show_json(const hf_progress *p, const hf_run_progress *now)
         hf_json_integer(&j, "steps", now->steps);
         hf_json_number(&j, "elapsed_s", now->elapsed_s);
     }
-    if (now->phase == HF_RUN_REFINE && now->iterations > 0) {
-        hf_json_integer(&j, "iteration", now->iteration);
-        hf_json_integer(&j, "iterations", now->iterations);
+    if (now->phase == HF_RUN_REFINE && now->max_steps > 0) {
+        hf_json_integer(&j, "step", now->step);
+        hf_json_integer(&j, "max_steps", now->max_steps);
         hf_json_integer(&j, "evaluations", now->evaluations);
         hf_json_number(&j, "best_psi_m", now->best_psi_m);
         if (isfinite(now->merit)) hf_json_number(&j, "merit", now->merit);
@@ -140,11 +140,11 @@ void hf_progress_show(void *progress, const hf_run_progress *now)
     bool samples = now->phase == HF_RUN_TOLERANCE, steps = now->phase == HF_RUN_REFINE, front = now->points_all > 0;
     bool is_first = samples ? now->evaluations == 0
                     : front ? now->steps == 0
-                    : steps ? now->iteration <= now->first_iteration
+                    : steps ? now->step <= now->first_step
                             : now->generation <= now->first_generation + 1;
     bool is_last = (samples || steps || now->generation > 0) && now->is_last;
     bool has_line = samples ? now->evaluations > 0 || p->mode == HF_PROGRESS_LINE
-                    : steps ? now->iterations > 0 || front
+                    : steps ? now->max_steps > 0 || front
                             : now->phase == HF_RUN_SEARCH;
     if (is_first) p->last_s = p->mode == HF_PROGRESS_LOG ? 0 : -interval_s[p->mode];
     if (p->mode == HF_PROGRESS_NONE || (!has_line && p->mode != HF_PROGRESS_JSONL)) return;

@@ -508,10 +508,10 @@ static void pass_on(void *context, const hf_run_progress *now)
     bool is_sampling = now->phase == HF_RUN_TOLERANCE;
     bool is_refining = now->phase == HF_RUN_REFINE;
     bool is_front = now->points_all > 0;
-    long done = is_sampling ? now->samples : is_front ? now->points : is_refining ? now->iteration : now->generation;
+    long done = is_sampling ? now->samples : is_front ? now->points : is_refining ? now->step : now->generation;
     long all = is_sampling   ? now->samples_all
                : is_front    ? now->points_all
-               : is_refining ? now->iterations
+               : is_refining ? now->max_steps
                              : now->generations;
     if (w->observer &&
         w->observer(w->context, (int)now->phase, done, all, now->evaluations, now->best_psi_m, now->elapsed_s))

@@ -39,9 +39,9 @@ static void tell_step(const refine_job *j)
     const hf_refine_progress *now = &j->now;
     if (!q->observer) return;
     const hf_run_progress progress = {.phase = HF_RUN_REFINE,
-                                      .iteration = now->iterations,
-                                      .iterations = now->max_iterations,
-                                      .first_iteration = j->first_iteration,
+                                      .step = now->iterations,
+                                      .max_steps = now->max_iterations,
+                                      .first_step = j->first_iteration,
                                       .is_last = now->is_last,
                                       .evaluations = now->evaluations - j->n_evaluation,
                                       .best_psi_m = now->psi_m,

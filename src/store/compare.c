@@ -51,6 +51,17 @@ static bool is_text(const side *s)
     return H5Tis_variable_str(s->type) > 0;
 }
 
+/* Returns true for a name that version 0.2 has under another name. */
+static bool is_renamed(const comparing *q, const side *a, const char *x, const char *y)
+{
+    char one[256], other[256], one_now[320], other_now[320];
+    if (H5Tget_class(a->type) != H5T_STRING || !q->a.alias == !q->b.alias || a->bytes >= sizeof one) return false;
+    snprintf(one, sizeof one, "%.*s", (int)a->bytes, x);
+    snprintf(other, sizeof other, "%.*s", (int)a->bytes, y);
+    return !strcmp(hf_renamed_figure(one, one_now, sizeof one_now),
+                   hf_renamed_figure(other, other_now, sizeof other_now));
+}
+
 static bool are_equal(const comparing *q, const side *a, const side *b, const char *x, const char *y)
 {
     if (is_text(a)) {
@@ -60,7 +71,7 @@ static bool are_equal(const comparing *q, const side *a, const side *b, const ch
         return !strcmp(s ? s : "", t ? t : "");
     }
     if (!memcmp(x, y, a->bytes)) return true;
-    if (!is_real(a)) return false;
+    if (!is_real(a)) return is_renamed(q, a, x, y);
     double u, v;
     memcpy(&u, x, sizeof u);
     memcpy(&v, y, sizeof v);

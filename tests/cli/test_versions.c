@@ -27,15 +27,15 @@ START_TEST(results_of_0_1_0_are_shown_and_exported)
     OUT("cold ");
     HIFDM(0, "show", old, "--json");
     EXPECT(out_as("s.json"), old, "--", "a['form']['psi_m'] == b['form'].attrs['psi_m'] > 0",
-           "a['optimize']['psi_m'] == b['ga'].attrs['best_psi_m']",
-           "a['polish']['psi_m'] == b['polish'].attrs['psi_m']", "a['truss']['mass_kg'] == b['truss'].attrs['mass_kg']",
-           "a['cases']['cold']['slack_cables'] == b['cases/cold'].attrs['n_slack'] == 13",
+           "a['search']['psi_m'] == b['ga'].attrs['best_psi_m']",
+           "a['refine']['psi_m'] == b['polish'].attrs['psi_m']", "a['truss']['mass_kg'] == b['truss'].attrs['mass_kg']",
+           "a['load_cases']['cold']['slack_cables'] == b['cases/cold'].attrs['n_slack'] == 13",
            "a['form']['surface']['half_path_rms_m'] == b['surface/form'].attrs['half_path_rms_m']",
            "a['tolerance']['samples'] == len(b['tolerance/sample/psi_m']) == 12");
     HIFDM(0, "export", old, "--csv", csv);
     HIFDM(0, "export", old, "--vtk", vtk);
-    OUT(": theoretical.hdf theoretical_facets.hdf form.hdf form_facets.hdf optimize.hdf optimize_facets.hdf polish.hdf "
-        "polish_facets.hdf truss.hdf case_1.hdf (cold)\n"); /* the net has one ring: since 0.2.0 it has facets */
+    OUT(": target.hdf target_facets.hdf form.hdf form_facets.hdf search.hdf search_facets.hdf refine.hdf "
+        "refine_facets.hdf truss.hdf load_case_1.hdf (cold)\n"); /* the net has one ring: since 0.2.0 it has facets */
     HIFDM(0, "export", old, "--cutlist", cuts);
     EXPECT(old, keep(formatted("%s/cables.csv", csv)), cuts, "--",
            "list(column(b, 'tension_N')) == list(column(c, 'tension_N')) == a['polish/tension_N'][:].tolist()");
@@ -80,16 +80,16 @@ static const char *case_of(const char *result)
 /* The names differ in all parts of the file: variables, search, refinement, load cases, objectives, samples. */
 START_TEST(results_of_0_2_0_are_read_by_their_own_names)
 {
-    const char *old = result_of("0.2.0", "old.h5"), *now = temp("now.h5"), *a = temp("a.json"), *b = temp("b.json");
+    const char *old = result_of("0.2.0", "old.h5"), *now = temp("now.h5");
     HIFDM(0, "run", case_of(old), "-o", now, "--quiet");
     struct command command = run_hifdm("diff", now, old, "--rtol", "1e-6", "--atol", "1e-9");
     ck_assert_msg(command.exit_code == 0 && strstr(command.out, "209 data sets, 0 differ"), "%s%s", command.out,
                   command.err);
     free_command(&command);
     HIFDM(0, "show", old, "--json");
-    out_as(a);
+    const char *a = out_as("a.json");
     HIFDM(0, "show", now, "--json");
-    out_as(b);
+    const char *b = out_as("b.json");
     EXPECT(a, b, "--", "set(a) == set(b) and all(set(a[k]) == set(b[k]) for k in a if isinstance(a[k], dict))",
            "close(a['search']['psi_m'], b['search']['psi_m']) and a['search']['generations'] == 3",
            "close(a['refine']['objectives']['objective_1_tension_front_edge']['value'], "

@@ -30,7 +30,7 @@ static void observe(void *context, const hf_run_progress *now)
     for (int later = (int)now->phase + 1; later < N_PHASE; later++)
         t->is_wrong |= t->n[later] > 0;
     if (t->n[now->phase]++)
-        t->is_wrong |= now->generation < last->generation || now->iteration < last->iteration ||
+        t->is_wrong |= now->generation < last->generation || now->step < last->step ||
                        now->samples < last->samples || now->evaluations < last->evaluations ||
                        now->elapsed_s < last->elapsed_s || now->best_psi_m > last->best_psi_m;
     t->is_wrong |= now->best_psi_m == 0;
@@ -62,7 +62,7 @@ START_TEST(an_observer_is_told_each_phase)
     ck_assert_int_eq(search->evaluations, s.search.evaluations);
     ck_assert_double_eq(search->best_psi_m, s.stage[HF_STAGE_SEARCH].result.psi_m);
     ck_assert(refine->is_last && t.n_last[HF_RUN_REFINE] == 1);
-    ck_assert_int_eq(refine->iteration, s.refine.steps);
+    ck_assert_int_eq(refine->step, s.refine.steps);
     ck_assert_double_eq(refine->best_psi_m, s.stage[HF_STAGE_REFINE].result.psi_m);
     ck_assert_int_eq(samples->samples, 1000);
     ck_assert_int_eq(samples->samples_all, 1000);
