@@ -34,7 +34,7 @@ typedef struct {
     char *overrides;                            /* the overrides, one line each; "": there are none */
     char sha256[65];                            /* digest of text and overrides in hexadecimal digits */
     char title[256];                            /* title of the case */
-    char *where_given;                          /* internal: locations of the keys, for hf_config_place */
+    char *where_given;                          /* internal: locations of the keys, for hf_config_location */
     bool has_import, has_optimize, has_surface; /* which sections the case has */
     bool has_tolerance;                         /* the case has a section tolerance */
     bool has_sweep;                             /* its lines are not in `text`; study.h reads the axes */
@@ -78,7 +78,7 @@ int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t
 /* Writes the location of a key for a message into text[size]: "case.yaml:7:3: surface.kind", "--set surface.kind", or
  * "case.yaml: surface.kind" if the case does not have the key. For a missing key of a row, such as
  * "optimize.goals.0.set", the location is that of the row. Returns true if the case has the key. */
-bool hf_config_place(const hf_case *settings, const char *key, char *text, size_t size);
+bool hf_config_location(const hf_case *settings, const char *key, char *text, size_t size);
 
 /* Makes the scene that the case describes and checks it (hf_scene_check). Returns HF_OK; HF_BAD_CASE, also if a file
  * cannot be read; HF_NO_MEMORY. Call hf_scene_free in any case. */
@@ -180,9 +180,9 @@ extern const hf_list hf_list_table[];       /* [hf_n_list] lists of rows */
 extern const int hf_n_list;                 /* number of lists */
 
 /* Checks `value`, written as in a case file, against a key of the table: "form.stop" or "optimize.variables.0.range".
- * Returns HF_OK; HF_BAD_CASE with a message "<place>: <key>: <fault>"; HF_NO_MEMORY. The rules that involve several
+ * Returns HF_OK; HF_BAD_CASE with a message "<location>: <key>: <fault>"; HF_NO_MEMORY. The rules that involve several
  * keys, and whether the row exists, are checked only by hf_config_load. */
-hf_status hf_config_check_value(const char *key, const char *value, const char *place, hf_messages *messages);
+hf_status hf_config_check_value(const char *key, const char *value, const char *location, hf_messages *messages);
 
 HF_API_END
 #endif

@@ -257,17 +257,17 @@ typedef enum { HF_PART_ALL, HF_PART_NET, HF_PART_TRUSS, HF_PART_UNIT } hf_part;
 
 /* A row of `cases`; rows with the same name make up one load case. NaN: a number is not given. */
 typedef struct {
-    char name[HF_SET_NAME_SIZE];   /* name of the load case */
-    char set[HF_SET_NAME_SIZE];    /* cables that have the temperature; "": the part has it */
-    hf_part part;                  /* part that has the temperature */
-    double temperature_K;          /* difference from the temperature at which the net was cut and the truss made */
-    double gradient_K_per_m[3];    /* addition to the temperature, in proportion to the position, 0 at the origin */
-    double gravity_m_per_s2;       /* acceleration of gravity */
-    double direction[3];           /* direction of gravity; default: -z */
-    hf_nodes role;                 /* nodes on which force_N acts */
-    double force_N[3];             /* force on each of these nodes */
-    double move_m[3];              /* displacement of all supports */
-    char nodes_path[HF_PATH_SIZE]; /* table of forces and displacements by node; "": none */
+    char name[HF_SET_NAME_SIZE];      /* name of the load case */
+    char set[HF_SET_NAME_SIZE];       /* cables that have the temperature; "": the part has it */
+    hf_part part;                     /* part that has the temperature */
+    double temperature_K;             /* difference from the temperature at which the net was cut and the truss made */
+    double gradient_K_per_m[3];       /* addition to the temperature, in proportion to the position, 0 at the origin */
+    double gravity_m_per_s2;          /* acceleration of gravity */
+    double direction[3];              /* direction of gravity; default: -z */
+    hf_nodes role;                    /* nodes on which force_N acts */
+    double force_N[3];                /* force on each of these nodes */
+    double support_displacement_m[3]; /* displacement of all supports */
+    char nodes_path[HF_PATH_SIZE];    /* table of forces and displacements by node; "": none */
 } hf_load_case_settings;
 
 #define HF_LOAD_CASE_ROWS_MAX 32 /* maximum number of rows of `cases` */
@@ -291,7 +291,7 @@ extern const char *const hf_aim_word[3]; /* the last entry is NULL */
 typedef struct {
     char set[HF_SET_NAME_SIZE]; /* cables with turnbuckles: a set, or inner, boundary, all */
     double range_m, step_m;     /* maximum change of the cut length either way; step */
-    int moves;                  /* maximum number of cables that are adjusted */
+    int max_adjustments;        /* maximum number of cables that are adjusted */
     double target_m;            /* no further cable is adjusted once the figure is below this */
     hf_figure_kind figure;      /* HF_FIGURE_PSI, HF_FIGURE_SURFACE or HF_FIGURE_FACETS */
     hf_aim aim;                 /* positions from which psi is measured */
@@ -362,7 +362,7 @@ typedef struct {
     int samples;            /* number of samples */
     uint64_t seed;          /* seed of the random numbers */
     hf_sampling sampling;   /* how samples are chosen */
-    double yield;           /* required share of samples that meet the requirements; 0: none */
+    double required_yield;  /* required share of samples that meet the requirements; 0: none */
     int n_require, n_truss; /* numbers of rows */
     hf_require_settings require[HF_REQUIRE_ROWS_MAX];     /* [n_require] rows of tolerance.require */
     hf_truss_heat_settings truss[HF_TRUSS_HEAT_ROWS_MAX]; /* [n_truss] rows of tolerance.truss */

@@ -105,7 +105,7 @@ static hf_status find_prior(job *j, const char *path, hf_messages *messages)
 
 static hf_status check_sections(const hf_case *c, const char *path, hf_messages *messages)
 {
-    char place[HF_PATH_SIZE + 64];
+    char location[HF_PATH_SIZE + 64];
     if (!c->has_adjust)
         hf_error(messages, HF_BAD_CASE,
                  "%s: has no section adjust: add adjust: {set: NAME, range_m: 0.002, step_m: 0.0001}, the cables that "
@@ -114,19 +114,19 @@ static hf_status check_sections(const hf_case *c, const char *path, hf_messages 
     if (!c->has_tolerance)
         hf_error(messages, HF_BAD_CASE,
                  "%s: has no section tolerance: add tolerance: {sigma_cut_m: 0.0001}, how well cables are cut", path);
-    hf_config_place(c, "adjust.figure", place, sizeof place);
+    hf_config_location(c, "adjust.figure", location, sizeof location);
     if (c->has_adjust && c->adjust.figure != HF_FIGURE_PSI && !c->has_surface)
-        hf_error(messages, HF_BAD_CASE, "%s: %s needs the wanted surface: add a section surface", place,
+        hf_error(messages, HF_BAD_CASE, "%s: %s needs the wanted surface: add a section surface", location,
                  hf_adjust_figure_word[c->adjust.figure]);
     return messages->n_error ? HF_BAD_CASE : HF_OK;
 }
 
 static hf_status pick_cables(job *j, hf_messages *messages)
 {
-    char place[HF_PATH_SIZE + 64];
+    char location[HF_PATH_SIZE + 64];
     const hf_case *c = &j->problem.settings;
-    hf_config_place(c, "adjust.set", place, sizeof place);
-    int n = hf_cable_pick_some(&j->problem.scene, c->adjust.set, place, j->cable, messages);
+    hf_config_location(c, "adjust.set", location, sizeof location);
+    int n = hf_cable_pick_some(&j->problem.scene, c->adjust.set, location, j->cable, messages);
     j->task = (hf_adjust_task){&c->adjust, &j->objectives, n, j->cable, j->least_N, j->threads};
     return n > 0 ? HF_OK : HF_BAD_CASE;
 }

@@ -221,7 +221,7 @@ static void print_cost_of_nets(const hf_problem *p, FILE *f)
 static void print_wishes(const hf_problem *p, FILE *f)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
-    char place[PATH_MAX];
+    char location[PATH_MAX];
     for (int k = 0; k < o->n_term && !o->n_front; k++) {
         const hf_objective_settings *s = &o->term[k];
         fprintf(f, "                goals.%d: %s", k, hf_figure_kind_word[s->figure]);
@@ -241,7 +241,7 @@ static void print_wishes(const hf_problem *p, FILE *f)
         print_bounds(s->lower, s->upper, f);
         fputc('\n', f);
     }
-    bool is_given = hf_config_place(&p->settings, "optimize.boundary_ratio_cap", place, sizeof place);
+    bool is_given = hf_config_location(&p->settings, "optimize.boundary_ratio_cap", location, sizeof location);
     fprintf(f, "                boundary_ratio_cap %g%s\n", o->boundary_ratio_cap, is_given ? "" : " (the default)");
 }
 

@@ -8,7 +8,7 @@
 #include "base/sha256.h"
 #include "base/text.h"
 #include "case/config_check.h"
-#include "case/config_meant.h"
+#include "case/config_suggest.h"
 #include "case/config_value.h"
 
 #include <stdio.h>
@@ -83,7 +83,7 @@ static const char *key_elsewhere(const char *key)
 
 static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, const char *key)
 {
-    const char *near = nearest_key(prefix, key), *meant = hf_config_meant(prefix, key);
+    const char *near = nearest_key(prefix, key), *meant = hf_config_suggestion(prefix, key);
     char detail[2 * HF_KEY_SIZE] = "";
     if (!*prefix && !strcmp(key, "base")) {
         l->is_study = true;
@@ -123,9 +123,9 @@ static bool complain_of_row(loader *l, yaml_mark_t mark, const char *path)
 
 /* ---- setting one value ---- */
 
-static void tell_place(loader *l, const yaml_node_t *node, int i_place)
+static void set_location(loader *l, const yaml_node_t *node, int i_location)
 {
-    char *where = hf_config_where(&l->faults, i_place);
+    char *where = hf_config_where(&l->faults, i_location);
     if (l->faults.is_override)
         snprintf(where, HF_CONFIG_WHERE_SIZE, "--set");
     else
@@ -143,7 +143,7 @@ static void set_key(loader *l, const yaml_node_t *node, const hf_key *key)
         complain(l, node->start_mark, key->path, what, "");
         return;
     }
-    tell_place(l, node, key->i_place);
+    set_location(l, node, key->i_location);
     hf_config_value(&l->faults, l->document, node, &field, l->c->path, (char *)l->c + key->offset);
 }
 
@@ -162,7 +162,7 @@ static void clear_row(loader *l, const hf_list *list, int row)
         const char *text = key.field->default_value;
         hf_config_no_value(key.field, (char *)l->c + key.offset);
         if (text && *text) with_document(l, text, strlen(text), use_default, &key);
-        *hf_config_where(&l->faults, key.i_place) = '\0';
+        *hf_config_where(&l->faults, key.i_location) = '\0';
     }
 }
 
@@ -185,11 +185,11 @@ static void read_rows(loader *l, const yaml_node_t *node, const hf_list *list)
         const hf_key key = hf_key_of_row(list, (*n_row)++, -1);
         memset((char *)l->c + key.offset, 0, list->row_size);
         clear_row(l, list, key.row);
-        *hf_config_where(&l->faults, key.i_place) = '\0';
+        *hf_config_where(&l->faults, key.i_location) = '\0';
         if (row->type != YAML_MAPPING_NODE) {
             complain(l, row->start_mark, key.path, "must be a row {key: value, ...}", "");
         } else {
-            tell_place(l, row, key.i_place);
+            set_location(l, row, key.i_location);
             walk(l, row, key.path);
         }
     }
@@ -329,7 +329,7 @@ static bool has_key_of_case(loader *l, const yaml_node_t *root)
         const yaml_node_t *key = yaml_document_get_node(l->document, p->key);
         const char *word = key->type == YAML_SCALAR_NODE ? key_text(key) : "";
         if (!strcmp(word, "sweep") || !strcmp(word, "base")) return true;
-        if (hf_config_meant("", word) || nearest_key("", word) || key_elsewhere(word)) return true;
+        if (hf_config_suggestion("", word) || nearest_key("", word) || key_elsewhere(word)) return true;
     }
     return is_empty;
 }
@@ -473,7 +473,7 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
         return hf_error(messages, HF_BAD_CASE, "%s:%d:1: YAML: more than %d brackets are open", path,
                         hf_text_too_deep(settings->text), HF_TEXT_NESTING_MAX);
     loader l = {.c = settings, .faults = {.messages = messages, .path = path, .origin = path}};
-    l.faults.where_given = settings->where_given = calloc((size_t)hf_key_n_place(), HF_CONFIG_WHERE_SIZE);
+    l.faults.where_given = settings->where_given = calloc((size_t)hf_key_n_location(), HF_CONFIG_WHERE_SIZE);
     if (!l.faults.where_given) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     hf_key key;
     for (int i = 0; i < hf_n_field; i++) {
@@ -481,7 +481,7 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
         if (text && *text && hf_key_find(hf_field_table[i].path, &key))
             with_document(&l, text, strlen(text), use_default, &key);
     }
-    memset(l.faults.where_given, 0, (size_t)hf_key_n_place() * HF_CONFIG_WHERE_SIZE);
+    memset(l.faults.where_given, 0, (size_t)hf_key_n_location() * HF_CONFIG_WHERE_SIZE);
     with_document(&l, settings->text, settings->text_length, use_root, NULL);
     for (int i = 0; i < n_override; i++)
         apply_override(&l, overrides[i]);
@@ -517,20 +517,20 @@ hf_status hf_config_parse(const char *path, const char *text, const char *const 
     return parse(settings, overrides, n_override, messages);
 }
 
-hf_status hf_config_check_value(const char *path, const char *value, const char *place, hf_messages *messages)
+hf_status hf_config_check_value(const char *path, const char *value, const char *location, hf_messages *messages)
 {
     hf_key key;
     if (!hf_key_find(path, &key) || !key.field)
-        return hf_error(messages, HF_BAD_CASE, "%s: %s: unknown key", place, path);
+        return hf_error(messages, HF_BAD_CASE, "%s: %s: unknown key", location, path);
     hf_case *scratch = calloc(1, sizeof *scratch);
-    loader l = {.c = scratch, .faults = {.messages = messages, .origin = place, .place = place}};
-    l.faults.where_given = calloc((size_t)hf_key_n_place(), HF_CONFIG_WHERE_SIZE);
+    loader l = {.c = scratch, .faults = {.messages = messages, .origin = location, .location = location}};
+    l.faults.where_given = calloc((size_t)hf_key_n_location(), HF_CONFIG_WHERE_SIZE);
     if (scratch && l.faults.where_given)
         with_document(&l, value, strlen(value), use_default, &key);
     else
         l.no_memory = true;
     hf_status status = l.faults.failed ? HF_BAD_CASE : HF_OK;
-    if (l.no_memory) status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", place);
+    if (l.no_memory) status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", location);
     free(l.faults.where_given);
     free(scratch);
     return status;

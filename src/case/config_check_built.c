@@ -80,8 +80,8 @@ static void check_company(const hf_load_case_settings *s, int row, hf_config_fau
         hf_config_fault_in_row(f, load_case_list, row, "part", "does not go with set: a row names cables or members");
     if (is_there(s->direction) && s->direction[0] == 0 && s->direction[1] == 0 && s->direction[2] == 0)
         hf_config_fault_in_row(f, load_case_list, row, "direction", "must not be zero");
-    if (!has_temperature(s) && isnan(s->gravity_m_per_s2) && !is_there(s->force_N) && !is_there(s->move_m) &&
-        !*s->nodes_path)
+    if (!has_temperature(s) && isnan(s->gravity_m_per_s2) && !is_there(s->force_N) &&
+        !is_there(s->support_displacement_m) && !*s->nodes_path)
         hf_config_fault_in_row(f, load_case_list, row, "name",
                                "this row says nothing; give temperature_K, gradient_K_per_m, gravity_m_per_s2, "
                                "force_N, move_m or nodes");
@@ -192,7 +192,7 @@ static void check_tolerance(const hf_case *c, hf_config_faults *f)
                            "must be above 0, or another sigma: without errors all is nominal");
     if (t->sigma_temperature_K > 0 && !knows_expansion)
         hf_config_fault_of(f, "tolerance.sigma_temperature_K", "needs expansion_per_K in a row of `cables`");
-    if (t->yield > 0 && t->n_require == 0)
+    if (t->required_yield > 0 && t->n_require == 0)
         hf_config_fault_of(f, "tolerance.yield", "needs rows of tolerance.require, which say what a net must keep");
     if (t->batch > 0 && t->sigma_cut_ratio + t->sigma_EA_ratio == 0)
         hf_config_fault_of(f, "tolerance.batch", "is about sigma_cut_ratio and sigma_EA_ratio; give one of them");

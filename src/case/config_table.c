@@ -147,7 +147,8 @@ const hf_field hf_field_table[] = {
      "how far the cut length of each may be changed, either way"},
     {"adjust.step_m", HF_FIELD_DOUBLE, AT(adjust.step_m), HF_ABOVE_ZERO, 1e3, NULL, "m", NULL,
      "moves are multiples of it"},
-    {"adjust.moves", HF_FIELD_INT, AT(adjust.moves), 1, 1000000, "10", "", NULL, "cables that are turned at most"},
+    {"adjust.moves", HF_FIELD_INT, AT(adjust.max_adjustments), 1, 1000000, "10", "", NULL,
+     "cables that are turned at most"},
     {"adjust.target_m", HF_FIELD_DOUBLE, AT(adjust.target_m), 0, BIG, "0", "m", NULL,
      "no further move is made once the figure is below it"},
     {"adjust.figure", HF_FIELD_WORD, AT(adjust.figure), 0, 0, "psi", "", hf_adjust_figure_word,
@@ -242,7 +243,7 @@ const hf_field hf_field_table[] = {
     {"tolerance.sampling", HF_FIELD_WORD, AT(tolerance.sampling), 0, 0, "random", "", hf_sampling_word,
      "random numbers, or Sobol's sequence in the 40 directions of errors that move the shape most, which converges "
      "faster"},
-    {"tolerance.yield", HF_FIELD_DOUBLE, AT(tolerance.yield), 0, 0.9999, "0", "", NULL,
+    {"tolerance.yield", HF_FIELD_DOUBLE, AT(tolerance.required_yield), 0, 0.9999, "0", "", NULL,
      "part of the nets that should meet tolerance.require: the run tells by which factor all errors may grow, or must "
      "shrink; 0: it does not"},
 
@@ -396,7 +397,7 @@ static const hf_field load_case_field[] = {
      "in which gravity pulls, of any length; default: [0, 0, -1]"},
     {"force_N", HF_FIELD_VECTOR, IN(force_N), -1e12, 1e12, "", "N", NULL, "on each node of the role"},
     {"role", HF_FIELD_WORD, IN(role), 0, 0, "all", "", hf_nodes_word, "nodes on which force_N acts"},
-    {"move_m", HF_FIELD_VECTOR, IN(move_m), -1e6, 1e6, "", "m", NULL,
+    {"move_m", HF_FIELD_VECTOR, IN(support_displacement_m), -1e6, 1e6, "", "m", NULL,
      "of all supports from where the design has them, on a truss from where the truss holds them"},
     {"nodes", HF_FIELD_TEXT, IN(nodes_path), 1, HF_PATH_SIZE, "", "", NULL,
      "CSV id[,Fx_N,Fy_N,Fz_N][,dx_m,dy_m,dz_m]: forces on nodes, moves of supports; path relative to the case file"},

@@ -156,9 +156,9 @@ static bool quote(const reader *r, const hf_field *field, const char *value, cha
 
 static hf_status check_value(reader *r, const hf_study_axis *axis, const char *text, yaml_mark_t mark)
 {
-    char place[HF_PATH_SIZE + 128];
-    snprintf(place, sizeof place, "%s:%zu:%zu: sweep", r->study->path, mark.line + 1, mark.column + 1);
-    return hf_config_check_value(axis->key.path, text, place, r->messages);
+    char location[HF_PATH_SIZE + 128];
+    snprintf(location, sizeof location, "%s:%zu:%zu: sweep", r->study->path, mark.line + 1, mark.column + 1);
+    return hf_config_check_value(axis->key.path, text, location, r->messages);
 }
 
 /* Sets value k of the axis. A study may have a million values, so numbers that are within their range are not

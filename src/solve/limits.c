@@ -21,16 +21,16 @@
 static hf_status read_row(const hf_scene *scene, const hf_model *m, const hf_limit_settings *s, int row, hf_limit *to,
                           hf_messages *messages)
 {
-    char where[HF_PLACE_SIZE];
+    char where[HF_LOCATION_SIZE];
     to->kind = s->figure;
     to->lower = s->lower;
     to->upper = s->upper;
     if (s->figure == HF_LIMIT_DEFLECTION) {
         if (m->n_attachment > 0) return HF_OK;
         return hf_error(messages, HF_BAD_CASE, "%s: displacement needs a truss, whose attachments it limits",
-                        hf_messages_place(messages, where, "optimize.limits.%d.limit", row));
+                        hf_messages_location(messages, where, "optimize.limits.%d.limit", row));
     }
-    hf_messages_place(messages, where, "optimize.limits.%d.set", row);
+    hf_messages_location(messages, where, "optimize.limits.%d.set", row);
     to->n_cable = hf_cable_pick_some(scene, s->set, where, to->cable, messages);
     return to->n_cable ? HF_OK : HF_BAD_CASE;
 }

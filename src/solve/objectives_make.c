@@ -113,14 +113,14 @@ static void number_rows(hf_objectives *objectives, hf_objective *g, long *n_all)
 
 static hf_status refuse_rows(const hf_objectives *objectives, const char *list, long n_all, hf_messages *messages)
 {
-    char where[HF_PLACE_SIZE];
+    char where[HF_LOCATION_SIZE];
     int n_sample = 0;
     for (int k = 0; k < objectives->n_objective; k++)
         if (objectives->objective[k].settings.over == HF_OVER_SAMPLES) n_sample = objectives->objective[k].n_net;
     if (n_sample)
-        hf_messages_place(messages, where, "optimize.samples");
+        hf_messages_location(messages, where, "optimize.samples");
     else
-        hf_messages_place(messages, where, "optimize.%s", list);
+        hf_messages_location(messages, where, "optimize.%s", list);
     return hf_error(messages, HF_BAD_CASE,
                     "%s: the goals have %ld residuals in all nets, and at most %ld (1 GiB) are kept: take fewer %s",
                     where, n_all, ROWS_MAX, n_sample ? "samples, or fewer goals over samples" : "goals");
@@ -204,13 +204,13 @@ hf_status hf_objectives_create(const hf_scene *scene, const hf_model *m, const h
     const char *list = is_front ? "objectives" : "goals";
     for (int k = 0; k < objectives->n_objective; k++) {
         hf_objective *g = &objectives->objective[k];
-        char where[HF_PLACE_SIZE];
-        hf_messages_place(messages, where, "optimize.%s.%d.set", list, k);
+        char where[HF_LOCATION_SIZE];
+        hf_messages_location(messages, where, "optimize.%s.%d.set", list, k);
         make_beam(scene, surface, facets, objectives, k);
         if (g->cable) g->n_cable = hf_cable_pick_some(scene, g->settings.set, where, g->cable, messages);
         bool is_known = !g->cable || g->n_cable > 0;
         const char *fault = is_known ? fault_of(objectives, k, surface, facets) : NULL;
-        hf_messages_place(messages, where, "optimize.%s.%d", list, k);
+        hf_messages_location(messages, where, "optimize.%s.%d", list, k);
         if (fault) hf_error(messages, HF_BAD_CASE, "%s: %s: %s", where, hf_figure_kind_word[g->settings.figure], fault);
         if (!fault) warn_of_no_beam(scene, facets, objectives, k, where, messages);
         n_fault += !is_known || fault;

@@ -2,7 +2,7 @@
 #include "nets.h"
 
 #include "case/config_key.h"
-#include "case/config_meant.h"
+#include "case/config_suggest.h"
 
 #define CYLINDER                                                                                                       \
     "scene:\n"                                                                                                         \
@@ -277,7 +277,7 @@ START_TEST(what_others_call_a_key_is_known)
               {"surface", "aperture", "'scene.paraboloid.aperture_m'"},
               {"", "output", "-o "}};
     for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-        const char *meant = hf_config_meant(of[i].section, of[i].key);
+        const char *meant = hf_config_suggestion(of[i].section, of[i].key);
         ck_assert_msg(meant && strstr(meant, of[i].meant), "%s: %s", of[i].key, meant ? meant : "nothing");
         for (const char *quote = strchr(meant, '\''); quote; quote = strchr(quote, '\'')) {
             char path[HF_KEY_SIZE];
@@ -287,12 +287,12 @@ START_TEST(what_others_call_a_key_is_known)
             quote += strlen(path) + 2;
         }
     }
-    ck_assert_ptr_null(hf_config_meant("form", "seeds"));
-    ck_assert_ptr_null(hf_config_meant("formal", "solver"));
+    ck_assert_ptr_null(hf_config_suggestion("form", "seeds"));
+    ck_assert_ptr_null(hf_config_suggestion("formal", "solver"));
     static const char *const row[] = {"optimize.goals.0", "optimize.variables.1", "optimize.limits.0"};
     for (int i = 0; i < 3; i++)
-        ck_assert_ptr_null(hf_config_meant(row[i], "tol"));
-    ck_assert_ptr_null(hf_config_meant("tolerance.require.0", "n"));
+        ck_assert_ptr_null(hf_config_suggestion(row[i], "tol"));
+    ck_assert_ptr_null(hf_config_suggestion("tolerance.require.0", "n"));
     ck_assert_ptr_nonnull(strstr(complaint(FORM "  pretension_N: 10\n", "optimize.max_iterations=9"),
                                  "; did you mean 'optimize.polish_iterations' (steps of Levenberg-Marquardt) or "));
 }

@@ -168,7 +168,7 @@ START_TEST(places_of_rows_are_told)
     char text[2 * HF_PATH_SIZE], place[256];
     accept_rows(ROWS, &set, 1, &c);
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
-        ck_assert_int_eq(hf_config_place(&c, wanted[i].key, text, sizeof text), wanted[i].is_given);
+        ck_assert_int_eq(hf_config_location(&c, wanted[i].key, text, sizeof text), wanted[i].is_given);
         copy_without_folder(text, place, sizeof place);
         ck_assert_str_eq(place, wanted[i].place);
     }

@@ -1,4 +1,4 @@
-#include "case/config_meant.h"
+#include "case/config_suggest.h"
 
 #include "case/config_key.h"
 
@@ -69,7 +69,7 @@ static bool is_among(const char *words, const char *key)
     return false;
 }
 
-const char *hf_config_meant(const char *section, const char *key)
+const char *hf_config_suggestion(const char *section, const char *key)
 {
     hf_key of;
     bool is_row = hf_key_find(section, &of) && !of.field;
