@@ -38,7 +38,7 @@
  *                and polish are best_coupling_... of /ga and coupling_... of /polish)
  *   /ga          design_N [g][p][k]; evaluated, status, psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio,
  *                iterations, violation, merit, trial_status, trial_psi_m, crossover_rate, mutation_rate [g][p], and
- *                objective_0, objective_1, objective_2 with optimize.objectives; parent [g][p][2];
+ *                objective_0, objective_1, objective_2 with optimize.front; parent [g][p][2];
  *                best_individual, best_psi_m, best_merit, least_violation, mean_psi_m, worst_psi_m, n_infeasible [g];
  *                with optimize.store best the rows of [g][p] are those of the best individual, [g][1]; with every they
  *                are those of generations 0, n, 2n, ...; both have /ga/last, the same of the last generation [1][p],
@@ -65,9 +65,9 @@
  *                if there are any: name, least_N, largest_N, ratio [s]
  *   /at_limit/optimize, /at_limit/polish   if the shape is at h limits that its design must keep: row of
  *                optimize.limits or -1, the maximum boundary tension ratio; count, name, value, bound [h]
- *   /goals       with g rows of optimize.goals: name, weight, after_fit [g]; values in the shapes of form, optimize,
- *                polish [g], if these exist; with optimize.objectives the same without weight
- *   /front       of optimize.objectives, with p points, o objectives, k design variables: name, base [o]; objective,
+ *   /goals       with g rows of optimize.objective: name, weight, after_fit [g]; values in the shapes of form,
+ *                optimize, polish [g], if these exist; with optimize.front the same without weight
+ *   /front       of optimize.front, with p points, o objectives, k design variables: name, base [o]; objective,
  *                multiplier [p][o]; status, mark, iterations, converged [p]; design_N (with optimize.variables design)
  *                [p][k]; gene, the name of each variable [k]; attributes n_on, n_dominated, n_failed, minimised,
  *                knee (index into p, -1: none), wall_s

@@ -71,7 +71,7 @@ extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS]; /* words of
     X(double, yield, REAL, 4, "yield", "part of the samples that meets all rows of tolerance.require; NaN: no rows")   \
     X(double, yield_low, REAL, 4, "yield_low", "95 % interval of the yield (Clopper and Pearson): its lower end")      \
     X(double, yield_high, REAL, 4, "yield_high", "95 % interval of the yield: its upper end")                          \
-    X(double, wanted_yield, REAL, 4, "wanted_yield", "tolerance.yield of the case; NaN: none")                         \
+    X(double, wanted_yield, REAL, 4, "wanted_yield", "tolerance.required_yield of the case; NaN: none")                \
     X(double, sigma_scale, REAL, 4, "sigma_scale", "all errors times this give the wanted yield; NaN: not asked for")  \
     X(int, scale_bound, INT, 4, "scale_bound", "1: sigma_scale is at least that, -1: below that; 0: just that")        \
     X(int, scale_samples, INT, 4, "scale_samples", "of each yield on the way to it")                                   \

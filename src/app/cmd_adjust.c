@@ -357,8 +357,8 @@ const hf_command hf_cmd_adjust = {
              "cable before and after, and the figure that is predicted after each.",
     .examples = "hifdm adjust case.yaml --measured nodes.csv -o moves.csv\n"
                 "hifdm adjust case.yaml --measured nodes.csv --result case.h5 --report moves.html\n"
-                "hifdm adjust case.yaml --result case.h5 --measured nodes.csv --set adjust.aim=theory\n"
-                "hifdm adjust case.yaml --measured nodes.csv --json --set adjust.moves=5",
+                "hifdm adjust case.yaml --result case.h5 --measured nodes.csv --set adjust.aim=target_positions\n"
+                "hifdm adjust case.yaml --measured nodes.csv --json --set adjust.max_adjustments=5",
     .reads_results = true,
     .uses_threads = true,
     .run = command_adjust,

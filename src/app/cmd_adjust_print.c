@@ -104,7 +104,7 @@ static void print_end(const hf_adjust_job *j, FILE *f)
             hf_print_line(f, "no further move: target_m is met");
         break;
     case HF_MOVES_ALL:
-        hf_print_line(f, "no further move: all %d are made (adjust.moves)", s->max_adjustments);
+        hf_print_line(f, "no further move: all %d are made (adjust.max_adjustments)", s->max_adjustments);
         break;
     case HF_MOVES_DOUBT:
         hf_print_line(f, "no further move: the next one would gain less than these measurements can tell");

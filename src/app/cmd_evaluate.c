@@ -4,7 +4,7 @@
  *      optimize.variables, there is a column for each boundary cable with a free end: its id, with its pretension
  *      in N. The columns may be in any order. An optional column `id` names the rows.
  * out: id,status,psi_m,residual_N,inner_tension_ratio,boundary_tension_ratio,iterations,violation,merit, and one
- *      column per row of optimize.goals or optimize.objectives (hf_objectives_name). A front has no merit.
+ *      column per row of optimize.objective or optimize.front (hf_objectives_name). A front has no merit.
  *      One row per design, in the order of the input, with 17 significant digits. A missing value is nan. Without a
  *      column `id`, the rows are numbered from 1.
  * --jacobian: id,figure and a column per design variable. For every feasible design, the table has the derivatives
@@ -298,7 +298,7 @@ static void print_summary(const job *j, const char *path, FILE *f)
                   j->problem.batch.n_thread == 1 ? "" : "s", path);
 }
 
-/* Prints the best design, and with optimize.goals its objectives. */
+/* Prints the best design, and with optimize.objective its objectives. */
 static void print_best(const job *from, hf_json *j)
 {
     const hf_objectives *objectives = &from->problem.objectives;

@@ -8,6 +8,7 @@
 #include "base/sha256.h"
 #include "base/text.h"
 #include "case/config_check.h"
+#include "case/config_rename.h"
 #include "case/config_suggest.h"
 #include "case/config_value.h"
 
@@ -132,10 +133,49 @@ static void set_location(loader *l, const yaml_node_t *node, int i_location)
         snprintf(where, HF_CONFIG_WHERE_SIZE, "%zu:%zu", node->start_mark.line + 1, node->start_mark.column + 1);
 }
 
-static void set_key(loader *l, const yaml_node_t *node, const hf_key *key)
+static void with_document(loader *l, const char *text, size_t length,
+                          void (*use)(loader *, const yaml_node_t *, const void *), const void *context);
+static void use_default(loader *l, const yaml_node_t *root, const void *context);
+
+static const char *key_text(const yaml_node_t *node)
+{
+    return (const char *)node->data.scalar.value;
+}
+
+/* Reports a key that the file sets twice, once by its old name. */
+static bool is_given_already(loader *l, const yaml_node_t *node, const hf_key *key)
+{
+    const char *where = hf_config_where(&l->faults, key->i_location);
+    if (!*where || l->faults.is_override) return false;
+    complain(l, node->start_mark, key->path, "is set twice: remove one, here or at ", where);
+    return true;
+}
+
+/* Sets a key whose value is an old word. Returns false if it is none. */
+static bool set_old_word(loader *l, const yaml_node_t *node, const hf_key *key)
+{
+    char old[2 * HF_KEY_SIZE], now[HF_KEY_SIZE];
+    hf_key to;
+    if (key->field->type != HF_FIELD_WORD || node->type != YAML_SCALAR_NODE) return false;
+    snprintf(old, sizeof old, "%s=%s", key->path, key_text(node));
+    if (!hf_config_rename(&l->faults, node->start_mark.line, node->start_mark.column, old, now)) return false;
+    char *word = strchr(now, '=');
+    *word++ = '\0';
+    if (!hf_key_find(now, &to) || is_given_already(l, node, &to)) return true;
+    with_document(l, word, strlen(word), use_default, &to);
+    set_location(l, node, to.i_location);
+    return true;
+}
+
+static void set_value(loader *l, const yaml_node_t *node, const hf_key *key)
 {
     hf_field field = *key->field;
     field.path = key->path;
+    hf_config_value(&l->faults, l->document, node, &field, l->c->path, (char *)l->c + key->offset);
+}
+
+static void set_key(loader *l, const yaml_node_t *node, const hf_key *key)
+{
     if (key->list && l->walked && key->row >= hf_key_n_row(l->c, key->list)) {
         char what[128];
         snprintf(what, sizeof what, "there is no such row: %s has %d, numbered from 0", key->list->path,
@@ -143,16 +183,14 @@ static void set_key(loader *l, const yaml_node_t *node, const hf_key *key)
         complain(l, node->start_mark, key->path, what, "");
         return;
     }
+    if (is_given_already(l, node, key) || set_old_word(l, node, key)) return;
     set_location(l, node, key->i_location);
-    hf_config_value(&l->faults, l->document, node, &field, l->c->path, (char *)l->c + key->offset);
+    set_value(l, node, key);
 }
 
 /* ---- walking the YAML tree ---- */
 
 static void walk(loader *l, const yaml_node_t *mapping, const char *prefix);
-static void with_document(loader *l, const char *text, size_t length,
-                          void (*use)(loader *, const yaml_node_t *, const void *), const void *context);
-static void use_default(loader *l, const yaml_node_t *root, const void *context);
 
 /* Sets all keys of a row to their defaults. */
 static void clear_row(loader *l, const hf_list *list, int row)
@@ -169,7 +207,11 @@ static void clear_row(loader *l, const hf_list *list, int row)
 static void read_rows(loader *l, const yaml_node_t *node, const hf_list *list)
 {
     int *n_row = (int *)(void *)((char *)l->c + list->count_offset);
+    hf_key first = hf_key_of_row(list, 0, -1);
     char what[64];
+    snprintf(first.path, sizeof first.path, "%s", list->path);
+    if (is_given_already(l, node, &first)) return;
+    set_location(l, node, first.i_location); /* that of its first row, if it has rows */
     *n_row = 0;
     if (node->type != YAML_SEQUENCE_NODE) {
         complain(l, node->start_mark, list->path, "must be a list of rows, each a line '- {key: value, ...}'", "");
@@ -197,9 +239,10 @@ static void read_rows(loader *l, const yaml_node_t *node, const hf_list *list)
 
 static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, const char *prefix, const char *key)
 {
-    char path[HF_KEY_SIZE];
+    char given[HF_KEY_SIZE], path[HF_KEY_SIZE];
     hf_key found;
-    bool fits = snprintf(path, sizeof path, "%s%s%s", prefix, *prefix ? "." : "", key) < HF_KEY_SIZE;
+    bool fits = snprintf(given, sizeof given, "%s%s%s", prefix, *prefix ? "." : "", key) < HF_KEY_SIZE;
+    hf_config_rename(&l->faults, key_mark.line, key_mark.column, given, path);
     const hf_list *list = fits ? hf_key_find_list(path) : NULL;
     if (fits && hf_key_find(path, &found) && found.field) {
         set_key(l, value, &found);
@@ -216,11 +259,6 @@ static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, cons
     } else {
         walk(l, value, path);
     }
-}
-
-static const char *key_text(const yaml_node_t *node)
-{
-    return (const char *)node->data.scalar.value;
 }
 
 static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
@@ -355,7 +393,7 @@ static void use_default(loader *l, const yaml_node_t *root, const void *context)
     yaml_mark_t start = {0};
     const hf_key *key = context;
     if (root)
-        set_key(l, root, key);
+        set_value(l, root, key);
     else
         complain(l, start, key->path, "has no value", "");
 }
@@ -365,9 +403,9 @@ static void use_default(loader *l, const yaml_node_t *root, const void *context)
 static void use_override(loader *l, const yaml_node_t *root, const void *context)
 {
     char path[HF_KEY_SIZE];
-    snprintf(path, sizeof path, "%s", (const char *)context);
-    char *dot = strrchr(path, '.');
     yaml_mark_t start = {0};
+    hf_config_rename(&l->faults, 0, 0, context, path);
+    char *dot = strrchr(path, '.');
     if (!root) {
         complain(l, start, path, "there is no value after the '='", "");
         return;
@@ -481,7 +519,6 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
         if (text && *text && hf_key_find(hf_field_table[i].path, &key))
             with_document(&l, text, strlen(text), use_default, &key);
     }
-    memset(l.faults.where_given, 0, (size_t)hf_key_n_location() * HF_CONFIG_WHERE_SIZE);
     with_document(&l, settings->text, settings->text_length, use_root, NULL);
     for (int i = 0; i < n_override; i++)
         apply_override(&l, overrides[i]);
@@ -524,14 +561,12 @@ hf_status hf_config_check_value(const char *path, const char *value, const char 
         return hf_error(messages, HF_BAD_CASE, "%s: %s: unknown key", location, path);
     hf_case *scratch = calloc(1, sizeof *scratch);
     loader l = {.c = scratch, .faults = {.messages = messages, .origin = location, .location = location}};
-    l.faults.where_given = calloc((size_t)hf_key_n_location(), HF_CONFIG_WHERE_SIZE);
-    if (scratch && l.faults.where_given)
+    if (scratch)
         with_document(&l, value, strlen(value), use_default, &key);
     else
         l.no_memory = true;
     hf_status status = l.faults.failed ? HF_BAD_CASE : HF_OK;
     if (l.no_memory) status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", location);
-    free(l.faults.where_given);
     free(scratch);
     return status;
 }

@@ -8,15 +8,12 @@
 void hf_config_fault_at(hf_config_faults *faults, size_t line, size_t column, const char *path, const char *what,
                         const char *detail)
 {
+    char where[48] = "";
     faults->failed = true;
     if (++faults->n > HF_FAULT_MAX_CASE) return;
-    if (faults->location)
-        hf_error(faults->messages, HF_BAD_CASE, "%s: %s: %s%s", faults->location, path, what, detail);
-    else if (faults->is_override)
-        hf_error(faults->messages, HF_BAD_CASE, "--set %s: %s: %s%s", faults->origin, path, what, detail);
-    else
-        hf_error(faults->messages, HF_BAD_CASE, "%s:%zu:%zu: %s: %s%s", faults->origin, line + 1, column + 1, path,
-                 what, detail);
+    if (!faults->location && !faults->is_override) snprintf(where, sizeof where, ":%zu:%zu", line + 1, column + 1);
+    hf_error(faults->messages, HF_BAD_CASE, "%s%s%s: %s: %s%s", faults->is_override ? "--set " : "", faults->origin,
+             where, path, what, detail);
 }
 
 /* Returns the location of a key, or else that of its row, or "". *is_given: the case contains the key. */

@@ -25,7 +25,7 @@ void hf_config_fault_at(hf_config_faults *faults, size_t line, size_t column, co
  * case contains it. */
 void hf_config_fault_of(hf_config_faults *faults, const char *path, const char *what);
 
-/* Reports a fault of a key in a row, such as key "set" of row 0 of the list "optimize.goals". */
+/* Reports a fault of a key in a row, such as key "set" of row 0 of the list "optimize.objective". */
 void hf_config_fault_in_row(hf_config_faults *faults, const char *list, int row, const char *key, const char *what);
 
 /* Return true if the case contains this key. */

@@ -1,5 +1,5 @@
 /* config_key - finds keys of a case by their paths, such as "form.stop", also in rows of lists
- * ("optimize.goals.0.set"). */
+ * ("optimize.objective.0.set"). */
 #ifndef HIFDM_CONFIG_KEY_H
 #define HIFDM_CONFIG_KEY_H
 

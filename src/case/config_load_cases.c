@@ -1,4 +1,4 @@
-/* Makes the load cases of the as-built net from the rows of `cases`:
+/* Makes the load cases of the as-built net from the rows of `load_cases`:
  *
  *     rows -> names in order of appearance -> materials -> for each row: temperatures, gravity, forces, displacements,
  *     table of nodes -> hf_load_cases
@@ -32,7 +32,7 @@ typedef struct {
 static const char *location_in_row(const maker *q, int row, const char *key, char where[WHERE_SIZE])
 {
     char path[64];
-    snprintf(path, sizeof path, "cases.%d.%s", row, key);
+    snprintf(path, sizeof path, "load_cases.%d.%s", row, key);
     hf_config_location(q->c, path, where, WHERE_SIZE);
     return where;
 }
@@ -265,10 +265,11 @@ static hf_status check_EA(const maker *q)
     for (int e = 0; e < s->n_cable; e++)
         if (!(s->EA_N && s->EA_N[e] > 0) && n++ == 0) first = e;
     if (n == 0) return HF_OK;
-    return hf_error(q->messages, HF_BAD_CASE,
-                    "%s: %d cables have no EA, which states of the net as built need, like '%s': give scene.EA_inner_N "
-                    "and scene.EA_boundary_N, or the column EA_N of an imported net",
-                    location_in_row(q, 0, "name", where), n, s->cable_id[first]);
+    return hf_error(
+        q->messages, HF_BAD_CASE,
+        "%s: %d cables have no EA, which load cases of the net as built need, like '%s': give scene.EA_inner_N "
+        "and scene.EA_boundary_N, or the column EA_N of an imported net",
+        location_in_row(q, 0, "name", where), n, s->cable_id[first]);
 }
 
 typedef hf_status row_step(const maker *, int);
@@ -304,7 +305,7 @@ hf_status hf_config_load_cases(const hf_case *c, const hf_scene *s, const hf_tru
     if (status == HF_OK)
         status = hf_config_material(c, s, &load_cases->material, messages);
     else
-        hf_error(messages, status, "%s: out of memory for %d states", c->path, n);
+        hf_error(messages, status, "%s: out of memory for %d load cases", c->path, n);
     if (status == HF_OK) status = read_rows_of_load_cases(&q);
     free(q.cable);
     return status;

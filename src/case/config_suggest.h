@@ -5,7 +5,7 @@
 
 /* Returns the suggestion as words after "did you mean ", or NULL if the key is not known. If there are several keys,
  * the words say what each is for. `section` is "" for a key at the top level. Upper case and "_" make no difference. In
- * a row of a list, such as "optimize.goals.0", the suggestions of its section are not used. */
+ * a row of a list, such as "optimize.objective.0", the suggestions of its section are not used. */
 const char *hf_config_suggestion(const char *section, const char *key);
 
 #endif

@@ -65,8 +65,7 @@ static hf_status export_front(const hf_export_request *o, char *said, size_t siz
     HF_TRY(hf_export_claim(o, o->output, messages));
     HF_TRY(hf_store_read_summary(o->file, &v.summary, messages));
     if (!v.summary.has_front)
-        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no front: its case has no optimize.objectives",
-                        o->file);
+        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no front: its case has no optimize.front", o->file);
     hf_status status = hf_store_read_front(o->file, &v.front, &v.variable, &v.variable_size, messages);
     if (status == HF_OK) status = hf_file_out_set_write(o->files, o->output, write_front, &v, messages);
     if (status == HF_OK)
@@ -80,6 +79,6 @@ static hf_status export_front(const hf_export_request *o, char *said, size_t siz
 const hf_exporter hf_exporter_front = {
     .option = "--front",
     .argument = "FILE",
-    .help = "write the front of optimize.objectives as a CSV file: objectives, slopes and design of each point",
+    .help = "write the front of optimize.front as a CSV file: objectives, slopes and design of each point",
     .write = export_front,
 };

@@ -6,7 +6,7 @@
 #include "case/study.h"
 #include "store/store_series.h"
 
-/* The stages of a run, the as-built net (`tolerance`) and its load cases (`cases`). */
+/* The stages of a run, the as-built net (`tolerance`) and its load cases (`load_cases`). */
 typedef enum {
     HF_MERGED_FORM,
     HF_MERGED_SEARCH,

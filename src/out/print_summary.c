@@ -333,7 +333,7 @@ static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
     if (!(before_Hz < FREQUENCY_MOST_HZ) || !(rms_m > BETTER_FIT * before_m)) return;
     fprintf(f,
             "                after the best fit the form-finding's net was better, good to %.3g GHz; for that want "
-            "{goal: %s, fit: best}\n",
+            "{figure: %s, fit: best}\n",
             before_Hz / 1e9, has_facets ? "facets" : "surface");
 }
 

@@ -255,7 +255,7 @@ static const hf_word told[] = {
     {"coupling", "object of --json", "", "How net and truss came to balance.", NULL},
     {"surface", "object of --json", "", "Errors of a shape as a reflector.", NULL},
     {"sets", "object of --json", "", "Tensions of each named set of cables.", NULL},
-    {"goals", "object of --json", "", "Value and weight of each row of optimize.goals or optimize.objectives.", NULL},
+    {"goals", "object of --json", "", "Value and weight of each row of optimize.objective or optimize.front.", NULL},
     {"front", "object of --json", "",
      "Designs of which none is better than another in all objectives; a single one where they do not conflict. `hifdm "
      "run "
@@ -345,7 +345,7 @@ static const hf_word told[] = {
     {"n_dominated", "figure", "", "Points of the front that another one beats in all objectives.", NULL},
     {"n_failed", "figure", "", "Points of the front without a feasible design.", NULL},
     {"n_not_converged", "figure", "",
-     "Points of the front whose design is not known to be an optimum: raise optimize.polish_iterations.", NULL},
+     "Points of the front whose design is not known to be an optimum: raise optimize.refine_steps.", NULL},
     {"minimised", "figure", "", "The objective whose least is sought under limits on the others.", NULL},
     {"knee", "figure", "",
      "The point of the front farthest below the line, or plane, of its ends: where a trade turns bad on all sides.",
@@ -377,6 +377,7 @@ static const hf_word told[] = {
     {"cable", "figure", "", "Id of the cable.", NULL},
     {"share", "figure", "", "Part of the variance of psi that errors of this cable make, to first order.", NULL},
     {"least_tension_N", "figure", "N", "Least tension of all cables, of a state or of a sample.", NULL},
+    {"tension_min_N", "figure", "N", "Minimum tension of the cables of a sample.", NULL},
     {"n_slack", "figure", "", "Slack cables of a sample.", NULL},
     {"n_loose", "figure", "", "Loose nodes of a sample.", NULL},
     {"fit_gain_loss_dB", "figure", "dB", "Loss of gain (Ruze) after the best fit; null beyond 3 dB.", NULL},

@@ -5,7 +5,8 @@
 
 const hf_word hf_words_case[] = {
     {"goal", "term", "",
-     "What a design should reach: a row of optimize.goals, a figure of the shape of which less is better (psi, facets, "
+     "What a design should reach: a row of optimize.objective, a figure of the shape of which less is better (psi, "
+     "facets, "
      "tension, evenness, gain, ...). The merit is the root of the sum of (weight x value)^2; without rows psi is the "
      "goal.",
      NULL},
@@ -55,7 +56,8 @@ const hf_word hf_words_case[] = {
      NULL},
     {"by a turn", "term", "", "See psi_by_cut.", NULL},
     {"meets yield", "column of a study", "",
-     "Has the point the yield that its tolerance.yield wants? yes: the whole 95 % interval of its samples is above it; "
+     "Has the point the yield that its tolerance.required_yield wants? yes: the whole 95 % interval of its samples is "
+     "above it; "
      "no: "
      "below; open: only more of them (tolerance.samples) can tell.",
      NULL},
@@ -86,7 +88,7 @@ const hf_word hf_words_case[] = {
     {"drift", "term", "",
      "How far nodes move within the surface: psi counts it, goals of the surface (facets, surface, gain) "
      "do not, and a radio wave hardly sees it. It takes facets and cables to where nobody drew them: "
-     "{goal: psi, weight: 0.1} beside the other goals keeps it small.",
+     "{figure: psi, weight: 0.1} beside the other goals keeps it small.",
      NULL},
     {"within the surface", "term", "", "See drift.", NULL},
     {"gives way", "term", "",
@@ -134,7 +136,7 @@ const hf_word hf_words_case[] = {
      "should be.",
      NULL},
     {"not converged", "term", "",
-     "The limit of iterations came first: raise optimize.polish_iterations (of Levenberg-Marquardt) or "
+     "The limit of iterations came first: raise optimize.refine_steps (of Levenberg-Marquardt) or "
      "form.max_iterations (of the form-finding), and run with --restart.",
      NULL},
     {"dB", "term", "",
@@ -148,7 +150,7 @@ const hf_word hf_words_case[] = {
      "lengths are in mm, in files and --json in m.",
      NULL},
     {"objective", "term", "",
-     "One of two or three goals that are weighed against each other: optimize.objectives asks for their "
+     "One of two or three goals that are weighed against each other: optimize.front asks for their "
      "front.",
      NULL},
     {"sidelobe", "term", "",
@@ -166,8 +168,8 @@ const hf_word hf_words_case[] = {
     {"spillover", "term", "", "The part of the feed's power that goes past the reflector.", NULL},
     {"sigma", "term", "", "Standard deviation of an error: two thirds of all errors are below it.", NULL},
     {"pull", "term", "", "The force of the net on a support; as a goal the largest of them, N.", NULL},
-    {"displacement", "term", "",
-     "How far an attachment moves with the truss; as a goal, or a limit, the largest of them, m.", NULL},
+    {"displacement", "term", "", "How far an attachment moves with the truss.", NULL},
+    {"deflection", "term", "", "The largest displacement of an attachment, in an objective or a limit, m.", NULL},
     {"turnbuckle move", "term", "", "See turnbuckle.", NULL},
     {"unstressed length", "term", "",
      "The length of a cable without tension, length / (1 + T/EA): what the workshop cuts. See l0_m.", NULL},

@@ -96,13 +96,13 @@ const hf_word hf_words_warning[] = {
      "their cables near their theoretical lengths. Where the goals gain by these moves themselves, that gain is lost.",
      "moved far from where form-finding has it"},
     {"drifting_within_surface", "warning", "",
-     "Goals of the surface (facets, surface, gain) count how far nodes are from it, not where on it they are. {goal: "
+     "Goals of the surface (facets, surface, gain) count how far nodes are from it, not where on it they are. {figure: "
      "psi, weight: 0.1} beside them keeps nodes near their theoretical places; or let fewer cables vary (of a double "
      "layer the ties alone).",
      "moved far within the surface"},
     {"polish_not_converged", "warning", "",
      "The design is good, but not known to be an optimum: the message says what the last steps still gained. With more "
-     "optimize.polish_iterations, and `hifdm run --restart`, it gets better; a target that is met needs none.",
+     "optimize.refine_steps, and `hifdm run --restart`, it gets better; a target that is met needs none.",
      "Levenberg-Marquardt is not converged after"},
     {"polish_needs", "warning", "",
      "Levenberg-Marquardt needs derivatives, which this case has not; the genetic algorithm does without.",
@@ -140,7 +140,8 @@ const hf_word hf_words_warning[] = {
      "`hifdm export --front` has the marks.",
      "is dominated: another point of its front"},
     {"front_is_no_design", "warning", "",
-     "A front has many designs. The nets as built of `cases` and `tolerance` are cut for one, and without a point that "
+     "A front has many designs. The nets as built of `load_cases` and `tolerance` are cut for one, and without a point "
+     "that "
      "is the form-finding's. `hifdm run CASE --point FRONT.h5:N` takes point N of a front that was found before.",
      "a front is no single design"},
     {"no_point_taken", "warning", "",
@@ -152,16 +153,17 @@ const hf_word hf_words_warning[] = {
      "other points hold.",
      "points of the front failed"},
     {"front_not_converged", "warning", "",
-     "These points are good designs, but not known to be optima, and have no slope. Raise optimize.polish_iterations.",
+     "These points are good designs, but not known to be optima, and have no slope. Raise optimize.refine_steps.",
      "points of the front are not converged"},
     {"front_of_generations", "warning", "",
      "Levenberg-Marquardt could not refine the front; it is that of the last generation.",
      "the front is that of the last generation"},
     {"no_shape_in_state", "warning", "",
-     "The net as built has no shape in this state of `cases`: look at its loads and temperatures.",
+     "The net as built has no shape in this state of `load_cases`: look at its loads and temperatures.",
      "the net has no shape in state"},
     {"slack_in_state", "warning", "",
-     "In this state of `cases` cables go slack. Of nets in zero gravity that is a fault of the design; on the ground, "
+     "In this state of `load_cases` cables go slack. Of nets in zero gravity that is a fault of the design; on the "
+     "ground, "
      "or folded, it may be meant.",
      "cases: in state"},
     {"cable_twice", "warning", "", "Two cables join the same nodes: one of them is mostly a slip.",

@@ -78,10 +78,10 @@ static void warn_of_steps(const refine_job *j, const hf_refine_result *r)
     if (n > 0 && before > 0)
         hf_warning(j->messages,
                    "Levenberg-Marquardt is not converged after %d steps, of which the last %d lowered %s by %.2g %%: "
-                   "better designs are near; raise optimize.polish_iterations",
+                   "better designs are near; raise optimize.refine_steps",
                    r->iterations, n, what, 100 * (1 - j->now.merit / before));
     else
-        hf_warning(j->messages, "Levenberg-Marquardt is not converged after %d steps; raise optimize.polish_iterations",
+        hf_warning(j->messages, "Levenberg-Marquardt is not converged after %d steps; raise optimize.refine_steps",
                    r->iterations);
 }
 

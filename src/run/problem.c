@@ -59,7 +59,7 @@ hf_status hf_problem_has_slopes(const hf_problem *p, hf_messages *messages)
         if (!hf_objectives_is_smooth(&p->objectives.objective[k].settings))
             return hf_error(messages, HF_BAD_CASE, "%s: there are no derivatives of quantiles: use take: mean or worst",
                             hf_messages_location(messages, place, "optimize.%s.%d.quantile",
-                                                 s->n_front > 0 ? "objectives" : "goals", k));
+                                                 s->n_front > 0 ? "front" : "objective", k));
     return hf_error(messages, HF_BAD_CASE, "%s", hf_problem_no_slopes(p));
 }
 

@@ -346,9 +346,9 @@ void hf_problem_warn_of_front(const hf_problem *p, hf_messages *messages)
     const hf_case *c = &p->settings;
     if (c->optimize.n_front == 0 || (p->load_cases.n == 0 && !c->has_tolerance)) return;
     hf_warning(messages,
-               "optimize.objectives: a front is no single design, so %s%s%s are of the form-finding's net, before "
+               "optimize.front: a front is no single design, so %s%s%s are of the form-finding's net, before "
                "any optimisation; `hifdm run %s --point FRONT.h5:N -o point.h5` has point N of the front there",
-               p->load_cases.n ? "cases" : "", p->load_cases.n && c->has_tolerance ? " and " : "",
+               p->load_cases.n ? "load_cases" : "", p->load_cases.n && c->has_tolerance ? " and " : "",
                c->has_tolerance ? "tolerance" : "", c->path);
 }
 

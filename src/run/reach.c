@@ -261,7 +261,7 @@ static hf_status tell_objectives(const reach *q, hf_messages *messages)
         is_reached |= !q->now.objective[i];
     for (int i = 0; i < objectives->n_objective; i++) {
         if (!q->now.objective[i]) continue;
-        hf_messages_location(messages, place, "optimize.%s.%d", is_front ? "objectives" : "goals", i);
+        hf_messages_location(messages, place, "optimize.%s.%d", is_front ? "front" : "objective", i);
         hf_objectives_name(objectives, i, name);
         const char *why = why_objective(objectives->objective[i].settings.figure);
         has_fault |= is_front || !is_reached;

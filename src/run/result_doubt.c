@@ -199,16 +199,16 @@ static void tell_far(const hf_problem *p, const hf_places *form, const far_nodes
     if (open->n)
         hf_warning(messages,
                    "optimize: node %s%s moved far from where form-finding has it, by %.0f mm where its cables are %.0f "
-                   "mm long, and no goal counts that: vary fewer sets of cables, or add {goal: length, set: %s, "
-                   "weight: 0.1} to optimize.goals%s",
+                   "mm long, and no goal counts that: vary fewer sets of cables, or add {figure: length, set: %s, "
+                   "weight: 0.1} to optimize.objective%s",
                    p->scene.node_id[p->model.node_of_row[open->row]], and_more(open, more), open->move_m * 1e3,
                    form->cable_m[open->row] * 1e3, set_at(p, open->row),
-                   p->objectives.n_objective ? "" : " beside {goal: psi}");
+                   p->objectives.n_objective ? "" : " beside {figure: psi}");
     if (within->n)
         hf_warning(
             messages,
             "optimize: node %s%s moved far within the surface, by %.0f mm where its cables are %.0f mm long, and "
-            "no goal counts that: vary fewer sets of cables, or add {goal: psi, weight: 0.1} to optimize.goals",
+            "no goal counts that: vary fewer sets of cables, or add {figure: psi, weight: 0.1} to optimize.objective",
             p->scene.node_id[p->model.node_of_row[within->row]], and_more(within, more), within->move_m * 1e3,
             form->cable_m[within->row] * 1e3);
 }

@@ -23,7 +23,7 @@ void hf_run_front_tell(const hf_front *front, double wall_s, hf_summary *s, hf_m
     s->has_front = true;
     if (s->front.n_failed > 0) {
         hf_status first = front->point[front->n_point - s->front.n_failed].status;
-        hf_warning(messages, "optimize.objectives: %d of %d points of the front failed: the first with %s",
+        hf_warning(messages, "optimize.front: %d of %d points of the front failed: the first with %s",
                    s->front.n_failed, front->n_point,
                    first == HF_OUT_OF_LIMITS ? "no way from its neighbours into its limits" : hf_status_text(first));
     }
@@ -40,8 +40,8 @@ static void warn_of_steps(const hf_front *front, int max_iterations, hf_messages
     }
     if (n > 0)
         hf_warning(messages,
-                   "optimize.objectives: %d of %d points of the front are not converged after %d steps: they have no "
-                   "slope, and better designs are near; raise optimize.polish_iterations",
+                   "optimize.front: %d of %d points of the front are not converged after %d steps: they have no "
+                   "slope, and better designs are near; raise optimize.refine_steps",
                    n, front->n_point, max_iterations);
 }
 
@@ -57,11 +57,11 @@ static const char *explain(const hf_problem *p, hf_status status, int end, char 
                                                : "no way from its start into the bounds of optimize.variables";
     if (end >= 0)
         snprintf(text, size,
-                 "optimize.objectives.%d: Levenberg-Marquardt has found no design with the least %s, an end of the "
+                 "optimize.front.%d: Levenberg-Marquardt has found no design with the least %s, an end of the "
                  "front: %s%s",
                  end, hf_objectives_name(p->evaluator.objectives, end, name), why, hint);
     else
-        snprintf(text, size, "optimize.objectives: Levenberg-Marquardt has found no front: %s%s", why, hint);
+        snprintf(text, size, "optimize.front: Levenberg-Marquardt has found no front: %s%s", why, hint);
     return text;
 }
 

@@ -59,7 +59,7 @@ static hf_status read_words(const char *point, hf_front_origin *taken, hf_messag
 /* Returns true if this key of the case has no effect on the points of its front. */
 static bool is_beside(const hf_problem *p, const char *key)
 {
-    static const char *const section[] = {"cases", "tolerance", "adjust", "sweep"};
+    static const char *const section[] = {"load_cases", "tolerance", "adjust", "sweep"};
     for (size_t i = 0; i < sizeof section / sizeof *section && !p->objectives.nets; i++)
         if (!strncmp(key, section[i], strlen(section[i]))) return true;
     return false;
@@ -151,9 +151,9 @@ hf_status hf_take_point_read(const char *point, hf_problem *p, hf_taken_point *t
     if (!f.summary) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", origin->path);
     hf_status status = hf_store_read_summary(origin->path, f.summary, messages);
     if (status == HF_OK && !f.summary->has_front)
-        status = hf_error(messages, HF_BAD_USAGE,
-                          "%s: has no front, so no points: a run of a case with optimize.objectives makes one",
-                          origin->path);
+        status =
+            hf_error(messages, HF_BAD_USAGE,
+                     "%s: has no front, so no points: a run of a case with optimize.front makes one", origin->path);
     if (status == HF_OK) status = hf_store_read_front(origin->path, &f.front, &f.variable, &f.variable_size, messages);
     if (status == HF_OK) status = check_point(p, &f, origin, messages);
     if (status == HF_OK) status = take(&f.front, origin, taken, messages);

@@ -27,8 +27,8 @@ static hf_status read_row(const hf_scene *scene, const hf_model *m, const hf_lim
     to->upper = s->upper;
     if (s->figure == HF_LIMIT_DEFLECTION) {
         if (m->n_attachment > 0) return HF_OK;
-        return hf_error(messages, HF_BAD_CASE, "%s: displacement needs a truss, whose attachments it limits",
-                        hf_messages_location(messages, where, "optimize.limits.%d.limit", row));
+        return hf_error(messages, HF_BAD_CASE, "%s: deflection needs a truss, whose attachments it limits",
+                        hf_messages_location(messages, where, "optimize.limits.%d.figure", row));
     }
     hf_messages_location(messages, where, "optimize.limits.%d.set", row);
     to->n_cable = hf_cable_pick_some(scene, s->set, where, to->cable, messages);
@@ -205,8 +205,7 @@ int hf_limits_held(const hf_evaluator *v, const hf_workspace *w, hf_limit_held h
 const char *hf_limits_name(const hf_scene *scene, const hf_model *m, const hf_limit_held *h, char *text, size_t size)
 {
     if (h->attachment >= 0)
-        snprintf(text, size, "displacement of node %s",
-                 scene->node_id[m->node_of_row[m->attachment_row[h->attachment]]]);
+        snprintf(text, size, "deflection of node %s", scene->node_id[m->node_of_row[m->attachment_row[h->attachment]]]);
     else if (h->other >= 0)
         snprintf(text, size, "ratio of cable %s to %s", scene->cable_id[h->cable], scene->cable_id[h->other]);
     else

@@ -1,4 +1,4 @@
-/* Creates the objectives of a case from the rows of optimize.goals or optimize.objectives.
+/* Creates the objectives of a case from the rows of optimize.objective or optimize.front.
  *
  *     row of settings
  *         | load case or samples -> nets;  set -> cables;  gain -> beam
@@ -121,9 +121,10 @@ static hf_status refuse_rows(const hf_objectives *objectives, const char *list, 
         hf_messages_location(messages, where, "optimize.samples");
     else
         hf_messages_location(messages, where, "optimize.%s", list);
-    return hf_error(messages, HF_BAD_CASE,
-                    "%s: the goals have %ld residuals in all nets, and at most %ld (1 GiB) are kept: take fewer %s",
-                    where, n_all, ROWS_MAX, n_sample ? "samples, or fewer goals over samples" : "goals");
+    return hf_error(
+        messages, HF_BAD_CASE,
+        "%s: the objectives have %ld residuals in all nets, and at most %ld (1 GiB) are kept: take fewer %s", where,
+        n_all, ROWS_MAX, n_sample ? "samples, or fewer objectives over samples" : "objectives");
 }
 
 static void lay_out(hf_arena *a, const hf_model *m, hf_objectives *objectives)
@@ -142,7 +143,7 @@ static void choose_nets(const hf_objectives_nets *nets, hf_objective *g)
     const hf_objective_settings *s = &g->settings;
     for (int k = 0; nets && *s->load_case && k < nets->n_load_case; k++)
         if (!strcmp(nets->load_case_name[k], s->load_case)) g->first_net = k, g->n_net = 1;
-    if (nets && s->over == HF_OVER_LOAD_CASES) g->n_net = nets->n_load_case;
+    if (nets && hf_objective_takes_load_cases(s)) g->n_net = nets->n_load_case;
     if (nets && s->over == HF_OVER_SAMPLES) g->first_net = nets->n_load_case, g->n_net = nets->n_sample;
 }
 
@@ -201,7 +202,7 @@ hf_status hf_objectives_create(const hf_scene *scene, const hf_model *m, const h
     objectives->block = arena.block;
     for (int i = 0; i < 4 * objectives->n_facet; i++)
         objectives->corner_row[i] = m->row_of_node[facets->corner[i]];
-    const char *list = is_front ? "objectives" : "goals";
+    const char *list = is_front ? "front" : "objective";
     for (int k = 0; k < objectives->n_objective; k++) {
         hf_objective *g = &objectives->objective[k];
         char where[HF_LOCATION_SIZE];
@@ -226,7 +227,9 @@ const char *hf_objectives_name(const hf_objectives *objectives, int i_objective,
     int n = snprintf(text, HF_OBJECTIVE_NAME_SIZE, "goal_%d_%s%s%s", i_objective, hf_figure_kind_word[s->figure],
                      *s->set ? "_" : "", s->set);
     const char *of_many = s->quantile > 0 ? "quantile" : hf_take_word[s->take];
-    if (*s->load_case) /* as much of the name as fits */
+    if (hf_objective_takes_load_cases(s))
+        snprintf(text + n, HF_OBJECTIVE_NAME_SIZE - (size_t)n, "_load_cases_%s", of_many);
+    else if (*s->load_case) /* as much of the name as fits */
         snprintf(text + n, HF_OBJECTIVE_NAME_SIZE - (size_t)n, "_%.24s", s->load_case);
     else if (s->over != HF_OVER_DESIGN)
         snprintf(text + n, HF_OBJECTIVE_NAME_SIZE - (size_t)n, "_%s_%s", hf_over_word[s->over], of_many);

@@ -51,7 +51,7 @@ START_TEST(paraview_opens_the_result)
         {"configs/straight-edges.yaml", "optimize.generations=3", "title=grid", "form optimize polish\n", "c.h5"},
         {"configs/straight-edges-truss.yaml", "optimize.generations=1", "title=grid", "form optimize polish\n",
          "t.hdf"},
-        {"configs/paraboloid-cases.yaml", "title=grid", "title=grid",
+        {"configs/paraboloid-load-cases.yaml", "title=grid", "title=grid",
          "case_cold case_cup_down case_cup_up case_spun case_sun form\n", "e.hdf"},
         {NULL, "scene.EA_inner_N=1e5", "scene.EA_boundary_N=2e5", "form\n", "s.hdf"}};
     const char *samples = file_with("s.yaml", SMALL_SCENE "tolerance: {sigma_cut_m: 1e-4, samples: 20}\n");
@@ -145,7 +145,7 @@ END_TEST
  * 1e-11 m. */
 START_TEST(net_built_from_the_cut_list_has_the_found_shape)
 {
-    static const char *const stage[] = {"form", "ga/best", "polish"}, *const word[] = {"form", "optimize", "polish"};
+    static const char *const stage[] = {"form", "ga/best", "polish"}, *const word[] = {"form", "search", "refine"};
     const char *out = run_chen(), *built = temp("built.h5"), *cut = temp("cut.csv");
     HIFDM(0, "export", out, "--cutlist", cut, "--csv", temp("net"), "--stage", word[_i], "--force");
     OUT("cut lengths of 220 cables of the ");

@@ -1,4 +1,4 @@
-// The section of the Pareto front of optimize.objectives, with a chart for each pair of objectives.
+// The section of the Pareto front of optimize.front, with a chart for each pair of objectives.
 
 // Names of objectives for people: without their number, lengths in mm.
 const objectiveName = (key) => key.replace(/^goal_[0-9]+_/, "").replace(/_/g, " ").replace(/^psi\b/, "ψ");

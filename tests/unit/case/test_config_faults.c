@@ -247,7 +247,7 @@ START_TEST(what_others_call_a_key_is_known)
 {
     static const struct {
         const char *section, *key, *meant;
-    } of[] = {{"optimize", "max_iterations", "'optimize.polish_iterations'"},
+    } of[] = {{"optimize", "max_iterations", "'optimize.refine_steps'"},
               {"optimize", "nGen", "'optimize.generations'"},
               {"optimize", "pop_size", "'optimize.population'"},
               {"optimize", "tol", "'optimize.stagnation_tolerance_m'"},
@@ -271,7 +271,7 @@ START_TEST(what_others_call_a_key_is_known)
               {"", "young_modulus", "'scene.EA_boundary_N'"},
               {"", "tension", "'form.pretension_N'"},
               {"", "loads", "'scene.import.nodes'"},
-              {"", "gravity", "'cases'"},
+              {"", "gravity", "'load_cases'"},
               {"", "material", "'truss.density_kg_per_m3'"},
               {"", "focal_length", "'surface.focal_length_m'"},
               {"surface", "aperture", "'scene.paraboloid.aperture_m'"},
@@ -289,12 +289,12 @@ START_TEST(what_others_call_a_key_is_known)
     }
     ck_assert_ptr_null(hf_config_suggestion("form", "seeds"));
     ck_assert_ptr_null(hf_config_suggestion("formal", "solver"));
-    static const char *const row[] = {"optimize.goals.0", "optimize.variables.1", "optimize.limits.0"};
+    static const char *const row[] = {"optimize.objective.0", "optimize.variables.1", "optimize.limits.0"};
     for (int i = 0; i < 3; i++)
         ck_assert_ptr_null(hf_config_suggestion(row[i], "tol"));
     ck_assert_ptr_null(hf_config_suggestion("tolerance.require.0", "n"));
     ck_assert_ptr_nonnull(strstr(complaint(FORM "  pretension_N: 10\n", "optimize.max_iterations=9"),
-                                 "; did you mean 'optimize.polish_iterations' (steps of Levenberg-Marquardt) or "));
+                                 "; did you mean 'optimize.refine_steps' (steps of Levenberg-Marquardt) or "));
 }
 END_TEST
 

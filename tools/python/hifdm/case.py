@@ -337,7 +337,7 @@ class Case:
 
     def run(self, output: str | os.PathLike | None = None, *, restart: bool = False,
             progress: Callable[[Progress], Any] | None = None) -> Run:
-        """Runs the case as `hifdm run` does: form-finding, optimisation, `cases` and `tolerance`.
+        """Runs the case as `hifdm run` does: form-finding, optimisation, `load_cases` and `tolerance`.
 
         output: the result file. A later run into it resumes a run that was stopped, or with `restart` begins again.
         None: the run returns figures alone. progress: called during the run, in a thread of its own. If it returns
@@ -445,7 +445,7 @@ def net(position_m: np.ndarray, end: np.ndarray, *, role: str | Sequence[str] | 
     and law are one word for all, a sequence of words, or codes [n] uint8. value [n_cable]: N, m, N/m or m (unstressed)
     by law; NaN: the pretension of the case, or the length between target positions. EA_N [n_cable] N, load_N [n_node,
     3] N. sets: names of sets, with indices of their cables. sections: those of a case file, such as
-    form={"pretension_N": 10}, optimize={"goals": [{"goal": "psi"}]}.
+    form={"pretension_N": 10}, optimize={"objective": [{"figure": "psi"}]}.
     """
     wanted("position_m", position_m, float, (None, 3))
     wanted("end", end, np.int32, (None, 2))
