@@ -1,4 +1,4 @@
-/* goals - rows of optimize.goals for tests, and a net with the target surface of these rows. Header only, like
+/* goals - rows of optimize.objective for tests, and a net with the target surface of these rows. Header only, like
  * nets.h. */
 #ifndef HIFDM_TESTS_OBJECTIVES_H
 #define HIFDM_TESTS_OBJECTIVES_H

@@ -56,7 +56,7 @@ def solve_once(a, factor):
     """Runs form-finding alone with given force densities: one factorisation, three right-hand sides, and the
     measures."""
     return run(a, f"once-{factor}", "form.method=fdm", f"form.factor={factor}", "optimize.method=ga",
-               "optimize.compare_lm=false", "optimize.generations=1")["form"]
+               "optimize.refine=false", "optimize.generations=1")["form"]
 
 
 def positions(a, factor):

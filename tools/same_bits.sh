@@ -62,8 +62,8 @@ fi
 # ---- whole results, against those of the default build ----
 
 cases=("chen2022 --set optimize.generations=20" "chen2022-truss"
-    "straight-edges --set optimize.generations=20 --set optimize.compare_lm=true"
-    "straight-edges-truss --set optimize.generations=10 --set optimize.compare_lm=true"
+    "straight-edges --set optimize.generations=20 --set optimize.refine=true"
+    "straight-edges-truss --set optimize.generations=10 --set optimize.refine=true"
     "reflector --set optimize.generations=10 --set optimize.method=ga+lm")
 
 run_cases() { # PREFIX COMMAND...

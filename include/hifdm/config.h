@@ -34,7 +34,7 @@ typedef struct {
     char *overrides;                            /* the overrides, one line each; "": there are none */
     char sha256[65];                            /* digest of text and overrides in hexadecimal digits */
     char title[256];                            /* title of the case */
-    char *where_given;                          /* internal: locations of the keys, for hf_config_place */
+    char *where_given;                          /* internal: locations of the keys, for hf_config_location */
     bool has_import, has_optimize, has_surface; /* which sections the case has */
     bool has_tolerance;                         /* the case has a section tolerance */
     bool has_sweep;                             /* its lines are not in `text`; study.h reads the axes */
@@ -52,7 +52,7 @@ typedef struct {
     hf_surface_settings surface;     /* section surface; a generated net supplies what is not given */
     bool has_adjust;                 /* the case has a section adjust */
     hf_adjust_settings adjust;       /* section adjust */
-    hf_built_settings built;         /* rows of `cables`, `nodes` and `cases` */
+    hf_built_settings built;         /* rows of `cables`, `nodes` and `load_cases` */
     hf_tolerance_settings tolerance; /* section tolerance */
 
     bool has_truss, has_truss_import, has_truss_ring;                      /* which sections the case has */
@@ -60,9 +60,9 @@ typedef struct {
     char truss_nodes_path[HF_PATH_SIZE], truss_members_path[HF_PATH_SIZE]; /* the tables of an imported truss */
 } hf_case;
 
-/* Reads and validates a case file. overrides [n_override] are strings "key=value" that replace values of the file.
- * Returns HF_OK; HF_BAD_CASE, also if the file cannot be read, with a message for each fault, file:line:column;
- * HF_NO_MEMORY. Call hf_case_free in any case. */
+/* Reads and validates a case file. overrides [n_override] are strings "key=value" that replace values of the file. An
+ * old name of a key or a word is read as the new one, with a warning. Returns HF_OK; HF_BAD_CASE, also if the file
+ * cannot be read, with a message for each fault, file:line:column; HF_NO_MEMORY. Call hf_case_free in any case. */
 hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
                          hf_messages *messages);
 
@@ -77,8 +77,8 @@ int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t
 
 /* Writes the location of a key for a message into text[size]: "case.yaml:7:3: surface.kind", "--set surface.kind", or
  * "case.yaml: surface.kind" if the case does not have the key. For a missing key of a row, such as
- * "optimize.goals.0.set", the location is that of the row. Returns true if the case has the key. */
-bool hf_config_place(const hf_case *settings, const char *key, char *text, size_t size);
+ * "optimize.objective.0.set", the location is that of the row. Returns true if the case has the key. */
+bool hf_config_location(const hf_case *settings, const char *key, char *text, size_t size);
 
 /* Makes the scene that the case describes and checks it (hf_scene_check). Returns HF_OK; HF_BAD_CASE, also if a file
  * cannot be read; HF_NO_MEMORY. Call hf_scene_free in any case. */
@@ -103,11 +103,11 @@ hf_status hf_config_material(const hf_case *settings, const hf_scene *scene, hf_
 hf_status hf_config_demand_expansion(const hf_case *settings, const hf_truss *truss, hf_part part, const char *where,
                                      const char *other, hf_messages *messages);
 
-/* Makes the load cases of the as-built net from the rows of `cases`, with their material. truss is NULL if there is
- * none. A case without rows has no load cases. Returns HF_OK; HF_NO_MEMORY; HF_BAD_CASE for rows that match nothing in
- * this net or truss, for cables without EA, and for a table that cannot be read. A temperature of a part with unknown
- * expansion and gravity on cables with unknown mass are also HF_BAD_CASE. The names are borrowed from the case. Call
- * hf_load_cases_free in any case. */
+/* Makes the load cases of the as-built net from the rows of `load_cases`, with their material. truss is NULL if there
+ * is none. A case without rows has no load cases. Returns HF_OK; HF_NO_MEMORY; HF_BAD_CASE for rows that match nothing
+ * in this net or truss, for cables without EA, and for a table that cannot be read. A temperature of a part with
+ * unknown expansion and gravity on cables with unknown mass are also HF_BAD_CASE. The names are borrowed from the case.
+ * Call hf_load_cases_free in any case. */
 hf_status hf_config_load_cases(const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
                                hf_load_cases *states, hf_messages *messages);
 
@@ -180,9 +180,9 @@ extern const hf_list hf_list_table[];       /* [hf_n_list] lists of rows */
 extern const int hf_n_list;                 /* number of lists */
 
 /* Checks `value`, written as in a case file, against a key of the table: "form.stop" or "optimize.variables.0.range".
- * Returns HF_OK; HF_BAD_CASE with a message "<place>: <key>: <fault>"; HF_NO_MEMORY. The rules that involve several
+ * Returns HF_OK; HF_BAD_CASE with a message "<location>: <key>: <fault>"; HF_NO_MEMORY. The rules that involve several
  * keys, and whether the row exists, are checked only by hf_config_load. */
-hf_status hf_config_check_value(const char *key, const char *value, const char *place, hf_messages *messages);
+hf_status hf_config_check_value(const char *key, const char *value, const char *location, hf_messages *messages);
 
 HF_API_END
 #endif

@@ -1,10 +1,10 @@
-/* front - the designs of a Pareto front of optimize.objectives: none is better than another in all objectives.
+/* front - the designs of a Pareto front of optimize.front: none is better than another in all objectives.
  * Stability: internal; may change in any version.
  *
  * Levenberg-Marquardt and the genetic algorithm produce the same struct, which is stored, printed, compared and drawn.
  * Pipeline: hf_front_create -> objectives, designs and statuses of the points -> hf_front_settle -> hf_front_tabulate.
  *
- * Objectives are those of optimize.objectives in their order and units; they are minimised. A point that is not on the
+ * Objectives are those of optimize.front in their order and units; they are minimised. A point that is not on the
  * front is marked and never left out. */
 #ifndef HIFDM_FRONT_H
 #define HIFDM_FRONT_H

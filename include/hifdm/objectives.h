@@ -1,7 +1,7 @@
 /* objectives - what a design is judged by: blocks of residuals of a shape with exact derivatives (METHOD section 7).
  * Stability: internal; may change in any version.
  *
- * There is one block for each row of optimize.goals, or of optimize.objectives, whose weights are 1. Pipeline:
+ * There is one block for each row of optimize.objective, or of optimize.front, whose weights are 1. Pipeline:
  *
  *   hf_objectives_measure                shape in a workspace -> values of the objectives, merit
  *   hf_objectives_linearise              shape -> weighted residuals, and the data of its derivatives
@@ -104,7 +104,7 @@ typedef struct hf_objectives_point {
     void *block;       /* owned memory behind the arrays */
 } hf_objectives_point;
 
-/* Creates the objectives of a case: the rows of optimize.objectives or optimize.goals, or psi if there are none. The
+/* Creates the objectives of a case: the rows of optimize.front or optimize.objective, or psi if there are none. The
  * model has its truss already. `surface` and `facets` may be NULL if no objective needs them, `nets` (borrowed) if all
  * are measured on the design. Returns HF_OK; HF_BAD_CASE with a message for each row that needs what this scene does
  * not have, or if there would be too many residuals; HF_NO_MEMORY. Call hf_objectives_free in any case. */

@@ -110,13 +110,13 @@ typedef struct {
     bool ends_with_refine;         /* the refinement is the result; false: it is run for comparison only */
 } hf_optimiser_plan;
 
-/* Returns the algorithms of settings->method. With optimize.objectives, hf_optimiser_nsga replaces hf_optimiser_ga. */
+/* Returns the algorithms of settings->method. With optimize.front, hf_optimiser_nsga replaces hf_optimiser_ga. */
 hf_optimiser_plan hf_optimiser_plan_of(const hf_optimize_settings *settings);
 
 #define HF_OPTIMISER_DECLARE(method, optimiser, ends_with_refine)                                                      \
     extern const hf_optimiser_kind hf_optimiser_##optimiser;
 HF_OPTIMISER_LIST(HF_OPTIMISER_DECLARE)
-extern const hf_optimiser_kind hf_optimiser_nsga; /* NSGA-II, for optimize.objectives */
+extern const hf_optimiser_kind hf_optimiser_nsga; /* NSGA-II, for optimize.front */
 #undef HF_OPTIMISER_DECLARE
 
 HF_API_END

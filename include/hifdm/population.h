@@ -27,7 +27,7 @@ extern const char *const hf_population_stop_word[4]; /* "running", "stagnation",
 /* A generation, and figures of all generations so far. */
 typedef struct {
     int n_variable, n_individual; /* number of design variables and of individuals */
-    int n_objective;              /* number of rows of optimize.objectives; 0: there are none */
+    int n_objective;              /* number of rows of optimize.front; 0: there are none */
     bool has_rows; /* design variables are those of optimize.variables, each in its own unit; false: pretensions in N */
     int generation;        /* index of the present generation, from 0 */
     int generation_limit;  /* maximum number of generations */

@@ -23,7 +23,7 @@ typedef struct {
     hf_scene scene;               /* the net as described */
     hf_carrier carrier;           /* the truss; all zero without one */
     hf_model model;               /* the net prepared for solving */
-    hf_load_cases load_cases;     /* load cases of the as-built net; none without `cases` */
+    hf_load_cases load_cases;     /* load cases of the as-built net; none without `load_cases` */
     hf_surface_settings surface;  /* target surface with its kind; all zero without a section surface */
     hf_facets facets;             /* facets of the target surface; none without a section surface */
     int planes;                   /* mirror planes that link design variables: flags 1 (x) and 2 (y) */
@@ -33,7 +33,7 @@ typedef struct {
     double *initial;              /* [n_variable] initial design, averaged over linked design variables */
     hf_limits limits;             /* rows of optimize.limits; none without rows */
     struct hf_problem_nets *nets; /* as-built nets of objectives over load cases or samples; NULL: there are none */
-    hf_objectives objectives;     /* rows of optimize.goals or optimize.objectives; none without rows: psi */
+    hf_objectives objectives;     /* rows of optimize.objective or optimize.front; none without rows: psi */
     hf_evaluator evaluator;       /* common data of the designs */
     hf_batch batch;               /* evaluates designs; borrows the evaluator */
     hf_solver solver;             /* solver that the batch uses */
@@ -56,7 +56,7 @@ typedef struct {
 hf_status hf_problem_open(const char *path, const char *const *set, int n_set, int n_thread, hf_problem *problem,
                           hf_messages *messages);
 
-/* Returns true if designs have a merit; with optimize.objectives they have none. */
+/* Returns true if designs have a merit; with optimize.front they have none. */
 bool hf_problem_has_merit(const hf_problem *problem);
 
 /* Writes the figures of a design into `field` in their order. Returns their number, which is HF_RESULT_N_INDIVIDUAL
@@ -64,7 +64,7 @@ bool hf_problem_has_merit(const hf_problem *problem);
 int hf_problem_list_figures(const hf_problem *problem, const hf_result_field *field[HF_RESULT_N_INDIVIDUAL]);
 
 /* Returns the number of figures that have derivatives by the design variables: the value of each objective and, without
- * optimize.objectives, the merit. Without objectives the only one is psi_m. */
+ * optimize.front, the merit. Without objectives the only one is psi_m. */
 int hf_problem_n_slope(const hf_problem *problem);
 /* Writes the name of figure i_slope with derivatives into text: that of its objective, "merit" or "psi_m". Returns
  * text. */

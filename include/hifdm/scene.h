@@ -55,11 +55,11 @@ hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, bool with_
  * Returns HF_OK; HF_BAD_CASE; HF_NO_MEMORY. */
 hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages);
 
-#define HF_SCENE_PLACE_SIZE 1324 /* a path, a line and an id of a table; a longer id is cut */
+#define HF_SCENE_LOCATION_SIZE 1324 /* a path, a line and an id of a table; a longer id is cut */
 
 /* Writes the beginning of a message about a node or cable into text[size]: "nodes.csv:7: node 'a'", "cables.csv:7:
  * cable 'a'", or "scene: node 'a'" without a file. */
-void hf_scene_place(const hf_scene *scene, bool is_cable, int index, char *text, size_t size);
+void hf_scene_location(const hf_scene *scene, bool is_cable, int index, char *text, size_t size);
 
 /* Counts a fault of a node or cable in *n_fault and adds the message "<location> <what>". Beyond HF_FAULT_MAX faults it
  * only counts. */

@@ -61,7 +61,7 @@ typedef enum {
  * (optimize.link). */
 typedef enum { HF_LINK_EACH, HF_LINK_SET, HF_LINK_SYMMETRY } hf_link;
 
-/* The figure that a row of optimize.goals or optimize.objectives measures. A figure is zero or more, and it is
+/* The figure that a row of optimize.objective or optimize.front measures. A figure is zero or more, and it is
  * minimised. */
 typedef enum {
     HF_FIGURE_PSI,        /* psi: RMS distance of the inner nodes from their target positions, m */
@@ -81,9 +81,8 @@ typedef enum { HF_ALONG_NORMAL, HF_ALONG_HALF_PATH } hf_along;
 /* The surface to which the distance is measured: the target surface, or its best fit to the shape. */
 typedef enum { HF_FIT_NONE, HF_FIT_BEST } hf_fit;
 
-/* The shapes that an objective is measured on: the design, all load cases of the as-built net, or samples of its
- * errors. */
-typedef enum { HF_OVER_DESIGN, HF_OVER_LOAD_CASES, HF_OVER_SAMPLES } hf_over;
+/* The shapes that an objective is measured on: the design, or samples of the errors of its as-built net. */
+typedef enum { HF_OVER_DESIGN, HF_OVER_SAMPLES } hf_over;
 /* The figure of several shapes: the root of the mean of squares, or the maximum. */
 typedef enum { HF_TAKE_MEAN, HF_TAKE_WORST } hf_take;
 
@@ -118,7 +117,7 @@ extern const char *const hf_figure_kind_word[12];
 extern const char *const hf_figure_kind_unit[11]; /* units of the figures; "": no dimension */
 extern const char *const hf_along_word[3];
 extern const char *const hf_fit_word[3];
-extern const char *const hf_over_word[4];
+extern const char *const hf_over_word[3];
 extern const char *const hf_take_word[3];
 extern const char *const hf_limit_word[4];
 extern const char *const hf_adjust_figure_word[4]; /* words of adjust.figure, HF_FIGURE_PSI to HF_FIGURE_FACETS */
@@ -150,7 +149,7 @@ typedef struct {
     hf_link link;               /* which design variables are linked */
 } hf_variable_settings;
 
-/* A row of optimize.goals or optimize.objectives. Objectives of the latter have no weight. */
+/* A row of optimize.objective or optimize.front. Objectives of the latter have no weight. */
 typedef struct {
     hf_figure_kind figure;      /* figure that is measured */
     char set[HF_SET_NAME_SIZE]; /* cables of tension, length, evenness, mass, ratio; "": all */
@@ -159,7 +158,7 @@ typedef struct {
     double mass_kg_per_m; /* mass of the cables per length, for mass */
     hf_along along;       /* direction of the distance, for surface and facets */
     hf_fit fit;           /* surface of the distance, for surface and facets */
-    char load_case[HF_SET_NAME_SIZE]; /* name of a load case of `cases`; "": none */
+    char load_case[HF_SET_NAME_SIZE]; /* name of a load case; "all": all of them; "": none */
     hf_over over;                     /* shapes on which it is measured, without a load case */
     hf_take take;                     /* figure of several load cases or samples */
     double quantile;     /* replaces `take` for samples: this part of them has no larger value; 0 or NaN: none */
@@ -173,10 +172,10 @@ typedef struct {
     double lower, upper;        /* bounds on the quantity (`bounds`); infinite where none are given */
 } hf_limit_settings;
 
-#define HF_DESIGN_ROWS_MAX 16      /* maximum number of rows of optimize.variables, goals and limits */
-#define HF_FRONT_OBJECTIVES_MAX 3  /* maximum number of rows of optimize.objectives */
+#define HF_DESIGN_ROWS_MAX 16      /* maximum number of rows of optimize.variables, objective and limits */
+#define HF_FRONT_OBJECTIVES_MAX 3  /* maximum number of rows of optimize.front */
 #define HF_FRONT_POINTS_MAX 512    /* maximum of optimize.front_points */
-#define HF_OBJECTIVE_NAME_SIZE 112 /* bytes of the name of an objective: "goal_15_displacement_" and a set */
+#define HF_OBJECTIVE_NAME_SIZE 112 /* bytes of the name of an objective: "objective_15_deflection_" and a set */
 
 /* The coupling of the net with an elastic truss (section coupling). Without a truss it is not used. */
 typedef struct {
@@ -223,13 +222,16 @@ typedef struct {
     int store_every;                     /* HF_KEEP_EVERY: generations 0, n, 2n, ... are kept */
     int n_variable_row, n_term, n_limit; /* numbers of rows; without rows: boundary pretensions, psi, no limits */
     hf_variable_settings variable_row[HF_DESIGN_ROWS_MAX]; /* [n_variable_row] rows of optimize.variables */
-    hf_objective_settings term[HF_DESIGN_ROWS_MAX];        /* [n_term] rows of optimize.goals */
+    hf_objective_settings term[HF_DESIGN_ROWS_MAX];        /* [n_term] rows of optimize.objective */
     hf_limit_settings limit[HF_DESIGN_ROWS_MAX];           /* [n_limit] rows of optimize.limits */
-    int n_front; /* number of rows of optimize.objectives: 0, or 2 or 3 for a front */
-    hf_objective_settings front[HF_FRONT_OBJECTIVES_MAX]; /* [n_front] rows of optimize.objectives */
+    int n_front; /* number of rows of optimize.front: 0, or 2 or 3 for a front */
+    hf_objective_settings front[HF_FRONT_OBJECTIVES_MAX]; /* [n_front] rows of optimize.front */
     int front_points; /* number of points of a front that Levenberg-Marquardt finds */
     int samples;      /* number of random samples for objectives that are measured on samples */
 } hf_optimize_settings;
+
+/* Returns true if an objective is measured on all load cases of the as-built net. */
+bool hf_objective_takes_load_cases(const hf_objective_settings *settings);
 
 /* Returns true if an objective is measured on samples of as-built nets. */
 bool hf_optimize_takes_samples(const hf_optimize_settings *settings);
@@ -251,26 +253,26 @@ typedef struct {
 
 #define HF_MATERIAL_ROWS_MAX 16 /* maximum number of rows of `cables`, and of `nodes` */
 
-/* The part that has the temperature of a row of `cases`: everything, all cables, the truss, or from HF_PART_UNIT on the
- * truss members of a unit, in the order of hf_unit. */
+/* The part that has the temperature of a row of `load_cases`: everything, all cables, the truss, or from HF_PART_UNIT
+ * on the truss members of a unit, in the order of hf_unit. */
 typedef enum { HF_PART_ALL, HF_PART_NET, HF_PART_TRUSS, HF_PART_UNIT } hf_part;
 
-/* A row of `cases`; rows with the same name make up one load case. NaN: a number is not given. */
+/* A row of `load_cases`; rows with the same name make up one load case. NaN: a number is not given. */
 typedef struct {
-    char name[HF_SET_NAME_SIZE];   /* name of the load case */
-    char set[HF_SET_NAME_SIZE];    /* cables that have the temperature; "": the part has it */
-    hf_part part;                  /* part that has the temperature */
-    double temperature_K;          /* difference from the temperature at which the net was cut and the truss made */
-    double gradient_K_per_m[3];    /* addition to the temperature, in proportion to the position, 0 at the origin */
-    double gravity_m_per_s2;       /* acceleration of gravity */
-    double direction[3];           /* direction of gravity; default: -z */
-    hf_nodes role;                 /* nodes on which force_N acts */
-    double force_N[3];             /* force on each of these nodes */
-    double move_m[3];              /* displacement of all supports */
-    char nodes_path[HF_PATH_SIZE]; /* table of forces and displacements by node; "": none */
+    char name[HF_SET_NAME_SIZE];      /* name of the load case */
+    char set[HF_SET_NAME_SIZE];       /* cables that have the temperature; "": the part has it */
+    hf_part part;                     /* part that has the temperature */
+    double temperature_K;             /* difference from the temperature at which the net was cut and the truss made */
+    double gradient_K_per_m[3];       /* addition to the temperature, in proportion to the position, 0 at the origin */
+    double gravity_m_per_s2;          /* acceleration of gravity */
+    double direction[3];              /* direction of gravity; default: -z */
+    hf_nodes role;                    /* nodes on which force_N acts */
+    double force_N[3];                /* force on each of these nodes */
+    double support_displacement_m[3]; /* displacement of all supports */
+    char nodes_path[HF_PATH_SIZE];    /* table of forces and displacements by node; "": none */
 } hf_load_case_settings;
 
-#define HF_LOAD_CASE_ROWS_MAX 32 /* maximum number of rows of `cases` */
+#define HF_LOAD_CASE_ROWS_MAX 32 /* maximum number of rows of `load_cases` */
 #define HF_LOAD_CASES_MAX 16     /* maximum number of load cases */
 
 /* Material and load cases of the as-built net. */
@@ -278,7 +280,7 @@ typedef struct {
     int n_cable, n_node, n_load_case;                       /* numbers of rows */
     hf_cable_settings cable[HF_MATERIAL_ROWS_MAX];          /* [n_cable] rows of `cables` */
     hf_node_settings node[HF_MATERIAL_ROWS_MAX];            /* [n_node] rows of `nodes` */
-    hf_load_case_settings load_case[HF_LOAD_CASE_ROWS_MAX]; /* [n_load_case] rows of `cases` */
+    hf_load_case_settings load_case[HF_LOAD_CASE_ROWS_MAX]; /* [n_load_case] rows of `load_cases` */
 } hf_built_settings;
 
 /* The positions from which psi is measured when an as-built net is adjusted: the target positions, or those of the
@@ -291,7 +293,7 @@ extern const char *const hf_aim_word[3]; /* the last entry is NULL */
 typedef struct {
     char set[HF_SET_NAME_SIZE]; /* cables with turnbuckles: a set, or inner, boundary, all */
     double range_m, step_m;     /* maximum change of the cut length either way; step */
-    int moves;                  /* maximum number of cables that are adjusted */
+    int max_adjustments;        /* maximum number of cables that are adjusted */
     double target_m;            /* no further cable is adjusted once the figure is below this */
     hf_figure_kind figure;      /* HF_FIGURE_PSI, HF_FIGURE_SURFACE or HF_FIGURE_FACETS */
     hf_aim aim;                 /* positions from which psi is measured */
@@ -326,7 +328,7 @@ typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
     X(FACET_FIT_GAIN_LOSS, "facet_fit_gain_loss_dB", "dB", FACET_LOSS, "the same by facet_fit_half_path_rms_m")        \
     X(PATTERN_LOSS, "pattern_loss_dB", "dB", PATTERN,                                                                  \
       "in the direction of the beam at the highest frequency, by physical optics over the facets")                     \
-    X(LEAST_TENSION, "least_tension_N", "N", ALWAYS, "smallest tension of a cable")                                    \
+    X(LEAST_TENSION, "tension_min_N", "N", ALWAYS, "smallest tension of a cable")                                      \
     X(SLACK, "n_slack", "", ALWAYS, "slack cables")                                                                    \
     X(LOOSE, "n_loose", "", ALWAYS, "nodes that no taut cable holds")
 
@@ -362,7 +364,7 @@ typedef struct {
     int samples;            /* number of samples */
     uint64_t seed;          /* seed of the random numbers */
     hf_sampling sampling;   /* how samples are chosen */
-    double yield;           /* required share of samples that meet the requirements; 0: none */
+    double required_yield;  /* required share of samples that meet the requirements; 0: none */
     int n_require, n_truss; /* numbers of rows */
     hf_require_settings require[HF_REQUIRE_ROWS_MAX];     /* [n_require] rows of tolerance.require */
     hf_truss_heat_settings truss[HF_TRUSS_HEAT_ROWS_MAX]; /* [n_truss] rows of tolerance.truss */

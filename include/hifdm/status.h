@@ -86,20 +86,21 @@ static inline bool hf_status_has_shape(hf_status status)
         if (hf_try_status_ != HF_OK) return hf_try_status_;                                                            \
     } while (0)
 
-/* Finds the location of a key of a case: writes "case.yaml:7:3: optimize.goals.0.set" or the like into text[size]. */
-typedef void hf_place_find(const void *context, const char *key, char *text, size_t size);
+/* Finds the location of a key of a case: writes "case.yaml:7:3: optimize.objective.0.set", for example, into
+ * text[size]. */
+typedef void hf_location_find(const void *context, const char *key, char *text, size_t size);
 
 /* A growing list of messages for the user. Initialise it to zero and call hf_messages_free at the end. When memory runs
  * out, lines are lost, but the counts remain correct. */
 typedef struct {
-    char *text;                /* lines that end with '\n'; NULL: there are none */
-    size_t length, capacity;   /* bytes in use and allocated */
-    int n_error, n_warning;    /* numbers of errors and warnings */
-    hf_place_find *find_place; /* finds the location of keys in messages; NULL: messages contain the key alone */
-    const void *place_context; /* first argument of find_place; borrowed */
+    char *text;                      /* lines that end with '\n'; NULL: there are none */
+    size_t length, capacity;         /* bytes in use and allocated */
+    int n_error, n_warning;          /* numbers of errors and warnings */
+    hf_location_find *find_location; /* finds the location of keys in messages; NULL: messages contain the key alone */
+    const void *location_context;    /* first argument of find_location; borrowed */
 } hf_messages;
 
-#define HF_PLACE_SIZE 1280 /* room for a path, a line, a column and a key */
+#define HF_LOCATION_SIZE 1280 /* room for a path, a line, a column and a key */
 
 #if defined(__GNUC__)
 #define HF_PRINTF(format_index, first) __attribute__((format(printf, format_index, first)))
@@ -112,9 +113,9 @@ typedef struct {
 hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...) HF_PRINTF(3, 4);
 /* Appends the line "warning: ...". The format is that of printf. */
 void hf_warning(hf_messages *messages, const char *format, ...) HF_PRINTF(2, 3);
-/* Writes the location of a key, with which a message begins: "case.yaml:7:3: optimize.goals.0.set", or the key alone if
- * its location is unknown. The format of the key is that of printf. Returns text. */
-const char *hf_messages_place(const hf_messages *messages, char text[HF_PLACE_SIZE], const char *key_format, ...)
+/* Writes the location of a key, with which a message begins: "case.yaml:7:3: optimize.objective.0.set", or the key
+ * alone if its location is unknown. The format of the key is that of printf. Returns text. */
+const char *hf_messages_location(const hf_messages *messages, char text[HF_LOCATION_SIZE], const char *key_format, ...)
     HF_PRINTF(3, 4);
 /* Frees all lines; the list can be used again. */
 void hf_messages_free(hf_messages *messages);

@@ -119,7 +119,8 @@ hf_status hf_built_design_check(const hf_options *o, const hf_case *c, hf_messag
     bool is_form = o->stage && !strcmp(o->stage, hf_stage_word[HF_STAGE_FORM]);
     if (o->result || is_form || (!o->stage && !c->has_optimize)) return HF_OK;
     if (o->stage)
-        return hf_error(messages, HF_BAD_USAGE, "--stage %s needs --result FILE, a result of this case", o->stage);
+        return hf_error(messages, HF_BAD_USAGE,
+                        "--stage needs --result FILE, a result of this case, unless it is form");
     return hf_error(messages, HF_BAD_USAGE,
                     "%s: has a section optimize: use --result FILE with the result by which the net was cut (hifdm run "
                     "writes it), or --stage form if it was cut by the form-finding",

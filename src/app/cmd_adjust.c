@@ -106,7 +106,7 @@ static hf_status find_prior(job *j, const char *path, hf_messages *messages)
 
 static hf_status check_sections(const hf_case *c, const char *path, hf_messages *messages)
 {
-    char place[HF_PATH_SIZE + 64];
+    char location[HF_PATH_SIZE + 64];
     if (!c->has_adjust)
         hf_error(
             messages, HF_BAD_CASE,
@@ -118,19 +118,19 @@ static hf_status check_sections(const hf_case *c, const char *path, hf_messages 
             messages, HF_BAD_CASE,
             "%s: has no section tolerance: add tolerance: {sigma_cut_m: 0.0001}, the standard deviation of cutting",
             path);
-    hf_config_place(c, "adjust.figure", place, sizeof place);
+    hf_config_location(c, "adjust.figure", location, sizeof location);
     if (c->has_adjust && c->adjust.figure != HF_FIGURE_PSI && !c->has_surface)
-        hf_error(messages, HF_BAD_CASE, "%s: %s needs a target surface: add a section surface", place,
+        hf_error(messages, HF_BAD_CASE, "%s: %s needs a target surface: add a section surface", location,
                  hf_adjust_figure_word[c->adjust.figure]);
     return messages->n_error ? HF_BAD_CASE : HF_OK;
 }
 
 static hf_status pick_cables(job *j, hf_messages *messages)
 {
-    char place[HF_PATH_SIZE + 64];
+    char location[HF_PATH_SIZE + 64];
     const hf_case *c = &j->problem.settings;
-    hf_config_place(c, "adjust.set", place, sizeof place);
-    int n = hf_cable_pick_some(&j->problem.scene, c->adjust.set, place, j->cable, messages);
+    hf_config_location(c, "adjust.set", location, sizeof location);
+    int n = hf_cable_pick_some(&j->problem.scene, c->adjust.set, location, j->cable, messages);
     j->task = (hf_adjust_task){&c->adjust, &j->objectives, n, j->cable, j->least_N, j->threads};
     return n > 0 ? HF_OK : HF_BAD_CASE;
 }
@@ -363,8 +363,8 @@ const hf_command hf_cmd_adjust = {
              "cable before and after, and the figure that is predicted after each.",
     .examples = "hifdm adjust case.yaml --measured nodes.csv -o moves.csv\n"
                 "hifdm adjust case.yaml --measured nodes.csv --result case.h5 --report moves.html\n"
-                "hifdm adjust case.yaml --result case.h5 --measured nodes.csv --set adjust.aim=theory\n"
-                "hifdm adjust case.yaml --measured nodes.csv --json --set adjust.moves=5",
+                "hifdm adjust case.yaml --result case.h5 --measured nodes.csv --set adjust.aim=target_positions\n"
+                "hifdm adjust case.yaml --measured nodes.csv --json --set adjust.max_adjustments=5",
     .reads_results = true,
     .uses_threads = true,
     .run = command_adjust,

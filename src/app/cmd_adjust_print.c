@@ -107,7 +107,7 @@ static void print_end(const hf_adjust_job *j, FILE *f)
             hf_print_line(f, "no further adjustment: target_m is met");
         break;
     case HF_TURNBUCKLES_ALL:
-        hf_print_line(f, "no further adjustment: all %d are made (adjust.max_adjustments)", s->moves);
+        hf_print_line(f, "no further adjustment: all %d are made (adjust.max_adjustments)", s->max_adjustments);
         break;
     case HF_TURNBUCKLES_DOUBT:
         hf_print_line(f, "no further adjustment: the measurement cannot resolve the gain of the next one");

@@ -193,11 +193,13 @@ static void print_variables(const hf_problem *p, FILE *f)
 /* Prints the as-built nets over which an objective is taken. */
 static void print_nets(const hf_objective_settings *s, FILE *f)
 {
-    if (*s->load_case) fprintf(f, ", in state %s", s->load_case);
-    if (s->over != HF_OVER_DESIGN) fprintf(f, " over %s, ", hf_over_word[s->over]);
-    if (s->over != HF_OVER_DESIGN && s->quantile > 0)
+    bool takes_all = hf_objective_takes_load_cases(s);
+    if (*s->load_case && !takes_all) fprintf(f, ", in load case %s", s->load_case);
+    if (!takes_all && s->over == HF_OVER_DESIGN) return;
+    fprintf(f, " over %s, ", takes_all ? "all load cases" : hf_over_word[s->over]);
+    if (s->quantile > 0)
         fprintf(f, "quantile %g", s->quantile);
-    else if (s->over != HF_OVER_DESIGN)
+    else
         fprintf(f, "%s", hf_take_word[s->take]);
 }
 
@@ -221,10 +223,10 @@ static void print_cost_of_nets(const hf_problem *p, FILE *f)
 static void print_wishes(const hf_problem *p, FILE *f)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
-    char place[PATH_MAX];
+    char location[PATH_MAX];
     for (int k = 0; k < o->n_term && !o->n_front; k++) {
         const hf_objective_settings *s = &o->term[k];
-        fprintf(f, "                goals.%d: %s", k, hf_figure_kind_word[s->figure]);
+        fprintf(f, "                objective.%d: %s", k, hf_figure_kind_word[s->figure]);
         if (p->objectives.objective[k].cable) fprintf(f, " of %s", set_or_all(s->set));
         if (!isnan(s->target)) fprintf(f, ", target %g", s->target);
         if (s->figure == HF_FIGURE_GAIN)
@@ -241,7 +243,7 @@ static void print_wishes(const hf_problem *p, FILE *f)
         print_bounds(s->lower, s->upper, f);
         fputc('\n', f);
     }
-    bool is_given = hf_config_place(&p->settings, "optimize.boundary_ratio_cap", place, sizeof place);
+    bool is_given = hf_config_location(&p->settings, "optimize.boundary_ratio_cap", location, sizeof location);
     fprintf(f, "                boundary_ratio_cap %g%s\n", o->boundary_ratio_cap, is_given ? "" : " (the default)");
 }
 
@@ -325,7 +327,7 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
             : optimizes       ? "genetic algorithm (method: lm); "
             : c->has_optimize ? "optimisation (no boundary cable has a free end); "
                               : "optimisation (no optimize section); ",
-            p->load_cases.n ? "" : "cases (none given); ", c->has_truss ? "" : "truss (no truss section); ",
+            p->load_cases.n ? "" : "load_cases (none given); ", c->has_truss ? "" : "truss (no truss section); ",
             p->model.load_N ? "" : "loads (none given); ", p->model.has_strut ? "" : "general band matrix (no struts)");
 }
 
@@ -498,7 +500,7 @@ static void print_tolerance_time(const hf_problem *p, int threads, FILE *f)
         fprintf(f, "                as built: first order some %s of processor time, counted; samples not tried\n",
                 begin);
     if (!trial.scale_yields) return;
-    fprintf(f, "                tolerance.yield: up to %d yields of %d nets more, most of them ended early",
+    fprintf(f, "                tolerance.required_yield: up to %d yields of %d nets more, most of them ended early",
             trial.scale_yields, trial.scale_samples);
     double each_s = trial.scale_s > 0 ? trial.scale_s / trial.scale_samples : trial.scale_sample_s * trial.scale_yields;
     hf_print_duration(hf_check_together_s(each_s, trial.scale_samples, &threads), all, sizeof all);

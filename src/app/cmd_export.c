@@ -18,7 +18,7 @@ static void list_exporters(char *text, size_t size)
     }
 }
 
-/* Checks that at least one format is requested, and that --stage and --case suit the formats. Returns HF_OK or
+/* Checks that at least one format is requested, and that --stage and --load-case suit the formats. Returns HF_OK or
  * HF_BAD_USAGE. */
 static hf_status check_request(const hf_options *o, hf_messages *messages)
 {
@@ -35,11 +35,11 @@ static hf_status check_request(const hf_options *o, hf_messages *messages)
     }
     list_exporters(list, sizeof list);
     if (n_asked == 0) return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs %s", list);
-    if (o->stage && o->load_case) return hf_error(messages, HF_BAD_USAGE, "--stage and --case exclude each other");
+    if (o->stage && o->load_case) return hf_error(messages, HF_BAD_USAGE, "--stage and --load-case exclude each other");
     for (int i = 0; i < HF_N_EXPORTER; i++)
         if (o->load_case && o->export_to[i] && !hf_exporter_table[i]->takes_case)
-            return hf_error(messages, HF_BAD_USAGE, "--case does not go with %s, %s", hf_exporter_table[i]->option,
-                            hf_exporter_table[i]->takes_stage ? "which is of the design that all cases are made of"
+            return hf_error(messages, HF_BAD_USAGE, "--load-case does not go with %s, %s", hf_exporter_table[i]->option,
+                            hf_exporter_table[i]->takes_stage ? "which is of the design that all load cases are made of"
                                                               : "which writes every shape");
     if (o->stage && n_one_shape == 0)
         return hf_error(messages, HF_BAD_USAGE, "--stage does not go with %s alone, which writes every shape",
@@ -93,7 +93,7 @@ const hf_command hf_cmd_export = {
     .about = "Numbers have 17 significant digits: read back they are the stored ones, bit by bit.",
     .examples = "hifdm export chen2022.h5 --csv best\n"
                 "hifdm export chen2022.h5 --csv found --stage form\n"
-                "hifdm export night.h5 --csv cold --case cold\n"
+                "hifdm export night.h5 --csv cold --load-case cold\n"
                 "hifdm export chen2022.h5 --vtk shapes --cutlist cut.csv",
     .reads_results = true,
     .run = command_export,

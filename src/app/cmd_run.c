@@ -61,7 +61,7 @@ const hf_command hf_cmd_run = {
              "Levenberg-Marquardt with a section optimize, samples of the net as built with a section tolerance. Every "
              "generation is stored. A run that was killed or told "
              "to stop goes on when the same command is given again; a finished one is kept unless --restart is given.\n"
-             "Of a front (optimize.objectives) the same run with --point makes one point the result, without a search: "
+             "Of a front (optimize.front) the same run with --point makes one point the result, without a search: "
              "for its shape, its cut list, and the net as built.",
     .examples = "hifdm run configs/chen2022.yaml\n"
                 "hifdm run case.yaml --set form.pretension_N=12 --seed 7 -o twelve.h5\n"

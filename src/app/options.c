@@ -14,6 +14,7 @@
 
 #define THREADS_MAX 4096  /* maximum of --threads; a larger number is probably a typing error */
 #define TASKS_MAX 1000000 /* maximum of --tasks */
+#define RENAME_IT "rename it, because version 0.4 refuses the old name"
 
 /* ---- reading a value ---- */
 
@@ -89,10 +90,16 @@ static hf_status read_progress(const hf_option *option, const char *value, hf_op
 
 static hf_status read_stage(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
 {
-    if (strcmp(value, "form") && strcmp(value, "optimize") && strcmp(value, "polish"))
-        return hf_error(messages, HF_BAD_USAGE, "%s must be form, optimize or polish, not '%s'", option->name, value);
-    o->stage = value;
-    return HF_OK;
+    static const char *const word[HF_N_STAGE] = {"form", "search", "refine"};
+    static const char *const old[HF_N_STAGE] = {"form", "optimize", "polish"};
+    for (int i = 0; i < HF_N_STAGE; i++) {
+        bool is_new = !strcmp(value, word[i]);
+        if (!is_new && strcmp(value, old[i]) != 0) continue;
+        if (!is_new) hf_warning(messages, "--stage %s is now --stage %s: " RENAME_IT, old[i], word[i]);
+        o->stage = hf_stage_word[i];
+        return HF_OK;
+    }
+    return hf_error(messages, HF_BAD_USAGE, "%s must be form, search or refine, not '%s'", option->name, value);
 }
 
 static hf_status read_task(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
@@ -181,8 +188,9 @@ static const hf_option option_table[] = {
      read_text, AT(designs), NULL},
     {"--template", NULL, "FILE", "instead: write such a table, with the values after form-finding as its one row",
      "evaluate", read_text, AT(template_path), NULL},
-    {"--jacobian", NULL, "FILE", "also write the exact derivatives of psi, or of goals and merit, by each variable",
-     "evaluate", read_text, AT(jacobian), NULL},
+    {"--jacobian", NULL, "FILE",
+     "also write the exact derivatives of psi, or of objectives and merit, by each variable", "evaluate", read_text,
+     AT(jacobian), NULL},
     {"--output", "-o", "FILE", "CSV of the results (default: standard output)", "evaluate", read_text, AT(output),
      NULL},
     {"--measured", NULL, "FILE",
@@ -233,9 +241,9 @@ static const hf_option option_table[] = {
     {NULL, NULL, NULL, NULL, "export", read_text, AT(export_to[HF_EXPORTER_##name]), &hf_exporter_##name},
     HF_EXPORTERS(EXPORTER)
 #undef EXPORTER
-        {"--stage", NULL, "form|optimize|polish", "which shape (default: the result of the run)", "export adjust",
+        {"--stage", NULL, "form|search|refine", "which shape (default: the result of the run)", "export adjust",
          read_stage, 0, NULL},
-    {"--case", NULL, "NAME", "the shape of this state of the net as built (`cases`)", "export", read_text,
+    {"--load-case", NULL, "NAME", "the shape of this load case of the net as built (`load_cases`)", "export", read_text,
      AT(load_case), NULL},
     {"--paraboloid", NULL, NULL, "a round reflector: two nets that are tied to each other (the default)", "new",
      read_new, 0, NULL},
@@ -314,17 +322,20 @@ static hf_status find_command(const char *word, const hf_command **command, hf_m
 static hf_status find_option(const char *word, const hf_command *command, hf_option *option, hf_messages *messages)
 {
     const char *names[N_OPTION];
-    size_t length = strcspn(word, "=");
-    bool is_elsewhere = false;
+    bool is_old = !strncmp(word, "--case", 6) && (!word[6] || word[6] == '='), is_elsewhere = false;
+    const char *name = is_old ? "--load-case" : word;
+    size_t length = strcspn(name, "=");
     for (int i = 0; i < N_OPTION; i++) {
         hf_option o = hf_option_at(i);
         names[i] = o.name;
-        bool is_long = strlen(o.name) == length && !strncmp(word, o.name, length);
+        bool is_long = strlen(o.name) == length && !strncmp(name, o.name, length);
         bool is_short = o.letter && !strcmp(word, o.letter);
         if (!is_long && !is_short) continue;
         *option = o;
-        if (hf_option_goes_with(&o, command)) return HF_OK;
         is_elsewhere = true;
+        if (!hf_option_goes_with(&o, command)) continue;
+        if (is_old) hf_warning(messages, "--case is now --load-case: " RENAME_IT);
+        return HF_OK;
     }
     if (is_elsewhere)
         return hf_error(messages, HF_BAD_USAGE, "'%s' does not go with this command; 'hifdm help %s' lists what does",

@@ -26,8 +26,8 @@ struct hf_options {
     const char *measured;                 /* argument of --measured */
     const char *result;                   /* argument of --result */
     const char *report;                   /* argument of --report */
-    const char *stage;                    /* argument of --stage */
-    const char *load_case;                /* argument of --case */
+    const char *stage;                    /* word of the stage of --stage, as hf_stage_word has it */
+    const char *load_case;                /* argument of --load-case */
     const char **set;                     /* [n_set], "key=value" of each --set, owned */
     int n_set;
     const char *folder; /* argument of --dir */
@@ -50,7 +50,7 @@ typedef struct hf_option hf_option;
 /* A row of the table. */
 struct hf_option {
     const char *name, *letter; /* "--output", "-o" or NULL */
-    const char *argument; /* N, FILE, DIR, KEY=VALUE, or the words themselves as in form|optimize|polish; NULL: none */
+    const char *argument; /* N, FILE, DIR, KEY=VALUE, or the words themselves as in form|search|refine; NULL: none */
     const char *help;
     const char *commands; /* names of the commands that take it, separated by blanks; NULL: all */
     hf_status (*read)(const hf_option *option, const char *value, hf_options *options, hf_messages *messages);

@@ -34,6 +34,7 @@ bool hf_reader_watch(const hf_options *options, int *exit_status, hf_messages *m
     hf_hdf5_reading = reading;
     pid_t child = hf_child_fork();
     if (child <= 0) return false;
+    hf_messages_free(messages); /* the copy prints them */
     hf_child_end end = hf_child_wait(child);
     if (is_for_us(end.signal)) { /* this process ends by the same signal */
         signal(end.signal, SIG_DFL);

@@ -110,17 +110,17 @@ void hf_warning(hf_messages *messages, const char *format, ...)
     messages->n_warning++;
 }
 
-const char *hf_messages_place(const hf_messages *messages, char text[HF_PLACE_SIZE], const char *key_format, ...)
+const char *hf_messages_location(const hf_messages *messages, char text[HF_LOCATION_SIZE], const char *key_format, ...)
 {
     char key[128];
     va_list args;
     va_start(args, key_format);
     vsnprintf(key, sizeof key, key_format, args);
     va_end(args);
-    if (messages->find_place)
-        messages->find_place(messages->place_context, key, text, HF_PLACE_SIZE);
+    if (messages->find_location)
+        messages->find_location(messages->location_context, key, text, HF_LOCATION_SIZE);
     else
-        snprintf(text, HF_PLACE_SIZE, "%s", key);
+        snprintf(text, HF_LOCATION_SIZE, "%s", key);
     return text;
 }
 

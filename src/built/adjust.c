@@ -154,7 +154,7 @@ static hf_status create_adjustment(hf_estimate *p, const hf_adjust_task *task, a
                                           .slope = a->slope,
                                           .step_m = s->step_m,
                                           .steps_max = hf_adjust_steps(s),
-                                          .n_max = s->moves,
+                                          .n_max = s->max_adjustments,
                                           .target = s->target_m,
                                           .n_sample = HF_ESTIMATE_SAMPLES,
                                           .sample = a->sample,

@@ -241,11 +241,11 @@ bool hf_montecarlo_meets_all(const hf_tolerance_settings *s, const double *row)
     return row[HF_TOLERANCE_STATUS] == HF_OK;
 }
 
-/* Computes whether at min_N the share settings->yield of the first n samples meets all requirements at this scale. */
+/* Computes whether at min_N the share settings->required_yield of the first n samples meets all requirements at this scale. */
 static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reaches)
 {
     long met = 0, failed = 0;
-    double needed = t->settings->yield * n;
+    double needed = t->settings->required_yield * n;
     *reaches = false;
     if (t->tell) t->tell(t->tell_context, scale);
     for (long first = 0; first < n; first += t->n_chunk) {

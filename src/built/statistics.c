@@ -299,7 +299,7 @@ static void judge_yield(const moments *s, long n, hf_tolerance_summary *to)
     if (t->n_require == 0) return;
     to->yield = (double)s->met / (double)n;
     hf_statistics_interval(n, s->met, &to->yield_low, &to->yield_high);
-    if (t->yield > 0) to->required_yield = t->yield;
+    if (t->required_yield > 0) to->required_yield = t->required_yield;
     for (int k = 0; k < t->n_require; k++) {
         to->require[k] = t->require[k];
         to->require_yield[k] = (double)s->met_row[k] / (double)n;

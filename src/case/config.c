@@ -8,7 +8,8 @@
 #include "base/sha256.h"
 #include "base/text.h"
 #include "case/config_check.h"
-#include "case/config_meant.h"
+#include "case/config_rename.h"
+#include "case/config_suggest.h"
 #include "case/config_value.h"
 
 #include <stdio.h>
@@ -83,7 +84,7 @@ static const char *key_elsewhere(const char *key)
 
 static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, const char *key)
 {
-    const char *near = nearest_key(prefix, key), *meant = hf_config_meant(prefix, key);
+    const char *near = nearest_key(prefix, key), *meant = hf_config_suggestion(prefix, key);
     char detail[2 * HF_KEY_SIZE] = "";
     if (!*prefix && !strcmp(key, "base")) {
         l->is_study = true;
@@ -123,19 +124,58 @@ static bool complain_of_row(loader *l, yaml_mark_t mark, const char *path)
 
 /* ---- setting one value ---- */
 
-static void tell_place(loader *l, const yaml_node_t *node, int i_place)
+static void set_location(loader *l, const yaml_node_t *node, int i_location)
 {
-    char *where = hf_config_where(&l->faults, i_place);
+    char *where = hf_config_where(&l->faults, i_location);
     if (l->faults.is_override)
         snprintf(where, HF_CONFIG_WHERE_SIZE, "--set");
     else
         snprintf(where, HF_CONFIG_WHERE_SIZE, "%zu:%zu", node->start_mark.line + 1, node->start_mark.column + 1);
 }
 
-static void set_key(loader *l, const yaml_node_t *node, const hf_key *key)
+static void with_document(loader *l, const char *text, size_t length,
+                          void (*use)(loader *, const yaml_node_t *, const void *), const void *context);
+static void use_default(loader *l, const yaml_node_t *root, const void *context);
+
+static const char *key_text(const yaml_node_t *node)
+{
+    return (const char *)node->data.scalar.value;
+}
+
+/* Reports a key that the file sets twice, once by its old name. */
+static bool is_given_already(loader *l, const yaml_node_t *node, const hf_key *key)
+{
+    const char *where = hf_config_where(&l->faults, key->i_location);
+    if (!*where || l->faults.is_override) return false;
+    complain(l, node->start_mark, key->path, "is set twice: remove one, here or at ", where);
+    return true;
+}
+
+/* Sets a key whose value is an old word. Returns false if it is none. */
+static bool set_old_word(loader *l, const yaml_node_t *node, const hf_key *key)
+{
+    char old[2 * HF_KEY_SIZE], now[HF_KEY_SIZE];
+    hf_key to;
+    if (key->field->type != HF_FIELD_WORD || node->type != YAML_SCALAR_NODE) return false;
+    snprintf(old, sizeof old, "%s=%s", key->path, key_text(node));
+    if (!hf_config_rename(&l->faults, node->start_mark.line, node->start_mark.column, old, now)) return false;
+    char *word = strchr(now, '=');
+    *word++ = '\0';
+    if (!hf_key_find(now, &to) || is_given_already(l, node, &to)) return true;
+    with_document(l, word, strlen(word), use_default, &to);
+    set_location(l, node, to.i_location);
+    return true;
+}
+
+static void set_value(loader *l, const yaml_node_t *node, const hf_key *key)
 {
     hf_field field = *key->field;
     field.path = key->path;
+    hf_config_value(&l->faults, l->document, node, &field, l->c->path, (char *)l->c + key->offset);
+}
+
+static void set_key(loader *l, const yaml_node_t *node, const hf_key *key)
+{
     if (key->list && l->walked && key->row >= hf_key_n_row(l->c, key->list)) {
         char what[128];
         snprintf(what, sizeof what, "there is no such row: %s has %d, numbered from 0", key->list->path,
@@ -143,16 +183,14 @@ static void set_key(loader *l, const yaml_node_t *node, const hf_key *key)
         complain(l, node->start_mark, key->path, what, "");
         return;
     }
-    tell_place(l, node, key->i_place);
-    hf_config_value(&l->faults, l->document, node, &field, l->c->path, (char *)l->c + key->offset);
+    if (is_given_already(l, node, key) || set_old_word(l, node, key)) return;
+    set_location(l, node, key->i_location);
+    set_value(l, node, key);
 }
 
 /* ---- walking the YAML tree ---- */
 
 static void walk(loader *l, const yaml_node_t *mapping, const char *prefix);
-static void with_document(loader *l, const char *text, size_t length,
-                          void (*use)(loader *, const yaml_node_t *, const void *), const void *context);
-static void use_default(loader *l, const yaml_node_t *root, const void *context);
 
 /* Sets all keys of a row to their defaults. */
 static void clear_row(loader *l, const hf_list *list, int row)
@@ -162,14 +200,18 @@ static void clear_row(loader *l, const hf_list *list, int row)
         const char *text = key.field->default_value;
         hf_config_no_value(key.field, (char *)l->c + key.offset);
         if (text && *text) with_document(l, text, strlen(text), use_default, &key);
-        *hf_config_where(&l->faults, key.i_place) = '\0';
+        *hf_config_where(&l->faults, key.i_location) = '\0';
     }
 }
 
 static void read_rows(loader *l, const yaml_node_t *node, const hf_list *list)
 {
     int *n_row = (int *)(void *)((char *)l->c + list->count_offset);
+    hf_key first = hf_key_of_row(list, 0, -1);
     char what[64];
+    snprintf(first.path, sizeof first.path, "%s", list->path);
+    if (is_given_already(l, node, &first)) return;
+    set_location(l, node, first.i_location); /* that of its first row, if it has rows */
     *n_row = 0;
     if (node->type != YAML_SEQUENCE_NODE) {
         complain(l, node->start_mark, list->path, "must be a list of rows, each a line '- {key: value, ...}'", "");
@@ -185,11 +227,11 @@ static void read_rows(loader *l, const yaml_node_t *node, const hf_list *list)
         const hf_key key = hf_key_of_row(list, (*n_row)++, -1);
         memset((char *)l->c + key.offset, 0, list->row_size);
         clear_row(l, list, key.row);
-        *hf_config_where(&l->faults, key.i_place) = '\0';
+        *hf_config_where(&l->faults, key.i_location) = '\0';
         if (row->type != YAML_MAPPING_NODE) {
             complain(l, row->start_mark, key.path, "must be a row {key: value, ...}", "");
         } else {
-            tell_place(l, row, key.i_place);
+            set_location(l, row, key.i_location);
             walk(l, row, key.path);
         }
     }
@@ -197,9 +239,10 @@ static void read_rows(loader *l, const yaml_node_t *node, const hf_list *list)
 
 static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, const char *prefix, const char *key)
 {
-    char path[HF_KEY_SIZE];
+    char given[HF_KEY_SIZE], path[HF_KEY_SIZE];
     hf_key found;
-    bool fits = snprintf(path, sizeof path, "%s%s%s", prefix, *prefix ? "." : "", key) < HF_KEY_SIZE;
+    bool fits = snprintf(given, sizeof given, "%s%s%s", prefix, *prefix ? "." : "", key) < HF_KEY_SIZE;
+    hf_config_rename(&l->faults, key_mark.line, key_mark.column, given, path);
     const hf_list *list = fits ? hf_key_find_list(path) : NULL;
     if (fits && hf_key_find(path, &found) && found.field) {
         set_key(l, value, &found);
@@ -216,11 +259,6 @@ static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, cons
     } else {
         walk(l, value, path);
     }
-}
-
-static const char *key_text(const yaml_node_t *node)
-{
-    return (const char *)node->data.scalar.value;
 }
 
 static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
@@ -329,7 +367,7 @@ static bool has_key_of_case(loader *l, const yaml_node_t *root)
         const yaml_node_t *key = yaml_document_get_node(l->document, p->key);
         const char *word = key->type == YAML_SCALAR_NODE ? key_text(key) : "";
         if (!strcmp(word, "sweep") || !strcmp(word, "base")) return true;
-        if (hf_config_meant("", word) || nearest_key("", word) || key_elsewhere(word)) return true;
+        if (hf_config_suggestion("", word) || nearest_key("", word) || key_elsewhere(word)) return true;
     }
     return is_empty;
 }
@@ -355,7 +393,7 @@ static void use_default(loader *l, const yaml_node_t *root, const void *context)
     yaml_mark_t start = {0};
     const hf_key *key = context;
     if (root)
-        set_key(l, root, key);
+        set_value(l, root, key);
     else
         complain(l, start, key->path, "has no value", "");
 }
@@ -365,9 +403,9 @@ static void use_default(loader *l, const yaml_node_t *root, const void *context)
 static void use_override(loader *l, const yaml_node_t *root, const void *context)
 {
     char path[HF_KEY_SIZE];
-    snprintf(path, sizeof path, "%s", (const char *)context);
-    char *dot = strrchr(path, '.');
     yaml_mark_t start = {0};
+    hf_config_rename(&l->faults, 0, 0, context, path);
+    char *dot = strrchr(path, '.');
     if (!root) {
         complain(l, start, path, "there is no value after the '='", "");
         return;
@@ -473,7 +511,7 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
         return hf_error(messages, HF_BAD_CASE, "%s:%d:1: YAML: more than %d brackets are open", path,
                         hf_text_too_deep(settings->text), HF_TEXT_NESTING_MAX);
     loader l = {.c = settings, .faults = {.messages = messages, .path = path, .origin = path}};
-    l.faults.where_given = settings->where_given = calloc((size_t)hf_key_n_place(), HF_CONFIG_WHERE_SIZE);
+    l.faults.where_given = settings->where_given = calloc((size_t)hf_key_n_location(), HF_CONFIG_WHERE_SIZE);
     if (!l.faults.where_given) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     hf_key key;
     for (int i = 0; i < hf_n_field; i++) {
@@ -481,7 +519,6 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
         if (text && *text && hf_key_find(hf_field_table[i].path, &key))
             with_document(&l, text, strlen(text), use_default, &key);
     }
-    memset(l.faults.where_given, 0, (size_t)hf_key_n_place() * HF_CONFIG_WHERE_SIZE);
     with_document(&l, settings->text, settings->text_length, use_root, NULL);
     for (int i = 0; i < n_override; i++)
         apply_override(&l, overrides[i]);
@@ -517,21 +554,19 @@ hf_status hf_config_parse(const char *path, const char *text, const char *const 
     return parse(settings, overrides, n_override, messages);
 }
 
-hf_status hf_config_check_value(const char *path, const char *value, const char *place, hf_messages *messages)
+hf_status hf_config_check_value(const char *path, const char *value, const char *location, hf_messages *messages)
 {
     hf_key key;
     if (!hf_key_find(path, &key) || !key.field)
-        return hf_error(messages, HF_BAD_CASE, "%s: %s: unknown key", place, path);
+        return hf_error(messages, HF_BAD_CASE, "%s: %s: unknown key", location, path);
     hf_case *scratch = calloc(1, sizeof *scratch);
-    loader l = {.c = scratch, .faults = {.messages = messages, .origin = place, .place = place}};
-    l.faults.where_given = calloc((size_t)hf_key_n_place(), HF_CONFIG_WHERE_SIZE);
-    if (scratch && l.faults.where_given)
+    loader l = {.c = scratch, .faults = {.messages = messages, .origin = location, .location = location}};
+    if (scratch)
         with_document(&l, value, strlen(value), use_default, &key);
     else
         l.no_memory = true;
     hf_status status = l.faults.failed ? HF_BAD_CASE : HF_OK;
-    if (l.no_memory) status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", place);
-    free(l.faults.where_given);
+    if (l.no_memory) status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", location);
     free(scratch);
     return status;
 }

@@ -194,10 +194,10 @@ static void check_rows_are_whole(const hf_case *c, hf_config_faults *f)
 {
     for (const hf_list *list = hf_list_table; list < hf_list_table + hf_n_list; list++)
         for (int row = 0; row < hf_key_n_row(c, list); row++) {
-            if (!*hf_config_where(f, hf_key_of_row(list, row, -1).i_place)) continue; /* the item was no row */
+            if (!*hf_config_where(f, hf_key_of_row(list, row, -1).i_location)) continue; /* the item was no row */
             for (int i = 0; i < list->n_field; i++) {
                 const hf_key key = hf_key_of_row(list, row, i);
-                if (!key.field->default_value && !*hf_config_where(f, key.i_place))
+                if (!key.field->default_value && !*hf_config_where(f, key.i_location))
                     hf_config_fault_of(f, key.path, "is missing and has no default");
             }
         }
@@ -246,7 +246,7 @@ static void check_variables(const hf_optimize_settings *o, hf_config_faults *f)
         hf_config_fault_of(f, "optimize.rule", "cannot be seeded with optimize.variables; remove one of them");
 }
 
-/* Checks the rows of optimize.goals or optimize.objectives. */
+/* Checks the rows of optimize.objective or optimize.front. */
 static void check_objectives(const char *list, int n_objective, const hf_objective_settings *objective,
                              hf_config_faults *f)
 {
@@ -287,32 +287,31 @@ static void check_use_of_front(const hf_optimize_settings *o, hf_config_faults *
     static const char *const without[] = {"optimize.elites", "optimize.crossover_low", "optimize.mutation_low"};
     for (size_t k = 0; k < sizeof without / sizeof *without; k++)
         if (hf_config_is_given(f, without[k]))
-            hf_config_fault_of(f, without[k], "has no meaning for optimize.objectives; remove it");
+            hf_config_fault_of(f, without[k], "has no meaning for optimize.front; remove it");
     if (o->variation == HF_VARIATION_CHAIN)
-        hf_config_fault_of(
-            f, "optimize.variation",
-            "cannot be chain with optimize.objectives, whose children move along differences; remove it");
+        hf_config_fault_of(f, "optimize.variation",
+                           "cannot be chain with optimize.front, whose children move along differences; remove it");
 }
 
 static void check_front(const hf_optimize_settings *o, hf_config_faults *f)
 {
-    static const char list[] = "optimize.objectives";
+    static const char list[] = "optimize.front";
     check_objectives(list, o->n_front, o->front, f);
     if (o->n_front == 1)
-        hf_config_fault_of(f, "optimize.objectives.0",
-                           "is the only row; a front is of two or three objectives. For one use optimize.goals");
+        hf_config_fault_of(f, "optimize.front.0",
+                           "is the only row; a front is of two or three objectives. For one use optimize.objective");
     if (o->n_front > 0 && o->n_term > 0)
-        hf_config_fault_of(f, "optimize.goals.0",
-                           "cannot be with optimize.objectives, which takes the place of goals; keep one of them");
+        hf_config_fault_of(f, "optimize.objective.0",
+                           "cannot be with optimize.front, which replaces the objective; keep one of them");
     if (o->n_front > 2 && o->front_points < 4)
         hf_config_fault_of(f, "optimize.front_points", "must be at least 4 with three objectives, for the ends alone");
     if (o->n_front > 1 && o->refine == HF_REFINE_TRUE)
-        hf_config_fault_of(f, "optimize.compare_lm", "compares one design; it has no meaning for optimize.objectives");
+        hf_config_fault_of(f, "optimize.refine", "compares one design; it has no meaning for optimize.front");
     if (o->n_front > 1) check_use_of_front(o, f);
     for (int i = 1; i < o->n_front; i++)
         for (int k = 0; k < i; k++)
             if (!memcmp(&o->front[i], &o->front[k], sizeof o->front[i]))
-                hf_config_fault_in_row(f, list, i, "goal",
+                hf_config_fault_in_row(f, list, i, "figure",
                                        "is the objective of an earlier row; a front needs different ones");
 }
 
@@ -357,7 +356,7 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
         hf_config_fault_of(f, "optimize.min_tension_N", "must be below optimize.max_tension_N");
     if (o->refine == HF_REFINE_TRUE && o->rule == HF_RULE_SEEDED)
         hf_config_fault_of(
-            f, "optimize.compare_lm",
+            f, "optimize.refine",
             "cannot be true with optimize.rule seeded, under which Levenberg-Marquardt has no derivatives");
     if (o->solver == HF_SOLVER_CHORD && c->form.factor == HF_FACTOR_LAPACK)
         hf_config_fault_of(f, "optimize.solver",
@@ -369,11 +368,11 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
     if (o->mutation_low > o->mutation_high)
         hf_config_fault_of(f, "optimize.mutation_low", "must not be above optimize.mutation_high");
     check_variables(o, f);
-    check_objectives("optimize.goals", o->n_term, o->term, f);
+    check_objectives("optimize.objective", o->n_term, o->term, f);
     check_front(o, f);
     check_limits(o, f);
-    hf_config_check_nets(c, "optimize.goals", o->n_term, o->term, f);
-    hf_config_check_nets(c, "optimize.objectives", o->n_front, o->front, f);
+    hf_config_check_nets(c, "optimize.objective", o->n_term, o->term, f);
+    hf_config_check_nets(c, "optimize.front", o->n_front, o->front, f);
 }
 
 void hf_config_complete(hf_case *c)

@@ -7,7 +7,7 @@
 /* Reports missing keys and keys that do not fit together. */
 void hf_config_check(const hf_case *settings, hf_config_faults *faults);
 
-/* Reports faults in the keys of the as-built net: `adjust`, `cables`, `cases` and `tolerance`. */
+/* Reports faults in the keys of the as-built net: `adjust`, `cables`, `load_cases` and `tolerance`. */
 void hf_config_check_built(const hf_case *settings, hf_config_faults *faults);
 
 /* Reports faults in the keys `state`, `over`, `take` and `quantile` of the n_objective rows of a list of objectives. */

@@ -1,4 +1,4 @@
-/* Checks of several keys about the as-built net: adjust, cables, cases and tolerance, and the rows of objectives
+/* Checks of several keys about the as-built net: adjust, cables, load_cases and tolerance, and the rows of objectives
  * over several nets. */
 #include "case/config_check.h"
 
@@ -40,7 +40,7 @@ static void check_cables(const hf_built_settings *b, hf_config_faults *f)
 
 /* ---- load cases ---- */
 
-static const char load_case_list[] = "cases";
+static const char load_case_list[] = "load_cases";
 
 static bool is_there(const double vector[3])
 {
@@ -58,8 +58,9 @@ static void check_name(const hf_load_case_settings *s, int row, hf_config_faults
     if (s->name[strspn(s->name, letters)] || *s->name == '-')
         hf_config_fault_in_row(f, load_case_list, row, "name",
                                "must be made of letters, digits, _ and -, and not begin with -");
-    if (!strcmp(s->name, "name")) /* the result file has the names in /cases/name */
-        hf_config_fault_in_row(f, load_case_list, row, "name", "must be another word than name");
+    /* The result file has the names in /cases/name. In an objective, the others have a meaning of their own. */
+    if (!strcmp(s->name, "name") || !strcmp(s->name, "nominal") || !strcmp(s->name, "all"))
+        hf_config_fault_in_row(f, load_case_list, row, "name", "must be another word than name, nominal and all");
 }
 
 /* Reports keys that have a meaning only together with another key. */
@@ -80,11 +81,11 @@ static void check_company(const hf_load_case_settings *s, int row, hf_config_fau
         hf_config_fault_in_row(f, load_case_list, row, "part", "does not go with set: a row names cables or members");
     if (is_there(s->direction) && s->direction[0] == 0 && s->direction[1] == 0 && s->direction[2] == 0)
         hf_config_fault_in_row(f, load_case_list, row, "direction", "must not be zero");
-    if (!has_temperature(s) && isnan(s->gravity_m_per_s2) && !is_there(s->force_N) && !is_there(s->move_m) &&
-        !*s->nodes_path)
+    if (!has_temperature(s) && isnan(s->gravity_m_per_s2) && !is_there(s->force_N) &&
+        !is_there(s->support_displacement_m) && !*s->nodes_path)
         hf_config_fault_in_row(f, load_case_list, row, "name",
                                "this row says nothing; give temperature_K, gradient_K_per_m, gravity_m_per_s2, "
-                               "force_N, move_m or nodes");
+                               "force_N, support_displacement_m or nodes");
 }
 
 /* Reports a quantity that two rows of the same load case set. Forces and displacements add up instead. */
@@ -95,7 +96,7 @@ static void check_twice(const hf_built_settings *b, int row, hf_config_faults *f
     for (int i = 0; i < row; i++) {
         const hf_load_case_settings *before = &b->load_case[i];
         if (strcmp(before->name, s->name) != 0) continue;
-        snprintf(what, sizeof what, "row %d has it for this state already", i);
+        snprintf(what, sizeof what, "row %d has it for this load case already", i);
         if (!isnan(s->gravity_m_per_s2) && !isnan(before->gravity_m_per_s2))
             hf_config_fault_in_row(f, load_case_list, row, "gravity_m_per_s2", what);
         if (has_temperature(s) && has_temperature(before) && s->part == before->part && !strcmp(s->set, before->set))
@@ -113,7 +114,7 @@ static void check_load_cases(const hf_built_settings *b, hf_config_faults *f)
             same++;
         n_name += same == i;
         if (n_name > HF_LOAD_CASES_MAX && same == i)
-            hf_config_fault_in_row(f, load_case_list, i, "name", "there are more than 16 states");
+            hf_config_fault_in_row(f, load_case_list, i, "name", "there are more than 16 load cases");
         check_name(&b->load_case[i], i, f);
         hf_config_check_set(f, load_case_list, i, b->load_case[i].set);
         check_company(&b->load_case[i], i, f);
@@ -131,7 +132,7 @@ static void check_expansions(const hf_case *c, hf_config_faults *f)
     for (int i = 0; i < b->n_cable; i++)
         if (!isnan(b->cable[i].expansion_per_K))
             hf_config_fault_in_row(f, "cables", i, "expansion_per_K",
-                                   "has no effect: no row of cases has a temperature");
+                                   "has no effect: no row of load_cases has a temperature");
 }
 
 /* ---- tolerance ---- */
@@ -192,8 +193,9 @@ static void check_tolerance(const hf_case *c, hf_config_faults *f)
                            "must be above 0, or another sigma: without errors all is nominal");
     if (t->sigma_temperature_K > 0 && !knows_expansion)
         hf_config_fault_of(f, "tolerance.sigma_temperature_K", "needs expansion_per_K in a row of `cables`");
-    if (t->yield > 0 && t->n_require == 0)
-        hf_config_fault_of(f, "tolerance.yield", "needs rows of tolerance.require, which say what a net must keep");
+    if (t->required_yield > 0 && t->n_require == 0)
+        hf_config_fault_of(f, "tolerance.required_yield",
+                           "needs rows of tolerance.require, which say what a net must keep");
     if (t->batch > 0 && t->sigma_cut_ratio + t->sigma_EA_ratio == 0)
         hf_config_fault_of(f, "tolerance.batch", "is about sigma_cut_ratio and sigma_EA_ratio; give one of them");
 }
@@ -213,7 +215,7 @@ static void check_load_case(const hf_case *c, const char *list, int row, const h
                             hf_config_faults *f)
 {
     const hf_built_settings *b = &c->built;
-    const char *name[HF_LOAD_CASE_ROWS_MAX];
+    const char *name[HF_LOAD_CASE_ROWS_MAX], *near;
     char what[2 * HF_KEY_SIZE];
     bool is_known = false;
     for (int i = 0; i < b->n_load_case; i++) {
@@ -221,16 +223,16 @@ static void check_load_case(const hf_case *c, const char *list, int row, const h
         is_known |= !strcmp(name[i], g->load_case);
     }
     if (g->over != HF_OVER_DESIGN)
-        hf_config_fault_in_row(f, list, row, "state", "is one net and `over` speaks of many; remove one of them");
-    if (is_known) return;
-    const char *near = hf_text_nearest(g->load_case, name, b->n_load_case);
+        hf_config_fault_in_row(f, list, row, "load_case", "does not go with over: samples; remove one of them");
     if (b->n_load_case == 0)
-        snprintf(what, sizeof what, "needs rows of `cases`, which name the states of the net as built");
-    else if (near)
-        snprintf(what, sizeof what, "is no state of `cases`; did you mean '%s'?", near);
+        snprintf(what, sizeof what, "needs rows of `load_cases`, which name the load cases of the net as built");
+    else if (is_known || hf_objective_takes_load_cases(g))
+        return;
+    else if ((near = hf_text_nearest(g->load_case, name, b->n_load_case)))
+        snprintf(what, sizeof what, "is no load case of `load_cases`; did you mean '%s'?", near);
     else
-        snprintf(what, sizeof what, "is no state of `cases`, whose first is '%s'", name[0]);
-    hf_config_fault_in_row(f, list, row, "state", what);
+        snprintf(what, sizeof what, "is no load case of `load_cases`, whose first is '%s'", name[0]);
+    hf_config_fault_in_row(f, list, row, "load_case", what);
 }
 
 static void check_quantile(const hf_optimize_settings *o, const char *list, int row, const hf_objective_settings *g,
@@ -247,7 +249,7 @@ static void check_quantile(const hf_optimize_settings *o, const char *list, int 
                                "worst");
     if (o->method == HF_OPTIMIZE_GA && o->refine == HF_REFINE_TRUE)
         hf_config_fault_in_row(f, list, row, "quantile",
-                               "has no derivatives, which optimize.compare_lm: true needs; remove one of them");
+                               "has no derivatives, which optimize.refine: true needs; remove one of them");
 }
 
 /* Reports objectives that cannot be part of a front with Levenberg-Marquardt. Such a front keeps limits on the norm of
@@ -256,13 +258,14 @@ static void check_objective(const hf_optimize_settings *o, const char *list, int
                             hf_config_faults *f)
 {
     bool is_largest = g->figure == HF_FIGURE_PULL || g->figure == HF_FIGURE_DEFLECTION || g->figure == HF_FIGURE_RATIO;
-    bool is_worst = g->over != HF_OVER_DESIGN && g->take == HF_TAKE_WORST && !(g->quantile > 0);
+    bool is_worst = (g->over == HF_OVER_SAMPLES || hf_objective_takes_load_cases(g)) && g->take == HF_TAKE_WORST &&
+                    !(g->quantile > 0);
     bool is_of_nets = *g->load_case || g->over != HF_OVER_DESIGN;
     if (o->n_front > 0 && o->method != HF_OPTIMIZE_GA && (is_worst || (is_of_nets && is_largest)))
-        hf_config_fault_in_row(f, list, row, is_worst ? "take" : "goal",
-                               is_worst ? "worst needs method: ga in optimize.objectives"
+        hf_config_fault_in_row(f, list, row, is_worst ? "take" : "figure",
+                               is_worst ? "worst needs method: ga in optimize.front"
                                         : "as the largest of several sizes of nets as built needs method: ga in "
-                                          "optimize.objectives");
+                                          "optimize.front");
 }
 
 void hf_config_check_nets(const hf_case *c, const char *list, int n_objective, const hf_objective_settings *objective,
@@ -271,14 +274,13 @@ void hf_config_check_nets(const hf_case *c, const char *list, int n_objective, c
     for (int i = 0; i < n_objective; i++) {
         const hf_objective_settings *g = &objective[i];
         if (*g->load_case) check_load_case(c, list, i, g, f);
-        if (g->over == HF_OVER_LOAD_CASES && c->built.n_load_case == 0)
-            hf_config_fault_in_row(f, list, i, "over", "states needs rows of `cases`, which say what they are");
         if (g->over == HF_OVER_SAMPLES && !c->has_tolerance)
             hf_config_fault_in_row(f, list, i, "over",
                                    "samples needs a section tolerance, which says how large errors "
                                    "are");
-        if (g->over == HF_OVER_DESIGN && hf_config_is_given_in_row(f, list, i, "take"))
-            hf_config_fault_in_row(f, list, i, "take", "has a meaning for over: states and over: samples alone");
+        if (g->over == HF_OVER_DESIGN && !hf_objective_takes_load_cases(g) &&
+            hf_config_is_given_in_row(f, list, i, "take"))
+            hf_config_fault_in_row(f, list, i, "take", "has a meaning for load_case: all and over: samples alone");
         check_quantile(&c->optimize, list, i, g, f);
         check_objective(&c->optimize, list, i, g, f);
     }

@@ -8,32 +8,29 @@
 void hf_config_fault_at(hf_config_faults *faults, size_t line, size_t column, const char *path, const char *what,
                         const char *detail)
 {
+    char where[48] = "";
     faults->failed = true;
     if (++faults->n > HF_FAULT_MAX_CASE) return;
-    if (faults->place)
-        hf_error(faults->messages, HF_BAD_CASE, "%s: %s: %s%s", faults->place, path, what, detail);
-    else if (faults->is_override)
-        hf_error(faults->messages, HF_BAD_CASE, "--set %s: %s: %s%s", faults->origin, path, what, detail);
-    else
-        hf_error(faults->messages, HF_BAD_CASE, "%s:%zu:%zu: %s: %s%s", faults->origin, line + 1, column + 1, path,
-                 what, detail);
+    if (!faults->location && !faults->is_override) snprintf(where, sizeof where, ":%zu:%zu", line + 1, column + 1);
+    hf_error(faults->messages, HF_BAD_CASE, "%s%s%s: %s: %s%s", faults->is_override ? "--set " : "", faults->origin,
+             where, path, what, detail);
 }
 
 /* Returns the location of a key, or else that of its row, or "". *is_given: the case contains the key. */
-static const char *place_of(const char *where_given, const char *path, bool *is_given)
+static const char *location_of(const char *where_given, const char *path, bool *is_given)
 {
     hf_key key = {0};
     const char *where = "";
-    if (where_given && hf_key_find(path, &key)) where = where_given + (size_t)key.i_place * HF_CONFIG_WHERE_SIZE;
+    if (where_given && hf_key_find(path, &key)) where = where_given + (size_t)key.i_location * HF_CONFIG_WHERE_SIZE;
     *is_given = *where != '\0';
     if (*is_given || !where_given || !key.list) return where;
-    return where_given + (size_t)hf_key_of_row(key.list, key.row, -1).i_place * HF_CONFIG_WHERE_SIZE;
+    return where_given + (size_t)hf_key_of_row(key.list, key.row, -1).i_location * HF_CONFIG_WHERE_SIZE;
 }
 
-bool hf_config_place(const hf_case *c, const char *key, char *text, size_t size)
+bool hf_config_location(const hf_case *c, const char *key, char *text, size_t size)
 {
     bool is_given = false;
-    const char *where = place_of(c->where_given, key, &is_given);
+    const char *where = location_of(c->where_given, key, &is_given);
     if (!strcmp(where, "--set"))
         snprintf(text, size, "--set %s", key);
     else
@@ -44,7 +41,7 @@ bool hf_config_place(const hf_case *c, const char *key, char *text, size_t size)
 void hf_config_fault_of(hf_config_faults *faults, const char *path, const char *what)
 {
     bool is_given;
-    const char *where = place_of(faults->where_given, path, &is_given);
+    const char *where = location_of(faults->where_given, path, &is_given);
     faults->failed = true;
     if (!strcmp(where, "--set"))
         hf_error(faults->messages, HF_BAD_CASE, "--set %s: %s", path, what);
@@ -62,7 +59,7 @@ void hf_config_fault_in_row(hf_config_faults *f, const char *list, int row, cons
 bool hf_config_is_given(const hf_config_faults *f, const char *path)
 {
     hf_key key;
-    return hf_key_find(path, &key) && *hf_config_where(f, key.i_place);
+    return hf_key_find(path, &key) && *hf_config_where(f, key.i_location);
 }
 
 bool hf_config_is_given_in_row(const hf_config_faults *f, const char *list, int row, const char *key)

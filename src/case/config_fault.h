@@ -8,11 +8,11 @@
 
 typedef struct {
     hf_messages *messages;
-    const char *path;   /* path of the case file */
-    const char *origin; /* what is being read: the case file, or a --set argument */
-    bool is_override;   /* true: a --set argument is being read */
-    const char *place;  /* location of a value that is only checked, for messages; NULL otherwise */
-    char *where_given;  /* [hf_key_n_place()][HF_CONFIG_WHERE_SIZE], "line:col", "--set" or "" of keys and rows */
+    const char *path;     /* path of the case file */
+    const char *origin;   /* what is being read: the case file, or a --set argument */
+    bool is_override;     /* true: a --set argument is being read */
+    const char *location; /* location of a value that is only checked, for messages; NULL otherwise */
+    char *where_given;    /* [hf_key_n_location()][HF_CONFIG_WHERE_SIZE], "line:col", "--set" or "" of keys and rows */
     bool failed;
     int n; /* faults reported by hf_config_fault_at; those beyond HF_FAULT_MAX_CASE are only counted */
 } hf_config_faults;
@@ -25,17 +25,17 @@ void hf_config_fault_at(hf_config_faults *faults, size_t line, size_t column, co
  * case contains it. */
 void hf_config_fault_of(hf_config_faults *faults, const char *path, const char *what);
 
-/* Reports a fault of a key in a row, such as key "set" of row 0 of the list "optimize.goals". */
+/* Reports a fault of a key in a row, such as key "set" of row 0 of the list "optimize.objective". */
 void hf_config_fault_in_row(hf_config_faults *faults, const char *list, int row, const char *key, const char *what);
 
 /* Return true if the case contains this key. */
 bool hf_config_is_given(const hf_config_faults *faults, const char *path);
 bool hf_config_is_given_in_row(const hf_config_faults *faults, const char *list, int row, const char *key);
 
-/* Returns the location with index i_place, "" if it is not given. A key hf_field_table[i] has the index i. */
-static inline char *hf_config_where(const hf_config_faults *faults, int i_place)
+/* Returns the location with index i_location, "" if it is not given. A key hf_field_table[i] has the index i. */
+static inline char *hf_config_where(const hf_config_faults *faults, int i_location)
 {
-    return faults->where_given + (size_t)i_place * HF_CONFIG_WHERE_SIZE;
+    return faults->where_given + (size_t)i_location * HF_CONFIG_WHERE_SIZE;
 }
 
 #endif

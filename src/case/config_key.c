@@ -5,16 +5,16 @@
 #include <string.h>
 
 /* Returns the number of locations of a list: each row has one, and each key of each row has one. */
-static int places_of(const hf_list *list)
+static int n_location_of(const hf_list *list)
 {
     return list->max_row * (1 + list->n_field);
 }
 
-int hf_key_n_place(void)
+int hf_key_n_location(void)
 {
     int n = hf_n_field;
     for (int i = 0; i < hf_n_list; i++)
-        n += places_of(&hf_list_table[i]);
+        n += n_location_of(&hf_list_table[i]);
     return n;
 }
 
@@ -23,9 +23,9 @@ hf_key hf_key_of_row(const hf_list *list, int row, int i_field)
     hf_key key = {.list = list, .row = row};
     key.field = i_field < 0 ? NULL : &list->field[i_field];
     key.offset = list->offset + (size_t)row * list->row_size + (key.field ? key.field->offset : 0);
-    key.i_place = hf_n_field + row * (1 + list->n_field) + 1 + i_field;
+    key.i_location = hf_n_field + row * (1 + list->n_field) + 1 + i_field;
     for (const hf_list *before = hf_list_table; before < list; before++)
-        key.i_place += places_of(before);
+        key.i_location += n_location_of(before);
     snprintf(key.path, sizeof key.path, "%s.%d%s%s", list->path, row, key.field ? "." : "",
              key.field ? key.field->path : "");
     return key;
@@ -53,7 +53,7 @@ bool hf_key_find(const char *path, hf_key *key)
 {
     for (int i = 0; i < hf_n_field; i++) {
         if (strcmp(hf_field_table[i].path, path) != 0) continue;
-        *key = (hf_key){.field = &hf_field_table[i], .offset = hf_field_table[i].offset, .i_place = i};
+        *key = (hf_key){.field = &hf_field_table[i], .offset = hf_field_table[i].offset, .i_location = i};
         snprintf(key->path, sizeof key->path, "%s", path);
         return true;
     }

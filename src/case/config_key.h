@@ -1,5 +1,5 @@
 /* config_key - finds keys of a case by their paths, such as "form.stop", also in rows of lists
- * ("optimize.goals.0.set"). */
+ * ("optimize.objective.0.set"). */
 #ifndef HIFDM_CONFIG_KEY_H
 #define HIFDM_CONFIG_KEY_H
 
@@ -13,7 +13,7 @@ typedef struct {
     char path[HF_KEY_SIZE];
     const hf_field *field; /* its row of the table; NULL: a whole row such as "optimize.variables.0" */
     size_t offset;         /* offset in hf_case */
-    int i_place;           /* index of its location, below hf_key_n_place() */
+    int i_location;        /* index of its location, below hf_key_n_location() */
     const hf_list *list;   /* list of a row or of a key in a row, else NULL */
     int row;
 } hf_key;
@@ -26,7 +26,7 @@ hf_key hf_key_of_row(const hf_list *list, int row, int i_field);
 
 /* Returns the number of keys and rows that a case can have. It is the number of locations; a key hf_field_table[i] has
  * the location i. */
-int hf_key_n_place(void);
+int hf_key_n_location(void);
 
 const hf_list *hf_key_find_list(const char *path); /* NULL if there is none */
 int hf_key_n_row(const hf_case *settings, const hf_list *list);

@@ -1,4 +1,4 @@
-/* Makes the load cases of the as-built net from the rows of `cases`:
+/* Makes the load cases of the as-built net from the rows of `load_cases`:
  *
  *     rows -> names in order of appearance -> materials -> for each row: temperatures, gravity, forces, displacements,
  *     table of nodes -> hf_load_cases
@@ -29,11 +29,11 @@ typedef struct {
     hf_messages *messages;
 } maker;
 
-static const char *place_in_row(const maker *q, int row, const char *key, char where[WHERE_SIZE])
+static const char *location_in_row(const maker *q, int row, const char *key, char where[WHERE_SIZE])
 {
     char path[64];
-    snprintf(path, sizeof path, "cases.%d.%s", row, key);
-    hf_config_place(q->c, path, where, WHERE_SIZE);
+    snprintf(path, sizeof path, "load_cases.%d.%s", row, key);
+    hf_config_location(q->c, path, where, WHERE_SIZE);
     return where;
 }
 
@@ -82,7 +82,7 @@ static hf_status heat_cables(const maker *q, int row)
     hf_load_case *load_case = load_case_of_row(q, row);
     char where[WHERE_SIZE];
     int n_unknown = 0, unknown = 0, n_wild = 0, wild = 0;
-    int n = hf_cable_pick_some(scene, s->set, place_in_row(q, row, "set", where), q->cable, q->messages);
+    int n = hf_cable_pick_some(scene, s->set, location_in_row(q, row, "set", where), q->cable, q->messages);
     for (int k = 0; k < n; k++) {
         int e = q->cable[k];
         double expansion = q->load_cases->material.expansion_per_K[e];
@@ -96,19 +96,19 @@ static hf_status heat_cables(const maker *q, int row)
         hf_error(q->messages, HF_BAD_CASE,
                  "%s: %d cables would change by more than %g of their lengths, like '%s' by %.3g at %.6g K: is this "
                  "temperature wrong, or its expansion_per_K?",
-                 place_in_row(q, row, temperature_key(s), where), n_wild, LARGEST_STRAIN, scene->cable_id[wild],
+                 location_in_row(q, row, temperature_key(s), where), n_wild, LARGEST_STRAIN, scene->cable_id[wild],
                  q->load_cases->material.expansion_per_K[wild] * load_case->rise_K[wild], load_case->rise_K[wild]);
     if (n_unknown == 0) return n_wild ? HF_BAD_CASE : HF_OK;
     return hf_error(q->messages, HF_BAD_CASE,
                     "%s: the expansion of %d cables is not known, like '%s': give expansion_per_K of their sets in "
                     "`cables`; 0 for those that keep their lengths",
-                    place_in_row(q, row, temperature_key(s), where), n_unknown, scene->cable_id[unknown]);
+                    location_in_row(q, row, temperature_key(s), where), n_unknown, scene->cable_id[unknown]);
 }
 
 hf_status hf_config_demand_expansion(const hf_case *c, const hf_truss *t, hf_part part, const char *where,
                                      const char *other, hf_messages *messages)
 {
-    char place[WHERE_SIZE];
+    char location[WHERE_SIZE];
     int n = 0, n_expanding = 0;
     for (int e = 0; e < t->n_member; e++) {
         n += hf_truss_is_of(t, e, part);
@@ -116,7 +116,7 @@ hf_status hf_config_demand_expansion(const hf_case *c, const hf_truss *t, hf_par
     }
     if (n == 0)
         return hf_error(messages, HF_BAD_CASE, "%s: the truss has no members of unit %s", where, hf_part_word[part]);
-    if (!c->has_truss_import && !hf_config_place(c, "truss.expansion_per_K", place, sizeof place))
+    if (!c->has_truss_import && !hf_config_location(c, "truss.expansion_per_K", location, sizeof location))
         return hf_error(messages, HF_BAD_CASE,
                         "%s: the expansion of the truss is not known: give truss.expansion_per_K; 0 for one that keeps "
                         "its shape%s",
@@ -133,7 +133,7 @@ static hf_status heat_truss(const maker *q, int row)
     hf_load_case *load_case = load_case_of_row(q, row);
     char where[WHERE_SIZE];
     if (!t && s->part == HF_PART_ALL) return HF_OK;
-    place_in_row(q, row, s->part == HF_PART_ALL ? temperature_key(s) : "part", where);
+    location_in_row(q, row, s->part == HF_PART_ALL ? temperature_key(s) : "part", where);
     if (!t) return hf_error(q->messages, HF_BAD_CASE, "%s: the case has no truss", where);
     for (int e = 0; e < t->n_member; e++)
         if (hf_truss_is_of(t, e, s->part))
@@ -172,7 +172,7 @@ static hf_status weigh(const maker *q, int row)
         q->messages, HF_BAD_CASE,
         "%s: the mass of %d cables is not known, like '%s': give mass_kg_per_m of their sets in `cables`; 0 "
         "for those that weigh nothing",
-        place_in_row(q, row, "gravity_m_per_s2", where), n_unknown, q->scene->cable_id[unknown]);
+        location_in_row(q, row, "gravity_m_per_s2", where), n_unknown, q->scene->cable_id[unknown]);
 }
 
 /* ---- forces and displacements ---- */
@@ -188,12 +188,13 @@ static hf_status push(const maker *q, int row)
         bool is_pushed = !isnan(s->force_N[0]) && hf_material_names(s->role, q->scene->role[i]);
         for (int c = 0; c < 3; c++) {
             if (is_pushed) load_case->force_N[3 * i + c] += s->force_N[c];
-            if (is_support && !isnan(s->move_m[0])) load_case->move_m[3 * i + c] += s->move_m[c];
+            if (is_support && !isnan(s->support_displacement_m[0]))
+                load_case->move_m[3 * i + c] += s->support_displacement_m[c];
         }
         n += is_pushed;
     }
     if (isnan(s->force_N[0]) || n > 0) return HF_OK;
-    return hf_error(q->messages, HF_BAD_CASE, "%s: this net has no %s nodes", place_in_row(q, row, "role", where),
+    return hf_error(q->messages, HF_BAD_CASE, "%s: this net has no %s nodes", location_in_row(q, row, "role", where),
                     hf_nodes_word[s->role]);
 }
 
@@ -264,10 +265,11 @@ static hf_status check_EA(const maker *q)
     for (int e = 0; e < s->n_cable; e++)
         if (!(s->EA_N && s->EA_N[e] > 0) && n++ == 0) first = e;
     if (n == 0) return HF_OK;
-    return hf_error(q->messages, HF_BAD_CASE,
-                    "%s: %d cables have no EA, which states of the net as built need, like '%s': give scene.EA_inner_N "
-                    "and scene.EA_boundary_N, or the column EA_N of an imported net",
-                    place_in_row(q, 0, "name", where), n, s->cable_id[first]);
+    return hf_error(
+        q->messages, HF_BAD_CASE,
+        "%s: %d cables have no EA, which load cases of the net as built need, like '%s': give scene.EA_inner_N "
+        "and scene.EA_boundary_N, or the column EA_N of an imported net",
+        location_in_row(q, 0, "name", where), n, s->cable_id[first]);
 }
 
 typedef hf_status row_step(const maker *, int);
@@ -303,7 +305,7 @@ hf_status hf_config_load_cases(const hf_case *c, const hf_scene *s, const hf_tru
     if (status == HF_OK)
         status = hf_config_material(c, s, &load_cases->material, messages);
     else
-        hf_error(messages, status, "%s: out of memory for %d states", c->path, n);
+        hf_error(messages, status, "%s: out of memory for %d load cases", c->path, n);
     if (status == HF_OK) status = read_rows_of_load_cases(&q);
     free(q.cable);
     return status;

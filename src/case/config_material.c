@@ -9,11 +9,11 @@
 
 #define WHERE_SIZE (HF_PATH_SIZE + 96)
 
-static void place_of(const hf_case *c, const char *list, int row, const char *key, char where[WHERE_SIZE])
+static void location_of(const hf_case *c, const char *list, int row, const char *key, char where[WHERE_SIZE])
 {
     char path[64];
     snprintf(path, sizeof path, "%s.%d.%s", list, row, key);
-    hf_config_place(c, path, where, WHERE_SIZE);
+    hf_config_location(c, path, where, WHERE_SIZE);
 }
 
 static hf_status set_cables(const hf_case *c, const hf_scene *s, int *cable, hf_material *t, hf_messages *messages)
@@ -22,7 +22,7 @@ static hf_status set_cables(const hf_case *c, const hf_scene *s, int *cable, hf_
     for (int i = 0; i < c->built.n_cable; i++) {
         const hf_cable_settings *row = &c->built.cable[i];
         char where[WHERE_SIZE];
-        place_of(c, "cables", i, "set", where);
+        location_of(c, "cables", i, "set", where);
         int n = hf_cable_pick_some(s, row->set, where, cable, messages);
         if (n == 0) status = HF_BAD_CASE;
         for (int k = 0; k < n; k++) {
@@ -45,7 +45,7 @@ static hf_status set_nodes(const hf_case *c, const hf_scene *s, hf_material *t, 
             t->node_mass_kg[k] = row->mass_kg;
             n++;
         }
-        place_of(c, "nodes", i, "role", where);
+        location_of(c, "nodes", i, "role", where);
         if (n == 0)
             status = hf_error(messages, HF_BAD_CASE, "%s: this net has no %s nodes", where, hf_nodes_word[row->role]);
     }

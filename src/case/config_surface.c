@@ -12,7 +12,7 @@
 
 #define FOCAL_MOST 20.0 /* apertures; a larger one was probably given in mm */
 
-#define PLACE_SIZE (HF_PATH_SIZE + 128)
+#define LOCATION_SIZE (HF_PATH_SIZE + 128)
 
 static bool is_on(const hf_target_surface_fit *fit)
 {
@@ -23,21 +23,21 @@ static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surfac
                         const hf_target_surface_fit *cylinder, const hf_target_surface_fit *paraboloid,
                         hf_messages *messages)
 {
-    char place[PLACE_SIZE], other[PLACE_SIZE], line[32] = "";
+    char location[LOCATION_SIZE], other[LOCATION_SIZE], line[32] = "";
     bool is_round = surface->kind == HF_SURFACE_PARABOLOID;
     const hf_target_surface_fit *fit = is_round ? paraboloid : cylinder;
     const char *advice = "its vertex is the origin, its axis z, its focal length this one";
     if (is_on(is_round ? cylinder : paraboloid))
         advice = is_round ? "give surface.kind: parabolic_cylinder" : "give surface.kind: paraboloid";
-    if (!hf_config_place(c, "surface.focal_length_m", place, sizeof place) &&
-        hf_config_place(c, "surface.kind", other, sizeof other))
-        snprintf(place, sizeof place, "%s", other);
+    if (!hf_config_location(c, "surface.focal_length_m", location, sizeof location) &&
+        hf_config_location(c, "surface.kind", other, sizeof other))
+        snprintf(location, sizeof location, "%s", other);
     if (scene->node_line) snprintf(line, sizeof line, ", line %d", scene->node_line[fit->farthest]);
     return hf_error(messages, HF_BAD_CASE,
                     "%s: the inner nodes are not on the %s with f = %g m: RMS of their heights above it %.4g mm, "
                     "farthest '%s'%s, %.4g mm (above the parabolic_cylinder z = x^2/(4f) the RMS is %.4g mm, above the "
                     "paraboloid z = (x^2 + y^2)/(4f) %.4g mm); %s",
-                    place, hf_surface_kind_word[surface->kind], surface->focal_length_m, fit->rms_m * 1e3,
+                    location, hf_surface_kind_word[surface->kind], surface->focal_length_m, fit->rms_m * 1e3,
                     scene->node_id[fit->farthest], line, fit->max_m * 1e3, cylinder->rms_m * 1e3,
                     paraboloid->rms_m * 1e3, advice);
 }
@@ -47,7 +47,7 @@ static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surfac
 static void doubt_focal_length(const hf_case *c, const hf_scene *scene, hf_messages *messages)
 {
     const char *key = NULL;
-    char place[PLACE_SIZE];
+    char location[LOCATION_SIZE];
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     hf_surface_settings of = hf_config_known_surface(c, &key);
     if (of.focal_length_m == 0) {
@@ -62,18 +62,19 @@ static void doubt_focal_length(const hf_case *c, const hf_scene *scene, hf_messa
     double x_m = high[0] - low[0], y_m = high[1] - low[1];
     double aperture_m = of.kind == HF_SURFACE_PARABOLIC_CYLINDER ? x_m : fmax(x_m, y_m);
     if (!(of.focal_length_m > FOCAL_MOST * aperture_m)) return;
-    hf_config_place(c, key, place, sizeof place);
+    hf_config_location(c, key, location, sizeof location);
     hf_warning(messages, "%s: %g m is %.0f times the aperture of %g m; reflectors have less than %g: is it in m?",
-               place, of.focal_length_m, of.focal_length_m / aperture_m, aperture_m, FOCAL_MOST);
+               location, of.focal_length_m, of.focal_length_m / aperture_m, aperture_m, FOCAL_MOST);
 }
 
 /* Sets values of the feed that the case does not give to NaN. They follow from the target surface. */
 static void open_feed(const hf_case *c, hf_pattern_settings *p)
 {
-    char place[PLACE_SIZE];
-    if (!hf_config_place(c, "surface.pattern.feed.position_m", place, sizeof place)) p->position_m[0] = (double)NAN;
-    if (!hf_config_place(c, "surface.pattern.feed.aim_m", place, sizeof place)) p->aim_m[0] = (double)NAN;
-    if (!hf_config_place(c, "surface.pattern.feed.cos_power", place, sizeof place)) p->cos_power = (double)NAN;
+    char location[LOCATION_SIZE];
+    if (!hf_config_location(c, "surface.pattern.feed.position_m", location, sizeof location))
+        p->position_m[0] = (double)NAN;
+    if (!hf_config_location(c, "surface.pattern.feed.aim_m", location, sizeof location)) p->aim_m[0] = (double)NAN;
+    if (!hf_config_location(c, "surface.pattern.feed.cos_power", location, sizeof location)) p->cos_power = (double)NAN;
 }
 
 hf_status hf_config_surface(const hf_case *c, const hf_scene *scene, hf_surface_settings *surface,

@@ -147,23 +147,25 @@ const hf_field hf_field_table[] = {
      "how far the cut length of each may be changed, either way"},
     {"adjust.step_m", HF_FIELD_DOUBLE, AT(adjust.step_m), HF_ABOVE_ZERO, 1e3, NULL, "m", NULL,
      "moves are multiples of it"},
-    {"adjust.moves", HF_FIELD_INT, AT(adjust.moves), 1, 1000000, "10", "", NULL, "cables that are turned at most"},
+    {"adjust.max_adjustments", HF_FIELD_INT, AT(adjust.max_adjustments), 1, 1000000, "10", "", NULL,
+     "cables that are turned at most"},
     {"adjust.target_m", HF_FIELD_DOUBLE, AT(adjust.target_m), 0, BIG, "0", "m", NULL,
      "no further move is made once the figure is below it"},
     {"adjust.figure", HF_FIELD_WORD, AT(adjust.figure), 0, 0, "psi", "", hf_adjust_figure_word,
      "what the moves make small, RMS: psi: distance of the inner nodes to where they should be, see adjust.aim; "
      "surface: of the inner nodes to the wanted surface, along its normal; facets: of the facets to it"},
     {"adjust.aim", HF_FIELD_WORD, AT(adjust.aim), 0, 0, "design", "", hf_aim_word,
-     "of the figure psi: design: back to the shape of the design, which has its tensions, too; theory: to the "
-     "theoretical places, also where the design is not there on purpose"},
+     "of the figure psi: design: back to the shape of the design, which has its tensions, too; target_positions: to "
+     "the "
+     "target positions, also where the design is not there on purpose"},
     {"adjust.sigma_m", HF_FIELD_DOUBLE, AT(adjust.sigma_m), HF_ABOVE_ZERO, BIG, "", "m", NULL,
      "standard deviation of each measured coordinate, of nodes without a sigma_m of their own"},
 
     {"optimize.method", HF_FIELD_WORD, AT(optimize.method), 0, 0, "ga", "", hf_optimize_method_word,
      "genetic algorithm, Levenberg-Marquardt from the form-finding's tensions, or both. After the genetic algorithm "
      "the "
-     "optimum that Levenberg-Marquardt reaches from it is reported (compare_lm); with ga+lm it is the result"},
-    {"optimize.compare_lm", HF_FIELD_WORD, AT(optimize.refine), 0, 0, "auto", "", hf_refine_choice_word,
+     "optimum that Levenberg-Marquardt reaches from it is reported (refine); with ga+lm it is the result"},
+    {"optimize.refine", HF_FIELD_WORD, AT(optimize.refine), 0, 0, "auto", "", hf_refine_choice_word,
      "the optimum that Levenberg-Marquardt reaches from the genetic algorithm's design, for comparison. auto: unless "
      "it would cost noticeable time and more than a tenth of the genetic algorithm's"},
     {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", hf_rule_word,
@@ -209,14 +211,15 @@ const hf_field hf_field_table[] = {
      "whole generations store_every apart. The last one is there in any case"},
     {"optimize.store_every", HF_FIELD_INT, AT(optimize.store_every), 2, 1000000, "100", "", NULL,
      "with store every: generations 0, n, 2n, ... are stored"},
-    {"optimize.polish_iterations", HF_FIELD_INT, AT(optimize.refine_steps), 1, 100000, "200", "", NULL,
-     "largest number of Levenberg-Marquardt iterations"},
+    {"optimize.refine_steps", HF_FIELD_INT, AT(optimize.refine_steps), 1, 100000, "200", "", NULL,
+     "maximum number of Levenberg-Marquardt steps"},
     {"optimize.samples", HF_FIELD_INT, AT(optimize.samples), 2, 100000, "64", "", NULL,
-     "of goals over samples: nets with errors that each design is judged by, the same numbers for all; the first so "
+     "of objectives over samples: nets with errors that each design is judged by, the same numbers for all; the first "
+     "so "
      "many "
      "of those that tolerance.sampling random draws"},
     {"optimize.front_points", HF_FIELD_INT, AT(optimize.front_points), 3, HF_FRONT_POINTS_MAX, "21", "", NULL,
-     "of the front of optimize.objectives that Levenberg-Marquardt finds, its ends included"},
+     "of optimize.front that Levenberg-Marquardt finds, its ends included"},
 
     {"tolerance.sigma_cut_m", HF_FIELD_DOUBLE, AT(tolerance.sigma_cut_m), 0, 1, "0", "m", NULL,
      "standard deviation of each cut length"},
@@ -242,7 +245,7 @@ const hf_field hf_field_table[] = {
     {"tolerance.sampling", HF_FIELD_WORD, AT(tolerance.sampling), 0, 0, "random", "", hf_sampling_word,
      "random numbers, or Sobol's sequence in the 40 directions of errors that move the shape most, which converges "
      "faster"},
-    {"tolerance.yield", HF_FIELD_DOUBLE, AT(tolerance.yield), 0, 0.9999, "0", "", NULL,
+    {"tolerance.required_yield", HF_FIELD_DOUBLE, AT(tolerance.required_yield), 0, 0.9999, "0", "", NULL,
      "part of the nets that should meet tolerance.require: the run tells by which factor all errors may grow, or must "
      "shrink; 0: it does not"},
 
@@ -314,11 +317,11 @@ static const hf_field variable_field[] = {
 
 #define IN(member) offsetof(hf_objective_settings, member)
 static const hf_field objective_field[] = {
-    {"goal", HF_FIELD_WORD, IN(figure), 0, 0, NULL, "", hf_figure_kind_word,
+    {"figure", HF_FIELD_WORD, IN(figure), 0, 0, NULL, "", hf_figure_kind_word,
      "psi: distance of the inner nodes to their theoretical places, RMS (m); surface: to the wanted surface (m); "
      "facets: distance of the facets to it, RMS (m); tension, length: difference to target, RMS over the set (N, m); "
      "evenness: standard deviation of the tensions of the set over their mean; pull: largest force of the net on a "
-     "support (N); displacement: the largest of an attachment by the truss (m); mass: of the cables of the set (kg); "
+     "support (N); deflection: the largest of an attachment by the truss (m); mass: of the cables of the set (kg); "
      "ratio: largest over smallest tension of the set; gain: root of the part of the gain that the shape loses in the "
      "direction of the beam, by physical optics (surface.pattern)"},
     {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL,
@@ -333,26 +336,27 @@ static const hf_field objective_field[] = {
      "of surface and facets: distance to the wanted surface, or to its best fit to the shape"},
     {"frequency_Hz", HF_FIELD_DOUBLE, IN(frequency_Hz), HF_ABOVE_ZERO, 1e15, "", "Hz", NULL,
      "of gain; default: the highest of surface.frequencies_Hz"},
-    {"state", HF_FIELD_TEXT, IN(load_case), 1, HF_SET_NAME_SIZE, "", "", NULL,
-     "of `cases`: the goal is that of the net that is cut for the design, in this state"},
+    {"load_case", HF_FIELD_TEXT, IN(load_case), 1, HF_SET_NAME_SIZE, "", "", NULL,
+     "of `load_cases`: the figure is that of the net that is cut for the design, in this load case; all: in all of "
+     "them"},
     {"over", HF_FIELD_WORD, IN(over), 0, 0, "design", "", hf_over_word,
-     "of what the goal is: the design itself; all states of `cases`; samples of the errors of `tolerance`"},
+     "of what the figure is: the design itself; samples of the errors of `tolerance`"},
     {"take", HF_FIELD_WORD, IN(take), 0, 0, "mean", "", hf_take_word,
-     "over states or samples: the root of the mean of squares, or the largest"},
+     "over all load cases or samples: the root of the mean of squares, or the largest"},
     {"quantile", HF_FIELD_DOUBLE, IN(quantile), HF_ABOVE_ZERO, 1, "", "", NULL,
      "over samples, instead of take: so large a part of them has no larger value; method ga alone"},
     {"weight", HF_FIELD_DOUBLE, IN(weight), HF_ABOVE_ZERO, BIG, "1", "", NULL,
-     "of this goal in the merit of a design, the root of the sum of (weight * value)^2"},
+     "of this objective in the merit of a design, the root of the sum of (weight * value)^2"},
 };
-/* A row of optimize.objectives has the keys of a row of optimize.goals without the last one, weight. */
+/* A row of optimize.front has the keys of a row of optimize.objective without the last one, weight. */
 enum { N_OBJECTIVE_FIELD = sizeof objective_field / sizeof *objective_field, N_FRONT_FIELD = N_OBJECTIVE_FIELD - 1 };
 #undef IN
 
 #define IN(member) offsetof(hf_limit_settings, member)
 _Static_assert(IN(upper) == IN(lower) + sizeof(double), "bounds are bounds");
 static const hf_field limit_field[] = {
-    {"limit", HF_FIELD_WORD, IN(figure), 0, 0, NULL, "", hf_limit_word,
-     "tension of each cable of the set (N); ratio: its largest over its smallest tension; displacement of each "
+    {"figure", HF_FIELD_WORD, IN(figure), 0, 0, NULL, "", hf_limit_word,
+     "tension of each cable of the set (N); ratio: its largest over its smallest tension; deflection of each "
      "attachment by the truss (m)"},
     {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL, "cables of tension, ratio; default: all"},
     {"bounds", HF_FIELD_BOUNDS, IN(lower), -BIG, BIG, NULL, "", NULL, "between which it stays"},
@@ -380,14 +384,14 @@ static const hf_field node_field[] = {
 #define IN(member) offsetof(hf_load_case_settings, member)
 static const hf_field load_case_field[] = {
     {"name", HF_FIELD_TEXT, IN(name), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
-     "of the state: letters, digits, _ and -; rows with the same name are one state"},
+     "of the load case: letters, digits, _ and -; rows with the same name are one load case"},
     {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL,
      "cables that have the temperature: a set of the net, or inner, boundary, all"},
     {"part", HF_FIELD_WORD, IN(part), 0, 0, "all", "", hf_part_word,
      "what has the temperature: net and truss; all cables; the truss; or the members of a unit of the truss"},
     {"temperature_K", HF_FIELD_DOUBLE, IN(temperature_K), -1e4, 1e4, "", "K", NULL,
      "difference to the temperature at which the cables were cut and the truss was made; of what several rows of a "
-     "state name the last one holds"},
+     "load case name the last one holds"},
     {"gradient_K_per_m", HF_FIELD_VECTOR, IN(gradient_K_per_m), -1e4, 1e4, "", "K/m", NULL,
      "added to temperature_K in proportion to the place, 0 at the origin"},
     {"gravity_m_per_s2", HF_FIELD_DOUBLE, IN(gravity_m_per_s2), HF_ABOVE_ZERO, 1e6, "", "m/s2", NULL,
@@ -396,7 +400,7 @@ static const hf_field load_case_field[] = {
      "in which gravity pulls, of any length; default: [0, 0, -1]"},
     {"force_N", HF_FIELD_VECTOR, IN(force_N), -1e12, 1e12, "", "N", NULL, "on each node of the role"},
     {"role", HF_FIELD_WORD, IN(role), 0, 0, "all", "", hf_nodes_word, "nodes on which force_N acts"},
-    {"move_m", HF_FIELD_VECTOR, IN(move_m), -1e6, 1e6, "", "m", NULL,
+    {"support_displacement_m", HF_FIELD_VECTOR, IN(support_displacement_m), -1e6, 1e6, "", "m", NULL,
      "of all supports from where the design has them, on a truss from where the truss holds them"},
     {"nodes", HF_FIELD_TEXT, IN(nodes_path), 1, HF_PATH_SIZE, "", "", NULL,
      "CSV id[,Fx_N,Fy_N,Fz_N][,dx_m,dy_m,dz_m]: forces on nodes, moves of supports; path relative to the case file"},
@@ -438,10 +442,11 @@ static const hf_field truss_heat_field[] = {
 const hf_list hf_list_table[] = {
     LIST("variables", n_variable_row, variable_row, HF_DESIGN_ROWS_MAX, variable_field, N_VARIABLE_FIELD,
          "What a design varies; without rows the pretensions of the boundary, within range_N by rule"),
-    LIST("goals", n_term, term, HF_DESIGN_ROWS_MAX, objective_field, N_OBJECTIVE_FIELD,
+    LIST("objective", n_term, term, HF_DESIGN_ROWS_MAX, objective_field, N_OBJECTIVE_FIELD,
          "What a design should reach; without rows psi"),
-    LIST("objectives", n_front, front, HF_FRONT_OBJECTIVES_MAX, objective_field, N_FRONT_FIELD,
-         "Two or three goals to be weighed against each other: instead of one design the run finds their front, the "
+    LIST("front", n_front, front, HF_FRONT_OBJECTIVES_MAX, objective_field, N_FRONT_FIELD,
+         "Two or three objectives to be weighed against each other: instead of one design the run finds their front, "
+         "the "
          "designs than which none is better in all of them"),
     LIST("limits", n_limit, limit, HF_DESIGN_ROWS_MAX, limit_field, N_LIMIT_FIELD,
          "What a design must keep; without rows nothing"),
@@ -449,8 +454,8 @@ const hf_list hf_list_table[] = {
                "What cables are made of, for the net as built; a later row replaces what an earlier one says"),
     BUILT_LIST("nodes", n_node, node, HF_MATERIAL_ROWS_MAX, node_field,
                "What joints weigh, for the net as built; a later row replaces an earlier one"),
-    BUILT_LIST("cases", n_load_case, load_case, HF_LOAD_CASE_ROWS_MAX, load_case_field,
-               "States of the net as built, of up to 16 names: temperatures, gravity, forces, moves of supports; "
+    BUILT_LIST("load_cases", n_load_case, load_case, HF_LOAD_CASE_ROWS_MAX, load_case_field,
+               "Load cases of the net as built, of up to 16 names: temperatures, gravity, forces, moves of supports; "
                "without rows none is computed"),
     {"tolerance.require", AT(tolerance.n_require), AT(tolerance.require), sizeof(hf_require_settings),
      HF_REQUIRE_ROWS_MAX, require_field, sizeof require_field / sizeof *require_field,

@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "base/sha256.h"
 #include "base/text.h"
+#include "case/config_rename.h"
 
 #include <gsl/gsl_qrng.h>
 #include <inttypes.h>
@@ -171,16 +172,22 @@ int hf_study_spread(const hf_study *s, int k)
     return (int)(step * k % n);
 }
 
-/* Digests the lines of a point. The axes are sorted, so the lines are sorted too. Returns false if memory runs out. */
+/* Digests the lines of a point, with the names of version 0.2. The axes are sorted, so the lines are sorted too.
+ * Returns false if memory runs out. */
 static bool digest_point(const hf_study *s, const int *value, char hex[65])
 {
     size_t size = 1, used = 0;
+    char old[HF_KEY_SIZE];
     for (int a = 0; a < s->n_axis; a++)
-        size += strlen(s->axis[a].canonical[value[a]]) + 1;
+        size += strlen(s->axis[a].canonical[value[a]]) + HF_KEY_SIZE;
     char *text = malloc(size);
     if (!text) return false;
-    for (int a = 0; a < s->n_axis; a++)
-        used += (size_t)snprintf(text + used, size - used, "%s\n", s->axis[a].canonical[value[a]]);
+    for (int a = 0; a < s->n_axis; a++) {
+        const char *line = s->axis[a].canonical[value[a]];
+        bool is_long = strlen(line) >= HF_KEY_SIZE; /* such a value is a path, and no word with an old name */
+        hf_config_old_name(is_long ? s->axis[a].key.path : line, old);
+        used += (size_t)snprintf(text + used, size - used, "%s%s\n", old, is_long ? strchr(line, '=') : "");
+    }
     hf_sha256(text, used, hex);
     free(text);
     return true;
@@ -313,6 +320,9 @@ static hf_status learn_from_a_point(hf_study *s, hf_messages *messages)
         hf_messages found = {0}, *to = k ? &found : &first;
         status = learn_from(s, hf_study_spread(s, k), c, to);
         if (status != HF_OK && status != HF_BAD_CASE) tell_trouble(status, to, messages);
+        /* All lines are warnings: of old names in the base case. */
+        for (const char *line = to->text; status == HF_OK && line && *line; line = strchr(line, '\n') + 1)
+            hf_warning(messages, "%.*s", (int)strcspn(line, "\n") - 9, line + 9);
         hf_messages_free(&found);
         hf_case_free(c);
     }

@@ -12,7 +12,8 @@
  *       files: auto         # a result file per point: auto = with an optimize section, all, none
  *
  * A point is identified by its values, not by its number. Its id is the first 12 digits of the SHA-256 of its sorted
- * lines "key=value". If an axis grows, the existing points keep their ids, files and seeds. */
+ * lines "key=value", with the names of version 0.2. If an axis grows, or a version renames a key, the existing points
+ * keep their ids, files and seeds. */
 #ifndef HIFDM_STUDY_H
 #define HIFDM_STUDY_H
 
@@ -50,7 +51,7 @@ typedef struct {
     bool is_zip;
     hf_study_files files;
     int n_axis;
-    hf_study_axis axis[HF_STUDY_AXIS_MAX]; /* sorted by key */
+    hf_study_axis axis[HF_STUDY_AXIS_MAX]; /* sorted by key, as version 0.2 names it */
     int n_point;
     int *value;                   /* [n_point][n_axis], index of the value */
     char (*id)[HF_STUDY_ID_SIZE]; /* [n_point] */

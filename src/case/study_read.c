@@ -8,6 +8,7 @@
 
 #include "base/path.h"
 #include "base/text.h"
+#include "case/config_rename.h"
 #include "case/config_value.h"
 
 #include <stdarg.h>
@@ -35,6 +36,7 @@ typedef struct {
 typedef struct {
     hf_study *study;
     hf_messages *messages;
+    hf_config_faults faults; /* of the study, for old names */
     yaml_document_t *document;
     bool failed, no_memory;
     int n; /* n of the sweep section; 0: not given */
@@ -156,22 +158,30 @@ static bool quote(const reader *r, const hf_field *field, const char *value, cha
 
 static hf_status check_value(reader *r, const hf_study_axis *axis, const char *text, yaml_mark_t mark)
 {
-    char place[HF_PATH_SIZE + 128];
-    snprintf(place, sizeof place, "%s:%zu:%zu: sweep", r->study->path, mark.line + 1, mark.column + 1);
-    return hf_config_check_value(axis->key.path, text, place, r->messages);
+    char location[HF_PATH_SIZE + 128];
+    snprintf(location, sizeof location, "%s:%zu:%zu: sweep", r->study->path, mark.line + 1, mark.column + 1);
+    return hf_config_check_value(axis->key.path, text, location, r->messages);
 }
 
 /* Sets value k of the axis. A study may have a million values, so numbers that are within their range are not
  * parsed as YAML. */
 static void set_value(reader *r, hf_study_axis *axis, int k, const char *value, bool is_canonical, yaml_mark_t mark)
 {
-    const char *key = axis->key.path;
-    char text[VALUE_SIZE];
+    const char *key = axis->key.path, *to = key, *canonical = value;
+    char text[VALUE_SIZE], old[2 * HF_KEY_SIZE] = "", now[HF_KEY_SIZE];
+    if (axis->key.field->type == HF_FIELD_WORD) snprintf(old, sizeof old, "%s=%s", key, value);
+    if (*old && hf_config_rename(&r->faults, mark.line, mark.column, old, now)) {
+        value = strchr(now, '=') + 1;
+        now[value - now - 1] = '\0';
+        to = now;
+        if (!strcmp(to, key)) canonical = value; /* over: states becomes another key, and the axis keeps its word */
+    }
     bool fits = axis->key.field->type != HF_FIELD_TEXT ? snprintf(text, sizeof text, "%s", value) < VALUE_SIZE
                                                        : quote(r, axis->key.field, value, text);
     bool is_one_line = !strchr(value, '\n');
     hf_status status = fits && is_one_line ? HF_OK : HF_BAD_CASE;
-    if (status == HF_OK && !hf_config_is_in_range(axis->key.field, text)) status = check_value(r, axis, text, mark);
+    if (status == HF_OK && to == key && !hf_config_is_in_range(axis->key.field, text))
+        status = check_value(r, axis, text, mark);
     if (!fits) fault(r, mark, key, "is too long");
     if (!is_one_line) fault(r, mark, key, "a value must be on one line");
     if (status != HF_OK) {
@@ -179,10 +189,10 @@ static void set_value(reader *r, hf_study_axis *axis, int k, const char *value, 
         r->failed = true;
         return;
     }
-    size_t size = strlen(key) + strlen(text) + 2;
+    size_t size = strlen(to) + strlen(text) + 2;
     char *set = axis->set[k] = malloc(size);
-    if (set) snprintf(set, size, "%s=%s", key, text);
-    axis->canonical[k] = set && is_canonical ? strdup(set) : hf_study_canonical(&axis->key, value);
+    if (set) snprintf(set, size, "%s=%s", to, text);
+    axis->canonical[k] = set && is_canonical ? strdup(set) : hf_study_canonical(&axis->key, canonical);
     r->no_memory |= !set || !axis->canonical[k];
 }
 
@@ -359,9 +369,9 @@ static void fill_axes(reader *r)
 }
 
 /* Reports an unknown key. In a row, the suggestions are the keys of its list. */
-static void fault_no_axis(reader *r, const yaml_node_t *key, const char *const *names, int n)
+static void fault_no_axis(reader *r, const yaml_node_t *key, const char *word, const char *const *names, int n)
 {
-    const char *word = text_of(key), *dot = strrchr(word, '.'), *of_row[64];
+    const char *dot = strrchr(word, '.'), *of_row[64];
     char prefix[HF_KEY_SIZE];
     hf_key row;
     snprintf(prefix, sizeof prefix, "%.*s", dot ? (int)(dot - word) : 0, word);
@@ -381,19 +391,26 @@ static void read_axis(reader *r, const yaml_node_t *key, const yaml_node_t *valu
 {
     static const char *const reserved[] = {"n", "combine", "seed", "files"};
     const char *names[256];
+    char path[HF_KEY_SIZE];
     hf_study *s = r->study;
     hf_key found;
     int n = 0;
+    hf_config_rename(&r->faults, key->start_mark.line, key->start_mark.column, text_of(key), path);
     for (int i = 0; i < hf_n_field && n < 250; i++)
         names[n++] = hf_field_table[i].path;
     for (int i = 0; i < 4; i++)
         names[n++] = reserved[i];
-    if (!hf_key_find(text_of(key), &found) || !found.field) {
-        fault_no_axis(r, key, names, n);
+    if (!hf_key_find(path, &found) || !found.field) {
+        fault_no_axis(r, key, path, names, n);
         return;
     }
+    for (int a = 0; a < s->n_axis; a++)
+        if (!strcmp(s->axis[a].key.path, path)) {
+            fault(r, key->start_mark, path, "is an axis already, on line %d", s->axis[a].line);
+            return;
+        }
     if (s->n_axis == HF_STUDY_AXIS_MAX) {
-        fault(r, key->start_mark, text_of(key), "more than %d axes", HF_STUDY_AXIS_MAX);
+        fault(r, key->start_mark, path, "more than %d axes", HF_STUDY_AXIS_MAX);
         return;
     }
     hf_study_axis *axis = &s->axis[s->n_axis++];
@@ -406,7 +423,7 @@ static void read_axis(reader *r, const yaml_node_t *key, const yaml_node_t *valu
     else
         r->source[s->n_axis - 1].is_faulty = true;
     if (value->type == YAML_SCALAR_NODE)
-        fault(r, value->start_mark, text_of(key), "must be a list of values, or {from, to, n}");
+        fault(r, value->start_mark, path, "must be a list of values, or {from, to, n}");
 }
 
 static void read_sweep(reader *r, const yaml_node_t *mapping)
@@ -505,7 +522,10 @@ static void read_root(reader *r, const yaml_node_t *root)
 static int compare_axes(const void *a, const void *b)
 {
     const hf_study_axis *x = a, *y = b;
-    return strcmp(x->key.path, y->key.path);
+    char old_x[HF_KEY_SIZE], old_y[HF_KEY_SIZE];
+    hf_config_old_name(x->key.path, old_x);
+    hf_config_old_name(y->key.path, old_y);
+    return strcmp(old_x, old_y);
 }
 
 static void parse(reader *r, const char *text, size_t length)
@@ -569,6 +589,7 @@ hf_status hf_study_read(const char *path, hf_study *study, hf_messages *messages
         return hf_error(messages, HF_BAD_CASE, "%s: the path is too long", path);
     HF_TRY(hf_text_read_file(path, HF_BAD_CASE, &text, &length, messages));
     reader r = {.study = study, .messages = messages, .seed = 1};
+    r.faults = (hf_config_faults){.messages = messages, .origin = study->path};
     hf_status status = HF_OK;
     if (length > STUDY_MAX)
         status = hf_error(messages, HF_BAD_CASE, "%s: longer than %d MB, so no study", path, STUDY_MAX >> 20);

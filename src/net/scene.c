@@ -53,7 +53,7 @@ double hf_scene_length_at_target(const hf_scene *scene, int i_cable)
 
 /* ---- checks ---- */
 
-void hf_scene_place(const hf_scene *s, bool is_cable, int index, char *text, size_t size)
+void hf_scene_location(const hf_scene *s, bool is_cable, int index, char *text, size_t size)
 {
     const int *line = is_cable ? s->cable_line : s->node_line;
     const char *file = is_cable ? s->cables_file : s->nodes_file, *kind = is_cable ? "cable" : "node";
@@ -67,9 +67,9 @@ void hf_scene_place(const hf_scene *s, bool is_cable, int index, char *text, siz
 
 void hf_scene_fault(const hf_scene *s, bool is_cable, int index, int *n_fault, const char *what, hf_messages *messages)
 {
-    char where[HF_SCENE_PLACE_SIZE];
+    char where[HF_SCENE_LOCATION_SIZE];
     if (++*n_fault > HF_FAULT_MAX) return;
-    hf_scene_place(s, is_cable, index, where, sizeof where);
+    hf_scene_location(s, is_cable, index, where, sizeof where);
     hf_error(messages, HF_BAD_CASE, "%s %s", where, what);
 }
 

@@ -42,7 +42,7 @@ static int by_ends(const void *a, const void *b)
 
 static void doubt_cables(const hf_scene *s, joint *all, hf_messages *messages)
 {
-    char place[HF_SCENE_PLACE_SIZE];
+    char place[HF_SCENE_LOCATION_SIZE];
     int n_said = 0, first = 0;
     for (int e = 0; e < s->n_cable; e++) {
         int a = s->end[2 * e], b = s->end[2 * e + 1];
@@ -55,7 +55,7 @@ static void doubt_cables(const hf_scene *s, joint *all, hf_messages *messages)
             continue;
         }
         if (++n_said > SAID_MAX) continue;
-        hf_scene_place(s, true, all[k].cable, place, sizeof place);
+        hf_scene_location(s, true, all[k].cable, place, sizeof place);
         hf_warning(messages, "%s joins the same two nodes as cable '%s'", place, s->cable_id[all[first].cable]);
     }
     if (n_said > SAID_MAX)
@@ -75,7 +75,7 @@ static int by_distance(const void *a, const void *b)
  * do not change. */
 static void doubt_nodes(const hf_scene *s, const scratch *t, hf_messages *messages)
 {
-    char place[HF_SCENE_PLACE_SIZE];
+    char place[HF_SCENE_LOCATION_SIZE];
     double middle[3];
     int n = s->n_node, k = n / 2 + 1;
     for (int c = 0; c < 3; c++) {
@@ -90,7 +90,7 @@ static void doubt_nodes(const hf_scene *s, const scratch *t, hf_messages *messag
     while (k < n && !(t->from[k - 1].m > 0 && t->from[k].m > FAR * t->from[k - 1].m))
         k++;
     for (int i = k; i < n && i < k + SAID_MAX; i++) {
-        hf_scene_place(s, false, t->from[i].node, place, sizeof place);
+        hf_scene_location(s, false, t->from[i].node, place, sizeof place);
         hf_warning(
             messages,
             "%s is %.3g m from the middle of the net, %.3g times as far as the others: are all coordinates in m?",
@@ -120,13 +120,13 @@ static void doubt_size(const hf_scene *s, hf_messages *messages)
  * the usual reason. */
 static void doubt_lengths(const hf_scene *s, hf_messages *messages)
 {
-    char place[HF_SCENE_PLACE_SIZE];
+    char place[HF_SCENE_LOCATION_SIZE];
     int n_said = 0;
     for (int e = 0; e < s->n_cable; e++) {
         double length_at_target_m = hf_scene_length_at_target(s, e), ratio = s->target[e] / length_at_target_m;
         bool is_length = s->law[e] == HF_LAW_LENGTH || s->law[e] == HF_LAW_ELASTIC;
         if (!is_length || fabs(ratio - 1) <= LENGTH_PART || ++n_said > SAID_MAX) continue;
-        hf_scene_place(s, true, e, place, sizeof place);
+        hf_scene_location(s, true, e, place, sizeof place);
         hf_warning(messages, "%s is %.4g m long by its law, %.3g times the distance of its nodes: is it in m?", place,
                    s->target[e], ratio);
     }

@@ -2,6 +2,7 @@
 #include <hifdm/settings.h>
 
 #include <stddef.h>
+#include <string.h>
 
 const char *const hf_method_word[6] = {"hifdm", "iterative_fdm", "fdm", "newton", "auto", NULL};
 const char *const hf_prestress_word[3] = {"given", "exact", NULL};
@@ -22,25 +23,30 @@ const char *const hf_refine_choice_word[4] = {"auto", "true", "false", NULL};
 const char *const hf_vary_word[8] = {"tension",   "force_density",  "length",      "unstressed_length",
                                      "support_z", "support_normal", "support_xyz", NULL};
 const char *const hf_link_word[4] = {"each", "set", "symmetry", NULL};
-const char *const hf_figure_kind_word[12] = {"psi",  "surface",      "facets", "tension", "length", "evenness",
-                                             "pull", "displacement", "mass",   "ratio",   "gain",   NULL};
+const char *const hf_figure_kind_word[12] = {"psi",  "surface",    "facets", "tension", "length", "evenness",
+                                             "pull", "deflection", "mass",   "ratio",   "gain",   NULL};
 const char *const hf_figure_kind_unit[11] = {"m", "m", "m", "N", "m", "", "N", "m", "kg", "", ""};
 const char *const hf_along_word[3] = {"normal", "half_path", NULL};
 const char *const hf_fit_word[3] = {"none", "best", NULL};
-const char *const hf_aim_word[3] = {"theory", "design", NULL};
+const char *const hf_aim_word[3] = {"target_positions", "design", NULL};
 const char *const hf_adjust_figure_word[4] = {"psi", "surface", "facets", NULL};
 const char *const hf_distribution_word[3] = {"normal", "uniform", NULL};
 const char *const hf_sampling_word[3] = {"random", "sobol", NULL};
 #define WORD(name, word, unit, condition, description) word,
 const char *const hf_tolerance_measure_word[] = {HF_TOLERANCE_MEASURES(WORD) NULL};
 #undef WORD
-const char *const hf_over_word[4] = {"design", "states", "samples", NULL};
+const char *const hf_over_word[3] = {"design", "samples", NULL};
 const char *const hf_take_word[3] = {"mean", "worst", NULL};
-const char *const hf_limit_word[4] = {"tension", "ratio", "displacement", NULL};
+const char *const hf_limit_word[4] = {"tension", "ratio", "deflection", NULL};
 const char *const hf_part_word[11] = {"all",   "net",      "truss",    "bud",      "mbug", "abug",
                                       "other", "longeron", "vertical", "diagonal", NULL};
 const char *const hf_nodes_word[5] = {"all", "support", "inner", "edge", NULL};
 const char *const hf_symmetry_word[6] = {"none", "x", "y", "xy", "auto", NULL};
+
+bool hf_objective_takes_load_cases(const hf_objective_settings *s)
+{
+    return !strcmp(s->load_case, "all");
+}
 
 bool hf_optimize_takes_samples(const hf_optimize_settings *s)
 {

@@ -186,8 +186,8 @@ static hf_status refuse(const search *q, int axis, int n_missing, hf_messages *m
         n += hf_text_append(names, sizeof names, ", ", q->s->cable_id[e], "");
     }
     if (n_missing > NAMED_MAX) snprintf(more, sizeof more, " and %d more", n_missing - NAMED_MAX);
-    char where[HF_PLACE_SIZE];
-    hf_messages_place(messages, where, "optimize.symmetry");
+    char where[HF_LOCATION_SIZE];
+    hf_messages_location(messages, where, "optimize.symmetry");
     return hf_error(messages, HF_BAD_CASE,
                     "%s: the net is not symmetric about the plane %c = %.10g m: no mirror image (ends, "
                     "roles, loads, group, law and target) have %d cables: %s%s",

@@ -24,13 +24,13 @@ typedef struct {
     int *cable;            /* [n_cable + 3 n_node], cable of each design variable, as in the model */
     hf_variable *variable; /* [n_cable + 3 n_node], design variables */
     hf_messages *messages;
-    char place[HF_PLACE_SIZE];
+    char place[HF_LOCATION_SIZE];
 } maker;
 
 /* Returns the location of a key of a row. */
 static const char *where_in(maker *q, int row, const char *key)
 {
-    return hf_messages_place(q->messages, q->place, "optimize.variables.%d.%s", row, key);
+    return hf_messages_location(q->messages, q->place, "optimize.variables.%d.%s", row, key);
 }
 
 static bool varies_support(hf_vary vary)

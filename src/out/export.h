@@ -29,7 +29,7 @@ typedef struct {
     const char *argument; /* DIR or FILE, the kind of hf_export_request.output */
     const char *help;
     bool takes_stage; /* true: writes one shape, chosen by --stage; false: writes every shape of the run */
-    bool takes_case;  /* true: --case may also choose a load case of the as-built net */
+    bool takes_case;  /* true: --load-case may also choose a load case of the as-built net */
     /* Writes the export. It checks all names before it writes anything, and keeps existing files unless request->force
      * is set. said [size] receives one line that reports what was written. Returns HF_OK; HF_EXISTS, HF_IO,
      * HF_NO_MEMORY, HF_BAD_CASE or HF_BAD_USAGE with a message. */

@@ -35,7 +35,7 @@ hf_status hf_load_case_stage_take(const hf_problem *p, const hf_workspace *w, hf
     char where[HF_PATH_SIZE + 96];
     hf_arena arena = {0};
     hf_load_case_stage_free(c);
-    hf_config_place(&p->settings, "cases.0.name", where, sizeof where);
+    hf_config_location(&p->settings, "load_cases.0.name", where, sizeof where);
     HF_TRY(hf_built_make(where, &p->scene, &p->model, &p->settings.form, w, &c->built, messages));
     if (HF_ARENA_MAKE(&arena, lay_out(&arena, p, c)) != HF_OK ||
         hf_workspace_create(&c->built.model, &c->workspace) != HF_OK) {

@@ -11,11 +11,11 @@
 
 const char *hf_no_design_cap(const hf_problem *p, double boundary_tension_ratio, char text[HF_NO_DESIGN_HINT_SIZE])
 {
-    char place[HF_PLACE_SIZE];
+    char place[HF_LOCATION_SIZE];
     double cap = p->settings.optimize.boundary_ratio_cap;
     *text = '\0';
     if (!(boundary_tension_ratio > cap)) return text;
-    if (hf_config_place(&p->settings, "optimize.boundary_ratio_cap", place, sizeof place)) return text;
+    if (hf_config_location(&p->settings, "optimize.boundary_ratio_cap", place, sizeof place)) return text;
     snprintf(
         text, HF_NO_DESIGN_HINT_SIZE,
         "; %g is the default of optimize.boundary_ratio_cap: if the net may have a larger ratio, set this key in the "

@@ -53,13 +53,13 @@ const char *hf_problem_slope_name(const hf_problem *p, int i_slope, char text[HF
 hf_status hf_problem_has_slopes(const hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *s = &p->settings.optimize;
-    char place[HF_PLACE_SIZE];
+    char place[HF_LOCATION_SIZE];
     if (hf_refine_applies(&p->evaluator)) return HF_OK;
     for (int k = 0; k < p->objectives.n_objective; k++)
         if (!hf_objectives_is_smooth(&p->objectives.objective[k].settings))
             return hf_error(messages, HF_BAD_CASE, "%s: quantiles have no derivatives; use take: mean or worst",
-                            hf_messages_place(messages, place, "optimize.%s.%d.quantile",
-                                              s->n_front > 0 ? "objectives" : "goals", k));
+                            hf_messages_location(messages, place, "optimize.%s.%d.quantile",
+                                                 s->n_front > 0 ? "front" : "objective", k));
     return hf_error(messages, HF_BAD_CASE, "%s", hf_problem_no_slopes(p));
 }
 

@@ -18,7 +18,7 @@ static bool is_over_load_cases(const hf_objective_settings *g, int n)
 {
     bool is_over = false;
     for (int k = 0; k < n; k++)
-        is_over |= *g[k].load_case || g[k].over == HF_OVER_LOAD_CASES;
+        is_over |= *g[k].load_case != '\0';
     return is_over;
 }
 

@@ -50,7 +50,7 @@ static hf_status check_frequencies(const hf_problem *p, const hf_feed *feed, dou
         double terms = (double)plan.n_point * hf_pattern_angles(&plan);
         least_Hz = fmin(least_Hz, at->value[k]);
         if (terms <= PATTERN_TERMS_MOST) continue;
-        hf_config_place(&p->settings, "surface.frequencies_Hz", place, sizeof place);
+        hf_config_location(&p->settings, "surface.frequencies_Hz", place, sizeof place);
         return hf_error(messages, HF_BAD_CASE,
                         "%s: at %g GHz the far field has %.3g quadrature points times %d angles: %.2g terms, but the "
                         "maximum is %g; lower the frequency, or narrow surface.pattern.theta_deg",
@@ -75,14 +75,14 @@ static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
     hf_surface_measures m;
     const hf_facet_shape theory = {.position_m = p->scene.position_m};
     const double most_Hz = hf_surface_highest_Hz(&p->surface);
-    bool is_given = hf_config_place(&p->settings, "surface.pattern.feed.position_m", place, sizeof place);
-    if (!is_given) hf_config_place(&p->settings, "surface.pattern", place, sizeof place);
+    bool is_given = hf_config_location(&p->settings, "surface.pattern.feed.position_m", place, sizeof place);
+    if (!is_given) hf_config_location(&p->settings, "surface.pattern", place, sizeof place);
     if (p->facets.n_facet == 0)
         return hf_error(messages, HF_BAD_CASE, "%s: this net has no facets, from which the far field would be computed",
                         place);
     int n_dark = hf_feed_make(&p->surface, &p->facets, p->scene.position_m, &feed);
     if (isnan(feed.axis[2])) {
-        hf_config_place(&p->settings, "surface.pattern.feed.aim_m", place, sizeof place);
+        hf_config_location(&p->settings, "surface.pattern.feed.aim_m", place, sizeof place);
         return hf_error(messages, HF_BAD_CASE, "%s: the feed at (%g, %g, %g) m cannot aim at its own position", place,
                         feed.position_m[0], feed.position_m[1], feed.position_m[2]);
     }
@@ -123,13 +123,13 @@ static hf_status find_facets(hf_problem *p, hf_messages *messages)
 
 static void find_key_place(const void *settings, const char *key, char *text, size_t size)
 {
-    hf_config_place(settings, key, text, size);
+    hf_config_location(settings, key, text, size);
 }
 
 void hf_problem_give_places(const hf_problem *p, hf_messages *messages)
 {
-    messages->find_place = p ? find_key_place : NULL;
-    messages->place_context = p ? &p->settings : NULL;
+    messages->find_location = p ? find_key_place : NULL;
+    messages->location_context = p ? &p->settings : NULL;
 }
 
 static hf_status find_objectives(hf_problem *p, hf_messages *messages)
@@ -292,7 +292,7 @@ static hf_status check_variable(const hf_problem *p, int k, hf_messages *message
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     double base = p->initial[k], lower, upper, reach;
-    char name[HF_VARIABLE_NAME_SIZE], where[HF_PLACE_SIZE];
+    char name[HF_VARIABLE_NAME_SIZE], where[HF_LOCATION_SIZE];
     hf_model_variable_name(&p->model, &p->scene, k, name, sizeof name);
     bool is_row = p->model.variable, is_cable = p->model.variable_cable[k] >= 0;
     if (is_cable && !(base > 0))
@@ -302,9 +302,9 @@ static hf_status check_variable(const hf_problem *p, int k, hf_messages *message
                         "that keeps it taut",
                         is_row ? "cable" : "boundary cable", name);
     if (is_row)
-        hf_messages_place(messages, where, "optimize.variables.%d", p->model.variable[k].setting);
+        hf_messages_location(messages, where, "optimize.variables.%d", p->model.variable[k].setting);
     else
-        hf_messages_place(messages, where, "optimize.range_N");
+        hf_messages_location(messages, where, "optimize.range_N");
     if (!is_row && (base + o->range_N < o->min_tension_N || base - o->range_N > o->max_tension_N))
         return hf_error(
             messages, HF_BAD_CASE,

@@ -256,12 +256,12 @@ static hf_status tell_objectives(const reach *q, hf_messages *messages)
 {
     const hf_objectives *objectives = &q->p->objectives;
     bool is_front = q->p->settings.optimize.n_front > 0, is_reached = false, has_fault = false;
-    char place[HF_PLACE_SIZE], name[HF_OBJECTIVE_NAME_SIZE];
+    char place[HF_LOCATION_SIZE], name[HF_OBJECTIVE_NAME_SIZE];
     for (int i = 0; i < objectives->n_objective; i++)
         is_reached |= !q->now.objective[i];
     for (int i = 0; i < objectives->n_objective; i++) {
         if (!q->now.objective[i]) continue;
-        hf_messages_place(messages, place, "optimize.%s.%d", is_front ? "objectives" : "goals", i);
+        hf_messages_location(messages, place, "optimize.%s.%d", is_front ? "front" : "objective", i);
         hf_objectives_name(objectives, i, name);
         const char *why = why_objective(objectives->objective[i].settings.figure);
         has_fault |= is_front || !is_reached;
@@ -278,7 +278,7 @@ static hf_status tell_objectives(const reach *q, hf_messages *messages)
 static hf_status tell(const reach *q, hf_messages *messages)
 {
     const hf_optimize_settings *o = &q->p->settings.optimize;
-    char place[HF_PLACE_SIZE];
+    char place[HF_LOCATION_SIZE];
     for (int i = 0; i < o->n_variable_row; i++)
         if (q->now.variable_row[i])
             hf_warning(
@@ -288,7 +288,7 @@ static hf_status tell(const reach *q, hf_messages *messages)
     for (int i = 0; i < o->n_limit; i++)
         if (q->now.limit[i])
             hf_warning(messages, "%s: no design variable of this case changes the limited figure: %s",
-                       hf_messages_place(messages, place, "optimize.limits.%d", i),
+                       hf_messages_location(messages, place, "optimize.limits.%d", i),
                        o->limit[i].figure == HF_LIMIT_DEFLECTION ? why_objective(HF_FIGURE_DEFLECTION)
                                                                  : why_objective(HF_FIGURE_TENSION));
     if (q->p->objectives.n_objective > 0) return tell_objectives(q, messages);
@@ -331,7 +331,7 @@ static hf_status look(reach *q)
 static void doubt_ranges(const hf_problem *p, hf_messages *messages)
 {
     const hf_model *m = &p->model;
-    char place[HF_PLACE_SIZE];
+    char place[HF_LOCATION_SIZE];
     for (int i = 0; i < p->settings.optimize.n_variable_row; i++) {
         const hf_variable_settings *row = &p->settings.optimize.variable_row[i];
         double most = 0;
@@ -340,8 +340,8 @@ static void doubt_ranges(const hf_problem *p, hf_messages *messages)
         if (!(most > 0) || !isinf(row->upper) || !(row->range > FAR_RANGE * most)) continue;
         hf_warning(messages,
                    "%s: %g is %.2g times the maximum value of this row, %.3g; for a relative range, write %g %%",
-                   hf_messages_place(messages, place, "optimize.variables.%d.range", i), row->range, row->range / most,
-                   most, row->range);
+                   hf_messages_location(messages, place, "optimize.variables.%d.range", i), row->range,
+                   row->range / most, most, row->range);
     }
 }
 

@@ -54,7 +54,7 @@ typedef struct {
     hf_history history;
     hf_store *store;
     hf_optimiser optimiser;
-    hf_front front;         /* front of optimize.objectives */
+    hf_front front;         /* front of optimize.front */
     hf_taken_point taken;   /* point taken instead of a search for a front */
     hf_optimiser_plan plan; /* the stages and algorithms of optimize.method */
     int first_generation;   /* of this session */

@@ -1,4 +1,4 @@
-/* run_front - the stage of a run that finds the front of optimize.objectives by Levenberg-Marquardt. */
+/* run_front - the stage of a run that finds the front of optimize.front by Levenberg-Marquardt. */
 #ifndef HIFDM_RUN_FRONT_H
 #define HIFDM_RUN_FRONT_H
 

@@ -60,7 +60,7 @@ static hf_status read_words(const char *point, hf_front_origin *taken, hf_messag
 /* Returns true if this key of the case has no effect on the points of its front. */
 static bool is_beside(const hf_problem *p, const char *key)
 {
-    static const char *const section[] = {"cases", "tolerance", "adjust", "sweep"};
+    static const char *const section[] = {"load_cases", "tolerance", "adjust", "sweep"};
     for (size_t i = 0; i < sizeof section / sizeof *section && !p->objectives.nets; i++)
         if (!strncmp(key, section[i], strlen(section[i]))) return true;
     return false;

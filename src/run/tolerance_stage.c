@@ -66,7 +66,7 @@ static hf_status check_measures(const hf_problem *p, hf_messages *messages)
             fault = HF_GAIN_TOO_COARSE;
         if (!fault) continue;
         snprintf(key, sizeof key, "tolerance.require.%d.measure", i);
-        hf_config_place(c, key, place, sizeof place);
+        hf_config_location(c, key, place, sizeof place);
         status = hf_error(messages, HF_BAD_CASE, "%s: %s is not measured: %s", place,
                           hf_tolerance_measure_word[measure], fault);
     }
@@ -81,7 +81,7 @@ static hf_status check_expansion(const hf_problem *p, const hf_material *t, hf_m
     for (int e = 0; e < s->n_cable && p->settings.tolerance.sigma_temperature_K > 0; e++)
         if (isnan(t->expansion_per_K[e]) && n++ == 0) first = e;
     if (n == 0) return HF_OK;
-    hf_config_place(&p->settings, "tolerance.sigma_temperature_K", place, sizeof place);
+    hf_config_location(&p->settings, "tolerance.sigma_temperature_K", place, sizeof place);
     return hf_error(messages, HF_BAD_CASE,
                     "%s: %d cables have no expansion_per_K, such as '%s'; add it to a row of `cables`", place, n,
                     s->cable_id[first]);
@@ -96,7 +96,7 @@ static hf_status check_truss_heat(const hf_problem *p, hf_messages *messages)
     for (int i = 0; i < t->n_truss; i++) {
         char key[64], place[HF_PATH_SIZE + 128];
         snprintf(key, sizeof key, "tolerance.truss.%d.part", i);
-        hf_config_place(&p->settings, key, place, sizeof place);
+        hf_config_location(&p->settings, key, place, sizeof place);
         hf_part part = (hf_part)(HF_PART_TRUSS + t->truss[i].part);
         hf_status status = hf_config_demand_expansion(&p->settings, &p->carrier.truss, part, place, "", messages);
         if (status != HF_OK) worst = status;
@@ -121,7 +121,7 @@ static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf
         const char *key = by_cut >= by_ratio && by_cut >= by_heat ? "tolerance.sigma_cut_m"
                           : by_ratio >= by_heat                   ? "tolerance.sigma_cut_ratio"
                                                                   : "tolerance.sigma_temperature_K";
-        hf_config_place(&p->settings, key, place, sizeof place);
+        hf_config_location(&p->settings, key, place, sizeof place);
         return hf_error(
             messages, HF_BAD_CASE,
             "%s: cable '%s' is %.3g m long, and errors of cutting and temperature (%d standard deviations) may "
@@ -138,7 +138,7 @@ static void place_section(const hf_case *c, char *place, size_t size)
                                       "tolerance.sigma_EA_ratio",      "tolerance.sigma_support_m",
                                       "tolerance.sigma_temperature_K", "tolerance.truss.0.part"};
     for (size_t i = 0; i < sizeof key / sizeof *key; i++)
-        if (hf_config_place(c, key[i], place, size)) return;
+        if (hf_config_location(c, key[i], place, size)) return;
 }
 
 static hf_status check_EA(const hf_problem *p, hf_messages *messages)
@@ -414,7 +414,7 @@ static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
     hf_tolerance_summary *to = summary->tolerance = calloc(1, sizeof *to);
     if (!to) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
     hf_status status = hf_statistics_sum_up(&j->montecarlo, &rows, to);
-    if (status == HF_OK && t->yield > 0) {
+    if (status == HF_OK && t->required_yield > 0) {
         to->scale_samples = scale_samples(t);
         j->montecarlo.tell = report_scale;
         j->montecarlo.tell_context = j;
@@ -502,7 +502,7 @@ hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape,
     job j = {.stage = &stage, .begin_s = hf_clock_thread_cpu_s()};
     hf_messages messages = {0};
     *trial = (hf_tolerance_trial){.begin_s = first_order_s(&p->model)};
-    if (p->settings.tolerance.yield > 0) {
+    if (p->settings.tolerance.required_yield > 0) {
         trial->scale_yields = HF_SCALE_YIELDS;
         trial->scale_samples = scale_samples(&p->settings.tolerance);
     }

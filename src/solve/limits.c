@@ -21,7 +21,7 @@
 static hf_status read_row(const hf_scene *scene, const hf_model *m, const hf_limit_settings *s, int row, hf_limit *to,
                           hf_messages *messages)
 {
-    char where[HF_PLACE_SIZE];
+    char where[HF_LOCATION_SIZE];
     to->kind = s->figure;
     to->lower = s->lower;
     to->upper = s->upper;
@@ -29,9 +29,9 @@ static hf_status read_row(const hf_scene *scene, const hf_model *m, const hf_lim
         if (m->n_attachment > 0) return HF_OK;
         return hf_error(messages, HF_BAD_CASE,
                         "%s: deflection needs a truss, because it limits the deflection of attachments",
-                        hf_messages_place(messages, where, "optimize.limits.%d.limit", row));
+                        hf_messages_location(messages, where, "optimize.limits.%d.figure", row));
     }
-    hf_messages_place(messages, where, "optimize.limits.%d.set", row);
+    hf_messages_location(messages, where, "optimize.limits.%d.set", row);
     to->n_cable = hf_cable_pick_some(scene, s->set, where, to->cable, messages);
     return to->n_cable ? HF_OK : HF_BAD_CASE;
 }

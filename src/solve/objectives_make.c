@@ -1,4 +1,4 @@
-/* Creates the objectives of a case from the rows of optimize.goals or optimize.objectives.
+/* Creates the objectives of a case from the rows of optimize.objective or optimize.front.
  *
  *     row of settings
  *         | load case or samples -> nets;  set -> cables;  gain -> beam
@@ -115,17 +115,18 @@ static void number_rows(hf_objectives *objectives, hf_objective *g, long *n_all)
 
 static hf_status refuse_rows(const hf_objectives *objectives, const char *list, long n_all, hf_messages *messages)
 {
-    char where[HF_PLACE_SIZE];
+    char where[HF_LOCATION_SIZE];
     int n_sample = 0;
     for (int k = 0; k < objectives->n_objective; k++)
         if (objectives->objective[k].settings.over == HF_OVER_SAMPLES) n_sample = objectives->objective[k].n_net;
     if (n_sample)
-        hf_messages_place(messages, where, "optimize.samples");
+        hf_messages_location(messages, where, "optimize.samples");
     else
-        hf_messages_place(messages, where, "optimize.%s", list);
-    return hf_error(messages, HF_BAD_CASE,
-                    "%s: the objectives have %ld residuals over all nets, but the maximum is %ld (1 GiB): use fewer %s",
-                    where, n_all, ROWS_MAX, n_sample ? "samples, or fewer objectives over samples" : "objectives");
+        hf_messages_location(messages, where, "optimize.%s", list);
+    return hf_error(
+        messages, HF_BAD_CASE,
+        "%s: the objectives have %ld residuals over all nets, but the maximum is %ld (1 GiB): use fewer %s", where,
+        n_all, ROWS_MAX, n_sample ? "samples, or fewer objectives over samples" : "objectives");
 }
 
 static void lay_out(hf_arena *a, const hf_model *m, hf_objectives *objectives)
@@ -144,7 +145,7 @@ static void choose_nets(const hf_objectives_nets *nets, hf_objective *g)
     const hf_objective_settings *s = &g->settings;
     for (int k = 0; nets && *s->load_case && k < nets->n_load_case; k++)
         if (!strcmp(nets->load_case_name[k], s->load_case)) g->first_net = k, g->n_net = 1;
-    if (nets && s->over == HF_OVER_LOAD_CASES) g->n_net = nets->n_load_case;
+    if (nets && hf_objective_takes_load_cases(s)) g->n_net = nets->n_load_case;
     if (nets && s->over == HF_OVER_SAMPLES) g->first_net = nets->n_load_case, g->n_net = nets->n_sample;
 }
 
@@ -203,16 +204,16 @@ hf_status hf_objectives_create(const hf_scene *scene, const hf_model *m, const h
     objectives->block = arena.block;
     for (int i = 0; i < 4 * objectives->n_facet; i++)
         objectives->corner_row[i] = m->row_of_node[facets->corner[i]];
-    const char *list = is_front ? "objectives" : "goals";
+    const char *list = is_front ? "front" : "objective";
     for (int k = 0; k < objectives->n_objective; k++) {
         hf_objective *g = &objectives->objective[k];
-        char where[HF_PLACE_SIZE];
-        hf_messages_place(messages, where, "optimize.%s.%d.set", list, k);
+        char where[HF_LOCATION_SIZE];
+        hf_messages_location(messages, where, "optimize.%s.%d.set", list, k);
         make_beam(scene, surface, facets, objectives, k);
         if (g->cable) g->n_cable = hf_cable_pick_some(scene, g->settings.set, where, g->cable, messages);
         bool is_known = !g->cable || g->n_cable > 0;
         const char *fault = is_known ? fault_of(objectives, k, surface, facets) : NULL;
-        hf_messages_place(messages, where, "optimize.%s.%d", list, k);
+        hf_messages_location(messages, where, "optimize.%s.%d", list, k);
         if (fault) hf_error(messages, HF_BAD_CASE, "%s: %s: %s", where, hf_figure_kind_word[g->settings.figure], fault);
         if (!fault) warn_of_no_beam(scene, facets, objectives, k, where, messages);
         n_fault += !is_known || fault;
@@ -228,7 +229,9 @@ const char *hf_objectives_name(const hf_objectives *objectives, int i_objective,
     int n = snprintf(text, HF_OBJECTIVE_NAME_SIZE, "objective_%d_%s%s%s", i_objective, hf_figure_kind_word[s->figure],
                      *s->set ? "_" : "", s->set);
     const char *of_many = s->quantile > 0 ? "quantile" : hf_take_word[s->take];
-    if (*s->load_case) /* as much of the name as fits */
+    if (hf_objective_takes_load_cases(s))
+        snprintf(text + n, HF_OBJECTIVE_NAME_SIZE - (size_t)n, "_load_cases_%s", of_many);
+    else if (*s->load_case) /* as much of the name as fits */
         snprintf(text + n, HF_OBJECTIVE_NAME_SIZE - (size_t)n, "_%.24s", s->load_case);
     else if (s->over != HF_OVER_DESIGN)
         snprintf(text + n, HF_OBJECTIVE_NAME_SIZE - (size_t)n, "_%s_%s", hf_over_word[s->over], of_many);

@@ -22,7 +22,7 @@ extern char **environ;
  * generation. */
 #define STORING_GA                                                                                                     \
     "optimize: {population: 20, generations: %d, seed: 7, stagnation_generations: 1000000, "                           \
-    "polish_iterations: 3}\n"
+    "refine_steps: 3}\n"
 
 static inline const char *storing_case(const char *name, int generations)
 {

@@ -3,7 +3,7 @@
 
 #define SECTIONS                                                                                                       \
     "tolerance: {sigma_cut_m: 0.0001}\n"                                                                               \
-    "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 3, sigma_m: 0.0001}\n"
+    "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, max_adjustments: 3, sigma_m: 0.0001}\n"
 
 /* The places of the design, changed: what a measurement of the nominal net would say. `change` may alter a line's
  * numbers; it returns false to leave the node out. */
@@ -152,10 +152,11 @@ START_TEST(no_cable_is_let_out_until_it_is_slack)
     const char *measured = measured_with("m.csv", HEADER, NULL, ""), *moves = temp("moves.csv");
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS);
     HIFDM(0, "adjust", path, "--measured", measured, "-o", moves, "--set", "adjust.range_m=0.05", "--set",
-          "adjust.set=boundary", "--set", "adjust.aim=theory");
+          "adjust.set=boundary", "--set", "adjust.aim=target_positions");
     OUT("the adjustments leave each cable its minimum tension and make no other cable slack");
     SHELL(0, "awk -F, 'NR > 1 && !($6 > 0.01) { bad = 1 } END { exit bad || NR < 2 }' \"$1\"", moves);
-    HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.range_m=100", "--set", "adjust.aim=theory");
+    HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.range_m=100", "--set",
+          "adjust.aim=target_positions");
     OUT("psi after 3 adjustments");
 }
 END_TEST
@@ -170,18 +171,18 @@ START_TEST(least_tensions_are_asked_for)
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS);
 #define LET_OUT                                                                                                        \
     "adjust", path, "--measured", measured, "-o", moves, "--force", "--stage", "form", "--set",                        \
-        "adjust.range_m=0.001", "--set", "adjust.set=boundary", "--set", "adjust.moves=8", "--set",                    \
-        "adjust.aim=theory"
+        "adjust.range_m=0.001", "--set", "adjust.set=boundary", "--set", "adjust.max_adjustments=8", "--set",          \
+        "adjust.aim=target_positions"
     HIFDM(0, LET_OUT);
     SHELL(0, least, moves, "-1", "4");
     HIFDM(0, LET_OUT, "--json"); /* nor is any cable slack on the way */
     ck_assert_int_eq(count_of(said.out, "\"slack\": 0"), 8);
-    HIFDM(0, LET_OUT, "--set", "tolerance.require=[{measure: least_tension_N, at_least: 5}]");
+    HIFDM(0, LET_OUT, "--set", "tolerance.require=[{measure: tension_min_N, at_least: 5}]");
     ck_assert_ptr_null(strstr(said.out, "may not lose tension"));
     SHELL(0, least, moves, "4.5", "1e3");
-    HIFDM(0, LET_OUT, "--set", "tolerance.require=[{measure: least_tension_N, at_least: 5e5}]");
+    HIFDM(0, LET_OUT, "--set", "tolerance.require=[{measure: tension_min_N, at_least: 5e5}]");
     OUT("cables have less than the required 5e+05 N already and may not lose tension");
-    HIFDM(0, LET_OUT, "--set", "optimize.limits=[{limit: tension, set: boundary, bounds: [8, 1e4]}]");
+    HIFDM(0, LET_OUT, "--set", "optimize.limits=[{figure: tension, set: boundary, bounds: [8, 1e4]}]");
     SHELL(0, least, moves, "7.2", "1e3");
 }
 END_TEST
@@ -192,7 +193,7 @@ START_TEST(what_else_could_be_aimed_at_is_told)
 {
     const char *measured = measured_with("m.csv", HEADER, wave, "");
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS "surface: {}\n");
-    static const char *const aim[] = {"adjust.aim=design", "adjust.aim=theory", "adjust.figure=facets"};
+    static const char *const aim[] = {"adjust.aim=design", "adjust.aim=target_positions", "adjust.figure=facets"};
     double after[3];
     for (int k = 0; k < 3; k++) {
         HIFDM(0, "adjust", path, "--measured", measured, "--json", "--set", aim[k]);
@@ -213,7 +214,7 @@ START_TEST(what_else_could_be_aimed_at_is_told)
     OUT(keep(formatted("to %.4f mm by 3 adjustments", after[2] * 1e3)));
     HIFDM(0, "adjust", path, "--measured", measured, "--set", aim[2]);
     OUT("adjust: {figure: psi, aim: design} changes psi from ");
-    OUT("adjust: {figure: psi, aim: theory} changes psi from ");
+    OUT("adjust: {figure: psi, aim: target_positions} changes psi from ");
     ck_assert_ptr_null(strstr(said.out, "{figure: facets}"));
     OUT("facets: RMS along the normal of the target surface (the gain loss follows from the half-path RMS)\n");
     HIFDM(0, "adjust", path, "--measured", measured, "--json", "--set", aim[2]);
@@ -275,10 +276,11 @@ static void demand_finite(void)
  * contradict the estimate both signs are told. What cables only share is told of their spools alone. */
 START_TEST(places_that_do_not_tell_say_nothing)
 {
-    const char *path = file_with("case.yaml", TIED "form: {prestress: exact}\n"
-                                                   "tolerance: {sigma_cut_m: 3e-5, sigma_cut_ratio: 0.0003, batch: 1}\n"
-                                                   "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 1, "
-                                                   "sigma_m: 0.0001}\n");
+    const char *path =
+        file_with("case.yaml", TIED "form: {prestress: exact}\n"
+                                    "tolerance: {sigma_cut_m: 3e-5, sigma_cut_ratio: 0.0003, batch: 1}\n"
+                                    "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, max_adjustments: 1, "
+                                    "sigma_m: 0.0001}\n");
     const char *result = temp("exact.h5");
     HIFDM(0, "run", path, "-o", result, "--quiet");
     const char *measured = measured_of(result, "m.csv", HEADER, few_off, "");
@@ -338,8 +340,8 @@ START_TEST(the_design_is_that_of_a_result)
     const char *measured = temp("m.csv");
     HIFDM(2, "adjust", path, "--measured", measured);
     ERR("has a section optimize: use --result FILE with the result by which the net was cut");
-    HIFDM(2, "adjust", path, "--measured", measured, "--stage", "polish");
-    ERR("--stage polish needs --result FILE");
+    HIFDM(2, "adjust", path, "--measured", measured, "--stage", "refine");
+    ERR("--stage needs --result FILE, a result of this case, unless it is form");
     HIFDM(0, "adjust", path, "--measured", measured, "--stage", "form");
     ERR("or it is another design");
     const char *page = temp("moves.html");
@@ -357,7 +359,7 @@ START_TEST(the_design_is_that_of_a_result)
     ERR("-o and --report both name a: use different names");
     HIFDM(2, "adjust", path, "--measured", measured, "--stage", "form", "--report", page, "--force");
     ERR("needs --result FILE, the result of this case");
-    HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--stage", "optimize");
+    HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--stage", "search");
     ERR("this run has no search shape");
     HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--set", "scene.EA_inner_N=46000");
     ERR("is the result of another net than");
@@ -442,9 +444,9 @@ START_TEST(a_warm_truss_is_not_estimated)
     const char *measured = measured_of(result, "m.csv", HEADER, wave, "");
     HIFDM(0, "adjust", path, "--measured", measured);
     ck_assert_ptr_null(strstr(said.err, "is not estimated"));
-    path = file_with("case.yaml",
-                     ON_TRUSS "tolerance: {sigma_cut_m: 0.0001, truss: [{part: truss, sigma_temperature_K: 5}]}\n"
-                              "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 3, sigma_m: 0.0001}\n");
+    path = file_with("case.yaml", ON_TRUSS
+                     "tolerance: {sigma_cut_m: 0.0001, truss: [{part: truss, sigma_temperature_K: 5}]}\n"
+                     "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, max_adjustments: 3, sigma_m: 0.0001}\n");
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "truss.expansion_per_K=1e-6");
     ERR("tolerance.truss is not estimated: adjust assumes that the truss is as it was made");
 }
@@ -455,15 +457,16 @@ END_TEST
 START_TEST(what_is_not_sure_is_told)
 {
     const char *result = temp("d.h5"),
-               *path = file_with("case.yaml", "scene:\n"
-                                              "  paraboloid: {aperture_m: 4, focal_length_m: 2.4, rings: 3, "
-                                              "rear_distance_m: 1.2}\n"
-                                              "  EA_inner_N: 5e4\n"
-                                              "  EA_boundary_N: 5e4\n"
-                                              "form: {pretension_N: 5, prestress: exact}\n"
-                                              "tolerance: {sigma_cut_m: 0.0003, samples: 10}\n"
-                                              "adjust: {set: all, range_m: 0.002, step_m: 0.00001, moves: 30, sigma_m: "
-                                              "0.0001}\n");
+               *path = file_with("case.yaml",
+                                 "scene:\n"
+                                 "  paraboloid: {aperture_m: 4, focal_length_m: 2.4, rings: 3, "
+                                 "rear_distance_m: 1.2}\n"
+                                 "  EA_inner_N: 5e4\n"
+                                 "  EA_boundary_N: 5e4\n"
+                                 "form: {pretension_N: 5, prestress: exact}\n"
+                                 "tolerance: {sigma_cut_m: 0.0003, samples: 10}\n"
+                                 "adjust: {set: all, range_m: 0.002, step_m: 0.00001, max_adjustments: 30, sigma_m: "
+                                 "0.0001}\n");
     HIFDM(0, "run", path, "-o", result, "--quiet");
     const char *measured = measured_of(result, "m.csv", HEADER, wave, "");
     HIFDM(0, "adjust", path, "--measured", measured);
@@ -472,9 +475,10 @@ START_TEST(what_is_not_sure_is_told)
           "scene.EA_boundary_N=500");
     ck_assert_ptr_null(strstr(said.out, "may be slack"));
     measured = measured_with("m.csv", HEADER, wave, "");
-    path = file_with("case.yaml", EA_SCENE "tolerance: {sigma_cut_m: 0.0003}\n"
-                                           "adjust: {set: inner, range_m: 0.003, step_m: 0.0001, moves: 12, sigma_m: "
-                                           "0.0001}\n");
+    path = file_with("case.yaml",
+                     EA_SCENE "tolerance: {sigma_cut_m: 0.0003}\n"
+                              "adjust: {set: inner, range_m: 0.003, step_m: 0.0001, max_adjustments: 12, sigma_m: "
+                              "0.0001}\n");
     HIFDM(0, "adjust", path, "--measured", measured);
     OUT("  gains ");
     OUT("\nthe measurement cannot resolve the gain of 1 of these adjustments at its position in the order (hifdm "

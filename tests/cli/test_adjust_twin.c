@@ -80,9 +80,10 @@ static double sigmas_missed(const char *scene, const char *set, const char *cut_
     const char *seed = keep(formatted("%d", net)), *design = temp("d"), *cut = temp("cut.csv"),
                *measured = temp("m.csv");
     const char *path = file_with(
-        "case.yaml", formatted("%stolerance: {sigma_cut_m: %s}\nadjust: {set: %s, range_m: 5e-3, step_m: 1e-5, moves: "
-                               "6, sigma_m: %s}\n",
-                               scene, cut_m, set, measured_m));
+        "case.yaml",
+        formatted("%stolerance: {sigma_cut_m: %s}\nadjust: {set: %s, range_m: 5e-3, step_m: 1e-5, max_adjustments: "
+                  "6, sigma_m: %s}\n",
+                  scene, cut_m, set, measured_m));
     HIFDM(0, "run", file_with("design.yaml", scene), "-o", temp("d.h5"), "--quiet");
     HIFDM(0, "export", temp("d.h5"), "--csv", design, "--cutlist", cut);
     TWIN("built", cut, design, temp("true.csv"), temp("nodes.csv"), cut_m, seed);

@@ -88,15 +88,15 @@ START_TEST(faults_of_rows_are_told)
                                                        "  variables:\n"
                                                        "    - {set: boundary, vary: tensions, range: 30 %}\n"
                                                        "    - {set: edge, vary: length, range_N: 1}\n"
-                                                       "  goals:\n"
+                                                       "  objective:\n"
                                                        "    - {weight: 0}\n");
     HIFDM(2, "run", path, "-o", temp("c.h5"));
     ERRS("error: %s:5:29: optimize.variables.0.vary: must be one of tension force_density length unstressed_length "
          "support_z support_normal support_xyz, not tensions; did you mean 'tension'?\n",
          path);
     ERRS("error: %s:6:33: range_N: unknown key; did you mean 'range'?\n", path);
-    ERRS("error: %s:8:16: optimize.goals.0.weight: must be above 0, not 0\n", path);
-    ERRS("error: %s:8:7: optimize.goals.0.goal: is missing and has no default\n", path);
+    ERRS("error: %s:8:16: optimize.objective.0.weight: must be above 0, not 0\n", path);
+    ERRS("error: %s:8:7: optimize.objective.0.figure: is missing and has no default\n", path);
     ck_assert_int_eq(count_of(said.err, "\n"), 4);
     ck_assert(!is_there(temp("c.h5")));
     path = file_with("c.yaml", SMALL_SCENE "optimize: {variables: [{set: edge, vary: length, range: 1}]}\n");
@@ -111,36 +111,38 @@ END_TEST
 /* What the net of the case does not have is told like what its reader finds, of all rows at once. */
 START_TEST(rows_that_the_net_cannot_serve_have_their_places)
 {
-    const char *path = file_with("c.yaml", SMALL_SCENE "optimize:\n"
-                                                       "  symmetry: x\n"
-                                                       "  variables:\n"
-                                                       "    - {set: egde, vary: length, range: 1 %}\n"
-                                                       "    - {set: edge, vary: force_density, range: 1 %}\n"
-                                                       "    - set: boundary\n"
-                                                       "      vary: tension\n"
-                                                       "      range: 1\n"
-                                                       "    - {set: inner, vary: unstressed_length, range: 1 %}\n"
-                                                       "  limits:\n"
-                                                       "    - {limit: displacement, bounds: [0, 1]}\n"
-                                                       "    - {limit: ratio, set: diagonal, bounds: [1, 2]}\n"
-                                                       "  goals: [{goal: psi},\n"
-                                                       "    {goal: tension, set: tie, target: 1}, {goal: facets}]\n");
+    const char *path =
+        file_with("c.yaml", SMALL_SCENE "optimize:\n"
+                                        "  symmetry: x\n"
+                                        "  variables:\n"
+                                        "    - {set: egde, vary: length, range: 1 %}\n"
+                                        "    - {set: edge, vary: force_density, range: 1 %}\n"
+                                        "    - set: boundary\n"
+                                        "      vary: tension\n"
+                                        "      range: 1\n"
+                                        "    - {set: inner, vary: unstressed_length, range: 1 %}\n"
+                                        "  limits:\n"
+                                        "    - {figure: deflection, bounds: [0, 1]}\n"
+                                        "    - {figure: ratio, set: diagonal, bounds: [1, 2]}\n"
+                                        "  objective: [{figure: psi},\n"
+                                        "    {figure: tension, set: tie, target: 1}, {figure: facets}]\n");
     HIFDM(2, "run", path, "-o", temp("c.h5"));
     ERRS("error: %s:6:13: optimize.variables.0.set: there is no set of cables 'egde'; did you mean 'edge'?\n", path);
     ERRS("error: %s:8:12: optimize.variables.2.set: cable 'n0_0-n1_0' is varied by row 1 already\n", path);
     ERRS("error: %s:11:26: optimize.variables.3.vary: cable 'n1_0-n1_1' of set inner has law tension: only cables of "
          "law elastic have an unstressed length\n",
          path);
-    ERRS("error: %s:13:15: optimize.limits.0.limit: displacement needs a truss, whose attachments it limits\n", path);
-    ERRS("error: %s:14:27: optimize.limits.1.set: there is no set of cables 'diagonal'; this net has all, ", path);
-    ERRS("error: %s:16:26: optimize.goals.1.set: there is no set of cables 'tie'; this net has all, inner, boundary",
-         path);
-    ERRS("error: %s:16:43: optimize.goals.2: facets: needs the wanted surface: add a section surface", path);
+    ERRS("error: %s:13:16: optimize.limits.0.figure: deflection needs a truss, whose attachments it limits\n", path);
+    ERRS("error: %s:14:28: optimize.limits.1.set: there is no set of cables 'diagonal'; this net has all, ", path);
+    ERRS(
+        "error: %s:16:28: optimize.objective.1.set: there is no set of cables 'tie'; this net has all, inner, boundary",
+        path);
+    ERRS("error: %s:16:45: optimize.objective.2: facets: needs the wanted surface: add a section surface", path);
     ck_assert_int_eq(count_of(said.err, "\n"), 7);
     ck_assert(!is_there(temp("c.h5")));
-    HIFDM(2, "check", path, "--set", "optimize.goals=[{goal: evenness, set: tie}]", "--set",
+    HIFDM(2, "check", path, "--set", "optimize.objective=[{figure: evenness, set: tie}]", "--set",
           "optimize.variables.0.set=edgy");
-    ERR("error: --set optimize.goals.0.set: there is no set of cables 'tie'");
+    ERR("error: --set optimize.objective.0.set: there is no set of cables 'tie'");
     ERR("error: --set optimize.variables.0.set: there is no set of cables 'edgy'; did you mean 'edge'?\n");
     path = file_with("c.yaml", SMALL_SCENE "optimize:\n"
                                            "  variables: [{set: edge, vary: length, range: 1 %, bounds: [9, 10]}]\n");
@@ -229,7 +231,7 @@ static const char read_it[] =
     "$f\" "
     ">f.yaml\n"
     "printf 'base: %s\\nsweep: {form.pretension_N: [1, 2]}\\n' \"$f\" >b.yaml\n"
-    "(cat full.yaml; printf 'cases:\\n  - {name: a, nodes: %s}\\n' \"$f\") >s.yaml\n"
+    "(cat full.yaml; printf 'load_cases:\\n  - {name: a, nodes: %s}\\n' \"$f\") >s.yaml\n"
     "(cat full.yaml; printf 'truss: {import: {nodes: %s, members: %s}}\\n' \"$f\" \"$f\") >t.yaml\n"
     "while read -r line; do\n"
     "    \"$0\" $line >out.txt 2>err.txt </dev/null\n"
@@ -301,10 +303,10 @@ START_TEST(settings_that_contradict_each_other_are_told)
     ck_assert_int_eq(count_of(said.err, "\n"), 4);
     path = file_with("d.yaml", SMALL_SCENE "optimize:\n"
                                            "  rule: seeded\n"
-                                           "  compare_lm: true\n");
+                                           "  refine: true\n");
     HIFDM(2, "check", path);
-    ERRS("error: %s:5:15: optimize.compare_lm: cannot be true with optimize.rule seeded", path);
-    HIFDM(0, "check", path, "--set", "optimize.compare_lm=auto");
+    ERRS("error: %s:5:11: optimize.refine: cannot be true with optimize.rule seeded", path);
+    HIFDM(0, "check", path, "--set", "optimize.refine=auto");
 }
 END_TEST
 

@@ -64,11 +64,12 @@ START_TEST(a_objective_that_costs_the_best_fit_is_told)
     HIFDM(0, "new", temp("dish"));
     HIFDM(0, "run", path, "-o", out);
     ck_assert_int_eq(count_of(said.out, better), 1);
-    EXPECT(file_with("said.txt", said.out), out, "--",
-           "(lambda rms: rms['form'] < rms['polish'] and ('better, good to %.3g GHz; for that want {goal: facets, fit: "
-           "best}' % (np.sqrt(np.log(10) / 10) * 299792458 / (4e9 * np.pi * rms['form']))).encode() in a)"
-           "({n: b['surface/' + n].attrs['facet_fit_half_path_rms_m'] for n in ('form', 'polish')})");
-    HIFDM(0, "run", path, "-o", out, "--force", "--set", "optimize.goals=[{goal: facets, fit: best}]");
+    EXPECT(
+        file_with("said.txt", said.out), out, "--",
+        "(lambda rms: rms['form'] < rms['polish'] and ('better, good to %.3g GHz; for that want {figure: facets, fit: "
+        "best}' % (np.sqrt(np.log(10) / 10) * 299792458 / (4e9 * np.pi * rms['form']))).encode() in a)"
+        "({n: b['surface/' + n].attrs['facet_fit_half_path_rms_m'] for n in ('form', 'polish')})");
+    HIFDM(0, "run", path, "-o", out, "--force", "--set", "optimize.objective=[{figure: facets, fit: best}]");
     ck_assert_int_eq(count_of(said.out, better), 0);
     /* what the goal wants stands first, by Ruze's formula, and so in the file */
     HIFDM(0, "show", out);
@@ -78,7 +79,7 @@ START_TEST(a_objective_that_costs_the_best_fit_is_told)
         "10) / 10) * 299792458 / (4e9 * np.pi * b['surface/polish'].attrs[n + 'half_path_rms_m']) for n in "
         "('facet_fit_', 'facet_'))).encode() in a.splitlines()[0]");
     HIFDM(0, "run", path, "-o", out, "--force", "--set",
-          "optimize.goals=[{goal: facets, fit: best}, {goal: psi, weight: 0.1}]");
+          "optimize.objective=[{figure: facets, fit: best}, {figure: psi, weight: 0.1}]");
     ck_assert_str_eq(said.err, ""); /* as its comment has them: nothing moves far */
     ck_assert_int_eq(count_of(said.out, better), 0);
 }
@@ -184,19 +185,21 @@ START_TEST(every_word_is_explained)
                *states = temp("states.h5");
     const char *json[5];
     HIFDM(0, "run", keep(source_path("configs/chen2022-truss.yaml")), "-o", chen, "--json", "--set",
-          "optimize.generations=3", "--set", "optimize.goals=[{goal: psi}, {goal: tension, set: edge, target: 30}]",
-          "--set", "optimize.limits=[{limit: tension, set: boundary, bounds: [8, 200]}]", "--set", "surface={}");
+          "optimize.generations=3", "--set",
+          "optimize.objective=[{figure: psi}, {figure: tension, set: edge, target: 30}]", "--set",
+          "optimize.limits=[{figure: tension, set: boundary, bounds: [8, 200]}]", "--set", "surface={}");
     json[0] = out_as("chen.json");
     HIFDM(0, "run", keep(source_path("configs/chen2022.yaml")), "-o", front, "--json", "--set", "optimize.method=lm",
-          "--set", "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}]", "--set",
+          "--set", "optimize.front=[{figure: psi}, {figure: ratio, set: boundary}]", "--set",
           "optimize.front_points=5");
     json[1] = out_as("front.json");
     HIFDM(0, "run",
-          file_with("built.yaml", SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\ntolerance: {sigma_cut_m: 1e-4, "
-                                              "samples: 50, yield: 0.9, require: [{measure: psi_m, at_most: 1}]}\n"),
+          file_with("built.yaml",
+                    SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\ntolerance: {sigma_cut_m: 1e-4, "
+                                "samples: 50, required_yield: 0.9, require: [{measure: psi_m, at_most: 1}]}\n"),
           "-o", built, "--json");
     json[2] = out_as("built.json");
-    HIFDM(0, "run", keep(source_path("configs/paraboloid-cases.yaml")), "-o", states, "--json");
+    HIFDM(0, "run", keep(source_path("configs/paraboloid-load-cases.yaml")), "-o", states, "--json");
     json[3] = out_as("states.json");
     const char *measured = temp("m.csv");
     HIFDM(0, "export", built, "--csv", temp("shape"));

@@ -23,7 +23,7 @@ static const bits_row rows[] = {
     {"chen2022-search-truss", "1", {NULL, NULL}},
     {"cylinder-tied-8m", NULL, {NULL, NULL}},
     {"paraboloid-6m", NULL, {NULL, NULL}},
-    {"paraboloid-cases", NULL, {NULL, NULL}},
+    {"paraboloid-load-cases", NULL, {NULL, NULL}},
     {"paraboloid-even", NULL, {NULL, NULL}},
     {"paraboloid-offset-12m", NULL, {NULL, NULL}},
     {"pretension-night", "36", {"s/samples: .2000./samples: [200]/", NULL}},
@@ -31,8 +31,8 @@ static const bits_row rows[] = {
     {"pretension-sweep", "16", {NULL, NULL}},
     {"pretension-truss", "4", {NULL, NULL}},
     {"reflector", NULL, {"optimize.generations=10", "optimize.method=ga+lm"}},
-    {"straight-edges", NULL, {"optimize.generations=20", "optimize.compare_lm=true"}},
-    {"straight-edges-truss", NULL, {"optimize.generations=10", "optimize.compare_lm=true"}},
+    {"straight-edges", NULL, {"optimize.generations=20", "optimize.refine=true"}},
+    {"straight-edges-truss", NULL, {"optimize.generations=10", "optimize.refine=true"}},
     {"survive", NULL, {"optimize.samples=16", "tolerance.samples=200"}},
     {"triangles_a", NULL, {"optimize.generations=20", "optimize.method=ga+lm"}}, /* no file: triangles() makes it */
 };

@@ -53,9 +53,10 @@ static const char *prepare(void)
     const char *library = temp("maps.so"), *folder = temp(".");
     SHELL(0, "cc -shared -fPIC -O1 -w \"$1\" -o \"$2\" -ldl", keep(source_path("tests/cli/maps.c")), library);
     file_with("dish.yaml", SMALL_SCENE SMALL_GA);
-    file_with("cut.yaml", ON_TRUSS "tolerance: {sigma_cut_m: 0.0001, samples: 20}\n"
-                                   "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 3, sigma_m: 0.0001}\n"
-                                   "surface: {frequencies_Hz: [2e9]}\n");
+    file_with("cut.yaml",
+              ON_TRUSS "tolerance: {sigma_cut_m: 0.0001, samples: 20}\n"
+                       "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, max_adjustments: 3, sigma_m: 0.0001}\n"
+                       "surface: {frequencies_Hz: [2e9]}\n");
     file_with("study.yaml", "base: dish.yaml\nsweep:\n  form.pretension_N: [8, 12]\n");
     SHELL(
         0,

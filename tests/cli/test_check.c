@@ -13,7 +13,7 @@ START_TEST(check_tells_what_will_run)
     OUT("will run      form-finding: hifdm, solved by fixed point (asked for), stop: rms_change, at most 100000 "
         "iterations\n");
     OUT("optimisation: rule force_density, 120 genes, 50 individuals, at most 400 generations, seed 2022\n");
-    OUT("skipped       cases (none given); truss (no truss section); loads (none given); general band matrix (no "
+    OUT("skipped       load_cases (none given); truss (no truss section); loads (none given); general band matrix (no "
         "struts)\n");
     OUT("  memory        workspaces (2 threads)   ");
     OUT("                matrix shared by all threads           ");
@@ -22,7 +22,8 @@ START_TEST(check_tells_what_will_run)
     OUT("optimisation: ");
     OUT(" for a design of the first generation by chord; at most about ");
     SHELL(0, "cd \"$1\" && \"$0\" check \"$2\" && ls -A", temp("."), REFLECTOR);
-    OUT("skipped       optimisation (no optimize section); cases (none given); truss (no truss section); loads (none "
+    OUT("skipped       optimisation (no optimize section); load_cases (none given); truss (no truss section); loads "
+        "(none "
         "given); general band "
         "matrix (no struts)\n");
     OUT("population                             none\n");
@@ -53,12 +54,12 @@ START_TEST(check_tells_how_long_yields_take)
 {
     const char *text = "scene:\n  paraboloid: {aperture_m: 4, focal_length_m: 2.4, rings: 3, rear_distance_m: 1.2}\n"
                        "  EA_inner_N: 5000\n  EA_boundary_N: 5000\nform: {prestress: exact}\nsurface: {}\n"
-                       "tolerance: {sigma_cut_m: 1e-5, yield: 0.9, require: [{measure: %s, at_most: 1e-3}]}\n";
+                       "tolerance: {sigma_cut_m: 1e-5, required_yield: 0.9, require: [{measure: %s, at_most: 1e-3}]}\n";
     const char *words = "of 1000 nets more, most of them ended early: some ";
     HIFDM(0, "check", file_with("case.yaml", formatted(text, "half_path_rms_m")));
     double surface_s = told_s(words);
     HIFDM(0, "check", file_with("case.yaml", formatted(text, "psi_m")));
-    OUT("tolerance.yield: up to 18 yields of 1000 nets more, most of them ended early: some ");
+    OUT("tolerance.required_yield: up to 18 yields of 1000 nets more, most of them ended early: some ");
     double psi_s = told_s(words);
     ck_assert_double_lt(psi_s, surface_s / 2);
     HIFDM(0, "check", temp("case.yaml"), "--set", "tolerance.require.0.at_most=1e-2"); /* nets far from their design */
@@ -78,7 +79,7 @@ START_TEST(check_tells_how_long_samples_take)
     OUT(" for 5000 nets on ");
     HIFDM(0, "check", file_with("case.yaml", formatted(text, 3, "")));
     OUT(" tried); with first order about ");
-    ck_assert_ptr_null(strstr(said.out, "tolerance.yield"));
+    ck_assert_ptr_null(strstr(said.out, "tolerance.required_yield"));
     HIFDM(0, "check", file_with("case.yaml", formatted(text, 24, "")));
     OUT("as built: first order some ");
     OUT(" of processor time, counted; samples not tried\n");
@@ -138,7 +139,7 @@ START_TEST(schema_is_yaml_with_every_key)
     EXPECT(
         schema, "--",
         "list(a) == ['title', 'scene', 'surface', 'form', 'optimize', 'tolerance', 'truss', 'coupling', "
-        "'adjust', 'sweep', 'cables', 'nodes', 'cases']",
+        "'adjust', 'sweep', 'cables', 'nodes', 'load_cases']",
         "set(a['scene']) == {'parabolic_cylinder', 'paraboloid', 'import'}",
         "set(a['scene']['parabolic_cylinder']) == {'aperture_m', 'length_m', 'focal_length_m', 'modules', "
         "'cells_per_module', 'pitches_x_m', 'pitches_y_m', 'pattern', 'spacing', 'boundary', 'scallop', 'supports', "
@@ -153,15 +154,15 @@ START_TEST(schema_is_yaml_with_every_key)
         "'polarisation': 'x'}}",
         "set(a['form']) == {'method', 'pretension_N', 'prestress', 'stop', 'residual_tolerance', 'length_tolerance', "
         "'rms_tolerance_m', 'max_iterations', 'collapse_ratio', 'factor'}",
-        "set(a['optimize']) == {'method', 'symmetry', 'solver', 'polish_iterations', 'compare_lm', 'rule', "
+        "set(a['optimize']) == {'method', 'symmetry', 'solver', 'refine_steps', 'refine', 'rule', "
         "'population', "
         "'generations', 'range_N', 'min_tension_N', 'max_tension_N', "
         "'boundary_ratio_cap', 'seed', 'crossover_high', 'crossover_low', 'mutation_high', 'mutation_low', "
         "'variation', 'elites', 'store', 'store_every', "
-        "'stagnation_tolerance_m', 'stagnation_generations', 'variables', 'goals', 'limits', "
-        "'objectives', 'front_points', 'samples'}",
-        "a['optimize']['variables'] == a['optimize']['goals'] == a['optimize']['limits'] == "
-        "a['optimize']['objectives'] == []",
+        "'stagnation_tolerance_m', 'stagnation_generations', 'variables', 'objective', 'limits', "
+        "'front', 'front_points', 'samples'}",
+        "a['optimize']['variables'] == a['optimize']['objective'] == a['optimize']['limits'] == "
+        "a['optimize']['front'] == []",
         "set(a['truss']) == {'depth_m', 'main_every', 'E_Pa', 'G_Pa', 'density_kg_per_m3', 'expansion_per_K', "
         "'hinge_mass_kg', 'theory', 'joints', 'supports', 'support_dofs', 'match_tolerance_m', 'bud', 'mbug', 'abug', "
         "'ring', 'import'}",

@@ -111,7 +111,7 @@ START_TEST(data_sets_do_not_depend_on_the_number_of_threads)
     for (int k = 0; k < 3; k++) {
         file[k] = temp(formatted("%s.h5", threads[k]));
         HIFDM(0, "run", TRUSS, "-o", file[k], "--threads", threads[k], "--quiet", "--set", "truss.E_Pa=1e10", "--set",
-              "optimize.generations=15", "--set", "optimize.polish_iterations=3");
+              "optimize.generations=15", "--set", "optimize.refine_steps=3");
     }
     EXPECT(file[0], file[1], file[2], "--", "differing(a, b) == []", "differing(a, c) == []",
            "a['search'].attrs['solver'] == 1", /* chord */

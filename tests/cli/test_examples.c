@@ -6,8 +6,7 @@
 static const char *chen_result(void)
 {
     const char *out = temp("chen2022.h5");
-    HIFDM(0, "run", CHEN, "-o", out, "--quiet", "--set", "optimize.generations=2", "--set",
-          "optimize.polish_iterations=2");
+    HIFDM(0, "run", CHEN, "-o", out, "--quiet", "--set", "optimize.generations=2", "--set", "optimize.refine_steps=2");
     return out;
 }
 

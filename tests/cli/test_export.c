@@ -45,7 +45,7 @@ START_TEST(csv_holds_the_stored_numbers)
     HIFDM(0, "export", out, "--csv", temp("form"), "--stage", "form");
     OUT("form-finding shape");
     demand_values_of(out, temp("form"), file_with("stage", "form"));
-    HIFDM(0, "export", out, "--csv", temp("opt"), "--stage", "optimize");
+    HIFDM(0, "export", out, "--csv", temp("opt"), "--stage", "search");
     SHELL(0, "diff -r \"$1\" \"$2\"", temp("best"), temp("opt"));
     SHELL(1, "cmp -s \"$1\"/nodes.csv \"$2\"/nodes.csv", temp("best"), temp("form"));
     SHELL(0, "ls -A \"$1\" | tr '\\n' ' '", temp("best"));
@@ -142,19 +142,19 @@ START_TEST(what_cannot_be_exported_is_told)
 {
     const char *form_only = temp("f.h5"), *csv = temp("csv");
     HIFDM(0, "run", file_with("f.yaml", SMALL_SCENE), "-o", form_only, "--quiet");
-    HIFDM(2, "export", form_only, "--csv", csv, "--stage", "optimize");
+    HIFDM(2, "export", form_only, "--csv", csv, "--stage", "search");
     ERR("this run has no search shape; use --stage form");
     HIFDM(2, "export", form_only, "--vtk", temp("no_vtk"), "--cutlist", temp("no.csv"));
     ERR("error: "); /* refused as a whole: no folder is left for what was not written */
     ck_assert(!is_there(temp("no_vtk")) && !is_there(temp("no.csv")));
     const char *lm = temp("lm.h5");
     HIFDM(0, "run", file_with("lm.yaml", SMALL_SCENE "optimize: {method: lm}\n"), "-o", lm, "--quiet");
-    HIFDM(2, "export", lm, "--csv", csv, "--stage", "optimize");
+    HIFDM(2, "export", lm, "--csv", csv, "--stage", "search");
     ERR("this run has no search shape; use --stage polish");
     HIFDM(2, "export", form_only);
     ERR("error: 'hifdm export' needs --csv DIR, --vtk DIR, --cutlist FILE, --front FILE, --pattern FILE or --rf DIR\n");
     HIFDM(2, "export", form_only, "--csv", csv, "--stage", "best");
-    ERR("error: --stage must be form, optimize or polish, not 'best'\n");
+    ERR("error: --stage must be form, search or refine, not 'best'\n");
     HIFDM(5, "export", temp("missing.h5"), "--csv", csv);
     ERR("missing.h5: cannot open: No such file or directory");
     HIFDM(5, "export", REFLECTOR, "--csv", csv);

@@ -1,9 +1,9 @@
-/* Fronts of optimize.objectives on the surface of the program: summary, JSON, file, table, and what is refused. */
+/* Fronts of optimize.front on the surface of the program: summary, JSON, file, table, and what is refused. */
 #include "cli.h"
 
 #define FRONT                                                                                                          \
     keep(source_path("configs/chen2022.yaml")), "--set", "optimize.method=lm", "--set",                                \
-        "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}]", "--set", "optimize.front_points=7"
+        "optimize.front=[{figure: psi}, {figure: ratio, set: boundary}]", "--set", "optimize.front_points=7"
 
 START_TEST(a_front_is_printed_stored_and_told)
 {
@@ -66,7 +66,7 @@ END_TEST
 /* Where the second objective is the least one the slope is its change, by the first. */
 START_TEST(a_slope_says_of_what_it_is)
 {
-    HIFDM(0, "run", FRONT, "--set", "optimize.objectives=[{goal: ratio, set: boundary}, {goal: psi}]", "-o",
+    HIFDM(0, "run", FRONT, "--set", "optimize.front=[{figure: ratio, set: boundary}, {figure: psi}]", "-o",
           temp("f.h5"));
     OUT("; slope: change of objective_1_psi in mm per unit of objective_0_ratio_boundary\n");
 }
@@ -81,9 +81,10 @@ START_TEST(the_least_beside_an_objective_that_is_met)
     "  variables: [{set: all, vary: force_density, range: 50 %}]\n"
     const char *front = temp("f.h5"), *both = temp("b.h5");
     HIFDM(0, "run",
-          file_with("f.yaml", MET "  objectives: [{goal: psi}, {goal: evenness, set: all}]\n  front_points: 5\n"), "-o",
+          file_with("f.yaml", MET "  front: [{figure: psi}, {figure: evenness, set: all}]\n  front_points: 5\n"), "-o",
           front, "--quiet");
-    HIFDM(0, "run", file_with("b.yaml", MET "  goals: [{goal: psi}, {goal: evenness, set: all, weight: 1e-4}]\n"), "-o",
+    HIFDM(0, "run",
+          file_with("b.yaml", MET "  objective: [{figure: psi}, {figure: evenness, set: all, weight: 1e-4}]\n"), "-o",
           both, "--quiet");
     EXPECT(front, both, "--", "a['front/objective'][0, 0] < 2e-6 * a['front/objective'][-1, 0]",
            "near(a['front/objective'][0, 1], b['objective/refine'][1], 1e-3)",
@@ -98,9 +99,9 @@ START_TEST(objectives_that_do_not_conflict_are_told)
 {
 #define TWO MET "surface: {focal_length_m: 3}\n"
     static const char *const objectives[] = {
-        "optimize.objectives=[{goal: psi}, {goal: surface}]",
-        "optimize.objectives=[{goal: psi}, {goal: length, set: tie}]",
-        "optimize.objectives=[{goal: psi}, {goal: length, set: tie}, {goal: evenness, set: front}]"};
+        "optimize.front=[{figure: psi}, {figure: surface}]",
+        "optimize.front=[{figure: psi}, {figure: length, set: tie}]",
+        "optimize.front=[{figure: psi}, {figure: length, set: tie}, {figure: evenness, set: front}]"};
     const char *c = file_with("c.yaml", TWO), *front = temp("f.h5"), *page = temp("f.html");
     for (int i = 0; i < 3; i++) {
         HIFDM(0, "run", c, "--set", objectives[i], "-o", front, "--restart");
@@ -113,7 +114,7 @@ START_TEST(objectives_that_do_not_conflict_are_told)
                "np.isnan(a['front/multiplier'][:]).all() and a['front'].attrs['knee'] == -1");
     }
     HIFDM(0, "report", front, "-o", page);
-    HIFDM(0, "run", c, "--set", "optimize.objectives=[{goal: psi}, {goal: evenness, set: all}]", "--set",
+    HIFDM(0, "run", c, "--set", "optimize.front=[{figure: psi}, {figure: evenness, set: all}]", "--set",
           "optimize.front_points=3", "-o", front, "--restart");
     ck_assert(!strstr(said.out, "conflict"));
     OUT(" end, point 3    ");
@@ -125,14 +126,14 @@ START_TEST(the_least_beside_a_third_objective_that_is_met)
 {
     const char *front = temp("f.h5"), *both = temp("b.h5");
     HIFDM(0, "run",
-          file_with("f.yaml", MET "  objectives: [{goal: evenness, set: all}, {goal: tension, set: tie, target: 10}, "
-                                  "{goal: psi}]\n  front_points: 6\n"),
+          file_with("f.yaml", MET "  front: [{figure: evenness, set: all}, {figure: tension, set: tie, target: 10}, "
+                                  "{figure: psi}]\n  front_points: 6\n"),
           "-o", front, "--quiet");
     for (int i = 0; i < 2; i++) {
         HIFDM(0, "run",
-              file_with("b.yaml", i ? MET
-                                      "  goals: [{goal: psi}, {goal: tension, set: tie, target: 10, weight: 1e-6}]\n"
-                                    : MET "  goals: [{goal: psi}, {goal: evenness, set: all, weight: 1e-4}]\n"),
+              file_with("b.yaml",
+                        i ? MET "  objective: [{figure: psi}, {figure: tension, set: tie, target: 10, weight: 1e-6}]\n"
+                          : MET "  objective: [{figure: psi}, {figure: evenness, set: all, weight: 1e-4}]\n"),
               "-o", both, "--quiet", "--restart");
         EXPECT(
             front, both, "--",
@@ -148,7 +149,7 @@ START_TEST(a_front_of_many_points_is_thinned)
 {
     const char *file = temp("f.h5"), *json, *page = temp("f.html"), *data = temp("data.json");
     HIFDM(0, "run", FRONT, "--set", "optimize.method=ga", "--set",
-          "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}, {goal: pull}]", "--set",
+          "optimize.front=[{figure: psi}, {figure: ratio, set: boundary}, {figure: pull}]", "--set",
           "optimize.generations=20", "--set", "optimize.population=700", "--set", "optimize.store=best", "-o", file,
           "--json");
     json = out_as("r.json");
@@ -220,14 +221,14 @@ START_TEST(a_check_says_what_will_be_followed)
     OUT("                front of objective_0_psi and objective_1_ratio_boundary: 7 points, each by "
         "Levenberg-Marquardt\n");
     OUT("                Levenberg-Marquardt: rule force_density, at most 200 iterations, for each point\n");
-    HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: ratio, set: edges}]");
-    ERR("error: --set optimize.objectives.1.set: there is no set of cables 'edges'; did you mean 'edge'?\n");
-    HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: displacement}]");
-    ERR("error: --set optimize.objectives.1: displacement: needs a truss that deflects, but this net has none\n");
-    HIFDM(0, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}, {goal: evenness}]");
+    HIFDM(2, "check", FRONT, "--set", "optimize.front=[{figure: psi}, {figure: ratio, set: edges}]");
+    ERR("error: --set optimize.front.1.set: there is no set of cables 'edges'; did you mean 'edge'?\n");
+    HIFDM(2, "check", FRONT, "--set", "optimize.front=[{figure: psi}, {figure: deflection}]");
+    ERR("error: --set optimize.front.1: deflection: needs a truss that deflects, but this net has none\n");
+    HIFDM(0, "check", FRONT, "--set", "optimize.front=[{figure: psi}, {figure: pull}, {figure: evenness}]");
     OUT("                front of objective_0_psi, objective_1_pull and objective_2_evenness: 7 points, each by "
         "Levenberg-Marquardt\n");
-    HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}, {goal: evenness}]", "--set",
+    HIFDM(2, "check", FRONT, "--set", "optimize.front=[{figure: psi}, {figure: pull}, {figure: evenness}]", "--set",
           "optimize.front_points=3");
     ERR("optimize.front_points: must be at least 4 with three objectives, for the ends alone\n");
 }
@@ -236,7 +237,7 @@ END_TEST
 #define THREE                                                                                                          \
     keep(source_path("configs/straight-edges.yaml")), "--set", "optimize.generations=5", "--set",                      \
         "scene.parabolic_cylinder.modules=[3, 3]", "--set",                                                            \
-        "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}, {goal: pull}]"
+        "optimize.front=[{figure: psi}, {figure: ratio, set: boundary}, {figure: pull}]"
 
 /* Generations give the front of the last of them, each individual's objectives are in the file, and the table is one of
  * designs. */
@@ -272,7 +273,7 @@ END_TEST
 START_TEST(three_objectives_have_a_front_with_slopes)
 {
     static const char objectives[] =
-        "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}, {goal: evenness, set: boundary}]";
+        "optimize.front=[{figure: psi}, {figure: ratio, set: boundary}, {figure: evenness, set: boundary}]";
     const char *file = temp("f.h5"), *other = temp("g.h5"), *table = temp("f.csv"), *again = temp("r.csv"), *json;
     HIFDM(0, "run", FRONT, "--set", objectives, "--set", "optimize.front_points=12", "-o", file, "--threads", "1");
     OUT("  front         12 points, 0 dominated, 0 failed");
@@ -316,11 +317,11 @@ START_TEST(levenberg_marquardt_follows_generations)
 }
 END_TEST
 
-/* No design keeps the limit: the ends are not there, and the run says so. */
+/* No design keeps the figure: the ends are not there, and the run says so. */
 START_TEST(limits_that_no_design_keeps_leave_no_front)
 {
     const char *file = temp("f.h5");
-    HIFDM(3, "run", FRONT, "-o", file, "--set", "optimize.limits=[{limit: tension, set: edge, bounds: [500, 600]}]");
+    HIFDM(3, "run", FRONT, "-o", file, "--set", "optimize.limits=[{figure: tension, set: edge, bounds: [500, 600]}]");
     ERR("error: optimize.front.0: Levenberg-Marquardt found no design with the minimum objective_0_psi, which is an "
         "end "
         "of "
@@ -335,7 +336,7 @@ END_TEST
 START_TEST(points_that_have_not_converged_say_so)
 {
     const char *file = temp("f.h5"), *json, *table = temp("f.csv");
-    HIFDM(0, "run", FRONT, "-o", file, "--set", "optimize.polish_iterations=2");
+    HIFDM(0, "run", FRONT, "-o", file, "--set", "optimize.refine_steps=2");
     ERR(" of 7 points of the front are not converged after 2 steps: they have no slope, and better designs exist near "
         "them; "
         "raise optimize.refine_steps\n");

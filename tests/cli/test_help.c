@@ -119,8 +119,8 @@ static const struct {
     {"hifdm run --output = re", "result.h5 "},
     {"hifdm run --output =", "case.yaml dir result.h5 "},
     {"hifdm export x.h5 --csv ''", "dir "},
-    {"hifdm export x.h5 --stage ''", "form optimize polish "},
-    {"hifdm export x.h5 --stage = o", "optimize "},
+    {"hifdm export x.h5 --stage ''", "form refine search "},
+    {"hifdm export x.h5 --stage = s", "search "},
     {"hifdm run x.yaml --threads ''", ""},
     {"hifdm run x.yaml --set form.pret", "form.pretension_N= "},
     {"hifdm run x.yaml --set = form.pret", "form.pretension_N= "},
@@ -128,8 +128,9 @@ static const struct {
     {"hifdm run x.yaml --set optimize.method = ga", "ga ga+lm "},
     {"hifdm run x.yaml --set = optimize.method = l", "lm "},
     {"hifdm run x.yaml --set form.pretension_N =", ""},
-    {"hifdm run x.yaml --set optimize.lim", "optimize.limits.0.bounds= optimize.limits.0.limit= optimize.limits.0.set= "
-                                            "optimize.limits= "},
+    {"hifdm run x.yaml --set optimize.lim",
+     "optimize.limits.0.bounds= optimize.limits.0.figure= optimize.limits.0.set= "
+     "optimize.limits= "},
     {"hifdm run x.yaml --set optimize.variables.7.vary = support", "support_normal support_xyz support_z "},
 };
 enum { N_COMPLETION = sizeof completion / sizeof *completion };

@@ -12,9 +12,9 @@
 
 #define SAMPLES "tolerance: {sigma_cut_m: 1e-4, samples: 3000}\n"
 #define STATES                                                                                                         \
-    "cables:\n  - {expansion_per_K: -1e-6}\ncases:\n  - {name: cold, temperature_K: -100, part: net}\n"                \
+    "cables:\n  - {expansion_per_K: -1e-6}\nload_cases:\n  - {name: cold, temperature_K: -100, part: net}\n"           \
     "  - {name: hot, temperature_K: 100, part: net}\n"
-#define SEARCH "optimize: {population: 6, generations: 3, seed: 7, method: ga+lm, polish_iterations: 3}\n"
+#define SEARCH "optimize: {population: 6, generations: 3, seed: 7, method: ga+lm, refine_steps: 3}\n"
 
 static const char *sick_machine(void)
 {
@@ -61,7 +61,7 @@ START_TEST(an_unfinished_result_is_read)
     static const struct {
         const char *sections, *format;
     } of[] = {{"truss: {E_Pa: 2e9}\nform: {pretension_N: 20}\n" SEARCH STATES SAMPLES, "--cutlist"},
-              {"optimize: {population: 8, generations: 3, seed: 7, objectives: [{goal: psi}, {goal: ratio, set: "
+              {"optimize: {population: 8, generations: 3, seed: 7, front: [{figure: psi}, {figure: ratio, set: "
                "boundary}]}\n" SAMPLES,
                "--front"}};
     const char *path = file_with("c.yaml", keep(formatted("%s%s", EA_SCENE, of[_i].sections)));
@@ -166,8 +166,9 @@ static const char *measured_of(const char *result)
 
 START_TEST(moves_and_page_or_none)
 {
-    const char *path = file_with("c.yaml", EA_SCENE "tolerance: {sigma_cut_m: 1e-3, samples: 50}\nadjust: {set: inner, "
-                                                    "range_m: 0.002, step_m: 1e-4, moves: 2, sigma_m: 1e-4}\n");
+    const char *path =
+        file_with("c.yaml", EA_SCENE "tolerance: {sigma_cut_m: 1e-3, samples: 50}\nadjust: {set: inner, "
+                                     "range_m: 0.002, step_m: 1e-4, max_adjustments: 2, sigma_m: 1e-4}\n");
     const char *result = temp("a.h5"), *moves = temp("moves.csv"), *page = temp("moves.html"),
                *library = sick_machine();
     HIFDM(0, "run", path, "-o", result, "--quiet");

@@ -72,7 +72,7 @@ START_TEST(a_displacement_of_zero_holds_nothing)
                *within = temp("b.h5");
     HIFDM(0, "run", net, "-o", free_of_it, "--quiet", "--set", "optimize.method=lm");
     HIFDM(0, "run", net, "-o", within, "--quiet", "--set", "optimize.method=lm", "--set",
-          "optimize.limits=[{limit: displacement, bounds: [0, 0.05]}]");
+          "optimize.limits=[{figure: deflection, bounds: [0, 0.05]}]");
     EXPECT(free_of_it, within, "--", "near(a['refine'].attrs['psi_m'], b['refine'].attrs['psi_m'], 1e-9)");
 }
 END_TEST
@@ -90,7 +90,7 @@ START_TEST(a_start_beyond_its_displacements_is_led_in)
                   "0.001}}\n"
                   "optimize:\n  method: lm\n  variables: [{set: all, vary: force_density, range: 40 %}]\n");
     HIFDM(0, "run", c, "-o", out, "--quiet", "--set",
-          keep(formatted("optimize.limits=[{limit: displacement, bounds: [0, %s]}]", most[_i])));
+          keep(formatted("optimize.limits=[{figure: deflection, bounds: [0, %s]}]", most[_i])));
     EXPECT(out, "--", "a['coupling'].attrs['deflection_max_m'] > 1.04e-3",
            keep(formatted("a['refine'].attrs['coupling_deflection_max_m'] <= %s", most[_i])),
            "a['refine'].attrs['psi_m'] < 1e-8");
@@ -101,8 +101,9 @@ END_TEST
 START_TEST(a_merit_without_a_value_is_no_merit)
 {
     const char *net = net_of("loaded", LOADED), *out = temp("r.h5");
-    HIFDM(3, "run", net, "-o", out, "--set", "optimize.goals=[{goal: psi, weight: 1e300}, {goal: psi, weight: 1e200}]",
-          "--set", "optimize.method=ga");
+    HIFDM(3, "run", net, "-o", out, "--set",
+          "optimize.objective=[{figure: psi, weight: 1e300}, {figure: psi, weight: 1e200}]", "--set",
+          "optimize.method=ga");
     ERR("error: optimize: no feasible design: none of ");
 }
 END_TEST
@@ -147,9 +148,9 @@ START_TEST(a_run_that_gains_nothing_more_has_settled)
         file_with("c.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 3, rear_distance_m: 1.8}}\n"
                             "form: {pretension_N: 10, prestress: exact}\nsurface: {}\n"
                             "optimize: {method: lm, variables: [{set: all, vary: force_density, range: 50 %}]}\n");
-    HIFDM(0, "run", c, "-o", out, "--set", "optimize.goals=[{goal: facets}]");
+    HIFDM(0, "run", c, "-o", out, "--set", "optimize.objective=[{figure: facets}]");
     OUT(": the last ten gained less than 1e-6, ");
-    HIFDM(0, "run", c, "-o", exact, "--set", "optimize.objectives=[{goal: facets}, {goal: psi}]", "--set",
+    HIFDM(0, "run", c, "-o", exact, "--set", "optimize.front=[{figure: facets}, {figure: psi}]", "--set",
           "optimize.front_points=3");
     EXPECT(out, exact, "--", "a['refine'].attrs['algorithm_stop'] == 3", "a['refine'].attrs['steps'] < 20",
            "abs(a['refine'].attrs['merit'] / b['front/objective'][0][0] - 1) < 1e-6");
@@ -159,15 +160,15 @@ END_TEST
 START_TEST(the_comparison_can_be_switched_off)
 {
     const char *path = file_with("c.yaml", SMALL_SCENE SMALL_GA), *out = temp("r.h5");
-    HIFDM(0, "run", path, "-o", out, "--set", "optimize.compare_lm=false");
+    HIFDM(0, "run", path, "-o", out, "--set", "optimize.refine=false");
     EXPECT(out, "--", "'refine' not in a");
-    HIFDM(0, "check", path, "--set", "optimize.compare_lm=false");
+    HIFDM(0, "check", path, "--set", "optimize.refine=false");
     ck_assert_ptr_null(strstr(said.out, "Levenberg-Marquardt: "));
-    HIFDM(0, "run", path, "-o", out, "--set", "optimize.compare_lm=false", "--set", "optimize.method=ga+lm",
+    HIFDM(0, "run", path, "-o", out, "--set", "optimize.refine=false", "--set", "optimize.method=ga+lm",
           "--restart"); /* the result is no comparison */
     EXPECT(out, "--", "'refine' in a");
-    HIFDM(2, "run", path, "-o", out, "--set", "optimize.compare_lm=maybe");
-    ERR("optimize.compare_lm");
+    HIFDM(2, "run", path, "-o", out, "--set", "optimize.refine=maybe");
+    ERR("optimize.refine");
 }
 END_TEST
 
@@ -180,8 +181,7 @@ START_TEST(a_comparison_nobody_asked_for_must_be_cheap)
                *out = temp("r.h5");
     HIFDM(0, "run", path, "-o", out);
     EXPECT(out, "--", "'refine' not in a");
-    HIFDM(0, "run", path, "-o", out, "--restart", "--set", "optimize.compare_lm=true", "--set",
-          "optimize.polish_iterations=1");
+    HIFDM(0, "run", path, "-o", out, "--restart", "--set", "optimize.refine=true", "--set", "optimize.refine_steps=1");
     EXPECT(out, "--", "a['refine'].attrs['algorithm_stop'] == 2");
 }
 END_TEST
@@ -205,7 +205,7 @@ START_TEST(check_promises_what_runs)
                  "id,i,j,group,law,value\n1,a,e,boundary,tension,\n2,d,b,inner,force_density,10\n3,d,c,"
                  "inner,force_density,10\n4,e,d,inner,force_density,-1\n5,e,b,inner,force_density,10\n6,e,c,"
                  "inner,force_density,10\n");
-    HIFDM(0, "check", path, "--set", "optimize.compare_lm=true");
+    HIFDM(0, "check", path, "--set", "optimize.refine=true");
     ck_assert_ptr_null(strstr(said.out, "Levenberg-Marquardt: "));
 }
 END_TEST
@@ -222,16 +222,16 @@ START_TEST(a_variable_may_act_on_nothing)
                                 "cd,c,d,inner,force_density,5,A\nfh,f,h,boundary,tension,10,\n"
                                 "gk,g,k,boundary,tension,10,\nhk,h,k,inner,force_density,5,B\n");
     const char *const common[] = {"optimize.variables=[{set: boundary, vary: tension, range: 20 %}]",
-                                  "optimize.goals=[{goal: tension, set: A, target: 3}]",
-                                  ("optimize.objectives=[{goal: tension, set: A, target: 3}, {goal: tension, set: B, "
+                                  "optimize.objective=[{figure: tension, set: A, target: 3}]",
+                                  ("optimize.front=[{figure: tension, set: A, target: 3}, {figure: tension, set: B, "
                                    "target: 3}]")};
     HIFDM(0, "run", path, "-o", out, "--set", "optimize.method=lm", "--set", common[0], "--set", common[1]);
     ck_assert(!strstr(said.out, "stalled"));
     EXPECT(out, "--", "a['refine'].attrs['algorithm_stop'] == 0",
            "a['refine'].attrs['merit'] < 0.9 * a['form'].attrs['merit']");
     HIFDM(0, "run", path, "-o", out, "--force", "-v", "--set", "optimize.method=lm", "--set", common[0], "--set",
-          "optimize.goals=[{goal: tension, set: A, target: 3}, {goal: psi}]", "--set",
-          "optimize.limits=[{limit: tension, set: boundary, bounds: [9, 100]}]");
+          "optimize.objective=[{figure: tension, set: A, target: 3}, {figure: psi}]", "--set",
+          "optimize.limits=[{figure: tension, set: boundary, bounds: [9, 100]}]");
     OUT(" and 4 limits\n");
     OUT(" and 3 more at 9\n");
     HIFDM(0, "run", path, "-o", out, "--force", "--set", "optimize.method=lm", "--set", common[0], "--set", common[2]);

@@ -1,9 +1,9 @@
-/* `cases`: named states of the net as built, from the case file to the summary, JSON, the result file, the exports and
- * the report. tests/unit/case/test_config_load_cases.c has the faults of rows, tests/verify/test_load_cases.c the
+/* `load_cases`: named states of the net as built, from the case file to the summary, JSON, the result file, the exports
+ * and the report. tests/unit/case/test_config_load_cases.c has the faults of rows, tests/verify/test_load_cases.c the
  * figures. */
 #include "cli.h"
 
-#define EXAMPLE keep(source_path("configs/paraboloid-cases.yaml"))
+#define EXAMPLE keep(source_path("configs/paraboloid-load-cases.yaml"))
 
 static const char *run_example(void)
 {
@@ -59,7 +59,7 @@ END_TEST
 START_TEST(a_load_case_is_exported)
 {
     const char *out = run_example(), *csv = temp("csv"), *vtk = temp("vtk");
-    HIFDM(0, "export", out, "--csv", csv, "--case", "sun");
+    HIFDM(0, "export", out, "--csv", csv, "--load-case", "sun");
     OUT("cables of the sun shape in ");
     EXPECT(out, keep(formatted("%s/cables.csv", csv)), keep(formatted("%s/members.csv", csv)), "--",
            "[float(r['tension_N']) for r in b] == list(a['load_cases/sun/tension_N'])",
@@ -75,11 +75,11 @@ START_TEST(a_load_case_is_exported)
            "np.array_equal(a['load_cases/sun/position_m'], b['VTKHDF/Points'])",
            "np.array_equal(a['load_cases/sun/tension_N'], b['VTKHDF/CellData/tension_N'])",
            "np.array_equal(-a['load_cases/sun/truss/member/end_force'][:, 0], c['VTKHDF/CellData/axial_force_N'])");
-    HIFDM(2, "export", out, "--csv", temp("no"), "--case", "moon");
+    HIFDM(2, "export", out, "--csv", temp("no"), "--load-case", "moon");
     ERRS("error: %s: has no load case 'moon'; it has cold, sun, cup_up, cup_down, spun\n", out);
-    HIFDM(2, "export", out, "--csv", temp("no"), "--case", "sun", "--stage", "form");
-    HIFDM(2, "export", out, "--cutlist", temp("no.csv"), "--case", "sun");
-    ERR("error: --case does not go with --cutlist, which is of the design that all cases are made of\n");
+    HIFDM(2, "export", out, "--csv", temp("no"), "--load-case", "sun", "--stage", "form");
+    HIFDM(2, "export", out, "--cutlist", temp("no.csv"), "--load-case", "sun");
+    ERR("error: --load-case does not go with --cutlist, which is of the design that all load cases are made of\n");
     ck_assert(!is_there(temp("no")) && !is_there(temp("no.csv")));
     HIFDM(0, "report", out, "-o", temp("page.html"));
     SHELL(0, "grep -c '\"stage\":\"case ' \"$1\"", temp("page.html"));
@@ -90,11 +90,11 @@ END_TEST
 /* Goals over states of a net on a truss are the errors that the states have in the same file. */
 START_TEST(objectives_over_load_cases_are_those_of_the_load_cases)
 {
-    HIFDM(
-        0, "run", keep(source_path("configs/paraboloid-cases.yaml")), "-o", temp("goals.h5"), "--quiet", "--set",
-        "optimize.goals=[{goal: psi, over: states, take: worst}, {goal: psi, state: sun}, {goal: psi, state: cup_up}]",
-        "--set", "optimize.method=lm", "--set", "optimize.polish_iterations=1", "--set",
-        "optimize.variables=[{set: all, vary: force_density, range: 1 %}]");
+    HIFDM(0, "run", keep(source_path("configs/paraboloid-load-cases.yaml")), "-o", temp("goals.h5"), "--quiet", "--set",
+          "optimize.objective=[{figure: psi, load_case: all, take: worst}, {figure: psi, load_case: sun}, {figure: "
+          "psi, load_case: cup_up}]",
+          "--set", "optimize.method=lm", "--set", "optimize.refine_steps=1", "--set",
+          "optimize.variables=[{set: all, vary: force_density, range: 1 %}]");
     EXPECT(temp("goals.h5"), "--", "a['refine'].attrs['is_result'] == 1",
            "near(a['objective/refine'][0], max(s.attrs['psi_m'] for s in a['load_cases'].values() if hasattr(s, "
            "'keys')), 1e-6)",
@@ -106,7 +106,7 @@ END_TEST
 /* A table of nodes belongs to the run as much as the case does. */
 START_TEST(another_table_is_another_run)
 {
-    const char *c = file_with("c.yaml", SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 1e5\ncases:\n"
+    const char *c = file_with("c.yaml", SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 1e5\nload_cases:\n"
                                                     "  - {name: pulled, nodes: n.csv}\n");
     file_with("n.csv", "id,Fz_N\nn1_1,0.01\n");
     HIFDM(0, "run", c, "-o", temp("a.h5"), "--quiet");
@@ -125,13 +125,14 @@ END_TEST
 /* Of the design that the run found, not of the form-finding before it. */
 START_TEST(the_optimised_design_is_built)
 {
-    const char *c = file_with("c.yaml", SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 1e5\n" SMALL_GA
-                                                    "cases:\n  - {name: still, move_m: [0, 0, 0]}\n");
+    const char *c =
+        file_with("c.yaml", SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 1e5\n" SMALL_GA
+                                        "load_cases:\n  - {name: still, support_displacement_m: [0, 0, 0]}\n");
     const char *of[][2] = {{"ga", "search"}, {"ga+lm", "refine"}};
     for (int k = 0; k < 2; k++) {
         const char *out = temp(k ? "b.h5" : "a.h5");
         HIFDM(0, "run", c, "-o", out, "--quiet", "--set", keep(formatted("optimize.method=%s", of[k][0])), "--set",
-              "optimize.compare_lm=true");
+              "optimize.refine=true");
         EXPECT(out, "--",
                keep(formatted("np.abs(a['load_cases/still/position_m'][:] - a['%s/position_m'][:]).max() < 1e-8",
                               of[k][1])),
@@ -152,7 +153,7 @@ START_TEST(a_truss_may_bend_by_its_weight)
                             "form: {pretension_N: 10, prestress: exact}\n"
                             "truss: {ring: {height_m: 2}}\n"
                             "cables: [{mass_kg_per_m: 0.001}]\n"
-                            "cases:\n"
+                            "load_cases:\n"
                             "  - {name: ground, gravity_m_per_s2: 9.81}\n"
                             "  - {name: light, gravity_m_per_s2: 0.00981}\n");
     HIFDM(0, "run", c, "-o", temp("a.h5"), "--quiet");
@@ -166,17 +167,18 @@ END_TEST
 /* A state without a shape is a warning: others have one. */
 START_TEST(a_load_case_without_a_shape_does_not_stop_the_others)
 {
-    const char *c = file_with("c.yaml", SMALL_SCENE
-                              "  EA_inner_N: 1e5\n  EA_boundary_N: 1e5\nform: {method: fdm, "
-                              "max_iterations: 20}\ncases:\n  - {name: far, move_m: [0, 0, 0], force_N: [1e4, "
-                              "1e4, 1e5]}\n  - {name: still, move_m: [0, 0, 0]}\n");
+    const char *c =
+        file_with("c.yaml", SMALL_SCENE
+                  "  EA_inner_N: 1e5\n  EA_boundary_N: 1e5\nform: {method: fdm, "
+                  "max_iterations: 20}\nload_cases:\n  - {name: far, support_displacement_m: [0, 0, 0], force_N: [1e4, "
+                  "1e4, 1e5]}\n  - {name: still, support_displacement_m: [0, 0, 0]}\n");
     HIFDM(0, "run", c, "-o", temp("a.h5"));
     OUT("                far              no shape: ");
     ERR("warning: load_cases: the net has no shape in load case 'far': ");
     HIFDM(0, "show", temp("a.h5"), "--json");
     EXPECT(out_as("s.json"), temp("a.h5"), "--", "a['load_cases']['far']['tension_min_N'] is None",
            "'position_m' not in b['load_cases/far']", "a['load_cases']['still']['status'] == 'ok'");
-    HIFDM(5, "export", temp("a.h5"), "--csv", temp("csv"), "--case", "far");
+    HIFDM(5, "export", temp("a.h5"), "--csv", temp("csv"), "--load-case", "far");
     ERR("has no shape of a load case 'far'\n");
     HIFDM(0, "export", temp("a.h5"), "--vtk", temp("vtk"));
     OUT(" load_case_2.hdf (still)\n");
@@ -188,7 +190,8 @@ END_TEST
 START_TEST(a_net_that_hangs_loose_has_no_surface)
 {
     const char *out = temp("loose.h5");
-    HIFDM(0, "run", EXAMPLE, "-o", out, "--set", "cases.0.temperature_K=-600", "--set", "cases.1.temperature_K=-600");
+    HIFDM(0, "run", EXAMPLE, "-o", out, "--set", "load_cases.0.temperature_K=-600", "--set",
+          "load_cases.1.temperature_K=-600");
     EXPECT(out, out_as("s.txt"), "--", "a['load_cases/cold'].attrs['n_loose'] == a['form'].attrs['n_free']",
            "all(np.isnan(a['load_cases/cold/surface'].attrs[n]) for n in ('half_path_rms_m', 'fit_half_path_rms_m', "
            "'facet_half_path_rms_m', 'facet_fit_half_path_rms_m'))",
@@ -203,10 +206,10 @@ START_TEST(without_cases_there_is_nothing)
     const char *c = file_with("c.yaml", SMALL_SCENE);
     HIFDM(0, "run", c, "-o", temp("a.h5"), "--json");
     EXPECT(out_as("s.json"), temp("a.h5"), "--", "'load_cases' not in a", "'load_cases' not in b");
-    HIFDM(2, "export", temp("a.h5"), "--csv", temp("no"), "--case", "cold");
+    HIFDM(2, "export", temp("a.h5"), "--csv", temp("no"), "--load-case", "cold");
     ERR("this run has no load cases\n");
     HIFDM(0, "check", c);
-    OUT("cases (none given); ");
+    OUT("load_cases (none given); ");
 }
 END_TEST
 

@@ -4,9 +4,9 @@
 
 #define NET SMALL_SCENE "  EA_inner_N: 47000\n  EA_boundary_N: 52000\n"
 #define OPTIMIZE "optimize:\n  method: lm\n  front_points: 7\n"
-#define PSI_AND_RATIO "  objectives: [{goal: psi}, {goal: ratio, set: boundary}]\n"
+#define PSI_AND_RATIO "  front: [{figure: psi}, {figure: ratio, set: boundary}]\n"
 #define AS_BUILT                                                                                                       \
-    "cables:\n  - {expansion_per_K: -2e-6}\ncases:\n  - {name: same, temperature_K: 0}\n"                              \
+    "cables:\n  - {expansion_per_K: -2e-6}\nload_cases:\n  - {name: same, temperature_K: 0}\n"                         \
     "tolerance: {sigma_cut_m: 1e-4, samples: 200}\n"
 
 static const char *front_of(const char *c, const char *name)
@@ -109,7 +109,7 @@ START_TEST(what_is_of_no_point_is_told)
     said_at = strstr(said.err, untaken);
     ck_assert(said_at && !strstr(said_at + 1, untaken));
     ERRS(", run `hifdm run %s --point %s:", c, front);
-    HIFDM(0, "export", front, "--csv", temp("same"), "--case", "same");
+    HIFDM(0, "export", front, "--csv", temp("same"), "--load-case", "same");
     ERR(untaken);
     HIFDM(0, "export", front, "--cutlist", cut, "--stage", "form", "--force");
     ck_assert_str_eq(said.err, "");
@@ -133,7 +133,7 @@ START_TEST(points_of_generations_are_taken)
 {
     const char *c = keep(source_path("configs/chen2022-truss.yaml")), *front = temp("f.h5"), *path = temp("p.h5");
 #define GENERATIONS                                                                                                    \
-    c, "--set", "optimize.generations=5", "--set", "optimize.objectives=[{goal: psi}, {goal: displacement}]"
+    c, "--set", "optimize.generations=5", "--set", "optimize.front=[{figure: psi}, {figure: deflection}]"
     HIFDM(0, "run", GENERATIONS, "-o", front);
     HIFDM(0, "export", front, "--csv", temp("end"));
     ERR(": no point of its front is taken: the shape is the end of the front with the minimum objective_0_psi. ");
@@ -192,9 +192,9 @@ START_TEST(a_front_of_another_case_is_refused)
                *other = temp("q.h5");
     HIFDM(2, "run", file_with("g.yaml", NET OPTIMIZE), "--point", point(front, 3), "-o", other);
     ERRS("error: %s: its front has other objectives than %s: use the case file and the --set options of that front; "
-         "different: optimize.objectives\n",
+         "different: optimize.front\n",
          front, temp("g.yaml"));
-    HIFDM(2, "run", c, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}]", "--point", point(front, 3), "-o",
+    HIFDM(2, "run", c, "--set", "optimize.front=[{figure: psi}, {figure: pull}]", "--point", point(front, 3), "-o",
           other);
     ERR(": its front has other objectives than ");
     HIFDM(2, "run", c, "--set", "optimize.variables=[{set: all, vary: force_density, range: 10 %}]", "--point",
@@ -209,11 +209,10 @@ START_TEST(a_front_of_another_case_is_refused)
     HIFDM(2, "run", c, "--set", "form.pretension_N=11", "--set", "form.collapse_ratio=2e-3", "--set",
           "form.max_iterations=99999", "--set", "form.residual_tolerance=2e-9", "--set", "form.rms_tolerance_m=2e-6",
           "--set", "form.length_tolerance=2e-9", "--set", "optimize.max_tension_N=1e5", "--set", "optimize.seed=8",
-          "--set", "optimize.range_N=2", "--set", "optimize.polish_iterations=199", "--point", point(front, 3), "-o",
-          other);
+          "--set", "optimize.range_N=2", "--set", "optimize.refine_steps=199", "--point", point(front, 3), "-o", other);
     ERR("; different: form.pretension_N, form.residual_tolerance, form.length_tolerance, form.rms_tolerance_m, "
         "form.max_iterations, form.collapse_ratio, optimize.range_N, optimize.max_tension_N and 2 more\n");
-    HIFDM(2, "run", c, "--set", "optimize.limits=[{limit: tension, set: boundary, bounds: [900, 901]}]", "--point",
+    HIFDM(2, "run", c, "--set", "optimize.limits=[{figure: tension, set: boundary, bounds: [900, 901]}]", "--point",
           point(front, 3), "-o", other);
     ERRS("error: %s: point 3 of its front is not a feasible design of %s (", front, c);
     HIFDM(2, "run", c, "--set", "optimize.range_N=0.1", "--point", point(front, 3), "-o", other);

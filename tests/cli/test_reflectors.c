@@ -91,7 +91,7 @@ START_TEST(designs_move_net_and_ring_in_lanes)
     OUT("for a design of the first generation by chord;");
     for (int i = 0; i < 2; i++)
         HIFDM(0, "run", path, "-o", out[i], "--quiet", "--set", "optimize.generations=1", "--set",
-              "optimize.compare_lm=false", "--set", "coupling.tof_m=1e-10", "--set", "form.residual_tolerance=1e-12",
+              "optimize.refine=false", "--set", "coupling.tof_m=1e-10", "--set", "form.residual_tolerance=1e-12",
               "--set", solver[i]);
     EXPECT(out[0], out[1], "--", "(a['ga/design_N'][:] == b['ga/design_N'][:]).all()", "a['ga/psi_m'].shape == (1, 50)",
            "abs(a['ga/psi_m'][:] - b['ga/psi_m'][:]).max() < 1e-10",
@@ -104,10 +104,10 @@ END_TEST
 START_TEST(a_double_layer_is_designed)
 {
     static const char *const limits[] = {"optimize.limits=[]",
-                                         "optimize.limits=[{limit: tension, set: front, bounds: [9.9, 10.05]}]"};
+                                         "optimize.limits=[{figure: tension, set: front, bounds: [9.9, 10.05]}]"};
     const char *out = temp("r.h5");
     const char *path = keep(source_path("configs/paraboloid-even.yaml"));
-    HIFDM(0, "run", path, "-o", out, "--json", "--set", limits[_i], "--set", "optimize.polish_iterations=40");
+    HIFDM(0, "run", path, "-o", out, "--json", "--set", limits[_i], "--set", "optimize.refine_steps=40");
     EXPECT(out_as("r.json"), out, "--", "a['form']['psi_m'] > 2e-4", "a['polish']['psi_m'] < 1e-9",
            "a['polish']['sets']['front']['tension_ratio'] < 1 + 1e-6", "a['polish']['stop_reason'] == 'converged'",
            formatted("%d or 9.9 <= a['polish']['sets']['front']['least_N'] <= "
@@ -122,13 +122,13 @@ START_TEST(nodes_that_no_objective_counts_are_told)
 {
     static const char *const silent[] = {
         "optimize.variables.0.set=tie",
-        "optimize.goals=[{goal: facets}, {goal: psi, weight: 0.1}, {goal: length, set: rear, weight: 0.1}]"};
+        "optimize.objective=[{figure: facets}, {figure: psi, weight: 0.1}, {figure: length, set: rear, weight: 0.1}]"};
     const char *out = temp("r.h5"),
                *path = file_with(
                    "c.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, rear_distance_m: 1.8}}\n"
                              "form: {pretension_N: 10, prestress: exact}\nsurface: {}\n"
                              "optimize: {method: lm, variables: [{set: all, vary: force_density, range: 50 %}], "
-                             "goals: [{goal: facets}]}\n");
+                             "objective: [{figure: facets}]}\n");
     HIFDM(0, "run", path, "-o", out, "--json");
     EXPECT(out_as("r.json"), out, "--",
            "(lambda ids, moved: (lambda k: [w for w in a['warnings'] if f'node {ids[k]}, and ' in w and "

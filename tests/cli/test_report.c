@@ -120,7 +120,7 @@ START_TEST(long_histories_are_thinned)
     const char *out = temp("l.h5");
     HIFDM(0, "run",
           file_with("l.yaml", SMALL_SCENE "optimize: {population: 2, generations: 2501, stagnation_generations: 9999, "
-                                          "polish_iterations: 1}\n"),
+                                          "refine_steps: 1}\n"),
           "-o", out, "--quiet");
     HIFDM(0, "report", out, "-o", temp("l.html"));
     EXPECT(data_of(temp("l.html"), "l.json"), out, "--", "a['search']['n'] == 2501 and a['search']['stride'] == 3",

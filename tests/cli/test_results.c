@@ -38,10 +38,9 @@ START_TEST(a_change_has_the_word_of_its_sign)
                               "    if 'merit' in form:\n"
                               "        a['merit'] = form['merit'] * float(sys.argv[2])\n";
     const char *out = temp("c.h5"), *objectives = temp("g.h5");
-    const char *path =
-        file_with("c.yaml", SMALL_SCENE "optimize: {population: 4, generations: 1, compare_lm: false}\n");
+    const char *path = file_with("c.yaml", SMALL_SCENE "optimize: {population: 4, generations: 1, refine: false}\n");
     HIFDM(0, "run", path, "-o", out, "--quiet");
-    HIFDM(0, "run", path, "-o", objectives, "--quiet", "--set", "optimize.goals=[{goal: psi}]");
+    HIFDM(0, "run", path, "-o", objectives, "--quiet", "--set", "optimize.objective=[{figure: psi}]");
     for (size_t i = 0; i < sizeof change / sizeof *change; i++) {
         SHELL(0, "\"$1\" -c \"$2\" \"$3\" $4 && \"$0\" show \"$3\"", python_program(), set, out, change[i].part);
         OUT(formatted(", %sfor the initial design (", change[i].words));
@@ -157,7 +156,7 @@ START_TEST(less_is_stored_where_less_is_asked_for)
     HIFDM(0, "show", thin, "-v");
     OUT("found in generation ");
     HIFDM(0, "report", thin, "-o", temp("thin.html"));
-    HIFDM(0, "export", thin, "--stage", "optimize", "--csv", temp("thin"));
+    HIFDM(0, "export", thin, "--stage", "search", "--csv", temp("thin"));
 }
 END_TEST
 

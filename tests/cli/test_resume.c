@@ -114,13 +114,13 @@ static bool has_several_generations(const char *path)
     "  population: 8\n"                                                                                                \
     "  generations: 1000\n"                                                                                            \
     "  stagnation_generations: 1000\n"                                                                                 \
-    "  compare_lm: false\n"                                                                                            \
+    "  refine: false\n"                                                                                                \
     "  variables:\n"                                                                                                   \
     "    - {set: edge, vary: tension, range: 20 %}\n"                                                                  \
     "    - {set: inner, vary: force_density, range: 10 %, link: set}\n"                                                \
     "    - {set: edge, vary: support_z, range: 0.01}\n"                                                                \
-    "  goals: [{goal: psi}, {goal: evenness, set: edge, weight: 1e-3}]\n"                                              \
-    "  limits: [{limit: ratio, set: edge, bounds: [1, 1.3]}]\n"
+    "  objective: [{figure: psi}, {figure: evenness, set: edge, weight: 1e-3}]\n"                                      \
+    "  limits: [{figure: ratio, set: edge, bounds: [1, 1.3]}]\n"
 
 /* The limit keeps the base and the designs around it out. */
 #define FRONT_ROWS                                                                                                     \
@@ -128,8 +128,8 @@ static bool has_several_generations(const char *path)
     "  population: 8\n"                                                                                                \
     "  generations: 1000\n"                                                                                            \
     "  variables: [{set: edge, vary: tension, range: 30 %}]\n"                                                         \
-    "  objectives: [{goal: psi}, {goal: evenness, set: edge}]\n"                                                       \
-    "  limits: [{limit: ratio, set: edge, bounds: [1, 1.3]}]\n"
+    "  front: [{figure: psi}, {figure: evenness, set: edge}]\n"                                                        \
+    "  limits: [{figure: ratio, set: edge, bounds: [1, 1.3]}]\n"
 
 /* Genes of cables and of supports, goals and limits, or objectives; whatever is stored, on other numbers of threads. */
 START_TEST(a_killed_run_of_rows_goes_on_to_the_same_bits)
@@ -271,7 +271,7 @@ START_TEST(stops_are_heard_between_generations_too)
                                   "--set",
                                   "optimize.method=lm",
                                   "--set",
-                                  "optimize.polish_iterations=100000",
+                                  "optimize.refine_steps=100000",
                                   "--set",
                                   "scene.parabolic_cylinder.cells_per_module=[5, 5]",
                                   "--progress",
@@ -296,10 +296,10 @@ END_TEST
     "surface: {frequencies_Hz: [6e9]}\n"                                                                               \
     "form: {pretension_N: 10, prestress: exact}\n"                                                                     \
     "truss:\n  ring: {cells_per_bay: 2, bracing: single, held: bay}\n"                                                 \
-    "optimize:\n  method: lm\n  polish_iterations: 60\n"                                                               \
+    "optimize:\n  method: lm\n  refine_steps: 60\n"                                                                    \
     "  variables: [{set: all, vary: force_density, range: 50 %}]\n"                                                    \
-    "  goals: [{goal: facets, along: half_path, fit: best}, {goal: evenness, set: front, weight: 1e-3}]\n"             \
-    "  limits: [{limit: tension, set: all, bounds: [1, 60]}]\n"
+    "  objective: [{figure: facets, along: half_path, fit: best}, {figure: evenness, set: front, weight: 1e-3}]\n"     \
+    "  limits: [{figure: tension, set: all, bounds: [1, 60]}]\n"
 
 /* Steps are told of once a second; one after the first is under way. */
 static bool says_step(const char *err)
@@ -408,7 +408,7 @@ START_TEST(a_stopped_point_goes_on_to_the_same_bits)
 {
 #define OF_POINT                                                                                                       \
     SMALL_SCENE "  EA_inner_N: 47000\n  EA_boundary_N: 47000\noptimize:\n  method: lm\n  front_points: 3\n"            \
-                "  objectives: [{goal: psi}, {goal: ratio, set: boundary}]\n"
+                "  front: [{figure: psi}, {figure: ratio, set: boundary}]\n"
     const char *c = file_with("c.yaml", OF_POINT "tolerance: {sigma_cut_m: 1e-4, samples: 150000}\n"),
                *front = temp("f.h5"), *path = temp("run.h5"), *whole = temp("whole.h5");
     HIFDM(0, "run", file_with("f.yaml", OF_POINT), "-o", front, "--quiet");

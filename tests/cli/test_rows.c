@@ -11,7 +11,7 @@ static const char cables[] = "id,i,j,group,law,value,set\nc1,a,m,boundary,tensio
 
 #define VARIABLES                                                                                                      \
     "optimize.variables=[{set: edge, vary: force_density, range: 50 %}, {set: stay, vary: support_xyz, range: 0.5}]"
-#define OBJECTIVES "optimize.goals=[{goal: psi}, {goal: tension, set: edge, target: 9, weight: 0.1}]"
+#define OBJECTIVES "optimize.objective=[{figure: psi}, {figure: tension, set: edge, target: 9, weight: 0.1}]"
 
 /* ---- hifdm evaluate ---- */
 
@@ -59,8 +59,8 @@ START_TEST(the_best_is_that_of_the_merit)
     const char *net = net_with(nodes, cables), *table = temp("r.csv");
     HIFDM(0, "evaluate", net, "--designs", file_with("d.csv", "c1,\"c,2\"\n4.5,3.5\n5.5,5.5\n2,2\n"), "-o", table,
           "--json", "--set", "optimize.variables=[{set: edge, vary: force_density, range: 50 %}]", "--set",
-          "optimize.goals=[{goal: psi, weight: 1e-9}, {goal: tension, set: edge, target: 12}]", "--set",
-          "optimize.limits=[{limit: tension, set: edge, bounds: [7, 30]}]");
+          "optimize.objective=[{figure: psi, weight: 1e-9}, {figure: tension, set: edge, target: 12}]", "--set",
+          "optimize.limits=[{figure: tension, set: edge, bounds: [7, 30]}]");
     EXPECT(out_as("r.json"), table, "--", "a['best_row'] == 2 and float(b[0]['psi_m']) < float(b[1]['psi_m'])",
            "a['best_merit'] == float(b[1]['merit']) < float(b[0]['merit'])",
            "a['best_objectives'] == {k: float(b[1][k]) for k in ('objective_0_psi', 'objective_1_tension_edge')}",
@@ -76,10 +76,10 @@ START_TEST(objectives_are_evaluated_without_a_merit)
     const char *designs = file_with("d.csv", "c1,\"c,2\"\n4.5,3.5\n5.5,5.5\n");
     const char *edge = "optimize.variables=[{set: edge, vary: force_density, range: 50 %}]";
     HIFDM(0, "evaluate", net, "--designs", designs, "-o", table, "--jacobian", slopes, "--json", "--set", edge, "--set",
-          "optimize.objectives=[{goal: psi}, {goal: tension, set: edge, target: 12}]", "--set", "optimize.method=lm");
+          "optimize.front=[{figure: psi}, {figure: tension, set: edge, target: 12}]", "--set", "optimize.method=lm");
     const char *json = out_as("r.json"), *objectives = temp("g.csv"), *objective_slopes = temp("gj.csv");
     HIFDM(0, "evaluate", net, "--designs", designs, "-o", objectives, "--jacobian", objective_slopes, "--set", edge,
-          "--set", "optimize.goals=[{goal: psi}, {goal: tension, set: edge, target: 12}]");
+          "--set", "optimize.objective=[{figure: psi}, {figure: tension, set: edge, target: 12}]");
     EXPECT(table, objectives, json, "--",
            "list(a[0])[-3:] == ['violation', 'objective_0_psi', 'objective_1_tension_edge']",
            "'merit' not in a[0] and [{k: r[k] for k in a[0]} for r in b] == a and 'merit' in b[0]",
@@ -88,7 +88,7 @@ START_TEST(objectives_are_evaluated_without_a_merit)
            "[r['figure'] for r in a] == ['objective_0_psi', 'objective_1_tension_edge'] * 2",
            "a == [r for r in b if r['figure'] != 'merit'] and len(b) == 6");
     HIFDM(0, "evaluate", net, "--designs", designs, "-o", table, "--force", "--set", edge, "--set",
-          "optimize.objectives=[{goal: psi}, {goal: tension, set: edge, target: 12}]", "--set", "optimize.method=lm");
+          "optimize.front=[{figure: psi}, {figure: tension, set: edge, target: 12}]", "--set", "optimize.method=lm");
     OUT("2 designs, 2 feasible; ");
 }
 END_TEST
@@ -234,15 +234,15 @@ START_TEST(objectives_of_damaged_files_are_not_shown)
 END_TEST
 
 /* The edge wants 12 N, and may have 11; or its force densities may not rise so far. */
-#define PULLED "optimize.goals=[{goal: tension, set: edge, target: 12}]"
+#define PULLED "optimize.objective=[{figure: tension, set: edge, target: 12}]"
 #define EDGE(range) "optimize.variables=[{set: edge, vary: force_density, range: " range "}]"
 
 START_TEST(what_holds_a_design_has_names)
 {
     const char *net = net_with(nodes, cables), *out = temp("r.h5");
     HIFDM(0, "run", net, "-o", out, "--json", "--set", EDGE("50 %"), "--set", PULLED, "--set",
-          "optimize.limits=[{limit: tension, set: stay, bounds: [1, null]}, {limit: tension, set: edge, bounds: "
-          "[null, 11]}, {limit: ratio, set: edge, bounds: [1, 1.5]}]",
+          "optimize.limits=[{figure: tension, set: stay, bounds: [1, null]}, {figure: tension, set: edge, bounds: "
+          "[null, 11]}, {figure: ratio, set: edge, bounds: [1, 1.5]}]",
           "--set", "optimize.method=lm");
     const char *json = out_as("r.json");
     EXPECT(json, out, "--", "[(h['row'], h['count'], h['bound']) for h in a['refine']['at_limits']] == [(1, 2, 11)]",
@@ -271,7 +271,7 @@ START_TEST(a_limit_that_nothing_keeps_has_a_name)
     static const char *const method[] = {"optimize.method=lm", "optimize.method=ga"};
     static const char *const begin[] = {"has no feasible start: ", "exceed optimize.limits or "};
     HIFDM(3, "run", net_with(nodes, cables), "-o", temp("r.h5"), "--set", EDGE("1 %"), "--set", PULLED, "--set",
-          "optimize.limits=[{limit: tension, set: edge, bounds: [5, 100]}, {limit: tension, set: stay, bounds: [50, "
+          "optimize.limits=[{figure: tension, set: edge, bounds: [5, 100]}, {figure: tension, set: stay, bounds: [50, "
           "60]}]",
           "--set", method[_i], "--set", "optimize.generations=3");
     ERR(begin[_i]);
@@ -300,15 +300,15 @@ START_TEST(rows_that_no_variable_reaches_are_named)
                                              "  variables:\n"
                                              "    - {set: edge, vary: force_density, range: 50 %}\n"
                                              "    - {set: loose, vary: unstressed_length, range: 10 %}\n"
-                                             "  goals:\n"
-                                             "    - {goal: mass, set: far, mass_kg_per_m: 0.1}\n"
-                                             "    - {goal: tension, set: stay, target: 3}\n"
-                                             "    - {goal: psi}\n"
-                                             "    - {goal: pull}\n"
-                                             "    - {goal: mass, set: stay, mass_kg_per_m: 0.1, weight: 0.1}\n"
+                                             "  objective:\n"
+                                             "    - {figure: mass, set: far, mass_kg_per_m: 0.1}\n"
+                                             "    - {figure: tension, set: stay, target: 3}\n"
+                                             "    - {figure: psi}\n"
+                                             "    - {figure: pull}\n"
+                                             "    - {figure: mass, set: stay, mass_kg_per_m: 0.1, weight: 0.1}\n"
                                              "  limits:\n"
-                                             "    - {limit: tension, set: all, bounds: [null, 90]}\n"
-                                             "    - {limit: ratio, set: far, bounds: [1, 5]}\n");
+                                             "    - {figure: tension, set: all, bounds: [null, 90]}\n"
+                                             "    - {figure: ratio, set: far, bounds: [1, 5]}\n");
     HIFDM(0, "run", path, "-o", temp("two.h5"));
     ERRS("warning: %s:7:7: optimize.variables.1: changes nothing at the initial design, because its cables, or those "
          "at its "
@@ -333,8 +333,8 @@ END_TEST
 START_TEST(nothing_is_sought_that_no_variable_reaches)
 {
     static const char *const want[] = {
-        "optimize.goals=[{goal: length, set: far, target: 1}, {goal: evenness, set: far}]",
-        "optimize.objectives=[{goal: psi}, {goal: mass, set: far, mass_kg_per_m: 1}]",
+        "optimize.objective=[{figure: length, set: far, target: 1}, {figure: evenness, set: far}]",
+        "optimize.front=[{figure: psi}, {figure: mass, set: far, mass_kg_per_m: 1}]",
         "optimize.variables=[{set: far, vary: tension, range: 1}]"};
     static const char *const why[] = {
         ("error: --set optimize.goals.0: no design variable of this case changes objective_0_length_far: all of its "
@@ -342,7 +342,7 @@ START_TEST(nothing_is_sought_that_no_variable_reaches)
          "variable of this case "
          "changes objective_1_evenness_far: all of its cables keep their tensions; add one that does, or leave the row "
          "out\n"),
-        ("error: --set optimize.objectives.1: no design variable of this case changes objective_1_mass_far: all of its "
+        ("error: --set optimize.front.1: no design variable of this case changes objective_1_mass_far: all of its "
          "cables keep their lengths; add one that does, or leave the row out\n"),
         ("error: --set optimize.variables.0: no design variable of this case changes psi: none of its nodes moves; add "
          "one that does, or use another "
@@ -368,7 +368,7 @@ START_TEST(a_objective_that_stands_still_at_one_point_is_no_fault)
                                 "id,i,j,group,law,value\nma,m,a,boundary,tension,10\nmb,m,b,boundary,tension,10\n"
                                 "mc,m,c,boundary,tension,10\nmd,m,d,boundary,tension,10\n");
     HIFDM(0, "check", flat, "--set", "optimize.variables=[{set: all, vary: support_z, range: 0.1}]", "--set",
-          "optimize.goals=[{goal: mass, mass_kg_per_m: 1}]");
+          "optimize.objective=[{figure: mass, mass_kg_per_m: 1}]");
     ck_assert(!strstr(said.err, "no design variable"));
 }
 END_TEST
@@ -382,7 +382,7 @@ START_TEST(a_move_along_z_counts)
                    "id,i,j,group,law,value\nma,m,a,boundary,force_density,10\nmb,m,b,boundary,force_density,10\n"
                    "mc,m,c,boundary,force_density,10\nmd,m,d,boundary,force_density,10\n"),
           "--set", "optimize.variables=[{set: all, vary: support_z, range: 0.1}]", "--set",
-          "optimize.goals=[{goal: psi}]");
+          "optimize.objective=[{figure: psi}]");
     ck_assert(!strstr(said.err, "no design variable"));
 }
 END_TEST
@@ -395,7 +395,7 @@ START_TEST(ends_that_move_apart_lengthen_a_cable)
                    "id,i,j,group,law,value,set\nam,a,m,boundary,force_density,10,\n"
                    "mn,m,n,inner,force_density,10,middle\nnb,n,b,boundary,force_density,10,\n"),
           "--set", "optimize.variables=[{set: middle, vary: force_density, range: 10 %}]", "--set",
-          "optimize.goals=[{goal: length, set: middle, target: 1.1}]");
+          "optimize.objective=[{figure: length, set: middle, target: 1.1}]");
     ck_assert(!strstr(said.err, "no design variable"));
 }
 END_TEST
@@ -404,8 +404,8 @@ END_TEST
 START_TEST(a_cap_that_the_case_does_not_give_is_told_as_the_default)
 {
     static const char *const how[] = {"optimize.method=lm", "optimize.method=ga",
-                                      "optimize.objectives=[{goal: psi}, {goal: evenness, set: edge}]",
-                                      "optimize.limits=[{limit: tension, set: stay, bounds: [1, 90]}]"};
+                                      "optimize.front=[{figure: psi}, {figure: evenness, set: edge}]",
+                                      "optimize.limits=[{figure: tension, set: stay, bounds: [1, 90]}]"};
     static const char *const what[] = {
         ": the boundary tension ratio exceeds optimize.boundary_ratio_cap: ratio of cable c4 to c3 is 22.2222, but the "
         "bound of boundary_ratio_cap is 10",
@@ -435,9 +435,9 @@ START_TEST(check_names_variables_objectives_and_limits)
 {
     const char *net = net_with(nodes, cables);
     HIFDM(0, "check", net, "--set", EDGE("1 %"), "--set", PULLED, "--set",
-          "optimize.limits=[{limit: tension, set: edge, bounds: [5, 100]}]");
+          "optimize.limits=[{figure: tension, set: edge, bounds: [5, 100]}]");
     OUT("                variables.0: force_density of edge: 2 in N/m, range 1 %\n");
-    OUT("                goals.0: tension of edge, target ");
+    OUT("                objective.0: tension of edge, target ");
     OUT("                limits.0: tension of edge, bounds 5 .. 100\n");
     OUT("                boundary_ratio_cap 10 (the default)\n");
     HIFDM(0, "check", net, "--set", "optimize.boundary_ratio_cap=6");
@@ -453,7 +453,7 @@ START_TEST(the_gain_is_a_objective)
 {
 #define BANDS                                                                                                          \
     "--set", "surface.frequencies_Hz=[1e9, 2e9]", "--set", "surface.pattern.theta_deg=[-2, 2]", "--set",               \
-        "optimize.goals=[{goal: gain}, {goal: gain, frequency_Hz: 1e9, weight: 0.5}]"
+        "optimize.objective=[{figure: gain}, {figure: gain, frequency_Hz: 1e9, weight: 0.5}]"
 #define LOST(stage, objective) "(1 - a['" stage "']['objectives']['" objective "']['value']**2)"
 #define GAIN(stage, cut) "a['" stage "']['pattern'][" cut "]['gain_dBi']"
 #define SAME(objective, cut)                                                                                           \
@@ -466,18 +466,18 @@ START_TEST(the_gain_is_a_objective)
            "near(a['refine']['merit']**2, a['refine']['objectives']['objective_0_gain']['value']**2 + "
            "a['refine']['objectives']['objective_1_gain']['value']**2 / 4, 1e-15)");
     HIFDM(0, "check", CHEN, BANDS);
-    OUT("                goals.0: gain at 2 GHz, weight 1\n");
-    OUT("                goals.1: gain at 1 GHz, weight 0.5\n");
+    OUT("                objective.0: gain at 2 GHz, weight 1\n");
+    OUT("                objective.1: gain at 1 GHz, weight 0.5\n");
     HIFDM(0, "evaluate", CHEN, "--template", designs, BANDS);
     HIFDM(0, "evaluate", CHEN, "--designs", designs, "-o", table, "--jacobian", slopes, BANDS);
     EXPECT(table, slopes, "--", "[r['figure'] for r in b] == ['objective_0_gain', 'objective_1_gain', 'merit']",
            "all(float(r['n0_0-n0_1']) != 0 for r in b)",
            "0 < float(a[0]['objective_1_gain']) < float(a[0]['objective_0_gain'])");
-    HIFDM(2, "check", CHEN, "--set", "surface.frequencies_Hz=[1e9]", "--set", "optimize.goals=[{goal: gain}]");
-    ERR("error: --set optimize.goals.0: gain: needs a section surface.pattern with the feed of the "
+    HIFDM(2, "check", CHEN, "--set", "surface.frequencies_Hz=[1e9]", "--set", "optimize.objective=[{figure: gain}]");
+    ERR("error: --set optimize.objective.0: gain: needs a section surface.pattern with the feed of the "
         "reflector\n");
-    HIFDM(2, "check", CHEN, BANDS, "--set", "optimize.goals.1.frequency_Hz=3e11");
-    ERR("optimize.goals.1: gain: its facets are too coarse for this frequency");
+    HIFDM(2, "check", CHEN, BANDS, "--set", "optimize.objective.1.frequency_Hz=3e11");
+    ERR("optimize.objective.1: gain: its facets are too coarse for this frequency");
 }
 END_TEST
 

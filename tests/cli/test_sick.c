@@ -132,9 +132,9 @@ START_TEST(memory)
              "id,i,j,group,law,value\n1,a,c,boundary,force_density,5\n2,c,d,inner,force_density,-1\n"
              "3,d,b,boundary,force_density,6\n");
     SHELL(0, "cd \"$1\" && echo 'optimize: {population: 20, generations: 3, range_N: 1}' >>net.yaml", folder);
-    file_with("base.yaml",
-              EA_SCENE SMALL_GA "tolerance: {sigma_cut_m: 0.0001, samples: 20}\n"
-                                "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 3, sigma_m: 0.0001}\n");
+    file_with("base.yaml", EA_SCENE SMALL_GA
+              "tolerance: {sigma_cut_m: 0.0001, samples: 20}\n"
+              "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, max_adjustments: 3, sigma_m: 0.0001}\n");
     SHELL(0,
           "cd \"$1\" && \"$0\" run base.yaml -o shape.h5 --quiet && \"$0\" export shape.h5 --csv shape && "
           "cut -d, -f1-4 shape/nodes.csv >measured.csv",

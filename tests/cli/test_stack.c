@@ -9,9 +9,9 @@
 #endif
 
 #define FULL_CASE                                                                                                      \
-    ON_TRUSS SMALL_GA "surface: {frequencies_Hz: [1e9]}\ncases:\n  - {name: cold, force_N: [0, 0, -0.1]}\n"            \
+    ON_TRUSS SMALL_GA "surface: {frequencies_Hz: [1e9]}\nload_cases:\n  - {name: cold, force_N: [0, 0, -0.1]}\n"       \
                       "tolerance: {sigma_cut_m: 1e-4, samples: 20}\n"                                                  \
-                      "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 3, sigma_m: 0.0001}\n"
+                      "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, max_adjustments: 3, sigma_m: 0.0001}\n"
 
 /* In the order in which they can run: the words behind `hifdm`. */
 static const char *const command[] = {
@@ -39,7 +39,7 @@ static const char *const command[] = {
     "report full.h5 -o full.html",
     "report full.h5 other.h5 -o both.html",
     "export full.h5 --csv csv --vtk vtk --cutlist cut.csv --rf rf",
-    "export full.h5 --csv cold --case cold",
+    "export full.h5 --csv cold --load-case cold",
     "export front.h5 --front front.csv",
     "adjust full.yaml --result full.h5 --measured csv/nodes.csv -o moves.csv --report adjust.html",
     "diff full.h5 full.h5",
@@ -59,8 +59,8 @@ START_TEST(every_command_runs)
     if (IS_SANITIZED) return;
     const char *folder = temp("");
     file_with("full.yaml", FULL_CASE);
-    file_with("front.yaml", SMALL_SCENE "optimize:\n  population: 8\n  generations: 3\n  objectives: [{goal: psi}, "
-                                        "{goal: evenness, set: all}]\n");
+    file_with("front.yaml", SMALL_SCENE "optimize:\n  population: 8\n  generations: 3\n  front: [{figure: psi}, "
+                                        "{figure: evenness, set: all}]\n");
     file_with("study.yaml", "base: full.yaml\nsweep:\n  form.pretension_N: [8, 9, 10]\n  files: all\n");
     file_with("nodes.csv", "id,x_m,y_m,z_m,role\na,0,0,0,support\nb,2,0,0,support\nc,0,2,0,support\nd,0.9,0.8,0,"
                            "inner\ne,0.4,0.4,0,inner\n");

@@ -8,7 +8,8 @@
 #define SURFACE "surface: {frequencies_Hz: [2.5e9, 20e9]}\n"
 #define TOLERANCE "tolerance: {sigma_cut_m: 5e-5, samples: 40, require: [{measure: psi_m, at_most: 3e-4}]}\n"
 #define LM                                                                                                             \
-    "optimize: {method: lm, variables: [{set: all, vary: force_density, range: 50 %}], goals: [{goal: psi}, {goal: "   \
+    "optimize: {method: lm, variables: [{set: all, vary: force_density, range: 50 %}], objective: [{figure: psi}, "    \
+    "{figure: "                                                                                                        \
     "tension, set: tie, target: 8, weight: 1e-4}]}\n"
 #define AXIS "sweep:\n  form.pretension_N: [5, 10, 20]\n  scene.EA_boundary_N: [2e5]\n"
 
@@ -51,16 +52,16 @@ END_TEST
 /* The figures of each load case are those of single runs, and a figure of one is not printed as one of all. */
 START_TEST(load_cases_are_columns_of_a_merge)
 {
-    const char *cases = keep(source_path("configs/paraboloid-cases.yaml")), *merged = temp("s.h5"),
+    const char *cases = keep(source_path("configs/paraboloid-load-cases.yaml")), *merged = temp("s.h5"),
                *page = temp("s.html");
     const char *of_heat =
-        file_with("s.yaml", keep(formatted("base: %s\nsweep: {cases.0.temperature_K: [-120, -30]}\n", cases)));
+        file_with("s.yaml", keep(formatted("base: %s\nsweep: {load_cases.0.temperature_K: [-120, -30]}\n", cases)));
     sweep_and_merge(of_heat, temp("s.d"), merged);
     HIFDM(0, "run", cases, "-o", temp("one.h5"), "--quiet");
-    HIFDM(0, "run", cases, "-o", temp("two.h5"), "--quiet", "--set", "cases.0.temperature_K=-30");
+    HIFDM(0, "run", cases, "-o", temp("two.h5"), "--quiet", "--set", "load_cases.0.temperature_K=-30");
 #define STATES "for i, r in enumerate((b, c)) for s in ('cold', 'sun', 'cup_up', 'cup_down', 'spun') "
     EXPECT(merged, temp("one.h5"), temp("two.h5"), "--",
-           "a['points/input/cases.0.temperature_K'][:].tolist() == [-120, -30]",
+           "a['points/input/load_cases.0.temperature_K'][:].tolist() == [-120, -30]",
            "all(a['points/load_cases'][s][n][i] == r['load_cases'][s].attrs[n] " STATES
            "for n in ('psi_m', 'n_slack', 'n_loose', 'tension_max_N'))",
            "all(a['points/load_cases'][s][n][i] == r['load_cases'][s]['surface'].attrs[n] " STATES
@@ -127,9 +128,10 @@ END_TEST
 /* Which points have the required yield, by the 95 % intervals of Clopper and Pearson of their samples. */
 START_TEST(points_say_whether_they_have_the_yield)
 {
-    const char *path = file_with("s.yaml", NET "tolerance: {sigma_cut_m: 5e-5, samples: 60, yield: 0.6, require: "
-                                               "[{measure: psi_m, at_most: 2.6e-4}]}\nsweep:\n  tolerance.sigma_cut_m: "
-                                               "[1e-5, 3e-5, 3.3e-5, 3.6e-5, 4e-5, 9e-5]\n");
+    const char *path =
+        file_with("s.yaml", NET "tolerance: {sigma_cut_m: 5e-5, samples: 60, required_yield: 0.6, require: "
+                                "[{measure: psi_m, at_most: 2.6e-4}]}\nsweep:\n  tolerance.sigma_cut_m: "
+                                "[1e-5, 3e-5, 3.3e-5, 3.6e-5, 4e-5, 9e-5]\n");
     const char *merged = temp("s.h5"), *page = temp("s.html");
     sweep_and_merge(path, temp("s.d"), merged);
     HIFDM(0, "show", merged);
@@ -150,11 +152,12 @@ END_TEST
 /* Objectives that no point reaches: their merit decides which is best, however small psi's part in it is. */
 START_TEST(objectives_say_which_point_is_best)
 {
-    sweep_and_merge(file_with("s.yaml",
-                              "title: How hard\n" NET "optimize: {method: lm, variables: [{set: tie, vary: "
-                              "force_density, range: 50 %}], goals: [{goal: psi}, {goal: tension, set: tie, target: "
-                              "0.1, weight: 10}]}\n" TOLERANCE AXIS),
-                    temp("s.d"), temp("s.h5"));
+    sweep_and_merge(
+        file_with("s.yaml",
+                  "title: How hard\n" NET "optimize: {method: lm, variables: [{set: tie, vary: "
+                  "force_density, range: 50 %}], objective: [{figure: psi}, {figure: tension, set: tie, target: "
+                  "0.1, weight: 10}]}\n" TOLERANCE AXIS),
+        temp("s.d"), temp("s.h5"));
     HIFDM(0, "show", temp("s.h5"), "--json");
     EXPECT(temp("s.h5"), out_as("s.json"), "--", "b['best_by'] == 'merit'",
            "b['best'] == texts(a['points/id'])[int(np.argmin(a['points/refine/merit'][:]))]",

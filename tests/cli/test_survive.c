@@ -4,8 +4,8 @@
 #define SURVIVE                                                                                                        \
     SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n"                                                            \
                 "tolerance: {sigma_cut_m: 1e-4, samples: 64, sampling: random}\n"                                      \
-                "cases: [{name: pushed, force_N: [0, 0, 0.2], role: inner}]\n"                                         \
-                "optimize: {method: %s, range_N: 4, population: 12, generations: 8, compare_lm: false, samples: 64, "  \
+                "load_cases: [{name: pushed, force_N: [0, 0, 0.2], role: inner}]\n"                                    \
+                "optimize: {method: %s, range_N: 4, population: 12, generations: 8, refine: false, samples: 64, "      \
                 "%s: [%s]}\n"
 
 static const char *survive_case(const char *name, const char *method, const char *objectives)
@@ -18,9 +18,9 @@ START_TEST(threads_change_nothing)
 {
     static const char *const method[] = {"lm", "ga", "ga+lm"},
                              *const objectives[] = {
-                                 "{goal: psi, over: samples}, {goal: psi, state: pushed, weight: 0.1}",
-                                 "{goal: psi, over: samples, quantile: 0.95}",
-                                 "{goal: psi, over: samples, take: worst}"};
+                                 "{figure: psi, over: samples}, {figure: psi, load_case: pushed, weight: 0.1}",
+                                 "{figure: psi, over: samples, quantile: 0.95}",
+                                 "{figure: psi, over: samples, take: worst}"};
     const char *c = survive_case("c.yaml", method[_i], objectives[_i]), *one = temp("a.h5"), *many = temp("b.h5");
     HIFDM(0, "run", c, "-o", one, "--quiet", "--threads", "1");
     HIFDM(0, "run", c, "-o", many, "--quiet", "--threads", "3");
@@ -35,10 +35,10 @@ START_TEST(killed_runs_go_on_to_the_same_bits)
     static const struct {
         const char *method, *list, *rows;
     } seek[] = {
-        {"ga+lm", "goals", "{goal: psi, over: samples}, {goal: psi, state: pushed, weight: 0.1}"},
-        {"ga", "goals", "{goal: psi, over: samples, quantile: 0.95}, {goal: psi, over: states, weight: 0.5}"},
-        {"ga+lm", "goals", "{goal: psi, over: states, take: worst}, {goal: psi, over: samples, take: worst}"},
-        {"ga", "objectives", "{goal: psi, over: samples, quantile: 0.9}, {goal: ratio, set: boundary}"},
+        {"ga+lm", "goals", "{figure: psi, over: samples}, {figure: psi, load_case: pushed, weight: 0.1}"},
+        {"ga", "goals", "{figure: psi, over: samples, quantile: 0.95}, {figure: psi, load_case: all, weight: 0.5}"},
+        {"ga+lm", "goals", "{figure: psi, load_case: all, take: worst}, {figure: psi, over: samples, take: worst}"},
+        {"ga", "objectives", "{figure: psi, over: samples, quantile: 0.9}, {figure: ratio, set: boundary}"},
     };
     const char *c = file_with("c.yaml", formatted(SURVIVE, seek[_i].method, seek[_i].list, seek[_i].rows)),
                *path = temp("a.h5"), *whole = temp("b.h5"), *samples = keep(formatted("%s.tolerance", path));
@@ -69,11 +69,12 @@ END_TEST
 /* The goal over the samples of `tolerance` is its figure, and its optimum is better in it than that of psi. */
 START_TEST(what_is_sought_is_found)
 {
-    static const char *const objective[] = {"{goal: psi, over: samples}", "{goal: psi, over: samples, quantile: 0.95}"},
+    static const char *const objective[] = {"{figure: psi, over: samples}",
+                                            "{figure: psi, over: samples, quantile: 0.95}"},
                              *const method[] = {"lm", "ga"}, *const stage[] = {"polish", "optimize"},
                              *const figure[] = {"rms_psi_m", "psi_95_m"};
     const char *psi = temp("a.h5"), *survives = temp("b.h5");
-    HIFDM(0, "run", survive_case("p.yaml", method[_i], "{goal: psi}"), "-o", psi, "--quiet");
+    HIFDM(0, "run", survive_case("p.yaml", method[_i], "{figure: psi}"), "-o", psi, "--quiet");
     HIFDM(0, "run", survive_case("s.yaml", method[_i], objective[_i]), "-o", survives, "--quiet");
     EXPECT(survives, psi, "--",
            formatted("near(a['goals/%s'][0], a['tolerance'].attrs['%s'], 1e-7)", stage[_i], figure[_i]),
@@ -84,12 +85,12 @@ END_TEST
 START_TEST(faults_of_nets_are_named)
 {
     static const char *const fault[][3] = {
-        {"lm", "{goal: psi, state: pushd}", "state: is no state of `cases`; did you mean 'pushed'?"},
-        {"lm", "{goal: psi, over: samples, quantile: 0.9}", "quantile: has no derivatives"},
-        {"ga+lm", "{goal: psi, over: samples, quantile: 0.9}", "quantile: has no derivatives"},
-        {"ga", "{goal: psi, over: states, quantile: 0.9}", "quantile: has a meaning for over: samples alone"},
-        {"lm", "{goal: psi, take: worst}", "take: has a meaning for over: states and over: samples alone"},
-        {"lm", "{goal: psi, state: pushed, over: states}", "state: is one net"},
+        {"lm", "{figure: psi, load_case: pushd}", "load_case: is no load case of `load_cases`; did you mean 'pushed'?"},
+        {"lm", "{figure: psi, over: samples, quantile: 0.9}", "quantile: has no derivatives"},
+        {"ga+lm", "{figure: psi, over: samples, quantile: 0.9}", "quantile: has no derivatives"},
+        {"ga", "{figure: psi, load_case: all, quantile: 0.9}", "quantile: has a meaning for over: samples alone"},
+        {"lm", "{figure: psi, take: worst}", "take: has a meaning for load_case: all and over: samples alone"},
+        {"lm", "{figure: psi, load_case: pushed, over: samples}", "load_case: does not go with over: samples"},
     };
     HIFDM(2, "check", survive_case("c.yaml", fault[_i][0], fault[_i][1]));
     ERR(fault[_i][2]);
@@ -99,20 +100,20 @@ END_TEST
 
 START_TEST(what_nets_need_is_named)
 {
-    static const char scene[] = SMALL_SCENE "optimize: {method: lm, goals: [%s]}\n%s";
-    HIFDM(2, "check", file_with("c.yaml", formatted(scene, "{goal: psi, over: states}", "")));
-    ERR("over: states needs rows of `cases`");
-    HIFDM(2, "check", file_with("c.yaml", formatted(scene, "{goal: psi, over: samples}", "")));
+    static const char scene[] = SMALL_SCENE "optimize: {method: lm, objective: [%s]}\n%s";
+    HIFDM(2, "check", file_with("c.yaml", formatted(scene, "{figure: psi, load_case: all}", "")));
+    ERR("load_case: needs rows of `load_cases`");
+    HIFDM(2, "check", file_with("c.yaml", formatted(scene, "{figure: psi, over: samples}", "")));
     ERR("over: samples needs a section tolerance");
     HIFDM(2, "check",
-          file_with("c.yaml", formatted(scene, "{goal: psi, over: samples}", "tolerance: {sigma_cut_m: 1e-5}\n")));
+          file_with("c.yaml", formatted(scene, "{figure: psi, over: samples}", "tolerance: {sigma_cut_m: 1e-5}\n")));
     ERR("have no EA");
 }
 END_TEST
 
 START_TEST(quantiles_have_no_derivatives)
 {
-    const char *c = survive_case("c.yaml", "ga", "{goal: psi, over: samples, quantile: 0.9}"), *d = temp("d.csv");
+    const char *c = survive_case("c.yaml", "ga", "{figure: psi, over: samples, quantile: 0.9}"), *d = temp("d.csv");
     HIFDM(0, "evaluate", c, "--template", d);
     HIFDM(2, "evaluate", c, "--designs", d, "--jacobian", temp("j.csv"));
     ERR("no derivatives of quantiles");

@@ -122,15 +122,16 @@ END_TEST
  * stage, with what the files of the points have. */
 START_TEST(objectives_are_columns_of_a_merge)
 {
-    const char *path = file_with("study.yaml", SMALL_SCENE "optimize:\n"
-                                                           "  population: 6\n"
-                                                           "  generations: 2\n"
-                                                           "  method: ga+lm\n"
-                                                           "  goals: [{goal: psi}, {goal: evenness, set: edge}]\n"
-                                                           "sweep:\n"
-                                                           "  combine: zip\n"
-                                                           "  optimize.goals.1.weight: [1e-5, 1e-3, 1e-1]\n"
-                                                           "  optimize.goals.1.set: [edge, edge, directrix]\n"),
+    const char *path =
+                   file_with("study.yaml", SMALL_SCENE "optimize:\n"
+                                                       "  population: 6\n"
+                                                       "  generations: 2\n"
+                                                       "  method: ga+lm\n"
+                                                       "  objective: [{figure: psi}, {figure: evenness, set: edge}]\n"
+                                                       "sweep:\n"
+                                                       "  combine: zip\n"
+                                                       "  optimize.objective.1.weight: [1e-5, 1e-3, 1e-1]\n"
+                                                       "  optimize.objective.1.set: [edge, edge, directrix]\n"),
                *folder = temp("s.d"), *merged = temp("s.h5"), *page = temp("s.html");
     HIFDM(0, "sweep", path, "--dir", folder);
     HIFDM(0, "merge", path, "--dir", folder, "-o", merged);
@@ -139,7 +140,7 @@ START_TEST(objectives_are_columns_of_a_merge)
     "' else "                                                                                                          \
     "np.isnan(got))(a['points/" prefix name "'][i], a['runs/' + k]) for i, k in enumerate(texts(a['points/id'])) for " \
     "j in [min(1, int('" name "'[10]))])"
-    EXPECT(merged, "--", "a['points/input/optimize.goals.1.weight'][:].tolist() == [1e-5, 1e-3, 1e-1]",
+    EXPECT(merged, "--", "a['points/input/optimize.objective.1.weight'][:].tolist() == [1e-5, 1e-3, 1e-1]",
            COLUMN("objective_0_psi", "form", "form/"), COLUMN("objective_0_psi", "search", "search/"),
            COLUMN("objective_0_psi", "refine", "refine/"), COLUMN("objective_1_evenness_edge", "form", "form/"),
            COLUMN("objective_1_evenness_edge", "search", "search/"),
@@ -308,7 +309,7 @@ static bool is_in_the_middle(const char *folder)
 START_TEST(a_stopped_sweep_goes_on)
 {
     file_with("base.yaml", SMALL_SCENE "optimize: {population: 100, generations: 1000, stagnation_generations: 1000, "
-                                       "polish_iterations: 1}\n");
+                                       "refine_steps: 1}\n");
     const char *path = file_with("study.yaml", "base: base.yaml\nsweep:\n  optimize.seed: {from: 1, to: 6, n: 6}\n");
     HIFDM(0, "sweep", path, "--dir", temp("whole.d"), "--quiet");
     HIFDM(0, "merge", path, "--dir", temp("whole.d"), "-o", temp("whole.h5"));
@@ -333,7 +334,7 @@ END_TEST
 START_TEST(a_killed_sweep_goes_on)
 {
     file_with("base.yaml", SMALL_SCENE "optimize: {population: 60, generations: 300, stagnation_generations: 300, "
-                                       "polish_iterations: 1}\n");
+                                       "refine_steps: 1}\n");
     const char *path = file_with("study.yaml", "base: base.yaml\nsweep:\n  optimize.seed: {from: 1, to: 6, n: 6}\n");
     HIFDM(0, "sweep", path, "--dir", temp("whole.d"), "--quiet");
     HIFDM(0, "merge", path, "--dir", temp("whole.d"), "-o", temp("whole.h5"));

@@ -15,7 +15,7 @@ static const char *study_of(const char *base)
 static const char *begun_study(const char *folder)
 {
     file_with("base.yaml", SMALL_SCENE "optimize: {population: 20, generations: 30000, seed: 7, "
-                                       "stagnation_generations: 30000, polish_iterations: 1}\n");
+                                       "stagnation_generations: 30000, refine_steps: 1}\n");
     const char *path = file_with("study.yaml", "base: base.yaml\nsweep:\n  optimize.seed: [1]\n");
     for (;;) { /* anew when the point was done first */
         session s = start_sweep(path, folder, NULL);
@@ -152,7 +152,7 @@ START_TEST(a_name_that_is_taken_meanwhile)
 {
     const char *folder = temp("s.d"), *path = temp("study.yaml");
     file_with("base.yaml", SMALL_SCENE "optimize: {population: 20, generations: 6000, seed: 7, "
-                                       "stagnation_generations: 6000, polish_iterations: 1}\n");
+                                       "stagnation_generations: 6000, refine_steps: 1}\n");
     file_with("study.yaml", "base: base.yaml\nsweep:\n  optimize.generations: [6000, 5999, 5998]\n");
     for (;;) { /* anew when all were done first */
         session s = start_sweep(path, folder, NULL);

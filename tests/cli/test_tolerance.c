@@ -62,7 +62,7 @@ START_TEST(samples_tell_the_loss_of_their_far_field)
 {
 #define FAR                                                                                                            \
     BUILT_SCENE "surface: {frequencies_Hz: [2e9, 1e9], pattern: {n_theta: 3}}\n"                                       \
-                "optimize: {method: lm, goals: [{goal: gain}]}\n"                                                      \
+                "optimize: {method: lm, objective: [{figure: gain}]}\n"                                                \
                 "tolerance: {sigma_cut_m: 1e-4, samples: 150, require: [{measure: pattern_loss_dB, at_most: 2.9}]}\n"
     const char *c = file_with("c.yaml", FAR), *whole = temp("a.h5"), *path = temp("b.h5");
     HIFDM(0, "tolerance", c, "-o", temp("n.h5"), "--json", "--set", "tolerance.sigma_cut_m=1e-10", "--set",
@@ -95,8 +95,8 @@ START_TEST(samples_tell_the_loss_of_their_far_field)
     ERR("which loses more than 3 dB into lobes");
     HIFDM(0, "check",
           file_with("f.yaml", BUILT_SCENE "surface: {frequencies_Hz: [2e9], pattern: {feed: {kind: "
-                                          "plane_wave}}}\noptimize: {method: lm, goals: [{goal: gain}]}\n"));
-    ERR("f.yaml:6:32: optimize.goals.0: gain: the net at its target positions already loses ");
+                                          "plane_wave}}}\noptimize: {method: lm, objective: [{figure: gain}]}\n"));
+    ERR("f.yaml:6:36: optimize.objective.0: gain: the net at its target positions already loses ");
 }
 END_TEST
 
@@ -104,7 +104,7 @@ END_TEST
 START_TEST(samples_tell_each_loss_of_gain)
 {
     const char *c = file_with("c.yaml", BUILT_SCENE "surface: {frequencies_Hz: [2e8, 1e8]}\n"
-                                                    "tolerance: {sigma_cut_m: 1e-4, samples: 40, yield: 0.9,\n"
+                                                    "tolerance: {sigma_cut_m: 1e-4, samples: 40, required_yield: 0.9,\n"
                                                     "  require: [{measure: fit_gain_loss_dB, at_most: 1}]}\n"),
                *path = temp("a.h5");
     HIFDM(0, "tolerance", c, "-o", path, "--quiet");
@@ -216,7 +216,7 @@ START_TEST(beside_a_front_the_net_of_form_finding_is_built)
     const char *path = temp("a.h5");
     const char *c = file_with(
         "c.yaml",
-        formatted(BUILT_SCENE "optimize: {method: %s, population: 10, generations: 3, objectives: [{goal: psi}, {goal: "
+        formatted(BUILT_SCENE "optimize: {method: %s, population: 10, generations: 3, front: [{figure: psi}, {figure: "
                               "ratio, set: boundary}]}\ntolerance: {sigma_cut_m: 1e-6, samples: 20}\n",
                   method[_i]));
     HIFDM(0, "run", c, "-o", path, "--quiet");
@@ -262,7 +262,8 @@ START_TEST(faults_are_named)
     static const char *const fault[][2] = {
         {"  sigma_cut_m: 0\n", "tolerance.sigma_cut_m: must be above 0, or another sigma"},
         {"  sigma_cut_m: 1e-4\n  samples: 0\n", "7:12: tolerance.samples: must be at least 10"},
-        {"  sigma_cut_m: 1e-4\n  yield: 0.9\n", "7:10: tolerance.yield: needs rows of tolerance.require"},
+        {"  sigma_cut_m: 1e-4\n  required_yield: 0.9\n",
+         "7:19: tolerance.required_yield: needs rows of tolerance.require"},
         {"  sigma_temperature_K: 5\n",
          "6:24: tolerance.sigma_temperature_K: needs expansion_per_K in a row of `cables`"},
         {"  sigma_temperature_K: 5\ncables: [{set: boundary, expansion_per_K: 1e-6}]\n",
@@ -289,7 +290,7 @@ START_TEST(faults_are_named)
         {"  sigma_cut_m: 1e-4\n  require: [{measure: pattern_loss_dB, at_most: 1}]\nsurface: {frequencies_Hz: [60e9], "
          "pattern: {theta_deg: [-1, 1]}}\n",
          "7:23: tolerance.require.0.measure: pattern_loss_dB is not measured: its facets are too coarse"},
-        {"  sigma_cut_m: 1e-4\n  require: [{measure: least_tension_N, at_most: 1}]\n", "asks for slack cables"},
+        {"  sigma_cut_m: 1e-4\n  require: [{measure: tension_min_N, at_most: 1}]\n", "asks for slack cables"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: psi_m, at_most: -1e-3}]\n", "is below 0, which no net can reach"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: fit_gain_loss_dB, at_most: -1}]\nsurface: {frequencies_Hz: "
          "[1e9]}\n",
@@ -317,8 +318,8 @@ START_TEST(faults_are_named)
 }
 END_TEST
 
-/* One sigma of a part of the truss is a state of `cases`: what it moves is the deviation to first order, by differences
- * of two states; and the samples are the states of their temperatures. */
+/* One sigma of a part of the truss is a state of `load_cases`: what it moves is the deviation to first order, by
+ * differences of two states; and the samples are the states of their temperatures. */
 START_TEST(a_warm_truss_is_that_of_load_cases)
 {
     static const char scene[] = "scene:\n"
@@ -327,7 +328,7 @@ START_TEST(a_warm_truss_is_that_of_load_cases)
                                 "form: {pretension_N: 40, prestress: exact}\ncables: [{expansion_per_K: 0}]\n"
                                 "truss:\n  ring: {longeron: {diameter_m: 0.03, wall_m: 0.001}, held: "
                                 "three_verticals}\n  expansion_per_K: 1e-6\ncoupling: {tof_m: 1e-12}\n"
-                                "tolerance: {samples: 10, truss: [{part: %s, sigma_temperature_K: 20}]}\ncases:\n"
+                                "tolerance: {samples: 10, truss: [{part: %s, sigma_temperature_K: 20}]}\nload_cases:\n"
                                 "  - {name: hot, part: %s, temperature_K: 2}\n"
                                 "  - {name: cold, part: %s, temperature_K: -2}\n";
     static const char *const part[] = {"truss", "longeron", "vertical"};
@@ -353,8 +354,8 @@ END_TEST
 START_TEST(samples_are_those_of_another_solver)
 {
     const char *c = built_case("random"), *path = temp("a.h5");
-    HIFDM(0, "tolerance", c, "-o", path, "--quiet", "--set", "tolerance.samples=50", "--set", "tolerance.yield=0",
-          "--set", "form.residual_tolerance=1e-11");
+    HIFDM(0, "tolerance", c, "-o", path, "--quiet", "--set", "tolerance.samples=50", "--set",
+          "tolerance.required_yield=0", "--set", "form.residual_tolerance=1e-11");
     struct command o = run_command(
         HANG_S, (const char *const[]){python_program(), source_path("tests/verify/tolerance_oracle.py"), path, NULL});
     ck_assert_msg(o.exit_code == 0, "%s%s", o.out, o.err);
@@ -417,7 +418,7 @@ START_TEST(what_errors_may_be_is_told_in_words)
     file_with("e.csv", "id,i,j,group,law,value,EA_N\np,a,m,inner,length,,2000\n");
     const char *path = temp("a.h5"),
                *c = file_with("c.yaml", formatted("scene: {import: {nodes: n.csv, cables: e.csv}}\n"
-                                                  "tolerance: {sigma_cut_m: 2e-4, samples: 1000, yield: 0.9,\n"
+                                                  "tolerance: {sigma_cut_m: 2e-4, samples: 1000, required_yield: 0.9,\n"
                                                   "  require: [{measure: psi_m, at_most: %s}]}\n",
                                                   least[_i]));
     HIFDM(0, "tolerance", c, "-o", path);

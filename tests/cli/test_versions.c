@@ -39,7 +39,7 @@ START_TEST(results_of_0_1_0_are_shown_and_exported)
     HIFDM(0, "export", old, "--cutlist", cuts);
     EXPECT(old, keep(formatted("%s/cables.csv", csv)), cuts, "--",
            "list(column(b, 'tension_N')) == list(column(c, 'tension_N')) == a['polish/tension_N'][:].tolist()");
-    HIFDM(0, "export", old, "--csv", temp("cold"), "--case", "cold");
+    HIFDM(0, "export", old, "--csv", temp("cold"), "--load-case", "cold");
     HIFDM(0, "report", old, "-o", temp("old.html"));
     char *page = read_file(temp("old.html"), NULL);
     demand_part(page, "a small dish with every group that a file can have", __LINE__);

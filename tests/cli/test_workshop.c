@@ -49,7 +49,7 @@ START_TEST(paraview_opens_the_result)
     static const char *const argument[][5] = {
         {"configs/straight-edges.yaml", "optimize.generations=3", "title=grid", "form refine search\n", "c.h5"},
         {"configs/straight-edges-truss.yaml", "optimize.generations=1", "title=grid", "form refine search\n", "t.hdf"},
-        {"configs/paraboloid-cases.yaml", "title=grid", "title=grid",
+        {"configs/paraboloid-load-cases.yaml", "title=grid", "title=grid",
          "form load_case_cold load_case_cup_down load_case_cup_up load_case_spun load_case_sun\n", "e.hdf"},
         {NULL, "scene.EA_inner_N=1e5", "scene.EA_boundary_N=2e5", "form\n", "s.hdf"}};
     const char *samples = file_with("s.yaml", SMALL_SCENE "tolerance: {sigma_cut_m: 1e-4, samples: 20}\n");
@@ -143,7 +143,7 @@ END_TEST
  * 1e-11 m. */
 START_TEST(net_built_from_the_cut_list_has_the_found_shape)
 {
-    static const char *const stage[] = {"form", "search", "refine"}, *const word[] = {"form", "optimize", "polish"};
+    static const char *const stage[] = {"form", "search", "refine"}, *const word[] = {"form", "search", "refine"};
     const char *out = run_chen(), *built = temp("built.h5"), *cut = temp("cut.csv");
     HIFDM(0, "export", out, "--cutlist", cut, "--csv", temp("net"), "--stage", word[_i], "--force");
     OUT("cutting lengths of 220 cables of the ");

@@ -172,9 +172,9 @@ START_TEST(frequencies_in_another_unit_are_refused)
     ERR("surface.frequencies_Hz: is 6 Hz, and below 1 MHz there are no reflectors: was GHz meant? 6 GHz is 6e9\n");
     HIFDM(0, "check", path, "--set", "surface.frequencies_Hz=[1e6]");
     HIFDM(2, "check", keep(source_path("configs/paraboloid-even.yaml")), "--set",
-          "optimize.goals=[{goal: gain, frequency_Hz: 32}]", "--set", "surface.frequencies_Hz=[1e9]", "--set",
+          "optimize.objective=[{figure: gain, frequency_Hz: 32}]", "--set", "surface.frequencies_Hz=[1e9]", "--set",
           "surface.pattern.phi_deg=[0]");
-    ERR("optimize.goals.0.frequency_Hz: is 32 Hz, and ");
+    ERR("optimize.objective.0.frequency_Hz: is 32 Hz, and ");
 }
 END_TEST
 

@@ -20,19 +20,19 @@ SEARCH = """optimize:
 """
 LATER = """surface: {frequencies_Hz: [2e9]}
 cables: [{expansion_per_K: -1e-6}]
-cases: [{name: cold, temperature_K: -60}]
+load_cases: [{name: cold, temperature_K: -60}]
 tolerance: {sigma_cut_m: 1e-4, samples: 300}
 """
 FILES = {
     "form.yaml": NET,
-    "ga.yaml": NET + SEARCH % (12, 60, "compare_lm: false"),
+    "ga.yaml": NET + SEARCH % (12, 60, "refine: false"),
     "lm.yaml": NET + TRUSS + "optimize: {method: lm, variables: [{set: all, vary: force_density, range: 50 %}]}\n",
-    "all.yaml": NET + TRUSS + LATER + SEARCH % (8, 5, "method: ga+lm\n  polish_iterations: 2"),
-    "front.yaml": NET + SEARCH % (8, 5, "objectives: [{goal: psi}, {goal: ratio, set: boundary}]"),
+    "all.yaml": NET + TRUSS + LATER + SEARCH % (8, 5, "method: ga+lm\n  refine_steps: 2"),
+    "front.yaml": NET + SEARCH % (8, 5, "front: [{figure: psi}, {figure: ratio, set: boundary}]"),
     "cut.yaml": NET + "tolerance: {sigma_cut_m: 1e-4, samples: 1500}\n",
     "adjust.yaml": NET + "tolerance: {sigma_cut_m: 1e-3, samples: 50}\n"
-    "adjust: {set: tie, range_m: 0.002, step_m: 1e-4, moves: 2, sigma_m: 1e-4}\n",
-    "small.yaml": NET + SEARCH % (8, 4, "compare_lm: false"),
+    "adjust: {set: tie, range_m: 0.002, step_m: 1e-4, max_adjustments: 2, sigma_m: 1e-4}\n",
+    "small.yaml": NET + SEARCH % (8, 4, "refine: false"),
     "s.yaml": "base: small.yaml\nsweep:\n  form.pretension_N: [15, 20, 25, 30]\n",
     "own.yaml": "scene: {import: {nodes: nodes.csv, cables: cables.csv}}\n",
 }

@@ -17,19 +17,19 @@ SCENE = """scene:
   EA_inner_N: 1e5
   EA_boundary_N: 1e5
 """
-GA = "optimize: {population: 20, generations: %d, seed: 7, compare_lm: false%s}\n"
-LM = "optimize: {seed: 7, method: lm, polish_iterations: 4%s}\n"
-OBJECTIVES = ", objectives: [{goal: psi}, {goal: ratio, set: boundary}]"
+GA = "optimize: {population: 20, generations: %d, seed: 7, refine: false%s}\n"
+LM = "optimize: {seed: 7, method: lm, refine_steps: 4%s}\n"
+OBJECTIVES = ", front: [{figure: psi}, {figure: ratio, set: boundary}]"
 STATES = """cables:
   - {expansion_per_K: -1e-6}
-cases:
+load_cases:
   - {name: cold, temperature_K: -100, part: net}
   - {name: hot, temperature_K: 100, part: net}
 """
 FIELD = "surface: {frequencies_Hz: [1e9], pattern: {theta_deg: [-2, 2], n_theta: 11}}\n"
 SAMPLES = "tolerance: {sigma_cut_m: 1e-4, samples: 3000}\n"
 ADJUST = """tolerance: {sigma_cut_m: 1e-3, samples: 100}
-adjust: {set: inner, range_m: 0.002, step_m: 1e-4, moves: 2, sigma_m: 1e-4}
+adjust: {set: inner, range_m: 0.002, step_m: 1e-4, max_adjustments: 2, sigma_m: 1e-4}
 """
 FILES = {
     "form.yaml": SCENE,
@@ -41,7 +41,7 @@ FILES = {
     "field.yaml": SCENE + FIELD,
     "samples.yaml": SCENE + SAMPLES,
     "all.yaml": SCENE + "truss: {E_Pa: 2e9}\nform: {pretension_N: 20}\n" + STATES + SAMPLES +
-    "optimize: {population: 8, generations: 8, seed: 7, method: ga+lm, polish_iterations: 2}\n",
+    "optimize: {population: 8, generations: 8, seed: 7, method: ga+lm, refine_steps: 2}\n",
     "adjust.yaml": SCENE + ADJUST,
     "s.yaml": "base: ga.yaml\nsweep:\n  form.pretension_N: [8, 9, 10]\n",
 }
@@ -94,7 +94,7 @@ ROWS = [
 # What each section of a case and each method of the search makes run: table.py holds them against `hifdm schema`.
 SECTIONS = {"title": None, "scene": None, "cables": None, "nodes": None, "truss": "all stages",
             "coupling": "all stages", "form": "form-finding", "optimize": "search by GA", "surface": "far field",
-            "tolerance": "`tolerance`", "cases": "load cases", "adjust": "`adjust`", "sweep": "`sweep`"}
+            "tolerance": "`tolerance`", "load_cases": "load cases", "adjust": "`adjust`", "sweep": "`sweep`"}
 FILLER = "filler"  # takes the room of a full disk
 METHODS = {"ga": "search by GA", "lm": "refinement by LM", "ga+lm": "all stages"}
 

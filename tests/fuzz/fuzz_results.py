@@ -27,7 +27,7 @@ NET = """scene:
   EA_inner_N: 1e5
   EA_boundary_N: 1e5
 """
-GA = "optimize: {population: 6, generations: %d, seed: 7, polish_iterations: 3}\n"
+GA = "optimize: {population: 6, generations: %d, seed: 7, refine_steps: 3}\n"
 CASES = {
     "ga": NET + GA % 4 + "surface: {frequencies_Hz: [1e9, 3e10]}\n",
     "truss": NET + "truss: {}\n" + GA % 3,

@@ -11,12 +11,12 @@ from common import SMALL, evaluate_by_program, main, near, program, same_bits, s
 
 import hifdm
 
-SHORT = {"optimize.generations": 1, "optimize.polish_iterations": 1}
+SHORT = {"optimize.generations": 1, "optimize.refine_steps": 1}
 # Cases, their overrides, and whether designs have derivatives.
 CASES = [("configs/chen2022.yaml", SHORT, True), ("configs/straight-edges-truss.yaml", SHORT, True),
          ("configs/reflector.yaml", SHORT, True), ("configs/paraboloid-6m.yaml", {}, False)]
-GOALS = "optimize: {variables: [{set: all, vary: tension, range: 20 %}], goals: [{goal: psi}, {goal: ratio, " \
-        "set: all, weight: 1e-3}, {goal: tension, set: boundary, target: 12}]}\n"
+GOALS = "optimize: {variables: [{set: all, vary: tension, range: 20 %}], objective: [{figure: psi}, {figure: ratio, " \
+        "set: all, weight: 1e-3}, {figure: tension, set: boundary, target: 12}]}\n"
 
 
 class Bits(unittest.TestCase):
@@ -85,14 +85,14 @@ class Bits(unittest.TestCase):
         self.assertTrue((np.abs(merit / out.merit - 1)[out.feasible] < 0.01).all())
 
     def test_designs_with_objectives(self):
-        objectives = GOALS.replace("goals:", "objectives:").replace(", weight: 1e-3", "")
+        objectives = GOALS.replace("objective:", "front:").replace(", weight: 1e-3", "")
         out = self.check_designs(temp("objectives.yaml", SMALL + objectives), 20)
         self.assertNotIn("merit", out.names)
         self.assertEqual(len(out.objective_names), 3)
 
     def test_run(self):
         text = SMALL + "optimize: {population: 6, generations: 3, seed: 7}\ncables: [{expansion_per_K: -1e-6}]\n" \
-                       "cases: [{name: cold, temperature_K: -50}]\ntolerance: {samples: 200, sigma_cut_m: 5e-5}\n"
+                       "load_cases: [{name: cold, temperature_K: -50}]\ntolerance: {samples: 200, sigma_cut_m: 5e-5}\n"
         path = temp("run.yaml", text.replace("scene:\n", "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n"))
         theirs = json.loads(program("run", path, "-o", temp("theirs.h5"), "--force", "--json"))
         seen = []

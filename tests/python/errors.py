@@ -120,6 +120,14 @@ class Errors(unittest.TestCase):
                                     (hifdm.open(small).run, {"output": temp("nul.h5") + "\0"})):
             self.refused(ValueError, "has a NUL character", function, **arguments)
 
+    def test_old_names_in_sections(self):
+        adjust = {"set": "all", "range_m": 0.01, "step_m": 0.001, "moves": 3}
+        for old, more in (("arrays:[0-9]+:[0-9]+: adjust.moves is now adjust.max_adjustments: ", {}),
+                          ("--set adjust.aim=theory: adjust.aim=theory is now adjust.aim=target_positions: ",
+                           {"set": {"adjust.aim": "theory"}})):
+            with self.assertWarnsRegex(hifdm.HifdmWarning, old):
+                self.net(adjust=adjust, **more)
+
     def test_a_relative_path_is_that_of_its_opening(self):
         temp("here.yaml", SMALL + "optimize: {population: 4, generations: 1}\n")
         before = os.getcwd()

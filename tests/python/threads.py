@@ -29,7 +29,7 @@ def resident_kB():
 
 class Threads(unittest.TestCase):
     def test_two_cases_at_once(self):
-        short = {"optimize.generations": 2, "optimize.polish_iterations": 1}
+        short = {"optimize.generations": 2, "optimize.refine_steps": 1}
         cases = [(source("configs/chen2022.yaml"), short, 6), (source("configs/straight-edges-truss.yaml"), short, 3)]
         alone = [work(*case) for case in cases]
         for _ in range(3):

@@ -57,7 +57,7 @@ sweep:
   optimize.solver: [newton]
   optimize.generations: [300]
   optimize.stagnation_generations: [300]
-  optimize.polish_iterations: [2]
+  optimize.refine_steps: [2]
 YAML
 # Records which process works for which task.
 cat >hifdm-task <<SH

@@ -176,7 +176,7 @@ def compare(program, folder, random):
     rule = "force_density" if is_density else "tension"
     by_rows = not is_density and cap < 1.5
     net.write(folder, f"variables: [{{set: boundary, vary: tension, range: {reach}, bounds: [0.1, null]}}], "
-              f"limits: [{{limit: ratio, set: boundary, bounds: [1, {cap}]}}]" if by_rows
+              f"limits: [{{figure: ratio, set: boundary, bounds: [1, {cap}]}}]" if by_rows
               else f"rule: {rule}, range_N: {reach}, boundary_ratio_cap: {cap}")
     result = os.path.join(folder, "r.h5")
     run = subprocess.run([program, "run", os.path.join(folder, "case.yaml"), "-o", result, "--restart", "--quiet"],

@@ -83,7 +83,7 @@ class Case:
                  "form: {residual_tolerance: 1e-11}", "coupling: {tof_m: 1e-12}",
                  "cables:", "  - {expansion_per_K: -1e-5, mass_kg_per_m: 0.05}",
                  "  - {set: radial, expansion_per_K: 2e-5, mass_kg_per_m: 0.02}",
-                 "nodes:", "  - {mass_kg: 0.1}", "  - {role: support, mass_kg: 0.3}", "cases:"]
+                 "nodes:", "  - {mass_kg: 0.1}", "  - {role: support, mass_kg: 0.3}", "load_cases:"]
         vector = lambda v: "[" + ", ".join(g(x) for x in v) + "]"
         for k, s in enumerate(self.states):
             name = f"  - {{name: s{k}, "

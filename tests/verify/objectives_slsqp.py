@@ -117,11 +117,11 @@ def compare(program, folder, random, on_truss):
     target = None if on_truss else float(random.uniform(10, 25))
     cap = 0 if on_truss else float(random.uniform(1.1, 1.6))
     bounds = (float(random.uniform(14, 20)), float(random.uniform(40, 55))) if on_truss else None
-    goal = "{goal: displacement" if on_truss else f"{{goal: tension, set: boundary, target: {target}"
-    limit = (f"{{limit: tension, set: boundary, bounds: [{bounds[0]}, {bounds[1]}]}}" if on_truss
-             else f"{{limit: ratio, set: boundary, bounds: [1, {cap}]}}")
+    goal = "{figure: deflection" if on_truss else f"{{figure: tension, set: boundary, target: {target}"
+    limit = (f"{{figure: tension, set: boundary, bounds: [{bounds[0]}, {bounds[1]}]}}" if on_truss
+             else f"{{figure: ratio, set: boundary, bounds: [1, {cap}]}}")
     net.write(folder, f"variables: [{{set: boundary, vary: force_density, range: {100 * part} %}}], "
-              f"goals: [{{goal: psi}}, {goal}, weight: {weight}}}], limits: [{limit}]")
+              f"objective: [{{figure: psi}}, {goal}, weight: {weight}}}], limits: [{limit}]")
     result = os.path.join(folder, "r.h5")
     run = subprocess.run([program, "run", os.path.join(folder, "case.yaml"), "-o", result, "--restart", "--quiet"],
                          capture_output=True, text=True, check=False)

@@ -30,7 +30,7 @@ START_TEST(an_adjusted_net_is_that_of_the_oracle)
                         "tolerance: {sigma_cut_m: 0.0001, sigma_cut_ratio: 0.0003, sigma_EA_ratio: 0.05, batch: 0.7, "
                         "sigma_temperature_K: 20}\n"
                         "cables: [{set: inner, expansion_per_K: 1e-5}, {set: boundary, expansion_per_K: 2e-5}]\n"
-                        "adjust: {set: inner, range_m: 0.001, step_m: 0.00005, moves: 5}\n");
+                        "adjust: {set: inner, range_m: 0.001, step_m: 0.00005, max_adjustments: 5}\n");
     const char *hifdm = hifdm_program(), *oracle = source_path("tests/verify/adjust_oracle.py");
     const char *python = python_program();
     ASK(hifdm, "run", file[0], "-o", file[1], "--quiet");

@@ -46,7 +46,7 @@ START_TEST(other_seeds_find_the_same)
     static hf_summary s;
     char seed[32];
     snprintf(seed, sizeof seed, "optimize.seed=%d", _i + 1);
-    run(source_path("configs/chen2022.yaml"), (const char *const[]){seed, "optimize.compare_lm=false"}, 2, &s);
+    run(source_path("configs/chen2022.yaml"), (const char *const[]){seed, "optimize.refine=false"}, 2, &s);
     VERIFY(1e3 * s.stage[HF_STAGE_SEARCH].result.psi_m, 4.3, 0.1, "psi after the genetic algorithm, mm, %s", seed);
     ck_assert_double_gt(s.stage[HF_STAGE_SEARCH].result.boundary_tension_ratio,
                         s.stage[HF_STAGE_FORM].result.boundary_tension_ratio); /* as 5.608 */

@@ -49,9 +49,9 @@ static const char *written_case(void)
                      "optimize:\n"
                      "  method: lm\n"
                      "  variables: [{set: all, vary: force_density, bounds: [100, null]}]\n"
-                     "  goals:\n"
-                     "    - {goal: tension, set: edge, target: 20000, weight: 1e-3}\n"
-                     "    - {goal: length, set: field, target: 1}\n");
+                     "  objective:\n"
+                     "    - {figure: tension, set: edge, target: 20000, weight: 1e-3}\n"
+                     "    - {figure: length, set: field, target: 1}\n");
     return path;
 }
 
@@ -83,7 +83,7 @@ START_TEST(it_ends_no_later_than_the_page)
 {
     char output[HF_OUTPUT_SIZE];
     static hf_summary s;
-    static const char *const set[] = {"optimize.polish_iterations=19"};
+    static const char *const set[] = {"optimize.refine_steps=19"};
     hf_messages said = {0};
     hf_run_request request = {
         .case_path = written_case(), .set = set, .n_set = _i ? 0 : 1, .no_file = true, .threads = 2};

@@ -127,7 +127,7 @@ class Bench:
         command = [self.a.program, "run", *GA_CASES[name], "-o", path, "--force", "--json", "--quiet",
                    "--threads", str(threads)]
         for key, value in {"population": 50, "generations": generations, "stagnation_generations": 400,
-                           "polish_iterations": 1}.items():
+                           "refine_steps": 1}.items():
             command += ["--set", f"optimize.{key}={value}"]
         command += ["--set", "form.residual_tolerance=1e-9"]  # 1e-8 N at a pretension of 10 N
         start = time.monotonic()

@@ -158,7 +158,7 @@ int main(int argc, char **argv)
     hf_status status = hf_problem_open(argv[1], set.data(), (int)set.size(), 1, &problem, &said);
     if (status != HF_OK || objectives() == 0) {
         std::fprintf(stderr, "%s%s: %s\n", said.text ? said.text : "", argv[1],
-                     status != HF_OK ? hf_status_text(status) : "has no optimize.objectives");
+                     status != HF_OK ? hf_status_text(status) : "has no optimize.front");
         return status != HF_OK ? hf_status_exit_code(status) : 2;
     }
     hf_batch_share(&problem.batch, problem.initial);

@@ -21,8 +21,8 @@ import numpy as np
 
 CYLINDER = "scene.parabolic_cylinder."
 BUDGETS = 1000, 5000, 20000
-PSI, FACETS, PULL = "{goal: psi}", "{goal: facets}", "{goal: pull}"
-RATIO = "{goal: ratio, set: boundary}"
+PSI, FACETS, PULL = "{figure: psi}", "{figure: facets}", "{figure: pull}"
+RATIO = "{figure: ratio, set: boundary}"
 TRIANGLES = ["pattern=triangle", "modules=[3, 3]", "focal_length_m=30", "optimize.range_N=2"]
 PROBLEMS = {  # name: case, objectives, changes of the case; the settings were chosen on other nets than the last four
     "chen2022, psi and ratio": ("chen2022", (PSI, RATIO), []),
@@ -41,7 +41,7 @@ PROBLEMS = {  # name: case, objectives, changes of the case; the settings were c
 
 
 def settings(objectives, changes):
-    for change in ["optimize.objectives=[" + ", ".join(objectives) + "]", *changes]:
+    for change in ["optimize.front=[" + ", ".join(objectives) + "]", *changes]:
         yield "--set"
         yield change if change.startswith("optimize.") else CYLINDER + change
 

@@ -171,14 +171,14 @@ def main():
     error[(slice(None), *np.transpose(grid))] = errors(table).T
     found = newton(runs, [x for i, net in enumerate(every) for x in crossings(net, *error[:, i])])
     table = solve(runs, "ga", NET, [scene(*x) for x in found], **{"optimize.seed": 2022,
-                                                                  "optimize.compare_lm": "false"})
+                                                                  "optimize.refine": "false"})
     rank = [misfit(psi, ratio, x[1]) if np.isfinite(psi) else np.inf
             for psi, ratio, x in zip(table["search/psi_m"], table["search/boundary_tension_ratio"], found)]
     best = [found[i] for i in np.argsort(rank)[:KEPT]]
     print(f"{len(every)} nets, {len(grid)} scenes; {len(found)} give {1e3 * PSI_M} mm and {RATIO}; {len(best)} kept")
     points = [scene(*x) | {"form.stop": "residual"} for x in best] + \
              [scene(net, *at) | {"form.stop": "rms_change"} for *net, f, s in KNOWN for at in [(f, s)]]
-    write_study(SEARCH, NET, [point | {"optimize.seed": 2022, "optimize.compare_lm": "false"} for point in points],
+    write_study(SEARCH, NET, [point | {"optimize.seed": 2022, "optimize.refine": "false"} for point in points],
                 "# The nets whose figures are closest to the paper's, and three nets from another search.\n"
                 "# Written by `make paper-search`.\n")
     points = [point | {"truss.match_tolerance_m": f"{1.5 * x[0][5]:.3g}", "coupling.scheme": "plain",

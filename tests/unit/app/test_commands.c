@@ -75,8 +75,9 @@ static void measure(const hf_options *result, const char *table)
 
 START_TEST(adjust_after_a_table_with_faults)
 {
-    static const char sections[] = "tolerance: {sigma_cut_m: 0.0001}\n"
-                                   "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 3, sigma_m: 0.0001}\n";
+    static const char sections[] =
+        "tolerance: {sigma_cut_m: 0.0001}\n"
+        "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, max_adjustments: 3, sigma_m: 0.0001}\n";
     static char printed[4096], first[4096];
     char *path = strdup(temp_path("built.yaml")), *table = strdup(temp_path("measured.csv"));
     char *bare = strdup(temp_path("case.yaml")), *bad = strdup(temp_path("bad.csv"));

@@ -18,7 +18,8 @@ static void make_job(const twin *t, job *j, double range_m, double step_m, int m
     ck_assert_int_eq(
         hf_objectives_create(&t->built.scene, &t->built.model, &psi, NULL, NULL, NULL, &j->objectives, &messages),
         HF_OK);
-    j->settings = (hf_adjust_settings){.range_m = range_m, .step_m = step_m, .moves = moves, .figure = HF_FIGURE_PSI};
+    j->settings =
+        (hf_adjust_settings){.range_m = range_m, .step_m = step_m, .max_adjustments = moves, .figure = HF_FIGURE_PSI};
     for (int e = 0; e < t->built.model.n_cable; e++)
         j->cable[e] = e;
     j->task = (hf_adjust_task){&j->settings, &j->objectives, t->built.model.n_cable, j->cable, NULL, 1};
@@ -50,7 +51,7 @@ static double true_psi_m(twin *t, const hf_adjustment *found, int n_move)
 
 static void check_moves(const job *j, const hf_adjustment *found)
 {
-    ck_assert_int_le(found->n_move, j->settings.moves);
+    ck_assert_int_le(found->n_move, j->settings.max_adjustments);
     ck_assert_double_le(found->best_m, found->adjusted_m);
     ck_assert_double_le(found->adjusted_m, found->estimated_m);
     for (int k = 0; k < found->n_move; k++) {

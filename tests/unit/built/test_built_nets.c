@@ -27,7 +27,8 @@ static const char *const common[] = {
     "scene.EA_boundary_N=2e4",
     "cables=[{expansion_per_K: -2e-6, mass_kg_per_m: 0.01}]",
     "nodes=[{mass_kg: 0.002}]",
-    ("cases=[{name: cold, temperature_K: -20, part: net}, {name: up, gravity_m_per_s2: 9.81}, {name: moved, move_m: "
+    ("load_cases=[{name: cold, temperature_K: -20, part: net}, {name: up, gravity_m_per_s2: 9.81}, {name: moved, "
+     "support_displacement_m: "
      "[0, 0, 0.01], force_N: [0, 0, -0.01], role: inner}]"),
     "tolerance.sigma_cut_m=2e-5",
     "tolerance.sigma_cut_ratio=1e-6",
@@ -145,12 +146,14 @@ static const char *const varied[] = {
     "optimize.variables=[{set: edge_tie, vary: support_z, range: 0.01, link: each}]",
 };
 static const char all_objectives[] =
-    "optimize.goals=[{goal: psi}, {goal: psi, state: cold}, {goal: psi, state: up, weight: 2}, "
-    "{goal: psi, over: states}, {goal: psi, over: states, take: worst}, {goal: psi, over: samples, weight: 3}, "
-    "{goal: psi, over: samples, take: worst, weight: 2}, {goal: tension, set: directrix, target: 12, state: moved}, "
-    "{goal: ratio, set: generatrix, over: samples}, {goal: pull, over: states, take: worst}, "
-    "{goal: length, set: inner, over: states}, {goal: evenness, over: samples, take: worst}, "
-    "{goal: gain, state: up}, {goal: gain, over: samples, take: worst}]";
+    "optimize.objective=[{figure: psi}, {figure: psi, load_case: cold}, {figure: psi, load_case: up, weight: 2}, "
+    "{figure: psi, load_case: all}, {figure: psi, load_case: all, take: worst}, {figure: psi, over: samples, weight: "
+    "3}, "
+    "{figure: psi, over: samples, take: worst, weight: 2}, {figure: tension, set: directrix, target: 12, load_case: "
+    "moved}, "
+    "{figure: ratio, set: generatrix, over: samples}, {figure: pull, load_case: all, take: worst}, "
+    "{figure: length, set: inner, load_case: all}, {figure: evenness, over: samples, take: worst}, "
+    "{figure: gain, load_case: up}, {figure: gain, over: samples, take: worst}]";
 
 /* The room and the net are there: what is asked for is the linear answer. */
 START_TEST(a_net_without_memory_is_told)
@@ -158,7 +161,7 @@ START_TEST(a_net_without_memory_is_told)
     hf_problem p;
     hf_form_result result;
     const hf_workspace *shape;
-    open_problem(&p, false, NULL, "optimize.goals=[{goal: psi, over: samples}]");
+    open_problem(&p, false, NULL, "optimize.objective=[{figure: psi, over: samples}]");
     const hf_objectives_nets *nets = p.objectives.nets;
     ck_assert_int_eq(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &result), HF_OK);
     ck_assert_int_eq(nets->cut(p.workspace.objectives->nets, &p.workspace), HF_OK);
@@ -197,10 +200,10 @@ END_TEST
 /* ---- values ---- */
 
 static const char value_objectives[] =
-    "optimize.goals=[{goal: psi}, {goal: psi, over: samples}, {goal: psi, over: samples, take: worst}, "
-    "{goal: psi, over: samples, quantile: 0.5}, {goal: psi, state: cold}, {goal: psi, state: up}, "
-    "{goal: psi, state: moved}, {goal: psi, over: states}, {goal: psi, over: states, take: worst}, "
-    "{goal: pull, over: samples}, {goal: pull}]";
+    "optimize.objective=[{figure: psi}, {figure: psi, over: samples}, {figure: psi, over: samples, take: worst}, "
+    "{figure: psi, over: samples, quantile: 0.5}, {figure: psi, load_case: cold}, {figure: psi, load_case: up}, "
+    "{figure: psi, load_case: moved}, {figure: psi, load_case: all}, {figure: psi, load_case: all, take: worst}, "
+    "{figure: pull, over: samples}, {figure: pull}]";
 
 static void evaluate_base(hf_problem *p, hf_form_result *r)
 {

@@ -343,7 +343,7 @@ START_TEST(a_scale_has_the_wanted_yield)
     forget_psi(&s);
     s.settings.n_require = 1;
     s.settings.require[0] = (hf_require_settings){HF_TOLERANCE_PSI, 1e-4, (double)NAN};
-    s.settings.yield = 0.9;
+    s.settings.required_yield = 0.9;
     begin(&s, 2);
     s.m.tell = hear_scale;
     s.m.tell_context = &all;
@@ -374,7 +374,7 @@ START_TEST(scales_end_where_nets_do)
     s.settings.distribution = (hf_distribution)_i;
     s.settings.n_require = 1;
     s.settings.require[0] = (hf_require_settings){HF_TOLERANCE_PSI, 1e3, (double)NAN};
-    s.settings.yield = 0.5;
+    s.settings.required_yield = 0.5;
     begin(&s, 2);
     ck_assert_int_eq(hf_montecarlo_find_scale(&s.m, 20, &scale, &bound), HF_OK);
     ck_assert_int_eq(bound, 1);
@@ -384,14 +384,14 @@ START_TEST(scales_end_where_nets_do)
     ck_assert_int_eq(hf_montecarlo_find_scale(&s.m, 20, &scale, &bound), HF_OK);
     ck_assert(scale == 0 && bound == 0);
     s.settings.require[0].at_most = nominal_m * (1 + 1e-9);
-    s.settings.yield = 0.9;
+    s.settings.required_yield = 0.9;
     ck_assert_int_eq(hf_montecarlo_find_scale(&s.m, 20, &scale, &bound), HF_OK);
     ck_assert(scale == ldexp(1, -10) && bound == -1);
     ck_assert_int_eq(hf_montecarlo_run(&s.m, 1.5 * scale, 0, 20), HF_OK); /* found after all halves of 1 */
     for (int i = 0; i < 20; i++)
         largest_m = fmax(largest_m, s.m.row[i * HF_TOLERANCE_COLUMNS + HF_TOLERANCE_FIRST + HF_TOLERANCE_PSI]);
     s.settings.require[0].at_most = largest_m;
-    s.settings.yield = 1;
+    s.settings.required_yield = 1;
     s.m.tell = hear_scale;
     s.m.tell_context = &all;
     ck_assert_int_eq(hf_montecarlo_find_scale(&s.m, 20, &scale, &bound), HF_OK);

@@ -2,7 +2,7 @@
 #include "nets.h"
 
 #include "case/config_key.h"
-#include "case/config_meant.h"
+#include "case/config_suggest.h"
 
 #define CYLINDER                                                                                                       \
     "scene:\n"                                                                                                         \
@@ -247,7 +247,7 @@ START_TEST(what_others_call_a_key_is_known)
 {
     static const struct {
         const char *section, *key, *meant;
-    } of[] = {{"optimize", "max_iterations", "'optimize.polish_iterations'"},
+    } of[] = {{"optimize", "max_iterations", "'optimize.refine_steps'"},
               {"optimize", "nGen", "'optimize.generations'"},
               {"optimize", "pop_size", "'optimize.population'"},
               {"optimize", "tol", "'optimize.stagnation_tolerance_m'"},
@@ -271,13 +271,13 @@ START_TEST(what_others_call_a_key_is_known)
               {"", "young_modulus", "'scene.EA_boundary_N'"},
               {"", "tension", "'form.pretension_N'"},
               {"", "loads", "'scene.import.nodes'"},
-              {"", "gravity", "'cases'"},
+              {"", "gravity", "'load_cases'"},
               {"", "material", "'truss.density_kg_per_m3'"},
               {"", "focal_length", "'surface.focal_length_m'"},
               {"surface", "aperture", "'scene.paraboloid.aperture_m'"},
               {"", "output", "-o "}};
     for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
-        const char *meant = hf_config_meant(of[i].section, of[i].key);
+        const char *meant = hf_config_suggestion(of[i].section, of[i].key);
         ck_assert_msg(meant && strstr(meant, of[i].meant), "%s: %s", of[i].key, meant ? meant : "nothing");
         for (const char *quote = strchr(meant, '\''); quote; quote = strchr(quote, '\'')) {
             char path[HF_KEY_SIZE];
@@ -287,14 +287,14 @@ START_TEST(what_others_call_a_key_is_known)
             quote += strlen(path) + 2;
         }
     }
-    ck_assert_ptr_null(hf_config_meant("form", "seeds"));
-    ck_assert_ptr_null(hf_config_meant("formal", "solver"));
-    static const char *const row[] = {"optimize.goals.0", "optimize.variables.1", "optimize.limits.0"};
+    ck_assert_ptr_null(hf_config_suggestion("form", "seeds"));
+    ck_assert_ptr_null(hf_config_suggestion("formal", "solver"));
+    static const char *const row[] = {"optimize.objective.0", "optimize.variables.1", "optimize.limits.0"};
     for (int i = 0; i < 3; i++)
-        ck_assert_ptr_null(hf_config_meant(row[i], "tol"));
-    ck_assert_ptr_null(hf_config_meant("tolerance.require.0", "n"));
+        ck_assert_ptr_null(hf_config_suggestion(row[i], "tol"));
+    ck_assert_ptr_null(hf_config_suggestion("tolerance.require.0", "n"));
     ck_assert_ptr_nonnull(strstr(complaint(FORM "  pretension_N: 10\n", "optimize.max_iterations=9"),
-                                 "; did you mean 'optimize.polish_iterations' (steps of Levenberg-Marquardt) or "));
+                                 "; did you mean 'optimize.refine_steps' (steps of Levenberg-Marquardt) or "));
 }
 END_TEST
 

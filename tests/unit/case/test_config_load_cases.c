@@ -1,4 +1,4 @@
-/* States of the net as built: what rows of `cases` say to a net and a truss, and their faults at file:line:col. */
+/* States of the net as built: what rows of `load_cases` say to a net and a truss, and their faults at file:line:col. */
 #include "nets.h"
 
 #include <hifdm/cable_set.h>
@@ -57,7 +57,7 @@ START_TEST(temperatures_by_set_and_part)
 {
     struct read r;
     ck_assert_msg(read_load_cases(TRUSS
-                                  "cases:\n"
+                                  "load_cases:\n"
                                   "  - {name: cold, temperature_K: -100}\n"
                                   "  - {name: sun, gradient_K_per_m: [10, 0, 0], part: net}\n"
                                   "  - {name: cold, set: front, temperature_K: -120}\n"
@@ -89,10 +89,10 @@ END_TEST
 START_TEST(gravity_forces_and_moves_add_up)
 {
     struct read r;
-    ck_assert_msg(read_load_cases(CABLES "cases:\n"
+    ck_assert_msg(read_load_cases(CABLES "load_cases:\n"
                                          "  - {name: a, gravity_m_per_s2: 10, direction: [0, 3, -4]}\n"
                                          "  - {name: a, force_N: [1, 0, 0], role: inner}\n"
-                                         "  - {name: a, force_N: [0, 2, 0], move_m: [0, 0, 0.1]}\n"
+                                         "  - {name: a, force_N: [0, 2, 0], support_displacement_m: [0, 0, 0.1]}\n"
                                          "  - {name: a, nodes: nodes.csv}\n"
                                          "  - {name: b, gravity_m_per_s2: 2, temperature_K: 0}\n",
                                   "id,Fz_N,dz_m\nf0_0,5,\nf3_0,,0.25\n", &r) == HF_OK,
@@ -125,63 +125,69 @@ END_TEST
 static const struct {
     const char *text, *table, *said;
 } fault[] = {
-    {CABLES "cases:\n  - {name: 'a b', temperature_K: 1}\n", "",
-     "error: c.yaml:8:12: cases.0.name: must be made of letters, digits, _ and -, and not begin with -\n"},
-    {CABLES "cases:\n  - {name: name, temperature_K: 1}\n", "",
-     "error: c.yaml:8:12: cases.0.name: must be another word than name\n"},
-    {CABLES "cases:\n  - {name: a}\n", "",
-     "error: c.yaml:8:12: cases.0.name: this row says nothing; give temperature_K, gradient_K_per_m, gravity_m_per_s2, "
-     "force_N, move_m or nodes\n"
-     "error: c.yaml:6:23: cables.0.expansion_per_K: has no effect: no row of cases has a temperature\n"},
-    {CABLES "cases:\n  - {temperature_K: 1}\n", "", "error: c.yaml:8:5: cases.0.name: is missing and has no default\n"},
-    {CABLES "cases:\n  - {name: a, temperature_K: 1, set: fornt}\n", "",
-     "error: c.yaml:8:38: cases.0.set: there is no set of cables 'fornt'; did you mean 'front'?\n"},
-    {CABLES "cases:\n  - {name: a, temperature_K: 1, part: truss}\n", "",
-     "error: c.yaml:8:39: cases.0.part: the case has no truss\n"},
-    {TRUSS "cases:\n  - {name: a, temperature_K: 1, part: mbug}\n", "",
-     "error: c.yaml:9:39: cases.0.part: the truss has no members of unit mbug\n"},
-    {CABLES "cases:\n  - {name: a, temperature_K: 1, part: net, set: tie}\n", "",
-     "error: c.yaml:8:39: cases.0.part: does not go with set: a row names cables or members\n"},
-    {CABLES "cases:\n  - {name: a, temperature_K: 1}\n  - {name: a, temperature_K: 2}\n", "",
-     "error: c.yaml:9:30: cases.1.temperature_K: row 0 has it for this state already\n"},
-    {CABLES "cases:\n  - {name: a, temperature_K: 1}\n  - {name: b, set: tie, force_N: [1, 0, 0]}\n", "",
-     "error: c.yaml:9:20: cases.1.set: has no meaning without temperature_K or gradient_K_per_m\n"},
-    {CABLES "cases:\n  - {name: a, temperature_K: 1, direction: [0, 0, 1], role: edge}\n", "",
-     "error: c.yaml:8:44: cases.0.direction: has no meaning without gravity_m_per_s2\n"
-     "error: c.yaml:8:61: cases.0.role: has no meaning without force_N\n"},
-    {CABLES "cases:\n  - {name: a, temperature_K: 1, gravity_m_per_s2: 1, direction: [0, 0, 0]}\n", "",
-     "error: c.yaml:8:65: cases.0.direction: must not be zero\n"},
-    {CABLES "cases:\n  - {name: a, temperature_K: 1, force_N: [0, 1]}\n", "",
-     "error: c.yaml:8:42: cases.0.force_N: must be a list of three numbers, along x, y and z, like [0, 0, -1]\n"},
-    {NET "cases:\n  - {name: a, temperature_K: 1}\n", "",
-     "error: c.yaml:6:30: cases.0.temperature_K: the expansion of 163 cables is not known, like 'f0_0-f1_0': give "
+    {CABLES "load_cases:\n  - {name: 'a b', temperature_K: 1}\n", "",
+     "error: c.yaml:8:12: load_cases.0.name: must be made of letters, digits, _ and -, and not begin with -\n"},
+    {CABLES "load_cases:\n  - {name: name, temperature_K: 1}\n", "",
+     "error: c.yaml:8:12: load_cases.0.name: must be another word than name, nominal and all\n"},
+    {CABLES "load_cases:\n  - {name: a}\n", "",
+     "error: c.yaml:8:12: load_cases.0.name: this row says nothing; give temperature_K, gradient_K_per_m, "
+     "gravity_m_per_s2, "
+     "force_N, support_displacement_m or nodes\n"
+     "error: c.yaml:6:23: cables.0.expansion_per_K: has no effect: no row of load_cases has a temperature\n"},
+    {CABLES "load_cases:\n  - {temperature_K: 1}\n", "",
+     "error: c.yaml:8:5: load_cases.0.name: is missing and has no default\n"},
+    {CABLES "load_cases:\n  - {name: a, temperature_K: 1, set: fornt}\n", "",
+     "error: c.yaml:8:38: load_cases.0.set: there is no set of cables 'fornt'; did you mean 'front'?\n"},
+    {CABLES "load_cases:\n  - {name: a, temperature_K: 1, part: truss}\n", "",
+     "error: c.yaml:8:39: load_cases.0.part: the case has no truss\n"},
+    {TRUSS "load_cases:\n  - {name: a, temperature_K: 1, part: mbug}\n", "",
+     "error: c.yaml:9:39: load_cases.0.part: the truss has no members of unit mbug\n"},
+    {CABLES "load_cases:\n  - {name: a, temperature_K: 1, part: net, set: tie}\n", "",
+     "error: c.yaml:8:39: load_cases.0.part: does not go with set: a row names cables or members\n"},
+    {CABLES "load_cases:\n  - {name: a, temperature_K: 1}\n  - {name: a, temperature_K: 2}\n", "",
+     "error: c.yaml:9:30: load_cases.1.temperature_K: row 0 has it for this load case already\n"},
+    {CABLES "load_cases:\n  - {name: a, temperature_K: 1}\n  - {name: b, set: tie, force_N: [1, 0, 0]}\n", "",
+     "error: c.yaml:9:20: load_cases.1.set: has no meaning without temperature_K or gradient_K_per_m\n"},
+    {CABLES "load_cases:\n  - {name: a, temperature_K: 1, direction: [0, 0, 1], role: edge}\n", "",
+     "error: c.yaml:8:44: load_cases.0.direction: has no meaning without gravity_m_per_s2\n"
+     "error: c.yaml:8:61: load_cases.0.role: has no meaning without force_N\n"},
+    {CABLES "load_cases:\n  - {name: a, temperature_K: 1, gravity_m_per_s2: 1, direction: [0, 0, 0]}\n", "",
+     "error: c.yaml:8:65: load_cases.0.direction: must not be zero\n"},
+    {CABLES "load_cases:\n  - {name: a, temperature_K: 1, force_N: [0, 1]}\n", "",
+     "error: c.yaml:8:42: load_cases.0.force_N: must be a list of three numbers, along x, y and z, like [0, 0, -1]\n"},
+    {NET "load_cases:\n  - {name: a, temperature_K: 1}\n", "",
+     "error: c.yaml:6:30: load_cases.0.temperature_K: the expansion of 163 cables is not known, like 'f0_0-f1_0': give "
      "expansion_per_K of their sets in `cables`; 0 for those that keep their lengths\n"},
-    {NET "cables:\n  - {expansion_per_K: 1e-3}\ncases:\n  - {name: a, temperature_K: -2000}\n", "",
-     "error: c.yaml:8:30: cases.0.temperature_K: 163 cables would change by more than 0.1 of their lengths, like "
+    {NET "cables:\n  - {expansion_per_K: 1e-3}\nload_cases:\n  - {name: a, temperature_K: -2000}\n", "",
+     "error: c.yaml:8:30: load_cases.0.temperature_K: 163 cables would change by more than 0.1 of their lengths, like "
      "'f0_0-f1_0' by -2 at -2000 K: is this temperature wrong, or its expansion_per_K?\n"},
-    {NET "cables:\n  - {set: front, mass_kg_per_m: 1}\ncases:\n  - {name: a, gravity_m_per_s2: 1}\n", "",
-     "error: c.yaml:8:33: cases.0.gravity_m_per_s2: the mass of 121 cables is not known, like 'f2_0-f3_17': give "
+    {NET "cables:\n  - {set: front, mass_kg_per_m: 1}\nload_cases:\n  - {name: a, gravity_m_per_s2: 1}\n", "",
+     "error: c.yaml:8:33: load_cases.0.gravity_m_per_s2: the mass of 121 cables is not known, like 'f2_0-f3_17': give "
      "mass_kg_per_m of their sets in `cables`; 0 for those that weigh nothing\n"},
-    {NET "truss: {ring: {height_m: 1}}\ncables: [{expansion_per_K: 0}]\ncases:\n  - {name: a, temperature_K: 1}\n", "",
-     "error: c.yaml:8:30: cases.0.temperature_K: the expansion of the truss is not known: give truss.expansion_per_K; "
+    {NET "truss: {ring: {height_m: 1}}\ncables: [{expansion_per_K: 0}]\nload_cases:\n  - {name: a, temperature_K: 1}\n",
+     "",
+     "error: c.yaml:8:30: load_cases.0.temperature_K: the expansion of the truss is not known: give "
+     "truss.expansion_per_K; "
      "0 "
      "for one that keeps its shape, or part: net for a temperature of the cables alone\n"},
-    {"scene: {paraboloid: {aperture_m: 4, focal_length_m: 3, rings: 3, rear_distance_m: 1}}\ncases:\n  - {name: a, "
+    {"scene: {paraboloid: {aperture_m: 4, focal_length_m: 3, rings: 3, rear_distance_m: 1}}\nload_cases:\n  - {name: "
+     "a, "
      "force_N: [0, 0, 1]}\n",
      "",
-     "error: c.yaml:3:12: cases.0.name: 163 cables have no EA, which states of the net as built need, like "
+     "error: c.yaml:3:12: load_cases.0.name: 163 cables have no EA, which load cases of the net as built need, like "
      "'f0_0-f1_0': "
      "give scene.EA_inner_N and scene.EA_boundary_N, or the column EA_N of an imported net\n"},
-    {NET "cases:\n  - {name: a, force_N: [0, 0, 1], role: edge}\n  - {name: b, nodes: nodes.csv}\n",
+    {NET "load_cases:\n  - {name: a, force_N: [0, 0, 1], role: edge}\n  - {name: b, nodes: nodes.csv}\n",
      "id,Fx_N,dx_m\nf0_0,1,2\nzz,3,4\nf3_0,x,\nf3_0,1,\n",
      "error: nodes.csv:5: 'f3_0': this id was used before, on line 4\n"
      "error: nodes.csv:2: 'f0_0': is no support, so it has no place to be moved to: dx_m\n"
      "error: nodes.csv:3: 'zz': the net has no node with this id\n"
      "error: nodes.csv:4: 'f3_0': Fx_N must be a finite number, not x\n"},
-    {NET "cases:\n  - {name: b, nodes: nodes.csv}\n", "id,x_m\nf0_0,1\n",
+    {NET "load_cases:\n  - {name: b, nodes: nodes.csv}\n", "id,x_m\nf0_0,1\n",
      "warning: nodes.csv:1: column 'x_m' is not used; did you mean 'dx_m'?\n"
      "error: nodes.csv:1: has none of the columns Fx_N, Fy_N, Fz_N, dx_m, dy_m, dz_m, so it says nothing\n"},
-    {NET "cases:\n  - {name: b, nodes: other.csv}\n", "", "error: other.csv: cannot open: No such file or directory\n"},
+    {NET "load_cases:\n  - {name: b, nodes: other.csv}\n", "",
+     "error: other.csv: cannot open: No such file or directory\n"},
 };
 
 START_TEST(faults_have_their_place)
@@ -196,11 +202,11 @@ END_TEST
 START_TEST(there_are_at_most_sixteen_load_cases)
 {
     struct read r;
-    char text[4000] = CABLES "cases:\n";
+    char text[4000] = CABLES "load_cases:\n";
     for (int k = 0; k < 17; k++)
         snprintf(text + strlen(text), sizeof text - strlen(text), "  - {name: s%d, temperature_K: 1}\n", k);
     ck_assert_int_eq(read_load_cases(text, "", &r), HF_BAD_CASE);
-    ck_assert_str_eq(r.said, "error: c.yaml:24:12: cases.16.name: there are more than 16 states\n");
+    ck_assert_str_eq(r.said, "error: c.yaml:24:12: load_cases.16.name: there are more than 16 load cases\n");
     free_read(&r);
 }
 END_TEST

@@ -37,7 +37,7 @@ START_TEST(later_rows_replace_earlier_ones)
                                        "nodes:\n"
                                        "  - {mass_kg: 0.5}\n"
                                        "  - {role: support, mass_kg: 0}\n"
-                                       "cases: [{name: cold, temperature_K: -1}]\n",
+                                       "load_cases: [{name: cold, temperature_K: -1}]\n",
                                    &s, &t, said, sizeof said),
                      HF_OK);
     ck_assert_str_eq(said, "");

@@ -12,14 +12,14 @@
              "    - {set: boundary, vary: force_density, range: 30 %, link: symmetry}\n"                               \
              "    - {set: tie, vary: tension, bounds: [1, 40], range: \"2.5%\", link: set}\n"                          \
              "    - {set: front-2, vary: support_z, range: 0.02, bounds: [null, 0.5]}\n"                               \
-             "  goals:\n"                                                                                              \
-             "    - goal: psi\n"                                                                                       \
-             "    - {goal: tension, set: edge, target: 20000, weight: 1e-3}\n"                                         \
-             "    - {goal: facets, along: half_path, fit: best}\n"                                                     \
-             "    - {goal: mass, mass_kg_per_m: 0.004}\n"                                                              \
+             "  objective:\n"                                                                                          \
+             "    - figure: psi\n"                                                                                     \
+             "    - {figure: tension, set: edge, target: 20000, weight: 1e-3}\n"                                       \
+             "    - {figure: facets, along: half_path, fit: best}\n"                                                   \
+             "    - {figure: mass, mass_kg_per_m: 0.004}\n"                                                            \
              "  limits:\n"                                                                                             \
-             "    - {limit: tension, set: tie, bounds: [1, .inf]}\n"                                                   \
-             "    - {limit: ratio, set: inner, bounds: [~, 1.5]}\n"
+             "    - {figure: tension, set: tie, bounds: [1, .inf]}\n"                                                  \
+             "    - {figure: ratio, set: inner, bounds: [~, 1.5]}\n"
 
 static hf_status load_rows(const char *text, const char *const *set, int n_set, hf_case *c, char *said, size_t size)
 {
@@ -92,8 +92,8 @@ END_TEST
 
 START_TEST(objectives_reach_their_place)
 {
-    static const char *const set[] = {"optimize.goals=[]", "optimize.method=lm",
-                                      "optimize.objectives=[{goal: psi}, {goal: ratio, set: edge}]"};
+    static const char *const set[] = {"optimize.objective=[]", "optimize.method=lm",
+                                      "optimize.front=[{figure: psi}, {figure: ratio, set: edge}]"};
     hf_case c;
     accept_rows(ROWS, set, 3, &c);
     const hf_objective_settings *g = c.optimize.front;
@@ -108,7 +108,7 @@ END_TEST
 START_TEST(overrides_set_keys_of_rows_and_whole_lists)
 {
     static const char *const set[] = {"optimize.variables.0.range=5", "optimize.variables.2.bounds=[-1, 1]",
-                                      "optimize.goals=[{goal: pull}]", "optimize.goals.0.weight=3",
+                                      "optimize.objective=[{figure: pull}]", "optimize.objective.0.weight=3",
                                       "optimize.limits=[]"};
     hf_case c;
     accept_rows(ROWS, set, 5, &c);
@@ -132,8 +132,8 @@ START_TEST(a_difference_in_a_row_is_named)
                                         {"optimize.variables.0.range=30", "optimize.variables.0.range"},
                                         {"optimize.variables.2.bounds=[-9, 0.5]", "optimize.variables.2.bounds"},
                                         {"optimize.variables.0.range=30%", ""},
-                                        {"optimize.goals.1.target=3", "optimize.goals.1.target"},
-                                        {"optimize.goals.2.fit=none", "optimize.goals.2.fit"},
+                                        {"optimize.objective.1.target=3", "optimize.objective.1.target"},
+                                        {"optimize.objective.2.fit=none", "optimize.objective.2.fit"},
                                         {"optimize.limits.1.bounds=[1, 1.5]", "optimize.limits.1.bounds"},
                                         {"optimize.limits=[]", "optimize.limits"}};
     hf_case a, b;
@@ -154,21 +154,21 @@ END_TEST
 
 START_TEST(places_of_rows_are_told)
 {
-    static const char *const set = "optimize.goals.0.weight=2";
+    static const char *const set = "optimize.objective.0.weight=2";
     static const struct {
         const char *key, *place;
         bool is_given;
     } wanted[] = {{"optimize.variables.1.set", "c.yaml:7:13: optimize.variables.1.set", true},
                   {"optimize.variables.2", "c.yaml:8:7: optimize.variables.2", true},
                   {"optimize.variables.2.link", "c.yaml:8:7: optimize.variables.2.link", false},
-                  {"optimize.goals.0.set", "c.yaml:10:7: optimize.goals.0.set", false},
-                  {"optimize.goals.0.weight", "--set optimize.goals.0.weight", true},
+                  {"optimize.objective.0.set", "c.yaml:10:7: optimize.objective.0.set", false},
+                  {"optimize.objective.0.weight", "--set optimize.objective.0.weight", true},
                   {"optimize.limits.7.set", "c.yaml: optimize.limits.7.set", false}};
     hf_case c;
     char text[2 * HF_PATH_SIZE], place[256];
     accept_rows(ROWS, &set, 1, &c);
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
-        ck_assert_int_eq(hf_config_place(&c, wanted[i].key, text, sizeof text), wanted[i].is_given);
+        ck_assert_int_eq(hf_config_location(&c, wanted[i].key, text, sizeof text), wanted[i].is_given);
         copy_without_folder(text, place, sizeof place);
         ck_assert_str_eq(place, wanted[i].place);
     }
@@ -179,8 +179,8 @@ END_TEST
 /* ---- what is refused ---- */
 
 #define VARIABLE OPTIMIZE "  variables:\n    - "
-#define OBJECTIVE OPTIMIZE "  goals: ["
-#define FRONT OPTIMIZE "  method: lm\n  objectives: ["
+#define OBJECTIVE OPTIMIZE "  objective: ["
+#define FRONT OPTIMIZE "  method: lm\n  front: ["
 #define LIMIT OPTIMIZE "  limits: ["
 #define ROW "{set: a, vary: length, range: 1}"
 
@@ -189,8 +189,8 @@ static const struct {
 } bad_row[] = {
     {OPTIMIZE "  variables: {set: a}\n", NULL,
      "error: c.yaml:4:14: optimize.variables: must be a list of rows, each a line '- {key: value, ...}'\n"},
-    {OPTIMIZE "  goals:\n", NULL,
-     "error: c.yaml:4:9: optimize.goals: must be a list of rows, each a line '- {key: value, ...}'\n"},
+    {OPTIMIZE "  objective:\n", NULL,
+     "error: c.yaml:4:13: optimize.objective: must be a list of rows, each a line '- {key: value, ...}'\n"},
     {VARIABLE "tension\n", NULL, "error: c.yaml:5:7: optimize.variables.0: must be a row {key: value, ...}\n"},
     {OPTIMIZE "  variable: []\n", NULL, "error: c.yaml:4:3: variable: unknown key; did you mean 'variables'?\n"},
     {VARIABLE "{set: a, vary: length, ranges: 1, bounds: [1, 2]}\n", NULL,
@@ -203,19 +203,20 @@ static const struct {
      "error: c.yaml:5:7: optimize.variables.0.set: is missing and has no default\n"},
     {VARIABLE "{set: a, range: 1}\n", NULL,
      "error: c.yaml:5:7: optimize.variables.0.vary: is missing and has no default\n"},
-    {OBJECTIVE "{goal: psi}, {weight: 2}]\n", NULL,
-     "error: c.yaml:4:24: optimize.goals.1.goal: is missing and has no default\n"},
-    {LIMIT "{bounds: [1, 2]}]\n", NULL, "error: c.yaml:4:12: optimize.limits.0.limit: is missing and has no default\n"},
-    {LIMIT "{limit: tension}]\n", NULL,
+    {OBJECTIVE "{figure: psi}, {weight: 2}]\n", NULL,
+     "error: c.yaml:4:30: optimize.objective.1.figure: is missing and has no default\n"},
+    {LIMIT "{bounds: [1, 2]}]\n", NULL,
+     "error: c.yaml:4:12: optimize.limits.0.figure: is missing and has no default\n"},
+    {LIMIT "{figure: tension}]\n", NULL,
      "error: c.yaml:4:12: optimize.limits.0.bounds: is missing and has no default\n"},
     {VARIABLE "{set: a, vary: tensions, range: 1}\n", NULL,
      "error: c.yaml:5:22: optimize.variables.0.vary: must be one of tension force_density length unstressed_length "
      "support_z support_normal support_xyz, not tensions; did you mean 'tension'?\n"},
-    {OBJECTIVE "{goal: rms}]\n", NULL,
-     "error: c.yaml:4:18: optimize.goals.0.goal: must be one of psi surface facets tension length evenness pull "
-     "displacement mass ratio gain, not rms\n"},
-    {LIMIT "{limit: length, bounds: [1, 2]}]\n", NULL,
-     "error: c.yaml:4:20: optimize.limits.0.limit: must be one of tension ratio displacement, not length\n"},
+    {OBJECTIVE "{figure: rms}]\n", NULL,
+     "error: c.yaml:4:24: optimize.objective.0.figure: must be one of psi surface facets tension length evenness pull "
+     "deflection mass ratio gain, not rms\n"},
+    {LIMIT "{figure: length, bounds: [1, 2]}]\n", NULL,
+     "error: c.yaml:4:21: optimize.limits.0.figure: must be one of tension ratio deflection, not length\n"},
     {VARIABLE "{set: a, vary: tension}\n", NULL,
      "error: c.yaml:5:7: optimize.variables.0.range: is missing; give range, bounds or both\n"},
     {VARIABLE "{set: a, vary: tension, range: 0}\n", NULL,
@@ -247,10 +248,10 @@ static const struct {
      "error: c.yaml:5:39: optimize.variables.0.bounds: leaves both sides open; give one bound at least\n"},
     {VARIABLE "{set: front edge, vary: tension, range: 1}\n", NULL,
      "error: c.yaml:5:13: optimize.variables.0.set: must be made of letters, digits, _ and -\n"},
-    {OBJECTIVE "{goal: evenness, set: -a}]\n", NULL,
-     "error: c.yaml:4:33: optimize.goals.0.set: must not begin with -\n"},
-    {LIMIT "{limit: ratio, set: \"a;b\", bounds: [1, 2]}]\n", NULL,
-     "error: c.yaml:4:32: optimize.limits.0.set: must be made of letters, digits, _ and -\n"},
+    {OBJECTIVE "{figure: evenness, set: -a}]\n", NULL,
+     "error: c.yaml:4:39: optimize.objective.0.set: must not begin with -\n"},
+    {LIMIT "{figure: ratio, set: \"a;b\", bounds: [1, 2]}]\n", NULL,
+     "error: c.yaml:4:33: optimize.limits.0.set: must be made of letters, digits, _ and -\n"},
     {VARIABLE "{set: \"\", vary: tension, range: 1}\n", NULL,
      "error: c.yaml:5:13: optimize.variables.0.set: must be a text\n"},
     {VARIABLE "{set: a123456789a123456789a123456789a123456789a123456789a123456789abcd, vary: tension, range: 1}\n",
@@ -260,69 +261,69 @@ static const struct {
     {OPTIMIZE "  symmetry: x\n  variables: [{set: a, vary: support_xyz, range: 1, link: symmetry}]\n", NULL,
      "error: c.yaml:5:59: optimize.variables.0.link: cannot be symmetry with support_xyz: mirrored supports move apart "
      "along x or y\n"},
-    {OBJECTIVE "{goal: psi, set: a}]\n", NULL,
-     "error: c.yaml:4:28: optimize.goals.0.set: has no meaning for psi, only for tension, length, evenness, mass, "
+    {OBJECTIVE "{figure: psi, set: a}]\n", NULL,
+     "error: c.yaml:4:34: optimize.objective.0.set: has no meaning for psi, only for tension, length, evenness, mass, "
      "ratio\n"},
-    {FRONT "{goal: psi}]\n", NULL,
-     "error: c.yaml:5:16: optimize.objectives.0: is the only row; a front is of two or three objectives. For one use "
-     "optimize.goals\n"},
-    {FRONT "{goal: psi}, {goal: pull}]\n  goals: [{goal: psi}]\n", NULL,
-     "error: c.yaml:6:11: optimize.goals.0: cannot be with optimize.objectives, which takes the place of goals; keep "
+    {FRONT "{figure: psi}]\n", NULL,
+     "error: c.yaml:5:11: optimize.front.0: is the only row; a front is of two or three objectives. For one use "
+     "optimize.objective\n"},
+    {FRONT "{figure: psi}, {figure: pull}]\n  objective: [{figure: psi}]\n", NULL,
+     "error: c.yaml:6:15: optimize.objective.0: cannot be with optimize.front, which replaces the objective; keep "
      "one of them\n"},
-    {FRONT "{goal: psi}, {goal: psi}]\n", NULL,
-     "error: c.yaml:5:36: optimize.objectives.1.goal: is the objective of an earlier row; a front needs different "
+    {FRONT "{figure: psi}, {figure: psi}]\n", NULL,
+     "error: c.yaml:5:35: optimize.front.1.figure: is the objective of an earlier row; a front needs different "
      "ones\n"},
-    {FRONT "{goal: psi}, {goal: pull}, {goal: mass}, {goal: ratio}]\n", NULL,
-     "error: c.yaml:5:57: optimize.objectives: there are more than 3 rows\n"},
-    {FRONT "{goal: psi}, {goal: pull}, {goal: evenness}]\n  front_points: 3\n", NULL,
+    {FRONT "{figure: psi}, {figure: pull}, {figure: mass}, {figure: ratio}]\n", NULL,
+     "error: c.yaml:5:58: optimize.front: there are more than 3 rows\n"},
+    {FRONT "{figure: psi}, {figure: pull}, {figure: evenness}]\n  front_points: 3\n", NULL,
      "error: c.yaml:6:17: optimize.front_points: must be at least 4 with three objectives, for the ends alone\n"},
-    {FRONT "{goal: psi}, {goal: pull}]\n  compare_lm: true\n", NULL,
-     "error: c.yaml:6:15: optimize.compare_lm: compares one design; it has no meaning for optimize.objectives\n"},
-    {FRONT "{goal: psi}, {goal: pull}]\n  variation: chain\n", NULL,
-     "error: c.yaml:6:14: optimize.variation: cannot be chain with optimize.objectives, whose children move along "
+    {FRONT "{figure: psi}, {figure: pull}]\n  refine: true\n", NULL,
+     "error: c.yaml:6:11: optimize.refine: compares one design; it has no meaning for optimize.front\n"},
+    {FRONT "{figure: psi}, {figure: pull}]\n  variation: chain\n", NULL,
+     "error: c.yaml:6:14: optimize.variation: cannot be chain with optimize.front, whose children move along "
      "differences; remove it\n"},
-    {FRONT "{goal: psi}, {goal: pull}]\n  elites: 2\n", NULL,
-     "error: c.yaml:6:11: optimize.elites: has no meaning for optimize.objectives; remove it\n"},
-    {FRONT "{goal: psi}, {goal: pull}]\n  crossover_low: 0.5\n", NULL,
-     "error: c.yaml:6:18: optimize.crossover_low: has no meaning for optimize.objectives; remove it\n"},
-    {FRONT "{goal: psi}, {goal: pull}]\n", "optimize.mutation_low=0.01",
-     "error: --set optimize.mutation_low: has no meaning for optimize.objectives; remove it\n"},
-    {FRONT "{goal: psi, weight: 2}, {goal: pull}]\n", NULL,
-     "error: c.yaml:5:28: weight: unknown key (hifdm schema lists all keys)\n"},
-    {FRONT "{goal: psi}, {goal: ratio, target: 2}]\n", NULL,
-     "error: c.yaml:5:51: optimize.objectives.1.target: has no meaning for ratio, only for tension, length\n"},
-    {OBJECTIVE "{goal: psi, target: 1}]\n", NULL,
-     "error: c.yaml:4:31: optimize.goals.0.target: has no meaning for psi, only for tension, length\n"},
-    {OBJECTIVE "{goal: facets, frequency_Hz: 1e9}]\n", NULL,
-     "error: c.yaml:4:40: optimize.goals.0.frequency_Hz: has no meaning for facets, only for gain\n"},
-    {OBJECTIVE "{goal: tension, target: 1, along: normal}]\n", NULL,
-     "error: c.yaml:4:45: optimize.goals.0.along: has no meaning for tension, only for surface, facets\n"},
-    {OBJECTIVE "{goal: pull, fit: best}]\n", NULL,
-     "error: c.yaml:4:29: optimize.goals.0.fit: has no meaning for pull, only for surface, facets\n"},
-    {OBJECTIVE "{goal: length, mass_kg_per_m: 1}]\n", NULL,
-     "error: c.yaml:4:41: optimize.goals.0.mass_kg_per_m: has no meaning for length, only for mass\n"},
-    {LIMIT "{limit: displacement, set: a, bounds: [0, 1]}]\n", NULL,
-     "error: c.yaml:4:39: optimize.limits.0.set: has no meaning for displacement, only for tension, ratio\n"},
-    {OBJECTIVE "{goal: tension}]\n", NULL,
-     "error: c.yaml:4:11: optimize.goals.0.target: is missing: the tension that is wanted, in N\n"},
-    {OBJECTIVE "{goal: length, target: 0}]\n", NULL,
-     "error: c.yaml:4:34: optimize.goals.0.target: of length must be above 0\n"},
-    {OBJECTIVE "{goal: mass}]\n", NULL,
-     "error: c.yaml:4:11: optimize.goals.0.mass_kg_per_m: is missing: the mass of the cables\n"},
-    {OBJECTIVE "{goal: mass, mass_kg_per_m: 0}]\n", NULL,
-     "error: c.yaml:4:39: optimize.goals.0.mass_kg_per_m: must be above 0, not 0\n"},
-    {OBJECTIVE "{goal: psi, weight: 0}]\n", NULL,
-     "error: c.yaml:4:31: optimize.goals.0.weight: must be above 0, not 0\n"},
-    {LIMIT "{limit: ratio, bounds: [0, 1]}]\n", NULL,
-     "error: c.yaml:4:35: optimize.limits.0.bounds: must end above 1, and not begin above it: even tensions have 1\n"},
-    {LIMIT "{limit: ratio, bounds: [1, null]}]\n", NULL,
-     "error: c.yaml:4:35: optimize.limits.0.bounds: must end above 1, and not begin above it: even tensions have 1\n"},
-    {LIMIT "{limit: ratio, bounds: [2, 3]}]\n", NULL,
-     "error: c.yaml:4:35: optimize.limits.0.bounds: must end above 1, and not begin above it: even tensions have 1\n"},
-    {LIMIT "{limit: displacement, bounds: [-1, 0]}]\n", NULL,
-     "error: c.yaml:4:42: optimize.limits.0.bounds: must end above 0, and not begin above it\n"},
-    {LIMIT "{limit: displacement, bounds: [1e-3, 1]}]\n", NULL,
-     "error: c.yaml:4:42: optimize.limits.0.bounds: must end above 0, and not begin above it\n"},
+    {FRONT "{figure: psi}, {figure: pull}]\n  elites: 2\n", NULL,
+     "error: c.yaml:6:11: optimize.elites: has no meaning for optimize.front; remove it\n"},
+    {FRONT "{figure: psi}, {figure: pull}]\n  crossover_low: 0.5\n", NULL,
+     "error: c.yaml:6:18: optimize.crossover_low: has no meaning for optimize.front; remove it\n"},
+    {FRONT "{figure: psi}, {figure: pull}]\n", "optimize.mutation_low=0.01",
+     "error: --set optimize.mutation_low: has no meaning for optimize.front; remove it\n"},
+    {FRONT "{figure: psi, weight: 2}, {figure: pull}]\n", NULL,
+     "error: c.yaml:5:25: weight: unknown key (hifdm schema lists all keys)\n"},
+    {FRONT "{figure: psi}, {figure: ratio, target: 2}]\n", NULL,
+     "error: c.yaml:5:50: optimize.front.1.target: has no meaning for ratio, only for tension, length\n"},
+    {OBJECTIVE "{figure: psi, target: 1}]\n", NULL,
+     "error: c.yaml:4:37: optimize.objective.0.target: has no meaning for psi, only for tension, length\n"},
+    {OBJECTIVE "{figure: facets, frequency_Hz: 1e9}]\n", NULL,
+     "error: c.yaml:4:46: optimize.objective.0.frequency_Hz: has no meaning for facets, only for gain\n"},
+    {OBJECTIVE "{figure: tension, target: 1, along: normal}]\n", NULL,
+     "error: c.yaml:4:51: optimize.objective.0.along: has no meaning for tension, only for surface, facets\n"},
+    {OBJECTIVE "{figure: pull, fit: best}]\n", NULL,
+     "error: c.yaml:4:35: optimize.objective.0.fit: has no meaning for pull, only for surface, facets\n"},
+    {OBJECTIVE "{figure: length, mass_kg_per_m: 1}]\n", NULL,
+     "error: c.yaml:4:47: optimize.objective.0.mass_kg_per_m: has no meaning for length, only for mass\n"},
+    {LIMIT "{figure: deflection, set: a, bounds: [0, 1]}]\n", NULL,
+     "error: c.yaml:4:38: optimize.limits.0.set: has no meaning for deflection, only for tension, ratio\n"},
+    {OBJECTIVE "{figure: tension}]\n", NULL,
+     "error: c.yaml:4:15: optimize.objective.0.target: is missing: the tension that is wanted, in N\n"},
+    {OBJECTIVE "{figure: length, target: 0}]\n", NULL,
+     "error: c.yaml:4:40: optimize.objective.0.target: of length must be above 0\n"},
+    {OBJECTIVE "{figure: mass}]\n", NULL,
+     "error: c.yaml:4:15: optimize.objective.0.mass_kg_per_m: is missing: the mass of the cables\n"},
+    {OBJECTIVE "{figure: mass, mass_kg_per_m: 0}]\n", NULL,
+     "error: c.yaml:4:45: optimize.objective.0.mass_kg_per_m: must be above 0, not 0\n"},
+    {OBJECTIVE "{figure: psi, weight: 0}]\n", NULL,
+     "error: c.yaml:4:37: optimize.objective.0.weight: must be above 0, not 0\n"},
+    {LIMIT "{figure: ratio, bounds: [0, 1]}]\n", NULL,
+     "error: c.yaml:4:36: optimize.limits.0.bounds: must end above 1, and not begin above it: even tensions have 1\n"},
+    {LIMIT "{figure: ratio, bounds: [1, null]}]\n", NULL,
+     "error: c.yaml:4:36: optimize.limits.0.bounds: must end above 1, and not begin above it: even tensions have 1\n"},
+    {LIMIT "{figure: ratio, bounds: [2, 3]}]\n", NULL,
+     "error: c.yaml:4:36: optimize.limits.0.bounds: must end above 1, and not begin above it: even tensions have 1\n"},
+    {LIMIT "{figure: deflection, bounds: [-1, 0]}]\n", NULL,
+     "error: c.yaml:4:41: optimize.limits.0.bounds: must end above 0, and not begin above it\n"},
+    {LIMIT "{figure: deflection, bounds: [1e-3, 1]}]\n", NULL,
+     "error: c.yaml:4:41: optimize.limits.0.bounds: must end above 0, and not begin above it\n"},
     {OPTIMIZE "  rule: seeded\n  variables: [" ROW "]\n", NULL,
      "error: c.yaml:4:9: optimize.rule: cannot be seeded with optimize.variables; remove one of them\n"},
     {OPTIMIZE "  range_N: 1\n  variables: [" ROW "]\n", NULL,
@@ -389,16 +390,16 @@ START_TEST(all_faults_of_rows_are_told_in_one_run)
                                         "  variables:\n"
                                         "    - {set: a, vary: tension}\n"
                                         "    - {set: a b, vary: length, range: 1}\n"
-                                        "  goals: [{goal: psi, set: a, fit: best}]\n",
+                                        "  objective: [{figure: psi, set: a, fit: best}]\n",
                                NULL, 0, &c, said, sizeof said),
                      HF_BAD_CASE);
-    ck_assert_str_eq(said,
-                     "error: c.yaml:6:7: optimize.variables.0.range: is missing; give range, bounds or both\n"
-                     "error: c.yaml:7:13: optimize.variables.1.set: must be made of letters, digits, _ and -\n"
-                     "error: c.yaml:4:9: optimize.rule: cannot be seeded with optimize.variables; remove one of them\n"
-                     "error: c.yaml:8:28: optimize.goals.0.set: has no meaning for psi, only for tension, length, "
-                     "evenness, mass, ratio\n"
-                     "error: c.yaml:8:36: optimize.goals.0.fit: has no meaning for psi, only for surface, facets\n");
+    ck_assert_str_eq(
+        said, "error: c.yaml:6:7: optimize.variables.0.range: is missing; give range, bounds or both\n"
+              "error: c.yaml:7:13: optimize.variables.1.set: must be made of letters, digits, _ and -\n"
+              "error: c.yaml:4:9: optimize.rule: cannot be seeded with optimize.variables; remove one of them\n"
+              "error: c.yaml:8:34: optimize.objective.0.set: has no meaning for psi, only for tension, length, "
+              "evenness, mass, ratio\n"
+              "error: c.yaml:8:42: optimize.objective.0.fit: has no meaning for psi, only for surface, facets\n");
     hf_case_free(&c);
 }
 END_TEST

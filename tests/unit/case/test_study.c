@@ -368,7 +368,7 @@ END_TEST
 
 #define ROWS                                                                                                           \
     "optimize:\n  variables: [{set: edge, vary: length, range: 1}, {set: edge, vary: tension, bounds: [1, 2]}]\n"      \
-    "  goals: [{goal: psi}]\n"
+    "  objective: [{figure: psi}]\n"
 
 static hf_status read_rows_study(const char *axes, hf_study *s)
 {
@@ -387,7 +387,7 @@ START_TEST(keys_of_rows_are_swept)
     hf_study s;
     hf_status status = read_rows_study("  optimize.variables.0.range: [1e-1, 30%, 30.0 %]\n"
                                        "  optimize.variables.1.bounds: [[1, 2], [null, 3]]\n"
-                                       "  optimize.goals.0.weight: {from: 1, to: 3, n: 3}\n",
+                                       "  optimize.objective.0.weight: {from: 1, to: 3, n: 3}\n",
                                        &s);
     ck_assert_int_eq(status, HF_BAD_CASE); /* one way to write each amount */
     ck_assert_msg(strstr(said, "two points are the same: ") && strstr(said, "optimize.variables.0.range=30 %,"), "%s",
@@ -396,7 +396,7 @@ START_TEST(keys_of_rows_are_swept)
     status = read_rows_study("  optimize.variables.0.range: [1e-1, 30%]\n"
                              "  optimize.variables.1.bounds: [[1, 2], [null, 3]]\n"
                              "  optimize.variables.1.range: {from: 1, to: 2, n: 2}\n"
-                             "  optimize.goals.0.weight: {from: 1, to: 3, n: 3}\n",
+                             "  optimize.objective.0.weight: {from: 1, to: 3, n: 3}\n",
                              &s);
     ck_assert_msg(status == HF_OK, "%s", said);
     ck_assert_int_eq(s.n_point, 24);
@@ -420,7 +420,8 @@ static const struct {
      "one.yaml:8:3: sweep.optimize.variables.0: unknown key 'rnge'; did you mean 'range'?"},
     {"  optimize.variables: [1]\n",
      "one.yaml:8:3: sweep.optimize.variables: has many keys; an axis is one key of one row"},
-    {"  optimize.goals.0: [1]\n", "one.yaml:8:3: sweep.optimize.goals.0: has many keys; an axis is one key of one row"},
+    {"  optimize.objective.0: [1]\n",
+     "one.yaml:8:3: sweep.optimize.objective.0: has many keys; an axis is one key of one row"},
     {"  optimize.variables.0.range: [-1]\n",
      "one.yaml:8:32: sweep: optimize.variables.0.range: must be above 0, not -1"},
     {"  optimize.variables.1.bounds: {from: 1, to: 2, n: 2}\n",

@@ -27,9 +27,9 @@ static const struct {
      "set tie has 7 cables, but no support at their ends that holds a free node: there is nothing to vary"},
     {"[{set: front, vary: tension, bounds: [-5, -2]}]", NULL, "no value above 0 N, but a cable needs a tension and a length"},
     {"[{set: tie, vary: length, bounds: [null, 0]}]", NULL, "no value above 0 m, but a cable needs a tension and a length"},
-    {"[{set: tie, vary: tension, range: 1}]", "optimize.goals=[{goal: tension, set: ties, target: 3}]",
-     "--set optimize.goals.0.set: there is no set of cables 'ties'; did you mean 'tie'?"},
-    {"[{set: tie, vary: tension, range: 1}]", "optimize.limits=[{limit: ratio, set: ties, bounds: [1, 3]}]",
+    {"[{set: tie, vary: tension, range: 1}]", "optimize.objective=[{figure: tension, set: ties, target: 3}]",
+     "--set optimize.objective.0.set: there is no set of cables 'ties'; did you mean 'tie'?"},
+    {"[{set: tie, vary: tension, range: 1}]", "optimize.limits=[{figure: ratio, set: ties, bounds: [1, 3]}]",
      "--set optimize.limits.0.set: there is no set of cables 'ties'; did you mean 'tie'?"},
 };
 enum { N_REFUSED = sizeof refused / sizeof *refused };
@@ -92,8 +92,8 @@ END_TEST
 /* 1.05 mm at the start, inside and outside. Attachments where the ring is held do not move at all. */
 START_TEST(a_limit_on_displacements_is_met)
 {
-    static const char *const limit[] = {"[{limit: displacement, bounds: [0, 1.2e-3]}]",
-                                        "[{limit: displacement, bounds: [0, 1.03e-3]}]"};
+    static const char *const limit[] = {"[{figure: deflection, bounds: [0, 1.2e-3]}]",
+                                        "[{figure: deflection, bounds: [0, 1.03e-3]}]"};
     char limits[96];
     snprintf(limits, sizeof limits, "optimize.limits=%s", limit[_i]);
     const hf_summary *s = run_bowl(ALL, limits);

@@ -52,7 +52,7 @@ START_TEST(opening_gives_what_a_run_finds)
 {
     char output[HF_OUTPUT_SIZE];
     static hf_summary s;
-    static const char *const set[] = {"optimize.generations=1", "optimize.polish_iterations=1"};
+    static const char *const set[] = {"optimize.generations=1", "optimize.refine_steps=1"};
     hf_messages said = {0};
     hf_problem p;
     hf_run_request request = {

@@ -444,9 +444,9 @@ static double least_beside(hf_problem *p, const double most[HF_FRONT_OBJECTIVES_
 }
 
 static const char *const traded[] = {
-    "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}]",
-    "optimize.objectives=[{goal: facets}, {goal: pull}]",
-    "optimize.objectives=[{goal: psi}, {goal: evenness, set: boundary}]",
+    "optimize.front=[{figure: psi}, {figure: ratio, set: boundary}]",
+    "optimize.front=[{figure: facets}, {figure: pull}]",
+    "optimize.front=[{figure: psi}, {figure: evenness, set: boundary}]",
 };
 enum { N_TRADED = sizeof traded / sizeof *traded, N_POINT = 11 };
 
@@ -487,8 +487,8 @@ START_TEST(points_are_even_and_slopes_those_of_differences)
 END_TEST
 
 static const char *const three[] = {
-    "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}, {goal: evenness, set: boundary}]",
-    "optimize.objectives=[{goal: psi}, {goal: evenness, set: boundary}, {goal: pull}]",
+    "optimize.front=[{figure: psi}, {figure: ratio, set: boundary}, {figure: evenness, set: boundary}]",
+    "optimize.front=[{figure: psi}, {figure: evenness, set: boundary}, {figure: pull}]",
 };
 enum { N_THREE = sizeof three / sizeof *three };
 

@@ -21,14 +21,17 @@ static const struct {
     {{SMALL,
       "optimize.variables=[{set: boundary, vary: tension, range: 30 %, link: set}, {set: inner, vary: force_density, "
       "range: 30 %}, {set: boundary, vary: support_xyz, range: 0.1}]",
-      "optimize.goals=[{goal: psi, weight: 3}, {goal: tension, set: boundary, target: 11, weight: 0.1}, {goal: "
+      "optimize.objective=[{figure: psi, weight: 3}, {figure: tension, set: boundary, target: 11, weight: 0.1}, "
+      "{figure: "
       "evenness, "
-      "set: inner}, {goal: length, set: inner, weight: 20}, {goal: mass, mass_kg_per_m: 0.01}, {goal: pull, weight: "
+      "set: inner}, {figure: length, set: inner, weight: 20}, {figure: mass, mass_kg_per_m: 0.01}, {figure: pull, "
+      "weight: "
       "0.01}]"},
      1e-4,
      1e-7},
 #define ON_TRUSS                                                                                                       \
-    "optimize.goals=[{goal: surface, fit: best}, {goal: facets, along: half_path, weight: 2}, {goal: displacement, "   \
+    "optimize.objective=[{figure: surface, fit: best}, {figure: facets, along: half_path, weight: 2}, {figure: "       \
+    "deflection, "                                                                                                     \
     "weight: 10}]",                                                                                                    \
         "truss.depth_m=1", "coupling.tof_m=1e-12"
     {{SMALL, "optimize.variables=[{set: boundary, vary: length, range: 1 %}]", ON_TRUSS, "form.length_tolerance=1e-13",
@@ -38,7 +41,7 @@ static const struct {
     {{SMALL,
       "optimize.variables=[{set: boundary, vary: force_density, range: 10 %}, {set: boundary, vary: support_xyz, "
       "range: 0.1}]",
-      "optimize.goals=[{goal: gain}, {goal: gain, frequency_Hz: 2e9, weight: 2}, {goal: psi}]",
+      "optimize.objective=[{figure: gain}, {figure: gain, frequency_Hz: 2e9, weight: 2}, {figure: psi}]",
       "surface.frequencies_Hz=[0.8e9]", "surface.pattern.n_theta=3", "truss.depth_m=1", "coupling.tof_m=1e-12"},
      3e-4,
      1e-7},
@@ -136,7 +139,7 @@ START_TEST(a_objective_that_is_met_has_no_derivative)
     hf_jacobian j;
     hf_form_result r;
     hf_messages messages = {0};
-    const char *const set[] = {SMALL, "optimize.goals=[{goal: psi}, {goal: mass, mass_kg_per_m: 1e-170}]"};
+    const char *const set[] = {SMALL, "optimize.objective=[{figure: psi}, {figure: mass, mass_kg_per_m: 1e-170}]"};
     hf_status status = hf_problem_open(source_path("configs/reflector.yaml"), set, 6, 1, &p, &messages);
     ck_assert_msg(status == HF_OK, "%s", messages.text);
     ck_assert_int_eq(hf_jacobian_create(&p.evaluator, &j), HF_OK);

@@ -240,7 +240,7 @@ static const struct {
     {WANT(FACETS, "", NAN, 1),
      ": facets: needs a target surface: add a section surface (with focal_length_m for an imported net)"},
     {WANT(GAIN, "", NAN, 1), ": gain: needs a section surface.pattern with the feed of the reflector"},
-    {WANT(DEFLECTION, "", NAN, 1), ": displacement: needs a truss that deflects, but this net has none"},
+    {WANT(DEFLECTION, "", NAN, 1), ": deflection: needs a truss that deflects, but this net has none"},
 };
 enum { N_FAULTY = sizeof faulty / sizeof *faulty };
 
@@ -255,7 +255,7 @@ START_TEST(a_objective_without_meaning_is_refused)
     open_line(&t);
     ck_assert_int_eq(hf_objectives_create(&t.net.scene, &t.net.model, &s, NULL, NULL, NULL, &t.objectives, &messages),
                      HF_BAD_CASE);
-    snprintf(said, sizeof said, "error: optimize.goals.0%s\nerror: optimize.goals.2%s\n", faulty[_i].said,
+    snprintf(said, sizeof said, "error: optimize.objective.0%s\nerror: optimize.objective.2%s\n", faulty[_i].said,
              faulty[_i].said);
     ck_assert_str_eq(messages.text, said);
     hf_messages_free(&messages);
@@ -275,8 +275,9 @@ START_TEST(a_surface_may_lack_facets_and_nodes)
     ck_assert_int_eq(
         hf_objectives_create(&t.net.scene, &t.net.model, &s, &surface, &t.facets, NULL, &t.objectives, &messages),
         HF_BAD_CASE);
-    ck_assert_str_eq(messages.text, "error: optimize.goals.0: facets: this net has no facets\n"
-                                    "error: optimize.goals.1: surface: a best fit needs at least six inner nodes\n");
+    ck_assert_str_eq(messages.text,
+                     "error: optimize.objective.0: facets: this net has no facets\n"
+                     "error: optimize.objective.1: surface: a best fit needs at least six inner nodes\n");
     hf_messages_free(&messages);
     close_wanting(&t);
 }
@@ -332,18 +333,17 @@ START_TEST(names_tell_objectives_apart)
     static const struct {
         hf_objective_settings wanted;
         const char *name;
-    } row[] = {
-        {{.figure = HF_FIGURE_PSI}, "objective_%d_psi"},
-        {{.figure = HF_FIGURE_TENSION, .set = "edge"}, "objective_%d_tension_edge"},
-        {{.figure = HF_FIGURE_PSI, .load_case = "hot"}, "objective_%d_psi_hot"},
-        {{.figure = HF_FIGURE_RATIO, .set = "edge", .load_case = "hot", .over = HF_OVER_LOAD_CASES},
-         "objective_%d_ratio_edge_hot"},
-        {{.figure = HF_FIGURE_PSI, .load_case = "a_name_of_a_state_of_31_letters"},
-         "objective_%d_psi_a_name_of_a_state_of_31_"},
-        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_LOAD_CASES, .take = HF_TAKE_MEAN}, "objective_%d_psi_states_mean"},
-        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_LOAD_CASES, .take = HF_TAKE_WORST}, "objective_%d_psi_states_worst"},
-        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .take = HF_TAKE_MEAN}, "objective_%d_psi_samples_mean"},
-        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .quantile = 0.9}, "objective_%d_psi_samples_quantile"}};
+    } row[] = {{{.figure = HF_FIGURE_PSI}, "objective_%d_psi"},
+               {{.figure = HF_FIGURE_TENSION, .set = "edge"}, "objective_%d_tension_edge"},
+               {{.figure = HF_FIGURE_PSI, .load_case = "hot"}, "objective_%d_psi_hot"},
+               {{.figure = HF_FIGURE_RATIO, .set = "edge", .load_case = "hot", .take = HF_TAKE_WORST},
+                "objective_%d_ratio_edge_hot"},
+               {{.figure = HF_FIGURE_PSI, .load_case = "a_name_of_a_state_of_31_letters"},
+                "objective_%d_psi_a_name_of_a_state_of_31_"},
+               {{.figure = HF_FIGURE_PSI, .load_case = "all", .take = HF_TAKE_MEAN}, "objective_%d_psi_load_cases_mean"},
+               {{.figure = HF_FIGURE_PSI, .load_case = "all", .take = HF_TAKE_WORST}, "objective_%d_psi_load_cases_worst"},
+               {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .take = HF_TAKE_MEAN}, "objective_%d_psi_samples_mean"},
+               {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .quantile = 0.9}, "objective_%d_psi_samples_quantile"}};
     for (int k = 0; k < (int)(sizeof row / sizeof *row); k++) {
         hf_objectives objectives = {.n_objective = 1};
         char name[HF_OBJECTIVE_NAME_SIZE], expected[HF_OBJECTIVE_NAME_SIZE];

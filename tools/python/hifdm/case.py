@@ -456,7 +456,7 @@ def net(position_m: np.ndarray, end: np.ndarray, *, role: str | Sequence[str] | 
     and law are one word for all, a sequence of words, or codes [n] uint8. value [n_cable]: N, m, N/m or m (unstressed)
     by law; NaN: the pretension of the case, or the length between target positions. EA_N [n_cable] N, load_N [n_node,
     3] N. sets: names of sets, with indices of their cables. sections: those of a case file, such as
-    form={"pretension_N": 10}, optimize={"goals": [{"goal": "psi"}]}.
+    form={"pretension_N": 10}, optimize={"objective": [{"figure": "psi"}]}.
     """
     wanted("position_m", position_m, float, (None, 3))
     wanted("end", end, np.int32, (None, 2))

@@ -1,4 +1,4 @@
-#include "case/config_meant.h"
+#include "case/config_suggest.h"
 
 #include "case/config_key.h"
 
@@ -13,7 +13,7 @@ static const struct {
     const char *section, *words, *meant;
 } synonym[] = {
     {"optimize", "maxiterations iterations maxiter maxit niter nit lmiterations steps maxsteps maxfev nfev",
-     "'optimize.polish_iterations' (steps of Levenberg-Marquardt) or 'optimize.generations'"},
+     "'optimize.refine_steps' (steps of Levenberg-Marquardt) or 'optimize.generations'"},
     {"optimize", "ngen gens maxgen ngenerations", "'optimize.generations'"},
     {"optimize", "pop popsize npop individuals", "'optimize.population'"},
     {"optimize", "tolerance tol ftol xtol gtol eps stagnation",
@@ -33,7 +33,7 @@ static const struct {
     {"scene.paraboloid", "f focallength", "'scene.paraboloid.focal_length_m'"},
     {"scene.paraboloid", "depth depthm", "'scene.paraboloid.rear_distance_m' (between the rims of two nets)"},
     {"*", "maxiterations maxiter iterations",
-     "'form.max_iterations', 'optimize.polish_iterations' or 'optimize.generations'"},
+     "'form.max_iterations', 'optimize.refine_steps' or 'optimize.generations'"},
     {"*", "seed randomseed rngseed", "'optimize.seed' or 'tolerance.seed'"},
     {"*", "threads nthreads numthreads cores jobs nproc workers",
      "the option --threads of the command line? A case has no key for it"},
@@ -42,8 +42,8 @@ static const struct {
      "'scene.EA_inner_N' and 'scene.EA_boundary_N' (of cables, times their cross-section) or 'truss.E_Pa'"},
     {"*", "tension pretension prestressn", "'form.pretension_N'"},
     {"*", "load loads force forces",
-     "'scene.import.nodes' (columns Fx_N, Fy_N, Fz_N of that table), or 'cases' (rows with force_N)"},
-    {"*", "gravity temperature temperatures", "'cases' (rows with gravity_m_per_s2 or temperature_K)"},
+     "'scene.import.nodes' (columns Fx_N, Fy_N, Fz_N of that table), or 'load_cases' (rows with force_N)"},
+    {"*", "gravity temperature temperatures", "'load_cases' (rows with gravity_m_per_s2 or temperature_K)"},
     {"*", "material materials density",
      "'cables' (rows with mass_kg_per_m), 'scene.EA_inner_N' or 'truss.density_kg_per_m3'"},
     {"*", "focallength focallengthm f", "'scene.paraboloid.focal_length_m' or 'surface.focal_length_m'"},
@@ -69,7 +69,7 @@ static bool is_among(const char *words, const char *key)
     return false;
 }
 
-const char *hf_config_meant(const char *section, const char *key)
+const char *hf_config_suggestion(const char *section, const char *key)
 {
     hf_key of;
     bool is_row = hf_key_find(section, &of) && !of.field;
