@@ -284,7 +284,7 @@ static hf_status tell(const reach *q, hf_messages *messages)
             hf_warning(
                 messages,
                 "%s: changes nothing at the initial design, because its cables, or those at its supports, are slack",
-                hf_messages_place(messages, place, "optimize.variables.%d", i));
+                hf_messages_location(messages, place, "optimize.variables.%d", i));
     for (int i = 0; i < o->n_limit; i++)
         if (q->now.limit[i])
             hf_warning(messages, "%s: no design variable of this case changes the limited figure: %s",
@@ -296,7 +296,7 @@ static hf_status tell(const reach *q, hf_messages *messages)
     return hf_error(
         messages, HF_BAD_CASE,
         "%s: no design variable of this case changes psi: %s; add one that does, or use another optimize.objective",
-        hf_messages_place(messages, place, o->n_variable_row ? "optimize.variables.0" : "optimize.range_N"),
+        hf_messages_location(messages, place, o->n_variable_row ? "optimize.variables.0" : "optimize.range_N"),
         why_objective(HF_FIGURE_PSI));
 }
 
