@@ -267,7 +267,7 @@ static hf_status explain_far(const char *path, const hf_built *b, double all_m, 
         path, rms_m * 1e3, all_m * 1e3);
 }
 
-/* Reports the distant nodes one by one, at largest HF_FAULT_MAX of them. */
+/* Reports the distant nodes one by one, at most HF_FAULT_MAX of them. */
 static void name_far(const char *path, const hf_built *b, const double *expected_m, double all_m,
                      const hf_measured *measured, hf_messages *messages)
 {

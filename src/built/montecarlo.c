@@ -19,7 +19,7 @@
 
 #include <math.h>
 
-/* Limits of the number of samples in one call. Their numbers are kept in at n CHUNK_BYTES until the linear model has
+/* Limits of the number of samples in one call. Their numbers are kept in at most CHUNK_BYTES until the linear model has
  * used them, but for CHUNK_MIN samples in any case. No limit affects the bits of a sample. */
 #define CHUNK_BYTES (64 << 20)
 #define CHUNK_MIN 64
@@ -241,7 +241,7 @@ bool hf_montecarlo_meets_all(const hf_tolerance_settings *s, const double *row)
     return row[HF_TOLERANCE_STATUS] == HF_OK;
 }
 
-/* Computes whether at min_N the share settings->required_yield of the first n samples meets all requirements at this scale. */
+/* Computes whether at least the share settings->required_yield of the first n samples meets all requirements at this scale. */
 static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reaches)
 {
     long met = 0, failed = 0;

@@ -225,9 +225,9 @@ Newton's method for one elastic net from the nominal shape (M34):
 
 /* The tests of near, built_batch and samples also pass with other values of the constants below. In their order
  * these are 40, 0.02, 0.01, 0.001, 1e-8 and 100, 0.1, 1, 0.1, 1e-4. With REACH 0.01, nets of 525 nodes take two steps
- * more at errors of 0.1 mm. Without REACH, n_max of those with errors of 0.5 mm are not found. */
+ * more at errors of 0.1 mm. Without REACH, most of those with errors of 0.5 mm are not found. */
 #define NEWTON_STEPS_MAX 40
-/* Maximum displacement of a node in one step, relative to the mean length of the by_cable. */
+/* Maximum displacement of a node in one step, relative to the mean length of the cables. */
 #define REACH 0.04
 /* The minimum tension in the matrix is the smaller of two values: this fraction of the maximum force out of balance,
  * and FLOOR_MAX of the reference tension. */
@@ -239,7 +239,7 @@ Newton's method for one elastic net from the nominal shape (M34):
 #define GAP_LEFT 1e-2
 enum { KRYLOV = 12 };
 
-/* Computes the stiffness block of cable e. set_stiffness has stored the stiffness along the by_cable in
+/* Computes the stiffness block of cable e. set_stiffness has stored the stiffness along the cables in
  * newton_trial_tension_N, N/m, and that across them in q_N_per_m. */
 static void block_of(const hf_model *m, const hf_workspace *w, int e, double block[3][3])
 {
@@ -255,7 +255,7 @@ static bool holds(const hf_workspace *w, int e, double over_m)
 }
 
 /* Sets newton_force_N to the forces out of balance by the elastic law. Sets newton_step to the same with compression in
- * by_cable that are taut in the matrix. Returns the maximum of the former, N. */
+ * cables that are taut in the matrix. Returns the maximum of the former, N. */
 static double measure(const hf_model *m, hf_workspace *w)
 {
     double u[3], largest = 0;
@@ -394,7 +394,7 @@ static void extend(const hf_near *near, const double *factor, int j, hf_workspac
 
 /* Replaces the gap by the displacement of the attachments that closes it, (1 + F S)^-1 gap. It uses GMRES (Saad,
  * Schultz, SIAM J. Sci. Stat. Comput. 7, 1986) with the inverse A of the nominal net as preconditioner. A alone closes
- * only a fifth of the gap per step, because slack by_cable remove stiffness in a few directions.
+ * only a fifth of the gap per step, because slack cables remove stiffness in a few directions.
  *
  * No division by 0 occurs. F and S are positive semidefinite, so 1 + F S is regular, as is its nominal counterpart. The
  * images of the vectors are therefore independent, and a space that ends early (h[j + 1] = 0) contains the solution. If
@@ -548,7 +548,7 @@ static double ratio_of(const hf_near_lanes *l, hf_group group, int lane)
     return high_N > 0 ? high_N / l->now.lowest_N[group][lane] : (double)NAN;
 }
 
-/* Sets the result of a lane without slack by_cable. Each cable has the tension of its law, so the error of lengths is
+/* Sets the result of a lane without slack cables. Each cable has the tension of its law, so the error of lengths is
  * 0. */
 static void report(const hf_near *near, const hf_near_lanes *l, int lane, hf_workspace *w, hf_form_result *r)
 {
@@ -566,7 +566,7 @@ static void report(const hf_near *near, const hf_near_lanes *l, int lane, hf_wor
     if (m->n_attachment) hf_coupling_accept(m, w, l->steps[lane], l->gap_m[lane], r);
 }
 
-/* Accepts a converged lane with slack by_cable. The scalar code counts them and looks for loose nodes. */
+/* Accepts a converged lane with slack cables. The scalar code counts them and looks for loose nodes. */
 static bool accept_slack(const hf_near *near, const hf_near_lanes *l, int lane, const hf_built_net *net,
                          hf_workspace *w, hf_form_result *r)
 {

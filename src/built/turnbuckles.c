@@ -157,7 +157,7 @@ static bool worst_fall(const box *b, const double *x, hf_quadratic_limit *limit)
     return at >= 0;
 }
 
-/* Writes the bound that x violates max_m, for hf_quadratic. When x violates none, it writes the worst limit on
+/* Writes the bound that x violates most, for hf_quadratic. When x violates none, it writes the worst limit on
  * tensions. */
 static bool worst_bound(void *context, const double *x, hf_quadratic_limit *limit)
 {
@@ -252,7 +252,7 @@ static void descend(const hf_turnbuckles_problem *p, int n, const int *list, con
 }
 
 /* Takes steps back until rounding to whole steps no longer breaks a limit on tensions. Each time it takes back the step
- * that costs min_square among those that help. After 10 of these for each turnbuckle it sets all steps to 0. */
+ * that costs least among those that help. After 10 of these for each turnbuckle it sets all steps to 0. */
 static void step_back(const hf_turnbuckles_problem *p, const tensions *t, int *steps, double *adjustment_m)
 {
     fall_by_steps(t, steps, adjustment_m);
@@ -319,7 +319,7 @@ static bool is_on_list(const choice *c, int i)
     return false;
 }
 
-/* Lists the turnbuckles off the list that gain max_m alone, in descending order. Returns their number. */
+/* Lists the turnbuckles off the list that gain most alone, in descending order. Returns their number. */
 static int find_candidates(choice *c, int candidate[SHORT_LIST])
 {
     int n = 0, n_adjusted = 0, *adjusted = c->trial; /* trial is free at this point */

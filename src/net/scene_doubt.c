@@ -169,7 +169,7 @@ static double farthest_support(const hf_scene *s, const flat *f, double max_off[
     return max_m;
 }
 
-/* Computes a flat of at max_m two directions through all supports, to PLANE_PART of their extent. Returns false if
+/* Computes a flat of at most two directions through all supports, to PLANE_PART of their extent. Returns false if
  * there is none. */
 static bool span_supports(const hf_scene *s, flat *f, double *extent_m)
 {

@@ -1,5 +1,4 @@
-/* target_surface - the target surface: the parabolic cylinder z = x^2/(4f) along y, or the paraboloid z = (x^2 +
- * y^2)/(4f). */
+/* target_surface - the target surface: parabolic cylinder z = x^2/(4f) along y, or paraboloid z = (x^2 + y^2)/(4f). */
 #ifndef HIFDM_TARGET_SURFACE_H
 #define HIFDM_TARGET_SURFACE_H
 
@@ -20,9 +19,9 @@ static inline double hf_target_surface_height_above(hf_surface_kind kind, double
 
 /* Distances of the inner nodes of a scene, at their target positions, from a surface, measured along z. */
 typedef struct {
-    double rms_m, max_m; /* max_m: maximum */
-    int farthest;        /* node with the maximum distance */
-    double depth_m;      /* highest minus lowest z of the surface at x and y of all nodes */
+    double rms_m, max_m;
+    int farthest;   /* node with the maximum distance */
+    double depth_m; /* highest minus lowest z of the surface at x and y of all nodes */
 } hf_target_surface_fit;
 
 hf_target_surface_fit hf_target_surface_compare(hf_surface_kind kind, double focal_length_m, const hf_scene *scene);
