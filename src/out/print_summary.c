@@ -536,7 +536,7 @@ static void print_load_cases(const hf_summary *s, FILE *f)
     bool has_surface = s->surface.focal_length_m > 0, has_truss = s->has_truss, has_loose = false;
     bool has_loss = has_surface && s->surface.frequencies_Hz.n > 0;
     if (s->n_load_case == 0) return;
-    fprintf(f, "  load cases    %-16s %9s %9s%s %8s %9s %5s %5s%s\n", "of as-built net", "psi mm", "displ. mm",
+    fprintf(f, "  load cases    %-16s %9s %15s%s %8s %9s %5s %5s%s\n", "as-built net", "psi mm", "displacement mm",
             has_loss      ? "   loss dB  best fit"
             : has_surface ? " half-path  best fit"
                           : "",
@@ -551,7 +551,7 @@ static void print_load_cases(const hf_summary *s, FILE *f)
         has_loose |= r->n_loose > 0;
         fprintf(f, "                %-16s", load_case->name);
         print_if_finite(" %9.4f", r->psi_m * 1e3, 10, f);
-        fprintf(f, " %9.4f", load_case->displacement_rms_m * 1e3);
+        fprintf(f, " %15.4f", load_case->displacement_rms_m * 1e3);
         if (has_surface) print_load_case_surface(s, &load_case->surface, f);
         fprintf(f, " %8.4f %9.4f %5d %5d", load_case->tension_min_N, load_case->tension_max_N, r->n_slack, r->n_loose);
         if (has_truss) fprintf(f, " %8.4g", load_case->member_force_max_N);

@@ -96,10 +96,10 @@ START_TEST(moves_are_a_table)
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS);
     HIFDM(0, "adjust", path, "--measured", measured, "-o", moves);
     OUT("nodes measured, chi^2 ");
-    OUT(" per coordinate; supports are taken to be where the case has them");
+    OUT("per coordinate (1 is expected); supports are assumed at their positions in the case");
     OUT("psi measured ");
-    OUT("psi after 3 moves");
-    OUT("all 3 are made (adjust.moves)");
+    OUT("psi after 3 adjustments");
+    OUT("all 3 are made (adjust.max_adjustments)");
     char *table = read_file(moves, NULL);
     ck_assert_int_eq(count_of(table, "\n"), 4);
     ck_assert_ptr_nonnull(strstr(
@@ -113,28 +113,29 @@ START_TEST(moves_are_a_table)
     ck_assert_str_eq(table, again);
     HIFDM(0, "adjust", path, "--measured", measured, "--json", "--set", "tolerance.sigma_support_m=1e-4");
     OUT("\"supports_estimated\": true");
-    OUT("\"moves\": [");
+    OUT("\"adjustments\": [");
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.target_m=1");
-    OUT("psi after 0 moves");
-    OUT("no further move: target_m is met");
+    OUT("psi after 0 adjustments");
+    OUT("no further adjustment: target_m is met");
     HIFDM(0, "adjust", path, "--measured", measured, "--json");
     double probable_m = number_after("\"adjusted_m\": "), expected_m = number_after("\"adjusted_expected_m\": ");
     ck_assert_double_lt(probable_m, expected_m);
     double before_m = number_after("\"estimated_expected_m\": "),
            before_sigma_m = number_after("\"estimated_sigma_m\": "), sigma_m = number_after("\"adjusted_sigma_m\": "),
            best_m = number_after("\"best_m\": ");
-    const char *before = keep(formatted("; with what is left open %.4f +- %.4f mm; as designed ", before_m * 1e3,
-                                        before_sigma_m * 1e3)),
-               *behind = keep(formatted(" %.4f mm; with what is left open %.4f +- %.4f mm; a search over moves of ",
+    const char *before =
+                   keep(formatted("; expected %.4f +- %.4f mm over all nets that fit the measurement; of the design ",
+                                  before_m * 1e3, before_sigma_m * 1e3)),
+               *behind = keep(formatted(" %.4f mm; expected %.4f +- %.4f mm; a search over adjustments of all ",
                                         probable_m * 1e3, expected_m * 1e3, sigma_m * 1e3)),
-               *best = keep(formatted("without least tensions, reached %.4f mm\n", best_m * 1e3));
+               *best = keep(formatted("without minimum tensions, reached %.4f mm\n", best_m * 1e3));
     HIFDM(0, "adjust", path, "--measured", measured); /* the words have the same figures */
     OUT(before);
     OUT(behind);
     OUT(best);
     HIFDM(0, "adjust", path, "--measured", measured, "--set",
           formatted("adjust.target_m=%.17g", (probable_m + expected_m) / 2));
-    OUT("no further move: the most probable net meets target_m, but ");
+    OUT("no further adjustment: the most probable net meets target_m, but the expected value is ");
     static const char *const column[] = {
         "order",          "cable", "set", "turnbuckle_mm", "tension_before_N", "tension_after_N", "predicted_rms_mm",
         "expected_rms_mm"};
@@ -152,10 +153,10 @@ START_TEST(no_cable_is_let_out_until_it_is_slack)
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS);
     HIFDM(0, "adjust", path, "--measured", measured, "-o", moves, "--set", "adjust.range_m=0.05", "--set",
           "adjust.set=boundary", "--set", "adjust.aim=theory");
-    OUT("moves leave each cable its least tension, and no further one slack");
+    OUT("the adjustments leave each cable its minimum tension and make no other cable slack");
     SHELL(0, "awk -F, 'NR > 1 && !($6 > 0.01) { bad = 1 } END { exit bad || NR < 2 }' \"$1\"", moves);
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.range_m=100", "--set", "adjust.aim=theory");
-    OUT("psi after 3 moves");
+    OUT("psi after 3 adjustments");
 }
 END_TEST
 
@@ -176,10 +177,10 @@ START_TEST(least_tensions_are_asked_for)
     HIFDM(0, LET_OUT, "--json"); /* nor is any cable slack on the way */
     ck_assert_int_eq(count_of(said.out, "\"slack\": 0"), 8);
     HIFDM(0, LET_OUT, "--set", "tolerance.require=[{measure: least_tension_N, at_least: 5}]");
-    ck_assert_ptr_null(strstr(said.out, "may not lose more"));
+    ck_assert_ptr_null(strstr(said.out, "may not lose tension"));
     SHELL(0, least, moves, "4.5", "1e3");
     HIFDM(0, LET_OUT, "--set", "tolerance.require=[{measure: least_tension_N, at_least: 5e5}]");
-    OUT("cables have less than the asked 5e+05 N already and may not lose more");
+    OUT("cables have less than the required 5e+05 N already and may not lose tension");
     HIFDM(0, LET_OUT, "--set", "optimize.limits=[{limit: tension, set: boundary, bounds: [8, 1e4]}]");
     SHELL(0, least, moves, "7.2", "1e3");
 }
@@ -200,28 +201,28 @@ START_TEST(what_else_could_be_aimed_at_is_told)
         ck_assert_double_lt(number_after("\"error_psi_m\": "), 0.002);
     }
     HIFDM(0, "adjust", path, "--measured", measured);
-    OUT("psi is measured from the shape of the design (adjust.aim), which is 39.");
-    OUT("Aimed at something else:");
-    OUT(keep(formatted("to %.4f mm by 3 moves", after[1] * 1e3)));
-    OUT(keep(formatted("to %.4f mm by 3 moves", after[2] * 1e3)));
+    OUT("psi is measured from the design (adjust.aim), which is 39.");
+    OUT("Results with another figure or aim:");
+    OUT(keep(formatted("to %.4f mm by 3 adjustments", after[1] * 1e3)));
+    OUT(keep(formatted("to %.4f mm by 3 adjustments", after[2] * 1e3)));
     HIFDM(0, "adjust", path, "--measured", measured, "--set", aim[1]);
-    OUT("3 of 3 moves are as far as adjust.range_m allows. Aimed at something else:");
-    OUT("adjust: {figure: psi, aim: design} brings psi from ");
-    OUT(keep(formatted("to %.4f mm by 3 moves", after[0] * 1e3)));
-    OUT("adjust: {figure: facets} brings facets from ");
-    OUT(keep(formatted("to %.4f mm by 3 moves", after[2] * 1e3)));
+    OUT("3 of 3 adjustments are as large as adjust.range_m allows. Results with another figure or aim:");
+    OUT("adjust: {figure: psi, aim: design} changes psi from ");
+    OUT(keep(formatted("to %.4f mm by 3 adjustments", after[0] * 1e3)));
+    OUT("adjust: {figure: facets} changes facets from ");
+    OUT(keep(formatted("to %.4f mm by 3 adjustments", after[2] * 1e3)));
     HIFDM(0, "adjust", path, "--measured", measured, "--set", aim[2]);
-    OUT("adjust: {figure: psi, aim: design} brings psi from ");
-    OUT("adjust: {figure: psi, aim: theory} brings psi from ");
+    OUT("adjust: {figure: psi, aim: design} changes psi from ");
+    OUT("adjust: {figure: psi, aim: theory} changes psi from ");
     ck_assert_ptr_null(strstr(said.out, "{figure: facets}"));
-    OUT("facets: RMS along the normal of the wanted surface (the loss of gain is by the half path)\n");
+    OUT("facets: RMS along the normal of the target surface (the gain loss follows from the half-path RMS)\n");
     HIFDM(0, "adjust", path, "--measured", measured, "--json", "--set", aim[2]);
     const char *told = out_as("a.json"), *result = temp("r.h5");
     HIFDM(0, "run", path, "-o", result, "--quiet", "--set", "tolerance.samples=10");
     EXPECT(told, result, "--", "near(a['nominal_m'], b['surface/form'].attrs['facet_normal_rms_m'], 1e-6)",
            "not near(a['nominal_m'], b['surface/form'].attrs['facet_half_path_rms_m'], 1e-5)");
     HIFDM(0, "adjust", path, "--measured", measured, "--set", aim[1], "--set", "adjust.range_m=0.1");
-    OUT("errors make ");
+    OUT("errors displace the nodes by ");
 }
 END_TEST
 
@@ -238,17 +239,17 @@ START_TEST(outliers_are_told)
     HIFDM(0, "run", path, "-o", result, "--quiet");
     const char *measured = measured_of(result, "m.csv", HEADER, one_wrong, "");
     HIFDM(0, "adjust", path, "--measured", measured);
-    OUT("2 of 74 measured nodes are more than 4 sigma off the estimated shape, and count in full");
+    OUT("2 of 74 measured nodes are more than 4 sigma off the estimated shape and count fully");
     OUT("node 'f2_10' (line 19): ");
-    OUT("mm by the places alone");
-    OUT("their sigmas hold such errors back (hifdm explain outlier)");
-    ck_assert_ptr_null(strstr(said.out, "Aimed at"));
+    OUT("; the positions alone indicate ");
+    OUT("such errors are estimated too small (hifdm explain outlier)");
+    ck_assert_ptr_null(strstr(said.out, "another figure or aim"));
     HIFDM(0, "adjust", path, "--measured", measured, "--json");
     OUT("\"off_shape\": [");
     OUT("\"instead\": []");
     const char *first = strstr(said.out, "\"error_m\": ");
     ck_assert_ptr_nonnull(first);
-    ck_assert_double_gt(fabs(number_after("\"by_places_m\": ")), 1.1 * fabs(strtod(first + 11, NULL)));
+    ck_assert_double_gt(fabs(number_after("\"by_positions_m\": ")), 1.1 * fabs(strtod(first + 11, NULL)));
     HIFDM(0, "explain", "outlier");
     OUT("held back");
     OUT("measure it again");
@@ -283,12 +284,12 @@ START_TEST(places_that_do_not_tell_say_nothing)
     const char *measured = measured_of(result, "m.csv", HEADER, few_off, "");
     HIFDM(0, "adjust", path, "--measured", measured);
     demand_finite();
-    OUT("mm too short by the places alone"); /* of one that seems too long */
-    ck_assert_int_gt(count_of(said.out, "cable '"), count_of(said.out, " by the places alone"));
+    OUT("; the positions alone indicate "); /* of one that seems too long */
+    ck_assert_int_gt(count_of(said.out, "cable '"), count_of(said.out, "; the positions alone indicate"));
     HIFDM(0, "adjust", path, "--measured", measured, "--json");
     demand_finite();
-    OUT("\"by_places_m\": null");
-    OUT("\"by_places_m\": -");
+    OUT("\"by_positions_m\": null");
+    OUT("\"by_positions_m\": -");
     HIFDM(0, "adjust", path, "--measured", measured, "--json", "--set", "tolerance.sigma_cut_m=0");
     demand_finite();
     OUT("\"stand_out\": []");
@@ -304,8 +305,8 @@ START_TEST(spools_stand_out)
                                                        "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, "
                                                        "sigma_m: 0.001}\n");
     HIFDM(0, "adjust", path, "--measured", measured);
-    OUT("spool 'directrix' seems off by -");
-    OUT("spool 'edge' seems off by +");
+    OUT("spool 'directrix' seems to have an error of -");
+    OUT("spool 'edge' seems to have an error of +");
     ck_assert_ptr_null(strstr(said.out, "'generatrix'"));
     HIFDM(0, "adjust", path, "--measured", measured, "--json");
     OUT("\"generatrix\"");
@@ -321,7 +322,7 @@ static void assert_nothing_is_wrong(const char *path, const char *result, const 
     const char *measured = measured_of(result, "m.csv", HEADER, NULL, "");
     HIFDM(0, "adjust", path, "--measured", measured, "--result", result, "--json", "--set", "adjust.aim=design");
     OUT("\"aim\": \"design\"");
-    OUT("\"moves\": []");
+    OUT("\"adjustments\": []");
     SHELL(0,
           "\"$1\" adjust \"$2\" --measured \"$3\" --result \"$4\" --json --set adjust.aim=design | \"$5\" -c 'import "
           "json, sys; a = json.load(sys.stdin); most = max([a[\"nominal_m\"], a[\"estimated_m\"], *map(abs, "
@@ -336,14 +337,14 @@ START_TEST(the_design_is_that_of_a_result)
     assert_nothing_is_wrong(path, result, "1e-9");
     const char *measured = temp("m.csv");
     HIFDM(2, "adjust", path, "--measured", measured);
-    ERR("has a section optimize: give the result that the net was cut from, --result FILE");
+    ERR("has a section optimize: use --result FILE with the result by which the net was cut");
     HIFDM(2, "adjust", path, "--measured", measured, "--stage", "polish");
     ERR("--stage polish needs --result FILE");
     HIFDM(0, "adjust", path, "--measured", measured, "--stage", "form");
     ERR("or it is another design");
     const char *page = temp("moves.html");
     HIFDM(0, "adjust", path, "--measured", measured, "--result", result, "--report", page);
-    OUT("a page to look at: ");
+    OUT("report page: ");
     char *html = read_file(page, NULL);
     ck_assert_ptr_nonnull(html);
     ck_assert_ptr_nonnull(strstr(html, "\"adjust\": {\"set\": \"inner\""));
@@ -353,14 +354,14 @@ START_TEST(the_design_is_that_of_a_result)
     HIFDM(5, "adjust", path, "--measured", measured, "--result", result, "--report", result, "--force");
     ERR("an input of this run");
     HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--report", "a", "-o", "a");
-    ERR("-o and --report both name a: give them two names");
+    ERR("-o and --report both name a: use different names");
     HIFDM(2, "adjust", path, "--measured", measured, "--stage", "form", "--report", page, "--force");
-    ERR("needs --result FILE, the result whose page it is");
+    ERR("needs --result FILE, the result of this case");
     HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--stage", "optimize");
-    ERR("this run has no optimised shape");
+    ERR("this run has no search shape");
     HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--set", "scene.EA_inner_N=46000");
-    ERR("is a result of another net than");
-    ERR("by EA of cables");
+    ERR("is the result of another net than");
+    ERR("they differ in EA of cables");
     HIFDM(5, "adjust", path, "--measured", measured, "--result", measured);
     HIFDM(5, "adjust", path, "--measured", measured, "--result", result, "-o", result, "--force");
     ERR("an input of this run");
@@ -375,26 +376,26 @@ START_TEST(bad_tables_are_named)
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS), *bad;
     bad = measured_with("m.csv", HEADER, NULL, "x9,1,1,1\nn1_1,1,1,1\n");
     HIFDM(2, "adjust", path, "--measured", bad);
-    ERRS("%s:37: 'x9': the net has no node of this id", bad);
+    ERRS("%s:37: 'x9': the net has no node with this id", bad);
     ERR("'n1_1'");
     bad = measured_with("m.csv", HEADER, in_mm, "");
     HIFDM(2, "adjust", path, "--measured", bad);
-    ERR("the places seem to be in mm; x_m, y_m and z_m are in m");
+    ERR("the positions seem to be in mm; x_m, y_m and z_m must be in m");
     bad = measured_with("m.csv", HEADER, turned, "");
     HIFDM(2, "adjust", path, "--measured", bad);
-    ERR("a turn by 36.87 degrees explain all but");
+    ERR("a rotation by 36.87 degrees explain all but");
     bad = measured_with("m.csv", HEADER, one_off, "");
     HIFDM(2, "adjust", path, "--measured", bad);
     ERRS("%s:19: node '", bad);
-    ERR("is 300 mm from where the design has it");
+    ERR("is 300 mm from its position in the design");
     bad = measured_with("m.csv", HEADER, two_nodes, "");
     HIFDM(2, "adjust", path, "--measured", bad);
-    ERR("has 2 nodes of the net that can move, 3 at least are needed");
+    ERR("has 2 free nodes of the net, but at least 3 are needed");
     HIFDM(2, "adjust", path, "--measured", file_with("m.csv", HEADER ",sigma_m\nn1_1,0,0,0,-1\nn2_2,0,0,zero,1\n"));
     ERR("sigma_m must be above zero");
     bad = file_with("m.csv", HEADER ",sigma_m\nn1_1,0,0,0,1e-12\nn1_2,0,0,0,1\nn1_3,0,0,0,1\n");
     HIFDM(2, "adjust", path, "--measured", bad);
-    ERRS("%s:2: sigma_m of 1e-12 m is too small beside errors of cables of 0.0001 m", bad);
+    ERRS("%s:2: sigma_m of 1e-12 m is too small for cable errors of 0.0001 m", bad);
     HIFDM(2, "adjust", path, "--measured", temp("missing.csv"));
     HIFDM(2, "adjust", path);
     ERR("needs --measured FILE");
@@ -416,20 +417,20 @@ START_TEST(doubtful_tables_are_told)
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS), *measured = measured_with("m.csv", HEADER, wave, "");
     HIFDM(0, "adjust", path, "--measured", measured);
     ck_assert_ptr_null(strstr(said.err, "do not fit"));
-    ck_assert_ptr_null(strstr(said.out, "not to be trusted"));
+    ck_assert_ptr_null(strstr(said.out, "do not trust"));
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=3e-5");
-    ERR("these places do not fit the net and its tolerances: chi^2 is ");
-    ERR("worst at node '");
-    ck_assert_ptr_eq(strstr(said.out, "the measurement does not fit this net: the moves below are not to be trusted"),
+    ERR("these positions do not fit the net and its tolerances: chi^2 is ");
+    ERR("the worst is node '");
+    ck_assert_ptr_eq(strstr(said.out, "the measurement does not fit this net: do not trust the adjustments below"),
                      said.out);
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=3e-5", "--json");
     OUT("\"fits\": false");
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=1e-5", "-o", temp("none.csv"));
     ERR("this measurement does not belong to this net: chi^2 is ");
-    ERR("worst at node '");
+    ERR("the worst is node '");
     ck_assert(!is_there(temp("none.csv")));
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=0.1");
-    ERR("these places tell next to nothing");
+    ERR("these positions are of almost no use");
 }
 END_TEST
 
@@ -445,7 +446,7 @@ START_TEST(a_warm_truss_is_not_estimated)
                      ON_TRUSS "tolerance: {sigma_cut_m: 0.0001, truss: [{part: truss, sigma_temperature_K: 5}]}\n"
                               "adjust: {set: inner, range_m: 0.002, step_m: 0.0001, moves: 3, sigma_m: 0.0001}\n");
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "truss.expansion_per_K=1e-6");
-    ERR("tolerance.truss is not estimated: adjust takes the truss to be as it was made");
+    ERR("tolerance.truss is not estimated: adjust assumes that the truss is as it was made");
 }
 END_TEST
 
@@ -466,7 +467,7 @@ START_TEST(what_is_not_sure_is_told)
     HIFDM(0, "run", path, "-o", result, "--quiet");
     const char *measured = measured_of(result, "m.csv", HEADER, wave, "");
     HIFDM(0, "adjust", path, "--measured", measured);
-    OUT(" of 163 cables may be slack, as far as the measurement tells");
+    OUT(" of 163 cables may be slack; positions do not show by how much");
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "scene.EA_inner_N=500", "--set",
           "scene.EA_boundary_N=500");
     ck_assert_ptr_null(strstr(said.out, "may be slack"));
@@ -476,7 +477,8 @@ START_TEST(what_is_not_sure_is_told)
                                            "0.0001}\n");
     HIFDM(0, "adjust", path, "--measured", measured);
     OUT("  gains ");
-    OUT("\n1 of these moves gains less at its place in the order than the measurement can tell (hifdm explain "
+    OUT("\nthe measurement cannot resolve the gain of 1 of these adjustments at its position in the order (hifdm "
+        "explain "
         "gain_sigma_m)\n");
     HIFDM(0, "adjust", path, "--measured", measured, "--json");
     EXPECT(
@@ -500,13 +502,13 @@ START_TEST(bad_cases_are_named)
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.range_m=5e-5");
     ERR("adjust.range_m: is smaller than adjust.step_m, which allows no move at all");
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "tolerance.sigma_support_m=1e-12");
-    ERR("tolerance.sigma_support_m of 1e-12 m is too small beside errors of cables of 0.0001 m");
+    ERR("tolerance.sigma_support_m of 1e-12 m is too small for cable errors of 0.0001 m");
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "tolerance.sigma_cut_m=0.5");
     ERR("tolerance.sigma_cut_m: cable '");
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.set=struts");
     ERR("adjust.set");
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.figure=surface");
-    ERR("surface needs the wanted surface: add a section surface");
+    ERR("surface needs a target surface: add a section surface");
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "tolerance.sigma_cut_m=0", "--set",
           "tolerance.sigma_support_m=1e-4");
     ERR("cables have no errors that could be estimated");
@@ -514,7 +516,7 @@ START_TEST(bad_cases_are_named)
           file_with("case.yaml", EA_SCENE "tolerance: {sigma_cut_m: 0.0001}\n"
                                           "adjust: {set: inner, range_m: 0.002, step_m: 0.0001}\n"),
           "--measured", measured);
-    ERR("has no sigma_m; give the column, or adjust.sigma_m");
+    ERR("has no sigma_m; add the column, or adjust.sigma_m");
 }
 END_TEST
 

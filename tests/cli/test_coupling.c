@@ -12,10 +12,10 @@ START_TEST(run_show_and_file)
 {
     const char *out = temp("t.h5");
     HIFDM(0, "run", TRUSS, "-o", out, "--set", "truss.E_Pa=1e10");
-    OUT("  on its truss  attachments give way by up to ");
-    OUT("stopped by tof\n");
+    OUT("  coupling      the truss deflects by up to ");
+    OUT("; converged after ");
     HIFDM(0, "show", out);
-    OUT("  on its truss  attachments give way by up to ");
+    OUT("  coupling      the truss deflects by up to ");
     HIFDM(0, "show", out, "--json");
     EXPECT(
         out_as("s.json"), out, "--", "a['coupling']['stop_reason'] == 'converged'", "a['coupling']['step_m'] <= 1e-6",
@@ -87,7 +87,7 @@ START_TEST(the_stored_truss_stands_under_the_stored_pull)
     HIFDM(0, "run", TRUSS, "-o", out, "--set", set[0], "--set", set[1], "--set", set[2], "--set", set[3], "--set",
           set[4]);
     EXPECT(out_as("said.txt"), out, "--",
-           "('give way by up to %.4f mm' % (b['coupling'].attrs['deflection_max_m'] * 1e3)).encode() in a");
+           "('deflects by up to %.4f mm' % (b['coupling'].attrs['deflection_max_m'] * 1e3)).encode() in a");
     hid_t file = H5Fopen(out, H5F_ACC_RDONLY, H5P_DEFAULT);
     ck_assert_int_ge(file, 0);
     load_stored_pull(TRUSS, set, 5, file);
@@ -125,8 +125,8 @@ END_TEST
 START_TEST(a_truss_that_is_too_soft_is_named)
 {
     HIFDM(4, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e5");
-    ERR("error: the truss is too soft for the loop with its net: after ");
-    ERR(" an attachment would still move beyond all bounds; stiffen the truss (truss.E_Pa and its tubes), lower "
+    ERR("error: the truss is too soft for the coupling with its net: after ");
+    ERR(" an attachment still moves without bound; stiffen the truss (truss.E_Pa and its tubes), lower "
         "form.pretension_N, or solve both in one matrix: coupling.scheme: auto, form.method: newton");
     HIFDM(4, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e5", "--set", "form.method=newton");
     ERR("error: the truss is too soft for its net: together they have no shape; stiffen the truss (truss.E_Pa and its "
@@ -140,8 +140,8 @@ START_TEST(limits_and_keys)
     const char *out = temp("t.h5");
     HIFDM(3, "run", TRUSS, "-o", out, "--set", "truss.E_Pa=1e10", "--set", "coupling.max_iterations=2", "--set",
           "coupling.tof_m=1e-9");
-    ERR("the net and its truss did not come to rest in 2 form-findings");
-    ERR(" times the step before; raise ");
+    ERR("the coupling of net and truss did not converge in 2 form-findings");
+    ERR(" times the previous step; raise ");
     HIFDM(3, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e10", "--set", "coupling.max_iterations=1", "--set",
           "coupling.tof_m=1e-9");
     ck_assert_msg(!strstr(said.err, "nan") && strstr(said.err, " m; raise "), "%s", said.err); /* no step before it */

@@ -56,7 +56,7 @@ START_TEST(symmetric_runs_store_who_follows_whom)
         "(b['search/population/design'][:] == b['search/population/design'][:][:, :, b['variable/leader'][:]]).all()",
         "b['search/population/design'].shape == (4, 50, 120)");
     HIFDM(0, "show", out, "-v");
-    OUT("symmetry: planes x and y; 30 independent genes of 120\n");
+    OUT("symmetry: planes x and y; 30 of 120 design variables are independent\n");
     HIFDM(0, "check", CHEN, "--set", "optimize.symmetry=auto");
     OUT("symmetry: auto, planes x and y; 30 independent genes of 120\n");
     HIFDM(0, "run", CHEN, "-o", plain, "--set", "optimize.generations=2");
@@ -175,7 +175,7 @@ START_TEST(a_net_without_a_base_is_refused)
     ERR("error: ill-posed: 30 straight chains");
     HIFDM(2, "evaluate", REFLECTOR, "--template", temp("o.csv"), "--set",
           "scene.parabolic_cylinder.supports=perimeter");
-    ERR("no boundary cable has a free end: there is nothing to set");
+    ERR("no boundary cable has a free end, so there are no design variables");
     ck_assert(!is_there(temp("o.csv")));
 }
 END_TEST

@@ -40,7 +40,7 @@ START_TEST(csv_holds_the_stored_numbers)
 {
     const char *out = run_once();
     HIFDM(0, "export", out, "--csv", temp("best"));
-    OUT("121 nodes and 220 cables of the optimised shape in ");
+    OUT("121 nodes and 220 cables of the search shape in ");
     demand_values_of(out, temp("best"), file_with("stage", "search"));
     HIFDM(0, "export", out, "--csv", temp("form"), "--stage", "form");
     OUT("form-finding shape");
@@ -143,14 +143,14 @@ START_TEST(what_cannot_be_exported_is_told)
     const char *form_only = temp("f.h5"), *csv = temp("csv");
     HIFDM(0, "run", file_with("f.yaml", SMALL_SCENE), "-o", form_only, "--quiet");
     HIFDM(2, "export", form_only, "--csv", csv, "--stage", "optimize");
-    ERR("this run has no optimised shape; use --stage form");
+    ERR("this run has no search shape; use --stage form");
     HIFDM(2, "export", form_only, "--vtk", temp("no_vtk"), "--cutlist", temp("no.csv"));
     ERR("error: "); /* refused as a whole: no folder is left for what was not written */
     ck_assert(!is_there(temp("no_vtk")) && !is_there(temp("no.csv")));
     const char *lm = temp("lm.h5");
     HIFDM(0, "run", file_with("lm.yaml", SMALL_SCENE "optimize: {method: lm}\n"), "-o", lm, "--quiet");
     HIFDM(2, "export", lm, "--csv", csv, "--stage", "optimize");
-    ERR("this run has no optimised shape; use --stage polish");
+    ERR("this run has no search shape; use --stage polish");
     HIFDM(2, "export", form_only);
     ERR("error: 'hifdm export' needs --csv DIR, --vtk DIR, --cutlist FILE, --front FILE, --pattern FILE or --rf DIR\n");
     HIFDM(2, "export", form_only, "--csv", csv, "--stage", "best");
@@ -176,8 +176,8 @@ START_TEST(a_mesh_without_shape_is_not_exported)
           file_with("h.yaml", SMALL_SCENE "surface: {mesh_tension_N_per_m: 500, frequencies_Hz: [1e10], pattern: "
                                           "{n_theta: 11, feed: {cos_power: 1}}}\n"),
           "-o", out);
-    ERR("facets have neither errors nor a far field here");
-    OUT("loss of gain at 10 GHz: - dB, after best fit - dB");
+    ERR("so the facets have neither errors nor a far field");
+    OUT("gain loss at 10 GHz: - dB for a fixed feed, - dB after best fit");
     HIFDM(2, "export", out, "--rf", rf);
     ERR("pillows of the form-finding shape are not known: the mesh pulls on a cable");
     ck_assert(!is_there(rf));

@@ -9,12 +9,13 @@ START_TEST(a_front_is_printed_stored_and_told)
 {
     const char *file = temp("f.h5"), *printed, *json;
     HIFDM(0, "run", FRONT, "-o", file);
-    ck_assert_int_eq(strncmp(said.out, "front of 7 points: least psi 4.2834 mm, least ratio_boundary 4.56\n", 66), 0);
-    OUT("  front         7 points, 0 of them dominated, 0 failed, 1 not converged; ");
-    OUT("; slope of objective_0_psi in mm per unit of objective_1_ratio_boundary\n");
+    ck_assert_int_eq(
+        strncmp(said.out, "Pareto front of 7 points: minimum psi 4.2834 mm, minimum ratio_boundary 4.56\n", 77), 0);
+    OUT("  front         7 points, 0 dominated, 0 failed, 1 not converged; ");
+    OUT("; slope: change of objective_0_psi in mm per unit of objective_1_ratio_boundary\n");
     OUT("                objectives objective_0_psi 6.60003 mm, objective_1_ratio_boundary 4.84161\n");
-    ck_assert(!strstr(said.out, "merit") && !strstr(said.out, "weight") && !strstr(said.out, " shown "));
-    OUT("                base            objective_0_psi 6.60003 mm, objective_1_ratio_boundary 4.84161\n");
+    ck_assert(!strstr(said.out, "merit") && !strstr(said.out, "weight") && !strstr(said.out, " writes all"));
+    OUT("                initial         objective_0_psi 6.60003 mm, objective_1_ratio_boundary 4.84161\n");
     OUT("                end, point 1    objective_0_psi 4.28338 mm, objective_1_ratio_boundary 5.23668; slope 0\n");
     OUT("                end, point 7    objective_0_psi 11.6996 mm, objective_1_ratio_boundary 4.55962\n");
     OUT("                knee, point 4   objective_0_psi ");
@@ -30,7 +31,7 @@ START_TEST(a_front_is_printed_stored_and_told)
     EXPECT(file, json, "--", "b['front']['n_point'] == 7 and b['front']['minimised'] == 'objective_0_psi'",
            "b['front']['n_listed'] == 7 and [p['id'] for p in b['front']['points']] == [1, 2, 3, 4, 5, 6, 7]",
            "'merit' not in b['form'] and 'weight' not in b['form']['objectives']['objective_0_psi']",
-           "'weight' not in a['objectives']",
+           "'weight' not in a['objective']",
            "[p['objective']['objective_0_psi'] for p in b['front']['points']] == list(a['front/objective'][:, 0])",
            "[p['multiplier']['objective_1_ratio_boundary'] for p in b['front']['points']][:6] == "
            "list(a['front/multiplier'][:6, 1])",
@@ -67,7 +68,7 @@ START_TEST(a_slope_says_of_what_it_is)
 {
     HIFDM(0, "run", FRONT, "--set", "optimize.objectives=[{goal: ratio, set: boundary}, {goal: psi}]", "-o",
           temp("f.h5"));
-    OUT("; slope of objective_1_psi in mm per unit of objective_0_ratio_boundary\n");
+    OUT("; slope: change of objective_1_psi in mm per unit of objective_0_ratio_boundary\n");
 }
 END_TEST
 
@@ -152,7 +153,7 @@ START_TEST(a_front_of_many_points_is_thinned)
           "--json");
     json = out_as("r.json");
     HIFDM(0, "show", file);
-    OUT("                512 of 700 shown by --json and the report; hifdm export --front has all\n");
+    OUT("                --json and the report show 512 of 700 points; hifdm export --front writes all\n");
     HIFDM(0, "show", file, "--json");
     EXPECT(file, json, out_as("s.json"), "--", "b['front'] == c['front'] and b['front']['n_point'] == 700",
            "len(b['front']['points']) == b['front']['n_listed'] == 512",
@@ -208,7 +209,7 @@ START_TEST(a_run_without_objectives_has_no_front)
     const char *file = temp("f.h5");
     HIFDM(0, "run", keep(source_path("configs/chen2022.yaml")), "--set", "optimize.method=lm", "-o", file);
     HIFDM(2, "export", file, "--front", temp("f.csv"));
-    ERR("this run has no front: its case has no optimize.objectives\n");
+    ERR("this run has no front, because its case has no optimize.front\n");
     ck_assert(!is_there(temp("f.csv")));
 }
 END_TEST
@@ -222,7 +223,7 @@ START_TEST(a_check_says_what_will_be_followed)
     HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: ratio, set: edges}]");
     ERR("error: --set optimize.objectives.1.set: there is no set of cables 'edges'; did you mean 'edge'?\n");
     HIFDM(2, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: displacement}]");
-    ERR("error: --set optimize.objectives.1: displacement: needs a truss that gives way: this net has none\n");
+    ERR("error: --set optimize.objectives.1: displacement: needs a truss that deflects, but this net has none\n");
     HIFDM(0, "check", FRONT, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}, {goal: evenness}]");
     OUT("                front of objective_0_psi, objective_1_pull and objective_2_evenness: 7 points, each by "
         "Levenberg-Marquardt\n");
@@ -243,13 +244,13 @@ START_TEST(generations_end_in_a_front)
 {
     const char *file = temp("f.h5"), *table = temp("f.csv"), *again = temp("r.csv"), *json;
     HIFDM(0, "run", THREE, "-o", file, "--verbose");
-    OUT(": the end of the front with the least objective_0_psi; found in generation ");
-    OUT(" points, 0 of them dominated, 0 failed; ");
+    OUT(": the end of the front with the minimum objective_0_psi; found in generation ");
+    OUT(" points, 0 dominated, 0 failed; ");
     HIFDM(0, "show", file, "--json");
     json = out_as("s.json");
     EXPECT(
         file, json, "--", "'minimised' not in b['front'] and len(b['front']['points']) > 9",
-        "all(p['mark'] == 'on' and p['iterations'] == 0 for p in b['front']['points'])",
+        "all(p['mark'] == 'on' and p['steps'] == 0 for p in b['front']['points'])",
         "a['search/population/objective_2'].shape == (5, 50) and a['search/population/objective_0'].attrs['units'] == "
         "''",
         "a['search/population'].attrs['n_objective'] == 3 and a['search/population/best_merit'][-1] == "
@@ -274,8 +275,9 @@ START_TEST(three_objectives_have_a_front_with_slopes)
         "optimize.objectives=[{goal: psi}, {goal: ratio, set: boundary}, {goal: evenness, set: boundary}]";
     const char *file = temp("f.h5"), *other = temp("g.h5"), *table = temp("f.csv"), *again = temp("r.csv"), *json;
     HIFDM(0, "run", FRONT, "--set", objectives, "--set", "optimize.front_points=12", "-o", file, "--threads", "1");
-    OUT("  front         12 points, 0 of them dominated, 0 failed");
-    OUT("; slope of objective_0_psi in mm per unit of objective_1_ratio_boundary; slope of objective_0_psi in mm per "
+    OUT("  front         12 points, 0 dominated, 0 failed");
+    OUT("; slope: change of objective_0_psi in mm per unit of objective_1_ratio_boundary; slope: change of "
+        "objective_0_psi in mm per "
         "unit of "
         "objective_2_evenness_boundary\n");
     HIFDM(0, "run", FRONT, "--set", objectives, "--set", "optimize.front_points=12", "-o", other, "--threads", "2",
@@ -304,7 +306,7 @@ START_TEST(levenberg_marquardt_follows_generations)
 {
     const char *file = temp("f.h5"), *before = temp("g.h5");
     HIFDM(0, "run", FRONT, "--set", "optimize.method=ga+lm", "--set", "optimize.generations=3", "-o", file);
-    OUT("  front         7 points, 0 of them dominated, 0 failed, 1 not converged; ");
+    OUT("  front         7 points, 0 dominated, 0 failed, 1 not converged; ");
     HIFDM(0, "run", FRONT, "--set", "optimize.method=ga", "--set", "optimize.generations=3", "-o", before);
     EXPECT(file, before, "--", "np.array_equal(a['search/population/design'], b['search/population/design'])",
            "np.all(a['front/objective'][:].min(axis=0) < b['front/objective'][:].min(axis=0))");
@@ -319,10 +321,11 @@ START_TEST(limits_that_no_design_keeps_leave_no_front)
 {
     const char *file = temp("f.h5");
     HIFDM(3, "run", FRONT, "-o", file, "--set", "optimize.limits=[{limit: tension, set: edge, bounds: [500, 600]}]");
-    ERR("error: optimize.objectives.0: Levenberg-Marquardt has found no design with the least objective_0_psi, an end "
+    ERR("error: optimize.front.0: Levenberg-Marquardt found no design with the minimum objective_0_psi, which is an "
+        "end "
         "of "
         "the "
-        "front: no way from its start into optimize.limits\n");
+        "front: it did not reach optimize.limits from its start\n");
     HIFDM(0, "show", file);
     ck_assert(!strstr(said.out, "  front "));
 }
@@ -333,8 +336,9 @@ START_TEST(points_that_have_not_converged_say_so)
 {
     const char *file = temp("f.h5"), *json, *table = temp("f.csv");
     HIFDM(0, "run", FRONT, "-o", file, "--set", "optimize.polish_iterations=2");
-    ERR(" of 7 points of the front are not converged after 2 steps: they have no slope, and better designs are near; "
-        "raise optimize.polish_iterations\n");
+    ERR(" of 7 points of the front are not converged after 2 steps: they have no slope, and better designs exist near "
+        "them; "
+        "raise optimize.refine_steps\n");
     OUT(" failed, ");
     OUT(" not converged; ");
     HIFDM(0, "show", file, "--json");
@@ -345,7 +349,7 @@ START_TEST(points_that_have_not_converged_say_so)
     HIFDM(0, "export", file, "--front", table);
     SHELL(0, "head -1 \"$1\" | grep -q ^id,mark,status,steps,converged,objective_0_psi,", table);
     HIFDM(0, "run", FRONT, "-o", file, "--force");
-    ck_assert(!strstr(said.err, "raise optimize.polish_iterations"));
+    ck_assert(!strstr(said.err, "raise optimize.refine_steps"));
 }
 END_TEST
 

@@ -32,8 +32,8 @@ START_TEST(nets_of_triangles_reach_their_optima)
     HIFDM(0, "run", path, "-o", out, "-v", "--set", "optimize.variation=chain",
           "--set", /* the start that leads there */
           keep(formatted("optimize.method=%s", of[_i].method)));
-    OUT("LM optimum");
-    OUT("held by ");
+    OUT("  refine        psi ");
+    OUT(" lower bounds and ");
     EXPECT(out, "--", formatted("abs(a['refine'].attrs['psi_m'] * 1e3 - %.7f) < 1e-7", of[_i].psi_mm),
            "a['refine'].attrs['steps'] <= 60", "a['refine'].attrs['algorithm_stop'] == 0",
            "a['refine'].attrs['n_at_lower'] + a['refine'].attrs['n_at_upper'] > 0");
@@ -59,7 +59,7 @@ START_TEST(a_cap_that_holds_it_is_named_and_met)
 {
     const char *path = net_of("loaded", LOADED), *out = temp("r.h5");
     HIFDM(0, "run", path, "-o", out, "-v", "--set", "optimize.boundary_ratio_cap=1.1");
-    OUT("upper bounds and the cap on the boundary ratio\n");
+    OUT("upper bounds and at boundary_ratio_cap\n");
     EXPECT(out, "--", "a['refine'].attrs['psi_m'] * 1e3 > 132.52853", "a['refine'].attrs['is_at_cap']",
            "0 <= 1.1 - a['refine'].attrs['boundary_tension_ratio'] < 1e-8", "a['refine'].attrs['algorithm_stop'] == 0");
 }
@@ -148,7 +148,7 @@ START_TEST(a_run_that_gains_nothing_more_has_settled)
                             "form: {pretension_N: 10, prestress: exact}\nsurface: {}\n"
                             "optimize: {method: lm, variables: [{set: all, vary: force_density, range: 50 %}]}\n");
     HIFDM(0, "run", c, "-o", out, "--set", "optimize.goals=[{goal: facets}]");
-    OUT(" iterations, settled: ten steps gain less than 1e-6, ");
+    OUT(": the last ten gained less than 1e-6, ");
     HIFDM(0, "run", c, "-o", exact, "--set", "optimize.objectives=[{goal: facets}, {goal: psi}]", "--set",
           "optimize.front_points=3");
     EXPECT(out, exact, "--", "a['refine'].attrs['algorithm_stop'] == 3", "a['refine'].attrs['steps'] < 20",

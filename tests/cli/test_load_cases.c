@@ -15,16 +15,16 @@ static const char *run_example(void)
 START_TEST(load_cases_are_printed_stored_and_shown)
 {
     const char *out = run_example(), *again = temp("again.h5");
-    OUT("  cases         the net as built    psi mm  moved mm   loss dB    fitted  least N largest N slack loose "
+    OUT("  load cases    as-built net        psi mm displacement mm   loss dB  best fit    min N     max N slack loose "
         "member N\n");
-    OUT("loss of gain at 10 GHz, as it stands and after the best fit\n");
-    OUT("psi leaves the loose nodes out; moved and the surface have them where they hang\n");
+    OUT("loss: gain loss at 10 GHz for a fixed feed, then after best fit\n");
+    OUT("psi leaves out the loose nodes; the other columns include them where they hang\n");
     EXPECT(
         out, out_as("s.txt"), "--",
         "all([r.split() for r in b.decode().splitlines() if r.split()[:1] == [n]][0][3:6] == ['above', '3', "
         "'%.4g' % a['load_cases'][n]['surface']['facet_fit_gain_loss_dB'][1]] for n in texts(a['load_cases/name']))");
     OUT("\n                cold      ");
-    ERR("warning: cases: in state 'cold' ");
+    ERR("warning: load_cases: in load case 'cold', ");
     HIFDM(0, "show", out, "--json");
     EXPECT(out_as("s.json"), out, "--", "list(a['load_cases']) == ['cold', 'sun', 'cup_up', 'cup_down', 'spun']",
            "texts(b['load_cases/name']) == list(a['load_cases'])",
@@ -65,17 +65,18 @@ START_TEST(a_load_case_is_exported)
            "[float(r['tension_N']) for r in b] == list(a['load_cases/sun/tension_N'])",
            "[float(r['Nx_i_N']) for r in c] == list(a['load_cases/sun/truss/member/end_force'][:, 0])");
     HIFDM(0, "export", out, "--vtk", vtk);
-    OUT("case_1.hdf (cold) case_2.hdf (sun) case_3.hdf (cup_up) case_4.hdf (cup_down) case_5.hdf (spun)\n");
+    OUT("load_case_1.hdf (cold) load_case_2.hdf (sun) load_case_3.hdf (cup_up) load_case_4.hdf (cup_down) "
+        "load_case_5.hdf (spun)\n");
     SHELL(0,
-          "cd \"$1\" && for k in 1 2 3 4 5; do mv case_$k.hdf case_$k.h5; test -e case_facets_$k.hdf || exit 1; "
-          "mv case_truss_$k.hdf case_truss_$k.h5 || exit 1; done",
+          "cd \"$1\" && for k in 1 2 3 4 5; do mv load_case_$k.hdf load_case_$k.h5; test -e load_case_facets_$k.hdf || "
+          "exit 1; mv load_case_truss_$k.hdf load_case_truss_$k.h5 || exit 1; done",
           vtk);
-    EXPECT(out, keep(formatted("%s/case_2.h5", vtk)), keep(formatted("%s/case_truss_2.h5", vtk)), "--",
+    EXPECT(out, keep(formatted("%s/load_case_2.h5", vtk)), keep(formatted("%s/load_case_truss_2.h5", vtk)), "--",
            "np.array_equal(a['load_cases/sun/position_m'], b['VTKHDF/Points'])",
            "np.array_equal(a['load_cases/sun/tension_N'], b['VTKHDF/CellData/tension_N'])",
            "np.array_equal(-a['load_cases/sun/truss/member/end_force'][:, 0], c['VTKHDF/CellData/axial_force_N'])");
     HIFDM(2, "export", out, "--csv", temp("no"), "--case", "moon");
-    ERRS("error: %s: has no case 'moon'; it has cold, sun, cup_up, cup_down, spun\n", out);
+    ERRS("error: %s: has no load case 'moon'; it has cold, sun, cup_up, cup_down, spun\n", out);
     HIFDM(2, "export", out, "--csv", temp("no"), "--case", "sun", "--stage", "form");
     HIFDM(2, "export", out, "--cutlist", temp("no.csv"), "--case", "sun");
     ERR("error: --case does not go with --cutlist, which is of the design that all cases are made of\n");
@@ -171,14 +172,14 @@ START_TEST(a_load_case_without_a_shape_does_not_stop_the_others)
                               "1e4, 1e5]}\n  - {name: still, move_m: [0, 0, 0]}\n");
     HIFDM(0, "run", c, "-o", temp("a.h5"));
     OUT("                far              no shape: ");
-    ERR("warning: cases: the net has no shape in state 'far': ");
+    ERR("warning: load_cases: the net has no shape in load case 'far': ");
     HIFDM(0, "show", temp("a.h5"), "--json");
     EXPECT(out_as("s.json"), temp("a.h5"), "--", "a['load_cases']['far']['tension_min_N'] is None",
            "'position_m' not in b['load_cases/far']", "a['load_cases']['still']['status'] == 'ok'");
     HIFDM(5, "export", temp("a.h5"), "--csv", temp("csv"), "--case", "far");
-    ERR("has no shape of a case 'far'\n");
+    ERR("has no shape of a load case 'far'\n");
     HIFDM(0, "export", temp("a.h5"), "--vtk", temp("vtk"));
-    OUT(" case_2.hdf (still)\n");
+    OUT(" load_case_2.hdf (still)\n");
     HIFDM(0, "report", temp("a.h5"), "-o", temp("page.html"));
 }
 END_TEST
@@ -203,7 +204,7 @@ START_TEST(without_cases_there_is_nothing)
     HIFDM(0, "run", c, "-o", temp("a.h5"), "--json");
     EXPECT(out_as("s.json"), temp("a.h5"), "--", "'load_cases' not in a", "'load_cases' not in b");
     HIFDM(2, "export", temp("a.h5"), "--csv", temp("no"), "--case", "cold");
-    ERR("this run has no cases\n");
+    ERR("this run has no load cases\n");
     HIFDM(0, "check", c);
     OUT("cases (none given); ");
 }

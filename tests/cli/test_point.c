@@ -27,10 +27,10 @@ START_TEST(a_point_becomes_a_result)
                *cut = temp("cut.csv"), *table = temp("nodes"), *page = temp("p.html"), *printed;
     HIFDM(0, "show", front);
     OUT("                knee, point ");
-    OUT(formatted("                a point becomes a result by the same run with --point %s:", front));
+    OUT(formatted("                to make a point the result, run the same command with --point %s:", front));
     HIFDM(0, "run", c, "--point", point(front, 3), "-o", path);
     OUT("psi ");
-    OUT(formatted("  the result: point 3 of the front in %s\n", front));
+    OUT(formatted("  the result, point 3 of the front in %s\n", front));
     ck_assert(!strstr(said.out, "LM") && !strstr(said.out, "  front  "));
     printed = keep(said.out);
     HIFDM(0, "show", path);
@@ -91,22 +91,24 @@ END_TEST
 /* What a front has beside its points is of none of them: run, check, summary and exports say so, once each. */
 START_TEST(what_is_of_no_point_is_told)
 {
-    static const char beside[] = "a front is no single design, so cases and tolerance are of the form-finding's net",
-                      untaken[] = ": no point of its front is taken: the shape is the form-finding's, ";
+    static const char beside[] =
+        "a front is no single design, so load_cases and tolerance belong to the net of the form-finding",
+                      untaken[] = ": no point of its front is taken: the shape is that of the form-finding, ";
     const char *c = file_with("d.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT), *front = temp("f.h5"),
                *path = temp("p.h5"), *cut = temp("cut.csv"), *said_at;
     HIFDM(0, "check", c);
     ERR(beside);
     HIFDM(0, "run", c, "-o", front);
-    OUT("                cases, as built: of the form-finding's shape, no point of the front; --point gives those of a "
-        "point\n  cases  ");
+    OUT("                load cases, as built: of the form-finding, not of a point of the front; a run with --point "
+        "computes them for a "
+        "point\n  load cases  ");
     said_at = strstr(said.err, beside);
     ck_assert(said_at && !strstr(said_at + 1, beside));
     ERRS("`hifdm run %s --point FRONT.h5:N -o point.h5`", c);
     HIFDM(0, "export", front, "--cutlist", cut, "--csv", temp("csv"));
     said_at = strstr(said.err, untaken);
     ck_assert(said_at && !strstr(said_at + 1, untaken));
-    ERRS("; `hifdm run %s --point %s:", c, front);
+    ERRS(", run `hifdm run %s --point %s:", c, front);
     HIFDM(0, "export", front, "--csv", temp("same"), "--case", "same");
     ERR(untaken);
     HIFDM(0, "export", front, "--cutlist", cut, "--stage", "form", "--force");
@@ -120,7 +122,7 @@ START_TEST(what_is_of_no_point_is_told)
           "--measured", temp("measured.csv"), "--result", front, "-o", temp("m.csv"));
     ERR(untaken);
     HIFDM(0, "run", c, "--point", point(front, 3), "-o", path);
-    ck_assert(!strstr(said.err, beside) && !strstr(said.out, "no point of the front"));
+    ck_assert(!strstr(said.err, beside) && !strstr(said.out, "not of a point of the front"));
     HIFDM(0, "export", path, "--cutlist", cut, "--force");
     ck_assert_str_eq(said.err, "");
 }
@@ -134,7 +136,7 @@ START_TEST(points_of_generations_are_taken)
     c, "--set", "optimize.generations=5", "--set", "optimize.objectives=[{goal: psi}, {goal: displacement}]"
     HIFDM(0, "run", GENERATIONS, "-o", front);
     HIFDM(0, "export", front, "--csv", temp("end"));
-    ERR(": no point of its front is taken: the shape is the end of the front with the least objective_0_psi; ");
+    ERR(": no point of its front is taken: the shape is the end of the front with the minimum objective_0_psi. ");
     HIFDM(0, "run", GENERATIONS, "--point", point(front, 2), "-o", path);
     EXPECT(front, path, "--", "near(b['objective/refine'][0], a['front/objective'][1, 0], 1e-6)",
            "near(b['objective/refine'][1], a['front/objective'][1, 1], 1e-6)",
@@ -163,16 +165,17 @@ START_TEST(a_wrong_point_is_refused)
     ERRS("what differs: it has --point %s:3, whose design is another one in the front that is there now. ", front);
     HIFDM(0, "run", c, "-o", front, "--restart", "--quiet");
     HIFDM(2, "run", c, "--point", point(front, 8), "-o", other);
-    ERRS("error: %s: its front has points 1 to 7, and no 8; `hifdm export %s --front FILE` lists them\n", front, front);
+    ERRS("error: %s: its front has points 1 to 7, but no point 8; `hifdm export %s --front FILE` lists them\n", front,
+         front);
     const char *const none[] = {front, "f.h5:", "f.h5:0", "f.h5:-1", "f.h5:1.5", ":3", "3"};
     for (int i = 0; i < 7; i++) {
         HIFDM(2, "run", c, "--point", none[i], "-o", other);
-        ERRS("error: --point must be FILE:N, a result with a front and the number of a point, as night.h5:7, not "
+        ERRS("error: --point must be FILE:N, a result with a front and the number of a point, such as night.h5:7, not "
              "'%s'\n",
              none[i]);
     }
     HIFDM(2, "run", c, "--point", point(path, 1), "-o", other);
-    ERRS("error: %s: has no front, so no points: a run of a case with optimize.objectives makes one\n", path);
+    ERRS("error: %s: has no front, so it has no points; run a case with optimize.front\n", path);
     HIFDM(5, "run", c, "--point", point(temp("none.h5"), 1), "-o", other);
     HIFDM(5, "run", c, "--point", point(c, 1), "-o", other);
     ERRS("error: %s: is not an HDF5 file", c);
@@ -188,9 +191,8 @@ START_TEST(a_front_of_another_case_is_refused)
     const char *c = file_with("c.yaml", NET OPTIMIZE PSI_AND_RATIO), *front = front_of(c, "f.h5"),
                *other = temp("q.h5");
     HIFDM(2, "run", file_with("g.yaml", NET OPTIMIZE), "--point", point(front, 3), "-o", other);
-    ERRS("error: %s: its front has other objectives than %s: give the case and the --set that it was made of; what "
-         "differs: "
-         "optimize.objectives\n",
+    ERRS("error: %s: its front has other objectives than %s: use the case file and the --set options of that front; "
+         "different: optimize.objectives\n",
          front, temp("g.yaml"));
     HIFDM(2, "run", c, "--set", "optimize.objectives=[{goal: psi}, {goal: pull}]", "--point", point(front, 3), "-o",
           other);
@@ -200,23 +202,23 @@ START_TEST(a_front_of_another_case_is_refused)
     ERR(": its front has other variables than ");
     HIFDM(2, "run", c, "--set", "form.pretension_N=11", "--point", point(front, 3), "-o", other);
     ERRS("error: %s: point 3 of its front has objective_1_ratio_boundary ", front);
-    ERR(": give the case and the --set that it was made of; what differs: form.pretension_N\n");
+    ERR(": use the case file and the --set options of that front; different: form.pretension_N\n");
     HIFDM(2, "run", file_with("b.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT), "--set", "form.pretension_N=11",
           "--point", point(front, 3), "-o", other);
-    ERR("; what differs: form.pretension_N, cables\n");
+    ERR("; different: form.pretension_N, cables\n");
     HIFDM(2, "run", c, "--set", "form.pretension_N=11", "--set", "form.collapse_ratio=2e-3", "--set",
           "form.max_iterations=99999", "--set", "form.residual_tolerance=2e-9", "--set", "form.rms_tolerance_m=2e-6",
           "--set", "form.length_tolerance=2e-9", "--set", "optimize.max_tension_N=1e5", "--set", "optimize.seed=8",
           "--set", "optimize.range_N=2", "--set", "optimize.polish_iterations=199", "--point", point(front, 3), "-o",
           other);
-    ERR("; what differs: form.pretension_N, form.residual_tolerance, form.length_tolerance, form.rms_tolerance_m, "
+    ERR("; different: form.pretension_N, form.residual_tolerance, form.length_tolerance, form.rms_tolerance_m, "
         "form.max_iterations, form.collapse_ratio, optimize.range_N, optimize.max_tension_N and 2 more\n");
     HIFDM(2, "run", c, "--set", "optimize.limits=[{limit: tension, set: boundary, bounds: [900, 901]}]", "--point",
           point(front, 3), "-o", other);
-    ERRS("error: %s: point 3 of its front is no design of %s, ", front, c);
+    ERRS("error: %s: point 3 of its front is not a feasible design of %s (", front, c);
     HIFDM(2, "run", c, "--set", "optimize.range_N=0.1", "--point", point(front, 3), "-o", other);
     ERRS("error: %s: point 3 of its front has ", front);
-    ERRS(", which %s keeps from ", c);
+    ERRS(", but %s allows ", c);
     ck_assert(!is_there(other));
 }
 END_TEST
@@ -227,8 +229,8 @@ START_TEST(a_damaged_front_is_told)
     static const struct {
         const char *damage, *told;
         int code;
-    } list[] = {{"f['front/design'][2] = np.nan", "is no design of ", 2},
-                {"f['front/design'][2] = 0", "is no design of ", 2},
+    } list[] = {{"f['front/design'][2] = np.nan", "is not a feasible design of ", 2},
+                {"f['front/design'][2] = 0", "is not a feasible design of ", 2},
                 {"f['front/objective'][2, 0] = np.nan", " has objective_0_psi nan", 2},
                 {"f['front/status'][2] = 3", "failed and has no design", 2},
                 {"del f['front/variable']", "/front/variable is not there", 5},

@@ -46,8 +46,8 @@ static void demand_same(const char *path, const char *whole)
 {
     HIFDM(0, "diff", path, whole);
     EXPECT(path, whole, "--",
-           "[k for k in ('evaluations', 'infeasible', 'initial_psi_m', 'best_psi_m', 'best_generation', "
-           "'best_individual', 'best_iterations') if a['search'].attrs[k] != b['search'].attrs[k]] == []");
+           "[k for k in ('evaluations', 'infeasible', 'initial_psi_m', 'psi_m', 'best_generation', "
+           "'best_individual', 'iterations') if a['search'].attrs[k] != b['search'].attrs[k]] == []");
 }
 
 #define EVERY_7 "optimize.store_every=7"
@@ -226,7 +226,7 @@ START_TEST(stopped_runs_publish_and_go_on)
     wait_for_generations(&s, path);
     ck_assert_int_eq(end_by(&s, stops[_i]), 75);
     char *err = read_file(temp_path("err"), NULL);
-    ck_assert_msg(strstr(err, "told to stop; the same command goes on from there") != NULL, "%s", err);
+    ck_assert_msg(strstr(err, "interrupted; run the same command again to resume") != NULL, "%s", err);
     free(err);
     SHELL(0, "ls \"$1\"*", path);
     ck_assert_str_eq(said.out, formatted("%s\n", path)); /* all of it is in the one file */
@@ -305,7 +305,7 @@ END_TEST
 static bool says_step(const char *err)
 {
     char *text = read_file(err, NULL);
-    const char *first = strstr(text, "\"iteration\": "), *next = first ? strstr(first + 1, "\"iteration\": ") : NULL;
+    const char *first = strstr(text, "\"step\": "), *next = first ? strstr(first + 1, "\"step\": ") : NULL;
     bool has_next = next && strchr(next, '\n');
     free(text);
     return has_next;
@@ -320,18 +320,18 @@ START_TEST(a_stopped_refinement_goes_on_to_the_same_bits)
     ck_assert(wait_until(&s, says_step, temp("err")));
     ck_assert_int_eq(end_by(&s, SIGTERM), 75);
     char *err = read_file(temp_path("err"), NULL);
-    const char *at = strstr(err, "told to stop after ");
+    const char *at = strstr(err, "interrupted after ");
     int n_stopped, iteration = -1;
-    ck_assert_msg(at && sscanf(at, "told to stop after %d steps of Levenberg-Marquardt, at psi ", &n_stopped) == 1,
-                  "%s", err);
-    ck_assert(strstr(at, " and a merit of ") && strstr(at, "; the same command goes on from there"));
+    ck_assert_msg(at && sscanf(at, "interrupted after %d steps of the refinement, at psi ", &n_stopped) == 1, "%s",
+                  err);
+    ck_assert(strstr(at, " and a merit of ") && strstr(at, "; run the same command again to resume"));
     ck_assert_int_gt(n_stopped, 0);
     free(err);
     s = start_program(argv);
     ck_assert(wait_until(&s, says_step, temp("err"))); /* published as well, from a second on */
     ck_assert_int_eq(end_by(&s, SIGKILL), 128 + SIGKILL);
     err = read_file(temp_path("err"), NULL);
-    ck_assert_int_eq(sscanf(strstr(err, "\"iteration\": "), "\"iteration\": %d", &iteration), 1);
+    ck_assert_int_eq(sscanf(strstr(err, "\"step\": "), "\"step\": %d", &iteration), 1);
     ck_assert_int_eq(iteration, n_stopped);
     free(err);
     HIFDM(0, "run", c, "-o", path, "--quiet", "--progress", "jsonl", "--threads", "1");
@@ -352,8 +352,8 @@ START_TEST(another_case_is_told_key_by_key)
     const char *c = file_with("c.yaml", SMALL_SCENE SMALL_GA), *path = temp("run.h5");
     HIFDM(0, "run", c, "-o", path, "--quiet");
     HIFDM(0, "run", c, "-o", path);
-    ERR("is the finished result of this case; --restart computes it again");
-    OUT("\n  GA            ");
+    ERR("is the finished result of this case; use --restart to compute it again");
+    OUT("\n  search          ");
     HIFDM(5, "run", c, "-o", path, "--set", "form.pretension_N=11", "--set", "optimize.elites=3");
     ERR("finished result of another case; what differs: form.pretension_N, optimize.elites. Use --restart");
     HIFDM(5, "run", c, "-o", path, "--seed", "8");
@@ -364,7 +364,7 @@ START_TEST(another_case_is_told_key_by_key)
     ERR("what differs: optimize,");
     HIFDM(0, "recover", path);
     ERR("is finished: there is nothing to recover");
-    OUT("\n  GA            ");
+    OUT("\n  search          ");
     HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", path, "--restart", "--quiet");
     EXPECT(path, "--", "'search' not in a");
     const char *net = net_with("id,x_m,y_m,z_m,role\na,0,0,0,support\nb,2,0,0,support\nc,1,1,0.5,inner\n"

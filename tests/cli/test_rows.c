@@ -110,7 +110,7 @@ START_TEST(a_cable_called_like_a_variable_of_a_support_is_refused)
           net_with(nodes, "id,i,j,group,law,value,set\nc1,a,m,boundary,tension,10,edge\n"
                           "c.y,b,m,boundary,tension,10,edge\nc3,c,m,boundary,tension,9,stay\n"),
           "--template", temp("t.csv"), "--set", VARIABLES);
-    ERR("error: optimize.variables: cable 'c.y' has the name of a variable of a support; rename it\n");
+    ERR("error: optimize.variables: cable 'c.y' has the name of a design variable of a support; rename it\n");
     ck_assert(!is_there(temp("t.csv")));
 }
 END_TEST
@@ -199,7 +199,7 @@ START_TEST(runs_tell_what_became_of_each_objective)
            "a['refine']['objectives'][g]['value'])))");
     ck_assert_int_eq(count_of(said.out, "                merit 0."), 1); /* the result's, with its goals */
     HIFDM(0, "show", out, "--verbose");
-    OUT(" 4 cables, 5 variables; ");
+    OUT(" 4 cables, 5 design variables; ");
     OUT(" (weight 1), objective_1_tension_edge ");
     OUT(" (weight 0.1)\n");
     ck_assert_int_eq(count_of(said.out, "                merit 0."), 4);
@@ -219,7 +219,7 @@ START_TEST(objectives_of_damaged_files_are_not_shown)
 {
     static const char *const deed[] = {"f['objective/name'][0] = b'\\x1b[1m'", "del f['objective/refine']",
                                        "del f['objective/weight']; f['objective/weight'] = np.ones(17)"};
-    static const char *const why[] = {"/objective/name does not name goals", "/objective/refine is not there",
+    static const char *const why[] = {"/objective/name does not name objectives", "/objective/refine is not there",
                                       "/objective/weight is empty or too large"};
     const char *out = temp("r.h5");
     HIFDM(0, "run", net_with(nodes, cables), "-o", out, "--set", VARIABLES, "--set", OBJECTIVES, "--set",
@@ -252,7 +252,7 @@ START_TEST(what_holds_a_design_has_names)
            "'count', 'bound', 'value'))",
            "texts(b['at_limit/refine/name']) == [h['name'] for h in a['refine']['at_limits']]");
     HIFDM(0, "show", out);
-    OUT("                at optimize.limits.1: tension of cable c");
+    OUT("                at a limit (optimize.limits.1): tension of cable c");
     OUT(" and 1 more at 11\n");
     HIFDM(0, "show", out, "--json");
     EXPECT(json, out_as("s.json"), "--", "a['refine'] == b['refine']");
@@ -260,22 +260,22 @@ START_TEST(what_holds_a_design_has_names)
           "optimize.generations=30");
     EXPECT(out_as("g.json"), out, "--", "a['search']['at_lower_bound'] + a['search']['at_upper_bound'] == 2",
            "'at_limits' not in a['search'] and 'at_limit' not in b",
-           "attribute(b['search'], 'best_n_at_upper') == a['search']['at_upper_bound'] == 2");
+           "attribute(b['search'], 'n_at_upper') == a['search']['at_upper_bound'] == 2");
     HIFDM(0, "show", out, "-v");
-    OUT("                0 of 2 variables at their lower and 2 at their upper bounds\n");
+    OUT("                0 of 2 design variables at their lower bounds, 2 at their upper bounds\n");
 }
 END_TEST
 
 START_TEST(a_limit_that_nothing_keeps_has_a_name)
 {
     static const char *const method[] = {"optimize.method=lm", "optimize.method=ga"};
-    static const char *const begin[] = {"has no feasible start: ", "have a shape beyond optimize.limits or "};
+    static const char *const begin[] = {"has no feasible start: ", "exceed optimize.limits or "};
     HIFDM(3, "run", net_with(nodes, cables), "-o", temp("r.h5"), "--set", EDGE("1 %"), "--set", PULLED, "--set",
           "optimize.limits=[{limit: tension, set: edge, bounds: [5, 100]}, {limit: tension, set: stay, bounds: [50, "
           "60]}]",
           "--set", method[_i], "--set", "optimize.generations=3");
     ERR(begin[_i]);
-    ERR(" tension of cable c3 is 9 beside 50 of optimize.limits.1");
+    ERR(" tension of cable c3 is 9, but the bound of optimize.limits.1 is 50");
 }
 END_TEST
 
@@ -310,22 +310,21 @@ START_TEST(rows_that_no_variable_reaches_are_named)
                                              "    - {limit: tension, set: all, bounds: [null, 90]}\n"
                                              "    - {limit: ratio, set: far, bounds: [1, 5]}\n");
     HIFDM(0, "run", path, "-o", temp("two.h5"));
-    ERRS("warning: %s:7:7: optimize.variables.1: changes nothing at the base design: its cables, or those at its "
+    ERRS("warning: %s:7:7: optimize.variables.1: changes nothing at the initial design, because its cables, or those "
+         "at its "
          "supports, are slack\n",
          path);
-    ERRS("warning: %s:9:7: optimize.goals.0: no variable of this case changes objective_0_mass_far: all cables that it "
-         "looks "
-         "at keep their lengths\n",
+    ERRS("warning: %s:9:7: optimize.goals.0: no design variable of this case changes objective_0_mass_far: all of its "
+         "cables keep their lengths\n",
          path);
-    ERRS("warning: %s:10:7: optimize.goals.1: no variable of this case changes objective_1_tension_stay: all cables "
-         "that it "
-         "looks at keep their tensions\n",
+    ERRS("warning: %s:10:7: optimize.goals.1: no design variable of this case changes objective_1_tension_stay: all of "
+         "its cables keep their tensions\n",
          path);
-    ERRS("warning: %s:16:7: optimize.limits.1: no variable of this case changes what it limits: all cables that it "
-         "looks at keep their tensions\n",
+    ERRS("warning: %s:16:7: optimize.limits.1: no design variable of this case changes the limited figure: all of its "
+         "cables keep their tensions\n",
          path);
-    ck_assert_int_eq(count_of(said.err, "no variable of this case"), 3);
-    EXPECT(temp("two.h5"), "--", "attribute(a, 'warnings').count('no variable of this case') == 3",
+    ck_assert_int_eq(count_of(said.err, "no design variable of this case"), 3);
+    EXPECT(temp("two.h5"), "--", "attribute(a, 'warnings').count('no design variable of this case') == 3",
            "np.allclose(a['objective/form'][:2], a['objective/refine'][:2], rtol=1e-12)",
            "all(a['objective/form'][i] != a['objective/refine'][i] for i in (2, 4))");
 }
@@ -338,19 +337,16 @@ START_TEST(nothing_is_sought_that_no_variable_reaches)
         "optimize.objectives=[{goal: psi}, {goal: mass, set: far, mass_kg_per_m: 1}]",
         "optimize.variables=[{set: far, vary: tension, range: 1}]"};
     static const char *const why[] = {
-        ("error: --set optimize.goals.0: no variable of this case changes objective_0_length_far: all cables that it "
-         "looks "
-         "at "
-         "keep their lengths; vary what does, or leave it out\nerror: --set optimize.goals.1: no variable of this case "
-         "changes objective_1_evenness_far: all cables that it looks at keep their tensions; vary what does, or leave "
-         "it "
+        ("error: --set optimize.goals.0: no design variable of this case changes objective_0_length_far: all of its "
+         "cables keep their lengths; add one that does, or leave the row out\nerror: --set optimize.goals.1: no design "
+         "variable of this case "
+         "changes objective_1_evenness_far: all of its cables keep their tensions; add one that does, or leave the row "
          "out\n"),
-        ("error: --set optimize.objectives.1: no variable of this case changes objective_1_mass_far: all cables that "
-         "it "
-         "looks "
-         "at keep their lengths; vary what does, or leave it out\n"),
-        ("error: --set optimize.variables.0: no variable of this case changes psi: none of the nodes that it looks at "
-         "moves; vary what does, or name goals\n")};
+        ("error: --set optimize.objectives.1: no design variable of this case changes objective_1_mass_far: all of its "
+         "cables keep their lengths; add one that does, or leave the row out\n"),
+        ("error: --set optimize.variables.0: no design variable of this case changes psi: none of its nodes moves; add "
+         "one that does, or use another "
+         "optimize.objective\n")};
     static const char *const command[] = {"run", "check"};
     const char *net = net_with(two_nets, two_cables), *out = temp("none.h5");
     for (int k = 0; k < 2; k++) {
@@ -373,7 +369,7 @@ START_TEST(a_objective_that_stands_still_at_one_point_is_no_fault)
                                 "mc,m,c,boundary,tension,10\nmd,m,d,boundary,tension,10\n");
     HIFDM(0, "check", flat, "--set", "optimize.variables=[{set: all, vary: support_z, range: 0.1}]", "--set",
           "optimize.goals=[{goal: mass, mass_kg_per_m: 1}]");
-    ck_assert(!strstr(said.err, "no variable"));
+    ck_assert(!strstr(said.err, "no design variable"));
 }
 END_TEST
 
@@ -387,7 +383,7 @@ START_TEST(a_move_along_z_counts)
                    "mc,m,c,boundary,force_density,10\nmd,m,d,boundary,force_density,10\n"),
           "--set", "optimize.variables=[{set: all, vary: support_z, range: 0.1}]", "--set",
           "optimize.goals=[{goal: psi}]");
-    ck_assert(!strstr(said.err, "no variable"));
+    ck_assert(!strstr(said.err, "no design variable"));
 }
 END_TEST
 
@@ -400,7 +396,7 @@ START_TEST(ends_that_move_apart_lengthen_a_cable)
                    "mn,m,n,inner,force_density,10,middle\nnb,n,b,boundary,force_density,10,\n"),
           "--set", "optimize.variables=[{set: middle, vary: force_density, range: 10 %}]", "--set",
           "optimize.goals=[{goal: length, set: middle, target: 1.1}]");
-    ck_assert(!strstr(said.err, "no variable"));
+    ck_assert(!strstr(said.err, "no design variable"));
 }
 END_TEST
 
@@ -411,14 +407,16 @@ START_TEST(a_cap_that_the_case_does_not_give_is_told_as_the_default)
                                       "optimize.objectives=[{goal: psi}, {goal: evenness, set: edge}]",
                                       "optimize.limits=[{limit: tension, set: stay, bounds: [1, 90]}]"};
     static const char *const what[] = {
-        ": the boundary tension ratio exceeds optimize.boundary_ratio_cap: ratio of cable c4 to c3 is 22.2222 beside "
-        "10 of boundary_ratio_cap",
-        " are above boundary_ratio_cap 10; the base design has 22.22; raise optimize.boundary_ratio_cap, or widen the "
+        ": the boundary tension ratio exceeds optimize.boundary_ratio_cap: ratio of cable c4 to c3 is 22.2222, but the "
+        "bound of boundary_ratio_cap is 10",
+        " are above boundary_ratio_cap 10; the initial design has 22.22; raise optimize.boundary_ratio_cap, or widen "
+        "the "
         "ranges and bounds of optimize.variables",
-        "", " ratio of cable c4 to c3 is 22.2222 beside 10 of boundary_ratio_cap; loosen the limits, or widen "};
+        "",
+        " ratio of cable c4 to c3 is 22.2222, but the bound of boundary_ratio_cap is 10; loosen the limits, or widen "};
     const char *hint =
-        "; 10 is the default of optimize.boundary_ratio_cap, which the case does not give: set it to what the net may "
-        "have\n";
+        "; 10 is the default of optimize.boundary_ratio_cap: if the net may have a larger ratio, set this key in the "
+        "case\n";
     const char *net = net_with(nodes, "id,i,j,group,law,value,set\nc1,a,m,boundary,tension,10,edge\n"
                                       "\"c,2\",b,m,boundary,tension,10,edge\nc3,c,m,boundary,tension,9,stay\n"
                                       "c4,a,b,boundary,tension,200,\n");
@@ -476,7 +474,7 @@ START_TEST(the_gain_is_a_objective)
            "all(float(r['n0_0-n0_1']) != 0 for r in b)",
            "0 < float(a[0]['objective_1_gain']) < float(a[0]['objective_0_gain'])");
     HIFDM(2, "check", CHEN, "--set", "surface.frequencies_Hz=[1e9]", "--set", "optimize.goals=[{goal: gain}]");
-    ERR("error: --set optimize.goals.0: gain: needs a section surface.pattern, which says what illuminates the "
+    ERR("error: --set optimize.goals.0: gain: needs a section surface.pattern with the feed of the "
         "reflector\n");
     HIFDM(2, "check", CHEN, BANDS, "--set", "optimize.goals.1.frequency_Hz=3e11");
     ERR("optimize.goals.1: gain: its facets are too coarse for this frequency");

@@ -47,11 +47,10 @@ END_TEST
 START_TEST(paraview_opens_the_result)
 {
     static const char *const argument[][5] = {
-        {"configs/straight-edges.yaml", "optimize.generations=3", "title=grid", "form optimize polish\n", "c.h5"},
-        {"configs/straight-edges-truss.yaml", "optimize.generations=1", "title=grid", "form optimize polish\n",
-         "t.hdf"},
+        {"configs/straight-edges.yaml", "optimize.generations=3", "title=grid", "form refine search\n", "c.h5"},
+        {"configs/straight-edges-truss.yaml", "optimize.generations=1", "title=grid", "form refine search\n", "t.hdf"},
         {"configs/paraboloid-cases.yaml", "title=grid", "title=grid",
-         "case_cold case_cup_down case_cup_up case_spun case_sun form\n", "e.hdf"},
+         "form load_case_cold load_case_cup_down load_case_cup_up load_case_spun load_case_sun\n", "e.hdf"},
         {NULL, "scene.EA_inner_N=1e5", "scene.EA_boundary_N=2e5", "form\n", "s.hdf"}};
     const char *samples = file_with("s.yaml", SMALL_SCENE "tolerance: {sigma_cut_m: 1e-4, samples: 20}\n");
     const char *const *of = argument[_i], *out = temp(of[4]);
@@ -73,9 +72,9 @@ START_TEST(paraview_files_of_facets)
     const char *out = temp("f.h5"), *folder = temp("vtk");
     HIFDM(0, "run", file_with("f.yaml", text[_i]), "-o", out, "--quiet");
     HIFDM(0, "export", out, "--vtk", folder);
-    OUT(": theoretical.hdf theoretical_facets.hdf form.hdf form_facets.hdf\n");
-    demand_vtk(out, folder, "form form_facets theoretical theoretical_facets");
-    SHELL(0, "cd \"$1\" && rm form.hdf theoretical.hdf theoretical_facets.hdf", folder);
+    OUT(": target.hdf target_facets.hdf form.hdf form_facets.hdf\n");
+    demand_vtk(out, folder, "form form_facets target target_facets");
+    SHELL(0, "cd \"$1\" && rm form.hdf target.hdf target_facets.hdf", folder);
     HIFDM(5, "export", out, "--vtk", folder);
     ERR("form_facets.hdf exists; use --force to replace it");
 }
@@ -92,16 +91,16 @@ START_TEST(mesh_makes_pillows)
     HIFDM(0, "run", path, "-o", out, "-v", "--set", grid[_i], "--set", "surface.mesh_tension_N_per_m=1", "--set",
           "surface.frequencies_Hz=[2e9]");
     OUT("; pillow 0.");
-    OUT("loss of gain at 2 GHz: 0 dB; best fit: 0 dB; facets: "); /* and not the 1e-27 of rounding */
+    OUT("gain loss at 2 GHz: 0 dB, after best fit 0 dB; of the facets "); /* and not the 1e-27 of rounding */
     HIFDM(0, "export", out, "--vtk", temp("vtk"));
     const char *const argv[] = {python_program(), keep(source_path("tests/verify/mesh_oracle.py")), out,
                                 temp("vtk/form_facets.hdf"), NULL};
     demand_exit(run_command(HANG_S, argv), 0, "mesh_oracle.py", __LINE__);
-    demand_vtk(out, temp("vtk"), "form form_facets theoretical theoretical_facets");
+    demand_vtk(out, temp("vtk"), "form form_facets target target_facets");
     HIFDM(0, "run", path, "-o", out, "--force", "--json", "--set", grid[_i], "--set",
           "surface.mesh_tension_N_per_m=100");
     ERR("warning: surface: in the shape of stage form the mesh pulls on a cable with N l = ");
-    ERR("and facets have no errors here. Raise the tension of the cables, or lower surface.mesh_tension_N_per_m\n");
+    ERR("so the facets have no errors. Raise the tensions of the cables, or lower surface.mesh_tension_N_per_m\n");
     EXPECT(out_as("m.json"), out, "--", "a['form']['surface']['facet_normal_rms_m'] is None",
            "a['form']['surface']['pillow_rms_m'] is None", "a['form']['surface']['mesh_pull_ratio'] > 1",
            "np.isnan(b['surface/form'].attrs['facet_fit_normal_rms_m'])");
@@ -121,13 +120,13 @@ START_TEST(paraview_files_of_an_imported_net)
     HIFDM(0, "run", path, "-o", out, "--quiet");
     ERR("warning: slack in the form-finding shape, 1: bd\n");
     HIFDM(0, "export", out, "--vtk", folder);
-    demand_vtk(out, folder, "form theoretical");
+    demand_vtk(out, folder, "form target");
     write_file(form, "mine");
     HIFDM(5, "export", out, "--vtk", folder);
     ERRS("error: %s exists; use --force to replace it", form);
     ck_assert(file_is(form, "mine"));
     HIFDM(0, "export", out, "--vtk", folder, "--force");
-    demand_vtk(out, folder, "form theoretical");
+    demand_vtk(out, folder, "form target");
     HIFDM(2, "export", out, "--vtk", folder, "--stage", "form");
     ERR("error: --stage does not go with --vtk alone, which writes every shape\n");
     HIFDM(5, "export", out, "--vtk", temp("no/such/folder"));
@@ -139,7 +138,7 @@ END_TEST
 
 /* ---- cut list ---- */
 
-/* The net that is built from the cut lengths, hung into the theoretical positions, comes to the stored shape. 1e-9 m is
+/* The net that is built from the cut lengths, hung into the target positions, comes to the stored shape. 1e-9 m is
  * what an engineer could ask for; 17 digits of l0 of 1 m, at 47 kN and some 0.3 N/m of the softest motion, are
  * 1e-11 m. */
 START_TEST(net_built_from_the_cut_list_has_the_found_shape)
@@ -147,7 +146,7 @@ START_TEST(net_built_from_the_cut_list_has_the_found_shape)
     static const char *const stage[] = {"form", "search", "refine"}, *const word[] = {"form", "optimize", "polish"};
     const char *out = run_chen(), *built = temp("built.h5"), *cut = temp("cut.csv");
     HIFDM(0, "export", out, "--cutlist", cut, "--csv", temp("net"), "--stage", word[_i], "--force");
-    OUT("cut lengths of 220 cables of the ");
+    OUT("cutting lengths of 220 cables of the ");
     SHELL(0, "cd \"$1\" && sed -e '1s/.*/id,found_x,found_y,found_z,x_m,y_m,z_m,role/' net/nodes.csv >start.csv",
           temp("."));
     const char *path =
@@ -178,7 +177,7 @@ START_TEST(cut_list_holds_what_it_says)
         "[r['id'] for r in a] == [r['id'] for r in b] and list(b[0])[:5] == ['id', 'i', "
         "'j', 'group', 'unstressed_length_mm'] and [r['set'] for r in a] == [r['set'] for r in b]",
         "all(abs(1e3 * float(r[k + '_m']) - float(s[k + '_mm'])) < 0.00050001 and len(s[k + '_mm'].split('.')[1]) == 3 "
-        "for r, s in zip(a, b) for k in ('l0', 'length', 'elongation', 'l0_minus_theory'))",
+        "for r, s in zip(a, b) for k in ('unstressed_length', 'length', 'elongation', 'unstressed_minus_target'))",
         "all(abs(float(r['tension_N']) - float(s['tension_N'])) < 0.0050001 for r, s in zip(a, b))",
         "not any(v in ('-0.000', '-0.00') for s in b for v in s.values())");
     EXPECT(
@@ -252,7 +251,7 @@ START_TEST(cut_list_needs_EA)
     const char *out = temp("f.h5"), *cut = temp("cut.csv");
     HIFDM(0, "run", file_with("f.yaml", SMALL_SCENE), "-o", out, "--quiet");
     HIFDM(2, "export", out, "--cutlist", cut);
-    ERR("inner cables have no EA, which cut lengths need, like 'n");
+    ERR("inner cables have no EA, which cutting lengths need, like 'n");
     ERR("give scene.EA_inner_N, or the column EA_N of an imported net, and run again\n");
     ERR("boundary cables have no EA");
     HIFDM(0, "run", temp("f.yaml"), "-o", out, "--quiet", "--force", "--set", "scene.EA_inner_N=5e4");
@@ -299,9 +298,8 @@ START_TEST(surface_is_measured_for_every_shape)
     HIFDM(0, "show", out, "--json");
     const char *shown = out_as("show.json");
     for (int i = 0; i < 3; i++) {
-        static const char *const stage[] = {"form", "optimize", "polish"};
-        static const char *const shape[] = {"form", "search", "refine"};
-        EXPECT(out, json, shown, file_with("stage", stage[i]), file_with("shape", shape[i]), "--",
+        static const char *const stage[] = {"form", "search", "refine"};
+        EXPECT(out, json, shown, file_with("stage", stage[i]), "--",
                "b[d.decode()]['surface'] == c[d.decode()]['surface']",
                "all((b[d.decode()]['surface'][k] is None if v != v else b[d.decode()]['surface'][k] == v) "
                "for k, v in a['surface'][d.decode()].attrs.items() if k in b[d.decode()]['surface'])",
@@ -318,9 +316,9 @@ START_TEST(surface_is_measured_for_every_shape)
                "b[d.decode()]['surface']['kind'] == 'parabolic_cylinder'",
                /* against numpy: the sums in another order */
                "near(np.sqrt(np.mean([(p[2] - p[0]**2 / 282.4)**2 / (1 + (p[0] / 141.2)**2) for p in "
-               "a[e.decode()]['position_m'][:][a['scene/node/role'][:] == 1]])), b[d.decode()]['surface']"
+               "a[d.decode()]['position_m'][:][a['scene/node/role'][:] == 1]])), b[d.decode()]['surface']"
                "['normal_rms_m'], 1e-15)",
-               "near(np.percentile(np.linalg.norm((a[e.decode()]['position_m'][:] - a['scene/node/position_m'][:])"
+               "near(np.percentile(np.linalg.norm((a[d.decode()]['position_m'][:] - a['scene/node/position_m'][:])"
                "[a['scene/node/role'][:] == 1], axis=1), 95), b[d.decode()]['surface']['deviation_p95_m'], 1e-15)",
                "b[d.decode()]['surface']['frequency_Hz'] == [1.2e9, 2.4e9, 9.6e9] == "
                "a['surface/frequency_Hz'][:].tolist()",
@@ -341,8 +339,8 @@ START_TEST(surface_is_measured_for_every_shape)
     free(page);
     HIFDM(0, "show", out, "-v");
     OUT("surface, parabolic cylinder: half-path RMS ");
-    OUT("loss of gain at 1.2 GHz: ");
-    ck_assert_int_eq(count_of(said.out, "loss of gain at 9.6 GHz: beyond Ruze's formula, which ends at 3 dB ("), 3);
+    OUT("gain loss at 1.2 GHz: ");
+    ck_assert_int_eq(count_of(said.out, "gain loss at 9.6 GHz: above 3 dB, the limit of Ruze's formula ("), 3);
     ck_assert_int_eq(count_of(said.out, "deviations 50/90/95/99 %: "), 3);
 }
 END_TEST

@@ -31,7 +31,7 @@ PLACE = ("x_m", "y_m", "z_m")
 
 def built(cut, shape, cables, nodes, sigma_m, seed):
     dice = random.Random(int(seed))
-    write(cables, CABLE, [{**c, "law": "elastic", "value": repr(float(c["l0_m"]) + dice.gauss(0, float(sigma_m)))}
+    write(cables, CABLE, [{**c, "law": "elastic", "value": repr(float(c["unstressed_length_m"]) + dice.gauss(0, float(sigma_m)))}
                           for c in read(cut)])
     write(nodes, ("id", *PLACE, "role"), [{**n, **{k: n[k.replace("_", "0_")] for k in PLACE}}
                                           for n in read(f"{shape}/nodes.csv")])
@@ -44,7 +44,7 @@ def measured(shape, path, sigma_m, seed):
 
 
 def turned(cables, moves, path):
-    by = {m["cable"]: float(m["move_mm"]) / 1e3 for m in read(moves)}
+    by = {m["cable"]: float(m["turnbuckle_mm"]) / 1e3 for m in read(moves)}
     write(path, CABLE, [{**c, "value": repr(float(c["value"]) + by.get(c["id"], 0))} for c in read(cables)])
 
 

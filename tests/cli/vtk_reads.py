@@ -97,7 +97,7 @@ def check_facets(result, path, stage, read):
         assert abs(cell["normal_mean_m"][i] - mean) <= 1e-9 * rms and abs(cell["normal_rms_m"][i] - rms) <= 1e-9 * rms
     if not stage:
         return
-    said = result["surface"][{"form": "form", "ga/best": "optimize", "polish": "polish"}[stage]].attrs
+    said = result["surface"][stage].attrs
     assert said["n_facet"] == len(cells)
     for name in ("normal", "fit_normal"):
         rms = np.sqrt((area * cell[f"{name}_rms_m"] ** 2).sum() / area.sum())
@@ -110,9 +110,9 @@ def check_facets(result, path, stage, read):
 def check(result, path, stage, read):
     points, cells, point, cell = read(path)
     ends = np.array(cells)
-    scene, theory = result["scene"], result["scene/node/position_m"][:]
+    scene, target = result["scene"], result["scene/node/position_m"][:]
     shape = result[stage] if stage else None
-    same("points", points, shape["position_m"][:] if stage else theory)
+    same("points", points, shape["position_m"][:] if stage else target)
     same("ends", ends, scene["cable/end"][:])
     same("role", point["role"], scene["node/role"][:])
     same("group", cell["group"], scene["cable/group"][:])
@@ -129,18 +129,17 @@ def check(result, path, stage, read):
     for name in ("tension_N", "q_N_per_m"):
         same(name, cell[name], shape[name][:])
     same("length_change_m", cell["length_change_m"], shape["length_m"][:] - scene["cable/length_m"][:])
-    same("displacement_m", point["displacement_m"], shape["position_m"][:] - theory)
-    moved = shape["position_m"][:] - theory
+    same("displacement_m", point["displacement_m"], shape["position_m"][:] - target)
+    moved = shape["position_m"][:] - target
     same("deviation_m", point["deviation_m"], np.sqrt(moved[:, 0] ** 2 + moved[:, 1] ** 2 + moved[:, 2] ** 2))
     psi_m = np.sqrt((point["deviation_m"][point["role"] == 1] ** 2).mean())
-    said_m = result["ga"].attrs["best_psi_m"] if stage == "ga/best" else shape.attrs["psi_m"]
+    said_m = shape.attrs["psi_m"]
     assert abs(psi_m - said_m) <= 1e-12 * psi_m + 1e-15, (psi_m, said_m)  # the order of a sum
     slack = result["form"].attrs["n_slack"] if stage == "form" else 0
     assert cell["slack"].sum() == slack, (cell["slack"].sum(), slack)
     if "surface" in result:
-        group = {"form": "form", "ga/best": "optimize", "polish": "polish"}[stage]
         rms_m = np.sqrt((point["normal_error_m"][point["role"] == 1] ** 2).mean())
-        assert abs(rms_m - result["surface"][group].attrs["normal_rms_m"]) <= 1e-12 * rms_m
+        assert abs(rms_m - result["surface"][stage].attrs["normal_rms_m"]) <= 1e-12 * rms_m
 
 
 def check_truss(result, path, stage, read):
@@ -186,19 +185,19 @@ def check_result(path):
     result = h5py.File(path, "r")
     assert result.attrs["finished"]
     scene, shapes = result["scene"], {"form": result["form"]}
-    if "ga/best" in result:
-        shapes["optimize"] = result["ga/best"]
-    if "polish" in result:
-        shapes["polish"] = result["polish"]
-    last = shapes["polish" if "polish" in shapes and result["polish"].attrs["polish_is_result"] else
-                  "optimize" if "optimize" in shapes else "form"]
-    if "cases" in result:
-        shapes.update({f"case_{n}": g for n, g in result["cases"].items() if n != "name" and "position_m" in g})
+    if "search/position_m" in result:
+        shapes["search"] = result["search"]
+    if "refine" in result:
+        shapes["refine"] = result["refine"]
+    last = shapes["refine" if "refine" in shapes and result["refine"].attrs["is_result"] else
+                  "search" if "search" in shapes else "form"]
+    if "load_cases" in result:
+        shapes.update({f"load_case_{n}": g for n, g in result["load_cases"].items() if n != "name" and "position_m" in g})
     point = {f"{name}_position_m": shape["position_m"] for name, shape in shapes.items()}
     cell = {f"{name}_{of}": shape[of] for name, shape in shapes.items() for of in FORCES}
     cell.update({of: last[of] for of in FORCES}, group=scene["cable/group"])
-    cell["theoretical_length_m"] = scene["cable/length_m"]
-    point.update(role=scene["node/role"], theoretical_position_m=scene["node/position_m"])
+    cell["length_at_target_m"] = scene["cable/length_m"]
+    point.update(role=scene["node/role"], target_position_m=scene["node/position_m"])
     point.update({"load_N": scene["node/load_N"]} if "load_N" in scene["node"] else {})
     cell.update({"EA_N": scene["cable/EA_N"]} if "EA_N" in scene["cable"] else {})
     if "tolerance" in result:
@@ -225,11 +224,11 @@ def main(result_path, folder=None):
         check_result(result_path)
         return
     result = h5py.File(result_path, "r")
-    stages = {"theoretical": None, "form": "form"}
-    if "ga/best" in result:
-        stages["optimize"] = "ga/best"
-    if "polish" in result:
-        stages["polish"] = "polish"
+    stages = {"target": None, "form": "form"}
+    if "search/position_m" in result:
+        stages["search"] = "search"
+    if "refine" in result:
+        stages["refine"] = "refine"
     if any(stage.attrs["n_facet"] for stage in result["surface"].values() if isinstance(stage, h5py.Group)
            ) if "surface" in result else False:
         stages.update({f"{name}_facets": stage for name, stage in stages.items()})

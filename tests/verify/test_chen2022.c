@@ -27,12 +27,15 @@ START_TEST(the_net_gives_the_printed_figures)
     ck_assert_int_eq(s.stage[HF_STAGE_FORM].result.n_loaded_chain + s.stage[HF_STAGE_FORM].result.n_slack, 0);
     VERIFY(1e3 * s.stage[HF_STAGE_FORM].result.psi_m, 6.6, 0.02, "psi after HIFDM, mm (calibrated)");
     VERIFY(s.stage[HF_STAGE_FORM].result.inner_tension_ratio, 1.0011, 0.0015, "tension ratio inside");
-    VERIFY(s.stage[HF_STAGE_FORM].result.boundary_tension_ratio, 4.8445, 0.05, "tension ratio on the boundary (calibrated)");
+    VERIFY(s.stage[HF_STAGE_FORM].result.boundary_tension_ratio, 4.8445, 0.05,
+           "tension ratio on the boundary (calibrated)");
     ck_assert_int_eq(s.search.generations, 400);
     VERIFY(1e3 * s.stage[HF_STAGE_SEARCH].result.psi_m, 4.3, 0.1, "psi after the genetic algorithm, mm (calibrated)");
-    VERIFY(1 - s.stage[HF_STAGE_SEARCH].result.psi_m / s.search.initial_psi_m, 0.348, 0.01, "reduction of psi by the genetic algorithm");
+    VERIFY(1 - s.stage[HF_STAGE_SEARCH].result.psi_m / s.search.initial_psi_m, 0.348, 0.01,
+           "reduction of psi by the genetic algorithm");
     VERIFY(s.stage[HF_STAGE_SEARCH].result.inner_tension_ratio, 1.001, 0.0015, "tension ratio inside then");
-    ck_assert_double_gt(s.stage[HF_STAGE_SEARCH].result.boundary_tension_ratio, s.stage[HF_STAGE_FORM].result.boundary_tension_ratio); /* as 5.608 */
+    ck_assert_double_gt(s.stage[HF_STAGE_SEARCH].result.boundary_tension_ratio,
+                        s.stage[HF_STAGE_FORM].result.boundary_tension_ratio); /* as 5.608 */
     NOT_MET(s.stage[HF_STAGE_SEARCH].result.boundary_tension_ratio, 5.608, "tension ratio on the boundary then");
 }
 END_TEST
@@ -45,7 +48,8 @@ START_TEST(other_seeds_find_the_same)
     snprintf(seed, sizeof seed, "optimize.seed=%d", _i + 1);
     run(source_path("configs/chen2022.yaml"), (const char *const[]){seed, "optimize.compare_lm=false"}, 2, &s);
     VERIFY(1e3 * s.stage[HF_STAGE_SEARCH].result.psi_m, 4.3, 0.1, "psi after the genetic algorithm, mm, %s", seed);
-    ck_assert_double_gt(s.stage[HF_STAGE_SEARCH].result.boundary_tension_ratio, s.stage[HF_STAGE_FORM].result.boundary_tension_ratio); /* as 5.608 */
+    ck_assert_double_gt(s.stage[HF_STAGE_SEARCH].result.boundary_tension_ratio,
+                        s.stage[HF_STAGE_FORM].result.boundary_tension_ratio); /* as 5.608 */
 }
 END_TEST
 
