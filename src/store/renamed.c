@@ -294,10 +294,16 @@ static void link_to(hf_hdf5 *io, const char *now, const char *then)
         hf_hdf5_fail(io, "write", io->file, then);
 }
 
+/* Returns the path below /points of an object of a merge; of any other object its whole path. */
+static const char *below_points(const char *path)
+{
+    return strncmp(path, "/points/", 8) ? path : strchr(path + 1, '/');
+}
+
 static void link_data_set(const linking *l, const char *path)
 {
     char then[HF_HDF5_NAME_SIZE], beside[HF_HDF5_NAME_SIZE];
-    int i = group_of(!strncmp(path, "/points/", 8) ? path + 7 : path);
+    int i = group_of(below_points(path));
     object_then(path, l->has_rows, then, sizeof then);
     if (i >= 0 && group_table[i].attributes)
         link_to(l->io, path, then);
@@ -326,9 +332,10 @@ static herr_t copy_attribute(hid_t group, const char *name, const H5A_info_t *in
 static void link_group(hf_hdf5 *io, const char *path)
 {
     copying c = {io, path};
-    bool is_of_merge = !strncmp(path, "/points/", 8);
-    int i = group_of(is_of_merge ? path + 7 : path);
-    bool is_moved = i >= 0 && !strcmp(is_of_merge ? path + 7 : path, group_table[i].now);
+    const char *below = below_points(path);
+    bool is_of_merge = below != path;
+    int i = group_of(below);
+    bool is_moved = i >= 0 && !strcmp(below, group_table[i].now);
     char then[HF_HDF5_NAME_SIZE];
     object_then(path, false, then, sizeof then);
     if (is_moved && is_of_merge && group_table[i].attributes) hf_hdf5_close(io, hf_hdf5_make_group(io, then));

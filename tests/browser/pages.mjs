@@ -90,7 +90,7 @@ export const pages = [
     sections: ["net", "cables", "map", "tensions", "tolerance", "summary", "form-finding", "search", "provenance"],
     says: {
       ".figures dt >> nth=2": "tension ratio, inner cables",
-      "#cables thead tr": 
+      "#cables thead tr":
         "CableFamilytension, form (N)tension, search (N)length (m)unstressed length (m)share of the error (%)",
       "#tolerance": /without errors < 10⁻⁶ mm/,
     },
@@ -246,7 +246,7 @@ export const pages = [
     sections: ["sweep", "points"],
   },
   {
-    name: "sweep-surface", // one axis; objectives, of which one is psi, the surface, the as-built net; wide tables on paper
+    name: "sweep-surface", // one axis; objectives, one of them psi, the surface, the as-built net; wide tables on paper
     look: true,
     study: 3,
     text:

@@ -102,11 +102,13 @@ export async function checkAdjust(tab, made, changes) {
   assert.ok(said.startsWith(`adjustment ${adjustments.length}: cable ${last.cable}`));
   same(number(said.match(/predicted\s+([\d.]+)/)[1]), Number(last.predicted_rms_mm), 6);
   await tab.keyboard.press("Escape");
-  assert.match(await tab.locator("#net .bar").innerText(), new RegExp(`^${adjustments.length} of .* have a turnbuckle adjustment$`));
+  const bar = await tab.locator("#net .bar").innerText();
+  assert.match(bar, new RegExp(`^${adjustments.length} of .* have a turnbuckle adjustment$`));
   await changes(tab, "a name of an adjustment", () => rows.first().getByRole("button").click());
   assert.equal((await tip(tab, "net")).heading, `cable ${adjustments[0].cable}`);
   assert.ok(Math.abs(number((await tip(tab, "net")).turnbuckle) - adjustments[0].turnbuckle_mm) < 1e-9);
-  await changes(tab, "the colour of adjustments", () => tab.locator("#net").getByLabel("deviation", { exact: true }).check());
+  const deviation = tab.locator("#net").getByLabel("deviation", { exact: true });
+  await changes(tab, "the colour of adjustments", () => deviation.check());
   await tab.reload();
 }
 
@@ -133,7 +135,8 @@ export async function checkTolerance(tab, made) {
     named = legend.filter((text) => text.endsWith(" mm")).map((text) => number(text.match(/([^ ]+) mm$/)[1]));
   assert.equal(await tab.locator("#tolerance line.curve").count(), 3);
   [t.nominal_psi_m, t.psi_95_m, t.require[0].at_most].forEach((at, k) => same(named[k], 1e3 * at, 5));
-  assert.match(await tab.locator("#tolerance figcaption").textContent(), /required minimum 1 mm, outside of the picture/);
+  const caption = await tab.locator("#tolerance figcaption").textContent();
+  assert.match(caption, /required minimum 1 mm, outside of the picture/);
   const most = t.histogram.indexOf(Math.max(...t.histogram)),
     [low, high] = t.histogram_range_m;
   await tab.locator("#tolerance svg[tabindex]").focus();
@@ -160,7 +163,8 @@ export async function checkFront(tab, made) {
   assert.deepEqual(await picture.locator(".label").allTextContents(), ["ψ (mm)", "ratio boundary"]);
   const highest = number(await picture.locator("text[text-anchor=end]").last().textContent());
   assert.ok(highest < Math.max(...points.map(({ objective }) => objective[ratio])) && initial[ratio] > 1.01);
-  same(number((await tab.locator("#front figcaption").textContent()).match(/ratio boundary ([\d.]+)\./)[1]), initial[ratio], 6);
+  const caption = await tab.locator("#front figcaption").textContent();
+  same(number(caption.match(/ratio boundary ([\d.]+)\./)[1]), initial[ratio], 6);
   await picture.focus();
   await tab.keyboard.press("End");
   const [, said] = (await tab.locator("#front .tip strong").textContent()).match(/: ψ ([\d.]+) mm/);

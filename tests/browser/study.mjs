@@ -47,7 +47,8 @@ async function checkShares(tab, study) {
   }
 }
 
-// Objectives have units, psi is there once, the surface and the net as built have charts and columns, the best is marked.
+// Objectives have units, psi is there once, the surface and the as-built net have charts and columns, the best is
+// marked.
 export async function checkSurfaceOfStudy(tab, study) {
   await checkCharts(tab, 6, "#sweep", /pretension [\d.]+ N/);
   const titles = await tab.locator("#sweep .chart h3").allTextContents(),

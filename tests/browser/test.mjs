@@ -54,7 +54,10 @@ function build(page, folder) {
   }
   const start = performance.now();
   if (page.measured)
-    hifdm("adjust", source, "--measured", "measured.csv", "--result", result, "-o", "adjustments.csv", "--report", html);
+    hifdm(
+      ...["adjust", source, "--measured", "measured.csv", "--result", result],
+      ...["-o", "adjustments.csv", "--report", html],
+    );
   else hifdm("report", result, ...beside, "-o", html);
   const made = { html, hifdm, folder, made_ms: performance.now() - start };
   if (page.study) return { ...made, study: JSON.parse(readFileSync(html, "utf8").match(DATA)[2]).study };
@@ -173,7 +176,8 @@ async function test(browser, page) {
     const chosen = tab.locator("#sweep input[name=axis]:checked");
     assert.equal(await chosen.getAttribute("value"), page.leads, "the axis at first is not the one that matters most");
     await tab.locator(`#sweep input[name=axis]:not([value="${page.leads}"])`).check();
-    assert.match(await tab.locator("#sweep > p.flat").innerText(), /^Along pretension these figures do not change: .*error ψ/);
+    const flat = await tab.locator("#sweep > p.flat").innerText();
+    assert.match(flat, /^Along pretension these figures do not change: .*error ψ/);
     assert.equal(await tab.locator("#sweep .chart").count(), 0);
     await checkPoints(tab, page, made);
   } else {

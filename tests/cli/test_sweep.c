@@ -118,8 +118,8 @@ START_TEST(tasks_that_would_leave_points_out_are_refused)
 }
 END_TEST
 
-/* A weight that is an axis can be drawn against what it does to each objective: the merge has a column for each, in each
- * stage, with what the files of the points have. */
+/* A weight that is an axis can be drawn against each objective: the merge has a column for each of them in each stage,
+ * with the values of the files of the points. */
 START_TEST(objectives_are_columns_of_a_merge)
 {
     const char *path =

@@ -326,8 +326,8 @@ function writeMap() {
         "The net at its target positions, seen along z. Values between the nodes are interpolated. The height is " +
           "positive above the target surface. The distance includes drift within the surface, as ψ does." +
           (net.facets
-            ? " The colour of a facet is the mean of its error along the normal, positive above the target surface or " +
-              "above the best fit to all facets."
+            ? " The colour of a facet is the mean of its error along the normal, positive above the target surface " +
+              "or above the best fit to all facets."
             : ""),
       ),
     ),

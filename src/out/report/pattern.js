@@ -108,8 +108,8 @@ function patternText(all) {
 }
 
 const PATTERN_NOTE =
-  "Sidelobes and cross-polarisation are relative to the beam. A figure is – if the angles of the cut do not reach it, " +
-  "or if they are too coarse.";
+  "Sidelobes and cross-polarisation are relative to the beam. A figure is – if the angles of the cut do not reach " +
+  "it, or if they are too coarse.";
 
 function writePattern() {
   const all = patterns();

@@ -89,8 +89,8 @@ function writeSearch() {
       "p",
       {},
       `${ALGORITHM[o.algorithm] || o.algorithm}: ${fmtCount(o.generations)} generations with ` +
-        `${fmtCount(o.evaluations)} form-findings in ${fmtDuration(o.wall_s)}. ${fmtCount(o.infeasible)} designs were ` +
-        `infeasible. ${sentence(stopText(o.stop_reason))} The best design is of generation ` +
+        `${fmtCount(o.evaluations)} form-findings in ${fmtDuration(o.wall_s)}. ${fmtCount(o.infeasible)} designs ` +
+        `were infeasible. ${sentence(stopText(o.stop_reason))} The best design is of generation ` +
         `${fmtCount(o.best_generation)}.`,
     ),
     el(
