@@ -32,7 +32,7 @@ class Result:
 
     @property
     def stages(self) -> list[str]:
-        """The stages with a shape: "form", "optimize", "polish", then the load cases of `load_cases` as "cases/cold"."""
+        """The stages with a shape: "form", "optimize", "polish", then the load cases as "cases/cold"."""
         states = [f"cases/{name}" for name, item in self.h5.get("cases", {}).items() if "position_m" in item]
         return [name for name, group in _STAGES.items() if group in self.h5] + states
 
