@@ -241,7 +241,8 @@ bool hf_montecarlo_meets_all(const hf_tolerance_settings *s, const double *row)
     return row[HF_TOLERANCE_STATUS] == HF_OK;
 }
 
-/* Computes whether at least the share settings->required_yield of the first n samples meets all requirements at this scale. */
+/* Computes whether at least the share settings->required_yield of the first n samples meets all requirements at this
+ * scale. */
 static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reaches)
 {
     long met = 0, failed = 0;

@@ -70,8 +70,8 @@ enum { HF_SCALE_DOUBLINGS = 10, HF_SCALE_HALVINGS = 7, HF_SCALE_YIELDS = 1 + HF_
  * search for a scale measures it only in this case. */
 bool hf_montecarlo_requires_surface(const hf_tolerance_settings *settings);
 
-/* Finds the factor of all errors at which the share settings->required_yield of the first n samples meets all requirements, by
- * bisection to 1 %. Each factor uses the same random numbers.
+/* Finds the factor of all errors at which the share settings->required_yield of the first n samples meets all
+ * requirements, by bisection to 1 %. Each factor uses the same random numbers.
  *
  * *bound is 0 when *scale is the factor, or when *scale is 0 because not even the nominal net meets the requirements.
  * It is 1 when the factor is at least *scale, the largest one tried (hf_built_errors_largest_scale). It is -1 when the

@@ -142,8 +142,8 @@ export const pages = [
     text:
       "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n  parabolic_cylinder: {aperture_m: 10, length_m: 12, " +
       "focal_length_m: 7.2, modules: [4, 5], cells_per_module: [2, 2], boundary: outer_edge, scallop: 0.1}\n" +
-      "form: {method: auto}\ntolerance: {sigma_cut_m: 1e-4, samples: 500, required_yield: 0.9, require: [{measure: psi_m, " +
-      "at_most: 0.0785, at_least: 0.001}]}\n",
+      "form: {method: auto}\ntolerance: {sigma_cut_m: 1e-4, samples: 500, required_yield: 0.9, require: [{measure: " +
+      "psi_m, at_most: 0.0785, at_least: 0.001}]}\n",
     sections: ["net", "cables", "map", "tensions", "tolerance", "summary", "form-finding", "provenance"],
     slack: 0,
   },
@@ -210,7 +210,8 @@ export const pages = [
       "scene:\n  EA_inner_N: 8.0e4\n  EA_boundary_N: 8.0e4\n  parabolic_cylinder: {aperture_m: 10, length_m: 12, " +
       "focal_length_m: 7.2, modules: [4, 5], cells_per_module: [2, 2], boundary: outer_edge, scallop: 0.1}\n" +
       "form: {method: auto, pretension_N: 20}\ntolerance: {sigma_cut_m: 1e-4, samples: 10}\n" +
-      "adjust: {set: boundary, range_m: 0.003, step_m: 1e-4, max_adjustments: 8, sigma_m: 5e-5, target_m: 2e-4, aim: target_positions}\n",
+      "adjust: {set: boundary, range_m: 0.003, step_m: 1e-4, max_adjustments: 8, sigma_m: 5e-5, target_m: 2e-4, aim: " +
+      "target_positions}\n",
     measured: (nodes) =>
       ["id,x_m,y_m,z_m"]
         .concat(
@@ -257,8 +258,8 @@ export const pages = [
         "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n  paraboloid: {aperture_m: 4, focal_length_m: 3, rings: 3, " +
         "rear_distance_m: 1.8}\nform: {prestress: exact}\ntruss: {ring: {cells_per_bay: 2, held: bay, longeron: " +
         "{diameter_m: 0.03, wall_m: 0.001}}}\nsurface: {frequencies_Hz: [2e9, 10e9]}\noptimize: {method: lm, " +
-        "variables: [{set: all, vary: force_density, range: 50 %}], objective: [{figure: psi}, {figure: tension, set: tie, " +
-        "target: 8, weight: 1e-4}]}\ntolerance: {sigma_cut_m: 5e-5, samples: 40, required_yield: 0.9, require: " +
+        "variables: [{set: all, vary: force_density, range: 50 %}], objective: [{figure: psi}, {figure: tension, set: " +
+        "tie, target: 8, weight: 1e-4}]}\ntolerance: {sigma_cut_m: 5e-5, samples: 40, required_yield: 0.9, require: " +
         "[{measure: psi_m, at_most: 3e-4}]}\n",
     },
     sections: ["sweep", "points"],
