@@ -49,7 +49,7 @@ def run(a, name, *settings):
 def run_way(a, rule, solver, factor):
     answer = run(a, f"{rule}-{solver}-{factor}", f"optimize.rule={rule}", f"optimize.solver={solver}",
                  f"form.factor={factor}")
-    return answer["optimize"] | {"threads": answer["threads"]}
+    return answer["search"] | {"threads": answer["threads"]}
 
 
 def solve_once(a, factor):

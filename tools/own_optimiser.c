@@ -1,4 +1,4 @@
-/* own_optimiser - an optimiser of your own on libhifdm: a random search around the tensions after form-finding.
+/* own_optimiser - an optimiser of your own on libhifdm: a random search around the initial design.
  *
  *     cc -std=c11 tools/own_optimiser.c $(pkg-config --cflags --libs hifdm) -o own_optimiser
  *     ./own_optimiser configs/chen2022.yaml
@@ -15,15 +15,15 @@
 #define N_DESIGN 64 /* evaluated at a time, on all cores */
 #define N_ROUND 30
 
-/* All zero at first, so that main can free it whatever went wrong. */
+/* All zero at first, so that main can free it after any error. */
 typedef struct {
-    hf_messages said; /* errors and warnings, in words */
+    hf_messages said; /* errors and warnings */
     hf_problem p;
     double *best_N, *design; /* [n_variable], [N_DESIGN][n_variable] */
     double *step;            /* [n_variable_group] */
 } thing;
 
-/* -1 to 1: splitmix64 */
+/* Returns a random number from -1 to 1 (splitmix64). */
 static double uniform(uint64_t *state)
 {
     uint64_t z = *state += 0x9e3779b97f4a7c15u;
@@ -37,7 +37,7 @@ static hf_status search(const char *path, thing *t)
     hf_form_result result[N_DESIGN];
     HF_TRY(hf_problem_open(path, NULL, 0, 0, &t->p, &t->said)); /* NULL, 0: no overrides; 0: all cores */
     const hf_model *m = &t->p.model;
-    size_t n = (size_t)m->n_variable; /* gene k is the pretension of the cable p.scene.cable_id[m->variable_cable[k]] */
+    size_t n = (size_t)m->n_variable; /* variable k is the pretension of cable p.scene.cable_id[m->variable_cable[k]] */
 
     t->best_N = calloc(n + 1, sizeof(double));
     t->design = calloc(N_DESIGN * n + 1, sizeof(double));
@@ -51,7 +51,7 @@ static hf_status search(const char *path, thing *t)
         for (int i = 0; i < N_DESIGN; i++) {
             for (int g = 0; g < m->n_variable_group; g++) /* the first design of a round is the best so far */
                 t->step[g] = i ? size * uniform(&state) : 0;
-            for (size_t k = 0; k < n; k++) /* cables of a chain change alike, else they drag its nodes along it */
+            for (size_t k = 0; k < n; k++) /* unequal changes in a chain push its nodes along it */
                 t->design[(size_t)i * n + k] = t->best_N[k] * (1 + t->step[m->variable_group[k]]);
         }
         hf_batch_run(&t->p.batch, N_DESIGN, t->design, NULL, result); /* -> result[i].psi_m, .status, ... */

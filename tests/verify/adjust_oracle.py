@@ -40,7 +40,7 @@ class Net:
         self.inner = np.array([n["role"] == "inner" for n in nodes])
         self.cable = [c["id"] for c in cables]
         self.end = np.array([[index[c["i"]], index[c["j"]]] for c in cables])
-        self.cut = np.array([float(c["l0_m"]) for c in cables])
+        self.cut = np.array([float(c["unstressed_length_m"]) for c in cables])
         self.EA = np.array([float(c["EA_N"]) for c in cables])
         strained = self.cut * np.array([float(c["tension_N"]) for c in cables]) / self.EA
         spool = [sorted(c["set"].split())[0] for c in rows(f"{shape}/cables.csv")]
@@ -152,17 +152,17 @@ def check(cut, jig, folder, measured, answer):
         return np.sqrt((d * d).sum(axis=1).mean())
 
     worst_figure, turned = abs(psi(told) - said["estimated_m"]), told.copy()
-    for move in said["moves"]:
-        turned[net.cable.index(move["cable"])] += move["move_m"]
+    for move in said["adjustments"]:
+        turned[net.cable.index(move["cable"])] += move["turnbuckle_m"]
         place, tension = net.solve(net.cut + turned, net.place)
         worst_figure = max(worst_figure, abs(psi(turned) - move["predicted_m"]))
         after = tension[net.cable.index(move["cable"])]
         worst_figure = max(worst_figure, 1e-6 * abs(after - move["tension_after_N"]))
-    print(f"{len(said['moves'])} moves; errors differ by {worst_error:.2e} m of {np.abs(e).max():.2e}, "
+    print(f"{len(said['adjustments'])} adjustments; errors differ by {worst_error:.2e} m of {np.abs(e).max():.2e}, "
           f"figures by {worst_figure:.2e} m")
     figures.worst(worst_error, 1e-8, "estimated errors of cut lengths, m")
-    figures.worst(worst_figure, 1e-9, f"psi after each of {len(said['moves'])} moves, aim {said['aim']}, m")
-    return 0 if len(said["moves"]) and worst_error < 1e-8 and worst_figure < 1e-9 else 1
+    figures.worst(worst_figure, 1e-9, f"psi after each of {len(said['adjustments'])} adjustments, aim {said['aim']}, m")
+    return 0 if len(said["adjustments"]) and worst_error < 1e-8 and worst_figure < 1e-9 else 1
 
 
 if __name__ == "__main__":

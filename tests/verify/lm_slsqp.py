@@ -184,24 +184,24 @@ def compare(program, folder, random):
     if run.returncode != 0:
         return None  # not every random net starts below its cap: the caller draws another
     with h5py.File(result) as file:
-        design, polish = file["polish/design" if by_rows else "polish/design_N"][()], dict(file["polish"].attrs)
-        density, position = file["polish/q_N_per_m"][()][net.boundary], file["polish/position_m"][()]
+        design, refined = file["refine/design"][()], dict(file["refine"].attrs)
+        density, position = file["refine/q_N_per_m"][()][net.boundary], file["refine/position_m"][()]
         base, first = file["form/q_N_per_m"][()][net.boundary], file["form/tension_N"][()][net.boundary]
     shape, T, _, _ = net.solve(density, position)
-    psi, own = float(polish["psi_m"]), net.psi(shape)
+    psi, own = float(refined["psi_m"]), net.psi(shape)
     low, high = np.maximum(first - reach, 0.1), first + reach
     gain = (psi - improve(net, density, low, high, cap, is_density, shape)) / psi
     from_base = improve(net, base, low, high, cap, is_density, net.theory) / psi - 1
     start = net.psi(net.solve(base, net.theory)[0])
     given = "rows of" if by_rows else "rule"
     print(f"{len(T)} pretensions, {given} {rule}, cap {cap:.4f}: psi {1e3 * start:.6f} -> {1e3 * psi:.6f} mm in "
-          f"{polish['polish_iterations']} steps, ratio {T.max() / T.min():.6f}; SLSQP gains {gain:.1e} "
+          f"{refined['steps']} steps, ratio {T.max() / T.min():.6f}; SLSQP gains {gain:.1e} "
           f"from there, ends {from_base:+.1e} from the same start")
     net_is = f"{len(T)} pretensions, {given} {rule}"
     figures.worst(abs(own - psi) / psi, 1e-9, f"{net_is}: psi of the optimum, in parts of it")
     figures.worst(max(gain, 0), GAIN_MOST, f"{net_is}: what SLSQP gains there, in parts of psi")
     wrong = [what for what, is_wrong in [
-        ("psi differs", abs(own - psi) > 1e-9 * psi), ("not converged", polish["polish_stop"] not in ENDED),
+        ("psi differs", abs(own - psi) > 1e-9 * psi), ("not converged", refined["algorithm_stop"] not in ENDED),
         ("above the cap", T.max() / T.min() > cap * (1 + 1e-9)), ("SLSQP gains", gain > GAIN_MOST),
         ("out of bounds", (design < low - 1e-9).any() or (design > high + 1e-9).any())] if is_wrong]
     if wrong:

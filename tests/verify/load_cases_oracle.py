@@ -206,7 +206,7 @@ class Case:
         with h5py.File(path, "r") as f:
             l0 = f["form/length_m"][:] / (1 + f["form/tension_N"][:] / self.EA)
             for k, s in enumerate(self.states):
-                state = f[f"cases/s{k}"]
+                state = f[f"load_cases/s{k}"]
                 x, T, force = self.solve(s, l0, f["form/position_m"][:])
                 worst[0] = max(worst[0], np.abs(state["position_m"][:] - x).max())
                 worst[1] = max(worst[1], np.abs(state["tension_N"][:] - T).max())

@@ -129,12 +129,12 @@ def compare(program, folder, random, on_truss):
         print(run.stderr.strip())
         return None  # not every random net has a way into its limits: the caller draws another
     with h5py.File(result) as file:
-        design, polish, goal = file["polish/design"][()], dict(file["polish"].attrs), file["goals/polish"][()]
-        base, shape = file["form/q_N_per_m"][()][net.boundary], file["polish/position_m"][()]
+        design, refined, stored = file["refine/design"][()], dict(file["refine"].attrs), file["objective/refine"][()]
+        base, shape = file["form/q_N_per_m"][()][net.boundary], file["refine/position_m"][()]
     wanted = Wanted(net, weight, target, cap, bounds)
     solved = net.solve(design, shape)
     psi, value, _, _ = wanted.goals(solved)
-    merit, own = float(polish["merit"]), np.sqrt(wanted.merit2(solved)[0])
+    merit, own = float(refined["merit"]), np.sqrt(wanted.merit2(solved)[0])
     largest = np.linalg.norm((solved[0] - net.theory)[net.corner], axis=1).max() if on_truss else value
     low, high = base * (1 - part), base * (1 + part)
     slack = wanted.limits(solved, solved[1].min())
@@ -150,15 +150,15 @@ def compare(program, folder, random, on_truss):
     n_held = (slack < 1e-6).sum() - bool(cap)  # the least tension of a ratio is at itself
     name = "displacement" if on_truss else "tension"
     print(f"{len(design)} force densities, {name}: merit {start:.6e} -> {merit:.6e} (psi {1e3 * psi:.4f} mm, "
-          f"{largest:.4e}) in {polish['polish_iterations']} steps, {n_held} tensions held; "
+          f"{largest:.4e}) in {refined['steps']} steps, {n_held} tensions held; "
           f"SLSQP gains {gain:.1e} from there, ends {from_base:+.1e} from the same start")
     what = f"{len(design)} force densities, psi and {name}"
     figures.worst(abs(own - merit) / merit, 1e-9, f"{what}: merit of the optimum, in parts of it")
     figures.worst(max(gain, 0), GAIN_MOST, f"{what}: what SLSQP gains there, in parts of the merit")
     wrong = [what for what, is_wrong in [
         ("merit differs", abs(own - merit) > 1e-9 * merit),
-        ("goals differ", np.abs(goal / [psi, largest] - 1).max() > 1e-8),
-        ("not converged", polish["polish_stop"] not in ENDED),
+        ("goals differ", np.abs(stored / [psi, largest] - 1).max() > 1e-8),
+        ("not converged", refined["algorithm_stop"] not in ENDED),
         ("beyond a limit", slack.min() < -1e-7), ("SLSQP gains", gain > GAIN_MOST),
         ("out of bounds", (design < low - 1e-9).any() or (design > high + 1e-9).any())] if is_wrong]
     if wrong:

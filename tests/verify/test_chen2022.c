@@ -23,17 +23,20 @@ START_TEST(the_net_gives_the_printed_figures)
 {
     static hf_summary s;
     run(source_path("configs/chen2022.yaml"), NULL, 0, &s);
-    ck_assert_int_eq(s.form.stop_reason, HF_STOPPED_CONVERGED);
-    ck_assert_int_eq(s.form.n_loaded_chain + s.form.n_slack, 0);
-    VERIFY(1e3 * s.form.psi_m, 6.6, 0.02, "psi after HIFDM, mm (calibrated)");
-    VERIFY(s.form.inner_tension_ratio, 1.0011, 0.0015, "tension ratio inside");
-    VERIFY(s.form.boundary_tension_ratio, 4.8445, 0.05, "tension ratio on the boundary (calibrated)");
-    ck_assert_int_eq(s.generations, 400);
-    VERIFY(1e3 * s.best.psi_m, 4.3, 0.1, "psi after the genetic algorithm, mm (calibrated)");
-    VERIFY(1 - s.best.psi_m / s.search.initial_psi_m, 0.348, 0.01, "reduction of psi by the genetic algorithm");
-    VERIFY(s.best.inner_tension_ratio, 1.001, 0.0015, "tension ratio inside then");
-    ck_assert_double_gt(s.best.boundary_tension_ratio, s.form.boundary_tension_ratio); /* as 5.608 */
-    NOT_MET(s.best.boundary_tension_ratio, 5.608, "tension ratio on the boundary then");
+    ck_assert_int_eq(s.stage[HF_STAGE_FORM].result.stop_reason, HF_STOPPED_CONVERGED);
+    ck_assert_int_eq(s.stage[HF_STAGE_FORM].result.n_loaded_chain + s.stage[HF_STAGE_FORM].result.n_slack, 0);
+    VERIFY(1e3 * s.stage[HF_STAGE_FORM].result.psi_m, 6.6, 0.02, "psi after HIFDM, mm (calibrated)");
+    VERIFY(s.stage[HF_STAGE_FORM].result.inner_tension_ratio, 1.0011, 0.0015, "tension ratio inside");
+    VERIFY(s.stage[HF_STAGE_FORM].result.boundary_tension_ratio, 4.8445, 0.05,
+           "tension ratio on the boundary (calibrated)");
+    ck_assert_int_eq(s.search.generations, 400);
+    VERIFY(1e3 * s.stage[HF_STAGE_SEARCH].result.psi_m, 4.3, 0.1, "psi after the genetic algorithm, mm (calibrated)");
+    VERIFY(1 - s.stage[HF_STAGE_SEARCH].result.psi_m / s.search.initial_psi_m, 0.348, 0.01,
+           "reduction of psi by the genetic algorithm");
+    VERIFY(s.stage[HF_STAGE_SEARCH].result.inner_tension_ratio, 1.001, 0.0015, "tension ratio inside then");
+    ck_assert_double_gt(s.stage[HF_STAGE_SEARCH].result.boundary_tension_ratio,
+                        s.stage[HF_STAGE_FORM].result.boundary_tension_ratio); /* as 5.608 */
+    NOT_MET(s.stage[HF_STAGE_SEARCH].result.boundary_tension_ratio, 5.608, "tension ratio on the boundary then");
 }
 END_TEST
 
@@ -44,8 +47,9 @@ START_TEST(other_seeds_find_the_same)
     char seed[32];
     snprintf(seed, sizeof seed, "optimize.seed=%d", _i + 1);
     run(source_path("configs/chen2022.yaml"), (const char *const[]){seed, "optimize.compare_lm=false"}, 2, &s);
-    VERIFY(1e3 * s.best.psi_m, 4.3, 0.1, "psi after the genetic algorithm, mm, %s", seed);
-    ck_assert_double_gt(s.best.boundary_tension_ratio, s.form.boundary_tension_ratio); /* as 5.608 */
+    VERIFY(1e3 * s.stage[HF_STAGE_SEARCH].result.psi_m, 4.3, 0.1, "psi after the genetic algorithm, mm, %s", seed);
+    ck_assert_double_gt(s.stage[HF_STAGE_SEARCH].result.boundary_tension_ratio,
+                        s.stage[HF_STAGE_FORM].result.boundary_tension_ratio); /* as 5.608 */
 }
 END_TEST
 
@@ -54,14 +58,14 @@ START_TEST(on_the_truss)
 {
     static hf_summary s;
     run(source_path("configs/chen2022-truss.yaml"), NULL, 0, &s);
-    VERIFY(1e3 * s.form.psi_m, 8.38, 0.005, "psi on the truss, mm (calibrated)");
+    VERIFY(1e3 * s.stage[HF_STAGE_FORM].result.psi_m, 8.38, 0.005, "psi on the truss, mm (calibrated)");
     VERIFY(s.truss.mass_kg, 200, 10, "mass of the truss, kg");
     run(source_path("configs/chen2022-truss.yaml"),
         (const char *const[]){"coupling.scheme=plain", "coupling.tof_m=1e-3"}, 2, &s);
-    VERIFY(s.form.coupling.iterations - 1, 4, 0, "rounds of net and truss to 1 mm");
-    double psi_m = s.form.psi_m;
+    VERIFY(s.stage[HF_STAGE_FORM].result.coupling.iterations - 1, 4, 0, "rounds of net and truss to 1 mm");
+    double psi_m = s.stage[HF_STAGE_FORM].result.psi_m;
     run(source_path("configs/chen2022-truss.yaml"), (const char *const[]){"form.pretension_N=20"}, 1, &s);
-    ck_assert_double_gt(s.form.psi_m, psi_m); /* Fig. 22 */
+    ck_assert_double_gt(s.stage[HF_STAGE_FORM].result.psi_m, psi_m); /* Fig. 22 */
 }
 END_TEST
 

@@ -88,7 +88,7 @@ START_TEST(it_ends_no_later_than_the_page)
     hf_run_request request = {
         .case_path = written_case(), .set = set, .n_set = _i ? 0 : 1, .no_file = true, .threads = 2};
     ck_assert_msg(hf_run_case(&request, &s, output, &said) == HF_OK, "%s", said.text);
-    double loss = s.polish.merit * s.polish.merit;
+    double loss = s.stage[HF_STAGE_REFINE].result.merit * s.stage[HF_STAGE_REFINE].result.merit;
     ck_assert_double_le(loss, _i ? 0.000712 : 0.000804);
     VERIFY_AT_MOST(loss, 0.000804, "loss after the optimisation, %s", _i ? "converged" : "19 steps");
     if (_i) ck_assert_int_eq(s.refine.algorithm_stop, HF_REFINE_CONVERGED);

@@ -104,7 +104,7 @@ def main(path):
         assert sample["status"][i] == 0, f"sample {i}"
         if sample["n_loose"][i] == 0:  # the places of loose nodes are free
             worst, n_psi = max(worst, abs(psi - sample["psi_m"][i])), n_psi + 1
-        assert abs(t.min() - sample["least_tension_N"][i]) < 1e-5 * t.max(), f"sample {i}: least tension {t.min()}"
+        assert abs(t.min() - sample["tension_min_N"][i]) < 1e-5 * t.max(), f"sample {i}: least tension {t.min()}"
         slack = int(np.sum(t < 1e-3 * tension.max()))
         n_slack += slack
         assert slack == sample["n_slack"][i], f"sample {i}: {slack} slack cables, not {sample['n_slack'][i]}"

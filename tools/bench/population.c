@@ -28,13 +28,13 @@ static void keep(void *context)
 {
     told *t = context;
     hf_messages messages = {0};
-    hf_summary summary = {.stage[HF_STAGE_SEARCH].exists = 1};
+    hf_summary summary = {.stage[HF_STAGE_SEARCH].exists = true};
     double start_s = bench_clock_s(), cpu_s = hf_clock_thread_cpu_s();
     if (hf_store_generation(t->store, t->model, &t->ga, &messages) != HF_OK ||
         hf_store_publish(t->store, &summary, 0, &messages) != HF_OK)
         bench_fail("store", messages.text);
     t->store_s += bench_clock_s() - start_s;
-    t->search.store_cpu_s += hf_clock_thread_cpu_s() - cpu_s;
+    t->store_cpu_s += hf_clock_thread_cpu_s() - cpu_s;
     for (int i = 0; i < t->ga.n_individual; i++)
         if (t->ga.result[i].status == HF_OK) t->worst_N = fmax(t->worst_N, t->ga.result[i].residual_N);
 }
@@ -50,7 +50,7 @@ static double evolve(const hf_model *m, hf_batch *batch, hf_store *store, hf_opt
         now.ga = ga->population;
     } while (hf_batch_next(batch, ga, keep, &now));
     *store_s = now.store_s;
-    batch->cpu_s += now.search.store_cpu_s;
+    batch->cpu_s += now.store_cpu_s;
     return now.worst_N;
 }
 
@@ -84,7 +84,9 @@ static void open_store(population *p)
 static void close_store(population *p)
 {
     hf_messages messages = {0};
-    hf_summary summary = {.form = p->scene->found, .threads = p->batch.n_thread, .stage[HF_STAGE_SEARCH].exists = 1};
+    hf_summary summary = {.threads = p->batch.n_thread,
+                          .stage[HF_STAGE_FORM].result = p->scene->found,
+                          .stage[HF_STAGE_SEARCH].exists = true};
     if (p->store && hf_store_finish(p->store, &summary, &messages) != HF_OK) bench_fail(p->path, messages.text);
     hf_messages_free(&messages);
 }

@@ -51,7 +51,7 @@ def main():
     designs = case.base + np.random.default_rng(1).uniform(-1, 1, (options.designs, case.n_gene))
     table, results = (os.path.join(options.work, name) for name in ("designs.csv", "results.csv"))
     with open(table, "w", encoding="utf-8", newline="") as file:
-        csv.writer(file).writerows([case.genes, *designs.tolist()])
+        csv.writer(file).writerows([case.variables, *designs.tolist()])
     command = [options.program, "evaluate", options.case, "--designs", table, "-o", results, "--force", "--json",
                "--threads", "1"]
     ours, again, theirs = [], [], []

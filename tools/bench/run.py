@@ -139,7 +139,7 @@ class Bench:
         _, status, usage = os.wait4(child.pid, 0)
         child.returncode = status
         wall_s = time.monotonic() - start
-        ga = json.loads(output)["optimize"]
+        ga = json.loads(output)["search"]
         row = {"process_wall_s": wall_s, "process_cpu_s": usage.ru_utime + usage.ru_stime,
                "peak_MiB": usage.ru_maxrss / 1024, "file_MB": os.path.getsize(path) / 1e6,
                "ga_wall_s": ga["wall_s"], "ga_cpu_s": ga["cpu_s"], "evaluations": ga["evaluations"],

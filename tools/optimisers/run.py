@@ -124,17 +124,18 @@ def measure(o, changes):
     return found, counts, sizes
 
 
-def polish(o, changes, method, seed):
-    """Returns psi and form-findings of Levenberg-Marquardt in `hifdm run` with this method, and psi of the first
+def refine(o, changes, method, seed):
+    """Returns psi and form-findings of Levenberg-Marquardt in `hifdm run` with this method, and psi of the initial
     design."""
     with tempfile.TemporaryDirectory() as folder:
         run = subprocess.run([o.program, "run", o.case, "-o", folder + "/r.h5", "--json", *settings(changes), "--set",
                               "optimize.method=" + method, "--seed", str(seed)], text=True, stdout=subprocess.PIPE,
                              stderr=subprocess.DEVNULL)
     result = json.loads(run.stdout)
-    base = result.get("optimize", {}).get("base_psi_m")
-    polished = result.get("polish")
-    return (polished["psi_m"], polished["evaluations"], base) if polished and polished["psi_m"] else (math.inf, 0, base)
+    initial = result.get("search", {}).get("initial_psi_m")
+    refined = result.get("refine")
+    return (refined["psi_m"], refined["evaluations"], initial) if refined and refined["psi_m"] else \
+        (math.inf, 0, initial)
 
 
 def running_time(rows, counts, limit_m):
@@ -151,8 +152,8 @@ def is_population(key):
 
 def look_at_net(o, net, changes, tables, missed):
     found, counts, (genes, chains) = measure(o, changes)
-    lm, lm_evaluations, _ = polish(o, changes, "lm", 1)
-    ga_lm, _, base = min(polish(o, changes, "ga+lm", seed) for seed in (1, 2))
+    lm, lm_evaluations, _ = refine(o, changes, "lm", 1)
+    ga_lm, _, base = min(refine(o, changes, "ga+lm", seed) for seed in (1, 2))
     star = min(lm, ga_lm, *(min(row[-1] for row in rows) for rows in found.values()))
     above = {key: [100 * (statistics.median(row[counts.index(b)] for row in rows) / star - 1) for b in BUDGETS]
              for key, rows in found.items()}

@@ -20,15 +20,15 @@ def save(out, number, panels, caption, result):
 def shapes(result, group, found_name, moves=MOVES):
     """Draws the target shape and the found shape, as Figs. 2, 5, 12 and 18 do. Deviations are drawn `moves` times too
     large."""
-    shown = result.theory_m + moves * (result[f"{group}/position_m"] - result.theory_m)
-    view = View(np.vstack([result.theory_m, shown]), HEIGHTS)
-    view.cables(result.theory_m, result.end, "theoretical shape", BLUE, 1.0)
+    shown = result.target_m + moves * (result[f"{group}/position_m"] - result.target_m)
+    view = View(np.vstack([result.target_m, shown]), HEIGHTS)
+    view.cables(result.target_m, result.end, "theoretical shape", BLUE, 1.0)
     view.cables(shown, result.end, found_name, RED, 1.3, dashed=True)
-    return view.bar(2.0, result.theory_m.min(0) - [0.8, 0.8, 0])
+    return view.bar(2.0, result.target_m.min(0) - [0.8, 0.8, 0])
 
 
 def moved_mm(result, group, role):
-    distance = np.linalg.norm(result[f"{group}/position_m"] - result.theory_m, axis=1)
+    distance = np.linalg.norm(result[f"{group}/position_m"] - result.target_m, axis=1)
     return 1e3 * distance[result.role == role].max()
 
 
@@ -57,11 +57,11 @@ def fig03(runs, out):
 
 def fig04(runs, out):
     r = runs["hifdm"]
-    view = View(r.theory_m, HEIGHTS)
-    view.cables(r.theory_m, r.end[r.inner], "inner cables (Eq. 7: tension)", CYAN, 1.2)
-    view.cables(r.theory_m, r.end[r.boundary], "boundary cables (Eq. 8: length)", BLACK, 1.6)
-    view.nodes(r.theory_m[r.role == "support"], "fixed points", BLUE, 4)
-    view.bar(2.0, r.theory_m.min(0) - [0.8, 0.8, 0])
+    view = View(r.target_m, HEIGHTS)
+    view.cables(r.target_m, r.end[r.inner], "inner cables (Eq. 7: tension)", CYAN, 1.2)
+    view.cables(r.target_m, r.end[r.boundary], "boundary cables (Eq. 8: length)", BLACK, 1.6)
+    view.nodes(r.target_m[r.role == "support"], "fixed points", BLUE, 4)
+    view.bar(2.0, r.target_m.min(0) - [0.8, 0.8, 0])
     save(out, 4, [view], "The net that the search found: 12 m x 10 m, 11 x 2 modules of 2 x 1 cells, diagonals; edges "
          "that hang on ties at the corners of the modules. The paper does not print its topology. Heights are drawn "
          f"{HEIGHTS} times too large.", r)
@@ -136,10 +136,10 @@ def fig09(runs, out):
 
 def fig10(runs, out):
     r, stopped = runs["ga"], runs["seeded"]
-    series = [(1e3 * r[f"ga/{word}_psi_m"], word, colour) for word, colour in
+    series = [(1e3 * r[f"search/population/{word}_psi_m"], word, colour) for word, colour in
               (("worst", GREY), ("mean", BLUE), ("best", BLACK))]
-    best, lm = 1e3 * r["ga/best_psi_m"], 1e3 * r.get("polish", "psi_m")
-    literal, base, n = 1e3 * stopped["ga/best_psi_m"], 1e3 * r.get("ga", "base_psi_m"), len(r["ga/best_psi_m"])
+    best, literal = (1e3 * run["search/population/best_psi_m"] for run in (r, stopped))
+    base, lm, n = 1e3 * r.get("search", "initial_psi_m"), 1e3 * r.get("refine", "psi_m"), len(best)
     top = 1.05 * max(y.max() for y, _, _ in series)
     whole = Plot("generation", "psi (mm)", (0, n), (4, top), 300, "population")
     for y, name, colour in series:
@@ -157,7 +157,7 @@ def fig10(runs, out):
 
 def fig11(runs, out):
     r = runs["ga"]
-    gain = -1e3 * np.diff(r["ga/best_psi_m"])
+    gain = -1e3 * np.diff(r["search/population/best_psi_m"])
     x = np.flatnonzero(gain > 0) + 2
     plot = Plot("generation", "fall of the best psi (mm)", (0, len(gain) + 1), (1e-8, 1), log_y=True)
     plot.dots(x, gain[x - 2], "best psi, from one generation to the next", BLUE)
@@ -168,19 +168,19 @@ def fig11(runs, out):
 
 def last_fall(result):
     """Returns the generation, counted from 1, in which the best psi last fell by more than the paper's tol."""
-    return int(np.flatnonzero(-np.diff(result["ga/best_psi_m"]) > 1e-6).max()) + 2
+    return int(np.flatnonzero(-np.diff(result["search/population/best_psi_m"]) > 1e-6).max()) + 2
 
 
 def fig12(runs, out):
     r = runs["ga"]
-    save(out, 12, [shapes(r, "ga/best", "optimised")], shape_caption(r, "ga/best"), r)
+    save(out, 12, [shapes(r, "search", "optimised")], shape_caption(r, "search"), r)
 
 
 def fig13(runs, out):
     r = runs["ga"]
-    tensions(r, out, 13, "ga/best", "inner", 1.001, r["form/tension_N"])
+    tensions(r, out, 13, "search", "inner", 1.001, r["form/tension_N"])
 
 
 def fig14(runs, out):
     r = runs["ga"]
-    tensions(r, out, 14, "ga/best", "boundary", 5.608, r["form/tension_N"])
+    tensions(r, out, 14, "search", "boundary", 5.608, r["form/tension_N"])

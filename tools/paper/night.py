@@ -19,7 +19,7 @@ def read(path):
     with h5py.File(path) as file:
         points = file["points"]
         columns = [points[name][:] for name in ("input/form.pretension_N", "input/tolerance.sigma_cut_m",
-                                                "polish/psi_m", "tolerance/psi_95_m", "tolerance/n_with_slack",
+                                                "refine/psi_m", "tolerance/psi_95_m", "tolerance/n_with_slack",
                                                 "tolerance/samples", "tolerance/n_failed")]
     return sorted(zip(*(c.tolist() for c in columns)), key=lambda row: (row[1], row[0]))
 

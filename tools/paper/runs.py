@@ -17,12 +17,12 @@ USUAL_E_PA = 130e9  # CFRP; that of the case is calibrated
 
 
 class Result:
-    """One result file. The group of a stage gives its shape: form, ga/best, polish."""
+    """One result file. The group of a stage has its shape: form, search, refine."""
 
     def __init__(self, path, setting):
         self.file, self.setting = h5py.File(path, "r"), setting
         node, cable = self.file["scene/node"], self.file["scene/cable"]
-        self.theory_m, self.end = node["position_m"][:], cable["end"][:]
+        self.target_m, self.end = node["position_m"][:], cable["end"][:]
         self.role, self.group = words(node["role"]), words(cable["group"])
         self.inner, self.boundary = self.group == "inner", self.group == "boundary"
 

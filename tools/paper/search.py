@@ -173,7 +173,7 @@ def main():
     table = solve(runs, "ga", NET, [scene(*x) for x in found], **{"optimize.seed": 2022,
                                                                   "optimize.compare_lm": "false"})
     rank = [misfit(psi, ratio, x[1]) if np.isfinite(psi) else np.inf
-            for psi, ratio, x in zip(table["ga/best_psi_m"], table["ga/best_boundary_tension_ratio"], found)]
+            for psi, ratio, x in zip(table["search/psi_m"], table["search/boundary_tension_ratio"], found)]
     best = [found[i] for i in np.argsort(rank)[:KEPT]]
     print(f"{len(every)} nets, {len(grid)} scenes; {len(found)} give {1e3 * PSI_M} mm and {RATIO}; {len(best)} kept")
     points = [scene(*x) | {"form.stop": "residual"} for x in best] + \

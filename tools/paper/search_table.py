@@ -67,12 +67,12 @@ def write(runs):
     rows = [PAPER]
     for k in range(len(net["status"])):
         f, scallop = (net[f"input/{KEY}{name}"][k] for name in ("focal_length_m", "scallop"))
-        found, base = net["ga/best_psi_m"][k], net["ga/base_psi_m"][k]
+        found, base = net["search/psi_m"][k], net["search/initial_psi_m"][k]
         row = [net_of(net, k), f"{f:.4g}, {f / 10:.2f}", f"{scallop:.4f}", f"{net[f'input/{KEY}edge_tie_m'][k]:g}",
                f"{1e3 * net['form/psi_m'][k]:.3f}", f"{net['form/inner_tension_ratio'][k]:.4f}",
                f"{net['form/boundary_tension_ratio'][k]:.3f}", f"{1e3 * found:.3f}", f"{100 * (1 - found / base):.1f}",
-               f"{net['ga/best_inner_tension_ratio'][k]:.4f}", f"{net['ga/best_boundary_tension_ratio'][k]:.3f}",
-               str(net["ga/best_generation"][k])]
+               f"{net['search/inner_tension_ratio'][k]:.4f}", f"{net['search/boundary_tension_ratio'][k]:.3f}",
+               str(net["search/best_generation"][k])]
         t = at.get((row[0], f, scallop))
         row += ["-"] * 5 if t is None or not np.isfinite(truss["form/psi_m"][t]) else [
             f"{truss['input/truss.E_Pa'][t] / 1e9:.1f}", f"{1e3 * truss['form/psi_m'][t]:.3f}",

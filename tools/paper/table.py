@@ -120,10 +120,10 @@ def two_ratios(result, group):
 
 def net_rows(runs):
     fdm, hifdm, stopped, seeded, ga = (runs[k] for k in ("fdm", "hifdm", "stopped", "seeded", "ga"))
-    found = ((ga, ga.get("ga", "best_psi_m")), (seeded, seeded.get("ga", "best_psi_m")),
-             (ga, ga.get("polish", "psi_m")))
-    gain = [f"{100 * (1 - psi / r.get('ga', 'base_psi_m')):.2f}" for r, psi in found]
-    depth = float(hifdm.theory_m[:, 2].max())
+    found = ((ga, ga.get("search", "psi_m")), (seeded, seeded.get("search", "psi_m")),
+             (ga, ga.get("refine", "psi_m")))
+    gain = [f"{100 * (1 - psi / r.get('search', 'initial_psi_m')):.2f}" for r, psi in found]
+    depth = float(hifdm.target_m[:, 2].max())
     return [
         ("", "f/D, depth (m)", "", f"{depth_ratio(hifdm):.2f}, {depth:.3f}", "search, calibrated", "", ""),
         ("2", "iterative FDM, first step: largest move inside, of edge nodes (mm)",
@@ -143,18 +143,18 @@ def net_rows(runs):
         ("10", "improvement (%)", "34.8", gain[0], "follows", *gain[1:]),
         ("11", "last generation that gains 0.001 mm", "282", str(last_fall(ga)), "predicted", str(last_fall(seeded)),
          ""),
-        ("13", "inner tension ratio", "1.001", f"{ratio(ga, 'ga/best', 'inner'):.4f}", "predicted",
-         f"{ratio(seeded, 'ga/best', 'inner'):.4f}", f"{ratio(ga, 'polish', 'inner'):.4f}"),
-        ("14", "boundary tension ratio", "5.608", f"{ratio(ga, 'ga/best', 'boundary'):.4f}", "predicted; not met (2)",
-         f"{ratio(seeded, 'ga/best', 'boundary'):.4f}", f"{ratio(ga, 'polish', 'boundary'):.3f}"),
-        ("14", "largest change of a boundary tension (N)", "around 1", f"{change_N(ga, 'ga/best'):.2f}", "predicted",
-         f"{change_N(seeded, 'ga/best'):.2f}", f"{change_N(ga, 'polish'):.2f}"),
+        ("13", "inner tension ratio", "1.001", f"{ratio(ga, 'search', 'inner'):.4f}", "predicted",
+         f"{ratio(seeded, 'search', 'inner'):.4f}", f"{ratio(ga, 'refine', 'inner'):.4f}"),
+        ("14", "boundary tension ratio", "5.608", f"{ratio(ga, 'search', 'boundary'):.4f}", "predicted; not met (2)",
+         f"{ratio(seeded, 'search', 'boundary'):.4f}", f"{ratio(ga, 'refine', 'boundary'):.3f}"),
+        ("14", "largest change of a boundary tension (N)", "around 1", f"{change_N(ga, 'search'):.2f}", "predicted",
+         f"{change_N(seeded, 'search'):.2f}", f"{change_N(ga, 'refine'):.2f}"),
     ]
 
 
 def depth_ratio(result):
     """Returns focal length over aperture, from the target positions of the nodes."""
-    x, z = result.theory_m[:, 0], result.theory_m[:, 2]
+    x, z = result.target_m[:, 0], result.target_m[:, 2]
     far = np.abs(x).argmax()
     return x[far] ** 2 / (4 * z[far]) / 10
 
@@ -170,7 +170,7 @@ def net_notes(runs):
 3. At the paper's stop psi still drifts: the short edge ties converge slowly, and the rule stops after
    {stopped.get("form", "iterations")} iterations at {mm(stopped.get("form", "psi_m"))} mm, where equilibrium is
    {mm(runs["hifdm"].get("form", "psi_m"))} mm. (A design of the GA is there where Eq. 8 starts: the tensions it ends
-   with are {change_N(seeded, "ga/best"):.2f} N away.)"""
+   with are {change_N(seeded, "search"):.2f} N away.)"""
 
 
 def truss_rows(runs):
@@ -184,18 +184,18 @@ def truss_rows(runs):
          mm(stopped.get("form", "psi_m")), ""),
         ("18", f"the same with E = {USUAL_E_PA / 1e9:.0f} GPa (mm)", "8.38", mm(usual.get("form", "psi_m")),
          "predicted", "", ""),
-        ("18", "largest displacement of an attachment (mm)", "", mm(tight.get("coupling", "max_displacement_m")),
-         "predicted", mm(stopped.get("coupling", "max_displacement_m")), ""),
+        ("18", "largest displacement of an attachment (mm)", "", mm(tight.get("coupling", "deflection_max_m")),
+         "predicted", mm(stopped.get("coupling", "deflection_max_m")), ""),
         ("19", "inner tension ratio, before a GA", "1.0372", f"{ratio(tight, 'form', 'inner'):.4f}",
          "predicted; not met (4)", f"{ratio(stopped, 'form', 'inner'):.4f}", ""),
         ("20", "boundary tension ratio, before a GA", "5.5898", f"{ratio(tight, 'form', 'boundary'):.4f}",
          "predicted; not met (4)", f"{ratio(stopped, 'form', 'boundary'):.4f}", ""),
-        ("18", "GA on the truss: psi (mm)", "", mm(ga.get("ga", "best_psi_m")), "predicted", "",
-         mm(ga.get("polish", "psi_m"))),
-        ("19", "inner tension ratio after it", "1.0372", f"{ratio(ga, 'ga/best', 'inner'):.4f}",
-         "predicted; not met (4)", "", f"{ratio(ga, 'polish', 'inner'):.4f}"),
-        ("20", "boundary tension ratio after it", "5.5898", f"{ratio(ga, 'ga/best', 'boundary'):.4f}",
-         "predicted; not met (4)", "", f"{ratio(ga, 'polish', 'boundary'):.3f}"),
+        ("18", "GA on the truss: psi (mm)", "", mm(ga.get("search", "psi_m")), "predicted", "",
+         mm(ga.get("refine", "psi_m"))),
+        ("19", "inner tension ratio after it", "1.0372", f"{ratio(ga, 'search', 'inner'):.4f}",
+         "predicted; not met (4)", "", f"{ratio(ga, 'refine', 'inner'):.4f}"),
+        ("20", "boundary tension ratio after it", "5.5898", f"{ratio(ga, 'search', 'boundary'):.4f}",
+         "predicted; not met (4)", "", f"{ratio(ga, 'refine', 'boundary'):.3f}"),
         ("21", "comparisons of two displacements until below 1 mm", "4", str(loops[0] - 1), "predicted (5)",
          str(loops[1] - 1), ""),
         ("22", "psi at Td = 5, 10, 20, 40 N (mm)", "grows", ", ".join(mm(psi[t]) for t in (5, 10, 20, 40)),

@@ -87,8 +87,8 @@ def fig17(runs, out):
     r, n = runs["truss"], len(runs["truss"]["truss/node/id"])
     step, psi = 1e3 * r["coupling/history/step_m"], 1e3 * r["coupling/history/psi_m"]
     pull = np.linalg.norm(r["coupling/force_N"], axis=1).max()
-    largest = 1e3 * r.get("coupling", "max_displacement_m")
-    flow = Flow([("net: topology, theoretical shape, Td, supports", f"{len(r.theory_m)} nodes, {len(r.end)} cables"),
+    largest = 1e3 * r.get("coupling", "deflection_max_m")
+    flow = Flow([("net: topology, theoretical shape, Td, supports", f"{len(r.target_m)} nodes, {len(r.end)} cables"),
                  ("truss: [K] assembled, factored once, condensed to the attachments",
                   f"{6 * n} rows; {len(r['coupling/node'])} attachments"),
                  ("HIFDM until the nodal forces vanish", "psi " + ", ".join(f"{v:.3f}" for v in psi) + " mm"),
@@ -116,11 +116,11 @@ def fig18(runs, out):
 
 
 def fig19(runs, out):
-    tensions(runs["truss_ga"], out, 19, "ga/best", "inner", 1.0372, runs["truss_ga"]["form/tension_N"])
+    tensions(runs["truss_ga"], out, 19, "search", "inner", 1.0372, runs["truss_ga"]["form/tension_N"])
 
 
 def fig20(runs, out):
-    tensions(runs["truss_ga"], out, 20, "ga/best", "boundary", 5.5898, runs["truss_ga"]["form/tension_N"])
+    tensions(runs["truss_ga"], out, 20, "search", "boundary", 5.5898, runs["truss_ga"]["form/tension_N"])
 
 
 def fig21(runs, out):
