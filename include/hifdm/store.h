@@ -4,88 +4,88 @@
  * The file is written under a temporary name and renamed when it is complete, so the visible file is always complete.
  * The journal holds what the file does not hold yet. `show`, `report` and `export` read the file. Pipeline of a run:
  *
- *   hf_store_create or hf_store_resume     provenance, case, scene
- *   hf_store_form                          shape of the form-finding
- *   hf_store_variables, hf_store_generation  generations, first into the journal; hf_store_publish between them
- *   hf_store_shape, hf_store_front, ...     shapes and results of the later stages
- *   hf_store_finish                        summary; the file gets its name
+ *   hf_store_create or hf_store_resume       provenance, case, scene
+ *   hf_store_form                            shape of the form-finding
+ *   hf_store_variables, hf_store_generation  search; hf_store_publish between the generations
+ *   hf_store_shape, hf_store_front, ...      shapes and results of the later stages
+ *   hf_store_finish                          summary; the file gets its name
  *
- * Layout of the file: n nodes, m cables, i iterations, g generations, p individuals, k design variables. Every data set
- * has the attributes `units` ("": no dimension) and `description`. Role, group, law, status and the like are HDF5
- * enumerations. Texts are UTF-8. Those that are read back have a fixed length, because HDF5 1.10 crashes on damaged
- * texts of variable length: provenance, title, warnings, case_path, the version in /form, ids. The others have a
- * variable length. Times, threads and host are attributes only, so the data sets of two runs of the same case are
- * equal.
+ * Layout of the file, for n nodes, m cables, k design variables. Every data set has the attributes `units` ("": no
+ * dimension) and `description`. Role, group, law, status and the like are HDF5 enumerations. Texts are UTF-8. Texts
+ * that hifdm reads back have a fixed length, because HDF5 1.10 crashes on damaged texts of variable length: provenance,
+ * title, warnings, case_path, ids, names. The others have a variable length. Times, threads and host are attributes
+ * only, so the data sets of two runs of the same case are equal.
  *
- *   /            attributes: program ("hifdm"), format_version, version, git_describe, compiler, build_flags,
- *                hdf5_version, gsl_version, lapack, rng, host, argv[], started_utc, finished_utc, title, seed, threads,
- *                warnings, has_optimize, has_polish, finished (FALSE: the run can be resumed), status (word of the run,
- *                or "unfinished"), published_utc, identity (see hf_store_identify), keeps_earlier (internal);
- *                after a resumption sessions, resumed_utc, resumed_host, resumed_version (of the last one); under Slurm
- *                slurm_job_id, slurm_array_job_id, slurm_array_task_id, slurm_restart_count
+ *   /            attributes: program ("hifdm"), format_version (3), version, git_describe, compiler, build_flags,
+ *                hdf5_version, gsl_version, lapack, rng, host, argv[], started_utc, published_utc, finished_utc, title,
+ *                seed, threads, warnings, has_search, has_refine, finished (FALSE: the run can be resumed), status (of
+ *                the run, or "unfinished"), identity (hf_store_identify), keeps_earlier (internal); after a resumption
+ *                sessions, resumed_utc, resumed_host, resumed_version (of the last one); under Slurm slurm_job_id,
+ *                slurm_array_job_id, slurm_array_task_id, slurm_restart_count
  *   /case        text, overrides; attributes sha256, case_path; front_point, front_file, front_design_sha256 if the
  *                result is a point of the front in that file
- *   /scene/node  id [n], position_m [n][3], role [n]; load_N [n][3] if there are loads
- *   /scene/cable id, group, law, target, length_m (at target positions) [m], end [m][2]; EA_N [m] if any is given
- *   /scene/set   if there are named sets of cables: name [s], start [s + 1] of the s sets, cable (index into
- *                /scene/cable) [c] with c cables in all; set k has cable[start[k]] to cable[start[k + 1] - 1]
- *   /scene/facet [f][4] if an import names f facets
- *   /form        position_m [n][3]; length_m, tension_N, q_N_per_m, law [m];
- *                attributes: version, HF_SUMMARY_FORM_LIST, and the figures of hf_summary.form
- *   /form/history  psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio, length_error [i]
- *   /coupling    with a truss of a attachments: node [a], displacement_m, force_N [a][3]; history/step_m, psi_m,
- *                max_displacement_m [iterations]; attributes: the members of hf_summary.form.coupling (those of best
- *                and polish are best_coupling_... of /ga and coupling_... of /polish)
- *   /ga          design_N [g][p][k]; evaluated, status, psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio,
- *                iterations, violation, merit, trial_status, trial_psi_m, crossover_rate, mutation_rate [g][p], and
- *                objective_0, objective_1, objective_2 with optimize.objectives; parent [g][p][2];
- *                best_individual, best_psi_m, best_merit, least_violation, mean_psi_m, worst_psi_m, n_infeasible [g];
- *                with optimize.store best the rows of [g][p] are those of the best individual, [g][1]; with every they
- *                are those of generations 0, n, 2n, ...; both have /ga/last, the same of the last generation [1][p],
- *                with attributes n_evaluation, n_evaluation_infeasible, n_evaluation_above_cap of all generations;
- *                gene_cable (index into /scene/cable), gene_group, base_N, lower_N, upper_N [k]; gene_leader [k] under
- *                a symmetry; attributes: HF_SUMMARY_SEARCH_LIST, the figures of hf_summary.best as best_...;
- *                n_individual, n_variable, n_objective, generations_limit, store_every (0: best), from which a run is
- *                resumed;
- *                with optimize.variables design, base, lower and upper have no unit in their names, because each
- *                variable has its own, and gene_variable (row of optimize.variables), gene_node, gene_direction [k][3]
- *                exist
- *   /ga/best     as /form, and design_N [k]
- *   /polish      the same for Levenberg-Marquardt; attributes: HF_SUMMARY_REFINE_LIST, the figures of
- *                hf_summary.polish
- *   /refine_state  of a run that was interrupted in Levenberg-Marquardt: its time and its state, opaque numbers
+ *   /scene/node  id [n], position_m [n][3] (target positions), role [n]; load_N [n][3] if there are loads
+ *   /scene/cable id, group, law, target, length_m (between target positions) [m], end [m][2]; EA_N [m] if any is given
+ *   /scene/set   if there are named sets of cables: name [s], start [s + 1] of s sets, cable (index into /scene/cable)
+ *                [c] with c cables in all; set i has cable[start[i]] to cable[start[i + 1] - 1]
+ *   /scene/facet [f][4] if an import has f facets
+ *   /form        shape of the form-finding: position_m [n][3]; length_m, tension_N, q_N_per_m, law [m];
+ *                attributes: version, HF_SUMMARY_FORM_LIST, HF_RESULT_LIST, wall_s
+ *   /form/history  after each of i iterations or steps: psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio,
+ *                length_error [i]
+ *   /coupling    with a truss of a attachments: node [a], displacement_m, force_N [a][3] after form-finding;
+ *                history/step_m, psi_m, deflection_max_m [iterations]; attributes: HF_COUPLING_LIST
+ *   /variable    of a run with a search: cable (index into /scene/cable), group (number of its chain), initial, lower,
+ *                upper [k]; leader [k] with a symmetry; with optimize.variables also row (of optimize.variables), node
+ *                (index into /scene/node) [k], direction [k][3]
+ *   /search      shape of the best design as in /form, design [k]; attributes: algorithm ("ga", "nsga2"),
+ *                HF_SUMMARY_SEARCH_LIST, HF_RESULT_LIST, wall_s; with a truss HF_COUPLING_LIST as coupling_...
+ *   /search/population  of g generations of p individuals: design [g][p][k]; evaluated, status, psi_m, residual_N,
+ *                inner_tension_ratio, boundary_tension_ratio, iterations, violation, merit, trial_status, trial_psi_m,
+ *                crossover_rate, mutation_rate [g][p]; parent [g][p][2]; of a front objective_0, objective_1,
+ *                objective_2 [g][p]; best_individual, best_psi_m, best_merit, violation_min, mean_psi_m, worst_psi_m,
+ *                n_infeasible [g]; attributes n_individual, n_variable, n_objective, generations_limit, store_every
+ *                (0: best, 1: all), from which a run is resumed. With optimize.store best, the rows of [g][p] are those
+ *                of the best individual, [g][1]; with every and store_every r, those of generations 0, r, 2r, ...
+ *   /search/population/last  with best and every, the arrays of the last generation [1][p]; attributes n_evaluation,
+ *                n_evaluation_infeasible, n_evaluation_above_cap of all generations
+ *   /refine      shape of the refinement, or of the point of a front that was taken, as in /search; attributes:
+ *                algorithm ("lm"), HF_SUMMARY_REFINE_LIST, HF_RESULT_LIST, wall_s; with a truss coupling_...
+ *   /refine_state  of a run that was interrupted in its refinement: time and state, opaque numbers
  *   /surface     with a section surface: attributes kind, focal_length_m, strip_width_m, mesh_tension_N_per_m;
  *                frequency_Hz [f]
- *   /surface/form, /surface/optimize, /surface/polish   attributes: HF_SURFACE_LIST, HF_SURFACE_FIT_LIST as fit_...;
+ *   /surface/STAGE  STAGE is form, search or refine; attributes: HF_SURFACE_LIST, HF_SURFACE_FIT_LIST as fit_...;
  *                HF_SURFACE_LOSS_LIST [f]
- *   /pattern/form, /pattern/optimize, /pattern/polish   with surface.pattern, for f frequencies, c cuts, t angles:
- *                frequency_Hz [f], phi_deg [c], theta_deg [t]; co_dBi, cross_dBi [f][c][t]; gain_dBi, beam_deg,
- *                half_power_width_deg, first_sidelobe_dB, highest_sidelobe_dB [f][c]; attributes: the feed
- *   /set_tension/form, /set_tension/optimize, /set_tension/polish   of the first s <= HF_SUMMARY_SETS sets of cables,
- *                if there are any: name, least_N, largest_N, ratio [s]
- *   /at_limit/optimize, /at_limit/polish   if the shape is at h limits that its design must keep: row of
- *                optimize.limits or -1, the maximum boundary tension ratio; count, name, value, bound [h]
- *   /goals       with g rows of optimize.goals: name, weight, after_fit [g]; values in the shapes of form, optimize,
- *                polish [g], if these exist; with optimize.objectives the same without weight
- *   /front       of optimize.objectives, with p points, o objectives, k design variables: name, base [o]; objective,
- *                multiplier [p][o]; status, mark, iterations, converged [p]; design_N (with optimize.variables design)
- *                [p][k]; gene, the name of each variable [k]; attributes n_on, n_dominated, n_failed, minimised,
- *                knee (index into p, -1: none), wall_s
- *   /cases       load cases of the as-built net, if there are any: name [c] in the order of the case
- *   /cases/NAME  as /form, unless it has no shape; attributes: the figures of its result, those of its coupling as
- *                coupling_..., HF_LOAD_CASE_LIST; /cases/NAME/surface as /surface/form; with a truss
- *                /cases/NAME/truss/node with displacement, reaction [a][6], /cases/NAME/truss/member with end_force
- *                [b][12]
- *   /tolerance   with a section tolerance: attributes HF_TOLERANCE_LIST; figures [m] of the measures named in `measure`
- *                (mean, deviation, ..., quantile [m][3]); require_... of the rows of tolerance.require; ranked_cable,
- *                ranked_share; error_kind, kind_share; histogram; cable_share of each cable, node_deviation_m of each
- *                node; sample/status, first_order_psi_m and the measures of each sample [samples]
- *   /truss       with a nodes, b members, c attachments; attributes mass_kg, n_node, n_member
+ *   /pattern/STAGE  with surface.pattern, for f frequencies, c cuts, t angles: frequency_Hz [f], phi_deg [c],
+ *                theta_deg [t]; co_dBi, cross_dBi [f][c][t]; gain_dBi, beam_deg, half_power_width_deg,
+ *                first_sidelobe_dB, highest_sidelobe_dB [f][c]; attributes: the feed
+ *   /set_tension/STAGE  of the first s <= HF_SUMMARY_SETS named sets: name, min_N, max_N, ratio [s]
+ *   /at_limit/STAGE  if the shape is at h limits: row of optimize.limits, or -1 for the cap on the boundary tension
+ *                ratio; count, name, value, bound [h]
+ *   /objective   of o rows of optimize.objective or optimize.front: name, after_fit [o]; weight [o] of
+ *                optimize.objective; values in the shapes of form, search, refine [o], if these exist
+ *   /front       of optimize.front with p points: name, initial (of the initial design) [o]; objective, multiplier
+ *                [p][o]; status, mark, steps, converged [p]; design [p][k]; variable (names) [k]; attributes n_on,
+ *                n_dominated, n_failed, minimised, knee (index of a point, -1: none), wall_s
+ *   /load_cases  if there are c load cases: name [c] in the order of the case
+ *   /load_cases/NAME  shape as in /form, unless it has none; attributes: HF_RESULT_LIST, HF_LOAD_CASE_LIST,
+ *                HF_COUPLING_LIST as coupling_...; surface as in /surface/STAGE; with a truss of a nodes and b members
+ *                truss/node/displacement, truss/node/reaction [a][6], truss/member/end_force [b][12]
+ *   /tolerance   with a section tolerance: attributes HF_TOLERANCE_LIST, histogram_low_m, histogram_high_m; for q
+ *                measures: measure (names), is_measured, mean, mean_low, mean_high, deviation, min, max [q]; quantile,
+ *                quantile_low, quantile_high [q][3]; require_measure, require_at_most, require_at_least, require_yield
+ *                of the rows of tolerance.require; ranked_cable, ranked_share; error_kind, kind_share; histogram;
+ *                cable_share, psi_by_cut [m], node_deviation_m [n]
+ *   /tolerance/sample  of each sample: status, first_order_psi_m, and the measures by name
+ *   /truss       with a nodes, b members, c attachments; attributes: HF_SUMMARY_TRUSS_LIST
  *   /truss/node  id, mass_kg [a], position_m [a][3], fixed [a][6]; displacement, reaction [a][6]
  *   /truss/member  id, joint, unit, E_Pa, A_m2, ..., expansion_per_K [b], end [b][2]; end_force [b][12]
  *   /truss/attachment  net_node (index into /scene/node), truss_node (into /truss/node) [c]
  *   /VTKHDF      of a finished run: its shapes as a grid that ParaView opens, linked to the data sets above; the list
- *                of its arrays is at the top of src/store/vtkhdf.h */
+ *                of its arrays is at the top of src/store/vtkhdf.h
+ *
+ * hifdm also reads files of version 0.2. A finished file has the names of version 0.2 as well, as soft links and as
+ * copies of attributes (src/manual/renames.md). Version 0.4 will not write them. */
 #ifndef HIFDM_STORE_H
 #define HIFDM_STORE_H
 
@@ -237,8 +237,8 @@ typedef struct {
 /* The functions that read return HF_OK; HF_IO with one message if the file does not exist, is no file of hifdm, or is
  * damaged; HF_NO_MEMORY. After a failure the output is all zero. */
 
-/* Reads every member of the summary as it was passed to hf_store_finish, bit by bit. The members after has_optimize are
- * 0 if it is false. */
+/* Reads every member of the summary as it was passed to hf_store_finish, bit by bit. Figures of a stage that does not
+ * exist are 0. Call hf_summary_free in any case. */
 hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messages *messages);
 
 /* Reads the scene, without its line numbers. Call hf_scene_free in any case. */

@@ -1,8 +1,8 @@
 /* summary - the figures of a whole run.
  * Stability: stable.
  *
- * `run` prints them and stores them with the results; `show` prints them again. The figures of a result (form, best,
- * polish) are those of HF_RESULT_LIST in <hifdm/result.h>. */
+ * `run` prints them and stores them with the results; `show` prints them again. The figures of the shape of a
+ * stage are those of HF_RESULT_LIST in <hifdm/result.h>. */
 #ifndef HIFDM_SUMMARY_H
 #define HIFDM_SUMMARY_H
 
