@@ -4,13 +4,13 @@
  * In a finished result the cells are the cables, and the points are the positions of the nodes in the result of the
  * run. Data sets of our groups that have the same layout are linked, not copied:
  *   /VTKHDF/Points     position_m of the result: hf_store_result_stage
- *   /VTKHDF/PointData  STAGE_position_m of each shape, theoretical_position_m, load_N, tolerance_node_deviation_m; role
- *   /VTKHDF/CellData   STAGE_tension_N, STAGE_q_N_per_m, STAGE_length_m of each shape, theoretical_length_m, EA_N,
+ *   /VTKHDF/PointData  STAGE_position_m of each shape, target_position_m, load_N, tolerance_node_deviation_m; role
+ *   /VTKHDF/CellData   STAGE_tension_N, STAGE_q_N_per_m, STAGE_length_m of each shape, length_at_target_m, EA_N,
  *                      tolerance_cable_share; group; tension_N, q_N_per_m, length_m of the shape of the points
- * STAGE is form, optimize or polish, or case_NAME for a load case of the as-built net. The points have positions, not
- * displacements. Links to positions cost no bytes, and the values are exactly those of our groups. The calculator of
- * ParaView takes them as coordinates, also with magnified displacements. Only the ends and types of the cells, and role
- * and group as numbers, are copies, because VTK reads neither pairs nor enumerations. */
+ * STAGE is form, search or refine, or load_case_NAME for a load case of the as-built net. The points have positions,
+ * not displacements. Links to positions cost no bytes, and the values are exactly those of our groups. The calculator
+ * of ParaView takes them as coordinates, also with magnified displacements. Only the ends and types of the cells, and
+ * role and group as numbers, are copies, because VTK reads neither pairs nor enumerations. */
 #ifndef HIFDM_STORE_VTKHDF_H
 #define HIFDM_STORE_VTKHDF_H
 
