@@ -57,7 +57,7 @@ const char *hf_coupling_stop_word(int stop);
  * certified, otherwise why not (METHOD section 3). Files contain the values; never renumber them. */
 #define HF_BOUND_REASON_LIST(X)                                                                                        \
     X(NONE, 0, "none", .meaning = "no certified bound was computed")                                                   \
-    X(CERTIFIED, 1, "certified", .meaning = "no equilibrium is farther away")                                                \
+    X(CERTIFIED, 1, "certified", .meaning = "no equilibrium is farther away")                                          \
     X(STRUTS, 2, "struts", .meaning = "the net has struts: its energy is not convex")                                  \
     X(TRUSS, 3, "truss", .meaning = "the flexibility matrix of the truss has a negative eigenvalue")                   \
     X(NO_MATRIX, 4, "no_matrix", .meaning = "the method has no Newton matrix for these laws")                          \

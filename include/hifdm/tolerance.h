@@ -77,7 +77,7 @@ extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS]; /* words of
     X(double, yield_low, REAL, .json = 4,                                                                              \
       .description = "95 % interval of the yield (Clopper and Pearson): its lower end")                                \
     X(double, yield_high, REAL, .json = 4, .description = "95 % interval of the yield: its upper end")                 \
-    X(double, required_yield, REAL, .json = 4, .description = "tolerance.required_yield of the case; NaN: none")                \
+    X(double, required_yield, REAL, .json = 4, .description = "tolerance.required_yield of the case; NaN: none")       \
     X(double, sigma_scale, REAL, .json = 4,                                                                            \
       .description = "all errors times this give the required yield; NaN: not asked for")                              \
     X(int, scale_bound, INT, .json = 4,                                                                                \

@@ -6,7 +6,7 @@
  * Contents: the net of the result - the shape of the result - interface */
 #include "app/built_design.h"
 
-#include "run/problem_explain.h"
+#include "run/diagnose.h"
 #include "run/problem_parts.h"
 #include "solve/coupling.h"
 #include "solve/schur.h"

@@ -24,7 +24,7 @@
 #include "base/text.h"
 #include "out/export.h"
 #include "out/print.h"
-#include "run/problem_explain.h"
+#include "run/diagnose.h"
 #include "run/problem_parts.h"
 #include <hifdm/run.h>
 #include <hifdm/store.h>

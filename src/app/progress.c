@@ -30,8 +30,7 @@ static double rate_per_s(const hf_run_progress *now)
 static double left_s(const hf_run_progress *now)
 {
     bool steps = now->phase == HF_RUN_REFINE;
-    int at = steps ? now->step : now->generation,
-        done = at - (steps ? now->first_step : now->first_generation);
+    int at = steps ? now->step : now->generation, done = at - (steps ? now->first_step : now->first_generation);
     return done > 0 ? now->elapsed_s * ((steps ? now->max_steps : now->generations) - at) / done : 0;
 }
 

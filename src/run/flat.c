@@ -8,7 +8,7 @@
 #include <hifdm/flat.h>
 
 #include "net/variables.h"
-#include "run/problem_explain.h"
+#include "run/diagnose.h"
 #include "run/problem_parts.h"
 #include <hifdm/run.h>
 #include <hifdm/store.h>

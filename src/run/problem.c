@@ -2,7 +2,7 @@
 #include <hifdm/problem.h>
 
 #include "run/problem_nets.h"
-#include "run/problem_explain.h"
+#include "run/diagnose.h"
 #include "run/problem_parts.h"
 #include "search/jacobian.h"
 #include "search/refine.h"

@@ -123,10 +123,9 @@ static hf_status refuse_rows(const hf_objectives *objectives, const char *list, 
         hf_messages_location(messages, where, "optimize.samples");
     else
         hf_messages_location(messages, where, "optimize.%s", list);
-    return hf_error(
-        messages, HF_BAD_CASE,
-        "%s: the objectives have %ld residuals over all nets, but the maximum is %ld (1 GiB): use fewer %s", where,
-        n_all, ROWS_MAX, n_sample ? "samples, or fewer objectives over samples" : "objectives");
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: the objectives have %ld residuals over all nets, but the maximum is %ld (1 GiB): use fewer %s",
+                    where, n_all, ROWS_MAX, n_sample ? "samples, or fewer objectives over samples" : "objectives");
 }
 
 static void lay_out(hf_arena *a, const hf_model *m, hf_objectives *objectives)

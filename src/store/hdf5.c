@@ -527,8 +527,7 @@ void hf_hdf5_copy_attribute(hf_hdf5 *io, const char *from, const char *from_name
     void *values = NULL;
     if (io->status != HF_OK) return;
     if ((id = H5Aopen_by_name(io->file, from, from_name, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
-        (type = H5Aget_type(id)) < 0 || (space = H5Aget_space(id)) < 0 ||
-        (n = H5Sget_simple_extent_npoints(space)) < 1)
+        (type = H5Aget_type(id)) < 0 || (space = H5Aget_space(id)) < 0 || (n = H5Sget_simple_extent_npoints(space)) < 1)
         fail_at(io, "read", io->file, from, from_name);
     else if (!(values = malloc((size_t)n * H5Tget_size(type))))
         hf_hdf5_no_memory(io);

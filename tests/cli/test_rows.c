@@ -314,10 +314,12 @@ START_TEST(rows_that_no_variable_reaches_are_named)
          "at its "
          "supports, are slack\n",
          path);
-    ERRS("warning: %s:9:7: optimize.objective.0: no design variable of this case changes objective_0_mass_far: all of its "
+    ERRS("warning: %s:9:7: optimize.objective.0: no design variable of this case changes objective_0_mass_far: all of "
+         "its "
          "cables keep their lengths\n",
          path);
-    ERRS("warning: %s:10:7: optimize.objective.1: no design variable of this case changes objective_1_tension_stay: all of "
+    ERRS("warning: %s:10:7: optimize.objective.1: no design variable of this case changes objective_1_tension_stay: "
+         "all of "
          "its cables keep their tensions\n",
          path);
     ERRS("warning: %s:16:7: optimize.limits.1: no design variable of this case changes the limited figure: all of its "
@@ -337,8 +339,10 @@ START_TEST(nothing_is_sought_that_no_variable_reaches)
         "optimize.front=[{figure: psi}, {figure: mass, set: far, mass_kg_per_m: 1}]",
         "optimize.variables=[{set: far, vary: tension, range: 1}]"};
     static const char *const why[] = {
-        ("error: --set optimize.objective.0: no design variable of this case changes objective_0_length_far: all of its "
-         "cables keep their lengths; add one that does, or leave the row out\nerror: --set optimize.objective.1: no design "
+        ("error: --set optimize.objective.0: no design variable of this case changes objective_0_length_far: all of "
+         "its "
+         "cables keep their lengths; add one that does, or leave the row out\nerror: --set optimize.objective.1: no "
+         "design "
          "variable of this case "
          "changes objective_1_evenness_far: all of its cables keep their tensions; add one that does, or leave the row "
          "out\n"),

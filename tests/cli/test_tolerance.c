@@ -410,8 +410,7 @@ START_TEST(what_errors_may_be_is_told_in_words)
 {
     static const char *const least[] = {"1.5", "1.294", "1.2930888", "1.2"},
                              *const told[] = {
-                                 "a yield of 90 % holds up to at least 4",
-                                 "a yield of 90 % holds up to 5.",
+                                 "a yield of 90 % holds up to at least 4", "a yield of 90 % holds up to 5.",
                                  "for a yield of 90 %, reduce all errors to less than 0.09766 %",
                                  "no errors are small enough for a yield of 90 %: the net without errors fails"};
     file_with("n.csv", "id,x_m,y_m,z_m,role,Fx_N,Fy_N,Fz_N\na,-1,0,0,support,0,0,0\nm,0,0,-0.2,inner,0,0,-2\n");

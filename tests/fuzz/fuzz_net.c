@@ -1,7 +1,7 @@
 /* The tables of a net: nodes, a line "%%", cables. A net that was accepted is also solved for a few iterations. */
 #include "fuzz/fuzz.h"
 
-#include "run/problem_explain.h"
+#include "run/diagnose.h"
 #include "run/problem_parts.h"
 #include <hifdm/evaluate.h>
 

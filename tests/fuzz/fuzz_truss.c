@@ -2,7 +2,7 @@
  * and solved with the net for a few iterations. */
 #include "fuzz/fuzz.h"
 
-#include "run/problem_explain.h"
+#include "run/diagnose.h"
 #include "run/problem_parts.h"
 #include <hifdm/evaluate.h>
 

@@ -99,8 +99,7 @@ START_TEST(overrides_win_and_change_the_digest)
     ck_assert_double_eq(c.form.pretension_N, 12);
     ck_assert_int_eq(c.parabolic_cylinder.modules[0], 5);
     ck_assert_int_eq(c.parabolic_cylinder.modules[1], 6);
-    ck_assert(!plain.has_optimize &&
-              c.has_optimize); /* a key brings its section along */
+    ck_assert(!plain.has_optimize && c.has_optimize); /* a key brings its section along */
     ck_assert(c.optimize.seed == 9);
     ck_assert_str_eq(c.overrides, "form.pretension_N=12\nscene.parabolic_cylinder.modules=[5, 6]\noptimize.seed=9\n");
     ck_assert_uint_eq(strlen(c.sha256), 64);

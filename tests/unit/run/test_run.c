@@ -30,9 +30,9 @@ static void observe(void *context, const hf_run_progress *now)
     for (int later = (int)now->phase + 1; later < N_PHASE; later++)
         t->is_wrong |= t->n[later] > 0;
     if (t->n[now->phase]++)
-        t->is_wrong |= now->generation < last->generation || now->step < last->step ||
-                       now->samples < last->samples || now->evaluations < last->evaluations ||
-                       now->elapsed_s < last->elapsed_s || now->best_psi_m > last->best_psi_m;
+        t->is_wrong |= now->generation < last->generation || now->step < last->step || now->samples < last->samples ||
+                       now->evaluations < last->evaluations || now->elapsed_s < last->elapsed_s ||
+                       now->best_psi_m > last->best_psi_m;
     t->is_wrong |= now->best_psi_m == 0;
     t->n_last[now->phase] += now->is_last;
     t->n_scale += now->sigma_scale > 0;

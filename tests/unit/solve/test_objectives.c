@@ -333,17 +333,18 @@ START_TEST(names_tell_objectives_apart)
     static const struct {
         hf_objective_settings wanted;
         const char *name;
-    } row[] = {{{.figure = HF_FIGURE_PSI}, "objective_%d_psi"},
-               {{.figure = HF_FIGURE_TENSION, .set = "edge"}, "objective_%d_tension_edge"},
-               {{.figure = HF_FIGURE_PSI, .load_case = "hot"}, "objective_%d_psi_hot"},
-               {{.figure = HF_FIGURE_RATIO, .set = "edge", .load_case = "hot", .take = HF_TAKE_WORST},
-                "objective_%d_ratio_edge_hot"},
-               {{.figure = HF_FIGURE_PSI, .load_case = "a_name_of_a_state_of_31_letters"},
-                "objective_%d_psi_a_name_of_a_state_of_31_"},
-               {{.figure = HF_FIGURE_PSI, .load_case = "all", .take = HF_TAKE_MEAN}, "objective_%d_psi_load_cases_mean"},
-               {{.figure = HF_FIGURE_PSI, .load_case = "all", .take = HF_TAKE_WORST}, "objective_%d_psi_load_cases_worst"},
-               {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .take = HF_TAKE_MEAN}, "objective_%d_psi_samples_mean"},
-               {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .quantile = 0.9}, "objective_%d_psi_samples_quantile"}};
+    } row[] = {
+        {{.figure = HF_FIGURE_PSI}, "objective_%d_psi"},
+        {{.figure = HF_FIGURE_TENSION, .set = "edge"}, "objective_%d_tension_edge"},
+        {{.figure = HF_FIGURE_PSI, .load_case = "hot"}, "objective_%d_psi_hot"},
+        {{.figure = HF_FIGURE_RATIO, .set = "edge", .load_case = "hot", .take = HF_TAKE_WORST},
+         "objective_%d_ratio_edge_hot"},
+        {{.figure = HF_FIGURE_PSI, .load_case = "a_name_of_a_state_of_31_letters"},
+         "objective_%d_psi_a_name_of_a_state_of_31_"},
+        {{.figure = HF_FIGURE_PSI, .load_case = "all", .take = HF_TAKE_MEAN}, "objective_%d_psi_load_cases_mean"},
+        {{.figure = HF_FIGURE_PSI, .load_case = "all", .take = HF_TAKE_WORST}, "objective_%d_psi_load_cases_worst"},
+        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .take = HF_TAKE_MEAN}, "objective_%d_psi_samples_mean"},
+        {{.figure = HF_FIGURE_PSI, .over = HF_OVER_SAMPLES, .quantile = 0.9}, "objective_%d_psi_samples_quantile"}};
     for (int k = 0; k < (int)(sizeof row / sizeof *row); k++) {
         hf_objectives objectives = {.n_objective = 1};
         char name[HF_OBJECTIVE_NAME_SIZE], expected[HF_OBJECTIVE_NAME_SIZE];

@@ -1,0 +1,937 @@
+/* Implements diagnose.h: messages about a form-finding, variables without effect, searches without a design, and
+ * doubts about a result. */
+#include "run/diagnose.h"
+
+#include "base/arena.h"
+#include "base/random.h"
+#include "net/target_surface.h"
+#include "net/variables.h"
+#include "run/problem_parts.h"
+#include "search/refine.h"
+#include "search/sensitivity.h"
+#include "solve/limits.h"
+#include "solve/prestress.h"
+#include <hifdm/batch.h>
+#include <hifdm/metrics.h>
+#include <hifdm/summary.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- form-finding ---- */
+
+/* Explains a form-finding to the user, with the names of cables, nodes and chains.
+ *
+ *     result and shape
+ *         | a shape: warnings about balance, chains, loose and slack parts
+ *         | none: an error with the culprit and a remedy
+ *         v
+ *     messages */
+
+#define NAMED_MAX 5 /* maximum number of names in a message */
+
+typedef struct {
+    char text[1600];
+    size_t length;
+    int n;
+} name_list;
+
+static void add_name(name_list *list, const char *name)
+{
+    if (list->n++ >= NAMED_MAX || list->length >= sizeof list->text) return;
+    list->length += (size_t)snprintf(list->text + list->length, sizeof list->text - list->length, "%s%s",
+                                     list->n > 1 ? ", " : "", name);
+}
+
+static const char *close_names(name_list *list)
+{
+    if (list->n > NAMED_MAX && list->length < sizeof list->text)
+        snprintf(list->text + list->length, sizeof list->text - list->length, " and %d more", list->n - NAMED_MAX);
+    return list->text;
+}
+
+static void name_loaded_chains(const hf_problem *p, hf_workspace *w, name_list *list)
+{
+    const hf_model *m = &p->model;
+    for (int i = 0; i < hf_form_n_chain(m); i++) {
+        char name[256];
+        if (!hf_form_chain_is_loaded(m, w, i)) continue;
+        hf_model_chain_name(m, &p->scene, i, name, sizeof name);
+        add_name(list, name);
+    }
+}
+
+#define NODE_SIZE 2048
+
+/* Writes "n (cables a, b)": the node of a row and the cables at it. Returns text. */
+static const char *name_node(const hf_problem *p, int row, char text[NODE_SIZE])
+{
+    const hf_model *m = &p->model;
+    name_list around = {0};
+    for (int k = 0; k < 2 * m->n_cable; k++)
+        if (m->end_row[k] == row) add_name(&around, p->scene.cable_id[k / 2]);
+    snprintf(text, NODE_SIZE, "%s (cables %s)", p->scene.node_id[m->node_of_row[row]], close_names(&around));
+    return text;
+}
+
+static void name_loose(const hf_problem *p, const char *stage, const hf_workspace *w, const hf_form_result *r,
+                       hf_messages *messages)
+{
+    name_list loose = {0};
+    char name[NODE_SIZE];
+    for (int i = 0; r->n_loose && i < p->model.n_free; i++)
+        if (w->loose[i]) add_name(&loose, name_node(p, i, name));
+    if (r->n_loose)
+        hf_warning(messages,
+                   "no taut cable holds these nodes of the %s shape, %d: %s. They are put where their cables allow, as "
+                   "close to their target positions as possible, and psi leaves them out",
+                   stage, r->n_loose, close_names(&loose));
+    if (r->n_drifting)
+        hf_warning(messages,
+                   "the equilibrium is not unique: %d free node%s no stiffness, mainly %s, so the position error is "
+                   "unknown. Give a cable there another law, or support the node",
+                   r->n_drifting, r->n_drifting == 1 ? " has" : "s have", name_node(p, r->culprit, name));
+}
+
+/* Returns true if the shape is in balance with the multipliers of elastic cables, but not with the tensions of their
+ * laws. The difference must be larger than OFF_BY_LAW times the tolerance, and the length errors larger than
+ * rounding. */
+#define OFF_BY_LAW 10.0
+#define ROUNDED_LENGTH 1e-13
+static bool is_off_by_law(const hf_problem *p, const hf_form_result *r)
+{
+    double allowed_N = p->settings.form.residual_tolerance * p->model.reference_N;
+    return p->model.EA_N && r->residual_N > OFF_BY_LAW * allowed_N && r->length_error > ROUNDED_LENGTH;
+}
+
+void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, const hf_form_result *r,
+                     hf_messages *messages)
+{
+    const hf_model *m = &p->model;
+    name_list chains = {0}, slack = {0};
+    if (r->stop_reason == HF_STOPPED_RMS_CHANGE && r->residual_N > p->settings.form.residual_tolerance * m->reference_N)
+        hf_warning(
+            messages,
+            "stop: rms_change ended before equilibrium of the %s shape: nodal residual %.2e N, relative error of cable "
+            "lengths up to %.2e; use stop: residual to iterate to equilibrium",
+            stage, r->residual_N, r->length_error);
+    if (r->stop_reason == HF_STOPPED_CONVERGED && is_off_by_law(p, r))
+        hf_warning(
+            messages,
+            "by the laws of the elastic cables, forces of up to %.2e N are out of balance, although the residual "
+            "of the iteration is within form.residual_tolerance: the relative error of lengths is up to %.2e; "
+            "lower form.length_tolerance%s",
+            r->residual_N, r->length_error,
+            hf_evaluate_method(m, &p->settings.form, NULL) == HF_METHOD_NEWTON ? "" : ", or use form.method: newton");
+    if (r->n_loaded_chain) {
+        name_loaded_chains(p, w, &chains);
+        hf_warning(messages,
+                   "%d straight chains of length-controlled cables carry lateral load, which no finite tension can "
+                   "balance, so "
+                   "the boundary tensions depend on where the iteration stopped: %s",
+                   r->n_loaded_chain, close_names(&chains));
+    }
+    name_loose(p, stage, w, r, messages);
+    for (int e = 0; r->n_slack && e < m->n_cable; e++)
+        if (hf_metrics_is_slack(m, w, e)) add_name(&slack, p->scene.cable_id[e]);
+    if (r->n_slack) hf_warning(messages, "slack in the %s shape, %d: %s", stage, r->n_slack, close_names(&slack));
+}
+
+/* Returns the cable under law tension or length with the maximum relative deviation from its law. */
+static int furthest_off(const hf_problem *p)
+{
+    const hf_workspace *w = &p->workspace;
+    int worst = 0;
+    double most = -1;
+    for (int e = 0; e < p->model.n_cable; e++) {
+        double off = 0;
+        if (hf_law_has(w->law[e], HF_LAW_GIVES_TENSION)) off = fabs(w->tension_N[e] / w->target[e] - 1);
+        if (hf_law_has(w->law[e], HF_LAW_IS_RIGID) &&
+            !(w->length_m[e] < w->target[e] && hf_metrics_is_slack(&p->model, w, e)))
+            off = fabs(w->length_m[e] / w->target[e] - 1);
+        if (off > most) most = off, worst = e;
+    }
+    return worst;
+}
+
+#define MOVE_SIZE 96
+
+/* Writes how far an attachment still moved in the last step, and the ratio to the step before if it is known. Returns
+ * text. */
+static const char *name_move(const hf_coupling_result *c, char text[MOVE_SIZE])
+{
+    if (!isfinite(c->step_m)) return "without bound";
+    int n = snprintf(text, MOVE_SIZE, "by %.2e m", c->step_m);
+    if (isfinite(c->ratio)) snprintf(text + n, MOVE_SIZE - (size_t)n, ", %g times the previous step", c->ratio);
+    return text;
+}
+
+static hf_status explain_not_converged(const hf_problem *p, const hf_form_result *r, hf_messages *messages)
+{
+    const hf_workspace *w = &p->workspace;
+    char move[MOVE_SIZE];
+    if (r->coupling.stop_reason == HF_COUPLING_MAX_ITERATIONS)
+        return hf_error(
+            messages, r->status,
+            "the coupling of net and truss did not converge in %d form-findings: an attachment still moves %s; raise "
+            "coupling.max_iterations or coupling.tof_m, or lower form.%s, which limits the accuracy of the forces",
+            r->coupling.iterations, name_move(&r->coupling, move),
+            r->stop_reason == HF_STOPPED_RMS_CHANGE ? "rms_tolerance_m" : "residual_tolerance");
+    if (r->culprit >= 0 && r->n_drifting == 0) /* a cable; with drifting nodes it is a row */
+        return hf_error(messages, r->status,
+                        "form-finding is as accurate as double precision allows (nodal residual %.2e N): cable '%s' is "
+                        "%.2e m long at %.2e N, which is too short or too tight for its coordinates; move the origin "
+                        "closer to it, join its nodes or raise the tolerances",
+                        r->residual_N, p->scene.cable_id[r->culprit], w->length_m[r->culprit],
+                        w->tension_N[r->culprit]);
+    int e = furthest_off(p);
+    return hf_error(
+        messages, r->status,
+        "form-finding did not converge in %d iteration%s: nodal residual %.2e N, relative error of cable lengths up to "
+        "%.2e; cable '%s' is farthest from its law, at %g N and %g m; raise form.max_iterations or the tolerances",
+        r->iterations, r->iterations == 1 ? "" : "s", r->residual_N, r->length_error, p->scene.cable_id[e],
+        w->tension_N[e], w->length_m[e]);
+}
+
+/* Returns advice on how to reduce the pull of the net. */
+static const char *name_pull(const hf_problem *p)
+{
+    const hf_scene *s = &p->scene;
+    bool has_tension = false;
+    for (int e = 0; e < s->n_cable; e++) {
+        bool is_tension = hf_law_has(s->law[e], HF_LAW_GIVES_TENSION);
+        if (is_tension && isnan(s->target[e])) return "lower form.pretension_N";
+        has_tension |= is_tension || s->law[e] == HF_LAW_FORCE_DENSITY;
+    }
+    return has_tension ? "lower the values of the cables that hold a tension or a force density"
+                       : "give the cables longer values";
+}
+
+/* Reports a truss that is too soft. The loop of net and truss diverges, or they have no shape together although the net
+ * alone has one. Returns r->status. */
+static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, hf_messages *messages)
+{
+    const hf_coupling_result *c = &r->coupling;
+    const hf_form_settings *form = &p->settings.form;
+    const char *stiffen =
+        p->settings.has_truss_import ? "E_Pa and sections of its members" : "truss.E_Pa and its tubes";
+    char move[MOVE_SIZE];
+    if (form->coupling.scheme == HF_COUPLING_AUTO && hf_evaluate_method(&p->model, form, NULL) == HF_METHOD_NEWTON)
+        return hf_error(messages, r->status,
+                        "the truss is too soft for its net: together they have no shape; stiffen the truss (%s) or %s",
+                        stiffen, name_pull(p));
+    const char *other = p->model.has_newton
+                            ? ", or solve both in one matrix: coupling.scheme: auto, form.method: newton"
+                        : form->coupling.scheme == HF_COUPLING_PLAIN ? ", or try coupling.scheme: accelerated"
+                                                                     : "";
+    return hf_error(messages, r->status,
+                    "the truss is too soft for the coupling with its net: after %d form-findings an attachment still "
+                    "moves %s; stiffen the truss (%s), %s%s",
+                    c->iterations, name_move(c, move), stiffen, name_pull(p), other);
+}
+
+static hf_status explain_chains(const hf_problem *p, hf_workspace *w, const hf_form_result *r, hf_messages *messages)
+{
+    name_list chains = {0};
+    char name[256];
+    double sum_m, span_m;
+    if (hf_form_chain_is_short(&p->model, w, r->culprit, &sum_m, &span_m)) {
+        hf_model_chain_name(&p->model, &p->scene, r->culprit, name, sizeof name);
+        return hf_error(
+            messages, r->status,
+            "ill-posed: the lengths of %s add up to %.10g m, but their supports are %.10g m apart, so there is "
+            "no shape. Give the cables longer L*, or another law",
+            name, sum_m, span_m);
+    }
+    name_loaded_chains(p, w, &chains);
+    return hf_error(messages, r->status,
+                    "ill-posed: %d straight chains of length-controlled cables carry lateral load, which no finite "
+                    "tension can balance: %s. Give them a sag (scene.parabolic_cylinder.scallop, longer L*) or another "
+                    "law, or support their nodes",
+                    r->n_loaded_chain, close_names(&chains));
+}
+
+hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
+{
+    const hf_form_result *r = &p->form;
+    hf_workspace *w = &p->workspace;
+    char node[NODE_SIZE] = "?";
+    switch (r->status) {
+    case HF_OK:
+        hf_problem_warn(p, "form-finding", w, r, messages);
+        return HF_OK;
+    case HF_NOT_CONVERGED:
+        hf_problem_warn(p, "form-finding", w, r, messages);
+        return explain_not_converged(p, r, messages);
+    case HF_INTERRUPTED:
+        return r->status;
+    case HF_TRUSS_TOO_SOFT:
+        return explain_too_soft(p, r, messages);
+    case HF_STRAIGHT_CHAIN:
+        return explain_chains(p, w, r, messages);
+    case HF_COLLAPSED:
+        return hf_error(
+            messages, r->status,
+            "ill-posed: the net collapses at cable '%s', whose length fell below %g of its length at the target "
+            "positions: check the tensions, lengths and supports near it",
+            p->scene.cable_id[r->culprit], p->settings.form.collapse_ratio);
+    case HF_NOT_FINITE:
+        if (r->culprit < 0) return hf_error(messages, r->status, "ill-posed: a tension is no longer a finite number");
+        return hf_error(messages, r->status, "ill-posed: the tension of cable '%s' is no longer a finite number",
+                        p->scene.cable_id[r->culprit]);
+    default:
+        if (r->culprit >= 0) name_node(p, r->culprit, node);
+        return hf_error(messages, r->status,
+                        "ill-posed: the force density matrix is singular or not positive definite at node %s: its "
+                        "cables are slack, "
+                        "cannot balance its load, or do not lead to a support",
+                        node);
+    }
+}
+
+/* ---- reach of the design variables ---- */
+
+/* Finds objectives, limits and rows of variables that no design variable changes.
+ *
+ *     initial design, then one beside it, because a derivative may vanish at one point
+ *         | exact derivatives of positions and tensions by classes of variables
+ *         v
+ *     strike out each row that looks at something that a class changes
+ *         |
+ *         v
+ *     remaining rows: warnings, or errors if an objective would be constant
+ *
+ * A class has variables of one row of optimize.variables, and linked variables are in one class. An objective that some
+ * variable changes is therefore changed by some class, except by chance. */
+
+#define ROUNDED 1e-9  /* part of the maximum change that counts as none; prescribed values show up to 1e-12 */
+#define BESIDE 0.05   /* distance of the second design, over the range of a variable */
+#define FAR_RANGE 3.0 /* a range above this multiple of the maximum value is in doubt */
+#define CLASSES 16    /* maximum number of classes; at least one for each row */
+
+/* What no variable has been seen to change, and rows of variables that have been seen to change nothing. */
+typedef struct {
+    bool psi; /* of a case with inner nodes and without objectives */
+    bool objective[HF_DESIGN_ROWS_MAX], limit[HF_DESIGN_ROWS_MAX], variable_row[HF_DESIGN_ROWS_MAX];
+} unchanged;
+
+typedef struct {
+    const hf_problem *p;
+    hf_model model; /* the model of the problem with variables linked by class */
+    hf_evaluator v; /* the evaluator of the problem for this model, without limits */
+    hf_sensitivity slopes;
+    hf_workspace w;
+    int *leader;             /* [n_variable] first variable of the class */
+    double *design;          /* [n_variable] values of the design variables */
+    double *move_m, *rate_N; /* [3][n_node], [n_cable] changes by a class */
+    double most_m, most_N;   /* maximum changes */
+    unchanged now;
+    void *block;
+} reach;
+
+static int row_of_variable(const hf_model *m, int k)
+{
+    return m->variable ? m->variable[k].setting : 0;
+}
+
+/* Returns the class of a leading variable, chosen by a hash among the classes of its row. */
+static int class_of(const reach *q, int k)
+{
+    int n_row = q->p->settings.optimize.n_variable_row, n = n_row > 1 ? CLASSES / n_row : CLASSES;
+    return row_of_variable(&q->model, k) * n + (int)(hf_random_mix((uint64_t)k) % (uint64_t)n);
+}
+
+static void link_classes(reach *q)
+{
+    const hf_model *m = &q->p->model;
+    int first[CLASSES];
+    for (int i = 0; i < CLASSES; i++)
+        first[i] = -1;
+    q->model.n_leader = 0;
+    for (int k = 0; k < m->n_variable; k++) {
+        int i = class_of(q, m->variable_leader[k]);
+        if (first[i] < 0) first[i] = k;
+        q->leader[k] = first[i];
+        q->model.n_leader += first[i] == k;
+    }
+    q->model.variable_leader = q->leader;
+}
+
+static void lay_out_reach(hf_arena *a, reach *q)
+{
+    const hf_model *m = &q->model;
+    q->leader = hf_arena_take(a, (size_t)m->n_variable, sizeof(int));
+    q->design = hf_arena_take(a, (size_t)m->n_variable, sizeof(double));
+    q->move_m = hf_arena_take(a, 3 * (size_t)m->n_node, sizeof(double));
+    q->rate_N = hf_arena_take(a, (size_t)m->n_cable, sizeof(double));
+}
+
+static hf_status create_reach(const hf_problem *p, reach *q)
+{
+    hf_arena arena = {0};
+    *q = (reach){.p = p, .model = p->model, .v = p->evaluator};
+    q->v.model = &q->model;
+    q->v.boundary_ratio_cap = INFINITY;
+    q->v.limits = NULL;
+    q->v.objectives = NULL;
+    q->v.n_thread = 1;
+    memset(&q->now, true, sizeof q->now);
+    q->now.psi = p->objectives.n_objective == 0 && p->model.n_inner_node > 0;
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_reach(&arena, q)));
+    q->block = arena.block;
+    link_classes(q);
+    HF_TRY(hf_workspace_create(&q->model, &q->w));
+    return hf_sensitivity_create(&q->v, &q->slopes);
+}
+
+static void destroy_reach(reach *q)
+{
+    hf_arena arena = {.block = q->block};
+    hf_sensitivity_free(&q->slopes);
+    hf_workspace_free(&q->w);
+    hf_arena_free(&arena);
+}
+
+static void measure_class(reach *q, int i)
+{
+    const hf_model *m = &q->model;
+    hf_sensitivity_spread(&q->slopes, i, q->move_m, q->rate_N);
+    q->most_m = q->most_N = 0;
+    for (int k = 0; k < 3 * m->n_node; k++)
+        q->most_m = fmax(q->most_m, fabs(q->move_m[k]));
+    for (int e = 0; e < m->n_cable; e++)
+        q->most_N = fmax(q->most_N, fabs(q->rate_N[e]));
+}
+
+static bool moves_row(const reach *q, int row)
+{
+    bool does = false;
+    for (int c = 0; c < 3; c++)
+        does |= fabs(q->move_m[c * q->model.n_node + row]) > ROUNDED * q->most_m;
+    return does;
+}
+
+static bool pulls_otherwise(const reach *q, int e)
+{
+    return fabs(q->rate_N[e]) > ROUNDED * q->most_N;
+}
+
+static bool lengthens(const reach *q, int e)
+{
+    const hf_model *m = &q->model;
+    const int *end = m->end_row + 2 * (ptrdiff_t)e;
+    double sum = 0, length = q->w.length_m[e];
+    for (int c = 0; c < 3; c++) {
+        int at = c * m->n_node;
+        sum += (q->w.position_m[at + end[1]] - q->w.position_m[at + end[0]]) / length *
+               (q->move_m[at + end[1]] - q->move_m[at + end[0]]);
+    }
+    return fabs(sum) > ROUNDED * q->most_m;
+}
+
+static bool any_cable(const reach *q, int n, const int *cable, bool (*changes)(const reach *, int))
+{
+    for (int i = 0; i < n; i++)
+        if (changes(q, cable[i])) return true;
+    return false;
+}
+
+static bool any_row(const reach *q, int n, const int *row)
+{
+    for (int i = 0; i < n; i++)
+        if (moves_row(q, row[i])) return true;
+    return false;
+}
+
+static bool changes_objective(const reach *q, const hf_objective *g)
+{
+    const hf_objectives *objectives = &q->p->objectives;
+    if (g->n_net) return true; /* another cut changes the tensions and the shape of an as-built net */
+    switch (g->settings.figure) {
+    case HF_FIGURE_PSI:
+    case HF_FIGURE_SURFACE:
+        return any_row(q, q->model.n_inner_node, q->model.inner_row);
+    case HF_FIGURE_FACETS:
+    case HF_FIGURE_GAIN:
+        return any_row(q, 4 * objectives->n_facet, objectives->corner_row);
+    case HF_FIGURE_TENSION:
+    case HF_FIGURE_EVENNESS:
+    case HF_FIGURE_RATIO:
+        return any_cable(q, g->n_cable, g->cable, pulls_otherwise);
+    case HF_FIGURE_LENGTH:
+    case HF_FIGURE_MASS:
+        return any_cable(q, g->n_cable, g->cable, lengthens);
+    case HF_FIGURE_PULL:
+    case HF_FIGURE_DEFLECTION:
+        return true; /* any change of the shape changes the pull on supports */
+    }
+    return true;
+}
+
+static bool changes_limit(const reach *q, const hf_limit *row)
+{
+    return row->kind == HF_LIMIT_DEFLECTION || any_cable(q, row->n_cable, row->cable, pulls_otherwise);
+}
+
+/* Strikes out the rows that the variables change at the design in the workspace. */
+static void strike(reach *q)
+{
+    const hf_optimize_settings *o = &q->p->settings.optimize;
+    const int *of_variable = q->slopes.class_of_variable;
+    for (int k = 0; k < q->model.n_variable; k++) {
+        if (q->leader[k] != k) continue;
+        measure_class(q, of_variable[k]);
+        if (!(q->most_m > 0) && !(q->most_N > 0)) continue;
+        q->now.variable_row[row_of_variable(&q->model, k)] = false;
+        if (q->now.psi) q->now.psi = !any_row(q, q->model.n_inner_node, q->model.inner_row);
+        for (int i = 0; i < q->p->objectives.n_objective; i++)
+            if (q->now.objective[i]) q->now.objective[i] = !changes_objective(q, &q->p->objectives.objective[i]);
+        for (int i = 0; i < o->n_limit; i++)
+            if (q->now.limit[i]) q->now.limit[i] = !changes_limit(q, &q->p->limits.row[i]);
+    }
+}
+
+/* Sets q->design to the initial design, or to one near it without its symmetry. */
+static void choose_design(reach *q, bool is_beside)
+{
+    const hf_problem *p = q->p;
+    hf_random random = hf_random_stream(1, 0, 0);
+    for (int k = 0; k < q->model.n_variable; k++) {
+        double lower, upper, range, base = p->initial[k];
+        hf_variables_bound(&p->settings.optimize, &q->model, k, base, &lower, &upper, &range);
+        if (q->model.variable_cable[k] >= 0) range = fmin(range, base); /* values of cables stay above zero */
+        double part = hf_random_uniform(&random);
+        q->design[k] = is_beside && isfinite(range) ? base + BESIDE * (2 * part - 1) * range : base;
+    }
+}
+
+static const char *why_objective(hf_figure_kind kind)
+{
+    switch (kind) {
+    case HF_FIGURE_PSI:
+    case HF_FIGURE_SURFACE:
+    case HF_FIGURE_FACETS:
+    case HF_FIGURE_GAIN:
+        return "none of its nodes moves";
+    case HF_FIGURE_TENSION:
+    case HF_FIGURE_EVENNESS:
+    case HF_FIGURE_RATIO:
+        return "all of its cables keep their tensions";
+    case HF_FIGURE_LENGTH:
+    case HF_FIGURE_MASS:
+        return "all of its cables keep their lengths";
+    default:
+        return "the pull on the supports does not change";
+    }
+}
+
+static hf_status tell_objectives(const reach *q, hf_messages *messages)
+{
+    const hf_objectives *objectives = &q->p->objectives;
+    bool is_front = q->p->settings.optimize.n_front > 0, is_reached = false, has_fault = false;
+    char place[HF_LOCATION_SIZE], name[HF_OBJECTIVE_NAME_SIZE];
+    for (int i = 0; i < objectives->n_objective; i++)
+        is_reached |= !q->now.objective[i];
+    for (int i = 0; i < objectives->n_objective; i++) {
+        if (!q->now.objective[i]) continue;
+        hf_messages_location(messages, place, "optimize.%s.%d", is_front ? "front" : "objective", i);
+        hf_objectives_name(objectives, i, name);
+        const char *why = why_objective(objectives->objective[i].settings.figure);
+        has_fault |= is_front || !is_reached;
+        if (is_front || !is_reached)
+            hf_error(messages, HF_BAD_CASE,
+                     "%s: no design variable of this case changes %s: %s; add one that does, or leave the row out",
+                     place, name, why);
+        else
+            hf_warning(messages, "%s: no design variable of this case changes %s: %s", place, name, why);
+    }
+    return has_fault ? HF_BAD_CASE : HF_OK;
+}
+
+static hf_status tell_reach(const reach *q, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &q->p->settings.optimize;
+    char place[HF_LOCATION_SIZE];
+    for (int i = 0; i < o->n_variable_row; i++)
+        if (q->now.variable_row[i])
+            hf_warning(
+                messages,
+                "%s: changes nothing at the initial design, because its cables, or those at its supports, are slack",
+                hf_messages_location(messages, place, "optimize.variables.%d", i));
+    for (int i = 0; i < o->n_limit; i++)
+        if (q->now.limit[i])
+            hf_warning(messages, "%s: no design variable of this case changes the limited figure: %s",
+                       hf_messages_location(messages, place, "optimize.limits.%d", i),
+                       o->limit[i].figure == HF_LIMIT_DEFLECTION ? why_objective(HF_FIGURE_DEFLECTION)
+                                                                 : why_objective(HF_FIGURE_TENSION));
+    if (q->p->objectives.n_objective > 0) return tell_objectives(q, messages);
+    if (!q->now.psi) return HF_OK;
+    return hf_error(
+        messages, HF_BAD_CASE,
+        "%s: no design variable of this case changes psi: %s; add one that does, or use another optimize.objective",
+        hf_messages_location(messages, place, o->n_variable_row ? "optimize.variables.0" : "optimize.range_N"),
+        why_objective(HF_FIGURE_PSI));
+}
+
+/* Returns true if a row remains that no variable has been seen to change, or that has changed nothing. */
+static bool is_open(const reach *q)
+{
+    const hf_optimize_settings *o = &q->p->settings.optimize;
+    bool is = q->now.psi;
+    for (int i = 0; i < HF_DESIGN_ROWS_MAX; i++)
+        is |= (i < q->p->objectives.n_objective && q->now.objective[i]) || (i < o->n_limit && q->now.limit[i]) ||
+              (i < o->n_variable_row && q->now.variable_row[i]);
+    return is;
+}
+
+/* Examines both designs. Returns HF_OK, also if the second one has no shape; HF_NOT_EVALUATED if the first one has
+ * none; HF_NO_MEMORY. */
+static hf_status look_at_reach(reach *q)
+{
+    for (int i = 0; i < 2 && (i == 0 || is_open(q)); i++) {
+        hf_form_result r;
+        choose_design(q, i > 0);
+        hf_status status = hf_evaluate(&q->v, q->design, &q->w, &r);
+        if (status == HF_OK) status = hf_sensitivity_find(&q->slopes, &q->w);
+        if (status == HF_NO_MEMORY) return status;
+        if (status == HF_OK) strike(q);
+        if (status != HF_OK && i == 0) return HF_NOT_EVALUATED;
+    }
+    return HF_OK;
+}
+
+/* Warns about ranges such as 50 for 50 %: far above the values of a row that has no upper bound. */
+static void doubt_ranges(const hf_problem *p, hf_messages *messages)
+{
+    const hf_model *m = &p->model;
+    char place[HF_LOCATION_SIZE];
+    for (int i = 0; i < p->settings.optimize.n_variable_row; i++) {
+        const hf_variable_settings *row = &p->settings.optimize.variable_row[i];
+        double most = 0;
+        for (int k = 0; k < m->n_variable; k++)
+            if (row_of_variable(m, k) == i && m->variable_cable[k] >= 0) most = fmax(most, fabs(p->initial[k]));
+        if (!(most > 0) || !isinf(row->upper) || !(row->range > FAR_RANGE * most)) continue;
+        hf_warning(messages,
+                   "%s: %g is %.2g times the maximum value of this row, %.3g; for a relative range, write %g %%",
+                   hf_messages_location(messages, place, "optimize.variables.%d.range", i), row->range,
+                   row->range / most, most, row->range);
+    }
+}
+
+hf_status hf_reach_check(const hf_problem *p, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    reach q;
+    hf_problem_give_places(p, messages);
+    doubt_ranges(p, messages);
+    hf_problem_give_places(NULL, messages);
+    if (!hf_refine_applies(&p->evaluator)) return HF_OK;
+    if (!o->n_variable_row && !o->n_limit && !p->objectives.n_objective) return HF_OK;
+    hf_status status = create_reach(p, &q);
+    if (status == HF_OK) status = look_at_reach(&q);
+    if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the derivatives of the objectives");
+    if (status == HF_OK) {
+        hf_problem_give_places(p, messages);
+        status = tell_reach(&q, messages);
+        hf_problem_give_places(NULL, messages);
+    }
+    destroy_reach(&q);
+    return status == HF_NOT_EVALUATED ? HF_OK : status;
+}
+
+/* ---- no design ---- */
+
+/* Writes messages that explain why a run has no design: counts of evaluations, the limit that the initial design
+ * exceeds most, and the settings to change. */
+
+const char *hf_no_design_cap(const hf_problem *p, double boundary_tension_ratio, char text[HF_NO_DESIGN_HINT_SIZE])
+{
+    char place[HF_LOCATION_SIZE];
+    double cap = p->settings.optimize.boundary_ratio_cap;
+    *text = '\0';
+    if (!(boundary_tension_ratio > cap)) return text;
+    if (hf_config_location(&p->settings, "optimize.boundary_ratio_cap", place, sizeof place)) return text;
+    snprintf(
+        text, HF_NO_DESIGN_HINT_SIZE,
+        "; %g is the default of optimize.boundary_ratio_cap: if the net may have a larger ratio, set this key in the "
+        "case",
+        cap);
+    return text;
+}
+
+/* Writes which limit the shape in the workspace exceeds most, ": tension of cable c7 is 9, but the
+ * bound of optimize.limits.1 is 50", or "". */
+static void name_broken(const hf_problem *p, const hf_workspace *w, const hf_form_result *r,
+                        char text[2 * HF_HELD_NAME_SIZE])
+{
+    *text = '\0';
+    if (hf_status_has_shape(r->status)) hf_limits_name_broken(&p->evaluator, &p->scene, w, text, 2 * HF_HELD_NAME_SIZE);
+}
+
+hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    long above = of->n_evaluation_above_cap, shapeless = of->n_evaluation_infeasible - above;
+    const char *wider = p->model.variable ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
+    hf_form_result base;
+    char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE];
+    const hf_workspace *w = hf_batch_run_one(&p->batch, of->initial, &base);
+    name_broken(p, w, &base, broken);
+    if (above > 0 && o->n_limit > 0)
+        return hf_error(messages, HF_NO_FEASIBLE,
+                        "optimize: no feasible design: %ld of %ld evaluations exceed optimize.limits or "
+                        "boundary_ratio_cap%s%s; loosen the limits, or widen %s%s",
+                        above, of->n_evaluation, *broken ? "; of the initial design, the" : "",
+                        broken + (*broken == ':'), wider, hf_no_design_cap(p, base.boundary_tension_ratio, hint));
+    if (above == 0)
+        return hf_error(messages, HF_NO_FEASIBLE,
+                        "optimize: no feasible design: none of %ld evaluations has a shape (%s); narrow %s to keep "
+                        "designs closer to "
+                        "the initial design",
+                        shapeless, hf_status_text(of->trial_status[0]), wider);
+    char of_initial[64] = "has no shape", others[64] = "";
+    if (isfinite(base.boundary_tension_ratio))
+        snprintf(of_initial, sizeof of_initial, "has %.4g", base.boundary_tension_ratio);
+    if (shapeless > 0) snprintf(others, sizeof others, ", %ld have no shape", shapeless);
+    return hf_error(
+        messages, HF_NO_FEASIBLE,
+        "optimize: no feasible design: %ld of %ld evaluations are above boundary_ratio_cap %g%s; the initial "
+        "design %s; raise optimize.boundary_ratio_cap, or widen %s%s",
+        above, of->n_evaluation, o->boundary_ratio_cap, others, of_initial, wider, hf_no_design_cap(p, INFINITY, hint));
+}
+
+const char *hf_no_design_to_refine(hf_problem *p, const double *design, hf_status status, char text[HF_NO_DESIGN_SIZE])
+{
+    hf_form_result start;
+    char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE];
+    hf_evaluate(&p->evaluator, design, &p->workspace, &start);
+    name_broken(p, &p->workspace, &start, broken);
+    snprintf(text, HF_NO_DESIGN_SIZE, "optimize: Levenberg-Marquardt has no feasible start: %s%s%s",
+             hf_status_text(status), broken, hf_no_design_cap(p, start.boundary_tension_ratio, hint));
+    return text;
+}
+
+/* ---- doubts about a result ---- */
+
+/* Checks a result for three things that its user should know before the net is built.
+ *
+ *     truss:   displacements too large for linear theory
+ *     strains: T/EA of a cable above a few per cent
+ *     nodes:   far from their positions after form-finding, in a direction that no objective counts */
+
+/* Neglected displacement above which a warning appears, relative to the span of the attachments: 0.1 mm on 10 m, as
+ * much as an error of cutting may be. It must also exceed SECOND_ORDER_PSI times psi. */
+#define SECOND_ORDER_DOUBT 1e-5
+#define SECOND_ORDER_PSI 0.05
+
+/* The truss is computed by linear theory. This warns if the neglected second order is large for the size of the
+ * reflector and its psi. */
+void hf_result_doubt_truss(const hf_problem *p, const hf_carrier_state *truss, const hf_workspace *shape,
+                           hf_messages *messages)
+{
+    double move_m, span_m, off_m = hf_carrier_second_order_m(&p->carrier, truss, &move_m, &span_m);
+    double psi_m = shape ? hf_metrics_psi_m(&p->model, shape) : 0;
+    if (off_m > fmax(SECOND_ORDER_DOUBT * span_m, SECOND_ORDER_PSI * psi_m))
+        hf_warning(
+            messages,
+            "truss: its attachments deflect so far (%.3g mm in the result) that its linear theory may have an error "
+            "of about %.2g mm: stiffen the truss (tubes of larger diameter, more bays) or lower "
+            "form.pretension_N",
+            move_m * 1e3, off_m * 1e3);
+}
+
+/* Fibres and steel break at a few per cent. With more strain, EA or the tension is not the intended one. */
+#define STRAIN_DOUBT 0.05
+
+void hf_result_doubt_strain(const hf_problem *p, const hf_workspace *shape, hf_messages *messages)
+{
+    const double *EA_N = p->scene.EA_N;
+    double most = STRAIN_DOUBT;
+    int worst = -1, n = 0;
+    char more[32] = "";
+    for (int e = 0; EA_N && shape && e < p->scene.n_cable; e++) {
+        double strain = EA_N[e] > 0 ? shape->tension_N[e] / EA_N[e] : 0;
+        n += strain > STRAIN_DOUBT;
+        if (!(strain > most)) continue;
+        most = strain;
+        worst = e;
+    }
+    if (worst < 0) return;
+    if (n > 1) snprintf(more, sizeof more, ", and %d more", n - 1);
+    hf_warning(
+        messages,
+        "cable '%s'%s is stretched by %.3g %% (%.4g N, EA %.4g N), but cables break at a few per cent: check that EA "
+        "is in N",
+        p->scene.cable_id[worst], more, most * 100, shape->tension_N[worst], EA_N[worst]);
+}
+
+/* Displacement above which a warning appears, relative to the mean length of a node's cables. In the cases of configs/
+ * the maximum uncounted one is 0.11. With every force density as a variable, the objective facets permits 0.3 to 1.3.
+ * The tests pass with 0.17 to 0.3. */
+#define FAR_MOVE 0.25
+
+static void lay_out_places(hf_arena *a, const hf_model *m, hf_places *to)
+{
+    size_t n = (size_t)m->n_node;
+    to->position_m = hf_arena_take(a, 3 * n, sizeof(double));
+    to->cable_m = hf_arena_take(a, n, sizeof(double));
+    to->n_cable = hf_arena_take(a, n, sizeof(int));
+    to->counted = hf_arena_take(a, n, 1);
+}
+
+static void count_rows(hf_places *to, const int *row, int n, hf_counted how)
+{
+    for (int i = 0; i < n; i++)
+        if (to->counted[row[i]] < how) to->counted[row[i]] = (unsigned char)how;
+}
+
+static void count_objective(const hf_problem *p, const hf_objective *g, hf_places *to)
+{
+    const hf_model *m = &p->model;
+    switch (g->settings.figure) {
+    case HF_FIGURE_PSI:
+    case HF_FIGURE_SURFACE:
+        count_rows(to, m->inner_row, m->n_inner_node,
+                   g->settings.figure == HF_FIGURE_PSI ? HF_COUNTED : HF_COUNTED_ACROSS);
+        break;
+    case HF_FIGURE_FACETS:
+    case HF_FIGURE_GAIN:
+        count_rows(to, p->objectives.corner_row, 4 * p->objectives.n_facet, HF_COUNTED_ACROSS);
+        break;
+    case HF_FIGURE_LENGTH:
+        for (int i = 0; i < g->n_cable; i++)
+            count_rows(to, m->end_row + 2 * (ptrdiff_t)g->cable[i], 2, HF_COUNTED);
+        break;
+    default: /* forces, and sums of lengths, do not fix positions */
+        break;
+    }
+}
+
+static void find_cables(const hf_model *m, hf_places *to)
+{
+    for (int i = 0; i < 2 * m->n_cable; i++) {
+        to->cable_m[m->end_row[i]] += m->length_m[i / 2];
+        to->n_cable[m->end_row[i]]++;
+    }
+    for (int row = 0; row < m->n_node; row++)
+        if (to->n_cable[row]) to->cable_m[row] /= to->n_cable[row];
+}
+
+hf_status hf_places_keep(const hf_problem *p, hf_places *to)
+{
+    const hf_model *m = &p->model;
+    const hf_objective psi = {.settings = {.figure = HF_FIGURE_PSI}};
+    hf_arena arena = {0};
+    *to = (hf_places){0};
+    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_places(&arena, m, to)));
+    to->block = arena.block;
+    memcpy(to->position_m, p->workspace.position_m, 3 * (size_t)m->n_node * sizeof(double));
+    find_cables(m, to);
+    if (p->objectives.n_objective == 0) count_objective(p, &psi, to);
+    for (int k = 0; k < p->objectives.n_objective; k++)
+        count_objective(p, &p->objectives.objective[k], to);
+    return HF_OK;
+}
+
+void hf_places_free(hf_places *places)
+{
+    hf_arena arena = {.block = places->block};
+    hf_arena_free(&arena);
+    *places = (hf_places){0};
+}
+
+/* Splits the displacement of a node since form-finding, m, into a part that objectives count and one that they do
+ * not. */
+static void split_move(const hf_problem *p, const hf_places *form, const hf_workspace *shape, int row,
+                       double *counted_m, double *open_m)
+{
+    double at[3], move[3], slope[2], square = 0, across = 0;
+    for (int c = 0; c < 3; c++) {
+        int i = c * p->model.n_node + row;
+        at[c] = form->position_m[i];
+        move[c] = shape->position_m[i] - at[c];
+        square += move[c] * move[c];
+    }
+    if (form->counted[row] == HF_COUNTED) across = sqrt(square);
+    if (form->counted[row] == HF_COUNTED_ACROSS) {
+        hf_target_surface_height_above(p->surface.kind, 1 / (4 * p->surface.focal_length_m), at, slope);
+        across = fabs(move[2] - slope[0] * move[0] - slope[1] * move[1]) /
+                 sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
+    }
+    *counted_m = across;
+    *open_m = sqrt(fmax(0, square - across * across));
+}
+
+/* Returns the set to which most cables at a node belong, or their group, as a row of a case can name it. */
+static const char *set_at(const hf_problem *p, int row)
+{
+    const hf_scene *s = &p->scene;
+    const int *end = p->model.end_row;
+    int best = -1, most = 0;
+    for (int e = 0; e < s->n_cable; e++) {
+        if (end[2 * e] != row && end[2 * e + 1] != row) continue;
+        int family = hf_prestress_family(s, e), n = 0;
+        for (int k = 0; k <= e; k++)
+            n += (end[2 * k] == row || end[2 * k + 1] == row) && hf_prestress_family(s, k) == family;
+        if (n > most) best = family;
+        if (n > most) most = n;
+    }
+    return best < s->n_set ? s->set_name[best] : hf_group_word[best - s->n_set];
+}
+
+typedef struct {
+    int row, n; /* row of the farthest node, and number of far nodes */
+    double move_m;
+} far_nodes;
+
+/* Writes "", or ", and 61 more". Returns text. */
+static const char *and_more(const far_nodes *far, char text[32])
+{
+    *text = '\0';
+    if (far->n > 1) snprintf(text, 32, ", and %d more", far->n - 1);
+    return text;
+}
+
+static void tell_far(const hf_problem *p, const hf_places *form, const far_nodes *far, hf_messages *messages)
+{
+    const far_nodes *open = &far[HF_COUNTED_NOT], *within = &far[HF_COUNTED_ACROSS];
+    char more[32];
+    if (open->n)
+        hf_warning(
+            messages,
+            "optimize: node %s%s moved far from its position after form-finding: by %.0f mm, and its cables are "
+            "%.0f mm long. No objective counts this: vary fewer sets of cables, or add {figure: length, set: %s, "
+            "weight: 0.1} to optimize.objective%s",
+            p->scene.node_id[p->model.node_of_row[open->row]], and_more(open, more), open->move_m * 1e3,
+            form->cable_m[open->row] * 1e3, set_at(p, open->row),
+            p->objectives.n_objective ? "" : " beside {figure: psi}");
+    if (within->n)
+        hf_warning(messages,
+                   "optimize: node %s%s moved far within the surface: by %.0f mm, and its cables are %.0f mm long. No "
+                   "objective "
+                   "counts this: vary fewer sets of cables, or add {figure: psi, weight: 0.1} to optimize.objective",
+                   p->scene.node_id[p->model.node_of_row[within->row]], and_more(within, more), within->move_m * 1e3,
+                   form->cable_m[within->row] * 1e3);
+}
+
+void hf_result_doubt_uncounted(const hf_problem *p, const hf_places *form, const hf_workspace *shape,
+                               hf_messages *messages)
+{
+    far_nodes far[HF_COUNTED + 1] = {0};
+    double counted_m, open_m, most_m = 0;
+    if (!form->block || !shape) return;
+    for (int row = 0; row < p->model.n_free; row++) {
+        split_move(p, form, shape, row, &counted_m, &open_m);
+        most_m = fmax(most_m, counted_m);
+    }
+    for (int row = 0; row < p->model.n_free; row++) {
+        far_nodes *to = &far[form->counted[row]];
+        split_move(p, form, shape, row, &counted_m, &open_m);
+        if (shape->loose[row] || !(open_m > fmax(FAR_MOVE * form->cable_m[row], most_m))) continue;
+        to->n++;
+        if (open_m > to->move_m) to->row = row;
+        to->move_m = fmax(to->move_m, open_m);
+    }
+    tell_far(p, form, far, messages);
+}
