@@ -167,16 +167,6 @@ void hf_objectives_nets_close(const hf_objectives *objectives, const hf_objectiv
 /* Returns true for the objectives surface and facets. */
 bool hf_objectives_is_on_surface(hf_figure_kind kind);
 
-/* Returns the maximum of n sizes, and sets *norm to the smooth maximum P = (sum s^16)^(1/16). size [n] becomes s/P. */
-double hf_objectives_smooth_maximum(int n, double *size, double *norm);
-
-/* Returns x^7. */
-static inline double hf_objectives_seventh(double x)
-{
-    double square = x * x;
-    return square * square * square * x;
-}
-
 /* Returns true if the value is a maximum of several sizes, or a ratio to a minimum. Such a value has corners, so its
  * residuals are those of a smooth value. */
 bool hf_objectives_is_maximum(hf_figure_kind kind);

@@ -113,8 +113,16 @@ void hf_objectives_point_free(hf_objectives_point *point)
 
 /* ---- sizes of which the maximum counts ---- */
 
-/* The smooth maximum of n sizes is P = (sum s^16)^(1/16), and the residuals s^8/P^7 have the norm P. */
-double hf_objectives_smooth_maximum(int n, double *size, double *norm)
+/* Returns x^7. */
+static double seventh(double x)
+{
+    double square = x * x;
+    return square * square * square * x;
+}
+
+/* Returns the maximum of n sizes s, and sets *norm to the smooth maximum P = (sum s^16)^(1/16). size [n] becomes s/P. The
+ * residuals s^8/P^7 have the norm P. */
+static double smooth_maximum(int n, double *size, double *norm)
 {
     double largest = 0, sum = 0;
     for (int i = 0; i < n; i++)
@@ -135,9 +143,9 @@ static double push_smooth(int n, const double *size, double *rate)
 {
     double norm_rate = 0;
     for (int i = 0; i < n; i++)
-        norm_rate += hf_objectives_seventh(size[i]) * hf_objectives_seventh(size[i]) * size[i] * rate[i];
+        norm_rate += seventh(size[i]) * seventh(size[i]) * size[i] * rate[i];
     for (int i = 0; i < n; i++)
-        rate[i] = hf_objectives_seventh(size[i]) * (8 * rate[i] - 7 * size[i] * norm_rate);
+        rate[i] = seventh(size[i]) * (8 * rate[i] - 7 * size[i] * norm_rate);
     return norm_rate;
 }
 
@@ -231,9 +239,9 @@ static void measure_cables(const hf_objective *g, const hf_model *m, const hf_wo
  * maximum. */
 static double measure_largest(int n, hf_objectives_point *p, double *f)
 {
-    double norm, largest = hf_objectives_smooth_maximum(n, p->size, &norm);
+    double norm, largest = smooth_maximum(n, p->size, &norm);
     for (int i = 0; i < n; i++)
-        f[i] = norm * hf_objectives_seventh(p->size[i]) * p->size[i];
+        f[i] = norm * seventh(p->size[i]) * p->size[i];
     return largest;
 }
 
@@ -252,8 +260,8 @@ static double smooth_ratio(const hf_objective *g, const hf_workspace *w, double 
         size[i] = w->tension_N[g->cable[i]];
         size[n + i] = 1 / size[i];
     }
-    hf_objectives_smooth_maximum(n, size, high);
-    hf_objectives_smooth_maximum(n, size + n, low);
+    smooth_maximum(n, size, high);
+    smooth_maximum(n, size + n, low);
     return *high * *low;
 }
 
@@ -268,7 +276,7 @@ static double measure_ratio(const hf_objective *g, const hf_model *m, const hf_w
     if (!isfinite(ratio)) return ratio;
     *norm = smooth_ratio(g, w, p->size, &high, &low);
     for (int i = 0; i < g->n_shape_row; i++)
-        f[i] = sqrt(0.5) * *norm * hf_objectives_seventh(p->size[i]) * p->size[i];
+        f[i] = sqrt(0.5) * *norm * seventh(p->size[i]) * p->size[i];
     return ratio;
 }
 
@@ -403,10 +411,10 @@ static double scale_worst(const hf_objective *g, const double *norm, double *par
 {
     double smooth;
     memcpy(part, norm, (size_t)g->n_net * sizeof *part);
-    hf_objectives_smooth_maximum(g->n_net, part, &smooth);
+    smooth_maximum(g->n_net, part, &smooth);
     for (int s = 0; s < g->n_net; s++)
         for (int i = 0; i < g->n_shape_row; i++)
-            f[s * g->n_shape_row + i] *= hf_objectives_seventh(part[s]);
+            f[s * g->n_shape_row + i] *= seventh(part[s]);
     return smooth;
 }
 
@@ -582,7 +590,7 @@ static void push_pulls(const hf_model *m, const hf_workspace *w, hf_objectives_p
     int n = m->n_node - m->n_free;
     double norm;
     hf_objectives_pull_rates(m, w, p, by, rate);
-    hf_objectives_smooth_maximum(n, p->size, &norm);
+    smooth_maximum(n, p->size, &norm);
     push_smooth(n, p->size, rate);
 }
 
@@ -591,7 +599,7 @@ static void push_displacements(const hf_model *m, const hf_workspace *w, hf_obje
 {
     double norm;
     take_displacements(m, w, p);
-    hf_objectives_smooth_maximum(m->n_attachment, p->size, &norm);
+    smooth_maximum(m->n_attachment, p->size, &norm);
     for (int i = 0; i < m->n_attachment; i++)
         rate[i] = size_rate(w->displacement_m + 3 * (size_t)i, by->displacement_m + 3 * (size_t)i);
     push_smooth(m->n_attachment, p->size, rate);
@@ -611,9 +619,8 @@ static void push_ratio(const hf_objective *g, const hf_workspace *w, hf_objectiv
     double high_rate = push_smooth(n, p->size, rate), low_rate = push_smooth(n, p->size + n, rate + n);
     for (int i = 0; i < n; i++) {
         double *of_high = &rate[i], *of_low = &rate[n + i];
-        *of_high = sqrt(0.5) * (low * *of_high + high * low_rate * hf_objectives_seventh(p->size[i]) * p->size[i]);
-        *of_low =
-            sqrt(0.5) * (high * *of_low + low * high_rate * hf_objectives_seventh(p->size[n + i]) * p->size[n + i]);
+        *of_high = sqrt(0.5) * (low * *of_high + high * low_rate * seventh(p->size[i]) * p->size[i]);
+        *of_low = sqrt(0.5) * (high * *of_low + low * high_rate * seventh(p->size[n + i]) * p->size[n + i]);
     }
 }
 
@@ -698,15 +705,15 @@ static void close_worst(const hf_objective *g, const double *norm, const double 
         for (int s = 0; s < g->n_net; s++) {
             const double *of_net = f + (size_t)s * n;
             double *by_net = rate + (size_t)s * n, length = sqrt(hf_dot(n, of_net, of_net));
-            double seventh = hf_objectives_seventh(part[s]), turn = 0;
+            double share = seventh(part[s]), turn = 0;
             double norm_rate = length > 0 ? hf_dot(n, of_net, by_net) / length : 0;
             if (pass == 0) {
-                smooth_rate += seventh * seventh * part[s] * norm_rate;
+                smooth_rate += share * share * part[s] * norm_rate;
                 continue;
             }
             if (length > 0) turn = 7 * (norm_rate / norm[s] - smooth_rate / smooth);
             for (size_t i = 0; i < n; i++)
-                by_net[i] = g->settings.weight * seventh * by_net[i] + turn * of_net[i];
+                by_net[i] = g->settings.weight * share * by_net[i] + turn * of_net[i];
         }
 }
 

@@ -60,7 +60,7 @@ typedef struct {
     int n;
     const double *position_m, *root_weight; /* root_weight NULL: all are 1 */
     double curvature;                       /* curvature of the target surface */
-    hf_fit_parameters at;                   /* the quantities of all parameters, centre and size */
+    hf_fit_parameters at;                   /* the fit so far */
 } fit_problem;
 
 static void multiply(double a[3][3], double b[3][3], double to[3][3])
@@ -91,13 +91,19 @@ void hf_fit_rotation(const double angle[3], const int order[3], double to[3][3])
     multiply(zy, r[0], to);
 }
 
-/* Returns the frame for the parameters v, which `at` receives and the frame borrows. */
-static hf_fit_frame frame_at(const fit_problem *p, const gsl_vector *v, hf_fit_parameters *at)
+/* Returns the parameters with the values of v. */
+static hf_fit_parameters parameters_at(const fit_problem *p, const gsl_vector *v)
 {
-    *at = p->at;
-    at->n = (int)v->size;
+    hf_fit_parameters at = p->at;
+    at.n = (int)v->size;
     for (size_t k = 0; k < v->size; k++)
-        at->value[at->quantity[k]] = gsl_vector_get(v, k);
+        at.value[at.quantity[k]] = gsl_vector_get(v, k);
+    return at;
+}
+
+/* Returns the frame for these parameters, which it borrows. */
+static hf_fit_frame frame_at(const fit_problem *p, const hf_fit_parameters *at)
+{
     hf_fit_frame f = hf_fit_frame_of(p->kind, 1 / (4 * p->curvature), p->n, p->position_m, p->root_weight, at);
     f.wanted_per_m = p->curvature;
     f.curvature_per_m = p->curvature * (1 + at->value[HF_FIT_CURVE]);
@@ -120,8 +126,8 @@ static double root_weight(const fit_problem *p, int i)
 static int residuals(const gsl_vector *v, void *context, gsl_vector *r)
 {
     const fit_problem *p = context;
-    hf_fit_parameters now;
-    hf_fit_frame f = frame_at(p, v, &now);
+    hf_fit_parameters now = parameters_at(p, v);
+    hf_fit_frame f = frame_at(p, &now);
     gsl_vector_set_zero(r); /* GSL needs at least as many rows as parameters; the additional rows are zero */
     for (int i = 0; i < p->n; i++) {
         double arm[3], at[3], s[2], u = height(&f, i, arm, at, s);
@@ -133,8 +139,8 @@ static int residuals(const gsl_vector *v, void *context, gsl_vector *r)
 static int jacobian(const gsl_vector *v, void *context, gsl_matrix *J)
 {
     const fit_problem *p = context;
-    hf_fit_parameters now;
-    hf_fit_frame f = frame_at(p, v, &now);
+    hf_fit_parameters now = parameters_at(p, v);
+    hf_fit_frame f = frame_at(p, &now);
     gsl_matrix_set_zero(J);
     for (int i = 0; i < p->n; i++) {
         double arm[3], at[3], s[2], u = height(&f, i, arm, at, s), w = 1 / (1 + s[0] * s[0] + s[1] * s[1]);
@@ -304,10 +310,9 @@ static void center(fit_problem *p)
     if (!(p->at.size_m > 0)) p->at.size_m = 1;
 }
 
-static void report(const fit_problem *p, const gsl_vector *v, hf_surface_fit *fit)
+static void report(const fit_problem *p, hf_surface_fit *fit)
 {
-    hf_fit_parameters now;
-    hf_fit_frame f = frame_at(p, v, &now);
+    hf_fit_frame f = frame_at(p, &p->at);
     double half_path = 0, normal = 0, sum = 0;
     for (int i = 0; i < p->n; i++) {
         double arm[3], at[3], s[2], u = height(&f, i, arm, at, s), w = 1 / (1 + s[0] * s[0] + s[1] * s[1]);
@@ -322,9 +327,9 @@ static void report(const fit_problem *p, const gsl_vector *v, hf_surface_fit *fi
     fit->shift_x_m = f.shift_m[0];
     fit->shift_y_m = f.shift_m[1];
     fit->shift_z_m = f.shift_m[2];
-    fit->rotation_x_rad = now.value[HF_FIT_TURN_X];
-    fit->rotation_y_rad = now.value[HF_FIT_TURN_Y];
-    fit->rotation_z_rad = now.value[HF_FIT_TURN_Z];
+    fit->rotation_x_rad = p->at.value[HF_FIT_TURN_X];
+    fit->rotation_y_rad = p->at.value[HF_FIT_TURN_Y];
+    fit->rotation_z_rad = p->at.value[HF_FIT_TURN_Z];
 }
 
 /* Iterates until the steps vanish, or until rounding keeps every step from lowering the sum of squares. Returns false
@@ -346,21 +351,24 @@ static bool iterate(gsl_multifit_nlinear_workspace *solver, int *iterations)
     return false;
 }
 
-/* Fits the first n_parameter parameters, starting from `parameter`, which it overwrites. Sets fit->converged. Returns
- * HF_OK or HF_NO_MEMORY. */
-static hf_status fit_some(fit_problem *p, size_t n_parameter, double parameter[HF_FIT_N_PARAMETER], hf_surface_fit *fit)
+/* Fits the first n_parameter parameters from their present values. Sets fit->converged. Returns HF_OK or
+ * HF_NO_MEMORY. */
+static hf_status fit_some(fit_problem *p, size_t n_parameter, hf_surface_fit *fit)
 {
+    double start[HF_FIT_N_PARAMETER];
+    for (size_t k = 0; k < n_parameter; k++)
+        start[k] = p->at.value[p->at.quantity[k]];
     size_t n_row = p->n < HF_FIT_N_PARAMETER ? HF_FIT_N_PARAMETER : (size_t)p->n;
     gsl_multifit_nlinear_parameters settings = gsl_multifit_nlinear_default_parameters();
     gsl_multifit_nlinear_fdf fdf = {.f = residuals, .df = jacobian, .n = n_row, .p = n_parameter, .params = p};
     gsl_multifit_nlinear_workspace *solver =
         gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &settings, n_row, n_parameter);
     if (!solver) return HF_NO_MEMORY;
-    gsl_vector_view v = gsl_vector_view_array(parameter, n_parameter);
+    gsl_vector_view v = gsl_vector_view_array(start, n_parameter);
     fit->converged = gsl_multifit_nlinear_init(&v.vector, &fdf, solver) == GSL_SUCCESS;
     if (fit->converged) fit->converged = iterate(solver, &fit->iterations);
-    gsl_vector_memcpy(&v.vector, gsl_multifit_nlinear_position(solver));
-    report(p, &v.vector, fit);
+    p->at = parameters_at(p, gsl_multifit_nlinear_position(solver));
+    report(p, fit);
     fit->converged = fit->converged && isfinite(fit->half_path_rms_m);
     gsl_multifit_nlinear_free(solver);
     return HF_OK;
@@ -369,21 +377,14 @@ static hf_status fit_some(fit_problem *p, size_t n_parameter, double parameter[H
 /* Calls fit_some, and continues to a minimum if that is not one. The steps of fit_some become very short along
  * valleys. In a net that is its own mirror image they stay on a ridge (METHOD section 9). If no minimum is found,
  * fit->converged is false. */
-static hf_status fit_least(fit_problem *p, int n_parameter, double parameter[HF_FIT_N_PARAMETER], hf_surface_fit *fit)
+static hf_status fit_least(fit_problem *p, int n_parameter, hf_surface_fit *fit)
 {
-    HF_TRY(fit_some(p, (size_t)n_parameter, parameter, fit));
+    HF_TRY(fit_some(p, (size_t)n_parameter, fit));
     if (!isfinite(fit->half_path_rms_m)) return HF_OK;
-    hf_fit_parameters at = p->at;
-    at.n = n_parameter;
-    for (int k = 0; k < n_parameter; k++)
-        at.value[at.quantity[k]] = parameter[k];
-    hf_fit_frame f = hf_fit_frame_of(p->kind, 1 / (4 * p->curvature), p->n, p->position_m, p->root_weight, &at);
+    hf_fit_frame f = hf_fit_frame_of(p->kind, 1 / (4 * p->curvature), p->n, p->position_m, p->root_weight, &p->at);
     if (fit->converged && is_least(&f)) return HF_OK;
-    fit->converged = descend(&f, &at, 2 * SHIFT_MOST, &fit->iterations);
-    for (int k = 0; k < n_parameter; k++)
-        parameter[k] = at.value[at.quantity[k]];
-    gsl_vector_view v = gsl_vector_view_array(parameter, (size_t)n_parameter);
-    report(p, &v.vector, fit);
+    fit->converged = descend(&f, &p->at, 2 * SHIFT_MOST, &fit->iterations);
+    report(p, fit);
     return HF_OK;
 }
 
@@ -399,7 +400,6 @@ hf_status hf_surface_fit_find(hf_surface_kind kind, double focal_length_m, int n
 {
     bool is_round = kind == HF_SURFACE_PARABOLOID;
     fit_problem p = {kind, n, position_m, root_weight, 1 / (4 * focal_length_m), {0}};
-    double parameter[HF_FIT_N_PARAMETER] = {0};
     *fit = (hf_surface_fit){0};
     memcpy(p.at.quantity, is_round ? paraboloid_parameter : cylinder_parameter, sizeof p.at.quantity);
     center(&p);
@@ -412,16 +412,14 @@ hf_status hf_surface_fit_find(hf_surface_kind kind, double focal_length_m, int n
     for (int k = 0; k < 3; k++) {
         hf_surface_fit next = *fit;
         int n_parameter = (is_round ? paraboloid_fit : cylinder_fit)[k];
-        HF_TRY(fit_least(&p, n_parameter, parameter, &next));
+        HF_TRY(fit_least(&p, n_parameter, &next));
         double longer = next.focal_length_m / focal_length_m, across = fmax(fabs(next.shift_x_m), fabs(next.shift_y_m));
         bool is_determined =
             next.converged && across <= SHIFT_MOST * p.at.size_m && longer <= FOCAL_MOST && longer >= 1 / FOCAL_MOST;
         fit->iterations = next.iterations;
         if (!is_determined) break;
         *fit = next;
-        found->n = n_parameter;
-        for (int i = 0; i < n_parameter; i++)
-            found->value[found->quantity[i]] = parameter[i];
+        *found = p.at;
     }
     if (!fit->converged) set_unknown(fit);
     return HF_OK;
