@@ -320,9 +320,8 @@ static const hf_field objective_field[] = {
      "facets: distance of the facets to it, RMS (m); tension, length: difference to target, RMS over the set (N, m); "
      "evenness: standard deviation of the tensions of the set over their mean; pull: maximum force of the net on a "
      "support (N); deflection: maximum deflection of the truss at an attachment (m); mass: of the cables of the set "
-     "(kg); "
-     "ratio: maximum over minimum tension of the set; gain: root of the part of the gain that the shape loses in the "
-     "direction of the beam, by physical optics (surface.pattern)"},
+     "(kg); ratio: maximum over minimum tension of the set; gain: root of the part of the gain that the shape loses in "
+     "the direction of the beam, by physical optics (surface.pattern)"},
     {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL,
      "cables of tension, length, evenness, mass, ratio; default: all"},
     {"target", HF_FIELD_DOUBLE, IN(target), -BIG, BIG, "", "", NULL,
