@@ -55,8 +55,8 @@ START_TEST(what_a_new_case_suggests_is_good)
 }
 END_TEST
 
-/* The goal that a new case has costs what is left after the best fit, and the summary says so by Ruze's formula; the
- * other goal that its comment names does not. */
+/* The objective of a new case makes the error after best fit larger, and the summary reports this by Ruze's formula.
+ * The other objective in its comment does not. */
 START_TEST(a_objective_that_costs_the_best_fit_is_told)
 {
     static const char better[] = "after best fit, the net of the form-finding is better";
@@ -66,17 +66,17 @@ START_TEST(a_objective_that_costs_the_best_fit_is_told)
     ck_assert_int_eq(count_of(said.out, better), 1);
     EXPECT(file_with("said.txt", said.out), out, "--",
            "(lambda rms: rms['form'] < rms['refine'] and ('better: 1 dB gain loss at %.3g GHz. To minimise this error, "
-           "use {figure: facets, fit: "
-           "best}' % (np.sqrt(np.log(10) / 10) * 299792458 / (4e9 * np.pi * rms['form']))).encode() in a)"
+           "use {figure: facets, fit: best}' "
+           "% (np.sqrt(np.log(10) / 10) * 299792458 / (4e9 * np.pi * rms['form']))).encode() in a)"
            "({n: b['surface/' + n].attrs['facet_fit_half_path_rms_m'] for n in ('form', 'refine')})");
     HIFDM(0, "run", path, "-o", out, "--force", "--set", "optimize.objective=[{figure: facets, fit: best}]");
     ck_assert_int_eq(count_of(said.out, better), 0);
-    /* what the goal wants stands first, by Ruze's formula, and so in the file */
+    /* the frequency after best fit stands first, by Ruze's formula, and so in the file */
     HIFDM(0, "show", out);
     EXPECT(file_with("said.txt", said.out), out, "--",
            "('; 1 dB gain loss at %.3g GHz after best fit, at %.3g GHz for a fixed feed (Ruze, from the facets)' % "
-           "tuple(np.sqrt(np.log("
-           "10) / 10) * 299792458 / (4e9 * np.pi * b['surface/refine'].attrs[n + 'half_path_rms_m']) for n in "
+           "tuple(np.sqrt(np.log(10) / 10) * 299792458 / (4e9 * np.pi * b['surface/refine'].attrs[n + "
+           "'half_path_rms_m']) for n in "
            "('facet_fit_', 'facet_'))).encode() in a.splitlines()[0]");
     HIFDM(0, "run", path, "-o", out, "--force", "--set",
           "optimize.objective=[{figure: facets, fit: best}, {figure: psi, weight: 0.1}]");
@@ -154,10 +154,8 @@ static const char look_up[] =
     "    if not any(len(t) >= 12 and not t.startswith(('the same', 'The same')) for t in texts):\n"
     "        print(what, word, 'is told as', texts)\n"
     "for word in words: demand(word, 'listed')\n"
-    "named = {'objectives', 'sets', 'load_cases', 'objective', 'multiplier', 'initial', 'kind_share', 'errors_m'} # "
-    "names of the "
-    "user, or of "
-    "keys\n"
+    "# objects whose names are those of the user, or of keys\n"
+    "named = {'objectives', 'sets', 'load_cases', 'objective', 'multiplier', 'initial', 'kind_share', 'errors_m'}\n"
     "keys = set()\n"
     "def walk(o):\n"
     "    for v in o if isinstance(o, list) else []: walk(v)\n"
