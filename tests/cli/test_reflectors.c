@@ -108,10 +108,10 @@ START_TEST(a_double_layer_is_designed)
     const char *out = temp("r.h5");
     const char *path = keep(source_path("configs/paraboloid-even.yaml"));
     HIFDM(0, "run", path, "-o", out, "--json", "--set", limits[_i], "--set", "optimize.refine_steps=40");
-    EXPECT(out_as("r.json"), out, "--", "a['form']['psi_m'] > 2e-4", "a['polish']['psi_m'] < 1e-9",
-           "a['polish']['sets']['front']['tension_ratio'] < 1 + 1e-6", "a['polish']['stop_reason'] == 'converged'",
-           formatted("%d or 9.9 <= a['polish']['sets']['front']['least_N'] <= "
-                     "a['polish']['sets']['front']['largest_N'] <= 10.05",
+    EXPECT(out_as("r.json"), out, "--", "a['form']['psi_m'] > 2e-4", "a['refine']['psi_m'] < 1e-9",
+           "a['refine']['sets']['front']['tension_ratio'] < 1 + 1e-6", "a['refine']['stop_reason'] == 'converged'",
+           formatted("%d or 9.9 <= a['refine']['sets']['front']['min_N'] <= "
+                     "a['refine']['sets']['front']['max_N'] <= 10.05",
                      _i == 0));
 }
 END_TEST
@@ -134,7 +134,7 @@ START_TEST(nodes_that_no_objective_counts_are_told)
            "(lambda ids, moved: (lambda k: [w for w in a['warnings'] if f'node {ids[k]}, and ' in w and "
            "f'form-finding has it, by {1e3 * moved[k]:.0f} mm ' in w and 'set: rear, weight' in w])"
            "(max((k for k in range(len(ids)) if ids[k][0] == 'r'), key=lambda k: moved[k])))"
-           "(b['scene/node/id'].asstr()[:], np.linalg.norm(b['polish/position_m'][:] - b['form/position_m'][:], "
+           "(b['scene/node/id'].asstr()[:], np.linalg.norm(b['refine/position_m'][:] - b['form/position_m'][:], "
            "axis=1))",
            "any('node f' in w and 'moved far within the surface, by ' in w for w in a['warnings'])");
     for (int k = 0; k < 2; k++) {

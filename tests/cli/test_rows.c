@@ -21,7 +21,7 @@ START_TEST(a_template_has_a_column_for_each_variable)
     HIFDM(0, "evaluate", net, "--template", path, "--set", VARIABLES);
     OUT("5 variables; their values after form-finding in ");
     EXPECT(path, "--", "list(a[0]) == ['id', 'c1', 'c,2', 'c.x', 'c.y', 'c.z']", "len(a) == 1",
-           "[a[0][k] for k in ('id', 'c.x', 'c.y', 'c.z')] == ['base', '0', '0', '0']",
+           "[a[0][k] for k in ('id', 'c.x', 'c.y', 'c.z')] == ['initial', '0', '0', '0']",
            "3 < float(a[0]['c1']) < 6"); /* N/m of a cable of about 2 m with 10 N */
     HIFDM(0, "evaluate", net, "--template", path, "--force", "--set",
           "optimize.variables=[{set: edge, vary: length, range: 0.1}]");
@@ -461,12 +461,12 @@ START_TEST(the_gain_is_a_objective)
 #define LOST(stage, objective) "(1 - a['" stage "']['objectives']['" objective "']['value']**2)"
 #define GAIN(stage, cut) "a['" stage "']['pattern'][" cut "]['gain_dBi']"
 #define SAME(objective, cut)                                                                                           \
-    "near(" GAIN("polish", cut) " - " GAIN("form", cut) ", 10 * np.log10(" LOST("polish", objective) " / " LOST(       \
+    "near(" GAIN("refine", cut) " - " GAIN("form", cut) ", 10 * np.log10(" LOST("refine", objective) " / " LOST(       \
         "form", objective) "), 3e-4)"
     const char *designs = temp("d.csv"), *table = temp("r.csv"), *slopes = temp("j.csv");
     HIFDM(0, "run", CHEN, "-o", temp("g.h5"), "--json", "--set", "optimize.method=lm", BANDS);
     EXPECT(out_as("run.json"), "--", SAME("objective_0_gain", "2"), SAME("objective_1_gain", "0"),
-           GAIN("polish", "2") " > 0.008 + " GAIN("form", "2"),
+           GAIN("refine", "2") " > 0.008 + " GAIN("form", "2"),
            "near(a['refine']['merit']**2, a['refine']['objectives']['objective_0_gain']['value']**2 + "
            "a['refine']['objectives']['objective_1_gain']['value']**2 / 4, 1e-15)");
     HIFDM(0, "check", CHEN, BANDS);
