@@ -193,7 +193,8 @@ START_TEST(runs_tell_what_became_of_each_objective)
     OUT("ratio inside         merit  at bounds");
     /* before and after, in their units; psi, which is wanted too, is not told once more */
     EXPECT(json, file_with("show.txt", said.out), "--",
-           "b.decode().startswith('psi %.4f -> %.4f mm, tension_edge %.4g -> %.4g N; good to ' % tuple(x for g, by in "
+           "b.decode().startswith('psi %.4f -> %.4f mm, tension_edge %.4g -> %.4g N (form-finding -> result); 1 dB "
+           "gain loss at ' % tuple(x for g, by in "
            "(('objective_0_psi', 1e3), ('objective_1_tension_edge', 1)) for x in (by * "
            "a['form']['objectives'][g]['value'], by * "
            "a['refine']['objectives'][g]['value'])))");
@@ -220,7 +221,7 @@ START_TEST(objectives_of_damaged_files_are_not_shown)
     static const char *const deed[] = {"f['objective/name'][0] = b'\\x1b[1m'", "del f['objective/refine']",
                                        "del f['objective/weight']; f['objective/weight'] = np.ones(17)"};
     static const char *const why[] = {"/objective/name does not name objectives", "/objective/refine is not there",
-                                      "/objective/weight is empty or too large"};
+                                      "/objective/weight has other dimensions"};
     const char *out = temp("r.h5");
     HIFDM(0, "run", net_with(nodes, cables), "-o", out, "--set", VARIABLES, "--set", OBJECTIVES, "--set",
           "optimize.method=lm");
