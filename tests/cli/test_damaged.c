@@ -172,7 +172,7 @@ START_TEST(damage_that_is_found_late_is_no_fault_of_the_machine)
 }
 END_TEST
 
-/* The threads of a sweep let a process look that is older than they are. Finished points take 13 reads, others more. */
+/* The threads of a sweep let a process look that is older than they are. Finished points take 12 reads, others more. */
 START_TEST(a_crash_in_a_sweep_fails_its_point)
 {
     const char *library = make_library();

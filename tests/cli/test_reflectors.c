@@ -19,7 +19,7 @@ START_TEST(generators_agree_with_the_oracle)
 END_TEST
 
 /* On rigid ground tensions hold every node. On a stiff ring the net leaves its surface by a distance that falls with
- * the stiffness; on one of carbon fibre less, because there the net gives way to its truss. */
+ * the stiffness; on one of carbon fibre less, because there the truss deflects under the net. */
 START_TEST(nets_are_held)
 {
     const char *path = keep(source_path(example[_i]));
@@ -99,7 +99,7 @@ START_TEST(designs_move_net_and_ring_in_lanes)
 }
 END_TEST
 
-/* A double layer on a ring that gives way: psi and the evenness of the front vanish together, along a bent valley; with
+/* A double layer on a ring that deflects: psi and the evenness of the front vanish together, along a bent valley; with
  * limits on tensions as well. Without corrections of bent steps 200 steps leave evenness at 0.003. */
 START_TEST(a_double_layer_is_designed)
 {
@@ -116,7 +116,7 @@ START_TEST(a_double_layer_is_designed)
 }
 END_TEST
 
-/* The goal facets leaves the rear net open, and where nodes of the front are within their surface. Both are told, with
+/* The objective facets leaves the rear net open, and where nodes of the front are within their surface. Both are told, with
  * the node that moved farthest by the shapes in the file; what counts them, or leaves them alone, is silent. */
 START_TEST(nodes_that_no_objective_counts_are_told)
 {
