@@ -67,7 +67,7 @@ extern const char *const hf_tie_law_word[HF_N_LAW + 1];
     X(section, tie_law, HF_FIELD_WORD, 0, 0, "length", "", hf_tie_law_word,                                            \
       "law of the ties; the nets have law tension, their boundary cables law length")                                  \
     X(section, tie_tension_N, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, "1", "N", NULL,                                     \
-      "what ties of the laws tension, force_density and elastic have at the theoretical places")
+      "tension at the target positions, of ties of the laws tension, force_density and elastic")
 
 /* ---- parabolic_cylinder ---- */
 

@@ -96,7 +96,7 @@ typedef struct hf_objectives_point {
     double *row;                   /* [n_row] scratch */
     struct hf_gain *gain;          /* [n_objective] scratch of each objective gain */
     struct hf_cloud *cloud;        /* [n_objective] of surface and facets: points, errors, best fit */
-    void *nets;                    /* scratch of goals->nets; NULL without nets */
+    void *nets;                    /* scratch of as-built nets; NULL without nets */
     void (*free_nets)(void *room); /* frees `nets` */
     double *net_value; /* [n_objective][n_load_case + n_sample] value in each net; infinite without a shape */
     double *net_norm;  /* [n_objective][n_load_case + n_sample] norm of the residuals in each net */
@@ -114,7 +114,7 @@ hf_status hf_objectives_create(const hf_scene *scene, const hf_model *model, con
 /* Frees the objectives. */
 void hf_objectives_free(hf_objectives *objectives);
 
-/* Writes the name of objective i_objective in tables into text: goal_0_psi, goal_1_tension_edge for a set,
+/* Writes the name of objective i_objective in tables into text: objective_0_psi, objective_1_tension_edge for a set,
  * followed by the load case or by what it is measured on. Returns text. */
 const char *hf_objectives_name(const hf_objectives *objectives, int i_objective, char text[HF_OBJECTIVE_NAME_SIZE]);
 

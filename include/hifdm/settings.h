@@ -316,10 +316,10 @@ typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
  *
  * The losses are in the order of the half-path errors from which they follow. */
 #define HF_TOLERANCE_MEASURES(X)                                                                                       \
-    X(PSI, "psi_m", "m", ALWAYS, "RMS distance of the inner nodes to their theoretical places")                        \
-    X(HALF_PATH, "half_path_rms_m", "m", SURFACE, "of the inner nodes to the wanted surface")                          \
+    X(PSI, "psi_m", "m", ALWAYS, "RMS distance of the inner nodes to their target positions")                          \
+    X(HALF_PATH, "half_path_rms_m", "m", SURFACE, "of the inner nodes to the target surface")                          \
     X(FIT_HALF_PATH, "fit_half_path_rms_m", "m", SURFACE, "the same after the best fit")                               \
-    X(FACET_HALF_PATH, "facet_half_path_rms_m", "m", FACETS, "of the facets to the wanted surface")                    \
+    X(FACET_HALF_PATH, "facet_half_path_rms_m", "m", FACETS, "of the facets to the target surface")                    \
     X(FACET_FIT_HALF_PATH, "facet_fit_half_path_rms_m", "m", FACETS, "the same after the best fit")                    \
     X(GAIN_LOSS, "gain_loss_dB", "dB", LOSS,                                                                           \
       "of gain (Ruze) by half_path_rms_m at the highest frequency; infinite beyond 3 dB")                              \

@@ -29,7 +29,7 @@ HF_API_BEGIN
  * Attributes in HDF5 (/surface/STAGE, those of the fit with the prefix fit_) are in the order of the lists. A new
  * figure is a row here and the code that computes it. */
 #define HF_SURFACE_LIST(X)                                                                                             \
-    X(double, z_rms_m, REAL, .json = 1, .description = "of the nodes' heights above their theoretical heights")        \
+    X(double, z_rms_m, REAL, .json = 1, .description = "RMS height of the nodes above their target positions")         \
     X(double, normal_rms_m, REAL, .json = 1, .description = "RMS error along the normal at the inner nodes, raw")      \
     X(double, half_path_rms_m, REAL, .json = 1,                                                                        \
       .description = "RMS error of the half path length at the inner nodes, raw")                                      \

@@ -52,7 +52,7 @@ extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS]; /* words of
 
 /* The figures of the samples: rows as in the lists of summary.h. */
 #define HF_TOLERANCE_LIST(X)                                                                                           \
-    X(int, samples, INT, .json = 1, .description = "nets as built")                                                    \
+    X(int, samples, INT, .json = 1, .description = "as-built samples")                                                 \
     X(int, n_failed, INT, .json = 1, .key = "failed", .description = "those of them without a shape")                  \
     X(int, n_with_slack, INT, .json = 1, .key = "with_slack_cables", .description = "those with slack cables")         \
     X(int, n_with_loose, INT, .json = 1, .key = "with_loose_nodes",                                                    \

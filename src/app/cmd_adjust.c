@@ -356,11 +356,11 @@ static hf_status command_adjust(const hf_options *o, FILE *file, hf_messages *me
 const hf_command hf_cmd_adjust = {
     .name = "adjust",
     .argument = "CASE",
-    .help = "which turnbuckles to turn, given the measured places of the net as built",
-    .about = "The measured places of nodes tell which cut lengths are wrong, as far as the section tolerance leaves it "
-             "open; then the fewest moves of the cables that the section adjust names bring the figure back, in steps "
-             "and within a range. The table has them in the order in which they are made, with the tension of the "
-             "cable before and after, and the figure that is predicted after each.",
+    .help = "which turnbuckles to adjust, given measured positions of the as-built net",
+    .about = "hifdm estimates the errors of the cut lengths from the measured positions of nodes and the section "
+             "tolerance. Then it selects the fewest adjustments of the cables in adjust.set that reduce the figure. "
+             "They are multiples of a step and stay within a range. The table lists them in the order in which you "
+             "make them, with the tension of the cable before and after each, and the figure predicted after it.",
     .examples = "hifdm adjust case.yaml --measured nodes.csv -o moves.csv\n"
                 "hifdm adjust case.yaml --measured nodes.csv --result case.h5 --report moves.html\n"
                 "hifdm adjust case.yaml --result case.h5 --measured nodes.csv --set adjust.aim=target_positions\n"

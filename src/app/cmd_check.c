@@ -107,7 +107,7 @@ static void print_scene(const hf_problem *p, FILE *f)
 /* Prints the names of the load cases of the as-built net. */
 static void print_load_cases(const hf_load_cases *s, FILE *f)
 {
-    fprintf(f, "                %d case%s of the net as built:", s->n, s->n == 1 ? "" : "s");
+    fprintf(f, "                %d load case%s of the as-built net:", s->n, s->n == 1 ? "" : "s");
     for (int k = 0; k < s->n; k++)
         fprintf(f, "%s %s", k ? "," : "", s->load_case[k].name);
     fputc('\n', f);
@@ -301,9 +301,10 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
                 is_auto && method == HF_METHOD_NEWTON ? "; in one matrix where they are slow" : "");
     bool optimizes = v != NULL, evolves = optimizes && hf_optimiser_plan_of(o).kind;
     if (evolves)
-        fprintf(f,
-                "                optimisation: rule %s, %d genes, %d individuals, at most %d generations, seed %llu\n",
-                hf_rule_word[o->rule], p->model.n_variable, o->population, o->generations, (unsigned long long)o->seed);
+        fprintf(
+            f,
+            "                optimisation: rule %s, %d variables, %d individuals, at most %d generations, seed %llu\n",
+            hf_rule_word[o->rule], p->model.n_variable, o->population, o->generations, (unsigned long long)o->seed);
     bool is_result = hf_optimiser_plan_of(o).ends_with_refine;
     bool is_front = optimizes && o->n_front > 0;
     if (is_front) print_front(p, f);
@@ -317,7 +318,7 @@ static void print_plan(const hf_problem *p, const hf_evaluator *v, FILE *f)
                 : o->refine == HF_REFINE_AUTO ? "for comparison, where it is cheap"
                                               : "for comparison");
     if (optimizes && o->symmetry != HF_SYMMETRY_NONE)
-        fprintf(f, "                symmetry: %s, %s; %d independent genes of %d\n", hf_symmetry_word[o->symmetry],
+        fprintf(f, "                symmetry: %s, %s; %d independent variables of %d\n", hf_symmetry_word[o->symmetry],
                 hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_variable);
     if (p->load_cases.n) print_load_cases(&p->load_cases, f);
     print_tolerance(c, f);

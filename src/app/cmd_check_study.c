@@ -116,7 +116,7 @@ static void print_time(int n, const char *what, double each_s, int threads, bool
     hf_print_duration(hf_check_together_s(each_s, n, &threads), all, sizeof all);
     fprintf(f, "%d point%s to run%s, each like this one at most some %s, on %d thread%s: at most about %s%s\n", n,
             n == 1 ? "" : "s", what, one, threads, threads == 1 ? "" : "s", all,
-            has_tolerance ? ", and the time of the nets as built" : "");
+            has_tolerance ? ", plus the time of the as-built samples" : "");
 }
 
 /* Prints what a sweep runs by default, and what it runs again with --retry. */

@@ -422,9 +422,10 @@ const hf_command hf_cmd_evaluate = {
     .argument = "CASE",
     .help = "evaluate a table of designs, to a table on standard output or -o",
     .about =
-        "For an optimiser of your own: a row of the table is a design, a value for each variable of the case: "
-        "those of optimize.variables, or one pretension in N for each boundary cable with a free end; a row of the "
-        "answer is its psi, residual, tension ratios and goals, to the same bits as in hifdm run. All cores work.",
+        "For an optimiser of your own. A row of the table is a design: one value for each design variable of the case. "
+        "The variables are those of optimize.variables, or one pretension in N for each boundary cable with a free "
+        "end. A row of the answer has psi, the residual, the tension ratios and the objectives of the design, with the "
+        "same bits as in hifdm run. The command uses all cores.",
     .examples = "hifdm evaluate case.yaml --template base.csv\n"
                 "hifdm evaluate case.yaml --designs designs.csv -o results.csv\n"
                 "hifdm evaluate case.yaml --designs designs.csv -o results.csv --jacobian slopes.csv",

@@ -55,7 +55,7 @@ static void print_overview(FILE *f)
         snprintf(name, sizeof name, "hifdm %-8s %s", c->name, hf_help_or_nothing(c->argument));
         print_row(name, 2, 27, c->help, f);
     }
-    fputs("\n'hifdm help COMMAND' tells its options, and examples.\n\nexit status:\n", f);
+    fputs("\n'hifdm help COMMAND' prints the options of a command, and examples.\n\nexit status:\n", f);
     for (int i = 0; i < HF_HELP_N_EXIT; i++)
         print_row(hf_help_exit_table[i].code, 2, 6, hf_help_exit_table[i].meaning, f);
 }

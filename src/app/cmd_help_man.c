@@ -126,7 +126,7 @@ void hf_help_man(FILE *f)
     put_roff("hifdm reads a case file, finds the shape of the net by the hybrid iterative force density method, "
              "optimises the boundary tensions with a seeded genetic algorithm, and stores every generation in HDF5. "
              "Options may stand anywhere behind the command; long ones may be joined to their value by an equals "
-             "sign. After -- all words are files. --help behind a command tells about it.\n",
+             "sign. After -- all words are files. --help behind a command prints its options.\n",
              f);
     fputs(".SH COMMANDS\n", f);
     for (int i = 0; i < HF_N_COMMAND; i++)

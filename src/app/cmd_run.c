@@ -57,12 +57,12 @@ const hf_command hf_cmd_run = {
     .name = "run",
     .argument = "CASE",
     .help = "run what the case file contains and store it in one HDF5 file",
-    .about = "What the case file contains decides what runs: form-finding always, the genetic algorithm and "
-             "Levenberg-Marquardt with a section optimize, samples of the net as built with a section tolerance. Every "
-             "generation is stored. A run that was killed or told "
-             "to stop goes on when the same command is given again; a finished one is kept unless --restart is given.\n"
-             "Of a front (optimize.front) the same run with --point makes one point the result, without a search: "
-             "for its shape, its cut list, and the net as built.",
+    .about = "The case file determines the stages. Form-finding always runs. With a section optimize, the genetic "
+             "algorithm and Levenberg-Marquardt follow, and with a section tolerance, samples of the as-built net. The "
+             "run stores every generation. To resume a run that was killed or told to stop, run the same command "
+             "again. A finished result is kept, unless --restart is given.\n"
+             "If the case has a front (optimize.front), --point makes one point of it the result, without a search: "
+             "with its shape, its cut list and its as-built net.",
     .examples = "hifdm run configs/chen2022.yaml\n"
                 "hifdm run case.yaml --set form.pretension_N=12 --seed 7 -o twelve.h5\n"
                 "hifdm run case.yaml --point front.h5:7 -o point7.h5",

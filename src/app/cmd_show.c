@@ -55,10 +55,11 @@ const hf_command hf_cmd_show = {
     .name = "show",
     .argument = "FILE",
     .help = "print the summary of a result file, or the table of a merged study",
-    .about = "The same lines that hifdm run printed when it was done, warnings last: the answer, then a row for each "
-             "stage. With --verbose certificates, ratios of sets, goals, the surface of every stage, times.\n"
-             "Of a merged study: its axes, its points as a table with the best one marked, and what is the same at all "
-             "of them; with --verbose all points of a large one.",
+    .about =
+        "Prints the summary that hifdm run printed at its end, warnings last: the answer, then a row for each stage. "
+        "--verbose adds certificates, ratios of sets, objectives, the surface of every stage, and times.\n"
+        "Of a merged study: its axes, its points as a table with the best one marked, and what is the same at all "
+        "of them; with --verbose all points of a large one.",
     .examples = "hifdm show chen2022.h5\n"
                 "hifdm show chen2022.h5 --verbose\n"
                 "hifdm show chen2022.h5 --json\n"

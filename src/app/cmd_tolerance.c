@@ -4,7 +4,7 @@
 const hf_command hf_cmd_tolerance = {
     .name = "tolerance",
     .argument = "CASE",
-    .help = "samples of the net as built, with the errors of the section tolerance",
+    .help = "samples of the as-built net, with the errors of the section tolerance",
     .about =
         "As hifdm run, for a case with a section tolerance: the net is cut at the shape of the result, after an "
         "optimisation if there is one, and solved again with errors of lengths, stiffness, supports and temperature. "

@@ -57,7 +57,7 @@ static void say_where_to_read_on(const char *lines, hf_status status)
         bool is_status = status != HF_OK && (hf_status_exit_code(status) == 3 || hf_status_exit_code(status) == 4) &&
                          !strcmp(w.kind, "status") && !strcmp(w.word, hf_status_word(status));
         if (!is_status && !hf_word_is_in(i, lines)) continue;
-        fprintf(stderr, "%s%s", n++ ? ", " : "`hifdm explain WORD` tells more: ", w.word);
+        fprintf(stderr, "%s%s", n++ ? ", " : "`hifdm explain WORD` explains: ", w.word);
     }
     if (n) fputc('\n', stderr);
 }

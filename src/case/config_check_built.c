@@ -225,7 +225,7 @@ static void check_load_case(const hf_case *c, const char *list, int row, const h
     if (g->over != HF_OVER_DESIGN)
         hf_config_fault_in_row(f, list, row, "load_case", "does not go with over: samples; remove one of them");
     if (b->n_load_case == 0)
-        snprintf(what, sizeof what, "needs rows of `load_cases`, which name the load cases of the net as built");
+        snprintf(what, sizeof what, "needs load cases of the as-built net; add rows to `load_cases`");
     else if (is_known || hf_objective_takes_load_cases(g))
         return;
     else if ((near = hf_text_nearest(g->load_case, name, b->n_load_case)))
@@ -264,8 +264,7 @@ static void check_objective(const hf_optimize_settings *o, const char *list, int
     if (o->n_front > 0 && o->method != HF_OPTIMIZE_GA && (is_worst || (is_of_nets && is_largest)))
         hf_config_fault_in_row(f, list, row, is_worst ? "take" : "figure",
                                is_worst ? "worst needs method: ga in optimize.front"
-                                        : "as the largest of several sizes of nets as built needs method: ga in "
-                                          "optimize.front");
+                                        : "as the maximum over as-built nets needs method: ga in optimize.front");
 }
 
 void hf_config_check_nets(const hf_case *c, const char *list, int n_objective, const hf_objective_settings *objective,

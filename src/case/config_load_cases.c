@@ -267,7 +267,7 @@ static hf_status check_EA(const maker *q)
     if (n == 0) return HF_OK;
     return hf_error(
         q->messages, HF_BAD_CASE,
-        "%s: %d cables have no EA, which load cases of the net as built need, like '%s': give scene.EA_inner_N "
+        "%s: %d cables have no EA, which load cases of the as-built net need, like '%s': give scene.EA_inner_N "
         "and scene.EA_boundary_N, or the column EA_N of an imported net",
         location_in_row(q, 0, "name", where), n, s->cable_id[first]);
 }

@@ -23,9 +23,8 @@ const hf_section hf_section_table[] = {
     {"form", SIZE_MAX, "Form-finding. May be left out: the defaults hold."},
     {"optimize", AT(has_optimize), "Optimisation of the boundary pretensions. Without this section none runs."},
     {"tolerance", AT(has_tolerance),
-     "Errors of the net as built: samples of nets that are cut, stiff and supported a little wrong. Without this "
-     "section "
-     "there are none. Needs EA of all cables."},
+     "Samples of the as-built net, with errors of cut lengths, stiffness and supports. Without this section there are "
+     "none. Needs EA of all cables."},
     {"truss", AT(has_truss),
      "The deployable truss that carries the net. Without this section the supports stand on rigid ground. The paper "
      "prints no dimensions: every default here is an assumption."},
@@ -41,7 +40,7 @@ const hf_section hf_section_table[] = {
     {"truss.import", AT(has_truss_import), "Instead of the generated units: any truss from two CSV files."},
     {"coupling", SIZE_MAX, "Of the net with its truss (Fig. 17). Without a truss nothing of it is used."},
     {"adjust", AT(has_adjust),
-     "Turnbuckles of the net as built, for `hifdm adjust`: which moves bring the figure back, given measured places."},
+     "Turnbuckles of the as-built net, for `hifdm adjust`, which finds adjustments from measured positions."},
     {"sweep", AT(has_sweep),
      "Axes of a sweep, key: [values] or key: {from, to, n}: for `hifdm sweep`, which runs the case once per point."},
 };
@@ -75,14 +74,14 @@ const hf_field hf_field_table[] = {
      "parabolic_cylinder: z = x^2/(4f) along y; paraboloid: z = (x^2 + y^2)/(4f); auto: that of a generated net, of an "
      "imported one the one that its inner nodes are on"},
     {"surface.focal_length_m", HF_FIELD_DOUBLE, AT(surface.focal_length_m), HF_ABOVE_ZERO, 1e9, "", "m", NULL,
-     "of the wanted surface; default: that of a generated net"},
+     "of the target surface; default: that of a generated net"},
     {"surface.strip_width_m", HF_FIELD_DOUBLE, AT(surface.strip_width_m), HF_ABOVE_ZERO, 1e4, "", "m", NULL,
      "width of the flat strips along y, for the faceting error; default: a cell of parabolic_cylinder"},
     {"surface.mesh_tension_N_per_m", HF_FIELD_DOUBLE, AT(surface.mesh_tension_N_per_m), 0, 1e6, "0", "N/m", NULL,
      "of the mesh, in all directions: it bends the cables between two facets, and the facets are pillows; 0: they are "
      "flat"},
     {"surface.frequencies_Hz", HF_FIELD_DOUBLE_LIST, AT(surface.frequencies_Hz), HF_ABOVE_ZERO, 1e15, "[]", "Hz", NULL,
-     "up to 32, at which the loss of gain is told (Ruze)"},
+     "up to 32, at which the gain loss is reported (Ruze)"},
 
     {"surface.pattern.theta_deg", HF_FIELD_BOUNDS, AT(surface.pattern.theta_deg), -180, 180, "[-5, 5]", "deg", NULL,
      "first and last angle from +z of each cut; below 0 on the other side of +z"},
@@ -94,9 +93,9 @@ const hf_field hf_field_table[] = {
      "point; line along y; plane_wave that falls along -z; auto: a line of a parabolic cylinder, a point of a "
      "paraboloid"},
     {"surface.pattern.feed.position_m", HF_FIELD_VECTOR, AT(surface.pattern.position_m), -1e9, 1e9, "", "m", NULL,
-     "of a point, or of a line along y through it; default: the focus of the wanted surface"},
+     "of a point, or of a line along y through it; default: the focus of the target surface"},
     {"surface.pattern.feed.aim_m", HF_FIELD_VECTOR, AT(surface.pattern.aim_m), -1e9, 1e9, "", "m", NULL,
-     "the point that the feed looks at; default: the middle of the aperture, on the wanted surface"},
+     "the point that the feed looks at; default: the middle of the aperture, on the target surface"},
     {"surface.pattern.feed.cos_power", HF_FIELD_DOUBLE, AT(surface.pattern.cos_power), 0, 1e4, "", "", NULL,
      "q: the field of the feed goes as cos^q of the angle from its axis, its power as cos^(2q); default: 10 dB less at "
      "the edge of the facets, distances aside"},
@@ -112,21 +111,21 @@ const hf_field hf_field_table[] = {
      "uniform tension Td of the inner cables"},
     {"form.prestress", HF_FIELD_WORD, AT(form.prestress), 0, 0, "given", "", hf_prestress_word,
      "given: every cable keeps its law; exact: every cable gets the force density that holds all nodes at their "
-     "theoretical places, with tensions as near as balance allows to those that laws give (tension, force_density), "
-     "and even where they give none (length, elastic)"},
+     "target positions. The tensions are as near as equilibrium allows to those of the laws tension and force_density, "
+     "and even where the laws give none (length, elastic)"},
     {"form.stop", HF_FIELD_WORD, AT(form.stop), 0, 0, "residual", "", hf_stop_rule_word,
      "residual: equilibrium and lengths within the tolerances; rms_change: the paper's rule, psi changes by less than "
      "rms_tolerance_m (stops early, for reproduction)"},
     {"form.residual_tolerance", HF_FIELD_DOUBLE, AT(form.residual_tolerance), 1e-13, 1, "1e-7", "", NULL,
-     "largest nodal residual, relative to the pretension"},
+     "maximum nodal residual, relative to the pretension"},
     {"form.length_tolerance", HF_FIELD_DOUBLE, AT(form.length_tolerance), 1e-13, 1, "1e-7", "", NULL,
-     "largest |l/L*-1| of a taut cable of law length"},
+     "maximum |l/L*-1| of a taut cable of law length"},
     {"form.rms_tolerance_m", HF_FIELD_DOUBLE, AT(form.rms_tolerance_m), HF_ABOVE_ZERO, BIG, "1e-6", "m", NULL,
      "change of psi between two iterations at which rms_change stops (0.001 mm in the paper)"},
     {"form.max_iterations", HF_FIELD_INT, AT(form.max_iterations), 1, 10000000, "100000", "", NULL,
      "bound on the iterations; reached: not converged"},
     {"form.collapse_ratio", HF_FIELD_DOUBLE, AT(form.collapse_ratio), 1e-12, 0.5, "1e-3", "", NULL,
-     "a cable of law tension shorter than this part of its theoretical length has collapsed"},
+     "a cable of law tension has collapsed if it is shorter than this part of its length at the target positions"},
     {"form.factor", HF_FIELD_WORD, AT(form.factor), 0, 0, "own", "", hf_factor_word,
      "own: band Cholesky of this program; lapack: dpbtrf and dpbtrs of LAPACK for the positive definite matrices of "
      "form-finding, of designs and of refinement; every design then has a factor of its own. Certificates and as-built "
@@ -152,8 +151,8 @@ const hf_field hf_field_table[] = {
     {"adjust.target_m", HF_FIELD_DOUBLE, AT(adjust.target_m), 0, BIG, "0", "m", NULL,
      "no further move is made once the figure is below it"},
     {"adjust.figure", HF_FIELD_WORD, AT(adjust.figure), 0, 0, "psi", "", hf_adjust_figure_word,
-     "what the moves make small, RMS: psi: distance of the inner nodes to where they should be, see adjust.aim; "
-     "surface: of the inner nodes to the wanted surface, along its normal; facets: of the facets to it"},
+     "RMS figure that the adjustments minimise. psi: distance of the inner nodes to the positions of adjust.aim; "
+     "surface: distance of the inner nodes to the target surface, along its normal; facets: of the facets to it"},
     {"adjust.aim", HF_FIELD_WORD, AT(adjust.aim), 0, 0, "design", "", hf_aim_word,
      "of the figure psi: design: back to the shape of the design, which has its tensions, too; target_positions: to "
      "the "
@@ -172,10 +171,9 @@ const hf_field hf_field_table[] = {
      "what a design means: boundary held at q = T'/L* (always one answer), held at T', or Eq. 8 started from q = T'/L* "
      "and stopped by rms_change (the paper's literal reading; its optimum depends on where it stops)"},
     {"optimize.symmetry", HF_FIELD_WORD, AT(optimize.symmetry), 0, 0, "none", "", hf_symmetry_word,
-     "boundary cables that are mirror images of each other change by the same step, which makes fewer genes: mirrored "
-     "at "
-     "the middle of the net's extent along x, along y, both, or (auto) at whichever of the two planes the net is "
-     "symmetric about"},
+     "boundary cables that are mirror images of each other change by the same step, so a design has fewer variables. "
+     "The planes are in the middle of the net's extent along x, along y, or both; auto: those of the two planes about "
+     "which the net is symmetric"},
     {"optimize.solver", HF_FIELD_WORD, AT(optimize.solver), 0, 0, "auto", "", hf_solver_word,
      "how an individual is solved: chord shares one factored Newton matrix, eight designs to a pass; newton: each its "
      "own; fixed_point: the paper's iteration. auto: chord where it applies, else newton, else fixed_point"},
@@ -228,7 +226,7 @@ const hf_field hf_field_table[] = {
     {"tolerance.sigma_EA_ratio", HF_FIELD_DOUBLE, AT(tolerance.sigma_EA_ratio), 0, 0.05, "0", "", NULL,
      "of each EA, in parts of it"},
     {"tolerance.sigma_support_m", HF_FIELD_DOUBLE, AT(tolerance.sigma_support_m), 0, 1, "0", "m", NULL,
-     "of each coordinate of each support, of attachments before the truss gives way"},
+     "of each coordinate of each support, of attachments before the truss deflects"},
     {"tolerance.sigma_temperature_K", HF_FIELD_DOUBLE, AT(tolerance.sigma_temperature_K), 0, 1000, "0", "K", NULL,
      "of the temperature, the same for all cables; needs cables.expansion_per_K. That of the truss: tolerance.truss"},
     {"tolerance.distribution", HF_FIELD_WORD, AT(tolerance.distribution), 0, 0, "normal", "", hf_distribution_word,
@@ -246,15 +244,15 @@ const hf_field hf_field_table[] = {
      "random numbers, or Sobol's sequence in the 40 directions of errors that move the shape most, which converges "
      "faster"},
     {"tolerance.required_yield", HF_FIELD_DOUBLE, AT(tolerance.required_yield), 0, 0.9999, "0", "", NULL,
-     "part of the nets that should meet tolerance.require: the run tells by which factor all errors may grow, or must "
-     "shrink; 0: it does not"},
+     "required part of the nets that meet tolerance.require. The run reports by which factor all errors may grow, or "
+     "must shrink; 0: it does not"},
 
 #define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
     {"truss." #member, type, AT(section.member), min, max, default_value, unit, words, help},
     HF_TRUSS_KEYS(FIELD, truss)
 #undef FIELD
         {"truss.match_tolerance_m", HF_FIELD_DOUBLE, AT(truss.match_tolerance_m), 0, 1e3, "1e-6", "m", NULL,
-         "largest distance between a support of the net and the truss node that carries it"},
+         "maximum distance between a support of the net and the truss node that carries it"},
 
 #define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
     {"truss." #section "." #member, type, AT(truss.section.member), min, max, default_value, unit, words, help},
@@ -303,8 +301,8 @@ static const hf_field variable_field[] = {
     {"vary", HF_FIELD_WORD, IN(vary), 0, 0, NULL, "", hf_vary_word,
      "what varies of each: tension (N), force_density (N/m) or length (m) at which the cable is held; "
      "unstressed_length "
-     "(m) of cables of law elastic; the place of the supports at which the cables end (m from where the net has them): "
-     "along z, along the normal of the wanted surface, or in all three directions"},
+     "(m) of cables of law elastic; the position of the supports at which the cables end (m from their position in the "
+     "net): along z, along the normal of the target surface, or in all three directions"},
     {"range", HF_FIELD_AMOUNT, IN(range), HF_ABOVE_ZERO, BIG, "", "", NULL,
      "how far each may move from its value after form-finding, in the unit of what varies or as a part of that value; "
      "default: as far as the bounds"},
@@ -318,22 +316,22 @@ static const hf_field variable_field[] = {
 #define IN(member) offsetof(hf_objective_settings, member)
 static const hf_field objective_field[] = {
     {"figure", HF_FIELD_WORD, IN(figure), 0, 0, NULL, "", hf_figure_kind_word,
-     "psi: distance of the inner nodes to their theoretical places, RMS (m); surface: to the wanted surface (m); "
+     "psi: distance of the inner nodes to their target positions, RMS (m); surface: to the target surface (m); "
      "facets: distance of the facets to it, RMS (m); tension, length: difference to target, RMS over the set (N, m); "
-     "evenness: standard deviation of the tensions of the set over their mean; pull: largest force of the net on a "
-     "support (N); deflection: the largest of an attachment by the truss (m); mass: of the cables of the set (kg); "
-     "ratio: largest over smallest tension of the set; gain: root of the part of the gain that the shape loses in the "
-     "direction of the beam, by physical optics (surface.pattern)"},
+     "evenness: standard deviation of the tensions of the set over their mean; pull: maximum force of the net on a "
+     "support (N); deflection: maximum deflection of the truss at an attachment (m); mass: of the cables of the set "
+     "(kg); ratio: maximum over minimum tension of the set; gain: root of the part of the gain that the shape loses in "
+     "the direction of the beam, by physical optics (surface.pattern)"},
     {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL,
      "cables of tension, length, evenness, mass, ratio; default: all"},
     {"target", HF_FIELD_DOUBLE, IN(target), -BIG, BIG, "", "", NULL,
-     "of tension (N), which needs it, and of length (m), where the theoretical lengths are the default"},
+     "of tension (N), which needs it, and of length (m), where the lengths at the target positions are the default"},
     {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(mass_kg_per_m), HF_ABOVE_ZERO, BIG, "", "kg/m", NULL,
      "of the cables, which mass needs"},
     {"along", HF_FIELD_WORD, IN(along), 0, 0, "normal", "", hf_along_word,
      "of surface and facets: distance along the normal, or half the change of the path of a ray"},
     {"fit", HF_FIELD_WORD, IN(fit), 0, 0, "none", "", hf_fit_word,
-     "of surface and facets: distance to the wanted surface, or to its best fit to the shape"},
+     "of surface and facets: distance to the target surface, or to its best fit to the shape"},
     {"frequency_Hz", HF_FIELD_DOUBLE, IN(frequency_Hz), HF_ABOVE_ZERO, 1e15, "", "Hz", NULL,
      "of gain; default: the highest of surface.frequencies_Hz"},
     {"load_case", HF_FIELD_TEXT, IN(load_case), 1, HF_SET_NAME_SIZE, "", "", NULL,
@@ -410,11 +408,11 @@ static const hf_field load_case_field[] = {
 #define IN(member) offsetof(hf_require_settings, member)
 static const hf_field require_field[] = {
     {"measure", HF_FIELD_WORD, IN(measure), 0, 0, NULL, "", hf_tolerance_measure_word,
-     "what each net as built is measured by; those of the surface need a section surface, of facets a net that has "
+     "figure of each as-built net; those of the surface need a section surface, of facets a net that has "
      "some, losses by Ruze's formula (..gain_loss_dB) surface.frequencies_Hz, pattern_loss_dB surface.pattern; fit_ is "
      "after the best fit, as a reflector that is pointed and focused again has it"},
-    {"at_most", HF_FIELD_DOUBLE, IN(at_most), -BIG, BIG, "", "", NULL, "largest value that is allowed"},
-    {"at_least", HF_FIELD_DOUBLE, IN(at_least), -BIG, BIG, "", "", NULL, "smallest value that is allowed"},
+    {"at_most", HF_FIELD_DOUBLE, IN(at_most), -BIG, BIG, "", "", NULL, "maximum value that is allowed"},
+    {"at_least", HF_FIELD_DOUBLE, IN(at_least), -BIG, BIG, "", "", NULL, "minimum value that is allowed"},
 };
 #undef IN
 
@@ -451,15 +449,15 @@ const hf_list hf_list_table[] = {
     LIST("limits", n_limit, limit, HF_DESIGN_ROWS_MAX, limit_field, N_LIMIT_FIELD,
          "What a design must keep; without rows nothing"),
     BUILT_LIST("cables", n_cable, cable, HF_MATERIAL_ROWS_MAX, cable_field,
-               "What cables are made of, for the net as built; a later row replaces what an earlier one says"),
+               "Material of the cables of the as-built net; a later row replaces the values of an earlier one"),
     BUILT_LIST("nodes", n_node, node, HF_MATERIAL_ROWS_MAX, node_field,
-               "What joints weigh, for the net as built; a later row replaces an earlier one"),
+               "Mass of the joints of the as-built net; a later row replaces an earlier one"),
     BUILT_LIST("load_cases", n_load_case, load_case, HF_LOAD_CASE_ROWS_MAX, load_case_field,
-               "Load cases of the net as built, of up to 16 names: temperatures, gravity, forces, moves of supports; "
-               "without rows none is computed"),
+               "Load cases of the as-built net, of up to 16 names: temperatures, gravity, forces, displacements of "
+               "supports; without rows none is computed"),
     {"tolerance.require", AT(tolerance.n_require), AT(tolerance.require), sizeof(hf_require_settings),
      HF_REQUIRE_ROWS_MAX, require_field, sizeof require_field / sizeof *require_field,
-     "What a net as built must keep; without rows nothing, and there is no yield"},
+     "Requirements of an as-built net; without rows there are none, and there is no yield"},
     {"tolerance.truss", AT(tolerance.n_truss), AT(tolerance.truss), sizeof(hf_truss_heat_settings),
      HF_TRUSS_HEAT_ROWS_MAX, truss_heat_field, sizeof truss_heat_field / sizeof *truss_heat_field,
      "Temperatures of the truss that vary on their own; those of rows that name the same members add up. Without rows "

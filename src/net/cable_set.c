@@ -13,8 +13,7 @@ const char *hf_cable_set_name_fault(const char *name)
     if (*name == '-') return "must not begin with -"; /* a spreadsheet would take such a cell for a formula */
     if (n >= HF_CABLE_SET_NAME_SIZE) return "is longer than 63 letters";
     for (int g = 0; g < 2; g++)
-        if (!strcmp(name, hf_group_word[g]))
-            return "is the name of a group, which the column group tells; leave it out";
+        if (!strcmp(name, hf_group_word[g])) return "is the name of a group, which the column group sets; leave it out";
     if (!strcmp(name, "all")) return "is the name of all cables; leave it out";
     return NULL;
 }

@@ -180,7 +180,7 @@ const char *hf_scene_difference(const hf_scene *a, const hf_scene *b)
     size_t n = (size_t)a->n_node, n_cable = (size_t)a->n_cable;
     if (a->n_node != b->n_node || !have_same_ids(a->n_node, a->node_id, b->node_id)) return "nodes";
     if (memcmp(a->role, b->role, n) != 0) return "roles of nodes";
-    if (!hf_scene_numbers_agree(3 * n, a->position_m, b->position_m)) return "theoretical places of nodes";
+    if (!hf_scene_numbers_agree(3 * n, a->position_m, b->position_m)) return "target positions of nodes";
     if (a->n_cable != b->n_cable || !have_same_ids(a->n_cable, a->cable_id, b->cable_id)) return "cables";
     if (memcmp(a->end, b->end, 2 * n_cable * sizeof *a->end) != 0) return "ends of cables";
     return NULL;

@@ -152,7 +152,7 @@ static void write_grid(const void *context, FILE *f)
 {
     const view *v = context;
     fprintf(f,
-            "z of the %s shape over x and y, m, frame of the scene: vertex of the wanted surface at 0, its axis +z\n",
+            "z of the %s shape over x and y, m, frame of the scene: vertex of the target surface at 0, its axis +z\n",
             v->stored->word);
     fprintf(f, "%.17g %.17g %.17g %.17g\n%d %d 0\n", v->low[0], v->low[1], v->high[0], v->high[1], v->n[0], v->n[1]);
     for (int k = 0; k < v->n[0] * v->n[1]; k++)
@@ -165,8 +165,8 @@ static void write_points(const void *context, FILE *f)
 {
     const view *v = context;
     fprintf(f,
-            "# facets of the %s shape, %d points each: places in m, unit normals on the side of +z, areas in m2\n"
-            "# frame of the scene: vertex of the wanted surface at 0, its axis +z\n"
+            "# facets of the %s shape, %d points each: positions in m, unit normals on the side of +z, areas in m2\n"
+            "# frame of the scene: vertex of the target surface at 0, its axis +z\n"
             "x,y,z,nx,ny,nz,dA\n",
             v->stored->word, v->n_side * v->n_side);
     for (int i = 0; i < v->facets.n_facet; i++) {

@@ -107,8 +107,8 @@ hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_m
     j->file = -1;
     if (is == OTHER_VERSION)
         return hf_error(messages, HF_EXISTS,
-                        "%s: %s is a journal of another version of hifdm; finish the run with that one, or begin anew "
-                        "with --restart (of a sweep: --retry failed)",
+                        "%s: %s is a journal of another version of hifdm; finish the run with that version, or "
+                        "restart it with --restart (of a sweep: --retry failed)",
                         result, j->path);
     return hf_error(messages, HF_EXISTS,
                     "%s: %s is no journal of hifdm, and in the way; delete it, use --restart (of a sweep: --retry "
@@ -282,8 +282,8 @@ hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take
     bool is_ours = got && strncmp(header + 8, identity, HF_JOURNAL_IDENTITY) == 0;
     if (!is_ours && info.st_size > HEADER_BYTES)
         return hf_error(messages, HF_EXISTS,
-                        "%s: %s is of another case; delete it or put the right one there, or begin anew with --restart "
-                        "(of a sweep: --retry failed)",
+                        "%s: %s is of another case; delete it, put the right one there, or restart the run with "
+                        "--restart (of a sweep: --retry failed)",
                         j->result, j->path);
     if (!is_ours) return hf_journal_restart(j, identity, messages);
     snprintf(j->identity, sizeof j->identity, "%s", identity);

@@ -49,7 +49,7 @@ static hf_status take_chunk(void *context, int chunk, const void *payload, size_
     if (n == 0 || bytes != (size_t)n * ROW_BYTES)
         return hf_error(s->messages, HF_EXISTS,
                         "%s: its journal has %zu bytes of chunk %d, which this case has not; "
-                        "delete it, or begin anew with --restart",
+                        "delete it, or restart the run with --restart",
                         s->name, bytes, chunk);
     return keep_rows(s, chunk, payload);
 }
@@ -94,7 +94,7 @@ hf_status hf_samples_look(const char *result, int task, int tasks, const char of
         name_journal(result, i, i < 0 ? 0 : tasks, name);
         if (is_of_other_case(name, of_case))
             return hf_error(messages, HF_EXISTS,
-                            "%s: %s.journal has samples of another case; delete it, or begin anew with --restart",
+                            "%s: %s.journal has samples of another case; delete it, or restart the run with --restart",
                             result, name);
     }
     return HF_OK;

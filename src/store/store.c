@@ -234,8 +234,7 @@ static void compare_shape(hf_store *s, const hf_model *m, const hf_workspace *w)
     if (!(apart_N <= SAME_SHAPE * largest_N))
         s->f.io.status = hf_error(s->f.io.messages, HF_EXISTS,
                                   "%s: this machine or build finds another shape (tensions differ by %.2g N); "
-                                  "--restart (of a sweep: --retry failed) "
-                                  "begins anew",
+                                  "--restart (of a sweep: --retry failed) restarts the run",
                                   s->f.out.path, apart_N);
     else
         hf_warning(s->f.io.messages,
@@ -518,8 +517,9 @@ static hf_status demand_restored(hf_store *s, hf_messages *messages)
 {
     if (s->n_journal == 0) return HF_OK;
     return s->f.io.status = hf_error(messages, HF_EXISTS,
-                                     "%s: this machine or build does not come as far as the one that began it; its "
-                                     "generations are kept, --restart (of a sweep: --retry failed) begins anew",
+                                     "%s: this machine or build computes other generations than the one that began "
+                                     "the run. The stored generations are kept; --restart (of a sweep: --retry "
+                                     "failed) restarts the run",
                                      s->f.out.path);
 }
 

@@ -30,8 +30,8 @@ static bool is_news(hf_store *s, int generation, size_t bytes, int next, hf_stat
     if (generation < next) return false; /* published before the journal was rotated */
     if (generation == next && bytes == g->payload_bytes && generation < g->limit) return true;
     *status = hf_error(s->f.io.messages, HF_EXISTS,
-                       "%s: does not fit to %s, which goes on with generation %d of %zu bytes, not %d of %zu; was it "
-                       "copied or replaced? --restart (of a sweep: --retry failed) begins anew",
+                       "%s: does not match %s, whose next record is generation %d of %zu bytes, not %d of %zu; was it "
+                       "copied or replaced? --restart (of a sweep: --retry failed) restarts the run",
                        s->f.out.path, s->f.journal.path, generation, bytes, next, g->payload_bytes);
     return false;
 }
@@ -105,8 +105,8 @@ static void refuse_other_format(hf_store *s)
     hf_hdf5_get(io, io->file, "/", "format_version", HF_KIND_INT, &version, sizeof version);
     if (io->status == HF_OK && version != HF_FORMAT_VERSION)
         io->status = hf_error(io->messages, HF_EXISTS,
-                              "%s: is an unfinished result of hifdm 0.2, which this version does not go on with; "
-                              "--restart (of a sweep: --retry failed) begins anew, or finish it with hifdm 0.2",
+                              "%s: is an unfinished result of hifdm 0.2, which this version cannot resume; finish "
+                              "it with hifdm 0.2, or restart it with --restart (of a sweep: --retry failed)",
                               s->f.out.path);
 }
 
@@ -121,8 +121,7 @@ static void read_state(hf_store *s)
     hf_hdf5_get(io, io->file, "/", "identity", HF_KIND_CHARS, s->identity, sizeof s->identity);
     if (hf_store_keeps_earlier(io)) s->f.earlier = HF_EARLIER_KEPT;
     if (io->status == HF_OK && finished)
-        io->status =
-            hf_error(io->messages, HF_EXISTS, "%s: is finished, there is nothing to go on with", s->f.out.path);
+        io->status = hf_error(io->messages, HF_EXISTS, "%s: is finished, there is nothing to resume", s->f.out.path);
     if (!hf_hdf5_has(io, io->file, "/variable")) { /* the run stopped before its search, or has none */
         if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, io->messages);
         return;
@@ -212,7 +211,7 @@ static hf_status breed_record(void *context, int generation, const void *payload
     if (!hf_generations_are_sound(&o->population))
         return hf_error(s->f.io.messages, HF_EXISTS,
                         "%s: %s is damaged: generation %d is none that a run stores; --restart (of a sweep: --retry "
-                        "failed) begins anew",
+                        "failed) restarts the run",
                         s->f.out.path, s->f.journal.path, generation);
     o->is_fresh = false; /* the generation of the record has been ranked */
     hf_generations_add(g, &o->population, NULL);

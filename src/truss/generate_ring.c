@@ -23,7 +23,7 @@ const char *hf_truss_ring_fault(const hf_truss_settings *s, const hf_paraboloid 
     int n_gap = 6 * p->rings; /* for triangles; the gaps of a quad net are known only when they are made */
     bool is_counted = p->grid == HF_GRID_TRIANGLE;
     if (p->rear_distance_m == 0 && r->height_m == 0) {
-        snprintf(what, size, "is missing: the net has no rear rim that tells it");
+        snprintf(what, size, "is missing: the net has no rear rim that gives this height");
         return "height_m";
     }
     if (p->rear_distance_m > 0 && r->height_m > 0 &&

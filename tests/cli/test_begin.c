@@ -354,10 +354,10 @@ START_TEST(messages_say_where_to_read_on)
     const char *chen = keep(source_path("configs/straight-edges.yaml"));
     SHELL(4, "script -qec \"\\\"$0\\\" run \\\"$1\\\" -o \\\"$2\\\" --set form.stop=residual\" /dev/null", chen,
           temp("c.h5"));
-    OUT("`hifdm explain WORD` tells more: straight_chain, loaded_chains\r\n");
+    OUT("`hifdm explain WORD` explains: straight_chain, loaded_chains\r\n");
     SHELL(0, "script -qec \"\\\"$0\\\" run \\\"$1\\\" -o \\\"$2\\\" --set optimize.generations=1\" /dev/null", chen,
           temp("c.h5"));
-    OUT("`hifdm explain WORD` tells more: loaded_chains, stopped_early\r\n");
+    OUT("`hifdm explain WORD` explains: loaded_chains, stopped_early\r\n");
     HIFDM(0, "show", temp("c.h5"));
     ck_assert_ptr_null(strstr(said.err, "explain"));
 }

@@ -12,7 +12,7 @@ START_TEST(check_tells_what_will_run)
     OUT("note          30 straight chains of length-controlled cables\n");
     OUT("will run      form-finding: hifdm, solved by fixed point (asked for), stop: rms_change, at most 100000 "
         "iterations\n");
-    OUT("optimisation: rule force_density, 120 genes, 50 individuals, at most 400 generations, seed 2022\n");
+    OUT("optimisation: rule force_density, 120 variables, 50 individuals, at most 400 generations, seed 2022\n");
     OUT("skipped       load_cases (none given); truss (no truss section); loads (none given); general band matrix (no "
         "struts)\n");
     OUT("  memory        workspaces (2 threads)   ");
@@ -124,7 +124,7 @@ START_TEST(check_announces_no_ga_without_genes)
 {
     HIFDM(0, "check", file_with("c.yaml", SMALL_SCENE SMALL_GA), "--set",
           "scene.parabolic_cylinder.supports=perimeter");
-    ck_assert_msg(!strstr(said.out, "0 genes"), "%s", said.out);
+    ck_assert_msg(!strstr(said.out, "0 variables"), "%s", said.out);
     HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE SMALL_GA), "-o", temp("c.h5"), "--set",
           "scene.parabolic_cylinder.supports=perimeter");
     ERR("warning: optimize: skipped, because no boundary cable has a free end");
@@ -208,7 +208,7 @@ START_TEST(help_lists_every_command_and_exit_status)
     HIFDM(0, "help");
     static const char *const parts[] = {
         "hifdm run ",    "hifdm check ",    "hifdm show ",    "hifdm report ", "hifdm export ",
-        "hifdm schema ", "hifdm evaluate ", "hifdm recover ", "hifdm diff ",   "'hifdm help COMMAND' tells"};
+        "hifdm schema ", "hifdm evaluate ", "hifdm recover ", "hifdm diff ",   "'hifdm help COMMAND' prints"};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         OUT(parts[i]);
     OUT("\nexit status:\n  0   done\n  1   files differ\n  2   bad usage or case\n");

@@ -58,7 +58,7 @@ START_TEST(symmetric_runs_store_who_follows_whom)
     HIFDM(0, "show", out, "-v");
     OUT("symmetry: planes x and y; 30 of 120 design variables are independent\n");
     HIFDM(0, "check", CHEN, "--set", "optimize.symmetry=auto");
-    OUT("symmetry: auto, planes x and y; 30 independent genes of 120\n");
+    OUT("symmetry: auto, planes x and y; 30 independent variables of 120\n");
     HIFDM(0, "run", CHEN, "-o", plain, "--set", "optimize.generations=2");
     ck_assert_ptr_null(strstr(said.out, "symmetry"));
     EXPECT(plain, "--", "'leader' not in a['variable']");
@@ -73,7 +73,7 @@ START_TEST(a_net_without_the_symmetry_is_refused)
         "loads, group, law and target) have 4 cables: c1, c,2, c3, c4\n");
     ck_assert(!is_there(temp("nowhere.h5")));
     HIFDM(0, "check", net_with(nodes, cables), "--set", "optimize.symmetry=auto");
-    OUT("symmetry: auto, plane x; 2 independent genes of 3\n");
+    OUT("symmetry: auto, plane x; 2 independent variables of 3\n");
 }
 END_TEST
 

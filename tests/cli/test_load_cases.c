@@ -52,7 +52,7 @@ START_TEST(load_cases_are_printed_stored_and_shown)
     HIFDM(0, "run", EXAMPLE, "-o", out, "--quiet");
     ERR("is the finished result of this case");
     HIFDM(0, "check", EXAMPLE);
-    OUT("5 cases of the net as built: cold, sun, cup_up, cup_down, spun\n");
+    OUT("5 load cases of the as-built net: cold, sun, cup_up, cup_down, spun\n");
 }
 END_TEST
 

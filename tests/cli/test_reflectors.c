@@ -52,7 +52,8 @@ static const struct {
     {DISH "truss: {ring: {height_m: 1.7}}\n", ":2:26: truss.ring.height_m: of 1.7 m puts the rear ring elsewhere than "
                                               "the rim of the rear net, which hangs on it: "
                                               "leave it out, or make it rear_distance_m, 1.8 m\n"},
-    {DISH_ALONE "truss: {ring: {}}\n", ": truss.ring.height_m: is missing: the net has no rear rim that tells it\n"},
+    {DISH_ALONE "truss: {ring: {}}\n",
+     ": truss.ring.height_m: is missing: the net has no rear rim that gives this height\n"},
     {DISH "truss: {ring: {cells_per_bay: 5}}\n",
      ":2:31: truss.ring.cells_per_bay: of 5 must divide the 24 cells at the rim into three bays or more\n"},
     {DISH "truss: {ring: {cells_per_bay: 12}}\n", ":2:31: truss.ring.cells_per_bay: of 12 must divide the 24"},

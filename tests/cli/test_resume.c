@@ -176,7 +176,7 @@ START_TEST(a_torn_journal_gives_what_is_whole)
     SHELL(0, "cp \"$1\" \"$2\" && cp \"$1.journal\" \"$2.journal\"", path, copy);
     SHELL(0, "printf another | dd of=\"$1.journal\" bs=1 seek=10 conv=notrunc 2>/dev/null", copy);
     HIFDM(5, "recover", copy);
-    ERR("is of another case; delete it or put the right one there");
+    ERR("is of another case; delete it, put the right one there");
     ck_assert_int_ge(generations_in_journal(copy, NULL), n - 2);                         /* it is as it was */
     SHELL(0, "head -c 30 \"$1.journal\" >\"$1.t\" && mv \"$1.t\" \"$1.journal\"", path); /* not even a header */
     HIFDM(0, "recover", path);

@@ -102,7 +102,7 @@ START_TEST(what_nets_need_is_named)
 {
     static const char scene[] = SMALL_SCENE "optimize: {method: lm, objective: [%s]}\n%s";
     HIFDM(2, "check", file_with("c.yaml", formatted(scene, "{figure: psi, load_case: all}", "")));
-    ERR("load_case: needs rows of `load_cases`");
+    ERR("load_case: needs load cases of the as-built net");
     HIFDM(2, "check", file_with("c.yaml", formatted(scene, "{figure: psi, over: samples}", "")));
     ERR("over: samples needs a section tolerance");
     HIFDM(2, "check",

@@ -173,7 +173,7 @@ def net_notes(runs):
 1. If all cables have 10 N, edge cables and ties do not hold the pull of the triangles. The edge nodes then move onto
    supports, and hifdm refuses this net and the others of [search.md](search.md) as collapsed. The pictures show only
    the first step. The paper's net holds at equal tensions, so it has another edge.
-2. With other seeds the ratio is 4.87 to 5.33 at the same psi, which hardly depends on it. No net of
+2. With other seeds the ratio is 4.87 to 5.33 at nearly the same psi. No net of
    [search.md](search.md) has both 5.608 and 4.3 mm.
 3. At the paper's stop psi still drifts: the short edge ties converge slowly, and the rule stops after
    {stopped.get("form", "iterations")} iterations at {mm(stopped.get("form", "psi_m"))} mm, where equilibrium is
@@ -192,7 +192,7 @@ def truss_rows(runs):
          mm(stopped.get("form", "psi_m")), ""),
         ("18", f"the same with E = {USUAL_E_PA / 1e9:.0f} GPa (mm)", "8.38", mm(usual.get("form", "psi_m")),
          "predicted", "", ""),
-        ("18", "largest displacement of an attachment (mm)", "", mm(tight.get("coupling", "deflection_max_m")),
+        ("18", "maximum deflection of the truss at an attachment (mm)", "", mm(tight.get("coupling", "deflection_max_m")),
          "predicted", mm(stopped.get("coupling", "deflection_max_m")), ""),
         ("19", "inner tension ratio, before a GA", "1.0372", f"{ratio(tight, 'form', 'inner'):.4f}",
          "predicted; not met (4)", f"{ratio(stopped, 'form', 'inner'):.4f}", ""),
@@ -219,6 +219,7 @@ def truss_notes(runs):
    At equilibrium the inner tensions are equal, also on a truss. So 1.0372 is not an equilibrium of Eq. 7.
 5. The supports of the truss at the spacecraft are assumed. If the truss is held at all corners of the central module,
    E is calibrated to 66 GPa, and the loop compares five times.
+
    The loop of Fig. 17 has {truss.get("coupling", "iterations")} form-findings, the first one on the undeflected truss.
    Displacements change by {steps} mm. The first value is the displacement
    itself. The others compare two displacements as Fig. 21 does.
@@ -249,7 +250,7 @@ def differences(kept, now):
     """Returns the lines that differ by more than two units in the last printed digit of a number. One unit allows for
     rounding, the other for processors whose LAPACK orders its sums differently. On one machine the runs repeat to the
     bit. Between four kernels of OpenBLAS (OPENBLAS_CORETYPE) no printed digit changed. The boundary ratio of
-    Levenberg-Marquardt has one digit less, because psi hardly depends on it where the method stops."""
+    Levenberg-Marquardt has one digit less, because psi barely depends on it where the method stops."""
     a, b = kept.splitlines(), now.splitlines()
     found = [f"{len(a)} lines are now {len(b)}"] if len(a) != len(b) else []
     for old, new in zip(a, b):

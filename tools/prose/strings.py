@@ -33,7 +33,8 @@ def of_c(text, is_header):
     for i, line in enumerate(code.split("\n")):
         if not line.startswith("#include"):
             for literal in LITERAL.findall(line):
-                yield i, literal
+                if " " in literal.strip(): # others are names, also those of 0.2
+                    yield i, literal
 
 
 def of_script(text):

@@ -174,7 +174,7 @@ static const struct {
      "a, "
      "force_N: [0, 0, 1]}\n",
      "",
-     "error: c.yaml:3:12: load_cases.0.name: 163 cables have no EA, which load cases of the net as built need, like "
+     "error: c.yaml:3:12: load_cases.0.name: 163 cables have no EA, which load cases of the as-built net need, like "
      "'f0_0-f1_0': "
      "give scene.EA_inner_N and scene.EA_boundary_N, or the column EA_N of an imported net\n"},
     {NET "load_cases:\n  - {name: a, force_N: [0, 0, 1], role: edge}\n  - {name: b, nodes: nodes.csv}\n",

@@ -73,7 +73,7 @@ static const struct {
     {"a.b", "error: cables.csv:3: 'bc': the set 'a.b' must be made of letters, digits, _ and -\n"},
     {"ok;b\xc3\xa9", "error: cables.csv:3: 'bc': the set 'b\xc3\xa9' must be made of letters, digits, _ and -\n"},
     {"-x", "error: cables.csv:3: 'bc': the set '-x' must not begin with -\n"},
-    {"boundary", "error: cables.csv:3: 'bc': the set 'boundary' is the name of a group, which the column group tells; "
+    {"boundary", "error: cables.csv:3: 'bc': the set 'boundary' is the name of a group, which the column group sets; "
                  "leave it out\n"},
     {"all", "error: cables.csv:3: 'bc': the set 'all' is the name of all cables; leave it out\n"},
     {LONG_63 "4", "error: cables.csv:3: 'bc': the set '" LONG_63 "' is longer than 63 letters\n"},

@@ -179,8 +179,8 @@ static const struct {
     {"f['all'] = f['/']", "one object too many, or too deep"},
     {RECORD("data[88 + 8] = 77"), "generation 2 is none that a run stores"}, /* `evaluated` of the first individual */
     {RECORD("data[84:84 + n] = struct.pack('<i', 2) + bytes(20); n = 24; struct.pack_into('<I', data, 76, n)"),
-     "does not fit to"},
-    {RECORD("struct.pack_into('<i', data, 84, 2**31 - 1)"), "does not fit to"},
+     "does not match"},
+    {RECORD("struct.pack_into('<i', data, 84, 2**31 - 1)"), "does not match"},
 };
 
 START_TEST(a_damaged_file_is_refused)

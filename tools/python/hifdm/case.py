@@ -350,7 +350,7 @@ class Case:
             progress: Callable[[Progress], Any] | None = None) -> Run:
         """Runs the case as `hifdm run` does: form-finding, search, refinement, load cases and as-built samples.
 
-        output: the result file. If it holds a run that was stopped, this run resumes it, or with `restart` begins anew.
+        output: the result file. If it holds a run that was stopped, this run resumes it, or with `restart` replaces it.
         None: the run writes no file. progress: a function that is called during the run, in a thread of its own. If it
         returns False, the run is stopped, and the status is "interrupted". If it raises an exception, or the user
         presses Ctrl-C, the run is stopped, and the exception is raised here. It cannot use this case, which is busy.
