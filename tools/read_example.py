@@ -31,7 +31,8 @@ def print_summary(file):
               f"to {tension.max():.3f} N, residual {figures['residual_N']:.1e} N")
     if "search/population/psi_m" in file:
         psi = file["search/population/psi_m"][:]  # [generation, individual], NaN if infeasible
-        print(f"  {len(psi)} generations, best psi {np.nanmin(psi[0]) * 1e3:.4f} -> {np.nanmin(psi[-1]) * 1e3:.4f} mm")
+        first, last = np.nanmin(psi[0]) * 1e3, np.nanmin(psi[-1]) * 1e3
+        print(f"  {len(psi)} generations, best psi {first:.4f} -> {last:.4f} mm")
     print(text(file.attrs["warnings"]), end="")
 
 

@@ -131,8 +131,8 @@ hf_status hf_objectives_measure(const hf_objectives *objectives, const hf_worksp
                                 hf_objectives_point *point, double *value, double *merit);
 
 /* Computes the weighted residuals residual [n_row] of the shape in the workspace, whose norm is the merit, and the data
- * for hf_objectives_push. Without with_nets, only the objectives that are measured on the design itself are computed, and
- * the rows of the others do not change. Returns HF_OK; HF_NOT_FINITE if an objective has no value; HF_NO_MEMORY. */
+ * for hf_objectives_push. Without with_nets, only the objectives that are measured on the design itself are computed,
+ * and the rows of the others do not change. Returns HF_OK; HF_NOT_FINITE if an objective has no value; HF_NO_MEMORY. */
 hf_status hf_objectives_linearise(const hf_objectives *objectives, bool with_nets, const hf_workspace *workspace,
                                   hf_objectives_point *point, double *residual);
 

@@ -8,6 +8,7 @@
 #include "case/study.h"
 #include "net/symmetry.h"
 #include "out/print.h"
+#include "out/print_summary.h"
 #include "run/diagnose.h"
 #include "run/problem_parts.h"
 #include "run/tolerance_stage.h"
@@ -533,10 +534,11 @@ static hf_status print_time(hf_problem *p, const hf_evaluator *v, int threads, d
                 r->iterations == 1 ? "" : "s", text);
         return HF_OK;
     }
-    fprintf(f, "  expected time form-finding: %s (%d iteration%s, stopped by %s)\n", text, r->iterations,
-            r->iterations == 1 ? "" : "s", hf_stop_reason_word((int)r->stop_reason));
+    fprintf(f, "  expected time form-finding: %s (", text);
+    hf_print_iterations(r, f);
+    fputs(")\n", f);
     if (r->coupling.iterations > 0)
-        fprintf(f, "                on its truss: attachments deflect by up to %.4f mm under the net\n",
+        fprintf(f, "                coupling: the truss deflects by up to %.4f mm at the attachments\n",
                 r->coupling.deflection_max_m * 1e3);
     HF_TRY(hf_problem_explain(p, messages));
     print_tolerance_time(p, threads, f);

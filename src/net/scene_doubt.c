@@ -208,7 +208,7 @@ static void doubt_plane(const hf_scene *s, hf_messages *messages)
     if (rms_m > FLATTER_PART * extent_m)
         hf_warning(messages,
                    "scene: all supports are %s, and no load, tie or strut holds the net off it: whatever its tensions, "
-                   "it collapses there, and the inner nodes are %.4g mm RMS from their target positions or more. Put "
+                   "it collapses there, and the inner nodes are at least %.4g mm RMS from their target positions. Put "
                    "supports on the surface, tie the net to another one, or load it",
                    word[f.n_along], rms_m * 1e3);
 }

@@ -116,8 +116,7 @@ static hf_status add_supports(maker *q, int row, int n_picked)
 {
     const hf_model *m = q->m;
     if (q->settings->variable_row[row].vary == HF_VARY_SUPPORT_NORMAL && !(q->surface->focal_length_m > 0))
-        return hf_error(q->messages, HF_BAD_CASE,
-                        "%s: support_normal needs the target surface: add a section `surface`",
+        return hf_error(q->messages, HF_BAD_CASE, "%s: support_normal needs a target surface: add a section `surface`",
                         where_in(q, row, "vary"));
     for (int i = 0; i < 2 * n_picked; i++) {
         int support_row = m->end_row[2 * q->picked[i / 2] + i % 2];

@@ -83,7 +83,9 @@ void hf_print_gained(double psi_m, double initial_psi_m, FILE *f)
 static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_form_result *r = result_of(s, stage);
-    double initial_psi_m = stage == HF_STAGE_SEARCH ? s->search.initial_psi_m : s->stage[HF_STAGE_FORM].result.psi_m;
+    bool is_searched = s->stage[HF_STAGE_SEARCH].exists && isfinite(s->search.initial_psi_m);
+    double initial_psi_m =
+        stage == HF_STAGE_SEARCH || is_searched ? s->search.initial_psi_m : s->stage[HF_STAGE_FORM].result.psi_m;
     if (stage == HF_STAGE_FORM || s->objectives.is_front) return;
     hf_print_gained(r->psi_m, initial_psi_m, f);
 }

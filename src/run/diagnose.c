@@ -758,12 +758,13 @@ void hf_result_doubt_strain(const hf_problem *p, const hf_workspace *shape, hf_m
         worst = e;
     }
     if (worst < 0) return;
-    if (n > 1) snprintf(more, sizeof more, ", and %d more", n - 1);
+    if (n > 1) snprintf(more, sizeof more, " and %d more", n - 1);
     hf_warning(
         messages,
-        "cable '%s'%s is stretched by %.3g %% (%.4g N, EA %.4g N), but cables break at a few per cent: check that EA "
+        "cable '%s'%s %s stretched by %s%.3g %% (%.4g N, EA %.4g N), but cables break at a few per cent: check that EA "
         "is in N",
-        p->scene.cable_id[worst], more, most * 100, shape->tension_N[worst], EA_N[worst]);
+        p->scene.cable_id[worst], more, n > 1 ? "are" : "is", n > 1 ? "up to " : "", most * 100,
+        shape->tension_N[worst], EA_N[worst]);
 }
 
 /* Displacement above which a warning appears, relative to the mean length of a node's cables. In the cases of configs/

@@ -44,8 +44,8 @@ void hf_breeding_move_along(const hf_breeding *breeding, const hf_population *po
 void hf_breeding_mutate(const hf_breeding *breeding, const hf_population *population, double rate, double single, int i,
                         double *child, hf_random *random);
 
-/* Completes child i of the next generation, which began as individual `origin`: linked genes follow their leaders. A child
- * that equals its origin needs no evaluation, because it has the result of the origin. Sets rates and parents. */
+/* Completes child i of the next generation, which began as individual `origin`: linked genes follow their leaders. A
+ * child that equals its origin needs no evaluation, because it has the result of the origin. Sets rates and parents. */
 void hf_breeding_finish(const hf_breeding *breeding, const hf_population *now, hf_population *next, int i, int origin,
                         double crossover_rate, double mutation_rate, int mother, int father);
 

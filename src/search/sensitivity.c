@@ -232,8 +232,8 @@ static void solve_block(void *context, int room, int i_block)
     if (s->v->model->n_attachment) let_truss_answer(context, room, i_block);
 }
 
-/* Calls `work` for all blocks: solve_block to solve for dx/dv, on entry with the forces in `move` and `pull`; follow_block
- * to add the displacements under the forces in `answer`. */
+/* Calls `work` for all blocks: solve_block to solve for dx/dv, on entry with the forces in `move` and `pull`;
+ * follow_block to add the displacements under the forces in `answer`. */
 static void do_blocks(hf_sensitivity *s, const hf_workspace *w, void (*work)(void *context, int room, int i_block))
 {
     solved q = {s, w};

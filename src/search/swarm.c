@@ -1,5 +1,5 @@
-/* Makes the plan and the lanes of the paper's iteration, and runs it for many designs, eight at a time. swarm.h describes
- * the interface, swarm_kernel.c has the loops.
+/* Makes the plan and the lanes of the paper's iteration, and runs it for many designs, eight at a time. swarm.h
+ * describes the interface, swarm_kernel.c has the loops.
  *
  *     model -> incidences of each node -> skyline and tiles of D -> plan (shared)
  *     plan  -> lanes of a thread -> put a design into a lane -> kernels -> get the shape of a lane

@@ -3,8 +3,8 @@
  * design. No operation mixes lanes, so a result depends neither on the designs in the other lanes nor on the thread.
  *
  * The eight share the net, its numbering and the laws. Each has its own force densities, targets and support positions.
- * Every array below ends in [HF_LANES], with entry k for lane k. Meaningless numbers, NaN or an indefinite matrix in one
- * lane do not change a bit in the others. A lane without a design holds a copy of another one.
+ * Every array below ends in [HF_LANES], with entry k for lane k. Meaningless numbers, NaN or an indefinite matrix in
+ * one lane do not change a bit in the others. A lane without a design holds a copy of another one.
  *
  *     One iteration, by the kernels of the plan:
  *

@@ -423,9 +423,9 @@ static hf_twofold precise_psi(const hf_precise *p)
     return hf_twofold_root(hf_twofold_divide(sum, hf_twofold_of(m->n_inner_node)));
 }
 
-/* Computes position_bound_m, psi_bound_m and bound_reason of the result whose shape is in the workspace. If has_factor is
- * true, the workspace holds a factor of the matrix at this shape: that of hf_newton_certify, or that of D in `band` if
- * there is no Newton matrix. The factor is overwritten unless the reason is HF_BOUND_STRUTS, HF_BOUND_LOOSE or
+/* Computes position_bound_m, psi_bound_m and bound_reason of the result whose shape is in the workspace. If has_factor
+ * is true, the workspace holds a factor of the matrix at this shape: that of hf_newton_certify, or that of D in `band`
+ * if there is no Newton matrix. The factor is overwritten unless the reason is HF_BOUND_STRUTS, HF_BOUND_LOOSE or
  * HF_BOUND_NO_MATRIX. least_N_per_m: a certified lower bound of its minimum eigenvalue, or 0. */
 static void prove_bounds(const hf_model *m, bool has_factor, double least_N_per_m, hf_workspace *w, hf_form_result *r)
 {

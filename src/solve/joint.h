@@ -16,8 +16,8 @@
 hf_status hf_joint_factor(const hf_model *model, hf_workspace *workspace, hf_newton_block *block_of,
                           const double *spring_N_per_m, const hf_newton_rows *rows, double *condition);
 
-/* Solves in place with that factor, the same blocks and the same rows: the forces rhs [3 n_moving], N, become the step, m. The
- * attachments step from their displacements in position_m to those under the forces after the step. */
+/* Solves in place with that factor, the same blocks and the same rows: the forces rhs [3 n_moving], N, become the step,
+ * m. The attachments step from their displacements in position_m to those under the forces after the step. */
 void hf_joint_solve(const hf_model *model, const hf_workspace *workspace, hf_newton_block *block_of,
                     const hf_newton_rows *rows, double *rhs);
 

@@ -120,8 +120,8 @@ static double seventh(double x)
     return square * square * square * x;
 }
 
-/* Returns the maximum of n sizes s, and sets *norm to the smooth maximum P = (sum s^16)^(1/16). size [n] becomes s/P. The
- * residuals s^8/P^7 have the norm P. */
+/* Returns the maximum of n sizes s, and sets *norm to the smooth maximum P = (sum s^16)^(1/16). size [n] becomes s/P.
+ * The residuals s^8/P^7 have the norm P. */
 static double smooth_maximum(int n, double *size, double *norm)
 {
     double largest = 0, sum = 0;
@@ -281,8 +281,8 @@ static double measure_ratio(const hf_objective *g, const hf_model *m, const hf_w
 }
 
 /* Computes the residuals of objective k for one shape, without its weight, their norm and the value. Returns
- * HF_OK or HF_NO_MEMORY. The value and the norm differ for a maximum of several sizes and for a ratio. The value is then
- * the true one, and the norm the smooth one. */
+ * HF_OK or HF_NO_MEMORY. The value and the norm differ for a maximum of several sizes and for a ratio. The value is
+ * then the true one, and the norm the smooth one. */
 static hf_status measure_shape(const hf_objectives *objectives, int k, const hf_workspace *w, hf_objectives_point *p,
                                double *f, double *value, double *norm)
 {
@@ -375,8 +375,8 @@ static void measure_net(void *context, int i_net, const hf_workspace *shape)
     }
 }
 
-/* Finds the as-built nets of the design in the workspace. residual [n_row] receives the residuals of the objectives over
- * nets, without weights; net_value and net_norm of the point are set. Returns HF_OK, also if nets have no shape;
+/* Finds the as-built nets of the design in the workspace. residual [n_row] receives the residuals of the objectives
+ * over nets, without weights; net_value and net_norm of the point are set. Returns HF_OK, also if nets have no shape;
  * HF_NO_MEMORY. */
 static hf_status measure_nets(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,
                               double *residual)

@@ -4,8 +4,8 @@
  *
  * The points (v, d) and (T, -t) are in the cone |.| <= first. Directions are those of Nesterov and Todd (SIAM J. Optim.
  * 8, 1998), the second-order term is that of Mehrotra (SIAM J. Optim. 2, 1992), as in Andersen, Roos, Terlaky (Math.
- * Program. B 95, 2003). The kernels are compiled once for each instruction set. All instruction sets give the same bits, because no operation mixes cables and none is
- * fused. */
+ * Program. B 95, 2003). The kernels are compiled once for each instruction set. All instruction sets give the same
+ * bits, because no operation mixes cables and none is fused. */
 #ifndef HIFDM_PATH_KERNEL_H
 #define HIFDM_PATH_KERNEL_H
 

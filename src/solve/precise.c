@@ -1,5 +1,5 @@
-/* Computes the equilibrium near a found shape at twice the precision. certificate.c certifies its bounds at this precise
- * shape.
+/* Computes the equilibrium near a found shape at twice the precision. certificate.c certifies its bounds at this
+ * precise shape.
  *
  *     shape, tensions and factored matrix in the workspace
  *         | start: cables taut or slack, s of the truss from the pull on it
@@ -316,8 +316,8 @@ static void solve_free(const hf_precise *p, double *v)
         v[i] = b[i % 3 * m->n_node + i / 3];
 }
 
-/* Completes the factor of the matrix with the rows of the truss. With is_first it is that of hf_newton_certify, or that of
- * D, else that at the precise shape. Returns false if there is none. */
+/* Completes the factor of the matrix with the rows of the truss. With is_first it is that of hf_newton_certify, or that
+ * of D, else that at the precise shape. Returns false if there is none. */
 static bool factor_truss(hf_precise *p, bool is_first)
 {
     hf_newton_block *block_of = p->truss.block_of = is_first ? hf_newton_matrix_block : hf_precise_block;

@@ -1,5 +1,5 @@
-/* precise - the equilibrium near a found shape at twice the precision, and the cables there. certificate.c certifies its
- * bounds at this precise shape (METHOD section 3).
+/* precise - the equilibrium near a found shape at twice the precision, and the cables there. certificate.c certifies
+ * its bounds at this precise shape (METHOD section 3).
  * Stability: internal; may change in any version. */
 #ifndef HIFDM_PRECISE_H
 #define HIFDM_PRECISE_H

@@ -40,8 +40,8 @@ hf_status hf_schur_create(const hf_model *m, hf_schur *schur)
     return HF_ARENA_MAKE(&schur->arena, lay_out(&schur->arena, m, schur));
 }
 
-/* Adds the blocks of the ties times `from` to `to`: from attachments [n] to free nodes [3 n_free], or with to_attachment
- * the other way. */
+/* Adds the blocks of the ties times `from` to `to`: from attachments [n] to free nodes [3 n_free], or with
+ * to_attachment the other way. */
 static void add_ties(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, bool to_attachment,
                      const double *from, double *to)
 {

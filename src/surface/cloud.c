@@ -47,8 +47,8 @@ void hf_cloud_lay_out(hf_arena *arena, hf_cloud *to)
 
 /* ---- points ---- */
 
-/* Computes quadrature point i, bilinear in the nodes, and its derivatives by u and v. node [3][n_node] contains positions,
- * or a motion. *f: the facet of this point and of the last one. */
+/* Computes quadrature point i, bilinear in the nodes, and its derivatives by u and v. node [3][n_node] contains
+ * positions, or a motion. *f: the facet of this point and of the last one. */
 static void blend(const hf_cloud *c, const double *node, int i, hf_facet_gathered *f, double at[3], double du[3],
                   double dv[3])
 {

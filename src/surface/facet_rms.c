@@ -67,9 +67,9 @@ static double point_at(const hf_facet_mesh *m, double u, double v, double lift_m
 }
 
 /* Computes the points of all facets. A flat facet is a bilinear surface through four corners, or a triangle if the last
- * two are equal. The squared height error has degree 4 in each parameter, and the area has degree 1, so the rule is exact
- * for it. With a mesh, a cable may be unable to carry its pull. There is then no shape, and the lifts are NaN. Returns
- * HF_OK or HF_NO_MEMORY. */
+ * two are equal. The squared height error has degree 4 in each parameter, and the area has degree 1, so the rule is
+ * exact for it. With a mesh, a cable may be unable to carry its pull. There is then no shape, and the lifts are NaN.
+ * Returns HF_OK or HF_NO_MEMORY. */
 static hf_status put_points(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape *shape, points *q)
 {
     bool has_mesh = mesh_N_per_m > 0;

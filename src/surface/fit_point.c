@@ -41,6 +41,9 @@ hf_fit_frame hf_fit_frame_of(hf_surface_kind kind, double focal_length_m, int n,
     hf_fit_rotation(angle, (const int[3]){0}, f.turn);
     for (int a = 0; a < 3; a++)
         hf_fit_rotation(angle, (const int[3]){a == 0, a == 1, a == 2}, f.slope[a]);
+    for (int shift = 0; shift < 3; shift++)
+        for (int d = 0; d < 3; d++)
+            f.by_shift[shift][d] = -found->size_m * f.turn[d][shift];
     return f;
 }
 
@@ -86,9 +89,10 @@ void hf_fit_derive(const hf_fit_frame *f, const double arm[3], double by[HF_FIT_
         by[k][3] = shift < 0 && angle < 0 ? f->wanted_per_m : 0;
         if (angle >= 0)
             multiply_vector(f->slope[angle], arm, by[k]);
+        else if (shift >= 0)
+            memcpy(by[k], f->by_shift[shift], sizeof f->by_shift[shift]);
         else
-            for (int d = 0; d < 3; d++)
-                by[k][d] = shift < 0 ? 0 : -f->found->size_m * f->turn[d][shift];
+            memset(by[k], 0, 3 * sizeof by[k][0]);
     }
 }
 

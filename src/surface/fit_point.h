@@ -13,6 +13,7 @@ typedef struct {
     const hf_fit_parameters *found;
     double shift_m[3], turn[3][3];
     double slope[3][3][3];                /* first derivatives of the rotation, by each angle */
+    double by_shift[3][3];                /* derivatives of the coordinates by each shift, the same for all points */
     double curvature_per_m, wanted_per_m; /* of the fitted surface; of the target surface, the unit of CURVE */
 } hf_fit_frame;
 

@@ -242,7 +242,7 @@ static inline bool says_form(const char *err)
 
 static inline bool says_refine(const char *err)
 {
-    return says(err, "\"phase\": \"polish\"");
+    return says(err, "\"phase\": \"refine\"");
 }
 
 /* Waits until the run has stored a generation in the journal of `path`. */

@@ -132,12 +132,14 @@ START_TEST(rows_that_the_net_cannot_serve_have_their_places)
     ERRS("error: %s:11:26: optimize.variables.3.vary: cable 'n1_0-n1_1' of set inner has law tension: only cables of "
          "law elastic have an unstressed length\n",
          path);
-    ERRS("error: %s:13:16: optimize.limits.0.figure: deflection needs a truss, whose attachments it limits\n", path);
+    ERRS("error: %s:13:16: optimize.limits.0.figure: deflection needs a truss, because it limits the deflection of "
+         "attachments\n",
+         path);
     ERRS("error: %s:14:28: optimize.limits.1.set: there is no set of cables 'diagonal'; this net has all, ", path);
     ERRS(
         "error: %s:16:28: optimize.objective.1.set: there is no set of cables 'tie'; this net has all, inner, boundary",
         path);
-    ERRS("error: %s:16:45: optimize.objective.2: facets: needs the wanted surface: add a section surface", path);
+    ERRS("error: %s:16:45: optimize.objective.2: facets: needs a target surface: add a section surface", path);
     ck_assert_int_eq(count_of(said.err, "\n"), 7);
     ck_assert(!is_there(temp("c.h5")));
     HIFDM(2, "check", path, "--set", "optimize.objective=[{figure: evenness, set: tie}]", "--set",
@@ -148,7 +150,7 @@ START_TEST(rows_that_the_net_cannot_serve_have_their_places)
                                            "  variables: [{set: edge, vary: length, range: 1 %, bounds: [9, 10]}]\n");
     HIFDM(2, "run", path, "-o", temp("c.h5"));
     ERRS("error: %s:4:15: optimize.variables.0: 'n0_0-n1_0' has ", path);
-    ERR(" m after form-finding; its range around that does not reach its bounds\n");
+    ERR(" m after form-finding; its range around this value does not overlap its bounds\n");
 }
 END_TEST
 

@@ -208,7 +208,8 @@ START_TEST(an_open_range_is_for_derivatives_alone)
         file_with("open.yaml", "scene:\n  import: {nodes: nodes.csv, cables: cables.csv}\n"
                                "optimize: {variables: [{set: all, vary: force_density, bounds: [1, .inf]}]}\n");
     HIFDM(2, "run", c, "-o", temp("open.h5"));
-    ERRS("error: %s:3:24: optimize.variables.0: 'ab' is open on one side; the genetic algorithm needs a range, or both "
+    ERRS("error: %s:3:24: optimize.variables.0: 'ab' has no bound on one side; the genetic algorithm needs a range or "
+         "both "
          "bounds (method: lm does not)\n",
          c);
     HIFDM(0, "run", c, "-o", temp("lm.h5"), "--set", "optimize.method=lm");
@@ -224,9 +225,11 @@ START_TEST(a_shape_with_a_slack_boundary_cable_is_kept)
              "bd,b,d,inner,tension,10,\nde,d,e,inner,tension,10,\nbc2,c,b,inner,elastic,1.0,1e4\n");
     const char *c = file_with("slack.yaml", "scene:\n  import: {nodes: nodes.csv, cables: cables.csv}\n" SMALL_GA);
     HIFDM(3, "run", c, "-o", path);
-    ERR("error: optimize: boundary cable 'bc' has no tension after form-finding to start from; give it a shorter");
-    OUT("\n  form-finding ");
-    EXPECT(path, "--", "a.attrs['finished'] == 1", "a['form/tension_N'].shape == (5,)", "'ga' not in a");
+    ERR("error: optimize: boundary cable 'bc' has no tension after form-finding from which to start; give it a "
+        "shorter");
+    OUT("\n  form          ");
+    EXPECT(path, "--", "a.attrs['finished'] == 1", "a['form/tension_N'].shape == (5,)", "'search' not in a",
+           "'ga' not in a");
     HIFDM(3, "run", c, "-o", path);
     ERR("is the finished result of this case");
     ERR("has no tension after form-finding");
@@ -253,9 +256,9 @@ START_TEST(a_pretension_that_no_cable_takes_is_not_told)
     static const char cables[] = "id,i,j,group,law,value\nac,a,c,inner,tension,10\nbc,b,c,inner,tension,\n"
                                  "cd,c,d,boundary,force_density,12\n";
     HIFDM(0, "run", net_with(NODES, CABLES), "-o", temp("own.h5"));
-    OUT("4 nodes (1 free), 3 cables; tensions by their own laws\n");
+    OUT("4 nodes (1 free), 3 cables; each cable has a law of its own\n");
     HIFDM(0, "show", temp("own.h5"));
-    OUT("; tensions by their own laws\n");
+    OUT("; each cable has a law of its own\n");
     HIFDM(0, "report", temp("own.h5"), "-o", temp("own.html"));
     HIFDM(0, "run", net_with(NODES, cables), "-o", temp("one.h5"));
     OUT("; pretension 10 N\n");

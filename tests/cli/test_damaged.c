@@ -39,10 +39,19 @@ static const char *make_library(void)
 #define WITH_LIBRARY                                                                                                   \
     "export ASAN_OPTIONS=\"$ASAN_OPTIONS:verify_asan_link_order=0:detect_leaks=0\" LD_PRELOAD=\"$1\" AT=\"$2\"; "
 
+/* Makes an unfinished result of a finished one. As unfinished ones it has none of the links that lead from the names of
+ * version 0.2 to those of today. */
 static const char *unfinished(const char *path)
 {
-    SHELL(0, "\"$1\" -c 'import h5py, sys; f = h5py.File(sys.argv[1], \"a\"); f.attrs.modify(\"finished\", 0)' \"$2\"",
-          python_program(), path);
+    static const char deed[] = "import h5py, sys\n"
+                               "f = h5py.File(sys.argv[1], 'a')\n"
+                               "f.attrs.modify('finished', 0)\n"
+                               "groups = [f]\n"
+                               "f.visititems(lambda name, x: groups.append(x) if isinstance(x, h5py.Group) else None)\n"
+                               "for g in groups:\n"
+                               "    for name in [n for n in g if isinstance(g.get(n, getlink=True), h5py.SoftLink)]:\n"
+                               "        del g[name]\n";
+    SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(), deed, path);
     return path;
 }
 
@@ -68,7 +77,7 @@ START_TEST(a_crash_of_hdf5_names_the_file)
     SHELL(0, "exec \"$1\" -c \"$2\" \"$0\" show \"$3\"", python_program(), /* as some launchers leave it */
           "import os, signal, sys\nsignal.signal(signal.SIGCHLD, signal.SIG_IGN)\nos.execv(sys.argv[1], sys.argv[1:])",
           b);
-    OUT("form-finding");
+    OUT("\n  form            39.2743 ");
 }
 END_TEST
 
@@ -163,7 +172,7 @@ START_TEST(damage_that_is_found_late_is_no_fault_of_the_machine)
 }
 END_TEST
 
-/* The threads of a sweep let a process look that is older than they are. Finished points take 13 reads, others more. */
+/* The threads of a sweep let a process look that is older than they are. Finished points take 12 reads, others more. */
 START_TEST(a_crash_in_a_sweep_fails_its_point)
 {
     const char *library = make_library();

@@ -150,7 +150,7 @@ START_TEST(what_cannot_be_exported_is_told)
     const char *lm = temp("lm.h5");
     HIFDM(0, "run", file_with("lm.yaml", SMALL_SCENE "optimize: {method: lm}\n"), "-o", lm, "--quiet");
     HIFDM(2, "export", lm, "--csv", csv, "--stage", "search");
-    ERR("this run has no search shape; use --stage polish");
+    ERR("this run has no search shape; use --stage refine");
     HIFDM(2, "export", form_only);
     ERR("error: 'hifdm export' needs --csv DIR, --vtk DIR, --cutlist FILE, --front FILE, --pattern FILE or --rf DIR\n");
     HIFDM(2, "export", form_only, "--csv", csv, "--stage", "best");

@@ -62,7 +62,7 @@ START_TEST(huge_population_is_out_of_memory)
           "ulimit -v 4000000; exec \"$0\" run \"$1\" -o \"$2\" --set optimize.population=100000 --set " CYLINDER
           "modules=[40,40] --set form.rms_tolerance_m=1",
           CHEN, temp("c.h5"));
-    ERR("error: out of memory for 100000 individuals of 6560 genes");
+    ERR("error: out of memory for 100000 individuals of 6560 design variables");
     ck_assert(!is_there(temp("c.h5")));
 }
 END_TEST
@@ -155,7 +155,7 @@ START_TEST(cancelling_struts_are_singular)
                           "2,c,b,inner,force_density,-1\n"),
           NOWHERE);
     ERR("error: ill-posed: the force density matrix is singular or not positive definite at node c (cables 1, 2): "
-        "its cables are slack, or no match for its load");
+        "its cables are slack, cannot balance its load, or do not lead to a support\n");
     HIFDM(4, "run",
           net_with(THREE, "id,i,j,group,law,value\n1,a,c,inner,force_density,1\n"
                           "2,c,b,inner,force_density,-0.9999999999999999\n"),
@@ -222,8 +222,8 @@ static const char *const small_gas[] = {"optimize.population=2",     "optimize.g
 START_TEST(odd_optimisations_never_lose_against_their_base)
 {
     HIFDM(0, "run", CHEN, "-o", temp("c.h5"), "--set", "optimize.generations=3", "--set", small_gas[_i]);
-    EXPECT(temp("c.h5"), "--", "a['ga/best_psi_m'][-1] <= a['ga/psi_m'][0, 0]",
-           "(a['ga/lower_N'][:] >= 0.1).all() and (a['ga/upper_N'][:] > a['ga/lower_N'][:]).all()");
+    EXPECT(temp("c.h5"), "--", "a['search/population/best_psi_m'][-1] <= a['search/population/psi_m'][0, 0]",
+           "(a['variable/lower'][:] >= 0.1).all() and (a['variable/upper'][:] > a['variable/lower'][:]).all()");
 }
 END_TEST
 

@@ -82,7 +82,7 @@ START_TEST(a_load_case_is_exported)
     ERR("error: --load-case does not go with --cutlist, which is of the design that all load cases are made of\n");
     ck_assert(!is_there(temp("no")) && !is_there(temp("no.csv")));
     HIFDM(0, "report", out, "-o", temp("page.html"));
-    SHELL(0, "grep -c '\"stage\":\"case ' \"$1\"", temp("page.html"));
+    SHELL(0, "grep -c '\"stage\":\"load case ' \"$1\"", temp("page.html"));
     ck_assert_str_eq(said.out, "5\n");
 }
 END_TEST

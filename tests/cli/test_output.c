@@ -134,7 +134,7 @@ START_TEST(paths_are_as_long_as_the_system_has_them)
     OUT("/c_totals.csv\n"); /* the line that says so is not cut either */
     OUT("\nc.csv\nc_mm.csv\nc_nodes.csv\nc_totals.csv\ncsv\nr.html\nt.csv\nvtk\n");
     OUT("csv:\ncables.csv\nnodes.csv\n");
-    OUT("vtk:\nform.hdf\ntheoretical.hdf\n");
+    OUT("vtk:\nform.hdf\ntarget.hdf\n");
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
         SHELL(5, formatted("cd \"$3\" && \"$0\" %s $(printf '%%05000d' 0)", refused[i]), c, out, deep);
         ERR("0: the path is too long\n");

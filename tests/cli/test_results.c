@@ -17,7 +17,9 @@ START_TEST(every_data_set_has_units)
            "'units') != 'm'] == []",
            "[n for n, d in data_sets(a).items() if n.endswith('_N') and attribute(d, 'units') != 'N'] == []",
            "[n for n, d in data_sets(a).items() if n.endswith('_N_per_m') and attribute(d, 'units') != 'N/m'] == []",
-           "[n for n, d in data_sets(a).items() if attribute(d, 'units') and '_' not in n] == ['scene/cable/target']");
+           "[n for n, d in data_sets(a).items() if attribute(d, 'units') and '_' not in n] == ['refine/design', "
+           "'scene/cable/target', 'search/design', 'search/population/design', 'variable/initial', 'variable/lower', "
+           "'variable/upper']");
 }
 END_TEST
 

@@ -10,7 +10,7 @@
 
 static const char *survive_case(const char *name, const char *method, const char *objectives)
 {
-    return file_with(name, formatted(SURVIVE, method, "goals", objectives));
+    return file_with(name, formatted(SURVIVE, method, "objective", objectives));
 }
 
 /* By one thread and by three, and as a run that goes on from an earlier one. */
@@ -35,10 +35,10 @@ START_TEST(killed_runs_go_on_to_the_same_bits)
     static const struct {
         const char *method, *list, *rows;
     } seek[] = {
-        {"ga+lm", "goals", "{figure: psi, over: samples}, {figure: psi, load_case: pushed, weight: 0.1}"},
-        {"ga", "goals", "{figure: psi, over: samples, quantile: 0.95}, {figure: psi, load_case: all, weight: 0.5}"},
-        {"ga+lm", "goals", "{figure: psi, load_case: all, take: worst}, {figure: psi, over: samples, take: worst}"},
-        {"ga", "objectives", "{figure: psi, over: samples, quantile: 0.9}, {figure: ratio, set: boundary}"},
+        {"ga+lm", "objective", "{figure: psi, over: samples}, {figure: psi, load_case: pushed, weight: 0.1}"},
+        {"ga", "objective", "{figure: psi, over: samples, quantile: 0.95}, {figure: psi, load_case: all, weight: 0.5}"},
+        {"ga+lm", "objective", "{figure: psi, load_case: all, take: worst}, {figure: psi, over: samples, take: worst}"},
+        {"ga", "front", "{figure: psi, over: samples, quantile: 0.9}, {figure: ratio, set: boundary}"},
     };
     const char *c = file_with("c.yaml", formatted(SURVIVE, seek[_i].method, seek[_i].list, seek[_i].rows)),
                *path = temp("a.h5"), *whole = temp("b.h5"), *samples = keep(formatted("%s.tolerance", path));
@@ -59,7 +59,7 @@ START_TEST(killed_runs_go_on_to_the_same_bits)
         ck_assert(is_there(keep(formatted("%s.journal", path))) || is_there(path));
     }
     HIFDM(0, "run", c, "-o", path, "--threads", "2", "--set", longer, "--set", more, "--progress", "jsonl");
-    ck_assert(!strstr(said.err, "\"phase\": \"optimize\", \"generation\": 1,")); /* they were not computed again */
+    ck_assert(!strstr(said.err, "\"phase\": \"search\", \"generation\": 1,")); /* they were not computed again */
     HIFDM(0, "diff", path, whole);
     SHELL(0, "test \"$(ls \"$1\"*)\" = \"$1\"", path); /* no journals are left */
     EXPECT(path, whole, "--", "a.attrs['sessions'] > 1", "differing(a, b) == []");
@@ -71,13 +71,13 @@ START_TEST(what_is_sought_is_found)
 {
     static const char *const objective[] = {"{figure: psi, over: samples}",
                                             "{figure: psi, over: samples, quantile: 0.95}"},
-                             *const method[] = {"lm", "ga"}, *const stage[] = {"polish", "optimize"},
+                             *const method[] = {"lm", "ga"}, *const stage[] = {"refine", "search"},
                              *const figure[] = {"rms_psi_m", "psi_95_m"};
     const char *psi = temp("a.h5"), *survives = temp("b.h5");
     HIFDM(0, "run", survive_case("p.yaml", method[_i], "{figure: psi}"), "-o", psi, "--quiet");
     HIFDM(0, "run", survive_case("s.yaml", method[_i], objective[_i]), "-o", survives, "--quiet");
     EXPECT(survives, psi, "--",
-           formatted("near(a['goals/%s'][0], a['tolerance'].attrs['%s'], 1e-7)", stage[_i], figure[_i]),
+           formatted("near(a['objective/%s'][0], a['tolerance'].attrs['%s'], 1e-7)", stage[_i], figure[_i]),
            formatted("a['tolerance'].attrs['%s'] < b['tolerance'].attrs['%s']", figure[_i], figure[_i]));
 }
 END_TEST
@@ -116,7 +116,7 @@ START_TEST(quantiles_have_no_derivatives)
     const char *c = survive_case("c.yaml", "ga", "{figure: psi, over: samples, quantile: 0.9}"), *d = temp("d.csv");
     HIFDM(0, "evaluate", c, "--template", d);
     HIFDM(2, "evaluate", c, "--designs", d, "--jacobian", temp("j.csv"));
-    ERR("no derivatives of quantiles");
+    ERR("optimize.objective.0.quantile: quantiles have no derivatives; use take: mean or worst\n");
 }
 END_TEST
 

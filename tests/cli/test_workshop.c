@@ -341,7 +341,7 @@ START_TEST(surface_is_measured_for_every_shape)
     OUT("surface, parabolic cylinder: half-path RMS ");
     OUT("gain loss at 1.2 GHz: ");
     ck_assert_int_eq(count_of(said.out, "gain loss at 9.6 GHz: above 3 dB, the limit of Ruze's formula ("), 3);
-    ck_assert_int_eq(count_of(said.out, "deviations 50/90/95/99 %: "), 3);
+    ck_assert_int_eq(count_of(said.out, "deviation of 50/90/95/99 % of the nodes at most "), 3);
 }
 END_TEST
 

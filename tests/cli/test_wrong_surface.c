@@ -186,13 +186,13 @@ START_TEST(a_range_beyond_the_values_is_told)
     const char *path = file_with("r.yaml", formatted(row, "500"));
     HIFDM(0, "check", path);
     ERR("optimize.variables.0.range: 500 is ");
-    ERR(" times the largest value of this row, ");
-    ERR(": is a part meant, as in 500 %?\n");
-    ck_assert_int_eq(count_of(said.err, "is a part meant"), 1);
+    ERR(" times the maximum value of this row, ");
+    ERR("; for a relative range, write 500 %\n");
+    ck_assert_int_eq(count_of(said.err, "for a relative range"), 1);
     HIFDM(0, "check", file_with("r.yaml", formatted(row, "50 %")));
-    ck_assert_ptr_null(strstr(said.err, "is a part meant"));
+    ck_assert_ptr_null(strstr(said.err, "for a relative range"));
     HIFDM(0, "check", file_with("r.yaml", formatted(row, "500, bounds: [1, 600]")));
-    ck_assert_ptr_null(strstr(said.err, "is a part meant"));
+    ck_assert_ptr_null(strstr(said.err, "for a relative range"));
 }
 END_TEST
 

@@ -19,7 +19,7 @@ START_TEST(fields_agree_with_the_oracle)
     const char *flat = keep(temp("flat.h5")), *pillows = keep(temp("pillows.h5"));
     const char *csv = keep(temp("csv")), *rf = keep(temp("rf"));
     HIFDM(0, "run", OFFSET_REFLECTOR, AT_1_AND_2_GHZ, "-o", flat);
-    OUT("by physical optics, fed by a point, cos^6.4\n");
+    OUT("   physical optics, feed: a point, cos^6.4\n");
     HIFDM(0, "export", flat, "--csv", csv, "--rf", rf);
     ask("field", flat, csv);
     ask("points", flat, rf);
@@ -56,7 +56,7 @@ START_TEST(angles_that_miss_the_beam_are_told)
 {
     const char *h5 = keep(temp("c.h5"));
     HIFDM(0, "run", OFFSET_REFLECTOR, AT_1_AND_2_GHZ, "--set", "surface.pattern.n_theta=41", "-o", h5);
-    ERR("warning: surface.pattern: in 3 of 6 cuts of stage form, like phi 0 deg at 2 GHz, steps of 0.25 deg are "
+    ERR("warning: surface.pattern: in 3 of 6 cuts of stage form, such as phi 0 deg at 2 GHz, steps of 0.25 deg are "
         "coarse");
     EXPECT(h5, "--",
            "all((a['pattern/form/' + n][1] != a['pattern/form/' + n][1]).all() for n in "
@@ -64,7 +64,7 @@ START_TEST(angles_that_miss_the_beam_are_told)
            "(a['pattern/form/half_power_width_deg'][0] > 1).all()", "(a['pattern/form/gain_dBi'][1] > 40).all()");
     HIFDM(0, "run", OFFSET_REFLECTOR, AT_1_AND_2_GHZ, "--set", "surface.pattern.theta_deg=[0.3, 3]", "-o", h5,
           "--restart");
-    ERR(" the gain is largest at the end of theta_deg");
+    ERR(" the maximum gain is at the end of theta_deg");
 }
 END_TEST
 
@@ -109,9 +109,8 @@ START_TEST(faults_have_their_line)
     ERRS("error: %s:7:19: surface.pattern.feed.position_m: has no meaning for a plane_wave, which comes along -z",
          path);
     HIFDM(2, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, -3]");
-    ERR("error: --set surface.pattern.feed.position_m: from (0, 0, -3) m the feed sees 150 of 150 facets from behind "
-        "or "
-        "not at all; it must be above all of them and look at them\n");
+    ERR("error: --set surface.pattern.feed.position_m: from (0, 0, -3) m the feed illuminates 150 of 150 facets from "
+        "behind or not at all; it must be above all facets and aim at them\n");
     HIFDM(0, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]");
     ck_assert(!strstr(said.err, "coarse"));
     HIFDM(0, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]", "--set",
@@ -120,7 +119,7 @@ START_TEST(faults_have_their_line)
     ERR(" facets instead of 150 would lose 1 dB\n");
     HIFDM(2, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]", "--set",
           "surface.pattern.feed.aim_m=[0, 0, 2]");
-    ERR("error: --set surface.pattern.feed.aim_m: the feed, at (0, 0, 2) m, cannot look at its own place\n");
+    ERR("error: --set surface.pattern.feed.aim_m: the feed at (0, 0, 2) m cannot aim at its own position\n");
     HIFDM(2, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]", "--set",
           "surface.frequencies_Hz=[1e9, 1e15]");
     ERR("error: --set surface.frequencies_Hz: at 1e+06 GHz the far field has ");
