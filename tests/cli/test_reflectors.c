@@ -154,8 +154,8 @@ START_TEST(cables_stretched_too_far_are_told)
                *path = file_with("c.yaml", net), *out = temp("r.h5");
     HIFDM(0, "run", path, "-o", out, "--json");
     EXPECT(out_as("r.json"), out, "--",
-           "(lambda strain, ids: any(f\"cable '{ids[strain.argmax()]}', and {(strain > 0.05).sum() - 1} more is "
-           "stretched by {100 * strain.max():.3g} %\" in w for w in a['warnings']))"
+           "(lambda strain, ids: any(f\"cable '{ids[strain.argmax()]}' and {(strain > 0.05).sum() - 1} more are "
+           "stretched by up to {100 * strain.max():.3g} %\" in w for w in a['warnings']))"
            "(b['form/tension_N'][:] / b['scene/cable/EA_N'][:], b['scene/cable/id'].asstr()[:])");
     HIFDM(0, "run", path, "-o", out, "--force", "--set", "scene.EA_inner_N=8000");
     ck_assert_ptr_null(strstr(said.err, "stretched"));

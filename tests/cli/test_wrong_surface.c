@@ -234,8 +234,8 @@ START_TEST(net_that_collapses_to_the_plane_of_its_supports_is_told)
 #define STAR "id,i,j,group,law,value\nae,a,e,inner,tension,1\nbe,b,e,inner,tension,1\nce,c,e,inner,tension,1\n"
 #define FLAT "warning: scene: all supports are in one plane, and no load, tie or strut holds the net off it: "
     HIFDM(0, "run", net_with(BOWL "e,0,0,0.7,inner,\n", STAR "de,d,e,inner,tension,1\n"), "-o", temp("b.h5"), "--json");
-    ERR(FLAT "whatever its tensions, it collapses there, and the inner nodes are 300 mm RMS from their target "
-             "positions or more. Put supports on the surface, tie the net to another one, or load it\n");
+    ERR(FLAT "whatever its tensions, it collapses there, and the inner nodes are at least 300 mm RMS from their "
+             "target positions. Put supports on the surface, tie the net to another one, or load it\n");
     EXPECT(out_as("b.json"), temp("b.h5"), "--", "near(a['form']['psi_m'], 0.3, 1e-9)",
            "any('collapses there' in w for w in a['warnings'])", "'collapses there' in attribute(b, 'warnings')");
     static const char *const other[][2] = {
