@@ -117,8 +117,9 @@ START_TEST(a_double_layer_is_designed)
 }
 END_TEST
 
-/* The objective facets leaves the rear net open, and where nodes of the front are within their surface. Both are told, with
- * the node that moved farthest by the shapes in the file; what counts them, or leaves them alone, is silent. */
+/* The objective facets leaves the rear net open, and where nodes of the front are within their surface. The program
+ * reports both, with the node that moved farthest by the shapes in the file. It reports neither if an objective counts
+ * these nodes, or if no variable moves them. */
 START_TEST(nodes_that_no_objective_counts_are_told)
 {
     static const char *const silent[] = {
