@@ -47,7 +47,7 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
     if (!is_ours(&io, &io.is_damaged))
         io.status = hf_error(messages, HF_IO, "%s: is an HDF5 file, but no result of hifdm or a damaged one", path);
     hf_hdf5_get(&io, io.file, "/", "format_version", HF_KIND_INT, &version, sizeof version);
-    hf_renamed_note(&io);
+    if (version == HF_FORMAT_0_2) io.alias = hf_renamed;
     if (io.status == HF_OK && version != HF_FORMAT_VERSION && version != HF_FORMAT_0_2) {
         io.is_damaged = true;
         io.status = hf_error(messages, HF_IO, "%s: is of format version %d, this program reads version %d", path,
