@@ -64,10 +64,12 @@ def of_messages(path):
 def ours():
     """Returns {kind: [(source, sentence)]}."""
     def markdown(*patterns):
-        paths = sorted(p for pattern in patterns for p in TOP.glob(pattern) if p.name not in ("renames.md", "glossary.md"))
+        paths = sorted(p for pattern in patterns for p in TOP.glob(pattern)
+                       if p.name not in ("renames.md", "glossary.md"))
         return [(p.relative_to(TOP), s) for p in paths for s in of_markdown(p.read_text(encoding="utf-8"))]
 
-    found = {"README": markdown("README.md"), "manual": markdown("src/manual/**/*.md"), "method": markdown("src/METHOD.md"),
+    found = {"README": markdown("README.md"), "manual": markdown("src/manual/**/*.md"),
+             "method": markdown("src/METHOD.md"),
              "architecture": markdown("src/ARCHITECTURE.md"), "contributing": markdown(".github/CONTRIBUTING.md"),
              "changelog": markdown("CHANGELOG.md"), "explain": [
                  (p.relative_to(TOP), s) for p in [TOP / "src/manual/glossary.md"]
@@ -127,7 +129,8 @@ def draw(seed, n, out):
     rng.shuffle(rows)
     out.mkdir(parents=True, exist_ok=True)
     (out / "sentences.txt").write_text("".join(f"{i}\t{row[2]}\n" for i, row in enumerate(rows, 1)), encoding="utf-8")
-    (out / "key.tsv").write_text("".join(f"{i}\t{row[0]}\t{row[1]}\n" for i, row in enumerate(rows, 1)), encoding="utf-8")
+    key = "".join(f"{i}\t{row[0]}\t{row[1]}\n" for i, row in enumerate(rows, 1))
+    (out / "key.tsv").write_text(key, encoding="utf-8")
 
 
 def judge(folder, ratings):

@@ -4,7 +4,8 @@
  *   theoretical.hdf, form.hdf, optimize.hdf, polish.hdf    cables as lines, at the target positions and of each stage
  *   form_facets.hdf and so on                              facets as cells over the same points
  *   truss.hdf                                              members as lines
- *   load_case_1.hdf, load_case_facets_1.hdf, load_case_truss_1.hdf, ...   load cases of the as-built net, in the order of the case
+ *   load_case_1.hdf, load_case_facets_1.hdf, load_case_truss_1.hdf, ...
+ *                   load cases of the as-built net, in the order of the case
  *
  * ParaView opens files that differ only in a number as steps in time.
  *

@@ -33,8 +33,8 @@ void hf_print_duration(double seconds, char *text, size_t size);
 /* Formats a value: "4.2315", "inf", or "-" for NaN. Returns text. */
 const char *hf_print_decimals(double value, char text[32]);
 
-/* Formats the change of a value relative to a base > 0: "34.9 % lower than", "4.24 % higher than", or "the same as" when
- * it rounds to 0. Returns text. */
+/* Formats the change of a value relative to a base > 0: "34.9 % lower than", "4.24 % higher than", or "the same as"
+ * when it rounds to 0. Returns text. */
 #define HF_PRINT_CHANGE_SIZE 48
 const char *hf_print_change(double value, double base, char text[HF_PRINT_CHANGE_SIZE]);
 

@@ -331,7 +331,8 @@ static hf_status evolve(run *r, hf_summary *s, hf_messages *messages)
     return hf_no_design_evolved(&r->problem, p, messages);
 }
 
-/* Completes and stores the refinement: the result of the stage is that of this design, and the workspace holds its shape. */
+/* Completes and stores the refinement: the result of the stage is that of this design, and the workspace holds its
+ * shape. */
 static hf_status keep_refine(run *r, hf_workspace *w, const double *design, hf_summary *s, hf_messages *messages)
 {
     hf_certify(&r->problem.model, w, &s->stage[HF_STAGE_REFINE].result);

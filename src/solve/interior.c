@@ -517,7 +517,7 @@ hf_status hf_interior_run(const hf_model *m, const hf_form_settings *s, hf_works
     double wanted = NEAR, fall = 1;
     int last = *n_step + max_steps;
     bool is_there = true;
-    hf_newton_rows rows, *held = is_held ? &rows : NULL;
+    hf_newton_rows rows = {0}, *held = is_held ? &rows : NULL;
     if (held) rows = hf_newton_matrix_find_rows(m, w->spring_N_per_m, w->newton_integer_work);
     *culprit = -1;
     set_start(m, w, held);

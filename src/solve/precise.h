@@ -50,8 +50,8 @@ typedef struct {
  * false if the flexibility of the truss has a negative eigenvalue, which no elastic structure has. */
 bool hf_precise_open(const hf_model *model, hf_workspace *workspace, double condition, hf_precise *precise);
 
-/* Computes the precise equilibrium. has_factor: the workspace holds the factor of a matrix. Returns HF_BOUND_CERTIFIED if
- * it is found; elastic cables then pull by their law. Otherwise returns the reason why not. */
+/* Computes the precise equilibrium. has_factor: the workspace holds the factor of a matrix. Returns
+ * HF_BOUND_CERTIFIED if it is found; elastic cables then pull by their law. Otherwise returns the reason why not. */
 hf_bound_reason hf_precise_approach(hf_precise *precise, bool has_factor);
 
 /* Returns a guess of a lower bound of the minimum eigenvalue of the factored matrix, N/m. */

@@ -197,8 +197,8 @@ static void write_held(const hf_held_limits *h, hf_json *j)
     hf_json_close(j, ']');
 }
 
-/* Writes the members "merit" and "objectives" of a stage: value and weight of each term of the objective. Objectives of a
- * front have only values. */
+/* Writes the members "merit" and "objectives" of a stage: value and weight of each term of the objective. Objectives
+ * of a front have only values. */
 static void write_objectives(const hf_summary *s, const hf_form_result *r, hf_json *j)
 {
     if (s->objectives.n == 0) return;

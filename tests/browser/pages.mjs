@@ -258,7 +258,8 @@ export const pages = [
         "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n  paraboloid: {aperture_m: 4, focal_length_m: 3, rings: 3, " +
         "rear_distance_m: 1.8}\nform: {prestress: exact}\ntruss: {ring: {cells_per_bay: 2, held: bay, longeron: " +
         "{diameter_m: 0.03, wall_m: 0.001}}}\nsurface: {frequencies_Hz: [2e9, 10e9]}\noptimize: {method: lm, " +
-        "variables: [{set: all, vary: force_density, range: 50 %}], objective: [{figure: psi}, {figure: tension, set: " +
+        "variables: [{set: all, vary: force_density, range: 50 %}], " +
+        "objective: [{figure: psi}, {figure: tension, set: " +
         "tie, target: 8, weight: 1e-4}]}\ntolerance: {sigma_cut_m: 5e-5, samples: 40, required_yield: 0.9, require: " +
         "[{measure: psi_m, at_most: 3e-4}]}\n",
     },

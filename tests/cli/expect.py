@@ -104,16 +104,17 @@ def differing(one, other):
 
 
 def holds_of(thin, whole, store, every):
-    """Checks that the rows of /search/population in `thin` are those that optimize.store keeps of the file `whole`, and that the last
-    generation is there."""
+    """Checks that the rows of /search/population in `thin` are those that optimize.store keeps of the file `whole`, and
+    that the last generation is there."""
     best = whole["search/population/best_individual"][:]
     rows = {"best": lambda v: v[np.arange(len(v)), best][:, None], "every": lambda v: v[::every]}[store]
-    per = [n for n, d in whole["search/population"].items() if hasattr(d, "shape") and d.shape[:2] == whole["search/population/psi_m"].shape]
+    all_of, kept = whole["search/population"], thin["search/population"]
+    per = [n for n, d in all_of.items() if hasattr(d, "shape") and d.shape[:2] == all_of["psi_m"].shape]
     figures = [n for n, d in whole["search/population"].items() if hasattr(d, "shape") and d.shape == best.shape]
     return (len(per) > 10 and len(figures) == 7 and set(thin["search/population/last"]) == set(per) and
-            all(thin["search/population"][n][()].tobytes() == rows(whole["search/population"][n][()]).tobytes() for n in per) and
-            all(thin["search/population/last"][n][()].tobytes() == whole["search/population"][n][-1:].tobytes() for n in per) and
-            all(thin["search/population"][n][()].tobytes() == whole["search/population"][n][()].tobytes() for n in figures))
+            all(kept[n][()].tobytes() == rows(all_of[n][()]).tobytes() for n in per) and
+            all(kept["last"][n][()].tobytes() == all_of[n][-1:].tobytes() for n in per) and
+            all(kept[n][()].tobytes() == all_of[n][()].tobytes() for n in figures))
 
 
 def facet_rms(grid, f, n):

@@ -31,7 +31,8 @@ PLACE = ("x_m", "y_m", "z_m")
 
 def built(cut, shape, cables, nodes, sigma_m, seed):
     dice = random.Random(int(seed))
-    write(cables, CABLE, [{**c, "law": "elastic", "value": repr(float(c["unstressed_length_m"]) + dice.gauss(0, float(sigma_m)))}
+    write(cables, CABLE, [{**c, "law": "elastic",
+                           "value": repr(float(c["unstressed_length_m"]) + dice.gauss(0, float(sigma_m)))}
                           for c in read(cut)])
     write(nodes, ("id", *PLACE, "role"), [{**n, **{k: n[k.replace("_", "0_")] for k in PLACE}}
                                           for n in read(f"{shape}/nodes.csv")])

@@ -192,7 +192,8 @@ def check_result(path):
     last = shapes["refine" if "refine" in shapes and result["refine"].attrs["is_result"] else
                   "search" if "search" in shapes else "form"]
     if "load_cases" in result:
-        shapes.update({f"load_case_{n}": g for n, g in result["load_cases"].items() if n != "name" and "position_m" in g})
+        shapes.update({f"load_case_{n}": g for n, g in result["load_cases"].items()
+                       if n != "name" and "position_m" in g})
     point = {f"{name}_position_m": shape["position_m"] for name, shape in shapes.items()}
     cell = {f"{name}_{of}": shape[of] for name, shape in shapes.items() for of in FORCES}
     cell.update({of: last[of] for of in FORCES}, group=scene["cable/group"])

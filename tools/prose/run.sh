@@ -39,17 +39,22 @@ lint() { # FILE...
 mkdir -p "$work/trial"
 /usr/bin/python3 - tools/prose/terms.yml "$work/trial" <<'PYTHON'
 import re, sys
-froms = re.findall(r"specs: \[\{from: ([^,}]*), to: ([^}]*)\}", open(sys.argv[1], encoding="utf-8").read())
+specs = re.findall(r"\{from: ([^,}]*), to: ([^}]*)\}", open(sys.argv[1], encoding="utf-8").read())
+froms = [(wrong, right) for wrong, right in specs if wrong != right]
 open(sys.argv[2] + "/wrong.md", "w").write("\n\n".join(f for f, _ in froms) + "\n")
 open(sys.argv[2] + "/right.md", "w").write("\n\n".join(t.replace("(delete this)", "") for _, t in froms) + "\n")
 print(len(froms), file=open(sys.argv[2] + "/n", "w"))
 PYTHON
 found=$(lint trial/wrong.md | grep -c '^/' || true)
-[ "$found" = "$(cat "$work/trial/n")" ] || { echo "make prose: the rules find $found of $(cat "$work/trial/n") mistakes"; exit 1; }
+if [ "$found" != "$(cat "$work/trial/n")" ]; then
+    echo "make prose: the rules find $found of $(cat "$work/trial/n") mistakes"
+    exit 1
+fi
 lint trial/right.md >/dev/null || { echo "make prose: the rules find mistakes in what they propose"; exit 1; }
 
 code=0
-lint text | sed -E "s|^$work/text/||; s|\.(c\|h\|js\|html\|py)\.md:|.\1:|; s|\[Error/prh\]||" >"$work/findings" || code=1
+lint text >"$work/report" || code=1
+sed -E "s|^$work/text/||; s|\.(c\|h\|js\|html\|py)\.md:|.\1:|; s|\[Error/prh\]||" "$work/report" >"$work/findings"
 grep -E '^[^ ]+:[0-9]+:' "$work/findings" | sort -u || true
 n=$(grep -cE '^[^ ]+:[0-9]+:' "$work/findings" || true)
 echo "prose: $n findings in $(find "$work/text" -name '*.md' | wc -l) texts"

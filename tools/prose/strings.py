@@ -72,7 +72,8 @@ def texts():
                         *TOP.glob("tools/python/**/*.py")]):
         text, name = path.read_text(encoding="utf-8"), path.relative_to(TOP)
         kind = path.suffix
-        found = (of_c(text, name.parts[0] == "include") if kind in (".c", ".h") else of_script(text) if kind == ".js" else
+        found = (of_c(text, name.parts[0] == "include") if kind in (".c", ".h") else
+                 of_script(text) if kind == ".js" else
                  of_page(text) if kind == ".html" else of_python(text) if kind == ".py" else [])
         yield name, text.count("\n") + 1, found
 
