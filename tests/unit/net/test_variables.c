@@ -59,6 +59,7 @@ static hf_summary *run_bowl(const char *rows, const char *more)
                               .n_set = more ? 4 : 3,
                               .no_file = true,
                               .threads = 1};
+    hf_summary_free(&s); /* of the run before */
     ck_assert_msg(hf_run_case(&request, &s, output, &said) == HF_OK, "%s", said.text);
     hf_messages_free(&said);
     ck_assert_int_eq(s.refine.algorithm_stop, HF_REFINE_CONVERGED);
