@@ -198,6 +198,10 @@ only_in "base/file_io base/file_out base/text out/report_page out/export" \
     '(^|[^>._[:alnum:]])(p?read|p?writev?|f(data)?sync|ftruncate|flock)[[:blank:]]*\(' 'a transfer by hand'
 only_in "$openmp_files" '\bomp(\b|_)|\b_OPENMP\b' 'OpenMP'
 
+# ---- Changelog -------------------------------------------------------------------------------------------------------
+awk -v most=60 '/^## / { if (n > most) print "CHANGELOG.md:" at ": a version has more than " most " lines"; n = 0; at = NR }
+    { n++ } END { if (n > most) print "CHANGELOG.md:" at ": a version has more than " most " lines" }' CHANGELOG.md | report
+
 # ---- Top level -------------------------------------------------------------------------------------------------------
 if [ -e .git ]; then
     git ls-files | cut -d/ -f1 | sort -u | grep -v '^\.' | grep -vxE "${top_level// /|}" |
