@@ -199,8 +199,11 @@ only_in "base/file_io base/file_out base/text out/report_page out/export" \
 only_in "$openmp_files" '\bomp(\b|_)|\b_OPENMP\b' 'OpenMP'
 
 # ---- Changelog -------------------------------------------------------------------------------------------------------
-awk -v most=60 '/^## / { if (n > most) print "CHANGELOG.md:" at ": a version has more than " most " lines"; n = 0; at = NR }
-    { n++ } END { if (n > most) print "CHANGELOG.md:" at ": a version has more than " most " lines" }' CHANGELOG.md | report
+awk -v most=60 '
+    function told() { if (n > most) print "CHANGELOG.md:" at ": a version has more than " most " lines" }
+    /^## / { told(); n = 0; at = NR }
+    { n++ }
+    END { told() }' CHANGELOG.md | report
 
 # ---- Top level -------------------------------------------------------------------------------------------------------
 if [ -e .git ]; then

@@ -90,12 +90,12 @@ static hf_status read_progress(const hf_option *option, const char *value, hf_op
 
 static hf_status read_stage(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
 {
-    static const char *const word[HF_N_STAGE] = {"form", "search", "refine"};
-    static const char *const old[HF_N_STAGE] = {"form", "optimize", "polish"};
+    static const char *const old[HF_N_STAGE] = {
+        [HF_STAGE_FORM] = "", [HF_STAGE_SEARCH] = "optimize", [HF_STAGE_REFINE] = "polish"};
     for (int i = 0; i < HF_N_STAGE; i++) {
-        bool is_new = !strcmp(value, word[i]);
-        if (!is_new && strcmp(value, old[i]) != 0) continue;
-        if (!is_new) hf_warning(messages, "--stage %s is now --stage %s: " RENAME_IT, old[i], word[i]);
+        bool is_new = !strcmp(value, hf_stage_word[i]);
+        if (!is_new && (!*value || strcmp(value, old[i]) != 0)) continue;
+        if (!is_new) hf_warning(messages, "--stage %s is now --stage %s: " RENAME_IT, old[i], hf_stage_word[i]);
         o->stage = hf_stage_word[i];
         return HF_OK;
     }
