@@ -373,6 +373,8 @@ function figureRows(first) {
   return rows;
 }
 
+const inOneLine = (paragraphs) => paragraphs.replaceAll("\n", " ");
+
 // Lists terms, figures of these keys and words of these stages with their descriptions, as `hifdm explain` prints them.
 function writtenWords(keys, stages) {
   const figures = new Set(keys.map((key) => key.replace(/\[.*/, ""))),
@@ -389,7 +391,7 @@ function writtenWords(keys, stages) {
     "details",
     { class: "words" },
     el("summary", {}, "What the words and figures mean"),
-    el("dl", {}, list.flatMap(({ word, text }) => [el("dt", {}, word.replace(/_/g, "_\u200b")), el("dd", {}, text)])),
+    el("dl", {}, list.flatMap(({ word, text }) => [el("dt", {}, word.replace(/_/g, "_\u200b")), el("dd", {}, inOneLine(text))])),
   );
 }
 
@@ -398,7 +400,7 @@ const hasFigure = (v) => typeof v === "number" || typeof v === "string";
 // Returns the description of a figure or, with `of`, of a word that is the value of figure `of`.
 function meaning(word, of) {
   const found = (data.words || []).find((entry) => entry.word === word && entry.of === of);
-  return found ? found.text : undefined;
+  return found ? inOneLine(found.text) : undefined;
 }
 const quantity = (name, unit, key) =>
   el("th", { scope: "row", "data-unit": unit || null, title: meaning(key.replace(/\[.*/, "")) }, name);
