@@ -51,10 +51,12 @@ def join(found):
 
 
 def of_messages(path):
-    """Yields the messages of a C file. A message is a phrase and gets a capital and a full stop, formats a letter."""
+    """Yields the messages of a C file as a user sees them: with "Error: " and the name of the file in front. They get a
+    full stop, and help texts a capital. X stands for an inserted value."""
     code = re.sub(r'"\s*\n\s*"', "", strings.COMMENT.sub("", path.read_text(encoding="utf-8")))
-    for call in re.finditer(r'\b(hf_error|hf_warning|\.help =|\.about =)\b[^"]*"((?:[^"\\]|\\.)*)"', code):
-        text = re.sub(r"^%s: ", "", call.group(2))
+    begin = {"hf_error": "Error: ", "hf_warning": "Warning: "}
+    for call in re.finditer(r'(hf_error\b|hf_warning\b|\.help =|\.about =)[^"]*"((?:[^"\\]|\\.)*)"', code):
+        text = begin.get(call.group(1), "") + re.sub(r"^%s:(%d:(%d:)?)? ", "FILE: ", call.group(2))
         text = re.sub(r"%[-+ #0-9.*]*(?:ll|l|z)?[a-zA-Z]", "X", text).replace('\\"', '"').replace("\\n", " ")
         for part in re.split(r"(?<=[.!?])\s+(?=[A-Z])", text):
             part = part.strip()
@@ -80,7 +82,8 @@ def ours():
         if name.suffix in (".html", ".js"):
             kind = "pages"
         if kind:
-            found.setdefault(kind, []).extend((name, s) for words in join(list(lines)) for s in sentences(words))
+            texts = [text for _, text in lines] if kind == "pages" else join(list(lines))
+            found.setdefault(kind, []).extend((name, s) for words in texts for s in sentences(words))
     return {kind: sorted(set(all_of)) for kind, all_of in found.items() if all_of}
 
 

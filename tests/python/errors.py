@@ -54,22 +54,22 @@ class Errors(unittest.TestCase):
 
     def test_arrays_of_a_net(self):
         for part, arguments in {
-            "position_m has dtype float32; wanted is a numpy array of dtype float64 and shape (n, 3)":
+            "position_m has dtype float32; expected a numpy array of dtype float64 and shape (n, 3)":
                 {"position": POSITION.astype(np.float32)},
-            "end has dtype int64; wanted is a numpy array of dtype int32 and shape (n, 2)":
+            "end has dtype int64; expected a numpy array of dtype int32 and shape (n, 2)":
                 {"end": END.astype(np.int64)},
             "value has dtype int64; wanted": {"value": np.arange(4)},
-            "role has dtype int64; wanted is a numpy array of dtype uint8 and shape (5,)": {"role": np.arange(5)},
+            "role has dtype int64; expected a numpy array of dtype uint8 and shape (5,)": {"role": np.arange(5)},
         }.items():
             self.refused(TypeError, part, self.net, **arguments)
         for part, arguments in {
             "position_m has shape (5, 2)": {"position": POSITION[:, :2].copy()},
             "position_m is not contiguous": {"position": np.asfortranarray(POSITION)},
-            "EA_N has shape (5,); wanted is a numpy array of dtype float64 and shape (4,)": {"EA_N": np.ones(5)},
+            "EA_N has shape (5,); expected a numpy array of dtype float64 and shape (4,)": {"EA_N": np.ones(5)},
             "load_N has shape (4, 3);": {"load_N": np.ones((4, 3))},
-            "role has 4 words; wanted is one, or 5": {"role": ROLE[:4]},
-            "role has 'free'; wanted is one of support, inner, edge": {"role": ["free", *ROLE[1:]]},
-            "law has 'spring'; wanted is one of tension, length, force_density, elastic": {"law": "spring"},
+            "role has 4 words; expected one word or 5": {"role": ROLE[:4]},
+            "role has 'free'; expected one of support, inner, edge": {"role": ["free", *ROLE[1:]]},
+            "law has 'spring'; expected one of tension, length, force_density, elastic": {"law": "spring"},
             "node_ids has 2 ids; wanted are 5": {"node_ids": ["a", "b"]},
         }.items():
             self.refused(ValueError, part, self.net, **arguments)
@@ -150,7 +150,7 @@ class Errors(unittest.TestCase):
         self.refused(hifdm.HifdmError, "nowhere.yaml: cannot open", hifdm.open, "nowhere.yaml")
         small = temp("small.yaml", SMALL)
         self.refused(hifdm.HifdmError, "--set form.max_iterations", hifdm.open, small, {"form.max_iterations": -1})
-        self.refused(TypeError, "wanted is a list of 'key=value', or a dict", hifdm.open, small, "form.stop=residual")
+        self.refused(TypeError, "expected a list of 'key=value', or a dict", hifdm.open, small, "form.stop=residual")
         few = hifdm.open(source("configs/chen2022.yaml"), {"form.max_iterations": 1, "form.method": "hifdm"})
         error = self.refused(hifdm.HifdmError, "did not converge in 1 iteration", few.form)
         self.assertEqual(error.status, "not_converged")

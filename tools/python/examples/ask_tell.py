@@ -10,7 +10,7 @@ import hifdm
 
 
 class Evolution:
-    """The best quarter of a generation are the parents of the next one. Its spread follows theirs."""
+    """The best quarter of each generation become the parents of the next generation. Its spread follows theirs."""
 
     def __init__(self, initial, lower, upper, n=64, seed=1):
         self.random = np.random.default_rng(seed)

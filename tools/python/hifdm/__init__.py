@@ -1,4 +1,4 @@
-"""Form-finding of cable nets of mesh reflectors: the library hifdm from Python, with numpy.
+"""The package finds the shape and the pretension of cable nets for mesh reflectors. Arrays are numpy arrays.
 
     import hifdm, numpy as np
     case = hifdm.open("configs/chen2022.yaml")
@@ -6,8 +6,8 @@
     designs = case.initial + np.random.default_rng(1).uniform(-1, 1, (1000, case.n_variable))
     out = case.evaluate(designs)  # out.psi_m, on all cores
 
-All units are SI, and the unit is the last part of a name. Errors are HifdmError with the message of the program and
-.status.
+All values are in SI units, and the last part of a name is the unit. If a call fails, it raises HifdmError, which
+contains the message and the status.
 """
 
 from ._library import HifdmError, version as __version__

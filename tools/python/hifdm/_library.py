@@ -1,5 +1,5 @@
-"""Loads the shared library and its flat interface (include/hifdm/flat.h) by ctypes, which releases the GIL in every
-call."""
+"""Loads the shared library and its flat interface (include/hifdm/flat.h) with ctypes. ctypes releases the GIL during
+each call."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ PROTOTYPES = {
 
 
 class HifdmError(Exception):
-    """An error of the library, with the message of the program.
+    """An error of the library. The text is the error message.
 
-    status: its word, such as "bad_case", "not_converged" or "no_memory".
+    status: the reason as a word, such as "bad_case", "not_converged" or "no_memory".
     """
 
     def __init__(self, status: str, message: str):
@@ -56,8 +56,8 @@ class HifdmError(Exception):
 
 
 def _candidates() -> list[str]:
-    """Returns where the library may be: the given path, beside an installed package, in the built sources, or where the
-    loader looks."""
+    """Returns the paths at which the library may be found. HIFDM_LIBRARY overrides them. The last path leaves the
+    search to the loader."""
     given = os.environ.get("HIFDM_LIBRARY")
     if given:
         return [given]
@@ -71,10 +71,10 @@ def _candidates() -> list[str]:
 
 @contextlib.contextmanager
 def _quiet_waiting() -> Iterator[None]:
-    """Sets how the threads of OpenMP wait, as the program hifdm does, unless the user sets it.
+    """Makes the threads of OpenMP wait passively, unless the user has set a policy. The program hifdm does the same.
 
-    OpenMP reads the environment when it is loaded, with libhifdm or earlier with another package. By default waiting
-    threads spin for a millisecond. A call with small batches then takes three times the processor time.
+    OpenMP reads the environment when it is loaded. By default, waiting threads spin for a millisecond. Calls with small
+    batches would then use three times as much processor time.
     """
     ours = {} if {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"} & os.environ.keys() else _WAITING
     os.environ.update(ours)
@@ -122,13 +122,13 @@ def status_word(status: int) -> str:
 
 
 def word(of: str, code: int) -> str:
-    """Returns the word of a code in the list `of`."""
+    """Returns the word for a code. `of` names the list of words."""
     found = status_word(code) if of == "status" else lib.hf_flat_word(of.encode(), code)
     return "unknown" if found is None else found if isinstance(found, str) else found.decode()
 
 
 def c_text(text: bytes) -> bytes:
-    """Returns the text itself. Raises ValueError if C would read only its beginning."""
+    """Returns the text unchanged. Raises ValueError if the text contains a NUL character."""
     if b"\0" in text:
         raise ValueError(f"{text.decode(errors='replace')!r} has a NUL character")
     return text
@@ -142,24 +142,25 @@ _pointer_of = {np.dtype(np.float64): _reals, np.dtype(np.int32): _ints, np.dtype
 
 
 def pointer(array: np.ndarray | None):
-    """Returns a pointer to the memory of an array, which the user keeps alive."""
+    """Returns a pointer to the data of an array. The caller must keep the array alive."""
     return None if array is None else array.ctypes.data_as(_pointer_of[array.dtype])
 
 
 def wanted(name: str, array, dtype, shape: tuple) -> np.ndarray:
-    """Returns the array itself, without a copy, if it has this dtype and shape (None: any length) in C order.
+    """Returns the array itself if it has this dtype and this shape, in C order. None in the shape means any length.
 
-    Otherwise raises TypeError or ValueError with the argument, what it is, and what is required.
+    Raises TypeError or ValueError otherwise. The message gives the name of the argument, its type and the required
+    type.
     """
     want = "(" + ", ".join("n" if n is None else str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
     want = f"a numpy array of dtype {np.dtype(dtype)} and shape {want} in C order"
     if not isinstance(array, np.ndarray):
-        raise TypeError(f"{name} is of type {type(array).__name__}; wanted is {want}")
+        raise TypeError(f"{name} is of type {type(array).__name__}; expected {want}")
     if array.dtype != np.dtype(dtype):
-        raise TypeError(f"{name} has dtype {array.dtype}; wanted is {want}")
+        raise TypeError(f"{name} has dtype {array.dtype}; expected {want}")
     fits = array.ndim == len(shape) and all(n is None or n == m for n, m in zip(shape, array.shape))
     if not fits:
-        raise ValueError(f"{name} has shape {array.shape}; wanted is {want}")
+        raise ValueError(f"{name} has shape {array.shape}; expected {want}")
     if not array.flags.c_contiguous or not array.flags.aligned:
-        raise ValueError(f"{name} is not contiguous in C order; wanted is {want}: numpy.ascontiguousarray makes one")
+        raise ValueError(f"{name} is not contiguous in C order; expected {want}: numpy.ascontiguousarray makes one")
     return array

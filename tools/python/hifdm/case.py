@@ -1,4 +1,4 @@
-"""A case: its net, its shape, designs of it, and whole runs."""
+"""A case, its net and its shape. The case evaluates designs and executes complete runs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _process = {"pid": os.getpid(), "is_used": False}
 
 
 class HifdmWarning(UserWarning):
-    """A warning of the program, with its text."""
+    """A warning of the library."""
 
 
 class Progress(NamedTuple):
@@ -35,7 +35,7 @@ class Progress(NamedTuple):
 
 
 class Shape:
-    """A shape: arrays, and each figure as an attribute: psi_m, residual_N, status, ... (all are in `figures`)."""
+    """A shape. Each figure is an attribute, such as psi_m, residual_N or status. `figures` contains all of them."""
 
     position_m: np.ndarray  # [n_node, 3] m, supports included
     length_m: np.ndarray  # [n_cable] m
@@ -61,7 +61,7 @@ class Shape:
 
 
 class Designs:
-    """Results of n designs. Each column is an attribute and an item: psi_m, merit, iterations, objective_0_psi, ..."""
+    """The results of n designs. Each column is available as an attribute and as an item, such as psi_m or merit."""
 
     def __init__(self, names: list[str], n_objective: int, table: np.ndarray):
         self.names = names
@@ -69,7 +69,7 @@ class Designs:
         self.table = table  # [n_figure, n]; the status is a code
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Returns a column [n]; NaN if a design has no such figure."""
+        """Returns a column [n]. The value is NaN if a design does not have this figure."""
         new = new_key(name)
         if name not in self.names and new in self.names:
             warn(repr(name), repr(new))
@@ -99,18 +99,18 @@ class Designs:
 
     @property
     def best(self) -> int:
-        """Index of the feasible design with the minimum merit; -1 if none is feasible. Objectives of a front have no
-        merit."""
+        """Index of the feasible design with the minimum merit, or -1 if no design is feasible. A case with
+        optimize.front has no merit."""
         merit = np.where(self.feasible, self["merit"], np.inf)
         return int(merit.argmin()) if self.feasible.any() else -1
 
     def columns(self) -> dict[str, np.ndarray]:
-        """Returns the columns by name, for pandas.DataFrame or numpy."""
+        """Returns a dict of all columns, for example for pandas.DataFrame."""
         return {name: self[name] for name in self.names}
 
 
 class Run(Mapping[str, Any]):
-    """A finished run: its figures, as `hifdm run --json` prints them, by key as in a dict."""
+    """A finished run. It is a mapping of the figures that `hifdm run --json` prints."""
 
     def __init__(self, figures: dict[str, Any]):
         self.figures = Figures(figures)
@@ -118,7 +118,7 @@ class Run(Mapping[str, Any]):
         self.file: str | None = figures.get("file")  # the result file, if the run has written one
 
     def __getitem__(self, stage: str) -> Any:
-        """Returns the figures of a stage ("form", "search", "refine"), "load_cases", "tolerance", "front", ..."""
+        """Returns the figures of a stage, such as "form" or "search", or of another part, such as "load_cases"."""
         try:
             return self.figures[stage]
         except KeyError:
@@ -151,7 +151,7 @@ def _lines(set: Overrides) -> list[str]:
         return [f"{key}={value if isinstance(value, str) else json.dumps(value, default=_plain)}"
                 for key, value in set.items()]
     if isinstance(set, str):
-        raise TypeError("set is a text; wanted is a list of 'key=value', or a dict")
+        raise TypeError("set is a text; expected a list of 'key=value', or a dict")
     return list(set)
 
 
@@ -162,8 +162,8 @@ def _plain(value: Any) -> Any:
 
 
 class _Lock:
-    """Lets one thread at a time work with a case. The run has the lock while it calls `progress`, so the thread of
-    `progress` cannot work with the case."""
+    """Allows only one thread at a time to use a case. A run holds the lock while it calls `progress`. Therefore
+    `progress` must not use the case."""
 
     def __init__(self) -> None:
         self._lock = threading.RLock()
@@ -180,8 +180,8 @@ class _Lock:
 
 
 class Case:
-    """A case of hifdm.open or hifdm.net. One thread at a time works with a case, and others wait. Indices count from
-    0."""
+    """A case, as returned by hifdm.open or hifdm.net. Only one thread at a time can use a case; other threads wait.
+    Indices start at 0."""
 
     def __init__(self, open_handle: Callable[[int], int], keep: Any = ()):
         self._lock = _Lock()
@@ -234,7 +234,7 @@ class Case:
         _process.update(pid=os.getpid())
 
     def _call(self, function: Callable, *arguments: Any) -> int:
-        """Calls the library. Its warnings become warnings, and a status other than ok becomes an exception."""
+        """Calls the library and turns its warnings into Python warnings. Raises HifdmError if the call fails."""
         self._check_process()
         _process["is_used"] = True
         status = function(*arguments)
@@ -277,7 +277,7 @@ class Case:
         return Shape(figures, objectives, {"position_m": self._numbers("position_m", 3), **arrays})
 
     def form(self) -> Shape:
-        """Finds the shape of the case. Raises HifdmError if there is none, or if the iteration does not converge."""
+        """Finds the shape of the case. Raises HifdmError if there is no shape, or if the iteration does not converge."""
         with self._lock:
             if self._shape is None:
                 self._call(lib.hf_flat_form, self._handle)
@@ -285,8 +285,8 @@ class Case:
             return self._shape
 
     def shape(self, design: np.ndarray) -> Shape:
-        """Returns the shape of one design [n_variable]. An infeasible design raises no error; `status` is one of the
-        figures."""
+        """Returns the shape of one design [n_variable]. An infeasible design does not raise an error. Check the
+        attribute `status` of the shape."""
         design = wanted("design", design, float, (self.n_variable,))
         with self._lock:
             self.form()
@@ -300,29 +300,29 @@ class Case:
 
     @property
     def initial(self) -> np.ndarray:
-        """[n_variable] The initial design, whose shape is that of form(); each value has its unit of variable_units."""
+        """[n_variable] The initial design. form() returns its shape. variable_units lists the units of the values."""
         return self._after_form("initial")
 
     @property
     def lower(self) -> np.ndarray:
-        """[n_variable] Lower bounds of the section optimize; -inf where there is none."""
+        """[n_variable] Lower bounds of the design variables. The value is -inf if a variable has no lower bound."""
         return self._after_form("lower")
 
     @property
     def upper(self) -> np.ndarray:
-        """[n_variable] Upper bounds; inf where there is none."""
+        """[n_variable] Upper bounds of the design variables. The value is inf if a variable has no upper bound."""
         return self._after_form("upper")
 
     @property
     def solver(self) -> str:
-        """The name of the solver with which designs are evaluated."""
+        """The name of the solver that evaluates the designs."""
         with self._lock:
             self.form()
             return self._texts("solver")[0]
 
     def evaluate(self, designs: np.ndarray) -> Designs:
-        """Evaluates designs [n, n_variable] on all cores; each column has its unit of variable_units. The results are
-        those of `hifdm evaluate`, bit by bit."""
+        """Evaluates designs [n, n_variable] on all cores. variable_units lists the units of the columns. `hifdm
+        evaluate` gives the same results, bit for bit."""
         designs = wanted("designs", designs, float, (None, self.n_variable))
         table = np.empty((len(self.figure_names), len(designs)))
         with self._lock:
@@ -331,11 +331,11 @@ class Case:
         return Designs(self.figure_names, len(self._objectives), table)
 
     def jacobian(self, designs: np.ndarray) -> np.ndarray:
-        """Returns exact derivatives [n, n_slope, n_variable] of the figures slope_names at designs [n, n_variable]; NaN
-        for infeasible designs.
+        """Returns exact derivatives [n, n_slope, n_variable] at the designs [n, n_variable]. The derivatives of
+        infeasible designs are NaN.
 
-        The figures are psi_m, or with objectives the value of each objective and the merit. Each derivative has
-        the unit of the figure per unit of the design variable.
+        slope_names lists the figures: psi_m, or each objective and the merit if the case has objectives. The unit of a
+        derivative is the unit of the figure divided by the unit of the design variable.
         """
         designs = wanted("designs", designs, float, (None, self.n_variable))
         slopes = np.empty((len(designs), len(self.slope_names), self.n_variable))
@@ -348,12 +348,12 @@ class Case:
 
     def run(self, output: str | os.PathLike | None = None, *, restart: bool = False,
             progress: Callable[[Progress], Any] | None = None) -> Run:
-        """Runs the case as `hifdm run` does: form-finding, search, refinement, load cases and as-built samples.
+        """Executes all stages of the case, as `hifdm run` does.
 
-        output: the result file. If it holds a run that was stopped, this run resumes it, or with `restart` replaces it.
-        None: the run writes no file. progress: a function that is called during the run, in a thread of its own. If it
-        returns False, the run is stopped, and the status is "interrupted". If it raises an exception, or the user
-        presses Ctrl-C, the run is stopped, and the exception is raised here. It cannot use this case, which is busy.
+        output: path of the result file, or None to write no file. If the file contains an interrupted run, that run is
+        resumed. restart: replaces such a file instead. progress: a function that is called during the run in a separate
+        thread. If it returns False, the run stops with the status "interrupted". If it raises an exception, the run
+        stops and raises the same exception. Ctrl-C stops the run as well. The function must not use this case.
         """
         path = None if output is None else c_text(os.fsencode(output))
         raised: list[BaseException] = []
@@ -392,8 +392,8 @@ class Case:
 
 
 def open(path: str | os.PathLike, set: Overrides = (), *, threads: int = 0) -> Case:
-    """Opens a case file with overrides, {"form.pretension_N": 12} or ["form.pretension_N=12"]; threads = 0: all
-    cores."""
+    """Opens a case file. set: overrides, as {"form.pretension_N": 12} or ["form.pretension_N=12"]. threads: number of
+    threads; 0 uses all cores."""
     lines = _lines(set)
     given = os.fsencode(path)
     full = given if os.path.isabs(given) else os.path.join(os.getcwdb(), given)  # a run reads the file again
@@ -402,17 +402,17 @@ def open(path: str | os.PathLike, set: Overrides = (), *, threads: int = 0) -> C
 
 
 def _codes(name: str, words: str | Sequence[str] | np.ndarray, of: str, n: int) -> np.ndarray:
-    """Returns codes [n] for one word, for n words, or as given (uint8)."""
+    """Returns an array of n codes. The argument may be one word, n words, or an array of codes (uint8)."""
     if isinstance(words, np.ndarray) and words.dtype.kind != "U":
         return wanted(name, words, np.uint8, (n,))
     each = [words] * n if isinstance(words, str) else list(words)
     if len(each) != n:
-        raise ValueError(f"{name} has {len(each)} words; wanted is one, or {n}")
+        raise ValueError(f"{name} has {len(each)} words; expected one word or {n}")
     code_of = {text: lib.hf_flat_code(of.encode(), c_text(str(text).encode())) for text in {*each}}
     for text, code in code_of.items():
         if code < 0:
             known = [each for each in (word(of, code) for code in range(9)) if each != "unknown"]
-            raise ValueError(f"{name} has {text!r}; wanted is one of {', '.join(known)}")
+            raise ValueError(f"{name} has {text!r}; expected one of {', '.join(known)}")
     return np.array([code_of[text] for text in each], np.uint8)
 
 
@@ -427,7 +427,7 @@ def _members(name: str, cables: Sequence[int]) -> np.ndarray:
     given = np.asarray(cables)
     if given.ndim != 1 or given.size and given.dtype.kind not in "iu":
         raise TypeError(f"sets[{name!r}] has dtype {given.dtype} and {given.ndim} dimensions; "
-                        "wanted is a list of integers, indices of cables")
+                        "expected a list of integers, the indices of cables")
     index = given.astype(np.int32)
     if (index != given).any():
         raise ValueError(f"sets[{name!r}] names a cable that there is not")
@@ -435,7 +435,7 @@ def _members(name: str, cables: Sequence[int]) -> np.ndarray:
 
 
 def _sets(sets: Mapping[str, Sequence[int]]) -> tuple:
-    """Returns names in the order of strcmp, where each set begins, and indices."""
+    """Returns the sorted names of the sets, the index at which each set begins, and the indices of the cables."""
     names = sorted(sets, key=lambda name: name.encode())
     members = [_members(name, sets[name]) for name in names]
     start = np.cumsum([0] + [len(member) for member in members], dtype=np.int32)
@@ -448,15 +448,19 @@ def net(position_m: np.ndarray, end: np.ndarray, *, role: str | Sequence[str] | 
         node_ids: Sequence[str] | None = None, cable_ids: Sequence[str] | None = None,
         sets: Mapping[str, Sequence[int]] | None = None, set: Overrides = (), threads: int = 0,
         **sections: Any) -> Case:
-    """Makes a case from a net of arrays. They are used without a copy and must not be changed while the case exists.
+    """Creates a case from arrays. The arrays are not copied, so do not change them while the case exists.
 
-    position_m [n_node, 3] m: target positions; of supports the real ones. end [n_cable, 2] int32: indices of nodes.
-    role, by node: "support", "inner" (counts in psi) or "edge". group, by cable: "inner" or "boundary" (the design
-    variables without optimize.variables). law, by cable: "tension", "length", "force_density" or "elastic". role, group
-    and law are one word for all, a sequence of words, or codes [n] uint8. value [n_cable]: N, m, N/m or m (unstressed)
-    by law; NaN: the pretension of the case, or the length between target positions. EA_N [n_cable] N, load_N [n_node,
-    3] N. sets: names of sets, with indices of their cables. sections: those of a case file, such as
-    form={"pretension_N": 10}, optimize={"objective": [{"figure": "psi"}]}.
+    position_m: target positions of the nodes, and real positions of the supports [n_node, 3], m.
+    end: indices of the nodes at the ends of each cable [n_cable, 2], int32.
+    role: role of each node. A node is a "support", "inner" (included in psi) or "edge".
+    group: group of each cable, "inner" or "boundary". Without optimize.variables, boundary cables are design variables.
+    law: law of each cable, "tension", "length", "force_density" or "elastic".
+    role, group and law accept one word for all, a sequence of words, or codes (uint8).
+    value: target value of each cable, in N, m, N/m or m (unstressed length), as its law requires [n_cable].
+    NaN selects the pretension of the case, or the distance between the target positions.
+    EA_N: axial stiffness [n_cable], N. load_N: loads on the nodes [n_node, 3], N.
+    sets: names of sets, with the indices of their cables.
+    sections: sections of a case file, such as form={"pretension_N": 10}.
     """
     wanted("position_m", position_m, float, (None, 3))
     wanted("end", end, np.int32, (None, 2))

@@ -1,4 +1,4 @@
-"""Pictures by matplotlib, which is imported only for drawing."""
+"""Plots with matplotlib. matplotlib is imported only when a plot is drawn."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ import numpy as np
 
 
 def plot_net(position_m: np.ndarray, end: np.ndarray, tension_N: np.ndarray | None = None, ax=None):
-    """Draws cables [n_cable, 2] between positions [n_node, 3] m, coloured by tension [n_cable] N. Returns the axes."""
+    """Draws the cables of a net and colours them by tension. Returns the axes.
+
+    position_m: [n_node, 3] m, end: [n_cable, 2], tension_N: [n_cable] N
+    """
     import matplotlib.pyplot as plt
     from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
@@ -24,7 +27,7 @@ def plot_net(position_m: np.ndarray, end: np.ndarray, tension_N: np.ndarray | No
 
 
 def plot_generations(best_psi_m: np.ndarray, ax=None):
-    """Draws the best psi [generation] m of a run. Returns the axes."""
+    """Draws the best psi of each generation, in m. Returns the axes."""
     import matplotlib.pyplot as plt
 
     ax = ax or plt.figure().add_subplot()

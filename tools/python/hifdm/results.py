@@ -1,7 +1,7 @@
-"""Result files as a thin layer over h5py. `h5` is the open file; include/hifdm/store.h lists its contents.
+"""A thin layer over h5py for result files. `h5` is the open file. include/hifdm/store.h lists its contents.
 
-Files of version 0.2 have other names (_renamed.py). Result reads them, too, and returns the figures by their names of
-today."""
+Files of version 0.2 use other names (_renamed.py). Result reads these files as well and returns the figures under their
+new names."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _OF_POPULATION = ("n_individual", "n_variable", "n_objective", "generations_limi
 
 
 class Result:
-    """An open result file. Open it when its run has ended, or in another process, because HDF5 is not thread-safe."""
+    """An open result file. HDF5 is not thread-safe, so do not open a file while a run in the same process writes it."""
 
     def __init__(self, path: str | os.PathLike):
         import h5py  # imported here, because the rest of the package does not need it
@@ -39,7 +39,7 @@ class Result:
         self.h5.close()
 
     def _group(self, stage: str):
-        """Returns the group with the shape of a stage, or None."""
+        """Returns the group that contains the shape of a stage, or None."""
         for path in _GROUPS.get(stage) or [stage, stage.removeprefix("load_")]:
             if f"{path}/position_m" in self.h5:
                 return self.h5[path]
@@ -47,13 +47,13 @@ class Result:
 
     @property
     def stages(self) -> list[str]:
-        """The stages with a shape: "form", "search", "refine", then the load cases, such as "load_cases/cold"."""
+        """The stages that have a shape: "form", "search", "refine", and load cases such as "load_cases/cold"."""
         load_cases = self.h5.get("load_cases", self.h5.get("cases", {}))
         names = [*_GROUPS, *(f"load_cases/{name}" for name in load_cases if name != "name")]
         return [Stage(name) for name in names if self._group(name)]
 
     def shape(self, stage: str = "form") -> Shape:
-        """Returns the shape of a stage, one of `stages`: its arrays, and its figures as attributes."""
+        """Returns the shape of a stage. `stages` lists the stages of the file."""
         name = new_stage(stage)
         if name != stage:
             warn(repr(stage), repr(name))
@@ -64,7 +64,7 @@ class Result:
         return Shape(self._figures(group), {}, arrays)
 
     def _figures(self, group) -> Figures:
-        """Returns the attributes of a group by their names of today, with words in place of codes."""
+        """Returns the attributes of a group under their new names. Codes are replaced by words."""
         is_search_of_0_2 = group.name == "/ga/best"
         figures = Figures()
         for name, value in (self.h5["ga"] if is_search_of_0_2 else group).attrs.items():
@@ -97,5 +97,5 @@ class Result:
 
 
 def read(path: str | os.PathLike) -> Result:
-    """Opens a result file of this version or of version 0.2."""
+    """Opens a result file of version 0.3 or 0.2."""
     return Result(path)
