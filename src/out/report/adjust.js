@@ -8,8 +8,8 @@ const adjustmentOf = new Map(adjust ? adjust.adjustments.map((row) => [cableAt.g
 const FIGURE = { psi: "ψ", surface: "RMS along the normal", facets: "RMS of the facets along the normal" };
 const ADJUST_END = {
   target: "The target is met.",
-  max_adjustments: "These are all adjustments that adjust.max_adjustments allows.",
-  doubt: "The gain of one more adjustment would be within the errors of the measurement.",
+  max_adjustments: "adjust.max_adjustments allows no further adjustment.",
+  doubt: "One more adjustment would improve the figure by less than the measurement error.",
   none: "No further adjustment improves the figure.",
 };
 const adjustments = (n) => (n === 1 ? "one turnbuckle adjustment" : `${fmtCount(n)} turnbuckle adjustments`);
@@ -22,7 +22,7 @@ function adjustText(name) {
   const expected = (value, sigma) => `expected: ${inMm(value)} ± ${fmt(1e3 * sigma, 2)}`;
   return [
     `${fmtCount(adjust.measured_nodes)} nodes were measured. χ² is ${fmt(adjust.chi_square, 3)} per coordinate. ` +
-      "It is about 1 if tolerances and measurement errors are as the case states.",
+      "χ² is about 1 if the case file states the tolerances and measurement errors correctly.",
     `The most probable net has a ${name} of ${inMm(adjust.estimated_m)}` +
       ` (${expected(adjust.estimated_expected_m, adjust.estimated_sigma_m)}).` +
       ` After ${adjustments(adjust.adjustments.length)} it has` +
@@ -34,19 +34,19 @@ function adjustText(name) {
           `${inMm(adjust.design_psi_m)}.`
         : "ψ is measured from the target positions.",
     adjust.end === "target" && adjust.adjusted_expected_m > adjust.target_m
-      ? "The most probable net meets the target, but the expected figure is larger."
+      ? "The most probable net meets the target, but the expected figure is larger than the target."
       : ADJUST_END[adjust.end] || "",
     adjust.maybe_slack
-      ? `${fmtCount(adjust.maybe_slack)} cables may be slack. Positions do not show how slack they are, so figures ` +
-        "after adjustments are less certain than ± states."
+      ? `${fmtCount(adjust.maybe_slack)} cables may be slack. The positions do not show how slack they are. ` +
+        "The figures after adjustments are therefore less certain than the value after ±."
       : "",
-    adjust.held_taut ? "Adjustments keep the minimum tension of each cable and make no further cable slack." : "",
-    adjust.supports_estimated ? "" : "Supports are assumed to be at the positions of the case.",
+    adjust.held_taut ? "The adjustments keep the minimum tension of each cable. They make no additional cable slack." : "",
+    adjust.supports_estimated ? "" : "The supports are assumed to be at the positions given in the case file.",
     adjust.settled ? "" : "The estimate has not converged.",
     adjust.fits
       ? ""
-      : "χ² is larger than chance explains. A tolerance or a measurement error may be larger than the case states, " +
-        "supports may be displaced, or the net may have another design.",
+      : "χ² is larger than chance explains. Tolerances or measurement errors may be larger " +
+        "than the case file states. Supports may be displaced, or the net may have a different design.",
   ]
     .filter((text) => text)
     .join(" ");
@@ -137,8 +137,8 @@ function otherAims() {
     el(
       "p",
       {},
-      `${fmtCount(adjust.at_range)} of the adjustments above are at adjust.range_m. ψ of the design is ` +
-        `${inMm(adjust.design_psi_m)}, and errors alone make ${inMm(adjust.error_psi_m)}.`,
+      `${fmtCount(adjust.at_range)} of the adjustments above reach the limit adjust.range_m. ψ of the design is ` +
+        `${inMm(adjust.design_psi_m)}. The errors of the net alone cause ψ = ${inMm(adjust.error_psi_m)}.`,
     ),
     el("ul", {}, items),
   ];
@@ -208,8 +208,8 @@ function writeAdjust(view) {
           el(
             "p",
             {},
-            `Set ${familyName(adjust.set)}. A turnbuckle adjustment above 0 lets the cable out. A click on a name ` +
-              "shows the cable in the picture.",
+            `Set ${familyName(adjust.set)}. A positive turnbuckle adjustment lengthens the cable. Click a name ` +
+              "to show the cable in the picture.",
           ),
           adjustmentsTable(name, choose),
         ]

@@ -62,8 +62,8 @@ function cableColumns(before, after, families, choose) {
 }
 
 const CABLES_SAID =
-  "A click on a heading sorts. A click on a name shows the cable in the picture, and a click on a cable there puts " +
-  "its row at the top.";
+  "Click a heading to sort the table. Click a name to show the cable in the picture. Click a cable in the picture to " +
+  "move its row to the top.";
 
 // Returns the id of a cable as a button that shows the cable in the picture.
 function cableLink(e, choose) {
@@ -89,16 +89,16 @@ function writeCables(view) {
     change = columns.findIndex(({ size }) => size);
   const words = [
     otherShape
-      ? "Tensions of this result and of the other."
+      ? "Tensions of this result and of the other result."
       : two
         ? `Tensions after form-finding and of the result (${after.name}).`
         : null,
     columns.some(({ name }) => name.startsWith("unstressed minus"))
       ? `The unstressed length is compared with that ${base}.`
       : null,
-    adjust ? "A length error above 0 is a cable that is too long." : null,
-    net.psi_by_cut ? "ψ per mm is the change of ψ if the cable is let out by 1 mm and no cable goes slack." : null,
-    net.cable_share ? "The share is the part of ψ² from all errors that the cable causes, to first order." : null,
+    adjust ? "A positive length error means that the cable is too long." : null,
+    net.psi_by_cut ? "ψ per mm is the change of ψ if the cable becomes 1 mm longer and no cable goes slack." : null,
+    net.cable_share ? "The share is the contribution of the cable to ψ² from all errors, to first order." : null,
   ].filter((text) => text);
   const all = sortableTable({
     caption: "Cables",

@@ -61,7 +61,7 @@ function chart(options) {
   const picture = svg("svg", {
     role: "img",
     tabindex: 0,
-    "aria-label": `${title}: ${yLabel} against ${xLabel}. Left and right arrow keys read the values.`,
+    "aria-label": `${title}: ${yLabel} against ${xLabel}. Press the left and right arrow keys to read the values.`,
   });
   const tip = el("div", { class: "tip", role: "status", hidden: true });
   let cursor = -1,

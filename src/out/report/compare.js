@@ -34,7 +34,7 @@ function caseDifferences() {
     left > 0
       ? el("p", {}, `Only the first ${LINES_OF_CASE_MAX} lines are compared, without up to ${fmtCount(left)} more.`)
       : null;
-  if (!lines.length) return [left > 0 ? cut : el("p", {}, "The text of both cases is the same.")];
+  if (!lines.length) return [left > 0 ? cut : el("p", {}, "The two case files are identical.")];
   return [
     el("h3", { class: "after" }, "Differences of the cases"),
     el("p", {}, `− of this result, + of ${data.other.name}.`),
@@ -81,7 +81,7 @@ function writeOther() {
       otherShape
         ? "Both results have the same net. The pictures can show the shape of the other result, and the table of " +
             "cables has the tensions of both."
-        : "The nets differ, so only figures are compared.",
+        : "The nets differ, so the page compares only their figures.",
     ),
     table(
       [

@@ -108,7 +108,7 @@ function writeWhose(more) {
       "p",
       { class: "whose", id: "whose" },
       isFormFinding
-        ? "Except for the front, this page shows the shape of the form-finding, which is no point of the front."
+        ? "Apart from the front, this page shows the form-finding shape, which is not a point of the front."
         : `This page shows the point of the front with the minimum ${objectiveName(Object.keys(front.initial)[0])}.` +
             `${asBuilt ? " As-built nets are those of the form-finding, which is no point of the front." : ""}`,
       more.map((text) => ` Of this shape: ${text[0].toLowerCase()}${text.slice(1)}`),
@@ -159,9 +159,9 @@ function writeFront() {
     el(
       "p",
       {},
-      `${fmtCount(front.n_point)} designs${left.length ? `, ${left.join(", ")}` : ""}. No design is better in all ` +
-        `objectives than one on the front. Found in ${fmtDuration(front.wall_s)}. The knee is farthest below the ` +
-        `straight ${names.length > 2 ? "plane through" : "line between"} the ends.`,
+      `${fmtCount(front.n_point)} designs${left.length ? `, ${left.join(", ")}` : ""}. No design found is better in all ` +
+        `objectives than a design on the front. The computation took ${fmtDuration(front.wall_s)}. The knee is the ` +
+        `point farthest below the ${names.length > 2 ? "plane through" : "straight line between"} the ends.`,
     ),
     el("div", { class: "charts" }, charts),
     takeText(front),

@@ -238,8 +238,8 @@ function writeNet() {
         el(
           "span",
           { class: "keys", id: "net-keys" },
-          " Drag or use the arrow keys to turn, with Shift to shift, the wheel or + and − to zoom, 0 to start over. " +
-            "n and c step through nodes and cables, with Shift backwards. Enter or a click marks a cable.",
+          " Drag or press the arrow keys to rotate. Hold Shift to move. Use the wheel or + and − to zoom. Press 0 to reset. " +
+            "n and c step through nodes and cables, with Shift backwards. Click a cable or press Enter to mark it.",
         ),
       ),
     ),
@@ -273,7 +273,7 @@ function netCaption() {
     {},
     "Deformation from the target positions (grey) ",
     el("strong", { id: "scale-note" }),
-    `. Squares are supports${trussNote()}. The colours span the deviations of the inner nodes, which ψ counts.`,
+    `. Squares are supports${trussNote()}. The colour scale covers the deviations of the inner nodes, which enter ψ.`,
   );
 }
 
@@ -324,10 +324,10 @@ function writeMap() {
         "figcaption",
         { id: "map-caption" },
         "The net at its target positions, seen along z. Values between the nodes are interpolated. The height is " +
-          "positive above the target surface. The distance includes drift within the surface, as ψ does." +
+          "positive above the target surface. The distance includes displacements within the surface, as ψ does." +
           (net.facets
-            ? " The colour of a facet is the mean of its error along the normal, positive above the target surface " +
-              "or above the best fit to all facets."
+            ? " The colour of a facet shows the mean of its error along the normal. The error is positive above the " +
+              "target surface, or above the best fit to all facets."
             : ""),
       ),
     ),

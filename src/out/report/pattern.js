@@ -108,8 +108,8 @@ function patternText(all) {
 }
 
 const PATTERN_NOTE =
-  "Sidelobes and cross-polarisation are relative to the beam. A figure is – if the angles of the cut do not reach " +
-  "it, or if they are too coarse.";
+  "Sidelobes and cross-polarisation are relative to the maximum of the beam. " +
+  "A dash (–) means that the angles of the cut do not cover the figure or are too coarse for it.";
 
 function writePattern() {
   const all = patterns();

@@ -45,17 +45,17 @@ function writeHistory() {
     "Tension ratio, inner cables",
     "inner_tension_ratio",
     "inner ratio",
-    "Maximum over minimum tension. 1 is uniform.",
+    "Ratio of maximum to minimum tension. The value 1 means uniform tension.",
     { yLabel: "T max / T min" },
   );
   add(
     "Tension ratio, boundary cables",
     "boundary_tension_ratio",
     "boundary ratio",
-    "Maximum over minimum tension of the boundary cables.",
+    "Ratio of maximum to minimum tension of the boundary cables.",
     { yLabel: "T max / T min" },
   );
-  add("Nodal force out of balance", "residual_N", "residual", "Maximum residual of a free node. 0 is equilibrium.", {
+  add("Nodal force out of balance", "residual_N", "residual", "Maximum residual force of a free node. The value 0 means equilibrium.", {
     yLabel: "residual (N)",
     log: true,
     unit: "N",
@@ -103,7 +103,7 @@ function writeSearch() {
         unit: "mm",
         x,
         head,
-        caption: "Surface error of the feasible individuals. The worst may leave the picture." + thinned(g),
+        caption: "Surface error of the feasible individuals. The worst individuals may lie outside the plot." + thinned(g),
         series: [
           {
             name: "worst",
@@ -130,7 +130,7 @@ function writeSearch() {
         unit: "mm",
         x,
         head,
-        caption: "Generations without a better design have no mark.",
+        caption: "Generations without a better design are not marked.",
         series: [{ name: "change", values: change.map((v) => (v > 0 ? v : null)), colour: "--one", dots: true }],
       }),
     ),
@@ -180,7 +180,7 @@ function writeCoupling() {
         "Maximum deflection",
         "deflection_max_m",
         "deflection (mm)",
-        "Of the attachments, where the truss holds the net.",
+        "Maximum deflection of the attachments of the net to the truss.",
       ),
       one(
         "Surface error ψ on the truss",
@@ -237,7 +237,7 @@ function writeTensions() {
   section(
     "tensions",
     "Tensions",
-    el("p", {}, "One mark for each cable, numbered in the order of the file within its group."),
+    el("p", {}, "Each mark is one cable. Cables are numbered within their group, in the order of the file."),
     el(
       "div",
       { class: "charts" },

@@ -328,7 +328,7 @@ function drawFigures(study, figures, axis, others, stage, charts, note) {
     drawn = all.filter((f) => groups.length === 1 || isMap || changesAlong(f, groups, stage)),
     flat = all.filter((f) => !drawn.includes(f));
   note.textContent = flat.length
-    ? `Along ${axis.name} these figures do not change: ${flat.map((f) => lowered(f.title)).join("; ")}.`
+    ? `Along ${axis.name} the following figures do not change: ${flat.map((f) => lowered(f.title)).join("; ")}.`
     : "";
   const drawings = drawn.map((f) =>
     groups.length <= CURVES_MAX
@@ -368,7 +368,7 @@ function writeCurves(study, axes, figures, mainStage) {
       .filter((a) => a.extend)
       .map((a) => {
         const end = headOf(a, a.label(study.best));
-        return `${lead.title} still falls at ${end}, the end of its axis: add points ${a.extend} it.`;
+        return `${lead.title} still decreases at ${end}, the end of the axis. Add points ${a.extend} this value.`;
       }),
     same.length ? `At all points: ${same.join("; ")}.` : "",
     ...psi.map(({ objective }) => `The objective ${objective} is not listed, because it equals ψ.`),
@@ -469,10 +469,10 @@ function writePoints(study, axes, figures, best) {
   const notes = [];
   if (fixed.length) notes.push(`All points have ${fixed.map((a) => headOf(a, a.label(0))).join(", ")}.`);
   if (study.meets_yield.includes("open"))
-    notes.push("Open: the required yield is within the 95 % interval of the samples. More samples are needed.");
-  if (best >= 0) notes.push("The marked row is the best one. A click on a heading sorts.");
-  if (study.page.some((p) => p)) notes.push("The last column links to the report of a point, or else to its result.");
-  else if (study.file.some((p) => p)) notes.push("The last column links to the result file of a point.");
+    notes.push("Open: the required yield lies within the 95 % confidence interval of the samples. More samples are needed.");
+  if (best >= 0) notes.push("The best point is marked. Click a heading to sort the table.");
+  if (study.page.some((p) => p)) notes.push("The last column links to the report of each point, or to its result file if there is no report.");
+  else if (study.file.some((p) => p)) notes.push("The last column links to the result file of each point.");
   const points = sortableTable({
     caption: "Points",
     columns,
