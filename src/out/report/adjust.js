@@ -40,7 +40,9 @@ function adjustText(name) {
       ? `${fmtCount(adjust.maybe_slack)} cables may be slack. The positions do not show how slack they are. ` +
         "The figures after adjustments are therefore less certain than the value after ±."
       : "",
-    adjust.held_taut ? "The adjustments keep the minimum tension of each cable. They make no additional cable slack." : "",
+    adjust.held_taut
+      ? "The adjustments keep the minimum tension of each cable. They make no additional cable slack."
+      : "",
     adjust.supports_estimated ? "" : "The supports are assumed to be at the positions given in the case file.",
     adjust.settled ? "" : "The estimate has not converged.",
     adjust.fits

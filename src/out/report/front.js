@@ -159,8 +159,9 @@ function writeFront() {
     el(
       "p",
       {},
-      `${fmtCount(front.n_point)} designs${left.length ? `, ${left.join(", ")}` : ""}. No design found is better in all ` +
-        `objectives than a design on the front. The computation took ${fmtDuration(front.wall_s)}. The knee is the ` +
+      `${fmtCount(front.n_point)} designs${left.length ? `, ${left.join(", ")}` : ""}. No design found is better ` +
+        `in all objectives than a design on the front. ` +
+        `The computation took ${fmtDuration(front.wall_s)}. The knee is the ` +
         `point farthest below the ${names.length > 2 ? "plane through" : "straight line between"} the ends.`,
     ),
     el("div", { class: "charts" }, charts),

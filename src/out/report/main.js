@@ -238,8 +238,9 @@ function writeNet() {
         el(
           "span",
           { class: "keys", id: "net-keys" },
-          " Drag or press the arrow keys to rotate. Hold Shift to move. Use the wheel or + and − to zoom. Press 0 to reset. " +
-            "n and c step through nodes and cables, with Shift backwards. Click a cable or press Enter to mark it.",
+          " Drag or press the arrow keys to rotate. Hold Shift to move. Use the wheel or + and − to zoom. " +
+            "Press 0 to reset. n and c step through nodes and cables, with Shift backwards. " +
+            "Click a cable or press Enter to mark it.",
         ),
       ),
     ),

@@ -66,7 +66,8 @@ const roundingNote = () =>
   el(
     "span",
     {},
-    "The inner nodes are within 1 nm of their target positions. This difference is rounding error, so all nodes have one neutral colour.",
+    "The inner nodes are within 1 nm of their target positions. This difference is rounding error, so all nodes " +
+      "have one neutral colour.",
   );
 
 // Draws the colour bar of a picture. Values outside low..high, from `lowest` to `highest`, have the colours of its

@@ -55,7 +55,8 @@ function writeHistory() {
     "Ratio of maximum to minimum tension of the boundary cables.",
     { yLabel: "T max / T min" },
   );
-  add("Nodal force out of balance", "residual_N", "residual", "Maximum residual force of a free node. The value 0 means equilibrium.", {
+  const residual = "Maximum residual force of a free node. The value 0 means equilibrium.";
+  add("Nodal force out of balance", "residual_N", "residual", residual, {
     yLabel: "residual (N)",
     log: true,
     unit: "N",
@@ -103,7 +104,8 @@ function writeSearch() {
         unit: "mm",
         x,
         head,
-        caption: "Surface error of the feasible individuals. The worst individuals may lie outside the plot." + thinned(g),
+        caption:
+          "Surface error of the feasible individuals. The worst individuals may lie outside the plot." + thinned(g),
         series: [
           {
             name: "worst",
@@ -391,7 +393,14 @@ function writtenWords(keys, stages) {
     "details",
     { class: "words" },
     el("summary", {}, "What the words and figures mean"),
-    el("dl", {}, list.flatMap(({ word, text }) => [el("dt", {}, word.replace(/_/g, "_\u200b")), el("dd", {}, inOneLine(text))])),
+    el(
+      "dl",
+      {},
+      list.flatMap(({ word, text }) => [
+        el("dt", {}, word.replace(/_/g, "_\u200b")),
+        el("dd", {}, inOneLine(text)),
+      ]),
+    ),
   );
 }
 

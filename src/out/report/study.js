@@ -469,9 +469,12 @@ function writePoints(study, axes, figures, best) {
   const notes = [];
   if (fixed.length) notes.push(`All points have ${fixed.map((a) => headOf(a, a.label(0))).join(", ")}.`);
   if (study.meets_yield.includes("open"))
-    notes.push("Open: the required yield lies within the 95 % confidence interval of the samples. More samples are needed.");
+    notes.push(
+      "Open: the required yield lies within the 95 % confidence interval of the samples. More samples are needed.",
+    );
   if (best >= 0) notes.push("The best point is marked. Click a heading to sort the table.");
-  if (study.page.some((p) => p)) notes.push("The last column links to the report of each point, or to its result file if there is no report.");
+  if (study.page.some((p) => p))
+    notes.push("The last column links to the report of each point, or to its result file if there is no report.");
   else if (study.file.some((p) => p)) notes.push("The last column links to the result file of each point.");
   const points = sortableTable({
     caption: "Points",

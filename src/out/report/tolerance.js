@@ -60,7 +60,10 @@ function toleranceChart(t) {
 function scaleText(t) {
   if (typeof t.sigma_scale !== "number") return "";
   if (!(t.sigma_scale > 0))
-    return ` No tolerances give a yield of ${percent(t.required_yield)}, because the net without errors fails a requirement.`;
+    return (
+      ` No tolerances give a yield of ${percent(t.required_yield)}, ` +
+      "because the net without errors fails a requirement."
+    );
   const part = percent(t.sigma_scale, 4),
     required = percent(t.required_yield);
   if (t.scale_bound > 0)

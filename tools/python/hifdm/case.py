@@ -277,7 +277,10 @@ class Case:
         return Shape(figures, objectives, {"position_m": self._numbers("position_m", 3), **arrays})
 
     def form(self) -> Shape:
-        """Finds the shape of the case. Raises HifdmError if there is no shape, or if the iteration does not converge."""
+        """Finds the shape of the case.
+
+        Raises HifdmError if there is no shape, or if the iteration does not converge.
+        """
         with self._lock:
             if self._shape is None:
                 self._call(lib.hf_flat_form, self._handle)
