@@ -252,7 +252,7 @@ START_TEST(outliers_are_told)
     ck_assert_ptr_nonnull(first);
     ck_assert_double_gt(fabs(number_after("\"by_positions_m\": ")), 1.1 * fabs(strtod(first + 11, NULL)));
     HIFDM(0, "explain", "outlier");
-    OUT("The estimate treats such a cable\n    error as unlikely");
+    OUT("an outlier is an error that is much larger");
     OUT("measure it again");
 }
 END_TEST
