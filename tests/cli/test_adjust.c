@@ -253,7 +253,7 @@ START_TEST(outliers_are_told)
     ck_assert_double_gt(fabs(number_after("\"by_positions_m\": ")), 1.1 * fabs(strtod(first + 11, NULL)));
     HIFDM(0, "explain", "outlier");
     OUT("an outlier is an error that is much larger");
-    OUT("measure it again");
+    OUT("What to do: If a cable is the outlier, check the cable");
 }
 END_TEST
 
