@@ -3,7 +3,8 @@
  *
  * Each public header declares its functions and variables between HF_API_BEGIN and HF_API_END. These declarations have
  * C linkage, and libhifdm.so exports them. All other symbols of the library are hidden, because it is compiled with
- * -fvisibility=hidden. `make abi` compares the exported symbols with the declared ones. */
+ * -fvisibility=hidden. `make abi` compares the symbols that the library exports with the symbols that the headers
+ * declare. */
 #ifndef HIFDM_API_H
 #define HIFDM_API_H
 

@@ -4,12 +4,13 @@
  * Pipeline:
  *
  *   hf_batch_create   allocates a workspace for each thread
- *   hf_batch_share    selects the solver and prepares what the threads share
+ *   hf_batch_share    selects the solver and prepares the data that the threads share
  *   hf_batch_run      designs [n][n_variable] -> results [n], as often as needed
- *   hf_batch_free     frees all of it
+ *   hf_batch_free     frees the memory of the batch
  *
- * hf_batch_next does the work of hf_batch_run for the generations of an optimiser. tools/own_optimiser.c is a program
- * with its own optimiser that calls these functions. `hifdm evaluate` does the same with designs in a CSV file. */
+ * hf_batch_next does the work of hf_batch_run for the generations of an optimiser. The program tools/own_optimiser.c
+ * has its own optimiser and calls these functions. The command `hifdm evaluate` calls them for designs in a CSV
+ * file. */
 #ifndef HIFDM_BATCH_H
 #define HIFDM_BATCH_H
 
@@ -20,72 +21,75 @@
 
 HF_API_BEGIN
 
-/* The memory with which n_thread threads evaluate designs. A batch belongs to one thread at a time. */
+/* A batch holds the memory with which n_thread threads evaluate designs. A batch belongs to one thread at a time. */
 typedef struct {
-    const hf_evaluator *evaluator;  /* evaluates one design; borrowed */
-    int n_thread;                   /* number of threads */
-    hf_workspace *workspace;        /* [n_thread]; inside hf_parallel_for all but the first are created on first use */
+    const hf_evaluator *evaluator; /* evaluates one design; borrowed */
+    int n_thread;                  /* number of threads */
+    /* [n_thread] workspaces; hf_parallel_for creates all but the first when they are first used */
+    hf_workspace *workspace;
     struct hf_batch_engine *engine; /* solver data that hf_batch_share created; NULL: there are none */
-    bool lacks_memory;              /* memory was too small for what hf_batch_share would create */
-    /* processor time of all proposals (hf_batch_next) and evaluations so far, summed over the threads, s */
+    bool lacks_memory;              /* true: memory did not suffice for the shared solver data */
+    /* processor time that proposals (hf_batch_next) and evaluations took so far, summed over the threads, s */
     double cpu_s;
 } hf_batch;
 
-/* Creates a batch of n_thread threads; 0 stands for hf_batch_default_threads(). The evaluator is borrowed until
- * hf_batch_free. Returns HF_OK or HF_NO_MEMORY. Call hf_batch_free in either case. */
+/* Creates a batch of n_thread threads. If n_thread is 0, the batch has hf_batch_default_threads() threads. The batch
+ * borrows the evaluator until hf_batch_free. Returns HF_OK or HF_NO_MEMORY. Call hf_batch_free in either case. */
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch);
 
-/* Evaluates the designs i = 0 ... n-1 with pending[i] != 0, or all of them if pending is NULL. `design` has the shape
- * [n][n_variable] and holds the values of the design variables, in N for boundary pretensions. The values of cables are
- * above 0. result [n] receives the results of the evaluated designs.
+/* Evaluates the designs i = 0 ... n-1 with pending[i] != 0, or all designs if pending is NULL. The array design
+ * [n][n_variable] holds the values of the design variables. Boundary pretensions are in N. Values that belong to cables
+ * must be above 0. The array result [n] receives the results of the evaluated designs.
  *
- * Each design is one whole form-finding in one thread. A result depends neither on the number of threads nor on the
- * other designs of the call. If a design has no shape or breaks a constraint, its result contains the status, and psi_m
- * is NaN. Without a shape the tension ratios are NaN, too. */
+ * Each design is one complete form-finding, computed by one thread. The result of a design depends neither on the
+ * number of threads nor on the other designs of the call. If a design has no shape or violates a constraint, its result
+ * contains the status, and psi_m is NaN. If a design has no shape, its tension ratios are also NaN. */
 void hf_batch_run(hf_batch *batch, int n, const double *design, const unsigned char *pending, hf_form_result *result);
 
-/* Proposes the next generation of the optimiser and evaluates its pending designs, both with all threads. The result is
- * the same as that of hf_optimiser_next and hf_batch_run. The calling thread first calls beside(context) once, unless
- * `beside` is NULL; the other threads begin at the same time. `beside` must not read the population itself, only a copy
- * of the struct that was made before the call. Returns false if no generation is left; then only `beside` was
- * called. */
+/* Proposes the next generation of the optimiser and evaluates its pending designs. All threads share both tasks. The
+ * results are the same as those of hf_optimiser_next followed by hf_batch_run. The calling thread first calls
+ * beside(context) once, unless `beside` is NULL. The other threads start their work at the same time. The callback
+ * `beside` must not read the population itself. It may read a copy of the struct that was made before this call.
+ * Returns false if no generation is left. In this case it only calls `beside`. */
 bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
 
-/* Selects the solver of all later evaluations and creates the data that its threads share. `initial` [n_variable] is
- * the design at which the shared Newton matrix is factored; the values of cables are above 0. If the solver is the
- * paper's iteration in vector lanes, the shared data are its plan. If each design is solved alone by hf_evaluate,
- * nothing is shared.
+/* Selects the solver for all later evaluations and creates the data that its threads share. The shared Newton matrix is
+ * factored at the design initial [n_variable], in which values of cables must be above 0. If the solver is the paper's
+ * iteration in vector lanes, the threads share its plan instead of a matrix. If hf_evaluate solves each design
+ * separately, the threads share no data.
  *
- * Returns the solver that will be used. If no matrix can be factored at `initial` or memory runs out, nothing is
- * shared, and another solver may be returned. Its results differ in the last bits, so batch->lacks_memory is true after
- * a lack of memory. */
+ * Returns the solver that later evaluations use. If the matrix cannot be factored at `initial`, or if memory runs out,
+ * no data are shared and the function may return another solver. The results of another solver differ in the last bits.
+ * If memory ran out, batch->lacks_memory is therefore set to true. */
 hf_solver hf_batch_share(hf_batch *batch, const double *initial);
 
 /* Returns the solver that hf_batch_share selects if `initial` is suitable and memory suffices. Sets *has_lanes to true
- * if this solver works on eight designs at once, one in each lane of the vector registers. @52- */
+ * if this solver works on eight designs at once, one in each lane of the vector registers. */
 hf_solver hf_batch_solver(const hf_evaluator *evaluator, bool *has_lanes);
 
 /* Returns the number of cores that are available to this process. */
-int hf_batch_default_threads(void); /* available cores */
+int hf_batch_default_threads(void);
 
-/* Makes threads that wait for others sleep after some microseconds. Call it first in main, with main's argument argv.
- * It sets GOMP_SPINCOUNT=2000 and OMP_WAIT_POLICY=passive in the environment and starts the program again. OpenMP reads
- * these variables when it is loaded, which is before main begins, and has no call to change them. The function returns
- * without effect if one of the two variables is set, as it is in the restarted program. It also returns if the path of
- * the program cannot be read, or if the dynamic linker was called to run the program.
+/* Makes threads sleep after they have waited for other threads for some microseconds. Call this function first in main,
+ * and pass the argument argv of main. The function sets GOMP_SPINCOUNT=2000 and OMP_WAIT_POLICY=passive in the
+ * environment and restarts the program. A restart is necessary because OpenMP reads these variables when it is loaded,
+ * before main begins. OpenMP has no function to change them later. The function does nothing if one of the two
+ * variables is already set, as in the restarted program. It also does nothing if the path of the program cannot be
+ * read, or if the dynamic linker was called to run the program.
  *
- * Reason: a generation takes less than a millisecond, and by default waiting threads spin for about as long. Small
- * batches then take three times the processor time. Where other programs kept the cores busy, runs were 30 times slower
- * on two cores. Threads that sleep at once would lose 10 to 20 % of a run on an idle machine. A program that loads the
- * library at run time, such as an interpreter, sets the two variables before it loads the library. */
+ * A generation takes less than a millisecond, and by default a waiting thread spins for about as long. With the
+ * default, small batches therefore take three times as much processor time. If other programs kept the cores busy, runs
+ * on two cores were 30 times slower with the default. If waiting threads slept at once, a run on an idle machine would
+ * take 10 to 20 % longer. A program that loads the library at run time, such as an interpreter, must set the two
+ * variables before it loads the library. */
 void hf_batch_wait_quietly(char *const *argv);
 
-/* Evaluates the design [n_variable] in the calling thread; the result has the same bits as that of hf_batch_run.
- * Returns the workspace that holds the shape of the design until the next call with this batch. The batch owns the
- * workspace. */
+/* Evaluates the design [n_variable] in the calling thread. The result is bit-for-bit identical to the result of
+ * hf_batch_run. Returns the workspace that holds the shape of the design. The shape is valid until the next call with
+ * this batch. The batch owns the returned workspace. */
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design, hf_form_result *result);
 
-/* Frees the workspaces and the shared data of the solver, but not the evaluator. */
+/* Frees the workspaces and the shared solver data. Does not free the evaluator. */
 void hf_batch_free(hf_batch *batch);
 
 HF_API_END

@@ -1,14 +1,15 @@
-/* cable_law - the laws that a cable can obey, and everything that depends on the law (METHOD.md section 2).
+/* cable_law - the laws that a cable can obey, and all functions that depend on the law (METHOD.md section 2).
  * Stability: internal; may change in any version.
  *
- * The names and words of the laws are stable, because files contain them.
+ * The names and words of the laws are stable because files contain them.
  *
- * A new law is one row of HF_LAW_LIST and one case in each function below; the compiler reports a missing case. Solvers
- * test flags and call these functions, so they need no change. A kernel with its own formulas for the laws states as a
- * set of flags which laws it can solve (hf_law_is_served). A net with any other law is solved by another method.
+ * A new law needs one row of HF_LAW_LIST and one case in each function below. The compiler reports a missing case.
+ * Solvers test flags and call these functions, so a new law does not change them. A kernel may have its own formulas
+ * for the laws. A set of flags states which laws such a kernel can solve (hf_law_is_served). If a net has any other
+ * law, another method solves the net.
  *
- * Lengths are in m, tensions in N, force densities in N/m. The order of the floating-point operations must not change,
- * because it determines the last bits of stored data sets. */
+ * Lengths are in m, tensions in N and force densities in N/m. The order of the floating-point operations must not
+ * change because it determines the last bits of stored data sets. */
 #ifndef HIFDM_CABLE_LAW_H
 #define HIFDM_CABLE_LAW_H
 
@@ -18,20 +19,22 @@
 
 HF_API_BEGIN
 
-/* What solvers may assume of a law. */
+/* Properties of a law that solvers may use. */
 enum {
-    HF_LAW_ITERATES = 1,       /* the force density depends on the shape, so one linear solve is not enough */
-    HF_LAW_IS_CONVEX = 2,      /* the potential is convex under tension */
-    HF_LAW_GIVES_TENSION = 4,  /* T is the target value, whatever the length */
-    HF_LAW_HAS_MULTIPLIER = 8, /* T is an unknown of its own; the law gives the required length at this T */
-    HF_LAW_IS_RIGID = 16,   /* with a multiplier: the required length is the same at every T; there is no potential */
-    HF_LAW_GOES_SLACK = 32, /* with a multiplier: T may be zero; the cable then carries no force */
+    HF_LAW_ITERATES = 1,      /* the force density depends on the shape, so one linear solve is not enough */
+    HF_LAW_IS_CONVEX = 2,     /* the potential is convex under tension */
+    HF_LAW_GIVES_TENSION = 4, /* the tension is the target value at any length */
+    /* the tension is a separate unknown; the law gives the required length at this tension */
+    HF_LAW_HAS_MULTIPLIER = 8,
+    /* law with a multiplier: the required length is the same at every tension, and there is no potential */
+    HF_LAW_IS_RIGID = 16,
+    HF_LAW_GOES_SLACK = 32, /* law with a multiplier: the tension may be zero, and the cable then carries no force */
     HF_LAW_NEEDS_EA = 64,   /* the law depends on the axial stiffness EA of the cable */
-    HF_LAW_MAY_PUSH = 128   /* the target value may be below zero: a strut */
+    HF_LAW_MAY_PUSH = 128   /* the target value may be below zero; the cable is then a strut */
 };
 
-/* X(name, word, target, unit of target, flags): one row for each law. Files contain the words, in the order of the
- * rows. `target` is the name of the target value in messages; NULL: a cable may have no value.
+/* Each law is one row X(name, word, target, unit of target, flags). Files contain the words in the order of the rows.
+ * `target` is the name of the target value in messages. If `target` is NULL, a cable of this law may have no value.
  *
  *   tension         T = T*, Eq. 7
  *   length          l = L*, Eq. 8
@@ -46,7 +49,7 @@ enum {
       HF_LAW_ITERATES | HF_LAW_IS_CONVEX | HF_LAW_HAS_MULTIPLIER | HF_LAW_GOES_SLACK | HF_LAW_NEEDS_EA)
 
 #define HF_LAW_NAME(name, word, target, unit, flags) name,
-/* The law of a cable; files contain the values. */
+/* The law of a cable. Files contain these values. */
 typedef enum { HF_LAW_LIST(HF_LAW_NAME) } hf_law;
 #undef HF_LAW_NAME
 
@@ -55,18 +58,18 @@ enum { HF_N_LAW = HF_LAW_LIST(HF_LAW_ONE_MORE) };
 #undef HF_LAW_ONE_MORE
 
 extern const char *const hf_law_word[HF_N_LAW];        /* "tension", "length", "force_density", "elastic" */
-extern const char *const hf_law_target_name[HF_N_LAW]; /* names of the target values; NULL: the value may be left out */
+extern const char *const hf_law_target_name[HF_N_LAW]; /* names of the target values; NULL: the value is optional */
 extern const char *const hf_law_target_unit[HF_N_LAW]; /* units of the target values */
 
-/* The values of one cable on which its law depends. */
+/* The values of one cable that its law uses. */
 typedef struct {
     hf_law law;                /* law in force */
-    double target;             /* T* (N), L* (m), q (N/m) or l0 (m) by law */
+    double target;             /* target value by law: T* (N), L* (m), q (N/m) or l0 (m) */
     double EA_N;               /* axial stiffness; NaN if the law does not need it */
-    double length_at_target_m; /* length between the target positions of its ends */
+    double length_at_target_m; /* distance between the target positions of its ends */
 } hf_law_cable;
 
-/* Returns true if the law has any of these flags. */
+/* Returns true if the law has at least one of these flags. */
 static inline bool hf_law_has(hf_law law, unsigned flags)
 {
 #define HF_LAW_FLAGS(name, word, target, unit, flags) flags,
@@ -75,14 +78,15 @@ static inline bool hf_law_has(hf_law law, unsigned flags)
     return (flags_of[law] & flags) != 0;
 }
 
-/* Returns true if a kernel for laws with the flags `served` can solve this law, because the law has no other flag. */
+/* Returns true if a kernel for laws with the flags `served` can solve this law. This is the case if the law has no
+ * other flag. */
 static inline bool hf_law_is_served(hf_law law, unsigned served)
 {
     return !hf_law_has(law, ~served);
 }
 
-/* Returns the target value of a cable without a value: its length between target positions, length_at_target_m, under
- * law length; NaN for the other laws, which have no default or use the pretension. */
+/* Returns the target value of a cable for which none was given. For law length it is the length between the target
+ * positions, length_at_target_m. For the other laws it is NaN, because they have no default or use the pretension. */
 static inline double hf_law_default_target(hf_law law, double length_at_target_m)
 {
     switch (law) {
@@ -96,15 +100,17 @@ static inline double hf_law_default_target(hf_law law, double length_at_target_m
     return (double)NAN;
 }
 
-/* Size of the text of hf_law_target_fault, bytes. */
+/* Size of the text of hf_law_target_fault in bytes. */
 #define HF_LAW_FAULT_SIZE 160
 
-/* Checks the target value of a cable, NaN if the user gave none. length_at_target_m is the length between the target
- * positions of its ends, m. Returns NULL if the value is valid, otherwise `text`, into which the fault is written. */
+/* Checks the target value of a cable. The value is NaN if the user gave none. The argument length_at_target_m is the
+ * distance between the target positions of the ends of the cable, in m. Returns NULL if the value is valid. Otherwise
+ * writes the fault into `text` and returns `text`. */
 const char *hf_law_target_fault(hf_law law, double target, double length_at_target_m, char text[HF_LAW_FAULT_SIZE]);
 
-/* Returns the length that a law with a multiplier requires at this tension, m; NaN for other laws. This form needs no
- * special case for stiff cables: in the limit of infinite EA the law elastic is the law length (METHOD M3). */
+/* Returns the length in m that a law with a multiplier requires at this tension. Returns NaN for other laws. This form
+ * of the law needs no special case for stiff cables. In the limit of infinite EA, the law elastic becomes the law
+ * length (METHOD M3). */
 static inline double hf_law_required_length_m(hf_law_cable c, double tension_N)
 {
     switch (c.law) {
@@ -119,8 +125,8 @@ static inline double hf_law_required_length_m(hf_law_cable c, double tension_N)
     return (double)NAN;
 }
 
-/* Returns the tension of a cable of this length, N; NaN for a rigid law, under which the length does not determine the
- * tension. */
+/* Returns the tension in N of a cable of this length. Returns NaN for a rigid law, for which the length does not
+ * determine the tension. */
 static inline double hf_law_tension_N(hf_law_cable c, double length_m)
 {
     switch (c.law) {
@@ -136,16 +142,16 @@ static inline double hf_law_tension_N(hf_law_cable c, double length_m)
     return (double)NAN;
 }
 
-/* Returns the unstressed length of a cable that has this tension at this length, m (METHOD M32). For a slack cable
- * whose law has a multiplier, this is the length that the law requires without tension. c.EA_N is needed whatever the
- * law. */
+/* Returns the unstressed length in m of a cable that has this tension at this length (METHOD M32). For a slack cable
+ * whose law has a multiplier, this is the length that the law gives at zero tension. The member c.EA_N is required for
+ * every law. */
 static inline double hf_law_cut_m(hf_law_cable c, double length_m, double tension_N, bool is_slack)
 {
     if (is_slack && hf_law_has(c.law, HF_LAW_HAS_MULTIPLIER)) return hf_law_required_length_m(c, 0);
     return length_m / (1 + tension_N / c.EA_N);
 }
 
-/* Returns the axial stiffness of the law, phi'' = dT/dl, at this length, N/m; INFINITY for a rigid law. */
+/* Returns the axial stiffness phi'' = dT/dl of the law at this length, in N/m. Returns INFINITY for a rigid law. */
 static inline double hf_law_stiffness_N_per_m(hf_law_cable c, double length_m)
 {
     switch (c.law) {
@@ -161,34 +167,36 @@ static inline double hf_law_stiffness_N_per_m(hf_law_cable c, double length_m)
     return 0;
 }
 
-/* ---- what follows from the flags ---- */
+/* ---- functions that follow from the flags ---- */
 
-/* Returns the force density at this length, N/m: from the tension that the law gives, otherwise q_N_per_m. */
+/* Returns the force density in N/m at this length. It follows from the tension if the law gives a tension, and is
+ * q_N_per_m otherwise. */
 static inline double hf_law_held_q_N_per_m(hf_law_cable c, double length_m, double q_N_per_m)
 {
     return hf_law_has(c.law, HF_LAW_GIVES_TENSION) ? c.target / length_m : q_N_per_m;
 }
 
-/* Minimum force density that Eq. 8 gives a slack cable, N/m. It is far below all forces, also in nets with pretensions
- * of 1e-300 N, for which 1e-100 would be too much. It is enough to give a position to a node that only slack cables
- * hold. */
+/* Minimum force density, in N/m, that Eq. 8 gives to a slack cable. This minimum is far below all forces, even in nets
+ * with pretensions of 1e-300 N, for which 1e-100 would be too large. The minimum is large enough to determine the
+ * position of a node that only slack cables hold. */
 #define HF_LAW_MIN_Q_N_PER_M 1e-305
 
-/* Returns the next force density of the fixed-point iteration, N/m. Eq. 7 multiplies q by the required over the present
- * tension; with T = q l the result is the required tension over l. Eq. 8 multiplies q by the present over the required
- * length; for an elastic cable the required length grows with the tension. */
+/* Returns the next force density of the fixed-point iteration in N/m. Eq. 7 multiplies q by the ratio of the required
+ * tension to the present tension. Because T = q l, the result is the required tension divided by l. Eq. 8 multiplies q
+ * by the ratio of the present length to the required length. The required length of an elastic cable increases with the
+ * tension. */
 static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, double tension_N, double q_N_per_m)
 {
     if (hf_law_has(c.law, HF_LAW_GIVES_TENSION)) return c.target / length_m;
     if (!hf_law_has(c.law, HF_LAW_HAS_MULTIPLIER)) return q_N_per_m;
     double next = q_N_per_m * (length_m / hf_law_required_length_m(c, tension_N));
-    return next < HF_LAW_MIN_Q_N_PER_M ? HF_LAW_MIN_Q_N_PER_M : next; /* a NaN remains */
+    return next < HF_LAW_MIN_Q_N_PER_M ? HF_LAW_MIN_Q_N_PER_M : next; /* NaN is returned unchanged */
 }
 
-/* Returns the tension with which an iteration begins, N: otherwise_N, unless the cable can go slack and is taut at its
- * target positions. Such a cable begins with its tension there, limited to a factor HF_LAW_FIRST_RANGE of otherwise_N.
- * Without the limit a stiff cable that is just taut would hold nothing, and one that was cut too short would hold
- * everything. */
+/* Returns the tension in N with which an iteration begins. It is otherwise_N, unless the cable can go slack and is taut
+ * between its target positions. In the second case the cable begins with its tension between the target positions. The
+ * function limits this tension to a factor HF_LAW_FIRST_RANGE of otherwise_N. Without this limit, a stiff cable that is
+ * barely taut would carry almost no force, and a stiff cable that was cut too short would carry almost all forces. */
 #define HF_LAW_FIRST_RANGE 10.0
 static inline double hf_law_first_tension_N(hf_law_cable c, double otherwise_N)
 {

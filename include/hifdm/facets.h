@@ -1,8 +1,8 @@
-/* facets - the triangles and quadrilaterals between the nodes of a net, as its cables enclose them.
+/* facets - the triangles and quadrilaterals that the cables of a net enclose.
  * Stability: internal; may change in any version.
  *
- * Pipeline: nodes on the target surface -> plane graph of the cables between them, seen along z -> its faces -> facets
- * (METHOD section 9). */
+ * Pipeline: nodes on the target surface -> plane graph of the cables between these nodes, seen along z -> faces of the
+ * graph -> facets (METHOD section 9). */
 #ifndef HIFDM_FACETS_H
 #define HIFDM_FACETS_H
 
@@ -16,21 +16,23 @@ HF_API_BEGIN
 typedef struct {
     int n_facet;    /* number of facets */
     int *corner;    /* [n_facet][4] nodes, counter-clockwise seen from +z; the last two of a triangle are equal */
-    int n_open;     /* number of faces that are no facets: more than four sides, or not convex */
-    bool is_planar; /* false: cables cross, seen along z, and there are no facets */
+    int n_open;     /* number of faces that are not facets because they have more than four sides or are not convex */
+    bool is_planar; /* false: cables cross, seen along z, so there are no facets */
     void *block;    /* owned memory behind `corner` */
 } hf_facets;
 
-/* Finds the facets of a scene. surface->focal_length_m is above 0 and surface->kind is not HF_SURFACE_AUTO.
+/* Finds the facets of a scene. The focal length surface->focal_length_m must be above 0, and surface->kind must not be
+ * HF_SURFACE_AUTO.
  *
- * A node is on the target surface if it is an inner node or its target position is within 1e-3 of the depth of the
- * surface. A node that a cable joins to an inner node is also on it if the cable leaves the surface by at most 0.1 of
- * its length. These are nodes of a rim on a truss that deflects.
+ * A node is on the target surface if it is an inner node, or if the distance of its target position from the surface is
+ * at most 1e-3 of the depth of the surface. A node that a cable connects with an inner node is also on the surface if
+ * the cable deviates from the surface by at most 0.1 of its length. Such nodes occur at the rim of a net on a truss
+ * that deflects.
  *
- * If the scene has facets, those with a node on the surface are taken. Otherwise a facet is a minimal face of the plane
- * graph that the cables between nodes on the surface form, seen along z. Where no cable runs along the rim, the
- * straight line between two supports closes the face at the inner nodes between them. It does not if boundary cables
- * hang there from one support to the other as an edge.
+ * If the scene contains facets, the function uses those that have a node on the surface. Otherwise it forms the plane
+ * graph of the cables between nodes on the surface, seen along z. Each minimal face of this graph is a facet. If no
+ * cable runs along the rim, the straight line between two supports closes the face at the inner nodes between them. The
+ * line does not close a face if boundary cables form an edge from one support to the other.
  *
  * Returns HF_OK or HF_NO_MEMORY. Call hf_facets_free in either case. */
 hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surface, hf_facets *facets);

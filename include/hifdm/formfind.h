@@ -1,16 +1,15 @@
-/* formfind - finds shape, tensions and residual from force densities, and iterates them until the cables obey their
- * laws.
+/* formfind - finds shape, tensions and residual from force densities. It iterates until the cables obey their laws.
  * Stability: stable.
  *
- * The laws of the cables decide which method this is (METHOD sections 1 and 2): classical FDM (Eqs. 1-6), iterative FDM
+ * The laws of the cables determine the method (METHOD sections 1 and 2). It is classical FDM (Eqs. 1-6), iterative FDM
  * (Eq. 7) or HIFDM (Eqs. 7 and 8). Pipeline of one iteration:
  *
  *   hf_form_assemble         force densities -> matrix D (Eq. 2)
  *   hf_form_assemble_loads   loads and supports -> right-hand sides (Eq. 5)
  *   band solver              D x = right-hand sides, for x, y and z -> positions
- *   hf_form_measure_cables   positions -> lengths, tensions (Eqs. 4, 6), errors against the laws
- *   hf_form_residual_N       tensions -> maximum nodal force out of balance
- *   hf_form_update           Eqs. 7 and 8 -> next force densities, unless the stopping rule holds */
+ *   hf_form_measure_cables   positions -> lengths, tensions (Eqs. 4, 6), deviations from the laws
+ *   hf_form_residual_N       tensions -> maximum residual force of a node
+ *   hf_form_update           Eqs. 7 and 8 -> next force densities, unless the stopping rule is satisfied */
 #ifndef HIFDM_FORMFIND_H
 #define HIFDM_FORMFIND_H
 
@@ -21,84 +20,88 @@
 
 HF_API_BEGIN
 
-/* Prepares the workspace for the case of the model: copies laws, target values, EA and first force densities; sets
+/* Prepares the workspace for the case of the model. Copies laws, target values, EA and first force densities. Sets
  * displacement_m, support_displacement_m and loose to zero, and n_moving to n_free. */
 void hf_form_prepare(const hf_model *model, hf_workspace *workspace);
 
-/* Writes the positions from which a solve starts into position_m: the target positions. Supports that a design moves
- * are displaced by support_displacement_m, attachments by displacement_m. */
+/* Writes the initial positions of a solve to position_m. They are the target positions. The positions of supports that
+ * a design moves include support_displacement_m, and those of attachments include displacement_m. */
 void hf_form_set_supports(const hf_model *model, hf_workspace *workspace);
 
-/* Finds a shape by iteration from the workspace's q_N_per_m under its laws and target values. The attachments are
- * displaced by displacement_m. The iteration ends when the rule `stop` holds, at max_iterations, or when the net is
- * ill-posed; only the tolerances and bounds of `settings` are read. The figures of each iteration are recorded in
- * `history` unless it is NULL. Does not allocate.
+/* Finds a shape by iteration. The iteration starts from q_N_per_m of the workspace and uses its laws and target values.
+ * The attachments are displaced by displacement_m of the workspace. The iteration ends when the rule `stop` is
+ * satisfied, after max_iterations, or when the net is ill-posed. The function reads only the tolerances and bounds of
+ * `settings`. Unless `history` is NULL, the function records the figures of each iteration in it. The function does not
+ * allocate memory.
  *
- * Returns result->status: HF_OK, HF_NOT_CONVERGED, HF_INTERRUPTED (*workspace->stop was set), or HF_SINGULAR,
- * HF_COLLAPSED, HF_NOT_FINITE, HF_STRAIGHT_CHAIN with the cable, row or chain in result->culprit. */
+ * Returns result->status. It is HF_OK, HF_NOT_CONVERGED, or HF_INTERRUPTED if *workspace->stop was set. If the net is
+ * ill-posed, it is HF_SINGULAR, HF_COLLAPSED, HF_NOT_FINITE or HF_STRAIGHT_CHAIN, and result->culprit is the row, cable
+ * or chain. */
 hf_status hf_form_find(const hf_model *model, const hf_form_settings *settings, hf_stop_rule stop,
                        hf_workspace *workspace, hf_history *history, hf_form_result *result);
 
-/* Measures the shape that the workspace holds, without solving a system; result->iterations is 0. It reads position_m,
- * law and target, and q_N_per_m except for cables of law tension. Sets lengths, tensions, residual and all other
- * figures of the result. The stop reason is HF_STOPPED_CONVERGED if residual and lengths are within their tolerances.
- * Otherwise the status is HF_NOT_CONVERGED, and the stop reason is HF_STOPPED_MAX_ITERATIONS. A shape with a collapsed
- * cable is HF_COLLAPSED. Returns result->status. */
+/* Measures the shape in the workspace without solving a system. Sets result->iterations to 0. The function reads
+ * position_m, law and target, and also q_N_per_m of cables whose law is not tension. The function sets lengths,
+ * tensions, residual and all other figures of the result. The stop reason is HF_STOPPED_CONVERGED if residual and
+ * lengths are within their tolerances. Otherwise the status is HF_NOT_CONVERGED, and the stop reason is
+ * HF_STOPPED_MAX_ITERATIONS. If a cable has collapsed, the status is HF_COLLAPSED. Returns result->status. */
 hf_status hf_form_measure(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                           hf_form_result *result);
 
-/* Writes the force density matrix D of q_N_per_m (Eq. 2) into the band of the workspace. */
+/* Writes the force density matrix D of q_N_per_m (Eq. 2) to the band of the workspace. */
 void hf_form_assemble(const hf_model *model, hf_workspace *workspace);
 
-/* Returns the maximum nodal force out of balance of the workspace's shape, N, and leaves the nodal forces in force_N. A
- * cable of law tension has its target tension; all others have q l. In a final result, residual_N has elastic cables at
- * the tension of their law instead. */
+/* Returns the maximum residual force of a node in N, for the shape in the workspace. Writes the nodal forces to
+ * force_N. For a cable of law tension the function uses the target tension. For all other cables it uses q l. In a
+ * final result, residual_N uses the tension of the law for elastic cables. */
 double hf_form_residual_N(const hf_model *model, hf_workspace *workspace);
 
-/* Limits on the length of a cable, as a part of the length at the target positions. A cable of law force_density below
- * HF_FORM_GONE has collapsed; for law tension the limit is collapse_ratio. A cable above HF_FORM_BLOWN_UP shows that D
- * was singular and could be factored only because of rounding.
+/* Limits on the length of a cable, relative to its length at the target positions. A cable of law force_density has
+ * collapsed if its relative length is below HF_FORM_GONE. For law tension the limit is collapse_ratio. If a relative
+ * length exceeds HF_FORM_BLOWN_UP, D was singular and could be factored only because of rounding.
  *
- * The tests of solve and stress pass with HF_FORM_GONE from 1e-15 to 1e-6 and HF_FORM_BLOWN_UP from 1e6 to 1e12. Of
- * their 1988 solves, three fewer end well with 1e-6, 17 fewer with 1e6, and six more with 1e12. */
+ * The tests of solve and stress pass with HF_FORM_GONE from 1e-15 to 1e-6 and with HF_FORM_BLOWN_UP from 1e6 to 1e12.
+ * Of the 1988 solves in these tests, the number that end well is 3 lower with 1e-6 than with the present value, 17
+ * lower with 1e6 and 6 higher with 1e12. */
 #define HF_FORM_GONE 1e-12
 #define HF_FORM_BLOWN_UP 1e9
 
-/* Completes a shape that another solver has found, as hf_form_find does after its last iteration. The workspace holds
- * laws, target values, and positions that are the solution for q_N_per_m. `reason` and `iterations` are copied into the
- * result. Measures the shape and looks for loaded straight chains. Returns result->status. */
+/* Completes a shape that another solver has found, in the same way as hf_form_find after its last iteration. The
+ * workspace must hold laws, target values and the positions that are the solution for q_N_per_m. The function copies
+ * `reason` and `iterations` to the result. The function measures the shape and searches for loaded straight chains.
+ * Returns result->status. */
 hf_status hf_form_accept(const hf_model *model, const hf_form_settings *settings, hf_stop_reason reason, int iterations,
                          hf_workspace *workspace, hf_form_result *result);
 
-/* Sets the result of a design without a shape: `status` is that of the fault, all real figures are NaN, the culprit
- * is -1, and the stop reason is HF_STOPPED_ILL_POSED. */
+/* Sets the result of a design without a shape. The status is `status`, all real figures are NaN, the culprit is -1, and
+ * the stop reason is HF_STOPPED_ILL_POSED. */
 void hf_form_refuse(hf_status status, int iterations, hf_form_result *result);
 
-/* Writes the right-hand sides (Eq. 5) into the free rows of position_m; the other rows hold the positions of the
- * supports.
+/* Writes the right-hand sides (Eq. 5) to the rows of position_m that belong to free nodes. The other rows hold the
+ * positions of the supports.
  *
- * This function and the next two are for programs with their own linear solver and for timing. The order of an
- * iteration is that in the head of this file. The caller solves band * x = the free rows of position_m, in place, for
- * x, y and z. */
+ * This function and the next two functions are for programs with their own linear solver, and for timing. Call these
+ * functions in the order of the pipeline at the head of this file. The caller solves the systems of the matrix `band`
+ * in place in the free rows of position_m, for x, y and z. */
 void hf_form_assemble_loads(const hf_model *model, hf_workspace *workspace);
-/* Computes lengths, tensions and the errors against the laws from the positions. result->status must be HF_OK before.
- * It is HF_NOT_FINITE, HF_COLLAPSED or HF_SINGULAR afterwards if this is no shape. *length_gap is set to the length
- * error that the stopping rule reads. */
+/* Computes lengths, tensions and the deviations from the laws from the positions. Before the call, result->status must
+ * be HF_OK. If the positions are not a valid shape, the status is set to HF_NOT_FINITE, HF_COLLAPSED or HF_SINGULAR.
+ * The function sets *length_gap to the length error for the stopping rule. */
 void hf_form_measure_cables(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                             hf_form_result *result, double *length_gap);
-/* Computes the next force densities from lengths and tensions, by Eqs. 7 and 8. */
+/* Computes the next force densities from lengths and tensions with Eqs. 7 and 8. */
 void hf_form_update(const hf_model *model, hf_workspace *workspace);
 
-/* Returns the number of chains of the model that can be straight in a shape. On a truss these are all chains, because
- * their supports move. */
+/* Returns the number of chains of the model that can be straight in a shape. If the net is on a truss, all chains can
+ * be straight because their supports move. */
 int hf_form_n_chain(const hf_model *model);
 
-/* Returns true if chain i_chain is straight in the workspace's shape and carries a lateral load or is too short for its
- * supports. Overwrites force_N. */
+/* Returns true if chain i_chain is straight in the shape of the workspace and carries a lateral load, or if it is too
+ * short for its supports. The function overwrites force_N. */
 bool hf_form_chain_is_loaded(const hf_model *model, hf_workspace *workspace, int i_chain);
 
-/* Returns true if all cables of chain i_chain have law length and their lengths are too short for its supports. Sets
- * *sum_m to the sum of the lengths and *span_m to the present distance of the supports, both in m. */
+/* Returns true if all cables of chain i_chain have law length and their total length is too short for its supports. The
+ * function sets *sum_m to the sum of the lengths and *span_m to the present distance of the supports, both in m. */
 bool hf_form_chain_is_short(const hf_model *model, const hf_workspace *workspace, int i_chain, double *sum_m,
                             double *span_m);
 

@@ -1,18 +1,19 @@
-/* frame - linear statics of a truss: displacements, reactions and member forces under load cases.
+/* frame - linear statics of a truss: displacements, reactions and member forces in load cases.
  * Stability: stable.
  *
  * Pipeline:
  *
  *   hf_frame_build       truss -> stiffness matrix (Eqs. 14, 15), scaled to a unit diagonal, and its Cholesky factor
- *   hf_frame_solve       loads, settlements, temperatures -> displacements, by two triangular solves for each load case
+ *   hf_frame_solve       loads, settlements, temperatures -> displacements; two triangular solves for each load case
  *   hf_frame_reactions, hf_frame_member_forces, hf_frame_strain_energy   displacements -> forces, energy
- *   hf_frame_condense    factor -> flexibility of some nodes
+ *   hf_frame_condense    Cholesky factor -> flexibility of selected nodes
  *
- * Members are spatial beams with 12 degrees of freedom (METHOD section 8), or they carry axial force alone. The beam
- * theory is that of Euler and Bernoulli or of Timoshenko. The matrix is a lower band in LAPACK's layout, numbered for a
- * small bandwidth.
+ * A member is a spatial beam with 12 degrees of freedom (METHOD section 8), or it carries only axial force. Beams
+ * follow the theory of Euler and Bernoulli or the theory of Timoshenko. The matrix is stored as a lower band in
+ * LAPACK's layout. The unknowns are numbered for a small bandwidth.
  *
- * Vectors over the nodes are [n_node][6]: components along x, y, z in m or N, then about x, y, z in rad or N m. */
+ * Vectors over the nodes have the shape [n_node][6]. They contain the components along x, y, z in m or N, followed by
+ * the components about x, y, z in rad or N m. */
 #ifndef HIFDM_FRAME_H
 #define HIFDM_FRAME_H
 
@@ -21,67 +22,71 @@
 
 HF_API_BEGIN
 
-/* A truss with its factored stiffness matrix. It does not change once it is built, so threads share it. */
+/* A truss with its factored stiffness matrix. A frame does not change after it is built, so threads can share it. */
 typedef struct {
-    const hf_truss *truss; /* the truss; borrowed, must outlive the frame */
+    const hf_truss *truss; /* the truss, borrowed; it must outlive the frame */
     int n_dof;             /* number of unknowns */
-    int half_bandwidth;    /* number of columns below the diagonal */
+    int half_bandwidth;    /* number of matrix columns below the diagonal */
     int *row_of_dof;       /* [n_node][6] row of the matrix, HF_FRAME_FIXED or HF_FRAME_ABSENT */
-    double *axes;          /* [n_member][3][3] local x, y, z as unit vectors */
+    double *axes;          /* [n_member][3][3] unit vectors of the local axes x, y, z */
     double *length_m;      /* [n_member] lengths */
-    double *stiffness;     /* [n_member][6] EA/L (N/m), GJ/L, then near and far bending about z and y (N m) */
-    double *scale;         /* [n_dof] 1/sqrt of the diagonal */
+    double *stiffness;     /* [n_member][6] EA/L (N/m), GJ/L, then bending terms, near and far, about z and y (N m) */
+    double *scale;         /* [n_dof] 1/sqrt of the diagonal entries */
     double *factor;        /* [n_dof][half_bandwidth+1] Cholesky factor of the scaled matrix */
     double condition;      /* estimated condition number of the scaled matrix */
     void *block;           /* owned memory behind the arrays */
 } hf_frame;
 
-#define HF_FRAME_FIXED -1  /* held by a support */
-#define HF_FRAME_ABSENT -2 /* rotation that no beam resists, because all members are pinned; its value is 0 */
+#define HF_FRAME_FIXED -1 /* degree of freedom that a support holds */
+/* rotation that no beam resists because all members at the node are pinned; its value is 0 */
+#define HF_FRAME_ABSENT -2
 
-/* One load case. A member that is NULL stands for no load of this kind. */
+/* One load case. If a member is NULL, there is no load of this kind. */
 typedef struct {
-    const double *force;         /* [n_node][6] nodal forces and moments, N, N m */
-    const double *settlement;    /* [n_node][6] displacements of supported dofs, m, rad; other dofs are ignored */
+    const double *force; /* [n_node][6] nodal forces in N and moments in N m */
+    /* [n_node][6] displacements of supported degrees of freedom, m and rad; others are ignored */
+    const double *settlement;
     const double *temperature_K; /* [n_member] rise above the temperature at which the members have no stress */
 } hf_frame_load;
 
-/* Builds the frame of a checked truss. Returns HF_OK; HF_MECHANISM, with a message that names a node and a dof that can
- * move without force, for a mechanism or a truss without enough supports; HF_BAD_CASE if every node is supported;
- * HF_NO_MEMORY, also if the matrix is too large; HF_NO_LAPACK. Call hf_frame_free in any case. */
+/* Builds the frame of a checked truss. Returns HF_OK, or HF_BAD_CASE if every node is supported. Returns HF_MECHANISM
+ * if the truss is a mechanism or lacks supports. The message then names a node and a degree of freedom that can move
+ * without force. Returns HF_NO_MEMORY if memory runs out or the matrix is too large, and HF_NO_LAPACK if LAPACK cannot
+ * be loaded. Call hf_frame_free in any case. */
 hf_status hf_frame_build(const hf_truss *truss, hf_frame *frame, hf_messages *messages);
-/* Frees the arrays of the frame, but not the truss. */
+/* Frees the arrays of the frame. Does not free the truss. */
 void hf_frame_free(hf_frame *frame);
 
-/* Returns the number of doubles that hf_frame_solve needs in `work` for n_case load cases. */
+/* Returns the number of doubles in the array `work` that hf_frame_solve needs for n_case load cases. */
 size_t hf_frame_work_size(const hf_frame *frame, int n_case);
 
-/* Solves n_case load cases load [n_case] in one pass over the factor. work [hf_frame_work_size] is scratch.
- * displacement [n_case][n_node][6] receives the displacements in m and rad, with the settlements in the supported dofs.
- * Returns HF_OK and sets *bad_dof to -1. Returns HF_MECHANISM if a moment acts where nothing resists rotation; *bad_dof
- * is then 6 * node + dof, and displacement is unchanged. */
+/* Solves the n_case load cases load [n_case] in one pass over the Cholesky factor. The array work [hf_frame_work_size]
+ * is scratch memory. The array displacement [n_case][n_node][6] receives the displacements in m and rad. Supported
+ * degrees of freedom receive the settlements. On success returns HF_OK and sets *bad_dof to -1. Returns HF_MECHANISM if
+ * a moment acts at a node where nothing resists rotation. In this case *bad_dof is 6 * node + dof, and displacement is
+ * unchanged. */
 hf_status hf_frame_solve(const hf_frame *frame, int n_case, const hf_frame_load *load, double *work,
                          double *displacement, int *bad_dof);
 
-/* Computes the reactions under a load case from its displacement [n_node][6]. reaction [n_node][6] receives the forces
- * of the supports on the truss, 0 at free dofs. residual [n_node][6], which may be NULL, receives the forces out of
- * balance at free dofs, 0 at supported ones. */
+/* Computes the reactions in a load case from its displacement [n_node][6]. The array reaction [n_node][6] receives the
+ * forces of the supports on the truss, and 0 at free degrees of freedom. The array residual [n_node][6] receives the
+ * residual forces at free degrees of freedom, and 0 at supported ones. It may be NULL. */
 void hf_frame_reactions(const hf_frame *frame, const hf_frame_load *load, const double *displacement, double *reaction,
                         double *residual);
 
-/* Computes the member forces under a load case from its displacement [n_node][6]. end_force [n_member][12] receives the
- * local forces of the nodes on the member: Nx, Vy, Vz, Tx, My, Mz at end i, then at end j, in N and N m. Nx > 0 at i is
- * compression. */
+/* Computes the member forces in a load case from its displacement [n_node][6]. The array end_force [n_member][12]
+ * receives the forces of the nodes on the member in local axes. They are Nx, Vy, Vz, Tx, My, Mz at end i, followed by
+ * those at end j, in N and N m. If Nx > 0 at end i, the member is under compression. */
 void hf_frame_member_forces(const hf_frame *frame, const hf_frame_load *load, const double *displacement,
                             double *end_force);
 
-/* Returns the strain energy under a load case with this displacement [n_node][6], J. Only elastic strain counts, not
- * thermal expansion. */
+/* Returns the strain energy in J for this displacement [n_node][6] in a load case. The strain energy includes only
+ * elastic strain, not thermal expansion. */
 double hf_frame_strain_energy(const hf_frame *frame, const hf_frame_load *load, const double *displacement);
 
-/* Computes the flexibility F of the nodes node [n_point] (Eq. 15, condensed). flexibility_m_per_N
- * [3 n_point][3 n_point] at row 3*i+c and column 3*k+d receives the displacement of node[i] along c under a unit force
- * on node[k] along d. It is symmetric to the last bit. Returns HF_OK or HF_NO_MEMORY. */
+/* Computes the flexibility F of the nodes node [n_point] (Eq. 15, condensed). The matrix flexibility_m_per_N [3
+ * n_point][3 n_point] has the entries by row 3*i+c and column 3*k+d. Such an entry is the displacement of node[i] along
+ * c under a unit force on node[k] along d. The matrix is exactly symmetric. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_frame_condense(const hf_frame *frame, int n_point, const int *node, double *flexibility_m_per_N);
 
 HF_API_END

@@ -1,21 +1,20 @@
-/* generate - nets that are made from a few numbers of a case file, in the section scene.NAME.
+/* generate - nets that generators make from a few values in a section scene.NAME of the case file.
  * Stability: stable.
  *
- * Pipeline: settings of the section -> hf_scene_NAME_fault, in the check of the case -> hf_scene_NAME -> scene.
+ * Pipeline: settings of the section -> hf_scene_NAME_fault, which checks the case -> hf_scene_NAME -> scene.
  *
- * A new generator NAME with settings hf_TYPE is a row of HF_GENERATORS, with its settings and keys, in this header. Its
- * file src/net/generate_NAME.c has three functions:
+ * A new generator NAME with settings of type hf_TYPE needs one row of HF_GENERATORS, its settings and its keys in this
+ * header. The file src/net/generate_NAME.c of a generator has three functions:
  *
  *   hf_scene_NAME         const hf_TYPE *, const double EA_N[2], hf_scene *, hf_messages * -> hf_status
  *                         makes the scene
- *   hf_scene_NAME_fault   const hf_TYPE *, char what[size], size -> the member whose value cannot be realised, with
- *                         the reason in `what` (HF_GENERATE_FAULT_SIZE suffices), or NULL, in few steps
- *                         whatever the size of the net
- *   hf_scene_NAME_surface const hf_TYPE *, hf_surface_settings *, which is all zero -> sets what the net determines of
- *                         the target surface: kind, focal length, width of a strip; the rest remains 0
+ *   hf_scene_NAME_fault   const hf_TYPE *, char what[size], size -> the member whose value cannot be realised, or NULL;
+ *                         writes the reason to `what` (HF_GENERATE_FAULT_SIZE is sufficient); the time does not
+ *                         depend on the size of the net
+ *   hf_scene_NAME_surface const hf_TYPE *, hf_surface_settings *, which is all zero -> sets the members that the net
+ *                         determines: kind, focal length, strip width; the others remain 0
  *
- * The key table, the loading and checking of the section, its help and the creation of the scene follow from the
- * row. */
+ * The row defines the key table, the loading and checking of the section, its help and the creation of the scene. */
 #ifndef HIFDM_GENERATE_H
 #define HIFDM_GENERATE_H
 
@@ -26,37 +25,37 @@
 
 HF_API_BEGIN
 
-/* X(name of the section, type of the settings, keys, help): one row for each generator. `hifdm schema` lists them in
- * this order. */
+/* Each generator is one row X(name of the section, type of the settings, keys, help). `hifdm schema` lists the
+ * generators in this order. */
 #define HF_GENERATORS(X)                                                                                               \
     X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS, "A net over a parabolic cylinder.")                           \
     X(paraboloid, hf_paraboloid, HF_PARABOLOID_KEYS,                                                                   \
       "A net over a paraboloid with a round aperture, alone or tied to a rear net.")
-/* Help of the section scene. It contains the number of generators plus one for import. */
+/* Help of the section scene. The help states the number of generators plus one for import. */
 #define HF_GENERATORS_HELP "The net: exactly one of the three sections below."
 
-#define HF_GENERATE_FAULT_SIZE 256 /* bytes of the reason why something cannot be made */
+#define HF_GENERATE_FAULT_SIZE 256 /* size in bytes of the reason why a net cannot be made */
 
-/* ---- rear nets, which several generators have ---- */
+/* ---- rear nets, which several generators can make ---- */
 
 /* The direction of the ties between the nets of a double net. */
 typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
 
-/* Words of a case file, indexed by hf_tie_direction and by hf_law; the last entry is NULL. */
+/* Words of a case file, indexed by hf_tie_direction and by hf_law. The last entry of each array is NULL. */
 extern const char *const hf_tie_direction_word[3];
 extern const char *const hf_tie_law_word[HF_N_LAW + 1];
 
-/* Members that settings with a rear net share. The rim of the rear net is rear_distance_m below that of the front net,
- * and the rear net bulges towards the front net. */
+/* Members that all settings with a rear net have. The rim of the rear net is rear_distance_m below the rim of the front
+ * net. The rear net bulges towards the front net. */
 #define HF_DOUBLE_NET_MEMBERS                                                                                          \
-    double rear_distance_m;         /* distance of the rims; 0: no rear net */                                         \
-    double rear_focal_length_m;     /* focal length of the rear net; 0: that of the front */                           \
+    double rear_distance_m;         /* distance between the rims; 0: no rear net */                                    \
+    double rear_focal_length_m;     /* focal length of the rear net; 0: the focal length of the front net */           \
     hf_tie_direction tie_direction; /* direction of the ties */                                                        \
     hf_law tie_law;                 /* law of the ties */                                                              \
-    double tie_tension_N;           /* tension of ties of law tension, force_density, elastic at target positions */
+    double tie_tension_N; /* tension of the ties at the target positions (laws tension, force_density, elastic) */
 
-/* Keys of these members, as rows of hf_field_table (config.h): X(section, member, type, minimum, maximum, default,
- * unit, words, help). */
+/* Keys of these members, as rows X(section, member, type, minimum, maximum, default, unit, words, help) of
+ * hf_field_table (config.h). */
 #define HF_DOUBLE_NET_KEYS(X, section)                                                                                 \
     X(section, rear_distance_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                               \
       "above 0: a rear net, whose rim lies so far below that of the front net, and a tie to each of its free nodes")   \
@@ -71,41 +70,42 @@ extern const char *const hf_tie_law_word[HF_N_LAW + 1];
 
 /* ---- parabolic_cylinder ---- */
 
-/* The spacing of the nodes: equal arc length, or equal projection. */
+/* Spacing of the nodes: equal arc length or equal projected length. */
 typedef enum { HF_SPACING_EQUAL_ARC, HF_SPACING_EQUAL_PROJECTED } hf_spacing;
-/* Which cables are boundary cables. */
+/* Cables that are boundary cables. */
 typedef enum { HF_BOUNDARY_OUTER_EDGE, HF_BOUNDARY_MODULE_EDGES } hf_boundary;
-/* Which nodes are supports. */
+/* Nodes that are supports. */
 typedef enum { HF_SUPPORTS_MODULE_CORNERS, HF_SUPPORTS_RIBS, HF_SUPPORTS_PERIMETER } hf_supports;
-/* The pattern of the cables. */
+/* Pattern of the cables. */
 typedef enum { HF_PATTERN_QUAD, HF_PATTERN_TRIANGLE, HF_PATTERN_DIAGONAL, HF_PATTERN_ALTERNATING } hf_pattern;
 
-/* Words of a case file, indexed by the enumerations above; the last entry is NULL. */
+/* Words of a case file, indexed by the enumerations above. The last entry of each array is NULL. */
 extern const char *const hf_spacing_word[3];
 extern const char *const hf_boundary_word[3];
 extern const char *const hf_supports_word[4];
 extern const char *const hf_pattern_word[5];
 
-/* A net over the parabolic cylinder z = x^2/(4 f). x runs along the directrix and y along the generatrix; the origin is
- * on the vertex line. */
+/* A net over the parabolic cylinder z = x^2/(4 f). The x axis runs along the directrix and the y axis along the
+ * generatrix. The origin is on the vertex line. */
 typedef struct {
-    double aperture_m;                       /* aperture along the directrix (x), symmetric about x = 0 */
-    double length_m;                         /* length along the generatrix (y), from y = 0 */
-    double focal_length_m;                   /* focal length f */
-    int modules[2];                          /* numbers of modules along x and y */
-    int cells_per_module[2];                 /* numbers of cells of a module along x and y */
-    hf_double_list pitches_x_m, pitches_y_m; /* sizes of the modules from x = -aperture_m/2 and y = 0; empty: equal */
-    hf_pattern pattern;                      /* pattern of the cables */
-    hf_spacing spacing;                      /* spacing of the nodes along the directrix */
-    hf_boundary boundary;                    /* which cables are boundary cables (law length) */
-    double scallop;       /* inward sag of a free outer edge between two supports, over their distance */
-    hf_supports supports; /* which nodes are supports */
-    double edge_tie_m;    /* distance along x or y of supports outside the outer edge, for edge ties; 0: no ties */
+    double aperture_m;       /* aperture along the directrix (x), symmetric about x = 0 */
+    double length_m;         /* length along the generatrix (y), from y = 0 */
+    double focal_length_m;   /* focal length f */
+    int modules[2];          /* numbers of modules along x and y */
+    int cells_per_module[2]; /* numbers of cells of a module along x and y */
+    /* lengths of the modules from x = -aperture_m/2 and from y = 0; empty: equal lengths */
+    hf_double_list pitches_x_m, pitches_y_m;
+    hf_pattern pattern;   /* pattern of the cables */
+    hf_spacing spacing;   /* spacing of the nodes along the directrix */
+    hf_boundary boundary; /* cables that are boundary cables (law length) */
+    double scallop;       /* inward sag of a free outer edge between two supports, divided by their distance */
+    hf_supports supports; /* nodes that are supports */
+    double edge_tie_m;    /* distance along x or y from the outer edge to the supports of edge ties; 0: no ties */
     HF_DOUBLE_NET_MEMBERS
 } hf_cylinder;
 
-/* Keys of the section, as rows of hf_field_table (config.h): X(section, member, type, minimum, maximum, default, unit,
- * words, help). */
+/* Keys of the section, as rows X(section, member, type, minimum, maximum, default, unit, words, help) of hf_field_table
+ * (config.h). */
 #define HF_CYLINDER_KEYS(X, section)                                                                                   \
     X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "aperture along the directrix (x)")   \
     X(section, length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "length along the generatrix (y)")      \
@@ -136,7 +136,7 @@ typedef struct {
       "supports stand so far outside of them along x or y, at corners of the net along both")                          \
     HF_DOUBLE_NET_KEYS(X, section)
 
-/* Makes the net over the cylinder.
+/* Makes the net over the parabolic cylinder.
  *
  *   ids of nodes    n<i>_<j>; m<i>_<j> in the middle of cells; s<i>_<j> for the support of n<i>_<j> at an edge tie;
  *                   after them r<i>_<j>, rm<i>_<j>, rs<i>_<j> of the rear net
@@ -144,16 +144,18 @@ typedef struct {
  *   sets            directrix (along x), generatrix (along y), diagonal, edge (of the outer edge), edge_tie; with a
  *                   rear net also front (all of the former), rear, tie, and rear_directrix and so on
  *
- * Free nodes of the rear net have the role edge, so psi counts those of the front. The rear supports are behind those
- * of the front net, in the direction of the ties. EA_N has the axial stiffness by hf_group, N; 0: not given; NULL:
- * neither is given. Returns HF_OK; HF_BAD_CASE if the net would be too large, for a fault that
- * hf_scene_parabolic_cylinder_fault finds, and for elastic ties without EA; HF_NO_MEMORY. Call hf_scene_free in any
- * case. */
+ * Free nodes of the rear net have the role edge, so psi includes only nodes of the front net. The rear supports are
+ * behind the front supports, in the direction of the ties. EA_N [2] has the axial stiffness in N by hf_group. The value
+ * 0 means that the stiffness of a group is not given. NULL means that neither is given. Returns HF_OK or HF_NO_MEMORY.
+ * Returns HF_BAD_CASE if the net would be too large, if elastic ties have no EA, or if
+ * hf_scene_parabolic_cylinder_fault finds a fault. Call hf_scene_free in any case. */
 hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double EA_N[2], hf_scene *scene,
                                       hf_messages *messages);
-/* Returns the member whose value cannot be realised and writes the reason into what[size], or returns NULL. */
+/* Returns the member whose value cannot be realised and writes the reason to what[size]. Returns NULL if there is no
+ * fault. */
 const char *hf_scene_parabolic_cylinder_fault(const hf_cylinder *cylinder, char *what, size_t size);
-/* Sets kind, focal length and, for equal strips, their width in *surface, which is all zero. */
+/* Sets kind and focal length in *surface, and also the strip width if the strips are equal. Before the call, *surface
+ * must be all zero. */
 void hf_scene_parabolic_cylinder_surface(const hf_cylinder *cylinder, hf_surface_settings *surface);
 
 /* ---- paraboloid ---- */
@@ -161,23 +163,23 @@ void hf_scene_parabolic_cylinder_surface(const hf_cylinder *cylinder, hf_surface
 /* The grid of a net over a paraboloid. */
 typedef enum { HF_GRID_TRIANGLE, HF_GRID_QUAD } hf_grid;
 
-/* Words of hf_grid in a case file; the last entry is NULL. */
+/* Words of hf_grid in a case file. The last entry is NULL. */
 extern const char *const hf_grid_word[3];
 
-/* A net over the paraboloid z = (x^2 + y^2)/(4 f), above the circle of the aperture, whose centre is at x = offset_m.
- * The rim is in the plane z_rim(x). The rear net is z_rim - rear_distance_m + (R^2 - r^2)/(4 f_rear), where r is the
- * distance from the axis of the aperture and R its radius. */
+/* A net over the paraboloid z = (x^2 + y^2)/(4 f). The net is above the circle of the aperture, whose centre is at x =
+ * offset_m. The rim of the front net is in the plane z_rim(x). The rear net is the surface z_rim - rear_distance_m +
+ * (R^2 - r^2)/(4 f_rear). Here r is the distance from the axis of the aperture, and R is the radius of the aperture. */
 typedef struct {
     double aperture_m;     /* diameter of the aperture */
     double focal_length_m; /* focal length f */
-    double offset_m;       /* distance of the centre of the aperture from the axis, along x */
+    double offset_m;       /* distance along x from the axis to the centre of the aperture */
     int rings;             /* number of cells from the centre to the rim */
     hf_grid grid;          /* grid of the cables */
     hf_spacing spacing;    /* spacing of the nodes along a radius */
     HF_DOUBLE_NET_MEMBERS
 } hf_paraboloid;
 
-/* Keys of the section, as HF_CYLINDER_KEYS. */
+/* Keys of the section, in the form of HF_CYLINDER_KEYS. */
 #define HF_PARABOLOID_KEYS(X, section)                                                                                 \
     X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "diameter of the aperture")           \
     X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL,                                   \
@@ -198,19 +200,20 @@ typedef struct {
  *   ids of nodes    f<ring>_<k> of the front net, r<ring>_<k> of the rear net; with grid quad f<i>_<j> by rows, and
  *                   fs<k> for supports
  *   ids of cables   <node>-<node>
- *   sets            front, front_edge (those that end at a support); with a rear net also rear, rear_edge, tie
+ *   sets            front, front_edge (cables that end at a support); with a rear net also rear, rear_edge, tie
  *
- * Free nodes of the rear net have the role edge, so psi counts those of the front. The rear supports are straight below
- * those of the front net. EA_N, errors and ownership are those of hf_scene_parabolic_cylinder. */
+ * Free nodes of the rear net have the role edge, so psi includes only nodes of the front net. The rear supports are
+ * vertically below the front supports. EA_N, errors and ownership are the same as for hf_scene_parabolic_cylinder. */
 hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N[2], hf_scene *scene,
                               hf_messages *messages);
-/* Finds the supports of the front net, in the order of their angle from x towards y. *n is set to their number and
- * *position_m to their positions [n][3], m, from malloc; the caller frees it in any case. Returns HF_OK or
- * HF_NO_MEMORY. */
+/* Finds the supports of the front net in the order of their angle from x towards y. The function sets *n to the number
+ * of supports and *position_m to an array of their positions [n][3] in m. The array comes from malloc. The caller must
+ * free it even after a failure. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **position_m);
-/* Returns the member whose value cannot be realised and writes the reason into what[size], or returns NULL. */
+/* Returns the member whose value cannot be realised and writes the reason to what[size]. Returns NULL if there is no
+ * fault. */
 const char *hf_scene_paraboloid_fault(const hf_paraboloid *paraboloid, char *what, size_t size);
-/* Sets kind and focal length in *surface, which is all zero. */
+/* Sets kind and focal length in *surface, which must be all zero before the call. */
 void hf_scene_paraboloid_surface(const hf_paraboloid *paraboloid, hf_surface_settings *surface);
 
 HF_API_END

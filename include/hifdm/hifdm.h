@@ -1,39 +1,44 @@
-/* hifdm - all headers of the library.
+/* hifdm - includes all headers of the library.
  * Stability: stable.
  *
- * Start with problem (a case opened by one call), batch (designs -> results) and run (a whole run). Reading order of
- * the rest: scene, settings, truss, config, model, result, frame, carrier, workspace, formfind, evaluate, population,
- * optimiser, metrics, surface, store. The following rules hold in all headers.
+ * Start with the headers problem (opens a case in one call), batch (evaluates designs) and run (executes a complete
+ * run). Read the other headers in the order scene, settings, truss, config, model, result, frame, carrier, workspace,
+ * formfind, evaluate, population, optimiser, metrics, surface, store. The following rules apply to all headers.
  *
- * Stability: the head of each header says whether it is stable or internal. A program that uses a stable header
- * compiles with later versions and has the same meaning, unless CHANGELOG.md names the change. Structs may get members,
- * so initialise them to zero, set members by name, and compile again. An internal header is installed because a stable
- * header needs its types; names and meaning may change in any version.
+ * Stability: the comment at the head of each header states whether the header is stable or internal. A program that
+ * uses only stable headers compiles with later versions and behaves in the same way, unless CHANGELOG.md lists a
+ * change. A later version may add members to structs. Initialise structs to zero, set members by name, and recompile
+ * for each version. An internal header is installed only because a stable header needs its types. Its names and their
+ * meaning may change in any version.
  *
- * Units: SI. The unit is the last part of a name (psi_m, tension_N, q_N_per_m, wall_s). A name without a unit has no
- * dimension.
+ * Units: all quantities are in SI units. The last part of a name is the unit (psi_m, tension_N, q_N_per_m, wall_s). A
+ * quantity without a unit in its name is dimensionless.
  *
- * Shapes: [n_cable][2] are n_cable rows of 2 numbers, one row after the other. Indices count from 0, and -1 is none.
+ * Shapes: [n_cable][2] means n_cable consecutive rows of 2 numbers. Indices start at 0, and -1 means that there is
+ * none.
  *
- * Source: "Eq. n" and "Fig. n" are those of Chen et al., Aerospace 2022, 9, 239. "METHOD section n" and (Mn) are those
- * of src/METHOD.md.
+ * Source: "Eq. n" and "Fig. n" refer to Chen et al., Aerospace 2022, 9, 239. "METHOD section n" and (Mn) refer to
+ * src/METHOD.md.
  *
- * Errors: a function that can fail returns hf_status (HF_OK is 0) and, if it takes hf_messages, adds a message about
- * the fault. No function ends the program, and none prints except to a stream that it is given. A wrong call fails an
- * assert. The result of a design without a shape contains the status, and measures without a value are NaN.
+ * Errors: a function that can fail returns hf_status (HF_OK is 0). If it has an argument hf_messages, it also adds a
+ * message about the fault. No function ends the program. A function prints only to a stream that the caller passes. An
+ * invalid call fails an assert. If a design has no shape, its result contains the status. Figures without a value are
+ * NaN.
  *
- * Memory: hf_THING_free frees what the struct hf_THING holds and, unless its comment says otherwise, sets it to all
- * zero. It may be called for a struct that is all zero. A "borrowed" argument must outlive the struct that borrows it.
+ * Memory: hf_THING_free frees the memory that the struct hf_THING owns. It also sets the struct to all zero unless the
+ * comment of the function states otherwise. The function hf_THING_free may be called with a struct that is all zero. A
+ * "borrowed" argument must outlive the struct that borrows it.
  *
- * Threads: no state is kept outside these structs. A scene, model, truss, frame, carrier or evaluator does not change
- * once it is made, so threads share it. A workspace, batch, problem, optimiser or store belongs to one thread at a
- * time.
+ * Threads: the library keeps no state outside its structs. A scene, model, truss, frame, carrier or evaluator does not
+ * change after it is made, so threads can share it. Only one thread at a time may use a workspace, batch, problem,
+ * optimiser or store.
  *
- * Waiting: threads that wait for others spin for long unless the environment says otherwise (hf_batch_wait_quietly).
+ * Waiting: threads that wait for other threads spin for a long time unless environment variables change this
+ * (hf_batch_wait_quietly).
  *
- * GSL: the library GSL has one error handler for the whole program. By default it ends the program even if GSL only
- * reports "no progress". Call gsl_set_error_handler_off() (gsl/gsl_errno.h) before hf_surface_measure,
- * hf_surface_fit_points, or hf_run_case for a case with a section surface. */
+ * GSL: the GSL library has one error handler for the whole program. By default the error handler ends the program even
+ * if GSL only reports "no progress". Call gsl_set_error_handler_off() (gsl/gsl_errno.h) before hf_surface_measure and
+ * hf_surface_fit_points, and before hf_run_case if the case has a section surface. */
 #ifndef HIFDM_HIFDM_H
 #define HIFDM_HIFDM_H
 

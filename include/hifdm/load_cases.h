@@ -1,4 +1,4 @@
-/* states - the load cases of the as-built net: temperatures, loads and support displacements of each (METHOD section
+/* load_cases - the load cases of the as-built net, with temperatures, loads and support displacements (METHOD section
  * 12).
  * Stability: internal; may change in any version. */
 #ifndef HIFDM_LOAD_CASES_H
@@ -9,26 +9,27 @@
 
 HF_API_BEGIN
 
-/* One load case. Its arrays are in the order of scene and truss, and zero where the case gives nothing. */
+/* One load case of the as-built net. The arrays have the order of the scene and the truss. Values that the case does
+ * not give are zero. */
 typedef struct {
     const char *name;           /* name of the load case; borrowed */
     double *rise_K;             /* [n_cable] rise above the temperature at which the cables were cut */
     double *member_rise_K;      /* [n_member] rise above the temperature at which the truss was made */
-    double *force_N;            /* [n_node][3] forces, in addition to the loads of the design */
+    double *force_N;            /* [n_node][3] forces in addition to the loads of the design */
     double *move_m;             /* [n_node][3] displacements of supports */
-    double gravity_m_per_s2[3]; /* acceleration of gravity along x, y, z */
+    double gravity_m_per_s2[3]; /* gravitational acceleration along x, y, z */
 } hf_load_case;
 
-/* The load cases of a case, with the material of its net. */
+/* The load cases of a case and the material of its net. */
 typedef struct {
-    int n;                                     /* number of load cases; 0: nothing is allocated */
+    int n;                                     /* number of load cases; 0: no memory is allocated */
     hf_load_case load_case[HF_LOAD_CASES_MAX]; /* [n] the load cases */
-    hf_material material;                      /* expansion and mass of cables and nodes */
+    hf_material material;                      /* thermal expansion and mass of cables and nodes */
     void *block;                               /* owned memory behind the arrays */
 } hf_load_cases;
 
-/* Allocates n >= 1 load cases of a scene and a truss of n_member members (0 without a truss). All values are zero and
- * the names NULL. Returns HF_OK or HF_NO_MEMORY. Call hf_load_cases_free in either case. */
+/* Allocates n >= 1 load cases of a scene and a truss with n_member members. Without a truss, n_member is 0. All values
+ * are zero, and all names are NULL. Returns HF_OK or HF_NO_MEMORY. Call hf_load_cases_free in either case. */
 hf_status hf_load_cases_allocate(const hf_scene *scene, int n_member, int n, hf_load_cases *load_cases);
 /* Frees the load cases and the material. */
 void hf_load_cases_free(hf_load_cases *load_cases);

@@ -1,4 +1,4 @@
-/* material - thermal expansion and mass of cables and nodes, as far as the case gives them, for the as-built net.
+/* material - thermal expansion and mass of cables and nodes of the as-built net.
  * Stability: internal; may change in any version. */
 #ifndef HIFDM_MATERIAL_H
 #define HIFDM_MATERIAL_H
@@ -9,7 +9,7 @@
 
 HF_API_BEGIN
 
-/* Properties by cable and node of a scene. */
+/* Properties of the cables and nodes of a scene. */
 typedef struct {
     double *expansion_per_K; /* [n_cable] coefficient of thermal expansion; NaN: not given */
     double *mass_kg_per_m;   /* [n_cable] mass per unstressed length; NaN: not given */
@@ -17,16 +17,16 @@ typedef struct {
     void *block;             /* owned memory behind the arrays */
 } hf_material;
 
-/* Allocates the properties of a scene; none is given. Returns HF_OK or HF_NO_MEMORY. Call hf_material_free in either
- * case. */
+/* Allocates the properties of a scene. Initially no property is given. Returns HF_OK or HF_NO_MEMORY. Call
+ * hf_material_free in either case. */
 hf_status hf_material_allocate(const hf_scene *scene, hf_material *material);
 /* Frees the properties. */
 void hf_material_free(hf_material *material);
 
-/* Returns true if a row for `nodes` applies to a node with this hf_role. */
+/* Returns true if a row of `nodes` applies to a node with the role `role` (hf_role). */
 static inline bool hf_material_names(hf_nodes nodes, unsigned char role)
 {
-    return nodes == HF_NODES_ALL || (int)nodes - 1 == (int)role; /* hf_nodes has the roles in the order of hf_role */
+    return nodes == HF_NODES_ALL || (int)nodes - 1 == (int)role; /* hf_nodes lists the roles in the order of hf_role */
 }
 
 HF_API_END

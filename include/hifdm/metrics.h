@@ -1,7 +1,7 @@
-/* metrics - the quality of a shape: psi, tension ratios, slack cables (METHOD section 9).
+/* metrics - the quality of a shape: psi, tension ratios and slack cables (METHOD section 9).
  * Stability: stable.
  *
- * All functions read the shape in the workspace: positions, tensions and loose nodes. */
+ * All functions read the shape in the workspace, which consists of positions, tensions and loose nodes. */
 #ifndef HIFDM_METRICS_H
 #define HIFDM_METRICS_H
 
@@ -10,18 +10,19 @@
 
 HF_API_BEGIN
 
-/* A cable is slack if its tension is below this part of the reference tension. */
+/* A cable is slack if its tension is below this fraction of the reference tension. */
 #define HF_SLACK_RATIO 1e-3
 
-/* Returns psi, the RMS distance of the inner nodes from their target positions, m (Eqs. 9, 10). Loose nodes do not
- * count; psi is NaN if all inner nodes are loose. */
+/* Returns psi in m, the RMS distance of the inner nodes from their target positions (Eqs. 9, 10). psi does not include
+ * loose nodes. It is NaN if all inner nodes are loose. */
 double hf_metrics_psi_m(const hf_model *model, const hf_workspace *workspace);
 
-/* Returns the maximum tension of a group of cables divided by the minimum. Returns NaN if the group is empty or has a
- * strut. Otherwise it returns INFINITY if a cable is slack, because its remaining tension is rounding. */
+/* Returns the ratio of the maximum to the minimum tension in a group of cables. Returns NaN if the group is empty or
+ * contains a strut. Otherwise returns INFINITY if a cable is slack, because the remaining tension of a slack cable is
+ * only rounding. */
 double hf_metrics_tension_ratio(const hf_model *model, const hf_workspace *workspace, hf_group group);
 
-/* Returns the tension ratio of the n cables cable [n], as hf_metrics_tension_ratio does for a group. */
+/* Returns the tension ratio of the n cables cable [n], computed as in hf_metrics_tension_ratio. */
 double hf_metrics_set_ratio(const hf_model *model, const hf_workspace *workspace, int n, const int *cable);
 
 /* Returns true if cable i_cable is slack. */

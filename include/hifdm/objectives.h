@@ -1,21 +1,22 @@
-/* objectives - what a design is judged by: blocks of residuals of a shape with exact derivatives (METHOD section 7).
+/* objectives - objectives of a design, as blocks of residuals of a shape with exact derivatives (METHOD section 7).
  * Stability: internal; may change in any version.
  *
- * There is one block for each row of optimize.objective, or of optimize.front, whose weights are 1. Pipeline:
+ * Each row of optimize.objective or optimize.front has one block. The weights of optimize.front are 1. Pipeline:
  *
  *   hf_objectives_measure                shape in a workspace -> values of the objectives, merit
  *   hf_objectives_linearise              shape -> weighted residuals, and the data of its derivatives
  *   hf_objectives_push                   rates of the shape by a design variable -> rates of the residuals
- *   hf_objectives_nets_linearise, _push, _close   the same for objectives over as-built nets
+ *   hf_objectives_nets_linearise, _push, _close   the same steps for objectives over as-built nets
  *
- * Each objective has a value in its own unit (settings.h), and residuals whose norm is that value. The merit of a
+ * Each objective has a value in its own unit (settings.h). The norm of its residuals is this value. The merit of a
  * design is sqrt(sum (weight * value)^2).
  *
- * Pull and deflection are the maximum of several sizes s. Their value is that maximum, but their residuals have the
- * norm (sum s^16)^(1/16), which is smooth. This norm is between the maximum of n sizes and n^(1/16) times the maximum.
- * The merit contains the norm. A ratio is the maximum tension times the maximum 1/tension, and both are smoothed in
- * this way. A value is NaN or infinite where the shape has none: psi if all nodes are loose, a surface without a best
- * fit, the ratio of a set with a slack cable. */
+ * The value of the objectives pull and deflection is the maximum of several quantities s. The residuals of these
+ * objectives have the smooth norm (sum s^16)^(1/16) instead of the maximum. For n quantities, this norm is between
+ * their maximum and n^(1/16) times their maximum. The merit uses the smooth norm. A ratio is the product of the maximum
+ * tension and the maximum of 1/tension. Both maxima are smoothed in the same way. The value of an objective is NaN or
+ * infinite if the shape has no such value. Examples are psi if all nodes are loose, a surface without a best fit, and
+ * the ratio of a set with a slack cable. */
 #ifndef HIFDM_OBJECTIVES_H
 #define HIFDM_OBJECTIVES_H
 
@@ -27,95 +28,100 @@ HF_API_BEGIN
 
 /* One objective. */
 typedef struct {
-    hf_objective_settings settings; /* its row of the case */
-    int n_cable;                    /* number of cables of its set */
+    hf_objective_settings settings; /* row of the case for this objective */
+    int n_cable;                    /* number of cables in its set */
     int *cable;                     /* [n_cable] cables of its set, ascending; NULL without a set */
     int n_shape_row;                /* number of residuals of one shape */
-    int first_net, n_net;           /* the as-built nets on which it is measured; n_net 0: the design itself */
-    int first_row, n_row;           /* its rows among all residuals, one shape after the other */
+    int first_net, n_net; /* as-built nets on which it is measured; n_net 0: it is measured on the design itself */
+    int first_row, n_row; /* its rows among all residuals; the rows of one shape follow those of another */
 } hf_objective;
 
-/* Rates of change of a shape by a design variable, per unit of the variable. */
+/* Rates of change of a shape with respect to a design variable, per unit of the variable. */
 typedef struct {
-    const double *position_m; /* [3][n_node] rates of the positions by row, supports included, m */
+    const double *position_m; /* [3][n_node] rates of the positions by row, including supports, m */
     const double *tension_N;  /* [n_cable] rates of the tensions, N */
-    /* [3 n_attachment] rates of the displacements by the truss, m; NULL without a truss */
+    /* [3 n_attachment] rates of the attachment displacements by the truss, m; NULL without a truss */
     const double *displacement_m;
 } hf_objectives_rate;
 
-/* Receives the shape of as-built net i_net; NULL: it has none. Of the workspace only position_m, tension_N, length_m,
- * displacement_m and loose are valid. */
+/* Receives the shape of as-built net i_net. The argument is NULL if the net has no shape. Only the fields position_m,
+ * tension_N, length_m, displacement_m and loose of the workspace are valid. */
 typedef void hf_objectives_take(void *context, int i_net, const hf_workspace *shape);
 
-/* The as-built nets of a design on which objectives may be measured: its load cases, then samples of its errors. The
- * room that makes these nets (built/built_nets.h) is above this one, so it supplies the functions. Shapes depend on the
- * design and on the number of the net alone. */
+/* The as-built nets of a design on which objectives may be measured. They are its load cases, followed by samples of
+ * its errors. The module that makes these nets (built/built_nets.h) depends on this module, so it supplies the
+ * functions. A shape depends only on the design and on the number of the net. */
 typedef struct hf_objectives_nets {
-    int n_load_case, n_sample;         /* numbers of load cases and of samples */
+    int n_load_case, n_sample;         /* number of load cases and number of samples */
     const char *const *load_case_name; /* [n_load_case] names of the load cases */
-    /* Allocates the scratch of one thread, *room. Returns HF_OK or HF_NO_MEMORY. Call close in either case. */
+    /* Allocates the scratch memory *room of one thread. Returns HF_OK or HF_NO_MEMORY. Call `close` even after a
+     * failure. */
     hf_status (*open)(const struct hf_objectives_nets *nets, void **room);
-    /* Frees the scratch of a thread. */
+    /* Frees the scratch memory of a thread. */
     void (*close)(void *room);
-    /* Cuts the nets for the design whose shape the workspace holds; the functions below are then about this design.
-     * Returns HF_OK; HF_NO_MEMORY; HF_BAD_CASE if the cables cannot be cut. */
+    /* Cuts the as-built nets for the design whose shape is in the workspace. The functions below then refer to this
+     * design. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE if the cables cannot be cut. */
     hf_status (*cut)(void *room, const hf_workspace *design);
-    /* Finds the shapes of the nets first to first + n - 1 and calls `take` for each, in this thread and in any
-     * order. */
+    /* Finds the shapes of the nets first to first + n - 1 and calls `take` for each net. The calls are made in the
+     * calling thread, in any order. */
     void (*solve)(void *room, int first, int n, hf_objectives_take *take, void *context);
-    /* Finds the shape of one net and factors its matrix there. *shape is set to the workspace, owned by the room.
-     * Returns HF_OK, and `follow` is then about this net; HF_NOT_FINITE if the net has no shape; HF_NO_MEMORY. */
+    /* Finds the shape of one net and factors the matrix of the net in this shape. Sets *shape to the workspace, which
+     * `room` owns. Returns HF_OK, HF_NO_MEMORY, or HF_NOT_FINITE if the net has no shape. After HF_OK, `follow` refers
+     * to this net. */
     hf_status (*linearise)(void *room, int i_net, const hf_workspace **shape);
-    /* Converts n <= HF_OBJECTIVES_AT_ONCE rates of the design to rates of the net. by_net [n] points into arrays of the
-     * room. */
+    /* Converts n <= HF_OBJECTIVES_AT_ONCE rates of the design to rates of the net. The array by_net [n] points to
+     * arrays that `room` owns. */
     void (*follow)(void *room, int n, const hf_objectives_rate *by_design, hf_objectives_rate *by_net);
 } hf_objectives_nets;
 #define HF_OBJECTIVES_AT_ONCE 8 /* maximum number of rates in one call of `follow` */
 
-/* The objectives of a case. They do not change after creation, so threads share them. */
+/* The objectives of a case, prepared for the model. The objectives do not change after creation, so threads can share
+ * them. */
 typedef struct {
     const hf_model *model;                      /* the net; borrowed */
     hf_surface_kind kind;                       /* kind of the target surface; used by surface and facets */
     double focal_length_m;                      /* focal length of the target surface; used by surface and facets */
     int n_facet;                                /* number of facets */
-    int *corner_row;                            /* [n_facet][4] rows of the corners; used by facets and gain */
-    struct hf_gain_beam *beam;                  /* [n_objective] the beam of each objective gain */
-    int n_objective, n_row;                     /* numbers of objectives and of all residuals */
+    int *corner_row;                            /* [n_facet][4] rows of the corner nodes; used by facets and gain */
+    struct hf_gain_beam *beam;                  /* [n_objective] data of the beam for each objective gain */
+    int n_objective, n_row;                     /* number of objectives, and number of all residuals */
     hf_objective objective[HF_DESIGN_ROWS_MAX]; /* [n_objective] the objectives */
-    const hf_objectives_nets *nets;             /* as-built nets; borrowed; NULL if no objective is measured on them */
-    void *block;                                /* owned memory behind the arrays */
+    const hf_objectives_nets *nets; /* as-built nets, borrowed; NULL if no objective is measured on as-built nets */
+    void *block;                    /* owned memory behind the arrays */
 } hf_objectives;
 
-/* The memory of one thread: scratch of a measurement, and the data of the last hf_objectives_linearise that
- * hf_objectives_push needs. */
+/* The memory of one thread: scratch of a measurement, and the data that hf_objectives_push needs from the last
+ * hf_objectives_linearise. */
 typedef struct hf_objectives_point {
-    double *psi_per_m;             /* [n_inner_node] residual of psi per distance; 0 for a loose node */
+    double *psi_per_m;             /* [n_inner_node] residual of psi divided by the distance; 0 for a loose node */
     double *force_N;               /* [n_support][3] scratch: forces of the net on the supports */
     double *rate_N;                /* [n_support][3] scratch: rates of these forces */
-    double *size;                  /* [n_support], [n_attachment] or for a ratio [2 n_cable] scratch */
+    double *size;                  /* scratch: [n_support], [n_attachment] or, for a ratio, [2 n_cable] */
     double *row;                   /* [n_row] scratch */
     struct hf_gain *gain;          /* [n_objective] scratch of each objective gain */
-    struct hf_cloud *cloud;        /* [n_objective] of surface and facets: points, errors, best fit */
+    struct hf_cloud *cloud;        /* [n_objective] points, errors and best fit of the objectives surface and facets */
     void *nets;                    /* scratch of as-built nets; NULL without nets */
     void (*free_nets)(void *room); /* frees `nets` */
-    double *net_value; /* [n_objective][n_load_case + n_sample] value in each net; infinite without a shape */
+    double *net_value; /* [n_objective][n_load_case + n_sample] value in each net; infinite if the net has no shape */
     double *net_norm;  /* [n_objective][n_load_case + n_sample] norm of the residuals in each net */
-    double *net_part;  /* [n_objective][n_load_case + n_sample] norm over the smooth maximum; or scratch */
+    double *net_part;  /* [n_objective][n_load_case + n_sample] norm divided by the smooth maximum, or scratch */
     void *block;       /* owned memory behind the arrays */
 } hf_objectives_point;
 
-/* Creates the objectives of a case: the rows of optimize.front or optimize.objective, or psi if there are none. The
- * model has its truss already. `surface` and `facets` may be NULL if no objective needs them, `nets` (borrowed) if all
- * are measured on the design. Returns HF_OK; HF_BAD_CASE with a message for each row that needs what this scene does
- * not have, or if there would be too many residuals; HF_NO_MEMORY. Call hf_objectives_free in any case. */
+/* Creates the objectives of a case from the rows of optimize.front or optimize.objective. If there are no rows, the
+ * objective is psi. The truss must already be attached to the model. The arguments `surface` and `facets` may be NULL
+ * if no objective needs them. The argument `nets` is borrowed and may be NULL if all objectives are measured on the
+ * design. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if there would be too many residuals, or if a row needs
+ * data that this scene does not have. There is a message for each such row. Call hf_objectives_free in any case. */
 hf_status hf_objectives_create(const hf_scene *scene, const hf_model *model, const hf_optimize_settings *settings,
                                const hf_surface_settings *surface, const hf_facets *facets,
                                const hf_objectives_nets *nets, hf_objectives *objectives, hf_messages *messages);
 /* Frees the objectives. */
 void hf_objectives_free(hf_objectives *objectives);
 
-/* Writes the name of objective i_objective in tables into text: objective_0_psi, objective_1_tension_edge for a set,
- * followed by the load case or by what it is measured on. Returns text. */
+/* Writes the name of objective i_objective, as used in tables, to `text`. Examples are objective_0_psi and, for a set,
+ * objective_1_tension_edge. A load case or the kind of nets on which the objective is measured follows the name.
+ * Returns the argument `text`. */
 const char *hf_objectives_name(const hf_objectives *objectives, int i_objective, char text[HF_OBJECTIVE_NAME_SIZE]);
 
 /* Allocates the memory of one thread for these objectives. Returns HF_OK or HF_NO_MEMORY. Call hf_objectives_point_free
@@ -124,41 +130,44 @@ hf_status hf_objectives_point_create(const hf_objectives *objectives, hf_objecti
 /* Frees the memory of a thread. */
 void hf_objectives_point_free(hf_objectives_point *point);
 
-/* Measures the shape in the workspace: value [n_objective] receives the values of the objectives, and *merit the merit.
- * Overwrites the point. Allocates memory only for a best fit. Returns HF_OK, also if an objective and so the merit has
- * no value; HF_NO_MEMORY. */
+/* Measures the shape in the workspace. The array value [n_objective] receives the values of the objectives, and *merit
+ * receives the merit. The function overwrites the point. The function allocates memory only for a best fit. Returns
+ * HF_OK or HF_NO_MEMORY. The status is also HF_OK if an objective has no value and the merit therefore has none. */
 hf_status hf_objectives_measure(const hf_objectives *objectives, const hf_workspace *workspace,
                                 hf_objectives_point *point, double *value, double *merit);
 
-/* Computes the weighted residuals residual [n_row] of the shape in the workspace, whose norm is the merit, and the data
- * for hf_objectives_push. Without with_nets, only the objectives that are measured on the design itself are computed,
- * and the rows of the others do not change. Returns HF_OK; HF_NOT_FINITE if an objective has no value; HF_NO_MEMORY. */
+/* Computes the weighted residuals residual [n_row] of the shape in the workspace, and the data for hf_objectives_push.
+ * The norm of the residuals is the merit. If with_nets is false, the function computes only the objectives that are
+ * measured on the design itself. The rows of the other objectives do not change. Returns HF_OK, HF_NO_MEMORY, or
+ * HF_NOT_FINITE if an objective has no value. */
 hf_status hf_objectives_linearise(const hf_objectives *objectives, bool with_nets, const hf_workspace *workspace,
                                   hf_objectives_point *point, double *residual);
 
-/* Computes the rates rate [n_row] of the residuals of hf_objectives_linearise by a design variable, from the rates `by`
- * of the shape. The rows of objectives over as-built nets are not changed. The workspace holds the same shape. */
+/* Computes the rates rate [n_row] of the residuals of hf_objectives_linearise with respect to a design variable. The
+ * argument `by` has the rates of the shape. The function does not change the rows of objectives over as-built nets. The
+ * workspace must hold the same shape as in hf_objectives_linearise. */
 void hf_objectives_push(const hf_objectives *objectives, const hf_workspace *workspace, hf_objectives_point *point,
                         const hf_objectives_rate *by, double *rate);
 
 /* ---- objectives over as-built nets ---- */
 
-/* Returns true if an objective has derivatives; a quantile has none. */
+/* Returns true if an objective has derivatives. A quantile has none. */
 bool hf_objectives_is_smooth(const hf_objective_settings *objective);
 
 /* Returns true if an objective is measured on net i_net. */
 bool hf_objectives_are_over(const hf_objectives *objectives, int i_net);
 
-/* Finds net i_net of the design that was cut last and prepares its derivatives. *shape is set to the workspace with its
- * shape. Returns HF_OK; HF_NOT_FINITE if the net has no shape or an objective no value there; HF_NO_MEMORY. */
+/* Finds the shape of net i_net of the most recently cut design and prepares its derivatives. Sets *shape to the
+ * workspace that holds the shape of the net. Returns HF_OK, HF_NO_MEMORY, or HF_NOT_FINITE if the net has no shape or
+ * an objective has no value in this shape. */
 hf_status hf_objectives_nets_linearise(const hf_objectives *objectives, int i_net, hf_objectives_point *point,
                                        const hf_workspace **shape);
-/* Writes the rates of the residuals of net i_net by a design variable, without weights, into rate [n_row]. `by` has the
- * rates of the net. The shape is that of the last hf_objectives_nets_linearise. */
+/* Writes the rates of the residuals of net i_net with respect to a design variable to rate [n_row], without weights.
+ * The argument `by` has the rates of the net. The shape must be that of the last hf_objectives_nets_linearise. */
 void hf_objectives_nets_push(const hf_objectives *objectives, int i_net, const hf_workspace *shape,
                              hf_objectives_point *point, const hf_objectives_rate *by, double *rate);
-/* Combines the rates of all nets in rate [n_row] to the rates of `residual` [n_row], which hf_objectives_linearise
- * computed with `point`. */
+/* Combines the rates of all nets in rate [n_row] into the rates of `residual` [n_row]. The residuals are those that
+ * hf_objectives_linearise computed with `point`. */
 void hf_objectives_nets_close(const hf_objectives *objectives, const hf_objectives_point *point, const double *residual,
                               double *rate);
 
@@ -167,14 +176,14 @@ void hf_objectives_nets_close(const hf_objectives *objectives, const hf_objectiv
 /* Returns true for the objectives surface and facets. */
 bool hf_objectives_is_on_surface(hf_figure_kind kind);
 
-/* Returns true if the value is a maximum of several sizes, or a ratio to a minimum. Such a value has corners, so its
- * residuals are those of a smooth value. */
+/* Returns true if the value of the objective is a maximum of several quantities, or a ratio to a minimum. Such a value
+ * is not smooth, so its residuals are those of a smooth approximation. */
 bool hf_objectives_is_maximum(hf_figure_kind kind);
 
-/* Sets point->size [n_support] to the forces of the net on its supports, N. */
+/* Sets point->size [n_support] to the forces of the net on its supports in N. */
 void hf_objectives_pulls(const hf_model *model, const hf_workspace *workspace, hf_objectives_point *point);
-/* Computes the rates rate [n_support] of the forces of the net on its supports by a design variable, from the rates
- * `by` of the shape. */
+/* Computes the rates rate [n_support] of the forces of the net on its supports with respect to a design variable. The
+ * argument `by` has the rates of the shape. */
 void hf_objectives_pull_rates(const hf_model *model, const hf_workspace *workspace, hf_objectives_point *point,
                               const hf_objectives_rate *by, double *rate);
 

@@ -1,4 +1,4 @@
-/* optimiser - proposes the designs of a population, generation by generation (ask and tell).
+/* optimiser - proposes the designs of a population, one generation at a time (ask and tell).
  * Stability: stable.
  *
  * An optimiser starts no threads, opens no files and prints nothing. Pipeline:
@@ -10,9 +10,10 @@
  *         hf_optimiser_tell(&optimiser);      // ranks; p->stop_reason says whether this was the last generation
  *     } while (hf_optimiser_next(&optimiser)); // proposes the next one
  *
- * hf_batch_next does the first and the last step of this loop with all threads; each of them proposes individuals and
- * evaluates them. A generation remains unchanged while the next one is proposed. A copy of the struct hf_population
- * that is made after hf_optimiser_tell may therefore be read until the end of the following hf_optimiser_next.
+ * hf_batch_next executes the first and the last step of this loop with all threads. Each thread proposes individuals
+ * and evaluates them. A generation does not change while the next generation is proposed. A program may therefore read
+ * a copy of the struct hf_population that it made after hf_optimiser_tell. The copy is valid until the end of the
+ * following hf_optimiser_next.
  *
  * A new optimiser needs a file src/search/optimiser_NAME.c, a row of HF_OPTIMISER_LIST and a row of HF_OPTIMIZE_METHODS
  * in settings.h. */
@@ -24,74 +25,76 @@
 
 HF_API_BEGIN
 
-/* The functions of one optimiser. A store keeps only the population. A resumed run proposes the generations again whose
- * results are in the journal. Therefore a proposal depends only on the settings, the model, the population after
- * hf_optimiser_tell and random numbers by (seed, generation, individual). best_psi_m and best_merit of the population
- * hold the values of earlier generations. `state` holds constants, and scratch that has no meaning between
- * generations. */
+/* The functions of one optimiser, called by the functions below. A store keeps only the population, not the state of
+ * the optimiser. A resumed run proposes the generations again whose results are in the journal. Therefore a proposal
+ * must depend only on the settings, the model, the population after hf_optimiser_tell and random numbers by (seed,
+ * generation, individual). The members best_psi_m and best_merit of the population hold the values of earlier
+ * generations. The argument `state` holds constants, and scratch data without meaning between generations. */
 typedef struct {
-    /* Creates the state. Returns HF_OK or HF_NO_MEMORY. */
+    /* Creates the state of the optimiser. Returns HF_OK or HF_NO_MEMORY. */
     hf_status (*create)(const hf_optimize_settings *settings, const hf_model *model, void **state);
-    /* Proposes generation 0: fills all arrays of the generation except the results. */
+    /* Proposes generation 0. Fills all arrays of the generation except the results. */
     void (*first)(void *state, hf_population *population);
     /* Prepares the data that all proposals of the generation after `now` share. */
     void (*begin)(void *state, const hf_population *now);
-    /* Proposes individual i of the next generation in the arrays of `next`. If it need not be evaluated, pending is 0
-     * and its result is set. Several threads call this at once, each with different individuals, in any order. */
+    /* Proposes individual i of the next generation in the arrays of `next`. If an individual needs no evaluation, the
+     * function sets its `pending` to 0 and sets its result. Several threads call this function at the same time, each
+     * with different individuals, in any order. */
     void (*propose)(void *state, const hf_population *now, hf_population *next, int i);
-    /* Selects the survivors once `now` is evaluated: the individuals of `now` and `before` that form the generation.
-     * NULL: all individuals of `now` survive. */
+    /* Selects the survivors after `now` is evaluated. They are the individuals of `now` and `before` that form the
+     * generation. If this function is NULL, all individuals of `now` survive. */
     void (*survive)(void *state, const hf_population *before, hf_population *now);
     void (*free)(void *state); /* frees the state, which may be NULL */
 } hf_optimiser_kind;
 
-/* An optimiser with its present generation. */
+/* An optimiser and its present generation. */
 typedef struct {
     hf_population population;      /* the present generation */
     hf_population next;            /* internal: the arrays of the next generation, to which kind->propose writes */
-    const hf_optimiser_kind *kind; /* the functions of the optimiser; NULL: it cannot propose designs */
+    const hf_optimiser_kind *kind; /* functions of the optimiser; NULL: the optimiser cannot propose designs */
     const hf_optimize_settings *settings; /* settings of the search; borrowed */
-    void *state;                          /* data of the functions */
+    void *state;                          /* state that the functions of the optimiser use */
     bool is_fresh; /* internal: the generation has been proposed, but hf_optimiser_tell has not been called for it */
 } hf_optimiser;
 
-/* Creates an optimiser and proposes generation 0. initial [n_variable] is the initial design: the values of the design
- * variables after form-finding. Settings and model are borrowed until hf_optimiser_free. If kind is NULL, the
- * population has its bounds, but no designs. Returns HF_OK or HF_NO_MEMORY. Call hf_optimiser_free in either case. */
+/* Creates an optimiser and proposes generation 0. The initial design initial [n_variable] has the values of the design
+ * variables after form-finding. The optimiser borrows settings and model until hf_optimiser_free. If kind is NULL, the
+ * population has bounds, but no designs. Returns HF_OK or HF_NO_MEMORY. Call hf_optimiser_free in either case. */
 hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *settings,
                               const hf_model *model, const double *initial, hf_optimiser *optimiser);
 
-/* Reads the results that the caller has written into population.result, selects the survivors and ranks them
+/* Reads the results that the caller has written to population.result. Selects the survivors and ranks them
  * (hf_population_rank). */
 void hf_optimiser_tell(hf_optimiser *optimiser);
 
-/* Proposes the next generation, which becomes the present one. Returns false and does nothing if stop_reason is not
+/* Proposes the next generation and makes it the present one. Returns false without any action if stop_reason is not
  * HF_POPULATION_RUNNING. */
 bool hf_optimiser_next(hf_optimiser *optimiser);
 
-/* Begins the next generation for several threads. Returns false if there is none (hf_optimiser_next). Otherwise call
- * hf_optimiser_propose for each individual, then hf_optimiser_end. */
+/* Begins the next generation for proposals by several threads. Returns false if there is no next generation
+ * (hf_optimiser_next). If the function returns true, call hf_optimiser_propose for each individual, then
+ * hf_optimiser_end. */
 bool hf_optimiser_begin(hf_optimiser *optimiser);
-/* Proposes individual i in the arrays of optimiser->next; it may be evaluated at once. Several threads may call this,
- * each with different individuals. */
+/* Proposes individual i in the arrays of optimiser->next. The individual may be evaluated immediately afterwards.
+ * Several threads may call this function at the same time, each with different individuals. */
 void hf_optimiser_propose(hf_optimiser *optimiser, int i);
-/* Makes optimiser->next, in which all individuals have been proposed, the present generation. */
+/* Makes optimiser->next the present generation. All its individuals must have been proposed. */
 void hf_optimiser_end(hf_optimiser *optimiser);
 
-/* Frees the population and the state, but neither settings nor model. */
+/* Frees the population and the state. Does not free settings or model. */
 void hf_optimiser_free(hf_optimiser *optimiser);
 
 /* ---- the methods of a case ---- */
 
-/* Why Levenberg-Marquardt ended:
+/* Reasons why Levenberg-Marquardt ended:
  *
- *   CONVERGED        no step within the limits promises a lower merit
- *   STALLED          steps promise a lower merit, but none brings one, however short; or the result is the start,
+ *   CONVERGED        no step within the limits is predicted to lower the merit
+ *   STALLED          steps are predicted to lower the merit, but none does, however short; or the result is the start,
  *                    because no better design was found or could be measured
  *   MAX_ITERATIONS   the maximum number of steps was reached
- *   SETTLED          the last ten steps lowered the merit by less than 1e-6 of it and changed no objective, in
- *                    weight x value, by 1e-5 of the merit
- *   TAKEN            it did not run: the design is a point of a front */
+ *   SETTLED          the last ten steps lowered the merit by less than 1e-6 of it, and changed no weighted objective by
+ *                    more than 1e-5 of the merit
+ *   TAKEN            the algorithm did not run: the design is a point of a front */
 typedef enum {
     HF_REFINE_CONVERGED,
     HF_REFINE_STALLED,
@@ -101,22 +104,23 @@ typedef enum {
 } hf_refine_stop;
 extern const char *const hf_refine_stop_word[5]; /* "converged", "stalled", "max_iterations", "settled", "taken" */
 
-/* One row for each hf_optimize_method: X(method, optimiser of its generations or `none`, ends_with_refine). */
+/* Each hf_optimize_method is one row X(method, optimiser of its generations or `none`, ends_with_refine). */
 #define HF_OPTIMISER_LIST(X) X(GA, ga, false) X(LM, none, true) X(GA_LM, ga, true)
 
-/* Which algorithms a method uses. */
+/* Algorithms that a method uses. */
 typedef struct {
-    const hf_optimiser_kind *kind; /* optimiser of the generations; NULL: there are none */
-    bool ends_with_refine;         /* the refinement is the result; false: it is run for comparison only */
+    const hf_optimiser_kind *kind; /* optimiser of the generations; NULL: the method has none */
+    bool ends_with_refine;         /* true: the refined design is the result; false: it is only for comparison */
 } hf_optimiser_plan;
 
-/* Returns the algorithms of settings->method. With optimize.front, hf_optimiser_nsga replaces hf_optimiser_ga. */
+/* Returns the algorithms of settings->method. If the case has optimize.front, hf_optimiser_nsga replaces
+ * hf_optimiser_ga. */
 hf_optimiser_plan hf_optimiser_plan_of(const hf_optimize_settings *settings);
 
 #define HF_OPTIMISER_DECLARE(method, optimiser, ends_with_refine)                                                      \
     extern const hf_optimiser_kind hf_optimiser_##optimiser;
 HF_OPTIMISER_LIST(HF_OPTIMISER_DECLARE)
-extern const hf_optimiser_kind hf_optimiser_nsga; /* NSGA-II, for optimize.front */
+extern const hf_optimiser_kind hf_optimiser_nsga; /* NSGA-II for optimize.front */
 #undef HF_OPTIMISER_DECLARE
 
 HF_API_END

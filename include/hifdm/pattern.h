@@ -4,13 +4,14 @@
  * Pipeline at one frequency:
  *
  *   hf_feed_make           target surface and facets -> feed
- *   hf_pattern_create      settings, facets, feed -> directions, points of quadrature
- *   hf_pattern_sum_block   currents of a block of facets -> sums over its points (M44), by any thread
+ *   hf_pattern_create      settings, facets, feed -> directions, quadrature points
+ *   hf_pattern_sum_block   currents of a block of facets -> sums over its quadrature points (M44), in any thread
  *   hf_pattern_finish      sums of all blocks -> gain by polarisation
- *   hf_pattern_figures     gain of a cut -> width of the beam, sidelobes
+ *   hf_pattern_figures     gain of a cut -> beam width, sidelobes
  *
- * Everything is in the frame of the scene. A direction has the angle theta from +z, and phi from +x towards +y. A cut
- * is a half plane phi with theta of both signs. The time dependence is exp(+j w t). */
+ * All positions and directions are in the frame of the scene. A direction has the angle theta from +z and the angle phi
+ * from +x towards +y. A cut is a half plane of constant phi, extended to negative theta. The time dependence is exp(+j
+ * w t). */
 #ifndef HIFDM_PATTERN_H
 #define HIFDM_PATTERN_H
 
@@ -22,104 +23,106 @@
 
 HF_API_BEGIN
 
-/* What illuminates a surface. */
+/* The feed that illuminates a surface. */
 typedef struct {
     hf_feed_kind kind;     /* kind of the feed, not HF_FEED_AUTO */
-    double position_m[3];  /* position of a point; of a line its x and z */
-    double axis[3], co[3]; /* unit vectors of the axis and of the polarisation on it */
-    double cos_power;      /* q: the field is cos^q of the angle from the axis, 0 behind it */
-    double beam[3];        /* unit vector of the axis after its reflection by the target surface */
+    double position_m[3];  /* position of a point feed, or x and z of a line feed */
+    double axis[3], co[3]; /* unit vectors of the axis and of the polarisation on the axis */
+    double cos_power;      /* exponent q: the field is cos^q of the angle from the axis, and 0 behind the feed */
+    double beam[3];        /* unit vector of the axis after reflection by the target surface */
     double scale;          /* gain = scale |N|^2 / wavelength^2, with N of (M44) */
 } hf_feed;
 
-/* Determines the feed of surface->pattern for facets at position_m [n_node][3], m. By default it is at the focus of the
- * target surface and looks at the middle of the aperture. The default of cos_power makes the field 10 dB weaker at the
- * edge of the facets. surface->kind is not HF_SURFACE_AUTO, and there is at least one facet. Returns the number of
- * facets whose front, on the side of +z, the feed does not illuminate. If it is not 0, the surface has no pattern. */
+/* Determines the feed of surface->pattern for facets at position_m [n_node][3] in m. By default the feed is at the
+ * focus of the target surface and points to the middle of the aperture. The default of cos_power makes the field 10 dB
+ * weaker at the edge of the facets. The kind surface->kind must not be HF_SURFACE_AUTO, and there must be at least one
+ * facet. Returns the number of facets whose front side, towards +z, the feed does not illuminate. If the returned
+ * number is not 0, the surface has no pattern. */
 int hf_feed_make(const hf_surface_settings *surface, const hf_facets *facets, const double *position_m, hf_feed *feed);
 
-/* A surface that is illuminated. */
+/* A surface that a feed illuminates. */
 typedef struct {
-    const hf_facets *facets;  /* its facets; borrowed */
+    const hf_facets *facets;  /* facets of the surface, borrowed */
     const double *position_m; /* [n_node][3] positions */
-    const double *sag_m;      /* [n_facet][4] sags of the mesh as of hf_facet_mesh_sags; NULL: flat */
+    const double *sag_m;      /* [n_facet][4] sags of the mesh as in hf_facet_mesh_sags; NULL: flat facets */
 } hf_pattern_surface;
 
-#define HF_PATTERN_BLOCKS 32 /* number of blocks of facets, which threads share */
+#define HF_PATTERN_BLOCKS 32 /* number of blocks of facets that the threads share */
 
-/* The far field at one frequency. */
+/* The far field of a surface at one frequency. */
 typedef struct {
     const hf_pattern_settings *settings; /* settings; borrowed */
     hf_pattern_surface surface;          /* the surface */
-    hf_feed feed;                        /* its feed */
+    hf_feed feed;                        /* feed of the surface */
     double wavelength_m;                 /* wavelength */
-    int n_thread;                        /* number of threads, each with scratch of its own */
-    const volatile sig_atomic_t *stop;   /* NULL, or a flag: *stop != 0 ends the sums early; they are then invalid */
-    int n_padded;                        /* number of angles of a cut, filled up to whole vectors */
-    int n_node, n_node_padded;           /* angles at which a facet is summed; n_node 0: those of the cut */
-    long n_point;                        /* number of points of quadrature over all facets */
-    double *gauss_at, *gauss_weight;     /* Gauss-Legendre on [0, 1]; row n is the rule of n points */
-    double *direction;                   /* [n_cut][3][n_padded] unit vectors of the angles */
-    double *node_direction;              /* [n_cut][3][n_node_padded] unit vectors of the summed angles */
-    double *between;                     /* [n_node][n_padded] weight of each summed angle in an angle */
-    double *sum;                         /* [HF_PATTERN_BLOCKS][n_cut][6][n_padded] sums of the blocks */
-    double *local, *point;               /* [n_thread] scratch */
-    void *block;                         /* owned memory behind the arrays */
+    int n_thread;                        /* number of threads, each with its own scratch memory */
+    const volatile sig_atomic_t *stop;   /* NULL or a flag; if *stop != 0, the sums end early and are invalid */
+    int n_padded;                        /* number of angles of a cut, rounded up to whole vectors */
+    int n_node, n_node_padded;       /* number of angles at which a facet is summed; n_node 0: the angles of the cut */
+    long n_point;                    /* total number of quadrature points of all facets */
+    double *gauss_at, *gauss_weight; /* Gauss-Legendre quadrature on [0, 1]; row n is the rule of n points */
+    double *direction;               /* [n_cut][3][n_padded] unit vectors of the angles */
+    double *node_direction; /* [n_cut][3][n_node_padded] unit vectors of the angles at which a facet is summed */
+    double *between;        /* [n_node][n_padded] weight of each summed angle in each angle of the cut */
+    double *sum;            /* [HF_PATTERN_BLOCKS][n_cut][6][n_padded] sums of the blocks */
+    double *local, *point;  /* [n_thread] scratch memory */
+    void *block;            /* owned memory behind the arrays */
 } hf_far_field;
 
-/* Determines the size of the sums at one frequency without allocating memory: n_point, n_node and the settings of
- * *pattern. */
+/* Determines the size of the sums at one frequency. Sets n_point, n_node and the settings of *pattern. Allocates no
+ * memory. */
 void hf_pattern_plan(const hf_pattern_settings *settings, const hf_pattern_surface *surface, const hf_feed *feed,
                      double frequency_Hz, hf_far_field *pattern);
 
-/* Returns the number of angles, over all cuts, at which each point of quadrature is summed. */
+/* Returns the number of angles over all cuts at which each quadrature point is summed. */
 int hf_pattern_angles(const hf_far_field *pattern);
 
-/* Allocates and prepares the sums at one frequency for n_thread threads. settings and surface are borrowed. Returns
- * HF_OK or HF_NO_MEMORY. Call hf_pattern_free in either case. */
+/* Allocates and prepares the sums at one frequency for n_thread threads. The far field borrows settings and surface.
+ * Returns HF_OK or HF_NO_MEMORY. Call hf_pattern_free in either case. */
 hf_status hf_pattern_create(const hf_pattern_settings *settings, const hf_pattern_surface *surface, const hf_feed *feed,
                             double frequency_Hz, int n_thread, hf_far_field *pattern);
 
-/* Sums block i < HF_PATTERN_BLOCKS of the surface with the scratch of thread number `room`. It is a callback for
- * hf_parallel_each; `pattern` is the hf_far_field. The sums do not depend on the room. */
+/* Sums block i < HF_PATTERN_BLOCKS of the surface, with the scratch memory of thread number `room`. The function is a
+ * callback for hf_parallel_each. The argument `pattern` points to the hf_far_field. The sums do not depend on the
+ * thread number. */
 void hf_pattern_sum_block(void *pattern, int room, int i);
 
-/* Computes the gain from the sums of all blocks, relative to isotropic radiation of the power of the feed, dBi. co_dBi
- * and cross_dBi [n_cut][n_theta] receive the components by Ludwig's third definition. Overwrites the sums of the first
- * block. */
+/* Computes the gain in dBi from the sums of all blocks. The gain is relative to isotropic radiation of the power of the
+ * feed. The arrays co_dBi and cross_dBi [n_cut][n_theta] receive its components by Ludwig's third definition. The
+ * function overwrites the sums of the first block. */
 void hf_pattern_finish(hf_far_field *pattern, double *co_dBi, double *cross_dBi);
 
-/* Frees the sums. */
+/* Frees the memory of the sums. */
 void hf_pattern_free(hf_far_field *pattern);
 
-#define HF_PATTERN_WIDTH_STEPS 4.0 /* minimum number of steps of angle in a half-power width */
+#define HF_PATTERN_WIDTH_STEPS 4.0 /* minimum number of angle steps in a half-power width */
 
-/* Why figures of a cut are doubtful. */
+/* Reasons why the figures of a cut are doubtful. */
 typedef enum {
-    HF_CUT_FINE,   /* there is no doubt */
-    HF_CUT_COARSE, /* fewer than HF_PATTERN_WIDTH_STEPS steps in the half-power width: lobes are missed */
+    HF_CUT_FINE,   /* the figures are reliable */
+    HF_CUT_COARSE, /* the half-power width has fewer than HF_PATTERN_WIDTH_STEPS angle steps, so lobes are missed */
     HF_CUT_AT_END  /* the maximum is at the first or the last angle */
 } hf_cut_doubt;
 
-/* The figures of one cut. They are NaN if the angles do not reach them, and except for the maximum if there is a
- * doubt. */
+/* The figures of one cut of the far field. A figure is NaN if the range of angles is too small to determine it. If the
+ * cut is doubtful, all figures except the maximum are NaN. */
 typedef struct {
-    double gain_dBi, beam_deg;   /* the maximum and its angle, by the parabola through three angles */
+    double gain_dBi, beam_deg;   /* maximum and its angle, from a parabola through three angles */
     double half_power_width_deg; /* half-power width of the beam */
-    double first_sidelobe_dB;    /* the higher one of the lobes beside the beam, relative to the beam */
-    double highest_sidelobe_dB;  /* the highest lobe of the cut, relative to the beam */
-    hf_cut_doubt doubt;          /* why figures are NaN; not stored */
+    double first_sidelobe_dB;    /* higher one of the two lobes beside the beam, relative to the beam */
+    double highest_sidelobe_dB;  /* highest lobe of the cut, relative to the beam */
+    hf_cut_doubt doubt;          /* reason why figures are NaN; not stored */
 } hf_cut_figures;
 
-/* Returns the figures of a cut from its co-polar gain co_dBi [n_theta], at even steps from theta_deg[0] to
- * theta_deg[1]. */
+/* Computes the figures of a cut from its co-polar gain co_dBi [n_theta]. The angles are at equal steps from
+ * theta_deg[0] to theta_deg[1]. */
 hf_cut_figures hf_pattern_figures(int n_theta, const double theta_deg[2], const double *co_dBi);
 
-/* ---- of a shape ---- */
+/* ---- the far field of a shape ---- */
 
-/* The figures of the cuts of a shape at all frequencies, in the order of the tables. */
+/* The figures of all cuts of a shape at all frequencies, in the order of the tables. */
 typedef struct {
-    int n_frequency, n_cut; /* numbers of frequencies and cuts; 0: there is no pattern */
+    int n_frequency, n_cut; /* number of frequencies and number of cuts; 0: there is no pattern */
     double frequency_Hz[HF_LIST_MAX], phi_deg[HF_PATTERN_CUTS]; /* frequencies and angles of the cuts */
     hf_feed feed;                                               /* the feed */
     hf_cut_figures figure[HF_LIST_MAX * HF_PATTERN_CUTS];       /* [n_frequency][n_cut] the figures */
@@ -133,7 +136,8 @@ typedef struct {
     void *block;                                /* owned memory behind the arrays */
 } hf_pattern_table;
 
-/* Allocates a table of this size. Returns HF_OK or HF_NO_MEMORY. Call hf_pattern_table_free in either case. */
+/* Allocates a table with these numbers of frequencies, cuts and angles. Returns HF_OK or HF_NO_MEMORY. Call
+ * hf_pattern_table_free in either case. */
 hf_status hf_pattern_table_create(int n_frequency, int n_cut, int n_theta, hf_pattern_table *table);
 /* Frees the table. */
 void hf_pattern_table_free(hf_pattern_table *table);

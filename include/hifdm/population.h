@@ -1,8 +1,8 @@
 /* population - the designs of one generation and their results.
  * Stability: stable.
  *
- * An optimiser (optimiser.h) proposes the designs, a batch evaluates them, and a store keeps them. This header ranks
- * the results; it does not determine how the next generation is made. */
+ * An optimiser (optimiser.h) proposes the designs, a batch evaluates them, and a store saves them. The functions of
+ * this header rank the results. They do not determine how the next generation is made. */
 #ifndef HIFDM_POPULATION_H
 #define HIFDM_POPULATION_H
 
@@ -15,100 +15,102 @@
 
 HF_API_BEGIN
 
-/* Why the genetic algorithm ended (optimize.stagnation_generations, optimize.generations). */
+/* Reasons why the genetic algorithm ended (optimize.stagnation_generations, optimize.generations). */
 typedef enum {
-    HF_POPULATION_RUNNING,       /* it has not ended */
-    HF_POPULATION_STAGNATION,    /* the best merit no longer falls */
+    HF_POPULATION_RUNNING,       /* the algorithm has not ended */
+    HF_POPULATION_STAGNATION,    /* the best merit no longer decreases */
     HF_POPULATION_GENERATIONS,   /* the maximum number of generations has been evaluated */
-    HF_POPULATION_ALL_INFEASIBLE /* it ended without a feasible individual */
+    HF_POPULATION_ALL_INFEASIBLE /* the algorithm ended without a feasible individual */
 } hf_population_stop;
 extern const char *const hf_population_stop_word[4]; /* "running", "stagnation", "generations", "all_infeasible" */
 
-/* A generation, and figures of all generations so far. */
+/* One generation, and figures of all generations so far. */
 typedef struct {
     int n_variable, n_individual; /* number of design variables and of individuals */
     int n_objective;              /* number of rows of optimize.front; 0: there are none */
-    bool has_rows; /* design variables are those of optimize.variables, each in its own unit; false: pretensions in N */
-    int generation;        /* index of the present generation, from 0 */
+    bool has_rows;  /* true: design variables of optimize.variables, each in its own unit; false: pretensions in N */
+    int generation; /* index of the present generation, counted from 0 */
     int generation_limit;  /* maximum number of generations */
-    double *initial;       /* [n_variable] initial design: values after form-finding (tensions T of Eq. 13) */
-    double *lower, *upper; /* [n_variable] bounds on the values of a design (T' of Eq. 13) */
-    double *reach;         /* [n_variable] maximum distance of the first designs from `initial` */
+    double *initial;       /* [n_variable] initial design, the values after form-finding (tensions T of Eq. 13) */
+    double *lower, *upper; /* [n_variable] bounds on the values of the design variables (T' of Eq. 13) */
+    double *reach;         /* [n_variable] maximum distance of the designs of generation 0 from `initial` */
 
-    /* The optimiser writes these arrays. The batch writes the results of pending designs. */
-    double *design;                         /* [n_individual][n_variable] values of the design variables */
-    hf_form_result *result;                 /* [n_individual]; where pending is 0 it is valid from the start */
-    unsigned char *pending;                 /* [n_individual] 1: the design must be evaluated */
-    double *crossover_rate, *mutation_rate; /* [n_individual] rates by which the trial was made; NaN: none */
-    /* [n_individual][2] indices of the parents in the previous generation, -1: none. The pair k, -1 stands for
-     * individual k of the previous generation, which was kept. */
+    /* The optimiser writes the following arrays. The batch writes the results of designs that are marked as pending. */
+    double *design;         /* [n_individual][n_variable] values of the design variables */
+    hf_form_result *result; /* [n_individual] results; a result is valid from the start if its `pending` is 0 */
+    unsigned char *pending; /* [n_individual] 1: the design must be evaluated */
+    double *crossover_rate, *mutation_rate; /* [n_individual] rates with which the trial was made; NaN: none */
+    /* [n_individual][2] indices of the parents in the previous generation; -1: none. The pair k, -1 means that
+     * individual k of the previous generation was kept. */
     int *parent;
 
-    /* hf_optimiser_tell writes these arrays: figures of each proposed design, whether or not it survived. */
+    /* hf_optimiser_tell writes the following arrays. They describe each proposed design, whether or not it survived. */
     hf_status *trial_status; /* [n_individual] status of the proposed design */
     double *trial_psi_m;     /* [n_individual] psi of the proposed design */
 
     /* hf_population_rank writes the following members. */
-    int best;                       /* index of the best individual; -1: none is feasible */
-    double *best_merit;             /* [generation_limit] hf_population_merit of the best; NaN: none is feasible */
-    double *best_psi_m;             /* [generation_limit] psi of the best */
-    double *least_violation;        /* [generation_limit] minimum violation of the individuals */
-    double mean_psi_m, worst_psi_m; /* mean and maximum psi of the feasible individuals */
-    int n_infeasible;               /* number of infeasible individuals of this generation */
-    long n_evaluation, n_evaluation_infeasible; /* numbers of designs evaluated so far, and of infeasible ones */
+    int best;                /* index of the best individual; -1: none is feasible */
+    double *best_merit;      /* [generation_limit] hf_population_merit of the best individual; NaN: none is feasible */
+    double *best_psi_m;      /* [generation_limit] psi of the best individual */
+    double *least_violation; /* [generation_limit] minimum violation of the individuals */
+    double mean_psi_m, worst_psi_m;             /* mean and maximum psi over the feasible individuals */
+    int n_infeasible;                           /* number of infeasible individuals in this generation */
+    long n_evaluation, n_evaluation_infeasible; /* number of designs evaluated so far, and number of infeasible ones */
     long n_evaluation_above_cap;                /* number of infeasible designs so far that have a shape */
-    hf_population_stop stop_reason;             /* why the generations end with this one */
+    hf_population_stop stop_reason;             /* reason why the generations end after this one */
 
     void *block; /* owned memory behind the arrays */
 } hf_population;
 
-/* Creates a population whose designs are all zero. initial [n_variable] is the initial design; it is copied. The bounds
- * are `initial` -+ range_N within [min_tension_N, max_tension_N], or as the row of optimize.variables says. Design
- * variables with the same leader change by the same step, so they share the bounds on that step. `next` gets its own
- * arrays for a second generation; it shares the other arrays and the block with `population`. Returns HF_OK or
- * HF_NO_MEMORY. Free `population`, but not `next`, in either case. */
+/* Creates a population whose designs are all zero. The function copies the initial design initial [n_variable]. The
+ * bounds are `initial` -+ range_N within [min_tension_N, max_tension_N], or those of the row of optimize.variables.
+ * Design variables with the same leader change by the same step, so they have common bounds on this step. The
+ * population `next` gets its own arrays for a second generation. It shares the other arrays and the memory block with
+ * `population`. Returns HF_OK or HF_NO_MEMORY. Free `population` even after a failure. Do not free `next`. */
 hf_status hf_population_create(const hf_optimize_settings *settings, const hf_model *model, const double *initial,
                                hf_population *population, hf_population *next);
-/* Frees the arrays of the population and those of `next`. */
+/* Frees the arrays of the population and the arrays of `next`. */
 void hf_population_free(hf_population *population);
 
-/* Copies status and psi of the results into trial_status and trial_psi_m. */
+/* Copies the status and psi of each result to trial_status and trial_psi_m. */
 void hf_population_note_trials(hf_population *population);
 
-/* Replaces individual i by individual k of the previous generation: design, result and parent. */
+/* Replaces individual i with individual k of the previous generation. Copies its design and result, and records k as
+ * the parent. */
 void hf_population_take_over(const hf_population *before, int k, hf_population *population, int i);
 
-/* Restores the individual of the previous generation at each index where it is better than the trial, or where the
- * trial was not evaluated. */
+/* Restores individuals of the previous generation. An individual is restored if it is better than the trial with the
+ * same index, or if this trial was not evaluated. */
 void hf_population_keep_better(const hf_population *before, hf_population *population);
 
-/* Makes `next` the present generation: exchanges the arrays of the two and increments population->generation. */
+/* Makes `next` the present generation. Exchanges the arrays of the two generations and increments
+ * population->generation. */
 void hf_population_advance(hf_population *population, hf_population *next);
 
-/* Sets best, mean, worst, counts and stop_reason from the results of this generation, which must be complete. */
+/* Sets best, mean, worst, counts and stop_reason from the results of this generation. All results must be available. */
 void hf_population_rank(const hf_optimize_settings *settings, hf_population *population);
 
-/* Returns how far a result is beyond its constraints: 0 if it is feasible, INFINITY without a shape, otherwise
- * result->violation. */
+/* Returns the amount by which a result violates its constraints. It is 0 for a feasible result, INFINITY without a
+ * shape, and result->violation otherwise. */
 double hf_population_violation(const hf_form_result *result);
 
-/* Returns the figure of a feasible result that is minimised: its merit, or the first of its objectives. */
+/* Returns the minimised figure of a feasible result. It is the merit, or the first objective of a Pareto front. */
 double hf_population_merit(const hf_population *population, const hf_form_result *result);
 
-/* Returns true if individual a is better than b. Feasible ones are ordered by merit, or by their objectives in turn,
- * and come before infeasible ones, which are ordered by violation (Deb 2000). Of two equals the lower index is
- * better. */
+/* Returns true if individual a is better than individual b. Feasible individuals are ordered by merit, or by their
+ * objectives in turn. They come before infeasible individuals, which are ordered by violation (Deb 2000). If two
+ * individuals are equal, the one with the lower index is better. */
 bool hf_population_is_better(const hf_population *population, int a, int b);
 
-/* Returns the value within the bounds of design variable i_variable that is nearest to value_N. */
+/* Returns the value within the bounds of design variable i_variable that is closest to value_N. */
 static inline double hf_population_clamp(const hf_population *population, int i_variable, double value_N)
 {
     double low = population->lower[i_variable], high = population->upper[i_variable];
     return value_N < low ? low : value_N > high ? high : value_N;
 }
 
-/* Changes the design variables of design [n_variable] that follow a leader: each is moved from `initial` by the step of
- * its leader, within its own bounds. */
+/* Updates the design variables of design [n_variable] that follow a leader. Each of them is set to its value in
+ * `initial` plus the step of its leader, within its own bounds. */
 void hf_population_link(const hf_population *population, const hf_model *model, double *design);
 
 HF_API_END

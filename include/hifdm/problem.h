@@ -1,8 +1,9 @@
-/* problem - an opened case: its net with its truss, the shape found, and a batch that evaluates designs.
+/* problem - an opened case: the net with its truss, its shape, and a batch that evaluates designs.
  * Stability: stable.
  *
- * hf_problem_open and hf_problem_free are all that a program needs around its own optimiser, see tools/own_optimiser.c.
- * `hifdm run`, `check` and `evaluate` make the same object step by step (src/run/problem_parts.h). Pipeline:
+ * A program with its own optimiser needs only hf_problem_open and hf_problem_free in addition to the batch (see
+ * tools/own_optimiser.c). The commands `hifdm run`, `check` and `evaluate` make the same struct step by step
+ * (src/run/problem_parts.h). Pipeline:
  *
  *   case file -> hf_case -> scene, truss -> model -> form-finding -> initial design, evaluator -> batch */
 #ifndef HIFDM_PROBLEM_H
@@ -16,73 +17,78 @@
 
 HF_API_BEGIN
 
-/* An opened case. Its members point to each other, so it must be neither moved nor copied. It belongs to one thread at
- * a time. */
+/* An opened case. The members of a problem point to each other, so a problem must be neither moved nor copied. Only one
+ * thread at a time may use a problem. */
 typedef struct {
-    hf_case settings;             /* the case */
-    hf_scene scene;               /* the net as described */
-    hf_carrier carrier;           /* the truss; all zero without one */
-    hf_model model;               /* the net prepared for solving */
-    hf_load_cases load_cases;     /* load cases of the as-built net; none without `load_cases` */
-    hf_surface_settings surface;  /* target surface with its kind; all zero without a section surface */
-    hf_facets facets;             /* facets of the target surface; none without a section surface */
-    int planes;                   /* mirror planes that link design variables: flags 1 (x) and 2 (y) */
-    hf_workspace workspace;       /* holds the shape of the form-finding until another one is computed in it */
-    hf_form_result form;          /* result of the form-finding */
-    double *start_q_N_per_m;      /* [n_cable] force densities of the form-finding */
-    double *initial;              /* [n_variable] initial design, averaged over linked design variables */
-    hf_limits limits;             /* rows of optimize.limits; none without rows */
+    hf_case settings;            /* the case */
+    hf_scene scene;              /* net as the case describes it */
+    hf_carrier carrier;          /* truss; all zero without a truss */
+    hf_model model;              /* net prepared for solving */
+    hf_load_cases load_cases;    /* load cases of the as-built net; empty without `load_cases` */
+    hf_surface_settings surface; /* target surface including its kind; all zero without a section surface */
+    hf_facets facets;            /* facets of the target surface; empty without a section surface */
+    int planes;                  /* mirror planes that link design variables: flags 1 (x) and 2 (y) */
+    hf_workspace workspace;  /* workspace with the shape of the form-finding, until another shape is computed in it */
+    hf_form_result form;     /* result of the form-finding */
+    double *start_q_N_per_m; /* [n_cable] force densities of the form-finding */
+    double *initial;         /* [n_variable] initial design, averaged over linked design variables */
+    hf_limits limits;        /* rows of optimize.limits; empty without rows */
     struct hf_problem_nets *nets; /* as-built nets of objectives over load cases or samples; NULL: there are none */
-    hf_objectives objectives;     /* rows of optimize.objective or optimize.front; none without rows: psi */
-    hf_evaluator evaluator;       /* common data of the designs */
-    hf_batch batch;               /* evaluates designs; borrows the evaluator */
-    hf_solver solver;             /* solver that the batch uses */
+    /* rows of optimize.objective or optimize.front; empty without rows: psi is the objective */
+    hf_objectives objectives;
+    hf_evaluator evaluator; /* data that all designs have in common */
+    hf_batch batch;         /* batch that evaluates designs; borrows the evaluator */
+    hf_solver solver;       /* solver that the batch uses */
 } hf_problem;
 
-/* A case whose net a program has in memory. Both members are borrowed. */
+/* A case whose net is in the memory of a program. Both members of this struct are borrowed. */
 typedef struct {
-    const char *text; /* text of a case file with a section scene.import; the files that it names are not read */
-    const hf_scene_arrays *net; /* the net */
+    /* text of a case file with a section scene.import; the files that this section lists are not read */
+    const char *text;
+    const hf_scene_arrays *net; /* net in memory */
 } hf_problem_source;
 
-/* Opens the case file `path` under n_set overrides "key=value" (NULL and 0: none). It builds the model with truss and
- * symmetry, finds the shape, and creates the batch of n_thread threads (0: all cores), which shares data made at
- * `initial` (hf_batch_share). A section sweep is ignored. model.n_variable may be 0: then there is nothing to design.
+/* Opens the case file `path` with n_set overrides of the form "key=value". Without overrides, set is NULL and n_set is
+ * 0. The function builds the model with truss and symmetry, finds the shape, and creates a batch of n_thread threads.
+ * If n_thread is 0, the batch uses all cores. The threads share data that are made at the design `initial`
+ * (hf_batch_share). The function ignores a section sweep. If model.n_variable is 0, there are no design variables.
  *
- * Returns HF_OK; HF_BAD_CASE with messages about all faults; HF_NOT_CONVERGED or the status of an ill-posed net, with
- * the names of cables or nodes; HF_MECHANISM; HF_NO_MEMORY; HF_NO_LAPACK. Every failure adds an error message. If the
- * form-finding fails, `form` and `workspace` hold what it reached, and there is no batch. Call hf_problem_free in any
- * case. */
+ * Returns HF_OK. Returns HF_BAD_CASE with messages about all faults. Returns HF_NOT_CONVERGED or the status of an
+ * ill-posed net with messages that contain the cables or nodes. Other failures are HF_MECHANISM, HF_NO_MEMORY and
+ * HF_NO_LAPACK. Every failure adds an error message. If the form-finding fails, `form` and `workspace` contain its last
+ * state, and there is no batch. Call hf_problem_free in any case. */
 hf_status hf_problem_open(const char *path, const char *const *set, int n_set, int n_thread, hf_problem *problem,
                           hf_messages *messages);
 
-/* Returns true if designs have a merit; with optimize.front they have none. */
+/* Returns true if designs have a merit. With optimize.front, designs have no merit. */
 bool hf_problem_has_merit(const hf_problem *problem);
 
-/* Writes the figures of a design into `field` in their order. Returns their number, which is HF_RESULT_N_INDIVIDUAL
- * unless there is no merit. */
+/* Writes the list of the figures of a design to `field`, in the order of the figures. Returns the number of figures. It
+ * is HF_RESULT_N_INDIVIDUAL unless designs have no merit. */
 int hf_problem_list_figures(const hf_problem *problem, const hf_result_field *field[HF_RESULT_N_INDIVIDUAL]);
 
-/* Returns the number of figures that have derivatives by the design variables: the value of each objective and, without
- * optimize.front, the merit. Without objectives the only one is psi_m. */
+/* Returns the number of figures with derivatives with respect to the design variables. These figures are the value of
+ * each objective and, without optimize.front, the merit. If there are no objectives, the only figure with derivatives
+ * is psi_m. */
 int hf_problem_n_slope(const hf_problem *problem);
-/* Writes the name of figure i_slope with derivatives into text: that of its objective, "merit" or "psi_m". Returns
- * text. */
+/* Writes the name of figure i_slope with derivatives to text. The name is that of its objective, "merit" or "psi_m".
+ * Returns the argument `text`. */
 const char *hf_problem_slope_name(const hf_problem *problem, int i_slope, char text[HF_OBJECTIVE_NAME_SIZE]);
 
-/* Computes the exact derivatives of the hf_problem_n_slope figures (METHOD section 7). design [n][n_variable] has n
- * designs, and result [n] their results of hf_batch_run. slope [feasible designs][n_slope][n_variable] receives the
- * derivatives by each design variable alone, in the unit of the figure per unit of the variable. They do not contain
- * the weights of objectives. For an objective that is a maximum of several sizes they are those of its smooth maximum.
- * The derivatives of a figure that is 0 are NaN. Overwrites problem->workspace. Returns HF_OK; HF_BAD_CASE with a
- * message if there are no derivatives (hf_problem_has_slopes); HF_NO_MEMORY. */
+/* Computes the exact derivatives of the hf_problem_n_slope figures (METHOD section 7). The array design [n][n_variable]
+ * has n designs, and result [n] has their results from hf_batch_run. The array slope [feasible
+ * designs][n_slope][n_variable] receives the derivatives with respect to each single design variable, in the unit of
+ * the figure per unit of the variable. The derivatives do not include the weights of the objectives. If an objective is
+ * a maximum of several quantities, the derivatives are those of its smooth maximum. If a figure is 0, its derivatives
+ * are NaN. The function overwrites problem->workspace. Returns HF_OK or HF_NO_MEMORY. If there are no derivatives
+ * (hf_problem_has_slopes), returns HF_BAD_CASE with a message. */
 hf_status hf_problem_slopes(hf_problem *problem, int n, const double *design, const hf_form_result *result,
                             double *slope, hf_messages *messages);
-/* Returns HF_OK if designs of this problem have derivatives. Returns HF_BAD_CASE with a message if not: for nets with
- * struts, under rule seeded, and for quantiles. */
+/* Returns HF_OK if designs of this problem have derivatives. Otherwise returns HF_BAD_CASE with a message. There are no
+ * derivatives for nets with struts, under rule seeded, and for quantiles. */
 hf_status hf_problem_has_slopes(const hf_problem *problem, hf_messages *messages);
 
-/* Frees all members. */
+/* Frees all members of the problem. */
 void hf_problem_free(hf_problem *problem);
 
 HF_API_END

@@ -1,10 +1,12 @@
-/* result - the figures of a form-finding: status, measures, and why it stopped. Plain values without pointers.
+/* result - the figures of a form-finding: status, measures and stop reason. All values are plain and contain no
+ * pointers.
  * Stability: stable.
  *
- * HF_RESULT_LIST is the one list of the figures of a result. It defines the members of hf_form_result, the attributes
- * of the group of each stage. It also defines the data sets of /search/population with a value
- * per individual and the JSON objects of the stages. The columns of `hifdm evaluate`, of a sweep's ledger and of the
- * merged study follow from it, too. A new figure is a row of the list and the code that computes it. */
+ * All figures of a result are rows of HF_RESULT_LIST. The list defines the members of hf_form_result and the attributes
+ * in the HDF5 group of each stage. The list also defines the JSON objects of the stages and the data sets in
+ * /search/population with one value per individual. The columns of `hifdm evaluate`, of the ledger of a sweep and of
+ * the merged study also follow from the list. A new figure needs a row of the list and the code that computes the
+ * figure. */
 #ifndef HIFDM_RESULT_H
 #define HIFDM_RESULT_H
 
@@ -15,46 +17,48 @@
 
 HF_API_BEGIN
 
-/* X(name, value, word stored in files): why a form-finding stopped. Files contain the values; never renumber them. */
+/* X(name, value, word stored in files): reasons why a form-finding stopped. Files contain the values, so never renumber
+ * them. */
 #define HF_STOP_REASON_LIST(X)                                                                                         \
     X(NONE, 0, "none")                                                                                                 \
     X(DIRECT, 1, "direct")                 /* no law changes a force density, so one solve is exact */                 \
-    X(CONVERGED, 2, "converged")           /* residual and lengths are within their tolerances */                      \
+    X(CONVERGED, 2, "converged")           /* residual and length errors are within their tolerances */                \
     X(RMS_CHANGE, 3, "rms_change")         /* the paper's rule: psi changed by less than its tolerance */              \
-    X(MAX_ITERATIONS, 4, "max_iterations") /* the limit on the iterations was reached without convergence */           \
-    X(ILL_POSED, 5, "ill_posed")           /* the net has no shape, see the status */
+    X(MAX_ITERATIONS, 4, "max_iterations") /* the maximum number of iterations was reached without convergence */      \
+    X(ILL_POSED, 5, "ill_posed")           /* the net has no shape; see the status */
 
-/* Why a form-finding stopped. */
+/* Reason why a form-finding stopped. */
 typedef enum {
 #define HF_STOP_REASON_ENUM(name, value, word) HF_STOPPED_##name = value,
     HF_STOP_REASON_LIST(HF_STOP_REASON_ENUM)
 #undef HF_STOP_REASON_ENUM
 } hf_stop_reason;
 
-/* Returns the word of a stop reason, a constant string; "unknown" for other values. */
+/* Returns the word of a stop reason as a constant string. Returns "unknown" for other values. */
 const char *hf_stop_reason_word(int reason);
 
-/* X(name, value, word stored in files): why the coupling of the net with an elastic truss ended. Files contain the
- * values; never renumber them. */
+/* X(name, value, word stored in files): reasons why the coupling of the net with an elastic truss ended. Files contain
+ * the values, so never renumber them. */
 #define HF_COUPLING_STOP_LIST(X)                                                                                       \
     X(NONE, 0, "none")                     /* there is no truss */                                                     \
-    X(CONVERGED, 1, "converged")           /* no attachment moves farther than coupling.tof_m */                       \
-    X(MAX_ITERATIONS, 2, "max_iterations") /* the limit on the iterations was reached without convergence */           \
-    X(DIVERGED, 3, "diverged")             /* the steps grow, because the truss is too soft */                         \
-    X(NET, 4, "net")                       /* the net has no shape, see the status */
+    X(CONVERGED, 1, "converged")           /* no attachment moves by more than coupling.tof_m */                       \
+    X(MAX_ITERATIONS, 2, "max_iterations") /* the maximum number of iterations was reached without convergence */      \
+    X(DIVERGED, 3, "diverged")             /* the steps grow because the truss is too soft */                          \
+    X(NET, 4, "net")                       /* the net has no shape; see the status */
 
-/* Why the coupling ended. */
+/* Reason why the coupling ended. */
 typedef enum {
 #define HF_COUPLING_STOP_ENUM(name, value, word) HF_COUPLING_##name = value,
     HF_COUPLING_STOP_LIST(HF_COUPLING_STOP_ENUM)
 #undef HF_COUPLING_STOP_ENUM
 } hf_coupling_stop;
 
-/* Returns the word of a reason why a coupling ended, a constant string; "unknown" for other values. */
+/* Returns the word of a reason why a coupling ended, as a constant string. Returns "unknown" for other values. */
 const char *hf_coupling_stop_word(int stop);
 
-/* X(name, value, word stored in files, .meaning = description for the user): whether the error bounds of a result are
- * certified, otherwise why not (METHOD section 3). Files contain the values; never renumber them. */
+/* X(name, value, word stored in files, .meaning = description for the user): states whether the error bounds of a
+ * result are certified, and the reason if they are not (METHOD section 3). Files contain the values, so never renumber
+ * them. */
 #define HF_BOUND_REASON_LIST(X)                                                                                        \
     X(NONE, 0, "none", .meaning = "no certified bound was computed")                                                   \
     X(CERTIFIED, 1, "certified", .meaning = "no equilibrium is farther away")                                          \
@@ -68,50 +72,52 @@ const char *hf_coupling_stop_word(int stop);
     X(DEPENDENT_LENGTHS, 8, "dependent_lengths", .meaning = "prescribed lengths depend on each other")                 \
     X(LOOSE, 9, "loose", .meaning = "no taut cable holds some node, so its position is not unique")
 
-/* Whether the error bounds are certified, otherwise why not. */
+/* States whether the error bounds are certified, and the reason if they are not. */
 typedef enum {
 #define HF_BOUND_REASON_ENUM(name, value, ...) HF_BOUND_##name = value,
     HF_BOUND_REASON_LIST(HF_BOUND_REASON_ENUM)
 #undef HF_BOUND_REASON_ENUM
 } hf_bound_reason;
 
-/* Returns the word of a bound reason, or what it means, a constant string; "unknown" for other values. */
+/* These functions return the word of a bound reason, and its meaning, as constant strings. They return "unknown" for
+ * other values. */
 const char *hf_bound_reason_word(int reason);
 const char *hf_bound_reason_meaning(int reason);
 
-/* ---- The list: X(type, member, kind, ...), where ... are members of hf_result_field by their names ----
+/* ---- The list: X(type, member, kind, ...), where ... are designated members of hf_result_field ----
  *
- *   kind          of the stored value: REAL, INT, or an enumeration of the store
- *   .json         place in the JSON object of a stage; equal places keep the order of the list; left out: not there
+ *   kind          type of the stored value: REAL, INT, or an enumeration of the store
+ *   .json         place in the JSON object of a stage; equal places keep the order of the list; omitted: not in JSON
  *   .individual   place among the figures of one individual, which are data sets of /search/population and columns of
- *                 `hifdm evaluate`; left out: not there
- *   .key          name in JSON, if it differs from that of the member, which the HDF5 attribute has
- *   .units        left out: none
- *   .description  description of the data set, if there is one
+ *                 `hifdm evaluate`; omitted: not among them
+ *   .key          name in JSON; omitted: the name of the member, which is also that of the HDF5 attribute
+ *   .units        unit; omitted: none
+ *   .description  description of the data set; omitted: there is no data set
  *
- * Attributes and columns of the ledger are in the order of the list. JSON has the figures of a coupling between places
- * 4 and 5. The REAL figures are NaN unless the status is HF_OK, HF_NOT_CONVERGED or that of a broken limit. In the
- * result of a design (hf_evaluate), psi_m and merit are NaN unless the status is HF_OK. Without a shape
- * (hf_status_has_shape) its tension ratios and its violation are NaN, too. Details of single figures:
+ * HDF5 attributes and columns of the ledger have the order of the list. JSON lists the figures of a coupling between
+ * places 4 and 5. The REAL figures are NaN unless the status is HF_OK, HF_NOT_CONVERGED or the status of a violated
+ * limit. In the result of a design (hf_evaluate), psi_m and merit are NaN unless the status is HF_OK. If a design has
+ * no shape (hf_status_has_shape), its tension ratios and its violation are also NaN. Notes on single figures:
  *
  *   culprit              HF_COLLAPSED, HF_NOT_FINITE: a cable; HF_SINGULAR: a row of D; HF_STRAIGHT_CHAIN: a chain;
  *                        HF_NOT_CONVERGED: the cable whose rounding prevents convergence; HF_OK and
  *                        HF_NOT_CONVERGED with n_drifting > 0: the row that moves farthest
- *   psi_m                Eq. 10, over the inner nodes that a taut cable holds; NaN if there are none
- *   residual_N           with every cable at the tension of its law; for an elastic one of length l this is
- *                        EA (l/l0 - 1). The iterations balance a multiplier instead, and length_error shows how far
- *                        the two differ.
- *   length_error         for elastic cables L* = l0 (1 + T/EA); 0 if no cable has one of these laws
- *   inner_tension_ratio  max T / min T of the group, as boundary_tension_ratio; INFINITY if one of its cables is slack,
- *                        NaN if the group is empty or has a strut. n_slack counts the cables of both groups.
+ *   psi_m                Eq. 10, over the inner nodes that a taut cable holds; NaN if there are no such nodes
+ *   residual_N           with every cable at the tension of its law, which is EA (l/l0 - 1) for an elastic cable of
+ *                        length l. The iterations adjust a multiplier instead, and length_error shows the difference
+ *                        between the two.
+ *   length_error         L* = l0 (1 + T/EA) for elastic cables; 0 if no cable has one of these laws
+ *   inner_tension_ratio  max T / min T of the group, as in boundary_tension_ratio; INFINITY if a cable of the group is
+ *                        slack, NaN if the group is empty or has a strut. n_slack counts the cables of both groups.
  *   violation            sum over boundary cables of 1 - T/t for T < t and of 1 - cap t/T for T > cap t, where
- *                        t^2 = min T max T / cap and a slack T counts as if just taut; plus how far the shape is
- *                        beyond the rows of optimize.limits
- *   n_loose              these nodes have the positions nearest to their target positions at which none of their
- *                        cables is too long. A design with such a node is HF_SINGULAR.
- *   n_drifting           does not include the nodes of n_loose; if it is above 0, position_error_m is NaN
- *   position_error_m     NaN without hf_certify, as are the bounds, condition (INFINITY: singular) and backward_error
- *   position_bound_m     for laws, loads and supports exactly as their doubles; NaN unless bound_reason is
+ *                        t^2 = min T max T / cap, and a slack T counts as if barely taut; plus the excess of the shape
+ *                        over the limits of optimize.limits
+ *   n_loose              these nodes have the positions closest to their target positions at which none of their
+ *                        cables is too long. The status of a design with such a node is HF_SINGULAR.
+ *   n_drifting           excludes the nodes of n_loose; if it is above 0, position_error_m is NaN
+ *   position_error_m     NaN without hf_certify; the same holds for the bounds, condition (INFINITY: singular) and
+ *                        backward_error
+ *   position_bound_m     holds for the exact double values of laws, loads and supports; NaN unless bound_reason is
  *                        HF_BOUND_CERTIFIED */
 #define HF_RESULT_LIST(X)                                                                                              \
     X(hf_status, status, STATUS, .json = 1, .individual = 1,                                                           \
@@ -149,7 +155,7 @@ const char *hf_bound_reason_meaning(int reason);
     X(int, n_loaded_chain, INT, .json = 5, .key = "loaded_straight_chains",                                            \
       .description = "chains under lateral load: their tensions mean nothing")
 
-/* The same list for the figures of the coupling of the net with its truss. */
+/* The corresponding list for the figures of the coupling of the net with its truss. */
 #define HF_COUPLING_LIST(X)                                                                                            \
     X(hf_coupling_stop, stop_reason, COUPLING_STOP, .json = 4, .description = "how the coupling ended")                \
     X(int, iterations, INT, .json = 1, .description = "form-findings of the loop, or steps in one matrix")             \
@@ -161,7 +167,7 @@ const char *hf_bound_reason_meaning(int reason);
 
 #define HF_RESULT_MEMBER(type, member, ...) type member;
 
-/* The figures of a coupling; all zero without a truss. */
+/* The figures of a coupling. They are all zero without a truss. */
 typedef struct {
     HF_COUPLING_LIST(HF_RESULT_MEMBER)
 } hf_coupling_result;
@@ -170,7 +176,7 @@ typedef struct {
 typedef struct {
     HF_RESULT_LIST(HF_RESULT_MEMBER)
     hf_coupling_result coupling;          /* figures of the coupling with the truss */
-    double objective[HF_DESIGN_ROWS_MAX]; /* objectives of a design in the order of their rows, each in its unit */
+    double objective[HF_DESIGN_ROWS_MAX]; /* objectives of a design in the order of their rows, each in its own unit */
 } hf_form_result;
 
 /* Sets every REAL member of HF_RESULT_LIST to NaN. */
@@ -195,15 +201,15 @@ typedef enum {
     HF_RESULT_SEARCH_STOP
 } hf_result_kind;
 
-/* A row of a list at run time. */
+/* One row of a list at run time. */
 typedef struct {
-    const char *name, *key, *units, *description; /* texts of the row; key NULL: the name; units NULL: none */
+    const char *name, *key, *units, *description; /* texts of the row; key NULL: the same as name; units NULL: none */
     hf_result_kind kind;                          /* type of the stored value */
-    int json, individual; /* places in JSON and among the figures of an individual; 0: not there */
-    size_t offset, size;  /* offset and size of the member in its struct, bytes */
+    int json, individual; /* place in JSON and place among the figures of an individual; 0: none */
+    size_t offset, size;  /* offset and size in bytes of the member in its struct */
 } hf_result_field;
 
-/* Initialises an hf_result_field from a row about a member of `owner`. */
+/* Initialises an hf_result_field from a row for a member of `owner`. */
 #define HF_RESULT_FIELD(owner, type, member_, kind_, ...)                                                              \
     {.name = #member_,                                                                                                 \
      .kind = HF_RESULT_##kind_,                                                                                        \
@@ -212,7 +218,7 @@ typedef struct {
      __VA_ARGS__},
 
 #define HF_RESULT_COUNT(...) +1
-/* Numbers of rows of the two lists, and of those with a place among the figures of one individual. */
+/* Number of rows of each of the two lists, and number of rows with a place among the figures of one individual. */
 enum {
     HF_RESULT_N = 0 HF_RESULT_LIST(HF_RESULT_COUNT),
     HF_COUPLING_N = 0 HF_COUPLING_LIST(HF_RESULT_COUNT),
@@ -220,30 +226,30 @@ enum {
 };
 enum { HF_RESULT_JSON_COUNTS = 5 }; /* first JSON place of the counts, which follow the figures of a coupling */
 
-extern const hf_result_field hf_result_field_of[HF_RESULT_N];     /* rows of HF_RESULT_LIST, for hf_form_result */
-extern const hf_result_field hf_coupling_field_of[HF_COUPLING_N]; /* rows of HF_COUPLING_LIST, for hf_coupling_result */
+extern const hf_result_field hf_result_field_of[HF_RESULT_N];     /* rows of HF_RESULT_LIST for hf_form_result */
+extern const hf_result_field hf_coupling_field_of[HF_COUPLING_N]; /* rows of HF_COUPLING_LIST for hf_coupling_result */
 
-/* Returns the name of a figure in JSON. */
+/* Returns the JSON name of a figure. */
 const char *hf_result_key(const hf_result_field *field);
 
-/* Writes the rows with a place among the figures of one individual into `field`, in the order of their places. The rows
+/* Writes the rows with a place among the figures of one individual to `field`, in the order of these places. The rows
  * are constants of the library. */
 void hf_result_list_individual(const hf_result_field *field[HF_RESULT_N_INDIVIDUAL]);
 
 /* ---- History of the iterations ---- */
 
-/* Figures of each iteration of the coupling. The caller owns the arrays of `capacity` items. Iterations beyond
- * `capacity` are not recorded. */
+/* Figures of each iteration of the coupling. The caller owns the arrays, which have `capacity` items each. Iterations
+ * beyond `capacity` are not recorded. */
 typedef struct {
-    int capacity, n; /* room in the arrays, and number of iterations recorded */
-    /* [capacity] step |F f - r|, psi and maximum deflection of the attachments, m */
+    int capacity, n; /* capacity of the arrays, and number of recorded iterations */
+    /* [capacity] step |F f - r|, psi, and maximum deflection of the attachments, m */
     double *step_m, *psi_m, *deflection_max_m;
 } hf_coupling_history;
 
-/* Figures of each iteration of a form-finding. The caller owns the arrays of `capacity` items. Iterations beyond
- * `capacity` are not recorded. */
+/* Figures of each iteration of a form-finding. The caller owns the arrays, which have `capacity` items each. Iterations
+ * beyond `capacity` are not recorded. */
 typedef struct {
-    int capacity, n; /* room in the arrays, and number of iterations recorded */
+    int capacity, n; /* capacity of the arrays, and number of recorded iterations */
     /* [capacity] figures of HF_RESULT_LIST of each iteration */
     double *psi_m, *residual_N, *inner_tension_ratio, *boundary_tension_ratio, *length_error;
     hf_coupling_history coupling; /* history of the coupling */

@@ -1,4 +1,4 @@
-/* run - one whole run, as `hifdm run` does it.
+/* run - executes one complete run, in the same way as `hifdm run`.
  * Stability: stable.
  *
  * Pipeline:
@@ -6,8 +6,8 @@
  *   case -> scene -> model -> form-finding -> search: (generation -> batch -> ranking -> store)* -> refinement
  *        -> load cases -> samples with errors -> result file
  *
- * A run prints nothing and keeps no state outside its arguments. Any number of runs may be active in one process, one
- * after the other or in threads of their own. */
+ * A run prints nothing and keeps no state outside its arguments. One process may execute any number of runs, one after
+ * the other or at the same time in different threads. */
 #ifndef HIFDM_RUN_H
 #define HIFDM_RUN_H
 
@@ -20,73 +20,77 @@
 
 HF_API_BEGIN
 
-#define HF_OUTPUT_SIZE 4096 /* bytes of the path of a result file */
+#define HF_OUTPUT_SIZE 4096 /* size in bytes of the path of a result file */
 
-/* The phases of a run: form-finding, genetic algorithm, Levenberg-Marquardt, samples of as-built nets. */
+/* The phases of a run: form-finding, genetic algorithm, Levenberg-Marquardt and samples of as-built nets. */
 typedef enum { HF_RUN_FORM, HF_RUN_SEARCH, HF_RUN_REFINE, HF_RUN_TOLERANCE } hf_run_phase;
 extern const char *const hf_run_phase_word[4]; /* "form", "optimize", "polish", "tolerance" */
 
-/* The progress of a run. Members that do not belong to the phase are 0; best_psi_m and merit are NaN then. */
+/* The progress of a run. Members that do not belong to the phase are 0, except best_psi_m and merit, which are NaN. */
 typedef struct {
     hf_run_phase phase;          /* phase of the run */
-    int generation, generations; /* search: number of finished generations, and maximum */
+    int generation, generations; /* search: number of finished generations, and maximum number of generations */
     int first_generation;        /* search: first generation that this process evaluates */
     bool is_last;                /* no generation, step or sample will follow */
     long evaluations;            /* evaluations of designs or samples in this phase and process */
-    double best_psi_m;           /* psi of the best design; NaN: no feasible one is known */
+    double best_psi_m;           /* psi of the best design; NaN: no feasible design is known */
     double elapsed_s;            /* time in this phase and process */
-    long samples, samples_all;   /* tolerance: numbers of finished samples, and of all */
-    double sigma_scale; /* tolerance, after all samples: factor of the errors whose yield is determined; else 0 */
-    /* Refinement: number of steps done, and maximum; first step of this process; merit of the best design, NaN if the
-     * merit is psi. best_psi_m is that of the same design. */
+    long samples, samples_all;   /* tolerance: number of finished samples, and number of all samples */
+    /* tolerance, after all samples: scale factor of the errors whose yield is being determined; otherwise 0 */
+    double sigma_scale;
+    /* Refinement: number of finished steps, maximum number of steps, first step of this process, and merit of the best
+     * design. The merit is NaN if it is psi. The member best_psi_m belongs to the same design. */
     int step, max_steps, first_step;
     double merit;
-    /* Refinement of a front, else 0: numbers of its points that are done, and of all; steps of the searches for
-     * them. */
+    /* Refinement of a Pareto front, otherwise 0: number of finished points, number of all points, and steps of the
+     * searches for them. */
     int points, points_all;
     long steps;
 } hf_run_progress;
 
-/* Receives the progress of a run. It is called at the start of the form-finding, of the refinement and of the samples.
- * It is also called after each generation once it is stored, each step of Levenberg-Marquardt, and each block of
- * samples. Only one thread at a time calls it, but not always the same one. */
+/* Receives the progress of a run. The callback is called at the start of the form-finding, of the refinement and of the
+ * samples. The callback is also called after each generation has been stored, after each step of Levenberg-Marquardt,
+ * and after each block of samples. Only one thread at a time calls the callback, but the thread may change. */
 typedef void hf_run_observer(void *context, const hf_run_progress *progress);
 
-/* What a run shall do. All members are borrowed until hf_run_case returns. Every member except case_path may be
- * zero. */
+/* The request that describes a run. All members of the request are borrowed until hf_run_case returns. Every member
+ * except case_path may be zero. */
 typedef struct {
-    const char *case_path;           /* path of the case file; with `source`: a name for messages */
-    const hf_problem_source *source; /* case and net in memory; NULL: they are read from files */
-    const char *const *set;          /* [n_set] overrides "key=value" */
+    const char *case_path;           /* path of the case file; with `source`, a name for messages */
+    const hf_problem_source *source; /* case and net in memory; NULL: the run reads them from files */
+    const char *const *set;          /* [n_set] overrides of the form "key=value" */
     int n_set;                       /* number of overrides */
-    const char *output; /* path of the result file; NULL: name of the case with .h5, in the current folder */
-    const char *point;  /* "FILE:N": point N of the front in this result is the design, without a search; NULL: none */
-    bool no_file;       /* write no file; only the summary is needed */
-    bool of_sweep;      /* run one point of the sweep of the case; false: a case with a section sweep is refused */
-    bool of_tolerance;  /* refuse a case without a section tolerance */
-    /* tasks > 0: compute only the samples of this task, 0 to tasks - 1, without a result file; task -1: combine the
-     * samples of all tasks */
+    const char *output; /* path of the result file; NULL: the name of the case with .h5 in the current folder */
+    /* "FILE:N": point N of the Pareto front in this result file is the design, without a search; NULL: none */
+    const char *point;
+    bool no_file;      /* write no file, because only the summary is needed */
+    bool of_sweep;     /* run one point of the sweep of the case; false: reject a case with a section sweep */
+    bool of_tolerance; /* reject a case without a section tolerance */
+    /* If tasks > 0, the run computes only the samples of this task, 0 to tasks - 1, without a result file. If task is
+     * -1, the run combines the samples of all tasks. */
     int task, tasks;
-    bool restart;      /* start anew, even if the file exists; false: resume an unfinished result of this case */
+    bool restart;      /* start again even if the file exists; false: resume an unfinished result of this case */
     int threads;       /* number of threads; 0: all cores */
     bool has_seed;     /* use `seed` instead of optimize.seed */
     uint64_t seed;     /* seed of the genetic algorithm */
-    int argc;          /* number of arguments of the command line, for the provenance */
-    char *const *argv; /* [argc] arguments of the command line */
-    const volatile sig_atomic_t *stop_requested; /* a flag: *stop_requested != 0 interrupts the run; NULL: never */
-    /* NULL: the result file gets its name before hf_run_case returns. Otherwise *unsettled is set to the store for
-     * which the caller must still call hf_store_settle, in any thread, or to NULL if there is none. */
+    int argc;          /* number of command line arguments, for the provenance */
+    char *const *argv; /* [argc] command line arguments */
+    const volatile sig_atomic_t *stop_requested; /* flag; if *stop_requested != 0, the run is interrupted; NULL: none */
+    /* If this member is NULL, the result file gets its final name before hf_run_case returns. Otherwise *unsettled is
+     * set to the store for which the caller must call hf_store_settle, in any thread. It is set to NULL if there is no
+     * such store. */
     hf_store **unsettled;
-    hf_run_observer *observer; /* receives the progress; NULL: none */
+    hf_run_observer *observer; /* callback that receives the progress; NULL: none */
     void *observer_context;    /* first argument of the observer */
 } hf_run_request;
 
-/* Runs a case and stores its result. `output` receives the path of the result file, "" if none was written. *summary
- * receives the figures.
+/* Runs a case and stores its result. The buffer `output` receives the path of the result file, or "" if no file was
+ * written. The struct *summary receives the figures of the run.
  *
- * Returns HF_OK, or the status of a failure with messages. Under HF_NOT_CONVERGED and HF_NO_FEASIBLE the file is still
- * written. Under HF_INTERRUPTED (*stop_requested was set) the same request resumes the run. A finished result of this
- * case is not computed again; its status is returned. */
+ * Returns HF_OK. On failure returns another status and adds messages. If the status is HF_NOT_CONVERGED or
+ * HF_NO_FEASIBLE, the function still writes the file. If the status is HF_INTERRUPTED because *stop_requested was set,
+ * the same request resumes the run. If a finished result of this case exists, the function does not compute it again
+ * and returns its status. */
 hf_status hf_run_case(const hf_run_request *request, hf_summary *summary, char output[HF_OUTPUT_SIZE],
                       hf_messages *messages);
 

@@ -1,8 +1,8 @@
-/* settings - all settings of the engine, as plain values.
+/* settings - all settings of the library as plain values.
  * Stability: stable.
  *
- * hf_config_load fills them in from a case file, and `hifdm schema` describes their keys. A program may also set them
- * itself. */
+ * hf_config_load sets the values from a case file, and `hifdm schema` describes their keys. A program may also set the
+ * values itself. */
 #ifndef HIFDM_SETTINGS_H
 #define HIFDM_SETTINGS_H
 
@@ -12,88 +12,87 @@
 
 HF_API_BEGIN
 
-/* Choices of a case file, each with its key. `hifdm schema` describes the values.
+/* The following enumerations are choices in a case file, each with its key. `hifdm schema` describes the values.
  *
  * The method of the form-finding (form.method). */
 typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHOD_NEWTON, HF_METHOD_AUTO } hf_method;
-/* The method of the optimisation (optimize.method): X(enumerator, word). HF_OPTIMISER_LIST has a row for each, with the
- * optimiser that it uses. */
+/* The method of the optimisation (optimize.method): X(enumerator, word). HF_OPTIMISER_LIST contains one row for each
+ * method, with the optimiser that it uses. */
 #define HF_OPTIMIZE_METHODS(X) X(GA, "ga") X(LM, "lm") X(GA_LM, "ga+lm")
 #define HF_OPTIMIZE_ENUMERATOR(name, word) HF_OPTIMIZE_##name,
 /* The method of the optimisation (optimize.method). */
 typedef enum { HF_OPTIMIZE_METHODS(HF_OPTIMIZE_ENUMERATOR) HF_OPTIMIZE_N_METHOD } hf_optimize_method;
 #undef HF_OPTIMIZE_ENUMERATOR
-/* Who factors the positive definite matrices of form-finding (form.factor). */
+/* Code that factors the positive definite matrices of form-finding: own code or LAPACK (form.factor). */
 typedef enum { HF_FACTOR_OWN, HF_FACTOR_LAPACK } hf_factor;
 /* The solver of the designs (optimize.solver). */
 typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
-/* Whether tensions are given or computed to hold every node at its target position (form.prestress). */
+/* Tensions are given, or computed so that every node is held at its target position (form.prestress). */
 typedef enum { HF_PRESTRESS_GIVEN, HF_PRESTRESS_EXACT } hf_prestress;
 /* The stopping rule of the form-finding (form.stop). */
 typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
-/* The meaning of the pretension of a boundary cable in a design (optimize.rule, METHOD section 7). */
+/* Meaning of the pretension of a boundary cable in a design (optimize.rule, METHOD section 7). */
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
-/* The scheme that couples net and truss (coupling.scheme, METHOD section 8). */
+/* Scheme that couples net and truss (coupling.scheme, METHOD section 8). */
 typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN, HF_COUPLING_AUTO } hf_coupling_scheme;
-/* Whether Levenberg-Marquardt follows method ga for comparison (optimize.refine). */
+/* Use of Levenberg-Marquardt for comparison after method ga (optimize.refine). */
 typedef enum { HF_REFINE_AUTO, HF_REFINE_TRUE, HF_REFINE_FALSE } hf_refine_choice;
-/* How the genetic algorithm makes children (optimize.variation). */
+/* Method by which the genetic algorithm makes children (optimize.variation). */
 typedef enum { HF_VARIATION_DIFFERENCE, HF_VARIATION_CHAIN } hf_variation;
-/* Which individuals a result file keeps (optimize.store). */
+/* Individuals that a result file keeps (optimize.store). */
 typedef enum { HF_KEEP_ALL, HF_KEEP_BEST, HF_KEEP_EVERY } hf_keep;
 /* The kind of the target surface (surface.kind). */
 typedef enum { HF_SURFACE_AUTO, HF_SURFACE_PARABOLIC_CYLINDER, HF_SURFACE_PARABOLOID } hf_surface_kind;
-/* The mirror planes that link design variables (optimize.symmetry). */
+/* Mirror planes that link design variables (optimize.symmetry). */
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
-/* The quantity that a row of optimize.variables varies for each cable of its set, or for the supports at its cables. */
+/* Quantity that a row of optimize.variables varies, for each cable of its set or for the supports at these cables. */
 typedef enum {
-    HF_VARY_TENSION,           /* tension of a cable, which gets law tension, N */
-    HF_VARY_FORCE_DENSITY,     /* force density of a cable, which gets law force_density, N/m */
-    HF_VARY_LENGTH,            /* length of a cable, which gets law length, m */
+    HF_VARY_TENSION,           /* tension of a cable, N; the cable gets law tension */
+    HF_VARY_FORCE_DENSITY,     /* force density of a cable, N/m; the cable gets law force_density */
+    HF_VARY_LENGTH,            /* length of a cable, m; the cable gets law length */
     HF_VARY_UNSTRESSED_LENGTH, /* unstressed length of a cable of law elastic, m */
     HF_VARY_SUPPORT_Z,         /* displacement of a support along z, m */
     HF_VARY_SUPPORT_NORMAL,    /* displacement of a support along the normal of the target surface, m */
     HF_VARY_SUPPORT_XYZ,       /* displacement of a support along x, y and z: three design variables, m */
-    HF_VARY_PRETENSION         /* pretension of a boundary cable under optimize.rule, N; not in optimize.variables */
+    HF_VARY_PRETENSION /* pretension of a boundary cable under optimize.rule, N; not available in optimize.variables */
 } hf_vary;
-/* The design variables of a row that change by the same step: none, all, or those at mirrored positions
- * (optimize.link). */
+/* Design variables of a row that change by the same step: none, all, or those at mirrored positions (optimize.link). */
 typedef enum { HF_LINK_EACH, HF_LINK_SET, HF_LINK_SYMMETRY } hf_link;
 
-/* The figure that a row of optimize.objective or optimize.front measures. A figure is zero or more, and it is
- * minimised. */
+/* Figure that a row of optimize.objective or optimize.front measures. A figure is at least zero and is minimised. */
 typedef enum {
     HF_FIGURE_PSI,        /* psi: RMS distance of the inner nodes from their target positions, m */
     HF_FIGURE_SURFACE,    /* RMS distance of the inner nodes from the target surface, m */
     HF_FIGURE_FACETS,     /* RMS distance of the facets from the target surface, m */
-    HF_FIGURE_TENSION,    /* RMS difference of tensions from `target` over the set, N */
-    HF_FIGURE_LENGTH,     /* RMS difference of lengths from `target` over the set, m */
-    HF_FIGURE_EVENNESS,   /* standard deviation of the tensions of the set over their mean */
+    HF_FIGURE_TENSION,    /* RMS difference between the tensions of the set and `target`, N */
+    HF_FIGURE_LENGTH,     /* RMS difference between the lengths of the set and `target`, m */
+    HF_FIGURE_EVENNESS,   /* standard deviation of the tensions of the set, divided by their mean */
     HF_FIGURE_PULL,       /* maximum force of the net on a support, N */
     HF_FIGURE_DEFLECTION, /* maximum deflection of the truss at an attachment, m */
-    HF_FIGURE_MASS,       /* mass of the cables of the set at mass_kg_per_m, kg */
-    HF_FIGURE_RATIO,      /* maximum over minimum tension of the set */
-    HF_FIGURE_GAIN        /* square root of the lost part of the gain in the direction of the beam */
+    HF_FIGURE_MASS,       /* mass of the cables of the set for mass_kg_per_m, kg */
+    HF_FIGURE_RATIO,      /* ratio of maximum to minimum tension in the set */
+    HF_FIGURE_GAIN        /* square root of the part of the gain that is lost in the direction of the beam */
 } hf_figure_kind;
-/* The direction in which the distance to a surface is measured. */
+/* Direction in which the distance to a surface is measured. */
 typedef enum { HF_ALONG_NORMAL, HF_ALONG_HALF_PATH } hf_along;
-/* The surface to which the distance is measured: the target surface, or its best fit to the shape. */
+/* Surface to which the distance is measured: the target surface, or its best fit to the shape. */
 typedef enum { HF_FIT_NONE, HF_FIT_BEST } hf_fit;
 
-/* The shapes that an objective is measured on: the design, or samples of the errors of its as-built net. */
+/* Shapes on which an objective is measured: the design, or samples of the errors of its as-built net. */
 typedef enum { HF_OVER_DESIGN, HF_OVER_SAMPLES } hf_over;
-/* The figure of several shapes: the root of the mean of squares, or the maximum. */
+/* Figure that combines several shapes: the root mean square or the maximum. */
 typedef enum { HF_TAKE_MEAN, HF_TAKE_WORST } hf_take;
 
-/* The quantity that a row of optimize.limits bounds. */
+/* Quantity that a row of optimize.limits bounds. */
 typedef enum {
     HF_LIMIT_TENSION,   /* tension of each cable of the set, N */
-    HF_LIMIT_RATIO,     /* maximum over minimum tension of the set */
+    HF_LIMIT_RATIO,     /* ratio of maximum to minimum tension in the set */
     HF_LIMIT_DEFLECTION /* deflection of each attachment, m */
 } hf_limit_kind;
 
-/* The words of the choices in a case file, indexed by the enumerations of this header. The last entry is NULL. */
+/* Words of the choices in a case file, indexed by the enumerations of this header. The last entry of each array is
+ * NULL. */
 extern const char *const hf_method_word[6];
 extern const char *const hf_prestress_word[3];
 extern const char *const hf_stop_rule_word[3];
@@ -114,92 +113,95 @@ extern const char *const hf_coupling_scheme_word[4];
 extern const char *const hf_vary_word[8];
 extern const char *const hf_link_word[4];
 extern const char *const hf_figure_kind_word[12];
-extern const char *const hf_figure_kind_unit[11]; /* units of the figures; "": no dimension */
+extern const char *const hf_figure_kind_unit[11]; /* units of the figures; "": dimensionless */
 extern const char *const hf_along_word[3];
 extern const char *const hf_fit_word[3];
 extern const char *const hf_over_word[3];
 extern const char *const hf_take_word[3];
 extern const char *const hf_limit_word[4];
-extern const char *const hf_adjust_figure_word[4]; /* words of adjust.figure, HF_FIGURE_PSI to HF_FIGURE_FACETS */
+extern const char *const hf_adjust_figure_word[4]; /* words of adjust.figure, from HF_FIGURE_PSI to HF_FIGURE_FACETS */
 
-/* Size of the path of a case, a study or a table of a net or truss, bytes. A longer path is refused. */
+/* Size in bytes of the path of a case, a study, or a table of a net or truss. A longer path is rejected. */
 #define HF_PATH_SIZE 1024
 
-/* The point of a front that a run takes as its result instead of a search. */
+/* Point of a Pareto front that a run uses as its result instead of a search. */
 typedef struct {
-    int point;               /* number of the point, from 1; 0: none is taken */
-    char path[HF_PATH_SIZE]; /* path of the result with the front, as it was given */
-    char sha256[65];         /* digest of the design, hexadecimal */
+    int point;               /* number of the point, counted from 1; 0: no point is used */
+    char path[HF_PATH_SIZE]; /* path of the result file with the front, as the user gave it */
+    char sha256[65];         /* hexadecimal digest of the design */
 } hf_front_origin;
 
-/* The words of hf_distribution, hf_sampling and hf_tolerance_measure in a case file. The last entry is NULL. */
+/* Words of hf_distribution, hf_sampling and hf_tolerance_measure in a case file. The last entry of each array is
+ * NULL. */
 extern const char *const hf_distribution_word[3];
 extern const char *const hf_sampling_word[3];
 extern const char *const hf_tolerance_measure_word[];
 
-#define HF_SET_NAME_SIZE 64 /* bytes of the name of a set of cables with its NUL */
+#define HF_SET_NAME_SIZE 64 /* size in bytes of the name of a set of cables, including its NUL */
 
-/* A row of optimize.variables. Values are in the unit of the quantity that varies. */
+/* One row of optimize.variables. Values are in the unit of the varied quantity. */
 typedef struct {
-    char set[HF_SET_NAME_SIZE]; /* cables: a set, or inner, boundary, all */
-    hf_vary vary;               /* quantity that varies */
+    char set[HF_SET_NAME_SIZE]; /* cables: name of a set, or inner, boundary, all */
+    hf_vary vary;               /* varied quantity */
     double range;               /* maximum change from the value after form-finding; NaN: not given */
-    double range_ratio;         /* maximum change over that value (`range: 30 %`); NaN: not given */
-    double lower, upper;        /* bounds on the value (`bounds`); infinite where none are given */
-    hf_link link;               /* which design variables are linked */
+    double range_ratio;         /* maximum change relative to that value (`range: 30 %`); NaN: not given */
+    double lower, upper;        /* bounds on the value (`bounds`); infinite if not given */
+    hf_link link;               /* design variables that are linked */
 } hf_variable_settings;
 
-/* A row of optimize.objective or optimize.front. Objectives of the latter have no weight. */
+/* One row of optimize.objective or optimize.front. Objectives of optimize.front have no weight. */
 typedef struct {
-    hf_figure_kind figure;      /* figure that is measured */
-    char set[HF_SET_NAME_SIZE]; /* cables of tension, length, evenness, mass, ratio; "": all */
-    double target;        /* target value of tension or length; NaN for length: the lengths at the target positions */
-    double weight;        /* weight of the objective: merit = sqrt(sum (weight * value)^2) */
-    double mass_kg_per_m; /* mass of the cables per length, for mass */
-    hf_along along;       /* direction of the distance, for surface and facets */
-    hf_fit fit;           /* surface of the distance, for surface and facets */
-    char load_case[HF_SET_NAME_SIZE]; /* name of a load case; "all": all of them; "": none */
-    hf_over over;                     /* shapes on which it is measured, without a load case */
-    hf_take take;                     /* figure of several load cases or samples */
-    double quantile;     /* replaces `take` for samples: this part of them has no larger value; 0 or NaN: none */
-    double frequency_Hz; /* frequency, for gain; 0 or NaN: the highest of the surface */
+    hf_figure_kind figure;      /* measured figure */
+    char set[HF_SET_NAME_SIZE]; /* cables of the figures tension, length, evenness, mass and ratio; "": all */
+    double target; /* target value of tension or length; NaN for length: the lengths between the target positions */
+    double weight; /* weight of the objective: merit = sqrt(sum (weight * value)^2) */
+    double mass_kg_per_m; /* mass of the cables per length, for the figure mass */
+    hf_along along;       /* direction of the distance, for the figures surface and facets */
+    hf_fit fit;           /* surface to which the distance is measured, for the figures surface and facets */
+    char load_case[HF_SET_NAME_SIZE]; /* name of a load case; "all": all load cases; "": none */
+    hf_over over;                     /* shapes on which the figure is measured if there is no load case */
+    hf_take take;                     /* figure that combines several load cases or samples */
+    double quantile; /* replaces `take` for samples: share of samples that do not exceed the value; 0 or NaN: none */
+    double frequency_Hz; /* frequency for the figure gain; 0 or NaN: the highest frequency of the surface */
 } hf_objective_settings;
 
-/* A row of optimize.limits. */
+/* One row of optimize.limits. */
 typedef struct {
-    hf_limit_kind figure;       /* quantity that is bounded */
-    char set[HF_SET_NAME_SIZE]; /* cables of tension and ratio; "": all */
-    double lower, upper;        /* bounds on the quantity (`bounds`); infinite where none are given */
+    hf_limit_kind figure;       /* bounded quantity */
+    char set[HF_SET_NAME_SIZE]; /* cables of the quantities tension and ratio; "": all */
+    double lower, upper;        /* bounds on the quantity (`bounds`); infinite if not given */
 } hf_limit_settings;
 
-#define HF_DESIGN_ROWS_MAX 16      /* maximum number of rows of optimize.variables, objective and limits */
+/* maximum number of rows of optimize.variables, of optimize.objective and of optimize.limits */
+#define HF_DESIGN_ROWS_MAX 16
 #define HF_FRONT_OBJECTIVES_MAX 3  /* maximum number of rows of optimize.front */
 #define HF_FRONT_POINTS_MAX 512    /* maximum of optimize.front_points */
-#define HF_OBJECTIVE_NAME_SIZE 112 /* bytes of the name of an objective: "objective_15_deflection_" and a set */
+#define HF_OBJECTIVE_NAME_SIZE 112 /* size in bytes of the name of an objective: "objective_15_deflection_" and a set */
 
-/* The coupling of the net with an elastic truss (section coupling). Without a truss it is not used. */
+/* The coupling of the net with an elastic truss (section coupling). The coupling settings are not used without a
+ * truss. */
 typedef struct {
-    double tof_m;              /* tolerance: no attachment moves farther in an iteration */
+    double tof_m;              /* tolerance: maximum displacement of an attachment in an iteration */
     hf_coupling_scheme scheme; /* scheme of the coupling */
     int max_iterations;        /* maximum number of iterations */
 } hf_coupling_settings;
 
-/* The form-finding (section form) and its coupling. */
+/* Settings of the form-finding (section form) and of its coupling. */
 typedef struct {
     hf_method method;          /* method of the form-finding */
     double pretension_N;       /* pretension Td of cables of law tension without a target value */
-    hf_prestress prestress;    /* whether tensions are given */
+    hf_prestress prestress;    /* tensions are given or computed */
     hf_stop_rule stop;         /* stopping rule */
-    double residual_tolerance; /* rule residual: maximum nodal force out of balance over the reference tension */
+    double residual_tolerance; /* rule residual: maximum residual force of a node, divided by the reference tension */
     double length_tolerance;   /* rule residual: maximum |l/L* - 1| of cables of law length or elastic */
-    double rms_tolerance_m;    /* rule rms_change, the paper's: maximum change of psi in an iteration */
+    double rms_tolerance_m;    /* rule rms_change of the paper: maximum change of psi in an iteration */
     int max_iterations;        /* maximum number of linear solves */
-    double collapse_ratio;     /* minimum length of a cable of law tension over its length at the target positions */
+    double collapse_ratio; /* minimum length of a cable of law tension, divided by its length at the target positions */
     hf_coupling_settings coupling; /* coupling with the truss */
-    hf_factor factor;              /* who factors the matrices */
+    hf_factor factor;              /* code that factors the matrices */
 } hf_form_settings;
 
-/* The optimisation (section optimize). */
+/* Settings of the optimisation (section optimize). */
 typedef struct {
     hf_optimize_method method;            /* algorithms of the optimisation */
     hf_rule rule;                         /* meaning of the pretension of a boundary cable */
@@ -211,22 +213,22 @@ typedef struct {
     uint64_t seed;                        /* seed of the genetic algorithm */
     double crossover_high, crossover_low; /* crossover rates Pc1 and Pc2 (METHOD section 7, M10) */
     double mutation_high, mutation_low;   /* mutation rates Pm1 and Pm2 (METHOD section 7, M10) */
-    hf_variation variation;               /* how the genetic algorithm makes children */
-    int elites; /* number of best individuals; chain: survive unchanged, difference: are moved by crossovers */
-    double stagnation_tolerance_m;       /* the generations end if the best merit improves by less than this */
-    int stagnation_generations;          /* number of generations over which the improvement is measured */
+    hf_variation variation;               /* method by which the genetic algorithm makes children */
+    int elites; /* number of best individuals; chain: they survive unchanged; difference: crossovers move them */
+    double stagnation_tolerance_m;       /* the generations end if the best merit improves by less than this value */
+    int stagnation_generations;          /* number of generations over which this improvement is measured */
     int refine_steps;                    /* maximum number of steps of Levenberg-Marquardt */
-    hf_refine_choice refine;             /* whether Levenberg-Marquardt follows method ga for comparison */
+    hf_refine_choice refine;             /* use of Levenberg-Marquardt for comparison after method ga */
     hf_symmetry symmetry;                /* mirror planes that link design variables */
-    hf_keep store;                       /* which individuals a result file keeps */
-    int store_every;                     /* HF_KEEP_EVERY: generations 0, n, 2n, ... are kept */
-    int n_variable_row, n_term, n_limit; /* numbers of rows; without rows: boundary pretensions, psi, no limits */
+    hf_keep store;                       /* individuals that a result file keeps */
+    int store_every;                     /* HF_KEEP_EVERY: the file keeps generations 0, n, 2n, ... */
+    int n_variable_row, n_term, n_limit; /* numbers of rows; without rows: boundary pretensions, psi and no limits */
     hf_variable_settings variable_row[HF_DESIGN_ROWS_MAX]; /* [n_variable_row] rows of optimize.variables */
     hf_objective_settings term[HF_DESIGN_ROWS_MAX];        /* [n_term] rows of optimize.objective */
     hf_limit_settings limit[HF_DESIGN_ROWS_MAX];           /* [n_limit] rows of optimize.limits */
-    int n_front; /* number of rows of optimize.front: 0, or 2 or 3 for a front */
+    int n_front; /* number of rows of optimize.front: 0, or 2 or 3 for a Pareto front */
     hf_objective_settings front[HF_FRONT_OBJECTIVES_MAX]; /* [n_front] rows of optimize.front */
-    int front_points; /* number of points of a front that Levenberg-Marquardt finds */
+    int front_points; /* number of points of a Pareto front that Levenberg-Marquardt computes */
     int samples;      /* number of random samples for objectives that are measured on samples */
 } hf_optimize_settings;
 
@@ -236,38 +238,38 @@ bool hf_objective_takes_load_cases(const hf_objective_settings *settings);
 /* Returns true if an objective is measured on samples of as-built nets. */
 bool hf_optimize_takes_samples(const hf_optimize_settings *settings);
 
-/* A row of `cables`: the material of the cables of a set. NaN: not given. */
+/* One row of `cables`, the material of the cables of a set. NaN means that a value is not given. */
 typedef struct {
-    char set[HF_SET_NAME_SIZE];            /* cables: a set, or inner, boundary, all */
-    double expansion_per_K, mass_kg_per_m; /* thermal expansion; mass per unstressed length */
+    char set[HF_SET_NAME_SIZE];            /* cables: name of a set, or inner, boundary, all */
+    double expansion_per_K, mass_kg_per_m; /* thermal expansion, and mass per unstressed length */
 } hf_cable_settings;
 
-/* The nodes to which a row applies: all, or those of a role. */
+/* Nodes to which a row applies: all nodes, or the nodes of one role. */
 typedef enum { HF_NODES_ALL, HF_NODES_SUPPORT, HF_NODES_INNER, HF_NODES_EDGE } hf_nodes;
 
-/* A row of `nodes`: a mass at nodes. */
+/* One row of `nodes`, a mass at nodes. */
 typedef struct {
-    hf_nodes role;  /* the nodes */
+    hf_nodes role;  /* nodes that have the mass */
     double mass_kg; /* mass of each node */
 } hf_node_settings;
 
-#define HF_MATERIAL_ROWS_MAX 16 /* maximum number of rows of `cables`, and of `nodes` */
+#define HF_MATERIAL_ROWS_MAX 16 /* maximum number of rows of `cables` and of `nodes` */
 
-/* The part that has the temperature of a row of `load_cases`: everything, all cables, the truss, or from HF_PART_UNIT
- * on the truss members of a unit, in the order of hf_unit. */
+/* Part that has the temperature of a row of `load_cases`: everything, all cables, or the truss. From HF_PART_UNIT on,
+ * the part consists of the truss members of one unit, in the order of hf_unit. */
 typedef enum { HF_PART_ALL, HF_PART_NET, HF_PART_TRUSS, HF_PART_UNIT } hf_part;
 
-/* A row of `load_cases`; rows with the same name make up one load case. NaN: a number is not given. */
+/* One row of `load_cases`. Rows with the same name form one load case. NaN means that a number is not given. */
 typedef struct {
-    char name[HF_SET_NAME_SIZE];      /* name of the load case */
-    char set[HF_SET_NAME_SIZE];       /* cables that have the temperature; "": the part has it */
-    hf_part part;                     /* part that has the temperature */
-    double temperature_K;             /* difference from the temperature at which the net was cut and the truss made */
-    double gradient_K_per_m[3];       /* addition to the temperature, in proportion to the position, 0 at the origin */
-    double gravity_m_per_s2;          /* acceleration of gravity */
-    double direction[3];              /* direction of gravity; default: -z */
-    hf_nodes role;                    /* nodes on which force_N acts */
-    double force_N[3];                /* force on each of these nodes */
+    char name[HF_SET_NAME_SIZE]; /* name of the load case */
+    char set[HF_SET_NAME_SIZE];  /* cables that have the temperature; "": the part has the temperature */
+    hf_part part;                /* part that has the temperature */
+    double temperature_K;        /* difference from the temperature at which the net was cut and the truss was made */
+    double gradient_K_per_m[3];  /* increase of the temperature in proportion to the position; 0 at the origin */
+    double gravity_m_per_s2;     /* gravitational acceleration */
+    double direction[3];         /* direction of gravity; default: -z */
+    hf_nodes role;               /* nodes on which force_N acts */
+    double force_N[3];           /* force on each of these nodes */
     double support_displacement_m[3]; /* displacement of all supports */
     char nodes_path[HF_PATH_SIZE];    /* table of forces and displacements by node; "": none */
 } hf_load_case_settings;
@@ -283,38 +285,38 @@ typedef struct {
     hf_load_case_settings load_case[HF_LOAD_CASE_ROWS_MAX]; /* [n_load_case] rows of `load_cases` */
 } hf_built_settings;
 
-/* The positions from which psi is measured when an as-built net is adjusted: the target positions, or those of the
+/* Positions from which psi is measured when an as-built net is adjusted: the target positions, or the positions of the
  * design. */
 typedef enum { HF_AIM_THEORY, HF_AIM_DESIGN } hf_aim;
 extern const char *const hf_aim_word[3]; /* the last entry is NULL */
 
-/* The turnbuckles of an as-built net (section adjust). Some cables of a set are adjusted by whole steps within a range,
- * so that the figure of the net becomes small again. */
+/* Settings of the turnbuckles of an as-built net (section adjust). Some cables of a set are adjusted by whole steps
+ * within a range to reduce the figure of the net. */
 typedef struct {
-    char set[HF_SET_NAME_SIZE]; /* cables with turnbuckles: a set, or inner, boundary, all */
-    double range_m, step_m;     /* maximum change of the cut length either way; step */
-    int max_adjustments;        /* maximum number of cables that are adjusted */
-    double target_m;            /* no further cable is adjusted once the figure is below this */
+    char set[HF_SET_NAME_SIZE]; /* cables with turnbuckles: name of a set, or inner, boundary, all */
+    double range_m, step_m;     /* maximum change of the cut length in either direction, and step */
+    int max_adjustments;        /* maximum number of adjusted cables */
+    double target_m;            /* no further cable is adjusted if the figure is below this value */
     hf_figure_kind figure;      /* HF_FIGURE_PSI, HF_FIGURE_SURFACE or HF_FIGURE_FACETS */
     hf_aim aim;                 /* positions from which psi is measured */
-    double sigma_m;             /* standard deviation of measured coordinates without their own; 0: not given */
+    double sigma_m; /* standard deviation of measured coordinates that have none of their own; 0: not given */
 } hf_adjust_settings;
 
-/* The distribution of errors, and how samples of them are chosen. */
+/* Distribution of errors, and method by which samples of the errors are chosen. */
 typedef enum { HF_DISTRIBUTION_NORMAL, HF_DISTRIBUTION_UNIFORM } hf_distribution;
 typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
 
 /* X(name, word, unit, condition, description): the measures of each sample of the as-built net. Case files and result
- * files contain the words. A measure exists under its condition:
+ * files contain the words. A measure exists if its condition is met:
  *
  *   ALWAYS       always
  *   SURFACE      with a section surface
- *   FACETS       with a section surface, if the net has facets
+ *   FACETS       with a section surface if the net has facets
  *   LOSS         with frequencies of the surface
- *   FACET_LOSS   with frequencies, if the net has facets
- *   PATTERN      with a section surface.pattern, if the net has facets
+ *   FACET_LOSS   with frequencies if the net has facets
+ *   PATTERN      with a section surface.pattern if the net has facets
  *
- * The losses are in the order of the half-path errors from which they follow. */
+ * The losses have the same order as the half-path errors from which they are computed. */
 #define HF_TOLERANCE_MEASURES(X)                                                                                       \
     X(PSI, "psi_m", "m", ALWAYS, "RMS distance of the inner nodes to their target positions")                          \
     X(HALF_PATH, "half_path_rms_m", "m", SURFACE, "of the inner nodes to the target surface")                          \
@@ -333,19 +335,19 @@ typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
     X(LOOSE, "n_loose", "", ALWAYS, "nodes that no taut cable holds")
 
 #define HF_TOLERANCE_ENUMERATOR(name, word, unit, condition, description) HF_TOLERANCE_##name,
-/* A measure of a sample. */
+/* One measure of a sample. */
 typedef enum { HF_TOLERANCE_MEASURES(HF_TOLERANCE_ENUMERATOR) HF_TOLERANCE_N_MEASURE } hf_tolerance_measure;
 #undef HF_TOLERANCE_ENUMERATOR
 
-/* A row of tolerance.require: bounds on a measure. */
+/* One row of tolerance.require, which bounds a measure. */
 typedef struct {
-    hf_tolerance_measure measure; /* the measure */
-    double at_most, at_least;     /* bounds in its unit; NaN: not given */
+    hf_tolerance_measure measure; /* bounded measure */
+    double at_most, at_least;     /* bounds in the unit of the measure; NaN: not given */
 } hf_require_settings;
 
 #define HF_REQUIRE_ROWS_MAX 8 /* maximum number of rows of tolerance.require */
 
-/* A row of tolerance.truss: an error of the temperature that all members of a part share. */
+/* One row of tolerance.truss, an error of the temperature that all members of a part have in common. */
 typedef struct {
     int part;                   /* 0: the whole truss; 1 + k: the members of hf_unit k */
     double sigma_temperature_K; /* standard deviation of the temperature */
@@ -353,60 +355,62 @@ typedef struct {
 
 #define HF_TRUSS_HEAT_ROWS_MAX 8 /* maximum number of rows of tolerance.truss, one for each part */
 
-/* Errors of the as-built net (section tolerance). They are standard deviations, whatever the distribution. */
+/* Errors of the as-built net (section tolerance). The errors are standard deviations for every distribution. */
 typedef struct {
-    double sigma_cut_m, sigma_cut_ratio; /* errors of cut lengths: absolute, and relative to the length */
+    double sigma_cut_m, sigma_cut_ratio; /* errors of cut lengths: absolute value, and value relative to the length */
     double sigma_support_m;              /* error of each coordinate of a support */
-    double sigma_EA_ratio;               /* error of EA, relative to EA */
+    double sigma_EA_ratio;               /* error of EA relative to EA */
     double sigma_temperature_K;          /* error of the temperature, which is the same for all cables */
     hf_distribution distribution;        /* distribution of the errors */
-    double batch;           /* correlation of the relative errors of length, and of those of EA, within a spool */
-    int samples;            /* number of samples */
-    uint64_t seed;          /* seed of the random numbers */
-    hf_sampling sampling;   /* how samples are chosen */
-    double required_yield;  /* required share of samples that meet the requirements; 0: none */
+    double batch;         /* correlation of the relative length errors, and of the relative EA errors, within a spool */
+    int samples;          /* number of samples */
+    uint64_t seed;        /* seed of the random numbers */
+    hf_sampling sampling; /* method by which samples are chosen */
+    double required_yield;  /* required share of samples that meet the requirements; 0: no share is required */
     int n_require, n_truss; /* numbers of rows */
     hf_require_settings require[HF_REQUIRE_ROWS_MAX];     /* [n_require] rows of tolerance.require */
     hf_truss_heat_settings truss[HF_TRUSS_HEAT_ROWS_MAX]; /* [n_truss] rows of tolerance.truss */
 } hf_tolerance_settings;
 
-#define HF_LIST_MAX 32 /* maximum number of values of a list */
+#define HF_LIST_MAX 32 /* maximum number of values in a list */
 
-/* A list of numbers of a case file. */
+/* A list of numbers in a case file. */
 typedef struct {
     int n;                     /* number of values */
     double value[HF_LIST_MAX]; /* [n] the values */
 } hf_double_list;
 
-/* What illuminates the reflector. HF_FEED_AUTO stands for a line over a cylinder and a point otherwise. */
+/* Feed that illuminates the reflector. HF_FEED_AUTO selects a line feed for a cylinder and a point feed for other
+ * surfaces. */
 typedef enum { HF_FEED_AUTO, HF_FEED_POINT, HF_FEED_LINE, HF_FEED_PLANE_WAVE } hf_feed_kind;
-/* The polarisation of the field of the feed on its axis. */
+/* Polarisation of the field of the feed on its axis. */
 typedef enum { HF_POLARISATION_X, HF_POLARISATION_Y } hf_polarisation;
 
 #define HF_PATTERN_CUTS 8 /* maximum number of cuts */
 
-/* The far field of the reflector (section surface.pattern, see pattern.h). NaN in the feed: the default that follows
- * from the target surface. */
+/* Far field of the reflector (section surface.pattern, see pattern.h). If a value of the feed is NaN, its default
+ * follows from the target surface. */
 typedef struct {
-    double theta_deg[2];            /* first and last angle of each cut from +z */
-    int n_theta;                    /* number of angles, at even steps */
-    hf_double_list phi_deg;         /* angle of each cut from +x, at most HF_PATTERN_CUTS */
-    hf_feed_kind feed;              /* kind of the feed */
-    double position_m[3], aim_m[3]; /* position of the feed, and point at which it looks; a line runs along y */
-    double cos_power;               /* q: the field is cos^q of the angle from the axis */
-    hf_polarisation polarisation;   /* polarisation of the feed */
+    double theta_deg[2];    /* first and last angle of each cut, measured from +z */
+    int n_theta;            /* number of angles, at equal steps */
+    hf_double_list phi_deg; /* angle of each cut, measured from +x; at most HF_PATTERN_CUTS angles */
+    hf_feed_kind feed;      /* kind of the feed */
+    /* position of the feed, and point to which it is directed; a line feed runs along y */
+    double position_m[3], aim_m[3];
+    double cos_power;             /* exponent q: the field is cos^q of the angle from the axis */
+    hf_polarisation polarisation; /* polarisation of the feed */
 } hf_pattern_settings;
 
-/* The reflecting surface (section surface): the parabolic cylinder z = x^2/(4f) along y, or the paraboloid
- * z = (x^2 + y^2)/(4f). */
+/* Reflecting surface (section surface). It is the parabolic cylinder z = x^2/(4f) along y or the paraboloid z = (x^2 +
+ * y^2)/(4f). */
 typedef struct {
-    double focal_length_m;         /* focal length f; 0: no measures of the surface are computed */
+    double focal_length_m;         /* focal length f; 0: the surface is not measured */
     double strip_width_m;          /* width of the flat strips along y that make up the surface; 0: unknown */
-    hf_double_list frequencies_Hz; /* frequencies of the losses and of the far field */
+    hf_double_list frequencies_Hz; /* frequencies of the gain losses and of the far field */
     double mesh_tension_N_per_m;   /* tension of the mesh in all directions; 0: unknown */
-    hf_surface_kind kind;          /* HF_SURFACE_AUTO only in a case, until hf_config_surface determines the kind */
-    bool has_pattern;              /* the far field is computed */
-    hf_pattern_settings pattern;   /* the far field */
+    hf_surface_kind kind;        /* kind of the surface; HF_SURFACE_AUTO until hf_config_surface determines the kind */
+    bool has_pattern;            /* true: the far field is computed */
+    hf_pattern_settings pattern; /* settings of the far field */
 } hf_surface_settings;
 
 HF_API_END

@@ -1,9 +1,9 @@
-/* status - result codes with their texts and exit codes from one list, and messages for the user.
+/* status - a list of result codes with their texts and exit statuses, and messages for the user.
  * Stability: stable.
  *
- * There are three classes of errors. A programming error fails an assert. A design without a shape gets a status, its
- * numbers are NaN, and the batch continues. A run that fails returns a status and messages to its caller; the library
- * never prints and never exits. */
+ * The library distinguishes three classes of errors. A programming error fails an assert. A design without a shape gets
+ * a status and its numbers are NaN. The batch continues. A run that fails returns a status and messages to its caller.
+ * The library never prints and never exits. */
 #ifndef HIFDM_STATUS_H
 #define HIFDM_STATUS_H
 
@@ -13,12 +13,12 @@
 
 HF_API_BEGIN
 
-/* X(name, value, word stored in files, ...), where ... are fields by their names:
+/* X(name, value, word stored in files, ...), where ... are the following designated members:
  *
- *   .exit_code   exit code of the program
- *   .text        sentence for the user
+ *   .exit_code   exit status of the program
+ *   .text        text for the user
  *
- * HDF5 files contain the values; never renumber them. The glossary explains each word. */
+ * HDF5 files contain the values, so never renumber them. The glossary explains each word. */
 #define HF_STATUS_LIST(X)                                                                                              \
     X(OK, 0, "ok", .exit_code = 0, .text = "done")                                                                     \
     X(NOT_CONVERGED, 1, "not_converged", .exit_code = 3,                                                               \
@@ -48,59 +48,63 @@ HF_API_BEGIN
     X(DIFFERENT, 34, "different", .exit_code = 1, .text = "the files differ")                                          \
     X(INTERRUPTED, 33, "interrupted", .exit_code = 75, .text = "told to stop before the end")
 
-/* A result code; HF_OK is 0. */
+/* A result code. HF_OK is 0. */
 typedef enum {
 #define HF_STATUS_ENUM(name, value, ...) HF_##name = value,
     HF_STATUS_LIST(HF_STATUS_ENUM)
 #undef HF_STATUS_ENUM
 } hf_status;
 
-/* Returns the word of a status as files contain it, a constant string; "unknown" for a value that is not listed. */
+/* Returns the word of a status, as used in files, as a constant string. Returns "unknown" for a value that is not in
+ * the list. */
 const char *hf_status_word(hf_status status);
-/* Returns the status of a word; HF_IO for a word that is not listed, as another version may store. */
+/* Returns the status of a word. Returns HF_IO for a word that is not in the list, because another version may store
+ * such a word. */
 hf_status hf_status_of_word(const char *word);
-/* Returns the status as a sentence, a constant string; "unknown status" for a value that is not listed. */
+/* Returns the status as a text for the user, a constant string. Returns "unknown status" for a value that is not in the
+ * list. */
 const char *hf_status_text(hf_status status);
-/* Returns the exit status of the program:
+/* Returns the exit status of the program for a status:
  *
  *   0    done
  *   1    two files differ
- *   2    wrong usage, or errors in the case
- *   3    not converged, not evaluated, no feasible design, or failed points of a sweep
- *   4    ill-posed: the net or the truss has no shape, or the design breaks a constraint
- *   5    input or output failed, out of memory, or LAPACK is missing
+ *   2    wrong usage or errors in the case
+ *   3    not converged, not evaluated, no feasible design, or failed points in a sweep
+ *   4    ill-posed: the net or the truss has no shape, or the design violates a constraint
+ *   5    input or output failed, memory ran out, or LAPACK is missing
  *   75   interrupted before the end */
 int hf_status_exit_code(hf_status status);
 
-/* Returns true if a design with this status has a shape: it is feasible, or infeasible only because it breaks a
- * constraint. */
+/* Returns true if a design with this status has a shape. Such a design is feasible, or it is infeasible only because it
+ * violates a constraint. */
 static inline bool hf_status_has_shape(hf_status status)
 {
     return status == HF_OK || status == HF_RATIO_CAP || status == HF_OUT_OF_LIMITS;
 }
 
-/* Evaluates `expression` once and returns its status from the calling function unless it is HF_OK. */
+/* Evaluates `expression` once. If its status is not HF_OK, the calling function returns this status. */
 #define HF_TRY(expression)                                                                                             \
     do {                                                                                                               \
         hf_status hf_try_status_ = (expression);                                                                       \
         if (hf_try_status_ != HF_OK) return hf_try_status_;                                                            \
     } while (0)
 
-/* Finds the location of a key of a case: writes "case.yaml:7:3: optimize.objective.0.set", for example, into
- * text[size]. */
+/* Finds the location of a key of a case and writes it to text[size]. An example is "case.yaml:7:3:
+ * optimize.objective.0.set". */
 typedef void hf_location_find(const void *context, const char *key, char *text, size_t size);
 
-/* A growing list of messages for the user. Initialise it to zero and call hf_messages_free at the end. When memory runs
- * out, lines are lost, but the counts remain correct. */
+/* A list of messages for the user, which grows as needed. Initialise the list to zero and call hf_messages_free at the
+ * end. If memory runs out, lines are lost, but the counts remain correct. */
 typedef struct {
-    char *text;                      /* lines that end with '\n'; NULL: there are none */
-    size_t length, capacity;         /* bytes in use and allocated */
-    int n_error, n_warning;          /* numbers of errors and warnings */
-    hf_location_find *find_location; /* finds the location of keys in messages; NULL: messages contain the key alone */
-    const void *location_context;    /* first argument of find_location; borrowed */
+    char *text;              /* lines, each ending with '\n'; NULL: there are none */
+    size_t length, capacity; /* numbers of bytes used and allocated */
+    int n_error, n_warning;  /* numbers of errors and warnings */
+    /* callback that finds the location of a key in a message; NULL: messages contain only the key */
+    hf_location_find *find_location;
+    const void *location_context; /* first argument of find_location; borrowed */
 } hf_messages;
 
-#define HF_LOCATION_SIZE 1280 /* room for a path, a line, a column and a key */
+#define HF_LOCATION_SIZE 1280 /* size for a path, a line, a column and a key */
 
 #if defined(__GNUC__)
 #define HF_PRINTF(format_index, first) __attribute__((format(printf, format_index, first)))
@@ -108,16 +112,17 @@ typedef struct {
 #define HF_PRINTF(format_index, first)
 #endif
 
-/* Appends the line "error: ..." and returns `code`, so that a caller can `return hf_error(...)`. The format is that of
- * printf. */
+/* Appends the line "error: ..." and returns `code`. A caller can therefore write `return hf_error(...)`. The argument
+ * `format` is a printf format. */
 hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...) HF_PRINTF(3, 4);
-/* Appends the line "warning: ...". The format is that of printf. */
+/* Appends the line "warning: ...". The argument `format` is a printf format. */
 void hf_warning(hf_messages *messages, const char *format, ...) HF_PRINTF(2, 3);
-/* Writes the location of a key, with which a message begins: "case.yaml:7:3: optimize.objective.0.set", or the key
- * alone if its location is unknown. The format of the key is that of printf. Returns text. */
+/* Writes the location of a key to `text`, for the beginning of a message. An example is "case.yaml:7:3:
+ * optimize.objective.0.set". If the location is unknown, the text is the key alone. The argument `key_format` is a
+ * printf format. Returns the argument `text`. */
 const char *hf_messages_location(const hf_messages *messages, char text[HF_LOCATION_SIZE], const char *key_format, ...)
     HF_PRINTF(3, 4);
-/* Frees all lines; the list can be used again. */
+/* Frees all lines. The list can then be used again. */
 void hf_messages_free(hf_messages *messages);
 
 HF_API_END
