@@ -1,20 +1,22 @@
-/* store - one HDF5 file per run, with a journal beside it while the run is unfinished.
+/* store - one HDF5 file per run, and a journal beside it while the run is unfinished.
  * Stability: stable.
  *
- * The file is written under a temporary name and renamed when it is complete, so the visible file is always complete.
- * The journal holds what the file does not hold yet. `show`, `report` and `export` read the file. Pipeline of a run:
+ * hifdm writes the file under a temporary name and renames it when it is complete. The visible file is therefore always
+ * complete. The journal holds the results that are not yet in the file. The commands `show`, `report` and `export` read
+ * the file. Pipeline of a run:
  *
  *   hf_store_create or hf_store_resume       provenance, case, scene
  *   hf_store_form                            shape of the form-finding
  *   hf_store_variables, hf_store_generation  search; hf_store_publish between the generations
  *   hf_store_shape, hf_store_front, ...      shapes and results of the later stages
- *   hf_store_finish                          summary; the file gets its name
+ *   hf_store_finish                          summary; the file gets its final name
  *
- * Layout of the file, for n nodes, m cables, k design variables. Every data set has the attributes `units` ("": no
- * dimension) and `description`. Role, group, law, status and the like are HDF5 enumerations. Texts are UTF-8. Texts
- * that hifdm reads back have a fixed length, because HDF5 1.10 crashes on damaged texts of variable length: provenance,
- * title, warnings, case_path, ids, names. The others have a variable length. Times, threads and host are attributes
- * only, so the data sets of two runs of the same case are equal.
+ * The layout of the file follows, for n nodes, m cables and k design variables. Every data set has the attributes
+ * `units` ("": dimensionless) and `description`. Roles, groups, laws, statuses and similar values are HDF5
+ * enumerations. All texts are encoded in UTF-8. Texts that hifdm reads back have a fixed length, because HDF5 1.10
+ * crashes on damaged texts of variable length. These texts are provenance, title, warnings, case_path, ids and names.
+ * All other texts have a variable length. Times, threads and host are stored only as attributes, so the data sets of
+ * two runs of the same case are equal.
  *
  *   /            attributes: program ("hifdm"), format_version (3), version, git_describe, compiler, build_flags,
  *                hdf5_version, gsl_version, lapack, rng, host, argv[], started_utc, published_utc, finished_utc, title,
@@ -23,7 +25,7 @@
  *                sessions, resumed_utc, resumed_host, resumed_version (of the last one); under Slurm slurm_job_id,
  *                slurm_array_job_id, slurm_array_task_id, slurm_restart_count
  *   /case        text, overrides; attributes sha256, case_path; front_point, front_file, front_design_sha256 if the
- *                result is a point of the front in that file
+ *                result is a point of the Pareto front in that file
  *   /scene/node  id [n], position_m [n][3] (target positions), role [n]; load_N [n][3] if there are loads
  *   /scene/cable id, group, law, target, length_m (between target positions) [m], end [m][2]; EA_N [m] if any is given
  *   /scene/set   if there are named sets of cables: name [s], start [s + 1] of s sets, cable (index into /scene/cable)
@@ -33,7 +35,7 @@
  *                attributes: version, HF_SUMMARY_FORM_LIST, HF_RESULT_LIST, wall_s
  *   /form/history  after each of i iterations or steps: psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio,
  *                length_error [i]
- *   /coupling    with a truss of a attachments: node [a], displacement_m, force_N [a][3] after form-finding;
+ *   /coupling    with a truss that has a attachments: node [a], displacement_m, force_N [a][3] after form-finding;
  *                history/step_m, psi_m, deflection_max_m [iterations]; attributes: HF_COUPLING_LIST
  *   /variable    of a run with a search: cable (index into /scene/cable), group (number of its chain), initial, lower,
  *                upper [k]; leader [k] with a symmetry; with optimize.variables also row (of optimize.variables), node
@@ -49,7 +51,7 @@
  *                of the best individual, [g][1]; with every and store_every r, those of generations 0, r, 2r, ...
  *   /search/population/last  with best and every, the arrays of the last generation [1][p]; attributes n_evaluation,
  *                n_evaluation_infeasible, n_evaluation_above_cap of all generations
- *   /refine      shape of the refinement, or of the point of a front that was taken, as in /search; attributes:
+ *   /refine      shape of the refinement, or of the selected point of a front, as in /search; attributes:
  *                algorithm ("lm"), HF_SUMMARY_REFINE_LIST, HF_RESULT_LIST, wall_s; with a truss coupling_...
  *   /refine_state  of a run that was interrupted in its refinement: time and state, opaque numbers
  *   /surface     with a section surface: attributes kind, focal_length_m, strip_width_m, mesh_tension_N_per_m;
@@ -84,8 +86,8 @@
  *   /VTKHDF      of a finished run: its shapes as a grid that ParaView opens, linked to the data sets above; the list
  *                of its arrays is at the top of src/store/vtkhdf.h
  *
- * hifdm also reads files of version 0.2. A finished file has the names of version 0.2 as well, as soft links and as
- * copies of attributes (src/manual/renames.md). Version 0.4 will not write them. */
+ * hifdm also reads files of version 0.2. A finished file also contains the names of version 0.2, as soft links and as
+ * copies of attributes (src/manual/renames.md). Version 0.4 will no longer write the names of version 0.2. */
 #ifndef HIFDM_STORE_H
 #define HIFDM_STORE_H
 
@@ -98,189 +100,201 @@
 
 HF_API_BEGIN
 
-/* The file of a run that is being written. A store belongs to one thread at a time. */
+/* The file of a run that is being written. Only one thread at a time may use a store. */
 typedef struct hf_store hf_store;
 
-/* Several threads may call the functions of this header at once. A store is used by one of them at a time; functions
- * that read may be called freely. The calls wait for each other, because HDF5 works for one thread at a time. */
+/* Several threads may call the functions of this header at the same time. Each store must be used by only one of these
+ * threads at a time. The functions that read may be called without this restriction. The calls wait for each other
+ * because HDF5 works for one thread at a time. */
 
-/* Groups of the shapes in a file: "/form", "/search", "/refine", "/". */
+/* HDF5 groups of the shapes in a file: "/form", "/search", "/refine", "/". */
 extern const char *const hf_stage_group[HF_N_STAGE + 1];
 
 /* Returns the stage whose shape is the result of a finished run. */
 hf_stage hf_store_result_stage(const hf_summary *summary);
 
-/* Computes the identity of a run: 64 hexadecimal digits and a NUL. It is a digest of text and overrides of the case,
- * the seed, the scene and the truss (NULL: none) with their ids, the tables of load cases, and the point of a front
- * that was taken. Returns HF_OK or HF_NO_MEMORY. */
+/* Computes the identity of a run as 64 hexadecimal digits and a NUL. The identity is a digest of the text and overrides
+ * of the case, the seed, the tables of load cases, and the selected point of a front. It also includes the scene and
+ * the truss with their ids. The argument `truss` is NULL if there is no truss. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, const hf_truss *truss, char identity[65]);
 
-/* What exists at a path. */
+/* Kind of object that exists at a path. */
 typedef enum { HF_STORE_NOTHING, HF_STORE_UNFINISHED, HF_STORE_FINISHED } hf_store_state;
 
-/* Determines what exists at `path`: nothing, or an unfinished or finished result of this case, scene and truss. Returns
- * HF_OK; HF_EXISTS for anything else, with a message that names the keys in which the cases differ; HF_IO;
- * HF_NO_MEMORY. */
+/* Determines whether `path` holds nothing, an unfinished result, or a finished result. The result must be one of this
+ * case, scene and truss. Returns HF_OK, HF_IO or HF_NO_MEMORY. Returns HF_EXISTS if the path holds anything else. The
+ * message then lists the keys in which the cases differ. */
 hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
                         hf_store_state *state, hf_messages *messages);
 
-/* Begins the file of a new run and writes case, scene and provenance. argv [argc] goes into the provenance; argc may be
- * 0. Nothing is borrowed. The name `path` is checked now, not only at the end. Returns HF_OK; HF_EXISTS if it is in use
- * and `restart` is false; HF_IO if it is a folder or another process is writing it, if its folder does not exist or is
- * not writable, or if the file cannot be made; HF_NO_MEMORY. After a failure *store is NULL. */
+/* Creates the file of a new run and writes case, scene and provenance. The arguments argv [argc] are part of the
+ * provenance, and argc may be 0. The store borrows none of the arguments. The function checks the name `path` at the
+ * beginning of the run, before results are computed. Returns HF_OK or HF_NO_MEMORY. Returns HF_EXISTS if the name is in
+ * use and `restart` is false. Returns HF_IO if the name is a folder, if another process writes the file, if the folder
+ * does not exist or is not writable, or if the file cannot be created. After a failure of this function, *store is
+ * NULL. */
 hf_status hf_store_create(const char *path, bool restart, const hf_case *settings, const hf_scene *scene,
                           const hf_truss *truss, int argc, char *const *argv, hf_store **store, hf_messages *messages);
 
-/* Opens the unfinished file at `path` to resume its run. Returns HF_OK; HF_EXISTS if it is finished; HF_IO;
- * HF_NO_MEMORY. After a failure *store is NULL, and the file is unchanged. */
+/* Opens the unfinished file at `path` to resume its run. Returns HF_OK, HF_IO or HF_NO_MEMORY. Returns HF_EXISTS if the
+ * file is finished. After a failure, *store is NULL and the file is unchanged. */
 hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages);
 
-/* Adds the generations of the journal to the unfinished file at `path` without further computation, and reads its
- * summary. A finished file is unchanged, and a warning says so. Returns the same status as hf_store_resume, and
- * HF_EXISTS if this build proposes other designs than those to which the results in the journal belong. */
+/* Adds the generations of the journal to the unfinished file at `path` and reads the summary of the file. The function
+ * computes no further results. If the file is finished, it remains unchanged, and the function adds a warning. Returns
+ * the same status codes as hf_store_resume. Also returns HF_EXISTS if this build proposes other designs than the build
+ * that wrote the journal. */
 hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages);
 
 /* Returns the number of generations in the store, including those in the journal. */
 int hf_store_generations(const hf_store *store);
 
-/* The functions that write return HF_OK, HF_IO or HF_NO_MEMORY, with a message. After a failure the store cannot be
- * used any more: later calls write nothing and return the same status. They add no message, except hf_store_complete.
- * With store == NULL they write nothing and return HF_OK. */
+/* All functions that write return HF_OK, HF_IO or HF_NO_MEMORY, and add a message after a failure. After a failure the
+ * store is unusable. Later calls write nothing and return the same status. Later calls add no message, except
+ * hf_store_complete. If store is NULL, these functions write nothing and return HF_OK. */
 
-/* Writes the shape in the workspace in the order of the scene, and the history unless it is NULL. Call it once per
- * store. A resumed store compares the shape with the stored one instead. If the tensions differ in their last bits, it
- * adds a warning. If they differ by more than 1e-5 of the maximum, it returns HF_EXISTS. */
+/* Writes the shape in the workspace in the order of the scene. Also writes the history unless it is NULL. Call this
+ * function once per store. If the store is resumed, the function compares the shape with the stored shape instead of
+ * writing it. If the tensions of the two shapes differ in the last bits, the function adds a warning. If the tensions
+ * of the two shapes differ by more than 1e-5 of the maximum, the function returns HF_EXISTS. */
 hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspace *workspace,
                         const hf_history *history, hf_messages *messages);
 
-/* Writes the initial design, the bounds and the cables of the design variables. Call it once the population is created;
- * a resumed store already has them and writes nothing. */
+/* Writes the initial design, the bounds and the cables of the design variables. Call this function once, after the
+ * population is created. A resumed store already contains these data, and the function then writes nothing. */
 hf_status hf_store_variables(hf_store *store, const hf_model *model, const hf_population *population,
                              hf_messages *messages);
 
-/* Appends the generation that hf_optimiser_tell has just ranked. After HF_OK it survives the end of this process, and
- * the same build can restore it (hf_store_restore). After HF_IO all generations before it survive, provided that
+/* Appends the generation that hf_optimiser_tell has just ranked. After HF_OK, the generation is preserved even if this
+ * process ends. The same build can restore it (hf_store_restore). After HF_IO, all earlier generations are preserved if
  * hf_store_publish was called after hf_store_variables. */
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_population *population,
                               hf_messages *messages);
 
-/* Reads the initial design [n_variable] with which the genetic algorithm of a resumed store started. The values
- * that this machine computes may differ in the last bits. `initial` is unchanged if the store has none. */
+/* Reads the initial design [n_variable] with which the genetic algorithm of a resumed store started. The stored values
+ * are needed because the values that this machine computes may differ in the last bits. If the store has no initial
+ * design, `initial` is unchanged. */
 hf_status hf_store_restore_initial(hf_store *store, int n_variable, double *initial, hf_messages *messages);
 
-/* Restores an optimiser that was just created from the design of hf_store_restore_initial: its state before
- * hf_optimiser_tell of the last generation in the store. The figures of the best individual so far go into the summary.
- * The designs of generations in the journal are proposed again; if this build proposes others, these generations are
- * left out with a warning. Does nothing if the store has no generation. */
+/* Restores the state of an optimiser before hf_optimiser_tell of the last generation in the store. The optimiser must
+ * have just been created from the design of hf_store_restore_initial. The summary receives the figures of the best
+ * individual so far. The optimiser proposes the designs of the generations in the journal again. If this build proposes
+ * other designs, the function omits these generations and adds a warning. If the store has no generation, the function
+ * does nothing. */
 hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages);
 
-/* Copies the state of Levenberg-Marquardt, state [n], and its time so far, wall_s in s, for later publications. A
- * finished file does not contain them. */
+/* Copies the state of Levenberg-Marquardt, state [n], and its elapsed time wall_s in s for later publications. A
+ * finished file does not contain this state. */
 hf_status hf_store_refine(hf_store *store, double wall_s, size_t n, const double *state, hf_messages *messages);
-/* Reads the state of Levenberg-Marquardt in a resumed store: *wall_s, s, and *state [*n]. *n is 0 if there is none.
- * *state is borrowed until the next hf_store_refine. */
+/* Reads the state of Levenberg-Marquardt in a resumed store. Sets *wall_s in s, *state and its size *n. If there is no
+ * state, *n is 0. The array *state is borrowed until the next hf_store_refine. */
 hf_status hf_store_restore_refine(hf_store *store, double *wall_s, size_t *n, const double **state,
                                   hf_messages *messages);
 
-/* Publishes everything so far: a file that is marked as unfinished gets the visible name. With at_once this is done
- * now. Otherwise it is done only if at least 0.5 s and 50 times the duration of the last publication have passed since
- * then. Publishing thus takes less than 2 % of the time. Call it after every generation. */
+/* Publishes all results so far. A file that is marked as unfinished then gets the visible name. If at_once is true, the
+ * function publishes immediately. Otherwise it publishes only if the time since the last publication is at least 0.5 s
+ * and at least 50 times the duration of that publication. Publishing therefore takes less than 2 % of the time. Call
+ * this function after every generation. */
 hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_once, hf_messages *messages);
 
-/* Writes the shape in the workspace as that of stage HF_STAGE_SEARCH or HF_STAGE_REFINE, with its design
- * [model->n_variable]. Call it once per stage. */
+/* Writes the shape in the workspace and its design [model->n_variable] as those of the stage HF_STAGE_SEARCH or
+ * HF_STAGE_REFINE. Call this function once per stage. */
 hf_status hf_store_shape(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
                          const double *design, hf_messages *messages);
 
-/* Writes the front and replaces an earlier one. The names of its objectives are those in the summary. */
+/* Writes the Pareto front and replaces an earlier one. The names of the objectives are taken from the summary. */
 hf_status hf_store_front(hf_store *store, const hf_scene *scene, const hf_model *model, const hf_summary *summary,
                          const hf_front *front, hf_messages *messages);
 
 /* Writes the far field of the shape of a stage and replaces an earlier one. */
 hf_status hf_store_pattern(hf_store *store, hf_stage stage, const hf_pattern_table *table,
                            const hf_pattern_summary *figures, hf_messages *messages);
-/* Reads the far field of the shape of a stage. Returns HF_OK; HF_IO, also if there is none; HF_NO_MEMORY. Call
- * hf_pattern_table_free in any case. */
+/* Reads the far field of the shape of a stage. Returns HF_OK or HF_NO_MEMORY. Returns HF_IO after a read error or if
+ * there is no far field. Call hf_pattern_table_free in any case. */
 hf_status hf_store_read_pattern(const char *path, hf_stage stage, hf_pattern_table *table, hf_messages *messages);
 
-/* Writes the shape in the workspace as that of load case `name` of the as-built net, and replaces an earlier one.
- * `truss` has the displacements and forces of the truss in it; NULL: there is no truss. */
+/* Writes the shape in the workspace as the shape of load case `name` of the as-built net. Replaces an earlier one. The
+ * argument `truss` has the displacements and forces of the truss in this load case. It is NULL if there is no truss. */
 hf_status hf_store_built(hf_store *store, const char *name, const hf_model *model, const hf_workspace *workspace,
                          const hf_carrier *carrier, const hf_carrier_state *truss, hf_messages *messages);
 
-/* Writes the summary, closes the file and gives it its name, by hf_store_complete and hf_store_settle. The store is
- * freed in any case. A failure leaves the published file and the journal unchanged. If the file is complete but cannot
- * get its name (HF_EXISTS, HF_IO), it remains under another name, which the message contains. */
+/* Writes the summary, closes the file and gives it its final name. Calls hf_store_complete and hf_store_settle. The
+ * function frees the store even after a failure. If the function fails, the published file and the journal remain
+ * unchanged. If the file is complete but cannot get its final name (HF_EXISTS, HF_IO), it keeps another name. The
+ * message contains this name. */
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
 
-/* Writes the summary and closes the file, which takes processor time. hf_store_settle must follow, also after a
- * failure. */
+/* Writes the summary and closes the file, which takes processor time. The caller must then call hf_store_settle, even
+ * after a failure. */
 hf_status hf_store_complete(hf_store *store, const hf_summary *summary, hf_messages *messages);
-/* Writes the file through to the disk and renames it. This is mostly waiting, and another thread may do it. Frees the
- * store in any case. */
+/* Writes the file from the cache to the disk and renames it. Most of the time the function only waits, so another
+ * thread may call it. The function frees the store even after a failure. */
 hf_status hf_store_settle(hf_store *store, hf_messages *messages);
 
-/* Frees the store, which may be NULL. The published file remains on the disk, and the journal with the generations that
- * the file does not contain. */
+/* Frees the store, which may be NULL. The published file remains on the disk. The journal also remains, with the
+ * generations that the file does not contain. */
 void hf_store_end(hf_store *store);
-/* Frees the store as hf_store_end does. Warns if a temporary file cannot be removed. */
+/* Frees the store in the same way as hf_store_end. The function adds a warning if it cannot remove a temporary file. */
 void hf_store_abandon(hf_store *store, hf_messages *messages);
 
-/* A stored shape, in the order of the scene. */
+/* A stored shape in the order of the scene. */
 typedef struct {
-    double *position_m;                       /* [n_node][3] positions */
-    double *length_m, *tension_N, *q_N_per_m; /* [n_cable] lengths, tensions, force densities */
-    unsigned char *law;                       /* [n_cable] hf_law in force */
+    double *position_m;                       /* [n_node][3] positions of the nodes */
+    double *length_m, *tension_N, *q_N_per_m; /* [n_cable] lengths, tensions and force densities */
+    unsigned char *law;                       /* [n_cable] law in effect (hf_law) */
     void *block;                              /* owned memory behind the arrays */
 } hf_shape;
 
-/* The functions that read return HF_OK; HF_IO with one message if the file does not exist, is no file of hifdm, or is
- * damaged; HF_NO_MEMORY. After a failure the output is all zero. */
+/* The functions that read return HF_OK or HF_NO_MEMORY. They return HF_IO with one message if the file does not exist,
+ * is not a file of hifdm, or is damaged. If a function that reads fails, its output is all zero. */
 
-/* Reads every member of the summary as it was passed to hf_store_finish, bit by bit. Figures of a stage that does not
- * exist are 0. Call hf_summary_free in any case. */
+/* Reads every member of the summary. The values are bit-for-bit identical to those that were passed to hf_store_finish.
+ * If a stage does not exist, its figures are 0. Call hf_summary_free in any case. */
 hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messages *messages);
 
-/* Reads the scene, without its line numbers. Call hf_scene_free in any case. */
+/* Reads the scene without its line numbers. Call hf_scene_free in any case. */
 hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages);
 
-/* Reads the shape of a stage. Returns HF_IO also if there is none. Its counts are those of hf_store_read_scene. Call
- * hf_shape_free in any case. */
+/* Reads the shape of a stage. Also returns HF_IO if there is no such shape. The numbers of nodes and cables of the
+ * shape are those of hf_store_read_scene. Call hf_shape_free in any case. */
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
-/* Reads the shape of load case `name`, as hf_store_read_shape does. */
+/* Reads the shape of load case `name`, in the same way as hf_store_read_shape. */
 hf_status hf_store_read_load_case(const char *path, const char *name, hf_shape *shape, hf_messages *messages);
 /* Frees the arrays of a shape. */
 void hf_shape_free(hf_shape *shape);
 
-/* Reads the front, and *variable, the names of its design variables, [n_variable] of *variable_size bytes each. Returns
- * HF_IO also if there is no front. Free the front by hf_front_free and *variable by free in any case. */
+/* Reads the Pareto front and the names of its design variables. The array *variable has n_variable names of
+ * *variable_size bytes each. Also returns HF_IO if there is no front. Free the front with hf_front_free and *variable
+ * with free, even after a failure. */
 hf_status hf_store_read_front(const char *path, hf_front *front, char **variable, size_t *variable_size,
                               hf_messages *messages);
 
-/* Writes the keys in which the case of a result differs from this one into text[size], as hf_config_differences does.
- * Returns their number; 0 also if the result cannot be read. */
+/* Writes a list of the keys in which the case of a result differs from this case to text[size], in the same way as
+ * hf_config_differences. Returns the number of these keys. Also returns 0 if the result cannot be read. */
 int hf_store_case_differences(const char *path, const hf_case *settings, char *text, size_t size);
 
-/* Writes the group /truss: the truss as described, its attachments to the net and, unless `state` is NULL, its
- * displacements and forces under the forces of the net. Call it once, before hf_store_finish with a summary that
- * has_truss. */
+/* Writes the truss as described and its attachments to the net to the group /truss. Unless `state` is NULL, also writes
+ * the displacements and forces of the truss under the forces of the net. Call this function once, before
+ * hf_store_finish with a summary in which has_truss is set. */
 hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_carrier_state *state,
                          hf_messages *messages);
 
-/* Reads the truss, without its line numbers, and its displacements and forces, which are all NULL if none were stored.
- * Returns HF_IO also if there is no truss. Call hf_truss_free and hf_carrier_state_free in any case. */
+/* Reads the truss without its line numbers. Also reads its displacements and forces, which are all NULL if none were
+ * stored. Also returns HF_IO if there is no truss. Call hf_truss_free and hf_carrier_state_free in any case. */
 hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_state *state, hf_messages *messages);
 
-/* Reads displacements and forces of the truss in load case `name`; `truss` is that of hf_store_read_truss. Returns
- * HF_IO also if the load case has no shape. Call hf_carrier_state_free in any case. */
+/* Reads the displacements and forces of the truss in load case `name`. The argument `truss` is the truss that
+ * hf_store_read_truss returned. Also returns HF_IO if the load case has no shape. Call hf_carrier_state_free in any
+ * case. */
 hf_status hf_store_read_load_case_truss(const char *path, const char *name, const hf_truss *truss,
                                         hf_carrier_state *state, hf_messages *messages);
 
-/* Returns "VERSION (git describe)" of this library, a constant string. */
+/* Returns "VERSION (git describe)" of this library as a constant string. */
 const char *hf_store_version(void);
 
-/* Switches off the error output of HDF5 and its exit handler, which crashes if the disk was full. Call it once, before
- * the first call of HDF5. Returns false if there is too little memory for HDF5, which would then crash. */
+/* Disables the error output of HDF5 and its exit handler, which crashes if the disk was full. Call this function once,
+ * before the first call of HDF5. Returns false if there is not enough memory for HDF5. In this case HDF5 would
+ * crash. */
 bool hf_store_quiet(void);
 
 HF_API_END

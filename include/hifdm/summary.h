@@ -1,8 +1,8 @@
-/* summary - the figures of a whole run.
+/* summary - the figures of a complete run.
  * Stability: stable.
  *
- * `run` prints them and stores them with the results; `show` prints them again. The figures of the shape of a
- * stage are those of HF_RESULT_LIST in <hifdm/result.h>. */
+ * The command `run` prints the summary and stores it with the results. The command `show` prints it again. The figures
+ * of the shape of a stage are those of HF_RESULT_LIST in <hifdm/result.h>. */
 #ifndef HIFDM_SUMMARY_H
 #define HIFDM_SUMMARY_H
 
@@ -19,16 +19,17 @@
 
 HF_API_BEGIN
 
-#define HF_WARNINGS_SIZE 4096 /* bytes of the text of warnings */
+#define HF_WARNINGS_SIZE 4096 /* size in bytes of the text of the warnings */
 
 /* ---- The lists: rows as in HF_RESULT_LIST, without .individual and .units ----
  *
  *   .json   place in the JSON object of the stage, after the figures of its result
  *
- * The lists define the members of hf_summary and the JSON objects. In their own order they define the attributes in
- * HDF5 and the columns of a sweep's ledger. A new figure of a run is a row here and the code that computes it. */
+ * The lists define the members of hf_summary and the JSON objects. In the order of their rows, the lists also define
+ * the HDF5 attributes and the columns of the ledger of a sweep. A new figure of a run needs a row in one of these lists
+ * and the code that computes the figure. */
 
-/* The net. */
+/* Figures of the net. */
 #define HF_SUMMARY_FORM_LIST(X)                                                                                        \
     X(int, n_node, INT, .description = "nodes")                                                                        \
     X(int, n_free, INT, .description = "nodes that are no supports")                                                   \
@@ -38,7 +39,7 @@ HF_API_BEGIN
     X(double, pretension_N, REAL, .description = "of the case, N")                                                     \
     X(bool, has_own_tensions, TRUTH, .description = "1: no cable takes pretension_N, by the laws of all")
 
-/* What only the search has: the genetic algorithm. */
+/* Figures that only the search has, which is the genetic algorithm. */
 #define HF_SUMMARY_SEARCH_LIST(X)                                                                                      \
     X(hf_solver, solver, SOLVER, .json = 6, .description = "solver of the individuals")                                \
     X(double, initial_psi_m, REAL, .json = 2,                                                                          \
@@ -61,7 +62,7 @@ HF_API_BEGIN
       .description = "processor time of breeding, evaluating and storing, over all threads; without waiting")          \
     X(double, store_cpu_s, REAL, .json = 4, .description = "processor time of storing alone")
 
-/* What only the refinement has: Levenberg-Marquardt. */
+/* Figures that only the refinement has, which is Levenberg-Marquardt. */
 #define HF_SUMMARY_REFINE_LIST(X)                                                                                      \
     X(bool, is_result, FLAG, .json = 2, .description = "its design is the result, not only a comparison")              \
     X(int, steps, INT, .json = 1, .description = "steps of Levenberg-Marquardt")                                       \
@@ -77,7 +78,7 @@ HF_API_BEGIN
     X(int, n_at_limit, INT, .json = 5, .key = "at_limit",                                                              \
       .description = "limits of optimize.limits that the design is at, cable by cable")
 
-/* A load case of the as-built net (`load_cases`), besides the figures of its result. */
+/* Figures of a load case of the as-built net (`load_cases`), in addition to those of its result. */
 #define HF_LOAD_CASE_LIST(X)                                                                                           \
     X(double, tension_min_N, REAL, .json = 1, .description = "minimum tension of all cables")                          \
     X(double, tension_max_N, REAL, .json = 1, .description = "maximum tension of all cables")                          \
@@ -86,46 +87,50 @@ HF_API_BEGIN
     X(double, member_force_max_N, REAL, .json = 3,                                                                     \
       .description = "maximum axial force of a truss member; NaN: no truss")
 
-/* The truss. */
+/* Figures of the truss. */
 #define HF_SUMMARY_TRUSS_LIST(X)                                                                                       \
     X(double, mass_kg, REAL, .json = 1, .description = "mass of members and hinges")                                   \
     X(int, n_node, INT, .json = 1, .key = "nodes", .description = "nodes of the truss")                                \
     X(int, n_member, INT, .json = 1, .key = "members", .description = "members of the truss")
 
-/* Maximum number of sets in hf_set_tensions, for which a page has room. */
+/* Maximum number of sets in hf_set_tensions. A page has space for this number. */
 #define HF_SUMMARY_SETS 16
 
-/* Tensions of the named sets of cables in one shape, for the first HF_SUMMARY_SETS sets of the net. The ratio is that
- * of hf_metrics_set_ratio. */
+/* Tensions of the named sets of cables in one shape, for the first HF_SUMMARY_SETS sets of the net. The tension ratio
+ * is computed as in hf_metrics_set_ratio. */
 typedef struct {
     int n;                                              /* number of sets */
     char name[HF_SUMMARY_SETS][HF_CABLE_SET_NAME_SIZE]; /* [n] names of the sets */
-    /* [n] minimum, maximum and ratio of the tensions */
+    /* [n] minimum and maximum of the tensions, and their ratio */
     double min_N[HF_SUMMARY_SETS], max_N[HF_SUMMARY_SETS], ratio[HF_SUMMARY_SETS];
 } hf_set_tensions;
 
-/* Maximum number of constraints in hf_held_limits, and bytes of the name of one. */
+/* Maximum number of constraints in hf_held_limits, and size in bytes of the name of a constraint. */
 #define HF_SUMMARY_HELD (2 * HF_DESIGN_ROWS_MAX + 1)
 #define HF_HELD_NAME_SIZE 160
 
-/* The constraints that hold the shape of a stage, which is at their bounds within 1e-8: boundary_ratio_cap, and rows of
- * optimize.limits, one side of a row after the other. The form-finding has none. */
+/* The active constraints of the shape of a stage, which are those whose bounds the shape reaches within 1e-8. They are
+ * boundary_ratio_cap and the rows of optimize.limits, with a separate entry for each side of a row. The form-finding
+ * has no constraints. */
 typedef struct {
-    int n;                                         /* number of constraints */
-    int row[HF_SUMMARY_HELD];                      /* [n] row of optimize.limits; -1: boundary_ratio_cap */
-    int count[HF_SUMMARY_HELD];                    /* [n] number of cables or attachments of the row at this bound */
-    char name[HF_SUMMARY_HELD][HF_HELD_NAME_SIZE]; /* [n] one of these, such as "tension of cable c7" */
-    double value[HF_SUMMARY_HELD], bound[HF_SUMMARY_HELD]; /* [n] value and bound of this one, N, m or a ratio */
+    int n;                      /* number of constraints */
+    int row[HF_SUMMARY_HELD];   /* [n] row of optimize.limits; -1: boundary_ratio_cap */
+    int count[HF_SUMMARY_HELD]; /* [n] number of cables or attachments of the row at this bound */
+    /* [n] example of these cables or attachments, such as "tension of cable c7" */
+    char name[HF_SUMMARY_HELD][HF_HELD_NAME_SIZE];
+    double value[HF_SUMMARY_HELD], bound[HF_SUMMARY_HELD]; /* [n] value and bound of this example, N, m or a ratio */
 } hf_held_limits;
 
-/* The rows of optimize.objective or optimize.front. The latter have neither weights nor a merit. The values, with the
- * merit, are in the results of the stages. */
+/* The rows of optimize.objective or optimize.front. The rows of optimize.front have neither weights nor a merit. The
+ * values of the objectives and the merit are in the results of the stages. */
 typedef struct {
-    int n;                                                 /* number of objectives; 0: psi is minimised */
-    char name[HF_DESIGN_ROWS_MAX][HF_OBJECTIVE_NAME_SIZE]; /* [n] objective_1_tension_edge: number, figure, set */
-    double weight[HF_DESIGN_ROWS_MAX];                     /* [n] weights */
-    int after_fit[HF_DESIGN_ROWS_MAX]; /* [n] surface figures: 1 after the best fit, 0 without; -1: other figures */
-    bool is_front;                     /* the rows are those of optimize.front */
+    int n; /* number of objectives; 0: psi is minimised */
+    /* [n] name such as objective_1_tension_edge: number, figure, set */
+    char name[HF_DESIGN_ROWS_MAX][HF_OBJECTIVE_NAME_SIZE];
+    double weight[HF_DESIGN_ROWS_MAX]; /* [n] weights of the objectives */
+    /* [n] 1: surface figure after the best fit; 0: surface figure without fit; -1: other figure */
+    int after_fit[HF_DESIGN_ROWS_MAX];
+    bool is_front; /* true: the rows are those of optimize.front */
 } hf_objective_list;
 
 #define HF_SUMMARY_MEMBER(type, member, ...) type member;
@@ -135,31 +140,32 @@ typedef struct {
     HF_SUMMARY_TRUSS_LIST(HF_SUMMARY_MEMBER)
 } hf_truss_summary;
 
-/* The figures of a load case. Without a shape they are NaN, except for the status. */
+/* The figures of a load case. If the load case has no shape, all figures except the status are NaN. */
 typedef struct {
     char name[HF_SET_NAME_SIZE]; /* name of the load case */
-    hf_form_result result;       /* result of its form-finding */
+    hf_form_result result;       /* result of the form-finding of the load case */
     HF_LOAD_CASE_LIST(HF_SUMMARY_MEMBER)
-    hf_surface_measures surface; /* surface of its shape */
+    hf_surface_measures surface; /* surface figures of its shape */
 } hf_load_case_summary;
 
 /* The stages of a run that produce a shape. */
 typedef enum { HF_STAGE_FORM, HF_STAGE_SEARCH, HF_STAGE_REFINE, HF_N_STAGE } hf_stage;
 extern const char *const hf_stage_word[HF_N_STAGE + 1]; /* "form", "search", "refine", "none" */
 
-/* What every stage has. The summary owns what the pointers point to, each from calloc; NULL: there is none. */
+/* Data that every stage has. The summary owns the memory behind the pointers, which comes from calloc. NULL means that
+ * there are no data. */
 typedef struct {
-    bool exists;                 /* the stage ran; of HF_STAGE_REFINE also: a point of a front was taken */
-    hf_form_result result;       /* result of its shape; of the search that of the best individual, with the status
-                                    HF_NO_FEASIBLE if none is feasible */
-    double wall_s;               /* wall-clock time */
-    hf_surface_measures surface; /* surface of its shape */
+    bool exists; /* true: the stage ran, or HF_STAGE_REFINE holds the selected point of a front */
+    /* result of its shape; for the search, that of the best individual (HF_NO_FEASIBLE: none is feasible) */
+    hf_form_result result;
+    double wall_s;               /* wall-clock time of the stage */
+    hf_surface_measures surface; /* surface figures of its shape */
     hf_pattern_summary *pattern; /* far field of its shape */
     hf_set_tensions *sets;       /* tensions of the named sets of cables */
-    hf_held_limits *held;        /* constraints that hold its shape */
+    hf_held_limits *held;        /* active constraints of its shape */
 } hf_stage_summary;
 
-/* What only the search, and what only the refinement has. */
+/* Data that only the search has, and data that only the refinement has. */
 typedef struct {
     HF_SUMMARY_SEARCH_LIST(HF_SUMMARY_MEMBER)
 } hf_search_summary;
@@ -167,57 +173,60 @@ typedef struct {
     HF_SUMMARY_REFINE_LIST(HF_SUMMARY_MEMBER)
 } hf_refine_summary;
 
-/* The figures of a run. All zero is an empty summary. hf_summary_free frees what it owns: a copy by assignment shares
- * this memory. */
+/* The figures of a run. A summary is empty if it is all zero. A copy by assignment shares the memory that
+ * hf_summary_free frees. */
 typedef struct {
-    char version[64], title[256], case_path[HF_PATH_SIZE]; /* version of the program; title and path of the case */
-    bool finished;                                         /* false: the run can be resumed */
-    hf_status status;                /* status of the whole run; HF_NOT_EVALUATED unless finished */
+    /* version of the program; title of the case; path of the case file */
+    char version[64], title[256], case_path[HF_PATH_SIZE];
+    bool finished;                   /* false: the run can be resumed */
+    hf_status status;                /* status of the whole run; HF_NOT_EVALUATED if the run is not finished */
     int threads;                     /* number of threads of the run */
     uint64_t seed;                   /* seed of the genetic algorithm */
-    char warnings[HF_WARNINGS_SIZE]; /* lines "error: ...", then lines "warning: ..." */
+    char warnings[HF_WARNINGS_SIZE]; /* lines "error: ...", followed by lines "warning: ..." */
 
     HF_SUMMARY_FORM_LIST(HF_SUMMARY_MEMBER)
     hf_surface_settings surface;  /* target surface; focal_length_m is 0 without a section surface */
     hf_objective_list objectives; /* objectives of the run */
-    bool has_coupling;            /* the net is on an elastic truss; false: `coupling` of all results is zero */
-    bool has_truss;               /* `truss` is set */
+    bool has_coupling;            /* true: the net is on an elastic truss; false: `coupling` of all results is zero */
+    bool has_truss;               /* true: `truss` is set */
     hf_truss_summary truss;       /* figures of the truss */
 
     hf_stage_summary stage[HF_N_STAGE]; /* figures of each stage */
-    hf_search_summary search;           /* set if the search exists */
-    hf_refine_summary refine;           /* set if the refinement exists */
-    hf_front_origin taken;              /* the point of another run's front that is the result, as the shape of the
-                                           refinement */
+    hf_search_summary search;           /* figures of the search; set if the search exists */
+    hf_refine_summary refine;           /* figures of the refinement; set if the refinement exists */
+    /* selected point of the front of another run; its shape is stored as that of the refinement */
+    hf_front_origin taken;
 
-    hf_front_table *front;           /* the front of optimize.front; NULL: none; owned */
+    hf_front_table *front;           /* Pareto front of optimize.front, owned; NULL: none */
     int n_load_case;                 /* number of load cases of the as-built net */
-    hf_load_case_summary *load_case; /* [n_load_case] the load cases; owned */
-    hf_tolerance_summary *tolerance; /* result of the tolerance analysis; NULL: none; owned */
+    hf_load_case_summary *load_case; /* [n_load_case] figures of the load cases, owned */
+    hf_tolerance_summary *tolerance; /* result of the tolerance analysis, owned; NULL: none */
 } hf_summary;
 
-/* Frees what the summary owns and empties it. */
+/* Frees the memory that the summary owns and empties the summary. */
 void hf_summary_free(hf_summary *summary);
 
-/* Writes one JSON object, grouped by stage, to `file`. A stage that did not run is absent, and NaN is null. `messages`
- * has lines as hf_messages, or is NULL. `path` is that of the result file; NULL: none was written. Write errors can be
- * read from the stream (ferror). */
+/* Writes the summary to `file` as one JSON object, grouped by stage. The object omits stages that did not run and
+ * contains null for NaN. The argument `messages` has lines as in hf_messages, or is NULL. The argument `path` is the
+ * path of the result file, or NULL if no file was written. The caller can check the stream for write errors
+ * (ferror). */
 void hf_summary_write_json(const hf_summary *summary, hf_status status, const char *messages, const char *path,
                            FILE *file);
 
-/* Returns the status with which hf_summary_write_json presents a file: that of the whole run, or of its form-finding
- * while the run has not ended. */
+/* Returns the status that hf_summary_write_json writes for a file. This is the status of the whole run. Before the run
+ * has ended, it is the status of the form-finding. */
 hf_status hf_summary_status(const hf_summary *summary);
 
-/* Returns the word of the algorithm of a stage: "ga" or "nsga2" of the search, "lm" of the refinement, else "". */
+/* Returns the word for the algorithm of a stage. It is "ga" or "nsga2" for the search, "lm" for the refinement, and ""
+ * for other stages. */
 const char *hf_summary_algorithm(const hf_summary *summary, hf_stage stage);
 
-/* Returns true if the result contains a shape of the stage. Of the search: the run is finished, and its best individual
- * is feasible. */
+/* Returns true if the result contains a shape of the stage. The search has a shape only if the run is finished and its
+ * best individual is feasible. */
 bool hf_summary_has_shape(const hf_summary *summary, hf_stage stage);
 
-/* Returns the share of the time of all threads that was spent in breeding, evaluating and storing, 0 to 1; NaN if no
- * time was measured. */
+/* Returns the share (0 to 1) of the time of all threads that was spent on breeding, evaluating and storing. Returns NaN
+ * if no time was measured. */
 double hf_summary_utilisation(const hf_summary *summary);
 
 HF_API_END

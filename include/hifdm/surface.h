@@ -1,16 +1,16 @@
 /* surface - the errors of a shape as a reflector surface (METHOD section 9).
  * Stability: stable.
  *
- * The figures are the RMS errors along the normal and of the half path length, raw and after the best fit of the target
- * kind of surface; the loss of gain; faceting; percentiles. They are computed once for each reported shape of a case
- * with a section surface. Pipeline:
+ * The figures are the RMS errors along the normal and of the half path length, before and after a best fit. They also
+ * include the gain loss, faceting and percentiles. The best fit uses a surface of the target kind. If the case has a
+ * section surface, the figures are computed once for each reported shape. Pipeline:
  *
- *   inner nodes of a shape -> errors (M16) -> RMS, percentiles -> best fit -> RMS -> loss of gain (M17)
- *   facets of the shape    -> errors (M16) -> RMS              -> best fit -> RMS -> loss of gain (M17)
+ *   inner nodes of a shape -> errors (M16) -> RMS, percentiles -> best fit -> RMS -> gain loss (M17)
+ *   facets of the shape    -> errors (M16) -> RMS              -> best fit -> RMS -> gain loss (M17)
  *
  * The target surface is the cylinder z = x^2/(4f), with its generatrix along y, or the paraboloid z = (x^2 + y^2)/(4f).
- * Let dz be the height of a point above it, and t the slope there, x/(2f) or r/(2f). Then the error along the normal is
- * dz / sqrt(1 + t^2), and that of the half path length is dz / (1 + t^2). */
+ * Let dz be the height of a point above the target surface, and t the slope at this point, x/(2f) or r/(2f). The error
+ * along the normal is dz / sqrt(1 + t^2), and the error of the half path length is dz / (1 + t^2). */
 #ifndef HIFDM_SURFACE_H
 #define HIFDM_SURFACE_H
 
@@ -22,12 +22,12 @@ HF_API_BEGIN
 
 /* ---- The lists: rows as in HF_RESULT_LIST, without .individual, .key and .units ----
  *
- *   kind    of the stored value; TRUTH is a bool stored as a number
+ *   kind    type of the stored value; TRUTH is a bool that is stored as a number
  *   .json   place in the JSON object `surface` of a stage, where the figures of the fit have the prefix fit_; equal
- *           places keep the order of the list, measures before the fit; left out: not there
+ *           places keep the order of the list, with figures before the fit first; omitted: not in JSON
  *
- * Attributes in HDF5 (/surface/STAGE, those of the fit with the prefix fit_) are in the order of the lists. A new
- * figure is a row here and the code that computes it. */
+ * The HDF5 attributes in /surface/STAGE have the order of the lists. The attributes of the fit have the prefix fit_. A
+ * new figure needs a row in one of these lists and the code that computes the figure. */
 #define HF_SURFACE_LIST(X)                                                                                             \
     X(double, z_rms_m, REAL, .json = 1, .description = "RMS height of the nodes above their target positions")         \
     X(double, normal_rms_m, REAL, .json = 1, .description = "RMS error along the normal at the inner nodes, raw")      \
@@ -81,7 +81,8 @@ HF_API_BEGIN
     X(int, iterations, INT, .description = "of the last fit")                                                          \
     X(bool, converged, TRUTH, .json = 5, .description = "false: all but the centre and iterations is NaN")
 
-/* Losses of gain by frequency (M17), dB: X(member, description). They are lists in JSON and data sets in HDF5. */
+/* X(member, description): gain losses in dB by frequency (M17). The gain losses are lists in JSON and data sets in
+ * HDF5. */
 #define HF_SURFACE_LOSS_LIST(X)                                                                                        \
     X(gain_loss_dB, "loss of gain (Ruze) of the nodes by frequency; NaN beyond 3 dB, where the formula does not hold") \
     X(fit_gain_loss_dB, "the same after the best fit")                                                                 \
@@ -90,29 +91,32 @@ HF_API_BEGIN
 
 #define HF_SURFACE_MEMBER(type, member, ...) type member;
 
-/* The best fit of a surface to a set of points: the surface of the target kind with the minimum half-path RMS (METHOD
- * section 9). It is the target surface with another focal length, turned about the centre of the points by Rx(a) Ry(b)
- * Rz(c), then shifted. Motions that change nothing are left out: the shift of a cylinder along y, the turn Rz of a
- * paraboloid. In a shallow reflector a shift across and a turn are nearly the same motion. Each of the two numbers is
- * uncertain, but the fitted surface is not.
+/* The best fit of a surface to a set of points. It is the surface of the target kind with the minimum half-path RMS
+ * (METHOD section 9). The fitted surface is the target surface with another focal length. It is rotated about the
+ * centre of the points by Rx(a) Ry(b) Rz(c) and then shifted. The fit omits motions that do not change the surface.
+ * These are the shift of a cylinder along y and the rotation Rz of a paraboloid. In a shallow reflector, a lateral
+ * shift and a rotation are nearly the same motion. The values of this shift and this rotation are therefore uncertain,
+ * but the fitted surface is not.
  *
- * Parameters that the points do not determine keep the values of the target surface. shift_x_m is 0 if the minimum is
- * not found or needs a shift of more than a tenth of the net's half-width; so is shift_y_m of a paraboloid.
- * focal_length_m is that of the target surface if the minimum is not found or has more than twice or less than half
- * that focal length. Points on two lines along y are such a case. */
+ * Parameters that the points do not determine keep the values of the target surface. The shift shift_x_m is 0 if the
+ * minimum is not found, or if it needs a shift of more than a tenth of the half-width of the net. The same holds for
+ * shift_y_m of a paraboloid. The focal length focal_length_m is that of the target surface if the minimum is not found.
+ * It is also that of the target surface if the minimum has more than twice or less than half that focal length. Points
+ * on two lines along y, for example, do not determine the focal length. */
 typedef struct {
     HF_SURFACE_FIT_LIST(HF_SURFACE_MEMBER)
 } hf_surface_fit;
 
-/* Fits a surface to n points position_m [3][n], m. The weight of a point is the square of root_weight [n]; NULL: all
- * weights are equal. `kind` is not HF_SURFACE_AUTO; focal_length_m is that of the target surface. With fewer than six
- * points the fit is not unique. Call gsl_set_error_handler_off() before (hifdm.h). Returns HF_OK, also without
- * convergence (fit->converged), or HF_NO_MEMORY. */
+/* Fits a surface to the n points position_m [3][n], in m. The weight of a point is the square of root_weight [n]. If
+ * root_weight is NULL, all weights are equal. The argument `kind` must not be HF_SURFACE_AUTO, and focal_length_m is
+ * that of the target surface. With fewer than six points, the fit is not unique. Call gsl_set_error_handler_off()
+ * before this function (see hifdm.h). Returns HF_OK or HF_NO_MEMORY. The status is also HF_OK if the fit does not
+ * converge (fit->converged). */
 hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int n, const double *position_m,
                                 const double *root_weight, hf_surface_fit *fit);
 
-/* Computes the errors error_m [n] of n points position_m [3][n] along the normal of a fitted surface of this kind, m;
- * NaN if the fit did not converge. */
+/* Computes the errors error_m [n] in m of the n points position_m [3][n], along the normal of a fitted surface of this
+ * kind. The errors are NaN if the fit did not converge. */
 void hf_surface_fit_errors(hf_surface_kind kind, const hf_surface_fit *fit, int n, const double *position_m,
                            double *error_m);
 
@@ -120,52 +124,53 @@ void hf_surface_fit_errors(hf_surface_kind kind, const hf_surface_fit *fit, int 
 typedef struct {
     bool is_measured; /* false: the other members have no meaning */
     HF_SURFACE_LIST(HF_SURFACE_MEMBER)
-    /* The figures of the best fit to the inner nodes. */
+    /* Figures of the best fit to the inner nodes. */
     hf_surface_fit fit;
 #define HF_SURFACE_LOSS_MEMBER(member, description) double member[HF_LIST_MAX];
     HF_SURFACE_LOSS_LIST(HF_SURFACE_LOSS_MEMBER)
 } hf_surface_measures;
 
-/* Measures the inner nodes of a shape and the facets between them. position_m [3][n_node] has the positions by row, m,
- * and tension_N [n_cable] the tensions. settings->focal_length_m is above 0, and settings->kind is not HF_SURFACE_AUTO;
- * `facets` are those of the scene of the model. Call gsl_set_error_handler_off() before (hifdm.h). Returns HF_OK, or
- * HF_NO_MEMORY with all measures zero. */
+/* Measures the inner nodes of a shape and the facets between them. The array position_m [3][n_node] has the positions
+ * by row in m, and tension_N [n_cable] has the tensions. The focal length settings->focal_length_m must be above 0, and
+ * settings->kind must not be HF_SURFACE_AUTO. The facets must belong to the scene of the model. Call
+ * gsl_set_error_handler_off() before this function (see hifdm.h). Returns HF_OK, or HF_NO_MEMORY with all figures set
+ * to zero. */
 hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_facets *facets, const hf_model *model,
                              const double *position_m, const double *tension_N, hf_surface_measures *measures);
 
-/* Sets all figures to NaN except the counts. It is for a net whose inner nodes are all loose, because their positions
- * have no meaning. */
+/* Sets all figures except the counts to NaN. The function is for a net whose inner nodes are all loose, because the
+ * positions of loose nodes have no meaning. */
 void hf_surface_blank(hf_surface_measures *measures);
 
-/* The errors by which a shape is judged, of its facets or of its nodes, raw and after the best fit to them. The losses
- * of gain [frequencies_Hz.n] point into the measures. */
+/* The errors by which a shape is judged. They are those of its facets or of its nodes, before and after the best fit.
+ * The gain losses [frequencies_Hz.n] point to the arrays of the measures. */
 typedef struct {
-    double half_path_rms_m, fit_half_path_rms_m;   /* RMS of the half-path error, raw and after the best fit */
-    const double *gain_loss_dB, *fit_gain_loss_dB; /* [frequencies_Hz.n] losses of gain by these errors */
+    double half_path_rms_m, fit_half_path_rms_m;   /* RMS of the half-path error, before and after the best fit */
+    const double *gain_loss_dB, *fit_gain_loss_dB; /* [frequencies_Hz.n] gain losses that these errors cause */
 } hf_surface_errors;
 
-/* Returns the errors of the facets, or of the nodes if of_facets is false. */
+/* Returns the errors of the facets. If of_facets is false, returns the errors of the nodes. */
 hf_surface_errors hf_surface_errors_of(const hf_surface_measures *measures, bool of_facets);
 
-/* The loss of gain that defines the maximum frequency of a reflector, dB. */
+/* Gain loss in dB that defines the maximum frequency of a reflector. */
 #define HF_SURFACE_GOOD_TO_DB 1.0
 
-/* Maximum loss for which Ruze's formula holds, dB. Errors must be small compared with a wavelength; this loss
- * corresponds to an RMS of lambda/15. */
+/* Maximum gain loss in dB for which Ruze's formula holds. The formula requires errors that are small compared with a
+ * wavelength. The maximum corresponds to an RMS of lambda/15. */
 #define HF_RUZE_MOST_DB 3.0
 
-/* Returns the highest of frequencies_Hz, Hz; 0 if there is none. */
+/* Returns the highest of the frequencies frequencies_Hz in Hz, or 0 if there is none. */
 double hf_surface_highest_Hz(const hf_surface_settings *settings);
 
-/* Returns the loss of gain by a half-path RMS at a frequency, positive, dB, by Ruze's formula (M17); NaN above
- * HF_RUZE_MOST_DB. */
+/* Returns the positive gain loss in dB that a half-path RMS causes at a frequency, by Ruze's formula (M17). Returns NaN
+ * above HF_RUZE_MOST_DB. */
 double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz);
 
-/* Returns the loss of gain by Ruze's formula (M17) for errors of any size, dB. */
+/* Returns the gain loss in dB by Ruze's formula (M17) for errors of any size. */
 double hf_surface_ruze_dB(double half_path_rms_m, double frequency_Hz);
 
-/* Returns the frequency at which the loss by a half-path RMS is loss_dB, Hz, for 0 < loss_dB <= HF_RUZE_MOST_DB;
- * INFINITY for an RMS of 0. */
+/* Returns the frequency in Hz at which a half-path RMS causes the gain loss loss_dB, for 0 < loss_dB <=
+ * HF_RUZE_MOST_DB. Returns INFINITY for an RMS of 0. */
 double hf_surface_frequency_of_loss_Hz(double half_path_rms_m, double loss_dB);
 
 HF_API_END

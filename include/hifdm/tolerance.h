@@ -1,13 +1,12 @@
-/* tolerance - the effect of errors of cut lengths, stiffness, supports and temperature on an as-built net (METHOD
- * section 12).
+/* tolerance - the effect of errors of cut lengths, stiffness, supports and temperature on an as-built net.
  * Stability: internal; may change in any version.
  *
- * Errors are taken to first order, and as samples that are solved. Pipeline:
+ * The effect of the errors is computed to first order, and from samples that are solved (METHOD section 12). Pipeline:
  *
  *   errors of the case (hf_tolerance_settings) -> samples -> a row of measures for each -> hf_tolerance_summary
  *
- * The errors of a sample depend on (seed, sample, error) alone. Samples may therefore be computed in any order, by any
- * threads and machines. */
+ * The errors of a sample depend only on (seed, sample, error). Samples may therefore be computed in any order, by any
+ * thread and on any machine. */
 #ifndef HIFDM_TOLERANCE_H
 #define HIFDM_TOLERANCE_H
 
@@ -16,41 +15,42 @@
 
 HF_API_BEGIN
 
-/* Columns of the row of a sample: hf_status, psi of the same errors to first order in m, then the measures. What is not
- * measured is NaN, as are all measures of a sample without a shape. */
+/* Columns of the row of a sample: hf_status, psi in m to first order for the same errors, and the measures. A value
+ * that is not measured is NaN. If a sample has no shape, all its measures are NaN. */
 enum { HF_TOLERANCE_STATUS, HF_TOLERANCE_LINEAR_PSI, HF_TOLERANCE_FIRST };
 #define HF_TOLERANCE_COLUMNS (HF_TOLERANCE_FIRST + HF_TOLERANCE_N_MEASURE)  /* number of columns */
 extern const char *const hf_tolerance_measure_unit[HF_TOLERANCE_N_MEASURE]; /* units of the measures */
 extern const char *const hf_tolerance_measure_help[HF_TOLERANCE_N_MEASURE]; /* descriptions of the measures */
 
-/* Number of reported quantiles. A quantile is a value that a part of the samples does not exceed, or does not fall
- * below if more is better. */
+/* Number of reported quantiles. A quantile is a value that a given share of the samples does not exceed. If a larger
+ * value is better, it is a value that this share does not fall below. */
 #define HF_TOLERANCE_QUANTILES 3
-extern const double hf_tolerance_quantile[HF_TOLERANCE_QUANTILES]; /* parts of the samples: 0.5, 0.95, 0.99 */
-/* Returns true if a larger value of the measure is better, such as the minimum tension. */
+extern const double hf_tolerance_quantile[HF_TOLERANCE_QUANTILES]; /* shares of the samples: 0.5, 0.95, 0.99 */
+/* Returns true if a larger value of the measure is better, as for the minimum tension. */
 bool hf_tolerance_more_is_better(hf_tolerance_measure measure);
 
-/* Statistics of one measure. Mean, deviation, minimum and maximum are over the samples that have a value. Quantiles are
- * over all samples; those without a value count as the worst, infinite. NaN: unknown; there is no mean of infinite
- * values.
+/* Statistics of one measure over the samples. Mean, standard deviation, minimum and maximum include only the samples
+ * that have a value. Quantiles include all samples. A sample without a value counts as the worst, which is infinite.
+ * NaN means that a value is unknown. There is no mean of infinite values.
  *
- * Intervals contain the true value with a probability of 95 %. Those of quantiles are order statistics, which need no
- * assumption (NaN: too few samples). That of the mean follows from its standard error. */
+ * The confidence intervals contain the true value with a probability of 95 %. The intervals of quantiles are order
+ * statistics, which need no assumption about the distribution. They are NaN if there are too few samples. The interval
+ * of the mean follows from its standard error. */
 typedef struct {
     bool is_measured; /* false: the other members have no meaning */
-    /* mean with its interval, standard deviation, minimum, maximum */
+    /* mean and its interval, standard deviation, minimum, maximum */
     double mean, mean_low, mean_high, deviation, min, max;
-    /* quantiles with their intervals */
+    /* quantiles and their intervals */
     double value[HF_TOLERANCE_QUANTILES], low[HF_TOLERANCE_QUANTILES], high[HF_TOLERANCE_QUANTILES];
 } hf_tolerance_figures;
 
-#define HF_TOLERANCE_RANKED 20                                       /* maximum number of cables that are listed */
+#define HF_TOLERANCE_RANKED 20                                       /* maximum number of cables in the list */
 #define HF_TOLERANCE_BINS 40                                         /* number of bins of the histogram of psi */
-#define HF_TOLERANCE_ID_SIZE 256                                     /* bytes of the id of a cable */
+#define HF_TOLERANCE_ID_SIZE 256                                     /* size in bytes of the id of a cable */
 #define HF_TOLERANCE_KINDS 8                                         /* number of kinds of errors */
 extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS]; /* words of the kinds of errors */
 
-/* The figures of the samples: rows as in the lists of summary.h. */
+/* The figures of the samples. The rows have the form of the lists in summary.h. */
 #define HF_TOLERANCE_LIST(X)                                                                                           \
     X(int, samples, INT, .json = 1, .description = "as-built samples")                                                 \
     X(int, n_failed, INT, .json = 1, .key = "failed", .description = "those of them without a shape")                  \
@@ -92,13 +92,13 @@ typedef struct {
     hf_tolerance_figures figure[HF_TOLERANCE_N_MEASURE]; /* statistics by hf_tolerance_measure */
     int n_require;                                       /* number of rows of tolerance.require */
     hf_require_settings require[HF_REQUIRE_ROWS_MAX];    /* [n_require] the rows */
-    double require_yield[HF_REQUIRE_ROWS_MAX];           /* [n_require] yield under each row alone */
-    int n_ranked; /* number of cables listed by the share of their own errors in the growth of psi^2 */
+    double require_yield[HF_REQUIRE_ROWS_MAX];           /* [n_require] yield if only this row is required */
+    int n_ranked; /* number of listed cables, ordered by the share of their own errors in the increase of psi^2 */
     char ranked_id[HF_TOLERANCE_RANKED][HF_TOLERANCE_ID_SIZE]; /* [n_ranked] ids of these cables */
     double ranked_share[HF_TOLERANCE_RANKED];                  /* [n_ranked] shares of these cables */
-    double kind_share[HF_TOLERANCE_KINDS];                     /* share of each kind of errors in the growth of psi^2 */
-    double bin_low_m, bin_high_m;                              /* range of the histogram: minimum and maximum psi */
-    double bin[HF_TOLERANCE_BINS];                             /* part of the samples with a shape in each bin */
+    double kind_share[HF_TOLERANCE_KINDS]; /* share of each kind of errors in the increase of psi^2 */
+    double bin_low_m, bin_high_m;          /* range of the histogram, from minimum to maximum psi */
+    double bin[HF_TOLERANCE_BINS];         /* share of the samples with a shape in each bin */
 } hf_tolerance_summary;
 #undef HF_TOLERANCE_MEMBER
 

@@ -1,9 +1,9 @@
-/* truss - the deployable truss that carries the net: nodes, straight members with their sections, supports.
+/* truss - the deployable truss that carries the net: nodes, straight members and supports.
  * Stability: stable.
  *
- * A truss is made by a generator or read from CSV files (truss_import). It is checked once and does not change
- * afterwards; hf_frame solves it. Degrees of freedom (dofs) of a node: displacements along x, y, z in m, rotations
- * about x, y, z in rad. */
+ * A generator makes a truss, or truss_import reads it from CSV files. A truss is checked once and does not change
+ * afterwards. hf_frame solves it. A node has six degrees of freedom (dofs): displacements along x, y, z in m, and
+ * rotations about x, y, z in rad. */
 #ifndef HIFDM_TRUSS_H
 #define HIFDM_TRUSS_H
 
@@ -14,14 +14,15 @@
 
 HF_API_BEGIN
 
-#define HF_TRUSS_DOF 6 /* number of dofs of a node */
+#define HF_TRUSS_DOF 6 /* number of degrees of freedom of a node */
 
-/* A rigid member is a beam clamped to its two nodes; a pinned one carries axial force alone. */
+/* A rigid member is a beam that is clamped to its two nodes. A pinned member carries only axial force. */
 typedef enum { HF_JOINT_RIGID, HF_JOINT_PINNED } hf_joint;
 
-/* The unit to which a member belongs. BUD, MBUG and ABUG are the basic units of the deployable structure (Fig. 15): on
- * the directrix, and main and assistant ones on the generatrix. LONGERON, VERTICAL and DIAGONAL are the parts of a ring
- * truss: along a ring, between the rings, across a bay. */
+/* The unit to which a member belongs. BUD, MBUG and ABUG are the basic units of the deployable structure (Fig. 15). BUD
+ * lies along the directrix. MBUG and ABUG are the main and assistant units along the generatrix. LONGERON, VERTICAL and
+ * DIAGONAL are the parts of a ring truss. Longerons run along a ring, verticals connect the rings, and diagonals cross
+ * a bay. */
 typedef enum {
     HF_UNIT_BUD,
     HF_UNIT_MBUG,
@@ -37,13 +38,13 @@ extern const char *const hf_dof_word[HF_TRUSS_DOF]; /* "ux", "uy", "uz", "rx", "
 extern const char *const hf_joint_word[3];          /* "rigid", "pinned", NULL */
 extern const char *const hf_unit_word[HF_N_UNIT];   /* "bud", "mbug", "abug", "other", "longeron", ... */
 
-/* The numbers of a member: X(name in struct and files, units, default if a file has no value, description). A number
- * whose default is NaN must be given.
+/* X(name in struct and files, units, default if a file has no value, description): numerical properties of a member. A
+ * property whose default is NaN is required.
  *
- * Local axes: x runs from end i to end j. y is horizontal, (-x_y, x_x, 0) normalised, or the global y for a vertical
- * member. z = x cross y. roll turns y and z about x. Iz resists bending in the plane of x and y, with the shear area
- * Asy; Iy resists bending in the plane of x and z, with Asz. An infinite shear area is the beam of Euler and
- * Bernoulli. */
+ * In the local axes of a member, x runs from end i to end j. The axis y is horizontal, (-x_y, x_x, 0) normalised, or
+ * the global y for a vertical member. The axis z is x cross y. The angle roll rotates y and z about x. Iz resists
+ * bending in the plane of x and y, with the shear area Asy. Iy resists bending in the plane of x and z, with the shear
+ * area Asz. An infinite shear area gives a beam of Euler and Bernoulli. */
 #define HF_MEMBER_NUMBERS(X)                                                                                           \
     X(E_Pa, "Pa", NAN, "Young's modulus")                                                                              \
     X(A_m2, "m2", NAN, "cross-section")                                                                                \
@@ -57,26 +58,26 @@ extern const char *const hf_unit_word[HF_N_UNIT];   /* "bud", "mbug", "abug", "o
     X(density_kg_per_m3, "kg/m3", 0, "density")                                                                        \
     X(expansion_per_K, "1/K", 0, "coefficient of thermal expansion")
 
-/* Nodes, members and supports of a truss. */
+/* The nodes, members and supports of a truss. */
 typedef struct {
-    int n_node, n_member;                                                  /* numbers of nodes and members */
-    double *position_m;                                                    /* [n_node][3] positions */
-    unsigned char *fixed;                                                  /* [n_node] bit k: a support holds dof k */
-    double *mass_kg;                                                       /* [n_node] mass of the hinges */
-    int *end;                                                              /* [n_member][2] nodes at the ends i, j */
-    unsigned char *joint;                                                  /* [n_member] hf_joint */
-    unsigned char *unit;                                                   /* [n_member] hf_unit */
+    int n_node, n_member; /* number of nodes and number of members */
+    double *position_m;   /* [n_node][3] positions */
+    unsigned char *fixed; /* [n_node] bit k is 1 if a support holds degree of freedom k */
+    double *mass_kg;      /* [n_node] mass of the hinges */
+    int *end;             /* [n_member][2] nodes at the ends i and j */
+    unsigned char *joint; /* [n_member] joint of each member (hf_joint) */
+    unsigned char *unit;  /* [n_member] unit of each member (hf_unit) */
 #define HF_MEMBER_FIELD(name, units, otherwise, description) double *name; /* [n_member] */
     HF_MEMBER_NUMBERS(HF_MEMBER_FIELD)
 #undef HF_MEMBER_FIELD
-    const char **node_id, **member_id;     /* [n_node], [n_member] ids */
-    int *node_line, *member_line;          /* lines in the files, or NULL for a generated truss */
-    const char *nodes_file, *members_file; /* file names for messages, or NULL */
-    void *block, *text;                    /* owned memory behind all of the above */
+    const char **node_id, **member_id;     /* [n_node] and [n_member] ids */
+    int *node_line, *member_line;          /* line numbers in the files; NULL for a generated truss */
+    const char *nodes_file, *members_file; /* file names for messages; may be NULL */
+    void *block, *text;                    /* owned memory behind all arrays above */
 } hf_truss;
 
-/* Returns true if member i_member belongs to this part of the truss. Below HF_PART_UNIT this is the whole truss, from
- * there on one unit. */
+/* Returns true if member i_member belongs to this part of the truss. A part below HF_PART_UNIT is the whole truss. A
+ * part from HF_PART_UNIT on is one unit. */
 static inline bool hf_truss_is_of(const hf_truss *truss, int i_member, hf_part part)
 {
     return part < HF_PART_UNIT || (int)truss->unit[i_member] == (int)part - HF_PART_UNIT;
@@ -84,28 +85,29 @@ static inline bool hf_truss_is_of(const hf_truss *truss, int i_member, hf_part p
 
 /* ---- the generated trusses ---- */
 
-/* The diagonals of a panel or bay. */
+/* Diagonals of a panel or of a bay. */
 typedef enum { HF_DIAGONALS_NONE, HF_DIAGONALS_SINGLE, HF_DIAGONALS_CROSSED } hf_diagonals;
-/* The beam theory, which determines the shear areas. */
+/* Beam theory, which determines the shear areas. */
 typedef enum { HF_THEORY_EULER_BERNOULLI, HF_THEORY_TIMOSHENKO } hf_theory;
-/* The nodes that the spacecraft holds: corners of the central module, or only its rear ones. */
+/* Nodes that the spacecraft holds: the corners of the central module, or only its rear corners. */
 typedef enum { HF_HELD_CENTRAL_MODULE, HF_HELD_CENTRAL_MODULE_REAR } hf_held;
-/* The dofs that are held at these nodes. */
+/* Degrees of freedom that are held at these nodes. */
 typedef enum { HF_HELD_ALL_DOFS, HF_HELD_TRANSLATIONS } hf_held_dofs;
-/* The joints of a ring truss that are held. */
+/* Joints of a ring truss that are held. */
 typedef enum { HF_RING_HELD_BAY, HF_RING_HELD_VERTICAL, HF_RING_HELD_THREE_VERTICALS } hf_ring_held;
 
-/* Words of a case file, indexed by the enumerations above; the last entry is NULL. */
+/* Words of a case file, indexed by the enumerations above. The last entry of each array is NULL. */
 extern const char *const hf_diagonals_word[4];
 extern const char *const hf_theory_word[3];
 extern const char *const hf_held_word[3];
 extern const char *const hf_held_dofs_word[3];
 extern const char *const hf_ring_held_word[4];
 
-/* A basic unit: a planar truss one module long, with chords, posts and diagonals of one round tube. */
+/* A basic unit of the truss. It is a planar truss with the length of one module, and its chords, posts and diagonals
+ * are round tubes of the same size. */
 typedef struct {
     double diameter_m, wall_m; /* outer diameter and wall thickness of the tube */
-    int panels;                /* number of panels along a module */
+    int panels;                /* number of panels in the length of a module */
     hf_diagonals diagonals;    /* diagonals of a panel */
 } hf_truss_unit;
 
@@ -115,33 +117,36 @@ typedef struct {
 } hf_tube;
 
 /* A hoop truss under the rim of a paraboloid. The front ring runs through the supports of the front net. The rear ring
- * is straight below it and runs through the supports of the rear net. Verticals divide the rings into bays. */
+ * is vertically below the front ring and runs through the supports of the rear net. Verticals divide the rings into
+ * bays. */
 typedef struct {
-    double height_m;      /* distance of the rings along z; 0: that of the rear rim from the front rim */
-    int cells_per_bay;    /* number of gaps between supports along the rim in a bay */
+    double height_m;      /* distance of the rings along z; 0: the distance between the rims of the two nets */
+    int cells_per_bay;    /* number of gaps between supports in a bay along the rim */
     hf_diagonals bracing; /* diagonals of a bay */
     hf_ring_held held;    /* joints that are held */
     double held_at_deg;   /* angle of the held joints about the centre of the aperture, from x towards y */
     hf_tube longeron, vertical, diagonal; /* tubes of the members */
 } hf_truss_ring;
 
-/* The truss of a case (section truss). */
+/* Settings of the truss of a case (section truss). */
 typedef struct {
-    double depth_m;                /* distance of the rear chords from the surface along its normal, for all units */
-    int main_every;                /* every main_every-th generatrix line from both edges is MBUG, the others ABUG */
-    hf_truss_unit bud, mbug, abug; /* BUD on the module borders along x, the others along y */
+    double depth_m; /* distance of the rear chords from the surface along its normal, for all units */
+    /* every main_every-th generatrix line, counted from both edges, has MBUG units; the others have ABUG units */
+    int main_every;
+    hf_truss_unit bud, mbug, abug; /* BUD on the module borders along x; MBUG and ABUG on the borders along y */
     double E_Pa, G_Pa, density_kg_per_m3, expansion_per_K; /* material of the tubes */
     double hinge_mass_kg;                                  /* mass of the hinges at each node */
-    hf_theory theory;          /* Timoshenko: the shear area is half the cross-section, as of a thin round tube */
+    hf_theory theory;          /* Timoshenko: the shear area is half of the cross-section, as for a thin round tube */
     hf_joint joints;           /* joints of all members */
     hf_held supports;          /* nodes that are held */
-    hf_held_dofs support_dofs; /* dofs that are held at these nodes */
-    double match_tolerance_m;  /* maximum distance of a support of the net from its node of the truss */
-    hf_truss_ring ring;        /* the ring truss, which replaces the units */
+    hf_held_dofs support_dofs; /* degrees of freedom that are held at these nodes */
+    double match_tolerance_m;  /* maximum distance between a support of the net and its node of the truss */
+    hf_truss_ring ring;        /* settings of the ring truss, which replaces the units */
 } hf_truss_settings;
 
-/* Keys of the section truss, and of each of its units with the defaults of diameter and number of panels. They are rows
- * of hf_field_table (config.h): X(section, member, type, minimum, maximum, default, unit, words, help). */
+/* Keys of the section truss and of each of its units. The arguments are the defaults of the diameter and of the number
+ * of panels. Each key is a row X(section, member, type, minimum, maximum, default, unit, words, help) of hf_field_table
+ * (config.h). */
 #define HF_TRUSS_KEYS(X, section)                                                                                      \
     X(section, depth_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "1", "m", NULL,                                           \
       "distance of the rear chords from the front chords, along the normal of the surface")                            \
@@ -169,7 +174,7 @@ typedef struct {
     X(section, panels, HF_FIELD_INT, 1, 1000, panel_number, "", NULL, "panels along one module")                       \
     X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word, "diagonals of each panel")
 
-/* Keys of the section truss.ring, and of each of its tubes with the default of the diameter. */
+/* Keys of the section truss.ring and of each of its tubes. The argument is the default of the diameter. */
 #define HF_RING_KEYS(X, section)                                                                                       \
     X(section, height_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "", "m", NULL,                                           \
       "distance of the rear ring below the front ring, along z; default: rear_distance_m of the net")                  \
@@ -190,55 +195,58 @@ typedef struct {
     X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL, "outer diameter of its tubes")     \
     X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "wall thickness of its tubes")
 
-/* Makes the truss of basic sub-rings over the modules of the net. Its front nodes are the module corners on the
- * cylinder; the outer ones are at the supports of edge ties. Ids of nodes are f<i>_<j> in front and r<i>_<j> behind.
- * Inside units of several panels they are f<i>.<k>_<j> or f<i>_<j>.<k>. Ids of members are <node>-<node>. Returns
- * HF_OK; HF_BAD_CASE if the truss would be too large; HF_NO_MEMORY. Call hf_truss_free in any case. */
+/* Makes the truss of basic sub-rings over the modules of the net. The front nodes of the truss are the module corners
+ * on the cylinder. At the outer edge they are the supports of edge ties. The ids of the front nodes are f<i>_<j>, and
+ * the ids of the rear nodes are r<i>_<j>. Nodes inside a unit of several panels have ids such as f<i>.<k>_<j> or
+ * f<i>_<j>.<k>. The ids of members are <node>-<node>. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE if the truss would be
+ * too large. Call hf_truss_free in any case. */
 hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder *cylinder, hf_truss *truss,
                             hf_messages *messages);
 
-/* Makes the ring truss under the rim of the net. Ids of nodes are f<k> in front and r<k> behind, in the order of the
- * supports of the net from x towards y; ids of members are <node>-<node>. The hinges, with their mass, are at the ends
- * of the verticals. Returns HF_OK; HF_BAD_CASE for a fault that hf_truss_ring_fault finds, or if the cells of a quad
- * net do not divide into bays; HF_NO_MEMORY. Call hf_truss_free in any case. */
+/* Makes the ring truss under the rim of the net. The ids of the front nodes are f<k>, and the ids of the rear nodes are
+ * r<k>. They are numbered like the supports of the net, from x towards y. The ids of members are <node>-<node>. The
+ * hinges and their mass are at the ends of the verticals. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if
+ * hf_truss_ring_fault finds a fault, or if the cells of a quad net cannot be divided into bays. Call hf_truss_free in
+ * any case. */
 hf_status hf_truss_ring_generate(const hf_truss_settings *settings, const hf_paraboloid *paraboloid, hf_truss *truss,
                                  hf_messages *messages);
 
-/* Returns the key of truss.ring whose value cannot be realised and writes the reason into what[size], for which
- * HF_GENERATE_FAULT_SIZE suffices. Returns NULL if there is no fault. */
+/* Returns the key of truss.ring whose value cannot be realised. Writes the reason to what[size]. A size of
+ * HF_GENERATE_FAULT_SIZE is sufficient. Returns NULL if there is no fault. */
 const char *hf_truss_ring_fault(const hf_truss_settings *settings, const hf_paraboloid *paraboloid, char *what,
                                 size_t size);
 
 /* ---- any truss ---- */
 
-/* Finds the node of the truss that carries each support of the net: the nearest one, at most tolerance_m away.
- * scene_node and truss_node have room for scene->n_node indices; *n_attachment of each are set. Returns HF_OK, or
- * HF_BAD_CASE with messages that name the supports without such a node. */
+/* Finds the node of the truss that carries each support of the net. It is the nearest node, at a distance of at most
+ * tolerance_m. The arrays scene_node and truss_node must have space for scene->n_node indices. The function sets the
+ * first *n_attachment indices in each of them. Returns HF_OK, or HF_BAD_CASE with messages that list the supports
+ * without such a node. */
 hf_status hf_truss_attach(const hf_truss *truss, const hf_scene *scene, double tolerance_m, int *n_attachment,
                           int *scene_node, int *truss_node, hf_messages *messages);
 
-/* Allocates a truss of this size, all zero; with_line says whether the line numbers exist. Returns HF_OK or
- * HF_NO_MEMORY. */
+/* Allocates a truss of this size with all values zero. The argument with_line states whether the line numbers exist.
+ * Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, bool with_line);
 /* Frees the memory of the truss. */
 void hf_truss_free(hf_truss *truss);
 
-/* Checks what must hold for every truss, generated or read: finite numbers, stiffness above zero, members with two
- * different ends and a length. Writes a message with file, line and id for each fault, up to a limit. Returns HF_OK or
- * HF_BAD_CASE. */
+/* Checks the rules that every truss must satisfy, whether it is generated or read. Numbers must be finite, stiffness
+ * must be above zero, and each member needs two different ends and a length. The function writes a message with file,
+ * line and id for each fault, up to a maximum number of messages. Returns HF_OK or HF_BAD_CASE. */
 hf_status hf_truss_check(const hf_truss *truss, hf_messages *messages);
 
-/* Size of the text of hf_truss_describe: a path of HF_PATH_SIZE bytes, a line and an id of 255 bytes, the most that a
- * table may have. */
+/* Size of the text of hf_truss_describe. It is sufficient for a path of HF_PATH_SIZE bytes, a line and an id of 255
+ * bytes, the maximum in a table. */
 #define HF_TRUSS_DESCRIPTION_SIZE (HF_PATH_SIZE + 300)
 
-/* Writes "truss_nodes.csv:7: node 'a'", or "truss: node 'a'" without a file, into text[size], for messages. A text that
- * does not fit is cut. */
+/* Writes a description for messages to text[size], such as "truss_nodes.csv:7: node 'a'". Without a file, the text is
+ * "truss: node 'a'". A text that does not fit is truncated. */
 void hf_truss_describe(const hf_truss *truss, bool is_member, int index, char *text, size_t size);
 
-/* Returns the length of member i_member, m. */
+/* Returns the length of member i_member in m. */
 double hf_truss_member_length(const hf_truss *truss, int i_member);
-/* Returns the mass of members and hinges, kg. */
+/* Returns the mass of all members and hinges in kg. */
 double hf_truss_mass(const hf_truss *truss);
 
 HF_API_END

@@ -1,10 +1,10 @@
-/* workspace - all memory that the solvers of one thread write to, allocated once from one list of fields.
+/* workspace - all memory that the solvers of one thread write to. It is allocated once from one list of fields.
  * Stability: stable.
  *
- * After hf_form_find and hf_evaluate the workspace holds the last shape: position_m, q_N_per_m, length_m and tension_N,
- * the laws and target values in force, loose, and displacement_m of the attachments. After a coupling it also holds
- * attachment_force_N. All other fields are scratch without meaning between calls. Scratch fields may change in any
- * version. */
+ * After hf_form_find and hf_evaluate, the workspace holds the last shape. It consists of position_m, q_N_per_m,
+ * length_m and tension_N, the laws and target values in effect, loose, and displacement_m of the attachments. After a
+ * coupling, the workspace also holds attachment_force_N. All other fields are scratch memory and have no meaning
+ * between calls. The scratch fields may change in any version. */
 #ifndef HIFDM_WORKSPACE_H
 #define HIFDM_WORKSPACE_H
 
@@ -15,26 +15,28 @@
 
 HF_API_BEGIN
 
-/* Number of unknowns of Newton's matrix, and the same with the attachments. */
+/* Number of unknowns of Newton's matrix, without and with the attachments. */
 #define HF_NEWTON_DOFS(m) ((m)->has_newton ? 3 * (size_t)(m)->n_free : 0)
 #define HF_NEWTON_MOVES(m) ((m)->has_newton ? 3 * (size_t)((m)->n_free + (m)->n_attachment) : 0)
 
-/* Number of past displacements and steps that the accelerated coupling combines, and the doubles that they occupy. */
+/* Number of past displacements and steps that the accelerated coupling combines, and the number of doubles that they
+ * need. */
 #define HF_COUPLING_DEPTH 8
 #define HF_COUPLING_ITEMS(m) (3 * (size_t)(m)->n_attachment * (2 * HF_COUPLING_DEPTH + 4))
 
-/* Number of attachments whose columns are solved together, and the doubles of the dense matrices of net and truss
- * (src/solve/schur.h). */
+/* Number of attachments whose columns are solved together, and the number of doubles in the dense matrices of net and
+ * truss (src/solve/schur.h). */
 #define HF_SCHUR_PANEL 16
 #define HF_SCHUR_COLUMNS(m) (3 * ((size_t)(m)->n_attachment + HF_SCHUR_PANEL * 3 * (size_t)(m)->n_free))
 #define HF_SCHUR_ITEMS(m) (27 * (size_t)(m)->n_attachment * (size_t)(m)->n_attachment + HF_SCHUR_COLUMNS(m))
 
-/* Doubles of the primal-dual path (src/solve/path_kernel.h): HF_INTERIOR_BLOCK for each block of eight cables. */
+/* Number of doubles for the primal-dual path (src/solve/path_kernel.h). Each block of eight cables needs
+ * HF_INTERIOR_BLOCK doubles. */
 #define HF_INTERIOR_BLOCK 416
 #define HF_INTERIOR_ITEMS(m) (HF_INTERIOR_BLOCK * (((size_t)(m)->n_cable + 7) / 8))
 
-/* Doubles of the certificate's error bound: for each cable (src/solve/precise.h), for the truss
- * (src/solve/flexibility.h), and in all. HF_BOUND_CHUNK rows of the band are processed at a time. */
+/* Numbers of doubles for the error bound of the certificate: for each cable (src/solve/precise.h), for the truss
+ * (src/solve/flexibility.h), and in total. The solver processes HF_BOUND_CHUNK rows of the band at a time. */
 #define HF_BOUND_CABLE_ITEMS 14
 #define HF_BOUND_CHUNK 128
 #define HF_BOUND_WINDOW(m) (3 * (size_t)(m)->n_attachment * (3 * (size_t)(m)->half_bandwidth + 2 + HF_BOUND_CHUNK))
@@ -44,8 +46,8 @@ HF_API_BEGIN
     (HF_BOUND_CABLE_ITEMS * (size_t)(m)->n_cable + 6 * (size_t)(m)->n_node +                                           \
      16 * (size_t)((m)->n_free + (m)->n_attachment) + HF_BOUND_TRUSS_ITEMS(m))
 
-/* X(type, name, number of items for a model m, unit, meaning): one row for each field. The solver of a net with struts
- * needs a general band matrix and pivots; other nets have none. */
+/* Each field is one row X(type, name, number of items for a model m, unit, meaning). The solver of a net with struts
+ * needs a general band matrix and pivots. Other nets have neither. */
 #define HF_WORKSPACE_FIELDS(X)                                                                                         \
     X(double, position_m, 3 * (size_t)m->n_node, "m", "[3][n_node] by row, supports included")                         \
     X(double, band, (size_t)m->n_band + 1, "N/m", "lower band of D, then its Cholesky factor; one spare place")        \
@@ -89,23 +91,24 @@ HF_API_BEGIN
       "[3][n_node] of a design's supports")                                                                            \
     X(int, pivot, m->has_strut ? (size_t)m->n_free : 0, "", "struts")
 
-/* The fields of HF_WORKSPACE_FIELDS and the state of the solver. A workspace belongs to one thread at a time. */
+/* The fields of HF_WORKSPACE_FIELDS and the state of the solver. Only one thread at a time may use a workspace. */
 typedef struct {
 #define HF_WORKSPACE_MEMBER(type, name, count, unit, meaning) type *name;
     HF_WORKSPACE_FIELDS(HF_WORKSPACE_MEMBER)
 #undef HF_WORKSPACE_MEMBER
     void *block; /* owned memory behind the fields */
-    /* Number of rows that Newton's matrix moves: n_free, or with the attachments if net and truss are solved
+    /* Number of rows that Newton's matrix moves. It is n_free, and includes the attachments if net and truss are solved
      * together. */
     int n_moving;
-    bool starts_near;                       /* q_N_per_m is that of a shape on supports in other positions */
-    int n_joint_step;                       /* number of steps of net and truss together in the current solve */
-    hf_history *history;                    /* history of the current form-finding, or NULL */
-    struct hf_objectives_point *objectives; /* scratch of the objectives (hf_evaluate_attend), owned; else NULL */
-    const volatile sig_atomic_t *stop;      /* NULL, or a flag: *stop != 0 makes hf_form_find return HF_INTERRUPTED */
+    bool starts_near;    /* q_N_per_m is that of a shape whose supports have other positions */
+    int n_joint_step;    /* number of joint steps of net and truss in the current solve */
+    hf_history *history; /* history of the current form-finding; may be NULL */
+    /* scratch memory of the objectives (hf_evaluate_attend), owned; may be NULL */
+    struct hf_objectives_point *objectives;
+    const volatile sig_atomic_t *stop; /* NULL or a flag; if *stop != 0, hf_form_find returns HF_INTERRUPTED */
 } hf_workspace;
 
-/* Returns cable i_cable with the law and the target value in force in the workspace. */
+/* Returns cable i_cable with the law and the target value that are in effect in the workspace. */
 static inline hf_law_cable hf_workspace_cable(const hf_model *model, const hf_workspace *workspace, int i_cable)
 {
     hf_law_cable cable;
@@ -116,8 +119,8 @@ static inline hf_law_cable hf_workspace_cable(const hf_model *model, const hf_wo
     return cable;
 }
 
-/* Returns the force density of cable i_cable in the workspace's shape, N/m: from the tension that its law gives,
- * otherwise its q_N_per_m. */
+/* Returns the force density in N/m of cable i_cable for the shape in the workspace. It follows from the tension that
+ * the law of the cable gives. If the law gives no tension, it is q_N_per_m of the cable. */
 static inline double hf_workspace_held_q_N_per_m(const hf_model *model, const hf_workspace *workspace, int i_cable)
 {
     return hf_law_held_q_N_per_m(hf_workspace_cable(model, workspace, i_cable), workspace->length_m[i_cable],
@@ -129,14 +132,15 @@ static inline double hf_workspace_held_q_N_per_m(const hf_model *model, const hf
 hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace);
 /* Returns the number of bytes that hf_workspace_create allocates. */
 size_t hf_workspace_bytes(const hf_model *model);
-/* Frees the fields and the scratch of the objectives. */
+/* Frees the fields and the scratch memory of the objectives. */
 void hf_workspace_free(hf_workspace *workspace);
 
-/* Returns true if the law in force of at least one cable changes its force density between iterations (Eqs. 7, 8). */
+/* Returns true if the law in effect of at least one cable changes the force density of the cable between iterations
+ * (Eqs. 7, 8). */
 bool hf_workspace_iterates(const hf_model *model, const hf_workspace *workspace);
 
-/* Fills every floating-point field with NaN and every other field with 0xff. For tests: if a call reads stale contents,
- * its result shows it. */
+/* Sets every floating-point field to NaN and every byte of the other fields to 0xff. The function is for tests. If a
+ * call reads stale contents, its result shows this. */
 void hf_workspace_poison(const hf_model *model, hf_workspace *workspace);
 
 HF_API_END
