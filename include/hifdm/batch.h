@@ -34,7 +34,7 @@ typedef struct {
 } hf_batch;
 
 /* Creates a batch of n_thread threads. If n_thread is 0, the batch has hf_batch_default_threads() threads. The batch
- * borrows the evaluator until hf_batch_free. Returns HF_OK or HF_NO_MEMORY. Call hf_batch_free in either case. */
+ * borrows the evaluator until hf_batch_free. Returns HF_OK or HF_NO_MEMORY. Call hf_batch_free even after a failure. */
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch);
 
 /* Evaluates the designs i = 0 ... n-1 with pending[i] != 0, or all designs if pending is NULL. The array design

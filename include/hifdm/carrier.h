@@ -27,7 +27,8 @@ typedef struct {
  * attached to the nearest node of the truss if the distance is at most match_tolerance_m (hf_truss_attach). The carrier
  * takes ownership of the truss, even after a failure. The function sets *truss to all zero. The frame of the carrier
  * points to the truss of the carrier, so the carrier must not be moved in memory. Returns HF_OK. On failure returns
- * HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK and adds messages. Call hf_carrier_free in any case. */
+ * HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK and adds messages. Call hf_carrier_free even after a
+ * failure. */
 hf_status hf_carrier_build(hf_truss *truss, double match_tolerance_m, const hf_scene *scene, hf_carrier *carrier,
                            hf_messages *messages);
 /* Frees the truss, the frame and the arrays. */
@@ -42,12 +43,12 @@ typedef struct {
 } hf_carrier_state;
 
 /* Solves the truss under the forces force_N [n_attachment][3] on its attachments. Returns HF_OK or HF_NO_MEMORY. Call
- * hf_carrier_state_free in either case. */
+ * hf_carrier_state_free even after a failure. */
 hf_status hf_carrier_load(const hf_carrier *carrier, const double *force_N, hf_carrier_state *state);
 
 /* Solves the truss under forces on its attachments and under its own loads, such as temperature and weight. Either
  * force_N [n_attachment][3] or `own` may be NULL. Returns HF_OK, HF_NO_MEMORY, or HF_MECHANISM if a moment of `own`
- * acts at a node where nothing resists rotation. Call hf_carrier_state_free in any case. */
+ * acts at a node where nothing resists rotation. Call hf_carrier_state_free even after a failure. */
 hf_status hf_carrier_load_own(const hf_carrier *carrier, const double *force_N, const hf_frame_load *own,
                               hf_carrier_state *state);
 

@@ -64,7 +64,7 @@ typedef struct {
 /* Reads and validates a case file. The strings overrides [n_override] have the form "key=value" and replace values of
  * the file. If a key or word has its old name, the function accepts it as the new one and adds a warning. Returns HF_OK
  * or HF_NO_MEMORY. Returns HF_BAD_CASE if the file has faults or cannot be read. There is a message with
- * file:line:column for each fault. Call hf_case_free in any case. */
+ * file:line:column for each fault. Call hf_case_free even after a failure. */
 hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
                          hf_messages *messages);
 
@@ -83,7 +83,7 @@ int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t
 bool hf_config_location(const hf_case *settings, const char *key, char *text, size_t size);
 
 /* Makes the scene that the case describes and checks it (hf_scene_check). Returns HF_OK or HF_NO_MEMORY. Returns
- * HF_BAD_CASE if the scene has faults or a file cannot be read. Call hf_scene_free in any case. */
+ * HF_BAD_CASE if the scene has faults or a file cannot be read. Call hf_scene_free even after a failure. */
 hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages);
 
 /* Determines the target surface of a case with a section surface. Without this section, *surface is all zero. If the
@@ -96,7 +96,7 @@ hf_status hf_config_surface(const hf_case *settings, const hf_scene *scene, hf_s
 
 /* Sets the material of cables and nodes of the scene from the rows of `cables` and `nodes`. A later row replaces the
  * values of an earlier row. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if a row matches nothing in this net.
- * Call hf_material_free in any case. */
+ * Call hf_material_free even after a failure. */
 hf_status hf_config_material(const hf_case *settings, const hf_scene *scene, hf_material *material,
                              hf_messages *messages);
 
@@ -110,16 +110,16 @@ hf_status hf_config_demand_expansion(const hf_case *settings, const hf_truss *tr
  * NULL if there is no truss. A case without rows of `load_cases` has no load cases. Returns HF_OK or HF_NO_MEMORY.
  * Returns HF_BAD_CASE if a row matches nothing in this net or truss, if cables have no EA, or if a table cannot be
  * read. It also returns HF_BAD_CASE if a part with a temperature has an unknown expansion, or if gravity acts on cables
- * of unknown mass. The load cases borrow their names from the case. Call hf_load_cases_free in any case. */
+ * of unknown mass. The load cases borrow their names from the case. Call hf_load_cases_free even after a failure. */
 hf_status hf_config_load_cases(const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
                                hf_load_cases *states, hf_messages *messages);
 
 /* Makes the truss of a case that has one and checks it (hf_truss_check). Returns HF_OK or HF_NO_MEMORY. Returns
- * HF_BAD_CASE if the truss has faults or a file cannot be read. Call hf_truss_free in any case. */
+ * HF_BAD_CASE if the truss has faults or a file cannot be read. Call hf_truss_free even after a failure. */
 hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages *messages);
 
 /* Makes the truss of the case and builds the carrier of the net from it (hf_carrier_build). Returns HF_OK, HF_BAD_CASE,
- * HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK. Call hf_carrier_free in any case. */
+ * HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK. Call hf_carrier_free even after a failure. */
 hf_status hf_config_carrier(const hf_case *settings, const hf_scene *scene, hf_carrier *carrier, hf_messages *messages);
 
 /* Frees the memory of a case. */

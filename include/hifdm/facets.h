@@ -1,5 +1,5 @@
 /* facets - the triangles and quadrilaterals that the cables of a net enclose.
- * Stability: internal; may change in any version.
+ * Stability: internal; this header may change in any version.
  *
  * Pipeline: nodes on the target surface -> plane graph of the cables between these nodes, seen along z -> faces of the
  * graph -> facets (METHOD section 9). */
@@ -34,7 +34,7 @@ typedef struct {
  * cable runs along the rim, the straight line between two supports closes the face at the inner nodes between them. The
  * line does not close a face if boundary cables form an edge from one support to the other.
  *
- * Returns HF_OK or HF_NO_MEMORY. Call hf_facets_free in either case. */
+ * Returns HF_OK or HF_NO_MEMORY. Call hf_facets_free even after a failure. */
 hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surface, hf_facets *facets);
 
 /* Frees the facets. */

@@ -52,7 +52,7 @@ typedef struct {
 /* Builds the frame of a checked truss. Returns HF_OK, or HF_BAD_CASE if every node is supported. Returns HF_MECHANISM
  * if the truss is a mechanism or lacks supports. The message then names a node and a degree of freedom that can move
  * without force. Returns HF_NO_MEMORY if memory runs out or the matrix is too large, and HF_NO_LAPACK if LAPACK cannot
- * be loaded. Call hf_frame_free in any case. */
+ * be loaded. Call hf_frame_free even after a failure. */
 hf_status hf_frame_build(const hf_truss *truss, hf_frame *frame, hf_messages *messages);
 /* Frees the arrays of the frame. Does not free the truss. */
 void hf_frame_free(hf_frame *frame);

@@ -1,5 +1,5 @@
 /* front - the designs of a Pareto front of optimize.front. No design is better than another one in all objectives.
- * Stability: internal; may change in any version.
+ * Stability: internal; this header may change in any version.
  *
  * Levenberg-Marquardt and the genetic algorithm produce the same struct. The program stores, prints, compares and draws
  * it. Pipeline: hf_front_create -> objectives, designs and statuses of the points -> hf_front_settle ->
@@ -45,7 +45,8 @@ typedef struct {
 typedef struct {
     int n_objective, n_variable, n_point; /* numbers of objectives, design variables and points */
     int minimised; /* objective that is minimised with limits on the others; -1: all are minimised */
-    int knee;      /* index of the point farthest below the line between the ends (hf_front_settle); -1: none */
+    /* index of the knee (hf_front_settle): the point farthest below the line or plane through the ends; -1: none */
+    int knee;
     double initial[HF_FRONT_OBJECTIVES_MAX]; /* objectives of the initial design; NaN: an objective has no value */
     hf_front_point *point; /* [n_point] points in ascending order of objective 0, then 1, then 2; failed points last */
     double *design;        /* [n_point][n_variable] designs as in hf_evaluate; NaN for a failed point */
@@ -67,8 +68,8 @@ typedef struct {
     hf_front_point row[HF_FRONT_POINTS_MAX]; /* [n_row] the points */
 } hf_front_table;
 
-/* Allocates a front of n_point points. All values are 0. Returns HF_OK or HF_NO_MEMORY. Call hf_front_free in either
- * case. */
+/* Allocates a front of n_point points. All values are 0. Returns HF_OK or HF_NO_MEMORY. Call hf_front_free even after a
+ * failure. */
 hf_status hf_front_create(int n_objective, int n_variable, int n_point, hf_front *front);
 /* Frees points and designs. Sets `minimised` and `knee` to -1. */
 void hf_front_free(hf_front *front);

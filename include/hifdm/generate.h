@@ -148,7 +148,7 @@ typedef struct {
  * behind the front supports, in the direction of the ties. EA_N [2] has the axial stiffness in N by hf_group. The value
  * 0 means that the stiffness of a group is not given. NULL means that neither is given. Returns HF_OK or HF_NO_MEMORY.
  * Returns HF_BAD_CASE if the net would be too large, if elastic ties have no EA, or if
- * hf_scene_parabolic_cylinder_fault finds a fault. Call hf_scene_free in any case. */
+ * hf_scene_parabolic_cylinder_fault finds a fault. Call hf_scene_free even after a failure. */
 hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double EA_N[2], hf_scene *scene,
                                       hf_messages *messages);
 /* Returns the member whose value cannot be realised and writes the reason to what[size]. Returns NULL if there is no

@@ -1,6 +1,6 @@
 /* load_cases - the load cases of the as-built net, with temperatures, loads and support displacements (METHOD section
  * 12).
- * Stability: internal; may change in any version. */
+ * Stability: internal; this header may change in any version. */
 #ifndef HIFDM_LOAD_CASES_H
 #define HIFDM_LOAD_CASES_H
 
@@ -29,7 +29,7 @@ typedef struct {
 } hf_load_cases;
 
 /* Allocates n >= 1 load cases of a scene and a truss with n_member members. Without a truss, n_member is 0. All values
- * are zero, and all names are NULL. Returns HF_OK or HF_NO_MEMORY. Call hf_load_cases_free in either case. */
+ * are zero, and all names are NULL. Returns HF_OK or HF_NO_MEMORY. Call hf_load_cases_free even after a failure. */
 hf_status hf_load_cases_allocate(const hf_scene *scene, int n_member, int n, hf_load_cases *load_cases);
 /* Frees the load cases and the material. */
 void hf_load_cases_free(hf_load_cases *load_cases);

@@ -1,5 +1,5 @@
 /* material - thermal expansion and mass of cables and nodes of the as-built net.
- * Stability: internal; may change in any version. */
+ * Stability: internal; this header may change in any version. */
 #ifndef HIFDM_MATERIAL_H
 #define HIFDM_MATERIAL_H
 
@@ -18,7 +18,7 @@ typedef struct {
 } hf_material;
 
 /* Allocates the properties of a scene. Initially no property is given. Returns HF_OK or HF_NO_MEMORY. Call
- * hf_material_free in either case. */
+ * hf_material_free even after a failure. */
 hf_status hf_material_allocate(const hf_scene *scene, hf_material *material);
 /* Frees the properties. */
 void hf_material_free(hf_material *material);

@@ -104,7 +104,7 @@ typedef struct {
 } hf_model;
 
 /* Builds a model from a checked scene with the laws that form->method puts into effect. Returns HF_OK. Returns
- * HF_NO_MEMORY with a message if memory runs out or the band is too large. Call hf_model_free in either case. */
+ * HF_NO_MEMORY with a message if memory runs out or the band is too large. Call hf_model_free even after a failure. */
 hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages);
 
 /* Connects supports with a truss. The support node[i] of the scene becomes attachment i of n_attachment > 0. Forces on

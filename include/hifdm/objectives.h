@@ -1,5 +1,5 @@
 /* objectives - objectives of a design, as blocks of residuals of a shape with exact derivatives (METHOD section 7).
- * Stability: internal; may change in any version.
+ * Stability: internal; this header may change in any version.
  *
  * Each row of optimize.objective or optimize.front has one block. The weights of optimize.front are 1. Pipeline:
  *
@@ -112,7 +112,8 @@ typedef struct hf_objectives_point {
  * objective is psi. The truss must already be attached to the model. The arguments `surface` and `facets` may be NULL
  * if no objective needs them. The argument `nets` is borrowed and may be NULL if all objectives are measured on the
  * design. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if there would be too many residuals, or if a row needs
- * data that this scene does not have. There is a message for each such row. Call hf_objectives_free in any case. */
+ * data that this scene does not have. There is a message for each such row. Call hf_objectives_free even after a
+ * failure. */
 hf_status hf_objectives_create(const hf_scene *scene, const hf_model *model, const hf_optimize_settings *settings,
                                const hf_surface_settings *surface, const hf_facets *facets,
                                const hf_objectives_nets *nets, hf_objectives *objectives, hf_messages *messages);
@@ -120,12 +121,12 @@ hf_status hf_objectives_create(const hf_scene *scene, const hf_model *model, con
 void hf_objectives_free(hf_objectives *objectives);
 
 /* Writes the name of objective i_objective, as used in tables, to `text`. Examples are objective_0_psi and, for a set,
- * objective_1_tension_edge. A load case or the kind of nets on which the objective is measured follows the name.
- * Returns the argument `text`. */
+ * objective_1_tension_edge. If the objective is measured on load cases or samples, the name ends with a suffix for
+ * these. Returns the argument `text`. */
 const char *hf_objectives_name(const hf_objectives *objectives, int i_objective, char text[HF_OBJECTIVE_NAME_SIZE]);
 
 /* Allocates the memory of one thread for these objectives. Returns HF_OK or HF_NO_MEMORY. Call hf_objectives_point_free
- * in either case. */
+ * even after a failure. */
 hf_status hf_objectives_point_create(const hf_objectives *objectives, hf_objectives_point *point);
 /* Frees the memory of a thread. */
 void hf_objectives_point_free(hf_objectives_point *point);

@@ -199,15 +199,15 @@ typedef struct {
  * on the cylinder. At the outer edge they are the supports of edge ties. The ids of the front nodes are f<i>_<j>, and
  * the ids of the rear nodes are r<i>_<j>. Nodes inside a unit of several panels have ids such as f<i>.<k>_<j> or
  * f<i>_<j>.<k>. The ids of members are <node>-<node>. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE if the truss would be
- * too large. Call hf_truss_free in any case. */
+ * too large. Call hf_truss_free even after a failure. */
 hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder *cylinder, hf_truss *truss,
                             hf_messages *messages);
 
 /* Makes the ring truss under the rim of the net. The ids of the front nodes are f<k>, and the ids of the rear nodes are
  * r<k>. They are numbered like the supports of the net, from x towards y. The ids of members are <node>-<node>. The
  * hinges and their mass are at the ends of the verticals. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if
- * hf_truss_ring_fault finds a fault, or if the cells of a quad net cannot be divided into bays. Call hf_truss_free in
- * any case. */
+ * hf_truss_ring_fault finds a fault, or if the cells of a quad net cannot be divided into bays. Call hf_truss_free even
+ * after a failure. */
 hf_status hf_truss_ring_generate(const hf_truss_settings *settings, const hf_paraboloid *paraboloid, hf_truss *truss,
                                  hf_messages *messages);
 
