@@ -1,10 +1,10 @@
 /* api - macros that mark what the shared library exports.
  * Stability: stable.
  *
- * Each public header declares its functions and variables between HF_API_BEGIN and HF_API_END. These declarations have
- * C linkage, and libhifdm.so exports them. All other symbols of the library are hidden, because it is compiled with
- * -fvisibility=hidden. `make abi` compares the symbols that the library exports with the symbols that the headers
- * declare. */
+ * Each public header declares its functions and variables between HF_API_BEGIN and HF_API_END. The declared functions
+ * and variables have C linkage, and libhifdm.so exports them. The library is compiled with -fvisibility=hidden, so all
+ * other symbols are hidden. The command `make abi` compares the symbols that the library exports with the symbols that
+ * the headers declare. */
 #ifndef HIFDM_API_H
 #define HIFDM_API_H
 

@@ -21,7 +21,7 @@
 
 HF_API_BEGIN
 
-/* A batch holds the memory with which n_thread threads evaluate designs. A batch belongs to one thread at a time. */
+/* A batch holds the memory with which n_thread threads evaluate designs. Only one thread at a time may use a batch. */
 typedef struct {
     const hf_evaluator *evaluator; /* evaluates one design; borrowed */
     int n_thread;                  /* number of threads */
@@ -49,8 +49,9 @@ void hf_batch_run(hf_batch *batch, int n, const double *design, const unsigned c
 /* Proposes the next generation of the optimiser and evaluates its pending designs. All threads share both tasks. The
  * results are the same as those of hf_optimiser_next followed by hf_batch_run. The calling thread first calls
  * beside(context) once, unless `beside` is NULL. The other threads start their work at the same time. The callback
- * `beside` must not read the population itself. It may read a copy of the struct that was made before this call.
- * Returns false if no generation is left. In this case it only calls `beside`. */
+ * `beside` must not read the population itself. The callback may read a copy of the population struct that was made
+ * before this call. Returns false if no generation is left. If no generation is left, the function only calls
+ * `beside`. */
 bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
 
 /* Selects the solver for all later evaluations and creates the data that its threads share. The shared Newton matrix is
@@ -74,8 +75,8 @@ int hf_batch_default_threads(void);
  * and pass the argument argv of main. The function sets GOMP_SPINCOUNT=2000 and OMP_WAIT_POLICY=passive in the
  * environment and restarts the program. A restart is necessary because OpenMP reads these variables when it is loaded,
  * before main begins. OpenMP has no function to change them later. The function does nothing if one of the two
- * variables is already set, as in the restarted program. It also does nothing if the path of the program cannot be
- * read, or if the dynamic linker was called to run the program.
+ * variables is already set, as in the restarted program. The function also does nothing if the path of the program
+ * cannot be read, or if the dynamic linker was called to run the program.
  *
  * A generation takes less than a millisecond, and by default a waiting thread spins for about as long. With the
  * default, small batches therefore take three times as much processor time. If other programs kept the cores busy, runs
@@ -89,7 +90,7 @@ void hf_batch_wait_quietly(char *const *argv);
  * this batch. The batch owns the returned workspace. */
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design, hf_form_result *result);
 
-/* Frees the workspaces and the shared solver data. Does not free the evaluator. */
+/* Frees the workspaces and the shared solver data. This function does not free the evaluator. */
 void hf_batch_free(hf_batch *batch);
 
 HF_API_END

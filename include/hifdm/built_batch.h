@@ -8,8 +8,8 @@
  *   hf_built_take     receives shape and result -> measures of the caller
  *
  * The header built.h describes the as-built net and its possible differences from the nominal net. The function
- * hf_built_solve is the reference. It gives the same statuses and counts, and the same shapes within the residual
- * tolerance. */
+ * hf_built_solve is the reference. The reference gives the same statuses and counts as a batch, and the same shapes
+ * within the residual tolerance. */
 #ifndef HIFDM_BUILT_BATCH_H
 #define HIFDM_BUILT_BATCH_H
 
@@ -59,15 +59,15 @@ int hf_built_batch_threads(const hf_built_batch *batch);
 /* Updates a batch of one thread after a call of hf_built_renew. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_built_batch_renew(hf_built_batch *batch);
 
-/* Solves one net in the calling thread. The net may have its own loads. Returns the workspace of the first thread. It
- * holds the shape until the next call. */
+/* Solves one net in the calling thread. The net may have its own loads. Returns the workspace of the first thread. The
+ * workspace holds the shape until the next call. */
 const hf_workspace *hf_built_batch_find(hf_built_batch *batch, const hf_built_net *net, hf_form_result *result);
 
 /* Makes and solves the samples first to first + n - 1, and passes each sample to `take`. The function ends early if the
  * flag built->stop is set. The argument `varies` is 0 or a combination of the flags HF_BUILT_VARIES_... The bits of a
- * result depend only on the values of its sample. They do not depend on the number of threads, the other samples or the
- * instruction set. The result has the same figures as that of hf_built_solve. Only the counts of steps differ, because
- * they are the counts of the faster method (iterations and, on a truss, the coupling). */
+ * result depend only on the values of its sample. The bits of a result do not depend on the number of threads, the
+ * other samples or the instruction set. The result has the same figures as that of hf_built_solve. Only the counts of
+ * steps differ, because they are the counts of the faster method (iterations and, on a truss, the coupling). */
 void hf_built_batch_run(hf_built_batch *batch, unsigned varies, long first, long n, hf_built_sample *make,
                         hf_built_take *take, void *context);
 

@@ -49,7 +49,7 @@ enum {
       HF_LAW_ITERATES | HF_LAW_IS_CONVEX | HF_LAW_HAS_MULTIPLIER | HF_LAW_GOES_SLACK | HF_LAW_NEEDS_EA)
 
 #define HF_LAW_NAME(name, word, target, unit, flags) name,
-/* The law of a cable. Files contain these values. */
+/* The law of a cable. Files contain the values of this enumeration. */
 typedef enum { HF_LAW_LIST(HF_LAW_NAME) } hf_law;
 #undef HF_LAW_NAME
 
@@ -66,7 +66,7 @@ typedef struct {
     hf_law law;                /* law in force */
     double target;             /* target value by law: T* (N), L* (m), q (N/m) or l0 (m) */
     double EA_N;               /* axial stiffness; NaN if the law does not need it */
-    double length_at_target_m; /* distance between the target positions of its ends */
+    double length_at_target_m; /* distance between the target positions of the ends of the cable */
 } hf_law_cable;
 
 /* Returns true if the law has at least one of these flags. */
@@ -78,15 +78,16 @@ static inline bool hf_law_has(hf_law law, unsigned flags)
     return (flags_of[law] & flags) != 0;
 }
 
-/* Returns true if a kernel for laws with the flags `served` can solve this law. This is the case if the law has no
- * other flag. */
+/* Returns true if a kernel for laws with the flags `served` can solve this law. A kernel can solve a law if the law has
+ * no other flag than those in `served`. */
 static inline bool hf_law_is_served(hf_law law, unsigned served)
 {
     return !hf_law_has(law, ~served);
 }
 
 /* Returns the target value of a cable for which none was given. For law length it is the length between the target
- * positions, length_at_target_m. For the other laws it is NaN, because they have no default or use the pretension. */
+ * positions, length_at_target_m. For the other laws the result is NaN, because they have no default or use the
+ * pretension. */
 static inline double hf_law_default_target(hf_law law, double length_at_target_m)
 {
     switch (law) {
@@ -104,13 +105,13 @@ static inline double hf_law_default_target(hf_law law, double length_at_target_m
 #define HF_LAW_FAULT_SIZE 160
 
 /* Checks the target value of a cable. The value is NaN if the user gave none. The argument length_at_target_m is the
- * distance between the target positions of the ends of the cable, in m. Returns NULL if the value is valid. Otherwise
- * writes the fault into `text` and returns `text`. */
+ * distance between the target positions of the ends of the cable, in m. Returns NULL if the value is valid. If the
+ * value is invalid, writes the fault into `text` and returns `text`. */
 const char *hf_law_target_fault(hf_law law, double target, double length_at_target_m, char text[HF_LAW_FAULT_SIZE]);
 
-/* Returns the length in m that a law with a multiplier requires at this tension. Returns NaN for other laws. This form
- * of the law needs no special case for stiff cables. In the limit of infinite EA, the law elastic becomes the law
- * length (METHOD M3). */
+/* Returns the length in m that a law with a multiplier requires at this tension. Returns NaN for other laws. The length
+ * as a function of the tension needs no special case for stiff cables. In the limit of infinite EA, the law elastic
+ * becomes the law length (METHOD M3). */
 static inline double hf_law_required_length_m(hf_law_cable c, double tension_N)
 {
     switch (c.law) {
@@ -169,8 +170,8 @@ static inline double hf_law_stiffness_N_per_m(hf_law_cable c, double length_m)
 
 /* ---- functions that follow from the flags ---- */
 
-/* Returns the force density in N/m at this length. It follows from the tension if the law gives a tension, and is
- * q_N_per_m otherwise. */
+/* Returns the force density in N/m at this length. The force density follows from the tension if the law gives a
+ * tension. Otherwise it is q_N_per_m. */
 static inline double hf_law_held_q_N_per_m(hf_law_cable c, double length_m, double q_N_per_m)
 {
     return hf_law_has(c.law, HF_LAW_GIVES_TENSION) ? c.target / length_m : q_N_per_m;
@@ -193,10 +194,11 @@ static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, doub
     return next < HF_LAW_MIN_Q_N_PER_M ? HF_LAW_MIN_Q_N_PER_M : next; /* NaN is returned unchanged */
 }
 
-/* Returns the tension in N with which an iteration begins. It is otherwise_N, unless the cable can go slack and is taut
- * between its target positions. In the second case the cable begins with its tension between the target positions. The
- * function limits this tension to a factor HF_LAW_FIRST_RANGE of otherwise_N. Without this limit, a stiff cable that is
- * barely taut would carry almost no force, and a stiff cable that was cut too short would carry almost all forces. */
+/* Returns the tension in N with which an iteration begins. The tension is otherwise_N, unless the cable can go slack
+ * and is taut between its target positions. A cable that can go slack and is taut there begins with its tension between
+ * the target positions. The function limits this tension to a factor HF_LAW_FIRST_RANGE of otherwise_N. Without this
+ * limit, a stiff cable that is barely taut would carry almost no force. A stiff cable that was cut too short would
+ * carry almost all forces. */
 #define HF_LAW_FIRST_RANGE 10.0
 static inline double hf_law_first_tension_N(hf_law_cable c, double otherwise_N)
 {

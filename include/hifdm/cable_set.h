@@ -21,9 +21,9 @@ typedef struct {
     int set, cable; /* indices of the set and of the cable */
 } hf_cable_set_member;
 
-/* Checks the name of a set. A valid name has 1 to 63 letters, digits, _ and -, and does not begin with -. It is neither
- * the name of a group nor `all`. Returns NULL if the name is valid. Otherwise returns the fault as the end of a
- * sentence in a constant string. */
+/* Checks the name of a set. A valid name has 1 to 63 letters, digits, _ and -, and does not begin with -. A name of a
+ * set must not be the name of a group or `all`. Returns NULL if the name is valid. If the name is invalid, returns the
+ * fault as the end of a sentence in a constant string. */
 const char *hf_cable_set_name_fault(const char *name);
 
 /* Allocates n_set >= 1 sets with n_member cables in total, in a scene without sets. All values are zero and the names

@@ -63,7 +63,7 @@ typedef struct {
 
 /* Reads and validates a case file. The strings overrides [n_override] have the form "key=value" and replace values of
  * the file. If a key or word has its old name, the function accepts it as the new one and adds a warning. Returns HF_OK
- * or HF_NO_MEMORY. Returns HF_BAD_CASE if the file has faults or cannot be read. There is a message with
+ * or HF_NO_MEMORY. Returns HF_BAD_CASE if the file has faults or cannot be read. The function adds a message with
  * file:line:column for each fault. Call hf_case_free even after a failure. */
 hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
                          hf_messages *messages);
@@ -77,20 +77,21 @@ hf_status hf_config_parse(const char *path, const char *text, const char *const 
  * truncated if it does not fit. Returns the number of keys that differ. */
 int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t size);
 
-/* Writes the location of a key into text[size] for use in a message. Examples are "case.yaml:7:3: surface.kind" and
- * "--set surface.kind". If the case does not have the key, the text is "case.yaml: surface.kind". If a row lacks a key,
- * such as "optimize.objective.0.set", the location is that of the row. Returns true if the case has the key. */
+/* Writes the location of a key into text[size] for use in a message. Examples of locations are "case.yaml:7:3:
+ * surface.kind" and "--set surface.kind". If the case does not have the key, the text is "case.yaml: surface.kind". If
+ * a row lacks a key, such as "optimize.objective.0.set", the location is that of the row. Returns true if the case has
+ * the key. */
 bool hf_config_location(const hf_case *settings, const char *key, char *text, size_t size);
 
 /* Makes the scene that the case describes and checks it (hf_scene_check). Returns HF_OK or HF_NO_MEMORY. Returns
  * HF_BAD_CASE if the scene has faults or a file cannot be read. Call hf_scene_free even after a failure. */
 hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages);
 
-/* Determines the target surface of a case with a section surface. Without this section, *surface is all zero. If the
- * case does not specify the kind of surface, the function chooses the kind that is closer to the inner nodes of the
- * scene. Returns HF_OK, or HF_BAD_CASE if the target positions of the inner nodes are not on the surface. The message
- * then contains the RMS distance for both kinds. A focal length out of proportion to the aperture causes a warning,
- * even without the section surface. */
+/* Determines the target surface of a case with a section surface. If the case has no section surface, *surface is all
+ * zero. If the case does not specify the kind of surface, the function chooses the kind that is closer to the inner
+ * nodes of the scene. Returns HF_OK, or HF_BAD_CASE if the target positions of the inner nodes are not on the surface.
+ * The message then contains the RMS distance for both kinds. A focal length out of proportion to the aperture causes a
+ * warning, even without the section surface. */
 hf_status hf_config_surface(const hf_case *settings, const hf_scene *scene, hf_surface_settings *surface,
                             hf_messages *messages);
 
@@ -109,8 +110,9 @@ hf_status hf_config_demand_expansion(const hf_case *settings, const hf_truss *tr
 /* Makes the load cases of the as-built net and their material from the rows of `load_cases`. The argument `truss` is
  * NULL if there is no truss. A case without rows of `load_cases` has no load cases. Returns HF_OK or HF_NO_MEMORY.
  * Returns HF_BAD_CASE if a row matches nothing in this net or truss, if cables have no EA, or if a table cannot be
- * read. It also returns HF_BAD_CASE if a part with a temperature has an unknown expansion, or if gravity acts on cables
- * of unknown mass. The load cases borrow their names from the case. Call hf_load_cases_free even after a failure. */
+ * read. The function also returns HF_BAD_CASE if a part with a temperature has an unknown expansion, or if gravity acts
+ * on cables of unknown mass. The load cases borrow their names from the case. Call hf_load_cases_free even after a
+ * failure. */
 hf_status hf_config_load_cases(const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
                                hf_load_cases *states, hf_messages *messages);
 
@@ -145,7 +147,7 @@ typedef enum {
 typedef struct {
     const char *path;   /* name including its sections, "form.pretension_N" */
     hf_field_type type; /* type of the value */
-    size_t offset;      /* offset of the member in hf_case; of a key of a row, the offset in the row */
+    size_t offset;      /* offset of the member in hf_case; for a key of a row, the offset in the row */
     /* inclusive bounds; min HF_ABOVE_ZERO: the value is above 0; for a text, max is the size of the buffer */
     double min, max;
     /* Default value as written in a case file. NULL means that the key is required if its section or row exists. The
@@ -163,7 +165,8 @@ typedef struct {
     const char *help;      /* help of the section */
 } hf_section;
 
-/* A list of rows. A row is a section without a name. Its keys have names such as "optimize.variables.0.range". */
+/* A list of rows. A row is a section without a name. The keys of a row have names such as
+ * "optimize.variables.0.range". */
 typedef struct {
     const char *path;            /* name, "optimize.variables" */
     size_t count_offset, offset; /* offsets in hf_case of the number of rows and of the first row */

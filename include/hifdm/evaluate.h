@@ -2,8 +2,8 @@
  * Stability: stable.
  *
  * The function hf_evaluate_form finds the shape of the case itself. The function hf_evaluate finds the shape of a
- * design, which has one value for each design variable. Both functions write the shape to the workspace and its figures
- * to a result without pointers. Pipeline of hf_evaluate:
+ * design, which has one value for each design variable. Both functions write the shape to the workspace. They write the
+ * figures of the shape to a result without pointers. Pipeline of hf_evaluate:
  *
  *   hf_evaluate_prepare   values of the design variables -> laws, target values, first force densities
  *   solver                Newton's method or the paper's iteration, coupled with the truss if there is one
@@ -17,13 +17,13 @@
 
 HF_API_BEGIN
 
-/* Returns the method that form.method selects for this net. It is HF_METHOD_NEWTON, or HF_METHOD_HIFDM for the paper's
- * iteration. The methods iterative_fdm and fdm also use the paper's iteration, but with other laws of the model. The
- * function sets *why to the reason for the selection, a constant string. The argument why may be NULL. */
+/* Returns the method that form.method selects for this net. The method is HF_METHOD_NEWTON, or HF_METHOD_HIFDM for the
+ * paper's iteration. The methods iterative_fdm and fdm also use the paper's iteration, but with other laws of the
+ * model. The function sets *why to the reason for the selection, a constant string. The argument why may be NULL. */
 hf_method hf_evaluate_method(const hf_model *model, const hf_form_settings *form, const char **why);
 
 /* Finds the shape of the case and certifies it (hf_certify). The workspace then holds the shape. Unless `history` is
- * NULL, the function records the figures of each iteration in it. Returns result->status. It is HF_OK,
+ * NULL, the function records the figures of each iteration in it. Returns result->status. The status is HF_OK,
  * HF_NOT_CONVERGED, HF_INTERRUPTED if *workspace->stop was set, or the status of an ill-posed net. */
 hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
                            hf_history *history, hf_form_result *result);
@@ -49,7 +49,8 @@ typedef struct {
     void *block;   /* owned memory behind the rows */
 } hf_limits;
 
-/* Data that all designs of a run have in common. The threads share them. The pointers in this struct are borrowed. */
+/* Data that all designs of a run have in common. The threads of a run share these data. The pointers in this struct are
+ * borrowed. */
 typedef struct {
     const hf_model *model;        /* the net */
     const hf_form_settings *form; /* tolerances and bounds of the form-finding */
@@ -59,7 +60,8 @@ typedef struct {
     hf_solver solver; /* solver of the designs (optimize.solver) */
     /* maximum boundary tension ratio; INFINITY: none; a design with a larger ratio gets HF_RATIO_CAP */
     double boundary_ratio_cap;
-    const hf_limits *limits;         /* a shape that violates one of them gets HF_OUT_OF_LIMITS; NULL: there are none */
+    /* limits of the designs; a shape that violates a limit gets HF_OUT_OF_LIMITS; NULL: no limits */
+    const hf_limits *limits;
     const hf_objectives *objectives; /* objectives that form the merit of a shape; NULL: the merit is psi_m */
     int n_thread; /* number of threads that compute the derivatives of one design; 0: the calling thread alone */
     /* Levenberg-Marquardt: a design variable of a tension T sets the force density T/L* instead of the tension. */
@@ -87,8 +89,8 @@ bool hf_evaluate_is_unique(const hf_evaluator *evaluator);
 double hf_evaluate_divisor(const hf_evaluator *evaluator, int i_variable);
 
 /* Allocates the memory in the workspace that the objectives of the evaluator need. Call this function once before
- * designs are evaluated in the workspace. It does nothing if there are no objectives or if it was called before.
- * hf_workspace_free frees the memory. Returns HF_OK or HF_NO_MEMORY. */
+ * designs are evaluated in the workspace. The function does nothing if there are no objectives or if it was called
+ * before. hf_workspace_free frees the memory. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_evaluate_attend(const hf_evaluator *evaluator, hf_workspace *workspace);
 
 /* Finds the shape of the design [model->n_variable] and writes it to the workspace. The array has the values of the
@@ -99,19 +101,19 @@ hf_status hf_evaluate_attend(const hf_evaluator *evaluator, hf_workspace *worksp
 hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design, hf_workspace *workspace,
                       hf_form_result *result);
 
-/* Writes laws, target values and first force densities of the design [n_variable] to the workspace. This is the part of
- * hf_evaluate before the solver. */
+/* Writes laws, target values and first force densities of the design [n_variable] to the workspace. The function does
+ * the part of hf_evaluate before the solver. */
 void hf_evaluate_prepare(const hf_evaluator *evaluator, const double *design, hf_workspace *workspace);
-/* Returns true if hf_evaluate_judge will read the shape in the workspace. It reads the shape for limits, for
- * objectives, or because the boundary tension ratio exceeds its maximum. */
+/* Returns true if hf_evaluate_judge will read the shape in the workspace. hf_evaluate_judge reads the shape for limits,
+ * for objectives, or because the boundary tension ratio exceeds its maximum. */
 bool hf_evaluate_needs_shape(const hf_evaluator *evaluator, const hf_form_result *result);
-/* Applies the constraints to a shape and measures its objectives. This is the part of hf_evaluate after the solver.
- * Sets violation, merit and status of the result. Sets figures to NaN as described at hf_evaluate. Returns
+/* Applies the constraints to a shape and measures its objectives. The function does the part of hf_evaluate after the
+ * solver. Sets violation, merit and status of the result. Sets figures to NaN as described at hf_evaluate. Returns
  * result->status. */
 hf_status hf_evaluate_judge(const hf_evaluator *evaluator, hf_workspace *workspace, hf_form_result *result);
 
-/* Returns the length L* in m by which the pretension of a boundary cable is divided. For a cable of law length it is
- * the prescribed length. For other cables it is the distance between the target positions of the ends. */
+/* Returns the length L* in m by which the pretension of a boundary cable is divided. For a cable of law length, L* is
+ * the prescribed length. For other cables, L* is the distance between the target positions of the ends. */
 double hf_evaluate_design_length_m(const hf_model *model, int i_cable);
 
 HF_API_END

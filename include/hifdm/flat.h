@@ -17,8 +17,8 @@
  * (status.h) convert the number to text. hf_flat_messages returns the errors and warnings of the last call.
  *
  * Memory: the handle borrows the arguments of hf_flat_open, hf_flat_open_net, hf_flat_nodes, hf_flat_cables and
- * hf_flat_sets until hf_flat_free. It copies all other arguments. A returned string is valid until the next call with
- * the same handle.
+ * hf_flat_sets until hf_flat_free. The handle copies all other arguments. A returned string is valid until the next
+ * call with the same handle.
  *
  * Threads: only one thread at a time may use a handle. hf_flat_stop is the exception. A program may use any number of
  * handles at the same time.
@@ -59,8 +59,8 @@ const char *hf_flat_messages(const hf_flat *flat);
 
 /* ---- A case ---- */
 
-/* Opens a case file with the n_set overrides set [n_set], which have the form "key=value". Later evaluations of designs
- * use n_thread threads, or all cores if n_thread is 0. This function does not compute a shape. Call either this
+/* Opens a case file with the n_set overrides set [n_set], which have the form "key=value". Designs are later evaluated
+ * by n_thread threads, or by all cores if n_thread is 0. This function does not compute a shape. Call either this
  * function or hf_flat_open_net once per handle. Returns HF_OK, HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK.
  * A second call returns HF_BAD_USAGE. */
 int hf_flat_open(hf_flat *flat, const char *path, int n_set, const char *const *set, int n_thread);
@@ -75,9 +75,9 @@ void hf_flat_cables(hf_flat *flat, int n_cable, const int *end, const unsigned c
                     const double *value, const double *EA_N, const char *const *cable_id);
 /* Sets the named sets of cables of a net in memory. The rules of hf_flat_nodes apply. */
 void hf_flat_sets(hf_flat *flat, int n_set, const char *const *name, const int *start, const int *cable);
-/* Opens a case whose net is in memory. Otherwise it works like hf_flat_open. The argument `text` is the text of a case
- * file whose scene is import: {nodes: nodes.csv, cables: cables.csv}. The function does not read these two files. The
- * argument `name` is the name of the case in messages. */
+/* Opens a case whose net is in memory. The other rules are those of hf_flat_open. The argument `text` is the text of a
+ * case file whose scene is import: {nodes: nodes.csv, cables: cables.csv}. The function does not read these two files.
+ * The argument `name` is the name of the case in messages. */
 int hf_flat_open_net(hf_flat *flat, const char *name, const char *text, int n_set, const char *const *set,
                      int n_thread);
 
@@ -145,8 +145,8 @@ typedef int hf_flat_observer(void *context, int phase, long done, long all, long
                              double elapsed_s);
 
 /* Runs the case as `hifdm run` does, including its load cases and samples. Writes the result file `output`, unless it
- * is NULL. If `output` is an unfinished file, a later call resumes it, unless restart is not 0. Other threads may call
- * the observer, but only one at a time. The observer may be NULL. Returns the status of hf_run_case, or HF_BAD_USAGE
+ * is NULL. If `output` is an unfinished file, a later call resumes it, unless restart is not 0. Any thread may call the
+ * observer, but only one thread at a time. The observer may be NULL. Returns the status of hf_run_case, or HF_BAD_USAGE
  * without a case. hf_flat_text returns the figures of the run as the list "summary". */
 int hf_flat_run(hf_flat *flat, const char *output, int restart, hf_flat_observer *observer, void *context);
 

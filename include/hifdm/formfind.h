@@ -1,8 +1,9 @@
-/* formfind - finds shape, tensions and residual from force densities. It iterates until the cables obey their laws.
+/* formfind - finds shape, tensions and residual from force densities. The iteration ends when the cables obey their
+ * laws.
  * Stability: stable.
  *
- * The laws of the cables determine the method (METHOD sections 1 and 2). It is classical FDM (Eqs. 1-6), iterative FDM
- * (Eq. 7) or HIFDM (Eqs. 7 and 8). Pipeline of one iteration:
+ * The laws of the cables determine the method (METHOD sections 1 and 2). The method is classical FDM (Eqs. 1-6),
+ * iterative FDM (Eq. 7) or HIFDM (Eqs. 7 and 8). Pipeline of one iteration:
  *
  *   hf_form_assemble         force densities -> matrix D (Eq. 2)
  *   hf_form_assemble_loads   loads and supports -> right-hand sides (Eq. 5)
@@ -24,8 +25,8 @@ HF_API_BEGIN
  * displacement_m, support_displacement_m and loose to zero, and n_moving to n_free. */
 void hf_form_prepare(const hf_model *model, hf_workspace *workspace);
 
-/* Writes the initial positions of a solve to position_m. They are the target positions. The positions of supports that
- * a design moves include support_displacement_m, and those of attachments include displacement_m. */
+/* Writes the initial positions of a solve to position_m. The initial positions are the target positions. The positions
+ * of supports that a design moves include support_displacement_m, and those of attachments include displacement_m. */
 void hf_form_set_supports(const hf_model *model, hf_workspace *workspace);
 
 /* Finds a shape by iteration. The iteration starts from q_N_per_m of the workspace and uses its laws and target values.
@@ -34,17 +35,18 @@ void hf_form_set_supports(const hf_model *model, hf_workspace *workspace);
  * `settings`. Unless `history` is NULL, the function records the figures of each iteration in it. The function does not
  * allocate memory.
  *
- * Returns result->status. It is HF_OK, HF_NOT_CONVERGED, or HF_INTERRUPTED if *workspace->stop was set. If the net is
- * ill-posed, it is HF_SINGULAR, HF_COLLAPSED, HF_NOT_FINITE or HF_STRAIGHT_CHAIN, and result->culprit is the row, cable
- * or chain. */
+ * Returns result->status. The status is HF_OK, HF_NOT_CONVERGED, or HF_INTERRUPTED if *workspace->stop was set. If the
+ * net is ill-posed, it is HF_SINGULAR, HF_COLLAPSED, HF_NOT_FINITE or HF_STRAIGHT_CHAIN, and result->culprit is the
+ * row, cable or chain. */
 hf_status hf_form_find(const hf_model *model, const hf_form_settings *settings, hf_stop_rule stop,
                        hf_workspace *workspace, hf_history *history, hf_form_result *result);
 
 /* Measures the shape in the workspace without solving a system. Sets result->iterations to 0. The function reads
  * position_m, law and target, and also q_N_per_m of cables whose law is not tension. The function sets lengths,
  * tensions, residual and all other figures of the result. The stop reason is HF_STOPPED_CONVERGED if residual and
- * lengths are within their tolerances. Otherwise the status is HF_NOT_CONVERGED, and the stop reason is
- * HF_STOPPED_MAX_ITERATIONS. If a cable has collapsed, the status is HF_COLLAPSED. Returns result->status. */
+ * lengths are within their tolerances. If they are not within their tolerances, the status is HF_NOT_CONVERGED, and the
+ * stop reason is HF_STOPPED_MAX_ITERATIONS. If a cable has collapsed, the status is HF_COLLAPSED. Returns
+ * result->status. */
 hf_status hf_form_measure(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                           hf_form_result *result);
 
@@ -52,8 +54,8 @@ hf_status hf_form_measure(const hf_model *model, const hf_form_settings *setting
 void hf_form_assemble(const hf_model *model, hf_workspace *workspace);
 
 /* Returns the maximum residual force of a node in N, for the shape in the workspace. Writes the nodal forces to
- * force_N. For a cable of law tension the function uses the target tension. For all other cables it uses q l. In a
- * final result, residual_N uses the tension of the law for elastic cables. */
+ * force_N. For a cable of law tension, the function uses the target tension. For a cable of any other law, the function
+ * uses the tension q l. In a final result, residual_N uses the tension of the law for elastic cables. */
 double hf_form_residual_N(const hf_model *model, hf_workspace *workspace);
 
 /* Limits on the length of a cable, relative to its length at the target positions. A cable of law force_density has
@@ -73,16 +75,16 @@ double hf_form_residual_N(const hf_model *model, hf_workspace *workspace);
 hf_status hf_form_accept(const hf_model *model, const hf_form_settings *settings, hf_stop_reason reason, int iterations,
                          hf_workspace *workspace, hf_form_result *result);
 
-/* Sets the result of a design without a shape. The status is `status`, all real figures are NaN, the culprit is -1, and
- * the stop reason is HF_STOPPED_ILL_POSED. */
+/* Sets the result of a design without a shape. Sets result->status to `status`, all real figures to NaN, the culprit to
+ * -1, and the stop reason to HF_STOPPED_ILL_POSED. */
 void hf_form_refuse(hf_status status, int iterations, hf_form_result *result);
 
 /* Writes the right-hand sides (Eq. 5) to the rows of position_m that belong to free nodes. The other rows hold the
  * positions of the supports.
  *
- * This function and the next two functions are for programs with their own linear solver, and for timing. Call these
- * functions in the order of the pipeline at the head of this file. The caller solves the systems of the matrix `band`
- * in place in the free rows of position_m, for x, y and z. */
+ * hf_form_assemble_loads and the next two functions are for programs with their own linear solver, and for timing. Call
+ * these functions in the order of the pipeline at the head of this file. The caller solves the systems of the matrix
+ * `band` in place in the free rows of position_m, for x, y and z. */
 void hf_form_assemble_loads(const hf_model *model, hf_workspace *workspace);
 /* Computes lengths, tensions and the deviations from the laws from the positions. Before the call, result->status must
  * be HF_OK. If the positions are not a valid shape, the status is set to HF_NOT_FINITE, HF_COLLAPSED or HF_SINGULAR.

@@ -12,8 +12,8 @@
  * follow the theory of Euler and Bernoulli or the theory of Timoshenko. The matrix is stored as a lower band in
  * LAPACK's layout. The unknowns are numbered for a small bandwidth.
  *
- * Vectors over the nodes have the shape [n_node][6]. They contain the components along x, y, z in m or N, followed by
- * the components about x, y, z in rad or N m. */
+ * Vectors over the nodes have the shape [n_node][6]. A vector contains the components along x, y, z in m or N, followed
+ * by the components about x, y, z in rad or N m. */
 #ifndef HIFDM_FRAME_H
 #define HIFDM_FRAME_H
 
@@ -54,7 +54,7 @@ typedef struct {
  * without force. Returns HF_NO_MEMORY if memory runs out or the matrix is too large, and HF_NO_LAPACK if LAPACK cannot
  * be loaded. Call hf_frame_free even after a failure. */
 hf_status hf_frame_build(const hf_truss *truss, hf_frame *frame, hf_messages *messages);
-/* Frees the arrays of the frame. Does not free the truss. */
+/* Frees the arrays of the frame. This function does not free the truss. */
 void hf_frame_free(hf_frame *frame);
 
 /* Returns the number of doubles in the array `work` that hf_frame_solve needs for n_case load cases. */
@@ -63,20 +63,20 @@ size_t hf_frame_work_size(const hf_frame *frame, int n_case);
 /* Solves the n_case load cases load [n_case] in one pass over the Cholesky factor. The array work [hf_frame_work_size]
  * is scratch memory. The array displacement [n_case][n_node][6] receives the displacements in m and rad. Supported
  * degrees of freedom receive the settlements. On success returns HF_OK and sets *bad_dof to -1. Returns HF_MECHANISM if
- * a moment acts at a node where nothing resists rotation. In this case *bad_dof is 6 * node + dof, and displacement is
- * unchanged. */
+ * a moment acts at a node where nothing resists rotation. If the status is HF_MECHANISM, *bad_dof is 6 * node + dof,
+ * and displacement is unchanged. */
 hf_status hf_frame_solve(const hf_frame *frame, int n_case, const hf_frame_load *load, double *work,
                          double *displacement, int *bad_dof);
 
 /* Computes the reactions in a load case from its displacement [n_node][6]. The array reaction [n_node][6] receives the
  * forces of the supports on the truss, and 0 at free degrees of freedom. The array residual [n_node][6] receives the
- * residual forces at free degrees of freedom, and 0 at supported ones. It may be NULL. */
+ * residual forces at free degrees of freedom, and 0 at supported ones. The array `residual` may be NULL. */
 void hf_frame_reactions(const hf_frame *frame, const hf_frame_load *load, const double *displacement, double *reaction,
                         double *residual);
 
 /* Computes the member forces in a load case from its displacement [n_node][6]. The array end_force [n_member][12]
- * receives the forces of the nodes on the member in local axes. They are Nx, Vy, Vz, Tx, My, Mz at end i, followed by
- * those at end j, in N and N m. If Nx > 0 at end i, the member is under compression. */
+ * receives the forces of the nodes on the member in local axes. The forces are Nx, Vy, Vz, Tx, My, Mz at end i,
+ * followed by those at end j, in N and N m. If Nx > 0 at end i, the member is under compression. */
 void hf_frame_member_forces(const hf_frame *frame, const hf_frame_load *load, const double *displacement,
                             double *end_force);
 
@@ -84,9 +84,10 @@ void hf_frame_member_forces(const hf_frame *frame, const hf_frame_load *load, co
  * elastic strain, not thermal expansion. */
 double hf_frame_strain_energy(const hf_frame *frame, const hf_frame_load *load, const double *displacement);
 
-/* Computes the flexibility F of the nodes node [n_point] (Eq. 15, condensed). The matrix flexibility_m_per_N [3
- * n_point][3 n_point] has the entries by row 3*i+c and column 3*k+d. Such an entry is the displacement of node[i] along
- * c under a unit force on node[k] along d. The matrix is exactly symmetric. Returns HF_OK or HF_NO_MEMORY. */
+/* Computes the flexibility F of the nodes node [n_point] (Eq. 15, condensed). The entry in row 3*i+c and column 3*k+d
+ * of flexibility_m_per_N [3 n_point][3 n_point] belongs to direction c at node[i] and direction d at node[k]. The entry
+ * is the displacement of node[i] along c under a unit force on node[k] along d. The flexibility matrix is exactly
+ * symmetric. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_frame_condense(const hf_frame *frame, int n_point, const int *node, double *flexibility_m_per_N);
 
 HF_API_END

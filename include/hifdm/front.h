@@ -1,12 +1,13 @@
-/* front - the designs of a Pareto front of optimize.front. No design is better than another one in all objectives.
+/* front - the designs of a Pareto front of optimize.front. No design of the front is better than another one in all
+ * objectives.
  * Stability: internal; this header may change in any version.
  *
  * Levenberg-Marquardt and the genetic algorithm produce the same struct. The program stores, prints, compares and draws
  * it. Pipeline: hf_front_create -> objectives, designs and statuses of the points -> hf_front_settle ->
  * hf_front_tabulate.
  *
- * The objectives are those of optimize.front, in the same order and units. All of them are minimised. A point that is
- * not on the front is marked, but never omitted. */
+ * The objectives are those of optimize.front, in the same order and units. All objectives of a front are minimised. A
+ * point that is not on the front is marked, but never omitted. */
 #ifndef HIFDM_FRONT_H
 #define HIFDM_FRONT_H
 
@@ -31,14 +32,14 @@ extern const char *const hf_front_mark_word[HF_FRONT_N_MARK + 1]; /* the last en
 /* One point of a front. */
 typedef struct {
     double objective[HF_FRONT_OBJECTIVES_MAX]; /* values of the objectives; NaN for a failed point */
-    /* Slope of the front, >= 0. It is the decrease of objective `minimised` for an increase of each other objective by
-     * one unit. Both are in the units of their objectives. The slope is NaN for `minimised` itself, and if the method
-     * computes no slope. */
+    /* Slope of the front, >= 0. The slope is the decrease of objective `minimised` for an increase of each other
+     * objective by one unit. The decrease and the increase are in the units of their objectives. The slope is NaN for
+     * `minimised` itself, and if the method computes no slope. */
     double multiplier[HF_FRONT_OBJECTIVES_MAX];
     hf_status status;   /* status of the design of this point */
     hf_front_mark mark; /* whether the point is on the front, dominated or failed */
     int steps;          /* number of steps of Levenberg-Marquardt; 0 for the genetic algorithm */
-    bool is_converged;  /* Levenberg-Marquardt has converged; if it is false, there is no multiplier */
+    bool is_converged;  /* true: Levenberg-Marquardt has converged; false: there is no multiplier */
 } hf_front_point;
 
 /* A Pareto front with its designs. */
@@ -53,9 +54,9 @@ typedef struct {
     void *block;           /* owned memory behind `point` and `design` */
 } hf_front;
 
-/* A Pareto front without its designs, as stored in a summary. It contains n_row of the n_point points. If there are
- * more than HF_FRONT_POINTS_MAX points, the table contains the ends, the knee and as many evenly spaced other points as
- * fit. */
+/* A Pareto front without its designs, as stored in a summary. The table contains n_row of the n_point points. If there
+ * are more than HF_FRONT_POINTS_MAX points, the table contains the ends, the knee and as many evenly spaced other
+ * points as fit. */
 typedef struct {
     /* Counts of the whole front, and `minimised` as in hf_front. */
     int n_objective, n_point, n_row, n_on, n_dominated, n_failed, minimised;
@@ -68,8 +69,8 @@ typedef struct {
     hf_front_point row[HF_FRONT_POINTS_MAX]; /* [n_row] the points */
 } hf_front_table;
 
-/* Allocates a front of n_point points. All values are 0. Returns HF_OK or HF_NO_MEMORY. Call hf_front_free even after a
- * failure. */
+/* Allocates a front of n_point points. All values of the new front are 0. Returns HF_OK or HF_NO_MEMORY. Call
+ * hf_front_free even after a failure. */
 hf_status hf_front_create(int n_objective, int n_variable, int n_point, hf_front *front);
 /* Frees points and designs. Sets `minimised` and `knee` to -1. */
 void hf_front_free(hf_front *front);
@@ -82,12 +83,12 @@ void hf_front_settle(hf_front *front);
 /* Sets all members of the table except wall_s. The front must have been completed by hf_front_settle. */
 void hf_front_tabulate(const hf_front *front, hf_front_table *table);
 
-/* Returns true if the objectives do not conflict. This is the case if one design is best in all objectives and no point
- * has failed. */
+/* Returns true if the objectives do not conflict. The objectives do not conflict if one design is best in all of them
+ * and no point has failed. */
 bool hf_front_agrees(const hf_front_table *table);
 
-/* Returns the number, counted from 1, of the point to examine first. This is the knee, or an end if there is no knee.
- * Returns 0 if the front is empty. */
+/* Returns the number, counted from 1, of the point to examine first. The point is the knee, or an end if there is no
+ * knee. Returns 0 if the front is empty. */
 int hf_front_suggested(const hf_front_table *table);
 
 /* Returns true if no objective of a [n_objective] is larger than in b [n_objective] and at least one is smaller. */

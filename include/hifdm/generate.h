@@ -163,12 +163,13 @@ void hf_scene_parabolic_cylinder_surface(const hf_cylinder *cylinder, hf_surface
 /* The grid of a net over a paraboloid. */
 typedef enum { HF_GRID_TRIANGLE, HF_GRID_QUAD } hf_grid;
 
-/* Words of hf_grid in a case file. The last entry is NULL. */
+/* Words of hf_grid in a case file. The last entry of the array is NULL. */
 extern const char *const hf_grid_word[3];
 
 /* A net over the paraboloid z = (x^2 + y^2)/(4 f). The net is above the circle of the aperture, whose centre is at x =
  * offset_m. The rim of the front net is in the plane z_rim(x). The rear net is the surface z_rim - rear_distance_m +
- * (R^2 - r^2)/(4 f_rear). Here r is the distance from the axis of the aperture, and R is the radius of the aperture. */
+ * (R^2 - r^2)/(4 f_rear). In this equation, r is the distance from the axis of the aperture, and R is the radius of the
+ * aperture. */
 typedef struct {
     double aperture_m;     /* diameter of the aperture */
     double focal_length_m; /* focal length f */
@@ -207,8 +208,8 @@ typedef struct {
 hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N[2], hf_scene *scene,
                               hf_messages *messages);
 /* Finds the supports of the front net in the order of their angle from x towards y. The function sets *n to the number
- * of supports and *position_m to an array of their positions [n][3] in m. The array comes from malloc. The caller must
- * free it even after a failure. Returns HF_OK or HF_NO_MEMORY. */
+ * of supports and *position_m to an array of their positions [n][3] in m. The array *position_m is allocated with
+ * malloc. The caller must free it even after a failure. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **position_m);
 /* Returns the member whose value cannot be realised and writes the reason to what[size]. Returns NULL if there is no
  * fault. */

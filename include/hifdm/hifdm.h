@@ -8,25 +8,25 @@
  * Stability: the comment at the head of each header states whether the header is stable or internal. A program that
  * uses only stable headers compiles with later versions and behaves in the same way, unless CHANGELOG.md lists a
  * change. A later version may add members to structs. Initialise structs to zero, set members by name, and recompile
- * for each version. An internal header is installed only because a stable header needs its types. Its names and their
- * meaning may change in any version.
+ * for each version. An internal header is installed only because a stable header needs its types. The names in an
+ * internal header and their meaning may change in any version.
  *
  * Units: all quantities are in SI units. The last part of a name is the unit (psi_m, tension_N, q_N_per_m, wall_s). A
  * quantity without a unit in its name is dimensionless.
  *
- * Shapes: [n_cable][2] means n_cable consecutive rows of 2 numbers. Indices start at 0, and -1 means that there is
- * none.
+ * Shapes: [n_cable][2] means n_cable consecutive rows of 2 numbers. Indices start at 0. The index -1 means that there
+ * is none.
  *
  * Source: "Eq. n" and "Fig. n" refer to Chen et al., Aerospace 2022, 9, 239. "METHOD section n" and (Mn) refer to
  * src/METHOD.md.
  *
- * Errors: a function that can fail returns hf_status (HF_OK is 0). If it has an argument hf_messages, it also adds a
- * message about the fault. No function ends the program. A function prints only to a stream that the caller passes. An
- * invalid call fails an assert. If a design has no shape, its result contains the status. Figures without a value are
- * NaN.
+ * Errors: a function that can fail returns hf_status (HF_OK is 0). If the function has an argument hf_messages, it also
+ * adds a message about the fault. No function ends the program. A function prints only to a stream that the caller
+ * passes. An invalid call fails an assert. If a design has no shape, its result contains the status. Figures without a
+ * value are NaN.
  *
- * Memory: hf_THING_free frees the memory that the struct hf_THING owns. It also sets the struct to all zero unless the
- * comment of the function states otherwise. The function hf_THING_free may be called with a struct that is all zero. A
+ * Memory: hf_THING_free frees the memory that the struct hf_THING owns. Each such function also sets the struct to all
+ * zero unless its comment states otherwise. The function hf_THING_free may be called with a struct that is all zero. A
  * "borrowed" argument must outlive the struct that borrows it.
  *
  * Threads: the library keeps no state outside its structs. A scene, model, truss, frame, carrier or evaluator does not
@@ -36,7 +36,7 @@
  * Waiting: threads that wait for other threads spin for a long time unless environment variables change this
  * (hf_batch_wait_quietly).
  *
- * GSL: the GSL library has one error handler for the whole program. By default the error handler ends the program even
+ * GSL: the GSL library has one error handler for the whole program. By default this error handler ends the program even
  * if GSL only reports "no progress". Call gsl_set_error_handler_off() (gsl/gsl_errno.h) before hf_surface_measure and
  * hf_surface_fit_points, and before hf_run_case if the case has a section surface. */
 #ifndef HIFDM_HIFDM_H

@@ -13,13 +13,13 @@ HF_API_BEGIN
 /* A cable is slack if its tension is below this fraction of the reference tension. */
 #define HF_SLACK_RATIO 1e-3
 
-/* Returns psi in m, the RMS distance of the inner nodes from their target positions (Eqs. 9, 10). psi does not include
- * loose nodes. It is NaN if all inner nodes are loose. */
+/* Returns psi in m, the RMS distance of the inner nodes from their target positions (Eqs. 9, 10). Loose nodes are not
+ * included. If all inner nodes are loose, psi is NaN. */
 double hf_metrics_psi_m(const hf_model *model, const hf_workspace *workspace);
 
 /* Returns the ratio of the maximum to the minimum tension in a group of cables. Returns NaN if the group is empty or
- * contains a strut. Otherwise returns INFINITY if a cable is slack, because the remaining tension of a slack cable is
- * only rounding. */
+ * contains a strut. If the group has no strut but a cable is slack, returns INFINITY, because the remaining tension of
+ * a slack cable is only rounding. */
 double hf_metrics_tension_ratio(const hf_model *model, const hf_workspace *workspace, hf_group group);
 
 /* Returns the tension ratio of the n cables cable [n], computed as in hf_metrics_tension_ratio. */

@@ -1,4 +1,5 @@
-/* model - a scene that is prepared for solving. It adds numbering, matrix band, laws, loads and design variables.
+/* model - a scene that is prepared for solving. A model adds numbering, matrix band, laws, loads and design variables
+ * to its scene.
  * Stability: stable.
  *
  * Pipeline:
@@ -25,7 +26,7 @@ HF_API_BEGIN
 
 /* A chain is straight if the relative excess of its length over the distance of its supports is below this limit. The
  * sag of such a chain would be below 2e-5 of its span, and its tension above 1e4 times its load. The tests of model,
- * solve and stress also pass with limits of 1e-10 and 1e-8. With limits of 1e-11 and 1e-7, one test of the model fails
+ * solve and stress also pass with limits of 1e-10 and 1e-8. With a limit of 1e-11 or 1e-7, one test of the model fails
  * (straight_chains_are_found). */
 #define HF_STRAIGHT_EXCESS 1e-9
 
@@ -44,8 +45,8 @@ typedef struct {
     int half_bandwidth; /* number of matrix columns of D below the diagonal */
     int n_band;         /* n_free * (half_bandwidth + 1); the entry behind the band collects the terms of supports */
     bool has_strut;     /* at least one force density is negative, so D may be indefinite */
-    /* Workspaces hold a Newton matrix. This requires a convex energy and a law that iterates or a call of
-     * hf_model_want_newton. */
+    /* Workspaces hold a Newton matrix. A Newton matrix requires a convex energy. It also requires a law that iterates
+     * or a call of hf_model_want_newton. */
     bool has_newton;
     bool by_lapack;      /* LAPACK factors the positive definite matrices (form.factor) */
     double pretension_N; /* pretension Td of the case */
@@ -66,10 +67,10 @@ typedef struct {
     double *EA_N;                    /* [n_cable] axial stiffness; NULL if no law in force needs it */
     double *start_q_N_per_m;         /* [n_cable] first force densities */
 
-    /* Design variables are the variables of optimize.variables. By default they are the pretensions of the boundary
-     * cables with a free end. If exactly two of their cables meet at a free node, the two design variables belong to
-     * the same group, called a chain. Unequal changes within a chain push its nodes along the chain, and equal changes
-     * change its sag. */
+    /* Design variables are the variables of optimize.variables. By default the design variables are the pretensions of
+     * the boundary cables with a free end. If exactly two varied cables meet at a free node, their design variables
+     * belong to the same group, called a chain. Unequal changes within a chain push its nodes along the chain, and
+     * equal changes change its sag. */
     int n_variable, n_variable_group; /* numbers of design variables and of chains */
     int *variable_cable;              /* [n_variable] varied cable; -1: the variable displaces a support */
     int *variable_group;              /* [n_variable] index of the chain, 0 to n_variable_group-1 */
@@ -81,10 +82,10 @@ typedef struct {
     int n_leader;         /* number of classes, which is the number of independent design variables */
     int *variable_leader; /* [n_variable] first design variable of the class; without links, the variable itself */
 
-    /* A chain is a path of at least two cables of law length between two supports. It passes only through free nodes
-     * that have no other cable of law length. Straight chains come first. Their total length L* does not exceed the
-     * distance of their supports. The straight chains may include one path that is too short and passes through nodes
-     * where chains branch. */
+    /* A chain is a path of at least two cables of law length between two supports. The path passes only through free
+     * nodes that have no other cable of law length. The list of chains begins with the straight chains. The total
+     * length L* of a straight chain does not exceed the distance of its supports. The straight chains may include one
+     * path that is too short and passes through nodes where chains branch. */
     int n_chain;       /* number of straight chains */
     int n_any_chain;   /* number of all chains */
     int *chain_start;  /* [n_any_chain + 1] first cable of each chain in chain_cable */
@@ -110,8 +111,9 @@ hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf
 /* Connects supports with a truss. The support node[i] of the scene becomes attachment i of n_attachment > 0. Forces on
  * the attachments displace them according to flexibility_m_per_N [3 n_attachment][3 n_attachment]. The function copies
  * the matrix and makes it exactly symmetric. All other supports remain fixed. A cable of law length between an
- * attachment and another support would act as a rigid rod in the truss. Such a cable therefore gets law tension with
- * its first tension. Call this function at most once per model, before workspaces for the model are created.
+ * attachment and another support would act as a rigid rod in the truss. A cable between an attachment and another
+ * support therefore gets law tension with its first tension. Call this function at most once per model, before
+ * workspaces for the model are created.
  *
  * Returns HF_OK or HF_NO_MEMORY. If an argument is invalid, returns HF_BAD_CASE with a message that contains the index
  * of the attachment. A node is invalid if it is not a support or occurs twice. The matrix is invalid if it is not
@@ -129,14 +131,15 @@ void hf_model_want_newton(hf_model *model);
  * The argument pretension_N is Td. */
 double hf_model_reference_N(const hf_scene *scene, double pretension_N);
 
-/* Returns the quantity that design variable i_variable sets. Without optimize.variables it is HF_VARY_PRETENSION. */
+/* Returns the quantity that design variable i_variable sets. Without optimize.variables the quantity is
+ * HF_VARY_PRETENSION. */
 static inline hf_vary hf_model_vary(const hf_model *model, int i_variable)
 {
     return model->variable ? model->variable[i_variable].vary : HF_VARY_PRETENSION;
 }
 
 /* Numbers the chains of the design variables (variable_group, n_variable_group). Removes the links between the
- * variables (variable_leader, n_leader). This function is for code that sets variable_cable. Returns HF_OK or
+ * variables (variable_leader, n_leader). The function is for code that sets variable_cable. Returns HF_OK or
  * HF_NO_MEMORY. */
 hf_status hf_model_group_variables(hf_model *model);
 
@@ -149,7 +152,7 @@ void hf_model_variable_name(const hf_model *model, const hf_scene *scene, int i_
 /* Returns the unit of a design variable as a constant string: "N", "N/m" or "m". */
 const char *hf_model_variable_unit(const hf_model *model, int i_variable);
 
-/* Returns true if all indices of the model satisfy their invariants. This function is for asserts and tests. */
+/* Returns true if all indices of the model satisfy their invariants. The function is for asserts and tests. */
 bool hf_model_is_valid(const hf_model *model);
 
 /* Writes the cables of a chain to text[size] in the form "cable + cable + cable". A text that does not fit is truncated

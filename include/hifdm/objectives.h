@@ -14,9 +14,9 @@
  * The value of the objectives pull and deflection is the maximum of several quantities s. The residuals of these
  * objectives have the smooth norm (sum s^16)^(1/16) instead of the maximum. For n quantities, this norm is between
  * their maximum and n^(1/16) times their maximum. The merit uses the smooth norm. A ratio is the product of the maximum
- * tension and the maximum of 1/tension. Both maxima are smoothed in the same way. The value of an objective is NaN or
- * infinite if the shape has no such value. Examples are psi if all nodes are loose, a surface without a best fit, and
- * the ratio of a set with a slack cable. */
+ * tension and the maximum of 1/tension. Both maxima of a ratio are smoothed in the same way as pull and deflection. The
+ * value of an objective is NaN or infinite if the shape has no such value. Examples are psi if all nodes are loose, and
+ * the ratio of a set with a slack cable. A surface without a best fit also has no value. */
 #ifndef HIFDM_OBJECTIVES_H
 #define HIFDM_OBJECTIVES_H
 
@@ -29,11 +29,11 @@ HF_API_BEGIN
 /* One objective. */
 typedef struct {
     hf_objective_settings settings; /* row of the case for this objective */
-    int n_cable;                    /* number of cables in its set */
-    int *cable;                     /* [n_cable] cables of its set, ascending; NULL without a set */
+    int n_cable;                    /* number of cables in the set of the objective */
+    int *cable;                     /* [n_cable] cables of the set, in ascending order; NULL without a set */
     int n_shape_row;                /* number of residuals of one shape */
-    int first_net, n_net; /* as-built nets on which it is measured; n_net 0: it is measured on the design itself */
-    int first_row, n_row; /* its rows among all residuals; the rows of one shape follow those of another */
+    int first_net, n_net;           /* as-built nets on which the objective is measured; n_net 0: the design itself */
+    int first_row, n_row;           /* rows of the objective among all residuals, one shape after the other */
 } hf_objective;
 
 /* Rates of change of a shape with respect to a design variable, per unit of the variable. */
@@ -44,13 +44,13 @@ typedef struct {
     const double *displacement_m;
 } hf_objectives_rate;
 
-/* Receives the shape of as-built net i_net. The argument is NULL if the net has no shape. Only the fields position_m,
- * tension_N, length_m, displacement_m and loose of the workspace are valid. */
+/* Receives the shape of as-built net i_net. The argument is NULL if the as-built net has no shape. Only the fields
+ * position_m, tension_N, length_m, displacement_m and loose of the workspace are valid. */
 typedef void hf_objectives_take(void *context, int i_net, const hf_workspace *shape);
 
-/* The as-built nets of a design on which objectives may be measured. They are its load cases, followed by samples of
- * its errors. The module that makes these nets (built/built_nets.h) depends on this module, so it supplies the
- * functions. A shape depends only on the design and on the number of the net. */
+/* The as-built nets of a design on which objectives may be measured. The nets are the load cases of the design,
+ * followed by samples of its errors. The module that makes these nets (built/built_nets.h) depends on this module, so
+ * it supplies the functions. A shape depends only on the design and on the number of the net. */
 typedef struct hf_objectives_nets {
     int n_load_case, n_sample;         /* number of load cases and number of samples */
     const char *const *load_case_name; /* [n_load_case] names of the load cases */
@@ -59,15 +59,15 @@ typedef struct hf_objectives_nets {
     hf_status (*open)(const struct hf_objectives_nets *nets, void **room);
     /* Frees the scratch memory of a thread. */
     void (*close)(void *room);
-    /* Cuts the as-built nets for the design whose shape is in the workspace. The functions below then refer to this
-     * design. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE if the cables cannot be cut. */
+    /* Cuts the as-built nets for the design whose shape is in the workspace. The other functions of this struct then
+     * refer to this design. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE if the cables cannot be cut. */
     hf_status (*cut)(void *room, const hf_workspace *design);
     /* Finds the shapes of the nets first to first + n - 1 and calls `take` for each net. The calls are made in the
      * calling thread, in any order. */
     void (*solve)(void *room, int first, int n, hf_objectives_take *take, void *context);
     /* Finds the shape of one net and factors the matrix of the net in this shape. Sets *shape to the workspace, which
-     * `room` owns. Returns HF_OK, HF_NO_MEMORY, or HF_NOT_FINITE if the net has no shape. After HF_OK, `follow` refers
-     * to this net. */
+     * `room` owns. Returns HF_OK, HF_NO_MEMORY, or HF_NOT_FINITE if the net has no shape. If the status is HF_OK,
+     * `follow` then refers to this net. */
     hf_status (*linearise)(void *room, int i_net, const hf_workspace **shape);
     /* Converts n <= HF_OBJECTIVES_AT_ONCE rates of the design to rates of the net. The array by_net [n] points to
      * arrays that `room` owns. */
@@ -112,17 +112,17 @@ typedef struct hf_objectives_point {
  * objective is psi. The truss must already be attached to the model. The arguments `surface` and `facets` may be NULL
  * if no objective needs them. The argument `nets` is borrowed and may be NULL if all objectives are measured on the
  * design. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if there would be too many residuals, or if a row needs
- * data that this scene does not have. There is a message for each such row. Call hf_objectives_free even after a
- * failure. */
+ * data that this scene does not have. The function adds a message for each row that needs missing data. Call
+ * hf_objectives_free even after a failure. */
 hf_status hf_objectives_create(const hf_scene *scene, const hf_model *model, const hf_optimize_settings *settings,
                                const hf_surface_settings *surface, const hf_facets *facets,
                                const hf_objectives_nets *nets, hf_objectives *objectives, hf_messages *messages);
 /* Frees the objectives. */
 void hf_objectives_free(hf_objectives *objectives);
 
-/* Writes the name of objective i_objective, as used in tables, to `text`. Examples are objective_0_psi and, for a set,
- * objective_1_tension_edge. If the objective is measured on load cases or samples, the name ends with a suffix for
- * these. Returns the argument `text`. */
+/* Writes the name of objective i_objective, as used in tables, to `text`. Examples of names are objective_0_psi and,
+ * for a set, objective_1_tension_edge. If the objective is measured on load cases or samples, the name ends with a
+ * suffix for these. Returns the argument `text`. */
 const char *hf_objectives_name(const hf_objectives *objectives, int i_objective, char text[HF_OBJECTIVE_NAME_SIZE]);
 
 /* Allocates the memory of one thread for these objectives. Returns HF_OK or HF_NO_MEMORY. Call hf_objectives_point_free

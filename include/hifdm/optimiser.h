@@ -41,8 +41,8 @@ typedef struct {
      * function sets its `pending` to 0 and sets its result. Several threads call this function at the same time, each
      * with different individuals, in any order. */
     void (*propose)(void *state, const hf_population *now, hf_population *next, int i);
-    /* Selects the survivors after `now` is evaluated. They are the individuals of `now` and `before` that form the
-     * generation. If this function is NULL, all individuals of `now` survive. */
+    /* Selects the survivors after `now` is evaluated. The survivors are the individuals of `now` and `before` that form
+     * the generation. If this function is NULL, all individuals of `now` survive. */
     void (*survive)(void *state, const hf_population *before, hf_population *now);
     void (*free)(void *state); /* frees the state, which may be NULL */
 } hf_optimiser_kind;
@@ -78,10 +78,10 @@ bool hf_optimiser_begin(hf_optimiser *optimiser);
 /* Proposes individual i in the arrays of optimiser->next. The individual may be evaluated immediately afterwards.
  * Several threads may call this function at the same time, each with different individuals. */
 void hf_optimiser_propose(hf_optimiser *optimiser, int i);
-/* Makes optimiser->next the present generation. All its individuals must have been proposed. */
+/* Makes optimiser->next the present generation. All individuals of the generation must have been proposed. */
 void hf_optimiser_end(hf_optimiser *optimiser);
 
-/* Frees the population and the state. Does not free settings or model. */
+/* Frees the population and the state. This function does not free settings or model. */
 void hf_optimiser_free(hf_optimiser *optimiser);
 
 /* ---- the methods of a case ---- */

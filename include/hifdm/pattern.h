@@ -82,7 +82,7 @@ int hf_pattern_angles(const hf_far_field *pattern);
 hf_status hf_pattern_create(const hf_pattern_settings *settings, const hf_pattern_surface *surface, const hf_feed *feed,
                             double frequency_Hz, int n_thread, hf_far_field *pattern);
 
-/* Sums block i < HF_PATTERN_BLOCKS of the surface, with the scratch memory of thread number `room`. The function is a
+/* Sums block i < HF_PATTERN_BLOCKS of the surface, with the scratch memory of thread number `room`. This function is a
  * callback for hf_parallel_each. The argument `pattern` points to the hf_far_field. The sums do not depend on the
  * thread number. */
 void hf_pattern_sum_block(void *pattern, int room, int i);

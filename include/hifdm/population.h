@@ -2,7 +2,7 @@
  * Stability: stable.
  *
  * An optimiser (optimiser.h) proposes the designs, a batch evaluates them, and a store saves them. The functions of
- * this header rank the results. They do not determine how the next generation is made. */
+ * this header rank the results. The functions of this header do not determine how the next generation is made. */
 #ifndef HIFDM_POPULATION_H
 #define HIFDM_POPULATION_H
 
@@ -36,15 +36,17 @@ typedef struct {
     double *reach;         /* [n_variable] maximum distance of the designs of generation 0 from `initial` */
 
     /* The optimiser writes the following arrays. The batch writes the results of designs that are marked as pending. */
-    double *design;         /* [n_individual][n_variable] values of the design variables */
-    hf_form_result *result; /* [n_individual] results; a result is valid from the start if its `pending` is 0 */
-    unsigned char *pending; /* [n_individual] 1: the design must be evaluated */
+    double *design; /* [n_individual][n_variable] values of the design variables */
+    /* [n_individual] results; a result is valid from the start if `pending` is 0 for its individual */
+    hf_form_result *result;
+    unsigned char *pending;                 /* [n_individual] 1: the design must be evaluated */
     double *crossover_rate, *mutation_rate; /* [n_individual] rates with which the trial was made; NaN: none */
     /* [n_individual][2] indices of the parents in the previous generation; -1: none. The pair k, -1 means that
      * individual k of the previous generation was kept. */
     int *parent;
 
-    /* hf_optimiser_tell writes the following arrays. They describe each proposed design, whether or not it survived. */
+    /* hf_optimiser_tell writes the following arrays. The arrays describe each proposed design, whether or not it
+     * survived. */
     hf_status *trial_status; /* [n_individual] status of the proposed design */
     double *trial_psi_m;     /* [n_individual] psi of the proposed design */
 
@@ -65,8 +67,9 @@ typedef struct {
 /* Creates a population whose designs are all zero. The function copies the initial design initial [n_variable]. The
  * bounds are `initial` -+ range_N within [min_tension_N, max_tension_N], or those of the row of optimize.variables.
  * Design variables with the same leader change by the same step, so they have common bounds on this step. The
- * population `next` gets its own arrays for a second generation. It shares the other arrays and the memory block with
- * `population`. Returns HF_OK or HF_NO_MEMORY. Free `population` even after a failure. Do not free `next`. */
+ * population `next` gets its own arrays for a second generation. The population `next` shares the other arrays and the
+ * memory block with `population`. Returns HF_OK or HF_NO_MEMORY. Free `population` even after a failure. Do not free
+ * `next`. */
 hf_status hf_population_create(const hf_optimize_settings *settings, const hf_model *model, const double *initial,
                                hf_population *population, hf_population *next);
 /* Frees the arrays of the population and the arrays of `next`. */
@@ -87,19 +90,21 @@ void hf_population_keep_better(const hf_population *before, hf_population *popul
  * population->generation. */
 void hf_population_advance(hf_population *population, hf_population *next);
 
-/* Sets best, mean, worst, counts and stop_reason from the results of this generation. All results must be available. */
+/* Sets best, mean, worst, counts and stop_reason from the results of this generation. All results of the generation
+ * must be available. */
 void hf_population_rank(const hf_optimize_settings *settings, hf_population *population);
 
-/* Returns the amount by which a result violates its constraints. It is 0 for a feasible result, INFINITY without a
- * shape, and result->violation otherwise. */
+/* Returns the amount by which a result violates its constraints. The amount is 0 for a feasible result, INFINITY
+ * without a shape, and result->violation otherwise. */
 double hf_population_violation(const hf_form_result *result);
 
-/* Returns the minimised figure of a feasible result. It is the merit, or the first objective of a Pareto front. */
+/* Returns the minimised figure of a feasible result. The figure is the merit, or the first objective of a Pareto
+ * front. */
 double hf_population_merit(const hf_population *population, const hf_form_result *result);
 
 /* Returns true if individual a is better than individual b. Feasible individuals are ordered by merit, or by their
- * objectives in turn. They come before infeasible individuals, which are ordered by violation (Deb 2000). If two
- * individuals are equal, the one with the lower index is better. */
+ * objectives in turn. Feasible individuals come before infeasible individuals, which are ordered by violation (Deb
+ * 2000). If two individuals are equal, the one with the lower index is better. */
 bool hf_population_is_better(const hf_population *population, int a, int b);
 
 /* Returns the value within the bounds of design variable i_variable that is closest to value_N. */
@@ -109,7 +114,7 @@ static inline double hf_population_clamp(const hf_population *population, int i_
     return value_N < low ? low : value_N > high ? high : value_N;
 }
 
-/* Updates the design variables of design [n_variable] that follow a leader. Each of them is set to its value in
+/* Updates the design variables of design [n_variable] that follow a leader. A following variable is set to its value in
  * `initial` plus the step of its leader, within its own bounds. */
 void hf_population_link(const hf_population *population, const hf_model *model, double *design);
 

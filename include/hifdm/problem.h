@@ -54,7 +54,7 @@ typedef struct {
  * (hf_batch_share). The function ignores a section sweep. If model.n_variable is 0, there are no design variables.
  *
  * Returns HF_OK. Returns HF_BAD_CASE with messages about all faults. Returns HF_NOT_CONVERGED or the status of an
- * ill-posed net with messages that contain the cables or nodes. Other failures are HF_MECHANISM, HF_NO_MEMORY and
+ * ill-posed net with messages that contain the cables or nodes. The other failures are HF_MECHANISM, HF_NO_MEMORY and
  * HF_NO_LAPACK. Every failure adds an error message. If the form-finding fails, `form` and `workspace` contain its last
  * state, and there is no batch. Call hf_problem_free even after a failure. */
 hf_status hf_problem_open(const char *path, const char *const *set, int n_set, int n_thread, hf_problem *problem,
@@ -63,13 +63,13 @@ hf_status hf_problem_open(const char *path, const char *const *set, int n_set, i
 /* Returns true if designs have a merit. With optimize.front, designs have no merit. */
 bool hf_problem_has_merit(const hf_problem *problem);
 
-/* Writes the list of the figures of a design to `field`, in the order of the figures. Returns the number of figures. It
- * is HF_RESULT_N_INDIVIDUAL unless designs have no merit. */
+/* Writes the list of the figures of a design to `field`, in the order of the figures. Returns the number of figures.
+ * The number is HF_RESULT_N_INDIVIDUAL unless designs have no merit. */
 int hf_problem_list_figures(const hf_problem *problem, const hf_result_field *field[HF_RESULT_N_INDIVIDUAL]);
 
-/* Returns the number of figures with derivatives with respect to the design variables. These figures are the value of
- * each objective and, without optimize.front, the merit. If there are no objectives, the only figure with derivatives
- * is psi_m. */
+/* Returns the number of figures with derivatives with respect to the design variables. The figures with derivatives are
+ * the value of each objective and, without optimize.front, the merit. If there are no objectives, the only figure with
+ * derivatives is psi_m. */
 int hf_problem_n_slope(const hf_problem *problem);
 /* Writes the name of figure i_slope with derivatives to text. The name is that of its objective, "merit" or "psi_m".
  * Returns the argument `text`. */
@@ -77,15 +77,15 @@ const char *hf_problem_slope_name(const hf_problem *problem, int i_slope, char t
 
 /* Computes the exact derivatives of the hf_problem_n_slope figures (METHOD section 7). The array design [n][n_variable]
  * has n designs, and result [n] has their results from hf_batch_run. The array slope [feasible
- * designs][n_slope][n_variable] receives the derivatives with respect to each single design variable, in the unit of
- * the figure per unit of the variable. The derivatives do not include the weights of the objectives. If an objective is
- * a maximum of several quantities, the derivatives are those of its smooth maximum. If a figure is 0, its derivatives
- * are NaN. The function overwrites problem->workspace. Returns HF_OK or HF_NO_MEMORY. If there are no derivatives
- * (hf_problem_has_slopes), returns HF_BAD_CASE with a message. */
+ * designs][n_slope][n_variable] receives the derivatives with respect to each single design variable. Their unit is the
+ * unit of the figure per unit of the variable. The derivatives do not include the weights of the objectives. If an
+ * objective is a maximum of several quantities, the derivatives are those of its smooth maximum. If a figure is 0, its
+ * derivatives are NaN. The function overwrites problem->workspace. Returns HF_OK or HF_NO_MEMORY. If there are no
+ * derivatives (hf_problem_has_slopes), returns HF_BAD_CASE with a message. */
 hf_status hf_problem_slopes(hf_problem *problem, int n, const double *design, const hf_form_result *result,
                             double *slope, hf_messages *messages);
-/* Returns HF_OK if designs of this problem have derivatives. Otherwise returns HF_BAD_CASE with a message. There are no
- * derivatives for nets with struts, under rule seeded, and for quantiles. */
+/* Returns HF_OK if designs of this problem have derivatives. If designs have no derivatives, returns HF_BAD_CASE with a
+ * message. There are no derivatives for nets with struts, under rule seeded, and for quantiles. */
 hf_status hf_problem_has_slopes(const hf_problem *problem, hf_messages *messages);
 
 /* Frees all members of the problem. */

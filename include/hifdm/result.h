@@ -56,9 +56,8 @@ typedef enum {
 /* Returns the word of a reason why a coupling ended, as a constant string. Returns "unknown" for other values. */
 const char *hf_coupling_stop_word(int stop);
 
-/* X(name, value, word stored in files, .meaning = description for the user): states whether the error bounds of a
- * result are certified, and the reason if they are not (METHOD section 3). Files contain the values, so never renumber
- * them. */
+/* X(name, value, word stored in files, .meaning = description for the user): one row for each certification status of
+ * the error bounds of a result (METHOD section 3). Files contain the values, so never renumber them. */
 #define HF_BOUND_REASON_LIST(X)                                                                                        \
     X(NONE, 0, "none", .meaning = "no certified bound was computed")                                                   \
     X(CERTIFIED, 1, "certified", .meaning = "no equilibrium is farther away")                                          \
@@ -72,15 +71,15 @@ const char *hf_coupling_stop_word(int stop);
     X(DEPENDENT_LENGTHS, 8, "dependent_lengths", .meaning = "prescribed lengths depend on each other")                 \
     X(LOOSE, 9, "loose", .meaning = "no taut cable holds some node, so its position is not unique")
 
-/* States whether the error bounds are certified, and the reason if they are not. */
+/* Certification status of the error bounds: certified, or the reason why they are not. */
 typedef enum {
 #define HF_BOUND_REASON_ENUM(name, value, ...) HF_BOUND_##name = value,
     HF_BOUND_REASON_LIST(HF_BOUND_REASON_ENUM)
 #undef HF_BOUND_REASON_ENUM
 } hf_bound_reason;
 
-/* These functions return the word of a bound reason, and its meaning, as constant strings. They return "unknown" for
- * other values. */
+/* The two functions return the word of a bound reason, and its meaning, as constant strings. Both functions return
+ * "unknown" for other values. */
 const char *hf_bound_reason_word(int reason);
 const char *hf_bound_reason_meaning(int reason);
 
@@ -167,7 +166,7 @@ const char *hf_bound_reason_meaning(int reason);
 
 #define HF_RESULT_MEMBER(type, member, ...) type member;
 
-/* The figures of a coupling. They are all zero without a truss. */
+/* The figures of a coupling. The figures of a coupling are all zero without a truss. */
 typedef struct {
     HF_COUPLING_LIST(HF_RESULT_MEMBER)
 } hf_coupling_result;

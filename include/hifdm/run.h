@@ -76,9 +76,9 @@ typedef struct {
     int argc;          /* number of command line arguments, for the provenance */
     char *const *argv; /* [argc] command line arguments */
     const volatile sig_atomic_t *stop_requested; /* flag; if *stop_requested != 0, the run is interrupted; NULL: none */
-    /* If this member is NULL, the result file gets its final name before hf_run_case returns. Otherwise *unsettled is
-     * set to the store for which the caller must call hf_store_settle, in any thread. It is set to NULL if there is no
-     * such store. */
+    /* If this member is NULL, the result file gets its final name before hf_run_case returns. If this member is not
+     * NULL, *unsettled is set to the store for which the caller must call hf_store_settle, in any thread. If there is
+     * no such store, *unsettled is set to NULL. */
     hf_store **unsettled;
     hf_run_observer *observer; /* callback that receives the progress; NULL: none */
     void *observer_context;    /* first argument of the observer */
@@ -87,10 +87,10 @@ typedef struct {
 /* Runs a case and stores its result. The buffer `output` receives the path of the result file, or "" if no file was
  * written. The struct *summary receives the figures of the run.
  *
- * Returns HF_OK. On failure returns another status and adds messages. If the status is HF_NOT_CONVERGED or
- * HF_NO_FEASIBLE, the function still writes the file. If the status is HF_INTERRUPTED because *stop_requested was set,
- * the same request resumes the run. If a finished result of this case exists, the function does not compute it again
- * and returns its status. */
+ * Returns HF_OK on success. On failure the function returns another status and adds messages. If the status is
+ * HF_NOT_CONVERGED or HF_NO_FEASIBLE, the function still writes the file. If the status is HF_INTERRUPTED because
+ * *stop_requested was set, the same request resumes the run. If a finished result of this case exists, the function
+ * does not compute it again and returns its status. */
 hf_status hf_run_case(const hf_run_request *request, hf_summary *summary, char output[HF_OUTPUT_SIZE],
                       hf_messages *messages);
 

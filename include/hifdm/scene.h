@@ -60,8 +60,8 @@ hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages);
 
 #define HF_SCENE_LOCATION_SIZE 1324 /* size for a path, a line and an id of a table; a longer id is truncated */
 
-/* Writes the beginning of a message about a node or cable to text[size]. Examples are "nodes.csv:7: node 'a'" and
- * "cables.csv:7: cable 'a'". Without a file, the text is "scene: node 'a'". */
+/* Writes the beginning of a message about a node or cable to text[size]. Examples of such a text are "nodes.csv:7: node
+ * 'a'" and "cables.csv:7: cable 'a'". If the scene has no file, the text is "scene: node 'a'". */
 void hf_scene_location(const hf_scene *scene, bool is_cable, int index, char *text, size_t size);
 
 /* Counts a fault of a node or cable in *n_fault and adds the message "<location> <what>". Beyond HF_FAULT_MAX faults

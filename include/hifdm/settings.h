@@ -290,8 +290,8 @@ typedef struct {
 typedef enum { HF_AIM_THEORY, HF_AIM_DESIGN } hf_aim;
 extern const char *const hf_aim_word[3]; /* the last entry is NULL */
 
-/* Settings of the turnbuckles of an as-built net (section adjust). Some cables of a set are adjusted by whole steps
- * within a range to reduce the figure of the net. */
+/* Settings of the turnbuckles of an as-built net (section adjust). Some cables of the set are lengthened or shortened
+ * by whole steps within a range to reduce the figure of the net. */
 typedef struct {
     char set[HF_SET_NAME_SIZE]; /* cables with turnbuckles: name of a set, or inner, boundary, all */
     double range_m, step_m;     /* maximum change of the cut length in either direction, and step */
@@ -401,8 +401,8 @@ typedef struct {
     hf_polarisation polarisation; /* polarisation of the feed */
 } hf_pattern_settings;
 
-/* Reflecting surface (section surface). It is the parabolic cylinder z = x^2/(4f) along y or the paraboloid z = (x^2 +
- * y^2)/(4f). */
+/* Reflecting surface (section surface). The surface is the parabolic cylinder z = x^2/(4f) along y or the paraboloid z
+ * = (x^2 + y^2)/(4f). */
 typedef struct {
     double focal_length_m;         /* focal length f; 0: the surface is not measured */
     double strip_width_m;          /* width of the flat strips along y that make up the surface; 0: unknown */

@@ -2,8 +2,8 @@
  * Stability: stable.
  *
  * The library distinguishes three classes of errors. A programming error fails an assert. A design without a shape gets
- * a status and its numbers are NaN. The batch continues. A run that fails returns a status and messages to its caller.
- * The library never prints and never exits. */
+ * a status and its numbers are NaN. The batch continues with the other designs. A run that fails returns a status and
+ * messages to its caller. The library never prints and never exits. */
 #ifndef HIFDM_STATUS_H
 #define HIFDM_STATUS_H
 
@@ -75,8 +75,8 @@ const char *hf_status_text(hf_status status);
  *   75   interrupted before the end */
 int hf_status_exit_code(hf_status status);
 
-/* Returns true if a design with this status has a shape. Such a design is feasible, or it is infeasible only because it
- * violates a constraint. */
+/* Returns true if a design with this status has a shape. A design with a shape is feasible, or it is infeasible only
+ * because it violates a constraint. */
 static inline bool hf_status_has_shape(hf_status status)
 {
     return status == HF_OK || status == HF_RATIO_CAP || status == HF_OUT_OF_LIMITS;
@@ -89,7 +89,7 @@ static inline bool hf_status_has_shape(hf_status status)
         if (hf_try_status_ != HF_OK) return hf_try_status_;                                                            \
     } while (0)
 
-/* Finds the location of a key of a case and writes it to text[size]. An example is "case.yaml:7:3:
+/* Finds the location of a key of a case and writes it to text[size]. An example of a location is "case.yaml:7:3:
  * optimize.objective.0.set". */
 typedef void hf_location_find(const void *context, const char *key, char *text, size_t size);
 
@@ -117,7 +117,7 @@ typedef struct {
 hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...) HF_PRINTF(3, 4);
 /* Appends the line "warning: ...". The argument `format` is a printf format. */
 void hf_warning(hf_messages *messages, const char *format, ...) HF_PRINTF(2, 3);
-/* Writes the location of a key to `text`, for the beginning of a message. An example is "case.yaml:7:3:
+/* Writes the location of a key to `text`, for the beginning of a message. An example of a location is "case.yaml:7:3:
  * optimize.objective.0.set". If the location is unknown, the text is the key alone. The argument `key_format` is a
  * printf format. Returns the argument `text`. */
 const char *hf_messages_location(const hf_messages *messages, char text[HF_LOCATION_SIZE], const char *key_format, ...)

@@ -11,12 +11,12 @@
  *   hf_store_shape, hf_store_front, ...      shapes and results of the later stages
  *   hf_store_finish                          summary; the file gets its final name
  *
- * The layout of the file follows, for n nodes, m cables and k design variables. Every data set has the attributes
- * `units` ("": dimensionless) and `description`. Roles, groups, laws, statuses and similar values are HDF5
+ * The following list shows the layout of a file for n nodes, m cables and k design variables. Every data set has the
+ * attributes `units` ("": dimensionless) and `description`. Roles, groups, laws, statuses and similar values are HDF5
  * enumerations. All texts are encoded in UTF-8. Texts that hifdm reads back have a fixed length, because HDF5 1.10
- * crashes on damaged texts of variable length. These texts are provenance, title, warnings, case_path, ids and names.
- * All other texts have a variable length. Times, threads and host are stored only as attributes, so the data sets of
- * two runs of the same case are equal.
+ * crashes on damaged texts of variable length. The texts of fixed length are provenance, title, warnings, case_path,
+ * ids and names. All other texts have a variable length. Times, threads and host are stored only as attributes, so the
+ * data sets of two runs of the same case are equal.
  *
  *   /            attributes: program ("hifdm"), format_version (3), version, git_describe, compiler, build_flags,
  *                hdf5_version, gsl_version, lapack, rng, host, argv[], started_utc, published_utc, finished_utc, title,
@@ -103,9 +103,9 @@ HF_API_BEGIN
 /* The file of a run that is being written. Only one thread at a time may use a store. */
 typedef struct hf_store hf_store;
 
-/* Several threads may call the functions of this header at the same time. Each store must be used by only one of these
- * threads at a time. The functions that read may be called without this restriction. The calls wait for each other
- * because HDF5 works for one thread at a time. */
+/* Several threads may call the functions of this header at the same time. If several threads call these functions, no
+ * two of them may use the same store at the same time. The functions that read have no such restriction. Calls from
+ * several threads wait for each other because HDF5 works for one thread at a time. */
 
 /* HDF5 groups of the shapes in a file: "/form", "/search", "/refine", "/". */
 extern const char *const hf_stage_group[HF_N_STAGE + 1];
@@ -114,49 +114,51 @@ extern const char *const hf_stage_group[HF_N_STAGE + 1];
 hf_stage hf_store_result_stage(const hf_summary *summary);
 
 /* Computes the identity of a run as 64 hexadecimal digits and a NUL. The identity is a digest of the text and overrides
- * of the case, the seed, the tables of load cases, and the selected point of a front. It also includes the scene and
- * the truss with their ids. The argument `truss` is NULL if there is no truss. Returns HF_OK or HF_NO_MEMORY. */
+ * of the case, the seed, the tables of load cases, and the selected point of a front. The digest also includes the
+ * scene and the truss with their ids. The argument `truss` is NULL if there is no truss. Returns HF_OK or
+ * HF_NO_MEMORY. */
 hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, const hf_truss *truss, char identity[65]);
 
 /* Kind of object that exists at a path. */
 typedef enum { HF_STORE_NOTHING, HF_STORE_UNFINISHED, HF_STORE_FINISHED } hf_store_state;
 
-/* Determines whether `path` holds nothing, an unfinished result, or a finished result. The result must be one of this
- * case, scene and truss. Returns HF_OK, HF_IO or HF_NO_MEMORY. Returns HF_EXISTS if the path holds anything else. The
- * message then lists the keys in which the cases differ. */
+/* Determines whether `path` holds nothing, an unfinished result, or a finished result. A result counts only if it
+ * belongs to this case, scene and truss. Returns HF_OK, HF_IO or HF_NO_MEMORY. Returns HF_EXISTS if the path holds
+ * anything else. The message lists the keys in which the cases differ. */
 hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
                         hf_store_state *state, hf_messages *messages);
 
 /* Creates the file of a new run and writes case, scene and provenance. The arguments argv [argc] are part of the
  * provenance, and argc may be 0. The store borrows none of the arguments. The function checks the name `path` at the
  * beginning of the run, before results are computed. Returns HF_OK or HF_NO_MEMORY. Returns HF_EXISTS if the name is in
- * use and `restart` is false. Returns HF_IO if the name is a folder, if another process writes the file, if the folder
- * does not exist or is not writable, or if the file cannot be created. After a failure of this function, *store is
- * NULL. */
+ * use and `restart` is false. Returns HF_IO if the name is a folder, if another process writes the file, or if the file
+ * cannot be created. Also returns HF_IO if the folder of the file does not exist or is not writable. After a failure of
+ * this function, *store is NULL. */
 hf_status hf_store_create(const char *path, bool restart, const hf_case *settings, const hf_scene *scene,
                           const hf_truss *truss, int argc, char *const *argv, hf_store **store, hf_messages *messages);
 
 /* Opens the unfinished file at `path` to resume its run. Returns HF_OK, HF_IO or HF_NO_MEMORY. Returns HF_EXISTS if the
- * file is finished. After a failure, *store is NULL and the file is unchanged. */
+ * file is finished. If the function fails, *store is NULL and the file is unchanged. */
 hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages);
 
 /* Adds the generations of the journal to the unfinished file at `path` and reads the summary of the file. The function
  * computes no further results. If the file is finished, it remains unchanged, and the function adds a warning. Returns
- * the same status codes as hf_store_resume. Also returns HF_EXISTS if this build proposes other designs than the build
- * that wrote the journal. */
+ * the same status codes as hf_store_resume. The function also returns HF_EXISTS if this build proposes other designs
+ * than the build that wrote the journal. */
 hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages);
 
 /* Returns the number of generations in the store, including those in the journal. */
 int hf_store_generations(const hf_store *store);
 
-/* All functions that write return HF_OK, HF_IO or HF_NO_MEMORY, and add a message after a failure. After a failure the
- * store is unusable. Later calls write nothing and return the same status. Later calls add no message, except
- * hf_store_complete. If store is NULL, these functions write nothing and return HF_OK. */
+/* All functions that write return HF_OK, HF_IO or HF_NO_MEMORY, and add a message after a failure. After a failed
+ * write, the store is unusable. Calls after a failed write do not write anything and return the same status. Calls
+ * after a failed write add no message. The only exception is hf_store_complete. If store is NULL, these functions write
+ * nothing and return HF_OK. */
 
-/* Writes the shape in the workspace in the order of the scene. Also writes the history unless it is NULL. Call this
- * function once per store. If the store is resumed, the function compares the shape with the stored shape instead of
- * writing it. If the tensions of the two shapes differ in the last bits, the function adds a warning. If the tensions
- * of the two shapes differ by more than 1e-5 of the maximum, the function returns HF_EXISTS. */
+/* Writes the shape in the workspace in the order of the scene. The function also writes the history unless it is NULL.
+ * Call this function once per store. If the store is resumed, the function compares the shape with the stored shape
+ * instead of writing it. If the tensions of the two shapes differ in the last bits, the function adds a warning. If the
+ * tensions of the two shapes differ by more than 1e-5 of the maximum, the function returns HF_EXISTS. */
 hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspace *workspace,
                         const hf_history *history, hf_messages *messages);
 
@@ -165,15 +167,15 @@ hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspa
 hf_status hf_store_variables(hf_store *store, const hf_model *model, const hf_population *population,
                              hf_messages *messages);
 
-/* Appends the generation that hf_optimiser_tell has just ranked. After HF_OK, the generation is preserved even if this
- * process ends. The same build can restore it (hf_store_restore). After HF_IO, all earlier generations are preserved if
- * hf_store_publish was called after hf_store_variables. */
+/* Appends the generation that hf_optimiser_tell has just ranked. If the status is HF_OK, the generation is preserved
+ * even if this process ends. The same build can restore the generation (hf_store_restore). If the status is HF_IO, all
+ * earlier generations are preserved, provided that hf_store_publish was called after hf_store_variables. */
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_population *population,
                               hf_messages *messages);
 
 /* Reads the initial design [n_variable] with which the genetic algorithm of a resumed store started. The stored values
- * are needed because the values that this machine computes may differ in the last bits. If the store has no initial
- * design, `initial` is unchanged. */
+ * are needed because this machine may compute values that differ in the last bits. If the store has no initial design,
+ * `initial` is unchanged. */
 hf_status hf_store_restore_initial(hf_store *store, int n_variable, double *initial, hf_messages *messages);
 
 /* Restores the state of an optimiser before hf_optimiser_tell of the last generation in the store. The optimiser must
@@ -186,15 +188,15 @@ hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary 
 /* Copies the state of Levenberg-Marquardt, state [n], and its elapsed time wall_s in s for later publications. A
  * finished file does not contain this state. */
 hf_status hf_store_refine(hf_store *store, double wall_s, size_t n, const double *state, hf_messages *messages);
-/* Reads the state of Levenberg-Marquardt in a resumed store. Sets *wall_s in s, *state and its size *n. If there is no
- * state, *n is 0. The array *state is borrowed until the next hf_store_refine. */
+/* Reads the state of Levenberg-Marquardt in a resumed store. The function sets *wall_s in s, *state and the size *n of
+ * the state. If there is no state, *n is 0. The array *state is borrowed until the next hf_store_refine. */
 hf_status hf_store_restore_refine(hf_store *store, double *wall_s, size_t *n, const double **state,
                                   hf_messages *messages);
 
 /* Publishes all results so far. A file that is marked as unfinished then gets the visible name. If at_once is true, the
- * function publishes immediately. Otherwise it publishes only if the time since the last publication is at least 0.5 s
- * and at least 50 times the duration of that publication. Publishing therefore takes less than 2 % of the time. Call
- * this function after every generation. */
+ * function publishes immediately. If at_once is false, the function publishes only after a certain time since the last
+ * publication. This time is at least 0.5 s and at least 50 times the duration of that publication. Publishing therefore
+ * takes less than 2 % of the time. Call this function after every generation. */
 hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_once, hf_messages *messages);
 
 /* Writes the shape in the workspace and its design [model->n_variable] as those of the stage HF_STAGE_SEARCH or
@@ -213,15 +215,16 @@ hf_status hf_store_pattern(hf_store *store, hf_stage stage, const hf_pattern_tab
  * there is no far field. Call hf_pattern_table_free even after a failure. */
 hf_status hf_store_read_pattern(const char *path, hf_stage stage, hf_pattern_table *table, hf_messages *messages);
 
-/* Writes the shape in the workspace as the shape of load case `name` of the as-built net. Replaces an earlier one. The
- * argument `truss` has the displacements and forces of the truss in this load case. It is NULL if there is no truss. */
+/* Writes the shape in the workspace as the shape of load case `name` of the as-built net. The function replaces an
+ * earlier shape of this load case. The argument `truss` has the displacements and forces of the truss in this load
+ * case. The argument `truss` is NULL if there is no truss. */
 hf_status hf_store_built(hf_store *store, const char *name, const hf_model *model, const hf_workspace *workspace,
                          const hf_carrier *carrier, const hf_carrier_state *truss, hf_messages *messages);
 
 /* Writes the summary, closes the file and gives it its final name. Calls hf_store_complete and hf_store_settle. The
  * function frees the store even after a failure. If the function fails, the published file and the journal remain
  * unchanged. If the file is complete but cannot get its final name (HF_EXISTS, HF_IO), it keeps another name. The
- * message contains this name. */
+ * message contains the name of this file. */
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
 
 /* Writes the summary and closes the file, which takes processor time. The caller must then call hf_store_settle, even
@@ -245,8 +248,9 @@ typedef struct {
     void *block;                              /* owned memory behind the arrays */
 } hf_shape;
 
-/* The functions that read return HF_OK or HF_NO_MEMORY. They return HF_IO with one message if the file does not exist,
- * is not a file of hifdm, or is damaged. If a function that reads fails, its output is all zero. */
+/* The functions that read return HF_OK or HF_NO_MEMORY. The functions that read return HF_IO with one message if the
+ * file does not exist, is not a file of hifdm, or is damaged. If a function that reads fails, its output is all
+ * zero. */
 
 /* Reads every member of the summary. The values are bit-for-bit identical to those that were passed to hf_store_finish.
  * If a stage does not exist, its figures are 0. Call hf_summary_free even after a failure. */
@@ -255,8 +259,8 @@ hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messag
 /* Reads the scene without its line numbers. Call hf_scene_free even after a failure. */
 hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages);
 
-/* Reads the shape of a stage. Also returns HF_IO if there is no such shape. The numbers of nodes and cables of the
- * shape are those of hf_store_read_scene. Call hf_shape_free even after a failure. */
+/* Reads the shape of a stage. The function also returns HF_IO if there is no such shape. The numbers of nodes and
+ * cables of the shape are those of hf_store_read_scene. Call hf_shape_free even after a failure. */
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
 /* Reads the shape of load case `name`, in the same way as hf_store_read_shape. */
 hf_status hf_store_read_load_case(const char *path, const char *name, hf_shape *shape, hf_messages *messages);
@@ -264,28 +268,30 @@ hf_status hf_store_read_load_case(const char *path, const char *name, hf_shape *
 void hf_shape_free(hf_shape *shape);
 
 /* Reads the Pareto front and the names of its design variables. The array *variable has n_variable names of
- * *variable_size bytes each. Also returns HF_IO if there is no front. Free the front with hf_front_free and *variable
- * with free, even after a failure. */
+ * *variable_size bytes each. The function also returns HF_IO if there is no front. Free the front with hf_front_free
+ * and *variable with free, even after a failure. */
 hf_status hf_store_read_front(const char *path, hf_front *front, char **variable, size_t *variable_size,
                               hf_messages *messages);
 
-/* Writes a list of the keys in which the case of a result differs from this case to text[size], in the same way as
- * hf_config_differences. Returns the number of these keys. Also returns 0 if the result cannot be read. */
+/* Writes the keys in which the case of a result differs from this case to text[size], as a list in the format of
+ * hf_config_differences. Returns the number of keys that differ. The function also returns 0 if the result cannot be
+ * read. */
 int hf_store_case_differences(const char *path, const hf_case *settings, char *text, size_t size);
 
-/* Writes the truss as described and its attachments to the net to the group /truss. Unless `state` is NULL, also writes
- * the displacements and forces of the truss under the forces of the net. Call this function once, before
- * hf_store_finish with a summary in which has_truss is set. */
+/* Writes the truss as described and its attachments to the net to the group /truss. If `state` is not NULL, the
+ * function also writes the displacements and forces of the truss under the forces of the net. Call this function once,
+ * before hf_store_finish with a summary in which has_truss is set. */
 hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_carrier_state *state,
                          hf_messages *messages);
 
-/* Reads the truss without its line numbers. Also reads its displacements and forces, which are all NULL if none were
- * stored. Also returns HF_IO if there is no truss. Call hf_truss_free and hf_carrier_state_free in any case. */
+/* Reads the truss without its line numbers. The function also reads the displacements and forces of the truss. They are
+ * all NULL if none were stored. The function also returns HF_IO if there is no truss. Call hf_truss_free and
+ * hf_carrier_state_free even after a failure. */
 hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_state *state, hf_messages *messages);
 
 /* Reads the displacements and forces of the truss in load case `name`. The argument `truss` is the truss that
- * hf_store_read_truss returned. Also returns HF_IO if the load case has no shape. Call hf_carrier_state_free even after
- * a failure. */
+ * hf_store_read_truss returned. The function also returns HF_IO if the load case has no shape. Call
+ * hf_carrier_state_free even after a failure. */
 hf_status hf_store_read_load_case_truss(const char *path, const char *name, const hf_truss *truss,
                                         hf_carrier_state *state, hf_messages *messages);
 
@@ -293,8 +299,8 @@ hf_status hf_store_read_load_case_truss(const char *path, const char *name, cons
 const char *hf_store_version(void);
 
 /* Disables the error output of HDF5 and its exit handler, which crashes if the disk was full. Call this function once,
- * before the first call of HDF5. Returns false if there is not enough memory for HDF5. In this case HDF5 would
- * crash. */
+ * before the first call of HDF5. Returns false if there is not enough memory for HDF5. With too little memory, HDF5
+ * would crash. */
 bool hf_store_quiet(void);
 
 HF_API_END

@@ -1,8 +1,8 @@
 /* summary - the figures of a complete run.
  * Stability: stable.
  *
- * The command `run` prints the summary and stores it with the results. The command `show` prints it again. The figures
- * of the shape of a stage are those of HF_RESULT_LIST in <hifdm/result.h>. */
+ * The command `run` prints the summary and stores it with the results. The command `show` prints the summary again. The
+ * figures of the shape of a stage are those of HF_RESULT_LIST in <hifdm/result.h>. */
 #ifndef HIFDM_SUMMARY_H
 #define HIFDM_SUMMARY_H
 
@@ -39,7 +39,7 @@ HF_API_BEGIN
     X(double, pretension_N, REAL, .description = "of the case, N")                                                     \
     X(bool, has_own_tensions, TRUTH, .description = "1: no cable takes pretension_N, by the laws of all")
 
-/* Figures that only the search has, which is the genetic algorithm. */
+/* Figures that only the search has. The search is the genetic algorithm. */
 #define HF_SUMMARY_SEARCH_LIST(X)                                                                                      \
     X(hf_solver, solver, SOLVER, .json = 6, .description = "solver of the individuals")                                \
     X(double, initial_psi_m, REAL, .json = 2,                                                                          \
@@ -62,7 +62,7 @@ HF_API_BEGIN
       .description = "processor time of breeding, evaluating and storing, over all threads; without waiting")          \
     X(double, store_cpu_s, REAL, .json = 4, .description = "processor time of storing alone")
 
-/* Figures that only the refinement has, which is Levenberg-Marquardt. */
+/* Figures that only the refinement has. The refinement is Levenberg-Marquardt. */
 #define HF_SUMMARY_REFINE_LIST(X)                                                                                      \
     X(bool, is_result, FLAG, .json = 2, .description = "its design is the result, not only a comparison")              \
     X(int, steps, INT, .json = 1, .description = "steps of Levenberg-Marquardt")                                       \
@@ -93,7 +93,7 @@ HF_API_BEGIN
     X(int, n_node, INT, .json = 1, .key = "nodes", .description = "nodes of the truss")                                \
     X(int, n_member, INT, .json = 1, .key = "members", .description = "members of the truss")
 
-/* Maximum number of sets in hf_set_tensions. A page has space for this number. */
+/* Maximum number of sets in hf_set_tensions. A page has space for this number of sets. */
 #define HF_SUMMARY_SETS 16
 
 /* Tensions of the named sets of cables in one shape, for the first HF_SUMMARY_SETS sets of the net. The tension ratio
@@ -109,9 +109,9 @@ typedef struct {
 #define HF_SUMMARY_HELD (2 * HF_DESIGN_ROWS_MAX + 1)
 #define HF_HELD_NAME_SIZE 160
 
-/* The active constraints of the shape of a stage, which are those whose bounds the shape reaches within 1e-8. They are
- * boundary_ratio_cap and the rows of optimize.limits, with a separate entry for each side of a row. The form-finding
- * has no constraints. */
+/* The active constraints of the shape of a stage, which are those whose bounds the shape reaches within 1e-8. The
+ * constraints are boundary_ratio_cap and the rows of optimize.limits, with a separate entry for each side of a row. The
+ * form-finding has no constraints. */
 typedef struct {
     int n;                      /* number of constraints */
     int row[HF_SUMMARY_HELD];   /* [n] row of optimize.limits; -1: boundary_ratio_cap */
@@ -152,8 +152,8 @@ typedef struct {
 typedef enum { HF_STAGE_FORM, HF_STAGE_SEARCH, HF_STAGE_REFINE, HF_N_STAGE } hf_stage;
 extern const char *const hf_stage_word[HF_N_STAGE + 1]; /* "form", "search", "refine", "none" */
 
-/* Data that every stage has. The summary owns the memory behind the pointers, which comes from calloc. NULL means that
- * there are no data. */
+/* Data that every stage has. The summary owns the memory behind the pointers, which comes from calloc. If a pointer is
+ * NULL, there are no such data. */
 typedef struct {
     bool exists; /* true: the stage ran, or HF_STAGE_REFINE holds the selected point of a front */
     /* result of its shape; for the search, that of the best individual (HF_NO_FEASIBLE: none is feasible) */
@@ -213,12 +213,12 @@ void hf_summary_free(hf_summary *summary);
 void hf_summary_write_json(const hf_summary *summary, hf_status status, const char *messages, const char *path,
                            FILE *file);
 
-/* Returns the status that hf_summary_write_json writes for a file. This is the status of the whole run. Before the run
- * has ended, it is the status of the form-finding. */
+/* Returns the status that hf_summary_write_json writes for a file. The status is that of the whole run. Before the run
+ * has ended, the status is that of the form-finding. */
 hf_status hf_summary_status(const hf_summary *summary);
 
-/* Returns the word for the algorithm of a stage. It is "ga" or "nsga2" for the search, "lm" for the refinement, and ""
- * for other stages. */
+/* Returns the word for the algorithm of a stage. The word is "ga" or "nsga2" for the search, "lm" for the refinement,
+ * and "" for other stages. */
 const char *hf_summary_algorithm(const hf_summary *summary, hf_stage stage);
 
 /* Returns true if the result contains a shape of the stage. The search has a shape only if the run is finished and its

@@ -1,9 +1,9 @@
 /* surface - the errors of a shape as a reflector surface (METHOD section 9).
  * Stability: stable.
  *
- * The figures are the RMS errors along the normal and of the half path length, before and after a best fit. They also
- * include the gain loss, faceting and percentiles. The best fit uses a surface of the target kind. If the case has a
- * section surface, the figures are computed once for each reported shape. Pipeline:
+ * The figures are the RMS errors along the normal and of the half path length, before and after a best fit. The figures
+ * also include the gain loss, faceting and percentiles. The best fit uses a surface of the target kind. If the case has
+ * a section surface, the figures are computed once for each reported shape. Pipeline:
  *
  *   inner nodes of a shape -> errors (M16) -> RMS, percentiles -> best fit -> RMS -> gain loss (M17)
  *   facets of the shape    -> errors (M16) -> RMS              -> best fit -> RMS -> gain loss (M17)
@@ -91,18 +91,18 @@ HF_API_BEGIN
 
 #define HF_SURFACE_MEMBER(type, member, ...) type member;
 
-/* The best fit of a surface to a set of points. It is the surface of the target kind with the minimum half-path RMS
- * (METHOD section 9). The fitted surface is the target surface with another focal length. It is rotated about the
- * centre of the points by Rx(a) Ry(b) Rz(c) and then shifted. The fit omits motions that do not change the surface.
- * These are the shift of a cylinder along y and the rotation Rz of a paraboloid. In a shallow reflector, a lateral
- * shift and a rotation are nearly the same motion. The values of this shift and this rotation are therefore uncertain,
- * but the fitted surface is not.
+/* The best fit of a surface to a set of points. The fitted surface is the surface of the target kind with the minimum
+ * half-path RMS (METHOD section 9). The fit changes the focal length of the target surface. The fitted surface is also
+ * rotated about the centre of the points by Rx(a) Ry(b) Rz(c) and then shifted. The fit omits motions that do not
+ * change the surface. Such motions are the shift of a cylinder along y and the rotation Rz of a paraboloid. In a
+ * shallow reflector, a lateral shift and a rotation are nearly the same motion. The values of this shift and this
+ * rotation are therefore uncertain, but the fitted surface is not.
  *
  * Parameters that the points do not determine keep the values of the target surface. The shift shift_x_m is 0 if the
- * minimum is not found, or if it needs a shift of more than a tenth of the half-width of the net. The same holds for
- * shift_y_m of a paraboloid. The focal length focal_length_m is that of the target surface if the minimum is not found.
- * It is also that of the target surface if the minimum has more than twice or less than half that focal length. Points
- * on two lines along y, for example, do not determine the focal length. */
+ * minimum is not found. It is also 0 if the minimum needs a shift of more than a tenth of the half-width of the net.
+ * The same rule holds for shift_y_m of a paraboloid. The focal length focal_length_m is that of the target surface if
+ * the minimum is not found. The target focal length is also used if the focal length of the minimum is more than twice
+ * or less than half of it. Points on two lines along y, for example, do not determine the focal length. */
 typedef struct {
     HF_SURFACE_FIT_LIST(HF_SURFACE_MEMBER)
 } hf_surface_fit;
@@ -110,8 +110,8 @@ typedef struct {
 /* Fits a surface to the n points position_m [3][n], in m. The weight of a point is the square of root_weight [n]. If
  * root_weight is NULL, all weights are equal. The argument `kind` must not be HF_SURFACE_AUTO, and focal_length_m is
  * that of the target surface. With fewer than six points, the fit is not unique. Call gsl_set_error_handler_off()
- * before this function (see hifdm.h). Returns HF_OK or HF_NO_MEMORY. The status is also HF_OK if the fit does not
- * converge (fit->converged). */
+ * before this function (see hifdm.h). Returns HF_OK or HF_NO_MEMORY. If the fit does not converge (fit->converged), the
+ * status is still HF_OK. */
 hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int n, const double *position_m,
                                 const double *root_weight, hf_surface_fit *fit);
 
@@ -138,12 +138,12 @@ typedef struct {
 hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_facets *facets, const hf_model *model,
                              const double *position_m, const double *tension_N, hf_surface_measures *measures);
 
-/* Sets all figures except the counts to NaN. The function is for a net whose inner nodes are all loose, because the
+/* Sets all figures except the counts to NaN. This function is for a net whose inner nodes are all loose, because the
  * positions of loose nodes have no meaning. */
 void hf_surface_blank(hf_surface_measures *measures);
 
-/* The errors by which a shape is judged. They are those of its facets or of its nodes, before and after the best fit.
- * The gain losses [frequencies_Hz.n] point to the arrays of the measures. */
+/* The errors by which a shape is judged. The errors are those of the facets or of the nodes of the shape, before and
+ * after the best fit. The gain losses [frequencies_Hz.n] point to the arrays of the measures. */
 typedef struct {
     double half_path_rms_m, fit_half_path_rms_m;   /* RMS of the half-path error, before and after the best fit */
     const double *gain_loss_dB, *fit_gain_loss_dB; /* [frequencies_Hz.n] gain losses that these errors cause */

@@ -34,8 +34,8 @@ bool hf_tolerance_more_is_better(hf_tolerance_measure measure);
  * NaN means that a value is unknown. There is no mean of infinite values.
  *
  * The confidence intervals contain the true value with a probability of 95 %. The intervals of quantiles are order
- * statistics, which need no assumption about the distribution. They are NaN if there are too few samples. The interval
- * of the mean follows from its standard error. */
+ * statistics, which need no assumption about the distribution. The intervals of quantiles are NaN if there are too few
+ * samples. The interval of the mean follows from its standard error. */
 typedef struct {
     bool is_measured; /* false: the other members have no meaning */
     /* mean and its interval, standard deviation, minimum, maximum */

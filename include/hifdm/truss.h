@@ -103,8 +103,8 @@ extern const char *const hf_held_word[3];
 extern const char *const hf_held_dofs_word[3];
 extern const char *const hf_ring_held_word[4];
 
-/* A basic unit of the truss. It is a planar truss with the length of one module, and its chords, posts and diagonals
- * are round tubes of the same size. */
+/* A basic unit of the truss. A basic unit is a planar truss with the length of one module. Its chords, posts and
+ * diagonals are round tubes of the same size. */
 typedef struct {
     double diameter_m, wall_m; /* outer diameter and wall thickness of the tube */
     int panels;                /* number of panels in the length of a module */
@@ -144,9 +144,9 @@ typedef struct {
     hf_truss_ring ring;        /* settings of the ring truss, which replaces the units */
 } hf_truss_settings;
 
-/* Keys of the section truss and of each of its units. The arguments are the defaults of the diameter and of the number
- * of panels. Each key is a row X(section, member, type, minimum, maximum, default, unit, words, help) of hf_field_table
- * (config.h). */
+/* Keys of the section truss and of each of its units. The macro arguments are the defaults of the diameter and of the
+ * number of panels. Each key is a row X(section, member, type, minimum, maximum, default, unit, words, help) of
+ * hf_field_table (config.h). */
 #define HF_TRUSS_KEYS(X, section)                                                                                      \
     X(section, depth_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "1", "m", NULL,                                           \
       "distance of the rear chords from the front chords, along the normal of the surface")                            \
@@ -174,7 +174,7 @@ typedef struct {
     X(section, panels, HF_FIELD_INT, 1, 1000, panel_number, "", NULL, "panels along one module")                       \
     X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word, "diagonals of each panel")
 
-/* Keys of the section truss.ring and of each of its tubes. The argument is the default of the diameter. */
+/* Keys of the section truss.ring and of each of its tubes. The macro argument is the default of the diameter. */
 #define HF_RING_KEYS(X, section)                                                                                       \
     X(section, height_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "", "m", NULL,                                           \
       "distance of the rear ring below the front ring, along z; default: rear_distance_m of the net")                  \
@@ -196,18 +196,18 @@ typedef struct {
     X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "wall thickness of its tubes")
 
 /* Makes the truss of basic sub-rings over the modules of the net. The front nodes of the truss are the module corners
- * on the cylinder. At the outer edge they are the supports of edge ties. The ids of the front nodes are f<i>_<j>, and
- * the ids of the rear nodes are r<i>_<j>. Nodes inside a unit of several panels have ids such as f<i>.<k>_<j> or
- * f<i>_<j>.<k>. The ids of members are <node>-<node>. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE if the truss would be
- * too large. Call hf_truss_free even after a failure. */
+ * on the cylinder. At the outer edge of a net with edge ties, the front nodes of the truss are the supports of these
+ * ties. The ids of the front nodes are f<i>_<j>, and the ids of the rear nodes are r<i>_<j>. Nodes inside a unit of
+ * several panels have ids such as f<i>.<k>_<j> or f<i>_<j>.<k>. The ids of members are <node>-<node>. Returns HF_OK,
+ * HF_NO_MEMORY, or HF_BAD_CASE if the truss would be too large. Call hf_truss_free even after a failure. */
 hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder *cylinder, hf_truss *truss,
                             hf_messages *messages);
 
 /* Makes the ring truss under the rim of the net. The ids of the front nodes are f<k>, and the ids of the rear nodes are
- * r<k>. They are numbered like the supports of the net, from x towards y. The ids of members are <node>-<node>. The
- * hinges and their mass are at the ends of the verticals. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if
- * hf_truss_ring_fault finds a fault, or if the cells of a quad net cannot be divided into bays. Call hf_truss_free even
- * after a failure. */
+ * r<k>. The nodes are numbered in the order of the supports of the net, from x towards y. The ids of members are
+ * <node>-<node>. The hinges and their mass are at the ends of the verticals. Returns HF_OK or HF_NO_MEMORY. Returns
+ * HF_BAD_CASE if hf_truss_ring_fault finds a fault, or if the cells of a quad net cannot be divided into bays. Call
+ * hf_truss_free even after a failure. */
 hf_status hf_truss_ring_generate(const hf_truss_settings *settings, const hf_paraboloid *paraboloid, hf_truss *truss,
                                  hf_messages *messages);
 
@@ -218,10 +218,10 @@ const char *hf_truss_ring_fault(const hf_truss_settings *settings, const hf_para
 
 /* ---- any truss ---- */
 
-/* Finds the node of the truss that carries each support of the net. It is the nearest node, at a distance of at most
- * tolerance_m. The arrays scene_node and truss_node must have space for scene->n_node indices. The function sets the
- * first *n_attachment indices in each of them. Returns HF_OK, or HF_BAD_CASE with messages that list the supports
- * without such a node. */
+/* Finds the node of the truss that carries each support of the net. The function selects the nearest node, at a
+ * distance of at most tolerance_m. The arrays scene_node and truss_node must have space for scene->n_node indices. The
+ * function sets the first *n_attachment indices in each of them. Returns HF_OK, or HF_BAD_CASE with messages that list
+ * the supports without such a node. */
 hf_status hf_truss_attach(const hf_truss *truss, const hf_scene *scene, double tolerance_m, int *n_attachment,
                           int *scene_node, int *truss_node, hf_messages *messages);
 
@@ -236,12 +236,12 @@ void hf_truss_free(hf_truss *truss);
  * line and id for each fault, up to a maximum number of messages. Returns HF_OK or HF_BAD_CASE. */
 hf_status hf_truss_check(const hf_truss *truss, hf_messages *messages);
 
-/* Size of the text of hf_truss_describe. It is sufficient for a path of HF_PATH_SIZE bytes, a line and an id of 255
- * bytes, the maximum in a table. */
+/* Size of the text of hf_truss_describe. The size is sufficient for a path of HF_PATH_SIZE bytes, a line and an id of
+ * 255 bytes, the maximum in a table. */
 #define HF_TRUSS_DESCRIPTION_SIZE (HF_PATH_SIZE + 300)
 
-/* Writes a description for messages to text[size], such as "truss_nodes.csv:7: node 'a'". Without a file, the text is
- * "truss: node 'a'". A text that does not fit is truncated. */
+/* Writes a description for messages to text[size], such as "truss_nodes.csv:7: node 'a'". If the truss has no file, the
+ * text is "truss: node 'a'". A text that does not fit is truncated. */
 void hf_truss_describe(const hf_truss *truss, bool is_member, int index, char *text, size_t size);
 
 /* Returns the length of member i_member in m. */

@@ -1,7 +1,8 @@
-/* workspace - all memory that the solvers of one thread write to. It is allocated once from one list of fields.
+/* workspace - all memory that the solvers of one thread write to. The workspace is allocated once from one list of
+ * fields.
  * Stability: stable.
  *
- * After hf_form_find and hf_evaluate, the workspace holds the last shape. It consists of position_m, q_N_per_m,
+ * After hf_form_find and hf_evaluate, the workspace holds the last shape. The shape consists of position_m, q_N_per_m,
  * length_m and tension_N, the laws and target values in effect, loose, and displacement_m of the attachments. After a
  * coupling, the workspace also holds attachment_force_N. All other fields are scratch memory and have no meaning
  * between calls. The scratch fields may change in any version. */
@@ -47,7 +48,7 @@ HF_API_BEGIN
      16 * (size_t)((m)->n_free + (m)->n_attachment) + HF_BOUND_TRUSS_ITEMS(m))
 
 /* Each field is one row X(type, name, number of items for a model m, unit, meaning). The solver of a net with struts
- * needs a general band matrix and pivots. Other nets have neither. */
+ * needs a general band matrix and pivots. Nets without struts need neither. */
 #define HF_WORKSPACE_FIELDS(X)                                                                                         \
     X(double, position_m, 3 * (size_t)m->n_node, "m", "[3][n_node] by row, supports included")                         \
     X(double, band, (size_t)m->n_band + 1, "N/m", "lower band of D, then its Cholesky factor; one spare place")        \
@@ -97,7 +98,7 @@ typedef struct {
     HF_WORKSPACE_FIELDS(HF_WORKSPACE_MEMBER)
 #undef HF_WORKSPACE_MEMBER
     void *block; /* owned memory behind the fields */
-    /* Number of rows that Newton's matrix moves. It is n_free, and includes the attachments if net and truss are solved
+    /* Number of rows that Newton's matrix moves. The number is n_free, plus the attachments if net and truss are solved
      * together. */
     int n_moving;
     bool starts_near;    /* q_N_per_m is that of a shape whose supports have other positions */
@@ -119,8 +120,8 @@ static inline hf_law_cable hf_workspace_cable(const hf_model *model, const hf_wo
     return cable;
 }
 
-/* Returns the force density in N/m of cable i_cable for the shape in the workspace. It follows from the tension that
- * the law of the cable gives. If the law gives no tension, it is q_N_per_m of the cable. */
+/* Returns the force density in N/m of cable i_cable for the shape in the workspace. The force density follows from the
+ * tension that the law of the cable gives. If the law gives no tension, the force density is q_N_per_m of the cable. */
 static inline double hf_workspace_held_q_N_per_m(const hf_model *model, const hf_workspace *workspace, int i_cable)
 {
     return hf_law_held_q_N_per_m(hf_workspace_cable(model, workspace, i_cable), workspace->length_m[i_cable],
@@ -139,7 +140,7 @@ void hf_workspace_free(hf_workspace *workspace);
  * (Eqs. 7, 8). */
 bool hf_workspace_iterates(const hf_model *model, const hf_workspace *workspace);
 
-/* Sets every floating-point field to NaN and every byte of the other fields to 0xff. The function is for tests. If a
+/* Sets every floating-point field to NaN and every byte of the other fields to 0xff. This function is for tests. If a
  * call reads stale contents, its result shows this. */
 void hf_workspace_poison(const hf_model *model, hf_workspace *workspace);
 
