@@ -27,6 +27,7 @@ typedef struct {
     int n_thread;                  /* number of threads */
     /* [n_thread] workspaces; hf_parallel_for creates all but the first when they are first used */
     hf_workspace *workspace;
+    hf_objectives_point *point;     /* [n_thread] memory of each thread for the objectives */
     struct hf_batch_engine *engine; /* solver data that hf_batch_share created; NULL: there are none */
     bool lacks_memory;              /* true: memory did not suffice for the shared solver data */
     /* processor time that proposals (hf_batch_next) and evaluations took so far, summed over the threads, s */

@@ -88,18 +88,15 @@ bool hf_evaluate_is_unique(const hf_evaluator *evaluator);
  * for tensions and 1 for force densities. The design variable must belong to a cable. */
 double hf_evaluate_divisor(const hf_evaluator *evaluator, int i_variable);
 
-/* Allocates the memory in the workspace that the objectives of the evaluator need. Call this function once before
- * designs are evaluated in the workspace. The function does nothing if there are no objectives or if it was called
- * before. hf_workspace_free frees the memory. Returns HF_OK or HF_NO_MEMORY. */
-hf_status hf_evaluate_attend(const hf_evaluator *evaluator, hf_workspace *workspace);
-
 /* Finds the shape of the design [model->n_variable] and writes it to the workspace. The array has the values of the
  * design variables. Values of design variables that belong to cables must be above 0. Returns result->status. If the
  * status is not HF_OK, the design is infeasible, and psi_m and merit are NaN. If the design has no shape
  * (hf_status_has_shape), the tension ratios and the violation are also NaN. If no taut cable holds some node of a
- * design, the status is HF_SINGULAR. If an objective of a design has no value, the status is HF_NOT_FINITE. */
+ * design, the status is HF_SINGULAR. If an objective of a design has no value, the status is HF_NOT_FINITE. `point` is
+ * the memory of this thread for the objectives (hf_objectives_point_create). Without objectives, hf_evaluate does not
+ * use `point`, and it may be NULL. */
 hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design, hf_workspace *workspace,
-                      hf_form_result *result);
+                      hf_objectives_point *point, hf_form_result *result);
 
 /* Writes laws, target values and first force densities of the design [n_variable] to the workspace. The function does
  * the part of hf_evaluate before the solver. */
@@ -110,7 +107,8 @@ bool hf_evaluate_needs_shape(const hf_evaluator *evaluator, const hf_form_result
 /* Applies the constraints to a shape and measures its objectives. The function does the part of hf_evaluate after the
  * solver. Sets violation, merit and status of the result. Sets figures to NaN as described at hf_evaluate. Returns
  * result->status. */
-hf_status hf_evaluate_judge(const hf_evaluator *evaluator, hf_workspace *workspace, hf_form_result *result);
+hf_status hf_evaluate_judge(const hf_evaluator *evaluator, const hf_workspace *workspace, hf_objectives_point *point,
+                            hf_form_result *result);
 
 /* Returns the length L* in m by which the pretension of a boundary cable is divided. For a cable of law length, L* is
  * the prescribed length. For other cables, L* is the distance between the target positions of the ends. */

@@ -125,8 +125,8 @@ void hf_objectives_free(hf_objectives *objectives);
  * suffix for these. Returns the argument `text`. */
 const char *hf_objectives_name(const hf_objectives *objectives, int i_objective, char text[HF_OBJECTIVE_NAME_SIZE]);
 
-/* Allocates the memory of one thread for these objectives. Returns HF_OK or HF_NO_MEMORY. Call hf_objectives_point_free
- * even after a failure. */
+/* Allocates the memory of one thread for these objectives. If `objectives` is NULL, *point is empty. Returns HF_OK or
+ * HF_NO_MEMORY. Call hf_objectives_point_free even after a failure. */
 hf_status hf_objectives_point_create(const hf_objectives *objectives, hf_objectives_point *point);
 /* Frees the memory of a thread. */
 void hf_objectives_point_free(hf_objectives_point *point);

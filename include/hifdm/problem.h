@@ -28,11 +28,12 @@ typedef struct {
     hf_surface_settings surface; /* target surface including its kind; all zero without a section surface */
     hf_facets facets;            /* facets of the target surface; empty without a section surface */
     int planes;                  /* mirror planes that link design variables: flags 1 (x) and 2 (y) */
-    hf_workspace workspace;  /* workspace with the shape of the form-finding, until another shape is computed in it */
-    hf_form_result form;     /* result of the form-finding */
-    double *start_q_N_per_m; /* [n_cable] force densities of the form-finding */
-    double *initial;         /* [n_variable] initial design, averaged over linked design variables */
-    hf_limits limits;        /* rows of optimize.limits; empty without rows */
+    hf_workspace workspace;    /* workspace with the shape of the form-finding, until another shape is computed in it */
+    hf_objectives_point point; /* memory for the objectives of designs that are evaluated in this workspace */
+    hf_form_result form;       /* result of the form-finding */
+    double *start_q_N_per_m;   /* [n_cable] force densities of the form-finding */
+    double *initial;           /* [n_variable] initial design, averaged over linked design variables */
+    hf_limits limits;          /* rows of optimize.limits; empty without rows */
     struct hf_problem_nets *nets; /* as-built nets of objectives over load cases or samples; NULL: there are none */
     /* rows of optimize.objective or optimize.front; empty without rows: psi is the objective */
     hf_objectives objectives;

@@ -101,11 +101,9 @@ typedef struct {
     /* Number of rows that Newton's matrix moves. The number is n_free, plus the attachments if net and truss are solved
      * together. */
     int n_moving;
-    bool starts_near;    /* q_N_per_m is that of a shape whose supports have other positions */
-    int n_joint_step;    /* number of joint steps of net and truss in the current solve */
-    hf_history *history; /* history of the current form-finding; may be NULL */
-    /* scratch memory of the objectives (hf_evaluate_attend), owned; may be NULL */
-    struct hf_objectives_point *objectives;
+    bool starts_near;                  /* q_N_per_m is that of a shape whose supports have other positions */
+    int n_joint_step;                  /* number of joint steps of net and truss in the current solve */
+    hf_history *history;               /* history of the current form-finding; may be NULL */
     const volatile sig_atomic_t *stop; /* NULL or a flag; if *stop != 0, hf_form_find returns HF_INTERRUPTED */
 } hf_workspace;
 
@@ -133,7 +131,7 @@ static inline double hf_workspace_held_q_N_per_m(const hf_model *model, const hf
 hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace);
 /* Returns the number of bytes that hf_workspace_create allocates. */
 size_t hf_workspace_bytes(const hf_model *model);
-/* Frees the fields and the scratch memory of the objectives. */
+/* Frees the fields. */
 void hf_workspace_free(hf_workspace *workspace);
 
 /* Returns true if the law in effect of at least one cable changes the force density of the cable between iterations

@@ -592,7 +592,7 @@ static hf_status look_at_reach(reach *q)
     for (int i = 0; i < 2 && (i == 0 || is_open(q)); i++) {
         hf_form_result r;
         choose_design(q, i > 0);
-        hf_status status = hf_evaluate(&q->v, q->design, &q->w, &r);
+        hf_status status = hf_evaluate(&q->v, q->design, &q->w, NULL, &r);
         if (status == HF_OK) status = hf_sensitivity_find(&q->slopes, &q->w);
         if (status == HF_NO_MEMORY) return status;
         if (status == HF_OK) strike(q);
@@ -705,7 +705,7 @@ const char *hf_no_design_to_refine(hf_problem *p, const double *design, hf_statu
 {
     hf_form_result start;
     char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE];
-    hf_evaluate(&p->evaluator, design, &p->workspace, &start);
+    hf_evaluate(&p->evaluator, design, &p->workspace, &p->point, &start);
     name_broken(p, &p->workspace, &start, broken);
     snprintf(text, HF_NO_DESIGN_SIZE, "optimize: Levenberg-Marquardt has no feasible start: %s%s%s",
              hf_status_text(status), broken, hf_no_design_cap(p, start.boundary_tension_ratio, hint));

@@ -414,7 +414,7 @@ static hf_status find_form(hf_flat *f)
     HF_TRY(hf_problem_explain(p, &f->messages));
     if (!f->is_ready) HF_TRY(make_batch(f));
     if (p->objectives.n_objective &&
-        hf_objectives_measure(&p->objectives, &p->workspace, p->workspace.objectives, r->objective, &r->merit) != HF_OK)
+        hf_objectives_measure(&p->objectives, &p->workspace, &p->point, r->objective, &r->merit) != HF_OK)
         return hf_error(&f->messages, HF_NO_MEMORY, "out of memory for the objectives");
     return HF_OK;
 }

@@ -76,7 +76,7 @@ hf_status hf_problem_slopes(hf_problem *p, int n, const double *design, const hf
     if (!all) status = HF_NO_MEMORY;
     for (int i = 0; i < n && status == HF_OK; i++) {
         if (result[i].status != HF_OK) continue;
-        hf_status found = hf_evaluate(&p->evaluator, design + (size_t)i * n_variable, &p->workspace, &r);
+        hf_status found = hf_evaluate(&p->evaluator, design + (size_t)i * n_variable, &p->workspace, &p->point, &r);
         if (found == HF_OK) found = hf_jacobian_find(&jacobian, &p->workspace, all);
         if (found == HF_NO_MEMORY) status = HF_NO_MEMORY;
         for (size_t k = 0; k < size; k++)
@@ -95,6 +95,7 @@ void hf_problem_free(hf_problem *p)
     hf_batch_free(&p->batch);
     free(p->start_q_N_per_m);
     free(p->initial);
+    hf_objectives_point_free(&p->point);
     hf_workspace_free(&p->workspace);
     hf_model_free(&p->model);
     hf_carrier_free(&p->carrier);

@@ -376,7 +376,7 @@ hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
     const hf_workspace *w = &p->workspace;
     hf_variables_read(m, w->q_N_per_m, w->tension_N, w->length_m, p->initial);
     p->evaluator = hf_problem_evaluator(p);
-    if (hf_evaluate_attend(&p->evaluator, &p->workspace) != HF_OK)
+    if (!p->point.block && hf_objectives_point_create(p->evaluator.objectives, &p->point) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the objectives");
     hf_problem_give_places(p, messages);
     hf_status status = p->settings.has_optimize && m->n_variable > 0 ? check_base(p, messages) : HF_OK;

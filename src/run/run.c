@@ -173,9 +173,8 @@ static hf_status prepare_optimize(run *r, hf_summary *s, hf_messages *messages)
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_reach_check(p, messages));
     const hf_objectives *objectives = &p->objectives;
-    hf_objectives_point *point = p->workspace.objectives;
     if (objectives->n_objective &&
-        hf_objectives_measure(objectives, &p->workspace, point, s->stage[HF_STAGE_FORM].result.objective,
+        hf_objectives_measure(objectives, &p->workspace, &p->point, s->stage[HF_STAGE_FORM].result.objective,
                               &s->stage[HF_STAGE_FORM].result.merit) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the objectives");
     HF_TRY(hf_store_restore_initial(r->store, p->model.n_variable, p->initial, messages));
@@ -349,7 +348,7 @@ static hf_status take_point(run *r, hf_summary *s, hf_messages *messages)
     const hf_population *p = &r->optimiser.population;
     const double *design = r->taken.design;
     double start_s = hf_clock_s();
-    hf_evaluate(&r->problem.evaluator, design, w, &s->stage[HF_STAGE_REFINE].result);
+    hf_evaluate(&r->problem.evaluator, design, w, &r->problem.point, &s->stage[HF_STAGE_REFINE].result);
     if (must_stop(r)) return stop_here(r, s, messages);
     HF_TRY(hf_take_point_check(&r->problem, &r->taken, p, &s->stage[HF_STAGE_REFINE].result, messages));
     hf_problem_warn(&r->problem, "point's", w, &s->stage[HF_STAGE_REFINE].result, messages);
@@ -384,7 +383,7 @@ static hf_status refine(run *r, hf_summary *s, hf_messages *messages)
         hf_warning(messages, "%s", why);
         return HF_OK;
     }
-    hf_evaluate(&r->problem.evaluator, design, w, &s->stage[HF_STAGE_REFINE].result);
+    hf_evaluate(&r->problem.evaluator, design, w, &r->problem.point, &s->stage[HF_STAGE_REFINE].result);
     if (must_stop(r)) return stop_here(r, s, messages); /* the evaluation may have been interrupted */
     s->refine.is_result = r->plan.ends_with_refine;
     s->refine.steps = outcome.iterations;

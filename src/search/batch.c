@@ -32,11 +32,12 @@ static int n_room_at_once(const hf_batch *batch)
     return hf_parallel_is_inside() ? 1 : batch->n_thread;
 }
 
-/* Allocates the workspace of one room, and the scratch that the objectives of the evaluator need. */
-static hf_status make_room(const hf_evaluator *v, hf_workspace *w)
+/* Allocates the workspace of one room, and its memory for the objectives of the evaluator. */
+static hf_status make_room(hf_batch *batch, int room)
 {
-    HF_TRY(hf_workspace_create(v->model, w));
-    return hf_evaluate_attend(v, w);
+    const hf_evaluator *v = batch->evaluator;
+    HF_TRY(hf_workspace_create(v->model, &batch->workspace[room]));
+    return hf_objectives_point_create(v->objectives, &batch->point[room]);
 }
 
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch)
@@ -44,10 +45,11 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
     if (n_thread <= 0) n_thread = hf_batch_default_threads();
     *batch = (hf_batch){.evaluator = evaluator};
     batch->workspace = calloc((size_t)n_thread, sizeof *batch->workspace);
-    if (!batch->workspace) return HF_NO_MEMORY;
+    batch->point = calloc((size_t)n_thread, sizeof *batch->point);
+    if (!batch->workspace || !batch->point) return HF_NO_MEMORY;
     batch->n_thread = n_thread;
     for (int i = 0; i < n_room_at_once(batch); i++)
-        HF_TRY(make_room(evaluator, &batch->workspace[i]));
+        HF_TRY(make_room(batch, i));
     return HF_OK;
 }
 
@@ -90,7 +92,7 @@ static hf_status fill_engine(hf_batch *batch, struct hf_batch_engine *e, const d
 {
     const hf_evaluator *v = batch->evaluator;
     if (e->solver == HF_SOLVER_CHORD) {
-        HF_TRY(hf_chord_create(v, initial, &batch->workspace[0], &e->shared));
+        HF_TRY(hf_chord_create(v, initial, &batch->workspace[0], &batch->point[0], &e->shared));
         e->chord = calloc((size_t)batch->n_thread, sizeof *e->chord);
     } else {
         HF_TRY(hf_swarm_plan_create(v->model, hf_lane_best_isa(), &e->plan));
@@ -154,7 +156,7 @@ hf_solver hf_batch_share(hf_batch *batch, const double *initial)
  * works in a room, so no lock is needed. */
 static bool has_room(hf_batch *batch, int room)
 {
-    if (!batch->workspace[room].block && make_room(batch->evaluator, &batch->workspace[room]) != HF_OK) return false;
+    if (!batch->workspace[room].block && make_room(batch, room) != HF_OK) return false;
     return !batch->engine || make_lanes(batch->engine, room) == HF_OK;
 }
 
@@ -166,13 +168,14 @@ static void work_off(hf_batch *batch, int room, hf_lane_next *next, void *contex
     const hf_evaluator *v = batch->evaluator;
     const struct hf_batch_engine *e = batch->engine;
     hf_workspace *w = &batch->workspace[room];
+    hf_objectives_point *point = &batch->point[room];
     if (e && e->solver == HF_SOLVER_CHORD)
-        hf_chord_run(&e->shared, &e->chord[room], w, next, context, keeps_shape, design, r);
+        hf_chord_run(&e->shared, &e->chord[room], w, point, next, context, keeps_shape, design, r);
     else if (e)
         hf_swarm_run(v, &e->plan, &e->lanes[room], w, next, context, design, r);
     else
         for (int i = next(context); i >= 0; i = next(context))
-            hf_evaluate(v, design + (size_t)i * (size_t)v->model->n_variable, w, &r[i]);
+            hf_evaluate(v, design + (size_t)i * (size_t)v->model->n_variable, w, point, &r[i]);
 }
 
 /* ---- the parallel run ---- */
@@ -242,8 +245,11 @@ hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design, hf_form_re
 void hf_batch_free(hf_batch *batch)
 {
     free_engine(batch);
-    for (int i = 0; i < batch->n_thread; i++)
+    for (int i = 0; i < batch->n_thread; i++) {
+        hf_objectives_point_free(&batch->point[i]);
         hf_workspace_free(&batch->workspace[i]);
+    }
+    free(batch->point);
     free(batch->workspace);
     *batch = (hf_batch){0};
 }

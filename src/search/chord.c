@@ -166,11 +166,12 @@ hf_status hf_chord_create_here(const hf_evaluator *v, hf_workspace *w, hf_chord 
     return chord->n_pull ? pack_truss(m, w, chord) : HF_OK;
 }
 
-hf_status hf_chord_create(const hf_evaluator *v, const double *initial, hf_workspace *w, hf_chord *chord)
+hf_status hf_chord_create(const hf_evaluator *v, const double *initial, hf_workspace *w, hf_objectives_point *point,
+                          hf_chord *chord)
 {
     hf_form_result base;
     *chord = (hf_chord){0};
-    hf_status status = hf_evaluate(v, initial, w, &base);
+    hf_status status = hf_evaluate(v, initial, w, point, &base);
     if (!hf_status_has_shape(status)) return status; /* a design that only breaks a limit has a shape, too */
     return hf_chord_create_here(v, w, chord);
 }
@@ -223,6 +224,7 @@ typedef struct {
     const hf_chord *chord;
     hf_chord_lanes *lanes;
     hf_workspace *w;
+    hf_objectives_point *point;
     bool keeps_shape;
     const double *design;
     hf_form_result *result;
@@ -319,7 +321,7 @@ static void finish(chord_run *s, int lane, const double *design, hf_form_result 
     for (int i = 0; i < c->n_pull; i++)
         s->w->displacement_m[i] = s->lanes->displacement_m[i * HF_LANES + lane];
     if (c->n_pull) hf_coupling_accept(c->evaluator->model, s->w, s->steps[lane], s->at[lane].gap_m, r);
-    hf_evaluate_judge(c->evaluator, s->w, r);
+    hf_evaluate_judge(c->evaluator, s->w, s->point, r);
 }
 
 /* Computes the forces of net and truss in all lanes, and from them `at`. */
@@ -364,7 +366,7 @@ static bool settle(void *solver, int lane, int i_design)
         s->steps[lane]++;
         return false;
     }
-    hf_evaluate(v, design, s->w, s->result + i_design);
+    hf_evaluate(v, design, s->w, s->point, s->result + i_design);
     return true;
 }
 
@@ -378,10 +380,16 @@ static void step(void *solver)
     k->step(s->chord, s->lanes);
 }
 
-void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *w, hf_lane_next *next, void *context,
-                  bool keeps_shape, const double *design, hf_form_result *r)
+void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *w, hf_objectives_point *point,
+                  hf_lane_next *next, void *context, bool keeps_shape, const double *design, hf_form_result *r)
 {
     static const hf_lane_solver work = {load, look, settle, step};
-    chord_run s = {.chord = chord, .lanes = lanes, .w = w, .keeps_shape = keeps_shape, .design = design, .result = r};
+    chord_run s = {.chord = chord,
+                   .lanes = lanes,
+                   .w = w,
+                   .point = point,
+                   .keeps_shape = keeps_shape,
+                   .design = design,
+                   .result = r};
     hf_lane_schedule_run(&work, &s, next, context);
 }

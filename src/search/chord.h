@@ -116,11 +116,11 @@ extern const hf_chord_kernels HF_LANE_EACH(hf_chord_kernels);
  * have a Newton matrix (a convex energy), and form.factor must not be `lapack`. */
 bool hf_chord_applies(const hf_evaluator *evaluator);
 
-/* Evaluates the initial design [n_variable], factors its Newton matrix and packs it for the lanes. workspace is
- * scratch. Returns HF_OK, HF_NO_MEMORY, or another status if the initial design has no shape or no positive definite
+/* Evaluates the initial design [n_variable], factors its Newton matrix and packs it for the lanes. workspace and point
+ * are scratch. Returns HF_OK, HF_NO_MEMORY, or another status if the initial design has no shape or no positive definite
  * matrix. The caller frees its arena in any case. */
 hf_status hf_chord_create(const hf_evaluator *evaluator, const double *initial, hf_workspace *workspace,
-                          hf_chord *chord);
+                          hf_objectives_point *point, hf_chord *chord);
 
 /* Makes the shared matrix at the shape that the workspace holds, whatever the laws of its cables. This serves nets
  * without design variables: the caller writes the force density of cable e into row n_variable + e of `variable` of the
@@ -135,8 +135,9 @@ size_t hf_chord_bytes(const hf_evaluator *evaluator, size_t *lanes_bytes);
 hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes);
 
 /* Evaluates the designs whose indices next(context) returns, until it returns -1. design: [][n_variable]; result: [].
- * If keeps_shape is true, the workspace holds the last shape afterwards; otherwise it is scratch. */
-void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, hf_lane_next *next,
-                  void *context, bool keeps_shape, const double *design, hf_form_result *result);
+ * If keeps_shape is true, the workspace holds the last shape afterwards; otherwise it is scratch. `point` is scratch of
+ * the objectives, as for hf_evaluate. */
+void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, hf_objectives_point *point,
+                  hf_lane_next *next, void *context, bool keeps_shape, const double *design, hf_form_result *result);
 
 #endif

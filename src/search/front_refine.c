@@ -96,6 +96,27 @@ bool hf_front_refine_applies(const hf_evaluator *v)
 
 /* ---- one point ---- */
 
+/* The memory in which one thread evaluates designs. */
+typedef struct {
+    hf_workspace w;
+    hf_objectives_point point;
+} room;
+
+/* Returns HF_OK or HF_NO_MEMORY; call close_room in either case. */
+static hf_status open_room(const hf_front_refine *t, room *own)
+{
+    *own = (room){0};
+    HF_TRY(hf_workspace_create(t->evaluator->model, &own->w));
+    own->w.stop = t->stop;
+    return hf_objectives_point_create(t->evaluator->objectives, &own->point);
+}
+
+static void close_room(room *own)
+{
+    hf_objectives_point_free(&own->point);
+    hf_workspace_free(&own->w);
+}
+
 /* The weights of `least` next to an objective whose minimum is 0 (`met`), both in parts of their ranges. `met` then
  * rises by about the square of the weight. With the last weight alone, a search that begins where `met` is 0 may find
  * no way along a curved valley. */
@@ -118,7 +139,7 @@ static void choose_roles(const hf_objectives *objectives, int *role)
 /* Finds the start with the minimum of objective k among the feasible starts. If none is feasible, *start is the first
  * one with a shape, or the first of all. largest [n_objective] rises to the maxima of the feasible starts. Returns
  * HF_OK or HF_NO_MEMORY. */
-static hf_status best_start(const hf_front_refine *t, int k, hf_workspace *w, double *largest, const double **start)
+static hf_status best_start(const hf_front_refine *t, int k, room *own, double *largest, const double **start)
 {
     int best_rank = -1;
     double least = INFINITY;
@@ -126,7 +147,7 @@ static hf_status best_start(const hf_front_refine *t, int k, hf_workspace *w, do
     for (int i = 0; i < t->n_start; i++) {
         const double *design = t->start + (size_t)i * (size_t)t->evaluator->model->n_variable;
         hf_form_result r;
-        hf_status status = hf_evaluate(t->evaluator, design, w, &r);
+        hf_status status = hf_evaluate(t->evaluator, design, &own->w, &own->point, &r);
         if (status == HF_NO_MEMORY) return status;
         for (int g = 0; g < t->evaluator->objectives->n_objective && status == HF_OK; g++)
             largest[g] = fmax(largest[g], r.objective[g]);
@@ -212,7 +233,7 @@ static int find_common(int n_objective, int n, const hf_front_point *const *poin
 
 /* Refines the design of a job by Levenberg-Marquardt. Multipliers are slopes of MAIN, so they are NaN if another
  * objective is minimised. Returns HF_OK, or a status that ends the whole search. */
-static hf_status refine(const search *s, const job *j, double *design, hf_workspace *w, hf_front_point *point)
+static hf_status refine(const search *s, const job *j, double *design, room *own, hf_front_point *point)
 {
     const hf_front_refine *t = s->t;
     const hf_watch_front limits = {j->least, j->most};
@@ -221,8 +242,8 @@ static hf_status refine(const search *s, const job *j, double *design, hf_worksp
     const hf_refine_watcher watcher = {.after = tell_step, .context = t->watcher};
     *point = (hf_front_point){.objective = {NAN, NAN, NAN}, .multiplier = {NAN, NAN, NAN}};
     hf_status status = hf_refine_run(t->evaluator, t->lower, t->upper, t->max_iterations, &limits,
-                                     t->watcher ? &watcher : NULL, design, w, &r);
-    if (status == HF_OK) status = hf_evaluate(t->evaluator, design, w, &result);
+                                     t->watcher ? &watcher : NULL, design, &own->w, &r);
+    if (status == HF_OK) status = hf_evaluate(t->evaluator, design, &own->w, &own->point, &result);
     if (t->stop && *t->stop) return HF_INTERRUPTED;
     if (status == HF_NO_MEMORY) return status;
     point->status = status;
@@ -248,17 +269,17 @@ static bool is_doubtful(const search *s, const job *j)
 
 /* Finds the point of a job from its first design. If it is doubtful, searches again from the second design and keeps
  * the better point. */
-static hf_status find(const search *s, job *j, hf_workspace *w)
+static hf_status find(const search *s, job *j, room *own)
 {
     size_t size = s->n_variable * sizeof(double);
     hf_front_point again;
     memcpy(j->design, j->from[0], size);
-    if (j->met >= 0) HF_TRY(meet(s->t, j->met, j->least, s->range, j->design, w));
-    HF_TRY(refine(s, j, j->design, w, &j->found));
+    if (j->met >= 0) HF_TRY(meet(s->t, j->met, j->least, s->range, j->design, &own->w));
+    HF_TRY(refine(s, j, j->design, own, &j->found));
     if (!j->from[1] || !is_doubtful(s, j)) return HF_OK;
     double *design = j->design + s->n_variable; /* the second half of its memory */
     memcpy(design, j->from[1], size);
-    HF_TRY(refine(s, j, design, w, &again));
+    HF_TRY(refine(s, j, design, own, &again));
     again.steps += j->found.steps;
     bool is_better =
         again.status == HF_OK && (j->found.status != HF_OK || again.objective[j->least] < j->found.objective[j->least]);
@@ -280,21 +301,19 @@ static void forget_multipliers(job *j)
 }
 
 /* Runs jobs in one thread until none is left. */
-static void work(void *context, int room)
+static void work(void *context, int i_room)
 {
     search *s = context;
-    hf_workspace w = {0};
-    hf_status status = hf_workspace_create(s->t->evaluator->model, &w);
-    if (status == HF_OK) status = hf_evaluate_attend(s->t->evaluator, &w);
-    w.stop = s->t->stop;
+    room own;
+    hf_status status = open_room(s->t, &own);
     while (status == HF_OK) {
         int i = hf_parallel_take(&s->queue);
         if (i < 0) break;
-        status = find(s, &s->job[s->n_run + i], &w);
+        status = find(s, &s->job[s->n_run + i], &own);
         if (s->job[s->n_run + i].is_point) count_point(s->t);
     }
-    hf_workspace_free(&w);
-    s->of_room[room] = status;
+    close_room(&own);
+    s->of_room[i_room] = status;
 }
 
 /* Runs the jobs that were added. Each depends on earlier jobs only, so the number of threads does not change the
@@ -467,13 +486,12 @@ static void choose_main(search *s, job *end[])
 static hf_status find_alone(search *s, job *alone[])
 {
     const double *start[HF_FRONT_OBJECTIVES_MAX];
-    hf_workspace w = {0};
+    room own;
     int n = s->n_objective;
-    hf_status status = hf_workspace_create(s->t->evaluator->model, &w);
-    if (status == HF_OK) status = hf_evaluate_attend(s->t->evaluator, &w);
+    hf_status status = open_room(s->t, &own);
     for (int r = 0; r < n && status == HF_OK; r++)
-        status = best_start(s->t, s->role[r], &w, s->largest, &start[r]);
-    hf_workspace_free(&w);
+        status = best_start(s->t, s->role[r], &own, s->largest, &start[r]);
+    close_room(&own);
     HF_TRY(status);
     for (int r = 0; r < n; r++)
         alone[r] = add(s, r, INFINITY, start[r], start[(r + 1) % n]);

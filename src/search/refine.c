@@ -417,7 +417,8 @@ static void count_limits(const hf_refine_problem *p, const double *design, hf_re
 static hf_status hand_over(const hf_refine_problem *p, const hf_form_result *start, double *design, hf_refine_result *r)
 {
     hf_form_result end;
-    bool is_better = hf_evaluate(p->caller, p->best, p->w, &end) == HF_OK &&
+    hf_objectives_point *point = hf_residuals_point(&p->residuals);
+    bool is_better = hf_evaluate(p->caller, p->best, p->w, point, &end) == HF_OK &&
                      !hf_watch_breaks(p->front, p->v.objectives, HF_LIMITS_AT, end.objective) &&
                      (start->status != HF_OK || hf_refine_merit(p, &end) <= hf_refine_merit(p, start));
     if (!is_better && start->status != HF_OK) return start->status;
@@ -425,11 +426,30 @@ static hf_status hand_over(const hf_refine_problem *p, const hf_form_result *sta
     if (!is_better) {
         r->stop = HF_REFINE_STALLED;
         forget_multipliers(r);
-        HF_TRY(hf_evaluate(p->caller, design, p->w, &end));
+        HF_TRY(hf_evaluate(p->caller, design, p->w, point, &end));
     }
     r->merit = hf_refine_merit(p, &end);
     count_limits(p, design, r);
     return HF_OK;
+}
+
+/* Refines the design whose result is `start` and whose shape is in the workspace. Returns what hf_refine_run does. */
+static hf_status refine_from(hf_refine_problem *p, int max_iterations, hf_form_result *start, double *design,
+                             hf_refine_result *r)
+{
+    const hf_refine_watcher *watcher = p->watcher;
+    if (!hf_status_has_shape(start->status)) return start->status;
+    p->is_outside = start->status != HF_OK;
+    p->best_psi_m = start->psi_m;
+    r->merit = r->start_merit = hf_refine_merit(p, start);
+    hf_refine_begin(p, design);
+    if (watcher && watcher->state) hf_refine_resume(p, watcher->n_state, watcher->state, r);
+    if (start->status == HF_OK && hf_watch_breaks(p->front, p->caller->objectives, 0, start->objective))
+        start->status = HF_OUT_OF_LIMITS;
+    HF_TRY(minimise(p, max_iterations, r));
+    if (p->is_outside) return start->status == HF_OK ? HF_OUT_OF_LIMITS : start->status;
+    if (p->front) HF_TRY(find_multipliers(p, r));
+    return hand_over(p, start, design, r);
 }
 
 hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
@@ -453,22 +473,11 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
     p.v.by_density = true;
     p.v.boundary_ratio_cap = INFINITY;
     p.v.limits = NULL;
-    hf_evaluate(evaluator, design, w, &start);
-    if (!hf_status_has_shape(start.status)) return start.status;
-    p.is_outside = start.status != HF_OK;
-    p.best_psi_m = start.psi_m;
-    result->merit = result->start_merit = hf_refine_merit(&p, &start);
     hf_status status = hf_refine_create(&p, &arena);
     if (status == HF_OK) {
-        hf_refine_begin(&p, design);
-        if (watcher && watcher->state) hf_refine_resume(&p, watcher->n_state, watcher->state, result);
-        if (start.status == HF_OK && hf_watch_breaks(front, evaluator->objectives, 0, start.objective))
-            start.status = HF_OUT_OF_LIMITS;
-        status = minimise(&p, max_iterations, result);
-        if (status == HF_OK && p.is_outside) status = start.status == HF_OK ? HF_OUT_OF_LIMITS : start.status;
-        if (status == HF_OK && front) status = find_multipliers(&p, result);
+        hf_evaluate(evaluator, design, w, hf_residuals_point(&p.residuals), &start);
+        status = refine_from(&p, max_iterations, &start, design, result);
         result->evaluations = p.evaluations;
-        if (status == HF_OK) status = hand_over(&p, &start, design, result);
     }
     hf_refine_destroy(&p, &arena);
     return status;

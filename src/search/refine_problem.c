@@ -107,6 +107,7 @@ static void aim(hf_refine_problem *p)
     p->n_row = least->n_row;
     p->has_corners = hf_objectives_is_maximum(least->settings.figure);
     p->watch.objective = p->result.objective;
+    p->watch.point = hf_residuals_point(&p->residuals);
     p->watch.objective_rate = p->objective_rate;
 }
 
@@ -148,7 +149,7 @@ hf_status hf_refine_evaluate(hf_refine_problem *p, const double *step)
         p->design[k] = hf_refine_is_tension(p, k) ? value : fmax(p->lower[k], fmin(p->upper[k], value));
     }
     p->evaluations++;
-    return hf_evaluate(&p->v, p->design, p->w, &p->result);
+    return hf_evaluate(&p->v, p->design, p->w, hf_residuals_point(&p->residuals), &p->result);
 }
 
 void hf_refine_keep(hf_refine_problem *p)

@@ -20,7 +20,7 @@ static void lay_out(hf_arena *a, hf_residuals *r)
         double *move_m = hf_arena_take(a, 3 * n_at_once * (size_t)m->n_node, sizeof(double));
         double *tension_rate = hf_arena_take(a, n_at_once * (size_t)m->n_cable, sizeof(double));
         double *value = hf_arena_take(a, i > 0 ? (size_t)r->n_row : 0, sizeof(double));
-        if (r->room) r->room[i] = (hf_residuals_room){{0}, NULL, HF_OK, move_m, tension_rate, value};
+        if (r->room) r->room[i] = (hf_residuals_room){{0}, HF_OK, move_m, tension_rate, value};
     }
 }
 
@@ -30,17 +30,15 @@ hf_status hf_residuals_create(const hf_evaluator *v, hf_residuals *r)
     *r = (hf_residuals){.v = v, .n_row = v->objectives ? v->objectives->n_row : 3 * v->model->n_inner_node};
     r->n_room = !v->objectives ? 0 : v->n_thread > 1 ? v->n_thread : 1;
     HF_TRY(HF_ARENA_MAKE(&r->arena, lay_out(&r->arena, r)));
-    for (int i = 1; i < r->n_room; i++) {
-        r->room[i].point = &r->room[i].own;
-        HF_TRY(hf_objectives_point_create(v->objectives, &r->room[i].own));
-    }
+    for (int i = 0; i < r->n_room; i++)
+        HF_TRY(hf_objectives_point_create(v->objectives, &r->room[i].point));
     return HF_OK;
 }
 
 void hf_residuals_free(hf_residuals *r)
 {
-    for (int i = 1; r->arena.block && i < r->n_room; i++)
-        hf_objectives_point_free(&r->room[i].own);
+    for (int i = 0; r->arena.block && i < r->n_room; i++)
+        hf_objectives_point_free(&r->room[i].point);
     hf_arena_free(&r->arena);
     *r = (hf_residuals){0};
 }
@@ -57,16 +55,15 @@ static void enter_room(void *context, int any_room, int i)
     hf_residuals_room *room = &q->r->room[i];
     (void)any_room;
     room->status =
-        hf_objectives_linearise(q->r->v->objectives, i == 0, q->w, room->point, i ? room->value : q->r->value);
+        hf_objectives_linearise(q->r->v->objectives, i == 0, q->w, &room->point, i ? room->value : q->r->value);
 }
 
 /* A feasible design has no loose nodes, so psi counts all inner nodes. */
-hf_status hf_residuals_find(hf_residuals *r, hf_workspace *w)
+hf_status hf_residuals_find(hf_residuals *r, const hf_workspace *w)
 {
     const hf_model *m = r->v->model;
     if (r->n_room) {
         entered q = {r, w};
-        r->room[0].point = w->objectives;
         hf_parallel_each(r->v->n_thread, r->n_room, enter_room, &q);
         for (int i = 0; i < r->n_room; i++)
             HF_TRY(r->room[i].status);
@@ -100,11 +97,11 @@ static void rate_one(void *context, int i_room, int i_class)
     const hf_model *m = r->v->model;
     double *rate = rate_of(q, i_class), part = 1 / sqrt(m->n_inner_node);
     if (r->v->objectives) {
-        const hf_residuals_room *room = &r->room[i_room];
+        hf_residuals_room *room = &r->room[i_room];
         const hf_objectives_rate by = {room->move_m, room->tension_rate,
                                        hf_sensitivity_displacement(q->slopes, i_class, 0)};
         hf_sensitivity_spread(q->slopes, i_class, room->move_m, room->tension_rate);
-        hf_objectives_push(r->v->objectives, q->w, room->point, &by, rate);
+        hf_objectives_push(r->v->objectives, q->w, &room->point, &by, rate);
         return;
     }
     const double *move = q->slopes->move + (size_t)i_class * q->slopes->n_dof;
@@ -118,7 +115,7 @@ static void cut_nets(void *context, int any_room, int i)
     const all_rates *q = context;
     hf_residuals_room *room = &q->r->room[i];
     (void)any_room;
-    room->status = q->r->v->objectives->nets->cut(room->point->nets, q->w);
+    room->status = q->r->v->objectives->nets->cut(room->point.nets, q->w);
 }
 
 /* Computes the rows of all objectives over one as-built net, by all variables. */
@@ -131,7 +128,7 @@ static void rate_net(void *context, int i_room, int i_net)
     const hf_workspace *shape;
     hf_objectives_rate by[HF_OBJECTIVES_AT_ONCE], by_net[HF_OBJECTIVES_AT_ONCE];
     if (room->status != HF_OK || !hf_objectives_are_over(objectives, i_net)) return;
-    room->status = hf_objectives_nets_linearise(objectives, i_net, room->point, &shape);
+    room->status = hf_objectives_nets_linearise(objectives, i_net, &room->point, &shape);
     for (int first = 0; first < q->slopes->n && room->status == HF_OK; first += HF_OBJECTIVES_AT_ONCE) {
         int n = q->slopes->n - first < HF_OBJECTIVES_AT_ONCE ? q->slopes->n - first : HF_OBJECTIVES_AT_ONCE;
         for (int k = 0; k < n; k++) {
@@ -140,9 +137,9 @@ static void rate_net(void *context, int i_room, int i_net)
             hf_sensitivity_spread(q->slopes, first + k, move, tension);
             by[k] = (hf_objectives_rate){move, tension, hf_sensitivity_displacement(q->slopes, first + k, 0)};
         }
-        objectives->nets->follow(room->point->nets, n, by, by_net);
+        objectives->nets->follow(room->point.nets, n, by, by_net);
         for (int k = 0; k < n; k++)
-            hf_objectives_nets_push(objectives, i_net, shape, room->point, &by_net[k], rate_of(q, first + k));
+            hf_objectives_nets_push(objectives, i_net, shape, &room->point, &by_net[k], rate_of(q, first + k));
     }
 }
 
@@ -154,7 +151,7 @@ static void close_rate(void *context, int i_room, int i_class)
     double *rate = rate_of(q, i_class);
     (void)i_room;
     if (r->n_room && r->v->objectives->nets)
-        hf_objectives_nets_close(r->v->objectives, r->room[0].point, r->value, rate);
+        hf_objectives_nets_close(r->v->objectives, &r->room[0].point, r->value, rate);
     q->gradient[i_class] = 0;
     for (int i = 0; i < r->n_row; i++)
         q->gradient[i_class] += rate[i] * r->value[i];

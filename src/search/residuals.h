@@ -6,9 +6,9 @@
 
 #include "search/sensitivity.h"
 
-/* The working memory of a thread, if there are objectives. The point of the first room is that of the workspace. */
+/* The working memory of a thread, if there are objectives. */
 typedef struct {
-    hf_objectives_point own, *point;
+    hf_objectives_point point;
     hf_status status;
     double *move_m, *tension_rate; /* [HF_OBJECTIVES_AT_ONCE][3][n_node], [HF_OBJECTIVES_AT_ONCE][n_cable], scratch */
     double *value;                 /* [n_row], scratch; not in the first room */
@@ -27,9 +27,16 @@ typedef struct {
 hf_status hf_residuals_create(const hf_evaluator *evaluator, hf_residuals *residuals);
 void hf_residuals_free(hf_residuals *residuals);
 
+/* Returns the memory for the objectives in which the calling thread may evaluate designs; NULL without objectives.
+ * hf_residuals_find overwrites it. */
+static inline hf_objectives_point *hf_residuals_point(const hf_residuals *residuals)
+{
+    return residuals->n_room ? &residuals->room[0].point : NULL;
+}
+
 /* Computes the residuals at the shape in the workspace, which must be feasible, and linearises the objectives in every
  * room. Returns HF_OK, HF_NOT_FINITE if an objective has no value, or HF_NO_MEMORY. */
-hf_status hf_residuals_find(hf_residuals *residuals, hf_workspace *workspace);
+hf_status hf_residuals_find(hf_residuals *residuals, const hf_workspace *workspace);
 
 /* Computes rate [slopes->n][n_row], the derivatives of the residuals by all variables of `slopes`, which must be of the
  * same shape. gradient [slopes->n] receives that of |f|^2/2. All threads share the work. Returns HF_OK, or the status

@@ -239,12 +239,12 @@ static bool settle(void *solver, int lane, int i_design)
         if (s->stop == HF_STOP_RESIDUAL) hf_equilibrium_judge_open(s->v->model, s->v->form, s->w, r);
         hf_loose_refuse(s->v->model, s->v->form, s->w, r);
     } else if (s->v->model->has_newton) { /* hf_evaluate finds out whether the net has a shape all the same */
-        hf_evaluate(s->v, design, s->w, r);
+        hf_evaluate(s->v, design, s->w, NULL, r);
         return true;
     } else {
         hf_form_refuse(status, s->iterations[lane], r);
     }
-    hf_evaluate_judge(s->v, s->w, r);
+    hf_evaluate_judge(s->v, s->w, NULL, r);
     return true;
 }
 

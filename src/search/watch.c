@@ -145,9 +145,9 @@ bool hf_watch_breaks(const hf_watch_front *front, const hf_objectives *objective
 /* ---- shapes ---- */
 
 /* Measures the items at the shape in the workspace. */
-static void look(hf_watch *q, hf_workspace *w)
+static void look(hf_watch *q, const hf_workspace *w)
 {
-    if (q->front) hf_objectives_pulls(q->v->model, w, w->objectives);
+    if (q->front) hf_objectives_pulls(q->v->model, w, q->point);
     for (int i = 0; i < q->n; i++) {
         hf_watched *t = &q->item[i];
         const double *d = w->displacement_m + 3 * (ptrdiff_t)(t->attachment < 0 ? 0 : t->attachment);
@@ -156,7 +156,7 @@ static void look(hf_watch *q, hf_workspace *w)
         else if (t->attachment >= 0)
             t->now = hf_norm(d[0], d[1], d[2]);
         else
-            t->now = t->support >= 0 ? w->objectives->size[t->support] : q->objective[t->objective];
+            t->now = t->support >= 0 ? q->point->size[t->support] : q->objective[t->objective];
     }
 }
 
@@ -173,7 +173,7 @@ static double ratio_of(const hf_watch *q, int k)
     return least > 0 ? largest / least : (double)INFINITY;
 }
 
-bool hf_watch_keeps(hf_watch *q, hf_workspace *w)
+bool hf_watch_keeps(hf_watch *q, const hf_workspace *w)
 {
     look(q, w);
     for (int k = 0; k < q->n_cap; k++)
@@ -183,7 +183,7 @@ bool hf_watch_keeps(hf_watch *q, hf_workspace *w)
     return true;
 }
 
-double hf_watch_violation(hf_watch *q, hf_workspace *w)
+double hf_watch_violation(hf_watch *q, const hf_workspace *w)
 {
     double sum = hf_limits_violation(q->v, w);
     look(q, w);
@@ -215,18 +215,18 @@ static void displacement_rates(const hf_watched *t, const hf_sensitivity *s, con
 }
 
 /* Computes the rates of the forces on all supports that are watched, variable by variable. */
-static void pull_rates(hf_watch *q, const hf_sensitivity *s, hf_workspace *w)
+static void pull_rates(hf_watch *q, const hf_sensitivity *s, const hf_workspace *w)
 {
     for (int j = 0; j < s->n; j++) {
         const hf_objectives_rate by = {q->move_m, q->tension_rate, hf_sensitivity_displacement(s, j, 0)};
         hf_sensitivity_spread(s, j, q->move_m, q->tension_rate);
-        hf_objectives_pull_rates(q->v->model, w, w->objectives, &by, q->pull_rate);
+        hf_objectives_pull_rates(q->v->model, w, q->point, &by, q->pull_rate);
         for (int i = 0; i < q->n; i++)
             if (q->item[i].support >= 0) *rate_at(q, i, j) = q->pull_rate[q->item[i].support];
     }
 }
 
-void hf_watch_linearise(hf_watch *q, const hf_sensitivity *s, hf_workspace *w)
+void hf_watch_linearise(hf_watch *q, const hf_sensitivity *s, const hf_workspace *w)
 {
     bool has_pull = false;
     look(q, w);
@@ -289,7 +289,7 @@ static void predict(hf_watch *q, const double *x)
         q->item[i].predicted = q->predicted[i];
 }
 
-void hf_watch_learn(hf_watch *q, const double *x, hf_workspace *w)
+void hf_watch_learn(hf_watch *q, const double *x, const hf_workspace *w)
 {
     predict(q, x);
     look(q, w);

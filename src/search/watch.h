@@ -55,22 +55,23 @@ typedef struct {
     HF_WATCH_FIELDS(HF_ARENA_MEMBER)
     const hf_watch_front *front;  /* NULL: no objective is limited */
     const double *objective;      /* [n_objective], objectives of the measured shape; borrowed; NULL without `front` */
+    hf_objectives_point *point;   /* scratch for forces on supports; borrowed; NULL without `front` */
     const double *objective_rate; /* [n_objective][n_class], rates of objectives without corners, borrowed */
     double level;                 /* value of a minimised objective with corners, or the logarithm of a ratio */
     hf_arena arena;
 } hf_watch;
 
 /* Watches the cap and the limits of the evaluator, and the bounds lower and upper [n_variable] of design variables that
- * set a tension. If `front` is not NULL, it also watches the objectives, after the caller has set goal and
- * objective_rate. Returns HF_OK or HF_NO_MEMORY; the caller frees its arena. */
+ * set a tension. If `front` is not NULL, it also watches the objectives, after the caller has set
+ * `objective`, objective_rate and `point`. Returns HF_OK or HF_NO_MEMORY; the caller frees its arena. */
 hf_status hf_watch_create(const hf_evaluator *evaluator, const hf_sensitivity *slopes, const double *lower,
                           const double *upper, const hf_watch_front *front, hf_watch *watch);
 
 /* Returns true if the shape in the workspace keeps all limits. */
-bool hf_watch_keeps(hf_watch *watch, hf_workspace *workspace);
+bool hf_watch_keeps(hf_watch *watch, const hf_workspace *workspace);
 
 /* Makes the shape in the workspace the best one, and computes the rates of all items there. */
-void hf_watch_linearise(hf_watch *watch, const hf_sensitivity *slopes, hf_workspace *workspace);
+void hf_watch_linearise(hf_watch *watch, const hf_sensitivity *slopes, const hf_workspace *workspace);
 
 /* Sets the limits of the next step: it goes this part of the way from the best variables into the limits that they
  * break. With part 1, as after hf_watch_linearise, it keeps all limits. */
@@ -78,12 +79,12 @@ void hf_watch_aim(hf_watch *watch, double part);
 
 /* Returns the total violation of the shape in the workspace. It is the violation by which designs are ranked, plus
  * those of the bounds of tensions and of the limits on objectives. */
-double hf_watch_violation(hf_watch *watch, hf_workspace *workspace);
+double hf_watch_violation(hf_watch *watch, const hf_workspace *workspace);
 
 /* hf_watch_forget sets `bend` of all items to 0. hf_watch_learn computes it from the shape in the workspace, to which
  * the step x has led. */
 void hf_watch_forget(hf_watch *watch);
-void hf_watch_learn(hf_watch *watch, const double *x, hf_workspace *workspace);
+void hf_watch_learn(hf_watch *watch, const double *x, const hf_workspace *workspace);
 
 /* Finds the limit that the step x violates most, relative to its unit, and by more than `worst`. Returns false if there
  * is none. If the minimised objective has corners, x has one more entry, the increase of its level, and no size may

@@ -10,7 +10,6 @@
  *     positions for loose nodes, certificate     refusal of loose nodes, cap and limits, objectives */
 #include <hifdm/evaluate.h>
 
-#include "base/arena.h"
 #include "solve/certificate.h"
 #include "solve/coupling.h"
 #include "solve/equilibrium.h"
@@ -162,14 +161,6 @@ bool hf_evaluate_needs_shape(const hf_evaluator *v, const hf_form_result *r)
     return is_above_cap(v, r) || v->limits || v->objectives;
 }
 
-hf_status hf_evaluate_attend(const hf_evaluator *v, hf_workspace *w)
-{
-    hf_arena arena = {0};
-    if (!v->objectives || w->objectives) return HF_OK;
-    HF_TRY(HF_ARENA_MAKE(&arena, w->objectives = hf_arena_take(&arena, 1, sizeof *w->objectives)));
-    return hf_objectives_point_create(v->objectives, w->objectives);
-}
-
 void hf_evaluate_prepare(const hf_evaluator *v, const double *design, hf_workspace *w)
 {
     const hf_model *m = v->model;
@@ -182,7 +173,7 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design, hf_workspa
         apply_variable(v, k, design[k], w);
 }
 
-hf_status hf_evaluate_judge(const hf_evaluator *v, hf_workspace *w, hf_form_result *r)
+hf_status hf_evaluate_judge(const hf_evaluator *v, const hf_workspace *w, hf_objectives_point *point, hf_form_result *r)
 {
     bool has_shape = r->status == HF_OK, breaks_cap = is_above_cap(v, r);
     r->violation = has_shape ? 0 : (double)NAN;
@@ -190,7 +181,7 @@ hf_status hf_evaluate_judge(const hf_evaluator *v, hf_workspace *w, hf_form_resu
     if (has_shape && r->violation > 0) r->status = HF_OUT_OF_LIMITS;
     if (breaks_cap) r->status = HF_RATIO_CAP;
     if (has_shape && v->objectives && /* feasible or not */
-        hf_objectives_measure(v->objectives, w, w->objectives, r->objective, &r->merit) != HF_OK)
+        hf_objectives_measure(v->objectives, w, point, r->objective, &r->merit) != HF_OK)
         r->status = HF_NO_MEMORY;
     if (!v->objectives) r->merit = r->psi_m;
     if (v->objectives && r->status == HF_OK && !isfinite(r->merit)) { /* an objective has no value for this shape */
@@ -207,7 +198,8 @@ bool hf_evaluate_is_unique(const hf_evaluator *v)
     return v->rule != HF_RULE_SEEDED || v->model->variable;
 }
 
-hf_status hf_evaluate(const hf_evaluator *v, const double *design, hf_workspace *w, hf_form_result *r)
+hf_status hf_evaluate(const hf_evaluator *v, const double *design, hf_workspace *w, hf_objectives_point *point,
+                      hf_form_result *r)
 {
     bool seeded = !hf_evaluate_is_unique(v);
     net_problem problem = {v->model, v->form, !seeded && v->solver != HF_SOLVER_FIXED_POINT && v->model->has_newton,
@@ -215,5 +207,5 @@ hf_status hf_evaluate(const hf_evaluator *v, const double *design, hf_workspace 
     hf_evaluate_prepare(v, design, w);
     find_net(&problem, w, NULL, r);
     hf_loose_refuse(v->model, v->form, w, r);
-    return hf_evaluate_judge(v, w, r);
+    return hf_evaluate_judge(v, w, point, r);
 }

@@ -98,6 +98,7 @@ hf_status hf_objectives_point_create(const hf_objectives *objectives, hf_objecti
 {
     hf_arena arena = {0};
     *point = (hf_objectives_point){0};
+    if (!objectives) return HF_OK;
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_point(&arena, objectives, point)));
     point->block = arena.block;
     point->free_nets = objectives->nets ? objectives->nets->close : NULL;

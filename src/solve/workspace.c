@@ -1,11 +1,9 @@
 /* Allocates all memory that one solver thread writes to, from the list HF_WORKSPACE_FIELDS. */
-#include <hifdm/objectives.h>
 #include <hifdm/workspace.h>
 
 #include "base/arena.h"
 #include "linalg/lapack.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static void lay_out(hf_arena *arena, const hf_model *m, hf_workspace *to){HF_WORKSPACE_FIELDS(HF_ARENA_TAKE)}
@@ -31,8 +29,6 @@ hf_status hf_workspace_create(const hf_model *m, hf_workspace *w)
 
 void hf_workspace_free(hf_workspace *w)
 {
-    if (w->objectives) hf_objectives_point_free(w->objectives);
-    free(w->objectives);
     hf_arena_free_block(w->block);
     *w = (hf_workspace){0};
 }

@@ -196,7 +196,7 @@ static void timed_chord_measure(const hf_chord *c, const hf_chord_lanes *l, hf_c
 
 static void run_chord(bench_scene *b, int (*next)(void *context), void *context, hf_form_result *result)
 {
-    hf_chord_run(&chord, &chord_lanes, &b->workspace, next, context, false, b->design, result);
+    hf_chord_run(&chord, &chord_lanes, &b->workspace, NULL, next, context, false, b->design, result);
 }
 
 static void chord_phases(bench_scene *b)
@@ -205,7 +205,7 @@ static void chord_phases(bench_scene *b)
     if (!hf_chord_applies(&b->evaluator)) return;
     b->evaluator.solver = HF_SOLVER_NEWTON;
     b->form.residual_tolerance = 1e-7;
-    if (hf_chord_create(&b->evaluator, b->initial, &b->workspace, &chord) != HF_OK ||
+    if (hf_chord_create(&b->evaluator, b->initial, &b->workspace, NULL, &chord) != HF_OK ||
         hf_chord_lanes_create(&chord, &chord_lanes) != HF_OK)
         bench_fail(b->name, "no matrix to share");
     chord_kernels = chord.kernels;

@@ -49,7 +49,7 @@ static double *make_references(bench_scene *b)
     b->form.residual_tolerance = 1e-9;
     b->evaluator.solver = HF_SOLVER_NEWTON;
     for (int i = 0; i < n_true(b); i++) {
-        if (hf_evaluate(&b->evaluator, design(b, i), &b->workspace, &r) != HF_OK)
+        if (hf_evaluate(&b->evaluator, design(b, i), &b->workspace, NULL, &r) != HF_OK)
             bench_fail(b->name, hf_status_text(r.status));
         worst = fmax(worst, bench_reference(&b->model, &b->workspace, all + (size_t)i * shape_size(b)));
     }
@@ -80,7 +80,7 @@ static void note_error(run *r, int i, const hf_workspace *w)
 static void one_by_one(run *r)
 {
     for (int i = 0; i < r->n; i++) {
-        hf_evaluate(&r->scene->evaluator, design(r->scene, i), &r->scene->workspace, &r->result[i]);
+        hf_evaluate(&r->scene->evaluator, design(r->scene, i), &r->scene->workspace, NULL, &r->result[i]);
         note_error(r, i, &r->scene->workspace); /* some microseconds, beside milliseconds */
     }
 }
@@ -172,7 +172,7 @@ static void sample_bound(run *r, double tolerance)
     double bound_m = 0, estimate_m = 0;
     for (int i = 0; i < r->n; i++) {
         hf_form_result result;
-        hf_evaluate(&b->evaluator, design(b, i), &b->workspace, &result);
+        hf_evaluate(&b->evaluator, design(b, i), &b->workspace, NULL, &result);
         hf_certify(&b->model, &b->workspace, &result);
         if (!(result.position_bound_m <= bound_m)) bound_m = result.position_bound_m;
         estimate_m = fmax(estimate_m, result.position_error_m);

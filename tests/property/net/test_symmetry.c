@@ -103,14 +103,14 @@ START_TEST(what_a_symmetric_search_finds_is_symmetric)
     ck_assert_double_lt(s.ga.population.best_psi_m[s.ga.population.generation],
                         s.ga.population.best_psi_m[0]); /* it moved */
     memcpy(design, s.ga.population.design + s.ga.population.best * N_VARIABLE, sizeof design);
-    ck_assert_int_eq(hf_evaluate(&s.evaluator, design, &s.net.work, &found), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&s.evaluator, design, &s.net.work, NULL, &found), HF_OK);
     ck_assert_double_lt(asymmetry_m(&s.net.model, &s.net.work), 1e-9);
     ck_assert_int_eq(hf_refine_run(&s.evaluator, s.ga.population.lower, s.ga.population.upper, 20, NULL, NULL, design,
                                    &s.net.work, &refined),
                      HF_OK);
     ck_assert_double_lt(refined.merit, found.psi_m);
     demand_symmetric_design(&s, design);
-    ck_assert_int_eq(hf_evaluate(&s.evaluator, design, &s.net.work, &found), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&s.evaluator, design, &s.net.work, NULL, &found), HF_OK);
     ck_assert_double_lt(asymmetry_m(&s.net.model, &s.net.work), 1e-9);
     close_search(&s);
 }

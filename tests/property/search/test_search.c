@@ -40,7 +40,7 @@ static void open_search(struct search *s)
                                   .rule = HF_RULE_FORCE_DENSITY,
                                   .solver = HF_SOLVER_AUTO,
                                   .boundary_ratio_cap = 1e9};
-    ck_assert_int_eq(hf_evaluate(&s->evaluator, s->initial, &s->net.work, &s->base), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&s->evaluator, s->initial, &s->net.work, NULL, &s->base), HF_OK);
     s->evaluator.boundary_ratio_cap = 1.05 * s->base.boundary_tension_ratio;
 }
 

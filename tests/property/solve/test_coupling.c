@@ -96,7 +96,7 @@ START_TEST(chord_agrees)
         hf_form_result chord, alone;
         hf_workspace *w = hf_batch_run_one(&batch, design(&r, i), &chord);
         ck_assert_int_eq(chord.status, HF_OK);
-        ck_assert_int_eq(hf_evaluate(&r.evaluator, design(&r, i), &r.net.work, &alone), HF_OK);
+        ck_assert_int_eq(hf_evaluate(&r.evaluator, design(&r, i), &r.net.work, NULL, &alone), HF_OK);
         for (int k = 0; k < 3 * r.net.model.n_node; k++) /* 1e-9 N over some 0.1 N/m */
             ck_assert_double_eq_tol(w->position_m[k], r.net.work.position_m[k], 1e-8);
     }

@@ -179,7 +179,7 @@ START_TEST(designs_are_solved_one_by_one)
         design[i] = p.initial[i % n_variable] * rng_uniform(&rng, 0.95, 1.05);
     hf_batch_run(&p.batch, N, design, NULL, r);
     for (int i = 0; i < N; i++) {
-        hf_evaluate(&p.evaluator, design + (size_t)i * n_variable, &p.workspace, &alone);
+        hf_evaluate(&p.evaluator, design + (size_t)i * n_variable, &p.workspace, &p.point, &alone);
         ck_assert_int_eq(r[i].status, alone.status);
         ck_assert_msg(!memcmp(&r[i].psi_m, &alone.psi_m, sizeof(double)), "design %d: %a, alone %a", i, r[i].psi_m,
                       alone.psi_m);

@@ -79,9 +79,8 @@ static void residuals_at(struct differed *d, int i, double step, double *residua
     hf_form_result result;
     for (int k = 0; k < m->n_variable; k++)
         d->design[k] = d->p.initial[k] + (d->slopes.class_of_variable[k] == i ? step : 0);
-    ck_assert_int_eq(hf_evaluate(&d->p.evaluator, d->design, &d->p.workspace, &result), HF_OK);
-    ck_assert_int_eq(
-        hf_objectives_linearise(&d->p.objectives, true, &d->p.workspace, d->p.workspace.objectives, residual), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&d->p.evaluator, d->design, &d->p.workspace, &d->p.point, &result), HF_OK);
+    ck_assert_int_eq(hf_objectives_linearise(&d->p.objectives, true, &d->p.workspace, &d->p.point, residual), HF_OK);
 }
 
 static double largest_move(const struct differed *d, int i)
@@ -125,7 +124,7 @@ static void open_differed(struct differed *d, bool on_truss, const char *variabl
     d->exact = d->gradient + n;
     for (size_t k = 0; k < 4; k++)
         d->found[k] = d->exact + n * n_row + k * n_row;
-    ck_assert_int_eq(hf_evaluate(&d->p.evaluator, d->p.initial, &d->p.workspace, &result), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&d->p.evaluator, d->p.initial, &d->p.workspace, &d->p.point, &result), HF_OK);
     ck_assert_int_eq(hf_sensitivity_find(&d->slopes, &d->p.workspace), HF_OK);
     ck_assert_int_eq(hf_residuals_find(&d->residuals, &d->p.workspace), HF_OK);
     ck_assert_int_eq(hf_residuals_rates(&d->residuals, &d->slopes, &d->p.workspace, d->exact, d->gradient), HF_OK);
@@ -163,10 +162,10 @@ START_TEST(a_net_without_memory_is_told)
     const hf_workspace *shape;
     open_problem(&p, false, NULL, "optimize.objective=[{figure: psi, over: samples}]");
     const hf_objectives_nets *nets = p.objectives.nets;
-    ck_assert_int_eq(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &result), HF_OK);
-    ck_assert_int_eq(nets->cut(p.workspace.objectives->nets, &p.workspace), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &p.point, &result), HF_OK);
+    ck_assert_int_eq(nets->cut(p.point.nets, &p.workspace), HF_OK);
     fail_allocation_at(1);
-    hf_status status = hf_objectives_nets_linearise(&p.objectives, nets->n_load_case, p.workspace.objectives, &shape);
+    hf_status status = hf_objectives_nets_linearise(&p.objectives, nets->n_load_case, &p.point, &shape);
     ck_assert(end_allocation_failure());
     ck_assert_int_eq(status, HF_NO_MEMORY);
     hf_problem_free(&p);
@@ -207,7 +206,7 @@ static const char value_objectives[] =
 
 static void evaluate_base(hf_problem *p, hf_form_result *r)
 {
-    ck_assert_int_eq(hf_evaluate(&p->evaluator, p->initial, &p->workspace, r), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&p->evaluator, p->initial, &p->workspace, &p->point, r), HF_OK);
 }
 
 static void assert_near(double value, double wanted)
@@ -317,7 +316,7 @@ START_TEST(values_do_not_depend_on_earlier_designs)
     ck_assert_ptr_nonnull(design);
     for (int k = 0; k < p.model.n_variable; k++)
         design[k] = p.initial[k] * (1 + 0.02 * (k % 5));
-    ck_assert_int_eq(hf_evaluate(&p.evaluator, design, &p.workspace, &other), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&p.evaluator, design, &p.workspace, &p.point, &other), HF_OK);
     evaluate_base(&p, &again);
     ck_assert_mem_eq(first.objective, again.objective, sizeof first.objective);
     hf_batch_run_one(&p.batch, design, &again); /* by chord, in another workspace */

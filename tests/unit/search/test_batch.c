@@ -49,7 +49,7 @@ START_TEST(threads_and_grouping_do_not_change_a_bit)
     evaluate(&r, 1, 1, alone);
     for (int i = 0; i < N_DESIGN; i++) { /* the same as without a batch */
         hf_form_result direct;
-        hf_evaluate(&r.evaluator, r.design + i * r.net.model.n_variable, &r.net.work, &direct);
+        hf_evaluate(&r.evaluator, r.design + i * r.net.model.n_variable, &r.net.work, NULL, &direct);
         ck_assert_mem_eq(&direct.psi_m, &alone[i].psi_m, sizeof(double));
     }
     static const int n_thread[] = {1, 2, 3, 7};

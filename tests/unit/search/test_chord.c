@@ -59,7 +59,7 @@ static void assert_answers(struct run *r)
         struct verified v = verify_shape(m, w, law, target);
         ck_assert_double_le(v.residual_N, 1.001 * TOLERANCE * m->reference_N);
         ck_assert_double_eq_tol(v.residual_N, by_chord.residual_N, 1e-12);
-        ck_assert_int_eq(hf_evaluate(&r->evaluator, design(r, i), &r->net.work, &by_newton), HF_OK);
+        ck_assert_int_eq(hf_evaluate(&r->evaluator, design(r, i), &r->net.work, NULL, &by_newton), HF_OK);
         ck_assert_double_eq_tol(by_chord.psi_m, by_newton.psi_m, 1e-8);
         ck_assert_double_eq_tol(by_chord.inner_tension_ratio, by_newton.inner_tension_ratio, 1e-8);
         ck_assert_double_eq_tol(by_chord.boundary_tension_ratio, by_newton.boundary_tension_ratio, 1e-7);
@@ -95,13 +95,13 @@ START_TEST(figures_are_those_of_the_scalar_code)
     hf_chord_lanes lanes;
     hf_form_result result[2][N_DESIGN];
     open_run(&r, _i);
-    ck_assert_int_eq(hf_chord_create(&r.evaluator, r.initial, &r.net.work, &chord), HF_OK);
+    ck_assert_int_eq(hf_chord_create(&r.evaluator, r.initial, &r.net.work, NULL, &chord), HF_OK);
     ck_assert_int_eq(hf_chord_lanes_create(&chord, &lanes), HF_OK);
     ck_assert(chord.serves_all);
     for (int k = 0; k < 2; k++) {
         int n_left = N_DESIGN;
         chord.serves_all = k == 0;
-        hf_chord_run(&chord, &lanes, &r.net.work, count_down, &n_left, false, r.design, result[k]);
+        hf_chord_run(&chord, &lanes, &r.net.work, NULL, count_down, &n_left, false, r.design, result[k]);
     }
     for (int i = 0; i < N_DESIGN; i++) {
         const hf_form_result *a = &result[0][i], *b = &result[1][i];
@@ -171,7 +171,7 @@ START_TEST(many_right_hand_sides)
     double *b = malloc((size_t)n_rhs * ld * sizeof *b), *x = malloc((size_t)n_rhs * ld * sizeof *x), largest = 0;
     for (size_t i = 0; i < (size_t)n_rhs * ld; i++)
         b[i] = x[i] = rng_uniform(&rng, -1, 1);
-    ck_assert_int_eq(hf_evaluate(&r.evaluator, r.design, &r.net.work, &(hf_form_result){0}), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&r.evaluator, r.design, &r.net.work, NULL, &(hf_form_result){0}), HF_OK);
     ck_assert_int_eq(hf_newton_matrix_factor(m, &r.net.work, NULL), HF_OK);
     hf_packed_band packed = hf_newton_matrix_packed(m);
     hf_arena arena = {0};
@@ -261,7 +261,7 @@ START_TEST(strangers_disturb_nobody)
         for (size_t k = 0; k < sizeof stranger / sizeof *stranger; k++) {
             int i = stranger[k].at;
             hf_form_result direct;
-            hf_status status = hf_evaluate(&r.evaluator, design(&r, i), &r.net.work, &direct);
+            hf_status status = hf_evaluate(&r.evaluator, design(&r, i), &r.net.work, NULL, &direct);
             ck_assert_int_eq(status, stranger[k].status[_i]);
             ck_assert_int_eq(mixed[i].status, status);
             if (status == HF_OK)
@@ -351,7 +351,7 @@ START_TEST(nothing_to_share)
         hf_form_result direct, result;
         ck_assert_int_eq(solver, HF_SOLVER_NEWTON);
         hf_batch_run(&batch, 1, r.design, NULL, &result);
-        ck_assert_int_eq(hf_evaluate(&r.evaluator, r.design, &r.net.work, &direct), HF_OK);
+        ck_assert_int_eq(hf_evaluate(&r.evaluator, r.design, &r.net.work, NULL, &direct), HF_OK);
         ck_assert_double_eq(result.psi_m, direct.psi_m);
     }
     hf_batch_free(&batch);

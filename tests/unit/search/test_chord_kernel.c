@@ -49,7 +49,7 @@ static void open_kernel(struct kernel_run *r, int trial, int rule)
                                   .rule = (hf_rule)rule,
                                   .solver = HF_SOLVER_CHORD,
                                   .boundary_ratio_cap = 1e9};
-    ck_assert_int_eq(hf_chord_create(&r->evaluator, r->initial, &r->net.work, &r->chord), HF_OK);
+    ck_assert_int_eq(hf_chord_create(&r->evaluator, r->initial, &r->net.work, NULL, &r->chord), HF_OK);
     ck_assert_int_eq(hf_chord_lanes_create(&r->chord, &r->lanes), HF_OK);
     r->n_x = 3 * (size_t)m->n_node * HF_LANES;
     r->n_force = hf_packed_band_rows(&r->chord.matrix) * HF_LANES;

@@ -39,7 +39,7 @@ START_TEST(chord_gives_what_evaluate_gives)
         hf_form_result again = chord; /* scalar code measures the gap of the truss at the returned shape */
         ck_assert_double_le(hf_coupling_measure(m, w, &again), 1.01e-10);
         ck_assert_double_eq(again.coupling.deflection_max_m, chord.coupling.deflection_max_m);
-        ck_assert_int_eq(hf_evaluate(&r.evaluator, design(&r, i), &r.net.work, &alone), HF_OK);
+        ck_assert_int_eq(hf_evaluate(&r.evaluator, design(&r, i), &r.net.work, NULL, &alone), HF_OK);
         ck_assert_double_eq_tol(chord.psi_m, alone.psi_m, 1e-9);
         ck_assert_double_eq_tol(chord.coupling.deflection_max_m, alone.coupling.deflection_max_m, 1e-9);
         for (int k = 0; k < 3 * m->n_node; k++)
@@ -120,7 +120,7 @@ START_TEST(strangers_are_evaluated_alone)
     ck_assert_int_eq(hf_batch_create(&r.evaluator, 2, &batch), HF_OK);
     ck_assert_int_eq(hf_batch_share(&batch, r.initial), HF_SOLVER_CHORD);
     hf_batch_run(&batch, N_DESIGN, r.design, NULL, result);
-    hf_evaluate(&r.evaluator, design(&r, 3), &r.net.work, &alone);
+    hf_evaluate(&r.evaluator, design(&r, 3), &r.net.work, NULL, &alone);
     for (int i = 0; i < N_DESIGN; i++)
         ck_assert_int_eq(result[i].status, i == 3 ? alone.status : HF_OK);
     ck_assert_int_ne(alone.status, HF_OK);
@@ -138,7 +138,7 @@ static void sensitivity(struct run *r, int k, hf_schur *schur, double *dx, doubl
     double *more = schur->column, pull[3 * MAX_ATTACHMENT] = {0};
     int e = m->variable_cable[k], n = 3 * m->n_free, band = 3 * m->half_bandwidth + 2;
     const int *end = m->end_row + 2 * e;
-    ck_assert_int_eq(hf_evaluate(&r->evaluator, r->initial, w, &at), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&r->evaluator, r->initial, w, NULL, &at), HF_OK);
     ck_assert_int_eq(hf_newton_matrix_factor(m, w, NULL), HF_OK);
     ck_assert_int_eq(hf_schur_factor(m, w, hf_newton_matrix_block, schur), HF_OK);
     memset(dx, 0, (size_t)n * sizeof *dx);
@@ -182,7 +182,7 @@ START_TEST(sensitivities_are_finite_differences)
         kept = r.initial[k];
         for (int side = 0; side < 2; side++) {
             r.initial[k] = kept + (side ? -step_N : step_N);
-            ck_assert_int_eq(hf_evaluate(&r.evaluator, r.initial, &r.net.work, &at), HF_OK);
+            ck_assert_int_eq(hf_evaluate(&r.evaluator, r.initial, &r.net.work, NULL, &at), HF_OK);
             memcpy(side ? down : up, r.net.work.position_m, n * sizeof *dx);
         }
         r.initial[k] = kept;
@@ -229,7 +229,7 @@ START_TEST(refined_design_has_no_coupled_slope_left)
             for (int side = 0; side < 2; side++) {
                 hf_form_result at;
                 r.initial[k] = kept + (side ? step : -step);
-                ck_assert_int_eq(hf_evaluate(&r.evaluator, r.initial, &r.net.work, &at), HF_OK);
+                ck_assert_int_eq(hf_evaluate(&r.evaluator, r.initial, &r.net.work, NULL, &at), HF_OK);
                 psi_m[side] = at.psi_m;
             }
             r.initial[k] = kept;

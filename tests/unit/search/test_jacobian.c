@@ -71,7 +71,7 @@ static void measure(hf_problem *p, const double *design, double *figure)
 {
     hf_form_result r;
     int n_objective = p->objectives.n_objective;
-    ck_assert_int_eq(hf_evaluate(&p->evaluator, design, &p->workspace, &r), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&p->evaluator, design, &p->workspace, &p->point, &r), HF_OK);
     for (int k = 0; k < n_objective; k++)
         figure[k] = r.objective[k];
     figure[n_objective] = r.merit;
@@ -146,7 +146,7 @@ START_TEST(a_objective_that_is_met_has_no_derivative)
     double derivative[3 * 64];
     int n = p.model.n_variable;
     ck_assert_int_le(n, 64);
-    ck_assert_int_eq(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &r), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &p.point, &r), HF_OK);
     ck_assert_int_eq(hf_jacobian_find(&j, &p.workspace, derivative), HF_OK);
     for (int k = 0; k < n; k++) {
         ck_assert(isfinite(derivative[k]) && isnan(derivative[n + k]));

@@ -45,7 +45,7 @@ static hf_status refine(struct refine_run *p, int max_iterations, double *design
 static double psi_of(struct refine_run *p, const double *design)
 {
     hf_form_result result;
-    ck_assert_int_eq(hf_evaluate(&p->r.evaluator, design, &p->r.net.work, &result), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&p->r.evaluator, design, &p->r.net.work, NULL, &result), HF_OK);
     return result.merit;
 }
 
@@ -173,7 +173,7 @@ START_TEST(ratio_cap_is_kept)
         p.r.evaluator.boundary_ratio_cap = has_cap ? 5 : 1e9;
         memcpy(design, p.r.initial, sizeof design);
         ck_assert_int_eq(refine(&p, 300, design, has_cap ? &capped : &open), HF_OK);
-        ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design, &p.r.net.work, &end), HF_OK);
+        ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design, &p.r.net.work, NULL, &end), HF_OK);
         if (has_cap)
             ck_assert_double_le(end.boundary_tension_ratio, 5);
         else
@@ -214,9 +214,9 @@ START_TEST(start_outside_the_limits_is_led_in)
     hf_form_result end;
     open_small(&p, HF_RULE_TENSION, 1);
     p.r.evaluator.boundary_ratio_cap = 1 + 1e-9;
-    ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design(&p.r, 0), &p.r.net.work, &end), HF_RATIO_CAP);
+    ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design(&p.r, 0), &p.r.net.work, NULL, &end), HF_RATIO_CAP);
     ck_assert_int_eq(refine(&p, 20, design(&p.r, 0), &result), HF_OK);
-    ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design(&p.r, 0), &p.r.net.work, &end), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&p.r.evaluator, design(&p.r, 0), &p.r.net.work, NULL, &end), HF_OK);
     ck_assert_double_eq(end.merit, result.merit);
     close_net(&p.r.net);
 }
@@ -393,7 +393,7 @@ START_TEST(the_start_stays_when_the_end_is_worse)
     double *end_m = malloc(3 * (size_t)m->n_node * sizeof *end_m);
     ck_assert_ptr_nonnull(end_m);
     memcpy(end_m, p.r.net.work.position_m, 3 * (size_t)m->n_node * sizeof *end_m);
-    ck_assert_int_eq(hf_evaluate(&p.r.evaluator, start_N, &p.r.net.work, &start), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&p.r.evaluator, start_N, &p.r.net.work, NULL, &start), HF_OK);
     ck_assert_double_eq(result.merit, start.merit);
     for (int i = 0; i < 3 * m->n_node; i++)
         ck_assert_double_eq_tol(end_m[i], p.r.net.work.position_m[i], 1e-9);

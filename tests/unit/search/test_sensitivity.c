@@ -16,6 +16,7 @@ struct designed {
     hf_surface_settings surface;
     hf_facets facets;
     hf_objectives objectives;
+    hf_objectives_point point;
     hf_evaluator evaluator;
     hf_sensitivity slopes;
     double EA[MAX_CABLE], start_q[MAX_CABLE], base[MAX_VARIABLE];
@@ -132,13 +133,14 @@ static void start(struct designed *d, bool by_density)
     hf_variables_read(m, w->q_N_per_m, w->tension_N, w->length_m, d->base);
     for (int k = 0; k < m->n_variable && by_density && hf_model_vary(m, k) == HF_VARY_TENSION; k++)
         d->base[k] *= hf_evaluate_divisor(&d->evaluator, k) / w->length_m[m->variable_cable[k]];
-    ck_assert_int_eq(hf_evaluate_attend(&d->evaluator, w), HF_OK);
+    ck_assert_int_eq(hf_objectives_point_create(&d->objectives, &d->point), HF_OK);
     ck_assert_int_eq(hf_sensitivity_create(&d->evaluator, &d->slopes), HF_OK);
 }
 
 static void close_designed(struct designed *d)
 {
     hf_sensitivity_free(&d->slopes);
+    hf_objectives_point_free(&d->point);
     hf_objectives_free(&d->objectives);
     hf_facets_free(&d->facets);
     close_net(&d->net);
@@ -154,9 +156,8 @@ static void residuals_at(struct designed *d, int i, double step, double *residua
     double design[MAX_VARIABLE];
     for (int k = 0; k < m->n_variable; k++)
         design[k] = d->base[k] + (d->slopes.class_of_variable[k] == i ? step : 0);
-    ck_assert_int_eq(hf_evaluate(&d->evaluator, design, &d->net.work, &result), HF_OK);
-    ck_assert_int_eq(hf_objectives_linearise(&d->objectives, true, &d->net.work, d->net.work.objectives, residual),
-                     HF_OK);
+    ck_assert_int_eq(hf_evaluate(&d->evaluator, design, &d->net.work, &d->point, &result), HF_OK);
+    ck_assert_int_eq(hf_objectives_linearise(&d->objectives, true, &d->net.work, &d->point, residual), HF_OK);
 }
 
 /* Central differences over `step` and twice that, together of order 4. */
@@ -179,8 +180,8 @@ static double derive(struct designed *d, int i, double *rate)
     ck_assert_int_eq(hf_sensitivity_find(&d->slopes, &d->net.work), HF_OK);
     hf_sensitivity_spread(&d->slopes, i, move, tension);
     const double *displacement = m->n_attachment ? hf_sensitivity_displacement(&d->slopes, i, 0) : NULL;
-    hf_objectives_push(&d->objectives, &d->net.work, d->net.work.objectives,
-                       &(hf_objectives_rate){move, tension, displacement}, rate);
+    hf_objectives_push(&d->objectives, &d->net.work, &d->point, &(hf_objectives_rate){move, tension, displacement},
+                       rate);
     for (int k = 0; k < 3 * m->n_node; k++)
         most = fmax(most, fabs(move[k]));
     free(move);
@@ -247,7 +248,7 @@ static double *rates_by(struct designed *d, int n_thread)
     d->evaluator.n_thread = n_thread;
     ck_assert_int_eq(hf_sensitivity_create(&d->evaluator, &d->slopes), HF_OK);
     ck_assert_int_eq(hf_residuals_create(&d->evaluator, &residuals), HF_OK);
-    ck_assert_int_eq(hf_evaluate(&d->evaluator, d->base, &d->net.work, &result), HF_OK);
+    ck_assert_int_eq(hf_evaluate(&d->evaluator, d->base, &d->net.work, &d->point, &result), HF_OK);
     ck_assert_int_eq(hf_sensitivity_find(&d->slopes, &d->net.work), HF_OK);
     ck_assert_int_eq(hf_residuals_find(&residuals, &d->net.work), HF_OK);
     memcpy(all, residuals.value, n_row * sizeof *all);

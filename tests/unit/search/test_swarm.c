@@ -38,7 +38,7 @@ START_TEST(results_are_those_of_the_scalar_code)
     r.net.form.max_iterations = 3000;
     evaluate(&r, 2, 0, result);
     for (int i = 0; i < N_DESIGN; i++) {
-        hf_evaluate(&r.evaluator, r.design + i * r.net.model.n_variable, &r.net.work, &alone);
+        hf_evaluate(&r.evaluator, r.design + i * r.net.model.n_variable, &r.net.work, NULL, &alone);
         ck_assert_int_eq(result[i].status, alone.status);
         ck_assert_int_eq(result[i].stop_reason, alone.stop_reason);
         ck_assert_int_le(abs(result[i].iterations - alone.iterations), 1);
@@ -67,7 +67,7 @@ START_TEST(designs_without_a_shape_are_named_before_they_get_there)
     r.net.form.max_iterations = 20;
     evaluate(&r, 2, 0, result);
     for (int i = 0; i < N_DESIGN; i++) {
-        hf_evaluate(&r.evaluator, r.design + i * r.net.model.n_variable, &r.net.work, &alone);
+        hf_evaluate(&r.evaluator, r.design + i * r.net.model.n_variable, &r.net.work, NULL, &alone);
         ck_assert_int_eq(result[i].status, alone.status);
         ck_assert_int_eq(result[i].stop_reason, alone.stop_reason);
         ck_assert_int_eq(result[i].iterations, alone.iterations);

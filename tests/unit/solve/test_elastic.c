@@ -242,7 +242,7 @@ START_TEST(populations_fall_back)
     net.form.max_iterations = 3000;
     hf_batch_run(&batch, 3, base, NULL, together);
     for (int i = 0; i < 3; i++) {
-        hf_evaluate(&v, base + i * n_variable, &net.work, &alone);
+        hf_evaluate(&v, base + i * n_variable, &net.work, NULL, &alone);
         ck_assert_int_eq(together[i].status, alone.status);
         ck_assert_mem_eq(&together[i].residual_N, &alone.residual_N, sizeof alone.residual_N);
         if (_i < 2) ck_assert_int_eq(alone.status, HF_OK);

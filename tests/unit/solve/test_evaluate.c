@@ -19,7 +19,7 @@ static void disturb(struct run *r, double range_N)
 
 static hf_status evaluate(struct run *r, hf_form_result *result)
 {
-    return hf_evaluate(&r->evaluator, r->design, &r->net.work, result);
+    return hf_evaluate(&r->evaluator, r->design, &r->net.work, NULL, result);
 }
 
 /* The converged HIFDM shape is the equilibrium of its own tensions, whatever holds them: q T/l is the same in all

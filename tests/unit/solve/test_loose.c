@@ -146,7 +146,7 @@ START_TEST(design_with_a_loose_node_is_infeasible)
                       .solver = HF_SOLVER_NEWTON,
                       .boundary_ratio_cap = 1e9};
     ck_assert_int_eq(net.model.n_variable, 0);
-    ck_assert_int_eq(hf_evaluate(&v, design, &net.work, &net.result), HF_SINGULAR);
+    ck_assert_int_eq(hf_evaluate(&v, design, &net.work, NULL, &net.result), HF_SINGULAR);
     ck_assert_int_eq(net.model.node_of_row[net.result.culprit], 2);
     ck_assert_double_nan(net.result.psi_m);
     close_net(&net);
