@@ -10,7 +10,7 @@
 
 #include "base/arena.h"
 #include "linalg/band.h"
-#include "solve/loose.h"
+#include "solve/joint.h"
 #include <hifdm/formfind.h>
 
 #include <math.h>
@@ -46,7 +46,7 @@ static bool spring_loose(const hf_model *m, hf_workspace *w)
 {
     bool has_loose = false;
     for (int i = 0; i < m->n_free; i++) {
-        w->spring_N_per_m[i] = w->loose[i] ? hf_loose_spring_N_per_m(m) : 0;
+        w->spring_N_per_m[i] = w->loose[i] ? hf_joint_loose_spring_N_per_m(m) : 0;
         has_loose |= w->loose[i];
     }
     return has_loose;

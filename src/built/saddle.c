@@ -19,7 +19,7 @@
 #include "base/elementary.h"
 #include "linalg/band.h"
 #include "linalg/dense.h"
-#include "solve/loose.h"
+#include "solve/joint.h"
 
 #include <math.h>
 #include <string.h>
@@ -332,7 +332,7 @@ static bool factor_dual(hf_saddle *s)
     for (int i = 0; i < 9 * m->n_cable; i++)
         d->block[i] = s->size_m * s->force_m_per_N * l->block_N_per_m[i];
     for (int row = 0; row < m->n_free; row++)
-        d->spring[row] = l->work.loose[row] ? hf_loose_spring_N_per_m(m) * s->size_m * s->force_m_per_N : 0;
+        d->spring[row] = l->work.loose[row] ? hf_joint_loose_spring_N_per_m(m) * s->size_m * s->force_m_per_N : 0;
     for (int i = 0; i < d->n; i++)
         d->weight[i] = s->part * s->prior.weight_per_m2[i] * s->size_m * s->size_m;
     memset(d->band, 0, (size_t)d->n * ((size_t)d->half_bandwidth + 1) * sizeof *d->band);
@@ -417,7 +417,7 @@ static void add_row(hf_saddle *s, int row)
     for (int c = 0; c < 3; c++) {
         weight[c][c] = s->part * s->prior.weight_per_m2[3 * row + c];
         if (row >= m->n_free + m->n_attachment && s->n_off) weight[c][c] += 1 / (rest * rest);
-        if (row < m->n_free && s->linear->work.loose[row]) spring[c][c] = hf_loose_spring_N_per_m(m);
+        if (row < m->n_free && s->linear->work.loose[row]) spring[c][c] = hf_joint_loose_spring_N_per_m(m);
     }
     add_rows(s, row, DISPLACEMENT, row, DISPLACEMENT, 1, weight);
     if (spring[0][0] == 0) return;

@@ -68,6 +68,11 @@ double hf_joint_mean_length_m(const hf_model *m)
     return sum / m->n_cable;
 }
 
+double hf_joint_loose_spring_N_per_m(const hf_model *m)
+{
+    return m->reference_N / hf_joint_mean_length_m(m);
+}
+
 double hf_joint_largest(int n, double scale, const double *a, const double *b)
 {
     double largest = 0;

@@ -36,6 +36,9 @@ double hf_joint_resting_m(const hf_model *model, const hf_workspace *workspace, 
 /* Returns the mean length of the cables at the target positions, m. */
 double hf_joint_mean_length_m(const hf_model *model);
 
+/* Returns the stiffness that a loose row is given in a matrix, because it has none of its own, N/m. */
+double hf_joint_loose_spring_N_per_m(const hf_model *model);
+
 /* A gap below this value is rounding of the coordinates. */
 #define HF_JOINT_NO_GAP_M 1e-14
 

@@ -68,11 +68,6 @@ static int mark(const hf_model *m, const hf_form_settings *s, hf_workspace *w)
 
 /* ---- their positions ---- */
 
-double hf_loose_spring_N_per_m(const hf_model *m)
-{
-    return m->reference_N / hf_joint_mean_length_m(m);
-}
-
 /* Returns the maximum length of cable e without tension, m. */
 static double slack_length_m(const hf_model *m, const hf_workspace *w, int e)
 {
@@ -94,7 +89,7 @@ static bool fits(const hf_model *m, const hf_form_settings *s, const hf_workspac
  * target position. */
 static void set_up_places(const hf_model *m, hf_workspace *w)
 {
-    double spring = hf_loose_spring_N_per_m(m);
+    double spring = hf_joint_loose_spring_N_per_m(m);
     for (int e = 0; e < m->n_cable; e++) {
         bool is_loose = is_loose_cable(m, w, e);
         double slack_m = is_loose ? slack_length_m(m, w, e) : 0;

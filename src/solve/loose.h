@@ -17,7 +17,4 @@ void hf_loose_settle(const hf_model *model, const hf_form_settings *settings, hf
 void hf_loose_refuse(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                      hf_form_result *result);
 
-/* Returns the stiffness that a loose row is given in a matrix, because it has none of its own, N/m. */
-double hf_loose_spring_N_per_m(const hf_model *model);
-
 #endif

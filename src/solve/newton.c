@@ -13,7 +13,6 @@
 
 #include "solve/history.h"
 #include "solve/joint.h"
-#include "solve/loose.h"
 
 #include <math.h>
 #include <string.h>
@@ -275,7 +274,7 @@ double hf_newton_certify(const hf_model *m, hf_workspace *w, hf_form_result *r)
     measure_imbalance(m, w, w->position_m, w->tension_N, w->newton_force_N);
     if (!m->n_attachment && !r->n_loose) least = hf_newton_matrix_factor_below(m, w, &r->condition);
     if (!(least > 0)) {
-        double spring_N_per_m = hf_loose_spring_N_per_m(m);
+        double spring_N_per_m = hf_joint_loose_spring_N_per_m(m);
         for (int i = 0; i < m->n_free; i++) /* a loose node has no stiffness of its own */
             w->spring_N_per_m[i] = w->loose[i] ? spring_N_per_m : 0;
         r->condition = (double)NAN;
