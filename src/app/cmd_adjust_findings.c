@@ -74,21 +74,15 @@ double hf_adjust_off_m(const hf_adjust_job *j, int row)
     return sqrt(square);
 }
 
-static void lay_out_lists(hf_arena *arena, size_t n, sized **list)
-{
-    *list = hf_arena_take(arena, n, sizeof **list);
-}
-
 hf_status hf_adjust_find_outliers(hf_adjust_job *j)
 {
     const hf_model *m = &j->built.model;
-    hf_arena arena = {0};
+    void *block;
     sized *list;
-    HF_TRY(
-        HF_ARENA_MAKE(&arena, lay_out_lists(&arena, (size_t)(m->n_cable > m->n_node ? m->n_cable : m->n_node), &list)));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(list, m->n_cable > m->n_node ? m->n_cable : m->n_node)));
     find_cables(j, list);
     find_places(j, list);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     HF_TRY(hf_estimate_belief(&j->estimate, j->n_out, j->out, j->by_places_m));
     for (int k = 0; k < j->n_out; k++) {
         double own_m = hf_estimate_own_m(&j->estimate, j->out[k]), part = j->by_places_m[k];

@@ -125,29 +125,20 @@ typedef struct {
     int *facet_corner, *facet_offset;
     unsigned char *facet_type;
     hf_facet_errors facet_error;
+    void *block;
 } scratch;
 
-static void lay_out(hf_arena *a, const hf_scene *s, scratch *t)
+static hf_status allocate(const hf_scene *s, scratch *t)
 {
     size_t n = (size_t)s->n_node, m = (size_t)s->n_cable, n_facet = (size_t)t->facets.n_facet;
-    t->role = hf_arena_take(a, n, sizeof(int));
-    t->group = hf_arena_take(a, m, sizeof(int));
-    t->law = hf_arena_take(a, m, sizeof(int));
-    t->slack = hf_arena_take(a, m, sizeof(int));
-    t->offset = hf_arena_take(a, m + 1, sizeof(int));
-    t->type = hf_arena_take(a, m, 1);
-    t->length_at_target_m = hf_arena_take(a, m, sizeof(double));
-    t->displacement_m = hf_arena_take(a, 3 * n, sizeof(double));
-    t->deviation_m = hf_arena_take(a, n, sizeof(double));
-    t->normal_error_m = hf_arena_take(a, n, sizeof(double));
-    t->length_change_m = hf_arena_take(a, m, sizeof(double));
-    t->facet_corner = hf_arena_take(a, 4 * n_facet, sizeof(int));
-    t->facet_offset = hf_arena_take(a, n_facet + 1, sizeof(int));
-    t->facet_type = hf_arena_take(a, n_facet, 1);
-    t->facet_error.normal_mean_m = hf_arena_take(a, n_facet, sizeof(double));
-    t->facet_error.normal_rms_m = hf_arena_take(a, n_facet, sizeof(double));
-    t->facet_error.fit_normal_mean_m = hf_arena_take(a, n_facet, sizeof(double));
-    t->facet_error.fit_normal_rms_m = hf_arena_take(a, n_facet, sizeof(double));
+    hf_facet_errors *e = &t->facet_error;
+    return HF_ARENA_ARRAYS(
+        &t->block, HF_ARRAY(t->role, n), HF_ARRAY(t->group, m), HF_ARRAY(t->law, m), HF_ARRAY(t->slack, m),
+        HF_ARRAY(t->offset, m + 1), HF_ARRAY(t->type, m), HF_ARRAY(t->length_at_target_m, m),
+        HF_ARRAY(t->displacement_m, 3 * n), HF_ARRAY(t->deviation_m, n), HF_ARRAY(t->normal_error_m, n),
+        HF_ARRAY(t->length_change_m, m), HF_ARRAY(t->facet_corner, 4 * n_facet), HF_ARRAY(t->facet_offset, n_facet + 1),
+        HF_ARRAY(t->facet_type, n_facet), HF_ARRAY(e->normal_mean_m, n_facet), HF_ARRAY(e->normal_rms_m, n_facet),
+        HF_ARRAY(e->fit_normal_mean_m, n_facet), HF_ARRAY(e->fit_normal_rms_m, n_facet));
 }
 
 /* Computes the fields of a shape; shape NULL stands for the target positions. */
@@ -275,19 +266,6 @@ typedef struct {
     double *displacement_m, *rotation_rad, *axial_force_N;
 } truss_scratch;
 
-static void lay_out_truss(hf_arena *a, const hf_truss *truss, truss_scratch *t)
-{
-    size_t n = (size_t)truss->n_node, m = (size_t)truss->n_member;
-    t->fixed = hf_arena_take(a, n, sizeof(int));
-    t->unit = hf_arena_take(a, m, sizeof(int));
-    t->joint = hf_arena_take(a, m, sizeof(int));
-    t->offset = hf_arena_take(a, m + 1, sizeof(int));
-    t->type = hf_arena_take(a, m, 1);
-    t->displacement_m = hf_arena_take(a, 3 * n, sizeof(double));
-    t->rotation_rad = hf_arena_take(a, 3 * n, sizeof(double));
-    t->axial_force_N = hf_arena_take(a, m, sizeof(double));
-}
-
 static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *at, truss_scratch *t)
 {
     grid g = {.n_point = truss->n_node,
@@ -327,7 +305,7 @@ static hf_status write_truss(const hf_export_request *o, const char *of_load_cas
 {
     hf_truss truss = {0};
     hf_carrier_state at = {0};
-    hf_arena arena = {0};
+    void *block = NULL;
     truss_scratch t;
     hf_status status = hf_store_read_truss(o->file, &truss, &at, messages);
     if (status == HF_OK && of_load_case) {
@@ -335,14 +313,17 @@ static hf_status write_truss(const hf_export_request *o, const char *of_load_cas
         status = hf_store_read_load_case_truss(o->file, of_load_case, &truss, &at, messages);
     }
     if (status == HF_OK) {
-        status = HF_ARENA_MAKE(&arena, lay_out_truss(&arena, &truss, &t));
+        size_t n = (size_t)truss.n_node, m = (size_t)truss.n_member;
+        status = HF_ARENA_ARRAYS(&block, HF_ARRAY(t.fixed, n), HF_ARRAY(t.unit, m), HF_ARRAY(t.joint, m),
+                                 HF_ARRAY(t.offset, m + 1), HF_ARRAY(t.type, m), HF_ARRAY(t.displacement_m, 3 * n),
+                                 HF_ARRAY(t.rotation_rad, 3 * n), HF_ARRAY(t.axial_force_N, m));
         if (status != HF_OK) hf_error(messages, status, "%s: out of memory", o->file);
     }
     if (status == HF_OK) {
         const grid g = grid_of_truss(&truss, &at, &t);
         status = write_grid(o, path, &g, messages);
     }
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     hf_carrier_state_free(&at);
     hf_truss_free(&truss);
     return status;
@@ -449,12 +430,11 @@ static hf_status export_vtk(const hf_export_request *request, char *said, size_t
     hf_scene scene = {0};
     static hf_summary summary;
     scratch t = {0};
-    hf_arena arena = {0};
     HF_TRY(hf_store_read_summary(request->file, &summary, messages));
     HF_TRY(hf_store_read_scene(request->file, &scene, messages));
     hf_status status = HF_OK;
     if (summary.surface.focal_length_m > 0) status = hf_facets_find(&scene, &summary.surface, &t.facets);
-    if (status == HF_OK) status = HF_ARENA_MAKE(&arena, lay_out(&arena, &scene, &t));
+    if (status == HF_OK) status = allocate(&scene, &t);
     if (status == HF_OK) {
         set_lines(scene.n_cable, t.offset, t.type);
         set_facet_cells(&t);
@@ -462,7 +442,7 @@ static hf_status export_vtk(const hf_export_request *request, char *said, size_t
     } else {
         hf_error(messages, status, "%s: out of memory", request->file);
     }
-    hf_arena_free(&arena);
+    hf_arena_free_block(t.block);
     hf_facets_free(&t.facets);
     hf_scene_free(&scene);
     hf_summary_free(&summary);

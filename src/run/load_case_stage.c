@@ -19,31 +19,20 @@
 
 /* ---- the design ---- */
 
-static void lay_out(hf_arena *arena, const hf_problem *p, hf_load_case_stage *c)
-{
-    size_t n = (size_t)p->model.n_node;
-    c->cut_m = hf_arena_take(arena, (size_t)p->model.n_cable, sizeof(double));
-    c->move_m = hf_arena_take(arena, 3 * n, sizeof(double));
-    c->load_N = hf_arena_take(arena, 3 * n, sizeof(double));
-    c->attachment_move_m = hf_arena_take(arena, 3 * (size_t)p->model.n_attachment, sizeof(double));
-    c->truss_force = hf_arena_take(arena, HF_TRUSS_DOF * (size_t)p->carrier.truss.n_node, sizeof(double));
-}
-
 hf_status hf_load_case_stage_take(const hf_problem *p, const hf_workspace *w, hf_load_case_stage *c,
                                   hf_messages *messages)
 {
     char where[HF_PATH_SIZE + 96];
-    hf_arena arena = {0};
+    size_t n = 3 * (size_t)p->model.n_node;
     hf_load_case_stage_free(c);
     hf_config_location(&p->settings, "load_cases.0.name", where, sizeof where);
     HF_TRY(hf_built_make(where, &p->scene, &p->model, &p->settings.form, w, &c->built, messages));
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, p, c)) != HF_OK ||
-        hf_workspace_create(&c->built.model, &c->workspace) != HF_OK) {
-        hf_arena_free(&arena);
+    if (HF_ARENA_ARRAYS(&c->block, HF_ARRAY(c->cut_m, p->model.n_cable), HF_ARRAY(c->move_m, n), HF_ARRAY(c->load_N, n),
+                        HF_ARRAY(c->attachment_move_m, 3 * p->model.n_attachment),
+                        HF_ARRAY(c->truss_force, HF_TRUSS_DOF * p->carrier.truss.n_node)) != HF_OK ||
+        hf_workspace_create(&c->built.model, &c->workspace) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the load cases of a net of %d nodes",
                         p->model.n_node);
-    }
-    c->block = arena.block;
     return HF_OK;
 }
 
@@ -51,7 +40,7 @@ void hf_load_case_stage_free(hf_load_case_stage *c)
 {
     hf_workspace_free(&c->workspace);
     hf_built_free(&c->built);
-    hf_arena_free(&(hf_arena){.block = c->block});
+    hf_arena_free_block(c->block);
     *c = (hf_load_case_stage){0};
 }
 

@@ -22,15 +22,6 @@ static bool is_over_load_cases(const hf_objective_settings *g, int n)
     return is_over;
 }
 
-static void lay_out_nets(hf_arena *arena, const hf_problem *p, struct hf_problem_nets **nets, double **move_m,
-                         double **by_heat)
-{
-    size_t n = 3 * (size_t)p->model.n_attachment;
-    *nets = hf_arena_take(arena, 1, sizeof **nets);
-    *move_m = hf_arena_take(arena, (size_t)p->load_cases.n * n, sizeof(double));
-    *by_heat = hf_arena_take(arena, (size_t)p->settings.tolerance.n_truss * n, sizeof(double));
-}
-
 static hf_status make_nets(hf_problem *p, bool has_load_cases, int n_sample, hf_messages *messages)
 {
     struct hf_problem_nets *q = p->nets;
@@ -56,10 +47,12 @@ hf_status hf_problem_nets_make(hf_problem *p, hf_messages *messages)
     const hf_optimize_settings *o = &p->settings.optimize;
     bool has_load_cases = is_over_load_cases(o->term, o->n_term) || is_over_load_cases(o->front, o->n_front);
     int n_sample = hf_optimize_takes_samples(o) ? o->samples : 0;
-    hf_arena arena = {0};
-    double *move_m = NULL, *by_heat = NULL;
+    size_t n = 3 * (size_t)p->model.n_attachment;
+    double *move_m, *by_heat;
+    void *block; /* p->nets is the first item */
     if (!has_load_cases && n_sample == 0) return HF_OK;
-    if (HF_ARENA_MAKE(&arena, lay_out_nets(&arena, p, &p->nets, &move_m, &by_heat)) != HF_OK)
+    if (HF_ARENA_ARRAYS(&block, HF_ARRAY(p->nets, 1), HF_ARRAY(move_m, (size_t)p->load_cases.n * n),
+                        HF_ARRAY(by_heat, (size_t)p->settings.tolerance.n_truss * n)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the nets of the objectives");
     p->nets->attachment_move_m = move_m;
     p->nets->truss_move_m_per_K = by_heat;
@@ -68,9 +61,8 @@ hf_status hf_problem_nets_make(hf_problem *p, hf_messages *messages)
 
 void hf_problem_nets_free(hf_problem *p)
 {
-    hf_arena arena = {.block = (unsigned char *)p->nets}; /* p->nets is the first item of its block */
     if (p->nets) hf_material_free(&p->nets->material);
-    hf_arena_free(&arena);
+    hf_arena_free_block(p->nets);
     p->nets = NULL;
 }
 

@@ -67,23 +67,15 @@ static void read_fixed(hf_hdf5 *io, hid_t group, hf_truss *t)
     free(flag);
 }
 
-static void lay_out_state(hf_arena *a, size_t n_node, size_t n_member, hf_carrier_state *s)
-{
-    s->displacement = hf_arena_take(a, HF_TRUSS_DOF * n_node, sizeof(double));
-    s->reaction = hf_arena_take(a, HF_TRUSS_DOF * n_node, sizeof(double));
-    s->end_force = hf_arena_take(a, 2 * HF_TRUSS_DOF * n_member, sizeof(double));
-}
-
 void hf_layout_read_truss_state(hf_hdf5 *io, hid_t group, const hf_truss *t, hf_carrier_state *state)
 {
-    hf_arena arena = {0};
+    size_t n_dof = HF_TRUSS_DOF * (size_t)t->n_node;
     if (!hf_hdf5_has(io, group, "node/displacement")) return;
-    if (HF_ARENA_MAKE(&arena, lay_out_state(&arena, (size_t)t->n_node, (size_t)t->n_member, state)) != HF_OK) {
-        *state = (hf_carrier_state){0};
+    if (HF_ARENA_ARRAYS(&state->block, HF_ARRAY(state->displacement, n_dof), HF_ARRAY(state->reaction, n_dof),
+                        HF_ARRAY(state->end_force, 2 * HF_TRUSS_DOF * (size_t)t->n_member)) != HF_OK) {
         hf_hdf5_no_memory(io);
         return;
     }
-    state->block = arena.block;
     hf_layout_read_columns(io, group, &hf_layout_truss_state, t->n_node, t->n_member, state);
 }
 

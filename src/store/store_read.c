@@ -240,21 +240,11 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
 
 /* ---- shape ---- */
 
-static void lay_out(hf_arena *arena, size_t n_node, size_t n_cable, hf_shape *shape)
-{
-    shape->position_m = hf_arena_take(arena, 3 * n_node, sizeof(double));
-    shape->length_m = hf_arena_take(arena, n_cable, sizeof(double));
-    shape->tension_N = hf_arena_take(arena, n_cable, sizeof(double));
-    shape->q_N_per_m = hf_arena_take(arena, n_cable, sizeof(double));
-    shape->law = hf_arena_take(arena, n_cable, 1);
-}
-
 static hf_status allocate_shape(int n_node, int n_cable, hf_shape *shape)
 {
-    hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, (size_t)n_node, (size_t)n_cable, shape)));
-    shape->block = arena.block;
-    return HF_OK;
+    return HF_ARENA_ARRAYS(&shape->block, HF_ARRAY(shape->position_m, 3 * (size_t)n_node),
+                           HF_ARRAY(shape->length_m, n_cable), HF_ARRAY(shape->tension_N, n_cable),
+                           HF_ARRAY(shape->q_N_per_m, n_cable), HF_ARRAY(shape->law, n_cable));
 }
 
 static void read_shape(hf_hdf5 *io, const char *path, hf_shape *shape)
@@ -320,7 +310,7 @@ hf_status hf_store_read_load_case(const char *path, const char *name, hf_shape *
 
 void hf_shape_free(hf_shape *shape)
 {
-    hf_arena_free(&(hf_arena){.block = shape->block});
+    hf_arena_free_block(shape->block);
     *shape = (hf_shape){0};
 }
 

@@ -47,10 +47,9 @@ static hf_status write_samples(hf_hdf5 *io, const hf_montecarlo *t, const hf_sta
     sample_column column[HF_TOLERANCE_COLUMNS];
     int n_column = list_columns(t, column), *whole;
     double *row, *real;
-    hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, (row = hf_arena_take(&arena, BLOCK * HF_TOLERANCE_COLUMNS, sizeof *row),
-                                  real = hf_arena_take(&arena, BLOCK, sizeof *real),
-                                  whole = hf_arena_take(&arena, BLOCK, sizeof *whole))));
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(row, BLOCK * HF_TOLERANCE_COLUMNS), HF_ARRAY(real, BLOCK),
+                           HF_ARRAY(whole, BLOCK)));
     const hsize_t chunk[1] = {rows->n < BLOCK ? (hsize_t)rows->n : BLOCK};
     hid_t group = hf_hdf5_make_group(io, "/tolerance/sample");
     for (int k = 0; k < n_column; k++)
@@ -68,7 +67,7 @@ static hf_status write_samples(hf_hdf5 *io, const hf_montecarlo *t, const hf_sta
         }
     }
     hf_hdf5_close(io, group);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 
@@ -77,9 +76,8 @@ static hf_status write_first_order(hf_hdf5 *io, const hf_montecarlo *t)
     const hf_covariance *c = &t->covariance;
     const hf_model *m = &t->built->model;
     double *share, *deviation;
-    hf_arena arena = {0};
-    HF_TRY(HF_ARENA_MAKE(&arena, (share = hf_arena_take(&arena, (size_t)m->n_cable, sizeof *share),
-                                  deviation = hf_arena_take(&arena, (size_t)m->n_node, sizeof *deviation))));
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(share, m->n_cable), HF_ARRAY(deviation, m->n_node)));
     for (int e = 0; e < m->n_cable; e++)
         share[e] = c->spread_m2 > 0 ? c->cable_m2[e] / c->spread_m2 : 0;
     for (int i = 0; i < m->n_node; i++)
@@ -106,7 +104,7 @@ static hf_status write_first_order(hf_hdf5 *io, const hf_montecarlo *t)
     hf_hdf5_write_array(io, group, &by_cut, c->psi_by_cut);
     hf_hdf5_write_array(io, group, &of_node, deviation);
     hf_hdf5_close(io, group);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return io->status;
 }
 

@@ -157,18 +157,6 @@ static void link_all(hf_hdf5 *io, const char *result, const char *position, cons
 
 /* ---- a result ---- */
 
-typedef struct {
-    int *corner, *offset;
-    unsigned char *bytes; /* one value for each node or for each cable */
-} room;
-
-static void lay_out(hf_arena *a, size_t n, size_t m, room *r)
-{
-    r->corner = hf_arena_take(a, 2 * m, sizeof *r->corner);
-    r->offset = hf_arena_take(a, m + 1, sizeof *r->offset);
-    r->bytes = hf_arena_take(a, n > m ? n : m, 1);
-}
-
 /* Copies an enumeration as its numbers. */
 static void copy_numbers(hf_hdf5 *io, const char *from, const hf_hdf5_kind *kind, int n, void *values,
                          const char *group, const char *name, const char *description)
@@ -190,20 +178,21 @@ void hf_vtkhdf_put_result(hf_hdf5 *io, const hf_summary *summary)
     const int n = hf_hdf5_length(io, io->file, "/scene/node/role", HF_LAYOUT_COUNT_MAX);
     const int m = hf_hdf5_length(io, io->file, "/scene/cable/group", HF_LAYOUT_COUNT_MAX);
     const hf_hdf5_array end = {.name = "/scene/cable/end", .kind = HF_KIND_INT, .rank = 2, .dims = {(hsize_t)m, 2}};
-    hf_arena arena = {0};
-    room r;
-    if (io->status == HF_OK && HF_ARENA_MAKE(&arena, lay_out(&arena, (size_t)n, (size_t)m, &r)) != HF_OK)
+    int *corner, *offset;
+    unsigned char *bytes; /* one value for each node or for each cable */
+    void *block = NULL;
+    if (io->status == HF_OK && HF_ARENA_ARRAYS(&block, HF_ARRAY(corner, 2 * m), HF_ARRAY(offset, m + 1),
+                                               HF_ARRAY(bytes, n > m ? n : m)) != HF_OK)
         hf_hdf5_no_memory(io);
     if (io->status == HF_OK) {
         for (int e = 0; e <= m; e++)
-            r.offset[e] = 2 * e;
-        memset(r.bytes, HF_VTKHDF_LINE, (size_t)m);
-        hf_hdf5_read_array(io, io->file, &end, r.corner);
-        hf_vtkhdf_put_cells(io, &(hf_vtkhdf_cells){n, m, r.corner, r.offset, r.bytes});
-        copy_numbers(io, "/scene/node/role", HF_KIND_ROLE, n, r.bytes, POINT_DATA, "role",
-                     "0 support, 1 inner, 2 edge");
-        copy_numbers(io, "/scene/cable/group", HF_KIND_GROUP, m, r.bytes, CELL_DATA, "group", "0 inner, 1 boundary");
+            offset[e] = 2 * e;
+        memset(bytes, HF_VTKHDF_LINE, (size_t)m);
+        hf_hdf5_read_array(io, io->file, &end, corner);
+        hf_vtkhdf_put_cells(io, &(hf_vtkhdf_cells){n, m, corner, offset, bytes});
+        copy_numbers(io, "/scene/node/role", HF_KIND_ROLE, n, bytes, POINT_DATA, "role", "0 support, 1 inner, 2 edge");
+        copy_numbers(io, "/scene/cable/group", HF_KIND_GROUP, m, bytes, CELL_DATA, "group", "0 inner, 1 boundary");
         link_all(io, result, position, summary);
     }
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
 }

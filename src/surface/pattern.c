@@ -98,20 +98,6 @@ static int whole_lanes(int n)
     return (n + HF_LANES - 1) / HF_LANES * HF_LANES;
 }
 
-static void lay_out(hf_arena *a, hf_far_field *p)
-{
-    size_t n_cut = (size_t)p->settings->phi_deg.n, n = (size_t)p->n_padded, n_node = (size_t)p->n_node_padded;
-    size_t rooms = (size_t)p->n_thread, table = (GAUSS_MOST + 1) * GAUSS_MOST;
-    p->gauss_at = hf_arena_take(a, table, sizeof(double));
-    p->gauss_weight = hf_arena_take(a, table, sizeof(double));
-    p->direction = hf_arena_take(a, 3 * n_cut * n, sizeof(double));
-    p->node_direction = hf_arena_take(a, 3 * n_cut * n_node, sizeof(double));
-    p->between = hf_arena_take(a, (size_t)p->n_node * n, sizeof(double));
-    p->sum = hf_arena_take(a, HF_PATTERN_BLOCKS * n_cut * 6 * n, sizeof(double));
-    p->local = hf_arena_take(a, rooms * 6 * n_node, sizeof(double));
-    p->point = hf_arena_take(a, rooms * HF_PATTERN_POINT * GAUSS_MOST * GAUSS_MOST, sizeof(double));
-}
-
 /* ---- a facet ---- */
 
 static void take_facet(const hf_far_field *p, int i, hf_facet_mesh *m)
@@ -267,11 +253,15 @@ int hf_pattern_angles(const hf_far_field *p)
 hf_status hf_pattern_create(const hf_pattern_settings *s, const hf_pattern_surface *surface, const hf_feed *feed,
                             double frequency_Hz, int n_thread, hf_far_field *p)
 {
-    hf_arena arena = {0};
     hf_pattern_plan(s, surface, feed, frequency_Hz, p);
     p->n_thread = n_thread;
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, p)));
-    p->block = arena.block;
+    size_t n_cut = (size_t)s->phi_deg.n, n = (size_t)p->n_padded, n_node = (size_t)p->n_node_padded;
+    size_t rooms = (size_t)n_thread, table = (GAUSS_MOST + 1) * GAUSS_MOST;
+    HF_TRY(HF_ARENA_ARRAYS(&p->block, HF_ARRAY(p->gauss_at, table), HF_ARRAY(p->gauss_weight, table),
+                           HF_ARRAY(p->direction, 3 * n_cut * n), HF_ARRAY(p->node_direction, 3 * n_cut * n_node),
+                           HF_ARRAY(p->between, (size_t)p->n_node * n),
+                           HF_ARRAY(p->sum, HF_PATTERN_BLOCKS * n_cut * 6 * n), HF_ARRAY(p->local, rooms * 6 * n_node),
+                           HF_ARRAY(p->point, rooms * HF_PATTERN_POINT * GAUSS_MOST * GAUSS_MOST)));
     for (int k = 1; k <= GAUSS_MOST; k++)
         hf_gauss_rule(k, p->gauss_at + k * GAUSS_MOST, p->gauss_weight + k * GAUSS_MOST);
     fill_directions(p, false, s->n_theta, p->n_padded, p->direction);
@@ -388,23 +378,12 @@ hf_cut_figures hf_pattern_figures(int n, const double theta_deg[2], const double
 
 /* ---- tables ---- */
 
-static void lay_out_table(hf_arena *a, hf_pattern_table *t)
-{
-    size_t n = (size_t)t->n_frequency * (size_t)t->n_cut * (size_t)t->n_theta;
-    t->frequency_Hz = hf_arena_take(a, (size_t)t->n_frequency, sizeof(double));
-    t->phi_deg = hf_arena_take(a, (size_t)t->n_cut, sizeof(double));
-    t->theta_deg = hf_arena_take(a, (size_t)t->n_theta, sizeof(double));
-    t->co_dBi = hf_arena_take(a, n, sizeof(double));
-    t->cross_dBi = hf_arena_take(a, n, sizeof(double));
-}
-
 hf_status hf_pattern_table_create(int n_frequency, int n_cut, int n_theta, hf_pattern_table *t)
 {
-    hf_arena arena = {0};
+    size_t n = (size_t)n_frequency * (size_t)n_cut * (size_t)n_theta;
     *t = (hf_pattern_table){.n_frequency = n_frequency, .n_cut = n_cut, .n_theta = n_theta};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_table(&arena, t)));
-    t->block = arena.block;
-    return HF_OK;
+    return HF_ARENA_ARRAYS(&t->block, HF_ARRAY(t->frequency_Hz, n_frequency), HF_ARRAY(t->phi_deg, n_cut),
+                           HF_ARRAY(t->theta_deg, n_theta), HF_ARRAY(t->co_dBi, n), HF_ARRAY(t->cross_dBi, n));
 }
 
 void hf_pattern_table_free(hf_pattern_table *t)

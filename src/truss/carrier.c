@@ -12,22 +12,15 @@
 #include <math.h>
 #include <stdlib.h>
 
-static void lay_out(hf_arena *a, hf_carrier *c, size_t n_support)
-{
-    c->scene_node = hf_arena_take(a, n_support, sizeof(int));
-    c->truss_node = hf_arena_take(a, n_support, sizeof(int));
-    c->flexibility_m_per_N = hf_arena_take(a, 9 * n_support * n_support, sizeof(double));
-}
-
 static hf_status attach(double tolerance_m, const hf_scene *scene, hf_carrier *c, hf_messages *messages)
 {
     size_t n_support = 0;
-    hf_arena arena = {0};
     for (int i = 0; i < scene->n_node; i++)
         n_support += scene->role[i] == HF_ROLE_SUPPORT;
-    hf_status status = HF_ARENA_MAKE(&arena, lay_out(&arena, c, n_support));
+    hf_status status =
+        HF_ARENA_ARRAYS(&c->block, HF_ARRAY(c->scene_node, n_support), HF_ARRAY(c->truss_node, n_support),
+                        HF_ARRAY(c->flexibility_m_per_N, 9 * n_support * n_support));
     if (status == HF_OK) {
-        c->block = arena.block;
         HF_TRY(
             hf_truss_attach(&c->truss, scene, tolerance_m, &c->n_attachment, c->scene_node, c->truss_node, messages));
         status = hf_frame_condense(&c->frame, c->n_attachment, c->truss_node, c->flexibility_m_per_N);
@@ -54,25 +47,16 @@ void hf_carrier_free(hf_carrier *carrier)
     *carrier = (hf_carrier){0};
 }
 
-static void lay_out_state(hf_arena *a, const hf_carrier *c, hf_carrier_state *s, double **force, double **work)
-{
-    size_t n = HF_TRUSS_DOF * (size_t)c->truss.n_node;
-    s->displacement = hf_arena_take(a, n, sizeof(double));
-    s->reaction = hf_arena_take(a, n, sizeof(double));
-    s->end_force = hf_arena_take(a, 2 * HF_TRUSS_DOF * (size_t)c->truss.n_member, sizeof(double));
-    *force = hf_arena_take(a, n, sizeof(double));
-    *work = hf_arena_take(a, hf_frame_work_size(&c->frame, 1), sizeof(double));
-}
-
 hf_status hf_carrier_load_own(const hf_carrier *c, const double *force_N, const hf_frame_load *own,
                               hf_carrier_state *state)
 {
     double *force, *work;
     int bad_dof;
-    hf_arena arena = {0};
+    size_t n = HF_TRUSS_DOF * (size_t)c->truss.n_node;
     *state = (hf_carrier_state){0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_state(&arena, c, state, &force, &work)));
-    state->block = arena.block;
+    HF_TRY(HF_ARENA_ARRAYS(&state->block, HF_ARRAY(state->displacement, n), HF_ARRAY(state->reaction, n),
+                           HF_ARRAY(state->end_force, 2 * HF_TRUSS_DOF * (size_t)c->truss.n_member), HF_ARRAY(force, n),
+                           HF_ARRAY(work, hf_frame_work_size(&c->frame, 1))));
     hf_frame_load load = {0};
     if (own) load = *own;
     for (int i = 0; load.force && i < HF_TRUSS_DOF * c->truss.n_node; i++)

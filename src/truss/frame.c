@@ -145,19 +145,6 @@ static void end_forces(const double *q, double length, double *s)
     memcpy(s, force, sizeof force);
 }
 
-/* ---- layout ---- */
-
-static void lay_out(hf_arena *a, const hf_truss *t, hf_frame *f)
-{
-    size_t m = (size_t)t->n_member;
-    f->row_of_dof = hf_arena_take(a, HF_TRUSS_DOF * (size_t)t->n_node, sizeof(int));
-    f->axes = hf_arena_take(a, 9 * m, sizeof(double));
-    f->length_m = hf_arena_take(a, m, sizeof(double));
-    f->stiffness = hf_arena_take(a, N_DEFORMATION * m, sizeof(double));
-    f->scale = hf_arena_take(a, (size_t)f->n_dof, sizeof(double));
-    f->factor = hf_arena_take(a, (size_t)f->n_dof * ((size_t)f->half_bandwidth + 1), sizeof(double));
-}
-
 /* ---- dofs and numbering ---- */
 
 /* Marks each dof before rows are numbered: 0 (gets a row), HF_FRAME_FIXED or HF_FRAME_ABSENT. */
@@ -177,8 +164,9 @@ static void classify_dofs(const hf_truss *t, int *row_of_dof)
 static hf_status order_nodes(const hf_truss *t, const int *row_of_dof, int *order, int *n_ordered)
 {
     int unused;
-    unsigned char *role = malloc((size_t)t->n_node);
-    if (!role) return HF_NO_MEMORY;
+    unsigned char *role;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(role, t->n_node)));
     *n_ordered = 0;
     for (int i = 0; i < t->n_node; i++) {
         role[i] = HF_ROLE_SUPPORT;
@@ -190,7 +178,7 @@ static hf_status order_nodes(const hf_truss *t, const int *row_of_dof, int *orde
     net.role = role;
     net.end = t->end;
     hf_status status = hf_numbering_find(&net, order, &unused);
-    free(role);
+    hf_arena_free_block(block);
     return status;
 }
 
@@ -338,10 +326,9 @@ static hf_status factor(hf_frame *f, hf_messages *messages)
     size_t n = (size_t)f->n_dof;
     double *work;
     int *integer_work, k = f->half_bandwidth;
-    hf_arena arena = {0};
+    void *block;
     HF_TRY(hf_lapack_load(messages));
-    if (HF_ARENA_MAKE(&arena, (work = hf_arena_take(&arena, 3 * n, sizeof *work),
-                               integer_work = hf_arena_take(&arena, n, sizeof *integer_work))) != HF_OK)
+    if (HF_ARENA_ARRAYS(&block, HF_ARRAY(work, 3 * n), HF_ARRAY(integer_work, n)) != HF_OK)
         return no_memory(f->truss, messages);
     assemble(f, f->factor);
     int loose = scale_to_unit_diagonal(f, f->scale, f->factor);
@@ -354,7 +341,7 @@ static hf_status factor(hf_frame *f, hf_messages *messages)
         is_sound = f->condition <= CONDITION_MAX;
         if (!is_sound) loose = find_loosest_row(f, work);
     }
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return is_sound ? HF_OK : refuse(f, loose, messages);
 }
 
@@ -370,9 +357,12 @@ static hf_status build(const hf_truss *truss, int *row_of_dof, int *order, hf_fr
     if ((double)f->n_dof * (f->half_bandwidth + 1.0) > INT_MAX)
         return hf_error(messages, HF_NO_MEMORY, "the stiffness matrix of %d rows, half-bandwidth %d is too large",
                         f->n_dof, f->half_bandwidth);
-    hf_arena arena = {0};
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, truss, f)) != HF_OK) return no_memory(truss, messages);
-    f->block = arena.block;
+    size_t m = (size_t)truss->n_member, n_dof = (size_t)f->n_dof;
+    if (HF_ARENA_ARRAYS(&f->block, HF_ARRAY(f->row_of_dof, HF_TRUSS_DOF * (size_t)truss->n_node),
+                        HF_ARRAY(f->axes, 9 * m), HF_ARRAY(f->length_m, m), HF_ARRAY(f->stiffness, N_DEFORMATION * m),
+                        HF_ARRAY(f->scale, n_dof),
+                        HF_ARRAY(f->factor, n_dof * ((size_t)f->half_bandwidth + 1))) != HF_OK)
+        return no_memory(truss, messages);
     memcpy(f->row_of_dof, row_of_dof, HF_TRUSS_DOF * (size_t)truss->n_node * sizeof *row_of_dof);
     for (int e = 0; e < truss->n_member; e++) {
         set_axes(truss, e, f);

@@ -15,33 +15,19 @@ const char *const hf_unit_word[HF_N_UNIT] = {"bud", "mbug", "abug", "other", "lo
 
 /* ---- memory ---- */
 
-static void lay_out(hf_arena *arena, hf_truss *t, bool with_line)
+hf_status hf_truss_allocate(hf_truss *t, int n_node, int n_member, bool with_line)
 {
-    size_t n = (size_t)t->n_node, m = (size_t)t->n_member;
-    t->position_m = hf_arena_take(arena, 3 * n, sizeof(double));
-    t->fixed = hf_arena_take(arena, n, 1);
-    t->mass_kg = hf_arena_take(arena, n, sizeof(double));
-    t->end = hf_arena_take(arena, 2 * m, sizeof(int));
-    t->joint = hf_arena_take(arena, m, 1);
-    t->unit = hf_arena_take(arena, m, 1);
-#define TAKE(name, units, otherwise, description) t->name = hf_arena_take(arena, m, sizeof(double));
-    HF_MEMBER_NUMBERS(TAKE)
-#undef TAKE
-    t->node_id = hf_arena_take(arena, n, sizeof *t->node_id);
-    t->member_id = hf_arena_take(arena, m, sizeof *t->member_id);
-    t->node_line = with_line ? hf_arena_take(arena, n, sizeof(int)) : NULL;
-    t->member_line = with_line ? hf_arena_take(arena, m, sizeof(int)) : NULL;
-}
-
-hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, bool with_line)
-{
-    *truss = (hf_truss){.n_node = n_node, .n_member = n_member};
-    hf_arena arena = {0};
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, truss, with_line)) != HF_OK) {
-        *truss = (hf_truss){0};
-        return HF_NO_MEMORY;
-    }
-    truss->block = arena.block;
+    size_t n = (size_t)n_node, m = (size_t)n_member;
+    *t = (hf_truss){0};
+#define NUMBERS(name, ...) HF_ARRAY(t->name, m),
+    HF_TRY(HF_ARENA_ARRAYS(&t->block, HF_MEMBER_NUMBERS(NUMBERS) HF_ARRAY(t->position_m, 3 * n), HF_ARRAY(t->fixed, n),
+                           HF_ARRAY(t->mass_kg, n), HF_ARRAY(t->end, 2 * m), HF_ARRAY(t->joint, m),
+                           HF_ARRAY(t->unit, m), HF_ARRAY(t->node_id, n), HF_ARRAY(t->member_id, m),
+                           HF_ARRAY(t->node_line, with_line ? n : 0), HF_ARRAY(t->member_line, with_line ? m : 0)));
+#undef NUMBERS
+    if (!with_line) t->node_line = t->member_line = NULL;
+    t->n_node = n_node;
+    t->n_member = n_member;
     return HF_OK;
 }
 
