@@ -61,8 +61,9 @@ hf_status hf_arena_arrays(void **block, size_t n, const hf_arena_array *array);
 void hf_arena_free(hf_arena *arena);
 
 /* The arrays of a struct are listed once, in rows X(type, name, count, meaning). These make the members of the struct,
- * and take the arrays in a layout function with an `arena` and the struct `to`. */
+ * list the arrays of the struct `to` for HF_ARENA_ARRAYS, or take them in a layout function with an `arena`. */
 #define HF_ARENA_MEMBER(type, name, ...) type *name;
+#define HF_ARENA_ITEM(type, name, count, ...) HF_ARRAY(to->name, count),
 #define HF_ARENA_TAKE(type, name, count, ...) to->name = hf_arena_take(arena, (size_t)(count), sizeof(type));
 
 static inline void hf_arena_free_block(void *block)

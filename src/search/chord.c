@@ -127,29 +127,23 @@ static void list_cables(const hf_evaluator *v, hf_chord *c)
     }
 }
 
-/* Lists the cables at each free node and attachment, by a counting sort. incidence_start first counts the cables of
- * each node. While the list is filled, incidence_start[i] is the index of the next entry of node i. At the end it is
- * where node i + 1 begins, so the array is shifted by one. */
+/* Lists the cables at each free node and attachment, by a counting sort. incidence_start[i] first counts the cables of
+ * node i, then is where they end, and while the list is filled from its end falls to where they begin. */
 static void list_incidences(const hf_model *m, hf_chord *c)
 {
-    int *start = c->incidence_start, *place_of_row = c->place_of_row, n_place = m->n_free + m->n_attachment, sum = 0;
+    int *start = c->incidence_start, *place_of_row = c->place_of_row;
     for (int row = 0; row < m->n_node; row++)
         place_of_row[row] = row < m->n_free ? row : -1;
     for (int i = 0; i < m->n_attachment; i++)
         place_of_row[m->attachment_row[i]] = m->n_free + i;
     for (int k = 0; k < 2 * m->n_cable; k++)
         if (place_of_row[m->end_row[k]] >= 0) start[place_of_row[m->end_row[k]]]++;
-    for (int i = 0; i < n_place; i++) {
-        int count = start[i];
-        start[i] = sum;
-        sum += count;
-    }
-    for (int k = 0; k < 2 * m->n_cable; k++) {
+    for (int i = 0; i < m->n_free + m->n_attachment; i++)
+        start[i + 1] += start[i];
+    for (int k = 2 * m->n_cable - 1; k >= 0; k--) {
         int place = place_of_row[m->end_row[k]];
-        if (place >= 0) c->incidence[start[place]++] = (hf_chord_incidence){c->slot_of_cable[k / 2], m->end_row[k ^ 1]};
+        if (place >= 0) c->incidence[--start[place]] = (hf_chord_incidence){c->slot_of_cable[k / 2], m->end_row[k ^ 1]};
     }
-    memmove(start + 1, start, (size_t)n_place * sizeof(int));
-    start[0] = 0;
 }
 
 hf_status hf_chord_create_here(const hf_evaluator *v, hf_workspace *w, hf_chord *chord)

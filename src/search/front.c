@@ -17,22 +17,12 @@
 const char *const hf_front_mark_word[HF_FRONT_N_MARK + 1] = {HF_FRONT_MARKS(WORD) NULL};
 #undef WORD
 
-static void lay_out(hf_arena *a, hf_front *f)
-{
-    f->point = hf_arena_take(a, (size_t)f->n_point, sizeof *f->point);
-    f->design = hf_arena_take(a, (size_t)f->n_point * (size_t)f->n_variable, sizeof(double));
-}
-
 hf_status hf_front_create(int n_objective, int n_variable, int n_point, hf_front *f)
 {
-    hf_arena arena = {0};
-    *f = (hf_front){
-        .n_objective = n_objective, .n_variable = n_variable, .n_point = n_point, .minimised = -1, .knee = -1};
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, f)) != HF_OK) {
-        *f = (hf_front){.n_objective = n_objective, .n_variable = n_variable, .minimised = -1, .knee = -1};
-        return HF_NO_MEMORY;
-    }
-    f->block = arena.block;
+    *f = (hf_front){.n_objective = n_objective, .n_variable = n_variable, .minimised = -1, .knee = -1};
+    HF_TRY(HF_ARENA_ARRAYS(&f->block, HF_ARRAY(f->point, n_point),
+                           HF_ARRAY(f->design, (size_t)n_point * (size_t)n_variable)));
+    f->n_point = n_point;
     return HF_OK;
 }
 

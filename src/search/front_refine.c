@@ -728,26 +728,22 @@ static hf_status fill(search *s)
 
 /* ---- the front ---- */
 
-/* Lays out the arrays. Each point needs one job. Each end of a line needs another one for the minimum next to it. */
-static void lay_out(hf_arena *a, search *s)
+/* Allocates the arrays. Each point needs one job. Each end of a line needs another one for the minimum next to it. */
+static hf_status allocate(search *s, void **block)
 {
     size_t n = (size_t)s->n_job, n_line = s->n_objective > 2 ? (size_t)s->t->n_point + 2 : 1;
-    s->job = hf_arena_take(a, n, sizeof *s->job);
-    s->point = hf_arena_take(a, n, sizeof *s->point);
-    s->line_room = hf_arena_take(a, n_line, sizeof *s->line_room);
-    s->line = hf_arena_take(a, n_line, sizeof *s->line);
-    s->of_room = hf_arena_take(a, (size_t)s->t->n_thread, sizeof *s->of_room);
+    job **way;
+    double *length, *design;
+    HF_TRY(HF_ARENA_ARRAYS(block, HF_ARRAY(s->job, n), HF_ARRAY(s->point, n), HF_ARRAY(s->line_room, n_line),
+                           HF_ARRAY(s->line, n_line), HF_ARRAY(s->of_room, s->t->n_thread), HF_ARRAY(way, n_line * n),
+                           HF_ARRAY(length, n_line * n), HF_ARRAY(design, 2 * n * s->n_variable)));
     for (size_t i = 0; i < n_line; i++) {
-        job **way = hf_arena_take(a, n, sizeof *way);
-        double *length = hf_arena_take(a, n, sizeof *length);
-        if (!a->block) continue;
-        s->line_room[i].way = way;
-        s->line_room[i].length = length;
+        s->line_room[i].way = way + i * n;
+        s->line_room[i].length = length + i * n;
     }
-    for (size_t i = 0; i < n; i++) {
-        double *design = hf_arena_take(a, 2 * s->n_variable, sizeof(double));
-        if (a->block) s->job[i].design = design;
-    }
+    for (size_t i = 0; i < n; i++)
+        s->job[i].design = design + 2 * i * s->n_variable;
+    return HF_OK;
 }
 
 /* Creates the front from the points found. */
@@ -771,7 +767,7 @@ hf_status hf_front_refine_find(const hf_front_refine *task, hf_front *front, int
     hf_front_refine t = *task;
     /* Each point is found in one thread, so this copy of the evaluator has one. */
     hf_evaluator alone = *task->evaluator;
-    hf_arena arena = {0};
+    void *block;
     if (t.n_thread <= 0) t.n_thread = hf_parallel_cores();
     search s = {.t = &t, .failed_end = -1, .n_variable = (size_t)t.evaluator->model->n_variable};
     alone.n_thread = 1;
@@ -781,11 +777,11 @@ hf_status hf_front_refine_find(const hf_front_refine *task, hf_front *front, int
     s.n_objective = t.evaluator->objectives->n_objective;
     s.n_job = s.n_objective > 2 ? 2 * t.n_point + 8 : t.n_point + 4;
     choose_roles(t.evaluator->objectives, s.role);
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, &s)));
+    HF_TRY(allocate(&s, &block));
     hf_status status = find_ends(&s);
     if (status == HF_OK) status = fill(&s);
     if (status == HF_OK) status = hand_over(&s, front);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     *failed_end = s.failed_end;
     return status;
 }

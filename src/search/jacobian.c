@@ -7,21 +7,15 @@
 
 #include <math.h>
 
-static void lay_out(hf_arena *a, hf_jacobian *j)
-{
-    const hf_model *m = &j->model;
-    j->leader = hf_arena_take(a, (size_t)m->n_variable, sizeof(int));
-    j->rate = hf_arena_take(a, (size_t)m->n_variable * (size_t)j->residuals.n_row, sizeof(double));
-    j->gradient = hf_arena_take(a, (size_t)m->n_variable, sizeof(double));
-}
-
 hf_status hf_jacobian_create(const hf_evaluator *evaluator, hf_jacobian *j)
 {
     *j = (hf_jacobian){.model = *evaluator->model, .v = *evaluator};
     j->v.model = &j->model;
     j->n_figure = j->v.objectives ? j->v.objectives->n_objective + 1 : 1;
     HF_TRY(hf_residuals_create(&j->v, &j->residuals));
-    HF_TRY(HF_ARENA_MAKE(&j->arena, lay_out(&j->arena, j)));
+    size_t n = (size_t)j->model.n_variable;
+    HF_TRY(HF_ARENA_ARRAYS(&j->block, HF_ARRAY(j->leader, n), HF_ARRAY(j->rate, n * (size_t)j->residuals.n_row),
+                           HF_ARRAY(j->gradient, n)));
     for (int k = 0; k < j->model.n_variable; k++)
         j->leader[k] = k;
     j->model.variable_leader = j->leader;
@@ -33,7 +27,7 @@ void hf_jacobian_free(hf_jacobian *j)
 {
     hf_sensitivity_free(&j->slopes);
     hf_residuals_free(&j->residuals);
-    hf_arena_free(&j->arena);
+    hf_arena_free_block(j->block);
     *j = (hf_jacobian){0};
 }
 

@@ -18,7 +18,7 @@ typedef struct {
     int *leader;      /* [n_variable], variable_leader of the model */
     double *rate;     /* [n_variable][residuals.n_row], derivatives of the residuals */
     double *gradient; /* [n_variable], scratch */
-    hf_arena arena;
+    void *block;
 } hf_jacobian;
 
 /* Prepares derivatives of designs of an evaluator to which hf_refine_applies; the evaluator is borrowed. A jacobian

@@ -47,27 +47,14 @@ typedef struct {
     unsigned char *taken; /* [n_individual], scratch */
 } breeder;
 
-/* Lays out the arrays of the state. The struct itself comes first: its address is then that of the block, and
- * free(state) frees everything. */
-static breeder *lay_out(hf_arena *a, breeder *g)
-{
-    breeder *itself = hf_arena_take(a, 1, sizeof *itself);
-    size_t n = (size_t)g->breeding.settings->population;
-    g->breeding.draw = hf_arena_take(a, n * (size_t)g->breeding.model->n_variable_group, sizeof(double));
-    g->fitness = hf_arena_take(a, n, sizeof(double));
-    g->taken = hf_arena_take(a, n, 1);
-    g->elite = hf_arena_take(a, (size_t)g->breeding.settings->elites, sizeof(int));
-    return itself;
-}
-
 static hf_status create(const hf_optimize_settings *s, const hf_model *m, void **state)
 {
-    breeder g = {.breeding = {.settings = s, .model = m}};
-    hf_arena arena = {0};
-    breeder *itself;
-    HF_TRY(HF_ARENA_MAKE(&arena, itself = lay_out(&arena, &g)));
+    breeder g = {.breeding = {.settings = s, .model = m}}, *itself;
+    size_t n = (size_t)s->population;
+    /* The struct itself comes first: its address is then that of the block, and free(state) frees everything. */
+    HF_TRY(HF_ARENA_ARRAYS(state, HF_ARRAY(itself, 1), HF_ARRAY(g.breeding.draw, n * (size_t)m->n_variable_group),
+                           HF_ARRAY(g.fitness, n), HF_ARRAY(g.taken, n), HF_ARRAY(g.elite, s->elites)));
     *itself = g;
-    *state = itself;
     return HF_OK;
 }
 

@@ -41,28 +41,17 @@ typedef struct {
     double least[HF_FRONT_OBJECTIVES_MAX], range[HF_FRONT_OBJECTIVES_MAX];
 } front_breeder;
 
-/* Lays out the arrays of the state. The struct itself comes first: its address is then that of the block, and
- * free(state) frees everything. */
-static front_breeder *lay_out_breeder(hf_arena *a, front_breeder *g)
-{
-    front_breeder *itself = hf_arena_take(a, 1, sizeof *itself);
-    size_t n = (size_t)g->breeding.settings->population;
-    hf_pareto_lay_out(a, &g->both);
-    g->breeding.draw = hf_arena_take(a, n * (size_t)g->breeding.model->n_variable_group, sizeof(double));
-    g->rank = hf_arena_take(a, 2 * n, sizeof(int));
-    g->member = hf_arena_take(a, 2 * n, sizeof(int));
-    return itself;
-}
-
 static hf_status create_breeder(const hf_optimize_settings *s, const hf_model *m, void **state)
 {
     front_breeder g = {.breeding = {.settings = s, .model = m},
-                       .both = {.n = 2 * s->population, .n_objective = s->n_front}};
-    hf_arena arena = {0};
-    front_breeder *itself;
-    HF_TRY(HF_ARENA_MAKE(&arena, itself = lay_out_breeder(&arena, &g)));
+                       .both = {.n = 2 * s->population, .n_objective = s->n_front}},
+                  *itself;
+    size_t n = (size_t)s->population;
+    /* The struct itself comes first: its address is then that of the block, and free(state) frees everything. */
+    HF_TRY(HF_ARENA_ARRAYS(state, HF_ARRAY(itself, 1), HF_PARETO_ARRAYS(g.both),
+                           HF_ARRAY(g.breeding.draw, n * (size_t)m->n_variable_group), HF_ARRAY(g.rank, 2 * n),
+                           HF_ARRAY(g.member, 2 * n)));
     *itself = g;
-    *state = itself;
     return HF_OK;
 }
 

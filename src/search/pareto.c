@@ -11,15 +11,6 @@
 
 /* ---- values and dominance ---- */
 
-void hf_pareto_lay_out(hf_arena *a, hf_pareto *p)
-{
-    size_t n = (size_t)p->n;
-    p->value = hf_arena_take(a, n * HF_FRONT_OBJECTIVES_MAX, sizeof(double));
-    p->violation = hf_arena_take(a, n, sizeof(double));
-    p->room = hf_arena_take(a, n, sizeof(double));
-    p->scratch = hf_arena_take(a, n * HF_PARETO_SCRATCH, sizeof(int));
-}
-
 void hf_pareto_set(hf_pareto *p, int i, const double *objective, double violation)
 {
     bool has_values = true;
@@ -230,11 +221,10 @@ static bool are_equal(const hf_pareto *p, int a, int b)
 hf_status hf_pareto_front(const hf_population *population, hf_front *front)
 {
     hf_pareto p = {.n = population->n_individual, .n_objective = population->n_objective};
-    hf_arena arena = {0};
+    void *block;
     int *rank, n_on = 0;
     *front = (hf_front){.minimised = -1, .knee = -1};
-    HF_TRY(HF_ARENA_MAKE(&arena,
-                         (hf_pareto_lay_out(&arena, &p), rank = hf_arena_take(&arena, (size_t)p.n, sizeof *rank))));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_PARETO_ARRAYS(p), HF_ARRAY(rank, p.n)));
     for (int i = 0; i < p.n; i++)
         hf_pareto_set(&p, i, population->result[i].objective, hf_population_violation(&population->result[i]));
     hf_pareto_rank(&p, rank);
@@ -249,6 +239,6 @@ hf_status hf_pareto_front(const hf_population *population, hf_front *front)
     for (int k = 0; status == HF_OK && k < n_on; k++)
         copy_point(population, order[k], front, k);
     if (status == HF_OK) hf_front_settle(front);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }

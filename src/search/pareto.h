@@ -22,8 +22,10 @@ typedef struct {
 
 enum { HF_PARETO_SCRATCH = 2 * HF_FRONT_OBJECTIVES_MAX + 1 };
 
-/* Takes the arrays of *pareto from an arena; its n and n_objective are set. */
-void hf_pareto_lay_out(hf_arena *arena, hf_pareto *pareto);
+/* Lists the arrays of a hf_pareto whose n is set, for HF_ARENA_ARRAYS. */
+#define HF_PARETO_ARRAYS(p)                                                                                            \
+    HF_ARRAY((p).value, (size_t)(p).n *HF_FRONT_OBJECTIVES_MAX), HF_ARRAY((p).violation, (p).n),                       \
+        HF_ARRAY((p).room, (p).n), HF_ARRAY((p).scratch, (size_t)(p).n *HF_PARETO_SCRATCH)
 
 /* Sets the objectives [n_objective] and the violation of design i. */
 void hf_pareto_set(hf_pareto *pareto, int i, const double *objective, double violation);

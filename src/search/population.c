@@ -35,21 +35,21 @@ const char *const hf_population_stop_word[4] = {"running", "stagnation", "genera
     X(hf_status, trial_status, n)                                                                                      \
     X(double, trial_psi_m, n)
 
-static void lay_out(hf_arena *arena, hf_population *p, hf_population *next)
+/* Allocates the arrays of both generations. */
+static hf_status allocate(hf_population *p, hf_population *next)
 {
-    size_t n = (size_t)p->n_individual, k = (size_t)p->n_variable;
-    hf_population *to = p;
-    p->initial = hf_arena_take(arena, k, sizeof(double));
-    p->lower = hf_arena_take(arena, k, sizeof(double));
-    p->upper = hf_arena_take(arena, k, sizeof(double));
-    p->reach = hf_arena_take(arena, k, sizeof(double));
-    p->best_merit = hf_arena_take(arena, (size_t)p->generation_limit, sizeof(double));
-    p->best_psi_m = hf_arena_take(arena, (size_t)p->generation_limit, sizeof(double));
-    p->least_violation = hf_arena_take(arena, (size_t)p->generation_limit, sizeof(double));
+    size_t n = (size_t)p->n_individual, k = (size_t)p->n_variable, limit = (size_t)p->generation_limit;
+    hf_population twin;
+#define OF_BOTH(type, name, count) HF_ARRAY(p->name, count), HF_ARRAY(twin.name, count),
+#define OF_TWIN(type, name, count) next->name = twin.name;
+    HF_TRY(HF_ARENA_ARRAYS(&p->block, GENERATION_FIELDS(OF_BOTH) HF_ARRAY(p->initial, k), HF_ARRAY(p->lower, k),
+                           HF_ARRAY(p->upper, k), HF_ARRAY(p->reach, k), HF_ARRAY(p->best_merit, limit),
+                           HF_ARRAY(p->best_psi_m, limit), HF_ARRAY(p->least_violation, limit)));
     *next = *p;
-    GENERATION_FIELDS(HF_ARENA_TAKE)
-    to = next;
-    GENERATION_FIELDS(HF_ARENA_TAKE)
+    GENERATION_FIELDS(OF_TWIN)
+#undef OF_BOTH
+#undef OF_TWIN
+    return HF_OK;
 }
 
 /* ---- linked design variables ---- */
@@ -93,15 +93,13 @@ void hf_population_link(const hf_population *population, const hf_model *m, doub
 hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m, const double *initial,
                                hf_population *p, hf_population *next)
 {
-    hf_arena arena = {0};
     *p = (hf_population){.n_variable = m->n_variable,
                          .has_rows = m->variable,
                          .n_individual = s->population,
                          .n_objective = s->n_front,
                          .generation_limit = s->generations,
                          .best = -1};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, p, next)));
-    p->block = next->block = arena.block;
+    HF_TRY(allocate(p, next));
     memcpy(p->initial, initial, (size_t)p->n_variable * sizeof *initial);
     for (int k = 0; k < p->n_variable; k++)
         hf_variables_bound(s, m, k, initial[k], &p->lower[k], &p->upper[k], &p->reach[k]);

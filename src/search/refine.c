@@ -468,17 +468,16 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
                            .way = 1,
                            .settled_merit = INFINITY};
     hf_form_result start;
-    hf_arena arena = {0};
     *result = (hf_refine_result){.stop = HF_REFINE_MAX_ITERATIONS};
     p.v.by_density = true;
     p.v.boundary_ratio_cap = INFINITY;
     p.v.limits = NULL;
-    hf_status status = hf_refine_create(&p, &arena);
+    hf_status status = hf_refine_create(&p);
     if (status == HF_OK) {
         hf_evaluate(evaluator, design, w, hf_residuals_point(&p.residuals), &start);
         status = refine_from(&p, max_iterations, &start, design, result);
         result->evaluations = p.evaluations;
     }
-    hf_refine_destroy(&p, &arena);
+    hf_refine_destroy(&p);
     return status;
 }

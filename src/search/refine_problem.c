@@ -44,13 +44,6 @@ enum {
 };
 #define FORMAT 2
 
-static void lay_out(hf_arena *arena, hf_refine_problem *to)
-{
-    size_t n = (size_t)to->n, n_row = (size_t)to->residuals.n_row, n_variable = (size_t)to->v.model->n_variable;
-    to->n_state = N_SCALAR + 3 * n + n_variable;
-    HF_REFINE_FIELDS(HF_ARENA_TAKE)
-}
-
 bool hf_refine_is_tension(const hf_refine_problem *p, int k)
 {
     return hf_evaluate_sets(p->caller, k) == HF_SETS_TENSION;
@@ -111,25 +104,27 @@ static void aim(hf_refine_problem *p)
     p->watch.objective_rate = p->objective_rate;
 }
 
-hf_status hf_refine_create(hf_refine_problem *p, hf_arena *arena)
+hf_status hf_refine_create(hf_refine_problem *to)
 {
-    const hf_model *m = p->v.model;
-    p->n = m->n_leader;
-    HF_TRY(hf_sensitivity_create(&p->v, &p->slopes));
-    HF_TRY(hf_residuals_create(&p->v, &p->residuals));
-    HF_TRY(hf_watch_create(p->caller, &p->slopes, p->lower, p->upper, p->front, &p->watch));
-    HF_TRY(HF_ARENA_MAKE(arena, lay_out(arena, p)));
-    aim(p);
-    return hf_quadratic_create(p->n + p->has_corners, &p->step);
+    const hf_model *m = to->v.model;
+    to->n = m->n_leader;
+    HF_TRY(hf_sensitivity_create(&to->v, &to->slopes));
+    HF_TRY(hf_residuals_create(&to->v, &to->residuals));
+    HF_TRY(hf_watch_create(to->caller, &to->slopes, to->lower, to->upper, to->front, &to->watch));
+    size_t n = (size_t)to->n, n_row = (size_t)to->residuals.n_row, n_variable = (size_t)m->n_variable;
+    to->n_state = N_SCALAR + 3 * n + n_variable;
+    HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_REFINE_FIELDS(HF_ARENA_ITEM)));
+    aim(to);
+    return hf_quadratic_create(to->n + to->has_corners, &to->step);
 }
 
-void hf_refine_destroy(hf_refine_problem *p, hf_arena *arena)
+void hf_refine_destroy(hf_refine_problem *p)
 {
     hf_arena_free(&p->step.arena);
-    hf_arena_free(&p->watch.arena);
+    hf_arena_free_block(p->watch.block);
     hf_residuals_free(&p->residuals);
     hf_sensitivity_free(&p->slopes);
-    hf_arena_free(arena);
+    hf_arena_free_block(p->block);
 }
 
 /* ---- evaluation ---- */

@@ -64,12 +64,13 @@ typedef struct {
     double settled_merit, settled_objective[HF_DESIGN_ROWS_MAX]; /* merit and objectives at that change */
     size_t n_state;
     double noise; /* part of the merit that the tolerance of the form-finding leaves open */
+    void *block;
 } hf_refine_problem;
 
 /* Allocates the problem, in which the caller has set v, caller, lower, upper, w and front. Returns HF_OK or
  * HF_NO_MEMORY; call hf_refine_destroy in either case. */
-hf_status hf_refine_create(hf_refine_problem *problem, hf_arena *arena);
-void hf_refine_destroy(hf_refine_problem *problem, hf_arena *arena);
+hf_status hf_refine_create(hf_refine_problem *problem);
+void hf_refine_destroy(hf_refine_problem *problem);
 
 /* Begins at the design [n_variable] whose shape is in the workspace. */
 void hf_refine_begin(hf_refine_problem *problem, const double *design);

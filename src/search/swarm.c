@@ -30,26 +30,20 @@ static void lay_out(hf_arena *arena, hf_swarm_plan *to)
     HF_SWARM_PLAN_FIELDS(HF_ARENA_TAKE)
 }
 
-/* Lists the cables at each free node, by a counting sort. incidence_start first counts the cables of each row. While
- * the list is filled, incidence_start[row] is the index of the next entry of the row. At the end it is where the next
- * row begins, so the array is shifted by one. */
+/* Lists the cables at each free node, by a counting sort. incidence_start[row] first counts the cables of the row, then
+ * is where they end, and while the list is filled from its end falls to where they begin. */
 static void list_incidences(hf_swarm_plan *p)
 {
     const hf_model *m = p->model;
     int *start = p->incidence_start;
     for (int k = 0; k < 2 * m->n_cable; k++)
         if (m->end_row[k] < m->n_free) start[m->end_row[k]]++;
-    for (int i = 0, sum = 0; i <= m->n_free; i++) {
-        int count = start[i];
-        start[i] = sum;
-        sum += count;
-    }
-    for (int k = 0; k < 2 * m->n_cable; k++) {
+    for (int row = 0; row < m->n_free; row++)
+        start[row + 1] += start[row];
+    for (int k = 2 * m->n_cable - 1; k >= 0; k--) {
         int row = m->end_row[k], other = m->end_row[k ^ 1];
-        if (row < m->n_free) p->incidence[start[row]++] = (hf_swarm_incidence){k / 2, p->n_pad + other};
+        if (row < m->n_free) p->incidence[--start[row]] = (hf_swarm_incidence){k / 2, p->n_pad + other};
     }
-    memmove(start + 1, start, (size_t)m->n_free * sizeof(int));
-    start[0] = 0;
 }
 
 /* Returns the lane rows of cable e, the lower one first. Returns false if one of its ends is a support. */

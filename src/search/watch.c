@@ -117,21 +117,16 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
         add_objective(v, q->front, k, q);
 }
 
-static void lay_out(hf_arena *arena, hf_watch *to)
-{
-    const hf_model *m = to->v->model;
-    size_t n_column = 1 + (size_t)to->n_class;
-    HF_WATCH_FIELDS(HF_ARENA_TAKE)
-}
-
 hf_status hf_watch_create(const hf_evaluator *v, const hf_sensitivity *s, const double *lower, const double *upper,
-                          const hf_watch_front *front, hf_watch *q)
+                          const hf_watch_front *front, hf_watch *to)
 {
-    *q = (hf_watch){.v = v, .n_class = s->n, .front = front};
-    list(v, s, lower, upper, q);
-    q->ld = (q->n + HF_LANES - 1) / HF_LANES * HF_LANES;
-    HF_TRY(HF_ARENA_MAKE(&q->arena, lay_out(&q->arena, q)));
-    list(v, s, lower, upper, q);
+    const hf_model *m = v->model;
+    size_t n_column = 1 + (size_t)s->n;
+    *to = (hf_watch){.v = v, .n_class = s->n, .front = front};
+    list(v, s, lower, upper, to);
+    to->ld = (to->n + HF_LANES - 1) / HF_LANES * HF_LANES;
+    HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_WATCH_FIELDS(HF_ARENA_ITEM)));
+    list(v, s, lower, upper, to);
     return HF_OK;
 }
 

@@ -58,12 +58,12 @@ typedef struct {
     hf_objectives_point *point;   /* scratch for forces on supports; borrowed; NULL without `front` */
     const double *objective_rate; /* [n_objective][n_class], rates of objectives without corners, borrowed */
     double level;                 /* value of a minimised objective with corners, or the logarithm of a ratio */
-    hf_arena arena;
+    void *block;
 } hf_watch;
 
 /* Watches the cap and the limits of the evaluator, and the bounds lower and upper [n_variable] of design variables that
  * set a tension. If `front` is not NULL, it also watches the objectives, after the caller has set
- * `objective`, objective_rate and `point`. Returns HF_OK or HF_NO_MEMORY; the caller frees its arena. */
+ * `objective`, objective_rate and `point`. Returns HF_OK or HF_NO_MEMORY; the caller frees its block. */
 hf_status hf_watch_create(const hf_evaluator *evaluator, const hf_sensitivity *slopes, const double *lower,
                           const double *upper, const hf_watch_front *front, hf_watch *watch);
 

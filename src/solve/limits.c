@@ -36,29 +36,21 @@ static hf_status read_row(const hf_scene *scene, const hf_model *m, const hf_lim
     return to->n_cable ? HF_OK : HF_BAD_CASE;
 }
 
-static void lay_out(hf_arena *a, const hf_model *m, hf_limits *l)
-{
-    l->row = hf_arena_take(a, (size_t)l->n, sizeof *l->row);
-    for (int i = 0; i < l->n; i++) {
-        int *cable = hf_arena_take(a, (size_t)m->n_cable, sizeof(int));
-        if (l->row) l->row[i].cable = cable;
-    }
-}
-
 hf_status hf_limits_create(const hf_scene *scene, const hf_model *m, const hf_optimize_settings *s, hf_limits *l,
                            hf_messages *messages)
 {
-    hf_arena arena = {0};
-    *l = (hf_limits){.n = s->n_limit};
-    if (l->n == 0) return HF_OK;
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, m, l)) != HF_OK) {
-        l->n = 0;
+    int *cable;
+    *l = (hf_limits){0};
+    if (s->n_limit == 0) return HF_OK;
+    if (HF_ARENA_ARRAYS(&l->block, HF_ARRAY(l->row, s->n_limit),
+                        HF_ARRAY(cable, (size_t)s->n_limit * (size_t)m->n_cable)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "optimize.limits: out of memory");
-    }
-    l->block = arena.block;
+    l->n = s->n_limit;
     hf_status status = HF_OK;
-    for (int i = 0; i < l->n; i++) /* reports all faults */
+    for (int i = 0; i < l->n; i++) { /* reports all faults */
+        l->row[i].cable = cable + (size_t)i * (size_t)m->n_cable;
         if (read_row(scene, m, &s->limit[i], i, &l->row[i], messages) != HF_OK) status = HF_BAD_CASE;
+    }
     return status;
 }
 

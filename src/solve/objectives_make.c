@@ -128,14 +128,16 @@ static hf_status refuse_rows(const hf_objectives *objectives, const char *list, 
                     where, n_all, ROWS_MAX, n_sample ? "samples, or fewer objectives over samples" : "objectives");
 }
 
-static void lay_out(hf_arena *a, const hf_model *m, hf_objectives *objectives)
+/* Allocates the arrays. Each objective of a set has room for all cables. */
+static hf_status allocate(const hf_model *m, hf_objectives *objectives)
 {
-    for (int k = 0; k < objectives->n_objective; k++)
-        objectives->objective[k].cable = has_set(objectives->objective[k].settings.figure)
-                                             ? hf_arena_take(a, (size_t)m->n_cable, sizeof(int))
-                                             : NULL;
-    objectives->corner_row = hf_arena_take(a, 4 * (size_t)objectives->n_facet, sizeof(int));
-    objectives->beam = hf_arena_take(a, (size_t)objectives->n_objective, sizeof *objectives->beam);
+    int *cable;
+    size_t n = (size_t)objectives->n_objective, n_cable = (size_t)m->n_cable;
+    HF_TRY(HF_ARENA_ARRAYS(&objectives->block, HF_ARRAY(cable, n * n_cable), HF_ARRAY(objectives->beam, n),
+                           HF_ARRAY(objectives->corner_row, 4 * (size_t)objectives->n_facet)));
+    for (size_t k = 0; k < n; k++)
+        if (has_set(objectives->objective[k].settings.figure)) objectives->objective[k].cable = cable + k * n_cable;
+    return HF_OK;
 }
 
 /* Sets the nets of an objective. The case has been checked, so the load case or the samples of the row exist. */
@@ -182,7 +184,6 @@ hf_status hf_objectives_create(const hf_scene *scene, const hf_model *m, const h
                                const hf_surface_settings *surface, const hf_facets *facets,
                                const hf_objectives_nets *nets, hf_objectives *objectives, hf_messages *messages)
 {
-    hf_arena arena = {0};
     int n_fault = 0;
     long n_all = 0;
     bool is_front = s->n_front > 0;
@@ -198,9 +199,8 @@ hf_status hf_objectives_create(const hf_scene *scene, const hf_model *m, const h
         objectives->kind = surface->kind;
         objectives->focal_length_m = surface->focal_length_m;
     }
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, m, objectives)) != HF_OK)
+    if (allocate(m, objectives) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the objectives");
-    objectives->block = arena.block;
     for (int i = 0; i < 4 * objectives->n_facet; i++)
         objectives->corner_row[i] = m->row_of_node[facets->corner[i]];
     const char *list = is_front ? "front" : "objective";

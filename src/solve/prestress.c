@@ -80,12 +80,6 @@ typedef struct {
     const volatile sig_atomic_t *stop;
 } programme;
 
-static void lay_out(hf_arena *arena, programme *to)
-{
-    size_t e = (size_t)to->m->n_cable;
-    PROGRAMME_FIELDS(HF_ARENA_TAKE)
-}
-
 /* ---- required tensions ---- */
 
 static void set_wants(programme *p)
@@ -349,18 +343,20 @@ static void tell_lengths(const hf_scene *s, hf_messages *messages)
 
 static hf_status hold(hf_scene *scene, const hf_model *m, const volatile sig_atomic_t *stop, hf_messages *messages)
 {
-    hf_arena arena = {0};
     programme p = {.m = m, .stop = stop, .n = 3 * m->n_free, .half_bandwidth = 3 * m->half_bandwidth + 2};
     p.reference_N = m->reference_N;
     p.n_family = scene->n_set + 2;
-    if (HF_ARENA_MAKE(&arena, lay_out(&arena, &p)) != HF_OK)
+    size_t e = (size_t)m->n_cable;
+    void *block;
+    programme *to = &p;
+    if (HF_ARENA_ARRAYS(&block, PROGRAMME_FIELDS(HF_ARENA_ITEM)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the tensions of a net of %d nodes", m->n_node);
     hf_status status = find_tensions(&p, scene, messages);
-    for (int e = 0; e < m->n_cable && status == HF_OK; e++) {
-        scene->law[e] = HF_LAW_FORCE_DENSITY;
-        scene->target[e] = p.tension_N[e] / m->length_m[e];
+    for (int i = 0; i < m->n_cable && status == HF_OK; i++) {
+        scene->law[i] = HF_LAW_FORCE_DENSITY;
+        scene->target[i] = p.tension_N[i] / m->length_m[i];
     }
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 

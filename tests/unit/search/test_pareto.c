@@ -9,7 +9,7 @@
 enum { MOST = 80 };
 
 struct set {
-    hf_arena arena;
+    void *block;
     hf_pareto pareto;
     int rank[MOST], naive[MOST];
 };
@@ -18,7 +18,7 @@ static void open_set(struct set *s, int n, int n_objective)
 {
     memset(s, 0, sizeof *s);
     s->pareto = (hf_pareto){.n = n, .n_objective = n_objective};
-    ck_assert_int_eq(HF_ARENA_MAKE(&s->arena, hf_pareto_lay_out(&s->arena, &s->pareto)), HF_OK);
+    ck_assert_int_eq(HF_ARENA_ARRAYS(&s->block, HF_PARETO_ARRAYS(s->pareto)), HF_OK);
 }
 
 /* Few different values, so that many are equal; some are not numbers, some designs beyond their limits. */
@@ -89,7 +89,7 @@ START_TEST(ranks_are_those_of_the_definition)
         for (int a = 0; a < s.pareto.n; a++)
             for (int b = 0; b < s.pareto.n; b++)
                 ck_assert_int_eq(hf_pareto_dominates(&s.pareto, a, b), naive_dominates(&s.pareto, a, b));
-        hf_arena_free(&s.arena);
+        hf_arena_free_block(s.block);
     }
 }
 END_TEST
@@ -190,7 +190,7 @@ START_TEST(what_is_kept_covers_the_front)
             is_kept[member[k]] = true;
         for (int k = 0; k < n_keep; k++)
             ck_assert(is_kept[wanted[k]]);
-        hf_arena_free(&s.arena);
+        hf_arena_free_block(s.block);
     }
 }
 END_TEST
@@ -219,7 +219,7 @@ START_TEST(odd_fronts_are_kept_as_well)
         again[i] = i;
     hf_pareto_keep(&s.pareto, 4, again, 2);
     ck_assert(again[0] < 4 && again[1] < 4 && again[0] != again[1]);
-    hf_arena_free(&s.arena);
+    hf_arena_free_block(s.block);
 }
 END_TEST
 

@@ -36,7 +36,6 @@ struct watched {
     double lower[MAX_VARIABLE], upper[MAX_VARIABLE];
     hf_watch_front front;
     hf_refine_problem refine;
-    hf_arena arena;
 };
 
 /* At the shape of the form-finding. */
@@ -63,7 +62,7 @@ static void open_watched(struct watched *t, int i)
     q->v.by_density = true;
     q->v.boundary_ratio_cap = INFINITY;
     q->v.limits = NULL;
-    ck_assert_int_eq(hf_refine_create(q, &t->arena), HF_OK);
+    ck_assert_int_eq(hf_refine_create(q), HF_OK);
     hf_refine_begin(q, p->initial);
     ck_assert_int_eq(hf_refine_evaluate(q, q->at), HF_OK);
     ck_assert_int_eq(hf_refine_linearise(q), HF_OK);
@@ -71,7 +70,7 @@ static void open_watched(struct watched *t, int i)
 
 static void close_watched(struct watched *t)
 {
-    hf_refine_destroy(&t->refine, &t->arena);
+    hf_refine_destroy(&t->refine);
     hf_problem_free(&t->problem);
 }
 
