@@ -42,7 +42,7 @@
 typedef struct {
     hf_objectives_point point;
     double *lanes; /* scratch for solves with the packed matrix */
-    /* [PANEL][...] strains, displacements and scratch of hf_built_linear_apply_by. */
+    /* [PANEL][...] strains, displacements and scratch of hf_built_linear_apply. */
     double *strain_N, *answer_m, *scratch;
     /* Arguments of hf_objectives_push. The figure depends on positions alone, so the last two stay 0. */
     double *rate_m, *rate_N, *displacement_m;
@@ -122,7 +122,7 @@ static void find_tensions(const adjustment *a, double *change_N)
 {
     adjust_room *r = &a->room[0];
     memset(r->answer_m, 0, a->n_dof * sizeof *r->answer_m);
-    hf_built_linear_apply(&a->estimate->linear, 1, r->strain_N, r->answer_m, r->scratch);
+    hf_built_linear_apply(&a->estimate->linear, NULL, 1, r->strain_N, NULL, r->answer_m, r->scratch);
     hf_built_linear_tension(&a->estimate->linear, r->strain_N, r->answer_m, change_N);
 }
 
@@ -249,7 +249,7 @@ static void find_panel(void *context, int room, int i_panel)
         r->strain_N[k * n_cable + e] = l->cut_N_per_m[e];
     }
     const hf_built_lanes by = {&a->matrix, r->lanes};
-    hf_built_linear_apply_by(l, &by, (int)n, r->strain_N, NULL, r->answer_m, r->scratch);
+    hf_built_linear_apply(l, &by, (int)n, r->strain_N, NULL, r->answer_m, r->scratch);
     for (size_t k = 0; k < n; k++)
         push_displacement(a, r, r->answer_m + k * a->n_dof, a->column + (first + k) * a->n_row);
 }
@@ -297,8 +297,7 @@ static void take_adjustments_off(adjustment *a)
     memcpy(a->at_zero, a->residual, a->n_row * sizeof *a->at_zero);
     for (size_t i = 0; i < a->n; i++) {
         double adjustment_m = a->adjustment_m[a->task->cable[i]];
-        for (size_t r = 0; r < a->n_row && adjustment_m != 0; r++)
-            a->at_zero[r] -= adjustment_m * a->column[i * a->n_row + r];
+        if (adjustment_m != 0) hf_subtract(a->n_row, adjustment_m, a->column + i * a->n_row, a->at_zero);
     }
 }
 
@@ -447,7 +446,7 @@ static hf_status answer_samples(adjustment *a)
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES && status == HF_OK; s++) {
         for (size_t e = 0; e < n_cable; e++)
             r->strain_N[e] = l->cut_N_per_m[e] * a->cause.cut_m[s * n_cable + e];
-        hf_built_linear_apply(l, 1, r->strain_N, a->answer_m + s * a->n_dof, r->scratch);
+        hf_built_linear_apply(l, NULL, 1, r->strain_N, NULL, a->answer_m + s * a->n_dof, r->scratch);
     }
     return HF_OK;
 }
@@ -508,11 +507,9 @@ static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_E
     HF_TRY(answer_samples(a));
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
         double *move_m = a->answer_m + s * a->n_dof;
-        for (size_t i = 0; i < a->n_dof && part > 0; i++)
-            move_m[i] += part * a->beyond_m[s * a->n_dof + i];
+        if (part > 0) hf_add(a->n_dof, part, a->beyond_m + s * a->n_dof, move_m);
         push_displacement(a, r, move_m, a->at_zero); /* at_zero is free at this point */
-        for (size_t i = 0; i < a->n_row; i++)
-            a->at_zero[i] += a->residual[i];
+        hf_add(a->n_row, 1, a->residual, a->at_zero);
         figure_m[s] = sqrt(hf_dot(a->n_row, a->at_zero, a->at_zero));
     }
     return HF_OK;
@@ -520,18 +517,11 @@ static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_E
 
 /* ---- order of adjustments ---- */
 
-/* Holds the changes of tension that the chosen adjustments cause in the linear model. */
-typedef struct {
-    double *change_N; /* [n_move][n_cable] changes by each adjustment, in the order of a->steps */
-    double *fall_N;   /* [n_cable] fall of each tension after the adjustments in a->trial */
-    void *block;
-} adjustment_order;
-
-static hf_status make_order(adjustment *a, int n_move, adjustment_order *o)
+/* Computes the changes of tension that each chosen adjustment causes in the linear model, change_N [n_move][n_cable] in
+ * the order of a->steps. */
+static void find_changes(adjustment *a, double *change_N)
 {
     size_t n_cable = (size_t)a->problem.n_tension;
-    HF_TRY(HF_ARENA_ARRAYS(&o->block, HF_ARRAY(o->change_N, (size_t)n_move * n_cable), HF_ARRAY(o->fall_N, n_cable)));
-    double *change_N = o->change_N;
     for (size_t i = 0; i < a->n; i++) {
         if (!a->steps[i]) continue;
         find_rates(a, (int)i, change_N);
@@ -539,7 +529,6 @@ static hf_status make_order(adjustment *a, int n_move, adjustment_order *o)
             change_N[e] *= a->steps[i] * a->problem.step_m;
         change_N += n_cable;
     }
-    return HF_OK;
 }
 
 /* Computes mean and standard deviation of the reduction of the figure over the posterior samples. before_m holds the
@@ -560,15 +549,17 @@ static hf_status judge_adjustment(adjustment *a, double part, double before_m[HF
 }
 
 /* Makes the adjustments one by one and judges each of them. On entry a->trial is 0 and `work` holds the shape without
- * adjustments. sample_m holds the figures of the samples without adjustments, and those after all of them on return. */
-static hf_status make_adjustments(adjustment *a, adjustment_order *o, double sample_m[HF_ESTIMATE_SAMPLES],
-                                  hf_adjustment *found)
+ * adjustments. change_N is that of find_changes, and fall_N [n_cable], 0 on entry, the fall of each tension after the
+ * adjustments in a->trial. sample_m holds the figures of the samples without adjustments, and those after all of them on
+ * return. */
+static hf_status make_adjustments(adjustment *a, const double *change_N, double *fall_N,
+                                  double sample_m[HF_ESTIMATE_SAMPLES], hf_adjustment *found)
 {
     double made = 0, all = 0;
     for (size_t i = 0; i < a->n; i++)
         all += abs(a->steps[i]);
     for (int k = 0; k < found->n_move; k++) {
-        int i = hf_turnbuckles_next(&a->problem, a->steps, o->change_N, a->trial, o->fall_N);
+        int i = hf_turnbuckles_next(&a->problem, a->steps, change_N, a->trial, fall_N);
         int e = a->task->cable[i];
         hf_adjust_turnbuckle *move = &found->move[k];
         *move = (hf_adjust_turnbuckle){.cable = e, .steps = a->steps[i], .move_m = a->steps[i] * a->problem.step_m};
@@ -585,8 +576,9 @@ static hf_status make_adjustments(adjustment *a, adjustment_order *o, double sam
 
 static hf_status list_adjustments(adjustment *a, hf_adjustment *found)
 {
-    double figure_m, sample_m[HF_ESTIMATE_SAMPLES];
-    adjustment_order order = {0};
+    double figure_m, sample_m[HF_ESTIMATE_SAMPLES], *change_N, *fall_N;
+    size_t n_cable = (size_t)a->problem.n_tension;
+    void *block;
     for (size_t i = 0; i < a->n; i++)
         found->n_move += a->steps[i] != 0;
     HF_TRY(HF_ARENA_ARRAYS(&found->block, HF_ARRAY(found->move, found->n_move)));
@@ -595,7 +587,8 @@ static hf_status list_adjustments(adjustment *a, hf_adjustment *found)
     /* Without stiffness the last linear model orders them. */
     if (status != HF_OK && status != HF_SINGULAR) return status;
     a->is_current = status == HF_OK;
-    HF_TRY(make_order(a, found->n_move, &order)); /* before answer_samples changes the linear model */
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(change_N, (size_t)found->n_move * n_cable), HF_ARRAY(fall_N, n_cable)));
+    find_changes(a, change_N); /* before answer_samples changes the linear model */
     status = found->n_move ? find_beyond(a) : HF_OK;
     memset(a->trial, 0, a->n * sizeof *a->trial);
     if (status == HF_OK) status = solve_steps(a, a->trial, &figure_m);
@@ -604,9 +597,9 @@ static hf_status list_adjustments(adjustment *a, hf_adjustment *found)
         hf_estimate_spread(sample_m, &found->doubt_m[0], &found->spread_m[0]);
         for (int e = 0; e < a->problem.n_tension; e++)
             found->n_maybe_slack += !(a->work.tension_N[e] > a->doubt_N[e]); /* both are 0 for a slack cable */
-        status = make_adjustments(a, &order, sample_m, found);
+        status = make_adjustments(a, change_N, fall_N, sample_m, found);
     }
-    hf_arena_free_block(order.block);
+    hf_arena_free_block(block);
     HF_TRY(status);
     hf_estimate_spread(sample_m, &found->doubt_m[1], &found->spread_m[1]); /* sample_m belongs to the last adjustment */
     return HF_OK;

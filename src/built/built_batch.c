@@ -71,9 +71,7 @@ static void free_room(batch_room *room)
 static hf_status share(hf_built_batch *batch)
 {
     HF_TRY(hf_workspace_create(&batch->built->model, &batch->room[0].work));
-    hf_status status = hf_near_create(batch->built, &batch->room[0].work, &batch->near);
-    if (status == HF_NO_MEMORY) return status;
-    batch->has_lanes = status == HF_OK;
+    HF_TRY(hf_built_batch_renew(batch));
     return make_room(batch, &batch->room[0]);
 }
 

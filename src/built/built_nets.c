@@ -33,18 +33,12 @@ typedef struct {
     bool has_weight;
     double *length_m;     /* [n_cable] lengths in one shape */
     unsigned char *loose; /* [n_node] all 0: each node counts at the position that it has */
-    /* [HF_OBJECTIVES_AT_ONCE][...] arguments of hf_built_linear_apply_by. */
+    /* [HF_OBJECTIVES_AT_ONCE][...] arguments of hf_built_linear_apply. */
     double *strain_N, *dof_load_N, *dof_move_m, *scratch;
     double *cut_rate;                              /* [n_cable] derivatives of the cut lengths of the design */
     double *rate_m, *rate_N, *rate_displacement_m; /* [HF_OBJECTIVES_AT_ONCE] derivatives of the shape of a net */
     void *block, *more;
 } nets_room;
-
-/* Returns hf_built_linear.n_scratch, which is needed before the linear model exists. */
-static size_t scratch_of(const hf_model *m)
-{
-    return 3 * (size_t)m->n_node + (m->n_attachment ? 3 * (size_t)(m->n_free + m->n_attachment) : 0);
-}
 
 static hf_status open_room(const hf_objectives_nets *as, void **room)
 {
@@ -56,7 +50,7 @@ static hf_status open_room(const hf_objectives_nets *as, void **room)
         &r.block, HF_ARRAY(kept, 1), HF_ARRAY(r.cut_m, n), HF_ARRAY(r.EA_N, n), HF_ARRAY(r.move_m, n_dof),
         HF_ARRAY(r.load_N, n_dof), HF_ARRAY(r.stretch, n), HF_ARRAY(r.weight_N_per_m, 3 * n), HF_ARRAY(r.length_m, n),
         HF_ARRAY(r.loose, m->n_node), HF_ARRAY(r.strain_N, many * n), HF_ARRAY(r.dof_load_N, many * n_dof),
-        HF_ARRAY(r.dof_move_m, many * n_dof), HF_ARRAY(r.scratch, many * scratch_of(m)), HF_ARRAY(r.cut_rate, n),
+        HF_ARRAY(r.dof_move_m, many * n_dof), HF_ARRAY(r.scratch, many * hf_built_linear_scratch(m)), HF_ARRAY(r.cut_rate, n),
         HF_ARRAY(r.rate_m, many * n_dof), HF_ARRAY(r.rate_N, many * n),
         HF_ARRAY(r.rate_displacement_m, many * 3 * (size_t)m->n_attachment));
     *room = kept;
@@ -152,15 +146,9 @@ static const hf_workspace *view(nets_room *r, const double *position_m, const do
                                 const double *displacement_m)
 {
     const hf_model *m = &r->built.model;
-    for (int e = 0; e < m->n_cable; e++) {
-        double square = 0;
-        for (int c = 0; c < 3; c++) {
-            const double *x = position_m + (ptrdiff_t)c * m->n_node;
-            double d = x[m->end_row[2 * e + 1]] - x[m->end_row[2 * e]];
-            square += d * d;
-        }
-        r->length_m[e] = sqrt(square);
-    }
+    double u[3];
+    for (int e = 0; e < m->n_cable; e++)
+        r->length_m[e] = hf_newton_matrix_direction(m, position_m, e, u);
     r->of_net = (hf_workspace){.position_m = (double *)(uintptr_t)position_m, /* the view is only read */
                                .tension_N = (double *)(uintptr_t)tension_N,
                                .displacement_m = (double *)(uintptr_t)displacement_m,
@@ -319,7 +307,7 @@ static void follow_net(void *room, int n, const hf_objectives_rate *by, hf_objec
             r->rate_displacement_m[k * n_attachment + i] = move[3 * (size_t)m->attachment_row[i / 3] + i % 3];
         if (r->has_weight) follow_weight(r, r->dof_load_N + k * n_dof);
     }
-    hf_built_linear_apply_by(&r->linear, NULL, n, r->strain_N, r->has_weight ? r->dof_load_N : NULL, r->dof_move_m,
+    hf_built_linear_apply(&r->linear, NULL, n, r->strain_N, r->has_weight ? r->dof_load_N : NULL, r->dof_move_m,
                              r->scratch);
     for (size_t k = 0; k < (size_t)n; k++) {
         double *tension = r->rate_N + k * n_cable, *displacement = r->rate_displacement_m + k * n_attachment;

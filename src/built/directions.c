@@ -42,7 +42,7 @@ static void multiply(void *context, int room, int i)
            *more = strain + m->n_cable, *column = t->column + (size_t)i * (size_t)hf_built_errors_count(e);
     if (hf_built_must_stop(l->built)) return;
     hf_built_errors_strain(e, 1, column, strain, move);
-    hf_built_linear_apply(l, 1, strain, move, more);
+    hf_built_linear_apply(l, NULL, 1, strain, NULL, move, more);
     memset(slope, 0, l->n_dof * sizeof *slope);
     for (int k = 0; k < m->n_inner_node; k++)
         memcpy(slope + 3 * m->inner_row[k], move + 3 * m->inner_row[k], 3 * sizeof *slope);
@@ -60,8 +60,7 @@ static void orthonormalise(iteration *t)
         for (int k = 0; k < 2 * i; k++) {
             const double *b = t->column + (size_t)(k % i) * n;
             double share = hf_dot(n, a, b);
-            for (size_t j = 0; j < n; j++)
-                a[j] -= share * b[j];
+            hf_subtract(n, share, b, a);
         }
         double size = sqrt(hf_dot(n, a, a)), factor = size > 1e-10 * before ? 1 / size : 0;
         for (size_t j = 0; j < n; j++)

@@ -14,6 +14,7 @@
 
 #include "base/arena.h"
 #include "base/random.h"
+#include "linalg/dot.h"
 
 #include <math.h>
 #include <string.h>
@@ -205,19 +206,16 @@ static hf_status ask_saddle(const hf_estimate *p, int n)
 static hf_status aim(const hf_estimate *p, double damping, double *promise)
 {
     const hf_estimate_scratch *s = &p->scratch;
-    int n_cable = p->built->model.n_cable, n_dof = (int)p->linear.n_dof;
+    size_t n_cable = (size_t)p->built->model.n_cable, n_dof = p->linear.n_dof;
     double part = 1 / (1 + damping);
-    for (int e = 0; e < n_cable; e++)
+    for (size_t e = 0; e < n_cable; e++)
         s->cut_m[e] = part * p->cut_m[e];
-    for (int i = 0; i < n_dof; i++)
+    for (size_t i = 0; i < n_dof; i++)
         s->rest_m[i] = part * p->rest_m[i];
     HF_TRY(ask_saddle(p, 1));
-    for (int e = 0; e < n_cable; e++)
-        s->cut_m[e] += (1 - part) * p->cut_m[e];
-    for (int i = 0; i < n_dof; i++)
-        s->rest_m[i] += (1 - part) * p->rest_m[i];
-    for (int k = 0; k < p->prior.n_shared; k++)
-        s->shared[k] += (1 - part) * p->shared[k];
+    hf_add(n_cable, 1 - part, p->cut_m, s->cut_m);
+    hf_add(n_dof, 1 - part, p->rest_m, s->rest_m);
+    hf_add((size_t)p->prior.n_shared, 1 - part, p->shared, s->shared);
     *promise =
         p->misfit - misfit_of_errors(p, s->cut_m, s->rest_m, s->shared) - misfit_of_positions(p, s->gap_m, s->move_m);
     return HF_OK;
@@ -298,7 +296,7 @@ static int draw_displacements(const hf_estimate *p, int stream, int first, hf_ra
     }
     if (cause)
         memcpy(cause->rest_m + (size_t)first * p->linear.n_dof, move_m, (size_t)n * p->linear.n_dof * sizeof *move_m);
-    hf_built_linear_apply(&p->linear, n, strain_N, move_m, p->scratch.linear);
+    hf_built_linear_apply(&p->linear, NULL, n, strain_N, NULL, move_m, p->scratch.linear);
     return n;
 }
 
@@ -342,25 +340,13 @@ hf_status hf_estimate_belief(hf_estimate *p, int n, const int *cable, double *pa
         memset(s->cut_m, 0, n_cable * sizeof *s->cut_m);
         memset(s->rest_m, 0, n_dof * sizeof *s->rest_m);
         s->strain_N[e] = p->linear.cut_N_per_m[e];
-        hf_built_linear_apply(&p->linear, 1, s->strain_N, s->move_m, s->linear);
+        hf_built_linear_apply(&p->linear, NULL, 1, s->strain_N, NULL, s->move_m, s->linear);
         for (size_t i = 0; i < n_dof; i++)
             s->gap_m[i] = p->prior.weight_per_m2[i] > 0 ? s->move_m[i] : 0;
         HF_TRY(ask_saddle(p, 1));
         part[k] = s->cut_m[e] - shared_error_m(p, s->shared, e);
     }
     return HF_OK;
-}
-
-/* Subtracts the estimates of n samples from their errors, for samples from `first` on. */
-static void take_estimates_off(const hf_estimate *p, int first, int n, const hf_estimate_cause *cause)
-{
-    const hf_estimate_scratch *s = &p->scratch;
-    size_t n_cable = (size_t)p->built->model.n_cable, n_dof = p->linear.n_dof;
-    double *cut_m = cause->cut_m + (size_t)first * n_cable, *rest_m = cause->rest_m + (size_t)first * n_dof;
-    for (size_t i = 0; i < (size_t)n * n_cable; i++)
-        cut_m[i] -= s->cut_m[i];
-    for (size_t i = 0; i < (size_t)n * n_dof; i++)
-        rest_m[i] -= s->rest_m[i];
 }
 
 /* Subtracts the estimates of n samples from their strains, and adds the squares of the resulting changes of tension to
@@ -395,9 +381,9 @@ hf_status hf_estimate_doubt(hf_estimate *p, double *move_m, double *sigma_N, con
         memset(s->cut_m, 0, (size_t)n * n_cable * sizeof *s->cut_m);
         memset(s->rest_m, 0, (size_t)n * n_dof * sizeof *s->rest_m);
         HF_TRY(ask_saddle(p, n));
-        for (size_t i = 0; i < (size_t)n * n_dof; i++)
-            move[i] -= s->move_m[i];
-        if (cause) take_estimates_off(p, first, n, cause);
+        hf_subtract((size_t)n * n_dof, 1, s->move_m, move);
+        if (cause) hf_subtract((size_t)n * n_cable, 1, s->cut_m, cause->cut_m + (size_t)first * n_cable);
+        if (cause) hf_subtract((size_t)n * n_dof, 1, s->rest_m, cause->rest_m + (size_t)first * n_dof);
         add_tensions(p, n, move, sigma_N);
     }
     for (size_t e = 0; e < n_cable; e++)

@@ -10,6 +10,7 @@
 
 #include "base/arena.h"
 #include "linalg/band.h"
+#include "linalg/dot.h"
 #include "solve/joint.h"
 #include <hifdm/formfind.h>
 
@@ -73,8 +74,7 @@ hf_status hf_built_linear_make(const hf_built *b, hf_built_linear *l)
 {
     const hf_model *m = &b->model;
     size_t n = (size_t)m->n_cable;
-    *l = (hf_built_linear){.built = b, .n_dof = 3 * (size_t)m->n_node};
-    l->n_scratch = l->n_dof + (m->n_attachment ? 3 * (size_t)(m->n_free + m->n_attachment) : 0);
+    *l = (hf_built_linear){.built = b, .n_dof = 3 * (size_t)m->n_node, .n_scratch = hf_built_linear_scratch(m)};
     HF_TRY(HF_ARENA_ARRAYS(&l->block, HF_ARRAY(l->unit, 3 * n), HF_ARRAY(l->stiffness_N_per_m, n),
                            HF_ARRAY(l->cut_N_per_m, n), HF_ARRAY(l->ratio_N, n), HF_ARRAY(l->block_N_per_m, 9 * n)));
     HF_TRY(hf_workspace_create(m, &l->work));
@@ -143,8 +143,7 @@ static void answer_forces(const hf_built_linear *l, const hf_built_lanes *by, in
     }
     back_solve(l, by, n, answer, n_free);
     for (size_t k = 0; k < (size_t)n; k++)
-        for (size_t i = 0; i < n_free; i++)
-            v[k * l->n_dof + i] += answer[k * n_free + i];
+        hf_add(n_free, 1, answer + k * n_free, v + k * l->n_dof);
 }
 
 /* Computes the force [3] of the stretched cable e, its stiffness matrix times v(second end) - v(first end). */
@@ -155,22 +154,6 @@ static void stretch(const hf_built_linear *l, int e, const double *v, double for
     const double *k = l->block_N_per_m + 9 * (ptrdiff_t)e, d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     for (int r = 0; r < 3; r++)
         force[r] = k[3 * r] * d[0] + k[3 * r + 1] * d[1] + k[3 * r + 2] * d[2];
-}
-
-/* Returns whether cable e ends at a support, on a truss or on rigid ground. */
-static bool is_at_support(const hf_model *m, int e)
-{
-    return m->end_row[2 * e] >= m->n_free || m->end_row[2 * e + 1] >= m->n_free;
-}
-
-/* Adds the force to the first end of cable e and subtracts it from the second. `sum` has the rows from `first` on. */
-static void add_to_ends(const hf_model *m, int e, int first, const double force[3], double *sum)
-{
-    int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-    for (int c = 0; c < 3; c++) {
-        if (a >= first) sum[3 * (a - first) + c] += force[c];
-        if (b >= first) sum[3 * (b - first) + c] -= force[c];
-    }
 }
 
 /* ---- errors to displacements ---- */
@@ -186,20 +169,18 @@ static void push_by_errors(const hf_built_linear *l, const double *strain_N, con
     memset(v, 0, 3 * (size_t)m->n_free * sizeof *v);
     for (int e = 0; e < m->n_cable; e++) {
         double pull[3] = {0};
-        if (is_at_support(m, e)) stretch(l, e, v, pull);
+        if (hf_newton_matrix_is_at_support(m, e)) stretch(l, e, v, pull);
         for (int c = 0; c < 3 && strain_N; c++)
             pull[c] += strain_N[e] * l->unit[3 * (ptrdiff_t)e + c];
-        add_to_ends(m, e, 0, pull, force);
+        for (int c = 0; c < 3; c++) {
+            force[3 * m->end_row[2 * e] + c] += pull[c];
+            force[3 * m->end_row[2 * e + 1] + c] -= pull[c];
+        }
     }
 }
 
-void hf_built_linear_apply(const hf_built_linear *l, int n, const double *strain_N, double *move, double *scratch)
-{
-    hf_built_linear_apply_by(l, NULL, n, strain_N, NULL, move, scratch);
-}
-
-void hf_built_linear_apply_by(const hf_built_linear *l, const hf_built_lanes *by, int n, const double *strain_N,
-                              const double *load_N, double *move, double *scratch)
+void hf_built_linear_apply(const hf_built_linear *l, const hf_built_lanes *by, int n, const double *strain_N,
+                           const double *load_N, double *move, double *scratch)
 {
     const hf_model *m = &l->built->model;
     size_t n_free = 3 * (size_t)m->n_free, n_moving = n_free + 3 * (size_t)m->n_attachment;
@@ -208,9 +189,8 @@ void hf_built_linear_apply_by(const hf_built_linear *l, const hf_built_lanes *by
         push_by_errors(l, strain_N ? strain_N + k * (size_t)m->n_cable : NULL, load_N ? load_N + k * l->n_dof : NULL,
                        move + k * l->n_dof, force + k * l->n_dof);
     answer_forces(l, by, n, force, more);
-    for (size_t k = 0; k < (size_t)n; k++)
-        for (size_t i = 0; i < n_moving; i++) /* v of free nodes is 0; v of attachments is their displacement at rest */
-            move[k * l->n_dof + i] += force[k * l->n_dof + i];
+    for (size_t k = 0; k < (size_t)n; k++) /* v of free nodes is 0; v of attachments is their displacement at rest */
+        hf_add(n_moving, 1, force + k * l->n_dof, move + k * l->n_dof);
 }
 
 void hf_built_linear_tension(const hf_built_linear *l, const double *strain_N, const double *move, double *change_N)
@@ -235,10 +215,10 @@ static void pull_errors(const hf_built_linear *l, const double *z, double *slope
         const double *a = z + 3 * (ptrdiff_t)m->end_row[2 * e], *b = z + 3 * (ptrdiff_t)m->end_row[2 * e + 1];
         const double *u = l->unit + 3 * (ptrdiff_t)e;
         strain[e] = u[0] * (a[0] - b[0]) + u[1] * (a[1] - b[1]) + u[2] * (a[2] - b[2]);
-        if (!is_at_support(m, e)) continue;
+        if (!hf_newton_matrix_is_at_support(m, e)) continue;
         double pull[3];
         stretch(l, e, z, pull);
-        add_to_ends(m, e, m->n_free, pull, slope + 3 * (size_t)m->n_free);
+        hf_newton_matrix_add_to_supports(m, e, pull, slope + 3 * (size_t)m->n_free);
     }
 }
 

@@ -27,6 +27,12 @@ typedef struct {
     void *block;
 } hf_built_linear;
 
+/* Returns n_scratch, which may be needed before the linear model exists. */
+static inline size_t hf_built_linear_scratch(const hf_model *model)
+{
+    return 3 * (size_t)model->n_node + (model->n_attachment ? 3 * (size_t)(model->n_free + model->n_attachment) : 0);
+}
+
 /* Factors the Hessian at the nominal shape of `built`, which is borrowed. Returns HF_OK; HF_SINGULAR when the net has
  * no stiffness there; HF_NO_MEMORY. Call hf_built_linear_free in any case. */
 hf_status hf_built_linear_make(const hf_built *built, hf_built_linear *linear);
@@ -37,21 +43,17 @@ hf_status hf_built_linear_take(hf_built_linear *linear, const hf_workspace *shap
 void hf_built_linear_free(hf_built_linear *linear);
 
 /* Computes displacements from errors, for n right-hand sides. strain_N [n][n_cable] are the changes of tension at fixed
- * positions, such as cut_N_per_m times the error of a length; NULL: none. move_m [n][n_dof] contains the displacements
- * of supports where they rest on entry, and those of all nodes on return. Entries of free nodes are ignored on entry.
- * scratch is [n][n_scratch]. */
-void hf_built_linear_apply(const hf_built_linear *linear, int n, const double *strain_N, double *move_m,
-                           double *scratch);
-
-/* Computes the same and adds load_N [n][n_dof] to the loads of nodes (NULL: none). `by` makes it faster for large n: it
- * has the factor of linear->work packed for eight right-hand sides, and lanes of the calling thread
+ * positions, such as cut_N_per_m times the error of a length; load_N [n][n_dof] are added to the loads of nodes. Both
+ * may be NULL: none. move_m [n][n_dof] contains the displacements of supports where they rest on entry, and those of all
+ * nodes on return. Entries of free nodes are ignored on entry. scratch is [n][n_scratch]. `by` makes it faster for large
+ * n: it has the factor of linear->work packed for eight right-hand sides, and lanes of the calling thread
  * (linalg/packed_band.h). `by` may be NULL. */
 typedef struct {
     const hf_packed_band *matrix;
     double *lanes;
 } hf_built_lanes;
-void hf_built_linear_apply_by(const hf_built_linear *linear, const hf_built_lanes *by, int n, const double *strain_N,
-                              const double *load_N, double *move_m, double *scratch);
+void hf_built_linear_apply(const hf_built_linear *linear, const hf_built_lanes *by, int n, const double *strain_N,
+                           const double *load_N, double *move_m, double *scratch);
 
 /* Computes the changes of tension change_N [n_cable] by the displacements move_m [n_dof] and the strains strain_N
  * [n_cable] (NULL: none). */

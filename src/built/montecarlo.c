@@ -205,7 +205,7 @@ static void predict(void *context, int room, int i)
     for (int k = 0; k < n; k++)
         hf_built_errors_strain(&t->errors, t->scale, t->z + (size_t)(first + k) * t->n_z, strain + (size_t)k * n_cable,
                                move + (size_t)k * l->n_dof);
-    hf_built_linear_apply(l, n, strain, move, more);
+    hf_built_linear_apply(l, NULL, n, strain, NULL, move, more);
     for (int k = 0; k < n; k++)
         t->row[(first + k) * HF_TOLERANCE_COLUMNS + HF_TOLERANCE_LINEAR_PSI] =
             hf_covariance_psi_m(l, move + (size_t)k * l->n_dof);

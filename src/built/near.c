@@ -25,30 +25,12 @@
 #include <stdint.h>
 #include <string.h>
 
-/* The following limits decide when a net leaves its lane and is solved by Newton's method. Newton's method finds the
- * same shape within the tolerance in 4 to 8 steps, each of which takes as long as a dozen chord steps. The tests of
- * near, built_batch and samples pass with STEPS_MAX 20 and 180, PATIENCE 1 and 10, CONTRACTION 0.3 and 0.95. */
-#define STEPS_MAX 60
-#define PATIENCE 2      /* steps before CONTRACTION is required */
-#define CONTRACTION 0.7 /* maximum ratio of the residuals of two successive steps */
+/* Steps before a lane must contract (hf_chord_goes_on). A net that does not is solved by Newton's method, which finds
+ * the same shape within the tolerance in 4 to 8 steps, each of which takes as long as a dozen chord steps. The tests of
+ * near, built_batch and samples pass with 1 and 10. */
+#define PATIENCE 2
 
 /* ---- what all threads share ---- */
-
-static void choose_kernels(hf_near *near)
-{
-#define SET(isa) near->find = hf_pull_find_##isa, near->multiply = hf_pull_multiply_##isa
-    switch (hf_lane_best_isa()) {
-    case HF_LANE_AVX512:
-        SET(avx512);
-        break;
-    case HF_LANE_AVX2:
-        SET(avx2);
-        break;
-    default:
-        SET(portable);
-    }
-#undef SET
-}
 
 /* Prepares the workspace for a net: nominal shape and tensions, with supports displaced and attachments as unknowns. */
 static void prepare(const hf_near *near, const hf_built_net *net, hf_workspace *w)
@@ -69,43 +51,21 @@ static void prepare(const hf_near *near, const hf_built_net *net, hf_workspace *
     hf_joint_set_displacement(m, w);
 }
 
-/* Computes (I + F S)^-1 of the nominal net, the displacement of the attachments by a gap F f - r. The workspace holds
- * the factored matrix of that net. */
-static hf_status find_answer(hf_workspace *w, hf_near *near)
-{
-    const hf_model *m = &near->model;
-    size_t n = (size_t)near->chord.n_pull;
-    hf_schur schur;
-    hf_status status = hf_schur_create(m, &schur);
-    if (status == HF_OK) status = hf_schur_factor(m, w, hf_newton_matrix_block, &schur);
-    for (size_t j = 0; j < n && status == HF_OK; j++) {
-        double *column = schur.column;
-        memset(column, 0, n * sizeof *column);
-        column[j] = 1;
-        hf_schur_solve(&schur, column);
-        for (size_t i = 0; i < n; i++)
-            near->answer[(i / HF_PULL_ROWS * n + j) * HF_PULL_ROWS + i % HF_PULL_ROWS] = column[i];
-    }
-    hf_arena_free(&schur.arena);
-    near->chord.n_mode = 0;
-    return status;
-}
-
 hf_status hf_near_create(const hf_built *b, hf_workspace *w, hf_near *near)
 {
     size_t n_band = HF_NEWTON_DOFS(&b->model) * (3 * (size_t)b->model.half_bandwidth + 3);
+    size_t n_pull = 3 * (size_t)b->model.n_attachment;
     *near = (hf_near){.built = b, .model = b->model};
     near->model.n_variable = near->model.n_leader = near->model.n_variable_group = 0;
     near->model.variable = NULL;
     near->evaluator = (hf_evaluator){.model = &near->model, .form = &b->form, .rule = HF_RULE_TENSION};
-    choose_kernels(near);
     prepare(near, &(hf_built_net){0}, w);
     w->n_moving = b->model.n_free;
-    HF_TRY(hf_chord_create_here(&near->evaluator, w, &near->chord));
     HF_TRY(HF_ARENA_ARRAYS(&near->block, HF_ARRAY(near->band, n_band),
-                           HF_ARRAY(near->answer, (size_t)near->chord.n_pull_pad * (size_t)near->chord.n_pull)));
+                           HF_ARRAY(near->answer, (n_pull + HF_CHORD_ROWS) * n_pull)));
+    HF_TRY(hf_chord_create_here(&near->evaluator, w, near->answer, &near->chord));
     memcpy(near->band, w->newton_band, n_band * sizeof *near->band);
-    return b->model.n_attachment ? find_answer(w, near) : HF_OK;
+    return HF_OK;
 }
 
 void hf_near_free(hf_near *near)
@@ -136,7 +96,6 @@ void hf_near_lanes_free(hf_near_lanes *l)
 void hf_near_load(const hf_near *near, hf_near_lanes *l, int lane, const hf_built_net *net)
 {
     const hf_model *m = &near->model;
-    const hf_chord *c = &near->chord;
     for (int at = 0; at < 3 * m->n_node; at++)
         l->lanes.x_m[at * HF_LANES + lane] = near->built->position_m[at];
     for (int d = 0; d < 3 && net->support_displacement_m; d++)
@@ -146,30 +105,14 @@ void hf_near_load(const hf_near *near, hf_near_lanes *l, int lane, const hf_buil
         l->cut_m[e * HF_LANES + lane] = net->cut_m[e];
         l->stiffness_N_per_m[e * HF_LANES + lane] = net->EA_N[e] / net->cut_m[e];
     }
-    for (int i = 0; i < c->n_pull; i++)
-        l->lanes.displacement_m[i * HF_LANES + lane] = c->base_displacement_m[i];
-    l->steps[lane] = 0;
-    l->excess_before_N[lane] = INFINITY;
+    hf_chord_begin(&near->chord, &l->lanes, lane, &l->progress);
 }
 
 void hf_near_look(const hf_near *near, hf_near_lanes *l)
 {
-    const hf_model *m = &near->model;
-    const hf_chord *c = &near->chord;
-    const hf_form_settings *form = &near->built->form;
-    double squared[HF_LANES], gap_squared[HF_LANES] = {0};
-    double scale = c->n_pull ? form->residual_tolerance * m->reference_N / form->coupling.tof_m : 0;
-    near->find(m, l->lanes.x_m, l->cut_m, l->stiffness_N_per_m, l->tension_N, l->lanes.variable);
-    c->kernels->forces(c, &l->lanes, squared);
-    if (c->n_pull) c->kernels->couple(c, &l->lanes, gap_squared);
-    l->is_measured = false;
-    for (int lane = 0; lane < HF_LANES; lane++) {
-        l->residual_N[lane] = m->reference_N * sqrt(squared[lane]);
-        l->gap_m[lane] = sqrt(gap_squared[lane]);
-        double gap_N = scale * l->gap_m[lane];
-        /* This order of the comparison keeps a NaN of the gap. */
-        l->excess_N[lane] = gap_N <= l->residual_N[lane] ? l->residual_N[lane] : gap_N;
-    }
+    near->chord.kernels->pull(&near->model, l->lanes.x_m, l->cut_m, l->stiffness_N_per_m, l->tension_N,
+                              l->lanes.variable);
+    hf_chord_look(&near->chord, &l->lanes, &l->progress);
 }
 
 /* Adds to the pulls on the truss the effect of the step of the free nodes. Clears the step in force_N, because it is
@@ -205,7 +148,7 @@ void hf_near_step(const hf_near *near, hf_near_lanes *l)
     follow(near, &l->lanes);
     k->couple(c, &l->lanes, gap_squared);
     memcpy(l->gap_lanes_m, l->lanes.move_m, (size_t)c->n_pull * HF_LANES * sizeof *l->gap_lanes_m);
-    near->multiply(c->n_pull, near->answer, l->gap_lanes_m, l->lanes.move_m);
+    k->multiply(c->n_pull_pad, c->n_pull, near->answer, l->gap_lanes_m, l->lanes.move_m);
     k->move(c, &l->lanes);
     c->matrix.solve(&c->matrix, l->lanes.force_N);
     k->step(c, &l->lanes);
@@ -258,7 +201,7 @@ static bool holds(const hf_workspace *w, int e, double over_m)
  * cables that are taut in the matrix. Returns the maximum of the former, N. */
 static double measure(const hf_model *m, hf_workspace *w)
 {
-    double u[3], largest = 0;
+    double u[3];
     hf_newton_matrix_set_loads(m, w, w->newton_force_N);
     memcpy(w->newton_step, w->newton_force_N, 3 * (size_t)w->n_moving * sizeof(double));
     for (int e = 0; e < m->n_cable; e++) {
@@ -271,12 +214,7 @@ static double measure(const hf_model *m, hf_workspace *w)
         hf_newton_matrix_add_pull(m, w, e, pull, w->newton_step);
         if (tension > 0) hf_newton_matrix_add_pull(m, w, e, pull, w->newton_force_N);
     }
-    for (int i = 0; i < m->n_free; i++) {
-        const double *f = w->newton_force_N + 3 * i;
-        double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
-        if (!(square <= largest)) largest = square; /* this form keeps a NaN */
-    }
-    return sqrt(largest);
+    return hf_joint_largest(m->n_free, 1, w->newton_force_N, NULL);
 }
 
 /* Sets the stiffnesses along and across each cable for block_of, with tensions of at least floor_N across. */
@@ -287,16 +225,6 @@ static void set_stiffness(const hf_model *m, hf_workspace *w, double floor_N)
         w->newton_trial_tension_N[e] = taut ? w->EA_N[e] / w->target[e] : 0;
         w->q_N_per_m[e] = fmax(w->tension_N[e], floor_N) / w->length_m[e];
     }
-}
-
-static double largest_move_m(const hf_workspace *w)
-{
-    double largest = 0;
-    for (int i = 0; i < w->n_moving; i++) {
-        const double *d = w->newton_step + 3 * i;
-        largest = fmax(largest, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    }
-    return sqrt(largest);
 }
 
 /* Adds `part` of the step to positions and predicts the tensions to first order. */
@@ -314,9 +242,7 @@ static void move(const hf_model *m, hf_workspace *w, double part)
         bool taut = holds(w, e, over_m);
         w->tension_N[e] = taut ? fmax(w->EA_N[e] / w->target[e] * (over_m + part * longer_m), 0) : 0;
     }
-    for (int i = 0; i < w->n_moving; i++)
-        for (int c = 0; c < 3; c++)
-            w->position_m[c * m->n_node + i] += part * step[3 * i + c];
+    hf_newton_matrix_move_nodes(m, w, part, w->position_m);
 }
 
 /* ---- Newton's method: the truss ---- */
@@ -326,10 +252,10 @@ static void answer_nominal(const hf_near *near, const double *gap_m, double *ans
 {
     int n = near->chord.n_pull;
     for (int i = 0; i < n; i++) {
-        const double *row = near->answer + ((ptrdiff_t)i / HF_PULL_ROWS * n) * HF_PULL_ROWS + i % HF_PULL_ROWS;
+        const double *row = near->answer + ((ptrdiff_t)i / HF_CHORD_ROWS * n) * HF_CHORD_ROWS + i % HF_CHORD_ROWS;
         answer_m[i] = 0;
         for (int j = 0; j < n; j++)
-            answer_m[i] += row[(ptrdiff_t)j * HF_PULL_ROWS] * gap_m[j];
+            answer_m[i] += row[(ptrdiff_t)j * HF_CHORD_ROWS] * gap_m[j];
     }
 }
 
@@ -384,8 +310,7 @@ static void extend(const hf_near *near, const double *factor, int j, hf_workspac
     apply(near, factor, v + (size_t)j * n, w, next);
     for (int i = 0; i <= j; i++) {
         h[i] = hf_dot(n, v + (size_t)i * n, next);
-        for (size_t k = 0; k < n; k++)
-            next[k] -= h[i] * v[(size_t)i * n + k];
+        hf_subtract(n, h[i], v + (size_t)i * n, next);
     }
     h[j + 1] = sqrt(hf_dot(n, next, next));
     for (size_t k = 0; k < n && h[j + 1] > 0; k++)
@@ -420,8 +345,7 @@ static void close_gap(const hf_near *near, const double *factor, double *gap_m, 
         for (int k = i + 1; k < j; k++)
             rest[i] -= h[k][i] * rest[k];
         rest[i] /= h[i][i];
-        for (size_t k = 0; k < n; k++)
-            gap_m[k] += rest[i] * v[(size_t)i * n + k];
+        hf_add(n, rest[i], v + (size_t)i * n, gap_m);
     }
 }
 
@@ -443,8 +367,7 @@ static void follow_truss(const hf_near *near, bool is_nominal, const double *fac
     }
     memcpy(pull, move_m, (size_t)n_pull * sizeof *pull);
     push_free(near, factor, pull, w);
-    for (int i = 0; i < n; i++)
-        w->newton_step[i] += w->newton_force_N[i];
+    hf_add((size_t)n, 1, w->newton_force_N, w->newton_step);
 }
 
 /* ---- Newton's method: steps ---- */
@@ -493,7 +416,7 @@ static bool solve_newton(const hf_near *near, hf_workspace *w, int *n_step)
         if (!isfinite(residual_N) || k == NEWTON_STEPS_MAX) return false;
         before_N = residual_N;
         if (!solve(near, k, fmin(FLOOR_OF_RESIDUAL * residual_N, FLOOR_MAX * m->reference_N), w)) return false;
-        double move_m = largest_move_m(w);
+        double move_m = hf_joint_largest(w->n_moving, 1, w->newton_step, NULL);
         move(m, w, move_m > reach_m ? reach_m / move_m : 1);
         ++*n_step;
     }
@@ -542,30 +465,6 @@ static void unload(const hf_near *near, const hf_near_lanes *l, int lane, hf_wor
         w->displacement_m[i] = l->lanes.displacement_m[i * HF_LANES + lane];
 }
 
-static double ratio_of(const hf_near_lanes *l, hf_group group, int lane)
-{
-    double high_N = l->now.highest_N[group][lane];
-    return high_N > 0 ? high_N / l->now.lowest_N[group][lane] : (double)NAN;
-}
-
-/* Sets the result of a lane without slack cables. Each cable has the tension of its law, so the error of lengths is
- * 0. */
-static void report(const hf_near *near, const hf_near_lanes *l, int lane, hf_workspace *w, hf_form_result *r)
-{
-    const hf_model *m = &near->model;
-    *r = (hf_form_result){.status = HF_OK, .stop_reason = HF_STOPPED_CONVERGED, .culprit = -1};
-    hf_result_blank(r);
-    r->psi_m = m->n_inner_node ? l->now.psi_m[lane] : (double)NAN;
-    r->residual_N = l->residual_N[lane];
-    r->tension_error = r->length_error = 0;
-    r->inner_tension_ratio = ratio_of(l, HF_GROUP_INNER, lane);
-    r->boundary_tension_ratio = ratio_of(l, HF_GROUP_BOUNDARY, lane);
-    r->shortest_length_ratio = l->now.shortest_other[lane];
-    r->iterations = l->steps[lane];
-    memset(w->loose, 0, (size_t)m->n_node);
-    if (m->n_attachment) hf_coupling_accept(m, w, l->steps[lane], l->gap_m[lane], r);
-}
-
 /* Accepts a converged lane with slack cables. The scalar code counts them and looks for loose nodes. */
 static bool accept_slack(const hf_near *near, const hf_near_lanes *l, int lane, const hf_built_net *net,
                          hf_workspace *w, hf_form_result *r)
@@ -575,27 +474,22 @@ static bool accept_slack(const hf_near *near, const hf_near_lanes *l, int lane, 
     unload(near, l, lane, w);
     for (int e = 0; e < m->n_cable; e++)
         w->q_N_per_m[e] = l->lanes.variable[e * HF_LANES + lane];
-    return accept(near, l->steps[lane], w, r);
+    return accept(near, l->progress.steps[lane], w, r);
 }
 
 hf_near_verdict hf_near_settle(const hf_near *near, hf_near_lanes *l, int lane, const hf_built_net *net,
                                hf_workspace *w, hf_form_result *r)
 {
     const hf_model *m = &near->model;
-    double excess_N = l->excess_N[lane];
-    if (excess_N <= near->built->form.residual_tolerance * m->reference_N) {
-        if (!l->is_measured) near->chord.kernels->measure(&near->chord, &l->lanes, &l->now);
-        l->is_measured = true;
-        double lowest_N = fmin(l->now.lowest_N[HF_GROUP_INNER][lane], l->now.lowest_N[HF_GROUP_BOUNDARY][lane]);
-        if (!(lowest_N >= HF_SLACK_RATIO * m->reference_N))
-            return accept_slack(near, l, lane, net, w, r) ? HF_NEAR_FOUND : HF_NEAR_LOST;
-        unload(near, l, lane, w);
-        report(near, l, lane, w, r);
-        return HF_NEAR_FOUND;
-    }
-    bool contracts = l->steps[lane] < PATIENCE || excess_N < CONTRACTION * l->excess_before_N[lane];
-    if (!contracts || !isfinite(excess_N) || l->steps[lane] >= STEPS_MAX) return HF_NEAR_LOST;
-    l->excess_before_N[lane] = excess_N;
-    l->steps[lane]++;
-    return HF_NEAR_GOES_ON;
+    hf_chord_progress *p = &l->progress;
+    if (!(p->excess_N[lane] <= near->built->form.residual_tolerance * m->reference_N))
+        return hf_chord_goes_on(lane, PATIENCE, p) ? HF_NEAR_GOES_ON : HF_NEAR_LOST;
+    hf_chord_report(&near->chord, &l->lanes, lane, p, r);
+    double lowest_N = fmin(p->now.lowest_N[HF_GROUP_INNER][lane], p->now.lowest_N[HF_GROUP_BOUNDARY][lane]);
+    if (!(lowest_N >= HF_SLACK_RATIO * m->reference_N))
+        return accept_slack(near, l, lane, net, w, r) ? HF_NEAR_FOUND : HF_NEAR_LOST;
+    unload(near, l, lane, w);
+    memset(w->loose, 0, (size_t)m->n_node);
+    if (m->n_attachment) hf_coupling_accept(m, w, r->iterations, p->gap_m[lane], r);
+    return HF_NEAR_FOUND;
 }

@@ -6,7 +6,6 @@
 #ifndef HIFDM_NEAR_H
 #define HIFDM_NEAR_H
 
-#include "built/pull_kernel.h"
 #include "search/chord.h"
 #include <hifdm/built.h>
 
@@ -19,11 +18,9 @@ typedef struct {
     hf_evaluator evaluator;
     hf_chord chord;
     double *band; /* factored matrix of the nominal net, in the layout of a workspace */
-    /* On a truss: (I + F S)^-1, packed for hf_pull_multiply. F is the flexibility, S the stiffness of the nominal net
+    /* On a truss: (I + F S)^-1, packed for the kernel `multiply`. F is the flexibility, S the stiffness of the nominal net
      * at the attachments. It replaces the modes of chord. */
     double *answer;
-    hf_pull_find *find; /* kernels for this machine */
-    hf_pull_multiply *multiply;
     void *block;
 } hf_near;
 
@@ -37,12 +34,7 @@ typedef struct {
     hf_chord_lanes lanes;
     double *cut_m, *stiffness_N_per_m, *tension_N; /* [n_cable][HF_LANES] of the nets in the lanes */
     double *gap_lanes_m;                           /* [chord.n_pull][HF_LANES] gaps of the truss */
-    int steps[HF_LANES];
-    /* The residual, or the gap of the truss in units of its tolerance where that is larger; now and one step before. */
-    double excess_N[HF_LANES], excess_before_N[HF_LANES];
-    double residual_N[HF_LANES], gap_m[HF_LANES];
-    hf_chord_measures now; /* measures of the shapes in the lanes */
-    bool is_measured;
+    hf_chord_progress progress;
     void *block;
 } hf_near_lanes;
 

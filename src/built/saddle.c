@@ -19,6 +19,7 @@
 #include "base/elementary.h"
 #include "linalg/band.h"
 #include "linalg/dense.h"
+#include "linalg/dot.h"
 #include "solve/joint.h"
 
 #include <math.h>
@@ -636,8 +637,7 @@ static void read_answer(const hf_saddle *s, hf_saddle_answer *a, const double *b
     }
     for (int k = 0; k < s->prior.n_shared; k++) {
         a->shared[k] = border[s->n_border - s->prior.n_shared + k];
-        for (int e = 0; e < m->n_cable; e++)
-            a->cut_m[e] += a->shared[k] * s->prior.shared_m[(size_t)k * (size_t)m->n_cable + (size_t)e];
+        hf_add((size_t)m->n_cable, a->shared[k], s->prior.shared_m + (size_t)k * (size_t)m->n_cable, a->cut_m);
     }
 }
 
@@ -652,8 +652,7 @@ static void finish_answer(const hf_saddle *s, hf_saddle_answer *a, double *band,
             border[j] -= s->column[j * n_band + i] * band[i];
     if (s->n_border) solve_border(s, a, border, force);
     for (size_t j = 0; j < (size_t)s->n_border; j++)
-        for (size_t i = 0; i < n_band; i++)
-            band[i] -= s->solved[j * n_band + i] * border[j];
+        hf_subtract(n_band, border[j], s->solved + j * n_band, band);
     read_answer(s, a, band, border, force);
 }
 

@@ -358,18 +358,9 @@ static void link_classes(reach *q)
     q->model.variable_leader = q->leader;
 }
 
-static void lay_out_reach(hf_arena *a, reach *q)
-{
-    const hf_model *m = &q->model;
-    q->leader = hf_arena_take(a, (size_t)m->n_variable, sizeof(int));
-    q->design = hf_arena_take(a, (size_t)m->n_variable, sizeof(double));
-    q->move_m = hf_arena_take(a, 3 * (size_t)m->n_node, sizeof(double));
-    q->rate_N = hf_arena_take(a, (size_t)m->n_cable, sizeof(double));
-}
-
 static hf_status create_reach(const hf_problem *p, reach *q)
 {
-    hf_arena arena = {0};
+    const hf_model *m = &q->model;
     *q = (reach){.p = p, .model = p->model, .v = p->evaluator};
     q->v.model = &q->model;
     q->v.boundary_ratio_cap = INFINITY;
@@ -378,8 +369,8 @@ static hf_status create_reach(const hf_problem *p, reach *q)
     q->v.n_thread = 1;
     memset(&q->now, true, sizeof q->now);
     q->now.psi = p->objectives.n_objective == 0 && p->model.n_inner_node > 0;
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_reach(&arena, q)));
-    q->block = arena.block;
+    HF_TRY(HF_ARENA_ARRAYS(&q->block, HF_ARRAY(q->leader, m->n_variable), HF_ARRAY(q->design, m->n_variable),
+                           HF_ARRAY(q->move_m, 3 * (size_t)m->n_node), HF_ARRAY(q->rate_N, m->n_cable)));
     link_classes(q);
     HF_TRY(hf_workspace_create(&q->model, &q->w));
     return hf_sensitivity_create(&q->v, &q->slopes);
@@ -387,10 +378,9 @@ static hf_status create_reach(const hf_problem *p, reach *q)
 
 static void destroy_reach(reach *q)
 {
-    hf_arena arena = {.block = q->block};
     hf_sensitivity_free(&q->slopes);
     hf_workspace_free(&q->w);
-    hf_arena_free(&arena);
+    hf_arena_free_block(q->block);
 }
 
 static void measure_class(reach *q, int i)
@@ -772,15 +762,6 @@ void hf_result_doubt_strain(const hf_problem *p, const hf_workspace *shape, hf_m
  * The tests pass with 0.17 to 0.3. */
 #define FAR_MOVE 0.25
 
-static void lay_out_places(hf_arena *a, const hf_model *m, hf_places *to)
-{
-    size_t n = (size_t)m->n_node;
-    to->position_m = hf_arena_take(a, 3 * n, sizeof(double));
-    to->cable_m = hf_arena_take(a, n, sizeof(double));
-    to->n_cable = hf_arena_take(a, n, sizeof(int));
-    to->counted = hf_arena_take(a, n, 1);
-}
-
 static void count_rows(hf_places *to, const int *row, int n, hf_counted how)
 {
     for (int i = 0; i < n; i++)
@@ -823,11 +804,11 @@ hf_status hf_places_keep(const hf_problem *p, hf_places *to)
 {
     const hf_model *m = &p->model;
     const hf_objective psi = {.settings = {.figure = HF_FIGURE_PSI}};
-    hf_arena arena = {0};
+    size_t n = (size_t)m->n_node;
     *to = (hf_places){0};
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_places(&arena, m, to)));
-    to->block = arena.block;
-    memcpy(to->position_m, p->workspace.position_m, 3 * (size_t)m->n_node * sizeof(double));
+    HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_ARRAY(to->position_m, 3 * n), HF_ARRAY(to->cable_m, n),
+                           HF_ARRAY(to->n_cable, n), HF_ARRAY(to->counted, n)));
+    memcpy(to->position_m, p->workspace.position_m, 3 * n * sizeof(double));
     find_cables(m, to);
     if (p->objectives.n_objective == 0) count_objective(p, &psi, to);
     for (int k = 0; k < p->objectives.n_objective; k++)
@@ -837,8 +818,7 @@ hf_status hf_places_keep(const hf_problem *p, hf_places *to)
 
 void hf_places_free(hf_places *places)
 {
-    hf_arena arena = {.block = places->block};
-    hf_arena_free(&arena);
+    hf_arena_free_block(places->block);
     *places = (hf_places){0};
 }
 

@@ -106,15 +106,15 @@ static hf_status keep_shape(const hf_problem *p, hf_load_case_stage *c, hf_store
 hf_status hf_load_case_stage_rest(const hf_problem *p, double *move_m)
 {
     size_t n_force = HF_TRUSS_DOF * (size_t)p->carrier.truss.n_node;
-    hf_arena arena = {0};
-    double *force = NULL;
-    HF_TRY(HF_ARENA_MAKE(&arena, force = hf_arena_take(&arena, n_force, sizeof *force)));
+    void *block;
+    double *force;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(force, n_force)));
     hf_status status = HF_OK;
     for (int k = 0; k < p->load_cases.n && status == HF_OK; k++) {
         const hf_frame_load own = load_of_truss(&p->carrier, &p->load_cases.load_case[k], force);
         status = move_attachments(&p->carrier, &own, move_m + 3 * (size_t)k * (size_t)p->carrier.n_attachment);
     }
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 
@@ -122,9 +122,9 @@ hf_status hf_load_case_stage_rest_by_heat(const hf_problem *p, double *move_m_pe
 {
     const hf_tolerance_settings *s = &p->settings.tolerance;
     const hf_truss *t = &p->carrier.truss;
-    hf_arena arena = {0};
-    double *rise_K = NULL;
-    HF_TRY(HF_ARENA_MAKE(&arena, rise_K = hf_arena_take(&arena, (size_t)t->n_member, sizeof *rise_K)));
+    void *block;
+    double *rise_K;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(rise_K, t->n_member)));
     const hf_frame_load own = {.temperature_K = rise_K};
     hf_status status = HF_OK;
     for (int k = 0; k < s->n_truss && status == HF_OK; k++) {
@@ -132,7 +132,7 @@ hf_status hf_load_case_stage_rest_by_heat(const hf_problem *p, double *move_m_pe
             rise_K[e] = hf_truss_is_of(t, e, (hf_part)(HF_PART_TRUSS + s->truss[k].part));
         status = move_attachments(&p->carrier, &own, move_m_per_K + 3 * (size_t)k * (size_t)p->carrier.n_attachment);
     }
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 

@@ -59,46 +59,40 @@ hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch 
 struct hf_batch_engine {
     hf_solver solver;      /* CHORD or FIXED_POINT; no other solver has an engine */
     hf_chord shared;       /* for CHORD: the shared Newton matrix */
-    hf_chord_lanes *chord; /* for CHORD: [n_thread], the lanes of each room */
+    hf_chord_lanes *chord; /* [n_thread], for CHORD: the lanes of each room */
     hf_swarm_plan plan;    /* for FIXED_POINT: what the lanes share */
-    hf_swarm_lanes *lanes; /* for FIXED_POINT: [n_thread], the lanes of each room */
+    hf_swarm_lanes *lanes; /* [n_thread], for FIXED_POINT: the lanes of each room */
 };
 
 static void free_engine(hf_batch *batch)
 {
     struct hf_batch_engine *e = batch->engine;
     if (!e) return;
-    for (int i = 0; e->chord && i < batch->n_thread; i++)
+    for (int i = 0; i < batch->n_thread; i++) {
         hf_arena_free(&e->chord[i].arena);
-    for (int i = 0; e->lanes && i < batch->n_thread; i++)
         hf_arena_free(&e->lanes[i].arena);
-    free(e->chord);
-    free(e->lanes);
+    }
     hf_arena_free(&e->shared.arena);
     hf_arena_free(&e->plan.arena);
-    free(e);
+    hf_arena_free_block(e);
     batch->engine = NULL;
 }
 
 /* Allocates the lanes of one room, unless they are allocated already. */
 static hf_status make_lanes(struct hf_batch_engine *e, int room)
 {
-    if (e->chord && !e->chord[room].arena.block) return hf_chord_lanes_create(&e->shared, &e->chord[room]);
-    if (e->lanes && !e->lanes[room].arena.block) return hf_swarm_lanes_create(&e->plan, &e->lanes[room]);
-    return HF_OK;
+    if (e->chord[room].arena.block || e->lanes[room].arena.block) return HF_OK;
+    return e->solver == HF_SOLVER_CHORD ? hf_chord_lanes_create(&e->shared, &e->chord[room])
+                                        : hf_swarm_lanes_create(&e->plan, &e->lanes[room]);
 }
 
 static hf_status fill_engine(hf_batch *batch, struct hf_batch_engine *e, const double *initial)
 {
     const hf_evaluator *v = batch->evaluator;
-    if (e->solver == HF_SOLVER_CHORD) {
+    if (e->solver == HF_SOLVER_CHORD)
         HF_TRY(hf_chord_create(v, initial, &batch->workspace[0], &batch->point[0], &e->shared));
-        e->chord = calloc((size_t)batch->n_thread, sizeof *e->chord);
-    } else {
+    else
         HF_TRY(hf_swarm_plan_create(v->model, hf_lane_best_isa(), &e->plan));
-        e->lanes = calloc((size_t)batch->n_thread, sizeof *e->lanes);
-    }
-    if (!e->chord && !e->lanes) return HF_NO_MEMORY;
     for (int i = 0; i < n_room_at_once(batch); i++)
         HF_TRY(make_lanes(e, i));
     return HF_OK;
@@ -109,11 +103,13 @@ static hf_status fill_engine(hf_batch *batch, struct hf_batch_engine *e, const d
  * case. */
 static bool set_engine(hf_batch *batch, hf_solver solver, const double *initial)
 {
-    hf_status status = HF_NO_MEMORY;
-    struct hf_batch_engine *e = batch->engine = calloc(1, sizeof *e);
-    if (e) {
-        e->solver = solver;
-        status = fill_engine(batch, e, initial);
+    struct hf_batch_engine made = {.solver = solver};
+    void *block; /* the engine is its first item */
+    hf_status status = HF_ARENA_ARRAYS(&block, HF_ARRAY(batch->engine, 1), HF_ARRAY(made.chord, batch->n_thread),
+                                       HF_ARRAY(made.lanes, batch->n_thread));
+    if (status == HF_OK) {
+        *batch->engine = made;
+        status = fill_engine(batch, batch->engine, initial);
     }
     batch->lacks_memory = status == HF_NO_MEMORY;
     if (status != HF_OK) free_engine(batch);

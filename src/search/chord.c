@@ -8,7 +8,7 @@
  *     settle   converged: measure and store the result; too slow: hf_evaluate; otherwise one more step
  *     step     r <- r + (I + F S)^-1 (F f - r),  x <- x + H0^-1 f                                    (M9)
  *
- * Contents: shared matrix - lanes - the run */
+ * Contents: shared matrix - lanes - steps of a lane - the run */
 #include "search/chord.h"
 
 #include "solve/coupling.h"
@@ -22,9 +22,9 @@
 #include <string.h>
 
 /* These constants decide how long a lane works on a design before hf_evaluate solves the design alone. Both ways reach
- * the same shape within the tolerance. No test of search (unit and property) fails with ITERATIONS_MAX 20 and 180,
+ * the same shape within the tolerance. No test of search (unit and property) fails with STEPS_MAX 20 and 180,
  * PATIENCE 1 and 10, CONTRACTION 0.3 and 0.95, MODES_LEFT 0.005 and 0.5. */
-#define ITERATIONS_MAX 60
+#define STEPS_MAX 60
 #define PATIENCE 3      /* steps before CONTRACTION is required */
 #define MODES_LEFT 0.05 /* tolerance of the truncated inverse of I + F S (hf_schur_modes) */
 #define CONTRACTION 0.7 /* after PATIENCE steps, a step must reduce the residual to less than this part */
@@ -81,9 +81,22 @@ static hf_chord dimensions(const hf_evaluator *v)
                       .n_pull_pad = (n_pull + HF_CHORD_ROWS - 1) / HF_CHORD_ROWS * HF_CHORD_ROWS};
 }
 
-/* Packs the flexibility of the truss, the stiffness of the cables at attachments, and the modes of (I + F S)^-1. The
+/* Packs (I + F S)^-1 [n_pull][n_pull] by blocks of rows; padding rows stay zero. */
+static void pack_inverse(const hf_schur *schur, double *inverse)
+{
+    size_t n = (size_t)schur->n;
+    for (size_t j = 0; j < n; j++) {
+        memset(schur->column, 0, n * sizeof *schur->column);
+        schur->column[j] = 1;
+        hf_schur_solve(schur, schur->column);
+        for (size_t i = 0; i < n; i++)
+            inverse[(i / HF_CHORD_ROWS * n + j) * HF_CHORD_ROWS + i % HF_CHORD_ROWS] = schur->column[i];
+    }
+}
+
+/* Packs the flexibility of the truss, the stiffness of the cables at attachments, and (I + F S)^-1 or its modes. The
  * workspace holds the initial shape and its factored Newton matrix. Returns HF_OK, HF_NO_MEMORY or HF_SINGULAR. */
-static hf_status pack_truss(const hf_model *m, hf_workspace *w, hf_chord *c)
+static hf_status pack_truss(const hf_model *m, hf_workspace *w, double *inverse, hf_chord *c)
 {
     size_t n = (size_t)c->n_pull;
     hf_schur schur;
@@ -99,7 +112,8 @@ static hf_status pack_truss(const hf_model *m, hf_workspace *w, hf_chord *c)
     memcpy(c->base_displacement_m, w->displacement_m, n * sizeof(double));
     hf_status status = hf_schur_create(m, &schur);
     if (status == HF_OK) status = hf_schur_factor(m, w, hf_newton_matrix_block, &schur);
-    if (status == HF_OK) c->n_mode = hf_schur_modes(&schur, MODES_LEFT, HF_CHORD_MODES_MAX, c->mode);
+    if (status == HF_OK && inverse) pack_inverse(&schur, inverse);
+    if (status == HF_OK && !inverse) c->n_mode = hf_schur_modes(&schur, MODES_LEFT, HF_CHORD_MODES_MAX, c->mode);
     hf_arena_free(&schur.arena);
     return status;
 }
@@ -146,7 +160,7 @@ static void list_incidences(const hf_model *m, hf_chord *c)
     }
 }
 
-hf_status hf_chord_create_here(const hf_evaluator *v, hf_workspace *w, hf_chord *chord)
+hf_status hf_chord_create_here(const hf_evaluator *v, hf_workspace *w, double *inverse, hf_chord *chord)
 {
     const hf_model *m = v->model;
     *chord = dimensions(v);
@@ -157,7 +171,7 @@ hf_status hf_chord_create_here(const hf_evaluator *v, hf_workspace *w, hf_chord 
     memcpy(chord->base_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
     list_cables(v, chord);
     list_incidences(m, chord);
-    return chord->n_pull ? pack_truss(m, w, chord) : HF_OK;
+    return chord->n_pull ? pack_truss(m, w, inverse, chord) : HF_OK;
 }
 
 hf_status hf_chord_create(const hf_evaluator *v, const double *initial, hf_workspace *w, hf_objectives_point *point,
@@ -167,7 +181,7 @@ hf_status hf_chord_create(const hf_evaluator *v, const double *initial, hf_works
     *chord = (hf_chord){0};
     hf_status status = hf_evaluate(v, initial, w, point, &base);
     if (!hf_status_has_shape(status)) return status; /* a design that only breaks a limit has a shape, too */
-    return hf_chord_create_here(v, w, chord);
+    return hf_chord_create_here(v, w, NULL, chord);
 }
 
 /* ---- lanes ---- */
@@ -204,14 +218,71 @@ hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes)
     return HF_OK;
 }
 
-/* ---- the run ---- */
+/* ---- steps of a lane ---- */
 
-/* How far a lane is from equilibrium. */
-typedef struct {
-    double residual_N; /* maximum nodal force out of balance */
-    double gap_m;      /* maximum |F f - r| of an attachment; 0 without a truss */
-    double excess_N;   /* maximum of residual_N and of gap_m scaled to the same tolerance */
-} standing;
+void hf_chord_begin(const hf_chord *c, const hf_chord_lanes *l, int lane, hf_chord_progress *p)
+{
+    for (int i = 0; i < c->n_pull; i++)
+        l->displacement_m[i * HF_LANES + lane] = c->base_displacement_m[i];
+    p->steps[lane] = 0;
+    p->excess_before_N[lane] = INFINITY;
+}
+
+void hf_chord_look(const hf_chord *c, const hf_chord_lanes *l, hf_chord_progress *p)
+{
+    double squared[HF_LANES], gap_squared[HF_LANES] = {0}, reference_N = c->evaluator->model->reference_N;
+    const hf_form_settings *form = c->evaluator->form;
+    double scale = c->n_pull ? form->residual_tolerance * reference_N / form->coupling.tof_m : 0;
+    p->is_measured = false;
+    c->kernels->forces(c, l, squared);
+    if (c->n_pull) c->kernels->couple(c, l, gap_squared);
+    for (int lane = 0; lane < HF_LANES; lane++) {
+        p->residual_N[lane] = p->excess_N[lane] = reference_N * sqrt(squared[lane]);
+        p->gap_m[lane] = sqrt(gap_squared[lane]);
+        double gap_N = scale * p->gap_m[lane];
+        if (c->n_pull && !(gap_N <= p->excess_N[lane])) p->excess_N[lane] = gap_N; /* a gap that is NaN is kept */
+    }
+}
+
+bool hf_chord_goes_on(int lane, int patience, hf_chord_progress *p)
+{
+    double excess_N = p->excess_N[lane];
+    bool contracts = p->steps[lane] < patience || excess_N < CONTRACTION * p->excess_before_N[lane];
+    if (!contracts || !isfinite(excess_N) || p->steps[lane] >= STEPS_MAX) return false;
+    p->excess_before_N[lane] = excess_N;
+    p->steps[lane]++;
+    return true;
+}
+
+static double tension_ratio(const hf_chord_measures *now, hf_group group, int lane)
+{
+    double high_N = now->highest_N[group][lane];
+    return high_N > 0 ? high_N / now->lowest_N[group][lane] : (double)NAN;
+}
+
+static const hf_chord_measures *measures(const hf_chord *c, const hf_chord_lanes *l, hf_chord_progress *p)
+{
+    if (!p->is_measured) c->kernels->measure(c, l, &p->now);
+    p->is_measured = true;
+    return &p->now;
+}
+
+void hf_chord_report(const hf_chord *c, const hf_chord_lanes *l, int lane, hf_chord_progress *p, hf_form_result *r)
+{
+    const hf_chord_measures *now = measures(c, l, p);
+    *r = (hf_form_result){.status = HF_OK, .stop_reason = HF_STOPPED_CONVERGED, .culprit = -1};
+    hf_result_blank(r);
+    r->psi_m = c->evaluator->model->n_inner_node ? now->psi_m[lane] : (double)NAN;
+    r->residual_N = p->residual_N[lane];
+    r->tension_error = now->tension_error[lane];
+    r->length_error = 0;
+    r->inner_tension_ratio = tension_ratio(now, HF_GROUP_INNER, lane);
+    r->boundary_tension_ratio = tension_ratio(now, HF_GROUP_BOUNDARY, lane);
+    r->shortest_length_ratio = fmin(now->shortest_pulled[lane], now->shortest_other[lane]);
+    r->iterations = p->steps[lane];
+}
+
+/* ---- the run ---- */
 
 /* One call of hf_chord_run, with the state of its lanes. */
 typedef struct {
@@ -222,11 +293,7 @@ typedef struct {
     bool keeps_shape;
     const double *design;
     hf_form_result *result;
-    int steps[HF_LANES];
-    double excess_before_N[HF_LANES];
-    standing at[HF_LANES];
-    bool is_measured; /* true if `now` holds the figures of the lanes' shapes */
-    hf_chord_measures now;
+    hf_chord_progress progress;
 } chord_run;
 
 /* Begins with a design in a lane, at the initial shape. Fixed supports keep the positions that hf_chord_lanes_create
@@ -246,12 +313,9 @@ static void load(void *solver, int lane, int i_design)
         for (int i = 0; i < m->n_attachment; i++)
             x[(ptrdiff_t)m->attachment_row[i] * HF_LANES] = base[m->attachment_row[i]];
     }
-    for (int i = 0; i < c->n_pull; i++)
-        l->displacement_m[i * HF_LANES + lane] = c->base_displacement_m[i];
     for (int k = 0; k < m->n_variable; k++)
         l->variable[k * HF_LANES + lane] = design[k] / c->variable_divisor[k];
-    s->steps[lane] = 0;
-    s->excess_before_N[lane] = INFINITY;
+    hf_chord_begin(c, l, lane, &s->progress);
 }
 
 /* Copies the shape of the lane into the workspace. The scalar code measures it there and writes the result. */
@@ -271,32 +335,11 @@ static void unload(const chord_run *s, int lane, const double *design, hf_form_r
  * shape has a fault that the scalar code must identify. */
 static bool is_ordinary(const chord_run *s, int lane)
 {
-    const hf_chord_measures *now = &s->now;
+    const hf_chord_measures *now = &s->progress.now;
     double slack_N = HF_SLACK_RATIO * s->chord->evaluator->model->reference_N;
     return s->chord->serves_all && now->shortest_pulled[lane] >= s->chord->evaluator->form->collapse_ratio &&
            now->shortest_other[lane] >= HF_FORM_GONE && now->longest[lane] <= HF_FORM_BLOWN_UP &&
            now->lowest_N[HF_GROUP_INNER][lane] >= slack_N && now->lowest_N[HF_GROUP_BOUNDARY][lane] >= slack_N;
-}
-
-static double tension_ratio(const hf_chord_measures *now, hf_group group, int lane)
-{
-    double high_N = now->highest_N[group][lane];
-    return high_N > 0 ? high_N / now->lowest_N[group][lane] : (double)NAN;
-}
-
-/* Writes the figures that the kernel measured in this lane into the result. */
-static void report(const chord_run *s, int lane, hf_form_result *r)
-{
-    const hf_chord_measures *now = &s->now;
-    *r = (hf_form_result){.status = HF_OK, .stop_reason = HF_STOPPED_CONVERGED, .culprit = -1};
-    hf_result_blank(r);
-    r->psi_m = s->chord->evaluator->model->n_inner_node ? now->psi_m[lane] : (double)NAN;
-    r->residual_N = s->at[lane].residual_N;
-    r->tension_error = now->tension_error[lane];
-    r->length_error = 0;
-    r->inner_tension_ratio = tension_ratio(now, HF_GROUP_INNER, lane);
-    r->boundary_tension_ratio = tension_ratio(now, HF_GROUP_BOUNDARY, lane);
-    r->shortest_length_ratio = fmin(now->shortest_pulled[lane], now->shortest_other[lane]);
 }
 
 /* Stores the result of a lane that has converged. The kernel measures all lanes at once. If the shape is not ordinary,
@@ -304,42 +347,22 @@ static void report(const chord_run *s, int lane, hf_form_result *r)
 static void finish(chord_run *s, int lane, const double *design, hf_form_result *r)
 {
     const hf_chord *c = s->chord;
-    if (!s->is_measured) c->kernels->measure(c, s->lanes, &s->now);
-    s->is_measured = true;
+    hf_chord_report(c, s->lanes, lane, &s->progress, r);
     bool ordinary = is_ordinary(s, lane);
-    if (ordinary) report(s, lane, r);
     hf_form_result alone = *r;
     if (s->keeps_shape || !ordinary || hf_evaluate_needs_shape(c->evaluator, r)) unload(s, lane, design, &alone);
     if (!ordinary) *r = alone;
-    r->iterations = s->steps[lane];
+    r->iterations = s->progress.steps[lane];
     for (int i = 0; i < c->n_pull; i++)
         s->w->displacement_m[i] = s->lanes->displacement_m[i * HF_LANES + lane];
-    if (c->n_pull) hf_coupling_accept(c->evaluator->model, s->w, s->steps[lane], s->at[lane].gap_m, r);
+    if (c->n_pull) hf_coupling_accept(c->evaluator->model, s->w, r->iterations, s->progress.gap_m[lane], r);
     hf_evaluate_judge(c->evaluator, s->w, s->point, r);
 }
 
-/* Computes the forces of net and truss in all lanes, and from them `at`. */
 static void look(void *solver)
 {
     chord_run *s = solver;
-    const hf_chord *c = s->chord;
-    double squared[HF_LANES], reference_N = c->evaluator->model->reference_N;
-    const hf_form_settings *form = c->evaluator->form;
-    s->is_measured = false;
-    c->kernels->forces(c, s->lanes, squared);
-    for (int lane = 0; lane < HF_LANES; lane++) {
-        double residual_N = reference_N * sqrt(squared[lane]);
-        s->at[lane] = (standing){residual_N, 0, residual_N};
-    }
-    if (c->n_pull == 0) return;
-    c->kernels->couple(c, s->lanes, squared);
-    double scale = form->residual_tolerance * reference_N / form->coupling.tof_m;
-    for (int lane = 0; lane < HF_LANES; lane++) {
-        standing *at = &s->at[lane];
-        at->gap_m = sqrt(squared[lane]);
-        double gap_N = scale * at->gap_m;
-        if (!(gap_N <= at->excess_N)) at->excess_N = gap_N; /* a gap that is NaN is kept */
-    }
+    hf_chord_look(s->chord, s->lanes, &s->progress);
 }
 
 /* Stores the result of a lane that has converged, and returns true. Returns false if the lane takes another step,
@@ -349,17 +372,11 @@ static bool settle(void *solver, int lane, int i_design)
     chord_run *s = solver;
     const hf_evaluator *v = s->chord->evaluator;
     const double *design = s->design + (size_t)i_design * (size_t)v->model->n_variable;
-    double excess_N = s->at[lane].excess_N;
-    if (excess_N <= v->form->residual_tolerance * v->model->reference_N) {
+    if (s->progress.excess_N[lane] <= v->form->residual_tolerance * v->model->reference_N) {
         finish(s, lane, design, s->result + i_design);
         return true;
     }
-    bool contracts = s->steps[lane] < PATIENCE || excess_N < CONTRACTION * s->excess_before_N[lane];
-    if (contracts && isfinite(excess_N) && s->steps[lane] < ITERATIONS_MAX) {
-        s->excess_before_N[lane] = excess_N;
-        s->steps[lane]++;
-        return false;
-    }
+    if (hf_chord_goes_on(lane, PATIENCE, &s->progress)) return false;
     hf_evaluate(v, design, s->w, s->point, s->result + i_design);
     return true;
 }

@@ -91,8 +91,24 @@ typedef struct {
     double longest[HF_LANES];
 } hf_chord_measures;
 
+/* How far the lanes of one thread are from equilibrium, and how they came there. */
+typedef struct {
+    int steps[HF_LANES];
+    double residual_N[HF_LANES]; /* maximum nodal force out of balance */
+    double gap_m[HF_LANES];      /* maximum |F f - r| of an attachment; 0 without a truss */
+    /* The maximum of residual_N and of gap_m scaled to the same tolerance; now and one step before. */
+    double excess_N[HF_LANES], excess_before_N[HF_LANES];
+    bool is_measured; /* true if `now` holds the figures of the present shapes */
+    hf_chord_measures now;
+} hf_chord_progress;
+
 /* The kernels of one instruction set.
  *
+ * pull:    computes the tension T = k (l - l0) of each taut elastic cable, 0 of each slack one, and q = T/l. cut_m
+ *          (l0), stiffness_N_per_m (k = EA/l0), tension_N and q_N_per_m are [n_cable][HF_LANES], and all arrays are
+ *          aligned to HF_ALIGNMENT. It serves nets whose cables are all elastic.
+ * multiply: computes out [n_pad][HF_LANES] = A in [n][HF_LANES] for a matrix A of n columns and n_pad rows, a multiple
+ *          of HF_CHORD_ROWS; `packed` is [n_pad / HF_CHORD_ROWS][n][HF_CHORD_ROWS]. `in` and `out` must not overlap.
  * forces:  computes the nodal forces of every lane into force_N, the forces on the attachments into pull_N and the
  *          force densities into `variable`. residual_squared receives, per lane, the square of the maximum nodal force
  *          divided by the reference tension.
@@ -102,6 +118,9 @@ typedef struct {
  * step:    adds force_N, which matrix.solve has replaced by the Newton step, to the free nodes in x_m.
  * measure: measures the shapes in x_m with the force densities that `forces` computed there. */
 struct hf_chord_kernels {
+    void (*pull)(const hf_model *model, const double *x_m, const double *cut_m, const double *stiffness_N_per_m,
+                 double *tension_N, double *q_N_per_m);
+    void (*multiply)(int n_pad, int n, const double *packed, const double *in, double *out);
     void (*forces)(const hf_chord *chord, const hf_chord_lanes *l, double residual_squared[HF_LANES]);
     void (*step)(const hf_chord *chord, const hf_chord_lanes *l);
     void (*couple)(const hf_chord *chord, const hf_chord_lanes *l, double gap_squared[HF_LANES]);
@@ -124,8 +143,10 @@ hf_status hf_chord_create(const hf_evaluator *evaluator, const double *initial, 
 
 /* Makes the shared matrix at the shape that the workspace holds, whatever the laws of its cables. This serves nets
  * without design variables: the caller writes the force density of cable e into row n_variable + e of `variable` of the
- * lanes. Returns HF_OK, HF_NO_MEMORY or HF_SINGULAR. The caller frees its arena in any case. */
-hf_status hf_chord_create_here(const hf_evaluator *evaluator, hf_workspace *workspace, hf_chord *chord);
+ * lanes. inverse [n_pull_pad / HF_CHORD_ROWS][n_pull][HF_CHORD_ROWS] receives (I + F S)^-1 in place of its modes; NULL
+ * makes the modes. Returns HF_OK, HF_NO_MEMORY or HF_SINGULAR. The caller frees its arena in any case. */
+hf_status hf_chord_create_here(const hf_evaluator *evaluator, hf_workspace *workspace, double *inverse,
+                               hf_chord *chord);
 
 /* Returns the size in bytes of the shared matrix for this evaluator. *lanes_bytes is set to the size of the lanes of
  * one thread. */
@@ -133,6 +154,17 @@ size_t hf_chord_bytes(const hf_evaluator *evaluator, size_t *lanes_bytes);
 
 /* Allocates the lanes of one thread. Returns HF_OK or HF_NO_MEMORY; the caller frees its arena. */
 hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes);
+
+/* The steps of a lane, which hf_chord_run and built/near.h share. hf_chord_begin starts a lane with the displacements of
+ * the initial shape. hf_chord_look computes the forces in all lanes and sets residual, gap and excess. hf_chord_goes_on
+ * returns true, and counts a step, if the lane shall take one more because its excess falls fast enough; this is not
+ * required of the first `patience` steps. hf_chord_report measures all lanes unless they are measured, and writes the
+ * figures of a converged lane. */
+void hf_chord_begin(const hf_chord *chord, const hf_chord_lanes *lanes, int lane, hf_chord_progress *progress);
+void hf_chord_look(const hf_chord *chord, const hf_chord_lanes *lanes, hf_chord_progress *progress);
+bool hf_chord_goes_on(int lane, int patience, hf_chord_progress *progress);
+void hf_chord_report(const hf_chord *chord, const hf_chord_lanes *lanes, int lane, hf_chord_progress *progress,
+                     hf_form_result *result);
 
 /* Evaluates the designs whose indices next(context) returns, until it returns -1. design: [][n_variable]; result: [].
  * If keeps_shape is true, the workspace holds the last shape afterwards; otherwise it is scratch. `point` is scratch of

@@ -45,6 +45,20 @@ INLINE void difference(const double *x_m, int n_node, int from, int to, int p, v
 
 /* ---- forces ---- */
 
+static void pull(const hf_model *m, const double *x_m, const double *cut_m, const double *stiffness_N_per_m,
+                 double *tension_N, double *q_N_per_m)
+{
+    for (int e = 0; e < m->n_cable; e++)
+        for (int p = 0; p < HF_LANES; p += WIDTH) {
+            vec d[3], none = splat(0);
+            difference(x_m, m->n_node, m->end_row[2 * e], m->end_row[2 * e + 1], p, d);
+            vec length = root(norm_squared(d[0], d[1], d[2])), over = length - *lanes_of(cut_m, e, p);
+            vec tension = if_greater(over, none, *lanes_of(stiffness_N_per_m, e, p) * over, none);
+            *lanes_of(tension_N, e, p) = tension;
+            *lanes_of(q_N_per_m, e, p) = if_greater(tension, none, tension / length, none);
+        }
+}
+
 /* Computes the force densities q = T / l of the cables with a given tension. */
 static void find_densities(const hf_chord *chord, const hf_chord_lanes *l, int p)
 {
@@ -106,30 +120,32 @@ static void forces(const hf_chord *chord, const hf_chord_lanes *l, double residu
 
 /* ---- the truss ---- */
 
-/* Computes the gaps F f - r of ROWS rows at a time, which share the loads of f. */
-static void find_gap(const hf_chord *chord, const hf_chord_lanes *l, int p)
+/* Computes ROWS rows at a time, which share the loads of `in`. */
+static void multiply(int n_pad, int n, const double *packed, const double *in, double *out)
 {
-    const double *f = chord->flexibility;
-    for (int i = 0; i < chord->n_pull_pad; i += ROWS) {
-        vec s[ROWS];
-        foreach (r, ROWS)
-            s[r] = splat(0);
-        for (int j = 0; j < chord->n_pull; j++, f += ROWS) {
-            vec pull = *lanes_of(l->pull_N, j, p);
+    for (int i = 0; i < n_pad; i += ROWS, packed += (ptrdiff_t)n * ROWS)
+        for (int p = 0; p < HF_LANES; p += WIDTH) {
+            vec sum[ROWS];
             foreach (r, ROWS)
-                s[r] = plus_product(s[r], splat(f[r]), pull);
+                sum[r] = splat(0);
+            for (int j = 0; j < n; j++) {
+                vec x = *lanes_of(in, j, p);
+                foreach (r, ROWS)
+                    sum[r] = plus_product(sum[r], splat(packed[j * ROWS + r]), x);
+            }
+            foreach (r, ROWS)
+                *lanes_of(out, i + r, p) = sum[r];
         }
-        foreach (r, ROWS)
-            *lanes_of(l->move_m, i + r, p) = s[r] - *lanes_of(l->displacement_m, i + r, p);
-    }
 }
 
 /* Finds the maximum gap and multiplies the gaps by (I + F S)^-1 = I + sum of left right' over the modes. */
 static void couple(const hf_chord *chord, const hf_chord_lanes *l, double gap_squared[HF_LANES])
 {
+    multiply(chord->n_pull_pad, chord->n_pull, chord->flexibility, l->pull_N, l->move_m);
     for (int p = 0; p < HF_LANES; p += WIDTH) {
         vec share[HF_CHORD_MODES_MAX], largest = splat(0);
-        find_gap(chord, l, p);
+        for (int i = 0; i < chord->n_pull; i++)
+            *lanes_of(l->move_m, i, p) -= *lanes_of(l->displacement_m, i, p);
         for (int i = 0; i < chord->n_pull; i += 3) {
             const vec x = *lanes_of(l->move_m, i, p), y = *lanes_of(l->move_m, i + 1, p),
                       z = *lanes_of(l->move_m, i + 2, p);
@@ -248,4 +264,4 @@ static void measure(const hf_chord *chord, const hf_chord_lanes *l, hf_chord_mea
 
 /* ---- table ---- */
 
-const hf_chord_kernels HF_KERNEL(hf_chord_kernels) = {forces, step, couple, move, measure};
+const hf_chord_kernels HF_KERNEL(hf_chord_kernels) = {pull, multiply, forces, step, couple, move, measure};

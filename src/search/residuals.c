@@ -10,36 +10,30 @@
 
 #include <math.h>
 
-static void lay_out(hf_arena *a, hf_residuals *r)
-{
-    const hf_model *m = r->v->model;
-    size_t n_at_once = r->v->objectives && r->v->objectives->nets ? HF_OBJECTIVES_AT_ONCE : 1;
-    r->value = hf_arena_take(a, (size_t)r->n_row, sizeof(double));
-    r->room = hf_arena_take(a, (size_t)r->n_room, sizeof *r->room);
-    for (int i = 0; i < r->n_room; i++) {
-        double *move_m = hf_arena_take(a, 3 * n_at_once * (size_t)m->n_node, sizeof(double));
-        double *tension_rate = hf_arena_take(a, n_at_once * (size_t)m->n_cable, sizeof(double));
-        double *value = hf_arena_take(a, i > 0 ? (size_t)r->n_row : 0, sizeof(double));
-        if (r->room) r->room[i] = (hf_residuals_room){{0}, HF_OK, move_m, tension_rate, value};
-    }
-}
-
 /* Without objectives there are no rooms, because residuals and rates follow directly from positions and their rates. */
 hf_status hf_residuals_create(const hf_evaluator *v, hf_residuals *r)
 {
     *r = (hf_residuals){.v = v, .n_row = v->objectives ? v->objectives->n_row : 3 * v->model->n_inner_node};
     r->n_room = !v->objectives ? 0 : v->n_thread > 1 ? v->n_thread : 1;
-    HF_TRY(HF_ARENA_MAKE(&r->arena, lay_out(&r->arena, r)));
-    for (int i = 0; i < r->n_room; i++)
+    size_t n_at_once = v->objectives && v->objectives->nets ? HF_OBJECTIVES_AT_ONCE : 1, n_room = (size_t)r->n_room;
+    size_t n_move = 3 * n_at_once * (size_t)v->model->n_node, n_rate = n_at_once * (size_t)v->model->n_cable;
+    double *move_m, *rate, *value;
+    HF_TRY(HF_ARENA_ARRAYS(&r->block, HF_ARRAY(r->value, r->n_row), HF_ARRAY(r->room, n_room),
+                           HF_ARRAY(move_m, n_room * n_move), HF_ARRAY(rate, n_room * n_rate),
+                           HF_ARRAY(value, n_room * (size_t)r->n_row)));
+    for (size_t i = 0; i < n_room; i++)
+        r->room[i] = (hf_residuals_room){
+            {0}, HF_OK, move_m + i * n_move, rate + i * n_rate, i ? value + i * (size_t)r->n_row : r->value};
+    for (size_t i = 0; i < n_room; i++)
         HF_TRY(hf_objectives_point_create(v->objectives, &r->room[i].point));
     return HF_OK;
 }
 
 void hf_residuals_free(hf_residuals *r)
 {
-    for (int i = 0; r->arena.block && i < r->n_room; i++)
+    for (int i = 0; r->block && i < r->n_room; i++)
         hf_objectives_point_free(&r->room[i].point);
-    hf_arena_free(&r->arena);
+    hf_arena_free_block(r->block);
     *r = (hf_residuals){0};
 }
 
@@ -55,7 +49,7 @@ static void enter_room(void *context, int any_room, int i)
     hf_residuals_room *room = &q->r->room[i];
     (void)any_room;
     room->status =
-        hf_objectives_linearise(q->r->v->objectives, i == 0, q->w, &room->point, i ? room->value : q->r->value);
+        hf_objectives_linearise(q->r->v->objectives, i == 0, q->w, &room->point, room->value);
 }
 
 /* A feasible design has no loose nodes, so psi counts all inner nodes. */

@@ -11,7 +11,7 @@ typedef struct {
     hf_objectives_point point;
     hf_status status;
     double *move_m, *tension_rate; /* [HF_OBJECTIVES_AT_ONCE][3][n_node], [HF_OBJECTIVES_AT_ONCE][n_cable], scratch */
-    double *value;                 /* [n_row], scratch; not in the first room */
+    double *value;                 /* [n_row], scratch; in the first room that of hf_residuals */
 } hf_residuals_room;
 
 typedef struct {
@@ -20,7 +20,7 @@ typedef struct {
     double *value;           /* [n_row], f; |f| is the merit */
     int n_room;              /* number of threads */
     hf_residuals_room *room; /* [n_room] */
-    hf_arena arena;
+    void *block;
 } hf_residuals;
 
 /* Allocates the residuals of an evaluator. Returns HF_OK or HF_NO_MEMORY; call hf_residuals_free in either case. */

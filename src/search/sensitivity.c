@@ -8,6 +8,7 @@
  * Contents: layout - forces of variables - first derivatives - tensions - cables of law length - access */
 #include "search/sensitivity.h"
 
+#include "linalg/dot.h"
 #include "search/parallel.h"
 #include "solve/newton_matrix.h"
 
@@ -201,8 +202,7 @@ static void follow_block(void *context, int room, int i_block)
     int n = lanes_in_block(s, i_block);
     hf_packed_band_back_solve(&s->matrix, s->lanes + (size_t)room * s->n_lane, n, s->answer + first * n_free, n_free);
     for (size_t k = first; k < first + (size_t)n; k++)
-        for (size_t i = 0; i < n_free; i++)
-            s->move[k * s->n_dof + i] += s->answer[k * n_free + i];
+        hf_add(n_free, 1, s->answer + k * n_free, s->move + k * s->n_dof);
 }
 
 /* Turns displacements with fixed attachments into those of net and truss together. */
@@ -346,11 +346,9 @@ static void refine_iteratively(hf_sensitivity *s, const hf_workspace *w)
         double *supports = s->move + k * s->n_dof + n_free, *pull = s->pull + k * n_attachment;
         hf_schur_pull(m, w, hf_newton_matrix_block, s->answer + k * n_free, pull);
         hf_schur_flex(m, pull, s->gap);
-        for (size_t i = 0; i < n_attachment; i++)
-            s->gap[i] -= supports[i];
+        hf_subtract(n_attachment, 1, supports, s->gap);
         hf_schur_solve(&s->schur, s->gap);
-        for (size_t i = 0; i < n_attachment; i++)
-            supports[i] += s->gap[i];
+        hf_add(n_attachment, 1, s->gap, supports);
         memset(s->answer + k * n_free, 0, n_free * sizeof(double));
         hf_schur_push(m, w, hf_newton_matrix_block, s->gap, s->answer + k * n_free);
     }

@@ -149,8 +149,7 @@ static void accelerate(accelerator *a, double *r)
     bool solved = solve_gram(n_kept, gram, share);
     memcpy(r, a->next, a->n * sizeof *r);
     for (int k = 0; k < n_kept && solved; k++)
-        for (size_t i = 0; i < a->n; i++)
-            r[i] -= share[k] * a->d_next[k][i];
+        hf_subtract(a->n, share[k], a->d_next[k], r);
     memcpy(a->step_before, a->step, a->n * sizeof *r);
     memcpy(a->next_before, a->next, a->n * sizeof *r);
     a->n_seen = solved ? a->n_seen + 1 : 1;

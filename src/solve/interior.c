@@ -273,15 +273,6 @@ static double find_path_direction(const hf_model *m, hf_workspace *w, const hf_n
     return inverse > 0 ? 1 / inverse : INFINITY;
 }
 
-/* ---- step length ---- */
-
-static void move_nodes(const hf_model *m, hf_workspace *w, double part)
-{
-    for (int i = 0; i < w->n_moving; i++)
-        for (int c = 0; c < 3; c++)
-            w->position_m[c * m->n_node + i] += part * w->newton_step[3 * i + c];
-}
-
 /* ---- the path ---- */
 
 /* Returns the cable that is shorter than collapse_ratio times its length at the target positions, or -1. Of several it
@@ -323,7 +314,7 @@ static bool take_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *
     double part = fmin(1, find_path_direction(m, w, held, 0, false, true)), left = 1 - part;
     part = fmin(1, STEP_KEPT * find_path_direction(m, w, held, left * left * left * mu, true, false));
     if (!(part > STALLED)) return false;
-    move_nodes(m, w, part);
+    hf_newton_matrix_move_nodes(m, w, part, w->position_m);
     kernels_of_isa[hf_lane_best_isa()]->move(n_block(m), blocks(w), part);
     return true;
 }
@@ -441,7 +432,7 @@ static bool take_last_step(const hf_model *m, hf_workspace *w, const hf_newton_r
         double longer = p->unit[0][k] * p->Dd[0][k] + p->unit[1][k] * p->Dd[1][k] + p->unit[2][k] * p->Dd[2][k];
         w->tension_N[e] += p->DT[k] + p->along[k] * longer;
     }
-    move_nodes(m, w, 1);
+    hf_newton_matrix_move_nodes(m, w, 1, w->position_m);
     return true;
 }
 

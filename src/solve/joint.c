@@ -9,6 +9,7 @@
  *     steps of free nodes and attachments */
 #include "solve/joint.h"
 
+#include "linalg/dot.h"
 #include "solve/schur.h"
 
 #include <string.h>
@@ -55,8 +56,7 @@ void hf_joint_solve(const hf_model *m, const hf_workspace *w, hf_newton_block *b
     memset(answer, 0, (size_t)n_free * sizeof *answer);
     hf_schur_push(m, w, block_of, move, answer);
     hf_newton_matrix_solve(m, w, NULL, answer);
-    for (int i = 0; i < n_free; i++)
-        rhs[i] += answer[i];
+    hf_add((size_t)n_free, 1, answer, rhs);
     memcpy(pull, move, (size_t)schur.n * sizeof *pull);
 }
 

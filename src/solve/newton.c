@@ -128,9 +128,7 @@ static void try_step(const hf_model *m, hf_workspace *w, double part)
     const double *step = w->newton_step;
     double u[3];
     hf_newton_copy(m, w->position_m, w->tension_N, w->newton_trial_m, w->newton_trial_tension_N);
-    for (int i = 0; i < w->n_moving; i++)
-        for (int c = 0; c < 3; c++)
-            w->newton_trial_m[c * m->n_node + i] += part * step[3 * i + c];
+    hf_newton_matrix_move_nodes(m, w, part, w->newton_trial_m);
     for (int e = 0; e < m->n_cable; e++) {
         hf_law_cable cable = hf_workspace_cable(m, w, e);
         if (!hf_law_has(cable.law, HF_LAW_HAS_MULTIPLIER)) continue;

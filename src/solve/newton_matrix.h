@@ -48,6 +48,15 @@ static inline void hf_newton_matrix_set_loads(const hf_model *model, const hf_wo
             force[3 * i + c] = model->load_N ? model->load_N[c * model->n_node + i] : 0;
 }
 
+/* Adds `part` of newton_step to position_m [3][n_node]. */
+static inline void hf_newton_matrix_move_nodes(const hf_model *model, const hf_workspace *workspace, double part,
+                                               double *position_m)
+{
+    for (int i = 0; i < workspace->n_moving; i++)
+        for (int c = 0; c < 3; c++)
+            position_m[c * model->n_node + i] += part * workspace->newton_step[3 * i + c];
+}
+
 /* Adds the pull of cable i_cable, N, to force [3 n_moving] at its first end, and subtracts it at its second. */
 static inline void hf_newton_matrix_add_pull(const hf_model *model, const hf_workspace *workspace, int i_cable,
                                              const double pull[3], double *force)
@@ -57,6 +66,23 @@ static inline void hf_newton_matrix_add_pull(const hf_model *model, const hf_wor
         if (a < workspace->n_moving) force[3 * a + c] += pull[c];
         if (b < workspace->n_moving) force[3 * b + c] -= pull[c];
     }
+}
+
+/* Does the same for the supports alone, to force [3 n_support]; attachments are supports. */
+static inline void hf_newton_matrix_add_to_supports(const hf_model *model, int i_cable, const double pull[3],
+                                                    double *force)
+{
+    for (int end = 0; end < 2; end++) {
+        int support = model->end_row[2 * i_cable + end] - model->n_free;
+        for (int c = 0; c < 3 && support >= 0; c++)
+            force[3 * support + c] += end ? -pull[c] : pull[c];
+    }
+}
+
+/* Returns true if cable i_cable ends at a support, on a truss or on rigid ground. */
+static inline bool hf_newton_matrix_is_at_support(const hf_model *model, int i_cable)
+{
+    return model->end_row[2 * i_cable] >= model->n_free || model->end_row[2 * i_cable + 1] >= model->n_free;
 }
 
 /* Sets block [3][3] to the stiffness of a spring with this unit vector, N/m (M6). along and across are in N/m. */

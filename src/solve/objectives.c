@@ -150,40 +150,20 @@ static double push_smooth(int n, const double *size, double *rate)
     return norm_rate;
 }
 
-static double norm3(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-/* Adds `pull` of cable e, N, to force_N at its first end, and subtracts it at the other, for ends that are supports. */
-static void add_pull(const hf_model *m, int e, const double pull[3], double *force_N)
-{
-    for (int end = 0; end < 2; end++) {
-        int support = m->end_row[2 * e + end] - m->n_free;
-        for (int c = 0; c < 3 && support >= 0; c++)
-            force_N[3 * support + c] += end ? -pull[c] : pull[c];
-    }
-}
-
-static bool is_at_support(const hf_model *m, int e)
-{
-    return m->end_row[2 * e] >= m->n_free || m->end_row[2 * e + 1] >= m->n_free;
-}
-
 void hf_objectives_pulls(const hf_model *m, const hf_workspace *w, hf_objectives_point *p)
 {
     int n = m->n_node - m->n_free;
     memset(p->force_N, 0, 3 * (size_t)n * sizeof(double));
     for (int e = 0; e < m->n_cable; e++) {
         double u[3];
-        if (!is_at_support(m, e)) continue;
+        if (!hf_newton_matrix_is_at_support(m, e)) continue;
         hf_newton_matrix_direction(m, w->position_m, e, u);
         for (int c = 0; c < 3; c++)
             u[c] *= w->tension_N[e];
-        add_pull(m, e, u, p->force_N);
+        hf_newton_matrix_add_to_supports(m, e, u, p->force_N);
     }
     for (int i = 0; i < n; i++)
-        p->size[i] = norm3(p->force_N + 3 * (size_t)i);
+        p->size[i] = hf_norm(p->force_N[3 * i], p->force_N[3 * i + 1], p->force_N[3 * i + 2]);
 }
 
 /* ---- residuals ---- */
@@ -246,10 +226,13 @@ static double measure_largest(int n, hf_objectives_point *p, double *f)
     return largest;
 }
 
-static void take_displacements(const hf_model *m, const hf_workspace *w, hf_objectives_point *p)
+/* Sets the sizes of which the maximum counts: of the forces on supports, or of the displacements of attachments. */
+static void take_sizes(hf_figure_kind figure, const hf_model *m, const hf_workspace *w, hf_objectives_point *p)
 {
-    for (int i = 0; i < m->n_attachment; i++)
-        p->size[i] = norm3(w->displacement_m + 3 * (size_t)i);
+    const double *d = w->displacement_m;
+    if (figure == HF_FIGURE_PULL) hf_objectives_pulls(m, w, p);
+    for (int i = 0; figure == HF_FIGURE_DEFLECTION && i < m->n_attachment; i++, d += 3)
+        p->size[i] = hf_norm(d[0], d[1], d[2]);
 }
 
 /* Returns A B, the smooth ratio of the maximum to the minimum of n tensions. It is the product of the smooth maximum A
@@ -295,11 +278,8 @@ static hf_status measure_shape(const hf_objectives *objectives, int k, const hf_
         *value = *norm = measure_psi(m, w, p, f);
         return HF_OK;
     case HF_FIGURE_PULL:
-        hf_objectives_pulls(m, w, p);
-        largest = measure_largest(g->n_shape_row, p, f);
-        break;
     case HF_FIGURE_DEFLECTION:
-        take_displacements(m, w, p);
+        take_sizes(g->settings.figure, m, w, p);
         largest = measure_largest(g->n_shape_row, p, f);
         break;
     case HF_FIGURE_RATIO:
@@ -561,7 +541,7 @@ static void push_cables(const hf_objective *g, const hf_model *m, const hf_works
 /* Returns the change of the length of the vector v when it changes by `rate`; 0 for v = 0. */
 static double size_rate(const double v[3], const double rate[3])
 {
-    double size = norm3(v);
+    double size = hf_norm(v[0], v[1], v[2]);
     return size > 0 ? (v[0] * rate[0] + v[1] * rate[1] + v[2] * rate[2]) / size : 0;
 }
 
@@ -573,37 +553,31 @@ void hf_objectives_pull_rates(const hf_model *m, const hf_workspace *w, hf_objec
     hf_objectives_pulls(m, w, p);
     for (int e = 0; e < m->n_cable; e++) {
         double u[3], pull[3];
-        if (!is_at_support(m, e)) continue;
+        if (!hf_newton_matrix_is_at_support(m, e)) continue;
         double length = hf_newton_matrix_direction(m, w->position_m, e, u);
         relative_move(m, e, by->position_m, pull);
         double along = u[0] * pull[0] + u[1] * pull[1] + u[2] * pull[2];
         for (int c = 0; c < 3; c++)
             pull[c] = by->tension_N[e] * u[c] + w->tension_N[e] * ((pull[c] - along * u[c]) / length);
-        add_pull(m, e, pull, p->rate_N);
+        hf_newton_matrix_add_to_supports(m, e, pull, p->rate_N);
     }
     for (int i = 0; i < n; i++)
         rate[i] = size_rate(p->force_N + 3 * (size_t)i, p->rate_N + 3 * (size_t)i);
 }
 
-static void push_pulls(const hf_model *m, const hf_workspace *w, hf_objectives_point *p, const hf_objectives_rate *by,
-                       double *rate)
+/* Computes the rates of the residuals of a maximum of n sizes. */
+static void push_largest(int n, hf_figure_kind figure, const hf_model *m, const hf_workspace *w, hf_objectives_point *p,
+                         const hf_objectives_rate *by, double *rate)
 {
-    int n = m->n_node - m->n_free;
     double norm;
-    hf_objectives_pull_rates(m, w, p, by, rate);
+    if (figure == HF_FIGURE_PULL)
+        hf_objectives_pull_rates(m, w, p, by, rate);
+    else
+        for (int i = 0; i < n; i++)
+            rate[i] = size_rate(w->displacement_m + 3 * (size_t)i, by->displacement_m + 3 * (size_t)i);
+    take_sizes(figure, m, w, p);
     smooth_maximum(n, p->size, &norm);
     push_smooth(n, p->size, rate);
-}
-
-static void push_displacements(const hf_model *m, const hf_workspace *w, hf_objectives_point *p,
-                               const hf_objectives_rate *by, double *rate)
-{
-    double norm;
-    take_displacements(m, w, p);
-    smooth_maximum(m->n_attachment, p->size, &norm);
-    for (int i = 0; i < m->n_attachment; i++)
-        rate[i] = size_rate(w->displacement_m + 3 * (size_t)i, by->displacement_m + 3 * (size_t)i);
-    push_smooth(m->n_attachment, p->size, rate);
 }
 
 static void push_ratio(const hf_objective *g, const hf_workspace *w, hf_objectives_point *p,
@@ -637,10 +611,8 @@ static void push_shape(const hf_objectives *objectives, int k, const hf_workspac
         push_psi(m, p, by->position_m, rate);
         break;
     case HF_FIGURE_PULL:
-        push_pulls(m, w, p, by, rate);
-        break;
     case HF_FIGURE_DEFLECTION:
-        push_displacements(m, w, p, by, rate);
+        push_largest(g->n_shape_row, g->settings.figure, m, w, p, by, rate);
         break;
     case HF_FIGURE_RATIO:
         push_ratio(g, w, p, by, rate);

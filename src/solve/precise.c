@@ -15,6 +15,7 @@
 #include "solve/precise.h"
 
 #include "linalg/band.h"
+#include "linalg/dot.h"
 #include "solve/coupling.h"
 #include "solve/joint.h"
 #include "solve/precise_kernel.h"
@@ -338,15 +339,13 @@ static void solve_for_step(hf_precise *p)
     if (!m->n_attachment) return;
     hf_schur_pull(m, p->w, t->block_of, p->step, at_attachment);
     hf_flexibility_load(&t->flexibility, at_attachment, t->step);
-    for (int k = 0; k < rank; k++)
-        t->step[k] += t->near_gap[k];
+    hf_add((size_t)rank, 1, t->near_gap, t->step);
     if (rank) hf_band_back_solve(rank, rank - 1, 1, t->flexibility.factor, t->step, rank);
     hf_flexibility_displace(&t->flexibility, t->step, at_attachment);
     memset(answer, 0, (size_t)n_free * sizeof *answer);
     hf_schur_push(m, p->w, t->block_of, at_attachment, answer);
     solve_free(p, answer);
-    for (int i = 0; i < n_free; i++)
-        p->step[i] += answer[i];
+    hf_add((size_t)n_free, 1, answer, p->step);
 }
 
 /* Sets `step`, the step of the truss, and `last` of the cables to the Newton step (M8) with the factored matrix. The
@@ -377,10 +376,8 @@ static void find_refinement(hf_precise *p)
 
 static void add_step(hf_precise *p, double part)
 {
-    for (int i = 0; i < 3 * p->n_moving; i++)
-        p->move[i] += part * p->step[i];
-    for (int k = 0; k < p->truss.flexibility.rank; k++)
-        p->truss.move[k] += part * p->truss.step[k];
+    hf_add(3 * (size_t)p->n_moving, part, p->step, p->move);
+    hf_add((size_t)p->truss.flexibility.rank, part, p->truss.step, p->truss.move);
     for (int e = 0; e < p->m->n_cable; e++)
         p->cable[e].change += part * p->cable[e].last;
 }

@@ -26,7 +26,7 @@ static void dense_answer(const twin *t, const hf_built_linear *l, const double *
         for (size_t e = 0; e < n_cable && k >= n_all; e++)
             strain[e] = l->cut_N_per_m[e] * t->prior.shared_m[(k - n_all) * n_cable + e];
         if (k >= n_cable && k < n_all) column[k - n_cable] = t->prior.support_sigma_m;
-        hf_built_linear_apply(l, 1, strain, column, scratch);
+        hf_built_linear_apply(l, NULL, 1, strain, NULL, column, scratch);
     }
     for (size_t i = 0; i < n_dof; i++) {
         bool is_measured = t->prior.weight_per_m2[i] > 0;

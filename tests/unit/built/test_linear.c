@@ -95,7 +95,7 @@ START_TEST(moves_and_tensions_are_derivatives)
             rate[e] += weight[k] / h * tension[e];
     }
     memcpy(move, off, n_dof * sizeof *move);
-    hf_built_linear_apply(&b.linear, 1, strain, move, scratch);
+    hf_built_linear_apply(&b.linear, NULL, 1, strain, NULL, move, scratch);
     hf_built_linear_tension(&b.linear, strain, move, change);
     double largest_m = largest(move, (int)n_dof), largest_N = largest(change, (int)n);
     for (size_t i = 0; i < n_dof; i++)
@@ -139,7 +139,7 @@ START_TEST(a_loose_node_stays_where_it_is)
     const int *row = b.built.model.row_of_node;
     double *scratch = calloc(b.linear.n_scratch, sizeof *scratch);
     move[3 * row[2]] = move[3 * row[5]] = 0.01;
-    hf_built_linear_apply(&b.linear, 1, NULL, move, scratch);
+    hf_built_linear_apply(&b.linear, NULL, 1, NULL, NULL, move, scratch);
     ck_assert_double_eq(move[3 * row[1]], 0);
     ck_assert_double_eq_tol(move[3 * row[4]], 0.005, 1e-12);
     int n_factor = b.linear.n_factor;
@@ -167,7 +167,7 @@ START_TEST(the_transpose_is_one)
         move[i] = off[i] = rng_uniform(&rng, -1e-2, 1e-2);
         slope[i] = rng_uniform(&rng, -1, 1);
     }
-    hf_built_linear_apply(&b.linear, N, strain, move, scratch);
+    hf_built_linear_apply(&b.linear, NULL, N, strain, NULL, move, scratch);
     for (size_t i = 0; i < N * n_dof; i++)
         left[i / n_dof] += slope[i] * move[i];
     hf_built_linear_transpose(&b.linear, N, slope, rate, scratch);

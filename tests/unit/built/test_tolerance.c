@@ -485,7 +485,7 @@ START_TEST(directions_hold_most_of_the_variance)
         for (int i = 0; i < n; i++)
             z[i] = d->axis[i * d->n + a];
         hf_built_errors_strain(&s.m.errors, 1, z, strain, move);
-        hf_built_linear_apply(&s.m.linear, 1, strain, move, move + s.m.linear.n_dof);
+        hf_built_linear_apply(&s.m.linear, NULL, 1, strain, NULL, move, move + s.m.linear.n_dof);
         for (int i = 0; i < s.built.model.n_inner_node; i++)
             for (int c = 0; c < 3; c++)
                 held += pow(move[3 * s.built.model.inner_row[i] + c], 2) / s.built.model.n_inner_node;
@@ -524,7 +524,7 @@ START_TEST(quasi_random_means_are_nearer)
             else
                 hf_built_errors_draw(&s.m.errors, i, z);
             hf_built_errors_strain(&s.m.errors, 1, z, strain, move);
-            hf_built_linear_apply(&s.m.linear, 1, strain, move, move + s.m.linear.n_dof);
+            hf_built_linear_apply(&s.m.linear, NULL, 1, strain, NULL, move, move + s.m.linear.n_dof);
             mean += pow(hf_covariance_psi_m(&s.m.linear, move), 2) / N;
         }
         error[k % 2] += pow(mean / s.m.covariance.spread_m2 - 1, 2);
