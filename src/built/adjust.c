@@ -550,8 +550,8 @@ static hf_status judge_adjustment(adjustment *a, double part, double before_m[HF
 
 /* Makes the adjustments one by one and judges each of them. On entry a->trial is 0 and `work` holds the shape without
  * adjustments. change_N is that of find_changes, and fall_N [n_cable], 0 on entry, the fall of each tension after the
- * adjustments in a->trial. sample_m holds the figures of the samples without adjustments, and those after all of them on
- * return. */
+ * adjustments in a->trial. sample_m holds the figures of the samples without adjustments; on return, those after all of
+ * them. */
 static hf_status make_adjustments(adjustment *a, const double *change_N, double *fall_N,
                                   double sample_m[HF_ESTIMATE_SAMPLES], hf_adjustment *found)
 {

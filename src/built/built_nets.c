@@ -50,8 +50,8 @@ static hf_status open_room(const hf_objectives_nets *as, void **room)
         &r.block, HF_ARRAY(kept, 1), HF_ARRAY(r.cut_m, n), HF_ARRAY(r.EA_N, n), HF_ARRAY(r.move_m, n_dof),
         HF_ARRAY(r.load_N, n_dof), HF_ARRAY(r.stretch, n), HF_ARRAY(r.weight_N_per_m, 3 * n), HF_ARRAY(r.length_m, n),
         HF_ARRAY(r.loose, m->n_node), HF_ARRAY(r.strain_N, many * n), HF_ARRAY(r.dof_load_N, many * n_dof),
-        HF_ARRAY(r.dof_move_m, many * n_dof), HF_ARRAY(r.scratch, many * hf_built_linear_scratch(m)), HF_ARRAY(r.cut_rate, n),
-        HF_ARRAY(r.rate_m, many * n_dof), HF_ARRAY(r.rate_N, many * n),
+        HF_ARRAY(r.dof_move_m, many * n_dof), HF_ARRAY(r.scratch, many * hf_built_linear_scratch(m)),
+        HF_ARRAY(r.cut_rate, n), HF_ARRAY(r.rate_m, many * n_dof), HF_ARRAY(r.rate_N, many * n),
         HF_ARRAY(r.rate_displacement_m, many * 3 * (size_t)m->n_attachment));
     *room = kept;
     if (status == HF_OK) *kept = r;
@@ -308,7 +308,7 @@ static void follow_net(void *room, int n, const hf_objectives_rate *by, hf_objec
         if (r->has_weight) follow_weight(r, r->dof_load_N + k * n_dof);
     }
     hf_built_linear_apply(&r->linear, NULL, n, r->strain_N, r->has_weight ? r->dof_load_N : NULL, r->dof_move_m,
-                             r->scratch);
+                          r->scratch);
     for (size_t k = 0; k < (size_t)n; k++) {
         double *tension = r->rate_N + k * n_cable, *displacement = r->rate_displacement_m + k * n_attachment;
         hf_built_linear_tension(&r->linear, r->strain_N + k * n_cable, r->dof_move_m + k * n_dof, tension);

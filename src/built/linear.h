@@ -44,9 +44,9 @@ void hf_built_linear_free(hf_built_linear *linear);
 
 /* Computes displacements from errors, for n right-hand sides. strain_N [n][n_cable] are the changes of tension at fixed
  * positions, such as cut_N_per_m times the error of a length; load_N [n][n_dof] are added to the loads of nodes. Both
- * may be NULL: none. move_m [n][n_dof] contains the displacements of supports where they rest on entry, and those of all
- * nodes on return. Entries of free nodes are ignored on entry. scratch is [n][n_scratch]. `by` makes it faster for large
- * n: it has the factor of linear->work packed for eight right-hand sides, and lanes of the calling thread
+ * may be NULL: none. move_m [n][n_dof] contains the displacements of supports where they rest on entry, and those of
+ * all nodes on return. Entries of free nodes are ignored on entry. scratch is [n][n_scratch]. `by` makes it faster for
+ * large n: it has the factor of linear->work packed for eight right-hand sides, and lanes of the calling thread
  * (linalg/packed_band.h). `by` may be NULL. */
 typedef struct {
     const hf_packed_band *matrix;

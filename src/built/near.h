@@ -18,8 +18,8 @@ typedef struct {
     hf_evaluator evaluator;
     hf_chord chord;
     double *band; /* factored matrix of the nominal net, in the layout of a workspace */
-    /* On a truss: (I + F S)^-1, packed for the kernel `multiply`. F is the flexibility, S the stiffness of the nominal net
-     * at the attachments. It replaces the modes of chord. */
+    /* On a truss: (I + F S)^-1, packed for the kernel `multiply`. F is the flexibility, S the stiffness of the nominal
+     * net at the attachments. It replaces the modes of chord. */
     double *answer;
     void *block;
 } hf_near;

@@ -136,8 +136,8 @@ extern const hf_chord_kernels HF_LANE_EACH(hf_chord_kernels);
 bool hf_chord_applies(const hf_evaluator *evaluator);
 
 /* Evaluates the initial design [n_variable], factors its Newton matrix and packs it for the lanes. workspace and point
- * are scratch. Returns HF_OK, HF_NO_MEMORY, or another status if the initial design has no shape or no positive definite
- * matrix. The caller frees its arena in any case. */
+ * are scratch. Returns HF_OK, HF_NO_MEMORY, or another status if the initial design has no shape or no positive
+ * definite matrix. The caller frees its arena in any case. */
 hf_status hf_chord_create(const hf_evaluator *evaluator, const double *initial, hf_workspace *workspace,
                           hf_objectives_point *point, hf_chord *chord);
 
@@ -155,8 +155,8 @@ size_t hf_chord_bytes(const hf_evaluator *evaluator, size_t *lanes_bytes);
 /* Allocates the lanes of one thread. Returns HF_OK or HF_NO_MEMORY; the caller frees its arena. */
 hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes);
 
-/* The steps of a lane, which hf_chord_run and built/near.h share. hf_chord_begin starts a lane with the displacements of
- * the initial shape. hf_chord_look computes the forces in all lanes and sets residual, gap and excess. hf_chord_goes_on
+/* The steps of a lane, which hf_chord_run and built/near.h share. hf_chord_begin starts a lane with the displacements
+ * of the initial shape. hf_chord_look computes the forces in all lanes and sets residual, gap and excess. hf_chord_goes_on
  * returns true, and counts a step, if the lane shall take one more because its excess falls fast enough; this is not
  * required of the first `patience` steps. hf_chord_report measures all lanes unless they are measured, and writes the
  * figures of a converged lane. */

@@ -48,8 +48,7 @@ static void enter_room(void *context, int any_room, int i)
     const entered *q = context;
     hf_residuals_room *room = &q->r->room[i];
     (void)any_room;
-    room->status =
-        hf_objectives_linearise(q->r->v->objectives, i == 0, q->w, &room->point, room->value);
+    room->status = hf_objectives_linearise(q->r->v->objectives, i == 0, q->w, &room->point, room->value);
 }
 
 /* A feasible design has no loose nodes, so psi counts all inner nodes. */

@@ -155,8 +155,8 @@ void hf_swarm_update(hf_swarm_lanes *lanes);
 /* ---- many designs ---- */
 
 /* Evaluates the designs whose indices next(context) returns, until it returns -1. The evaluator has no objectives.
- * design: [][n_variable]; result: []. A design without a shape has its status in the result. If its lane fails and the model has no Newton matrix, the
- * result does not identify the cable or node at fault. */
+ * design: [][n_variable]; result: []. A design without a shape has its status in the result. If its lane fails and the
+ * model has no Newton matrix, the result does not identify the cable or node at fault. */
 void hf_swarm_run(const hf_evaluator *evaluator, const hf_swarm_plan *plan, hf_swarm_lanes *lanes,
                   hf_workspace *workspace, hf_lane_next *next, void *context, const double *design,
                   hf_form_result *result);

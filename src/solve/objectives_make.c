@@ -199,8 +199,7 @@ hf_status hf_objectives_create(const hf_scene *scene, const hf_model *m, const h
         objectives->kind = surface->kind;
         objectives->focal_length_m = surface->focal_length_m;
     }
-    if (allocate(m, objectives) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the objectives");
+    if (allocate(m, objectives) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory for the objectives");
     for (int i = 0; i < 4 * objectives->n_facet; i++)
         objectives->corner_row[i] = m->row_of_node[facets->corner[i]];
     const char *list = is_front ? "front" : "objective";
