@@ -201,17 +201,11 @@ static bool settle(void *solver, int lane, int i)
     batch_work *work = solver;
     batch_room *room = work->room;
     hf_form_result r;
-    switch (hf_near_settle(&work->job->batch->near, &room->near, lane, &work->net[lane], &room->work, &r)) {
-    case HF_NEAR_GOES_ON:
-        return false;
-    case HF_NEAR_FOUND:
-        give(work, i, &r);
-        return true;
-    case HF_NEAR_LOST:
-        break;
-    }
-    solve_alone(work, lane, i);
-    return true;
+    hf_near_verdict verdict =
+        hf_near_settle(&work->job->batch->near, &room->near, lane, &work->net[lane], &room->work, &r);
+    if (verdict == HF_NEAR_FOUND) give(work, i, &r);
+    if (verdict == HF_NEAR_LOST) solve_alone(work, lane, i);
+    return verdict != HF_NEAR_GOES_ON;
 }
 
 /* Takes a chord step in all lanes. */

@@ -109,22 +109,17 @@ static void make_sample(void *room, long i, double *cut_m, double *EA_N, double 
     hf_built_errors_apply(&r->errors, 1, r->z, cut_m, EA_N, move_m);
 }
 
-static void make_load_case(nets_room *r, int i, hf_built_net *net)
-{
-    const hf_built_nets *nets = r->nets;
-    const double *move_m = nets->attachment_move_m;
-    if (move_m) move_m += 3 * (size_t)i * (size_t)nets->model->n_attachment;
-    hf_built_load_case(&r->built, &nets->load_cases->material, &nets->load_cases->load_case[i], move_m, r->cut_m,
-                       r->move_m, r->load_N, net);
-}
-
 /* Sets *net to a load case or a sample, in the arrays of the room. */
 static void make_net(nets_room *r, int i_net, hf_built_net *net)
 {
+    const hf_built_nets *nets = r->nets;
     const hf_model *m = &r->built.model;
     size_t n = (size_t)m->n_cable * sizeof(double);
-    if (i_net < r->nets->as.n_load_case) {
-        make_load_case(r, i_net, net);
+    if (i_net < nets->as.n_load_case) {
+        const double *move_m = nets->attachment_move_m;
+        if (move_m) move_m += 3 * (size_t)i_net * (size_t)m->n_attachment;
+        hf_built_load_case(&r->built, &nets->load_cases->material, &nets->load_cases->load_case[i_net], move_m,
+                           r->cut_m, r->move_m, r->load_N, net);
         return;
     }
     unsigned varies = hf_built_errors_vary(&r->errors);
@@ -134,7 +129,7 @@ static void make_net(nets_room *r, int i_net, hf_built_net *net)
     memcpy(r->cut_m, m->target, n);
     memcpy(r->EA_N, m->EA_N, n);
     memset(r->move_m, 0, 3 * (size_t)m->n_node * sizeof(double));
-    make_sample(r, i_net - r->nets->as.n_load_case, r->cut_m, net->EA_N ? r->EA_N : NULL,
+    make_sample(r, i_net - nets->as.n_load_case, r->cut_m, net->EA_N ? r->EA_N : NULL,
                 net->support_displacement_m ? r->move_m : NULL);
 }
 

@@ -155,8 +155,7 @@ void hf_directions_draw(const hf_directions *d, long sample, const double *point
         return;
     }
     for (int i = 0; i < n_error; i++)
-        for (int k = 0; k < d->n; k++)
-            change[k] -= d->axis[(size_t)i * (size_t)d->n + (size_t)k] * z[i];
+        hf_subtract((size_t)d->n, z[i], d->axis + (size_t)i * (size_t)d->n, change);
     for (int i = 0; i < n_error; i++)
         for (int k = 0; k < d->n; k++)
             z[i] += d->axis[(size_t)i * (size_t)d->n + (size_t)k] * change[k];

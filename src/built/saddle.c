@@ -596,11 +596,7 @@ static void solve_border(const hf_saddle *s, const hf_saddle_answer *a, double *
     memcpy(border + n, force, n * sizeof *border);
     hf_dense_solve(s->n_border, s->dense, s->dense_pivot, 1, border);
     memcpy(force, border + n, n * sizeof *force);
-    for (size_t i = 0; i < n; i++) {
-        border[n + i] = 0;
-        for (size_t k = 0; k < n; k++)
-            border[n + i] += s->flex[i * n + k] * force[k];
-    }
+    hf_dots(n, n, s->flex, n, force, border + n);
 }
 
 /* Reads the three unknowns of a row in SI units, or zeros when it has none. */

@@ -12,6 +12,7 @@
 
 #include "base/arena.h"
 #include "base/elementary.h"
+#include "linalg/dot.h"
 #include "linalg/quadratic.h"
 
 #include <math.h>
@@ -89,11 +90,8 @@ static void take_list(tensions *t, int n, const int *list)
 static void fall_by(const tensions *t, const double *adjustment_m)
 {
     memset(t->fall_N, 0, (size_t)t->p->n_tension * sizeof *t->fall_N);
-    for (int k = 0; k < t->n; k++) {
-        const double *rate = rates_of(t, k);
-        for (int i = 0; i < t->p->n_tension && adjustment_m[k] != 0; i++)
-            t->fall_N[i] -= adjustment_m[k] * rate[i];
-    }
+    for (int k = 0; k < t->n; k++)
+        if (adjustment_m[k] != 0) hf_subtract((size_t)t->p->n_tension, adjustment_m[k], rates_of(t, k), t->fall_N);
 }
 
 static void fall_by_steps(const tensions *t, const int *steps, double *adjustment_m)
@@ -501,8 +499,7 @@ int hf_turnbuckles_next(const hf_turnbuckles_problem *p, const int *steps, const
         is_taut = keeps;
         next_N = this_N;
     }
-    for (int k = 0; k < p->n_tension; k++)
-        fall_N[k] -= next_N[k];
+    hf_subtract((size_t)p->n_tension, 1, next_N, fall_N);
     done[next] = steps[next];
     return next;
 }

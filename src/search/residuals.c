@@ -6,6 +6,7 @@
  *                           close_rate: rows over all nets -> df/dv, gradient J'f          (for each variable) */
 #include "search/residuals.h"
 
+#include "linalg/dot.h"
 #include "search/parallel.h"
 
 #include <math.h>
@@ -145,9 +146,7 @@ static void close_rate(void *context, int i_room, int i_class)
     (void)i_room;
     if (r->n_room && r->v->objectives->nets)
         hf_objectives_nets_close(r->v->objectives, &r->room[0].point, r->value, rate);
-    q->gradient[i_class] = 0;
-    for (int i = 0; i < r->n_row; i++)
-        q->gradient[i_class] += rate[i] * r->value[i];
+    q->gradient[i_class] = hf_dot((size_t)r->n_row, rate, r->value);
 }
 
 hf_status hf_residuals_rates(const hf_residuals *r, const hf_sensitivity *slopes, const hf_workspace *w, double *rate,

@@ -35,38 +35,25 @@ static bool is_rigid(const hf_evaluator *v, int e, int variable)
     return sets == HF_SETS_LENGTH || (sets == HF_SETS_START && hf_law_has((hf_law)m->law[e], HF_LAW_IS_RIGID));
 }
 
-/* Returns the number of cables of law length. */
-static int count_rigid(const hf_evaluator *v)
-{
-    const hf_model *m = v->model;
-    int n = 0;
-    for (int e = 0; e < m->n_cable; e++)
-        n += is_rigid(v, e, -1);
-    for (int k = 0; k < m->n_variable; k++)
-        if (m->variable_cable[k] >= 0)
-            n += is_rigid(v, m->variable_cable[k], k) - is_rigid(v, m->variable_cable[k], -1);
-    return n;
-}
-
-/* Returns the number of supports that design variables move. place_of_row [n_node] (may be NULL) receives the index of
- * their first coordinates in `move`, and -1 for all other rows. */
+/* Returns the number of supports that design variables move. place_of_row [n_node] receives the index of their first
+ * coordinates in `move`, and -1 for all other rows. */
 static int place_supports(const hf_model *m, int *place_of_row)
 {
     int n = 0;
-    for (int row = 0; place_of_row && row < m->n_node; row++)
+    for (int row = 0; row < m->n_node; row++)
         place_of_row[row] = -1;
     for (int row = m->n_free; m->moves_supports && row < m->n_node; row++) {
         bool moves = false;
         for (int k = 0; k < m->n_variable; k++)
             moves |= m->variable[k].support_row == row;
-        if (moves && place_of_row) place_of_row[row] = 3 * (m->n_free + m->n_attachment + n);
+        if (moves) place_of_row[row] = 3 * (m->n_free + m->n_attachment + n);
         n += moves;
     }
     return n;
 }
 
-/* Numbers the variables and lists the design variable of each cable, the cables of law length, and the coordinates of
- * each row. */
+/* Numbers the variables, lists the design variable of each cable, the cables of law length, and the coordinates of each
+ * row, and counts the last two. */
 static void number(hf_sensitivity *s)
 {
     const hf_model *m = s->v->model;
@@ -77,33 +64,33 @@ static void number(hf_sensitivity *s)
         s->variable_of_cable[e] = -1;
     for (int k = 0; k < m->n_variable; k++)
         if (m->variable_cable[k] >= 0) s->variable_of_cable[m->variable_cable[k]] = k;
-    for (int e = n = 0; e < m->n_cable; e++) {
-        s->rigid_of_cable[e] = is_rigid(s->v, e, s->variable_of_cable[e]) ? n : -1;
-        if (s->rigid_of_cable[e] >= 0) s->rigid[n++] = e;
+    for (int e = 0; e < m->n_cable; e++) {
+        s->rigid_of_cable[e] = is_rigid(s->v, e, s->variable_of_cable[e]) ? s->n_rigid : -1;
+        if (s->rigid_of_cable[e] >= 0) s->rigid[s->n_rigid++] = e;
     }
     for (int row = 0; row < m->n_node; row++)
         s->place_of_row[row] = row < m->n_free ? 3 * row : -1;
     for (int i = 0; i < m->n_attachment; i++)
         s->place_of_row[m->attachment_row[i]] = 3 * (m->n_free + i);
-    place_supports(m, s->base_of_row);
+    s->n_dof = 3 * ((size_t)m->n_free + (size_t)m->n_attachment + (size_t)place_supports(m, s->base_of_row));
 }
 
-hf_status hf_sensitivity_create(const hf_evaluator *v, hf_sensitivity *s)
+hf_status hf_sensitivity_create(const hf_evaluator *v, hf_sensitivity *to)
 {
     const hf_model *m = v->model;
-    *s = (hf_sensitivity){.v = v, .n = m->n_leader, .n_rigid = count_rigid(v)};
-    s->n_dof = 3 * ((size_t)m->n_free + (size_t)m->n_attachment + (size_t)place_supports(m, NULL));
-    s->matrix = hf_newton_matrix_packed(m);
-    s->n_lane = hf_packed_band_rows(&s->matrix) * HF_LANES;
-    HF_TRY(HF_ARENA_MAKE(&s->arena, lay_out(&s->arena, s)));
-    number(s);
-    return m->n_attachment ? hf_schur_create(m, &s->schur) : HF_OK;
+    *to = (hf_sensitivity){.v = v, .n = m->n_leader, .matrix = hf_newton_matrix_packed(m)};
+    to->n_lane = hf_packed_band_rows(&to->matrix) * HF_LANES;
+    HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_SENSITIVITY_INDICES(HF_ARENA_ITEM)));
+    number(to);
+    HF_TRY(HF_ARENA_MAKE(&to->arena, lay_out(&to->arena, to)));
+    return m->n_attachment ? hf_schur_create(m, &to->schur) : HF_OK;
 }
 
 void hf_sensitivity_free(hf_sensitivity *s)
 {
     hf_arena_free(&s->schur.arena);
     hf_arena_free(&s->arena);
+    hf_arena_free_block(s->block);
     *s = (hf_sensitivity){0};
 }
 
@@ -127,16 +114,11 @@ static double direct_tension(const hf_sensitivity *s, const hf_workspace *w, int
 {
     int e = s->v->model->variable_cable[k];
     hf_law_cable cable = hf_workspace_cable(s->v->model, w, e);
-    switch (hf_evaluate_sets(s->v, k)) {
-    case HF_SETS_DENSITY:
-        return length / hf_evaluate_divisor(s->v, k);
-    case HF_SETS_LENGTH:
-        return -hf_newton_matrix_stiffness(cable, length, w->tension_N[e]);
-    case HF_SETS_CUT:
-        return length > cable.target ? -cable.EA_N * length / (cable.target * cable.target) : 0;
-    default:
-        return 1;
-    }
+    hf_variable_sets sets = hf_evaluate_sets(s->v, k);
+    if (sets == HF_SETS_DENSITY) return length / hf_evaluate_divisor(s->v, k);
+    if (sets == HF_SETS_LENGTH) return -hf_newton_matrix_stiffness(cable, length, w->tension_N[e]);
+    if (sets != HF_SETS_CUT) return 1;
+    return length > cable.target ? -cable.EA_N * length / (cable.target * cable.target) : 0;
 }
 
 /* Adds the forces with which a support pulls on the other ends of its cables, per unit of design variable k. */

@@ -11,15 +11,17 @@
 #include "solve/schur.h"
 #include <hifdm/evaluate.h>
 
-/* The arrays of hf_sensitivity for a model m. n is the number of variables, and n_room that of threads. */
-#define HF_SENSITIVITY_FIELDS(X)                                                                                       \
+/* The arrays of hf_sensitivity for a model m: first the indices, from which the sizes of the others follow. n is the
+ * number of variables, and n_room that of threads. */
+#define HF_SENSITIVITY_INDICES(X)                                                                                      \
     X(int, class_of_variable, m->n_variable, "class of each design variable")                                          \
     X(int, variable_of_cable, m->n_cable, "design variable, or -1")                                                    \
     X(int, place_of_row, m->n_node, "first coordinate of a free node or attachment; -1: fixed")                        \
     X(int, base_of_row, m->n_node, "first coordinate of a support that is varied; the truss may also move it")         \
+    X(int, rigid, m->n_cable, "[n_rigid] cables of law length")                                                        \
+    X(int, rigid_of_cable, m->n_cable, "index in `rigid`, or -1")
+#define HF_SENSITIVITY_FIELDS(X)                                                                                       \
     X(double, move, n * to->n_dof, "[n][n_dof] dx/dv, m per unit of v")                                                \
-    X(int, rigid, to->n_rigid, "cables of law length")                                                                 \
-    X(int, rigid_of_cable, m->n_cable, "index in `rigid`, or -1")                                                      \
     X(double, multiplier, n *(size_t)to->n_rigid, "[n][n_rigid] dT/dv beyond what the stiff spring gives")             \
     X(hf_strained, strained, m->n_cable, "scratch: the cables at the shape of `move`")                                 \
     X(double, answer, m->n_attachment || to->n_rigid ? 3 * n * (size_t)m->n_free : 0,                                  \
@@ -41,10 +43,12 @@ typedef struct {
     int n_rigid;  /* number of cables of law length */
     size_t n_dof; /* coordinates: 3*row + c of free nodes, 3*attachment + c, supports that are varied */
     size_t n_lane;
+    HF_SENSITIVITY_INDICES(HF_ARENA_MEMBER)
     HF_SENSITIVITY_FIELDS(HF_ARENA_MEMBER)
     hf_packed_band matrix; /* Newton matrix of the net with fixed supports */
     hf_schur schur;        /* used with a truss only */
     hf_arena arena;
+    void *block; /* of the indices */
 } hf_sensitivity;
 
 /* Allocates the derivatives for an evaluator. Returns HF_OK or HF_NO_MEMORY; call hf_sensitivity_free in either

@@ -32,6 +32,15 @@ static void add(hf_watch *q, hf_watched item)
     q->n++;
 }
 
+/* Adds n copies of an item in which *index, one of its members, is the entry of `list`, or its number without a list. */
+static void add_each(hf_watch *q, hf_watched *item, int *index, int n, const int *list)
+{
+    for (int i = 0; i < n; i++) {
+        *index = list ? list[i] : i;
+        add(q, *item);
+    }
+}
+
 /* Adds a cap on a ratio, and returns its index. */
 static int add_cap(hf_watch *q, double cap)
 {
@@ -50,14 +59,10 @@ static void add_row(const hf_evaluator *v, const hf_limit *row, hf_watch *q)
         item.upper = row->upper;
     /* A deflection has no lower bound: its derivative vanishes at 0, and no size is below 0. */
     if (row->kind == HF_LIMIT_TENSION) item.lower = row->lower;
-    for (int i = 0; i < row->n_cable; i++) {
-        item.cable = row->cable[i];
-        add(q, item);
-    }
-    for (int i = 0; row->kind == HF_LIMIT_DEFLECTION && i < v->model->n_attachment; i++) {
-        item.attachment = i;
-        add(q, item);
-    }
+    if (row->kind == HF_LIMIT_DEFLECTION)
+        add_each(q, &item, &item.attachment, v->model->n_attachment, NULL);
+    else
+        add_each(q, &item, &item.cable, row->n_cable, row->cable);
 }
 
 /* Adds the items of objective k: those of its limit or, if it is minimised and has corners, those of its level. */
@@ -76,18 +81,9 @@ static void add_objective(const hf_evaluator *v, const hf_watch_front *front, in
         item.ratio = add_cap(q, most);
     else
         item.upper = most;
-    for (int i = 0; is_ratio && i < g->n_cable; i++) {
-        item.cable = g->cable[i];
-        add(q, item);
-    }
-    for (int i = 0; g->settings.figure == HF_FIGURE_PULL && i < m->n_node - m->n_free; i++) {
-        item.support = i;
-        add(q, item);
-    }
-    for (int i = 0; g->settings.figure == HF_FIGURE_DEFLECTION && i < m->n_attachment; i++) {
-        item.attachment = i;
-        add(q, item);
-    }
+    if (is_ratio) add_each(q, &item, &item.cable, g->n_cable, g->cable);
+    if (g->settings.figure == HF_FIGURE_PULL) add_each(q, &item, &item.support, m->n_node - m->n_free, NULL);
+    if (g->settings.figure == HF_FIGURE_DEFLECTION) add_each(q, &item, &item.attachment, m->n_attachment, NULL);
     if (!has_corners) add(q, item);
 }
 

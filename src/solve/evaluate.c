@@ -96,18 +96,10 @@ hf_variable_sets hf_evaluate_sets(const hf_evaluator *v, int k)
     hf_vary vary = hf_model_vary(v->model, k);
     if (vary == HF_VARY_PRETENSION && v->rule == HF_RULE_SEEDED) return HF_SETS_START;
     if (vary == HF_VARY_PRETENSION) vary = v->rule == HF_RULE_TENSION ? HF_VARY_TENSION : HF_VARY_FORCE_DENSITY;
-    switch (vary) {
-    case HF_VARY_TENSION:
-        return v->by_density ? HF_SETS_DENSITY : HF_SETS_TENSION;
-    case HF_VARY_FORCE_DENSITY:
-        return HF_SETS_DENSITY;
-    case HF_VARY_LENGTH:
-        return HF_SETS_LENGTH;
-    case HF_VARY_UNSTRESSED_LENGTH:
-        return HF_SETS_CUT;
-    default:
-        return HF_SETS_SUPPORT;
-    }
+    if (vary == HF_VARY_TENSION) return v->by_density ? HF_SETS_DENSITY : HF_SETS_TENSION;
+    if (vary == HF_VARY_FORCE_DENSITY) return HF_SETS_DENSITY;
+    if (vary == HF_VARY_LENGTH) return HF_SETS_LENGTH;
+    return vary == HF_VARY_UNSTRESSED_LENGTH ? HF_SETS_CUT : HF_SETS_SUPPORT;
 }
 
 double hf_evaluate_divisor(const hf_evaluator *v, int k)
@@ -123,32 +115,19 @@ static void apply_variable(const hf_evaluator *v, int k, double value, hf_worksp
     const hf_model *m = v->model;
     int e = m->variable_cable[k];
     hf_variable_sets sets = hf_evaluate_sets(v, k);
-    if (sets == HF_SETS_START || sets == HF_SETS_TENSION || sets == HF_SETS_DENSITY)
-        w->q_N_per_m[e] = value / hf_evaluate_divisor(v, k);
-    switch (sets) {
-    case HF_SETS_START: /* the law of the case, with this force density as its start */
-        break;
-    case HF_SETS_TENSION:
-        w->law[e] = HF_LAW_TENSION;
-        w->target[e] = value;
-        break;
-    case HF_SETS_DENSITY:
-        w->law[e] = HF_LAW_FORCE_DENSITY;
-        w->target[e] = w->q_N_per_m[e];
-        break;
-    case HF_SETS_LENGTH:
-        w->law[e] = HF_LAW_LENGTH;
-        w->target[e] = value;
-        break;
-    case HF_SETS_CUT:
-        w->target[e] = value;
-        break;
-    case HF_SETS_SUPPORT:
+    if (sets == HF_SETS_SUPPORT) {
         for (int c = 0; c < 3; c++)
             w->support_displacement_m[c * m->n_node + m->variable[k].support_row] +=
                 value * m->variable[k].direction[c];
-        break;
+        return;
     }
+    if (sets == HF_SETS_START || sets == HF_SETS_TENSION || sets == HF_SETS_DENSITY)
+        w->q_N_per_m[e] = value / hf_evaluate_divisor(v, k);
+    if (sets == HF_SETS_TENSION) w->law[e] = HF_LAW_TENSION;
+    if (sets == HF_SETS_DENSITY) w->law[e] = HF_LAW_FORCE_DENSITY;
+    if (sets == HF_SETS_LENGTH) w->law[e] = HF_LAW_LENGTH;
+    /* HF_SETS_START keeps the law of the case, with this force density as its start. */
+    if (sets != HF_SETS_START) w->target[e] = sets == HF_SETS_DENSITY ? w->q_N_per_m[e] : value;
 }
 
 static bool is_above_cap(const hf_evaluator *v, const hf_form_result *r)

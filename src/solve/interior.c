@@ -78,11 +78,6 @@ static hf_path_cables *block_of(const hf_workspace *w, int e, int *lane)
     return blocks(w) + e / HF_LANES;
 }
 
-static double path_tension_N(const hf_workspace *w, int e)
-{
-    return blocks(w)[e / HF_LANES].T[e % HF_LANES];
-}
-
 /* Returns the squared length of the vector between the ends of cable e, m^2. */
 static double path_square(const hf_workspace *w, int e)
 {
@@ -322,7 +317,7 @@ static bool take_step(const hf_model *m, hf_workspace *w, const hf_newton_rows *
 static void record_path(const hf_model *m, hf_workspace *w, const path_error *error)
 {
     for (int e = 0; e < m->n_cable; e++)
-        w->tension_N[e] = path_tension_N(w, e);
+        w->tension_N[e] = blocks(w)[e / HF_LANES].T[e % HF_LANES];
     hf_history_add_step(m, w, error->balance * m->reference_N, error->length, error->truss_m);
 }
 

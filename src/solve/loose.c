@@ -21,11 +21,6 @@
 
 /* ---- which nodes ---- */
 
-static bool may_be_slack(const hf_workspace *w, int e)
-{
-    return hf_law_has((hf_law)w->law[e], HF_LAW_HAS_MULTIPLIER);
-}
-
 /* Returns the force below which a cable or a load counts as zero, N. The equilibrium is known only within the tolerance
  * of its residual. */
 static double nothing_N(const hf_model *m, const hf_form_settings *s)
@@ -43,7 +38,7 @@ static bool is_loaded(const hf_model *m, const hf_form_settings *s, int row)
 
 static bool is_taut(const hf_model *m, const hf_form_settings *s, const hf_workspace *w, int e)
 {
-    if (!may_be_slack(w, e)) return true;
+    if (!hf_law_has((hf_law)w->law[e], HF_LAW_HAS_MULTIPLIER)) return true; /* it cannot be slack */
     double T = w->tension_N[e], slack_m = hf_law_required_length_m(hf_workspace_cable(m, w, e), T) - w->length_m[e];
     return T > nothing_N(m, s) && T / m->reference_N > slack_m / m->length_m[e];
 }

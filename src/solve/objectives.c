@@ -197,21 +197,12 @@ static void measure_cables(const hf_objective *g, const hf_model *m, const hf_wo
     const hf_objective_settings *s = &g->settings;
     double root = sqrt(g->n_cable), mean_N = s->figure == HF_FIGURE_EVENNESS ? mean_tension_N(g, w) : 0, mass_kg = 0;
     for (int i = 0; i < g->n_cable; i++) {
-        int e = g->cable[i];
-        switch (s->figure) {
-        case HF_FIGURE_TENSION:
-            f[i] = (w->tension_N[e] - s->target) / root;
-            break;
-        case HF_FIGURE_LENGTH:
-            f[i] = (w->length_m[e] - (isnan(s->target) ? m->length_m[e] : s->target)) / root;
-            break;
-        case HF_FIGURE_EVENNESS:
-            f[i] = (w->tension_N[e] / mean_N - 1) / root;
-            break;
-        default:
-            mass_kg += w->length_m[e] * s->mass_kg_per_m;
-            break;
-        }
+        double tension_N = w->tension_N[g->cable[i]], length_m = w->length_m[g->cable[i]];
+        double target_m = isnan(s->target) ? m->length_m[g->cable[i]] : s->target;
+        if (s->figure == HF_FIGURE_TENSION) f[i] = (tension_N - s->target) / root;
+        if (s->figure == HF_FIGURE_LENGTH) f[i] = (length_m - target_m) / root;
+        if (s->figure == HF_FIGURE_EVENNESS) f[i] = (tension_N / mean_N - 1) / root;
+        if (s->figure == HF_FIGURE_MASS) mass_kg += length_m * s->mass_kg_per_m;
     }
     if (s->figure == HF_FIGURE_MASS) f[0] = mass_kg;
 }
@@ -272,27 +263,20 @@ static hf_status measure_shape(const hf_objectives *objectives, int k, const hf_
 {
     const hf_model *m = objectives->model;
     const hf_objective *g = &objectives->objective[k];
+    hf_figure_kind figure = g->settings.figure;
     double largest = -1; /* of several sizes */
-    switch (g->settings.figure) {
-    case HF_FIGURE_PSI:
-        *value = *norm = measure_psi(m, w, p, f);
+    if (figure == HF_FIGURE_PSI || figure == HF_FIGURE_RATIO) {
+        *value = figure == HF_FIGURE_PSI ? (*norm = measure_psi(m, w, p, f)) : measure_ratio(g, m, w, p, f, norm);
         return HF_OK;
-    case HF_FIGURE_PULL:
-    case HF_FIGURE_DEFLECTION:
-        take_sizes(g->settings.figure, m, w, p);
+    }
+    if (figure == HF_FIGURE_PULL || figure == HF_FIGURE_DEFLECTION) {
+        take_sizes(figure, m, w, p);
         largest = measure_largest(g->n_shape_row, p, f);
-        break;
-    case HF_FIGURE_RATIO:
-        *value = measure_ratio(g, m, w, p, f, norm);
-        return HF_OK;
-    case HF_FIGURE_SURFACE:
-    case HF_FIGURE_FACETS:
+    } else if (hf_objectives_is_on_surface(figure)) {
         HF_TRY(hf_cloud_measure(&p->cloud[k], w->position_m, f));
-        break;
-    case HF_FIGURE_GAIN:
+    } else if (figure == HF_FIGURE_GAIN) {
         hf_gain_measure(&p->gain[k], w->position_m, f);
-        break;
-    default:
+    } else {
         measure_cables(g, m, w, f);
     }
     *norm = sqrt(hf_dot((size_t)g->n_shape_row, f, f));
@@ -399,14 +383,6 @@ static double scale_worst(const hf_objective *g, const double *norm, double *par
     return smooth;
 }
 
-static double largest_of(int n, const double *value)
-{
-    double largest = 0;
-    for (int s = 0; s < n; s++)
-        largest = fmax(largest, value[s]);
-    return largest;
-}
-
 /* Combines the nets of objective k: sets *value and *norm. Except for a quantile, its residuals f [n_row of the
  * objective] are scaled so that they have this norm. */
 static void gather_nets(const hf_objectives *objectives, int k, hf_objectives_point *p, double *f, double *value,
@@ -417,8 +393,8 @@ static void gather_nets(const hf_objectives *objectives, int k, hf_objectives_po
     const double *norm_of_net = p->net_norm + place_of_net(objectives, k, g->first_net);
     double *part = p->net_part + place_of_net(objectives, k, g->first_net);
     size_t n = (size_t)g->n_net;
-    *value = largest_of(g->n_net, of_net);
-    *norm = largest_of(g->n_net, norm_of_net);
+    *value = hf_max_magnitude(n, of_net);
+    *norm = hf_max_magnitude(n, norm_of_net);
     if (g->n_net == 1) return;
     if (g->settings.quantile > 0) {
         *value = quantile_of(g->n_net, of_net, g->settings.quantile, part);
@@ -513,29 +489,22 @@ static void push_cables(const hf_objective *g, const hf_model *m, const hf_works
                         double *rate)
 {
     double root = sqrt(g->n_cable), mean_N = 0, mean_rate_N = 0, sum_m = 0;
-    if (g->settings.figure == HF_FIGURE_EVENNESS) {
+    hf_figure_kind figure = g->settings.figure;
+    if (figure == HF_FIGURE_EVENNESS) {
         mean_N = mean_tension_N(g, w);
         for (int i = 0; i < g->n_cable; i++)
             mean_rate_N += by->tension_N[g->cable[i]] / g->n_cable;
     }
     for (int i = 0; i < g->n_cable; i++) {
         int e = g->cable[i];
-        switch (g->settings.figure) {
-        case HF_FIGURE_TENSION:
-            rate[i] = by->tension_N[e] / root;
-            break;
-        case HF_FIGURE_LENGTH:
-            rate[i] = length_rate(m, w, e, by->position_m) / root;
-            break;
-        case HF_FIGURE_EVENNESS:
-            rate[i] = (by->tension_N[e] - w->tension_N[e] * (mean_rate_N / mean_N)) / (mean_N * root);
-            break;
-        default:
-            sum_m += length_rate(m, w, e, by->position_m);
-            break;
-        }
+        double rate_N = by->tension_N[e];
+        if (figure == HF_FIGURE_TENSION) rate[i] = rate_N / root;
+        if (figure == HF_FIGURE_LENGTH) rate[i] = length_rate(m, w, e, by->position_m) / root;
+        if (figure == HF_FIGURE_EVENNESS)
+            rate[i] = (rate_N - w->tension_N[e] * (mean_rate_N / mean_N)) / (mean_N * root);
+        if (figure == HF_FIGURE_MASS) sum_m += length_rate(m, w, e, by->position_m);
     }
-    if (g->settings.figure == HF_FIGURE_MASS) rate[0] = g->settings.mass_kg_per_m * sum_m;
+    if (figure == HF_FIGURE_MASS) rate[0] = g->settings.mass_kg_per_m * sum_m;
 }
 
 /* Returns the change of the length of the vector v when it changes by `rate`; 0 for v = 0. */
@@ -606,27 +575,19 @@ static void push_shape(const hf_objectives *objectives, int k, const hf_workspac
 {
     const hf_model *m = objectives->model;
     const hf_objective *g = &objectives->objective[k];
-    switch (g->settings.figure) {
-    case HF_FIGURE_PSI:
+    hf_figure_kind figure = g->settings.figure;
+    if (figure == HF_FIGURE_PSI)
         push_psi(m, p, by->position_m, rate);
-        break;
-    case HF_FIGURE_PULL:
-    case HF_FIGURE_DEFLECTION:
-        push_largest(g->n_shape_row, g->settings.figure, m, w, p, by, rate);
-        break;
-    case HF_FIGURE_RATIO:
+    else if (figure == HF_FIGURE_PULL || figure == HF_FIGURE_DEFLECTION)
+        push_largest(g->n_shape_row, figure, m, w, p, by, rate);
+    else if (figure == HF_FIGURE_RATIO)
         push_ratio(g, w, p, by, rate);
-        break;
-    case HF_FIGURE_SURFACE:
-    case HF_FIGURE_FACETS:
+    else if (hf_objectives_is_on_surface(figure))
         hf_cloud_push(&p->cloud[k], by->position_m, rate);
-        break;
-    case HF_FIGURE_GAIN:
+    else if (figure == HF_FIGURE_GAIN)
         hf_gain_push(&p->gain[k], by->position_m, rate);
-        break;
-    default:
+    else
         push_cables(g, m, w, by, rate);
-    }
 }
 
 void hf_objectives_push(const hf_objectives *objectives, const hf_workspace *w, hf_objectives_point *p,

@@ -72,26 +72,16 @@ static const char *fault_of(const hf_objectives *objectives, int k, const hf_sur
 static int row_count(const hf_objectives *objectives, const hf_objective *g)
 {
     const hf_model *m = objectives->model;
-    switch (g->settings.figure) {
-    case HF_FIGURE_PSI:
-        return 3 * m->n_inner_node;
-    case HF_FIGURE_PULL:
-        return m->n_node - m->n_free;
-    case HF_FIGURE_DEFLECTION:
-        return m->n_attachment;
-    case HF_FIGURE_MASS:
-        return 1;
-    case HF_FIGURE_RATIO:
-        return 2 * g->n_cable;
-    case HF_FIGURE_FACETS:
-        return hf_cloud_facet_points(objectives->n_facet);
-    case HF_FIGURE_SURFACE:
-        return m->n_inner_node;
-    case HF_FIGURE_GAIN:
-        return 2 * hf_gain_points(&objectives->beam[g - objectives->objective], objectives->n_facet);
-    default:
-        return g->n_cable;
-    }
+    hf_figure_kind figure = g->settings.figure;
+    if (figure == HF_FIGURE_PSI) return 3 * m->n_inner_node;
+    if (figure == HF_FIGURE_PULL) return m->n_node - m->n_free;
+    if (figure == HF_FIGURE_DEFLECTION) return m->n_attachment;
+    if (figure == HF_FIGURE_MASS) return 1;
+    if (figure == HF_FIGURE_RATIO) return 2 * g->n_cable;
+    if (figure == HF_FIGURE_FACETS) return hf_cloud_facet_points(objectives->n_facet);
+    if (figure == HF_FIGURE_SURFACE) return m->n_inner_node;
+    if (figure != HF_FIGURE_GAIN) return g->n_cable;
+    return 2 * hf_gain_points(&objectives->beam[g - objectives->objective], objectives->n_facet);
 }
 
 /* ---- creation ---- */
