@@ -43,7 +43,7 @@ hf_status hf_joint_factor(const hf_model *m, hf_workspace *w, hf_newton_block *b
 void hf_joint_solve(const hf_model *m, const hf_workspace *w, hf_newton_block *block_of, const hf_newton_rows *rows,
                     double *rhs)
 {
-    hf_newton_matrix_solve(m, w, rows, rhs);
+    hf_newton_matrix_solve(m, w, rows, 1, rhs);
     if (!has_truss(m, w)) return;
     hf_schur schur = hf_schur_of(m, w);
     int n_free = 3 * m->n_free;
@@ -55,7 +55,7 @@ void hf_joint_solve(const hf_model *m, const hf_workspace *w, hf_newton_block *b
     hf_schur_solve(&schur, move);
     memset(answer, 0, (size_t)n_free * sizeof *answer);
     hf_schur_push(m, w, block_of, move, answer);
-    hf_newton_matrix_solve(m, w, NULL, answer);
+    hf_newton_matrix_solve(m, w, NULL, 1, answer);
     hf_add((size_t)n_free, 1, answer, rhs);
     memcpy(pull, move, (size_t)schur.n * sizeof *pull);
 }

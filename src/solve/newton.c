@@ -243,7 +243,7 @@ static void look_for_drift(const hf_model *m, hf_workspace *w, hf_form_result *r
     for (int k = 0; k < 3 * w->n_moving; k++)
         w->newton_step[k] = k < n ? 1 + k % 7 - k % 3 : 0; /* attachments stay, and the pull on them must not change */
     for (int k = 0; k < DRIFT_ROUNDS; k++) {
-        hf_newton_matrix_solve(m, w, NULL, w->newton_step);
+        hf_newton_matrix_solve(m, w, NULL, 1, w->newton_step);
         if ((row = normalise_step(m, w)) < 0) return;
     }
     for (int side = -1; side <= 1 && r->n_drifting == 0; side += 2) {

@@ -108,11 +108,6 @@ static void stiffen(const hf_model *m, hf_workspace *w, const hf_newton_rows *ro
 
 /* ---- factor and solve ---- */
 
-static void back_solve(const hf_model *m, const hf_workspace *w, int n, int half_bandwidth, int n_rhs, double *rhs)
-{
-    (m->by_lapack ? hf_band_back_solve_lapack : hf_band_back_solve)(n, half_bandwidth, n_rhs, w->newton_band, rhs, n);
-}
-
 hf_status hf_newton_matrix_factor_blocks(const hf_model *m, hf_workspace *w, hf_newton_block *block_of,
                                          const double *spring_N_per_m, const hf_newton_rows *rows, double *condition)
 {
@@ -175,17 +170,14 @@ double hf_newton_matrix_factor_below(const hf_model *m, hf_workspace *w, double 
 }
 
 /* With rows, this works in place because the index of a row among the moving ones never exceeds its index among all. */
-void hf_newton_matrix_solve(const hf_model *m, const hf_workspace *w, const hf_newton_rows *rows, double *rhs)
+void hf_newton_matrix_solve(const hf_model *m, const hf_workspace *w, const hf_newton_rows *rows, int n_rhs,
+                            double *rhs)
 {
-    if (!rows) {
-        hf_newton_matrix_solve_many(m, w, 1, rhs);
-        return;
-    }
-    int n = 3 * rows->n;
-    for (int i = 0; i < m->n_free; i++)
+    int n = rows ? 3 * rows->n : hf_newton_matrix_dofs(m), k = rows ? column_of(rows) - 1 : 3 * m->half_bandwidth + 2;
+    for (int i = 0; rows && i < m->n_free; i++)
         if (rows->place[i] >= 0) memmove(rhs + 3 * rows->place[i], rhs + 3 * i, 3 * sizeof *rhs);
-    back_solve(m, w, n, column_of(rows) - 1, 1, rhs);
-    for (int i = m->n_free - 1; i >= 0; i--)
+    (m->by_lapack ? hf_band_back_solve_lapack : hf_band_back_solve)(n, k, n_rhs, w->newton_band, rhs, n);
+    for (int i = m->n_free - 1; rows && i >= 0; i--)
         for (int c = 0; c < 3; c++)
             rhs[3 * i + c] = rows->place[i] >= 0 ? rhs[3 * rows->place[i] + c] : 0;
 }
@@ -193,10 +185,4 @@ void hf_newton_matrix_solve(const hf_model *m, const hf_workspace *w, const hf_n
 hf_status hf_newton_matrix_factor(const hf_model *m, hf_workspace *w, double *condition)
 {
     return hf_newton_matrix_factor_blocks(m, w, hf_newton_matrix_block, NULL, NULL, condition);
-}
-
-void hf_newton_matrix_solve_many(const hf_model *m, const hf_workspace *w, int n_rhs, double *rhs)
-{
-    int n = hf_newton_matrix_dofs(m);
-    back_solve(m, w, n, 3 * m->half_bandwidth + 2, n_rhs, rhs);
 }

@@ -306,7 +306,7 @@ static void solve_free(const hf_precise *p, double *v)
 {
     const hf_model *m = p->m;
     if (m->has_newton) {
-        hf_newton_matrix_solve(m, p->w, NULL, v);
+        hf_newton_matrix_solve(m, p->w, NULL, 1, v);
         return;
     }
     double *b = p->w->certificate_work;

@@ -127,7 +127,7 @@ static void subtract_panel(const hf_model *m, const hf_workspace *w, hf_newton_b
             for (int r = 0; r < 3; r++)
                 column[r] += block[r][c];
     }
-    hf_newton_matrix_solve_many(m, w, (int)n_column, s->column);
+    hf_newton_matrix_solve(m, w, NULL, (int)n_column, s->column);
     for (size_t j = 0; j < n_column; j++) {
         double *row = s->stiffness + (3 * (size_t)from + j) * n;
         hf_schur_pull(m, w, block_of, s->column + j * n_dof, row);
