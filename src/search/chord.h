@@ -156,10 +156,10 @@ size_t hf_chord_bytes(const hf_evaluator *evaluator, size_t *lanes_bytes);
 hf_status hf_chord_lanes_create(const hf_chord *chord, hf_chord_lanes *lanes);
 
 /* The steps of a lane, which hf_chord_run and built/near.h share. hf_chord_begin starts a lane with the displacements
- * of the initial shape. hf_chord_look computes the forces in all lanes and sets residual, gap and excess. hf_chord_goes_on
- * returns true, and counts a step, if the lane shall take one more because its excess falls fast enough; this is not
- * required of the first `patience` steps. hf_chord_report measures all lanes unless they are measured, and writes the
- * figures of a converged lane. */
+ * of the initial shape. hf_chord_look computes the forces in all lanes and sets residual, gap and excess.
+ * hf_chord_goes_on returns true, and counts a step, if the lane shall take one more because its excess falls fast
+ * enough; this is not required of the first `patience` steps. hf_chord_report measures all lanes unless they are
+ * measured, and writes the figures of a converged lane. */
 void hf_chord_begin(const hf_chord *chord, const hf_chord_lanes *lanes, int lane, hf_chord_progress *progress);
 void hf_chord_look(const hf_chord *chord, const hf_chord_lanes *lanes, hf_chord_progress *progress);
 bool hf_chord_goes_on(int lane, int patience, hf_chord_progress *progress);

@@ -32,7 +32,8 @@ static void add(hf_watch *q, hf_watched item)
     q->n++;
 }
 
-/* Adds n copies of an item in which *index, one of its members, is the entry of `list`, or its number without a list. */
+/* Adds n copies of an item in which *index, one of its members, is the entry of `list`, or without a list the number of
+ * the copy. */
 static void add_each(hf_watch *q, hf_watched *item, int *index, int n, const int *list)
 {
     for (int i = 0; i < n; i++) {

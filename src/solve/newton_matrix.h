@@ -194,8 +194,8 @@ static inline double hf_newton_matrix_rounding(int half_bandwidth, double n_cabl
     return HF_UNIT * (1.1 * (k + 4) * (k + 1) + 400 + 20 * n_cable);
 }
 
-/* Solves in place with the factor in newton_band: rhs [n_rhs][3 n_free], forces in N, becomes the step in m. rows: NULL,
- * or the moving rows of the factor, for one right-hand side; the step of the others is 0. */
+/* Solves in place with the factor in newton_band: rhs [n_rhs][3 n_free], forces in N, becomes the step in m. rows:
+ * NULL, or the moving rows of the factor, for one right-hand side; the step of the others is 0. */
 void hf_newton_matrix_solve(const hf_model *model, const hf_workspace *workspace, const hf_newton_rows *rows, int n_rhs,
                             double *rhs);
 
