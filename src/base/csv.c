@@ -17,6 +17,8 @@ void hf_csv_free(hf_csv *t)
     free(t->header);
     free(t->cell);
     free(t->line);
+    free(t->own);
+    free(t->known);
     *t = (hf_csv){0};
 }
 
@@ -39,6 +41,11 @@ hf_status hf_csv_close_faults(hf_csv *t)
     if (t->n_fault > HF_FAULT_MAX)
         hf_error(t->messages, HF_BAD_CASE, "%s: and %d more faults", t->path, t->n_fault - HF_FAULT_MAX);
     return t->n_fault ? HF_BAD_CASE : HF_OK;
+}
+
+hf_status hf_csv_no_memory(const hf_csv *t)
+{
+    return hf_error(t->messages, HF_NO_MEMORY, "%s: out of memory", t->path);
 }
 
 /* ---- cells that look like formulas ----
@@ -230,7 +237,7 @@ hf_status hf_csv_read(const char *path, int column_max, hf_csv *t, hf_messages *
         return hf_error(messages, HF_BAD_CASE, "%s: UTF-16 text; save the file as CSV UTF-8", path);
     if (strlen(t->text) != length) return hf_error(messages, HF_BAD_CASE, "%s: not a text file", path);
     t->header = malloc(2 * (size_t)column_max * sizeof *t->header); /* the second half holds the fields of one line */
-    if (!t->header) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    if (!t->header) return hf_csv_no_memory(t);
     char *rest = t->text, *line, **field = t->header + column_max;
     uneven_lines uneven = {0};
     if (!strncmp(rest, "\xEF\xBB\xBF", 3)) rest += 3; /* byte order mark of spreadsheet programs */
@@ -241,8 +248,7 @@ hf_status hf_csv_read(const char *path, int column_max, hf_csv *t, hf_messages *
             hf_csv_fault(t, n_line, NULL, "columns are separated by commas, not by ", separator);
             return hf_csv_close_faults(t);
         }
-        if (!take_line(t, line, n_line, field, column_max, &uneven))
-            return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+        if (!take_line(t, line, n_line, field, column_max, &uneven)) return hf_csv_no_memory(t);
     }
     tell_uneven(t, &uneven);
     if (t->n_column == 0)
@@ -417,51 +423,69 @@ int hf_csv_word(hf_csv *t, int row, int column, const char *id, const char *cons
 
 /* ---- ids ---- */
 
-static int compare_named(const void *a, const void *b)
+/* An id and its row in the table, or its index in a list. */
+struct hf_csv_id {
+    const char *id;
+    int row;
+};
+
+static int compare_ids(const void *a, const void *b)
 {
-    const hf_csv_named *x = a, *y = b;
+    const struct hf_csv_id *x = a, *y = b;
     int order = strcmp(x->id, y->id);
     return order ? order : (x->row > y->row) - (x->row < y->row);
 }
 
-static int compare_id(const void *key, const void *item)
+static int compare_with_id(const void *key, const void *item)
 {
-    return strcmp(key, ((const hf_csv_named *)item)->id);
+    return strcmp(key, ((const struct hf_csv_id *)item)->id);
 }
 
-hf_csv_named *hf_csv_index(hf_csv *t, int column)
+/* Sorts ids, every stride-th of a list, into new memory. */
+static hf_status sort_ids(const hf_csv *t, int n, const char *const *id, int stride, struct hf_csv_id **sorted)
 {
-    hf_csv_named *index = malloc((size_t)t->n_row * sizeof *index);
-    if (!index) return NULL;
-    for (int r = 0; r < t->n_row; r++) {
-        index[r] = (hf_csv_named){hf_csv_cell(t, r, column), r};
-        if (!*index[r].id) hf_csv_fault(t, t->line[r], NULL, "the id is empty", "");
-        if (strlen(index[r].id) > ID_MAX) hf_csv_fault(t, t->line[r], NULL, "the id is longer than 255 bytes", "");
-    }
-    qsort(index, (size_t)t->n_row, sizeof *index, compare_named);
-    for (int r = 1; r < t->n_row; r++)
-        if (*index[r].id && !strcmp(index[r].id, index[r - 1].id)) {
-            char what[64];
-            snprintf(what, sizeof what, "this id was used before, on line %d", t->line[index[r - 1].row]);
-            hf_csv_fault(t, t->line[index[r].row], index[r].id, what, "");
-            t->has_doubles = true;
-        }
-    return index;
+    *sorted = malloc((size_t)n * sizeof **sorted);
+    if (!*sorted) return hf_csv_no_memory(t);
+    for (int i = 0; i < n; i++)
+        (*sorted)[i] = (struct hf_csv_id){id[(ptrdiff_t)i * stride], i};
+    qsort(*sorted, (size_t)n, sizeof **sorted, compare_ids);
+    return HF_OK;
 }
 
-hf_csv_named *hf_csv_index_of(int n, const char *const *id)
+static int find_id(const struct hf_csv_id *sorted, int n, const char *id)
 {
-    hf_csv_named *index = malloc((size_t)n * sizeof *index);
-    for (int i = 0; index && i < n; i++)
-        index[i] = (hf_csv_named){id[i], i};
-    if (index) qsort(index, (size_t)n, sizeof *index, compare_named);
-    return index;
-}
-
-int hf_csv_row_of(const hf_csv_named *index, int n_row, const char *id)
-{
-    const hf_csv_named *hit = bsearch(id, index, (size_t)n_row, sizeof *index, compare_id);
+    const struct hf_csv_id *hit = bsearch(id, sorted, (size_t)n, sizeof *sorted, compare_with_id);
     return hit ? hit->row : -1;
+}
+
+hf_status hf_csv_index(hf_csv *t, int column)
+{
+    for (int r = 0; r < t->n_row; r++) {
+        const char *id = hf_csv_cell(t, r, column);
+        if (!*id) hf_csv_fault(t, t->line[r], NULL, "the id is empty", "");
+        if (strlen(id) > ID_MAX) hf_csv_fault(t, t->line[r], NULL, "the id is longer than 255 bytes", "");
+    }
+    HF_TRY(sort_ids(t, t->n_row, (const char *const *)t->cell + column, t->n_column, &t->own));
+    for (int k = 1; k < t->n_row; k++) {
+        const struct hf_csv_id *id = t->own + k;
+        if (!*id->id || strcmp(id->id, id[-1].id) != 0) continue;
+        char what[64];
+        snprintf(what, sizeof what, "this id was used before, on line %d", t->line[id[-1].row]);
+        hf_csv_fault(t, t->line[id->row], id->id, what, "");
+        t->has_doubles = true;
+    }
+    return HF_OK;
+}
+
+hf_status hf_csv_know(hf_csv *t, int n, const char *const *id)
+{
+    t->n_known = n;
+    return sort_ids(t, n, id, 1, &t->known);
+}
+
+int hf_csv_find_known(const hf_csv *t, const char *id)
+{
+    return find_id(t->known, t->n_known, id);
 }
 
 /* Returns true if this unknown name was reported before. Records it otherwise, while there is room. */
@@ -475,11 +499,10 @@ static bool is_reported(hf_csv *t, const char *name)
 
 /* If `of` has duplicate ids, one of those may be the misspelt id. Each unknown name is then reported once, although
  * several rows may contain it. */
-int hf_csv_reference(hf_csv *t, int row, int column, const char *id, const char *what, const hf_csv *of,
-                     const hf_csv_named *index)
+int hf_csv_reference(hf_csv *t, int row, int column, const char *id, const char *what, const hf_csv *of)
 {
     const char *name = hf_csv_cell(t, row, column);
-    int at = hf_csv_row_of(index, of->n_row, name);
+    int at = find_id(of->own, of->n_row, name);
     if (at >= 0) return at;
     if (!of->has_doubles || !is_reported(t, name)) hf_csv_fault(t, t->line[row], id, what, *name ? name : "(empty)");
     return 0;

@@ -30,6 +30,8 @@ typedef struct {
     bool has_doubles;        /* an id occurs twice: unknown names elsewhere may be a consequence */
     int n_unknown;           /* ids that another table with duplicate ids lacks; each is reported once */
     const char *unknown[HF_CSV_UNKNOWN_MAX];
+    struct hf_csv_id *own, *known; /* sorted ids: of the rows; of the things that the table may refer to */
+    int n_known;
     char *text;
     int row_capacity;
 } hf_csv;
@@ -49,6 +51,9 @@ void hf_csv_fault(hf_csv *table, int line, const char *id, const char *what, con
 /* Returns HF_BAD_CASE if there were faults, else HF_OK. Reports how many faults were only counted. */
 hf_status hf_csv_close_faults(hf_csv *table);
 
+/* Reports that there is no memory for the table. Returns HF_NO_MEMORY. */
+hf_status hf_csv_no_memory(const hf_csv *table);
+
 /* Returns the index of the column with this name, or -1. */
 int hf_csv_column(const hf_csv *table, const char *name);
 
@@ -66,25 +71,18 @@ double hf_csv_number(hf_csv *table, int row, int column, const char *id, const c
 /* Returns the index of the cell among n_word words, in upper or lower case; 0 after reporting a fault. */
 int hf_csv_word(hf_csv *table, int row, int column, const char *id, const char *const *words, int n_word);
 
-typedef struct {
-    const char *id;
-    int row;
-} hf_csv_named;
+/* Sorts the ids of a column. Reports ids that are empty, duplicate or longer than 255 bytes. Duplicate ids set
+ * has_doubles. Returns HF_OK, or HF_NO_MEMORY with an error. */
+hf_status hf_csv_index(hf_csv *table, int column);
 
-/* Returns the ids of a column, sorted, in a block that the caller frees; NULL if memory runs out. Reports ids that are
- * empty, duplicate or longer than 255 bytes. Duplicate ids set has_doubles. */
-hf_csv_named *hf_csv_index(hf_csv *table, int column);
+/* Returns the row of table `of` to which a cell refers. hf_csv_index has sorted the ids of `of`. Reports a fault and
+ * returns 0 if there is no such id. `what` is the start of the message; the name follows it. */
+int hf_csv_reference(hf_csv *table, int row, int column, const char *id, const char *what, const hf_csv *of);
 
-/* Returns a sorted index of the ids id[n], without checks. The caller frees it; NULL if memory runs out. */
-hf_csv_named *hf_csv_index_of(int n, const char *const *id);
-
-/* Returns the row of an id in a sorted index, or -1. */
-int hf_csv_row_of(const hf_csv_named *index, int n_row, const char *id);
-
-/* Returns the row of table `of`, found with its index, to which a cell refers. Reports a fault and returns 0 if there
- * is no such id. `what` is the start of the message; the name follows it. */
-int hf_csv_reference(hf_csv *table, int row, int column, const char *id, const char *what, const hf_csv *of,
-                     const hf_csv_named *index);
+/* hf_csv_know sorts other ids to which the table refers, id[n]. Returns HF_OK, or HF_NO_MEMORY with an error.
+ * hf_csv_find_known then returns the index of an id among them, or -1. */
+hf_status hf_csv_know(hf_csv *table, int n, const char *const *id);
+int hf_csv_find_known(const hf_csv *table, const char *id);
 
 /* n texts that point into tables. */
 typedef struct {

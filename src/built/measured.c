@@ -9,7 +9,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 enum { ID, X, Y, Z, SIGMA, N_COLUMN };
 static const char *const column_name[N_COLUMN] = {"id", "x_m", "y_m", "z_m", "sigma_m"};
@@ -48,19 +47,17 @@ static void read_node(hf_csv *t, const int *where, int r, int row, double sigma_
 static hf_status read_nodes(hf_csv *t, const int *where, const hf_scene *scene, const hf_model *m, double sigma_m,
                             hf_measured *measured)
 {
-    hf_csv_named *rows = hf_csv_index(t, where[ID]), *nodes = hf_csv_index_of(m->n_node, scene->node_id);
-    bool has_memory = rows && nodes;
-    for (int r = 0; r < t->n_row && has_memory; r++) {
+    HF_TRY(hf_csv_index(t, where[ID]));
+    HF_TRY(hf_csv_know(t, m->n_node, scene->node_id));
+    for (int r = 0; r < t->n_row; r++) {
         const char *id = hf_csv_cell(t, r, where[ID]);
-        int node = hf_csv_row_of(nodes, m->n_node, id);
+        int node = hf_csv_find_known(t, id);
         if (node >= 0)
             read_node(t, where, r, m->row_of_node[node], sigma_m, measured);
         else if (*id)
             hf_csv_fault(t, t->line[r], id, "the net has no node with this id", "");
     }
-    free(rows);
-    free(nodes);
-    return has_memory ? HF_OK : HF_NO_MEMORY;
+    return hf_csv_close_faults(t);
 }
 
 /* Returns HF_BAD_CASE unless enough nodes that can move were measured. */
@@ -84,12 +81,10 @@ hf_status hf_measured_read(const char *path, const hf_scene *scene, const hf_mod
     hf_status status = hf_csv_read(path, N_COLUMN + SPARE_COLUMNS, &table, messages);
     table.ours = ours;
     if (status == HF_OK) status = hf_csv_find_columns(&table, column_name, N_COLUMN, Z + 1, where);
-    if (status == HF_OK)
-        status = HF_ARENA_ARRAYS(&measured->block, HF_ARRAY(measured->position_m, 3 * n),
-                                 HF_ARRAY(measured->weight_per_m2, 3 * n), HF_ARRAY(measured->line, n));
+    if (status == HF_OK && HF_ARENA_ARRAYS(&measured->block, HF_ARRAY(measured->position_m, 3 * n),
+                                           HF_ARRAY(measured->weight_per_m2, 3 * n), HF_ARRAY(measured->line, n)))
+        status = hf_csv_no_memory(&table);
     if (status == HF_OK) status = read_nodes(&table, where, scene, m, sigma_m, measured);
-    if (status == HF_OK) status = hf_csv_close_faults(&table);
-    if (status == HF_NO_MEMORY) hf_error(messages, status, "%s: out of memory", path);
     hf_csv_free(&table);
     return status == HF_OK ? count_nodes(path, m, measured, messages) : status;
 }

@@ -204,11 +204,10 @@ enum { ROW_ID, ROW_FORCE, ROW_MOVE = ROW_FORCE + 3, N_ROW_COLUMN = ROW_MOVE + 3 
 static const char *const row_column[N_ROW_COLUMN] = {"id", "Fx_N", "Fy_N", "Fz_N", "dx_m", "dy_m", "dz_m"};
 
 /* Adds a row of the table to the load case. Empty cells are 0. */
-static void add_node(hf_csv *t, const int *where, int r, const hf_csv_named *node, const hf_scene *s,
-                     hf_load_case *load_case)
+static void add_node(hf_csv *t, const int *where, int r, const hf_scene *s, hf_load_case *load_case)
 {
     const char *id = hf_csv_cell(t, r, where[ROW_ID]);
-    int i = hf_csv_row_of(node, s->n_node, id);
+    int i = hf_csv_find_known(t, id);
     if (i < 0) {
         hf_csv_fault(t, t->line[r], id, "the net has no node with this id", "");
         return;
@@ -235,15 +234,11 @@ static hf_status read_table(hf_csv *t, const hf_scene *s, hf_load_case *load_cas
         return hf_error(t->messages, HF_BAD_CASE,
                         "%s:%d: has none of the columns Fx_N, Fy_N, Fz_N, dx_m, dy_m, dz_m, so it says nothing",
                         t->path, t->header_line);
-    hf_csv_named *id = hf_csv_index(t, where[ROW_ID]), *node = hf_csv_index_of(s->n_node, s->node_id);
-    bool has_room = id && node;
-    if (has_room) {
-        for (int r = 0; r < t->n_row; r++)
-            add_node(t, where, r, node, s, load_case);
-    }
-    free(id);
-    free(node);
-    return has_room ? hf_csv_close_faults(t) : hf_error(t->messages, HF_NO_MEMORY, "%s: out of memory", t->path);
+    HF_TRY(hf_csv_index(t, where[ROW_ID]));
+    HF_TRY(hf_csv_know(t, s->n_node, s->node_id));
+    for (int r = 0; r < t->n_row; r++)
+        add_node(t, where, r, s, load_case);
+    return hf_csv_close_faults(t);
 }
 
 static hf_status read_nodes(const maker *q, int row)

@@ -46,14 +46,14 @@ static const char *fault_of_shape(const hf_scene *s, int n, int corner[4])
 }
 
 /* Reads the corners of row r. If the row has a fault, they are all 0. */
-static void read_corners(hf_csv *t, const int *where, const hf_csv_named *node, hf_scene *s, int r)
+static void read_corners(hf_csv *t, const int *where, hf_scene *s, int r)
 {
     const char *id = hf_csv_cell(t, r, where[FACET_ID]);
     int n_before = t->n_fault, *corner = s->facet + 4 * (size_t)r;
     int n = where[FACET_D] >= 0 && *hf_csv_cell(t, r, where[FACET_D]) ? 4 : 3;
     for (int k = 0; k < n; k++) {
         const char *name = hf_csv_cell(t, r, where[FACET_A + k]);
-        corner[k] = hf_csv_row_of(node, s->n_node, name);
+        corner[k] = hf_csv_find_known(t, name);
         if (!*name)
             hf_csv_fault(t, t->line[r], id, "a facet has three or four nodes; there is none in the column ",
                          facet_column[FACET_A + k]);
@@ -131,21 +131,20 @@ static hf_status build(hf_csv *t, hf_scene *s)
     int where[N_FACET_COLUMN] = {0};
     HF_TRY(hf_csv_read(t->path, COLUMN_MAX, t, t->messages));
     HF_TRY(hf_csv_find_columns(t, facet_column, N_FACET_COLUMN, FACET_D, where));
+    HF_TRY(hf_csv_index(t, where[FACET_ID]));
+    HF_TRY(hf_csv_know(t, s->n_node, s->node_id));
     size_t n = (size_t)t->n_row;
-    hf_csv_named *id = hf_csv_index(t, where[FACET_ID]), *node = hf_csv_index_of(s->n_node, s->node_id);
     side *sides = malloc((4 * n + (size_t)s->n_cable) * sizeof *sides);
     s->facet = calloc(4 * n, sizeof *s->facet);
-    bool has_room = id && node && sides && s->facet;
+    bool has_room = sides && s->facet;
     if (has_room) {
         s->n_facet = t->n_row;
         for (int r = 0; r < t->n_row; r++)
-            read_corners(t, where, node, s, r);
+            read_corners(t, where, s, r);
         check_sides(t, where, s, sides, sides + s->n_cable);
     }
-    free(id);
-    free(node);
     free(sides);
-    return has_room ? hf_csv_close_faults(t) : hf_error(t->messages, HF_NO_MEMORY, "%s: out of memory", t->path);
+    return has_room ? hf_csv_close_faults(t) : hf_csv_no_memory(t);
 }
 
 hf_status hf_facet_import(const char *path, hf_scene *scene, hf_messages *messages)

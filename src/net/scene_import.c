@@ -88,16 +88,14 @@ static void read_EA(hf_csv *t, const int *where, int r, const char *id, const do
     if (s->EA_N) s->EA_N[r] = EA_N;
 }
 
-static void read_cables(hf_csv *t, const int *where, const hf_csv *nodes, const hf_csv_named *node_index,
-                        const double group_EA_N[2], hf_scene *s)
+static void read_cables(hf_csv *t, const int *where, const hf_csv *nodes, const double group_EA_N[2], hf_scene *s)
 {
     for (int r = 0; r < t->n_row; r++) {
         const char *id = hf_csv_cell(t, r, where[CABLE_ID]);
         s->cable_id[r] = id;
         s->cable_line[r] = t->line[r];
         for (int k = 0; k < 2; k++)
-            s->end[2 * r + k] =
-                hf_csv_reference(t, r, where[CABLE_I + k], id, "there is no node with the id ", nodes, node_index);
+            s->end[2 * r + k] = hf_csv_reference(t, r, where[CABLE_I + k], id, "there is no node with the id ", nodes);
         s->group[r] = (unsigned char)hf_csv_word(t, r, where[CABLE_GROUP], id, hf_group_word, 2);
         s->law[r] = (unsigned char)hf_csv_word(t, r, where[CABLE_LAW], id, hf_law_word, HF_N_LAW);
         read_target(t, where, r, id, s);
@@ -176,16 +174,7 @@ static hf_status read_sets(hf_csv *t, const int *where, hf_scene *s)
 
 /* ---- together ---- */
 
-/* Moves the ids to one block that the scene owns. Until now they point into the texts of the two tables. */
-static hf_status keep_ids(hf_scene *s)
-{
-    const hf_csv_texts all[] = {
-        {&s->nodes_file, 1}, {&s->cables_file, 1}, {s->node_id, s->n_node}, {s->cable_id, s->n_cable}};
-    return (s->text = hf_csv_keep(4, all)) ? HF_OK : HF_NO_MEMORY;
-}
-
-static hf_status build(hf_csv *nodes, hf_csv *cables, const double group_EA_N[2], hf_csv_named **node_index,
-                       hf_csv_named **cable_index, hf_scene *s)
+static hf_status build(hf_csv *nodes, hf_csv *cables, const double group_EA_N[2], hf_scene *s)
 {
     int node_where[N_NODE_COLUMN] = {0}, cable_where[N_CABLE_COLUMN] = {0};
     /* Both files are read before returning, so that one run reports the faults of both. */
@@ -200,22 +189,24 @@ static hf_status build(hf_csv *nodes, hf_csv *cables, const double group_EA_N[2]
     HF_TRY(cable_status);
     bool with_load = node_where[NODE_FX] >= 0 || node_where[NODE_FY] >= 0 || node_where[NODE_FZ] >= 0;
     bool with_EA = cable_where[CABLE_EA] >= 0 || group_EA_N[0] > 0 || group_EA_N[1] > 0;
-    hf_status status = hf_scene_allocate(s, nodes->n_row, cables->n_row, with_load, with_EA, true);
-    if (status == HF_OK) *node_index = hf_csv_index(nodes, node_where[NODE_ID]);
-    if (status == HF_OK) *cable_index = hf_csv_index(cables, cable_where[CABLE_ID]);
-    if (!*node_index || !*cable_index) return hf_error(nodes->messages, HF_NO_MEMORY, "%s: out of memory", nodes->path);
+    if (hf_scene_allocate(s, nodes->n_row, cables->n_row, with_load, with_EA, true) != HF_OK)
+        return hf_csv_no_memory(nodes);
+    HF_TRY(hf_csv_index(nodes, node_where[NODE_ID]));
+    HF_TRY(hf_csv_index(cables, cable_where[CABLE_ID]));
     if (!read_nodes(nodes, node_where, s)) s->load_N = NULL; /* columns of zeros are no load */
-    read_cables(cables, cable_where, nodes, *node_index, group_EA_N, s);
-    if (read_sets(cables, cable_where, s) != HF_OK)
-        return hf_error(cables->messages, HF_NO_MEMORY, "%s: out of memory", cables->path);
+    read_cables(cables, cable_where, nodes, group_EA_N, s);
+    if (read_sets(cables, cable_where, s) != HF_OK) return hf_csv_no_memory(cables);
     node_status = hf_csv_close_faults(nodes);
     cable_status = hf_csv_close_faults(cables);
     HF_TRY(node_status);
     HF_TRY(cable_status);
     s->nodes_file = nodes->path;
     s->cables_file = cables->path;
-    if (keep_ids(s) != HF_OK) return hf_error(nodes->messages, HF_NO_MEMORY, "%s: out of memory", nodes->path);
-    return HF_OK;
+    /* The ids point into the texts of the two tables. They move to one block that the scene owns. */
+    const hf_csv_texts all[] = {
+        {&s->nodes_file, 1}, {&s->cables_file, 1}, {s->node_id, s->n_node}, {s->cable_id, s->n_cable}};
+    s->text = hf_csv_keep(4, all);
+    return s->text ? HF_OK : hf_csv_no_memory(nodes);
 }
 
 hf_status hf_scene_import(const char *nodes_path, const char *cables_path, const double group_EA_N[2], hf_scene *scene,
@@ -223,10 +214,7 @@ hf_status hf_scene_import(const char *nodes_path, const char *cables_path, const
 {
     *scene = (hf_scene){0};
     hf_csv nodes = {.path = nodes_path, .messages = messages}, cables = {.path = cables_path, .messages = messages};
-    hf_csv_named *node_index = NULL, *cable_index = NULL;
-    hf_status status = build(&nodes, &cables, group_EA_N, &node_index, &cable_index, scene);
-    free(node_index);
-    free(cable_index);
+    hf_status status = build(&nodes, &cables, group_EA_N, scene);
     hf_csv_free(&nodes);
     hf_csv_free(&cables);
     if (status != HF_OK) hf_scene_free(scene); /* its ids would point into freed text */

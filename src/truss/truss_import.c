@@ -3,7 +3,6 @@
 
 #include "base/csv.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #define COLUMN_MAX 64
@@ -89,15 +88,15 @@ static void read_numbers(hf_csv *t, const int *where, int r, const char *id, hf_
     }
 }
 
-static void read_members(hf_csv *t, const int *where, const hf_csv *nodes, const hf_csv_named *node_index, hf_truss *s)
+static void read_members(hf_csv *t, const int *where, const hf_csv *nodes, hf_truss *s)
 {
     for (int r = 0; r < t->n_row; r++) {
         const char *id = hf_csv_cell(t, r, where[MEMBER_ID]);
         s->member_id[r] = id;
         s->member_line[r] = t->line[r];
         for (int k = 0; k < 2; k++)
-            s->end[2 * r + k] = hf_csv_reference(t, r, where[MEMBER_I + k], id, "there is no truss node with the id ",
-                                                 nodes, node_index);
+            s->end[2 * r + k] =
+                hf_csv_reference(t, r, where[MEMBER_I + k], id, "there is no truss node with the id ", nodes);
         read_numbers(t, where, r, id, s);
         s->joint[r] = (unsigned char)optional_word(t, r, where[MEMBER_JOINT], id, hf_joint_word, 2, HF_JOINT_RIGID);
         s->unit[r] = (unsigned char)optional_word(t, r, where[MEMBER_UNIT], id, hf_unit_word, HF_N_UNIT, HF_UNIT_OTHER);
@@ -106,16 +105,7 @@ static void read_members(hf_csv *t, const int *where, const hf_csv *nodes, const
 
 /* ---- together ---- */
 
-/* Moves the ids to one block that the truss owns. Until now they point into the texts of the two tables. */
-static hf_status keep_ids(hf_truss *s)
-{
-    const hf_csv_texts all[] = {
-        {&s->nodes_file, 1}, {&s->members_file, 1}, {s->node_id, s->n_node}, {s->member_id, s->n_member}};
-    return (s->text = hf_csv_keep(4, all)) ? HF_OK : HF_NO_MEMORY;
-}
-
-static hf_status build(hf_csv *nodes, hf_csv *members, hf_csv_named **node_index, hf_csv_named **member_index,
-                       hf_truss *s)
+static hf_status build(hf_csv *nodes, hf_csv *members, hf_truss *s)
 {
     int node_where[N_NODE_COLUMN] = {0}, member_where[N_MEMBER_COLUMN] = {0};
     /* Both files are read before returning, so that one run reports the faults of both. */
@@ -129,31 +119,29 @@ static hf_status build(hf_csv *nodes, hf_csv *members, hf_csv_named **node_index
         member_status = hf_csv_find_columns(members, member_column, N_MEMBER_COLUMN, MEMBER_OPTIONAL, member_where);
     HF_TRY(node_status);
     HF_TRY(member_status);
-    hf_status status = hf_truss_allocate(s, nodes->n_row, members->n_row, true);
-    if (status == HF_OK) *node_index = hf_csv_index(nodes, node_where[NODE_ID]);
-    if (status == HF_OK) *member_index = hf_csv_index(members, member_where[MEMBER_ID]);
-    if (!*node_index || !*member_index)
-        return hf_error(nodes->messages, HF_NO_MEMORY, "%s: out of memory", nodes->path);
+    if (hf_truss_allocate(s, nodes->n_row, members->n_row, true) != HF_OK) return hf_csv_no_memory(nodes);
+    HF_TRY(hf_csv_index(nodes, node_where[NODE_ID]));
+    HF_TRY(hf_csv_index(members, member_where[MEMBER_ID]));
     read_nodes(nodes, node_where, s);
-    read_members(members, member_where, nodes, *node_index, s);
+    read_members(members, member_where, nodes, s);
     node_status = hf_csv_close_faults(nodes);
     member_status = hf_csv_close_faults(members);
     HF_TRY(node_status);
     HF_TRY(member_status);
     s->nodes_file = nodes->path;
     s->members_file = members->path;
-    if (keep_ids(s) != HF_OK) return hf_error(nodes->messages, HF_NO_MEMORY, "%s: out of memory", nodes->path);
-    return HF_OK;
+    /* The ids point into the texts of the two tables. They move to one block that the truss owns. */
+    const hf_csv_texts all[] = {
+        {&s->nodes_file, 1}, {&s->members_file, 1}, {s->node_id, s->n_node}, {s->member_id, s->n_member}};
+    s->text = hf_csv_keep(4, all);
+    return s->text ? HF_OK : hf_csv_no_memory(nodes);
 }
 
 hf_status hf_truss_import(const char *nodes_path, const char *members_path, hf_truss *truss, hf_messages *messages)
 {
     *truss = (hf_truss){0};
     hf_csv nodes = {.path = nodes_path, .messages = messages}, members = {.path = members_path, .messages = messages};
-    hf_csv_named *node_index = NULL, *member_index = NULL;
-    hf_status status = build(&nodes, &members, &node_index, &member_index, truss);
-    free(node_index);
-    free(member_index);
+    hf_status status = build(&nodes, &members, truss);
     hf_csv_free(&nodes);
     hf_csv_free(&members);
     if (status != HF_OK) hf_truss_free(truss); /* its ids would point into freed text */

@@ -47,13 +47,14 @@ START_TEST(ids_are_found_and_survive_writing)
     }
     fclose(file);
     ck_assert_msg(hf_csv_read(temp_path("ids.csv"), 8, &table, &messages) == HF_OK, "%s", messages.text);
-    hf_csv_named *index = hf_csv_index(&table, 0);
-    ck_assert_ptr_nonnull(index);
-    for (int i = 0; i < N; i++)
-        ck_assert_int_eq(hf_csv_row_of(index, table.n_row, id[i]), i);
-    ck_assert_int_eq(hf_csv_row_of(index, table.n_row, "c"), -1);
+    ck_assert_int_eq(hf_csv_index(&table, 0), HF_OK);
+    ck_assert_int_eq(hf_csv_know(&table, N, id), HF_OK);
+    for (int i = 0; i < N; i++) {
+        ck_assert_int_eq(hf_csv_reference(&table, i, 0, "row", "none", &table), i);
+        ck_assert_int_eq(hf_csv_find_known(&table, id[i]), i);
+    }
+    ck_assert_int_eq(hf_csv_find_known(&table, "c"), -1);
     ck_assert_int_eq(hf_csv_close_faults(&table), HF_OK);
-    free(index);
     hf_csv_free(&table);
 }
 END_TEST
