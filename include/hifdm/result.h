@@ -56,20 +56,20 @@ typedef enum {
 /* Returns the word of a reason why a coupling ended, as a constant string. Returns "unknown" for other values. */
 const char *hf_coupling_stop_word(int stop);
 
-/* X(name, value, word stored in files, .meaning = description for the user): one row for each certification status of
- * the error bounds of a result (METHOD section 3). Files contain the values, so never renumber them. */
+/* X(name, value, word stored in files, description for the user): one row for each certification status of the error
+ * bounds of a result (METHOD section 3). Files contain the values, so never renumber them. */
 #define HF_BOUND_REASON_LIST(X)                                                                                        \
-    X(NONE, 0, "none", .meaning = "no certified bound was computed")                                                   \
-    X(CERTIFIED, 1, "certified", .meaning = "no equilibrium is farther away")                                          \
-    X(STRUTS, 2, "struts", .meaning = "the net has struts: its energy is not convex")                                  \
-    X(TRUSS, 3, "truss", .meaning = "the flexibility matrix of the truss has a negative eigenvalue")                   \
-    X(NO_MATRIX, 4, "no_matrix", .meaning = "the method has no Newton matrix for these laws")                          \
+    X(NONE, 0, "none", "no certified bound was computed")                                                              \
+    X(CERTIFIED, 1, "certified", "no equilibrium is farther away")                                                     \
+    X(STRUTS, 2, "struts", "the net has struts: its energy is not convex")                                             \
+    X(TRUSS, 3, "truss", "the flexibility matrix of the truss has a negative eigenvalue")                              \
+    X(NO_MATRIX, 4, "no_matrix", "the method has no Newton matrix for these laws")                                     \
     X(NOT_DEFINITE, 5, "not_definite",                                                                                 \
-      .meaning = "the net is so soft in some direction that its stiffness cannot be distinguished from rounding")      \
-    X(NOT_CONTRACTING, 6, "not_contracting", .meaning = "the shape is too far from an equilibrium")                    \
-    X(SLACK_OR_TAUT, 7, "slack_or_taut", .meaning = "some cable is about to go slack")                                 \
-    X(DEPENDENT_LENGTHS, 8, "dependent_lengths", .meaning = "prescribed lengths depend on each other")                 \
-    X(LOOSE, 9, "loose", .meaning = "no taut cable holds some node, so its position is not unique")
+      "the net is so soft in some direction that its stiffness cannot be distinguished from rounding")                 \
+    X(NOT_CONTRACTING, 6, "not_contracting", "the shape is too far from an equilibrium")                               \
+    X(SLACK_OR_TAUT, 7, "slack_or_taut", "some cable is about to go slack")                                            \
+    X(DEPENDENT_LENGTHS, 8, "dependent_lengths", "prescribed lengths depend on each other")                            \
+    X(LOOSE, 9, "loose", "no taut cable holds some node, so its position is not unique")
 
 /* Certification status of the error bounds: certified, or the reason why they are not. */
 typedef enum {

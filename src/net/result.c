@@ -5,9 +5,12 @@
 
 /* ---- words ---- */
 
-#define WORD(name, value, word) [value] = word,
+#define WORD(name, value, word, ...) [value] = word,
+#define MEANING(name, value, word, meaning) [value] = meaning,
 static const char *const stop_reason[] = {HF_STOP_REASON_LIST(WORD)};
 static const char *const coupling_stop[] = {HF_COUPLING_STOP_LIST(WORD)};
+static const char *const bound[] = {HF_BOUND_REASON_LIST(WORD)};
+static const char *const bound_meaning[] = {HF_BOUND_REASON_LIST(MEANING)};
 
 /* Returns the word of a value; "unknown" for a value that is not listed, as another version may have stored. */
 static const char *word_of(int value, size_t n, const char *const *word)
@@ -26,32 +29,14 @@ const char *hf_coupling_stop_word(int stop)
     return WORD_OF(stop, coupling_stop);
 }
 
-/* The rows of HF_BOUND_REASON_LIST. */
-static const struct bound_row {
-    int value;
-    const char *word, *meaning;
-} bound[] = {
-#define ROW(name, value_, word_, ...) {.value = value_, .word = word_, __VA_ARGS__},
-    HF_BOUND_REASON_LIST(ROW)
-#undef ROW
-};
-
-static const struct bound_row *find_bound(int reason)
-{
-    static const struct bound_row unknown = {.word = "unknown", .meaning = "unknown"};
-    for (size_t i = 0; i < sizeof bound / sizeof *bound; i++)
-        if (bound[i].value == reason) return &bound[i];
-    return &unknown;
-}
-
 const char *hf_bound_reason_word(int reason)
 {
-    return find_bound(reason)->word;
+    return WORD_OF(reason, bound);
 }
 
 const char *hf_bound_reason_meaning(int reason)
 {
-    return find_bound(reason)->meaning;
+    return WORD_OF(reason, bound_meaning);
 }
 
 /* ---- the lists of fields ---- */
