@@ -3,8 +3,11 @@
 #define HIFDM_UNION_FIND_H
 
 /* Returns the root of the class of i. Two numbers are in the same class if their roots are equal. parent[n] starts with
- * parent[i] = i. To join two classes, set parent[one root] = the other root. The search makes every second node on its
- * way point to its grandparent (path halving), so that later searches are shorter. */
+ * parent[i] = i. The search makes every second node on its way point to its grandparent (path halving), so that later
+ * searches are shorter. */
 int hf_union_find_root(int *parent, int i);
+
+/* Joins the classes of a and b. The smaller root remains, so that a root is the smallest member of its class. */
+void hf_union_find_join(int *parent, int a, int b);
 
 #endif

@@ -2,6 +2,7 @@
 #include "net/facet_import.h"
 
 #include "base/csv.h"
+#include "net/side.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -70,56 +71,36 @@ static void read_corners(hf_csv *t, const int *where, hf_scene *s, int r)
 
 /* ---- sides ---- */
 
-/* Two nodes and the index of what joins them: the side of a facet, with the facet on its left, or a cable,
- * lower node first. */
-typedef struct {
-    int from, to, of;
-} side;
-
-static int by_nodes(const void *a, const void *b)
-{
-    const side *p = a, *q = b;
-    if (p->from != q->from) return p->from < q->from ? -1 : 1;
-    return p->to < q->to ? -1 : p->to > q->to;
-}
-
-static int by_nodes_and_row(const void *a, const void *b)
-{
-    const side *p = a, *q = b;
-    int order = by_nodes(a, b);
-    return order ? order : p->of < q->of ? -1 : p->of > q->of;
-}
-
-/* Checks that each side is a cable or lies between two supports, and that no other facet is on its left. */
-static void check_sides(hf_csv *t, const int *where, const hf_scene *s, side *of_cable, side *of_facet)
+/* Checks that each side is a cable or lies between two supports, and that no other facet is on its left. The sides of a
+ * facet go around it, with the facet on their left. */
+static void check_sides(hf_csv *t, const int *where, const hf_scene *s, hf_side *of_cable, hf_side *of_facet)
 {
     int n = 0;
-    for (int e = 0; e < s->n_cable; e++) {
-        int i = s->end[2 * e], j = s->end[2 * e + 1];
-        of_cable[e] = (side){i < j ? i : j, i < j ? j : i, e};
-    }
-    qsort(of_cable, (size_t)s->n_cable, sizeof *of_cable, by_nodes);
+    for (int e = 0; e < s->n_cable; e++)
+        of_cable[e] = hf_side_of(s->end[2 * e], s->end[2 * e + 1], e);
+    qsort(of_cable, (size_t)s->n_cable, sizeof *of_cable, hf_side_compare);
     for (int r = 0; r < s->n_facet; r++)
         for (int k = 0; k < 4; k++) {
             int i = s->facet[4 * r + k], j = s->facet[4 * r + (k + 1) % 4];
-            side key = {i < j ? i : j, i < j ? j : i, 0};
+            hf_side key = hf_side_of(i, j, 0);
             if (i == j) continue; /* the fourth side of a triangle, or any side of a facet with a fault */
-            of_facet[n++] = (side){i, j, r};
+            of_facet[n++] = (hf_side){i, j, r};
             bool is_rim = s->role[i] == HF_ROLE_SUPPORT && s->role[j] == HF_ROLE_SUPPORT;
-            if (is_rim || bsearch(&key, of_cable, (size_t)s->n_cable, sizeof *of_cable, by_nodes)) continue;
+            if (is_rim || bsearch(&key, of_cable, (size_t)s->n_cable, sizeof *of_cable, hf_side_compare_nodes))
+                continue;
             char nodes[640];
             snprintf(nodes, sizeof nodes, "'%s' and '%s'", s->node_id[i], s->node_id[j]);
             hf_csv_fault(t, t->line[r], hf_csv_cell(t, r, where[FACET_ID]), "no cable joins its nodes ", nodes);
         }
-    qsort(of_facet, (size_t)n, sizeof *of_facet, by_nodes_and_row);
+    qsort(of_facet, (size_t)n, sizeof *of_facet, hf_side_compare);
     for (int k = 1; k < n; k++) {
-        const side *p = &of_facet[k - 1], *q = &of_facet[k];
-        if (by_nodes(p, q) != 0) continue;
+        const hf_side *p = &of_facet[k - 1], *q = &of_facet[k];
+        if (hf_side_compare_nodes(p, q) != 0) continue;
         char other[320];
         snprintf(other, sizeof other, "'%s' on line %d", hf_csv_cell(t, p->of, where[FACET_ID]), t->line[p->of]);
         hf_csv_fault(t, t->line[q->of], hf_csv_cell(t, q->of, where[FACET_ID]),
                      "is on the same side of a cable as the facet ", other);
-        while (k + 1 < n && by_nodes(p, &of_facet[k + 1]) == 0)
+        while (k + 1 < n && hf_side_compare_nodes(p, &of_facet[k + 1]) == 0)
             k++;
     }
 }
@@ -134,7 +115,7 @@ static hf_status build(hf_csv *t, hf_scene *s)
     HF_TRY(hf_csv_index(t, where[FACET_ID]));
     HF_TRY(hf_csv_know(t, s->n_node, s->node_id));
     size_t n = (size_t)t->n_row;
-    side *sides = malloc((4 * n + (size_t)s->n_cable) * sizeof *sides);
+    hf_side *sides = malloc((4 * n + (size_t)s->n_cable) * sizeof *sides);
     s->facet = calloc(4 * n, sizeof *s->facet);
     bool has_room = sides && s->facet;
     if (has_room) {

@@ -245,7 +245,7 @@ static void find_faces(graph *g, hf_facets *f)
     for (int i = 0; i < s->n_node; i++)
         g->parent[i] = i;
     for (int h = 0; h < g->n_half; h++)
-        g->parent[hf_union_find_root(g->parent, g->edge[h].from)] = hf_union_find_root(g->parent, g->edge[h].to);
+        hf_union_find_join(g->parent, g->edge[h].from, g->edge[h].to);
     for (int i = 0; i < s->n_node; i++) {
         n_node += g->is_on[i];
         n_part += g->is_on[i] && g->parent[i] == i;

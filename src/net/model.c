@@ -328,9 +328,7 @@ hf_status hf_model_group_variables(hf_model *m)
         }
     }
     for (int row = 0; row < m->n_free; row++)
-        if (count[row] == 2)
-            parent[hf_union_find_root(parent, variable_at[2 * row])] =
-                hf_union_find_root(parent, variable_at[2 * row + 1]);
+        if (count[row] == 2) hf_union_find_join(parent, variable_at[2 * row], variable_at[2 * row + 1]);
     for (int k = 0; k < m->n_variable; k++) {
         int root = hf_union_find_root(parent, k);
         if (label[root] < 0) label[root] = m->n_variable_group++;

@@ -119,7 +119,7 @@ static hf_status check_anchored(const hf_scene *s, int *n_fault, hf_messages *me
     for (int i = 0; i < s->n_node; i++)
         parent[i] = i;
     for (int e = 0; e < s->n_cable; e++)
-        parent[hf_union_find_root(parent, s->end[2 * e])] = hf_union_find_root(parent, s->end[2 * e + 1]);
+        hf_union_find_join(parent, s->end[2 * e], s->end[2 * e + 1]);
     for (int i = 0; i < s->n_node; i++)
         if (s->role[i] == HF_ROLE_SUPPORT) is_anchored[hf_union_find_root(parent, i)] = true;
     for (int i = 0; i < s->n_node; i++)

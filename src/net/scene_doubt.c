@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "base/elementary.h"
+#include "net/side.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,47 +17,33 @@
 #define FLATTER_PART 1e-3 /* relative to the same extent; nearer inner nodes are probably meant to be in the plane */
 
 typedef struct {
-    int low, high, cable; /* end nodes, smaller index first */
-} joint;
-
-typedef struct {
     double m;
     int node;
 } distance;
 
 typedef struct {
-    joint *joint;       /* [n_cable] */
+    hf_side *side;      /* [n_cable] */
     double *coordinate; /* [n_node] */
     distance *from;     /* [n_node], distances of the nodes from the middle of the net */
 } scratch;
 
 /* ---- duplicate cables ---- */
 
-static int by_ends(const void *a, const void *b)
-{
-    const joint *x = a, *y = b;
-    if (x->low != y->low) return x->low < y->low ? -1 : 1;
-    if (x->high != y->high) return x->high < y->high ? -1 : 1;
-    return x->cable < y->cable ? -1 : 1;
-}
-
-static void doubt_cables(const hf_scene *s, joint *all, hf_messages *messages)
+static void doubt_cables(const hf_scene *s, hf_side *all, hf_messages *messages)
 {
     char place[HF_SCENE_LOCATION_SIZE];
     int n_said = 0, first = 0;
-    for (int e = 0; e < s->n_cable; e++) {
-        int a = s->end[2 * e], b = s->end[2 * e + 1];
-        all[e] = (joint){a < b ? a : b, a < b ? b : a, e};
-    }
-    qsort(all, (size_t)s->n_cable, sizeof *all, by_ends);
+    for (int e = 0; e < s->n_cable; e++)
+        all[e] = hf_side_of(s->end[2 * e], s->end[2 * e + 1], e);
+    qsort(all, (size_t)s->n_cable, sizeof *all, hf_side_compare);
     for (int k = 1; k < s->n_cable; k++) {
-        if (all[k].low != all[first].low || all[k].high != all[first].high) {
+        if (hf_side_compare_nodes(all + k, all + first) != 0) {
             first = k;
             continue;
         }
         if (++n_said > SAID_MAX) continue;
-        hf_scene_location(s, true, all[k].cable, place, sizeof place);
-        hf_warning(messages, "%s joins the same two nodes as cable '%s'", place, s->cable_id[all[first].cable]);
+        hf_scene_location(s, true, all[k].of, place, sizeof place);
+        hf_warning(messages, "%s joins the same two nodes as cable '%s'", place, s->cable_id[all[first].of]);
     }
     if (n_said > SAID_MAX)
         hf_warning(messages, "scene: and %d more cables that join the same two nodes as another", n_said - SAID_MAX);
@@ -219,10 +206,10 @@ hf_status hf_scene_doubt(const hf_scene *s, hf_messages *messages)
 {
     void *block;
     scratch t;
-    if (HF_ARENA_ARRAYS(&block, HF_ARRAY(t.joint, s->n_cable), HF_ARRAY(t.coordinate, s->n_node),
+    if (HF_ARENA_ARRAYS(&block, HF_ARRAY(t.side, s->n_cable), HF_ARRAY(t.coordinate, s->n_node),
                         HF_ARRAY(t.from, s->n_node)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "scene: out of memory");
-    doubt_cables(s, t.joint, messages);
+    doubt_cables(s, t.side, messages);
     doubt_nodes(s, &t, messages);
     doubt_size(s, messages);
     doubt_lengths(s, messages);

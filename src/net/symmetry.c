@@ -11,6 +11,7 @@
 #include "base/arena.h"
 #include "base/text.h"
 #include "base/union_find.h"
+#include "net/side.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -32,9 +33,8 @@ typedef struct {
 } sorted_node;
 
 typedef struct {
-    int end[2]; /* nodes, smaller index first */
-    int kind;   /* group and law */
-    int cable;
+    hf_side side; /* of the cable */
+    int kind;     /* group and law */
     double target;
 } link;
 
@@ -111,31 +111,26 @@ static int find_node_image(const search *q, int axis, int i)
 
 /* ---- mirror images of cables ---- */
 
-static int compare_ends(const int a[2], const int b[2])
-{
-    int first = (a[0] > b[0]) - (a[0] < b[0]);
-    return first ? first : (a[1] > b[1]) - (a[1] < b[1]);
-}
-
 /* Orders cables by their ends. Cables with the same ends are ordered by kind and target. A cable and its image then
  * have the same rank among the cables with their ends. */
 static int compare_links(const void *a, const void *b)
 {
     const link *x = a, *y = b;
-    int order = compare_ends(x->end, y->end);
+    int order = hf_side_compare_nodes(&x->side, &y->side);
     if (!order) order = x->kind - y->kind;
     if (!order) order = (x->target > y->target) - (x->target < y->target);
-    return order ? order : (x->cable > y->cable) - (x->cable < y->cable);
+    return order ? order : (x->side.of > y->side.of) - (x->side.of < y->side.of);
 }
 
 /* Returns true if cables a and b agree in kind, target and EA. The tolerance of the target includes that of lengths,
  * which follows from the tolerance of positions. */
 static bool is_alike(const search *q, const link *a, const link *b)
 {
-    double tolerance = fmax(TOLERANCE, 4 * TOLERANCE * q->size_m / q->m->length_m[a->cable]);
+    int of_a = a->side.of, of_b = b->side.of;
+    double tolerance = fmax(TOLERANCE, 4 * TOLERANCE * q->size_m / q->m->length_m[of_a]);
     if (a->kind != b->kind || !(fabs(a->target - b->target) <= tolerance * fabs(a->target))) return false;
-    const double *EA_N = hf_law_has(q->m->law[a->cable], HF_LAW_NEEDS_EA) ? q->m->EA_N : NULL;
-    return !EA_N || fabs(EA_N[a->cable] - EA_N[b->cable]) <= TOLERANCE * EA_N[a->cable];
+    const double *EA_N = hf_law_has(q->m->law[of_a], HF_LAW_NEEDS_EA) ? q->m->EA_N : NULL;
+    return !EA_N || fabs(EA_N[of_a] - EA_N[of_b]) <= TOLERANCE * EA_N[of_a];
 }
 
 /* Returns the image of the cable at index `here`, or -1. The image has the same rank among the cables
@@ -143,21 +138,21 @@ static bool is_alike(const search *q, const link *a, const link *b)
 static int find_cable_image(const search *q, int here)
 {
     const link *own = q->link + here;
-    int a = q->node_image[own->end[0]], b = q->node_image[own->end[1]], rank = 0, from = 0, to = q->s->n_cable;
+    int a = q->node_image[own->side.from], b = q->node_image[own->side.to], rank = 0, from = 0, to = q->s->n_cable;
     if (a < 0 || b < 0) return -1;
-    const int asked[2] = {a < b ? a : b, a < b ? b : a};
-    while (rank < here && !compare_ends(own->end, q->link[here - rank - 1].end))
+    const hf_side asked = hf_side_of(a, b, 0);
+    while (rank < here && !hf_side_compare_nodes(&own->side, &q->link[here - rank - 1].side))
         rank++;
     while (from < to) {
         int middle = from + (to - from) / 2;
-        if (compare_ends(q->link[middle].end, asked) < 0)
+        if (hf_side_compare_nodes(&q->link[middle].side, &asked) < 0)
             from = middle + 1;
         else
             to = middle;
     }
     const link *image = q->link + from + rank;
-    if (from + rank >= q->s->n_cable || compare_ends(image->end, asked) || !is_alike(q, own, image)) return -1;
-    return image->cable;
+    bool is_found = from + rank < q->s->n_cable && !hf_side_compare_nodes(&image->side, &asked);
+    return is_found && is_alike(q, own, image) ? image->side.of : -1;
 }
 
 /* ---- one plane ---- */
@@ -169,7 +164,7 @@ static int reflect(search *q, int axis)
     for (int i = 0; i < q->s->n_node; i++)
         q->node_image[i] = find_node_image(q, axis, i);
     for (int k = 0; k < q->s->n_cable; k++)
-        q->cable_image[q->link[k].cable] = find_cable_image(q, k);
+        q->cable_image[q->link[k].side.of] = find_cable_image(q, k);
     for (int e = 0; e < q->s->n_cable; e++) { /* if two nodes have the same position, an image may not point back */
         int image = q->cable_image[e];
         if (image < 0 || q->cable_image[image] != e) n_missing++;
@@ -196,17 +191,6 @@ static hf_status refuse(const search *q, int axis, int n_missing, hf_messages *m
 
 /* ---- classes of design variables ---- */
 
-/* Joins the classes of a and b. The smaller root remains, so that a root is the smallest member of its class. */
-static void join(int *parent, int a, int b)
-{
-    a = hf_union_find_root(parent, a);
-    b = hf_union_find_root(parent, b);
-    if (a < b)
-        parent[b] = a;
-    else
-        parent[a] = b;
-}
-
 /* Merges groups whose design variables have the same leader. Numbers the groups again in the order of
  * their design variables. */
 static void merge_groups(const search *q, hf_model *m)
@@ -217,7 +201,7 @@ static void merge_groups(const search *q, hf_model *m)
         label[g] = -1;
     }
     for (int k = 0; k < m->n_variable; k++)
-        join(group_parent, m->variable_group[k], m->variable_group[m->variable_leader[k]]);
+        hf_union_find_join(group_parent, m->variable_group[k], m->variable_group[m->variable_leader[k]]);
     m->n_variable_group = 0;
     for (int k = 0; k < m->n_variable; k++) {
         int root = hf_union_find_root(group_parent, m->variable_group[k]);
@@ -235,7 +219,7 @@ static void join_images(search *q, int variable, int image)
     const hf_model *m = q->m;
     if (variable < 0 || image < 0 || (m->variable && m->variable[variable].setting != m->variable[image].setting))
         return;
-    join(q->parent, variable, image);
+    hf_union_find_join(q->parent, variable, image);
 }
 
 static hf_status link_variables(search *q, hf_symmetry asked, hf_model *m, int *planes, hf_messages *messages)
@@ -268,8 +252,8 @@ static void sort(search *q, const hf_optimize_settings *o)
     for (int i = 0; i < q->s->n_node; i++)
         q->node[i] = (sorted_node){coordinate(q, i, q->sweep), i};
     for (int e = 0; e < q->s->n_cable; e++) {
-        int a = q->s->end[2 * e], b = q->s->end[2 * e + 1];
-        q->link[e] = (link){{a < b ? a : b, a < b ? b : a}, m->group[e] << 8 | m->law[e], e, m->target[e]};
+        hf_side side = hf_side_of(q->s->end[2 * e], q->s->end[2 * e + 1], e);
+        q->link[e] = (link){side, m->group[e] << 8 | m->law[e], m->target[e]};
         q->variable_of_cable[e] = -1;
     }
     for (int i = 0; i < m->n_node; i++)

@@ -9,6 +9,7 @@
 #include "base/elementary.h"
 #include "base/arena.h"
 #include "linalg/dense.h"
+#include "net/side.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -73,34 +74,18 @@ void hf_facet_mesh_at(const hf_facet_mesh *m, double u, double v, double p[3], d
 
 /* ---- sides ---- */
 
-/* A side of a facet (of = 4 i + k) or a cable (of = -1 - e) with its nodes, lower node first. */
-typedef struct {
-    int low, high, of;
-} side;
+/* A side is of a facet (of = 4 i + k) or of a cable (of = -1 - e). */
 
-static int by_nodes(const void *a, const void *b)
-{
-    const side *p = a, *q = b;
-    if (p->low != q->low) return p->low < q->low ? -1 : 1;
-    if (p->high != q->high) return p->high < q->high ? -1 : 1;
-    return p->of < q->of ? -1 : p->of > q->of;
-}
-
-static side side_of(int i, int j, int of)
-{
-    return (side){i < j ? i : j, i < j ? j : i, of};
-}
-
-static int collect(const hf_facets *f, const hf_facet_shape *shape, side *all)
+static int collect(const hf_facets *f, const hf_facet_shape *shape, hf_side *all)
 {
     int n = 0;
     for (int e = 0; e < shape->n_cable; e++)
-        all[n++] = side_of(shape->end[2 * e], shape->end[2 * e + 1], -1 - e);
+        all[n++] = hf_side_of(shape->end[2 * e], shape->end[2 * e + 1], -1 - e);
     for (int i = 0; i < 4 * f->n_facet; i++) {
         int a = f->corner[i], b = f->corner[i % 4 == 3 ? i - 3 : i + 1];
-        if (a != b) all[n++] = side_of(a, b, i);
+        if (a != b) all[n++] = hf_side_of(a, b, i);
     }
-    qsort(all, (size_t)n, sizeof *all, by_nodes);
+    qsort(all, (size_t)n, sizeof *all, hf_side_compare);
     return n;
 }
 
@@ -108,7 +93,7 @@ static int collect(const hf_facets *f, const hf_facet_shape *shape, side *all)
  * in the plane of the facet. Two facets in one plane balance each other. At an angle, the rest F bends the cable into
  * an arc of height F l^2 / (8 T). Returns N l / T. */
 static double bend(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape *shape, double tension_N,
-                   const side pair[2], double *sag_m)
+                   const hf_side pair[2], double *sag_m)
 {
     double normal[2][3], pull[3] = {0}, length = 0;
     for (int c = 0; c < 2; c++) {
@@ -131,7 +116,7 @@ static double bend(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape
 hf_status hf_facet_mesh_sags(double mesh_N_per_m, const hf_facets *f, const hf_facet_shape *shape, double *sag_m,
                              double *pull_ratio)
 {
-    side *all;
+    hf_side *all;
     hf_arena arena = {0};
     size_t most = (size_t)shape->n_cable + 4 * (size_t)f->n_facet;
     HF_TRY(HF_ARENA_MAKE(&arena, all = hf_arena_take(&arena, most, sizeof *all)));
@@ -141,7 +126,7 @@ hf_status hf_facet_mesh_sags(double mesh_N_per_m, const hf_facets *f, const hf_f
     for (int from = 0, to; from < n; from = to) { /* entries between the same two nodes; cables come first */
         double tension_N = 0;
         int first = from;
-        for (to = from; to < n && all[to].low == all[from].low && all[to].high == all[from].high; to++)
+        for (to = from; to < n && hf_side_compare_nodes(all + to, all + from) == 0; to++)
             if (all[to].of < 0) {
                 tension_N += shape->tension_N[-1 - all[to].of];
                 first = to + 1;
