@@ -154,7 +154,7 @@ typedef struct {
      * text "" means that there is no value. In a row, numbers are then NaN and bounds are open. */
     const char *default_value;
     const char *unit;         /* unit; "": dimensionless */
-    const char *const *words; /* words of HF_FIELD_WORD, terminated by NULL; NULL for other types */
+    const char *const *words; /* words of HF_FIELD_WORD by enumeration, terminated by NULL; NULL for other types */
     const char *help;         /* help of the key */
 } hf_field;
 
@@ -176,6 +176,9 @@ typedef struct {
     int n_field;                 /* number of keys of a row */
     const char *help;            /* help of the list */
 } hf_list;
+
+/* Words of a key that only the row of the key needs. */
+#define HF_WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
 #define HF_ABOVE_ZERO 1e-300 /* value of `min` for a key that must be above zero */
 

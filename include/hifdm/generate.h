@@ -41,10 +41,6 @@ HF_API_BEGIN
 /* The direction of the ties between the nets of a double net. */
 typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
 
-/* Words of a case file, indexed by hf_tie_direction and by hf_law. The last entry of each array is NULL. */
-extern const char *const hf_tie_direction_word[3];
-extern const char *const hf_tie_law_word[HF_N_LAW + 1];
-
 /* Members that all settings with a rear net have. The rim of the rear net is rear_distance_m below the rim of the front
  * net. The rear net bulges towards the front net. */
 #define HF_DOUBLE_NET_MEMBERS                                                                                          \
@@ -61,9 +57,9 @@ extern const char *const hf_tie_law_word[HF_N_LAW + 1];
       "above 0: a rear net, whose rim lies so far below that of the front net, and a tie to each of its free nodes")   \
     X(section, rear_focal_length_m, HF_FIELD_DOUBLE, 0, 1e9, "0", "m", NULL,                                           \
       "focal length of the rear net, which bulges towards the front; 0: that of the front net")                        \
-    X(section, tie_direction, HF_FIELD_WORD, 0, 0, "z", "", hf_tie_direction_word,                                     \
+    X(section, tie_direction, HF_FIELD_WORD, 0, 0, "z", "", HF_WORDS("z", "normal"),                                   \
       "ties run along z, or along the normal of the front net")                                                        \
-    X(section, tie_law, HF_FIELD_WORD, 0, 0, "length", "", hf_tie_law_word,                                            \
+    X(section, tie_law, HF_FIELD_WORD, 0, 0, "length", "", hf_law_word,                                                \
       "law of the ties; the nets have law tension, their boundary cables law length")                                  \
     X(section, tie_tension_N, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, "1", "N", NULL,                                     \
       "tension at the target positions, of ties of the laws tension, force_density and elastic")
@@ -79,11 +75,8 @@ typedef enum { HF_SUPPORTS_MODULE_CORNERS, HF_SUPPORTS_RIBS, HF_SUPPORTS_PERIMET
 /* Pattern of the cables. */
 typedef enum { HF_PATTERN_QUAD, HF_PATTERN_TRIANGLE, HF_PATTERN_DIAGONAL, HF_PATTERN_ALTERNATING } hf_pattern;
 
-/* Words of a case file, indexed by the enumerations above. The last entry of each array is NULL. */
+/* Words of hf_spacing in a case file. The last entry of the array is NULL. */
 extern const char *const hf_spacing_word[3];
-extern const char *const hf_boundary_word[3];
-extern const char *const hf_supports_word[4];
-extern const char *const hf_pattern_word[5];
 
 /* A net over the parabolic cylinder z = x^2/(4 f). The x axis runs along the directrix and the y axis along the
  * generatrix. The origin is on the vertex line. */
@@ -118,18 +111,18 @@ typedef struct {
       "alike in arc length or projection, as spacing says; with them only the cells within each are")                  \
     X(section, pitches_y_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL,                                 \
       "lengths of the modules along y, which add up to length_m; without them all are alike")                          \
-    X(section, pattern, HF_FIELD_WORD, 0, 0, "quad", "", hf_pattern_word,                                              \
+    X(section, pattern, HF_FIELD_WORD, 0, 0, "quad", "", HF_WORDS("quad", "triangle", "diagonal", "alternating"),      \
       "quad: cables along x and y; triangle: and one diagonal per cell, all in one direction; alternating: and one "   \
       "diagonal per cell, in alternating directions; diagonal: the quad net turned by 45 degrees, four half "          \
       "diagonals per cell that meet in a node at its middle, and of the cables along x and y the boundary ones. All "  \
       "but quad leave out cables between two supports")                                                                \
     X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_arc", "", hf_spacing_word,                                         \
       "nodes along the directrix: equal arc length, or equal projected (x) spacing")                                   \
-    X(section, boundary, HF_FIELD_WORD, 0, 0, "outer_edge", "", hf_boundary_word,                                      \
+    X(section, boundary, HF_FIELD_WORD, 0, 0, "outer_edge", "", HF_WORDS("outer_edge", "module_edges"),                \
       "which cables are boundary cables (law length); the others are inner (law tension)")                             \
     X(section, scallop, HF_FIELD_DOUBLE, 0, 0.4, "0", "", NULL,                                                        \
       "inward sag of a free outer edge between supports, relative to their distance; a parabola")                      \
-    X(section, supports, HF_FIELD_WORD, 0, 0, "module_corners", "", hf_supports_word,                                  \
+    X(section, supports, HF_FIELD_WORD, 0, 0, "module_corners", "", HF_WORDS("module_corners", "ribs", "perimeter"),   \
       "fixed nodes: all module corners, all nodes on ribs (y = module border), or the perimeter")                      \
     X(section, edge_tie_m, HF_FIELD_DOUBLE, 0, 1e3, "0", "m", NULL,                                                    \
       "above 0: the fixed nodes of the outer edge are free and hang on ties (boundary cables, law length); the "       \
@@ -163,9 +156,6 @@ void hf_scene_parabolic_cylinder_surface(const hf_cylinder *cylinder, hf_surface
 /* The grid of a net over a paraboloid. */
 typedef enum { HF_GRID_TRIANGLE, HF_GRID_QUAD } hf_grid;
 
-/* Words of hf_grid in a case file. The last entry of the array is NULL. */
-extern const char *const hf_grid_word[3];
-
 /* A net over the paraboloid z = (x^2 + y^2)/(4 f). The net is above the circle of the aperture, whose centre is at x =
  * offset_m. The rim of the front net is in the plane z_rim(x). The rear net is the surface z_rim - rear_distance_m +
  * (R^2 - r^2)/(4 f_rear). In this equation, r is the distance from the axis of the aperture, and R is the radius of the
@@ -188,7 +178,7 @@ typedef struct {
     X(section, offset_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                                      \
       "distance of the middle of the aperture from the axis, along x; 0: fed from the centre")                         \
     X(section, rings, HF_FIELD_INT, 1, 1000, NULL, "", NULL, "cells from the middle of the aperture to its rim")       \
-    X(section, grid, HF_FIELD_WORD, 0, 0, "triangle", "", hf_grid_word,                                                \
+    X(section, grid, HF_FIELD_WORD, 0, 0, "triangle", "", HF_WORDS("triangle", "quad"),                                \
       "triangle: three families of cables, in rings of 6, 12, 18, ... nodes, the last of which are supports on the "   \
       "rim; quad: cables along x and y, which end at supports on the rim")                                             \
     X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_projected", "", hf_spacing_word,                                   \

@@ -92,30 +92,22 @@ typedef enum {
 } hf_limit_kind;
 
 /* Words of the choices in a case file, indexed by the enumerations of this header. The last entry of each array is
- * NULL. */
+ * NULL. Other choices have their words in their rows of the table of keys (config.h). */
 extern const char *const hf_method_word[6];
-extern const char *const hf_prestress_word[3];
 extern const char *const hf_stop_rule_word[3];
-extern const char *const hf_factor_word[3];
 extern const char *const hf_rule_word[4];
 extern const char *const hf_solver_word[5];
 extern const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1];
-extern const char *const hf_refine_choice_word[4];
-extern const char *const hf_variation_word[3];
 extern const char *const hf_keep_word[4];
 extern const char *const hf_symmetry_word[6];
 extern const char *const hf_nodes_word[5];
 extern const char *const hf_part_word[11];
 extern const char *const hf_surface_kind_word[4];
 extern const char *const hf_feed_word[5];
-extern const char *const hf_polarisation_word[3];
 extern const char *const hf_coupling_scheme_word[4];
 extern const char *const hf_vary_word[8];
-extern const char *const hf_link_word[4];
 extern const char *const hf_figure_kind_word[12];
 extern const char *const hf_figure_kind_unit[11]; /* units of the figures; "": dimensionless */
-extern const char *const hf_along_word[3];
-extern const char *const hf_fit_word[3];
 extern const char *const hf_over_word[3];
 extern const char *const hf_take_word[3];
 extern const char *const hf_limit_word[4];

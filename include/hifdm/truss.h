@@ -96,12 +96,8 @@ typedef enum { HF_HELD_ALL_DOFS, HF_HELD_TRANSLATIONS } hf_held_dofs;
 /* Joints of a ring truss that are held. */
 typedef enum { HF_RING_HELD_BAY, HF_RING_HELD_VERTICAL, HF_RING_HELD_THREE_VERTICALS } hf_ring_held;
 
-/* Words of a case file, indexed by the enumerations above. The last entry of each array is NULL. */
+/* Words of hf_diagonals in a case file. The last entry of the array is NULL. */
 extern const char *const hf_diagonals_word[4];
-extern const char *const hf_theory_word[3];
-extern const char *const hf_held_word[3];
-extern const char *const hf_held_dofs_word[3];
-extern const char *const hf_ring_held_word[4];
 
 /* A basic unit of the truss. A basic unit is a planar truss with the length of one module. Its chords, posts and
  * diagonals are round tubes of the same size. */
@@ -159,13 +155,13 @@ typedef struct {
     X(section, density_kg_per_m3, HF_FIELD_DOUBLE, 0, 1e6, "1600", "kg/m3", NULL, "density of the tubes")              \
     X(section, expansion_per_K, HF_FIELD_DOUBLE, -1, 1, "0", "1/K", NULL, "thermal expansion of the tubes")            \
     X(section, hinge_mass_kg, HF_FIELD_DOUBLE, 0, 1e6, "1", "kg", NULL, "mass of the hinges at each node")             \
-    X(section, theory, HF_FIELD_WORD, 0, 0, "euler_bernoulli", "", hf_theory_word,                                     \
+    X(section, theory, HF_FIELD_WORD, 0, 0, "euler_bernoulli", "", HF_WORDS("euler_bernoulli", "timoshenko"),          \
       "beams without shear deformation, or with a shear area of half the cross-section (thin round tube)")             \
     X(section, joints, HF_FIELD_WORD, 0, 0, "rigid", "", hf_joint_word,                                                \
       "members clamped to their nodes, or carrying axial force alone")                                                 \
-    X(section, supports, HF_FIELD_WORD, 0, 0, "central_module", "", hf_held_word,                                      \
+    X(section, supports, HF_FIELD_WORD, 0, 0, "central_module", "", HF_WORDS("central_module", "central_module_rear"), \
       "nodes held by the spacecraft: all corners of the central module, or its rear ones")                             \
-    X(section, support_dofs, HF_FIELD_WORD, 0, 0, "all", "", hf_held_dofs_word,                                        \
+    X(section, support_dofs, HF_FIELD_WORD, 0, 0, "all", "", HF_WORDS("all", "translations"),                          \
       "what is held there: displacements and rotations, or displacements only")
 
 #define HF_TRUSS_UNIT_KEYS(X, section, diameter, panel_number)                                                         \
@@ -183,7 +179,7 @@ typedef struct {
       "the supports of the net between them")                                                                          \
     X(section, bracing, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word,                                          \
       "diagonals of each bay; single ones fall and rise by turns")                                                     \
-    X(section, held, HF_FIELD_WORD, 0, 0, "bay", "", hf_ring_held_word,                                                \
+    X(section, held, HF_FIELD_WORD, 0, 0, "bay", "", HF_WORDS("bay", "vertical", "three_verticals"),                   \
       "joints held by the spacecraft or the ground: the four of a bay, the two of a vertical, or the rear ones of "    \
       "three verticals a third of the way round apart")                                                                \
     X(section, held_at_deg, HF_FIELD_DOUBLE, 0, 360, "180", "deg", NULL,                                               \

@@ -100,7 +100,7 @@ const hf_field hf_field_table[] = {
      "q: the field of the feed goes as cos^q of the angle from its axis, its power as cos^(2q); default: 10 dB less at "
      "the edge of the facets, distances aside"},
     {"surface.pattern.feed.polarisation", HF_FIELD_WORD, AT(surface.pattern.polarisation), 0, 0, "x", "",
-     hf_polarisation_word, "of the electric field on the axis of the feed; of a line: across it or along it"},
+     HF_WORDS("x", "y"), "of the electric field on the axis of the feed; of a line: across it or along it"},
 
     {"form.method", HF_FIELD_WORD, AT(form.method), 0, 0, "auto", "", hf_method_word,
      "auto: newton where it applies, else hifdm; newton: every cable obeys its own law, by Newton on the energy; "
@@ -109,7 +109,7 @@ const hf_field hf_field_table[] = {
      "solve with the starting force densities (Eqs. 5, 6)"},
     {"form.pretension_N", HF_FIELD_DOUBLE, AT(form.pretension_N), HF_ABOVE_ZERO, 1e9, "10", "N", NULL,
      "uniform tension Td of the inner cables"},
-    {"form.prestress", HF_FIELD_WORD, AT(form.prestress), 0, 0, "given", "", hf_prestress_word,
+    {"form.prestress", HF_FIELD_WORD, AT(form.prestress), 0, 0, "given", "", HF_WORDS("given", "exact"),
      "given: every cable keeps its law; exact: every cable gets the force density that holds all nodes at their "
      "target positions. The tensions are as near as equilibrium allows to those of the laws tension and force_density, "
      "and even where the laws give none (length, elastic)"},
@@ -126,7 +126,7 @@ const hf_field hf_field_table[] = {
      "bound on the iterations; reached: not converged"},
     {"form.collapse_ratio", HF_FIELD_DOUBLE, AT(form.collapse_ratio), 1e-12, 0.5, "1e-3", "", NULL,
      "a cable of law tension has collapsed if it is shorter than this part of its length at the target positions"},
-    {"form.factor", HF_FIELD_WORD, AT(form.factor), 0, 0, "own", "", hf_factor_word,
+    {"form.factor", HF_FIELD_WORD, AT(form.factor), 0, 0, "own", "", HF_WORDS("own", "lapack"),
      "own: band Cholesky of this program; lapack: dpbtrf and dpbtrs of LAPACK for the positive definite matrices of "
      "form-finding, of designs and of refinement; every design then has a factor of its own. Certificates and as-built "
      "nets always use own"},
@@ -164,7 +164,7 @@ const hf_field hf_field_table[] = {
      "genetic algorithm, Levenberg-Marquardt from the form-finding's tensions, or both. After the genetic algorithm "
      "the "
      "optimum that Levenberg-Marquardt reaches from it is reported (refine); with ga+lm it is the result"},
-    {"optimize.refine", HF_FIELD_WORD, AT(optimize.refine), 0, 0, "auto", "", hf_refine_choice_word,
+    {"optimize.refine", HF_FIELD_WORD, AT(optimize.refine), 0, 0, "auto", "", HF_WORDS("auto", "true", "false"),
      "the optimum that Levenberg-Marquardt reaches from the genetic algorithm's design, for comparison. auto: unless "
      "it would cost noticeable time and more than a tenth of the genetic algorithm's"},
     {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", hf_rule_word,
@@ -195,7 +195,8 @@ const hf_field hf_field_table[] = {
     {"optimize.crossover_low", HF_FIELD_DOUBLE, AT(optimize.crossover_low), 0, 1, "0.6", "", NULL, "Pc2"},
     {"optimize.mutation_high", HF_FIELD_DOUBLE, AT(optimize.mutation_high), 0, 1, "0.1", "", NULL, "Pm1"},
     {"optimize.mutation_low", HF_FIELD_DOUBLE, AT(optimize.mutation_low), 0, 1, "0.001", "", NULL, "Pm2"},
-    {"optimize.variation", HF_FIELD_WORD, AT(optimize.variation), 0, 0, "difference", "", hf_variation_word,
+    {"optimize.variation", HF_FIELD_WORD, AT(optimize.variation), 0, 0, "difference", "",
+     HF_WORDS("difference", "chain"),
      "difference: crossovers move an elite along the difference of two parents, children replace what is worse; chain: "
      "crossovers mix two parents chain by chain, children replace whole generations"},
     {"optimize.elites", HF_FIELD_INT, AT(optimize.elites), 1, 100000, "1", "", NULL,
@@ -308,7 +309,7 @@ static const hf_field variable_field[] = {
      "default: as far as the bounds"},
     {"bounds", HF_FIELD_BOUNDS, IN(lower), -BIG, BIG, "", "", NULL,
      "between which each stays, in the unit of what varies; default: none"},
-    {"link", HF_FIELD_WORD, IN(link), 0, 0, "each", "", hf_link_word,
+    {"link", HF_FIELD_WORD, IN(link), 0, 0, "each", "", HF_WORDS("each", "set", "symmetry"),
      "which change by the same step: none; all of the row; those at mirrored places (optimize.symmetry)"},
 };
 #undef IN
@@ -328,9 +329,9 @@ static const hf_field objective_field[] = {
      "of tension (N), which needs it, and of length (m), where the lengths at the target positions are the default"},
     {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(mass_kg_per_m), HF_ABOVE_ZERO, BIG, "", "kg/m", NULL,
      "of the cables, which mass needs"},
-    {"along", HF_FIELD_WORD, IN(along), 0, 0, "normal", "", hf_along_word,
+    {"along", HF_FIELD_WORD, IN(along), 0, 0, "normal", "", HF_WORDS("normal", "half_path"),
      "of surface and facets: distance along the normal, or half the change of the path of a ray"},
-    {"fit", HF_FIELD_WORD, IN(fit), 0, 0, "none", "", hf_fit_word,
+    {"fit", HF_FIELD_WORD, IN(fit), 0, 0, "none", "", HF_WORDS("none", "best"),
      "of surface and facets: distance to the target surface, or to its best fit to the shape"},
     {"frequency_Hz", HF_FIELD_DOUBLE, IN(frequency_Hz), HF_ABOVE_ZERO, 1e15, "", "Hz", NULL,
      "of gain; default: the highest of surface.frequencies_Hz"},

@@ -7,11 +7,6 @@
 
 #define FOUND 1e-10 /* relative step at which Newton's method ends: the next step is below rounding */
 
-const char *const hf_tie_direction_word[3] = {"z", "normal", NULL};
-#define LAW_WORD(name, word, target, unit, flags) word,
-const char *const hf_tie_law_word[HF_N_LAW + 1] = {HF_LAW_LIST(LAW_WORD) NULL};
-#undef LAW_WORD
-
 static double front_curvature(const hf_double_net *d)
 {
     return 1 / (4 * d->focal_length_m);

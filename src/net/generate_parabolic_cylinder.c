@@ -19,9 +19,6 @@
 #define SUM_TOLERANCE 1e-9 /* relative; pitches are written with about ten digits at most */
 
 const char *const hf_spacing_word[3] = {"equal_arc", "equal_projected", NULL};
-const char *const hf_boundary_word[3] = {"outer_edge", "module_edges", NULL};
-const char *const hf_supports_word[4] = {"module_corners", "ribs", "perimeter", NULL};
-const char *const hf_pattern_word[5] = {"quad", "triangle", "diagonal", "alternating", NULL};
 
 /* ---- the parabola ---- */
 

@@ -22,8 +22,6 @@
 #define RELAXED 1e-16     /* relative to the first residual */
 #define RELAX_STEPS 40    /* maximum, per ring; about 4 are needed */
 
-const char *const hf_grid_word[3] = {"triangle", "quad", NULL};
-
 /* ---- what can be made ---- */
 
 static double radius(const hf_paraboloid *p)

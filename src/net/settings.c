@@ -5,9 +5,7 @@
 #include <string.h>
 
 const char *const hf_method_word[6] = {"hifdm", "iterative_fdm", "fdm", "newton", "auto", NULL};
-const char *const hf_prestress_word[3] = {"given", "exact", NULL};
 const char *const hf_stop_rule_word[3] = {"residual", "rms_change", NULL};
-const char *const hf_factor_word[3] = {"own", "lapack", NULL};
 const char *const hf_rule_word[4] = {"force_density", "tension", "seeded", NULL};
 const char *const hf_solver_word[5] = {"auto", "chord", "newton", "fixed_point", NULL};
 #define WORD(name, word) word,
@@ -15,19 +13,13 @@ const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1] = {HF_OPTIMI
 #undef WORD
 const char *const hf_coupling_scheme_word[4] = {"accelerated", "plain", "auto", NULL};
 const char *const hf_feed_word[5] = {"auto", "point", "line", "plane_wave", NULL};
-const char *const hf_polarisation_word[3] = {"x", "y", NULL};
 const char *const hf_surface_kind_word[4] = {"auto", "parabolic_cylinder", "paraboloid", NULL};
-const char *const hf_variation_word[3] = {"difference", "chain", NULL};
 const char *const hf_keep_word[4] = {"all", "best", "every", NULL};
-const char *const hf_refine_choice_word[4] = {"auto", "true", "false", NULL};
 const char *const hf_vary_word[8] = {"tension",   "force_density",  "length",      "unstressed_length",
                                      "support_z", "support_normal", "support_xyz", NULL};
-const char *const hf_link_word[4] = {"each", "set", "symmetry", NULL};
 const char *const hf_figure_kind_word[12] = {"psi",  "surface",    "facets", "tension", "length", "evenness",
                                              "pull", "deflection", "mass",   "ratio",   "gain",   NULL};
 const char *const hf_figure_kind_unit[11] = {"m", "m", "m", "N", "m", "", "N", "m", "kg", "", ""};
-const char *const hf_along_word[3] = {"normal", "half_path", NULL};
-const char *const hf_fit_word[3] = {"none", "best", NULL};
 const char *const hf_aim_word[3] = {"target_positions", "design", NULL};
 const char *const hf_adjust_figure_word[4] = {"psi", "surface", "facets", NULL};
 const char *const hf_distribution_word[3] = {"normal", "uniform", NULL};

@@ -13,8 +13,6 @@
 #define ID_SIZE 16        /* bytes of a node id such as f<k>; a member id has room for two of them */
 #define HEIGHT_SLACK 1e-9 /* relative; heights that agree to this are equal */
 
-const char *const hf_ring_held_word[4] = {"bay", "vertical", "three_verticals", NULL};
-
 /* ---- what can be made ---- */
 
 const char *hf_truss_ring_fault(const hf_truss_settings *s, const hf_paraboloid *p, char *what, size_t size)

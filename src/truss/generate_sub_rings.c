@@ -14,9 +14,6 @@
 #define ID_SIZE 40             /* bytes of a node id such as f<i>.<k>_<j>; a member id has room for two of them */
 
 const char *const hf_diagonals_word[4] = {"none", "single", "crossed", NULL};
-const char *const hf_theory_word[3] = {"euler_bernoulli", "timoshenko", NULL};
-const char *const hf_held_word[3] = {"central_module", "central_module_rear", NULL};
-const char *const hf_held_dofs_word[3] = {"all", "translations", NULL};
 
 typedef struct {
     const hf_truss_settings *set;
