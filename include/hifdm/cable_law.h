@@ -53,11 +53,12 @@ enum {
 typedef enum { HF_LAW_LIST(HF_LAW_NAME) } hf_law;
 #undef HF_LAW_NAME
 
+#define HF_LAW_WORD(name, word, target, unit, flags) word, /* for lists of all words */
 #define HF_LAW_ONE_MORE(name, word, target, unit, flags) +1
 enum { HF_N_LAW = HF_LAW_LIST(HF_LAW_ONE_MORE) };
 #undef HF_LAW_ONE_MORE
 
-extern const char *const hf_law_word[HF_N_LAW + 1];    /* "tension", "length", "force_density", "elastic" */
+extern const char *const hf_law_word[HF_N_LAW];        /* "tension", "length", "force_density", "elastic" */
 extern const char *const hf_law_target_name[HF_N_LAW]; /* names of the target values; NULL: the value is optional */
 extern const char *const hf_law_target_unit[HF_N_LAW]; /* units of the target values */
 

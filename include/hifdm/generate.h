@@ -59,7 +59,7 @@ typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
       "focal length of the rear net, which bulges towards the front; 0: that of the front net")                        \
     X(section, tie_direction, HF_FIELD_WORD, 0, 0, "z", "", HF_WORDS("z", "normal"),                                   \
       "ties run along z, or along the normal of the front net")                                                        \
-    X(section, tie_law, HF_FIELD_WORD, 0, 0, "length", "", hf_law_word,                                                \
+    X(section, tie_law, HF_FIELD_WORD, 0, 0, "length", "", ((const char *const[]){HF_LAW_LIST(HF_LAW_WORD) NULL}),     \
       "law of the ties; the nets have law tension, their boundary cables law length")                                  \
     X(section, tie_tension_N, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, "1", "N", NULL,                                     \
       "tension at the target positions, of ties of the laws tension, force_density and elastic")

@@ -5,10 +5,9 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#define WORD(name, word, target, unit, flags) word,
 #define TARGET(name, word, target, unit, flags) target,
 #define UNIT(name, word, target, unit, flags) unit,
-const char *const hf_law_word[HF_N_LAW + 1] = {HF_LAW_LIST(WORD) NULL};
+const char *const hf_law_word[HF_N_LAW] = {HF_LAW_LIST(HF_LAW_WORD)};
 const char *const hf_law_target_name[HF_N_LAW] = {HF_LAW_LIST(TARGET)};
 const char *const hf_law_target_unit[HF_N_LAW] = {HF_LAW_LIST(UNIT)};
 
