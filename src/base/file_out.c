@@ -252,17 +252,12 @@ void hf_file_out_drop(hf_file_out *f, hf_messages *messages)
     f->file = -1;
 }
 
-int hf_file_out_sync(int file)
-{
-    return hf_file_io_sync(file, false);
-}
-
 int hf_file_out_sync_folder(const char *path)
 {
     char folder[HF_FILE_OUT_SIZE];
     hf_path_folder(path, folder, sizeof folder);
     int file = hf_file_io_open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (file < 0 || hf_file_out_sync(file) != 0) return file < 0 ? -1 : close_with(file, errno);
+    if (file < 0 || hf_file_io_sync(file, false) != 0) return file < 0 ? -1 : close_with(file, errno);
     close(file);
     return 0;
 }
@@ -370,7 +365,7 @@ hf_status hf_file_out_try(const char *path, hf_messages *messages)
 
 hf_status hf_file_out_publish(hf_file_out *f, hf_messages *messages)
 {
-    if (hf_file_out_sync(f->file) == 0 && hf_file_out_replace(f, f->path) == 0) return HF_OK;
+    if (hf_file_io_sync(f->file, false) == 0 && hf_file_out_replace(f, f->path) == 0) return HF_OK;
     hf_status status = fail(f->path, messages);
     hf_file_out_drop(f, messages);
     return status;
@@ -431,7 +426,7 @@ hf_status hf_file_out_set_write(hf_file_out_set *set, const char *path, void (*w
 hf_status hf_file_out_set_end(hf_file_out_set *set, hf_status status, hf_messages *messages)
 {
     for (int i = 0; i < set->n && status == HF_OK; i++)
-        if (hf_file_out_sync(set->file[i].file) != 0) status = fail(set->file[i].path, messages);
+        if (hf_file_io_sync(set->file[i].file, false) != 0) status = fail(set->file[i].path, messages);
     for (int i = 0; i < set->n && status == HF_OK; i++)
         if (hf_file_out_replace(&set->file[i], set->file[i].path) != 0) status = fail(set->file[i].path, messages);
     for (int i = 0; i < set->n; i++)
@@ -467,10 +462,7 @@ int hf_file_out_scratch(const char *beside)
 {
     char folder[HF_FILE_OUT_SIZE];
     if (!beside) return scratch_of_system();
-    const char *slash = strrchr(beside, '/');
-    int n = slash ? snprintf(folder, sizeof folder, "%.*s", (int)(slash - beside) + 1, beside)
-                  : snprintf(folder, sizeof folder, ".");
-    if (n >= HF_FILE_OUT_SIZE) {
+    if (!hf_path_folder(beside, folder, sizeof folder)) {
         errno = ENAMETOOLONG;
         return -1;
     }

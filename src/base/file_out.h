@@ -93,7 +93,6 @@ hf_status hf_file_out_spare(const char *input, const char *what, const char *out
 void hf_file_out_clean(const char *path);
 
 int hf_file_out_make(const char *path, hf_file_out *file); /* temporary file of `path`, links already followed */
-int hf_file_out_sync(int file);                            /* waits until the content is on the disk */
 int hf_file_out_sync_folder(const char *path);             /* waits until the name `path` is on the disk */
 
 /* Gives the file `path` a second name. On a file system without links, the file is renamed to it. */

@@ -83,17 +83,12 @@ int hf_path_compare(const char *a, const char *b)
     return seen > 0 ? hf_path_is_same_inode(&of_a, &of_b) : seen;
 }
 
-bool hf_path_is_same(const char *a, const char *b)
-{
-    return hf_path_compare(a, b) > 0;
-}
-
 bool hf_path_will_be_same(const char *a, const char *b)
 {
     char of_a[PATH_MAX], of_b[PATH_MAX];
     if (!strcmp(a, b)) return true;
     return !strcmp(hf_path_name(a), hf_path_name(b)) && hf_path_folder(a, of_a, sizeof of_a) &&
-           hf_path_folder(b, of_b, sizeof of_b) && hf_path_is_same(of_a, of_b);
+           hf_path_folder(b, of_b, sizeof of_b) && hf_path_compare(of_a, of_b) > 0;
 }
 
 bool hf_path_leads_to(const char *path, int file)

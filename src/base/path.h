@@ -33,9 +33,8 @@ bool hf_path_choose(const char *given, const char *source, const char *ending, c
 /* Writes `path` with `part` inserted before the ending: table.csv and "_nodes" become table_nodes.csv. */
 bool hf_path_insert(const char *path, const char *part, char *longer, size_t size);
 
-/* Return whether both names lead to the same existing file, following links. hf_path_compare returns 1 or 0, and -1
- * with errno if the system cannot answer. */
-bool hf_path_is_same(const char *a, const char *b);
+/* Returns 1 if both names lead to the same existing file, following links, and 0 if not. Returns -1 with errno if the
+ * system cannot answer. */
 int hf_path_compare(const char *a, const char *b);
 /* Returns true if both names would lead to the same file once it exists: equal names in the same folder. The folder may
  * be spelt in two ways. */

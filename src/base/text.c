@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* strtod_l */
 #include "base/text.h"
 
 #include "base/file_io.h"
@@ -81,13 +82,9 @@ static const char *skip_digits(const char *p)
  * a decimal comma. */
 static double number_of(const char *text)
 {
-    locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0), old = (locale_t)0;
-    if (c_locale) old = uselocale(c_locale);
-    double value = strtod(text, NULL);
-    if (c_locale) {
-        uselocale(old);
-        freelocale(c_locale);
-    }
+    locale_t c_locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
+    double value = c_locale ? strtod_l(text, NULL, c_locale) : strtod(text, NULL);
+    if (c_locale) freelocale(c_locale);
     return value;
 }
 

@@ -237,7 +237,7 @@ static void remove_earlier(hf_store_file *f)
 /* Syncs the file before the rename. After a power cut there is either the old file or the new one, whole. */
 void hf_store_file_publish(hf_store_file *f, bool durable, bool is_finished)
 {
-    if (f->io.status == HF_OK && durable && hf_file_out_sync(f->out.file) != 0) sync_failed(f);
+    if (f->io.status == HF_OK && durable && hf_file_io_sync(f->out.file, false) != 0) sync_failed(f);
     if (f->io.status == HF_OK && !is_finished && f->earlier == HF_EARLIER_THERE) keep_earlier(f);
     if (f->io.status != HF_OK) return;
     int taken = -1;

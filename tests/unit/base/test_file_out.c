@@ -2,6 +2,7 @@
 #include "calls.h"
 #include "support.h"
 
+#include "base/file_io.h"
 #include "base/file_out.h"
 
 #include <dirent.h>
@@ -189,7 +190,7 @@ START_TEST(adding_never_replaces)
     ck_assert_int_eq(hf_file_out_add(&f, path, NULL), -1);
     ck_assert_int_eq(errno, EEXIST);
     ck_assert_int_eq(unlink(path), 0);
-    ck_assert_int_eq(hf_file_out_sync(f.file), 0);
+    ck_assert_int_eq(hf_file_io_sync(f.file, false), 0);
     ck_assert_int_eq(hf_file_out_add(&f, path, NULL), 0);
     ck_assert_int_eq(count_in(folder), 1);
     demand_text(path, "new");
