@@ -64,7 +64,7 @@ static inline void attach_all_to(struct net *net, struct rng *rng, int kind, dou
     hf_messages messages = {0};
     double *f = random_flexibility_of(rng, kind, n, scale_m_per_N);
     ck_assert_msg(hf_model_attach(&net->model, n, node, f, &messages) == HF_OK, "%s", messages.text);
-    ck_assert(hf_model_is_valid(&net->model));
+    ck_assert(model_is_valid(&net->model));
     free(f);
     hf_workspace_free(&net->work);
     ck_assert_int_eq(hf_workspace_create(&net->model, &net->work), HF_OK);

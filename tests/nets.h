@@ -4,6 +4,7 @@
 #define HIFDM_TESTS_NETS_H
 
 #include "support.h"
+#include "valid.h"
 
 #include <hifdm/config.h>
 #include <hifdm/formfind.h>
@@ -44,7 +45,7 @@ static inline void open_net(struct net *net)
 {
     hf_messages messages = {0};
     ck_assert_msg(hf_model_build(&net->scene, &net->form, &net->model, &messages) == HF_OK, "%s", messages.text);
-    ck_assert(hf_model_is_valid(&net->model));
+    ck_assert(model_is_valid(&net->model));
     ck_assert_int_eq(hf_workspace_create(&net->model, &net->work), HF_OK);
     hf_workspace_poison(&net->model, &net->work);
 }

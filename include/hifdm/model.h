@@ -152,9 +152,6 @@ void hf_model_variable_name(const hf_model *model, const hf_scene *scene, int i_
 /* Returns the unit of a design variable as a constant string: "N", "N/m" or "m". */
 const char *hf_model_variable_unit(const hf_model *model, int i_variable);
 
-/* Returns true if all indices of the model satisfy their invariants. The function is for asserts and tests. */
-bool hf_model_is_valid(const hf_model *model);
-
 /* Writes the cables of a chain to text[size] in the form "cable + cable + cable". A text that does not fit is truncated
  * and ends with " ...". */
 void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_chain, char *text, size_t size);

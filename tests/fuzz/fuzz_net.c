@@ -1,5 +1,6 @@
 /* The tables of a net: nodes, a line "%%", cables. A net that was accepted is also solved for a few iterations. */
 #include "fuzz/fuzz.h"
+#include "valid.h"
 
 #include "run/diagnose.h"
 #include "run/problem_parts.h"
@@ -17,7 +18,7 @@ static bool has_taut_inner_node(const hf_problem *p)
 
 static void solve(hf_problem *p, hf_messages *messages, hf_status *status)
 {
-    FUZZ_REQUIRE(hf_model_is_valid(&p->model));
+    FUZZ_REQUIRE(model_is_valid(&p->model));
     *status = hf_problem_allocate(p, messages);
     if (*status != HF_OK) return;
     hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);

@@ -119,14 +119,14 @@ START_TEST(the_model_does_not_need_the_scene)
     double psi_m = net.result.psi_m;
     memset(net.scene.position_m, 0x77, 3 * (size_t)net.scene.n_node * sizeof(double));
     hf_scene_free(&net.scene);
-    ck_assert(hf_model_is_valid(&net.model));
+    ck_assert(model_is_valid(&net.model));
     ck_assert_int_eq(find_shape(&net), HF_OK);
     ck_assert_double_eq(net.result.psi_m, psi_m);
     close_net(&net);
 }
 END_TEST
 
-/* Every single wrong index must show, otherwise hf_model_is_valid guards nothing. */
+/* Every single wrong index must show, otherwise model_is_valid guards nothing. */
 START_TEST(every_damage_is_noticed)
 {
     struct net net;
@@ -148,14 +148,14 @@ START_TEST(every_damage_is_noticed)
         for (int i = 0; i < index[k].n; i++) {
             int kept = index[k].array[i];
             index[k].array[i] = -1;
-            ck_assert_msg(!hf_model_is_valid(m), "%s[%d]", index[k].name, i);
+            ck_assert_msg(!model_is_valid(m), "%s[%d]", index[k].name, i);
             index[k].array[i] = kept + 1;
             int to_another_support = index[k].array == m->end_row && kept >= m->n_free; /* wrong, but a valid index */
-            ck_assert_msg(!hf_model_is_valid(m) || to_another_support, "%s[%d]", index[k].name, i);
+            ck_assert_msg(!model_is_valid(m) || to_another_support, "%s[%d]", index[k].name, i);
             index[k].array[i] = kept;
         }
     m->inner_row[3] = m->n_free;
-    ck_assert(!hf_model_is_valid(m));
+    ck_assert(!model_is_valid(m));
     close_net(&net);
 }
 END_TEST

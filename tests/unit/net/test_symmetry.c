@@ -61,7 +61,7 @@ START_TEST(classes_of_the_papers_net)
     ck_assert_int_eq(planes, expected[_i].planes);
     ck_assert_int_eq(m->n_leader, expected[_i].n_leader);
     ck_assert_int_eq(m->n_variable_group, expected[_i].n_group);
-    ck_assert(hf_model_is_valid(m));
+    ck_assert(model_is_valid(m));
     for (int a = 0; a < m->n_variable; a++)
         for (int b = 0; b < m->n_variable; b++) {
             bool linked = m->variable_leader[a] == m->variable_leader[b];
