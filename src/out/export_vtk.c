@@ -28,7 +28,7 @@
 #include "base/arena.h"
 #include "base/file_out.h"
 #include "net/target_surface.h"
-#include "surface/facet_rms.h"
+#include "surface/facet_mesh.h"
 #include "store/vtkhdf.h"
 #include <hifdm/metrics.h>
 #include <hifdm/store.h>

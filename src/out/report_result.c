@@ -11,7 +11,7 @@
 #include "out/report_page.h"
 #include "out/report_pattern.h"
 #include "out/words.h"
-#include "surface/facet_rms.h"
+#include "surface/facet_mesh.h"
 #include "store/ledger.h"
 #include "store/store_read.h"
 #include "store/store_series.h"

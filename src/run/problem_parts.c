@@ -18,7 +18,7 @@
 #include "net/variables.h"
 #include "run/problem_nets.h"
 #include "search/refine.h"
-#include "surface/facet_rms.h"
+#include "surface/facet_mesh.h"
 #include "solve/limits.h"
 #include "solve/prestress.h"
 #include <hifdm/evaluate.h>

@@ -13,10 +13,10 @@
  * Contents: layout - points - errors - the best fit - residuals */
 #include "surface/cloud.h"
 
+#include "base/elementary.h"
 #include "linalg/dense.h"
 #include "net/target_surface.h"
 #include "surface/facet_mesh.h"
-#include "surface/fit_point.h"
 
 #include <math.h>
 #include <string.h>
@@ -168,12 +168,10 @@ static void polish(hf_cloud *c)
 {
     hf_fit_parameters *found = &c->pose.found;
     hf_fit_frame f = frame_of(c);
-    double step[N_MOST], most = 0;
+    double step[N_MOST];
     if (factor(c, &f, step) != HF_OK) return;
     hf_dense_solve(found->n, c->pose.factor, c->pose.pivot, 1, step);
-    for (int k = 0; k < found->n; k++)
-        most = fmax(most, fabs(step[k]));
-    if (!(most < STEP_MOST)) return;
+    if (!(hf_max_magnitude((size_t)found->n, step) < STEP_MOST)) return;
     for (int k = 0; k < found->n; k++)
         found->value[found->quantity[k]] -= step[k];
 }

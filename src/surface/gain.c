@@ -9,7 +9,6 @@
 
 #include "base/elementary.h"
 #include "surface/facet_mesh.h"
-#include "surface/gauss.h"
 #include "surface/pattern_feed.h"
 
 #include <float.h>

@@ -12,7 +12,6 @@
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "surface/facet_mesh.h"
-#include "surface/gauss.h"
 #include "surface/pattern_feed.h"
 #include "surface/pattern_kernel.h"
 

@@ -8,7 +8,7 @@
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "net/target_surface.h"
-#include "surface/facet_rms.h"
+#include "surface/facet_mesh.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -135,11 +135,10 @@ hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *face
                              const double *position_m, const double *tension_N, hf_surface_measures *measures)
 {
     size_t n = (size_t)m->n_inner_node;
-    hf_arena arena = {0};
+    void *block;
     *measures = (hf_surface_measures){0};
-    double *inner_m;
-    HF_TRY(HF_ARENA_MAKE(&arena, inner_m = hf_arena_take(&arena, 4 * n, sizeof(double))));
-    double *deviation_m = inner_m + 3 * n;
+    double *inner_m, *deviation_m;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(inner_m, 3 * n), HF_ARRAY(deviation_m, n)));
     hf_surface_measures all = {.is_measured = true};
     collect(s, m, position_m, inner_m, deviation_m, &all);
     qsort(deviation_m, n, sizeof *deviation_m, hf_compare_doubles);
@@ -153,7 +152,7 @@ hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *face
     hf_status status = hf_surface_fit_points(s->kind, s->focal_length_m, (int)n, inner_m, NULL, &all.fit);
     if (status == HF_OK) status = measure_facets(s, facets, m, position_m, tension_N, &all);
     note_losses(s, &all);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     if (status == HF_OK) *measures = all;
     return status;
 }

@@ -11,7 +11,7 @@
 #include "base/elementary.h"
 #include "linalg/dense.h"
 #include "net/target_surface.h"
-#include "surface/facet_rms.h"
+#include "surface/facet_mesh.h"
 
 #include <math.h>
 #include <string.h>
@@ -188,10 +188,10 @@ bool hf_surface_fit_near(const hf_surface_pose *from, int n, const double *posit
 /* ---- a shape ---- */
 
 /* Copies the inner nodes to inner_m [3][n], in new memory of the arena. */
-static hf_status take_nodes(const hf_model *m, const double *position_m, hf_arena *arena, double **inner_m)
+static hf_status take_nodes(const hf_model *m, const double *position_m, void **block, double **inner_m)
 {
     size_t n = (size_t)m->n_inner_node;
-    HF_TRY(HF_ARENA_MAKE(arena, *inner_m = hf_arena_take(arena, 3 * n, sizeof **inner_m)));
+    HF_TRY(HF_ARENA_ARRAYS(block, HF_ARRAY(*inner_m, 3 * n)));
     for (size_t c = 0; c < 3; c++)
         for (size_t k = 0; k < n; k++)
             (*inner_m)[c * n + k] = position_m[(int)c * m->n_node + m->inner_row[k]];
@@ -201,16 +201,17 @@ static hf_status take_nodes(const hf_model *m, const double *position_m, hf_aren
 hf_status hf_surface_design_make(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
                                  const double *position_m, const double *tension_N, hf_surface_design *design)
 {
-    hf_arena arena = {0}, shapes = {0};
+    hf_arena shapes = {0};
+    void *block;
     hf_facet_shape shape;
     hf_surface_fit fit;
     hf_fit_parameters parameters;
     double *inner_m;
     *design = (hf_surface_design){0};
-    HF_TRY(take_nodes(m, position_m, &arena, &inner_m));
+    HF_TRY(take_nodes(m, position_m, &block, &inner_m));
     hf_status status =
         hf_surface_fit_find(s->kind, s->focal_length_m, m->n_inner_node, inner_m, NULL, &fit, &parameters);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     HF_TRY(status);
     design->nodes = hf_surface_pose_of(s->kind, s->focal_length_m, &fit, &parameters);
     if (!facets || facets->n_facet == 0) return HF_OK;
@@ -226,10 +227,10 @@ static hf_status measure_nodes(const hf_surface_design *design, const hf_surface
                                const double *position_m, hf_surface_paths *to)
 {
     int n = m->n_inner_node;
-    hf_arena arena = {0};
+    void *block;
     hf_surface_fit fit;
     double *inner_m, sum = 0, curvature = 1 / (4 * s->focal_length_m);
-    HF_TRY(take_nodes(m, position_m, &arena, &inner_m));
+    HF_TRY(take_nodes(m, position_m, &block, &inner_m));
     for (int k = 0; k < n; k++) {
         double p[3] = {inner_m[k], inner_m[n + k], inner_m[2 * (size_t)n + (size_t)k]}, slope[2];
         double above = hf_target_surface_height_above(s->kind, curvature, p, slope);
@@ -242,7 +243,7 @@ static hf_status measure_nodes(const hf_surface_design *design, const hf_surface
         status = hf_surface_fit_points(s->kind, s->focal_length_m, n, inner_m, NULL, &fit);
         to->nodes_fit_m = fit.half_path_rms_m;
     }
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 

@@ -2,7 +2,6 @@
 #include "nets.h"
 
 #include "surface/facet_mesh.h"
-#include "surface/facet_rms.h"
 
 /* ---- a triangular net over a hexagon ---- */
 
