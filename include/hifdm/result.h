@@ -197,7 +197,12 @@ typedef enum {
     HF_RESULT_TRUTH,
     HF_RESULT_REFINE_STOP,
     HF_RESULT_SOLVER,
-    HF_RESULT_SEARCH_STOP
+    HF_RESULT_SEARCH_STOP,
+    /* The following types are in no list. */
+    HF_RESULT_UINT64,
+    HF_RESULT_CHARS,
+    HF_RESULT_SURFACE,
+    HF_RESULT_FEED
 } hf_result_kind;
 
 /* One row of a list at run time. */

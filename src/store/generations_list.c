@@ -64,11 +64,11 @@ void hf_generations_list(const hf_population *now, hf_generations_row row[HF_GEN
     memcpy(row, before, sizeof before);
     for (int i = 0; i < HF_RESULT_N_INDIVIDUAL; i++) {
         const hf_result_field *f = field[i];
-        row[HF_ROW_RESULT + i] = (hf_generations_row){
-            {f->name, hf_layout_kind_of(f->kind), 2, {1, p}, f->units ? f->units : "", f->description},
-            (const char *)now->result + f->offset,
-            sizeof *now->result,
-            f->size};
+        row[HF_ROW_RESULT + i] =
+            (hf_generations_row){{f->name, hf_layout_kind_of(f), 2, {1, p}, f->units ? f->units : "", f->description},
+                                 (const char *)now->result + f->offset,
+                                 sizeof *now->result,
+                                 f->size};
     }
     list_objectives(now, row + HF_ROW_OBJECTIVE);
     memcpy(row + HF_ROW_TRIAL_STATUS, behind, sizeof behind);

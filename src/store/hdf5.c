@@ -1,5 +1,5 @@
 /* Implements the calls of hdf5.h that make, write and read files, groups, data sets and attributes. Sections: failures,
- * types, files and groups, writing data sets, reading data sets, attributes. */
+ * types, files and groups, writing data sets, reading data sets, strings, data sets that grow, attributes. */
 #include "store/hdf5.h"
 
 #include <assert.h>
@@ -181,7 +181,7 @@ static hid_t make_type(const hf_hdf5_kind *kind, hsize_t length)
     }
 }
 
-hid_t hf_hdf5_array_type(const hf_hdf5_array *a)
+static hid_t array_type(const hf_hdf5_array *a)
 {
     return make_type(a->kind, a->kind == HF_KIND_CHARS ? a->dims[a->rank] : 0);
 }
@@ -212,6 +212,13 @@ bool hf_hdf5_are_known(const hf_hdf5_kind *kind, const void *values, hsize_t n)
     for (hsize_t i = 0; i < n; i++)
         if (!known[bytes[i]]) return false;
     return true;
+}
+
+const char *hf_hdf5_word(const hf_hdf5_kind *kind, int value)
+{
+    for (int i = 0; i < kind->n_word; i++)
+        if (value_at(kind, i) == value) return kind->word[i];
+    return "unknown";
 }
 
 /* ---- names in files of another version ---- */
@@ -400,7 +407,7 @@ hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const
 {
     hid_t type = -1, space = -1, properties = -1, data_set = -1;
     if (io->status != HF_OK) return -1;
-    if ((type = hf_hdf5_array_type(a)) < 0 || (space = make_space(a, chunk != NULL)) < 0 ||
+    if ((type = array_type(a)) < 0 || (space = make_space(a, chunk != NULL)) < 0 ||
         (properties = make_properties(H5P_DATASET_CREATE)) < 0 ||
         (chunk && (H5Pset_chunk(properties, a->rank, chunk) < 0 || /* chunks are written before they are read */
                    H5Pset_fill_time(properties, H5D_FILL_TIME_NEVER) < 0)) ||
@@ -418,7 +425,7 @@ void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const
 {
     hid_t data_set = hf_hdf5_make_array(io, group, a, NULL), type = -1;
     if (io->status == HF_OK) {
-        type = hf_hdf5_array_type(a);
+        type = array_type(a);
         if (type < 0 || H5Dwrite(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
             hf_hdf5_fail(io, "write", group, a->name);
     }
@@ -426,80 +433,192 @@ void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const
     hf_hdf5_close(io, data_set);
 }
 
-/* ---- reading data sets ---- */
-
-void hf_hdf5_check_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, hid_t data_set, hsize_t row, bool all)
+void hf_hdf5_write_list(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_kind *kind, int n, int columns,
+                        const char *units, const char *description, const void *values)
 {
-    hid_t space = -1, stored = -1;
-    hsize_t dims[H5S_MAX_RANK];
-    int rank = -1;
-    if (io->status != HF_OK) return;
-    if ((space = H5Dget_space(data_set)) < 0 || (rank = H5Sget_simple_extent_dims(space, dims, NULL)) < 0 ||
-        (stored = H5Dget_type(data_set)) < 0)
-        hf_hdf5_fail(io, "read", group, a->name);
-    bool fits = io->status == HF_OK && rank == a->rank;
-    for (int i = 0; i < rank && fits; i++)
-        fits = i > 0 || all ? dims[i] == a->dims[i] : row <= dims[0] && a->dims[0] <= dims[0] - row;
-    if (io->status == HF_OK && !fits)
-        hf_hdf5_damaged(io, group, a->name, "has other dimensions than the rest of the file asks for");
-    if (io->status == HF_OK && !is_of_kind(stored, a->kind)) hf_hdf5_damaged(io, group, a->name, "is of another type");
-    hf_hdf5_close(io, stored);
-    hf_hdf5_close(io, space);
+    const hf_hdf5_array array = {name, kind, columns ? 2 : 1, {(hsize_t)n, (hsize_t)columns}, units, description};
+    hf_hdf5_write_array(io, group, &array, values);
 }
 
-void hf_hdf5_check_values(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const void *values)
+void hf_hdf5_write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *const *id, int n,
+                       const char *description)
 {
+    size_t length = 1;
+    for (int i = 0; i < n; i++)
+        length = strlen(id[i]) > length ? strlen(id[i]) : length;
+    hf_hdf5_array array = {name, HF_KIND_CHARS, 1, {(hsize_t)n, length}, "", description};
+    char *chars = io->status == HF_OK ? calloc((size_t)n, length) : NULL;
+    if (!chars) hf_hdf5_no_memory(io);
+    for (int i = 0; chars && i < n; i++)
+        memcpy(chars + (size_t)i * length, id[i], strlen(id[i]));
+    if (chars) hf_hdf5_write_array(io, group, &array, chars);
+    free(chars);
+}
+
+/* ---- reading data sets ---- */
+
+void hf_hdf5_open_data_set(hf_hdf5 *io, hid_t place, const char *name, hf_hdf5_data_set *d)
+{
+    *d = (hf_hdf5_data_set){.id = -1, .space = -1, .type = -1, .rank = -1};
+    if (io->status == HF_OK) d->id = hf_hdf5_open(io, place, name, H5I_DATASET);
+    if (io->status == HF_OK &&
+        ((d->space = H5Dget_space(d->id)) < 0 || (d->rank = H5Sget_simple_extent_dims(d->space, d->dims, NULL)) < 0 ||
+         (d->type = H5Dget_type(d->id)) < 0))
+        hf_hdf5_fail(io, "read", place, name);
+}
+
+void hf_hdf5_close_data_set(hf_hdf5 *io, hf_hdf5_data_set *d)
+{
+    hf_hdf5_close(io, d->type);
+    hf_hdf5_close(io, d->space);
+    hf_hdf5_close(io, d->id);
+}
+
+/* Selects rows row to row + dims[0] - 1 in the data space of a file. Returns the data space of the values, which the
+ * caller closes, or -1 after a failure. */
+static hid_t select_rows(const hf_hdf5_array *a, hsize_t row, hid_t space)
+{
+    hsize_t start[3] = {row, 0, 0};
+    if (H5Sget_simple_extent_ndims(space) != a->rank ||
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, a->dims, NULL) < 0)
+        return -1;
+    return H5Screate_simple(a->rank, a->dims, NULL);
+}
+
+/* Reads a data set, or only the rows from `row` on. Before, it compares type and dimensions; after, it checks that
+ * values of an enumeration have words. */
+static void read_values(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, bool all, hsize_t row, void *values)
+{
+    hf_hdf5_data_set d;
+    hid_t type = -1, memory = H5S_ALL;
     hsize_t n = 1;
-    for (int i = 0; i < a->rank; i++)
+    hf_hdf5_open_data_set(io, group, a->name, &d);
+    bool fits = d.rank == a->rank;
+    for (int i = 0; i < a->rank; i++) {
+        fits = fits && (i > 0 || all ? d.dims[i] == a->dims[i] : row <= d.dims[0] && a->dims[0] <= d.dims[0] - row);
         n *= a->dims[i];
+    }
+    if (io->status == HF_OK && !fits)
+        hf_hdf5_damaged(io, group, a->name, "has other dimensions than the rest of the file asks for");
+    if (io->status == HF_OK && !is_of_kind(d.type, a->kind)) hf_hdf5_damaged(io, group, a->name, "is of another type");
+    if (io->status == HF_OK && ((type = make_read_type(a->kind, a->kind == HF_KIND_CHARS ? a->dims[a->rank] : 0)) < 0 ||
+                                (!all && (memory = select_rows(a, row, d.space)) < 0) ||
+                                H5Dread(d.id, type, memory, all ? H5S_ALL : d.space, H5P_DEFAULT, values) < 0))
+        hf_hdf5_fail(io, "read", group, a->name);
     if (io->status == HF_OK && is_enum(a->kind) && !hf_hdf5_are_known(a->kind, values, n))
         hf_hdf5_damaged(io, group, a->name, "holds a value that has no word");
+    if (memory != H5S_ALL) hf_hdf5_close(io, memory);
+    hf_hdf5_close(io, type);
+    hf_hdf5_close_data_set(io, &d);
 }
 
 void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, void *values)
 {
-    hid_t type = -1;
-    if (io->status != HF_OK) return;
-    hid_t data_set = hf_hdf5_open(io, group, a->name, H5I_DATASET);
-    hf_hdf5_check_array(io, group, a, data_set, 0, true);
-    if (io->status == HF_OK && ((type = make_read_type(a->kind, a->kind == HF_KIND_CHARS ? a->dims[a->rank] : 0)) < 0 ||
-                                H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0))
-        hf_hdf5_fail(io, "read", group, a->name);
-    hf_hdf5_check_values(io, group, a, values);
-    hf_hdf5_close(io, type);
-    hf_hdf5_close(io, data_set);
+    read_values(io, group, a, true, 0, values);
+}
+
+void hf_hdf5_read_list(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_kind *kind, int n, int columns,
+                       void *values)
+{
+    const hf_hdf5_array array = {name, kind, columns ? 2 : 1, {(hsize_t)n, (hsize_t)columns}, "", ""};
+    read_values(io, group, &array, true, 0, values);
 }
 
 int hf_hdf5_length(hf_hdf5 *io, hid_t group, const char *name, int max)
 {
-    hid_t space = -1;
-    hsize_t dims[H5S_MAX_RANK] = {0};
-    int rank = -1;
-    if (io->status != HF_OK) return 0;
-    hid_t data_set = hf_hdf5_open(io, group, name, H5I_DATASET);
-    if (io->status == HF_OK &&
-        ((space = H5Dget_space(data_set)) < 0 || (rank = H5Sget_simple_extent_dims(space, dims, NULL)) < 0))
-        hf_hdf5_fail(io, "read", group, name);
-    else if (io->status == HF_OK && (rank < 1 || dims[0] < 1 || dims[0] > (hsize_t)max))
+    hf_hdf5_data_set d;
+    hf_hdf5_open_data_set(io, group, name, &d);
+    if (io->status == HF_OK && (d.rank < 1 || d.dims[0] < 1 || d.dims[0] > (hsize_t)max))
         hf_hdf5_damaged(io, group, name, "is empty or too large");
-    hf_hdf5_close(io, space);
-    hf_hdf5_close(io, data_set);
-    return io->status == HF_OK ? (int)dims[0] : 0;
+    hf_hdf5_close_data_set(io, &d);
+    return io->status == HF_OK ? (int)d.dims[0] : 0;
 }
 
-size_t hf_hdf5_chars_length(hf_hdf5 *io, hid_t group, const char *name)
+/* ---- strings ---- */
+
+/* Opens a data set of n strings of fixed length; n < 0: a scalar. Returns the bytes of each with a NUL. */
+static size_t open_strings(hf_hdf5 *io, hid_t group, const char *name, int n, hf_hdf5_data_set *d)
 {
-    hid_t stored = -1;
-    size_t length = 0;
-    if (io->status != HF_OK) return 0;
-    hid_t data_set = hf_hdf5_open(io, group, name, H5I_DATASET);
-    if (io->status == HF_OK && ((stored = H5Dget_type(data_set)) < 0 || (length = H5Tget_size(stored)) == 0))
-        hf_hdf5_fail(io, "read", group, name);
-    else if (io->status == HF_OK && !is_of_kind(stored, HF_KIND_CHARS))
+    hf_hdf5_open_data_set(io, group, name, d);
+    if (io->status == HF_OK && !is_of_kind(d->type, HF_KIND_CHARS))
         hf_hdf5_damaged(io, group, name, "is of another type");
-    hf_hdf5_close(io, stored);
+    if (io->status == HF_OK && (d->rank != (n >= 0) || (n >= 0 && d->dims[0] != (hsize_t)n)))
+        hf_hdf5_damaged(io, group, name, "has other dimensions than the rest of the file asks for");
+    return io->status == HF_OK ? H5Tget_size(d->type) + 1 : 0;
+}
+
+void hf_hdf5_take_strings(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_data_set *d, size_t size,
+                          char *text)
+{
+    hid_t type = H5Tcopy(H5T_C_S1);
+    if (type < 0 || H5Tset_size(type, size) < 0 || H5Tset_cset(type, H5Tget_cset(d->type)) < 0 ||
+        H5Dread(d->id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0)
+        hf_hdf5_fail(io, "read", group, name);
+    hf_hdf5_close(io, type);
+}
+
+char *hf_hdf5_read_strings(hf_hdf5 *io, hid_t group, const char *name, int n, size_t *size)
+{
+    hf_hdf5_data_set d;
+    *size = open_strings(io, group, name, n, &d);
+    char *text = io->status == HF_OK ? malloc(*size * (n < 0 ? 1 : (size_t)n)) : NULL;
+    if (!text) hf_hdf5_no_memory(io);
+    if (text) hf_hdf5_take_strings(io, group, name, &d, *size, text);
+    hf_hdf5_close_data_set(io, &d);
+    return text;
+}
+
+void hf_hdf5_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, const char **id_a, const char *name_b, int m,
+                      const char **id_b, void **text)
+{
+    hf_hdf5_data_set a, b;
+    size_t size_a = open_strings(io, group, name_a, n, &a), size_b = open_strings(io, group, name_b, m, &b);
+    char *of_a = io->status == HF_OK ? malloc((size_t)n * size_a + (size_t)m * size_b) : NULL;
+    if (!of_a) hf_hdf5_no_memory(io);
+    if (of_a) {
+        char *of_b = of_a + (size_t)n * size_a;
+        *text = of_a;
+        hf_hdf5_take_strings(io, group, name_a, &a, size_a, of_a);
+        if (io->status == HF_OK) hf_hdf5_take_strings(io, group, name_b, &b, size_b, of_b);
+        for (int i = 0; i < n; i++)
+            id_a[i] = of_a + (size_t)i * size_a;
+        for (int i = 0; i < m; i++)
+            id_b[i] = of_b + (size_t)i * size_b;
+    }
+    hf_hdf5_close_data_set(io, &b);
+    hf_hdf5_close_data_set(io, &a);
+}
+
+/* ---- data sets that grow ---- */
+
+/* Opens a data set without HDF5's cache of chunks. Many rows come at a time, so the cache would only copy them once
+ * more. */
+static hid_t open_uncached(hid_t group, const char *name)
+{
+    hid_t access = H5Pcreate(H5P_DATASET_ACCESS), data_set = -1;
+    if (access >= 0 && H5Pset_chunk_cache(access, 1, 0, 1) >= 0) data_set = H5Dopen2(group, name, access);
+    if (access >= 0) H5Pclose(access);
+    return data_set;
+}
+
+void hf_hdf5_write_rows(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, hsize_t row, const void *values)
+{
+    hid_t data_set = -1, type = -1, space = -1, memory = -1;
+    hsize_t extent[3] = {row + a->dims[0], a->dims[1], a->dims[2]};
+    if (io->status != HF_OK) return;
+    if ((data_set = open_uncached(group, a->name)) < 0 || H5Dset_extent(data_set, extent) < 0 ||
+        (type = array_type(a)) < 0 || (space = H5Dget_space(data_set)) < 0 ||
+        (memory = select_rows(a, row, space)) < 0 || H5Dwrite(data_set, type, memory, space, H5P_DEFAULT, values) < 0)
+        hf_hdf5_fail(io, "write", group, a->name);
+    hf_hdf5_close(io, memory);
+    hf_hdf5_close(io, space);
+    hf_hdf5_close(io, type);
     hf_hdf5_close(io, data_set);
-    return io->status == HF_OK ? length : 0;
+}
+
+void hf_hdf5_read_rows(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, hsize_t row, void *values)
+{
+    read_values(io, group, a, false, row, values);
 }
 
 /* ---- attributes ---- */

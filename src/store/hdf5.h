@@ -80,6 +80,9 @@ hf_status hf_hdf5_unlock(hf_status status);
 /* Returns true if each of the n values of an enumeration (HF_HDF5_ENUM) has a word. */
 bool hf_hdf5_are_known(const hf_hdf5_kind *kind, const void *values, hsize_t n);
 
+/* Returns the word of a value of an enumeration, "unknown" for a value without a word. */
+const char *hf_hdf5_word(const hf_hdf5_kind *kind, int value);
+
 /* Returns the bytes of one value in memory; not for HF_KIND_CHARS. */
 size_t hf_hdf5_kind_bytes(const hf_hdf5_kind *kind);
 
@@ -177,35 +180,45 @@ void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, c
 void hf_hdf5_write_rows(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, hsize_t row, const void *values);
 void hf_hdf5_read_rows(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, hsize_t row, void *values);
 
-/* Reads a scalar string of fixed length into a new *text, which the caller frees. */
-void hf_hdf5_read_text(hf_hdf5 *io, hid_t group, const char *name, char **text);
+/* hf_hdf5_write_list writes n values, or with columns > 0 n rows of so many. hf_hdf5_read_list reads them as
+ * hf_hdf5_read_array does. */
+void hf_hdf5_write_list(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_kind *kind, int n, int columns,
+                        const char *units, const char *description, const void *values);
+void hf_hdf5_read_list(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_kind *kind, int n, int columns,
+                       void *values);
 
 /* Writes n >= 1 names, padded to the length of the longest. */
 void hf_hdf5_write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *const *id, int n,
                        const char *description);
+
+/* Reads n strings of fixed length, or with n < 0 a scalar one, each with a NUL, into new memory [n][*size], which the
+ * caller frees. Returns NULL after a failure to open the data set or to allocate. */
+char *hf_hdf5_read_strings(hf_hdf5 *io, hid_t group, const char *name, int n, size_t *size);
 
 /* Reads the n and m ids of two data sets. id_a [n] and id_b [m] then point into the new block *text, which the caller
  * frees. */
 void hf_hdf5_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, const char **id_a, const char *name_b, int m,
                       const char **id_b, void **text);
 
-/* Returns the HDF5 type of the values, which the caller closes; negative after a failure of HDF5. */
-hid_t hf_hdf5_array_type(const hf_hdf5_array *array);
-
 /* Reads exactly array->dims values. Other dimensions, other types and unknown values of enumerations are failures. */
 void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, void *values);
-
-/* The two checks of hf_hdf5_read_array. hf_hdf5_check_array runs before values are read and compares type and
- * dimensions: with `all` the dimensions must equal array->dims, otherwise rows row to row + array->dims[0] - 1 must
- * exist. hf_hdf5_check_values checks that values of an enumeration have words. */
-void hf_hdf5_check_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, hid_t data_set, hsize_t row, bool all);
-void hf_hdf5_check_values(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, const void *values);
 
 /* Returns the first dimension of a data set, 1 to `max`, or 0 after a failure. Other lengths are damage. */
 int hf_hdf5_length(hf_hdf5 *io, hid_t group, const char *name, int max);
 
-/* Returns the length of each string of a data set of HF_KIND_CHARS, at least 1, or 0 after a failure. */
-size_t hf_hdf5_chars_length(hf_hdf5 *io, hid_t group, const char *name);
+/* An open data set with its type and dimensions in the file. */
+typedef struct {
+    hid_t id, space, type;
+    int rank; /* -1 after a failure */
+    hsize_t dims[H5S_MAX_RANK];
+} hf_hdf5_data_set;
+
+/* hf_hdf5_close_data_set follows hf_hdf5_open_data_set in any case. hf_hdf5_take_strings reads all strings of fixed
+ * length of an open data set into text [][size]; size: that of the stored strings and a NUL. */
+void hf_hdf5_open_data_set(hf_hdf5 *io, hid_t place, const char *name, hf_hdf5_data_set *data_set);
+void hf_hdf5_close_data_set(hf_hdf5 *io, hf_hdf5_data_set *data_set);
+void hf_hdf5_take_strings(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_data_set *data_set, size_t size,
+                          char *text);
 
 /* ---- Attributes of the object `name` below `place` ("." is `place` itself) ---- */
 
@@ -229,28 +242,6 @@ bool hf_hdf5_has_attribute(hf_hdf5 *io, hid_t place, const char *name, const cha
 
 /* Returns true if the attribute exists and is a text of fixed length. */
 bool hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute);
-
-/* ---- Tables: one list of members serves writing and reading ---- */
-
-/* A member of a struct and the attribute that stores it. Members of enumerations and of HF_HDF5_INT are int, enum or
- * bool in the struct; strings are char[size]. */
-typedef struct {
-    const char *object, *name;
-    const hf_hdf5_kind *kind;
-    size_t offset, size;
-} hf_hdf5_member;
-
-/* Returns or sets the value of a member of HF_HDF5_ENUM or HF_HDF5_INT. */
-int hf_hdf5_int_value(const hf_hdf5_member *member, const void *owner);
-void hf_hdf5_set_int_value(const hf_hdf5_member *member, int value, void *owner);
-
-/* Writes or reads all members of a table as attributes. Members without an object are attributes of `object`. If a file
- * of another version (io->made_by) has the object but not the attribute, reading sets the member to NaN, 0 or "". */
-void hf_hdf5_put_members(hf_hdf5 *io, const char *object, const hf_hdf5_member *table, int n, const void *owner);
-void hf_hdf5_get_members(hf_hdf5 *io, const char *object, const hf_hdf5_member *table, int n, void *owner);
-
-#define HF_HDF5_MEMBER(type, object, name, member, kind)                                                               \
-    {object, name, HF_KIND_##kind, offsetof(type, member), sizeof(((type *)0)->member)},
 
 #define HF_HDF5_COUNT(table) ((int)(sizeof(table) / sizeof((table)[0])))
 

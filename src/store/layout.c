@@ -1,5 +1,5 @@
 /* Implements layout.h for the scene, the shapes, the truss and the summary. Sections: enumerations, columns,
- * summary. */
+ * fields, members, summary. */
 #include "store/layout.h"
 
 #include <hifdm/formfind.h>
@@ -7,6 +7,7 @@
 #include <hifdm/scene.h>
 #include <hifdm/store.h>
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,35 +32,42 @@ static const signed char bound_value[] = {HF_BOUND_REASON_LIST(BOUND_VALUE)};
 #define WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, NULL
 #define ENDED_WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word) - 1, word, NULL
 #define VALUES(word, value) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, value
-const hf_hdf5_kind hf_layout_role = {WORDS(hf_role_word)};
-const hf_hdf5_kind hf_layout_group = {WORDS(hf_group_word)};
-const hf_hdf5_kind hf_layout_law = {WORDS(hf_law_word)};
-const hf_hdf5_kind hf_layout_search_stop = {WORDS(hf_population_stop_word)};
-const hf_hdf5_kind hf_layout_refine_stop = {WORDS(hf_refine_stop_word)};
-const hf_hdf5_kind hf_layout_joint = {ENDED_WORDS(hf_joint_word)};
-const hf_hdf5_kind hf_layout_surface_kind = {ENDED_WORDS(hf_surface_kind_word)};
-const hf_hdf5_kind hf_layout_unit = {WORDS(hf_unit_word)};
-const hf_hdf5_kind hf_layout_status = {VALUES(status_word, status_value)};
-const hf_hdf5_kind hf_layout_stop_reason = {VALUES(stop_word, stop_value)};
-const hf_hdf5_kind hf_layout_coupling_stop = {VALUES(coupling_word, coupling_value)};
-const hf_hdf5_kind hf_layout_bound_reason = {VALUES(bound_word, bound_value)};
+const hf_hdf5_kind hf_layout_role = {WORDS(hf_role_word)}, hf_layout_group = {WORDS(hf_group_word)};
+const hf_hdf5_kind hf_layout_law = {WORDS(hf_law_word)}, hf_layout_status = {VALUES(status_word, status_value)};
+static const hf_hdf5_kind kind_of_joint = {ENDED_WORDS(hf_joint_word)}, kind_of_unit = {WORDS(hf_unit_word)};
+static const hf_hdf5_kind kind_of_search_stop = {WORDS(hf_population_stop_word)};
+static const hf_hdf5_kind kind_of_refine_stop = {WORDS(hf_refine_stop_word)};
+static const hf_hdf5_kind kind_of_surface = {ENDED_WORDS(hf_surface_kind_word)};
+static const hf_hdf5_kind kind_of_feed = {HF_HDF5_ENUM, 4, hf_feed_word, NULL};
+static const hf_hdf5_kind kind_of_stop_reason = {VALUES(stop_word, stop_value)};
+static const hf_hdf5_kind kind_of_coupling_stop = {VALUES(coupling_word, coupling_value)};
+static const hf_hdf5_kind kind_of_bound_reason = {VALUES(bound_word, bound_value)};
+/* Stored as its number, without words. */
+static const hf_hdf5_kind kind_of_solver = {HF_HDF5_INT, HF_HDF5_COUNT(hf_solver_word), hf_solver_word, NULL};
+#define HF_KIND_JOINT (&kind_of_joint)
+#define HF_KIND_UNIT (&kind_of_unit)
 
-const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind)
+const hf_hdf5_kind *hf_layout_kind_of(const hf_result_field *field)
 {
-    switch (kind) {
-    case HF_RESULT_REAL:
-        return HF_KIND_REAL;
-    case HF_RESULT_INT:
-        return HF_KIND_INT;
-    case HF_RESULT_STATUS:
-        return HF_KIND_STATUS;
-    case HF_RESULT_STOP_REASON:
-        return HF_KIND_STOP_REASON;
-    case HF_RESULT_BOUND_REASON:
-        return HF_KIND_BOUND_REASON;
-    default:
-        return HF_KIND_COUPLING_STOP;
-    }
+    static const hf_hdf5_kind *const kind[] = {
+        [HF_RESULT_REAL] = HF_KIND_REAL,
+        [HF_RESULT_INT] = HF_KIND_INT,
+        [HF_RESULT_STATUS] = HF_KIND_STATUS,
+        [HF_RESULT_STOP_REASON] = &kind_of_stop_reason,
+        [HF_RESULT_COUPLING_STOP] = &kind_of_coupling_stop,
+        [HF_RESULT_BOUND_REASON] = &kind_of_bound_reason,
+        [HF_RESULT_LONG] = HF_KIND_LONG,
+        [HF_RESULT_FLAG] = HF_KIND_FLAG,
+        [HF_RESULT_TRUTH] = HF_KIND_INT, /* a number, because it is older than the flags */
+        [HF_RESULT_REFINE_STOP] = &kind_of_refine_stop,
+        [HF_RESULT_SOLVER] = &kind_of_solver,
+        [HF_RESULT_SEARCH_STOP] = &kind_of_search_stop,
+        [HF_RESULT_UINT64] = HF_KIND_UINT64,
+        [HF_RESULT_CHARS] = HF_KIND_CHARS,
+        [HF_RESULT_SURFACE] = &kind_of_surface,
+        [HF_RESULT_FEED] = &kind_of_feed,
+    };
+    return kind[field->kind];
 }
 
 /* ---- columns ---- */
@@ -156,6 +164,19 @@ void hf_layout_renew(hf_hdf5 *io, const char *path)
 
 /* ---- fields ---- */
 
+int hf_layout_int(const void *value, size_t size)
+{
+    return size == sizeof(bool) ? *(const bool *)value : *(const int *)value;
+}
+
+static void set_int(void *to, size_t size, int value)
+{
+    if (size == sizeof(bool))
+        *(bool *)to = value != 0;
+    else
+        *(int *)to = value;
+}
+
 /* Returns the bytes of a row in the file. */
 static size_t row_bytes(const hf_layout_field *f)
 {
@@ -163,160 +184,147 @@ static size_t row_bytes(const hf_layout_field *f)
     return f->columns ? bytes * (size_t)f->columns : bytes;
 }
 
-/* Copies n rows between the structs of the owner and packed values: to the packed ones with `packs`, else back. */
-static void copy_field(const hf_layout_field *f, int n, bool packs, char *packed, char *owner)
+void hf_layout_copy(const hf_hdf5_kind *kind, size_t bytes, size_t size, size_t stride, int n, bool packs, char *packed,
+                    char *owner)
 {
-    const hf_hdf5_member number = {.kind = f->kind, .size = f->size};
-    size_t bytes = row_bytes(f);
-    for (int i = 0; i < n; i++, packed += bytes) {
-        char *member = owner + f->offset + (size_t)i * f->stride;
-        if (f->kind->class != HF_HDF5_ENUM && f->size != sizeof(bool))
-            memcpy(packs ? packed : member, packs ? member : packed, bytes);
+    for (int i = 0; i < n; i++, packed += bytes, owner += stride) {
+        if (kind->class != HF_HDF5_ENUM)
+            memcpy(packs ? packed : owner, packs ? owner : packed, bytes);
         else if (packs)
-            *(signed char *)packed = (signed char)hf_hdf5_int_value(&number, member);
+            *(signed char *)packed = (signed char)hf_layout_int(owner, size);
         else
-            hf_hdf5_set_int_value(&number, *(signed char *)packed, member);
+            set_int(owner, size, *(signed char *)packed);
     }
 }
 
-static void pass_fields(hf_hdf5 *io, hid_t group, const hf_layout_field *table, int n_field, int n, int columns,
-                        bool writes, char *owner)
+void hf_layout_pass_fields(hf_hdf5 *io, bool writes, hid_t group, const hf_layout_field *table, int n_field, int n,
+                           int columns, void *owner)
 {
     for (const hf_layout_field *f = table; f < table + n_field && n > 0 && io->status == HF_OK; f++) {
         int per_row = f->columns ? f->columns : columns;
+        char *member = (char *)owner + f->offset;
         hf_hdf5_array array = {f->name, f->kind, per_row ? 2 : 1, {(hsize_t)n}, f->units, f->description};
         char *packed = malloc((size_t)n * row_bytes(f));
         if (per_row) array.dims[1] = (hsize_t)per_row;
         if (columns) array.dims[0] = (hsize_t)(n / columns);
         if (f->kind == HF_KIND_CHARS) array.dims[array.rank] = f->size;
         if (!packed) hf_hdf5_no_memory(io);
-        if (packed && writes) copy_field(f, n, true, packed, owner);
-        if (packed && writes) hf_hdf5_write_array(io, group, &array, packed);
-        if (packed && !writes) hf_hdf5_read_array(io, group, &array, packed);
-        if (packed && !writes && io->status == HF_OK) copy_field(f, n, false, packed, owner);
+        if (packed && writes) {
+            hf_layout_copy(f->kind, row_bytes(f), f->size, f->stride, n, true, packed, member);
+            hf_hdf5_write_array(io, group, &array, packed);
+        } else if (packed) {
+            hf_hdf5_read_array(io, group, &array, packed);
+            if (io->status == HF_OK)
+                hf_layout_copy(f->kind, row_bytes(f), f->size, f->stride, n, false, packed, member);
+        }
         free(packed);
     }
 }
 
-void hf_layout_put_fields(hf_hdf5 *io, hid_t group, const hf_layout_field *table, int n_field, int n, int columns,
-                          const void *owner)
+/* ---- members ---- */
+
+/* Returns true if the file is of another version that did not have this attribute yet. */
+static bool is_newer_than_file(hf_hdf5 *io, const char *object, const char *name)
 {
-    pass_fields(io, group, table, n_field, n, columns, true, (char *)owner);
+    return *io->made_by && hf_hdf5_has(io, io->file, object) && !hf_hdf5_has_attribute(io, io->file, object, name);
 }
 
-void hf_layout_get_fields(hf_hdf5 *io, hid_t group, const hf_layout_field *table, int n_field, int n, int columns,
-                          void *owner)
+void hf_layout_pass_members(hf_hdf5 *io, bool writes, const char *object, const hf_result_field *field, int n,
+                            void *owner)
 {
-    pass_fields(io, group, table, n_field, n, columns, false, owner);
+    for (const hf_result_field *f = field; f < field + n; f++) {
+        const hf_hdf5_kind *kind = hf_layout_kind_of(f);
+        bool is_byte = kind->class == HF_HDF5_ENUM, is_int = kind->class == HF_HDF5_INT;
+        void *member = (char *)owner + f->offset;
+        int value = writes && (is_byte || is_int) ? hf_layout_int(member, f->size) : 0;
+        signed char byte = (signed char)value;
+        void *stored = is_byte ? &byte : is_int ? &value : member;
+        if (writes && kind == HF_KIND_CHARS) {
+            hf_hdf5_put_chars(io, io->file, object, f->name, member);
+        } else if (writes) {
+            hf_hdf5_put(io, io->file, object, f->name, kind, 0, stored);
+        } else if (is_newer_than_file(io, object, f->name)) {
+            memset(member, 0, f->size);
+            if (kind == HF_KIND_REAL) *(double *)member = (double)NAN;
+        } else {
+            hf_hdf5_get(io, io->file, object, f->name, kind, stored, f->size);
+            if (is_byte || is_int) set_int(member, f->size, is_byte ? byte : value);
+        }
+    }
 }
 
 /* ---- summary ---- */
 
-/* The members of the summary about the run itself. Rows: X(struct, object, attribute, member, kind) */
-#define RUN_MEMBERS(X)                                                                                                 \
-    X(hf_summary, "/", "title", title, CHARS)                                                                          \
-    X(hf_summary, "/", "threads", threads, INT)                                                                        \
-    X(hf_summary, "/", "seed", seed, UINT64)                                                                           \
-    X(hf_summary, "/", "warnings", warnings, CHARS)                                                                    \
-    X(hf_summary, "/", "finished", finished, FLAG)                                                                     \
-    X(hf_summary, "/", "has_search", stage[HF_STAGE_SEARCH].exists, FLAG)                                              \
-    X(hf_summary, "/", "has_refine", stage[HF_STAGE_REFINE].exists, FLAG)                                              \
-    X(hf_summary, "/case", "case_path", case_path, CHARS)                                                              \
-    X(hf_summary, "/form", "version", version, CHARS)
+#define FORM(...) HF_RESULT_FIELD(hf_summary, __VA_ARGS__)
+#define STAGE(type, member, kind, ...) HF_LAYOUT_NAMED(hf_stage_summary, #member, result.member, kind)
+#define SEARCH(...) HF_RESULT_FIELD(hf_search_summary, __VA_ARGS__)
+#define REFINE(...) HF_RESULT_FIELD(hf_refine_summary, __VA_ARGS__)
+#define OTHER_COUPLING(type, member, kind, ...) HF_LAYOUT_NAMED(hf_coupling_result, "coupling_" #member, member, kind)
+#define TRUSS(...) HF_RESULT_FIELD(hf_truss_summary, __VA_ARGS__)
+#define TOLERANCE(...) HF_RESULT_FIELD(hf_tolerance_summary, __VA_ARGS__)
+static const hf_result_field run[] = {
+    HF_LAYOUT_NAMED(hf_summary, "title", title, CHARS) HF_LAYOUT_NAMED(hf_summary, "threads", threads, INT)
+        HF_LAYOUT_NAMED(hf_summary, "seed", seed, UINT64) HF_LAYOUT_NAMED(hf_summary, "warnings", warnings, CHARS)
+            HF_LAYOUT_NAMED(hf_summary, "finished", finished, FLAG)
+                HF_LAYOUT_NAMED(hf_summary, "has_search", stage[HF_STAGE_SEARCH].exists, FLAG)
+                    HF_LAYOUT_NAMED(hf_summary, "has_refine", stage[HF_STAGE_REFINE].exists, FLAG)};
+static const hf_result_field of_case[] = {HF_LAYOUT_NAMED(hf_summary, "case_path", case_path, CHARS)};
+static const hf_result_field version[] = {HF_LAYOUT_NAMED(hf_summary, "version", version, CHARS)};
+static const hf_result_field form[] = {HF_SUMMARY_FORM_LIST(FORM)}, search[] = {HF_SUMMARY_SEARCH_LIST(SEARCH)},
+                             refine[] = {HF_SUMMARY_REFINE_LIST(REFINE)}, truss[] = {HF_SUMMARY_TRUSS_LIST(TRUSS)};
+static const hf_result_field stage[] = {HF_RESULT_LIST(STAGE)
+                                            HF_LAYOUT_NAMED(hf_stage_summary, "wall_s", wall_s, REAL)};
+static const hf_result_field other_coupling[] = {HF_COUPLING_LIST(OTHER_COUPLING)};
+static const hf_result_field tolerance[] = {
+    HF_TOLERANCE_LIST(TOLERANCE) HF_LAYOUT_NAMED(hf_tolerance_summary, "histogram_low_m", bin_low_m, REAL)
+        HF_LAYOUT_NAMED(hf_tolerance_summary, "histogram_high_m", bin_high_m, REAL)};
 
-#define FORM(type, member, kind, ...) HF_HDF5_MEMBER(hf_summary, NULL, #member, member, kind)
-#define SEARCH(type, member, kind, ...) HF_HDF5_MEMBER(hf_search_summary, NULL, #member, member, kind)
-#define REFINE(type, member, kind, ...) HF_HDF5_MEMBER(hf_refine_summary, NULL, #member, member, kind)
-#define RESULT(type, member, kind, ...) HF_HDF5_MEMBER(hf_stage_summary, NULL, #member, result.member, kind)
-#define COUPLING(type, member, kind, ...) HF_HDF5_MEMBER(hf_coupling_result, NULL, #member, member, kind)
-#define OTHER_COUPLING(type, member, kind, ...)                                                                        \
-    HF_HDF5_MEMBER(hf_coupling_result, NULL, "coupling_" #member, member, kind)
-#define TRUSS(type, member, kind, ...) HF_HDF5_MEMBER(hf_truss_summary, NULL, #member, member, kind)
-#define TOLERANCE(type, member, kind, ...) HF_HDF5_MEMBER(hf_tolerance_summary, NULL, #member, member, kind)
-static const hf_hdf5_member run[] = {RUN_MEMBERS(HF_HDF5_MEMBER)};
-static const hf_hdf5_member form[] = {HF_SUMMARY_FORM_LIST(FORM)};
-static const hf_hdf5_member search[] = {HF_SUMMARY_SEARCH_LIST(SEARCH)};
-static const hf_hdf5_member refine[] = {HF_SUMMARY_REFINE_LIST(REFINE)};
-static const hf_hdf5_member stage[] = {HF_RESULT_LIST(RESULT)
-                                           HF_HDF5_MEMBER(hf_stage_summary, NULL, "wall_s", wall_s, REAL)};
-static const hf_hdf5_member coupling[] = {HF_COUPLING_LIST(COUPLING)};
-static const hf_hdf5_member other_coupling[] = {HF_COUPLING_LIST(OTHER_COUPLING)};
-static const hf_hdf5_member truss[] = {HF_SUMMARY_TRUSS_LIST(TRUSS)};
-static const hf_hdf5_member tolerance[] = {
-    HF_TOLERANCE_LIST(TOLERANCE) HF_HDF5_MEMBER(hf_tolerance_summary, NULL, "histogram_low_m", bin_low_m, REAL)
-        HF_HDF5_MEMBER(hf_tolerance_summary, NULL, "histogram_high_m", bin_high_m, REAL)};
+#define OF(table) table, HF_HDF5_COUNT(table)
+#define OF_STAGE(i) OF(stage), offsetof(hf_summary, stage[i]), i
+#define OF_OTHER_COUPLING(i) OF(other_coupling), offsetof(hf_summary, stage[i].result.coupling), i
 const hf_layout_members hf_layout_summary[HF_LAYOUT_N_PART] = {
-    [HF_LAYOUT_RUN] = {NULL, HF_LAYOUT_TABLE(run)},
-    [HF_LAYOUT_FORM] = {"/form", HF_LAYOUT_TABLE(form)},
-    [HF_LAYOUT_SEARCH] = {"/search", HF_LAYOUT_TABLE(search)},
-    [HF_LAYOUT_REFINE] = {"/refine", HF_LAYOUT_TABLE(refine)},
-    [HF_LAYOUT_FORM_STAGE] = {"/form", HF_LAYOUT_TABLE(stage)},
-    [HF_LAYOUT_SEARCH_STAGE] = {"/search", HF_LAYOUT_TABLE(stage)},
-    [HF_LAYOUT_REFINE_STAGE] = {"/refine", HF_LAYOUT_TABLE(stage)},
-    [HF_LAYOUT_FORM_COUPLING] = {"/coupling", HF_LAYOUT_TABLE(coupling)},
-    [HF_LAYOUT_SEARCH_COUPLING] = {"/search", HF_LAYOUT_TABLE(other_coupling)},
-    [HF_LAYOUT_REFINE_COUPLING] = {"/refine", HF_LAYOUT_TABLE(other_coupling)},
-    [HF_LAYOUT_TRUSS] = {"/truss", HF_LAYOUT_TABLE(truss)},
-    [HF_LAYOUT_TOLERANCE] = {"/tolerance", HF_LAYOUT_TABLE(tolerance)}};
+    [HF_LAYOUT_RUN] = {"/", OF(run), 0, HF_STAGE_FORM},
+    [HF_LAYOUT_CASE] = {"/case", OF(of_case), 0, HF_STAGE_FORM},
+    [HF_LAYOUT_VERSION] = {"/form", OF(version), 0, HF_STAGE_FORM},
+    [HF_LAYOUT_FORM] = {"/form", OF(form), 0, HF_STAGE_FORM},
+    [HF_LAYOUT_SEARCH] = {"/search", OF(search), offsetof(hf_summary, search), HF_STAGE_SEARCH},
+    [HF_LAYOUT_REFINE] = {"/refine", OF(refine), offsetof(hf_summary, refine), HF_STAGE_REFINE},
+    [HF_LAYOUT_FORM_STAGE] = {"/form", OF_STAGE(HF_STAGE_FORM)},
+    [HF_LAYOUT_SEARCH_STAGE] = {"/search", OF_STAGE(HF_STAGE_SEARCH)},
+    [HF_LAYOUT_REFINE_STAGE] = {"/refine", OF_STAGE(HF_STAGE_REFINE)},
+    [HF_LAYOUT_FORM_COUPLING] = {"/coupling", hf_coupling_field_of, HF_COUPLING_N,
+                                 offsetof(hf_summary, stage[HF_STAGE_FORM].result.coupling), HF_STAGE_FORM},
+    [HF_LAYOUT_SEARCH_COUPLING] = {"/search", OF_OTHER_COUPLING(HF_STAGE_SEARCH)},
+    [HF_LAYOUT_REFINE_COUPLING] = {"/refine", OF_OTHER_COUPLING(HF_STAGE_REFINE)},
+    [HF_LAYOUT_TRUSS] = {"/truss", OF(truss), offsetof(hf_summary, truss), HF_STAGE_FORM},
+    [HF_LAYOUT_TOLERANCE] = {"/tolerance", OF(tolerance), offsetof(hf_summary, tolerance), HF_STAGE_FORM}};
 
 bool hf_layout_has(const hf_summary *s, hf_layout_part part)
 {
-    switch (part) {
-    case HF_LAYOUT_SEARCH:
-    case HF_LAYOUT_SEARCH_STAGE:
-        return s->stage[HF_STAGE_SEARCH].exists;
-    case HF_LAYOUT_REFINE:
-    case HF_LAYOUT_REFINE_STAGE:
-        return s->stage[HF_STAGE_REFINE].exists;
-    case HF_LAYOUT_FORM_COUPLING:
-    case HF_LAYOUT_SEARCH_COUPLING:
-    case HF_LAYOUT_REFINE_COUPLING:
-        return s->has_coupling && (part == HF_LAYOUT_FORM_COUPLING || s->stage[part - HF_LAYOUT_FORM_COUPLING].exists);
-    case HF_LAYOUT_TRUSS:
-        return s->has_truss;
-    case HF_LAYOUT_TOLERANCE:
-        return s->tolerance != NULL;
-    default:
-        return true;
-    }
+    hf_stage needed = hf_layout_summary[part].stage;
+    bool is_coupling = part >= HF_LAYOUT_FORM_COUPLING && part <= HF_LAYOUT_REFINE_COUPLING;
+    if (part == HF_LAYOUT_TRUSS) return s->has_truss;
+    if (part == HF_LAYOUT_TOLERANCE) return s->tolerance != NULL;
+    return (s->has_coupling || !is_coupling) && (needed == HF_STAGE_FORM || s->stage[needed].exists);
 }
 
 void *hf_layout_owner(const hf_summary *summary, hf_layout_part part)
 {
-    hf_summary *s = (hf_summary *)summary;
-    switch (part) {
-    case HF_LAYOUT_SEARCH:
-        return &s->search;
-    case HF_LAYOUT_REFINE:
-        return &s->refine;
-    case HF_LAYOUT_FORM_STAGE:
-    case HF_LAYOUT_SEARCH_STAGE:
-    case HF_LAYOUT_REFINE_STAGE:
-        return &s->stage[part - HF_LAYOUT_FORM_STAGE];
-    case HF_LAYOUT_FORM_COUPLING:
-    case HF_LAYOUT_SEARCH_COUPLING:
-    case HF_LAYOUT_REFINE_COUPLING:
-        return &s->stage[part - HF_LAYOUT_FORM_COUPLING].result.coupling;
-    case HF_LAYOUT_TRUSS:
-        return &s->truss;
-    case HF_LAYOUT_TOLERANCE:
-        return s->tolerance;
-    default:
-        return s;
-    }
+    return part == HF_LAYOUT_TOLERANCE ? summary->tolerance
+                                       : (void *)((char *)summary + hf_layout_summary[part].offset);
 }
 
 void hf_layout_put_part(hf_hdf5 *io, hf_layout_part part, const hf_summary *summary)
 {
     const hf_layout_members *p = &hf_layout_summary[part];
-    if (p->object) hf_hdf5_close(io, hf_hdf5_make_group(io, p->object));
-    hf_hdf5_put_members(io, p->object, p->member, p->n, hf_layout_owner(summary, part));
+    hf_hdf5_close(io, hf_hdf5_make_group(io, p->object));
+    hf_layout_pass_members(io, true, p->object, p->field, p->n, hf_layout_owner(summary, part));
 }
 
 void hf_layout_get_part(hf_hdf5 *io, hf_layout_part part, hf_summary *summary)
 {
     const hf_layout_members *p = &hf_layout_summary[part];
-    hf_hdf5_get_members(io, p->object, p->member, p->n, hf_layout_owner(summary, part));
+    hf_layout_pass_members(io, false, p->object, p->field, p->n, hf_layout_owner(summary, part));
 }
 
 hf_hdf5_array hf_layout_of_variables(const char *name, bool has_rows, int rank, const hsize_t *dims)

@@ -27,26 +27,14 @@
 
 /* ---- Enumerations: words and values from the engine's own lists ---- */
 
-extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_layout_status, hf_layout_stop_reason,
-    hf_layout_search_stop, hf_layout_refine_stop, hf_layout_joint, hf_layout_unit, hf_layout_coupling_stop,
-    hf_layout_bound_reason, hf_layout_surface_kind;
+extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_layout_status;
 #define HF_KIND_ROLE (&hf_layout_role)
 #define HF_KIND_GROUP (&hf_layout_group)
 #define HF_KIND_LAW (&hf_layout_law)
 #define HF_KIND_STATUS (&hf_layout_status)
-#define HF_KIND_STOP_REASON (&hf_layout_stop_reason)
-#define HF_KIND_SEARCH_STOP (&hf_layout_search_stop)
-#define HF_KIND_REFINE_STOP (&hf_layout_refine_stop)
-#define HF_KIND_JOINT (&hf_layout_joint)
-#define HF_KIND_UNIT (&hf_layout_unit)
-#define HF_KIND_COUPLING_STOP (&hf_layout_coupling_stop)
-#define HF_KIND_BOUND_REASON (&hf_layout_bound_reason)
-#define HF_KIND_SURFACE (&hf_layout_surface_kind)
-#define HF_KIND_SOLVER HF_KIND_INT /* stored as its number, without words */
-#define HF_KIND_TRUTH HF_KIND_INT  /* a bool that is stored as a number, because it is older than the flags */
 
-/* Returns the stored kind of a figure of HF_RESULT_LIST. */
-const hf_hdf5_kind *hf_layout_kind_of(hf_result_kind kind);
+/* Returns the stored kind of a figure. */
+const hf_hdf5_kind *hf_layout_kind_of(const hf_result_field *field);
 
 /* ---- Columns: pointers in structs and their data sets ---- */
 
@@ -115,23 +103,43 @@ typedef struct {
 
 /* Writes or reads n values of each field as data sets [n], or [n / columns][columns] with columns > 0. Nothing is done
  * if n is 0. */
-void hf_layout_put_fields(hf_hdf5 *io, hid_t group, const hf_layout_field *table, int n_field, int n, int columns,
-                          const void *owner);
-void hf_layout_get_fields(hf_hdf5 *io, hid_t group, const hf_layout_field *table, int n_field, int n, int columns,
-                          void *owner);
+void hf_layout_pass_fields(hf_hdf5 *io, bool writes, hid_t group, const hf_layout_field *table, int n_field, int n,
+                           int columns, void *owner);
+
+/* Copies n values of a kind between `owner`, where they are `size` bytes long and `stride` bytes apart, and `packed`, as
+ * HDF5 takes them: to `packed` with `packs`, else back. An enumeration is an int or a bool in the owner and a byte in
+ * `packed`. `bytes` is the size of other values. */
+void hf_layout_copy(const hf_hdf5_kind *kind, size_t bytes, size_t size, size_t stride, int n, bool packs, char *packed,
+                    char *owner);
+
+/* ---- Members: rows of <hifdm/result.h> and the attributes that store them ---- */
+
+/* Returns the value of an enumeration, an int or a bool of `size` bytes. */
+int hf_layout_int(const void *value, size_t size);
+
+/* Writes or reads n members as attributes of `object`. If a file of another version (io->made_by) has the object but not
+ * the attribute, reading sets the member to NaN, 0 or "". */
+void hf_layout_pass_members(hf_hdf5 *io, bool writes, const char *object, const hf_result_field *field, int n,
+                            void *owner);
+
+/* A member with another name than in its struct. */
+#define HF_LAYOUT_NAMED(owner, name_, member, kind_)                                                                   \
+    {.name = name_, .kind = HF_RESULT_##kind_, .offset = offsetof(owner, member), .size = sizeof(((owner *)0)->member)},
 
 /* ---- The summary: its members and the attributes that store them ---- */
 
 /* Parts of the summary. hf_layout_has says when a part is stored. */
 typedef enum {
     HF_LAYOUT_RUN,
+    HF_LAYOUT_CASE,
+    HF_LAYOUT_VERSION,
     HF_LAYOUT_FORM,
     HF_LAYOUT_SEARCH,
     HF_LAYOUT_REFINE,
-    HF_LAYOUT_FORM_STAGE, /* what every stage has: HF_LAYOUT_FORM_STAGE + stage */
+    HF_LAYOUT_FORM_STAGE, /* what every stage has */
     HF_LAYOUT_SEARCH_STAGE,
     HF_LAYOUT_REFINE_STAGE,
-    HF_LAYOUT_FORM_COUPLING, /* figures of the coupling: HF_LAYOUT_FORM_COUPLING + stage */
+    HF_LAYOUT_FORM_COUPLING, /* figures of the coupling */
     HF_LAYOUT_SEARCH_COUPLING,
     HF_LAYOUT_REFINE_COUPLING,
     HF_LAYOUT_TRUSS,
@@ -140,9 +148,11 @@ typedef enum {
 } hf_layout_part;
 
 typedef struct {
-    const char *object; /* group of the attributes, unless the member names another */
-    const hf_hdf5_member *member;
+    const char *object; /* group of the attributes */
+    const hf_result_field *field;
     int n;
+    size_t offset;  /* of the owner in hf_summary; of HF_LAYOUT_TOLERANCE of a pointer to it */
+    hf_stage stage; /* the part needs this stage */
 } hf_layout_members;
 extern const hf_layout_members hf_layout_summary[HF_LAYOUT_N_PART];
 
@@ -164,6 +174,13 @@ void hf_layout_get_part(hf_hdf5 *io, hf_layout_part part, hf_summary *summary);
 void hf_layout_put_stages(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_stages(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_put_objectives(hf_hdf5 *io, const hf_summary *summary);
+
+/* Members of hf_surface_measures, and of hf_load_case_summary with its result. */
+enum {
+    HF_LAYOUT_N_SURFACE = 0 HF_SURFACE_LIST(HF_RESULT_COUNT) HF_SURFACE_FIT_LIST(HF_RESULT_COUNT),
+    HF_LAYOUT_N_LOAD_CASE = HF_RESULT_N + HF_COUPLING_N HF_LOAD_CASE_LIST(HF_RESULT_COUNT)
+};
+extern const hf_result_field hf_layout_surface[HF_LAYOUT_N_SURFACE], hf_layout_load_case[HF_LAYOUT_N_LOAD_CASE];
 
 /* Returns the values of the objectives in the result of a stage, [objectives.n], or NULL if there are none. */
 const double *hf_layout_objectives(const hf_summary *summary, int stage);

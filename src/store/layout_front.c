@@ -32,17 +32,6 @@ static void list_fields(int n_objective, hf_layout_field field[N_FIELD])
         field[i].columns = n_objective;
 }
 
-static hf_hdf5_array names(int n)
-{
-    return (hf_hdf5_array){"name", HF_KIND_CHARS,           1, {(hsize_t)n, HF_OBJECTIVE_NAME_SIZE},
-                           "",     "number, figure and set"};
-}
-
-static hf_hdf5_array initial_of(int n)
-{
-    return (hf_hdf5_array){"initial", HF_KIND_REAL, 1, {(hsize_t)n}, "", "objectives of the initial design"};
-}
-
 /* ---- writing ---- */
 
 static void write_variables(hf_hdf5 *io, hid_t group, const hf_scene *scene, const hf_model *m)
@@ -76,14 +65,16 @@ void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *m
     hf_layout_field field[N_FIELD];
     int n = front->n_point, k = front->n_objective;
     const hsize_t dims[2] = {(hsize_t)n, (hsize_t)front->n_variable};
-    const hf_hdf5_array name = names(k), initial = initial_of(k),
-                        design = hf_layout_of_variables("design", m->variable, 2, dims);
+    const hf_hdf5_array name = {"name", HF_KIND_CHARS,           1, {(hsize_t)k, HF_OBJECTIVE_NAME_SIZE},
+                                "",     "number, figure and set"};
+    const hf_hdf5_array design = hf_layout_of_variables("design", m->variable, 2, dims);
     list_fields(k, field);
     hf_layout_renew(io, "/front");
     hid_t group = hf_hdf5_make_group(io, "/front");
     hf_hdf5_write_array(io, group, &name, s->objectives.name);
-    hf_hdf5_write_array(io, group, &initial, front->initial);
-    hf_layout_put_fields(io, group, field, N_FIELD, n, 0, front->point);
+    hf_hdf5_write_list(io, group, "initial", HF_KIND_REAL, k, 0, "", "objectives of the initial design",
+                       front->initial);
+    hf_layout_pass_fields(io, true, group, field, N_FIELD, n, 0, front->point);
     hf_hdf5_write_array(io, group, &design, front->design);
     write_variables(io, group, scene, m);
     put_attributes(io, group, front, s->front);
@@ -98,7 +89,7 @@ static void read_points(hf_hdf5 *io, hid_t group, int n, int n_objective, hf_fro
     list_fields(n_objective, field);
     for (int i = 0; i < n; i++)
         point[i] = (hf_front_point){.objective = {NAN, NAN, NAN}, .multiplier = {NAN, NAN, NAN}};
-    hf_layout_get_fields(io, group, field, N_FIELD, n, 0, point);
+    hf_layout_pass_fields(io, false, group, field, N_FIELD, n, 0, point);
 }
 
 static bool is_index(int value, int n)
@@ -111,11 +102,10 @@ static void read_front(hf_hdf5 *io, hid_t group, int n_variable, hf_front *front
 {
     int n_objective = hf_hdf5_length(io, group, "initial", HF_FRONT_OBJECTIVES_MAX);
     int n_point = hf_hdf5_length(io, group, "status", POINTS_MAX);
-    const hf_hdf5_array initial = initial_of(n_objective);
     if (io->status == HF_OK && hf_front_create(n_objective, n_variable, n_point, front) != HF_OK) hf_hdf5_no_memory(io);
     hf_hdf5_get(io, group, ".", "minimised", HF_KIND_INT, &front->minimised, 0);
     hf_hdf5_get(io, group, ".", "knee", HF_KIND_INT, &front->knee, 0);
-    hf_hdf5_read_array(io, group, &initial, front->initial);
+    hf_hdf5_read_list(io, group, "initial", HF_KIND_REAL, n_objective, 0, front->initial);
     if (io->status == HF_OK) read_points(io, group, n_point, n_objective, front->point);
     if (io->status == HF_OK && (!is_index(front->minimised, n_objective) || !is_index(front->knee, n_point)))
         hf_hdf5_damaged(io, group, ".", "has a knee or a minimised objective that is not there");
@@ -137,30 +127,13 @@ void hf_layout_get_front(hf_hdf5 *io, hf_summary *s)
     hf_front_free(&front);
 }
 
-/* Reads the names of n design variables, each of *size bytes. They are printed, so each one ends with a NUL. */
-static char *read_variables(hf_hdf5 *io, hid_t group, int n, size_t *size)
-{
-    size_t length = hf_hdf5_chars_length(io, group, "variable");
-    char *stored = malloc((size_t)n * length + 1), *variable = calloc((size_t)n, length + 1);
-    const hf_hdf5_array array = {"variable", HF_KIND_CHARS, 1, {(hsize_t)n, length}, "", ""};
-    if (!stored || !variable) hf_hdf5_no_memory(io);
-    if (stored && variable) hf_hdf5_read_array(io, group, &array, stored);
-    for (size_t k = 0; io->status == HF_OK && k < (size_t)n; k++)
-        memcpy(variable + k * (length + 1), stored + k * length, length);
-    free(stored);
-    *size = length + 1;
-    return variable;
-}
-
 void hf_layout_read_front(hf_hdf5 *io, hf_front *front, char **variable, size_t *variable_size)
 {
     hid_t group = hf_hdf5_open_group(io, "/front");
     int n_variable = hf_hdf5_length(io, group, "variable", VARIABLES_MAX);
     read_front(io, group, n_variable, front);
-    const hsize_t dims[2] = {(hsize_t)front->n_point, (hsize_t)n_variable};
-    const hf_hdf5_array design = hf_layout_of_variables("design", false, 2, dims);
-    if (io->status == HF_OK) hf_hdf5_read_array(io, group, &design, front->design);
-    if (io->status == HF_OK) *variable = read_variables(io, group, n_variable, variable_size);
+    hf_hdf5_read_list(io, group, "design", HF_KIND_REAL, front->n_point, n_variable, front->design);
+    if (io->status == HF_OK) *variable = hf_hdf5_read_strings(io, group, "variable", n_variable, variable_size);
     hf_hdf5_close(io, group);
 }
 

@@ -42,71 +42,55 @@ static bool is_name_right(const char *name)
 
 /* ---- surface ---- */
 
-#define MEASURE(type, member, kind, ...) HF_HDF5_MEMBER(hf_surface_measures, NULL, #member, member, kind)
-#define FIT(type, member, kind, ...) HF_HDF5_MEMBER(hf_surface_measures, NULL, "fit_" #member, fit.member, kind)
-static const hf_hdf5_member measures[] = {HF_SURFACE_LIST(MEASURE) HF_SURFACE_FIT_LIST(FIT)};
-static const hf_hdf5_member settings[] = {
-    HF_HDF5_MEMBER(hf_surface_settings, NULL, "kind", kind, SURFACE)
-        HF_HDF5_MEMBER(hf_surface_settings, NULL, "focal_length_m", focal_length_m, REAL)
-            HF_HDF5_MEMBER(hf_surface_settings, NULL, "strip_width_m", strip_width_m, REAL)
-                HF_HDF5_MEMBER(hf_surface_settings, NULL, "mesh_tension_N_per_m", mesh_tension_N_per_m, REAL)};
+#define MEASURE(...) HF_RESULT_FIELD(hf_surface_measures, __VA_ARGS__)
+#define FIT(type, member, kind_, ...)                                                                                  \
+    {.name = "fit_" #member,                                                                                           \
+     .kind = HF_RESULT_##kind_,                                                                                        \
+     .offset = offsetof(hf_surface_measures, fit.member),                                                              \
+     .size = sizeof(type),                                                                                             \
+     __VA_ARGS__},
+const hf_result_field hf_layout_surface[HF_LAYOUT_N_SURFACE] = {HF_SURFACE_LIST(MEASURE) HF_SURFACE_FIT_LIST(FIT)};
+static const hf_result_field settings[] = {
+    HF_LAYOUT_NAMED(hf_surface_settings, "kind", kind, SURFACE)
+        HF_LAYOUT_NAMED(hf_surface_settings, "focal_length_m", focal_length_m, REAL)
+            HF_LAYOUT_NAMED(hf_surface_settings, "strip_width_m", strip_width_m, REAL)
+                HF_LAYOUT_NAMED(hf_surface_settings, "mesh_tension_N_per_m", mesh_tension_N_per_m, REAL)};
 #define LOSS(member, description) HF_LAYOUT_FIELD(hf_surface_measures, #member, member, REAL, "dB", description)
 static const hf_layout_field losses[] = {HF_SURFACE_LOSS_LIST(LOSS)};
 static const hf_layout_field frequency[] = {
     HF_LAYOUT_FIELD(hf_double_list, "frequency_Hz", value, REAL, "Hz", "frequencies of the gain losses")};
 
-static void put_measures(hf_hdf5 *io, const char *path, int n_frequency, const hf_surface_measures *s)
+static void pass_measures(hf_hdf5 *io, bool writes, const char *path, int n_frequency, hf_surface_measures *s)
 {
-    if (!s->is_measured) return;
-    hid_t group = hf_hdf5_make_group(io, path);
-    hf_hdf5_put_members(io, path, measures, HF_HDF5_COUNT(measures), s);
-    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(losses), n_frequency, 0, s);
-    hf_hdf5_close(io, group);
-}
-
-static void get_measures(hf_hdf5 *io, const char *path, int n_frequency, hf_surface_measures *s)
-{
-    if (!has_group(io, path)) return;
+    if (writes ? !s->is_measured : !has_group(io, path)) return;
     s->is_measured = true;
-    hid_t group = hf_hdf5_open_group(io, path);
-    hf_hdf5_get_members(io, path, measures, HF_HDF5_COUNT(measures), s);
-    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(losses), n_frequency, 0, s);
+    hid_t group = hf_hdf5_make_group(io, path);
+    hf_layout_pass_members(io, writes, path, hf_layout_surface, HF_LAYOUT_N_SURFACE, s);
+    hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(losses), n_frequency, 0, s);
     hf_hdf5_close(io, group);
 }
 
-static void put_surface(hf_hdf5 *io, const hf_summary *s)
-{
-    char path[PATH_SIZE];
-    const hf_double_list *at = &s->surface.frequencies_Hz;
-    if (!(s->surface.focal_length_m > 0)) return;
-    hf_layout_renew(io, "/surface");
-    hid_t group = hf_hdf5_make_group(io, "/surface");
-    hf_hdf5_put_members(io, "/surface", settings, HF_HDF5_COUNT(settings), &s->surface);
-    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(frequency), at->n, 0, at);
-    hf_hdf5_close(io, group);
-    for (int i = 0; i < HF_N_STAGE; i++)
-        put_measures(io, path_of("/surface", i, path), at->n, &s->stage[i].surface);
-}
-
-static void get_surface(hf_hdf5 *io, hf_summary *s)
+static void pass_surface(hf_hdf5 *io, bool writes, hf_summary *s)
 {
     char path[PATH_SIZE];
     hf_double_list *at = &s->surface.frequencies_Hz;
-    if (!has_group(io, "/surface")) return;
-    hid_t group = hf_hdf5_open_group(io, "/surface");
-    hf_hdf5_get_members(io, "/surface", settings, HF_HDF5_COUNT(settings), &s->surface);
-    at->n = hf_hdf5_has(io, group, "frequency_Hz") ? hf_hdf5_length(io, group, "frequency_Hz", HF_LIST_MAX) : 0;
-    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(frequency), at->n, 0, at);
+    if (writes ? !(s->surface.focal_length_m > 0) : !has_group(io, "/surface")) return;
+    if (writes) hf_layout_renew(io, "/surface");
+    hid_t group = hf_hdf5_make_group(io, "/surface");
+    hf_layout_pass_members(io, writes, "/surface", settings, HF_HDF5_COUNT(settings), &s->surface);
+    if (!writes)
+        at->n = hf_hdf5_has(io, group, "frequency_Hz") ? hf_hdf5_length(io, group, "frequency_Hz", HF_LIST_MAX) : 0;
+    hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(frequency), at->n, 0, at);
     hf_hdf5_close(io, group);
     for (int i = 0; i < HF_N_STAGE; i++)
-        get_measures(io, path_of("/surface", i, path), at->n, &s->stage[i].surface);
+        pass_measures(io, writes, path_of("/surface", i, path), at->n, &s->stage[i].surface);
 }
 
 /* ---- far field ---- */
 
 #define ANGLES_MAX 1000000 /* maximum number of angles in a file */
 
-enum { FREQUENCY, PHI, THETA, CO, CROSS, N_ARRAY };
+enum { N_ARRAY = 5 };
 static hf_hdf5_array array_of(int i, int n_frequency, int n_cut, int n_theta)
 {
     const hsize_t f = (hsize_t)n_frequency, c = (hsize_t)n_cut, t = (hsize_t)n_theta;
@@ -133,25 +117,12 @@ static const hf_layout_field cut_figures[] = {
             FIGURE(first_sidelobe_dB, "dB", "the higher one beside the beam, below the beam")
                 FIGURE(highest_sidelobe_dB, "dB", "of all in the cut, below the beam")};
 
-static const hf_hdf5_kind kind_of_feed = {HF_HDF5_ENUM, 4, hf_feed_word, NULL};
-#define FEED(name, member)                                                                                             \
-    {                                                                                                                  \
-        NULL, name, HF_KIND_REAL, offsetof(hf_feed, member), sizeof(double)                                            \
-    }
-static const hf_hdf5_member feed[] = {
-    {NULL, "feed", &kind_of_feed, offsetof(hf_feed, kind), sizeof(hf_feed_kind)},
-    FEED("feed_x_m", position_m[0]),
-    FEED("feed_y_m", position_m[1]),
-    FEED("feed_z_m", position_m[2]),
-    FEED("axis_x", axis[0]),
-    FEED("axis_y", axis[1]),
-    FEED("axis_z", axis[2]),
-    FEED("polarisation_x", co[0]),
-    FEED("polarisation_y", co[1]),
-    FEED("polarisation_z", co[2]),
-    FEED("cos_power", cos_power),
-    FEED("scale", scale),
-};
+#define FEED(name, member, kind) HF_LAYOUT_NAMED(hf_feed, name, member, kind)
+static const hf_result_field feed[] = {
+    FEED("feed", kind, FEED) FEED("feed_x_m", position_m[0], REAL) FEED("feed_y_m", position_m[1], REAL)
+        FEED("feed_z_m", position_m[2], REAL) FEED("axis_x", axis[0], REAL) FEED("axis_y", axis[1], REAL)
+            FEED("axis_z", axis[2], REAL) FEED("polarisation_x", co[0], REAL) FEED("polarisation_y", co[1], REAL)
+                FEED("polarisation_z", co[2], REAL) FEED("cos_power", cos_power, REAL) FEED("scale", scale, REAL)};
 
 void hf_layout_write_pattern(hf_hdf5 *io, int stage, const hf_pattern_table *t, const hf_pattern_summary *s)
 {
@@ -159,12 +130,13 @@ void hf_layout_write_pattern(hf_hdf5 *io, int stage, const hf_pattern_table *t, 
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/pattern"));
     hf_layout_renew(io, path_of("/pattern", stage, path));
     hid_t group = hf_hdf5_make_group(io, path);
-    hf_hdf5_put_members(io, path, feed, HF_HDF5_COUNT(feed), &s->feed);
+    hf_layout_pass_members(io, true, path, feed, HF_HDF5_COUNT(feed), (void *)&s->feed);
     for (int i = 0; i < N_ARRAY; i++) {
         const hf_hdf5_array array = array_of(i, t->n_frequency, t->n_cut, t->n_theta);
         hf_hdf5_write_array(io, group, &array, values_of(t, i));
     }
-    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(cut_figures), t->n_frequency * t->n_cut, t->n_cut, s->figure);
+    hf_layout_pass_fields(io, true, group, HF_LAYOUT_TABLE(cut_figures), t->n_frequency * t->n_cut, t->n_cut,
+                          (void *)s->figure);
     hf_hdf5_close(io, group);
 }
 
@@ -179,13 +151,12 @@ static void get_pattern(hf_hdf5 *io, hf_summary *summary, int stage)
     hid_t group = hf_hdf5_open_group(io, path);
     int f = hf_hdf5_length(io, group, "frequency_Hz", HF_LIST_MAX);
     int c = hf_hdf5_length(io, group, "phi_deg", HF_PATTERN_CUTS);
-    const hf_hdf5_array at = array_of(FREQUENCY, f, c, 1), phi = array_of(PHI, f, c, 1);
     s->n_frequency = f;
     s->n_cut = c;
-    hf_hdf5_read_array(io, group, &at, s->frequency_Hz);
-    hf_hdf5_read_array(io, group, &phi, s->phi_deg);
-    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(cut_figures), f * c, c, s->figure);
-    hf_hdf5_get_members(io, path, feed, HF_HDF5_COUNT(feed), &s->feed);
+    hf_hdf5_read_list(io, group, "frequency_Hz", HF_KIND_REAL, f, 0, s->frequency_Hz);
+    hf_hdf5_read_list(io, group, "phi_deg", HF_KIND_REAL, c, 0, s->phi_deg);
+    hf_layout_pass_fields(io, false, group, HF_LAYOUT_TABLE(cut_figures), f * c, c, s->figure);
+    hf_layout_pass_members(io, false, path, feed, HF_HDF5_COUNT(feed), &s->feed);
     hf_hdf5_close(io, group);
 }
 
@@ -245,48 +216,37 @@ static bool are_limits_right(hf_held_limits *h)
     return is_right;
 }
 
-static void put_list(hf_hdf5 *io, const char *outer, int stage, const hf_layout_field *table, int n_field, int n,
-                     const void *owner)
+/* Writes or reads a list of a stage, *owner with *n items in an object of `size` bytes. Reading makes the object if
+ * there is a list, of at most `max` items. The first member of the object is their number. Returns true if it was
+ * read. */
+static bool pass_list(hf_hdf5 *io, bool writes, const char *outer, int stage, const hf_layout_field *table, int n_field,
+                      int max, void **owner, size_t size)
 {
     char path[PATH_SIZE];
-    if (n == 0) return;
-    hf_hdf5_close(io, hf_hdf5_make_group(io, outer));
-    hid_t group = hf_hdf5_make_group(io, path_of(outer, stage, path));
-    hf_layout_put_fields(io, group, table, n_field, n, 0, owner);
+    path_of(outer, stage, path);
+    if (writes ? !*owner || *(int *)*owner == 0 : !has_group(io, outer) || !has_group(io, path)) return false;
+    if (!writes && !(*owner = calloc(1, size))) hf_hdf5_no_memory(io);
+    if (writes) hf_hdf5_close(io, hf_hdf5_make_group(io, outer));
+    hid_t group = hf_hdf5_make_group(io, path);
+    int n = writes ? *(int *)*owner : hf_hdf5_length(io, group, table[0].name, max);
+    hf_layout_pass_fields(io, writes, group, table, n_field, n, 0, *owner);
     hf_hdf5_close(io, group);
+    if (!writes && io->status == HF_OK) *(int *)*owner = n;
+    return !writes && io->status == HF_OK;
 }
 
-/* Reads a list of at most `max` items into *owner, a new object of `size` bytes. Returns the length; 0: there is no
- * such list. */
-static int get_list(hf_hdf5 *io, const char *outer, int stage, const hf_layout_field *table, int n_field, int max,
-                    void **owner, size_t size)
+static void pass_lists(hf_hdf5 *io, bool writes, hf_stage_summary *s, int stage)
 {
-    char path[PATH_SIZE];
-    if (!has_group(io, outer) || !has_group(io, path_of(outer, stage, path))) return 0;
-    if (!(*owner = calloc(1, size))) hf_hdf5_no_memory(io);
-    hid_t group = hf_hdf5_open_group(io, path);
-    int n = hf_hdf5_length(io, group, table[0].name, max);
-    hf_layout_get_fields(io, group, table, n_field, n, 0, *owner);
-    hf_hdf5_close(io, group);
-    return io->status == HF_OK ? n : 0;
-}
-
-static void get_sets(hf_hdf5 *io, hf_stage_summary *s, int stage)
-{
-    void *owner = NULL;
-    int n = get_list(io, "/set_tension", stage, HF_LAYOUT_TABLE(sets), HF_SUMMARY_SETS, &owner, sizeof *s->sets);
-    if ((s->sets = owner)) s->sets->n = n;
-    if (s->sets && io->status == HF_OK && !are_sets_right(s->sets))
+    void *of = s->sets, *held = s->held;
+    bool has_sets =
+        pass_list(io, writes, "/set_tension", stage, HF_LAYOUT_TABLE(sets), HF_SUMMARY_SETS, &of, sizeof *s->sets);
+    s->sets = of;
+    if (has_sets && !are_sets_right(s->sets))
         hf_hdf5_damaged(io, io->file, "/set_tension", "does not name sets of cables");
-}
-
-static void get_limits(hf_hdf5 *io, hf_stage_summary *s, int stage)
-{
-    void *owner = NULL;
-    int n = get_list(io, "/at_limit", stage, HF_LAYOUT_TABLE(limits), HF_SUMMARY_HELD, &owner, sizeof *s->held);
-    if ((s->held = owner)) s->held->n = n;
-    if (s->held && io->status == HF_OK && !are_limits_right(s->held))
-        hf_hdf5_damaged(io, io->file, "/at_limit", "does not name limits");
+    bool has_limits =
+        pass_list(io, writes, "/at_limit", stage, HF_LAYOUT_TABLE(limits), HF_SUMMARY_HELD, &held, sizeof *s->held);
+    s->held = held;
+    if (has_limits && !are_limits_right(s->held)) hf_hdf5_damaged(io, io->file, "/at_limit", "does not name limits");
 }
 
 /* ---- objectives ---- */
@@ -314,42 +274,10 @@ static hf_layout_field objective_values(int stage)
                              .size = sizeof(double)};
 }
 
-static void put_objectives(hf_hdf5 *io, const hf_summary *s)
+/* Takes the names as they are read, of an earlier version by their names of today. */
+static void name_objectives(hf_hdf5 *io, hf_objective_list *g)
 {
-    const hf_objective_list *g = &s->objectives;
-    if (g->n == 0) return;
-    hf_layout_renew(io, "/objective");
-    hid_t group = hf_hdf5_make_group(io, "/objective");
-    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(objective_names), g->n, 0, g);
-    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(objective_fits), g->n, 0, g);
-    if (!g->is_front) hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(objective_weights), g->n, 0, g);
-    for (int i = 0; i < HF_N_STAGE; i++) {
-        const hf_layout_field values = objective_values(i);
-        if (hf_layout_objectives(s, i))
-            hf_layout_put_fields(io, group, &values, 1, g->n, 0, hf_layout_objectives(s, i));
-    }
-    hf_hdf5_close(io, group);
-}
-
-static void get_objectives(hf_hdf5 *io, hf_summary *s)
-{
-    hf_objective_list *g = &s->objectives;
     bool is_right = true;
-    if (!has_group(io, "/objective")) return;
-    hid_t group = hf_hdf5_open_group(io, "/objective");
-    g->is_front = !hf_hdf5_has(io, group, "weight");
-    g->n = hf_hdf5_length(io, group, "name", HF_DESIGN_ROWS_MAX);
-    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(objective_names), g->n, 0, g);
-    for (int k = 0; k < g->n; k++)
-        g->after_fit[k] = -1; /* files of version 0.1 have no such values */
-    if (hf_hdf5_has(io, group, "after_fit"))
-        hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(objective_fits), g->n, 0, g);
-    if (!g->is_front) hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(objective_weights), g->n, 0, g);
-    for (int i = 0; i < HF_N_STAGE; i++) {
-        const hf_layout_field values = objective_values(i);
-        if (hf_layout_objectives(s, i))
-            hf_layout_get_fields(io, group, &values, 1, g->n, 0, s->stage[i].result.objective);
-    }
     for (int k = 0; k < g->n; k++) {
         char then[HF_OBJECTIVE_NAME_SIZE], now[2 * HF_OBJECTIVE_NAME_SIZE];
         g->name[k][HF_OBJECTIVE_NAME_SIZE - 1] = '\0';
@@ -357,7 +285,31 @@ static void get_objectives(hf_hdf5 *io, hf_summary *s)
         snprintf(g->name[k], sizeof g->name[k], "%s", hf_renamed_figure(then, now, sizeof now));
         is_right = is_right && is_name_right(g->name[k]);
     }
-    if (io->status == HF_OK && !is_right) hf_hdf5_damaged(io, group, "name", "does not name objectives");
+    if (io->status == HF_OK && !is_right) hf_hdf5_damaged(io, io->file, "/objective/name", "does not name objectives");
+}
+
+static void pass_objectives(hf_hdf5 *io, bool writes, hf_summary *s)
+{
+    hf_objective_list *g = &s->objectives;
+    if (writes ? g->n == 0 : !has_group(io, "/objective")) return;
+    if (writes) hf_layout_renew(io, "/objective");
+    hid_t group = hf_hdf5_make_group(io, "/objective");
+    if (!writes) {
+        g->is_front = !hf_hdf5_has(io, group, "weight");
+        g->n = hf_hdf5_length(io, group, "name", HF_DESIGN_ROWS_MAX);
+        for (int k = 0; k < g->n; k++)
+            g->after_fit[k] = -1; /* files of version 0.1 have no such values */
+    }
+    hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(objective_names), g->n, 0, g);
+    if (writes || hf_hdf5_has(io, group, "after_fit"))
+        hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(objective_fits), g->n, 0, g);
+    if (!g->is_front) hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(objective_weights), g->n, 0, g);
+    for (int i = 0; i < HF_N_STAGE; i++) {
+        const hf_layout_field values = objective_values(i);
+        if (hf_layout_objectives(s, i))
+            hf_layout_pass_fields(io, writes, group, &values, 1, g->n, 0, s->stage[i].result.objective);
+    }
+    if (!writes) name_objectives(io, g);
     hf_hdf5_close(io, group);
 }
 
@@ -365,14 +317,13 @@ static void get_objectives(hf_hdf5 *io, hf_summary *s)
 
 static void write_attachments(hf_hdf5 *io, hid_t group, const hf_model *m)
 {
-    const hf_hdf5_array array = {
-        "node", HF_KIND_INT, 1, {(hsize_t)m->n_attachment}, "", "each attachment, as an index into /scene/node"};
     int *index = io->status == HF_OK ? malloc((size_t)m->n_attachment * sizeof *index) : NULL;
     if (!index) hf_hdf5_no_memory(io);
     if (!index) return;
     for (int i = 0; i < m->n_attachment; i++)
         index[i] = m->node_of_row[m->attachment_row[i]];
-    hf_hdf5_write_array(io, group, &array, index);
+    hf_hdf5_write_list(io, group, "node", HF_KIND_INT, m->n_attachment, 0, "",
+                       "each attachment, as an index into /scene/node", index);
     free(index);
 }
 
@@ -402,87 +353,73 @@ void hf_layout_write_coupling(hf_hdf5 *io, const hf_model *m, const hf_workspace
 
 /* ---- load cases ---- */
 
-#define RESULT(type, member, kind, ...) HF_HDF5_MEMBER(hf_load_case_summary, NULL, #member, result.member, kind)
+#define LOAD_CASE(...) HF_RESULT_FIELD(hf_load_case_summary, __VA_ARGS__)
+#define RESULT(type, member, kind, ...) HF_LAYOUT_NAMED(hf_load_case_summary, #member, result.member, kind)
 #define COUPLING(type, member, kind, ...)                                                                              \
-    HF_HDF5_MEMBER(hf_load_case_summary, NULL, "coupling_" #member, result.coupling.member, kind)
-#define LOAD_CASE(type, member, kind, ...) HF_HDF5_MEMBER(hf_load_case_summary, NULL, #member, member, kind)
-static const hf_hdf5_member load_case[] = {HF_RESULT_LIST(RESULT) HF_LOAD_CASE_LIST(LOAD_CASE)
-                                               HF_COUPLING_LIST(COUPLING)};
+    HF_LAYOUT_NAMED(hf_load_case_summary, "coupling_" #member, result.coupling.member, kind)
+const hf_result_field hf_layout_load_case[HF_LAYOUT_N_LOAD_CASE] = {HF_RESULT_LIST(RESULT) HF_LOAD_CASE_LIST(LOAD_CASE)
+                                                                        HF_COUPLING_LIST(COUPLING)};
 static const hf_layout_field load_case_names[] = {
     HF_LAYOUT_MEMBER(hf_load_case_summary, "name", name, CHARS, "", "load cases of the as-built net")};
 
-static void put_load_cases(hf_hdf5 *io, const hf_summary *s)
+static void pass_load_case(hf_hdf5 *io, bool writes, int n_frequency, hf_load_case_summary *s)
 {
     char path[HF_LAYOUT_LOAD_CASE_SIZE], surface[HF_LAYOUT_LOAD_CASE_SIZE + 16];
-    if (s->n_load_case == 0) return;
-    hid_t group = hf_hdf5_make_group(io, "/load_cases");
-    hf_layout_renew(io, "/load_cases/name");
-    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(load_case_names), s->n_load_case, 0, s->load_case);
-    hf_hdf5_close(io, group);
-    for (int k = 0; k < s->n_load_case; k++) {
-        snprintf(path, sizeof path, "/load_cases/%s", s->load_case[k].name);
-        snprintf(surface, sizeof surface, "%s/surface", path);
-        hf_hdf5_close(io, hf_hdf5_make_group(io, path));
-        hf_hdf5_put_members(io, path, load_case, HF_HDF5_COUNT(load_case), &s->load_case[k]);
-        put_measures(io, surface, s->surface.frequencies_Hz.n, &s->load_case[k].surface);
-    }
+    snprintf(path, sizeof path, "/load_cases/%s", s->name);
+    snprintf(surface, sizeof surface, "%s/surface", path);
+    if (writes) hf_hdf5_close(io, hf_hdf5_make_group(io, path));
+    hf_layout_pass_members(io, writes, path, hf_layout_load_case, HF_LAYOUT_N_LOAD_CASE, s);
+    pass_measures(io, writes, surface, n_frequency, &s->surface);
 }
 
-static void get_load_cases(hf_hdf5 *io, hf_summary *s)
+static void pass_load_cases(hf_hdf5 *io, bool writes, hf_summary *s)
 {
-    char path[HF_LAYOUT_LOAD_CASE_SIZE];
+    int n = s->n_load_case;
     /* An unfinished result has shapes of load cases, but no list of their names yet. */
-    if (!has_group(io, "/load_cases") || !has_group(io, "/load_cases/name")) return;
-    hid_t group = hf_hdf5_open_group(io, "/load_cases");
-    int n = hf_hdf5_length(io, group, "name", HF_LOAD_CASES_MAX);
-    if (n > 0 && !(s->load_case = calloc((size_t)n, sizeof *s->load_case))) hf_hdf5_no_memory(io);
-    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(load_case_names), n, 0, s->load_case);
+    if (writes ? n == 0 : !has_group(io, "/load_cases") || !has_group(io, "/load_cases/name")) return;
+    hid_t group = hf_hdf5_make_group(io, "/load_cases");
+    if (writes) hf_layout_renew(io, "/load_cases/name");
+    if (!writes) n = hf_hdf5_length(io, group, "name", HF_LOAD_CASES_MAX);
+    if (!writes && n > 0 && !(s->load_case = calloc((size_t)n, sizeof *s->load_case))) hf_hdf5_no_memory(io);
+    hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(load_case_names), n, 0, s->load_case);
     hf_hdf5_close(io, group);
     if (io->status == HF_OK) s->n_load_case = n;
     for (int k = 0; k < n && io->status == HF_OK; k++) {
         hf_load_case_summary *of = &s->load_case[k];
         of->name[HF_SET_NAME_SIZE - 1] = '\0';
-        if (!is_name_right(of->name)) {
+        if (!is_name_right(of->name))
             hf_hdf5_damaged(io, io->file, "/load_cases/name", "does not name load cases");
-            return;
-        }
-        snprintf(path, sizeof path, "/load_cases/%s", of->name);
-        hf_hdf5_get_members(io, path, load_case, HF_HDF5_COUNT(load_case), of);
-        strncat(path, "/surface", sizeof path - strlen(path) - 1);
-        get_measures(io, path, s->surface.frequencies_Hz.n, &of->surface);
+        else
+            pass_load_case(io, writes, s->surface.frequencies_Hz.n, of);
     }
 }
 
 /* ---- all ---- */
 
-void hf_layout_put_stages(hf_hdf5 *io, const hf_summary *s)
+void hf_layout_put_stages(hf_hdf5 *io, const hf_summary *summary)
 {
-    put_surface(io, s);
+    hf_summary *s = (hf_summary *)summary;
+    pass_surface(io, true, s);
     hf_layout_renew(io, "/set_tension");
     hf_layout_renew(io, "/at_limit");
-    for (int i = 0; i < HF_N_STAGE; i++) {
-        const hf_set_tensions *of = s->stage[i].sets;
-        const hf_held_limits *held = s->stage[i].held;
-        if (of) put_list(io, "/set_tension", i, HF_LAYOUT_TABLE(sets), of->n, of);
-        if (held) put_list(io, "/at_limit", i, HF_LAYOUT_TABLE(limits), held->n, held);
-    }
-    put_objectives(io, s);
-    put_load_cases(io, s);
+    for (int i = 0; i < HF_N_STAGE; i++)
+        pass_lists(io, true, &s->stage[i], i);
+    pass_objectives(io, true, s);
+    pass_load_cases(io, true, s);
 }
 
 void hf_layout_put_objectives(hf_hdf5 *io, const hf_summary *s)
 {
-    put_objectives(io, s);
+    pass_objectives(io, true, (hf_summary *)s);
 }
 
 void hf_layout_get_stages(hf_hdf5 *io, hf_summary *s)
 {
-    get_surface(io, s);
+    pass_surface(io, false, s);
     for (int i = 0; i < HF_N_STAGE; i++) {
         get_pattern(io, s, i);
-        get_sets(io, &s->stage[i], i);
-        get_limits(io, &s->stage[i], i);
+        pass_lists(io, false, &s->stage[i], i);
     }
-    get_objectives(io, s);
-    get_load_cases(io, s);
+    pass_objectives(io, false, s);
+    pass_load_cases(io, false, s);
 }

@@ -60,11 +60,18 @@ static const hf_layout_field kind_field[] = {
 static const hf_layout_field bin_field[] = {
     SHARE("histogram", bin, REAL, "share of the samples whose psi is in each of equal intervals")};
 
+static void pass_shares(hf_hdf5 *io, bool writes, hid_t group, int n_kind, hf_tolerance_summary *s)
+{
+    hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(ranked_field), s->n_ranked, 0, s);
+    hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(kind_field), n_kind, 0, s);
+    hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(bin_field), HF_TOLERANCE_BINS, 0, s);
+}
+
 /* ---- writing ---- */
 
 void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary)
 {
-    const hf_tolerance_summary *s = summary->tolerance;
+    hf_tolerance_summary *s = summary->tolerance;
     measured figures[HF_TOLERANCE_N_MEASURE] = {{{0}, 0, {0}}};
     required rows[HF_REQUIRE_ROWS_MAX] = {{{0}, {0}, 0}};
     char kind[HF_TOLERANCE_KINDS][WORD_SIZE] = {{0}};
@@ -84,12 +91,10 @@ void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary)
     hid_t group = hf_hdf5_make_group(io, GROUP);
     const hf_hdf5_array kinds = {"error_kind", HF_KIND_CHARS,    1, {HF_TOLERANCE_KINDS, WORD_SIZE},
                                  "",           "kinds of errors"};
-    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(measured_field), HF_TOLERANCE_N_MEASURE, 0, figures);
-    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(required_field), s->n_require, 0, rows);
+    hf_layout_pass_fields(io, true, group, HF_LAYOUT_TABLE(measured_field), HF_TOLERANCE_N_MEASURE, 0, figures);
+    hf_layout_pass_fields(io, true, group, HF_LAYOUT_TABLE(required_field), s->n_require, 0, rows);
     hf_hdf5_write_array(io, group, &kinds, kind);
-    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(ranked_field), s->n_ranked, 0, s);
-    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(kind_field), HF_TOLERANCE_KINDS, 0, s);
-    hf_layout_put_fields(io, group, HF_LAYOUT_TABLE(bin_field), HF_TOLERANCE_BINS, 0, s);
+    pass_shares(io, true, group, HF_TOLERANCE_KINDS, s);
     hf_hdf5_close(io, group);
     hf_layout_put_part(io, HF_LAYOUT_TOLERANCE, summary);
 }
@@ -139,7 +144,7 @@ static void get_requirements(hf_hdf5 *io, hid_t group, hf_tolerance_summary *s)
 {
     required rows[HF_REQUIRE_ROWS_MAX] = {{{0}, {0}, 0}};
     s->n_require = length_of(io, group, "require_yield", HF_REQUIRE_ROWS_MAX);
-    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(required_field), s->n_require, 0, rows);
+    hf_layout_pass_fields(io, false, group, HF_LAYOUT_TABLE(required_field), s->n_require, 0, rows);
     for (int k = 0; k < s->n_require && io->status == HF_OK; k++) {
         rows[k].row.measure = measure_of(rows[k].word);
         if (rows[k].row.measure == HF_TOLERANCE_N_MEASURE)
@@ -160,16 +165,14 @@ void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
     if (!s) return;
     hid_t group = hf_hdf5_open_group(io, GROUP);
     int n = hf_hdf5_length(io, group, "measure", HF_TOLERANCE_N_MEASURE);
-    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(measured_field), n, 0, figures);
+    hf_layout_pass_fields(io, false, group, HF_LAYOUT_TABLE(measured_field), n, 0, figures);
     if (io->status == HF_OK) take_measures(n, figures, s);
     get_requirements(io, group, s);
     s->n_ranked = length_of(io, group, "ranked_share", HF_TOLERANCE_RANKED);
-    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(ranked_field), s->n_ranked, 0, s);
+    /* Version 0.1 had fewer kinds. */
+    pass_shares(io, false, group, hf_hdf5_length(io, group, "kind_share", HF_TOLERANCE_KINDS), s);
     for (int k = 0; k < s->n_ranked; k++)
         s->ranked_id[k][HF_TOLERANCE_ID_SIZE - 1] = '\0';
-    int n_kind = hf_hdf5_length(io, group, "kind_share", HF_TOLERANCE_KINDS); /* version 0.1 had fewer kinds */
-    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(kind_field), n_kind, 0, s);
-    hf_layout_get_fields(io, group, HF_LAYOUT_TABLE(bin_field), HF_TOLERANCE_BINS, 0, s);
     hf_hdf5_close(io, group);
     hf_layout_get_part(io, HF_LAYOUT_TOLERANCE, summary);
 }

@@ -1,33 +1,34 @@
-/* Writes and reads the group /truss. Sections: writing, reading. */
+/* Writes and reads the group /truss. Sections: supports, writing, reading. */
 #include "store/layout.h"
 
 #include "base/arena.h"
 
 #include <stdlib.h>
 
-/* Describes "node/fixed": one bit per degree of freedom in memory, one flag per degree of freedom in the file. */
-static hf_hdf5_array fixed_array(int n_node)
+/* ---- supports ---- */
+
+/* Writes or reads "node/fixed": one bit per degree of freedom in memory, one flag per degree of freedom in the file. */
+static void pass_fixed(hf_hdf5 *io, bool writes, hid_t group, const hf_truss *t)
 {
-    return (hf_hdf5_array){"node/fixed",
-                           HF_KIND_FLAG,
-                           2,
-                           {(hsize_t)n_node, HF_TRUSS_DOF},
-                           "",
-                           "held by a support: along x, y, z, about x, y, z"};
+    signed char *flag = io->status == HF_OK ? malloc(HF_TRUSS_DOF * (size_t)t->n_node) : NULL;
+    if (!flag) {
+        hf_hdf5_no_memory(io);
+        return;
+    }
+    if (!writes) hf_hdf5_read_list(io, group, "node/fixed", HF_KIND_FLAG, t->n_node, HF_TRUSS_DOF, flag);
+    for (int k = 0; io->status == HF_OK && k < HF_TRUSS_DOF * t->n_node; k++) {
+        if (writes)
+            flag[k] = (signed char)(t->fixed[k / HF_TRUSS_DOF] >> k % HF_TRUSS_DOF & 1);
+        else
+            t->fixed[k / HF_TRUSS_DOF] |= (unsigned char)(flag[k] << k % HF_TRUSS_DOF);
+    }
+    if (writes)
+        hf_hdf5_write_list(io, group, "node/fixed", HF_KIND_FLAG, t->n_node, HF_TRUSS_DOF, "",
+                           "held by a support: along x, y, z, about x, y, z", flag);
+    free(flag);
 }
 
 /* ---- writing ---- */
-
-static void write_fixed(hf_hdf5 *io, hid_t group, const hf_truss *t)
-{
-    hf_hdf5_array array = fixed_array(t->n_node);
-    signed char *flag = malloc(HF_TRUSS_DOF * (size_t)t->n_node);
-    if (!flag) hf_hdf5_no_memory(io);
-    for (int k = 0; flag && k < HF_TRUSS_DOF * t->n_node; k++)
-        flag[k] = (signed char)(t->fixed[k / HF_TRUSS_DOF] >> k % HF_TRUSS_DOF & 1);
-    if (flag) hf_hdf5_write_array(io, group, &array, flag);
-    free(flag);
-}
 
 void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carrier_state *state)
 {
@@ -44,7 +45,7 @@ void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carr
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/truss/attachment"));
     hf_hdf5_write_ids(io, group, "node/id", t->node_id, t->n_node, "name of the node");
     hf_hdf5_write_ids(io, group, "member/id", t->member_id, t->n_member, "name of the member");
-    write_fixed(io, group, t);
+    pass_fixed(io, true, group, t);
     hf_layout_write_columns(io, group, &hf_layout_truss, t->n_node, t->n_member, t);
     hf_layout_write_columns(io, group, &attachment, carrier->n_attachment, 0, carrier);
     if (state) hf_layout_write_columns(io, group, &hf_layout_truss_state, t->n_node, t->n_member, state);
@@ -53,30 +54,14 @@ void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carr
 
 /* ---- reading ---- */
 
-static void read_fixed(hf_hdf5 *io, hid_t group, hf_truss *t)
-{
-    hf_hdf5_array array = fixed_array(t->n_node);
-    signed char *flag = io->status == HF_OK ? malloc(HF_TRUSS_DOF * (size_t)t->n_node) : NULL;
-    if (!flag) {
-        hf_hdf5_no_memory(io);
-        return;
-    }
-    hf_hdf5_read_array(io, group, &array, flag);
-    for (int k = 0; io->status == HF_OK && k < HF_TRUSS_DOF * t->n_node; k++)
-        t->fixed[k / HF_TRUSS_DOF] |= (unsigned char)(flag[k] << k % HF_TRUSS_DOF);
-    free(flag);
-}
-
 void hf_layout_read_truss_state(hf_hdf5 *io, hid_t group, const hf_truss *t, hf_carrier_state *state)
 {
-    size_t n_dof = HF_TRUSS_DOF * (size_t)t->n_node;
+    const size_t n_value = HF_TRUSS_DOF * (size_t)t->n_node;
     if (!hf_hdf5_has(io, group, "node/displacement")) return;
-    if (HF_ARENA_ARRAYS(&state->block, HF_ARRAY(state->displacement, n_dof), HF_ARRAY(state->reaction, n_dof),
-                        HF_ARRAY(state->end_force, 2 * HF_TRUSS_DOF * (size_t)t->n_member)) != HF_OK) {
+    if (HF_ARENA_ARRAYS(&state->block, HF_ARRAY(state->displacement, n_value), HF_ARRAY(state->reaction, n_value),
+                        HF_ARRAY(state->end_force, 2 * HF_TRUSS_DOF * (size_t)t->n_member)) != HF_OK)
         hf_hdf5_no_memory(io);
-        return;
-    }
-    hf_layout_read_columns(io, group, &hf_layout_truss_state, t->n_node, t->n_member, state);
+    if (io->status == HF_OK) hf_layout_read_columns(io, group, &hf_layout_truss_state, t->n_node, t->n_member, state);
 }
 
 void hf_layout_read_truss(hf_hdf5 *io, hf_truss *t, hf_carrier_state *state)
@@ -88,7 +73,7 @@ void hf_layout_read_truss(hf_hdf5 *io, hf_truss *t, hf_carrier_state *state)
     hf_layout_read_columns(io, group, &hf_layout_truss, n_node, n_member, t);
     if (io->status == HF_OK)
         hf_hdf5_read_ids(io, group, "node/id", n_node, t->node_id, "member/id", n_member, t->member_id, &t->text);
-    if (io->status == HF_OK) read_fixed(io, group, t);
+    if (io->status == HF_OK) pass_fixed(io, false, group, t);
     for (int k = 0; k < 2 * n_member && io->status == HF_OK; k++)
         if (t->end[k] < 0 || t->end[k] >= n_node)
             hf_hdf5_damaged(io, group, "member/end", "names a node that is not there");

@@ -24,7 +24,7 @@
 typedef struct {
     const char *object;
     hf_layout_part part;
-    const hf_hdf5_member *member; /* never one of HF_KIND_CHARS */
+    const hf_result_field *field; /* never a text */
 } hf_ledger_number;
 
 /* hf_ledger_n_column returns the number of columns. hf_ledger_column sets *number to that of column i, and returns

@@ -15,9 +15,9 @@ bool hf_ledger_column(int i, hf_ledger_number *number)
 {
     for (hf_layout_part part = 0; part < HF_LAYOUT_N_PART; part++) {
         const hf_layout_members *p = &hf_layout_summary[part];
-        for (int k = 0; k < p->n; k++)
-            if (p->member[k].kind != HF_KIND_CHARS && i-- == 0) {
-                *number = (hf_ledger_number){p->object ? p->object : p->member[k].object, part, &p->member[k]};
+        for (const hf_result_field *f = p->field; f < p->field + p->n; f++)
+            if (f->kind != HF_RESULT_CHARS && i-- == 0) {
+                *number = (hf_ledger_number){p->object, part, f};
                 return true;
             }
     }
@@ -26,25 +26,24 @@ bool hf_ledger_column(int i, hf_ledger_number *number)
 
 int hf_ledger_n_column(void)
 {
+    hf_ledger_number number;
     int n = 0;
-    for (int part = 0; part < HF_LAYOUT_N_PART; part++)
-        for (int k = 0; k < hf_layout_summary[part].n; k++)
-            n += hf_layout_summary[part].member[k].kind != HF_KIND_CHARS;
+    while (hf_ledger_column(n, &number))
+        n++;
     return n;
 }
 
 bool hf_ledger_is_circumstance(const hf_ledger_number *number)
 {
-    const char *name = number->member->name;
+    const char *name = number->field->name;
     size_t n = strlen(name);
     return !strcmp(name, "threads") || (n > 2 && !strcmp(name + n - 2, "_s"));
 }
 
 static int print_number(const hf_ledger_number *number, const hf_summary *s, char *text, size_t size)
 {
-    const char *owner = hf_layout_owner(s, number->part);
-    const void *from = owner + number->member->offset;
-    switch (number->member->kind->class) {
+    const void *from = (const char *)hf_layout_owner(s, number->part) + number->field->offset;
+    switch (hf_layout_kind_of(number->field)->class) {
     case HF_HDF5_REAL:
         return snprintf(text, size, "%.17g", *(const double *)from);
     case HF_HDF5_LONG:
@@ -52,7 +51,7 @@ static int print_number(const hf_ledger_number *number, const hf_summary *s, cha
     case HF_HDF5_UINT64:
         return snprintf(text, size, "%" PRIu64, *(const uint64_t *)from);
     default:
-        return snprintf(text, size, "%d", hf_hdf5_int_value(number->member, owner));
+        return snprintf(text, size, "%d", hf_layout_int(from, number->field->size));
     }
 }
 
@@ -132,7 +131,7 @@ int hf_ledger_n_field(void)
 int hf_ledger_field_name(int i, char *text, size_t size)
 {
     hf_ledger_number number;
-    if (hf_ledger_column(i, &number)) return snprintf(text, size, "%s/%s", number.object, number.member->name);
+    if (hf_ledger_column(i, &number)) return snprintf(text, size, "%s/%s", number.object, number.field->name);
     const hf_ledger_list *list = &hf_ledger_list_of[i - hf_ledger_n_column()];
     return snprintf(text, size, "%s/%s", list->group, list->field);
 }

@@ -137,18 +137,18 @@ static void write_output(merger *m, hid_t group, int column)
     char name[128], stage[96];
     int n_given = 0;
     if (!hf_ledger_column(column, &number) || hf_ledger_is_circumstance(&number)) return;
-    const hf_hdf5_member *c = number.member;
+    const hf_hdf5_kind *kind = hf_layout_kind_of(number.field);
     for (int i = 0; i < m->points->n_point; i++) {
         const hf_point *p = &m->points->point[i];
         const char *text = p->field ? p->field[column] : "";
         n_given += *text != '\0';
-        set_number(m->room, i, c->kind, text);
+        set_number(m->room, i, kind, text);
     }
     if (!n_given) return;
-    snprintf(name, sizeof name, "%s%s%s", number.object + 1, number.object[1] ? "/" : "", c->name);
+    snprintf(name, sizeof name, "%s%s%s", number.object + 1, number.object[1] ? "/" : "", number.field->name);
     snprintf(stage, sizeof stage, "/points%s", number.object);
     if (number.object[1]) hf_hdf5_close(&m->io, hf_hdf5_make_group(&m->io, stage));
-    write_column(m, group, name, c->kind, 1, hf_ledger_unit(c->name), "as in the runs");
+    write_column(m, group, name, kind, 1, hf_ledger_unit(number.field->name), "as in the runs");
 }
 
 /* ---- lists ---- */

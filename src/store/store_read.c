@@ -91,7 +91,7 @@ static hf_status read_summary(const char *path, hf_summary *summary, bool *is_da
     hf_layout_get_part(&io, HF_LAYOUT_RUN, summary);
     summary->has_coupling = io.status == HF_OK && hf_hdf5_has(&io, io.file, "coupling");
     summary->has_truss = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/truss");
-    for (hf_layout_part part = HF_LAYOUT_FORM; part < HF_LAYOUT_TOLERANCE; part++)
+    for (hf_layout_part part = HF_LAYOUT_CASE; part < HF_LAYOUT_TOLERANCE; part++)
         if (hf_layout_has(summary, part)) hf_layout_get_part(&io, part, summary);
     get_status(&io, summary);
     hf_layout_get_taken(&io, &summary->taken);
@@ -179,21 +179,16 @@ static void read_sets(hf_hdf5 *io, hid_t group, hf_scene *s)
     if (io->status != HF_OK || !hf_hdf5_has(io, group, "set")) return;
     int n_set = hf_hdf5_length(io, group, "set/name", HF_LAYOUT_COUNT_MAX);
     int n_member = hf_hdf5_length(io, group, "set/cable", INT_MAX);
-    size_t length = hf_hdf5_chars_length(io, group, "set/name");
-    if (io->status == HF_OK && length >= HF_CABLE_SET_NAME_SIZE)
+    size_t size = 0;
+    char *name = io->status == HF_OK ? hf_hdf5_read_strings(io, group, "set/name", n_set, &size) : NULL;
+    if (io->status == HF_OK && size > HF_CABLE_SET_NAME_SIZE)
         hf_hdf5_damaged(io, group, "set/name", "has a name that is too long");
-    char *name = io->status == HF_OK ? calloc((size_t)n_set, length) : NULL;
-    if (io->status == HF_OK && (!name || hf_cable_set_allocate(s, n_set, n_member) != HF_OK)) hf_hdf5_no_memory(io);
+    if (io->status == HF_OK && hf_cable_set_allocate(s, n_set, n_member) != HF_OK) hf_hdf5_no_memory(io);
     if (io->status == HF_OK) {
-        const hf_hdf5_array names = {
-            .name = "set/name", .kind = HF_KIND_CHARS, .rank = 1, .dims = {(hsize_t)n_set, length}};
-        const hf_hdf5_array start = {.name = "set/start", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)n_set + 1}};
-        const hf_hdf5_array cable = {.name = "set/cable", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)n_member}};
-        hf_hdf5_read_array(io, group, &names, name);
-        hf_hdf5_read_array(io, group, &start, s->set_start);
-        hf_hdf5_read_array(io, group, &cable, s->set_cable);
+        hf_hdf5_read_list(io, group, "set/start", HF_KIND_INT, n_set + 1, 0, s->set_start);
+        hf_hdf5_read_list(io, group, "set/cable", HF_KIND_INT, n_member, 0, s->set_cable);
         for (int k = 0; k < n_set; k++)
-            memcpy((char *)s->set_name[k], name + (size_t)k * length, length);
+            memcpy((char *)s->set_name[k], name + (size_t)k * size, size);
         if (io->status == HF_OK && (s->set_start[n_set] != n_member || !are_sets_right(s, n_member)))
             hf_hdf5_damaged(io, group, "set", "does not describe sets of cables");
     }
@@ -206,8 +201,7 @@ static void read_facets(hf_hdf5 *io, hid_t group, hf_scene *s)
     if (io->status != HF_OK || !hf_hdf5_has(io, group, "facet")) return;
     int n = hf_hdf5_length(io, group, "facet", HF_LAYOUT_COUNT_MAX);
     if (io->status == HF_OK && !(s->facet = calloc((size_t)n + 1, 4 * sizeof *s->facet))) hf_hdf5_no_memory(io);
-    const hf_hdf5_array facet = {.name = "facet", .kind = HF_KIND_INT, .rank = 2, .dims = {(hsize_t)n, 4}};
-    hf_hdf5_read_array(io, group, &facet, s->facet);
+    hf_hdf5_read_list(io, group, "facet", HF_KIND_INT, n, 4, s->facet);
     s->n_facet = n;
     for (int i = 0; i < 4 * n && io->status == HF_OK; i++)
         if (s->facet[i] < 0 || s->facet[i] >= s->n_node)
@@ -378,15 +372,15 @@ static const char **split_lines(char *text, int *n)
 
 bool hf_store_parse_case(hf_hdf5 *io, const char *path, hf_case *settings)
 {
-    char *text = NULL, *overrides = NULL;
     const char **set = NULL;
     hf_messages unwanted = {0};
     uint64_t seed = 0;
+    size_t size;
     int n_set = 0;
     bool is_known = false;
     hf_hdf5_get(io, io->file, "/", "seed", HF_KIND_UINT64, &seed, sizeof seed);
-    hf_hdf5_read_text(io, io->file, "/case/text", &text);
-    hf_hdf5_read_text(io, io->file, "/case/overrides", &overrides);
+    char *text = hf_hdf5_read_strings(io, io->file, "/case/text", -1, &size);
+    char *overrides = hf_hdf5_read_strings(io, io->file, "/case/overrides", -1, &size);
     if (io->status == HF_OK && !(set = split_lines(overrides, &n_set))) hf_hdf5_no_memory(io);
     if (io->status == HF_OK) is_known = hf_config_parse(path, text, set, n_set, settings, &unwanted) == HF_OK;
     settings->optimize.seed = seed; /* --seed may have set it */

@@ -3,6 +3,7 @@
 #include <hifdm/summary.h>
 
 #include "base/json.h"
+#include "store/layout.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -44,64 +45,21 @@ double hf_summary_utilisation(const hf_summary *s)
 
 /* ---- figures by the lists ---- */
 
-#define SEARCH(...) HF_RESULT_FIELD(hf_search_summary, __VA_ARGS__)
-#define REFINE(...) HF_RESULT_FIELD(hf_refine_summary, __VA_ARGS__)
-#define TRUSS(...) HF_RESULT_FIELD(hf_truss_summary, __VA_ARGS__)
-#define TOLERANCE(...) HF_RESULT_FIELD(hf_tolerance_summary, __VA_ARGS__)
-#define LOAD_CASE(...) HF_RESULT_FIELD(hf_load_case_summary, __VA_ARGS__)
-#define MEASURE(...) HF_RESULT_FIELD(hf_surface_measures, __VA_ARGS__)
-#define FIT(type, member, ...) HF_RESULT_FIELD(hf_surface_fit, type, member, __VA_ARGS__, .key = "fit_" #member)
-static const hf_result_field search_field[] = {HF_SUMMARY_SEARCH_LIST(SEARCH)};
-static const hf_result_field refine_field[] = {HF_SUMMARY_REFINE_LIST(REFINE)};
-static const hf_result_field tolerance_field[] = {HF_TOLERANCE_LIST(TOLERANCE)};
-static const hf_result_field truss_field[] = {HF_SUMMARY_TRUSS_LIST(TRUSS)};
-static const hf_result_field load_case_field[] = {HF_LOAD_CASE_LIST(LOAD_CASE)};
-static const hf_result_field measure_field[] = {HF_SURFACE_LIST(MEASURE)};
-static const hf_result_field fit_field[] = {HF_SURFACE_FIT_LIST(FIT)};
-#define ALL(table) table, (int)(sizeof(table) / sizeof(table)[0])
-
 static void write_field(const hf_result_field *field, const void *owner, hf_json *j)
 {
     const void *value = (const char *)owner + field->offset;
+    const hf_hdf5_kind *kind = hf_layout_kind_of(field);
     const char *key = hf_result_key(field);
-    int number = 0;
-    if (field->size == sizeof number) memcpy(&number, value, sizeof number); /* enumerations have the size of an int */
-    switch (field->kind) {
-    case HF_RESULT_REAL:
+    if (kind == HF_KIND_REAL)
         hf_json_number(j, key, *(const double *)value);
-        break;
-    case HF_RESULT_INT:
-        hf_json_integer(j, key, number);
-        break;
-    case HF_RESULT_LONG:
+    else if (kind == HF_KIND_LONG)
         hf_json_integer(j, key, *(const long *)value);
-        break;
-    case HF_RESULT_FLAG:
-    case HF_RESULT_TRUTH:
+    else if (field->size == sizeof(bool))
         hf_json_bool(j, key, *(const bool *)value);
-        break;
-    case HF_RESULT_REFINE_STOP:
-        hf_json_text(j, key, hf_refine_stop_word[number]);
-        break;
-    case HF_RESULT_STATUS:
-        hf_json_text(j, key, hf_status_word((hf_status)number));
-        break;
-    case HF_RESULT_STOP_REASON:
-        hf_json_text(j, key, hf_stop_reason_word(number));
-        break;
-    case HF_RESULT_COUPLING_STOP:
-        hf_json_text(j, key, hf_coupling_stop_word(number));
-        break;
-    case HF_RESULT_BOUND_REASON:
-        hf_json_text(j, key, hf_bound_reason_word(number));
-        break;
-    case HF_RESULT_SOLVER:
-        hf_json_text(j, key, hf_solver_word[number]);
-        break;
-    case HF_RESULT_SEARCH_STOP:
-        hf_json_text(j, key, hf_population_stop_word[number]);
-        break;
-    }
+    else if (kind->n_word)
+        hf_json_text(j, key, hf_hdf5_word(kind, hf_layout_int(value, field->size)));
+    else
+        hf_json_integer(j, key, hf_layout_int(value, field->size));
 }
 
 /* Writes the members of an object with the places `from` to `to`, in that order. */
@@ -113,6 +71,12 @@ static void write_fields(const hf_result_field *field, int n, int from, int to, 
 }
 
 enum { LAST_PLACE = 9 };
+
+static void write_part(const hf_summary *s, hf_layout_part part, hf_json *j)
+{
+    const hf_layout_members *p = &hf_layout_summary[part];
+    write_fields(p->field, p->n, 1, LAST_PLACE, hf_layout_owner(s, part), j);
+}
 
 /* ---- stages ---- */
 
@@ -130,10 +94,7 @@ static void write_surface(const hf_summary *s, const hf_surface_measures *m, hf_
     hf_json_line(j, "  ");
     hf_json_open(j, "surface", '{');
     hf_json_text(j, "kind", hf_surface_kind_word[s->surface.kind]);
-    for (int place = 1; place <= LAST_PLACE; place++) {
-        write_fields(ALL(measure_field), place, place, m, j);
-        write_fields(ALL(fit_field), place, place, &m->fit, j);
-    }
+    write_fields(hf_layout_surface, HF_LAYOUT_N_SURFACE, 1, LAST_PLACE, m, j);
     hf_json_list(j, "frequency_Hz", s->surface.frequencies_Hz.value, s->surface.frequencies_Hz.n);
 #define LOSS(member, description) hf_json_list(j, #member, m->member, s->surface.frequencies_Hz.n);
     HF_SURFACE_LOSS_LIST(LOSS)
@@ -223,7 +184,7 @@ static void open_stage(const char *key, hf_json *j)
 static void write_truss(const hf_summary *s, hf_json *j)
 {
     open_stage("truss", j);
-    write_fields(ALL(truss_field), 1, LAST_PLACE, &s->truss, j);
+    write_part(s, HF_LAYOUT_TRUSS, j);
     hf_json_close(j, '}');
 }
 
@@ -237,8 +198,8 @@ static void write_stage(const hf_summary *s, hf_stage stage, hf_json *j)
         hf_json_text(j, "stop_reason", hf_stop_reason_word((int)of->result.stop_reason));
     else
         hf_json_text(j, "algorithm", hf_summary_algorithm(s, stage));
-    if (stage == HF_STAGE_SEARCH) write_fields(ALL(search_field), 1, LAST_PLACE, &s->search, j);
-    if (stage == HF_STAGE_REFINE) write_fields(ALL(refine_field), 1, LAST_PLACE, &s->refine, j);
+    if (stage == HF_STAGE_SEARCH) write_part(s, HF_LAYOUT_SEARCH, j);
+    if (stage == HF_STAGE_REFINE) write_part(s, HF_LAYOUT_REFINE, j);
     hf_json_number(j, "wall_s", of->wall_s);
     if (stage == HF_STAGE_REFINE && s->taken.point) {
         hf_json_text(j, "front_file", s->taken.path);
@@ -311,7 +272,7 @@ static void write_load_cases(const hf_summary *s, hf_json *j)
         hf_json_line(j, "  ");
         hf_json_open(j, load_case->name, '{');
         write_result(&load_case->result, j);
-        write_fields(ALL(load_case_field), 1, LAST_PLACE, load_case, j);
+        write_fields(hf_layout_load_case, HF_LAYOUT_N_LOAD_CASE, 1, LAST_PLACE, load_case, j);
         write_surface(s, &load_case->surface, j);
         hf_json_close(j, '}');
     }
@@ -367,10 +328,11 @@ static void write_shares(const hf_tolerance_summary *t, hf_json *j)
     hf_json_close(j, ']');
 }
 
-static void write_tolerance(const hf_tolerance_summary *t, hf_json *j)
+static void write_tolerance(const hf_summary *s, hf_json *j)
 {
+    const hf_tolerance_summary *t = s->tolerance;
     open_stage("tolerance", j);
-    write_fields(ALL(tolerance_field), 1, LAST_PLACE, t, j);
+    write_part(s, HF_LAYOUT_TOLERANCE, j);
     hf_json_list(j, "quantiles", hf_tolerance_quantile, HF_TOLERANCE_QUANTILES);
     for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)
         if (t->figure[k].is_measured) write_figures(&t->figure[k], hf_tolerance_measure_word[k], j);
@@ -399,7 +361,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
         if (s->stage[stage].exists) write_stage(s, stage, j);
     if (s->front) write_front(s, j);
     write_load_cases(s, j);
-    if (s->tolerance) write_tolerance(s->tolerance, j);
+    if (s->tolerance) write_tolerance(s, j);
     hf_json_line(j, " ");
     hf_json_integer(j, "threads", s->threads);
     hf_json_unsigned(j, "seed", s->seed);

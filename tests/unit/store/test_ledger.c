@@ -36,7 +36,7 @@ static int column_of(const char *object, const char *name)
 {
     hf_ledger_number number;
     for (int i = 0; hf_ledger_column(i, &number); i++)
-        if (!strcmp(number.object, object) && !strcmp(number.member->name, name)) return i;
+        if (!strcmp(number.object, object) && !strcmp(number.field->name, name)) return i;
     ck_abort_msg("no column %s/%s", object, name);
     return -1;
 }
