@@ -32,9 +32,8 @@ typedef struct {
 
 /* An open data set of one file, with the type and the block of memory of its values. */
 typedef struct {
-    hid_t id, space, type;
-    int rank;
-    hsize_t dims[H5S_MAX_RANK];
+    hf_hdf5_data_set of;
+    hid_t type;
     size_t bytes; /* per value in memory */
     char *block;
 } side;
@@ -112,28 +111,18 @@ static void show(const side *s, const char *value, char *text, size_t size)
 static void close_side(hf_hdf5 *io, side *s)
 {
     hf_hdf5_close(io, s->type);
-    hf_hdf5_close(io, s->space);
-    hf_hdf5_close(io, s->id);
+    hf_hdf5_close_data_set(io, &s->of);
     free(s->block);
 }
 
 static void open_side(hf_hdf5 *io, const char *name, side *s)
 {
-    hid_t stored = -1;
-    *s = (side){-1, -1, -1, 0, {0}, 0, NULL};
+    *s = (side){.type = -1};
+    hf_hdf5_open_data_set(io, io->file, name, &s->of);
     if (io->status != HF_OK) return;
-    s->id = hf_hdf5_open(io, io->file, name, H5I_DATASET);
-    if (io->status != HF_OK) return;
-    if ((s->space = H5Dget_space(s->id)) < 0 || (s->rank = H5Sget_simple_extent_dims(s->space, s->dims, NULL)) < 0 ||
-        (stored = H5Dget_type(s->id)) < 0)
-        hf_hdf5_fail(io, "read", -1, name);
-    else if (H5Tget_class(stored) == H5T_FLOAT)
-        s->type = H5Tcopy(H5T_NATIVE_DOUBLE);
-    else
-        s->type = H5Tget_native_type(stored, H5T_DIR_ASCEND);
-    if (io->status == HF_OK && (s->type < 0 || (s->bytes = H5Tget_size(s->type)) == 0))
-        hf_hdf5_fail(io, "read", -1, name);
-    hf_hdf5_close(io, stored);
+    bool is_float = H5Tget_class(s->of.type) == H5T_FLOAT;
+    s->type = is_float ? H5Tcopy(H5T_NATIVE_DOUBLE) : H5Tget_native_type(s->of.type, H5T_DIR_ASCEND);
+    if (s->type < 0 || (s->bytes = H5Tget_size(s->type)) == 0) hf_hdf5_fail(io, "read", -1, name);
 }
 
 /* Reads rows row to row + n_row - 1 of the first dimension into s->block. Returns the data space of the block, which
@@ -143,12 +132,12 @@ static hid_t read_rows(hf_hdf5 *io, const char *name, side *s, hsize_t row, hsiz
     hsize_t start[H5S_MAX_RANK] = {row}, count[H5S_MAX_RANK];
     hid_t memory = -1;
     hf_hdf5_note(io);
-    memcpy(count, s->dims, sizeof count);
-    if (s->rank > 0) count[0] = n_row;
+    memcpy(count, s->of.dims, sizeof count);
+    if (s->of.rank > 0) count[0] = n_row;
     if (io->status != HF_OK) return -1;
-    if ((memory = H5Screate_simple(s->rank, s->rank ? count : NULL, NULL)) < 0 ||
-        (s->rank && H5Sselect_hyperslab(s->space, H5S_SELECT_SET, start, NULL, count, NULL) < 0) ||
-        H5Dread(s->id, s->type, memory, s->rank ? s->space : H5S_ALL, H5P_DEFAULT, s->block) < 0)
+    if ((memory = H5Screate_simple(s->of.rank, s->of.rank ? count : NULL, NULL)) < 0 ||
+        (s->of.rank && H5Sselect_hyperslab(s->of.space, H5S_SELECT_SET, start, NULL, count, NULL) < 0) ||
+        H5Dread(s->of.id, s->type, memory, s->of.rank ? s->of.space : H5S_ALL, H5P_DEFAULT, s->block) < 0)
         hf_hdf5_fail(io, "read", -1, name);
     return memory;
 }
@@ -157,17 +146,17 @@ static void tell_value(comparing *q, const char *name, const side *a, const side
 {
     char where[256] = "", u[96], v[96], how[600];
     hsize_t index[H5S_MAX_RANK], rest = i;
-    for (int d = a->rank - 1; d > 0; d--) {
-        index[d] = rest % a->dims[d];
-        rest /= a->dims[d];
+    for (int d = a->of.rank - 1; d > 0; d--) {
+        index[d] = rest % a->of.dims[d];
+        rest /= a->of.dims[d];
     }
     index[0] = row + rest;
-    for (int d = 0; d < a->rank; d++)
+    for (int d = 0; d < a->of.rank; d++)
         snprintf(where + strlen(where), sizeof where - strlen(where), "%s%llu", d ? ", " : " [",
                  (unsigned long long)index[d]);
     show(a, a->block + i * a->bytes, u, sizeof u);
     show(b, b->block + i * b->bytes, v, sizeof v);
-    snprintf(how, sizeof how, "%s%s: %s in %s, %s in %s", where, a->rank ? "]" : "", u, q->a.path, v, q->b.path);
+    snprintf(how, sizeof how, "%s%s: %s in %s, %s in %s", where, a->of.rank ? "]" : "", u, q->a.path, v, q->b.path);
     q->tell(q->context, name, how);
 }
 
@@ -175,9 +164,9 @@ static void tell_value(comparing *q, const char *name, const side *a, const side
  * difference. */
 static bool compare_values(comparing *q, const char *name, side *a, side *b)
 {
-    hsize_t per_row = 1, rows = a->rank ? a->dims[0] : 1;
-    for (int d = 1; d < a->rank; d++)
-        per_row *= a->dims[d];
+    hsize_t per_row = 1, rows = a->of.rank ? a->of.dims[0] : 1;
+    for (int d = 1; d < a->of.rank; d++)
+        per_row *= a->of.dims[d];
     if (per_row == 0 || rows == 0) return false;
     hsize_t fit = BLOCK_BYTES / (per_row * a->bytes), step = fit < 1 ? 1 : fit < rows ? fit : rows;
     a->block = malloc(step * per_row * a->bytes);
@@ -213,7 +202,7 @@ static bool compare_data_set(comparing *q, const char *name)
         differs = true;
         if (H5Tget_class(a.type) != H5Tget_class(b.type) || is_text(&a) != is_text(&b))
             q->tell(q->context, name, " is of another type");
-        else if (a.rank != b.rank || memcmp(a.dims, b.dims, (size_t)a.rank * sizeof a.dims[0]) != 0)
+        else if (a.of.rank != b.of.rank || memcmp(a.of.dims, b.of.dims, (size_t)a.of.rank * sizeof a.of.dims[0]) != 0)
             q->tell(q->context, name, " has other dimensions");
         else if (a.bytes != b.bytes)
             q->tell(q->context, name, " has values of another length");

@@ -492,8 +492,7 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population 
     hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_MERIT].array, 0, population->best_merit);
     hf_hdf5_read_rows(io, group, &row[HF_ROW_VIOLATION].array, 0, population->least_violation);
     restore_counts(io, group, g, population);
-    hf_hdf5_close(io, whole);
-    hf_hdf5_close(io, group);
+    HF_HDF5_CLOSE(io, whole, group);
 }
 
 void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)

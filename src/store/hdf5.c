@@ -118,20 +118,8 @@ static bool is_enum(const hf_hdf5_kind *kind)
 
 size_t hf_hdf5_kind_bytes(const hf_hdf5_kind *kind)
 {
-    switch (kind->class) {
-    case HF_HDF5_REAL:
-        return sizeof(double);
-    case HF_HDF5_INT:
-        return sizeof(int);
-    case HF_HDF5_LONG:
-        return sizeof(long);
-    case HF_HDF5_UINT64:
-        return sizeof(uint64_t);
-    case HF_HDF5_TEXT:
-        return sizeof(char *);
-    default:
-        return 1;
-    }
+    static const size_t bytes[] = {sizeof(double), sizeof(int), sizeof(long), sizeof(uint64_t), sizeof(char *), 1, 1};
+    return bytes[kind->class];
 }
 
 static hid_t make_enum(const hf_hdf5_kind *kind)
@@ -163,22 +151,10 @@ static hid_t make_string(size_t length)
  * string of HF_KIND_CHARS. */
 static hid_t make_type(const hf_hdf5_kind *kind, hsize_t length)
 {
-    switch (kind->class) {
-    case HF_HDF5_REAL:
-        return H5Tcopy(H5T_NATIVE_DOUBLE);
-    case HF_HDF5_INT:
-        return H5Tcopy(H5T_NATIVE_INT);
-    case HF_HDF5_LONG:
-        return H5Tcopy(H5T_NATIVE_LONG);
-    case HF_HDF5_UINT64:
-        return H5Tcopy(H5T_NATIVE_UINT64);
-    case HF_HDF5_TEXT:
-        return make_string(H5T_VARIABLE);
-    case HF_HDF5_CHARS:
-        return make_string((size_t)length);
-    default:
-        return make_enum(kind);
-    }
+    const hid_t number[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_INT, H5T_NATIVE_LONG, H5T_NATIVE_UINT64};
+    if (is_enum(kind)) return make_enum(kind);
+    if (kind->class <= HF_HDF5_UINT64) return H5Tcopy(number[kind->class]);
+    return make_string(kind->class == HF_HDF5_TEXT ? H5T_VARIABLE : (size_t)length);
 }
 
 static hid_t array_type(const hf_hdf5_array *a)
@@ -239,10 +215,9 @@ static void absolute_path(hid_t place, const char *name, char path[HF_HDF5_NAME_
 /* Returns true if there is an object at this path. A link in it is not followed, but counts. */
 static bool is_there(hf_hdf5 *io, const char *path)
 {
-    const char *alias_path = path;
     hf_hdf5_alias *alias = io->alias;
     io->alias = NULL;
-    bool is = hf_hdf5_has(io, io->file, alias_path);
+    bool is = hf_hdf5_has(io, io->file, path);
     io->alias = alias;
     return is;
 }
@@ -259,29 +234,16 @@ const char *hf_hdf5_name(hf_hdf5 *io, hid_t place, const char *name, char found[
 
 /* ---- files and groups ---- */
 
-static herr_t close_any(hid_t id)
+void hf_hdf5_close_ids(hf_hdf5 *io, int n, const hid_t *id)
 {
-    switch (H5Iget_type(id)) {
-    case H5I_FILE:
-        return H5Fclose(id);
-    case H5I_GROUP:
-        return H5Gclose(id);
-    case H5I_DATASET:
-        return H5Dclose(id);
-    case H5I_DATASPACE:
-        return H5Sclose(id);
-    case H5I_DATATYPE:
-        return H5Tclose(id);
-    case H5I_ATTR:
-        return H5Aclose(id);
-    default:
-        return H5Pclose(id);
-    }
+    for (int i = 0; i < n; i++)
+        if (id[i] >= 0 && (H5Iget_type(id[i]) == H5I_FILE ? H5Fclose(id[i]) : H5Idec_ref(id[i])) < 0)
+            hf_hdf5_fail(io, "close", -1, NULL);
 }
 
 void hf_hdf5_close(hf_hdf5 *io, hid_t id)
 {
-    if (id >= 0 && close_any(id) < 0) hf_hdf5_fail(io, "close", -1, NULL);
+    hf_hdf5_close_ids(io, 1, &id);
 }
 
 /* Makes properties of a new object. They leave out the creation time, so that equal results have equal bytes. */
@@ -332,8 +294,7 @@ void hf_hdf5_create_file(hf_hdf5 *io, const hf_file_out *file)
     if ((properties = make_properties(H5P_FILE_CREATE)) < 0 || (access = make_access(false)) < 0 ||
         (io->file = H5Fcreate(name, H5F_ACC_TRUNC, properties, access)) < 0)
         hf_hdf5_fail(io, "create", -1, NULL);
-    hf_hdf5_close(io, access);
-    hf_hdf5_close(io, properties);
+    HF_HDF5_CLOSE(io, access, properties);
 }
 
 static void open_file(hf_hdf5 *io, const char *name, unsigned how, bool locks)
@@ -413,9 +374,7 @@ hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const
                    H5Pset_fill_time(properties, H5D_FILL_TIME_NEVER) < 0)) ||
         (data_set = H5Dcreate2(group, a->name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT)) < 0)
         hf_hdf5_fail(io, "write", group, a->name);
-    hf_hdf5_close(io, properties);
-    hf_hdf5_close(io, space);
-    hf_hdf5_close(io, type);
+    HF_HDF5_CLOSE(io, properties, space, type);
     hf_hdf5_put_text(io, data_set, ".", "units", a->units);
     hf_hdf5_put_text(io, data_set, ".", "description", a->description);
     return data_set;
@@ -429,8 +388,7 @@ void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const
         if (type < 0 || H5Dwrite(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
             hf_hdf5_fail(io, "write", group, a->name);
     }
-    hf_hdf5_close(io, type);
-    hf_hdf5_close(io, data_set);
+    HF_HDF5_CLOSE(io, type, data_set);
 }
 
 void hf_hdf5_write_list(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_kind *kind, int n, int columns,
@@ -469,9 +427,7 @@ void hf_hdf5_open_data_set(hf_hdf5 *io, hid_t place, const char *name, hf_hdf5_d
 
 void hf_hdf5_close_data_set(hf_hdf5 *io, hf_hdf5_data_set *d)
 {
-    hf_hdf5_close(io, d->type);
-    hf_hdf5_close(io, d->space);
-    hf_hdf5_close(io, d->id);
+    HF_HDF5_CLOSE(io, d->type, d->space, d->id);
 }
 
 /* Selects rows row to row + dims[0] - 1 in the data space of a file. Returns the data space of the values, which the
@@ -610,10 +566,7 @@ void hf_hdf5_write_rows(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, hsize_
         (type = array_type(a)) < 0 || (space = H5Dget_space(data_set)) < 0 ||
         (memory = select_rows(a, row, space)) < 0 || H5Dwrite(data_set, type, memory, space, H5P_DEFAULT, values) < 0)
         hf_hdf5_fail(io, "write", group, a->name);
-    hf_hdf5_close(io, memory);
-    hf_hdf5_close(io, space);
-    hf_hdf5_close(io, type);
-    hf_hdf5_close(io, data_set);
+    HF_HDF5_CLOSE(io, memory, space, type, data_set);
 }
 
 void hf_hdf5_read_rows(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, hsize_t row, void *values)
@@ -634,9 +587,7 @@ static void put_typed(hf_hdf5 *io, hid_t place, const char *name, const char *at
         (id = H5Acreate_by_name(place, name, attribute, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
         H5Awrite(id, type, values) < 0)
         fail_at(io, "write", place, name, attribute);
-    hf_hdf5_close(io, id);
-    hf_hdf5_close(io, space);
-    hf_hdf5_close(io, type);
+    HF_HDF5_CLOSE(io, id, space, type);
 }
 
 void hf_hdf5_copy_attribute(hf_hdf5 *io, const char *from, const char *from_name, const char *to, const char *to_name)
@@ -652,8 +603,7 @@ void hf_hdf5_copy_attribute(hf_hdf5 *io, const char *from, const char *from_name
         hf_hdf5_no_memory(io);
     else if (H5Aread(id, type, values) < 0)
         fail_at(io, "read", io->file, from, from_name);
-    hf_hdf5_close(io, space);
-    hf_hdf5_close(io, id);
+    HF_HDF5_CLOSE(io, space, id);
     if (io->status == HF_OK)
         put_typed(io, io->file, to, to_name, type, n > 1 ? (hsize_t)n : 0, values);
     else
@@ -729,10 +679,7 @@ void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribu
         ((char *)value)[length] = '\0';
     else if (is_enum(kind) && !hf_hdf5_are_known(kind, value, 1))
         damaged_at(io, place, name, attribute, "holds a value that has no word");
-    hf_hdf5_close(io, type);
-    hf_hdf5_close(io, space);
-    hf_hdf5_close(io, stored);
-    hf_hdf5_close(io, id);
+    HF_HDF5_CLOSE(io, type, space, stored, id);
 }
 
 bool hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute)
@@ -746,7 +693,6 @@ bool hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *a
         fail_at(io, "read", place, name, attribute);
     else
         has = is_of_kind(stored, HF_KIND_CHARS);
-    hf_hdf5_close(io, stored);
-    hf_hdf5_close(io, id);
+    HF_HDF5_CLOSE(io, stored, id);
     return has;
 }

@@ -146,8 +146,11 @@ bool hf_hdf5_look_at_file(hf_hdf5 *io, const char *name);
 /* Returns the name of an object below `place` in this file: `name`, or what the alias says, written into found[]. */
 const char *hf_hdf5_name(hf_hdf5 *io, hid_t place, const char *name, char found[HF_HDF5_NAME_SIZE]);
 
-/* Closes an id of any type; also after a failure. A negative id is ignored. */
+/* Closes ids of any type; also after a failure. Negative ids are ignored. */
 void hf_hdf5_close(hf_hdf5 *io, hid_t id);
+void hf_hdf5_close_ids(hf_hdf5 *io, int n, const hid_t *id);
+#define HF_HDF5_CLOSE(io, ...)                                                                                         \
+    hf_hdf5_close_ids(io, (int)(sizeof((const hid_t[]){__VA_ARGS__}) / sizeof(hid_t)), (const hid_t[]){__VA_ARGS__})
 
 hid_t hf_hdf5_make_group(hf_hdf5 *io, const char *path); /* makes the group, or opens it if it exists */
 hid_t hf_hdf5_open_group(hf_hdf5 *io, const char *path);

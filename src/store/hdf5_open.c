@@ -114,9 +114,7 @@ static void check_storage(hf_hdf5 *io, hid_t place, const char *name, hid_t data
         if (bytes > 0 && bytes / pack > H5Dget_storage_size(data_set))
             hf_hdf5_damaged(io, place, name, "has larger dimensions than there are values");
     }
-    hf_hdf5_close(io, how);
-    hf_hdf5_close(io, type);
-    hf_hdf5_close(io, space);
+    HF_HDF5_CLOSE(io, how, type, space);
 }
 
 /* ---- crashes ---- */

@@ -208,14 +208,12 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
     HF_TRY(tried);
     if (hf_store_identify(settings, scene, truss, now) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, &said);
     hf_hdf5_get(&io, io.file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     hf_hdf5_get(&io, io.file, "/", "identity", HF_KIND_CHARS, then, sizeof then);
     if (io.status == HF_OK && strcmp(now, then) != 0) tell_difference(&io, settings, words, sizeof words);
     bool keeps = hf_store_keeps_earlier(&io);
-    hf_hdf5_close_file(&io);
-    hf_hdf5_unlock(HF_OK);
+    hf_store_close_result(&io);
     if (io.status != HF_OK && !io.is_damaged && said.text) return pass_on(&said, io.status, messages);
     bool is_cut = said.text && strstr(said.text, ": cannot open: truncated file");
     hf_messages_free(&said);
@@ -259,13 +257,11 @@ hf_status hf_store_look_before(const char *path, hf_earlier *earlier, hf_message
     if (tried != HF_EXISTS) HF_TRY(tried);
     *earlier = HF_EARLIER_UNREAD;
     if (tried == HF_EXISTS) return HF_OK;
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, &said);
     hf_hdf5_get(&io, io.file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     bool keeps = hf_store_keeps_earlier(&io), is_read = io.status == HF_OK;
     if (keeps) hf_hdf5_get(&io, io.file, "/", "identity", HF_KIND_CHARS, identity, sizeof identity);
-    hf_hdf5_close_file(&io);
-    hf_hdf5_unlock(HF_OK);
+    hf_store_close_result(&io);
     if (!is_read && !io.is_damaged && said.text) return pass_on(&said, io.status, messages);
     hf_messages_free(&said);
     if (is_read && finished && keeps && hf_journal_is_of(path, identity)) hf_store_file_forget_earlier(path);

@@ -42,6 +42,7 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
 {
     hf_hdf5 io = {.path = path, .messages = messages, .status = HF_OK, .file = -1};
     int version = 0;
+    hf_hdf5_lock();
     hf_hdf5_open_file(&io, path);
     if (io.status != HF_OK) return io;
     if (!is_ours(&io, &io.is_damaged))
@@ -55,6 +56,12 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
     }
     note_version(&io);
     return io;
+}
+
+hf_status hf_store_close_result(hf_hdf5 *io)
+{
+    hf_hdf5_close_file(io);
+    return hf_hdf5_unlock(io->status);
 }
 
 /* ---- summary ---- */
@@ -83,7 +90,6 @@ hf_status hf_store_fail_damaged(const char *path, hf_messages *messages)
 
 static hf_status read_summary(const char *path, hf_summary *summary, bool *is_damaged, hf_messages *messages)
 {
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *summary = (hf_summary){0};
     if (io.status == HF_OK && hf_hdf5_has(&io, io.file, "points"))
@@ -100,10 +106,10 @@ static hf_status read_summary(const char *path, hf_summary *summary, bool *is_da
     hf_layout_get_tolerance(&io, summary);
     if (io.status == HF_OK && ((int)summary->search.solver < 0 || summary->search.solver > HF_SOLVER_FIXED_POINT))
         hf_hdf5_damaged(&io, io.file, "/search", "names a solver that there is not");
-    hf_hdf5_close_file(&io);
+    hf_store_close_result(&io);
     *is_damaged = io.is_damaged;
     if (io.status != HF_OK) hf_summary_free(summary);
-    return hf_hdf5_unlock(io.status);
+    return io.status;
 }
 
 hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messages *messages)
@@ -124,29 +130,27 @@ hf_status hf_store_read_front(const char *path, hf_front *front, char **variable
 {
     *front = (hf_front){.minimised = -1, .knee = -1};
     *variable = NULL;
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/front"))
         io.status = hf_error(messages, HF_IO, "%s: this run has no front: its case has no optimize.front", path);
     if (io.status == HF_OK) hf_layout_read_front(&io, front, variable, variable_size);
-    hf_hdf5_close_file(&io);
+    hf_store_close_result(&io);
     if (io.status != HF_OK) {
         hf_front_free(front);
         free(*variable);
         *variable = NULL;
     }
-    return hf_hdf5_unlock(io.status);
+    return io.status;
 }
 
 hf_status hf_store_read_pattern(const char *path, hf_stage stage, hf_pattern_table *table, hf_messages *messages)
 {
     *table = (hf_pattern_table){0};
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     if (io.status == HF_OK) hf_layout_read_pattern(&io, (int)stage, table);
-    hf_hdf5_close_file(&io);
+    hf_store_close_result(&io);
     if (io.status != HF_OK) hf_pattern_table_free(table);
-    return hf_hdf5_unlock(io.status);
+    return io.status;
 }
 
 /* ---- scene ---- */
@@ -210,7 +214,6 @@ static void read_facets(hf_hdf5 *io, hid_t group, hf_scene *s)
 
 hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages)
 {
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *scene = (hf_scene){0};
     hid_t group = hf_hdf5_open_group(&io, "/scene");
@@ -227,9 +230,9 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
     read_sets(&io, group, scene);
     read_facets(&io, group, scene);
     hf_hdf5_close(&io, group);
-    hf_hdf5_close_file(&io);
+    hf_store_close_result(&io);
     if (io.status != HF_OK) hf_scene_free(scene);
-    return hf_hdf5_unlock(io.status);
+    return io.status;
 }
 
 /* ---- shape ---- */
@@ -259,7 +262,6 @@ hf_stage hf_store_result_stage(const hf_summary *s)
 
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages)
 {
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *shape = (hf_shape){0};
     char position[32] = "";
@@ -271,9 +273,9 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
             hf_error(messages, HF_IO, "%s: has no %s shape: that stage did not run, or found no feasible design", path,
                      hf_stage_word[stage]);
     read_shape(&io, hf_stage_group[stage], shape);
-    hf_hdf5_close_file(&io);
+    hf_store_close_result(&io);
     if (io.status != HF_OK) hf_shape_free(shape);
-    return hf_hdf5_unlock(io.status);
+    return io.status;
 }
 
 /* Returns true if this part of a load case exists; if not, io has the error. Writes the path of the load case into
@@ -293,13 +295,12 @@ static bool has_state(hf_hdf5 *io, const char *name, const char *part, char grou
 hf_status hf_store_read_load_case(const char *path, const char *name, hf_shape *shape, hf_messages *messages)
 {
     char group[HF_LAYOUT_LOAD_CASE_SIZE];
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *shape = (hf_shape){0};
     if (has_state(&io, name, "position_m", group)) read_shape(&io, group, shape);
-    hf_hdf5_close_file(&io);
+    hf_store_close_result(&io);
     if (io.status != HF_OK) hf_shape_free(shape);
-    return hf_hdf5_unlock(io.status);
+    return io.status;
 }
 
 void hf_shape_free(hf_shape *shape)
@@ -314,7 +315,6 @@ hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_stat
 {
     *truss = (hf_truss){0};
     *state = (hf_carrier_state){0};
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/truss") && io.status == HF_OK)
         io.status = hf_error(messages, HF_IO, "%s: has no truss: its case has no truss section", path);
@@ -323,12 +323,12 @@ hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_stat
             hf_error(messages, HF_IO,
                      "%s: is unfinished, and its truss is stored at the end of the run; resume the run first", path);
     if (io.status == HF_OK) hf_layout_read_truss(&io, truss, state);
-    hf_hdf5_close_file(&io);
+    hf_store_close_result(&io);
     if (io.status != HF_OK) {
         hf_truss_free(truss);
         hf_carrier_state_free(state);
     }
-    return hf_hdf5_unlock(io.status);
+    return io.status;
 }
 
 hf_status hf_store_read_load_case_truss(const char *path, const char *name, const hf_truss *truss,
@@ -336,7 +336,6 @@ hf_status hf_store_read_load_case_truss(const char *path, const char *name, cons
 {
     char group[HF_LAYOUT_LOAD_CASE_SIZE];
     *state = (hf_carrier_state){0};
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     if (has_state(&io, name, "truss", group)) {
         strncat(group, "/truss", sizeof group - strlen(group) - 1);
@@ -344,9 +343,9 @@ hf_status hf_store_read_load_case_truss(const char *path, const char *name, cons
         hf_layout_read_truss_state(&io, id, truss, state);
         hf_hdf5_close(&io, id);
     }
-    hf_hdf5_close_file(&io);
+    hf_store_close_result(&io);
     if (io.status != HF_OK) hf_carrier_state_free(state);
-    return hf_hdf5_unlock(io.status);
+    return io.status;
 }
 
 /* ---- the stored case ---- */
@@ -403,11 +402,9 @@ int hf_store_case_differences(const char *path, const hf_case *settings, char *t
     hf_messages unwanted = {0};
     *text = '\0';
     if (!then) return 0;
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, &unwanted);
     bool is_known = io.status == HF_OK && hf_store_parse_case(&io, settings->path, then);
-    hf_hdf5_close_file(&io);
-    is_known = hf_hdf5_unlock(io.status) == HF_OK && is_known;
+    is_known = hf_store_close_result(&io) == HF_OK && is_known;
     int n = is_known ? hf_config_differences(then, settings, text, size) : 0;
     hf_case_free(then);
     free(then);
@@ -423,7 +420,6 @@ hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf
                                           {"/", "version"},      {"/", "git_describe"}, {"/", "compiler"},
                                           {"/", "build_flags"},  {"/", "lapack"},       {"/", "gsl_version"},
                                           {"/", "hdf5_version"}, {"/", "rng"},          {"/case", "sha256"}};
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     size_t used = 0;
     *text = '\0';
@@ -436,6 +432,5 @@ hf_status hf_store_read_provenance(const char *path, char *text, size_t size, hf
         if (n < 0 || (size_t)n >= size - used) break; /* the text ends where its room ends */
         used += (size_t)n;
     }
-    hf_hdf5_close_file(&io);
-    return hf_hdf5_unlock(io.status);
+    return hf_store_close_result(&io);
 }

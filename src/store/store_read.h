@@ -22,8 +22,10 @@ void hf_store_read_case(hf_hdf5 *io, hf_case *settings);
 hf_status hf_store_read_finished(const char *path, hf_summary *summary, hf_messages *messages);
 hf_status hf_store_fail_damaged(const char *path, hf_messages *messages);
 
-/* Opens a result file of hifdm to read, under the lock of HDF5. The status of the returned hf_hdf5 says whether it is
- * open. The caller closes it in any case. */
+/* hf_store_open_result takes the lock of HDF5 and opens a result file of hifdm to read. The status of the returned
+ * hf_hdf5 says whether it is open. hf_store_close_result follows in any case; it closes the file, releases the lock and
+ * returns the status. */
 hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages);
+hf_status hf_store_close_result(hf_hdf5 *io);
 
 #endif

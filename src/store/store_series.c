@@ -1,8 +1,6 @@
 /* Implements store_series.h. Sections: numbers, texts, names, links. */
 #include "store/store_series.h"
 
-#include "base/arena.h"
-
 #include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
@@ -15,62 +13,47 @@
 
 /* ---- numbers ---- */
 
-/* Returns n of a data set of numbers [n] or [n][columns]; columns = 0: any number. Sets series->columns, and *type to
- * the type to read. HDF5 converts every kind of number to double, but not enumerations. */
-static int measure_series(hf_hdf5 *io, const char *name, hid_t data_set, int columns, hf_series *series, hid_t *type)
-{
-    hsize_t dims[H5S_MAX_RANK] = {0};
-    hid_t space = H5Dget_space(data_set), stored = H5Dget_type(data_set);
-    int rank = space >= 0 ? H5Sget_simple_extent_dims(space, dims, NULL) : -1;
-    H5T_class_t class = stored >= 0 ? H5Tget_class(stored) : H5T_NO_CLASS;
-    series->columns = rank == 2 && dims[1] < INT_MAX ? (int)dims[1] : 1;
-    *type = class == H5T_ENUM ? H5T_NATIVE_SCHAR : H5T_NATIVE_DOUBLE;
-    if (rank < 0 || class == H5T_NO_CLASS)
-        hf_hdf5_fail(io, "read", io->file, name);
-    else if (class != H5T_INTEGER && class != H5T_FLOAT && (class != H5T_ENUM || H5Tget_size(stored) != 1))
-        hf_hdf5_damaged(io, io->file, name, "is of another type");
-    else if (rank < 1 || rank > 2 || (columns && columns != series->columns) || dims[0] > HF_LAYOUT_COUNT_MAX)
-        hf_hdf5_damaged(io, io->file, name, "has other dimensions than a report reads");
-    hf_hdf5_close(io, stored);
-    hf_hdf5_close(io, space);
-    return io->status == HF_OK ? (int)dims[0] : 0;
-}
-
+/* HDF5 converts every kind of number to double, but not enumerations. */
 static void read_series(hf_hdf5 *io, const char *name, int columns, hf_series *series)
 {
-    hid_t data_set = hf_hdf5_open(io, io->file, name, H5I_DATASET), type = -1;
-    hf_arena arena = {0};
-    if (io->status != HF_OK) return;
-    int n = measure_series(io, name, data_set, columns, series, &type);
-    size_t count = (size_t)n * (size_t)series->columns;
-    double *value = NULL;
-    if (n > 0 && HF_ARENA_MAKE(&arena, value = hf_arena_take(&arena, count, sizeof(double))) != HF_OK)
-        hf_hdf5_no_memory(io);
-    if (n > 0 && io->status == HF_OK) {
-        *series = (hf_series){n, series->columns, value, arena.block};
-        if (H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, series->value) < 0)
+    hf_hdf5_data_set d;
+    hf_hdf5_open_data_set(io, io->file, name, &d);
+    H5T_class_t class = d.type >= 0 ? H5Tget_class(d.type) : H5T_NO_CLASS;
+    bool is_enum = class == H5T_ENUM;
+    int n_column = d.rank == 2 && d.dims[1] < INT_MAX ? (int)d.dims[1] : 1;
+    if (io->status == HF_OK && class != H5T_INTEGER && class != H5T_FLOAT && !(is_enum && H5Tget_size(d.type) == 1))
+        hf_hdf5_damaged(io, io->file, name, "is of another type");
+    if (io->status == HF_OK &&
+        (d.rank < 1 || d.rank > 2 || (columns && columns != n_column) || d.dims[0] > HF_LAYOUT_COUNT_MAX))
+        hf_hdf5_damaged(io, io->file, name, "has other dimensions than a report reads");
+    size_t count = io->status == HF_OK ? (size_t)d.dims[0] * (size_t)n_column : 0;
+    series->columns = n_column;
+    if (count > 0 && !(series->value = calloc(count, sizeof *series->value))) hf_hdf5_no_memory(io);
+    if (count > 0 && io->status == HF_OK) {
+        series->n = (int)d.dims[0];
+        if (H5Dread(d.id, is_enum ? H5T_NATIVE_SCHAR : H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                    series->value) < 0)
             hf_hdf5_fail(io, "read", io->file, name);
-        for (size_t i = type == H5T_NATIVE_SCHAR ? count : 0; i-- > 0;) /* in place, from the end */
+        for (size_t i = is_enum ? count : 0; i-- > 0;) /* in place, from the end */
             series->value[i] = ((const signed char *)series->value)[i];
     }
-    hf_hdf5_close(io, data_set);
+    hf_hdf5_close_data_set(io, &d);
 }
 
 hf_status hf_store_read_series(const char *path, const char *name, int columns, hf_series *series,
                                hf_messages *messages)
 {
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *series = (hf_series){0};
     if (hf_hdf5_has(&io, io.file, name)) read_series(&io, name, columns, series);
-    hf_hdf5_close_file(&io);
+    hf_store_close_result(&io);
     if (io.status != HF_OK) hf_series_free(series);
-    return hf_hdf5_unlock(io.status);
+    return io.status;
 }
 
 void hf_series_free(hf_series *series)
 {
-    hf_arena_free(&(hf_arena){.block = series->block});
+    free(series->value);
     *series = (hf_series){0};
 }
 
@@ -83,7 +66,7 @@ const char *hf_texts_at(const hf_texts *texts, int i)
 
 void hf_texts_free(hf_texts *texts)
 {
-    hf_arena_free(&(hf_arena){.block = texts->block});
+    free(texts->text);
     *texts = (hf_texts){0};
 }
 
@@ -91,20 +74,17 @@ void hf_texts_free(hf_texts *texts)
  * are written. */
 static bool allocate(hf_hdf5 *io, int n, size_t length, hf_texts *texts)
 {
-    hf_arena arena = {0};
-    char *chars = NULL;
-    if (io->status == HF_OK && HF_ARENA_MAKE(&arena, chars = hf_arena_take(&arena, (size_t)n, length)) != HF_OK)
-        hf_hdf5_no_memory(io);
-    if (io->status != HF_OK) return false;
-    *texts = (hf_texts){n, length, chars, arena.block};
-    return true;
+    char *text = io->status == HF_OK ? calloc((size_t)n, length) : NULL;
+    if (!text) hf_hdf5_no_memory(io);
+    if (text) *texts = (hf_texts){n, length, text};
+    return text != NULL;
 }
 
 static hf_status finish(hf_hdf5 *io, hf_texts *texts)
 {
-    hf_hdf5_close_file(io);
+    hf_store_close_result(io);
     if (io->status != HF_OK) hf_texts_free(texts);
-    return hf_hdf5_unlock(io->status);
+    return io->status;
 }
 
 #define DIGITS_SIZE 24 /* bytes for 64 bits in decimal digits and the NUL; a multiple of 8 */
@@ -124,50 +104,31 @@ static void read_digits(hf_hdf5 *io, const char *name, hid_t data_set, int n, hf
     }
 }
 
-static void read_texts(hf_hdf5 *io, const char *name, hid_t data_set, hf_texts *texts)
+static void read_texts(hf_hdf5 *io, const char *name, hf_texts *texts)
 {
-    hsize_t n = 0;
-    hid_t space = H5Dget_space(data_set), stored = H5Dget_type(data_set), type = -1;
-    int rank = space >= 0 ? H5Sget_simple_extent_ndims(space) : -1;
-    size_t length = stored >= 0 ? H5Tget_size(stored) : 0;
-    bool is_fixed = stored >= 0 && H5Tget_class(stored) == H5T_STRING && H5Tis_variable_str(stored) == 0;
-    bool is_uint64 =
-        length == sizeof(uint64_t) && H5Tget_class(stored) == H5T_INTEGER && H5Tget_sign(stored) == H5T_SGN_NONE;
-    if (rank < 0 || length == 0) {
-        hf_hdf5_fail(io, "read", io->file, name);
-        n = 0;
-    } else if (rank == 0 && is_fixed) {
-        n = 1;
-    } else if (!(rank == 1 && (is_fixed || is_uint64) && H5Sget_simple_extent_dims(space, &n, NULL) == 1)) {
-        n = 0;
-    }
-    if (n > 0) {
+    hf_hdf5_data_set d;
+    hf_hdf5_open_data_set(io, io->file, name, &d);
+    if (io->status == HF_OK && d.rank <= 1) {
+        size_t length = H5Tget_size(d.type);
+        bool is_fixed = H5Tget_class(d.type) == H5T_STRING && H5Tis_variable_str(d.type) == 0;
+        bool is_uint64 = d.rank == 1 && length == sizeof(uint64_t) && H5Tget_class(d.type) == H5T_INTEGER &&
+                         H5Tget_sign(d.type) == H5T_SGN_NONE;
+        hsize_t n = !is_fixed && !is_uint64 ? 0 : d.rank == 0 ? 1 : d.dims[0];
         if (n > HF_LAYOUT_COUNT_MAX)
             hf_hdf5_damaged(io, io->file, name, "is too large");
-        else if (is_uint64)
-            read_digits(io, name, data_set, (int)n, texts);
-        else if (allocate(io, (int)n, length + 1, texts)) {
-            type = H5Tcopy(H5T_C_S1); /* one byte longer than stored, for the NUL */
-            if (type < 0 || H5Tset_size(type, length + 1) < 0 || H5Tset_cset(type, H5Tget_cset(stored)) < 0 ||
-                H5Dread(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts->text) < 0)
-                hf_hdf5_fail(io, "read", io->file, name);
-        }
+        else if (n > 0 && is_uint64)
+            read_digits(io, name, d.id, (int)n, texts);
+        else if (n > 0 && allocate(io, (int)n, length + 1, texts))
+            hf_hdf5_take_strings(io, io->file, name, &d, length + 1, texts->text);
     }
-    hf_hdf5_close(io, type);
-    hf_hdf5_close(io, stored);
-    hf_hdf5_close(io, space);
+    hf_hdf5_close_data_set(io, &d);
 }
 
 hf_status hf_store_read_texts(const char *path, const char *name, hf_texts *texts, hf_messages *messages)
 {
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *texts = (hf_texts){0};
-    if (hf_hdf5_has(&io, io.file, name)) {
-        hid_t data_set = hf_hdf5_open(&io, io.file, name, H5I_DATASET);
-        if (io.status == HF_OK) read_texts(&io, name, data_set, texts);
-        hf_hdf5_close(&io, data_set);
-    }
+    if (hf_hdf5_has(&io, io.file, name)) read_texts(&io, name, texts);
     return finish(&io, texts);
 }
 
@@ -216,7 +177,6 @@ static void read_names(hf_hdf5 *io, const char *name, hid_t group, hf_texts *nam
 
 hf_status hf_store_read_names(const char *path, const char *group, hf_texts *names, hf_messages *messages)
 {
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *names = (hf_texts){0};
     if (hf_hdf5_has(&io, io.file, group)) {
@@ -252,7 +212,6 @@ static void read_link(hf_hdf5 *io, hid_t group, const char *name, char *file)
 hf_status hf_store_read_links(const char *path, const char *group, const hf_texts *names, hf_texts *files,
                               hf_messages *messages)
 {
-    hf_hdf5_lock();
     hf_hdf5 io = hf_store_open_result(path, messages);
     *files = (hf_texts){0};
     if (names->n > 0 && hf_hdf5_has(&io, io.file, group) && allocate(&io, names->n, FILE_MAX, files)) {

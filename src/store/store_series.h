@@ -9,8 +9,7 @@
 typedef struct {
     int n; /* rows; 0 = there is no data set of this name, or it is empty */
     int columns;
-    double *value; /* [n][columns] */
-    void *block;
+    double *value; /* [n][columns], owned */
 } hf_series;
 
 /* Reads a data set of numbers. name: from the root, such as "/form/history/psi_m". columns: expected number of columns,
@@ -24,8 +23,7 @@ void hf_series_free(hf_series *series);
 typedef struct {
     int n;
     size_t length; /* bytes of each row, NUL included */
-    char *text;    /* [n][length] */
-    void *block;
+    char *text;    /* [n][length], owned */
 } hf_texts;
 
 const char *hf_texts_at(const hf_texts *texts, int i);
