@@ -336,13 +336,15 @@ hf_hdf5_array hf_layout_of_variables(const char *name, bool has_rows, int rank, 
     size_t i = 0;
     while (strcmp(meaning[i][0], name))
         i++;
-    hf_hdf5_array array = {.name = name,
-                           .kind = HF_KIND_REAL,
-                           .rank = rank,
-                           .units = has_rows ? "" : "N",
-                           .description =
-                               has_rows ? "of each design variable, in the unit of what it varies" : meaning[i][1]};
-    for (int d = 0; d < rank; d++)
-        array.dims[d] = dims[d];
+    const char *units = has_rows ? "" : "N";
+    const char *description = has_rows ? "of each design variable, in the unit of what it varies" : meaning[i][1];
+    hf_hdf5_array array = {name, HF_KIND_REAL, rank, {0}, units, description};
+    memcpy(array.dims, dims, (size_t)rank * sizeof *dims);
     return array;
+}
+
+void hf_layout_write_variables(hf_hdf5 *io, hid_t group, const char *name, bool has_rows, int n, const double *values)
+{
+    const hf_hdf5_array array = hf_layout_of_variables(name, has_rows, 1, &(hsize_t){(hsize_t)n});
+    hf_hdf5_write_array(io, group, &array, values);
 }

@@ -222,11 +222,17 @@ void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary);
 void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carrier_state *state);
 void hf_layout_read_truss(hf_hdf5 *io, hf_truss *truss, hf_carrier_state *state);
 
+/* Makes the group `path` of a truss with its groups node and member, and returns it. */
+hid_t hf_layout_make_truss(hf_hdf5 *io, const char *path);
+
 /* Reads the displacements and forces alone, from the group `group`. If it has none, *state does not change. */
 void hf_layout_read_truss_state(hf_hdf5 *io, hid_t group, const hf_truss *truss, hf_carrier_state *state);
 
 /* Describes the data set with one value per design variable. name: design, initial, lower or upper. Their unit is N;
  * with has_rows each design variable of optimize.variables has its own unit. dims [rank]: the dimensions. */
 hf_hdf5_array hf_layout_of_variables(const char *name, bool has_rows, int rank, const hsize_t *dims);
+
+/* Writes this data set for n design variables. */
+void hf_layout_write_variables(hf_hdf5 *io, hid_t group, const char *name, bool has_rows, int n, const double *values);
 
 #endif

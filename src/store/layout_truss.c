@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 /* ---- supports ---- */
@@ -30,6 +31,17 @@ static void pass_fixed(hf_hdf5 *io, bool writes, hid_t group, const hf_truss *t)
 
 /* ---- writing ---- */
 
+hid_t hf_layout_make_truss(hf_hdf5 *io, const char *path)
+{
+    char part[HF_LAYOUT_LOAD_CASE_SIZE + 8];
+    hid_t group = hf_hdf5_make_group(io, path);
+    for (int i = 0; i < 2; i++) {
+        snprintf(part, sizeof part, "%s/%s", path, i ? "member" : "node");
+        hf_hdf5_close(io, hf_hdf5_make_group(io, part));
+    }
+    return group;
+}
+
 void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carrier_state *state)
 {
     static const hf_layout_column attachment_column[] = {
@@ -39,9 +51,7 @@ void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carr
          offsetof(hf_carrier, truss_node)}};
     static const hf_layout_columns attachment = {HF_LAYOUT_COLUMNS(attachment_column)};
     const hf_truss *t = &carrier->truss;
-    hid_t group = hf_hdf5_make_group(io, "/truss");
-    hf_hdf5_close(io, hf_hdf5_make_group(io, "/truss/node"));
-    hf_hdf5_close(io, hf_hdf5_make_group(io, "/truss/member"));
+    hid_t group = hf_layout_make_truss(io, "/truss");
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/truss/attachment"));
     hf_hdf5_write_ids(io, group, "node/id", t->node_id, t->n_node, "name of the node");
     hf_hdf5_write_ids(io, group, "member/id", t->member_id, t->n_member, "name of the member");

@@ -22,7 +22,7 @@ typedef struct {
     const hf_study *study;
     const hf_points *points;
     hf_file_out out;
-    void *room; /* one column of any kind except texts: [n_point][2] of 8 bytes */
+    void *room; /* one column of any kind, of texts their pointers: [n_point][2] of 8 bytes */
 } merger;
 
 /* ---- columns ---- */
@@ -30,38 +30,13 @@ typedef struct {
 static void write_column(merger *m, hid_t group, const char *name, const hf_hdf5_kind *kind, int columns,
                          const char *units, const char *description)
 {
-    hf_hdf5_array array = {name,  kind,       columns > 1 ? 2 : 1, {(hsize_t)m->points->n_point, (hsize_t)columns},
-                           units, description};
-    hf_hdf5_write_array(&m->io, group, &array, m->room);
+    hf_hdf5_write_list(&m->io, group, name, kind, m->points->n_point, columns, units, description, m->room);
 }
 
-/* Writes a column of texts, each padded to the length of the longest. */
-static void write_texts(merger *m, hid_t group, const char *name, const char *(*text_of)(const merger *, int, int),
-                        int axis, const char *description)
+/* Writes a column of the texts whose pointers are in m->room. */
+static void write_texts(merger *m, hid_t group, const char *name, const char *description)
 {
-    size_t length = 1, n = (size_t)m->points->n_point;
-    for (size_t i = 0; i < n; i++)
-        length = strlen(text_of(m, (int)i, axis)) > length ? strlen(text_of(m, (int)i, axis)) : length;
-    char *chars = calloc(n, length);
-    hf_hdf5_array array = {name, HF_KIND_CHARS, 1, {(hsize_t)n, length}, "", description};
-    if (!chars && m->io.status == HF_OK)
-        m->io.status = hf_error(m->io.messages, HF_NO_MEMORY, "%s: out of memory", m->io.path);
-    for (size_t i = 0; chars && i < n; i++)
-        memcpy(chars + i * length, text_of(m, (int)i, axis), strlen(text_of(m, (int)i, axis)));
-    if (chars) hf_hdf5_write_array(&m->io, group, &array, chars);
-    free(chars);
-}
-
-static const char *id_of(const merger *m, int i, int axis)
-{
-    (void)axis;
-    return m->study->id[i];
-}
-
-static const char *reason_of(const merger *m, int i, int axis)
-{
-    (void)axis;
-    return m->points->point[i].reason;
+    hf_hdf5_write_ids(&m->io, group, name, m->room, m->points->n_point, description);
 }
 
 /* ---- inputs ---- */
@@ -90,13 +65,11 @@ static void write_axis(merger *m, hid_t group, int i_axis)
                                : type == HF_FIELD_UINT64                           ? HF_KIND_UINT64
                                : type == HF_FIELD_INT || type == HF_FIELD_INT_PAIR ? HF_KIND_INT
                                                                                    : NULL;
-    if (!kind) {
-        write_texts(m, group, axis->key.path, value_of, i_axis, f->help);
-        return;
-    }
     for (int i = 0; i < m->points->n_point; i++) {
         const char *text = value_of(m, i, i_axis);
-        if (type == HF_FIELD_DOUBLE)
+        if (!kind)
+            ((const char **)m->room)[i] = text;
+        else if (type == HF_FIELD_DOUBLE)
             hf_text_double(text, (double *)m->room + i);
         else if (type == HF_FIELD_UINT64)
             hf_text_uint64(text, (uint64_t *)m->room + i);
@@ -105,7 +78,10 @@ static void write_axis(merger *m, hid_t group, int i_axis)
         else
             sscanf(text, "[%d ,%d", (int *)m->room + 2 * i, (int *)m->room + 2 * i + 1);
     }
-    write_column(m, group, axis->key.path, kind, type == HF_FIELD_INT_PAIR ? 2 : 1, f->unit, f->help);
+    if (!kind)
+        write_texts(m, group, axis->key.path, f->help);
+    else
+        write_column(m, group, axis->key.path, kind, type == HF_FIELD_INT_PAIR ? 2 : 0, f->unit, f->help);
 }
 
 /* ---- outputs ---- */
@@ -148,7 +124,7 @@ static void write_output(merger *m, hid_t group, int column)
     snprintf(name, sizeof name, "%s%s%s", number.object + 1, number.object[1] ? "/" : "", number.field->name);
     snprintf(stage, sizeof stage, "/points%s", number.object);
     if (number.object[1]) hf_hdf5_close(&m->io, hf_hdf5_make_group(&m->io, stage));
-    write_column(m, group, name, kind, 1, hf_ledger_unit(number.field->name), "as in the runs");
+    write_column(m, group, name, kind, 0, hf_ledger_unit(number.field->name), "as in the runs");
 }
 
 /* ---- lists ---- */
@@ -177,7 +153,7 @@ static void write_value(merger *m, hid_t group, int list, const char *value)
     }
     for (int i = 0; i < m->points->n_point; i++)
         ((double *)m->room)[i] = value_in(&m->points->point[i], list, value);
-    write_column(m, group, name, HF_KIND_REAL, 1, hf_ledger_unit(key),
+    write_column(m, group, name, HF_KIND_REAL, 0, hf_ledger_unit(key),
                  dot                              ? "of the load case of the as-built net"
                  : *hf_ledger_list_of[list].begin ? "value of the objective"
                                                   : "of the surface");
@@ -226,20 +202,18 @@ static void write_list(merger *m, int list)
 
 /* ---- points ---- */
 
-static void write_status(merger *m, hid_t group)
-{
-    for (int i = 0; i < m->points->n_point; i++)
-        ((signed char *)m->room)[i] = (signed char)m->points->point[i].status;
-    write_column(m, group, "status", HF_KIND_STATUS, 1, "", "ok, what went wrong, or not_evaluated: not finished");
-}
-
 static void write_points(merger *m)
 {
     hid_t group = hf_hdf5_make_group(&m->io, "/points");
-    write_texts(m, group, "id", id_of, 0,
-                "names the point by what it sets; its link in /runs, and how its result file begins");
-    write_status(m, group);
-    write_texts(m, group, "reason", reason_of, 0, "what went wrong, if anything");
+    for (int i = 0; i < m->points->n_point; i++)
+        ((const char **)m->room)[i] = m->study->id[i];
+    write_texts(m, group, "id", "names the point by what it sets; its link in /runs, and how its result file begins");
+    for (int i = 0; i < m->points->n_point; i++)
+        ((signed char *)m->room)[i] = (signed char)m->points->point[i].status;
+    write_column(m, group, "status", HF_KIND_STATUS, 0, "", "ok, what went wrong, or not_evaluated: not finished");
+    for (int i = 0; i < m->points->n_point; i++)
+        ((const char **)m->room)[i] = m->points->point[i].reason;
+    write_texts(m, group, "reason", "what went wrong, if anything");
     hid_t input = hf_hdf5_make_group(&m->io, "/points/input");
     for (int a = 0; a < m->study->n_axis; a++)
         write_axis(m, input, a);
@@ -328,10 +302,7 @@ static void write_all(merger *m, const char *folder)
     hid_t group = hf_hdf5_make_group(&m->io, "/study");
     write_text_file(m, group, "text", s->path, "the study file");
     write_text_file(m, group, "base_text", s->base, "the base case");
-    if (*s->title)
-        hf_hdf5_write_array(&m->io, group,
-                            &(hf_hdf5_array){"title", HF_KIND_CHARS, 1, {1, strlen(s->title)}, "", "of the study"},
-                            s->title);
+    if (*s->title) hf_hdf5_write_ids(&m->io, group, "title", (const char *const[]){s->title}, 1, "of the study");
     hf_hdf5_close(&m->io, group);
     write_points(m);
     write_links(m, folder);

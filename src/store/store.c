@@ -99,62 +99,52 @@ static void put_provenance(hf_store *s, int argc, char *const *argv)
     hf_store_put_time(s, "started_utc");
 }
 
-static void write_case(hf_store *s, const hf_case *settings)
+static void write_text(hf_hdf5 *io, hid_t group, const char *name, const char *description, const char *text)
 {
-    const char *overrides = settings->overrides ? settings->overrides : "";
-    hf_hdf5_array text = {"text", HF_KIND_CHARS, 0, {strlen(settings->text)}, "", "the case file"};
-    hf_hdf5_array set = {"overrides", HF_KIND_CHARS, 0, {strlen(overrides)}, "", "the --set arguments, a line each"};
-    for (int i = 0; i < 2; i++) /* HDF5 has no type of 0 bytes; the NUL serves as padding */
-        if (!(i ? &set : &text)->dims[0]) (i ? &set : &text)->dims[0] = 1;
-    hid_t group = hf_hdf5_make_group(&s->f.io, "/case");
-    hf_hdf5_write_array(&s->f.io, group, &text, settings->text);
-    hf_hdf5_write_array(&s->f.io, group, &set, overrides);
-    hf_hdf5_put_chars(&s->f.io, group, ".", "sha256", settings->sha256);
-    if (settings->taken.point) hf_layout_put_taken(&s->f.io, &settings->taken);
-    hf_hdf5_close(&s->f.io, group);
+    size_t length = strlen(text) ? strlen(text) : 1; /* HDF5 has no type of 0 bytes; the NUL serves as padding */
+    hf_hdf5_write_array(io, group, &(hf_hdf5_array){name, HF_KIND_CHARS, 0, {length}, "", description}, text);
 }
 
-static void write_sets(hf_store *s, hid_t group, const hf_scene *scene)
+static void write_case(hf_hdf5 *io, const hf_case *settings)
+{
+    hid_t group = hf_hdf5_make_group(io, "/case");
+    write_text(io, group, "text", "the case file", settings->text);
+    write_text(io, group, "overrides", "the --set arguments, a line each",
+               settings->overrides ? settings->overrides : "");
+    hf_hdf5_put_chars(io, group, ".", "sha256", settings->sha256);
+    if (settings->taken.point) hf_layout_put_taken(io, &settings->taken);
+    hf_hdf5_close(io, group);
+}
+
+static void write_sets(hf_hdf5 *io, hid_t group, const hf_scene *scene)
 {
     if (scene->n_set == 0) return;
-    const hf_hdf5_array start = {"set/start", HF_KIND_INT,
-                                 1,           {(hsize_t)scene->n_set + 1},
-                                 "",          "where the cables of each set begin in `cable`, and the number of all"};
-    const hf_hdf5_array cable = {"set/cable", HF_KIND_INT,
-                                 1,           {(hsize_t)scene->set_start[scene->n_set]},
-                                 "",          "index into /scene/cable, ascending in each set"};
-    hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/scene/set"));
-    hf_hdf5_write_ids(&s->f.io, group, "set/name", scene->set_name, scene->n_set, "name of the set of cables");
-    hf_hdf5_write_array(&s->f.io, group, &start, scene->set_start);
-    hf_hdf5_write_array(&s->f.io, group, &cable, scene->set_cable);
-}
-
-static void write_facets(hf_store *s, hid_t group, const hf_scene *scene)
-{
-    const hf_hdf5_array facet = {"facet", HF_KIND_INT,
-                                 2,       {(hsize_t)scene->n_facet, 4},
-                                 "",      "that the import names: nodes around each, of a triangle the last one twice"};
-    if (scene->n_facet > 0) hf_hdf5_write_array(&s->f.io, group, &facet, scene->facet);
+    hf_hdf5_close(io, hf_hdf5_make_group(io, "/scene/set"));
+    hf_hdf5_write_ids(io, group, "set/name", scene->set_name, scene->n_set, "name of the set of cables");
+    hf_hdf5_write_list(io, group, "set/start", HF_KIND_INT, scene->n_set + 1, 0, "",
+                       "where the cables of each set begin in `cable`, and the number of all", scene->set_start);
+    hf_hdf5_write_list(io, group, "set/cable", HF_KIND_INT, scene->set_start[scene->n_set], 0, "",
+                       "index into /scene/cable, ascending in each set", scene->set_cable);
 }
 
 static void write_scene(hf_store *s, const hf_scene *scene)
 {
-    const hf_hdf5_array length = {
-        "cable/length_m",          HF_KIND_REAL, 1,
-        {(hsize_t)scene->n_cable}, "m",          "length between the target positions of the two nodes"};
-    hid_t group = hf_hdf5_make_group(&s->f.io, "/scene");
-    hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/scene/node"));
-    hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/scene/cable"));
-    hf_hdf5_write_ids(&s->f.io, group, "node/id", scene->node_id, scene->n_node, "name of the node");
-    hf_hdf5_write_ids(&s->f.io, group, "cable/id", scene->cable_id, scene->n_cable, "name of the cable");
-    hf_layout_write_columns(&s->f.io, group, &hf_layout_scene, scene->n_node, scene->n_cable, scene);
+    hf_hdf5 *io = &s->f.io;
+    hid_t group = hf_hdf5_make_group(io, "/scene");
+    HF_HDF5_CLOSE(io, hf_hdf5_make_group(io, "/scene/node"), hf_hdf5_make_group(io, "/scene/cable"));
+    hf_hdf5_write_ids(io, group, "node/id", scene->node_id, scene->n_node, "name of the node");
+    hf_hdf5_write_ids(io, group, "cable/id", scene->cable_id, scene->n_cable, "name of the cable");
+    hf_layout_write_columns(io, group, &hf_layout_scene, scene->n_node, scene->n_cable, scene);
     double *length_m = hf_store_scratch(s, (size_t)scene->n_cable * sizeof *length_m);
     for (int e = 0; length_m && e < scene->n_cable; e++)
         length_m[e] = hf_scene_length_at_target(scene, e);
-    hf_hdf5_write_array(&s->f.io, group, &length, length_m);
-    write_sets(s, group, scene);
-    write_facets(s, group, scene);
-    hf_hdf5_close(&s->f.io, group);
+    hf_hdf5_write_list(io, group, "cable/length_m", HF_KIND_REAL, scene->n_cable, 0, "m",
+                       "length between the target positions of the two nodes", length_m);
+    write_sets(io, group, scene);
+    if (scene->n_facet > 0)
+        hf_hdf5_write_list(io, group, "facet", HF_KIND_INT, scene->n_facet, 4, "",
+                           "that the import names: nodes around each, of a triangle the last one twice", scene->facet);
+    hf_hdf5_close(io, group);
 }
 
 /* ---- beginning ---- */
@@ -188,7 +178,7 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
         hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "identity", s->identity);
         signed char keeps = s->f.earlier != HF_EARLIER_NONE;
         hf_hdf5_put(&s->f.io, s->f.io.file, "/", HF_KEEPS_EARLIER, HF_KIND_FLAG, 0, &keeps);
-        write_case(s, settings);
+        write_case(&s->f.io, settings);
         write_scene(s, scene);
     }
     s->publish_s = hf_clock_s() - begin_s;
@@ -219,11 +209,9 @@ static void write_shape(hf_store *s, hid_t group, const hf_model *m, const hf_wo
  * bits. */
 static void compare_shape(hf_store *s, const hf_model *m, const hf_workspace *w)
 {
-    hf_hdf5_array tension = {.name = "/form/tension_N", .kind = HF_KIND_REAL, .rank = 1};
     size_t bytes = (size_t)m->n_cable * sizeof(double);
     double *stored = hf_store_scratch(s, bytes);
-    tension.dims[0] = (hsize_t)m->n_cable;
-    if (stored) hf_hdf5_read_array(&s->f.io, s->f.io.file, &tension, stored);
+    if (stored) hf_hdf5_read_list(&s->f.io, s->f.io.file, "/form/tension_N", HF_KIND_REAL, m->n_cable, 0, stored);
     if (s->f.io.status != HF_OK || memcmp(stored, w->tension_N, bytes) == 0) return;
     double largest_N = 0, apart_N = 0;
     for (int e = 0; e < m->n_cable; e++) {
@@ -259,55 +247,43 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
         HISTORY(length_error, "", "maximum |l/L*-1| over taut cables of law length")};
 #undef HISTORY
     static const hf_layout_columns columns = {HF_LAYOUT_COLUMNS(history_column)};
-    hf_hdf5_lock();
-    s->f.io.messages = messages;
-    hf_store_file_open(&s->f);
+    hf_hdf5 *io = hf_store_enter(s, messages);
     if (s->is_resumed) {
         compare_shape(s, m, w);
         return hf_hdf5_unlock(hf_store_judge(s));
     }
-    hid_t group = hf_hdf5_make_group(&s->f.io, "/form");
+    hid_t group = hf_hdf5_make_group(io, "/form");
     write_shape(s, group, m, w);
-    hf_hdf5_close(&s->f.io, group);
+    hf_hdf5_close(io, group);
     if (history) {
-        group = hf_hdf5_make_group(&s->f.io, "/form/history");
-        hf_layout_write_columns(&s->f.io, group, &columns, history->n, 0, history);
-        hf_hdf5_close(&s->f.io, group);
+        group = hf_hdf5_make_group(io, "/form/history");
+        hf_layout_write_columns(io, group, &columns, history->n, 0, history);
+        hf_hdf5_close(io, group);
     }
-    if (m->n_attachment) hf_layout_write_coupling(&s->f.io, m, w, history ? &history->coupling : NULL);
-    return hf_hdf5_unlock(s->f.io.status);
+    if (m->n_attachment) hf_layout_write_coupling(io, m, w, history ? &history->coupling : NULL);
+    return hf_hdf5_unlock(io->status);
 }
 
-static void write_design(hf_store *s, hid_t group, const hf_model *m, const double *design)
+/* Removes an object below a group if it exists. */
+static void renew(hf_hdf5 *io, hid_t group, const char *name)
 {
-    hf_hdf5_array array = hf_layout_of_variables("design", m->variable, 1, (const hsize_t[1]){(hsize_t)m->n_variable});
-    hf_hdf5_write_array(&s->f.io, group, &array, design);
-}
-
-/* Removes the shape and the design in the group of a stage. */
-static void renew_shape(hf_store *s, hid_t group)
-{
-    hf_hdf5 *io = &s->f.io;
-    for (int i = 0; i <= hf_layout_shape.n; i++) {
-        const char *name = i < hf_layout_shape.n ? hf_layout_shape.column[i].name : "design";
-        if (hf_hdf5_has(io, group, name) && H5Ldelete(group, name, H5P_DEFAULT) < 0)
-            hf_hdf5_fail(io, "replace", group, name);
-    }
+    if (hf_hdf5_has(io, group, name) && H5Ldelete(group, name, H5P_DEFAULT) < 0)
+        hf_hdf5_fail(io, "replace", group, name);
 }
 
 hf_status hf_store_shape(hf_store *s, hf_stage stage, const hf_model *m, const hf_workspace *w, const double *design,
                          hf_messages *messages)
 {
     if (!s) return HF_OK;
-    hf_hdf5_lock();
-    s->f.io.messages = messages;
-    hf_store_file_open(&s->f);
-    hid_t group = hf_hdf5_make_group(&s->f.io, hf_stage_group[stage]);
-    renew_shape(s, group); /* an interrupted session may have left one */
+    hf_hdf5 *io = hf_store_enter(s, messages);
+    hid_t group = hf_hdf5_make_group(io, hf_stage_group[stage]);
+    for (int i = 0; i < hf_layout_shape.n; i++) /* an interrupted session may have left a shape */
+        renew(io, group, hf_layout_shape.column[i].name);
+    renew(io, group, "design");
     write_shape(s, group, m, w);
-    write_design(s, group, m, design);
-    hf_hdf5_close(&s->f.io, group);
-    return hf_hdf5_unlock(s->f.io.status);
+    hf_layout_write_variables(io, group, "design", m->variable, m->n_variable, design);
+    hf_hdf5_close(io, group);
+    return hf_hdf5_unlock(io->status);
 }
 
 hf_status hf_store_built(hf_store *s, const char *name, const hf_model *m, const hf_workspace *w,
@@ -315,60 +291,47 @@ hf_status hf_store_built(hf_store *s, const char *name, const hf_model *m, const
 {
     char path[HF_LAYOUT_LOAD_CASE_SIZE];
     if (!s) return HF_OK;
-    hf_hdf5_lock();
-    s->f.io.messages = messages;
-    hf_store_file_open(&s->f);
-    hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, "/load_cases"));
+    hf_hdf5 *io = hf_store_enter(s, messages);
+    hf_hdf5_close(io, hf_hdf5_make_group(io, "/load_cases"));
     snprintf(path, sizeof path, "/load_cases/%s", name);
-    hf_layout_renew(&s->f.io, path);
-    hid_t group = hf_hdf5_make_group(&s->f.io, path);
+    hf_layout_renew(io, path);
+    hid_t group = hf_hdf5_make_group(io, path);
     write_shape(s, group, m, w);
-    hf_hdf5_close(&s->f.io, group);
+    hf_hdf5_close(io, group);
     if (truss) {
-        static const char *const part[] = {"/truss", "/truss/node", "/truss/member"};
-        for (int i = 0; i < HF_HDF5_COUNT(part); i++) {
-            snprintf(path, sizeof path, "/load_cases/%s%s", name, part[i]);
-            hf_hdf5_close(&s->f.io, hf_hdf5_make_group(&s->f.io, path));
-        }
-        snprintf(path, sizeof path, "/load_cases/%s/truss", name);
-        group = hf_hdf5_open_group(&s->f.io, path);
-        hf_layout_write_columns(&s->f.io, group, &hf_layout_truss_state, carrier->truss.n_node, carrier->truss.n_member,
+        strncat(path, "/truss", sizeof path - strlen(path) - 1);
+        group = hf_layout_make_truss(io, path);
+        hf_layout_write_columns(io, group, &hf_layout_truss_state, carrier->truss.n_node, carrier->truss.n_member,
                                 truss);
-        hf_hdf5_close(&s->f.io, group);
+        hf_hdf5_close(io, group);
     }
-    return hf_hdf5_unlock(s->f.io.status);
+    return hf_hdf5_unlock(io->status);
 }
 
 hf_status hf_store_truss(hf_store *s, const hf_carrier *carrier, const hf_carrier_state *state, hf_messages *messages)
 {
     if (!s) return HF_OK;
-    hf_hdf5_lock();
-    s->f.io.messages = messages;
-    hf_store_file_open(&s->f);
-    hf_layout_write_truss(&s->f.io, carrier, state);
-    return hf_hdf5_unlock(s->f.io.status);
+    hf_hdf5 *io = hf_store_enter(s, messages);
+    hf_layout_write_truss(io, carrier, state);
+    return hf_hdf5_unlock(io->status);
 }
 
 hf_status hf_store_front(hf_store *s, const hf_scene *scene, const hf_model *m, const hf_summary *summary,
                          const hf_front *front, hf_messages *messages)
 {
     if (!s) return HF_OK;
-    hf_hdf5_lock();
-    s->f.io.messages = messages;
-    hf_store_file_open(&s->f);
-    hf_layout_write_front(&s->f.io, scene, m, summary, front);
-    return hf_hdf5_unlock(s->f.io.status);
+    hf_hdf5 *io = hf_store_enter(s, messages);
+    hf_layout_write_front(io, scene, m, summary, front);
+    return hf_hdf5_unlock(io->status);
 }
 
 hf_status hf_store_pattern(hf_store *s, hf_stage stage, const hf_pattern_table *table,
                            const hf_pattern_summary *figures, hf_messages *messages)
 {
     if (!s) return HF_OK;
-    hf_hdf5_lock();
-    s->f.io.messages = messages;
-    hf_store_file_open(&s->f);
-    hf_layout_write_pattern(&s->f.io, (int)stage, table, figures);
-    return hf_hdf5_unlock(s->f.io.status);
+    hf_hdf5 *io = hf_store_enter(s, messages);
+    hf_layout_write_pattern(io, (int)stage, table, figures);
+    return hf_hdf5_unlock(io->status);
 }
 
 /* ---- generations ---- */
@@ -377,22 +340,18 @@ hf_status hf_store_pattern(hf_store *s, hf_stage stage, const hf_pattern_table *
  * the direction. */
 static void write_rows(hf_hdf5 *io, hid_t group, const hf_model *m)
 {
-    const hsize_t k[1] = {(hsize_t)m->n_variable};
-    const hf_hdf5_array row = {"row", HF_KIND_INT, 1, {k[0]}, "", "row of optimize.variables"};
-    const hf_hdf5_array node = {"node", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/node; -1: varies a cable"};
-    const hf_hdf5_array along = {"direction", HF_KIND_REAL, 2,
-                                 {k[0], 3},   "",           "direction in which this support is displaced"};
-    int *of = malloc(2 * k[0] * sizeof *of), *support = of + k[0];
-    double *direction = malloc(3 * k[0] * sizeof *direction);
+    int n = m->n_variable, *of = malloc(2 * (size_t)n * sizeof *of), *support = of + n;
+    double *direction = malloc(3 * (size_t)n * sizeof *direction);
     if (!of || !direction) hf_hdf5_no_memory(io);
-    for (int i = 0; of && direction && i < m->n_variable; i++) {
+    for (int i = 0; of && direction && i < n; i++) {
         of[i] = m->variable[i].setting;
         support[i] = m->variable[i].support_row < 0 ? -1 : m->node_of_row[m->variable[i].support_row];
         memcpy(direction + 3 * i, m->variable[i].direction, 3 * sizeof *direction);
     }
-    hf_hdf5_write_array(io, group, &row, of);
-    hf_hdf5_write_array(io, group, &node, support);
-    hf_hdf5_write_array(io, group, &along, direction);
+    hf_hdf5_write_list(io, group, "row", HF_KIND_INT, n, 0, "", "row of optimize.variables", of);
+    hf_hdf5_write_list(io, group, "node", HF_KIND_INT, n, 0, "", "index into /scene/node; -1: varies a cable", support);
+    hf_hdf5_write_list(io, group, "direction", HF_KIND_REAL, n, 3, "", "direction in which this support is displaced",
+                       direction);
     free(of);
     free(direction);
 }
@@ -400,41 +359,33 @@ static void write_rows(hf_hdf5 *io, hid_t group, const hf_model *m)
 hf_status hf_store_variables(hf_store *s, const hf_model *m, const hf_population *population, hf_messages *messages)
 {
     if (!s) return HF_OK;
-    const hsize_t k[3] = {(hsize_t)population->n_variable};
-    const hf_hdf5_array cable = {"cable", HF_KIND_INT, 1, {k[0]}, "", "index into /scene/cable"};
-    const hf_hdf5_array group_of = {"group", HF_KIND_INT, 1, {k[0]}, "", "number of the group that is varied together"};
-    const hf_hdf5_array leader = {"leader", HF_KIND_INT, 1,
-                                  {k[0]},   "",          "design variable whose step each takes, by symmetry"};
-    const hf_hdf5_array base = hf_layout_of_variables("initial", m->variable, 1, k);
-    const hf_hdf5_array lower = hf_layout_of_variables("lower", m->variable, 1, k);
-    const hf_hdf5_array upper = hf_layout_of_variables("upper", m->variable, 1, k);
-    hf_hdf5 *io = &s->f.io;
     if (s->rows.block) return s->f.io.status; /* another session has written them */
-    hf_hdf5_lock();
-    io->messages = messages;
-    hf_store_file_open(&s->f);
+    const int n = population->n_variable;
+    hf_hdf5 *io = hf_store_enter(s, messages);
     hid_t group = hf_hdf5_make_group(io, "/variable");
-    hf_hdf5_write_array(io, group, &cable, m->variable_cable);
-    hf_hdf5_write_array(io, group, &group_of, m->variable_group);
-    if (m->variable_leader && m->n_leader < m->n_variable) hf_hdf5_write_array(io, group, &leader, m->variable_leader);
+    hf_hdf5_write_list(io, group, "cable", HF_KIND_INT, n, 0, "", "index into /scene/cable", m->variable_cable);
+    hf_hdf5_write_list(io, group, "group", HF_KIND_INT, n, 0, "", "number of the group that is varied together",
+                       m->variable_group);
+    if (m->variable_leader && m->n_leader < n)
+        hf_hdf5_write_list(io, group, "leader", HF_KIND_INT, n, 0, "",
+                           "design variable whose step each takes, by symmetry", m->variable_leader);
     if (m->variable) write_rows(io, group, m);
-    hf_hdf5_write_array(io, group, &base, population->initial);
-    hf_hdf5_write_array(io, group, &lower, population->lower);
-    hf_hdf5_write_array(io, group, &upper, population->upper);
+    hf_layout_write_variables(io, group, "initial", m->variable, n, population->initial);
+    hf_layout_write_variables(io, group, "lower", m->variable, n, population->lower);
+    hf_layout_write_variables(io, group, "upper", m->variable, n, population->upper);
     hf_hdf5_close(io, group);
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/search"));
     group = hf_hdf5_make_group(io, HF_GENERATIONS_GROUP);
     hf_hdf5_put(io, group, ".", "n_individual", HF_KIND_INT, 0, &population->n_individual);
-    hf_hdf5_put(io, group, ".", "n_variable", HF_KIND_INT, 0, &population->n_variable);
+    hf_hdf5_put(io, group, ".", "n_variable", HF_KIND_INT, 0, &n);
     hf_hdf5_put(io, group, ".", "generations_limit", HF_KIND_INT, 0, &population->generation_limit);
     hf_hdf5_put(io, group, ".", "store_every", HF_KIND_INT, 0, &s->every);
     if (population->n_objective) hf_hdf5_put(io, group, ".", "n_objective", HF_KIND_INT, 0, &population->n_objective);
     hf_hdf5_close(io, group);
     if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, messages);
-    if (io->status == HF_OK &&
-        hf_generations_create(population->n_individual, population->n_variable, population->n_objective,
-                              population->generation_limit, s->every, &s->rows) != HF_OK)
-        io->status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
+    if (io->status == HF_OK && hf_generations_create(population->n_individual, n, population->n_objective,
+                                                     population->generation_limit, s->every, &s->rows) != HF_OK)
+        hf_hdf5_no_memory(io);
     s->rows.has_rows = population->has_rows;
     return hf_hdf5_unlock(io->status);
 }

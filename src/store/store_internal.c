@@ -25,6 +25,14 @@ hf_store *hf_store_new(const char *path, bool replaces, hf_status *status, hf_me
     return s;
 }
 
+hf_hdf5 *hf_store_enter(hf_store *s, hf_messages *messages)
+{
+    hf_hdf5_lock();
+    s->f.io.messages = messages;
+    hf_store_file_open(&s->f);
+    return &s->f.io;
+}
+
 hf_status hf_store_judge(hf_store *s)
 {
     hf_hdf5 *io = &s->f.io;

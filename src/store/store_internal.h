@@ -46,6 +46,9 @@ hf_status hf_store_hand_over(hf_store *s, hf_store **store);
 
 void hf_store_free(hf_store *s, hf_messages *messages);
 
+/* Begins a call that uses the file: takes the lock of HDF5 and opens the file. The caller releases the lock. */
+hf_hdf5 *hf_store_enter(hf_store *s, hf_messages *messages);
+
 /* Returns scratch memory, valid until the next call. Returns NULL if the store has failed already, or with a message if
  * memory runs out. */
 void *hf_store_scratch(hf_store *s, size_t bytes);

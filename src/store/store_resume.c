@@ -154,8 +154,9 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     return hf_store_hand_over(s, store);
 }
 
-static void check_base(hf_hdf5 *io, int n_variable, const double *initial)
+static void read_initial(hf_hdf5 *io, hid_t place, const char *name, int n_variable, double *initial)
 {
+    hf_hdf5_read_list(io, place, name, HF_KIND_REAL, n_variable, 0, initial);
     for (int k = 0; k < n_variable && io->status == HF_OK; k++)
         if (!(initial[k] >= 0 && isfinite(initial[k])))
             hf_hdf5_damaged(io, io->file, "/variable", "has an initial design that is none");
@@ -163,15 +164,10 @@ static void check_base(hf_hdf5 *io, int n_variable, const double *initial)
 
 hf_status hf_store_restore_initial(hf_store *s, int n_variable, double *initial, hf_messages *messages)
 {
-    hf_hdf5_array base = {.name = "/variable/initial", .kind = HF_KIND_REAL, .rank = 1, .dims = {(hsize_t)n_variable}};
     if (!s || !s->rows.block) return HF_OK;
-    hf_hdf5_lock();
-    s->f.io.messages = messages;
-    hf_store_file_open(&s->f);
-    if (hf_hdf5_has(&s->f.io, s->f.io.file, base.name)) { /* earlier versions stored none */
-        hf_hdf5_read_array(&s->f.io, s->f.io.file, &base, initial);
-        check_base(&s->f.io, n_variable, initial);
-    }
+    hf_hdf5 *io = hf_store_enter(s, messages);
+    if (hf_hdf5_has(io, io->file, "/variable/initial")) /* earlier versions stored none */
+        read_initial(io, io->file, "/variable/initial", n_variable, initial);
     return hf_hdf5_unlock(hf_store_judge(s));
 }
 
@@ -249,10 +245,7 @@ static void read_known(hf_hdf5 *io, hf_summary *summary)
 static hf_status restore(hf_store *s, hf_optimiser *optimiser, int drops, hf_summary *summary, hf_messages *messages)
 {
     if (hf_store_generations(s) == 0) return HF_OK;
-    hf_hdf5 *io = &s->f.io;
-    hf_hdf5_lock();
-    io->messages = messages;
-    hf_store_file_open(&s->f);
+    hf_hdf5 *io = hf_store_enter(s, messages);
     if (!hf_generations_are_of(&s->rows, &optimiser->population))
         hf_hdf5_damaged(io, io->file, HF_GENERATIONS_GROUP, "has other sizes than the case");
     read_known(io, summary);
@@ -273,12 +266,6 @@ hf_status hf_store_restore(hf_store *s, hf_optimiser *optimiser, hf_summary *sum
 /* ---- refinement ---- */
 
 #define REFINE_STATE "/refine_state"
-
-static hf_hdf5_array refine_array(size_t n)
-{
-    return (hf_hdf5_array){REFINE_STATE, HF_KIND_REAL, 1,
-                           {(hsize_t)n}, "",           "where Levenberg-Marquardt was told to stop"};
-}
 
 static hf_status make_refine(hf_store *s, size_t n)
 {
@@ -307,16 +294,11 @@ hf_status hf_store_restore_refine(hf_store *s, double *wall_s, size_t *n, const 
     *n = 0;
     *state = NULL;
     if (!s || !s->is_resumed) return HF_OK;
-    hf_hdf5_lock();
-    hf_hdf5 *io = &s->f.io;
-    io->messages = messages;
-    hf_store_file_open(&s->f);
+    hf_hdf5 *io = hf_store_enter(s, messages);
     if (hf_hdf5_has(io, io->file, REFINE_STATE)) {
         int n_value = hf_hdf5_length(io, io->file, REFINE_STATE, HF_LAYOUT_COUNT_MAX);
-        if (io->status == HF_OK && make_refine(s, (size_t)n_value) == HF_OK) {
-            const hf_hdf5_array array = refine_array(s->n_refine);
-            hf_hdf5_read_array(io, io->file, &array, s->refine);
-        }
+        if (io->status == HF_OK && make_refine(s, (size_t)n_value) == HF_OK)
+            hf_hdf5_read_list(io, io->file, REFINE_STATE, HF_KIND_REAL, n_value, 0, s->refine);
         if (io->status == HF_OK) {
             *wall_s = s->refine[0];
             *n = s->n_refine - 1;
@@ -328,9 +310,11 @@ hf_status hf_store_restore_refine(hf_store *s, double *wall_s, size_t *n, const 
 
 void hf_store_put_refine(hf_store *s, bool finished)
 {
-    const hf_hdf5_array array = refine_array(s->n_refine);
-    if (finished || s->refine) hf_layout_renew(&s->f.io, REFINE_STATE);
-    if (!finished && s->refine) hf_hdf5_write_array(&s->f.io, s->f.io.file, &array, s->refine);
+    hf_hdf5 *io = &s->f.io;
+    if (finished || s->refine) hf_layout_renew(io, REFINE_STATE);
+    if (!finished && s->refine)
+        hf_hdf5_write_list(io, io->file, REFINE_STATE, HF_KIND_REAL, (int)s->n_refine, 0, "",
+                           "where Levenberg-Marquardt was told to stop", s->refine);
 }
 
 /* ---- recovery ---- */
@@ -349,10 +333,9 @@ typedef struct {
 static void read_rows(hf_hdf5 *io, hid_t group, stored_search *a)
 {
     const hf_optimize_settings *o = &a->settings.optimize;
-    hf_hdf5_array row = {.name = "row", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)a->model.n_variable}};
     int *of = malloc((size_t)a->model.n_variable * sizeof *of);
     if (!of) hf_hdf5_no_memory(io);
-    hf_hdf5_read_array(io, group, &row, of);
+    hf_hdf5_read_list(io, group, "row", HF_KIND_INT, a->model.n_variable, 0, of);
     for (int k = 0; io->status == HF_OK && k < a->model.n_variable; k++) {
         if (of[k] < 0 || of[k] >= o->n_variable_row)
             hf_hdf5_damaged(io, io->file, "/variable", "has design variables of other rows than the case");
@@ -364,16 +347,12 @@ static void read_rows(hf_hdf5 *io, hid_t group, stored_search *a)
 
 static void read_variables(hf_hdf5 *io, stored_search *a)
 {
-    hf_hdf5_array row = {.name = "group", .kind = HF_KIND_INT, .rank = 1, .dims = {(hsize_t)a->model.n_variable}};
+    const int n = a->model.n_variable;
     hid_t group = hf_hdf5_open_group(io, "/variable");
-    hf_hdf5_read_array(io, group, &row, a->group);
-    row.name = "leader";
-    bool has_leader = hf_hdf5_has(io, group, row.name);
-    if (has_leader) hf_hdf5_read_array(io, group, &row, a->leader);
-    row.name = "initial";
-    row.kind = HF_KIND_REAL;
-    hf_hdf5_read_array(io, group, &row, a->initial);
-    check_base(io, a->model.n_variable, a->initial);
+    hf_hdf5_read_list(io, group, "group", HF_KIND_INT, n, 0, a->group);
+    bool has_leader = hf_hdf5_has(io, group, "leader");
+    if (has_leader) hf_hdf5_read_list(io, group, "leader", HF_KIND_INT, n, 0, a->leader);
+    read_initial(io, group, "initial", n, a->initial);
     if (a->rows) read_rows(io, group, a);
     hf_hdf5_close(io, group);
     for (int k = 0; io->status == HF_OK && k < a->model.n_variable; k++) {

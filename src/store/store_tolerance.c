@@ -84,25 +84,13 @@ static hf_status write_first_order(hf_hdf5 *io, const hf_montecarlo *t)
         deviation[i] = (double)NAN;
     for (int k = 0; k < m->n_inner_node; k++)
         deviation[m->node_of_row[m->inner_row[k]]] = c->deviation_m[k];
-    const hf_hdf5_array of_cable = {"cable_share",
-                                    HF_KIND_REAL,
-                                    1,
-                                    {(hsize_t)m->n_cable},
-                                    "",
-                                    "of each cable's own errors in what they add to the mean of psi^2, to first order"};
-    const hf_hdf5_array by_cut = {"psi_by_cut",
-                                  HF_KIND_REAL,
-                                  1,
-                                  {(hsize_t)m->n_cable},
-                                  "",
-                                  "d psi / d l0 of the net without errors: m of psi by m that a cable is let out"};
-    const hf_hdf5_array of_node = {
-        "node_deviation_m",   HF_KIND_REAL, 1,
-        {(hsize_t)m->n_node}, "m",          "root mean square move of each inner node, to first order; NaN of others"};
     hid_t group = hf_hdf5_make_group(io, "/tolerance");
-    hf_hdf5_write_array(io, group, &of_cable, share);
-    hf_hdf5_write_array(io, group, &by_cut, c->psi_by_cut);
-    hf_hdf5_write_array(io, group, &of_node, deviation);
+    hf_hdf5_write_list(io, group, "cable_share", HF_KIND_REAL, m->n_cable, 0, "",
+                       "of each cable's own errors in what they add to the mean of psi^2, to first order", share);
+    hf_hdf5_write_list(io, group, "psi_by_cut", HF_KIND_REAL, m->n_cable, 0, "",
+                       "d psi / d l0 of the net without errors: m of psi by m that a cable is let out", c->psi_by_cut);
+    hf_hdf5_write_list(io, group, "node_deviation_m", HF_KIND_REAL, m->n_node, 0, "m",
+                       "root mean square move of each inner node, to first order; NaN of others", deviation);
     hf_hdf5_close(io, group);
     hf_arena_free_block(block);
     return io->status;
@@ -111,10 +99,7 @@ static hf_status write_first_order(hf_hdf5 *io, const hf_montecarlo *t)
 hf_status hf_store_tolerance(hf_store *s, const hf_montecarlo *t, const hf_statistics_rows *rows, hf_messages *messages)
 {
     if (!s) return HF_OK;
-    hf_hdf5 *io = &s->f.io;
-    hf_hdf5_lock();
-    io->messages = messages;
-    hf_store_file_open(&s->f);
+    hf_hdf5 *io = hf_store_enter(s, messages);
     hf_layout_renew(io, "/tolerance");
     hf_status status = write_first_order(io, t);
     if (status == HF_OK) status = write_samples(io, t, rows);

@@ -26,9 +26,7 @@ static void put_type(hf_hdf5 *io, hid_t group)
         (attribute = H5Acreate2(group, "Type", type, space, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
         H5Awrite(attribute, type, word) < 0)
         hf_hdf5_fail(io, "write", group, "Type");
-    hf_hdf5_close(io, attribute);
-    hf_hdf5_close(io, space);
-    hf_hdf5_close(io, type);
+    HF_HDF5_CLOSE(io, attribute, space, type);
 }
 
 /* Makes the properties of a data set of n values. Large data sets are compressed, because their values only repeat or
@@ -58,8 +56,7 @@ static void put_packed(hf_hdf5 *io, hid_t group, const char *name, hid_t type, i
         (data_set = H5Dcreate2(group, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT)) < 0 ||
         H5Dwrite(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
         hf_hdf5_fail(io, "write", group, name);
-    hf_hdf5_close(io, properties);
-    hf_hdf5_close(io, space);
+    HF_HDF5_CLOSE(io, properties, space);
     hf_hdf5_put_text(io, data_set, ".", "units", "");
     hf_hdf5_put_text(io, data_set, ".", "description", description);
     hf_hdf5_close(io, data_set);
@@ -81,8 +78,7 @@ static hid_t make_group(hf_hdf5 *io, const char *path)
 
 static void put_count(hf_hdf5 *io, hid_t group, const char *name, long count)
 {
-    const hf_hdf5_array array = {name, HF_KIND_LONG, 1, {1}, "", ""};
-    hf_hdf5_write_array(io, group, &array, &count);
+    hf_hdf5_write_list(io, group, name, HF_KIND_LONG, 1, 0, "", "", &count);
 }
 
 void hf_vtkhdf_put_cells(hf_hdf5 *io, const hf_vtkhdf_cells *c)
@@ -161,8 +157,7 @@ static void link_all(hf_hdf5 *io, const char *result, const char *position, cons
 static void copy_numbers(hf_hdf5 *io, const char *from, const hf_hdf5_kind *kind, int n, void *values,
                          const char *group, const char *name, const char *description)
 {
-    const hf_hdf5_array array = {.name = from, .kind = kind, .rank = 1, .dims = {(hsize_t)n}};
-    hf_hdf5_read_array(io, io->file, &array, values);
+    hf_hdf5_read_list(io, io->file, from, kind, n, 0, values);
     hid_t place = hf_hdf5_open_group(io, group);
     put_packed(io, place, name, H5T_NATIVE_UCHAR, n, values, description);
     hf_hdf5_close(io, place);
@@ -177,7 +172,6 @@ void hf_vtkhdf_put_result(hf_hdf5 *io, const hf_summary *summary)
     hf_layout_renew(io, "/VTKHDF");
     const int n = hf_hdf5_length(io, io->file, "/scene/node/role", HF_LAYOUT_COUNT_MAX);
     const int m = hf_hdf5_length(io, io->file, "/scene/cable/group", HF_LAYOUT_COUNT_MAX);
-    const hf_hdf5_array end = {.name = "/scene/cable/end", .kind = HF_KIND_INT, .rank = 2, .dims = {(hsize_t)m, 2}};
     int *corner, *offset;
     unsigned char *bytes; /* one value for each node or for each cable */
     void *block = NULL;
@@ -188,7 +182,7 @@ void hf_vtkhdf_put_result(hf_hdf5 *io, const hf_summary *summary)
         for (int e = 0; e <= m; e++)
             offset[e] = 2 * e;
         memset(bytes, HF_VTKHDF_LINE, (size_t)m);
-        hf_hdf5_read_array(io, io->file, &end, corner);
+        hf_hdf5_read_list(io, io->file, "/scene/cable/end", HF_KIND_INT, m, 2, corner);
         hf_vtkhdf_put_cells(io, &(hf_vtkhdf_cells){n, m, corner, offset, bytes});
         copy_numbers(io, "/scene/node/role", HF_KIND_ROLE, n, bytes, POINT_DATA, "role", "0 support, 1 inner, 2 edge");
         copy_numbers(io, "/scene/cable/group", HF_KIND_GROUP, m, bytes, CELL_DATA, "group", "0 inner, 1 boundary");
