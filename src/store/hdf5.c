@@ -87,6 +87,13 @@ void hf_hdf5_no_memory(hf_hdf5 *io)
     if (io->status == HF_OK) io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", io->path);
 }
 
+void *hf_hdf5_take(hf_hdf5 *io, size_t n, size_t bytes)
+{
+    void *items = io->status == HF_OK ? calloc(n, bytes) : NULL;
+    if (!items) hf_hdf5_no_memory(io);
+    return items;
+}
+
 void hf_hdf5_fail(hf_hdf5 *io, const char *verb, hid_t place, const char *name)
 {
     fail_at(io, verb, place, name, NULL);
@@ -405,8 +412,7 @@ void hf_hdf5_write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *c
     for (int i = 0; i < n; i++)
         length = strlen(id[i]) > length ? strlen(id[i]) : length;
     hf_hdf5_array array = {name, HF_KIND_CHARS, 1, {(hsize_t)n, length}, "", description};
-    char *chars = io->status == HF_OK ? calloc((size_t)n, length) : NULL;
-    if (!chars) hf_hdf5_no_memory(io);
+    char *chars = hf_hdf5_take(io, (size_t)n, length);
     for (int i = 0; chars && i < n; i++)
         memcpy(chars + (size_t)i * length, id[i], strlen(id[i]));
     if (chars) hf_hdf5_write_array(io, group, &array, chars);
@@ -480,6 +486,14 @@ void hf_hdf5_read_list(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5
     read_values(io, group, &array, true, 0, values);
 }
 
+void hf_hdf5_pass_array(hf_hdf5 *io, bool writes, hid_t group, const hf_hdf5_array *a, void *values)
+{
+    if (writes)
+        hf_hdf5_write_array(io, group, a, values);
+    else
+        hf_hdf5_read_array(io, group, a, values);
+}
+
 int hf_hdf5_length(hf_hdf5 *io, hid_t group, const char *name, int max)
 {
     hf_hdf5_data_set d;
@@ -517,8 +531,7 @@ char *hf_hdf5_read_strings(hf_hdf5 *io, hid_t group, const char *name, int n, si
 {
     hf_hdf5_data_set d;
     *size = open_strings(io, group, name, n, &d);
-    char *text = io->status == HF_OK ? malloc(*size * (n < 0 ? 1 : (size_t)n)) : NULL;
-    if (!text) hf_hdf5_no_memory(io);
+    char *text = hf_hdf5_take(io, n < 0 ? 1 : (size_t)n, *size);
     if (text) hf_hdf5_take_strings(io, group, name, &d, *size, text);
     hf_hdf5_close_data_set(io, &d);
     return text;
@@ -529,8 +542,7 @@ void hf_hdf5_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, const
 {
     hf_hdf5_data_set a, b;
     size_t size_a = open_strings(io, group, name_a, n, &a), size_b = open_strings(io, group, name_b, m, &b);
-    char *of_a = io->status == HF_OK ? malloc((size_t)n * size_a + (size_t)m * size_b) : NULL;
-    if (!of_a) hf_hdf5_no_memory(io);
+    char *of_a = hf_hdf5_take(io, 1, (size_t)n * size_a + (size_t)m * size_b);
     if (of_a) {
         char *of_b = of_a + (size_t)n * size_a;
         *text = of_a;

@@ -129,6 +129,9 @@ void hf_hdf5_missing(hf_hdf5 *io, hid_t place, const char *name, const char *att
 
 void hf_hdf5_no_memory(hf_hdf5 *io); /* records HF_NO_MEMORY with a message */
 
+/* Returns n items of zeros, which the caller frees. Returns NULL after a failure, also of this call. */
+void *hf_hdf5_take(hf_hdf5 *io, size_t n, size_t bytes);
+
 /* ---- Files and groups ---- */
 
 /* The next three calls set io->file. HDF5 locks a file that is opened to read, if the file system supports locks; a
@@ -205,6 +208,9 @@ void hf_hdf5_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, const
 
 /* Reads exactly array->dims values. Other dimensions, other types and unknown values of enumerations are failures. */
 void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, void *values);
+
+/* Writes the values, or reads them. */
+void hf_hdf5_pass_array(hf_hdf5 *io, bool writes, hid_t group, const hf_hdf5_array *array, void *values);
 
 /* Returns the first dimension of a data set, 1 to `max`, or 0 after a failure. Other lengths are damage. */
 int hf_hdf5_length(hf_hdf5 *io, hid_t group, const char *name, int max);

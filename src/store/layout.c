@@ -118,41 +118,16 @@ const hf_layout_columns hf_layout_shape = {HF_LAYOUT_COLUMNS(shape_column)};
 const hf_layout_columns hf_layout_truss = {HF_LAYOUT_COLUMNS(truss_column)};
 const hf_layout_columns hf_layout_truss_state = {HF_LAYOUT_COLUMNS(state_column)};
 
-static hf_hdf5_array column_array(const hf_layout_column *c, int n_node, int n_cable)
-{
-    return (hf_hdf5_array){.name = c->name,
-                           .kind = c->kind,
-                           .rank = c->columns > 1 ? 2 : 1,
-                           .dims = {(hsize_t)(c->per_cable ? n_cable : n_node), (hsize_t)c->columns},
-                           .units = c->units,
-                           .description = c->description};
-}
-
-/* Returns the pointer that `owner` has for column `c`. */
-static void *column_values(const hf_layout_column *c, const void *owner)
-{
-    void *values;
-    memcpy(&values, (const char *)owner + c->offset, sizeof values);
-    return values;
-}
-
-void hf_layout_write_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *columns, int n_node, int n_cable,
-                             const void *owner)
+void hf_layout_pass_columns(hf_hdf5 *io, bool writes, hid_t group, const hf_layout_columns *columns, int n_node,
+                            int n_cable, const void *owner)
 {
     for (const hf_layout_column *c = columns->column; c < columns->column + columns->n; c++) {
-        hf_hdf5_array array = column_array(c, n_node, n_cable);
-        const void *values = column_values(c, owner);
-        if (values) hf_hdf5_write_array(io, group, &array, values);
-    }
-}
-
-void hf_layout_read_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *columns, int n_node, int n_cable,
-                            void *owner)
-{
-    for (const hf_layout_column *c = columns->column; c < columns->column + columns->n; c++) {
-        hf_hdf5_array array = column_array(c, n_node, n_cable);
-        void *values = column_values(c, owner);
-        if (values) hf_hdf5_read_array(io, group, &array, values);
+        const hsize_t n = (hsize_t)(c->per_cable ? n_cable : n_node);
+        const hf_hdf5_array array = {c->name,  c->kind,       c->columns > 1 ? 2 : 1, {n, (hsize_t)c->columns},
+                                     c->units, c->description};
+        void *values;
+        memcpy(&values, (const char *)owner + c->offset, sizeof values);
+        if (values) hf_hdf5_pass_array(io, writes, group, &array, values);
     }
 }
 
@@ -204,19 +179,14 @@ void hf_layout_pass_fields(hf_hdf5 *io, bool writes, hid_t group, const hf_layou
         int per_row = f->columns ? f->columns : columns;
         char *member = (char *)owner + f->offset;
         hf_hdf5_array array = {f->name, f->kind, per_row ? 2 : 1, {(hsize_t)n}, f->units, f->description};
-        char *packed = malloc((size_t)n * row_bytes(f));
+        char *packed = hf_hdf5_take(io, (size_t)n, row_bytes(f));
         if (per_row) array.dims[1] = (hsize_t)per_row;
         if (columns) array.dims[0] = (hsize_t)(n / columns);
         if (f->kind == HF_KIND_CHARS) array.dims[array.rank] = f->size;
-        if (!packed) hf_hdf5_no_memory(io);
-        if (packed && writes) {
-            hf_layout_copy(f->kind, row_bytes(f), f->size, f->stride, n, true, packed, member);
-            hf_hdf5_write_array(io, group, &array, packed);
-        } else if (packed) {
-            hf_hdf5_read_array(io, group, &array, packed);
-            if (io->status == HF_OK)
-                hf_layout_copy(f->kind, row_bytes(f), f->size, f->stride, n, false, packed, member);
-        }
+        if (packed && writes) hf_layout_copy(f->kind, row_bytes(f), f->size, f->stride, n, true, packed, member);
+        if (packed) hf_hdf5_pass_array(io, writes, group, &array, packed);
+        if (io->status == HF_OK && !writes)
+            hf_layout_copy(f->kind, row_bytes(f), f->size, f->stride, n, false, packed, member);
         free(packed);
     }
 }

@@ -65,10 +65,8 @@ extern const hf_layout_columns hf_layout_truss_state; /* hf_carrier_state in /tr
 
 /* Writes or reads the data sets of all columns whose pointer in `owner` is not NULL. n_cable: cables, or members of a
  * truss. */
-void hf_layout_write_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *columns, int n_node, int n_cable,
-                             const void *owner);
-void hf_layout_read_columns(hf_hdf5 *io, hid_t group, const hf_layout_columns *columns, int n_node, int n_cable,
-                            void *owner);
+void hf_layout_pass_columns(hf_hdf5 *io, bool writes, hid_t group, const hf_layout_columns *columns, int n_node,
+                            int n_cable, const void *owner);
 
 /* Removes the object `path` if it exists, so that it can be written again. A resumed run needs this if an earlier
  * session has written the object. */

@@ -37,9 +37,8 @@ static void list_fields(int n_objective, hf_layout_field field[N_FIELD])
 static void write_variables(hf_hdf5 *io, hid_t group, const hf_scene *scene, const hf_model *m)
 {
     size_t n = (size_t)m->n_variable;
-    char *text = malloc(n * HF_VARIABLE_NAME_SIZE);
-    const char **name = malloc(n * sizeof *name);
-    if (!text || !name) hf_hdf5_no_memory(io);
+    char *text = hf_hdf5_take(io, n, HF_VARIABLE_NAME_SIZE);
+    const char **name = hf_hdf5_take(io, n, sizeof *name);
     for (size_t k = 0; text && name && k < n; k++) {
         name[k] = text + k * HF_VARIABLE_NAME_SIZE;
         hf_model_variable_name(m, scene, (int)k, text + k * HF_VARIABLE_NAME_SIZE, HF_VARIABLE_NAME_SIZE);
@@ -115,8 +114,7 @@ void hf_layout_get_front(hf_hdf5 *io, hf_summary *s)
 {
     hf_front front = {.minimised = -1, .knee = -1};
     if (io->status != HF_OK || !hf_hdf5_has(io, io->file, "/front")) return;
-    if (!(s->front = calloc(1, sizeof *s->front))) hf_hdf5_no_memory(io);
-    if (!s->front) return;
+    if (!(s->front = hf_hdf5_take(io, 1, sizeof *s->front))) return;
     hid_t group = hf_hdf5_open_group(io, "/front");
     read_front(io, group, 0, &front);
     hf_hdf5_get(io, group, ".", "wall_s", HF_KIND_REAL, &s->front->wall_s, 0);

@@ -90,24 +90,22 @@ static void pass_surface(hf_hdf5 *io, bool writes, hf_summary *s)
 
 #define ANGLES_MAX 1000000 /* maximum number of angles in a file */
 
-enum { N_ARRAY = 5 };
-static hf_hdf5_array array_of(int i, int n_frequency, int n_cut, int n_theta)
+static void pass_arrays(hf_hdf5 *io, bool writes, hid_t group, const hf_pattern_table *table)
 {
-    const hsize_t f = (hsize_t)n_frequency, c = (hsize_t)n_cut, t = (hsize_t)n_theta;
-    const hf_hdf5_array all[N_ARRAY] = {
-        {"frequency_Hz", HF_KIND_REAL, 1, {f}, "Hz", ""},
-        {"phi_deg", HF_KIND_REAL, 1, {c}, "deg", "of each cut, from +x towards +y"},
-        {"theta_deg", HF_KIND_REAL, 1, {t}, "deg", "from +z; below 0 on the other side of +z"},
-        {"co_dBi", HF_KIND_REAL, 3, {f, c, t}, "dBi", "gain in the polarisation of the feed (Ludwig 3)"},
-        {"cross_dBi", HF_KIND_REAL, 3, {f, c, t}, "dBi", "gain in the polarisation across it"},
+    const hsize_t f = (hsize_t)table->n_frequency, c = (hsize_t)table->n_cut, t = (hsize_t)table->n_theta;
+    const struct {
+        hf_hdf5_array array;
+        double *values;
+    } all[] = {
+        {{"frequency_Hz", HF_KIND_REAL, 1, {f}, "Hz", ""}, table->frequency_Hz},
+        {{"phi_deg", HF_KIND_REAL, 1, {c}, "deg", "of each cut, from +x towards +y"}, table->phi_deg},
+        {{"theta_deg", HF_KIND_REAL, 1, {t}, "deg", "from +z; below 0 on the other side of +z"}, table->theta_deg},
+        {{"co_dBi", HF_KIND_REAL, 3, {f, c, t}, "dBi", "gain in the polarisation of the feed (Ludwig 3)"},
+         table->co_dBi},
+        {{"cross_dBi", HF_KIND_REAL, 3, {f, c, t}, "dBi", "gain in the polarisation across it"}, table->cross_dBi},
     };
-    return all[i];
-}
-
-static void *values_of(const hf_pattern_table *t, int i)
-{
-    double *const values[N_ARRAY] = {t->frequency_Hz, t->phi_deg, t->theta_deg, t->co_dBi, t->cross_dBi};
-    return values[i];
+    for (int i = 0; i < HF_HDF5_COUNT(all); i++)
+        hf_hdf5_pass_array(io, writes, group, &all[i].array, all[i].values);
 }
 
 #define FIGURE(member, units, description) HF_LAYOUT_MEMBER(hf_cut_figures, #member, member, REAL, units, description)
@@ -131,10 +129,7 @@ void hf_layout_write_pattern(hf_hdf5 *io, int stage, const hf_pattern_table *t, 
     hf_layout_renew(io, path_of("/pattern", stage, path));
     hid_t group = hf_hdf5_make_group(io, path);
     hf_layout_pass_members(io, true, path, feed, HF_HDF5_COUNT(feed), (void *)&s->feed);
-    for (int i = 0; i < N_ARRAY; i++) {
-        const hf_hdf5_array array = array_of(i, t->n_frequency, t->n_cut, t->n_theta);
-        hf_hdf5_write_array(io, group, &array, values_of(t, i));
-    }
+    pass_arrays(io, true, group, t);
     hf_layout_pass_fields(io, true, group, HF_LAYOUT_TABLE(cut_figures), t->n_frequency * t->n_cut, t->n_cut,
                           (void *)s->figure);
     hf_hdf5_close(io, group);
@@ -145,8 +140,7 @@ static void get_pattern(hf_hdf5 *io, hf_summary *summary, int stage)
 {
     char path[PATH_SIZE];
     if (!has_group(io, "/pattern") || !has_group(io, path_of("/pattern", stage, path))) return;
-    hf_pattern_summary *s = summary->stage[stage].pattern = calloc(1, sizeof *s);
-    if (!s) hf_hdf5_no_memory(io);
+    hf_pattern_summary *s = summary->stage[stage].pattern = hf_hdf5_take(io, 1, sizeof *s);
     if (!s) return;
     hid_t group = hf_hdf5_open_group(io, path);
     int f = hf_hdf5_length(io, group, "frequency_Hz", HF_LIST_MAX);
@@ -168,10 +162,7 @@ void hf_layout_read_pattern(hf_hdf5 *io, int stage, hf_pattern_table *t)
     int c = hf_hdf5_length(io, group, "phi_deg", HF_PATTERN_CUTS);
     int n = hf_hdf5_length(io, group, "theta_deg", ANGLES_MAX);
     if (io->status == HF_OK && hf_pattern_table_create(f, c, n, t) != HF_OK) hf_hdf5_no_memory(io);
-    for (int i = 0; i < N_ARRAY && io->status == HF_OK; i++) {
-        const hf_hdf5_array array = array_of(i, f, c, n);
-        hf_hdf5_read_array(io, group, &array, values_of(t, i));
-    }
+    if (io->status == HF_OK) pass_arrays(io, false, group, t);
     hf_hdf5_close(io, group);
 }
 
@@ -225,7 +216,7 @@ static bool pass_list(hf_hdf5 *io, bool writes, const char *outer, int stage, co
     char path[PATH_SIZE];
     path_of(outer, stage, path);
     if (writes ? !*owner || *(int *)*owner == 0 : !has_group(io, outer) || !has_group(io, path)) return false;
-    if (!writes && !(*owner = calloc(1, size))) hf_hdf5_no_memory(io);
+    if (!writes) *owner = hf_hdf5_take(io, 1, size);
     if (writes) hf_hdf5_close(io, hf_hdf5_make_group(io, outer));
     hid_t group = hf_hdf5_make_group(io, path);
     int n = writes ? *(int *)*owner : hf_hdf5_length(io, group, table[0].name, max);
@@ -317,8 +308,7 @@ static void pass_objectives(hf_hdf5 *io, bool writes, hf_summary *s)
 
 static void write_attachments(hf_hdf5 *io, hid_t group, const hf_model *m)
 {
-    int *index = io->status == HF_OK ? malloc((size_t)m->n_attachment * sizeof *index) : NULL;
-    if (!index) hf_hdf5_no_memory(io);
+    int *index = hf_hdf5_take(io, (size_t)m->n_attachment, sizeof *index);
     if (!index) return;
     for (int i = 0; i < m->n_attachment; i++)
         index[i] = m->node_of_row[m->attachment_row[i]];
@@ -343,11 +333,11 @@ void hf_layout_write_coupling(hf_hdf5 *io, const hf_model *m, const hf_workspace
     static const hf_layout_columns attachment = {HF_LAYOUT_COLUMNS(attachment_column)};
     hid_t group = hf_hdf5_make_group(io, "/coupling");
     write_attachments(io, group, m);
-    hf_layout_write_columns(io, group, &attachment, m->n_attachment, 0, w);
+    hf_layout_pass_columns(io, true, group, &attachment, m->n_attachment, 0, w);
     hf_hdf5_close(io, group);
     if (!h) return;
     group = hf_hdf5_make_group(io, "/coupling/history");
-    hf_layout_write_columns(io, group, &history, h->n, 0, h);
+    hf_layout_pass_columns(io, true, group, &history, h->n, 0, h);
     hf_hdf5_close(io, group);
 }
 
@@ -380,7 +370,7 @@ static void pass_load_cases(hf_hdf5 *io, bool writes, hf_summary *s)
     hid_t group = hf_hdf5_make_group(io, "/load_cases");
     if (writes) hf_layout_renew(io, "/load_cases/name");
     if (!writes) n = hf_hdf5_length(io, group, "name", HF_LOAD_CASES_MAX);
-    if (!writes && n > 0 && !(s->load_case = calloc((size_t)n, sizeof *s->load_case))) hf_hdf5_no_memory(io);
+    if (!writes && n > 0) s->load_case = hf_hdf5_take(io, (size_t)n, sizeof *s->load_case);
     hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(load_case_names), n, 0, s->load_case);
     hf_hdf5_close(io, group);
     if (io->status == HF_OK) s->n_load_case = n;

@@ -160,8 +160,7 @@ void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
     if (io->status != HF_OK || !hf_hdf5_has(io, io->file, GROUP) ||
         !hf_hdf5_has(io, io->file, GROUP "/histogram")) /* the last data set that is written */
         return;
-    hf_tolerance_summary *s = summary->tolerance = calloc(1, sizeof *s);
-    if (!s) hf_hdf5_no_memory(io);
+    hf_tolerance_summary *s = summary->tolerance = hf_hdf5_take(io, 1, sizeof *s);
     if (!s) return;
     hid_t group = hf_hdf5_open_group(io, GROUP);
     int n = hf_hdf5_length(io, group, "measure", HF_TOLERANCE_N_MEASURE);

@@ -11,11 +11,8 @@
 /* Writes or reads "node/fixed": one bit per degree of freedom in memory, one flag per degree of freedom in the file. */
 static void pass_fixed(hf_hdf5 *io, bool writes, hid_t group, const hf_truss *t)
 {
-    signed char *flag = io->status == HF_OK ? malloc(HF_TRUSS_DOF * (size_t)t->n_node) : NULL;
-    if (!flag) {
-        hf_hdf5_no_memory(io);
-        return;
-    }
+    signed char *flag = hf_hdf5_take(io, (size_t)t->n_node, HF_TRUSS_DOF);
+    if (!flag) return;
     if (!writes) hf_hdf5_read_list(io, group, "node/fixed", HF_KIND_FLAG, t->n_node, HF_TRUSS_DOF, flag);
     for (int k = 0; io->status == HF_OK && k < HF_TRUSS_DOF * t->n_node; k++) {
         if (writes)
@@ -56,9 +53,9 @@ void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carr
     hf_hdf5_write_ids(io, group, "node/id", t->node_id, t->n_node, "name of the node");
     hf_hdf5_write_ids(io, group, "member/id", t->member_id, t->n_member, "name of the member");
     pass_fixed(io, true, group, t);
-    hf_layout_write_columns(io, group, &hf_layout_truss, t->n_node, t->n_member, t);
-    hf_layout_write_columns(io, group, &attachment, carrier->n_attachment, 0, carrier);
-    if (state) hf_layout_write_columns(io, group, &hf_layout_truss_state, t->n_node, t->n_member, state);
+    hf_layout_pass_columns(io, true, group, &hf_layout_truss, t->n_node, t->n_member, t);
+    hf_layout_pass_columns(io, true, group, &attachment, carrier->n_attachment, 0, carrier);
+    if (state) hf_layout_pass_columns(io, true, group, &hf_layout_truss_state, t->n_node, t->n_member, state);
     hf_hdf5_close(io, group);
 }
 
@@ -71,7 +68,8 @@ void hf_layout_read_truss_state(hf_hdf5 *io, hid_t group, const hf_truss *t, hf_
     if (HF_ARENA_ARRAYS(&state->block, HF_ARRAY(state->displacement, n_value), HF_ARRAY(state->reaction, n_value),
                         HF_ARRAY(state->end_force, 2 * HF_TRUSS_DOF * (size_t)t->n_member)) != HF_OK)
         hf_hdf5_no_memory(io);
-    if (io->status == HF_OK) hf_layout_read_columns(io, group, &hf_layout_truss_state, t->n_node, t->n_member, state);
+    if (io->status == HF_OK)
+        hf_layout_pass_columns(io, false, group, &hf_layout_truss_state, t->n_node, t->n_member, state);
 }
 
 void hf_layout_read_truss(hf_hdf5 *io, hf_truss *t, hf_carrier_state *state)
@@ -80,7 +78,7 @@ void hf_layout_read_truss(hf_hdf5 *io, hf_truss *t, hf_carrier_state *state)
     int n_node = hf_hdf5_length(io, group, "node/mass_kg", HF_LAYOUT_COUNT_MAX);
     int n_member = hf_hdf5_length(io, group, "member/joint", HF_LAYOUT_COUNT_MAX);
     if (io->status == HF_OK && hf_truss_allocate(t, n_node, n_member, false) != HF_OK) hf_hdf5_no_memory(io);
-    hf_layout_read_columns(io, group, &hf_layout_truss, n_node, n_member, t);
+    hf_layout_pass_columns(io, false, group, &hf_layout_truss, n_node, n_member, t);
     if (io->status == HF_OK)
         hf_hdf5_read_ids(io, group, "node/id", n_node, t->node_id, "member/id", n_member, t->member_id, &t->text);
     if (io->status == HF_OK) pass_fixed(io, false, group, t);

@@ -360,8 +360,7 @@ static void link_group(hf_hdf5 *io, const char *path)
 
 void hf_renamed_link(hf_hdf5 *io, bool has_rows)
 {
-    linking *l = calloc(1, sizeof *l);
-    if (!l) hf_hdf5_no_memory(io);
+    linking *l = hf_hdf5_take(io, 1, sizeof *l);
     if (!l) return;
     l->io = io;
     l->has_rows = has_rows;

@@ -134,7 +134,7 @@ static void write_scene(hf_store *s, const hf_scene *scene)
     HF_HDF5_CLOSE(io, hf_hdf5_make_group(io, "/scene/node"), hf_hdf5_make_group(io, "/scene/cable"));
     hf_hdf5_write_ids(io, group, "node/id", scene->node_id, scene->n_node, "name of the node");
     hf_hdf5_write_ids(io, group, "cable/id", scene->cable_id, scene->n_cable, "name of the cable");
-    hf_layout_write_columns(io, group, &hf_layout_scene, scene->n_node, scene->n_cable, scene);
+    hf_layout_pass_columns(io, true, group, &hf_layout_scene, scene->n_node, scene->n_cable, scene);
     double *length_m = hf_store_scratch(s, (size_t)scene->n_cable * sizeof *length_m);
     for (int e = 0; length_m && e < scene->n_cable; e++)
         length_m[e] = hf_scene_length_at_target(scene, e);
@@ -202,7 +202,7 @@ static void write_shape(hf_store *s, hid_t group, const hf_model *m, const hf_wo
                       .law = w->law};
     if (!shape.position_m) return;
     hf_model_positions(m, w->position_m, shape.position_m);
-    hf_layout_write_columns(&s->f.io, group, &hf_layout_shape, m->n_node, m->n_cable, &shape);
+    hf_layout_pass_columns(&s->f.io, true, group, &hf_layout_shape, m->n_node, m->n_cable, &shape);
 }
 
 /* Compares a shape with the stored one. A session on another machine, or of another build, may find it with other
@@ -257,7 +257,7 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
     hf_hdf5_close(io, group);
     if (history) {
         group = hf_hdf5_make_group(io, "/form/history");
-        hf_layout_write_columns(io, group, &columns, history->n, 0, history);
+        hf_layout_pass_columns(io, true, group, &columns, history->n, 0, history);
         hf_hdf5_close(io, group);
     }
     if (m->n_attachment) hf_layout_write_coupling(io, m, w, history ? &history->coupling : NULL);
@@ -301,8 +301,8 @@ hf_status hf_store_built(hf_store *s, const char *name, const hf_model *m, const
     if (truss) {
         strncat(path, "/truss", sizeof path - strlen(path) - 1);
         group = hf_layout_make_truss(io, path);
-        hf_layout_write_columns(io, group, &hf_layout_truss_state, carrier->truss.n_node, carrier->truss.n_member,
-                                truss);
+        hf_layout_pass_columns(io, true, group, &hf_layout_truss_state, carrier->truss.n_node, carrier->truss.n_member,
+                               truss);
         hf_hdf5_close(io, group);
     }
     return hf_hdf5_unlock(io->status);
@@ -340,10 +340,10 @@ hf_status hf_store_pattern(hf_store *s, hf_stage stage, const hf_pattern_table *
  * the direction. */
 static void write_rows(hf_hdf5 *io, hid_t group, const hf_model *m)
 {
-    int n = m->n_variable, *of = malloc(2 * (size_t)n * sizeof *of), *support = of + n;
-    double *direction = malloc(3 * (size_t)n * sizeof *direction);
-    if (!of || !direction) hf_hdf5_no_memory(io);
-    for (int i = 0; of && direction && i < n; i++) {
+    int n = m->n_variable;
+    int *of = hf_hdf5_take(io, (size_t)n, sizeof *of), *support = hf_hdf5_take(io, (size_t)n, sizeof *support);
+    double *direction = hf_hdf5_take(io, (size_t)n, 3 * sizeof *direction);
+    for (int i = 0; io->status == HF_OK && i < n; i++) {
         of[i] = m->variable[i].setting;
         support[i] = m->variable[i].support_row < 0 ? -1 : m->node_of_row[m->variable[i].support_row];
         memcpy(direction + 3 * i, m->variable[i].direction, 3 * sizeof *direction);
@@ -353,6 +353,7 @@ static void write_rows(hf_hdf5 *io, hid_t group, const hf_model *m)
     hf_hdf5_write_list(io, group, "direction", HF_KIND_REAL, n, 3, "", "direction in which this support is displaced",
                        direction);
     free(of);
+    free(support);
     free(direction);
 }
 

@@ -204,7 +204,7 @@ static void read_facets(hf_hdf5 *io, hid_t group, hf_scene *s)
 {
     if (io->status != HF_OK || !hf_hdf5_has(io, group, "facet")) return;
     int n = hf_hdf5_length(io, group, "facet", HF_LAYOUT_COUNT_MAX);
-    if (io->status == HF_OK && !(s->facet = calloc((size_t)n + 1, 4 * sizeof *s->facet))) hf_hdf5_no_memory(io);
+    s->facet = hf_hdf5_take(io, (size_t)n + 1, 4 * sizeof *s->facet);
     hf_hdf5_read_list(io, group, "facet", HF_KIND_INT, n, 4, s->facet);
     s->n_facet = n;
     for (int i = 0; i < 4 * n && io->status == HF_OK; i++)
@@ -222,7 +222,7 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
     bool with_load = hf_hdf5_has(&io, group, "node/load_N"), with_EA = hf_hdf5_has(&io, group, "cable/EA_N");
     if (io.status == HF_OK && hf_scene_allocate(scene, n_node, n_cable, with_load, with_EA, false) != HF_OK)
         hf_hdf5_no_memory(&io);
-    hf_layout_read_columns(&io, group, &hf_layout_scene, n_node, n_cable, scene);
+    hf_layout_pass_columns(&io, false, group, &hf_layout_scene, n_node, n_cable, scene);
     if (io.status == HF_OK)
         hf_hdf5_read_ids(&io, group, "node/id", n_node, scene->node_id, "cable/id", n_cable, scene->cable_id,
                          &scene->text);
@@ -237,20 +237,17 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
 
 /* ---- shape ---- */
 
-static hf_status allocate_shape(int n_node, int n_cable, hf_shape *shape)
-{
-    return HF_ARENA_ARRAYS(&shape->block, HF_ARRAY(shape->position_m, 3 * (size_t)n_node),
-                           HF_ARRAY(shape->length_m, n_cable), HF_ARRAY(shape->tension_N, n_cable),
-                           HF_ARRAY(shape->q_N_per_m, n_cable), HF_ARRAY(shape->law, n_cable));
-}
-
 static void read_shape(hf_hdf5 *io, const char *path, hf_shape *shape)
 {
     hid_t group = hf_hdf5_open_group(io, path);
     int n_node = hf_hdf5_length(io, io->file, "/scene/node/role", HF_LAYOUT_COUNT_MAX);
     int n_cable = hf_hdf5_length(io, io->file, "/scene/cable/law", HF_LAYOUT_COUNT_MAX);
-    if (io->status == HF_OK && allocate_shape(n_node, n_cable, shape) != HF_OK) hf_hdf5_no_memory(io);
-    hf_layout_read_columns(io, group, &hf_layout_shape, n_node, n_cable, shape);
+    if (io->status == HF_OK &&
+        HF_ARENA_ARRAYS(&shape->block, HF_ARRAY(shape->position_m, 3 * (size_t)n_node),
+                        HF_ARRAY(shape->length_m, (size_t)n_cable), HF_ARRAY(shape->tension_N, (size_t)n_cable),
+                        HF_ARRAY(shape->q_N_per_m, (size_t)n_cable), HF_ARRAY(shape->law, (size_t)n_cable)) != HF_OK)
+        hf_hdf5_no_memory(io);
+    hf_layout_pass_columns(io, false, group, &hf_layout_shape, n_node, n_cable, shape);
     hf_hdf5_close(io, group);
 }
 

@@ -333,8 +333,7 @@ typedef struct {
 static void read_rows(hf_hdf5 *io, hid_t group, stored_search *a)
 {
     const hf_optimize_settings *o = &a->settings.optimize;
-    int *of = malloc((size_t)a->model.n_variable * sizeof *of);
-    if (!of) hf_hdf5_no_memory(io);
+    int *of = hf_hdf5_take(io, (size_t)a->model.n_variable, sizeof *of);
     hf_hdf5_read_list(io, group, "row", HF_KIND_INT, a->model.n_variable, 0, of);
     for (int k = 0; io->status == HF_OK && k < a->model.n_variable; k++) {
         if (of[k] < 0 || of[k] >= o->n_variable_row)
@@ -370,14 +369,11 @@ static void open_stored_search(hf_store *s, stored_search *a)
     hf_hdf5 *io = &s->f.io;
     size_t n = (size_t)s->rows.n_variable;
     a->model.n_variable = s->rows.n_variable;
-    a->group = malloc(n * sizeof *a->group);
-    a->leader = malloc(n * sizeof *a->leader);
-    a->initial = malloc(n * sizeof *a->initial);
-    if (s->rows.has_rows) a->rows = malloc(n * sizeof *a->rows);
-    if (!a->group || !a->leader || !a->initial || (s->rows.has_rows && !a->rows)) {
-        hf_hdf5_no_memory(io);
-        return;
-    }
+    a->group = hf_hdf5_take(io, n, sizeof *a->group);
+    a->leader = hf_hdf5_take(io, n, sizeof *a->leader);
+    a->initial = hf_hdf5_take(io, n, sizeof *a->initial);
+    if (s->rows.has_rows) a->rows = hf_hdf5_take(io, n, sizeof *a->rows);
+    if (io->status != HF_OK) return;
     hf_store_read_case(io, &a->settings);
     read_variables(io, a);
     a->model.variable_group = a->group;

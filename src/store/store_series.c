@@ -28,7 +28,7 @@ static void read_series(hf_hdf5 *io, const char *name, int columns, hf_series *s
         hf_hdf5_damaged(io, io->file, name, "has other dimensions than a report reads");
     size_t count = io->status == HF_OK ? (size_t)d.dims[0] * (size_t)n_column : 0;
     series->columns = n_column;
-    if (count > 0 && !(series->value = calloc(count, sizeof *series->value))) hf_hdf5_no_memory(io);
+    if (count > 0) series->value = hf_hdf5_take(io, count, sizeof *series->value);
     if (count > 0 && io->status == HF_OK) {
         series->n = (int)d.dims[0];
         if (H5Dread(d.id, is_enum ? H5T_NATIVE_SCHAR : H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
@@ -74,8 +74,7 @@ void hf_texts_free(hf_texts *texts)
  * are written. */
 static bool allocate(hf_hdf5 *io, int n, size_t length, hf_texts *texts)
 {
-    char *text = io->status == HF_OK ? calloc((size_t)n, length) : NULL;
-    if (!text) hf_hdf5_no_memory(io);
+    char *text = hf_hdf5_take(io, (size_t)n, length);
     if (text) *texts = (hf_texts){n, length, text};
     return text != NULL;
 }

@@ -1,11 +1,11 @@
 /* Implements vtkhdf.h. Sections: cells, links, a result. */
 #include "store/vtkhdf.h"
 
-#include "base/arena.h"
 #include "store/layout.h"
 #include <hifdm/store.h>
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define POINT_DATA "/VTKHDF/PointData"
@@ -172,12 +172,9 @@ void hf_vtkhdf_put_result(hf_hdf5 *io, const hf_summary *summary)
     hf_layout_renew(io, "/VTKHDF");
     const int n = hf_hdf5_length(io, io->file, "/scene/node/role", HF_LAYOUT_COUNT_MAX);
     const int m = hf_hdf5_length(io, io->file, "/scene/cable/group", HF_LAYOUT_COUNT_MAX);
-    int *corner, *offset;
-    unsigned char *bytes; /* one value for each node or for each cable */
-    void *block = NULL;
-    if (io->status == HF_OK && HF_ARENA_ARRAYS(&block, HF_ARRAY(corner, 2 * m), HF_ARRAY(offset, m + 1),
-                                               HF_ARRAY(bytes, n > m ? n : m)) != HF_OK)
-        hf_hdf5_no_memory(io);
+    int *corner = hf_hdf5_take(io, (size_t)m, 2 * sizeof *corner);
+    int *offset = hf_hdf5_take(io, (size_t)m + 1, sizeof *offset);
+    unsigned char *bytes = hf_hdf5_take(io, (size_t)(n > m ? n : m), 1); /* a value for each node or each cable */
     if (io->status == HF_OK) {
         for (int e = 0; e <= m; e++)
             offset[e] = 2 * e;
@@ -188,5 +185,7 @@ void hf_vtkhdf_put_result(hf_hdf5 *io, const hf_summary *summary)
         copy_numbers(io, "/scene/cable/group", HF_KIND_GROUP, m, bytes, CELL_DATA, "group", "0 inner, 1 boundary");
         link_all(io, result, position, summary);
     }
-    hf_arena_free_block(block);
+    free(corner);
+    free(offset);
+    free(bytes);
 }
