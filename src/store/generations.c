@@ -172,7 +172,7 @@ static void add_part(hf_generations *g, const hf_population *population)
     hf_generations_list(&best, row);
     for (int i = 0; !hf_generations_is_series(i); i++) {
         if (is_best)
-            hf_generations_gather(&row[i], g->row_bytes[i], slot(g, i));
+            hf_generations_copy(&row[i], g->row_bytes[i], true, slot(g, i));
         else if (g->row_bytes[i])
             memcpy(slot(g, i), g->last[i], g->row_bytes[i]);
     }
@@ -186,7 +186,7 @@ void hf_generations_add(hf_generations *g, const hf_population *population, stru
     assert(g->n_waiting < g->capacity && hf_generations_are_of(g, population));
     for (int i = 0; i < HF_GENERATIONS_PIECES; i++) {
         char *to = hf_generations_has_last(g) && !hf_generations_is_series(i) ? g->last[i] : slot(g, i);
-        hf_generations_gather(&row[i], g->whole_bytes[i], to);
+        hf_generations_copy(&row[i], g->whole_bytes[i], true, to);
         if (piece) piece[i] = (struct iovec){to, g->whole_bytes[i]};
     }
     if (piece) {
@@ -212,7 +212,7 @@ bool hf_generations_take_payload(const hf_generations *g, const void *payload, c
     memcpy(&hash, from, sizeof hash);
     from += sizeof hash;
     for (int i = HF_ROW_DESIGN + 1; i < HF_GENERATIONS_PIECES; from += g->whole_bytes[i++])
-        hf_generations_scatter(&row[i], g->whole_bytes[i], from);
+        hf_generations_copy(&row[i], g->whole_bytes[i], false, (char *)from);
     for (int i = 0; i < population->n_individual && before; i++) {
         int kept = population->parent[2 * i];
         if (kept >= 0 && kept < population->n_individual && population->parent[2 * i + 1] == -1)
@@ -370,6 +370,19 @@ int hf_generations_count(hf_hdf5 *io, hf_generations *g)
     return g->n_stored;
 }
 
+/* Reads n rows of a data set from row `first` on. */
+static void read_some(hf_hdf5 *io, hid_t group, hf_generations_row *row, int first, int n, void *values)
+{
+    row->array.dims[0] = (hsize_t)n;
+    hf_hdf5_read_rows(io, group, &row->array, (hsize_t)first, values);
+}
+
+/* Opens the group in which the last generation is stored as a whole. */
+static hid_t open_whole(hf_hdf5 *io, const hf_generations *g)
+{
+    return hf_hdf5_open_group(io, hf_generations_has_last(g) ? HF_GENERATIONS_GROUP "/last" : HF_GENERATIONS_GROUP);
+}
+
 /* Counts the evaluations of the first n generations in the file, one block of generations at a time. */
 static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g, int n,
                               long count[HF_GENERATIONS_COUNTS])
@@ -378,17 +391,11 @@ static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g,
     size_t p = (size_t)g->n_individual;
     hf_generations_list_empty(g, g->n_individual, row);
     memset(count, 0, HF_GENERATIONS_COUNTS * sizeof *count);
-    char *block = malloc(2 * BLOCK * p);
-    if (!block) {
-        hf_hdf5_no_memory(io);
-        return;
-    }
-    char *status = block + BLOCK * p;
+    char *block = hf_hdf5_take(io, 2 * BLOCK, p), *status = block + BLOCK * p;
     for (int first = 0; io->status == HF_OK && first < n; first += BLOCK) {
         int some = n - first < BLOCK ? n - first : BLOCK;
-        row[HF_ROW_EVALUATED].array.dims[0] = row[HF_ROW_TRIAL_STATUS].array.dims[0] = (hsize_t)some;
-        hf_hdf5_read_rows(io, group, &row[HF_ROW_EVALUATED].array, (hsize_t)first, block);
-        hf_hdf5_read_rows(io, group, &row[HF_ROW_TRIAL_STATUS].array, (hsize_t)first, status);
+        read_some(io, group, &row[HF_ROW_EVALUATED], first, some, block);
+        read_some(io, group, &row[HF_ROW_TRIAL_STATUS], first, some, status);
         for (size_t i = 0; io->status == HF_OK && i < (size_t)some * p; i++) {
             count[0] += block[i] != 0;
             count[1] += block[i] != 0 && status[i] != HF_OK;
@@ -398,17 +405,15 @@ static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g,
     free(block);
 }
 
-/* Reads one figure of an individual from row `at`, the row of its generation. */
-static void read_of_best(hf_hdf5 *io, hid_t group, const hf_generations_row *row, const hf_result_field *field,
-                         hsize_t at, int individual, hf_summary *s)
+/* Reads one figure of an individual, which row `at` of the data set has, to `to`. */
+static void read_of_best(hf_hdf5 *io, hid_t group, hf_generations_row row, int at, int individual, void *to)
 {
-    size_t n = (size_t)row->array.dims[1], each = hf_hdf5_kind_bytes(row->array.kind);
-    char *values = malloc(n * each), *to = (char *)&s->stage[HF_STAGE_SEARCH].result + field->offset;
-    if (!values) hf_hdf5_no_memory(io);
-    hf_hdf5_read_rows(io, group, &row->array, at, values);
+    size_t n = (size_t)row.array.dims[1], each = hf_hdf5_kind_bytes(row.array.kind);
+    char *values = hf_hdf5_take(io, n, each);
+    hf_hdf5_read_rows(io, group, &row.array, (hsize_t)at, values);
+    row.from = to;
     if (io->status == HF_OK && individual >= 0 && (size_t)individual < n)
-        hf_generations_scatter(&(hf_generations_row){row->array, to, 0, field->size}, each,
-                               values + (size_t)individual * each);
+        hf_generations_copy(&row, each, false, values + (size_t)individual * each);
     free(values);
 }
 
@@ -418,6 +423,7 @@ static void note_best(hf_hdf5 *io, hid_t group, const hf_generations *g, const d
 {
     hf_generations_row row[HF_GENERATIONS_PIECES];
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
+    bool has_last = hf_generations_has_last(g);
     int best = -1, individual = -1, last = g->n_stored - 1;
     for (int i = 0; i <= last; i++)
         if (!isnan(best_merit[i]) && (best < 0 || best_merit[i] < best_merit[best])) best = i;
@@ -427,23 +433,18 @@ static void note_best(hf_hdf5 *io, hid_t group, const hf_generations *g, const d
     hf_form_result *result = &s->stage[HF_STAGE_SEARCH].result;
     *result = (hf_form_result){.status = HF_OK, .culprit = -1};
     hf_result_blank(result);
-    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_PSI].array, (hsize_t)best, &result->psi_m);
     result->merit = best_merit[best];
-    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_INDIVIDUAL].array, (hsize_t)best, &s->search.best_individual);
-    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_INDIVIDUAL].array,
-                      (hsize_t)(hf_generations_has_last(g) ? last : best), &individual);
-    hid_t from =
-        hf_hdf5_open_group(io, hf_generations_has_last(g) ? HF_GENERATIONS_GROUP "/last" : HF_GENERATIONS_GROUP);
+    read_some(io, group, &row[HF_ROW_BEST_PSI], best, 1, &result->psi_m);
+    read_some(io, group, &row[HF_ROW_BEST_INDIVIDUAL], best, 1, &s->search.best_individual);
+    read_some(io, group, &row[HF_ROW_BEST_INDIVIDUAL], has_last ? last : best, 1, &individual);
+    hid_t whole = open_whole(io, g);
     hf_result_list_individual(field);
-    hsize_t at = hf_generations_has_last(g) ? 0 : (hsize_t)best;
     for (int i = 0; i < HF_RESULT_N_INDIVIDUAL; i++)
-        read_of_best(io, from, &row[HF_ROW_RESULT + i], field[i], at, individual, s);
-    for (int k = 0; k < g->n_objective; k++) {
-        const hf_result_field objective = {.offset = offsetof(hf_form_result, objective) + (size_t)k * sizeof(double),
-                                           .size = sizeof(double)};
-        read_of_best(io, from, &row[HF_ROW_OBJECTIVE + k], &objective, at, individual, s);
-    }
-    hf_hdf5_close(io, from);
+        read_of_best(io, whole, row[HF_ROW_RESULT + i], has_last ? 0 : best, individual,
+                     (char *)result + field[i]->offset);
+    for (int k = 0; k < g->n_objective; k++)
+        read_of_best(io, whole, row[HF_ROW_OBJECTIVE + k], has_last ? 0 : best, individual, &result->objective[k]);
+    hf_hdf5_close(io, whole);
 }
 
 /* Restores the counts of the generations before the last one. hf_optimiser_tell will add those of the last one. */
@@ -466,14 +467,9 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population 
     int last = g->n_stored - 1;
     assert(g->n_waiting == 0 && last >= 0 && hf_generations_are_of(g, population));
     size_t largest = g->whole_bytes[0] + (size_t)population->n_individual * 2 * sizeof(double) + sizeof(double);
-    char *values = malloc(largest);
-    if (!values) {
-        hf_hdf5_no_memory(io);
-        return;
-    }
-    hid_t group = hf_hdf5_open_group(io, HF_GENERATIONS_GROUP),
-          whole =
-              hf_hdf5_open_group(io, hf_generations_has_last(g) ? HF_GENERATIONS_GROUP "/last" : HF_GENERATIONS_GROUP);
+    char *values = hf_hdf5_take(io, largest, 1);
+    if (!values) return;
+    hid_t group = hf_hdf5_open_group(io, HF_GENERATIONS_GROUP), whole = open_whole(io, g);
     population->generation = last;
     hf_generations_list(population, row);
     for (int i = 0; i < HF_GENERATIONS_PIECES && io->status == HF_OK; i++) {
@@ -481,16 +477,14 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population 
         assert(g->whole_bytes[i] <= largest);
         if (!is_stored(g, i)) continue;
         hf_hdf5_read_rows(io, is_alone ? whole : group, &row[i].array, is_alone ? 0 : (hsize_t)last, values);
-        if (io->status == HF_OK) hf_generations_scatter(&row[i], g->whole_bytes[i], values);
+        if (io->status == HF_OK) hf_generations_copy(&row[i], g->whole_bytes[i], false, values);
     }
     free(values);
     if (io->status == HF_OK && !hf_generations_are_sound(population))
         hf_hdf5_damaged(io, group, NULL, "has a last generation that no run stores");
-    row[HF_ROW_BEST_PSI].array.dims[0] = row[HF_ROW_BEST_MERIT].array.dims[0] = (hsize_t)g->n_stored;
-    row[HF_ROW_VIOLATION].array.dims[0] = (hsize_t)g->n_stored;
-    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_PSI].array, 0, population->best_psi_m);
-    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_MERIT].array, 0, population->best_merit);
-    hf_hdf5_read_rows(io, group, &row[HF_ROW_VIOLATION].array, 0, population->least_violation);
+    read_some(io, group, &row[HF_ROW_BEST_PSI], 0, g->n_stored, population->best_psi_m);
+    read_some(io, group, &row[HF_ROW_BEST_MERIT], 0, g->n_stored, population->best_merit);
+    read_some(io, group, &row[HF_ROW_VIOLATION], 0, g->n_stored, population->least_violation);
     restore_counts(io, group, g, population);
     HF_HDF5_CLOSE(io, whole, group);
 }
@@ -500,11 +494,8 @@ void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
     hf_generations_row row[HF_GENERATIONS_PIECES];
     if (g->n_stored == 0 || io->status != HF_OK) return;
     int longer = g->n_stored > g->n_individual ? g->n_stored : g->n_individual;
-    double *values = malloc((size_t)longer * sizeof *values);
-    if (!values) {
-        hf_hdf5_no_memory(io);
-        return;
-    }
+    double *values = hf_hdf5_take(io, (size_t)longer, sizeof *values);
+    if (!values) return;
     long count[HF_GENERATIONS_COUNTS];
     hid_t group = hf_hdf5_open_group(io, HF_GENERATIONS_GROUP);
     hf_generations_list_empty(g, g->n_individual, row);
@@ -513,8 +504,7 @@ void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
         hf_hdf5_read_rows(io, group, &row[HF_ROW_PSI].array, 0, values); /* the first generation */
         if (io->status == HF_OK) s->search.initial_psi_m = values[0];
     }
-    row[HF_ROW_BEST_MERIT].array.dims[0] = (hsize_t)g->n_stored;
-    hf_hdf5_read_rows(io, group, &row[HF_ROW_BEST_MERIT].array, 0, values);
+    read_some(io, group, &row[HF_ROW_BEST_MERIT], 0, g->n_stored, values);
     if (io->status == HF_OK) note_best(io, group, g, values, s);
     memcpy(count, g->count, sizeof count);
     if (!hf_generations_has_last(g)) count_evaluations(io, group, g, g->n_stored, count);

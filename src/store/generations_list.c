@@ -109,35 +109,9 @@ void hf_generations_tally(const hf_population *p, int sign, long count[HF_GENERA
     }
 }
 
-/* An enumeration is an int in memory and a byte in the file. */
-void hf_generations_gather(const hf_generations_row *row, size_t bytes, char *to)
+void hf_generations_copy(const hf_generations_row *row, size_t bytes, bool packs, char *packed)
 {
-    size_t each = hf_hdf5_kind_bytes(row->array.kind), n = bytes / each;
-    const char *from = row->from;
-    if (row->item_bytes == each && (row->stride == each || n == 1)) {
-        if (bytes) memcpy(to, from, bytes);
-        return;
-    }
-    for (size_t i = 0; i < n; i++, from += row->stride) {
-        int value;
-        if (row->item_bytes == each) {
-            memcpy(to + i * each, from, each);
-        } else {
-            memcpy(&value, from, sizeof value);
-            to[i] = (char)value;
-        }
-    }
-}
-
-void hf_generations_scatter(const hf_generations_row *row, size_t bytes, const char *from)
-{
-    size_t each = hf_hdf5_kind_bytes(row->array.kind), n = bytes / each;
-    char *to = (char *)row->from;
-    for (size_t i = 0; i < n; i++, to += row->stride) {
-        int value = (signed char)from[i];
-        if (row->item_bytes == each)
-            memcpy(to, from + i * each, each);
-        else
-            memcpy(to, &value, sizeof value);
-    }
+    size_t each = hf_hdf5_kind_bytes(row->array.kind);
+    hf_layout_copy(row->array.kind, each, row->item_bytes, row->stride, (int)(bytes / each), packs, packed,
+                   (char *)row->from);
 }

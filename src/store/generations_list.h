@@ -58,9 +58,8 @@ extern const char *const hf_generations_count_name[HF_GENERATIONS_COUNTS];
  * among the latter that have a shape. */
 void hf_generations_tally(const hf_population *population, int sign, long count[HF_GENERATIONS_COUNTS]);
 
-/* hf_generations_gather copies the values of one generation to `to`, side by side as HDF5 takes them; `bytes` is their
- * size there. hf_generations_scatter copies them back. */
-void hf_generations_gather(const hf_generations_row *row, size_t bytes, char *to);
-void hf_generations_scatter(const hf_generations_row *row, size_t bytes, const char *from);
+/* Copies the values of one generation between the population and `packed`, where they are side by side as HDF5 takes
+ * them: to `packed` with `packs`, else back. bytes: of all of them there. */
+void hf_generations_copy(const hf_generations_row *row, size_t bytes, bool packs, char *packed);
 
 #endif

@@ -162,8 +162,13 @@ static size_t row_bytes(const hf_layout_field *f)
 void hf_layout_copy(const hf_hdf5_kind *kind, size_t bytes, size_t size, size_t stride, int n, bool packs, char *packed,
                     char *owner)
 {
+    bool is_alike = kind->class != HF_HDF5_ENUM || size == bytes;
+    if (is_alike && stride == bytes && n > 0) { /* one item */
+        bytes *= (size_t)n;
+        n = 1;
+    }
     for (int i = 0; i < n; i++, packed += bytes, owner += stride) {
-        if (kind->class != HF_HDF5_ENUM)
+        if (is_alike)
             memcpy(packs ? packed : owner, packs ? owner : packed, bytes);
         else if (packs)
             *(signed char *)packed = (signed char)hf_layout_int(owner, size);
