@@ -1,8 +1,7 @@
-/* Implements generations.h. Sections: memory, waiting rows, writing, restoring. */
+/* Implements generations.h. Sections: list of data sets, memory, waiting rows, writing, restoring. */
 #include "store/generations.h"
 
 #include "base/arena.h"
-#include "store/generations_list.h"
 
 #include <assert.h>
 #include <math.h>
@@ -23,6 +22,164 @@
 /* Generations that are read at a time for the sums. Tested from 1 to 102400. */
 #define BLOCK 1024
 
+/* ---- the list of data sets ---- */
+
+/* A data set and the location of its values of one generation: one item after the other, `stride` bytes apart. A data
+ * set without bytes is not in the file. */
+typedef struct {
+    hf_hdf5_array array;
+    const void *from;
+    size_t stride, item_bytes;
+} generation_row;
+
+/* Indices of the data sets. The figures of the individuals are those of <hifdm/result.h>: status first, then psi_m. */
+enum {
+    HF_ROW_DESIGN,
+    HF_ROW_EVALUATED,
+    HF_ROW_RESULT,
+    HF_ROW_STATUS = HF_ROW_RESULT,
+    HF_ROW_PSI,
+    HF_ROW_OBJECTIVE = HF_ROW_RESULT + HF_RESULT_N_INDIVIDUAL, /* objectives that a case does not have take no bytes */
+    HF_ROW_TRIAL_STATUS = HF_ROW_OBJECTIVE + HF_FRONT_OBJECTIVES_MAX,
+    HF_ROW_TRIAL_PSI,
+    HF_ROW_BREEDING,
+    HF_ROW_BEST_INDIVIDUAL = HF_ROW_BREEDING + 3,
+    HF_ROW_BEST_PSI,
+    HF_ROW_BEST_MERIT,
+    HF_ROW_VIOLATION,
+    HF_ROW_N = HF_ROW_VIOLATION + 4
+};
+_Static_assert(HF_ROW_N == HF_GENERATIONS_PIECES, "count the rows again");
+
+/* Returns true for a figure of the whole generation, false for a value per individual. */
+static bool is_series(int i)
+{
+    return i >= HF_ROW_BEST_INDIVIDUAL;
+}
+
+/* Returns true if the last generation is stored as a whole beside the rows, which do not have all of it. */
+static bool has_last(const hf_generations *g)
+{
+    return g->every != 1;
+}
+
+static void list_objectives(const hf_population *now, generation_row *row)
+{
+    static const char *const name[] = {"objective_0", "objective_1", "objective_2"};
+    _Static_assert(sizeof name / sizeof *name == HF_FRONT_OBJECTIVES_MAX, "a name for each objective");
+    for (int k = 0; k < HF_FRONT_OBJECTIVES_MAX; k++) {
+        hsize_t n = k < now->n_objective ? (hsize_t)now->n_individual : 0;
+        row[k] = (generation_row){{name[k], HF_KIND_REAL, 2, {1, n}, "", "of optimize.front, each in its own unit"},
+                                  &now->result->objective[k],
+                                  sizeof *now->result,
+                                  sizeof(double)};
+    }
+}
+
+/* Lists the data sets with their values in a population that hf_optimiser_tell has ranked. */
+static void list_rows(const hf_population *now, generation_row row[HF_GENERATIONS_PIECES])
+{
+    const hsize_t p = (hsize_t)now->n_individual, k = (hsize_t)now->n_variable;
+#define ARRAY(member) now->member, sizeof *now->member, sizeof *now->member
+#define SINGLE(value) &(value), 0, sizeof(value)
+    const generation_row before[] = {
+        {hf_layout_of_variables("design", now->has_rows, 3, (const hsize_t[3]){1, p, k}), ARRAY(design)},
+        {{"evaluated",
+          HF_KIND_FLAG,
+          2,
+          {1, p},
+          "",
+          "TRUE = a trial was evaluated for this individual; FALSE: its result was known"},
+         ARRAY(pending)}};
+    const generation_row behind[] = {
+        {{"trial_status", HF_KIND_STATUS, 2, {1, p}, "", "of what was proposed for this individual"},
+         ARRAY(trial_status)},
+        {{"trial_psi_m", HF_KIND_REAL, 2, {1, p}, "m", "the same; kept when it was not worse"}, ARRAY(trial_psi_m)},
+        {{"crossover_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(crossover_rate)},
+        {{"mutation_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(mutation_rate)},
+        {{"parent", HF_KIND_INT, 3, {1, p, 2}, "", "individuals of the generation before, or -1; i, -1: i was kept"},
+         ARRAY(parent)},
+        {{"best_individual", HF_KIND_INT, 1, {1}, "", "-1 while none is feasible"}, SINGLE(now->best)},
+        {{"best_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the generation"}, SINGLE(now->best_psi_m[now->generation])},
+        {{"best_merit",
+          HF_KIND_REAL,
+          1,
+          {1},
+          "",
+          "of the generation: psi, m, without an objective; the first one of a front"},
+         SINGLE(now->best_merit[now->generation])},
+        {{"violation_min", HF_KIND_REAL, 1, {1}, "", "0: a design is feasible; inf: none has a shape"},
+         SINGLE(now->least_violation[now->generation])},
+        {{"mean_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(now->mean_psi_m)},
+        {{"worst_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(now->worst_psi_m)},
+        {{"n_infeasible", HF_KIND_INT, 1, {1}, "", "individuals whose status is not ok"}, SINGLE(now->n_infeasible)}};
+#undef ARRAY
+#undef SINGLE
+    _Static_assert(sizeof before == HF_ROW_RESULT * sizeof row[0], "rows before the results");
+    _Static_assert(sizeof behind == (HF_ROW_N - HF_ROW_TRIAL_STATUS) * sizeof row[0], "rows behind the results");
+    const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
+    hf_result_list_individual(field);
+    memcpy(row, before, sizeof before);
+    for (int i = 0; i < HF_RESULT_N_INDIVIDUAL; i++) {
+        const hf_result_field *f = field[i];
+        row[HF_ROW_RESULT + i] =
+            (generation_row){{f->name, hf_layout_kind_of(f), 2, {1, p}, f->units ? f->units : "", f->description},
+                             (const char *)now->result + f->offset,
+                             sizeof *now->result,
+                             f->size};
+    }
+    list_objectives(now, row + HF_ROW_OBJECTIVE);
+    memcpy(row + HF_ROW_TRIAL_STATUS, behind, sizeof behind);
+    assert(!strcmp(row[HF_ROW_STATUS].array.name, "status") && !strcmp(row[HF_ROW_PSI].array.name, "psi_m") &&
+           !strcmp(row[HF_ROW_BEST_INDIVIDUAL].array.name, "best_individual") &&
+           !strcmp(row[HF_ROW_BEST_PSI].array.name, "best_psi_m") &&
+           !strcmp(row[HF_ROW_BEST_MERIT].array.name, "best_merit") &&
+           !strcmp(row[HF_ROW_TRIAL_STATUS].array.name, "trial_status") &&
+           !strcmp(row[HF_ROW_VIOLATION].array.name, "violation_min"));
+}
+
+/* Lists names and sizes alone, for n_individual individuals. The pointers to values are not valid. */
+static void list_empty(const hf_generations *g, int n_individual, generation_row row[HF_GENERATIONS_PIECES])
+{
+    hf_form_result nothing = {0};
+    double none = 0;
+    const hf_population empty = {.n_individual = n_individual,
+                                 .n_variable = g->n_variable,
+                                 .n_objective = g->n_objective,
+                                 .has_rows = g->has_rows,
+                                 .result = &nothing,
+                                 .best_psi_m = &none,
+                                 .best_merit = &none,
+                                 .least_violation = &none};
+    list_rows(&empty, row);
+}
+
+/* Attributes of /search/population/last, in the order of hf_generations.count. */
+static const char *const count_name[HF_GENERATIONS_COUNTS] = {"n_evaluation", "n_evaluation_infeasible",
+                                                              "n_evaluation_above_cap"};
+
+/* Adds sign times the evaluations of a generation to `count`: all of them, those without a feasible design, and those
+ * among the latter that have a shape. */
+static void tally(const hf_population *p, int sign, long count[HF_GENERATIONS_COUNTS])
+{
+    for (int i = 0; i < p->n_individual; i++) {
+        count[0] += p->pending[i] ? sign : 0;
+        count[1] += p->pending[i] && p->trial_status[i] != HF_OK ? sign : 0;
+        count[2] += p->pending[i] && p->trial_status[i] != HF_OK && hf_status_has_shape(p->trial_status[i]) ? sign : 0;
+    }
+}
+
+/* Copies the values of one generation between the population and `packed`, where they are side by side as HDF5 takes
+ * them: to `packed` with `packs`, else back. bytes: of all of them there. */
+static void copy_values(const generation_row *row, size_t bytes, bool packs, char *packed)
+{
+    size_t each = hf_hdf5_kind_bytes(row->array.kind);
+    hf_layout_copy(row->array.kind, each, row->item_bytes, row->stride, (int)(bytes / each), packs, packed,
+                   (char *)row->from);
+}
+
+/* ---- memory ---- */
+
 /* Returns the number of individuals in one row. */
 static int n_in_row(const hf_generations *g)
 {
@@ -35,15 +192,12 @@ static int rows_of(const hf_generations *g, int n)
     return g->every > 1 ? (n + g->every - 1) / g->every : n;
 }
 
-/* ---- memory ---- */
-
 static void lay_out(hf_arena *arena, hf_generations *g)
 {
     for (int i = 0; i < HF_GENERATIONS_PIECES; i++) {
         g->row[i] =
             hf_arena_take(arena, (size_t)(i == HF_ROW_DESIGN ? g->design_capacity : g->capacity), g->row_bytes[i]);
-        g->last[i] =
-            hf_arena_take(arena, hf_generations_has_last(g) && !hf_generations_is_series(i), g->whole_bytes[i]);
+        g->last[i] = hf_arena_take(arena, has_last(g) && !is_series(i), g->whole_bytes[i]);
     }
 }
 
@@ -62,8 +216,8 @@ static int how_many(size_t fit, int limit)
 /* Sets the bytes of one generation of n_individual individuals in each data set. */
 static void measure_rows(const hf_generations *g, int n_individual, size_t bytes[HF_GENERATIONS_PIECES])
 {
-    hf_generations_row row[HF_GENERATIONS_PIECES];
-    hf_generations_list_empty(g, n_individual, row);
+    generation_row row[HF_GENERATIONS_PIECES];
+    list_empty(g, n_individual, row);
     for (int i = 0; i < HF_GENERATIONS_PIECES; i++) {
         bytes[i] = hf_hdf5_kind_bytes(row[i].array.kind);
         for (int d = 1; d < row[i].array.rank; d++)
@@ -118,9 +272,9 @@ bool hf_generations_are_due(const hf_generations *g)
 
 static char *slot(const hf_generations *g, int i)
 {
-    int n = hf_generations_is_series(i) ? g->n_waiting
-            : i == HF_ROW_DESIGN        ? g->n_design
-                                        : rows_of(g, g->n_stored + g->n_waiting) - rows_of(g, g->n_stored);
+    int n = is_series(i)         ? g->n_waiting
+            : i == HF_ROW_DESIGN ? g->n_design
+                                 : rows_of(g, g->n_stored + g->n_waiting) - rows_of(g, g->n_stored);
     return g->row[i] + (size_t)n * g->row_bytes[i];
 }
 
@@ -165,14 +319,14 @@ static hf_population best_alone(const hf_population *p)
 /* Adds the rows of individuals that the file keeps of a generation. The whole generation is in g->last already. */
 static void add_part(hf_generations *g, const hf_population *population)
 {
-    hf_generations_row row[HF_GENERATIONS_PIECES];
+    generation_row row[HF_GENERATIONS_PIECES];
     hf_population best = best_alone(population);
     bool is_best = g->every == HF_GENERATIONS_BEST;
     if (!is_best && (g->n_stored + g->n_waiting) % g->every != 0) return;
-    hf_generations_list(&best, row);
-    for (int i = 0; !hf_generations_is_series(i); i++) {
+    list_rows(&best, row);
+    for (int i = 0; !is_series(i); i++) {
         if (is_best)
-            hf_generations_copy(&row[i], g->row_bytes[i], true, slot(g, i));
+            copy_values(&row[i], g->row_bytes[i], true, slot(g, i));
         else if (g->row_bytes[i])
             memcpy(slot(g, i), g->last[i], g->row_bytes[i]);
     }
@@ -181,21 +335,21 @@ static void add_part(hf_generations *g, const hf_population *population)
 
 void hf_generations_add(hf_generations *g, const hf_population *population, struct iovec *piece)
 {
-    hf_generations_row row[HF_GENERATIONS_PIECES];
-    hf_generations_list(population, row);
+    generation_row row[HF_GENERATIONS_PIECES];
+    list_rows(population, row);
     assert(g->n_waiting < g->capacity && hf_generations_are_of(g, population));
     for (int i = 0; i < HF_GENERATIONS_PIECES; i++) {
-        char *to = hf_generations_has_last(g) && !hf_generations_is_series(i) ? g->last[i] : slot(g, i);
-        hf_generations_copy(&row[i], g->whole_bytes[i], true, to);
+        char *to = has_last(g) && !is_series(i) ? g->last[i] : slot(g, i);
+        copy_values(&row[i], g->whole_bytes[i], true, to);
         if (piece) piece[i] = (struct iovec){to, g->whole_bytes[i]};
     }
     if (piece) {
         g->design_hash = hash_designs(population);
         piece[HF_ROW_DESIGN] = (struct iovec){&g->design_hash, sizeof g->design_hash};
     }
-    hf_generations_tally(population, 1, g->count);
+    tally(population, 1, g->count);
     if (g->n_stored + g->n_waiting == 0) g->base_psi_m = population->result[0].psi_m;
-    if (hf_generations_has_last(g))
+    if (has_last(g))
         add_part(g, population);
     else
         g->n_design++;
@@ -205,14 +359,14 @@ void hf_generations_add(hf_generations *g, const hf_population *population, stru
 bool hf_generations_take_payload(const hf_generations *g, const void *payload, const hf_population *before,
                                  hf_population *population)
 {
-    hf_generations_row row[HF_GENERATIONS_PIECES];
+    generation_row row[HF_GENERATIONS_PIECES];
     uint64_t hash;
-    hf_generations_list(population, row);
+    list_rows(population, row);
     const char *from = payload;
     memcpy(&hash, from, sizeof hash);
     from += sizeof hash;
     for (int i = HF_ROW_DESIGN + 1; i < HF_GENERATIONS_PIECES; from += g->whole_bytes[i++])
-        hf_generations_copy(&row[i], g->whole_bytes[i], false, (char *)from);
+        copy_values(&row[i], g->whole_bytes[i], false, (char *)from);
     for (int i = 0; i < population->n_individual && before; i++) {
         int kept = population->parent[2 * i];
         if (kept >= 0 && kept < population->n_individual && population->parent[2 * i + 1] == -1)
@@ -222,7 +376,7 @@ bool hf_generations_take_payload(const hf_generations *g, const void *payload, c
 }
 
 /* Returns true if every value of an enumeration has a word. Values of other kinds need none. */
-static bool are_words(const hf_generations_row *row, int n)
+static bool are_words(const generation_row *row, int n)
 {
     if (row->array.kind->class != HF_HDF5_ENUM) return true;
     const char *from = row->from;
@@ -245,8 +399,8 @@ static bool is_within(double value, double low, double high)
 
 bool hf_generations_are_sound(const hf_population *p)
 {
-    hf_generations_row row[HF_GENERATIONS_PIECES];
-    hf_generations_list(p, row);
+    generation_row row[HF_GENERATIONS_PIECES];
+    list_rows(p, row);
     for (int i = HF_ROW_EVALUATED; i < HF_ROW_BEST_INDIVIDUAL; i++)
         if (!are_words(&row[i], p->n_individual)) return false;
     for (int i = 0; i < p->n_individual; i++) {
@@ -284,16 +438,16 @@ static void choose_chunk(const hf_hdf5_array *a, size_t row_bytes, hsize_t rows,
     }
 }
 
-static void make_array(hf_hdf5 *io, hid_t group, const hf_generations_row *row, size_t row_bytes, int rows)
+static void make_array(hf_hdf5 *io, hid_t group, const generation_row *row, size_t row_bytes, int rows)
 {
     hsize_t chunk[3];
     choose_chunk(&row->array, row_bytes, (hsize_t)rows, chunk);
     hf_hdf5_close(io, hf_hdf5_make_array(io, group, &row->array, chunk));
 }
 
-static hid_t open_arrays(hf_hdf5 *io, const hf_generations *g, hf_generations_row row[HF_GENERATIONS_PIECES])
+static hid_t open_arrays(hf_hdf5 *io, const hf_generations *g, generation_row row[HF_GENERATIONS_PIECES])
 {
-    hf_generations_list_empty(g, n_in_row(g), row);
+    list_empty(g, n_in_row(g), row);
     hid_t group = hf_hdf5_make_group(io, HF_GENERATIONS_GROUP);
     if (g->n_stored > 0 || hf_hdf5_has(io, group, row[HF_ROW_DESIGN].array.name)) return group;
     for (int i = 0; i < HF_GENERATIONS_PIECES; i++)
@@ -302,10 +456,10 @@ static hid_t open_arrays(hf_hdf5 *io, const hf_generations *g, hf_generations_ro
 }
 
 /* Writes the n waiting rows of data set i. They are its last rows so far. */
-static void write_row(hf_hdf5 *io, const hf_generations *g, hid_t group, hf_generations_row *row, int i, int n)
+static void write_row(hf_hdf5 *io, const hf_generations *g, hid_t group, generation_row *row, int i, int n)
 {
     int end = g->n_stored + g->n_waiting;
-    if (!hf_generations_is_series(i)) end = rows_of(g, end);
+    if (!is_series(i)) end = rows_of(g, end);
     row[i].array.dims[0] = (hsize_t)n;
     if (n > 0 && is_stored(g, i)) hf_hdf5_write_rows(io, group, &row[i].array, (hsize_t)(end - n), g->row[i]);
 }
@@ -313,23 +467,23 @@ static void write_row(hf_hdf5 *io, const hf_generations *g, hid_t group, hf_gene
 /* Writes the last generation as a whole, from which a run is resumed, and the counts of all generations so far. */
 static void write_last(hf_hdf5 *io, const hf_generations *g)
 {
-    hf_generations_row row[HF_GENERATIONS_PIECES];
-    hf_generations_list_empty(g, g->n_individual, row);
+    generation_row row[HF_GENERATIONS_PIECES];
+    list_empty(g, g->n_individual, row);
     hid_t group = hf_hdf5_make_group(io, HF_GENERATIONS_GROUP "/last");
     bool is_new = !hf_hdf5_has(io, group, row[HF_ROW_DESIGN].array.name);
-    for (int i = 0; !hf_generations_is_series(i); i++) {
+    for (int i = 0; !is_series(i); i++) {
         if (!is_stored(g, i)) continue;
         if (is_new) make_array(io, group, &row[i], g->whole_bytes[i], 1);
         hf_hdf5_write_rows(io, group, &row[i].array, 0, g->last[i]);
     }
     for (int i = 0; i < HF_GENERATIONS_COUNTS; i++)
-        hf_hdf5_put(io, group, ".", hf_generations_count_name[i], HF_KIND_LONG, 0, &g->count[i]);
+        hf_hdf5_put(io, group, ".", count_name[i], HF_KIND_LONG, 0, &g->count[i]);
     hf_hdf5_close(io, group);
 }
 
 void hf_generations_make_room(hf_hdf5 *io, hf_generations *g)
 {
-    hf_generations_row row[HF_GENERATIONS_PIECES];
+    generation_row row[HF_GENERATIONS_PIECES];
     if (io->status != HF_OK) return;
     if (g->n_waiting == g->capacity) {
         hf_generations_write(io, g);
@@ -343,15 +497,15 @@ void hf_generations_make_room(hf_hdf5 *io, hf_generations *g)
 
 void hf_generations_write(hf_hdf5 *io, hf_generations *g)
 {
-    hf_generations_row row[HF_GENERATIONS_PIECES];
+    generation_row row[HF_GENERATIONS_PIECES];
     if (g->n_waiting == 0 || io->status != HF_OK) return;
     hid_t group = open_arrays(io, g, row);
     int n_row = rows_of(g, g->n_stored + g->n_waiting) - rows_of(g, g->n_stored);
     write_row(io, g, group, row, HF_ROW_DESIGN, g->n_design);
     for (int i = HF_ROW_DESIGN + 1; i < HF_GENERATIONS_PIECES; i++)
-        write_row(io, g, group, row, i, hf_generations_is_series(i) ? g->n_waiting : n_row);
+        write_row(io, g, group, row, i, is_series(i) ? g->n_waiting : n_row);
     hf_hdf5_close(io, group);
-    if (hf_generations_has_last(g)) write_last(io, g);
+    if (has_last(g)) write_last(io, g);
     g->n_stored += g->n_waiting;
     g->n_waiting = g->n_design = 0;
 }
@@ -364,14 +518,14 @@ int hf_generations_count(hf_hdf5 *io, hf_generations *g)
     if (hf_hdf5_has(io, io->file, HF_GENERATIONS_GROUP) &&
         hf_hdf5_has(io, io->file, HF_GENERATIONS_GROUP "/n_infeasible"))
         g->n_stored = hf_hdf5_length(io, io->file, HF_GENERATIONS_GROUP "/n_infeasible", g->limit);
-    for (int i = 0; hf_generations_has_last(g) && g->n_stored > 0 && i < HF_GENERATIONS_COUNTS; i++)
-        hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP "/last", hf_generations_count_name[i], HF_KIND_LONG,
-                    &g->count[i], sizeof g->count[i]);
+    for (int i = 0; has_last(g) && g->n_stored > 0 && i < HF_GENERATIONS_COUNTS; i++)
+        hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP "/last", count_name[i], HF_KIND_LONG, &g->count[i],
+                    sizeof g->count[i]);
     return g->n_stored;
 }
 
 /* Reads n rows of a data set from row `first` on. */
-static void read_some(hf_hdf5 *io, hid_t group, hf_generations_row *row, int first, int n, void *values)
+static void read_some(hf_hdf5 *io, hid_t group, generation_row *row, int first, int n, void *values)
 {
     row->array.dims[0] = (hsize_t)n;
     hf_hdf5_read_rows(io, group, &row->array, (hsize_t)first, values);
@@ -380,16 +534,16 @@ static void read_some(hf_hdf5 *io, hid_t group, hf_generations_row *row, int fir
 /* Opens the group in which the last generation is stored as a whole. */
 static hid_t open_whole(hf_hdf5 *io, const hf_generations *g)
 {
-    return hf_hdf5_open_group(io, hf_generations_has_last(g) ? HF_GENERATIONS_GROUP "/last" : HF_GENERATIONS_GROUP);
+    return hf_hdf5_open_group(io, has_last(g) ? HF_GENERATIONS_GROUP "/last" : HF_GENERATIONS_GROUP);
 }
 
 /* Counts the evaluations of the first n generations in the file, one block of generations at a time. */
 static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g, int n,
                               long count[HF_GENERATIONS_COUNTS])
 {
-    hf_generations_row row[HF_GENERATIONS_PIECES];
+    generation_row row[HF_GENERATIONS_PIECES];
     size_t p = (size_t)g->n_individual;
-    hf_generations_list_empty(g, g->n_individual, row);
+    list_empty(g, g->n_individual, row);
     memset(count, 0, HF_GENERATIONS_COUNTS * sizeof *count);
     char *block = hf_hdf5_take(io, 2 * BLOCK, p), *status = block + BLOCK * p;
     for (int first = 0; io->status == HF_OK && first < n; first += BLOCK) {
@@ -406,14 +560,14 @@ static void count_evaluations(hf_hdf5 *io, hid_t group, const hf_generations *g,
 }
 
 /* Reads one figure of an individual, which row `at` of the data set has, to `to`. */
-static void read_of_best(hf_hdf5 *io, hid_t group, hf_generations_row row, int at, int individual, void *to)
+static void read_of_best(hf_hdf5 *io, hid_t group, generation_row row, int at, int individual, void *to)
 {
     size_t n = (size_t)row.array.dims[1], each = hf_hdf5_kind_bytes(row.array.kind);
     char *values = hf_hdf5_take(io, n, each);
     hf_hdf5_read_rows(io, group, &row.array, (hsize_t)at, values);
     row.from = to;
     if (io->status == HF_OK && individual >= 0 && (size_t)individual < n)
-        hf_generations_copy(&row, each, false, values + (size_t)individual * each);
+        copy_values(&row, each, false, values + (size_t)individual * each);
     free(values);
 }
 
@@ -421,14 +575,14 @@ static void read_of_best(hf_hdf5 *io, hid_t group, hf_generations_row row, int a
  * the population, so /search/population/last has its figures. Figures that are not stored are NaN. */
 static void note_best(hf_hdf5 *io, hid_t group, const hf_generations *g, const double *best_merit, hf_summary *s)
 {
-    hf_generations_row row[HF_GENERATIONS_PIECES];
+    generation_row row[HF_GENERATIONS_PIECES];
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
-    bool has_last = hf_generations_has_last(g);
+    bool is_whole = has_last(g);
     int best = -1, individual = -1, last = g->n_stored - 1;
     for (int i = 0; i <= last; i++)
         if (!isnan(best_merit[i]) && (best < 0 || best_merit[i] < best_merit[best])) best = i;
     if (best < 0) return;
-    hf_generations_list_empty(g, g->n_individual, row);
+    list_empty(g, g->n_individual, row);
     s->search.best_generation = best;
     hf_form_result *result = &s->stage[HF_STAGE_SEARCH].result;
     *result = (hf_form_result){.status = HF_OK, .culprit = -1};
@@ -436,14 +590,14 @@ static void note_best(hf_hdf5 *io, hid_t group, const hf_generations *g, const d
     result->merit = best_merit[best];
     read_some(io, group, &row[HF_ROW_BEST_PSI], best, 1, &result->psi_m);
     read_some(io, group, &row[HF_ROW_BEST_INDIVIDUAL], best, 1, &s->search.best_individual);
-    read_some(io, group, &row[HF_ROW_BEST_INDIVIDUAL], has_last ? last : best, 1, &individual);
+    read_some(io, group, &row[HF_ROW_BEST_INDIVIDUAL], is_whole ? last : best, 1, &individual);
     hid_t whole = open_whole(io, g);
     hf_result_list_individual(field);
     for (int i = 0; i < HF_RESULT_N_INDIVIDUAL; i++)
-        read_of_best(io, whole, row[HF_ROW_RESULT + i], has_last ? 0 : best, individual,
+        read_of_best(io, whole, row[HF_ROW_RESULT + i], is_whole ? 0 : best, individual,
                      (char *)result + field[i]->offset);
     for (int k = 0; k < g->n_objective; k++)
-        read_of_best(io, whole, row[HF_ROW_OBJECTIVE + k], has_last ? 0 : best, individual, &result->objective[k]);
+        read_of_best(io, whole, row[HF_ROW_OBJECTIVE + k], is_whole ? 0 : best, individual, &result->objective[k]);
     hf_hdf5_close(io, whole);
 }
 
@@ -452,8 +606,8 @@ static void restore_counts(hf_hdf5 *io, hid_t group, const hf_generations *g, hf
 {
     long count[HF_GENERATIONS_COUNTS];
     memcpy(count, g->count, sizeof count);
-    if (hf_generations_has_last(g))
-        hf_generations_tally(p, -1, count);
+    if (has_last(g))
+        tally(p, -1, count);
     else
         count_evaluations(io, group, g, g->n_stored - 1, count);
     p->n_evaluation = count[0];
@@ -463,7 +617,7 @@ static void restore_counts(hf_hdf5 *io, hid_t group, const hf_generations *g, hf
 
 void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population *population)
 {
-    hf_generations_row row[HF_GENERATIONS_PIECES];
+    generation_row row[HF_GENERATIONS_PIECES];
     int last = g->n_stored - 1;
     assert(g->n_waiting == 0 && last >= 0 && hf_generations_are_of(g, population));
     size_t largest = g->whole_bytes[0] + (size_t)population->n_individual * 2 * sizeof(double) + sizeof(double);
@@ -471,13 +625,13 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population 
     if (!values) return;
     hid_t group = hf_hdf5_open_group(io, HF_GENERATIONS_GROUP), whole = open_whole(io, g);
     population->generation = last;
-    hf_generations_list(population, row);
+    list_rows(population, row);
     for (int i = 0; i < HF_GENERATIONS_PIECES && io->status == HF_OK; i++) {
-        bool is_alone = hf_generations_has_last(g) && !hf_generations_is_series(i);
+        bool is_alone = has_last(g) && !is_series(i);
         assert(g->whole_bytes[i] <= largest);
         if (!is_stored(g, i)) continue;
         hf_hdf5_read_rows(io, is_alone ? whole : group, &row[i].array, is_alone ? 0 : (hsize_t)last, values);
-        if (io->status == HF_OK) hf_generations_copy(&row[i], g->whole_bytes[i], false, values);
+        if (io->status == HF_OK) copy_values(&row[i], g->whole_bytes[i], false, values);
     }
     free(values);
     if (io->status == HF_OK && !hf_generations_are_sound(population))
@@ -491,14 +645,14 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population 
 
 void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
 {
-    hf_generations_row row[HF_GENERATIONS_PIECES];
+    generation_row row[HF_GENERATIONS_PIECES];
     if (g->n_stored == 0 || io->status != HF_OK) return;
     int longer = g->n_stored > g->n_individual ? g->n_stored : g->n_individual;
     double *values = hf_hdf5_take(io, (size_t)longer, sizeof *values);
     if (!values) return;
     long count[HF_GENERATIONS_COUNTS];
     hid_t group = hf_hdf5_open_group(io, HF_GENERATIONS_GROUP);
-    hf_generations_list_empty(g, g->n_individual, row);
+    list_empty(g, g->n_individual, row);
     if (isfinite(g->base_psi_m)) s->search.initial_psi_m = g->base_psi_m;
     if (g->every != HF_GENERATIONS_BEST) {
         hf_hdf5_read_rows(io, group, &row[HF_ROW_PSI].array, 0, values); /* the first generation */
@@ -507,7 +661,7 @@ void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *s)
     read_some(io, group, &row[HF_ROW_BEST_MERIT], 0, g->n_stored, values);
     if (io->status == HF_OK) note_best(io, group, g, values, s);
     memcpy(count, g->count, sizeof count);
-    if (!hf_generations_has_last(g)) count_evaluations(io, group, g, g->n_stored, count);
+    if (!has_last(g)) count_evaluations(io, group, g, g->n_stored, count);
     s->search.evaluations = count[0];
     s->search.infeasible = count[1];
     s->stage[HF_STAGE_SEARCH].exists = true;

@@ -1,5 +1,4 @@
-/* generations - the data sets of /ga that grow by one row per generation. generations_list lists them, both for writing
- * and for restoring. The rows of one generation are all that an optimiser needs to propose the next one
+/* generations - the data sets of /search/population that grow by one row per generation. The rows of one generation are all that an optimiser needs to propose the next one
  * (hf_optimiser_kind).
  *
  *     population after hf_optimiser_tell

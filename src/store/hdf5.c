@@ -13,6 +13,8 @@
 
 /* ---- failures ---- */
 
+#define WHERE_SIZE (HF_HDF5_NAME_SIZE + 256)
+
 typedef struct {
     char words[256]; /* "": HDF5 gives no reason */
     bool is_of_system, is_no_memory;
@@ -36,24 +38,35 @@ static herr_t keep_reason(unsigned n, const H5E_error2_t *entry, void *context)
     return 1;
 }
 
-/* Writes "/group/name", or "attribute a of /group/name", into text[size]. The name "." means the place itself. */
-static void full_name(hid_t place, const char *name, const char *attribute, char *text, size_t size)
+/* Writes the path of an object from the root into path[]. The name "." means the place itself. */
+static void absolute_path(hid_t place, const char *name, char path[HF_HDF5_NAME_SIZE])
 {
-    char group[256] = "";
-    if (place >= 0 && H5Iget_name(place, group, sizeof group) < 0) group[0] = '\0';
-    if (!name || !strcmp(name, ".")) name = "";
-    if (*name && !strcmp(group, "/")) group[0] = '\0';
-    snprintf(text, size, "%s%s%s%s%s%s", attribute ? "attribute " : "", attribute ? attribute : "",
-             attribute ? " of " : "", group, *name && *name != '/' ? "/" : "", name);
+    char group[HF_HDF5_NAME_SIZE] = "";
+    if (*name != '/' && H5Iget_name(place, group, sizeof group) < 0) group[0] = '\0';
+    if (!strcmp(group, "/")) group[0] = '\0';
+    bool is_place = !strcmp(name, ".");
+    snprintf(path, HF_HDF5_NAME_SIZE, "%.500s%s%.500s", group, is_place || *name == '/' ? "" : "/",
+             is_place && *group ? ""
+             : is_place         ? "/"
+                                : name);
+}
+
+/* Writes "/group/name", or "attribute a of /group/name", into text[]. */
+static void full_name(hid_t place, const char *name, const char *attribute, char text[WHERE_SIZE])
+{
+    char path[HF_HDF5_NAME_SIZE] = "";
+    if (place >= 0 || name) absolute_path(place, name ? name : ".", path);
+    snprintf(text, WHERE_SIZE, "%s%.200s%s%s", attribute ? "attribute " : "", attribute ? attribute : "",
+             attribute ? " of " : "", path);
 }
 
 static void fail_at(hf_hdf5 *io, const char *verb, hid_t place, const char *name, const char *attribute)
 {
-    char where[800];
+    char where[WHERE_SIZE];
     hdf5_reason reason = {.words = ""};
     if (io->status != HF_OK) return;
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_reason, &reason); /* before the next HDF5 call clears the error stack */
-    full_name(place, name, attribute, where, sizeof where);
+    full_name(place, name, attribute, where);
     io->is_damaged = *reason.words && !reason.is_of_system && !reason.is_no_memory;
     io->status = hf_error(io->messages, reason.is_no_memory ? HF_NO_MEMORY : HF_IO, "%s: cannot %s%s%s: %s", io->path,
                           verb, *where ? " " : "", where, *reason.words ? reason.words : "HDF5 gives no reason");
@@ -61,19 +74,19 @@ static void fail_at(hf_hdf5 *io, const char *verb, hid_t place, const char *name
 
 static void damaged_at(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *what)
 {
-    char where[800];
+    char where[WHERE_SIZE];
     if (io->status != HF_OK) return;
-    full_name(place, name, attribute, where, sizeof where);
+    full_name(place, name, attribute, where);
     io->is_damaged = true;
     io->status = hf_error(io->messages, HF_IO, "%s: is damaged: %s %s", io->path, where, what);
 }
 
 void hf_hdf5_missing(hf_hdf5 *io, hid_t place, const char *name, const char *attribute)
 {
-    char where[800];
+    char where[WHERE_SIZE];
     if (*io->made_by == '\0') damaged_at(io, place, name, attribute, "is not there");
     if (io->status != HF_OK) return;
-    full_name(place, name, attribute, where, sizeof where);
+    full_name(place, name, attribute, where);
     io->is_damaged = true;
     io->status =
         hf_error(io->messages, HF_IO,
@@ -106,8 +119,18 @@ void hf_hdf5_damaged(hf_hdf5 *io, hid_t place, const char *name, const char *wha
 
 /* ---- types ---- */
 
-const hf_hdf5_kind hf_hdf5_number[4] = {
-    {.class = HF_HDF5_REAL}, {.class = HF_HDF5_INT}, {.class = HF_HDF5_LONG}, {.class = HF_HDF5_UINT64}};
+/* Returns the id, or -1 after closing it if what was set in it has failed. */
+static hid_t checked(hid_t id, bool ok)
+{
+    if (id >= 0 && !ok) H5Idec_ref(id);
+    return ok ? id : -1;
+}
+
+const hf_hdf5_kind hf_hdf5_number[5] = {{.class = HF_HDF5_REAL},
+                                        {.class = HF_HDF5_INT},
+                                        {.class = HF_HDF5_LONG},
+                                        {.class = HF_HDF5_UINT64},
+                                        {.class = HF_HDF5_BYTE}};
 const hf_hdf5_kind hf_hdf5_text = {.class = HF_HDF5_TEXT}, hf_hdf5_chars = {.class = HF_HDF5_CHARS};
 static const char *const flag_word[2] = {"FALSE", "TRUE"}; /* names that h5py reads as bool */
 const hf_hdf5_kind hf_hdf5_flag = {HF_HDF5_ENUM, 2, flag_word, NULL};
@@ -125,42 +148,37 @@ static bool is_enum(const hf_hdf5_kind *kind)
 
 size_t hf_hdf5_kind_bytes(const hf_hdf5_kind *kind)
 {
-    static const size_t bytes[] = {sizeof(double), sizeof(int), sizeof(long), sizeof(uint64_t), sizeof(char *), 1, 1};
+    static const size_t bytes[] = {
+        sizeof(double), sizeof(int), sizeof(long), sizeof(uint64_t), 1, sizeof(char *), 1, 1};
     return bytes[kind->class];
 }
 
 static hid_t make_enum(const hf_hdf5_kind *kind)
 {
     hid_t type = H5Tenum_create(H5T_NATIVE_SCHAR);
-    for (int i = 0; type >= 0 && i < kind->n_word; i++) {
+    bool ok = type >= 0;
+    for (int i = 0; ok && i < kind->n_word; i++) {
         signed char value = value_at(kind, i);
-        if (H5Tenum_insert(type, kind->word[i], &value) < 0) {
-            H5Tclose(type);
-            type = -1;
-        }
+        ok = H5Tenum_insert(type, kind->word[i], &value) >= 0;
     }
-    return type;
+    return checked(type, ok);
 }
 
 /* Makes a type of strings. length: bytes of each string, or H5T_VARIABLE. */
 static hid_t make_string(size_t length)
 {
     hid_t type = H5Tcopy(H5T_C_S1);
-    if (type >= 0 && (H5Tset_size(type, length) < 0 || H5Tset_cset(type, H5T_CSET_UTF8) < 0 ||
-                      (length != H5T_VARIABLE && H5Tset_strpad(type, H5T_STR_NULLPAD) < 0))) {
-        H5Tclose(type);
-        type = -1;
-    }
-    return type;
+    return checked(type, type >= 0 && H5Tset_size(type, length) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0 &&
+                             (length == H5T_VARIABLE || H5Tset_strpad(type, H5T_STR_NULLPAD) >= 0));
 }
 
 /* Makes the HDF5 type of a kind, which the caller closes; negative after a failure of HDF5. length: bytes of each
  * string of HF_KIND_CHARS. */
 static hid_t make_type(const hf_hdf5_kind *kind, hsize_t length)
 {
-    const hid_t number[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_INT, H5T_NATIVE_LONG, H5T_NATIVE_UINT64};
+    const hid_t number[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_INT, H5T_NATIVE_LONG, H5T_NATIVE_UINT64, H5T_NATIVE_UCHAR};
     if (is_enum(kind)) return make_enum(kind);
-    if (kind->class <= HF_HDF5_UINT64) return H5Tcopy(number[kind->class]);
+    if (kind->class <= HF_HDF5_BYTE) return H5Tcopy(number[kind->class]);
     return make_string(kind->class == HF_HDF5_TEXT ? H5T_VARIABLE : (size_t)length);
 }
 
@@ -206,19 +224,6 @@ const char *hf_hdf5_word(const hf_hdf5_kind *kind, int value)
 
 /* ---- names in files of another version ---- */
 
-/* Writes the path of an object from the root into path[]. */
-static void absolute_path(hid_t place, const char *name, char path[HF_HDF5_NAME_SIZE])
-{
-    char group[HF_HDF5_NAME_SIZE] = "";
-    if (*name != '/' && H5Iget_name(place, group, sizeof group) < 0) group[0] = '\0';
-    if (!strcmp(group, "/")) group[0] = '\0';
-    bool is_place = !strcmp(name, ".");
-    snprintf(path, HF_HDF5_NAME_SIZE, "%.500s%s%.500s", group, is_place || *name == '/' ? "" : "/",
-             is_place && *group ? ""
-             : is_place         ? "/"
-                                : name);
-}
-
 /* Returns true if there is an object at this path. A link in it is not followed, but counts. */
 static bool is_there(hf_hdf5 *io, const char *path)
 {
@@ -257,11 +262,7 @@ void hf_hdf5_close(hf_hdf5 *io, hid_t id)
 static hid_t make_properties(hid_t class)
 {
     hid_t properties = H5Pcreate(class);
-    if (properties >= 0 && H5Pset_obj_track_times(properties, 0) < 0) {
-        H5Pclose(properties);
-        properties = -1;
-    }
-    return properties;
+    return checked(properties, properties >= 0 && H5Pset_obj_track_times(properties, 0) >= 0);
 }
 
 /* Makes the access properties of a file: the format of HDF5 1.8, whose object headers have checksums and which all
@@ -274,11 +275,7 @@ static hid_t make_access(bool locks)
 #if H5_VERSION_GE(1, 10, 7)
     ok = ok && H5Pset_file_locking(access, locks, 1) >= 0;
 #endif
-    if (access >= 0 && !ok) {
-        H5Pclose(access);
-        access = -1;
-    }
-    return access;
+    return checked(access, ok);
 }
 
 /* Returns true if there is memory to open a file. HDF5 1.10 crashes if it gets no memory for the caches of the file.
@@ -371,14 +368,28 @@ static hid_t make_space(const hf_hdf5_array *a, bool grows)
     return H5Screate_simple(a->rank, dims, grows ? max : NULL);
 }
 
-hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const hsize_t *chunk)
+#define PACKED_MIN 4096 /* bytes from which data sets are compressed; the tables of a chunk take 2 KiB */
+
+/* Makes the properties of a data set that grows by chunks, or whose values are packed in one chunk. */
+static hid_t make_layout(const hf_hdf5_array *a, const hsize_t *chunk, bool packs)
+{
+    hid_t properties = make_properties(H5P_DATASET_CREATE);
+    bool ok = properties >= 0;
+    if (ok && chunk) /* chunks are written before they are read */
+        ok = H5Pset_chunk(properties, a->rank, chunk) >= 0 && H5Pset_fill_time(properties, H5D_FILL_TIME_NEVER) >= 0;
+    if (ok && packs && a->dims[0] * hf_hdf5_kind_bytes(a->kind) >= PACKED_MIN &&
+        H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0)
+        ok = H5Pset_chunk(properties, 1, a->dims) >= 0 && H5Pset_shuffle(properties) >= 0 &&
+             H5Pset_deflate(properties, 1) >= 0;
+    return checked(properties, ok);
+}
+
+static hid_t make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const hsize_t *chunk, bool packs)
 {
     hid_t type = -1, space = -1, properties = -1, data_set = -1;
     if (io->status != HF_OK) return -1;
     if ((type = array_type(a)) < 0 || (space = make_space(a, chunk != NULL)) < 0 ||
-        (properties = make_properties(H5P_DATASET_CREATE)) < 0 ||
-        (chunk && (H5Pset_chunk(properties, a->rank, chunk) < 0 || /* chunks are written before they are read */
-                   H5Pset_fill_time(properties, H5D_FILL_TIME_NEVER) < 0)) ||
+        (properties = make_layout(a, chunk, packs)) < 0 ||
         (data_set = H5Dcreate2(group, a->name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT)) < 0)
         hf_hdf5_fail(io, "write", group, a->name);
     HF_HDF5_CLOSE(io, properties, space, type);
@@ -387,15 +398,31 @@ hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const
     return data_set;
 }
 
-void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const void *values)
+hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const hsize_t *chunk)
 {
-    hid_t data_set = hf_hdf5_make_array(io, group, a, NULL), type = -1;
+    return make_array(io, group, a, chunk, false);
+}
+
+static void write_values(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, bool packs, const void *values)
+{
+    hid_t data_set = make_array(io, group, a, NULL, packs), type = -1;
     if (io->status == HF_OK) {
         type = array_type(a);
         if (type < 0 || H5Dwrite(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
             hf_hdf5_fail(io, "write", group, a->name);
     }
     HF_HDF5_CLOSE(io, type, data_set);
+}
+
+void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const void *values)
+{
+    write_values(io, group, a, false, values);
+}
+
+void hf_hdf5_write_packed(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_kind *kind, int n,
+                          const char *description, const void *values)
+{
+    write_values(io, group, &(hf_hdf5_array){name, kind, 1, {(hsize_t)n}, "", description}, true, values);
 }
 
 void hf_hdf5_write_list(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_kind *kind, int n, int columns,
@@ -474,11 +501,6 @@ static void read_values(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, bool a
     hf_hdf5_close_data_set(io, &d);
 }
 
-void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, void *values)
-{
-    read_values(io, group, a, true, 0, values);
-}
-
 void hf_hdf5_read_list(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_kind *kind, int n, int columns,
                        void *values)
 {
@@ -491,7 +513,7 @@ void hf_hdf5_pass_array(hf_hdf5 *io, bool writes, hid_t group, const hf_hdf5_arr
     if (writes)
         hf_hdf5_write_array(io, group, a, values);
     else
-        hf_hdf5_read_array(io, group, a, values);
+        read_values(io, group, a, true, 0, values);
 }
 
 int hf_hdf5_length(hf_hdf5 *io, hid_t group, const char *name, int max)

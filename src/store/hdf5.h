@@ -42,6 +42,7 @@ typedef enum {
     HF_HDF5_INT,    /* int */
     HF_HDF5_LONG,   /* long */
     HF_HDF5_UINT64, /* uint64_t */
+    HF_HDF5_BYTE,   /* unsigned char */
     /* const char *: UTF-8 of variable length, which h5py returns as str. Never read back here, because HDF5 1.10
      * crashes on damaged texts of this kind. */
     HF_HDF5_TEXT,
@@ -57,11 +58,12 @@ typedef struct {
     const signed char *value; /* [n_word] value of each word; NULL: 0, 1, 2, ... */
 } hf_hdf5_kind;
 
-extern const hf_hdf5_kind hf_hdf5_number[4], hf_hdf5_text, hf_hdf5_chars, hf_hdf5_flag;
+extern const hf_hdf5_kind hf_hdf5_number[5], hf_hdf5_text, hf_hdf5_chars, hf_hdf5_flag;
 #define HF_KIND_REAL (&hf_hdf5_number[HF_HDF5_REAL])
 #define HF_KIND_INT (&hf_hdf5_number[HF_HDF5_INT])
 #define HF_KIND_LONG (&hf_hdf5_number[HF_HDF5_LONG])
 #define HF_KIND_UINT64 (&hf_hdf5_number[HF_HDF5_UINT64])
+#define HF_KIND_BYTE (&hf_hdf5_number[HF_HDF5_BYTE])
 #define HF_KIND_TEXT (&hf_hdf5_text)
 #define HF_KIND_CHARS (&hf_hdf5_chars)
 #define HF_KIND_FLAG (&hf_hdf5_flag) /* enumeration of 0 and 1, which h5py returns as bool */
@@ -187,11 +189,15 @@ void hf_hdf5_write_rows(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, hs
 void hf_hdf5_read_rows(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, hsize_t row, void *values);
 
 /* hf_hdf5_write_list writes n values, or with columns > 0 n rows of so many. hf_hdf5_read_list reads them as
- * hf_hdf5_read_array does. */
+ * hf_hdf5_pass_array does. */
 void hf_hdf5_write_list(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_kind *kind, int n, int columns,
                         const char *units, const char *description, const void *values);
 void hf_hdf5_read_list(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_kind *kind, int n, int columns,
                        void *values);
+
+/* Writes n values that only repeat or count. A large data set of them is compressed. */
+void hf_hdf5_write_packed(hf_hdf5 *io, hid_t group, const char *name, const hf_hdf5_kind *kind, int n,
+                          const char *description, const void *values);
 
 /* Writes n >= 1 names, padded to the length of the longest. */
 void hf_hdf5_write_ids(hf_hdf5 *io, hid_t group, const char *name, const char *const *id, int n,
@@ -206,10 +212,8 @@ char *hf_hdf5_read_strings(hf_hdf5 *io, hid_t group, const char *name, int n, si
 void hf_hdf5_read_ids(hf_hdf5 *io, hid_t group, const char *name_a, int n, const char **id_a, const char *name_b, int m,
                       const char **id_b, void **text);
 
-/* Reads exactly array->dims values. Other dimensions, other types and unknown values of enumerations are failures. */
-void hf_hdf5_read_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, void *values);
-
-/* Writes the values, or reads them. */
+/* Writes the values, or reads exactly array->dims values. Other dimensions, other types and unknown values of
+ * enumerations are failures then. */
 void hf_hdf5_pass_array(hf_hdf5 *io, bool writes, hid_t group, const hf_hdf5_array *array, void *values);
 
 /* Returns the first dimension of a data set, 1 to `max`, or 0 after a failure. Other lengths are damage. */

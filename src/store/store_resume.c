@@ -322,10 +322,8 @@ void hf_store_put_refine(hf_store *s, bool finished)
 /* The optimiser of an unfinished file, made from the file alone. Only the design variables of the model are set. */
 typedef struct {
     hf_case settings;
-    hf_model model;
-    int *group, *leader; /* [n_variable] */
-    double *initial;     /* [n_variable] */
-    hf_variable *rows;   /* [n_variable] with optimize.variables, else NULL */
+    hf_model model;  /* owns variable_group, variable_leader and variable here */
+    double *initial; /* [n_variable] */
     hf_optimiser optimiser;
 } stored_search;
 
@@ -339,7 +337,8 @@ static void read_rows(hf_hdf5 *io, hid_t group, stored_search *a)
         if (of[k] < 0 || of[k] >= o->n_variable_row)
             hf_hdf5_damaged(io, io->file, "/variable", "has design variables of other rows than the case");
         else
-            a->rows[k] = (hf_variable){.vary = o->variable_row[of[k]].vary, .setting = of[k], .support_row = -1};
+            a->model.variable[k] =
+                (hf_variable){.vary = o->variable_row[of[k]].vary, .setting = of[k], .support_row = -1};
     }
     free(of);
 }
@@ -348,19 +347,21 @@ static void read_variables(hf_hdf5 *io, stored_search *a)
 {
     const int n = a->model.n_variable;
     hid_t group = hf_hdf5_open_group(io, "/variable");
-    hf_hdf5_read_list(io, group, "group", HF_KIND_INT, n, 0, a->group);
+    hf_hdf5_read_list(io, group, "group", HF_KIND_INT, n, 0, a->model.variable_group);
     bool has_leader = hf_hdf5_has(io, group, "leader");
-    if (has_leader) hf_hdf5_read_list(io, group, "leader", HF_KIND_INT, n, 0, a->leader);
+    if (has_leader) hf_hdf5_read_list(io, group, "leader", HF_KIND_INT, n, 0, a->model.variable_leader);
     read_initial(io, group, "initial", n, a->initial);
-    if (a->rows) read_rows(io, group, a);
+    if (a->model.variable) read_rows(io, group, a);
     hf_hdf5_close(io, group);
     for (int k = 0; io->status == HF_OK && k < a->model.n_variable; k++) {
-        if (!has_leader) a->leader[k] = k;
-        if (a->group[k] < 0 || a->group[k] >= a->model.n_variable || a->leader[k] < 0 || a->leader[k] > k ||
-            a->leader[a->leader[k]] != a->leader[k])
+        if (!has_leader) a->model.variable_leader[k] = k;
+        if (a->model.variable_group[k] < 0 || a->model.variable_group[k] >= a->model.n_variable ||
+            a->model.variable_leader[k] < 0 || a->model.variable_leader[k] > k ||
+            a->model.variable_leader[a->model.variable_leader[k]] != a->model.variable_leader[k])
             hf_hdf5_damaged(io, io->file, "/variable", "has impossible design variables");
-        a->model.n_leader += a->leader[k] == k;
-        if (a->group[k] >= a->model.n_variable_group) a->model.n_variable_group = a->group[k] + 1;
+        a->model.n_leader += a->model.variable_leader[k] == k;
+        if (a->model.variable_group[k] >= a->model.n_variable_group)
+            a->model.n_variable_group = a->model.variable_group[k] + 1;
     }
 }
 
@@ -369,16 +370,13 @@ static void open_stored_search(hf_store *s, stored_search *a)
     hf_hdf5 *io = &s->f.io;
     size_t n = (size_t)s->rows.n_variable;
     a->model.n_variable = s->rows.n_variable;
-    a->group = hf_hdf5_take(io, n, sizeof *a->group);
-    a->leader = hf_hdf5_take(io, n, sizeof *a->leader);
+    a->model.variable_group = hf_hdf5_take(io, n, sizeof *a->model.variable_group);
+    a->model.variable_leader = hf_hdf5_take(io, n, sizeof *a->model.variable_leader);
     a->initial = hf_hdf5_take(io, n, sizeof *a->initial);
-    if (s->rows.has_rows) a->rows = hf_hdf5_take(io, n, sizeof *a->rows);
+    if (s->rows.has_rows) a->model.variable = hf_hdf5_take(io, n, sizeof *a->model.variable);
     if (io->status != HF_OK) return;
     hf_store_read_case(io, &a->settings);
     read_variables(io, a);
-    a->model.variable_group = a->group;
-    a->model.variable_leader = a->leader;
-    a->model.variable = a->rows;
     const hf_optimize_settings *o = &a->settings.optimize;
     if (io->status == HF_OK &&
         (o->population != s->rows.n_individual || o->generations != s->rows.limit || o->n_front != s->rows.n_objective))
@@ -393,10 +391,10 @@ static void close_stored_search(stored_search *a)
 {
     hf_optimiser_free(&a->optimiser);
     hf_case_free(&a->settings);
-    free(a->group);
-    free(a->leader);
+    free(a->model.variable_group);
+    free(a->model.variable_leader);
     free(a->initial);
-    free(a->rows);
+    free(a->model.variable);
 }
 
 /* Adds the generations of the journal to the file and publishes it. *a must be all zero. */

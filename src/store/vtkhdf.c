@@ -10,8 +10,7 @@
 
 #define POINT_DATA "/VTKHDF/PointData"
 #define CELL_DATA "/VTKHDF/CellData"
-#define PACKED_MIN 4096 /* bytes from which data sets are compressed; the tables of a chunk take 2 KiB */
-#define LINKS_MAX 1000  /* in a group: 3 for each of HF_LOAD_CASES_MAX load cases and 5 shapes, and a few more */
+#define LINKS_MAX 1000 /* in a group: 3 for each of HF_LOAD_CASES_MAX load cases and 5 shapes, and a few more */
 
 /* ---- cells ---- */
 
@@ -27,39 +26,6 @@ static void put_type(hf_hdf5 *io, hid_t group)
         H5Awrite(attribute, type, word) < 0)
         hf_hdf5_fail(io, "write", group, "Type");
     HF_HDF5_CLOSE(io, attribute, space, type);
-}
-
-/* Makes the properties of a data set of n values. Large data sets are compressed, because their values only repeat or
- * count. */
-static hid_t make_properties(hid_t type, hsize_t n)
-{
-    hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
-    if (properties >= 0 && (H5Pset_obj_track_times(properties, 0) < 0 ||
-                            (n * H5Tget_size(type) >= PACKED_MIN && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0 &&
-                             (H5Pset_chunk(properties, 1, &n) < 0 || H5Pset_shuffle(properties) < 0 ||
-                              H5Pset_deflate(properties, 1) < 0)))) {
-        H5Pclose(properties);
-        return -1;
-    }
-    return properties;
-}
-
-/* Writes a data set of n values. type: H5T_NATIVE_UCHAR, which VTK's reader expects for the types of cells, or
- * H5T_NATIVE_INT. */
-static void put_packed(hf_hdf5 *io, hid_t group, const char *name, hid_t type, int n, const void *values,
-                       const char *description)
-{
-    const hsize_t dims = (hsize_t)n;
-    hid_t space = -1, properties = -1, data_set = -1;
-    if (io->status != HF_OK) return;
-    if ((space = H5Screate_simple(1, &dims, NULL)) < 0 || (properties = make_properties(type, dims)) < 0 ||
-        (data_set = H5Dcreate2(group, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT)) < 0 ||
-        H5Dwrite(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
-        hf_hdf5_fail(io, "write", group, name);
-    HF_HDF5_CLOSE(io, properties, space);
-    hf_hdf5_put_text(io, data_set, ".", "units", "");
-    hf_hdf5_put_text(io, data_set, ".", "description", description);
-    hf_hdf5_close(io, data_set);
 }
 
 /* Makes a group that keeps all its links in its header. The tables that HDF5 makes for more than eight links take 4
@@ -90,9 +56,9 @@ void hf_vtkhdf_put_cells(hf_hdf5 *io, const hf_vtkhdf_cells *c)
     put_count(io, group, "NumberOfPoints", c->n_point);
     put_count(io, group, "NumberOfCells", c->n_cell);
     put_count(io, group, "NumberOfConnectivityIds", n_corner);
-    put_packed(io, group, "Connectivity", H5T_NATIVE_INT, n_corner, c->corner, "");
-    put_packed(io, group, "Offsets", H5T_NATIVE_INT, c->n_cell + 1, c->offset, "");
-    put_packed(io, group, "Types", H5T_NATIVE_UCHAR, c->n_cell, c->type, "");
+    hf_hdf5_write_packed(io, group, "Connectivity", HF_KIND_INT, n_corner, "", c->corner);
+    hf_hdf5_write_packed(io, group, "Offsets", HF_KIND_INT, c->n_cell + 1, "", c->offset);
+    hf_hdf5_write_packed(io, group, "Types", HF_KIND_BYTE, c->n_cell, "", c->type);
     hf_hdf5_close(io, group);
     hf_hdf5_close(io, make_group(io, POINT_DATA));
     hf_hdf5_close(io, make_group(io, CELL_DATA));
@@ -159,7 +125,7 @@ static void copy_numbers(hf_hdf5 *io, const char *from, const hf_hdf5_kind *kind
 {
     hf_hdf5_read_list(io, io->file, from, kind, n, 0, values);
     hid_t place = hf_hdf5_open_group(io, group);
-    put_packed(io, place, name, H5T_NATIVE_UCHAR, n, values, description);
+    hf_hdf5_write_packed(io, place, name, HF_KIND_BYTE, n, description, values);
     hf_hdf5_close(io, place);
 }
 
