@@ -269,23 +269,29 @@ static int read_header(char *line, int *from, int n_ours)
     return is_old || !strcmp(name[0], HEADER) ? n : 0;
 }
 
+/* Keeps a block until hf_points_free. Returns false if it is NULL or memory runs out, and frees it then. */
+static bool keep_block(hf_points *points, void *block)
+{
+    void **more = block ? realloc(points->block, ((size_t)points->n_block + 1) * sizeof *more) : NULL;
+    if (!more) {
+        free(block);
+        return false;
+    }
+    points->block = more;
+    points->block[points->n_block++] = block;
+    return true;
+}
+
 /* Takes the rows of one file. Returns false if memory runs out. */
 static bool read_rows(reading *r, char *text)
 {
-    hf_points *points = r->points;
     int n_ours = hf_ledger_n_field(), from[FIELD_MAX], n_field = 0;
     char *field[FIELD_MAX], *end;
     long n_line = 0;
     for (const char *p = text; (p = strchr(p, '\n')) != NULL; p++)
         n_line++;
     char **number = malloc(((size_t)n_line + 1) * (size_t)n_ours * sizeof *number);
-    char ***more = realloc(points->fields, ((size_t)points->n_field_block + 1) * sizeof *more);
-    if (more) points->fields = more;
-    if (!number || !more) {
-        free(number);
-        return false;
-    }
-    points->fields[points->n_field_block++] = number;
+    if (!keep_block(r->points, number)) return false;
     for (char *line = text; (end = strchr(line, '\n')) != NULL; line = end + 1, number += n_ours) {
         *end = '\0';
         if (line == text) {
@@ -329,18 +335,12 @@ static hf_status read_text(const char *path, char **text, hf_messages *messages)
 
 static hf_status read_file(reading *r, const char *folder, const char *name, hf_messages *messages)
 {
-    hf_points *points = r->points;
     char path[HF_PATH_SIZE + 300], *text;
     snprintf(path, sizeof path, "%s/%s", folder, name);
     HF_TRY(read_text(path, &text, messages));
-    char **more = realloc(points->text, ((size_t)points->n_text + 1) * sizeof *more);
-    if (more) {
-        points->text = more;
-        points->text[points->n_text++] = text;
-    } else {
-        free(text);
-    }
-    return more && read_rows(r, text) ? HF_OK : hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    return keep_block(r->points, text) && read_rows(r, text)
+               ? HF_OK
+               : hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
 }
 
 static int is_rows(const struct dirent *entry)
@@ -543,12 +543,9 @@ int hf_ledger_n_begun(const char *folder, const hf_study *study, const hf_points
 
 void hf_points_free(hf_points *points)
 {
-    for (int i = 0; i < points->n_text; i++)
-        free(points->text[i]);
-    for (int i = 0; i < points->n_field_block; i++)
-        free(points->fields[i]);
-    free(points->text);
-    free(points->fields);
+    for (int i = 0; i < points->n_block; i++)
+        free(points->block[i]);
+    free(points->block);
     free(points->point);
     *points = (hf_points){0};
 }

@@ -126,10 +126,9 @@ typedef struct {
 typedef struct {
     hf_point *point; /* [n_point] in the order of the study */
     int n_point, count[HF_N_POINT_STATE];
-    int n_lost;  /* missing points that were finished once, but whose result file is gone or begun again */
-    char **text; /* contents of the files; reasons and fields point into them */
-    char ***fields;
-    int n_text, n_field_block;
+    int n_lost;   /* missing points that were finished once, but whose result file is gone or begun again */
+    void **block; /* [n_block] contents of the files, into which reasons and fields point, and lists of fields */
+    int n_block;
 } hf_points;
 
 /* Reads the state of the points of the study. If the folder does not exist, all points are missing. Returns HF_OK;
