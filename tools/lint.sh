@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 heap_files="base/status base/arena base/text base/csv linalg/lapack net/scene net/generate_[a-z_]*
             net/cable_set net/scene_arrays net/facet_import case/config_load_cases net/scene_import net/front_net
             net/model truss/truss truss/generate_[a-z_]* truss/truss_import truss/frame search/batch
-            case/config case/study case/study_read store/hdf5 store/journal store/generations
+            case/config case/study case/study_read store/hdf5 store/journal store/samples store/generations
             store/store_file store/store_internal store/store store/store_read store/store_resume store/compare
             store/store_look store/layout store/layout_truss store/layout_stage store/layout_front
             store/layout_tolerance store/renamed store/summary store/ledger store/merge

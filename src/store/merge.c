@@ -39,6 +39,27 @@ static void write_texts(merger *m, hid_t group, const char *name, const char *de
     hf_hdf5_write_ids(&m->io, group, name, m->room, m->points->n_point, description);
 }
 
+/* Stores the number of a text as item i of m->room. "": there is none. */
+static void set_number(void *room, int i, const hf_hdf5_kind *kind, const char *text)
+{
+    switch (kind->class) {
+    case HF_HDF5_REAL:
+        ((double *)room)[i] = *text ? strtod(text, NULL) : (double)NAN;
+        break;
+    case HF_HDF5_LONG:
+        ((long *)room)[i] = strtol(text, NULL, 10);
+        break;
+    case HF_HDF5_UINT64:
+        ((uint64_t *)room)[i] = strtoull(text, NULL, 10);
+        break;
+    case HF_HDF5_INT:
+        ((int *)room)[i] = atoi(text);
+        break;
+    default:
+        ((signed char *)room)[i] = (signed char)(!*text && kind == HF_KIND_STATUS ? (int)HF_NOT_EVALUATED : atoi(text));
+    }
+}
+
 /* ---- inputs ---- */
 
 static const char *value_of(const merger *m, int i, int axis)
@@ -69,14 +90,10 @@ static void write_axis(merger *m, hid_t group, int i_axis)
         const char *text = value_of(m, i, i_axis);
         if (!kind)
             ((const char **)m->room)[i] = text;
-        else if (type == HF_FIELD_DOUBLE)
-            hf_text_double(text, (double *)m->room + i);
-        else if (type == HF_FIELD_UINT64)
-            hf_text_uint64(text, (uint64_t *)m->room + i);
-        else if (type == HF_FIELD_INT)
-            ((int *)m->room)[i] = atoi(text);
-        else
+        else if (type == HF_FIELD_INT_PAIR)
             sscanf(text, "[%d ,%d", (int *)m->room + 2 * i, (int *)m->room + 2 * i + 1);
+        else
+            set_number(m->room, i, kind, text);
     }
     if (!kind)
         write_texts(m, group, axis->key.path, f->help);
@@ -85,26 +102,6 @@ static void write_axis(merger *m, hid_t group, int i_axis)
 }
 
 /* ---- outputs ---- */
-
-static void set_number(void *room, int i, const hf_hdf5_kind *kind, const char *text)
-{
-    switch (kind->class) {
-    case HF_HDF5_REAL:
-        ((double *)room)[i] = *text ? strtod(text, NULL) : (double)NAN;
-        break;
-    case HF_HDF5_LONG:
-        ((long *)room)[i] = strtol(text, NULL, 10);
-        break;
-    case HF_HDF5_UINT64:
-        ((uint64_t *)room)[i] = strtoull(text, NULL, 10);
-        break;
-    case HF_HDF5_INT:
-        ((int *)room)[i] = atoi(text);
-        break;
-    default:
-        ((signed char *)room)[i] = (signed char)(!*text && kind == HF_KIND_STATUS ? (int)HF_NOT_EVALUATED : atoi(text));
-    }
-}
 
 /* Writes one number of hf_summary for all points. A number that no point has is left out. */
 static void write_output(merger *m, hid_t group, int column)

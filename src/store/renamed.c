@@ -340,11 +340,11 @@ static void link_group(hf_hdf5 *io, const char *path)
     bool is_moved = i >= 0 && !strcmp(below, group_table[i].now);
     char then[HF_HDF5_NAME_SIZE];
     object_then(path, false, then, sizeof then);
-    if (is_moved && is_of_merge && group_table[i].attributes) hf_hdf5_close(io, hf_hdf5_make_group(io, then));
-    if (is_moved && is_of_merge && !group_table[i].attributes) link_to(io, path, then);
+    bool is_mixed = is_moved && group_table[i].attributes;
+    if (is_moved && !is_mixed) link_to(io, path, then);
+    if (is_mixed && is_of_merge) hf_hdf5_close(io, hf_hdf5_make_group(io, then));
     if (is_of_merge) return;
-    if (is_moved && !group_table[i].attributes) link_to(io, path, group_table[i].then);
-    if (is_moved && group_table[i].attributes) {
+    if (is_mixed) {
         hf_hdf5_close(io, hf_hdf5_make_group(io, group_table[i].attributes));
         hf_hdf5_close(io, hf_hdf5_make_group(io, group_table[i].then));
         if (io->status == HF_OK &&

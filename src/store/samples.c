@@ -2,7 +2,6 @@
  * file. */
 #include "store/samples.h"
 
-#include "base/arena.h"
 #include "base/clock.h"
 #include "base/file_io.h"
 #include "base/file_out.h"
@@ -10,6 +9,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -58,13 +58,10 @@ hf_status hf_samples_open(const char *result, const char *beside, int task, int 
                           bool restart, long n, int n_chunk, hf_samples *s, hf_messages *messages)
 {
     *s = (hf_samples){.n = n, .n_chunk = n_chunk, .messages = messages, .journal.file = -1, .rows = -1};
-    hf_arena arena = {0};
     s->n_all = (int)((n + n_chunk - 1) / n_chunk);
     snprintf(s->identity, sizeof s->identity, "%s", identity);
     name_journal(result ? result : "samples", task, tasks, s->name);
-    if (HF_ARENA_MAKE(&arena, s->has = hf_arena_take(&arena, (size_t)s->n_all, 1)) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", s->name);
-    s->block = arena.block;
+    if (!(s->has = calloc((size_t)s->n_all, 1))) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", s->name);
     s->rows = hf_file_out_scratch(beside);
     if (s->rows < 0) return fail_rows(s, "make", strerror(errno));
     if (!result) return HF_OK;
@@ -149,10 +146,9 @@ hf_status hf_samples_read(void *context, long first, int n, double *row)
 void hf_samples_close(hf_samples *s)
 {
     hf_messages *messages = s->messages;
-    hf_arena arena = {.block = s->block};
     if (s->n > 0 && s->rows >= 0) close(s->rows);
     if (s->has_journal) hf_journal_close(&s->journal, false);
-    hf_arena_free(&arena);
+    free(s->has);
     *s = (hf_samples){.messages = messages, .rows = -1};
 }
 

@@ -17,9 +17,8 @@ typedef struct {
     long n;                            /* number of samples */
     int n_chunk;                       /* samples per chunk; the last chunk may have fewer */
     int n_have, n_all;                 /* number of chunks that are there, and of all chunks */
-    unsigned char *has;                /* [n_all] 1: the chunk is there */
+    unsigned char *has;                /* [n_all] 1: the chunk is there; owned */
     int rows;                          /* descriptor of the scratch file; -1: none */
-    void *block;
     bool has_journal;
     hf_journal journal;
     char name[HF_SAMPLES_NAME_SIZE], identity[HF_JOURNAL_IDENTITY + 1];

@@ -21,15 +21,12 @@ static int list_columns(const hf_montecarlo *t, sample_column of[HF_TOLERANCE_CO
                               HF_TOLERANCE_STATUS};
     of[n++] = (sample_column){{"first_order_psi_m", HF_KIND_REAL, 1, {0}, "m", "psi of the same errors to first order"},
                               HF_TOLERANCE_LINEAR_PSI};
-    for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)
+    for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++) {
+        const char *name = hf_tolerance_measure_word[k], *units = hf_tolerance_measure_unit[k];
+        const hf_hdf5_array array = {name, HF_KIND_REAL, 1, {0}, units, hf_tolerance_measure_help[k]};
         if (hf_montecarlo_measures(t->surface, t->facets, (hf_tolerance_measure)k))
-            of[n++] = (sample_column){{hf_tolerance_measure_word[k],
-                                       HF_KIND_REAL,
-                                       1,
-                                       {0},
-                                       hf_tolerance_measure_unit[k],
-                                       hf_tolerance_measure_help[k]},
-                                      HF_TOLERANCE_FIRST + k};
+            of[n++] = (sample_column){array, HF_TOLERANCE_FIRST + k};
+    }
     return n;
 }
 
