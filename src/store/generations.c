@@ -63,63 +63,41 @@ static bool has_last(const hf_generations *g)
     return g->every != 1;
 }
 
-static void list_objectives(const hf_population *now, generation_row *row)
-{
-    static const char *const name[] = {"objective_0", "objective_1", "objective_2"};
-    _Static_assert(sizeof name / sizeof *name == HF_FRONT_OBJECTIVES_MAX, "a name for each objective");
-    for (int k = 0; k < HF_FRONT_OBJECTIVES_MAX; k++) {
-        hsize_t n = k < now->n_objective ? (hsize_t)now->n_individual : 0;
-        row[k] = (generation_row){{name[k], HF_KIND_REAL, 2, {1, n}, "", "of optimize.front, each in its own unit"},
-                                  &now->result->objective[k],
-                                  sizeof *now->result,
-                                  sizeof(double)};
-    }
-}
-
 /* Lists the data sets with their values in a population that hf_optimiser_tell has ranked. */
 static void list_rows(const hf_population *now, generation_row row[HF_GENERATIONS_PIECES])
 {
     const hsize_t p = (hsize_t)now->n_individual, k = (hsize_t)now->n_variable;
 #define ARRAY(member) now->member, sizeof *now->member, sizeof *now->member
 #define SINGLE(value) &(value), 0, sizeof(value)
-    const generation_row before[] = {
-        {hf_layout_of_variables("design", now->has_rows, 3, (const hsize_t[3]){1, p, k}), ARRAY(design)},
-        {{"evaluated",
-          HF_KIND_FLAG,
-          2,
-          {1, p},
-          "",
-          "TRUE = a trial was evaluated for this individual; FALSE: its result was known"},
-         ARRAY(pending)}};
-    const generation_row behind[] = {
-        {{"trial_status", HF_KIND_STATUS, 2, {1, p}, "", "of what was proposed for this individual"},
-         ARRAY(trial_status)},
-        {{"trial_psi_m", HF_KIND_REAL, 2, {1, p}, "m", "the same; kept when it was not worse"}, ARRAY(trial_psi_m)},
-        {{"crossover_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(crossover_rate)},
-        {{"mutation_rate", HF_KIND_REAL, 2, {1, p}, "", "that bred the individual"}, ARRAY(mutation_rate)},
-        {{"parent", HF_KIND_INT, 3, {1, p, 2}, "", "individuals of the generation before, or -1; i, -1: i was kept"},
-         ARRAY(parent)},
-        {{"best_individual", HF_KIND_INT, 1, {1}, "", "-1 while none is feasible"}, SINGLE(now->best)},
-        {{"best_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the generation"}, SINGLE(now->best_psi_m[now->generation])},
-        {{"best_merit",
-          HF_KIND_REAL,
-          1,
-          {1},
-          "",
-          "of the generation: psi, m, without an objective; the first one of a front"},
-         SINGLE(now->best_merit[now->generation])},
-        {{"violation_min", HF_KIND_REAL, 1, {1}, "", "0: a design is feasible; inf: none has a shape"},
-         SINGLE(now->least_violation[now->generation])},
-        {{"mean_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(now->mean_psi_m)},
-        {{"worst_psi_m", HF_KIND_REAL, 1, {1}, "m", "of the feasible individuals"}, SINGLE(now->worst_psi_m)},
-        {{"n_infeasible", HF_KIND_INT, 1, {1}, "", "individuals whose status is not ok"}, SINGLE(now->n_infeasible)}};
+#define ROW(i, name, kind, rank, units, description, ...)                                                              \
+    row[i] = (generation_row){{name, HF_KIND_##kind, rank, {1, p, 2}, units, description}, __VA_ARGS__}
+    row[HF_ROW_DESIGN] = (generation_row){
+        hf_layout_of_variables("design", now->has_rows, 3, (const hsize_t[3]){1, p, k}), ARRAY(design)};
+    ROW(HF_ROW_EVALUATED, "evaluated", FLAG, 2, "",
+        "TRUE = a trial was evaluated for this individual; FALSE: its result was known", ARRAY(pending));
+    ROW(HF_ROW_TRIAL_STATUS, "trial_status", STATUS, 2, "", "of what was proposed for this individual",
+        ARRAY(trial_status));
+    ROW(HF_ROW_TRIAL_PSI, "trial_psi_m", REAL, 2, "m", "the same; kept when it was not worse", ARRAY(trial_psi_m));
+    ROW(HF_ROW_BREEDING, "crossover_rate", REAL, 2, "", "that bred the individual", ARRAY(crossover_rate));
+    ROW(HF_ROW_BREEDING + 1, "mutation_rate", REAL, 2, "", "that bred the individual", ARRAY(mutation_rate));
+    ROW(HF_ROW_BREEDING + 2, "parent", INT, 3, "", "individuals of the generation before, or -1; i, -1: i was kept",
+        ARRAY(parent));
+    ROW(HF_ROW_BEST_INDIVIDUAL, "best_individual", INT, 1, "", "-1 while none is feasible", SINGLE(now->best));
+    ROW(HF_ROW_BEST_PSI, "best_psi_m", REAL, 1, "m", "of the generation", SINGLE(now->best_psi_m[now->generation]));
+    ROW(HF_ROW_BEST_MERIT, "best_merit", REAL, 1, "",
+        "of the generation: psi, m, without an objective; the first one of a front",
+        SINGLE(now->best_merit[now->generation]));
+    ROW(HF_ROW_VIOLATION, "violation_min", REAL, 1, "", "0: a design is feasible; inf: none has a shape",
+        SINGLE(now->least_violation[now->generation]));
+    ROW(HF_ROW_VIOLATION + 1, "mean_psi_m", REAL, 1, "m", "of the feasible individuals", SINGLE(now->mean_psi_m));
+    ROW(HF_ROW_VIOLATION + 2, "worst_psi_m", REAL, 1, "m", "of the feasible individuals", SINGLE(now->worst_psi_m));
+    ROW(HF_ROW_VIOLATION + 3, "n_infeasible", INT, 1, "", "individuals whose status is not ok",
+        SINGLE(now->n_infeasible));
+#undef ROW
 #undef ARRAY
 #undef SINGLE
-    _Static_assert(sizeof before == HF_ROW_RESULT * sizeof row[0], "rows before the results");
-    _Static_assert(sizeof behind == (HF_ROW_N - HF_ROW_TRIAL_STATUS) * sizeof row[0], "rows behind the results");
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
     hf_result_list_individual(field);
-    memcpy(row, before, sizeof before);
     for (int i = 0; i < HF_RESULT_N_INDIVIDUAL; i++) {
         const hf_result_field *f = field[i];
         row[HF_ROW_RESULT + i] =
@@ -128,14 +106,17 @@ static void list_rows(const hf_population *now, generation_row row[HF_GENERATION
                              sizeof *now->result,
                              f->size};
     }
-    list_objectives(now, row + HF_ROW_OBJECTIVE);
-    memcpy(row + HF_ROW_TRIAL_STATUS, behind, sizeof behind);
-    assert(!strcmp(row[HF_ROW_STATUS].array.name, "status") && !strcmp(row[HF_ROW_PSI].array.name, "psi_m") &&
-           !strcmp(row[HF_ROW_BEST_INDIVIDUAL].array.name, "best_individual") &&
-           !strcmp(row[HF_ROW_BEST_PSI].array.name, "best_psi_m") &&
-           !strcmp(row[HF_ROW_BEST_MERIT].array.name, "best_merit") &&
-           !strcmp(row[HF_ROW_TRIAL_STATUS].array.name, "trial_status") &&
-           !strcmp(row[HF_ROW_VIOLATION].array.name, "violation_min"));
+    for (int i = 0; i < HF_FRONT_OBJECTIVES_MAX; i++) {
+        static const char *const name[] = {"objective_0", "objective_1", "objective_2"};
+        _Static_assert(sizeof name / sizeof *name == HF_FRONT_OBJECTIVES_MAX, "a name for each objective");
+        hsize_t n = i < now->n_objective ? p : 0;
+        row[HF_ROW_OBJECTIVE + i] =
+            (generation_row){{name[i], HF_KIND_REAL, 2, {1, n}, "", "of optimize.front, each in its own unit"},
+                             &now->result->objective[i],
+                             sizeof *now->result,
+                             sizeof(double)};
+    }
+    assert(!strcmp(row[HF_ROW_STATUS].array.name, "status") && !strcmp(row[HF_ROW_PSI].array.name, "psi_m"));
 }
 
 /* Lists names and sizes alone, for n_individual individuals. The pointers to values are not valid. */
@@ -515,8 +496,7 @@ void hf_generations_write(hf_hdf5 *io, hf_generations *g)
 int hf_generations_count(hf_hdf5 *io, hf_generations *g)
 {
     g->n_stored = 0;
-    if (hf_hdf5_has(io, io->file, HF_GENERATIONS_GROUP) &&
-        hf_hdf5_has(io, io->file, HF_GENERATIONS_GROUP "/n_infeasible"))
+    if (hf_hdf5_has(io, io->file, HF_GENERATIONS_GROUP "/n_infeasible"))
         g->n_stored = hf_hdf5_length(io, io->file, HF_GENERATIONS_GROUP "/n_infeasible", g->limit);
     for (int i = 0; has_last(g) && g->n_stored > 0 && i < HF_GENERATIONS_COUNTS; i++)
         hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP "/last", count_name[i], HF_KIND_LONG, &g->count[i],

@@ -13,20 +13,18 @@
 
 /* ---- enumerations ---- */
 
-#define STATUS_WORD(name, value, word, ...) word,
-#define STATUS_VALUE(name, value, ...) value,
-#define STOP_WORD(name, value, word) word,
-#define STOP_VALUE(name, value, word) value,
-static const char *const status_word[] = {HF_STATUS_LIST(STATUS_WORD)};
-static const signed char status_value[] = {HF_STATUS_LIST(STATUS_VALUE)};
-static const char *const stop_word[] = {HF_STOP_REASON_LIST(STOP_WORD)};
-static const signed char stop_value[] = {HF_STOP_REASON_LIST(STOP_VALUE)};
-static const char *const coupling_word[] = {HF_COUPLING_STOP_LIST(STOP_WORD)};
-static const signed char coupling_value[] = {HF_COUPLING_STOP_LIST(STOP_VALUE)};
-#define BOUND_WORD(name, value, word, ...) word,
-#define BOUND_VALUE(name, value, ...) value,
-static const char *const bound_word[] = {HF_BOUND_REASON_LIST(BOUND_WORD)};
-static const signed char bound_value[] = {HF_BOUND_REASON_LIST(BOUND_VALUE)};
+/* Of rows (name, value, word) and of rows with more columns. */
+#define WORD(name, value, word) word,
+#define FIRST_WORD(name, value, word, ...) word,
+#define VALUE(name, value, ...) value,
+static const char *const status_word[] = {HF_STATUS_LIST(FIRST_WORD)};
+static const signed char status_value[] = {HF_STATUS_LIST(VALUE)};
+static const char *const stop_word[] = {HF_STOP_REASON_LIST(WORD)};
+static const signed char stop_value[] = {HF_STOP_REASON_LIST(VALUE)};
+static const char *const coupling_word[] = {HF_COUPLING_STOP_LIST(WORD)};
+static const signed char coupling_value[] = {HF_COUPLING_STOP_LIST(VALUE)};
+static const char *const bound_word[] = {HF_BOUND_REASON_LIST(FIRST_WORD)};
+static const signed char bound_value[] = {HF_BOUND_REASON_LIST(VALUE)};
 
 /* Values of the words are 0, 1, 2, ... Lists of words for ENDED_WORDS end with NULL. */
 #define WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, NULL
@@ -72,47 +70,46 @@ const hf_hdf5_kind *hf_layout_kind_of(const hf_result_field *field)
 
 /* ---- columns ---- */
 
-/* Rows of the lists below: X(struct, name, member, kind, per_cable, columns, units, description) */
-#define SCENE_COLUMNS(X)                                                                                               \
-    X(hf_scene, "node/position_m", position_m, REAL, 0, 3, "m", "target position; of supports also the real one")      \
-    X(hf_scene, "node/load_N", load_N, REAL, 0, 3, "N", "load")                                                        \
-    X(hf_scene, "node/role", role, ROLE, 0, 1, "", "support, inner (counted by psi) or edge")                          \
-    X(hf_scene, "cable/end", end, INT, 1, 2, "", "the two nodes, as indices from 0 into /scene/node")                  \
-    X(hf_scene, "cable/group", group, GROUP, 1, 1, "", "inner or boundary")                                            \
-    X(hf_scene, "cable/law", law, LAW, 1, 1, "", "what the scene asks of the cable")                                   \
-    X(hf_scene, "cable/target", target, REAL, 1, 1, "N, m or N/m",                                                     \
-      "tension, length, force density or unstressed length, by law; "                                                  \
-      "NaN = the pretension of the case")                                                                              \
-    X(hf_scene, "cable/EA_N", EA_N, REAL, 1, 1, "N", "axial stiffness, NaN where not given")
+static const hf_layout_column scene_column[] = {
+    HF_LAYOUT_COLUMN(hf_scene, "node/position_m", position_m, REAL, 0, 3, "m",
+                     "target position; of supports also the real one"),
+    HF_LAYOUT_COLUMN(hf_scene, "node/load_N", load_N, REAL, 0, 3, "N", "load"),
+    HF_LAYOUT_COLUMN(hf_scene, "node/role", role, ROLE, 0, 1, "", "support, inner (counted by psi) or edge"),
+    HF_LAYOUT_COLUMN(hf_scene, "cable/end", end, INT, 1, 2, "", "the two nodes, as indices from 0 into /scene/node"),
+    HF_LAYOUT_COLUMN(hf_scene, "cable/group", group, GROUP, 1, 1, "", "inner or boundary"),
+    HF_LAYOUT_COLUMN(hf_scene, "cable/law", law, LAW, 1, 1, "", "what the scene asks of the cable"),
+    HF_LAYOUT_COLUMN(hf_scene, "cable/target", target, REAL, 1, 1, "N, m or N/m",
+                     "tension, length, force density or unstressed length, by law; "
+                     "NaN = the pretension of the case"),
+    HF_LAYOUT_COLUMN(hf_scene, "cable/EA_N", EA_N, REAL, 1, 1, "N", "axial stiffness, NaN where not given")};
 
-#define SHAPE_COLUMNS(X)                                                                                               \
-    X(hf_shape, "position_m", position_m, REAL, 0, 3, "m", "position of each node of /scene/node")                     \
-    X(hf_shape, "length_m", length_m, REAL, 1, 1, "m", "length of each cable of /scene/cable")                         \
-    X(hf_shape, "tension_N", tension_N, REAL, 1, 1, "N", "tension, force density times length")                        \
-    X(hf_shape, "q_N_per_m", q_N_per_m, REAL, 1, 1, "N/m", "force density")                                            \
-    X(hf_shape, "law", law, LAW, 1, 1, "", "law in force, under the case's method or rule")
+static const hf_layout_column shape_column[] = {
+    HF_LAYOUT_COLUMN(hf_shape, "position_m", position_m, REAL, 0, 3, "m", "position of each node of /scene/node"),
+    HF_LAYOUT_COLUMN(hf_shape, "length_m", length_m, REAL, 1, 1, "m", "length of each cable of /scene/cable"),
+    HF_LAYOUT_COLUMN(hf_shape, "tension_N", tension_N, REAL, 1, 1, "N", "tension, force density times length"),
+    HF_LAYOUT_COLUMN(hf_shape, "q_N_per_m", q_N_per_m, REAL, 1, 1, "N/m", "force density"),
+    HF_LAYOUT_COLUMN(hf_shape, "law", law, LAW, 1, 1, "", "law in force, under the case's method or rule")};
 
 /* Columns of hf_truss and of hf_carrier_state in /truss. Here per_cable means per member. */
-#define TRUSS_NUMBER_COLUMN(name, units, otherwise, description)                                                       \
+#define NUMBER(name, units, otherwise, description)                                                                    \
     {"member/" #name, HF_KIND_REAL, 1, 1, units, description, offsetof(hf_truss, name)},
-#define TRUSS_COLUMNS(X)                                                                                               \
-    X(hf_truss, "node/position_m", position_m, REAL, 0, 3, "m", "position without load")                               \
-    X(hf_truss, "node/mass_kg", mass_kg, REAL, 0, 1, "kg", "mass of the hinges")                                       \
-    X(hf_truss, "member/end", end, INT, 1, 2, "", "the two nodes, as indices from 0 into /truss/node")                 \
-    X(hf_truss, "member/joint", joint, JOINT, 1, 1, "", "rigid: clamped to its nodes; pinned: axial force alone")      \
-    X(hf_truss, "member/unit", unit, UNIT, 1, 1, "", "basic unit that the member belongs to")
+static const hf_layout_column truss_column[] = {
+    HF_LAYOUT_COLUMN(hf_truss, "node/position_m", position_m, REAL, 0, 3, "m", "position without load"),
+    HF_LAYOUT_COLUMN(hf_truss, "node/mass_kg", mass_kg, REAL, 0, 1, "kg", "mass of the hinges"),
+    HF_LAYOUT_COLUMN(hf_truss, "member/end", end, INT, 1, 2, "", "the two nodes, as indices from 0 into /truss/node"),
+    HF_LAYOUT_COLUMN(hf_truss, "member/joint", joint, JOINT, 1, 1, "",
+                     "rigid: clamped to its nodes; pinned: axial force alone"),
+    HF_LAYOUT_COLUMN(hf_truss, "member/unit", unit, UNIT, 1, 1, "", "basic unit that the member belongs to"),
+    HF_MEMBER_NUMBERS(NUMBER)};
 
-#define TRUSS_STATE_COLUMNS(X)                                                                                         \
-    X(hf_carrier_state, "node/displacement", displacement, REAL, 0, 6, "m, rad",                                       \
-      "under the pull of the net: along x, y, z, about x, y, z")                                                       \
-    X(hf_carrier_state, "node/reaction", reaction, REAL, 0, 6, "N, N m", "of the supports on the truss")               \
-    X(hf_carrier_state, "member/end_force", end_force, REAL, 1, 12, "N, N m",                                          \
-      "local, of the nodes on the member: Nx (compression), Vy, Vz, Tx, My, Mz at the first end, then at the second")
+static const hf_layout_column state_column[] = {
+    HF_LAYOUT_COLUMN(hf_carrier_state, "node/displacement", displacement, REAL, 0, 6, "m, rad",
+                     "under the pull of the net: along x, y, z, about x, y, z"),
+    HF_LAYOUT_COLUMN(hf_carrier_state, "node/reaction", reaction, REAL, 0, 6, "N, N m", "of the supports on the truss"),
+    HF_LAYOUT_COLUMN(hf_carrier_state, "member/end_force", end_force, REAL, 1, 12, "N, N m",
+                     "local, of the nodes on the member: Nx (compression), Vy, Vz, Tx, My, Mz at the first end, then "
+                     "at the second")};
 
-static const hf_layout_column scene_column[] = {SCENE_COLUMNS(HF_LAYOUT_COLUMN)};
-static const hf_layout_column shape_column[] = {SHAPE_COLUMNS(HF_LAYOUT_COLUMN)};
-static const hf_layout_column truss_column[] = {TRUSS_COLUMNS(HF_LAYOUT_COLUMN) HF_MEMBER_NUMBERS(TRUSS_NUMBER_COLUMN)};
-static const hf_layout_column state_column[] = {TRUSS_STATE_COLUMNS(HF_LAYOUT_COLUMN)};
 const hf_layout_columns hf_layout_scene = {HF_LAYOUT_COLUMNS(scene_column)};
 const hf_layout_columns hf_layout_shape = {HF_LAYOUT_COLUMNS(shape_column)};
 const hf_layout_columns hf_layout_truss = {HF_LAYOUT_COLUMNS(truss_column)};
@@ -289,17 +286,11 @@ void *hf_layout_owner(const hf_summary *summary, hf_layout_part part)
                                        : (void *)((char *)summary + hf_layout_summary[part].offset);
 }
 
-void hf_layout_put_part(hf_hdf5 *io, hf_layout_part part, const hf_summary *summary)
+void hf_layout_pass_part(hf_hdf5 *io, bool writes, hf_layout_part part, const hf_summary *summary)
 {
     const hf_layout_members *p = &hf_layout_summary[part];
-    hf_hdf5_close(io, hf_hdf5_make_group(io, p->object));
-    hf_layout_pass_members(io, true, p->object, p->field, p->n, hf_layout_owner(summary, part));
-}
-
-void hf_layout_get_part(hf_hdf5 *io, hf_layout_part part, hf_summary *summary)
-{
-    const hf_layout_members *p = &hf_layout_summary[part];
-    hf_layout_pass_members(io, false, p->object, p->field, p->n, hf_layout_owner(summary, part));
+    if (writes) hf_hdf5_close(io, hf_hdf5_make_group(io, p->object));
+    hf_layout_pass_members(io, writes, p->object, p->field, p->n, hf_layout_owner(summary, part));
 }
 
 hf_hdf5_array hf_layout_of_variables(const char *name, bool has_rows, int rank, const hsize_t *dims)

@@ -6,7 +6,7 @@
  * sets and facets of the scene, the history and the design variables; store_tolerance.c the as-built samples;
  * store_resume.c the marks of a session and the state of the refinement; vtkhdf.c the group /VTKHDF.
  *
- * A new data set per node or cable is a row of SCENE_COLUMNS or SHAPE_COLUMNS. A new attribute is a row of a list of
+ * A new data set per node or cable is a row of scene_column or shape_column (layout.c). A new attribute is a row of a list of
  * members. A new enumeration is a new kind. */
 #ifndef HIFDM_STORE_LAYOUT_H
 #define HIFDM_STORE_LAYOUT_H
@@ -55,7 +55,9 @@ typedef struct {
 } hf_layout_columns;
 
 #define HF_LAYOUT_COLUMN(type, name, member, kind, per_cable, columns, units, description)                             \
-    {name, HF_KIND_##kind, per_cable, columns, units, description, offsetof(type, member)},
+    {                                                                                                                  \
+        name, HF_KIND_##kind, per_cable, columns, units, description, offsetof(type, member)                           \
+    }
 #define HF_LAYOUT_COLUMNS(table) table, HF_HDF5_COUNT(table)
 
 extern const hf_layout_columns hf_layout_scene;       /* hf_scene in /scene */
@@ -160,18 +162,16 @@ bool hf_layout_has(const hf_summary *summary, hf_layout_part part);
 /* Returns the struct whose members the part lists, or NULL if there is none. */
 void *hf_layout_owner(const hf_summary *summary, hf_layout_part part);
 
-/* Writes or reads the attributes of one part. Writing makes the group. */
-void hf_layout_put_part(hf_hdf5 *io, hf_layout_part part, const hf_summary *summary);
-void hf_layout_get_part(hf_hdf5 *io, hf_layout_part part, hf_summary *summary);
+/* Writes or reads the attributes of one part. Writing makes the group. Here and below reading changes *summary. */
+void hf_layout_pass_part(hf_hdf5 *io, bool writes, hf_layout_part part, const hf_summary *summary);
 
 /* ---- Groups that are not plain tables ----
  * The calls do nothing after a failure. */
 
 /* layout_stage: what the stages and the load cases have besides shapes and figures, see the top of the file. A part
- * that a run does not have has no group. hf_layout_put_objectives writes /objective alone. */
-void hf_layout_put_stages(hf_hdf5 *io, const hf_summary *summary);
-void hf_layout_get_stages(hf_hdf5 *io, hf_summary *summary);
-void hf_layout_put_objectives(hf_hdf5 *io, const hf_summary *summary);
+ * that a run does not have has no group. hf_layout_pass_objectives passes /objective alone. */
+void hf_layout_pass_stages(hf_hdf5 *io, bool writes, const hf_summary *summary);
+void hf_layout_pass_objectives(hf_hdf5 *io, bool writes, const hf_summary *summary);
 
 /* Members of hf_surface_measures, and of hf_load_case_summary with its result. */
 enum {
@@ -208,8 +208,7 @@ void hf_layout_read_front(hf_hdf5 *io, hf_front *front, char **variable, size_t 
 
 /* Writes or reads the point of a front that is the result of this run, as attributes of /case. If there are no such
  * attributes, reading changes nothing. */
-void hf_layout_put_taken(hf_hdf5 *io, const hf_front_origin *taken);
-void hf_layout_get_taken(hf_hdf5 *io, hf_front_origin *taken);
+void hf_layout_pass_taken(hf_hdf5 *io, bool writes, const hf_front_origin *taken);
 
 /* layout_tolerance: the statistics of the as-built samples, in /tolerance. Without samples nothing is written. */
 void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary);

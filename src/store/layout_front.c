@@ -113,7 +113,7 @@ static void read_front(hf_hdf5 *io, hid_t group, int n_variable, hf_front *front
 void hf_layout_get_front(hf_hdf5 *io, hf_summary *s)
 {
     hf_front front = {.minimised = -1, .knee = -1};
-    if (io->status != HF_OK || !hf_hdf5_has(io, io->file, "/front")) return;
+    if (!hf_hdf5_has(io, io->file, "/front")) return;
     if (!(s->front = hf_hdf5_take(io, 1, sizeof *s->front))) return;
     hid_t group = hf_hdf5_open_group(io, "/front");
     read_front(io, group, 0, &front);
@@ -137,19 +137,13 @@ void hf_layout_read_front(hf_hdf5 *io, hf_front *front, char **variable, size_t 
 
 /* ---- a point that was taken ---- */
 
-void hf_layout_put_taken(hf_hdf5 *io, const hf_front_origin *taken)
+void hf_layout_pass_taken(hf_hdf5 *io, bool writes, const hf_front_origin *taken)
 {
-    hf_hdf5_put(io, io->file, "/case", "front_point", HF_KIND_INT, 0, &taken->point);
-    hf_hdf5_put_chars(io, io->file, "/case", "front_file", taken->path);
-    hf_hdf5_put_chars(io, io->file, "/case", "front_design_sha256", taken->sha256);
-}
-
-void hf_layout_get_taken(hf_hdf5 *io, hf_front_origin *taken)
-{
-    if (io->status != HF_OK || !hf_hdf5_has_chars(io, io->file, "/case", "front_file")) return;
-    hf_hdf5_get(io, io->file, "/case", "front_point", HF_KIND_INT, &taken->point, sizeof taken->point);
-    hf_hdf5_get(io, io->file, "/case", "front_file", HF_KIND_CHARS, taken->path, sizeof taken->path);
-    hf_hdf5_get(io, io->file, "/case", "front_design_sha256", HF_KIND_CHARS, taken->sha256, sizeof taken->sha256);
+    static const hf_result_field field[] = {HF_LAYOUT_NAMED(hf_front_origin, "front_point", point, INT) HF_LAYOUT_NAMED(
+        hf_front_origin, "front_file", path, CHARS)
+                                                HF_LAYOUT_NAMED(hf_front_origin, "front_design_sha256", sha256, CHARS)};
+    if (writes ? !taken->point : !hf_hdf5_has_chars(io, io->file, "/case", "front_file")) return;
+    hf_layout_pass_members(io, writes, "/case", field, HF_HDF5_COUNT(field), (void *)taken);
     if (io->status == HF_OK && taken->point < 1)
         hf_hdf5_damaged(io, io->file, "/case", "has taken a point that no front has");
 }

@@ -28,11 +28,6 @@ static const char *path_of(const char *group, int stage, char path[PATH_SIZE])
     return path;
 }
 
-static bool has_group(hf_hdf5 *io, const char *path)
-{
-    return io->status == HF_OK && hf_hdf5_has(io, io->file, path);
-}
-
 /* Names are printed and name groups, so they must have only these characters. */
 static bool is_name_right(const char *name)
 {
@@ -62,7 +57,7 @@ static const hf_layout_field frequency[] = {
 
 static void pass_measures(hf_hdf5 *io, bool writes, const char *path, int n_frequency, hf_surface_measures *s)
 {
-    if (writes ? !s->is_measured : !has_group(io, path)) return;
+    if (writes ? !s->is_measured : !hf_hdf5_has(io, io->file, path)) return;
     s->is_measured = true;
     hid_t group = hf_hdf5_make_group(io, path);
     hf_layout_pass_members(io, writes, path, hf_layout_surface, HF_LAYOUT_N_SURFACE, s);
@@ -74,7 +69,7 @@ static void pass_surface(hf_hdf5 *io, bool writes, hf_summary *s)
 {
     char path[PATH_SIZE];
     hf_double_list *at = &s->surface.frequencies_Hz;
-    if (writes ? !(s->surface.focal_length_m > 0) : !has_group(io, "/surface")) return;
+    if (writes ? !(s->surface.focal_length_m > 0) : !hf_hdf5_has(io, io->file, "/surface")) return;
     if (writes) hf_layout_renew(io, "/surface");
     hid_t group = hf_hdf5_make_group(io, "/surface");
     hf_layout_pass_members(io, writes, "/surface", settings, HF_HDF5_COUNT(settings), &s->surface);
@@ -139,7 +134,7 @@ void hf_layout_write_pattern(hf_hdf5 *io, int stage, const hf_pattern_table *t, 
 static void get_pattern(hf_hdf5 *io, hf_summary *summary, int stage)
 {
     char path[PATH_SIZE];
-    if (!has_group(io, "/pattern") || !has_group(io, path_of("/pattern", stage, path))) return;
+    if (!hf_hdf5_has(io, io->file, path_of("/pattern", stage, path))) return;
     hf_pattern_summary *s = summary->stage[stage].pattern = hf_hdf5_take(io, 1, sizeof *s);
     if (!s) return;
     hid_t group = hf_hdf5_open_group(io, path);
@@ -215,7 +210,7 @@ static bool pass_list(hf_hdf5 *io, bool writes, const char *outer, int stage, co
 {
     char path[PATH_SIZE];
     path_of(outer, stage, path);
-    if (writes ? !*owner || *(int *)*owner == 0 : !has_group(io, outer) || !has_group(io, path)) return false;
+    if (writes ? !*owner || *(int *)*owner == 0 : !hf_hdf5_has(io, io->file, path)) return false;
     if (!writes) *owner = hf_hdf5_take(io, 1, size);
     if (writes) hf_hdf5_close(io, hf_hdf5_make_group(io, outer));
     hid_t group = hf_hdf5_make_group(io, path);
@@ -279,10 +274,11 @@ static void name_objectives(hf_hdf5 *io, hf_objective_list *g)
     if (io->status == HF_OK && !is_right) hf_hdf5_damaged(io, io->file, "/objective/name", "does not name objectives");
 }
 
-static void pass_objectives(hf_hdf5 *io, bool writes, hf_summary *s)
+void hf_layout_pass_objectives(hf_hdf5 *io, bool writes, const hf_summary *summary)
 {
+    hf_summary *s = (hf_summary *)summary;
     hf_objective_list *g = &s->objectives;
-    if (writes ? g->n == 0 : !has_group(io, "/objective")) return;
+    if (writes ? g->n == 0 : !hf_hdf5_has(io, io->file, "/objective")) return;
     if (writes) hf_layout_renew(io, "/objective");
     hid_t group = hf_hdf5_make_group(io, "/objective");
     if (!writes) {
@@ -366,7 +362,7 @@ static void pass_load_cases(hf_hdf5 *io, bool writes, hf_summary *s)
 {
     int n = s->n_load_case;
     /* An unfinished result has shapes of load cases, but no list of their names yet. */
-    if (writes ? n == 0 : !has_group(io, "/load_cases") || !has_group(io, "/load_cases/name")) return;
+    if (writes ? n == 0 : !hf_hdf5_has(io, io->file, "/load_cases/name")) return;
     hid_t group = hf_hdf5_make_group(io, "/load_cases");
     if (writes) hf_layout_renew(io, "/load_cases/name");
     if (!writes) n = hf_hdf5_length(io, group, "name", HF_LOAD_CASES_MAX);
@@ -386,30 +382,16 @@ static void pass_load_cases(hf_hdf5 *io, bool writes, hf_summary *s)
 
 /* ---- all ---- */
 
-void hf_layout_put_stages(hf_hdf5 *io, const hf_summary *summary)
+void hf_layout_pass_stages(hf_hdf5 *io, bool writes, const hf_summary *summary)
 {
     hf_summary *s = (hf_summary *)summary;
-    pass_surface(io, true, s);
-    hf_layout_renew(io, "/set_tension");
-    hf_layout_renew(io, "/at_limit");
-    for (int i = 0; i < HF_N_STAGE; i++)
-        pass_lists(io, true, &s->stage[i], i);
-    pass_objectives(io, true, s);
-    pass_load_cases(io, true, s);
-}
-
-void hf_layout_put_objectives(hf_hdf5 *io, const hf_summary *s)
-{
-    pass_objectives(io, true, (hf_summary *)s);
-}
-
-void hf_layout_get_stages(hf_hdf5 *io, hf_summary *s)
-{
-    pass_surface(io, false, s);
+    pass_surface(io, writes, s);
+    if (writes) hf_layout_renew(io, "/set_tension");
+    if (writes) hf_layout_renew(io, "/at_limit");
     for (int i = 0; i < HF_N_STAGE; i++) {
-        get_pattern(io, s, i);
-        pass_lists(io, false, &s->stage[i], i);
+        if (!writes) get_pattern(io, s, i);
+        pass_lists(io, writes, &s->stage[i], i);
     }
-    pass_objectives(io, false, s);
-    pass_load_cases(io, false, s);
+    hf_layout_pass_objectives(io, writes, s);
+    pass_load_cases(io, writes, s);
 }

@@ -96,7 +96,7 @@ void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary)
     hf_hdf5_write_array(io, group, &kinds, kind);
     pass_shares(io, true, group, HF_TOLERANCE_KINDS, s);
     hf_hdf5_close(io, group);
-    hf_layout_put_part(io, HF_LAYOUT_TOLERANCE, summary);
+    hf_layout_pass_part(io, true, HF_LAYOUT_TOLERANCE, summary);
 }
 
 /* ---- reading ---- */
@@ -157,9 +157,7 @@ static void get_requirements(hf_hdf5 *io, hid_t group, hf_tolerance_summary *s)
 void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
 {
     measured figures[HF_TOLERANCE_N_MEASURE] = {{{0}, 0, {0}}};
-    if (io->status != HF_OK || !hf_hdf5_has(io, io->file, GROUP) ||
-        !hf_hdf5_has(io, io->file, GROUP "/histogram")) /* the last data set that is written */
-        return;
+    if (!hf_hdf5_has(io, io->file, GROUP "/histogram")) return; /* the last data set that is written */
     hf_tolerance_summary *s = summary->tolerance = hf_hdf5_take(io, 1, sizeof *s);
     if (!s) return;
     hid_t group = hf_hdf5_open_group(io, GROUP);
@@ -173,5 +171,5 @@ void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
     for (int k = 0; k < s->n_ranked; k++)
         s->ranked_id[k][HF_TOLERANCE_ID_SIZE - 1] = '\0';
     hf_hdf5_close(io, group);
-    hf_layout_get_part(io, HF_LAYOUT_TOLERANCE, summary);
+    hf_layout_pass_part(io, false, HF_LAYOUT_TOLERANCE, summary);
 }

@@ -112,7 +112,7 @@ static void write_case(hf_hdf5 *io, const hf_case *settings)
     write_text(io, group, "overrides", "the --set arguments, a line each",
                settings->overrides ? settings->overrides : "");
     hf_hdf5_put_chars(io, group, ".", "sha256", settings->sha256);
-    if (settings->taken.point) hf_layout_put_taken(io, &settings->taken);
+    hf_layout_pass_taken(io, true, &settings->taken);
     hf_hdf5_close(io, group);
 }
 
@@ -127,19 +127,19 @@ static void write_sets(hf_hdf5 *io, hid_t group, const hf_scene *scene)
                        "index into /scene/cable, ascending in each set", scene->set_cable);
 }
 
-static void write_scene(hf_store *s, const hf_scene *scene)
+static void write_scene(hf_hdf5 *io, const hf_scene *scene)
 {
-    hf_hdf5 *io = &s->f.io;
     hid_t group = hf_hdf5_make_group(io, "/scene");
     HF_HDF5_CLOSE(io, hf_hdf5_make_group(io, "/scene/node"), hf_hdf5_make_group(io, "/scene/cable"));
     hf_hdf5_write_ids(io, group, "node/id", scene->node_id, scene->n_node, "name of the node");
     hf_hdf5_write_ids(io, group, "cable/id", scene->cable_id, scene->n_cable, "name of the cable");
     hf_layout_pass_columns(io, true, group, &hf_layout_scene, scene->n_node, scene->n_cable, scene);
-    double *length_m = hf_store_scratch(s, (size_t)scene->n_cable * sizeof *length_m);
+    double *length_m = hf_hdf5_take(io, (size_t)scene->n_cable, sizeof *length_m);
     for (int e = 0; length_m && e < scene->n_cable; e++)
         length_m[e] = hf_scene_length_at_target(scene, e);
     hf_hdf5_write_list(io, group, "cable/length_m", HF_KIND_REAL, scene->n_cable, 0, "m",
                        "length between the target positions of the two nodes", length_m);
+    free(length_m);
     write_sets(io, group, scene);
     if (scene->n_facet > 0)
         hf_hdf5_write_list(io, group, "facet", HF_KIND_INT, scene->n_facet, 4, "",
@@ -179,7 +179,7 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
         signed char keeps = s->f.earlier != HF_EARLIER_NONE;
         hf_hdf5_put(&s->f.io, s->f.io.file, "/", HF_KEEPS_EARLIER, HF_KIND_FLAG, 0, &keeps);
         write_case(&s->f.io, settings);
-        write_scene(s, scene);
+        write_scene(&s->f.io, scene);
     }
     s->publish_s = hf_clock_s() - begin_s;
     return hf_store_hand_over(s, store);
@@ -192,33 +192,33 @@ int hf_store_generations(const hf_store *s)
 
 /* ---- shapes ---- */
 
-static void write_shape(hf_store *s, hid_t group, const hf_model *m, const hf_workspace *w)
+static void write_shape(hf_hdf5 *io, hid_t group, const hf_model *m, const hf_workspace *w)
 {
-    size_t n = (size_t)m->n_node;
-    hf_shape shape = {.position_m = hf_store_scratch(s, 3 * n * sizeof(double)),
+    hf_shape shape = {.position_m = hf_hdf5_take(io, (size_t)m->n_node, 3 * sizeof(double)),
                       .length_m = w->length_m,
                       .tension_N = w->tension_N,
                       .q_N_per_m = w->q_N_per_m,
                       .law = w->law};
     if (!shape.position_m) return;
     hf_model_positions(m, w->position_m, shape.position_m);
-    hf_layout_pass_columns(&s->f.io, true, group, &hf_layout_shape, m->n_node, m->n_cable, &shape);
+    hf_layout_pass_columns(io, true, group, &hf_layout_shape, m->n_node, m->n_cable, &shape);
+    free(shape.position_m);
 }
 
 /* Compares a shape with the stored one. A session on another machine, or of another build, may find it with other
  * bits. */
 static void compare_shape(hf_store *s, const hf_model *m, const hf_workspace *w)
 {
-    size_t bytes = (size_t)m->n_cable * sizeof(double);
-    double *stored = hf_store_scratch(s, bytes);
+    double *stored = hf_hdf5_take(&s->f.io, (size_t)m->n_cable, sizeof *stored), largest_N = 0, apart_N = 0;
     if (stored) hf_hdf5_read_list(&s->f.io, s->f.io.file, "/form/tension_N", HF_KIND_REAL, m->n_cable, 0, stored);
-    if (s->f.io.status != HF_OK || memcmp(stored, w->tension_N, bytes) == 0) return;
-    double largest_N = 0, apart_N = 0;
-    for (int e = 0; e < m->n_cable; e++) {
+    bool is_same = s->f.io.status != HF_OK || memcmp(stored, w->tension_N, (size_t)m->n_cable * sizeof *stored) == 0;
+    for (int e = 0; !is_same && e < m->n_cable; e++) {
         double gap_N = fabs(stored[e] - w->tension_N[e]);
         largest_N = fmax(largest_N, fabs(stored[e]));
         apart_N = gap_N <= apart_N || isnan(apart_N) ? apart_N : gap_N;
     }
+    free(stored);
+    if (is_same) return;
     if (!(apart_N <= SAME_SHAPE * largest_N))
         s->f.io.status = hf_error(s->f.io.messages, HF_EXISTS,
                                   "%s: this machine or build finds another shape (tensions differ by %.2g N); "
@@ -253,7 +253,7 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
         return hf_hdf5_unlock(hf_store_judge(s));
     }
     hid_t group = hf_hdf5_make_group(io, "/form");
-    write_shape(s, group, m, w);
+    write_shape(io, group, m, w);
     hf_hdf5_close(io, group);
     if (history) {
         group = hf_hdf5_make_group(io, "/form/history");
@@ -280,7 +280,7 @@ hf_status hf_store_shape(hf_store *s, hf_stage stage, const hf_model *m, const h
     for (int i = 0; i < hf_layout_shape.n; i++) /* an interrupted session may have left a shape */
         renew(io, group, hf_layout_shape.column[i].name);
     renew(io, group, "design");
-    write_shape(s, group, m, w);
+    write_shape(io, group, m, w);
     hf_layout_write_variables(io, group, "design", m->variable, m->n_variable, design);
     hf_hdf5_close(io, group);
     return hf_hdf5_unlock(io->status);
@@ -296,7 +296,7 @@ hf_status hf_store_built(hf_store *s, const char *name, const hf_model *m, const
     snprintf(path, sizeof path, "/load_cases/%s", name);
     hf_layout_renew(io, path);
     hid_t group = hf_hdf5_make_group(io, path);
-    write_shape(s, group, m, w);
+    write_shape(io, group, m, w);
     hf_hdf5_close(io, group);
     if (truss) {
         strncat(path, "/truss", sizeof path - strlen(path) - 1);
@@ -436,14 +436,14 @@ static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
         /* The search is written before its first generation, too, as far as it is known. */
         bool has_begun = s->rows.block && (part == HF_LAYOUT_SEARCH || part == HF_LAYOUT_SEARCH_STAGE);
         if (part != HF_LAYOUT_TOLERANCE && (has_begun || hf_layout_has(summary, part)))
-            hf_layout_put_part(io, part, summary);
+            hf_layout_pass_part(io, true, part, summary);
     }
     hf_hdf5_put(io, io->file, "/", "finished", HF_KIND_FLAG, 0, &is_finished);
     put_algorithms(io, summary);
     if (finished)
-        hf_layout_put_stages(io, summary);
+        hf_layout_pass_stages(io, true, summary);
     else if (summary->front)
-        hf_layout_put_objectives(io, summary); /* they name the objectives of the front */
+        hf_layout_pass_objectives(io, true, summary); /* they name the objectives of the front */
     if (finished) hf_layout_put_tolerance(io, summary);
     if (finished) hf_vtkhdf_put_result(io, summary);
     if (finished) hf_renamed_link(io, s->rows.has_rows || hf_hdf5_has(io, io->file, "/variable/row"));

@@ -9,7 +9,6 @@ void hf_store_free(hf_store *s, hf_messages *messages)
     hf_store_file_end(&s->f, messages);
     hf_generations_free(&s->rows);
     free(s->refine);
-    free(s->scratch);
     free(s);
 }
 
@@ -49,21 +48,6 @@ hf_status hf_store_hand_over(hf_store *s, hf_store **store)
     else
         hf_store_free(s, s->f.io.messages);
     return hf_hdf5_unlock(status);
-}
-
-void *hf_store_scratch(hf_store *s, size_t bytes)
-{
-    if (s->f.io.status != HF_OK) return NULL;
-    if (bytes > s->scratch_bytes) {
-        void *bigger = realloc(s->scratch, bytes);
-        if (!bigger) {
-            s->f.io.status = hf_error(s->f.io.messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
-            return NULL;
-        }
-        s->scratch = bigger;
-        s->scratch_bytes = bytes;
-    }
-    return s->scratch;
 }
 
 void hf_store_put_time(hf_store *s, const char *attribute)

@@ -18,8 +18,6 @@ struct hf_store {
     /* [n_refine] Wall-clock time and state of hf_store_refine, for the next publication; NULL: none. */
     double *refine;
     size_t n_refine;
-    void *scratch;
-    size_t scratch_bytes;
 };
 
 /* Attribute of the root: an earlier result is beside this file while it is unfinished (store_file). */
@@ -48,10 +46,6 @@ void hf_store_free(hf_store *s, hf_messages *messages);
 
 /* Begins a call that uses the file: takes the lock of HDF5 and opens the file. The caller releases the lock. */
 hf_hdf5 *hf_store_enter(hf_store *s, hf_messages *messages);
-
-/* Returns scratch memory, valid until the next call. Returns NULL if the store has failed already, or with a message if
- * memory runs out. */
-void *hf_store_scratch(hf_store *s, size_t bytes);
 
 /* Writes the state of hf_store_refine to a file that is published, and removes it from a finished file. */
 void hf_store_put_refine(hf_store *s, bool finished);

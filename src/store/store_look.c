@@ -34,12 +34,11 @@ static void extend(char identity[65], const void *data, size_t bytes)
 static void extend_columns(char identity[65], const hf_layout_columns *columns, int n_node, int n_cable,
                            const void *owner)
 {
-    const hf_layout_column *table = columns->column;
-    for (int i = 0; i < columns->n; i++) {
+    for (const hf_layout_column *c = columns->column; c < columns->column + columns->n; c++) {
         const void *values;
-        memcpy(&values, (const char *)owner + table[i].offset, sizeof values);
-        size_t rows = (size_t)(table[i].per_cable ? n_cable : n_node);
-        extend(identity, values, values ? rows * (size_t)table[i].columns * hf_hdf5_kind_bytes(table[i].kind) : 0);
+        memcpy(&values, (const char *)owner + c->offset, sizeof values);
+        size_t n = (size_t)(c->per_cable ? n_cable : n_node) * (size_t)c->columns;
+        extend(identity, values, values ? n * hf_hdf5_kind_bytes(c->kind) : 0);
     }
 }
 
@@ -118,7 +117,7 @@ static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t
         hf_hdf5_no_memory(io);
         return;
     }
-    hf_layout_get_taken(io, &taken);
+    hf_layout_pass_taken(io, false, &taken);
     if (!hf_store_parse_case(io, now->path, then))
         snprintf(words, size, "%s", "keys that this version does not know");
     else if (hf_config_differences(then, now, words, size) > 0)
@@ -157,9 +156,7 @@ static void remove_journal(const char *path, bool keeps_earlier, const char *ide
 
 static void ignore_difference(void *context, const char *name, const char *how)
 {
-    (void)context;
-    (void)name;
-    (void)how;
+    (void)context, (void)name, (void)how;
 }
 
 /* Reads everything that a run will read. It runs in a child process, because HDF5 crashes on some damaged files or

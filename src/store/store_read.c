@@ -94,14 +94,14 @@ static hf_status read_summary(const char *path, hf_summary *summary, bool *is_da
     *summary = (hf_summary){0};
     if (io.status == HF_OK && hf_hdf5_has(&io, io.file, "points"))
         io.status = hf_error(messages, HF_IO, "%s: is the merged table of a sweep; `hifdm report` reads it", path);
-    hf_layout_get_part(&io, HF_LAYOUT_RUN, summary);
+    hf_layout_pass_part(&io, false, HF_LAYOUT_RUN, summary);
     summary->has_coupling = io.status == HF_OK && hf_hdf5_has(&io, io.file, "coupling");
     summary->has_truss = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/truss");
     for (hf_layout_part part = HF_LAYOUT_CASE; part < HF_LAYOUT_TOLERANCE; part++)
-        if (hf_layout_has(summary, part)) hf_layout_get_part(&io, part, summary);
+        if (hf_layout_has(summary, part)) hf_layout_pass_part(&io, false, part, summary);
     get_status(&io, summary);
-    hf_layout_get_taken(&io, &summary->taken);
-    hf_layout_get_stages(&io, summary);
+    hf_layout_pass_taken(&io, false, &summary->taken);
+    hf_layout_pass_stages(&io, false, summary);
     hf_layout_get_front(&io, summary);
     hf_layout_get_tolerance(&io, summary);
     if (io.status == HF_OK && ((int)summary->search.solver < 0 || summary->search.solver > HF_SOLVER_FIXED_POINT))
@@ -180,7 +180,7 @@ static bool are_sets_right(const hf_scene *s, int n_member)
 /* Reads the sets of a scene; results of earlier versions have none. The sets are checked before anything uses them. */
 static void read_sets(hf_hdf5 *io, hid_t group, hf_scene *s)
 {
-    if (io->status != HF_OK || !hf_hdf5_has(io, group, "set")) return;
+    if (!hf_hdf5_has(io, group, "set")) return;
     int n_set = hf_hdf5_length(io, group, "set/name", HF_LAYOUT_COUNT_MAX);
     int n_member = hf_hdf5_length(io, group, "set/cable", INT_MAX);
     size_t size = 0;
@@ -202,7 +202,7 @@ static void read_sets(hf_hdf5 *io, hid_t group, hf_scene *s)
 /* Reads the facets that the import named, if there are any. */
 static void read_facets(hf_hdf5 *io, hid_t group, hf_scene *s)
 {
-    if (io->status != HF_OK || !hf_hdf5_has(io, group, "facet")) return;
+    if (!hf_hdf5_has(io, group, "facet")) return;
     int n = hf_hdf5_length(io, group, "facet", HF_LAYOUT_COUNT_MAX);
     s->facet = hf_hdf5_take(io, (size_t)n + 1, 4 * sizeof *s->facet);
     hf_hdf5_read_list(io, group, "facet", HF_KIND_INT, n, 4, s->facet);
@@ -263,8 +263,7 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
     *shape = (hf_shape){0};
     char position[32] = "";
     if (stage != HF_N_STAGE) snprintf(position, sizeof position, "%s/position_m", hf_stage_group[stage]);
-    bool is_there =
-        *position && hf_hdf5_has(&io, io.file, hf_stage_group[stage]) && hf_hdf5_has(&io, io.file, position);
+    bool is_there = *position && hf_hdf5_has(&io, io.file, position);
     if (!is_there && io.status == HF_OK) /* hf_hdf5_has has reported a failure already */
         io.status =
             hf_error(messages, HF_IO, "%s: has no %s shape: that stage did not run, or found no feasible design", path,
@@ -282,8 +281,7 @@ static bool has_state(hf_hdf5 *io, const char *name, const char *part, char grou
     char object[HF_LAYOUT_LOAD_CASE_SIZE];
     snprintf(group, HF_LAYOUT_LOAD_CASE_SIZE, "/load_cases/%s", name);
     snprintf(object, sizeof object, "/load_cases/%s/%s", name, part);
-    bool is_there = hf_hdf5_has(io, io->file, "/load_cases") && hf_hdf5_has(io, io->file, group) &&
-                    hf_hdf5_has(io, io->file, object);
+    bool is_there = hf_hdf5_has(io, io->file, object);
     if (!is_there && io->status == HF_OK)
         io->status = hf_error(io->messages, HF_IO, "%s: has no shape of a load case '%s'", io->path, name);
     return is_there;

@@ -237,8 +237,8 @@ static void breed_journal(hf_store *s, hf_optimiser *optimiser, int drops)
 static void read_known(hf_hdf5 *io, hf_summary *summary)
 {
     if (io->status == HF_OK && H5Aexists_by_name(io->file, "/search", "solver", H5P_DEFAULT) > 0) {
-        hf_layout_get_part(io, HF_LAYOUT_SEARCH, summary);
-        hf_layout_get_part(io, HF_LAYOUT_SEARCH_STAGE, summary);
+        hf_layout_pass_part(io, false, HF_LAYOUT_SEARCH, summary);
+        hf_layout_pass_part(io, false, HF_LAYOUT_SEARCH_STAGE, summary);
     }
 }
 
