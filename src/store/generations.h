@@ -1,5 +1,5 @@
-/* generations - the data sets of /search/population that grow by one row per generation. The rows of one generation are all that an optimiser needs to propose the next one
- * (hf_optimiser_kind).
+/* generations - the data sets of /search/population that grow by one row per generation. The rows of one generation are
+ * all that an optimiser needs to propose the next one (hf_optimiser_kind).
  *
  *     population after hf_optimiser_tell
  *         hf_generations_add            keeps its rows in memory and returns the payload for the journal

@@ -6,8 +6,8 @@
  * sets and facets of the scene, the history and the design variables; store_tolerance.c the as-built samples;
  * store_resume.c the marks of a session and the state of the refinement; vtkhdf.c the group /VTKHDF.
  *
- * A new data set per node or cable is a row of scene_column or shape_column (layout.c). A new attribute is a row of a list of
- * members. A new enumeration is a new kind. */
+ * A new data set per node or cable is a row of scene_column or shape_column (layout.c). A new attribute is a row of a
+ * list of members. A new enumeration is a new kind. */
 #ifndef HIFDM_STORE_LAYOUT_H
 #define HIFDM_STORE_LAYOUT_H
 
@@ -106,9 +106,9 @@ typedef struct {
 void hf_layout_pass_fields(hf_hdf5 *io, bool writes, hid_t group, const hf_layout_field *table, int n_field, int n,
                            int columns, void *owner);
 
-/* Copies n values of a kind between `owner`, where they are `size` bytes long and `stride` bytes apart, and `packed`, as
- * HDF5 takes them: to `packed` with `packs`, else back. An enumeration is an int or a bool in the owner and a byte in
- * `packed`. `bytes` is the size of other values. */
+/* Copies n values of a kind between `owner`, where they are `size` bytes long and `stride` bytes apart, and `packed`,
+ * as HDF5 takes them: to `packed` with `packs`, else back. An enumeration is an int or a bool in the owner and a byte
+ * in `packed`. `bytes` is the size of a value in `packed`. */
 void hf_layout_copy(const hf_hdf5_kind *kind, size_t bytes, size_t size, size_t stride, int n, bool packs, char *packed,
                     char *owner);
 
@@ -117,8 +117,8 @@ void hf_layout_copy(const hf_hdf5_kind *kind, size_t bytes, size_t size, size_t 
 /* Returns the value of an enumeration, an int or a bool of `size` bytes. */
 int hf_layout_int(const void *value, size_t size);
 
-/* Writes or reads n members as attributes of `object`. If a file of another version (io->made_by) has the object but not
- * the attribute, reading sets the member to NaN, 0 or "". */
+/* Writes or reads n members as attributes of `object`. If a file of another version (io->made_by) has the object but
+ * not the attribute, reading sets the member to NaN, 0 or "". */
 void hf_layout_pass_members(hf_hdf5 *io, bool writes, const char *object, const hf_result_field *field, int n,
                             void *owner);
 
