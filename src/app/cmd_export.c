@@ -4,6 +4,7 @@
 #include "app/options.h"
 #include "out/print.h"
 
+#include <string.h>
 #include <unistd.h>
 
 /* Writes the list of options, "--csv DIR, --vtk DIR or --cutlist FILE", into text. */
@@ -47,43 +48,38 @@ static hf_status check_request(const hf_options *o, hf_messages *messages)
     return HF_OK;
 }
 
-/* Warns once if the shape of a result with a front is none of its designs, whatever formats are requested. A format
- * that writes every shape also writes their names. */
-static void warn_of_front(const hf_options *o, hf_messages *messages)
-{
-    static hf_summary summary;
-    hf_messages unwanted = {0};
-    bool has_one_shape = false;
-    for (int i = 0; i < HF_N_EXPORTER; i++)
-        has_one_shape |= o->export_to[i] && hf_exporter_table[i]->takes_stage;
-    if (!has_one_shape || o->stage) return;
-    if (hf_store_read_summary(o->file, &summary, &unwanted) == HF_OK)
-        hf_export_warn_of_front(o->file, &summary, o->load_case, messages);
-    hf_summary_free(&summary);
-    hf_messages_free(&unwanted);
-}
-
 static hf_status command_export(const hf_options *o, FILE *file, hf_messages *messages)
 {
     static char said[HF_N_EXPORTER][HF_EXPORT_SAID_SIZE];
+    static hf_export_stored stored;
     static hf_file_out_set files;
     HF_TRY(check_request(o, messages));
-    hf_status status = HF_OK;
-    bool is_new[HF_N_EXPORTER];
-    for (int i = 0; i < HF_N_EXPORTER; i++)
+    hf_export_request request = {
+        .file = o->file, .stage = o->stage, .load_case = o->load_case, .force = o->force, .files = &files};
+    hf_export_extent extent = HF_EXPORT_SUMMARY;
+    bool is_new[HF_N_EXPORTER], has_one_shape = false;
+    for (int i = 0; i < HF_N_EXPORTER; i++) {
         is_new[i] = o->export_to[i] && access(o->export_to[i], F_OK) != 0;
+        has_one_shape |= o->export_to[i] && hf_exporter_table[i]->takes_stage;
+        if (o->export_to[i] && hf_exporter_table[i]->reads > extent) extent = hf_exporter_table[i]->reads;
+    }
+    hf_status status = hf_export_read(&request, extent, &stored, messages);
     for (int i = 0; i < HF_N_EXPORTER && status == HF_OK; i++) {
-        const hf_export_request request = {o->file, o->export_to[i], o->stage, o->load_case, o->force, &files};
-        if (o->export_to[i]) status = hf_exporter_table[i]->write(&request, said[i], sizeof said[i], messages);
+        const hf_exporter *e = hf_exporter_table[i];
+        request.output = o->export_to[i];
+        request.is_folder = !strcmp(e->argument, "DIR");
+        if (request.output) status = e->write(&request, &stored, said[i], sizeof said[i], messages);
     }
     status = hf_file_out_set_end(&files, status, messages);
-    for (int i = 0; i < HF_N_EXPORTER && status != HF_OK; i++)
-        if (is_new[i]) rmdir(o->export_to[i]); /* a folder that was made for files that failed */
-    HF_TRY(status);
-    warn_of_front(o, messages);
-    for (int i = 0; i < HF_N_EXPORTER; i++)
-        if (o->export_to[i]) hf_print_line(file, "%s", said[i]);
-    return HF_OK;
+    for (int i = 0; i < HF_N_EXPORTER; i++) {
+        if (status == HF_OK && o->export_to[i]) hf_print_line(file, "%s", said[i]);
+        if (status != HF_OK && is_new[i]) rmdir(o->export_to[i]); /* a folder that was made for files that failed */
+    }
+    /* A format that writes every shape also writes their names. */
+    if (status == HF_OK && has_one_shape && !o->stage)
+        hf_export_warn_of_front(o->file, &stored.summary, o->load_case, messages);
+    hf_export_free(&stored);
+    return status;
 }
 
 const hf_command hf_cmd_export = {

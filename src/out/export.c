@@ -19,12 +19,23 @@ hf_status hf_export_claim(const hf_export_request *o, const char *path, hf_messa
     return hf_export_claim_file(path, o->force, messages);
 }
 
-hf_status hf_export_claim_in_folder(const hf_export_request *o, const char *name, char path[PATH_MAX],
-                                    hf_messages *messages)
+hf_status hf_export_claim_part(const hf_export_request *o, const char *name, char path[PATH_MAX], hf_messages *messages)
 {
-    if (snprintf(path, PATH_MAX, "%s/%s", o->output, name) >= PATH_MAX)
-        return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
+    bool fits = o->is_folder ? snprintf(path, PATH_MAX, "%s/%s", o->output, name) < PATH_MAX
+                             : hf_path_insert(o->output, name, path, PATH_MAX);
+    if (!fits) return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
     return hf_export_claim(o, path, messages);
+}
+
+hf_status hf_export_files(const hf_export_request *o, hf_export_file *file, int n, const void *context,
+                          hf_messages *messages)
+{
+    for (int i = 0; i < n; i++)
+        if (file[i].write) HF_TRY(hf_export_claim_part(o, file[i].name, file[i].path, messages));
+    if (o->is_folder) HF_TRY(hf_file_out_folder(o->output, messages));
+    for (int i = 0; i < n; i++)
+        if (file[i].write) HF_TRY(hf_file_out_set_write(o->files, file[i].path, file[i].write, context, messages));
+    return HF_OK;
 }
 
 hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messages)
@@ -43,8 +54,8 @@ hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messag
 
 static const char *const shape_word[3] = {"form-finding", "search", "refinement"};
 
-/* Reads a load case of the as-built net. Messages call the shape by the name of the load case. */
-static hf_status read_load_case(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
+/* Checks that the result has the load case. Messages call the shape by the name of the load case. */
+static hf_status find_load_case(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
 {
     const hf_summary *s = &stored->summary;
     char known[512] = "";
@@ -56,24 +67,27 @@ static hf_status read_load_case(const hf_export_request *o, hf_export_stored *st
     if (k == s->n_load_case)
         return hf_error(messages, HF_BAD_USAGE, "%s: has no load case '%s'; it has %s", o->file, o->load_case, known);
     stored->word = s->load_case[k].name;
-    HF_TRY(hf_store_read_scene(o->file, &stored->scene, messages));
-    return hf_store_read_load_case(o->file, o->load_case, &stored->shape, messages);
+    return HF_OK;
 }
 
-hf_status hf_export_read(const hf_export_request *o, hf_export_stored *stored, hf_messages *messages)
+hf_status hf_export_read(const hf_export_request *o, hf_export_extent extent, hf_export_stored *stored,
+                         hf_messages *messages)
 {
     hf_summary *summary = &stored->summary;
     HF_TRY(hf_store_read_summary(o->file, summary, messages));
-    if (o->load_case) return read_load_case(o, stored, messages);
-    hf_stage result = hf_store_result_stage(summary), stage = result;
+    hf_stage result = hf_store_result_stage(summary);
+    stored->stage = result;
     for (int i = 0; o->stage && i < HF_N_STAGE; i++)
-        if (!strcmp(o->stage, hf_stage_word[i])) stage = (hf_stage)i;
-    stored->word = shape_word[stage];
-    if (!hf_summary_has_shape(summary, stage))
+        if (!strcmp(o->stage, hf_stage_word[i])) stored->stage = (hf_stage)i;
+    stored->word = shape_word[stored->stage];
+    if (o->load_case) HF_TRY(find_load_case(o, stored, messages));
+    if (extent == HF_EXPORT_SHAPE && !o->load_case && !hf_summary_has_shape(summary, stored->stage))
         return hf_error(messages, HF_BAD_USAGE, "%s: this run has no %s shape; use --stage %s", o->file, stored->word,
                         hf_stage_word[result]);
-    HF_TRY(hf_store_read_scene(o->file, &stored->scene, messages));
-    return hf_store_read_shape(o->file, stage, &stored->shape, messages);
+    if (extent >= HF_EXPORT_SCENE) HF_TRY(hf_store_read_scene(o->file, &stored->scene, messages));
+    if (extent < HF_EXPORT_SHAPE) return HF_OK;
+    return o->load_case ? hf_store_read_load_case(o->file, o->load_case, &stored->shape, messages)
+                        : hf_store_read_shape(o->file, stored->stage, &stored->shape, messages);
 }
 
 bool hf_export_has_truss(const hf_export_request *o, const hf_summary *s, hf_messages *messages)
@@ -81,6 +95,15 @@ bool hf_export_has_truss(const hf_export_request *o, const hf_summary *s, hf_mes
     if (s->has_truss && !s->finished)
         hf_warning(messages, "%s: is unfinished: the export has no truss, because a run stores it at its end", o->file);
     return s->has_truss && s->finished;
+}
+
+hf_status hf_export_read_truss(const char *file, const char *load_case, hf_truss *truss, hf_carrier_state *state,
+                               hf_messages *messages)
+{
+    HF_TRY(hf_store_read_truss(file, truss, state, messages));
+    if (!load_case) return HF_OK;
+    hf_carrier_state_free(state);
+    return hf_store_read_load_case_truss(file, load_case, truss, state, messages);
 }
 
 void hf_export_warn_of_front(const char *file, const hf_summary *s, bool is_load_case, hf_messages *messages)
@@ -101,17 +124,6 @@ void hf_export_free(hf_export_stored *stored)
     hf_shape_free(&stored->shape);
     hf_scene_free(&stored->scene);
     hf_summary_free(&stored->summary);
-}
-
-hf_status hf_export_shape(const hf_export_request *o, hf_export_write_shape *write, char *said, size_t size,
-                          hf_messages *messages)
-{
-    static hf_export_stored stored;
-    stored = (hf_export_stored){0};
-    hf_status status = hf_export_read(o, &stored, messages);
-    if (status == HF_OK) status = write(o, &stored, said, size, messages);
-    hf_export_free(&stored);
-    return status;
 }
 
 void hf_export_ends_of(const hf_scene *s, int e, FILE *f)

@@ -10,15 +10,16 @@
 #include "out/export.h"
 
 #include "base/csv.h"
-#include "base/file_out.h"
 #include <hifdm/facets.h>
 
 #include <math.h>
-#include <string.h>
 
 typedef struct {
     const hf_scene *scene;
     const hf_shape *shape;
+    hf_facets facets;
+    hf_truss truss;
+    hf_carrier_state state; /* of the truss */
 } view;
 
 static void write_nodes(const void *context, FILE *f)
@@ -48,17 +49,12 @@ static void write_cables(const void *context, FILE *f)
     }
 }
 
-typedef struct {
-    const hf_scene *scene;
-    const hf_facets *facets;
-} facets_view;
-
 static void write_facets(const void *context, FILE *f)
 {
-    const facets_view *v = context;
+    const view *v = context;
     fputs("id,a,b,c,d\n", f);
-    for (int i = 0; i < v->facets->n_facet; i++) {
-        const int *corner = v->facets->corner + 4 * (size_t)i;
+    for (int i = 0; i < v->facets.n_facet; i++) {
+        const int *corner = v->facets.corner + 4 * (size_t)i;
         fprintf(f, "f%d", i + 1);
         for (int k = 0; k < 4; k++) {
             fputc(',', f);
@@ -67,26 +63,6 @@ static void write_facets(const void *context, FILE *f)
         fputc('\n', f);
     }
 }
-
-/* Writes facets.csv, unless the net has no facets. */
-static hf_status export_facets(const hf_export_request *o, const hf_export_stored *stored, const char *path,
-                               hf_messages *messages)
-{
-    hf_facets facets;
-    const facets_view both = {&stored->scene, &facets};
-    hf_status status = hf_facets_find(&stored->scene, &stored->summary.surface, &facets);
-    if (status != HF_OK)
-        hf_error(messages, status, "%s: out of memory", o->file);
-    else if (facets.n_facet > 0)
-        status = hf_file_out_set_write(o->files, path, write_facets, &both, messages);
-    hf_facets_free(&facets);
-    return status;
-}
-
-typedef struct {
-    const hf_truss *truss;
-    const hf_carrier_state *state;
-} truss_view;
 
 static void write_fixed(unsigned char fixed, FILE *f)
 {
@@ -101,8 +77,8 @@ static void write_fixed(unsigned char fixed, FILE *f)
 
 static void write_truss_nodes(const void *context, FILE *f)
 {
-    const hf_truss *t = ((const truss_view *)context)->truss;
-    const double *u = ((const truss_view *)context)->state->displacement;
+    const hf_truss *t = &((const view *)context)->truss;
+    const double *u = ((const view *)context)->state.displacement;
     fprintf(f, "id,x_m,y_m,z_m,fixed,mass_kg%s\n", u ? ",ux_m,uy_m,uz_m,rx_rad,ry_rad,rz_rad" : "");
     for (int i = 0; i < t->n_node; i++) {
         const double *p = t->position_m + 3 * (size_t)i;
@@ -118,8 +94,8 @@ static void write_truss_nodes(const void *context, FILE *f)
 
 static void write_members(const void *context, FILE *f)
 {
-    const hf_truss *t = ((const truss_view *)context)->truss;
-    const double *end_force = ((const truss_view *)context)->state->end_force;
+    const hf_truss *t = &((const view *)context)->truss;
+    const double *end_force = ((const view *)context)->state.end_force;
 #define COLUMN_NAME(name, units, otherwise, description) "," #name
     fprintf(f, "id,i,j" HF_MEMBER_NUMBERS(COLUMN_NAME) ",joint,unit%s\n",
             end_force ? ",Nx_i_N,Vy_i_N,Vz_i_N,Tx_i_Nm,My_i_Nm,Mz_i_Nm,Nx_j_N,Vy_j_N,Vz_j_N,Tx_j_Nm,My_j_Nm,Mz_j_Nm"
@@ -143,55 +119,40 @@ static void write_members(const void *context, FILE *f)
     }
 }
 
-static hf_status export_truss(const hf_export_request *o, hf_truss *truss, hf_carrier_state *state, char *said,
-                              size_t size, hf_messages *messages)
+/* Finds the facets, and reads the truss if has_truss. */
+static hf_status complete(const hf_export_request *o, const hf_export_stored *stored, bool has_truss, view *v,
+                          hf_messages *messages)
 {
-    char nodes[PATH_MAX], members[PATH_MAX];
-    const truss_view both = {truss, state};
-    HF_TRY(hf_export_claim_in_folder(o, "truss_nodes.csv", nodes, messages));
-    HF_TRY(hf_export_claim_in_folder(o, "members.csv", members, messages));
-    HF_TRY(hf_store_read_truss(o->file, truss, state, messages));
-    if (o->load_case) {
-        hf_carrier_state_free(state);
-        HF_TRY(hf_store_read_load_case_truss(o->file, o->load_case, truss, state, messages));
-    }
-    HF_TRY(hf_file_out_set_write(o->files, nodes, write_truss_nodes, &both, messages));
-    HF_TRY(hf_file_out_set_write(o->files, members, write_members, &both, messages));
-    size_t used = strlen(said);
-    snprintf(said + used, size - used, "; %d nodes and %d members of the truss in %s and %s", truss->n_node,
-             truss->n_member, nodes, members);
-    return HF_OK;
+    hf_status status = HF_OK;
+    if (stored->summary.surface.focal_length_m > 0)
+        status = hf_facets_find(v->scene, &stored->summary.surface, &v->facets);
+    if (status != HF_OK) return hf_error(messages, status, "%s: out of memory", o->file);
+    return has_truss ? hf_export_read_truss(o->file, o->load_case, &v->truss, &v->state, messages) : HF_OK;
 }
 
-static hf_status write_csv(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
-                           hf_messages *messages)
+static hf_status export_csv(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
+                            hf_messages *messages)
 {
-    const hf_scene *scene = &stored->scene;
-    static char nodes[PATH_MAX], cables[PATH_MAX], facets[PATH_MAX];
-    bool is_measured = stored->summary.surface.focal_length_m > 0;
-    HF_TRY(hf_export_claim_in_folder(o, "nodes.csv", nodes,
-                                     messages)); /* all names are checked before a file is written */
-    HF_TRY(hf_export_claim_in_folder(o, "cables.csv", cables, messages));
-    if (is_measured) HF_TRY(hf_export_claim_in_folder(o, "facets.csv", facets, messages));
-    HF_TRY(hf_file_out_folder(o->output, messages));
-    const view both = {scene, &stored->shape};
-    HF_TRY(hf_file_out_set_write(o->files, nodes, write_nodes, &both, messages));
-    HF_TRY(hf_file_out_set_write(o->files, cables, write_cables, &both, messages));
-    if (is_measured) HF_TRY(export_facets(o, stored, facets, messages));
-    snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s and %s", o->file, scene->n_node,
-             scene->n_cable, stored->word, nodes, cables);
-    if (!hf_export_has_truss(o, &stored->summary, messages)) return HF_OK;
-    hf_truss truss = {0};
-    hf_carrier_state state = {0};
-    hf_status status = export_truss(o, &truss, &state, said, size, messages);
-    hf_truss_free(&truss);
-    hf_carrier_state_free(&state);
+    static hf_export_file file[] = {{"nodes.csv", write_nodes, ""},
+                                    {"cables.csv", write_cables, ""},
+                                    {"facets.csv", write_facets, ""},
+                                    {"truss_nodes.csv", write_truss_nodes, ""},
+                                    {"members.csv", write_members, ""}};
+    view v = {.scene = &stored->scene, .shape = &stored->shape};
+    bool has_truss = hf_export_has_truss(o, &stored->summary, messages);
+    hf_status status = complete(o, stored, has_truss, &v, messages);
+    file[2].write = stored->summary.surface.focal_length_m > 0 ? write_facets : NULL;
+    if (status == HF_OK) status = hf_export_files(o, file, has_truss ? 5 : 3, &v, messages);
+    int used = snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s/nodes.csv and %s/cables.csv",
+                        o->file, v.scene->n_node, v.scene->n_cable, stored->word, o->output, o->output);
+    if (has_truss && (size_t)used < size)
+        snprintf(said + used, size - (size_t)used,
+                 "; %d nodes and %d members of the truss in %s/truss_nodes.csv and %s/members.csv", v.truss.n_node,
+                 v.truss.n_member, o->output, o->output);
+    hf_facets_free(&v.facets);
+    hf_truss_free(&v.truss);
+    hf_carrier_state_free(&v.state);
     return status;
-}
-
-static hf_status export_csv(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
-{
-    return hf_export_shape(request, write_csv, said, size, messages);
 }
 
 const hf_exporter hf_exporter_csv = {
@@ -199,6 +160,7 @@ const hf_exporter hf_exporter_csv = {
     .argument = "DIR",
     .help = "write nodes.csv, cables.csv, facets.csv of nets with a surface, and truss_nodes.csv and members.csv of a "
             "truss, into DIR",
+    .reads = HF_EXPORT_SHAPE,
     .takes_stage = true,
     .takes_case = true,
     .write = export_csv,

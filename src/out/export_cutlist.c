@@ -25,13 +25,10 @@
 #include "out/export.h"
 
 #include "base/csv.h"
-#include "base/file_out.h"
-#include "base/path.h"
 #include "net/cable_pick.h"
 #include "out/cut.h"
 #include <hifdm/cable_set.h>
 #include <hifdm/metrics.h>
-#include <hifdm/store.h>
 
 #include <math.h>
 #include <string.h>
@@ -133,42 +130,21 @@ static void write_totals(const void *context, FILE *f)
         write_total(v, v->scene->set_name[k], OF_SET, k, f);
 }
 
-/* Sets the paths NAME.csv, NAME_mm.csv, NAME_nodes.csv and NAME_totals.csv, and checks that they may be written. */
-enum { N_FILE = 4 };
-static hf_status name_files(const hf_export_request *o, char path[N_FILE][PATH_MAX], hf_messages *messages)
+static hf_status export_cutlist(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
+                                hf_messages *messages)
 {
-    static const char *const part[N_FILE] = {"", "_mm", "_nodes", "_totals"};
-    for (int i = 0; i < N_FILE; i++) {
-        if (!hf_path_insert(o->output, part[i], path[i], PATH_MAX))
-            return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
-        HF_TRY(hf_export_claim(o, path[i], messages));
-    }
-    return HF_OK;
-}
-
-static hf_status write_cutlist(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
-                               hf_messages *messages)
-{
+    static hf_export_file file[] = {
+        {"", write_cables, ""}, {"_mm", write_bench, ""}, {"_nodes", write_nodes, ""}, {"_totals", write_totals, ""}};
     const hf_scene *scene = &stored->scene;
-    static char path[N_FILE][PATH_MAX];
-    HF_TRY(hf_cable_demand_EA(scene, o->file, "cutting lengths need", ", and run again", messages));
-    HF_TRY(name_files(o, path, messages)); /* all names are checked before a file is written */
     const view v = {scene, &stored->shape, hf_model_reference_N(scene, stored->summary.pretension_N)};
-    HF_TRY(hf_file_out_set_write(o->files, path[0], write_cables, &v, messages));
-    HF_TRY(hf_file_out_set_write(o->files, path[1], write_bench, &v, messages));
-    HF_TRY(hf_file_out_set_write(o->files, path[2], write_nodes, &v, messages));
-    HF_TRY(hf_file_out_set_write(o->files, path[3], write_totals, &v, messages));
+    HF_TRY(hf_cable_demand_EA(scene, o->file, "cutting lengths need", ", and run again", messages));
+    HF_TRY(hf_export_files(o, file, 4, &v, messages));
     snprintf(
         said, size,
         "%s: cutting lengths of %d cables of the %s shape in %s, in mm for the bench in %s, node positions for the jig "
         "in %s, totals in %s",
-        o->file, scene->n_cable, stored->word, path[0], path[1], path[2], path[3]);
+        o->file, scene->n_cable, stored->word, file[0].path, file[1].path, file[2].path, file[3].path);
     return HF_OK;
-}
-
-static hf_status export_cutlist(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
-{
-    return hf_export_shape(request, write_cutlist, said, size, messages);
 }
 
 const hf_exporter hf_exporter_cutlist = {
@@ -176,6 +152,7 @@ const hf_exporter hf_exporter_cutlist = {
     .argument = "FILE",
     .help = "write unstressed lengths to FILE, and beside it: lengths in mm for the bench, node positions for the jig, "
             "totals",
+    .reads = HF_EXPORT_SHAPE,
     .takes_stage = true,
     .write = export_cutlist,
 };

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 typedef struct {
-    hf_summary summary;
+    const hf_summary *summary;
     hf_front front;
     char *variable;
     size_t variable_size;
@@ -35,9 +35,9 @@ static void write_front(const void *context, FILE *f)
     const hf_front *front = &v->front;
     fputs(front->minimised >= 0 ? "id,mark,status,steps,converged" : "id,mark,status,steps", f);
     for (int k = 0; k < front->n_objective; k++)
-        fprintf(f, ",%s", v->summary.objectives.name[k]);
+        fprintf(f, ",%s", v->summary->objectives.name[k]);
     for (int k = 0; k < front->n_objective; k++)
-        if (front->minimised >= 0 && k != front->minimised) fprintf(f, ",slope_%s", v->summary.objectives.name[k]);
+        if (front->minimised >= 0 && k != front->minimised) fprintf(f, ",slope_%s", v->summary->objectives.name[k]);
     for (int k = 0; k < front->n_variable; k++) {
         fputc(',', f);
         hf_csv_write_id(v->variable + (size_t)k * v->variable_size, f);
@@ -58,24 +58,20 @@ static void write_front(const void *context, FILE *f)
     }
 }
 
-static hf_status export_front(const hf_export_request *o, char *said, size_t size, hf_messages *messages)
+static hf_status export_front(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
+                              hf_messages *messages)
 {
-    static view v;
-    v = (view){0};
-    HF_TRY(hf_export_claim(o, o->output, messages));
-    hf_status status = hf_store_read_summary(o->file, &v.summary, messages);
-    if (status == HF_OK && !v.summary.front)
-        status = hf_error(messages, HF_BAD_USAGE, "%s: this run has no front, because its case has no optimize.front",
-                          o->file);
-    if (status == HF_OK) status = hf_store_read_front(o->file, &v.front, &v.variable, &v.variable_size, messages);
-    if (status == HF_OK) status = hf_file_out_set_write(o->files, o->output, write_front, &v, messages);
-    if (status == HF_OK)
-        snprintf(said, size, "%s: %d points of the front of %d objectives in %s", o->file, v.front.n_point,
-                 v.front.n_objective, o->output);
+    view v = {.summary = &stored->summary};
+    static hf_export_file file = {"", write_front, ""};
+    if (!v.summary->front)
+        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no front, because its case has no optimize.front",
+                        o->file);
+    hf_status status = hf_store_read_front(o->file, &v.front, &v.variable, &v.variable_size, messages);
+    if (status == HF_OK) status = hf_export_files(o, &file, 1, &v, messages);
+    snprintf(said, size, "%s: %d points of the front of %d objectives in %s", o->file, v.front.n_point,
+             v.front.n_objective, o->output);
     hf_front_free(&v.front);
     free(v.variable);
-    hf_summary_free(&v.summary);
-    hf_summary_free(&v.summary);
     return status;
 }
 

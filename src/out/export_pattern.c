@@ -7,8 +7,6 @@
 
 #include "surface/facet_mesh.h"
 
-#include <string.h>
-
 static void write_pattern(const void *context, FILE *f)
 {
     const hf_pattern_table *t = context;
@@ -22,7 +20,7 @@ static void write_pattern(const void *context, FILE *f)
 /* Reports why this shape has no far field. Returns HF_BAD_USAGE. */
 static hf_status refuse(const char *file, const hf_summary *s, hf_stage stage, hf_messages *messages)
 {
-    double pull_ratio = stage == HF_N_STAGE ? 0 : s->stage[stage].surface.mesh_pull_ratio;
+    double pull_ratio = s->stage[stage].surface.mesh_pull_ratio;
     char words[64];
     if (pull_ratio > HF_FACET_PULL_MOST)
         return hf_error(
@@ -35,21 +33,15 @@ static hf_status refuse(const char *file, const hf_summary *s, hf_stage stage, h
                     file);
 }
 
-static hf_status export_pattern(const hf_export_request *o, char *said, size_t size, hf_messages *messages)
+static hf_status export_pattern(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
+                                hf_messages *messages)
 {
-    static hf_summary summary;
     hf_pattern_table table;
-    HF_TRY(hf_export_claim(o, o->output, messages));
-    HF_TRY(hf_store_read_summary(o->file, &summary, messages));
-    hf_stage stage = hf_store_result_stage(&summary);
-    for (int i = 0; o->stage && i < HF_N_STAGE; i++)
-        if (!strcmp(o->stage, hf_stage_word[i])) stage = (hf_stage)i;
-    hf_status status =
-        stage == HF_N_STAGE || !summary.stage[stage].pattern ? refuse(o->file, &summary, stage, messages) : HF_OK;
-    hf_summary_free(&summary);
-    HF_TRY(status);
-    HF_TRY(hf_store_read_pattern(o->file, stage, &table, messages));
-    status = hf_file_out_set_write(o->files, o->output, write_pattern, &table, messages);
+    static hf_export_file file = {"", write_pattern, ""};
+    if (!stored->summary.stage[stored->stage].pattern)
+        return refuse(o->file, &stored->summary, stored->stage, messages);
+    HF_TRY(hf_store_read_pattern(o->file, stored->stage, &table, messages));
+    hf_status status = hf_export_files(o, &file, 1, &table, messages);
     snprintf(said, size, "%s: far field at %d frequenc%s in %d cut%s of %d angles in %s", o->file, table.n_frequency,
              table.n_frequency == 1 ? "y" : "ies", table.n_cut, table.n_cut == 1 ? "" : "s", table.n_theta, o->output);
     hf_pattern_table_free(&table);

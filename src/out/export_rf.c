@@ -21,7 +21,6 @@
 #include "surface/facet_mesh.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { GRID = 301, POINTS_LEAST = 3, POINTS_MOST = 16 };
 
@@ -219,8 +218,11 @@ static void write_triangles(const void *context, FILE *f)
 
 /* ---- all files together ---- */
 
-static hf_status write_files(const hf_export_request *o, view *v, char path[3][PATH_MAX], hf_messages *messages)
+/* Computes what the files hold, and writes them. */
+static hf_status write_files(const hf_export_request *o, view *v, hf_messages *messages)
 {
+    static hf_export_file file[] = {
+        {"surface.grd", write_grid, ""}, {"points.csv", write_points, ""}, {"facets.stl", write_triangles, ""}};
     hf_arena sags = {0}, grid = {0};
     measure(v);
     hf_status status = find_sags(v, o->file, &sags, messages);
@@ -228,42 +230,32 @@ static hf_status write_files(const hf_export_request *o, view *v, char path[3][P
     if (status == HF_OK && HF_ARENA_MAKE(&grid, v->z_m = hf_arena_take(&grid, n, sizeof(double))) != HF_OK)
         status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory for its facets", o->file);
     if (status == HF_OK) fill_grid(v);
-    if (status == HF_OK) status = hf_file_out_folder(o->output, messages);
-    if (status == HF_OK) status = hf_file_out_set_write(o->files, path[0], write_grid, v, messages);
-    if (status == HF_OK) status = hf_file_out_set_write(o->files, path[1], write_points, v, messages);
-    if (status == HF_OK) status = hf_file_out_set_write(o->files, path[2], write_triangles, v, messages);
+    if (status == HF_OK) status = hf_export_files(o, file, 3, v, messages);
     hf_arena_free(&sags);
     hf_arena_free(&grid);
     return status;
 }
 
-static hf_status write_rf(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
-                          hf_messages *messages)
+static hf_status export_rf(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
+                           hf_messages *messages)
 {
-    static const char *const name[3] = {"surface.grd", "points.csv", "facets.stl"};
-    static char path[3][PATH_MAX];
     view v = {.stored = stored};
     const hf_surface_settings *surface = &stored->summary.surface;
     if (!(surface->focal_length_m > 0))
         return hf_error(messages, HF_BAD_USAGE,
                         "%s: its case has no section surface, which says what its facets are of", o->file);
-    for (int i = 0; i < 3; i++)
-        HF_TRY(hf_export_claim_in_folder(o, name[i], path[i], messages));
     hf_status status = hf_facets_find(&stored->scene, surface, &v.facets);
     if (status != HF_OK) hf_error(messages, status, "%s: out of memory for its facets", o->file);
     if (status == HF_OK && v.facets.n_facet == 0)
         status = hf_error(messages, HF_BAD_USAGE, "%s: this net has no facets", o->file);
-    if (status == HF_OK) status = write_files(o, &v, path, messages);
-    snprintf(said, size, "%s: %d facets of the %s shape: grid of %d x %d in %s, %d points in %s, triangles in %s",
-             o->file, v.facets.n_facet, stored->word, v.n[0], v.n[1], path[0], v.facets.n_facet * v.n_side * v.n_side,
-             path[1], path[2]);
+    if (status == HF_OK) status = write_files(o, &v, messages);
+    snprintf(said, size,
+             "%s: %d facets of the %s shape: grid of %d x %d in %s/surface.grd, %d points in %s/points.csv, triangles "
+             "in %s/facets.stl",
+             o->file, v.facets.n_facet, stored->word, v.n[0], v.n[1], o->output,
+             v.facets.n_facet * v.n_side * v.n_side, o->output, o->output);
     hf_facets_free(&v.facets);
     return status;
-}
-
-static hf_status export_rf(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
-{
-    return hf_export_shape(request, write_rf, said, size, messages);
 }
 
 const hf_exporter hf_exporter_rf = {
@@ -271,6 +263,7 @@ const hf_exporter hf_exporter_rf = {
     .argument = "DIR",
     .help = "write the facets for physical-optics programs into DIR: surface.grd, points.csv with normals and areas, "
             "facets.stl",
+    .reads = HF_EXPORT_SHAPE,
     .takes_stage = true,
     .takes_case = true,
     .write = export_rf,

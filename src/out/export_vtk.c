@@ -1,9 +1,9 @@
 /* Writes the shapes of a run for ParaView: VTKHDF 1.0 files with unstructured grids, which VTK 9.1, ParaView 5.11 and
  * newer versions read. The folder of --vtk receives these files, as far as the run has the shapes:
  *
- *   theoretical.hdf, form.hdf, optimize.hdf, polish.hdf    cables as lines, at the target positions and of each stage
- *   form_facets.hdf and so on                              facets as cells over the same points
- *   truss.hdf                                              members as lines
+ *   target.hdf, form.hdf, search.hdf, refine.hdf    cables as lines, at the target positions and of each stage
+ *   form_facets.hdf and so on                       facets as cells over the same points
+ *   truss.hdf                                       members as lines
  *   load_case_1.hdf, load_case_facets_1.hdf, load_case_truss_1.hdf, ...
  *                   load cases of the as-built net, in the order of the case
  *
@@ -95,9 +95,12 @@ static void put_grid(hf_hdf5 *io, const grid *g)
     put_fields(io, "/VTKHDF/CellData", g->cell, g->n_cell_field, g->n_cell);
 }
 
-static hf_status write_grid(const hf_export_request *o, const char *path, const grid *g, hf_messages *messages)
+/* Writes the file `name` in the folder of the request. */
+static hf_status write_grid(const hf_export_request *o, const char *name, const grid *g, hf_messages *messages)
 {
+    char path[PATH_MAX];
     hf_file_out *out;
+    HF_TRY(hf_export_claim_part(o, name, path, messages));
     HF_TRY(hf_file_out_set_begin(o->files, path, &out, messages));
     hf_hdf5 io = {.path = path, .messages = messages, .status = HF_OK, .file = -1};
     hf_hdf5_create_file(&io, out);
@@ -121,6 +124,7 @@ typedef struct {
     int *role, *group, *law, *slack, *offset;
     unsigned char *type;
     double *length_at_target_m, *displacement_m, *deviation_m, *normal_error_m, *length_change_m;
+    bool has_truss;   /* a truss is written */
     hf_facets facets; /* empty when the case does not measure the surface */
     int *facet_corner, *facet_offset;
     unsigned char *facet_type;
@@ -225,37 +229,14 @@ static grid grid_of_facets(const grid *cables, const scratch *t)
     return g;
 }
 
-static hf_status write_facets(const hf_export_request *o, const char *path, const grid *cables, const hf_shape *found,
+static hf_status write_facets(const hf_export_request *o, const char *name, const grid *cables, const hf_shape *found,
                               const hf_summary *summary, const scratch *t, hf_messages *messages)
 {
     const hf_facet_shape shape = {cables->position_m, cables->n_cell, cables->corner, found ? found->tension_N : NULL};
     if (hf_facet_map(&summary->surface, &t->facets, &shape, &t->facet_error) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", o->file);
     const grid g = grid_of_facets(cables, t);
-    return write_grid(o, path, &g, messages);
-}
-
-/* Writes a shape and its facets, if there are any; found NULL stands for the target positions. */
-static hf_status write_found(const hf_export_request *o, const hf_shape *found, const char *path,
-                             const char *facets_path, const hf_scene *scene, const hf_summary *summary, scratch *t,
-                             hf_messages *messages)
-{
-    fill(scene, found, summary, t);
-    const grid g = grid_of(scene, found, summary, t);
-    HF_TRY(write_grid(o, path, &g, messages));
-    return t->facets.n_facet ? write_facets(o, facets_path, &g, found, summary, t, messages) : HF_OK;
-}
-
-/* Writes the shape of a stage; HF_N_STAGE stands for the target positions. */
-static hf_status write_stage(const hf_export_request *o, int stage, const char *path, const char *facets_path,
-                             const hf_scene *scene, const hf_summary *summary, scratch *t, hf_messages *messages)
-{
-    hf_shape shape = {0};
-    const hf_shape *found = stage == HF_N_STAGE ? NULL : &shape;
-    if (found) HF_TRY(hf_store_read_shape(o->file, (hf_stage)stage, &shape, messages));
-    hf_status status = write_found(o, found, path, facets_path, scene, summary, t, messages);
-    hf_shape_free(&shape);
-    return status;
+    return write_grid(o, name, &g, messages);
 }
 
 /* ---- the truss ---- */
@@ -300,18 +281,14 @@ static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *at, tru
 }
 
 /* Writes the truss under the result of the run, or in a load case of the as-built net. */
-static hf_status write_truss(const hf_export_request *o, const char *of_load_case, const char *path,
+static hf_status write_truss(const hf_export_request *o, const char *of_load_case, const char *name,
                              hf_messages *messages)
 {
     hf_truss truss = {0};
     hf_carrier_state at = {0};
     void *block = NULL;
     truss_scratch t;
-    hf_status status = hf_store_read_truss(o->file, &truss, &at, messages);
-    if (status == HF_OK && of_load_case) {
-        hf_carrier_state_free(&at);
-        status = hf_store_read_load_case_truss(o->file, of_load_case, &truss, &at, messages);
-    }
+    hf_status status = hf_export_read_truss(o->file, of_load_case, &truss, &at, messages);
     if (status == HF_OK) {
         size_t n = (size_t)truss.n_node, m = (size_t)truss.n_member;
         status = HF_ARENA_ARRAYS(&block, HF_ARRAY(t.fixed, n), HF_ARRAY(t.unit, m), HF_ARRAY(t.joint, m),
@@ -321,7 +298,7 @@ static hf_status write_truss(const hf_export_request *o, const char *of_load_cas
     }
     if (status == HF_OK) {
         const grid g = grid_of_truss(&truss, &at, &t);
-        status = write_grid(o, path, &g, messages);
+        status = write_grid(o, name, &g, messages);
     }
     hf_arena_free_block(block);
     hf_carrier_state_free(&at);
@@ -329,123 +306,104 @@ static hf_status write_truss(const hf_export_request *o, const char *of_load_cas
     return status;
 }
 
-/* ---- load cases of the as-built net ---- */
+/* ---- all files together ---- */
 
-/* Names of the files of load case k, from 1. ParaView opens files that differ only in a number as steps in time. */
-enum { LOAD_CASE_NET, LOAD_CASE_FACETS, LOAD_CASE_TRUSS, N_LOAD_CASE_FILE };
-static const char *const load_case_file[N_LOAD_CASE_FILE] = {"load_case", "load_case_facets", "load_case_truss"};
+/* What is written: the shapes of the stages, the target positions, the truss of the result, then the load cases. */
+enum { TARGET = HF_N_STAGE, TRUSS, N_FIXED };
+enum { OF_NET, OF_FACETS, OF_TRUSS, N_PART };
 
-static hf_status path_of_load_case(const hf_export_request *o, int kind, int k, char path[PATH_MAX],
-                                   hf_messages *messages)
+typedef struct {
+    const char *load_case; /* its name, or NULL */
+    char name[N_PART][48]; /* of its files; "": it has no such file */
+} item;
+
+/* Sets *w to item i. Returns false if the run does not have it. */
+static bool find_item(const hf_summary *s, const scratch *t, int i, item *w)
 {
-    if (snprintf(path, PATH_MAX, "%s/%s_%d.hdf", o->output, load_case_file[kind], k + 1) < PATH_MAX) return HF_OK;
-    return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
-}
-
-/* Returns whether a load case that has a shape has this file. */
-static bool has_load_case_file(const hf_summary *s, const scratch *t, int kind)
-{
-    return kind == LOAD_CASE_NET || (kind == LOAD_CASE_FACETS ? t->facets.n_facet > 0 : s->has_truss);
-}
-
-/* Checks the names of the files of all load cases. */
-static hf_status claim_load_cases(const hf_export_request *o, const hf_summary *s, const scratch *t,
-                                  hf_messages *messages)
-{
-    char path[PATH_MAX];
-    for (int i = 0; i < N_LOAD_CASE_FILE * s->n_load_case; i++) {
-        int k = i / N_LOAD_CASE_FILE, kind = i % N_LOAD_CASE_FILE;
-        if (s->load_case[k].result.status != HF_OK || !has_load_case_file(s, t, kind)) continue;
-        HF_TRY(path_of_load_case(o, kind, k, path, messages));
-        HF_TRY(hf_export_claim(o, path, messages));
+    static const char *const part[N_PART] = {"", "_facets", "_truss"};
+    int k = i - N_FIXED;
+    bool is_load_case = k >= 0;
+    if (is_load_case ? s->load_case[k].result.status != HF_OK
+                     : i < HF_N_STAGE && i != HF_STAGE_FORM && !hf_summary_has_shape(s, (hf_stage)i))
+        return false;
+    *w = (item){.load_case = is_load_case ? s->load_case[k].name : NULL};
+    if (i == TRUSS) {
+        if (t->has_truss) strcpy(w->name[OF_TRUSS], "truss.hdf");
+        return t->has_truss;
     }
-    return HF_OK;
+    for (int j = 0; j < N_PART; j++) {
+        if (j == OF_FACETS ? t->facets.n_facet == 0 : j == OF_TRUSS && !(is_load_case && s->has_truss)) continue;
+        if (is_load_case) /* ParaView opens files that differ only in a number as steps in time */
+            snprintf(w->name[j], sizeof w->name[j], "load_case%s_%d.hdf", part[j], k + 1);
+        else
+            snprintf(w->name[j], sizeof w->name[j], "%s%s.hdf", i == TARGET ? "target" : hf_stage_word[i], part[j]);
+    }
+    return true;
 }
 
-static hf_status write_load_case(const hf_export_request *o, int k, const hf_scene *scene, const hf_summary *summary,
-                                 scratch *t, hf_messages *messages)
+/* Writes the net of item i, and its facets. */
+static hf_status write_net(const hf_export_request *o, const hf_export_stored *stored, int i, const item *w, scratch *t,
+                           hf_messages *messages)
 {
-    static char path[N_LOAD_CASE_FILE][PATH_MAX];
-    const char *name = summary->load_case[k].name;
     hf_shape shape = {0};
-    for (int i = 0; i < N_LOAD_CASE_FILE; i++)
-        HF_TRY(path_of_load_case(o, i, k, path[i], messages));
-    HF_TRY(hf_store_read_load_case(o->file, name, &shape, messages));
-    hf_status status = write_found(o, &shape, path[LOAD_CASE_NET], path[LOAD_CASE_FACETS], scene, summary, t, messages);
+    const hf_shape *found = i == TARGET ? NULL : &shape;
+    if (w->load_case) HF_TRY(hf_store_read_load_case(o->file, w->load_case, &shape, messages));
+    if (i < HF_N_STAGE) HF_TRY(hf_store_read_shape(o->file, (hf_stage)i, &shape, messages));
+    fill(&stored->scene, found, &stored->summary, t);
+    const grid g = grid_of(&stored->scene, found, &stored->summary, t);
+    hf_status status = write_grid(o, w->name[OF_NET], &g, messages);
+    if (status == HF_OK && *w->name[OF_FACETS])
+        status = write_facets(o, w->name[OF_FACETS], &g, found, &stored->summary, t, messages);
     hf_shape_free(&shape);
-    if (status == HF_OK && summary->has_truss) status = write_truss(o, name, path[LOAD_CASE_TRUSS], messages);
     return status;
 }
 
-static hf_status write_load_cases(const hf_export_request *o, const hf_scene *scene, const hf_summary *summary,
-                                  scratch *t, char *said, size_t size, hf_messages *messages)
+static hf_status write_all(const hf_export_request *o, const hf_export_stored *stored, scratch *t, char *said,
+                           size_t size, hf_messages *messages)
 {
-    for (int k = 0; k < summary->n_load_case; k++) {
-        if (summary->load_case[k].result.status != HF_OK) continue;
-        HF_TRY(write_load_case(o, k, scene, summary, t, messages));
-        size_t used = strlen(said);
-        snprintf(said + used, size - used, " %s_%d.hdf (%s)", load_case_file[LOAD_CASE_NET], k + 1,
-                 summary->load_case[k].name);
+    const hf_summary *s = &stored->summary;
+    static const int order[N_FIXED] = {TARGET, HF_STAGE_FORM, HF_STAGE_SEARCH, HF_STAGE_REFINE, TRUSS};
+    int n = N_FIXED + s->n_load_case;
+    char path[PATH_MAX];
+    item w;
+    for (int i = 0; i < n; i++) { /* all names are checked before a file is written */
+        if (!find_item(s, t, i, &w)) continue;
+        for (int j = 0; j < N_PART; j++)
+            if (*w.name[j]) HF_TRY(hf_export_claim_part(o, w.name[j], path, messages));
+    }
+    HF_TRY(hf_file_out_folder(o->output, messages));
+    size_t used = (size_t)snprintf(said, size, "%s: for ParaView, in %s:", o->file, o->output);
+    for (int k = 0; k < n; k++) {
+        int i = k < N_FIXED ? order[k] : k;
+        if (!find_item(s, t, i, &w)) continue;
+        if (*w.name[OF_NET]) HF_TRY(write_net(o, stored, i, &w, t, messages));
+        if (*w.name[OF_TRUSS]) HF_TRY(write_truss(o, w.load_case, w.name[OF_TRUSS], messages));
+        for (int j = 0; j < N_PART && used < size; j++) {
+            if (!*w.name[j] || (w.load_case && j != OF_NET)) continue;
+            used +=
+                (size_t)snprintf(said + used, size - used, w.load_case ? " %s (%s)" : " %s", w.name[j], w.load_case);
+        }
     }
     return HF_OK;
 }
 
-/* ---- all files together ---- */
-
-enum { N_FILE = 9, FACETS = 5 }; /* the facets of stage i are file FACETS + i */
-
-static hf_status write_all(const hf_export_request *o, const hf_scene *scene, const hf_summary *summary, scratch *t,
-                           char *said, size_t size, hf_messages *messages)
+static hf_status export_vtk(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
+                            hf_messages *messages)
 {
-    static const char *const name[N_FILE] = {"form",        "search",        "refine",        "target",
-                                             "truss", /* the first four are in the order of hf_stage */
-                                             "form_facets", "search_facets", "refine_facets", "target_facets"};
-    bool has[N_FILE] = {true, hf_summary_has_shape(summary, HF_STAGE_SEARCH),
-                        hf_summary_has_shape(summary, HF_STAGE_REFINE), true,
-                        hf_export_has_truss(o, summary, messages)};
-    static char path[N_FILE][PATH_MAX];
-    for (int i = 0; i < N_FILE; i++) { /* all names are checked before a file is written */
-        if (i >= FACETS) has[i] = has[i - FACETS] && t->facets.n_facet > 0;
-        if (snprintf(path[i], PATH_MAX, "%s/%s.hdf", o->output, name[i]) >= PATH_MAX)
-            return hf_error(messages, HF_IO, "%s: the path is too long", o->output);
-        if (has[i]) HF_TRY(hf_export_claim(o, path[i], messages));
-    }
-    HF_TRY(claim_load_cases(o, summary, t, messages));
-    HF_TRY(hf_file_out_folder(o->output, messages));
-    int used = snprintf(said, size, "%s: for ParaView, in %s:", o->file, o->output);
-    static const int order[5] = {HF_N_STAGE, HF_STAGE_FORM, HF_STAGE_SEARCH, HF_STAGE_REFINE, 4};
-    for (int k = 0; k < 5; k++) {
-        int i = order[k];
-        if (!has[i]) continue;
-        HF_TRY(i == 4 ? write_truss(o, NULL, path[i], messages)
-                      : write_stage(o, i, path[i], path[FACETS + i], scene, summary, t, messages));
-        for (int j = i; j < N_FILE; j += FACETS)
-            if (has[j] && (size_t)used < size) used += snprintf(said + used, size - (size_t)used, " %s.hdf", name[j]);
-    }
-    return write_load_cases(o, scene, summary, t, said, size, messages);
-}
-
-static hf_status export_vtk(const hf_export_request *request, char *said, size_t size, hf_messages *messages)
-{
-    hf_scene scene = {0};
-    static hf_summary summary;
-    scratch t = {0};
-    HF_TRY(hf_store_read_summary(request->file, &summary, messages));
-    HF_TRY(hf_store_read_scene(request->file, &scene, messages));
+    const hf_scene *scene = &stored->scene;
+    scratch t = {.has_truss = hf_export_has_truss(o, &stored->summary, messages)};
     hf_status status = HF_OK;
-    if (summary.surface.focal_length_m > 0) status = hf_facets_find(&scene, &summary.surface, &t.facets);
-    if (status == HF_OK) status = allocate(&scene, &t);
+    if (stored->summary.surface.focal_length_m > 0) status = hf_facets_find(scene, &stored->summary.surface, &t.facets);
+    if (status == HF_OK) status = allocate(scene, &t);
     if (status == HF_OK) {
-        set_lines(scene.n_cable, t.offset, t.type);
+        set_lines(scene->n_cable, t.offset, t.type);
         set_facet_cells(&t);
-        status = write_all(request, &scene, &summary, &t, said, size, messages);
+        status = write_all(o, stored, &t, said, size, messages);
     } else {
-        hf_error(messages, status, "%s: out of memory", request->file);
+        hf_error(messages, status, "%s: out of memory", o->file);
     }
     hf_arena_free_block(t.block);
     hf_facets_free(&t.facets);
-    hf_scene_free(&scene);
-    hf_summary_free(&summary);
     return status;
 }
 
@@ -453,6 +411,7 @@ const hf_exporter hf_exporter_vtk = {
     .option = "--vtk",
     .argument = "DIR",
     .help = "write every shape of the run, and its facets, into DIR, for ParaView (VTKHDF)",
+    .reads = HF_EXPORT_SCENE,
     .takes_stage = false,
     .write = export_vtk,
 };
