@@ -4,19 +4,12 @@
 #include "app/cmd_check_study.h"
 
 #include "app/study_files.h"
-#include "base/clock.h"
 #include "base/text.h"
 #include "out/print.h"
-#include "run/problem_parts.h"
 
 #include <string.h>
 
 #define VALUES_TOLD 6 /* maximum number of values that are listed for an axis; else the first and the last */
-#define MAKING_S 5.0  /* time for making the nets of the points */
-/* For a study with more points than this, the time is MAKING_FEW_S only. */
-#define MANY 100000
-#define MAKING_FEW_S 0.5
-#define MADE_LEAST 1000 /* while no point can be run, at least so many are made */
 
 static const char *value_of(const hf_study_axis *axis, int k)
 {
@@ -71,44 +64,6 @@ static hf_status print_done(const hf_study *s, int count[HF_N_POINT_STATE], FILE
     return status;
 }
 
-/* What was found when scenes and models were made, for as many points as time allowed. */
-typedef struct {
-    int n_tried, n_fault;
-    int first; /* the first point that can be run, or -1 */
-} trial;
-
-/* Makes scene and model of points, as `hifdm run` does, in an order that is spread over all axes. Returns HF_OK, or
- * HF_BAD_CASE if no point can be run. */
-static hf_status try_points(const hf_study *s, trial *t, hf_messages *messages)
-{
-    static hf_problem p; /* too large for a small stack */
-    double end_s = hf_clock_s() + (s->n_point > MANY ? MAKING_FEW_S : MAKING_S);
-    *t = (trial){.first = -1};
-    for (; t->n_tried < s->n_point && (hf_clock_s() < end_s || (t->first < 0 && t->n_tried < MADE_LEAST));
-         t->n_tried++) {
-        int i = hf_study_spread(s, t->n_tried);
-        hf_study_overrides o;
-        hf_messages found = {0};
-        hf_study_point_overrides(s, i, &o);
-        hf_status status = hf_problem_load(s->base, NULL, o.set, o.n_set, NULL, &p, &found);
-        hf_problem_free(&p);
-        if (status == HF_OK && (t->first < 0 || i < t->first)) t->first = i;
-        if (status != HF_OK && t->n_fault++ < HF_FAULT_MAX_POINT) hf_study_tell_faults(s, i, &found, messages);
-        hf_messages_free(&found);
-        if (status == HF_NO_MEMORY || status == HF_IO || status == HF_INTERRUPTED) return status;
-    }
-    if (t->n_fault > HF_FAULT_MAX_POINT)
-        hf_error(messages, HF_BAD_CASE, "%s: sweep: and %d more points with faults", s->path,
-                 t->n_fault - HF_FAULT_MAX_POINT);
-    return t->first < 0 ? HF_BAD_CASE : HF_OK;
-}
-
-double hf_check_together_s(double each_s, int n, int *threads)
-{
-    if (*threads > n) *threads = n;
-    return each_s * ((n + *threads - 1) / *threads);
-}
-
 static void print_time(int n, const char *what, double each_s, int threads, bool has_tolerance, FILE *f)
 {
     char one[32], all[32];
@@ -146,15 +101,15 @@ static void print_left(const hf_study *s, const int count[HF_N_POINT_STATE], dou
     if (!n_missing && n_anew) print_time(n_anew, " anew", each_s, threads, s->has_tolerance, f);
 }
 
-static hf_status check_study(const hf_check_request *request, const hf_study *s, FILE *f, hf_messages *messages)
+static hf_status check_study(const hf_check_request *request, const hf_study *s, hf_check *check, FILE *f,
+                             hf_messages *messages)
 {
     char text[512];
     hf_study_overrides o;
-    double most_s;
     int count[HF_N_POINT_STATE] = {0};
-    trial t;
-    HF_TRY(try_points(s, &t, messages));
-    hf_print_line(f, "%s: valid", request->name);
+    hf_check_points t;
+    HF_TRY(hf_check_study_points(s, &check->problem, &t, messages));
+    hf_print_line(f, "%s: valid", request->path);
     if (*s->title) hf_print_line(f, "  %-13s %s", "study", s->title);
     hf_print_line(f, "  %-13s %s", "base case", s->base);
     print_axes(s, f);
@@ -164,9 +119,9 @@ static hf_status check_study(const hf_check_request *request, const hf_study *s,
     HF_TRY(print_done(s, count, f, messages));
     hf_study_point_overrides(s, t.first, &o);
     snprintf(text, sizeof text, t.first ? "point %s" : "the first point, %s", s->id[t.first]);
-    const hf_check_request first = {.path = s->base, .name = text, .set = o.set, .n_set = o.n_set, .threads = 1};
-    hf_status status = hf_check_case(&first, &most_s, f, messages);
-    print_left(s, count, most_s, request->threads, f);
+    const hf_check_request first = {.path = s->base, .set = o.set, .n_set = o.n_set, .threads = 1};
+    hf_status status = hf_cmd_check_case(&first, text, check, f, messages);
+    print_left(s, count, check->at_most_s, request->threads, f);
     if (status != HF_OK || t.n_fault == 0) return status;
     return hf_error(messages, HF_POINTS_FAILED,
                     "%s: sweep: %d of the %d points that were tried cannot be run; a sweep counts them as failed and "
@@ -174,14 +129,14 @@ static hf_status check_study(const hf_check_request *request, const hf_study *s,
                     s->path, t.n_fault, t.n_tried);
 }
 
-hf_status hf_check_study(const hf_check_request *request, FILE *f, hf_messages *messages)
+hf_status hf_cmd_check_study(const hf_check_request *request, hf_check *check, FILE *f, hf_messages *messages)
 {
     static hf_study study;
     if (request->n_set)
         return hf_error(messages, HF_BAD_USAGE, "%s: is a study, which takes no --set: change its base case or an axis",
-                        request->name);
+                        request->path);
     hf_status status = hf_study_read(request->path, &study, messages);
-    if (status == HF_OK) status = check_study(request, &study, f, messages);
+    if (status == HF_OK) status = check_study(request, &study, check, f, messages);
     hf_study_free(&study);
     return status;
 }

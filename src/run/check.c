@@ -1,0 +1,341 @@
+/* Finds what a run would do. check.h describes the interface.
+ *
+ *     case -> problem -> counts, memory -> short trials: form-finding, as-built samples, first generation, two steps of
+ *     Levenberg-Marquardt -> times
+ *
+ * Contents: counts, memory, times, a case, the points of a study. */
+#include "run/check.h"
+
+#include "base/clock.h"
+#include "base/text.h"
+#include "run/diagnose.h"
+#include "run/problem_parts.h"
+#include "search/chord.h"
+#include "search/refine.h"
+#include "search/swarm.h"
+#include "solve/prestress.h"
+#include <hifdm/pattern.h>
+
+#include <math.h>
+
+#define OPERATIONS_PER_S 2e9 /* speed of one core, as in search/refine.c */
+#define LONG_S 3600.0        /* above this time, or above LARGE_BYTES, advice is given */
+#define LARGE_BYTES 2e9
+#define TRIAL_S 1.0 /* approximate wall-clock time of the trial of form-finding */
+/* Time for making the nets of the points of a study; for one with more than MANY points, only MAKING_FEW_S. */
+#define MAKING_S 5.0
+#define MANY 100000
+#define MAKING_FEW_S 0.5
+#define MADE_LEAST 1000 /* while no point can be run, at least so many are made */
+
+/* ---- counts ---- */
+
+static void widen(const hf_scene *s, int e, hf_check_family *family)
+{
+    double T = s->target[e] * hf_scene_length_at_target(s, e);
+    family->lower_N = fmin(family->lower_N, T);
+    family->upper_N = fmax(family->upper_N, T);
+}
+
+/* Finds the range of the tensions that hold the net in each family of cables: the named sets, then the groups. */
+static void find_families(const hf_scene *s, hf_check *c)
+{
+    for (int k = 0; k < s->n_set + 2 && c->n_family < HF_CHECK_FAMILIES; k++) {
+        bool is_set = k < s->n_set;
+        hf_check_family family = {is_set ? s->set_name[k] : hf_group_word[k - s->n_set], INFINITY, -INFINITY};
+        for (int i = is_set ? s->set_start[k] : 0; is_set && i < s->set_start[k + 1]; i++)
+            if (hf_prestress_family(s, s->set_cable[i]) == k) widen(s, s->set_cable[i], &family);
+        for (int e = 0; e < s->n_cable && !is_set; e++)
+            if (s->group[e] == k - s->n_set && hf_prestress_family(s, e) == k) widen(s, e, &family);
+        if (family.lower_N <= family.upper_N) c->family[c->n_family++] = family;
+    }
+}
+
+static void count_net(hf_check *c)
+{
+    const hf_scene *s = &c->problem.scene;
+    for (int i = 0; i < s->n_node; i++)
+        c->n_role[s->role[i]]++;
+    for (int e = 0; e < s->n_cable; e++) {
+        c->n_group[s->group[e]]++;
+        c->n_law[c->problem.model.law[e]]++;
+    }
+    if (c->problem.settings.form.prestress == HF_PRESTRESS_EXACT) find_families(s, c);
+}
+
+static void count_variables(hf_check *c)
+{
+    const hf_model *m = &c->problem.model;
+    for (int row = 0; row < c->problem.settings.optimize.n_variable_row && m->variable; row++) {
+        int last = 0;
+        for (int k = 0; k < m->n_variable; k++) {
+            if (m->variable[k].setting != row) continue;
+            last = k;
+            c->n_in_row[row]++;
+        }
+        c->unit_of_row[row] = hf_model_variable_unit(m, last);
+    }
+}
+
+static void count_nets(hf_check *c)
+{
+    const hf_objectives_nets *nets = c->problem.objectives.nets;
+    for (int i = 0; nets && i < nets->n_load_case + nets->n_sample; i++) {
+        c->n_net += hf_objectives_are_over(&c->problem.objectives, i);
+        c->n_sample += i >= nets->n_load_case;
+    }
+}
+
+static void plan_far_field(hf_check *c)
+{
+    const hf_problem *p = &c->problem;
+    const hf_pattern_surface theory = {&p->facets, p->scene.position_m, NULL};
+    hf_feed feed;
+    if (!p->surface.has_pattern) return;
+    hf_feed_make(&p->surface, &p->facets, p->scene.position_m, &feed);
+    for (int k = 0; k < p->surface.frequencies_Hz.n; k++) {
+        hf_far_field plan;
+        hf_pattern_plan(&p->surface.pattern, &theory, &feed, p->surface.frequencies_Hz.value[k], &plan);
+        c->far_field[k] = (hf_check_far_field){plan.n_point, hf_pattern_angles(&plan)};
+    }
+}
+
+/* ---- memory ---- */
+
+/* Returns the bytes that Levenberg-Marquardt needs: sensitivities (twice as many with a truss), residuals of the inner
+ * nodes, matrices of its steps, and the packed Newton matrix. */
+static double refine_bytes(const hf_evaluator *v)
+{
+    const hf_model *m = v->model;
+    size_t lanes, matrix = hf_chord_bytes(v, &lanes);
+    double n = m->n_leader, column = 3.0 * m->n_free * (m->n_attachment ? 2 : 1) + 3.0 * m->n_inner_node;
+    return 8 * n * (column + 4 * n) + (double)(matrix + lanes);
+}
+
+/* Computes the bytes that the evaluation of a population needs: `shared` once for all threads, `lanes` for each
+ * thread. */
+static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lanes)
+{
+    bool has_lanes;
+    hf_solver solver = hf_batch_solver(v, &has_lanes);
+    if (solver == HF_SOLVER_CHORD) {
+        *shared = hf_chord_bytes(v, lanes);
+    } else if (has_lanes) {
+        hf_swarm_plan plan;
+        HF_TRY(hf_swarm_plan_create(v->model, hf_lane_best_isa(), &plan));
+        *lanes = hf_swarm_lanes_bytes(&plan);
+        hf_arena_free(&plan.arena);
+    }
+    return HF_OK;
+}
+
+static hf_status find_memory(hf_check *c, const hf_evaluator *v)
+{
+    const hf_model *m = &c->problem.model;
+    const hf_optimize_settings *o = &c->problem.settings.optimize;
+    hf_model without = *m;
+    without.has_newton = false;
+    size_t shared = 0, lanes = 0;
+    double workspaces = c->optimizes ? c->threads + 1 : 1, bare = (double)hf_workspace_bytes(&without);
+    double population = c->evolves ? (double)o->population : 0, variables = 8.0 * m->n_variable;
+    if (c->evolves) HF_TRY(engine_bytes(v, &shared, &lanes));
+    c->memory = (hf_check_memory){
+        .workspaces = workspaces * bare,
+        .newton = workspaces * ((double)hf_workspace_bytes(m) - bare),
+        .shared = (double)shared,
+        .lanes = (double)lanes * c->threads,
+        .population = 2 * population * (variables + (double)sizeof(hf_form_result)),
+        .refine = c->refines ? refine_bytes(v) : 0,
+        .generations = population * (variables + 70) * o->generations,
+    };
+    return HF_OK;
+}
+
+/* ---- times ---- */
+
+double hf_check_together_s(double each_s, int n, int *threads)
+{
+    if (*threads > n) *threads = n;
+    return each_s * ((n + *threads - 1) / *threads);
+}
+
+/* Builds and condenses the truss a second time to measure how long that takes. */
+static hf_status time_truss(hf_check *c, hf_messages *messages)
+{
+    hf_carrier again;
+    double begin_s = hf_clock_s();
+    hf_status status = hf_config_carrier(&c->problem.settings, &c->problem.scene, &again, messages);
+    c->truss_s = hf_clock_s() - begin_s;
+    hf_carrier_free(&again);
+    return status;
+}
+
+/* Tries the form-finding: three iterations measure the time of one, then as many run as fit into TRIAL_S. */
+static void time_form(hf_check *c)
+{
+    hf_problem *p = &c->problem;
+    hf_form_settings form = p->settings.form;
+    hf_form_result *r = &p->form;
+    int most = p->settings.form.max_iterations;
+    form.max_iterations = most < 3 ? most : 3;
+    double begin_s = hf_clock_s();
+    hf_evaluate_form(&p->model, &form, &p->workspace, NULL, r);
+    double iteration_s = (hf_clock_s() - begin_s) / r->iterations, affordable = TRIAL_S / iteration_s;
+    form.max_iterations = affordable < most ? (int)affordable + 1 : most;
+    begin_s = hf_clock_s();
+    hf_evaluate_form(&p->model, &form, &p->workspace, NULL, r);
+    c->is_form_finished = r->status != HF_NOT_CONVERGED || form.max_iterations >= most;
+    c->form_s = c->is_form_finished ? hf_clock_s() - begin_s : iteration_s * most;
+    c->at_most_s = c->form_s;
+}
+
+/* Finds the time of the as-built samples, at the shape of form-finding. */
+static void time_tolerance(hf_check *c)
+{
+    const hf_problem *p = &c->problem;
+    hf_tolerance_trial *t = &c->tolerance;
+    int threads = c->threads;
+    if (!p->settings.has_tolerance || p->form.status != HF_OK) return;
+    c->has_tolerance = hf_tolerance_stage_try(p, &p->workspace, TRIAL_S, t) == HF_OK;
+    if (!c->has_tolerance) return;
+    c->tolerance_threads = threads;
+    c->tolerance_s =
+        t->begin_s + hf_check_together_s(t->sample_s, p->settings.tolerance.samples, &c->tolerance_threads);
+    if (!t->scale_yields) return;
+    double each_s = t->scale_s > 0 ? t->scale_s / t->scale_samples : t->scale_sample_s * t->scale_yields;
+    c->yields_s = hf_check_together_s(each_s, t->scale_samples, &threads);
+}
+
+/* Evaluates the first generation in one thread. The time of the whole search is that of one design, times the designs
+ * per thread, times the maximum number of generations. */
+static hf_status time_search(hf_check *c, const hf_evaluator *v, const hf_population *ga)
+{
+    const hf_optimize_settings *o = &c->problem.settings.optimize;
+    hf_batch batch = {0};
+    int threads = c->threads;
+    hf_status status = hf_batch_create(v, 1, &batch);
+    if (status == HF_OK) {
+        c->solver = hf_batch_share(&batch, c->problem.initial);
+        double begin_s = hf_clock_s();
+        hf_batch_run(&batch, ga->n_individual, ga->design, ga->pending, ga->result);
+        c->design_s = (hf_clock_s() - begin_s) / ga->n_individual;
+        c->search_s = hf_check_together_s(c->design_s, o->population, &threads) * o->generations;
+        c->at_most_s += c->search_s;
+    }
+    hf_batch_free(&batch);
+    return status;
+}
+
+/* Runs two steps of Levenberg-Marquardt from the initial design to find the time of one. If counted operations predict
+ * more time than that of a trial, nothing is run, and the prediction is the time. */
+static hf_status time_refine(hf_check *c, const hf_evaluator *v, const hf_population *ga)
+{
+    hf_problem *p = &c->problem;
+    const hf_optimize_settings *o = &p->settings.optimize;
+    hf_refine_result r;
+    double begin_s = hf_clock_s(), step_s = hf_refine_operations(v) / OPERATIONS_PER_S;
+    c->is_step_tried = step_s <= TRIAL_S;
+    if (c->is_step_tried) {
+        hf_status status = hf_refine_run(v, ga->lower, ga->upper, 2, NULL, NULL, p->initial, &p->workspace, &r);
+        if (status == HF_NO_MEMORY) return status;
+        if (status != HF_OK || r.iterations == 0) return HF_OK;
+        step_s = (hf_clock_s() - begin_s) / r.iterations;
+    }
+    c->step_s = step_s;
+    c->refine_s = step_s * ((double)o->refine_steps * (o->n_front > 0 ? o->front_points : 1));
+    c->advises_fewer = c->refine_s > LONG_S || c->memory.refine > LARGE_BYTES;
+    c->at_most_s += c->refine_s;
+    return HF_OK;
+}
+
+static hf_status time_optimisation(hf_check *c, const hf_evaluator *v)
+{
+    const hf_problem *p = &c->problem;
+    const hf_optimiser_kind *kind = hf_optimiser_plan_of(&p->settings.optimize).kind;
+    hf_optimiser o = {0};
+    hf_status status = hf_optimiser_create(kind, &p->settings.optimize, &p->model, p->initial, &o);
+    if (status == HF_OK && kind) status = time_search(c, v, &o.population);
+    if (status == HF_OK && c->refines) status = time_refine(c, v, &o.population);
+    hf_optimiser_free(&o);
+    return status;
+}
+
+/* ---- a case ---- */
+
+/* Finds which stages run. */
+static void find_stages(hf_check *c, const hf_evaluator *v)
+{
+    const hf_problem *p = &c->problem;
+    const hf_optimize_settings *o = &p->settings.optimize;
+    hf_optimiser_plan plan = hf_optimiser_plan_of(o);
+    c->method = hf_evaluate_method(&p->model, &p->settings.form, &c->method_reason);
+    c->optimizes = p->settings.has_optimize && p->model.n_variable > 0;
+    c->evolves = c->optimizes && plan.kind;
+    c->is_refine_result = plan.ends_with_refine;
+    bool may_refine = plan.ends_with_refine || (o->refine != HF_REFINE_FALSE && !o->n_front);
+    c->refines = c->optimizes && may_refine && hf_refine_applies(v);
+}
+
+hf_status hf_check_load(const hf_check_request *q, hf_check *c, hf_messages *messages)
+{
+    hf_problem *p = &c->problem;
+    c->threads = q->threads;
+    c->form_s = c->design_s = c->step_s = (double)NAN;
+    HF_TRY(hf_problem_load(q->path, NULL, q->set, q->n_set, NULL, p, messages));
+    HF_TRY(hf_tolerance_stage_check(p, false, messages));
+    HF_TRY(hf_problem_allocate(p, messages));
+    const hf_evaluator evaluator = hf_problem_evaluator(p);
+    find_stages(c, &evaluator);
+    count_net(c);
+    count_variables(c);
+    count_nets(c);
+    plan_far_field(c);
+    if (p->settings.has_truss) HF_TRY(time_truss(c, messages));
+    return find_memory(c, &evaluator) == HF_OK ? HF_OK : hf_error(messages, HF_NO_MEMORY, "out of memory");
+}
+
+hf_status hf_check_try(hf_check *c, hf_messages *messages)
+{
+    hf_problem *p = &c->problem;
+    const hf_evaluator evaluator = hf_problem_evaluator(p);
+    time_form(c);
+    if (!c->is_form_finished) return HF_OK;
+    HF_TRY(hf_problem_explain(p, messages));
+    time_tolerance(c);
+    if (!c->optimizes) return HF_OK;
+    HF_TRY(hf_problem_base(p, messages));
+    HF_TRY(hf_reach_check(p, messages));
+    hf_problem_warn_of_refine(p, messages);
+    hf_problem_warn_of_front(p, messages);
+    return time_optimisation(c, &evaluator) == HF_OK ? HF_OK : hf_error(messages, HF_NO_MEMORY, "out of memory");
+}
+
+void hf_check_free(hf_check *c)
+{
+    hf_problem_free(&c->problem);
+}
+
+/* ---- the points of a study ---- */
+
+hf_status hf_check_study_points(const hf_study *s, hf_problem *scratch, hf_check_points *t, hf_messages *messages)
+{
+    double end_s = hf_clock_s() + (s->n_point > MANY ? MAKING_FEW_S : MAKING_S);
+    *t = (hf_check_points){.first = -1};
+    for (; t->n_tried < s->n_point && (hf_clock_s() < end_s || (t->first < 0 && t->n_tried < MADE_LEAST));
+         t->n_tried++) {
+        int i = hf_study_spread(s, t->n_tried);
+        hf_study_overrides o;
+        hf_messages found = {0};
+        hf_study_point_overrides(s, i, &o);
+        hf_status status = hf_problem_load(s->base, NULL, o.set, o.n_set, NULL, scratch, &found);
+        hf_problem_free(scratch);
+        if (status == HF_OK && (t->first < 0 || i < t->first)) t->first = i;
+        if (status != HF_OK && t->n_fault++ < HF_FAULT_MAX_POINT) hf_study_tell_faults(s, i, &found, messages);
+        hf_messages_free(&found);
+        if (status == HF_NO_MEMORY || status == HF_IO || status == HF_INTERRUPTED) return status;
+    }
+    if (t->n_fault > HF_FAULT_MAX_POINT)
+        hf_error(messages, HF_BAD_CASE, "%s: sweep: and %d more points with faults", s->path,
+                 t->n_fault - HF_FAULT_MAX_POINT);
+    return t->first < 0 ? HF_BAD_CASE : HF_OK;
+}
