@@ -78,13 +78,12 @@ static void print_load_cases(const hf_load_cases *s, FILE *f)
 static void print_truss(const hf_check *check, FILE *f)
 {
     const hf_carrier *c = &check->problem.carrier;
-    char wall[32], matrix[32];
-    hf_print_duration(check->truss_s, wall, sizeof wall);
-    hf_print_bytes((double)c->frame.n_dof * (c->frame.half_bandwidth + 1) * sizeof(double), matrix, sizeof matrix);
     fprintf(f, "  truss         %d nodes, %d members; %.2f kg; %d attachments\n", c->truss.n_node, c->truss.n_member,
             c->mass_kg, c->n_attachment);
     fprintf(f, "                %d unknowns, half-bandwidth %d, %s; condition %.1e; built and condensed once in %s\n",
-            c->frame.n_dof, c->frame.half_bandwidth, matrix, c->frame.condition, wall);
+            c->frame.n_dof, c->frame.half_bandwidth,
+            hf_print_bytes((double)c->frame.n_dof * (c->frame.half_bandwidth + 1) * sizeof(double)).text,
+            c->frame.condition, hf_print_duration(check->truss_s).text);
 }
 
 /* Prints the objectives of a front by name. */
@@ -269,9 +268,7 @@ static void print_plan(const hf_check *check, FILE *f)
 
 static void print_allocation(const char *title, const char *what, double bytes, const char *without, FILE *f)
 {
-    char text[32];
-    hf_print_bytes(bytes, text, sizeof text);
-    fprintf(f, "  %-13s %-38s %s\n", title, what, bytes > 0 ? text : without);
+    fprintf(f, "  %-13s %-38s %s\n", title, what, bytes > 0 ? hf_print_bytes(bytes).text : without);
 }
 
 /* Prints the memory that a run would allocate. Items that it would not allocate are listed with the reason. */
@@ -293,14 +290,12 @@ static void print_memory(const hf_check *c, FILE *f)
 static void print_form_time(const hf_check *c, FILE *f)
 {
     const hf_form_result *r = &c->problem.form;
-    char text[32];
-    hf_print_duration(c->form_s, text, sizeof text);
     if (!c->is_form_finished) {
         fprintf(f, "  expected time form-finding: not finished after %d iteration%s; at most %s\n", r->iterations,
-                r->iterations == 1 ? "" : "s", text);
+                r->iterations == 1 ? "" : "s", hf_print_duration(c->form_s).text);
         return;
     }
-    fprintf(f, "  expected time form-finding: %s (", text);
+    fprintf(f, "  expected time form-finding: %s (", hf_print_duration(c->form_s).text);
     hf_print_iterations(r, f);
     fputs(")\n", f);
     if (r->coupling.iterations > 0)
@@ -312,36 +307,33 @@ static void print_form_time(const hf_check *c, FILE *f)
 static void print_tolerance_time(const hf_check *c, FILE *f)
 {
     const hf_tolerance_trial *t = &c->tolerance;
-    char begin[32], one[32], all[32];
     if (!c->has_tolerance) return;
-    hf_print_duration(t->begin_s, begin, sizeof begin);
-    hf_print_duration(t->sample_s, one, sizeof one);
-    hf_print_duration(c->tolerance_s, all, sizeof all);
     if (t->n_tried)
         fprintf(
             f,
             "                as built: %s a net (the first %d tried%s); with first order about %s for %d nets on %d "
             "thread%s\n",
-            one, t->n_tried, c->problem.settings.has_surface ? ", best fits of the surface included" : "", all,
-            c->problem.settings.tolerance.samples, c->tolerance_threads, c->tolerance_threads == 1 ? "" : "s");
+            hf_print_duration(t->sample_s).text, t->n_tried,
+            c->problem.settings.has_surface ? ", best fits of the surface included" : "",
+            hf_print_duration(c->tolerance_s).text, c->problem.settings.tolerance.samples, c->tolerance_threads,
+            c->tolerance_threads == 1 ? "" : "s");
     else
         fprintf(f, "                as built: first order some %s of processor time, counted; samples not tried\n",
-                begin);
+                hf_print_duration(t->begin_s).text);
     if (!t->scale_yields) return;
     fprintf(f, "                tolerance.required_yield: up to %d yields of %d nets more, most of them ended early",
             t->scale_yields, t->scale_samples);
-    hf_print_duration(c->yields_s, all, sizeof all);
-    if (t->n_tried) fprintf(f, ": %s %s", t->scale_s > 0 ? "some" : "with errors as they are at most about", all);
+    if (t->n_tried)
+        fprintf(f, ": %s %s", t->scale_s > 0 ? "some" : "with errors as they are at most about",
+                hf_print_duration(c->yields_s).text);
     fputc('\n', f);
 }
 
 static void print_refine_time(const hf_check *c, FILE *f)
 {
-    char one[32], all[32];
-    hf_print_duration(c->step_s, one, sizeof one);
-    hf_print_duration(c->refine_s, all, sizeof all);
     fprintf(f, "                Levenberg-Marquardt: %s%s an iteration%s; at most about %s, mostly far less\n",
-            c->is_step_tried ? "" : "some ", one, c->is_step_tried ? "" : ", counted and not tried", all);
+            c->is_step_tried ? "" : "some ", hf_print_duration(c->step_s).text,
+            c->is_step_tried ? "" : ", counted and not tried", hf_print_duration(c->refine_s).text);
     if (c->advises_fewer)
         fprintf(f,
                 "                %d variables: its time grows with their cube, its memory with their square; fewer of "
@@ -352,14 +344,11 @@ static void print_refine_time(const hf_check *c, FILE *f)
 /* Prints the times that the trials found. */
 static void print_times(const hf_check *c, FILE *f)
 {
-    char one[32], all[32];
     print_form_time(c, f);
     print_tolerance_time(c, f);
-    hf_print_duration(c->design_s, one, sizeof one);
-    hf_print_duration(c->search_s, all, sizeof all);
     if (!isnan(c->design_s))
         fprintf(f, "                optimisation: %s for a design of the first generation by %s; at most about %s\n",
-                one, hf_solver_word[c->solver], all);
+                hf_print_duration(c->design_s).text, hf_solver_word[c->solver], hf_print_duration(c->search_s).text);
     if (!isnan(c->step_s)) print_refine_time(c, f);
 }
 

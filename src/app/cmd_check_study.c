@@ -66,12 +66,10 @@ static hf_status print_done(const hf_study *s, int count[HF_N_POINT_STATE], FILE
 
 static void print_time(int n, const char *what, double each_s, int threads, bool has_tolerance, FILE *f)
 {
-    char one[32], all[32];
-    hf_print_duration(each_s, one, sizeof one);
-    hf_print_duration(hf_check_together_s(each_s, n, &threads), all, sizeof all);
+    double all_s = hf_check_together_s(each_s, n, &threads);
     fprintf(f, "%d point%s to run%s, each like this one at most some %s, on %d thread%s: at most about %s%s\n", n,
-            n == 1 ? "" : "s", what, one, threads, threads == 1 ? "" : "s", all,
-            has_tolerance ? ", plus the time of the as-built samples" : "");
+            n == 1 ? "" : "s", what, hf_print_duration(each_s).text, threads, threads == 1 ? "" : "s",
+            hf_print_duration(all_s).text, has_tolerance ? ", plus the time of the as-built samples" : "");
 }
 
 /* Prints what a sweep runs by default, and what it runs again with --retry. */

@@ -285,8 +285,7 @@ static void write_template(const void *context, FILE *f)
 
 static void print_summary(const job *j, const char *path, FILE *f)
 {
-    char wall[32], best[400] = "", row[16]; /* a longer id is truncated */
-    hf_print_duration(j->wall_s, wall, sizeof wall);
+    char best[400] = "", row[16]; /* a longer id is truncated */
     snprintf(row, sizeof row, "%d", j->best + 1);
     const char *id = j->best >= 0 && row_id(j, j->best) ? row_id(j, j->best) : row;
     if (j->best >= 0 && j->problem.objectives.n_objective)
@@ -294,7 +293,7 @@ static void print_summary(const job *j, const char *path, FILE *f)
     else if (j->best >= 0)
         snprintf(best, sizeof best, "; best psi %.4f mm, %s", j->result[j->best].psi_m * 1e3, id);
     hf_print_line(f, "%d designs, %d feasible%s; %s, %.0f evaluations/s by %s on %d thread%s; results in %s",
-                  j->table.n_row, j->n_feasible, best, wall, j->table.n_row / j->wall_s,
+                  j->table.n_row, j->n_feasible, best, hf_print_duration(j->wall_s).text, j->table.n_row / j->wall_s,
                   hf_solver_word[j->problem.solver], j->problem.batch.n_thread,
                   j->problem.batch.n_thread == 1 ? "" : "s", path);
 }

@@ -71,13 +71,13 @@ static void show_points(void *context, const hf_sweep_count *n)
 {
     teller *t = context;
     int finished = n->n_done + n->n_failed;
-    char left[32];
     if (n->wall_s - t->said_s < (t->on_terminal ? REFRESH_S : LOG_S)) return;
     t->said_s = n->wall_s;
     if (!hf_file_io_await_room(STDERR_FILENO, 0)) return;
-    hf_print_duration(n->wall_s * (n->n_todo - finished) / (finished ? finished : 1), left, sizeof left);
     fprintf(stderr, "%s%d of %d points, %d failed, %s left%s", t->on_terminal ? "\r\033[K" : "", finished, n->n_todo,
-            n->n_failed, finished ? left : "?", t->on_terminal ? "" : "\n");
+            n->n_failed,
+            finished ? hf_print_duration(n->wall_s * (n->n_todo - finished) / (finished ? finished : 1)).text : "?",
+            t->on_terminal ? "" : "\n");
     fflush(stderr);
 }
 
@@ -88,7 +88,6 @@ static hf_status sweep_study(const hf_sweep_request *request, bool quiet, FILE *
     teller t = {.on_terminal = isatty(STDERR_FILENO)};
     hf_sweep_request told = *request;
     hf_sweep_count n;
-    char took[32];
     if (!quiet) {
         told.observer = show_points;
         told.observer_context = &t;
@@ -96,10 +95,9 @@ static hf_status sweep_study(const hf_sweep_request *request, bool quiet, FILE *
     hf_status status = hf_sweep_run(&told, &n, messages);
     if (quiet || !n.has_run) return status;
     if (t.on_terminal && hf_file_io_await_room(STDERR_FILENO, 0)) fputs("\r\033[K", stderr);
-    hf_print_duration(n.wall_s, took, sizeof took);
     hf_print_line(file, "%d point%s run in %s on %d thread%s, %d of them failed; results in %s", n.n_done + n.n_failed,
-                  n.n_done + n.n_failed == 1 ? "" : "s", took, request->threads, request->threads == 1 ? "" : "s",
-                  n.n_failed, request->folder);
+                  n.n_done + n.n_failed == 1 ? "" : "s", hf_print_duration(n.wall_s).text, request->threads,
+                  request->threads == 1 ? "" : "s", n.n_failed, request->folder);
     return status;
 }
 

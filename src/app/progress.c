@@ -9,6 +9,8 @@
 #include <math.h>
 #include <unistd.h>
 
+#define CLEAR_LINE "\r\033[K"
+
 const char *const hf_progress_word[6] = {"auto", "none", "line", "log", "jsonl", NULL};
 /* The time in s between two lines, for each hf_progress_mode. */
 static const double interval_s[] = {0, 0, 0.1, HF_PROGRESS_LOG_S, 1};
@@ -34,65 +36,41 @@ static double left_s(const hf_run_progress *now)
     return done > 0 ? now->elapsed_s * ((steps ? now->max_steps : now->generations) - at) / done : 0;
 }
 
-static void show_samples(hf_progress *p, const hf_run_progress *now)
+static void show_samples(FILE *f, const hf_run_progress *now)
 {
-    char left[32];
-    bool is_line = p->mode == HF_PROGRESS_LINE;
     double each_s = now->evaluations > 0 ? now->elapsed_s / (double)now->evaluations : 0;
-    if (now->evaluations == 0) {
-        fprintf(p->file, "\r\033[Kfirst order, before %ld samples", now->samples_all);
-        p->is_shown = true;
-        return;
-    }
-    if (now->sigma_scale > 0) {
-        fprintf(p->file, "%ssample %ld/%ld; the yield with %.3g times the errors%s", is_line ? "\r\033[K" : "",
-                now->samples, now->samples_all, now->sigma_scale, is_line ? "" : "\n");
-        p->is_shown = is_line;
-        return;
-    }
-    hf_print_duration(each_s * (double)(now->samples_all - now->samples), left, sizeof left);
-    fprintf(p->file, "%ssample %ld/%ld  %.0f samples/s  %s left%s", is_line ? "\r\033[K" : "", now->samples,
-            now->samples_all, rate_per_s(now), left, is_line ? "" : "\n");
-    p->is_shown = is_line;
+    if (now->evaluations == 0)
+        fprintf(f, "first order, before %ld samples", now->samples_all);
+    else if (now->sigma_scale > 0)
+        fprintf(f, "sample %ld/%ld; the yield with %.3g times the errors", now->samples, now->samples_all,
+                now->sigma_scale);
+    else
+        fprintf(f, "sample %ld/%ld  %.0f samples/s  %s left", now->samples, now->samples_all, rate_per_s(now),
+                hf_print_duration(each_s * (double)(now->samples_all - now->samples)).text);
 }
 
-static void show_line(hf_progress *p, const hf_run_progress *now)
+static void show_generation(FILE *f, const hf_run_progress *now)
 {
-    char left[32];
-    bool is_line = p->mode == HF_PROGRESS_LINE;
-    hf_print_duration(left_s(now), left, sizeof left);
-    fprintf(p->file, "%sgeneration %d/%d  best psi %.4f mm  %.0f evaluations/s  at most %s left%s",
-            is_line ? "\r\033[K" : "", now->generation, now->generations, now->best_psi_m * 1e3, rate_per_s(now), left,
-            is_line ? "" : "\n");
-    p->is_shown = is_line;
+    fprintf(f, "generation %d/%d  best psi %.4f mm  %.0f evaluations/s  at most %s left", now->generation,
+            now->generations, now->best_psi_m * 1e3, rate_per_s(now), hf_print_duration(left_s(now)).text);
 }
 
-static void show_step(hf_progress *p, const hf_run_progress *now)
+static void show_step(FILE *f, const hf_run_progress *now)
 {
-    char left[32] = "";
-    bool is_line = p->mode == HF_PROGRESS_LINE;
-    fprintf(p->file, "%sLevenberg-Marquardt: step %d/%d  psi %.4f mm", is_line ? "\r\033[K" : "", now->step,
-            now->max_steps, now->best_psi_m * 1e3);
-    if (isfinite(now->merit)) fprintf(p->file, ", merit %.6g", now->merit);
-    hf_print_duration(left_s(now), left, sizeof left);
-    if (now->step > now->first_step) fprintf(p->file, "  at most %s left", left);
-    if (!is_line) fputc('\n', p->file);
-    p->is_shown = is_line;
+    fprintf(f, "Levenberg-Marquardt: step %d/%d  psi %.4f mm", now->step, now->max_steps, now->best_psi_m * 1e3);
+    if (isfinite(now->merit)) fprintf(f, ", merit %.6g", now->merit);
+    if (now->step > now->first_step) fprintf(f, "  at most %s left", hf_print_duration(left_s(now)).text);
 }
 
-static void show_front(hf_progress *p, const hf_run_progress *now)
+static void show_front(FILE *f, const hf_run_progress *now)
 {
-    char since[32];
-    bool is_line = p->mode == HF_PROGRESS_LINE;
-    hf_print_duration(now->elapsed_s, since, sizeof since);
-    fprintf(p->file, "%sfront: point %d/%d  %ld steps of Levenberg-Marquardt  %s so far%s", is_line ? "\r\033[K" : "",
-            now->points, now->points_all, now->steps, since, is_line ? "" : "\n");
-    p->is_shown = is_line;
+    fprintf(f, "front: point %d/%d  %ld steps of Levenberg-Marquardt  %s so far", now->points, now->points_all,
+            now->steps, hf_print_duration(now->elapsed_s).text);
 }
 
-static void show_json(const hf_progress *p, const hf_run_progress *now)
+static void show_json(FILE *f, const hf_run_progress *now)
 {
-    hf_json j = {.file = p->file};
+    hf_json j = {.file = f};
     hf_json_open(&j, NULL, '{');
     hf_json_text(&j, "phase", hf_run_phase_word[now->phase]);
     if (now->phase == HF_RUN_TOLERANCE) {
@@ -130,7 +108,6 @@ static void show_json(const hf_progress *p, const hf_run_progress *now)
         hf_json_number(&j, "at_most_left_s", left_s(now));
     }
     hf_json_close(&j, '}');
-    fputc('\n', p->file);
 }
 
 void hf_progress_show(void *progress, const hf_run_progress *now)
@@ -150,23 +127,22 @@ void hf_progress_show(void *progress, const hf_run_progress *now)
     if (now->elapsed_s - p->last_s < interval_s[p->mode] && !(is_last && p->mode == HF_PROGRESS_JSONL)) return;
     p->last_s = now->elapsed_s;
     if (!hf_file_io_await_room(fileno(p->file), 0)) return;
-    if (p->mode == HF_PROGRESS_JSONL)
-        show_json(p, now);
-    else if (samples)
-        show_samples(p, now);
-    else if (front)
-        show_front(p, now);
-    else if (steps)
-        show_step(p, now);
-    else
-        show_line(p, now);
+    void (*show)(FILE *, const hf_run_progress *) = p->mode == HF_PROGRESS_JSONL ? show_json
+                                                    : samples                    ? show_samples
+                                                    : front                      ? show_front
+                                                    : steps                      ? show_step
+                                                                                 : show_generation;
+    p->is_shown = p->mode == HF_PROGRESS_LINE;
+    if (p->is_shown) fputs(CLEAR_LINE, p->file);
+    show(p->file, now);
+    if (!p->is_shown) fputc('\n', p->file);
     fflush(p->file);
 }
 
 void hf_progress_end(hf_progress *p)
 {
     if (!p->is_shown || !hf_file_io_await_room(fileno(p->file), 0)) return;
-    fputs("\r\033[K", p->file);
+    fputs(CLEAR_LINE, p->file);
     fflush(p->file);
     p->is_shown = false;
 }

@@ -252,8 +252,8 @@ static hf_status export_rf(const hf_export_request *o, const hf_export_stored *s
     snprintf(said, size,
              "%s: %d facets of the %s shape: grid of %d x %d in %s/surface.grd, %d points in %s/points.csv, triangles "
              "in %s/facets.stl",
-             o->file, v.facets.n_facet, stored->word, v.n[0], v.n[1], o->output,
-             v.facets.n_facet * v.n_side * v.n_side, o->output, o->output);
+             o->file, v.facets.n_facet, stored->word, v.n[0], v.n[1], o->output, v.facets.n_facet * v.n_side * v.n_side,
+             o->output, o->output);
     hf_facets_free(&v.facets);
     return status;
 }

@@ -40,27 +40,31 @@ void hf_print_lines(const char *lines, FILE *f)
 
 /* ---- units for people ---- */
 
-void hf_print_duration(double seconds, char *text, size_t size)
+hf_print_text hf_print_duration(double seconds)
 {
+    hf_print_text t;
     if (seconds < 1e-3)
-        snprintf(text, size, seconds < 1e-6 ? "%.1g us" : "%.0f us", seconds * 1e6);
+        snprintf(t.text, sizeof t.text, seconds < 1e-6 ? "%.1g us" : "%.0f us", seconds * 1e6);
     else if (seconds < 1)
-        snprintf(text, size, "%.1f ms", seconds * 1e3);
+        snprintf(t.text, sizeof t.text, "%.1f ms", seconds * 1e3);
     else if (seconds < 60)
-        snprintf(text, size, "%.1f s", seconds);
+        snprintf(t.text, sizeof t.text, "%.1f s", seconds);
     else if (seconds < 3600)
-        snprintf(text, size, "%.0f min %.0f s", floor(seconds / 60), floor(fmod(seconds, 60)));
+        snprintf(t.text, sizeof t.text, "%.0f min %.0f s", floor(seconds / 60), floor(fmod(seconds, 60)));
     else
-        snprintf(text, size, "%.0f h %.0f min", floor(seconds / 3600), floor(fmod(seconds, 3600) / 60));
+        snprintf(t.text, sizeof t.text, "%.0f h %.0f min", floor(seconds / 3600), floor(fmod(seconds, 3600) / 60));
+    return t;
 }
 
-void hf_print_bytes(double bytes, char *text, size_t size)
+hf_print_text hf_print_bytes(double bytes)
 {
     static const char *const unit[] = {"B", "kB", "MB", "GB", "TB"};
+    hf_print_text t;
     int i = 0;
     for (; bytes >= 1000 && i < 4; i++)
         bytes /= 1000;
-    snprintf(text, size, i ? "%.1f %s" : "%.0f %s", bytes, unit[i]);
+    snprintf(t.text, sizeof t.text, i ? "%.1f %s" : "%.0f %s", bytes, unit[i]);
+    return t;
 }
 
 #define LEAST_DB 1e-9 /* the loss of an RMS of 1e-6 wavelengths; exact positions give about 1e-27 */
@@ -69,13 +73,14 @@ double hf_print_loss_dB(double loss_dB)
     return loss_dB < LEAST_DB ? 0 : loss_dB;
 }
 
-const char *hf_print_change(double value, double base, char text[HF_PRINT_CHANGE_SIZE])
+hf_print_text hf_print_change(double value, double base)
 {
     double below = 100 * (1 - value / base);
-    int n = snprintf(text, HF_PRINT_CHANGE_SIZE, fabs(below) < 10 ? "%.2f %%" : "%.1f %%", fabs(below));
-    snprintf(text + n, HF_PRINT_CHANGE_SIZE - (size_t)n, below > 0 ? " lower than" : " higher than");
-    if (!strncmp(text, "0.00 ", 5)) strcpy(text, "the same as");
-    return text;
+    hf_print_text t;
+    const char *what = below > 0 ? "lower than" : "higher than";
+    snprintf(t.text, sizeof t.text, fabs(below) < 10 ? "%.2f %% %s" : "%.1f %% %s", fabs(below), what);
+    if (!strncmp(t.text, "0.00 ", 5)) strcpy(t.text, "the same as");
+    return t;
 }
 
 double hf_print_scale(const char *unit, const char **told)
@@ -84,11 +89,12 @@ double hf_print_scale(const char *unit, const char **told)
     return !strcmp(unit, "m") ? 1e3 : !strcmp(unit, "Hz") ? 1e-9 : 1;
 }
 
-const char *hf_print_decimals(double value, char text[32])
+hf_print_text hf_print_decimals(double value)
 {
+    hf_print_text t;
     if (isfinite(value))
-        snprintf(text, 32, "%.4f", value);
+        snprintf(t.text, sizeof t.text, "%.4f", value);
     else
-        strcpy(text, isinf(value) ? "inf" : "-");
-    return text;
+        strcpy(t.text, isinf(value) ? "inf" : "-");
+    return t;
 }

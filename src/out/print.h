@@ -27,24 +27,28 @@ typedef struct {
  * NULL. */
 void hf_print_summary(const hf_summary *summary, const char *path, hf_print_style style, FILE *file);
 
-/* Formats a duration: "85 us", "1.3 ms", "2.7 s", "4 min 10 s". */
-void hf_print_duration(double seconds, char *text, size_t size);
+/* A short text that a function returns by value, for use within one expression: hf_print_duration(wall_s).text */
+typedef struct {
+    char text[40];
+} hf_print_text;
 
-/* Formats a value: "4.2315", "inf", or "-" for NaN. Returns text. */
-const char *hf_print_decimals(double value, char text[32]);
+/* Formats a duration: "85 us", "1.3 ms", "2.7 s", "4 min 10 s". */
+hf_print_text hf_print_duration(double seconds);
+
+/* Formats a size: "640 B", "1.2 MB". */
+hf_print_text hf_print_bytes(double bytes);
+
+/* Formats a value: "4.2315", "inf", or "-" for NaN. */
+hf_print_text hf_print_decimals(double value);
 
 /* Formats the change of a value relative to a base > 0: "34.9 % lower than", "4.24 % higher than", or "the same as"
- * when it rounds to 0. Returns text. */
-#define HF_PRINT_CHANGE_SIZE 48
-const char *hf_print_change(double value, double base, char text[HF_PRINT_CHANGE_SIZE]);
+ * when it rounds to 0. */
+hf_print_text hf_print_change(double value, double base);
 
 /* Returns the factor from a unit of files to that of people, and sets *told to the latter: m to mm, Hz to GHz. */
 double hf_print_scale(const char *unit, const char **told);
 
 /* Returns a gain loss for display, dB: 0 when it is rounding. */
 double hf_print_loss_dB(double loss_dB);
-
-/* Formats a size: "640 B", "1.2 MB". */
-void hf_print_bytes(double bytes, char *text, size_t size);
 
 #endif

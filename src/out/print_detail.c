@@ -11,21 +11,20 @@
 
 static void print_result(const hf_form_result *r, FILE *f)
 {
-    char inner[32], boundary[32], slack[40] = "";
+    char slack[40] = "";
     if (r->n_slack) snprintf(slack, sizeof slack, " (%d slack cable%s)", r->n_slack, r->n_slack == 1 ? "" : "s");
     fprintf(f, "                tension ratio %s inside, %s on the boundary%s; maximum nodal residual %.1e N\n",
-            hf_print_decimals(r->inner_tension_ratio, inner), hf_print_decimals(r->boundary_tension_ratio, boundary),
-            slack, r->residual_N);
+            hf_print_decimals(r->inner_tension_ratio).text, hf_print_decimals(r->boundary_tension_ratio).text, slack,
+            r->residual_N);
 }
 
 static void print_sets(const hf_set_tensions *s, FILE *f)
 {
     if (!s) return;
-    char ratio[32];
     if (s->n == 0) return;
     fputs("                tension ratio of sets:", f);
     for (int k = 0; k < s->n; k++)
-        fprintf(f, "%s %s %s", k ? "," : "", s->name[k], hf_print_decimals(s->ratio[k], ratio));
+        fprintf(f, "%s %s %s", k ? "," : "", s->name[k], hf_print_decimals(s->ratio[k]).text);
     fputc('\n', f);
 }
 
@@ -161,10 +160,9 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
 static void print_search(const hf_summary *s, FILE *f)
 {
     const hf_stage_summary *stage = &s->stage[HF_STAGE_SEARCH];
-    char wall[32], change[HF_PRINT_CHANGE_SIZE];
-    hf_print_duration(stage->wall_s, wall, sizeof wall);
     if (stage->result.status != HF_OK) {
-        fprintf(f, "  search        no feasible design in %ld evaluations, %s\n", s->search.evaluations, wall);
+        fprintf(f, "  search        no feasible design in %ld evaluations, %s\n", s->search.evaluations,
+                hf_print_duration(stage->wall_s).text);
         return;
     }
     fprintf(f, "  search        psi %.4f mm", stage->result.psi_m * 1e3);
@@ -173,7 +171,7 @@ static void print_search(const hf_summary *s, FILE *f)
     else if (s->objectives.n > 0 && !s->objectives.is_front &&
              s->stage[HF_STAGE_FORM].result.merit > 0) /* psi is not the objective */
         fprintf(f, ", merit %.6g, %s after form-finding", stage->result.merit,
-                hf_print_change(stage->result.merit, s->stage[HF_STAGE_FORM].result.merit, change));
+                hf_print_change(stage->result.merit, s->stage[HF_STAGE_FORM].result.merit).text);
     else /* initial_psi_m is evaluated under the same rule, so only the tensions differ */
         hf_print_gained(stage->result.psi_m, s->search.initial_psi_m, f);
     fprintf(f, "; found in generation %d\n", s->search.best_generation);
@@ -197,9 +195,9 @@ static void print_search(const hf_summary *s, FILE *f)
         return;
     }
     fprintf(f, " by %s\n", hf_solver_word[s->search.solver]);
-    fprintf(f, "                %s, %.0f evaluations/s; cpu_s / (wall_s * threads) = %.3f on %d thread%s\n", wall,
-            (double)s->search.evaluations / stage->wall_s, hf_summary_utilisation(s), s->threads,
-            s->threads == 1 ? "" : "s");
+    fprintf(f, "                %s, %.0f evaluations/s; cpu_s / (wall_s * threads) = %.3f on %d thread%s\n",
+            hf_print_duration(stage->wall_s).text, (double)s->search.evaluations / stage->wall_s,
+            hf_summary_utilisation(s), s->threads, s->threads == 1 ? "" : "s");
 }
 
 /* ---- refinement ---- */
@@ -208,11 +206,10 @@ static void print_search(const hf_summary *s, FILE *f)
 static void print_end(const hf_summary *s, const char *wall, FILE *f)
 {
     const hf_form_result *r = &s->stage[HF_STAGE_REFINE].result;
-    char boundary[32];
     fprintf(f, "  refine        psi %.4f mm, %s; started from the %s; boundary ratio %s; ", r->psi_m * 1e3,
             s->refine.is_result ? "the result" : "for comparison",
             s->stage[HF_STAGE_SEARCH].exists ? "best design of the search" : "initial design",
-            hf_print_decimals(r->boundary_tension_ratio, boundary));
+            hf_print_decimals(r->boundary_tension_ratio).text);
     hf_print_steps(&s->refine, f);
     fprintf(f, ", %s\n", wall);
 }
@@ -220,14 +217,13 @@ static void print_end(const hf_summary *s, const char *wall, FILE *f)
 static void print_refine(const hf_summary *s, FILE *f)
 {
     const hf_stage_summary *stage = &s->stage[HF_STAGE_REFINE];
-    char wall[32], boundary[32], limits[40] = "";
-    hf_print_duration(stage->wall_s, wall, sizeof wall);
+    char limits[40] = "";
     if (s->taken.point)
         hf_print_line(f, "  point         psi %.4f mm, boundary ratio %s: point %d of the front in %s",
-                      stage->result.psi_m * 1e3, hf_print_decimals(stage->result.boundary_tension_ratio, boundary),
+                      stage->result.psi_m * 1e3, hf_print_decimals(stage->result.boundary_tension_ratio).text,
                       s->taken.point, s->taken.path);
     else
-        print_end(s, wall, f);
+        print_end(s, hf_print_duration(stage->wall_s).text, f);
     if (s->refine.n_at_limit) snprintf(limits, sizeof limits, " and %d limits", s->refine.n_at_limit);
     fprintf(f, "                at %d lower bounds and %d upper bounds%s%s\n", s->refine.n_at_lower,
             s->refine.n_at_upper, limits, s->refine.is_at_cap ? " and at boundary_ratio_cap" : "");
@@ -240,11 +236,9 @@ static void print_refine(const hf_summary *s, FILE *f)
 void hf_print_details(const hf_summary *s, FILE *f)
 {
     const hf_stage_summary *stage = &s->stage[HF_STAGE_FORM];
-    char wall[32], psi[32];
-    hf_print_duration(stage->wall_s, wall, sizeof wall);
-    fprintf(f, "  form          psi %s mm; ", hf_print_decimals(stage->result.psi_m * 1e3, psi));
+    fprintf(f, "  form          psi %s mm; ", hf_print_decimals(stage->result.psi_m * 1e3).text);
     hf_print_iterations(&stage->result, f);
-    fprintf(f, ", %s; half-bandwidth %d\n", wall, s->half_bandwidth);
+    fprintf(f, ", %s; half-bandwidth %d\n", hf_print_duration(stage->wall_s).text, s->half_bandwidth);
     print_result(&stage->result, f);
     print_sets(stage->sets, f);
     hf_print_objectives(s, &stage->result, f);

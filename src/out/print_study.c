@@ -15,7 +15,7 @@
 #define POINTS_MOST 64 /* maximum number of points that are all shown */
 #define POINTS_BEST 32 /* points shown of a larger study, the best ones */
 #define REASON_MOST 60 /* characters of a reason */
-#define CELL_SIZE 40
+#define CELL_SIZE sizeof(hf_print_text)
 #define WORD_MOST 24 /* characters of a word that is the value of an axis */
 #define SMALL_M 0.1  /* an axis of smaller lengths is shown in millimetres */
 
@@ -225,7 +225,7 @@ static void print_figure(const hf_merged *m, const column *c, int i, char text[C
     else if (isinf(value))
         strcpy(text, "inf");
     else if (!strcmp(c->unit, "mm") || strstr(f->key, "tension_ratio"))
-        hf_print_decimals(value, text);
+        strcpy(text, hf_print_decimals(value).text);
     else if (!strcmp(c->unit, "%"))
         snprintf(text, CELL_SIZE, "%.1f", value);
     else

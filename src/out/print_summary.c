@@ -72,10 +72,9 @@ static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, F
 
 void hf_print_gained(double psi_m, double initial_psi_m, FILE *f)
 {
-    char initial[32], change[HF_PRINT_CHANGE_SIZE];
     if (!(initial_psi_m * 1e3 >= SHOWN_MM) || !isfinite(initial_psi_m)) return;
-    fprintf(f, ", %s for the initial design (%s mm)", hf_print_change(psi_m, initial_psi_m, change),
-            hf_print_decimals(initial_psi_m * 1e3, initial));
+    fprintf(f, ", %s for the initial design (%s mm)", hf_print_change(psi_m, initial_psi_m).text,
+            hf_print_decimals(initial_psi_m * 1e3).text);
 }
 
 /* Prints the reduction of psi from the initial design. An optimisation evaluates designs under its rule, so its initial
@@ -93,11 +92,10 @@ static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
 /* Prints the value of an objective, lengths in mm. */
 static void print_objective_value(double value, const char *unit, FILE *f)
 {
-    char text[32];
     if (!isfinite(value))
         fputc('-', f);
     else if (!strcmp(unit, "m"))
-        fputs(hf_print_decimals(value * 1e3, text), f);
+        fputs(hf_print_decimals(value * 1e3).text, f);
     else
         fprintf(f, "%.4g", value);
 }
@@ -183,7 +181,6 @@ void hf_print_answer(const hf_summary *s, FILE *f)
 {
     hf_stage stage = hf_store_result_stage(s);
     const hf_form_result *r = result_of(s, stage);
-    char psi[32];
     if (!s->finished) fputs("unfinished: ", f);
     print_failure(s, stage, f);
     if (r->status == HF_NOT_CONVERGED) fputs("not converged: ", f);
@@ -201,7 +198,7 @@ void hf_print_answer(const hf_summary *s, FILE *f)
         fputs("no psi: no taut cable holds an inner node", f);
         return;
     } else {
-        fprintf(f, "psi %s mm (RMS position error of the inner nodes)", hf_print_decimals(r->psi_m * 1e3, psi));
+        fprintf(f, "psi %s mm (RMS position error of the inner nodes)", hf_print_decimals(r->psi_m * 1e3).text);
         print_gained(s, stage, f);
     }
     if (r->status == HF_OK) print_frequency(s, stage, r->psi_m, f);
@@ -229,10 +226,10 @@ static void print_bound(const hf_form_result *r, FILE *f)
  * shape without a design. */
 static void print_figures(const hf_summary *s, const char *name, const hf_form_result *r, int at_bounds, FILE *f)
 {
-    char psi[32], boundary[32], inside[32], bounds[40] = "-";
+    char bounds[40] = "-";
     if (at_bounds >= 0) snprintf(bounds, sizeof bounds, "%d of %d", at_bounds, s->n_variable);
-    fprintf(f, "  %-13s %9s  %14s  %12s", name, hf_print_decimals(r->psi_m * 1e3, psi),
-            hf_print_decimals(r->boundary_tension_ratio, boundary), hf_print_decimals(r->inner_tension_ratio, inside));
+    fprintf(f, "  %-13s %9s  %14s  %12s", name, hf_print_decimals(r->psi_m * 1e3).text,
+            hf_print_decimals(r->boundary_tension_ratio).text, hf_print_decimals(r->inner_tension_ratio).text);
     if (has_merit(s)) fprintf(f, "  %12.6g", r->merit);
     fprintf(f, "  %9s", bounds);
     print_bound(r, f);
@@ -267,7 +264,6 @@ void hf_print_steps(const hf_refine_summary *r, FILE *f)
 
 static void print_search(const hf_summary *s, bool is_result, FILE *f)
 {
-    char wall[32];
     if (s->stage[HF_STAGE_SEARCH].result.status != HF_OK) {
         fprintf(f, "  search        no feasible design in %ld evaluations%s\n", s->search.evaluations,
                 s->finished ? "" : " so far");
@@ -283,35 +279,30 @@ static void print_search(const hf_summary *s, bool is_result, FILE *f)
         fputs(" so far\n", f);
         return;
     }
-    hf_print_duration(s->stage[HF_STAGE_SEARCH].wall_s, wall, sizeof wall);
-    fprintf(f, ", %s\n", wall);
+    fprintf(f, ", %s\n", hf_print_duration(s->stage[HF_STAGE_SEARCH].wall_s).text);
 }
 
 static void print_refine(const hf_summary *s, bool is_result, FILE *f)
 {
-    char wall[32];
     int n_at_bound = s->refine.n_at_lower + s->refine.n_at_upper;
     if (s->taken.point) {
         print_figures(s, "point", &s->stage[HF_STAGE_REFINE].result, n_at_bound, f);
         hf_print_line(f, "  the result, point %d of the front in %s", s->taken.point, s->taken.path);
         return;
     }
-    hf_print_duration(s->stage[HF_STAGE_REFINE].wall_s, wall, sizeof wall);
     print_figures(s, "refine", &s->stage[HF_STAGE_REFINE].result, n_at_bound, f);
     fprintf(f, "  %s, LM: ", is_result ? "the result" : "for comparison");
     hf_print_steps(&s->refine, f);
-    fprintf(f, ", %s\n", wall);
+    fprintf(f, ", %s\n", hf_print_duration(s->stage[HF_STAGE_REFINE].wall_s).text);
 }
 
 static void print_stages(const hf_summary *s, hf_stage result, FILE *f)
 {
-    char wall[32];
-    hf_print_duration(s->stage[HF_STAGE_FORM].wall_s, wall, sizeof wall);
     print_table_head(s, f);
     print_figures(s, "form", &s->stage[HF_STAGE_FORM].result, -1, f);
     fputs("  ", f);
     hf_print_iterations(&s->stage[HF_STAGE_FORM].result, f);
-    fprintf(f, ", %s\n", wall);
+    fprintf(f, ", %s\n", hf_print_duration(s->stage[HF_STAGE_FORM].wall_s).text);
     if (s->stage[HF_STAGE_SEARCH].exists) print_search(s, result == HF_STAGE_SEARCH, f);
     if (s->stage[HF_STAGE_SEARCH].exists) hf_print_held(s->stage[HF_STAGE_SEARCH].held, f);
     if (s->stage[HF_STAGE_REFINE].exists) print_refine(s, result == HF_STAGE_REFINE, f);
@@ -374,14 +365,13 @@ static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
 static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_surface_measures *m = &s->stage[stage].surface;
-    char node[32], fit[32], facet[32], facet_fit[32];
     if (!m->is_measured) return;
     fprintf(f, "  surface       half-path RMS of the nodes %s mm for a fixed feed, %s mm after best fit",
-            hf_print_decimals(m->half_path_rms_m * 1e3, node), hf_print_decimals(m->fit.half_path_rms_m * 1e3, fit));
+            hf_print_decimals(m->half_path_rms_m * 1e3).text, hf_print_decimals(m->fit.half_path_rms_m * 1e3).text);
     if (m->n_facet)
         fprintf(f, "; of %d facets %s mm, %s mm after best fit", m->n_facet,
-                hf_print_decimals(m->facet_half_path_rms_m * 1e3, facet),
-                hf_print_decimals(m->facet_fit_half_path_rms_m * 1e3, facet_fit));
+                hf_print_decimals(m->facet_half_path_rms_m * 1e3).text,
+                hf_print_decimals(m->facet_fit_half_path_rms_m * 1e3).text);
     fputc('\n', f);
     if (s->surface.frequencies_Hz.n > 0) {
         fputs("                ", f);
@@ -444,11 +434,10 @@ static void print_front_point(const hf_summary *s, const char *name, int row, FI
 static void print_front_counts(const hf_summary *s, FILE *f)
 {
     const hf_front_table *t = s->front;
-    char wall[32], rough[40] = "";
+    char rough[40] = "";
     if (t->n_unconverged > 0) snprintf(rough, sizeof rough, ", %d not converged", t->n_unconverged);
-    hf_print_duration(t->wall_s, wall, sizeof wall);
     fprintf(f, "  front         %d points, %d dominated, %d failed%s; %s", t->n_point, t->n_dominated, t->n_failed,
-            rough, wall);
+            rough, hf_print_duration(t->wall_s).text);
     for (int k = 0; k < t->n_objective && t->minimised >= 0; k++)
         if (k != t->minimised) print_slope_head(s, k, f);
     fputc('\n', f);

@@ -110,8 +110,6 @@ static void print_shares(const hf_tolerance_summary *t, FILE *f)
 
 void hf_print_tolerance(const hf_tolerance_summary *t, bool verbose, FILE *f)
 {
-    char wall[32];
-    hf_print_duration(t->tolerance_wall_s, wall, sizeof wall);
     if (isinf(t->psi_95_m))
         fprintf(f, "  as built      fewer than 95 %% of %d samples have a shape; psi ", t->samples);
     else {
@@ -122,7 +120,7 @@ void hf_print_tolerance(const hf_tolerance_summary *t, bool verbose, FILE *f)
     print_mm(f, t->nominal_psi_m);
     fputs(" without errors; ", f);
     fprintf(f, "%d with slack cables, %d with loose nodes, %d without a shape; %s\n", t->n_with_slack, t->n_with_loose,
-            t->n_failed, wall);
+            t->n_failed, hf_print_duration(t->tolerance_wall_s).text);
     for (int k = 0; verbose && k < HF_TOLERANCE_N_MEASURE; k++)
         if (k < HF_TOLERANCE_SLACK) print_measure(&t->figure[k], k, f);
     if (verbose) print_first_order(t, f);
