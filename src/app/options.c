@@ -18,102 +18,107 @@
 
 /* ---- reading a value ---- */
 
+typedef hf_option_reading reading;
+
 /* Returns the address of the member of hf_options that an option sets. */
-static void *place_of(const hf_option *option, hf_options *o)
+static void *place_of(const reading *r)
 {
-    return (char *)o + option->offset;
+    return (char *)r->options + r->option->offset;
 }
 
-static hf_status read_text(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
+/* Reports that the value must be something else. Returns HF_BAD_USAGE. */
+static hf_status refuse(const reading *r, const char *what)
 {
-    (void)messages;
-    *(const char **)place_of(option, o) = value;
+    return hf_error(r->messages, HF_BAD_USAGE, "%s must be %s, not '%s'", r->option->name, what, r->value);
+}
+
+static hf_status read_text(const reading *r)
+{
+    *(const char **)place_of(r) = r->value;
     return HF_OK;
 }
 
-static hf_status read_flag(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
+static hf_status read_flag(const reading *r)
 {
-    (void)value;
-    (void)messages;
-    *(bool *)place_of(option, o) = true;
+    *(bool *)place_of(r) = true;
     return HF_OK;
 }
 
-static hf_status read_set(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
+static hf_status read_choice(const reading *r)
 {
-    (void)option;
-    (void)messages;
-    o->set[o->n_set++] = value;
+    *(int *)place_of(r) = r->option->number;
     return HF_OK;
 }
 
-static hf_status read_count(const hf_option *option, const char *value, int most, int *to, hf_messages *messages)
+/* Reads a choice that excludes others. */
+static hf_status read_only_choice(const reading *r)
+{
+    int *choice = place_of(r);
+    if (*choice && *choice != r->option->number)
+        return hf_error(r->messages, HF_BAD_USAGE, "%s excludes the kind that was asked for before it",
+                        r->option->name);
+    return read_choice(r);
+}
+
+static hf_status read_set(const reading *r)
+{
+    r->options->set[r->options->n_set++] = r->value;
+    return HF_OK;
+}
+
+static hf_status read_count(const reading *r)
 {
     uint64_t number;
-    if (!hf_text_uint64(value, &number) || number < 1 || number > (uint64_t)most)
-        return hf_error(messages, HF_BAD_USAGE, "%s must be from 1 to %d, not '%s'", option->name, most, value);
-    *to = (int)number;
+    char range[32];
+    snprintf(range, sizeof range, "from 1 to %d", r->option->number);
+    if (!hf_text_uint64(r->value, &number) || number < 1 || number > (uint64_t)r->option->number)
+        return refuse(r, range);
+    *(int *)place_of(r) = (int)number;
     return HF_OK;
 }
 
-static hf_status read_threads(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
+static hf_status read_task(const reading *r)
 {
-    return read_count(option, value, THREADS_MAX, &o->threads, messages);
-}
-
-static hf_status read_seed(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
-{
-    if (!hf_text_uint64(value, &o->seed))
-        return hf_error(messages, HF_BAD_USAGE, "%s must be a whole number from 0 to 2^64-1, not '%s'", option->name,
-                        value);
-    o->has_seed = true;
+    uint64_t number;
+    if (!hf_text_uint64(r->value, &number) || number >= TASKS_MAX) return refuse(r, "a whole number from 0 on");
+    *(int *)place_of(r) = (int)number;
     return HF_OK;
 }
 
-static hf_status read_tolerance(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
+static hf_status read_seed(const reading *r)
 {
-    double *tolerance = place_of(option, o);
-    if (!hf_text_double(value, tolerance) || *tolerance < 0)
-        return hf_error(messages, HF_BAD_USAGE, "%s must be a number from 0 on, not '%s'", option->name, value);
+    r->options->has_seed = hf_text_uint64(r->value, place_of(r));
+    return r->options->has_seed ? HF_OK : refuse(r, "a whole number from 0 to 2^64-1");
+}
+
+static hf_status read_tolerance(const reading *r)
+{
+    double *tolerance = place_of(r);
+    return hf_text_double(r->value, tolerance) && *tolerance >= 0 ? HF_OK : refuse(r, "a number from 0 on");
+}
+
+static hf_status read_progress(const reading *r)
+{
+    int i = 0;
+    while (hf_progress_word[i] && strcmp(r->value, hf_progress_word[i]) != 0)
+        i++;
+    if (!hf_progress_word[i]) return refuse(r, "auto, none, line, log or jsonl");
+    r->options->progress = (hf_progress_mode)i;
     return HF_OK;
 }
 
-static hf_status read_progress(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
-{
-    for (int i = 0; hf_progress_word[i]; i++) {
-        if (strcmp(value, hf_progress_word[i]) != 0) continue;
-        o->progress = (hf_progress_mode)i;
-        return HF_OK;
-    }
-    return hf_error(messages, HF_BAD_USAGE, "%s must be auto, none, line, log or jsonl, not '%s'", option->name, value);
-}
-
-static hf_status read_stage(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
+static hf_status read_stage(const reading *r)
 {
     static const char *const old[HF_N_STAGE] = {
         [HF_STAGE_FORM] = "", [HF_STAGE_SEARCH] = "optimize", [HF_STAGE_REFINE] = "polish"};
     for (int i = 0; i < HF_N_STAGE; i++) {
-        bool is_new = !strcmp(value, hf_stage_word[i]);
-        if (!is_new && (!*value || strcmp(value, old[i]) != 0)) continue;
-        if (!is_new) hf_warning(messages, "--stage %s is now --stage %s: " RENAME_IT, old[i], hf_stage_word[i]);
-        o->stage = hf_stage_word[i];
+        bool is_new = !strcmp(r->value, hf_stage_word[i]);
+        if (!is_new && (!*r->value || strcmp(r->value, old[i]) != 0)) continue;
+        if (!is_new) hf_warning(r->messages, "--stage %s is now --stage %s: " RENAME_IT, old[i], hf_stage_word[i]);
+        r->options->stage = hf_stage_word[i];
         return HF_OK;
     }
-    return hf_error(messages, HF_BAD_USAGE, "%s must be form, search or refine, not '%s'", option->name, value);
-}
-
-static hf_status read_task(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
-{
-    uint64_t number;
-    if (!hf_text_uint64(value, &number) || number >= TASKS_MAX)
-        return hf_error(messages, HF_BAD_USAGE, "%s must be a whole number from 0 on, not '%s'", option->name, value);
-    o->task = (int)number;
-    return HF_OK;
-}
-
-static hf_status read_tasks(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
-{
-    return read_count(option, value, TASKS_MAX, &o->tasks, messages);
+    return refuse(r, "form, search or refine");
 }
 
 /* Turns a list of states such as "failed,missing" into bits 1 << hf_point_state. Returns 0 if a word is unknown. */
@@ -133,42 +138,10 @@ static unsigned states_of(const char *text)
     }
 }
 
-static hf_status read_retry(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
+static hf_status read_retry(const reading *r)
 {
-    o->retry = states_of(value);
-    if (o->retry) return HF_OK;
-    return hf_error(messages, HF_BAD_USAGE, "%s must be of missing, failed, outdated, with commas, not '%s'",
-                    option->name, value);
-}
-
-static hf_status read_man(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
-{
-    (void)option;
-    (void)value;
-    (void)messages;
-    o->help_as = HF_HELP_MAN;
-    return HF_OK;
-}
-
-static hf_status read_bash(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
-{
-    (void)option;
-    (void)value;
-    (void)messages;
-    o->help_as = HF_HELP_BASH;
-    return HF_OK;
-}
-
-static hf_status read_new(const hf_option *option, const char *value, hf_options *o, hf_messages *messages)
-{
-    hf_new_case asked = !strcmp(option->name, "--import")     ? HF_NEW_IMPORT
-                        : !strcmp(option->name, "--cylinder") ? HF_NEW_CYLINDER
-                                                              : HF_NEW_PARABOLOID;
-    (void)value;
-    if (o->new_case != HF_NEW_UNSAID && o->new_case != asked)
-        return hf_error(messages, HF_BAD_USAGE, "%s excludes the kind that was asked for before it", option->name);
-    o->new_case = asked;
-    return HF_OK;
+    r->options->retry = states_of(r->value);
+    return r->options->retry ? HF_OK : refuse(r, "of missing, failed, outdated, with commas");
 }
 
 /* ---- the table ---- */
@@ -179,79 +152,80 @@ static hf_status read_new(const hf_option *option, const char *value, hf_options
 
 static const hf_option option_table[] = {
     {"--output", "-o", "FILE", "result file (default: the case's name with .h5, in this folder)", "run tolerance",
-     read_text, AT(output), NULL},
+     read_text, AT(output), 0},
     {"--point", NULL, "FILE:N",
      "take point N of the front in the result FILE for the design; the case and --set are those of its run",
-     "run tolerance", read_text, AT(point), NULL},
+     "run tolerance", read_text, AT(point), 0},
     {"--designs", NULL, "FILE",
      "CSV: a column for each variable (without optimize.variables: adjustable cable, N), optionally id", "evaluate",
-     read_text, AT(designs), NULL},
+     read_text, AT(designs), 0},
     {"--template", NULL, "FILE", "instead: write such a table, with the values after form-finding as its one row",
-     "evaluate", read_text, AT(template_path), NULL},
+     "evaluate", read_text, AT(template_path), 0},
     {"--jacobian", NULL, "FILE",
      "also write the exact derivatives of psi, or of objectives and merit, by each variable", "evaluate", read_text,
-     AT(jacobian), NULL},
-    {"--output", "-o", "FILE", "CSV of the results (default: standard output)", "evaluate", read_text, AT(output),
-     NULL},
+     AT(jacobian), 0},
+    {"--output", "-o", "FILE", "CSV of the results (default: standard output)", "evaluate", read_text, AT(output), 0},
     {"--measured", NULL, "FILE",
      "CSV id,x_m,y_m,z_m[,sigma_m]: measured positions of nodes of the as-built net; some may be missing", "adjust",
-     read_text, AT(measured), NULL},
+     read_text, AT(measured), 0},
     {"--result", NULL, "FILE", "result of this case that the net was cut from (default: its form-finding)", "adjust",
-     read_text, AT(result), NULL},
-    {"--output", "-o", "FILE", "CSV of the moves (default: none)", "adjust", read_text, AT(output), NULL},
-    {"--report", NULL, "FILE", "the page of that result with the moves on it", "adjust", read_text, AT(report), NULL},
+     read_text, AT(result), 0},
+    {"--output", "-o", "FILE", "CSV of the moves (default: none)", "adjust", read_text, AT(output), 0},
+    {"--report", NULL, "FILE", "the page of that result with the moves on it", "adjust", read_text, AT(report), 0},
     {"--output", "-o", "FILE", "merged file (default: the study's name with .h5, in this folder)", "merge", read_text,
-     AT(output), NULL},
+     AT(output), 0},
     {"--dir", NULL, "DIR", "folder of the results (default: the study's name with .d, in this folder)",
-     "sweep status merge", read_text, AT(folder), NULL},
+     "sweep status merge", read_text, AT(folder), 0},
     {"--task", NULL, "I", "with --tasks N: only every N-th point, from I = 0 on; default from Slurm's array", "sweep",
-     read_task, 0, NULL},
+     read_task, AT(task), 0},
     {"--task", NULL, "I", "with --tasks N: only every N-th chunk of samples, from I = 0 on, kept beside FILE",
-     "tolerance", read_task, 0, NULL},
-    {"--tasks", NULL, "N", "number of tasks that share the points", "sweep", read_tasks, 0, NULL},
+     "tolerance", read_task, AT(task), 0},
+    {"--tasks", NULL, "N", "number of tasks that share the points", "sweep", read_count, AT(tasks), TASKS_MAX},
     {"--tasks", NULL, "N", "without --task: merge the samples of N tasks, and compute the missing ones", "tolerance",
-     read_tasks, 0, NULL},
+     read_count, AT(tasks), TASKS_MAX},
     {"--retry", NULL, "missing|failed|outdated", "which points to run (default: missing); several with commas", "sweep",
-     read_retry, 0, NULL},
+     read_retry, 0, 0},
     {"--output", "-o", "FILE", "the page (default: the result's name with .html, in this folder)", "report", read_text,
-     AT(output), NULL},
+     AT(output), 0},
     {"--restart", NULL, NULL,
      "replace FILE and its journal; without it, the command resumes an unfinished result of this case", "run tolerance",
-     read_flag, AT(force), NULL},
+     read_flag, AT(force), 0},
     {"--force", NULL, NULL, "replace existing files (of run: the same as --restart)",
-     "run export evaluate report merge tolerance adjust", read_flag, AT(force), NULL},
+     "run export evaluate report merge tolerance adjust", read_flag, AT(force), 0},
     {"--set", NULL, "KEY=VALUE", "override one key of the case, like form.pretension_N=12; may be repeated",
-     SET_COMMANDS, read_set, 0, NULL},
+     SET_COMMANDS, read_set, 0, 0},
     {"--threads", NULL, "N", "threads (default: one per core); the results do not depend on it",
-     CASE_COMMANDS " sweep adjust", read_threads, 0, NULL},
-    {"--seed", NULL, "S", "seed of the genetic algorithm instead of optimize.seed", "run", read_seed, 0, NULL},
+     CASE_COMMANDS " sweep adjust", read_count, AT(threads), THREADS_MAX},
+    {"--seed", NULL, "S", "seed of the genetic algorithm instead of optimize.seed", "run", read_seed, AT(seed), 0},
     {"--json", NULL, NULL, "one JSON object on standard output", "run show recover evaluate status tolerance adjust",
-     read_flag, AT(json), NULL},
+     read_flag, AT(json), 0},
     {"--progress", NULL, "auto|none|line|log|jsonl",
      "on standard error: line for a terminal, log every 30 s, jsonl for programs", "run tolerance", read_progress, 0,
-     NULL},
+     0},
     {"--quiet", NULL, NULL, "no progress and no summary; warnings and errors stay",
-     "run evaluate sweep merge tolerance adjust", read_flag, AT(quiet), NULL},
+     "run evaluate sweep merge tolerance adjust", read_flag, AT(quiet), 0},
     {"--verbose", "-v", NULL, "the summary with certificates, ratios of sets, times and all else", "run tolerance show",
-     read_flag, AT(verbose), NULL},
+     read_flag, AT(verbose), 0},
     {"--rtol", NULL, "R", "numbers are equal when |a-b| <= atol + R |b| (default 0: to the bit)", "diff",
-     read_tolerance, AT(rtol), NULL},
-    {"--atol", NULL, "A", "see --rtol", "diff", read_tolerance, AT(atol), NULL},
+     read_tolerance, AT(rtol), 0},
+    {"--atol", NULL, "A", "see --rtol", "diff", read_tolerance, AT(atol), 0},
 #define EXPORTER(name)                                                                                                 \
-    {NULL, NULL, NULL, NULL, "export", read_text, AT(export_to[HF_EXPORTER_##name]), &hf_exporter_##name},
+    {NULL, NULL, NULL, NULL, "export", read_text, AT(export_to[HF_EXPORTER_##name]), HF_EXPORTER_##name},
     HF_EXPORTERS(EXPORTER)
 #undef EXPORTER
         {"--stage", NULL, "form|search|refine", "which shape (default: the result of the run)", "export adjust",
-         read_stage, 0, NULL},
+         read_stage, 0, 0},
     {"--load-case", NULL, "NAME", "the shape in this load case of the as-built net (`load_cases`)", "export", read_text,
-     AT(load_case), NULL},
+     AT(load_case), 0},
     {"--paraboloid", NULL, NULL, "a round reflector: two nets that are tied to each other (the default)", "new",
-     read_new, 0, NULL},
-    {"--cylinder", NULL, NULL, "a parabolic cylinder: one net, optimised", "new", read_new, 0, NULL},
-    {"--import", NULL, NULL, "a net of your own in two tables, nodes and cables", "new", read_new, 0, NULL},
-    {"--man", NULL, NULL, "print the manual page, for man(1)", "help", read_man, 0, NULL},
-    {"--bash", NULL, NULL, "print the completion for bash", "help", read_bash, 0, NULL},
-    {"--help", "-h", NULL, "print this", NULL, read_flag, AT(help), NULL},
+     read_only_choice, AT(new_case), HF_NEW_PARABOLOID},
+    {"--cylinder", NULL, NULL, "a parabolic cylinder: one net, optimised", "new", read_only_choice, AT(new_case),
+     HF_NEW_CYLINDER},
+    {"--import", NULL, NULL, "a net of your own in two tables, nodes and cables", "new", read_only_choice, AT(new_case),
+     HF_NEW_IMPORT},
+    {"--man", NULL, NULL, "print the manual page, for man(1)", "help", read_choice, AT(help_as), HF_HELP_MAN},
+    {"--bash", NULL, NULL, "print the completion for bash", "help", read_choice, AT(help_as), HF_HELP_BASH},
+    {"--help", "-h", NULL, "print this", NULL, read_flag, AT(help), 0},
 };
 enum { N_OPTION = sizeof option_table / sizeof *option_table };
 const int hf_n_option = N_OPTION;
@@ -259,10 +233,11 @@ const int hf_n_option = N_OPTION;
 hf_option hf_option_at(int i)
 {
     hf_option option = option_table[i];
-    if (!option.exporter) return option;
-    option.name = option.exporter->option;
-    option.argument = option.exporter->argument;
-    option.help = option.exporter->help;
+    if (option.name) return option;
+    const hf_exporter *exporter = hf_exporter_table[option.number];
+    option.name = exporter->option;
+    option.argument = exporter->argument;
+    option.help = exporter->help;
     return option;
 }
 
@@ -385,7 +360,7 @@ static hf_status read_words(int argc, char *const *argv, const hf_command *comma
         } else if (equals) {
             return hf_error(messages, HF_BAD_USAGE, "'%s' takes no value", option.name);
         }
-        HF_TRY(option.read(&option, value, o, messages));
+        HF_TRY(option.read(&(reading){&option, value, o, messages}));
     }
     return HF_OK;
 }

@@ -47,15 +47,24 @@ struct hf_options {
 
 typedef struct hf_option hf_option;
 
+/* An option on the command line, and where to put its value. */
+typedef struct {
+    const hf_option *option;
+    const char *value; /* NULL for an option without an argument */
+    hf_options *options;
+    hf_messages *messages;
+} hf_option_reading;
+
 /* A row of the table. */
 struct hf_option {
     const char *name, *letter; /* "--output", "-o" or NULL */
     const char *argument; /* N, FILE, DIR, KEY=VALUE, or the words themselves as in form|search|refine; NULL: none */
     const char *help;
     const char *commands; /* names of the commands that take it, separated by blanks; NULL: all */
-    hf_status (*read)(const hf_option *option, const char *value, hf_options *options, hf_messages *messages);
-    size_t offset;               /* offset of the member of hf_options, for `read` */
-    const hf_exporter *exporter; /* the exporter whose row gives name, argument and help, or NULL */
+    hf_status (*read)(const hf_option_reading *reading);
+    size_t offset; /* offset of the member of hf_options that `read` sets */
+    int number;    /* for `read`: the maximum of a number, or the choice that the option stands for; of a row without a
+                      name: the exporter whose row gives name, argument and help */
 };
 
 extern const int hf_n_option;
