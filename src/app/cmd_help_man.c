@@ -4,39 +4,24 @@
 #include <hifdm/config.h>
 #include <hifdm/store.h>
 
+#include <string.h>
+
 /* Writes text escaped for troff. No line begins with a request, and '-' remains a plain hyphen that can be copied.
  * Lists of words may be broken between lines. */
 static void put_roff(const char *text, FILE *f)
 {
+    static const char special[] = "\\-'^~`";
+    static const char *const escape[] = {"\\e", "\\-", "\\(aq", "\\(ha", "\\(ti", "\\(ga"};
     bool at_start = true;
     for (const char *p = text; *p; p++) {
+        const char *at = strchr(special, *p);
         if (at_start && (*p == '.' || *p == '\'')) fputs("\\&", f);
         at_start = *p == '\n';
-        switch (*p) {
-        case '\\':
-            fputs("\\e", f);
-            break;
-        case '-':
-            fputs("\\-", f);
-            break;
-        case ',':
-            fputs(p[1] == ' ' ? "," : ",\\:", f);
-            break;
-        case '\'':
-            fputs("\\(aq", f);
-            break;
-        case '^':
-            fputs("\\(ha", f);
-            break;
-        case '~':
-            fputs("\\(ti", f);
-            break;
-        case '`':
-            fputs("\\(ga", f);
-            break;
-        default:
+        if (at)
+            fputs(escape[at - special], f);
+        else
             fputc(*p, f);
-        }
+        if (*p == ',' && p[1] != ' ') fputs("\\:", f);
     }
 }
 

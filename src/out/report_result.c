@@ -27,22 +27,29 @@
 #define ANSWER_SIZE 8192
 #define PROVENANCE_SIZE 16384 /* usually 500 bytes; lines that do not fit are left out */
 
-/* The series of a page: group and key on the page, path in the file. The first row of a group sets the length of its
- * series; those of another length are left out. */
+/* The series of a page: their paths in the file, and their numbers of columns. Those of a chart have a group and a key
+ * on the page. The first row of a group sets the length of its series; those of another length are left out. */
+enum { PSI_BY_CUT, CABLE_SHARE, TRUSS_POSITION, TRUSS_DISPLACEMENT, TRUSS_END, FIRST_CHART };
 static const struct {
     const char *group, *path, *key;
+    int columns;
 } series_table[] = {
-    {"history", "/form/history/psi_m", "psi_m"},
-    {"history", "/form/history/inner_tension_ratio", "inner_tension_ratio"},
-    {"history", "/form/history/boundary_tension_ratio", "boundary_tension_ratio"},
-    {"history", "/form/history/residual_N", "residual_N"},
-    {"search", "/search/population/best_psi_m", "best_psi_m"},
-    {"search", "/search/population/mean_psi_m", "mean_psi_m"},
-    {"search", "/search/population/worst_psi_m", "worst_psi_m"},
-    {"search", "/search/population/n_infeasible", "n_infeasible"},
-    {"coupling", "/coupling/history/step_m", "step_m"},
-    {"coupling", "/coupling/history/psi_m", "psi_m"},
-    {"coupling", "/coupling/history/deflection_max_m", "deflection_max_m"},
+    [PSI_BY_CUT] = {"", "/tolerance/psi_by_cut", "", 1},   /* [n_cable] of the as-built net */
+    [CABLE_SHARE] = {"", "/tolerance/cable_share", "", 1}, /* [n_cable] shares in its error */
+    [TRUSS_POSITION] = {"", "/truss/node/position_m", "", 3},
+    [TRUSS_DISPLACEMENT] = {"", "/truss/node/displacement", "", 6},
+    [TRUSS_END] = {"", "/truss/member/end", "", 2},
+    [FIRST_CHART] = {"history", "/form/history/psi_m", "psi_m", 1},
+    {"history", "/form/history/inner_tension_ratio", "inner_tension_ratio", 1},
+    {"history", "/form/history/boundary_tension_ratio", "boundary_tension_ratio", 1},
+    {"history", "/form/history/residual_N", "residual_N", 1},
+    {"search", "/search/population/best_psi_m", "best_psi_m", 1},
+    {"search", "/search/population/mean_psi_m", "mean_psi_m", 1},
+    {"search", "/search/population/worst_psi_m", "worst_psi_m", 1},
+    {"search", "/search/population/n_infeasible", "n_infeasible", 1},
+    {"coupling", "/coupling/history/step_m", "step_m", 1},
+    {"coupling", "/coupling/history/psi_m", "psi_m", 1},
+    {"coupling", "/coupling/history/deflection_max_m", "deflection_max_m", 1},
 };
 enum { N_SERIES = sizeof series_table / sizeof *series_table };
 
@@ -56,14 +63,11 @@ typedef struct page {
     bool has_shape[N_SHAPE];
     hf_shape shape[N_SHAPE];
     hf_series load_case_displacement[HF_LOAD_CASES_MAX]; /* [n][6] of the truss in a load case; may be empty */
-    hf_series series[N_SERIES];
-    hf_facets facets;                     /* empty when the case does not measure the surface */
-    hf_facet_errors facet_error[N_SHAPE]; /* errors of each shape, in facet_block */
+    hf_series series[N_SERIES];                          /* each may be empty */
+    hf_facets facets;                                    /* empty when the case does not measure the surface */
+    hf_facet_errors facet_error[N_SHAPE];                /* errors of each shape, in facet_block */
     void *facet_block;
-    hf_pattern_table pattern[HF_N_STAGE];                      /* without angles: empty */
-    hf_series psi_by_cut;                                      /* [n_cable] of the as-built net; may be empty */
-    hf_series cable_share;                                     /* [n_cable] shares in its error; may be empty */
-    hf_series truss_position_m, truss_displacement, truss_end; /* [n][3], [n][6] or empty, [m][2] */
+    hf_pattern_table pattern[HF_N_STAGE]; /* without angles: empty */
     char provenance[PROVENANCE_SIZE];
     hf_texts case_text, overrides; /* one text each */
     const struct page *other;      /* the result for comparison, or NULL */
@@ -134,9 +138,10 @@ static void write_net(const page *p, FILE *f)
     write_integers("end", s->end, 2 * s->n_cable, f);
     write_codes("group", s->group, s->n_cable, f);
     write_sets(s, f);
-    if (p->psi_by_cut.n == s->n_cable && !isnan(p->psi_by_cut.value[0]))
-        hf_json_pack_values("psi_by_cut", "f32", p->psi_by_cut.value, s->n_cable, f);
-    if (p->cable_share.n == s->n_cable) hf_json_pack_values("cable_share", "f32", p->cable_share.value, s->n_cable, f);
+    const hf_series *psi_by_cut = &p->series[PSI_BY_CUT], *share = &p->series[CABLE_SHARE];
+    if (psi_by_cut->n == s->n_cable && !isnan(psi_by_cut->value[0]))
+        hf_json_pack_values("psi_by_cut", "f32", psi_by_cut->value, s->n_cable, f);
+    if (share->n == s->n_cable) hf_json_pack_values("cable_share", "f32", share->value, s->n_cable, f);
     if (p->facets.n_facet) write_integers("facets", p->facets.corner, 4 * p->facets.n_facet, f);
     fputc('}', f);
 }
@@ -215,12 +220,13 @@ static void write_shapes(const page *p, int n, FILE *f)
 
 static void write_truss(const page *p, FILE *f)
 {
-    const hf_series *node = &p->truss_position_m, *end = &p->truss_end;
+    const hf_series *node = &p->series[TRUSS_POSITION], *end = &p->series[TRUSS_END];
     if (!node->n || !end->n) return;
     fprintf(f, ",\n\"truss\":{\"n_node\":%d,\"n_member\":%d", node->n, end->n);
     hf_json_pack_values("position_m", "f64", node->value, 3 * node->n, f);
     hf_json_pack_values("end", "i32", end->value, 2 * end->n, f);
-    if (p->truss_displacement.n == node->n) write_displacement("displacement_m", &p->truss_displacement, f);
+    if (p->series[TRUSS_DISPLACEMENT].n == node->n)
+        write_displacement("displacement_m", &p->series[TRUSS_DISPLACEMENT], f);
     fputc('}', f);
 }
 
@@ -285,7 +291,7 @@ static void write_words(FILE *f)
 
 static void write_series(const page *p, FILE *f)
 {
-    for (int i = 0, k; i < N_SERIES; i = k) {
+    for (int i = FIRST_CHART, k; i < N_SERIES; i = k) {
         int n = p->series[i].n, stride = (n + POINTS_MAX - 1) / POINTS_MAX;
         if (n) fprintf(f, ",\n\"%s\":{\"n\":%d,\"stride\":%d", series_table[i].group, n, stride);
         for (k = i; k < N_SERIES && series_table[k].group == series_table[i].group; k++)
@@ -382,8 +388,9 @@ static void write_page(const void *context, FILE *f)
 /* Checks that the members of the truss end at its nodes. */
 static hf_status check_truss(const page *p, hf_messages *messages)
 {
-    for (int i = 0; i < 2 * p->truss_end.n; i++)
-        if (!(p->truss_end.value[i] >= 0 && p->truss_end.value[i] < p->truss_position_m.n))
+    const hf_series *end = &p->series[TRUSS_END];
+    for (int i = 0; i < 2 * end->n; i++)
+        if (!(end->value[i] >= 0 && end->value[i] < p->series[TRUSS_POSITION].n))
             return hf_error(messages, HF_IO, "%s: is damaged: /truss/member/end names a node that is not there",
                             p->path);
     return HF_OK;
@@ -412,7 +419,7 @@ static hf_status read_load_cases(page *p, hf_messages *messages)
         p->has_shape[HF_N_STAGE + k] = true;
         snprintf(of_truss, sizeof of_truss, "/load_cases/%s/truss/node/displacement", s->name);
         HF_TRY(hf_store_read_series(p->path, of_truss, 6, &p->load_case_displacement[k], messages));
-        if (p->load_case_displacement[k].n != p->truss_position_m.n) p->load_case_displacement[k].n = 0;
+        if (p->load_case_displacement[k].n != p->series[TRUSS_POSITION].n) p->load_case_displacement[k].n = 0;
     }
     return HF_OK;
 }
@@ -456,19 +463,14 @@ static hf_status read_page(page *p, hf_messages *messages)
     HF_TRY(hf_store_read_summary(p->path, &p->summary, messages));
     HF_TRY(hf_store_read_scene(p->path, &p->scene, messages));
     HF_TRY(hf_store_read_provenance(p->path, p->provenance, sizeof p->provenance, messages));
-    HF_TRY(hf_store_read_series(p->path, "/truss/node/position_m", 3, &p->truss_position_m, messages));
+    for (int i = 0; i < N_SERIES; i++)
+        HF_TRY(hf_store_read_series(p->path, series_table[i].path, series_table[i].columns, &p->series[i], messages));
     HF_TRY(hf_store_read_texts(p->path, "/case/text", &p->case_text, messages));
     HF_TRY(hf_store_read_texts(p->path, "/case/overrides", &p->overrides, messages));
     HF_TRY(read_shapes(p, messages));
     HF_TRY(read_load_cases(p, messages));
     HF_TRY(read_patterns(p, messages));
     if (map_facets(p) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", p->path);
-    for (int i = 0; i < N_SERIES; i++)
-        HF_TRY(hf_store_read_series(p->path, series_table[i].path, 1, &p->series[i], messages));
-    HF_TRY(hf_store_read_series(p->path, "/tolerance/psi_by_cut", 1, &p->psi_by_cut, messages));
-    HF_TRY(hf_store_read_series(p->path, "/tolerance/cable_share", 1, &p->cable_share, messages));
-    HF_TRY(hf_store_read_series(p->path, "/truss/node/displacement", 6, &p->truss_displacement, messages));
-    HF_TRY(hf_store_read_series(p->path, "/truss/member/end", 2, &p->truss_end, messages));
     return check_truss(p, messages);
 }
 
@@ -484,13 +486,8 @@ static void free_page(page *p)
         hf_pattern_table_free(&p->pattern[i]);
     for (int i = 0; i < N_SERIES; i++)
         hf_series_free(&p->series[i]);
-    hf_series_free(&p->psi_by_cut);
-    hf_series_free(&p->cable_share);
     hf_facets_free(&p->facets);
     free(p->facet_block);
-    hf_series_free(&p->truss_position_m);
-    hf_series_free(&p->truss_displacement);
-    hf_series_free(&p->truss_end);
     hf_texts_free(&p->case_text);
     hf_texts_free(&p->overrides);
 }
