@@ -46,42 +46,51 @@
 /* Describes a data field of a grid. The caller owns `values`. */
 typedef struct {
     const char *name, *units;
-    const hf_hdf5_kind *kind;
+    const hf_hdf5_kind *kind; /* NULL: values are unsigned char, and are stored as integers */
     int columns;
     const void *values;
 } field;
 
 typedef struct {
-    int n_point, n_cell, n_point_field, n_cell_field;
+    int n;
+    field of[FIELDS_MAX];
+} fields;
+
+typedef struct {
+    int n_point, n_cell;
     const double *position_m;  /* [n_point][3], m */
     const int *corner;         /* [offset[n_cell]] points of the cells, one cell after the other */
     const int *offset;         /* [n_cell + 1] first point of each cell in `corner` */
     const unsigned char *type; /* [n_cell] type of each cell */
-    field point[FIELDS_MAX], cell[FIELDS_MAX];
+    int *number;               /* [max(n_point, n_cell)] scratch */
+    fields point, cell;
 } grid;
 
 /* Appends a field to a list, unless it has no values. */
-static void add(field *list, int *n, const char *name, const char *units, const hf_hdf5_kind *kind, int columns,
+static void add(fields *list, const char *name, const char *units, const hf_hdf5_kind *kind, int columns,
                 const void *values)
 {
     if (!values) return;
-    assert(*n < FIELDS_MAX);
-    list[(*n)++] = (field){name, units, kind, columns, values};
+    assert(list->n < FIELDS_MAX);
+    list->of[list->n++] = (field){name, units, kind, columns, values};
 }
 
 /* ---- its file ---- */
 
-static void put(hf_hdf5 *io, hid_t group, const field *f, int n)
+static void put(hf_hdf5 *io, hid_t group, const grid *g, const field *f, int n)
 {
-    hf_hdf5_array array = {f->name, f->kind, f->columns > 1 ? 2 : 1, {(hsize_t)n, (hsize_t)f->columns}, f->units, ""};
-    hf_hdf5_write_array(io, group, &array, f->values);
+    const hf_hdf5_kind *kind = f->kind ? f->kind : HF_KIND_INT;
+    hf_hdf5_array array = {f->name, kind, f->columns > 1 ? 2 : 1, {(hsize_t)n, (hsize_t)f->columns}, f->units, ""};
+    for (int i = 0; i < n && !f->kind; i++)
+        g->number[i] = ((const unsigned char *)f->values)[i];
+    hf_hdf5_write_array(io, group, &array, f->kind ? f->values : g->number);
 }
 
-static void put_fields(hf_hdf5 *io, const char *path, const field *list, int n_field, int n)
+static void put_fields(hf_hdf5 *io, const char *path, const grid *g, const fields *list, int n)
 {
     hid_t group = hf_hdf5_make_group(io, path);
-    for (int i = 0; i < n_field; i++)
-        put(io, group, &list[i], n);
+    for (int i = 0; i < list->n; i++)
+        put(io, group, g, &list->of[i], n);
     hf_hdf5_close(io, group);
 }
 
@@ -89,10 +98,10 @@ static void put_grid(hf_hdf5 *io, const grid *g)
 {
     hf_vtkhdf_put_cells(io, &(hf_vtkhdf_cells){g->n_point, g->n_cell, g->corner, g->offset, g->type});
     hid_t group = hf_hdf5_open_group(io, "/VTKHDF");
-    put(io, group, &(field){"Points", "m", HF_KIND_REAL, 3, g->position_m}, g->n_point);
+    put(io, group, g, &(field){"Points", "m", HF_KIND_REAL, 3, g->position_m}, g->n_point);
     hf_hdf5_close(io, group);
-    put_fields(io, "/VTKHDF/PointData", g->point, g->n_point_field, g->n_point);
-    put_fields(io, "/VTKHDF/CellData", g->cell, g->n_cell_field, g->n_cell);
+    put_fields(io, "/VTKHDF/PointData", g, &g->point, g->n_point);
+    put_fields(io, "/VTKHDF/CellData", g, &g->cell, g->n_cell);
 }
 
 /* Writes the file `name` in the folder of the request. */
@@ -119,10 +128,10 @@ static void set_lines(int n, int *offset, unsigned char *type)
 
 /* ---- the shapes of a run ---- */
 
-/* Holds values of nodes or cables, converted to the types that VTK reads. */
+/* Holds computed values of nodes, cables and facets. */
 typedef struct {
-    int *role, *group, *law, *slack, *offset;
-    unsigned char *type;
+    int *offset, *number; /* `number` as in grid, for cables and facets */
+    unsigned char *type, *slack;
     double *length_at_target_m, *displacement_m, *deviation_m, *normal_error_m, *length_change_m;
     bool has_truss;   /* a truss is written */
     hf_facets facets; /* empty when the case does not measure the surface */
@@ -137,10 +146,10 @@ static hf_status allocate(const hf_scene *s, scratch *t)
     size_t n = (size_t)s->n_node, m = (size_t)s->n_cable, n_facet = (size_t)t->facets.n_facet;
     hf_facet_errors *e = &t->facet_error;
     return HF_ARENA_ARRAYS(
-        &t->block, HF_ARRAY(t->role, n), HF_ARRAY(t->group, m), HF_ARRAY(t->law, m), HF_ARRAY(t->slack, m),
-        HF_ARRAY(t->offset, m + 1), HF_ARRAY(t->type, m), HF_ARRAY(t->length_at_target_m, m),
-        HF_ARRAY(t->displacement_m, 3 * n), HF_ARRAY(t->deviation_m, n), HF_ARRAY(t->normal_error_m, n),
-        HF_ARRAY(t->length_change_m, m), HF_ARRAY(t->facet_corner, 4 * n_facet), HF_ARRAY(t->facet_offset, n_facet + 1),
+        &t->block, HF_ARRAY(t->number, n > m ? n : m), HF_ARRAY(t->slack, m), HF_ARRAY(t->offset, m + 1),
+        HF_ARRAY(t->type, m), HF_ARRAY(t->length_at_target_m, m), HF_ARRAY(t->displacement_m, 3 * n),
+        HF_ARRAY(t->deviation_m, n), HF_ARRAY(t->normal_error_m, n), HF_ARRAY(t->length_change_m, m),
+        HF_ARRAY(t->facet_corner, 4 * n_facet), HF_ARRAY(t->facet_offset, n_facet + 1),
         HF_ARRAY(t->facet_type, n_facet), HF_ARRAY(e->normal_mean_m, n_facet), HF_ARRAY(e->normal_rms_m, n_facet),
         HF_ARRAY(e->fit_normal_mean_m, n_facet), HF_ARRAY(e->fit_normal_rms_m, n_facet));
 }
@@ -156,14 +165,11 @@ static void fill(const hf_scene *s, const hf_shape *shape, const hf_summary *sum
         double *d = t->displacement_m + 3 * (size_t)i, slope[2];
         for (int c = 0; c < 3; c++)
             d[c] = p[c] - p0[c];
-        t->role[i] = s->role[i];
         t->deviation_m[i] = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         double above = hf_target_surface_height_above(surface->kind, 1 / (4 * surface->focal_length_m), p, slope);
         t->normal_error_m[i] = above / sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
     }
     for (int e = 0; e < s->n_cable; e++) {
-        t->group[e] = s->group[e];
-        t->law[e] = shape ? shape->law[e] : s->law[e];
         t->length_at_target_m[e] = hf_scene_length_at_target(s, e);
         if (!shape) continue;
         t->length_change_m[e] = shape->length_m[e] - t->length_at_target_m[e];
@@ -174,23 +180,22 @@ static void fill(const hf_scene *s, const hf_shape *shape, const hf_summary *sum
 /* Returns the grid of cables of a shape; shape NULL stands for the target positions. */
 static grid grid_of(const hf_scene *s, const hf_shape *shape, const hf_summary *summary, const scratch *t)
 {
-    grid g = {.n_point = s->n_node, .n_cell = s->n_cable, .corner = s->end, .offset = t->offset, .type = t->type};
-    int *n = &g.n_point_field, *m = &g.n_cell_field;
-    g.position_m = shape ? shape->position_m : s->position_m;
-    add(g.point, n, "role", "", HF_KIND_INT, 1, t->role);
-    add(g.point, n, "load_N", "N", HF_KIND_REAL, 3, s->load_N);
-    if (summary->surface.focal_length_m > 0) add(g.point, n, "normal_error_m", "m", HF_KIND_REAL, 1, t->normal_error_m);
-    add(g.cell, m, "group", "", HF_KIND_INT, 1, t->group);
-    add(g.cell, m, "law", "", HF_KIND_INT, 1, t->law);
-    add(g.cell, m, "length_m", "m", HF_KIND_REAL, 1, shape ? shape->length_m : t->length_at_target_m);
-    add(g.cell, m, "EA_N", "N", HF_KIND_REAL, 1, s->EA_N);
+    grid g = {s->n_node, s->n_cable, s->position_m, s->end, t->offset, t->type, t->number, {0}, {0}};
+    if (shape) g.position_m = shape->position_m;
+    add(&g.point, "role", "", NULL, 1, s->role);
+    add(&g.point, "load_N", "N", HF_KIND_REAL, 3, s->load_N);
+    if (summary->surface.focal_length_m > 0) add(&g.point, "normal_error_m", "m", HF_KIND_REAL, 1, t->normal_error_m);
+    add(&g.cell, "group", "", NULL, 1, s->group);
+    add(&g.cell, "law", "", NULL, 1, shape ? shape->law : s->law);
+    add(&g.cell, "length_m", "m", HF_KIND_REAL, 1, shape ? shape->length_m : t->length_at_target_m);
+    add(&g.cell, "EA_N", "N", HF_KIND_REAL, 1, s->EA_N);
     if (!shape) return g;
-    add(g.point, n, "displacement_m", "m", HF_KIND_REAL, 3, t->displacement_m);
-    add(g.point, n, "deviation_m", "m", HF_KIND_REAL, 1, t->deviation_m);
-    add(g.cell, m, "tension_N", "N", HF_KIND_REAL, 1, shape->tension_N);
-    add(g.cell, m, "q_N_per_m", "N/m", HF_KIND_REAL, 1, shape->q_N_per_m);
-    add(g.cell, m, "length_change_m", "m", HF_KIND_REAL, 1, t->length_change_m);
-    add(g.cell, m, "slack", "", HF_KIND_INT, 1, t->slack);
+    add(&g.point, "displacement_m", "m", HF_KIND_REAL, 3, t->displacement_m);
+    add(&g.point, "deviation_m", "m", HF_KIND_REAL, 1, t->deviation_m);
+    add(&g.cell, "tension_N", "N", HF_KIND_REAL, 1, shape->tension_N);
+    add(&g.cell, "q_N_per_m", "N/m", HF_KIND_REAL, 1, shape->q_N_per_m);
+    add(&g.cell, "length_change_m", "m", HF_KIND_REAL, 1, t->length_change_m);
+    add(&g.cell, "slack", "", NULL, 1, t->slack);
     return g;
 }
 
@@ -216,16 +221,15 @@ static grid grid_of_facets(const grid *cables, const scratch *t)
 {
     const hf_facet_errors *e = &t->facet_error;
     grid g = *cables;
-    int *m = &g.n_cell_field;
     g.n_cell = t->facets.n_facet;
     g.corner = t->facet_corner;
     g.offset = t->facet_offset;
     g.type = t->facet_type;
-    g.n_cell_field = 0;
-    add(g.cell, m, "normal_mean_m", "m", HF_KIND_REAL, 1, e->normal_mean_m);
-    add(g.cell, m, "normal_rms_m", "m", HF_KIND_REAL, 1, e->normal_rms_m);
-    add(g.cell, m, "fit_normal_mean_m", "m", HF_KIND_REAL, 1, e->fit_normal_mean_m);
-    add(g.cell, m, "fit_normal_rms_m", "m", HF_KIND_REAL, 1, e->fit_normal_rms_m);
+    g.cell.n = 0;
+    add(&g.cell, "normal_mean_m", "m", HF_KIND_REAL, 1, e->normal_mean_m);
+    add(&g.cell, "normal_rms_m", "m", HF_KIND_REAL, 1, e->normal_rms_m);
+    add(&g.cell, "fit_normal_mean_m", "m", HF_KIND_REAL, 1, e->fit_normal_mean_m);
+    add(&g.cell, "fit_normal_rms_m", "m", HF_KIND_REAL, 1, e->fit_normal_rms_m);
     return g;
 }
 
@@ -242,41 +246,30 @@ static hf_status write_facets(const hf_export_request *o, const char *name, cons
 /* ---- the truss ---- */
 
 typedef struct {
-    int *fixed, *unit, *joint, *offset;
+    int *number, *offset;
     unsigned char *type;
     double *displacement_m, *rotation_rad, *axial_force_N;
 } truss_scratch;
 
 static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *at, truss_scratch *t)
 {
-    grid g = {.n_point = truss->n_node,
-              .n_cell = truss->n_member,
-              .position_m = truss->position_m,
-              .corner = truss->end,
-              .offset = t->offset,
-              .type = t->type};
-    int *n = &g.n_point_field, *m = &g.n_cell_field, has_state = at->displacement && at->end_force;
+    grid g = {truss->n_node, truss->n_member, truss->position_m, truss->end, t->offset, t->type, t->number, {0}, {0}};
     set_lines(truss->n_member, t->offset, t->type);
-    for (int i = 0; i < truss->n_node; i++) {
-        t->fixed[i] = truss->fixed[i];
-        for (int c = 0; c < 3 && has_state; c++) {
-            t->displacement_m[3 * i + c] = at->displacement[HF_TRUSS_DOF * i + c];
-            t->rotation_rad[3 * i + c] = at->displacement[HF_TRUSS_DOF * i + 3 + c];
-        }
+    add(&g.point, "fixed", "", NULL, 1, truss->fixed);
+    add(&g.point, "mass_kg", "kg", HF_KIND_REAL, 1, truss->mass_kg);
+    add(&g.cell, "unit", "", NULL, 1, truss->unit);
+    add(&g.cell, "joint", "", NULL, 1, truss->joint);
+    if (!at->displacement || !at->end_force) return g;
+    for (int k = 0; k < 3 * truss->n_node; k++) {
+        const double *u = at->displacement + (size_t)k / 3 * HF_TRUSS_DOF;
+        t->displacement_m[k] = u[k % 3];
+        t->rotation_rad[k] = u[3 + k % 3];
     }
-    for (int e = 0; e < truss->n_member; e++) {
-        t->unit[e] = truss->unit[e];
-        t->joint[e] = truss->joint[e];
-        if (has_state) t->axial_force_N[e] = at->end_force[12 * (size_t)e + HF_TRUSS_DOF]; /* axial force at end j */
-    }
-    add(g.point, n, "fixed", "", HF_KIND_INT, 1, t->fixed);
-    add(g.point, n, "mass_kg", "kg", HF_KIND_REAL, 1, truss->mass_kg);
-    add(g.cell, m, "unit", "", HF_KIND_INT, 1, t->unit);
-    add(g.cell, m, "joint", "", HF_KIND_INT, 1, t->joint);
-    if (!has_state) return g;
-    add(g.point, n, "displacement_m", "m", HF_KIND_REAL, 3, t->displacement_m);
-    add(g.point, n, "rotation_rad", "rad", HF_KIND_REAL, 3, t->rotation_rad);
-    add(g.cell, m, "axial_force_N", "N", HF_KIND_REAL, 1, t->axial_force_N);
+    for (size_t e = 0; e < (size_t)truss->n_member; e++)
+        t->axial_force_N[e] = at->end_force[12 * e + HF_TRUSS_DOF]; /* at end j */
+    add(&g.point, "displacement_m", "m", HF_KIND_REAL, 3, t->displacement_m);
+    add(&g.point, "rotation_rad", "rad", HF_KIND_REAL, 3, t->rotation_rad);
+    add(&g.cell, "axial_force_N", "N", HF_KIND_REAL, 1, t->axial_force_N);
     return g;
 }
 
@@ -291,8 +284,8 @@ static hf_status write_truss(const hf_export_request *o, const char *of_load_cas
     hf_status status = hf_export_read_truss(o->file, of_load_case, &truss, &at, messages);
     if (status == HF_OK) {
         size_t n = (size_t)truss.n_node, m = (size_t)truss.n_member;
-        status = HF_ARENA_ARRAYS(&block, HF_ARRAY(t.fixed, n), HF_ARRAY(t.unit, m), HF_ARRAY(t.joint, m),
-                                 HF_ARRAY(t.offset, m + 1), HF_ARRAY(t.type, m), HF_ARRAY(t.displacement_m, 3 * n),
+        status = HF_ARENA_ARRAYS(&block, HF_ARRAY(t.number, n > m ? n : m), HF_ARRAY(t.offset, m + 1),
+                                 HF_ARRAY(t.type, m), HF_ARRAY(t.displacement_m, 3 * n),
                                  HF_ARRAY(t.rotation_rad, 3 * n), HF_ARRAY(t.axial_force_N, m));
         if (status != HF_OK) hf_error(messages, status, "%s: out of memory", o->file);
     }
