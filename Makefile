@@ -89,7 +89,7 @@ KERNELS := $(wildcard src/*/*_kernel.c)
 sources = $(sort $(foreach room,$(1),$(wildcard src/$(room)/*.c)))
 LIB_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(KERNELS),$(call sources,$(LIB_ROOMS)))) \
            $(foreach isa,$(ISAS),$(KERNELS:%.c=$(BUILD)/%_$(isa).o))
-# The page of `hifdm report`: its parts in order, as three strings that report_page.h declares.
+# The page of `hifdm report`: its parts in order, as three strings that report.h declares.
 PAGE := $(addprefix src/out/report/,head.html page.css body.html \
           data.js scale.js chart.js table.js net_fast.js net.js net_hand.js cables.js map.js sections.js \
           front.js pattern.js adjust.js tolerance.js compare.js study.js main.js)
@@ -486,7 +486,7 @@ bytes = echo "$(1)[] = {"; cat $(2) | od -An -v -tx1 | sed "s/[0-9a-f][0-9a-f]*/
 $(BUILD)/report_page_text.c: $(PAGE) Makefile
 	$(call say,PAGE,$@)
 	@mkdir -p $(@D)
-	$(Q){ echo '#include "out/report_page.h"'; \
+	$(Q){ echo '#include "out/report.h"'; \
 	  $(call bytes,const char hf_report_page_head,$(wordlist 1,2,$(PAGE))); \
 	  $(call bytes,const char hf_report_page_body,$(word 3,$(PAGE))); \
 	  $(call bytes,const char hf_report_page_script,$(wordlist 4,99,$(PAGE))); } >$@.tmp

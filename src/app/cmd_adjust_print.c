@@ -5,7 +5,7 @@
 
 #include "base/csv.h"
 #include "out/print.h"
-#include "out/report_result.h"
+#include "out/report.h"
 #include <hifdm/store.h>
 
 #include <math.h>

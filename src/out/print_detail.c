@@ -155,6 +155,17 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
     }
 }
 
+/* Prints what all stages have, for the design of a stage. */
+static void print_design(const hf_summary *s, hf_stage stage, FILE *f)
+{
+    const hf_stage_summary *of = &s->stage[stage];
+    hf_print_held(of->held, f);
+    print_sets(of->sets, f);
+    hf_print_objectives(s, &of->result, f);
+    if (stage != HF_STAGE_REFINE) print_certificate(&of->result, f);
+    print_surface(s, stage, f);
+}
+
 /* ---- search ---- */
 
 static void print_search(const hf_summary *s, FILE *f)
@@ -179,11 +190,7 @@ static void print_search(const hf_summary *s, FILE *f)
     if (s->search.n_at_lower + s->search.n_at_upper > 0)
         fprintf(f, "                %d of %d design variables at their lower bounds, %d at their upper bounds\n",
                 s->search.n_at_lower, s->n_variable, s->search.n_at_upper);
-    hf_print_held(stage->held, f);
-    print_sets(stage->sets, f);
-    hf_print_objectives(s, &stage->result, f);
-    print_certificate(&stage->result, f);
-    print_surface(s, HF_STAGE_SEARCH, f);
+    print_design(s, HF_STAGE_SEARCH, f);
     if (s->search.planes)
         fprintf(f, "                symmetry: %s; %d of %d design variables are independent\n",
                 hf_symmetry_planes_text(s->search.planes), s->search.n_leader, s->n_variable);
@@ -202,35 +209,25 @@ static void print_search(const hf_summary *s, FILE *f)
 
 /* ---- refinement ---- */
 
-/* Prints how the refinement ended, in one line. */
-static void print_end(const hf_summary *s, const char *wall, FILE *f)
-{
-    const hf_form_result *r = &s->stage[HF_STAGE_REFINE].result;
-    fprintf(f, "  refine        psi %.4f mm, %s; started from the %s; boundary ratio %s; ", r->psi_m * 1e3,
-            s->refine.is_result ? "the result" : "for comparison",
-            s->stage[HF_STAGE_SEARCH].exists ? "best design of the search" : "initial design",
-            hf_print_decimals(r->boundary_tension_ratio).text);
-    hf_print_steps(&s->refine, f);
-    fprintf(f, ", %s\n", wall);
-}
-
 static void print_refine(const hf_summary *s, FILE *f)
 {
     const hf_stage_summary *stage = &s->stage[HF_STAGE_REFINE];
+    hf_print_text boundary = hf_print_decimals(stage->result.boundary_tension_ratio);
     char limits[40] = "";
-    if (s->taken.point)
+    if (s->taken.point) {
         hf_print_line(f, "  point         psi %.4f mm, boundary ratio %s: point %d of the front in %s",
-                      stage->result.psi_m * 1e3, hf_print_decimals(stage->result.boundary_tension_ratio).text,
-                      s->taken.point, s->taken.path);
-    else
-        print_end(s, hf_print_duration(stage->wall_s).text, f);
+                      stage->result.psi_m * 1e3, boundary.text, s->taken.point, s->taken.path);
+    } else {
+        fprintf(f, "  refine        psi %.4f mm, %s; started from the %s; boundary ratio %s; ",
+                stage->result.psi_m * 1e3, s->refine.is_result ? "the result" : "for comparison",
+                s->stage[HF_STAGE_SEARCH].exists ? "best design of the search" : "initial design", boundary.text);
+        hf_print_steps(&s->refine, f);
+        fprintf(f, ", %s\n", hf_print_duration(stage->wall_s).text);
+    }
     if (s->refine.n_at_limit) snprintf(limits, sizeof limits, " and %d limits", s->refine.n_at_limit);
     fprintf(f, "                at %d lower bounds and %d upper bounds%s%s\n", s->refine.n_at_lower,
             s->refine.n_at_upper, limits, s->refine.is_at_cap ? " and at boundary_ratio_cap" : "");
-    hf_print_held(stage->held, f);
-    print_sets(stage->sets, f);
-    hf_print_objectives(s, &stage->result, f);
-    print_surface(s, HF_STAGE_REFINE, f);
+    print_design(s, HF_STAGE_REFINE, f);
 }
 
 void hf_print_details(const hf_summary *s, FILE *f)
@@ -240,10 +237,7 @@ void hf_print_details(const hf_summary *s, FILE *f)
     hf_print_iterations(&stage->result, f);
     fprintf(f, ", %s; half-bandwidth %d\n", hf_print_duration(stage->wall_s).text, s->half_bandwidth);
     print_result(&stage->result, f);
-    print_sets(stage->sets, f);
-    hf_print_objectives(s, &stage->result, f);
-    print_certificate(&stage->result, f);
-    print_surface(s, HF_STAGE_FORM, f);
+    print_design(s, HF_STAGE_FORM, f);
     if (s->stage[HF_STAGE_SEARCH].exists) print_search(s, f);
     if (s->stage[HF_STAGE_REFINE].exists) print_refine(s, f);
 }

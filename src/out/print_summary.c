@@ -1,7 +1,6 @@
 /* Prints the summary of a result. Contents: the answer, the table of stages, surface, front, load cases and truss, the
  * whole summary. */
 #include "out/print_summary.h"
-#include "out/print_tolerance.h"
 #include "base/text.h"
 #include "store/ledger.h"
 #include <hifdm/store.h>
@@ -16,11 +15,10 @@
 #define BETTER_FIT 1.01        /* ratio of surface errors that is worth a line */
 #define SHOWN_MM 5e-5          /* smaller lengths, in mm, print as 0.0000, so they have no relative change */
 
+/* Returns the result of a stage, and that of the form-finding without one (HF_N_STAGE). */
 static const hf_form_result *result_of(const hf_summary *s, hf_stage stage)
 {
-    return stage == HF_STAGE_REFINE   ? &s->stage[HF_STAGE_REFINE].result
-           : stage == HF_STAGE_SEARCH ? &s->stage[HF_STAGE_SEARCH].result
-                                      : &s->stage[HF_STAGE_FORM].result;
+    return &s->stage[stage == HF_N_STAGE ? HF_STAGE_FORM : stage].result;
 }
 
 static bool has_merit(const hf_summary *s)

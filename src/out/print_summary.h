@@ -39,4 +39,8 @@ void hf_print_steps(const hf_refine_summary *refine, FILE *file);
 /* Prints how the genetic algorithm ended: "after 12 generations", "by stagnation after 9 generations". */
 void hf_print_generations(const hf_search_summary *search, FILE *file);
 
+/* Prints psi of the as-built net, yield and the cables with the largest shares. `verbose` adds all measures and the
+ * control variate. */
+void hf_print_tolerance(const hf_tolerance_summary *tolerance, bool verbose, FILE *file);
+
 #endif

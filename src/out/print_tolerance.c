@@ -1,5 +1,5 @@
 /* Prints the figures of a tolerance analysis. */
-#include "out/print_tolerance.h"
+#include "out/print_summary.h"
 
 #include <math.h>
 #include <string.h>

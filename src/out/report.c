@@ -3,8 +3,6 @@
 
 #include "base/path.h"
 #include "out/merged.h"
-#include "out/report_result.h"
-#include "out/report_study.h"
 
 #include <stdio.h>
 #include <string.h>

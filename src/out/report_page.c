@@ -1,5 +1,5 @@
 /* Writes a page: style, title, body, data as JSON, script. */
-#include "out/report_page.h"
+#include "out/report.h"
 
 #include "base/text.h"
 #include <string.h>

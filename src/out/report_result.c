@@ -1,15 +1,11 @@
 /* Writes the page of one result: reads what it shows from the result file and writes it as JSON. Contents: texts, net
- * and shapes, series, the page with a second result, reading. */
-#include "out/report_result.h"
+ * and shapes, series, the far field, the page with a second result, reading. */
+#include "out/report.h"
 
 #include "base/arena.h"
-#include "base/file_out.h"
-#include "base/json.h"
 #include "base/path.h"
 #include "out/cut.h"
 #include "out/print_summary.h"
-#include "out/report_page.h"
-#include "out/report_pattern.h"
 #include "out/words.h"
 #include "surface/facet_mesh.h"
 #include "store/ledger.h"
@@ -25,6 +21,8 @@
 /* Size of the answer: usually 100 bytes, 20 more for each frequency, and the error of a failed run. Longer text is
  * cut. */
 #define ANSWER_SIZE 8192
+#define ANGLES_MAX 1000       /* angles of a cut on the page, about what a screen can show */
+#define GAINS_MAX 100000      /* gains of all cuts of a shape, about 600 kB */
 #define PROVENANCE_SIZE 16384 /* usually 500 bytes; lines that do not fit are left out */
 
 /* The series of a page: their paths in the file, and their numbers of columns. Those of a chart have a group and a key
@@ -300,13 +298,84 @@ static void write_series(const page *p, FILE *f)
     }
 }
 
+/* ---- the far field ---- */
+
+static double highest(const double *value, int n)
+{
+    double most = -(double)INFINITY;
+    for (int i = 0; i < n; i++)
+        most = fmax(most, value[i]);
+    return most;
+}
+
+/* Returns the number of neighbouring angles that share a point. */
+static int stride_of(const hf_pattern_table *t)
+{
+    int most = GAINS_MAX / (t->n_frequency * t->n_cut);
+    if (most > ANGLES_MAX) most = ANGLES_MAX;
+    return (t->n_theta + most - 1) / most;
+}
+
+/* Writes one cut. The maximum of each few neighbours is kept, because a sidelobe can lie between two of the angles that
+ * remain. */
+static void write_cut(const hf_pattern_table *t, int k, const hf_cut_figures *c, FILE *f)
+{
+    hf_json j = {.file = f};
+    const double *co_dBi = t->co_dBi + (size_t)k * (size_t)t->n_theta;
+    int stride = stride_of(t), i_cut = k % t->n_cut;
+    double cross_dBi = highest(t->cross_dBi + (size_t)k * (size_t)t->n_theta, t->n_theta);
+    hf_json_open(&j, NULL, '{');
+    hf_json_number(&j, "frequency_Hz", t->frequency_Hz[k / t->n_cut]);
+    hf_json_number(&j, "phi_deg", t->phi_deg[i_cut]);
+    hf_json_number(&j, "gain_dBi", c->gain_dBi);
+    hf_json_number(&j, "beam_deg", c->beam_deg);
+    hf_json_number(&j, "half_power_width_deg", c->half_power_width_deg);
+    hf_json_number(&j, "first_sidelobe_dB", c->first_sidelobe_dB);
+    hf_json_number(&j, "highest_sidelobe_dB", c->highest_sidelobe_dB);
+    hf_json_number(&j, "cross_dB", cross_dBi - c->gain_dBi);
+    fputs(",\"co_dBi\":[", f);
+    for (int i = 0; i < t->n_theta; i += stride) {
+        if (i) fputc(',', f);
+        hf_json_value(highest(co_dBi + i, t->n_theta - i < stride ? t->n_theta - i : stride), 5, f);
+    }
+    fputc(']', f);
+    hf_json_close(&j, '}');
+}
+
+/* Writes the far field of a shape: stage, feed, theta_deg, and for each frequency and cut its figures and the gains at
+ * these angles. Figures outside the range of the angles are null. */
+static void write_pattern(const char *stage, const hf_pattern_summary *s, const hf_pattern_table *t, FILE *f)
+{
+    hf_json j = {.file = f};
+    int stride = stride_of(t);
+    hf_json_open(&j, NULL, '{');
+    hf_json_text(&j, "stage", stage);
+    hf_json_text(&j, "feed", hf_feed_word[s->feed.kind]);
+    hf_json_number(&j, "cos_power", s->feed.cos_power);
+    hf_json_integer(&j, "angles", t->n_theta);
+    hf_json_integer(&j, "stride", stride);
+    fputs(",\"theta_deg\":[", f);
+    for (int i = 0; i < t->n_theta; i += stride) {
+        int last = i + stride < t->n_theta ? i + stride - 1 : t->n_theta - 1;
+        if (i) fputc(',', f);
+        hf_json_value((t->theta_deg[i] + t->theta_deg[last]) / 2, 7, f);
+    }
+    fputs("],\n\"cut\":[", f);
+    for (int k = 0; k < t->n_frequency * t->n_cut; k++) {
+        if (k) fputs(",\n", f);
+        write_cut(t, k, &s->figure[k], f);
+    }
+    fputc(']', f);
+    hf_json_close(&j, '}');
+}
+
 static void write_patterns(const page *p, FILE *f)
 {
     int n = 0;
     for (int i = 0; i < HF_N_STAGE; i++) {
         if (!p->pattern[i].n_theta) continue;
         fputs(n++ ? ",\n" : ",\n\"pattern\":[", f);
-        hf_report_pattern_write(hf_stage_word[i], p->summary.stage[i].pattern, &p->pattern[i], f);
+        write_pattern(hf_stage_word[i], p->summary.stage[i].pattern, &p->pattern[i], f);
     }
     if (n) fputc(']', f);
 }

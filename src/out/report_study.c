@@ -1,12 +1,9 @@
 /* Writes the page of a merged study. */
-#include "out/report_study.h"
+#include "out/report.h"
 
-#include "base/file_out.h"
-#include "base/json.h"
 #include "base/path.h"
 #include "out/merged.h"
 #include "out/print_study.h"
-#include "out/report_page.h"
 #include "store/ledger.h"
 
 #include <limits.h>
