@@ -11,7 +11,7 @@
  * Contents: the prior - estimate - figure of the measurement - the command */
 #include "app/cmd.h"
 
-#include "app/cmd_adjust_findings.h"
+#include "app/cmd_adjust.h"
 #include "app/built_design.h"
 #include "base/arena.h"
 #include "base/file_out.h"
@@ -178,31 +178,12 @@ static hf_status explain_failure(hf_status status, const char *what, const char 
     return hf_error(messages, status, "%s: %s: %s", path, what, hf_status_text(status));
 }
 
-/* Returns the row of the measured node that is farthest from the estimated shape in parts of its sigma. *distance_m
- * receives its distance. */
-static int worst_row(const job *j, double *distance_m)
-{
-    const hf_model *m = &j->built.model;
-    double most = -1;
-    int worst = 0;
-    for (int row = 0; row < m->n_node; row++) {
-        if (!j->measured.line[row]) continue;
-        double off_m = hf_adjust_off_m(j, row), square = off_m * off_m;
-        if (square * j->measured.weight_per_m2[3 * row] <= most) continue;
-        most = square * j->measured.weight_per_m2[3 * row];
-        *distance_m = off_m;
-        worst = row;
-    }
-    return worst;
-}
-
-/* Reports a measurement that the net and its tolerances cannot explain. If it cannot be of this net, the run fails,
+/* Reports a measurement that the net and its tolerances cannot explain; `row` is the worst node. If it cannot be of this net, the run fails,
  * because adjustments would do harm. Returns HF_OK or HF_BAD_CASE. */
-static hf_status check_misfit(const job *j, hf_messages *messages)
+static hf_status check_misfit(const job *j, int row, hf_messages *messages)
 {
-    double distance_m = 0, chi = hf_adjust_chi_square(j);
+    double distance_m = hf_adjust_off_m(j, row), chi = hf_adjust_chi_square(j);
     if (hf_adjust_fits(j)) return HF_OK;
-    int row = worst_row(j, &distance_m);
     const char *id = j->built.scene.node_id[j->built.model.node_of_row[row]];
     if (chi > FOREIGN)
         return hf_error(
@@ -235,7 +216,7 @@ static hf_status estimate_errors(job *j, const hf_options *o, hf_messages *messa
     HF_TRY(hf_estimate_expect(p, j->expected_m));
     HF_TRY(hf_measured_check(o->measured, &j->built, j->expected_m, &j->measured, messages));
     HF_TRY(explain_failure(hf_estimate_find(p), "the estimated net", o->file, messages));
-    HF_TRY(check_misfit(j, messages));
+    HF_TRY(check_misfit(j, hf_adjust_find_places(j), messages));
     if (!p->is_settled)
         hf_warning(messages, "%s: the estimate did not converge in %d steps: the figures below belong to the last step",
                    o->measured, p->n_step);
@@ -267,9 +248,10 @@ static double measured_psi_m(const job *j)
 static hf_status allocate_job(job *j, hf_messages *messages)
 {
     size_t n_cable = (size_t)j->problem.scene.n_cable, n_node = (size_t)j->problem.scene.n_node;
-    hf_status status = HF_ARENA_ARRAYS(&j->block, HF_ARRAY(j->cable, n_cable), HF_ARRAY(j->least_N, n_cable),
-                                       HF_ARRAY(j->expected_m, n_node), HF_ARRAY(j->out, n_cable),
-                                       HF_ARRAY(j->by_places_m, n_cable), HF_ARRAY(j->far_row, n_node));
+    hf_status status =
+        HF_ARENA_ARRAYS(&j->block, HF_ARRAY(j->cable, n_cable), HF_ARRAY(j->least_N, n_cable),
+                        HF_ARRAY(j->expected_m, n_node), HF_ARRAY(j->out, n_cable), HF_ARRAY(j->by_places_m, n_cable),
+                        HF_ARRAY(j->far_row, n_node), HF_ARRAY(j->sized, n_cable > n_node ? n_cable : n_node));
     return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for %zu cables", n_cable);
 }
 
@@ -314,7 +296,7 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
     HF_TRY(find_figure(j, messages));
     HF_TRY(estimate_errors(j, o, messages));
     j->measured_m = measured_psi_m(j);
-    HF_TRY(explain_failure(hf_adjust_find_outliers(j), "the estimated net", o->file, messages));
+    HF_TRY(explain_failure(hf_adjust_find_cables(j), "the estimated net", o->file, messages));
     HF_TRY(
         explain_failure(hf_adjust_find(&j->estimate, &j->task, &j->adjustment), "the adjusted net", o->file, messages));
     HF_TRY(explain_failure(hf_adjust_find_instead(j), "the net with other adjustments", o->file, messages));

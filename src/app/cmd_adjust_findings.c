@@ -1,7 +1,7 @@
-/* Finds what a measured net shows besides its adjustments. cmd_adjust_findings.h describes the interface.
+/* Finds what a measured net shows besides its adjustments. cmd_adjust.h describes the interface.
  *
  * Contents: outliers - other aims */
-#include "app/cmd_adjust_findings.h"
+#include "app/cmd_adjust.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,17 +11,20 @@
 
 #define TOLD 0.05 /* a smaller part is not reported, because it may be rounding */
 
-typedef struct {
-    double size;
-    int at;
-} sized;
-
 /* Compares two items for qsort: in descending order of size, and equal ones by their index. */
 static int by_size(const void *a, const void *b)
 {
-    const sized *p = a, *q = b;
+    const hf_adjust_sized *p = a, *q = b;
     if (p->size != q->size) return p->size > q->size ? -1 : 1;
     return p->at < q->at ? -1 : p->at > q->at;
+}
+
+/* Sorts the n items of the scratch list into `at`, the largest first. */
+static void sort(const hf_adjust_job *j, int n, int *at)
+{
+    qsort(j->sized, (size_t)n, sizeof *j->sized, by_size);
+    for (int k = 0; k < n; k++)
+        at[k] = j->sized[k].at;
 }
 
 double hf_adjust_sigmas(const hf_adjust_job *j, int e)
@@ -35,33 +38,21 @@ static bool is_shared(const hf_adjust_job *j, int e)
     return fabs(hf_estimate_own_m(&j->estimate, e)) < TOLD * fabs(j->estimate.cut_m[e]);
 }
 
-/* Lists the cables whose estimated errors stand out, in descending order. */
-static void find_cables(hf_adjust_job *j, sized *list)
+int hf_adjust_find_places(hf_adjust_job *j)
 {
-    j->n_out = 0;
-    for (int e = 0; e < j->built.model.n_cable; e++) {
-        double size = fabs(hf_adjust_sigmas(j, e));
-        if (size > HF_ADJUST_STANDS_OUT && !is_shared(j, e)) list[j->n_out++] = (sized){size, e};
-    }
-    qsort(list, (size_t)j->n_out, sizeof *list, by_size);
-    for (int k = 0; k < j->n_out; k++)
-        j->out[k] = list[k].at;
-}
-
-/* Lists the measured nodes that are far from the estimated shape, in descending order of distance. */
-static void find_places(hf_adjust_job *j, sized *list)
-{
-    const hf_model *m = &j->built.model;
-    int n = 0;
-    for (int row = 0; row < m->n_node; row++) {
+    double most = -1;
+    int worst = 0;
+    j->n_far = 0;
+    for (int row = 0; row < j->built.model.n_node; row++) {
         if (!j->measured.line[row]) continue;
         double off = hf_adjust_off_m(j, row) * sqrt(j->measured.weight_per_m2[3 * row]);
-        if (off > HF_ADJUST_OFF) list[n++] = (sized){off, row};
+        if (off > HF_ADJUST_OFF) j->sized[j->n_far++] = (hf_adjust_sized){off, row};
+        if (off <= most) continue;
+        most = off;
+        worst = row;
     }
-    qsort(list, (size_t)n, sizeof *list, by_size);
-    j->n_far = n;
-    for (int k = 0; k < n; k++)
-        j->far_row[k] = list[k].at;
+    sort(j, j->n_far, j->far_row);
+    return worst;
 }
 
 double hf_adjust_off_m(const hf_adjust_job *j, int row)
@@ -74,15 +65,14 @@ double hf_adjust_off_m(const hf_adjust_job *j, int row)
     return sqrt(square);
 }
 
-hf_status hf_adjust_find_outliers(hf_adjust_job *j)
+hf_status hf_adjust_find_cables(hf_adjust_job *j)
 {
-    const hf_model *m = &j->built.model;
-    void *block;
-    sized *list;
-    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(list, m->n_cable > m->n_node ? m->n_cable : m->n_node)));
-    find_cables(j, list);
-    find_places(j, list);
-    hf_arena_free_block(block);
+    j->n_out = 0;
+    for (int e = 0; e < j->built.model.n_cable; e++) {
+        double size = fabs(hf_adjust_sigmas(j, e));
+        if (size > HF_ADJUST_STANDS_OUT && !is_shared(j, e)) j->sized[j->n_out++] = (hf_adjust_sized){size, e};
+    }
+    sort(j, j->n_out, j->out);
     HF_TRY(hf_estimate_belief(&j->estimate, j->n_out, j->out, j->by_places_m));
     for (int k = 0; k < j->n_out; k++) {
         double own_m = hf_estimate_own_m(&j->estimate, j->out[k]), part = j->by_places_m[k];
@@ -111,7 +101,8 @@ void hf_adjust_take_aim(hf_adjust_job *j, hf_aim aim)
         memcpy(m->position_m + c * m->n_node, from + c * m->n_node, (size_t)m->n_free * sizeof(double));
 }
 
-int hf_adjust_at_range(const hf_adjustment *a, const hf_adjust_settings *s)
+/* Returns the number of adjustments that reach the range. */
+static int count_at_range(const hf_adjustment *a, const hf_adjust_settings *s)
 {
     int n = 0;
     for (int k = 0; k < a->n_move; k++)
@@ -156,7 +147,7 @@ static hf_status try_instead(hf_adjust_job *j, hf_figure_kind figure, hf_aim aim
     if (status == HF_OK) status = hf_adjust_find(&j->estimate, &task, &found);
     if (status == HF_OK)
         j->instead[j->n_instead++] = (hf_adjust_instead){
-            figure, aim, found.estimated_m, found.adjusted_m, found.n_move, hf_adjust_at_range(&found, &settings)};
+            figure, aim, found.estimated_m, found.adjusted_m, found.n_move, count_at_range(&found, &settings)};
     hf_adjust_free(&found);
     hf_objectives_free(&objectives);
     hf_adjust_take_aim(j, j->task.settings->aim);
@@ -168,7 +159,7 @@ hf_status hf_adjust_find_instead(hf_adjust_job *j)
 {
     const hf_adjust_settings *s = j->task.settings;
     find_psi_of_design(j);
-    j->n_at_range = hf_adjust_at_range(&j->adjustment, s);
+    j->n_at_range = count_at_range(&j->adjustment, s);
     bool has_own_psi = j->design_psi_m > j->error_psi_m, is_far = 2 * j->n_at_range > j->adjustment.n_move;
     bool is_psi = s->figure == HF_FIGURE_PSI;
     if (!is_far && !(has_own_psi && is_psi)) return HF_OK;

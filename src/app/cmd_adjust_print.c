@@ -1,7 +1,7 @@
-/* Prints the output of `hifdm adjust`. cmd_adjust_print.h describes the interface.
+/* Prints the output of `hifdm adjust`. cmd_adjust.h describes the interface.
  *
  * Contents: chi^2 - the table - for people - for programs - the page */
-#include "app/cmd_adjust_print.h"
+#include "app/cmd_adjust.h"
 
 #include "base/csv.h"
 #include "out/print.h"
@@ -270,12 +270,10 @@ void hf_adjust_print_summary(const hf_adjust_job *j, const hf_options *o, FILE *
 static void print_json_moves(const hf_adjust_job *from, hf_json *j)
 {
     const hf_adjustment *a = &from->adjustment;
-    hf_json_line(j, " ");
-    hf_json_open(j, "adjustments", '[');
+    hf_json_open_rows(j, "adjustments");
     for (int k = 0; k < a->n_move; k++) {
         const hf_adjust_turnbuckle *move = &a->move[k];
-        hf_json_line(j, "  ");
-        hf_json_open(j, NULL, '{');
+        hf_json_open_row(j);
         hf_json_text(j, "cable", from->built.scene.cable_id[move->cable]);
         hf_json_integer(j, "steps", move->steps);
         hf_json_number(j, "turnbuckle_m", move->move_m);
@@ -289,11 +287,9 @@ static void print_json_moves(const hf_adjust_job *from, hf_json *j)
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
-    hf_json_line(j, " ");
-    hf_json_open(j, "stand_out", '[');
+    hf_json_open_rows(j, "stand_out");
     for (int k = 0; k < from->n_out; k++) {
-        hf_json_line(j, "  ");
-        hf_json_open(j, NULL, '{');
+        hf_json_open_row(j);
         hf_json_text(j, "cable", from->built.scene.cable_id[from->out[k]]);
         hf_json_number(j, "error_m", from->estimate.cut_m[from->out[k]]);
         hf_json_number(j, "sigmas", fabs(hf_adjust_sigmas(from, from->out[k])));
@@ -301,11 +297,9 @@ static void print_json_moves(const hf_adjust_job *from, hf_json *j)
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
-    hf_json_line(j, " ");
-    hf_json_open(j, "off_shape", '[');
+    hf_json_open_rows(j, "off_shape");
     for (int k = 0; k < from->n_far; k++) {
-        hf_json_line(j, "  ");
-        hf_json_open(j, NULL, '{');
+        hf_json_open_row(j);
         hf_json_text(j, "node", from->built.scene.node_id[from->built.model.node_of_row[from->far_row[k]]]);
         hf_json_number(j, "distance_m", hf_adjust_off_m(from, from->far_row[k]));
         hf_json_number(j, "sigmas", off_sigmas(from, k));
@@ -316,12 +310,10 @@ static void print_json_moves(const hf_adjust_job *from, hf_json *j)
 
 static void print_json_instead(const hf_adjust_job *from, hf_json *j)
 {
-    hf_json_line(j, " ");
-    hf_json_open(j, "instead", '[');
+    hf_json_open_rows(j, "instead");
     for (int k = 0; k < from->n_instead; k++) {
         const hf_adjust_instead *other = &from->instead[k];
-        hf_json_line(j, "  ");
-        hf_json_open(j, NULL, '{');
+        hf_json_open_row(j);
         hf_json_text(j, "figure", hf_adjust_figure_word[other->figure]);
         hf_json_text(j, "aim", aim_word(other->figure, other->aim));
         hf_json_number(j, "before_m", other->before_m);
@@ -368,12 +360,10 @@ static void print_json_figures(const hf_adjust_job *from, hf_json *j)
 
 static void print_json_numbers(const hf_adjust_job *from, hf_json *j)
 {
-    hf_json_line(j, " ");
-    hf_json_open(j, "shared", '[');
+    hf_json_open_rows(j, "shared");
     for (int k = 0; k < from->prior.n_shared; k++) {
         const hf_prior_number *n = &from->prior.number[k];
-        hf_json_line(j, "  ");
-        hf_json_open(j, NULL, '{');
+        hf_json_open_row(j);
         hf_json_text(j, "kind", number_word(n));
         if (n->set) hf_json_text(j, "set", n->set);
         hf_json_number(j, "error", from->estimate.shared[k] * n->sigma);

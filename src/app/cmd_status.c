@@ -15,14 +15,12 @@ static void write_status_json(const hf_study *study, const hf_points *points, FI
     hf_json_integer(&j, "points", points->n_point);
     for (int k = 0; k < HF_N_POINT_STATE; k++)
         hf_json_integer(&j, hf_point_state_word[k], points->count[k]);
-    hf_json_line(&j, " ");
-    hf_json_open(&j, "failures", '[');
+    hf_json_open_rows(&j, "failures");
     for (int i = 0; i < points->n_point; i++) {
         char text[1024];
         if (points->point[i].state != HF_POINT_FAILED) continue;
         hf_study_point_text(study, i, text, sizeof text);
-        hf_json_line(&j, "  ");
-        hf_json_open(&j, NULL, '{');
+        hf_json_open_row(&j);
         hf_json_text(&j, "id", study->id[i]);
         hf_json_text(&j, "point", text);
         hf_json_text(&j, "status", hf_status_word(points->point[i].status));

@@ -65,6 +65,18 @@ void hf_json_line(hf_json *j, const char *indentation)
     j->line = indentation;
 }
 
+void hf_json_open_rows(hf_json *j, const char *key)
+{
+    hf_json_line(j, " ");
+    hf_json_open(j, key, '[');
+}
+
+void hf_json_open_row(hf_json *j)
+{
+    hf_json_line(j, "  ");
+    hf_json_open(j, NULL, '{');
+}
+
 void hf_json_text(hf_json *j, const char *key, const char *text)
 {
     begin_item(j, key);

@@ -22,6 +22,11 @@ void hf_json_close(hf_json *json, char bracket);
 /* Begins a new line before the next item, with this indentation. The text is borrowed. */
 void hf_json_line(hf_json *json, const char *indentation);
 
+/* hf_json_open_rows begins a list on a line of its own, whose items are objects on lines of their own;
+ * hf_json_open_row begins one of these. */
+void hf_json_open_rows(hf_json *json, const char *key);
+void hf_json_open_row(hf_json *json);
+
 void hf_json_text(hf_json *json, const char *key, const char *text);
 /* Writes 17 significant digits. NaN becomes null. Infinite values become the texts "Infinity" and "-Infinity", which
  * float() in Python and Number() in JavaScript can read. */

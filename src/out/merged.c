@@ -15,6 +15,7 @@
 #include <string.h>
 
 #define SAME_RATIO 1e-6    /* relative difference up to which values count as equal */
+#define RESOLVED_M 1e-9    /* differences of lengths below this are rounding */
 #define REACHED_RATIO 1e-9 /* rounding of an objective, relative to its value after form-finding */
 
 const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER] = {"", "no", "open", "yes"};
@@ -214,7 +215,7 @@ static bool is_same(const hf_merged *m, const hf_merged_figure *f)
     double size = fmax(fabs(low), fabs(high));
     if (n_value == 0 || low == high) return n_value == 0 || n_value == n_done;
     if (n_value < n_done || isinf(size)) return false;
-    return high - low <= SAME_RATIO * size || (size < HF_MERGED_RESOLVED_M && !strcmp(hf_ledger_unit(f->key), "m"));
+    return high - low <= SAME_RATIO * size || (size < RESOLVED_M && !strcmp(hf_ledger_unit(f->key), "m"));
 }
 
 /* Computes hf_merged_figure.is_psi. */
@@ -324,7 +325,7 @@ static bool falls(const hf_merged *m, int i, int j)
 {
     const hf_merged_figure *f = &m->figure[m->lead];
     double from = f->value.value[i], to = f->value.value[j], rounding = rounding_of(m, f->key);
-    if (!strcmp(hf_ledger_unit(f->key), "m")) rounding = fmax(rounding, HF_MERGED_RESOLVED_M);
+    if (!strcmp(hf_ledger_unit(f->key), "m")) rounding = fmax(rounding, RESOLVED_M);
     return hf_merged_is_done(m, i) && from - to > fmax(rounding, SAME_RATIO * fmax(fabs(from), fabs(to)));
 }
 

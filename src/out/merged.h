@@ -12,8 +12,7 @@ typedef enum {
     HF_MERGED_SEARCH = HF_STAGE_SEARCH,
     HF_MERGED_REFINE = HF_STAGE_REFINE,
     HF_MERGED_BUILT = HF_N_STAGE,
-    HF_MERGED_LOAD_CASES,
-    HF_MERGED_N_STAGE
+    HF_MERGED_LOAD_CASES
 } hf_merged_stage;
 
 /* Returns the word of a stage in JSON: that of hf_stage_word, "tolerance" or "load_cases". */
@@ -34,7 +33,6 @@ typedef struct {
 } hf_merged_figure;
 
 #define HF_MERGED_FIGURE_MAX 1536
-#define HF_MERGED_RESOLVED_M 1e-9 /* differences of lengths below this are rounding */
 
 typedef struct {
     const char *path; /* borrowed */

@@ -51,7 +51,9 @@ static void show_name(char name[HF_AXIS_NAME_SIZE])
         if (*p == '_') *p = ' ';
 }
 
-const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE])
+/* Sets `name` to the name of an axis for people, such as "pretension" for form.pretension_N. Returns the unit of its
+ * values. */
+static const char *name_axis(const char *key, char name[HF_AXIS_NAME_SIZE])
 {
     const char *dot = strrchr(key, '.'), *unit = hf_ledger_unit(key);
     const char *from = dot ? dot + 1 : key;
@@ -74,7 +76,7 @@ static column axis_column(const hf_merged *m, int a)
 {
     const hf_series *s = &m->input[a];
     column c = {.kind = OF_AXIS, .index = a, .scale = 1};
-    const char *unit = hf_print_axis(hf_texts_at(&m->input_name, a), c.head);
+    const char *unit = name_axis(hf_texts_at(&m->input_name, a), c.head);
     double most = 0;
     for (int i = 0; i < s->n * s->columns; i++)
         most = fmax(most, fabs(s->value[i]));
@@ -549,11 +551,9 @@ void hf_print_study_json(const hf_merged *m, FILE *file)
         hf_json_text(j, "best", hf_texts_at(&m->id, m->best));
         hf_json_text(j, "best_by", m->figure[m->lead].key);
     }
-    hf_json_line(j, " ");
-    hf_json_open(j, "points", '[');
+    hf_json_open_rows(j, "points");
     for (int i = 0; i < m->n; i++) {
-        hf_json_line(j, "  ");
-        hf_json_open(j, NULL, '{');
+        hf_json_open_row(j);
         hf_json_text(j, "id", hf_texts_at(&m->id, i));
         hf_json_text(j, "status", hf_status_word((hf_status)m->status.value[i]));
         if (*hf_texts_at(&m->reason, i)) hf_json_text(j, "reason", hf_texts_at(&m->reason, i));

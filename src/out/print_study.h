@@ -13,11 +13,7 @@ void hf_print_study(const hf_merged *merged, hf_print_style style, FILE *file);
 /* Writes the study as one JSON object, with an object for each point: its inputs and the figures of each stage. */
 void hf_print_study_json(const hf_merged *merged, FILE *file);
 
-/* Sets `name` to the name of an axis for people, such as "pretension" for form.pretension_N. Returns the unit of its
- * values. */
 #define HF_AXIS_NAME_SIZE 64
-const char *hf_print_axis(const char *key, char name[HF_AXIS_NAME_SIZE]);
-
 /* Formats the name of an objective: "tension edge" for objective_1_tension_edge. Returns words. */
 const char *hf_print_objective_words(const char *key, char words[HF_AXIS_NAME_SIZE]);
 

@@ -1,7 +1,7 @@
-/* cmd_adjust_print - prints the output of `hifdm adjust`: the table for the workshop, the summary for people, the JSON
- * object for programs, and the page. */
-#ifndef HIFDM_CMD_ADJUST_PRINT_H
-#define HIFDM_CMD_ADJUST_PRINT_H
+/* cmd_adjust - what the files of `hifdm adjust` share: its data, what a measured net shows besides its adjustments, and
+ * the output: the table for the workshop, the summary for people, the JSON object for programs, and the page. */
+#ifndef HIFDM_CMD_ADJUST_H
+#define HIFDM_CMD_ADJUST_H
 
 #include "app/options.h"
 #include "base/json.h"
@@ -23,6 +23,12 @@ typedef struct {
     int n_move, n_at_range;
 } hf_adjust_instead;
 
+/* An item of a list that is sorted by size. */
+typedef struct {
+    double size;
+    int at;
+} hf_adjust_sized;
+
 /* The data of the command. */
 typedef struct {
     hf_problem problem;
@@ -42,6 +48,7 @@ typedef struct {
     int n_out, *out;                  /* [n_out], cables whose errors stand out, worst first */
     double *by_places_m;              /* [n_out], errors by positions alone, without own sigmas; NaN: not known */
     int n_far, *far_row;              /* [n_far], rows of measured nodes far from the estimated shape, worst first */
+    hf_adjust_sized *sized;           /* [max(n_cable, n_node)], scratch */
     double design_psi_m, error_psi_m; /* psi of the design from target positions; RMS of the effect of errors */
     int n_at_range;                   /* number of adjustments that reach the range */
     int n_instead;
@@ -62,8 +69,29 @@ double hf_adjust_sigmas(const hf_adjust_job *job, int cable);
 /* Returns the distance of a measured node from the estimated shape, m. */
 double hf_adjust_off_m(const hf_adjust_job *job, int row);
 
-/* Returns the number of adjustments that reach the range. */
-int hf_adjust_at_range(const hf_adjustment *adjustment, const hf_adjust_settings *settings);
+/* ---- findings ---- */
+
+/* Lists the measured nodes that are far from the estimated shape. Returns the row of the node that is farthest in parts
+ * of its sigma. */
+int hf_adjust_find_places(hf_adjust_job *job);
+
+/* Lists the cables whose errors stand out, after the estimate. Returns HF_OK, HF_SINGULAR or HF_NO_MEMORY. */
+hf_status hf_adjust_find_cables(hf_adjust_job *job);
+
+/* Makes the objective of one figure of the as-built net. Returns HF_OK, HF_BAD_CASE or HF_NO_MEMORY; free goals in any
+ * case. */
+hf_status hf_adjust_make_objectives(const hf_adjust_job *job, hf_figure_kind figure, hf_objectives *objectives,
+                                    hf_messages *messages);
+
+/* Copies the positions from which psi is measured into the model of the as-built net: those of the design, or the
+ * target positions. */
+void hf_adjust_take_aim(hf_adjust_job *job, hf_aim aim);
+
+/* Tries other figures and aims, after the adjustments are found. It does so if psi of the design exceeds that of the
+ * errors, or if most adjustments reach the range. Returns HF_OK, HF_INTERRUPTED or HF_NO_MEMORY. */
+hf_status hf_adjust_find_instead(hf_adjust_job *job);
+
+/* ---- output ---- */
 
 /* Prints the table. It is a function for hf_file_out_write; `context` is the job. */
 void hf_adjust_print_table(const void *context, FILE *file);
