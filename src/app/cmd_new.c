@@ -17,14 +17,20 @@ static const char head[] =
     "#     hifdm run @.yaml       writes @.h5\n"
     "#     hifdm report @.h5      writes @.html, a page to look at\n";
 
+#define STIFFNESS                                                                                                      \
+    "  EA_inner_N: 47000           # stiffness of the cables: for unstressed lengths; an aramid cord of 1 mm\n"        \
+    "  EA_boundary_N: 47000\n"
+#define SURFACE "surface:                      # errors of the mesh between the nodes, and what they cost\n"
+#define OPTIMIZE                                                                                                       \
+    "# The genetic algorithm: tensions of the boundary cables, each within range_N, for the minimum psi.\n"            \
+    "# Leave this section out for form-finding only.\n"                                                                \
+    "optimize:\n"
+
 static const char paraboloid[] =
     "# A round mesh reflector: a front net on the paraboloid, a rear net behind it, ties between them.\n"
     "title: @\n"
     "\n"
-    "scene:\n"
-    "  EA_inner_N: 47000           # stiffness of the cables: for unstressed lengths; an aramid cord of 1 mm\n"
-    "  EA_boundary_N: 47000\n"
-    "  paraboloid:\n"
+    "scene:\n" STIFFNESS "  paraboloid:\n"
     "    aperture_m: 6\n"
     "    focal_length_m: 3\n"
     "    offset_m: 0               # of the middle of the aperture from the axis; 0: fed from the centre\n"
@@ -34,9 +40,7 @@ static const char paraboloid[] =
     "form:\n"
     "  pretension_N: 10            # what the cables of the front net are to have\n"
     "  prestress: exact            # tensions, as even as balance allows, that hold every node on its surface\n"
-    "\n"
-    "surface:                      # errors of the mesh between the nodes, and what they cost\n"
-    "  frequencies_Hz: [2e9, 10e9]\n"
+    "\n" SURFACE "  frequencies_Hz: [2e9, 10e9]\n"
     "\n"
     "# Flat facets lie inside of their surface. This lets the ties vary until the facets are on it in the mean: psi, "
     "the\n"
@@ -68,10 +72,7 @@ static const char cylinder[] =
     "# net without ties bows between its supports: psi says how far it is from the theoretical surface.\n"
     "title: @\n"
     "\n"
-    "scene:\n"
-    "  EA_inner_N: 47000           # stiffness of the cables: for unstressed lengths; an aramid cord of 1 mm\n"
-    "  EA_boundary_N: 47000\n"
-    "  parabolic_cylinder:\n"
+    "scene:\n" STIFFNESS "  parabolic_cylinder:\n"
     "    aperture_m: 10            # along the directrix, the parabola (x)\n"
     "    length_m: 12              # along the generatrix, which is straight (y)\n"
     "    focal_length_m: 15\n"
@@ -83,16 +84,10 @@ static const char cylinder[] =
     "\n"
     "form:\n"
     "  pretension_N: 10\n"
-    "\n"
-    "# The genetic algorithm: tensions of the boundary cables, each within range_N, for the minimum psi.\n"
-    "# Leave this section out for form-finding only.\n"
-    "optimize:\n"
-    "  range_N: 1\n"
+    "\n" OPTIMIZE "  range_N: 1\n"
     "  generations: 200\n"
     "  seed: 1                     # the same seed gives the same result, to the bit\n"
-    "\n"
-    "surface:                      # errors of the mesh between the nodes, and what they cost\n"
-    "  frequencies_Hz: [1e9]\n";
+    "\n" SURFACE "  frequencies_Hz: [1e9]\n";
 
 static const char import[] =
     "# A net of your own in two tables. This one is a small net over a parabolic cylinder, z = x^2/10, whose free "
@@ -109,11 +104,7 @@ static const char import[] =
     "\n"
     "form:\n"
     "  pretension_N: 20            # of the cables whose law is tension and whose value is empty\n"
-    "\n"
-    "# The genetic algorithm: tensions of the boundary cables, each within range_N, for the minimum psi.\n"
-    "# Leave this section out for form-finding only.\n"
-    "optimize:\n"
-    "  range_N: 4\n"
+    "\n" OPTIMIZE "  range_N: 4\n"
     "  generations: 50\n";
 
 static const char nodes[] = "# id: any text. Where the node is in theory (a support: where it is). role: support, "

@@ -107,12 +107,14 @@ static void print_facets(const hf_surface_measures *m, FILE *f)
     fputc('\n', f);
 }
 
-static void print_gain(double loss_dB, double limit_Hz, FILE *f)
+/* Prints a gain loss behind these words, if the error from which it follows is known. */
+static void print_gain(const char *words, bool is_known, double loss_dB, double limit_Hz, FILE *f)
 {
+    if (!is_known) return;
     if (isnan(loss_dB))
-        fprintf(f, "above %g dB, the limit of Ruze's formula (%.3g GHz)", HF_RUZE_MOST_DB, limit_Hz / 1e9);
+        fprintf(f, "%sabove %g dB, the limit of Ruze's formula (%.3g GHz)", words, HF_RUZE_MOST_DB, limit_Hz / 1e9);
     else
-        fprintf(f, "%.3g dB", hf_print_loss_dB(loss_dB));
+        fprintf(f, "%s%.3g dB", words, hf_print_loss_dB(loss_dB));
 }
 
 /* Prints the measures of the surface of a stage, if the case measures the surface. */
@@ -137,20 +139,13 @@ static void print_surface(const hf_summary *s, int stage, FILE *f)
     fputc('\n', f);
     for (int k = 0; k < s->surface.frequencies_Hz.n; k++) {
         fprintf(f, "                gain loss at %g GHz: ", s->surface.frequencies_Hz.value[k] / 1e9);
-        print_gain(m->gain_loss_dB[k], m->ruze_limit_Hz, f);
-        if (m->fit.converged) {
-            fputs(", after best fit ", f);
-            print_gain(m->fit_gain_loss_dB[k], m->fit.ruze_limit_Hz, f);
-        }
+        print_gain("", true, m->gain_loss_dB[k], m->ruze_limit_Hz, f);
+        print_gain(", after best fit ", m->fit.converged, m->fit_gain_loss_dB[k], m->fit.ruze_limit_Hz, f);
         /* Facets add an error to that of the nodes, because the mesh is flat between them. */
-        if (isfinite(m->facet_half_path_rms_m)) {
-            fputs("; of the facets ", f);
-            print_gain(m->facet_gain_loss_dB[k], m->facet_ruze_limit_Hz, f);
-        }
-        if (isfinite(m->facet_fit_half_path_rms_m)) {
-            fputs(", after best fit ", f);
-            print_gain(m->facet_fit_gain_loss_dB[k], m->facet_fit_ruze_limit_Hz, f);
-        }
+        print_gain("; of the facets ", isfinite(m->facet_half_path_rms_m), m->facet_gain_loss_dB[k],
+                   m->facet_ruze_limit_Hz, f);
+        print_gain(", after best fit ", isfinite(m->facet_fit_half_path_rms_m), m->facet_fit_gain_loss_dB[k],
+                   m->facet_fit_ruze_limit_Hz, f);
         fputc('\n', f);
     }
 }

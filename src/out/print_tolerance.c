@@ -6,14 +6,6 @@
 
 #define CABLES_SHOWN 3
 
-/* Returns the factor of a measure for display and sets *word to its unit. Lengths are in mm. */
-static double unit_of(int measure, const char **word)
-{
-    bool is_length = !strcmp(hf_tolerance_measure_unit[measure], "m");
-    *word = is_length ? "mm" : hf_tolerance_measure_unit[measure];
-    return is_length ? 1e3 : 1;
-}
-
 /* Prints numbers as "1/2/3", with "-" for those that are unknown or infinite. */
 static void print_numbers(FILE *file, int n, const double *value, double times)
 {
@@ -41,7 +33,7 @@ static void print_mm(FILE *file, double value_m)
 static void print_measure(const hf_tolerance_figures *f, int measure, FILE *file)
 {
     const char *unit;
-    double times = unit_of(measure, &unit);
+    double times = hf_print_scale(hf_tolerance_measure_unit[measure], &unit);
     if (!f->is_measured) return;
     const char *holds = hf_tolerance_more_is_better((hf_tolerance_measure)measure) ? "at least" : "at most";
     fprintf(file, "                %s: mean ", hf_tolerance_measure_word[measure]);
