@@ -6,254 +6,418 @@
  * out: order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm. One row per
  *      adjustment, in the order in which they are made. A value above 0 makes the cable longer.
  *
- *      case, design -> as-built net -> prior of the errors -> estimate from measured positions -> adjustments -> table
- *
- * Contents: the prior - estimate - figure of the measurement - the command */
+ * Contents: the table - for people - for programs - the page - the command */
 #include "app/cmd.h"
 
-#include "app/cmd_adjust.h"
 #include "app/built_design.h"
-#include "base/arena.h"
-#include "base/file_out.h"
-#include "net/cable_pick.h"
-#include "out/export.h"
+#include "base/csv.h"
+#include "out/print.h"
+#include "out/report.h"
+#include "run/adjust_case.h"
 #include "run/tolerance_stage.h"
-#include "solve/limits.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Above this chi^2 per coordinate, the measurement is of another net: the sigmas would have to be ten times larger. */
-#define FOREIGN 100.0
-#define ROUNDING 0.005 /* relative rounding of numbers in messages */
-/* The minimum sigma, as a part of the sigma of the errors: weights above 1e9 times theirs exceed double precision. */
-#define SIGMA_LEAST 3e-5
+#define SEEMS_OFF 2.0 /* sigmas above which a shared number is reported; there are few such numbers */
+#define NAMED_MAX 10  /* maximum number of cables, and of shared numbers, in the summary */
+#define NODES_MAX 3   /* maximum number of nodes in the summary */
 
-typedef hf_adjust_job job;
+typedef hf_adjust_case job;
 
-static void job_free(job *j)
+/* ---- the table ---- */
+
+static void print_table(const void *context, FILE *f)
 {
-    hf_adjust_free(&j->adjustment);
-    hf_prior_free(&j->prior);
-    hf_objectives_free(&j->objectives);
-    hf_estimate_free(&j->estimate);
-    hf_measured_free(&j->measured);
-    hf_built_free(&j->built);
-    hf_problem_free(&j->problem);
-    hf_arena_free_block(j->block);
-}
-
-/* ---- the prior ---- */
-
-/* Checks that no sigma is so small beside the errors that differences of positions are only rounding. Returns HF_OK or
- * HF_BAD_CASE. */
-static hf_status check_sigmas(const job *j, const char *path, double error_m, hf_messages *messages)
-{
-    const hf_model *m = &j->built.model;
-    double least = SIGMA_LEAST * error_m, rest = j->problem.settings.tolerance.sigma_support_m;
-    if (rest > 0 && rest < least * (1 - ROUNDING))
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s: tolerance.sigma_support_m of %.3g m is too small for cable errors of %.3g m: use at least "
-                        "%.3g, or 0",
-                        path, rest, error_m, least * (1 + ROUNDING));
-    for (int i = 0; i < m->n_node; i++) {
-        int row = m->row_of_node[i];
-        double sigma = 1 / sqrt(j->measured.weight_per_m2[3 * row]);
-        if (!j->measured.line[row] || sigma >= least * (1 - ROUNDING)) continue;
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s:%d: sigma_m of %.3g m is too small for cable errors of %.3g m: use at least %.3g",
-                        j->measured_path, j->measured.line[row], sigma, error_m, least * (1 + ROUNDING));
+    const job *j = context;
+    const hf_adjustment *a = &j->adjustment;
+    fputs("order,cable,set,turnbuckle_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm\n", f);
+    for (int k = 0; k < a->n_move; k++) {
+        const hf_adjust_turnbuckle *move = &a->move[k];
+        fprintf(f, "%d,", k + 1);
+        hf_csv_write_id(j->built.scene.cable_id[move->cable], f);
+        fprintf(f, ",%s,%.10g,%.6g,%.6g,%.6g,%.6g\n", j->task.settings->set, move->move_m * 1e3, move->before_N,
+                move->after_N, move->figure_m * 1e3, move->expected_m * 1e3);
     }
-    return HF_OK;
 }
 
-static hf_status make_prior(job *j, hf_messages *messages)
+/* ---- for people ---- */
+
+/* Returns the word of an aim. Figures other than psi aim at the target surface. */
+static const char *aim_word(hf_figure_kind figure, hf_aim aim)
 {
-    const hf_case *c = &j->problem.settings;
-    hf_material material;
-    hf_status status = hf_config_material(c, &j->problem.scene, &material, messages);
-    if (status == HF_OK) {
-        const double *expansion = c->tolerance.sigma_temperature_K > 0 ? material.expansion_per_K : NULL;
-        status = hf_prior_make(&j->built, &c->tolerance, expansion, &j->prior);
-        if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the errors of %s", c->path);
+    return hf_aim_word[figure == HF_FIGURE_PSI ? aim : HF_AIM_THEORY];
+}
+
+/* Prints the surface or positions from which the figure is measured. */
+static void print_aim(const job *j, FILE *f)
+{
+    const hf_adjust_settings *s = j->task.settings;
+    if (s->figure != HF_FIGURE_PSI)
+        hf_print_line(f,
+                      "%s: RMS along the normal of the target surface (the gain loss follows from the half-path RMS)",
+                      hf_adjust_figure_word[s->figure]);
+    else if (s->aim == HF_AIM_DESIGN)
+        hf_print_line(f, "psi is measured from the design (adjust.aim), which is %.4f mm RMS from the target positions",
+                      j->design_psi_m * 1e3);
+    else
+        hf_print_line(f, "psi is measured from the target positions (adjust.aim); the design is %.4f mm RMS from them",
+                      j->design_psi_m * 1e3);
+}
+
+static void print_instead(const job *j, FILE *f)
+{
+    if (!j->n_instead) return;
+    if (2 * j->n_at_range > j->adjustment.n_move)
+        hf_print_line(f,
+                      "%d of %d adjustments are as large as adjust.range_m allows. Results with another figure or aim:",
+                      j->n_at_range, j->adjustment.n_move);
+    else
+        hf_print_line(f,
+                      "the design is %.4f mm RMS from the target positions, and errors displace the nodes by %.4f mm "
+                      "RMS. Results with another figure or aim:",
+                      j->design_psi_m * 1e3, j->error_psi_m * 1e3);
+    for (int k = 0; k < j->n_instead; k++) {
+        const hf_adjust_case_instead *other = &j->instead[k];
+        char name[64];
+        snprintf(name, sizeof name, other->figure == HF_FIGURE_PSI ? "figure: psi, aim: %s" : "figure: %s",
+                 other->figure == HF_FIGURE_PSI ? hf_aim_word[other->aim] : hf_adjust_figure_word[other->figure]);
+        hf_print_line(f, "  adjust: {%s} changes %s from %.4f to %.4f mm by %d adjustment%s, %d at range_m", name,
+                      hf_adjust_figure_word[other->figure], other->before_m * 1e3, other->after_m * 1e3, other->n_move,
+                      other->n_move == 1 ? "" : "s", other->n_at_range);
     }
-    hf_material_free(&material);
-    return status;
 }
 
-/* Makes the prior of the errors from the section tolerance, and checks that it leaves something to estimate. */
-static hf_status find_prior(job *j, const char *path, hf_messages *messages)
+static const char *const end_word[] = {"target", "max_adjustments", "doubt", "none"};
+
+/* Prints why there are no more adjustments. */
+static void print_end(const job *j, FILE *f)
 {
-    double largest = 0;
-    HF_TRY(make_prior(j, messages));
-    if (j->problem.settings.tolerance.n_truss)
-        hf_warning(
-            messages,
-            "%s: tolerance.truss is not estimated: adjust assumes that the truss is as it was made. Measure when "
-            "it has the temperature of the workshop, or include its displacements in tolerance.sigma_support_m",
-            path);
-    for (int e = 0; e < j->built.model.n_cable; e++)
-        largest = fmax(largest, j->prior.sigma_m[e]);
-    if (largest > 0) return check_sigmas(j, path, largest, messages);
-    return hf_error(messages, HF_BAD_CASE,
-                    "%s: tolerance: cables have no errors that could be estimated; add sigma_cut_m, sigma_cut_ratio, "
-                    "sigma_EA_ratio or sigma_temperature_K",
-                    path);
+    const hf_adjust_settings *s = j->task.settings;
+    switch (j->adjustment.end) {
+    case HF_TURNBUCKLES_TARGET:
+        if (j->adjustment.doubt_m[1] > s->target_m)
+            hf_print_line(
+                f, "no further adjustment: the most probable net meets target_m, but the expected value is %.4f mm",
+                j->adjustment.doubt_m[1] * 1e3);
+        else
+            hf_print_line(f, "no further adjustment: target_m is met");
+        break;
+    case HF_TURNBUCKLES_ALL:
+        hf_print_line(f, "no further adjustment: all %d are made (adjust.max_adjustments)", s->max_adjustments);
+        break;
+    case HF_TURNBUCKLES_DOUBT:
+        hf_print_line(f, "no further adjustment: the measurement cannot resolve the gain of the next one");
+        break;
+    case HF_TURNBUCKLES_NONE:
+        hf_print_line(f, "no further adjustment: none%s gains anything",
+                      j->adjustment.is_held_taut ? " that the tensions allow" : "");
+        break;
+    }
+    if (j->adjustment.is_held_taut)
+        hf_print_line(f, "the adjustments leave each cable its minimum tension and make no other cable slack");
+    if (j->adjustment.n_low)
+        hf_print_line(f, "%d cable%s less than the required %.4g N already and may not lose tension",
+                      j->adjustment.n_low, j->adjustment.n_low == 1 ? " has" : "s have", j->adjustment.low_N);
 }
 
-/* ---- estimate ---- */
-
-static hf_status check_sections(const hf_case *c, const char *path, hf_messages *messages)
+static const char *too_what(double error_m)
 {
-    char location[HF_PATH_SIZE + 64];
-    if (!c->has_adjust)
-        hf_error(
-            messages, HF_BAD_CASE,
-            "%s: has no section adjust: add adjust: {set: NAME, range_m: 0.002, step_m: 0.0001} with the cables that "
-            "have turnbuckles, the range of an adjustment and its step",
-            path);
-    if (!c->has_tolerance)
-        hf_error(
-            messages, HF_BAD_CASE,
-            "%s: has no section tolerance: add tolerance: {sigma_cut_m: 0.0001}, the standard deviation of cutting",
-            path);
-    hf_config_location(c, "adjust.figure", location, sizeof location);
-    if (c->has_adjust && c->adjust.figure != HF_FIGURE_PSI && !c->has_surface)
-        hf_error(messages, HF_BAD_CASE, "%s: %s needs a target surface: add a section surface", location,
-                 hf_adjust_figure_word[c->adjust.figure]);
-    return messages->n_error ? HF_BAD_CASE : HF_OK;
+    return error_m > 0 ? " too long" : " too short";
 }
 
-static hf_status pick_cables(job *j, hf_messages *messages)
+/* Prints the cables that stand out. The sigma of a cable holds its estimate back, so its true error is larger. The
+ * positions alone show how large. */
+static void print_outliers(const job *j, FILE *f)
 {
-    char location[HF_PATH_SIZE + 64];
-    const hf_case *c = &j->problem.settings;
-    hf_config_location(c, "adjust.set", location, sizeof location);
-    int n = hf_cable_pick_some(&j->problem.scene, c->adjust.set, location, j->cable, messages);
-    j->task = (hf_adjust_task){&c->adjust, &j->objectives, n, j->cable, j->least_N, j->threads};
-    return n > 0 ? HF_OK : HF_BAD_CASE;
+    for (int k = 0; k < j->n_out && k < NAMED_MAX; k++) {
+        int e = j->out[k];
+        double error = j->estimate.cut_m[e], alone = j->by_places_m[k];
+        char by_positions[64] = "";
+        if (isfinite(alone))
+            snprintf(by_positions, sizeof by_positions, "; the positions alone indicate %.3g mm%s", fabs(alone) * 1e3,
+                     error * alone < 0 ? too_what(alone) : "");
+        hf_print_line(f, "cable '%s' seems %.3g mm%s, %.1f sigma%s", j->built.scene.cable_id[e], fabs(error) * 1e3,
+                      too_what(error), fabs(hf_adjust_case_sigmas(j, e)), by_positions);
+    }
+    if (j->n_out > NAMED_MAX)
+        hf_print_line(f, "and %d more cables beyond %g sigma", j->n_out - NAMED_MAX, HF_ADJUST_CASE_STANDS_OUT);
+    if (j->n_out)
+        hf_print_line(
+            f, "  such errors are estimated too small (hifdm explain outlier): measure again after the adjustments");
 }
 
-/* Finds the minimum tensions that tolerance.require and optimize.limits demand; 0 for cables without a demand. */
-static hf_status find_least(job *j, hf_messages *messages)
+static double off_sigmas(const job *j, int k)
 {
-    const hf_case *c = &j->problem.settings;
-    hf_limits limits;
-    hf_status status = hf_limits_create(&j->problem.scene, &j->problem.model, &c->optimize, &limits, messages);
-    for (int e = 0; e < j->problem.scene.n_cable; e++)
-        for (int k = 0; k < c->tolerance.n_require; k++) {
-            const hf_require_settings *row = &c->tolerance.require[k];
-            if (row->measure == HF_TOLERANCE_LEAST_TENSION && row->at_least > j->least_N[e])
-                j->least_N[e] = row->at_least;
-        }
-    for (int k = 0; k < limits.n && status == HF_OK; k++)
-        for (int i = 0; i < limits.row[k].n_cable && limits.row[k].kind == HF_LIMIT_TENSION; i++) {
-            double *least_N = &j->least_N[limits.row[k].cable[i]];
-            *least_N = fmax(*least_N, limits.row[k].lower);
-        }
-    hf_limits_free(&limits);
-    return status;
+    int row = j->far_row[k];
+    return hf_adjust_case_off_m(j, row) * sqrt(j->measured.weight_per_m2[3 * row]);
 }
 
-static hf_status find_figure(job *j, hf_messages *messages)
+/* Prints the measured nodes that are far from the estimated shape. */
+static void print_places(const job *j, FILE *f)
 {
-    const hf_problem *p = &j->problem;
-    if (p->settings.adjust.figure == HF_FIGURE_FACETS && p->facets.n_facet == 0)
-        return hf_error(messages, HF_BAD_CASE, "%s: adjust.figure: facets: this net has no facets", p->settings.path);
-    return hf_adjust_make_objectives(j, p->settings.adjust.figure, &j->objectives, messages);
+    if (!j->n_far) return;
+    hf_print_line(
+        f,
+        "%d of %d measured nodes %s more than %g sigma off the estimated shape and count fully (hifdm explain "
+        "outlier); the worst:",
+        j->n_far, j->measured.n_node, j->n_far == 1 ? "is" : "are", HF_ADJUST_CASE_OFF);
+    for (int k = 0; k < j->n_far && k < NODES_MAX; k++) {
+        int row = j->far_row[k];
+        hf_print_line(f, "node '%s' (line %d): %.3g mm, %.1f sigma",
+                      j->built.scene.node_id[j->built.model.node_of_row[row]], j->measured.line[row],
+                      hf_adjust_case_off_m(j, row) * 1e3, off_sigmas(j, k));
+    }
 }
 
-/* Makes the as-built net. psi is then measured from the positions that are the aim of the adjustments. */
-static hf_status make_net(job *j, const hf_options *o, hf_messages *messages)
+static const char *number_word(const hf_prior_number *n)
 {
-    hf_problem *p = &j->problem;
-    HF_TRY(hf_built_design_make(o, p, &j->built, messages));
-    hf_adjust_take_aim(j, p->settings.adjust.aim);
-    return HF_OK;
+    return n->kind == HF_ERROR_TEMPERATURE ? "temperature_K" : n->kind == HF_ERROR_EA_BATCH ? "EA_ratio" : "cut_ratio";
 }
 
-static hf_status explain_failure(hf_status status, const char *what, const char *path, hf_messages *messages)
+/* Prints the numbers that the cables of a spool, or all cables, share, if they are not due to chance. */
+static void print_numbers(const job *j, FILE *f)
 {
-    if (status == HF_OK || status == HF_INTERRUPTED) return status;
-    return hf_error(messages, status, "%s: %s: %s", path, what, hf_status_text(status));
+    int n_off = 0;
+    for (int k = 0; k < j->prior.n_shared; k++) {
+        const hf_prior_number *n = &j->prior.number[k];
+        double z = j->estimate.shared[k], error = z * n->sigma;
+        if (fabs(z) <= SEEMS_OFF || n_off++ >= NAMED_MAX) continue;
+        if (n->kind == HF_ERROR_TEMPERATURE)
+            hf_print_line(f, "cables seem %.3g K %s than when they were cut, %.1f sigma", fabs(error),
+                          error < 0 ? "colder" : "warmer", fabs(z));
+        else
+            hf_print_line(f, "spool '%s' seems to have an error of %+.3g of its %s, %.1f sigma", n->set, error,
+                          n->kind == HF_ERROR_EA_BATCH ? "EA" : "lengths", fabs(z));
+    }
+    if (n_off > NAMED_MAX) hf_print_line(f, "and %d more shared errors beyond %g sigma", n_off - NAMED_MAX, SEEMS_OFF);
 }
 
-/* Reports a measurement that the net and its tolerances cannot explain; `row` is the worst node. If it cannot be of this net, the run fails,
- * because adjustments would do harm. Returns HF_OK or HF_BAD_CASE. */
-static hf_status check_misfit(const job *j, int row, hf_messages *messages)
+static bool is_doubtful(const hf_adjust_turnbuckle *move)
 {
-    double distance_m = hf_adjust_off_m(j, row), chi = hf_adjust_chi_square(j);
-    if (hf_adjust_fits(j)) return HF_OK;
-    const char *id = j->built.scene.node_id[j->built.model.node_of_row[row]];
-    if (chi > FOREIGN)
-        return hf_error(
-            messages, HF_BAD_CASE,
-            "%s: this measurement does not belong to this net: chi^2 is %.3g per coordinate instead of 1; the worst "
-            "is node '%s' (line %d), %.3g mm from the nearest possible shape. Look for swapped ids, displaced supports "
-            "(tolerance.sigma_support_m), another design or another load case; if only sigma_m or the sigmas of "
-            "section "
-            "tolerance are wrong, they are wrong by a factor of %.2g",
-            j->measured_path, chi, id, j->measured.line[row], distance_m * 1e3, sqrt(chi));
-    hf_warning(
-        messages,
-        "%s: these positions do not fit the net and its tolerances: chi^2 is %.3g per coordinate instead of 1; the "
-        "worst is node '%s' (line %d), %.3g mm off. Either sigma_m or a sigma of section tolerance is too small, "
-        "supports are displaced (tolerance.sigma_support_m), or it is another design",
-        j->measured_path, chi, id, j->measured.line[row], distance_m * 1e3);
-    return HF_OK;
+    return move->gain_m < move->gain_sigma_m;
 }
 
-/* Estimates the errors of cutting lengths, and checks the measurement before and after. Returns HF_OK or the status of
- * the failure, with a message. */
-static hf_status estimate_errors(job *j, const hf_options *o, hf_messages *messages)
+static void print_moves(const job *j, FILE *f)
 {
+    const hf_adjustment *a = &j->adjustment;
+    int n_doubtful = 0;
+    if (a->n_move)
+        hf_print_line(f, "%5s  %-20s %13s  %10s %10s  %10s %11s", "order", "cable", "turnbuckle mm", "N before",
+                      "N after", "RMS mm", "expected mm");
+    for (int k = 0; k < a->n_move; k++) {
+        const hf_adjust_turnbuckle *move = &a->move[k];
+        char slack[32] = "", gain[64] = "";
+        if (move->n_slack) snprintf(slack, sizeof slack, "  %d slack", move->n_slack);
+        if (is_doubtful(move))
+            snprintf(gain, sizeof gain, "  gains %.4f +- %.4f", move->gain_m * 1e3, move->gain_sigma_m * 1e3);
+        n_doubtful += is_doubtful(move);
+        hf_print_line(f, "%5d  %-20s %+13.6g  %10.4g %10.4g  %10.4f %11.4f%s%s", k + 1,
+                      j->built.scene.cable_id[move->cable], move->move_m * 1e3, move->before_N, move->after_N,
+                      move->figure_m * 1e3, move->expected_m * 1e3, slack, gain);
+    }
+    if (n_doubtful)
+        hf_print_line(
+            f,
+            "the measurement cannot resolve the gain of %d of these adjustments at %s position in the order (hifdm "
+            "explain gain_sigma_m)",
+            n_doubtful, n_doubtful == 1 ? "its" : "their");
+}
+
+static void print_summary(const job *j, const hf_options *o, FILE *f)
+{
+    const hf_adjustment *a = &j->adjustment;
     const hf_tolerance_settings *t = &j->problem.settings.tolerance;
-    hf_saddle_prior prior = {j->prior.own_m, t->sigma_support_m, j->measured.weight_per_m2, j->prior.n_shared,
-                             j->prior.shared_m};
-    hf_estimate *p = &j->estimate;
-    HF_TRY(explain_failure(hf_estimate_create(&j->built, &prior, j->measured.position_m, p), "the nominal net", o->file,
-                           messages));
-    HF_TRY(hf_estimate_expect(p, j->expected_m));
-    HF_TRY(hf_measured_check(o->measured, &j->built, j->expected_m, &j->measured, messages));
-    HF_TRY(explain_failure(hf_estimate_find(p), "the estimated net", o->file, messages));
-    HF_TRY(check_misfit(j, hf_adjust_find_places(j), messages));
-    if (!p->is_settled)
-        hf_warning(messages, "%s: the estimate did not converge in %d steps: the figures below belong to the last step",
-                   o->measured, p->n_step);
-    return HF_OK;
+    const char *figure = hf_adjust_figure_word[j->task.settings->figure];
+    if (!hf_adjust_case_fits(j))
+        hf_print_line(f, "the measurement does not fit this net: do not trust the adjustments below");
+    hf_print_line(f, "%d of %d nodes measured, chi^2 %.3g per coordinate (1 is expected); supports %s",
+                  j->measured.n_node, j->built.model.n_node, hf_adjust_case_chi_square(j),
+                  t->sigma_support_m > 0 ? "are estimated"
+                                         : "are assumed at their positions in the case (no tolerance.sigma_support_m)");
+    print_aim(j, f);
+    if (isfinite(j->measured_m)) hf_print_line(f, "%s measured    %.4f mm", figure, j->measured_m * 1e3);
+    hf_print_line(f,
+                  "%s estimated   %.4f mm; expected %.4f +- %.4f mm over all nets that fit the measurement; of the "
+                  "design %.4f mm",
+                  figure, a->estimated_m * 1e3, a->doubt_m[0] * 1e3, a->spread_m[0] * 1e3, a->nominal_m * 1e3);
+    print_numbers(j, f);
+    print_outliers(j, f);
+    print_places(j, f);
+    print_moves(j, f);
+    hf_print_line(f,
+                  "%s after %d adjustment%s %.4f mm; expected %.4f +- %.4f mm; a search over adjustments of all %d "
+                  "cables, without minimum tensions, reached %.4f mm",
+                  figure, a->n_move, a->n_move == 1 ? "" : "s", a->adjusted_m * 1e3, a->doubt_m[1] * 1e3,
+                  a->spread_m[1] * 1e3, j->task.n_cable, a->best_m * 1e3);
+    if (a->n_maybe_slack)
+        hf_print_line(
+            f,
+            "%d of %d cables may be slack; positions do not show by how much a slack cable is too long (hifdm explain "
+            "maybe_slack)",
+            a->n_maybe_slack, j->built.model.n_cable);
+    print_end(j, f);
+    print_instead(j, f);
+    if (o->output) hf_print_line(f, "adjustments in %s; above 0, the turnbuckle lets the cable out", o->output);
+    if (o->report) hf_print_line(f, "report page: %s", o->report);
 }
 
-/* ---- figure of the measurement ---- */
+/* ---- for programs ---- */
 
-/* Returns psi of the measured inner nodes, m; NaN without any, and for other figures. */
-static double measured_psi_m(const job *j)
+static void print_json_moves(const job *from, hf_json *j)
 {
-    const hf_model *m = &j->built.model;
-    double square = 0;
-    int n = 0;
-    for (int k = 0; k < m->n_inner_node; k++) {
-        int row = m->inner_row[k];
-        if (!j->measured.line[row]) continue;
-        for (int c = 0; c < 3; c++) {
-            double d = j->measured.position_m[3 * row + c] - m->position_m[c * m->n_node + row];
-            square += d * d;
-        }
-        n++;
+    const hf_adjustment *a = &from->adjustment;
+    hf_json_open_rows(j, "adjustments");
+    for (int k = 0; k < a->n_move; k++) {
+        const hf_adjust_turnbuckle *move = &a->move[k];
+        hf_json_open_row(j);
+        hf_json_text(j, "cable", from->built.scene.cable_id[move->cable]);
+        hf_json_integer(j, "steps", move->steps);
+        hf_json_number(j, "turnbuckle_m", move->move_m);
+        hf_json_number(j, "tension_before_N", move->before_N);
+        hf_json_number(j, "tension_after_N", move->after_N);
+        hf_json_number(j, "predicted_m", move->figure_m);
+        hf_json_number(j, "expected_m", move->expected_m);
+        hf_json_number(j, "gain_m", move->gain_m);
+        hf_json_number(j, "gain_sigma_m", move->gain_sigma_m);
+        hf_json_integer(j, "slack", move->n_slack);
+        hf_json_close(j, '}');
     }
-    return n > 0 && j->problem.settings.adjust.figure == HF_FIGURE_PSI ? sqrt(square / n) : (double)NAN;
+    hf_json_close(j, ']');
+    hf_json_open_rows(j, "stand_out");
+    for (int k = 0; k < from->n_out; k++) {
+        hf_json_open_row(j);
+        hf_json_text(j, "cable", from->built.scene.cable_id[from->out[k]]);
+        hf_json_number(j, "error_m", from->estimate.cut_m[from->out[k]]);
+        hf_json_number(j, "sigmas", fabs(hf_adjust_case_sigmas(from, from->out[k])));
+        hf_json_number(j, "by_positions_m", from->by_places_m[k]);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+    hf_json_open_rows(j, "off_shape");
+    for (int k = 0; k < from->n_far; k++) {
+        hf_json_open_row(j);
+        hf_json_text(j, "node", from->built.scene.node_id[from->built.model.node_of_row[from->far_row[k]]]);
+        hf_json_number(j, "distance_m", hf_adjust_case_off_m(from, from->far_row[k]));
+        hf_json_number(j, "sigmas", off_sigmas(from, k));
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
+static void print_json_instead(const job *from, hf_json *j)
+{
+    hf_json_open_rows(j, "instead");
+    for (int k = 0; k < from->n_instead; k++) {
+        const hf_adjust_case_instead *other = &from->instead[k];
+        hf_json_open_row(j);
+        hf_json_text(j, "figure", hf_adjust_figure_word[other->figure]);
+        hf_json_text(j, "aim", aim_word(other->figure, other->aim));
+        hf_json_number(j, "before_m", other->before_m);
+        hf_json_number(j, "after_m", other->after_m);
+        hf_json_integer(j, "adjustment_count", other->n_move);
+        hf_json_integer(j, "at_range", other->n_at_range);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
+static void print_json_figures(const job *from, hf_json *j)
+{
+    const hf_adjustment *a = &from->adjustment;
+    hf_json_line(j, " ");
+    hf_json_text(j, "figure", hf_adjust_figure_word[from->task.settings->figure]);
+    hf_json_text(j, "aim", aim_word(from->task.settings->figure, from->task.settings->aim));
+    hf_json_integer(j, "measured_nodes", from->measured.n_node);
+    hf_json_number(j, "chi_square", hf_adjust_case_chi_square(from));
+    hf_json_bool(j, "fits", hf_adjust_case_fits(from));
+    hf_json_integer(j, "cables", from->task.n_cable);
+    hf_json_number(j, "nominal_m", a->nominal_m);
+    hf_json_number(j, "measured_m", from->measured_m);
+    hf_json_number(j, "estimated_m", a->estimated_m);
+    hf_json_number(j, "adjusted_m", a->adjusted_m);
+    hf_json_number(j, "best_m", a->best_m);
+    hf_json_line(j, " ");
+    hf_json_number(j, "estimated_expected_m", a->doubt_m[0]);
+    hf_json_number(j, "estimated_sigma_m", a->spread_m[0]);
+    hf_json_number(j, "adjusted_expected_m", a->doubt_m[1]);
+    hf_json_number(j, "adjusted_sigma_m", a->spread_m[1]);
+    hf_json_line(j, " ");
+    hf_json_text(j, "end", end_word[a->end]);
+    hf_json_bool(j, "held_taut", a->is_held_taut);
+    hf_json_integer(j, "maybe_slack", a->n_maybe_slack);
+    hf_json_bool(j, "supports_estimated", from->problem.settings.tolerance.sigma_support_m > 0);
+    hf_json_number(j, "design_psi_m", from->design_psi_m);
+    hf_json_number(j, "error_psi_m", from->error_psi_m);
+    hf_json_integer(j, "at_range", from->n_at_range);
+    hf_json_integer(j, "estimate_steps", from->estimate.n_step);
+    hf_json_integer(j, "rounds", a->n_round);
+    hf_json_bool(j, "settled", from->estimate.is_settled && a->is_settled);
+}
+
+static void print_json_numbers(const job *from, hf_json *j)
+{
+    hf_json_open_rows(j, "shared");
+    for (int k = 0; k < from->prior.n_shared; k++) {
+        const hf_prior_number *n = &from->prior.number[k];
+        hf_json_open_row(j);
+        hf_json_text(j, "kind", number_word(n));
+        if (n->set) hf_json_text(j, "set", n->set);
+        hf_json_number(j, "error", from->estimate.shared[k] * n->sigma);
+        hf_json_number(j, "sigmas", fabs(from->estimate.shared[k]));
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
+static void print_json_errors(const job *from, hf_json *j)
+{
+    hf_json_line(j, " ");
+    hf_json_open(j, "errors_m", '{');
+    for (int e = 0; e < from->built.model.n_cable; e++) {
+        if (e % 4 == 0) hf_json_line(j, "  ");
+        hf_json_number(j, from->built.scene.cable_id[e], from->estimate.cut_m[e]);
+    }
+    hf_json_close(j, '}');
+}
+
+static void print_json(const job *from, const hf_options *o, hf_status status, const char *messages, FILE *f)
+{
+    hf_json j = {.file = f};
+    hf_json_open(&j, NULL, '{');
+    hf_json_text(&j, "status", hf_status_word(status));
+    if (status == HF_OK) {
+        print_json_figures(from, &j);
+        print_json_moves(from, &j);
+        print_json_instead(from, &j);
+        print_json_numbers(from, &j);
+        print_json_errors(from, &j);
+    }
+    hf_json_line(&j, " ");
+    hf_json_text(&j, "version", hf_store_version());
+    hf_json_text(&j, "case", from->problem.settings.path);
+    if (o->result) hf_json_text(&j, "result", o->result);
+    if (status == HF_OK && o->output) hf_json_text(&j, "file", o->output);
+    hf_json_end(&j, status != HF_OK, messages);
+}
+
+/* ---- the page ---- */
+
+static void write_part(const void *context, hf_json *j)
+{
+    const job *from = context;
+    const hf_adjust_settings *s = from->task.settings;
+    hf_json_text(j, "set", s->set);
+    hf_json_number(j, "target_m", s->target_m);
+    hf_json_bool(j, "fits", hf_adjust_case_fits(from));
+    print_json_figures(from, j);
+    print_json_moves(from, j);
+    print_json_instead(from, j);
+    print_json_numbers(from, j);
+    hf_json_pack_values("error_m", "f64", from->estimate.cut_m, from->built.model.n_cable, j->file);
 }
 
 /* ---- the command ---- */
-
-static hf_status allocate_job(job *j, hf_messages *messages)
-{
-    size_t n_cable = (size_t)j->problem.scene.n_cable, n_node = (size_t)j->problem.scene.n_node;
-    hf_status status =
-        HF_ARENA_ARRAYS(&j->block, HF_ARRAY(j->cable, n_cable), HF_ARRAY(j->least_N, n_cable),
-                        HF_ARRAY(j->expected_m, n_node), HF_ARRAY(j->out, n_cable), HF_ARRAY(j->by_places_m, n_cable),
-                        HF_ARRAY(j->far_row, n_node), HF_ARRAY(j->sized, n_cable > n_node ? n_cable : n_node));
-    return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for %zu cables", n_cable);
-}
 
 static hf_status check_output(const job *j, const hf_options *o, const char *output, hf_messages *messages)
 {
@@ -279,31 +443,18 @@ static hf_status check_outputs(const job *j, const hf_options *o, hf_messages *m
 
 static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
 {
-    HF_TRY(hf_problem_load(o->file, NULL, o->set, o->n_set, NULL, &j->problem, messages));
-    const hf_problem *p = &j->problem;
-    j->measured_path = o->measured;
-    j->threads = o->threads;
-    HF_TRY(check_sections(&p->settings, o->file, messages));
-    HF_TRY(hf_built_design_check(o, &p->settings, messages));
-    HF_TRY(hf_tolerance_stage_check(p, false, messages));
-    HF_TRY(check_outputs(j, o, messages));
-    HF_TRY(allocate_job(j, messages));
-    HF_TRY(pick_cables(j, messages));
-    HF_TRY(hf_measured_read(o->measured, &p->scene, &p->model, p->settings.adjust.sigma_m, &j->measured, messages));
-    HF_TRY(make_net(j, o, messages));
-    HF_TRY(find_prior(j, o->file, messages));
-    HF_TRY(find_least(j, messages));
-    HF_TRY(find_figure(j, messages));
-    HF_TRY(estimate_errors(j, o, messages));
-    j->measured_m = measured_psi_m(j);
-    HF_TRY(explain_failure(hf_adjust_find_cables(j), "the estimated net", o->file, messages));
-    HF_TRY(
-        explain_failure(hf_adjust_find(&j->estimate, &j->task, &j->adjustment), "the adjusted net", o->file, messages));
-    HF_TRY(explain_failure(hf_adjust_find_instead(j), "the net with other adjustments", o->file, messages));
     static hf_file_out_set files; /* both table and page are written, or neither */
+    const hf_report_part part = {"adjust", write_part, j, &files};
+    HF_TRY(hf_adjust_case_load(o->file, o->set, o->n_set, j, messages));
+    HF_TRY(hf_built_design_check(o, &j->problem.settings, messages));
+    HF_TRY(hf_tolerance_stage_check(&j->problem, false, messages));
+    HF_TRY(check_outputs(j, o, messages));
+    HF_TRY(hf_adjust_case_read(o->measured, o->threads, j, messages));
+    HF_TRY(hf_built_design_make(o, &j->problem, &j->built, messages));
+    HF_TRY(hf_adjust_case_find(j, messages));
     hf_status status = HF_OK;
-    if (o->output) status = hf_file_out_set_write(&files, o->output, hf_adjust_print_table, j, messages);
-    if (status == HF_OK) status = hf_adjust_print_page(j, o, &files, messages);
+    if (o->output) status = hf_file_out_set_write(&files, o->output, print_table, j, messages);
+    if (status == HF_OK && o->report) status = hf_report_result(o->result, NULL, &part, o->report, messages);
     return hf_file_out_set_end(&files, status, messages);
 }
 
@@ -316,10 +467,10 @@ static hf_status command_adjust(const hf_options *o, FILE *file, hf_messages *me
     memset(&j, 0, sizeof j);
     hf_status status = execute(&j, o, messages);
     if (o->json)
-        hf_adjust_print_json(&j, o, status, messages->text, file);
+        print_json(&j, o, status, messages->text, file);
     else if (status == HF_OK && !o->quiet)
-        hf_adjust_print_summary(&j, o, file);
-    job_free(&j);
+        print_summary(&j, o, file);
+    hf_adjust_case_free(&j);
     return status;
 }
 

@@ -1,0 +1,465 @@
+/* Finds the turnbuckle adjustments of a case. adjust_case.h describes the interface.
+ *
+ *      case, design -> as-built net -> prior of the errors -> estimate from measured positions -> adjustments -> what
+ *      else the measured net shows
+ *
+ * Contents: chi^2 - outliers - other aims - the prior - estimate - figure of the measurement - interface */
+#include "run/adjust_case.h"
+
+#include "base/arena.h"
+#include "net/cable_pick.h"
+#include "solve/limits.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Above this chi^2 per coordinate, the measurement is of another net: the sigmas would have to be ten times larger. */
+#define FOREIGN 100.0
+#define ROUNDING 0.005 /* relative rounding of numbers in messages */
+/* The minimum sigma, as a part of the sigma of the errors: weights above 1e9 times theirs exceed double precision. */
+#define SIGMA_LEAST 3e-5
+#define MISFIT 5.0 /* standard deviations above which a sum of squares is not due to chance */
+#define TOLD 0.05  /* a smaller part of an error is not reported, because it may be rounding */
+
+typedef hf_adjust_case job;
+
+/* ---- chi^2 ---- */
+
+double hf_adjust_case_chi_square(const hf_adjust_case *j)
+{
+    return 2 * j->estimate.misfit / (3.0 * j->measured.n_node);
+}
+
+bool hf_adjust_case_fits(const hf_adjust_case *j)
+{
+    return hf_adjust_case_chi_square(j) <= 1 + MISFIT * sqrt(2 / (3.0 * j->measured.n_node));
+}
+
+/* ---- outliers ---- */
+
+/* Compares two items for qsort: in descending order of size, and equal ones by their index. */
+static int by_size(const void *a, const void *b)
+{
+    const hf_adjust_case_sized *p = a, *q = b;
+    if (p->size != q->size) return p->size > q->size ? -1 : 1;
+    return p->at < q->at ? -1 : p->at > q->at;
+}
+
+/* Sorts the n items of the scratch list into `at`, the largest first. */
+static void sort(const hf_adjust_case *j, int n, int *at)
+{
+    qsort(j->sized, (size_t)n, sizeof *j->sized, by_size);
+    for (int k = 0; k < n; k++)
+        at[k] = j->sized[k].at;
+}
+
+double hf_adjust_case_sigmas(const hf_adjust_case *j, int e)
+{
+    return j->prior.sigma_m[e] > 0 ? j->estimate.cut_m[e] / j->prior.sigma_m[e] : 0;
+}
+
+/* Returns true if nearly all of the error of cable e is shared with its spool, or is that of the temperature. */
+static bool is_shared(const hf_adjust_case *j, int e)
+{
+    return fabs(hf_estimate_own_m(&j->estimate, e)) < TOLD * fabs(j->estimate.cut_m[e]);
+}
+
+/* Lists the measured nodes that are far from the estimated shape. Returns the row of the node that is farthest in parts
+ * of its sigma. */
+static int find_places(hf_adjust_case *j)
+{
+    double most = -1;
+    int worst = 0;
+    j->n_far = 0;
+    for (int row = 0; row < j->built.model.n_node; row++) {
+        if (!j->measured.line[row]) continue;
+        double off = hf_adjust_case_off_m(j, row) * sqrt(j->measured.weight_per_m2[3 * row]);
+        if (off > HF_ADJUST_CASE_OFF) j->sized[j->n_far++] = (hf_adjust_case_sized){off, row};
+        if (off <= most) continue;
+        most = off;
+        worst = row;
+    }
+    sort(j, j->n_far, j->far_row);
+    return worst;
+}
+
+double hf_adjust_case_off_m(const hf_adjust_case *j, int row)
+{
+    double square = 0;
+    for (int c = 0; c < 3; c++) {
+        double d = j->measured.position_m[3 * row + c] - j->estimate.work.position_m[c * j->built.model.n_node + row];
+        square += d * d;
+    }
+    return sqrt(square);
+}
+
+/* Lists the cables whose errors stand out, after the estimate. Returns HF_OK, HF_SINGULAR or HF_NO_MEMORY. */
+static hf_status find_cables(hf_adjust_case *j)
+{
+    j->n_out = 0;
+    for (int e = 0; e < j->built.model.n_cable; e++) {
+        double size = fabs(hf_adjust_case_sigmas(j, e));
+        if (size > HF_ADJUST_CASE_STANDS_OUT && !is_shared(j, e))
+            j->sized[j->n_out++] = (hf_adjust_case_sized){size, e};
+    }
+    sort(j, j->n_out, j->out);
+    HF_TRY(hf_estimate_belief(&j->estimate, j->n_out, j->out, j->by_places_m));
+    for (int k = 0; k < j->n_out; k++) {
+        double own_m = hf_estimate_own_m(&j->estimate, j->out[k]), part = j->by_places_m[k];
+        j->by_places_m[k] = part >= TOLD ? j->estimate.cut_m[j->out[k]] + own_m / part - own_m : (double)NAN;
+    }
+    return HF_OK;
+}
+
+/* ---- other aims ---- */
+
+/* Makes the objective of one figure of the as-built net. Returns HF_OK, HF_BAD_CASE or HF_NO_MEMORY; free goals in any
+ * case. */
+static hf_status make_objectives(const hf_adjust_case *j, hf_figure_kind figure, hf_objectives *objectives,
+                                 hf_messages *messages)
+{
+    const hf_problem *p = &j->problem;
+    hf_optimize_settings wanted = {.n_term = 1};
+    wanted.term[0] = (hf_objective_settings){.figure = figure, .weight = 1};
+    return hf_objectives_create(&j->built.scene, &j->built.model, &wanted, &p->surface, &p->facets, NULL, objectives,
+                                messages);
+}
+
+/* Copies the positions from which psi is measured into the model of the as-built net: those of the design, or the
+ * target positions. */
+static void take_aim(hf_adjust_case *j, hf_aim aim)
+{
+    hf_model *m = &j->built.model;
+    const double *from = aim == HF_AIM_DESIGN ? j->built.position_m : j->problem.model.position_m;
+    for (int c = 0; c < 3; c++)
+        memcpy(m->position_m + c * m->n_node, from + c * m->n_node, (size_t)m->n_free * sizeof(double));
+}
+
+/* Returns the number of adjustments that reach the range. */
+static int count_at_range(const hf_adjustment *a, const hf_adjust_settings *s)
+{
+    int n = 0;
+    for (int k = 0; k < a->n_move; k++)
+        n += abs(a->move[k].steps) == hf_adjust_steps(s);
+    return n;
+}
+
+/* Computes the RMS distance of the inner nodes of the design from their target positions, and of a net with errors from
+ * the design. */
+static void find_psi_of_design(hf_adjust_case *j)
+{
+    const hf_model *m = &j->built.model;
+    double design = 0, errors = 0;
+    for (int k = 0; k < m->n_inner_node; k++) {
+        int row = m->inner_row[k];
+        for (int c = 0; c < 3; c++) {
+            double d = j->built.position_m[c * m->n_node + row] - j->problem.model.position_m[c * m->n_node + row];
+            design += d * d;
+        }
+        errors += j->expected_m[row] * j->expected_m[row];
+    }
+    j->design_psi_m = m->n_inner_node > 0 ? sqrt(design / m->n_inner_node) : 0;
+    j->error_psi_m = m->n_inner_node > 0 ? sqrt(errors / m->n_inner_node) : 0;
+}
+
+/* Finds the adjustments for another figure and aim, and stores what they would reach. */
+static hf_status try_instead(hf_adjust_case *j, hf_figure_kind figure, hf_aim aim)
+{
+    hf_messages unwanted = {0};
+    hf_adjust_settings settings = *j->task.settings;
+    hf_adjust_task task = j->task;
+    hf_objectives objectives = {0};
+    hf_adjustment found = {0};
+    settings.figure = figure;
+    settings.aim = aim;
+    settings.target_m = 0;
+    task.settings = &settings;
+    task.objectives = &objectives;
+    take_aim(j, aim);
+    hf_status status = make_objectives(j, figure, &objectives, &unwanted);
+    hf_messages_free(&unwanted);
+    if (status == HF_OK) status = hf_adjust_find(&j->estimate, &task, &found);
+    if (status == HF_OK)
+        j->instead[j->n_instead++] = (hf_adjust_case_instead){
+            figure, aim, found.estimated_m, found.adjusted_m, found.n_move, count_at_range(&found, &settings)};
+    hf_adjust_free(&found);
+    hf_objectives_free(&objectives);
+    take_aim(j, j->task.settings->aim);
+    /* An aim without a shape is not offered. */
+    return status == HF_INTERRUPTED || status == HF_NO_MEMORY ? status : HF_OK;
+}
+
+/* Tries other figures and aims, after the adjustments are found. It does so if psi of the design exceeds that of the
+ * errors, or if most adjustments reach the range. Returns HF_OK, HF_INTERRUPTED or HF_NO_MEMORY. */
+static hf_status find_instead(hf_adjust_case *j)
+{
+    const hf_adjust_settings *s = j->task.settings;
+    find_psi_of_design(j);
+    j->n_at_range = count_at_range(&j->adjustment, s);
+    bool has_own_psi = j->design_psi_m > j->error_psi_m, is_far = 2 * j->n_at_range > j->adjustment.n_move;
+    bool is_psi = s->figure == HF_FIGURE_PSI;
+    if (!is_far && !(has_own_psi && is_psi)) return HF_OK;
+    if (!is_psi || s->aim != HF_AIM_DESIGN) HF_TRY(try_instead(j, HF_FIGURE_PSI, HF_AIM_DESIGN));
+    if (has_own_psi && !(is_psi && s->aim == HF_AIM_THEORY)) HF_TRY(try_instead(j, HF_FIGURE_PSI, HF_AIM_THEORY));
+    if (!is_psi || !j->problem.settings.has_surface) return HF_OK;
+    hf_figure_kind figure = j->problem.facets.n_facet > 0 ? HF_FIGURE_FACETS : HF_FIGURE_SURFACE;
+    return try_instead(j, figure, HF_AIM_THEORY);
+}
+
+/* ---- the prior ---- */
+
+/* Checks that no sigma is so small beside the errors that differences of positions are only rounding. Returns HF_OK or
+ * HF_BAD_CASE. */
+static hf_status check_sigmas(const job *j, double error_m, hf_messages *messages)
+{
+    const hf_model *m = &j->built.model;
+    double least = SIGMA_LEAST * error_m, rest = j->problem.settings.tolerance.sigma_support_m;
+    if (rest > 0 && rest < least * (1 - ROUNDING))
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: tolerance.sigma_support_m of %.3g m is too small for cable errors of %.3g m: use at least "
+                        "%.3g, or 0",
+                        j->path, rest, error_m, least * (1 + ROUNDING));
+    for (int i = 0; i < m->n_node; i++) {
+        int row = m->row_of_node[i];
+        double sigma = 1 / sqrt(j->measured.weight_per_m2[3 * row]);
+        if (!j->measured.line[row] || sigma >= least * (1 - ROUNDING)) continue;
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s:%d: sigma_m of %.3g m is too small for cable errors of %.3g m: use at least %.3g",
+                        j->measured_path, j->measured.line[row], sigma, error_m, least * (1 + ROUNDING));
+    }
+    return HF_OK;
+}
+
+static hf_status make_prior(job *j, hf_messages *messages)
+{
+    const hf_case *c = &j->problem.settings;
+    hf_material material;
+    hf_status status = hf_config_material(c, &j->problem.scene, &material, messages);
+    if (status == HF_OK) {
+        const double *expansion = c->tolerance.sigma_temperature_K > 0 ? material.expansion_per_K : NULL;
+        status = hf_prior_make(&j->built, &c->tolerance, expansion, &j->prior);
+        if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the errors of %s", c->path);
+    }
+    hf_material_free(&material);
+    return status;
+}
+
+/* Makes the prior of the errors from the section tolerance, and checks that it leaves something to estimate. */
+static hf_status find_prior(job *j, hf_messages *messages)
+{
+    double largest = 0;
+    HF_TRY(make_prior(j, messages));
+    if (j->problem.settings.tolerance.n_truss)
+        hf_warning(
+            messages,
+            "%s: tolerance.truss is not estimated: adjust assumes that the truss is as it was made. Measure when "
+            "it has the temperature of the workshop, or include its displacements in tolerance.sigma_support_m",
+            j->path);
+    for (int e = 0; e < j->built.model.n_cable; e++)
+        largest = fmax(largest, j->prior.sigma_m[e]);
+    if (largest > 0) return check_sigmas(j, largest, messages);
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: tolerance: cables have no errors that could be estimated; add sigma_cut_m, sigma_cut_ratio, "
+                    "sigma_EA_ratio or sigma_temperature_K",
+                    j->path);
+}
+
+/* ---- estimate ---- */
+
+static hf_status check_sections(const hf_case *c, const char *path, hf_messages *messages)
+{
+    char location[HF_PATH_SIZE + 64];
+    if (!c->has_adjust)
+        hf_error(
+            messages, HF_BAD_CASE,
+            "%s: has no section adjust: add adjust: {set: NAME, range_m: 0.002, step_m: 0.0001} with the cables that "
+            "have turnbuckles, the range of an adjustment and its step",
+            path);
+    if (!c->has_tolerance)
+        hf_error(
+            messages, HF_BAD_CASE,
+            "%s: has no section tolerance: add tolerance: {sigma_cut_m: 0.0001}, the standard deviation of cutting",
+            path);
+    hf_config_location(c, "adjust.figure", location, sizeof location);
+    if (c->has_adjust && c->adjust.figure != HF_FIGURE_PSI && !c->has_surface)
+        hf_error(messages, HF_BAD_CASE, "%s: %s needs a target surface: add a section surface", location,
+                 hf_adjust_figure_word[c->adjust.figure]);
+    return messages->n_error ? HF_BAD_CASE : HF_OK;
+}
+
+static hf_status pick_cables(job *j, hf_messages *messages)
+{
+    char location[HF_PATH_SIZE + 64];
+    const hf_case *c = &j->problem.settings;
+    hf_config_location(c, "adjust.set", location, sizeof location);
+    int n = hf_cable_pick_some(&j->problem.scene, c->adjust.set, location, j->cable, messages);
+    j->task = (hf_adjust_task){&c->adjust, &j->objectives, n, j->cable, j->least_N, j->threads};
+    return n > 0 ? HF_OK : HF_BAD_CASE;
+}
+
+/* Finds the minimum tensions that tolerance.require and optimize.limits demand; 0 for cables without a demand. */
+static hf_status find_least(job *j, hf_messages *messages)
+{
+    const hf_case *c = &j->problem.settings;
+    hf_limits limits;
+    hf_status status = hf_limits_create(&j->problem.scene, &j->problem.model, &c->optimize, &limits, messages);
+    for (int e = 0; e < j->problem.scene.n_cable; e++)
+        for (int k = 0; k < c->tolerance.n_require; k++) {
+            const hf_require_settings *row = &c->tolerance.require[k];
+            if (row->measure == HF_TOLERANCE_LEAST_TENSION && row->at_least > j->least_N[e])
+                j->least_N[e] = row->at_least;
+        }
+    for (int k = 0; k < limits.n && status == HF_OK; k++)
+        for (int i = 0; i < limits.row[k].n_cable && limits.row[k].kind == HF_LIMIT_TENSION; i++) {
+            double *least_N = &j->least_N[limits.row[k].cable[i]];
+            *least_N = fmax(*least_N, limits.row[k].lower);
+        }
+    hf_limits_free(&limits);
+    return status;
+}
+
+static hf_status find_figure(job *j, hf_messages *messages)
+{
+    const hf_problem *p = &j->problem;
+    if (p->settings.adjust.figure == HF_FIGURE_FACETS && p->facets.n_facet == 0)
+        return hf_error(messages, HF_BAD_CASE, "%s: adjust.figure: facets: this net has no facets", p->settings.path);
+    return make_objectives(j, p->settings.adjust.figure, &j->objectives, messages);
+}
+
+static hf_status explain_failure(const job *j, hf_status status, const char *what, hf_messages *messages)
+{
+    if (status == HF_OK || status == HF_INTERRUPTED) return status;
+    return hf_error(messages, status, "%s: %s: %s", j->path, what, hf_status_text(status));
+}
+
+/* Reports a measurement that the net and its tolerances cannot explain; `row` is the worst node. If it cannot be of this net, the run fails,
+ * because adjustments would do harm. Returns HF_OK or HF_BAD_CASE. */
+static hf_status check_misfit(const job *j, int row, hf_messages *messages)
+{
+    double distance_m = hf_adjust_case_off_m(j, row), chi = hf_adjust_case_chi_square(j);
+    if (hf_adjust_case_fits(j)) return HF_OK;
+    const char *id = j->built.scene.node_id[j->built.model.node_of_row[row]];
+    if (chi > FOREIGN)
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s: this measurement does not belong to this net: chi^2 is %.3g per coordinate instead of 1; the worst "
+            "is node '%s' (line %d), %.3g mm from the nearest possible shape. Look for swapped ids, displaced supports "
+            "(tolerance.sigma_support_m), another design or another load case; if only sigma_m or the sigmas of "
+            "section "
+            "tolerance are wrong, they are wrong by a factor of %.2g",
+            j->measured_path, chi, id, j->measured.line[row], distance_m * 1e3, sqrt(chi));
+    hf_warning(
+        messages,
+        "%s: these positions do not fit the net and its tolerances: chi^2 is %.3g per coordinate instead of 1; the "
+        "worst is node '%s' (line %d), %.3g mm off. Either sigma_m or a sigma of section tolerance is too small, "
+        "supports are displaced (tolerance.sigma_support_m), or it is another design",
+        j->measured_path, chi, id, j->measured.line[row], distance_m * 1e3);
+    return HF_OK;
+}
+
+/* Estimates the errors of cutting lengths, and checks the measurement before and after. Returns HF_OK or the status of
+ * the failure, with a message. */
+static hf_status estimate_errors(job *j, hf_messages *messages)
+{
+    const hf_tolerance_settings *t = &j->problem.settings.tolerance;
+    hf_saddle_prior prior = {j->prior.own_m, t->sigma_support_m, j->measured.weight_per_m2, j->prior.n_shared,
+                             j->prior.shared_m};
+    hf_estimate *p = &j->estimate;
+    HF_TRY(explain_failure(j, hf_estimate_create(&j->built, &prior, j->measured.position_m, p), "the nominal net",
+                           messages));
+    HF_TRY(hf_estimate_expect(p, j->expected_m));
+    HF_TRY(hf_measured_check(j->measured_path, &j->built, j->expected_m, &j->measured, messages));
+    HF_TRY(explain_failure(j, hf_estimate_find(p), "the estimated net", messages));
+    HF_TRY(check_misfit(j, find_places(j), messages));
+    if (!p->is_settled)
+        hf_warning(messages, "%s: the estimate did not converge in %d steps: the figures below belong to the last step",
+                   j->measured_path, p->n_step);
+    return HF_OK;
+}
+
+/* ---- figure of the measurement ---- */
+
+/* Returns psi of the measured inner nodes, m; NaN without any, and for other figures. */
+static double measured_psi_m(const job *j)
+{
+    const hf_model *m = &j->built.model;
+    double square = 0;
+    int n = 0;
+    for (int k = 0; k < m->n_inner_node; k++) {
+        int row = m->inner_row[k];
+        if (!j->measured.line[row]) continue;
+        for (int c = 0; c < 3; c++) {
+            double d = j->measured.position_m[3 * row + c] - m->position_m[c * m->n_node + row];
+            square += d * d;
+        }
+        n++;
+    }
+    return n > 0 && j->problem.settings.adjust.figure == HF_FIGURE_PSI ? sqrt(square / n) : (double)NAN;
+}
+
+/* ---- interface ---- */
+
+static void lay_out_job(hf_arena *arena, job *j)
+{
+    size_t n_cable = (size_t)j->problem.scene.n_cable, n_node = (size_t)j->problem.scene.n_node;
+    j->cable = hf_arena_take(arena, n_cable, sizeof *j->cable);
+    j->least_N = hf_arena_take(arena, n_cable, sizeof *j->least_N);
+    j->expected_m = hf_arena_take(arena, n_node, sizeof *j->expected_m);
+    j->out = hf_arena_take(arena, n_cable, sizeof *j->out);
+    j->by_places_m = hf_arena_take(arena, n_cable, sizeof *j->by_places_m);
+    j->far_row = hf_arena_take(arena, n_node, sizeof *j->far_row);
+    j->sized = hf_arena_take(arena, n_cable > n_node ? n_cable : n_node, sizeof *j->sized);
+}
+
+static hf_status allocate_job(job *j, hf_messages *messages)
+{
+    hf_arena arena = {0};
+    if (HF_ARENA_MAKE(&arena, lay_out_job(&arena, j)) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for %d cables", j->problem.scene.n_cable);
+    j->block = arena.block;
+    return HF_OK;
+}
+
+void hf_adjust_case_free(hf_adjust_case *j)
+{
+    hf_arena arena = {.block = j->block};
+    hf_adjust_free(&j->adjustment);
+    hf_prior_free(&j->prior);
+    hf_objectives_free(&j->objectives);
+    hf_estimate_free(&j->estimate);
+    hf_measured_free(&j->measured);
+    hf_built_free(&j->built);
+    hf_problem_free(&j->problem);
+    hf_arena_free(&arena);
+}
+
+hf_status hf_adjust_case_load(const char *path, const char *const *set, int n_set, job *j, hf_messages *messages)
+{
+    j->path = path;
+    HF_TRY(hf_problem_load(path, NULL, set, n_set, NULL, &j->problem, messages));
+    return check_sections(&j->problem.settings, path, messages);
+}
+
+hf_status hf_adjust_case_read(const char *measured_path, int threads, job *j, hf_messages *messages)
+{
+    const hf_problem *p = &j->problem;
+    j->measured_path = measured_path;
+    j->threads = threads;
+    HF_TRY(allocate_job(j, messages));
+    HF_TRY(pick_cables(j, messages));
+    return hf_measured_read(measured_path, &p->scene, &p->model, p->settings.adjust.sigma_m, &j->measured, messages);
+}
+
+hf_status hf_adjust_case_find(job *j, hf_messages *messages)
+{
+    take_aim(j, j->problem.settings.adjust.aim);
+    HF_TRY(find_prior(j, messages));
+    HF_TRY(find_least(j, messages));
+    HF_TRY(find_figure(j, messages));
+    HF_TRY(estimate_errors(j, messages));
+    j->measured_m = measured_psi_m(j);
+    HF_TRY(explain_failure(j, find_cables(j), "the estimated net", messages));
+    HF_TRY(explain_failure(j, hf_adjust_find(&j->estimate, &j->task, &j->adjustment), "the adjusted net", messages));
+    return explain_failure(j, find_instead(j), "the net with other adjustments", messages);
+}
