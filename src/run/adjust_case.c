@@ -333,8 +333,8 @@ static hf_status explain_failure(const job *j, hf_status status, const char *wha
     return hf_error(messages, status, "%s: %s: %s", j->path, what, hf_status_text(status));
 }
 
-/* Reports a measurement that the net and its tolerances cannot explain; `row` is the worst node. If it cannot be of this net, the run fails,
- * because adjustments would do harm. Returns HF_OK or HF_BAD_CASE. */
+/* Reports a measurement that the net and its tolerances cannot explain; `row` is the worst node. If the measurement
+ * cannot be of this net, the run fails, because adjustments would do harm. Returns HF_OK or HF_BAD_CASE. */
 static hf_status check_misfit(const job *j, int row, hf_messages *messages)
 {
     double distance_m = hf_adjust_case_off_m(j, row), chi = hf_adjust_case_chi_square(j);

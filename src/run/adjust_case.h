@@ -1,5 +1,5 @@
-/* adjust_case - estimates the errors of cutting lengths of a case from measured positions of its as-built net, and finds
- * the turnbuckle adjustments that restore its figure. */
+/* adjust_case - estimates the errors of cutting lengths of a case from measured positions of its as-built net, and
+ * finds the turnbuckle adjustments that restore its figure. */
 #ifndef HIFDM_ADJUST_CASE_H
 #define HIFDM_ADJUST_CASE_H
 

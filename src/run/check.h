@@ -71,8 +71,8 @@ typedef struct {
     double at_most_s;             /* maximum of a run, without the as-built nets of a section `tolerance` */
 } hf_check;
 
-/* Loads the case and finds what does not need a trial. *check must be zero on entry. Returns HF_OK; HF_BAD_CASE with all
- * faults; or the status of another failure, with a message. The caller calls hf_check_free in any case. */
+/* Loads the case and finds what does not need a trial. *check must be zero on entry. Returns HF_OK; HF_BAD_CASE with
+ * all faults; or the status of another failure, with a message. The caller calls hf_check_free in any case. */
 hf_status hf_check_load(const hf_check_request *request, hf_check *check, hf_messages *messages);
 
 /* Tries the stages of the run, after hf_check_load, for about a second each. Returns HF_OK, the status of an ill-posed
