@@ -118,7 +118,7 @@ static void print_gain(const char *words, bool is_known, double loss_dB, double 
 }
 
 /* Prints the measures of the surface of a stage, if the case measures the surface. */
-static void print_surface(const hf_summary *s, int stage, FILE *f)
+static void print_surface(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_surface_measures *m = &s->stage[stage].surface;
     if (!m->is_measured) return;
