@@ -150,6 +150,17 @@ typedef int hf_flat_observer(void *context, int phase, long done, long all, long
  * without a case. hf_flat_text returns the figures of the run as the list "summary". */
 int hf_flat_run(hf_flat *flat, const char *output, int restart, hf_flat_observer *observer, void *context);
 
+/* Sets the command with which a run first reads an existing output file, because HDF5 crashes on some damaged files.
+ * command[0] is the path of a program. At most 8 words are allowed, and NULL terminates them. The words are borrowed.
+ * hifdm calls the program with these words and the path of the file. The program calls hf_flat_read and exits with
+ * status 0. If `command` is NULL, or if the program fails, a copy of this process by fork(2) reads the file. If another
+ * thread holds a lock when the copy is made, the copy waits for this lock for ever. Therefore a process must set a
+ * command before its first run if other threads use HDF5 or if HDF5 has callbacks. The Python package sets one. */
+void hf_flat_set_reader(const char *const *command);
+
+/* Reads a result file as a run does. This function may crash or end the process. */
+void hf_flat_read(const char *path);
+
 /* Stops the current run. Any thread or signal handler may call this function. hf_flat_run then returns
  * HF_INTERRUPTED. */
 void hf_flat_stop(hf_flat *flat);

@@ -1,4 +1,4 @@
-#define _DEFAULT_SOURCE /* wait4 */
+#define _GNU_SOURCE /* wait4, environ */
 /* Contents: children - the server */
 #include "base/child.h"
 
@@ -6,6 +6,7 @@
 
 #include <pthread.h>
 #include <signal.h>
+#include <spawn.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -28,6 +29,30 @@ pid_t hf_child_fork(void)
 #endif
     if (getppid() != parent) _exit(1); /* the parent ended before prctl */
     return 0;
+}
+
+static const int of_parent[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGQUIT}; /* to which only the parent reacts */
+enum { N_OF_PARENT = sizeof of_parent / sizeof *of_parent };
+
+pid_t hf_child_spawn(const char *const *command, const char *text)
+{
+    const char *word[HF_CHILD_WORDS + 2] = {NULL};
+    posix_spawnattr_t attributes;
+    sigset_t blocked;
+    pid_t child;
+    int n = 0;
+    for (; n < HF_CHILD_WORDS && command[n]; n++)
+        word[n] = command[n];
+    word[n] = text;
+    sigemptyset(&blocked);
+    for (int i = 0; i < N_OF_PARENT; i++)
+        sigaddset(&blocked, of_parent[i]);
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setsigmask(&attributes, &blocked);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+    int failed = posix_spawn(&child, *word, NULL, &attributes, (char *const *)word, environ);
+    posix_spawnattr_destroy(&attributes);
+    return failed ? -1 : child;
 }
 
 static double seconds_of(const struct rusage *used)
@@ -115,10 +140,9 @@ static hf_child_end obey(const order *o)
  * threads. Outside `work` it therefore makes only calls that POSIX allows in such a copy. */
 static void serve_orders(int by)
 {
-    static const int to_others[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGQUIT};
     static order o;
-    for (size_t i = 0; i < sizeof to_others / sizeof *to_others; i++)
-        signal(to_others[i], SIG_IGN);
+    for (int i = 0; i < N_OF_PARENT; i++)
+        signal(of_parent[i], SIG_IGN);
     signal(SIGCHLD, SIG_DFL); /* where it is ignored, nobody learns how a child ended */
     for (;;) {
         ssize_t n;

@@ -1,8 +1,9 @@
-/* child - runs work that may crash or never end in a copy of this process. HDF5 crashes or loops on some damaged files.
+/* child - runs work that may crash or never end in another process. HDF5 crashes or loops on some damaged files.
  *
  * A copy made by fork(2) has one thread and inherits every lock in its current state. If another thread holds a lock at
  * that moment, the copy can block in malloc for ever. A process with several threads therefore starts a server before
- * it starts its threads. The server is a copy with one thread, and it forks the other children. On Linux, a child ends
+ * it starts its threads. The server is a copy with one thread, and it forks the other children. If the process is not
+ * ours, such as that of Python, another program takes the place of the copy (hf_child_spawn). On Linux, a copy ends
  * when its parent ends. */
 #ifndef HIFDM_CHILD_H
 #define HIFDM_CHILD_H
@@ -22,6 +23,12 @@ typedef struct {
 /* Forks like fork(2), for a process with one thread. The child must leave with _exit(2), because exit(3) would write
  * the buffers of stdio a second time. Signals from the terminal reach both processes. */
 pid_t hf_child_fork(void);
+
+/* Starts the program command[0] with the words of `command`, which NULL ends, and the last word `text`. The program
+ * inherits no memory, so no lock of this process can block it. It blocks the signals that a child of the server
+ * ignores. Returns -1 if it cannot be started. */
+#define HF_CHILD_WORDS 8 /* maximum number of words of a command; the rest is left out */
+pid_t hf_child_spawn(const char *const *command, const char *text);
 
 hf_child_end hf_child_wait(pid_t child);
 

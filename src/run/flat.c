@@ -10,6 +10,7 @@
 #include "net/variables.h"
 #include "run/diagnose.h"
 #include "run/problem_parts.h"
+#include "store/store_internal.h"
 #include <hifdm/run.h>
 #include <hifdm/store.h>
 
@@ -551,6 +552,16 @@ int hf_flat_run(hf_flat *f, const char *output, int restart, hf_flat_observer *o
     hf_summary_free(&f->summary);
     hf_status status = hf_run_case(&request, &f->summary, written, &f->messages);
     return (int)write_summary(f, status, written);
+}
+
+void hf_flat_set_reader(const char *const *command)
+{
+    hf_store_set_reader(command);
+}
+
+void hf_flat_read(const char *path)
+{
+    hf_store_read_like_a_run(path);
 }
 
 void hf_flat_stop(hf_flat *f)

@@ -101,11 +101,14 @@ extern char *hf_hdf5_reading;
 void hf_hdf5_note(const hf_hdf5 *io);
 
 /* Tests in a child process whether work(path) ends normally. The caller must not hold the lock. The work must change
- * nothing, and begins with hf_hdf5_limit, after which hf_hdf5_note limits the CPU time. Returns HF_OK if it ended
- * normally or if no child could be made. HF_EXISTS: the file is damaged, and how[size] describes the end of the child.
- * HF_IO with a message: the child was killed or reached a limit of the user. This proves nothing about the file. */
+ * nothing, and begins with hf_hdf5_limit, after which hf_hdf5_note limits the CPU time. `command` is a command of
+ * hf_child_spawn that does the same work, or NULL: then the child is a copy of this process. Returns HF_OK if the work
+ * ended normally or if no child could be made. HF_EXISTS: the file is damaged, and how[size] describes the end of the
+ * child. HF_IO with a message: the child was killed or reached a limit of the user. This proves nothing about the
+ * file. */
 void hf_hdf5_limit(void);
-hf_status hf_hdf5_try(hf_child_work *work, const char *path, char *how, size_t size, hf_messages *messages);
+hf_status hf_hdf5_try(hf_child_work *work, const char *const *command, const char *path, char *how, size_t size,
+                      hf_messages *messages);
 
 /* Description of a data set: name, dimensions, kind of its values, and two attributes. */
 typedef struct {

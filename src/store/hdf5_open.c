@@ -134,10 +134,19 @@ void hf_hdf5_limit(void)
     hf_hdf5_reading = reading;
 }
 
-hf_status hf_hdf5_try(hf_child_work *work, const char *path, char *how, size_t size, hf_messages *messages)
+/* Runs the command with the path. Returns false if the program could not start or has not done its work. */
+static bool try_by_program(const char *const *command, const char *path, hf_child_end *end)
+{
+    pid_t child = hf_child_spawn(command, path);
+    if (child > 0) *end = hf_child_wait(child);
+    return child > 0 && end->exit_status <= 0;
+}
+
+hf_status hf_hdf5_try(hf_child_work *work, const char *const *command, const char *path, char *how, size_t size,
+                      hf_messages *messages)
 {
     hf_child_end end = {.is_known = false};
-    if (!hf_child_ask(work, path, &end)) {
+    if (!hf_child_ask(work, path, &end) && !(command && try_by_program(command, path, &end))) {
         hf_hdf5_lock(); /* ensures that no other thread is within HDF5 */
         pid_t child = hf_child_fork();
         hf_hdf5_unlock(HF_OK);

@@ -337,7 +337,7 @@ static hf_status check_output(const char *path, hf_messages *messages)
     bool is_there;
     HF_TRY(hf_file_out_look(path, &is_there, messages));
     if (!is_there) return HF_OK;
-    hf_status tried = hf_hdf5_try(look_at_output, path, how, sizeof how, messages);
+    hf_status tried = hf_hdf5_try(look_at_output, NULL, path, how, sizeof how, messages);
     if (tried == HF_EXISTS)
         return hf_error(messages, HF_EXISTS,
                         "%s: exists and is damaged: reading it ended by %s; use --force or -o to choose another name",
@@ -361,7 +361,7 @@ static int is_of_sweep(const hf_study *s, const char *folder, const char *path)
         if ((is = hf_path_compare(file, path)) != 0) return is;
     }
     if (!hf_path_folder(path, here, sizeof here) || (is = hf_path_compare(here, folder)) <= 0) return is;
-    hf_status tried = hf_hdf5_try(look_at_output, path, how, sizeof how, &unwanted);
+    hf_status tried = hf_hdf5_try(look_at_output, NULL, path, how, sizeof how, &unwanted);
     hf_messages_free(&unwanted);
     /* A file that is damaged or cannot be read is reported later, or may be replaced. */
     return tried == HF_OK && !is_replaceable(path);

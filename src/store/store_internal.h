@@ -27,6 +27,14 @@ struct hf_store {
  * HF_NO_MEMORY if the file cannot be read now. */
 hf_status hf_store_look_before(const char *path, hf_earlier *earlier, hf_messages *messages);
 
+/* Reads everything that a run will read. It runs in a child process, because HDF5 crashes on some damaged files or
+ * reads them forever. Of a finished result a run reads only the summary. */
+void hf_store_read_like_a_run(const char *path);
+
+/* Sets the command of hf_child_spawn whose process calls hf_store_read_like_a_run with the path of a file, before a run
+ * reads this file. NULL: a copy of this process calls it. The words are borrowed. */
+void hf_store_set_reader(const char *const *command);
+
 /* Returns the value of the attribute HF_KEEPS_EARLIER, and false if the file does not have it. */
 bool hf_store_keeps_earlier(hf_hdf5 *io);
 

@@ -159,9 +159,14 @@ static void ignore_difference(void *context, const char *name, const char *how)
     (void)context, (void)name, (void)how;
 }
 
-/* Reads everything that a run will read. It runs in a child process, because HDF5 crashes on some damaged files or
- * reads them forever. Of a finished result a run reads only the summary. */
-static void read_like_a_run(const char *path)
+static const char *const *reader; /* a command that calls hf_store_read_like_a_run, or NULL */
+
+void hf_store_set_reader(const char *const *command)
+{
+    reader = command;
+}
+
+void hf_store_read_like_a_run(const char *path)
 {
     hf_messages unwanted = {0};
     hf_summary *summary = calloc(1, sizeof *summary);
@@ -196,7 +201,7 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
         return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
     if (failed || !S_ISREG(info.st_mode)) return HF_OK; /* hf_store_create reports what is wrong */
     hf_messages said = {0};
-    hf_status tried = hf_hdf5_try(read_like_a_run, path, words, sizeof words, messages);
+    hf_status tried = hf_hdf5_try(hf_store_read_like_a_run, reader, path, words, sizeof words, messages);
     if (tried == HF_EXISTS)
         return hf_error(messages, HF_EXISTS,
                         "%s: exists and is damaged: reading it ended by %s; use --restart (of a sweep: --retry failed) "
@@ -250,7 +255,7 @@ hf_status hf_store_look_before(const char *path, hf_earlier *earlier, hf_message
     int seen = hf_path_look(path, &info);
     if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
     if (seen == 0 || !S_ISREG(info.st_mode)) return HF_OK;
-    hf_status tried = hf_hdf5_try(read_like_a_run, path, words, sizeof words, messages);
+    hf_status tried = hf_hdf5_try(hf_store_read_like_a_run, reader, path, words, sizeof words, messages);
     if (tried != HF_EXISTS) HF_TRY(tried);
     *earlier = HF_EARLIER_UNREAD;
     if (tried == HF_EXISTS) return HF_OK;

@@ -26,7 +26,7 @@ static const char *package_folder(void)
 }
 
 static const char *const script[] = {"bits.py",     "errors.py", "threads.py", "processes.py",
-                                     "examples.py", "manual.py", "renamed.py"};
+                                     "examples.py", "manual.py", "renamed.py", "held_lock.py"};
 enum { N_SCRIPT = sizeof script / sizeof *script };
 
 START_TEST(script_passes)

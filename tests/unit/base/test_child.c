@@ -182,6 +182,30 @@ START_TEST(threads_ask_while_others_allocate)
 }
 END_TEST
 
+static hf_child_end run_shell(const char *script)
+{
+    const char *const command[] = {"/bin/sh", "-c", "eval \"$1\"", "sh", NULL};
+    return hf_child_wait(hf_child_spawn(command, script));
+}
+
+/* The signals of a child's parent do not end the program, and neither do those that a thread of its parent blocks. */
+START_TEST(another_program_is_a_child)
+{
+    const char *const nothing[] = {"/bin/no-such-program", NULL};
+    const char *const longest[HF_CHILD_WORDS + 1] = {"/bin/sh", "-c", "test $# = 5", "sh", "1", "2", "3", "4"};
+    sigset_t blocked;
+    ck_assert_int_eq(run_shell("exit 0").exit_status, 0);
+    ck_assert_int_eq(run_shell("kill -TERM $$; kill -INT $$; kill -HUP $$; kill -USR1 $$; exit 7").exit_status, 7);
+    ck_assert_int_eq(run_shell("kill -ABRT $$").signal, SIGABRT);
+    sigfillset(&blocked);
+    ck_assert_int_eq(pthread_sigmask(SIG_BLOCK, &blocked, NULL), 0);
+    hf_child_end how = run_shell("kill -XCPU $$");
+    ck_assert(how.signal == SIGXCPU && !how.is_sent);
+    ck_assert_int_lt(hf_child_spawn(nothing, ""), 0);
+    ck_assert_int_eq(hf_child_wait(hf_child_spawn(longest, "5")).exit_status, 0);
+}
+END_TEST
+
 Suite *suite_unit_child(void)
 {
     Suite *suite = suite_create("unit/child");
@@ -192,6 +216,7 @@ Suite *suite_unit_child(void)
     tcase_add_test(tests, without_a_server_nothing_is_done);
     tcase_add_test(tests, an_end_from_outside_is_known);
     tcase_add_test(tests, an_end_is_known_where_children_are_ignored);
+    tcase_add_test(tests, another_program_is_a_child);
     tcase_add_test(tests, threads_ask_while_others_allocate);
     return suite;
 }

@@ -1,5 +1,5 @@
-/* The flat interface: a net of arrays with each allocation failing once, and what is said without a case. What it
- * computes is held to the program in tests/python. */
+/* The flat interface: a net of arrays with each allocation failing once, what is said without a case, and the program
+ * that reads an earlier result. What it computes is held to the program in tests/python. */
 #include "support.h"
 
 #include <hifdm/flat.h>
@@ -162,6 +162,35 @@ START_TEST(calls_leave_no_trace)
 }
 END_TEST
 
+static int run_again(hf_flat *flat, const char *path, const char *script)
+{
+    const char *const command[] = {"/bin/sh", "-c", script, "sh", path, NULL};
+    hf_flat_set_reader(command);
+    return hf_flat_run(flat, path, 0, NULL, NULL);
+}
+
+/* A program reads the earlier result. If it crashes, the file is damaged. If it fails, a copy of this process reads. */
+START_TEST(a_program_reads_an_earlier_result)
+{
+    double psi_m;
+    char path[4096];
+    hf_flat *flat = hf_flat_create();
+    ck_assert_msg(work(flat, &psi_m) == HF_OK, "%s", hf_flat_messages(flat));
+    snprintf(path, sizeof path, "%s", temp_path("flat.h5"));
+    ck_assert_int_eq(run_again(flat, path, "kill -SEGV $$"), HF_OK); /* there is none */
+    ck_assert_int_eq(run_again(flat, path, "kill -SEGV $$"), HF_EXISTS);
+    ck_assert_ptr_nonnull(strstr(hf_flat_messages(flat), "is damaged: reading it ended by signal 11"));
+    ck_assert_int_eq(run_again(flat, path, "kill -KILL $$"), HF_IO);
+    ck_assert_ptr_nonnull(strstr(hf_flat_messages(flat), "reading it was ended by signal 9"));
+    ck_assert_int_eq(run_again(flat, path, "test \"$1\" = \"$2\" || kill -SEGV $$"), HF_OK);
+    ck_assert_int_eq(run_again(flat, path, "exit 3"), HF_OK);
+    hf_flat_set_reader((const char *const[]){"/bin/no-such-program", NULL});
+    ck_assert_int_eq(hf_flat_run(flat, path, 0, NULL, NULL), HF_OK);
+    hf_flat_read(path);
+    hf_flat_free(flat);
+}
+END_TEST
+
 Suite *suite_unit_flat(void)
 {
     Suite *suite = suite_create("unit/run/flat");
@@ -171,5 +200,6 @@ Suite *suite_unit_flat(void)
     tcase_add_test(tests, what_is_read_has_its_size);
     tcase_add_test(tests, old_names_are_unknown);
     tcase_add_test(tests, calls_leave_no_trace);
+    tcase_add_test(tests, a_program_reads_an_earlier_result);
     return suite;
 }

@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import os
+import sys
 from collections.abc import Iterator
 from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int, c_long, c_ubyte, c_void_p
 from pathlib import Path
@@ -37,6 +38,8 @@ PROTOTYPES = {
     "shape": (c_int, [c_void_p, _reals]),
     "slopes": (c_int, [c_void_p, c_int, _reals, _reals]),
     "run": (c_int, [c_void_p, c_char_p, c_int, Observer, c_void_p]),
+    "set_reader": (None, [_texts]),
+    "read": (None, [c_char_p]),
     "stop": (None, [c_void_p]),
 }
 
@@ -85,6 +88,23 @@ def _quiet_waiting() -> Iterator[None]:
             del os.environ[name]
 
 
+# Reads a result file in a process of its own.
+_READ = "import ctypes, os, sys; ctypes.CDLL(sys.argv[1]).hf_flat_read(os.fsencode(sys.argv[2]))"
+
+
+def _reader(library: str) -> ctypes.Array | None:
+    """Returns the command with which a run reads an existing output file, or None if this program is not Python.
+
+    By default a run reads the file in a copy of this process. h5py registers conversions in HDF5 that wait for the GIL.
+    In a copy they wait for ever if another thread held the GIL when the copy was made.
+    """
+    if not sys.executable or getattr(sys, "frozen", False):
+        return None
+    path = os.path.abspath(library) if os.sep in library else library  # the working folder may change later
+    words = [sys.executable, "-I", "-S", "-c", _READ, path]
+    return (c_char_p * (len(words) + 1))(*map(os.fsencode, words), None)
+
+
 def _load() -> ctypes.CDLL:
     faults = []
     for path in _candidates():
@@ -106,6 +126,8 @@ def _load() -> ctypes.CDLL:
         function.restype, function.argtypes = result, arguments
     for name in ("hf_status_word", "hf_status_text"):
         getattr(found, name).restype = c_char_p
+    found.reader = _reader(path)  # an attribute, because the library borrows it
+    found.hf_flat_set_reader(found.reader)
     found.gsl_set_error_handler_off()  # GSL's default handler would end the process where it only reports no progress
     return found
 
