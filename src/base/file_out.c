@@ -222,10 +222,7 @@ int hf_file_out_make(const char *path, hf_file_out *f)
     struct stat info;
     f->file = -1;
     *f->temporary = '\0';
-    if (path != f->path) {
-        snprintf(f->path, sizeof f->path, "%s", path);
-        f->is_left = false;
-    }
+    if (path != f->path) snprintf(f->path, sizeof f->path, "%s", path);
     for (int i = 0; i < ATTEMPTS; i++) {
         if (choose_name(f->path, f->temporary) != 0) return -1;
         f->file = hf_file_out_create(f->temporary);

@@ -225,7 +225,7 @@ static void add_node(hf_csv *t, const int *where, int r, const hf_scene *s, hf_l
 
 static hf_status read_table(hf_csv *t, const hf_scene *s, hf_load_case *load_case)
 {
-    int where[N_ROW_COLUMN] = {0}, n_known = 0;
+    int where[N_ROW_COLUMN], n_known = 0;
     HF_TRY(hf_csv_read(t->path, COLUMN_MAX, t, t->messages));
     HF_TRY(hf_csv_find_columns(t, row_column, N_ROW_COLUMN, ROW_FORCE, where));
     for (int k = ROW_FORCE; k < N_ROW_COLUMN; k++)

@@ -109,7 +109,7 @@ static void check_sides(hf_csv *t, const int *where, const hf_scene *s, hf_side 
 
 static hf_status build(hf_csv *t, hf_scene *s)
 {
-    int where[N_FACET_COLUMN] = {0};
+    int where[N_FACET_COLUMN];
     HF_TRY(hf_csv_read(t->path, COLUMN_MAX, t, t->messages));
     HF_TRY(hf_csv_find_columns(t, facet_column, N_FACET_COLUMN, FACET_D, where));
     HF_TRY(hf_csv_index(t, where[FACET_ID]));

@@ -292,7 +292,6 @@ void hf_hdf5_create_file(hf_hdf5 *io, const hf_file_out *file)
 {
     hid_t properties = -1, access = -1;
     char name[HF_FILE_OUT_NAME_SIZE];
-    io->file = -1;
     hf_file_out_name(file, name);
     if (!has_memory(io)) return;
     if ((properties = make_properties(H5P_FILE_CREATE)) < 0 || (access = make_access(false)) < 0 ||
@@ -304,7 +303,6 @@ void hf_hdf5_create_file(hf_hdf5 *io, const hf_file_out *file)
 static void open_file(hf_hdf5 *io, const char *name, unsigned how, bool locks)
 {
     hf_hdf5_note(io);
-    io->file = -1;
     if (!has_memory(io)) return;
     hid_t access = make_access(locks);
     io->file = access < 0 ? -1 : H5Fopen(name, how, access);

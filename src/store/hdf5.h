@@ -139,8 +139,8 @@ void *hf_hdf5_take(hf_hdf5 *io, size_t n, size_t bytes);
 
 /* ---- Files and groups ---- */
 
-/* The next three calls set io->file. HDF5 locks a file that is opened to read, if the file system supports locks; a
- * file system without locks is no failure. Temporary files have a lock of their own (file_out). */
+/* The next three calls set io->file, which is -1 before. HDF5 locks a file that is opened to read, if the file system
+ * supports locks; a file system without locks is no failure. Temporary files have a lock of their own (file_out). */
 void hf_hdf5_create_file(hf_hdf5 *io, const hf_file_out *file);   /* makes a new HDF5 file in the temporary file */
 void hf_hdf5_open_to_write(hf_hdf5 *io, const hf_file_out *file); /* opens the HDF5 file in the temporary file */
 void hf_hdf5_open_file(hf_hdf5 *io, const char *name);            /* checks the file and opens it to read */

@@ -107,7 +107,7 @@ static void read_members(hf_csv *t, const int *where, const hf_csv *nodes, hf_tr
 
 static hf_status build(hf_csv *nodes, hf_csv *members, hf_truss *s)
 {
-    int node_where[N_NODE_COLUMN] = {0}, member_where[N_MEMBER_COLUMN] = {0};
+    int node_where[N_NODE_COLUMN], member_where[N_MEMBER_COLUMN];
     /* Both files are read before returning, so that one run reports the faults of both. */
     hf_status node_status = hf_csv_read(nodes->path, COLUMN_MAX, nodes, nodes->messages);
     hf_status member_status = hf_csv_read(members->path, COLUMN_MAX, members, members->messages);

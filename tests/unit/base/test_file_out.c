@@ -444,6 +444,36 @@ START_TEST(kept_files_are_ordinary_ones_with_one_name)
 }
 END_TEST
 
+/* The files of a set appear together. If something fails, whichever file it is, none is left. */
+START_TEST(files_of_a_set_appear_together)
+{
+    static const char *const file[] = {"a", "b", "c"};
+    char path[4096];
+    for (int fails = -2; fails < 3; fails++) { /* -2: nothing; -1: no file, but the work of the caller */
+        hf_file_out_set set = {0};
+        hf_messages messages = {0};
+        const char *folder = own_folder("set", "", path);
+        for (int i = 0; i < 3; i++) {
+            snprintf(path, sizeof path, "%s/%s", folder, file[i]);
+            ck_assert_int_eq(hf_file_out_set_write(&set, path, put_text, file[i], &messages), HF_OK);
+        }
+        if (fails >= 0) fail_call_at("fsync", fails + 1, EIO, false);
+        hf_status before = fails == -1 ? HF_BAD_CASE : HF_OK;
+        ck_assert_int_eq(hf_file_out_set_end(&set, before, &messages), fails >= 0 ? HF_IO : before);
+        if (fails >= 0) ck_assert(end_call_failure());
+        ck_assert_int_eq(messages.n_error, fails >= 0);
+        ck_assert_int_eq(count_in(folder), fails == -2 ? 3 : 0);
+        for (int i = 0; i < 3 && fails == -2; i++) {
+            snprintf(path, sizeof path, "%s/%s", folder, file[i]);
+            demand_text(path, file[i]);
+            ck_assert_int_eq(unlink(path), 0);
+        }
+        ck_assert_int_eq(rmdir(folder), 0);
+        hf_messages_free(&messages);
+    }
+}
+END_TEST
+
 /* Gigabytes of samples belong on the disk of the result, where there is room for them. */
 START_TEST(scratch_files_are_beside_the_result)
 {
@@ -473,6 +503,7 @@ Suite *suite_unit_file_out(void)
     Suite *suite = suite_create("unit/file_out");
     TCase *tc = tcase_create("file_out");
     tcase_add_test(tc, a_file_appears_whole_and_replaces);
+    tcase_add_test(tc, files_of_a_set_appear_together);
     tcase_add_test(tc, what_cannot_get_its_name_leaves_nothing);
     tcase_add_test(tc, temporary_names_cannot_be_guessed);
     tcase_add_test(tc, leftovers_are_removed_and_nothing_else);

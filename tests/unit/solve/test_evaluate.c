@@ -2,6 +2,8 @@
  * held before. */
 #include "population.h"
 
+#include "solve/limits.h"
+
 /* The small reflector, form-found to 1e-10; the design is its boundary pretensions. */
 static void open_design(struct run *r, int rule)
 {
@@ -216,6 +218,39 @@ START_TEST(nothing_is_allocated)
 }
 END_TEST
 
+/* Each value of a row counts, the first and the last as well, and values within the bounds count nothing. */
+START_TEST(each_value_beyond_a_limit_counts)
+{
+    enum { N = 3 };
+    double tension_N[N], displacement_m[3 * N] = {0};
+    int cable[N] = {2, 0, 1};
+    const hf_model m = {.n_attachment = N, .reference_N = 10};
+    const hf_workspace w = {.tension_N = tension_N, .displacement_m = displacement_m};
+    hf_limit row[] = {{.kind = HF_LIMIT_TENSION, .n_cable = N, .cable = cable, .lower = 5, .upper = 20},
+                      {.kind = HF_LIMIT_DEFLECTION, .lower = 0, .upper = 0.01}};
+    const hf_limits limits = {.n = 2, .row = row};
+    const hf_evaluator v = {.model = &m, .limits = &limits, .boundary_ratio_cap = INFINITY};
+    double beyond[2 * N], all = 0;
+    for (int i = -1; i < 2 * N; i++) { /* -1: none is beyond */
+        for (int k = 0; k < N; k++) {
+            tension_N[k] = i == k ? 20 + 3.0 * (k + 1) : 6 + k;
+            displacement_m[3 * k + k] = i == N + k ? -0.02 * (k + 1) : 0.009;
+        }
+        if (i < 0)
+            ck_assert_double_eq(hf_limits_violation(&v, &w), 0);
+        else
+            all += beyond[i] = hf_limits_violation(&v, &w);
+    }
+    for (int k = 0; k < N; k++) {
+        ck_assert_double_eq_tol(beyond[k], 0.3 * (k + 1), 1e-12);             /* of the reference tension */
+        ck_assert_double_eq_tol(beyond[N + k], 2.0 * (k + 1) - 1, 1e-12); /* of the limit */
+        tension_N[k] = 20 + 3.0 * (k + 1);
+        displacement_m[3 * k + k] = -0.02 * (k + 1);
+    }
+    ck_assert_double_eq_tol(hf_limits_violation(&v, &w), all, 1e-12);
+}
+END_TEST
+
 Suite *suite_unit_evaluate(void)
 {
     Suite *suite = suite_create("unit/evaluate");
@@ -228,6 +263,7 @@ Suite *suite_unit_evaluate(void)
     tcase_add_test(tests, seeded_rule_is_the_papers_iteration);
     tcase_add_test(tests, force_density_rule_does_not_depend_on_the_start);
     tcase_add_test(tests, ratio_above_the_cap_is_infeasible);
+    tcase_add_test(tests, each_value_beyond_a_limit_counts);
     tcase_add_test(tests, impossible_designs_are_a_status_not_a_number);
     tcase_add_test(tests, not_converged_has_no_psi);
     tcase_add_loop_test(tests, stale_workspace_gives_the_same_bits, 0, 3);

@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const char *result_path(void)
@@ -124,6 +125,29 @@ START_TEST(a_name_that_moves_before_the_lock_is_opened_again)
 }
 END_TEST
 
+/* A restart removes a file or a link that is no journal. A folder stays, and the message says why. */
+START_TEST(what_is_no_journal_is_replaced_or_told)
+{
+    hf_journal j;
+    hf_messages m = {0};
+    char expected[3 * 4096];
+    write_file(temp_path("run.h5.journal"), "notes of mine");
+    ck_assert_int_eq(hf_journal_open(result_path(), false, &j, &m), HF_EXISTS);
+    hf_journal_close(&j, false);
+    ck_assert_int_eq(hf_journal_open(result_path(), true, &j, &m), HF_OK);
+    ck_assert_ptr_nonnull(strstr(m.text, "run.h5.journal was no journal of hifdm; it is replaced\n"));
+    hf_journal_close(&j, true);
+    hf_messages_free(&m);
+    ck_assert_int_eq(mkdir(temp_path("run.h5.journal"), 0700), 0);
+    ck_assert_int_eq(hf_journal_open(result_path(), true, &j, &m), HF_IO);
+    snprintf(expected, sizeof expected, "error: %s: cannot remove %s.journal: Is a directory\n", result_path(),
+             result_path());
+    ck_assert_str_eq(m.text, expected);
+    hf_journal_close(&j, false);
+    hf_messages_free(&m);
+}
+END_TEST
+
 /* Every HF_JOURNAL_SYNC_S, if there is news; that the disk refuses is an error. */
 START_TEST(what_is_appended_goes_to_the_disk)
 {
@@ -178,6 +202,7 @@ Suite *suite_unit_journal(void)
     tcase_add_test(tests, a_spoilt_record_is_told);
     tcase_add_test(tests, the_lock_is_kept_while_the_journal_is_rotated);
     tcase_add_test(tests, a_name_that_moves_before_the_lock_is_opened_again);
+    tcase_add_test(tests, what_is_no_journal_is_replaced_or_told);
     tcase_add_test(tests, what_is_appended_goes_to_the_disk);
     tcase_add_test(tests, samples_that_are_gone_are_told);
     return suite;

@@ -1,9 +1,11 @@
 /* Result files: no other file is overwritten, damage is reported, a full disk or failed allocation leaves nothing. */
 #include "base/file_out.h"
+#include "calls.h"
 #include "results.h"
 #include "small_ga.h"
 #include "store/hdf5.h"
 
+#include <errno.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -311,6 +313,33 @@ START_TEST(a_full_disk_is_told)
 }
 END_TEST
 
+/* Whichever file cannot be opened, the message has the reason of the system. */
+START_TEST(a_file_that_cannot_be_opened_is_told)
+{
+    struct net net;
+    const char *path, *folder = new_folder(&path);
+    bool was_reached = true;
+    open_bow(&net);
+    for (long n = 1; was_reached; n++) {
+        hf_messages messages = {0};
+        hf_store *store = NULL;
+        fail_call_at("open", n, EMFILE, false);
+        hf_status status = hf_store_create(path, 0, any_case(), &net.scene, NULL, 0, NULL, &store, &messages);
+        was_reached = end_call_failure();
+        if (status != HF_OK) {
+            ck_assert_int_eq(status, HF_IO);
+            ck_assert_msg(strstr(messages.text, path) && strstr(messages.text, strerror(EMFILE)), "open %ld: %s", n,
+                          messages.text);
+        }
+        hf_store_end(store);
+        ck_assert_int_eq(count_files(folder), 0);
+        hf_messages_free(&messages);
+        no_id_is_open();
+    }
+    close_net(&net);
+}
+END_TEST
+
 /* Each allocation of ours fails once; those inside HDF5 are out of reach. */
 START_TEST(failed_allocations_are_told)
 {
@@ -384,6 +413,7 @@ Suite *suite_unit_store_faults(void)
     tcase_add_loop_test(tests, flipped_bits_do_no_harm, 0, 4);
     tcase_add_test(tests, failed_allocations_are_told);
     tcase_add_test(tests, a_file_that_cannot_be_closed_is_an_error);
+    tcase_add_test(tests, a_file_that_cannot_be_opened_is_told);
     tcase_add_loop_test(tests, a_full_disk_is_told, 0, 5); /* last: leaves ids open */
     return suite;
 }
