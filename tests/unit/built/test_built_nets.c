@@ -172,6 +172,30 @@ START_TEST(a_net_without_memory_is_told)
 }
 END_TEST
 
+/* A load that no cable can hold. */
+START_TEST(a_net_without_a_shape_is_told)
+{
+    hf_problem p;
+    hf_form_result result;
+    const hf_workspace *shape;
+    open_problem(&p, false, NULL, "optimize.objective=[{figure: psi, load_case: all}]");
+    const hf_objectives_nets *nets = p.objectives.nets;
+    for (int i = 0; i < nets->n_load_case; i++) {
+        hf_load_case *load_case = &p.load_cases.load_case[i];
+        ck_assert_int_eq(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &result), HF_OK);
+        ck_assert_int_eq(nets->cut(p.workspace.objectives->nets, &p.workspace), HF_OK);
+        ck_assert_int_eq(hf_objectives_nets_linearise(&p.objectives, i, p.workspace.objectives, &shape), HF_OK);
+        ck_assert_ptr_nonnull(shape);
+        load_case->force_N[3 * p.model.inner_row[0]] = 1e30;
+        ck_assert_int_eq(hf_objectives_nets_linearise(&p.objectives, i, p.workspace.objectives, &shape), HF_NOT_FINITE);
+        ck_assert_ptr_null(shape);
+        ck_assert_int_ne(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &result), HF_OK);
+        load_case->force_N[3 * p.model.inner_row[0]] = 0;
+    }
+    hf_problem_free(&p);
+}
+END_TEST
+
 START_TEST(derivatives_are_those_of_differences)
 {
     struct differed d = {0};
@@ -335,6 +359,7 @@ Suite *suite_unit_built_nets(void)
     tcase_set_timeout(tcase, 60);
     tcase_add_loop_test(tcase, derivatives_are_those_of_differences, 0, 2 * (int)(sizeof varied / sizeof *varied));
     tcase_add_test(tcase, a_net_without_memory_is_told);
+    tcase_add_test(tcase, a_net_without_a_shape_is_told);
     tcase_add_loop_test(tcase, values_over_samples_are_those_of_tolerances, 0, 2);
     tcase_add_loop_test(tcase, values_of_load_cases_are_those_of_cases, 0, 2);
     tcase_add_loop_test(tcase, nets_that_do_not_differ_are_the_design, 0, 2);

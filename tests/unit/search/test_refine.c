@@ -268,6 +268,30 @@ START_TEST(applies_to_convex_nets_and_rules_only)
 }
 END_TEST
 
+/* Levenberg-Marquardt varies T/L* of each cable. So its steps from one shape, away from bounds, are the same whether the
+ * design variables are tensions or force densities, but for the tolerance of the shapes. */
+START_TEST(steps_do_not_depend_on_the_rule)
+{
+    struct refine_run p;
+    hf_refine_result by_tension, by_density;
+    double design_N[MAX_VARIABLE], density_N[MAX_VARIABLE];
+    open_small(&p, HF_RULE_TENSION, 1e3);
+    const hf_workspace *w = &p.r.net.work;
+    memcpy(design_N, design(&p.r, 0), (size_t)p.r.net.model.n_variable * sizeof(double));
+    double start_m = psi_of(&p, design_N);
+    for (int k = 0; k < p.r.net.model.n_variable; k++) {
+        int e = p.r.net.model.variable_cable[k];
+        density_N[k] = w->tension_N[e] / w->length_m[e] * hf_evaluate_divisor(&p.r.evaluator, k);
+    }
+    ck_assert_int_eq(refine(&p, 1, design_N, &by_tension), HF_OK);
+    p.r.evaluator.rule = HF_RULE_FORCE_DENSITY;
+    ck_assert_int_eq(refine(&p, 1, density_N, &by_density), HF_OK);
+    ck_assert_double_lt(by_tension.merit, 0.995 * start_m);
+    ck_assert_double_eq_tol(by_density.merit, by_tension.merit, 1e-9 * start_m);
+    close_net(&p.r.net);
+}
+END_TEST
+
 /* ---- going on ---- */
 
 /* Where a run was between its steps, [n][n_state]. */
@@ -419,5 +443,6 @@ Suite *suite_unit_refine(void)
     tcase_add_test(tests, its_watcher_ends_it);
     tcase_add_test(tests, the_start_stays_when_the_end_is_worse);
     tcase_add_test(tests, applies_to_convex_nets_and_rules_only);
+    tcase_add_test(tests, steps_do_not_depend_on_the_rule);
     return suite;
 }
