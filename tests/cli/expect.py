@@ -30,11 +30,15 @@ def load(path):
         content = file.read()
     if not path.endswith(".json"):
         return content
-    return json.loads(content.decode("utf-8"), parse_constant=refuse, object_hook=unpacked)
+    return json.loads(content.decode("utf-8"), parse_constant=refuse, object_pairs_hook=unpacked)
 
 
-def unpacked(item):
-    """Returns the numbers of a page, which stores them as base64 of their bytes (base/json.h)."""
+def unpacked(pairs):
+    """Returns an object, which has each key once, or the numbers of a page, which stores them as base64 of their bytes
+    (base/json.h)."""
+    item = dict(pairs)
+    if len(item) < len(pairs):
+        raise ValueError(f"a key is there twice: {[name for name, _ in pairs]}")
     types = {"i32": "<i4", "f32": "<f4", "f64": "<f8"}
     for name, text in item.items():
         if name in types and len(item) == 1:

@@ -542,6 +542,26 @@ START_TEST(data_sets_depend_on_the_case_alone)
 }
 END_TEST
 
+/* Tables of load cases are part of the identity of a case with their contents. A table that is missing is left out. */
+START_TEST(tables_of_load_cases_identify)
+{
+    static hf_case c;
+    struct net net;
+    char identity[4][65], *path = c.built.load_case[1].nodes_path;
+    OPEN_CASE(&net, SMALL_REFLECTOR);
+    c.built.n_load_case = 2;
+    for (int i = 0; i < 4; i++) { /* without a name, missing, and with two contents */
+        if (i == 1) snprintf(path, sizeof c.built.load_case[1].nodes_path, "%s", temp_path("wind.csv"));
+        if (i > 1) write_file(temp_path("wind.csv"), i == 2 ? "id,Fx_N\n" : "id,Fy_N\n");
+        ck_assert_int_eq(hf_store_identify(&c, &net.scene, NULL, identity[i]), HF_OK);
+    }
+    ck_assert_str_eq(identity[0], identity[1]);
+    ck_assert_str_ne(identity[1], identity[2]);
+    ck_assert_str_ne(identity[2], identity[3]);
+    close_net(&net);
+}
+END_TEST
+
 /* A resumed run must find the shape of the result: a difference by rounding gives a warning, a larger one a refusal. */
 START_TEST(another_shape_is_not_gone_on_with)
 {
@@ -584,5 +604,6 @@ Suite *suite_unit_store(void)
     tcase_add_loop_test(tests, another_shape_is_not_gone_on_with, 0, 4);
     tcase_add_test(tests, provenance_and_units_are_there);
     tcase_add_test(tests, data_sets_depend_on_the_case_alone);
+    tcase_add_test(tests, tables_of_load_cases_identify);
     return suite;
 }
