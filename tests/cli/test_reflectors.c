@@ -128,12 +128,11 @@ START_TEST(nodes_that_no_objective_counts_are_told)
     static const char *const size[] = {"aperture_m: 6, focal_length_m: 3, rear_distance_m: 1.8",
                                        "aperture_m: 0.06, focal_length_m: 0.03, rear_distance_m: 0.018"};
     const char *out = temp("r.h5"),
-               *path = file_with(
-                   "c.yaml", formatted("scene: {paraboloid: {rings: 4, %s}}\n"
-                                       "form: {pretension_N: 10, prestress: exact}\nsurface: {}\n"
-                                       "optimize: {method: lm, objective: [{figure: facets}], "
-                                       "variables: [{set: all, vary: force_density, range: 50 %%}]}\n",
-                                       size[_i]));
+               *path = file_with("c.yaml", formatted("scene: {paraboloid: {rings: 4, %s}}\n"
+                                                     "form: {pretension_N: 10, prestress: exact}\nsurface: {}\n"
+                                                     "optimize: {method: lm, objective: [{figure: facets}], "
+                                                     "variables: [{set: all, vary: force_density, range: 50 %%}]}\n",
+                                                     size[_i]));
     HIFDM(0, "run", path, "-o", out, "--json");
     EXPECT(out_as("r.json"), out, "--",
            "(lambda ids, moved: (lambda k: [w for w in a['warnings'] if f'node {ids[k]}, and ' in w and "

@@ -103,7 +103,7 @@ static const struct {
     {HEAD "1,a,b,e,\n", "error: facets.csv:2: '1': no cable joins its nodes 'e' and 'a'\n"},
     {HEAD "1,a,b,e,d\n\n2,d,e,b,a\n",
      "error: facets.csv:4: '2': is on the same side of a cable as the facet '1' on line 2\n"},
-    {HEAD "1,a,b,e,d\n2,b,c,e,\n3,a,c,e,d\n", /* in the order of the nodes, and each pair of facets as often as it has sides */
+    {HEAD "1,a,b,e,d\n2,b,c,e,\n3,a,c,e,d\n", /* in the order of nodes, one for each side */
      "error: facets.csv:4: '3': is on the same side of a cable as the facet '2' on line 3\n"
      "error: facets.csv:4: '3': is on the same side of a cable as the facet '1' on line 2\n"
      "error: facets.csv:4: '3': is on the same side of a cable as the facet '1' on line 2\n"},

@@ -242,7 +242,7 @@ START_TEST(each_value_beyond_a_limit_counts)
             all += beyond[i] = hf_limits_violation(&v, &w);
     }
     for (int k = 0; k < N; k++) {
-        ck_assert_double_eq_tol(beyond[k], 0.3 * (k + 1), 1e-12);             /* of the reference tension */
+        ck_assert_double_eq_tol(beyond[k], 0.3 * (k + 1), 1e-12);         /* of the reference tension */
         ck_assert_double_eq_tol(beyond[N + k], 2.0 * (k + 1) - 1, 1e-12); /* of the limit */
         tension_N[k] = 20 + 3.0 * (k + 1);
         displacement_m[3 * k + k] = -0.02 * (k + 1);
