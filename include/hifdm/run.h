@@ -24,7 +24,7 @@ HF_API_BEGIN
 
 /* The phases of a run: form-finding, genetic algorithm, Levenberg-Marquardt and samples of as-built nets. */
 typedef enum { HF_RUN_FORM, HF_RUN_SEARCH, HF_RUN_REFINE, HF_RUN_TOLERANCE } hf_run_phase;
-extern const char *const hf_run_phase_word[4]; /* "form", "optimize", "polish", "tolerance" */
+extern const char *const hf_run_phase_word[4]; /* "form", "search", "refine", "tolerance" */
 
 /* The progress of a run. Members that do not belong to the phase are 0, except best_psi_m and merit, which are NaN. */
 typedef struct {
@@ -53,35 +53,53 @@ typedef struct {
  * and after each block of samples. Only one thread at a time calls the callback, but the thread may change. */
 typedef void hf_run_observer(void *context, const hf_run_progress *progress);
 
-/* The request that describes a run. All members of the request are borrowed until hf_run_case returns. Every member
- * except case_path may be zero. */
+/* The input of a run. Every member except case_path may be zero. */
 typedef struct {
     const char *case_path;           /* path of the case file; with `source`, a name for messages */
     const hf_problem_source *source; /* case and net in memory; NULL: the run reads them from files */
     const char *const *set;          /* [n_set] overrides of the form "key=value" */
     int n_set;                       /* number of overrides */
-    const char *output; /* path of the result file; NULL: the name of the case with .h5 in the current folder */
+    const uint64_t *seed;            /* seed of the genetic algorithm; NULL: optimize.seed */
     /* "FILE:N": point N of the Pareto front in this result file is the design, without a search; NULL: none */
     const char *point;
+} hf_run_input;
+
+/* The result file of a run. */
+typedef struct {
+    const char *path;  /* path of the result file; NULL: the name of the case with .h5 in the current folder */
     bool no_file;      /* write no file, because only the summary is needed */
+    bool restart;      /* start again even if the file exists; false: resume an unfinished result of this case */
+    int argc;          /* number of command line arguments, for the provenance */
+    char *const *argv; /* [argc] command line arguments */
+    /* If this member is NULL, the result file gets its final name before hf_run_case returns. If this member is not
+     * NULL, *unsettled is set to the store for which the caller must call hf_store_settle, in any thread. If there is
+     * no such store, *unsettled is set to NULL. */
+    hf_store **unsettled;
+} hf_run_output;
+
+/* Threads, stop flag and observer of a run. */
+typedef struct {
+    int threads;                                 /* number of threads; 0: all cores */
+    const volatile sig_atomic_t *stop_requested; /* flag; *stop_requested != 0 interrupts the run; NULL: none */
+    hf_run_observer *observer;                   /* callback that receives the progress; NULL: none */
+    void *observer_context;                      /* first argument of the observer */
+} hf_run_control;
+
+/* The part of a study or of a set of samples that a run computes. */
+typedef struct {
     bool of_sweep;     /* run one point of the sweep of the case; false: reject a case with a section sweep */
     bool of_tolerance; /* reject a case without a section tolerance */
     /* If tasks > 0, the run computes only the samples of this task, 0 to tasks - 1, without a result file. If task is
      * -1, the run combines the samples of all tasks. */
     int task, tasks;
-    bool restart;      /* start again even if the file exists; false: resume an unfinished result of this case */
-    int threads;       /* number of threads; 0: all cores */
-    bool has_seed;     /* use `seed` instead of optimize.seed */
-    uint64_t seed;     /* seed of the genetic algorithm */
-    int argc;          /* number of command line arguments, for the provenance */
-    char *const *argv; /* [argc] command line arguments */
-    const volatile sig_atomic_t *stop_requested; /* flag; if *stop_requested != 0, the run is interrupted; NULL: none */
-    /* If this member is NULL, the result file gets its final name before hf_run_case returns. If this member is not
-     * NULL, *unsettled is set to the store for which the caller must call hf_store_settle, in any thread. If there is
-     * no such store, *unsettled is set to NULL. */
-    hf_store **unsettled;
-    hf_run_observer *observer; /* callback that receives the progress; NULL: none */
-    void *observer_context;    /* first argument of the observer */
+} hf_run_part;
+
+/* The request that describes a run. All pointers are borrowed until hf_run_case returns. */
+typedef struct {
+    hf_run_input input;     /* case, overrides, seed */
+    hf_run_output output;   /* result file */
+    hf_run_control control; /* threads, stop flag, observer */
+    hf_run_part part;       /* point of a sweep, task; all zero: the whole case */
 } hf_run_request;
 
 /* Runs a case and stores its result. The buffer `output` receives the path of the result file, or "" if no file was

@@ -25,23 +25,15 @@ hf_status hf_cmd_run_case(const hf_options *o, FILE *file, hf_messages *messages
     bool of_tolerance = o->command == &hf_cmd_tolerance;
     HF_TRY(check_tasks(o, messages));
     hf_progress progress = hf_progress_on(stderr, o->quiet ? HF_PROGRESS_NONE : o->progress);
-    hf_run_request request = {.case_path = o->file,
-                              .set = o->set,
-                              .n_set = o->n_set,
-                              .output = o->output,
-                              .point = o->point,
-                              .of_tolerance = of_tolerance,
-                              .task = o->task,
-                              .tasks = of_tolerance ? o->tasks : 0,
-                              .restart = o->force,
-                              .threads = o->threads,
-                              .has_seed = o->has_seed,
-                              .seed = o->seed,
-                              .argc = o->argc,
-                              .argv = o->argv,
-                              .stop_requested = hf_signals_watch(),
-                              .observer = hf_progress_show,
-                              .observer_context = &progress};
+    hf_run_request request = {
+        .input = {.case_path = o->file,
+                  .set = o->set,
+                  .n_set = o->n_set,
+                  .seed = o->has_seed ? &o->seed : NULL,
+                  .point = o->point},
+        .output = {.path = o->output, .restart = o->force, .argc = o->argc, .argv = o->argv},
+        .control = {o->threads, hf_signals_watch(), hf_progress_show, &progress},
+        .part = {.of_tolerance = of_tolerance, .task = o->task, .tasks = of_tolerance ? o->tasks : 0}};
     hf_status status = hf_run_case(&request, &summary, output, messages);
     hf_progress_end(&progress);
     const char *path = *output ? output : NULL;

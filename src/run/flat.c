@@ -538,17 +538,10 @@ int hf_flat_run(hf_flat *f, const char *output, int restart, hf_flat_observer *o
     watcher beside = {f, observer, context};
     if (!begins(f, f->is_open, NEEDS_CASE)) return HF_BAD_USAGE;
     f->stop = 0; /* clears a stop that came at the end of an earlier run */
-    hf_run_request request = {.case_path = f->path,
-                              .source = f->source.text ? &f->source : NULL,
-                              .set = f->set,
-                              .n_set = f->n_set,
-                              .output = output,
-                              .no_file = !output,
-                              .restart = restart,
-                              .threads = f->n_thread,
-                              .stop_requested = &f->stop,
-                              .observer = pass_on,
-                              .observer_context = &beside};
+    hf_run_request request = {
+        .input = {.case_path = f->path, .source = f->source.text ? &f->source : NULL, .set = f->set, .n_set = f->n_set},
+        .output = {.path = output, .no_file = !output, .restart = restart},
+        .control = {f->n_thread, &f->stop, pass_on, &beside}};
     hf_summary_free(&f->summary);
     hf_status status = hf_run_case(&request, &f->summary, written, &f->messages);
     return (int)write_summary(f, status, written);

@@ -1,49 +1,84 @@
-/* stages - what the stages of a run do with a shape or a design: measures, far field, refinement, front. */
+/* stages - the stages of a run. run.c calls them one after the other; each measures and stores its shape.
+ *
+ *     stages_form.c      form-finding
+ *     stages_search.c    initial design, batch and optimiser; the search by generations
+ *     stages_refine.c    refinement by Levenberg-Marquardt, or a point of an earlier front
+ *     stages_front.c     front of the objectives
+ *     stages_measure.c   measures and far field of a shape, for all stages
+ *
+ * A stage returns HF_INTERRUPTED if the run was told to stop before its end; run.c then publishes what is stored. Other
+ * failures have a message. */
 #ifndef HIFDM_STAGES_H
 #define HIFDM_STAGES_H
 
-#include "search/refine.h"
+#include "run/diagnose.h"
+#include "run/load_case_stage.h"
+#include "run/take_point.h"
 #include <hifdm/optimiser.h>
-#include <hifdm/problem.h>
 #include <hifdm/run.h>
-#include <hifdm/store.h>
-#include <hifdm/summary.h>
-#include <signal.h>
 
-/* ---- measures ---- */
+#define HF_STOPPED_AT_SIZE 160
+
+/* What the stages of a run share. The run owns all but the request and output. */
+typedef struct {
+    const hf_run_request *request;
+    char *output; /* [HF_OUTPUT_SIZE] path of the result file; "": none */
+    hf_problem problem;
+    hf_store *store;           /* NULL: no file is written */
+    bool may_publish;          /* the store has a shape, and all generations that an earlier session left */
+    bool has_design;           /* the stages that find the design have ended without a failure */
+    hf_carrier_state truss;    /* of the truss, under the shape of the result */
+    const hf_workspace *shape; /* workspace that holds that shape; NULL: there is none */
+    hf_load_case_stage cases;  /* as-built net of the design, if there are load cases */
+    hf_places places;          /* after form-finding, if an optimisation follows */
+    hf_optimiser_plan plan;    /* the algorithms of optimize.method */
+    hf_optimiser optimiser;
+    double *design;                      /* [n_variable] best design so far, of the problem or of the population */
+    hf_front front;                      /* front of optimize.front */
+    hf_taken_point taken;                /* point taken instead of a search */
+    char stopped_at[HF_STOPPED_AT_SIZE]; /* how far an interrupted stage came, for the message */
+} hf_run;
+
+/* Returns true if the caller has told the run to stop. */
+static inline bool hf_run_must_stop(const hf_run *r)
+{
+    const volatile sig_atomic_t *stop = r->request->control.stop_requested;
+    return stop && *stop;
+}
+
+/* Passes the progress to the observer, if there is one. */
+void hf_run_report(const hf_run_control *control, hf_run_progress progress);
+
+typedef hf_status hf_run_stage(hf_run *run, hf_summary *summary, hf_messages *messages);
+
+/* Finds the shape of the case. Also returns HF_NOT_CONVERGED or the status of an ill-posed net. */
+hf_run_stage hf_stage_form;
+/* Prepares the initial design with its objectives, the batch and the optimiser. It allocates everything that the
+ * generations need before the first one. */
+hf_run_stage hf_stage_begin;
+/* Evolves generations, each stored when it is evaluated, and stores the best individual. Also returns
+ * HF_NO_FEASIBLE. */
+hf_run_stage hf_stage_search;
+/* Refines the best individual, or the initial design if no search was run. Does nothing if optimize.refine does not ask
+ * for it. */
+hf_run_stage hf_stage_refine;
+/* Takes a point of an earlier front as the design. */
+hf_run_stage hf_stage_point;
+/* Finds and stores the front of the objectives. After a search it is that of the last generation, from which
+ * Levenberg-Marquardt starts if the method ends with it. Otherwise Levenberg-Marquardt finds it alone. */
+hf_run_stage hf_stage_front;
 
 /* Measures the shape in the workspace as that of `stage`: the tensions of its sets, the limits that a design reaches
- * and, for a case with a section `surface`, the surface and its far field. n_thread threads (0: all cores) compute
- * the far field until *stop is set. Returns HF_OK; HF_NO_MEMORY; HF_INTERRUPTED without the far field; or an error
- * of the store. */
-hf_status hf_measure_stage(const hf_problem *problem, hf_stage stage, const hf_workspace *workspace, int n_thread,
-                           const volatile sig_atomic_t *stop, hf_store *store, hf_summary *summary,
+ * and, for a case with a section `surface`, the surface and its far field. Returns HF_OK; HF_NO_MEMORY; HF_INTERRUPTED
+ * without the far field; or an error of the store. */
+hf_status hf_stage_measure(hf_run *run, hf_stage stage, const hf_workspace *workspace, hf_summary *summary,
                            hf_messages *messages);
 
-/* ---- refinement ---- */
+/* Counts the design variables at their bounds. */
+void hf_stage_count_at_bounds(const hf_population *population, const double *design, int *at_lower, int *at_upper);
 
-#define HF_REFINE_STAGE_TEXT 160
-
-/* Refines `design` [n_variable], which becomes the best design, within the bounds of the population. The problem's
- * workspace is scratch. *wall_s becomes the time of all sessions, s. Returns HF_INTERRUPTED if *request->stop_requested
- * was set: the next publication has the steps so far, and stopped_at says where it stopped. Otherwise returns the
- * status of hf_refine_run, or an error of the store. */
-hf_status hf_refine_stage_run(const hf_run_request *request, hf_problem *problem, const hf_population *bounds,
-                              const hf_summary *summary, hf_store *store, double *design, hf_refine_result *result,
-                              double *wall_s, char stopped_at[HF_REFINE_STAGE_TEXT], hf_messages *messages);
-
-/* ---- front ---- */
-
-/* Finds *front. If that holds an earlier front, the search starts from its designs, else from the initial design. The
- * earlier front is freed; if the search fails, it stays, with a warning. The summary receives the table of the front.
- * The observer of the request receives the number of points found so far, beginning with 0. Returns HF_OK; without an
- * earlier front HF_NO_FEASIBLE if an end has no design, or HF_BAD_CASE if designs have no derivatives; HF_NO_MEMORY;
- * each with a message; HF_INTERRUPTED. */
-hf_status hf_run_front(const hf_run_request *request, hf_problem *problem, const hf_population *bounds, hf_front *front,
-                       hf_summary *summary, hf_messages *messages);
-
-/* Writes the table of a front into the summary, and warns about points that failed. wall_s is the time that it took,
- * s. */
-hf_status hf_run_front_tell(const hf_front *front, double wall_s, hf_summary *summary, hf_messages *messages);
+/* Makes the shape in the workspace the result, unless a later stage finds another. Returns HF_OK; HF_BAD_CASE for a
+ * design whose as-built net cannot be made; HF_NO_MEMORY. */
+hf_status hf_stage_take(hf_run *run, hf_workspace *workspace, hf_messages *messages);
 
 #endif

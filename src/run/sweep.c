@@ -209,18 +209,16 @@ static void run_point(void *context, int k)
     *p = (finished_point){.w = w, .i = i};
     hf_study_point_overrides(w->request->study, i, &overrides);
     bool is_empty = hf_ledger_file(w->ledger.folder, w->request->study, i, file) == HF_LEDGER_EMPTY_FILE;
-    hf_run_request request = {.case_path = w->request->study->base,
-                              .set = overrides.set,
-                              .n_set = overrides.n_set,
-                              .output = file,
-                              .of_sweep = 1,
-                              .no_file = !hf_study_has_files(w->request->study),
-                              .restart = w->state[i] == HF_POINT_FAILED || is_empty,
-                              .threads = w->request->threads,
-                              .argc = w->request->argc,
-                              .argv = w->request->argv,
-                              .stop_requested = w->request->stop_requested,
-                              .unsettled = &p->store};
+    hf_run_request request = {
+        .input = {.case_path = w->request->study->base, .set = overrides.set, .n_set = overrides.n_set},
+        .output = {.path = file,
+                   .no_file = !hf_study_has_files(w->request->study),
+                   .restart = w->state[i] == HF_POINT_FAILED || is_empty,
+                   .argc = w->request->argc,
+                   .argv = w->request->argv,
+                   .unsettled = &p->store},
+        .control = {.threads = w->request->threads, .stop_requested = w->request->stop_requested},
+        .part = {.of_sweep = true}};
     p->status = hf_run_case(&request, &p->summary, output, &p->said);
     if (p->store)
         hf_later_do(settle_point, p);

@@ -16,7 +16,7 @@
 #include "base/clock.h"
 #include "base/sha256.h"
 #include "net/cable_pick.h"
-#include "run/load_case_stage.h"
+#include "run/stages.h"
 #include "store/samples.h"
 #include "store/store_tolerance.h"
 #include <hifdm/metrics.h>
@@ -211,9 +211,9 @@ hf_status hf_tolerance_stage_look(const hf_run_request *q, const hf_problem *p, 
                                   hf_messages *messages)
 {
     char of_case[65];
-    if (!p->settings.has_tolerance || q->restart || q->of_sweep) return HF_OK;
+    if (!p->settings.has_tolerance || q->output.restart || q->part.of_sweep) return HF_OK;
     if (identify_case(p, of_case) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
-    return hf_samples_look(output, q->tasks > 0 ? q->task : -1, q->tasks, of_case, messages);
+    return hf_samples_look(output, q->part.tasks > 0 ? q->part.task : -1, q->part.tasks, of_case, messages);
 }
 
 /* ---- samples ---- */
@@ -236,16 +236,15 @@ static void job_free(job *j)
 
 static bool is_mine(const hf_run_request *q, int chunk)
 {
-    return q->task < 0 || q->tasks <= 0 || chunk % q->tasks == q->task;
+    return q->part.task < 0 || q->part.tasks <= 0 || chunk % q->part.tasks == q->part.task;
 }
 
 /* Passes the progress of this phase to the observer, if there is one. No design is evaluated here. */
 static void report(const job *j, hf_run_progress now)
 {
-    const hf_run_request *q = j->stage->request;
     now.phase = HF_RUN_TOLERANCE;
     now.best_psi_m = now.merit = NAN;
-    if (q->observer) q->observer(q->observer_context, &now);
+    hf_run_report(&j->stage->request->control, now);
 }
 
 static void report_samples(const job *j, long n_new, bool is_last)
@@ -296,13 +295,14 @@ static hf_status open_samples(job *j, hf_messages *messages)
     const hf_run_request *q = stage->request;
     char identity[65];
     bool is_task = hf_tolerance_stage_is_task(q);
-    const char *output = *stage->output && !q->of_sweep ? stage->output : NULL; /* points of a sweep begin anew */
+    const char *output = *stage->output && !q->part.of_sweep ? stage->output : NULL; /* points of a sweep begin anew */
     if (identify(p, &j->built, identity) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
     const char *beside = *stage->output ? stage->output : NULL;
-    HF_TRY(hf_samples_open(output, beside, q->task, is_task ? q->tasks : 0, identity, q->restart,
+    HF_TRY(hf_samples_open(output, beside, q->part.task, is_task ? q->part.tasks : 0, identity, q->output.restart,
                            p->settings.tolerance.samples, j->montecarlo.n_chunk, &j->samples, messages));
-    j->samples.stop = q->stop_requested;
-    if (output && q->tasks > 0 && !is_task) HF_TRY(hf_samples_collect(&j->samples, output, q->tasks, q->restart));
+    j->samples.stop = q->control.stop_requested;
+    if (output && q->part.tasks > 0 && !is_task)
+        HF_TRY(hf_samples_collect(&j->samples, output, q->part.tasks, q->output.restart));
     return HF_OK;
 }
 
@@ -321,8 +321,8 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
         hf_built_heat heat = {t->sigma_temperature_K > 0 ? material.expansion_per_K : NULL,
                               t->n_truss ? by_heat : NULL};
         if (status == HF_OK)
-            status = hf_montecarlo_create(t, &j->built, &p->surface, &p->facets, &heat, j->stage->request->threads,
-                                          &j->montecarlo);
+            status = hf_montecarlo_create(t, &j->built, &p->surface, &p->facets, &heat,
+                                          j->stage->request->control.threads, &j->montecarlo);
         if (status == HF_NO_MEMORY) hf_error(messages, status, "tolerance: out of memory");
         if (status == HF_SINGULAR)
             hf_error(messages, status,
@@ -497,7 +497,7 @@ static hf_status try_scale(job *j, double most_s, hf_tolerance_trial *trial)
 hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape, double most_s,
                                  hf_tolerance_trial *trial)
 {
-    const hf_run_request request = {.threads = 1};
+    const hf_run_request request = {.control.threads = 1};
     const hf_tolerance_stage stage = {&request, p, shape, "", NULL};
     job j = {.stage = &stage, .begin_s = hf_clock_thread_cpu_s()};
     hf_messages messages = {0};
@@ -520,7 +520,7 @@ static hf_status work_off_stage(job *j, hf_summary *summary, hf_messages *messag
     char place[HF_PATH_SIZE + 128];
     place_section(&p->settings, place, sizeof place);
     HF_TRY(hf_built_make(place, &p->scene, &p->model, &p->settings.form, j->stage->shape, &j->built, messages));
-    j->built.stop = j->stage->request->stop_requested;
+    j->built.stop = j->stage->request->control.stop_requested;
     /* before the first sample: the first order takes a while in large nets */
     report(j, (hf_run_progress){.samples_all = p->settings.tolerance.samples});
     HF_TRY(open_montecarlo(j, messages));
@@ -541,5 +541,5 @@ hf_status hf_tolerance_stage_run(const hf_tolerance_stage *stage, hf_summary *su
 
 void hf_tolerance_stage_end(const hf_run_request *q, const char *output)
 {
-    if (*output && !q->of_sweep) hf_samples_remove(output);
+    if (*output && !q->part.of_sweep) hf_samples_remove(output);
 }

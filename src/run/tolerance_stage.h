@@ -18,7 +18,7 @@ typedef struct {
 /* Returns true if the request is one task of several. Such a task finds samples and writes no result. */
 static inline bool hf_tolerance_stage_is_task(const hf_run_request *request)
 {
-    return request->tasks > 0 && request->task >= 0;
+    return request->part.tasks > 0 && request->part.task >= 0;
 }
 
 /* Removes the journals next to a finished result, which are not needed any more. */

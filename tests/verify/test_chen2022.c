@@ -13,7 +13,8 @@ static void run(const char *path, const char *const *set, int n_set, hf_summary 
 {
     char output[HF_OUTPUT_SIZE];
     hf_messages said = {0};
-    hf_run_request request = {.case_path = path, .set = set, .n_set = n_set, .no_file = true, .threads = 1};
+    hf_run_request request = {
+        .input = {path, .set = set, .n_set = n_set}, .output.no_file = true, .control.threads = 1};
     hf_summary_free(s); /* of the run before */
     ck_assert_msg(hf_run_case(&request, s, output, &said) == HF_OK, "%s", said.text);
     ck_assert_str_eq(s->warnings, ""); /* well-posed */

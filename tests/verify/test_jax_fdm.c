@@ -86,7 +86,7 @@ START_TEST(it_ends_no_later_than_the_page)
     static const char *const set[] = {"optimize.refine_steps=19"};
     hf_messages said = {0};
     hf_run_request request = {
-        .case_path = written_case(), .set = set, .n_set = _i ? 0 : 1, .no_file = true, .threads = 2};
+        .input = {written_case(), .set = set, .n_set = _i ? 0 : 1}, .output.no_file = true, .control.threads = 2};
     ck_assert_msg(hf_run_case(&request, &s, output, &said) == HF_OK, "%s", said.text);
     double loss = s.stage[HF_STAGE_REFINE].result.merit * s.stage[HF_STAGE_REFINE].result.merit;
     ck_assert_double_le(loss, _i ? 0.000712 : 0.000804);

@@ -170,7 +170,8 @@ void bench_whole(const char *path, const char *folder)
     hf_store_quiet();
     for (int stores = 0; stores < 2; stores++) {
         hf_messages messages = {0};
-        hf_run_request request = {.case_path = path, .output = wanted, .threads = 2, .no_file = !stores};
+        hf_run_request request = {
+            .input.case_path = path, .output = {.path = wanted, .no_file = !stores}, .control.threads = 2};
         double start_s = bench_clock_s();
         hf_status status = hf_run_case(&request, &summary, output, &messages);
         double wall_s = bench_clock_s() - start_s;

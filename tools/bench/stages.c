@@ -139,8 +139,9 @@ void bench_stages(const char *name, const char *folder, const char *path, const 
     static hf_summary summary;
     hf_messages messages = {0};
     snprintf(wanted, sizeof wanted, "%s/stages.h5", folder);
-    hf_run_request request = {
-        .case_path = path, .set = overrides, .n_set = n_override, .output = wanted, .restart = 1, .threads = 1};
+    hf_run_request request = {.input = {path, .set = overrides, .n_set = n_override},
+                              .output = {.path = wanted, .restart = true},
+                              .control.threads = 1};
     hf_store_quiet();
     double bytes_at_first = heap_bytes(), start_s = bench_clock_s();
     watching = 1;

@@ -54,11 +54,9 @@ static hf_summary *run_bowl(const char *rows, const char *more)
     hf_messages said = {0};
     snprintf(variables, sizeof variables, "optimize.variables=%s", rows);
     const char *const set[] = {"scene.paraboloid.rings=3", "optimize.method=lm", variables, more};
-    hf_run_request request = {.case_path = source_path("configs/paraboloid-6m.yaml"),
-                              .set = set,
-                              .n_set = more ? 4 : 3,
-                              .no_file = true,
-                              .threads = 1};
+    hf_run_request request = {.input = {source_path("configs/paraboloid-6m.yaml"), .set = set, .n_set = more ? 4 : 3},
+                              .output.no_file = true,
+                              .control.threads = 1};
     hf_summary_free(&s); /* of the run before */
     ck_assert_msg(hf_run_case(&request, &s, output, &said) == HF_OK, "%s", said.text);
     hf_messages_free(&said);

@@ -56,7 +56,7 @@ START_TEST(opening_gives_what_a_run_finds)
     hf_messages said = {0};
     hf_problem p;
     hf_run_request request = {
-        .case_path = source_path(cases[_i]), .set = set, .n_set = 2, .no_file = true, .threads = 2};
+        .input = {source_path(cases[_i]), .set = set, .n_set = 2}, .output.no_file = true, .control.threads = 2};
     ck_assert_msg(hf_run_case(&request, &s, output, &said) == HF_OK, "%s", said.text);
     ck_assert_msg(hf_problem_open(source_path(cases[_i]), set, 2, 2, &p, &said) == HF_OK, "%s", said.text);
     ck_assert_mem_eq(&p.form.psi_m, &s.stage[HF_STAGE_FORM].result.psi_m, sizeof(double));

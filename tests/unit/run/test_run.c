@@ -46,11 +46,9 @@ START_TEST(an_observer_is_told_each_phase)
     char output[HF_OUTPUT_SIZE];
     hf_messages messages = {0};
     write_file(temp_path("case.yaml"), case_text);
-    hf_run_request request = {.case_path = temp_path("case.yaml"),
-                              .no_file = true,
-                              .threads = 2,
-                              .observer = observe,
-                              .observer_context = &t};
+    hf_run_request request = {.input.case_path = temp_path("case.yaml"),
+                              .output.no_file = true,
+                              .control = {.threads = 2, .observer = observe, .observer_context = &t}};
     hf_status status = hf_run_case(&request, &s, output, &messages);
     ck_assert_msg(status == HF_OK, "%s", messages.text ? messages.text : "no message");
     const hf_run_progress *search = &t.last[HF_RUN_SEARCH], *refine = &t.last[HF_RUN_REFINE],

@@ -1,0 +1,190 @@
+/* Finds the front of the objectives (METHOD section 7, fronts).
+ *
+ *     last generation, or the initial design
+ *         | Levenberg-Marquardt, if the method ends with it: hf_front_refine_find, points between the ends
+ *         v
+ *     front -> summary, store; if it fails, the earlier front stays, with a warning */
+#include "run/stages.h"
+
+#include "base/clock.h"
+#include "run/problem_parts.h"
+#include "search/front_refine.h"
+#include "search/pareto.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- messages ---- */
+
+/* Warns about points that stopped at the maximum number of steps. Points that stalled would gain nothing from more
+ * steps. */
+static void warn_of_front_steps(const hf_front *front, int max_iterations, hf_messages *messages)
+{
+    int n = 0;
+    for (int i = 0; i < front->n_point; i++) {
+        const hf_front_point *p = &front->point[i];
+        n += p->status == HF_OK && !p->is_converged && p->steps >= max_iterations;
+    }
+    if (n > 0)
+        hf_warning(
+            messages,
+            "optimize.front: %d of %d points of the front are not converged after %d steps: they have no slope, and "
+            "better designs exist near them; raise optimize.refine_steps",
+            n, front->n_point, max_iterations);
+}
+
+/* Writes why Levenberg-Marquardt has found no front. */
+static void explain_no_front(const hf_problem *p, hf_status status, int end, char text[HF_NO_DESIGN_SIZE])
+{
+    char name[HF_OBJECTIVE_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE];
+    const char *why = hf_status_text(status);
+    const size_t size = HF_NO_DESIGN_SIZE;
+    hf_no_design_cap(p, p->form.boundary_tension_ratio, hint);
+    if (!hf_front_refine_applies(&p->evaluator)) {
+        snprintf(text, size, HF_PROBLEM_REFINE_NEEDS, hf_problem_no_slopes(p));
+        return;
+    }
+    if (status == HF_OUT_OF_LIMITS)
+        why = p->settings.optimize.n_limit > 0 ? "it did not reach optimize.limits from its start"
+                                               : "it did not reach the bounds of optimize.variables from its start";
+    if (end >= 0)
+        snprintf(text, size,
+                 "optimize.front.%d: Levenberg-Marquardt found no design with the minimum %s, which is an end of the "
+                 "front: %s%s",
+                 end, hf_objectives_name(p->evaluator.objectives, end, name), why, hint);
+    else
+        snprintf(text, size, "optimize.front: Levenberg-Marquardt found no front: %s%s", why, hint);
+}
+
+/* Writes the table of the front into the summary, warns about points that failed, and stores the front. wall_s is the
+ * time that it took, s. */
+static hf_status keep_front(hf_run *r, double wall_s, hf_summary *s, hf_messages *messages)
+{
+    hf_front *front = &r->front;
+    memcpy(front->initial, s->stage[HF_STAGE_FORM].result.objective, sizeof front->initial);
+    if (!s->front) s->front = calloc(1, sizeof *s->front);
+    if (!s->front) return hf_error(messages, HF_NO_MEMORY, "out of memory for the front");
+    hf_front_tabulate(front, s->front);
+    s->front->wall_s = wall_s;
+    if (s->front->n_failed > 0) {
+        hf_status first = front->point[front->n_point - s->front->n_failed].status;
+        hf_warning(messages, "optimize.front: %d of %d points of the front failed; the first reason: %s",
+                   s->front->n_failed, front->n_point,
+                   first == HF_OUT_OF_LIMITS ? "the refinement did not reach its limits from the neighbouring points"
+                                             : hf_status_text(first));
+    }
+    return hf_store_front(r->store, &r->problem.scene, &r->problem.model, s, front, messages);
+}
+
+/* ---- Levenberg-Marquardt ---- */
+
+/* Returns the designs of the earlier front within the bounds, or else the initial design: [n][n_variable], n at least
+ * 1. The caller frees them. Returns NULL if there is no memory. */
+static double *make_starts(const hf_problem *p, const hf_population *bounds, const hf_front *earlier, int *n)
+{
+    int n_variable = p->model.n_variable;
+    double *start = malloc((size_t)(earlier->n_point + 1) * (size_t)n_variable * sizeof *start);
+    *n = 0;
+    for (int i = 0; i <= earlier->n_point && start; i++) {
+        const double *design = i < earlier->n_point ? earlier->design + (size_t)i * (size_t)n_variable : p->initial;
+        bool is_wanted = i < earlier->n_point ? earlier->point[i].mark == HF_FRONT_ON : *n == 0;
+        for (int k = 0; k < n_variable && is_wanted; k++)
+            start[(size_t)*n * (size_t)n_variable + (size_t)k] = hf_population_clamp(bounds, k, design[k]);
+        *n += is_wanted;
+    }
+    return start;
+}
+
+/* The search for a front, as its observer needs it. */
+typedef struct {
+    const hf_run_control *control;
+    double start_s;
+    int n_point; /* maximum number of points */
+} front_progress;
+
+static void tell_front(const front_progress *q, int n_point, long n_step, bool is_last)
+{
+    hf_run_report(q->control, (hf_run_progress){.phase = HF_RUN_REFINE,
+                                                .is_last = is_last,
+                                                .best_psi_m = (double)NAN,
+                                                .elapsed_s = hf_clock_s() - q->start_s,
+                                                .merit = (double)NAN,
+                                                .points = n_point,
+                                                .points_all = q->n_point,
+                                                .steps = n_step});
+}
+
+static void tell_front_step(void *context, int n_point, long n_step)
+{
+    tell_front(context, n_point, n_step, false);
+}
+
+/* Finds a front and makes it r->front. The search starts from the designs of the earlier front, or else from the
+ * initial design. *end is the end of the front without a design, or -1. Returns the status of the search; the earlier
+ * front stays if it fails. */
+static hf_status search_front(hf_run *r, int *end)
+{
+    hf_problem *p = &r->problem;
+    const hf_optimize_settings *o = &p->settings.optimize;
+    const hf_population *bounds = &r->optimiser.population;
+    const hf_run_control *control = &r->request->control;
+    front_progress progress = {control, hf_clock_s(), o->front_points};
+    hf_front_refine_watcher watcher = {.tell = tell_front_step, .context = &progress, .is_telling = ATOMIC_FLAG_INIT};
+    hf_front_refine task = {.evaluator = &p->evaluator,
+                            .lower = bounds->lower,
+                            .upper = bounds->upper,
+                            .n_point = o->front_points,
+                            .max_iterations = o->refine_steps,
+                            .n_thread = p->batch.n_thread,
+                            .stop = control->stop_requested,
+                            .watcher = control->observer ? &watcher : NULL};
+    hf_front found = {0};
+    double *start = make_starts(p, bounds, &r->front, &task.n_start);
+    task.start = start;
+    tell_front(&progress, 0, 0, false);
+    hf_status status = HF_NO_MEMORY;
+    if (start) status = hf_front_refine_applies(&p->evaluator) ? hf_front_refine_find(&task, &found, end) : HF_BAD_CASE;
+    free(start);
+    if (hf_run_must_stop(r)) status = HF_INTERRUPTED;
+    hf_front_free(status == HF_OK ? &r->front : &found);
+    if (status != HF_OK) return status;
+    r->front = found;
+    tell_front(&progress, found.n_point, watcher.n_step, true);
+    return HF_OK;
+}
+
+/* ---- the stage ---- */
+
+/* Finds the front by Levenberg-Marquardt and keeps it. */
+static hf_status refine_front(hf_run *r, hf_summary *s, hf_messages *messages)
+{
+    char why[HF_NO_DESIGN_SIZE];
+    int end = -1;
+    bool has_earlier = r->front.n_point > 0;
+    double begin_s = hf_clock_s();
+    hf_status status = search_front(r, &end);
+    double took_s = hf_clock_s() - begin_s;
+    if (status == HF_INTERRUPTED)
+        snprintf(r->stopped_at, sizeof r->stopped_at,
+                 " in the refinement of the front, which restarts and repeats %.0f s", took_s);
+    if (status == HF_INTERRUPTED) return status;
+    if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the front");
+    if (status == HF_OK) {
+        HF_TRY(keep_front(r, took_s, s, messages));
+        warn_of_front_steps(&r->front, r->problem.settings.optimize.refine_steps, messages);
+        return HF_OK;
+    }
+    explain_no_front(&r->problem, status, end, why);
+    if (!has_earlier) return hf_error(messages, status == HF_BAD_CASE ? status : HF_NO_FEASIBLE, "%s", why);
+    hf_warning(messages, "%s; the front is that of the last generation", why);
+    return keep_front(r, s->stage[HF_STAGE_SEARCH].wall_s, s, messages);
+}
+
+hf_status hf_stage_front(hf_run *r, hf_summary *s, hf_messages *messages)
+{
+    if (r->plan.kind && hf_pareto_front(&r->optimiser.population, &r->front) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the front");
+    if (r->plan.ends_with_refine) return refine_front(r, s, messages);
+    return keep_front(r, s->stage[HF_STAGE_SEARCH].wall_s, s, messages);
+}

@@ -1,0 +1,235 @@
+/* Measures the shape of a stage: its sets, its limits, its surface and its far field; makes it the result.
+ *
+ *     shape in the workspace
+ *         | tensions of the named sets, limits that a design reaches
+ *         | section surface: surface and facets, then the far field, with warnings
+ *         v
+ *     summary of this stage */
+#include "run/stages.h"
+
+#include "search/parallel.h"
+#include "solve/coupling.h"
+#include "solve/limits.h"
+#include "surface/facet_mesh.h"
+#include <hifdm/metrics.h>
+#include <hifdm/pattern.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- far field ---- */
+
+/* Computes the far field of one shape (METHOD section 13).
+ *
+ *     positions and tensions -> facets, with the sags of the mesh
+ *     feed of the net at the target positions
+ *         | each frequency: integral over the facets, by all threads
+ *         v
+ *     table of co and cross components -> store
+ *     gain, width and sidelobes of each cut -> summary */
+
+/* Computes the far field at frequency i into its part of the table. Returns HF_OK, HF_NO_MEMORY or HF_INTERRUPTED. */
+static hf_status solve_frequency(const hf_run *r, const hf_pattern_surface *surface, const hf_feed *feed, int i,
+                                 hf_pattern_table *t)
+{
+    hf_far_field pattern;
+    const hf_run_control *control = &r->request->control;
+    const int n_thread = control->threads > 0 ? control->threads : hf_parallel_cores();
+    const size_t at = (size_t)i * (size_t)(t->n_cut * t->n_theta);
+    hf_status status =
+        hf_pattern_create(&r->problem.surface.pattern, surface, feed, t->frequency_Hz[i], n_thread, &pattern);
+    pattern.stop = control->stop_requested;
+    if (status == HF_OK) {
+        hf_parallel_each(n_thread, HF_PATTERN_BLOCKS, hf_pattern_sum_block, &pattern);
+        if (hf_run_must_stop(r)) status = HF_INTERRUPTED;
+    }
+    if (status == HF_OK) hf_pattern_finish(&pattern, t->co_dBi + at, t->cross_dBi + at);
+    hf_pattern_free(&pattern);
+    return status;
+}
+
+/* Warns about cuts without width and sidelobes. The message gives the number of these cuts and the reason for the first
+ * one. */
+static void doubt_pattern(const hf_pattern_settings *s, const hf_pattern_summary *to, hf_stage stage,
+                          hf_messages *messages)
+{
+    int n = 0, first = -1, n_all = to->n_frequency * to->n_cut;
+    for (int k = 0; k < n_all; k++)
+        if (to->figure[k].doubt && n++ == 0) first = k;
+    if (n == 0) return;
+    double GHz = to->frequency_Hz[first / to->n_cut] / 1e9, phi_deg = to->phi_deg[first % to->n_cut];
+    if (to->figure[first].doubt == HF_CUT_AT_END)
+        hf_warning(messages,
+                   "surface.pattern: in %d of %d cuts of stage %s, such as phi %g deg at %g GHz, the maximum gain is "
+                   "at the end "
+                   "of theta_deg: the beam may be outside, and its width and sidelobes are unknown; widen theta_deg",
+                   n, n_all, hf_stage_word[stage], phi_deg, GHz);
+    else
+        hf_warning(messages,
+                   "surface.pattern: in %d of %d cuts of stage %s, such as phi %g deg at %g GHz, steps of %.3g deg are "
+                   "coarse: fewer than %g steps are within the width of the beam. Its maximum may be missed, and width "
+                   "and sidelobes are unknown; raise n_theta, or narrow theta_deg",
+                   n, n_all, hf_stage_word[stage], phi_deg, GHz, (s->theta_deg[1] - s->theta_deg[0]) / (s->n_theta - 1),
+                   HF_PATTERN_WIDTH_STEPS);
+}
+
+static void sum_up_pattern(const hf_pattern_settings *s, const hf_pattern_table *t, const hf_feed *feed,
+                           hf_pattern_summary *to)
+{
+    *to = (hf_pattern_summary){.n_frequency = t->n_frequency, .n_cut = t->n_cut, .feed = *feed};
+    memcpy(to->frequency_Hz, t->frequency_Hz, (size_t)t->n_frequency * sizeof(double));
+    memcpy(to->phi_deg, t->phi_deg, (size_t)t->n_cut * sizeof(double));
+    for (int k = 0; k < t->n_frequency * t->n_cut; k++)
+        to->figure[k] = hf_pattern_figures(t->n_theta, s->theta_deg, t->co_dBi + (size_t)k * (size_t)t->n_theta);
+}
+
+static hf_status solve_pattern(const hf_run *r, const hf_pattern_surface *surface, hf_pattern_table *t,
+                               hf_pattern_summary *to)
+{
+    const hf_problem *p = &r->problem;
+    const hf_pattern_settings *s = &p->surface.pattern;
+    const hf_double_list *frequencies = &p->surface.frequencies_Hz;
+    hf_feed feed;
+    HF_TRY(hf_pattern_table_create(frequencies->n, s->phi_deg.n, s->n_theta, t));
+    memcpy(t->frequency_Hz, frequencies->value, (size_t)frequencies->n * sizeof(double));
+    memcpy(t->phi_deg, s->phi_deg.value, (size_t)s->phi_deg.n * sizeof(double));
+    for (int i = 0; i < s->n_theta; i++)
+        t->theta_deg[i] = s->theta_deg[0] + (s->theta_deg[1] - s->theta_deg[0]) * i / (s->n_theta - 1);
+    hf_feed_make(&p->surface, &p->facets, p->scene.position_m, &feed);
+    for (int i = 0; i < frequencies->n; i++)
+        HF_TRY(solve_frequency(r, surface, &feed, i, t));
+    sum_up_pattern(s, t, &feed, to);
+    return HF_OK;
+}
+
+/* Computes, judges and stores the far field of a case that asks for it. */
+static hf_status measure_pattern(hf_run *r, hf_stage stage, const hf_workspace *w, hf_summary *summary,
+                                 hf_messages *messages)
+{
+    const hf_problem *p = &r->problem;
+    hf_arena arena = {0}, sags = {0};
+    hf_facet_shape shape;
+    hf_pattern_table table = {0};
+    hf_pattern_summary *to = summary->stage[stage].pattern;
+    double pull_ratio = 0, mesh_N_per_m = p->surface.mesh_tension_N_per_m, *sag_m = NULL;
+    if (!p->surface.has_pattern) return HF_OK;
+    if (!to) to = summary->stage[stage].pattern = calloc(1, sizeof *to);
+    if (!to) return hf_error(messages, HF_NO_MEMORY, "out of memory for the far field");
+    hf_status status = hf_facet_shape_take(&p->model, w->position_m, w->tension_N, &shape, &arena);
+    if (status == HF_OK && mesh_N_per_m > 0)
+        status = hf_facet_mesh_make_sags(mesh_N_per_m, &p->facets, &shape, &sags, &sag_m, &pull_ratio);
+    if (status == HF_OK && pull_ratio <= HF_FACET_PULL_MOST) {
+        const hf_pattern_surface surface = {&p->facets, shape.position_m, sag_m};
+        status = solve_pattern(r, &surface, &table, to);
+    }
+    if (status == HF_OK && table.block) doubt_pattern(&p->surface.pattern, to, stage, messages);
+    if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the far field");
+    if (status == HF_OK && table.block) status = hf_store_pattern(r->store, stage, &table, to, messages);
+    hf_pattern_table_free(&table);
+    hf_arena_free(&sags);
+    hf_arena_free(&arena);
+    return status;
+}
+
+/* ---- measures ---- */
+
+#define MESH_PULL_DOUBT 0.3 /* N l / T above which the figures of the facets cause a warning */
+
+/* Sets the minimum and maximum tension and their ratio for the named sets of cables, up to HF_SUMMARY_SETS of them. */
+static hf_status measure_sets(const hf_problem *p, const hf_workspace *w, hf_stage_summary *s)
+{
+    const hf_scene *scene = &p->scene;
+    if (scene->n_set == 0) return HF_OK;
+    if (!s->sets) s->sets = calloc(1, sizeof *s->sets);
+    hf_set_tensions *to = s->sets;
+    if (!to) return HF_NO_MEMORY;
+    to->n = scene->n_set < HF_SUMMARY_SETS ? scene->n_set : HF_SUMMARY_SETS;
+    for (int k = 0; k < to->n; k++) {
+        const int *cable = scene->set_cable + scene->set_start[k];
+        int n = scene->set_start[k + 1] - scene->set_start[k];
+        snprintf(to->name[k], sizeof to->name[k], "%s", scene->set_name[k]);
+        to->min_N[k] = INFINITY;
+        to->max_N[k] = -INFINITY;
+        for (int i = 0; i < n; i++) {
+            to->min_N[k] = fmin(to->min_N[k], w->tension_N[cable[i]]);
+            to->max_N[k] = fmax(to->max_N[k], w->tension_N[cable[i]]);
+        }
+        to->ratio[k] = hf_metrics_set_ratio(&p->model, w, n, cable);
+    }
+    return HF_OK;
+}
+
+/* Notes which limits a design reaches. */
+static hf_status measure_limits(const hf_problem *p, const hf_workspace *w, hf_stage_summary *s)
+{
+    hf_limit_held held[HF_LIMITS_HELD];
+    int n = hf_limits_held(&p->evaluator, w, held);
+    if (s->held) s->held->n = 0;
+    if (n == 0) return HF_OK;
+    if (!s->held) s->held = calloc(1, sizeof *s->held);
+    hf_held_limits *to = s->held;
+    if (!to) return HF_NO_MEMORY;
+    to->n = n;
+    for (int i = 0; i < to->n; i++) {
+        to->row[i] = held[i].row;
+        to->count[i] = held[i].n;
+        to->value[i] = held[i].value;
+        to->bound[i] = held[i].bound;
+        hf_limits_name(&p->scene, &p->model, &held[i], to->name[i], sizeof to->name[i]);
+    }
+    return HF_OK;
+}
+
+hf_status hf_stage_measure(hf_run *r, hf_stage stage, const hf_workspace *w, hf_summary *s, hf_messages *messages)
+{
+    const hf_problem *p = &r->problem;
+    char words[64];
+    hf_surface_measures *measures = &s->stage[stage].surface;
+    if (measure_sets(p, w, &s->stage[stage]) != HF_OK ||
+        (stage != HF_STAGE_FORM && measure_limits(p, w, &s->stage[stage]) != HF_OK))
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of a shape");
+    if (!p->settings.has_surface) return HF_OK;
+    if (hf_surface_measure(&p->surface, &p->facets, &p->model, w->position_m, w->tension_N, measures) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
+    if (isnan(hf_metrics_psi_m(&p->model, w))) hf_surface_blank(measures);
+    const hf_surface_fit *fit = &measures->fit;
+    if (measures->mesh_pull_ratio > MESH_PULL_DOUBT)
+        hf_warning(messages,
+                   "surface: in the shape of stage %s the mesh pulls on %s; the pillows are computed to first order in "
+                   "N l / tension%s. Raise the tensions of the cables, or lower surface.mesh_tension_N_per_m",
+                   hf_stage_word[stage], hf_facet_mesh_pull_words(measures->mesh_pull_ratio, words),
+                   measures->mesh_pull_ratio <= HF_FACET_PULL_MOST ? ""
+                   : p->surface.has_pattern ? ", so the facets have neither errors nor a far field"
+                                            : ", so the facets have no errors");
+    if (!fit->converged)
+        hf_warning(messages,
+                   "surface: the best fit to the shape of stage %s did not converge in %d steps, so it has no value",
+                   hf_stage_word[stage], fit->iterations);
+    hf_status status = measure_pattern(r, stage, w, s, messages);
+    if (status == HF_INTERRUPTED)
+        hf_warning(messages, "surface.pattern: interrupted: the shape of stage %s has no far field",
+                   hf_stage_word[stage]);
+    return status;
+}
+
+/* ---- the result ---- */
+
+/* Sets r->truss to the forces and displacements of the truss, if there is one, under the net of this shape. */
+static hf_status load_truss(hf_run *r, hf_workspace *w, hf_messages *messages)
+{
+    const hf_problem *p = &r->problem;
+    if (!p->settings.has_truss) return HF_OK;
+    hf_carrier_state_free(&r->truss);
+    hf_coupling_forces(&p->model, w);
+    hf_status status = hf_carrier_load(&p->carrier, w->attachment_force_N, &r->truss);
+    return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the forces in the truss");
+}
+
+hf_status hf_stage_take(hf_run *r, hf_workspace *w, hf_messages *messages)
+{
+    HF_TRY(load_truss(r, w, messages));
+    r->shape = w;
+    return r->problem.load_cases.n ? hf_load_case_stage_take(&r->problem, w, &r->cases, messages) : HF_OK;
+}

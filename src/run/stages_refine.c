@@ -1,0 +1,200 @@
+/* Refines a design by Levenberg-Marquardt, or takes a point of an earlier front as the design.
+ *
+ *     best design so far, and the state of an earlier session in the store, if there is one
+ *         |
+ *         v
+ *     hf_refine_run; after each step: store its state, publish the file, notify the observer, check the stop flag
+ *         |
+ *         v
+ *     refined design, with a warning if it has not converged: shape, measures, store */
+#include "run/stages.h"
+
+#include "base/clock.h"
+#include "run/problem_parts.h"
+#include "search/refine.h"
+#include "solve/certificate.h"
+
+#include <math.h>
+
+#define PUBLISH_AFTER_S 1.0 /* a shorter refinement publishes no file between steps */
+#define LATELY 10           /* steps whose gain a warning about convergence reports */
+
+/* ---- the design ---- */
+
+/* Evaluates the design of the stage for its shape. Returns HF_OK, whatever the status of the design is, or
+ * HF_INTERRUPTED. */
+static hf_status evaluate_design(hf_run *r, const double *design, hf_summary *s)
+{
+    hf_evaluate(&r->problem.evaluator, design, &r->problem.workspace, &s->stage[HF_STAGE_REFINE].result);
+    return hf_run_must_stop(r) ? HF_INTERRUPTED : HF_OK;
+}
+
+/* Completes and stores the stage: its result is that of this design, and the workspace holds its shape. */
+static hf_status keep_design(hf_run *r, const double *design, hf_summary *s, hf_messages *messages)
+{
+    hf_workspace *w = &r->problem.workspace;
+    hf_certify(&r->problem.model, w, &s->stage[HF_STAGE_REFINE].result);
+    s->stage[HF_STAGE_REFINE].exists = true;
+    HF_TRY(hf_stage_measure(r, HF_STAGE_REFINE, w, s, messages));
+    if (s->refine.is_result) HF_TRY(hf_stage_take(r, w, messages));
+    return hf_store_shape(r->store, HF_STAGE_REFINE, &r->problem.model, w, design, messages);
+}
+
+hf_status hf_stage_point(hf_run *r, hf_summary *s, hf_messages *messages)
+{
+    const hf_population *p = &r->optimiser.population;
+    const double *design = r->taken.design;
+    hf_stage_summary *to = &s->stage[HF_STAGE_REFINE];
+    double start_s = hf_clock_s();
+    HF_TRY(evaluate_design(r, design, s));
+    HF_TRY(hf_take_point_check(&r->problem, &r->taken, p, &to->result, messages));
+    hf_problem_warn(&r->problem, "point's", &r->problem.workspace, &to->result, messages);
+    to->wall_s = hf_clock_s() - start_s;
+    s->refine.is_result = true;
+    s->refine.evaluations = 1;
+    s->refine.algorithm_stop = HF_REFINE_TAKEN;
+    hf_stage_count_at_bounds(p, design, &s->refine.n_at_lower, &s->refine.n_at_upper);
+    return keep_design(r, design, s, messages);
+}
+
+/* ---- steps ---- */
+
+/* The steps of this session. */
+typedef struct {
+    hf_run *run;
+    const hf_summary *summary;
+    hf_messages *messages;
+    double begin_s, earlier_s;         /* start of this session, and duration of earlier ones, s */
+    int first_iteration, n_evaluation; /* first step of this session; evaluations of earlier ones */
+    double merit[LATELY + 1];          /* merits of the last steps: step i in [i % (LATELY + 1)] */
+    hf_refine_progress now;
+} steps;
+
+static bool has_merit(const steps *q)
+{
+    return q->run->problem.objectives.n_objective > 0;
+}
+
+static void tell_step(const steps *q)
+{
+    const hf_refine_progress *now = &q->now;
+    hf_run_report(&q->run->request->control, (hf_run_progress){.phase = HF_RUN_REFINE,
+                                                               .step = now->iterations,
+                                                               .max_steps = now->max_iterations,
+                                                               .first_step = q->first_iteration,
+                                                               .is_last = now->is_last,
+                                                               .evaluations = now->evaluations - q->n_evaluation,
+                                                               .best_psi_m = now->psi_m,
+                                                               .merit = has_merit(q) ? now->merit : (double)NAN,
+                                                               .elapsed_s = hf_clock_s() - q->begin_s});
+}
+
+/* Stores a step, publishes the file if the refinement takes long, then notifies the observer, which thus hears of
+ * stored steps only. Returns HF_OK, HF_INTERRUPTED, or an error of the store. */
+static hf_status between_steps(void *context, const hf_refine_progress *now)
+{
+    steps *q = context;
+    if (q->now.n_state == 0) {
+        q->first_iteration = now->iterations;
+        q->n_evaluation = now->evaluations;
+    }
+    double wall_s = q->earlier_s + hf_clock_s() - q->begin_s;
+    q->now = *now;
+    q->merit[now->iterations % (LATELY + 1)] = now->merit;
+    HF_TRY(hf_store_refine(q->run->store, wall_s, now->n_state, now->state, q->messages));
+    if (wall_s > PUBLISH_AFTER_S) HF_TRY(hf_store_publish(q->run->store, q->summary, false, q->messages));
+    tell_step(q);
+    return hf_run_must_stop(q->run) ? HF_INTERRUPTED : HF_OK;
+}
+
+/* Warns if the steps ended before convergence, because such a result looks like a converged one. */
+static void warn_of_steps(const steps *q, const hf_refine_result *r)
+{
+    int n = r->iterations - q->first_iteration < LATELY ? r->iterations - q->first_iteration : LATELY;
+    double before = q->merit[(r->iterations - n) % (LATELY + 1)];
+    if (r->stop != HF_REFINE_MAX_ITERATIONS) return;
+    if (n > 0 && before > 0)
+        hf_warning(q->messages,
+                   "Levenberg-Marquardt is not converged after %d steps, and the last %d lowered %s by %.2g %%: better "
+                   "designs exist near this one; raise optimize.refine_steps",
+                   r->iterations, n, has_merit(q) ? "the merit" : "psi", 100 * (1 - q->now.merit / before));
+    else
+        hf_warning(q->messages, "Levenberg-Marquardt is not converged after %d steps; raise optimize.refine_steps",
+                   r->iterations);
+}
+
+/* Notes where the refinement has stopped, for the message of an interrupted run. */
+static void note_stop(const steps *q, char stopped_at[HF_STOPPED_AT_SIZE])
+{
+    int n = snprintf(stopped_at, HF_STOPPED_AT_SIZE, " after %d steps of the refinement", q->now.iterations);
+    if (q->now.iterations == 0) return;
+    n += snprintf(stopped_at + n, HF_STOPPED_AT_SIZE - (size_t)n, ", at psi %.4f mm", q->now.psi_m * 1e3);
+    if (has_merit(q) && isfinite(q->now.merit))
+        snprintf(stopped_at + n, HF_STOPPED_AT_SIZE - (size_t)n, " and a merit of %.6g", q->now.merit);
+}
+
+/* Refines r->design within the bounds. Returns HF_INTERRUPTED if the run was told to stop; the next publication has the
+ * steps so far. Otherwise returns the status of hf_refine_run, or an error of the store. */
+static hf_status find_steps(hf_run *r, hf_summary *s, hf_refine_result *outcome, hf_messages *messages)
+{
+    hf_problem *p = &r->problem;
+    const hf_population *bounds = &r->optimiser.population;
+    steps q = {.run = r, .summary = s, .messages = messages, .begin_s = hf_clock_s()};
+    hf_refine_watcher watcher = {.after = between_steps, .context = &q};
+    hf_run_report(&r->request->control, (hf_run_progress){.phase = HF_RUN_REFINE, .best_psi_m = NAN, .merit = NAN});
+    HF_TRY(hf_store_restore_refine(r->store, &q.earlier_s, &watcher.n_state, &watcher.state, messages));
+    hf_status status = hf_refine_run(&p->evaluator, bounds->lower, bounds->upper, p->settings.optimize.refine_steps,
+                                     NULL, &watcher, r->design, &p->workspace, outcome);
+    s->stage[HF_STAGE_REFINE].wall_s = q.earlier_s + hf_clock_s() - q.begin_s;
+    note_stop(&q, r->stopped_at);
+    if (hf_run_must_stop(r)) return HF_INTERRUPTED;
+    if (status == HF_OK && r->plan.ends_with_refine) warn_of_steps(&q, outcome);
+    return status;
+}
+
+/* ---- the stage ---- */
+
+/* Returns true if a refinement is to be run: as the result, on request, or by default if it is cheap. */
+static bool wants_refine(const hf_run *r, const hf_summary *s)
+{
+    hf_refine_choice compare = r->problem.settings.optimize.refine;
+    if (r->plan.ends_with_refine || compare == HF_REFINE_TRUE) return true;
+    return compare == HF_REFINE_AUTO && hf_refine_is_cheap(&r->problem.evaluator, s->search.evaluations);
+}
+
+/* Reports that no feasible design was found. After a search this is a warning, because the run has a design. */
+static hf_status tell_no_design(hf_run *r, hf_status status, hf_messages *messages)
+{
+    char why[HF_NO_DESIGN_SIZE];
+    hf_no_design_to_refine(&r->problem, r->design, status, why);
+    if (!r->plan.kind) return hf_error(messages, HF_NO_FEASIBLE, "%s", why);
+    hf_warning(messages, "%s", why);
+    return HF_OK;
+}
+
+hf_status hf_stage_refine(hf_run *r, hf_summary *s, hf_messages *messages)
+{
+    const hf_population *bounds = &r->optimiser.population;
+    hf_refine_result outcome;
+    if (!hf_refine_applies(&r->problem.evaluator)) {
+        hf_problem_warn_of_refine(&r->problem, messages);
+        return HF_OK;
+    }
+    if (!wants_refine(r, s)) return HF_OK;
+    for (int k = 0; k < bounds->n_variable; k++) /* the initial design may violate the bounds */
+        r->design[k] = hf_population_clamp(bounds, k, r->design[k]);
+    hf_status status = find_steps(r, s, &outcome, messages);
+    if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
+    if (status == HF_INTERRUPTED || status == HF_IO || status == HF_EXISTS) return status;
+    if (status != HF_OK) return tell_no_design(r, status, messages);
+    HF_TRY(evaluate_design(r, r->design, s));
+    s->refine.is_result = r->plan.ends_with_refine;
+    s->refine.steps = outcome.iterations;
+    s->refine.evaluations = outcome.evaluations;
+    s->refine.algorithm_stop = outcome.stop;
+    s->refine.n_at_lower = outcome.n_at_lower;
+    s->refine.n_at_upper = outcome.n_at_upper;
+    s->refine.n_at_limit = outcome.n_at_limit;
+    s->refine.is_at_cap = outcome.is_at_cap;
+    return keep_design(r, r->design, s, messages);
+}
