@@ -179,7 +179,7 @@ static void print_search(const hf_summary *s, FILE *f)
         fprintf(f, ", merit %.6g, %s after form-finding", stage->result.merit,
                 hf_print_change(stage->result.merit, s->stage[HF_STAGE_FORM].result.merit).text);
     else /* initial_psi_m is evaluated under the same rule, so only the tensions differ */
-        hf_print_gained(stage->result.psi_m, s->search.initial_psi_m, f);
+        hf_print_gained(stage->result.psi_m, s->search.initial_psi_m, "for the initial design", f);
     fprintf(f, "; found in generation %d\n", s->search.best_generation);
     print_result(&stage->result, f);
     if (s->search.n_at_lower + s->search.n_at_upper > 0)

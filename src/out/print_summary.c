@@ -68,23 +68,25 @@ static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, F
           f);
 }
 
-void hf_print_gained(double psi_m, double initial_psi_m, FILE *f)
+void hf_print_gained(double psi_m, double initial_psi_m, const char *of, FILE *f)
 {
     if (!(initial_psi_m * 1e3 >= SHOWN_MM) || !isfinite(initial_psi_m)) return;
-    fprintf(f, ", %s for the initial design (%s mm)", hf_print_change(psi_m, initial_psi_m).text,
+    fprintf(f, ", %s %s (%s mm)", hf_print_change(psi_m, initial_psi_m).text, of,
             hf_print_decimals(initial_psi_m * 1e3).text);
 }
 
-/* Prints the reduction of psi from the initial design. An optimisation evaluates designs under its rule, so its initial
- * design differs from the best one only in the tensions. */
+/* Prints the reduction of psi by the optimisation. A search evaluates the initial design under its rule, so that design
+ * differs from the best one only in the tensions. Without a search only psi after form-finding is known. It may differ,
+ * for example if boundary cables keep their lengths in the form-finding. */
 static void print_gained(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_form_result *r = result_of(s, stage);
     bool is_searched = s->stage[HF_STAGE_SEARCH].exists && isfinite(s->search.initial_psi_m);
-    double initial_psi_m =
-        stage == HF_STAGE_SEARCH || is_searched ? s->search.initial_psi_m : s->stage[HF_STAGE_FORM].result.psi_m;
     if (stage == HF_STAGE_FORM || s->objectives.is_front) return;
-    hf_print_gained(r->psi_m, initial_psi_m, f);
+    if (stage == HF_STAGE_SEARCH || is_searched)
+        hf_print_gained(r->psi_m, s->search.initial_psi_m, "for the initial design", f);
+    else
+        hf_print_gained(r->psi_m, s->stage[HF_STAGE_FORM].result.psi_m, "after form-finding", f);
 }
 
 /* Prints the value of an objective, lengths in mm. */
@@ -196,7 +198,8 @@ void hf_print_answer(const hf_summary *s, FILE *f)
         fputs("no psi: no taut cable holds an inner node", f);
         return;
     } else {
-        fprintf(f, "psi %s mm (RMS position error of the inner nodes)", hf_print_decimals(r->psi_m * 1e3).text);
+        fprintf(f, "psi %s mm (RMS position error of the inner nodes)%s", hf_print_decimals(r->psi_m * 1e3).text,
+                stage == HF_STAGE_REFINE ? " after refinement" : "");
         print_gained(s, stage, f);
     }
     if (r->status == HF_OK) print_frequency(s, stage, r->psi_m, f);

@@ -25,10 +25,9 @@ void hf_print_objective(const char *before, const char *name, double value, FILE
 /* Prints a line with the merit of a result and the values of its objectives, or the objectives of a front. */
 void hf_print_objectives(const hf_summary *summary, const hf_form_result *result, FILE *file);
 
-/* Prints ", 56.9 % lower than for the initial design (19.7793 mm)", the change of psi from the initial design. That
- * is the shape of the form-finding, unless optimize.rule gives another shape for the same tensions. Prints nothing
- * without an initial design. */
-void hf_print_gained(double psi_m, double initial_psi_m, FILE *file);
+/* Prints ", 56.9 % lower than for the initial design (19.7793 mm)", the change of psi from that `of` another shape.
+ * Prints nothing if psi of that shape is unknown or too small. */
+void hf_print_gained(double psi_m, double initial_psi_m, const char *of, FILE *file);
 
 /* Prints how an iteration ended: "converged after 13 iterations", "not converged after 400 iterations". */
 void hf_print_iterations(const hf_form_result *result, FILE *file);

@@ -25,7 +25,8 @@
  * HF_INTERRUPTED. */
 static hf_status evaluate_design(hf_run *r, const double *design, hf_summary *s)
 {
-    hf_evaluate(&r->problem.evaluator, design, &r->problem.workspace, &s->stage[HF_STAGE_REFINE].result);
+    hf_evaluate(&r->problem.evaluator, design, &r->problem.workspace, &r->problem.point,
+                &s->stage[HF_STAGE_REFINE].result);
     return hf_run_must_stop(r) ? HF_INTERRUPTED : HF_OK;
 }
 

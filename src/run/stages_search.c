@@ -23,8 +23,8 @@ hf_status hf_stage_begin(hf_run *r, hf_summary *s, hf_messages *messages)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the target positions");
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_reach_check(p, messages));
-    if (p->objectives.n_objective && hf_objectives_measure(&p->objectives, &p->workspace, p->workspace.objectives,
-                                                           form->objective, &form->merit) != HF_OK)
+    if (p->objectives.n_objective &&
+        hf_objectives_measure(&p->objectives, &p->workspace, &p->point, form->objective, &form->merit) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the objectives");
     HF_TRY(hf_store_restore_initial(r->store, p->model.n_variable, p->initial, messages));
     if (hf_problem_batch(p, r->request->control.threads) != HF_OK ||

@@ -140,7 +140,7 @@ int hf_ledger_print_field(int i, const hf_summary *s, char *text, size_t size)
 {
     hf_ledger_number number;
     int list = i - hf_ledger_n_column(), stage = list % HF_N_STAGE;
-    if (s->stage[HF_STAGE_FORM].result.status == HF_NOT_EVALUATED) return 0;
+    if (!s->stage[HF_STAGE_FORM].exists) return 0;
     if (hf_ledger_column(i, &number)) return hf_layout_has(s, number.part) ? print_number(&number, s, text, size) : 0;
     if (list == HF_LEDGER_LIST_CASES) return print_load_cases(s, text, size);
     if (list == stage) return print_objectives(s, stage, text, size);

@@ -66,12 +66,13 @@ hf_status hf_store_close_result(hf_hdf5 *io)
 
 /* ---- summary ---- */
 
-/* Reads the status of the run. Earlier versions wrote it as a text of variable length, which is not read; the status
+/* Reads the status of the run, and whether the form-finding ran. Earlier versions wrote it as a text of variable length, which is not read; the status
  * then follows from the stages. */
 static void get_status(hf_hdf5 *io, hf_summary *s)
 {
     char word[32] = "";
-    const hf_stage_summary *form = &s->stage[HF_STAGE_FORM], *search = &s->stage[HF_STAGE_SEARCH];
+    hf_stage_summary *form = &s->stage[HF_STAGE_FORM], *search = &s->stage[HF_STAGE_SEARCH];
+    form->exists = form->result.status != HF_NOT_EVALUATED;
     s->status = form->result.status == HF_OK && search->exists ? search->result.status : form->result.status;
     if (hf_hdf5_has_chars(io, io->file, "/", "status")) {
         hf_hdf5_get(io, io->file, "/", "status", HF_KIND_CHARS, word, sizeof word);

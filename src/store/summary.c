@@ -344,7 +344,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
     hf_json_open(j, NULL, '{');
     hf_json_text(j, "status", hf_status_word(status));
     if (s->has_truss) write_truss(s, j);
-    if (form->status != HF_NOT_EVALUATED) write_stage(s, HF_STAGE_FORM, j);
+    if (s->stage[HF_STAGE_FORM].exists) write_stage(s, HF_STAGE_FORM, j);
     if (s->has_coupling && form->coupling.iterations > 0) write_coupling(&form->coupling, j);
     for (hf_stage stage = HF_STAGE_SEARCH; stage < HF_N_STAGE; stage++)
         if (s->stage[stage].exists) write_stage(s, stage, j);

@@ -55,8 +55,9 @@ static void write_point(const hf_study *s, int i, hf_status status, const char *
 START_TEST(numbers_come_back_bit_by_bit)
 {
     hf_study s;
-    hf_summary summary = {
-        .seed = 18446744073709551615u, .stage[HF_STAGE_SEARCH].exists = true, .search.evaluations = 5000000000};
+    hf_summary summary = {.seed = 18446744073709551615u,
+                          .stage = {[HF_STAGE_FORM].exists = true, [HF_STAGE_SEARCH].exists = true},
+                          .search.evaluations = 5000000000};
     open_study(&s);
     hf_points points = read_points(&s); /* the folder is not there yet */
     ck_assert_int_eq(points.count[HF_POINT_MISSING], 5);
@@ -89,6 +90,7 @@ START_TEST(all_load_cases_come_back)
 {
     hf_study s;
     hf_summary *summary = calloc(1, sizeof *summary);
+    summary->stage[HF_STAGE_FORM].exists = true;
     summary->n_load_case = HF_LOAD_CASES_MAX;
     summary->load_case = calloc(HF_LOAD_CASES_MAX, sizeof *summary->load_case);
     summary->surface.frequencies_Hz.n = HF_LIST_MAX;
@@ -176,7 +178,8 @@ START_TEST(rows_of_version_0_2_are_read)
     ck_assert_int_eq(system(command), 0);
     snprintf(path, sizeof path, "%s/points-old-1.tsv", folder);
     write_file(path, text);
-    write_point(&s, 1, HF_OK, "", &(hf_summary){.seed = 8}); /* of today, beside it */
+    write_point(&s, 1, HF_OK, "",
+                &(hf_summary){.seed = 8, .stage[HF_STAGE_FORM].exists = true}); /* of today, beside it */
     hf_points points = read_points(&s);
     ck_assert_int_eq(points.count[HF_POINT_DONE], 2);
     for (int i = 0; i < N; i++)
@@ -201,7 +204,7 @@ END_TEST
 START_TEST(objectives_come_back)
 {
     hf_study s;
-    hf_summary summary = {.stage[HF_STAGE_REFINE].exists = true,
+    hf_summary summary = {.stage = {[HF_STAGE_FORM].exists = true, [HF_STAGE_REFINE].exists = true},
                           .objectives = {.n = 2, .name = {"objective_0_psi", "objective_1_tension_edge"}}};
     summary.stage[HF_STAGE_FORM].result.objective[0] = (double)NAN;
     summary.stage[HF_STAGE_FORM].result.objective[1] = 0.1 + 0.2;
