@@ -12,12 +12,12 @@ HF_API_BEGIN
 /* One load case of the as-built net. The arrays have the order of the scene and the truss. Values that the case does
  * not give are zero. */
 typedef struct {
-    const char *name;           /* name of the load case; borrowed */
-    double *rise_K;             /* [n_cable] rise above the temperature at which the cables were cut */
-    double *member_rise_K;      /* [n_member] rise above the temperature at which the truss was made */
-    double *force_N;            /* [n_node][3] forces in addition to the loads of the design */
-    double *move_m;             /* [n_node][3] displacements of supports */
-    double gravity_m_per_s2[3]; /* gravitational acceleration along x, y, z */
+    const char *name;               /* name of the load case; borrowed */
+    double *rise_K;                 /* [n_cable] rise above the temperature at which the cables were cut */
+    double *member_rise_K;          /* [n_member] rise above the temperature at which the truss was made */
+    double *force_N;                /* [n_node][3] forces in addition to the loads of the design */
+    double *support_displacement_m; /* [n_node][3] displacements of supports */
+    double gravity_m_per_s2[3];     /* gravitational acceleration along x, y, z */
 } hf_load_case;
 
 /* The load cases of a case and the material of its net. */

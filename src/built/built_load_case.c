@@ -37,7 +37,7 @@ void hf_built_load_case(const hf_built *b, const hf_material *t, const hf_load_c
         for (size_t c = 0; c < 3; c++) {
             size_t at = 3 * (size_t)m->node_of_row[row] + c;
             load_N[c * n + row] += load_case->force_N[at];
-            move_m[c * n + row] = load_case->move_m[at];
+            move_m[c * n + row] = load_case->support_displacement_m[at];
         }
     for (int k = 0; attachment_move_m && k < m->n_attachment; k++)
         for (size_t c = 0; c < 3; c++)

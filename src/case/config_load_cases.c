@@ -189,7 +189,7 @@ static hf_status push(const maker *q, int row)
         for (int c = 0; c < 3; c++) {
             if (is_pushed) load_case->force_N[3 * i + c] += s->force_N[c];
             if (is_support && !isnan(s->support_displacement_m[0]))
-                load_case->move_m[3 * i + c] += s->support_displacement_m[c];
+                load_case->support_displacement_m[3 * i + c] += s->support_displacement_m[c];
         }
         n += is_pushed;
     }
@@ -215,8 +215,8 @@ static void add_node(hf_csv *t, const int *where, int r, const hf_scene *s, hf_l
     for (int k = ROW_FORCE; k < N_ROW_COLUMN; k++) {
         if (where[k] < 0 || !*hf_csv_cell(t, r, where[k])) continue;
         double value = hf_csv_number(t, r, where[k], id, row_column[k]);
-        double *to =
-            k < ROW_MOVE ? load_case->force_N + 3 * i + (k - ROW_FORCE) : load_case->move_m + 3 * i + (k - ROW_MOVE);
+        double *to = k < ROW_MOVE ? load_case->force_N + 3 * i + (k - ROW_FORCE)
+                                  : load_case->support_displacement_m + 3 * i + (k - ROW_MOVE);
         if (k >= ROW_MOVE && value != 0 && s->role[i] != HF_ROLE_SUPPORT)
             hf_csv_fault(t, t->line[r], id, "is no support, so it has no place to be moved to: ", row_column[k]);
         *to += value;

@@ -9,7 +9,7 @@ static void lay_out(hf_arena *arena, const hf_scene *s, size_t n_member, int n, 
         load_case->rise_K = hf_arena_take(arena, (size_t)s->n_cable, sizeof(double));
         load_case->member_rise_K = hf_arena_take(arena, n_member, sizeof(double));
         load_case->force_N = hf_arena_take(arena, 3 * (size_t)s->n_node, sizeof(double));
-        load_case->move_m = hf_arena_take(arena, 3 * (size_t)s->n_node, sizeof(double));
+        load_case->support_displacement_m = hf_arena_take(arena, 3 * (size_t)s->n_node, sizeof(double));
     }
 }
 

@@ -105,7 +105,7 @@ START_TEST(a_node_hangs_by_its_weight)
     t->mass_kg_per_m[1] = 0.3;
     b.load_case->gravity_m_per_s2[2] = -g;
     b.load_case->force_N[3 * 1 + 2] = -1.5;
-    b.load_case->move_m[3 * 2 + 2] = -0.001;
+    b.load_case->support_displacement_m[3 * 2 + 2] = -0.001;
     find_load_case(&b);
     double weight = 1.5 + g * (0.5 + 0.1 * l0[0] / 2 + 0.3 * l0[1] / 2), k1 = 2000 / l0[0], k2 = 5000 / l0[1];
     double u = (weight + (k2 * (2.001 - l0[1]) - k1 * (1 - l0[0]))) / (k1 + k2);
@@ -175,7 +175,7 @@ START_TEST(uniform_heat_is_a_scaling)
     }
     const double *rest = b.built.scene.position_m;
     for (int i = 0; i < 3 * m->n_node; i++)
-        if (b.design.scene.role[i / 3] == HF_ROLE_SUPPORT) b.load_case->move_m[i] = strain * rest[i];
+        if (b.design.scene.role[i / 3] == HF_ROLE_SUPPORT) b.load_case->support_displacement_m[i] = strain * rest[i];
     for (int k = 0; k < 3 * m->n_attachment; k++)
         b.attachment_move_m[k] = strain * b.design.work.displacement_m[k];
     find_load_case(&b);

@@ -182,14 +182,14 @@ START_TEST(a_net_without_a_shape_is_told)
     const hf_objectives_nets *nets = p.objectives.nets;
     for (int i = 0; i < nets->n_load_case; i++) {
         hf_load_case *load_case = &p.load_cases.load_case[i];
-        ck_assert_int_eq(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &result), HF_OK);
+        ck_assert_int_eq(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &p.point, &result), HF_OK);
         ck_assert_int_eq(nets->cut(p.workspace.objectives->nets, &p.workspace), HF_OK);
         ck_assert_int_eq(hf_objectives_nets_linearise(&p.objectives, i, p.workspace.objectives, &shape), HF_OK);
         ck_assert_ptr_nonnull(shape);
         load_case->force_N[3 * p.model.inner_row[0]] = 1e30;
         ck_assert_int_eq(hf_objectives_nets_linearise(&p.objectives, i, p.workspace.objectives, &shape), HF_NOT_FINITE);
         ck_assert_ptr_null(shape);
-        ck_assert_int_ne(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &result), HF_OK);
+        ck_assert_int_ne(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &p.point, &result), HF_OK);
         load_case->force_N[3 * p.model.inner_row[0]] = 0;
     }
     hf_problem_free(&p);
@@ -318,7 +318,7 @@ START_TEST(nets_that_do_not_differ_are_the_design)
         hf_load_case *s = &p.load_cases.load_case[k];
         memset(s->rise_K, 0, (size_t)p.model.n_cable * sizeof(double));
         memset(s->force_N, 0, 3 * (size_t)p.model.n_node * sizeof(double));
-        memset(s->move_m, 0, 3 * (size_t)p.model.n_node * sizeof(double));
+        memset(s->support_displacement_m, 0, 3 * (size_t)p.model.n_node * sizeof(double));
         memset(s->gravity_m_per_s2, 0, sizeof s->gravity_m_per_s2);
     }
     evaluate_base(&p, &r);

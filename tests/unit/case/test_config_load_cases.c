@@ -106,7 +106,7 @@ START_TEST(gravity_forces_and_moves_add_up)
         bool is_support = r.scene.role[i] == HF_ROLE_SUPPORT;
         ck_assert(a->force_N[3 * i] == (r.scene.role[i] == HF_ROLE_INNER) && a->force_N[3 * i + 1] == 2);
         ck_assert(a->force_N[3 * i + 2] == (strcmp(r.scene.node_id[i], "f0_0") ? 0 : 5));
-        ck_assert_double_eq_tol(a->move_m[3 * i + 2],
+        ck_assert_double_eq_tol(a->support_displacement_m[3 * i + 2],
                                 (is_support ? 0.1 : 0) + (strcmp(r.scene.node_id[i], "f3_0") ? 0 : 0.25), 1e-15);
     }
     free_read(&r);
