@@ -279,7 +279,7 @@ typedef struct {
 
 /* Positions from which psi is measured when an as-built net is adjusted: the target positions, or the positions of the
  * design. */
-typedef enum { HF_AIM_THEORY, HF_AIM_DESIGN } hf_aim;
+typedef enum { HF_AIM_TARGET, HF_AIM_DESIGN } hf_aim;
 extern const char *const hf_aim_word[3]; /* the last entry is NULL */
 
 /* Settings of the turnbuckles of an as-built net (section adjust). Some cables of the set are lengthened or shortened
@@ -322,7 +322,7 @@ typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
     X(FACET_FIT_GAIN_LOSS, "facet_fit_gain_loss_dB", "dB", FACET_LOSS, "the same by facet_fit_half_path_rms_m")        \
     X(PATTERN_LOSS, "pattern_loss_dB", "dB", PATTERN,                                                                  \
       "in the direction of the beam at the highest frequency, by physical optics over the facets")                     \
-    X(LEAST_TENSION, "tension_min_N", "N", ALWAYS, "smallest tension of a cable")                                      \
+    X(MIN_TENSION, "tension_min_N", "N", ALWAYS, "smallest tension of a cable")                                        \
     X(SLACK, "n_slack", "", ALWAYS, "slack cables")                                                                    \
     X(LOOSE, "n_loose", "", ALWAYS, "nodes that no taut cable holds")
 

@@ -32,12 +32,12 @@ static void print_table(const void *context, FILE *f)
     const job *j = context;
     const hf_adjustment *a = &j->adjustment;
     fputs("order,cable,set,turnbuckle_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm\n", f);
-    for (int k = 0; k < a->n_move; k++) {
-        const hf_adjust_turnbuckle *move = &a->move[k];
+    for (int k = 0; k < a->n_turnbuckle; k++) {
+        const hf_adjust_turnbuckle *turned = &a->turnbuckle[k];
         fprintf(f, "%d,", k + 1);
-        hf_csv_write_id(j->built.scene.cable_id[move->cable], f);
-        fprintf(f, ",%s,%.10g,%.6g,%.6g,%.6g,%.6g\n", j->task.settings->set, move->move_m * 1e3, move->before_N,
-                move->after_N, move->figure_m * 1e3, move->expected_m * 1e3);
+        hf_csv_write_id(j->built.scene.cable_id[turned->cable], f);
+        fprintf(f, ",%s,%.10g,%.6g,%.6g,%.6g,%.6g\n", j->task.settings->set, turned->turnbuckle_m * 1e3,
+                turned->before_N, turned->after_N, turned->figure_m * 1e3, turned->expected_m * 1e3);
     }
 }
 
@@ -46,7 +46,7 @@ static void print_table(const void *context, FILE *f)
 /* Returns the word of an aim. Figures other than psi aim at the target surface. */
 static const char *aim_word(hf_figure_kind figure, hf_aim aim)
 {
-    return hf_aim_word[figure == HF_FIGURE_PSI ? aim : HF_AIM_THEORY];
+    return hf_aim_word[figure == HF_FIGURE_PSI ? aim : HF_AIM_TARGET];
 }
 
 /* Prints the surface or positions from which the figure is measured. */
@@ -68,10 +68,10 @@ static void print_aim(const job *j, FILE *f)
 static void print_instead(const job *j, FILE *f)
 {
     if (!j->n_instead) return;
-    if (2 * j->n_at_range > j->adjustment.n_move)
+    if (2 * j->n_at_range > j->adjustment.n_turnbuckle)
         hf_print_line(f,
                       "%d of %d adjustments are as large as adjust.range_m allows. Results with another figure or aim:",
-                      j->n_at_range, j->adjustment.n_move);
+                      j->n_at_range, j->adjustment.n_turnbuckle);
     else
         hf_print_line(f,
                       "the design is %.4f mm RMS from the target positions, and errors displace the nodes by %.4f mm "
@@ -83,8 +83,8 @@ static void print_instead(const job *j, FILE *f)
         snprintf(name, sizeof name, other->figure == HF_FIGURE_PSI ? "figure: psi, aim: %s" : "figure: %s",
                  other->figure == HF_FIGURE_PSI ? hf_aim_word[other->aim] : hf_adjust_figure_word[other->figure]);
         hf_print_line(f, "  adjust: {%s} changes %s from %.4f to %.4f mm by %d adjustment%s, %d at range_m", name,
-                      hf_adjust_figure_word[other->figure], other->before_m * 1e3, other->after_m * 1e3, other->n_move,
-                      other->n_move == 1 ? "" : "s", other->n_at_range);
+                      hf_adjust_figure_word[other->figure], other->before_m * 1e3, other->after_m * 1e3,
+                      other->n_turnbuckle, other->n_turnbuckle == 1 ? "" : "s", other->n_at_range);
     }
 }
 
@@ -193,28 +193,28 @@ static void print_numbers(const job *j, FILE *f)
     if (n_off > NAMED_MAX) hf_print_line(f, "and %d more shared errors beyond %g sigma", n_off - NAMED_MAX, SEEMS_OFF);
 }
 
-static bool is_doubtful(const hf_adjust_turnbuckle *move)
+static bool is_doubtful(const hf_adjust_turnbuckle *turned)
 {
-    return move->gain_m < move->gain_sigma_m;
+    return turned->gain_m < turned->gain_sigma_m;
 }
 
 static void print_moves(const job *j, FILE *f)
 {
     const hf_adjustment *a = &j->adjustment;
     int n_doubtful = 0;
-    if (a->n_move)
+    if (a->n_turnbuckle)
         hf_print_line(f, "%5s  %-20s %13s  %10s %10s  %10s %11s", "order", "cable", "turnbuckle mm", "N before",
                       "N after", "RMS mm", "expected mm");
-    for (int k = 0; k < a->n_move; k++) {
-        const hf_adjust_turnbuckle *move = &a->move[k];
+    for (int k = 0; k < a->n_turnbuckle; k++) {
+        const hf_adjust_turnbuckle *turned = &a->turnbuckle[k];
         char slack[32] = "", gain[64] = "";
-        if (move->n_slack) snprintf(slack, sizeof slack, "  %d slack", move->n_slack);
-        if (is_doubtful(move))
-            snprintf(gain, sizeof gain, "  gains %.4f +- %.4f", move->gain_m * 1e3, move->gain_sigma_m * 1e3);
-        n_doubtful += is_doubtful(move);
+        if (turned->n_slack) snprintf(slack, sizeof slack, "  %d slack", turned->n_slack);
+        if (is_doubtful(turned))
+            snprintf(gain, sizeof gain, "  gains %.4f +- %.4f", turned->gain_m * 1e3, turned->gain_sigma_m * 1e3);
+        n_doubtful += is_doubtful(turned);
         hf_print_line(f, "%5d  %-20s %+13.6g  %10.4g %10.4g  %10.4f %11.4f%s%s", k + 1,
-                      j->built.scene.cable_id[move->cable], move->move_m * 1e3, move->before_N, move->after_N,
-                      move->figure_m * 1e3, move->expected_m * 1e3, slack, gain);
+                      j->built.scene.cable_id[turned->cable], turned->turnbuckle_m * 1e3, turned->before_N,
+                      turned->after_N, turned->figure_m * 1e3, turned->expected_m * 1e3, slack, gain);
     }
     if (n_doubtful)
         hf_print_line(
@@ -248,7 +248,7 @@ static void print_summary(const job *j, const hf_options *o, FILE *f)
     hf_print_line(f,
                   "%s after %d adjustment%s %.4f mm; expected %.4f +- %.4f mm; a search over adjustments of all %d "
                   "cables, without minimum tensions, reached %.4f mm",
-                  figure, a->n_move, a->n_move == 1 ? "" : "s", a->adjusted_m * 1e3, a->doubt_m[1] * 1e3,
+                  figure, a->n_turnbuckle, a->n_turnbuckle == 1 ? "" : "s", a->adjusted_m * 1e3, a->doubt_m[1] * 1e3,
                   a->spread_m[1] * 1e3, j->task.n_cable, a->best_m * 1e3);
     if (a->n_maybe_slack)
         hf_print_line(
@@ -268,19 +268,19 @@ static void print_json_moves(const job *from, hf_json *j)
 {
     const hf_adjustment *a = &from->adjustment;
     hf_json_open_rows(j, "adjustments");
-    for (int k = 0; k < a->n_move; k++) {
-        const hf_adjust_turnbuckle *move = &a->move[k];
+    for (int k = 0; k < a->n_turnbuckle; k++) {
+        const hf_adjust_turnbuckle *turned = &a->turnbuckle[k];
         hf_json_open_row(j);
-        hf_json_text(j, "cable", from->built.scene.cable_id[move->cable]);
-        hf_json_integer(j, "steps", move->steps);
-        hf_json_number(j, "turnbuckle_m", move->move_m);
-        hf_json_number(j, "tension_before_N", move->before_N);
-        hf_json_number(j, "tension_after_N", move->after_N);
-        hf_json_number(j, "predicted_m", move->figure_m);
-        hf_json_number(j, "expected_m", move->expected_m);
-        hf_json_number(j, "gain_m", move->gain_m);
-        hf_json_number(j, "gain_sigma_m", move->gain_sigma_m);
-        hf_json_integer(j, "slack", move->n_slack);
+        hf_json_text(j, "cable", from->built.scene.cable_id[turned->cable]);
+        hf_json_integer(j, "steps", turned->steps);
+        hf_json_number(j, "turnbuckle_m", turned->turnbuckle_m);
+        hf_json_number(j, "tension_before_N", turned->before_N);
+        hf_json_number(j, "tension_after_N", turned->after_N);
+        hf_json_number(j, "predicted_m", turned->figure_m);
+        hf_json_number(j, "expected_m", turned->expected_m);
+        hf_json_number(j, "gain_m", turned->gain_m);
+        hf_json_number(j, "gain_sigma_m", turned->gain_sigma_m);
+        hf_json_integer(j, "slack", turned->n_slack);
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
@@ -315,7 +315,7 @@ static void print_json_instead(const job *from, hf_json *j)
         hf_json_text(j, "aim", aim_word(other->figure, other->aim));
         hf_json_number(j, "before_m", other->before_m);
         hf_json_number(j, "after_m", other->after_m);
-        hf_json_integer(j, "adjustment_count", other->n_move);
+        hf_json_integer(j, "adjustment_count", other->n_turnbuckle);
         hf_json_integer(j, "at_range", other->n_at_range);
         hf_json_close(j, '}');
     }

@@ -517,7 +517,7 @@ static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_E
 
 /* ---- order of adjustments ---- */
 
-/* Computes the changes of tension that each chosen adjustment causes in the linear model, change_N [n_move][n_cable] in
+/* Computes the changes of tension that each chosen adjustment causes in the linear model, change_N [n_turnbuckle][n_cable] in
  * the order of a->steps. */
 static void find_changes(adjustment *a, double *change_N)
 {
@@ -534,17 +534,17 @@ static void find_changes(adjustment *a, double *change_N)
 /* Computes mean and standard deviation of the reduction of the figure over the posterior samples. before_m holds the
  * figures of the samples before this adjustment, and those after it on return. */
 static hf_status judge_adjustment(adjustment *a, double part, double before_m[HF_ESTIMATE_SAMPLES],
-                                  hf_adjust_turnbuckle *move)
+                                  hf_adjust_turnbuckle *turned)
 {
     double gain_m[HF_ESTIMATE_SAMPLES], unused;
     memcpy(gain_m, before_m, sizeof gain_m);
     HF_TRY(sample_figures(a, part, before_m));
-    hf_estimate_spread(before_m, &move->expected_m, &unused);
+    hf_estimate_spread(before_m, &turned->expected_m, &unused);
     for (int s = 0; s < HF_ESTIMATE_SAMPLES; s++) {
         gain_m[s] -= before_m[s];
-        move->gain_m += gain_m[s] / HF_ESTIMATE_SAMPLES;
+        turned->gain_m += gain_m[s] / HF_ESTIMATE_SAMPLES;
     }
-    hf_estimate_spread(gain_m, &unused, &move->gain_sigma_m);
+    hf_estimate_spread(gain_m, &unused, &turned->gain_sigma_m);
     return HF_OK;
 }
 
@@ -558,18 +558,19 @@ static hf_status make_adjustments(adjustment *a, const double *change_N, double 
     double made = 0, all = 0;
     for (size_t i = 0; i < a->n; i++)
         all += abs(a->steps[i]);
-    for (int k = 0; k < found->n_move; k++) {
+    for (int k = 0; k < found->n_turnbuckle; k++) {
         int i = hf_turnbuckles_next(&a->problem, a->steps, change_N, a->trial, fall_N);
         int e = a->task->cable[i];
-        hf_adjust_turnbuckle *move = &found->move[k];
-        *move = (hf_adjust_turnbuckle){.cable = e, .steps = a->steps[i], .move_m = a->steps[i] * a->problem.step_m};
-        move->before_N = a->work.tension_N[e];
-        hf_status status = solve_steps(a, a->trial, &move->figure_m);
+        hf_adjust_turnbuckle *turned = &found->turnbuckle[k];
+        *turned =
+            (hf_adjust_turnbuckle){.cable = e, .steps = a->steps[i], .turnbuckle_m = a->steps[i] * a->problem.step_m};
+        turned->before_N = a->work.tension_N[e];
+        hf_status status = solve_steps(a, a->trial, &turned->figure_m);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-        move->after_N = status == HF_OK ? a->work.tension_N[e] : (double)NAN;
-        move->n_slack = a->form.n_slack;
-        made += abs(move->steps);
-        HF_TRY(judge_adjustment(a, made / all, sample_m, move));
+        turned->after_N = status == HF_OK ? a->work.tension_N[e] : (double)NAN;
+        turned->n_slack = a->form.n_slack;
+        made += abs(turned->steps);
+        HF_TRY(judge_adjustment(a, made / all, sample_m, turned));
     }
     return HF_OK;
 }
@@ -580,16 +581,17 @@ static hf_status list_adjustments(adjustment *a, hf_adjustment *found)
     size_t n_cable = (size_t)a->problem.n_tension;
     void *block;
     for (size_t i = 0; i < a->n; i++)
-        found->n_move += a->steps[i] != 0;
-    HF_TRY(HF_ARENA_ARRAYS(&found->block, HF_ARRAY(found->move, found->n_move)));
+        found->n_turnbuckle += a->steps[i] != 0;
+    HF_TRY(HF_ARENA_ARRAYS(&found->block, HF_ARRAY(found->turnbuckle, found->n_turnbuckle)));
     if (!a->is_current) HF_TRY(solve_steps(a, a->steps, &figure_m));
     hf_status status = a->is_current ? HF_OK : linearise(a);
     /* Without stiffness the last linear model orders them. */
     if (status != HF_OK && status != HF_SINGULAR) return status;
     a->is_current = status == HF_OK;
-    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(change_N, (size_t)found->n_move * n_cable), HF_ARRAY(fall_N, n_cable)));
+    HF_TRY(
+        HF_ARENA_ARRAYS(&block, HF_ARRAY(change_N, (size_t)found->n_turnbuckle * n_cable), HF_ARRAY(fall_N, n_cable)));
     find_changes(a, change_N); /* before answer_samples changes the linear model */
-    status = found->n_move ? find_beyond(a) : HF_OK;
+    status = found->n_turnbuckle ? find_beyond(a) : HF_OK;
     memset(a->trial, 0, a->n * sizeof *a->trial);
     if (status == HF_OK) status = solve_steps(a, a->trial, &figure_m);
     if (status == HF_OK) status = sample_figures(a, 0, sample_m);

@@ -22,11 +22,10 @@ typedef struct {
     int n_thread; /* number of threads; 0: all cores */
 } hf_adjust_task;
 
-/* Describes one adjustment. Adjustments are listed in the order in which they are to be made; move_m is positive where
- * the cable becomes longer. */
+/* Describes one adjustment. Adjustments are listed in the order in which they are to be made. */
 typedef struct {
     int cable, steps;
-    double move_m;
+    double turnbuckle_m;      /* change of its length; positive: the cable becomes longer */
     double before_N, after_N; /* tension of this cable immediately before and after its adjustment */
     double figure_m;          /* solved figure after this adjustment */
     double expected_m;        /* RMS of the figure over the posterior samples */
@@ -56,8 +55,8 @@ typedef struct {
     bool is_held_taut;
     bool is_settled; /* the choice has converged: the last linear model leads to no better one */
     hf_turnbuckles_end end;
-    int n_move;
-    hf_adjust_turnbuckle *move; /* [n_move] the adjustments in their order */
+    int n_turnbuckle;
+    hf_adjust_turnbuckle *turnbuckle; /* [n_turnbuckle] the adjustments in their order */
     void *block;
 } hf_adjustment;
 

@@ -186,7 +186,7 @@ static void take_sample(void *context, long i, const hf_built_shape *shape, cons
     double min_N = INFINITY;
     for (int e = 0; e < m->n_cable; e++)
         min_N = fmin(min_N, shape->tension_N[e]);
-    value[HF_TOLERANCE_LEAST_TENSION] = min_N;
+    value[HF_TOLERANCE_MIN_TENSION] = min_N;
     if (has_surface(t) && !t->skips_surface) measure_surface(t, shape, value);
 }
 
@@ -264,8 +264,7 @@ static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reac
 bool hf_montecarlo_requires_surface(const hf_tolerance_settings *s)
 {
     for (int k = 0; k < s->n_require; k++)
-        if (s->require[k].measure != HF_TOLERANCE_PSI && s->require[k].measure < HF_TOLERANCE_LEAST_TENSION)
-            return true;
+        if (s->require[k].measure != HF_TOLERANCE_PSI && s->require[k].measure < HF_TOLERANCE_MIN_TENSION) return true;
     return false;
 }
 

@@ -12,7 +12,7 @@ const double hf_tolerance_quantile[HF_TOLERANCE_QUANTILES] = {0.5, 0.95, 0.99};
 
 bool hf_tolerance_more_is_better(hf_tolerance_measure measure)
 {
-    return measure == HF_TOLERANCE_LEAST_TENSION;
+    return measure == HF_TOLERANCE_MIN_TENSION;
 }
 
 _Static_assert(HF_TOLERANCE_KINDS == HF_ERROR_N_KIND, "a summary has room for each kind of errors");

@@ -139,7 +139,7 @@ static void check_expansions(const hf_case *c, hf_config_faults *f)
 
 static bool is_of_surface(hf_tolerance_measure measure)
 {
-    return measure != HF_TOLERANCE_PSI && measure < HF_TOLERANCE_LEAST_TENSION;
+    return measure != HF_TOLERANCE_PSI && measure < HF_TOLERANCE_MIN_TENSION;
 }
 
 static void check_require(const hf_case *c, hf_config_faults *f)
@@ -154,7 +154,7 @@ static void check_require(const hf_case *c, hf_config_faults *f)
              is_loss = is_ruze || row->measure == HF_TOLERANCE_PATTERN_LOSS;
         if (is_loss && !isnan(row->at_least))
             hf_config_fault_in_row(f, list, i, "at_least", "asks for a loss of gain; give at_most");
-        if (row->measure == HF_TOLERANCE_LEAST_TENSION && !isnan(row->at_most))
+        if (row->measure == HF_TOLERANCE_MIN_TENSION && !isnan(row->at_most))
             hf_config_fault_in_row(f, list, i, "at_most", "asks for slack cables; give at_least");
         else if (row->at_most < 0 && row->measure != HF_TOLERANCE_PATTERN_LOSS)
             hf_config_fault_in_row(f, list, i, "at_most", "is below 0, which no net can reach");

@@ -140,8 +140,8 @@ static void take_aim(hf_adjust_case *j, hf_aim aim)
 static int count_at_range(const hf_adjustment *a, const hf_adjust_settings *s)
 {
     int n = 0;
-    for (int k = 0; k < a->n_move; k++)
-        n += abs(a->move[k].steps) == hf_adjust_steps(s);
+    for (int k = 0; k < a->n_turnbuckle; k++)
+        n += abs(a->turnbuckle[k].steps) == hf_adjust_steps(s);
     return n;
 }
 
@@ -182,7 +182,7 @@ static hf_status try_instead(hf_adjust_case *j, hf_figure_kind figure, hf_aim ai
     if (status == HF_OK) status = hf_adjust_find(&j->estimate, &task, &found);
     if (status == HF_OK)
         j->instead[j->n_instead++] = (hf_adjust_case_instead){
-            figure, aim, found.estimated_m, found.adjusted_m, found.n_move, count_at_range(&found, &settings)};
+            figure, aim, found.estimated_m, found.adjusted_m, found.n_turnbuckle, count_at_range(&found, &settings)};
     hf_adjust_free(&found);
     hf_objectives_free(&objectives);
     take_aim(j, j->task.settings->aim);
@@ -197,14 +197,14 @@ static hf_status find_instead(hf_adjust_case *j)
     const hf_adjust_settings *s = j->task.settings;
     find_psi_of_design(j);
     j->n_at_range = count_at_range(&j->adjustment, s);
-    bool has_own_psi = j->design_psi_m > j->error_psi_m, is_far = 2 * j->n_at_range > j->adjustment.n_move;
+    bool has_own_psi = j->design_psi_m > j->error_psi_m, is_far = 2 * j->n_at_range > j->adjustment.n_turnbuckle;
     bool is_psi = s->figure == HF_FIGURE_PSI;
     if (!is_far && !(has_own_psi && is_psi)) return HF_OK;
     if (!is_psi || s->aim != HF_AIM_DESIGN) HF_TRY(try_instead(j, HF_FIGURE_PSI, HF_AIM_DESIGN));
-    if (has_own_psi && !(is_psi && s->aim == HF_AIM_THEORY)) HF_TRY(try_instead(j, HF_FIGURE_PSI, HF_AIM_THEORY));
+    if (has_own_psi && !(is_psi && s->aim == HF_AIM_TARGET)) HF_TRY(try_instead(j, HF_FIGURE_PSI, HF_AIM_TARGET));
     if (!is_psi || !j->problem.settings.has_surface) return HF_OK;
     hf_figure_kind figure = j->problem.facets.n_facet > 0 ? HF_FIGURE_FACETS : HF_FIGURE_SURFACE;
-    return try_instead(j, figure, HF_AIM_THEORY);
+    return try_instead(j, figure, HF_AIM_TARGET);
 }
 
 /* ---- the prior ---- */
@@ -307,7 +307,7 @@ static hf_status find_least(job *j, hf_messages *messages)
     for (int e = 0; e < j->problem.scene.n_cable; e++)
         for (int k = 0; k < c->tolerance.n_require; k++) {
             const hf_require_settings *row = &c->tolerance.require[k];
-            if (row->measure == HF_TOLERANCE_LEAST_TENSION && row->at_least > j->least_N[e])
+            if (row->measure == HF_TOLERANCE_MIN_TENSION && row->at_least > j->least_N[e])
                 j->least_N[e] = row->at_least;
         }
     for (int k = 0; k < limits.n && status == HF_OK; k++)

@@ -18,7 +18,7 @@ typedef struct {
     hf_figure_kind figure;
     hf_aim aim;
     double before_m, after_m; /* value of the figure at the estimated shape, and after the adjustments */
-    int n_move, n_at_range;
+    int n_turnbuckle, n_at_range;
 } hf_adjust_case_instead;
 
 /* An item of a list that is sorted by size. */

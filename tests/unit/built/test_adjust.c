@@ -33,15 +33,15 @@ static void find_moves(const twin *t, const job *j, hf_estimate *p, hf_adjustmen
 }
 
 /* psi of the true net after some of these moves. */
-static double true_psi_m(twin *t, const hf_adjustment *found, int n_move)
+static double true_psi_m(twin *t, const hf_adjustment *found, int n_turnbuckle)
 {
     static double length[TWIN_CABLES], off[TWIN_DOFS];
     const hf_model *m = &t->built.model;
     hf_form_result r;
     for (int e = 0; e < m->n_cable; e++)
         length[e] = m->target[e] + t->cut_m[e];
-    for (int k = 0; k < n_move; k++)
-        length[found->move[k].cable] += found->move[k].move_m;
+    for (int k = 0; k < n_turnbuckle; k++)
+        length[found->turnbuckle[k].cable] += found->turnbuckle[k].turnbuckle_m;
     for (int i = 0; i < 3 * m->n_node; i++)
         off[i % 3 * m->n_node + i / 3] = t->rest_m[i];
     hf_built_net net = {.cut_m = length, .support_displacement_m = off};
@@ -51,27 +51,28 @@ static double true_psi_m(twin *t, const hf_adjustment *found, int n_move)
 
 static void check_moves(const job *j, const hf_adjustment *found)
 {
-    ck_assert_int_le(found->n_move, j->settings.max_adjustments);
+    ck_assert_int_le(found->n_turnbuckle, j->settings.max_adjustments);
     ck_assert_double_le(found->best_m, found->adjusted_m);
     ck_assert_double_le(found->adjusted_m, found->estimated_m);
-    for (int k = 0; k < found->n_move; k++) {
-        const hf_adjust_turnbuckle *move = &found->move[k];
-        ck_assert(move->move_m == move->steps * j->settings.step_m && move->steps != 0);
-        ck_assert_double_le(fabs(move->move_m), j->settings.range_m);
+    for (int k = 0; k < found->n_turnbuckle; k++) {
+        const hf_adjust_turnbuckle *turned = &found->turnbuckle[k];
+        ck_assert(turned->turnbuckle_m == turned->steps * j->settings.step_m && turned->steps != 0);
+        ck_assert_double_le(fabs(turned->turnbuckle_m), j->settings.range_m);
         for (int l = 0; l < k; l++)
-            ck_assert_int_ne(found->move[l].cable, move->cable);
+            ck_assert_int_ne(found->turnbuckle[l].cable, turned->cable);
     }
-    if (found->n_move) /* found on different ways, to the tolerance of shapes */
-        ck_assert_double_eq_tol(found->move[found->n_move - 1].figure_m, found->adjusted_m, 1e-6 * found->adjusted_m);
+    if (found->n_turnbuckle) /* found on different ways, to the tolerance of shapes */
+        ck_assert_double_eq_tol(found->turnbuckle[found->n_turnbuckle - 1].figure_m, found->adjusted_m,
+                                1e-6 * found->adjusted_m);
 }
 
 /* Sum of squares of what the gains of single moves miss, each over its sigma. */
 static double missed_gains(twin *t, const hf_adjustment *found)
 {
     double sum = 0, true_m = true_psi_m(t, found, 0);
-    for (int k = 0; k < found->n_move; k++) {
-        const hf_adjust_turnbuckle *move = &found->move[k];
-        double now_m = true_psi_m(t, found, k + 1), off = (true_m - now_m - move->gain_m) / move->gain_sigma_m;
+    for (int k = 0; k < found->n_turnbuckle; k++) {
+        const hf_adjust_turnbuckle *turned = &found->turnbuckle[k];
+        double now_m = true_psi_m(t, found, k + 1), off = (true_m - now_m - turned->gain_m) / turned->gain_sigma_m;
         true_m = now_m;
         sum += off * off;
     }
@@ -89,7 +90,7 @@ static double run_twin(twin *t, int n, const char *what, double range_m, double 
     find_moves(t, &j, &p, &found);
     check_moves(&j, &found);
     ck_assert(p.is_settled && found.is_settled);
-    double before = true_psi_m(t, &found, 0), after = true_psi_m(t, &found, found.n_move);
+    double before = true_psi_m(t, &found, 0), after = true_psi_m(t, &found, found.n_turnbuckle);
     memcpy(p.cut_m, t->cut_m, sizeof(double) * (size_t)t->built.model.n_cable);
     memcpy(p.rest_m, t->rest_m, sizeof(double) * 3 * (size_t)t->built.model.n_node);
     hf_form_result r;
@@ -97,12 +98,12 @@ static double run_twin(twin *t, int n, const char *what, double range_m, double 
     ck_assert_int_eq(hf_adjust_find(&p, &j.task, &known), HF_OK);
     check_moves(&j, &known);
     printf("%s %d: psi %.3f -> %.3f mm by %d moves (told %.3f +- %.3f), known %.3f by %d, bound %.3f\n", what, n,
-           before * 1e3, after * 1e3, found.n_move, found.doubt_m[1] * 1e3, found.spread_m[1] * 1e3,
-           known.adjusted_m * 1e3, known.n_move, known.best_m * 1e3);
+           before * 1e3, after * 1e3, found.n_turnbuckle, found.doubt_m[1] * 1e3, found.spread_m[1] * 1e3,
+           known.adjusted_m * 1e3, known.n_turnbuckle, known.best_m * 1e3);
     ck_assert_double_lt(after, before);
     ck_assert_double_lt(fabs(after - found.doubt_m[1]), 6 * found.spread_m[1] + 0.1 * found.doubt_m[1]);
     double ratio = after / known.adjusted_m;
-    *missed = missed_gains(t, &found) / found.n_move;
+    *missed = missed_gains(t, &found) / found.n_turnbuckle;
     hf_adjust_free(&found);
     hf_adjust_free(&known);
     hf_objectives_free(&j.objectives);
@@ -159,8 +160,8 @@ static double shortfall(const twin *t, const hf_estimate *p, const hf_adjustment
     ck_assert_int_eq(hf_estimate_shape(p, NULL, &w, &r), HF_OK);
     memcpy(before_N, w.tension_N, sizeof(double) * (size_t)n);
     memset(turn_m, 0, sizeof turn_m);
-    for (int k = 0; k < found->n_move; k++)
-        turn_m[found->move[k].cable] = found->move[k].move_m;
+    for (int k = 0; k < found->n_turnbuckle; k++)
+        turn_m[found->turnbuckle[k].cable] = found->turnbuckle[k].turnbuckle_m;
     ck_assert_int_eq(hf_estimate_shape(p, turn_m, &w, &r), HF_OK);
     for (int e = 0; e < n; e++)
         worst = fmax(worst, (fmin(least_N[e], before_N[e]) - w.tension_N[e]) / least_N[e]);
@@ -191,9 +192,9 @@ START_TEST(least_tensions_are_kept)
         find_moves(&t, &j, &p, &found);
         lacks[asked] = shortfall(&t, &p, &found, least_N);
         printf("%s: psi %.3f -> %.3f mm by %d moves, %.3f of a least tension is not there\n",
-               asked ? "asked for" : "not asked for", found.estimated_m * 1e3, found.adjusted_m * 1e3, found.n_move,
-               lacks[asked]);
-        ck_assert_int_gt(found.n_move, 0);
+               asked ? "asked for" : "not asked for", found.estimated_m * 1e3, found.adjusted_m * 1e3,
+               found.n_turnbuckle, lacks[asked]);
+        ck_assert_int_gt(found.n_turnbuckle, 0);
         ck_assert(found.is_held_taut);
         hf_adjust_free(&found);
         hf_estimate_free(&p);
@@ -224,7 +225,7 @@ START_TEST(least_tensions_are_kept_far_away)
     j.task.min_N = least_N;
     find_moves(&t, &j, &p, &found);
     double lacks = shortfall(&t, &p, &found, least_N);
-    printf("net %d: %d moves, %.3f of a least tension is not there\n", _i, found.n_move, lacks);
+    printf("net %d: %d moves, %.3f of a least tension is not there\n", _i, found.n_turnbuckle, lacks);
     ck_assert_double_lt(lacks, 0.1 + 1e-6); /* shapes on the way are found to tolerances */
     hf_adjust_free(&found);
     hf_estimate_free(&p);
@@ -247,10 +248,10 @@ START_TEST(moves_repeat)
         find_moves(&t, &j, &p, &found[k]);
         hf_estimate_free(&p);
     }
-    ck_assert(found[0].n_move > 0 && found[0].n_move == found[1].n_move);
+    ck_assert(found[0].n_turnbuckle > 0 && found[0].n_turnbuckle == found[1].n_turnbuckle);
     ck_assert(found[0].adjusted_m == found[1].adjusted_m && found[0].best_m == found[1].best_m);
-    for (int k = 0; k < found[0].n_move; k++)
-        ck_assert(memcmp(&found[0].move[k], &found[1].move[k], sizeof *found[0].move) == 0);
+    for (int k = 0; k < found[0].n_turnbuckle; k++)
+        ck_assert(memcmp(&found[0].turnbuckle[k], &found[1].turnbuckle[k], sizeof *found[0].turnbuckle) == 0);
     hf_adjust_free(&found[0]);
     hf_adjust_free(&found[1]);
     hf_objectives_free(&j.objectives);

@@ -560,13 +560,13 @@ START_TEST(what_is_missing_is_the_worst)
             value[k] = (double)NAN;
         if (fails) continue;
         value[HF_TOLERANCE_PSI] = 1e-3 * (i + 1);
-        value[HF_TOLERANCE_LEAST_TENSION] = i + 1;
+        value[HF_TOLERANCE_MIN_TENSION] = i + 1;
         value[HF_TOLERANCE_SLACK] = i == 0;
         value[HF_TOLERANCE_LOOSE] = 0;
         value[HF_TOLERANCE_GAIN_LOSS] = i < 20 ? 0.5 : INFINITY;
     }
     const hf_statistics_rows rows = {N, read_rows, row};
-    const hf_tolerance_figures *psi = &to.figure[HF_TOLERANCE_PSI], *least = &to.figure[HF_TOLERANCE_LEAST_TENSION];
+    const hf_tolerance_figures *psi = &to.figure[HF_TOLERANCE_PSI], *least = &to.figure[HF_TOLERANCE_MIN_TENSION];
     ck_assert_int_eq(hf_statistics_sum_up(&s.m, &rows, &to), HF_OK);
     ck_assert_int_eq(to.n_failed, FAILED);
     ck_assert(psi->value[0] == row[19 * HF_TOLERANCE_COLUMNS + HF_TOLERANCE_LINEAR_PSI]); /* the 20th of 40 */
