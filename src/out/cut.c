@@ -15,6 +15,6 @@ hf_cut hf_cut_of(const hf_scene *s, const hf_shape *shape, double reference_N, i
      * slack only while that law holds, because hf_law_cut_m then reads the target. */
     bool is_slack = fabs(c.tension_N) < HF_SLACK_RATIO * reference_N && law == s->law[e];
     c.l0_m = hf_law_cut_m(cable, c.length_m, c.tension_N, is_slack);
-    c.l0_minus_theory_m = c.l0_m - length_at_target_m / (1 + c.tension_N / s->EA_N[e]);
+    c.unstressed_minus_target_m = c.l0_m - length_at_target_m / (1 + c.tension_N / s->EA_N[e]);
     return c;
 }

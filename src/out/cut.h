@@ -6,8 +6,9 @@
 
 typedef struct {
     double tension_N, length_m;
-    double l0_m;              /* unstressed length */
-    double l0_minus_theory_m; /* excess over the unstressed length for the same tension at the target positions */
+    double l0_m; /* unstressed length */
+    double
+        unstressed_minus_target_m; /* excess over the unstressed length for the same tension at the target positions */
 } hf_cut;
 
 /* Returns the cutting length of cable i_cable, which must have an EA. reference_N is hf_model_reference_N of the

@@ -51,7 +51,7 @@ static void write_cables(const void *context, FILE *f)
         hf_cut c = hf_cut_of(s, v->shape, v->reference_N, e);
         hf_export_ends_of(s, e, f);
         fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%s,%.17g", c.tension_N, c.length_m, c.l0_m,
-                c.length_m - c.l0_m, s->EA_N[e], c.l0_minus_theory_m, hf_law_word[HF_LAW_ELASTIC], c.l0_m);
+                c.length_m - c.l0_m, s->EA_N[e], c.unstressed_minus_target_m, hf_law_word[HF_LAW_ELASTIC], c.l0_m);
         hf_export_sets_of(s, e, f);
         fputc('\n', f);
     }
@@ -73,7 +73,7 @@ static void write_bench(const void *context, FILE *f)
         hf_cut c = hf_cut_of(s, v->shape, v->reference_N, e);
         hf_export_ends_of(s, e, f);
         fprintf(f, ",%.3f,%.3f,%.3f,%.2f,%.3f", bench_mm(c.l0_m), bench_mm(c.length_m), bench_mm(c.length_m - c.l0_m),
-                c.tension_N, bench_mm(c.l0_minus_theory_m));
+                c.tension_N, bench_mm(c.unstressed_minus_target_m));
         hf_export_sets_of(s, e, f);
         fputc('\n', f);
     }
@@ -109,8 +109,8 @@ static void write_total(const view *v, const char *name, total_kind kind, int wh
         length_m += c.length_m;
         tension_N[0] = fmin(tension_N[0], c.tension_N);
         tension_N[1] = fmax(tension_N[1], c.tension_N);
-        difference_m[0] = fmin(difference_m[0], c.l0_minus_theory_m);
-        difference_m[1] = fmax(difference_m[1], c.l0_minus_theory_m);
+        difference_m[0] = fmin(difference_m[0], c.unstressed_minus_target_m);
+        difference_m[1] = fmax(difference_m[1], c.unstressed_minus_target_m);
     }
     if (n)
         fprintf(f, "%s,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", name, n, unstressed_m, length_m, tension_N[0],

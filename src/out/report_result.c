@@ -166,7 +166,7 @@ static void write_cuts(const page *p, const hf_shape *shape, FILE *f)
                                           : hf_json_pack("unstressed_length_m", "f64", f);
         for (int e = 0; e < s->n_cable; e++) {
             hf_cut c = hf_cut_of(s, shape, reference_N, e);
-            hf_json_pack_value(&packed, is_change ? c.l0_minus_theory_m : c.l0_m);
+            hf_json_pack_value(&packed, is_change ? c.unstressed_minus_target_m : c.l0_m);
         }
         hf_json_pack_end(&packed);
     }
