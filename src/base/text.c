@@ -215,6 +215,17 @@ void hf_text_trim_utf8(char *text)
     if (whole > back + 1) text[n - 1 - back] = '\0';
 }
 
+const char *hf_text_first_error(const char *lines, const char *otherwise)
+{
+    static const char begin[] = "error: ";
+    const char *line = lines ? lines : "";
+    while (*line && strncmp(line, begin, strlen(begin)) != 0) {
+        line += strcspn(line, "\n");
+        line += *line == '\n';
+    }
+    return *line ? line + strlen(begin) : otherwise;
+}
+
 int hf_text_too_deep(const char *text)
 {
     int depth = 0, line = 1;

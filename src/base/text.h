@@ -51,6 +51,10 @@ bool hf_text_append(char *text, size_t size, const char *between, const char *it
 /* Removes an incomplete UTF-8 sequence from the end of a text that snprintf(3) has truncated. */
 void hf_text_trim_utf8(char *text);
 
+/* Returns the first error in lines of messages (NULL: none), without "error: " but with all lines behind it. Returns
+ * `otherwise` if no line is an error. */
+const char *hf_text_first_error(const char *lines, const char *otherwise);
+
 /* Returns the number of the first line of a YAML text at which more than HF_TEXT_NESTING_MAX brackets are open; 0 if
  * there is none. Brackets in quotes count too. libyaml takes minutes to read thousands of open brackets. */
 #define HF_TEXT_NESTING_MAX 100

@@ -303,8 +303,7 @@ static hf_status learn_from(hf_study *s, int i, hf_case *c, hf_messages *message
 /* Reports a fault of the machine, which is no fault of a point. */
 static void tell_trouble(hf_status status, const hf_messages *found, hf_messages *messages)
 {
-    const char *why = found->text ? strstr(found->text, "error: ") : NULL;
-    why = why ? why + strlen("error: ") : hf_status_text(status);
+    const char *why = hf_text_first_error(found->text, hf_status_text(status));
     hf_error(messages, status, "%.*s", (int)strcspn(why, "\n"), why);
 }
 

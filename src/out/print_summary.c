@@ -162,17 +162,11 @@ static void print_front_answer(const hf_summary *s, FILE *f)
  * warnings contain no error, for example because they were cut, it prints the text of the status. */
 static void print_failure(const hf_summary *s, hf_stage stage, FILE *f)
 {
-    static const char begin[] = "error: ";
     char why[HF_WARNINGS_SIZE], shown[HF_WARNINGS_SIZE];
-    const char *line = s->warnings;
+    const char *line = hf_text_first_error(s->warnings, hf_status_text(s->status));
     if (!s->finished || s->status == HF_OK || s->stage[HF_STAGE_FORM].result.status != HF_OK) return;
-    while (*line && strncmp(line, begin, strlen(begin)) != 0) {
-        line += strcspn(line, "\n");
-        line += *line == '\n';
-    }
-    if (*line) line += strlen(begin);
     snprintf(why, sizeof why, "%.*s", (int)strcspn(line, "\n"), line);
-    hf_text_escape(*why ? why : hf_status_text(s->status), shown, sizeof shown);
+    hf_text_escape(why, shown, sizeof shown);
     fprintf(f, "failed: %s; ", shown);
     if (!s->front) fputs(stage == HF_STAGE_FORM ? "the form-finding has " : "the design has ", f);
 }

@@ -69,15 +69,8 @@ static hf_status choose_points(sweep *w, const hf_points *points)
 /* Writes the first error message as one line, without "error: ". */
 static void first_error(const hf_messages *said, hf_status status, char reason[HF_LEDGER_REASON_MAX + 1])
 {
-    const char *from = said->text;
-    while (from && strncmp(from, "error: ", 7)) {
-        from = strchr(from, '\n');
-        if (from) from++;
-    }
-    if (from && *from)
-        snprintf(reason, HF_LEDGER_REASON_MAX + 1, "%.*s", (int)strcspn(from + 7, "\n"), from + 7);
-    else
-        snprintf(reason, HF_LEDGER_REASON_MAX + 1, "%s", hf_status_text(status));
+    const char *why = hf_text_first_error(said->text, hf_status_text(status));
+    snprintf(reason, HF_LEDGER_REASON_MAX + 1, "%.*s", (int)strcspn(why, "\n"), why);
     hf_text_trim_utf8(reason);
 }
 
@@ -127,7 +120,7 @@ static void finish_point(sweep *w, int i, hf_status status, const hf_messages *s
     w->count.n_failed += status != HF_OK;
     if (written != HF_OK && w->fatal == HF_OK) {
         w->fatal = written;
-        const char *words = trouble.text ? trouble.text + strlen("error: ") : "cannot write";
+        const char *words = hf_text_first_error(trouble.text, "cannot write");
         hf_error(w->messages, written, "%.*s", (int)strcspn(words, "\n"), words);
     }
     w->count.wall_s = hf_clock_s() - w->start_s;
