@@ -7,7 +7,7 @@
  *         | shape (hf_built_solve), forces in the truss under the pull of the net
  *         v
  *     measures of the shape -> summary and store */
-#include "run/load_case_stage.h"
+#include "run/stages.h"
 
 #include "base/arena.h"
 #include "solve/coupling.h"
@@ -185,17 +185,18 @@ static void warn(const hf_load_case_summary *s, hf_messages *messages)
                    r->n_slack == 1 ? " is" : "s are", r->n_loose, r->n_loose == 1 ? " is" : "s are");
 }
 
-hf_status hf_load_case_stage_run(const hf_problem *p, hf_load_case_stage *c, hf_store *store,
-                                 const volatile sig_atomic_t *stop, hf_summary *summary, hf_messages *messages)
+hf_status hf_stage_load_cases(hf_run *r, hf_summary *summary, hf_messages *messages)
 {
-    c->workspace.stop = stop;
+    const hf_problem *p = &r->problem;
+    hf_load_case_stage *c = &r->cases;
+    c->workspace.stop = r->request->control.stop_requested;
     if (!summary->load_case) summary->load_case = calloc((size_t)p->load_cases.n, sizeof *summary->load_case);
     if (!summary->load_case) return hf_error(messages, HF_NO_MEMORY, "out of memory for the load cases");
     for (int k = 0; k < p->load_cases.n; k++) {
         hf_load_case_summary *s = &summary->load_case[k];
         blank(p->load_cases.load_case[k].name, s);
-        HF_TRY(run_load_case(p, &p->load_cases.load_case[k], c, store, s, messages));
-        if (stop && *stop) return HF_INTERRUPTED;
+        HF_TRY(run_load_case(p, &p->load_cases.load_case[k], c, r->store, s, messages));
+        if (hf_run_must_stop(r)) return HF_INTERRUPTED;
         summary->n_load_case = k + 1;
         warn(s, messages);
     }

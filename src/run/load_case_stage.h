@@ -4,9 +4,6 @@
 
 #include <hifdm/built.h>
 #include <hifdm/problem.h>
-#include <hifdm/store.h>
-
-#include <signal.h>
 
 /* The as-built net of a design, and memory for its load cases. All members are zero before a design is taken, and for a
  * case without load cases. It must not be moved in memory. */
@@ -31,12 +28,6 @@ hf_status hf_load_case_stage_rest(const hf_problem *problem, double *move_m);
 /* Sets move_m_per_K [n_truss][3 n_attachment] to the same displacements for each row of tolerance.truss, caused by a
  * rise of its part by 1 K, m/K. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_load_case_stage_rest_by_heat(const hf_problem *problem, double *move_m_per_K);
-
-/* Finds, measures and stores all load cases of problem->states. If a load case has no shape, the summary gets its
- * status and the user a warning, and the run continues. Returns HF_OK; HF_INTERRUPTED if *stop is set (stop may be
- * NULL); HF_NO_MEMORY; or an error of the store, which may be NULL. */
-hf_status hf_load_case_stage_run(const hf_problem *problem, hf_load_case_stage *cases, hf_store *store,
-                                 const volatile sig_atomic_t *stop, hf_summary *summary, hf_messages *messages);
 
 void hf_load_case_stage_free(hf_load_case_stage *cases);
 

@@ -110,27 +110,6 @@ static hf_status repeat_finished(const hf_run *r, hf_summary *s, hf_messages *me
 
 /* ---- the stages ---- */
 
-static hf_status skip_optimize(hf_run *r, hf_summary *s, hf_messages *messages)
-{
-    (void)r, (void)s;
-    hf_warning(messages, "optimize: skipped, because no boundary cable has a free end");
-    return HF_OK;
-}
-
-static hf_status find_load_cases(hf_run *r, hf_summary *s, hf_messages *messages)
-{
-    return hf_load_case_stage_run(&r->problem, &r->cases, r->store, r->request->control.stop_requested, s, messages);
-}
-
-static hf_status find_samples(hf_run *r, hf_summary *s, hf_messages *messages)
-{
-    const hf_tolerance_stage stage = {r->request, &r->problem, r->shape, r->output, r->store};
-    hf_status status = hf_tolerance_stage_run(&stage, s, messages);
-    if (keeps_design(r, status) && !hf_tolerance_stage_is_task(r->request))
-        hf_warning(messages, "tolerance: the result has the design alone, without samples");
-    return status;
-}
-
 /* Ends a run that was told to stop, or that the machine failed after its design was found. Publishes what is stored, so
  * that the same command resumes it. A disk that is full then has its message unless the design was found: the file
  * published before and the journals remain. Returns `status`, or an error of the store. */
@@ -156,17 +135,15 @@ static int list_stages(hf_run *r, hf_run_stage *stage[STAGES_MAX], int *n_design
     const hf_case *c = &r->problem.settings;
     int n = 0;
     stage[n++] = hf_stage_form;
-    if (c->has_optimize && r->problem.model.n_variable == 0) {
-        stage[n++] = skip_optimize;
-    } else if (c->has_optimize) {
+    if (c->has_optimize) stage[n++] = hf_stage_begin;
+    if (c->has_optimize && r->problem.model.n_variable > 0) {
         r->plan = hf_optimiser_plan_of(&c->optimize);
-        stage[n++] = hf_stage_begin;
         if (r->plan.kind && !r->taken.design) stage[n++] = hf_stage_search;
         stage[n++] = r->taken.design ? hf_stage_point : c->optimize.n_front > 0 ? hf_stage_front : hf_stage_refine;
     }
     *n_design = n;
-    if (r->problem.load_cases.n) stage[n++] = find_load_cases;
-    if (c->has_tolerance) stage[n++] = find_samples;
+    if (r->problem.load_cases.n) stage[n++] = hf_stage_load_cases;
+    if (c->has_tolerance) stage[n++] = hf_stage_samples;
     return n;
 }
 
@@ -231,8 +208,10 @@ static hf_status execute(hf_run *r, hf_summary *s, hf_messages *messages)
     if (!r->request->output.no_file) HF_TRY(open_store(r, &state, messages));
     if (state == HF_STORE_FINISHED) return repeat_finished(r, s, messages);
     hf_status status = run_stages(r, s, messages);
-    bool has_result = leaves_result(status) || keeps_design(r, status);
-    return has_result && !hf_tolerance_stage_is_task(r->request) ? finish(r, s, status, messages) : status;
+    bool has_design_alone = keeps_design(r, status);
+    if (hf_tolerance_stage_is_task(r->request) || !(leaves_result(status) || has_design_alone)) return status;
+    if (has_design_alone) hf_warning(messages, "tolerance: the result has the design alone, without samples");
+    return finish(r, s, status, messages);
 }
 
 static void run_free(hf_run *r, hf_messages *messages)

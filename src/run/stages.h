@@ -4,6 +4,8 @@
  *     stages_search.c    initial design, batch and optimiser; the search by generations
  *     stages_refine.c    refinement by Levenberg-Marquardt, or a point of an earlier front
  *     stages_front.c     front of the objectives
+ *     load_case_stage.c  load cases of the as-built net
+ *     tolerance_stage.c  samples of the as-built net
  *     stages_measure.c   measures and far field of a shape, for all stages
  *
  * A stage returns HF_INTERRUPTED if the run was told to stop before its end; run.c then publishes what is stored. Other
@@ -54,7 +56,7 @@ typedef hf_status hf_run_stage(hf_run *run, hf_summary *summary, hf_messages *me
 /* Finds the shape of the case. Also returns HF_NOT_CONVERGED or the status of an ill-posed net. */
 hf_run_stage hf_stage_form;
 /* Prepares the initial design with its objectives, the batch and the optimiser. It allocates everything that the
- * generations need before the first one. */
+ * generations need before the first one. If there is no design variable, it only warns. */
 hf_run_stage hf_stage_begin;
 /* Evolves generations, each stored when it is evaluated, and stores the best individual. Also returns
  * HF_NO_FEASIBLE. */
@@ -67,6 +69,12 @@ hf_run_stage hf_stage_point;
 /* Finds and stores the front of the objectives. After a search it is that of the last generation, from which
  * Levenberg-Marquardt starts if the method ends with it. Otherwise Levenberg-Marquardt finds it alone. */
 hf_run_stage hf_stage_front;
+/* Finds, measures and stores all load cases of the as-built net. If a load case has no shape, the summary gets its
+ * status and the user a warning, and the run continues. */
+hf_run_stage hf_stage_load_cases;
+/* Finds all samples of the as-built net, or those of the task, and writes their statistics into the summary. Also
+ * returns HF_BAD_CASE, HF_SINGULAR or HF_EXISTS. */
+hf_run_stage hf_stage_samples;
 
 /* Measures the shape in the workspace as that of `stage`: the tensions of its sets, the limits that a design reaches
  * and, for a case with a section `surface`, the surface and its far field. Returns HF_OK; HF_NO_MEMORY; HF_INTERRUPTED

@@ -19,6 +19,10 @@ hf_status hf_stage_begin(hf_run *r, hf_summary *s, hf_messages *messages)
 {
     hf_problem *p = &r->problem;
     hf_form_result *form = &s->stage[HF_STAGE_FORM].result;
+    if (p->model.n_variable == 0) {
+        hf_warning(messages, "optimize: skipped, because no boundary cable has a free end");
+        return HF_OK;
+    }
     if (hf_places_keep(p, &r->places) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the target positions");
     HF_TRY(hf_problem_base(p, messages));

@@ -219,7 +219,9 @@ hf_status hf_tolerance_stage_look(const hf_run_request *q, const hf_problem *p, 
 /* ---- samples ---- */
 
 typedef struct {
-    const hf_tolerance_stage *stage;
+    const hf_run_request *request;
+    const hf_problem *problem;
+    const hf_workspace *shape; /* of the result, an equilibrium of problem->model */
     hf_built built;
     hf_montecarlo montecarlo;
     hf_gain_beam beam; /* of the net at the target positions, used for all shapes */
@@ -244,7 +246,7 @@ static void report(const job *j, hf_run_progress now)
 {
     now.phase = HF_RUN_TOLERANCE;
     now.best_psi_m = now.merit = NAN;
-    hf_run_report(&j->stage->request->control, now);
+    hf_run_report(&j->request->control, now);
 }
 
 static void report_samples(const job *j, long n_new, bool is_last)
@@ -270,7 +272,7 @@ static void report_scale(void *context, double scale)
 
 static hf_status find_samples(job *j, hf_messages *messages)
 {
-    const hf_run_request *q = j->stage->request;
+    const hf_run_request *q = j->request;
     hf_samples *s = &j->samples;
     long n_new = 0;
     report_samples(j, 0, false);
@@ -288,18 +290,18 @@ static hf_status find_samples(job *j, hf_messages *messages)
     return HF_OK;
 }
 
-static hf_status open_samples(job *j, hf_messages *messages)
+/* Opens the journals next to the result file; "": there is none. */
+static hf_status open_samples(job *j, const char *beside, hf_messages *messages)
 {
-    const hf_tolerance_stage *stage = j->stage;
-    const hf_problem *p = stage->problem;
-    const hf_run_request *q = stage->request;
+    const hf_problem *p = j->problem;
+    const hf_run_request *q = j->request;
     char identity[65];
     bool is_task = hf_tolerance_stage_is_task(q);
-    const char *output = *stage->output && !q->part.of_sweep ? stage->output : NULL; /* points of a sweep begin anew */
+    const char *output = *beside && !q->part.of_sweep ? beside : NULL; /* points of a sweep begin anew */
     if (identify(p, &j->built, identity) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
-    const char *beside = *stage->output ? stage->output : NULL;
-    HF_TRY(hf_samples_open(output, beside, q->part.task, is_task ? q->part.tasks : 0, identity, q->output.restart,
-                           p->settings.tolerance.samples, j->montecarlo.n_chunk, &j->samples, messages));
+    HF_TRY(hf_samples_open(output, *beside ? beside : NULL, q->part.task, is_task ? q->part.tasks : 0, identity,
+                           q->output.restart, p->settings.tolerance.samples, j->montecarlo.n_chunk, &j->samples,
+                           messages));
     j->samples.stop = q->control.stop_requested;
     if (output && q->part.tasks > 0 && !is_task)
         HF_TRY(hf_samples_collect(&j->samples, output, q->part.tasks, q->output.restart));
@@ -308,7 +310,7 @@ static hf_status open_samples(job *j, hf_messages *messages)
 
 static hf_status open_montecarlo(job *j, hf_messages *messages)
 {
-    const hf_problem *p = j->stage->problem;
+    const hf_problem *p = j->problem;
     const hf_tolerance_settings *t = &p->settings.tolerance;
     hf_material material;
     hf_arena arena = {0};
@@ -321,8 +323,8 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
         hf_built_heat heat = {t->sigma_temperature_K > 0 ? material.expansion_per_K : NULL,
                               t->n_truss ? by_heat : NULL};
         if (status == HF_OK)
-            status = hf_montecarlo_create(t, &j->built, &p->surface, &p->facets, &heat,
-                                          j->stage->request->control.threads, &j->montecarlo);
+            status = hf_montecarlo_create(t, &j->built, &p->surface, &p->facets, &heat, j->request->control.threads,
+                                          &j->montecarlo);
         if (status == HF_NO_MEMORY) hf_error(messages, status, "tolerance: out of memory");
         if (status == HF_SINGULAR)
             hf_error(messages, status,
@@ -340,9 +342,9 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
  * *by_error_N is the change of its tension with fixed ends, EA sigma/length, an upper bound. */
 static int find_touchiest(const job *j, double *by_error_N, double *sigma_m)
 {
-    const hf_problem *p = j->stage->problem;
+    const hf_problem *p = j->problem;
     const hf_tolerance_settings *t = &p->settings.tolerance;
-    const hf_workspace *w = j->stage->shape;
+    const hf_workspace *w = j->shape;
     int touchiest = 0;
     double most = -1;
     for (int e = 0; e < p->model.n_cable; e++) {
@@ -360,10 +362,10 @@ static int find_touchiest(const job *j, double *by_error_N, double *sigma_m)
 /* Returns the number of slack cables of the design. *first becomes the first of them. */
 static int count_slack(const job *j, int *first)
 {
-    const hf_model *m = &j->stage->problem->model;
+    const hf_model *m = &j->problem->model;
     int n = 0;
     for (int e = m->n_cable - 1; e >= 0; e--) {
-        if (!hf_metrics_is_slack(m, j->stage->shape, e)) continue;
+        if (!hf_metrics_is_slack(m, j->shape, e)) continue;
         *first = e;
         n++;
     }
@@ -373,7 +375,7 @@ static int count_slack(const job *j, int *first)
 /* Warns about samples with slack cables: such a net is not the one that was designed. */
 static void warn_of_slack(const job *j, const hf_tolerance_summary *t, hf_messages *messages)
 {
-    const hf_scene *scene = &j->stage->problem->scene;
+    const hf_scene *scene = &j->problem->scene;
     double error_N = 0, sigma_m = 0;
     char why[320] = "";
     int e = 0;
@@ -388,8 +390,8 @@ static void warn_of_slack(const job *j, const hf_tolerance_summary *t, hf_messag
             why, sizeof why,
             ": an error of %.3g mm in the %.3g m of cable '%.80s' (EA %.3g N) changes its tension of %.3g N by up to "
             "%.3g N",
-            sigma_m * 1e3, j->stage->shape->length_m[e], scene->cable_id[e], j->built.scene.EA_N[e],
-            j->stage->shape->tension_N[e], error_N);
+            sigma_m * 1e3, j->shape->length_m[e], scene->cable_id[e], j->built.scene.EA_N[e], j->shape->tension_N[e],
+            error_N);
     hf_warning(messages,
                "tolerance: slack cables in %d of %d samples%s. Raise the minimum tensions (form.pretension_N, "
                "optimize.limits), use cables with a lower EA, or lower the errors (tolerance.sigma_cut_m)",
@@ -407,9 +409,9 @@ static void drop_tolerance(hf_summary *summary)
     summary->tolerance = NULL;
 }
 
-static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
+static hf_status sum_up(job *j, hf_store *store, hf_summary *summary, hf_messages *messages)
 {
-    const hf_tolerance_settings *t = &j->stage->problem->settings.tolerance;
+    const hf_tolerance_settings *t = &j->problem->settings.tolerance;
     const hf_statistics_rows rows = {j->samples.n, hf_samples_read, &j->samples};
     hf_tolerance_summary *to = summary->tolerance = calloc(1, sizeof *to);
     if (!to) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
@@ -425,12 +427,12 @@ static hf_status sum_up(job *j, hf_summary *summary, hf_messages *messages)
     HF_TRY(status);
     warn_of_slack(j, to, messages);
     to->tolerance_wall_s = hf_clock_s() - j->begin_s;
-    return hf_store_tolerance(j->stage->store, &j->montecarlo, &rows, messages);
+    return hf_store_tolerance(store, &j->montecarlo, &rows, messages);
 }
 
 static void aim_beam(job *j, hf_messages *messages)
 {
-    const hf_problem *p = j->stage->problem;
+    const hf_problem *p = j->problem;
     if (!hf_montecarlo_measures(&p->surface, &p->facets, HF_TOLERANCE_PATTERN_LOSS)) return;
     if (make_beam(p, &j->beam))
         j->montecarlo.beam = &j->beam;
@@ -459,8 +461,8 @@ static double first_order_s(const hf_model *m)
 
 static hf_status try_samples(job *j, double most_s, hf_tolerance_trial *trial, hf_messages *messages)
 {
-    const hf_problem *p = j->stage->problem;
-    HF_TRY(hf_built_make("", &p->scene, &p->model, &p->settings.form, j->stage->shape, &j->built, messages));
+    const hf_problem *p = j->problem;
+    HF_TRY(hf_built_make("", &p->scene, &p->model, &p->settings.form, j->shape, &j->built, messages));
     HF_TRY(open_montecarlo(j, messages));
     aim_beam(j, messages);
     trial->begin_s = hf_clock_thread_cpu_s() - j->begin_s;
@@ -498,8 +500,7 @@ hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape,
                                  hf_tolerance_trial *trial)
 {
     const hf_run_request request = {.control.threads = 1};
-    const hf_tolerance_stage stage = {&request, p, shape, "", NULL};
-    job j = {.stage = &stage, .begin_s = hf_clock_thread_cpu_s()};
+    job j = {.request = &request, .problem = p, .shape = shape, .begin_s = hf_clock_thread_cpu_s()};
     hf_messages messages = {0};
     *trial = (hf_tolerance_trial){.begin_s = first_order_s(&p->model)};
     if (p->settings.tolerance.required_yield > 0) {
@@ -514,27 +515,27 @@ hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape,
 
 /* ---- the stage ---- */
 
-static hf_status work_off_stage(job *j, hf_summary *summary, hf_messages *messages)
+static hf_status work_off(job *j, hf_run *r, hf_summary *summary, hf_messages *messages)
 {
-    const hf_problem *p = j->stage->problem;
+    const hf_problem *p = j->problem;
     char place[HF_PATH_SIZE + 128];
     place_section(&p->settings, place, sizeof place);
-    HF_TRY(hf_built_make(place, &p->scene, &p->model, &p->settings.form, j->stage->shape, &j->built, messages));
-    j->built.stop = j->stage->request->control.stop_requested;
+    HF_TRY(hf_built_make(place, &p->scene, &p->model, &p->settings.form, j->shape, &j->built, messages));
+    j->built.stop = j->request->control.stop_requested;
     /* before the first sample: the first order takes a while in large nets */
     report(j, (hf_run_progress){.samples_all = p->settings.tolerance.samples});
     HF_TRY(open_montecarlo(j, messages));
     aim_beam(j, messages);
-    HF_TRY(open_samples(j, messages));
+    HF_TRY(open_samples(j, r->output, messages));
     HF_TRY(find_samples(j, messages));
     if (j->samples.n_have < j->samples.n_all) return HF_OK; /* a task of several */
-    return sum_up(j, summary, messages);
+    return sum_up(j, r->store, summary, messages);
 }
 
-hf_status hf_tolerance_stage_run(const hf_tolerance_stage *stage, hf_summary *summary, hf_messages *messages)
+hf_status hf_stage_samples(hf_run *r, hf_summary *summary, hf_messages *messages)
 {
-    job j = {.stage = stage, .begin_s = hf_clock_s()};
-    hf_status status = work_off_stage(&j, summary, messages);
+    job j = {.request = r->request, .problem = &r->problem, .shape = r->shape, .begin_s = hf_clock_s()};
+    hf_status status = work_off(&j, r, summary, messages);
     job_free(&j);
     return status;
 }

@@ -6,15 +6,6 @@
 #include <hifdm/problem.h>
 #include <hifdm/run.h>
 
-/* What the stage borrows from a run. */
-typedef struct {
-    const hf_run_request *request;
-    const hf_problem *problem;
-    const hf_workspace *shape; /* of the result, an equilibrium of problem->model */
-    const char *output;        /* result file, next to which journals are; "": none */
-    hf_store *store;           /* NULL: none is written */
-} hf_tolerance_stage;
-
 /* Returns true if the request is one task of several. Such a task finds samples and writes no result. */
 static inline bool hf_tolerance_stage_is_task(const hf_run_request *request)
 {
@@ -24,7 +15,7 @@ static inline bool hf_tolerance_stage_is_task(const hf_run_request *request)
 /* Removes the journals next to a finished result, which are not needed any more. */
 void hf_tolerance_stage_end(const hf_run_request *request, const char *output);
 
-/* Refuses a case for which hf_tolerance_stage_run would fail before it solves anything: cables without EA or expansion,
+/* Refuses a case for which hf_stage_samples would fail before it solves anything: cables without EA or expansion,
  * struts, errors that may leave nothing of a cable, measures that the net does not have. Returns HF_OK or HF_BAD_CASE.
  * Without a section `tolerance` it returns HF_OK, or HF_BAD_USAGE if is_demanded. */
 hf_status hf_tolerance_stage_check(const hf_problem *problem, bool is_demanded, hf_messages *messages);
@@ -47,9 +38,5 @@ typedef struct {
  * HF_OK, or the status that prevents samples, without a message. */
 hf_status hf_tolerance_stage_try(const hf_problem *problem, const hf_workspace *shape, double most_s,
                                  hf_tolerance_trial *trial);
-
-/* Finds all samples, or those of request->task, and writes their statistics into the summary. Returns HF_OK;
- * HF_INTERRUPTED, after which the same request resumes; HF_BAD_CASE, HF_SINGULAR, HF_EXISTS, HF_IO, HF_NO_MEMORY. */
-hf_status hf_tolerance_stage_run(const hf_tolerance_stage *stage, hf_summary *summary, hf_messages *messages);
 
 #endif
