@@ -9,17 +9,21 @@
 #include <stdio.h>
 #include <string.h>
 
-void hf_config_check_set(hf_config_faults *f, const char *list, int row, const char *set)
+static const char *set_fault(const char *set)
 {
     bool is_group = !strcmp(set, hf_group_word[0]) || !strcmp(set, hf_group_word[1]) || !strcmp(set, "all");
-    const char *fault = *set && !is_group ? hf_cable_set_name_fault(set) : NULL;
+    return *set && !is_group ? hf_cable_set_name_fault(set) : NULL;
+}
+
+void hf_config_check_set(hf_config_faults *f, const char *list, int row, const char *set)
+{
+    const char *fault = set_fault(set);
     if (fault) hf_config_fault_in_row(f, list, row, "set", fault);
 }
 
 static void check_adjust(const hf_adjust_settings *a, hf_config_faults *f)
 {
-    bool is_group = !strcmp(a->set, hf_group_word[0]) || !strcmp(a->set, hf_group_word[1]) || !strcmp(a->set, "all");
-    const char *fault = is_group ? NULL : hf_cable_set_name_fault(a->set);
+    const char *fault = set_fault(a->set);
     if (fault) hf_config_fault_of(f, "adjust.set", fault);
     if (a->range_m * (1 + 1e-12) < a->step_m)
         hf_config_fault_of(f, "adjust.range_m", "is smaller than adjust.step_m, which allows no move at all");

@@ -16,37 +16,34 @@ void hf_config_fault_at(hf_config_faults *faults, size_t line, size_t column, co
              where, path, what, detail);
 }
 
-/* Returns the location of a key, or else that of its row, or "". *is_given: the case contains the key. */
-static const char *location_of(const char *where_given, const char *path, bool *is_given)
+/* Writes "FILE:LINE:COLUMN: KEY", with the line of the key, or else that of its row, or neither; "--set KEY" for a key
+ * of the command line. Returns true if the case contains the key. */
+static bool write_location(const char *where_given, const char *file, const char *path, char *text, size_t size)
 {
     hf_key key = {0};
     const char *where = "";
     if (where_given && hf_key_find(path, &key)) where = where_given + (size_t)key.i_location * HF_CONFIG_WHERE_SIZE;
-    *is_given = *where != '\0';
-    if (*is_given || !where_given || !key.list) return where;
-    return where_given + (size_t)hf_key_of_row(key.list, key.row, -1).i_location * HF_CONFIG_WHERE_SIZE;
+    bool is_given = *where != '\0';
+    if (!is_given && key.list)
+        where = where_given + (size_t)hf_key_of_row(key.list, key.row, -1).i_location * HF_CONFIG_WHERE_SIZE;
+    if (!strcmp(where, "--set"))
+        snprintf(text, size, "--set %s", path);
+    else
+        snprintf(text, size, "%s:%s%s %s", file, where, *where ? ":" : "", path);
+    return is_given;
 }
 
 bool hf_config_location(const hf_case *c, const char *key, char *text, size_t size)
 {
-    bool is_given = false;
-    const char *where = location_of(c->where_given, key, &is_given);
-    if (!strcmp(where, "--set"))
-        snprintf(text, size, "--set %s", key);
-    else
-        snprintf(text, size, "%s:%s%s %s", c->path, where, *where ? ":" : "", key);
-    return is_given;
+    return write_location(c->where_given, c->path, key, text, size);
 }
 
 void hf_config_fault_of(hf_config_faults *faults, const char *path, const char *what)
 {
-    bool is_given;
-    const char *where = location_of(faults->where_given, path, &is_given);
+    char location[HF_PATH_SIZE + HF_CONFIG_WHERE_SIZE + HF_KEY_SIZE];
+    write_location(faults->where_given, faults->path, path, location, sizeof location);
     faults->failed = true;
-    if (!strcmp(where, "--set"))
-        hf_error(faults->messages, HF_BAD_CASE, "--set %s: %s", path, what);
-    else
-        hf_error(faults->messages, HF_BAD_CASE, "%s:%s%s %s: %s", faults->path, where, *where ? ":" : "", path, what);
+    hf_error(faults->messages, HF_BAD_CASE, "%s: %s", location, what);
 }
 
 void hf_config_fault_in_row(hf_config_faults *f, const char *list, int row, const char *key, const char *what)

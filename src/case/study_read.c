@@ -489,26 +489,34 @@ static int name_of(const char *word, const char *const *names, int n)
     return -1;
 }
 
+static const char *const root_name[] = {"base", "title", "sweep"};
+enum { N_ROOT_NAME = sizeof root_name / sizeof *root_name };
+
+/* Finds the values of the root_name, the last one of each. */
+static void find_names(yaml_document_t *document, const yaml_node_t *root, const yaml_node_t *found[N_ROOT_NAME])
+{
+    if (!root || root->type != YAML_MAPPING_NODE) return;
+    for (yaml_node_pair_t *p = root->data.mapping.pairs.start; p < root->data.mapping.pairs.top; p++) {
+        int k = name_of(text_of(yaml_document_get_node(document, p->key)), root_name, N_ROOT_NAME);
+        if (k >= 0) found[k] = yaml_document_get_node(document, p->value);
+    }
+}
+
 static void read_root(reader *r, const yaml_node_t *root)
 {
-    static const char *const names[] = {"base", "title", "sweep"};
-    enum { N_NAME = sizeof names / sizeof *names };
-    const yaml_node_t *found[N_NAME] = {0};
+    const yaml_node_t *found[N_ROOT_NAME] = {0};
     yaml_mark_t start = {0};
     if (!root || root->type != YAML_MAPPING_NODE) {
         fault(r, start, "", "the file must be key: value lines");
         return;
     }
-    for (yaml_node_pair_t *p = root->data.mapping.pairs.start; p < root->data.mapping.pairs.top; p++) {
-        int k = name_of(text_of(node_at(r, p->key)), names, N_NAME);
-        if (k >= 0) found[k] = node_at(r, p->value);
-    }
+    find_names(r->document, root, found);
     const yaml_node_t *base = found[0], *title = found[1], *sweep = found[2];
     for (yaml_node_pair_t *p = root->data.mapping.pairs.start; base && p < root->data.mapping.pairs.top; p++) {
         const yaml_node_t *key = node_at(r, p->key);
         if (is_repeated(r, root, p, "")) continue;
-        if (name_of(text_of(key), names, N_NAME) < 0)
-            fault_unknown(r, key->start_mark, "", text_of(key), names, N_NAME);
+        if (name_of(text_of(key), root_name, N_ROOT_NAME) < 0)
+            fault_unknown(r, key->start_mark, "", text_of(key), root_name, N_ROOT_NAME);
     }
     snprintf(r->study->base, sizeof r->study->base, "%s", r->study->path);
     if (base) read_base(r, base);
@@ -528,56 +536,57 @@ static int compare_axes(const void *a, const void *b)
     return strcmp(old_x, old_y);
 }
 
-static void parse(reader *r, const char *text, size_t length)
+/* Parses a text as YAML. Returns false if it is none, with *problem and its *mark, or if memory ran out, with NULL. The
+ * caller deletes the document. */
+static bool load_yaml(const char *text, size_t length, yaml_document_t *document, const char **problem,
+                      yaml_mark_t *mark)
 {
     yaml_parser_t parser;
-    yaml_document_t document;
-    if (!yaml_parser_initialize(&parser)) {
-        r->no_memory = true;
-        return;
-    }
+    *problem = NULL;
+    if (!yaml_parser_initialize(&parser)) return false;
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
-    if (!yaml_parser_load(&parser, &document)) {
-        if (parser.problem)
-            fault(r, parser.problem_mark, "", "YAML: %s", parser.problem);
-        else
-            r->no_memory = true; /* out of memory; `error` does not always show it */
-    } else {
+    bool is_loaded = yaml_parser_load(&parser, document);
+    *problem = parser.problem; /* `error` does not always show that there is no memory */
+    *mark = parser.problem_mark;
+    yaml_parser_delete(&parser);
+    return is_loaded;
+}
+
+static void parse(reader *r, const char *text, size_t length)
+{
+    const char *problem;
+    yaml_mark_t mark;
+    yaml_document_t document;
+    if (load_yaml(text, length, &document, &problem, &mark)) {
         r->document = &document;
         read_root(r, yaml_document_get_root_node(&document));
         yaml_document_delete(&document);
+    } else if (problem) {
+        fault(r, mark, "", "YAML: %s", problem);
+    } else {
+        r->no_memory = true;
     }
     r->document = NULL;
-    yaml_parser_delete(&parser);
 }
 
 bool hf_study_is(const char *path)
 {
     char *text;
     size_t length;
-    yaml_parser_t parser;
+    const char *problem;
+    yaml_mark_t mark;
     yaml_document_t document;
+    const yaml_node_t *found[N_ROOT_NAME] = {0};
     hf_messages unwanted = {0};
-    bool is = false;
     hf_status status = hf_text_read_file(path, HF_BAD_CASE, &text, &length, &unwanted);
     hf_messages_free(&unwanted);
     if (status != HF_OK) return false;
-    if (length <= STUDY_MAX && !hf_text_too_deep(text) && yaml_parser_initialize(&parser)) {
-        yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
-        if (yaml_parser_load(&parser, &document)) {
-            const yaml_node_t *root = yaml_document_get_root_node(&document);
-            bool is_map = root && root->type == YAML_MAPPING_NODE;
-            for (yaml_node_pair_t *p = is_map ? root->data.mapping.pairs.start : NULL;
-                 is_map && p < root->data.mapping.pairs.top; p++) {
-                const char *key = text_of(yaml_document_get_node(&document, p->key));
-                is |= !strcmp(key, "base") || !strcmp(key, "sweep");
-            }
-            yaml_document_delete(&document);
-        }
-        yaml_parser_delete(&parser);
+    if (length <= STUDY_MAX && !hf_text_too_deep(text) && load_yaml(text, length, &document, &problem, &mark)) {
+        find_names(&document, yaml_document_get_root_node(&document), found);
+        yaml_document_delete(&document);
     }
     free(text);
-    return is;
+    return found[0] || found[2]; /* base, sweep */
 }
 
 hf_status hf_study_read(const char *path, hf_study *study, hf_messages *messages)
