@@ -390,19 +390,6 @@ int hf_flat_reals(const hf_flat *f, const char *name, double *to)
 #define NEEDS_CASE "open a case first"
 #define NEEDS_SHAPE "the case has no shape yet: hf_flat_form finds it"
 
-/* Makes the batch. The problem's workspace must hold the shape of the case. */
-static hf_status make_batch(hf_flat *f)
-{
-    hf_problem *p = &f->problem;
-    HF_TRY(hf_problem_base(p, &f->messages));
-    if (hf_problem_batch(p, f->n_thread) != HF_OK)
-        return hf_error(&f->messages, HF_NO_MEMORY, "out of memory for the batch of a net of %d nodes",
-                        p->model.n_node);
-    HF_TRY(hf_problem_share(p, &f->messages));
-    f->is_ready = true;
-    return HF_OK;
-}
-
 static hf_status find_form(hf_flat *f)
 {
     hf_problem *p = &f->problem;
@@ -413,7 +400,8 @@ static hf_status find_form(hf_flat *f)
     HF_TRY(keep_shape(f, &p->workspace));
     *r = p->form;
     HF_TRY(hf_problem_explain(p, &f->messages));
-    if (!f->is_ready) HF_TRY(make_batch(f));
+    if (!f->is_ready) HF_TRY(hf_problem_prepare(p, f->n_thread, &f->messages));
+    f->is_ready = true;
     if (p->objectives.n_objective &&
         hf_objectives_measure(&p->objectives, &p->workspace, &p->point, r->objective, &r->merit) != HF_OK)
         return hf_error(&f->messages, HF_NO_MEMORY, "out of memory for the objectives");

@@ -18,10 +18,7 @@ hf_status hf_problem_open(const char *path, const char *const *set, int n_set, i
     HF_TRY(hf_problem_allocate(p, messages));
     hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
     HF_TRY(hf_problem_explain(p, messages));
-    HF_TRY(hf_problem_base(p, messages));
-    if (hf_problem_batch(p, n_thread) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the batch of a net of %d nodes", p->model.n_node);
-    return hf_problem_share(p, messages);
+    return hf_problem_prepare(p, n_thread, messages);
 }
 
 bool hf_problem_has_merit(const hf_problem *p)

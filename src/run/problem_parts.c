@@ -395,6 +395,14 @@ hf_status hf_problem_batch(hf_problem *p, int n_thread)
     return status;
 }
 
+hf_status hf_problem_prepare(hf_problem *p, int n_thread, hf_messages *messages)
+{
+    HF_TRY(hf_problem_base(p, messages));
+    if (hf_problem_batch(p, n_thread) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the batch of a net of %d nodes", p->model.n_node);
+    return hf_problem_share(p, messages);
+}
+
 hf_status hf_problem_share(hf_problem *p, hf_messages *messages)
 {
     int n_taut = 0;

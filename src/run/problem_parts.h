@@ -59,4 +59,7 @@ hf_status hf_problem_batch(hf_problem *problem, int n_thread);
  * other bits. */
 hf_status hf_problem_share(hf_problem *problem, hf_messages *messages);
 
+/* Calls hf_problem_base, hf_problem_batch and hf_problem_share. Returns HF_OK or the status of the one that failed. */
+hf_status hf_problem_prepare(hf_problem *problem, int n_thread, hf_messages *messages);
+
 #endif
