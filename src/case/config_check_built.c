@@ -279,8 +279,7 @@ void hf_config_check_nets(const hf_case *c, const char *list, int n_objective, c
         if (*g->load_case) check_load_case(c, list, i, g, f);
         if (g->over == HF_OVER_SAMPLES && !c->has_tolerance)
             hf_config_fault_in_row(f, list, i, "over",
-                                   "samples needs a section tolerance, which says how large errors "
-                                   "are");
+                                   "samples needs a section tolerance, which says how large errors are");
         if (g->over == HF_OVER_DESIGN && !hf_objective_takes_load_cases(g) &&
             hf_config_is_given_in_row(f, list, i, "take"))
             hf_config_fault_in_row(f, list, i, "take", "has a meaning for load_case: all and over: samples alone");

@@ -128,8 +128,7 @@ void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, co
         name_loaded_chains(p, w, &chains);
         hf_warning(messages,
                    "%d straight chains of length-controlled cables carry lateral load, which no finite tension can "
-                   "balance, so "
-                   "the boundary tensions depend on where the iteration stopped: %s",
+                   "balance, so the boundary tensions depend on where the iteration stopped: %s",
                    r->n_loaded_chain, close_names(&chains));
     }
     name_loose(p, stage, w, r, messages);
@@ -284,8 +283,7 @@ hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
         if (r->culprit >= 0) name_node(p, r->culprit, node);
         return hf_error(messages, r->status,
                         "ill-posed: the force density matrix is singular or not positive definite at node %s: its "
-                        "cables are slack, "
-                        "cannot balance its load, or do not lead to a support",
+                        "cables are slack, cannot balance its load, or do not lead to a support",
                         node);
     }
 }
@@ -677,8 +675,7 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, hf_messag
     if (above == 0)
         return hf_error(messages, HF_NO_FEASIBLE,
                         "optimize: no feasible design: none of %ld evaluations has a shape (%s); narrow %s to keep "
-                        "designs closer to "
-                        "the initial design",
+                        "designs closer to the initial design",
                         shapeless, hf_status_text(of->trial_status[0]), wider);
     char of_initial[64] = "has no shape", others[64] = "";
     if (isfinite(base.boundary_tension_ratio))
@@ -725,9 +722,8 @@ void hf_result_doubt_truss(const hf_problem *p, const hf_carrier_state *truss, c
     if (off_m > fmax(SECOND_ORDER_DOUBT * span_m, SECOND_ORDER_PSI * psi_m))
         hf_warning(
             messages,
-            "truss: its attachments deflect so far (%.3g mm in the result) that its linear theory may have an error "
-            "of about %.2g mm: stiffen the truss (tubes of larger diameter, more bays) or lower "
-            "form.pretension_N",
+            "truss: its attachments deflect so far (%.3g mm in the result) that its linear theory may have an error of "
+            "about %.2g mm: stiffen the truss (tubes of larger diameter, more bays) or lower form.pretension_N",
             move_m * 1e3, off_m * 1e3);
 }
 

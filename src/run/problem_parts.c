@@ -101,9 +101,8 @@ static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
     if (loss_dB > FACET_LOSS_MOST_DB)
         hf_warning(
             messages,
-            "surface.pattern: at %g GHz the facets are coarse: even at the target positions their half-path error "
-            "is %.3g mm RMS, which loses %s into lobes of their own. About %.0f facets instead of %d would lose "
-            "%g dB",
+            "surface.pattern: at %g GHz the facets are coarse: even at the target positions their half-path error is "
+            "%.3g mm RMS, which loses %s into lobes of their own. About %.0f facets instead of %d would lose %g dB",
             most_Hz / 1e9, m.facet_fit_half_path_rms_m * 1e3, loss,
             ceil(p->facets.n_facet * sqrt(loss_dB / FACET_LOSS_MOST_DB)), p->facets.n_facet, FACET_LOSS_MOST_DB);
     return HF_OK;
@@ -153,8 +152,7 @@ static hf_status make_scene(const hf_problem_source *source, hf_problem *p, hf_m
     if (!source) return hf_config_scene(&p->settings, &p->scene, messages);
     if (!p->settings.has_import || *p->settings.facets_path)
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: a net of arrays needs a section scene with an import of nodes and "
-                        "cables, and no facets",
+                        "%s: a net of arrays needs a section scene with an import of nodes and cables, and no facets",
                         p->settings.path);
     HF_TRY(hf_scene_from_arrays(source->net, p->settings.EA_N, &p->scene, messages));
     HF_TRY(hf_scene_check(&p->scene, messages));
@@ -298,8 +296,7 @@ static hf_status check_variable(const hf_problem *p, int k, hf_messages *message
     if (is_cable && !(base > 0))
         return hf_error(messages, HF_NO_FEASIBLE,
                         "optimize: %s '%s' has no tension after form-finding from which to start; give it a shorter "
-                        "length, or a law "
-                        "that keeps it taut",
+                        "length, or a law that keeps it taut",
                         is_row ? "cable" : "boundary cable", name);
     if (is_row)
         hf_messages_location(messages, where, "optimize.variables.%d", p->model.variable[k].setting);

@@ -46,8 +46,7 @@ static hf_status read_words(const char *point, hf_front_origin *taken, hf_messag
     if (length == 0 || !hf_text_uint64(colon + 1, &number) || number < 1 || number > INT_MAX)
         return hf_error(
             messages, HF_BAD_USAGE,
-            "--point must be FILE:N, a result with a front and the number of a point, such as night.h5:7, not "
-            "'%s'",
+            "--point must be FILE:N, a result with a front and the number of a point, such as night.h5:7, not '%s'",
             point);
     if (length >= sizeof taken->path) return hf_error(messages, HF_BAD_USAGE, "--point: the path is too long");
     snprintf(taken->path, sizeof taken->path, "%.*s", (int)length, point);

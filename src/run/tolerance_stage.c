@@ -57,8 +57,7 @@ static hf_status check_measures(const hf_problem *p, hf_messages *messages)
         const char *fault = NULL, *better = loss_of_nodes(p, measure);
         if (better)
             hf_warning(messages,
-                       "tolerance.require.%d.measure: %s counts the nodes only; %s also counts the facets between "
-                       "them",
+                       "tolerance.require.%d.measure: %s counts the nodes only; %s also counts the facets between them",
                        i, hf_tolerance_measure_word[measure], better);
         if (!hf_montecarlo_measures(&p->surface, &p->facets, measure))
             fault = "this net has no facets";
