@@ -54,8 +54,7 @@ const hf_field hf_field_table[] = {
     {"scene.EA_boundary_N", HF_FIELD_DOUBLE, AT(EA_N[1]), HF_ABOVE_ZERO, 1e15, "", "N", NULL,
      "the same of the boundary cables"},
 
-#define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
-    {"scene." #section "." #member, type, AT(section.member), min, max, default_value, unit, words, help},
+#define FIELD(section, member, type, ...) {"scene." #section "." #member, type, AT(section.member), __VA_ARGS__},
 #define FIELDS(section, type, KEYS, help) KEYS(FIELD, section)
     HF_GENERATORS(FIELDS)
 #undef FIELDS
@@ -248,34 +247,21 @@ const hf_field hf_field_table[] = {
      "required part of the nets that meet tolerance.require. The run reports by which factor all errors may grow, or "
      "must shrink; 0: it does not"},
 
-#define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
-    {"truss." #member, type, AT(section.member), min, max, default_value, unit, words, help},
+#define FIELD(section, member, type, ...) {"truss." #member, type, AT(section.member), __VA_ARGS__},
     HF_TRUSS_KEYS(FIELD, truss)
 #undef FIELD
         {"truss.match_tolerance_m", HF_FIELD_DOUBLE, AT(truss.match_tolerance_m), 0, 1e3, "1e-6", "m", NULL,
          "maximum distance between a support of the net and the truss node that carries it"},
 
-#define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
-    {"truss." #section "." #member, type, AT(truss.section.member), min, max, default_value, unit, words, help},
+#define FIELD(section, member, type, ...) {"truss." #section "." #member, type, AT(truss.section.member), __VA_ARGS__},
 #define UNIT(section, diameter, panels) HF_TRUSS_UNIT_KEYS(FIELD, section, diameter, panels)
     UNIT(bud, "0.03", "2") UNIT(mbug, "0.03", "1") UNIT(abug, "0.025", "1")
 #undef UNIT
-#undef FIELD
 
-#define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
-    {"truss." #section "." #member, type, AT(truss.section.member), min, max, default_value, unit, words, help},
         HF_RING_KEYS(FIELD, ring)
 #undef FIELD
-#define FIELD(section, member, type, min, max, default_value, unit, words, help)                                       \
-    {"truss.ring." #section "." #member,                                                                               \
-     type,                                                                                                             \
-     AT(truss.ring.section.member),                                                                                    \
-     min,                                                                                                              \
-     max,                                                                                                              \
-     default_value,                                                                                                    \
-     unit,                                                                                                             \
-     words,                                                                                                            \
-     help},
+#define FIELD(section, member, type, ...)                                                                              \
+    {"truss.ring." #section "." #member, type, AT(truss.ring.section.member), __VA_ARGS__},
             HF_TUBE_KEYS(FIELD, longeron, "0.03") HF_TUBE_KEYS(FIELD, vertical, "0.03")
                 HF_TUBE_KEYS(FIELD, diagonal, "0.02")
 #undef FIELD
@@ -347,8 +333,6 @@ static const hf_field objective_field[] = {
     {"weight", HF_FIELD_DOUBLE, IN(weight), HF_ABOVE_ZERO, BIG, "1", "", NULL,
      "of this objective in the merit of a design, the root of the sum of (weight * value)^2"},
 };
-/* A row of optimize.front has the keys of a row of optimize.objective without the last one, weight. */
-enum { N_OBJECTIVE_FIELD = sizeof objective_field / sizeof *objective_field, N_FRONT_FIELD = N_OBJECTIVE_FIELD - 1 };
 #undef IN
 
 #define IN(member) offsetof(hf_limit_settings, member)
@@ -426,45 +410,39 @@ static const hf_field truss_heat_field[] = {
 };
 #undef IN
 
-#define N_VARIABLE_FIELD (int)(sizeof variable_field / sizeof *variable_field)
-#define N_LIMIT_FIELD (int)(sizeof limit_field / sizeof *limit_field)
+#define N_KEY(keys) (int)(sizeof keys / sizeof *keys)
 #define LIST(name, count, row, max_row, keys, n_key, help)                                                             \
     {                                                                                                                  \
-        "optimize." name, AT(optimize.count), AT(optimize.row), sizeof(((hf_case *)0)->optimize.row[0]), max_row,      \
-            keys, n_key, help                                                                                          \
-    }
-#define BUILT_LIST(name, count, row, max_row, keys, help)                                                              \
-    {                                                                                                                  \
-        name, AT(built.count), AT(built.row), sizeof(((hf_case *)0)->built.row[0]), max_row, keys,                     \
-            sizeof keys / sizeof *keys, help                                                                           \
+        name, AT(count), AT(row), sizeof(((hf_case *)0)->row[0]), max_row, keys, n_key, help                           \
     }
 const hf_list hf_list_table[] = {
-    LIST("variables", n_variable_row, variable_row, HF_DESIGN_ROWS_MAX, variable_field, N_VARIABLE_FIELD,
+    LIST("optimize.variables", optimize.n_variable_row, optimize.variable_row, HF_DESIGN_ROWS_MAX, variable_field,
+         N_KEY(variable_field),
          "What a design varies; without rows the pretensions of the boundary, within range_N by rule"),
-    LIST("objective", n_term, term, HF_DESIGN_ROWS_MAX, objective_field, N_OBJECTIVE_FIELD,
-         "What a design should reach; without rows psi"),
-    LIST("front", n_front, front, HF_FRONT_OBJECTIVES_MAX, objective_field, N_FRONT_FIELD,
+    LIST("optimize.objective", optimize.n_term, optimize.term, HF_DESIGN_ROWS_MAX, objective_field,
+         N_KEY(objective_field), "What a design should reach; without rows psi"),
+    /* A row of optimize.front has the keys of a row of optimize.objective without the last one, weight. */
+    LIST("optimize.front", optimize.n_front, optimize.front, HF_FRONT_OBJECTIVES_MAX, objective_field,
+         N_KEY(objective_field) - 1,
          "Two or three objectives to be weighed against each other: instead of one design the run finds their front, "
-         "the "
-         "designs than which none is better in all of them"),
-    LIST("limits", n_limit, limit, HF_DESIGN_ROWS_MAX, limit_field, N_LIMIT_FIELD,
+         "the designs than which none is better in all of them"),
+    LIST("optimize.limits", optimize.n_limit, optimize.limit, HF_DESIGN_ROWS_MAX, limit_field, N_KEY(limit_field),
          "What a design must keep; without rows nothing"),
-    BUILT_LIST("cables", n_cable, cable, HF_MATERIAL_ROWS_MAX, cable_field,
-               "Material of the cables of the as-built net; a later row replaces the values of an earlier one"),
-    BUILT_LIST("nodes", n_node, node, HF_MATERIAL_ROWS_MAX, node_field,
-               "Mass of the joints of the as-built net; a later row replaces an earlier one"),
-    BUILT_LIST("load_cases", n_load_case, load_case, HF_LOAD_CASE_ROWS_MAX, load_case_field,
-               "Load cases of the as-built net, of up to 16 names: temperatures, gravity, forces, displacements of "
-               "supports; without rows none is computed"),
-    {"tolerance.require", AT(tolerance.n_require), AT(tolerance.require), sizeof(hf_require_settings),
-     HF_REQUIRE_ROWS_MAX, require_field, sizeof require_field / sizeof *require_field,
-     "Requirements of an as-built net; without rows there are none, and there is no yield"},
-    {"tolerance.truss", AT(tolerance.n_truss), AT(tolerance.truss), sizeof(hf_truss_heat_settings),
-     HF_TRUSS_HEAT_ROWS_MAX, truss_heat_field, sizeof truss_heat_field / sizeof *truss_heat_field,
-     "Temperatures of the truss that vary on their own; those of rows that name the same members add up. Without rows "
-     "the truss keeps its shape"},
+    LIST("cables", built.n_cable, built.cable, HF_MATERIAL_ROWS_MAX, cable_field, N_KEY(cable_field),
+         "Material of the cables of the as-built net; a later row replaces the values of an earlier one"),
+    LIST("nodes", built.n_node, built.node, HF_MATERIAL_ROWS_MAX, node_field, N_KEY(node_field),
+         "Mass of the joints of the as-built net; a later row replaces an earlier one"),
+    LIST("load_cases", built.n_load_case, built.load_case, HF_LOAD_CASE_ROWS_MAX, load_case_field,
+         N_KEY(load_case_field),
+         "Load cases of the as-built net, of up to 16 names: temperatures, gravity, forces, displacements of "
+         "supports; without rows none is computed"),
+    LIST("tolerance.require", tolerance.n_require, tolerance.require, HF_REQUIRE_ROWS_MAX, require_field,
+         N_KEY(require_field), "Requirements of an as-built net; without rows there are none, and there is no yield"),
+    LIST("tolerance.truss", tolerance.n_truss, tolerance.truss, HF_TRUSS_HEAT_ROWS_MAX, truss_heat_field,
+         N_KEY(truss_heat_field),
+         "Temperatures of the truss that vary on their own; those of rows that name the same members add up. Without "
+         "rows the truss keeps its shape"),
 };
-#undef BUILT_LIST
 #undef LIST
 const int hf_n_list = sizeof hf_list_table / sizeof *hf_list_table;
 
