@@ -66,8 +66,8 @@ hf_status hf_store_close_result(hf_hdf5 *io)
 
 /* ---- summary ---- */
 
-/* Reads the status of the run, and whether the form-finding ran. Earlier versions wrote it as a text of variable length, which is not read; the status
- * then follows from the stages. */
+/* Reads the status of the run, and whether the form-finding ran. Earlier versions wrote the status as a text of
+ * variable length, which is not read; the status then follows from the stages. */
 static void get_status(hf_hdf5 *io, hf_summary *s)
 {
     char word[32] = "";
